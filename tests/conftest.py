@@ -1,0 +1,13 @@
+"""Settings of every test: hypothesis draws the same examples on every machine and in every run."""
+
+import os
+
+# Before NumPy is loaded: the package's small dense matrices gain nothing from BLAS threads, and two of them on a busy
+# machine can be a hundred times slower than one.
+for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+    os.environ.setdefault(name, "1")
+
+from hypothesis import settings  # noqa: E402
+
+settings.register_profile("cuefem", derandomize=True, deadline=None, database=None, print_blob=True)
+settings.load_profile("cuefem")

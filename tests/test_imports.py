@@ -1,0 +1,150 @@
+"""The house has one way through it: imports run in one order, heavy libraries stay where they belong (properties)."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import cuefem
+
+PACKAGE = Path(cuefem.__file__).parent
+
+# Every part of cuefem; a part imports only what stands above it. A folder is one part.
+ORDER = [
+    "quantity",
+    "cue",
+    "materials",
+    "squirt",
+    "beam",
+    "modes",
+    "tail",
+    "effects",
+    "scene",
+    "resolution",
+    "flow",
+    "history",
+    "contact",
+    "shear",
+    "nonlinear",
+    "second_hit",
+    "elevation",
+    "impact",
+    "strike",
+    "transverse",
+    "damped",
+    "endmass",
+    "impulse",
+    "ablation",
+    "place",
+    "batch",
+    "sensitivity",
+    "gradient",
+    "optimum",
+    "scatter",
+    "accuracy",
+    "design",
+    "validation",
+    "io",
+    "report",
+    "sweep_command",
+    "cli",
+]
+HOMES = {
+    "skfem": {"beam", "effects"},
+    "meshio": {"io"},
+    "matplotlib": {"report"},
+    "pint": {"io"},
+    "pydantic": {"io"},
+    "pydantic_core": {"quantity"},
+    "tomlkit": {"io"},
+    "click": {"cli", "sweep_command"},
+    "rich": {"report", "cli", "sweep_command"},
+    "jinja2": {"report"},
+    "sqlite3": {"io"},
+    "pyarrow": {"io"},
+    "distributed": {"design"},
+}
+
+
+def part_of(path: Path) -> str:
+    return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
+
+
+def imported(tree: ast.Module) -> Iterator[str]:
+    """Full names of the modules that a file imports, those inside functions too, those for type checking not."""
+    for node in walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, "imports are absolute"
+            names = [alias.name for alias in node.names] if node.module == "cuefem" else []
+            yield from [f"cuefem.{name}" for name in names] or [node.module or ""]
+
+
+def walk(node: ast.AST) -> Iterator[ast.AST]:
+    yield node
+    for child in ast.iter_child_nodes(node):
+        if not (isinstance(child, ast.If) and ast.unparse(child.test) == "TYPE_CHECKING"):
+            yield from walk(child)
+
+
+def out_of_order(part: str, source: str) -> list[str]:
+    """What a file of ``part`` imports against the order, or from a library that has its home elsewhere."""
+    wrong = []
+    for name in imported(ast.parse(source)):
+        top, _, rest = name.partition(".")
+        inner = rest.partition(".")[0]
+        if top == "cuefem" and inner != part and ORDER.index(inner) >= ORDER.index(part):
+            wrong.append(name)
+        if part not in HOMES.get(top, {part}):
+            wrong.append(name)
+    return wrong
+
+
+SOURCES = sorted(path for path in PACKAGE.rglob("*.py") if path != PACKAGE / "__init__.py")
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda path: str(path.relative_to(PACKAGE)))
+def test_imports_run_one_way(path: Path) -> None:
+    assert out_of_order(part_of(path), path.read_text(encoding="utf-8")) == []
+
+
+@pytest.mark.parametrize(
+    ("part", "source", "wrong"),
+    [
+        ("cue", "from cuefem.beam import assemble", ["cuefem.beam"]),
+        ("cue", "from cuefem import io", ["cuefem.io"]),
+        ("modes", "def f():\n    import skfem.helpers", ["skfem.helpers"]),
+        ("scene", "import pint", ["pint"]),
+        ("strike", "from matplotlib import pyplot", ["matplotlib"]),
+        ("cue", "if TYPE_CHECKING:\n    from cuefem.io import load", []),
+        ("io", "from cuefem.cue import Cue\nimport meshio", []),
+    ],
+)
+def test_a_breach_is_found(part: str, source: str, wrong: list[str]) -> None:
+    assert out_of_order(part, source) == wrong
+
+
+HEAVY = ["skfem", "scipy", "pint", "pydantic", "matplotlib", "meshio", "tomlkit", "rich", "click"]
+
+
+@pytest.mark.parametrize(
+    ("statement", "light"),
+    [
+        ("import cuefem", ["numpy", *HEAVY]),
+        ("import cuefem; cuefem.Cue; cuefem.Scene", HEAVY),
+        ("import cuefem.squirt", HEAVY),
+        ("import cuefem.cli", [name for name in ["numpy", *HEAVY] if name != "click"]),
+    ],
+)
+def test_what_is_not_needed_is_not_loaded(statement: str, light: list[str]) -> None:
+    program = f"{statement}\nimport sys\nprint(sorted(set({light!r}) & sys.modules.keys()))"
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, cwd=PACKAGE.parent, check=True
+    )
+    assert done.stdout.strip() == "[]"
