@@ -1,0 +1,290 @@
+"""Geometry of a cue, from its drawing to the section properties of a beam; and the lumped cues of the papers."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Annotated, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from cuefem.quantity import Number, Quantity, check_fields, check_kind
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Material:
+    """A linear elastic material, isotropic or wood along the grain.
+
+    E: Young's modulus along the cue, Pa. G: shear modulus in planes that hold the cue's axis, Pa, free of E.
+    rho: density, kg/m3. loss: loss factor of bending, a pure number. nu: Poisson's ratio of a pull along the axis,
+    used for the shear coefficient alone (`shear_coefficient`), where 2 nu G/E must stay below 1.
+    """
+
+    E: Annotated[float, Quantity("Pa", "(0, inf)")]
+    G: Annotated[float, Quantity("Pa", "(0, inf)")]
+    rho: Annotated[float, Quantity("kg/m^3", "(0, inf)")]
+    loss: Annotated[float, Quantity("", "[0, 1)")] = 0.0
+    nu: Annotated[float, Quantity("", "[0, 0.5]")] = 0.3
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+        if 2 * self.nu * self.G >= self.E:
+            raise ValueError(f"Material.G must be in (0, {self.E / (2 * self.nu)}) Pa, E/(2 nu); got {self.G}")
+
+    @property
+    def effective_poisson_ratio(self) -> float:
+        """The nu_e of physics.md section 4: nu_e/(1 + nu_e) = 2 nu G/E; equals nu where the material is isotropic."""
+        ratio = 2 * self.nu * self.G / self.E
+        return ratio / (1 - ratio)
+
+
+def shear_coefficient(nu: ArrayLike, bore_ratio: ArrayLike = 0.0) -> Array:
+    """Timoshenko's shear coefficient of a round section, solid or hollow.
+
+    nu: effective Poisson ratio; bore_ratio: bore over outer diameter, in [0, 1). Both broadcast.
+    Source: Hutchinson, J. Appl. Mech. 68 (2001) 87, circle and hollow circle.
+    """
+    nu, c = np.asarray(nu), np.asarray(bore_ratio) ** 2  # complex ones are derivatives by a complex step
+    above = 6 * (1 + c) ** 2 * (1 + nu) ** 2
+    below = 7 + 34 * c + 7 * c**2 + nu * (12 + 48 * c + 12 * c**2) + nu**2 * (4 + 16 * c + 4 * c**2)
+    return np.asarray(above / below)
+
+
+class Section(NamedTuple):
+    """Section properties at the points asked for, each an array of their shape.
+
+    EA: axial stiffness, N. EI: bending stiffness, N m2. kGA: shear stiffness kappa G A, N.
+    rhoA: mass per length, kg/m. rhoI: rotary inertia per length, kg m.
+    """
+
+    EA: Array
+    EI: Array
+    kGA: Array
+    rhoA: Array
+    rhoI: Array
+
+
+@dataclass(frozen=True)
+class Segment:
+    """A conical piece of a cue, solid or bored, the bore empty or filled with a core of another material.
+
+    Diameters in m, tip end and butt end, linear between. kappa: shear coefficient of the whole section, core included;
+    left out, `shear_coefficient` of the shell plus that of the core. A ferrule over a tenon is a segment of ferrule
+    material whose core is wood.
+    """
+
+    length: Annotated[float, Quantity("m", "(0, inf)")]
+    tip_diameter: Annotated[float, Quantity("m", "(0, inf)")]
+    butt_diameter: Annotated[float, Quantity("m", "(0, inf)")]
+    material: Material
+    tip_bore: Annotated[float, Quantity("m", "[0, inf)")] = 0.0
+    butt_bore: Annotated[float, Quantity("m", "[0, inf)")] = 0.0
+    core: Material | None = None
+    kappa: Annotated[float | None, Quantity("", "(0, 1]")] = None
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+        check_kind("Segment.material", self.material, Material)
+        check_kind("Segment.core", self.core, (Material, type(None)))
+        for end in ("tip", "butt"):
+            bore, outer = getattr(self, f"{end}_bore"), getattr(self, f"{end}_diameter")
+            if bore >= outer:
+                raise ValueError(f"Segment.{end}_bore must be in [0, {outer}) m, its outer diameter; got {bore}")
+
+    @property
+    def mass(self) -> float:
+        """Exact mass of the piece, kg (frustum formula, shell and core)."""
+        bore = _frustum(self.length, self.tip_bore, self.butt_bore)
+        shell = _frustum(self.length, self.tip_diameter, self.butt_diameter) - bore
+        return self.material.rho * shell + (self.core.rho * bore if self.core else 0.0)
+
+    @property
+    def centre(self) -> float:
+        """Distance of the centre of mass from the tip end of the piece, m."""
+        outer, bore = (self.tip_diameter, self.butt_diameter), (self.tip_bore, self.butt_bore)
+        shell = _frustum_moment(self.length, *outer) - _frustum_moment(self.length, *bore)
+        core = self.core.rho * _frustum_moment(self.length, *bore) if self.core else 0.0
+        return (self.material.rho * shell + core) / self.mass
+
+    @cached_property
+    def constants(self) -> Array:
+        """The piece as one row of numbers, in the order of `SegmentRows`; the rows of a cue are evaluated together."""
+        shell, core = self.material, self.core
+        inner = (core.E, core.G, core.rho, core.effective_poisson_ratio) if core else (0.0, 0.0, 0.0, 0.0)
+        return np.array(
+            [
+                *(self.length, self.tip_diameter, self.butt_diameter, self.tip_bore, self.butt_bore),
+                *(shell.E, shell.G, shell.rho, shell.effective_poisson_ratio),
+                *inner,
+                np.nan if self.kappa is None else self.kappa,
+            ]
+        )
+
+    def section(self, s: ArrayLike) -> Section:
+        """Section properties at distances ``s`` from the tip end of the piece, m."""
+        return section_properties(SegmentRows(*self.constants), np.asarray(s, float))
+
+
+class SegmentRows(NamedTuple):
+    """A segment as numbers, or many as arrays; nu is the effective Poisson ratio, kappa nan where not given."""
+
+    length: Array
+    tip_diameter: Array
+    butt_diameter: Array
+    tip_bore: Array
+    butt_bore: Array
+    E: Array
+    G: Array
+    rho: Array
+    nu: Array
+    core_E: Array
+    core_G: Array
+    core_rho: Array
+    core_nu: Array
+    kappa: Array
+
+
+def section_properties(c: SegmentRows, s: Array) -> Section:
+    """Section properties at distances ``s`` from the tip end of the segments ``c`` (broadcasting): the one formula."""
+    t = s / c.length
+    outer = c.tip_diameter + (c.butt_diameter - c.tip_diameter) * t
+    bore = c.tip_bore + (c.butt_bore - c.tip_bore) * t
+    outer2, bore2 = outer**2, bore**2
+    area, core_area = np.pi / 4 * (outer2 - bore2), np.pi / 4 * bore2
+    inertia, core_inertia = np.pi / 64 * (outer2**2 - bore2**2), np.pi / 64 * bore2**2
+    shell, core = _shear_coefficients(c, bore / outer)
+    return Section(
+        c.E * area + c.core_E * core_area,
+        c.E * inertia + c.core_E * core_inertia,
+        shell * c.G * area + core * c.core_G * core_area,
+        c.rho * area + c.core_rho * core_area,
+        c.rho * inertia + c.core_rho * core_inertia,
+    )
+
+
+def _frustum(length: float, first: float, last: float) -> float:
+    return math.pi / 12 * length * (first**2 + first * last + last**2)
+
+
+def _frustum_moment(length: float, first: float, last: float) -> float:
+    return math.pi / 48 * length**2 * (first**2 + 2 * first * last + 3 * last**2)
+
+
+def _shear_coefficients(c: SegmentRows, bore_ratio: Array) -> tuple[Array, Array]:
+    open_ones = np.isnan(c.kappa)
+    if not open_ones.any():
+        return c.kappa, c.kappa
+    shell, core = shear_coefficient(c.nu, bore_ratio), shear_coefficient(c.core_nu)
+    return np.where(open_ones, shell, c.kappa), np.where(open_ones, core, c.kappa)
+
+
+@dataclass(frozen=True)
+class Cue:
+    """A cue as segments from tip to butt, and the rest of its mass.
+
+    body_mass: kg of the cue that is not modelled; it moves along the axis only ([Kim] sec. 4), so it is felt by a
+    head-on blow and not by bending.
+    """
+
+    segments: tuple[Segment, ...]
+    body_mass: Annotated[float, Quantity("kg", "[0, inf)")] = 0.0
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+        if isinstance(self.segments, Segment):
+            raise TypeError("Cue.segments must be a sequence of Segment; got one Segment")
+        object.__setattr__(self, "segments", tuple(self.segments))
+        if not self.segments:
+            raise ValueError("Cue.segments must hold at least one Segment; got none, a cue without mass")
+        for i, segment in enumerate(self.segments):
+            check_kind(f"Cue.segments[{i}]", segment, Segment)
+
+    @cached_property
+    def nodes(self) -> Array:
+        """Positions of the ends of the segments, m from the tip, shape (segments + 1,)."""
+        return np.concatenate([[0.0], np.cumsum([s.length for s in self.segments])])
+
+    @property
+    def length(self) -> float:
+        """Length of the modelled cue, m."""
+        return float(self.nodes[-1])
+
+    @property
+    def shaft_mass(self) -> float:
+        """Mass of the segments, kg."""
+        return math.fsum(s.mass for s in self.segments)
+
+    @property
+    def mass(self) -> float:
+        """Mass of the segments and the body, kg: what a head-on blow feels."""
+        return self.shaft_mass + self.body_mass
+
+    @property
+    def balance_point(self) -> float:
+        """Centre of mass of the segments, m from the tip."""
+        moments = (s.mass * (x + s.centre) for s, x in zip(self.segments, self.nodes, strict=False))
+        return math.fsum(moments) / self.shaft_mass
+
+    def section(self, x: ArrayLike) -> Section:
+        """Section properties at positions ``x`` in [0, length] m from the tip; at a jump those of the butt side."""
+        x = np.asarray(x, float)
+        if not np.all((x >= 0) & (x <= self.length)):
+            raise ValueError(f"Cue.section takes positions in [0, {self.length}] m; got {x}")
+        piece = np.clip(np.searchsorted(self.nodes, x, side="right") - 1, 0, len(self.segments) - 1)
+        return self.section_in(piece, x - self.nodes[piece])
+
+    def section_in(self, piece: NDArray[np.intp], s: Array) -> Section:
+        """Section properties inside the segments of index ``piece``, at ``s`` m from their tip ends (broadcasting)."""
+        return section_properties(SegmentRows(*self._constants[:, piece]), s)
+
+    @cached_property
+    def _constants(self) -> Array:
+        return np.array([segment.constants for segment in self.segments]).T
+
+
+@dataclass(frozen=True)
+class LumpedCue:
+    """A cue as two numbers (and, for a domed tip, three): its inverse mass at the tip.
+
+    In the cue's frame (along u, across w) the tip's inverse mass is [[1/mass, coupling], [coupling, 1/end_mass]], 1/kg.
+    mass: inertia felt along the axis, kg. end_mass: inertia felt across it, the effective end mass m_e (never the m_c
+    of [Kim]: see `two_part`), kg. |coupling| < 1/sqrt(mass end_mass). Fields may be arrays that broadcast.
+    """
+
+    mass: Annotated[Number, Quantity("kg", "(0, inf)")]
+    end_mass: Annotated[Number, Quantity("kg", "(0, inf)")]
+    coupling: Annotated[Number, Quantity("1/kg", "(-inf, inf)")] = 0.0
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+        if np.ndim(self.coupling) == 0 and self.coupling == 0:
+            return
+        coupling, limit = np.broadcast_arrays(self.coupling, 1 / np.sqrt(np.multiply(self.mass, self.end_mass)))
+        wrong = ~(np.abs(coupling) < limit)
+        if wrong.any():
+            first = tuple(np.argwhere(wrong)[0])
+            where = f" at index {first[0] if len(first) == 1 else tuple(map(int, first))}" if first else ""
+            bound = limit[first]
+            raise ValueError(f"LumpedCue.coupling must be in ({-bound}, {bound}) 1/kg; got {coupling[first]}{where}")
+
+    @classmethod
+    def two_part(cls, mass: Number, cue_end_mass: Number, nu_c: Number = 1 / 3) -> LumpedCue:
+        """[Kim] sec. 4: a body of the cue's whole ``mass`` along the axis, a cue end of mass m_c across it.
+
+        cue_end_mass: [Kim]'s m_c, kg; nu_c: inertia factor of the cue end. The tip feels m_e = m_c nu_c/(1 + nu_c).
+        """
+        return cls(mass, _felt(cue_end_mass, nu_c, "LumpedCue.two_part"))
+
+    @classmethod
+    def rigid(cls, mass: Number, nu_c: Number = 0.136) -> LumpedCue:
+        """[Kim] sec. 2: a rigid cue; the tip feels m_e = mass nu_c/(1 + nu_c), with [Kim]'s nu_c of a whole cue."""
+        return cls(mass, _felt(mass, nu_c, "LumpedCue.rigid"))
+
+
+def _felt(mass: Number, nu_c: Number, name: str) -> Number:
+    nu_c = Quantity("", "(0, inf)").check(f"{name} nu_c", nu_c)
+    return np.multiply(mass, nu_c) / (1 + nu_c)

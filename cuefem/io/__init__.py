@@ -1,0 +1,119 @@
+"""The only part of cuefem that opens files: cues and scenes as TOML, lathe profiles as CSV, cues as meshes."""
+
+from __future__ import annotations
+
+import ast
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+from cuefem.cue import Cue
+from cuefem.io.errors import InputError, reason
+from cuefem.io.profile import DEFAULT_MATERIAL, load_profile
+from cuefem.io.toml import load_accuracy, load_cue, load_toml, named_material, read_text, toml_text
+from cuefem.io.units import number
+from cuefem.scene import Scene
+
+__all__ = [
+    "DEFAULT_MATERIAL",
+    "InputError",
+    "load",
+    "load_accuracy",
+    "number",
+    "save",
+    "save_page",
+    "studies_with",
+    "write_whole",
+]
+
+FIGURES = (".png", ".svg")
+_MESHES = (".vtk", ".vtu")
+
+
+def load(path: str | os.PathLike[str], *, material: str | None = None) -> Cue | Scene:
+    """A cue or a scene from a file: .toml ([[segments]] at the top = cue, [cue] = scene), .csv, .vtk, .vtu.
+
+    material: name of a lathe profile's material (CSV alone; "hard maple" where left out). Errors: InputError, one line
+    that names file, key, bound, unit and the value got.
+    """
+    path = Path(path)
+    if material is not None and path.suffix != ".csv":
+        raise InputError(path, "", f"names its materials itself: material is for .csv files alone; got {material!r}")
+    if path.suffix == ".toml":
+        return load_toml(path, _load_cue)
+    return _load_cue(path, material)
+
+
+def _load_cue(path: Path, material: str | None = None) -> Cue:
+    if path.suffix == ".toml":
+        return load_cue(path)
+    if path.suffix == ".csv":
+        return load_profile(path, named_material(material or DEFAULT_MATERIAL, path, "material"))
+    if path.suffix in _MESHES:
+        from cuefem.io.mesh import load_mesh
+
+        return load_mesh(path)
+    if path.is_dir():
+        raise InputError(path, "", "cannot be read: it is a folder")
+    raise InputError(path, "", f"must end in .toml, .csv, .vtk or .vtu; got {path.suffix!r}")
+
+
+def save(obj: Cue | Scene, path: str | os.PathLike[str]) -> None:
+    """Write a cue or scene as .toml, or a cue as .vtk or .vtu; `load` reads back exactly what was saved.
+
+    The file appears whole or not at all. Errors: InputError where the file cannot be written, TypeError for other
+    objs, ValueError for a scene of arrays.
+    """
+    if not isinstance(obj, Cue | Scene):
+        raise TypeError(f"save writes a Cue or a Scene; got {obj!r}")
+    path = Path(path)
+    if path.suffix == ".toml":
+        content = toml_text(obj)
+        write_whole(path, lambda temporary: temporary.write_text(content, encoding="utf-8"))
+    elif path.suffix in _MESHES and isinstance(obj, Cue):
+        from cuefem.io.mesh import save_mesh
+
+        write_whole(path, lambda temporary: save_mesh(obj, temporary))
+    else:
+        allowed = ".toml, .vtk or .vtu" if isinstance(obj, Cue) else ".toml, for a scene"
+        raise InputError(path, "", f"must end in {allowed}; got {path.suffix!r}")
+
+
+def save_page(text: str, path: str | os.PathLike[str]) -> None:
+    """Write a page as .html, whole or not at all. Errors: InputError."""
+    path = Path(path)
+    if path.suffix != ".html":
+        raise InputError(path, "", f"must end in .html; got {path.suffix!r}")
+    write_whole(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
+
+
+def save_figure(content: bytes, path: str | os.PathLike[str]) -> None:
+    """Write a drawn figure as .png or .svg, whole or not at all. Errors: InputError."""
+    path = Path(path)
+    if path.suffix not in FIGURES:
+        raise InputError(path, "", f"must end in .png or .svg; got {path.suffix!r}")
+    write_whole(path, lambda temporary: temporary.write_bytes(content))
+
+
+def write_whole(path: Path, put: Callable[[Path], object]) -> None:
+    """Write into a file beside ``path`` and move it there whole, so that nothing half written is ever seen."""
+    goal = Path(os.path.realpath(path))
+    temporary = goal.with_name(f".{goal.stem}.{os.getpid()}{goal.suffix}")
+    try:
+        put(temporary)
+        temporary.replace(goal)
+    except OSError as error:
+        raise InputError(path, "", f"cannot be written: {reason(error)}") from None
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def studies_with(folder: Path, function: str) -> list[Path]:
+    """The .py files of a folder that define ``function`` at their top, in the order of their names."""
+    if not folder.is_dir():
+        raise InputError(folder, "", "cannot be read: no such folder")
+    return [path for path in sorted(folder.glob("*.py")) if _defines(path, function)]
+
+
+def _defines(path: Path, function: str) -> bool:
+    return any(isinstance(node, ast.FunctionDef) and node.name == function for node in ast.parse(read_text(path)).body)

@@ -1,0 +1,67 @@
+"""What a file leaves out and the defaults supply, in words for whoever reads the result; numbers that look mistaken."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from pathlib import Path
+from typing import Any
+
+from cuefem.cue import Cue
+from cuefem.io.profile import DEFAULT_MATERIAL
+from cuefem.io.toml import read_tables
+from cuefem.scene import DEFAULT_CONTACT_TIME, Ball, Scene, Stroke, Tip
+
+CONTACT_TIMES = (1e-5, 1.0)  # s: a hundred times either side of leather's 1 to 2 ms, and more
+LONGEST, THICKEST = 3.0, 0.2  # m: beyond every cue
+
+
+def assumed(path: Path, given: Collection[str]) -> list[str]:
+    """What a loaded cue or scene file leaves to defaults. given: options said besides, such as "offset"."""
+    found = read_tables(path) if path.suffix == ".toml" else {}
+    if "cue" not in found:
+        return _profile(path, given, " (choose with --material)")
+    cue = found["cue"]
+    return [*(_profile(path.parent / cue, given) if isinstance(cue, str) else []), *_tables(found, given)]
+
+
+def _profile(path: Path, given: Collection[str], choose: str = "") -> list[str]:
+    """What a lathe profile cannot say: its material, and what is screwed to the shaft."""
+    if path.suffix != ".csv":
+        return []
+    return [
+        *([] if "material" in given else [f"material {DEFAULT_MATERIAL}{choose}"]),
+        *([] if "body_mass" in given else ["no mass behind the shaft (--body-mass gives it)"]),
+    ]
+
+
+def _tables(found: dict[str, Any], given: Collection[str]) -> list[str]:
+    """What a scene's tables leave out."""
+    ball, tip, stroke = (found.get(name, {}) for name in ("ball", "tip", "stroke"))
+    timed = {"contact_time", "stiffness"} & {*tip, *given}
+    known = (
+        ("mass" in ball, f"ball {1e3 * Ball().mass:g} g"),
+        ("radius" in ball, f"ball diameter {2e3 * Ball().radius:g} mm"),
+        (bool(timed), f"contact time {1e3 * DEFAULT_CONTACT_TIME:g} ms"),
+        ("restitution" in tip, f"e {Tip().restitution:g}"),
+        ("friction" in tip, f"mu {Tip().friction:g}"),
+        ("speed" in stroke, f"stroke {Stroke().speed:g} m/s"),
+        ("offset" in stroke or "offset" in given, f"offset b/R {Stroke().offset:g}"),
+    )
+    return [words for said, words in known if not said]
+
+
+def unusual(scene: Scene) -> list[str]:
+    """Numbers that no cue and no blow has, as a wrong unit makes them, one line each; empty for ordinary scenes."""
+    lines = []
+    low, high = CONTACT_TIMES
+    time = float(scene.contact_time)
+    if not low <= time <= high:
+        lines.append(f"contact time {time:g} s; leather's is 0.001 to 0.002 s")
+    if isinstance(scene.cue, Cue):
+        length = sum(segment.length for segment in scene.cue.segments)
+        thickness = max(max(segment.tip_diameter, segment.butt_diameter) for segment in scene.cue.segments)
+        if length > LONGEST:
+            lines.append(f"a cue {length:g} m long; check the unit of its lengths")
+        if thickness > THICKEST:
+            lines.append(f"a cue {thickness:g} m thick; check the unit of its diameters")
+    return lines

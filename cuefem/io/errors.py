@@ -1,0 +1,39 @@
+"""What every unreadable or unacceptable file raises: one line that names file, key, bound, unit and the value got."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+from os import PathLike
+from typing import Any
+
+
+class InputError(ValueError):
+    """Input from outside that cannot be used, said in one line: ``FILE: KEY.PATH: must be in BOUND UNIT; got VALUE``.
+
+    file: as the user named it. key: path of the key inside the file, such as ``segments[0].length``; "" for the file
+    as a whole. problem: what is wrong.
+    """
+
+    def __init__(self, file: str | PathLike[str], key: str, problem: str) -> None:
+        self.file, self.key, self.problem = str(file), key, problem
+        parts = [part for part in (self.file, key, problem) if part]
+        super().__init__(" ".join(": ".join(parts).split()))
+
+
+def shown(value: Any) -> str:
+    """A value as it stands in a message: quoted where it is text, and cut where it is long."""
+    text = repr(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def nearest(name: str, names: Iterable[str]) -> str:
+    """A hint at the valid name that was probably meant, or nothing."""
+    known = {known.casefold(): known for known in names}
+    close = difflib.get_close_matches(name.casefold(), known, n=1, cutoff=0.5)
+    return f"; did you mean {known[close[0]]!r}?" if close else ""
+
+
+def reason(error: OSError) -> str:
+    """Why the system refused a file."""
+    return error.strerror or type(error).__name__

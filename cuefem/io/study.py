@@ -1,0 +1,171 @@
+"""Design studies as TOML: a base scene by its path, [[vary]] tables, responses, and how designs are drawn."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from cuefem.cue import Cue
+from cuefem.design import METHODS, Levels, Response, Sample, Span, Study, Vary, paths
+from cuefem.design.paths import quantity_at, value_at
+from cuefem.io.errors import InputError, shown
+from cuefem.io.schema import build, joined, unknown_key
+from cuefem.io.toml import named_material, read_tables
+from cuefem.io.units import quantity
+from cuefem.quantity import Quantity
+from cuefem.scene import Resolution, Scene, Stroke
+
+KEYS = ["scene", "responses", "vary", "sample", "resolution"]
+VARY_KEYS = ["path", "name", "values", "low", "high", "count", "spacing", "factor"]
+SAMPLE_KEYS = ["method", "count", "seed"]
+FACTOR = Quantity("", "(0, inf)")
+
+
+def load_study(path: str | Path, *, offset: float = 0.3) -> Study:
+    """A design study from a TOML file; InputError, one line, where it is none.
+
+    offset: b/R of a base that is a bare cue, which gets the default ball and tip. Values carry their units as text.
+    """
+    path = Path(path)
+    found = read_tables(path)
+    _check_keys(found, KEYS, path, "")
+    base = _base(found, path, offset)
+    responses = tuple(_response(text, path, i) for i, text in enumerate(_list(found, "responses", path)))
+    vary = tuple(_vary(table, base, path, i, found.get("sample")) for i, table in enumerate(_list(found, "vary", path)))
+    sample = _sample(found["sample"], path) if "sample" in found else None
+    at = build(Resolution, found["resolution"], file=str(path), key="resolution") if "resolution" in found else None
+    try:
+        return Study(base, vary, responses, sample, at)
+    except ValueError as error:
+        raise InputError(path, "", str(error)) from None
+
+
+def _check_keys(found: Any, known: list[str], path: Path, key: str) -> None:
+    if not isinstance(found, dict):
+        raise InputError(path, key, f"must be a table with the keys {', '.join(known)}; got {shown(found)}")
+    for name, value in found.items():
+        if name not in known:
+            raise unknown_key(name, value, known, file=str(path), key=key)
+
+
+def _list(found: dict[str, Any], key: str, path: Path) -> list[Any]:
+    value = found.get(key)
+    if not isinstance(value, list) or not value:
+        what = "[[vary]] tables" if key == "vary" else 'a list such as ["end_mass", "squirt(0.3)"]'
+        raise InputError(path, key, f"must be {what}, one at least; got {shown(value) if key in found else 'nothing'}")
+    return value
+
+
+def _base(found: dict[str, Any], path: Path, offset: float) -> Scene:
+    from cuefem.io import load
+
+    name = found.get("scene")
+    if not isinstance(name, str):
+        got = shown(name) if "scene" in found else "nothing"
+        raise InputError(path, "scene", f"must be the path of a scene or a cue, from this file's folder; got {got}")
+    base = load(path.parent / name)
+    return Scene(base, stroke=Stroke(offset=offset)) if isinstance(base, Cue) else base
+
+
+def _response(text: Any, path: Path, i: int) -> Response:
+    try:
+        return Response.of(text if isinstance(text, str) else repr(text))
+    except ValueError as error:
+        raise InputError(path, joined("responses", i), str(error)) from None
+
+
+def _vary(table: Any, base: Scene, path: Path, i: int, sample: Any) -> Vary:
+    key = joined("vary", i)
+    _check_keys(table, VARY_KEYS, path, key)
+    named = table.get("path")
+    texts = [named] if isinstance(named, str) else named
+    if not isinstance(texts, list) or not texts or not all(isinstance(text, str) for text in texts):
+        problem = f'must be a field such as "cue.segments[0].tip_bore", or a list of them; got {shown(named)}'
+        raise InputError(path, joined(key, "path"), problem)
+    for name, kind, what in (("name", str, "a text"), ("factor", bool, "true or false")):
+        if name in table and not isinstance(table[name], kind):
+            raise InputError(path, joined(key, name), f"must be {what}; got {shown(table[name])}")
+    factor = bool(table.get("factor", False))
+    wanted = _wanted(texts, base, factor, path, joined(key, "path"))
+    drawn = _range(table, wanted, path, key, sample is not None)
+    made = Vary(tuple(texts), drawn, table.get("name", ""), factor)
+    try:
+        made.unit(base)
+    except ValueError as error:
+        raise InputError(path, joined(key, "path"), str(error)) from None
+    return made
+
+
+def _wanted(texts: list[str], base: Scene, factor: bool, path: Path, key: str) -> Quantity | None:
+    """Unit and bounds of the values; None for names of materials."""
+    try:
+        field = next(one for text in texts for one in paths(base, text))
+    except ValueError as error:
+        raise InputError(path, key, str(error)) from None
+    if not factor:
+        return quantity_at(base, field)
+    if quantity_at(base, field) is None or value_at(base, field) is None:
+        raise InputError(path, key, f"factor must multiply a number; got {texts[0]}, which holds none")
+    return FACTOR
+
+
+def _range(table: dict[str, Any], wanted: Quantity | None, path: Path, key: str, sampled: bool) -> Levels | Span:
+    ends = {"low", "high", "count", "spacing"} & set(table)
+    if ("values" in table) == bool(ends):
+        got = "both" if ends else "neither"
+        raise InputError(path, key, f"must have values, or low and high; got {got}")
+    if "values" in table:
+        values = table["values"]
+        if not isinstance(values, list) or not values:
+            problem = f"must be a list of one value at least; got {shown(values)}, an empty range"
+            raise InputError(path, joined(key, "values"), problem)
+        read = (_value(value, wanted, path, joined(joined(key, "values"), i)) for i, value in enumerate(values))
+        return Levels(tuple(read))
+    return _span(table, wanted, path, key, sampled)
+
+
+def _value(value: Any, wanted: Quantity | None, path: Path, key: str) -> float | str:
+    try:
+        if wanted is not None:
+            return quantity(wanted, value)
+        if not isinstance(value, str):
+            raise ValueError(f"must be the name of a material (see `cuefem materials`); got {shown(value)}")
+        named_material(value, path, key)
+        return value
+    except InputError:
+        raise
+    except ValueError as error:
+        raise InputError(path, key, str(error)) from None
+
+
+def _span(table: dict[str, Any], wanted: Quantity | None, path: Path, key: str, sampled: bool) -> Span:
+    if wanted is None:
+        raise InputError(path, key, "must have values, names of materials, which have no low and high")
+    for name in ("low", "high") if sampled else ("low", "high", "count"):
+        if name not in table:
+            raise InputError(path, joined(key, name), "must be given, beside low and high; got nothing")
+    low, high = (_value(table[name], wanted, path, joined(key, name)) for name in ("low", "high"))
+    spacing = table.get("spacing", "linear")
+    if spacing not in ("linear", "logarithmic"):
+        raise InputError(path, joined(key, "spacing"), f"must be linear or logarithmic; got {shown(spacing)}")
+    assert isinstance(low, float)
+    assert isinstance(high, float)
+    if not low < high:
+        got = f"low = {shown(table['low'])}, high = {shown(table['high'])}"
+        raise InputError(path, key, f"low must be below high; got {got}, an empty range")
+    try:
+        return Span(low, high, table.get("count", 1), spacing == "logarithmic")
+    except (ValueError, TypeError) as error:
+        raise InputError(path, key, str(error)) from None
+
+
+def _sample(found: Any, path: Path) -> Sample:
+    _check_keys(found, SAMPLE_KEYS, path, "sample")
+    for name in SAMPLE_KEYS:
+        if name not in found:
+            what = f"one of {', '.join(METHODS)}" if name == "method" else "a whole number"
+            raise InputError(path, joined("sample", name), f"must be given, {what}; got nothing")
+    try:
+        return Sample(found["method"], found["count"], found["seed"])
+    except (ValueError, TypeError) as error:
+        raise InputError(path, "sample", str(error)) from None

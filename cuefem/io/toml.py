@@ -1,0 +1,196 @@
+"""Cues and scenes as TOML: `[[segments]]` at the top is a cue, `[cue]` (a table, or the path of a cue file) a scene."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import tomlkit
+
+from cuefem.cue import Cue, LumpedCue, Material
+from cuefem.effects import CueEffect, Effect
+from cuefem.io.errors import InputError, nearest, reason, shown
+from cuefem.io.schema import build, effect_kinds, joined, keys_of, table, unknown_key
+from cuefem.materials import material
+from cuefem.quantity import Quantity, check_fields
+from cuefem.scene import Scene
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """How exact a command's answer shall be: rtol, relative; no part of the scene."""
+
+    rtol: Annotated[float, Quantity("", "(0, 1)")]
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+
+
+def read_text(path: Path) -> str:
+    """A file's text; InputError where it cannot be read, is not UTF-8, or is empty."""
+    try:
+        content = path.read_bytes().decode("utf-8-sig")
+    except OSError as error:
+        raise InputError(path, "", f"cannot be read: {reason(error)}") from None
+    except UnicodeDecodeError as error:
+        raise InputError(path, "", f"must be UTF-8 text; got byte {error.object[error.start]:#04x}") from None
+    if not content.strip():
+        raise InputError(path, "", "must hold a cue or a scene; got an empty file")
+    return content
+
+
+def read_tables(path: Path) -> dict[str, Any]:
+    """A TOML file as plain tables."""
+    try:
+        return tomllib.loads(read_text(path))
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(path, "", f"must be TOML; got a syntax error: {error}") from None
+    except RecursionError:
+        raise InputError(path, "", "must be TOML nested less deeply") from None
+
+
+def load_toml(path: Path, cue_file: Callable[[Path], Cue]) -> Cue | Scene:
+    """The cue or scene of a TOML file; ``cue_file`` loads the cue file that a scene names."""
+    found = read_tables(path)
+    if "segments" in found and "cue" not in found:
+        return _cue(found, path, "")
+    return _scene(found, path, cue_file)
+
+
+def load_cue(path: Path) -> Cue:
+    """The cue of a TOML file that must not be a scene."""
+    found = read_tables(path)
+    if "cue" in found:
+        raise InputError(
+            path, "cue", "must be absent here: a scene's cue is a cue file, with [[segments]]; got a scene"
+        )
+    return _cue(found, path, "")
+
+
+def load_accuracy(path: str | Path) -> float | None:
+    """The relative accuracy rtol that a scene file's [accuracy] table asks for; None where it asks for none."""
+    path = Path(path)
+    found = read_tables(path) if path.suffix == ".toml" else {}
+    return _accuracy(found.get("accuracy"), path)
+
+
+def _accuracy(found: Any, path: Path) -> float | None:
+    return None if found is None else build(Accuracy, found, file=str(path), key="accuracy").rtol
+
+
+def _cue(found: dict[str, Any], path: Path, key: str) -> Cue:
+    segments = found.get("segments")
+    if isinstance(segments, list):
+        within = joined(key, "segments")
+        found = {**found, "segments": [_segment(s, path, joined(within, i)) for i, s in enumerate(segments)]}
+    return build(Cue, found, file=str(path), key=key)
+
+
+def _segment(found: Any, path: Path, key: str) -> Any:
+    """A segment's table with the names of materials looked up."""
+    if not isinstance(found, dict):
+        return found
+    named = {name: found[name] for name in ("material", "core") if isinstance(found.get(name), str)}
+    return found | {name: named_material(value, path, joined(key, name)) for name, value in named.items()}
+
+
+def named_material(name: str, path: Path, key: str) -> Material:
+    """A material of the table; InputError with the names that are near."""
+    try:
+        return material(name)
+    except ValueError as error:
+        raise InputError(path, key, f"{error}; see `cuefem materials`") from None
+
+
+def _scene(found: dict[str, Any], path: Path, cue_file: Callable[[Path], Cue]) -> Scene:
+    names = [*keys_of(Scene), "accuracy"]
+    for name in found:
+        if name not in names:
+            raise unknown_key(name, found[name], ["segments", *names], file=str(path), key="")
+    if "cue" not in found:
+        raise InputError(path, "cue", "must be given: [[segments]] make a cue, [cue] a scene; got neither")
+    _accuracy(found.get("accuracy"), path)
+    parts = {name: value for name, value in found.items() if name != "accuracy"}
+    parts["cue"] = _scene_cue(found["cue"], path, cue_file)
+    effects = found.get("effects")
+    if isinstance(effects, list):
+        parts["effects"] = [_effect(e, path, joined("effects", i)) for i, e in enumerate(effects)]
+    scene = build(Scene, parts, file=str(path), key="")
+    _check_effects(scene, path)
+    return scene
+
+
+def _check_effects(scene: Scene, path: Path) -> None:
+    """Refuse what only the cue can say: an effect at a position off it."""
+    for i, effect in enumerate(scene.effects):
+        if isinstance(effect, CueEffect) and isinstance(scene.cue, Cue):
+            try:
+                effect.check_on(scene.cue, joined("effects", i))
+            except ValueError as error:
+                key, _, problem = str(error).partition(" ")
+                raise InputError(path, key, problem) from None
+
+
+def _scene_cue(found: Any, path: Path, cue_file: Callable[[Path], Cue]) -> Cue | LumpedCue:
+    if isinstance(found, str):
+        try:
+            return cue_file(path.parent / found)
+        except InputError as error:
+            if error.key:  # a fault inside the cue file, which has its own key
+                raise
+            raise InputError(path, "cue", str(error)) from None
+    if not isinstance(found, dict):
+        raise InputError(path, "cue", f"must be a table or the path of a cue file; got {shown(found)}")
+    lumped = {"mass", "end_mass"} & set(found) and "segments" not in found
+    return build(LumpedCue, found, file=str(path), key="cue") if lumped else _cue(found, path, "cue")
+
+
+def _effect(found: Any, path: Path, key: str) -> Effect:
+    kinds = effect_kinds()
+    names = ", ".join(sorted(kinds))
+    if not isinstance(found, dict) or "type" not in found:
+        got = "nothing" if isinstance(found, dict) else shown(found)
+        raise InputError(path, joined(key, "type"), f"must be one of {names}; got {got}")
+    name = found["type"]
+    if not isinstance(name, str) or name not in kinds:
+        problem = f"must be one of {names}; got {shown(name)}{nearest(str(name), kinds)}"
+        raise InputError(path, joined(key, "type"), problem)
+    rest = {field: value for field, value in found.items() if field != "type"}
+    return build(kinds[name], rest, file=str(path), key=key)
+
+
+def toml_text(thing: Cue | Scene) -> str:
+    """A cue or scene as TOML that `load_toml` reads back exactly."""
+    document = tomlkit.document()
+    for name, value in table(thing).items():
+        document.add(name, _item(value))
+    return tomlkit.dumps(document)
+
+
+def _item(value: Any) -> Any:
+    """Segments and effects as [[tables]], what lies inside them in one line."""
+    if isinstance(value, dict):
+        made = tomlkit.table()
+        for name, inner in value.items():
+            made.add(name, _item(inner))
+        return made
+    if isinstance(value, list) and value and isinstance(value[0], dict):
+        tables = tomlkit.aot()
+        for inner in value:
+            tables.append(_row(inner))
+        return tables
+    return value
+
+
+def _row(found: dict[str, Any]) -> Any:
+    made = tomlkit.table()
+    for name, inner in found.items():
+        if isinstance(inner, dict):
+            inline = tomlkit.inline_table()
+            inline.update(inner)
+            inner = inline
+        made.add(name, inner)
+    return made

@@ -1,0 +1,126 @@
+"""Text with units to SI numbers and back, exactly: "29 in" is 0.7366 m, and what is written reads back identical."""
+
+from __future__ import annotations
+
+import functools
+import math
+import re
+import tokenize
+from decimal import Decimal, DecimalException
+from typing import Any
+
+from cuefem.io.errors import shown
+from cuefem.quantity import EXAMPLES, Quantity
+
+_TEXT = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[+-]?[0-9]+)?|[+-]?inf|nan)\s*(.*?)\s*", re.IGNORECASE)
+# Names, each with a one-digit power, multiplied and divided: all that pint gets to evaluate.
+_FACTOR = r"(?:[A-Za-zµμ°]{1,30}(?:(?:\^|\*\*)-?[0-9]|[²³])?|1)"
+_PRODUCT = rf"\({_FACTOR}(?:(?:\s*\*\s*|\s){_FACTOR}){{1,3}}\)"  # below a stroke: rad/(N m)
+_UNIT = re.compile(rf"{_FACTOR}(?:(?:\s*[*/]\s*|\s){_FACTOR}){{0,6}}(?:\s*/\s*{_PRODUCT})?")
+
+
+@functools.cache
+def _registry() -> Any:
+    import pint
+
+    return pint.UnitRegistry(non_int_type=Decimal)  # exact decimals: floats make 0.7365999999999999 m of 29 in
+
+
+@functools.cache
+def _scale(unit: str, wanted: str) -> Decimal | None:
+    """How many ``wanted`` one ``unit`` is; None where pint knows no such unit or it is of another kind."""
+    import pint
+
+    if not _UNIT.fullmatch(unit):
+        return None
+    try:
+        return Decimal(_registry().Quantity(Decimal(1), _registry().parse_units(unit)).to(wanted).magnitude)
+    except (pint.errors.PintError, ValueError, TypeError, ArithmeticError, AssertionError, SyntaxError, KeyError):
+        return None
+    except tokenize.TokenError:
+        return None
+
+
+def _known(unit: str) -> bool:
+    """Whether pint knows the unit."""
+    import pint
+
+    if not _UNIT.fullmatch(unit):
+        return False
+    try:
+        _registry().parse_units(unit)
+    except (pint.errors.PintError, ValueError, TypeError, ArithmeticError, AssertionError, SyntaxError, KeyError):
+        return False
+    except tokenize.TokenError:
+        return False
+    return True
+
+
+def number(text: str, unit: str) -> float:
+    """The number of ``unit`` that ``text`` ("12 mm") says; ValueError where it has no unit, a wrong or unknown one."""
+    found = _TEXT.fullmatch(text)
+    if not found or not found[2]:
+        raise ValueError("a number and a unit")
+    scale = _scale(found[2], unit)
+    if scale is None:
+        raise ValueError("a unit of another kind")
+    try:
+        return float(Decimal(found[1]) * scale)
+    except (DecimalException, OverflowError):
+        return math.nan  # beyond every decimal: in no interval
+
+
+def quantity(wanted: Quantity, value: Any) -> float:
+    """What stands in a file as a checked SI number; ValueError names bound, unit and the value got."""
+    if wanted.unit == "":
+        return _bare(wanted, value)
+    refused = ValueError(f"must be in {wanted.bounds}, {wanted.example}; got {shown(value)}")
+    if not isinstance(value, str):
+        raise refused
+    try:
+        result = number(value, wanted.unit)
+    except ValueError:
+        raise ValueError(f"{refused}{_why(value)}") from None
+    beyond = math.isinf(result) and "inf" not in value.lower()
+    if beyond or not wanted.holds(result):
+        raise ValueError(f"must be in {wanted.bounds}; got {shown(value)}")
+    return result
+
+
+def _why(value: str) -> str:
+    """What is wrong with the unit of a text that `number` refused; nothing where it has none."""
+    found = _TEXT.fullmatch(value)
+    if not found or not found[2]:
+        return ""
+    return f", of another kind ({shown(found[2])})" if _known(found[2]) else f", an unknown unit ({shown(found[2])})"
+
+
+def _bare(wanted: Quantity, value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise ValueError(f"must be a bare number in {wanted.bounds}; got {shown(value)}")
+    try:
+        result = float(value)
+    except OverflowError:
+        result = math.nan
+    if not wanted.holds(result):
+        raise ValueError(f"must be in {wanted.bounds}; got {shown(value)}")
+    return result
+
+
+def text(value: float, unit: str) -> str:
+    """An SI number with a unit that reads well ("12 mm"); `number` makes the identical float of it."""
+    _, example = EXAMPLES.get(unit, ("", f"1 {unit}"))
+    friendly = example.split(" ", 1)[1]
+    if not math.isfinite(value):
+        return f"{value} {unit}"
+    scale = _scale(friendly, unit)
+    if scale is not None:
+        written = f"{_plain(Decimal(repr(value)) / scale)} {friendly}"
+        if number(written, unit) == value:
+            return written
+    return f"{value!r} {unit}"
+
+
+def _plain(value: Decimal) -> str:
+    value = value.normalize()
+    return format(value, "f") if value == 0 or -5 <= value.adjusted() < 12 else str(value)

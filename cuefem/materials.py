@@ -1,0 +1,179 @@
+"""A sourced table of the materials that cues are made of: pure data.
+
+Each entry is a `Material` with the ranges in which real pieces lie and the place where the numbers stand. Woods are
+read as a rod along the grain: E is E_L, G the mean of G_LR and G_LT (a turned shaft shows both planes), nu the mean of
+nu_LR and nu_LT, rho that at 12 % moisture. "Textbook value" marks what was taken from standard tables of its kind and
+not from a measurement on a cue; "estimate" marks what no source gives. The last section of meshes/README.md says
+which of the pages were at hand and which books are quoted without.
+
+Keys: [FPL] Wood Handbook, USDA Forest Service FPL-GTR-282 (2021), the same numbers as FPL-GTR-190 (2010), ch. 5.
+[CH] Cremer & Heckl, Structure-Borne Sound, 2nd ed. 1988, table 3.1 (bending loss factors). [Call] Callister, Materials
+Science and Engineering, appendix B. [Phil] Philpot, Mechanics of Materials, 2017, table D.1. [Ono] Ono & Norimoto,
+Jpn. J. Appl. Phys. 22 (1983) 611: tan delta = 10^-1.23 (E/rho)^-0.68, E/rho in GPa m3/Mg, woods along the grain.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+from types import MappingProxyType
+
+from cuefem.cue import Material
+
+Range = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Documented:
+    """A material, the ranges in which real pieces of it lie (SI; keys E, G, rho, loss, nu), and its source."""
+
+    material: Material
+    ranges: Mapping[str, Range]
+    source: str
+    note: str = ""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "ranges", MappingProxyType(dict(self.ranges)))
+
+
+BENDING_TO_LONGITUDINAL = 1.10  # [FPL] 5-2: a bending test's modulus holds shear; E_L is 10 % above it
+AIR_DRY = 1120.0  # kg/m3 for each unit of [FPL]'s specific gravity (oven-dry mass over volume at 12 %)
+
+
+def _wood(
+    *, bending_modulus: float, G_LR: float, G_LT: float, rho: float, loss: float, nu_LR: float, nu_LT: float
+) -> Material:
+    """A wood along its grain from [FPL]'s columns: modulus of a bending test, Pa; G_LR, G_LT as fractions of E_L."""
+    E = BENDING_TO_LONGITUDINAL * bending_modulus
+    return Material(E=E, G=E * (G_LR + G_LT) / 2, rho=rho, loss=loss, nu=(nu_LR + nu_LT) / 2)
+
+
+def _ranges(*, E: Range, G: Range, rho: Range, loss: Range, nu: Range) -> Mapping[str, Range]:
+    return {"E": E, "G": G, "rho": rho, "loss": loss, "nu": nu}
+
+
+_WOODS = {
+    "hard maple": Documented(
+        _wood(bending_modulus=12.6e9, G_LR=0.111, G_LT=0.063, rho=0.63 * AIR_DRY, loss=0.012, nu_LR=0.424, nu_LT=0.476),
+        _ranges(E=(10.8e9, 16.9e9), G=(0.85e9, 1.55e9), rho=(630, 780), loss=(0.007, 0.016), nu=(0.42, 0.48)),
+        "[FPL] sugar maple: table 5-3a (12 %), elastic ratios table 5-1, Poisson's ratios table 5-2. "
+        "Loss: Haines, Catgut Acoust. Soc. Newsl. 31 (1979) 23, maple along the grain",
+        "Ranges of E and rho are one coefficient of variation (22 % and 10 %, [FPL] table 5-6), of G from all G_LT to "
+        "all G_LR. [Ono] gives a loss of 0.008, the low end.",
+    ),
+    "ash": Documented(
+        _wood(bending_modulus=12.0e9, G_LR=0.109, G_LT=0.077, rho=0.60 * AIR_DRY, loss=0.010, nu_LR=0.371, nu_LT=0.440),
+        _ranges(E=(10.3e9, 16.1e9), G=(1.0e9, 1.45e9), rho=(600, 740), loss=(0.007, 0.016), nu=(0.37, 0.44)),
+        "[FPL] white ash: table 5-3a (12 %), tables 5-1 and 5-2. Loss: estimate between [Ono] (0.008) and maple",
+        "White ash of North America; snooker cues are often of European ash, which is close to it.",
+    ),
+    "yellow birch": Documented(
+        _wood(bending_modulus=13.9e9, G_LR=0.074, G_LT=0.068, rho=0.62 * AIR_DRY, loss=0.010, nu_LR=0.426, nu_LT=0.451),
+        _ranges(E=(11.9e9, 18.7e9), G=(0.95e9, 1.25e9), rho=(620, 770), loss=(0.006, 0.016), nu=(0.42, 0.46)),
+        "[FPL] yellow birch: table 5-3a (12 %), tables 5-1 and 5-2. Loss: estimate between [Ono] (0.007) and maple",
+    ),
+    "purpleheart": Documented(
+        _wood(bending_modulus=15.7e9, G_LR=0.087, G_LT=0.069, rho=860.0, loss=0.008, nu_LR=0.37, nu_LT=0.45),
+        _ranges(E=(15.7e9, 22.3e9), G=(1.0e9, 1.8e9), rho=(830, 905), loss=(0.005, 0.012), nu=(0.35, 0.46)),
+        "[FPL] Peltogyne, table 5-5a (2.27e6 psi at 12 %). Density: 833 (52 lb/ft3, air dry) to 905 (The Wood "
+        "Database, which gives 20.3 GPa). Loss: [Ono]",
+        "G and nu estimate: the mean ratios of the 14 hardwoods of [FPL] table 5-1, G = 0.078 E; no measurement found.",
+    ),
+    "rosewood": Documented(
+        _wood(bending_modulus=12.3e9, G_LR=0.087, G_LT=0.069, rho=830.0, loss=0.008, nu_LR=0.37, nu_LT=0.45),
+        _ranges(E=(11.0e9, 16.0e9), G=(0.8e9, 1.4e9), rho=(750, 900), loss=(0.005, 0.012), nu=(0.35, 0.46)),
+        "[FPL] Indian rosewood (Dalbergia latifolia), table 5-5a (12 %). Density: The Wood Database. Loss: [Ono]",
+        "G and nu estimate, as for purpleheart.",
+    ),
+}
+
+_COMPOSITES_AND_PLASTICS = {
+    "carbon fibre": Documented(
+        Material(E=79.7e9, G=14.0e9, rho=1580.0, loss=0.005, nu=0.27),
+        _ranges(E=(29.6e9, 135e9), G=(5e9, 35e9), rho=(1500, 1650), loss=(0.002, 0.015), nu=(0.2, 0.5)),
+        "Lamination theory with a textbook ply of standard-modulus carbon and epoxy, 60 % fibre: E1 135, E2 10, "
+        "G12 5 GPa, nu12 0.3. Density: [Call] table B.1, fibre 1780 and epoxy 1250. Loss: textbook value, Gibson, "
+        "Principles of Composite Material Mechanics",
+        "Layup of a roll-wrapped tube, along its axis: 50 % of the plies at 0, 30 % at +-45, 20 % at 90 degrees (an "
+        "assumption: makers do not tell). The lower E is the least that US patent 6,110,051 claims for a cue shaft "
+        "(4.3e6 psi), the upper the bare ply at 0 degrees.",
+    ),
+    "foam": Documented(
+        Material(E=30e6, G=11e6, rho=96.0, loss=0.03, nu=0.33),
+        _ranges(E=(8e6, 60e6), G=(3e6, 20e6), rho=(48, 160), loss=(0.01, 0.1), nu=(0.2, 0.4)),
+        "Textbook value: Gibson & Ashby, Cellular Solids, 2nd ed. 1997, ch. 5, rigid polyurethane (solid 1.6 GPa, "
+        "1200 kg/m3)",
+        "Closed cells, 6 lb/ft3; E between (rho/rho_s)^2 E_s of the edges alone and that with stretched faces. "
+        "It carries no load in a shaft: its density is what counts.",
+    ),
+    "leather": Documented(
+        Material(E=100e6, G=36e6, rho=1000.0, loss=0.15, nu=0.4),
+        _ranges(E=(45e6, 210e6), G=(15e6, 75e6), rho=(850, 1100), loss=(0.1, 0.25), nu=(0.3, 0.5)),
+        "Cue tips: head-on contact times of 1 ms (Alciatore, billiards.colostate.edu, high-speed video) with a pool "
+        "ball and cue mean 0.97 MN/m. Loss: restitution 0.71 to 0.75 of playing tips (Alciatore, TP A.30). Density "
+        "and nu: textbook values of compressed sole leather",
+        "E is inferred and the least certain number here: 45 MPa if a 6 mm disc of leather holds all of the "
+        "compliance, 210 MPa if the touching spot (5 mm wide) does its share. Loss: (1 - e^2)/pi.",
+    ),
+    "abs": Documented(
+        Material(E=2.3e9, G=0.85e9, rho=1050.0, loss=0.02, nu=0.35),
+        _ranges(E=(1.9e9, 2.7e9), G=(0.7e9, 1.0e9), rho=(1030, 1070), loss=(0.01, 0.04), nu=(0.33, 0.4)),
+        "[Phil] 2.1 GPa, 1060 kg/m3; CCT Precision data sheet 346,000 psi, 1.04. nu and loss: textbook values",
+    ),
+    "phenolic": Documented(
+        Material(E=7.2e9, G=2.7e9, rho=1340.0, loss=0.02, nu=0.33),
+        _ranges(E=(6.5e9, 9.7e9), G=(2.3e9, 3.7e9), rho=(1320, 1380), loss=(0.01, 0.04), nu=(0.25, 0.4)),
+        "Linen phenolic, NEMA grade L/LE: CCT Precision data sheet, flexural modulus 1.05e6 psi (canvas 0.95, paper "
+        "1.3 to 1.4), specific gravity 1.34. G, nu, loss: textbook values",
+    ),
+    "melamine": Documented(
+        Material(E=8.6e9, G=3.2e9, rho=1500.0, loss=0.02, nu=0.33),
+        _ranges(E=(7.6e9, 9.7e9), G=(2.7e9, 3.8e9), rho=(1400, 1520), loss=(0.01, 0.04), nu=(0.25, 0.4)),
+        "Textbook value: Modern Plastics Encyclopedia, melamine with alpha-cellulose, 1.1 to 1.4e6 psi, 1.47 to 1.52",
+        "Stands for linen-based melamine, the common ferrule material and ivory substitute, of which no modulus was "
+        "found. G, nu, loss: textbook values.",
+    ),
+    "nylon": Documented(
+        Material(E=2.8e9, G=1.0e9, rho=1140.0, loss=0.03, nu=0.40),
+        _ranges(E=(1.2e9, 3.3e9), G=(0.43e9, 1.2e9), rho=(1100, 1150), loss=(0.01, 0.1), nu=(0.35, 0.42)),
+        "Nylon 6/6: Beer & Johnston, Mechanics of Materials, appendix B (0.4e6 psi, 0.0412 lb/in3). nu: ecoursesbook. "
+        "Loss: textbook value",
+        "Dry; nylon in damp air is about half as stiff ([Phil] 1.4 GPa).",
+    ),
+}
+
+_METALS = {
+    "brass": Documented(
+        Material(E=97e9, G=37e9, rho=8500.0, loss=5e-4, nu=0.31),
+        _ranges(E=(97e9, 115e9), G=(35e9, 44e9), rho=(8390, 8740), loss=(0, 1e-3), nu=(0.30, 0.35)),
+        "Free-cutting brass C36000: [Call] appendix B (textbook value). Loss: [CH], below 1e-3",
+    ),
+    "steel": Documented(
+        Material(E=193e9, G=76e9, rho=7900.0, loss=4e-4, nu=0.27),
+        _ranges(E=(190e9, 207e9), G=(73e9, 81e9), rho=(7850, 8000), loss=(2e-4, 6e-4), nu=(0.26, 0.32)),
+        "Stainless steel 303/304: [Call], [Phil] (textbook value). Loss: [CH], 2e-4 to 6e-4",
+    ),
+    "aluminium": Documented(
+        Material(E=68.9e9, G=26e9, rho=2700.0, loss=1e-4, nu=0.33),
+        _ranges(E=(68e9, 74e9), G=(25.5e9, 28e9), rho=(2690, 2810), loss=(3e-5, 2e-4), nu=(0.32, 0.35)),
+        "Alloy 6061-T6: [Call], [Phil] (textbook value). Loss: [CH], about 1e-4",
+    ),
+    "titanium": Documented(
+        Material(E=114e9, G=43e9, rho=4430.0, loss=1e-3, nu=0.33),
+        _ranges(E=(110e9, 120e9), G=(41e9, 45e9), rho=(4400, 4460), loss=(3e-4, 3e-3), nu=(0.31, 0.36)),
+        "Ti-6Al-4V: [Phil] (textbook value). Loss: estimate",
+    ),
+}
+
+MATERIALS: Mapping[str, Documented] = MappingProxyType(_WOODS | _COMPOSITES_AND_PLASTICS | _METALS)
+WOODS: tuple[str, ...] = tuple(_WOODS)
+
+
+def material(name: str) -> Material:
+    """The material of this name in `MATERIALS`; ValueError that offers the nearest names for any other."""
+    if name not in MATERIALS:
+        near = get_close_matches(name.lower(), MATERIALS, n=3, cutoff=0.5)
+        offer = f"nearest: {', '.join(near)}" if near else f"known: {', '.join(MATERIALS)}"
+        raise ValueError(f"no material is called {name!r}; {offer}")
+    return MATERIALS[name].material

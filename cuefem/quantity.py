@@ -1,0 +1,166 @@
+"""Dimensioned, bounded fields: one declaration serves a dataclass's checks, its units at the edge, its JSON schema."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import math
+import typing
+from typing import Annotated, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+# What a unit measures, with an example from a file: for messages, the JSON schema, and the units that `save` writes.
+EXAMPLES = {
+    "m": ("a length", "12 mm"),
+    "kg": ("a mass", "150 g"),
+    "s": ("a time", "1.2 ms"),
+    "m/s": ("a speed", "2 m/s"),
+    "Pa": ("a stress", "12.6 GPa"),
+    "kg/m^3": ("a density", "700 kg/m^3"),
+    "N/m": ("a stiffness", "5000 N/m"),
+    "N m/rad": ("a rotational stiffness", "20 N m/rad"),
+    "rad/(N m)": ("a rotational compliance", "2e-4 rad/(N m)"),
+    "m/N": ("a compliance", "1e-8 m/N"),
+    "N m": ("a torque", "20 N m"),
+    "N s/m": ("a dashpot", "3 N s/m"),
+    "kg m^2": ("a rotary inertia", "40 g mm^2"),
+    "rad": ("an angle", "3 deg"),
+    "Hz": ("a frequency", "250 Hz"),
+}
+
+# A field that `impulse` broadcasts may hold an array; everything else holds one number.
+Number = float | NDArray[np.float64]
+
+
+@dataclasses.dataclass(frozen=True)
+class Quantity:
+    """The SI unit of a field ("" for a pure number) and the interval it must lie in.
+
+    ``interval`` is written as in mathematics, "(0, inf)" or "[0, 1]"; a round bracket excludes its end, so infinity
+    is a legal value only of an interval that closes with "inf]". NaN lies in no interval.
+    """
+
+    unit: str
+    interval: str = "(-inf, inf)"
+
+    @functools.cached_property
+    def ends(self) -> tuple[float, float]:
+        """The two ends of the interval, as numbers in ``unit``."""
+        low, high = self.interval[1:-1].split(",")
+        return float(low), float(high)
+
+    def holds(self, value: Any) -> Any:
+        """Whether ``value`` (a number or an array) lies in the interval, elementwise."""
+        low, high = self.ends
+        above = value >= low if self.interval[0] == "[" else value > low
+        below = value <= high if self.interval[-1] == "]" else value < high
+        return above & below
+
+    @property
+    def bounds(self) -> str:
+        """The interval and its unit as they stand in messages: "(0, inf) m"."""
+        return f"{self.interval} {self.unit}".rstrip()
+
+    @property
+    def example(self) -> str:
+        """What the unit measures, with an example: 'a length with its unit, such as "12 mm"'."""
+        what, example = EXAMPLES.get(self.unit, ("a quantity", f"3 {self.unit}"))
+        return f'{what} with its unit, such as "{example}"'
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
+        """Pydantic's hook: the validation context's "read" makes a number of what stands in a file."""
+        from pydantic_core import core_schema
+
+        def read(value: Any, info: Any) -> Any:
+            return info.context["read"](self, value)
+
+        return core_schema.with_info_plain_validator_function(read)
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
+        """Pydantic's hook: text with a unit, or a bare number within its bounds."""
+        if self.unit:
+            return {"type": "string", "description": f"{self.example}; in {self.bounds}"}
+        low, high = self.ends
+        bounds = {"minimum" if self.interval[0] == "[" else "exclusiveMinimum": low}
+        bounds["maximum" if self.interval[-1] == "]" else "exclusiveMaximum"] = high
+        finite = {key: end for key, end in bounds.items() if math.isfinite(end)}
+        return {"type": "number", **finite, "description": f"a number in {self.interval}"}
+
+    def check(self, name: str, value: Any) -> Any:
+        """``value`` as a float or a read-only float array; the errors name field, bound, unit and value."""
+        if isinstance(value, bool | str) or value is None:
+            raise TypeError(f"{name} must be a number in {self.bounds}; got {value!r}")
+        if isinstance(value, int | float | np.integer | np.floating):
+            if not self.holds(float(value)):
+                raise ValueError(f"{name} must be in {self.bounds}; got {value}")
+            return float(value)
+        return self._check_array(name, value)
+
+    def _check_array(self, name: str, value: Any) -> Any:
+        try:
+            array = np.array(value, dtype=float)
+        except (TypeError, ValueError):
+            raise TypeError(f"{name} must be a number in {self.bounds}; got {value!r}") from None
+        wrong = ~self.holds(array)
+        if wrong.any():
+            index = tuple(int(i) for i in np.argwhere(wrong)[0])
+            where = f" at index {index if len(index) > 1 else index[0]}" if index else ""
+            raise ValueError(f"{name} must be in {self.bounds}; got {array[index]}{where}")
+        if array.ndim == 0:
+            return float(array)
+        array.flags.writeable = False
+        return array
+
+
+@functools.cache
+def quantities(kind: type) -> tuple[tuple[str, Quantity, bool, bool], ...]:
+    """The dimensioned fields of a dataclass: (name, quantity, whether None is allowed, whether an array is)."""
+    hints = typing.get_type_hints(kind, include_extras=True)
+    found = []
+    for field in dataclasses.fields(kind):
+        hint = hints[field.name]
+        if typing.get_origin(hint) is Annotated:
+            for mark in hint.__metadata__:
+                if isinstance(mark, Quantity):
+                    kinds = typing.get_args(hint.__origin__)
+                    arrays = any(typing.get_origin(k) is np.ndarray for k in kinds)
+                    found.append((field.name, mark, type(None) in kinds, arrays))
+    return tuple(found)
+
+
+def check_fields(instance: Any) -> None:
+    """Check every dimensioned field of a frozen dataclass; store it as float or read-only array (in __post_init__)."""
+    kind = type(instance)
+    for name, quantity, optional, arrays in quantities(kind):  # type: ignore[arg-type]
+        value = getattr(instance, name)
+        if value is None and optional:
+            continue
+        checked = quantity.check(f"{kind.__name__}.{name}", value)
+        if not arrays:
+            scalar(f"{kind.__name__}.{name}", checked)
+        if checked is not value:
+            object.__setattr__(instance, name, checked)
+
+
+def scalar(name: str, value: Number) -> float:
+    """``value`` as a float where one number is needed; ValueError for an array."""
+    if isinstance(value, np.ndarray):
+        raise ValueError(f"{name} must be one number; got an array of shape {value.shape}")
+    return value
+
+
+def check_kind(name: str, value: Any, kind: type | tuple[type, ...]) -> None:
+    """TypeError unless ``value`` is an instance of ``kind``."""
+    if not isinstance(value, kind):
+        wanted = " or ".join(k.__name__ for k in (kind if isinstance(kind, tuple) else (kind,)))
+        raise TypeError(f"{name} must be a {wanted}; got {value!r}")
+
+
+def check_count(name: str, value: Any, least: int) -> None:
+    """TypeError or ValueError unless ``value`` is a whole number of at least ``least``."""
+    if isinstance(value, bool) or not isinstance(value, int | np.integer):
+        raise TypeError(f"{name} must be a whole number >= {least}; got {value!r}")
+    if value < least or not math.isfinite(value):
+        raise ValueError(f"{name} must be a whole number >= {least}; got {value}")

@@ -1,0 +1,122 @@
+"""Cues that tests of the beam, modes and end masses share; no tests."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from cuefem import Cue, Material, Scene, Segment, Tip
+
+KIM_DENSITY = 782.3284453057836  # kg/m3: [Kim]'s cone, 120 g
+MAPLE = Material(12.6e9, 12.6e9 / 15, 700.0)
+LEATHER = Material(0.1e9, 0.1e9 / 3, 950.0)
+PHENOLIC = Material(9e9, 9e9 / 2.8, 1380.0)
+ABS = Material(2.3e9, 0.85e9, 1050.0)
+STEEL = Material(200e9, 200e9 / 2.6, 7850.0)
+CARBON = Material(60e9, 6e9, 1550.0)
+FOAM = Material(0.07e9, 0.025e9, 60.0)
+
+
+def kim() -> Cue:
+    """Kim's shaft as in meshes/kim.toml: 70 cm, 120 g; the whole cue 540 g."""
+    wood = Material(12.6e9, 12.6e9 / 15, KIM_DENSITY)
+    return Cue((Segment(0.7, 0.012, 0.021, wood, kappa=0.9),), body_mass=0.42)
+
+
+def isotropic_kim() -> Cue:
+    """Kim's cone with G = E/2.6 and kappa = 39/44, the one of issue 2's frequencies."""
+    return Cue((Segment(0.7, 0.012, 0.021, Material(12.6e9, 12.6e9 / 2.6, KIM_DENSITY), kappa=39 / 44),))
+
+
+def rod(slenderness: float, *, diameter: float = 0.012, material: Material = MAPLE) -> Cue:
+    """A uniform rod; slenderness: length over radius."""
+    return Cue((Segment(slenderness * diameter / 2, diameter, diameter, material),))
+
+
+def cone(slenderness: float, ratio: float, *, material: Material = MAPLE) -> Cue:
+    """A cone; slenderness: length over butt radius; ratio: tip over butt diameter."""
+    return Cue((Segment(slenderness * 0.01, 0.02 * ratio, 0.02, material),))
+
+
+def soft_tip() -> Cue:
+    """A leather tip of 6 mm a hundred times softer than the maple behind it."""
+    return Cue((Segment(0.006, 0.013, 0.013, LEATHER), Segment(0.7, 0.013, 0.021, MAPLE)))
+
+
+def stiff_ferrule() -> Cue:
+    """A steel ferrule 1 mm long between leather and maple: the largest jump of stiffness that a cue may have."""
+    tip, shaft = soft_tip().segments
+    return Cue((tip, Segment(0.001, 0.013, 0.013, STEEL), shaft))
+
+
+def pool() -> Cue:
+    """A pool shaft: leather tip, ferrule over a tenon, pro taper, cone."""
+    return Cue(
+        (
+            Segment(0.006, 0.01275, 0.01275, LEATHER),
+            Segment(0.025, 0.01275, 0.01275, ABS, 0.008, 0.008, core=MAPLE),
+            Segment(0.30, 0.01275, 0.0132, MAPLE),
+            Segment(0.4056, 0.0132, 0.0215, MAPLE),
+        ),
+        body_mass=0.43,
+    )
+
+
+def low_deflection() -> Cue:
+    """A shaft bored from the front."""
+    return Cue(
+        (
+            Segment(0.006, 0.0125, 0.0125, LEATHER),
+            Segment(0.012, 0.0125, 0.0125, ABS, 0.008, 0.008),
+            Segment(0.12, 0.0125, 0.0127, MAPLE, 0.008, 0.008),
+            Segment(0.18, 0.0127, 0.0132, MAPLE),
+            Segment(0.42, 0.0132, 0.0215, MAPLE),
+        ),
+        body_mass=0.43,
+    )
+
+
+def carbon_tube() -> Cue:
+    """A carbon tube with a core of foam."""
+    return Cue(
+        (
+            Segment(0.006, 0.0124, 0.0124, LEATHER),
+            Segment(0.010, 0.0124, 0.0124, ABS),
+            Segment(0.30, 0.0124, 0.0128, CARBON, 0.0094, 0.0098, core=FOAM),
+            Segment(0.42, 0.0128, 0.0215, CARBON, 0.0098, 0.0185, core=FOAM),
+        ),
+        body_mass=0.43,
+    )
+
+
+def whole_cue() -> Cue:
+    """A cue of 58 inches, modelled to the butt, with a brass-like joint."""
+    joint = Material(100e9, 37e9, 8500.0)
+    return Cue((*pool().segments, Segment(0.02, 0.0215, 0.0215, joint), Segment(0.7166, 0.0215, 0.031, MAPLE)))
+
+
+FAMILY = {
+    "kim": kim(),
+    "pool": pool(),
+    "low deflection": low_deflection(),
+    "carbon tube": carbon_tube(),
+    "whole cue": whole_cue(),
+}
+
+
+def scaled(cue: Cue, *, E: float = 1.0, G: float = 1.0, rho: float = 1.0, length: float = 1.0) -> Cue:
+    """The cue with the constants of every material, and every length, multiplied."""
+
+    def material(m: Material | None) -> Material | None:
+        return m and replace(m, E=m.E * E, G=m.G * G, rho=m.rho * rho)
+
+    sizes = ("length", "tip_diameter", "butt_diameter", "tip_bore", "butt_bore")
+    segments = tuple(
+        replace(s, material=material(s.material), core=material(s.core), **{n: getattr(s, n) * length for n in sizes})
+        for s in cue.segments
+    )
+    return replace(cue, segments=segments)
+
+
+def scene(cue: Cue, contact_time: float, **tip: float) -> Scene:
+    """The cue before the default ball, head on, with a contact of ``contact_time`` s."""
+    return Scene(cue, tip=Tip(contact_time=contact_time, **tip))

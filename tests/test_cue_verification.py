@@ -1,0 +1,189 @@
+"""Verification of the cue: section properties, masses and shear coefficients against their own exact values."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from cues import CARBON, FAMILY, FOAM, KIM_DENSITY, LEATHER, MAPLE, kim, soft_tip
+
+from cuefem import Cue, LumpedCue, Material, Segment
+from cuefem.cue import shear_coefficient
+
+POINTS, WEIGHTS = (part / 2 for part in np.polynomial.legendre.leggauss(8))
+
+
+def integral(cue: Cue, property_: str, power: int = 0) -> float:
+    """The integral of a section property times x^power over the cue, by Gauss quadrature in every segment."""
+    total = 0.0
+    for segment, start in zip(cue.segments, cue.nodes, strict=False):
+        s = segment.length * (POINTS + 0.5)
+        total += segment.length * WEIGHTS @ (getattr(segment.section(s), property_) * (start + s) ** power)
+    return total
+
+
+def test_kim_weighs_120_grams() -> None:
+    np.testing.assert_allclose([kim().shaft_mass, kim().mass], [0.120, 0.540], rtol=1e-14)
+
+
+@pytest.mark.parametrize("name", FAMILY)
+def test_mass_and_balance_point_against_quadrature(name: str) -> None:
+    cue = FAMILY[name]
+    np.testing.assert_allclose(cue.shaft_mass, integral(cue, "rhoA"), rtol=1e-13)
+    np.testing.assert_allclose(cue.balance_point, integral(cue, "rhoA", 1) / cue.shaft_mass, rtol=1e-13)
+    np.testing.assert_allclose(cue.mass, cue.shaft_mass + cue.body_mass, rtol=1e-15)
+
+
+def test_section_of_a_solid_circle() -> None:
+    s = Segment(1.0, 0.02, 0.02, Material(10e9, 1e9, 700.0), kappa=0.9).section(0.5)
+    area, inertia = np.pi * 1e-4, np.pi / 4 * 1e-8
+    np.testing.assert_allclose(s, [10e9 * area, 10e9 * inertia, 0.9e9 * area, 700 * area, 700 * inertia], rtol=1e-14)
+
+
+def test_section_of_a_tapered_tube_with_a_core() -> None:
+    """At 1/4 of the piece: radii 5.5 and 3.5 mm; shell and core add, each with its own constants."""
+    s = Segment(0.4, 0.010, 0.014, CARBON, 0.006, 0.010, core=FOAM).section(0.1)
+    outer, inner = 0.0055, 0.0035
+    shell, disc = np.pi * (outer**2 - inner**2), np.pi * inner**2
+    turn, core_turn = np.pi / 4 * (outer**4 - inner**4), np.pi / 4 * inner**4
+    shear = shear_coefficient(CARBON.effective_poisson_ratio, inner / outer) * CARBON.G * shell
+    core_shear = shear_coefficient(FOAM.effective_poisson_ratio) * FOAM.G * disc
+    wanted = [
+        CARBON.E * shell + FOAM.E * disc,
+        CARBON.E * turn + FOAM.E * core_turn,
+        shear + core_shear,
+        CARBON.rho * shell + FOAM.rho * disc,
+        CARBON.rho * turn + FOAM.rho * core_turn,
+    ]
+    np.testing.assert_allclose(s, wanted, rtol=1e-13)
+
+
+def test_kappa_holds_for_shell_and_core() -> None:
+    s = Segment(0.4, 0.010, 0.010, CARBON, 0.006, 0.006, core=FOAM, kappa=0.5).section(0.1)
+    shell, disc = np.pi * (0.005**2 - 0.003**2), np.pi * 0.003**2
+    np.testing.assert_allclose(s.kGA, 0.5 * (CARBON.G * shell + FOAM.G * disc), rtol=1e-14)
+
+
+def test_a_jump_takes_the_butt_side() -> None:
+    cue = soft_tip()
+    s = cue.section([0.0, 0.006 - 1e-12, 0.006, cue.length])
+    area = np.pi / 4 * np.array([0.013, 0.013, 0.013, 0.021]) ** 2
+    stiffness = np.array([LEATHER.E, LEATHER.E, MAPLE.E, MAPLE.E])
+    np.testing.assert_allclose(s.EA, stiffness * area, rtol=1e-12)
+
+
+def test_section_keeps_the_shape_asked_for() -> None:
+    x = np.linspace(0, 0.7, 6).reshape(2, 3)
+    assert all(part.shape == (2, 3) for part in kim().section(x))
+    assert all(part.shape == () for part in kim().section(0.1))
+
+
+# Hutchinson 2001; the first two are quoted in physics.md section 4 to three digits
+@pytest.mark.parametrize(
+    ("material", "kappa"), [(Material(2.6, 1.0, 1.0, nu=0.3), 0.925), (Material(15.0, 1.0, 1.0, nu=0.3), 0.867)]
+)
+def test_shear_coefficient_of_solid_circles(material: Material, kappa: float) -> None:
+    np.testing.assert_allclose(shear_coefficient(material.effective_poisson_ratio), kappa, rtol=0.0005 / kappa)
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.1, 0.3, 0.5])
+def test_shear_coefficient_limits(nu: float) -> None:
+    """Without a bore the solid circle's; a thin tube (1 + nu)/(2 + nu), approached like the wall squared."""
+    solid = 6 * (1 + nu) ** 2 / (7 + 12 * nu + 4 * nu**2)
+    np.testing.assert_allclose(shear_coefficient(nu, 0.0), solid, rtol=1e-15)
+    np.testing.assert_allclose(shear_coefficient(nu, 1e-9), solid, rtol=1e-15)
+    np.testing.assert_allclose(shear_coefficient(nu, 1 - 1e-6), (1 + nu) / (2 + nu), rtol=1e-11)
+
+
+def test_isotropic_material_has_its_own_poisson_ratio() -> None:
+    for nu in (0.0, 0.3, 0.5):
+        np.testing.assert_allclose(
+            Material(1e9, 1e9 / 2 / (1 + nu), 1.0, nu=nu).effective_poisson_ratio, nu, atol=1e-15
+        )
+
+
+def test_lumped_cues_of_the_paper() -> None:
+    """m_e = m_c nu_c/(1 + nu_c): a quarter at nu_c = 1/3; a rigid cue feels M_c 0.136/1.136."""
+    np.testing.assert_allclose(LumpedCue.two_part(0.54, 0.012).end_mass, 0.003, rtol=1e-15)
+    np.testing.assert_allclose(LumpedCue.rigid(0.54).end_mass, 0.54 * 0.136 / 1.136, rtol=1e-15)
+
+
+def refusal(call: object, kind: type[Exception]) -> str:
+    with pytest.raises(kind) as caught:
+        call()  # type: ignore[operator]
+    return str(caught.value)
+
+
+PIECE = Segment(0.7, 0.012, 0.021, MAPLE)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"length": 0.0}, "Segment.length must be in (0, inf) m; got 0.0"),
+        ({"length": -0.1}, "Segment.length must be in (0, inf) m; got -0.1"),
+        ({"length": float("nan")}, "Segment.length must be in (0, inf) m; got nan"),
+        ({"tip_diameter": float("inf")}, "Segment.tip_diameter must be in (0, inf) m; got inf"),
+        ({"butt_bore": -1e-3}, "Segment.butt_bore must be in [0, inf) m; got -0.001"),
+        ({"tip_bore": 0.013}, "Segment.tip_bore must be in [0, 0.012) m, its outer diameter; got 0.013"),
+        ({"butt_bore": 0.021}, "Segment.butt_bore must be in [0, 0.021) m, its outer diameter; got 0.021"),
+        ({"kappa": 1.5}, "Segment.kappa must be in (0, 1]; got 1.5"),
+    ],
+)
+def test_segment_refuses(change: dict[str, float], message: str) -> None:
+    assert refusal(lambda: replace(PIECE, **change), ValueError) == message
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"E": 0.0}, "Material.E must be in (0, inf) Pa; got 0.0"),
+        ({"rho": float("inf")}, "Material.rho must be in (0, inf) kg/m^3; got inf"),
+        ({"loss": 1.0}, "Material.loss must be in [0, 1); got 1.0"),
+        ({"nu": 0.6}, "Material.nu must be in [0, 0.5]; got 0.6"),
+        ({"E": 6e9, "G": 10e9}, "Material.G must be in (0, 10000000000.0) Pa, E/(2 nu); got 10000000000.0"),
+    ],
+)
+def test_material_refuses(change: dict[str, float], message: str) -> None:
+    assert refusal(lambda: replace(MAPLE, **change), ValueError) == message
+
+
+def test_wrong_kinds() -> None:
+    assert refusal(lambda: replace(PIECE, length="12 mm"), TypeError).startswith(
+        "Segment.length must be a number in (0, inf) m; got '12 mm'"
+    )
+    assert "Segment.length must be a number in (0, inf) m; got True" in refusal(
+        lambda: replace(PIECE, length=True), TypeError
+    )
+    assert "Segment.material must be a Material; got 'maple'" in refusal(
+        lambda: replace(PIECE, material="maple"), TypeError
+    )
+    assert "Segment.core must be a Material or NoneType; got 3" in refusal(lambda: replace(PIECE, core=3), TypeError)
+    assert "Cue.segments must be a sequence of Segment; got one Segment" in refusal(lambda: Cue(PIECE), TypeError)
+    assert "Cue.segments[1] must be a Segment; got 7" in refusal(lambda: Cue((PIECE, 7)), TypeError)
+
+
+def test_cue_refuses() -> None:
+    assert "Cue.segments must hold at least one Segment; got none" in refusal(lambda: Cue(()), ValueError)
+    message = refusal(lambda: Cue((PIECE,), body_mass=-0.1), ValueError)
+    assert message == "Cue.body_mass must be in [0, inf) kg; got -0.1"
+    for x in (-1e-9, 0.7000001, float("nan")):
+        assert "Cue.section takes positions in [0, 0.7] m" in refusal(lambda x=x: kim().section(x), ValueError)
+
+
+def test_lumped_cue_refuses() -> None:
+    assert refusal(lambda: LumpedCue(0.5, 0.0), ValueError) == "LumpedCue.end_mass must be in (0, inf) kg; got 0.0"
+    assert "LumpedCue.coupling must be in (-20.0, 20.0) 1/kg; got 20.0" in refusal(
+        lambda: LumpedCue(0.5, 0.005, 20.0), ValueError
+    )
+    assert refusal(lambda: LumpedCue(0.5, np.array([0.01, -1.0])), ValueError) == (
+        "LumpedCue.end_mass must be in (0, inf) kg; got -1.0 at index 1"
+    )
+    assert "nu_c" in refusal(lambda: LumpedCue.two_part(0.5, 0.012, 0.0), ValueError)
+
+
+def test_kim_density_is_exact() -> None:
+    np.testing.assert_allclose(
+        KIM_DENSITY, 0.12 / (np.pi / 3 * 0.7 * (0.006**2 + 0.006 * 0.0105 + 0.0105**2)), rtol=1e-15
+    )
