@@ -1,0 +1,67 @@
+"""scikit-fem's hierarchical line basis, tabulated once an order: what element matrices are contracted from."""
+
+from __future__ import annotations
+
+import functools
+from typing import NamedTuple
+
+import numpy as np
+from skfem import ElementLinePp
+from skfem.quadrature import get_quadrature
+from skfem.refdom import RefLine
+
+from cuefem.cue import Array
+
+
+class Table(NamedTuple):
+    """scikit-fem's hierarchical line basis on the reference element [0, 1], tabulated at Gauss points.
+
+    Local unknowns: w and theta of the left node, the bubbles of w, those of theta, w and theta of the right node.
+    points, weights: (q,). w, dw, theta, dtheta: (unknowns, q). stiffness: (4 q, unknowns^2), mass: (2 q, unknowns^2),
+    the products that element matrices are contracted from.
+    """
+
+    points: Array
+    weights: Array
+    w: Array
+    dw: Array
+    theta: Array
+    dtheta: Array
+    stiffness: Array
+    mass: Array
+
+
+def line_basis(degree: int, points: Array) -> tuple[Array, Array]:
+    """scikit-fem's hierarchical basis of ``degree`` and its derivative at reference ``points``: two (degree + 1, q)."""
+    element = ElementLinePp(max(degree, 3))  # hierarchical: lower degrees are its first functions
+    both = [element.lbasis(points[None, :], i) for i in range(degree + 1)]
+    return np.array([value for value, _ in both]), np.array([slope[0] for _, slope in both])
+
+
+def local_basis(order: int, points: Array) -> tuple[Array, Array, Array, Array]:
+    """(w, w', theta, theta') of an element's unknowns at reference ``points``: four (unknowns, q)."""
+    (w, dw), (t, dt) = line_basis(order + 1, points), line_basis(order, points)
+    unknowns = 2 * order + 3
+    out = tuple(np.zeros((unknowns, len(points))) for _ in range(4))
+    w_rows = np.r_[0, 2 : 2 + order, unknowns - 2]
+    t_rows = np.r_[1, 2 + order : unknowns - 2, unknowns - 1]
+    for rows, first, values, slopes in ((w_rows, 0, w, dw), (t_rows, 2, t, dt)):
+        bubbles_between = np.r_[0, 2 : len(values), 1]
+        out[first][rows], out[first + 1][rows] = values[bubbles_between], slopes[bubbles_between]
+    return out  # type: ignore[return-value]
+
+
+@functools.cache
+def table(order: int) -> Table:
+    """The tabulated basis of one polynomial order, made once; Gauss points exact for cones (degree 2 order + 4)."""
+    points, weights = get_quadrature(RefLine, 2 * order + 7)
+    points = points[0]
+    w, dw, t, dt = local_basis(order, points)
+
+    def product(a: Array, b: Array) -> Array:
+        both = np.einsum("iq,jq->qij", a, b)
+        return (both + both.transpose(0, 2, 1)).reshape(len(points), -1) / 2
+
+    stiffness = np.concatenate([product(dt, dt), product(dw, dw), -2 * product(dw, t), product(t, t)])
+    mass = np.concatenate([product(w, w), product(t, t)])
+    return Table(points, weights, w, dw, t, dt, stiffness, mass)

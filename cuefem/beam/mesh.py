@@ -1,0 +1,148 @@
+"""Elements and nodes of a cue, and the point terms that effects add at its nodes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cuefem.cue import Array, Cue
+
+# Points closer than this part of the cue's length are one.
+NEAR = 1e-9
+
+
+class ActsOnCue(Protocol):
+    """What the beam asks of an effect that acts on the cue."""
+
+    @property
+    def positions(self) -> tuple[float, ...]:
+        """Positions that must be mesh nodes, m from the tip."""
+
+    @property
+    def splits(self) -> tuple[float, ...]:
+        """Positions where deflection and rotation may jump, m from the tip."""
+
+    def check_on(self, cue: Cue, name: str) -> None:
+        """ValueError unless the effect, called ``name``, finds its place on the cue."""
+
+    def add_to(self, terms: Terms) -> None:
+        """Add the effect's point terms."""
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Elements of a cue: a node at every end of a segment and at every position an effect asks for.
+
+    nodes: (elements + 1,) m. piece: (elements,) index of the segment an element lies in. offset: (elements,) m from
+    that segment's tip end to the element's. first: (elements,) the element's first unknown. unknowns: their number.
+    Neighbours share the two unknowns of their node, but where a joint splits it.
+    """
+
+    nodes: Array
+    piece: NDArray[np.intp]
+    offset: Array
+    first: NDArray[np.intp]
+    unknowns: int
+    order: int
+
+    @property
+    def sizes(self) -> Array:
+        """Lengths of the elements, m."""
+        return np.diff(self.nodes)
+
+    def node(self, x: float) -> int:
+        """Index of the node at position ``x``."""
+        return int(np.argmin(np.abs(self.nodes - x)))
+
+    @property
+    def last(self) -> NDArray[np.intp]:
+        """Every element's last but one unknown, the deflection of its butt end: (elements,)."""
+        return self.first + 2 * self.order + 1
+
+    def unknowns_at(self, node: int) -> tuple[int, int]:
+        """Unknowns (w, theta) of a node; those of the butt side where a joint splits it."""
+        first = int(self.first[node]) if node < len(self.first) else self.unknowns - 2
+        return first, first + 1
+
+    def unknowns_before(self, node: int) -> tuple[int, int]:
+        """Unknowns (w, theta) of the tip side of a node inside the cue."""
+        last = int(self.last[node - 1])
+        return last, last + 1
+
+
+def mesh_cue(
+    cue: Cue, *, elements: int, order: int, positions: tuple[float, ...] = (), splits: tuple[float, ...] = ()
+) -> Mesh:
+    """Mesh a cue with ``elements`` a smooth piece: between ends of segments and ``positions``; split at ``splits``."""
+    breaks = list(cue.nodes)
+    for x in sorted(set(positions)):
+        if not 0 <= x <= cue.length * (1 + NEAR):
+            raise ValueError(f"an effect's position must be in [0, {cue.length}] m, on the cue; got {x}")
+        if np.min(np.abs(np.array(breaks) - x)) > NEAR * cue.length:  # else the two points are one
+            breaks.append(x)
+    ends = np.sort(np.array(breaks))
+    steps = np.arange(elements) / elements
+    nodes = np.append((ends[:-1, None] + np.diff(ends)[:, None] * steps).ravel(), ends[-1])
+    middles = (nodes[:-1] + nodes[1:]) / 2
+    piece = np.searchsorted(cue.nodes, middles, side="right") - 1
+    stride = 2 * order + 1
+    count = len(middles)
+    first = stride * np.arange(count)
+    for node in {int(np.argmin(np.abs(nodes - x))) for x in splits}:
+        first[node:] += 2
+    return Mesh(nodes, piece, nodes[:-1] - cue.nodes[piece], first, int(first[-1]) + stride + 2, order)
+
+
+class Links(NamedTuple):
+    """Springs between pairs of unknowns: (n,) the two unknowns, (n,) stiffness. Zero length: a joint's two sides."""
+
+    before: NDArray[np.intp]
+    after: NDArray[np.intp]
+    stiffness: Array
+
+
+class Terms:
+    """The point terms that effects add: springs, dashpots, masses and clamps at nodes, compliances between two sides.
+
+    At a joint the butt side's unknowns are the node's.
+    """
+
+    def __init__(self, mesh: Mesh) -> None:
+        self.mesh = mesh
+        self.stiffness: dict[int, float] = {}
+        self.dashpot: dict[int, float] = {}
+        self.mass: dict[int, float] = {}
+        self.compliance: dict[tuple[int, int], float] = {}
+        self.fixed: set[int] = set()
+
+    def add(self, x: float, kind: str, w: float, theta: float) -> None:
+        """Add ``w`` to the deflection's and ``theta`` to the rotation's diagonal term at position ``x``; inf fixes."""
+        terms: dict[int, float] = getattr(self, kind)
+        for unknown, value in zip(self.mesh.unknowns_at(self.mesh.node(x)), (w, theta), strict=True):
+            if np.isinf(value):
+                if unknown in self.fixed:
+                    raise ValueError(f"a clamp must be the only one at its place; got two at {x} m")
+                self.fixed.add(unknown)
+            elif value:
+                terms[unknown] = terms.get(unknown, 0.0) + value
+
+    def join(self, x: float, w: float, theta: float) -> None:
+        """Let deflection and rotation jump at position ``x``, by compliances ``w`` and ``theta``; zero ties them."""
+        node = self.mesh.node(x)
+        pairs = zip(self.mesh.unknowns_before(node), self.mesh.unknowns_at(node), strict=True)
+        for pair, value in zip(pairs, (w, theta), strict=True):
+            self.compliance[pair] = self.compliance.get(pair, 0.0) + value
+
+    def links(self, scale: Array) -> Links:
+        """The springs of the joints, in scaled unknowns."""
+        soft = {pair: 1 / value for pair, value in self.compliance.items() if value > 0}
+        before, after = np.array(list(soft), dtype=np.intp).reshape(-1, 2).T
+        return Links(before, after, np.array(list(soft.values())) * scale[before])
+
+    def ties(self) -> NDArray[np.intp]:
+        """Pairs of unknowns (tip side, butt side) that a joint keeps equal: (n, 2)."""
+        stiff = [pair for pair, value in self.compliance.items() if value == 0]
+        return np.array(stiff, dtype=np.intp).reshape(-1, 2)

@@ -1,0 +1,176 @@
+"""K and M of a cue and its effects: element matrices, point terms, what is held and what stays free."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from cuefem.beam.basis import local_basis, table
+from cuefem.beam.mesh import ActsOnCue, Links, Mesh, Terms, mesh_cue
+from cuefem.cue import Array, Cue, Section
+
+# Below this many unknowns a dense eigenproblem is the faster one.
+DENSE_LIMIT = 400
+
+
+@dataclass(frozen=True)
+class System:
+    """The assembled beam: K q = omega^2 M q, in w (m) and theta times the cue's length (m).
+
+    K, M: (unknowns, unknowns), dense arrays, or sparse above `DENSE_LIMIT` unknowns. rigid: (unknowns, r), the exact
+    rigid motions that stay free (two for a free cue). dashpots: diagonal of the viscous matrix, None without one.
+    fixed: unknowns that a clamp takes out. shift: a square frequency of the order of the lowest mode's, rad2/s2.
+    section: at the Gauss points, arrays (elements, q). springs: the part of K's diagonal that effects add. links: the
+    springs of joints. tied: (n, 2) pairs of unknowns (tip side, butt side) that a joint keeps equal.
+    """
+
+    mesh: Mesh
+    K: Array | sp.csc_matrix
+    M: Array | sp.csc_matrix
+    rigid: Array
+    length: float
+    dashpots: Array | None
+    fixed: NDArray[np.intp]
+    shift: float
+    section: Section
+    springs: Array
+    links: Links
+    tied: NDArray[np.intp]
+
+    @property
+    def free(self) -> sp.csc_matrix | None:
+        """All unknowns from those that are free, (unknowns, free); None where neither a clamp nor a tie takes any."""
+        if len(self.fixed) + len(self.tied) == 0:
+            return None
+        source = np.arange(self.mesh.unknowns)
+        source[self.tied[:, 0]] = self.tied[:, 1]
+        rows = np.flatnonzero(~np.isin(source, self.fixed))
+        kept, columns = np.unique(source[rows], return_inverse=True)
+        return sp.csc_matrix((np.ones(len(rows)), (rows, columns)), shape=(self.mesh.unknowns, len(kept)))
+
+    def strains(self, vectors: Array) -> Array:
+        """Strains of unknowns ``vectors`` (unknowns, k), times roots of stiffness, (rows, k): K = strains' strains.
+
+        A rigid motion has strains of rounding only, where K times it is rounding times the stiffest element: with
+        strains a low mode keeps its frequency beside a stiff short piece.
+        """
+        mesh, t = self.mesh, table(self.mesh.order)
+        own = vectors[mesh.first[:, None] + np.arange(len(t.w))]  # (elements, unknowns of an element, k)
+        h = mesh.sizes[:, None, None]
+        bent, sheared = t.dtheta.T @ own / (h * self.length), t.dw.T @ own / h - t.theta.T @ own / self.length
+        bent *= np.sqrt(self.section.EI * t.weights * mesh.sizes[:, None])[:, :, None]
+        sheared *= np.sqrt(self.section.kGA * t.weights * mesh.sizes[:, None])[:, :, None]
+        held = np.flatnonzero(self.springs)
+        sprung = np.sqrt(self.springs[held])[:, None] * vectors[held]
+        jumps = np.sqrt(self.links.stiffness)[:, None] * (vectors[self.links.after] - vectors[self.links.before])
+        return np.concatenate([bent.reshape(-1, own.shape[2]), sheared.reshape(-1, own.shape[2]), sprung, jumps])
+
+    def at_tip(self, vectors: Array) -> tuple[Array, Array]:
+        """(w, theta) of unknowns ``vectors`` (unknowns, k) at the tip: two arrays (k,)."""
+        return vectors[0], vectors[1] / self.length
+
+    def interpolate(self, vectors: Array, x: Array) -> tuple[Array, Array]:
+        """(w, theta) of unknowns ``vectors`` (unknowns, k) at positions ``x``: two arrays (k, *x.shape)."""
+        mesh = self.mesh
+        element = np.clip(np.searchsorted(mesh.nodes, x.ravel(), side="right") - 1, 0, len(mesh.piece) - 1)
+        local = (x.ravel() - mesh.nodes[element]) / mesh.sizes[element]
+        w, _, theta, _ = local_basis(mesh.order, local)
+        own = vectors[mesh.first[element][:, None] + np.arange(len(w))]  # (points, unknowns of an element, k)
+        values = (np.einsum("iq,qik->kq", basis, own).reshape(-1, *x.shape) for basis in (w, theta))
+        deflection, rotation = values
+        return deflection, rotation / self.length
+
+
+def sections(cue: Cue, mesh: Mesh) -> Section:
+    """Section properties at the Gauss points of every element: arrays (elements, q)."""
+    s = mesh.offset[:, None] + mesh.sizes[:, None] * table(mesh.order).points
+    return cue.section_in(mesh.piece[:, None], s)
+
+
+def element_matrices(section: Section, sizes: Array, length: float, order: int) -> tuple[Array, Array]:
+    """Element K and M, each (..., elements, u, u), from section properties (..., elements, q) and element sizes.
+
+    One matrix product each; ``length`` scales theta.
+    """
+    t, h = table(order), sizes[..., None]
+    EI, kGA = section.EI * t.weights, section.kGA * t.weights
+    stiff = np.concatenate([EI / (h * length**2), kGA / h, kGA / length, kGA * h / length**2], axis=-1)
+    heavy = np.concatenate([section.rhoA * t.weights * h, section.rhoI * t.weights * h / length**2], axis=-1)
+    shape = (*stiff.shape[:-1], len(t.w), len(t.w))
+    return (stiff @ t.stiffness).reshape(shape), (heavy @ t.mass).reshape(shape)
+
+
+def assemble(cue: Cue, *, elements: int, order: int, effects: tuple[ActsOnCue, ...] = ()) -> System:
+    """Assemble a cue with the effects that act on it."""
+    for effect in effects:
+        effect.check_on(cue, type(effect).__name__)
+    positions = tuple(x for effect in effects for x in effect.positions)
+    splits = tuple(x for effect in effects for x in effect.splits)
+    mesh = mesh_cue(cue, elements=elements, order=order, positions=positions, splits=splits)
+    section = sections(cue, mesh)
+    stiff, heavy = element_matrices(section, mesh.sizes, cue.length, order)
+    terms = Terms(mesh)
+    for effect in effects:
+        effect.add_to(terms)
+    scale = np.ones(mesh.unknowns)
+    scale[np.append(mesh.first, mesh.last) + 1] = 1 / cue.length**2  # rotations stand times the length
+
+    def point(values: dict[int, float]) -> Array:
+        diagonal = np.zeros(mesh.unknowns)
+        diagonal[list(values)] = list(values.values())
+        return diagonal * scale
+
+    springs, links = point(terms.stiffness), terms.links(scale)
+    K = gather(mesh.first, mesh.unknowns, stiff, point=springs, links=links)
+    M = gather(mesh.first, mesh.unknowns, heavy, point=point(terms.mass))
+    fixed = np.array(sorted(terms.fixed), dtype=np.intp)
+    rigid = _rigid_motions(mesh, cue.length, springs, fixed)
+    dashpots = point(terms.dashpot) if terms.dashpot else None
+    shift = _shift(cue, section, mesh.sizes)
+    return System(mesh, K, M, rigid, cue.length, dashpots, fixed, shift, section, springs, links, terms.ties())
+
+
+def _shift(cue: Cue, section: Section, sizes: Array) -> float:
+    # 4.73^4 EI/(rhoA L^4), the lowest free mode of the uniform rod with the mean stiffness and mass
+    stiffness, mass = (float(sizes @ part.mean(axis=1)) for part in (section.EI, section.rhoA))
+    return 500 * stiffness / mass / cue.length**4
+
+
+def gather(
+    first: NDArray[np.intp], unknowns: int, blocks: Array, *, point: Array, links: Links | None = None
+) -> Array | sp.csc_matrix:
+    """The matrix of a chain of element blocks (elements, u, u) that start at unknown ``first``, and of point terms."""
+    u = blocks.shape[-1]
+    if unknowns <= DENSE_LIMIT:
+        dense = np.diag(point)
+        for start, block in zip(first, blocks, strict=True):
+            dense[start : start + u, start : start + u] += block
+        return dense if links is None or not len(links.stiffness) else dense + _linked(links, unknowns).toarray()
+    rows = first[:, None, None] + np.arange(u)[:, None] + np.zeros((u, u), dtype=int)
+    columns = rows.transpose(0, 2, 1)
+    whole = sp.coo_matrix((blocks.ravel(), (rows.ravel(), columns.ravel())), shape=(unknowns,) * 2) + sp.diags(point)
+    return sp.csc_matrix(whole if links is None else whole + _linked(links, unknowns))
+
+
+def _linked(links: Links, unknowns: int) -> sp.csc_matrix:
+    before, after, k = links
+    rows, columns = np.r_[before, after, before, after], np.r_[before, after, after, before]
+    return sp.csc_matrix((np.r_[k, k, -k, -k], (rows, columns)), shape=(unknowns, unknowns))
+
+
+def _rigid_motions(mesh: Mesh, length: float, springs: Array, fixed: NDArray[np.intp]) -> Array:
+    """The combinations of translation and rotation about the tip that no spring or clamp resists."""
+    motions = np.zeros((mesh.unknowns, 2))
+    for w, x in ((mesh.first, mesh.nodes[:-1]), (mesh.last, mesh.nodes[1:])):
+        motions[w, 0], motions[w, 1] = 1.0, x / length
+        motions[w + 1, 1] = 1.0
+    held = np.union1d(fixed, np.flatnonzero(springs))
+    resisted = motions[held]
+    if len(held) == 0:
+        return motions
+    _, strength, directions = np.linalg.svd(resisted)
+    rank = int(np.sum(strength > 1e-12 * strength[0]))
+    return motions @ directions[rank:].T

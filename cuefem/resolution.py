@@ -1,0 +1,66 @@
+"""The resolution meant where none is given, and a scene's tip modes at a resolution.
+
+Where a Resolution is given, the modes asked for are summed plainly. Where none is, modes are kept by frequency and
+ended by a tail (`cuefem.tail`), without which no bound on their frequency holds every cue to half a percent.
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import chain
+
+import numpy as np
+
+from cuefem.beam import assemble
+from cuefem.cue import Cue
+from cuefem.effects import TipEffect
+from cuefem.modes import Modes, TipModes, mesh_for, modes_below, solve, tip_modes
+from cuefem.scene import Resolution, Scene
+from cuefem.tail import tail
+
+# Modes are kept up to this many periods in a contact. With a tail 30 hold end mass and squirt to 0.2 % for all cues of
+# meshes/ and T from 0.7 to 4 ms (tests/test_resolution_verification.py); a plain sum wants more, the carbon cue's is
+# 1 % off even with a hundred.
+PERIODS_KEPT, PLAIN_PERIODS = 30, 60
+# Never more than this, which a contact of a fraction of a millisecond would ask for: the tail does the rest.
+MOST = 400
+
+
+def default_resolution(scene: Scene, *, periods: float = PERIODS_KEPT) -> Resolution:
+    """The resolution meant where none is given: modes kept by frequency, up to ``periods`` / contact time."""
+    assert isinstance(scene.cue, Cue)
+    count = min(modes_below(scene.cue, 2 * np.pi * periods / scene.contact_time), MOST)
+    elements, order = mesh_for(scene.cue, count)
+    return Resolution(elements, order, count)
+
+
+def tip_modes_of(scene: Scene, at: Resolution | None = None) -> TipModes:
+    """Tip modes of the scene's finite-element cue, with its effects; with a tail where no resolution is given."""
+    if at is not None:
+        return tip_modes_from(_kept(scene, at), scene)
+    return tip_modes_from(tail(_kept(scene, default_resolution(scene)), turning=turning(scene)), scene)
+
+
+def _kept(scene: Scene, at: Resolution) -> Modes:
+    assert isinstance(scene.cue, Cue)
+    system = assemble(scene.cue, elements=at.elements, order=at.order, effects=scene.cue_effects)
+    # a support makes flexible modes of rigid ones: with it as many modes in all, so that its limits are continuous
+    return solve(system, at.modes + 2 - system.rigid.shape[1])
+
+
+def turning(scene: Scene) -> bool:
+    """Whether an effect takes the contact off the cue's axis, so that the tip's rotation moves it."""
+    return any(any(effect.lever(math.pi / 6)) for effect in scene.effects if isinstance(effect, TipEffect))
+
+
+def tip_modes_from(found: Modes, scene: Scene) -> TipModes:
+    """Tip modes of the scene's finite-element cue from its bending modes, with what its effects add to them."""
+    assert isinstance(scene.cue, Cue)
+    effects = scene.cue_effects
+    tip = tip_modes(found, scene.axial_mass)
+    along = tuple(chain.from_iterable(effect.vibrations(found, scene.cue.body_mass, effects) for effect in effects))
+    for family in along:
+        tip = tip.beside(family.omega, family.along)
+    for effect in effects:
+        tip = effect.damp(tip, scene.cue, (found, *along))
+    return tip.ascending() if along else tip
