@@ -1,0 +1,159 @@
+"""What every effect is, and what a scene asks of its effects together."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+
+from cuefem.cue import Array, Cue, LumpedCue, Section
+from cuefem.quantity import check_fields, check_kind
+
+if TYPE_CHECKING:
+    from cuefem.beam import System, Terms
+    from cuefem.modes import Modes, TipModes
+
+# Positions are on the cue up to this part of its length: a sum of lengths differs from their total by rounding.
+NEAR = 1e-9
+
+
+class Vibrations(Protocol):
+    """A family of vibrating modes of a cue: those of bending, and what effects add."""
+
+    @property
+    def system(self) -> System:
+        """The beam whose modes they are."""
+
+    @property
+    def omega(self) -> Array:
+        """Angular frequencies, rad/s, (n,), ascending."""
+
+    def loss_factors(self, loss: Section) -> Array:
+        """Loss factor of every mode, (n,), from those of the section's stiffnesses, each (elements, q)."""
+
+
+class AxialVibrations(Vibrations, Protocol):
+    """A family of modes along the cue."""
+
+    @property
+    def along(self) -> Array:
+        """Mass-normalised displacement of the tip along the cue, 1/sqrt(kg), (n,)."""
+
+
+@dataclass(frozen=True)
+class Effect:
+    """What every effect is: its fields are checked quantities, and it may add mass that a head-on blow feels."""
+
+    # Whether it needs a finite-element cue, whether a scene may list it once at most, and beside which effects (their
+    # names) a scene may not list it.
+    needs_beam: ClassVar[bool] = False
+    once: ClassVar[bool] = False
+    excludes: ClassVar[tuple[str, ...]] = ()
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+
+    @property
+    def axial_mass(self) -> float:
+        """Mass that the effect adds to the cue's motion along its axis, kg, at its first position."""
+        return 0.0
+
+
+@dataclass(frozen=True)
+class CueEffect(Effect):
+    """An effect that acts on the cue: it adds terms to the beam (see `cuefem.beam.ActsOnCue`) or to its modes."""
+
+    needs_beam: ClassVar[bool] = True
+
+    @property
+    def positions(self) -> tuple[float, ...]:
+        """Positions that must be mesh nodes, m from the tip."""
+        return ()
+
+    @property
+    def splits(self) -> tuple[float, ...]:
+        """Positions where deflection and rotation may jump, m from the tip."""
+        return ()
+
+    @property
+    def clamps(self) -> tuple[tuple[str, float], ...]:
+        """What the effect takes out: (name of the field that is infinite, position in m)."""
+        return ()
+
+    def check_on(self, cue: Cue, name: str) -> None:
+        """ValueError, in the words of ``name``, unless the effect's positions lie on the cue."""
+        for x in self.positions:
+            if not 0 <= x <= cue.length * (1 + NEAR):
+                raise ValueError(f"{name}.position must be in [0, {cue.length}] m, on the cue; got {x}")
+
+    def add_to(self, terms: Terms) -> None:
+        """Add the effect's point terms to the beam's."""
+
+    def vibrations(self, found: Modes, body_mass: float, effects: Sequence[CueEffect]) -> tuple[AxialVibrations, ...]:
+        """Families of modes beside the bending modes ``found``; effects: all that act on the cue."""
+        return ()
+
+    def damp(self, tip: TipModes, cue: Cue, families: Sequence[Vibrations]) -> TipModes:
+        """The tip modes with the effect's damping; their vibrating modes are the families', one after the other."""
+        return tip
+
+
+@dataclass(frozen=True)
+class TipEffect(Effect):
+    """An effect at the contact between tip and ball."""
+
+    def lever(self, phi: float) -> tuple[float, float]:
+        """Displacement (u, w) of the contact per unit rotation of the tip's section, m; phi: the contact's angle,
+        rad."""
+        return 0.0, 0.0
+
+
+def check_effects(cue: Cue | LumpedCue, effects: tuple[Any, ...]) -> None:
+    """TypeError or ValueError unless the effects go with the cue and with each other; messages name the effect."""
+    for i, effect in enumerate(effects):
+        check_kind(f"Scene.effects[{i}]", effect, Effect)
+        if isinstance(cue, LumpedCue) and effect.needs_beam:
+            raise ValueError(
+                f"Scene.effects[{i}] must be an effect that a LumpedCue can have, one at its tip alone; "
+                f"got {type(effect).__name__}, which needs a finite-element Cue"
+            )
+        if isinstance(cue, Cue) and isinstance(effect, CueEffect):
+            effect.check_on(cue, f"Scene.effects[{i}]")
+    _check_once(effects)
+    _check_excluded(effects)
+    if isinstance(cue, Cue):
+        _check_clamps(cue, effects)
+
+
+def _check_once(effects: tuple[Effect, ...]) -> None:
+    for i, effect in enumerate(effects):
+        if effect.once and any(type(other) is type(effect) for other in effects[:i]):
+            raise ValueError(
+                f"Scene.effects[{i}] must be another effect, {type(effect).__name__} acts once; got {effect}"
+            )
+
+
+def _check_excluded(effects: tuple[Effect, ...]) -> None:
+    names = [type(effect).__name__ for effect in effects]
+    for i, effect in enumerate(effects):
+        for other in effect.excludes:
+            if other in names:
+                raise ValueError(
+                    f"Scene.effects[{i}] must be an effect that goes with effects[{names.index(other)}], {other}; "
+                    f"got {names[i]}, which does not"
+                )
+
+
+def _check_clamps(cue: Cue, effects: tuple[Effect, ...]) -> None:
+    """Two clamps of one unknown at one place are a slip of the pen: nothing is left for the second to hold."""
+    found: list[tuple[int, str, float]] = []
+    for i, effect in enumerate(effects):
+        for name, x in effect.clamps if isinstance(effect, CueEffect) else ():
+            first = next((j for j, other, at in found if other == name and abs(at - x) <= NEAR * cue.length), None)
+            if first is not None:
+                unit = "N/m" if name == "stiffness" else "N m/rad"
+                raise ValueError(
+                    f"Scene.effects[{i}].{name} must be in [0, inf) {unit} at {x} m, "
+                    f"where effects[{first}] is a clamp already; got inf"
+                )
+            found.append((i, name, x))

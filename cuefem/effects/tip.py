@@ -1,0 +1,47 @@
+"""Effects at the contact between tip and ball that keep it linear."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Annotated, ClassVar
+
+from cuefem.effects.base import TipEffect
+from cuefem.quantity import Quantity
+
+
+@dataclass(frozen=True)
+class TipDome(TipEffect):
+    """The round end of the tip: the contact lies off the cue's axis, so the axial force bends the shaft.
+
+    Adds: to each bending mode's displacement of the contact that of a rigid dome of radius r, m, tied to the end
+    section: the contact is r sin(phi) off the axis and r (1 - cos(phi)) behind the apex. B gains u-w terms. Matters:
+    always; a 9 mm dome raises small-offset squirt by 10 % (carbon) to 63 % (Kim's shaft; studies/dome.md), and a bare
+    strike's plain sum over modes then converges very slowly. Wrong: where the leather shears or flattens so much that
+    it does not follow the section. Source: geometry, physics.md section 8; [Kim] sec. 2 mentions the off-axis contact
+    and drops it.
+    """
+
+    needs_beam: ClassVar[bool] = True  # a lumped cue has its coupling for it
+
+    radius: Annotated[float, Quantity("m", "[0, inf)")]
+
+    def lever(self, phi: float) -> tuple[float, float]:
+        """The contact is at r (1 - cos(phi)) along x and -r sin(phi) along w from the apex; rotation is w'."""
+        return -self.radius * math.sin(phi), self.radius * (1 - math.cos(phi))
+
+
+@dataclass(frozen=True)
+class TipShear(TipEffect):
+    """The leather's tangential give: a massless contact patch on a spring.
+
+    Adds: one state, the spring's force, stiffness ratio times the tip's loading stiffness, lossless, capped by
+    Coulomb's |F_t| <= mu F_n. Matters: at first touch F_t/F_n = ratio tan(phi), so there is no first slip while that
+    is below mu; squirt falls strongly as the ratio falls. ratio: in (0, inf); Mindlin's for a circular contact is 2 (1
+    - nu)/(2 - nu), 0.75 at nu = 0.4. Limit: ratio -> inf is the bare strike, like 1/ratio; with
+    endless friction it is not, since nothing damps the patch there. Wrong: leather is no perfect spring, partial slip
+    inside the patch is left out, and a leather segment in the cue gives way sideways as well. Source: [Mindlin] J.
+    Appl. Mech. 1949; physics.md section 8.
+    """
+
+    ratio: Annotated[float, Quantity("", "(0, inf)")]

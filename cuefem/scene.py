@@ -1,0 +1,164 @@
+"""What is there, and which physics acts: ball, tip, stroke, scene; how finely it is computed; what comes out."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Annotated, Any
+
+import numpy as np
+
+from cuefem.cue import Array, Cue, LumpedCue
+from cuefem.effects import CueEffect, Effect, check_effects
+from cuefem.quantity import Number, Quantity, check_count, check_fields, check_kind
+
+DEFAULT_CONTACT_TIME = 2e-3  # s, [Kim] sec. 4
+
+
+@dataclass(frozen=True)
+class Ball:
+    """A billiard ball: mass, kg; radius, m; inertia factor nu of I = nu M R^2 (2/5 for a solid ball)."""
+
+    mass: Annotated[Number, Quantity("kg", "(0, inf)")] = 0.210
+    radius: Annotated[Number, Quantity("m", "(0, inf)")] = 0.03075
+    inertia: Annotated[Number, Quantity("", "(0, 1]")] = 0.4
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+
+
+@dataclass(frozen=True)
+class Tip:
+    """The leather between cue and ball.
+
+    restitution: energetic coefficient of restitution e ([Stronge]); with a vibrating cue e = 0 is not the limit of
+    small e: a spring that gives nothing back parts at its greatest compression, a dead tip presses on. friction:
+    Coulomb mu between tip and ball, inf for a tip that never slips. contact_time: of a head-on blow, s; stiffness: of
+    the tip while it is loaded, N/m. Give one of the two; neither means 2 ms, both is an error.
+    """
+
+    restitution: Annotated[Number, Quantity("", "[0, 1]")] = 0.75
+    friction: Annotated[Number, Quantity("", "[0, inf]")] = 0.7
+    contact_time: Annotated[float | None, Quantity("s", "(0, inf)")] = None
+    stiffness: Annotated[float | None, Quantity("N/m", "(0, inf)")] = None
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+        if self.contact_time is not None and self.stiffness is not None:
+            raise ValueError(
+                "Tip takes contact_time (s) or stiffness (N/m), each fixes the other; "
+                f"got both, {self.contact_time} s and {self.stiffness} N/m"
+            )
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """The cue at first touch: its speed along its axis, m/s, and the offset b/R of the contact, in (-1, 1)."""
+
+    speed: Annotated[Number, Quantity("m/s", "(0, inf)")] = 1.0
+    offset: Annotated[Number, Quantity("", "(-1, 1)")] = 0.0
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+
+    @property
+    def angle(self) -> Any:
+        """The phi of sin(phi) = b/R, rad: the angle between the cue's axis and the normal of the contact."""
+        return np.arcsin(self.offset)
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What is there (cue, ball, tip), how it is struck, and which physics acts beyond the base model."""
+
+    cue: Cue | LumpedCue
+    ball: Ball = field(default_factory=Ball)
+    tip: Tip = field(default_factory=Tip)
+    stroke: Stroke = field(default_factory=Stroke)
+    effects: tuple[Effect, ...] = ()
+
+    def __post_init__(self) -> None:
+        check_kind("Scene.cue", self.cue, (Cue, LumpedCue))
+        check_kind("Scene.ball", self.ball, Ball)
+        check_kind("Scene.tip", self.tip, Tip)
+        check_kind("Scene.stroke", self.stroke, Stroke)
+        if isinstance(self.effects, Effect):
+            raise TypeError(f"Scene.effects must be a sequence of effects; got one, {self.effects!r}")
+        object.__setattr__(self, "effects", tuple(self.effects))
+        check_effects(self.cue, self.effects)
+
+    @property
+    def cue_effects(self) -> tuple[CueEffect, ...]:
+        """Those of the effects that act on the cue, in an order of their own: sums do not depend on the list's."""
+        return tuple(sorted((effect for effect in self.effects if isinstance(effect, CueEffect)), key=repr))
+
+    @property
+    def axial_mass(self) -> Any:
+        """Mass m_a that a head-on blow feels, kg: the cue's and what effects add."""
+        return self.cue.mass + math.fsum(effect.axial_mass for effect in self.effects)
+
+    @property
+    def head_on_mass(self) -> Any:
+        """The m_n of 1/m_n = 1/M + 1/m_a, kg."""
+        return 1 / (1 / self.ball.mass + 1 / self.axial_mass)
+
+    @property
+    def contact_time(self) -> Any:
+        """Duration T of a head-on blow, s, given or from the tip's stiffness (physics.md section 5)."""
+        if self.tip.stiffness is None:
+            return DEFAULT_CONTACT_TIME if self.tip.contact_time is None else self.tip.contact_time
+        return math.pi / 2 * (1 + self.tip.restitution) * np.sqrt(self.head_on_mass / self.tip.stiffness)
+
+    @property
+    def stiffness(self) -> Any:
+        """Loading stiffness k of the tip, N/m, given or from the head-on contact time (physics.md section 5)."""
+        if self.tip.stiffness is not None:
+            return self.tip.stiffness
+        return (math.pi / 2 * (1 + self.tip.restitution) / self.contact_time) ** 2 * self.head_on_mass
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """How finely a finite-element cue is computed.
+
+    elements: of each smooth piece of the cue. order: polynomial degree p of the rotation (the deflection has p + 1).
+    modes: flexible bending modes kept; rigid ones always are. All whole numbers >= 1.
+    """
+
+    elements: int
+    order: int
+    modes: int
+
+    def __post_init__(self) -> None:
+        for name in ("elements", "order", "modes"):
+            check_count(f"Resolution.{name}", getattr(self, name), 1)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a strike leaves behind; from a scene of arrays every field has their broadcast shape, vectors one axis more.
+
+    squirt: rad, positive when the ball leaves on the far side of the cue line from the struck side. ball_velocity:
+    (t, n), m/s. ball_speed: m/s. spin: p_t/(nu M R), rad/s. cue_speed: along the cue's axis, m/s. impulse: (t, n) on
+    the ball, N s. duration: s, None from the impulse solver. regime: how the first slip ended: "stick" (or never
+    was), "late stick" (past the greatest compression), "slip reversal", "miscue" (never). jam: whether the normal
+    velocity grew at first, the ordinary case of a light end mass. phases: the course of the contact. energy: joules
+    by name, "initial" and its parts, which add up to it. unknowns: of the model that was solved. error: estimated
+    relative error, None where nothing estimated it. history: forces and velocities during the contact at any time
+    (`cuefem.history.History`), None from the impulse solver.
+    """
+
+    squirt: Any
+    ball_velocity: Array
+    ball_speed: Any
+    spin: Any
+    cue_speed: Any
+    impulse: Array
+    duration: Any
+    regime: Any
+    jam: Any
+    phases: tuple[Any, ...]
+    energy: dict[str, Any]
+    unknowns: int = 0
+    error: float | None = None
+    history: Any = None

@@ -1,0 +1,157 @@
+"""The ready scenes of studies/scenes, and what a scene file means to the commands (regression)."""
+
+from __future__ import annotations
+
+import json
+import math
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+from command_line import call
+
+import cuefem as cf
+from cuefem.accuracy import resolve
+from cuefem.io import load_accuracy
+
+SCENES = Path(__file__).parent.parent / "studies" / "scenes"
+MESHES = SCENES.parent.parent / "meshes"
+READY = ("break_cue", "carom", "clay_on_shaft", "kim", "pool_low_deflection", "snooker")
+CAROM, POOL, SNOOKER = (0.21, 61.5e-3), (0.17, 57.15e-3), (0.142, 52.5e-3)
+BALLS = {"kim": CAROM, "carom": CAROM, "snooker": SNOOKER, "pool_low_deflection": POOL, "break_cue": POOL}
+
+
+def rows() -> dict[str, list[str]]:
+    """The scenes' README by name: what, ball, offset, squirt, effects."""
+    lines = (SCENES / "README.md").read_text(encoding="utf-8").splitlines()
+    cells = [[cell.strip() for cell in line.split("|")[1:-1]] for line in lines if line.startswith("| [")]
+    return {row[0][1:].partition("]")[0]: row[1:] for row in cells}
+
+
+def scene(name: str) -> cf.Scene:
+    found = cf.load(SCENES / f"{name}.toml")
+    assert isinstance(found, cf.Scene)
+    return found
+
+
+def as_json(*arguments: object) -> Any:
+    status, out, err = call(*arguments, "--json")
+    assert (status, err) == (0, "")
+    return json.loads(out)
+
+
+def test_these_are_all() -> None:
+    assert tuple(sorted(path.stem for path in SCENES.glob("*.toml"))) == tuple(sorted(rows())) == READY
+
+
+@pytest.mark.parametrize("name", READY)
+def test_a_ready_scene_says_what_it_rests_on(name: str) -> None:
+    text = (SCENES / f"{name}.toml").read_text(encoding="utf-8")
+    assert text.startswith("# ")
+    assert load_accuracy(SCENES / f"{name}.toml") == 1e-2
+    assert list(tomllib.loads(text)) == [
+        key for key in ("cue", "ball", "tip", "stroke", "effects", "accuracy") if key in tomllib.loads(text)
+    ]
+
+
+@pytest.mark.parametrize("name", BALLS)
+def test_balls_are_those_of_the_game(name: str) -> None:
+    mass, diameter = BALLS[name]
+    assert scene(name).ball == cf.Ball(mass, diameter / 2)
+
+
+@pytest.mark.parametrize(
+    ("name", "ounces"),
+    [("carom", 17.5), ("pool_low_deflection", 20), ("break_cue", 19), ("snooker", 18), ("clay_on_shaft", 20)],
+)
+def test_cues_weigh_what_their_comments_say(name: str, ounces: float) -> None:
+    assert scene(name).cue.mass == pytest.approx(ounces * 0.028349523125, rel=2e-3)
+
+
+@pytest.mark.parametrize("name", READY)
+def test_a_ready_scene_is_what_its_readme_says(name: str) -> None:
+    found, outcome = scene(name), resolve(scene(name), 1e-3)
+    _, ball, offset, squirt, effects = rows()[name]
+    assert ball == f"{2e3 * found.ball.radius:g} mm, {1e3 * found.ball.mass:g} g"
+    assert float(offset) == found.stroke.offset
+    assert effects == (", ".join(type(effect).__name__ for effect in found.effects) or "none")
+    assert outcome.regime == "stick"
+    assert math.degrees(outcome.squirt) == pytest.approx(float(squirt), rel=1e-3, abs=5e-4)
+
+
+def test_a_scene_reads_back_as_it_was_saved(tmp_path: Path) -> None:
+    for name in READY:
+        cf.save(scene(name), tmp_path / "again.toml")
+        assert cf.load(tmp_path / "again.toml") == scene(name)
+
+
+def test_a_bare_scene_is_the_coupled_strike_alone(tmp_path: Path) -> None:
+    bare = cf.Scene(scene("kim").cue, stroke=cf.Stroke(offset=0.3))
+    cf.save(bare, tmp_path / "bare.toml")
+    found, alone = as_json("strike", tmp_path / "bare.toml")["models"]["coupled"], cf.strike(bare)
+    assert (found["unknowns"], found["squirt"], found["regime"]) == (alone.unknowns, alone.squirt, alone.regime)
+    assert cf.strike(cf.load(tmp_path / "bare.toml")).phases == alone.phases  # type: ignore[arg-type]
+
+
+def test_the_accuracy_of_a_file_is_the_strikes(tmp_path: Path) -> None:
+    text = (
+        (SCENES / "kim.toml").read_text(encoding="utf-8").replace("../../meshes", str(SCENES.parent.parent / "meshes"))
+    )
+    found = {}
+    for rtol in (1e-2, 1e-3):
+        (tmp_path / "scene.toml").write_text(text.replace("rtol = 1e-2", f"rtol = {rtol}"), encoding="utf-8")
+        found[rtol] = as_json("strike", tmp_path / "scene.toml")["models"]["coupled"]
+        expected = resolve(scene("kim"), rtol)
+        assert (found[rtol]["squirt"], found[rtol]["error"]) == (expected.squirt, expected.error)
+        assert found[rtol]["error"] <= rtol
+    assert found[1e-3]["unknowns"] > found[1e-2]["unknowns"]
+
+
+KIM = 'cue = "CUE"\n[stroke]\noffset = 0.3\n'
+BAD = {
+    "unknown effect": ("[[effects]]\ntype = 'TipDom'\n", "effects[0].type: ", "got 'TipDom'; did you mean 'TipDome'?"),
+    "wrong unit": (
+        "[[effects]]\ntype = 'TipDome'\nradius = '9.5 g'\n",
+        "effects[0].radius: must be in [0, inf) m, ",
+        "got '9.5 g', of another kind ('g')",
+    ),
+    "missing unit": (
+        "[[effects]]\ntype = 'Support'\nposition = '8 in'\nstiffness = 5000\n",
+        "effects[0].stiffness: must be in [0, inf] N/m, ",
+        "got 5000",
+    ),
+    "misspelt key": (
+        "[[effects]]\ntype = 'TipShear'\nration = 0.75\n",
+        "effects[0].ration: must be one of the keys ratio; ",
+        "did you mean 'ratio'?",
+    ),
+    "misspelt table": ("[accurcy]\nrtol = 0.01\n", "accurcy: must be one of the keys ", "did you mean 'accuracy'?"),
+    "off the cue": (
+        "[[effects]]\ntype = 'PointMass'\nposition = '701 mm'\nmass = '11 g'\n",
+        "effects[0].position: must be in [0, 0.7] m, on the cue; ",
+        "got 0.701",
+    ),
+    "two clamps": (
+        "[[effects]]\ntype = 'Support'\nposition = '0.7 m'\nstiffness = 'inf N/m'\n"
+        "[[effects]]\ntype = 'Support'\nposition = '0.7 m'\nstiffness = 'inf N/m'\n",
+        "effects[1].stiffness: must be in [0, inf) N/m at 0.7 m, where effects[0] is a clamp already; ",
+        "got inf",
+    ),
+    "accuracy out of bounds": ("[accuracy]\nrtol = 1.5\n", "accuracy.rtol: must be in (0, 1); ", "got 1.5"),
+}
+
+
+@pytest.mark.parametrize("command", [("strike",), ("effects",), ("report",), ("report", "-o", "page.html")])
+@pytest.mark.parametrize("wrong", BAD)
+def test_a_wrong_scene_is_refused_in_one_line(tmp_path: Path, wrong: str, command: tuple[str, ...]) -> None:
+    more, key, end = BAD[wrong]
+    bad = tmp_path / "bad.toml"
+    bad.write_text(KIM.replace("CUE", str(MESHES / "kim.toml")) + more, encoding="utf-8")
+    arguments = [tmp_path / part if part.endswith(".html") else part for part in command]
+    status, out, err = call(arguments[0], bad, *arguments[1:])
+    assert (status, out) == (2, "")
+    assert err.count("\n") == 1
+    assert err.startswith(f"cuefem: {bad}: {key}")
+    assert err.rstrip("\n").endswith(end)
+    assert [path.name for path in tmp_path.iterdir()] == ["bad.toml"]
