@@ -1,0 +1,236 @@
+"""The general impulse solver's kernel: a lumped cue strikes a ball, exactly, in impulse space ([Stronge] ch. 8).
+
+In the tangent-normal frame (t, n) the contact velocity changes by dv = B dp. The course of the normal impulse p has at
+most three straight pieces, so every event is the root of a line or a parabola:
+
+- slip: dp_t = mu dp (the tip slides towards -t at first touch, so friction on the ball points to +t);
+- then, from p_s on, stick: dp_t = mu_c dp, mu_c = -B_tn/B_tt, where |mu_c| <= mu; or reversed slip: dp_t = -mu dp;
+- compression lasts until v_n = 0; separation is where the normal work regained is e^2 times that spent.
+
+One formula serves all strokes; negative offsets are the mirror image of positive ones. The stroke is solved at unit
+cue speed and scaled. What crosses the cue's line comes from the velocity there at separation, a sum in which nothing
+cancels, so that squirt keeps its digits however light the end mass is.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from cuefem.cue import Array, LumpedCue
+from cuefem.scene import Ball, Outcome, Scene
+from cuefem.squirt.arguments import sine_cosine
+
+# Strokes worked at a time, so that the intermediate arrays stay in cache.
+BLOCK = 8192
+# Stands for endless friction: its slip is over after 1e-100 of the blow, and its square is still a number.
+ENDLESS = 1e100
+
+REGIMES = np.array(["stick", "late stick", "miscue", "slip reversal"])
+SLIPPING = 2  # from this index on, the tip slips at separation
+
+
+class InverseMass(NamedTuple):
+    """The contact's inverse mass B in (t, n), 1/kg, and what of it cancels in part, written so that nothing does.
+
+    det: the determinant, a sum of positive terms, 1/kg2. cross_t = s B_nn - c B_tn and cross_n = c B_tt - s B_tn, 1/kg,
+    s and c the sine and cosine of the contact's angle: the cue's mass along its axis drops out of them.
+    """
+
+    tt: Array
+    nn: Array
+    tn: Array
+    det: Array
+    cross_t: Array
+    cross_n: Array
+
+
+class Event(NamedTuple):
+    """A moment of the contact: its name and the normal impulse given until then, N s (inf: it never comes)."""
+
+    name: str
+    impulse: Any
+
+
+def inverse_mass(cue: LumpedCue, ball: Ball, offset: Any) -> InverseMass:
+    """B = B_ball + B_cue of physics.md section 2 at ``offset`` b/R = sin(phi) >= 0."""
+    s, c = sine_cosine(offset)
+    along, across, both = 1 / cue.mass, 1 / cue.end_mass, cue.coupling
+    ball_tt, ball_nn = (1 + 1 / ball.inertia) / ball.mass, 1 / ball.mass
+    cue_tt = along * s**2 + across * c**2 + 2 * both * s * c
+    cue_nn = along * c**2 + across * s**2 - 2 * both * s * c
+    tn = (along - across) * s * c + both * (c**2 - s**2)
+    det = ball_tt * ball_nn + ball_nn * cue_tt + ball_tt * cue_nn + (along * across - both**2)
+    cross_t, cross_n = s * (ball_nn + across) - both * c, c * (ball_tt + across) + both * s
+    return InverseMass(ball_tt + cue_tt, ball_nn + cue_nn, tn, det, cross_t, cross_n)
+
+
+class _Course(NamedTuple):
+    """Where the contact went: impulses at the events, the tangential impulse, the velocity (t, n) of the contact at
+    separation, losses, the regime's index, jam."""
+
+    slip_end: Array
+    compressed: Array
+    final: Array
+    tangential: Array
+    leaving_t: Array
+    leaving_n: Array
+    tip_loss: Array
+    friction_loss: Array
+    regime: Array
+    jam: Any
+
+
+def _course(B: InverseMass, v_t: Array, v_n: Array, *, mu: Array, e: Array) -> _Course:
+    """The course of contacts that start with v_t = -s <= 0 and v_n = -c < 0, unit speed along the cue."""
+    endless, mu = np.isinf(mu), np.minimum(mu, ENDLESS)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        mu_c = -B.tn / B.tt
+        stuck = B.det / B.tt  # dv_n/dp in stick
+        closing = B.tt * (mu - mu_c)  # dv_t/dp while slipping
+        slows = stuck + B.tn * (mu - mu_c)  # dv_n/dp while slipping; negative in a jam
+        beyond = np.maximum(-mu_c - mu, 0)  # what friction lacks to hold the tip once slip has ended
+        reverses = beyond > 0
+        then_t, then_n = mu_c + beyond, stuck + B.tn * beyond  # dp_t/dp, dv_n/dp after slip
+        grips, never = v_t == 0, mu <= mu_c
+        p_s = np.where(grips, 0.0, np.where(never, np.inf, -v_t / closing))
+        t_s = np.where(grips, 0.0, np.where(never, np.inf, mu * -v_t / closing))
+        v_s = np.where(grips, v_n, np.where(never, np.inf, (B.cross_t - mu * B.cross_n) / closing))
+        early = v_s >= 0  # fully compressed while still slipping
+        # compression, and the work done on the tip
+        in_slip = early | reverses  # else v_t = v_n = 0 at greatest compression, where B p = -v
+        p_c = np.where(early, -v_n / slows, np.where(reverses, p_s - v_s / then_n, B.cross_n / B.det))
+        work = np.where(early, v_n * p_c / 2, (v_n + v_s) / 2 * p_s - v_s**2 / (2 * then_n))
+        regained = -(e**2) * work
+        # restitution: in the slip alone, or slip and then the rest, or after it
+        slip_regains = v_s**2 / (2 * slows)
+        miscue = early & (slip_regains >= regained)
+        rest = np.maximum(regained - slip_regains, 0)
+        leaving_late = np.sqrt(v_s**2 + 2 * then_n * rest)
+        leaving_early = np.sqrt(2 * then_n * regained)
+        p_f = np.where(early, p_s + 2 * rest / (v_s + leaving_late), p_c + leaving_early / then_n)
+        p_f = np.where(miscue, p_c * (1 + e), p_f)
+        tail = np.where(miscue, 0.0, p_f - p_s)
+        tangential = np.where(in_slip, t_s + then_t * tail, B.cross_t / B.det + mu_c * (p_f - p_c))
+        tangential = np.where(miscue, mu * p_f, tangential)
+        leaving_t = np.where(miscue, v_t + closing * p_f, B.tt * beyond * tail)
+        leaving_n = np.where(miscue, -e * v_n, np.where(early, leaving_late, leaving_early))
+        # friction takes -v_t dp_t; v_t is linear in p, zero at p_s
+        slipped = np.where(miscue, -(v_t + leaving_t) / 2 * mu * p_f, (leaving_t * mu * tail - v_t * t_s) / 2)
+    jam = (slows < 0) & (p_s > 0) & ~endless
+    slip_end = np.where(miscue, np.inf, np.where(endless & ~early, 0.0, p_s))
+    regime = np.select([miscue, reverses, early], [2, 3, 1], 0)
+    return _Course(slip_end, p_c, p_f, tangential, leaving_t, leaving_n, -work - regained, slipped, regime, jam)
+
+
+def impact(scene: Scene) -> Outcome:
+    """Outcome of a lumped cue's stroke, every regime; array fields of the scene broadcast.
+
+    phases: the events "slip ends", "greatest compression", "separation" with the normal impulse until then. energy:
+    "ball translation", "ball rotation", "cue", "tip loss", "friction loss", which add up to "initial". The coupling of
+    a LumpedCue is meant for positive offsets and changes sign with them, so that all is odd in the offset.
+    """
+    assert isinstance(scene.cue, LumpedCue)
+    fields = {
+        **{f"LumpedCue.{name}": getattr(scene.cue, name) for name in ("mass", "end_mass", "coupling")},
+        **{f"Ball.{name}": getattr(scene.ball, name) for name in ("mass", "inertia", "radius")},
+        **{f"Tip.{name}": getattr(scene.tip, name) for name in ("restitution", "friction")},
+        **{f"Stroke.{name}": getattr(scene.stroke, name) for name in ("speed", "offset")},
+    }
+    shape = _common_shape(fields)
+    starts = range(0, max(int(np.prod(shape, dtype=int)), 1), BLOCK)
+    flat = [f if np.ndim(f) == 0 else np.broadcast_to(f, shape).reshape(-1) for f in fields.values()]
+    blocks = [_strokes(*(f if np.ndim(f) == 0 else f[i : i + BLOCK] for f in flat)) for i in starts]
+    if not shape:
+        return _outcome({name: value[0] for name, value in blocks[0].items()}, ())
+    return _outcome({name: np.concatenate([b[name] for b in blocks]) for name in blocks[0]}, shape)
+
+
+def _common_shape(fields: dict[str, Any]) -> tuple[int, ...]:
+    try:
+        return np.broadcast_shapes(*(np.shape(f) for f in fields.values()))
+    except ValueError:
+        shapes = ", ".join(f"{name} {np.shape(f)}" for name, f in fields.items() if np.ndim(f) > 0)
+        raise ValueError(f"the array fields of a scene must broadcast together; got shapes {shapes}") from None
+
+
+def _strokes(
+    m: Any, m_e: Any, coupling: Any, M: Any, nu: Any, R: Any, e: Any, mu: Any, U: Any, offset: Any
+) -> dict[str, Array]:
+    """One block of strokes: flat arrays by name."""
+    offset = np.atleast_1d(offset)
+    side, struck = np.sign(offset), np.abs(offset)
+    cue = _Lumped(m, m_e, np.where(side == 0, 0.0, coupling))
+    B = inverse_mass(cue, _Sphere(M, nu), struck)  # type: ignore[arg-type]
+    s, c = sine_cosine(struck)
+    course = _course(B, -s, -c, mu=mu, e=e)  # at unit speed
+    p_t, p_n = U * course.tangential, U * course.final
+    p_u = s * p_t + c * p_n
+    # across the cue: (1/M + 1/m_e) p_w + p_t c/(nu M) + coupling p_u is the contact's velocity at separation
+    v_w = U * (c * course.leaving_t - s * course.leaving_n)
+    p_w = (v_w - c * p_t / (nu * M) - cue.coupling * p_u) / (1 / M + 1 / m_e)
+    # which rounds like m_e; c p_t - s p_n rounds like m, and is as good as mu itself while the tip slips
+    p_w = np.where(np.less(m_e, m) & (course.regime < SLIPPING), p_w, c * p_t - s * p_n)
+    # the cue's tip velocity after the blow in (u, w), and kinetic energies with the inverse of B_cue
+    tip_u, tip_w = U - p_u / m - cue.coupling * p_w, -cue.coupling * p_u - p_w / m_e
+    free = 1 - cue.coupling**2 * m * m_e  # m/free: the axial inertia of a cue that moves as one along its axis
+    cue_energy = (m * tip_u**2 + m_e * tip_w**2 - 2 * cue.coupling * m * m_e * tip_u * tip_w) / (2 * free)
+    out = {
+        "squirt": side * np.arctan2(-p_w, p_u) + 0.0,
+        "p_t": side * p_t,
+        "p_n": p_n,
+        "v_t": side * p_t / M,
+        "v_n": p_n / M,
+        "ball_speed": np.hypot(p_t, p_n) / M,
+        "spin": side * p_t / (nu * M * R),
+        "cue_speed": U - p_u * free / m,
+        "regime": course.regime,
+        "jam": course.jam,
+        "slip ends": U * course.slip_end,
+        "greatest compression": U * course.compressed,
+        "separation": p_n,
+        "initial": m * U**2 / (2 * free),
+        "ball translation": (p_t**2 + p_n**2) / (2 * M),
+        "ball rotation": p_t**2 / (2 * nu * M),
+        "cue": cue_energy,
+        "tip loss": U**2 * course.tip_loss,
+        "friction loss": U**2 * course.friction_loss,
+    }
+    return dict(zip(out, np.broadcast_arrays(*out.values()), strict=True))
+
+
+class _Lumped(NamedTuple):
+    mass: Any
+    end_mass: Any
+    coupling: Any
+
+
+class _Sphere(NamedTuple):
+    mass: Any
+    inertia: Any
+
+
+EVENTS = ("slip ends", "greatest compression", "separation")
+ENERGIES = ("initial", "ball translation", "ball rotation", "cue", "tip loss", "friction loss")
+
+
+def _outcome(flat: dict[str, Any], shape: tuple[int, ...]) -> Outcome:
+    def whole(name: str) -> Any:
+        return np.reshape(flat[name], shape) if shape else float(flat[name])
+
+    regime = REGIMES[np.reshape(flat["regime"], shape)]
+    return Outcome(
+        squirt=whole("squirt"),
+        ball_velocity=np.stack([whole("v_t"), whole("v_n")], axis=-1),
+        ball_speed=whole("ball_speed"),
+        spin=whole("spin"),
+        cue_speed=whole("cue_speed"),
+        impulse=np.stack([whole("p_t"), whole("p_n")], axis=-1),
+        duration=None,
+        regime=regime if shape else str(regime),
+        jam=np.reshape(flat["jam"], shape) if shape else bool(flat["jam"]),
+        phases=tuple(Event(name, whole(name)) for name in EVENTS),
+        energy={name: whole(name) for name in ENERGIES},
+        unknowns=2,
+    )

@@ -1,0 +1,26 @@
+"""The impulse solver for any cue: a finite-element cue is lumped first by its stick end mass."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from cuefem.cue import Cue, LumpedCue
+from cuefem.endmass import end_mass
+from cuefem.impact import impact
+from cuefem.quantity import check_kind
+from cuefem.scene import Outcome, Scene
+
+
+def impulse(scene: Scene) -> Outcome:
+    """Outcome of a stroke from the general impulse solver ([Stronge]'s construction), exact in every regime.
+
+    Array fields of cue, ball, tip and stroke broadcast; a million strokes take about a second. A finite-element cue is
+    lumped first: its axial mass and its stick end mass. See `cuefem.impact.impact` for phases and energies.
+    """
+    check_kind("impulse scene", scene, Scene)
+    if scene.effects and isinstance(scene.cue, LumpedCue):
+        names = ", ".join(type(effect).__name__ for effect in scene.effects)
+        raise ValueError(f"impulse takes a LumpedCue without effects, which need time (see strike); got {names}")
+    if isinstance(scene.cue, Cue):
+        scene = replace(scene, cue=LumpedCue(scene.axial_mass, end_mass(scene, "stick")), effects=())
+    return impact(scene)

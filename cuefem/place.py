@@ -1,0 +1,151 @@
+"""A stroke in the table's frame: where on the ball, in which direction, and what comes out in three dimensions.
+
+The frame is [Kim]'s (end of sec. 5): z points up, and a cue that points along +y strikes with its right along +x. The
+impact stays planar, in the plane of the cue's axis and the ball's centre (physics.md section 3); the table's reaction
+to a ball that is driven downwards is not part of it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from cuefem import squirt
+from cuefem.cue import Array
+from cuefem.quantity import Quantity
+from cuefem.scene import Ball, Outcome
+from cuefem.squirt.arguments import first_failure
+
+# How far the offset of an outcome may lie from that of the point it is placed at.
+SAME_OFFSET = 1e-9
+
+_COORDINATE, _COMPONENT = Quantity("m"), Quantity("")
+
+
+@dataclass(frozen=True)
+class Placed:
+    """The ball after a stroke, in the table's frame: velocity (m/s) and spin (rad/s), x, y, z on the last axis."""
+
+    velocity: Array
+    spin: Array
+
+
+def place(outcome: Outcome, point: ArrayLike, direction: ArrayLike, *, ball: Ball | None = None) -> Placed:
+    """An outcome turned into the table's frame: velocity and spin of the ball as vectors.
+
+    point: (h, l), m: the contact lies h to the right of the ball's centre as the player looks along the cue, and l
+    above the table, on the half of the ball that faces the player. direction: of the cue's motion, of any length. ball:
+    that of the outcome's scene (default `Ball()`). The outcome must be that of a stroke at offset
+    `offset_of(point, direction)`, of either sign; arrays broadcast, vectors on the last axis.
+
+    The ball leaves at the squirt angle from ``direction``, away from the struck side, and spins about R_I x u ([Kim]
+    end of sec. 5), R_I from the centre to the contact. A level cue along +y: struck right (h > 0), spin along +z (right
+    english) and squirt to -x; struck high (l > R), spin along -x (follow) and squirt into the table; struck low, spin
+    along +x (draw).
+
+    ValueError where the point is not on the ball, the cue does not meet it there, or the outcome has another offset.
+    """
+    ball = Ball() if ball is None else ball
+    offset, axis, along = _geometry(point, direction, ball)
+    along_contact = np.arctan2(*np.moveaxis(outcome.ball_velocity, -1, 0))
+    angle = outcome.squirt + along_contact  # phi, as the outcome was computed
+    _same_offset(offset, np.sin(angle))
+    side = np.where(angle < 0, -1.0, 1.0)
+    turn = (side * outcome.squirt)[..., None]
+    speed = np.asarray(outcome.ball_speed)[..., None]
+    velocity = speed * (np.cos(turn) * along + np.sin(turn) * np.cross(axis, along))
+    return Placed(velocity, (side * outcome.spin)[..., None] * axis)
+
+
+def offset_of(point: ArrayLike, direction: ArrayLike, *, ball: Ball | None = None) -> Any:
+    """Offset b/R >= 0 of a stroke at a point (h, l) in a direction, as in `place`: the `Stroke.offset` to compute.
+
+    b is the distance of the ball's centre from the line through the contact along the cue's motion. A level cue has
+    b^2 = h^2 + (l - R)^2. Broadcasts.
+    """
+    return _geometry(point, direction, Ball() if ball is None else ball)[0][()]
+
+
+def axis_offset(contact_offset: Any, tip_radius: Any, *, ball: Ball | None = None) -> Any:
+    """[B.1]: distance b_axis of the cue's axis from the ball's centre, m, of a contact at offset b/R.
+
+    A domed tip of radius r, m, touches beside its own axis: b_axis = (R + r) b/R (`squirt.axis_offset`).
+    """
+    radius = (Ball() if ball is None else ball).radius
+    return squirt.axis_offset(contact_offset, radius=radius, dome_radius=tip_radius)
+
+
+def offset_of_axis(axis_distance: Any, tip_radius: Any, *, ball: Ball | None = None) -> Any:
+    """Offset b/R of the contact of a tip of radius r, m, whose cue's axis passes b_axis, m, from the ball's centre.
+
+    The inverse of `axis_offset`. ValueError where such a cue passes the ball: |b_axis| >= R + r.
+    """
+    reach = 2 * axis_offset(0.5, tip_radius, ball=ball)  # R + r: it is linear in the offset
+    distance = _COORDINATE.check("axis_distance", axis_distance)
+    if not np.all(touches := np.abs(distance) < reach):
+        where, (got, limit) = first_failure(touches, distance, reach)
+        raise ValueError(
+            f"axis_distance must be in ({-limit}, {limit}) m, the radii of ball and tip together; got {got}{where}"
+        )
+    return distance / reach
+
+
+def _geometry(point: ArrayLike, direction: ArrayLike, ball: Ball) -> tuple[Array, Array, Array]:
+    """Offset b/R, the axis of the spin (zero head on), and the unit vector along the cue."""
+    contact, along = _contact(point, direction, np.asarray(ball.radius))
+    axis = np.cross(contact, along)
+    offset = np.linalg.norm(axis, axis=-1)
+    facing = -np.sum(contact * along, axis=-1)
+    if not np.all(faces := facing > 0):
+        where, (sine, cosine) = first_failure(faces, offset, facing)
+        raise ValueError(
+            "point must be on the side of the ball that the direction meets, less than 90 degrees between direction "
+            f"and inward normal; got {np.degrees(np.arctan2(sine, cosine)):.6g} degrees{where}"
+        )
+    return offset, axis / np.where(offset > 0, offset, 1.0)[..., None], along
+
+
+def _contact(point: ArrayLike, direction: ArrayLike, radius: Array) -> tuple[Array, Array]:
+    """R_I/R, from the ball's centre to the contact, and the unit vector along the cue."""
+    point = _vectors("point", point, 2, _COORDINATE)
+    along = _vectors("direction", direction, 3, _COMPONENT)
+    largest = np.abs(along).max(axis=-1, keepdims=True)
+    if not np.all(moves := largest[..., 0] > 0):
+        where, _ = first_failure(moves)
+        raise ValueError(f"direction must have a length; got (0, 0, 0){where}")
+    along = along / largest
+    along = along / np.linalg.norm(along, axis=-1, keepdims=True)
+    level = np.hypot(along[..., 0], along[..., 1])
+    upright = level == 0  # a cue straight up or down: taken to stand on the player's side, towards +y
+    safe = np.where(upright, 1.0, level)
+    ahead_x, ahead_y = along[..., 0] / safe, np.where(upright, 1.0, along[..., 1] / safe)
+    aside, height = point[..., 0] / radius, point[..., 1] / radius - 1
+    depth = (1 - aside) * (1 + aside) - height**2
+    if not np.all(on := depth >= 0):
+        where, (R, h, height_got) = first_failure(on, radius, point[..., 0], point[..., 1])
+        raise ValueError(
+            f"point must be on the ball, h^2 + (l - R)^2 <= R^2 with R = {R} m; got ({h}, {height_got}) m{where}"
+        )
+    behind = np.sqrt(depth)
+    x, y, z = np.broadcast_arrays(aside * ahead_y - behind * ahead_x, -aside * ahead_x - behind * ahead_y, height)
+    contact = np.stack([x, y, z], axis=-1)
+    return contact, np.broadcast_to(along, np.broadcast_shapes(contact.shape, along.shape))
+
+
+def _vectors(name: str, value: ArrayLike, size: int, quantity: Quantity) -> Array:
+    vectors = np.asarray(quantity.check(name, value))
+    if vectors.ndim == 0 or vectors.shape[-1] != size:
+        raise ValueError(f"{name} must have {size} components on its last axis; got an array of shape {vectors.shape}")
+    return vectors
+
+
+def _same_offset(offset: Array, computed: Any) -> None:
+    if not np.all(same := np.abs(offset - np.abs(computed)) <= SAME_OFFSET):
+        where, (placed, got) = first_failure(same, offset, computed)
+        raise ValueError(
+            f"outcome must be that of a stroke at the offset of point and direction, {placed:.10g} or {-placed:.10g}; "
+            f"got one at {got:.10g}{where}"
+        )

@@ -1,0 +1,53 @@
+"""The quantities that the closed forms take, checked in one place; and the sine and cosine of an offset."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from cuefem.quantity import Quantity
+
+_OFFSET, _RATIO = Quantity("", "(-1, 1)"), Quantity("", "(0, inf)")
+_QUANTITIES = {
+    "offset": _OFFSET,
+    "force_line_offset": _OFFSET,
+    "mass": Quantity("kg", "(0, inf)"),
+    "end_mass": Quantity("kg", "(0, inf)"),
+    "ball_mass": Quantity("kg", "(0, inf)"),
+    "shaft_mass": Quantity("kg", "(0, inf)"),
+    "cue_mass_ratio": _RATIO,
+    "end_mass_ratio": _RATIO,
+    "cue_end_ratio": _RATIO,
+    "mass_ratio": Quantity("", "[0, inf)"),
+    "inertia": Quantity("", "(0, 1]"),
+    "nu_c": _RATIO,
+    "restitution": Quantity("", "[0, 1]"),
+    "friction": Quantity("", "[0, inf]"),
+    "squirt": Quantity("rad", "(-1.5707963267948966, 1.5707963267948966)"),
+    "radius": Quantity("m", "(0, inf)"),
+    "dome_radius": Quantity("m", "[0, inf)"),
+    "tip_radius": Quantity("m", "[0, inf)"),
+    "base_radius": Quantity("m", "(0, inf)"),
+    "butt_radius": Quantity("m", "(0, inf)"),
+    "end_length": Quantity("m", "(0, inf)"),
+    "length": Quantity("m", "(0, inf)"),
+}
+
+
+def checked(**values: Any) -> tuple[Any, ...]:
+    """The values as floats or float arrays, in the order given; ValueError names field, bound, unit and value."""
+    return tuple(_QUANTITIES[name].check(name, value) for name, value in values.items())
+
+
+def sine_cosine(offset: Any) -> tuple[Any, Any]:
+    """(sin phi, cos phi) of an offset b/R = sin phi, without cancellation as |offset| -> 1."""
+    return offset, np.sqrt((1 - offset) * (1 + offset))
+
+
+def first_failure(holds: Any, *values: Any) -> tuple[str, tuple[float, ...]]:
+    """Where ``holds`` is false first (" at index 3", "" for a single stroke), and the values there."""
+    holds, *spread = np.broadcast_arrays(holds, *values)
+    index = tuple(int(i) for i in np.argwhere(~holds)[0])
+    where = f" at index {index if len(index) > 1 else index[0]}" if index else ""
+    return where, tuple(float(v[index]) for v in spread)

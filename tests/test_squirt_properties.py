@@ -1,0 +1,156 @@
+"""Symmetry, monotony, broadcasting and refusals of the closed forms."""
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from cuefem import squirt
+
+OFFSET = st.floats(1e-4, 0.95)
+STROKE = {
+    "mass": st.floats(0.02, 20.0),
+    "end_mass": st.floats(2e-7, 2.0),
+    "restitution": st.floats(0, 1),
+    "friction": st.floats(0.05, 3.0),
+    "inertia": st.floats(0.1, 1.0),
+}
+MANY = settings(max_examples=200, deadline=None)
+
+
+def holds(offset, stroke):
+    return squirt.closed_form_holds(offset, **{k: v for k, v in stroke.items() if k != "restitution"})
+
+
+@MANY
+@given(OFFSET, st.fixed_dictionaries(STROKE))
+def test_wherever_it_holds_the_closed_form_is_sound(offset, stroke):
+    assume(holds(offset, stroke))
+    form = squirt.closed_form(offset, **stroke)
+    assert form.squirt > 0
+    assert form.squirt < np.arcsin(offset) or stroke["end_mass"] > stroke["mass"]
+    # both bounds are below 1 where mu_c < 0 (m_e > m_a), and then swap
+    beta = squirt.lumped(
+        offset,
+        cue_mass_ratio=stroke["mass"] / 0.21,
+        end_mass_ratio=stroke["end_mass"] / 0.21,
+        inertia=stroke["inertia"],
+    )
+    low, high = sorted(squirt.restitution_bounds(beta, offset))
+    assert low * (1 - 1e-9) <= form.restitution_factor <= high * (1 + 1e-9)
+    assert form.restitution_factor >= 1 - 1e-12 or stroke["end_mass"] > stroke["mass"]
+    slip, compression, final, _ = form.impulses
+    assert 0 < slip <= compression <= final * (1 + 1e-14)  # equal at e = 0, but for rounding
+    assert 0 <= squirt.gamma(beta) <= 1
+    # kinetic energy is not made: ball, spin, cue along and across its axis
+    across = np.dot(form.velocity, [np.sqrt(1 - offset**2), -offset]) * 0.21
+    after = (
+        0.21 * np.sum(form.velocity**2)
+        + stroke["inertia"] * 0.21 * form.spin**2
+        + stroke["mass"] * form.cue_speed**2
+        + across**2 / stroke["end_mass"]
+    )
+    assert after <= stroke["mass"] * (1 + 1e-9)
+
+
+@MANY
+@given(OFFSET, st.fixed_dictionaries(STROKE))
+def test_a_negative_offset_mirrors_exactly(offset, stroke):
+    assume(holds(offset, stroke))
+    assert holds(-offset, stroke)
+    right, left = squirt.closed_form(offset, **stroke), squirt.closed_form(-offset, **stroke)
+    assert left.squirt == -right.squirt
+    assert left.spin == -right.spin
+    assert tuple(left.velocity) == (-right.velocity[0], right.velocity[1])
+    assert left.cue_speed == right.cue_speed
+    assert left.impulses == right.impulses._replace(tangential=-right.impulses.tangential)
+
+
+@MANY
+@given(OFFSET, st.fixed_dictionaries(STROKE))
+def test_it_refuses_exactly_where_it_does_not_hold(offset, stroke):
+    if holds(offset, stroke):
+        squirt.closed_form(offset, **stroke)
+    else:
+        with pytest.raises(ValueError, match=r"closed_form: (friction|slip) must"):
+            squirt.closed_form(offset, **stroke)
+
+
+@MANY
+@given(st.floats(-0.9, 0.9), st.floats(1e-6, 10.0), st.floats(0.1, 100.0), st.floats(0, 1))
+def test_the_squirt_tangent_is_the_papers_phi_less_theta(offset, end, cue, e):
+    ratios = {"cue_mass_ratio": cue, "end_mass_ratio": end}
+    beta = squirt.lumped(offset, **ratios)
+    theta = np.arctan(squirt.leaving_tangent(beta, offset, restitution=e, factor=1.2))
+    psi = np.arctan(squirt.squirt_tangent(offset, restitution=e, factor=1.2, **ratios))
+    assert np.arcsin(offset) - theta == pytest.approx(psi, abs=1e-13)
+
+
+@MANY
+@given(st.floats(0.01, 3.0), st.floats(0.05, 50), st.floats(1e-4, 50), st.floats(0, 1))
+def test_more_friction_moves_the_miscue_outwards(friction, cue, end, e):
+    ratios = {"cue_mass_ratio": cue, "end_mass_ratio": end, "restitution": e}
+    near, far = squirt.miscue_offset([friction, friction * 1.01], **ratios)
+    assert 0 < near < far < 1
+
+
+def test_everything_broadcasts():
+    offset, end = np.linspace(-0.5, 0.5, 5)[:, None], np.array([1e-3, 3e-3, 0.01])
+    form = squirt.closed_form(offset, mass=0.54, end_mass=end)
+    assert form.squirt.shape == form.spin.shape == form.cue_speed.shape == (5, 3)
+    assert form.velocity.shape == (5, 3, 2)
+    one = squirt.closed_form(0.25, mass=0.54, end_mass=0.01)
+    assert one.squirt == form.squirt[3, 2]
+    assert squirt.miscue_offset(np.full((2, 1), 0.5), cue_mass_ratio=2.0, end_mass_ratio=end).shape == (2, 3)
+    assert squirt.natural_pivot_length(0.3, np.array([0.01, 0.02]), radius=0.03).shape == (2,)
+
+
+def test_infinite_friction_grips_at_once():
+    form = squirt.closed_form([-0.9, 0.0, 0.9], mass=0.54, end_mass=0.003, friction=np.inf)
+    assert np.all(form.impulses.slip == 0)
+    assert np.all(np.isfinite(form.squirt))
+    assert form.squirt[1] == 0
+
+
+def test_head_on_needs_no_friction():
+    form = squirt.closed_form(0.0, mass=18 / 7, end_mass=0.1, ball_mass=1.0, friction=0.0)
+    assert (form.squirt, form.spin, form.restitution_factor) == (0, 0, 1)
+    assert form.cue_speed == pytest.approx(0.51, rel=1e-14)
+
+
+KIM = {"offset": 0.5, "mass": 0.54, "end_mass": 0.003}
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"friction": 0.5}, r"friction must be > mu_c = 0.5373\d* for slip to end at offset 0.5; got 0.5"),
+        ({"friction": 0.55}, r"p_s <= p_c = 0.437\d* M U; got p_s = 0.7\d* M U with friction 0.55 at offset 0.5"),
+        (
+            {"end_mass": 10.0, "mass": 0.1, "offset": 0.4, "friction": 0.19},
+            r"friction must be >= -mu_c = 0.\d* or slip rev",
+        ),
+        ({"offset": np.array([[0.1, 0.2], [0.95, 0.3]])}, r"friction must be > mu_c.* at index \(1, 0\)"),
+        ({"offset": 1.0}, r"offset must be in \(-1, 1\); got 1.0"),
+        ({"offset": np.nan}, r"offset must be in \(-1, 1\); got nan"),
+        ({"restitution": 1.5}, r"restitution must be in \[0, 1\]; got 1.5"),
+        ({"friction": -0.1}, r"friction must be in \[0, inf\]; got -0.1"),
+        ({"mass": 0.0}, r"mass must be in \(0, inf\) kg; got 0.0"),
+        ({"end_mass": np.array([1.0, -1.0])}, r"end_mass must be in \(0, inf\) kg; got -1.0 at index 1"),
+    ],
+)
+def test_refusals_name_the_condition_and_the_numbers(change, message):
+    stroke = KIM | change
+    with pytest.raises(ValueError, match=message):
+        squirt.closed_form(stroke.pop("offset"), **stroke)
+
+
+def test_poles_are_refused():
+    with pytest.raises(ValueError, match="pole"):
+        squirt.first_order_coefficients(0.0, cue_mass_ratio=2.0)
+    with pytest.raises(ValueError, match="no pivot is defined; got 0 at index 1"):
+        squirt.natural_pivot_length([0.1, 0.0], 0.01, radius=0.03)
+    with pytest.raises(ValueError, match="inf, with which no stroke is a miscue"):
+        squirt.miscue_offset(np.inf, cue_mass_ratio=2.0, end_mass_ratio=0.1)
+    with pytest.raises(ValueError, match="the base's"):
+        squirt.full_cone_length(0.1, tip_radius=0.01, base_radius=0.01)

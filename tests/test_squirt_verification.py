@@ -1,0 +1,276 @@
+"""The closed forms against exact identities, limits and an independent walk through the impulse equations."""
+
+import numpy as np
+import pytest
+
+from cuefem import squirt
+
+OFFSETS = np.array([0.01, 0.1, 0.3, 0.5, 0.55])
+KIM = {"cue_mass_ratio": 18 / 7, "cue_end_ratio": 2 / 35}
+E = 0.75
+
+
+def walk(offset, *, m_a, m_e, nu, mu, e):
+    """(p_t, p_s, p_c, p_f) over M U of one stroke, from B alone: slip until v_t = 0, stick, stop at the energy e^2."""
+    u = np.array([offset, np.sqrt(1 - offset**2)])
+    w = np.array([u[1], -u[0]])
+    B = np.diag([1 + 1 / nu, 1.0]) + np.outer(u, u) / m_a + np.outer(w, w) / m_e
+    v = -u
+    slip = B @ [mu, 1.0]
+    p_s = -v[0] / slip[0]
+    v_s = v + slip * p_s
+    stick = np.array([-B[0, 1] / B[0, 0], 1.0])
+    rate = (B @ stick)[1]
+    p_c = p_s - v_s[1] / rate
+    work = (v[1] + v_s[1]) / 2 * p_s + v_s[1] / 2 * (p_c - p_s)
+    p_f = p_c + np.sqrt(-2 * e**2 * work / rate)
+    return mu * p_s + stick[0] * (p_f - p_s), p_s, p_c, p_f
+
+
+@pytest.mark.parametrize("end", [1e-3, 2 / 35, 1.0])
+@pytest.mark.parametrize("cue", [0.3, 18 / 7, 5.0])
+@pytest.mark.parametrize("e", [0.0, 0.75, 1.0])
+def test_closed_form_is_what_the_impulse_equations_give(end, cue, e):
+    for offset in OFFSETS:
+        ball = 0.17
+        form = squirt.closed_form(offset, mass=cue * ball, end_mass=end * ball, ball_mass=ball, restitution=e)
+        p_t, p_s, p_c, p_f = walk(offset, m_a=cue, m_e=end, nu=0.4, mu=0.7, e=e)
+        ours = np.array([form.impulses.tangential, *form.impulses[:3]]) / ball
+        np.testing.assert_allclose(ours, [p_t, p_s, p_c, p_f], rtol=1e-12)
+        np.testing.assert_allclose(form.velocity, [p_t, p_f], rtol=1e-12)
+        np.testing.assert_allclose(form.spin, p_t / 0.4, rtol=1e-12)
+        psi = np.arcsin(offset) - np.arctan2(p_t, p_f)
+        np.testing.assert_allclose(form.squirt, psi, rtol=0, atol=4e-16)
+        momentum = cue * form.cue_speed + offset * p_t + np.sqrt(1 - offset**2) * p_f
+        np.testing.assert_allclose(momentum, cue, rtol=1e-12)
+
+
+def test_betas_are_the_papers_expressions():
+    phi = np.arcsin(OFFSETS)
+    s, c, t, nu, Q = np.sin(phi), np.cos(phi), np.tan(phi), 0.4, 18 / 7
+    rigid = squirt.rigid(OFFSETS, cue_mass_ratio=Q)
+    k = 1 / (0.136 * (Q + 1))
+    expected = [1 + Q / (nu * (Q + 1)) + c**2 * k, 1 + s**2 * k, s * c * k]
+    np.testing.assert_allclose(rigid[:3], expected, rtol=1e-14)
+    eps, nu_c = 2 / 35, 1 / 3
+    m = eps / (1 + eps)  # of the ball's mass
+    less = 1 - eps / Q
+    expected = [
+        1 + m / nu + m / eps * c**2 * (1 / nu_c - less * t**2),
+        1 - m / eps * c**2 * (less - t**2 / nu_c),
+        m / eps * (1 / nu_c + less) * c * s,
+    ]
+    two = squirt.two_part(OFFSETS, **KIM)
+    np.testing.assert_allclose(two[:3], expected, rtol=1e-14)
+    for beta in (rigid, two):
+        np.testing.assert_allclose(beta.determinant, beta.parallel * beta.perpendicular - beta.cross**2, rtol=1e-12)
+
+
+def test_one_minus_gamma_keeps_its_digits_where_one_less_gamma_has_none():
+    """First-order expansion is exact to O(eps) relative; 1 - gamma itself is of order eps."""
+    for eps in (1e-6, 1e-9, 1e-12):
+        beta = squirt.two_part(0.5, cue_mass_ratio=18 / 7, cue_end_ratio=eps)
+        slope = 0.25 * (1 + 7 / 18 + 0.25 / 0.4) / (0.25 * 0.75)
+        assert squirt.one_minus_gamma(beta) == pytest.approx(eps * slope, rel=20 * eps + 1e-14)
+    beta = squirt.two_part(0.5, **KIM)
+    assert squirt.one_minus_gamma(beta) == pytest.approx(1 - squirt.gamma(beta), rel=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("eps", "cue", "nu", "nu_c"), [(2 / 35, 18 / 7, 0.4, 1 / 3), (1e-5, 0.1, 1.0, 2.0), (3, 30, 0.2, 0.1)]
+)
+def test_no_restitution_is_a31_exactly(eps, cue, nu, nu_c):
+    offset = np.linspace(-0.3, 0.3, 13)
+    m_e = eps * nu_c / (1 + nu_c)
+    form = squirt.closed_form(offset, mass=cue, end_mass=m_e, ball_mass=1.0, inertia=nu, restitution=0.0, friction=5.0)
+    np.testing.assert_allclose(form.squirt, squirt.alciatore_a31(offset, mass_ratio=1 / m_e, inertia=nu), rtol=1e-14)
+
+
+def test_shepard_is_a31_with_b_measured_to_the_line_of_force():
+    offset = np.linspace(-0.9, 0.9, 19)
+    psi = squirt.alciatore_a31(offset, mass_ratio=70.0)
+    line = squirt.force_line_offset(offset, psi)
+    np.testing.assert_allclose(squirt.shepard(line, mass_ratio=70.0), psi, rtol=1e-13)
+    np.testing.assert_allclose(squirt.contact_offset(line, psi), offset, rtol=1e-14, atol=1e-16)
+    assert np.all(np.abs(line) <= np.abs(offset))
+    # the line of the force passes the centre at R p_t/|p|
+    form = squirt.closed_form(0.5, mass=0.54, end_mass=0.003)
+    p_t, p_n = form.velocity
+    assert squirt.force_line_offset(0.5, form.squirt) == pytest.approx(p_t / np.hypot(p_t, p_n), rel=1e-14)
+
+
+def test_elastic_a30_is_the_light_limit_of_the_ball_speed():
+    a30 = squirt.alciatore_a30(OFFSETS, mass_ratio=7 / 18)
+    np.testing.assert_allclose(a30, squirt.ball_speed(OFFSETS, cue_mass_ratio=18 / 7, restitution=1.0), rtol=1e-15)
+
+
+def errors(exact, limit, eps):
+    return np.array([np.max(np.abs(exact(x) - limit)) for x in eps])
+
+
+def two_part_form(eps, **more):
+    return squirt.closed_form(OFFSETS, mass=18 / 7, end_mass=eps / 4, ball_mass=1.0, **more)
+
+
+@pytest.mark.parametrize("name", ["parallel", "perpendicular", "cross", "mu_c", "gamma", "tangent", "psi"])
+def test_first_order_expansions_miss_by_second_order(name):
+    """Halving epsilon quarters the error, at every level."""
+    eps = 1e-3 / 2 ** np.arange(4)
+    line = {"cue_mass_ratio": 18 / 7}
+
+    def pair(x):
+        beta = squirt.two_part(OFFSETS, cue_end_ratio=x, **line)
+        if name in squirt.Expansion._fields:
+            zero, slope = squirt.light_coefficients(OFFSETS), squirt.first_order_coefficients(OFFSETS, **line)
+            return getattr(beta, name), getattr(zero, name) * (1 - x * getattr(slope, name))
+        form = two_part_form(x)
+        return {
+            "mu_c": (
+                squirt.critical_friction(beta),
+                squirt.first_order_critical_friction(OFFSETS, cue_end_ratio=x, **line),
+            ),
+            "gamma": (squirt.gamma(beta), squirt.first_order_gamma(OFFSETS, cue_end_ratio=x, **line)),
+            "tangent": (
+                form.velocity[:, 0] / form.velocity[:, 1],
+                squirt.first_order_leaving_tangent(OFFSETS, cue_end_ratio=x, **line),
+            ),
+            "psi": (form.squirt, squirt.first_order_squirt(OFFSETS, cue_end_ratio=x, **line)),
+        }[name]
+
+    # gamma's expansion has poles 1/sin^2 at head on: each offset has its own constant, so each its own ratio
+    miss = np.array([np.abs(np.subtract(*pair(x))) for x in eps])[:, 1:]
+    rate = np.log2(miss[:-1] / miss[1:])
+    assert np.all((rate > 1.9) & (rate < 2.1)), rate
+
+
+LIGHT = {
+    "speed": lambda form: np.hypot(*form.velocity.T),
+    "spin": lambda form: form.spin,
+    "cue_speed": lambda form: form.cue_speed,
+    "factor": lambda form: form.restitution_factor,
+    "rotation": None,
+    "p_0": None,
+    "energy": lambda form: np.sum(form.velocity**2, axis=-1) + 0.4 * form.spin**2,
+}
+
+
+@pytest.mark.parametrize("name", LIGHT)
+def test_light_limits_are_reached_with_first_order(name):
+    line = {"cue_mass_ratio": 18 / 7}
+    limit = {
+        "speed": squirt.ball_speed(OFFSETS, **line),
+        "spin": squirt.ball_spin(OFFSETS, **line),
+        "cue_speed": squirt.cue_speed(OFFSETS, **line),
+        "factor": squirt.light_restitution_factor(OFFSETS),
+        "rotation": squirt.light_cue_end_rotation(OFFSETS, **line),
+        "p_0": squirt.light_initial_impulse(OFFSETS, **line),
+        "energy": squirt.kinetic_energy(OFFSETS, **line),
+    }[name]
+
+    def exact(x):
+        if name == "rotation":
+            return squirt.cue_end_rotation(OFFSETS, two_part_form(x).velocity, cue_end_ratio=x)
+        if name == "p_0":
+            return squirt.initial_impulse(squirt.two_part(OFFSETS, cue_end_ratio=x, **line), OFFSETS)
+        return LIGHT[name](two_part_form(x))
+
+    miss = errors(exact, limit, 1e-4 / 2 ** np.arange(4))
+    rate = np.log2(miss[:-1] / miss[1:])
+    assert np.all((rate > 0.95) & (rate < 1.05)), rate
+
+
+def test_largest_spin_is_where_spin_is_largest():
+    line = {"cue_mass_ratio": 18 / 7}
+    at = squirt.offset_of_largest_spin(**line)
+    spin = squirt.ball_spin([at - 1e-4, at, at + 1e-4], **line)
+    assert spin[1] == pytest.approx(squirt.largest_spin(**line), rel=1e-14)
+    assert spin[0] < spin[1] > spin[2]
+
+
+def test_bounds_of_the_restitution_factor_are_reached():
+    """The lower one where p_s = p_c; the upper one as gamma -> 1; head on all three are 1."""
+    mu = squirt.compression_stick_friction(OFFSETS, end_mass_ratio=0.02)
+    beta = squirt.lumped(OFFSETS, cue_mass_ratio=2.0, end_mass_ratio=0.02)
+    low, high = squirt.restitution_bounds(beta, OFFSETS)
+    np.testing.assert_allclose(squirt.restitution_factor(beta, OFFSETS, mu), low, rtol=1e-12)
+    np.testing.assert_allclose(
+        squirt.slip_impulse(beta, OFFSETS, mu), squirt.compression_impulse(beta, OFFSETS), rtol=1e-12
+    )
+    np.testing.assert_allclose(squirt.restitution_factor(beta, OFFSETS, np.inf), high, rtol=1e-15)
+    head_on = squirt.lumped(0.0, cue_mass_ratio=2.0, end_mass_ratio=0.02)
+    assert squirt.restitution_factor(head_on, 0.0, 0.0) == 1
+
+
+def slips_to_the_end(offset, *, m_a, m_e, mu, e):
+    """Independent of the formula: walk the slip only, and look at the sliding speed when e^2 of the work is back."""
+    u = np.array([offset, np.sqrt(1 - offset**2)])
+    w = np.array([u[1], -u[0]])
+    B = np.diag([3.5, 1.0]) + np.outer(u, u) / m_a + np.outer(w, w) / m_e
+    rate = B @ [mu, 1.0]
+    if rate[1] <= 0:
+        return False
+    return -u[0] + rate[0] * (1 + e) * u[1] / rate[1] < 0
+
+
+@pytest.mark.parametrize(("m_a", "m_e"), [(18 / 7, 1 / 70), (3.0, 0.36), (1.0, 1.0), (0.5, 3.0)])
+@pytest.mark.parametrize("e", [0.0, 0.75, 1.0])
+def test_miscue_offset_is_where_slip_lasts_to_the_end(m_a, m_e, e):
+    ratios = {"cue_mass_ratio": m_a, "end_mass_ratio": m_e}
+    mu = np.array([0.1, 0.4, 0.6, 0.9])
+    limit = squirt.miscue_offset(mu, restitution=e, **ratios)
+    back = squirt.miscue_friction(squirt.lumped(limit, **ratios), limit, restitution=e)
+    np.testing.assert_allclose(back, mu, rtol=1e-12)
+    for friction, offset in zip(mu, limit, strict=True):
+        assert not slips_to_the_end(offset * (1 - 1e-9), m_a=m_a, m_e=m_e, mu=friction, e=e)
+        assert slips_to_the_end(offset * (1 + 1e-9), m_a=m_a, m_e=m_e, mu=friction, e=e)
+    assert squirt.miscue_offset(0.0, restitution=e, **ratios) == 0
+
+
+def test_miscue_and_compression_limits_meet_without_restitution():
+    beta = squirt.lumped(OFFSETS, cue_mass_ratio=2.0, end_mass_ratio=0.1)
+    none = squirt.miscue_friction(beta, OFFSETS, restitution=0.0)
+    np.testing.assert_allclose(none, squirt.compression_stick_friction(OFFSETS, end_mass_ratio=0.1), rtol=1e-13)
+
+
+def test_a_light_end_miscues_at_the_papers_tangent():
+    assert squirt.miscue_offset(0.6, cue_mass_ratio=2.0, end_mass_ratio=1e-9) == pytest.approx(
+        np.sin(np.arctan(0.6)), rel=1e-8
+    )
+
+
+def test_jam_friction_turns_the_compression_rate():
+    beta = squirt.two_part(OFFSETS, **KIM)
+    jam = squirt.jam_friction(beta)
+    np.testing.assert_allclose(jam, squirt.critical_friction(beta) / squirt.gamma(beta), rtol=1e-13)
+    assert squirt.jam_friction(squirt.lumped(0.0, cue_mass_ratio=1.0, end_mass_ratio=1.0)) == np.inf
+
+
+def test_cue_end_of_a_cylinder_and_of_a_pointed_cone():
+    assert squirt.centre_of_mass(tip_radius=0.006, base_radius=0.006) == pytest.approx(0.5, rel=1e-15)
+    assert squirt.inertia_factor(tip_radius=0.006, base_radius=0.006) == pytest.approx(1 / 3, rel=1e-14)
+    rod = squirt.inertia_factor(tip_radius=0.006, base_radius=0.006, end_length=0.12)
+    assert rod == pytest.approx(1 / 3 + (0.006 / 0.12) ** 2, rel=1e-14)  # + r^2/4 over (l/2)^2
+    assert squirt.centre_of_mass(tip_radius=0.0, base_radius=0.01) == pytest.approx(0.25, rel=1e-15)
+    assert squirt.inertia_factor(tip_radius=0.0, base_radius=0.01) == pytest.approx(1 / 15, rel=1e-14)
+    long = squirt.inertia_factor(tip_radius=0.0, base_radius=0.01, end_length=0.1)
+    assert long == pytest.approx(1 / 15 + 3 / 20 * 0.1**2 / 0.75**2, rel=1e-13)
+    assert squirt.volume_ratio(0.5, length=1.0, tip_radius=0.0, butt_radius=0.02) == pytest.approx(1 / 8, rel=1e-14)
+
+
+def test_natural_pivot_is_where_the_cue_line_crosses_the_centre_line():
+    """A cue turned by psi about the pivot points its axis from the ball's centre to the dome's centre."""
+    psi, R, r, b = 0.02, 0.03, 0.01, 0.4
+    p = squirt.natural_pivot_length(b, psi, radius=R, dome_radius=r)
+    assert (p + R) * np.sin(psi) == pytest.approx(squirt.axis_offset(b, radius=R, dome_radius=r), rel=1e-14)
+    assert squirt.natural_pivot_length(-b, -psi, radius=R, dome_radius=r) == p
+    assert squirt.natural_pivot_length(b, 0.0, radius=R) == np.inf
+
+
+@pytest.mark.parametrize("mu", [1e-9, 1e-5, 1e3, 1e6])
+def test_miscue_offset_keeps_its_digits_at_the_ends(mu):
+    """The roots of the cubic lie far apart there: 1 - b/R, or b/R itself, against the condition put the other way."""
+    ratios = {"cue_mass_ratio": 18 / 7, "end_mass_ratio": 0.02}
+    offset = squirt.miscue_offset(mu, **ratios)
+    back = squirt.miscue_friction(squirt.lumped(offset, **ratios), offset, restitution=0.75)
+    lost = 4e-16 / (1 - offset)  # of tan(phi), by rounding the offset alone
+    assert back == pytest.approx(mu, rel=1e-14 + lost)
