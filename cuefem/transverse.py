@@ -1,0 +1,135 @@
+"""What prescribed drives across the cue do at its tip, in closed form from the modes: the mathematics of end mass.
+
+The tip's transverse impulse response is h(t) = rigid + sum phi_k^2 cos(omega_k t), 1/kg. All functions take stacks of
+cues: omega and phi of shape (..., n), flexible modes only, and rigid of shape (...), the sum of the rigid motions'
+phi^2. Source: physics.md section 6.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from cuefem.cue import Array
+from cuefem.quantity import scalar
+from cuefem.scene import Scene
+
+
+def half_sine_velocity(omega: Array, phi: Array, rigid: Any, *, T: float) -> Any:
+    """Tip velocity at the end of a half-sine force of unit height and length T, m/s per N.
+
+    Each mode gives a (1 + cos(omega T))/(a^2 - omega^2), a = pi/T, written with sinc so that it is exact at omega = a.
+    """
+    x = omega * T - np.pi
+    velocities = -np.pi * T / 2 * x * np.sinc(x / (2 * np.pi)) ** 2 / (x + 2 * np.pi)
+    return (phi**2 * velocities).sum(axis=-1) + rigid * 2 * T / np.pi
+
+
+def smooth_start_impulse(omega: Array, phi: Array, rigid: Any, *, T: float) -> Any:
+    """Impulse that makes the tip follow the velocity (1 - cos(pi t/T))/2 from 0 to T, N s per m/s."""
+    W, residues, direct = _mobility(omega, phi, rigid)
+    return direct + (residues * smooth_start_swing(W, T)).sum(axis=-1)
+
+
+def smooth_start_swing(W: Array, T: float) -> Array:
+    """Integral of sin(W (T - s)) (1 - cos(pi s/T))/2 ds over 0..T."""
+    return (_response(W, T, (0.0, T)) - _response(W, T, (0.0, T), a=np.pi / T)) / 2
+
+
+@dataclass(frozen=True)
+class StickLimit:
+    """The limit b -> 0 of the coupled strike: the tip sticks to the ball from the first touch.
+
+    The tip's velocity against the ball is K P(t) - 1 times what it was, P the part of the normal impulse given so far.
+    c = (1 + 1/nu)/M, 1/kg. K = (1 + e)(1 + 1/nu + 1/Q0)/(1 + 1/Q0). T: contact time, s. e: restitution. head_on_mass,
+    kg. K and head_on_mass may be stacks. J, kg, is the transverse impulse over U phi.
+    """
+
+    c: float
+    K: Any
+    e: float
+    T: float
+    head_on_mass: Any
+
+    @classmethod
+    def of(cls, scene: Scene, axial_mass: Any = None) -> StickLimit:
+        """The limit of a scene; axial_mass, kg: of other cues in the scene's place."""
+        M, nu = scalar("Ball.mass", scene.ball.mass), scalar("Ball.inertia", scene.ball.inertia)
+        e, c = scalar("Tip.restitution", scene.tip.restitution), (1 + 1 / nu) / M
+        axial_mass = scene.axial_mass if axial_mass is None else axial_mass
+        head_on_mass = 1 / (1 / M + 1 / axial_mass)
+        return cls(c, (1 + e) * head_on_mass * (c + 1 / axial_mass), e, scene.contact_time, head_on_mass)
+
+    def transverse_impulse(self, omega: Array, phi: Array, rigid: Any) -> Any:
+        """J of a bare cue's modes, kg."""
+        W, residues, direct = _mobility(omega, phi, rigid + self.c)
+        return direct * (self.K - 1) + (residues * self.swing(W)).sum(axis=-1)
+
+    def swing(self, W: Array) -> Array:
+        """Integral of sin(W (T - s)) (K P(s) - 1) ds over 0..T."""
+        return np.asarray(self.K)[..., None] * self.swing_per_K(W) - _response(W, self.T, (0.0, self.T))
+
+    def swing_per_K(self, W: Array) -> Array:
+        """Integral of sin(W (T - s)) P(s) ds over 0..T."""
+        return _normal_impulse(W, self.e, self.T)
+
+    def impulse(self, slope: Any) -> Any:
+        """J of a strike whose squirt is ``slope`` times phi, kg."""
+        return slope * (1 + self.e) * self.head_on_mass
+
+    def slope(self, J: Any) -> Any:
+        """Squirt over phi of a strike with the transverse impulse J."""
+        return J / ((1 + self.e) * self.head_on_mass)
+
+    def end_mass(self, J: Any) -> Any:
+        """The end mass of a lumped cue that takes the transverse impulse J, kg: (K - 1)/J = 1/m + c."""
+        rest = (self.K - 1) / J - self.c
+        if np.any(rest <= 0):
+            raise ValueError("end_mass drive 'stick': the squirt is larger than that of any end mass; see cuefem.lump")
+        return 1 / rest
+
+    def coupling(self, J: Any, end_mass: Any) -> Any:
+        """The coupling per sin(phi) with which ``end_mass`` takes the transverse impulse J, 1/kg."""
+        return (J * (1 / end_mass + self.c) - (self.K - 1)) / ((1 + self.e) * self.head_on_mass)
+
+
+def _mobility(omega: Array, phi: Array, still: Any) -> tuple[Array, Array, Any]:
+    """The force that a unit velocity step of the tip takes: direct delta(t) + sum of residues sin(W t).
+
+    In Laplace's terms 1/D(s) = 1/(sum phi^2 s^2/(s^2 + omega^2) + still) = direct + sum residues W/(s^2 + W^2), whose
+    poles are the frequencies W of the cue with its tip held by the inertia 1/still (the rigid motions' share is in
+    ``still``): one symmetric eigenproblem a cue.
+    """
+    total = np.asarray((phi**2).sum(axis=-1) + still)[..., None]
+    v = phi * omega
+    diagonal = omega[..., None] ** 2 * np.eye(omega.shape[-1])
+    squares, vectors = np.linalg.eigh(diagonal - v[..., :, None] * v[..., None, :] / total[..., None])
+    W = np.sqrt(np.maximum(squares, 0))
+    weights = (np.einsum("...i,...ij->...j", v, vectors) / total) ** 2
+    return W, np.divide(weights, W, out=np.zeros_like(W), where=W > 0), 1 / total[..., 0]
+
+
+def _response(W: Array, T: float, span: tuple[float, float], *, a: float = 0.0, b: float = 0.0) -> Array:
+    """Integral of sin(W (T - s)) cos(a s + b) ds over a span, free of 0/0 at W = a."""
+    first, last = span
+    middle, length = (first + last) / 2, last - first
+
+    def sine(phase: Array, rate: Array) -> Array:  # integral of sin(phase + rate s)
+        return length * np.sin(phase + rate * middle) * np.sinc(rate * length / (2 * np.pi))
+
+    return (sine(W * T + b, a - W) + sine(W * T - b, -a - W)) / 2
+
+
+def _normal_impulse(W: Array, e: float, T: float) -> Array:
+    """Integral of sin(W (T - s)) P(s) ds over 0..T, P the head-on impulse of the bilinear tip over its total.
+
+    Two quarter periods: (1 - cos)/(1 + e) while the tip is loaded, T/(1 + e) long, then (1 + e sin)/(1 + e).
+    """
+    peak = T / (1 + e)
+    a = np.pi / (2 * peak)
+    total = _response(W, T, (0.0, T)) - _response(W, T, (0.0, peak), a=a)
+    if e > 0:
+        total += e * _response(W, T, (peak, T), a=a / e, b=-peak * a / e - np.pi / 2)
+    return total / (1 + e)
