@@ -1,0 +1,205 @@
+"""The definitions of effective end mass, each from the tip modes of a cue (physics.md section 6).
+
+For the tip's transverse impulse response h(t) = sum phi_k^2 cos(omega_k t):
+
+- "force": a half-sine force of length T; impulse over tip velocity at T.
+- "velocity": the tip follows (1 - cos(pi t/T))/2; impulse needed over final velocity.
+- "stick": the tip must follow the ball, as in the coupled strike when the offset goes to zero (recommended).
+- "squirt": the lumped end mass whose squirt is that of the coupled strike, at this offset, speed and friction.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+
+from cuefem import damped, transverse
+from cuefem.cue import Array, LumpedCue
+from cuefem.effects import TipEffect
+from cuefem.impact import impact
+from cuefem.modes import TipModes
+from cuefem.quantity import scalar
+from cuefem.resolution import PLAIN_PERIODS, default_resolution, tip_modes_of
+from cuefem.scene import Outcome, Resolution, Scene, Stroke
+from cuefem.strike import strike_modes
+from cuefem.transverse import StickLimit
+
+Drive = Literal["stick", "velocity", "force", "squirt"]
+
+
+def end_mass(scene: Scene, drive: Drive = "stick", at: Resolution | None = None) -> Any:
+    """Effective end mass m_e of a scene's cue, kg: the inertia that the ball feels across the cue at the tip.
+
+    drive: the definition, see the module. The pulse is as long as the scene's head-on contact time; "stick" also takes
+    the ball's mass, inertia factor and restitution from the scene. A LumpedCue answers its own end_mass. at: left out,
+    modes are kept by frequency (`default_resolution`). Cost: one eigenproblem of the beam, for two of the drives one
+    more of the size of the modes kept. ValueError for an unknown drive.
+    """
+    formula = formula_of(drive)
+    if isinstance(scene.cue, LumpedCue):
+        return scene.cue.end_mass
+    return formula(tip_modes_of(scene, at), scene)
+
+
+class Spread(NamedTuple):
+    """An end mass, and the smallest and largest where fewer modes are kept: from a quarter of them to all; kg."""
+
+    end_mass: float
+    lowest: float
+    highest: float
+
+
+def end_mass_spread(scene: Scene, drive: Drive = "stick", at: Resolution | None = None) -> tuple[float, float]:
+    """Smallest and largest end mass, kg, when only the lowest modes are kept: from a quarter of them to all.
+
+    Wave fronts that return just before the pulse ends make false plateaus, so one doubling of the modes proves nothing.
+    """
+    formula_of(drive)
+    return end_mass_spreads(scene, at)(drive)[1:]
+
+
+def end_mass_spreads(scene: Scene, at: Resolution | None = None) -> Callable[[Drive], Spread]:
+    """The end mass and its spread by definition, for any number of definitions from one eigenproblem of the beam.
+
+    The spread is that of plain sums, without a tail. A definition that takes a coupled strike is tried at 5 cutoffs,
+    one in closed form at 13.
+    """
+    if isinstance(scene.cue, LumpedCue):
+        same = scalar("LumpedCue.end_mass", scene.cue.end_mass)
+        return lambda drive: Spread(same, same, same)
+    tip = tip_modes_of(scene, at)
+    plain = tip if at is not None else tip_modes_of(scene, default_resolution(scene, periods=PLAIN_PERIODS))
+    rigid, whole = int(np.sum(plain.omega == 0)), len(plain.omega)
+
+    def spread(drive: Drive) -> Spread:
+        formula, cutoffs = formula_of(drive), 5 if _strikes(drive, tip, scene) else 13
+        least = rigid + math.ceil((whole - rigid) / 4)
+        kept = np.unique(np.linspace(least, whole, cutoffs).astype(int))
+        values = [formula(tip, scene), *(formula(plain.lowest(n), scene) for n in kept)]
+        return Spread(values[0], min(values), max(values))
+
+    return spread
+
+
+def _strikes(drive: str, tip: TipModes, scene: Scene) -> bool:
+    """Whether a definition takes a coupled strike, because nothing else says it."""
+    if drive != "stick":
+        return drive == "squirt"
+    along = np.any(tip.amplitude[tip.omega > 0, 0] != 0)  # rod modes change the course of the normal impulse
+    return bool(along) or any(isinstance(effect, TipEffect) for effect in scene.effects)
+
+
+def formula_of(drive: str) -> Callable[[TipModes, Scene], float]:
+    """The definition of that name, as a function of tip modes and scene; ValueError for an unknown one."""
+    formulas = {"stick": stick, "velocity": velocity, "force": force, "squirt": squirt_equivalent}
+    if drive not in formulas:
+        raise ValueError(f"end_mass drive must be one of {', '.join(formulas)}; got {drive!r}")
+    return formulas[drive]
+
+
+def force(tip: TipModes, scene: Scene) -> float:
+    """Impulse of a half-sine force over the tip velocity at its end, kg. Converges like 1/modes^2 (it has kinks)."""
+    T = scene.contact_time
+    if tip.resistance is None:
+        return 2 * T / np.pi / float(transverse.half_sine_velocity(*flexible(tip), T=T))
+    return 2 * T / np.pi / damped.half_sine_velocity(tip, T)
+
+
+def velocity(tip: TipModes, scene: Scene) -> float:
+    """Impulse that makes the tip follow (1 - cos(pi t/T))/2, over its final velocity, kg."""
+    T = scene.contact_time
+    if tip.resistance is None:
+        return float(transverse.smooth_start_impulse(*flexible(tip), T=T))
+    return damped.smooth_start_impulse(tip, T)
+
+
+def stick(tip: TipModes, scene: Scene) -> float:
+    """End mass of the limit b -> 0 of the coupled strike, kg: `cuefem.transverse.StickLimit`.
+
+    Effects at the tip (a dome, shear) and axial waves have no part in that formula: with them it is fed with the
+    coupled strike's own small-offset squirt.
+    """
+    limit = StickLimit.of(scene)
+    if _strikes("stick", tip, scene):
+        return float(limit.end_mass(limit.impulse(small_offset_slope(tip, scene))))
+    return float(limit.end_mass(stick_impulse(tip, limit)))
+
+
+def stick_impulse(tip: TipModes, limit: StickLimit) -> float:
+    """J of a cue without effects at the tip, kg: in closed form, or for modes that are damped or radiate in time."""
+    if tip.resistance is None:
+        return float(limit.transverse_impulse(*flexible(tip)))
+    return damped.stick_impulse(tip, limit)
+
+
+def flexible(tip: TipModes) -> tuple[Array, Array, float]:
+    """(omega, phi) of the modes that vibrate across the cue, and the sum of the rigid ones' phi^2."""
+    omega, phi = tip.transverse
+    if len(phi) == 0:
+        raise ValueError("end_mass: a clamp holds the tip across the cue, so its end mass is infinite")
+    moving = omega > 0
+    return omega[moving], phi[moving], float(np.sum(phi[~moving] ** 2))
+
+
+def small_offset_slope(tip: TipModes, scene: Scene) -> float:
+    """Squirt over phi in the limit b -> 0 of the coupled strike: a strike at b/R = 1e-5 that sticks from the start.
+
+    The first slip vanishes in the limit, like sqrt(b); endless friction takes it out, and leaves an error of b^2.
+    """
+    gripping = replace(scene, tip=replace(scene.tip, friction=math.inf), stroke=Stroke(1.0, 1e-5))
+    phi, outcome = gripping.stroke.angle, strike_modes(gripping, tip)
+    # past the peak of a tip without restitution nothing presses, but endless friction would go on pulling
+    p_t, p_n = np.sum([phase.impulse for phase in outcome.phases if phase.press != "rigid"], axis=0)
+    return float(1 - math.atan2(p_t, p_n) / phi)
+
+
+def lump(scene: Scene, at: Resolution | None = None) -> LumpedCue:
+    """The lumped cue that has the coupled strike's squirt in the small-offset limit, dome and shear included.
+
+    Its end mass is the stick end mass of the cue alone; what effects at the tip (`TipDome`, `TipShear`) add or take
+    goes into the coupling, which is proportional to sin(phi) and is given for the scene's own offset.
+    """
+    if isinstance(scene.cue, LumpedCue):
+        return scene.cue
+    tip, limit = tip_modes_of(scene, at), StickLimit.of(scene)
+    effects = tuple(effect for effect in scene.effects if not isinstance(effect, TipEffect))
+    end_mass = stick(tip, replace(scene, effects=effects))
+    if len(effects) == len(scene.effects):
+        return LumpedCue(scene.axial_mass, end_mass)
+    slope = limit.coupling(limit.impulse(small_offset_slope(tip, scene)), end_mass)
+    return LumpedCue(scene.axial_mass, end_mass, slope * abs(scalar("Stroke.offset", scene.stroke.offset)))
+
+
+def squirt_equivalent(tip: TipModes, scene: Scene) -> float:
+    """The lumped end mass whose impulse-solver squirt equals that of the coupled strike, kg; head on its limit, stick.
+
+    ValueError where there is none: see `equivalent_end_mass`.
+    """
+    return stick(tip, scene) if scene.stroke.offset == 0 else equivalent_end_mass(strike_modes(scene, tip), scene)
+
+
+def equivalent_end_mass(outcome: Outcome, scene: Scene) -> float:
+    """The lumped end mass, kg, whose impulse-solver squirt is that of a scene's outcome, off centre.
+
+    ValueError where the strike miscued: a sliding tip's squirt does not depend on the end mass.
+    """
+    if outcome.regime == "miscue":
+        raise ValueError(
+            f"end_mass drive 'squirt': the stroke miscues at offset {scene.stroke.offset}; got no end mass"
+        )
+    from scipy.optimize import brentq  # loaded when used: a fifth of a cold start
+
+    def excess(log_mass: float) -> float:
+        lumped = LumpedCue(scene.axial_mass, math.exp(log_mass))
+        return abs(impact(replace(scene, cue=lumped, effects=())).squirt) - abs(outcome.squirt)
+
+    low, high = math.log(1e-9), math.log(1e3)
+    if not excess(low) < 0 < excess(high):
+        raise ValueError(
+            f"end_mass drive 'squirt': no lumped end mass in [1e-9, 1e3] kg has the squirt {outcome.squirt:.6g} rad"
+        )
+    return math.exp(brentq(excess, low, high, xtol=1e-13, rtol=1e-13))
