@@ -1,0 +1,114 @@
+"""What each effect is worth: the scene without each effect it lists, and with each it does not list, one at a time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import MISSING, dataclass, fields, is_dataclass, replace
+from typing import Any, NamedTuple
+
+from cuefem.effects import Effect
+from cuefem.scene import Outcome, Scene
+
+
+class Textbook(NamedTuple):
+    """The values, SI, with which an effect that a scene does not list is tried, and where they come from."""
+
+    values: dict[str, float]
+    source: str
+
+
+TEXTBOOK = {
+    "TipDome": Textbook({"radius": 9.5e-3}, "between a dime's radius (8.95 mm) and a nickel's (10.6 mm)"),
+    "TipShear": Textbook({"ratio": 0.75}, "Mindlin's 2 (1 - nu)/(2 - nu) at nu 0.4, round"),
+    "PowerLawTip": Textbook({"exponent": 1.5}, "Hertz; the tip's contact time is meant at 1 m/s"),
+    "StructuralDamping": Textbook({"loss": 0.012}, "maple's loss factor, for every material"),
+    "AxialWaves": Textbook({}, "the cue's own EA and mass"),
+    "Support": Textbook({"position": 0.2032, "stiffness": 5e3}, "a bridge hand 8 in behind the tip (assumed)"),
+    "Elevation": Textbook({"angle": math.radians(5)}, "5 degrees, a cue over a rail (assumed)"),
+    "RollingContact": Textbook({}, "ball's and dome's own radii"),
+}
+# Effects that have no usual value: they say what is on this cue, and no cue has one of them as a matter of course.
+NO_USUAL_VALUE = "no usual value to try"
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A scene that differs by one effect.
+
+    name: the effect's. effect: what was dropped or added, None where there is no usual value to add. listed: whether
+    the scene lists it. scene: the other scene, None where it cannot be; reason: why.
+    """
+
+    name: str
+    effect: Effect | None
+    listed: bool
+    scene: Scene | None
+    reason: str = ""
+
+
+def effect_kinds() -> dict[str, type[Effect]]:
+    """The package's effects by name."""
+
+    def below(kind: type[Effect]) -> Iterator[type[Effect]]:
+        for child in kind.__subclasses__():
+            yield from below(child)
+        if not kind.__subclasses__() and is_dataclass(kind) and kind.__module__.startswith("cuefem.effects"):
+            yield kind
+
+    return {kind.__name__: kind for kind in sorted(below(Effect), key=lambda kind: kind.__name__)}
+
+
+def variants(scene: Scene) -> tuple[Variant, ...]:
+    """The scene without each effect it lists, then with each kind it does not list at its `TEXTBOOK` value.
+
+    A kind without a textbook value is tried at its defaults, where it has defaults for all.
+    """
+    dropped = [_without(scene, i) for i in range(len(scene.effects))]
+    listed = {type(effect).__name__ for effect in scene.effects}
+    return (*dropped, *(_with(scene, name, kind) for name, kind in effect_kinds().items() if name not in listed))
+
+
+def _without(scene: Scene, index: int) -> Variant:
+    effect = scene.effects[index]
+    rest = scene.effects[:index] + scene.effects[index + 1 :]
+    return Variant(type(effect).__name__, effect, True, replace(scene, effects=rest))
+
+
+def _with(scene: Scene, name: str, kind: type[Effect]) -> Variant:
+    values = TEXTBOOK[name].values if name in TEXTBOOK else {}
+    if name not in TEXTBOOK and any(field.default is MISSING for field in fields(kind)):
+        return Variant(name, None, False, None, NO_USUAL_VALUE)
+    effect = kind(**values)
+    try:
+        return Variant(name, effect, False, replace(scene, effects=(*scene.effects, effect)))
+    except ValueError as error:  # it does not go with this cue or with another effect
+        return Variant(name, effect, False, None, str(error))
+
+
+@dataclass(frozen=True)
+class Change:
+    """What became of a strike, variant less scene: squirt, rad; ball_speed, m/s; spin, rad/s; and relative to the
+    scene's own, by the same names. Head on, squirt and spin are zero by symmetry and left out."""
+
+    squirt: float
+    ball_speed: float
+    spin: float
+    relative: dict[str, float]
+
+    @property
+    def weight(self) -> float:
+        """The largest of the relative changes."""
+        return max(map(abs, self.relative.values()))
+
+
+def change(outcome: Outcome, base: Outcome, *, offset: Any) -> Change:
+    """What the effect that outcome's scene has, or lacks, changes of the outcome ``base`` at ``offset`` b/R."""
+    names = ("squirt", "ball_speed", "spin") if offset else ("ball_speed",)
+    gaps = dict.fromkeys(("squirt", "ball_speed", "spin"), 0.0)
+    gaps |= {name: float(getattr(outcome, name) - getattr(base, name)) for name in names}
+    return Change(**gaps, relative={name: _relative(gaps[name], float(getattr(base, name))) for name in names})
+
+
+def _relative(gap: float, value: float) -> float:
+    return 0.0 if gap == 0 else gap / abs(value) if value else float("inf")
