@@ -1,0 +1,31 @@
+"""Design studies: many scenes at once, what varies in them, and sweeps that nothing can lose."""
+
+from cuefem.design.evaluation import Evaluation, common_resolution, evaluate
+from cuefem.design.paths import paths, replaced
+from cuefem.design.ranges import METHODS, Levels, Sample, Span
+from cuefem.design.responses import KINDS, Response
+from cuefem.design.study import Study, Vary
+from cuefem.design.sweep import Row, Store, sweep
+from cuefem.design.workers import Pool, dask, processes
+
+__all__ = [
+    "KINDS",
+    "METHODS",
+    "Evaluation",
+    "Levels",
+    "Pool",
+    "Response",
+    "Row",
+    "Sample",
+    "Span",
+    "Store",
+    "Study",
+    "Vary",
+    "common_resolution",
+    "dask",
+    "evaluate",
+    "paths",
+    "processes",
+    "replaced",
+    "sweep",
+]

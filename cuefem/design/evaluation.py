@@ -1,0 +1,89 @@
+"""Designs in, numbers out: responses of many scenes, each failing on its own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from cuefem.batch import BLOCK
+from cuefem.cue import Array, Cue
+from cuefem.design.responses import Response
+from cuefem.design.solvers import OneByOne, Solver, Together
+from cuefem.modes import mesh_for, modes_below
+from cuefem.resolution import PERIODS_KEPT
+from cuefem.scene import Resolution, Scene
+
+# What a design may fail with: it cannot be made, has no answer, or its numbers break down.
+Failed = (ValueError, RuntimeError, ArithmeticError, np.linalg.LinAlgError)
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """Responses of designs: values (designs, responses), SI, nan where a design failed; reasons, None where it did
+    not."""
+
+    values: Array
+    reasons: tuple[str | None, ...]
+
+
+def evaluate(
+    scenes: Sequence[Scene], responses: Sequence[Response | str], *, at: Resolution | None = None
+) -> Evaluation:
+    """The responses of every scene.
+
+    Bare cues with equally many segments are worked as arrays, in blocks; scenes with effects, and lumped cues, one by
+    one. at: one resolution for all; left out, the finest that any of them would have by itself. A scene that has no
+    answer gets a reason and does not disturb the others. ValueError for a response that is none.
+    """
+    asked = tuple(Response.of(one) if isinstance(one, str) else one for one in responses)
+    at = at or common_resolution(scenes, asked)
+    values, reasons = np.full((len(scenes), len(asked)), np.nan), dict[int, str]()
+    waiting = _blocks(scenes)
+    while waiting:
+        rows = waiting.pop()
+        try:
+            values[rows] = _values([scenes[i] for i in rows], asked, at)
+        except Failed as error:
+            if len(rows) == 1:
+                reasons[rows[0]] = " ".join(str(error).split())
+            else:  # who it was shows one by one
+                waiting += [[i] for i in rows]
+    return Evaluation(values, tuple(reasons.get(i) for i in range(len(scenes))))
+
+
+def _blocks(scenes: Sequence[Scene]) -> list[list[int]]:
+    """Indices of scenes that are worked together: bare cues by topology in blocks, others each alone."""
+    groups: dict[int, list[int]] = {}
+    for i, scene in enumerate(scenes):
+        bare = isinstance(scene.cue, Cue) and not scene.effects
+        groups.setdefault(len(scene.cue.segments) if bare and isinstance(scene.cue, Cue) else -i, []).append(i)
+    return [rows[start : start + BLOCK] for rows in groups.values() for start in range(0, len(rows), BLOCK)]
+
+
+def _values(scenes: Sequence[Scene], responses: Sequence[Response], at: Resolution) -> Array:
+    """Responses (designs, responses) of scenes that can be worked together; ValueError where one has none."""
+    bare = isinstance(scenes[0].cue, Cue) and not scenes[0].effects
+    lacking = [one.name for one in responses if one.segments and not isinstance(scenes[0].cue, Cue)]
+    if lacking:
+        raise ValueError(f"{lacking[0]} needs a cue of segments; got a lumped cue")
+    count = max([0, *(one.modes for one in responses)])
+    solver: Solver = (Together if bare else OneByOne)(scenes, at, count)
+    found = np.column_stack([one.values(solver) for one in responses])
+    for wrong in np.argwhere(np.isnan(found))[:1]:
+        raise ValueError(f"{responses[wrong[1]].name} is not a number")
+    return found
+
+
+def common_resolution(scenes: Sequence[Scene], responses: Sequence[Response]) -> Resolution:
+    """One resolution that serves every scene as its own default would; modes by frequency where a strike asks them."""
+    count, strikes = max([1, *(one.modes for one in responses)]), any(one.strikes for one in responses)
+    mesh, modes = (1, 1), 1
+    for scene in scenes:
+        if not isinstance(scene.cue, Cue):
+            continue
+        kept = modes_below(scene.cue, 2 * np.pi * PERIODS_KEPT / scene.contact_time) if strikes else count
+        # a mesh of more elements follows shorter waves, and so does one of as many of a higher order
+        mesh, modes = max(mesh, mesh_for(scene.cue, max(kept, count))), max(modes, kept)
+    return Resolution(*mesh, modes)

@@ -1,0 +1,121 @@
+"""Ranges of values, and how designs are drawn from them: lists, intervals, quasi-random samples."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from cuefem.cue import Array
+from cuefem.quantity import check_count
+
+# The most points of a Sobol sequence of 30 bits.
+MOST = 2**30
+
+Value = float | str
+
+
+@dataclass(frozen=True)
+class Levels:
+    """A list of values: numbers in SI, or names of materials."""
+
+    values: tuple[Value, ...]
+
+    def __post_init__(self) -> None:
+        if not self.values:
+            raise ValueError("values must hold at least one; got an empty range")
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def level(self, i: int) -> Value:
+        """The i-th value."""
+        return self.values[i]
+
+    def quantile(self, u: float) -> Value:
+        """The value at ``u`` in [0, 1) of the list."""
+        return self.values[min(int(u * len(self.values)), len(self.values) - 1)]
+
+    @property
+    def ends(self) -> tuple[Value, ...]:
+        """All of them: any may be the extreme one."""
+        return self.values
+
+
+@dataclass(frozen=True)
+class Span:
+    """An interval of numbers in SI, both ends included, in ``count`` steps of a grid; logarithmic: in equal ratios."""
+
+    low: float
+    high: float
+    count: int = 1
+    logarithmic: bool = False
+
+    def __post_init__(self) -> None:
+        check_count("count", self.count, 1)
+        if not self.low < self.high:
+            raise ValueError(f"low must be below high; got the empty range {self.low} to {self.high}")
+        if self.logarithmic and self.low <= 0:
+            raise ValueError(f"low must be above 0 where the spacing is logarithmic; got {self.low}")
+
+    def __len__(self) -> int:
+        return self.count
+
+    def level(self, i: int) -> float:
+        """The i-th of ``count`` values; the middle where there is one."""
+        if i == self.count - 1 > 0:
+            return self.high
+        return self.quantile(i / (self.count - 1) if self.count > 1 else 0.5)
+
+    def quantile(self, u: float) -> float:
+        """The value at ``u`` in [0, 1] of the interval."""
+        if self.logarithmic:
+            return math.exp((1 - u) * math.log(self.low) + u * math.log(self.high)) if u else self.low
+        return (1 - u) * self.low + u * self.high
+
+    @property
+    def ends(self) -> tuple[float, ...]:
+        """The two ends."""
+        return self.low, self.high
+
+
+@dataclass(frozen=True)
+class Sample:
+    """A quasi-random sample of ``count`` designs in place of the grid; method: one of `METHODS` (scipy.stats.qmc).
+
+    Points are made as they are used, but for "latin hypercube", whose points are made at once (8 bytes a number).
+    """
+
+    method: str
+    count: int
+    seed: int
+
+    def __post_init__(self) -> None:
+        if self.method not in METHODS:
+            raise ValueError(f"method must be one of grid, {', '.join(METHODS)}; got {self.method!r}")
+        check_count("count", self.count, 1)
+        check_count("seed", self.seed, 0)
+        if self.count > MOST:
+            raise ValueError(f"count must be at most {MOST}; got {self.count}")
+
+    def blocks(self, dimensions: int, size: int) -> Iterator[Array]:
+        """Points in [0, 1) of ``size`` designs at a time, each (size, dimensions)."""
+        engine = _engine(self.method, dimensions, self.seed)
+        if self.method == "latin hypercube":  # a part of it is none
+            points = engine.random(self.count)
+            yield from (points[start : start + size] for start in range(0, self.count, size))
+            return
+        for start in range(0, self.count, size):
+            yield engine.random(size)[: self.count - start]  # whole blocks: powers of two keep Sobol points balanced
+
+
+METHODS = {"sobol": "Sobol", "halton": "Halton", "latin hypercube": "LatinHypercube"}
+
+
+def _engine(method: str, dimensions: int, seed: int) -> Any:
+    from scipy.stats import qmc  # loaded when used: half a second
+
+    return getattr(qmc, METHODS[method])(dimensions, seed=np.random.default_rng(seed))

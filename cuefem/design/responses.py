@@ -1,0 +1,159 @@
+"""What can be asked of a design, by name: "end_mass", "frequency(2)", "squirt(0.3)"."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from cuefem.cue import Array
+from cuefem.design.solvers import Solver
+from cuefem.squirt import natural_pivot_length
+
+# The offset that stands for the limit b -> 0 in formulas; they leave an error of its square.
+SMALL = 1e-6
+
+
+class Kind(NamedTuple):
+    """A family of responses: its unit, what it is, what its argument is ("", "mode", "offset"), how it is found.
+
+    strikes: whether it takes the tip's modes up to the contact's cutoff. segments: whether it needs a cue of segments.
+    """
+
+    unit: str
+    about: str
+    values: Callable[[Solver, Any], Array]
+    argument: str = ""
+    strikes: bool = False
+    segments: bool = False
+
+
+def _small_offset_pivot(solver: Solver, _: Any) -> Array:
+    slopes = solver.stick[1]
+    return np.array([_pivot(solver, i, SMALL, slope * np.arcsin(SMALL)) for i, slope in enumerate(slopes)])
+
+
+def _pivot(solver: Solver, i: int, offset: float, squirt: float) -> float:
+    dome = solver.dome_radius(i)
+    return float(natural_pivot_length(offset, squirt, radius=solver.scenes[i].ball.radius, dome_radius=dome))
+
+
+def _struck(value: Callable[[Solver, int, Any], float]) -> Callable[[Solver, Any], Array]:
+    """A response of one coupled strike a design, at an offset or, where none is said, the scene's own."""
+
+    def values(solver: Solver, offset: float | None) -> Array:
+        return np.array([value(solver, i, solver.strike(i, offset)) for i in range(len(solver.scenes))])
+
+    return values
+
+
+def _pivot_length(solver: Solver, offset: float | None) -> Array:
+    if offset is None:
+        return _small_offset_pivot(solver, None)
+    return _struck(lambda solver, i, found: _pivot(solver, i, offset, found.squirt))(solver, offset)
+
+
+_SQUIRT = _struck(lambda s, i, found: found.squirt)
+_SPEED = _struck(lambda s, i, found: found.ball_speed)
+_VIBRATION = _struck(lambda s, i, found: found.energy["cue vibration"])
+_PIVOT = "natural pivot length: of small offsets, or of the coupled strike at an offset"
+_STATIC = "static: force across the tip over its deflection, the butt end clamped"
+_BALANCE = "centre of the segments' mass, from the tip"
+KINDS = {
+    "end_mass": Kind("kg", "stick end mass", lambda s, _: s.stick[0], strikes=True),
+    "squirt_slope": Kind("", "squirt over phi in the limit of small offsets", lambda s, _: s.stick[1], strikes=True),
+    "pivot_length": Kind("m", _PIVOT, _pivot_length, "offset", strikes=True),
+    "mass": Kind("kg", "mass of the cue", lambda s, _: s.mass),
+    "shaft_mass": Kind("kg", "mass of the segments", lambda s, _: s.shaft_mass, segments=True),
+    "balance_point": Kind("m", _BALANCE, lambda s, _: s.balance_point, segments=True),
+    "tip_stiffness": Kind("N/m", _STATIC, lambda s, _: s.tip_stiffness, segments=True),
+    "frequency": Kind("Hz", "of a bending mode", lambda s, n: s.frequencies[:, n - 1], "mode", segments=True),
+    "squirt": Kind("rad", "of the coupled strike", _SQUIRT, "offset", strikes=True),
+    "ball_speed": Kind("m/s", "after the coupled strike", _SPEED, "offset", strikes=True),
+    "vibration_energy": Kind("J", "left ringing in the cue by the coupled strike", _VIBRATION, "offset", strikes=True),
+}
+_NAME = re.compile(r"(\w+)(?:\(\s*([^()\s]+)\s*\))?")
+
+
+@dataclass(frozen=True)
+class Response:
+    """One number asked of every design: a kind by name, and the number of the mode or the offset b/R it is asked at.
+
+    Without an offset a strike is at the scene's own; "pivot_length" without one is that of small offsets.
+    """
+
+    kind: str
+    argument: float | int | None = None
+
+    @classmethod
+    def of(cls, text: str) -> Response:
+        """Read "squirt(0.3)"; ValueError, with the nearest names, where it is no response."""
+        found = _NAME.fullmatch(text.strip())
+        if not found or found[1] not in KINDS:
+            close = difflib.get_close_matches(text.partition("(")[0], KINDS, n=3, cutoff=0.5)
+            hint = f"; did you mean {' or '.join(close)}?" if close else ""
+            raise ValueError(f"must be one of {', '.join(map(_usage, KINDS))}; got {text!r}{hint}")
+        return cls(found[1], _argument(found[1], found[2], text))
+
+    @property
+    def name(self) -> str:
+        """The response as text that `of` reads back."""
+        return self.kind if self.argument is None else f"{self.kind}({self.argument!r})"
+
+    @property
+    def unit(self) -> str:
+        """SI unit, "" for a pure number."""
+        return KINDS[self.kind].unit
+
+    @property
+    def strikes(self) -> bool:
+        """Whether it takes the tip's modes up to the contact's cutoff."""
+        return KINDS[self.kind].strikes
+
+    @property
+    def in_time(self) -> bool:
+        """Whether it takes a strike in time, some milliseconds a design."""
+        return KINDS[self.kind].argument == "offset" and (self.kind != "pivot_length" or self.argument is not None)
+
+    @property
+    def segments(self) -> bool:
+        """Whether it needs a cue of segments."""
+        return KINDS[self.kind].segments
+
+    @property
+    def modes(self) -> int:
+        """How many frequencies it takes."""
+        return int(self.argument or 0) if self.kind == "frequency" else 0
+
+    def values(self, solver: Solver) -> Array:
+        """The response of every design, (designs,)."""
+        return KINDS[self.kind].values(solver, self.argument)
+
+
+def _usage(kind: str) -> str:
+    argument = KINDS[kind].argument
+    return f"{kind}({argument})" if argument == "mode" else f"{kind}[({argument})]" if argument else kind
+
+
+def _argument(kind: str, given: str | None, text: str) -> float | int | None:
+    wanted = KINDS[kind].argument
+    if given is None and wanted != "mode":
+        return None
+    if wanted == "":
+        raise ValueError(f"must be {kind}, which takes nothing in brackets; got {text!r}")
+    try:
+        number = float(given or "nan")
+    except ValueError:
+        number = float("nan")
+    if wanted == "mode":
+        if not (number >= 1 and number == int(number)):
+            raise ValueError(f"must be {kind}(n), n a whole number >= 1; got {text!r}")
+        return int(number)
+    if not -1 < number < 1 or (number == 0 and kind == "pivot_length"):
+        without = " without 0" if kind == "pivot_length" else ""
+        raise ValueError(f"must be {kind}(b), b an offset b/R in (-1, 1){without}; got {text!r}")
+    return number

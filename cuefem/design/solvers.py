@@ -1,0 +1,237 @@
+"""Two ways to the numbers of many designs, with one answer: together as arrays, or one by one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import cached_property
+from typing import Any, Protocol
+
+import numpy as np
+
+from cuefem.batch import BatchModes, CueBatch, batch_frequencies, batch_modes, stick_of
+from cuefem.beam import assemble
+from cuefem.cue import Array, Cue, LumpedCue
+from cuefem.effects import Support, TipDome
+from cuefem.endmass import flexible, small_offset_slope, stick
+from cuefem.modes import Modes, TipModes, lumped_tip_modes, solve
+from cuefem.resolution import tip_modes_from
+from cuefem.scene import Outcome, Resolution, Scene
+from cuefem.strike import strike_modes
+from cuefem.transverse import StickLimit
+
+
+class Solver(Protocol):
+    """What responses ask of a number of designs: arrays (designs, ...) in SI. Computed when asked."""
+
+    scenes: Sequence[Scene]
+
+    @property
+    def mass(self) -> Array:
+        """Mass of the cue, kg."""
+
+    @property
+    def shaft_mass(self) -> Array:
+        """Mass of the segments, kg."""
+
+    @property
+    def balance_point(self) -> Array:
+        """Centre of the segments' mass, m from the tip."""
+
+    @property
+    def tip_stiffness(self) -> Array:
+        """Static tip stiffness, N/m: see `CueBatch`."""
+
+    @property
+    def frequencies(self) -> Array:
+        """The lowest bending frequencies, Hz, (designs, n)."""
+
+    @property
+    def stick(self) -> tuple[Array, Array]:
+        """(Stick end mass, kg; small-offset squirt over phi.)"""
+
+    def strike(self, i: int, offset: float | None) -> Outcome:
+        """The coupled strike of a design at an offset b/R, or at its scene's own."""
+
+    def dome_radius(self, i: int) -> float:
+        """Radius of a design's domed tip, m; 0 where none is modelled."""
+
+
+class _Strikes:
+    """Coupled strikes of designs by their tip modes, each made once."""
+
+    scenes: Sequence[Scene]
+
+    def __init__(self) -> None:
+        self._outcomes: dict[tuple[int, float | None], Outcome] = {}
+
+    def tip(self, i: int) -> TipModes:
+        """Tip modes of a design."""
+        raise AssertionError(f"{type(self).__name__} has no tip modes of its own")
+
+    def strike(self, i: int, offset: float | None) -> Outcome:
+        """The coupled strike of a design at an offset b/R, or at its scene's own; each is made once."""
+        if (i, offset) not in self._outcomes:
+            scene = self.scenes[i]
+            if offset is not None:
+                scene = replace(scene, stroke=replace(scene.stroke, offset=offset))
+            self._outcomes[i, offset] = strike_modes(scene, self.tip(i))
+        return self._outcomes[i, offset]
+
+    def dome_radius(self, i: int) -> float:
+        """Radius of a design's domed tip, m; 0 where none is modelled."""
+        domes = (effect.radius for effect in self.scenes[i].effects if isinstance(effect, TipDome))
+        return float(next(domes, 0.0))
+
+
+class Together(_Strikes):
+    """Bare cues of one topology, as arrays (`cuefem.batch`); at most some hundred, whose matrices lie in memory."""
+
+    def __init__(self, scenes: Sequence[Scene], at: Resolution, frequencies: int) -> None:
+        super().__init__()
+        self.scenes, self.at, self._count = scenes, at, frequencies
+        self.batch = CueBatch.of([scene.cue for scene in scenes if isinstance(scene.cue, Cue)])
+
+    @property
+    def mass(self) -> Array:
+        """Mass of the cue, kg."""
+        return self.batch.mass
+
+    @property
+    def shaft_mass(self) -> Array:
+        """Mass of the segments, kg."""
+        return self.batch.shaft_mass
+
+    @property
+    def balance_point(self) -> Array:
+        """Centre of the segments' mass, m from the tip."""
+        return self.batch.balance_point
+
+    @property
+    def tip_stiffness(self) -> Array:
+        """Static tip stiffness, N/m: see `CueBatch`."""
+        return self.batch.tip_stiffness
+
+    @cached_property
+    def frequencies(self) -> Array:
+        """The lowest bending frequencies, Hz, (designs, n)."""
+        if "_modes" in vars(self):  # with vectors, for other responses
+            return self._modes.frequencies
+        return batch_frequencies(self.batch, self._count, at=self.at)
+
+    @cached_property
+    def _modes(self) -> BatchModes:
+        return batch_modes(self.batch, max(self.at.modes, self._count), at=self.at)
+
+    @cached_property
+    def _kept(self) -> BatchModes:
+        """The modes that a contact takes."""
+        found, n = self._modes, self.at.modes
+        return BatchModes(found.frequencies[:, :n], found.tip[:, :n], found.rigid)
+
+    @cached_property
+    def stick(self) -> tuple[Array, Array]:
+        """(Stick end mass, kg; small-offset squirt over phi.)"""
+        return stick_of(self.batch, self._kept, self.scenes)
+
+    def tip(self, i: int) -> TipModes:
+        """Tip modes of a design, its two rigid motions across the cue as the one that moves the tip."""
+        found, scene = self._kept, self.scenes[i]
+        omega = np.concatenate([[0.0, 0.0], 2 * np.pi * found.frequencies[i]])
+        amplitude, approach = np.zeros((len(omega), 2)), np.zeros(len(omega))
+        amplitude[1:, 1] = np.concatenate([[np.sqrt(found.rigid[i])], found.tip[i]])
+        amplitude[0, 0], approach[0] = scene.axial_mass**-0.5, scene.axial_mass**0.5
+        return TipModes(omega, amplitude, approach, np.zeros(len(omega)))  # the rotation is for effects at the tip
+
+
+class OneByOne(_Strikes):
+    """Any scenes, with effects or lumped cues, by the calls for a single one."""
+
+    def __init__(self, scenes: Sequence[Scene], at: Resolution, frequencies: int) -> None:
+        super().__init__()
+        self.scenes, self.at, self._count = scenes, at, frequencies
+        self._tips: dict[int, TipModes] = {}
+
+    def _of_cues(self, name: str) -> Array:
+        return np.array([getattr(scene.cue, name) for scene in self.scenes], dtype=float)
+
+    @property
+    def mass(self) -> Array:
+        """Mass of the cue, kg."""
+        return self._of_cues("mass")
+
+    @property
+    def shaft_mass(self) -> Array:
+        """Mass of the segments, kg."""
+        return self._of_cues("shaft_mass")
+
+    @property
+    def balance_point(self) -> Array:
+        """Centre of the segments' mass, m from the tip."""
+        return self._of_cues("balance_point")
+
+    @property
+    def tip_stiffness(self) -> Array:
+        """Static tip stiffness, N/m: see `CueBatch`."""
+        return np.array([static_tip_stiffness(scene, self.at) for scene in self.scenes])
+
+    @cached_property
+    def _modes(self) -> list[Modes]:
+        return [self._solve(scene) for scene in self.scenes]
+
+    def _solve(self, scene: Scene) -> Modes:
+        assert isinstance(scene.cue, Cue)
+        system = assemble(scene.cue, elements=self.at.elements, order=self.at.order, effects=scene.cue_effects)
+        return solve(system, max(self.at.modes + 2 - system.rigid.shape[1], self._count))
+
+    @property
+    def frequencies(self) -> Array:
+        """The lowest bending frequencies, Hz, (designs, n)."""
+        return np.array([found.frequencies[: self._count] for found in self._modes])
+
+    def tip(self, i: int) -> TipModes:
+        """Tip modes of a design, with its effects."""
+        if i not in self._tips:
+            scene = self.scenes[i]
+            if isinstance(scene.cue, LumpedCue):
+                self._tips[i] = lumped_tip_modes(scene.cue)
+            else:
+                self._tips[i] = tip_modes_from(self._kept(i), scene)
+        return self._tips[i]
+
+    def _kept(self, i: int) -> Modes:
+        """The modes that a contact takes: with a support as many in all as without (`tip_modes_of`)."""
+        found = self._modes[i]
+        count = self.at.modes + 2 - found.rigid
+        return replace(found, frequencies=found.frequencies[:count], vectors=found.vectors[:, :count])
+
+    @cached_property
+    def stick(self) -> tuple[Array, Array]:
+        """(Stick end mass, kg; small-offset squirt over phi.)"""
+        both = np.array([self._stick(i) for i in range(len(self.scenes))])
+        return both[:, 0], both[:, 1]
+
+    def _stick(self, i: int) -> tuple[Any, float]:
+        scene, tip = self.scenes[i], self.tip(i)
+        if scene.effects or isinstance(scene.cue, LumpedCue):
+            own = scene.cue.end_mass if isinstance(scene.cue, LumpedCue) else stick(tip, scene)
+            return own, small_offset_slope(tip, scene)
+        limit = StickLimit.of(scene)
+        J = limit.transverse_impulse(*flexible(tip))
+        return limit.end_mass(J), float(limit.slope(J))
+
+
+def static_tip_stiffness(scene: Scene, at: Resolution) -> float:
+    """Static tip stiffness, N/m, of a cue with its effects, its butt end clamped: one linear solve of the beam.
+
+    Good to 1e-8; without effects `CueBatch.tip_stiffness` is exact.
+    """
+    assert isinstance(scene.cue, Cue)
+    clamp = Support(scene.cue.length, np.inf, np.inf)
+    system = assemble(scene.cue, elements=at.elements, order=at.order, effects=(*scene.cue_effects, clamp))
+    free = system.free
+    assert free is not None
+    force = free.T @ np.eye(system.mesh.unknowns, 1)[:, 0]
+    K = free.T @ system.K @ free
+    K = K if isinstance(K, np.ndarray) else K.toarray()
+    return float(1 / (force @ np.linalg.solve(K, force)))

@@ -1,0 +1,211 @@
+"""What a design study is: a base scene, what varies in it and how, and what is asked of every design."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+
+from cuefem.cue import Cue
+from cuefem.design.evaluation import common_resolution
+from cuefem.design.paths import Path, paths, quantity_at, replaced, spelt, value_at
+from cuefem.design.ranges import Levels, Sample, Span, Value
+from cuefem.design.responses import Response
+from cuefem.materials import material
+from cuefem.scene import Resolution, Scene
+
+# Designs evaluated, and written, at a time; fewer where each takes a strike in time.
+BLOCK, STRUCK_BLOCK = 256, 16
+
+
+@dataclass(frozen=True)
+class Vary:
+    """What varies: fields by path, all set to one value of a range; with ``factor``, all multiplied by it.
+
+    name: of its column; the path where there is one. Values are SI numbers (pure numbers for a factor) or names of
+    materials. "[*]" in a path stands for every item of a list.
+    """
+
+    paths: tuple[str, ...]
+    range: Levels | Span
+    name: str = ""
+    factor: bool = False
+
+    def __post_init__(self) -> None:
+        if not self.paths:
+            raise ValueError("path must name a field; got none")
+        object.__setattr__(self, "name", self.name or ", ".join(self.paths))
+
+    @property
+    def named(self) -> bool:
+        """Whether its values are names of materials."""
+        return isinstance(self.range.ends[0], str)
+
+    def fields(self, base: Scene) -> tuple[Path, ...]:
+        """The fields of a scene that vary; ValueError where there is none, or a value is not what stands there."""
+        found = tuple(path for text in self.paths for path in paths(base, text))
+        for path in found:
+            self._check_field(base, path)
+        return found
+
+    def _check_field(self, base: Scene, path: Path) -> None:
+        wanted, values = quantity_at(base, path), self.range.ends
+        if self.factor and (wanted is None or value_at(base, path) is None):
+            raise ValueError(f"factor must multiply a number; got {spelt(path)}, which holds none")
+        if wanted is None and not all(isinstance(value, str) for value in values):
+            raise ValueError(f"{spelt(path)} takes names of materials; got {values[0]!r}")
+        if wanted is not None and any(isinstance(value, str) for value in values):
+            raise ValueError(f"{spelt(path)} takes numbers in {wanted.bounds}; got {values[0]!r}")
+
+    def unit(self, base: Scene) -> str:
+        """SI unit of its values, "" for factors and names; ValueError where its fields have different ones."""
+        wanted = [quantity_at(base, path) for path in self.fields(base)]
+        units = sorted({"" if self.factor or one is None else one.unit for one in wanted})
+        if len(units) > 1:
+            raise ValueError(f"path must name fields of one unit; got {' and '.join(map(repr, units))}")
+        return units[0]
+
+
+@dataclass(frozen=True)
+class Study:
+    """A design study; ValueError where a path names no field, or a response asks what the scene has not.
+
+    at: one resolution for all designs, so that responses do not jump between them; left out, the one that serves the
+    design of the range that needs most. A grid runs through the last of ``vary`` fastest.
+    """
+
+    base: Scene
+    vary: tuple[Vary, ...]
+    responses: tuple[Response, ...]
+    sample: Sample | None = None
+    at: Resolution | None = None
+
+    def __post_init__(self) -> None:
+        if not self.vary or not self.responses:
+            raise ValueError("a study varies something and asks something; got nothing")
+        self._check_fields()
+        names = [name.casefold() for name in (*self.columns, "design", "failure")]
+        twice = [name for name in names if names.count(name) > 1]
+        if twice:
+            raise ValueError(f"columns must have different names; got {twice[0]!r} twice")
+        lacking = [one.name for one in self.responses if one.segments and not isinstance(self.base.cue, Cue)]
+        if lacking:
+            raise ValueError(f"{lacking[0]} needs a cue of segments; got a lumped cue")
+
+    def _check_fields(self) -> None:
+        seen: set[tuple[Path, bool]] = set()
+        for vary in self.vary:
+            vary.unit(self.base)
+            for path in vary.fields(self.base):
+                if (path, vary.factor) in seen:
+                    raise ValueError(f"a field varies once; got {spelt(path)} twice")
+                seen.add((path, vary.factor))
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Names of what varies and of the responses."""
+        return (*(vary.name for vary in self.vary), *(one.name for one in self.responses))
+
+    @property
+    def units(self) -> tuple[str, ...]:
+        """SI units of the columns, "" for pure numbers and names."""
+        return (*(vary.unit(self.base) for vary in self.vary), *(one.unit for one in self.responses))
+
+    @property
+    def size(self) -> int:
+        """Number of designs."""
+        return self.sample.count if self.sample else math.prod(len(vary.range) for vary in self.vary)
+
+    @property
+    def block(self) -> int:
+        """Number of designs of a block, the last one excepted."""
+        slow = any(one.in_time for one in self.responses) or self.base.effects
+        return STRUCK_BLOCK if slow else BLOCK
+
+    def blocks(self) -> Iterator[list[tuple[Value, ...]]]:
+        """The values of all designs, a block at a time; never all in memory."""
+        if self.sample:
+            ranges = [vary.range for vary in self.vary]
+            for points in self.sample.blocks(len(ranges), self.block):
+                yield [
+                    tuple(v.range.quantile(u) for v, u in zip(self.vary, point, strict=True))
+                    for point in points.tolist()
+                ]
+            return
+        shape = [len(vary.range) for vary in self.vary]
+        for start in range(0, self.size, self.block):
+            index = np.unravel_index(np.arange(start, min(start + self.block, self.size)), shape)
+            rows = np.transpose(index).tolist()
+            yield [tuple(v.range.level(i) for v, i in zip(self.vary, row, strict=True)) for row in rows]
+
+    @cached_property
+    def _fields(self) -> tuple[tuple[Path, ...], ...]:
+        return tuple(vary.fields(self.base) for vary in self.vary)
+
+    def scene(self, values: tuple[Value, ...]) -> Scene:
+        """The design of these values; ValueError where there is none, such as a bore wider than its shaft."""
+        return self._made(dict(enumerate(values)))
+
+    def _made(self, values: dict[int, Value]) -> Scene:
+        """The base scene with some of what varies at a value: whole materials first, then numbers, then factors."""
+        named, numbers = dict[Path, Any](), dict[Path, Any]()
+        for i, value in values.items():
+            if isinstance(value, str):
+                named |= dict.fromkeys(self._fields[i], material(value))
+            elif not self.vary[i].factor:
+                numbers |= dict.fromkeys(self._fields[i], value)
+        scene: Scene = replaced(self.base, named) if named else self.base
+        for i, value in values.items():
+            if self.vary[i].factor:
+                numbers |= {path: numbers.get(path, value_at(scene, path)) * value for path in self._fields[i]}
+        return replaced(scene, numbers) if numbers else scene
+
+    @cached_property
+    def resolution(self) -> Resolution:
+        """The one resolution of all designs: that given, or of the ends of the ranges."""
+        return self.at or common_resolution(self._extremes(), self.responses)
+
+    def _extremes(self) -> list[Scene]:
+        """The base, every end of every range alone, and together those ends that each ask for most modes."""
+        scenes, finest = [self.base], dict[int, Value]()
+        for i, vary in enumerate(self.vary):
+            most = 0
+            for end in vary.range.ends:
+                for scene in self._tried({i: end}):
+                    scenes.append(scene)
+                    modes = common_resolution([scene], self.responses).modes
+                    if modes > most:
+                        most, finest[i] = modes, end
+        return scenes + self._tried(finest)
+
+    def _tried(self, values: dict[int, Value]) -> list[Scene]:
+        """The scene of these values, or none: an end of a range may be no design by itself."""
+        try:
+            return [self._made(values)]
+        except ValueError:
+            return []
+
+    @property
+    def record(self) -> dict[str, Any]:
+        """All that its numbers depend on, as JSON can say it."""
+        return {
+            "cuefem": import_module("cuefem").__version__,
+            "scene": repr(self.base),
+            "vary": [repr(vary) for vary in self.vary],
+            "responses": [one.name for one in self.responses],
+            "sample": repr(self.sample),
+            "resolution": repr(self.resolution),
+            "block": self.block,
+        }
+
+    @property
+    def fingerprint(self) -> str:
+        """A hash of the record: equal where, and only where, two studies ask for the same table."""
+        return hashlib.sha256(json.dumps(self.record, sort_keys=True).encode()).hexdigest()

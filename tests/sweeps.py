@@ -1,0 +1,87 @@
+"""Small studies that tests of sweeps share; no tests."""
+
+from __future__ import annotations
+
+import sqlite3
+from pathlib import Path
+from typing import Any
+
+SCENE = """
+[cue]
+body_mass = "420 g"
+[[cue.segments]]
+length = "700 mm"
+tip_diameter = "12 mm"
+butt_diameter = "21 mm"
+material = "hard maple"
+[tip]
+contact_time = "1.2 ms"
+"""
+
+STUDY = """
+scene = "scene.toml"
+responses = ["end_mass", "tip_stiffness", "frequency(1)"]
+
+[resolution]
+elements = 1
+order = 12
+modes = 6
+
+[[vary]]
+name = "bore"
+path = ["cue.segments[0].tip_bore", "cue.segments[0].butt_bore"]
+low = "0 mm"
+high = "15 mm"
+count = 16
+
+[[vary]]
+path = "tip.contact_time"
+values = ["0.8 ms", "1.2 ms"]
+
+[[vary]]
+path = "cue.segments[0].material"
+values = ["hard maple", "ash"]
+"""
+
+# Quasi-random; a strike in time a design, so that blocks are small.
+STRUCK = """
+scene = "scene.toml"
+responses = ["squirt(0.3)", "end_mass", "vibration_energy(0.3)"]
+
+[resolution]
+elements = 1
+order = 10
+modes = 4
+
+[sample]
+method = "sobol"
+count = 150
+seed = 5
+
+[[vary]]
+path = "cue.segments[0].tip_bore"
+low = "0 mm"
+high = "13 mm"
+
+[[vary]]
+name = "E over drawn"
+path = "cue.segments[*].material.E"
+low = 0.7
+high = 1.3
+factor = true
+"""
+
+
+def written(folder: Path, study: str = STUDY, scene: str = SCENE, name: str = "study.toml") -> Path:
+    """A study, and its scene beside it."""
+    (folder / "scene.toml").write_text(scene, encoding="utf-8")
+    (folder / name).write_text(study, encoding="utf-8")
+    return folder / name
+
+
+def rows_of(path: Path) -> list[tuple[Any, ...]]:
+    """The whole table of a database, numbers as they are stored."""
+    with sqlite3.connect(path) as file:
+        found = file.execute("SELECT * FROM designs ORDER BY design").fetchall()
+    file.close()
+    return found
