@@ -1,0 +1,186 @@
+"""What a sweep refuses, each in one line with exit status 2, and the database as it was (properties)."""
+
+from __future__ import annotations
+
+import sqlite3
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from command_line import call
+from sweeps import SCENE, STRUCK, STUDY, rows_of, written
+
+from cuefem.design import Row, sweep
+from cuefem.io import database as tables
+from cuefem.io.study import load_study
+
+CHANGES = {
+    "a misspelt field": ('tip.contact_time"', 'tip.contact_tim"', "vary[1].path: must name a field of the scene; got "),
+    "the nearest name": ('tip.contact_time"', 'tip.contact_tim"', "did you mean contact_time"),
+    "no such segment": ("segments[0].material", "segments[3].material", "where cue.segments has 1 items"),
+    "a whole table": ('path = "tip.contact_time"', 'path = "tip"', "must name one number or a material"),
+    "an empty list": ('["0.8 ms", "1.2 ms"]', "[]", "vary[1].values: must be a list of one value at least"),
+    "an empty range": ('low = "0 mm"', 'low = "15 mm"', "vary[0]: low must be below high; got low = '15 mm', high ="),
+    "a range the wrong way": ('low = "0 mm"', 'low = "1 m"', "an empty range"),
+    "no steps": ("count = 16", "count = 0", "vary[0]: count must be a whole number >= 1; got 0"),
+    "half a step": ("count = 16", "count = 1.5", "count must be a whole number >= 1; got 1.5"),
+    "no count": ("count = 16", "", "vary[0].count: must be given"),
+    "a unit of another kind": ('"1.2 ms"]', '"1.2 mm"]', "vary[1].values[1]: must be in (0, inf) s, a time with"),
+    "contradictory units": ('high = "15 mm"', 'high = "15 g"', "vary[0].high: must be in [0, inf) m, a length with"),
+    "no unit": ('high = "15 mm"', "high = 15", "vary[0].high: must be in [0, inf) m, a length with its unit"),
+    "fields of two units": ('"cue.segments[0].butt_bore"', '"ball.mass"', "fields of one unit; got 'kg' and 'm'"),
+    "an unknown material": ('"ash"]', '"ahs"]', "vary[2].values[1]: no material is called 'ahs'; nearest: ash"),
+    "a number for a material": ('"ash"]', "5]", "must be the name of a material"),
+    "a range of materials": ('values = ["hard maple", "ash"]', 'low = "ash"', "vary[2]: must have values, names"),
+    "values and ends": ("count = 16", 'count = 16\nvalues = ["1 mm"]', "must have values, or low and high; got both"),
+    "neither": ('values = ["0.8 ms", "1.2 ms"]', "", "must have values, or low and high; got neither"),
+    "an unknown spacing": ("count = 16", 'count = 16\nspacing = "log"', "must be linear or logarithmic; got 'log'"),
+    "logarithms of zero": ("count = 16", 'count = 16\nspacing = "logarithmic"', "low must be above 0"),
+    "a misspelt key": ("count = 16", "cuont = 16", "did you mean 'count'?"),
+    "a misspelt table": ("[resolution]", "[resolutoin]", "did you mean 'resolution'?"),
+    "a misspelt response": ('"tip_stiffness"', '"tip_stifness"', "responses[1]: must be one of"),
+    "the nearest response": ('"tip_stiffness"', '"tip_stifness"', "did you mean tip_stiffness"),
+    "no responses": ('responses = ["end_mass", "tip_stiffness", "frequency(1)"]', "", "responses: must be a list"),
+    "a response twice": ('"tip_stiffness"', '"end_mass"', "different names; got 'end_mass' twice"),
+    "no scene": ('scene = "scene.toml"', "", "scene: must be the path of a scene or a cue"),
+    "a scene that is not there": ('"scene.toml"', '"other.toml"', "other.toml: cannot be read: No such file"),
+    "half a resolution": ("modes = 6", "", "resolution.modes: must be given"),
+    "a factor of a name": ('"ash"]', '"ash"]\nfactor = true', "factor must multiply a number"),
+    "a factor of nothing": ('"tip.contact_time"', '"tip.stiffness"\nfactor = true', "factor must multiply a number"),
+    "a factor that is none": ("count = 16", 'count = 16\nfactor = "yes"', "vary[0].factor: must be true or false"),
+}
+
+
+@pytest.mark.parametrize(("old", "new", "words"), CHANGES.values(), ids=CHANGES.keys())
+def test_a_study_that_is_none(tmp_path: Path, old: str, new: str, words: str) -> None:
+    assert old in STUDY
+    study = written(tmp_path, STUDY.replace(old, new, 1))
+    refused(words, "sweep", study)
+    assert not (tmp_path / "study.sqlite").exists()
+
+
+SAMPLES = {
+    "an unknown method": ('"sobol"', '"sobel"', "sample: method must be one of grid, sobol, halton"),
+    "no seed": ("seed = 5", "", "sample.seed: must be given, a whole number; got nothing"),
+    "a negative seed": ("seed = 5", "seed = -5", "sample: seed must be a whole number >= 0; got -5"),
+    "no designs": ("count = 150", "count = 0", "sample: count must be a whole number >= 1; got 0"),
+    "a misspelt key": ("seed = 5", "sed = 5", "did you mean 'seed'?"),
+}
+
+
+@pytest.mark.parametrize(("old", "new", "words"), SAMPLES.values(), ids=SAMPLES.keys())
+def test_a_sample_that_is_none(tmp_path: Path, old: str, new: str, words: str) -> None:
+    refused(words, "sweep", written(tmp_path, STRUCK.replace(old, new, 1)))
+
+
+def refused(words: str, *arguments: object) -> None:
+    code, out, err = call(*arguments)
+    assert code == 2, err
+    assert out == ""
+    assert len(err.splitlines()) == 1
+    assert err.startswith("cuefem: ")
+    assert words in err
+
+
+def altered(path: Path, *statements: str) -> None:
+    with sqlite3.connect(path) as file:
+        for statement in statements:
+            file.execute(statement)
+    file.close()
+
+
+DATABASES: dict[str, tuple[Callable[[Path], object], str]] = {
+    "a newer schema": (lambda p: altered(p, "PRAGMA user_version = 99"), "must be of schema 1 or older; got 99"),
+    "another program's": (lambda p: altered(p, "PRAGMA application_id = 7"), "must be a database of `cuefem sweep`"),
+    "no database": (lambda p: p.write_bytes(b"design,end_mass\n" * 100), "file is not a database"),
+    "a torn one": (lambda p: p.write_bytes(p.read_bytes()[:5000]), "cannot be read or written as a database"),
+    "one without a study": (lambda p: altered(p, "DELETE FROM study"), "got a database without one"),
+}
+
+
+@pytest.mark.parametrize(("spoil", "words"), DATABASES.values(), ids=DATABASES.keys())
+def test_a_database_that_is_not_ours(tmp_path: Path, spoil: Callable[[Path], object], words: str) -> None:
+    study = written(tmp_path)
+    call("sweep", study)
+    spoil(tmp_path / "study.sqlite")
+    untouched(tmp_path, words, "sweep", study)
+
+
+def untouched(folder: Path, words: str, *arguments: object) -> None:
+    """Refused, and every file of the folder as it was."""
+    before = {path: path.read_bytes() for path in folder.iterdir()}
+    refused(words, *arguments)
+    assert {path: path.read_bytes() for path in folder.iterdir()} == before
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda study, scene: (study.replace('"1.2 ms"]', '"1.3 ms"]'), scene), "with another vary"),
+        (lambda study, scene: (study.replace('"tip_stiffness"', '"mass"'), scene), "with another responses"),
+        (lambda study, scene: (study, scene.replace("420 g", "421 g")), "with another scene"),
+        (lambda study, scene: (study.replace("modes = 6", "modes = 7"), scene), "with another resolution"),
+    ],
+)
+def test_a_database_of_another_study(tmp_path: Path, change: Callable[[str, str], tuple[str, str]], words: str) -> None:
+    study = written(tmp_path)
+    call("sweep", study)
+    written(tmp_path, *change(STUDY, SCENE))
+    untouched(tmp_path, f"study.sqlite: must hold this study; got another one, {words}", "sweep", study)
+
+
+def test_a_file_that_cannot_be_made(tmp_path: Path) -> None:
+    study = written(tmp_path)
+    untouched(tmp_path, "unable to open database file", "sweep", study, "--output", tmp_path / "none" / "out.sqlite")
+
+
+def test_a_full_disk_loses_nothing_that_was_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What was written before stays, whole blocks of it; with room again the sweep goes on to the same table."""
+    study, open_file = written(tmp_path, STRUCK), tables.connect
+    call("sweep", study, "--output", tmp_path / "whole.sqlite")
+
+    def cramped(path: Path) -> sqlite3.Connection:
+        file = open_file(path)
+        file.execute("PRAGMA max_page_count = 7")
+        return file
+
+    with monkeypatch.context() as full:
+        full.setattr(tables, "connect", cramped)
+        refused("database or disk is full", "sweep", study)
+        rows = rows_of(tmp_path / "study.sqlite")
+        assert 0 < len(rows) < 150
+        assert len(rows) % 16 == 0
+        untouched(tmp_path, "database or disk is full", "sweep", study)
+    call("sweep", study)
+    assert rows_of(tmp_path / "study.sqlite") == rows_of(tmp_path / "whole.sqlite")
+
+
+def test_two_sweeps_into_one_database_do_not_mix(tmp_path: Path) -> None:
+    """The second to write a block is told so; the first one's rows stay."""
+    study = load_study(written(tmp_path))
+    path = tmp_path / "out.sqlite"
+    with tables.Database(path, study) as first, tables.Database(path, study) as second:
+        blocks: list[list[Row]] = []
+        sweep(study, first, progress=blocks.append)
+        with pytest.raises(ValueError, match=r"out.sqlite: .* UNIQUE constraint failed"):
+            second.write(blocks[0])
+    assert len(rows_of(path)) == 64
+
+
+@pytest.mark.parametrize("suffix", ["xlsx", "sqlite"])
+def test_an_export_of_an_unknown_kind(tmp_path: Path, suffix: str) -> None:
+    study = written(tmp_path)
+    untouched(tmp_path, "must end in .csv or .parquet", "sweep", study, "--export", tmp_path / f"out.{suffix}")
+
+
+def test_workers_and_a_cluster(tmp_path: Path) -> None:
+    code, out, err = call("sweep", written(tmp_path), "--workers", 2, "--dask", "tcp://localhost:8786")
+    assert (code, out) == (2, "")
+    assert "give one" in err
+
+
+def test_without_its_library_dask_is_refused_with_a_word(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    study = written(tmp_path)
+    untouched(tmp_path, "pip install 'cuefem[distributed]'", "sweep", study, "--dask", "tcp://localhost:1")
