@@ -1,0 +1,219 @@
+"""Drawings of the cue, of the strike and of the mode shapes, as geometry for the page's template."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from cuefem.cue import Cue, Material, Segment
+from cuefem.effects import CueEffect, TipDome
+from cuefem.materials import MATERIALS
+from cuefem.modes import Modes
+from cuefem.quantity import scalar
+from cuefem.report.figures import WIDE, Axis, Tick, path
+from cuefem.scene import Scene
+
+FRONT = 0.09  # m of the tip end that is drawn enlarged
+
+
+class Piece(NamedTuple):
+    """A segment's outline and its bore's, as paths, with the classes of its materials on the page."""
+
+    outline: str
+    material: str
+    bore: str
+    core: str
+
+
+class Sign(NamedTuple):
+    """An effect at its place on the cue: where, and its name."""
+
+    at: float
+    label: str
+
+
+@dataclass(frozen=True)
+class CueDrawing:
+    """A cue, or its front, from the side, tip to the left: magnified across its axis by ``across``."""
+
+    title: str
+    height: float
+    axis: float
+    pieces: tuple[Piece, ...]
+    signs: tuple[Sign, ...]
+    ticks: tuple[Tick, ...]
+    across: float
+
+
+def material_name(material: Material) -> str:
+    """A material's name in the table of materials, or its modulus."""
+    known = (name for name, documented in MATERIALS.items() if documented.material == material)
+    return next(known, f"E {material.E / 1e9:.4g} GPa")
+
+
+def materials_of(cue: Cue) -> tuple[str, ...]:
+    """Names of a cue's materials, from tip to butt, each once."""
+    found = [m for segment in cue.segments for m in (segment.material, segment.core) if m is not None]
+    return tuple(dict.fromkeys(map(material_name, found)))
+
+
+def style_of(name: str) -> str:
+    """A material's class on the page."""
+    return "m-" + name.replace(" ", "-") if name in MATERIALS else "m-other"
+
+
+def cue_drawing(scene: Scene, *, across: float) -> CueDrawing:
+    """The whole cue, its diameters ``across`` times as large as its length."""
+    assert isinstance(scene.cue, Cue)
+    title = "True to scale" if across == 1 else f"Diameters {across:g} times enlarged"
+    return _drawn(scene, title, length=scene.cue.length, across=across)
+
+
+def front_drawing(scene: Scene) -> CueDrawing:
+    """The tip end, true to scale, with its dome."""
+    assert isinstance(scene.cue, Cue)
+    return _drawn(scene, "The tip end, true to scale", length=min(FRONT, scene.cue.length), across=1.0)
+
+
+def _drawn(scene: Scene, title: str, *, length: float, across: float) -> CueDrawing:
+    cue = scene.cue
+    assert isinstance(cue, Cue)
+    scale = (WIDE - 20) / length
+    shown = [(x, segment) for x, segment in zip(cue.nodes[:-1], cue.segments, strict=True) if x < length]
+    ends = [s.tip_diameter + (s.butt_diameter - s.tip_diameter) * min(1, (length - x) / s.length) for x, s in shown]
+    widest = max(*ends, *(s.tip_diameter for _, s in shown)) * scale * across
+    signs = tuple(
+        Sign(10 + scale * x, type(effect).__name__)
+        for effect in scene.effects
+        if isinstance(effect, CueEffect)
+        for x in effect.positions
+        if x <= length
+    )
+    above = 14.0 if signs and across > 1 else 3.0
+    axis = above + widest / 2
+    dome = max((effect.radius for effect in scene.effects if isinstance(effect, TipDome)), default=0.0)
+    pieces = tuple(
+        _piece(segment, x, scale=scale, across=across, axis=axis, length=length, dome=dome if x == 0 else 0.0)
+        for x, segment in shown
+    )
+    low_tick = across > 1 or length < cue.length
+    places = Axis("mm", 0.0, 1e3 * length).over([np.zeros(1)])
+    ticks = places.ticks(10.0, WIDE - 10.0) if low_tick else ()
+    return CueDrawing(title, axis + widest / 2 + (16 if low_tick else 3), axis, pieces, signs, ticks, across)
+
+
+def _piece(
+    segment: Segment, x: float, *, scale: float, across: float, axis: float, length: float, dome: float
+) -> Piece:
+    end = min(segment.length, length - x)
+    part = end / segment.length
+
+    def half(tip: float, butt: float, s: float) -> float:
+        return scale * across * (tip + (butt - tip) * s) / 2
+
+    def box(tip: float, butt: float) -> str:
+        first, last = 10 + scale * x, 10 + scale * (x + end)
+        high, low = half(tip, butt, 0.0), half(tip, butt, part)
+        xs, ys = [first, last, last, first], [axis - high, axis - low, axis + low, axis + high]
+        if dome > 0 and dome >= segment.tip_diameter / 2:
+            angle = np.linspace(1, -1, 25) * math.asin(segment.tip_diameter / 2 / dome)
+            front = 10 + scale * dome * (1 - np.cos(angle))
+            xs, ys = [*xs[1:3], *front], [*ys[1:3], *(axis + scale * across * dome * np.sin(angle))]
+        return path(xs, ys) + "Z"
+
+    bored = max(segment.tip_bore, segment.butt_bore) > 0
+    core = "hollow" if segment.core is None else style_of(material_name(segment.core))
+    bore = path(
+        [10 + scale * x, 10 + scale * (x + end), 10 + scale * (x + end), 10 + scale * x],
+        axis
+        + np.array([-1, -1, 1, 1])
+        * np.array([half(segment.tip_bore, segment.butt_bore, s) for s in (0.0, part, part, 0.0)]),
+    )
+    return Piece(
+        box(segment.tip_diameter, segment.butt_diameter),
+        style_of(material_name(segment.material)),
+        bore + "Z" if bored else "",
+        core,
+    )
+
+
+@dataclass(frozen=True)
+class StrikeDrawing:
+    """The blow from above: the ball, the cue's tip, the line of the cue and the line that the ball takes."""
+
+    height: float
+    ball: tuple[float, float, float]  # centre and radius
+    contact: tuple[float, float]
+    tip: str
+    cue_line: float
+    path_end: tuple[float, float]
+    straight_end: tuple[float, float]
+    labels: tuple[float, float]  # heights of the two lines' labels: of the cue's, of the ball's path
+
+
+def strike_drawing(scene: Scene, squirt: float) -> StrikeDrawing:
+    """The blow at the scene's offset; lengths and the angle of squirt are true."""
+    R = scalar("Ball.radius", scene.ball.radius)
+    phi = math.asin(scalar("Stroke.offset", scene.stroke.offset))
+    r = max((effect.radius for effect in scene.effects if isinstance(effect, TipDome)), default=0.0)
+    across = scene.cue.segments[0].tip_diameter if isinstance(scene.cue, Cue) else 0.4 * R
+    apex, scale = 300.0, 1.9e3 * 0.03 / R
+    middle = 75.0
+    centre = (apex + scale * (r - (R + r) * math.cos(phi)), middle)
+    line = middle - scale * (R + r) * math.sin(phi)
+    radius = max(r, across / 2)
+    angle = np.linspace(1, -1, 25) * math.asin(across / 2 / radius)
+    front_x = apex + scale * radius * (1 - np.cos(angle)) if r else np.full(25, apex)
+    front_y = line + scale * across / 2 * np.linspace(1, -1, 25) if not r else line + scale * radius * np.sin(angle)
+    edge = scale * across / 2
+    tip = path([*front_x, WIDE, WIDE], [*front_y, line - edge, line + edge]) + "Z"
+    reach = float(centre[0]) - 6
+    fall = reach * math.tan(squirt)
+    return StrikeDrawing(
+        150.0,
+        (float(centre[0]), middle, float(scale * R)),
+        (apex + scale * r * (1 - math.cos(phi)), line + scale * r * math.sin(phi)),
+        tip,
+        line,
+        (float(centre[0]) - reach, middle + fall),
+        (float(centre[0]) - reach, middle),
+        (line - 6, middle + fall + 16) if phi >= 0 else (line + 15, middle + fall - 9),
+    )
+
+
+class ModeRow(NamedTuple):
+    """A mode's shape about its own line, its nodes on that line, and its frequency."""
+
+    axis: float
+    shape: str
+    nodes: tuple[float, ...]
+    frequency: str
+
+
+@dataclass(frozen=True)
+class ModesDrawing:
+    """Mode shapes over the length of the cue."""
+
+    height: float
+    rows: tuple[ModeRow, ...]
+    ticks: tuple[Tick, ...]
+
+
+def modes_drawing(found: Modes, length: float, *, row: float = 38.0) -> ModesDrawing:
+    """The modes' deflections, each as high as the others."""
+    left, right = 10.0, WIDE - 78.0
+    x = np.linspace(0, length, 241)
+    shapes, _ = found.shape(x)
+    places = left + (right - left) * x / length
+    rows = []
+    for i, (shape, frequency) in enumerate(zip(shapes, found.frequencies, strict=True)):
+        axis, high = row * (i + 0.5) + 4, shape / np.abs(shape).max()
+        change = np.flatnonzero(high[:-1] * high[1:] < 0)
+        nodes = places[change] + (places[1] - places[0]) * high[change] / (high[change] - high[change + 1])
+        written = f"{frequency:.1f} Hz" if frequency < 1e3 else f"{frequency / 1e3:.2f} kHz"
+        rows.append(ModeRow(axis, path(places, axis - 0.42 * row * high), tuple(nodes.tolist()), written))
+    ticks = Axis("mm", 0.0, 1e3 * length).over([np.zeros(1)]).ticks(left, right)
+    return ModesDrawing(row * len(rows) + 32, tuple(rows), ticks)

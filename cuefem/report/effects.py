@@ -1,0 +1,197 @@
+"""What each effect of a scene is worth, as a record and as a table, with what it costs."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import asdict
+
+from rich.console import Group
+
+from cuefem.ablation import TEXTBOOK, Change, Variant, change, variants
+from cuefem.endmass import equivalent_end_mass
+from cuefem.report.records import Record
+from cuefem.report.solve import resolution_for, struck
+from cuefem.report.tables import NONE, assumptions, degrees, effect_words, grams, table_of, with_caption
+from cuefem.scene import Outcome, Resolution, Scene
+
+DEFAULT_RTOL = 1e-2
+# A strike is timed as the quickest of some, as many as fit in this many seconds.
+TIMED, TRIES = 0.3, 5
+# Strikes are this many times as exact as the tolerance.
+MARGIN = 3
+
+Track = Callable[[Sequence[Variant]], Iterable[Variant]]
+
+
+def timed_strike(scene: Scene, at: Resolution | None) -> tuple[Outcome, float]:
+    """Outcome of a strike, and the seconds of processor time it takes with its modes: the quickest of some."""
+    begun, quickest = time.perf_counter(), float("inf")
+    for _ in range(TRIES):
+        start = time.process_time()
+        outcome = struck(scene, at)
+        quickest = min(quickest, time.process_time() - start)
+        if time.perf_counter() - begun > TIMED:
+            break
+    return outcome, quickest
+
+
+def effects_record(scene: Scene, *, rtol: float = DEFAULT_RTOL, track: Track = iter) -> Record:
+    """Every effect dropped or added, what that changes, and which are worth their time at the tolerance ``rtol``.
+
+    All strikes are at the resolution that the scene itself needs, so that their errors are alike and it is the effect
+    that shows. track: follows the work, an iterator over the variants.
+    """
+    at = resolution_for(scene, rtol / MARGIN)
+    base, seconds = timed_strike(scene, at)
+    rows = [_row(variant, scene, base, rtol=rtol, at=at) for variant in track(variants(scene))]
+    rows.sort(key=lambda row: -1.0 if row["weight"] is None else row["weight"], reverse=True)
+    return {
+        "rtol": rtol,
+        "resolution": None if at is None else asdict(at),
+        "base": _figures(base, scene) | {"unknowns": base.unknowns, "seconds": seconds},
+        "effects": rows,
+        "worth": worth(rows),
+        "textbook": {name: {"values": known.values, "source": known.source} for name, known in TEXTBOOK.items()},
+    }
+
+
+def _figures(outcome: Outcome, scene: Scene) -> Record:
+    return {
+        "squirt": outcome.squirt,
+        "end_mass": _end_mass(outcome, scene),
+        "ball_speed": outcome.ball_speed,
+        "spin": outcome.spin,
+    }
+
+
+def _end_mass(outcome: Outcome, scene: Scene) -> float | None:
+    """The squirt-equivalent end mass; None head on, in a miscue, and where no lumped cue squirts so much."""
+    try:
+        return equivalent_end_mass(outcome, scene) if scene.stroke.offset else None
+    except ValueError:
+        return None
+
+
+def _row(variant: Variant, scene: Scene, base: Outcome, *, rtol: float, at: Resolution | None) -> Record:
+    about: Record = {
+        "name": variant.name,
+        "values": None if variant.effect is None else asdict(variant.effect),
+        "words": variant.name if variant.effect is None else effect_words(variant.effect),
+        "listed": variant.listed,
+    }
+    if variant.scene is None:
+        return about | _refused(variant.reason)
+    try:
+        outcome, seconds = timed_strike(variant.scene, at)
+    except (ValueError, RuntimeError) as error:
+        return about | _refused(str(error))
+    found = change(outcome, base, offset=scene.stroke.offset)
+    return about | {
+        "refused": None,
+        **_figures(outcome, variant.scene),
+        "change": _changes(found),
+        "weight": found.weight,
+        "matters": found.weight >= rtol,
+        "unknowns": outcome.unknowns,
+        "seconds": seconds,
+    }
+
+
+def _refused(reason: str) -> Record:
+    return {"refused": reason, "weight": None, "matters": None}
+
+
+def _changes(found: Change) -> Record:
+    gaps = asdict(found)
+    relative = gaps.pop("relative")
+    return {name: {"by": gap, "relative": relative.get(name)} for name, gap in gaps.items()}
+
+
+def worth(rows: Sequence[Record]) -> Record:
+    """Which effects to keep, which to drop, and which to add, by name, in the order of what they change."""
+    tried = [row for row in rows if row["refused"] is None]
+
+    def chosen(listed: bool, matters: bool) -> list[str]:
+        return [row["words"] for row in tried if (row["listed"], row["matters"]) == (listed, matters)]
+
+    return {"keep": chosen(True, True), "drop": chosen(True, False), "add": chosen(False, True)}
+
+
+def effects_table(record: Record, scene: Record) -> Group:
+    """The effects, what matters most first, and what to make of it."""
+    columns = ["", "effect", "squirt", "end mass", "ball speed", "spin", "unknowns", "CPU time"]
+    offset = scene["stroke"]["offset"]
+    table = table_of(f"What each effect is worth at offset b/R = {offset:g}", columns, text_columns=2)
+    base = record["base"]
+    table.add_row(
+        "",
+        "the scene as it is",
+        degrees(base["squirt"]),
+        _grams(base["end_mass"]),
+        f"{base['ball_speed']:.4f} m/s",
+        f"{base['spin']:.2f} rad/s",
+        str(base["unknowns"]),
+        seconds_words(base["seconds"]),
+        style="bold",
+    )
+    for row in record["effects"]:
+        if not row["refused"]:
+            table.add_row(*_cells(row), style=None if row["matters"] else "dim")
+    percent = f"{100 * record['rtol']:.3g} %"
+    return with_caption(
+        table,
+        "without: an effect of the scene left out; with: one it does not list, at a textbook value; changes of row one",
+        f"end mass: the lumped one with the same squirt; dim: nothing changes by {percent}, the tolerance",
+        *_not_tried(record["effects"]),
+        assumptions(scene),
+        "",
+        *advice(record, percent),
+    )
+
+
+def _not_tried(rows: Sequence[Record]) -> list[str]:
+    """Why effects were not tried, each reason once."""
+    reasons: dict[str, list[str]] = {}
+    for row in rows:
+        if row["refused"]:
+            reasons.setdefault(row["refused"], []).append(row["words"])
+    return [f"not tried: {', '.join(names)}: {reason}" for reason, names in reasons.items()]
+
+
+def _cells(row: Record) -> tuple[str, ...]:
+    word = "without" if row["listed"] else "with"
+    squirt, speed, spin = (_percent(row["change"][name]["relative"]) for name in ("squirt", "ball_speed", "spin"))
+    figures = (squirt, _grams(row["end_mass"]), speed, spin)
+    return (word, row["words"], *figures, str(row["unknowns"]), seconds_words(row["seconds"]))
+
+
+def _percent(part: float | None) -> str:
+    if part is None:
+        return NONE
+    return "0 %" if abs(part) < 5e-6 else f"{100 * part:+.3f} %" if abs(part) < 1e-3 else f"{100 * part:+.2f} %"
+
+
+def _grams(mass: float | None) -> str:
+    return NONE if mass is None else grams(mass)
+
+
+def seconds_words(seconds: float) -> str:
+    """A duration of a computation."""
+    return f"{1e3 * seconds:.3g} ms" if seconds < 1 else f"{seconds:.2f} s"
+
+
+def advice(record: Record, percent: str) -> list[str]:
+    """The recommendation, in sentences."""
+    base = record["base"]["seconds"]
+    lines = []
+    for words in record["worth"]["drop"]:
+        (row,) = (row for row in record["effects"] if row["words"] == words and row["listed"])
+        spared = base - row["seconds"]
+        saving = f", and {seconds_words(spared)} of {seconds_words(base)}" if spared > 0.1 * base else ""
+        lines.append(f"Not worth its time: {words}; leaving it out changes less than {percent}{saving}.")
+    if record["worth"]["add"]:
+        lines.append(f"Worth adding, each changes {percent} or more: {', '.join(record['worth']['add'])}.")
+    if not lines:
+        lines.append(f"The scene has what it needs at {percent}: nothing to drop, nothing to add.")
+    return lines

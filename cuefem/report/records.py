@@ -1,0 +1,252 @@
+"""Results as records: dictionaries of SI numbers, texts and lists that JSON can say (no NaN, no infinity)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from cuefem.cue import Cue, LumpedCue
+from cuefem.effects import TipDome, TipEffect
+from cuefem.endmass import Drive, Spread, end_mass_spreads, formula_of, lump
+from cuefem.impulse import impulse
+from cuefem.materials import MATERIALS
+from cuefem.modes import TipModes, modes
+from cuefem.quantity import scalar
+from cuefem.resolution import tip_modes_of
+from cuefem.scene import Outcome, Scene
+from cuefem.squirt import alciatore_a31, cue_end_mass, natural_pivot_length
+from cuefem.strike import strike, strike_modes
+from cuefem.validation import Claim
+
+DRIVES: tuple[Drive, ...] = ("stick", "velocity", "force", "squirt")
+OFFSETS = (0.1, 0.2, 0.3, 0.4, 0.5)
+PAPER_CUE_END_MASS = 0.012  # kg, [Kim]'s m_c of a real cue; the tip feels a quarter of it
+
+Record = dict[str, Any]
+
+UNITS = {
+    **dict.fromkeys(("mass", "shaft_mass", "body_mass", "end_mass", "cue_end_mass", "lowest", "highest"), "kg"),
+    **dict.fromkeys(("length", "balance_point", "radius", "pivot_length"), "m"),
+    **dict.fromkeys(("speed", "ball_speed", "ball_velocity", "cue_speed"), "m/s"),
+    **dict.fromkeys(("contact_time", "duration"), "s"),
+    **{"frequencies": "Hz", "near": "Hz", "tip_amplitudes": "1/sqrt(kg)", "squirt": "rad", "spin": "rad/s"},
+    **{"coupling": "1/kg", "seconds": "s", "impulse": "N s", "energy": "J", "E": "Pa", "G": "Pa", "rho": "kg/m^3"},
+}
+
+
+def plain(value: Any) -> Any:
+    """A value as JSON can say it: arrays as lists, what is infinite or undefined as null."""
+    if isinstance(value, dict):
+        return {str(key): plain(inner) for key, inner in value.items()}
+    if isinstance(value, np.ndarray | np.generic):
+        return plain(value.tolist())
+    if isinstance(value, list | tuple):
+        return [plain(inner) for inner in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def cue_record(cue: Cue | LumpedCue) -> Record:
+    """What a cue is, in a few numbers."""
+    if isinstance(cue, LumpedCue):
+        return {"mass": cue.mass, "end_mass": cue.end_mass, "coupling": cue.coupling}
+    names = ("length", "mass", "shaft_mass", "body_mass", "balance_point")
+    return {name: getattr(cue, name) for name in names} | {"segments": len(cue.segments)}
+
+
+def scene_record(scene: Scene) -> Record:
+    """What a stroke's numbers rest on: cue, ball, tip, stroke and effects."""
+    return {
+        "cue": cue_record(scene.cue),
+        "ball": asdict(scene.ball),
+        "tip": {name: value for name, value in asdict(scene.tip).items() if value is not None}
+        | {"contact_time": scene.contact_time},
+        "stroke": asdict(scene.stroke),
+        "effects": [{"type": type(effect).__name__, **asdict(effect)} for effect in scene.effects],
+        "effects_at_tip": [type(effect).__name__ for effect in scene.effects if isinstance(effect, TipEffect)],
+    }
+
+
+def modes_record(scene: Scene, *, count: int, near: float | None) -> Record:
+    """Frequencies and tip amplitudes of the scene's cue: the ``count`` lowest modes or those nearest ``near`` Hz."""
+    if not isinstance(scene.cue, Cue):
+        raise ValueError("modes need a cue of segments; got a lumped cue, which has none")
+    found = modes(scene.cue, count, near, effects=scene.cue_effects)
+    amplitudes, _ = found.shape(0.0)
+    return {
+        "near": near,
+        "rigid": found.rigid,
+        "frequencies": found.frequencies.tolist(),
+        "tip_amplitudes": amplitudes.tolist(),
+    }
+
+
+def end_mass_record(scene: Scene, *, tip: TipModes | None = None) -> Record:
+    """The end masses m_e, how far they spread over the modes kept, [Kim]'s m_c and eps = m_c/M of each.
+
+    "squirt" is that at the scene's own offset. A definition that has no answer here says why instead. tip: better tip
+    modes than those that the spread is over, where they are known.
+    """
+    spread = end_mass_spreads(scene)
+    return {
+        "contact_time": scene.contact_time,
+        "offset": scene.stroke.offset,
+        "drives": {drive: _end_mass(scene, spread, drive, tip=tip) for drive in DRIVES},
+    }
+
+
+def _end_mass(scene: Scene, spread: Callable[[Drive], Spread], drive: Drive, *, tip: TipModes | None = None) -> Record:
+    try:
+        felt, lowest, highest = spread(drive)
+        if tip is not None:
+            felt = formula_of(drive)(tip, scene)
+    except ValueError as error:
+        names = ("end_mass", "lowest", "highest", "cue_end_mass", "eps")
+        return {**dict.fromkeys(names), "reason": str(error)}
+    whole = float(cue_end_mass(felt))
+    return {
+        "end_mass": felt,
+        "lowest": lowest,
+        "highest": highest,
+        "cue_end_mass": whole,
+        "eps": whole / scene.ball.mass,
+    }
+
+
+@dataclass(frozen=True)
+class Lumped:
+    """The scene's cue as the impulse solver takes it: two_part has its stick end mass without effects at the tip;
+    coupled has them too, as the coupling of `lump` per b/R, None where they add nothing or no lumped cue has them."""
+
+    two_part: LumpedCue
+    coupling: float | None
+
+    @classmethod
+    def of(cls, scene: Scene) -> Lumped:
+        """Both from one solution for the small-offset limit."""
+        offset = scalar("Stroke.offset", scene.stroke.offset) or 0.1
+        try:
+            cue = lump(replace(scene, stroke=replace(scene.stroke, offset=offset)))
+        except ValueError:  # an offset, or an effect, beyond any lumped cue's coupling
+            bare = tuple(effect for effect in scene.effects if not isinstance(effect, TipEffect))
+            cue = lump(replace(scene, effects=bare))
+        coupling = scalar("LumpedCue.coupling", cue.coupling)
+        return cls(LumpedCue(cue.mass, cue.end_mass), coupling / abs(offset) if coupling else None)
+
+    def coupled(self, offset: Any) -> LumpedCue | None:
+        """The cue with its coupling at an offset, or an array of offsets."""
+        if self.coupling is None:
+            return None
+        try:
+            return replace(self.two_part, coupling=self.coupling * np.abs(offset))
+        except ValueError:
+            return None
+
+
+def bare_scene(scene: Scene, cue: LumpedCue) -> Scene:
+    """The scene with a lumped cue in its cue's place, and without effects."""
+    return replace(scene, cue=cue, effects=())
+
+
+def outcome_record(outcome: Outcome, scene: Scene) -> Record:
+    """A strike's outcome with the natural pivot length of its squirt (none at offset 0)."""
+    names = ("squirt", "ball_speed", "ball_velocity", "spin", "cue_speed", "impulse", "duration", "regime", "energy")
+    found = {name: getattr(outcome, name) for name in (*names, "unknowns", "error")}
+    return found | {"pivot_length": _pivot_length(scene, outcome.squirt)}
+
+
+def _pivot_length(scene: Scene, squirt: Any) -> Any:
+    if not np.all(scene.stroke.offset):
+        return None
+    dome = next((effect.radius for effect in scene.effects if isinstance(effect, TipDome)), 0.0)
+    return natural_pivot_length(scene.stroke.offset, squirt, radius=scene.ball.radius, dome_radius=dome)
+
+
+def strike_record(scene: Scene, outcome: Outcome | None = None) -> Record:
+    """One strike by every model, by the model's name; a model that says less leaves keys out.
+
+    outcome: of the coupled strike, where it is known. "lumped" is there where effects at the tip couple the cue's
+    motion along and across; "two-part" and "A.31" leave those effects out.
+    """
+    cue = Lumped.of(scene)
+    a31 = _a31(scene, cue.two_part)
+    models = {"coupled": outcome_record(strike(scene) if outcome is None else outcome, scene)}
+    if (coupled := cue.coupled(scene.stroke.offset)) is not None:
+        models["lumped"] = outcome_record(impulse(bare_scene(scene, coupled)), scene)
+    models["two-part"] = outcome_record(impulse(bare_scene(scene, cue.two_part)), scene)
+    models["A.31"] = {"squirt": a31, "pivot_length": _pivot_length(scene, a31)}
+    return {"end_mass": cue.two_part.end_mass, "coupling": _coupling(cue, scene.stroke.offset), "models": models}
+
+
+def _coupling(cue: Lumped, offset: Any) -> float:
+    coupled = cue.coupled(offset)
+    return 0.0 if coupled is None else float(coupled.coupling)
+
+
+def _a31(scene: Scene, cue: LumpedCue) -> Any:
+    return alciatore_a31(scene.stroke.offset, mass_ratio=scene.ball.mass / cue.end_mass, inertia=scene.ball.inertia)
+
+
+def squirt_record(scene: Scene, offsets: Sequence[float] = OFFSETS, *, tip: TipModes | None = None) -> Record:
+    """Squirt and natural pivot length against the offset: coupled in time, lumped (where effects at the tip couple the
+    cue's motions), two parts of this cue, [Kim]'s 12 g, [A.31].
+
+    tip: the cue's tip modes, where they are known.
+    """
+    cue = Lumped.of(scene)
+    many = replace(scene, stroke=replace(scene.stroke, offset=np.array(offsets)))
+    models = {"coupled, this cue": _coupled_squirt(scene, offsets, tip)}
+    if (coupled := cue.coupled(np.array(offsets))) is not None:
+        models["lumped, this cue"] = impulse(bare_scene(many, coupled)).squirt
+    papers = LumpedCue.two_part(scene.axial_mass, PAPER_CUE_END_MASS)
+    models["two-part, this cue"] = impulse(bare_scene(many, cue.two_part)).squirt
+    models["two-part, 12 g"] = impulse(bare_scene(many, papers)).squirt
+    models["A.31, this cue"] = _a31(many, cue.two_part)
+    return {
+        "offsets": list(offsets),
+        "end_mass": cue.two_part.end_mass,
+        "coupling": cue.coupling or 0.0,
+        "models": {
+            name: {"squirt": squirt, "pivot_length": _pivot_length(many, squirt)} for name, squirt in models.items()
+        },
+    }
+
+
+def _coupled_squirt(scene: Scene, offsets: Sequence[float], tip: TipModes | None) -> Any:
+    struck = [replace(scene, stroke=replace(scene.stroke, offset=b)) for b in offsets]
+    if isinstance(scene.cue, LumpedCue):
+        return np.array([strike(one).squirt for one in struck])
+    tip = tip_modes_of(scene) if tip is None else tip
+    return np.array([strike_modes(one, tip).squirt for one in struck])
+
+
+def report_record(scene: Scene, *, count: int = 6) -> Record:
+    """All of it: modes, end masses, squirt and pivot length."""
+    found: Record = {"modes": modes_record(scene, count=count, near=None)} if isinstance(scene.cue, Cue) else {}
+    return found | {"end_masses": end_mass_record(scene), "squirt": squirt_record(scene)}
+
+
+def claims_record(claims: Sequence[tuple[str, Claim]]) -> list[Record]:
+    """Claims of sources, each with the study that holds it and its relative difference."""
+    return [{"study": study, **asdict(claim), "difference": claim.difference} for study, claim in claims]
+
+
+def materials_record() -> Record:
+    """The materials that a file can name: values, ranges, sources."""
+    return {
+        "materials": {
+            name: {
+                **asdict(known.material),
+                "ranges": {key: list(ends) for key, ends in known.ranges.items()},
+                "source": known.source,
+                "note": known.note,
+            }
+            for name, known in MATERIALS.items()
+        },
+        "units": {name: UNITS[name] for name in ("E", "G", "rho")},
+    }
