@@ -1,0 +1,95 @@
+"""What studies share: the cues of meshes/, the scene they are struck in, tables and figures. Not a study itself.
+
+Tables are read back and compared by `cuefem.validation.disagreements`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from cuefem import Cue, LumpedCue, Scene, Stroke, Tip, load
+from cuefem.endmass import stick_impulse
+from cuefem.impact import impact
+from cuefem.modes import TipModes
+from cuefem.transverse import StickLimit
+from cuefem.validation import number
+
+STUDIES = Path(__file__).parent
+MESHES = STUDIES.parent / "meshes"
+NAMES = ("kim", "pool_maple", "pool_hollow", "carbon", "whole_cue")
+STYLE = {"svg.hashsalt": "cuefem", "svg.fonttype": "path", "font.size": 10, "axes.grid": True, "grid.alpha": 0.3}
+
+
+@cache
+def cue(name: str) -> Cue:
+    """A cue of meshes/."""
+    found = load(MESHES / f"{name}.toml")
+    assert isinstance(found, Cue)
+    return found
+
+
+def scene(struck: Cue | LumpedCue, contact_time: float = 1e-3, offset: float = 0.0) -> Scene:
+    """The cue before the default ball (210 g), e = 3/4, mu = 0.7."""
+    return Scene(struck, tip=Tip(contact_time=contact_time), stroke=Stroke(offset=offset))
+
+
+def at_offset(struck: Scene, offset: float) -> Scene:
+    """The scene struck at another offset."""
+    return replace(struck, stroke=replace(struck.stroke, offset=offset))
+
+
+def lumped_squirt(struck: Scene, end_mass: float) -> float:
+    """Squirt of the impulse solver with this end mass at the scene's offset, rad."""
+    return float(impact(replace(struck, cue=LumpedCue(struck.axial_mass, end_mass), effects=())).squirt)
+
+
+def stick_at_offset(tip: TipModes, struck: Scene) -> float:
+    """End mass, kg, of a tip that sticks, at the scene's own offset: exact to first order in the cue's lightness.
+
+    A light cue end leaves the ball's force along the cue, F_t = F_n tan(phi). With D = 1 + 1/Q0 + sin(phi)^2/nu the
+    tip's velocity against the ball then runs as K P(t) - 1, K = (1 + e)(1 + 1/nu + 1/Q0)/D, over a contact of
+    T cos(phi) sqrt((1 + 1/Q0)/D). At offset 0 this is the stick end mass.
+    """
+    limit = StickLimit.of(struck)
+    q, b = struck.ball.mass / struck.axial_mass, struck.stroke.offset
+    share = (1 + q) / (1 + q + b**2 / struck.ball.inertia)
+    there = replace(limit, K=limit.K * share, T=limit.T * math.sqrt((1 - b**2) * share))
+    return float(there.end_mass(stick_impulse(tip, there)))
+
+
+def slope(x: Iterable[float], y: Iterable[float]) -> float:
+    """Exponent of the power law through points, least squares in the logarithms."""
+    return float(np.polyfit(np.log(list(x)), np.log(list(y)), 1)[0])
+
+
+def crests(errors: Sequence[float], size: int) -> np.ndarray:
+    """Largest size of an error in each run of ``size`` samples: the envelope of errors that ring."""
+    return np.max(np.abs(np.reshape(errors, (-1, size))), axis=1)
+
+
+def table(columns: Sequence[str], rows: Iterable[Sequence[Any]], digits: int = 4) -> str:
+    """A markdown table; text stands as it is, numbers with ``digits`` significant digits."""
+
+    def line(cells: Sequence[Any]) -> str:
+        return "| " + " | ".join(c if isinstance(c, str) else number(c, digits) for c in cells) + " |"
+
+    return "\n".join([line(columns), "|" + "---|" * len(columns), *map(line, rows)]) + "\n"
+
+
+@contextmanager
+def figure(path: Path, panels: tuple[int, int] = (1, 1), size: tuple[float, float] = (6.4, 4.4)) -> Any:
+    """Axes to draw on; the figure is saved without a date when the block ends."""
+    with plt.rc_context(STYLE):
+        canvas, axes = plt.subplots(*panels, figsize=size, layout="constrained")
+        yield axes
+        canvas.savefig(path, metadata={"Date": None})
+        plt.close(canvas)

@@ -1,0 +1,236 @@
+"""What do exactly propagated phases cost against a general ODE solver, at equal accuracy?
+
+What: strokes of meshes/kim.toml (24 flexible modes, T = 1 ms, e = 3/4, mu = 0.7, a ball of 210 g) at four offsets, from
+little slip to a miscue, by cuefem.contact and by scipy's solve_ivp (DOP853, and Radau with its Jacobian) on the very
+same linear phases, their ends found by solve_ivp's events. Each solver's rtol is the loosest power of ten that holds
+squirt and ball speed of all four strokes to 1e-8 of the exact phases; those are checked against cells a third as long.
+Equations: physics.md section 5. Writes contact_cost.md (values, no seconds) and contact_cost_seconds.md (seconds, of
+the machine named there) beside itself; takes about 5 s.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import platform
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cache
+from importlib import import_module
+from pathlib import Path
+from statistics import median
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+import scipy
+import scipy.linalg as la
+from scipy.integrate import solve_ivp
+
+from cuefem import Resolution
+from cuefem.contact import Contact, Laws, run
+from cuefem.flow import Arrival, Flow
+from cuefem.modes import TipModes
+from cuefem.resolution import tip_modes_of
+
+HERE = Path(__file__).parent
+if str(HERE) not in sys.path:
+    sys.path.append(str(HERE))  # studies are files, not a package
+common = import_module("common")
+
+MODES, OFFSETS, ACCURACY = 24, (0.1, 0.3, 0.5, 0.8), 1e-8
+AT = Resolution(4, 22, MODES)
+THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+TOLERANCES = dict.fromkeys(("DOP853", "Radau"), 10.0 ** -np.arange(3, 13))
+
+
+@dataclass
+class Fine(Contact):
+    """The exact phases in cells a third as long."""
+
+    def flow(self, grip: Any, press: Any) -> Flow:
+        """The same motion, cut finer."""
+        if (grip, press) not in self.flows:
+            self.flows[grip, press] = replace(super().flow(grip, press), rate=3 * super().flow(grip, press).rate)
+        return self.flows[grip, press]
+
+
+@dataclass
+class Stepped(Contact):
+    """The same phases, followed by solve_ivp and ended by its events."""
+
+    method: str = "DOP853"
+    rtol: float = 1e-10
+    evaluations: int = 0
+
+    def go(self, grip: Any, press: Any) -> Any:
+        """One phase."""
+        flow, (names, guards) = self.flow(grip, press), self._guards(grip, press)
+
+        def event(weights: np.ndarray, constant: float) -> Callable[[float, np.ndarray], float]:
+            row = weights @ flow.rows
+
+            def falls(_: float, z: np.ndarray) -> float:
+                return float(row @ z + constant)
+
+            falls.terminal, falls.direction = True, -1.0  # type: ignore[attr-defined]
+            return falls
+
+        found = solve_ivp(
+            lambda _, z: flow.A @ z,
+            (self.time, self.time + 20 * self.laws.time),
+            self.z,
+            method=self.method,
+            rtol=self.rtol,
+            atol=self.rtol * 1e-2 * self.laws.speed,
+            events=[event(*pair) for pair in zip(guards.weights, guards.constants, strict=True)],
+            **({"jac": flow.A} if self.method == "Radau" else {}),
+        )
+        self.evaluations += found.nfev
+        guard = next(i for i, hits in enumerate(found.t_events) if len(hits))
+        self._take(Arrival(float(found.t[-1]), found.y[:, -1], guard, []), grip, press, self.impulse)
+        return self._next(names[guard], grip, press)
+
+
+@cache
+def stroke(offset: float) -> tuple[TipModes, Laws]:
+    """Tip modes and laws of one of the strokes."""
+    scene = common.scene(common.cue("kim"), offset=offset)
+    ball, tip = scene.ball, scene.tip
+    laws = Laws(
+        math.asin(offset),
+        ball.mass,
+        ball.inertia,
+        scene.stiffness,
+        tip.restitution,
+        tip.friction,
+        scene.contact_time,
+        1.0,
+    )
+    return tip_modes_of(scene, AT), laws
+
+
+def struck(offset: float, kind: type[Contact] = Contact, **options: Any) -> Contact:
+    """A stroke, from first touch to separation."""
+    contact = kind(*stroke(offset), **options)
+    run(contact)
+    return contact
+
+
+def answer(contact: Contact) -> np.ndarray:
+    """Squirt, rad, and ball speed over the cue's."""
+    (p_t, p_n), laws = contact.impulse, contact.laws
+    return np.array([laws.phi - math.atan2(p_t, p_n), math.hypot(p_t, p_n) / laws.ball_mass])
+
+
+def worst(kind: type[Contact], **options: Any) -> float:
+    """Largest error of squirt or speed over the strokes, against the exact phases."""
+    exact = [answer(struck(offset)) for offset in OFFSETS]
+    found = [answer(struck(offset, kind, **options)) for offset in OFFSETS]
+    return float(np.abs(np.array(found) - exact).max())
+
+
+@cache
+def tolerance(method: str) -> tuple[float, float]:
+    """The loosest rtol of a solver that holds the accuracy on all strokes, and its worst error."""
+    for rtol in TOLERANCES[method]:
+        error = worst(Stepped, method=method, rtol=rtol)
+        if error < ACCURACY:
+            return rtol, error
+    raise RuntimeError(f"{method} does not reach {ACCURACY} with an rtol down to {rtol}")
+
+
+def bound(error: float) -> str:
+    """The power of ten just above an error."""
+    return f"1e{math.ceil(math.log10(max(error, 1e-13)))}"
+
+
+def report() -> str:
+    """The values, without seconds."""
+    lines = [
+        "# Exactly propagated phases against a general ODE solver",
+        "",
+        f"Kim's cue, {MODES} modes, T = 1 ms; b/R {', '.join(map(str, OFFSETS))}. Errors are the largest over the",
+        "strokes, of squirt (rad) or ball speed (relative to the cue's), rounded up to a power of ten. What it costs:",
+        "[contact_cost_seconds.md](contact_cost_seconds.md).",
+        "",
+        "| solver | rtol | error below |",
+        "|---|---|---|",
+        f"| exact phases | | {bound(worst(Fine))} |",
+    ]
+    for method in TOLERANCES:
+        rtol, error = tolerance(method)
+        lines.append(f"| solve_ivp {method} | {rtol:.0e} | {bound(error)} |")
+    lines += ["", "| b/R | squirt, degrees | phases |", "|---|---|---|"]
+    for offset in OFFSETS:
+        contact = struck(offset)
+        course = ", ".join(f"{phase.grip} {phase.press}" for phase in contact.phases)
+        lines.append(f"| {offset} | {np.degrees(answer(contact)[0]):.6f} | {course} |")
+    return "\n".join(lines) + "\n"
+
+
+def seconds_of(work: Callable[[], Any], repeats: int) -> float:
+    """Median of the seconds that something takes."""
+    times = []
+    for _ in range(repeats):
+        start = perf_counter()
+        work()
+        times.append(perf_counter() - start)
+    return median(times)
+
+
+def seconds() -> str:
+    """The cost table of this machine; solvers take turns, so that a busy machine is busy for all."""
+    solvers: dict[str, tuple[Callable[[float], Any], int]] = {"exact phases": (struck, 25)}
+    for method in TOLERANCES:
+        rtol = tolerance(method)[0]
+        solvers[f"solve_ivp {method}"] = (lambda b, m=method, r=rtol: struck(b, Stepped, method=m, rtol=r), 5)
+    solvers["solve_ivp Radau"] = (solvers["solve_ivp Radau"][0], 1)
+    cost = {
+        name: [seconds_of(lambda b=b, w=work: w(b), repeats) for b in OFFSETS]
+        for name, (work, repeats) in solvers.items()
+    }
+    matrix = np.random.default_rng(0).normal(size=(50, 50))
+    matrix /= np.linalg.norm(matrix, 2)
+    expm = seconds_of(lambda: la.expm(matrix), 200)
+    exact = np.array(cost["exact phases"])
+    model = next((line.split(":")[1].strip() for line in _cpuinfo() if line.startswith("model name")), "")
+    lines = [
+        "# Seconds of one stroke",
+        "",
+        f"{model or platform.machine()}, {os.cpu_count()} cores, one BLAS thread, Python {platform.python_version()}",
+        f"numpy {np.__version__}, scipy {scipy.__version__}. Medians, milliseconds, at an accuracy of {ACCURACY:.0e}.",
+        "",
+        "| solver | " + " | ".join(f"b/R {b}" for b in OFFSETS) + " | median ratio to exact phases |",
+        "|---|" + "---|" * (len(OFFSETS) + 1),
+    ]
+    for name, times in cost.items():
+        cells = " | ".join(f"{1e3 * t:.2f}" for t in times)
+        lines.append(f"| {name} | {cells} | {np.median(np.array(times) / exact):.1f} |")
+    share = median(exact) / expm
+    lines += [
+        "",
+        f"One scipy.linalg.expm of a 50 x 50 matrix: {1e3 * expm:.3f} ms; a stroke costs {share:.1f} of them.",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _cpuinfo() -> list[str]:
+    path = Path("/proc/cpuinfo")
+    return path.read_text(encoding="utf-8").splitlines() if path.exists() else []
+
+
+def main() -> None:
+    """Write both tables, in a process of one BLAS thread: small products on two can take a hundred times as long."""
+    if any(os.environ.get(name) != "1" for name in THREADS):
+        pinned = {**os.environ, **dict.fromkeys(THREADS, "1")}
+        subprocess.run([sys.executable, "-m", "studies.contact_cost"], env=pinned, cwd=HERE.parent, check=True)
+        return
+    (HERE / "contact_cost.md").write_text(report(), encoding="utf-8")
+    (HERE / "contact_cost_seconds.md").write_text(seconds(), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

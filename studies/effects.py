@@ -1,0 +1,164 @@
+"""What is each effect worth in the ready scenes?
+
+What: every scene of scenes/ as it stands, without each effect it lists and with each it does not list, at the textbook
+values of `cuefem.ablation.TEXTBOOK`: an effect is worth the squirt (ball speed, spin) with it over that without it,
+minus 1. Default resolution. Effects without a usual value (a joint, a mass where none is listed) and Elevation, which
+is the player's, are left out; what a bridge hand is worth in general is in bridge.py, the dome in dome.py.
+Equations: physics.md section 8.
+Writes effects.md and effects.svg beside itself; takes about 40 s.
+"""
+
+from __future__ import annotations
+
+import sys
+from functools import cache
+from importlib import import_module
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from cuefem import Scene, load, strike
+from cuefem.ablation import variants
+
+HERE = Path(__file__).parent
+if str(HERE) not in sys.path:
+    sys.path.append(str(HERE))  # studies are files, not a package
+common = import_module("common")
+
+SCENES = ("kim", "pool_low_deflection", "carom", "snooker", "clay_on_shaft", "break_cue")
+SLOW = SCENES[:-1]  # all but the break
+EFFECTS = (
+    "TipDome",
+    "TipShear",
+    "RollingContact",
+    "AxialWaves",
+    "PowerLawTip",
+    "PointMass",
+    "Support",
+    "StructuralDamping",
+    "SecondHit",
+)
+SMALL = EFFECTS[-3:]
+QUANTITIES = ("squirt", "ball speed", "spin")
+
+
+class Worth(NamedTuple):
+    """What an effect is worth, relative: squirt, ball speed, spin; whether the scene lists it."""
+
+    squirt: float
+    ball_speed: float
+    spin: float
+    listed: bool
+
+
+@cache
+def scene(name: str) -> Scene:
+    """A ready scene."""
+    found = load(HERE / "scenes" / f"{name}.toml")
+    assert isinstance(found, Scene)
+    return found
+
+
+@cache
+def base(name: str) -> Any:
+    """The scene's outcome as it stands."""
+    return strike(scene(name))
+
+
+@cache
+def worth(name: str) -> dict[str, Worth]:
+    """What the effects are worth in a scene."""
+    found = {}
+    for variant in variants(scene(name)):
+        if variant.scene is None or variant.name not in EFFECTS:
+            continue
+        pair = (strike(variant.scene), base(name))
+        without, with_it = pair if variant.listed else pair[::-1]
+        gains = [getattr(with_it, q) / getattr(without, q) - 1 for q in ("squirt", "ball_speed", "spin")]
+        found[variant.name] = Worth(*map(float, gains), variant.listed)
+    return found
+
+
+def span(effect: str, names: tuple[str, ...]) -> tuple[float, float]:
+    """Smallest and largest worth of an effect in squirt, per cent."""
+    found = [100 * worth(name)[effect].squirt for name in names if effect in worth(name)]
+    return min(found), max(found)
+
+
+def cell(name: str, effect: str, quantity: int) -> str:
+    """A worth in per cent, in bold where the scene lists the effect."""
+    if effect not in worth(name):
+        return "–"
+    found = worth(name)[effect]
+    text = f"{100 * found[quantity]:+.1f}".replace("-0.0", "+0.0")
+    return f"**{text}**" if found.listed else text
+
+
+def worth_table(quantity: int) -> str:
+    """Worths of all effects in all scenes, per cent."""
+    rows = [[effect, *(cell(name, effect, quantity) for name in SCENES)] for effect in EFFECTS]
+    return common.table(["effect", *SCENES], rows)
+
+
+def scene_table() -> str:
+    """The scenes."""
+    rows = []
+    for name in SCENES:
+        struck, outcome = scene(name), base(name)
+        stroke = [f"{1e3 * struck.contact_time:.1f}", f"{struck.stroke.offset:g}", f"{struck.stroke.speed:g}"]
+        listed = ", ".join(type(effect).__name__ for effect in struck.effects) or "none"
+        rows.append([name, *stroke, f"{np.degrees(outcome.squirt):.2f}", listed])
+    return common.table(["scene", "T, ms", "b/R", "speed, m/s", "squirt, deg", "effects listed"], rows)
+
+
+def conclusions() -> list[str]:
+    """What the numbers say, in two sentences."""
+    dome, shear, turning, axial, power = (span(effect, SLOW) for effect in EFFECTS[:5])
+    hard = {effect: 100 * worth("break_cue")[effect].squirt for effect in EFFECTS if effect in worth("break_cue")}
+    least = max(abs(x) for effect in SMALL for x in span(effect, SCENES))
+    return [
+        f"The dome of the tip is worth the most in every scene but the break, {dome[0]:+.0f} to {dome[1]:+.0f} % of "
+        f"squirt, then its shear, {shear[0]:+.0f} to {shear[1]:+.0f} %, the turning contact, {turning[0]:+.0f} to "
+        f"{turning[1]:+.0f} %, waves along the cue, {axial[0]:+.0f} to {axial[1]:+.0f} %, and the power law, "
+        f"{power[0]:+.0f} to {power[1]:+.0f} %; in the break, at 11 m/s, the turning contact is "
+        f"({hard['RollingContact']:+.0f} %, beyond where it is meant to hold).",
+        "A bridge hand of 5000 N/m, the wood's damping and a second hit are worth less than "
+        f"{np.ceil(10 * least) / 10:.1f} % in all of them: no scene needs them for its squirt.",
+    ]
+
+
+def report() -> str:
+    """The committed table."""
+    parts = ["# What each effect is worth", *conclusions(), "## The scenes", scene_table()]
+    for i, quantity in enumerate(QUANTITIES):
+        title = f"## Change of {quantity} by the effect, per cent"
+        parts += [title, "Bold: listed by the scene.", worth_table(i)]
+    return "\n\n".join(part.rstrip("\n") for part in parts) + "\n"
+
+
+def figures(folder: Path) -> None:
+    """Draw into ``folder``."""
+    with common.figure(Path(folder) / "effects.svg", (1, 1), (8, 4.8)) as axes:
+        for i, name in enumerate(SCENES):
+            found = {effect: 100 * worth(name)[effect].squirt for effect in EFFECTS if effect in worth(name)}
+            places = [EFFECTS.index(effect) + 0.13 * (i - 2.5) for effect in found]
+            axes.barh(places, list(found.values()), height=0.12, color=f"C{i}", label=name)
+        axes.set_yticks(range(len(EFFECTS)), EFFECTS)
+        axes.invert_yaxis()
+        axes.axvline(0, color="k", lw=0.8)
+        axes.grid(visible=False, axis="y")
+        axes.set(
+            xlabel="change of squirt by the effect, per cent", title="What each effect is worth in the ready scenes"
+        )
+        axes.legend(fontsize=8, loc="lower right")
+
+
+def main() -> None:
+    """Write the table and the figure."""
+    (HERE / "effects.md").write_text(report(), encoding="utf-8")
+    figures(HERE)
+
+
+if __name__ == "__main__":
+    main()
