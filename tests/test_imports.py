@@ -51,7 +51,6 @@ ORDER = [
     "validation",
     "io",
     "report",
-    "sweep_command",
     "cli",
 ]
 HOMES = {
@@ -62,8 +61,8 @@ HOMES = {
     "pydantic": {"io"},
     "pydantic_core": {"quantity"},
     "tomlkit": {"io"},
-    "click": {"cli", "sweep_command"},
-    "rich": {"report", "cli", "sweep_command"},
+    "click": {"cli"},
+    "rich": {"report", "cli"},
     "jinja2": {"report"},
     "sqlite3": {"io"},
     "pyarrow": {"io"},

@@ -26,7 +26,7 @@ pytestmark = pytest.mark.heavy
 
 ROOT = str(Path(__file__).parents[1])
 ENVIRONMENT = os.environ | {"PYTHONPATH": ROOT}
-STUDY = STRUCK.replace("count = 150", "count = 6000")
+STUDY = STRUCK.replace("count = 150", "count = 3000")
 
 
 @pytest.fixture(scope="module")
@@ -39,7 +39,7 @@ def whole(study: Path) -> list[tuple[Any, ...]]:
     """The table of an uninterrupted sweep."""
     call("sweep", study, "--output", study.with_name("whole.sqlite"))
     rows = rows_of(study.with_name("whole.sqlite"))
-    assert len(rows) == 6000
+    assert len(rows) == 3000
     return rows
 
 

@@ -1,0 +1,69 @@
+"""The commands: from a cue's file to its modes, end mass and squirt."""
+
+from __future__ import annotations
+
+import os
+import sys
+from contextlib import suppress
+from typing import Any
+
+import click
+
+from cuefem.cli.cue import cost, effects, end_mass, modes, report, strike
+from cuefem.cli.files import convert, materials, schema
+from cuefem.cli.sweep import sweep
+from cuefem.cli.validate import validate
+
+# Before NumPy is loaded: small dense matrices gain nothing from BLAS threads, and two of them on a busy machine can be
+# a hundred times slower than one.
+for _threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+    os.environ.setdefault(_threads, "1")
+
+
+class _OneLine(click.Group):
+    """Bad input ends in one line on stderr and status 2, a numerical failure in one and status 1; no tracebacks."""
+
+    def main(self, *arguments: Any, **options: Any) -> Any:
+        try:
+            return super().main(*arguments, **options)
+        except OSError as error:  # what could not be printed, onto a full disk for one; click ends broken pipes itself
+            _forget_output()
+            with suppress(OSError):
+                click.echo(f"cuefem: {error.filename or 'cannot write'}: {error.strerror or error}", err=True)
+            sys.exit(1)
+
+    def invoke(self, ctx: click.Context) -> Any:
+        import numpy as np  # not for --help
+
+        try:
+            with np.errstate(over="raise", divide="raise", invalid="raise"):
+                return super().invoke(ctx)
+        except (ArithmeticError, MemoryError) as error:
+            what = "sizes, masses or times are out of all proportion"
+            click.echo(f"cuefem: {what}, so that numbers overflow ({type(error).__name__})", err=True)
+            raise click.exceptions.Exit(2) from None
+        except (ValueError, RuntimeError) as error:
+            if isinstance(error, click.exceptions.Exit | click.exceptions.Abort):
+                raise
+            click.echo(f"cuefem: {' '.join(str(error).split())}", err=True)
+            raise click.exceptions.Exit(2 if isinstance(error, ValueError) else 1) from None
+
+
+def _forget_output() -> None:
+    """Let what is left for stdout go nowhere, so that Python does not fail on it once more when it ends."""
+    with suppress(OSError, ValueError):
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
+
+
+@click.group(cls=_OneLine, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(package_name="cuefem")
+def main() -> None:
+    """From a cue shaft's drawing to its effective end mass and squirt.
+
+    FILE is a cue or a scene (.toml), a lathe profile (.csv) or a mesh (.vtk, .vtu).
+    """
+
+
+for _command in (modes, end_mass, strike, effects, cost, report, convert, schema, validate, materials, sweep):
+    main.add_command(_command)

@@ -1,0 +1,143 @@
+"""What commands share: a file and its options to a scene; tables for people, --json for programs."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+if TYPE_CHECKING:
+    from cuefem.quantity import Quantity
+    from cuefem.scene import Scene
+
+DEFAULT_OFFSET = 0.3  # of a bare cue file, b/R
+
+
+def file_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The file and what every command on a file takes."""
+    for option in (
+        click.option("--json", "as_json", is_flag=True, help="SI numbers as JSON."),
+        click.option("--body-mass", metavar="MASS", help='Mass of the cue behind FILE\'s segments, e.g. "420 g".'),
+        click.option("--material", metavar="NAME", help="Material of a .csv profile (see `cuefem materials`)."),
+        click.argument("file", type=click.Path(path_type=Path)),
+    ):
+        command = option(command)
+    return command
+
+
+def contact_time_option(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The option that replaces the scene's contact time."""
+    return click.option("--contact-time", metavar="TIME", help='Head-on contact time, e.g. "2 ms".')(command)
+
+
+def offset_option(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The option that replaces the stroke's offset."""
+    return click.option("--offset", metavar="B/R", help="Offset over ball radius, in (-1, 1).")(command)
+
+
+def measured(file: Path, option: str, given: str, wanted: Quantity) -> float:
+    """An option's text as a checked SI number."""
+    from cuefem.io import InputError
+    from cuefem.io.units import quantity
+
+    value: Any = given
+    with suppress(ValueError):
+        value = float(given) if wanted.unit == "" else value
+    try:
+        return quantity(wanted, value)
+    except ValueError as error:
+        raise InputError(file, option, str(error)) from None
+
+
+def scene_of(file: Path, given: dict[str, Any]) -> tuple[Scene, list[str]]:
+    """The scene that a command computes, and what was assumed because nobody said it."""
+    from cuefem.cue import Cue
+    from cuefem.io import load
+    from cuefem.io.assumed import assumed, unusual
+    from cuefem.scene import Scene, Stroke
+
+    found = load(file, material=given["material"])
+    said = {name for name, value in given.items() if value is not None}
+    notes = assumed(file, said)
+    if isinstance(found, Cue):
+        found = Scene(found, stroke=Stroke(offset=DEFAULT_OFFSET))
+        offset = "" if "offset" in said else f", offset b/R {DEFAULT_OFFSET:g}"
+        notes.append(f"default ball and tip{offset}")
+    scene = _with_options(found, file, given)
+    for line in unusual(scene):
+        click.echo(f"unusual: {line}", err=True)
+    return scene, notes
+
+
+def _with_options(scene: Scene, file: Path, given: dict[str, Any]) -> Scene:
+    """The scene with what the command's options replace."""
+    from cuefem.cue import Cue
+    from cuefem.io import InputError
+    from cuefem.quantity import Quantity
+
+    if given.get("offset") is not None:
+        offset = measured(file, "--offset", given["offset"], Quantity("", "(-1, 1)"))
+        scene = replace(scene, stroke=replace(scene.stroke, offset=offset))
+    if given.get("contact_time") is not None:
+        time = measured(file, "--contact-time", given["contact_time"], Quantity("s", "(0, inf)"))
+        scene = replace(scene, tip=replace(scene.tip, contact_time=time, stiffness=None))
+    if given["body_mass"] is not None:
+        mass = measured(file, "--body-mass", given["body_mass"], Quantity("kg", "[0, inf)"))
+        if not isinstance(scene.cue, Cue):
+            raise InputError(file, "--body-mass", "must be left out: a lumped cue is whole")
+        scene = replace(scene, cue=replace(scene.cue, body_mass=mass))
+    return scene
+
+
+def show(file: Path, given: dict[str, Any], results: Callable[[Scene], Any], tables: Callable[..., Any]) -> None:
+    """Compute all of it first, then print it all: as JSON, or as a heading and tables."""
+    from cuefem.io import InputError
+    from cuefem.report.records import UNITS, plain, scene_record
+    from cuefem.report.tables import cue_line, effect_words
+
+    scene, notes = scene_of(file, given)
+    try:
+        about, found = scene_record(scene), results(scene)
+    except ValueError as error:  # what only shows when it is computed, such as an effect off the cue
+        raise InputError(file, "", str(error)) from None
+    if given["as_json"]:
+        print_json({"file": str(file), "assumed": notes, "scene": about, **found, "units": UNITS})
+        return
+    lines = [f"{file.name}: {cue_line(plain(about['cue']))}"]
+    if scene.effects:
+        lines.append(f"effects: {', '.join(map(effect_words, scene.effects))}")
+    if notes:
+        lines.append(f"assumed: {'; '.join(notes)}")
+    print_all([*lines, "", *tables(found, about)])
+
+
+def print_json(record: Any) -> None:
+    """Print a record for programs."""
+    from cuefem.report.records import plain
+
+    click.echo(json.dumps(plain(record), indent=2, allow_nan=False, ensure_ascii=False))
+
+
+def print_all(things: Sequence[Any]) -> None:
+    """Print lines and tables for people."""
+    from rich.console import Console
+
+    console = Console(highlight=False)
+    if not console.is_terminal:
+        console.width = 120  # files and pipes have no width: do not cut tables
+    for thing in things:
+        console.print(thing, markup=False) if isinstance(thing, str) else console.print(thing)
+
+
+def followed(work: Sequence[Any]) -> Iterable[Any]:
+    """The work, with a bar on stderr where a person looks on."""
+    from rich.console import Console
+    from rich.progress import track
+
+    console = Console(stderr=True)
+    return track(work, "computing", console=console, transient=True) if console.is_terminal else work

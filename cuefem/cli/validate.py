@@ -1,0 +1,56 @@
+"""`cuefem validate`: every claim of every study."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from cuefem.cli.common import print_all, print_json
+
+if TYPE_CHECKING:
+    from cuefem.validation import Claim
+
+
+@click.command()
+@click.option("--studies", type=click.Path(path_type=Path), default=Path("studies"), show_default=True)
+@click.option("--json", "as_json", is_flag=True, help="As JSON.")
+def validate(studies: Path, as_json: bool) -> None:
+    """What the sources print beside what follows: every claim of every study, in a clone of the repository."""
+    from cuefem.report import claims_record, claims_table
+    from cuefem.report.tables import VERDICT_WORDS
+
+    found = claims_record(_claims(studies))
+    if as_json:
+        print_json({"claims": found})
+        return
+    counts = Counter(claim["verdict"] for claim in found)
+    totals = ", ".join(f"{count} {verdict}" for verdict, count in sorted(counts.items()))
+    print_all([claims_table(found), totals, VERDICT_WORDS])
+
+
+def _claims(folder: Path) -> list[tuple[str, Claim]]:
+    """The claims of every study in a folder that defines claims(), with the study's name."""
+    from cuefem.io import InputError, studies_with
+
+    clone = "they are in a clone of cuefem's repository: run there, or name their folder with --studies"
+    if not folder.is_dir():
+        raise InputError(folder, "", f"cannot be read: no such folder of studies; {clone}")
+    files = studies_with(folder, "claims")
+    if not files:
+        raise InputError(folder, "", f"must hold studies (.py) that define claims(), got none; {clone}")
+    if (above := str(folder.resolve().parent)) not in sys.path:
+        sys.path.insert(0, above)  # studies import one another as studies.NAME
+    found = []
+    for file in files:
+        spec = importlib.util.spec_from_file_location(f"{folder.resolve().name}.{file.stem}", file)
+        assert spec is not None and spec.loader is not None  # noqa: PT018
+        study = importlib.util.module_from_spec(spec)
+        sys.modules[spec.name] = study  # dataclasses look their module up
+        spec.loader.exec_module(study)
+        found += [(file.stem, claim) for claim in study.claims()]
+    return found
