@@ -11,7 +11,6 @@ from itertools import islice, pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
-from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from cuefem.accuracy import Rung, ladder
 from cuefem.cue import Cue
@@ -28,6 +27,7 @@ from cuefem.report.drawings import (
 )
 from cuefem.report.effects import seconds_words
 from cuefem.report.figures import Axis, Chart, Curve, Mark, Span, chart
+from cuefem.report.fragments import environment
 from cuefem.report.records import PAPER_CUE_END_MASS, Record, end_mass_record, squirt_record, strike_record
 from cuefem.report.solve import ended_tip_modes
 from cuefem.report.tables import assumptions, degrees, effect_words, grams, millimetres, plain_cue_line
@@ -57,14 +57,7 @@ def page(name: str, scene: Scene, *, rtol: float | None = None, notes: Sequence[
     rtol = DEFAULT_RTOL if rtol is None else rtol
     for stage in track(_stages(scene, rtol)):
         found[stage.name] = stage.work()
-    environment = Environment(
-        loader=PackageLoader("cuefem", "report"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    template = environment.get_template("page.html.j2")
+    template = environment().get_template("page.html.j2")
     asked = f"{100 * rtol:.3g} %"
     return template.render(name=name, notes=list(notes), asked=asked, **_context(scene, found)) + "\n"
 
