@@ -33,8 +33,12 @@ CHANGES = {
     "an unknown material": ('"ash"]', '"ahs"]', "vary[2].values[1]: no material is called 'ahs'; nearest: ash"),
     "a number for a material": ('"ash"]', "5]", "must be the name of a material"),
     "a range of materials": ('values = ["hard maple", "ash"]', 'low = "ash"', "vary[2]: must have values, names"),
-    "values and ends": ("count = 16", 'count = 16\nvalues = ["1 mm"]', "must have values, or low and high; got both"),
-    "neither": ('values = ["0.8 ms", "1.2 ms"]', "", "must have values, or low and high; got neither"),
+    "values and ends": (
+        "count = 16",
+        'count = 16\nvalues = ["1 mm"]',
+        "or middle and sd; got values, and low and high",
+    ),
+    "neither": ('values = ["0.8 ms", "1.2 ms"]', "", "or middle and sd; got none of them"),
     "an unknown spacing": ("count = 16", 'count = 16\nspacing = "log"', "must be linear or logarithmic; got 'log'"),
     "logarithms of zero": ("count = 16", 'count = 16\nspacing = "logarithmic"', "low must be above 0"),
     "a misspelt key": ("count = 16", "cuont = 16", "did you mean 'count'?"),
@@ -49,6 +53,29 @@ CHANGES = {
     "a factor of a name": ('"ash"]', '"ash"]\nfactor = true', "factor must multiply a number"),
     "a factor of nothing": ('"tip.contact_time"', '"tip.stiffness"\nfactor = true', "factor must multiply a number"),
     "a factor that is none": ("count = 16", 'count = 16\nfactor = "yes"', "vary[0].factor: must be true or false"),
+    "a shift of a name": ('"ash"]', '"ash"]\nshift = true', "shift must move a number"),
+    "a factor and a shift": ('"0 mm"\nhigh = "15 mm"', "1\nhigh = 2\nfactor = true\nshift = true", "give one"),
+    "a shift without a unit": (
+        '"0 mm"\nhigh',
+        "0\nshift = true\nhigh",
+        "low: must be in (-inf, inf) m, a length",
+    ),
+    "taken from no field": (
+        "count = 16",
+        'count = 16\ntaken_from = "cue.lenght"',
+        "taken_from: must name a field",
+    ),
+    "taken from a mass": (
+        "count = 16",
+        'count = 16\ntaken_from = "ball.mass"',
+        "must name numbers of the unit",
+    ),
+    "taken from a number": (
+        "count = 16",
+        "count = 16\ntaken_from = 5",
+        "must be a field, or a list of them",
+    ),
+    "a normal range of a grid": ('low = "0 mm"\nhigh = "15 mm"\ncount = 16', 'middle = "9 mm"', "give [sample]"),
 }
 
 
@@ -60,12 +87,21 @@ def test_a_study_that_is_none(tmp_path: Path, old: str, new: str, words: str) ->
     assert not (tmp_path / "study.sqlite").exists()
 
 
+BORES = 'low = "0 mm"\nhigh = "13 mm"'
 SAMPLES = {
     "an unknown method": ('"sobol"', '"sobel"', "sample: method must be one of grid, sobol, halton"),
     "no seed": ("seed = 5", "", "sample.seed: must be given, a whole number; got nothing"),
     "a negative seed": ("seed = 5", "seed = -5", "sample: seed must be a whole number >= 0; got -5"),
     "no designs": ("count = 150", "count = 0", "sample: count must be a whole number >= 1; got 0"),
     "a misspelt key": ("seed = 5", "sed = 5", "did you mean 'seed'?"),
+    "no width": (BORES, 'middle = "9 mm"', "vary[0].sd: must be given: a normal range has middle and sd"),
+    "a negative width": (BORES, 'middle = "9 mm"\nsd = "-1 mm"', "vary[0].sd: must be in (0, inf) m; got"),
+    "logarithms of none": (BORES, 'middle = "0 mm"\nsd = 0.1\nspacing = "logarithmic"', "middle must be above 0"),
+    "a width with a unit": (
+        BORES,
+        'middle = "9 mm"\nsd = "1 mm"\nspacing = "logarithmic"',
+        "vary[0].sd: must be a bare number in (0, inf)",
+    ),
 }
 
 

@@ -2,7 +2,7 @@
 
 from cuefem.design.evaluation import Evaluation, common_resolution, evaluate
 from cuefem.design.paths import paths, replaced
-from cuefem.design.ranges import METHODS, Levels, Sample, Span
+from cuefem.design.ranges import METHODS, Levels, Normal, Sample, Span
 from cuefem.design.responses import KINDS, Response
 from cuefem.design.study import Study, Vary
 from cuefem.design.sweep import Row, Store, sweep
@@ -13,6 +13,7 @@ __all__ = [
     "METHODS",
     "Evaluation",
     "Levels",
+    "Normal",
     "Pool",
     "Response",
     "Row",

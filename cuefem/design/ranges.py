@@ -1,10 +1,12 @@
-"""Ranges of values, and how designs are drawn from them: lists, intervals, quasi-random samples."""
+"""Ranges of values, and how designs are drawn from them: lists, intervals, distributions, quasi-random samples."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
+from statistics import NormalDist
 from typing import Any
 
 import numpy as np
@@ -14,6 +16,8 @@ from cuefem.quantity import check_count
 
 # The most points of a Sobol sequence of 30 bits.
 MOST = 2**30
+# Standard deviations at which a normal distribution is cut: it takes 0.05 % off its standard deviation.
+CUT = 4.0
 
 Value = float | str
 
@@ -80,6 +84,52 @@ class Span:
     def ends(self) -> tuple[float, ...]:
         """The two ends."""
         return self.low, self.high
+
+
+@dataclass(frozen=True)
+class Normal:
+    """A normal distribution of numbers in SI, cut `CUT` standard deviations from its middle; a grid has the middle.
+
+    logarithmic: the number's natural logarithm is normal. Then ``middle`` is its median, and ``sd`` a pure number, that
+    of the logarithm: nearly the coefficient of variation.
+    """
+
+    middle: float
+    sd: float
+    logarithmic: bool = False
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.middle) and math.isfinite(self.sd) and self.sd > 0):
+            raise ValueError(f"sd must be above 0, and it and the middle finite; got {self.middle} and {self.sd}")
+        if self.logarithmic and self.middle <= 0:
+            raise ValueError(f"middle must be above 0 where the spacing is logarithmic; got {self.middle}")
+
+    def __len__(self) -> int:
+        return 1
+
+    def level(self, i: int) -> float:
+        """The middle."""
+        return self.middle
+
+    def quantile(self, u: float) -> float:
+        """The value below which a share ``u`` in [0, 1] of all lies."""
+        if u in (0.0, 1.0):  # exactly
+            return self.ends[int(u)]
+        tail = self._standard.cdf(-CUT)
+        return self._at(self._standard.inv_cdf(tail + u * (1 - 2 * tail)))
+
+    @property
+    def ends(self) -> tuple[float, ...]:
+        """Where it is cut."""
+        return self._at(-CUT), self._at(CUT)
+
+    @cached_property
+    def _standard(self) -> NormalDist:
+        return NormalDist()
+
+    def _at(self, deviations: float) -> float:
+        moved = self.sd * deviations
+        return self.middle * math.exp(moved) if self.logarithmic else self.middle + moved
 
 
 @dataclass(frozen=True)

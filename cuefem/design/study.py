@@ -16,7 +16,7 @@ import numpy as np
 from cuefem.cue import Cue
 from cuefem.design.evaluation import common_resolution
 from cuefem.design.paths import Path, paths, quantity_at, replaced, spelt, value_at
-from cuefem.design.ranges import Levels, Sample, Span, Value
+from cuefem.design.ranges import Levels, Normal, Sample, Span, Value
 from cuefem.design.responses import Response
 from cuefem.materials import material
 from cuefem.scene import Resolution, Scene
@@ -27,20 +27,26 @@ BLOCK, STRUCK_BLOCK = 256, 16
 
 @dataclass(frozen=True)
 class Vary:
-    """What varies: fields by path, all set to one value of a range; with ``factor``, all multiplied by it.
+    """What varies: fields by path, all set to one value of a range; with ``factor``, all multiplied by it; with
+    ``shift``, moved by it.
 
     name: of its column; the path where there is one. Values are SI numbers (pure numbers for a factor) or names of
-    materials. "[*]" in a path stands for every item of a list.
+    materials. "[*]" in a path stands for every item of a list. taken_from: fields that lose what the first of the paths
+    gains: a length taken from the next segment's leaves the cue as long as it was, and the joint between them moves.
     """
 
     paths: tuple[str, ...]
-    range: Levels | Span
+    range: Levels | Span | Normal
     name: str = ""
     factor: bool = False
+    shift: bool = False
+    taken_from: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if not self.paths:
             raise ValueError("path must name a field; got none")
+        if self.factor and self.shift:
+            raise ValueError("factor and shift: give one")
         object.__setattr__(self, "name", self.name or ", ".join(self.paths))
 
     @property
@@ -55,10 +61,21 @@ class Vary:
             self._check_field(base, path)
         return found
 
+    def givers(self, base: Scene) -> tuple[Path, ...]:
+        """The fields of `taken_from`; ValueError where one is no number, or has another unit than what it gives to."""
+        found = tuple(path for text in self.taken_from for path in paths(base, text))
+        gainer = self.fields(base)[0]
+        for path in found:
+            numbers = all(isinstance(value_at(base, each), float) for each in (path, gainer))
+            if not numbers or quantity_at(base, path).unit != quantity_at(base, gainer).unit:  # type: ignore[union-attr]
+                raise ValueError(f"taken_from must name numbers of the unit of what varies; got {spelt(path)}")
+        return found
+
     def _check_field(self, base: Scene, path: Path) -> None:
         wanted, values = quantity_at(base, path), self.range.ends
-        if self.factor and (wanted is None or value_at(base, path) is None):
-            raise ValueError(f"factor must multiply a number; got {spelt(path)}, which holds none")
+        moves = "factor must multiply" if self.factor else "shift must move" if self.shift else ""
+        if moves and (wanted is None or value_at(base, path) is None):
+            raise ValueError(f"{moves} a number; got {spelt(path)}, which holds none")
         if wanted is None and not all(isinstance(value, str) for value in values):
             raise ValueError(f"{spelt(path)} takes names of materials; got {values[0]!r}")
         if wanted is not None and any(isinstance(value, str) for value in values):
@@ -71,6 +88,15 @@ class Vary:
         if len(units) > 1:
             raise ValueError(f"path must name fields of one unit; got {' and '.join(map(repr, units))}")
         return units[0]
+
+    @property
+    def how(self) -> str:
+        """What is done with its value: "set", "factor" or "shift"."""
+        return "factor" if self.factor else "shift" if self.shift else "set"
+
+    def applied(self, value: float, before: Any) -> float:
+        """A field that held ``before``, with this value of the range."""
+        return before * value if self.factor else before + value if self.shift else value
 
 
 @dataclass(frozen=True)
@@ -100,13 +126,14 @@ class Study:
             raise ValueError(f"{lacking[0]} needs a cue of segments; got a lumped cue")
 
     def _check_fields(self) -> None:
-        seen: set[tuple[Path, bool]] = set()
+        seen: set[tuple[Path, str]] = set()
         for vary in self.vary:
             vary.unit(self.base)
+            vary.givers(self.base)
             for path in vary.fields(self.base):
-                if (path, vary.factor) in seen:
+                if (path, vary.how) in seen:
                     raise ValueError(f"a field varies once; got {spelt(path)} twice")
-                seen.add((path, vary.factor))
+                seen.add((path, vary.how))
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -149,22 +176,34 @@ class Study:
     def _fields(self) -> tuple[tuple[Path, ...], ...]:
         return tuple(vary.fields(self.base) for vary in self.vary)
 
+    @cached_property
+    def _givers(self) -> tuple[tuple[Path, ...], ...]:
+        return tuple(vary.givers(self.base) for vary in self.vary)
+
     def scene(self, values: tuple[Value, ...]) -> Scene:
         """The design of these values; ValueError where there is none, such as a bore wider than its shaft."""
         return self._made(dict(enumerate(values)))
 
     def _made(self, values: dict[int, Value]) -> Scene:
-        """The base scene with some of what varies at a value: whole materials first, then numbers, then factors."""
-        named, numbers = dict[Path, Any](), dict[Path, Any]()
-        for i, value in values.items():
-            if isinstance(value, str):
-                named |= dict.fromkeys(self._fields[i], material(value))
-            elif not self.vary[i].factor:
-                numbers |= dict.fromkeys(self._fields[i], value)
+        """The base scene with some of what varies at a value: whole materials first, then numbers, then factors, then
+        shifts, and last what is taken."""
+        named = {p: material(v) for i, v in values.items() if isinstance(v, str) for p in self._fields[i]}
         scene: Scene = replaced(self.base, named) if named else self.base
-        for i, value in values.items():
-            if self.vary[i].factor:
-                numbers |= {path: numbers.get(path, value_at(scene, path)) * value for path in self._fields[i]}
+        numbers, taken = dict[Path, Any](), list[tuple[Path, float]]()
+
+        def now(path: Path) -> Any:
+            return numbers.get(path, value_at(scene, path))
+
+        for how in ("set", "factor", "shift"):
+            for i, value in values.items():
+                vary, fields = self.vary[i], self._fields[i]
+                if isinstance(value, str) or vary.how != how:
+                    continue
+                before = [now(path) for path in fields]
+                numbers |= {p: vary.applied(value, old) for p, old in zip(fields, before, strict=True)}
+                taken += [(path, numbers[fields[0]] - before[0]) for path in self._givers[i]]
+        for path, gain in taken:
+            numbers[path] = now(path) - gain
         return replaced(scene, numbers) if numbers else scene
 
     @cached_property

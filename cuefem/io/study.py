@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from cuefem.cue import Cue
-from cuefem.design import METHODS, Levels, Response, Sample, Span, Study, Vary, paths
+from cuefem.design import METHODS, Levels, Normal, Response, Sample, Span, Study, Vary, paths
 from cuefem.design.paths import quantity_at, value_at
 from cuefem.io.errors import InputError, shown
 from cuefem.io.schema import build, joined, unknown_key
@@ -16,7 +16,9 @@ from cuefem.quantity import Quantity
 from cuefem.scene import Resolution, Scene, Stroke
 
 KEYS = ["scene", "responses", "vary", "sample", "resolution"]
-VARY_KEYS = ["path", "name", "values", "low", "high", "count", "spacing", "factor"]
+VARY_KEYS = [
+    *("path", "name", "values", "low", "high", "count", "spacing", "middle", "sd", "factor", "shift", "taken_from"),
+]
 SAMPLE_KEYS = ["method", "count", "seed"]
 FACTOR = Quantity("", "(0, inf)")
 
@@ -82,38 +84,53 @@ def _vary(table: Any, base: Scene, path: Path, i: int, sample: Any) -> Vary:
     if not isinstance(texts, list) or not texts or not all(isinstance(text, str) for text in texts):
         problem = f'must be a field such as "cue.segments[0].tip_bore", or a list of them; got {shown(named)}'
         raise InputError(path, joined(key, "path"), problem)
-    for name, kind, what in (("name", str, "a text"), ("factor", bool, "true or false")):
+    for name, kind, what in (("name", str, "a text"), *((n, bool, "true or false") for n in ("factor", "shift"))):
         if name in table and not isinstance(table[name], kind):
             raise InputError(path, joined(key, name), f"must be {what}; got {shown(table[name])}")
-    factor = bool(table.get("factor", False))
-    wanted = _wanted(texts, base, factor, path, joined(key, "path"))
+    how = {name: bool(table.get(name, False)) for name in ("factor", "shift")}
+    wanted = _wanted(texts, base, how, path, joined(key, "path"))
     drawn = _range(table, wanted, path, key, sample is not None)
-    made = Vary(tuple(texts), drawn, table.get("name", ""), factor)
+    giver = table.get("taken_from", [])
+    givers = [giver] if isinstance(giver, str) else giver
+    if not isinstance(givers, list) or not all(isinstance(text, str) for text in givers):
+        raise InputError(path, joined(key, "taken_from"), f"must be a field, or a list of them; got {shown(giver)}")
     try:
-        made.unit(base)
+        made = Vary(tuple(texts), drawn, table.get("name", ""), taken_from=tuple(givers), **how)
     except ValueError as error:
-        raise InputError(path, joined(key, "path"), str(error)) from None
+        raise InputError(path, key, str(error)) from None
+    for name, check in (("path", made.unit), ("taken_from", made.givers)):
+        try:
+            check(base)
+        except ValueError as error:
+            raise InputError(path, joined(key, name), str(error)) from None
     return made
 
 
-def _wanted(texts: list[str], base: Scene, factor: bool, path: Path, key: str) -> Quantity | None:
+def _wanted(texts: list[str], base: Scene, how: dict[str, bool], path: Path, key: str) -> Quantity | None:
     """Unit and bounds of the values; None for names of materials."""
     try:
         field = next(one for text in texts for one in paths(base, text))
     except ValueError as error:
         raise InputError(path, key, str(error)) from None
-    if not factor:
-        return quantity_at(base, field)
-    if quantity_at(base, field) is None or value_at(base, field) is None:
-        raise InputError(path, key, f"factor must multiply a number; got {texts[0]}, which holds none")
-    return FACTOR
+    held = quantity_at(base, field)
+    if not any(how.values()):
+        return held
+    if held is None or value_at(base, field) is None:
+        word = "factor must multiply" if how["factor"] else "shift must move"
+        raise InputError(path, key, f"{word} a number; got {texts[0]}, which holds none")
+    return FACTOR if how["factor"] else Quantity(held.unit)
 
 
-def _range(table: dict[str, Any], wanted: Quantity | None, path: Path, key: str, sampled: bool) -> Levels | Span:
-    ends = {"low", "high", "count", "spacing"} & set(table)
-    if ("values" in table) == bool(ends):
-        got = "both" if ends else "neither"
-        raise InputError(path, key, f"must have values, or low and high; got {got}")
+def _range(
+    table: dict[str, Any], wanted: Quantity | None, path: Path, key: str, sampled: bool
+) -> Levels | Span | Normal:
+    kinds = {"values": {"values"}, "low and high": {"low", "high", "count"}, "middle and sd": {"middle", "sd"}}
+    given = [kind for kind, keys in kinds.items() if keys & set(table)]
+    if len(given) != 1:
+        got = ", and ".join(given) or "none of them"
+        raise InputError(path, key, f"must have values, or low and high, or middle and sd; got {got}")
+    if given == ["middle and sd"]:
+        return _normal(table, wanted, path, key, sampled)
     if "values" in table:
         values = table["values"]
         if not isinstance(values, list) or not values:
@@ -145,18 +162,42 @@ def _span(table: dict[str, Any], wanted: Quantity | None, path: Path, key: str, 
         if name not in table:
             raise InputError(path, joined(key, name), "must be given, beside low and high; got nothing")
     low, high = (_value(table[name], wanted, path, joined(key, name)) for name in ("low", "high"))
-    spacing = table.get("spacing", "linear")
-    if spacing not in ("linear", "logarithmic"):
-        raise InputError(path, joined(key, "spacing"), f"must be linear or logarithmic; got {shown(spacing)}")
+    logarithmic = _spacing(table, path, key)
     assert isinstance(low, float)
     assert isinstance(high, float)
     if not low < high:
         got = f"low = {shown(table['low'])}, high = {shown(table['high'])}"
         raise InputError(path, key, f"low must be below high; got {got}, an empty range")
     try:
-        return Span(low, high, table.get("count", 1), spacing == "logarithmic")
+        return Span(low, high, table.get("count", 1), logarithmic)
     except (ValueError, TypeError) as error:
         raise InputError(path, key, str(error)) from None
+
+
+def _normal(table: dict[str, Any], wanted: Quantity | None, path: Path, key: str, sampled: bool) -> Normal:
+    if wanted is None or not sampled:
+        problem = "middle and sd are of numbers, drawn by a sample: give [sample]" if wanted else "names have no middle"
+        raise InputError(path, key, problem)
+    logarithmic = _spacing(table, path, key)
+    each = {"middle": wanted, "sd": Quantity("" if logarithmic else wanted.unit, "(0, inf)")}
+    for name in each:
+        if name not in table:
+            raise InputError(path, joined(key, name), "must be given: a normal range has middle and sd; got nothing")
+    middle, sd = (_value(table[name], unit, path, joined(key, name)) for name, unit in each.items())
+    assert isinstance(middle, float)
+    assert isinstance(sd, float)
+    try:
+        return Normal(middle, sd, logarithmic)
+    except ValueError as error:
+        raise InputError(path, key, str(error)) from None
+
+
+def _spacing(table: dict[str, Any], path: Path, key: str) -> bool:
+    """Whether it is logarithmic."""
+    spacing = table.get("spacing", "linear")
+    if spacing not in ("linear", "logarithmic"):
+        raise InputError(path, joined(key, "spacing"), f"must be linear or logarithmic; got {shown(spacing)}")
+    return bool(spacing == "logarithmic")
 
 
 def _sample(found: Any, path: Path) -> Sample:
