@@ -1,0 +1,270 @@
+"""How much a design scatters because wood, turning and strokes do, and which of them drives it.
+
+The ranges of a study (`cuefem.design`) are distributions: `Normal`, `Span` (uniform), `Levels` (equally likely). Normal
+scores z = L n, n independent and L L' their correlations (a Gaussian copula), give the numbers by each range's quantile
+at the share below z. Sobol indices need independent causes: correlated numbers are one cause, a group, drawn
+anew together. A group's first-order index is the part of the variance that would go if all its numbers were known, its
+total index the part that would stay if all but its numbers were; what one number of it does apart is not asked, for
+the others go with it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property, partial
+from typing import Any
+
+import numpy as np
+
+from cuefem.cue import Array
+from cuefem.design import Levels, Pool, Row, Study
+from cuefem.design.ranges import Value
+from cuefem.design.sweep import evaluated
+from cuefem.quantity import check_count
+
+CONFIDENCE, RESAMPLES = 0.95, 400  # of the bootstrapped intervals
+HALF_CELL = 2.0**-31  # of scipy's Sobol points, so that none is 0
+
+Progress = Callable[[list[Row]], object]
+
+
+@dataclass(frozen=True)
+class Scatter:
+    """What scatters together in a study.
+
+    study: its ranges are the distributions; its own sample is not used. correlations: {(name, name): r}, r in (-1, 1)
+    between normal scores: of normal numbers, and of the logarithms of logarithmic ones, their correlation itself; other
+    numbers get the rank correlation 6/pi asin(r/2). groups: {name: names of what varies} that count as one cause;
+    numbers that are correlated need a group in common, or get one of their own.
+    """
+
+    study: Study
+    correlations: Mapping[tuple[str, str], float] = field(default_factory=dict)
+    groups: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        seen: set[frozenset[str]] = set()
+        for pair, r in self.correlations.items():
+            self._check_names(f"correlation of {' and '.join(pair)}", pair)
+            if frozenset(pair) in seen or len(set(pair)) != 2:
+                raise ValueError(f"a correlation is between two numbers, said once; got {' and '.join(pair)}")
+            if not -1 < r < 1:
+                raise ValueError(f"the correlation of {' and '.join(pair)} must be in (-1, 1); got {r}")
+            seen.add(frozenset(pair))
+        grouped = [name for names in self.groups.values() for name in names]
+        for group, names in self.groups.items():
+            self._check_names(f"group {group!r}", names)
+        twice = [name for name in grouped if grouped.count(name) > 1]
+        if twice:
+            raise ValueError(f"what varies is in one group; got {twice[0]!r} in two")
+        if np.linalg.eigvalsh(self.matrix)[0] < 1e-9:
+            raise ValueError("the correlations contradict one another: their matrix is not positive definite")
+        for members in self._members:
+            own = {self.names[i] for i in members}
+            for group, names in self.groups.items():
+                if own & set(names) and own != set(names):
+                    beside = ", ".join(sorted(own - set(names)))
+                    raise ValueError(f"group {group!r} must hold all that is correlated with it; it lacks {beside}")
+        if len(set(self.causes)) < len(self._members):
+            raise ValueError(f"causes must have different names; got {', '.join(self.causes)}")
+
+    def _check_names(self, what: str, names: tuple[str, ...]) -> None:
+        for name in names:
+            if name not in self.names:
+                raise ValueError(f"{what}: nothing that varies is called {name!r}; there are {', '.join(self.names)}")
+            levels = self.study.vary[self.names.index(name)].range
+            if what.startswith("correlation") and isinstance(levels, Levels):
+                raise ValueError(f"{what}: {name!r} is a list of values, which is not correlated")
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of what varies."""
+        return tuple(vary.name for vary in self.study.vary)
+
+    @cached_property
+    def matrix(self) -> Array:
+        """Correlations of the normal scores, (vary, vary)."""
+        found = np.eye(len(self.names))
+        for (one, other), r in self.correlations.items():
+            i, j = self.names.index(one), self.names.index(other)
+            found[i, j] = found[j, i] = r
+        return found
+
+    @cached_property
+    def _members(self) -> tuple[tuple[int, ...], ...]:
+        """Indices of what varies, a cause each, in order of their first."""
+        joined = self.matrix != 0
+        for names in self.groups.values():
+            rows = [self.names.index(name) for name in names]
+            joined[np.ix_(rows, rows)] = True
+        for _ in self.names:  # whatever hangs together over others
+            joined = joined @ joined
+        return tuple(dict.fromkeys(tuple(int(i) for i in np.flatnonzero(row)) for row in joined))
+
+    @property
+    def causes(self) -> tuple[str, ...]:
+        """Names of what is drawn independently: groups, and what varies alone."""
+        called = {self.names.index(name): group for group, names in self.groups.items() for name in names}
+        return tuple(called.get(each[0], " + ".join(self.names[i] for i in each)) for each in self._members)
+
+    def mixed(self, scores: Array) -> list[Array]:
+        """Scores of two samples, (2, n, vary): the first one with each cause in turn from the second."""
+        first, second = scores
+        return [np.where(np.isin(np.arange(len(self.names)), members), second, first) for members in self._members]
+
+    def designs(self, scores: Array) -> list[tuple[Value, ...]]:
+        """Values of what varies for independent normal scores (n, vary)."""
+        from scipy.special import ndtr
+
+        shares = ndtr(scores @ np.linalg.cholesky(self.matrix).T)
+        ranges = [vary.range for vary in self.study.vary]
+        return [tuple(one.quantile(u) for one, u in zip(ranges, row, strict=True)) for row in shares.tolist()]
+
+
+@dataclass(frozen=True)
+class Spread:
+    """Distribution of responses over designs.
+
+    values: of what varies, a tuple a design. responses: (designs, responses), SI. Of designs that answered; failures:
+    why the others did not.
+    """
+
+    values: tuple[tuple[Value, ...], ...]
+    responses: Array
+    failures: tuple[str, ...]
+
+    @property
+    def mean(self) -> Array:
+        """(responses,)."""
+        return np.asarray(self.responses.mean(axis=0))
+
+    @property
+    def sd(self) -> Array:
+        """Standard deviation, (responses,)."""
+        return np.asarray(self.responses.std(axis=0, ddof=1))
+
+    def quantiles(self, shares: Any) -> Array:
+        """Values below which these shares of the designs lie, (shares, responses)."""
+        return np.asarray(np.quantile(self.responses, shares, axis=0))
+
+
+@dataclass(frozen=True)
+class Drivers:
+    """Sobol indices: the parts of each response's variance that causes have.
+
+    first, total: (causes, responses). first_interval, total_interval: (2, causes, responses), bootstrapped, 95 %.
+    spread: the distribution, from the two independent samples they were made of.
+    """
+
+    causes: tuple[str, ...]
+    first: Array
+    total: Array
+    first_interval: Array
+    total_interval: Array
+    spread: Spread
+
+
+def spread(
+    scatter: Scatter, count: int, *, seed: int, pool: Pool | None = None, progress: Progress = lambda rows: None
+) -> Spread:
+    """The distribution of a study's responses over ``count`` designs, a power of two: a scrambled Sobol sequence.
+
+    pool, progress: as in `sweep`. ValueError where no design has an answer.
+    """
+    rows = _rows(scatter, scores(len(scatter.names), count, seed=seed), pool, progress)
+    return _spread(rows)
+
+
+def drivers(
+    scatter: Scatter, count: int, *, seed: int, pool: Pool | None = None, progress: Progress = lambda rows: None
+) -> Drivers:
+    """Sobol indices of a study's responses, by (causes + 2) ``count`` designs, ``count`` a power of two.
+
+    Estimators of Saltelli et al. (Comput. Phys. Commun. 181 (2010) 259, table 2 b, f) as scipy.stats has them; error
+    about 1/sqrt(count) or less, see the intervals. ValueError where a design has no answer, naming the first reason, or
+    a response does not scatter.
+    """
+    size = len(scatter.names)
+    both = np.stack(np.split(scores(2 * size, count, seed=seed), 2, axis=1))
+    rows = _rows(scatter, np.concatenate([*both, *scatter.mixed(both)]), pool, progress)
+    failed = [row.failure for row in rows if row.failure]
+    if failed:
+        raise ValueError(f"{len(failed)} of {len(rows)} designs have no answer: narrow the ranges; first: {failed[0]}")
+    found = np.array([row.responses for row in rows]).reshape(-1, count, len(scatter.study.responses))
+    sample = _spread(rows[: 2 * count])
+    for response, mean, sd in zip(scatter.study.responses, sample.mean, sample.sd, strict=True):
+        if sd <= 1e-12 * abs(mean):
+            raise ValueError(f"{response.name} does not scatter: nothing that varies changes it")
+    return Drivers(scatter.causes, *indices(found.swapaxes(1, 2), seed=seed), sample)
+
+
+def scores(size: int, count: int, *, seed: int) -> Array:
+    """Independent normal scores (count, size) of a scrambled Sobol sequence; ValueError unless a power of two."""
+    from scipy.special import ndtri
+    from scipy.stats import qmc
+
+    check_count("count", count, 2)
+    check_count("seed", seed, 0)
+    if count & (count - 1):
+        near = 1 << (count.bit_length() - 1)
+        raise ValueError(f"count must be a power of two; got {count}: take {near} or {2 * near}")
+    engine = qmc.Sobol(size, seed=np.random.default_rng(seed))
+    return np.asarray(ndtri(engine.random(count) + HALF_CELL))
+
+
+def indices(values: Array, *, seed: int) -> tuple[Array, Array, Array, Array]:
+    """(first, total, interval of the first, of the total) from the values (2 + causes, responses, count) of the two
+    samples and the mixed ones: each (causes, responses), intervals with low and high before."""
+    from scipy.stats import bootstrap, sobol_indices
+
+    count = values.shape[-1]
+
+    def both(rows: Any) -> Array:
+        A, B, *mixed = values[:, :, rows]
+        found = sobol_indices(func={"f_A": A, "f_B": B, "f_AB": np.array(mixed)}, n=count)
+        # scipy drops axes of length 1
+        return np.stack([part.reshape(len(A), len(mixed)).T for part in (found.first_order, found.total_order)])
+
+    # scipy's own bootstrap of the indices takes no seed
+    resampled = bootstrap(
+        (np.arange(count),),
+        both,
+        vectorized=False,
+        method="percentile",
+        n_resamples=RESAMPLES,
+        confidence_level=CONFIDENCE,
+        random_state=np.random.default_rng(seed),
+    ).confidence_interval
+    (first, total), low, high = both(np.arange(count)), resampled.low, resampled.high
+    return first, total, np.stack([low[0], high[0]]), np.stack([low[1], high[1]])
+
+
+def _rows(scatter: Scatter, points: Array, pool: Pool | None, progress: Progress) -> list[Row]:
+    """The designs of these scores, evaluated in blocks."""
+    designs, size, found = scatter.designs(points), scatter.study.block, list[Row]()
+    starts = range(0, len(designs), size)
+    blocks = [designs[start : start + size] for start in starts]
+    for rows in _evaluated(scatter.study, starts, blocks, pool):
+        progress(rows)
+        found += rows
+    return found
+
+
+def _evaluated(
+    study: Study, starts: range, blocks: list[list[tuple[Value, ...]]], pool: Pool | None
+) -> Iterator[list[Row]]:
+    work = partial(evaluated, study)
+    if pool is None:
+        yield from map(work, starts, blocks)
+        return
+    with pool.open() as executor:
+        yield from executor.map(work, starts, blocks)
+
+
+def _spread(rows: list[Row]) -> Spread:
+    good = [row for row in rows if not row.failure]
+    failures = tuple(row.failure for row in rows if row.failure)
+    if not good:
+        raise ValueError(f"no design has an answer: {failures[0]}")
+    return Spread(tuple(row.values for row in good), np.array([row.responses for row in good], float), failures)
