@@ -49,6 +49,7 @@ from cuefem.squirt.miscue import compression_stick_friction, miscue_friction, mi
 from cuefem.squirt.published import (
     alciatore_a30,
     alciatore_a31,
+    alciatore_a31_mass_ratio,
     axis_offset,
     contact_offset,
     force_line_offset,
@@ -77,6 +78,7 @@ __all__ = [
     "Impulses",
     "alciatore_a30",
     "alciatore_a31",
+    "alciatore_a31_mass_ratio",
     "axis_offset",
     "ball_speed",
     "ball_spin",

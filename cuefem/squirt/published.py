@@ -25,6 +25,24 @@ def alciatore_a31(offset: Any, *, mass_ratio: Any, inertia: Any = 0.4) -> Any:
     return np.arctan(s * c / nu / (1 + ratio + c**2 / nu))
 
 
+def alciatore_a31_mass_ratio(offset: Any, squirt: Any, *, inertia: Any = 0.4) -> Any:
+    """The M/m_e whose `alciatore_a31` squirt is ``squirt``, rad: its end mass is what a simulator on [A.31] wants.
+
+    ValueError where no end mass in (0, inf) has it: head on, and at or beyond the squirt of an endless one.
+    """
+    offset, squirt, nu = checked(offset=offset, squirt=squirt, inertia=inertia)
+    s, c = sine_cosine(offset)
+    tangent = np.tan(squirt)
+    ratio = s * c / nu / np.where(tangent == 0, np.nan, tangent) - 1 - c**2 / nu
+    if not np.all(held := ratio > 0):
+        where, (b, psi) = first_failure(held, offset, squirt)
+        raise ValueError(
+            "squirt must be of its offset's sign and less than that of an endless end mass in [A.31]; "
+            f"got {psi:.6g} rad at offset {b:.6g}{where}"
+        )
+    return ratio[()]
+
+
 def shepard(offset: Any, *, mass_ratio: Any, inertia: Any = 0.4) -> Any:
     """[Shepard] as [Kim] prints it: squirt, rad, with b/R measured to the force's line; mass_ratio M/m_e.
 

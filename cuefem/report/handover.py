@@ -1,0 +1,141 @@
+"""The end mass as other people's software takes it: pooltool's CueSpecs, with what the number means and is worth.
+
+pooltool turns the ball by [A.31] with nu = 2/5, whatever the ball: alpha = -atan((5/2) a sqrt(1 - a^2)/(1 + m/end_mass
++ (5/2)(1 - a^2))), its own words in `pooltool.physics.resolve.stick_ball.squirt`; a is b/R of the contact, positive on
+the ball's left, alpha positive to the left. [A.31] knows no restitution, so that the same end mass gives a third less
+squirt there than in the impulse solver: what makes it right is an end mass of its own, the drive "A.31".
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+
+from cuefem.cue import Cue, LumpedCue
+from cuefem.effects import TipDome
+from cuefem.endmass import formula_of, stick
+from cuefem.modes import TipModes, lumped_tip_modes
+from cuefem.quantity import scalar
+from cuefem.report.records import DRIVES, Record
+from cuefem.resolution import tip_modes_of
+from cuefem.scene import Scene
+from cuefem.squirt import alciatore_a31, alciatore_a31_mass_ratio
+from cuefem.strike import strike_modes
+
+Handed = Literal["A.31", "stick", "velocity", "force", "squirt"]
+HANDED: tuple[Handed, ...] = ("A.31", *DRIVES)
+OFFSETS = (0.1, 0.2, 0.3, 0.4, 0.5)
+POOLTOOL_INERTIA = 0.4  # its 5/2
+NICKEL = 0.0106045  # m, the dome of pooltool's own cue
+
+MEANING = {
+    "A.31": "the end mass whose [A.31] squirt is that of the coupled strike, at this offset, speed and contact time",
+    "stick": "the inertia across the cue that the ball feels in the coupled strike as the offset goes to zero",
+    "velocity": "impulse over final velocity of a tip that is moved like (1 - cos(pi t/T))/2",
+    "force": "impulse over final velocity of a tip that is pushed by a half sine of length T",
+    "squirt": "the end mass whose squirt in the impulse solver (restitution, friction) is that of the coupled strike",
+}
+SIGNS = (
+    "a is b/R of the contact, positive on the ball's left, and alpha positive to the left: "
+    "alpha(a) = -squirt(offset = a); end_mass is m_e, felt at the tip, not the four times larger m_c of the cue's end"
+)
+UNITS = {"M": "kg", "m": "kg", "end_mass": "kg", "length": "m", "R": "m", "radius": "m", "squirt": "rad"}
+
+
+def pooltool_record(name: str, scene: Scene, *, drive: Handed = "A.31") -> Record:
+    """pooltool's CueSpecs of a scene's cue, SI, what their end mass means, and what squirt it gives beside ours.
+
+    drive: which end mass is handed over. ValueError where that one does not exist: "A.31" head on and in a miscue.
+    """
+    tip = lumped_tip_modes(scene.cue) if isinstance(scene.cue, LumpedCue) else tip_modes_of(scene)
+    masses, reasons = _end_masses(scene, tip)
+    if drive in reasons:
+        raise ValueError(f"end mass {drive!r} does not exist here: {reasons[drive]}")
+    return {
+        "for": "pooltool",
+        "CueSpecs": _cue_specs(name, scene) | {"end_mass": masses[drive]},
+        "BallParams": {"m": scene.ball.mass, "R": scene.ball.radius},
+        "end_mass": {
+            "drive": drive,
+            "meaning": MEANING[drive],
+            "contact_time": scene.contact_time,
+            "offset": scene.stroke.offset,
+            "speed": scene.stroke.speed,
+            "others": {key: mass for key, mass in masses.items() if key != drive},
+            "reasons": reasons,
+        },
+        "signs": SIGNS,
+        "notes": _notes(scene),
+        "squirt": _worth(scene, tip, masses[drive]),
+        "units": UNITS,
+    }
+
+
+def _cue_specs(name: str, scene: Scene) -> Record:
+    specs: Record = {"brand": name, "M": scene.axial_mass}
+    if isinstance(scene.cue, Cue):
+        first, last = scene.cue.segments[0], scene.cue.segments[-1]
+        specs |= {"length": scene.cue.length}
+        specs |= {"shaft_radius_at_tip": first.tip_diameter / 2, "shaft_radius_at_butt": last.butt_diameter / 2}
+    return specs | {"tip_radius": _dome(scene) or NICKEL}
+
+
+def _dome(scene: Scene) -> float | None:
+    return next((effect.radius for effect in scene.effects if isinstance(effect, TipDome)), None)
+
+
+def _notes(scene: Scene) -> list[str]:
+    notes = ["pooltool takes [A.31], an instantaneous stroke without friction's limit: it knows no miscue"]
+    if isinstance(scene.cue, LumpedCue):
+        notes.append("a lumped cue has no length and no radii: pooltool's own stay")
+    elif scene.cue.body_mass:
+        notes.append("length and shaft_radius_at_butt are those of the file's segments; M is the whole cue's")
+    if _dome(scene) is None:
+        notes.append("tip_radius: pooltool's own, a nickel's; the scene has no TipDome")
+    if scene.ball.inertia != POOLTOOL_INERTIA:
+        notes.append(f"pooltool's balls have the inertia factor 0.4; the scene's has {scene.ball.inertia:g}")
+    return notes
+
+
+def _end_masses(scene: Scene, tip: TipModes) -> tuple[dict[str, float | None], dict[str, str]]:
+    masses: dict[str, float | None] = {}
+    reasons: dict[str, str] = {}
+    for drive in HANDED:
+        try:
+            masses[drive] = _end_mass(scene, tip, drive)
+        except ValueError as error:
+            masses[drive], reasons[drive] = None, str(error)
+    return masses, reasons
+
+
+def _end_mass(scene: Scene, tip: TipModes, drive: Handed) -> float:
+    if drive == "A.31":
+        return _a31_end_mass(scene, tip)
+    if isinstance(scene.cue, LumpedCue):
+        return scalar("LumpedCue.end_mass", scene.cue.end_mass)
+    return stick(tip, scene) if drive == "stick" else formula_of(drive)(tip, scene)
+
+
+def _a31_end_mass(scene: Scene, tip: TipModes) -> float:
+    offset = scene.stroke.offset
+    if offset == 0:
+        raise ValueError("[A.31] has no squirt head on; got the offset 0 (--offset takes another)")
+    outcome = strike_modes(scene, tip)
+    if outcome.regime == "miscue":
+        raise ValueError(f"the stroke miscues at offset {offset}; got no end mass")
+    return float(scene.ball.mass / alciatore_a31_mass_ratio(offset, outcome.squirt, inertia=POOLTOOL_INERTIA))
+
+
+def _worth(scene: Scene, tip: TipModes, end_mass: float | None) -> Record:
+    """Squirt against the offset: that of the coupled strike, and pooltool's from the number handed over; rad."""
+    assert end_mass is not None
+    struck = [strike_modes(replace(scene, stroke=replace(scene.stroke, offset=b)), tip) for b in OFFSETS]
+    theirs = alciatore_a31(np.array(OFFSETS), mass_ratio=scene.ball.mass / end_mass, inertia=POOLTOOL_INERTIA)
+    return {
+        "offsets": list(OFFSETS),
+        "coupled": [outcome.squirt for outcome in struck],
+        "regimes": [outcome.regime for outcome in struck],
+        "pooltool": theirs.tolist(),
+    }
