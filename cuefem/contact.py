@@ -51,6 +51,15 @@ class Phase(NamedTuple):
     impulse: tuple[float, float]
 
 
+class Course(NamedTuple):
+    """From a start, s, on the state z moves by z' = A z, with |A| <= rate, 1/s, to the next course's start."""
+
+    start: float
+    A: Array
+    rate: float
+    state: Array
+
+
 @dataclass(frozen=True)
 class Laws:
     """The constants of a contact in SI; phi: the angle of the contact, rad; time: the head-on contact time, s."""
@@ -85,6 +94,7 @@ class Contact:
     peak: float = 0.0
     phases: list[Phase] = field(default_factory=list)
     pieces: list[Piece] = field(default_factory=list)
+    courses: list[Course] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         tip, laws = self.tip, self.laws
@@ -231,6 +241,7 @@ class Contact:
         names, guards = self._guards(grip, press)
         before = self.impulse
         flow = self.flow(grip, press)
+        self.courses.append(Course(self.time, flow.A, flow.rate, self.z))
         limit = min(self.longest, self.time + (MOST_CELLS - self.cells) * flow.step)
         arrival = march(flow, self.z, guards, start=self.time, limit=limit)
         if arrival is None:

@@ -36,9 +36,14 @@ def default_resolution(scene: Scene, *, periods: float = PERIODS_KEPT) -> Resolu
 
 def tip_modes_of(scene: Scene, at: Resolution | None = None) -> TipModes:
     """Tip modes of the scene's finite-element cue, with its effects; with a tail where no resolution is given."""
+    return tip_modes_from(modes_of(scene, at), scene)
+
+
+def modes_of(scene: Scene, at: Resolution | None = None) -> Modes:
+    """Bending modes that a strike of the scene's finite-element cue takes; with a tail where no resolution is given."""
     if at is not None:
-        return tip_modes_from(_kept(scene, at), scene)
-    return tip_modes_from(tail(_kept(scene, default_resolution(scene)), turning=turning(scene)), scene)
+        return _kept(scene, at)
+    return tail(_kept(scene, default_resolution(scene)), turning=turning(scene))
 
 
 def _kept(scene: Scene, at: Resolution) -> Modes:

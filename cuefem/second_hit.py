@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cuefem.contact import APART, Contact, Phase, run
+from cuefem.contact import APART, Contact, Course, Phase, run
 from cuefem.flow import Flow, Guards, integral_of_product, march
 from cuefem.nonlinear import SteppedContact
 from cuefem.scene import Outcome
@@ -77,6 +77,7 @@ def _fly_exactly(contact: Contact, until: float, near: float) -> bool:
     losses = [sum(integral_of_product(piece, row, row) for piece in arrival.pieces) for row in rows]
     contact.damping_loss += sum(losses[: contact.lossy])
     contact.radiated += sum(losses[contact.lossy :])
+    contact.courses.append(Course(start, contact.free, flow.rate, contact.z))
     contact.time, contact.z = arrival.time, arrival.state[:-1]
     contact.z[contact.spring] = 0.0
     contact.pieces += arrival.pieces

@@ -40,6 +40,12 @@ def strike(scene: Scene, at: Resolution | None = None) -> Outcome:
 
 def strike_modes(scene: Scene, tip: TipModes) -> Outcome:
     """The coupled strike of a cue that is given by its tip modes."""
+    contact = struck(scene, tip)
+    return _outcome(contact, scene, math.copysign(1.0, scalar("Stroke.offset", scene.stroke.offset)))
+
+
+def struck(scene: Scene, tip: TipModes) -> Contact:
+    """The contact of a strike when it is over, solved for the side b >= 0: its phases, courses and last state."""
     offset = scalar("Stroke.offset", scene.stroke.offset)
     laws = Laws(
         phi=math.asin(abs(offset)),
@@ -61,7 +67,7 @@ def strike_modes(scene: Scene, tip: TipModes) -> Outcome:
             from cuefem.second_hit import follow
 
             follow(contact, effect.window)
-    return _outcome(contact, scene, math.copysign(1.0, offset))
+    return contact
 
 
 def contact_of(scene: Scene, tip: TipModes, laws: Laws) -> Contact:
