@@ -11,6 +11,8 @@ import click
 
 from cuefem.cli.cue import cost, effects, end_mass, modes, report, strike
 from cuefem.cli.files import convert, materials, schema
+from cuefem.cli.handover import animate, handover
+from cuefem.cli.scatter import scatter
 from cuefem.cli.sweep import sweep
 from cuefem.cli.validate import validate
 
@@ -65,5 +67,20 @@ def main() -> None:
     """
 
 
-for _command in (modes, end_mass, strike, effects, cost, report, convert, schema, validate, materials, sweep):
+for _command in (
+    modes,
+    end_mass,
+    strike,
+    effects,
+    cost,
+    report,
+    handover,
+    animate,
+    convert,
+    schema,
+    validate,
+    materials,
+    sweep,
+    scatter,
+):
     main.add_command(_command)

@@ -1,0 +1,112 @@
+"""Commands that hand results to other people's software: handover, animate."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from cuefem.cli.common import (
+    contact_time_option,
+    file_options,
+    followed,
+    measured,
+    offset_option,
+    print_json,
+    scene_of,
+)
+
+if TYPE_CHECKING:
+    from cuefem.scene import Scene
+
+DRIVES = ("A.31", "stick", "velocity", "force", "squirt")
+
+
+@click.command()
+@file_options
+@contact_time_option
+@offset_option
+@click.option("--for", "whom", type=click.Choice(["pooltool"]), default="pooltool", show_default=True, help="For whom.")
+@click.option("--drive", type=click.Choice(DRIVES), default="A.31", show_default=True, help="Which end mass.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), metavar="CUE.json", help="Write a file instead.")
+def handover(file: Path, whom: str, drive: Any, output: Path | None, **given: Any) -> None:
+    """The end mass as a simulator takes it: pooltool's CueSpecs, and what the number means and is worth; JSON, SI."""
+    from cuefem.io import InputError, write_whole
+    from cuefem.report.handover import pooltool_record
+    from cuefem.report.records import plain
+
+    if output is not None and output.suffix != ".json":
+        raise InputError(output, "--output", f"must end in .json; got {output.suffix!r}")
+    scene, notes = scene_of(file, given)
+    try:
+        found = pooltool_record(file.stem, scene, drive=drive)
+    except ValueError as error:
+        raise InputError(file, "", str(error)) from None
+    found["notes"] += [f"assumed: {note}" for note in notes]
+    text = json.dumps(plain(found), indent=2, allow_nan=False, ensure_ascii=False)
+    if output is None:
+        click.echo(text)
+    else:
+        write_whole(output, lambda temporary: temporary.write_text(text + "\n", encoding="utf-8"))
+        click.echo(f"wrote {output}")
+
+
+@click.command()
+@file_options
+@contact_time_option
+@offset_option
+@click.option("--count", type=click.IntRange(min=1), default=6, show_default=True, help="How many modes.")
+@click.option("--frames", type=click.IntRange(2, 10_000), default=61, show_default=True, help="Times of the strike.")
+@click.option("--until", metavar="TIME", help="Of the last frame; three contact times where left out.")
+@click.option("--scale", type=float, default=1.0, show_default=True, help="What bending is drawn with.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), required=True, metavar="FOLDER", help="A new folder.")
+def animate(file: Path, output: Path, as_json: bool, **given: Any) -> None:
+    """Mode shapes and the strike's motion for ParaView: FOLDER/modes.vtu, FOLDER/strike.pvd and its frames."""
+    from cuefem.io import InputError
+    from cuefem.io.paraview import check_new, write_whole_folder
+    from cuefem.quantity import Quantity
+
+    drawn = {name: given.pop(name) for name in ("count", "frames", "until", "scale")}
+    if not math.isfinite(drawn["scale"]):
+        raise InputError(file, "--scale", f"must be finite; got {drawn['scale']}")
+    if drawn["until"] is not None:
+        drawn["until"] = measured(file, "--until", drawn["until"], Quantity("s", "(0, inf)"))
+    check_new(output)
+    scene, notes = scene_of(file, given)
+    try:
+        put = _animation(scene, **drawn)
+    except ValueError as error:
+        raise InputError(file, "", str(error)) from None
+    write_whole_folder(output, put)
+    if as_json:
+        print_json({"folder": str(output), "frames": drawn["frames"], "assumed": notes})
+        return
+    if notes:
+        click.echo(f"assumed: {'; '.join(notes)}")
+    click.echo(f"wrote {output}: modes.vtu, strike.pvd and {drawn['frames']} frames")
+
+
+def _animation(scene: Scene, *, count: int, frames: int, until: float | None, scale: float) -> Callable[[Path], None]:
+    """Compute all of it, and return what writes it into a folder."""
+    import numpy as np
+
+    from cuefem.cue import Cue
+    from cuefem.io.paraview import save_modes, save_strike
+    from cuefem.modes import modes
+    from cuefem.motion import last_contact, motion
+
+    last = 3 * last_contact(scene) if until is None else until
+    moving = motion(scene, np.linspace(0, last, frames))
+    cue = scene.cue
+    assert isinstance(cue, Cue)  # motion takes no other
+    found = modes(cue, count, effects=scene.cue_effects)
+
+    def put(folder: Path) -> None:
+        save_modes(folder / "modes.vtu", cue, found)
+        save_strike(folder, scene, moving, scale=scale, track=followed)
+
+    return put

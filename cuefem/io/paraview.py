@@ -1,0 +1,164 @@
+"""A cue's modes and a strike's motion for ParaView: .vtu meshes through meshio, and a .pvd that gives them their times.
+
+The shaft is a tube of its outer surface, X along the stroke with the tip at 0 and the butt behind it, Y across, Z up.
+A point at height y in the section moves by (u + theta y, w, 0): small rotations, as in the beam.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import xml.etree.ElementTree as ET
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import meshio
+import numpy as np
+
+from cuefem.cue import Array, Cue
+from cuefem.io.errors import InputError, reason
+from cuefem.modes import Modes
+from cuefem.motion import Motion
+from cuefem.quantity import scalar
+from cuefem.scene import Scene
+
+AROUND = 24  # points of a ring
+LONGEST = 0.01  # m between rings, at most
+Track = Callable[[Sequence[Any]], Iterable[Any]]
+
+
+class Surface(NamedTuple):
+    """Points (n, 3), m, and cells of a surface; x: of a shaft's points, the distance from the tip, m."""
+
+    points: Array
+    cells: list[tuple[str, Any]]
+    x: Array
+
+
+def shaft_surface(cue: Cue) -> Surface:
+    """The outer surface of a cue: rings along every segment, both sides of a jump, and a lid at each end."""
+    stations, radii = [], []
+    for start, segment in zip(cue.nodes[:-1], cue.segments, strict=True):
+        parts = np.linspace(0, 1, 2 + int(segment.length / LONGEST))
+        stations.append(start + parts * segment.length)
+        radii.append((segment.tip_diameter + parts * (segment.butt_diameter - segment.tip_diameter)) / 2)
+    x, radius = np.clip(np.concatenate(stations), 0, cue.length), np.concatenate(radii)
+    angle = 2 * np.pi * np.arange(AROUND) / AROUND
+    y, z = radius[:, None] * np.cos(angle), radius[:, None] * np.sin(angle)
+    points = np.column_stack([np.repeat(-x, AROUND), y.ravel(), z.ravel()])
+    ends = np.array([[-x[0], 0, 0], [-x[-1], 0, 0]])
+    i = np.arange(len(x) * AROUND).reshape(-1, AROUND)
+    after = np.roll(i, -1, axis=1)
+    quads = np.stack([i[:-1], i[1:], after[1:], after[:-1]], axis=-1).reshape(-1, 4)
+    lids = [
+        np.column_stack([np.full(AROUND, i.size + end), ring, np.roll(ring, turn)])
+        for end, (ring, turn) in enumerate([(i[0], -1), (i[-1], 1)])
+    ]
+    cells = [("quad", quads), ("triangle", np.concatenate(lids))]
+    return Surface(np.concatenate([points, ends]), cells, np.concatenate([np.repeat(x, AROUND), x[[0, -1]]]))
+
+
+def ball_surface(radius: float) -> Surface:
+    """A ball about the origin, of quads that meet at the poles of Z."""
+    polar, round_ = np.linspace(0, np.pi, 19), 2 * np.pi * np.arange(36) / 36
+    ring = np.stack([np.cos(round_), np.sin(round_)], axis=-1)
+    points = np.concatenate(
+        [np.sin(polar)[:, None, None] * ring, np.broadcast_to(np.cos(polar)[:, None, None], (19, 36, 1))], axis=-1
+    )
+    i = np.arange(19 * 36).reshape(19, 36)
+    after = np.roll(i, -1, axis=1)
+    quads = np.stack([i[:-1], i[1:], after[1:], after[:-1]], axis=-1).reshape(-1, 4)
+    return Surface(radius * points.reshape(-1, 3), [("quad", quads)], np.zeros(19 * 36))
+
+
+def vectors(surface: Surface, w: Array, theta: Array, *, along: float = 0.0) -> Array:
+    """Displacement of a shaft's points, (n, 3): along + theta y, w and nothing."""
+    return np.column_stack([along + theta * surface.points[:, 1], w, np.zeros_like(w)])
+
+
+def save_vtu(path: Path, surface: Surface, data: Mapping[str, Array], fields: Mapping[str, Array]) -> None:
+    """Write a surface with point data, and field data, which meshio reads and does not write."""
+    mesh = meshio.Mesh(surface.points, surface.cells, point_data=dict(data))
+    meshio.vtu.write(str(path), mesh, binary=True)
+    tree = ET.parse(path)
+    grid = tree.getroot().find("UnstructuredGrid")
+    assert grid is not None
+    held = ET.Element("FieldData")
+    for name, values in fields.items():
+        rows = np.atleast_1d(values)
+        wide = {"NumberOfComponents": str(rows.shape[1])} if rows.ndim == 2 else {}
+        about = {"type": "Float64", "Name": name, "NumberOfTuples": str(len(rows)), "format": "ascii", **wide}
+        ET.SubElement(held, "DataArray", about).text = " ".join(repr(float(value)) for value in rows.ravel())
+    grid.insert(0, held)
+    tree.write(path, encoding="utf-8", xml_declaration=True)
+
+
+def save_modes(path: Path, cue: Cue, found: Modes) -> None:
+    """Mode shapes on the shaft, mass-normalised: mode_k a displacement, 1/sqrt(kg), mode_k_theta, 1/(m sqrt(kg))."""
+    surface = shaft_surface(cue)
+    shapes, turns = found.shape(surface.x)
+    data = {"x": surface.x}
+    for k, (w, theta) in enumerate(zip(shapes, turns, strict=True), start=1):
+        data |= {f"mode_{k}": vectors(surface, w, theta), f"mode_{k}_theta": theta}
+    save_vtu(path, surface, data, {"frequencies": found.frequencies})
+
+
+def save_strike(folder: Path, scene: Scene, found: Motion, *, scale: float = 1.0, track: Track = iter) -> None:
+    """Write folder/strike.pvd and, in folder/strike, a shaft and a ball a time.
+
+    scale: what bending is drawn with; the displacement beside the points is the true one.
+    """
+    assert isinstance(scene.cue, Cue)  # motion takes no other
+    shaft, ball = shaft_surface(scene.cue), ball_surface(scalar("Ball.radius", scene.ball.radius))
+    w, theta = found.deflection(shaft.x)
+    centres, forces = (np.pad(plane, [(0, 0), (0, 1)]) for plane in (found.centre, found.force))
+    (folder / "strike").mkdir()
+    series = []
+    for i in track(range(len(found.times))):
+        time, along = float(found.times[i]), float(found.along[i])
+        names = [f"strike/{body}_{i:04d}.vtu" for body in ("shaft", "ball")]
+        fields = {"TimeValue": found.times[i], "force": forces[[i]], "ball": centres[[i]]}
+        drawn = shaft._replace(points=shaft.points + vectors(shaft, scale * w[i], scale * theta[i], along=along))
+        true = vectors(shaft, w[i], theta[i], along=along)
+        save_vtu(folder / names[0], drawn, {"x": shaft.x, "displacement": true, "w": w[i], "theta": theta[i]}, fields)
+        flown = ball._replace(points=np.add(_turned(ball.points, float(found.turned[i])), centres[i]))
+        gone = flown.points - np.add(ball.points, centres[0])
+        save_vtu(folder / names[1], flown, {"displacement": gone}, fields)
+        series += [(time, part, name) for part, name in enumerate(names)]
+    save_pvd(folder / "strike.pvd", series)
+
+
+def _turned(points: Array, angle: float) -> Array:
+    s, c = np.sin(angle), np.cos(angle)
+    return points @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def save_pvd(path: Path, series: Iterable[tuple[float, int, str]]) -> None:
+    """Write ParaView's collection of files: time, s, part and path of each."""
+    root = ET.Element("VTKFile", type="Collection", version="0.1", byte_order="LittleEndian")
+    held = ET.SubElement(root, "Collection")
+    for time, part, name in series:
+        ET.SubElement(held, "DataSet", timestep=repr(float(time)), group="", part=str(part), file=name)
+    ET.indent(root)
+    ET.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
+
+
+def check_new(folder: Path) -> None:
+    """InputError where a folder, or anything of its name, is there already."""
+    if folder.exists() or folder.is_symlink():
+        raise InputError(folder, "", "must be a new folder; there is one, or a file, of that name")
+
+
+def write_whole_folder(folder: Path, put: Callable[[Path], object]) -> None:
+    """Write into a new folder beside ``folder`` and move it there whole, so that nothing half written is ever seen."""
+    check_new(folder)
+    temporary = folder.with_name(f".{folder.name}.{os.getpid()}")
+    try:
+        temporary.mkdir()
+        put(temporary)
+        temporary.rename(folder)
+    except OSError as error:
+        raise InputError(folder, "", f"cannot be written: {reason(error)}") from None
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
