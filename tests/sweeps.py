@@ -71,6 +71,45 @@ high = 1.3
 factor = true
 """
 
+# Distributions of wood, and of a tip, for scatter.
+SCATTER = """
+scene = "scene.toml"
+responses = ["end_mass", "tip_stiffness"]
+correlations = [["E", "density", 0.4]]
+
+[groups]
+wood = ["E", "density"]
+
+[resolution]
+elements = 1
+order = 8
+modes = 4
+
+[sample]
+method = "sobol"
+count = 64
+seed = 5
+
+[[vary]]
+name = "E"
+path = "cue.segments[0].material.E"
+middle = "12 GPa"
+sd = "2 GPa"
+
+[[vary]]
+name = "density"
+path = "cue.segments[0].material.rho"
+middle = "700 kg/m^3"
+sd = 0.1
+spacing = "logarithmic"
+
+[[vary]]
+name = "time"
+path = "tip.contact_time"
+low = "0.8 ms"
+high = "1.5 ms"
+"""
+
 
 def written(folder: Path, study: str = STUDY, scene: str = SCENE, name: str = "study.toml") -> Path:
     """A study, and its scene beside it."""

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import json
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
+from command_line import call
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.stats import spearmanr
+from sweeps import SCATTER, written
 
 from cuefem import Resolution, Scene, load
 from cuefem.design import Normal, Response, Span, Study, Vary
+from cuefem.io.study import load_scatter
 from cuefem.scatter import Scatter, drivers, scores, spread
 
 BASE = Scene(load(Path(__file__).parents[1] / "meshes" / "pool_maple.toml"))
@@ -96,3 +100,25 @@ def test_designs_that_fail_are_told_apart() -> None:
     assert len(found.values) == len(found.responses) == 64 - len(found.failures)
     assert all("tip_bore must be in" in reason for reason in found.failures)
     assert max(value for (value,) in found.values) < 0.0128
+
+
+def test_the_command_says_what_the_function_gives(tmp_path: Path) -> None:
+    study = written(tmp_path, SCATTER)
+    scatter, sample = load_scatter(study)
+    assert (scatter.correlations, scatter.groups) == ({("E", "density"): 0.4}, {"wood": ("E", "density")})
+    found = drivers(scatter, sample.count, seed=sample.seed)
+    code, out, err = call("scatter", study, "--json")
+    assert (code, err) == (0, "")
+    told = json.loads(out)
+    assert (told["count"], told["seed"], list(told["responses"])) == (64, 5, ["end_mass", "tip_stiffness"])
+    stiffness = told["responses"]["tip_stiffness"]
+    assert stiffness["unit"] == "N/m"
+    assert stiffness["mean"] == found.spread.mean[1]
+    assert stiffness["quantiles"]["0.5"] == found.spread.quantiles(0.5)[1]
+    assert stiffness["causes"]["wood"]["first"] == found.first[0, 1]
+    assert stiffness["causes"]["time"]["total_interval"] == [0, 0]
+    code, out, err = call("scatter", study)
+    assert (code, err) == (0, "")
+    assert f"end_mass, g {1e3 * found.spread.mean[0]:.3f}" in " ".join(out.split())
+    assert "128 designs" in out
+    assert "wood: E, density" in out

@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from command_line import call
+from sweeps import SCATTER, written
 
 from cuefem import Resolution, Scene, load
 from cuefem.design import Levels, Normal, Response, Span, Study, Vary
@@ -68,3 +70,49 @@ def test_designs_without_an_answer() -> None:
     wide = replace(bore, range=Span(0.013, 0.0256))
     with pytest.raises(ValueError, match=r"no design has an answer: Segment\.tip_bore"):
         spread(Scatter(replace(STUDY, vary=(wide,))), 16, seed=1)
+
+
+CHANGES = {
+    "a number alone": (
+        '[["E", "density", 0.4]]',
+        "0.4",
+        "must be a list of [name, name, number]; got 0.4",
+    ),
+    "half a pair": ('["E", "density", 0.4]', '["E", 0.4]', "correlations[0]: must be [name, name, number]; got"),
+    "a text": ("0.4]]", '"high"]]', "correlations[0]: must be [name, name, number]; got"),
+    "too much": ("0.4]]", "1.4]]", "the correlation of E and density must be in (-1, 1); got 1.4"),
+    "no such name": ('["E", "density", 0.4]', '["E", "rho", 0.4]', "is called 'rho'; there are E, density, time"),
+    "twice": ("0.4]]", '0.4], ["E", "density", 0.3]]', "correlations[1]: must be said once; got E and density twice"),
+    "a group of nothing": ('["E", "density"]\n\n', '"E"\n\n', "groups.wood: must be a list of names; got 'E'"),
+    "no table of groups": (
+        "[groups]\nwood",
+        "groups",
+        "groups: must be a table of lists of names; got [",
+    ),
+    "half a group": (
+        'wood = ["E", "density"]',
+        'wood = ["E"]',
+        "all that is correlated with it; it lacks density",
+    ),
+    "no sample": ('[sample]\nmethod = "sobol"\ncount = 64\nseed = 5', "", "[sample]"),
+    "another method": ('"sobol"', '"halton"', 'sample: must be given, its method "sobol"; got halton'),
+    "no power of two": ("count = 64", "count = 100", "count must be a power of two; got 100: take 64 or 128"),
+    "a misspelt key": ("correlations =", "corelations =", "did you mean 'correlations'?"),
+    "too wide": ('middle = "12 GPa"', 'middle = "3 GPa"', "designs have no answer: narrow the ranges; first: "),
+}
+
+
+@pytest.mark.parametrize(("old", "new", "words"), CHANGES.values(), ids=CHANGES.keys())
+def test_a_file_that_is_none(tmp_path: Path, old: str, new: str, words: str) -> None:
+    assert old in SCATTER
+    code, out, err = call("scatter", written(tmp_path, SCATTER.replace(old, new, 1)))
+    assert (code, out) == (2, "")
+    assert len(err.splitlines()) == 1
+    assert err.startswith(f"cuefem: {tmp_path / 'study.toml'}: ")
+    assert words in err
+
+
+def test_a_sweep_does_not_pass_correlations_over(tmp_path: Path) -> None:
+    code, _, err = call("sweep", written(tmp_path, SCATTER))
+    assert code == 2
+    assert "unknown key" in err or "correlations" in err

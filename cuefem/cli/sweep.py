@@ -34,10 +34,10 @@ def sweep(study: Path, output: Path | None, export: Path | None, as_json: bool, 
     wanted = load_study(study)
     goal = None if export is None else export_path(export)
     with ExitStack() as open_things:
-        pool = open_things.enter_context(_pool(**where))
+        pool = open_things.enter_context(opened(**where))
         database = open_things.enter_context(Database(output or study.with_suffix(".sqlite"), wanted))
         before, _ = database.count()
-        with _bar(wanted.size, before) as progress:
+        with bar(wanted.size, before) as progress:
             run(wanted, database, pool=pool, progress=progress)
         if goal is not None:
             _export(database, goal)
@@ -45,7 +45,8 @@ def sweep(study: Path, output: Path | None, export: Path | None, as_json: bool, 
 
 
 @contextmanager
-def _pool(workers: int | None, dask: str | None) -> Iterator[Pool | None]:
+def opened(workers: int | None, dask: str | None) -> Iterator[Pool | None]:
+    """Where to work: processes, a cluster, or None for here."""
     from cuefem.design import dask as cluster
     from cuefem.design import processes
 
@@ -59,7 +60,7 @@ def _pool(workers: int | None, dask: str | None) -> Iterator[Pool | None]:
 
 
 @contextmanager
-def _bar(total: int, done: int) -> Iterator[Callable[[list[Row]], object]]:
+def bar(total: int, done: int) -> Iterator[Callable[[list[Row]], object]]:
     """A bar on stderr, with rate and time left, where a person looks on."""
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn

@@ -13,9 +13,11 @@ from cuefem.io.schema import build, joined, unknown_key
 from cuefem.io.toml import named_material, read_tables
 from cuefem.io.units import quantity
 from cuefem.quantity import Quantity
+from cuefem.scatter import Scatter
 from cuefem.scene import Resolution, Scene, Stroke
 
 KEYS = ["scene", "responses", "vary", "sample", "resolution"]
+SCATTER_KEYS = [*KEYS, "correlations", "groups"]
 VARY_KEYS = [
     *("path", "name", "values", "low", "high", "count", "spacing", "middle", "sd", "factor", "shift", "taken_from"),
 ]
@@ -29,8 +31,52 @@ def load_study(path: str | Path, *, offset: float = 0.3) -> Study:
     offset: b/R of a base that is a bare cue, which gets the default ball and tip. Values carry their units as text.
     """
     path = Path(path)
+    return _study(read_tables(path), path, offset, KEYS)
+
+
+def load_scatter(path: str | Path, *, offset: float = 0.3) -> tuple[Scatter, Sample]:
+    """What scatters, and the sample to draw, from a study's file with [sample], correlations and groups as well.
+
+    correlations: lists of two names and a number; groups: a table of lists of names. InputError where it is none.
+    """
+    path = Path(path)
     found = read_tables(path)
-    _check_keys(found, KEYS, path, "")
+    study = _study(found, path, offset, SCATTER_KEYS)
+    if study.sample is None or study.sample.method != "sobol":
+        got = study.sample.method if study.sample else "nothing"
+        raise InputError(path, "sample", f'must be given, its method "sobol"; got {got}')
+    try:
+        return Scatter(study, _correlations(found.get("correlations", []), path), _groups(found, path)), study.sample
+    except ValueError as error:
+        raise error if isinstance(error, InputError) else InputError(path, "", str(error)) from None
+
+
+def _correlations(given: Any, path: Path) -> dict[tuple[str, str], float]:
+    if not isinstance(given, list):
+        raise InputError(path, "correlations", f"must be a list of [name, name, number]; got {shown(given)}")
+    found: dict[tuple[str, str], float] = {}
+    for i, one in enumerate(given):
+        fits = isinstance(one, list) and len(one) == 3 and all(isinstance(name, str) for name in one[:2])
+        if not fits or isinstance(one[2], bool) or not isinstance(one[2], int | float):
+            raise InputError(path, joined("correlations", i), f"must be [name, name, number]; got {shown(one)}")
+        if tuple(one[:2]) in found:
+            raise InputError(path, joined("correlations", i), f"must be said once; got {one[0]} and {one[1]} twice")
+        found[one[0], one[1]] = float(one[2])
+    return found
+
+
+def _groups(tables: dict[str, Any], path: Path) -> dict[str, tuple[str, ...]]:
+    given = tables.get("groups", {})
+    if not isinstance(given, dict):
+        raise InputError(path, "groups", f"must be a table of lists of names; got {shown(given)}")
+    for group, names in given.items():
+        if not isinstance(names, list) or not names or not all(isinstance(name, str) for name in names):
+            raise InputError(path, joined("groups", group), f"must be a list of names; got {shown(names)}")
+    return {group: tuple(names) for group, names in given.items()}
+
+
+def _study(found: dict[str, Any], path: Path, offset: float, known: list[str]) -> Study:
+    _check_keys(found, known, path, "")
     base = _base(found, path, offset)
     responses = tuple(_response(text, path, i) for i, text in enumerate(_list(found, "responses", path)))
     vary = tuple(_vary(table, base, path, i, found.get("sample")) for i, table in enumerate(_list(found, "vary", path)))
