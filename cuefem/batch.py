@@ -16,10 +16,11 @@ import numpy as np
 from cuefem.beam import element_matrices, table
 from cuefem.cue import Array, Cue, Section, SegmentRows, section_properties
 from cuefem.scene import Resolution, Scene
+from cuefem.tail import STEPS
 from cuefem.transverse import StickLimit
 
-# Cues worked at a time: the element and eigenvector stacks of a block stay within some tens of megabytes.
-BLOCK = 256
+# Cues worked at a time: more of them, and their matrices no longer fit the cache (half as fast at 256).
+BLOCK = 64
 # Gauss points a segment of the static deflection, x^2/EI of a cone: 1e-13 for cones up to 1 : 10.
 STATIC_POINTS = 48
 
@@ -101,11 +102,15 @@ class CueBatch:
 @dataclass(frozen=True)
 class BatchModes:
     """Flexible bending modes of a batch: frequencies (cues, count), Hz; tip, (cues, count), w(0) of the mass-normalised
-    shapes, 1/sqrt(kg); rigid, (cues,), the sum of the two rigid motions' squares of it, 1/kg."""
+    shapes, 1/sqrt(kg); rigid, (cues,), the sum of the two rigid motions' squares of it, 1/kg.
+
+    top: (cues,), rad/s, the highest frequency of the modes where a tail follows them, two numbers more; else None.
+    """
 
     frequencies: Array
     tip: Array
     rigid: Array
+    top: Array | None = None
 
 
 def batch_frequencies(batch: CueBatch, count: int, *, at: Resolution) -> Array:
@@ -113,24 +118,52 @@ def batch_frequencies(batch: CueBatch, count: int, *, at: Resolution) -> Array:
     return np.concatenate([_block_frequencies(block, count, at) for block in batch.blocks()])
 
 
-def batch_modes(batch: CueBatch, count: int, *, at: Resolution) -> BatchModes:
-    """The ``count`` lowest flexible modes of every cue at the tip."""
-    parts = [_block_modes(block, count, at) for block in batch.blocks()]
-    return BatchModes(*(np.concatenate([getattr(p, name) for p in parts]) for name in ("frequencies", "tip", "rigid")))
+def batch_modes(batch: CueBatch, count: int, *, at: Resolution, ended: bool = False) -> BatchModes:
+    """The ``count`` lowest flexible modes of every cue at the tip; ended: by the two vectors of `cuefem.tail`."""
+    return _joined([_block_modes(block, count, at, ended) for block in batch.blocks()])
 
 
-def batch_stick(batch: CueBatch, scenes: Scene | Sequence[Scene], *, at: Resolution) -> tuple[Array, Array]:
+def batch_stick(
+    batch: CueBatch, scenes: Scene | Sequence[Scene] | StickLimit, *, at: Resolution, ended: bool = False
+) -> tuple[Array, Array]:
     """(stick end mass, kg; small-offset squirt over phi) of every cue in its scene's place: two arrays (cues,).
 
-    scenes: one for every cue, or one for all. They give ball, tip and contact time; their cues are not used, and
-    effects are not taken (one cue at a time has them).
+    scenes: one for every cue, or one for all, or a `StickLimit` of the cues' `mass`, whose parts may be arrays (cues,).
+    They give ball, tip and contact time; their cues are not used, and effects are not taken (one cue at a time has
+    them). ended: the modes end in the vectors of `cuefem.tail`, and fade (`cuefem.transverse.fade`) where that has a
+    dashpot: for a few per cent more time 18 modes are as good as 48 with the dashpot, hundreds without a tail
+    (studies/batch.py). The single cue's plain `end_mass` at a resolution is that without.
     """
-    places = [scenes] * len(batch) if isinstance(scenes, Scene) else scenes
+    law = _law(batch, scenes)
     parts = []
     for start, block in zip(range(0, len(batch), BLOCK), batch.blocks(), strict=True):
-        parts.append(stick_of(block, _block_modes(block, at.modes, at), places[start : start + BLOCK]))
+        found = _block_modes(block, at.modes, at, ended)
+        parts.append(stick_of(block, found, law[start : start + BLOCK]))
     end_mass, slope = (np.concatenate(part) for part in zip(*parts, strict=True))
     return end_mass, slope
+
+
+def stick_of(batch: CueBatch, found: BatchModes, scenes: Scene | Sequence[Scene] | StickLimit) -> tuple[Array, Array]:
+    """(stick end mass, kg; small-offset squirt over phi) from the modes of cues, each in its own scene's place."""
+    law = _law(batch, scenes)
+    J = law.transverse_impulse(2 * np.pi * found.frequencies, found.tip, found.rigid, top=found.top)
+    return law.end_mass(J), law.slope(J)
+
+
+def _law(batch: CueBatch, scenes: Scene | Sequence[Scene] | StickLimit) -> StickLimit:
+    if isinstance(scenes, StickLimit):
+        return scenes
+    if isinstance(scenes, Scene):
+        return StickLimit.of(scenes, batch.mass)
+    return StickLimit.of_each(scenes, batch.mass)
+
+
+def _joined(parts: Sequence[BatchModes]) -> BatchModes:
+    tops = [part.top for part in parts if part.top is not None]
+    frequencies, tip, rigid = (
+        np.concatenate([getattr(part, name) for part in parts]) for name in ("frequencies", "tip", "rigid")
+    )
+    return BatchModes(frequencies, tip, rigid, np.concatenate(tops) if tops else None)
 
 
 @dataclass(frozen=True)
@@ -147,6 +180,15 @@ class Beams:
     sizes: Array
     section: Section
     order: int
+
+    @property
+    def rigid(self) -> Array:
+        """Translation, and rotation about the tip: (cues, unknowns, 2)."""
+        motions = np.zeros((*self.K.shape[:2], 2))
+        nodes = (2 * self.order + 1) * np.arange(self.sizes.shape[1] + 1)
+        motions[:, nodes, 0], motions[:, nodes + 1, 1] = 1.0, 1.0
+        motions[:, nodes[1:], 1] = np.cumsum(self.sizes, axis=1) / self.length[:, None]
+        return motions
 
     def strains(self, vectors: Array) -> Array:
         """Strains of ``vectors`` (cues, unknowns, k) times roots of stiffness: (cues, rows, k); K = S'S of all."""
@@ -217,16 +259,50 @@ def _block_frequencies(batch: CueBatch, count: int, at: Resolution) -> Array:
     return np.asarray(np.sqrt(1 / mu - beams.shift[:, None]) / (2 * np.pi))
 
 
-def _block_modes(batch: CueBatch, count: int, at: Resolution) -> BatchModes:
+def _block_modes(batch: CueBatch, count: int, at: Resolution, ended: bool) -> BatchModes:
     beams = _beams(batch, at)
     C, back = _standard(beams)
     mu, y = np.linalg.eigh(C)
     chosen = slice(-3, -3 - count, -1)  # the last two are the rigid motions
     vectors = back @ (y[:, :, chosen] / np.sqrt(mu[:, None, chosen]))
     omega, mix = _polished(beams, vectors)
-    tip = np.einsum("bj,bjk->bk", vectors[:, 0], mix)
     # the rigid part: inverse of the 2 x 2 mass of translation and rotation about the tip, its translation entry
-    return BatchModes(omega / (2 * np.pi), np.abs(tip), _rigid_tip(batch))
+    tip, rigid, top = np.abs(np.einsum("bj,bjk->bk", vectors[:, 0], mix)), _rigid_tip(batch), None
+    if ended:
+        top = omega[:, -1]
+        high, follow = _tail(beams, back, vectors @ mix)
+        omega, tip = np.concatenate([omega, high], axis=1), np.concatenate([tip, follow], axis=1)
+    return BatchModes(omega / (2 * np.pi), tip, rigid, top)
+
+
+def _tail(beams: Beams, back: Array, flexible: Array) -> tuple[Array, Array]:
+    """(omega, w(0)) of the vectors that end the modes, (cues, steps) each: `cuefem.tail.tail`, without its dashpot."""
+    rigid = beams.rigid
+    rigid = rigid @ np.linalg.inv(np.linalg.cholesky(_gram(rigid, beams.M))).transpose(0, 2, 1)
+    kept = np.concatenate([rigid, flexible], axis=2)
+    heavy = (beams.M @ kept).transpose(0, 2, 1)
+    force = np.zeros((*back.shape[:2], 1))
+    force[:, 0] = 1.0
+    steps = []
+    for _ in range(STEPS):
+        step = back @ (back.transpose(0, 2, 1) @ force)
+        for _ in range(2):
+            step = step - kept @ (heavy @ step)
+        step = step / np.sqrt(_gram(step, beams.M))
+        force = beams.M @ step
+        steps.append(step)
+    basis, shift = np.concatenate(steps, axis=2), beams.shift[:, None, None]
+    for _ in range(2):
+        gram = _gram(basis, beams.K) + shift * _gram(basis, beams.M)
+        basis = basis @ np.linalg.inv(np.linalg.cholesky(gram)).transpose(0, 2, 1)
+    t, mix = np.linalg.eigh(_gram(basis, beams.M))
+    tip = np.einsum("bj,bjk->bk", basis[:, 0], mix) / np.sqrt(t)
+    return np.sqrt(1 / t - beams.shift[:, None])[:, ::-1], np.abs(tip)[:, ::-1]
+
+
+def _gram(vectors: Array, A: Array) -> Array:
+    """vectors' A vectors, (cues, k, k)."""
+    return np.asarray(vectors.transpose(0, 2, 1) @ (A @ vectors))
 
 
 def _polished(beams: Beams, vectors: Array) -> tuple[Array, Array]:
@@ -242,23 +318,3 @@ def _rigid_tip(batch: CueBatch) -> Array:
     """1/m + xbar^2/I: the rigid body's inverse mass across the cue at the tip, 1/kg, (cues,)."""
     mass, moment, inertia = batch._moments()
     return np.asarray(1 / mass + (moment / mass) ** 2 / inertia)
-
-
-def stick_of(batch: CueBatch, found: BatchModes, scenes: Sequence[Scene]) -> tuple[Array, Array]:
-    """(stick end mass, kg; small-offset squirt over phi) from the modes of cues, each in its own scene's place."""
-    end_mass, slope = np.empty(len(batch)), np.empty(len(batch))
-    axial_mass, omega = batch.mass, 2 * np.pi * found.frequencies
-    for same in _alike(scenes):
-        limit = StickLimit.of(scenes[same[0]], axial_mass=axial_mass[same])
-        J = limit.transverse_impulse(omega[same], found.tip[same], found.rigid[same])
-        end_mass[same], slope[same] = limit.end_mass(J), limit.slope(J)
-    return end_mass, slope
-
-
-def _alike(scenes: Sequence[Scene]) -> list[list[int]]:
-    """Indices of scenes that share one law of contact, of which `StickLimit` takes a stack of cues."""
-    groups: dict[tuple[object, ...], list[int]] = {}
-    for i, scene in enumerate(scenes):
-        law = (scene.ball.mass, scene.ball.inertia, scene.tip.restitution, scene.contact_time)
-        groups.setdefault(law, []).append(i)
-    return list(groups.values())

@@ -7,7 +7,8 @@ phi^2. Source: physics.md section 6.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,9 @@ import numpy as np
 from cuefem.cue import Array
 from cuefem.quantity import scalar
 from cuefem.scene import Scene
+
+# Where modes begin to fade, of the highest frequency kept: measured, 0.35 to 0.65 serve alike (studies/batch.py).
+FADED = 0.5
 
 
 def half_sine_velocity(omega: Array, phi: Array, rigid: Any, *, T: float) -> Any:
@@ -44,36 +48,63 @@ class StickLimit:
 
     The tip's velocity against the ball is K P(t) - 1 times what it was, P the part of the normal impulse given so far.
     c = (1 + 1/nu)/M, 1/kg. K = (1 + e)(1 + 1/nu + 1/Q0)/(1 + 1/Q0). T: contact time, s. e: restitution. head_on_mass,
-    kg. K and head_on_mass may be stacks. J, kg, is the transverse impulse over U phi.
+    kg. All may be stacks. J, kg, is the transverse impulse over U phi.
     """
 
-    c: float
+    c: Any
     K: Any
-    e: float
-    T: float
+    e: Any
+    T: Any
     head_on_mass: Any
 
     @classmethod
     def of(cls, scene: Scene, axial_mass: Any = None) -> StickLimit:
         """The limit of a scene; axial_mass, kg: of other cues in the scene's place."""
         M, nu = scalar("Ball.mass", scene.ball.mass), scalar("Ball.inertia", scene.ball.inertia)
-        e, c = scalar("Tip.restitution", scene.tip.restitution), (1 + 1 / nu) / M
+        e = scalar("Tip.restitution", scene.tip.restitution)
         axial_mass = scene.axial_mass if axial_mass is None else axial_mass
-        head_on_mass = 1 / (1 / M + 1 / axial_mass)
-        return cls(c, (1 + e) * head_on_mass * (c + 1 / axial_mass), e, scene.contact_time, head_on_mass)
+        return cls.law(M, nu, e, scene.contact_time, axial_mass)
 
-    def transverse_impulse(self, omega: Array, phi: Array, rigid: Any) -> Any:
-        """J of a bare cue's modes, kg."""
+    @classmethod
+    def of_each(cls, scenes: Sequence[Scene], axial_mass: Array) -> StickLimit:
+        """The stack of the limits of scenes with cues of ``axial_mass`` kg, (scenes,)."""
+        limits = [cls.of(scene, m) for scene, m in zip(scenes, axial_mass, strict=True)]
+        return cls(*(np.array([getattr(one, part.name) for one in limits]) for part in fields(cls)))
+
+    @classmethod
+    def law(cls, ball_mass: Any, inertia: Any, restitution: Any, contact_time: Any, axial_mass: Any) -> StickLimit:
+        """The limit of numbers in kg and s, or of stacks of them that broadcast: thousands of contacts at once."""
+        c = (1 + 1 / inertia) / ball_mass
+        head_on_mass = 1 / (1 / ball_mass + 1 / axial_mass)
+        K = (1 + restitution) * head_on_mass * (c + 1 / axial_mass)
+        return cls(c, K, restitution, contact_time, head_on_mass)
+
+    def __getitem__(self, part: slice) -> StickLimit:
+        """A part of a stack; numbers stand for all."""
+        values = (getattr(self, one.name) for one in fields(self))
+        return StickLimit(*(value[part] if np.ndim(value) else value for value in values))
+
+    def transverse_impulse(self, omega: Array, phi: Array, rigid: Any, *, top: Any = None) -> Any:
+        """J of a bare cue's modes, kg.
+
+        top: rad/s, (...): what vibrates near the frequency ``top`` and above it fades out and only gives way, see
+        `fade`; left out, all modes vibrate to the end.
+        """
         W, residues, direct = _mobility(omega, phi, rigid + self.c)
-        return direct * (self.K - 1) + (residues * self.swing(W)).sum(axis=-1)
+        swing = self.swing(W)
+        if top is not None:
+            settled = np.divide(_beside(self.K - 1), W, out=np.zeros_like(W), where=W > 0)
+            swing = settled + fade(W / _beside(top)) * (swing - settled)
+        return direct * (self.K - 1) + (residues * swing).sum(axis=-1)
 
     def swing(self, W: Array) -> Array:
         """Integral of sin(W (T - s)) (K P(s) - 1) ds over 0..T."""
-        return np.asarray(self.K)[..., None] * self.swing_per_K(W) - _response(W, self.T, (0.0, self.T))
+        T = _beside(self.T)
+        return np.asarray(self.K)[..., None] * self.swing_per_K(W) - _response(W, T, (0.0, T))
 
     def swing_per_K(self, W: Array) -> Array:
         """Integral of sin(W (T - s)) P(s) ds over 0..T."""
-        return _normal_impulse(W, self.e, self.T)
+        return _normal_impulse(W, _beside(self.e), _beside(self.T))
 
     def impulse(self, slope: Any) -> Any:
         """J of a strike whose squirt is ``slope`` times phi, kg."""
@@ -95,6 +126,21 @@ class StickLimit:
         return (J * (1 / end_mass + self.c) - (self.K - 1)) / ((1 + self.e) * self.head_on_mass)
 
 
+def fade(x: Array) -> Array:
+    """What of a vibration is kept, at ``x`` times the highest frequency: 1 up to `FADED`, 0 from 1 on.
+
+    Far above the pulse's own frequencies sin(W (T - s)) leaves V(T)/W, the beam giving way, and a ringing of
+    cos(W T)/W. A sum over modes that ends sharply keeps of the ringing what its last modes chance to have; one that
+    fades keeps the waves that are back at the tip by then.
+    """
+    return np.cos(np.pi / 2 * np.clip((x - FADED) / (1 - FADED), 0, 1)) ** 2
+
+
+def _beside(value: Any) -> Any:
+    """A number, or a stack as it meets stacks of modes: (...) as (..., 1)."""
+    return np.asarray(value)[..., None] if np.ndim(value) else value
+
+
 def _mobility(omega: Array, phi: Array, still: Any) -> tuple[Array, Array, Any]:
     """The force that a unit velocity step of the tip takes: direct delta(t) + sum of residues sin(W t).
 
@@ -111,7 +157,7 @@ def _mobility(omega: Array, phi: Array, still: Any) -> tuple[Array, Array, Any]:
     return W, np.divide(weights, W, out=np.zeros_like(W), where=W > 0), 1 / total[..., 0]
 
 
-def _response(W: Array, T: float, span: tuple[float, float], *, a: float = 0.0, b: float = 0.0) -> Array:
+def _response(W: Array, T: Any, span: tuple[Any, Any], *, a: Any = 0.0, b: Any = 0.0) -> Array:
     """Integral of sin(W (T - s)) cos(a s + b) ds over a span, free of 0/0 at W = a."""
     first, last = span
     middle, length = (first + last) / 2, last - first
@@ -122,7 +168,7 @@ def _response(W: Array, T: float, span: tuple[float, float], *, a: float = 0.0, 
     return (sine(W * T + b, a - W) + sine(W * T - b, -a - W)) / 2
 
 
-def _normal_impulse(W: Array, e: float, T: float) -> Array:
+def _normal_impulse(W: Array, e: Any, T: Any) -> Array:
     """Integral of sin(W (T - s)) P(s) ds over 0..T, P the head-on impulse of the bilinear tip over its total.
 
     Two quarter periods: (1 - cos)/(1 + e) while the tip is loaded, T/(1 + e) long, then (1 + e sin)/(1 + e).
@@ -130,6 +176,7 @@ def _normal_impulse(W: Array, e: float, T: float) -> Array:
     peak = T / (1 + e)
     a = np.pi / (2 * peak)
     total = _response(W, T, (0.0, T)) - _response(W, T, (0.0, peak), a=a)
-    if e > 0:
-        total += e * _response(W, T, (peak, T), a=a / e, b=-peak * a / e - np.pi / 2)
+    if np.any(e > 0):
+        rate = a / np.where(e > 0, e, 1.0)  # where e = 0 the tip does not unload, and the span is empty
+        total = total + e * _response(W, T, (peak, T), a=rate, b=-peak * rate - np.pi / 2)
     return total / (1 + e)
