@@ -154,6 +154,21 @@ def test_report(kim: str) -> None:
         assert f"\n{title} " in shown
 
 
+def test_a_report_says_first_that_the_stroke_miscues(kim: str, tmp_path: Path) -> None:
+    shown = run("report", kim, "--offset", "0.7")
+    assert 0 < shown.index("this stroke miscues: ") < shown.index("Bending modes")
+    assert as_json("report", kim, "--offset", "0.7")["regime"] == "miscue"
+    assert "miscue" not in run("report", kim)
+    slippery = cf.Scene(KIM, tip=cf.Tip(friction=0.35), stroke=BLOW)
+    cf.save(slippery, tmp_path / "slippery.toml")
+    regimes = [cf.strike(cf.Scene(KIM, tip=slippery.tip, stroke=cf.Stroke(offset=b))).regime for b in (0.1, 0.4, 0.5)]
+    assert regimes[0] != "miscue"
+    assert regimes[1:] == ["miscue", "miscue"]
+    rows = [line for line in run("report", str(tmp_path / "slippery.toml")).splitlines() if line.strip()[:3] == "0.4"]
+    assert all("miscue" in row for row in rows)
+    assert len(rows) == 2  # of squirt and of pivot length
+
+
 def test_a_lumped_cue_has_no_modes_but_the_rest(tmp_path: Path) -> None:
     cf.save(cf.Scene(cf.LumpedCue(0.54, 0.006), stroke=BLOW), tmp_path / "lumped.toml")
     found = as_json("report", str(tmp_path / "lumped.toml"))

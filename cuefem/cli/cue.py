@@ -111,9 +111,11 @@ def cost(file: Path, most: int, output: Path | None, **given: Any) -> None:
 def report(file: Path, output: Path | None, **given: Any) -> None:
     """All of it: modes, end masses, squirt and pivot length against offset; as tables, or as a page with figures."""
     from cuefem.report import end_mass_table, modes_table, pivot_table, report_record, squirt_table
+    from cuefem.report.tables import MISCUE
 
     def tables(found: Any, about: Any) -> list[Any]:
-        first = [modes_table(found["modes"])] if "modes" in found else []
+        first: list[Any] = [MISCUE, ""] if found["regime"] == "miscue" else []
+        first += [modes_table(found["modes"])] if "modes" in found else []
         masses, squirt = found["end_masses"], found["squirt"]
         return [*first, end_mass_table(masses, about), squirt_table(squirt, about), pivot_table(squirt)]
 

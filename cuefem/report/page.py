@@ -30,7 +30,7 @@ from cuefem.report.figures import Axis, Chart, Curve, Mark, Span, chart
 from cuefem.report.fragments import environment
 from cuefem.report.records import PAPER_CUE_END_MASS, Record, end_mass_record, squirt_record, strike_record
 from cuefem.report.solve import ended_tip_modes
-from cuefem.report.tables import assumptions, degrees, effect_words, grams, millimetres, plain_cue_line
+from cuefem.report.tables import MISCUE, assumptions, degrees, effect_words, grams, millimetres, plain_cue_line
 from cuefem.scene import Outcome, Scene
 from cuefem.strike import strike
 
@@ -118,6 +118,7 @@ def _context(scene: Scene, found: Record) -> Record:
         "figures": _key_figures(record, found["end_masses"], outcome),
         "strike": strike_drawing(scene, outcome.squirt),
         "squirt": degrees(outcome.squirt),
+        "warning": MISCUE if outcome.regime == "miscue" else "",
         "cue": _cue_part(scene) if isinstance(cue, Cue) else None,
         "modes": modes_drawing(modes(cue, effects=scene.cue_effects), cue.length) if isinstance(cue, Cue) else None,
         "contact": None if outcome.history is None else _contact(outcome),

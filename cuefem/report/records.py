@@ -200,35 +200,39 @@ def squirt_record(scene: Scene, offsets: Sequence[float] = OFFSETS, *, tip: TipM
     """
     cue = Lumped.of(scene)
     many = replace(scene, stroke=replace(scene.stroke, offset=np.array(offsets)))
-    models = {"coupled, this cue": _coupled_squirt(scene, offsets, tip)}
+    struck = _struck(scene, offsets, tip)
+    models = {"coupled, this cue": np.array([outcome.squirt for outcome in struck])}
     if (coupled := cue.coupled(np.array(offsets))) is not None:
         models["lumped, this cue"] = impulse(bare_scene(many, coupled)).squirt
     papers = LumpedCue.two_part(scene.axial_mass, PAPER_CUE_END_MASS)
     models["two-part, this cue"] = impulse(bare_scene(many, cue.two_part)).squirt
     models["two-part, 12 g"] = impulse(bare_scene(many, papers)).squirt
     models["A.31, this cue"] = _a31(many, cue.two_part)
+    found: Record = {
+        name: {"squirt": squirt, "pivot_length": _pivot_length(many, squirt)} for name, squirt in models.items()
+    }
+    found["coupled, this cue"]["regime"] = [outcome.regime for outcome in struck]
     return {
         "offsets": list(offsets),
         "end_mass": cue.two_part.end_mass,
         "coupling": cue.coupling or 0.0,
-        "models": {
-            name: {"squirt": squirt, "pivot_length": _pivot_length(many, squirt)} for name, squirt in models.items()
-        },
+        "models": found,
     }
 
 
-def _coupled_squirt(scene: Scene, offsets: Sequence[float], tip: TipModes | None) -> Any:
-    struck = [replace(scene, stroke=replace(scene.stroke, offset=b)) for b in offsets]
+def _struck(scene: Scene, offsets: Sequence[float], tip: TipModes | None) -> list[Outcome]:
+    scenes = [replace(scene, stroke=replace(scene.stroke, offset=b)) for b in offsets]
     if isinstance(scene.cue, LumpedCue):
-        return np.array([strike(one).squirt for one in struck])
+        return [strike(one) for one in scenes]
     tip = tip_modes_of(scene) if tip is None else tip
-    return np.array([strike_modes(one, tip).squirt for one in struck])
+    return [strike_modes(one, tip) for one in scenes]
 
 
 def report_record(scene: Scene, *, count: int = 6) -> Record:
-    """All of it: modes, end masses, squirt and pivot length."""
+    """All of it: modes, end masses, squirt and pivot length; and how the scene's own stroke goes."""
     found: Record = {"modes": modes_record(scene, count=count, near=None)} if isinstance(scene.cue, Cue) else {}
-    return found | {"end_masses": end_mass_record(scene), "squirt": squirt_record(scene)}
+    found |= {"end_masses": end_mass_record(scene), "squirt": squirt_record(scene)}
+    return found | {"regime": strike(scene).regime}
 
 
 def claims_record(claims: Sequence[tuple[str, Claim]]) -> list[Record]:

@@ -183,8 +183,14 @@ def _by_offset(title: str, record: Record, *, key: str, written: Any) -> Table:
     models = record["models"]
     table = table_of(title, ["b/R", *models], text_columns=0)
     for i, offset in enumerate(record["offsets"]):
-        table.add_row(f"{offset:g}", *(written(model[key][i]) for model in models.values()))
+        cells = (written(model[key][i]) + _missed(model, i) for model in models.values())
+        table.add_row(f"{offset:g}", *cells)
     return table
+
+
+def _missed(model: Record, i: int) -> str:
+    """A word beside the number of a stroke that miscues, where a model tells."""
+    return ", miscue" if "miscue" in model.get("regime", ())[i : i + 1] else ""
 
 
 def squirt_table(record: Record, scene: Record) -> Group:
@@ -205,8 +211,10 @@ def pivot_table(record: Record) -> Group:
 
 
 VERDICT_WORDS = (
-    "agrees: ours rounds to the printed digits (formulas: the same to 1e-8); rounding: its own digits or stated "
-    "approximation explain the difference; slip: a slip in the paper; not derivable: it gives too little to derive it"
+    "agrees: ours rounds to the printed digits (formulas: the same to 1e-8; a statement without a number, printed –, "
+    "holds; a number that hangs on what the source leaves open lies in the range of that, as the cause says); "
+    "rounding: its own digits or stated approximation explain the difference; slip: a slip in the paper; "
+    "not derivable: it gives too little to derive it"
 )
 
 
