@@ -52,6 +52,7 @@ ORDER = [
     "validation",
     "io",
     "report",
+    "designer",
     "cli",
 ]
 HOMES = {
@@ -68,6 +69,8 @@ HOMES = {
     "sqlite3": {"io"},
     "pyarrow": {"io"},
     "distributed": {"design"},
+    "nicegui": {"designer"},
+    "starlette": {"designer"},
 }
 
 

@@ -10,6 +10,7 @@ from typing import Any
 import click
 
 from cuefem.cli.cue import cost, effects, end_mass, modes, report, strike
+from cuefem.cli.designer import designer
 from cuefem.cli.files import convert, materials, schema
 from cuefem.cli.handover import animate, handover
 from cuefem.cli.scatter import scatter
@@ -82,5 +83,6 @@ for _command in (
     materials,
     sweep,
     scatter,
+    designer,
 ):
     main.add_command(_command)

@@ -1,0 +1,55 @@
+"""The command that opens the designer's page."""
+
+from __future__ import annotations
+
+import socket
+from pathlib import Path
+from typing import Any
+
+import click
+
+from cuefem.cli.common import scene_of
+
+
+@click.command()
+@click.argument("scene", type=click.Path(path_type=Path), required=False)
+@click.option("--port", type=click.IntRange(0, 65535), default=8470, show_default=True, help="0: any free one.")
+@click.option("--open/--no-open", "show", default=True, help="Open it in the browser.", show_default=True)
+def designer(scene: Path | None, port: int, show: bool) -> None:
+    """A page on this computer: turn a cue's knobs and see at once what that does to end mass and squirt.
+
+    SCENE is a cue or a scene, as FILE is elsewhere; a maple pool shaft without it.
+    """
+    try:
+        from cuefem.designer.app import Opened, serve
+    except ModuleNotFoundError as error:
+        if error.name is None or error.name.startswith("cuefem"):
+            raise
+        raise ValueError(f"the designer needs {error.name}: pip install 'cuefem[designer]'") from None
+    from cuefem.designer.model import knobs_of
+    from cuefem.designer.start import NAME, first_scene
+    from cuefem.io import InputError
+
+    def read(path: Path) -> Any:
+        return scene_of(path, {"material": None, "body_mass": None})
+
+    if scene is None:
+        first = Opened(NAME, first_scene(), [])
+    else:
+        first = Opened(scene.name, *read(scene))
+        try:
+            knobs_of(first.scene)
+        except ValueError as error:
+            raise InputError(scene, "", str(error)) from None
+    serve(first, read, port=_free(port), show=show, announce=click.echo)
+
+
+def _free(port: int) -> int:
+    """The port, if nobody listens there; any free one for 0."""
+    with socket.socket() as tried:
+        tried.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            tried.bind(("127.0.0.1", port))
+        except OSError as error:
+            raise ValueError(f"--port must be a free one; got {port}: {error.strerror}") from None
+        return int(tried.getsockname()[1])

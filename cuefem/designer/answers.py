@@ -1,0 +1,147 @@
+"""What the designer shows of a scene: the numbers of `cuefem end-mass`, `strike` and `modes`, by the same functions.
+
+At once: what one solution of the beam gives, and the strike at the scene's own offset. Later, while nobody turns a
+knob: the coupled squirt at other offsets, strike by strike, and where end mass lives.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from cuefem.cue import Array, LumpedCue
+from cuefem.design.solvers import static_tip_stiffness
+from cuefem.designer.model import cue_of
+from cuefem.effects import TipEffect
+from cuefem.endmass import Drive, equivalent_end_mass, formula_of, stick
+from cuefem.impulse import impulse
+from cuefem.modes import Modes, TipModes, mesh_for, modes
+from cuefem.report.records import DRIVES, Record, bare_scene, outcome_record
+from cuefem.resolution import default_resolution, tip_modes_of
+from cuefem.scene import Outcome, Resolution, Scene
+from cuefem.sensitivity import sensitivity
+from cuefem.strike import strike_modes
+
+TONES = 5  # bending modes that are shown
+OFFSETS = tuple(round(0.06 * i, 2) for i in range(1, 11))  # b/R of the coupled curve
+FINE_OFFSETS = tuple(round(0.02 * i, 2) for i in range(1, 31))  # of the lumped one
+MOST_DENSITY_MODES = 45  # where end mass lives takes all modes of the mesh: cubic
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Squirt, rad, and natural pivot length, m, against the offset b/R."""
+
+    offsets: tuple[float, ...]
+    squirt: Array
+    pivot_length: Array
+
+
+@dataclass(frozen=True)
+class Density:
+    """Where the stick end mass of the bare cue lives: kg a metre at x m from the tip; end_mass: what that shares out.
+
+    from_mass: what the mass there adds; from_stiffness: what the stiffness there does. Together they integrate to the
+    end mass but for the ball's and the cue's own part in it (physics.md section 6).
+    """
+
+    x: Array
+    from_mass: Array
+    from_stiffness: Array
+    weights: Array
+    end_mass: float
+
+
+@dataclass(frozen=True)
+class Answers:
+    """What is known at once, SI. end_masses: by definition, None where a definition has no answer.
+
+    strike: as `outcome_record`, of the coupled strike at the scene's own offset. tip_stiffness: of a static load across
+    the cue at its tip, the butt end clamped. lumped: the impulse solver's curve with the stick end mass of the cue
+    without effects at its tip. tip: the tip modes, for what comes later.
+    """
+
+    scene: Scene
+    end_masses: dict[Drive, float | None]
+    strike: Record
+    found: Modes
+    tip_stiffness: float
+    lumped: Curve
+    tip: TipModes
+
+    @property
+    def frequencies(self) -> Array:
+        """The lowest bending frequencies, Hz."""
+        return self.found.frequencies
+
+
+def answers(scene: Scene) -> Answers:
+    """What is known at once of a scene with a cue of segments. Cost: the beam's eigenproblem and one strike."""
+    cue = cue_of(scene)
+    tip = tip_modes_of(scene)
+    outcome = strike_modes(scene, tip)
+    bare = replace(scene, effects=tuple(effect for effect in scene.effects if not isinstance(effect, TipEffect)))
+    return Answers(
+        scene=scene,
+        end_masses={drive: _end_mass(scene, drive, tip, outcome) for drive in DRIVES},
+        strike=outcome_record(outcome, scene),
+        found=modes(cue, TONES, effects=scene.cue_effects),
+        tip_stiffness=static_tip_stiffness(scene, Resolution(*mesh_for(cue, TONES), TONES)),
+        lumped=lumped_curve(scene, LumpedCue(scene.axial_mass, stick(tip, bare))),
+        tip=tip,
+    )
+
+
+def _end_mass(scene: Scene, drive: Drive, tip: TipModes, outcome: Outcome) -> float | None:
+    try:
+        if drive == "squirt" and scene.stroke.offset:  # its strike is known
+            return equivalent_end_mass(outcome, scene)
+        return float(formula_of(drive)(tip, scene))
+    except ValueError:
+        return None
+
+
+def lumped_curve(scene: Scene, cue: LumpedCue) -> Curve:
+    """The impulse solver's curve of a lumped cue in the scene's place."""
+    many = replace(scene, stroke=replace(scene.stroke, offset=np.array(FINE_OFFSETS)))
+    found = outcome_record(impulse(bare_scene(many, cue)), many)
+    return Curve(FINE_OFFSETS, found["squirt"], found["pivot_length"])
+
+
+def coupled_points(found: Answers) -> Iterator[tuple[float, float, float]]:
+    """(offset, squirt, pivot length) of the coupled strike, offset by offset, each computed when it is asked for."""
+    for offset in OFFSETS:
+        scene = replace(found.scene, stroke=replace(found.scene.stroke, offset=offset))
+        record = outcome_record(strike_modes(scene, found.tip), scene)
+        yield offset, record["squirt"], float(record["pivot_length"])
+
+
+def density(scene: Scene) -> Density:
+    """Where the stick end mass of the cue lives, its effects left out."""
+    bare = replace(scene, effects=())
+    at = default_resolution(bare)
+    if at.modes > MOST_DENSITY_MODES:
+        at = Resolution(*mesh_for(cue_of(bare), MOST_DENSITY_MODES), MOST_DENSITY_MODES)
+    found = sensitivity(bare, "stick", at)
+    section = cue_of(bare).section(found.x)
+    return Density(
+        x=found.x,
+        from_mass=found.rhoA * section.rhoA + found.rhoI * section.rhoI,
+        from_stiffness=found.EI * section.EI + found.kGA * section.kGA,
+        weights=found.weights,
+        end_mass=found.end_mass,
+    )
+
+
+NOTES = ("C", "C♯", "D", "D♯", "E", "F", "F♯", "G", "G♯", "A", "A♯", "B")
+
+
+def note(frequency: float) -> str:
+    """The nearest note of a frequency, Hz, and how many cents it lies from that: "A4 +12"; A4 is 440 Hz."""
+    steps = 12 * math.log2(frequency / 440)
+    nearest = round(steps)
+    octave, name = divmod(nearest + 57, 12)
+    return f"{NOTES[name]}{octave} {round(100 * (steps - nearest)):+d}".replace("-", "−")

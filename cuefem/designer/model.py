@@ -1,0 +1,287 @@
+"""The knobs of a cue, and a scene with its knobs turned.
+
+A scene stays as its file has it but for the knobs that were moved: a knob at the scene's own value changes nothing, and
+what has no knob (other segments, effects, the ball) is kept. What a knob means in any cue, told by its drawing alone:
+
+- The leather is the soft segments at the tip; the ferrule is the segment behind it, where that is short and of another
+  material than the next; the shaft is what follows, as far as it is of one material.
+- Diameters: those at the tip, `TAPER_AT` behind it, and at the end of the drawing. A change at one of them fades out
+  evenly to the next; pieces stay conical.
+- The ferrule takes its length from the segment behind it and ends flush with that one's cone, so that the cue stays as
+  long as it is and the shaft keeps its line.
+- The bore is the empty one that begins behind the leather (or, through a ferrule on a tenon, behind that); its depth is
+  counted from its mouth. A filled bore has no knob.
+- The joint is the first `Joint` of the scene; it bends by its rotational compliance alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from cuefem.cue import Cue, Material, Segment
+from cuefem.effects import Effect, Joint
+from cuefem.scene import Scene
+
+SOFT = 1e9  # Pa; what is softer at the tip is leather
+LONGEST_FERRULE = 0.06  # m
+TAPER_AT = 0.3302  # m, 13 in: how far pool shafts are held straight; half the cue where it is shorter than twice that
+USUAL_BORE = 0.006  # m, the width that a bore begins with where there is none
+SAME = 1e-9  # of a length: what is nearer is the same
+
+
+@dataclass(frozen=True)
+class Knobs:
+    """What a person can turn; SI. None: the scene has no such part, or it is none that a knob can turn.
+
+    Diameters at the tip, `TAPER_AT` behind it and at the end, m; bore: depth from its mouth and width, m; joint:
+    distance from the tip, m, and rotational compliance, rad/(N m); contact time of a head-on blow, s; offset b/R.
+    """
+
+    tip_diameter: float
+    taper_diameter: float
+    butt_diameter: float
+    bore_depth: float | None
+    bore_width: float | None
+    ferrule_length: float | None
+    ferrule_material: Material | None
+    shaft_material: Material
+    joint_position: float
+    joint_compliance: float
+    contact_time: float
+    offset: float
+
+
+@dataclass(frozen=True)
+class Parts:
+    """Where a cue's parts are, by its segments' indices. ferrule: empty without one. bore: None where it is filled."""
+
+    ferrule: range
+    shaft: range
+    bore: range | None
+
+    @classmethod
+    def of(cls, cue: Cue) -> Parts:
+        """The parts, told by the drawing."""
+        pieces = cue.segments
+        last = len(pieces) - 1
+        front = next((i for i, s in enumerate(pieces) if s.material.E >= SOFT), last)
+        first = _run(pieces, front)
+        if first > last or cue.nodes[first] - cue.nodes[front] > LONGEST_FERRULE:
+            first = front
+        mouth = front if _empty_bore(pieces[front]) else first
+        bore = None if pieces[mouth].core else range(mouth, _first_without_bore(pieces, mouth))
+        return cls(range(front, first), range(first, _run(pieces, first)), bore)
+
+
+def _run(pieces: Sequence[Segment], first: int) -> int:
+    """Where another material begins."""
+    return next((i for i in range(first, len(pieces)) if pieces[i].material != pieces[first].material), len(pieces))
+
+
+def _empty_bore(segment: Segment) -> bool:
+    return segment.core is None and _width(segment) > 0
+
+
+def _width(segment: Segment) -> float:
+    return max(segment.tip_bore, segment.butt_bore)
+
+
+def _first_without_bore(pieces: Sequence[Segment], first: int) -> int:
+    return next((i for i in range(first, len(pieces)) if not _empty_bore(pieces[i])), len(pieces))
+
+
+def cue_of(scene: Scene) -> Cue:
+    """The scene's cue; ValueError for a lumped one, which has no shape."""
+    if not isinstance(scene.cue, Cue):
+        raise ValueError("cue must have segments, a shape that can be changed; got a lumped cue")
+    return scene.cue
+
+
+def taper_position(cue: Cue) -> float:
+    """Where the taper's knob measures the diameter, m from the tip."""
+    return TAPER_AT if cue.length >= 2 * TAPER_AT else cue.length / 2
+
+
+def bore_mouth(cue: Cue) -> float:
+    """Where the bore begins, m from the tip."""
+    bore = Parts.of(cue).bore
+    return float(cue.nodes[bore.start]) if bore is not None else 0.0
+
+
+def deepest_bore(cue: Cue) -> float:
+    """How deep the bore can be, m from its mouth: up to what is filled, or the cue's end."""
+    bore = Parts.of(cue).bore
+    if bore is None:
+        return 0.0
+    filled = (i for i in range(bore.start, len(cue.segments)) if cue.segments[i].core is not None)
+    return float(cue.nodes[next(filled, len(cue.segments))] - cue.nodes[bore.start])
+
+
+def knobs_of(scene: Scene) -> Knobs:
+    """Where a scene's knobs stand; ValueError for a lumped cue."""
+    cue = cue_of(scene)
+    parts, pieces = Parts.of(cue), cue.segments
+    ferrule = parts.ferrule
+    joint = joint_of(scene)
+    return Knobs(
+        tip_diameter=pieces[0].tip_diameter,
+        taper_diameter=outer_diameter(cue, taper_position(cue)),
+        butt_diameter=pieces[-1].butt_diameter,
+        bore_depth=None if parts.bore is None else float(cue.nodes[parts.bore.stop] - cue.nodes[parts.bore.start]),
+        bore_width=None if parts.bore is None else _width(pieces[parts.bore.start]) if parts.bore else USUAL_BORE,
+        ferrule_length=float(np.ptp(cue.nodes[[ferrule.start, ferrule.stop]])) if ferrule else None,
+        ferrule_material=pieces[ferrule.start].material if ferrule else None,
+        shaft_material=pieces[parts.shaft.start].material,
+        joint_position=joint.position,
+        joint_compliance=joint.rotational_compliance,
+        contact_time=float(scene.contact_time),
+        offset=float(scene.stroke.offset),
+    )
+
+
+def joint_of(scene: Scene) -> Joint:
+    """The scene's first joint; without one, a stiff one at the back end of the shaft's material or inside the cue."""
+    own = next((effect for effect in scene.effects if isinstance(effect, Joint)), None)
+    if own is not None:
+        return own
+    cue = cue_of(scene)
+    back = float(cue.nodes[Parts.of(cue).shaft.stop])
+    return Joint(back if back < 0.99 * cue.length else 0.9 * cue.length)
+
+
+def outer_diameter(cue: Cue, x: float) -> float:
+    """Outer diameter at x m from the tip; at a jump that of the butt side."""
+    i = min(int(np.searchsorted(cue.nodes, x, side="right")) - 1, len(cue.segments) - 1)
+    piece = cue.segments[i]
+    t = (x - cue.nodes[i]) / piece.length
+    return float(piece.tip_diameter + (piece.butt_diameter - piece.tip_diameter) * t)
+
+
+def turned(scene: Scene, knobs: Knobs) -> Scene:
+    """The scene with its knobs turned; itself where none was. ValueError where no such cue can be made."""
+    cue = cue_of(scene)
+    own = knobs_of(scene)
+    changed = _with_bore(_with_diameters(_with_ferrule(cue, own, knobs), own, knobs), knobs)
+    changed = _with_materials(changed, knobs)  # last: it is by their materials that parts are told
+    found = scene if changed is cue else replace(scene, cue=changed)
+    if knobs.contact_time != own.contact_time:
+        found = replace(found, tip=replace(scene.tip, contact_time=knobs.contact_time, stiffness=None))
+    if knobs.offset != own.offset:
+        found = replace(found, stroke=replace(scene.stroke, offset=knobs.offset))
+    return _with_joint(found, own, knobs)
+
+
+def _with_materials(cue: Cue, knobs: Knobs) -> Cue:
+    """Another ferrule, another shaft; the ferrule's tenon is of the shaft's wood where it was."""
+    parts, pieces = Parts.of(cue), list(cue.segments)
+    old = pieces[parts.shaft.start].material
+    for i in parts.shaft:
+        pieces[i] = _of_material(pieces[i], knobs.shaft_material)
+    for i in parts.ferrule:
+        ferrule = _of_material(pieces[i], knobs.ferrule_material or pieces[i].material)
+        pieces[i] = replace(ferrule, core=knobs.shaft_material) if ferrule.core == old else ferrule
+    return _with_segments(cue, pieces)
+
+
+def _of_material(segment: Segment, material: Material) -> Segment:
+    return segment if segment.material == material else replace(segment, material=material)
+
+
+def _with_segments(cue: Cue, pieces: Sequence[Segment]) -> Cue:
+    return cue if tuple(pieces) == cue.segments else replace(cue, segments=tuple(pieces))
+
+
+def _with_ferrule(cue: Cue, own: Knobs, knobs: Knobs) -> Cue:
+    if own.ferrule_length is None or knobs.ferrule_length is None or knobs.ferrule_length == own.ferrule_length:
+        return cue
+    pieces, behind_it = list(cue.segments), Parts.of(cue).ferrule.stop
+    ferrule, behind = pieces[behind_it - 1], pieces[behind_it]
+    more = knobs.ferrule_length - own.ferrule_length
+    if not -ferrule.length < more < behind.length:
+        least, most = (1e3 * (own.ferrule_length + by) for by in (-ferrule.length, behind.length))
+        got = 1e3 * knobs.ferrule_length
+        raise ValueError(
+            f"the ferrule must be in ({least:.6g}, {most:.6g}) mm long, as its neighbours allow; got {got:.6g} mm"
+        )
+    onward = -more / behind.length  # of the cone behind, which keeps its line
+    outer = behind.tip_diameter + (behind.tip_diameter - behind.butt_diameter) * onward
+    bore = max(0.0, behind.tip_bore + (behind.tip_bore - behind.butt_bore) * onward)
+    flush = ferrule.butt_diameter + outer - behind.tip_diameter
+    pieces[behind_it - 1] = replace(ferrule, length=ferrule.length + more, butt_diameter=flush)
+    pieces[behind_it] = replace(behind, length=behind.length - more, tip_diameter=outer, tip_bore=bore)
+    return _with_segments(cue, pieces)
+
+
+def _with_diameters(cue: Cue, own: Knobs, knobs: Knobs) -> Cue:
+    names = ("tip_diameter", "taper_diameter", "butt_diameter")
+    more = [getattr(knobs, name) - getattr(own, name) for name in names]
+    if not any(more):
+        return cue
+    middle = taper_position(cue)
+    if abs(more[1] - np.interp(middle, [0, cue.length], [more[0], more[2]])) > SAME * cue.length:
+        cue = _split_at(cue, middle)
+
+    def grown(piece: Segment, start: float) -> Segment:
+        first, last = np.interp([start, start + piece.length], [0, middle, cue.length], more)
+        ends = piece.tip_diameter + float(first), piece.butt_diameter + float(last)
+        if min(ends) <= 0:
+            raise ValueError(f"the cue must be thicker than nothing; got {1e3 * min(ends):.4g} mm")
+        return replace(piece, tip_diameter=ends[0], butt_diameter=ends[1])
+
+    pieces = [grown(piece, float(x)) for piece, x in zip(cue.segments, cue.nodes, strict=False)]
+    return _with_segments(cue, pieces)
+
+
+def _split_at(cue: Cue, x: float) -> Cue:
+    """The same cue with a segment's end at x m from the tip."""
+    if np.abs(cue.nodes - x).min() <= SAME * cue.length or not 0 < x < cue.length:
+        return cue
+    i = int(np.searchsorted(cue.nodes, x)) - 1
+    piece, part = cue.segments[i], float(x - cue.nodes[i])
+    outer = piece.tip_diameter + (piece.butt_diameter - piece.tip_diameter) * part / piece.length
+    bore = piece.tip_bore + (piece.butt_bore - piece.tip_bore) * part / piece.length
+    front = replace(piece, length=part, butt_diameter=outer, butt_bore=bore)
+    back = replace(piece, length=piece.length - part, tip_diameter=outer, tip_bore=bore)
+    return replace(cue, segments=(*cue.segments[:i], front, back, *cue.segments[i + 1 :]))
+
+
+def _with_bore(cue: Cue, knobs: Knobs) -> Cue:
+    """The bore as deep and wide as the knobs say: its own shape made wider, and carried on as wide as it ends."""
+    bore, deepest, near = Parts.of(cue).bore, deepest_bore(cue), SAME * cue.length
+    if bore is None or knobs.bore_depth is None or knobs.bore_width is None:
+        return cue
+    mouth, old_end = float(cue.nodes[bore.start]), float(cue.nodes[bore.stop])
+    width = _width(cue.segments[bore.start]) if bore else knobs.bore_width
+    if abs(knobs.bore_depth - (old_end - mouth)) <= near and knobs.bore_width == width:
+        return cue
+    if knobs.bore_depth > deepest + near:
+        raise ValueError(f"the bore must be at most {1e3 * deepest:g} mm deep; got {1e3 * knobs.bore_depth:g} mm")
+    wider = knobs.bore_width / width if width else 1.0
+    onward = wider * cue.segments[bore.stop - 1].butt_bore if bore else knobs.bore_width
+    end = mouth + min(knobs.bore_depth, deepest)
+
+    def bored(piece: Segment, start: float) -> Segment:
+        was, is_now = (mouth - near <= start < stop - near for stop in (old_end, end))
+        if was and is_now:
+            return replace(piece, tip_bore=wider * piece.tip_bore, butt_bore=wider * piece.butt_bore)
+        inside = onward if is_now else 0.0
+        return replace(piece, tip_bore=inside, butt_bore=inside) if was or is_now else piece
+
+    cue = _split_at(cue, end)
+    pieces = [bored(piece, float(x)) for piece, x in zip(cue.segments, cue.nodes, strict=False)]
+    return _with_segments(cue, pieces)
+
+
+def _with_joint(scene: Scene, own: Knobs, knobs: Knobs) -> Scene:
+    joint = joint_of(scene)
+    moved = replace(joint, position=knobs.joint_position, rotational_compliance=knobs.joint_compliance)
+    if joint in scene.effects:
+        return scene if moved == joint else _with_effects(scene, [moved if e is joint else e for e in scene.effects])
+    return _with_effects(scene, [*scene.effects, moved]) if knobs.joint_compliance else scene
+
+
+def _with_effects(scene: Scene, effects: Sequence[Effect]) -> Scene:
+    return replace(scene, effects=tuple(effects))

@@ -1,0 +1,79 @@
+"""The designer's own styles, beside those of the report's page, and the few lines that play a tone."""
+
+STYLE = """
+body { max-width: 1440px; --q-primary: var(--c1) !important; }
+.desk svg.chart text { font-size: 13px; } .desk .grid2 .wide svg text { font-size: 11px; }
+.nicegui-content, .q-page { display: block; padding: 0; min-height: 0 !important; }
+.nicegui-html { min-width: 0; width: 100%; }
+.q-layout { min-height: 0 !important; }
+.desk { display: grid; grid-template-columns: minmax(280px, 320px) minmax(0, 1fr); gap: 1.1rem; align-items: start; }
+.desk > * { min-width: 0; }
+.desk section { margin: 0 0 1.1rem; }
+.knobs { position: sticky; top: 0.6rem; max-height: calc(100vh - 1.2rem); overflow-y: auto; }
+sub { line-height: 0; }
+h1, h2 { font-weight: 700; letter-spacing: 0; font-family: inherit; } h2 { line-height: 1.3; }
+.desk .grid2 { grid-template-columns: repeat(auto-fit, minmax(min(100%, 340px), 1fr)); }
+.rest th.text { white-space: normal; min-width: 9rem; } .rest td { vertical-align: top; }
+.knob { margin: 0 0 0.15rem; }
+.knob .line { display: flex; justify-content: space-between; align-items: center; gap: 0.4rem; font-size: 0.88rem;
+  line-height: 1.2; }
+.knob .line > :first-child { flex: 1; width: auto; }
+.hint { font-size: 0.8rem; line-height: 1.3; }
+.knob .q-field { width: 6.2rem; flex: none; } .knob .q-field:has([aria-label*="mrad"]) { width: 9rem; }
+.knob .q-field__control, .knob .q-field__marginal { height: 1.7rem !important; min-height: 0 !important; }
+.knob .q-field__native { padding: 0; text-align: right; font-variant-numeric: tabular-nums; color: var(--ink); }
+.knob .q-field__suffix, .knob .q-field__append { padding: 0 0 0 0.3rem; color: var(--soft); line-height: 1.7rem; }
+.knob .q-slider { height: 24px; padding: 0 8px; }
+.q-slider, .q-btn.q-btn--outline { color: var(--c1) !important; }
+.q-slider__track { background: var(--rule); }
+.choice { width: 100%; margin-bottom: 0.5rem; }
+.choice .q-field__native, .choice .q-field__label, .q-menu { color: var(--ink) !important; }
+.choice .q-field__label { color: var(--soft) !important; }
+.q-menu { background: var(--card) !important; }
+.actions { display: flex; flex-wrap: wrap; gap: 0.5rem; margin: 0.7rem 0 1rem; }
+.actions .q-btn { text-transform: none; }
+.said { margin: 0.6rem 0; padding: 0.6rem 0.9rem; border: 1px solid var(--c2); border-left-width: 5px;
+  border-radius: 6px; color: var(--ink); background: var(--card); max-width: none; }
+.key-strip { background: var(--card); }
+.key-strip .key { grid-template-columns: repeat(auto-fit, minmax(118px, 1fr)); }
+.key-strip .key dd { font-size: 1.25rem; white-space: nowrap; } .key-strip .key small { white-space: normal; }
+.key b { font-weight: 650; }
+.miscue { color: var(--c2); }
+.stale { opacity: 0.4; }
+.tones { display: flex; flex-wrap: wrap; gap: 0.4rem; max-width: none; }
+.tone { font: inherit; font-size: 0.86rem; color: var(--ink); background: var(--paper); border: 1px solid var(--soft);
+  border-radius: 6px; padding: 0.25rem 0.6rem; cursor: pointer; font-variant-numeric: tabular-nums; }
+.tone small { color: var(--soft); }
+.tone:focus-visible, .q-btn:focus-visible, summary:focus-visible { outline: 3px solid var(--c2); outline-offset: 2px; }
+.q-slider:focus-visible .q-slider__thumb, .q-slider--focus .q-slider__thumb { outline: 3px solid var(--c2);
+  outline-offset: 2px; border-radius: 50%; }
+.unseen { display: none; }
+@media (max-width: 860px) {
+  .desk { grid-template-columns: minmax(0, 1fr); }
+  .knobs { position: static; max-height: none; order: 2; }
+  .desk > main { display: contents; }
+  .key-strip { order: 1; position: sticky; top: 0; z-index: 5; padding: 0.5rem 0.7rem; margin: 0 !important; }
+  .key-strip .key { grid-template-columns: repeat(3, minmax(0, 1fr)); gap: 0.3rem 0.6rem; }
+  .key-strip .key dd { font-size: 1.02rem; }
+  .key-strip .key dt, .key-strip .key small { font-size: 0.72rem; line-height: 1.2; }
+  .rest { order: 3; }
+}
+"""
+
+SCRIPT = """
+<script>
+document.addEventListener("click", event => {
+  const button = event.target.closest(".tone");
+  if (!button) return;
+  const sound = window.cuefemSound ??= new AudioContext();
+  const tone = sound.createOscillator(), loudness = sound.createGain(), now = sound.currentTime;
+  tone.frequency.value = Number(button.dataset.hz);
+  loudness.gain.setValueAtTime(0.0001, now);
+  loudness.gain.exponentialRampToValueAtTime(0.4, now + 0.01);
+  loudness.gain.exponentialRampToValueAtTime(0.0005, now + 1.5);
+  tone.connect(loudness).connect(sound.destination);
+  tone.start(now);
+  tone.stop(now + 1.5);
+});
+</script>
+"""
