@@ -1,0 +1,118 @@
+"""How much do two maple pool shafts of one drawing differ, and what drives the difference?
+
+Causes, with sources, stand in scatter_maple.toml: wood (E, G and density, correlated), turning by +-0.05 mm, ferrule,
+leather from new to worn, ball, contact time, and with them the dome and the shear of the tip. Monte Carlo over
+scrambled Sobol points; Sobol indices by Saltelli's estimators (`cuefem.scatter`), correlated wood as one cause. The
+coupled strike at b/R = 0.3, bare and with dome and tip shear. About 30 s.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+
+from cuefem.design import Response
+from cuefem.io.study import load_scatter
+from cuefem.scatter import Drivers, Scatter, drivers, spread
+from studies.common import STUDIES, figure, table
+
+MODELS = ("bare", "dome and tip shear")
+COLOURS = ("#4477aa", "#cc6644")
+SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)
+SCALES = {"end_mass": ("end mass, g", 1e3), "squirt": ("squirt, °", float(np.degrees(1)))}
+FULL, SAMPLE = load_scatter(STUDIES / "scatter_maple.toml")
+
+
+def bare() -> Scatter:
+    """What scatters with the effects of the tip left out."""
+    study = FULL.study
+    kept = tuple(vary for vary in study.vary if not vary.paths[0].startswith("effects"))
+    return replace(FULL, study=replace(study, base=replace(study.base, effects=()), vary=kept))
+
+
+@cache
+def found(model: str) -> Drivers:
+    return drivers(bare() if model == "bare" else FULL, SAMPLE.count, seed=SAMPLE.seed)
+
+
+def spreads() -> Iterator[list[str | float]]:
+    for k, (words, scale) in enumerate(SCALES.values()):
+        for model in MODELS:
+            sample = found(model).spread
+            numbers = [sample.mean[k], sample.sd[k], *sample.quantiles(SHARES)[:, k]]
+            yield [f"{words}, {model}", *(float(scale * number) for number in numbers)]
+
+
+def shares(model: str) -> Iterator[list[str]]:
+    """Largest share of squirt first."""
+    one = found(model)
+    both = ((one.first, one.first_interval), (one.total, one.total_interval))
+    for i in one.total[:, 1].argsort()[::-1]:
+        cells = [_share(index[i, k], ends[:, i, k]) for k in (1, 0) for index, ends in both]
+        yield [one.causes[i], *cells]
+
+
+def _share(value: float, ends: np.ndarray) -> str:
+    low, high = 100 * ends
+    return f"{100 * value:.0f} ({low:.0f} to {high:.0f})".replace("-0 ", "0 ")
+
+
+def woods() -> Iterator[list[str | float]]:
+    """Wood alone: as correlated as assumed, and not at all."""
+    asked = (Response("end_mass"), Response("tip_stiffness"))
+    study = replace(bare().study, vary=FULL.study.vary[:3], responses=asked)
+    for words, correlations in (("as assumed", FULL.correlations), ("none", {})):
+        sample = spread(Scatter(study, correlations), SAMPLE.count, seed=SAMPLE.seed)
+        yield [words, *(100 * sample.sd / sample.mean).tolist()]
+
+
+def text() -> str:
+    first = table(["of the designs lie below", "mean", "sd", *(f"{100 * share:g} %" for share in SHARES)], spreads())
+    columns = ["cause", *(f"{words}: {part}" for words in ("squirt", "end mass") for part in ("alone", "in all"))]
+    rest = "\n".join(f"## {model}\n\n{table(columns, shares(model))}" for model in MODELS)
+    wood = table(["correlations of the wood", "end mass, sd in %", "tip stiffness, sd in %"], woods(), 3)
+    return (
+        "# Scatter of maple pool shafts\n\nb/R = 0.3; causes as in scatter_maple.toml. Shares of the variance in per "
+        f"cent, with their 95 % intervals.\n\n{first}\n{rest}\n## wood alone\n\n{wood}"
+    )
+
+
+def draw() -> None:
+    with figure(STUDIES / "scatter.svg", (2, 2), (9.2, 7.2)) as axes:
+        for k, (axis, (words, scale)) in enumerate(zip(axes[0], SCALES.values(), strict=True)):
+            _histograms(axis, k, scale)
+            axis.set(xlabel=words.replace(",", " at b/R 0.3,") if k else words, ylabel="shafts and strokes, of 512")
+        axes[0, 0].legend(fontsize=8, loc="upper right")
+        for axis, model, colour in zip(axes[1], MODELS, COLOURS, strict=True):
+            _bars(axis, model, colour)
+
+
+def _histograms(axis: object, k: int, scale: float) -> None:
+    samples = [scale * found(model).spread.responses[:, k] for model in MODELS]
+    bins = np.linspace(min(map(np.min, samples)), max(map(np.max, samples)), 28)
+    for model, sample, colour in zip(MODELS, samples, COLOURS, strict=True):
+        low, middle, high = np.quantile(sample, (0.05, 0.5, 0.95))
+        label = f"{model}: band of nine in ten, median" if k == 0 else None
+        axis.hist(sample, bins, histtype="stepfilled", alpha=0.35, color=colour, label=label)
+        axis.hist(sample, bins, histtype="step", color=colour)
+        axis.axvspan(low, high, color=colour, alpha=0.07)
+        axis.axvline(middle, color=colour, linestyle="--", linewidth=1)
+    axis.margins(y=0.25)
+
+
+def _bars(axis: object, model: str, colour: str) -> None:
+    one = found(model)
+    order = one.total[:, 1].argsort()
+    share, ends = 100 * one.total[order, 1], 100 * one.total_interval[:, order, 1]
+    names = [one.causes[i] for i in order]
+    axis.barh(names, share, color=colour, alpha=0.6, xerr=np.abs(ends - share), ecolor="#333333", capsize=3)
+    axis.set(title=f"what drives squirt: {model}", xlabel="share of squirt's variance, %", xlim=(0, 100))
+    axis.grid(visible=False, axis="y")
+
+
+if __name__ == "__main__":
+    (STUDIES / "scatter.md").write_text(text(), encoding="utf-8")
+    draw()
