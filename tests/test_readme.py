@@ -1,9 +1,15 @@
-"""The README's words are kept: its two commands, its files load, its Python runs, its commands exist."""
+"""The README's words are kept: its commands run, its files load, its Python runs, its paths are there."""
 
+import os
 import re
+import shlex
+import shutil
+import subprocess
+import tomllib
 from pathlib import Path
 
 import pytest
+from command_line import call
 
 import cuefem
 from cuefem.cli import main
@@ -12,19 +18,72 @@ ROOT = Path(__file__).parents[1]
 TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```", TEXT, flags=re.MULTILINE | re.DOTALL)
 SHAFT = cuefem.Cue((cuefem.Segment(0.7, 0.0128, 0.021, cuefem.Material(13.9e9, 1.2e9, 705.0)),), 0.42)
+LINKS = re.findall(r"\]\(([^)#]+)\)", TEXT)
 
 
 def blocks(kind: str) -> list[str]:
     return [text for name, text in BLOCKS if name == kind]
 
 
+FIRST, OWN_SHAFT, *COMMANDS = blocks("sh")
+
+
+def test_every_block_is_of_a_kind_that_runs() -> None:
+    assert {name for name, _ in BLOCKS} == {"sh", "csv", "toml", "python"}
+    assert TEXT.count("```") == 2 * len(BLOCKS)
+
+
 def test_the_first_block_is_two_complete_commands() -> None:
-    assert BLOCKS[0][0] == "sh"
-    lines = BLOCKS[0][1].splitlines()
+    assert BLOCKS[0] == ("sh", FIRST)
+    lines = FIRST.splitlines()
     assert len(lines) == 2
     assert lines[0].endswith("cuefem report meshes/kim.toml")
     assert lines[1].endswith("pytest")
     assert all(line.startswith("python3 -m venv") for line in lines)
+
+
+def test_ones_own_shaft_takes_three_commands(tmp_path: Path) -> None:
+    """Its last two lines, in this process; all of them, from nothing, in the heavy test."""
+    install, profile, report = OWN_SHAFT.splitlines()
+    assert install.endswith("pip install --quiet .")
+    subprocess.run(["bash", "-c", profile], cwd=tmp_path, check=True)
+    (csv,) = blocks("csv")
+    assert (tmp_path / "my_shaft.csv").read_text() == csv
+    words = shlex.split(report)
+    assert words[0] == ".venv/bin/cuefem"
+    here = [str(tmp_path / word) if word.startswith("my_shaft") else word for word in words[1:]]
+    assert call(*here)[::2] == (0, "")
+    page = (tmp_path / "my_shaft.html").read_text(encoding="utf-8")
+    assert "736.6 mm modelled" in page
+    assert "assumed:" in page
+
+
+@pytest.mark.heavy
+def test_a_new_user_gets_a_report_from_nothing(tmp_path: Path) -> None:
+    fresh = tmp_path / "cuefem"
+    fresh.mkdir()
+    for name in ("README.md", "pyproject.toml"):
+        shutil.copy(ROOT / name, fresh)
+    shutil.copytree(ROOT / "cuefem", fresh / "cuefem", ignore=shutil.ignore_patterns("__pycache__"))
+    for line in OWN_SHAFT.splitlines():
+        clean = {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "VIRTUAL_ENV"))}
+        done = subprocess.run(["bash", "-c", line], cwd=fresh, capture_output=True, text=True, env=clean)
+        assert done.returncode == 0, done.stderr
+    assert done.stdout == "wrote my_shaft.html\n"
+    assert "natural pivot length" in (fresh / "my_shaft.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("line", [line for block in COMMANDS for line in block.splitlines()])
+def test_commands_run(line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("meshes", "studies"):
+        shutil.copytree(ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("*.svg", "*.png", "*.py", "data"))
+    monkeypatch.chdir(tmp_path)
+    program, *words = shlex.split(line)
+    assert program == "cuefem"
+    status, _, err = call(*words)
+    assert (status, err) == (0, "")
+    if "-o" in words:
+        assert (tmp_path / words[words.index("-o") + 1]).exists()
 
 
 @pytest.mark.parametrize("code", blocks("python"))
@@ -51,4 +110,36 @@ def test_drawings_and_scenes_load(tmp_path: Path) -> None:
 def test_commands_exist() -> None:
     named = set(re.findall(r"`cuefem ([a-z][a-z-]*)", TEXT))
     assert named <= set(main.commands)
-    assert {"report", "modes", "end-mass", "strike"} <= named
+    assert {"report", "modes", "end-mass", "strike", "handover", "animate"} <= named
+
+
+def test_paths_are_there() -> None:
+    assert [link for link in LINKS if not (ROOT / link).exists()] == []
+    said = re.findall(r"`cuefem [^`]*?((?:studies|meshes)/[\w./]+)", TEXT)
+    assert said != []
+    assert [path for path in said if not (ROOT / path).exists()] == []
+
+
+def test_the_verdicts_are_counted_as_the_study_counts_them() -> None:
+    counted = re.search(
+        r"(\d+) claims; agrees: (\d+), rounding: (\d+), slip: (\d+)", (ROOT / "studies/kim.md").read_text()
+    )
+    assert counted is not None
+    claims, agree, rounded, slips = counted.groups()
+    assert f"{agree} of {claims} claims agree, {rounded} are roundings, {slips} slips" in TEXT
+
+
+def test_the_picture_is_small() -> None:
+    assert (ROOT / "studies" / "report.png").stat().st_size < 200_000
+
+
+def test_the_citation_names_this_release() -> None:
+    cited = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    keys = dict(re.findall(r"^([a-z-]+): (.+)$", cited, flags=re.MULTILINE))
+    assert keys["cff-version"] == "1.2.0"
+    assert (keys["version"], keys["title"]) == (project["version"], project["name"])
+    assert keys["license"] == project["license"]
+    released = re.search(r"^## (\S+), (\d{4}-\d\d-\d\d)$", (ROOT / "CHANGELOG.md").read_text(), flags=re.MULTILINE)
+    assert released is not None
+    assert (released[1], released[2]) == (cuefem.__version__, keys["date-released"])
