@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from cuefem.impulse import impulse
     from cuefem.io import load, save
     from cuefem.modes import modes
+    from cuefem.motion import motion
     from cuefem.place import Placed, place
     from cuefem.scene import Ball, Outcome, Resolution, Scene, Stroke, Tip
     from cuefem.strike import strike
@@ -58,6 +59,7 @@ _HOMES = {
     "impulse": ["impulse"],
     "io": ["load", "save"],
     "modes": ["modes"],
+    "motion": ["motion"],
     "place": ["Placed", "place"],
     "scene": ["Ball", "Outcome", "Resolution", "Scene", "Stroke", "Tip"],
     "strike": ["strike"],
@@ -93,6 +95,7 @@ __all__ = [
     "load",
     "lump",
     "modes",
+    "motion",
     "place",
     "resolve",
     "resolve_end_mass",

@@ -1,4 +1,9 @@
-"""What is handed to pooltool: its own squirt from our number, and the JSON's words (verification)."""
+"""What is handed to pooltool: its own squirt from our number, and the JSON's words (verification).
+
+pooltool pins a development build of its graphics; for the two tests that want it (0.6.0): pip install --no-deps
+pooltool-billiards, and then what it imports: numba numpy-quaternion panda3d panda3d-gltf panda3d-simplepbr pillow
+cattrs msgpack msgpack-numpy pyyaml h5py h11.
+"""
 
 from __future__ import annotations
 

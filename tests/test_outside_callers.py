@@ -15,6 +15,7 @@ SIGNATURES = {
     "end_mass": ["scene", "drive", "at"],
     "impulse": ["scene"],
     "strike": ["scene", "at"],
+    "motion": ["scene", "times", "at"],
     "resolve": ["scene", "rtol"],
     "save": ["obj", "path"],
 }
