@@ -20,7 +20,7 @@ from typing import ClassVar, Literal, NamedTuple
 import numpy as np
 
 from cuefem.cue import Array
-from cuefem.flow import Arrival, Flow, Guards, Piece, integral_of_product, march
+from cuefem.flow import Arrival, Drive, Flow, Guards, Piece, Pushes, integral_of_product, march, pushed
 from cuefem.history import F_N, F_T, V_N, V_T, History
 from cuefem.modes import TipModes
 
@@ -39,6 +39,8 @@ MOST_CELLS = 500_000
 # |F_t| may pass mu F_n by this part of the force scale: at mu = mu_c, and where F_n vanishes at separation, the two are
 # equal but for rounding.
 ROUNDING = 1e-12
+# With more dampers than this the response to them costs more than the exponential of a matrix.
+FEW = 4
 
 
 class Phase(NamedTuple):
@@ -102,7 +104,7 @@ class Contact:
         modal = tip.amplitude @ np.array([[s, c], [c, -s]])  # (u, w) to (t, n)
         vibrating = tip.omega > 0
         self.quiet = int(np.sum(~vibrating))  # rigid modes come first
-        omega = tip.omega[vibrating]
+        omega = self.omega = tip.omega[vibrating]
         n, modes = len(omega), len(tip.omega)
         size = n + modes + 3 + self.extra_states
         self.velocities = slice(n, n + modes)
@@ -112,7 +114,8 @@ class Contact:
         self.c_n[self.ball_n] = laws.ball_mass**-0.5
         self.c_t[self.ball_t] = (laws.ball_mass * laws.inertia / (1 + laws.inertia)) ** -0.5
         self.free = np.zeros((size, size))  # the motion without forces at the contact
-        turning = n + self.quiet + np.arange(n)
+        self.swinging = slice(n + self.quiet, n + modes)
+        turning = np.arange(n + self.quiet, n + modes)
         self.free[np.arange(n), turning], self.free[turning, np.arange(n)] = omega, -omega
         self.fastest = float(omega.max(initial=0.0))
         self.longest = LONGEST * laws.time
@@ -152,45 +155,54 @@ class Contact:
 
     def _springy(self, grip: Grip, press: Press) -> Flow:
         root = self.root_stiffness(press)
-        normal = np.zeros_like(self.c_n)
-        normal[self.spring] = root
-        A = self.free + np.outer(self.c_n, normal)
-        A[self.spring] -= root * self.c_n
+        normal, spring = np.zeros_like(self.c_n), np.zeros_like(self.c_n)
+        normal[self.spring], spring[self.spring] = root, -root
         rate = self.fastest + root * float(np.linalg.norm(self.c_n))
         if grip == "stick":
-            return self._held(A, normal, rate=rate)
-        tangent = SIDE[grip] * self.laws.friction * normal
+            return self._held([(self.c_n, normal), (spring, self.c_n)], normal, rate)
         rate += root * self.laws.friction * float(np.linalg.norm(self.c_t))
-        return self._sliding(A + np.outer(self.c_t, tangent), normal, tangent, rate=rate)
+        return self._sliding(grip, [(self._pull(grip), normal), (spring, self.c_n)], normal, rate)
+
+    def _pull(self, grip: Grip) -> Array:
+        """The direction in which the tip's force pushes the state in a slip."""
+        return np.asarray(self.c_n + SIDE[grip] * self.laws.friction * self.c_t)
 
     def _rigid(self, grip: Grip) -> Flow:
         """e = 0 past the peak: forces keep v_n (and in stick v_t) at zero; the tip's force is no state any more."""
         if grip == "stick":
             return self._rigidly_held()
-        pull = self.c_n + SIDE[grip] * self.laws.friction * self.c_t
+        pull = self._pull(grip)
         normal = -(self.c_n @ self.free) / float(self.c_n @ pull)
-        A = self.free + np.outer(pull, normal)
-        return self._sliding(A, normal, SIDE[grip] * self.laws.friction * normal, rate=self._rigid_rate(A))
+        return self._sliding(grip, [(pull, normal)], normal)
 
-    def _rigid_rate(self, A: Array) -> float:
-        return max(float(np.linalg.norm(A)), self.fastest, 1 / self.laws.time)
-
-    def _sliding(self, A: Array, normal: Array, tangent: Array, *, rate: float) -> Flow:
+    def _sliding(self, grip: Grip, pushes: Pushes, normal: Array, rate: float = 0.0) -> Flow:
         """A slipping phase: both forces are known combinations of the state."""
-        return Flow(A, np.vstack([self.c_t, self.c_n, normal, tangent, self.dampers]), rate)
+        return self._flow(pushes, [self.c_t, self.c_n, normal, SIDE[grip] * self.laws.friction * normal], rate)
 
-    def _held(self, A: Array, normal: Array, *, rate: float) -> Flow:
+    def _held(self, pushes: Pushes, normal: Array, rate: float) -> Flow:
         """A sticking phase: the tangential force keeps v_t at zero."""
-        tangent = -(self.c_t @ A) / (self.c_t @ self.c_t)
-        rows = np.vstack([self.c_t, self.c_n, normal, tangent, self.dampers])
-        return Flow(projected(self.c_t[:, None], A), rows, rate)
+        square = float(self.c_t @ self.c_t)
+        tangent = self._slope(self.c_t, pushes) / -square
+        return self._flow(pushes, [self.c_t, self.c_n, normal, tangent], rate, self.c_t[:, None] / math.sqrt(square))
 
     def _rigidly_held(self) -> Flow:
-        pushes = np.array([self.c_t, self.c_n])
-        tangent, normal = -np.linalg.solve(pushes @ pushes.T, pushes @ self.free)
-        A = projected(pushes.T, self.free)
-        rows = np.vstack([self.c_t, self.c_n, normal, tangent, self.dampers])
-        return Flow(A, rows, self._rigid_rate(A))
+        contact = np.array([self.c_t, self.c_n])
+        tangent, normal = -np.linalg.solve(contact @ contact.T, contact @ self.free)
+        return self._flow([], [self.c_t, self.c_n, normal, tangent], held=np.linalg.qr(contact.T)[0])
+
+    def _slope(self, row: Array, pushes: Pushes) -> Array:
+        """The row that reads the rate of change of what ``row`` reads."""
+        return np.asarray(sum(((row @ push) * drive for push, drive in pushes), row @ self.free))
+
+    def _flow(self, pushes: Pushes, rows: list[Array], rate: float = 0.0, held: Array | None = None) -> Flow:
+        """The free motion with what pushes and holds it (`pushed`); rate: a bound on it, 1/s, or 0 for its norm."""
+        A, drives, directions = pushed(self.free, pushes, held)
+        drive = None
+        if len(self.dampers) <= FEW:
+            directions, drives = np.concatenate([directions, -self.dampers]), np.concatenate([drives, self.dampers])
+            drive = Drive(self.omega, self.swinging, drives, directions)
+        rate = rate or max(float(np.linalg.norm(A)), self.fastest, 1 / self.laws.time)
+        return Flow(A, np.concatenate([np.array(rows), self.dampers]), rate, drive)
 
     def force(self, grip: Grip, press: Press) -> Array:
         """(F_t, F_n) now, N, if the contact gripped and pressed in this way."""
@@ -383,16 +395,3 @@ def run(contact: Contact, press: Press = "load") -> None:
             raise contact.endless(grip, press)
         _, grip, press = step
         step = contact.go(grip, press)
-
-
-def projected(held: Array, A: Array) -> Array:
-    """The motion A where forces along the columns ``held`` keep held' z at zero: P A P, P orthogonal to them.
-
-    P on both sides, by orthonormal columns: with a light end mass the contact directions are nearly parallel, and what
-    is left of them would drown in the rounding of a one-sided elimination.
-    """
-    basis, _ = np.linalg.qr(held)
-    for _ in range(2):
-        A = A - basis @ (basis.T @ A)
-        A = A - (A @ basis) @ basis.T
-    return A

@@ -1,34 +1,41 @@
 """Exact motion of a linear system z' = A z, cell by cell, and the first moment one of its outputs changes sign.
 
-A cell is so short (|A| h <= 1) that the Taylor series of degree 18 is exact to rounding, so the scalar outputs are
+A cell is so short (|A| h <= 3) that the Taylor series of degree 27 is exact to rounding, so the scalar outputs are
 known as polynomials on every cell: their roots, integrals and values in between carry no time-stepping error. From
-cell to cell the state moves by exp(A h), and 32 cells at a time by its repeated squares. No eigenvectors are used: a
-slipping contact can be defective or growing, and there a matrix exponential does not fail.
+cell to cell the state moves by exp(A h). No eigenvectors of A are used: a slipping contact can be defective or growing,
+and there a matrix exponential does not fail. Where A is oscillators that a few outputs drive, exp(A h) is their free
+rotation and their response to those outputs' Taylor series (`Drive`), one product instead of nine.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
+from math import factorial
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cuefem.cue import Array
 
-DEGREE = 18  # 1/19! = 8e-18
-DOUBLINGS = 5
-# Where guards are looked at inside a cell (its end included), and the moments needed to integrate products.
-SAMPLES = np.array([0.15, 0.35, 0.6, 0.8, 1.0])
+REACH, DEGREE = 3.0, 27  # 3^28/28! = 8e-17
+CELLS = 24  # of a block, after the first cell: many phases end in that
+ORDERS = np.arange(DEGREE + 1)
+FACTORIALS = np.array([float(factorial(j)) for j in ORDERS])
+# Where guards are looked at inside a cell (its end included).
+SAMPLES = (np.array([0.15, 0.35, 0.6, 0.8, 1.0]) + np.arange(3)[:, None]).ravel() / 3
 _PLACES = np.r_[0.0, SAMPLES]
-_POWERS = _PLACES[:, None] ** np.arange(DEGREE + 1)
-_SLOPES = np.arange(DEGREE + 1) * _PLACES[:, None] ** np.maximum(np.arange(DEGREE + 1) - 1, 0)
+_LOOKS = np.concatenate([_PLACES[:, None] ** ORDERS, ORDERS * _PLACES[:, None] ** np.maximum(ORDERS - 1, 0)])
 # A guard that dips below zero and is back between two samples counts from this depth on, relative to its size.
 DEEP = 1e-13
-_MOMENTS = 1 / (np.add.outer(np.arange(DEGREE + 1), np.arange(DEGREE + 1)) + 1.0)
-
-
-_COEFFICIENTS = 1 / np.cumprod(np.r_[1.0, np.arange(1.0, DEGREE + 1)])
+# Integrals over 0..1 of u^(i + j), and of (1 - u)^i/i! u^j.
+_MOMENTS = 1 / (np.add.outer(ORDERS, ORDERS) + 1.0)
+_DELAYED = np.array([[factorial(j) / factorial(i + j + 1) for i in ORDERS] for j in ORDERS])
+_SINES = _DELAYED * np.array([0.0, 1.0, 0.0, -1.0])[ORDERS % 4]  # weights of the terms of exp(i x) in the sine,
+_COSINES = _DELAYED * np.array([1.0, 0.0, -1.0, 0.0])[ORDERS % 4]  # and in the cosine
 
 
 def exponential(X: Array) -> Array:
@@ -37,58 +44,129 @@ def exponential(X: Array) -> Array:
     third, fourth = second @ X, second @ second
     powers = np.array([np.eye(len(X)), X, second, third, fourth, third @ second])
     sixth = third @ third
-    low, middle, high = np.tensordot(_COEFFICIENTS[:DEGREE].reshape(3, 6), powers, axes=1)
-    return np.asarray(low + sixth @ (middle + sixth @ (high + _COEFFICIENTS[DEGREE] * sixth)))
+    low, middle, high = np.tensordot(1 / FACTORIALS[:18].reshape(3, 6), powers, axes=1)
+    return np.asarray(low + sixth @ (middle + sixth @ (high + sixth / FACTORIALS[18])))
+
+
+# Terms of a motion: directions the state is pushed in, and the rows of what pushes.
+Pushes = list[tuple[Array, Array]]
+
+
+def pushed(free: Array, pushes: Pushes, held: Array | None = None) -> tuple[Array, Array, Array]:
+    """(A, rows, directions): a free motion and what pushes it, A = free + directions' rows where held' z is zero.
+
+    held: (n, k) orthonormal columns; forces along them keep held' z at zero: A is P A P, P orthogonal to them. Each
+    term is projected by itself: with a light end mass the contact's directions are nearly parallel, and what is left of
+    them would drown in the rounding of the whole.
+    """
+    directions, rows = (np.array([push[i] for push in pushes]).reshape(-1, len(free)) for i in (0, 1))
+    if held is not None:
+        for _ in range(2):
+            directions, rows = (part - (part @ held) @ held.T for part in (directions, rows))
+        free = free - (free @ held) @ held.T
+        directions, rows = np.concatenate([directions, -held.T]), np.concatenate([rows, held.T @ free])
+    return free + directions.T @ rows, rows, directions
+
+
+class Drive(NamedTuple):
+    """A motion as oscillators that are pushed: A = rotation + pushes' rows.
+
+    omega: (k,) rad/s. The first k states x and those of index ``turning``, y, turn: x' = omega y, y' = -omega x; the
+    others stay. rows: (r, n), what pushes; pushes: (r, n), the directions it pushes the state in, none of it in x.
+    """
+
+    omega: Array
+    turning: slice
+    rows: Array
+    pushes: Array
+
+    def exponential(self, step: float, taylor: Array) -> Array:
+        """exp(A step), from the Taylor rows of what pushes, (r, degree + 1, n): the free turn, and the response.
+
+        A push F(u) = sum F_j u^j, u = t/step, moves the state by the sum of F_j step integral of the free turn over
+        step (1 - u) of its direction u^j du.
+        """
+        k, size, angle = len(self.omega), self.rows.shape[1], self.omega * step
+        powers = np.ones((DEGREE + 1, k))
+        np.cumprod(np.broadcast_to(angle, (DEGREE, k)), axis=0, out=powers[1:])
+        response = step * self.pushes[:, None] / (ORDERS[:, None] + 1.0)
+        turned = step * self.pushes[:, None, self.turning]
+        response[:, :, :k], response[:, :, self.turning] = (_SINES @ powers) * turned, (_COSINES @ powers) * turned
+        out = response.reshape(-1, size).T @ taylor.reshape(-1, size)
+        diagonal, across = np.ones(size), np.sin(angle)
+        diagonal[:k] = diagonal[self.turning] = np.cos(angle)
+        out.ravel()[:: size + 1] += diagonal
+        out.ravel()[self.turning.start : k * size : size + 1] += across
+        out.ravel()[self.turning.start * size :: size + 1][:k] -= across
+        return np.asarray(out)
 
 
 @dataclass(frozen=True)
 class Flow:
-    """The motion of z' = A z and of its outputs rows @ z; rate: a bound on |A|, 1/s."""
+    """The motion of z' = A z and of its outputs rows @ z; rate: a bound on |A|, 1/s; drive: A's form, if it has one."""
 
     A: Array
     rows: Array
     rate: float
+    drive: Drive | None = None
 
     @property
     def step(self) -> float:
         """Length of a cell, s."""
-        return 1 / self.rate
+        return REACH / self.rate
 
     @cached_property
-    def powers(self) -> list[Array]:
-        """exp(A h), its square, ... up to that of a whole block of cells."""
-        out = [exponential(self.A * self.step)]
-        for _ in range(DOUBLINGS):
-            out.append(out[-1] @ out[-1])
-        return out
+    def advance(self) -> Array:
+        """exp(A h)."""
+        if self.drive is not None:
+            return self.drive.exponential(self.step, self.taylor[len(self.rows) :])
+        quarter = exponential(self.A * (self.step / 4))
+        half = quarter @ quarter
+        return np.asarray(half @ half)
 
     @cached_property
     def taylor(self) -> Array:
-        """Rows that give each output's Taylor coefficients in the fraction of a cell: (degree + 1, m, n)."""
-        out = [self.rows]
-        for j in range(1, DEGREE + 1):
-            out.append(out[-1] @ self.A * (self.step / j))
-        return np.array(out)
+        """Rows that give Taylor coefficients in the fraction of a cell: outputs' and drive's, (m + r, 28, n)."""
+        rows = self.rows if self.drive is None else np.concatenate([self.rows, self.drive.rows])
+        A, out = self.A * self.step, np.empty((DEGREE + 1, *rows.shape))
+        out[0] = rows
+        for before, after in pairwise(out):
+            np.dot(before, A, out=after)
+        return np.ascontiguousarray((out / FACTORIALS[:, None, None]).transpose(1, 0, 2))
 
-    def block(self, z: Array) -> Array:
-        """States at the starts of the next 32 cells, (n, 32)."""
-        states = z[:, None]
-        for power in self.powers[:DOUBLINGS]:
-            states = np.concatenate([states, power @ states], axis=1)
-        return states
+    def series(self, z: Array) -> Array:
+        """Taylor coefficients of the state in the fraction of a cell, (degree + 1, n)."""
+        A, out = self.A * self.step, np.empty((DEGREE + 1, len(z)))
+        out[0] = z
+        for before, after in pairwise(out):
+            np.dot(A, before, out=after)
+        return out / FACTORIALS[:, None]
+
+    def blocks(self, z: Array) -> Iterator[tuple[Array, Array]]:
+        """Stretches of cells one after the other: states at the starts of their cells (n, cells), and `polynomials`.
+
+        The first is of one cell, for which the series of its state is cheaper than exp(A h).
+        """
+        series = self.series(z)
+        yield z[:, None], (self.rows @ series.T)[:, :, None]
+        z, advance = series.sum(axis=0), self.advance
+        while True:
+            states = np.empty((CELLS + 1, len(z)))
+            states[0] = z
+            for before, after in pairwise(states):
+                np.dot(advance, before, out=after)
+            yield states[:-1].T, self.polynomials(states[:-1].T)
+            z = states[-1]
 
     def polynomials(self, states: Array) -> Array:
-        """Taylor coefficients of the outputs on the cells that start in ``states``: (degree + 1, m, cells)."""
-        shape = (*self.taylor.shape[:2], states.shape[1])
-        return np.asarray(self.taylor.reshape(-1, self.taylor.shape[2]) @ states).reshape(shape)
+        """Taylor coefficients of the outputs on the cells that start in ``states``: (m, degree + 1, cells)."""
+        outputs = self.taylor[: len(self.rows)]
+        shape = (*outputs.shape[:2], states.shape[1])
+        return np.asarray(outputs.reshape(-1, outputs.shape[2]) @ states).reshape(shape)
 
     def state(self, z: Array, fraction: float) -> Array:
         """State after a fraction of a cell, by the Taylor series."""
-        term = total = z
-        for j in range(1, DEGREE + 1):
-            term = self.A @ term * (self.step * fraction / j)
-            total = total + term
-        return total
+        return np.asarray(fraction**ORDERS @ self.series(z))
 
 
 class Guards(NamedTuple):
@@ -99,7 +177,7 @@ class Guards(NamedTuple):
 
 
 class Piece(NamedTuple):
-    """A stretch of a phase: start, s; cell length, s; Taylor coefficients (degree + 1, m, cells)."""
+    """A stretch of a phase: start, s; cell length, s; Taylor coefficients (m, degree + 1, cells)."""
 
     start: float
     step: float
@@ -123,10 +201,11 @@ class Arrival(NamedTuple):
 def march(flow: Flow, z: Array, guards: Guards, *, start: float, limit: float) -> Arrival | None:
     """Follow the flow from state ``z`` at ``start`` to the first sign change of a guard; None if none by ``limit``."""
     pieces: list[Piece] = []
-    states, time = flow.block(z), start
-    while time < limit:
-        polynomials = flow.polynomials(states)
-        values = np.einsum("gm,dmc->gdc", guards.weights, polynomials)
+    time = start
+    for states, polynomials in flow.blocks(z):
+        if time >= limit:
+            break
+        values = (guards.weights @ polynomials.reshape(len(polynomials), -1)).reshape(-1, *polynomials.shape[1:])
         values[:, 0] += guards.constants[:, None]
         arrival = _first_sign_change(values)
         if arrival is not None:
@@ -134,13 +213,12 @@ def march(flow: Flow, z: Array, guards: Guards, *, start: float, limit: float) -
             if cell:
                 pieces.append(Piece(time, flow.step, polynomials[:, :, :cell]))
             if fraction:
-                shorter = polynomials[:, :, cell : cell + 1] * fraction ** np.arange(DEGREE + 1)[:, None, None]
+                shorter = polynomials[:, :, cell : cell + 1] * fraction ** ORDERS[:, None]
                 pieces.append(Piece(time + cell * flow.step, flow.step * fraction, shorter))
             end = time + (cell + fraction) * flow.step
             return Arrival(end, flow.state(states[:, cell], fraction), guard, pieces)
         pieces.append(Piece(time, flow.step, polynomials))
         time += states.shape[1] * flow.step
-        states = flow.powers[DOUBLINGS] @ states
     return None
 
 
@@ -150,49 +228,66 @@ def _first_sign_change(values: Array) -> tuple[int, int, float] | None:
     Between two samples a guard is convex or concave but for rare wiggles of no depth, so that where it falls at the
     first, rises at the second and the tangents meet below zero, it may dip there.
     """
-    at, slope = _POWERS @ values, _SLOPES @ values  # (guards, places, cells)
-    negative = at[:, 1:] < 0
-    falls, rises = slope[:, :-1], slope[:, 1:]
-    turns = (falls < 0) & (rises > 0) & (at[:, :-1] > 0)
-    below = np.zeros_like(negative)
+    looks = _LOOKS @ values  # (guards, places and slopes there, cells)
+    at, slope = looks[:, : len(_PLACES)], looks[:, len(_PLACES) :]
+    negative, turns = at[:, 1:] < 0, (slope[:, :-1] < 0) & (slope[:, 1:] > 0)
     if turns.any():
-        width = np.diff(_PLACES)[:, None]
-        meet = at[:, :-1] * rises - at[:, 1:] * falls + width * falls * rises  # (rises - falls) > 0 times the height
-        deep = DEEP * np.abs(values).max(axis=(1, 2))[:, None, None]
-        below = turns & (meet < -deep * (rises - falls))
-    for cell, gap in np.argwhere((negative | below).any(axis=0).T):
+        turns &= _dips(values, at, slope)
+    suspect = (negative | turns).any(axis=0)
+    if not suspect.any():
+        return None
+    for cell, gap in np.argwhere(suspect.T):
         roots = [
-            (fraction, guard)
-            for guard, coefficients in enumerate(values[:, :, cell])
-            if negative[guard, gap, cell] or below[guard, gap, cell]
-            for fraction in _roots(coefficients, _PLACES[gap], _PLACES[gap + 1])
+            (fraction, int(guard))
+            for guard in np.flatnonzero(negative[:, gap, cell] | turns[:, gap, cell])
+            for fraction in _roots(values[guard, :, cell], _PLACES[gap], _PLACES[gap + 1])
         ]
         if roots:
-            fraction, guard = min(roots)
-            return int(cell), guard, fraction
+            return int(cell), min(roots)[1], min(roots)[0]
     return None
+
+
+def _dips(values: Array, at: Array, slope: Array) -> NDArray[np.bool_]:
+    """Where the tangents at two neighbouring places meet below zero, by more than rounding."""
+    falls, rises, above, width = slope[:, :-1], slope[:, 1:], at[:, :-1], np.diff(_PLACES)[:, None]
+    meet = above * rises - at[:, 1:] * falls + width * falls * rises  # (rises - falls) > 0 times the height
+    deep = DEEP * np.abs(values).max(axis=(1, 2))[:, None, None]
+    return np.asarray((above > 0) & (meet < -deep * (rises - falls)))
 
 
 def _roots(coefficients: Array, low: float, high: float) -> list[float]:
     """The first root of a guard that is negative at ``high``, or below its lowest point before it; or none."""
-    falling = np.polynomial.Polynomial(coefficients)
+    falling = _polynomial(coefficients)
     if falling(high) < 0:
         return [_root(falling, low, high)]
-    lowest = _zero(falling.deriv(), low, high)
+    lowest = _zero(_polynomial(ORDERS[1:] * coefficients[1:]), low, high)
     return [_root(falling, low, lowest)] if falling(lowest) < -DEEP * np.abs(coefficients).max() else []
 
 
-def _root(falling: np.polynomial.Polynomial, low: float, high: float) -> float:
+def _polynomial(coefficients: Array) -> Callable[[float], float]:
+    """The polynomial as a function of one number: Horner's rule, which on plain floats takes a microsecond."""
+    descending = coefficients[::-1].tolist()
+
+    def value(x: float) -> float:
+        total = 0.0
+        for coefficient in descending:
+            total = total * x + coefficient
+        return total
+
+    return value
+
+
+def _root(falling: Callable[[float], float], low: float, high: float) -> float:
     if falling(low) > 0:
         return _zero(falling, low, high)
     # zero at the start of a phase by its nature: it may still rise before it falls
-    for fraction in high * 0.5 ** np.arange(1, 40):
-        if falling(fraction) > 0:
-            return _zero(falling, fraction, high)
+    for k in range(1, 40):
+        if falling(high * 0.5**k) > 0:
+            return _zero(falling, high * 0.5**k, high)
     return low
 
 
-def _zero(function: np.polynomial.Polynomial, low: float, high: float) -> float:
+def _zero(function: Callable[[float], float], low: float, high: float) -> float:
     from scipy.optimize import brentq  # loaded when used: a fifth of a cold start
 
     return float(brentq(function, low, high, xtol=1e-15, rtol=1e-14))
@@ -200,5 +295,5 @@ def _zero(function: np.polynomial.Polynomial, low: float, high: float) -> float:
 
 def integral_of_product(piece: Piece, first: int, second: int) -> float:
     """Integral over a stretch of the product of two outputs, exact."""
-    a, b = piece.coefficients[:, first], piece.coefficients[:, second]
-    return float(np.einsum("ic,ij,jc->", a, _MOMENTS, b)) * piece.step
+    a, b = piece.coefficients[first], piece.coefficients[second]
+    return float(np.vdot(a, _MOMENTS @ b)) * piece.step

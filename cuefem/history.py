@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cuefem.cue import Array
-from cuefem.flow import DEGREE, Piece
+from cuefem.flow import ORDERS, Piece
 
 # The outputs of every phase, in this order.
 V_T, V_N, F_N, F_T = range(4)
@@ -35,8 +35,8 @@ class History:
             here, piece = which == i, self.pieces[i]
             place = (time[here] - piece.start) / piece.step
             cell = np.minimum(place.astype(int), piece.coefficients.shape[2] - 1)
-            powers = (place - cell) ** np.arange(DEGREE + 1)[:, None]
-            values[:, here] = np.einsum("dmq,dq->mq", piece.coefficients[:, :4, cell], powers)
+            powers = (place - cell) ** ORDERS[:, None]
+            values[:, here] = (piece.coefficients[:4, :, cell] * powers).sum(axis=1)
         return _named(values, self.mirror)
 
 

@@ -7,9 +7,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from cuefem.contact import F_T, Contact, Grip, Press
+from cuefem.contact import SIDE, Contact, Grip, Press
 from cuefem.cue import Array
-from cuefem.flow import Flow
+from cuefem.flow import Flow, Pushes
+from cuefem.history import F_T
 
 SLIDE = 4  # the output that the base model has not: the velocity at which the massless patch slides
 
@@ -34,33 +35,28 @@ class ShearContact(Contact):
         """Index of the spring's state."""
         return self.spring + 1
 
-    def _sheared(self, A: Array) -> tuple[Array, Array]:
-        """The motion with the spring at work, and the row that reads its force."""
+    def _sheared(self) -> tuple[Array, Pushes]:
+        """The row that reads the spring's force, and how the spring pushes and is wound up."""
         tangent = np.zeros_like(self.c_t)
         tangent[self.shear] = self.compliance**-0.5
-        A = A + np.outer(self.c_t, tangent)
-        A[self.shear] -= tangent[self.shear] * self.c_t
-        return A, tangent
+        return tangent, [(self.c_t, tangent), (-tangent, self.c_t)]
 
-    def _spring_rate(self) -> float:
-        return float(np.linalg.norm(self.c_t)) * self.compliance**-0.5
-
-    def _held(self, A: Array, normal: Array, *, rate: float) -> Flow:
-        A, tangent = self._sheared(A)
-        rows = np.vstack([self.c_t, self.c_n, normal, tangent, np.zeros_like(normal), self.dampers])
-        return Flow(A, rows, rate + self._spring_rate())
+    def _held(self, pushes: Pushes, normal: Array, rate: float) -> Flow:
+        tangent, sheared = self._sheared()
+        rows = [self.c_t, self.c_n, normal, tangent, np.zeros_like(normal)]
+        return self._flow(pushes + sheared, rows, rate + float(np.linalg.norm(self.c_t)) * self.compliance**-0.5)
 
     def _rigidly_held(self) -> Flow:
-        A, tangent = self._sheared(self.free)
-        normal = -(self.c_n @ A) / float(self.c_n @ self.c_n)
-        A = A + np.outer(self.c_n, normal)
-        rows = np.vstack([self.c_t, self.c_n, normal, tangent, np.zeros_like(normal), self.dampers])
-        return Flow(A, rows, self._rigid_rate(A))
+        tangent, sheared = self._sheared()
+        normal = self._slope(self.c_n, sheared) / -float(self.c_n @ self.c_n)
+        rows = [self.c_t, self.c_n, normal, tangent, np.zeros_like(normal)]
+        return self._flow([*sheared, (self.c_n, normal)], rows)
 
-    def _sliding(self, A: Array, normal: Array, tangent: Array, *, rate: float) -> Flow:
-        A[self.shear] = 0.0  # the spring follows friction; its state is set when the patch grips again
-        slide = self.c_t + self.compliance * (tangent @ A)
-        return Flow(A, np.vstack([self.c_t, self.c_n, normal, tangent, slide, self.dampers]), rate)
+    def _sliding(self, grip: Grip, pushes: Pushes, normal: Array, rate: float = 0.0) -> Flow:
+        # nothing winds the spring, it follows friction: its state is set when the patch grips again
+        tangent = SIDE[grip] * self.laws.friction * normal
+        slide = self.c_t + self.compliance * self._slope(tangent, pushes)
+        return self._flow(pushes, [self.c_t, self.c_n, normal, tangent, slide], rate)
 
     def _enter(self, grip: Grip, press: Press) -> None:
         """A sliding patch's spring follows friction; where the tip's force jumps (e = 0), the patch slides at once."""
