@@ -2,16 +2,17 @@
 
 A contact is a chain of linear courses z' = A z (`cuefem.contact`), so that between their starts exp(A t) gives the
 state, and beside it the integrals of those velocities whose positions are no state (rigid motions and ball), without
-stepping error. Coordinates: u along the cue in the direction of the stroke and w across it, on the side that is struck
-at a positive offset; their origin is the tip's centre at first touch.
+stepping error; one that is stepped (`cuefem.nonlinear`) is read off the solver's interpolants. Coordinates: u along the
+cue in the direction of the stroke and w across it, on the side that is struck at a positive offset; their origin is the
+tip's centre at first touch.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.linalg as la
@@ -19,14 +20,16 @@ from numpy.typing import ArrayLike
 
 from cuefem.contact import Contact, Course
 from cuefem.cue import Array, Cue
-from cuefem.effects import Elevation, PowerLawTip, RollingContact, TipDome
+from cuefem.effects import Elevation, TipDome
+from cuefem.history import Stretch
 from cuefem.modes import Modes, TipModes
+from cuefem.nonlinear import SteppedContact
 from cuefem.quantity import check_kind, scalar
 from cuefem.resolution import modes_of, tip_modes_from
 from cuefem.scene import Resolution, Scene
 from cuefem.strike import struck
 
-_STEPPED = (Elevation, PowerLawTip, RollingContact)
+_GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(8)  # exact for the interpolants of DOP853, of degree 7
 
 
 @dataclass(frozen=True)
@@ -56,15 +59,13 @@ class Motion:
 def motion(scene: Scene, times: ArrayLike, at: Resolution | None = None) -> Motion:
     """Motion of a scene's strike at ``times``, s from first touch, ascending, >= 0; after the contact all fly free.
 
-    at: as in `strike`. ValueError for a lumped cue, and for effects whose contact is stepped (PowerLawTip,
-    RollingContact, Elevation). Cost: that of the strike, and a matrix
-    exponential of its unknowns for each time.
+    at: as in `strike`. ValueError for a lumped cue, and for a raised one (Elevation), which leaves the plane. Cost:
+    that of the strike, and a matrix exponential of its unknowns for each time.
     """
     check_kind("motion scene", scene, Scene)
     times = _checked(times)
-    for effect in scene.effects:
-        if isinstance(effect, _STEPPED):
-            raise ValueError(f"motion takes effects whose contact is linear; got {type(effect).__name__}")
+    if any(isinstance(effect, Elevation) for effect in scene.effects):
+        raise ValueError("motion takes strokes in the plane of cue and ball; got Elevation")
     if not isinstance(scene.cue, Cue):
         raise ValueError("motion takes a cue of segments; got a lumped cue, which has no shape")
     found = modes_of(scene, at)
@@ -88,20 +89,22 @@ def _checked(times: ArrayLike) -> Array:
 def _read(scene: Scene, found: Modes, tip: TipModes, *, contact: Contact, times: Array) -> Motion:
     phi, side = contact.laws.phi, math.copysign(1.0, scalar("Stroke.offset", scene.stroke.offset))
     tangent, normal = np.array([math.sin(phi), math.cos(phi)]), np.array([math.cos(phi), -math.sin(phi)])
-    q, ball_t, ball_n = _positions(contact, times)
+    q, ball = _positions(contact, times)
     vectors, across = _bending(found, tip)
-    nu, R = scalar("Ball.inertia", scene.ball.inertia), scalar("Ball.radius", scene.ball.radius)
+    R = scalar("Ball.radius", scene.ball.radius)
     dome = sum(effect.radius for effect in scene.effects if isinstance(effect, TipDome))
-    start = (dome + R) * normal - [dome, 0.0]
+    centre = (dome + R) * normal - [dome, 0.0] + ball.gone @ np.array([tangent, normal])
+    s, c = np.sin(phi + ball.contact), np.cos(phi + ball.contact)
+    F_t, F_n = _forces(contact, times).T
     return Motion(
         times,
         contact.time,
         found,
         fields=side * vectors @ q[across],
         along=tip.amplitude[:, 0] @ q,
-        centre=(start + np.outer(ball_t, tangent) + np.outer(ball_n, normal)) * [1.0, side],
-        turned=-side * ball_t / (nu * R),
-        force=_forces(contact, times) @ np.array([tangent, normal]) * [1.0, side],
+        centre=centre * [1.0, side],
+        turned=-side * ball.rolled / R,
+        force=np.column_stack([s * F_t + c * F_n, side * (c * F_t - s * F_n)]),
     )
 
 
@@ -113,28 +116,49 @@ def _bending(found: Modes, tip: TipModes) -> tuple[Array, Any]:
     return vectors[:, columns], across[np.argsort(tip.omega[across], kind="stable")]
 
 
-def _positions(contact: Contact, times: Array) -> tuple[Array, Array, Array]:
-    """Coordinates of all tip modes (modes, n), and the way of the ball along t and n, m, (n,) each."""
+class _Ball(NamedTuple):
+    """Of a ball: its way (t, n), (n, 2), and that of its surface by its spin, (n,), m; the contact's angle on it."""
+
+    gone: Array
+    rolled: Array
+    contact: Array
+
+
+def _positions(contact: Contact, times: Array) -> tuple[Array, _Ball]:
+    """Coordinates of all tip modes (modes, n), and the ball's."""
     n, quiet, size = contact.velocities.start, contact.quiet, len(contact.z)
-    rows = np.zeros((quiet + 2, size))  # velocities whose positions are no state
-    rows[range(quiet), n + np.arange(quiet)] = 1.0
-    M = contact.laws.ball_mass
-    rows[quiet, contact.ball_t] = 1 / (M * contact.c_t[contact.ball_t])
-    rows[quiet + 1, contact.ball_n] = 1 / (M * contact.c_n[contact.ball_n])
-    states = np.array(list(_states(contact, rows, times))).T
+    states = np.array(list(_states(contact, _unstated(contact), times))).T
     vibrating = states[:n] / contact.tip.omega[quiet:, None]
-    return np.concatenate([states[size : size + quiet], vibrating]), states[-2], states[-1]
+    t, n_, rolled = states[-3:]
+    angle = states[contact.angle] if isinstance(contact, SteppedContact) else np.zeros(len(times))
+    return np.concatenate([states[size : size + quiet], vibrating]), _Ball(np.column_stack([t, n_]), rolled, angle)
+
+
+def _unstated(contact: Contact) -> Array:
+    """Rows that read velocities whose positions are no state: rigid modes, the ball's (t, n), its surface's; m/s."""
+    quiet, M, nu = contact.quiet, contact.laws.ball_mass, contact.laws.inertia
+    rows = np.zeros((quiet + 3, len(contact.z)))
+    rows[range(quiet), contact.velocities.start + np.arange(quiet)] = 1.0
+    rows[quiet + 1, contact.ball_n] = M**-0.5
+    if isinstance(contact, SteppedContact):  # whose ball turns by a state of its own
+        rows[quiet, contact.ball_t], rows[quiet + 2, contact.spin] = M**-0.5, (nu * M) ** -0.5
+    else:
+        rows[quiet, contact.ball_t] = 1 / (M * contact.c_t[contact.ball_t])
+        rows[quiet + 2] = rows[quiet] / nu
+    return rows
 
 
 def _states(contact: Contact, rows: Array, times: Array) -> Iterator[Array]:
     """States at ``times``, and below them the integrals over time of ``rows`` of them."""
     rate = max(contact.fastest, 1 / contact.laws.time)
-    courses = [*contact.courses, Course(contact.time, contact.free, rate, contact.z)]
+    touching = contact.stretches if isinstance(contact, SteppedContact) else contact.courses
+    parts: list[Course | Stretch] = [*touching, Course(contact.time, contact.free, rate, contact.z)]
     gone, size = np.zeros(len(rows)), len(contact.z)
-    for course, end in zip(courses, [*(later.start for later in courses[1:]), math.inf], strict=True):
-        own = times[(times >= course.start) & (times < end)]
+    for part, end in zip(parts, [*(later.start for later in parts[1:]), math.inf], strict=True):
+        own = times[(times >= part.start) & (times < end)]
         last = [end] if end < math.inf else []
-        for state in _walk(course, rows, np.append(own, last) - course.start):
+        spans = np.append(own, last) - part.start
+        for state in _walk(part, rows, spans) if isinstance(part, Course) else _read_off(part, rows, spans):
             state[size:] += gone
             if len(own):
                 own = own[1:]
@@ -143,24 +167,43 @@ def _states(contact: Contact, rows: Array, times: Array) -> Iterator[Array]:
                 gone = state[size:]
 
 
-def _walk(course: Course, rows: Array, spans: Iterable[float]) -> Iterator[Array]:
+def _walk(course: Course, rows: Array, spans: Array) -> Iterator[Array]:
     """States and integrals, from zero on, ``spans`` s after the start of a course, ascending."""
     size, scale = len(course.state), course.rate / float(np.linalg.norm(rows))
     A = np.zeros((size + len(rows),) * 2)
     A[:size, :size], A[size:, :size] = course.A, scale * rows  # the integrals change as fast as the rest
     z, before = np.concatenate([course.state, np.zeros(len(rows))]), 0.0
+    taken, onward = 0.0, np.eye(len(A))
     for span in spans:
-        z, before = la.expm(A * (span - before)) @ z, span
+        if abs(span - before - taken) > 1e-13 * taken:  # even times are so but for rounding: one exponential will do
+            taken = span - before
+            onward = la.expm(A * taken)
+        z, before = onward @ z, span
         state = z.copy()
         state[size:] /= scale
         yield state
 
 
+def _read_off(part: Stretch, rows: Array, spans: Array) -> Iterator[Array]:
+    """What `_walk` gives, of a stretch that was stepped."""
+    solution: Any = part.solution
+    steps = np.asarray(solution.ts) * part.clock - part.start
+    before, gone = 0.0, np.zeros(len(rows))
+    for span in spans:
+        knots = np.unique([before, *steps[(steps > before) & (steps < span)], span])
+        if len(knots) > 1:
+            half = np.diff(knots)[:, None] / 2
+            places = (part.start + knots[:-1, None] + half * (1 + _GAUSS)).ravel()
+            gone = gone + rows @ solution(np.minimum(places, part.end) / part.clock) @ (half * _WEIGHTS).ravel()
+        before = span
+        yield np.concatenate([solution(min(part.start + span, part.end) / part.clock), gone])
+
+
 def _forces(contact: Contact, times: Array) -> Array:
-    """Force on the ball (t, n), N, (n, 2): none before the first and after the last piece of the contact."""
+    """Force on the ball (t, n), where these have turned to, N, (n, 2): none after the contact."""
     force = np.zeros((len(times), 2))
     pressed = times <= contact.time
-    if contact.pieces and pressed.any():
+    if pressed.any() and (contact.pieces or isinstance(contact, SteppedContact)):
         known = contact.history(1.0)(times[pressed])
         force[pressed] = np.column_stack([known["force_t"], known["force_n"]])
     return force

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -63,10 +62,9 @@ def test_times_that_are_none(times: list[float]) -> None:
         motion(SCENE, times)
 
 
-@pytest.mark.parametrize("effect", [cf.PowerLawTip(1.5), cf.Elevation(0.1)])
-def test_effects_that_are_stepped(effect: Any) -> None:
-    with pytest.raises(ValueError, match="motion takes effects whose contact is linear; got "):
-        motion(replace(SCENE, effects=(effect,)), [0.0])
+def test_a_cue_that_is_raised() -> None:
+    with pytest.raises(ValueError, match="motion takes strokes in the plane of cue and ball; got Elevation"):
+        motion(replace(SCENE, effects=(cf.Elevation(0.1),)), [0.0])
 
 
 def test_a_lumped_cue_has_no_shape() -> None:
@@ -87,9 +85,9 @@ def test_an_animation_of_bad_numbers(scene: Path, tmp_path: Path, options: list[
     assert list(tmp_path.iterdir()) == [scene]
 
 
-def test_an_animation_of_an_effect_that_is_stepped(scene: Path, tmp_path: Path) -> None:
-    cf.save(replace(SCENE, effects=(cf.PowerLawTip(1.5),)), scene)
-    assert "effects whose contact is linear; got PowerLawTip" in refused("animate", scene, "-o", tmp_path / "seen")
+def test_an_animation_of_a_cue_that_is_raised(scene: Path, tmp_path: Path) -> None:
+    cf.save(replace(SCENE, effects=(cf.Elevation(0.1),)), scene)
+    assert "in the plane of cue and ball; got Elevation" in refused("animate", scene, "-o", tmp_path / "seen")
     assert list(tmp_path.iterdir()) == [scene]
 
 
