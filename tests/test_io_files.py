@@ -131,7 +131,7 @@ def test_lathe_profile_keeps_a_bend_of_a_micrometre(tmp_path: Path) -> None:
 
 def test_material_is_for_profiles_alone(tmp_path: Path) -> None:
     (tmp_path / "kim.toml").write_text(KIM_TOML)
-    with pytest.raises(InputError, match=r"material is for \.csv files alone; got 'ash'"):
+    with pytest.raises(InputError, match=r"material is for \.csv, \.stl, \.ply and \.obj files alone; got 'ash'"):
         cf.load(tmp_path / "kim.toml", material="ash")
 
 

@@ -174,7 +174,7 @@ def test_no_file_at_all(tmp_path: Path) -> None:
     assert refused(tmp_path / "none.vtu") == "cannot be read: No such file or directory"
     assert refused(tmp_path / "folder.toml") == "cannot be read: Is a directory"
     assert refused(tmp_path) == "cannot be read: it is a folder"
-    assert refused(tmp_path / "cue.msh") == "must end in .toml, .csv, .vtk or .vtu; got '.msh'"
+    assert refused(tmp_path / "cue.msh") == "must end in .toml, .csv, .vtk, .vtu, .stl, .ply or .obj; got '.msh'"
 
 
 def test_a_file_without_permission(tmp_path: Path) -> None:

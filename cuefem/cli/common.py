@@ -23,7 +23,8 @@ def file_options(command: Callable[..., Any]) -> Callable[..., Any]:
     for option in (
         click.option("--json", "as_json", is_flag=True, help="SI numbers as JSON."),
         click.option("--body-mass", metavar="MASS", help='Mass of the cue behind FILE\'s segments, e.g. "420 g".'),
-        click.option("--material", metavar="NAME", help="Material of a .csv profile (see `cuefem materials`)."),
+        click.option("--material", metavar="NAME", help="Material of a .csv or surface (see `cuefem materials`)."),
+        click.option("--length-unit", metavar="UNIT", help="Unit of a .stl, .ply or .obj surface; mm if left out."),
         click.argument("file", type=click.Path(path_type=Path)),
     ):
         command = option(command)
@@ -61,7 +62,7 @@ def scene_of(file: Path, given: dict[str, Any]) -> tuple[Scene, list[str]]:
     from cuefem.io.assumed import assumed, unusual
     from cuefem.scene import Scene, Stroke
 
-    found = load(file, material=given["material"])
+    found = load(file, material=given["material"], length_unit=given.get("length_unit"))
     said = {name for name, value in given.items() if value is not None}
     notes = assumed(file, said)
     if isinstance(found, Cue):

@@ -13,14 +13,19 @@ from cuefem.cli.common import print_all, print_json
 @click.command()
 @click.argument("file", type=click.Path(path_type=Path))
 @click.argument("output", type=click.Path(path_type=Path))
-@click.option("--material", metavar="NAME", help="Material of a .csv profile (see `cuefem materials`).")
-def convert(file: Path, output: Path, material: str | None) -> None:
+@click.option("--material", metavar="NAME", help="Material of a .csv or surface (see `cuefem materials`).")
+@click.option("--length-unit", metavar="UNIT", help="Unit of a .stl, .ply or .obj surface; mm if left out.")
+def convert(file: Path, output: Path, **given: str | None) -> None:
     """Write FILE as another kind of file: OUTPUT ends in .toml, .vtk or .vtu."""
-    from cuefem.io import DEFAULT_MATERIAL, load, save
+    from cuefem.io import load, save
+    from cuefem.io.assumed import assumed
+    from cuefem.io.profile import SHAPES
 
-    save(load(file, material=material), output)
-    if file.suffix == ".csv" and material is None:
-        click.echo(f"assumed: material {DEFAULT_MATERIAL} (choose with --material)")
+    save(load(file, **given), output)
+    said = {"body_mass", *(name for name, value in given.items() if value is not None)}
+    notes = assumed(file, said) if file.suffix in SHAPES else []
+    if notes:
+        click.echo(f"assumed: {'; '.join(notes)}")
 
 
 @click.command()

@@ -1,4 +1,5 @@
-"""The only part of cuefem that opens files: cues and scenes as TOML, lathe profiles as CSV, cues as meshes."""
+"""The only part of cuefem that opens files: cues and scenes as TOML, lathe profiles as CSV, cues as meshes,
+shafts as CAD surfaces."""
 
 from __future__ import annotations
 
@@ -9,7 +10,7 @@ from pathlib import Path
 
 from cuefem.cue import Cue
 from cuefem.io.errors import InputError, reason
-from cuefem.io.profile import DEFAULT_MATERIAL, load_profile
+from cuefem.io.profile import DEFAULT_MATERIAL, SHAPES, SURFACES, load_profile
 from cuefem.io.toml import load_accuracy, load_cue, load_toml, named_material, read_text, toml_text
 from cuefem.io.units import number
 from cuefem.scene import Scene
@@ -30,21 +31,28 @@ FIGURES = (".png", ".svg")
 _MESHES = (".vtk", ".vtu")
 
 
-def load(path: str | os.PathLike[str], *, material: str | None = None) -> Cue | Scene:
-    """A cue or a scene from a file: .toml ([[segments]] at the top = cue, [cue] = scene), .csv, .vtk, .vtu.
+def load(path: str | os.PathLike[str], *, material: str | None = None, length_unit: str | None = None) -> Cue | Scene:
+    """A cue or a scene from a file: .toml ([[segments]] at the top = cue, [cue] = scene), .csv, .vtk, .vtu, or a closed
+    CAD surface, .stl, .ply, .obj (see `cuefem.io.surface`).
 
-    material: name of a lathe profile's material (CSV alone; "hard maple" where left out). Errors: InputError, one line
-    that names file, key, bound, unit and the value got.
+    material: name of the material of a lathe profile or a surface ("hard maple" where left out). length_unit: of a
+    surface's coordinates ("mm" where left out). Errors: InputError, one line that names file, key, bound, unit and the
+    value got.
     """
     path = Path(path)
-    if material is not None and path.suffix != ".csv":
-        raise InputError(path, "", f"names its materials itself: material is for .csv files alone; got {material!r}")
+    if material is not None and path.suffix not in SHAPES:
+        files = f"{', '.join(SHAPES[:-1])} and {SHAPES[-1]}"
+        raise InputError(path, "", f"names its materials itself: material is for {files} files alone; got {material!r}")
+    if length_unit is not None and path.suffix not in SURFACES:
+        files = f"{', '.join(SURFACES[:-1])} and {SURFACES[-1]}"
+        problem = f"has its own units of length: length_unit is for {files} files alone; got {length_unit!r}"
+        raise InputError(path, "", problem)
     if path.suffix == ".toml":
         return load_toml(path, _load_cue)
-    return _load_cue(path, material)
+    return _load_cue(path, material, length_unit)
 
 
-def _load_cue(path: Path, material: str | None = None) -> Cue:
+def _load_cue(path: Path, material: str | None = None, length_unit: str | None = None) -> Cue:
     if path.suffix == ".toml":
         return load_cue(path)
     if path.suffix == ".csv":
@@ -53,9 +61,13 @@ def _load_cue(path: Path, material: str | None = None) -> Cue:
         from cuefem.io.mesh import load_mesh
 
         return load_mesh(path)
+    if path.suffix in SURFACES:
+        from cuefem.io.surface import load_surface
+
+        return load_surface(path, named_material(material or DEFAULT_MATERIAL, path, "material"), length_unit)
     if path.is_dir():
         raise InputError(path, "", "cannot be read: it is a folder")
-    raise InputError(path, "", f"must end in .toml, .csv, .vtk or .vtu; got {path.suffix!r}")
+    raise InputError(path, "", f"must end in .toml, .csv, .vtk, .vtu, .stl, .ply or .obj; got {path.suffix!r}")
 
 
 def save(obj: Cue | Scene, path: str | os.PathLike[str]) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from cuefem.cue import Cue
-from cuefem.io.profile import DEFAULT_MATERIAL
+from cuefem.io.profile import DEFAULT_MATERIAL, DEFAULT_UNIT, SHAPES, SURFACES
 from cuefem.io.toml import read_tables
 from cuefem.scene import DEFAULT_CONTACT_TIME, Ball, Scene, Stroke, Tip
 
@@ -25,12 +25,29 @@ def assumed(path: Path, given: Collection[str]) -> list[str]:
 
 
 def _profile(path: Path, given: Collection[str], choose: str = "") -> list[str]:
-    """What a lathe profile cannot say: its material, and what is screwed to the shaft."""
-    if path.suffix != ".csv":
+    """What a lathe profile or a surface cannot say: its unit, its material, and what is screwed to the shaft."""
+    if path.suffix not in SHAPES:
         return []
+    lengths = path.suffix in SURFACES and "length_unit" not in given
+    unit = f"lengths in {DEFAULT_UNIT}{choose and ' (--length-unit gives another)'}"
     return [
+        *([unit] if lengths else []),
+        *(_fit(path) if path.suffix in SURFACES else []),
         *([] if "material" in given else [f"material {DEFAULT_MATERIAL}{choose}"]),
         *([] if "body_mass" in given else ["no mass behind the shaft (--body-mass gives it)"]),
+    ]
+
+
+def _fit(path: Path) -> list[str]:
+    """How near a surface's segments keep to it, and how far its facets leave the round form open."""
+    from cuefem.io.surface import read_surface
+
+    found = read_surface(path)
+    parts = found.fit / found.widest, 2 * found.facets / found.widest
+    return [
+        f"{len(found.pieces)} conical segments, diameters within {parts[0]:.0e} of the widest",
+        f"facets round (their corners lie up to {parts[1]:.0e} of the widest diameter further out)",
+        "the thinner end is the tip",
     ]
 
 

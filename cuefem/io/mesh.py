@@ -20,7 +20,7 @@ from cuefem.quantity import quantities
 SUFFIXES = (".vtk", ".vtu")
 
 # What a damaged mesh file makes meshio raise: it checks little itself.
-_DAMAGED = (
+DAMAGED = (
     *(meshio.ReadError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError, AssertionError),
     *(SyntaxError, EOFError, MemoryError, RecursionError, zlib.error, SystemExit),
 )
@@ -47,12 +47,12 @@ def save_mesh(cue: Cue, path: Path) -> None:
     cells = np.arange(len(rows))[:, None] + np.array([0, 1])
     data = {name: [np.array([row[name] for row in rows])] for name in rows[0]}
     mesh = meshio.Mesh(points, [("line", cells)], cell_data=data)
-    with _quiet():  # meshio warns that ASCII is for debugging; here it is exact and can be compared line by line
+    with quiet():  # meshio warns that ASCII is for debugging; here it is exact and can be compared line by line
         _format(path).write(str(path), mesh, binary=path.suffix == ".vtu")
 
 
 @contextlib.contextmanager
-def _quiet() -> Iterator[None]:
+def quiet() -> Iterator[None]:
     """Nothing of what meshio says on stdout and stderr: what is wrong with a file is said once, as an InputError."""
     nowhere = io.StringIO()
     with warnings.catch_warnings(), contextlib.redirect_stderr(nowhere), contextlib.redirect_stdout(nowhere):
@@ -67,14 +67,14 @@ def _format(path: Path) -> Any:
 def load_mesh(path: Path) -> Cue:
     """The cue of a line mesh with this module's cell data, cells from tip to butt."""
     try:
-        with _quiet():
+        with quiet():
             mesh = _format(path).read(str(path))
         data = {name: np.concatenate(blocks).astype(float) for name, blocks in mesh.cell_data.items()}
         kinds, x = {block.type for block in mesh.cells}, np.asarray(mesh.points, float)[:, 0]
         cells = np.concatenate([block.data for block in mesh.cells])
     except OSError as error:
         raise InputError(path, "", f"cannot be read: {reason(error)}") from None
-    except _DAMAGED as error:
+    except DAMAGED as error:
         said = f"{type(error).__name__} {error}".strip()
         raise InputError(
             path, "", f"must be a {path.suffix} mesh; got a file that meshio cannot read: {said}"

@@ -14,6 +14,9 @@ from cuefem.io.units import number, quantity
 from cuefem.quantity import Quantity
 
 DEFAULT_MATERIAL = "hard maple"
+DEFAULT_UNIT = "mm"  # of a surface's coordinates
+SURFACES = (".stl", ".ply", ".obj")
+SHAPES = (".csv", *SURFACES)  # the files that say a shaft's shape and no material
 # Points closer than this to a straight taper lie on it, m: the rounding of a file, far below what a lathe measures.
 _STRAIGHT = 1e-9
 

@@ -1,0 +1,316 @@
+"""A closed surface of triangles, sliced across its long axis into the round sections of a shaft.
+
+A slice of a polyhedron is a polygon; its area and second moments are exact (Green's theorem). A round section of the
+same area and second moment has diameters D and d: A = pi/4 (D^2 - d^2), I = pi/64 (D^4 - d^4). All lengths are in the
+unit of the points.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cuefem.cue import Array
+
+Index = NDArray[np.intp]
+
+SAME = 1e-6  # of the length: points closer than this are one
+FLAT = 1e-5  # of the length: a triangle that reaches less far along the axis lies across it
+UPRIGHT = 1e-3  # rad: an axis nearer than this to x, y or z is that
+SLENDER = 5.0  # length over the widest diameter, at least
+ROUND = 0.02  # relative: the two second moments of a section, and that of a solid section against a disc's
+STRAIGHT = 0.02  # of the diameter: the centre of a section off the axis
+TOLERANCE = 5e-5  # of the widest diameter: how near the straight pieces keep to the slices
+SLICES, LEVELS = 50, 1000  # at least so many slices; so many levels of corners are cut each at its place
+
+
+class Piece(NamedTuple):
+    """A conical piece: its length, outer diameters and bores at its two ends, tip side first."""
+
+    length: float
+    outer: tuple[float, float]
+    bore: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Sliced:
+    """A shaft from a surface. pieces: from the thinner end to the thicker. fit: the largest distance of their diameters
+    from those of the slices. facets: how far corners of slices lie outside the round outline: half a true diameter lies
+    between the round one and that."""
+
+    pieces: tuple[Piece, ...]
+    fit: float
+    facets: float
+
+    @property
+    def widest(self) -> float:
+        """The largest diameter."""
+        return max(max(piece.outer) for piece in self.pieces)
+
+
+class Slice(NamedTuple):
+    """A polygon across the axis: area, second moments about its centre (yy, zz, yz), its centre (y, z), the number of
+    its outlines outside and inside, and the largest distance of a corner from the axis."""
+
+    area: float
+    moments: tuple[float, float, float]
+    centre: tuple[float, float]
+    outlines: tuple[int, int]
+    reach: float
+
+    @property
+    def diameters(self) -> tuple[float, float]:
+        """Outer diameter and bore of the round section; one outline alone is a disc of the same area."""
+        if self.area <= 0:
+            return 0.0, 0.0
+        difference = 4 * self.area / np.pi
+        if self.outlines[1] == 0:
+            return float(np.sqrt(difference)), 0.0
+        total = 8 * (self.moments[0] + self.moments[1]) / self.area  # D^2 + d^2 = 16 I/A
+        return float(np.sqrt((total + difference) / 2)), float(np.sqrt(max(total - difference, 0.0) / 2))
+
+
+@dataclass(frozen=True)
+class Surface:
+    """A closed surface with its axis along x from 0 to ``length``. points: (n, 3). triangles: (m, 3), turned
+    outwards. flats: positions of the faces across the axis, both ends among them."""
+
+    points: Array
+    triangles: Index
+    flats: Array
+
+    @property
+    def length(self) -> float:
+        """Length along the axis."""
+        return float(self.flats[-1])
+
+    def cut(self, x: float, *, butt_side: bool = True) -> Slice:
+        """The slice at ``x``; at a face across the axis that on its butt side, or on its tip side."""
+        along = self.points[:, 0]
+        beyond = (along > x if butt_side else along >= x)[self.triangles]
+        crossing = beyond.any(axis=1) & ~beyond.all(axis=1)
+        triangles, beyond = self.triangles[crossing], beyond[crossing]
+        if not len(triangles):
+            return Slice(0.0, (0.0, 0.0, 0.0), (0.0, 0.0), (0, 0), 0.0)
+        alone = np.argmax(beyond == (beyond.sum(axis=1) == 1)[:, None], axis=1)  # the corner that lies by itself
+        rows = np.arange(len(triangles))
+        a, b, c = (triangles[rows, (alone + k) % 3] for k in range(3))
+        leaving = beyond[rows, alone]  # the outline runs a-b to a-c where the corner lies beyond, else back
+        first, last = np.where(leaving, b, c), np.where(leaving, c, b)
+        return _polygon(self._crossing(a, first, x), self._crossing(a, last, x), _chains(a, first, last))
+
+    def _crossing(self, a: Index, b: Index, x: float) -> Array:
+        a, b = np.minimum(a, b), np.maximum(a, b)  # the same from both sides, to the last bit
+        p, q = self.points[a], self.points[b]
+        t = (x - p[:, 0]) / (q[:, 0] - p[:, 0])
+        return np.asarray(p[:, 1:] + t[:, None] * (q[:, 1:] - p[:, 1:]))
+
+
+def _chains(a: Index, first: Index, last: Index) -> Index:
+    """Which outline each side of the polygon belongs to: one side ends at the cut edge where the next begins."""
+    count = 1 + max(int(part.max()) for part in (a, first, last))
+    begins, ends = (np.minimum(a, other) * count + np.maximum(a, other) for other in (first, last))
+    following = np.empty(len(a), dtype=np.intp)
+    following[np.argsort(ends, kind="stable")] = np.argsort(begins, kind="stable")
+    label = np.arange(len(a))
+    for _ in range(len(a).bit_length()):  # the least label spreads twice as far along the outline every time
+        label = np.minimum(label, label[following])
+        following = following[following]
+    return np.unique(label, return_inverse=True)[1].ravel()
+
+
+def _polygon(start: Array, end: Array, outline: Index) -> Slice:
+    (y0, z0), (y1, z1) = start.T, end.T
+    cross = y0 * z1 - y1 * z0
+    signed = np.bincount(outline, cross) / 2
+    area = float(signed.sum())
+    negligible = 1e-9 * np.abs(signed).max()
+    outlines = int(np.sum(signed > negligible)), int(np.sum(signed < -negligible))
+    reach = float(np.sqrt((start**2).sum(axis=1)).max())
+    if area <= 0:
+        return Slice(area, (0.0, 0.0, 0.0), (0.0, 0.0), outlines, reach)
+    y, z = float(((y0 + y1) * cross).sum() / 6 / area), float(((z0 + z1) * cross).sum() / 6 / area)
+    yy = float(((y0**2 + y0 * y1 + y1**2) * cross).sum() / 12) - area * y**2
+    zz = float(((z0**2 + z0 * z1 + z1**2) * cross).sum() / 12) - area * z**2
+    yz = float(((y0 * (2 * z0 + z1) + y1 * (2 * z1 + z0)) * cross).sum() / 24) - area * y * z
+    return Slice(area, (yy, zz, yz), (y, z), outlines, reach)
+
+
+def surface(points: Array, triangles: Index) -> Surface:
+    """The surface laid along x, its thinner end at 0. ValueError where it is not closed or not slender."""
+    size = float(np.ptp(points, axis=0).max()) if len(points) else 0.0
+    if not np.isfinite(size) or size <= 0 or not len(triangles):
+        raise ValueError("must be a surface with finite corners and some extent; got none")
+    points, triangles = _welded(points, triangles, SAME * size)
+    _check_closed(points, triangles)
+    points = points - points.mean(axis=0)
+    volumes, corners = _tetrahedra(points, triangles)
+    volume = float(volumes.sum())
+    if abs(volume) <= 1e-9 * size**3:
+        raise ValueError("must enclose a volume; got a surface that encloses none")
+    if volume < 0:
+        triangles = triangles[:, ::-1]
+    points = points - np.einsum("i,ikj->j", volumes, corners) / 4 / volume
+    volumes, corners = _tetrahedra(points, triangles)
+    total = corners.sum(axis=1)
+    spread = np.einsum("i,ij,ik->jk", volumes, total, total) + np.einsum("i,ilj,ilk->jk", volumes, corners, corners)
+    return _laid(points @ _frame(spread), triangles)
+
+
+def _tetrahedra(points: Array, triangles: Index) -> tuple[Array, Array]:
+    """Signed volumes of the tetrahedra from the origin to every triangle, and their corners."""
+    corners = points[triangles]
+    return np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6, corners
+
+
+def _welded(points: Array, triangles: Index, near: float) -> tuple[Array, Index]:
+    """Points that are one made one (formats repeat them, rounded), and triangles left without extent dropped."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import KDTree
+
+    pairs = KDTree(points).query_pairs(near, output_type="ndarray")
+    graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(points),) * 2)
+    _, label = connected_components(graph, directed=False)
+    _, first = np.unique(label, return_index=True)
+    triangles = label[triangles].astype(np.intp)
+    whole = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
+    return points[first], triangles[whole]
+
+
+def _check_closed(points: Array, triangles: Index) -> None:
+    first, last = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    count = len(points)
+    edges, met = np.unique(np.minimum(first, last) * count + np.maximum(first, last), return_counts=True)
+    loose = edges[met % 2 == 1]
+    if len(loose):
+        place = ", ".join(f"{v:.6g}" for v in points[loose[0] // count])
+        raise ValueError(f"must be closed, two triangles at every edge; got {len(loose)} loose edges, one at ({place})")
+    there, back = (np.sort(a * count + b) for a, b in ((first, last), (last, first)))
+    if not np.array_equal(there, back):
+        wrong = int(np.sum(there != back))
+        raise ValueError(f"must have its triangles turned the same way; got about {wrong} edges run one way alone")
+
+
+def _frame(spread: Array) -> Array:
+    """Columns: the long axis and two across it, right-handed."""
+    axis = np.linalg.eigh(spread)[1][:, -1]
+    nearest = int(np.argmax(np.abs(axis)))
+    straight = np.eye(3)[nearest] * np.sign(axis[nearest])
+    if np.linalg.norm(axis - straight) < UPRIGHT:
+        axis = straight
+    side = np.cross(axis, np.eye(3)[(nearest + 1) % 3])
+    side /= np.linalg.norm(side)
+    return np.column_stack([axis, side, np.cross(axis, side)])
+
+
+def _laid(points: Array, triangles: Index) -> Surface:
+    """With the thinner end at x = 0, and the corners of faces across the axis all at one x."""
+    points[:, 0] -= points[:, 0].min()
+    length = float(points[:, 0].max())
+    widest = 2 * float(np.sqrt((points[:, 1:] ** 2).sum(axis=1)).max())
+    if length < SLENDER * widest:
+        raise ValueError(
+            f"must be slender, at least {SLENDER:g} times as long as wide; got {length:.6g} by {widest:.6g}"
+        )
+    along = points[triangles][:, :, 0]
+    across = np.ptp(along, axis=1) <= FLAT * length
+    levels = np.sort(np.concatenate([[0.0, length], along[across].ravel()]))
+    levels = np.array([group.mean() for group in np.split(levels, np.flatnonzero(np.diff(levels) > FLAT * length) + 1)])
+    levels[[0, -1]] = 0.0, length
+    corners = np.unique(triangles[across])
+    points[corners, 0] = levels[np.argmin(np.abs(points[corners, 0, None] - levels), axis=1)]
+    laid = Surface(points, triangles, levels)
+    ends = laid.cut(0.01 * length).area, laid.cut(0.99 * length).area
+    if ends[0] <= ends[1]:
+        return laid
+    turned = points * [-1, -1, 1] + [length, 0, 0]  # about z: a rotation, so that outside stays outside
+    return replace(laid, points=turned, flats=length - levels[::-1])
+
+
+def sliced(body: Surface, tolerance: float = TOLERANCE) -> Sliced:
+    """The straight pieces that keep within ``tolerance`` (of the widest diameter) of the slices of a surface.
+
+    Slices lie at every level of corners, between the levels, and at least `SLICES` in all; jumps at the faces across
+    the axis are kept. ValueError where a section is not one round piece about the axis.
+    """
+    pieces: list[Piece] = []
+    fit = facets = 0.0
+    widest = 2 * float(np.sqrt((body.points[:, 1:] ** 2).sum(axis=1)).max())
+    for start, stop in itertools.pairwise(body.flats):
+        x = _places(body, float(start), float(stop))
+        cuts = [body.cut(p, butt_side=p < stop) for p in x]
+        for place, cut in zip(x, cuts, strict=True):
+            _check_round(cut, place, widest)
+        found = np.array([cut.diameters for cut in cuts])
+        found[:, 0] = np.maximum(found[:, 0], tolerance * widest)  # an apex
+        kept = _corners(x[::2], found[::2], tolerance * widest)
+        for i, j in itertools.pairwise(2 * kept):
+            (outer0, bore0), (outer1, bore1) = found[i].tolist(), found[j].tolist()
+            pieces.append(Piece(float(x[j] - x[i]), (outer0, outer1), (bore0, bore1)))
+        fit = max(fit, _deviation(x, found, 2 * kept))
+        facets = max(facets, *(float(cut.reach - d / 2) for cut, d in zip(cuts, found[:, 0], strict=True)))
+    return Sliced(tuple(pieces), fit, facets)
+
+
+def _places(body: Surface, start: float, stop: float) -> Array:
+    """Where a stretch without jumps is cut: levels and more, and half-way between any two of them."""
+    levels = np.unique(body.points[:, 0])
+    levels = levels[(levels > start) & (levels < stop)]
+    near = FLAT * body.length
+    levels = levels[np.diff(levels, prepend=start) > near]
+    scattered = len(levels) > LEVELS
+    step = body.length / (LEVELS if scattered else SLICES)
+    ends = np.array([start, *([] if scattered else levels[levels < stop - near]), stop])
+    parts = [np.linspace(a, b, int(np.ceil((b - a) / step)) + 1)[:-1] for a, b in itertools.pairwise(ends)]
+    x = np.append(np.concatenate(parts), stop)
+    return np.insert(x, np.arange(1, len(x)), (x[:-1] + x[1:]) / 2)
+
+
+def _check_round(cut: Slice, place: float, widest: float) -> None:
+    where = f"at {place:.6g} from its thinner end"
+    if cut.area <= (FLAT * widest) ** 2:
+        return  # an apex
+    outside, inside = cut.outlines
+    if outside != 1:
+        raise ValueError(f"must be one piece across the axis; got {outside} outlines {where}")
+    off = float(np.hypot(*cut.centre))
+    if off > STRAIGHT * widest:
+        bound = f"its sections' centres within {100 * STRAIGHT:g} % of the width of one axis"
+        raise ValueError(f"must be straight, {bound}; got {100 * off / widest:.1f} % {where}")
+    yy, zz, yz = cut.moments
+    mean, half = (yy + zz) / 2, float(np.hypot((yy - zz) / 2, yz))
+    if half > ROUND / 2 * mean:
+        got = f"second moments {100 * 2 * half / mean:.1f} % apart {where}"
+        raise ValueError(f"must be round, second moments within {100 * ROUND:g} % of each other; got {got}")
+    disc = 4 * np.pi * mean / cut.area**2 - 1
+    if inside == 0 and abs(disc) > ROUND:
+        got = f"a section {100 * disc:.1f} % off {where}"
+        raise ValueError(f"must be round, its second moment within {100 * ROUND:g} % of a disc's; got {got}")
+
+
+def _corners(x: Array, found: Array, near: float) -> Index:
+    """Indices of the points that straight pieces need to keep within ``near`` of all of them (Douglas & Peucker)."""
+    kept, open_ends = {0, len(x) - 1}, [(0, len(x) - 1)]
+    while open_ends:
+        i, j = open_ends.pop()
+        off = _offsets(x[i : j + 1], found[i : j + 1])
+        worst = int(np.argmax(off))
+        if off[worst] > near:
+            kept.add(i + worst)
+            open_ends += [(i, i + worst), (i + worst, j)]
+    return np.array(sorted(kept), dtype=np.intp)
+
+
+def _offsets(x: Array, found: Array) -> Array:
+    """Distances of diameters from the straight line between the first and the last, the larger of outer and bore."""
+    t = (x - x[0]) / (x[-1] - x[0])
+    return np.asarray(np.abs(found - found[0] - t[:, None] * (found[-1] - found[0])).max(axis=1))
+
+
+def _deviation(x: Array, found: Array, kept: Index) -> float:
+    return max(float(_offsets(x[i : j + 1], found[i : j + 1]).max()) for i, j in itertools.pairwise(kept))
