@@ -131,7 +131,7 @@ def fade(x: Array) -> Array:
 
     Far above the pulse's own frequencies sin(W (T - s)) leaves V(T)/W, the beam giving way, and a ringing of
     cos(W T)/W. A sum over modes that ends sharply keeps of the ringing what its last modes chance to have; one that
-    fades keeps the waves that are back at the tip by then.
+    fades keeps what waves of its frequencies bring back to the tip by then.
     """
     return np.cos(np.pi / 2 * np.clip((x - FADED) / (1 - FADED), 0, 1)) ** 2
 
