@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from cues import carbon_tube, kim, low_deflection
 
-from cuefem import Cue, LumpedCue, Material, PointMass, Resolution, Scene, Tip, load
+from cuefem import Cue, LumpedCue, Material, PointMass, Resolution, Scene, Segment, Tip, load
 from cuefem.endmass import Drive, end_mass
 from cuefem.gradient import gradient
 from cuefem.sensitivity import Sensitivity, sensitivity
@@ -154,6 +154,57 @@ def test_a_number_of_the_drawing(number: str, index: int, drive: Drive) -> None:
         assert slope(squirt, 1e-3) / value == pytest.approx(
             getattr(found.squirt_to, number)[index], rel=1e-6, abs=1e-9 * found.squirt / value
         )
+
+
+def filled() -> Cue:
+    """A carbon tube over a core, Poisson's ratios given, the shear coefficient of one piece too."""
+    shell = Material(80e9, 14e9, 1580.0, nu=0.27)
+    core = Material(3e9, 1.1e9, 1100.0, nu=0.33)
+    front = Segment(0.03, 0.012, 0.0125, shell, 0.009, 0.008, core)
+    middle = Segment(0.35, 0.0125, 0.013, shell, 0.0105, 0.0105, core)
+    rear = Segment(0.3, 0.013, 0.021, shell, 0.0105, 0.017, core, kappa=0.8)
+    return Cue((front, middle, rear), body_mass=0.4)
+
+
+def altered(cue: Cue, number: str, index: int, factor: float) -> Cue:
+    """The cue with kappa, or a number of a material ("nu", "core_E"), of one segment multiplied."""
+    segment = cue.segments[index]
+    part, name = ("core", number.removeprefix("core_")) if number.startswith("core") else ("material", number)
+    if number == "kappa":
+        segment = replace(segment, kappa=segment.kappa * factor)
+    else:
+        whole = getattr(segment, part)
+        segment = replace(segment, **{part: replace(whole, **{name: getattr(whole, name) * factor})})
+    return replace(cue, segments=(*cue.segments[:index], segment, *cue.segments[index + 1 :]))
+
+
+@pytest.mark.parametrize("drive", ["stick", "velocity"])
+@pytest.mark.parametrize(
+    ("number", "index"),
+    [*((f"core_{name}", i) for name in ("E", "G", "rho", "nu") for i in (0, 1)), ("nu", 0), ("nu", 1), ("kappa", 2)],
+)
+def test_a_number_of_the_core_and_of_shear(number: str, index: int, drive: Drive) -> None:
+    """By central differences to 1e-6; nu_e/(1 + nu_e) = 2 nu G/E makes a slope to the effective ratio one to nu."""
+    cue = filled()
+    found = gradient(scene(cue), drive, AT)
+    segment = cue.segments[index]
+    chain, whole = 1.0, segment.core if number.startswith("core") else segment.material
+    assert whole is not None
+    value = segment.kappa if number == "kappa" else getattr(whole, number.removeprefix("core_"))
+    if number.endswith("nu"):
+        ratio = 2 * whole.nu * whole.G / whole.E
+        chain = ratio / whole.nu / (1 - ratio) ** 2
+    measured = slope(lambda h: end_mass(scene(altered(cue, number, index, 1 + h)), drive, AT), 1e-3)
+    exact = getattr(found.end_mass_to, number)[index] * chain
+    assert measured / value == pytest.approx(exact, rel=1e-6, abs=1e-9 * found.end_mass / value)
+    assert exact != 0
+
+
+def test_a_shear_coefficient_left_out_has_no_slope() -> None:
+    """Nor has a Poisson's ratio where the coefficient is given."""
+    found = gradient(scene(filled()), "stick", AT)
+    assert np.isnan(found.end_mass_to.kappa).tolist() == [True, True, False]
+    assert found.end_mass_to.nu[2] == found.end_mass_to.core_nu[2] == 0
 
 
 def test_bad_input() -> None:
