@@ -2,8 +2,10 @@
 
 The stick end mass and the small-offset squirt at T = 1 ms (`cuefem.batch`), the static tip stiffness with the joint
 clamped. The first table changes one thing at a time on the hollow-front shaft of meshes/; the second compares the
-shafts of meshes/ by the coupled strike at b/R = 0.3, bare; the figure is the Pareto front over bore, depth, ferrule,
-tip diameter and taper (`cuefem.optimum.front`, NSGA-II of pymoo). About 30 s.
+shafts of meshes/ by the coupled strike at b/R = 0.3, bare and with dome and shear of the tip. The third is the shaft of
+least squirt that is as stiff as the solid one, found by gradients (`least_squirt`) and by a quasi-random search, and
+struck. The figure has Pareto fronts of squirt against stiffness and mass (`front`, NSGA-II of pymoo, within 5 %) over
+bore, depth, ferrule, tip diameter and taper, and over the walls of the carbon tube. About 60 s.
 """
 
 from __future__ import annotations
@@ -14,15 +16,18 @@ from functools import cache
 
 import numpy as np
 
-from cuefem import Cue, Resolution, strike
+from cuefem import Cue, Resolution, TipDome, TipShear, resolve, strike
 from cuefem.batch import CueBatch, batch_stick
-from cuefem.optimum import Design, Limit, Variable, front
+from cuefem.optimum import Design, Limit, Variable, front, least_squirt, search
 from studies.common import STUDIES, cue, figure, scene, table
 
 AT = Resolution(2, 14, 40)
 COARSE = Resolution(1, 6, 8)  # ranks designs; the front's points are computed again at AT
 SHAFTS = {"pool_maple": "solid pro taper", "pool_hollow": "hollow front", "carbon": "carbon tube"}
-OFFSET = 0.3
+OFFSET, SMALL = 0.3, 0.01
+SEARCHED = 10_000
+TIP = (TipDome(9.5e-3), TipShear(0.75))
+WALLS = (0.001, 0.002, 0.003)
 
 
 def _field(name: str, *segments: int) -> dict[tuple[int, str], float]:
@@ -43,6 +48,22 @@ def variables() -> tuple[Variable, ...]:
         Variable("tip diameter", 0.011, 0.0135, tip.tip_diameter, width),
         Variable("end of the taper", 0.0122, 0.016, rear.butt_diameter, joined),
     )
+
+
+@cache
+def carbon() -> Design:
+    """The carbon tube: its wall at the tip end, at the joint, and how wide it is in front."""
+    plug, tube, rear, joint = cue("carbon").segments[1:]
+    inside = {(2, "tip_bore"): 1.0, (2, "butt_bore"): 1.0, (3, "tip_bore"): 1.0}
+    behind = {(3, "butt_bore"): 1.0, (4, "tip_bore"): 1.0, (4, "butt_bore"): 1.0}
+    width = {**_field("diameter", 0, 1), **_field("diameter", 2), (3, "tip_diameter"): 1.0}
+    moved = (
+        Variable("bore in front", 0.006, 0.0122, tube.tip_bore, inside),
+        Variable("bore at the joint", 0.013, 0.019, joint.tip_bore, behind),
+        Variable("diameter in front", 0.011, 0.0135, plug.tip_diameter, width),
+    )
+    assert rear.butt_bore == joint.tip_bore
+    return Design(scene(cue("carbon")), moved, (Limit("wall", low=0.0006),), COARSE)
 
 
 STEPS = {"bore": 1e-3, "bore depth": 0.0254, "ferrule length": 0.005, "tip diameter": 5e-4, "end of the taper": 1e-3}
@@ -80,29 +101,85 @@ def changes() -> Iterator[list[str | float]]:
 
 
 def shafts() -> Iterator[list[str | float]]:
-    solid = strike(scene(cue("pool_maple"), offset=OFFSET)).squirt
+    def squirts(name: str) -> tuple[float, float]:
+        struck = scene(cue(name), offset=OFFSET)
+        return strike(struck).squirt, strike(replace(struck, effects=TIP)).squirt
+
+    solid = squirts("pool_maple")
     for name, words in SHAFTS.items():
-        squirt = strike(scene(cue(name), offset=OFFSET)).squirt
-        yield [words, *measures(cue(name)), float(np.degrees(squirt)), squirt / solid]
+        both = squirts(name)
+        told = ((float(np.degrees(one)), one / of) for one, of in zip(both, solid, strict=True))
+        yield [words, *measures(cue(name)), *(number for pair in told for number in pair)]
+
+
+def wanted() -> Design:
+    """As stiff as the solid shaft, walls of 2 mm, at the coarse resolution."""
+    stiff = CueBatch.of([cue("pool_maple")]).tip_stiffness[0]
+    return replace(design(), limits=(Limit("tip_stiffness", low=round(stiff, 1)), Limit("wall", low=0.002)), at=COARSE)
+
+
+def optima() -> Iterator[list[str | float]]:
+    asked = wanted()
+    points, squirt, within = search(asked, SEARCHED, seed=7)
+    best = int(np.where(within, squirt, np.inf).argmin())
+    yield ["best of a quasi-random search", str(SEARCHED), *_checked(asked.cue(points[best]), squirt[best]), ""]
+    found = least_squirt(asked)
+    held = ", ".join(found.active)
+    yield ["by exact gradients", str(found.evaluations), *_checked(found.cue, found.squirt), held]
+
+
+def _checked(made: Cue, squirt: float) -> list[float]:
+    """Squirt as it was sought, of the batch at `AT`, and of the coupled strike at a small and an ordinary offset."""
+    _, slope, stiffness = measures(made)
+    small = scene(made, offset=SMALL)
+    phi = np.arcsin(SMALL)
+    coupled = [strike(small).squirt / phi, resolve(small, 1e-3).squirt / phi]
+    far = float(np.degrees(strike(scene(made, offset=OFFSET)).squirt))
+    return [stiffness, float(squirt), slope, *map(float, coupled), far]
 
 
 def text() -> str:
     columns = ["end mass, g", "squirt/φ, b → 0", "tip stiffness, N/m"]
     first = table(["change", "by", *columns, "squirt, %", "stiffness, %"], changes())
-    second = table(["shaft", *columns, "squirt at b/R 0.3, °", "to solid"], shafts())
-    return f"# Shafts of little squirt\n\nT = 1 ms, bare.\n\n{first}\n{second}"
+    struck = ["squirt at b/R 0.3, °", "to solid", "with dome and shear, °", "to solid"]
+    second = table(["shaft", *columns, *struck], shafts())
+    sought = ["evaluations", "tip stiffness, N/m", "squirt/φ sought", "batch, fine", "strike, b/R 0.01", "resolve"]
+    third = table(["least squirt", *sought, "squirt at b/R 0.3, °", "held by (SI)"], optima())
+    limits = ", ".join(f"{limit.quantity} >= {limit.low:g}" for limit in wanted().limits)
+    return (
+        f"# Shafts of little squirt\n\nT = 1 ms, bare.\n\n{first}\n{second}\nLeast squirt of bore, depth, ferrule, tip "
+        f"and taper with {limits} (SI); squirt is over φ at small offsets.\n\n{third}"
+    )
 
 
 def draw() -> None:
-    points, _ = front(replace(design(), at=COARSE), "tip_stiffness", size=32, rounds=14)
-    squirt, stiffness = (design().quantity(name, points)[:, 0] for name in ("squirt", "tip_stiffness"))
-    with figure(STUDIES / "low_squirt.svg") as axis:
-        axis.plot(1e-3 * stiffness, squirt, "o-", ms=3, label="best of bore, depth, ferrule, tip, taper")
-        for name, mark in zip(SHAFTS, "sD^", strict=True):
-            _, slope, stiff = measures(cue(name))
-            axis.plot(1e-3 * stiff, slope, mark, ms=8, label=SHAFTS[name])
-        axis.set(xlabel="static tip stiffness, N/mm (joint clamped)", ylabel="squirt over φ, small offset")
-        axis.legend(fontsize=8)
+    with figure(STUDIES / "low_squirt.svg", (1, 2), (10.4, 5.0)) as axes:
+        stiff, heavy = axes
+        for wall, colour in zip(WALLS, ("#99bbdd", "#4477aa", "#223355"), strict=True):
+            asked = replace(design(), limits=(Limit("wall", low=wall),), at=COARSE)
+            _front(stiff, asked, "tip_stiffness", 1e-3, f"maple, wall ≥ {1e3 * wall:g} mm", colour)
+            _front(heavy, asked, "mass", 1e3, f"maple, wall ≥ {1e3 * wall:g} mm", colour)
+        _front(stiff, carbon(), "tip_stiffness", 1e-3, "carbon tube, wall ≥ 0.6 mm", "#cc6644")
+        _front(heavy, carbon(), "mass", 1e3, "carbon tube, wall ≥ 0.6 mm", "#cc6644")
+        for axis, quantity, scale in ((stiff, "tip_stiffness", 1e-3), (heavy, "shaft_mass", 1e3)):
+            for name, mark in zip(SHAFTS, "sD^", strict=True):
+                here = scale * float(getattr(CueBatch.of([cue(name)]), quantity)[0]), measures(cue(name))[1]
+                axis.plot(*here, mark, ms=9, color="#cc6644" if name == "carbon" else "#4477aa", mec="black")
+                axis.annotate(SHAFTS[name], here, xytext=(-8, -12), textcoords="offset points", fontsize=9, ha="right")
+            axis.set(ylabel="squirt over φ, small offset", ylim=(0.02, 0.1))
+        stiff.set(xlabel="static tip stiffness, N/mm (joint clamped)", title="how stiff can little squirt be?")
+        stiff.set(xscale="log", xlim=(0.2, 2.1))
+        stiff.set_xticks(ticks := (0.2, 0.3, 0.4, 0.6, 0.8, 1, 1.5, 2), [f"{tick:g}" for tick in ticks], minor=False)
+        stiff.set_xticks((), minor=True)
+        heavy.set(xlabel="mass of the shaft, g", title="what does little squirt leave of the mass?", xlim=(70, 142))
+        heavy.legend(fontsize=8, title="best for given limits (tip 11 to 13.5 mm)", title_fontsize=8, loc="lower right")
+
+
+def _front(axis: object, asked: Design, against: str, scale: float, label: str, colour: str) -> None:
+    points, _ = front(asked, against, size=40, rounds=100)
+    fine = replace(asked, at=AT)
+    squirt, value = (fine.quantity(name, points)[:, 0] for name in ("squirt", against))
+    axis.plot(scale * value, squirt, "o-", ms=3, color=colour, label=label)
 
 
 if __name__ == "__main__":

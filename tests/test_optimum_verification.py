@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from cues import kim, low_deflection
+from cues import low_deflection
 
-from cuefem import LumpedCue, PointMass, Resolution, Scene, Tip
+from cuefem import Resolution, Scene, Stroke, Tip, resolve, strike
 from cuefem.endmass import end_mass
 from cuefem.gradient import gradient
 from cuefem.optimum import Design, Limit, Variable, front, least_squirt, search
@@ -74,38 +74,53 @@ def test_no_worse_than_a_search_in_a_hundredth_of_the_evaluations() -> None:
     assert points.shape == (10_000, 5)
     assert within.sum() > 100
     found = least_squirt(design)
-    assert found.squirt <= squirt[within].min() * (1 + 1e-6)
+    # 0.03758 for the search's 0.03927, by 21 evaluations
+    assert found.squirt < 0.97 * squirt[within].min()
     assert found.evaluations <= 100
 
 
-def test_a_front_is_a_front() -> None:
+@pytest.mark.parametrize("offset", [0.01, 0.3])
+def test_the_coupled_strike_agrees_that_it_is_better(offset: float) -> None:
+    """What the batch's small-offset squirt promises, a strike in time gives: at b/R 0.01 the same number to 5e-3 (of
+    AT's 12 modes), at 0.3 the same gain to 2 %, by the plain strike and by `resolve`."""
+    found = least_squirt(DESIGN)
+    before, after = (replace(SCENE, cue=cue, stroke=Stroke(offset=offset)) for cue in (SCENE.cue, found.cue))
+    phi = np.arcsin(offset)
+    for struck in (strike, lambda scene: resolve(scene, 1e-3)):
+        slopes = np.array([struck(scene).squirt / phi for scene in (before, after)])
+        promised = np.array([DESIGN.quantity("squirt", DESIGN.start[None])[0, 0], found.squirt])
+        if offset < 0.1:
+            assert slopes == pytest.approx(promised, rel=5e-3)
+        assert slopes[1] / slopes[0] == pytest.approx(promised[1] / promised[0], rel=0.02)
+
+
+FRONTS = [("tip_stiffness", True), ("mass", True), ("mass", False)]
+
+
+@pytest.mark.parametrize(("against", "largest"), FRONTS)
+def test_a_front_is_a_front(against: str, largest: bool) -> None:
     pytest.importorskip("pymoo")
-    design = Design(SCENE, (BORE, DEPTH), (Limit("wall", low=0.001),), AT)
-    points, values = front(design, "tip_stiffness", size=16, rounds=8)
-    assert len(points) > 3
+    design = Design(SCENE, (BORE, DEPTH, TIP), (Limit("wall", low=0.001),), Resolution(1, 6, 8))
+    points, values = front(design, against, largest=largest, size=16, rounds=8)
+    # what is lightest is nearly what squirts least: that front is short
+    assert len(points) > (3 if largest else 1)
     assert np.all(np.diff(values[:, 0]) >= 0)
-    assert np.all(np.diff(values[:, 1]) >= 0), "more squirt buys more stiffness"
+    assert np.all(np.diff(values[:, 1]) * (1 if largest else -1) >= 0), "more squirt buys more of what is wanted"
     assert values[:, :1] == pytest.approx(design.quantity("squirt", points), rel=1e-12)
+    assert values[:, 1:] == pytest.approx(design.quantity(against, points), rel=1e-12)
+    assert design.room(points).min() >= -1e-12
 
 
-def test_bad_input() -> None:
-    with pytest.raises(ValueError, match="'bore' must have low < high"):
-        replace(BORE, low=0.02)
-    with pytest.raises(ValueError, match=r"fields among length, .*; got 'rho'"):
-        Variable("density", 1.0, 2.0, 1.0, {(0, "rho"): 1.0})
-    with pytest.raises(ValueError, match=r"Limit\.quantity must be one of .*; got 'colour'"):
-        Limit("colour", low=1.0)
-    with pytest.raises(ValueError, match="one finite"):
-        Limit("mass")
-    with pytest.raises(ValueError, match="segments 0 to 0; got 1"):
-        Design(Scene(kim()), (BORE,))
-    with pytest.raises(ValueError, match="at least one Variable"):
-        Design(SCENE, ())
-    with pytest.raises(ValueError, match="without effects"):
-        Design(replace(SCENE, effects=(PointMass(0.1, 1e-3),)), (BORE,))
-    with pytest.raises(TypeError, match=r"Design\.scene\.cue"):
-        Design(Scene(LumpedCue(0.5, 0.01)), (BORE,))
-    with pytest.raises(ValueError, match="no design within tip_stiffness >= 1000"):
-        least_squirt(replace(DESIGN, limits=(Limit("tip_stiffness", low=1e3),)), iterations=8)
-    with pytest.raises(ValueError, match="front against"):
-        front(DESIGN, "squirt")
+@pytest.mark.heavy
+@pytest.mark.parametrize("against", ["tip_stiffness", "mass"])
+def test_a_front_against_optima_along_it(against: str) -> None:
+    """The best squirt for as much stiffness (mass) as a point of the front has, by gradients: none worse, and the
+    front's within 5 % (measured 3.5 %: evolution comes near)."""
+    pytest.importorskip("pymoo")
+    design = Design(SCENE, VARIABLES, (Limit("wall", low=0.0015),), Resolution(1, 6, 8))
+    points, values = front(design, against, size=40, rounds=100)
+    for point, (squirt, value) in list(zip(points, values, strict=True))[:: len(points) // 6]:
+        asked = replace(design, limits=(*design.limits, Limit(against, low=value * (1 - 1e-9))))
+        best = least_squirt(asked, start=point).squirt
+        assert best <= squirt * (1 + 1e-6)
+        assert squirt < 1.05 * best

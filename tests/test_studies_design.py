@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from cuefem import strike
@@ -16,12 +18,17 @@ def test_sensitivity_table() -> None:
     assert disagreements(committed, sensitivity.text()) == []
 
 
+@pytest.mark.heavy
 def test_low_squirt_table() -> None:
     committed = (STUDIES / "low_squirt.md").read_text(encoding="utf-8")
     assert disagreements(committed, low_squirt.text()) == []
 
 
 def test_hollow_front_against_solid() -> None:
-    """Measured low-deflection against regular shafts: 0.69 to 0.72 (meshes/README.md)."""
-    hollow, solid = (strike(scene(cue(name), 1e-3, 0.3)).squirt for name in ("pool_hollow", "pool_maple"))
-    assert 0.6 < hollow / solid < 0.8
+    """Measured low-deflection against regular shafts: 0.69 to 0.72 (meshes/README.md). At T = 1 ms the stick limit
+    gives 0.62, the coupled strike at b/R 0.3 0.62, and with dome and shear of the tip 0.79."""
+    scenes = [scene(cue(name), 1e-3, 0.3) for name in ("pool_hollow", "pool_maple")]
+    domed = [replace(struck, effects=low_squirt.TIP) for struck in scenes]
+    small = [low_squirt.measures(struck.cue)[1] for struck in scenes]
+    for hollow, solid in (small, *([strike(one).squirt for one in pair] for pair in (scenes, domed))):
+        assert 0.6 < hollow / solid < 0.8
