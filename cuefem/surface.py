@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -88,12 +89,18 @@ class Surface:
         """Length along the axis."""
         return float(self.flats[-1])
 
+    @cached_property
+    def _spans(self) -> Array:
+        """The least and the largest x of every triangle, (2, m)."""
+        along = self.points[:, 0][self.triangles]
+        return np.array([along.min(axis=1), along.max(axis=1)])
+
     def cut(self, x: float, *, butt_side: bool = True) -> Slice:
         """The slice at ``x``; at a face across the axis that on its butt side, or on its tip side."""
-        along = self.points[:, 0]
-        beyond = (along > x if butt_side else along >= x)[self.triangles]
-        crossing = beyond.any(axis=1) & ~beyond.all(axis=1)
-        triangles, beyond = self.triangles[crossing], beyond[crossing]
+        low, high = self._spans
+        triangles = self.triangles[(low <= x) & (x < high) if butt_side else (low < x) & (x <= high)]
+        along = self.points[triangles, 0]
+        beyond = along > x if butt_side else along >= x
         if not len(triangles):
             return Slice(0.0, (0.0, 0.0, 0.0), (0.0, 0.0), (0, 0), 0.0)
         alone = np.argmax(beyond == (beyond.sum(axis=1) == 1)[:, None], axis=1)  # the corner that lies by itself
