@@ -310,3 +310,13 @@ def test_a_miscue_is_said_above_all_numbers(pool: str) -> None:
     missed = page("kim.toml", replace(shot, stroke=replace(shot.stroke, offset=0.7)))
     assert 0 < missed.index("this stroke miscues: ") < missed.index("<section")
     assert "miscues" not in pool
+
+
+def test_offsets_that_slip_long_are_shaded(pool: str) -> None:
+    shot = scene("kim")
+    slippery = replace(shot, tip=replace(shot.tip, friction=0.4))
+    regimes = {cf.strike(replace(slippery, stroke=cf.Stroke(1.0, b))).regime for b in (0.3, 0.6)}
+    assert regimes == {"stick", "miscue"}
+    shaded = Reader(page("kim.toml", slippery)).text
+    assert any(text.startswith("shaded: the tip slips past the greatest compression") for text in shaded)
+    assert "shaded: " not in pool

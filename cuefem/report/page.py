@@ -6,7 +6,7 @@ import math
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict
-from functools import cache
+from functools import cache, partial
 from itertools import islice, pairwise
 from typing import Any, NamedTuple
 
@@ -39,6 +39,7 @@ OFFSETS = tuple(round(0.03 * i, 2) for i in range(1, 21))  # b/R of the curves
 LONGEST_PIVOT = 1.5  # m; beyond it a pivot is behind the cue
 MEASURED_END_MASS = (5.8e-3, 14e-3)  # kg, of real cues; physics.md section 6
 MOST_EVENTS = 12
+LATE = ("late stick", "miscue")
 
 # A model's class on the page, by the beginning of its name.
 STYLES = {"coupled": "c1", "lumped": "c2", "two-part, this": "c3", "A.31": "c4", "two-part, 12": "c5"}
@@ -123,6 +124,7 @@ def _context(scene: Scene, found: Record) -> Record:
         "modes": modes_drawing(modes(cue, effects=scene.cue_effects), cue.length) if isinstance(cue, Cue) else None,
         "contact": None if outcome.history is None else _contact(outcome),
         "by_offset": _by_offset(found["squirt"], scene),
+        "slipped": bool(_slipped(found["squirt"])),
         "end_masses": _end_masses(found["end_masses"], found["squirt"]),
         "energy": _energy(outcome),
         "models": _models(record),
@@ -254,10 +256,19 @@ def _by_offset(record: Record, scene: Scene) -> list[Chart]:
     longest = min(LONGEST_PIVOT, max(float(np.nanmax(curve.y, initial=0.1)) for curve in pivot) / 1e3)
     highest = Axis("", 0.0).over([np.array([1e3 * longest])]).high
     here = [Mark(own, "here")] if 0 < own <= offsets[-1] else []
+    drawn = partial(chart, x=at, marks=here, spans=_slipped(record), height=300)
     return [
-        chart("Squirt", squirt, x=at, y=Axis("squirt, degrees"), marks=here, height=300),
-        chart("Natural pivot length", pivot, x=at, y=Axis("pivot length, mm", 0.0, highest), marks=here, height=300),
+        drawn("Squirt", squirt, y=Axis("squirt, degrees")),
+        drawn("Natural pivot length", pivot, y=Axis("pivot length, mm", 0.0, highest)),
     ]
+
+
+def _slipped(record: Record) -> list[Span]:
+    """Where the coupled stroke sticks late or miscues: halfway to the offsets before and after."""
+    offsets, regimes = np.array(record["offsets"]), record["models"]["coupled, this cue"]["regime"]
+    ends = np.r_[offsets[0], (offsets[1:] + offsets[:-1]) / 2, offsets[-1]]
+    spans = [(float(ends[i]), float(ends[i + 1])) for i, regime in enumerate(regimes) if regime in LATE]
+    return [Span(start, end, "slip") for start, end in spans]
 
 
 class MassRow(NamedTuple):
