@@ -152,11 +152,15 @@ def stick_of(batch: CueBatch, found: BatchModes, scenes: Scene | Sequence[Scene]
 
 
 def _law(batch: CueBatch, scenes: Scene | Sequence[Scene] | StickLimit) -> StickLimit:
-    if isinstance(scenes, StickLimit):
-        return scenes
     if isinstance(scenes, Scene):
         return StickLimit.of(scenes, batch.mass)
-    return StickLimit.of_each(scenes, batch.mass)
+    if isinstance(scenes, StickLimit):
+        sizes = {np.size(part) for part in vars(scenes).values() if np.ndim(part)}
+    else:
+        sizes = {len(scenes)}
+    if sizes - {len(batch)}:
+        raise ValueError(f"batch_stick takes one contact, or {len(batch)}, one a cue; got {max(sizes - {len(batch)})}")
+    return scenes if isinstance(scenes, StickLimit) else StickLimit.of_each(scenes, batch.mass)
 
 
 def _joined(parts: Sequence[BatchModes]) -> BatchModes:

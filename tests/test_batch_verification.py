@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from cues import ABS, CARBON, FAMILY, FOAM, LEATHER, MAPLE, kim, pool, rod, scene, soft_tip, stiff_ferrule
+from cues import ABS, CARBON, FAMILY, FOAM, LEATHER, MAPLE, kim, rod, scene, soft_tip, stiff_ferrule
 from scipy.integrate import quad
 
 from cuefem import Ball, Cue, Resolution, Scene, Segment, Tip, end_mass, modes
@@ -179,8 +179,3 @@ def test_static_tip_stiffness_is_that_of_the_clamped_beam(cues: list[Cue]) -> No
     stiff = single > 1
     assert stiff.any()
     np.testing.assert_allclose(CueBatch.of(cues).tip_stiffness[stiff], single[stiff], rtol=1e-8)
-
-
-def test_cues_of_two_topologies_are_refused() -> None:
-    with pytest.raises(ValueError, match=r"takes cues of one topology; got \[1, 4\] segments"):
-        CueBatch.of([kim(), pool()])
