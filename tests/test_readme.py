@@ -8,11 +8,14 @@ import subprocess
 import tomllib
 from pathlib import Path
 
+import meshio
+import numpy as np
 import pytest
 from command_line import call
 
 import cuefem
 from cuefem.cli import main
+from cuefem.io.paraview import shaft_surface
 
 ROOT = Path(__file__).parents[1]
 TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -77,6 +80,12 @@ def test_a_new_user_gets_a_report_from_nothing(tmp_path: Path) -> None:
 def test_commands_run(line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("meshes", "studies"):
         shutil.copytree(ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("*.svg", "*.png", "*.py", "data"))
+    surface = shaft_surface(SHAFT)
+    (_, quads), (_, lids) = surface.cells
+    triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]], lids])
+    meshio.stl.write(
+        tmp_path / "my_shaft.stl", meshio.Mesh(1e3 * surface.points, [("triangle", triangles)]), binary=True
+    )
     monkeypatch.chdir(tmp_path)
     program, *words = shlex.split(line)
     assert program == "cuefem"
@@ -89,8 +98,12 @@ def test_commands_run(line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 @pytest.mark.parametrize("code", blocks("python"))
 def test_python_runs(code: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.chdir(ROOT)
-    exec(compile(code, "README.md", "exec"), {})
-    assert "5.26" in capsys.readouterr().out
+    said: dict[str, object] = {}
+    exec(compile(code, "README.md", "exec"), said)
+    for value in re.findall(r"# (\d+\.\d+) g$", code, flags=re.MULTILINE):
+        assert value in capsys.readouterr().out
+    if "batch" in said:
+        assert np.all(np.diff(said["end_mass"]) > 0)
 
 
 def test_drawings_and_scenes_load(tmp_path: Path) -> None:
