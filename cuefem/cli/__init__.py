@@ -15,6 +15,7 @@ from cuefem.cli.files import convert, materials, schema
 from cuefem.cli.handover import animate, handover
 from cuefem.cli.scatter import scatter
 from cuefem.cli.sweep import sweep
+from cuefem.cli.tap import tap
 from cuefem.cli.validate import validate
 
 # Before NumPy is loaded: small dense matrices gain nothing from BLAS threads, and two of them on a busy machine can be
@@ -84,5 +85,6 @@ for _command in (
     sweep,
     scatter,
     designer,
+    tap,
 ):
     main.add_command(_command)

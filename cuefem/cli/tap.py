@@ -1,0 +1,103 @@
+"""The tap test: a recording and a drawing to the wood of the shaft."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from cuefem.cli.common import measured, offset_option, print_all, print_json, scene_of
+
+if TYPE_CHECKING:
+    from cuefem.ringing import Ringing
+    from cuefem.scene import Scene
+    from cuefem.tap import TapFit
+
+
+@click.command()
+@click.argument("recording", type=click.Path(path_type=Path))
+@click.option("--scene", "file", type=click.Path(path_type=Path), metavar="FILE", required=True, help="Cue or scene.")
+@click.option("--mass", metavar="MASS", help='What the hung shaft weighs, e.g. "118 g"; without it density is kept.')
+@click.option(
+    "--material-of", "segment", type=click.IntRange(min=0), metavar="N", help="Fit segment N's material, 0 at the tip."
+)
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), metavar="NEW.toml", help="Write FILE with the fitted wood."
+)
+@click.option("--figure", type=click.Path(path_type=Path), metavar="FIGURE", help="Draw the spectrum: .png or .svg.")
+@offset_option
+@click.option("--material", metavar="NAME", help="Material of a .csv profile (see `cuefem materials`).")
+@click.option("--json", "as_json", is_flag=True, help="SI numbers as JSON.")
+def tap(recording: Path, file: Path, output: Path | None, figure: Path | None, **given: Any) -> None:
+    """The shaft's wood by ear: E, G and density from a recording of the shaft, hung free and tapped.
+
+    RECORDING is a .wav of one or more taps. Its tones are matched to the bending modes of the shaft in FILE.
+    """
+    from cuefem.io import FIGURES, InputError, save, save_figure
+    from cuefem.report.records import scene_record
+    from cuefem.report.tap import UNITS, tap_figure, tap_record, tap_tables
+    from cuefem.tap import predicted
+
+    if figure is not None and figure.suffix not in FIGURES:
+        raise InputError(figure, "--figure", f"must end in .png or .svg; got {figure.suffix!r}")
+    if output is not None and output.suffix != ".toml":
+        raise InputError(output, "--output", f"must end in .toml; got {output.suffix!r}")
+    scene, notes = scene_of(file, {**given, "body_mass": None})
+    heard, found = _heard(recording, file, scene, given)
+    record = tap_record(found, heard, predicted(scene, found))
+    about = scene_record(replace(scene, cue=found.cue))
+    if output is not None:
+        if found.rivals:
+            others = ", ".join(f"{E / 1e9:.3g}" for E, _ in found.rivals)
+            problem = f"tones cannot be told apart: E {found.wood.E / 1e9:.3g} or {others} GPa; nothing is written"
+            raise InputError(recording, "", problem)
+        save(_updated(file, scene, found, given), output)
+    if figure is not None:
+        save_figure(tap_figure(found, heard, f"{recording.name}: {file.name}", figure.suffix[1:]), figure)
+    if given["as_json"]:
+        print_json(
+            {"file": str(file), "recording": str(recording), "assumed": notes, "scene": about, **record, "units": UNITS}
+        )
+        return
+    assumed = [f"assumed: {'; '.join(notes)}"] if notes else []
+    written = [f"wrote {path}" for path in (output, figure) if path is not None]
+    print_all([f"{recording.name}, {file.name}", *assumed, "", *tap_tables(record, about), *written])
+
+
+def _heard(recording: Path, file: Path, scene: Scene, given: dict[str, Any]) -> tuple[Ringing, TapFit]:
+    from cuefem.cue import Cue
+    from cuefem.io import InputError
+    from cuefem.io.sound import load_recording
+    from cuefem.quantity import Quantity
+    from cuefem.ringing import ringing
+    from cuefem.tap import TapTest
+    from cuefem.tones import tones
+
+    if not isinstance(scene.cue, Cue):
+        raise InputError(file, "", "must hold a cue of segments: a lumped cue has no tones")
+    mass = given["mass"]
+    mass = None if mass is None else measured(file, "--mass", mass, Quantity("kg", "(0, inf)"))
+    try:
+        test = TapTest(scene.cue, segment=given["segment"], mass=mass, effects=scene.cue_effects)
+    except ValueError as error:
+        raise InputError(file, "", str(error)) from None
+    sound = load_recording(recording)
+    try:
+        heard = ringing(sound.samples, sound.rate)
+        return heard, test.fit(tones(heard))
+    except ValueError as error:
+        raise InputError(recording, "", str(error)) from None
+
+
+def _updated(file: Path, scene: Scene, found: TapFit, given: dict[str, Any]) -> Any:
+    """What FILE holds, a cue or a scene, with the fitted wood to six digits."""
+    from cuefem.cue import Cue
+    from cuefem.io import load
+    from cuefem.matching import with_material
+
+    E, G, rho = (float(f"{getattr(found.wood, name):.6g}") for name in ("E", "G", "rho"))
+    cue = with_material(found.cue, found.wood, replace(found.wood, E=E, G=G, rho=rho))
+    held = load(file, material=given["material"])
+    return cue if isinstance(held, Cue) else replace(held, cue=cue)

@@ -1,0 +1,53 @@
+"""Recordings: .wav files as samples."""
+
+from __future__ import annotations
+
+import struct
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy.io import wavfile
+
+from cuefem.cue import Array
+from cuefem.io.errors import InputError, reason
+
+LONGEST = 120.0  # s: a few taps, no concert
+
+
+@dataclass(frozen=True)
+class Recording:
+    """samples: (samples, channels), of full scale 1. rate: samples a second, Hz."""
+
+    samples: Array
+    rate: float
+
+
+def load_recording(path: str | Path) -> Recording:
+    """A .wav file of 8, 16, 24 or 32 bit or of floats, of `LONGEST` seconds at most. Errors: InputError."""
+    path = Path(path)
+    if path.suffix.lower() != ".wav":
+        raise InputError(path, "", f"must end in .wav; got {path.suffix!r} (ffmpeg -i tap.m4a tap.wav converts)")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", wavfile.WavFileWarning)  # what phones write beside the sound
+            rate, found = wavfile.read(path)
+    except OSError as error:
+        raise InputError(path, "", f"cannot be read: {reason(error)}") from None
+    except (ValueError, TypeError, ArithmeticError, MemoryError, struct.error, UnboundLocalError) as error:
+        detail = "" if isinstance(error, UnboundLocalError) else f" ({error})"  # no data in it
+        raise InputError(path, "", f"must be a .wav file of sound{detail}") from None
+    if found.size == 0 or rate <= 0:
+        raise InputError(path, "", "must hold a sound; got none")
+    if len(found) > LONGEST * rate:
+        raise InputError(path, "", f"must last {LONGEST:g} s at most; got {len(found) / rate:.0f} s")
+    return Recording(_scaled(found.reshape(len(found), -1)), float(rate))
+
+
+def _scaled(found: np.ndarray) -> Array:
+    """Samples as fractions of full scale; 24 bits stand in the upper ones of 32."""
+    if found.dtype.kind == "f":
+        return found.astype(float)
+    middle = 128.0 if found.dtype.kind == "u" else 0.0
+    return (found.astype(float) - middle) / 2.0 ** (8 * found.dtype.itemsize - 1)

@@ -1,0 +1,151 @@
+"""A tap test's results: record, tables, and the spectrum with its tones."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+from rich.table import Table
+
+from cuefem.report.records import Record
+from cuefem.report.tables import NONE, grams, significant, table_of, with_caption
+from cuefem.ringing import Ringing
+from cuefem.tap import Predicted, TapFit
+from cuefem.tones import HIGH, LOW
+
+UNITS = {
+    **{"E": "Pa", "G": "Pa", "rho": "kg/m^3", "frequency": "Hz", "error": "as its number", "decay": "1/s"},
+    **{"end_mass": "kg", "squirt": "rad", "shaft_mass": "kg", "clipped": "s", "covariance": "of ln E, ln G/E, ln rho"},
+}
+KINDS = {"steady": "steady hum", "harmonic": "sum of others?", "twin": "twin of the other"}
+
+
+def tap_record(found: TapFit, heard: Ringing, numbers: Mapping[str, Predicted]) -> Record:
+    """The wood, the tones and their modes, what the scene's numbers become; errors are standard deviations."""
+    wood = {
+        name: {"value": getattr(found.wood, name), "error": error, "before": getattr(found.before, name)}
+        for name, error in zip(("E", "G", "rho"), found.errors, strict=True)
+    }
+    return {
+        "wood": wood | {"covariance": found.covariance, "loss": found.loss},
+        "G_told": found.told,
+        "weighed": found.weighed,
+        "rivals": [{"E": E, "odds_against": odds} for E, odds in found.rivals],
+        "misfit": found.misfit,
+        "tones": [asdict(m.tone) | {"mode": m.mode, "model_frequency": m.frequency} for m in found.matched],
+        "shaft_mass": found.cue.shaft_mass,
+        "predicted": {name: asdict(number) for name, number in numbers.items()},
+        "taps": heard.taps,
+        "clipped": heard.clipped,
+        "notes": [*found.notes, *_clipping(heard)],
+    }
+
+
+def _clipping(heard: Ringing) -> list[str]:
+    if not heard.clipped:
+        return []
+    return [f"clipped: the first {1e3 * heard.clipped:.0f} ms after the tap are left out; record with less gain"]
+
+
+def tap_tables(record: Record, about: Record) -> list[Any]:
+    """The tones, the wood, and what it means."""
+    return [_tones(record), _wood(record), _numbers(record, about)]
+
+
+def _tones(record: Record) -> Any:
+    table = table_of(
+        "Tones", ["tone", "±", "loss factor", "strength", "mode", "of the fitted shaft", "apart"], text_columns=0
+    )
+    strongest = max(tone["level"] for tone in record["tones"])
+    for tone in record["tones"]:
+        f, model = tone["frequency"], tone["model_frequency"]
+        level = f"{20 * np.log10(tone['level'] / strongest):.0f} dB"
+        loss = f"{tone['decay'] / (np.pi * f):.4f}"
+        mode = KINDS.get(tone["kind"], "none of it") if model is None else str(tone["mode"])
+        fitted = (NONE, NONE) if model is None else (f"{model:.2f} Hz", f"{100 * (f / model - 1):+.2f} %")
+        table.add_row(f"{f:.2f} Hz", f"{tone['error']:.2f} Hz", loss, level, mode, *fitted)
+    taps = f"{record['taps']} tap" + ("s" if record["taps"] > 1 else "")
+    return with_caption(table, f"{taps}; ±: one standard deviation of the tone as heard")
+
+
+def _wood(record: Record) -> Any:
+    made: Table = table_of("The wood", ["", "fitted", "±", "", "in the file"])
+    for name, unit, scale in (("E", "GPa", 1e9), ("G", "GPa", 1e9), ("rho", "kg/m³", 1.0)):
+        own = record["wood"][name]
+        relative = f"{100 * own['error'] / own['value']:.2g} %"
+        values = [significant(own[key] / scale) for key in ("value", "error", "before")]
+        made.add_row(name, f"{values[0]} {unit}", f"{values[1]} {unit}", relative, f"{values[2]} {unit}")
+    return with_caption(
+        made,
+        f"loss factor of the tones {record['wood']['loss']:.4f} (median; of the wood at most)",
+        *(f"note: {note}" for note in record["notes"]),
+    )
+
+
+def _numbers(record: Record, about: Record) -> Any:
+    made: Table = table_of("What follows", ["", "fitted", "±", "with the file's wood"])
+    felt, squirt = (record["predicted"][name] for name in ("end_mass", "squirt"))
+    made.add_row("end mass (stick)", *(grams(felt[key]) for key in ("value", "error", "before")))
+    angles = (f"{np.degrees(squirt[key]):.4f}°" for key in ("value", "error", "before"))
+    made.add_row(f"squirt at b/R {about['stroke']['offset']:g}", *angles)
+    return with_caption(made, "±: one standard deviation, from the wood alone; not from the model of the stroke")
+
+
+def tap_figure(found: TapFit, heard: Ringing, title: str, kind: str) -> bytes:
+    """The spectrum with its tones and the fitted shaft's modes, as a file's content; kind: "png", "svg"."""
+    import matplotlib
+
+    matplotlib.use("agg")
+    import matplotlib.pyplot as plt
+
+    with plt.rc_context({"svg.hashsalt": "cuefem", "axes.grid": True, "grid.alpha": 0.3, "font.size": 10}):
+        canvas, axes = plt.subplots(figsize=(9, 4.4), layout="constrained")
+        draw_spectrum(axes, found, heard)
+        axes.set_title(title)
+        content = BytesIO()
+        canvas.savefig(content, format=kind, dpi=150, metadata={"Date": None} if kind == "svg" else None)
+        plt.close(canvas)
+    return content.getvalue()
+
+
+def draw_spectrum(axes: Any, found: TapFit, heard: Ringing) -> None:
+    """The sound's power over frequency, the fitted shaft's modes as numbered lines, the tones marked on their peaks."""
+    size = heard.traces.shape[1]
+    f = np.fft.rfftfreq(size, 1 / heard.rate)
+    power = np.square(np.abs(np.fft.rfft(heard.traces))).sum(axis=0)
+    inside = (f >= LOW) & (f <= min(HIGH, heard.rate / 2))
+    f, decibels = f[inside], 10 * np.log10(power[inside] / power[inside].max() + 1e-12)
+    axes.semilogx(f, decibels, color="0.55", lw=0.6)
+    low, high = np.quantile(decibels, 0.01) - 5, 14.0
+    for number, mode in enumerate(found.frequencies, start=1):
+        if LOW <= mode <= f[-1]:
+            axes.axvline(mode, color="C0", lw=0.6, ls=":")
+            axes.annotate(
+                str(number),
+                (mode, high),
+                xytext=(0, -10),
+                textcoords="offset points",
+                ha="center",
+                fontsize=8,
+                color="C0",
+            )
+    styles = {"mode": ("o", "C0", "tone of a mode"), "other": ("X", "C3", "other tone")}
+    drawn = set()
+    for match in found.matched:
+        style = "mode" if match.mode is not None else "other"
+        mark, colour, label = styles[style]
+        near = np.abs(f - match.tone.frequency) <= max(3 * match.tone.error, 2 * heard.rate / size)
+        top = decibels[near].max() if near.any() else 0.0
+        axes.plot(
+            match.tone.frequency, top + 3, mark, color=colour, ms=6, mec="w", label=None if style in drawn else label
+        )
+        drawn.add(style)
+    ticks = [tick for tick in (60, 100, 200, 500, 1000, 2000, 5000, 8000) if tick <= f[-1]]
+    axes.set_xticks(ticks, [str(tick) for tick in ticks])
+    axes.minorticks_off()
+    axes.set(xlim=(LOW, f[-1]), ylim=(low, high), xlabel="frequency, Hz", ylabel="power, dB (strongest 0)")
+    axes.plot([], [], ":", color="C0", label="mode of the fitted shaft, by number")
+    axes.legend(loc="lower left", fontsize=8)

@@ -1,0 +1,142 @@
+"""Recordings, masses and options that a tap test refuses: status 2, one line, nothing written (regression)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from command_line import call
+from scipy.io import wavfile
+
+from cuefem.ringing import ringing
+from cuefem.tap import TapTest
+from cuefem.tones import Tone, tones
+from studies import tap
+from studies.common import MESHES, cue
+
+KIM = MESHES / "kim.toml"
+RATE = 8000
+NOISE = np.random.default_rng(0).standard_normal(RATE) / 10
+T = np.arange(2 * RATE) / RATE
+
+
+def refused(*arguments: object) -> str:
+    status, out, err = call("tap", *arguments)
+    assert (status, out) == (2, "")
+    assert err.count("\n") == 1
+    assert err.startswith("cuefem: ")
+    return err.removeprefix("cuefem: ").rstrip("\n")
+
+
+def decaying(frequency: float, clip: float = 1.0) -> np.ndarray:
+    return np.clip(np.exp(-4 * T) * np.sin(2 * np.pi * frequency * T), -clip, clip)
+
+
+RECORDINGS = {
+    "empty": (np.zeros(0), "must hold a sound; got none"),
+    "short": (NOISE[:400], "a recording must last 0.2 s or more; got 0.05 s"),
+    "silent": (np.zeros(RATE), "a recording must hold a sound; got silence"),
+    "constant": (np.full(RATE, 0.25), "a recording must hold a sound; got silence"),
+    "nan": (np.where(np.arange(RATE) == 7, np.nan, NOISE), "a recording must hold finite samples; got nan or inf"),
+    "noise": (NOISE, "must hold a decaying tone between 60 and 8000 Hz; got none"),
+    "hum": (np.sin(2 * np.pi * 150 * T), "must hold a decaying tone between 60 and 8000 Hz; got none"),
+    "clipped": (decaying(300.0, 0.001)[: int(1.6 * RATE)], "clipped beyond use: record with less gain or farther away"),
+    "long": (np.zeros(130 * RATE), "must last 120 s at most; got 130 s"),
+}
+
+
+@pytest.mark.parametrize(("samples", "line"), RECORDINGS.values(), ids=RECORDINGS.keys())
+def test_recordings(samples: np.ndarray, line: str, tmp_path: Path) -> None:
+    path = tmp_path / "tap.wav"
+    wavfile.write(path, RATE, samples.astype(np.float32))
+    said = refused(path, "--scene", KIM, "-o", tmp_path / "new.toml", "--figure", tmp_path / "new.png")
+    assert said.startswith(f"{path}: ")
+    assert line in said
+    assert sorted(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "line"),
+    [
+        ("tap.wav", None, "cannot be read: No such file or directory"),
+        ("tap.wav", b"", "must be a .wav file of sound"),
+        ("tap.wav", b"ID3 no wav at all, but some other sound", "must be a .wav file of sound"),
+        ("tap.wav", b"RIFF\x24\x00\x00\x00WAVEfmt \x10\x00", "must be a .wav file of sound"),
+        ("tap.wav", b"RIFF\x04\x00\x00\x00WAVE", "must be a .wav file of sound"),
+        ("tap.m4a", b"....ftyp", "must end in .wav; got '.m4a' (ffmpeg -i tap.m4a tap.wav converts)"),
+    ],
+)
+def test_files_that_are_no_recording(tmp_path: Path, name: str, content: bytes | None, line: str) -> None:
+    path = tmp_path / name
+    if content is not None:
+        path.write_bytes(content)
+    assert refused(path, "--scene", KIM).startswith(f"{path}: {line}")
+
+
+@pytest.mark.parametrize(
+    ("options", "line"),
+    [
+        (["--mass", "118"], f"{KIM}: --mass: must be in (0, inf) kg, a mass with its unit, such as"),
+        (["--mass", "-118 g"], f"{KIM}: --mass: must be in (0, inf) kg; got '-118 g'"),
+        (["--material-of", "1"], f"{KIM}: segment must be in [0, 0], 0 at the tip; got 1"),
+        (["--figure", "spectrum.pdf"], "spectrum.pdf: --figure: must end in .png or .svg; got '.pdf'"),
+        (["-o", "new.vtk"], "new.vtk: --output: must end in .toml; got '.vtk'"),
+        (["--offset", "1"], f"{KIM}: --offset: must be in (-1, 1); got 1.0"),
+    ],
+)
+def test_options(options: list[str], line: str, tmp_path: Path) -> None:
+    assert refused(tmp_path / "none.wav", "--scene", KIM, *options).startswith(line)
+
+
+def test_a_mass_below_that_of_the_other_parts() -> None:
+    with pytest.raises(
+        ValueError, match=r"mass must be in \(.*, inf\) g, more than the shaft's other parts weigh; got 2"
+    ):
+        TapTest(cue("pool_maple"), mass=0.002)
+
+
+def test_a_lumped_cue_has_no_tones(tmp_path: Path) -> None:
+    lumped = tmp_path / "lumped.toml"
+    lumped.write_text("[cue]\nmass = '540 g'\nend_mass = '6 g'\n")
+    said = refused(tmp_path / "tap.wav", "--scene", lumped)
+    assert said == f"{lumped}: must hold a cue of segments: a lumped cue has no tones"
+
+
+def told(frequency: float) -> Tone:
+    return Tone(frequency, 0.01, 10.0, 0.1, 0.1, 100.0)
+
+
+def test_tones_of_another_thing() -> None:
+    with pytest.raises(ValueError, match="must be bending tones of this shaft"):
+        TapTest(cue("kim")).fit([told(f) for f in (1000.0, 1031.0, 1061.0, 1093.0, 1126.0)])
+    with pytest.raises(ValueError, match="must be bending tones of this shaft"):
+        TapTest(cue("kim")).fit([])
+
+
+def test_what_cannot_be_told_apart_is_not_written(tmp_path: Path) -> None:
+    """One tone, of the seventh mode perhaps."""
+    path, new = tmp_path / "tap.wav", tmp_path / "new.toml"
+    wavfile.write(path, 48000, tap.recording(one_tone(2600.0), 30.0, 0).astype(np.float32))
+    said = refused(path, "--scene", KIM, "-o", new)
+    assert said.startswith(f"{path}: tones cannot be told apart: E ")
+    assert not new.exists()
+    status, out, _ = call("tap", path, "--scene", KIM)
+    assert status == 0
+    assert "the tones cannot be told apart" in " ".join(out.split())
+
+
+def one_tone(frequency: float) -> np.ndarray:
+    t = np.arange(48000) / 48000
+    return (np.exp(-60 * t) * np.sin(2 * np.pi * frequency * t))[:, None]
+
+
+@pytest.mark.parametrize("rate", [4000.0, 0.0, np.nan, 1e6])
+def test_rates(rate: float) -> None:
+    with pytest.raises(ValueError, match=r"ringing rate must be in \[8000, 384000\] Hz"):
+        ringing(np.zeros(48000), rate)
+
+
+def test_no_tone() -> None:
+    with pytest.raises(ValueError, match="must hold a decaying tone"):
+        tones(ringing(NOISE, RATE))
