@@ -46,20 +46,26 @@ class Scatter:
     def __post_init__(self) -> None:
         seen: set[frozenset[str]] = set()
         for pair, r in self.correlations.items():
-            self._check_names(f"correlation of {' and '.join(pair)}", pair)
+            self._check_names("a correlation", pair)
+            lists = [name for name in pair if isinstance(self.study.vary[self.names.index(name)].range, Levels)]
+            if lists:
+                raise ValueError(f"a correlation is between numbers; got {lists[0]!r}, which is a list of values")
             if frozenset(pair) in seen or len(set(pair)) != 2:
                 raise ValueError(f"a correlation is between two numbers, said once; got {' and '.join(pair)}")
             if not -1 < r < 1:
                 raise ValueError(f"the correlation of {' and '.join(pair)} must be in (-1, 1); got {r}")
             seen.add(frozenset(pair))
+        if np.linalg.eigvalsh(self.matrix)[0] < 1e-9:
+            raise ValueError("the correlations contradict one another: their matrix is not positive definite")
+        self._check_groups()
+
+    def _check_groups(self) -> None:
         grouped = [name for names in self.groups.values() for name in names]
         for group, names in self.groups.items():
             self._check_names(f"group {group!r}", names)
         twice = [name for name in grouped if grouped.count(name) > 1]
         if twice:
             raise ValueError(f"what varies is in one group; got {twice[0]!r} in two")
-        if np.linalg.eigvalsh(self.matrix)[0] < 1e-9:
-            raise ValueError("the correlations contradict one another: their matrix is not positive definite")
         for members in self._members:
             own = {self.names[i] for i in members}
             for group, names in self.groups.items():
@@ -72,10 +78,8 @@ class Scatter:
     def _check_names(self, what: str, names: tuple[str, ...]) -> None:
         for name in names:
             if name not in self.names:
-                raise ValueError(f"{what}: nothing that varies is called {name!r}; there are {', '.join(self.names)}")
-            levels = self.study.vary[self.names.index(name)].range
-            if what.startswith("correlation") and isinstance(levels, Levels):
-                raise ValueError(f"{what}: {name!r} is a list of values, which is not correlated")
+                there = ", ".join(self.names)
+                raise ValueError(f"{what} is of what varies: nothing is called {name!r}; there are {there}")
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -27,13 +27,17 @@ STUDY = Study(BASE, VARY, (Response.of("shaft_mass"),), at=Resolution(1, 4, 2))
 @pytest.mark.parametrize(
     ("correlations", "groups", "words"),
     [
-        ({("E", "density"): 0.3}, {}, "nothing that varies is called 'density'; there are E, rho, time, wood"),
-        ({}, {"all": ("E", "G")}, "group 'all': nothing that varies is called 'G'"),
+        (
+            {("E", "density"): 0.3},
+            {},
+            "a correlation is .*: nothing is called 'density'; there are E, rho, time, wood",
+        ),
+        ({}, {"all": ("E", "G")}, "group 'all' is of what varies: nothing is called 'G'"),
         ({("E", "rho"): 1.0}, {}, r"the correlation of E and rho must be in \(-1, 1\); got 1.0"),
         ({("E", "rho"): float("nan")}, {}, r"must be in \(-1, 1\); got nan"),
         ({("E", "E"): 0.5}, {}, "between two numbers, said once; got E and E"),
         ({("E", "rho"): 0.5, ("rho", "E"): 0.5}, {}, "said once; got rho and E"),
-        ({("E", "wood"): 0.5}, {}, "'wood' is a list of values"),
+        ({("E", "wood"): 0.5}, {}, "between numbers; got 'wood', which is a list of values"),
         ({("E", "rho"): 0.9, ("rho", "time"): 0.9, ("E", "time"): -0.9}, {}, "contradict one another"),
         ({}, {"a": ("E", "rho"), "b": ("rho",)}, "in one group; got 'rho' in two"),
         ({("E", "rho"): 0.5}, {"a": ("E",)}, "group 'a' must hold all that is correlated with it; it lacks rho"),
@@ -81,7 +85,11 @@ CHANGES = {
     "half a pair": ('["E", "density", 0.4]', '["E", 0.4]', "correlations[0]: must be [name, name, number]; got"),
     "a text": ("0.4]]", '"high"]]', "correlations[0]: must be [name, name, number]; got"),
     "too much": ("0.4]]", "1.4]]", "the correlation of E and density must be in (-1, 1); got 1.4"),
-    "no such name": ('["E", "density", 0.4]', '["E", "rho", 0.4]', "is called 'rho'; there are E, density, time"),
+    "no such name": (
+        '["E", "density", 0.4]',
+        '["E", "rho", 0.4]',
+        "called 'rho'; there are E, density, time",
+    ),
     "twice": ("0.4]]", '0.4], ["E", "density", 0.3]]', "correlations[1]: must be said once; got E and density twice"),
     "a group of nothing": ('["E", "density"]\n\n', '"E"\n\n', "groups.wood: must be a list of names; got 'E'"),
     "no table of groups": (
