@@ -65,7 +65,7 @@ def _forget_output() -> None:
 def main() -> None:
     """From a cue shaft's drawing to its effective end mass and squirt.
 
-    FILE is a cue or a scene (.toml), a lathe profile (.csv) or a mesh (.vtk, .vtu).
+    FILE is a cue or a scene (.toml), a lathe profile (.csv), a mesh (.vtk, .vtu) or a CAD surface (.stl, .ply, .obj).
     """
 
 
