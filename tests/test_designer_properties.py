@@ -148,7 +148,7 @@ def test_the_files_own_materials_are_offered() -> None:
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"bore_depth": 0.1, "bore_width": 0.013}, "Segment.tip_bore must be in"),
+        ({"bore_depth": 0.1, "bore_width": 0.013}, "the bore must be narrower than the cue, 12.8 mm there; got 13 mm"),
         ({"bore_depth": 0.9}, "the bore must be at most 705.6 mm deep; got 900 mm"),
         ({"ferrule_length": 0.4}, "the ferrule must be in (0, 324.2) mm long, as its neighbours allow; got 400 mm"),
         ({"butt_diameter": -0.001}, "the cue must be thicker than nothing; got -1 mm"),

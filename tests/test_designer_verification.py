@@ -13,8 +13,10 @@ import cuefem as cf
 from cuefem.batch import CueBatch
 from cuefem.designer.answers import OFFSETS, answers, coupled_points, density, note
 from cuefem.designer.model import knobs_of, turned
+from cuefem.designer.numbers import Row, difference, key_markup, rows, table_markup
 from cuefem.designer.start import first_scene
 from cuefem.report.records import Lumped, end_mass_record, modes_record, squirt_record, strike_record
+from cuefem.report.tables import grams
 
 SCENES = Path(__file__).parent.parent / "studies" / "scenes"
 
@@ -119,3 +121,32 @@ def test_a_saved_design_gives_its_numbers_on_the_command_line(tmp_path: Path) ->
     assert f"{np.degrees(found.strike['squirt']):.3f}°" in out
     status, out, _ = call("end-mass", tmp_path / "design.toml")
     assert f"{1e3 * found.end_masses['stick']:.3f} g" in out
+
+
+@pytest.mark.parametrize(
+    ("mine", "pinned", "words"),
+    [
+        (5.2e-3, 5.0e-3, "+0.200 g (+4.0 %)"),
+        (5.0e-3, 5.2e-3, "−0.200 g (−3.8 %)"),
+        (5.0e-3, 5.0e-3, "the same"),
+        (1e-3, 0.0, "+1.00 g"),
+        (None, 5.0e-3, "–"),
+        (5.0e-3, np.inf, "–"),
+    ],
+)
+def test_differences_are_those_of_the_numbers(mine: float | None, pinned: float | None, words: str) -> None:
+    row = Row("end_mass_stick", "end mass", mine, grams, "g", 1e3)
+    assert difference(row, row._replace(value=pinned)) == words
+
+
+def test_every_number_of_a_design_is_written() -> None:
+    found = answers(designs()["head on"])
+    written = {row.name: row.value for row in rows(found)}
+    assert written["pivot"] is None
+    assert written["squirt"] == 0
+    assert written["mass"] == found.scene.cue.mass
+    assert written["balance"] == found.scene.cue.balance_point
+    text = table_markup(found, None) + key_markup(found, found)
+    assert "nan" not in text
+    assert text.count("data-number") == len(written) == 16
+    assert "the same" in text

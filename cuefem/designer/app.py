@@ -129,7 +129,8 @@ class Desk:
             ).props('accept=".toml,.csv,.vtk,.vtu"')
         with ui.element("div").classes("desk"):
             self.panel = ui.element("section").classes("knobs").props('aria-label="knobs"')
-            with ui.element("main"):
+            self.side = ui.element("div").classes("answers")
+            with self.side:
                 self._build_answers()
         self._show_file()
 
@@ -186,21 +187,27 @@ class Desk:
             number.set_value(event.value)
             return self._turn(slider.turned(self.knobs, float(event.value)))
 
+        def within() -> bool:
+            return number.value is not None and slider.low <= number.value <= slider.high
+
         def typed() -> None:
-            if number.value is None or not slider.low <= number.value <= slider.high:
+            if within():
+                bar.set_value(number.value)
+
+        def left() -> None:
+            if not within():
                 self._say(f"{slider.label} must be in [{slider.low:g}, {slider.high:g}] {slider.unit}".rstrip())
                 number.set_value(bar.value)
-            else:
-                bar.set_value(number.value)
 
         with ui.element("div").classes("knob"):
             with ui.element("div").classes("line"):
                 ui.html(f"<span>{escape(slider.label)}</span>", sanitize=False)
-                number = ui.number(value=here, step=slider.step, format=f"%.{slider.decimals}f", suffix=slider.unit)
-                number.props(f'dense borderless hide-bottom-space aria-label="{spoken}, as a number"')
-                number.on("blur", typed).on("keydown.enter", typed)
+                form = f"%.{slider.decimals}f"
+                number = ui.number(value=here, step=slider.step, format=form, suffix=slider.unit, on_change=typed)
+                number.props(f'dense borderless hide-bottom-space debounce=200 aria-label="{spoken}, as a number"')
+                number.on("blur", left)
             bar = ui.slider(min=slider.low, max=slider.high, step=slider.step, value=here, on_change=moved)
-            bar.props(f'aria-label="{spoken}" data-knob="{slider.knob}"')
+            bar.props(f'role="none" aria-label="{spoken}" data-knob="{slider.knob}"')
 
     # --- what happens ----------------------------------------------------------------------------------------------
 
@@ -217,6 +224,7 @@ class Desk:
         """Answer the newest move; one that came while the last was computed is answered after it."""
         self.moves += 1
         self.current = False
+        self.side.props("aria-busy=true")
         if self.busy:
             return
         self.busy = True
@@ -226,8 +234,11 @@ class Desk:
                 good = await self._answer()
         finally:
             self.busy = False
+        move = self.moves
         if good:
-            await self._refine(self.moves)
+            await self._refine(move)
+        if move == self.moves:
+            self.side.props("aria-busy=false")
 
     async def _answer(self) -> bool:
         try:
@@ -238,7 +249,9 @@ class Desk:
             return False
         self.scene = scene
         self._say("")
-        self._show()
+        self._show_numbers()
+        await asyncio.sleep(0)  # they are on their way while the pictures are drawn
+        self._show_pictures()
         return True
 
     async def _refine(self, move: int) -> None:
@@ -259,14 +272,18 @@ class Desk:
                 self.density = lives
                 self._show_density(current=True)
 
-    def _show(self) -> None:
+    def _show_numbers(self) -> None:
         found, pinned = self.found, self.pinned.found if self.pinned else None
         assert found is not None
         self.keys.set_content(numbers.key_markup(found, pinned))
-        self.cue.set_content(pictures.cue_pictures(found.scene))
-        self.shapes.set_content(pictures.shapes_picture(found))
         self.tones.set_content(numbers.tones_markup(found.frequencies.tolist()))
         self.table.set_content(numbers.table_markup(found, pinned))
+
+    def _show_pictures(self) -> None:
+        found = self.found
+        assert found is not None
+        self.cue.set_content(pictures.cue_pictures(found.scene))
+        self.shapes.set_content(pictures.shapes_picture(found))
         self.head.set_content(_head(self.opened, found.scene))
         self._show_charts()
         self._show_density(current=self.current)
@@ -285,13 +302,17 @@ class Desk:
     def _pin(self) -> None:
         if self.found is not None:
             self.pinned = Pinned(self.found, *((self.coupled, self.density) if self.current else (None, None)))
-            self.unpin.set_visibility(True)
-            self._show()
+            self._show_pin()
 
     def _unpin(self) -> None:
         self.pinned = None
-        self.unpin.set_visibility(False)
-        self._show()
+        self._show_pin()
+
+    def _show_pin(self) -> None:
+        self.unpin.set_visibility(self.pinned is not None)
+        if self.found is not None:
+            self._show_numbers()
+            self._show_pictures()
 
     async def _open(self, opened: Opened) -> None:
         self.opened, self.knobs = opened, knobs_of(opened.scene)
@@ -313,7 +334,13 @@ class Desk:
         await self._open(Opened(name, scene, [*notes, *unusual(scene)]))
 
     def _save(self) -> None:
-        ui.download.content(toml_text(self.scene), f"{Path(self.opened.name).stem}.toml")
+        """The design as the knobs say, be it answered yet or not."""
+        try:
+            scene = turned(self.opened.scene, self.knobs)
+        except FAILURES as error:
+            self._say(f"not saved: {error}")
+        else:
+            ui.download.content(toml_text(scene), f"{Path(self.opened.name).stem}.toml")
 
     async def _report(self) -> None:
         scene, name = self.scene, self.opened.name

@@ -265,10 +265,15 @@ def _with_bore(cue: Cue, knobs: Knobs) -> Cue:
 
     def bored(piece: Segment, start: float) -> Segment:
         was, is_now = (mouth - near <= start < stop - near for stop in (old_end, end))
-        if was and is_now:
-            return replace(piece, tip_bore=wider * piece.tip_bore, butt_bore=wider * piece.butt_bore)
-        inside = onward if is_now else 0.0
-        return replace(piece, tip_bore=inside, butt_bore=inside) if was or is_now else piece
+        if not (was or is_now):
+            return piece
+        ends = (0.0, 0.0) if not is_now else (wider * piece.tip_bore, wider * piece.butt_bore) if was else (onward,) * 2
+        for inner, outer in zip(ends, (piece.tip_diameter, piece.butt_diameter), strict=True):
+            if inner >= outer:
+                raise ValueError(
+                    f"the bore must be narrower than the cue, {1e3 * outer:.4g} mm there; got {1e3 * inner:.4g} mm"
+                )
+        return replace(piece, tip_bore=ends[0], butt_bore=ends[1])
 
     cue = _split_at(cue, end)
     pieces = [bored(piece, float(x)) for piece, x in zip(cue.segments, cue.nodes, strict=False)]

@@ -1,4 +1,5 @@
-"""The designer's own styles, beside those of the report's page, and the few lines that play a tone."""
+"""The designer's own styles, beside those of the report's page, and its few lines of script: it plays a tone, and puts
+the role and value of a slider on the part of it that takes the keys, where a screen reader looks for them."""
 
 STYLE = """
 body { max-width: 1440px; --q-primary: var(--c1) !important; }
@@ -45,13 +46,13 @@ h1, h2 { font-weight: 700; letter-spacing: 0; font-family: inherit; } h2 { line-
   border-radius: 6px; padding: 0.25rem 0.6rem; cursor: pointer; font-variant-numeric: tabular-nums; }
 .tone small { color: var(--soft); }
 .tone:focus-visible, .q-btn:focus-visible, summary:focus-visible { outline: 3px solid var(--c2); outline-offset: 2px; }
-.q-slider:focus-visible .q-slider__thumb, .q-slider--focus .q-slider__thumb { outline: 3px solid var(--c2);
+.q-slider__track-container:focus-visible .q-slider__thumb { outline: 3px solid var(--c2);
   outline-offset: 2px; border-radius: 50%; }
 .unseen { display: none; }
 @media (max-width: 860px) {
   .desk { grid-template-columns: minmax(0, 1fr); }
   .knobs { position: static; max-height: none; order: 2; }
-  .desk > main { display: contents; }
+  .desk > .answers { display: contents; }
   .key-strip { order: 1; position: sticky; top: 0; z-index: 5; padding: 0.5rem 0.7rem; margin: 0 !important; }
   .key-strip .key { grid-template-columns: repeat(3, minmax(0, 1fr)); gap: 0.3rem 0.6rem; }
   .key-strip .key dd { font-size: 1.02rem; }
@@ -75,5 +76,17 @@ document.addEventListener("click", event => {
   tone.start(now);
   tone.stop(now + 1.5);
 });
+const spoken = ["aria-label", "aria-valuemin", "aria-valuemax", "aria-valuenow", "aria-orientation"];
+const speak = slider => {
+  const inner = slider.querySelector(".q-slider__track-container");
+  inner.setAttribute("role", "slider");
+  for (const name of spoken) inner.setAttribute(name, slider.getAttribute(name));
+};
+new MutationObserver(changes => {
+  for (const { target, type, addedNodes } of changes) {
+    if (type === "attributes") { if (target.matches(".q-slider")) speak(target); continue; }
+    for (const node of addedNodes) if (node.querySelectorAll) node.querySelectorAll(".q-slider").forEach(speak);
+  }
+}).observe(document.body, { subtree: true, childList: true, attributeFilter: ["aria-valuenow"] });
 </script>
 """

@@ -1,0 +1,101 @@
+"""The designer served by its own process, and a browser that looks at it."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+COMMAND = "import sys; from cuefem.cli import main; main()"
+PATIENCE = 30_000  # ms, on a busy machine
+
+
+@contextmanager
+def served(folder: Path, *arguments: object) -> Iterator[str]:
+    """The address of a designer that runs in a folder; it must say nothing on stderr and leave nothing there."""
+    command = [sys.executable, "-W", "error", "-c", COMMAND, "designer", "--no-open", "--port", "0"]
+    complaints = folder / "stderr"
+    with complaints.open("w") as err:
+        process = subprocess.Popen(
+            [*command, *map(str, arguments)],
+            stdout=subprocess.PIPE,
+            stderr=err,
+            text=True,
+            cwd=folder,
+            env={name: value for name, value in os.environ.items() if not name.startswith("PYTEST")},
+        )
+        try:
+            assert process.stdout is not None
+            address = process.stdout.readline().strip()
+            assert address.startswith("http://127.0.0.1:"), complaints.read_text()
+            yield address
+        finally:
+            process.terminate()
+            process.wait(timeout=30)
+            process.stdout.close()
+    assert complaints.read_text() == ""
+    assert [path.name for path in folder.iterdir()] == ["stderr"]
+
+
+@contextmanager
+def opened(browser: Any, address: str, *, width: int = 1280, scheme: str = "light") -> Iterator[Any]:
+    """A page on the designer, whole; the browser must not complain, nor ask for anything from elsewhere."""
+    height = 900 if width > 600 else 844
+    context = browser.new_context(
+        viewport={"width": width, "height": height}, color_scheme=scheme, accept_downloads=True
+    )
+    page = context.new_page()
+    page.set_default_timeout(PATIENCE)
+    said: list[str] = []
+    page.on("console", lambda message: said.append(message.text))
+    page.on("pageerror", lambda error: said.append(str(error)))
+    page.on("request", lambda asked: None if _own(asked.url, address) else said.append(asked.url))
+    page.goto(address)
+    settled(page)
+    yield page
+    context.close()
+    assert said == []
+
+
+def _own(url: str, address: str) -> bool:
+    return url.startswith((address, address.replace("http", "ws"), "data:", f"blob:{address}"))
+
+
+SETTLED = """() => {
+  const knobs = [...document.querySelectorAll(".knob")];
+  const heard = knobs.every(knob => {
+    const said = knob.querySelector("[role=slider]").ariaValueNow, taken = knob.querySelector("input").value;
+    return Math.abs(said - taken) < 0.6 * knob.querySelector("[data-step]").dataset.step;
+  });
+  return knobs.length > 0 && heard && document.querySelector(".answers").ariaBusy === "false";
+}"""
+
+
+def settled(page: Any) -> None:
+    """Wait until all knobs have been heard, and all that they do is on the page."""
+    page.wait_for_function(SETTLED)
+
+
+def shown(page: Any, name: str) -> str:
+    """A number of the table, as it stands there."""
+    return str(page.locator(f'[data-number="{name}"]').inner_text())
+
+
+def turn(page: Any, knob: str, key: str = "ArrowRight", times: int = 1) -> None:
+    """Move a slider by its keys, and wait for all that follows."""
+    slider = page.locator(f'[data-knob="{knob}"] [role="slider"]')
+    slider.focus()
+    for _ in range(times):
+        before = slider.get_attribute("aria-valuenow")
+        page.keyboard.press(key)
+        page.wait_for_function(
+            "([knob, before]) => document.querySelector(`[data-knob=${knob}] [role=slider]`).ariaValueNow !== before",
+            arg=[knob, before],
+        )
+    settled(page)
