@@ -26,6 +26,7 @@ TOLERANCE = 4e-3  # relative, of a tone against its mode: beam, drawing and grai
 WRONG, DOUBTFUL = 0.05, 0.5  # chances that a tone, or a whole multiple of a louder one, is no mode
 UNHEARD = 0.3  # chance that the recording misses a mode
 SPREADS = (0.5, 0.5)  # of ln E and ln G/E about the file's, standard deviations before anything is heard
+REFINED = 20  # hypotheses
 SAME = 0.02  # relative: hypotheses whose E is closer are one
 
 
@@ -115,8 +116,8 @@ class ModeTable:
         proposed = np.concatenate([self._proposed(heard, r) for r in ratios])
         scores = self._scores(proposed, heard, wrong, 3 * TOLERANCE)
         found: dict[tuple[int, ...], Hypothesis] = {}
-        for i in np.argsort(-scores)[:60]:
-            refined = self._refined(proposed[i], heard, wrong)
+        for theta in self._unlike(proposed[np.argsort(-scores)[:200]], heard):
+            refined = self._refined(theta, heard, wrong)
             if max(refined.modes) < 0:
                 continue
             if refined.modes not in found or found[refined.modes].score < refined.score:
@@ -126,6 +127,14 @@ class ModeTable:
             if all(abs(one.theta[0] - other.theta[0]) > SAME for other in apart):
                 apart.append(one)
         return apart
+
+    def _unlike(self, proposed: Array, heard: Array) -> list[Array]:
+        """The first `REFINED` of the hypotheses (n, 2) that give some tone another mode."""
+        f = self.log_frequencies(*proposed.T)
+        first: dict[tuple[int, ...], Array] = {}
+        for theta, row in zip(proposed, f, strict=True):
+            first.setdefault(tuple(map(int, assigned(heard, row, 4 * TOLERANCE))), theta)
+        return list(first.values())[:REFINED]
 
     def _proposed(self, heard: Array, ratio: float) -> Array:
         """(ln E, ln G/E) that put one tone on one mode, (n, 2)."""

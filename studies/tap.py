@@ -4,7 +4,7 @@ Each cue of meshes/ is given other wood (`TRUE` times its file's E, G and densit
 by a half-sine of 0.3 ms; two microphones near the tip hear the sum of its damped modes, sampled at 48 kHz with 16 bits,
 in white noise. `cuefem.tap` has the file, the weighed mass and the recording; errors are medians over `SEEDS`.
 
-`python -m studies.tap example.wav` writes such a recording of pool_maple to try `cuefem tap` on. About 60 s.
+`python -m studies.tap example.wav` writes such a recording of pool_maple to try `cuefem tap` on. About 100 s.
 """
 
 from __future__ import annotations
@@ -110,7 +110,9 @@ def rows() -> Iterator[list[str | float]]:
             errors = np.median(np.abs(100 * (off - 1)), axis=0)
             said = np.median([100 * np.array(fit.errors[:2]) / (fit.wood.E, fit.wood.G) for fit in found], axis=0)
             cells = [errors[0], said[0], errors[1], said[1], errors[2], abs(100 * (drawn / felt - 1))]
-            yield [name, f"{snr:.0f}", f"{counts[0]} to {counts[-1]}", *(f"{value:.2f}" for value in cells)]
+            digits = (2, 2, 1, 1, 2, 2)
+            numbers = (f"{value:.{d}f}" for value, d in zip(cells, digits, strict=True))
+            yield [name, f"{snr:.0f}", f"{counts[0]} to {counts[-1]}", *numbers]
 
 
 def text() -> str:

@@ -115,6 +115,7 @@ def test_a_hum_is_steady(sound: np.ndarray) -> None:
     assert found.kind == "steady"
 
 
+@pytest.mark.heavy
 def test_two_planes_are_taken_together(kim_test: TapTest) -> None:
     """Half a per cent between the planes' stiffness: the mean wood, with half the distance as error."""
     sound = tap.recording(tap.ringing_shaft(tap.true("kim"), split=0.01)[:, :1], 35.0, 2)

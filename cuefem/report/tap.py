@@ -66,7 +66,7 @@ def _tones(record: Record) -> Any:
         loss = f"{tone['decay'] / (np.pi * f):.4f}"
         mode = KINDS.get(tone["kind"], "none of it") if model is None else str(tone["mode"])
         fitted = (NONE, NONE) if model is None else (f"{model:.2f} Hz", f"{100 * (f / model - 1):+.2f} %")
-        table.add_row(f"{f:.2f} Hz", f"{tone['error']:.2f} Hz", loss, level, mode, *fitted)
+        table.add_row(f"{f:.2f} Hz", f"{tone['error']:.2g} Hz", loss, level, mode, *fitted)
     taps = f"{record['taps']} tap" + ("s" if record["taps"] > 1 else "")
     return with_caption(table, f"{taps}; ±: one standard deviation of the tone as heard")
 
@@ -129,7 +129,7 @@ def draw_spectrum(axes: Any, found: TapFit, heard: Ringing) -> None:
                 xytext=(0, -10),
                 textcoords="offset points",
                 ha="center",
-                fontsize=8,
+                fontsize=7,
                 color="C0",
             )
     styles = {"mode": ("o", "C0", "tone of a mode"), "other": ("X", "C3", "other tone")}
