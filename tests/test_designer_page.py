@@ -120,7 +120,7 @@ def test_a_pinned_design_is_compared(browser: Any, address: str) -> None:
         grams = float(now.split()[0]) - float(was.split()[0])
         assert pinned == was
         assert grams < 0
-        found = re.fullmatch(r"−([0-9.]+) g \(−([0-9.]+) %\)", difference)
+        found = re.fullmatch(r"−([0-9.]+) g \(−([0-9.]+)\s%\)", difference)
         assert found is not None
         assert float(found[1]) == pytest.approx(-grams, abs=2e-3)
         assert float(found[2]) == pytest.approx(-100 * grams / float(was.split()[0]), abs=0.06)

@@ -119,7 +119,7 @@ class Desk:
                 self.unpin = self._button("Take the pin off", self._unpin)
                 self.unpin.set_visibility(False)
                 self._button("Back to the file", lambda: self._open(self.opened))
-            self.message = ui.html(sanitize=False, tag="div").props('role="alert"')
+            self.message = ui.html(sanitize=False).props('role="alert"').on("click", lambda: self._say(""))
         with ui.element("div").classes("unseen"):
             self.upload = ui.upload(
                 auto_upload=True,
@@ -245,7 +245,7 @@ class Desk:
             scene = turned(self.opened.scene, self.knobs)
             self.found = await _computed(answers, scene)
         except FAILURES as error:
-            self._say(" ".join(str(error).split()))
+            self._say(f"{' '.join(str(error).split())}. The numbers are still those of the design before.")
             return False
         self.scene = scene
         self._say("")

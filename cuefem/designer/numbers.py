@@ -70,7 +70,7 @@ def difference(row: Row, other: Row) -> str:
         return "the same"
     space = "" if row.unit == "°" else " "
     sign = "+" if more > 0 else "−"
-    part = f" ({100 * more / abs(other.value):+.1f} %)".replace("-", "−") if other.value else ""
+    part = f" ({100 * more / abs(other.value):+.1f}\u00a0%)".replace("-", "−") if other.value else ""
     return f"{sign}{significant(abs(more) * row.scale, 3)}{space}{row.unit}{part}"
 
 

@@ -33,8 +33,10 @@ h1, h2 { font-weight: 700; letter-spacing: 0; font-family: inherit; } h2 { line-
 .q-menu { background: var(--card) !important; }
 .actions { display: flex; flex-wrap: wrap; gap: 0.5rem; margin: 0.7rem 0 1rem; }
 .actions .q-btn { text-transform: none; }
-.said { margin: 0.6rem 0; padding: 0.6rem 0.9rem; border: 1px solid var(--c2); border-left-width: 5px;
-  border-radius: 6px; color: var(--ink); background: var(--card); max-width: none; }
+.said { position: fixed; left: 50%; bottom: 1rem; transform: translateX(-50%); z-index: 10; width: max-content;
+  margin: 0; max-width: min(70ch, calc(100vw - 2rem)); padding: 0.6rem 0.9rem;
+  border: 1px solid var(--c2); border-left-width: 5px;
+  border-radius: 6px; color: var(--ink); background: var(--card); box-shadow: 0 4px 18px rgb(0 0 0 / 0.25); }
 .key-strip { background: var(--card); }
 .key-strip .key { grid-template-columns: repeat(auto-fit, minmax(118px, 1fr)); }
 .key-strip .key dd { font-size: 1.25rem; white-space: nowrap; } .key-strip .key small { white-space: normal; }
@@ -57,7 +59,8 @@ h1, h2 { font-weight: 700; letter-spacing: 0; font-family: inherit; } h2 { line-
   .key-strip .key { grid-template-columns: repeat(3, minmax(0, 1fr)); gap: 0.3rem 0.6rem; }
   .key-strip .key dd { font-size: 1.02rem; }
   .key-strip .key dt, .key-strip .key small { font-size: 0.72rem; line-height: 1.2; }
-  .rest { order: 3; }
+  .rest { order: 3; } .rest th.text { min-width: 5.2rem; }
+  .rest td:nth-child(4) { white-space: normal; min-width: 4.4rem; }
 }
 """
 
