@@ -178,6 +178,15 @@ def test_unit_of_length(tmp_path: Path) -> None:
     assert cf.load(tmp_path / "inches.stl").length == pytest.approx(0.7 / 25.4, rel=1e-6)
 
 
+def test_the_reference_surface_is_its_drawing() -> None:
+    """96 inscribed facets: diameters 0.036 % small."""
+    meshes = Path(__file__).parents[1] / "meshes"
+    (found,), (drawn,) = (cf.load(meshes / name).segments for name in ("kim.stl", "kim.toml"))
+    assert found.length == pytest.approx(drawn.length, rel=1e-6)
+    for end in ("tip_diameter", "butt_diameter"):
+        assert getattr(found, end) / getattr(drawn, end) - 1 == pytest.approx(-((2 * np.pi / 96) ** 2) / 12, rel=1e-2)
+
+
 def test_a_scene_names_a_surface(tmp_path: Path) -> None:
     written(tmp_path / "shaft.stl", *revolved(outline_of(KIM), 16))
     (tmp_path / "scene.toml").write_text('cue = "shaft.stl"\n')
@@ -188,7 +197,7 @@ def test_a_command_says_what_it_assumed(tmp_path: Path) -> None:
     path = written(tmp_path / "shaft.stl", *revolved(outline_of(KIM), 32))
     said = json.loads(call("modes", path, "--json", "--body-mass", "15 oz")[1])["assumed"]
     assert said[0] == "lengths in mm (--length-unit gives another)"
-    assert said[1].startswith("1 conical segments, diameters within ")
+    assert said[1] == "1 conical segment, diameters within 1e-09 of the widest"
     assert said[2] == "facets round (their corners lie up to 3e-03 of the widest diameter further out)"
     assert said[3:5] == ["the thinner end is the tip", "material hard maple (choose with --material)"]
     asked = json.loads(call("modes", path, "--json", "--length-unit", "mm", "--material", "ash")[1])["assumed"]

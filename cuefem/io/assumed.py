@@ -43,10 +43,11 @@ def _fit(path: Path) -> list[str]:
     from cuefem.io.surface import read_surface
 
     found = read_surface(path)
-    parts = found.fit / found.widest, 2 * found.facets / found.widest
+    fit, corners = found.fit / found.widest, 2 * found.facets / found.widest
+    count = len(found.pieces)
     return [
-        f"{len(found.pieces)} conical segments, diameters within {parts[0]:.0e} of the widest",
-        f"facets round (their corners lie up to {parts[1]:.0e} of the widest diameter further out)",
+        f"{count} conical segment{'s' if count > 1 else ''}, diameters within {max(fit, 1e-9):.0e} of the widest",
+        f"facets round (their corners lie up to {corners:.0e} of the widest diameter further out)",
         "the thinner end is the tip",
     ]
 
