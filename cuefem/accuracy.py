@@ -1,7 +1,7 @@
 """An accuracy asked for, and the least work that reaches it: `resolve` and `resolve_end_mass`.
 
 `ladder` climbs the number of modes, each rung ended by a tail (`cuefem.tail`), and judges every rung by those within
-two octaves below it. What that costs: studies/accuracy_cost.md, and `cuefem cost` for a scene of one's own.
+an octave below it. What that costs: studies/accuracy_cost.md, and `cuefem cost` for a scene of one's own.
 """
 
 from __future__ import annotations
@@ -24,11 +24,12 @@ from cuefem.strike import strike, strike_modes
 from cuefem.tail import Deflect, flexibility, tail
 
 # Rungs of the ladder: the first number of modes, the ratio of one rung to the next. Errors are first
-# estimated at rung `JUDGED`, 1.5 octaves above the first.
-FIRST, RATIO, JUDGED = 8, 1.3, 4
-# Errors are taken to fall at least like n^-DECAY; each is judged by up to WINDOW rungs below it, two octaves. On the
-# forty scenes of tests/accuracy_scenes.py the true error is at most 2.1 times the estimate, at the median 0.13 times.
-DECAY, WINDOW = 1.25, 5
+# estimated at rung `JUDGED`, an octave above the first.
+FIRST, RATIO, JUDGED = 8, 1.3, 3
+# Errors are taken to fall at least like n^-DECAY; each is judged by the WINDOW rungs below it, an octave. On the forty
+# scenes of tests/accuracy_scenes.py the true error is at most 2.7 times the estimate, at the median 0.16 times; with
+# two rungs it is up to 6 times, two octaves ask for a quarter more modes.
+DECAY, WINDOW = 1.25, 3
 # What meshes and rounding leave, relative; of a lumped cue rounding alone.
 FLOOR, ROUNDING = 1e-8, 1e-12
 # Squirt is judged against no less than this part of sin(phi), rad: where it vanishes a relative error means nothing.
@@ -106,7 +107,7 @@ def estimated_error(counts: list[int], values: Array) -> float:
     """Error of the last of ``values`` (rungs, quantities), from those at fewer modes.
 
     Were every error A n^-p, the last would be |y_i - y| / ((n/n_i)^p - 1) for every i; the largest of them is taken,
-    over two octaves, because errors swing: wave fronts that just return make false plateaus.
+    over an octave, because errors swing: wave fronts that just return make false plateaus.
     """
     n, y = np.array(counts[-1 - WINDOW :], float), values[-1 - WINDOW :]
     apart = np.abs(y[:-1] - y[-1]).max(axis=1)
@@ -174,13 +175,9 @@ def _tips(scene: Scene) -> Iterator[_Tips]:
 
 
 def _groups(scene: Scene) -> list[list[int]]:
-    """Numbers of modes of the rungs, those of one mesh together: the first five, then twice as many modes and so on."""
+    """Numbers of modes of the rungs, those of one mesh together: the first up to `JUDGED`, then each by itself."""
     assert isinstance(scene.cue, Cue)
     first = min(max(FIRST, modes_below(scene.cue, 2 * np.pi * 3 / scene.contact_time)), MOST // 4)
     counts = [round(first * math.pow(RATIO, k)) for k in range(20)]
     counts = [*(count for count in counts if count < MOST / RATIO**0.5), MOST]
-    groups, rest = [counts[: JUDGED + 1]], counts[JUDGED + 1 :]
-    while rest:
-        groups.append([count for count in rest if count < 2.5 * groups[-1][-1]])
-        rest = rest[len(groups[-1]) :]
-    return groups
+    return [counts[: JUDGED + 1], *([count] for count in counts[JUDGED + 1 :])]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
 from typing import Any
@@ -16,7 +17,7 @@ from cuefem.cue import Array, Cue, LumpedCue, Section
 from cuefem.quantity import Quantity, check_count, check_kind
 
 # A sparse eigenproblem is solved densely when more than one in MANY of its modes are wanted.
-MANY = 3
+MANY = 5
 
 
 @dataclass(frozen=True)
@@ -164,7 +165,7 @@ def _normalised(system: System) -> Array:
     rigid = system.rigid
     if rigid.shape[1] == 0:
         return rigid
-    return np.asarray(la.solve_triangular(la.cholesky(rigid.T @ (system.M @ rigid)), rigid.T, trans="T").T)
+    return np.asarray(np.linalg.solve(np.linalg.cholesky(rigid.T @ (system.M @ rigid)), rigid.T).T)
 
 
 def _nearest(found: Modes, count: int, near: float) -> Modes:
@@ -198,14 +199,23 @@ def modes_below(cue: Cue, omega: float) -> int:
 _GUESSES = np.geomspace(1e0, 1e9, 100)  # angular frequencies between which `mesh_for` interpolates, rad/s
 
 
+@functools.lru_cache(maxsize=32)
+def _log_phases(cue: Cue) -> tuple[Array, Array]:
+    """Logarithms of the phase of all waves together, and of the shortest over each segment, at `_GUESSES`.
+
+    Kept, because a ladder or a sweep of strokes meshes one cue many times.
+    """
+    phases = wave_phase(cue, _GUESSES)
+    return np.log(phases.sum(axis=(0, 1))), np.log(phases[0])  # the first branch has the shortest waves
+
+
 def mesh_for(cue: Cue, count: int) -> tuple[int, int]:
     """(elements, order) that hold the ``count`` lowest flexible modes to 2e-7 in frequency, the first five to 1e-9.
 
     A polynomial of degree p follows a wave of phase P over its element once p > P/2; the error then falls faster than
     exponentially. Elements are added where the order would pass 26.
     """
-    phases = wave_phase(cue, _GUESSES)
-    whole, shortest = np.log(phases.sum(axis=(0, 1))), np.log(phases[0])  # the first branch has the shortest waves
+    whole, shortest = _log_phases(cue)
     longest = math.exp(max(np.interp(math.log((count + 1) * math.pi), whole, own) for own in shortest))
     elements = math.ceil(longest / 2 / 18)
     return elements, math.ceil(longest / elements / 2) + 8

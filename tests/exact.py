@@ -88,8 +88,11 @@ def _misfit(cue: Cue, omega: float) -> float:
                 ]
             ).ravel()
 
-        run = solve_ivp(slope, (0, segment.length), state.ravel(), method="DOP853", rtol=1e-12, atol=1e-14)
-        state = run.y[:, -1].reshape(4, 2)
+        for ends in pairwise(np.linspace(0, segment.length, 5)):
+            run = solve_ivp(slope, ends, state.ravel(), method="DOP853", rtol=1e-12, atol=1e-14)
+            # both motions grow alike, and their determinant would be lost in rounding: keep them orthogonal
+            state, mix = np.linalg.qr(run.y[:, -1].reshape(4, 2))
+            state = state * np.sign(np.diag(mix))
     return float(np.linalg.det(state[2:]))
 
 

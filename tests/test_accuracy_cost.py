@@ -11,6 +11,7 @@ from accuracy_scenes import MESHES, scene
 from command_line import call
 
 from cuefem import LumpedCue, Scene, resolve, save
+from cuefem.accuracy import JUDGED
 from cuefem.report.cost import WANTED, cost_figure, cost_record
 
 KIM = MESHES / "kim.toml"
@@ -26,7 +27,7 @@ def test_rungs_grow_and_the_climb_takes_time(record: dict) -> None:
     for name in ("modes", "unknowns", "seconds"):
         values = [rung[name] for rung in rungs]
         assert all(first < second for first, second in pairwise(values))
-    assert [rung["estimate"] is None for rung in rungs] == [True] * 4 + [False] * (len(rungs) - 4)
+    assert [rung["estimate"] is None for rung in rungs] == [True] * JUDGED + [False] * (len(rungs) - JUDGED)
     assert rungs[-1]["difference"] is None
     assert all(rung["plain"]["difference"] > 0 for rung in rungs)
 

@@ -120,7 +120,8 @@ def assemble(cue: Cue, *, elements: int, order: int, effects: tuple[ActsOnCue, .
 
     def point(values: dict[int, float]) -> Array:
         diagonal = np.zeros(mesh.unknowns)
-        diagonal[list(values)] = list(values.values())
+        if values:
+            diagonal[list(values)] = list(values.values())
         return diagonal * scale
 
     springs, links = point(terms.stiffness), terms.links(scale)
@@ -135,7 +136,7 @@ def assemble(cue: Cue, *, elements: int, order: int, effects: tuple[ActsOnCue, .
 
 def _shift(cue: Cue, section: Section, sizes: Array) -> float:
     # 4.73^4 EI/(rhoA L^4), the lowest free mode of the uniform rod with the mean stiffness and mass
-    stiffness, mass = (float(sizes @ part.mean(axis=1)) for part in (section.EI, section.rhoA))
+    stiffness, mass = (float(np.sum(sizes @ part)) for part in (section.EI, section.rhoA))
     return 500 * stiffness / mass / cue.length**4
 
 
@@ -167,10 +168,8 @@ def _rigid_motions(mesh: Mesh, length: float, springs: Array, fixed: NDArray[np.
     for w, x in ((mesh.first, mesh.nodes[:-1]), (mesh.last, mesh.nodes[1:])):
         motions[w, 0], motions[w, 1] = 1.0, x / length
         motions[w + 1, 1] = 1.0
-    held = np.union1d(fixed, np.flatnonzero(springs))
-    resisted = motions[held]
-    if len(held) == 0:
+    if len(fixed) == 0 and not springs.any():
         return motions
-    _, strength, directions = np.linalg.svd(resisted)
+    _, strength, directions = np.linalg.svd(motions[np.union1d(fixed, np.flatnonzero(springs))])
     rank = int(np.sum(strength > 1e-12 * strength[0]))
     return motions @ directions[rank:].T
