@@ -22,14 +22,14 @@ from cuefem.tones import Tone, tones
 from studies import tap
 from studies.common import MESHES, cue
 
-RATE = 48000
+RATE = 10000  # of the recordings here: shorter sums
 KIM = MESHES / "kim.toml"
 
 
 @pytest.fixture(scope="module")
 def sound() -> np.ndarray:
     """Kim's shaft with other wood, 25 dB, one channel."""
-    return tap.recording(tap.ringing_shaft(tap.true("kim"))[:, :1], 25.0, 3)
+    return tap.recording(tap.ringing_shaft(tap.true("kim"), RATE)[:, :1], 25.0, 3)
 
 
 def frequencies(signal: np.ndarray, rate: float = RATE, kind: str = "tone") -> list[float]:
@@ -59,7 +59,7 @@ def test_gain_sign_offset_and_a_copied_channel_do_not_matter(sound: np.ndarray) 
 
 
 def test_taps_are_found_and_each_tells_more(sound: np.ndarray) -> None:
-    clean = tap.ringing_shaft(tap.true("kim"))[:, :1]
+    clean = tap.ringing_shaft(tap.true("kim"), RATE)[:, :1]
     one, three = (ringing(tap.recording(clean, 15.0, 1, taps=n), RATE) for n in (1, 3))
     assert (one.taps, three.taps) == (1, 3)
     assert three.traces.shape == (3, one.traces.shape[1])
@@ -89,7 +89,7 @@ def test_samples_of_every_kind_read_alike(kind: str, tmp_path: Path) -> None:
 
 def test_a_limiter_s_harmonics_are_no_modes(kim_test: TapTest) -> None:
     """A phone that squeezes loud sounds makes sums of the loud tones, such as f2 + 2 f1: none is taken for a mode."""
-    soft = np.tanh(3 * tap.recording(tap.ringing_shaft(tap.true("kim"))[:, :1], 40.0, 0))
+    soft = np.tanh(3 * tap.recording(tap.ringing_shaft(tap.true("kim"), RATE)[:, :1], 40.0, 0))
     heard = tones(ringing(soft, RATE))
     f = modes(tap.true("kim"), 2).frequencies
     sums = [tone for tone in heard if np.min(np.abs(tone.frequency - np.array([2 * f[0] + f[1], f[1] - 2 * f[0]]))) < 1]
@@ -101,7 +101,7 @@ def test_a_limiter_s_harmonics_are_no_modes(kim_test: TapTest) -> None:
 
 
 def test_clipped_samples_are_left_out(kim_test: TapTest) -> None:
-    clean = tap.ringing_shaft(tap.true("kim"))[:, :1]
+    clean = tap.ringing_shaft(tap.true("kim"), RATE)[:, :1]
     cut = ringing(tap.recording(clean, 40.0, 0, clip=0.3), RATE)
     assert 0.01 < cut.clipped < 0.3
     assert not any(tone.kind == "harmonic" for tone in tones(cut) if tone.snr > 100)
@@ -118,7 +118,7 @@ def test_a_hum_is_steady(sound: np.ndarray) -> None:
 @pytest.mark.heavy
 def test_two_planes_are_taken_together(kim_test: TapTest) -> None:
     """Half a per cent between the planes' stiffness: the mean wood, with half the distance as error."""
-    sound = tap.recording(tap.ringing_shaft(tap.true("kim"), split=0.01)[:, :1], 35.0, 2)
+    sound = tap.recording(tap.ringing_shaft(tap.true("kim"), RATE, split=0.01)[:, :1], 35.0, 2)
     heard = tones(ringing(sound, RATE))
     twins = [tone for tone in heard if tone.kind == "twin"]
     assert len(twins) >= 2
