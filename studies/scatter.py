@@ -23,6 +23,17 @@ MODELS = ("bare", "dome and tip shear")
 COLOURS = ("#4477aa", "#cc6644")
 SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)
 SCALES = {"end_mass": ("end mass, g", 1e3), "squirt": ("squirt, °", float(np.degrees(1)))}
+WORDS = {
+    "wood": "wood: E, G, density",
+    "turning": "turning ±0.05 mm",
+    "ferrule": "ferrule ±0.5 mm, density",
+    "leather": "leather 4 to 8 mm, density",
+    "ball": "ball 156 to 170 g",
+    "contact time": "contact 0.8 to 1.5 ms",
+    "dome": "dome 9 to 10.6 mm",
+    "tip shear": "tip shear 0.3 to 0.75",
+}
+UNITS = {"m": ("mm", 1e3), "kg": ("g", 1e3), "s": ("ms", 1e3), "kg/m^3": ("kg/m3", 1), "": ("", 1)}
 FULL, SAMPLE = load_scatter(STUDIES / "scatter_maple.toml")
 
 
@@ -36,6 +47,16 @@ def bare() -> Scatter:
 @cache
 def found(model: str) -> Drivers:
     return drivers(bare() if model == "bare" else FULL, SAMPLE.count, seed=SAMPLE.seed)
+
+
+def causes() -> Iterator[list[str | float]]:
+    """What varies, and between which values nine in ten of it lie: of factors relative to the drawing."""
+    members = {name: group for group, names in FULL.groups.items() for name in names}
+    for vary in FULL.study.vary:
+        unit, scale = UNITS[vary.unit(FULL.study.base)]
+        how = "times the drawing's" if vary.factor else f"{unit} more" if vary.shift else unit
+        ends = (float(scale * vary.range.quantile(share)) for share in (0.05, 0.95))
+        yield [members.get(vary.name, ""), vary.name, *ends, how]
 
 
 def spreads() -> Iterator[list[str | float]]:
@@ -70,22 +91,23 @@ def woods() -> Iterator[list[str | float]]:
 
 
 def text() -> str:
+    drawn = table(["cause", "what varies", "5 %", "95 %", ""], causes())
     first = table(["of the designs lie below", "mean", "sd", *(f"{100 * share:g} %" for share in SHARES)], spreads())
     columns = ["cause", *(f"{words}: {part}" for words in ("squirt", "end mass") for part in ("alone", "in all"))]
     rest = "\n".join(f"## {model}\n\n{table(columns, shares(model))}" for model in MODELS)
     wood = table(["correlations of the wood", "end mass, sd in %", "tip stiffness, sd in %"], woods(), 3)
     return (
         "# Scatter of maple pool shafts\n\nb/R = 0.3; causes as in scatter_maple.toml. Shares of the variance in per "
-        f"cent, with their 95 % intervals.\n\n{first}\n{rest}\n## wood alone\n\n{wood}"
+        f"cent, with their 95 % intervals.\n\n{drawn}\n{first}\n{rest}\n## wood alone\n\n{wood}"
     )
 
 
 def draw() -> None:
-    with figure(STUDIES / "scatter.svg", (2, 2), (9.2, 7.2)) as axes:
+    with figure(STUDIES / "scatter.svg", (2, 2), (10.4, 7.2)) as axes:
         for k, (axis, (words, scale)) in enumerate(zip(axes[0], SCALES.values(), strict=True)):
             _histograms(axis, k, scale)
             axis.set(xlabel=words.replace(",", " at b/R 0.3,") if k else words, ylabel="shafts and strokes, of 512")
-        axes[0, 0].legend(fontsize=8, loc="upper right")
+        axes[0, 0].legend(fontsize=8, loc="upper right", title="median, band of nine in ten", title_fontsize=8)
         for axis, model, colour in zip(axes[1], MODELS, COLOURS, strict=True):
             _bars(axis, model, colour)
 
@@ -95,19 +117,19 @@ def _histograms(axis: object, k: int, scale: float) -> None:
     bins = np.linspace(min(map(np.min, samples)), max(map(np.max, samples)), 28)
     for model, sample, colour in zip(MODELS, samples, COLOURS, strict=True):
         low, middle, high = np.quantile(sample, (0.05, 0.5, 0.95))
-        label = f"{model}: band of nine in ten, median" if k == 0 else None
+        label = model if k == 0 else None
         axis.hist(sample, bins, histtype="stepfilled", alpha=0.35, color=colour, label=label)
         axis.hist(sample, bins, histtype="step", color=colour)
         axis.axvspan(low, high, color=colour, alpha=0.07)
         axis.axvline(middle, color=colour, linestyle="--", linewidth=1)
-    axis.margins(y=0.25)
+    axis.margins(y=0.4)
 
 
 def _bars(axis: object, model: str, colour: str) -> None:
     one = found(model)
     order = one.total[:, 1].argsort()
     share, ends = 100 * one.total[order, 1], 100 * one.total_interval[:, order, 1]
-    names = [one.causes[i] for i in order]
+    names = [WORDS[one.causes[i]] for i in order]
     axis.barh(names, share, color=colour, alpha=0.6, xerr=np.abs(ends - share), ecolor="#333333", capsize=3)
     axis.set(title=f"what drives squirt: {model}", xlabel="share of squirt's variance, %", xlim=(0, 100))
     axis.grid(visible=False, axis="y")
