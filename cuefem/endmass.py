@@ -20,6 +20,7 @@ import numpy as np
 from cuefem import damped, transverse
 from cuefem.cue import Array, LumpedCue
 from cuefem.effects import TipEffect
+from cuefem.flow import zero
 from cuefem.impact import impact
 from cuefem.modes import TipModes
 from cuefem.quantity import scalar
@@ -191,7 +192,6 @@ def equivalent_end_mass(outcome: Outcome, scene: Scene) -> float:
         raise ValueError(
             f"end_mass drive 'squirt': the stroke miscues at offset {scene.stroke.offset}; got no end mass"
         )
-    from scipy.optimize import brentq  # loaded when used: a fifth of a cold start
 
     def excess(log_mass: float) -> float:
         lumped = LumpedCue(scene.axial_mass, math.exp(log_mass))
@@ -202,4 +202,4 @@ def equivalent_end_mass(outcome: Outcome, scene: Scene) -> float:
         raise ValueError(
             f"end_mass drive 'squirt': no lumped end mass in [1e-9, 1e3] kg has the squirt {outcome.squirt:.6g} rad"
         )
-    return math.exp(brentq(excess, low, high, xtol=1e-13, rtol=1e-13))
+    return math.exp(zero(excess, low, high))

@@ -7,7 +7,7 @@ import pytest
 import scipy.linalg as la
 from scipy.integrate import quad
 
-from cuefem.flow import CELLS, DEGREE, Flow, Guards, exponential, integral_of_product, march
+from cuefem.flow import CELLS, DEGREE, Flow, Guards, exponential, integral_of_product, march, zero
 
 RNG = np.random.default_rng(7)
 
@@ -155,3 +155,25 @@ def test_integral_of_a_product_is_quad_s():
         terms = [lambda t: np.sin(50 * t + 0.3), lambda t: np.cos(50 * t + 0.3), lambda t: 1.0]
         exact = quad(lambda t, f=terms[first], g=terms[second]: f(t) * g(t), 0, arrival.time, epsabs=1e-15)[0]
         assert abs(found - exact) < 1e-15
+
+
+@pytest.mark.parametrize("root", [1e-9, 0.1234, 0.5, 0.999])
+@pytest.mark.parametrize(
+    ("function", "width"),
+    [
+        (lambda x, r: (x - r) * (1 + x * x), 1e-15),
+        (lambda x, r: np.tanh(50 * (r - x)), 1e-15),
+        (lambda x, r: np.exp(5 * x) - np.exp(5 * r), 4e-15),
+        (lambda x, r: (x - r) ** 9, 4e-15),
+        (lambda x, r: 1.0 if x > r else -1.0, 4e-15),
+    ],
+)
+def test_a_zero_is_found_however_flat_or_steep(function, width, root):
+    calls = []
+
+    def counted(x: float) -> float:
+        calls.append(x)
+        return float(function(x, root))
+
+    assert abs(zero(counted, 0.0, 1.0) - root) < width
+    assert len(calls) < 120
