@@ -48,10 +48,11 @@ class TapFit:
     """What a tap tells of a shaft's wood.
 
     cue: with the fitted wood. frequencies: of its modes, Hz. wood, before: its material, fitted and as the file had
-    it. covariance: of (ln E, ln G/E, ln rho), (3, 3). matched: every tone. told: whether the tones tell G; otherwise the file's G/E is kept. weighed:
-    whether rho comes from a mass. rivals: other wood that explains the tones as well: (E in Pa, odds against the fit).
-    loss: median loss factor of the tones matched, an upper bound of the wood's. misfit: root mean square of the tones'
-    relative distances from their modes, sharp tones counting more. notes: what a person should know, one line each.
+    it. covariance: of (ln E, ln G/E, ln rho), (3, 3). matched: every tone. told: whether the tones tell G; otherwise
+    the file's G/E is kept. weighed: whether rho comes from a mass. rivals: other wood that explains the tones nearly
+    as well: (E in Pa, odds against it). loss: median loss factor of the tones matched, an upper bound of the wood's.
+    misfit: root mean square of the tones' relative distances from their modes, sharp tones counting more. notes: what
+    a person should know, one line each.
     """
 
     cue: Cue
