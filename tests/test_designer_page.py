@@ -141,6 +141,7 @@ WRONG = {
     "elsewhere.toml": ('cue = "shaft.toml"\n', "elsewhere.toml: cue: shaft.toml: cannot be read: No such file"),
     "profile.csv": ("a,b\n1,2\n", "profile.csv:"),
     "<b>.toml": ("x = 1", "<b>.toml: x: "),
+    "notes.txt": ("x = 1", "a file must be a .toml, .csv, .vtk or .vtu of at most 5 MB"),
 }
 
 
@@ -151,7 +152,7 @@ def test_a_wrong_file_is_refused_and_the_page_stays(browser: Any, address: str, 
         for name, (text, words) in WRONG.items():
             (tmp_path / name).write_text(text, encoding="utf-8")
             page.locator("input[type=file]").set_input_files(tmp_path / name)
-            alert = page.get_by_role("alert").filter(has_text=words)
+            alert = page.locator("[role=alert] .said").filter(has_text=words)
             alert.wait_for()
             assert alert.inner_text().startswith("not opened: ")
             assert "Traceback" not in alert.inner_text()
@@ -185,7 +186,7 @@ def test_an_impossible_cue_is_said_and_the_next_move_answers(browser: Any, addre
         turn(page, "bore_depth", "ArrowRight", 3)
         page.get_by_label("Tip diameter, mm, as a number").fill("8")
         page.get_by_label("Bore width, mm, as a number").fill("11")
-        page.get_by_role("alert").filter(
+        page.locator("[role=alert] .said").filter(
             has_text="the bore must be narrower than the cue, 8.496 mm there; got 11 mm"
         ).wait_for()
         page.get_by_role("button", name="Back to the file").click()
@@ -193,7 +194,7 @@ def test_an_impossible_cue_is_said_and_the_next_move_answers(browser: Any, addre
         assert shown(page, "shaft_mass") == "99.98 g"
         page.get_by_label("Offset b/R, as a number").fill("7")
         page.keyboard.press("Tab")
-        page.get_by_role("alert").filter(has_text="Offset b/R must be in [0, 0.6]").wait_for()
+        page.locator("[role=alert] .said").filter(has_text="Offset b/R must be in [0, 0.6]").wait_for()
         assert page.get_by_label("Offset b/R, as a number").input_value() == "0.30"
 
 

@@ -34,6 +34,7 @@ from cuefem.scene import Scene
 
 HOST = "127.0.0.1"
 LARGEST_FILE = 5_000_000  # bytes
+REJECTED = f"a file must be a .toml, .csv, .vtk or .vtu of at most {LARGEST_FILE // 10**6} MB"
 IDLE = 0.12  # s without a move, after which what takes longer is computed
 FAILURES = (ValueError, RuntimeError, ArithmeticError, MemoryError)
 
@@ -125,7 +126,7 @@ class Desk:
                 auto_upload=True,
                 max_file_size=LARGEST_FILE,
                 on_upload=self._uploaded,
-                on_rejected=lambda: self._say(f"a file must have at most {LARGEST_FILE // 10**6} MB"),
+                on_rejected=lambda: self._say(f"not opened: {REJECTED}"),
             ).props('accept=".toml,.csv,.vtk,.vtu"')
         with ui.element("div").classes("desk"):
             self.panel = ui.element("section").classes("knobs").props('aria-label="knobs"')
@@ -324,7 +325,7 @@ class Desk:
         name = Path(event.file.name).name
         with TemporaryDirectory() as folder:
             path = Path(folder) / name
-            path.write_bytes(await event.file.read())
+            await event.file.save(path)
             try:
                 scene, notes = await asyncio.to_thread(self.read, path)
                 knobs_of(scene)
