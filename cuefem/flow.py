@@ -116,11 +116,16 @@ class Flow:
         return REACH / self.rate
 
     @cached_property
+    def per_cell(self) -> Array:
+        """A h."""
+        return self.A * self.step
+
+    @cached_property
     def advance(self) -> Array:
         """exp(A h)."""
         if self.drive is not None:
             return self.drive.exponential(self.step, self.taylor[len(self.rows) :])
-        quarter = exponential(self.A * (self.step / 4))
+        quarter = exponential(self.per_cell / 4)
         half = quarter @ quarter
         return np.asarray(half @ half)
 
@@ -128,18 +133,18 @@ class Flow:
     def taylor(self) -> Array:
         """Rows that give Taylor coefficients in the fraction of a cell: outputs' and drive's, (m + r, 28, n)."""
         rows = self.rows if self.drive is None else np.concatenate([self.rows, self.drive.rows])
-        A, out = self.A * self.step, np.empty((DEGREE + 1, *rows.shape))
+        out = np.empty((DEGREE + 1, *rows.shape))
         out[0] = rows
         for before, after in pairwise(out):
-            np.dot(before, A, out=after)
+            np.dot(before, self.per_cell, out=after)
         return np.ascontiguousarray((out / FACTORIALS[:, None, None]).transpose(1, 0, 2))
 
     def series(self, z: Array) -> Array:
         """Taylor coefficients of the state in the fraction of a cell, (degree + 1, n)."""
-        A, out = self.A * self.step, np.empty((DEGREE + 1, len(z)))
+        out = np.empty((DEGREE + 1, len(z)))
         out[0] = z
         for before, after in pairwise(out):
-            np.dot(A, before, out=after)
+            np.dot(self.per_cell, before, out=after)
         return out / FACTORIALS[:, None]
 
     def blocks(self, z: Array) -> Iterator[tuple[Array, Array]]:

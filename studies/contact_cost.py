@@ -196,12 +196,11 @@ def seconds() -> str:
     matrix /= np.linalg.norm(matrix, 2)
     expm = seconds_of(lambda: la.expm(matrix), 200)
     exact = np.array(cost["exact phases"])
-    model = next((line.split(":")[1].strip() for line in _cpuinfo() if line.startswith("model name")), "")
     lines = [
         "# Seconds of one stroke",
         "",
-        f"{model or platform.machine()}, {os.cpu_count()} cores, one BLAS thread, Python {platform.python_version()}",
-        f"numpy {np.__version__}, scipy {scipy.__version__}. Medians, milliseconds, at an accuracy of {ACCURACY:.0e}.",
+        *machine(),
+        f"Medians, milliseconds, at an accuracy of {ACCURACY:.0e}.",
         "",
         "| solver | " + " | ".join(f"b/R {b}" for b in OFFSETS) + " | median ratio to exact phases |",
         "|---|" + "---|" * (len(OFFSETS) + 1),
@@ -215,6 +214,15 @@ def seconds() -> str:
         f"One scipy.linalg.expm of a 50 x 50 matrix: {1e3 * expm:.3f} ms; a stroke costs {share:.1f} of them.",
     ]
     return "\n".join(lines) + "\n"
+
+
+def machine() -> list[str]:
+    """What the seconds are of: two lines."""
+    model = next((line.split(":")[1].strip() for line in _cpuinfo() if line.startswith("model name")), "")
+    return [
+        f"{model or platform.machine()}, {os.cpu_count()} cores, one BLAS thread, Python {platform.python_version()},",
+        f"numpy {np.__version__}, scipy {scipy.__version__}.",
+    ]
 
 
 def _cpuinfo() -> list[str]:

@@ -14,10 +14,12 @@ from typing import Any
 import numpy as np
 import pytest
 from cues import kim, pool, scene
+from strike_scenes import KIM_AT, kim_scene
 
-from cuefem import Cue, Resolution, end_mass, modes
+from cuefem import Cue, Resolution, end_mass, modes, resolve, strike
 from cuefem.endmass import stick
 from cuefem.resolution import tip_modes_of
+from cuefem.strike import strike_modes
 
 
 def test_modes_of_kim(benchmark: Any) -> None:
@@ -47,3 +49,20 @@ def test_stick_end_mass_from_tip_modes(benchmark: Any) -> None:
     found = scene(kim(), 2e-3)
     tip = tip_modes_of(found)
     np.testing.assert_allclose(benchmark(stick, tip, found), end_mass(found), rtol=1e-12)
+
+
+def test_the_contact_alone(benchmark: Any) -> None:
+    """A strike of 22 modes that are known."""
+    struck = kim_scene()
+    tip = tip_modes_of(struck, KIM_AT)
+    assert benchmark(strike_modes, struck, tip).squirt == strike(struck, KIM_AT).squirt
+
+
+def test_a_strike_from_the_drawing_on(benchmark: Any) -> None:
+    struck = kim_scene()
+    np.testing.assert_allclose(benchmark(strike, struck).squirt, resolve(struck, 1e-3).squirt, rtol=4e-3)
+
+
+@pytest.mark.parametrize("rtol", [1e-2, 1e-3])
+def test_an_accuracy_asked_for(benchmark: Any, rtol: float) -> None:
+    assert benchmark(resolve, kim_scene(), rtol).error <= rtol

@@ -1,0 +1,124 @@
+"""What do the public calls cost, against the bare linear algebra they rest on?
+
+What: on [Kim]'s shaft (meshes/kim.toml; T = 1 ms, b/R 0.3, e = 3/4, mu = 0.7) warm calls of `modes`, `end_mass`,
+`strike` and `resolve`, and whole processes of the command, beside two calls of LAPACK's size: `scipy.linalg.eigh` of
+the matrices that `modes` assembles for five modes, and `scipy.linalg.expm` of a 50 x 50 matrix of norm 1. All take
+turns in one process of one BLAS thread, so that a busy machine is busy for all; medians of processor time and their
+ratios. Writes speed_seconds.md beside itself, of the machine named there; takes about 30 s.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from importlib import import_module
+from pathlib import Path
+from statistics import median
+from time import perf_counter, process_time
+from typing import Any
+
+import numpy as np
+import scipy.linalg as la
+
+from cuefem import Resolution, end_mass, modes, resolve, strike
+from cuefem.beam import assemble
+from cuefem.modes import mesh_for
+from cuefem.resolution import tip_modes_of
+from cuefem.strike import strike_modes
+
+HERE = Path(__file__).parent
+if str(HERE) not in sys.path:
+    sys.path.append(str(HERE))  # studies are files, not a package
+common, contact_cost = import_module("common"), import_module("contact_cost")
+
+COMMANDS = ("--help", "end-mass meshes/kim.toml")
+ROUNDS, STARTS = 40, 7
+
+
+def calls() -> dict[str, tuple[Callable[[], Any], int]]:
+    """What is called, by name, and how often a round."""
+    kim = common.cue("kim")
+    scene = common.scene(kim, offset=0.3)
+    longer = common.scene(kim, contact_time=2e-3)
+    elements, order = mesh_for(kim, 5)
+    system = assemble(kim, elements=elements, order=order)
+    shifted = system.K + system.shift * system.M
+    matrix = np.random.default_rng(0).normal(size=(50, 50))
+    matrix /= np.linalg.norm(matrix, 2)
+    found: dict[str, tuple[Callable[[], Any], int]] = {
+        "scipy.linalg.expm, 50 x 50": (lambda: la.expm(matrix), 20),
+        f"scipy.linalg.eigh, {len(shifted)} x {len(shifted)}": (lambda: la.eigh(system.M, shifted), 10),
+        "modes(kim, 5)": (lambda: modes(kim, 5), 10),
+        "end_mass, stick, 2 ms": (lambda: end_mass(longer), 2),
+    }
+    for count in (24, 50, 100, 200):
+        tip = tip_modes_of(scene, Resolution(4 + count // 20, 24, count))
+        found[f"contact of {count} modes"] = (lambda tip=tip: strike_modes(scene, tip), max(1, 100 // count))
+    found["strike, default resolution"] = (lambda: strike(scene), 1)
+    for rtol in (1e-3, 1e-4):
+        found[f"resolve to {rtol:.0e}"] = (lambda rtol=rtol: resolve(scene, rtol), 1)
+    return found
+
+
+def medians(rounds: int) -> dict[str, float]:
+    """Median processor seconds of every call; they take turns."""
+    jobs = calls()
+    times: dict[str, list[float]] = {name: [] for name in jobs}
+    for turn in range(rounds + 1):  # the first warms up
+        for name, (work, repeats) in jobs.items():
+            for _ in range(repeats if turn else 1):
+                start = process_time()
+                work()
+                if turn:
+                    times[name].append(process_time() - start)
+    return {name: median(each) for name, each in times.items()}
+
+
+def starts(repeats: int) -> dict[str, float]:
+    """Median seconds of whole processes of the command."""
+    times: dict[str, list[float]] = {command: [] for command in COMMANDS}
+    for _ in range(repeats):
+        for command, each in times.items():
+            start = perf_counter()
+            program = [sys.executable, "-c", "from cuefem.cli import main; main()", *command.split()]
+            subprocess.run(program, cwd=HERE.parent, check=True, capture_output=True)
+            each.append(perf_counter() - start)
+    return {f"cuefem {command}": median(each) for command, each in times.items()}
+
+
+def report(rounds: int = ROUNDS, repeats: int = STARTS) -> str:
+    """The table of this machine."""
+    found = medians(rounds)
+    expm, eigh = list(found.values())[:2]
+    lines = [
+        "# Seconds of the public calls",
+        "",
+        *contact_cost.machine(),
+        "Processor time of warm calls that take turns: medians, milliseconds, and their ratios to the two bare calls.",
+        "",
+        "| call | ms | of one expm | of one eigh |",
+        "|---|---|---|---|",
+        *(f"| {name} | {1e3 * t:.2f} | {t / expm:.1f} | {t / eigh:.1f} |" for name, t in found.items()),
+        "",
+        "| whole process | s |",
+        "|---|---|",
+        *(f"| `{name}` | {t:.2f} |" for name, t in starts(repeats).items()),
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def main() -> None:
+    """Print and write the table, in a process of one BLAS thread."""
+    if any(os.environ.get(name) != "1" for name in contact_cost.THREADS):
+        pinned = {**os.environ, **dict.fromkeys(contact_cost.THREADS, "1")}
+        subprocess.run([sys.executable, "-m", "studies.speed"], env=pinned, cwd=HERE.parent, check=True)
+        return
+    text = report()
+    (HERE / "speed_seconds.md").write_text(text, encoding="utf-8")
+    sys.stdout.write(text)
+
+
+if __name__ == "__main__":
+    main()
