@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from pathlib import Path
 
 import numpy as np
@@ -28,6 +29,9 @@ BESIDE = np.concatenate([POINTS, POINTS + np.array([0, 0.03, 0])]), np.concatena
 SHEET = np.concatenate([FACES[:8], FACES[:8, ::-1]])
 SHORT = revolved([(0, 0), (0, 0.02), (0.15, 0.02), (0.15, 0)], 16)
 TURNED = np.concatenate([FACES[:20], FACES[20:21, ::-1], FACES[21:]])
+
+# One triangle, its first corner a signalling nan
+SIGNALLING = bytes(80) + struct.pack("<I", 1) + bytes(12) + struct.pack("<I", 0x7F80FF00) + bytes(34)
 
 SURFACES = {
     "open": (POINTS, FACES[1:], "must be closed, two triangles at every edge; got 3 loose edges, one at (0, 0, 0)"),
@@ -78,9 +82,12 @@ def test_no_shaft(tmp_path: Path, name: str) -> None:
         ("shaft.stl", b"x" * 200, None),
         ("shaft.stl", b"solid nothing\nendsolid nothing\n" + 90 * b" ", None),
         ("shaft.ply", b"ply\nformat ascii 1.0\nend_header\n", None),
+        ("shaft.ply", b"ply\nformat ascii 1.0\nelement vertex 3\n", "must be a .ply surface; got a file that meshio"),
         ("shaft.ply", b"solid\n", "must be a .ply surface; got a file that meshio cannot read"),
         ("shaft.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\n", None),
         ("shaft.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "faces: must name corners in [0, 3); got another"),
+        ("shaft.obj", b"v 0 0 0\nv 1 0 0\nf 1 2\n", "faces: must have three corners or more; got one of fewer"),
+        ("shaft.stl", SIGNALLING, "corners: must be finite x, y, z; got others"),
         ("shaft.obj", b"v 0 0 0\nv 1 nan 0\nv 0 1 0\nf 1 2 3\n", "corners: must be finite x, y, z; got others"),
     ],
 )

@@ -58,9 +58,11 @@ def _read(path: Path, changed: int, size: int) -> Sliced:
 def _faces(path: Path) -> tuple[Array, Index]:
     """Corners and triangles of a surface file; faces of more corners as fans."""
     try:
-        with quiet():
+        if path.suffix == ".ply" and b"end_header" not in path.read_bytes():
+            raise meshio.ReadError("its header does not end")  # meshio would read on for ever
+        with quiet(), np.errstate(invalid="ignore"):  # a signalling nan in 32 bits; it is refused below
             mesh = _FORMATS[path.suffix].read(str(path))
-        points = np.asarray(mesh.points, float)
+            points = np.asarray(mesh.points, float)
         blocks = [(block.type, np.asarray(block.data, dtype=np.intp)) for block in mesh.cells]
     except OSError as error:
         raise InputError(path, "", f"cannot be read: {reason(error)}") from None
@@ -70,6 +72,8 @@ def _faces(path: Path) -> tuple[Array, Index]:
         raise InputError(path, "", problem) from None
     kinds = sorted({kind for kind, _ in blocks} - {*_PASSED_OVER, *_POLYGONS})
     faces = [cells for kind, cells in blocks if kind in _POLYGONS and cells.size]
+    if any(cells.shape[1] < 3 for cells in faces):
+        raise InputError(path, "faces", "must have three corners or more; got one of fewer")
     if kinds or not faces:
         raise InputError(path, "faces", f"must be triangles or polygons; got {shown(kinds) if kinds else 'none'}")
     if points.ndim != 2 or points.shape[1] != 3 or not np.isfinite(points).all():
