@@ -160,6 +160,19 @@ def test_every_format_gives_the_same_shaft(tmp_path: Path, suffix: str, binary: 
     assert {s.material for s in loaded.segments} == {material("ash")}
 
 
+@pytest.mark.parametrize("name", ["SHAFT.STL", "Shaft.Ply"])
+def test_endings_in_capitals(tmp_path: Path, name: str) -> None:
+    """As CAD programs on other systems write them; through a scene and a command too."""
+    small = written(tmp_path / f"shaft{Path(name.lower()).suffix}", *revolved(outline_of(KIM), 16))
+    loaded, path = cf.load(small), small.rename(tmp_path / name)
+    assert cf.load(path, length_unit="mm") == loaded
+    (tmp_path / "SCENE.TOML").write_text(f"cue = '{name}'\n")
+    assert cf.load(tmp_path / "SCENE.TOML").cue == loaded
+    assert "material hard maple" in call("convert", path, tmp_path / "CUE.VTU")[1]
+    assert cf.load(tmp_path / "CUE.VTU") == loaded
+    assert "ball 210 g" in call("modes", tmp_path / "SCENE.TOML")[1]
+
+
 def test_polygons_are_cut_into_triangles(tmp_path: Path) -> None:
     turn = 2 * np.pi * np.arange(12) / 12
     corners = [f"v {x} {6 * np.cos(t)} {6 * np.sin(t)}" for x in (0, 500) for t in turn]

@@ -23,7 +23,7 @@ def convert(file: Path, output: Path, **given: str | None) -> None:
 
     save(load(file, **given), output)
     said = {"body_mass", *(name for name, value in given.items() if value is not None)}
-    notes = assumed(file, said) if file.suffix in SHAPES else []
+    notes = assumed(file, said) if file.suffix.lower() in SHAPES else []
     if notes:
         click.echo(f"assumed: {'; '.join(notes)}")
 

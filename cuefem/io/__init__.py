@@ -40,28 +40,28 @@ def load(path: str | os.PathLike[str], *, material: str | None = None, length_un
     value got.
     """
     path = Path(path)
-    if material is not None and path.suffix not in SHAPES:
+    if material is not None and path.suffix.lower() not in SHAPES:
         files = f"{', '.join(SHAPES[:-1])} and {SHAPES[-1]}"
         raise InputError(path, "", f"names its materials itself: material is for {files} files alone; got {material!r}")
-    if length_unit is not None and path.suffix not in SURFACES:
+    if length_unit is not None and path.suffix.lower() not in SURFACES:
         files = f"{', '.join(SURFACES[:-1])} and {SURFACES[-1]}"
         problem = f"has its own units of length: length_unit is for {files} files alone; got {length_unit!r}"
         raise InputError(path, "", problem)
-    if path.suffix == ".toml":
+    if path.suffix.lower() == ".toml":
         return load_toml(path, _load_cue)
     return _load_cue(path, material, length_unit)
 
 
 def _load_cue(path: Path, material: str | None = None, length_unit: str | None = None) -> Cue:
-    if path.suffix == ".toml":
+    if path.suffix.lower() == ".toml":
         return load_cue(path)
-    if path.suffix == ".csv":
+    if path.suffix.lower() == ".csv":
         return load_profile(path, named_material(material or DEFAULT_MATERIAL, path, "material"))
-    if path.suffix in _MESHES:
+    if path.suffix.lower() in _MESHES:
         from cuefem.io.mesh import load_mesh
 
         return load_mesh(path)
-    if path.suffix in SURFACES:
+    if path.suffix.lower() in SURFACES:
         from cuefem.io.surface import load_surface
 
         return load_surface(path, named_material(material or DEFAULT_MATERIAL, path, "material"), length_unit)
@@ -79,10 +79,10 @@ def save(obj: Cue | Scene, path: str | os.PathLike[str]) -> None:
     if not isinstance(obj, Cue | Scene):
         raise TypeError(f"save writes a Cue or a Scene; got {obj!r}")
     path = Path(path)
-    if path.suffix == ".toml":
+    if path.suffix.lower() == ".toml":
         content = toml_text(obj)
         write_whole(path, lambda temporary: temporary.write_text(content, encoding="utf-8"))
-    elif path.suffix in _MESHES and isinstance(obj, Cue):
+    elif path.suffix.lower() in _MESHES and isinstance(obj, Cue):
         from cuefem.io.mesh import save_mesh
 
         write_whole(path, lambda temporary: save_mesh(obj, temporary))
@@ -102,7 +102,7 @@ def save_page(text: str, path: str | os.PathLike[str]) -> None:
 def save_figure(content: bytes, path: str | os.PathLike[str]) -> None:
     """Write a drawn figure as .png or .svg, whole or not at all. Errors: InputError."""
     path = Path(path)
-    if path.suffix not in FIGURES:
+    if path.suffix.lower() not in FIGURES:
         raise InputError(path, "", f"must end in .png or .svg; got {path.suffix!r}")
     write_whole(path, lambda temporary: temporary.write_bytes(content))
 

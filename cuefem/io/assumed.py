@@ -17,7 +17,7 @@ LONGEST, THICKEST = 3.0, 0.2  # m: beyond every cue
 
 def assumed(path: Path, given: Collection[str]) -> list[str]:
     """What a loaded cue or scene file leaves to defaults. given: options said besides, such as "offset"."""
-    found = read_tables(path) if path.suffix == ".toml" else {}
+    found = read_tables(path) if path.suffix.lower() == ".toml" else {}
     if "cue" not in found:
         return _profile(path, given, " (choose with --material)")
     cue = found["cue"]
@@ -26,13 +26,13 @@ def assumed(path: Path, given: Collection[str]) -> list[str]:
 
 def _profile(path: Path, given: Collection[str], choose: str = "") -> list[str]:
     """What a lathe profile or a surface cannot say: its unit, its material, and what is screwed to the shaft."""
-    if path.suffix not in SHAPES:
+    if path.suffix.lower() not in SHAPES:
         return []
-    lengths = path.suffix in SURFACES and "length_unit" not in given
+    lengths = path.suffix.lower() in SURFACES and "length_unit" not in given
     unit = f"lengths in {DEFAULT_UNIT}{choose and ' (--length-unit gives another)'}"
     return [
         *([unit] if lengths else []),
-        *(_fit(path) if path.suffix in SURFACES else []),
+        *(_fit(path) if path.suffix.lower() in SURFACES else []),
         *([] if "material" in given else [f"material {DEFAULT_MATERIAL}{choose}"]),
         *([] if "body_mass" in given else ["no mass behind the shaft (--body-mass gives it)"]),
     ]

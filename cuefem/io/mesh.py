@@ -48,7 +48,7 @@ def save_mesh(cue: Cue, path: Path) -> None:
     data = {name: [np.array([row[name] for row in rows])] for name in rows[0]}
     mesh = meshio.Mesh(points, [("line", cells)], cell_data=data)
     with quiet():  # meshio warns that ASCII is for debugging; here it is exact and can be compared line by line
-        _format(path).write(str(path), mesh, binary=path.suffix == ".vtu")
+        _format(path).write(str(path), mesh, binary=path.suffix.lower() == ".vtu")
 
 
 @contextlib.contextmanager
@@ -61,7 +61,7 @@ def quiet() -> Iterator[None]:
 
 
 def _format(path: Path) -> Any:
-    return meshio.vtu if path.suffix == ".vtu" else meshio.vtk
+    return meshio.vtu if path.suffix.lower() == ".vtu" else meshio.vtk
 
 
 def load_mesh(path: Path) -> Cue:

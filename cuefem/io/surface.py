@@ -58,10 +58,10 @@ def _read(path: Path, changed: int, size: int) -> Sliced:
 def _faces(path: Path) -> tuple[Array, Index]:
     """Corners and triangles of a surface file; faces of more corners as fans."""
     try:
-        if path.suffix == ".ply" and b"end_header" not in path.read_bytes():
+        if path.suffix.lower() == ".ply" and b"end_header" not in path.read_bytes():
             raise meshio.ReadError("its header does not end")  # meshio would read on for ever
         with quiet(), np.errstate(invalid="ignore"):  # a signalling nan in 32 bits; it is refused below
-            mesh = _FORMATS[path.suffix].read(str(path))
+            mesh = _FORMATS[path.suffix.lower()].read(str(path))
             points = np.asarray(mesh.points, float)
         blocks = [(block.type, np.asarray(block.data, dtype=np.intp)) for block in mesh.cells]
     except OSError as error:

@@ -73,7 +73,7 @@ def load_cue(path: Path) -> Cue:
 def load_accuracy(path: str | Path) -> float | None:
     """The relative accuracy rtol that a scene file's [accuracy] table asks for; None where it asks for none."""
     path = Path(path)
-    found = read_tables(path) if path.suffix == ".toml" else {}
+    found = read_tables(path) if path.suffix.lower() == ".toml" else {}
     return _accuracy(found.get("accuracy"), path)
 
 
