@@ -9,6 +9,9 @@ The ordinary run only checks the answers. Numbers are printed by
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from statistics import median
+from time import process_time
 from typing import Any
 
 import numpy as np
@@ -17,7 +20,10 @@ from cues import kim, pool, scene
 from strike_scenes import KIM_AT, kim_scene
 
 from cuefem import Cue, Resolution, end_mass, modes, resolve, strike
+from cuefem.beam import assemble
+from cuefem.contact import Contact, Laws, run
 from cuefem.endmass import stick
+from cuefem.modes import solve, tip_modes
 from cuefem.resolution import tip_modes_of
 from cuefem.strike import strike_modes
 
@@ -66,3 +72,40 @@ def test_a_strike_from_the_drawing_on(benchmark: Any) -> None:
 @pytest.mark.parametrize("rtol", [1e-2, 1e-3])
 def test_an_accuracy_asked_for(benchmark: Any, rtol: float) -> None:
     assert benchmark(resolve, kim_scene(), rtol).error <= rtol
+
+
+def test_a_bare_scene_costs_what_the_strike_costs(request: pytest.FixtureRequest) -> None:
+    """`strike` of a scene that lists no effect, beside its parts called by hand: beam, modes and contact, no effects.
+
+    The excess, a few per cent, is checks and the Outcome; with -s and --benchmark-enable it is printed.
+    """
+    scene = kim_scene()
+    tip, speed = scene.tip, 1.0
+
+    def alone() -> Contact:
+        cue = scene.cue
+        found = solve(assemble(cue, elements=KIM_AT.elements, order=KIM_AT.order), KIM_AT.modes)
+        laws = Laws(
+            phi=np.arcsin(scene.stroke.offset),
+            ball_mass=scene.ball.mass,
+            inertia=scene.ball.inertia,
+            stiffness=scene.stiffness,
+            restitution=tip.restitution,
+            friction=tip.friction,
+            time=scene.contact_time,
+            speed=speed,
+        )
+        contact = Contact(tip_modes(found, cue.mass), laws)
+        run(contact)
+        return contact
+
+    def seconds(work: Callable[[], Any]) -> float:
+        start = process_time()
+        work()
+        return process_time() - start
+
+    np.testing.assert_allclose(alone().impulse, strike(scene, KIM_AT).impulse, rtol=1e-13)
+    rounds = 400 if request.config.getoption("--benchmark-enable") else 1
+    pairs = [(seconds(alone), seconds(lambda: strike(scene, KIM_AT))) for _ in range(rounds)]
+    own, whole = (median(times) for times in zip(*pairs, strict=True))
+    print(f"\nstrike of a bare scene: {whole * 1e3:.2f} ms, its parts by hand {own * 1e3:.2f} ms: {whole / own:.3f}")
