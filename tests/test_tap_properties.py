@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from command_line import call
 from scipy.io import wavfile
+from surfaces import outline_of, revolved, written
 
 import cuefem
 from cuefem import Cue, Scene, modes
@@ -177,6 +178,24 @@ def test_a_mass_against_the_drawing_is_remarked() -> None:
     assert TapTest(cue("kim"), mass=cue("kim").shaft_mass).notes == []
     (note,) = TapTest(cue("kim"), mass=1.3 * cue("kim").shaft_mass).notes
     assert "check the scale and the drawing" in note
+
+
+def test_a_drawing_says_no_unit_and_no_butt(tmp_path: Path, sound: np.ndarray) -> None:
+    """A surface in inches with the rest of the cue behind it tells what the scene of its drawing tells."""
+    recording, drawn, new = (tmp_path / name for name in ("tap.wav", "kim.obj", "new.toml"))
+    wavfile.write(recording, RATE, (sound * 32767).astype(np.int16))
+    written(drawn, *revolved(outline_of(cue("kim")), 96), unit=0.0254)
+    said = ("--body-mass", "420 g", "--length-unit", "in", "--contact-time", "1 ms", "--material", "hard maple")
+    status, out, err = call("tap", recording, "--scene", drawn, *said, "--json", "-o", new)
+    assert (status, err) == (0, "")
+    record = json.loads(out)
+    assert record["scene"]["cue"]["mass"] == pytest.approx(0.42 + record["shaft_mass"], rel=1e-12)
+    assert record["predicted"]["end_mass"]["value"] == pytest.approx(0.0053, rel=0.15)
+    found = cuefem.load(new)
+    assert isinstance(found, Cue)
+    assert found.length == pytest.approx(cue("kim").length, rel=1e-6)
+    assert found.body_mass == 0.42
+    assert pytest.approx(found.segments[0].material.E, rel=1e-5) == record["wood"]["E"]["value"]
 
 
 def test_the_command(tmp_path: Path, sound: np.ndarray) -> None:

@@ -89,6 +89,21 @@ def test_options(options: list[str], line: str, tmp_path: Path) -> None:
     assert refused(tmp_path / "none.wav", "--scene", KIM, *options).startswith(line)
 
 
+@pytest.mark.parametrize(
+    "options", [("-o", "new.toml", "--figure", "none/f.svg"), ("-o", "dir.toml", "--figure", "f.svg")]
+)
+def test_places_where_nothing_can_be_written(options: tuple[str, ...], tmp_path: Path) -> None:
+    """Said before the recording is heard: neither of the two files is there without the other."""
+    (tmp_path / "dir.toml").mkdir()
+    here = [word if word.startswith("-") else tmp_path / word for word in options]
+    said = refused(tmp_path / "none.wav", "--scene", KIM, *here)
+    where, why = (
+        ("none/f.svg", "No such file or directory") if "none/f.svg" in options else ("dir.toml", "Is a directory")
+    )
+    assert said == f"{tmp_path / where}: cannot be written: {why}"
+    assert list(tmp_path.iterdir()) == [tmp_path / "dir.toml"]
+
+
 def test_a_mass_below_that_of_the_other_parts() -> None:
     with pytest.raises(
         ValueError, match=r"mass must be in \(.*, inf\) g, more than the shaft's other parts weigh; got 2"

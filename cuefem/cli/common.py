@@ -20,12 +20,16 @@ DEFAULT_OFFSET = 0.3  # of a bare cue file, b/R
 
 def file_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """The file and what every command on a file takes."""
+    return click.argument("file", type=click.Path(path_type=Path))(cue_options(command))
+
+
+def cue_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """What every command takes that the file of a cue may leave out."""
     for option in (
         click.option("--json", "as_json", is_flag=True, help="SI numbers as JSON."),
         click.option("--body-mass", metavar="MASS", help='Mass of the cue behind FILE\'s segments, e.g. "420 g".'),
         click.option("--material", metavar="NAME", help="Material of a .csv or surface (see `cuefem materials`)."),
         click.option("--length-unit", metavar="UNIT", help="Unit of a .stl, .ply or .obj surface; mm if left out."),
-        click.argument("file", type=click.Path(path_type=Path)),
     ):
         command = option(command)
     return command

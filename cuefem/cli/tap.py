@@ -8,12 +8,20 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from cuefem.cli.common import measured, offset_option, print_all, print_json, scene_of
+from cuefem.cli.common import (
+    contact_time_option,
+    cue_options,
+    measured,
+    offset_option,
+    print_all,
+    print_json,
+    scene_of,
+)
 
 if TYPE_CHECKING:
     from cuefem.ringing import Ringing
     from cuefem.scene import Scene
-    from cuefem.tap import TapFit
+    from cuefem.tap import Predicted, TapFit
 
 
 @click.command()
@@ -27,26 +35,28 @@ if TYPE_CHECKING:
     "-o", "--output", type=click.Path(path_type=Path), metavar="NEW.toml", help="Write FILE with the fitted wood."
 )
 @click.option("--figure", type=click.Path(path_type=Path), metavar="FIGURE", help="Draw the spectrum: .png or .svg.")
+@cue_options
+@contact_time_option
 @offset_option
-@click.option("--material", metavar="NAME", help="Material of a .csv profile (see `cuefem materials`).")
-@click.option("--json", "as_json", is_flag=True, help="SI numbers as JSON.")
 def tap(recording: Path, file: Path, output: Path | None, figure: Path | None, **given: Any) -> None:
     """The shaft's wood by ear: E, G and density from a recording of the shaft, hung free and tapped.
 
     RECORDING is a .wav of one or more taps. Its tones are matched to the bending modes of the shaft in FILE.
     """
-    from cuefem.io import FIGURES, InputError, save, save_figure
+    from cuefem.io import FIGURES, InputError, check_place, save, save_figure
     from cuefem.report.records import scene_record
     from cuefem.report.tap import UNITS, tap_figure, tap_record, tap_tables
-    from cuefem.tap import predicted
 
     if figure is not None and figure.suffix not in FIGURES:
         raise InputError(figure, "--figure", f"must end in .png or .svg; got {figure.suffix!r}")
     if output is not None and output.suffix != ".toml":
         raise InputError(output, "--output", f"must end in .toml; got {output.suffix!r}")
-    scene, notes = scene_of(file, {**given, "body_mass": None})
+    for place in (output, figure):
+        if place is not None:
+            check_place(place)
+    scene, notes = scene_of(file, given)
     heard, found = _heard(recording, file, scene, given)
-    record = tap_record(found, heard, predicted(scene, found))
+    record = tap_record(found, heard, _predicted(file, scene, found))
     about = scene_record(replace(scene, cue=found.cue))
     if output is not None:
         if found.rivals:
@@ -91,6 +101,16 @@ def _heard(recording: Path, file: Path, scene: Scene, given: dict[str, Any]) -> 
         raise InputError(recording, "", str(error)) from None
 
 
+def _predicted(file: Path, scene: Scene, found: TapFit) -> dict[str, Predicted]:
+    from cuefem.io import InputError
+    from cuefem.tap import predicted
+
+    try:
+        return predicted(scene, found)
+    except ValueError as error:
+        raise InputError(file, "", str(error)) from None
+
+
 def _updated(file: Path, scene: Scene, found: TapFit, given: dict[str, Any]) -> Any:
     """What FILE holds, a cue or a scene, with the fitted wood to six digits."""
     from cuefem.cue import Cue
@@ -99,5 +119,5 @@ def _updated(file: Path, scene: Scene, found: TapFit, given: dict[str, Any]) -> 
 
     E, G, rho = (float(f"{getattr(found.wood, name):.6g}") for name in ("E", "G", "rho"))
     cue = with_material(found.cue, found.wood, replace(found.wood, E=E, G=G, rho=rho))
-    held = load(file, material=given["material"])
+    held = load(file, material=given["material"], length_unit=given["length_unit"])
     return cue if isinstance(held, Cue) else replace(held, cue=cue)

@@ -4,6 +4,7 @@ shafts as CAD surfaces."""
 from __future__ import annotations
 
 import ast
+import errno
 import os
 from collections.abc import Callable
 from pathlib import Path
@@ -18,6 +19,7 @@ from cuefem.scene import Scene
 __all__ = [
     "DEFAULT_MATERIAL",
     "InputError",
+    "check_place",
     "load",
     "load_accuracy",
     "number",
@@ -118,6 +120,15 @@ def write_whole(path: Path, put: Callable[[Path], object]) -> None:
         raise InputError(path, "", f"cannot be written: {reason(error)}") from None
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def check_place(path: Path) -> None:
+    """InputError, before anything is computed, where no file can be written at ``path``."""
+    goal = Path(os.path.realpath(path))
+    held = goal.parent.is_dir()
+    if goal.is_dir() or not held or not os.access(goal.parent, os.W_OK):
+        code = errno.EISDIR if goal.is_dir() else errno.EACCES if held else errno.ENOENT
+        raise InputError(path, "", f"cannot be written: {os.strerror(code)}")
 
 
 def studies_with(folder: Path, function: str) -> list[Path]:
