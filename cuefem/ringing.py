@@ -16,6 +16,7 @@ FAINT = 0.05  # of the loudest hop's power: taps below are left out
 CONTACT = 0.002  # s after the loudest sample: by then the knuckle or mallet has left
 SHORTEST, LONGEST = 0.1, 0.6  # s of ringing: less does not tell tones apart, more is noise
 TAPS = 6
+LOUDEST = 1e12  # whatever its units are: beyond, powers overflow
 RATES = Quantity("Hz", "[8000, 384000]")
 
 
@@ -36,7 +37,7 @@ class Ringing:
 def ringing(signal: ArrayLike, rate: float) -> Ringing:
     """The free decays in a recording, (samples,) or (samples, channels), of at most `TAPS` taps.
 
-    ValueError where it is too short, not finite, silent, or clipped to its end.
+    ValueError where it is too short, not finite, beyond `LOUDEST`, silent, or clipped to its end.
     """
     rate = RATES.check("ringing rate", rate)
     signal = np.asarray(signal, float)
@@ -45,6 +46,8 @@ def ringing(signal: ArrayLike, rate: float) -> Ringing:
         raise ValueError(f"a recording must last {2 * SHORTEST:g} s or more; got {len(signal) / rate:.3g} s")
     if not np.isfinite(signal).all():
         raise ValueError("a recording must hold finite samples; got nan or inf")
+    if (peak := float(np.abs(signal).max(initial=0.0))) > LOUDEST:
+        raise ValueError(f"a recording must hold samples within [-{LOUDEST:g}, {LOUDEST:g}]; got {peak:.3g}")
     signal = _channels(signal - signal.mean(axis=0))
     onsets = _onsets(signal, rate)
     ends = [*onsets[1:], len(signal)]

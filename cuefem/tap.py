@@ -90,7 +90,8 @@ class TapTest:
 
     segment: whose material is in question, main_material otherwise. mass: of the hung shaft, weighed, kg. model:
     relative error of a mode's frequency. effects: of a scene; point masses and joints stay on the shaft, supports do
-    not. Cost: 27 solutions of the modes, once. ValueError for a mass below that of the other parts.
+    not. Cost: 27 solutions of the modes, once. ValueError for a mass that asks for a density
+    beyond a factor `FACTOR` of the file's.
     """
 
     def __init__(
@@ -107,24 +108,27 @@ class TapTest:
         wood = main_material(cue, segment)
         hung = tuple(effect for effect in effects if isinstance(effect, PointMass | Joint))
         self.shaft, self.weighed, self.notes = Shaft(cue, wood, hung), mass is not None, list[str]()
-        extra = sum(effect.mass for effect in hung if isinstance(effect, PointMass))
-        self.rho, self.rho_error = (wood.rho, DENSITY) if mass is None else self._weigh(mass - extra)
+        self.rho, self.rho_error = (wood.rho, DENSITY) if mass is None else self._weigh(mass)
         self.table = ModeTable(self.shaft, self.rho)
 
     def _weigh(self, mass: float) -> tuple[float, float]:
         """(density of the wood, its relative error)."""
         mass = Quantity("kg", "(0, inf)").check("mass", mass)
         cue, wood = self.shaft.cue, self.shaft.wood
+        drawn = cue.shaft_mass + sum(e.mass for e in self.shaft.effects if isinstance(e, PointMass))
         own = with_material(cue, wood, replace(wood, rho=2 * wood.rho)).shaft_mass - cue.shaft_mass
-        others = cue.shaft_mass - own
-        if mass <= others:
-            least = f"({1e3 * others:.4g}, inf) g, more than the shaft's other parts weigh"
-            raise ValueError(f"mass must be in {least}; got {1e3 * mass:.4g} g")
+        others = drawn - own
+        low, high = others + own / FACTOR, others + own * FACTOR
+        if not low <= mass <= high:
+            bound = (
+                f"[{1e3 * low:.4g}, {1e3 * high:.4g}] g, the wood's density within a factor {FACTOR:g} of the file's"
+            )
+            raise ValueError(f"mass must be in {bound}; got {1e3 * mass:.4g} g")
         rho = wood.rho * (mass - others) / own
         if abs(rho / wood.rho - 1) > ODD:
             self.notes.append(
                 f"{1e3 * mass:.4g} g makes the wood {rho:.0f} kg/m³, the file has {wood.rho:.0f} (a shaft of "
-                f"{1e3 * cue.shaft_mass:.4g} g): check the scale and the drawing; weigh the drawn shaft alone"
+                f"{1e3 * drawn:.4g} g): check the scale and the drawing; weigh the drawn shaft alone"
             )
         return rho, SCALE / (mass - others)
 

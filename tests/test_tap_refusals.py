@@ -9,6 +9,7 @@ import pytest
 from command_line import call
 from scipy.io import wavfile
 
+from cuefem import PointMass
 from cuefem.ringing import ringing
 from cuefem.tap import TapTest
 from cuefem.tones import Tone, tones
@@ -39,6 +40,7 @@ RECORDINGS = {
     "silent": (np.zeros(RATE), "a recording must hold a sound; got silence"),
     "constant": (np.full(RATE, 0.25), "a recording must hold a sound; got silence"),
     "nan": (np.where(np.arange(RATE) == 7, np.nan, NOISE), "a recording must hold finite samples; got nan or inf"),
+    "loud": (1e30 * NOISE, "a recording must hold samples within [-1e+12, 1e+12]; got 3.9e+29"),
     "noise": (NOISE, "must hold a decaying tone between 60 and 8000 Hz; got none"),
     "hum": (np.sin(2 * np.pi * 150 * T), "must hold a decaying tone between 60 and 8000 Hz; got none"),
     "clipped": (decaying(300.0, 0.001)[: int(1.6 * RATE)], "clipped beyond use: record with less gain or farther away"),
@@ -104,11 +106,19 @@ def test_places_where_nothing_can_be_written(options: tuple[str, ...], tmp_path:
     assert list(tmp_path.iterdir()) == [tmp_path / "dir.toml"]
 
 
-def test_a_mass_below_that_of_the_other_parts() -> None:
-    with pytest.raises(
-        ValueError, match=r"mass must be in \(.*, inf\) g, more than the shaft's other parts weigh; got 2"
-    ):
-        TapTest(cue("pool_maple"), mass=0.002)
+@pytest.mark.parametrize("mass", [0.002, 11.8, 1e-300, 1e300])
+def test_a_mass_that_no_such_shaft_has(mass: float) -> None:
+    """Below that of the other parts, and kilograms for grams."""
+    bound = r"mass must be in \[.*\] g, the wood's density within a factor 3 of the file's; got "
+    with pytest.raises(ValueError, match=bound):
+        TapTest(cue("pool_maple"), mass=mass)
+
+
+def test_a_weighed_mass_holds_the_clay() -> None:
+    clay, drawn = PointMass(0.1, 0.02), cue("kim").shaft_mass
+    assert TapTest(cue("kim"), mass=drawn + 0.02, effects=(clay,)).notes == []
+    with pytest.raises(ValueError, match=rf"; got {1e3 * (drawn / 3 + 0.01):.4g} g"):
+        TapTest(cue("kim"), mass=drawn / 3 + 0.01, effects=(clay,))
 
 
 def test_a_lumped_cue_has_no_tones(tmp_path: Path) -> None:
