@@ -85,6 +85,21 @@ def test_an_animation_of_bad_numbers(scene: Path, tmp_path: Path, options: list[
     assert list(tmp_path.iterdir()) == [scene]
 
 
+@pytest.mark.parametrize("options", [("--count", "0"), ("--count", "101"), ("--frames", "1"), ("--frames", "10001")])
+def test_an_animation_of_too_few_or_too_many(scene: Path, tmp_path: Path, options: tuple[str, ...]) -> None:
+    status, out, err = call("animate", scene, "-o", tmp_path / "seen", *options)
+    assert (status, out) == (2, "")
+    assert f"Invalid value for '{options[0]}': {options[1]} is not in the range" in err
+    assert list(tmp_path.iterdir()) == [scene]
+
+
+@pytest.mark.parametrize("where", ["none/cue.json", "dir.json"])
+def test_a_place_where_nothing_can_be_written(scene: Path, tmp_path: Path, where: str) -> None:
+    (tmp_path / "dir.json").mkdir()
+    assert f"{where}: cannot be written: " in refused("handover", scene, "-o", tmp_path / where)
+    assert sorted(path.name for path in tmp_path.rglob("*")) == ["dir.json", "scene.toml"]
+
+
 def test_an_animation_of_a_cue_that_is_raised(scene: Path, tmp_path: Path) -> None:
     cf.save(replace(SCENE, effects=(cf.Elevation(0.1),)), scene)
     assert "in the plane of cue and ball; got Elevation" in refused("animate", scene, "-o", tmp_path / "seen")

@@ -92,6 +92,8 @@ def test_the_json_of_the_command(scene: Path, tmp_path: Path) -> None:
     status, out, err = call("handover", scene, "--for", "pooltool", "-o", tmp_path / "cue.json")
     assert (status, out, err) == (0, f"wrote {tmp_path / 'cue.json'}\n", "")
     assert json.loads((tmp_path / "cue.json").read_text(encoding="utf-8")) == found
+    assert as_json(scene, "-o", tmp_path / "again.json", "--json") == found
+    assert (tmp_path / "again.json").read_bytes() == (tmp_path / "cue.json").read_bytes()
 
 
 def test_what_a_lumped_cue_leaves_out() -> None:
@@ -128,6 +130,13 @@ def test_a_scene_without_a_dome() -> None:
     found = pooltool_record("bare", cf.Scene(KIM, stroke=cf.Stroke(offset=0.3)))
     assert found["CueSpecs"]["tip_radius"] == NICKEL
     assert any("nickel" in note for note in found["notes"])
+
+
+def test_a_raised_cue_is_remarked() -> None:
+    raised = replace(SCENE, effects=(cf.Elevation(0.1),))
+    note = "the cue is raised by 5.73°: its end mass holds the table's push, which pooltool's squirt does not know"
+    assert note in pooltool_record("raised", raised)["notes"]
+    assert not any("raised" in note for note in pooltool_record("level", SCENE)["notes"])
 
 
 def test_a31_with_the_stick_end_mass_turns_the_ball_too_little() -> None:

@@ -32,8 +32,14 @@ DRIVES = ("A.31", "stick", "velocity", "force", "squirt")
 @offset_option
 @click.option("--for", "whom", type=click.Choice(["pooltool"]), default="pooltool", show_default=True, help="For whom.")
 @click.option("--drive", type=click.Choice(DRIVES), default="A.31", show_default=True, help="Which end mass.")
-@click.option("-o", "--output", type=click.Path(path_type=Path), metavar="CUE.json", help="Write a file instead.")
-def handover(file: Path, whom: str, drive: Any, output: Path | None, **given: Any) -> None:
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    metavar="CUE.json",
+    help="Write a file; with --json print it too.",
+)
+def handover(file: Path, whom: str, drive: Any, output: Path | None, as_json: bool, **given: Any) -> None:
     """The end mass as a simulator takes it: pooltool's CueSpecs, and what the number means and is worth; JSON, SI."""
     from cuefem.io import InputError, write_whole
     from cuefem.report.handover import pooltool_record
@@ -48,18 +54,16 @@ def handover(file: Path, whom: str, drive: Any, output: Path | None, **given: An
         raise InputError(file, "", str(error)) from None
     found["notes"] += [f"assumed: {note}" for note in notes]
     text = json.dumps(plain(found), indent=2, allow_nan=False, ensure_ascii=False)
-    if output is None:
-        click.echo(text)
-    else:
+    if output is not None:
         write_whole(output, lambda temporary: temporary.write_text(text + "\n", encoding="utf-8"))
-        click.echo(f"wrote {output}")
+    click.echo(text if output is None or as_json else f"wrote {output}")
 
 
 @click.command()
 @file_options
 @contact_time_option
 @offset_option
-@click.option("--count", type=click.IntRange(min=1), default=6, show_default=True, help="How many modes.")
+@click.option("--count", type=click.IntRange(1, 100), default=6, show_default=True, help="How many modes.")
 @click.option("--frames", type=click.IntRange(2, 10_000), default=61, show_default=True, help="Times of the strike.")
 @click.option("--until", metavar="TIME", help="Of the last frame; three contact times where left out.")
 @click.option("--scale", type=float, default=1.0, show_default=True, help="What bending is drawn with.")

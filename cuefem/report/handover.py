@@ -15,7 +15,7 @@ from typing import Literal
 import numpy as np
 
 from cuefem.cue import Cue, LumpedCue
-from cuefem.effects import TipDome
+from cuefem.effects import Elevation, TipDome
 from cuefem.endmass import formula_of, stick
 from cuefem.modes import TipModes, lumped_tip_modes
 from cuefem.quantity import scalar
@@ -95,6 +95,9 @@ def _notes(scene: Scene) -> list[str]:
         notes.append("length and shaft_radius_at_butt are those of the file's segments; M is the whole cue's")
     if _dome(scene) is None:
         notes.append("tip_radius: pooltool's own, a nickel's; the scene has no TipDome")
+    for raised in (effect for effect in scene.effects if isinstance(effect, Elevation)):
+        told = f"the cue is raised by {np.degrees(raised.angle):.3g}°"
+        notes.append(f"{told}: its end mass holds the table's push, which pooltool's squirt does not know")
     if scene.ball.inertia != POOLTOOL_INERTIA:
         notes.append(f"pooltool's balls have the inertia factor 0.4; the scene's has {scene.ball.inertia:g}")
     return notes
