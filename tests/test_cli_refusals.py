@@ -225,3 +225,16 @@ def test_sizes_out_of_all_proportion(length: str, tmp_path: Path) -> None:
     assert out == ""
     assert [line for line in err.splitlines() if not line.startswith("unusual")] == [err.splitlines()[-1]]
     assert "out of all proportion" in err
+
+
+def test_more_memory_than_there_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr("cuefem.report.modes_record", full)
+    path = tmp_path / "cue.toml"
+    path.write_text(GOOD, encoding="utf-8")
+    said = (
+        "cuefem: this needs more memory than there is: ask for less, or check sizes, masses and times (MemoryError)\n"
+    )
+    assert call("modes", path, "--count", "1000000") == (2, "", said)

@@ -43,8 +43,10 @@ class _OneLine(click.Group):
             with np.errstate(over="raise", divide="raise", invalid="raise"):
                 return super().invoke(ctx)
         except (ArithmeticError, MemoryError) as error:
-            what = "sizes, masses or times are out of all proportion"
-            click.echo(f"cuefem: {what}, so that numbers overflow ({type(error).__name__})", err=True)
+            what = "sizes, masses or times are out of all proportion, so that numbers overflow"
+            if isinstance(error, MemoryError):
+                what = "this needs more memory than there is: ask for less, or check sizes, masses and times"
+            click.echo(f"cuefem: {what} ({type(error).__name__})", err=True)
             raise click.exceptions.Exit(2) from None
         except (ValueError, RuntimeError) as error:
             if isinstance(error, click.exceptions.Exit | click.exceptions.Abort):
