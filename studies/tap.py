@@ -140,6 +140,8 @@ def write_example(path: Path) -> None:
 
 
 if __name__ == "__main__":
+    if len(sys.argv) > 1 and not sys.argv[1].endswith(".wav"):
+        sys.exit("python -m studies.tap, or python -m studies.tap RECORDING.wav for a recording to try")
     if len(sys.argv) > 1:
         write_example(Path(sys.argv[1]))
     else:

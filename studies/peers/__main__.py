@@ -1,4 +1,7 @@
-"""The contest of all peers that are installed: writes peers.md and peers.png beside itself; about two minutes."""
+"""The contest of all peers that are installed, about two minutes: writes peers.md and peers.png.
+
+Beside itself where every peer took part; else into the folder it is called from, so that no committed row is lost.
+"""
 
 from __future__ import annotations
 
@@ -17,8 +20,10 @@ def main() -> None:
     """Hold the contest and write what came of it."""
     mpl.use("Agg")
     contest = hold(reference(), say=lambda word: print(word, flush=True))
-    (HERE / "peers.md").write_text(text(contest), encoding="utf-8")
-    draw(contest, HERE / "peers.png")
+    folder = Path() if contest.missing else HERE
+    (folder / "peers.md").write_text(text(contest), encoding="utf-8")
+    draw(contest, folder / "peers.png")
+    print(f"wrote {folder / 'peers.md'}")
 
 
 if __name__ == "__main__":
