@@ -16,6 +16,7 @@ length = "700 mm"
 tip_diameter = "12 mm"
 butt_diameter = "21 mm"
 tip_bore = "3 mm"
+butt_bore = "4 mm"
 material = { E = "12.6 GPa", G = "840 MPa", rho = "782 kg/m^3" }
 """
 CSV = "x [mm],diameter [mm]\n"

@@ -63,7 +63,8 @@ def scene_of(file: Path, given: dict[str, Any]) -> tuple[Scene, list[str]]:
     """The scene that a command computes, and what was assumed because nobody said it."""
     from cuefem.cue import Cue
     from cuefem.io import load
-    from cuefem.io.assumed import assumed, unusual
+    from cuefem.io.assumed import assumed
+    from cuefem.io.unusual import unusual
     from cuefem.scene import Scene, Stroke
 
     found = load(file, material=given["material"], length_unit=given.get("length_unit"))
@@ -102,6 +103,7 @@ def _with_options(scene: Scene, file: Path, given: dict[str, Any]) -> Scene:
 def show(file: Path, given: dict[str, Any], results: Callable[[Scene], Any], tables: Callable[..., Any]) -> None:
     """Compute all of it first, then print it all: as JSON, or as a heading and tables."""
     from cuefem.io import InputError
+    from cuefem.io.unusual import unusual
     from cuefem.report.records import UNITS, plain, scene_record
     from cuefem.report.tables import cue_line, effect_words
 
@@ -111,7 +113,8 @@ def show(file: Path, given: dict[str, Any], results: Callable[[Scene], Any], tab
     except ValueError as error:  # what only shows when it is computed, such as an effect off the cue
         raise InputError(file, "", str(error)) from None
     if given["as_json"]:
-        print_json({"file": str(file), "assumed": notes, "scene": about, **found, "units": UNITS})
+        said = {"file": str(file), "assumed": notes, "unusual": unusual(scene)}
+        print_json({**said, "scene": about, **found, "units": UNITS})
         return
     lines = [f"{file.name}: {cue_line(plain(about['cue']))}"]
     if scene.effects:
@@ -136,7 +139,7 @@ def print_all(things: Sequence[Any]) -> None:
     if not console.is_terminal:
         console.width = 120  # files and pipes have no width: do not cut tables
     for thing in things:
-        console.print(thing, markup=False) if isinstance(thing, str) else console.print(thing)
+        console.print(thing, markup=False) if isinstance(thing, str) else console.print(thing, crop=False)
 
 
 def followed(work: Sequence[Any]) -> Iterable[Any]:

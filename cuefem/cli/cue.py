@@ -127,13 +127,14 @@ def report(file: Path, output: Path | None, **given: Any) -> None:
 
 def _write_page(file: Path, output: Path, given: dict[str, Any]) -> None:
     from cuefem.io import InputError, load_accuracy, save_page
+    from cuefem.io.unusual import unusual
     from cuefem.report.page import page
 
     if given["as_json"]:
         raise InputError(output, "--output", "must be left out with --json: a page is no JSON")
     scene, notes = scene_of(file, given)
     try:
-        text = page(file.name, scene, rtol=load_accuracy(file), notes=notes, track=followed)
+        text = page(file.name, scene, rtol=load_accuracy(file), notes=notes, remarks=unusual(scene), track=followed)
     except ValueError as error:
         raise InputError(file, "", str(error)) from None
     save_page(text, output)

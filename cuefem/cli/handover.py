@@ -42,6 +42,7 @@ DRIVES = ("A.31", "stick", "velocity", "force", "squirt")
 def handover(file: Path, whom: str, drive: Any, output: Path | None, as_json: bool, **given: Any) -> None:
     """The end mass as a simulator takes it: pooltool's CueSpecs, and what the number means and is worth; JSON, SI."""
     from cuefem.io import InputError, write_whole
+    from cuefem.io.unusual import unusual
     from cuefem.report.handover import pooltool_record
     from cuefem.report.records import plain
 
@@ -52,7 +53,7 @@ def handover(file: Path, whom: str, drive: Any, output: Path | None, as_json: bo
         found = pooltool_record(file.stem, scene, drive=drive)
     except ValueError as error:
         raise InputError(file, "", str(error)) from None
-    found["notes"] += [f"assumed: {note}" for note in notes]
+    found["notes"] += [f"assumed: {note}" for note in notes] + [f"unusual: {remark}" for remark in unusual(scene)]
     text = json.dumps(plain(found), indent=2, allow_nan=False, ensure_ascii=False)
     if output is not None:
         write_whole(output, lambda temporary: temporary.write_text(text + "\n", encoding="utf-8"))

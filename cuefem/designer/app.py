@@ -24,8 +24,8 @@ from cuefem.designer.answers import Answers, Curve, Density, answers, coupled_po
 from cuefem.designer.model import Knobs, knobs_of, turned
 from cuefem.designer.sliders import Choice, Slider, choices, sliders, without
 from cuefem.designer.style import SCRIPT, STYLE
-from cuefem.io.assumed import unusual
 from cuefem.io.toml import toml_text
+from cuefem.io.unusual import unusual
 from cuefem.report.fragments import page_style
 from cuefem.report.page import page as report_page
 from cuefem.report.records import scene_record

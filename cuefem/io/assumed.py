@@ -1,4 +1,4 @@
-"""What a file leaves out and the defaults supply, in words for whoever reads the result; numbers that look mistaken."""
+"""What a file leaves out and the defaults supply, in words for whoever reads the result."""
 
 from __future__ import annotations
 
@@ -6,13 +6,9 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
-from cuefem.cue import Cue
 from cuefem.io.profile import DEFAULT_MATERIAL, DEFAULT_UNIT, SHAPES, SURFACES
 from cuefem.io.toml import read_tables
-from cuefem.scene import DEFAULT_CONTACT_TIME, Ball, Scene, Stroke, Tip
-
-CONTACT_TIMES = (1e-5, 1.0)  # s: a hundred times either side of leather's 1 to 2 ms, and more
-LONGEST, THICKEST = 3.0, 0.2  # m: beyond every cue
+from cuefem.scene import DEFAULT_CONTACT_TIME, Ball, Stroke, Tip
 
 
 def assumed(path: Path, given: Collection[str]) -> list[str]:
@@ -66,20 +62,3 @@ def _tables(found: dict[str, Any], given: Collection[str]) -> list[str]:
         ("offset" in stroke or "offset" in given, f"offset b/R {Stroke().offset:g}"),
     )
     return [words for said, words in known if not said]
-
-
-def unusual(scene: Scene) -> list[str]:
-    """Numbers that no cue and no blow has, as a wrong unit makes them, one line each; empty for ordinary scenes."""
-    lines = []
-    low, high = CONTACT_TIMES
-    time = float(scene.contact_time)
-    if not low <= time <= high:
-        lines.append(f"contact time {time:g} s; leather's is 0.001 to 0.002 s")
-    if isinstance(scene.cue, Cue):
-        length = sum(segment.length for segment in scene.cue.segments)
-        thickness = max(max(segment.tip_diameter, segment.butt_diameter) for segment in scene.cue.segments)
-        if length > LONGEST:
-            lines.append(f"a cue {length:g} m long; check the unit of its lengths")
-        if thickness > THICKEST:
-            lines.append(f"a cue {thickness:g} m thick; check the unit of its diameters")
-    return lines

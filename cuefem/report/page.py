@@ -52,15 +52,27 @@ class Stage(NamedTuple):
     work: Callable[[], Any]
 
 
-def page(name: str, scene: Scene, *, rtol: float | None = None, notes: Sequence[str] = (), track: Any = iter) -> str:
-    """The report of a scene as HTML. rtol: what is asked of the accuracy; track: follows the stages of the work."""
+def page(
+    name: str,
+    scene: Scene,
+    *,
+    rtol: float | None = None,
+    notes: Sequence[str] = (),
+    remarks: Sequence[str] = (),
+    track: Any = iter,
+) -> str:
+    """The report of a scene as HTML.
+
+    rtol: what is asked of the accuracy; notes: what was assumed; remarks: what is unusual; track: follows the stages.
+    """
     found: Record = {}
     rtol = DEFAULT_RTOL if rtol is None else rtol
     for stage in track(_stages(scene, rtol)):
         found[stage.name] = stage.work()
     template = environment().get_template("page.html.j2")
     asked = f"{100 * rtol:.3g} %"
-    return template.render(name=name, notes=list(notes), asked=asked, **_context(scene, found)) + "\n"
+    said = {"notes": list(notes), "remarks": list(remarks)}
+    return template.render(name=name, asked=asked, **said, **_context(scene, found)) + "\n"
 
 
 def _stages(scene: Scene, rtol: float) -> list[Stage]:

@@ -1,0 +1,94 @@
+"""Numbers that no cue and no blow has, as a wrong unit or a diameter typed as a radius makes them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+from cuefem.cue import Cue, Segment
+from cuefem.effects import TipDome
+from cuefem.scene import Scene
+
+JUMP = 1.5  # of the diameter between two segments
+
+
+class Usual(NamedTuple):
+    """Numbers of a scene (by name, SI), between which two they lie, the unit that shows them, and what else to ask."""
+
+    of: Callable[[Scene], Iterable[tuple[str, Any]]]
+    least: float
+    most: float
+    scale: float
+    unit: str
+    ask: str
+
+
+def _segments(scene: Scene) -> tuple[Segment, ...]:
+    return scene.cue.segments if isinstance(scene.cue, Cue) else ()
+
+
+def _diameters(scene: Scene) -> Iterable[tuple[str, float]]:
+    for i, segment in enumerate(_segments(scene)):
+        yield f"segments[{i}].tip_diameter", segment.tip_diameter
+        yield f"segments[{i}].butt_diameter", segment.butt_diameter
+
+
+# Beyond every cue and every table, yet within a factor of ten: what a unit is wrong by.
+USUAL = (
+    Usual(lambda s: [("contact time", s.contact_time)], 1e-5, 1.0, 1, "s", "leather's is 0.001 to 0.002 s"),
+    Usual(
+        lambda s: [("ball radius", s.ball.radius)], 0.02, 0.04, 1e3, "mm", "26 to 31 is usual: is that the diameter?"
+    ),
+    Usual(lambda s: [("ball mass", s.ball.mass)], 0.08, 0.4, 1e3, "g", "140 to 210 is usual"),
+    Usual(lambda s: [("stroke speed", s.stroke.speed)], 0.01, 30.0, 1, "m/s", "0.5 to 12 is usual"),
+    Usual(
+        lambda s: [("TipDome radius", effect.radius) for effect in s.effects if isinstance(effect, TipDome)],
+        *(0.005, 0.02, 1e3, "mm", "9 to 10.6 is usual, a dime's or a nickel's"),
+    ),
+    Usual(
+        lambda s: [("drawn length", s.cue.length)] if isinstance(s.cue, Cue) else [],
+        *(0.3, 3.0, 1e3, "mm", "check the unit of the lengths"),
+    ),
+    Usual(_diameters, 0.005, 0.06, 1e3, "mm", "check the unit of the diameters"),
+    Usual(
+        lambda s: [("drawn mass", s.cue.shaft_mass)] if isinstance(s.cue, Cue) else [],
+        *(0.02, float("inf"), 1e3, "g", "check the sizes and the densities"),
+    ),
+    Usual(lambda s: [("mass of the whole cue", float(s.cue.mass))], 0, 1.0, 1, "kg", "0.4 to 0.7 is usual"),
+)
+
+
+def unusual(scene: Scene) -> list[str]:
+    """Numbers that no cue and no blow has, one line each; empty for ordinary scenes."""
+    return [*filter(None, map(lambda usual: _beyond(usual, scene), USUAL)), *_shape(_segments(scene))]
+
+
+def _beyond(usual: Usual, scene: Scene) -> str:
+    """The first number that is out of bounds, in a line."""
+    for name, value in usual.of(scene):
+        if not usual.least <= value <= usual.most:
+            return f"{name} {usual.scale * value:.6g} {usual.unit}; {usual.ask}"
+    return ""
+
+
+def _shape(segments: tuple[Segment, ...]) -> list[str]:
+    """What the outline of a cue has that none has."""
+    lines = []
+    for i, (one, other) in enumerate(pairwise(segments)):
+        ends = one.butt_diameter, other.tip_diameter
+        if max(ends) > JUMP * min(ends):
+            sizes = " to ".join(f"{1e3 * end:.4g}" for end in ends)
+            lines.append(f"the diameter jumps from {sizes} mm between segments[{i}] and segments[{i + 1}]")
+    if segments and segments[0].tip_diameter > segments[-1].butt_diameter:
+        ends = segments[0].tip_diameter, segments[-1].butt_diameter
+        sizes = " and ".join(f"{1e3 * end:.4g}" for end in ends)
+        lines.append(f"the tip is thicker than the butt, {sizes} mm; is the profile butt first?")
+    for i, segment in enumerate(segments):
+        for end, here, there in (
+            ("tip", segment.tip_bore, segment.butt_bore),
+            ("butt", segment.butt_bore, segment.tip_bore),
+        ):
+            if here == 0 < there:
+                lines.append(f"the bore of segments[{i}] comes to a point; is {end}_bore left out?")
+    return lines
