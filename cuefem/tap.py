@@ -30,6 +30,8 @@ RIVAL = np.log(20)  # a hypothesis whose odds are better than 1 : 20 is not rule
 STEP = 0.02  # of central differences in the logarithms
 OUTLIER = 4.5  # standard deviations
 POOR = 5e-3  # misfit that a good drawing of an even shaft does not have
+OURS = 0.7  # of the clear tones' power: less is explained where the drawing is another shaft's
+FAR = 0.97  # of ln `FACTOR`: an E as far from the file's is at the end of the search
 FOLDED = 1e-3  # relative, of a tone that may be a whole multiple of another
 FREE = [0, 2]  # of (ln E, ln G/E, ln rho), where G/E is kept
 
@@ -260,9 +262,15 @@ def remarks(found: TapFit, *, edge: bool = False) -> list[str]:
         lines.append(f"not weighed: the file's density is kept, taken to be known to {100 * DENSITY:.0f} % (--mass)")
     if edge:
         lines.append(f"G/E at the end of what shafts have ({RATIOS[0]:.3g} to {RATIOS[1]:.3g}): check the drawing")
+    clear = [m for m in found.matched if m.tone.kind == "tone"]
+    loud = sum(m.tone.level**2 for m in clear if m.mode is not None)
+    if loud < OURS * sum(m.tone.level**2 for m in clear):
+        lines.append("loud tones are none of this shaft's: check that it is the one drawn, and that it hung free")
+    if abs(np.log(found.wood.E / found.before.E)) > FAR * np.log(FACTOR):
+        lines.append(f"E at the end of the search, a factor {FACTOR:g} from the file's: check the drawing's material")
     if found.misfit > POOR:
         lines.append(f"the tones fit to {100 * found.misfit:.2g} % only: check the drawing; errors are widened")
-    wrong = [m.tone.frequency for m in found.matched if m.mode is None and m.tone.kind == "tone"]
+    wrong = [m.tone.frequency for m in clear if m.mode is None]
     if wrong:
         lines.append(f"no bending tone of this shaft: {', '.join(f'{f:.1f}' for f in wrong)} Hz")
     if missed := sorted(set(range(1, max(ours))) - set(ours)):

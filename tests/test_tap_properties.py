@@ -21,7 +21,7 @@ from cuefem.ringing import ringing
 from cuefem.tap import KEPT, TapTest
 from cuefem.tones import Tone, tones
 from studies import tap
-from studies.common import MESHES, cue
+from studies.common import MESHES, NAMES, cue
 
 RATE = 10000  # of the recordings here: shorter sums
 KIM = MESHES / "kim.toml"
@@ -152,6 +152,35 @@ def test_a_wrong_tone_is_left_out(kim_test: TapTest, true_tones: np.ndarray) -> 
     assert fooled.wood == honest.wood
     assert [m.mode for m in fooled.matched] == [1, 2, 3, 4, 5, None, None]
     assert any("200.0, 777.0 Hz" in note for note in fooled.notes)
+
+
+def test_the_drawing_of_another_shaft_is_doubted() -> None:
+    """Tones that fit in part, or by wood at the end of the search: what was found is told, with the doubt."""
+
+    def struck(found: np.ndarray) -> list[Tone]:
+        return [replace(told(f), level=found[0] / f) for f in found]
+
+    hollow, maple = (modes(tap.true(name), 9).frequencies for name in ("pool_hollow", "pool_maple"))
+    notes = tap.hung("pool_maple").fit(struck(hollow)).notes
+    assert any(note.startswith("loud tones are none of this shaft's") for note in notes)
+    notes = tap.hung("carbon").fit(struck(maple)).notes
+    assert any(note.startswith("E at the end of the search, a factor 3 from the file's") for note in notes)
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("name", NAMES)
+def test_recordings_of_all_other_shafts_are_doubted(name: str) -> None:
+    doubts = ("the tones cannot be told apart", "loud tones are none", "E at the end of the search", "the tones fit to")
+    for other in NAMES:
+        sound = tap.recording(tap.ringing_shaft(tap.true(other)), 20.0, 1)
+        notes = tap.hung(name).fit(tones(ringing(sound, 48000.0))).notes
+        assert any(note.startswith(doubts) for note in notes) == (name != other)
+
+
+@pytest.mark.parametrize("name", ["kim", "pool_maple"])
+def test_the_right_drawing_is_not_doubted(name: str) -> None:
+    heard = modes(tap.true(name), 8).frequencies
+    assert tap.hung(name).fit([told(f) for f in heard]).notes == ()
 
 
 def test_the_order_of_tones_does_not_matter(kim_test: TapTest, true_tones: np.ndarray) -> None:
