@@ -82,8 +82,25 @@ def test_a_bare_cue_gets_defaults_and_says_so(kim: str) -> None:
     found = as_json("strike", kim)
     assert found["scene"]["ball"] == {"mass": 0.21, "radius": 0.03075, "inertia": 0.4}
     assert found["scene"]["stroke"] == {"speed": 1.0, "offset": 0.3}
-    assert found["assumed"] == ["default ball and tip, offset b/R 0.3"]
-    assert "assumed: default ball and tip, offset b/R 0.3" in run("strike", kim)
+    assert found["assumed"] == [
+        *("carom ball 210 g, 61.5 mm (--ball)", "contact time 2 ms (--contact-time; about 1 ms is usual)"),
+        *("e 0.75", "mu 0.7", "stroke 1 m/s", "offset b/R 0.3"),
+    ]
+    words = "assumed: carom ball 210 g, 61.5 mm (--ball); contact time 2 ms (--contact-time; about 1 ms is usual)"
+    assert words in " ".join(run("strike", kim).split())
+    assert "carom ball 210 g, 61.5 mm" in as_json("modes", kim)["assumed"]  # which has no --ball
+
+
+@pytest.mark.parametrize(
+    ("name", "mass", "radius"), [("pool", 0.17, 0.028575), ("carom", 0.21, 0.03075), ("snooker", 0.142, 0.02625)]
+)
+def test_a_ball_by_its_name(kim: str, scene: str, name: str, mass: float, radius: float) -> None:
+    found = as_json("strike", kim, "--ball", name)
+    assert found["scene"]["ball"] == {"mass": mass, "radius": radius, "inertia": 0.4}
+    assert not [words for words in found["assumed"] if "ball" in words]
+    blow = cf.Scene(KIM, cf.Ball(mass, radius), stroke=BLOW)
+    assert found["models"]["coupled"]["squirt"] == pytest.approx(cf.strike(blow).squirt, rel=1e-12)
+    assert as_json("end-mass", scene, "--ball", name)["scene"]["ball"]["mass"] == mass
 
 
 def test_strike(kim: str) -> None:
@@ -200,10 +217,13 @@ def test_a_profile_announces_that_nothing_is_behind_it(tmp_path: Path) -> None:
 def test_a_scene_announces_what_it_leaves_out(kim: str, tmp_path: Path) -> None:
     scene = tmp_path / "short.toml"
     scene.write_text("cue = 'kim.toml'\n[ball]\nmass = '170 g'\n[tip]\nfriction = 0.6\n")
-    left = ["ball diameter 61.5 mm", "contact time 2 ms", "e 0.75", "stroke 1 m/s", "offset b/R 0"]
+    left = ["ball diameter 61.5 mm", "contact time 2 ms (--contact-time; about 1 ms is usual)"]
+    left += ["e 0.75", "stroke 1 m/s", "offset b/R 0 (head on: [stroke] offset gives another)"]
     assert as_json("end-mass", str(scene))["assumed"] == left
     told = as_json("strike", str(scene), "--offset", "0.2", "--contact-time", "1 ms")["assumed"]
     assert told == ["ball diameter 61.5 mm", "e 0.75", "stroke 1 m/s"]
+    words = as_json("strike", str(scene))["assumed"][-1]
+    assert words == "offset b/R 0 (head on: --offset or [stroke] offset gives another)"
     scene.write_text("cue = 'shaft.csv'\n[stroke]\noffset = 0.1\n")
     (tmp_path / "shaft.csv").write_text("x [mm],diameter [mm]\n0,12\n700,21\n")
     assert as_json("modes", str(scene))["assumed"][:2] == [

@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from cuefem.scene import Scene
 
 DEFAULT_OFFSET = 0.3  # of a bare cue file, b/R
+# Mass, kg, and radius, m, of the balls that people play with; sources: studies/scenes (pool 2.25 in and at most 6 oz,
+# carom UMB 61.5 mm, snooker WPBSA 52.5 mm and what sets are sold at).
+BALLS = {"pool": (0.170, 0.028575), "carom": (0.210, 0.03075), "snooker": (0.142, 0.02625)}
 
 
 def file_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -35,9 +38,10 @@ def cue_options(command: Callable[..., Any]) -> Callable[..., Any]:
     return command
 
 
-def contact_time_option(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The option that replaces the scene's contact time."""
-    return click.option("--contact-time", metavar="TIME", help='Head-on contact time, e.g. "2 ms".')(command)
+def blow_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The options that replace the scene's ball and contact time."""
+    ball = click.option("--ball", type=click.Choice(tuple(BALLS)), help="Instead of the scene's; carom in a bare cue.")
+    return ball(click.option("--contact-time", metavar="TIME", help='Head-on contact time, e.g. "2 ms".')(command))
 
 
 def offset_option(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -63,17 +67,16 @@ def scene_of(file: Path, given: dict[str, Any]) -> tuple[Scene, list[str]]:
     """The scene that a command computes, and what was assumed because nobody said it."""
     from cuefem.cue import Cue
     from cuefem.io import load
-    from cuefem.io.assumed import assumed
+    from cuefem.io.assumed import assumed, assumed_blow
     from cuefem.io.unusual import unusual
     from cuefem.scene import Scene, Stroke
 
     found = load(file, material=given["material"], length_unit=given.get("length_unit"))
     said = {name for name, value in given.items() if value is not None}
-    notes = assumed(file, said)
+    notes = assumed(file, said, offered=given)
     if isinstance(found, Cue):
         found = Scene(found, stroke=Stroke(offset=DEFAULT_OFFSET))
-        offset = "" if "offset" in said else f", offset b/R {DEFAULT_OFFSET:g}"
-        notes.append(f"default ball and tip{offset}")
+        notes += assumed_blow({}, said, offered=given, offset=DEFAULT_OFFSET)
     scene = _with_options(found, file, given)
     for line in unusual(scene):
         click.echo(f"unusual: {line}", err=True)
@@ -85,7 +88,10 @@ def _with_options(scene: Scene, file: Path, given: dict[str, Any]) -> Scene:
     from cuefem.cue import Cue
     from cuefem.io import InputError
     from cuefem.quantity import Quantity
+    from cuefem.scene import Ball
 
+    if given.get("ball") is not None:
+        scene = replace(scene, ball=Ball(*BALLS[given["ball"]]))
     if given.get("offset") is not None:
         offset = measured(file, "--offset", given["offset"], Quantity("", "(-1, 1)"))
         scene = replace(scene, stroke=replace(scene.stroke, offset=offset))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from cuefem.cli.common import contact_time_option, file_options, followed, measured, offset_option, scene_of, show
+from cuefem.cli.common import blow_options, file_options, followed, measured, offset_option, scene_of, show
 
 if TYPE_CHECKING:
     from cuefem.scene import Scene
@@ -36,7 +36,7 @@ def modes(file: Path, near: str | None, count: int, **given: Any) -> None:
 
 @click.command("end-mass")
 @file_options
-@contact_time_option
+@blow_options
 def end_mass(file: Path, **given: Any) -> None:
     """How much mass the ball feels across the cue at its tip."""
     from cuefem.report import end_mass_record, end_mass_table
@@ -46,7 +46,7 @@ def end_mass(file: Path, **given: Any) -> None:
 
 @click.command()
 @file_options
-@contact_time_option
+@blow_options
 @offset_option
 def strike(file: Path, **given: Any) -> None:
     """One stroke: squirt, speed, spin and pivot length; to the file's [accuracy] rtol, where it has one."""
@@ -63,7 +63,7 @@ def strike(file: Path, **given: Any) -> None:
 
 @click.command()
 @file_options
-@contact_time_option
+@blow_options
 @offset_option
 def effects(file: Path, **given: Any) -> None:
     """What each effect is worth: each one listed dropped, each other one added.
@@ -82,7 +82,7 @@ def effects(file: Path, **given: Any) -> None:
 
 @click.command()
 @file_options
-@contact_time_option
+@blow_options
 @offset_option
 @click.option("--most", type=click.IntRange(min=24), default=150, show_default=True, help="Modes at most.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), metavar="FIGURE", help="Draw it too: .png or .svg.")
@@ -105,7 +105,7 @@ def cost(file: Path, most: int, output: Path | None, **given: Any) -> None:
 
 @click.command()
 @file_options
-@contact_time_option
+@blow_options
 @offset_option
 @click.option("-o", "--output", type=click.Path(path_type=Path), metavar="PAGE.html", help="Write a page instead.")
 def report(file: Path, output: Path | None, **given: Any) -> None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from cuefem.cli.common import (
-    contact_time_option,
+    blow_options,
     file_options,
     followed,
     measured,
@@ -28,7 +28,7 @@ DRIVES = ("A.31", "stick", "velocity", "force", "squirt")
 
 @click.command()
 @file_options
-@contact_time_option
+@blow_options
 @offset_option
 @click.option("--for", "whom", type=click.Choice(["pooltool"]), default="pooltool", show_default=True, help="For whom.")
 @click.option("--drive", type=click.Choice(DRIVES), default="A.31", show_default=True, help="Which end mass.")
@@ -62,7 +62,7 @@ def handover(file: Path, whom: str, drive: Any, output: Path | None, as_json: bo
 
 @click.command()
 @file_options
-@contact_time_option
+@blow_options
 @offset_option
 @click.option("--count", type=click.IntRange(1, 100), default=6, show_default=True, help="How many modes.")
 @click.option("--frames", type=click.IntRange(2, 10_000), default=61, show_default=True, help="Times of the strike.")

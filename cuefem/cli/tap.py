@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from cuefem.cli.common import (
-    contact_time_option,
+    blow_options,
     cue_options,
     measured,
     offset_option,
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 )
 @click.option("--figure", type=click.Path(path_type=Path), metavar="FIGURE", help="Draw the spectrum: .png or .svg.")
 @cue_options
-@contact_time_option
+@blow_options
 @offset_option
 def tap(recording: Path, file: Path, output: Path | None, figure: Path | None, **given: Any) -> None:
     """The shaft's wood by ear: E, G and density from a recording of the shaft, hung free and tapped.

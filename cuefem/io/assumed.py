@@ -10,14 +10,18 @@ from cuefem.io.profile import DEFAULT_MATERIAL, DEFAULT_UNIT, SHAPES, SURFACES
 from cuefem.io.toml import read_tables
 from cuefem.scene import DEFAULT_CONTACT_TIME, Ball, Stroke, Tip
 
+SHORTER = "; about 1 ms is usual"  # a pool ball's, measured; 2 ms is [Kim]'s
 
-def assumed(path: Path, given: Collection[str]) -> list[str]:
-    """What a loaded cue or scene file leaves to defaults. given: options said besides, such as "offset"."""
+
+def assumed(path: Path, given: Collection[str], *, offered: Collection[str] = ()) -> list[str]:
+    """What a loaded cue or scene file leaves to defaults. given: options said besides, such as "offset"; offered: all
+    that the command has."""
     found = read_tables(path) if path.suffix.lower() == ".toml" else {}
     if "cue" not in found:
         return _profile(path, given, " (choose with --material)")
     cue = found["cue"]
-    return [*(_profile(path.parent / cue, given) if isinstance(cue, str) else []), *_tables(found, given)]
+    shaft = _profile(path.parent / cue, given) if isinstance(cue, str) else []
+    return [*shaft, *assumed_blow(found, given, offered=offered)]
 
 
 def _profile(path: Path, given: Collection[str], choose: str = "") -> list[str]:
@@ -48,17 +52,29 @@ def _fit(path: Path) -> list[str]:
     ]
 
 
-def _tables(found: dict[str, Any], given: Collection[str]) -> list[str]:
-    """What a scene's tables leave out."""
+def assumed_blow(
+    found: dict[str, Any], given: Collection[str], *, offered: Collection[str], offset: float | None = None
+) -> list[str]:
+    """What a scene's tables leave out of ball, tip and stroke. offset: of a cue alone, which has no tables."""
     ball, tip, stroke = (found.get(name, {}) for name in ("ball", "tip", "stroke"))
+    grams, across = f"{1e3 * Ball().mass:g} g", f"{2e3 * Ball().radius:g} mm"
+    neither = not {"mass", "radius"} & {*ball}
     timed = {"contact_time", "stiffness"} & {*tip, *given}
+    option = "--offset or " if "offset" in offered else ""
+    head_on = f" (head on: {option}[stroke] offset gives another)" if offset is None else ""
     known = (
-        ("mass" in ball, f"ball {1e3 * Ball().mass:g} g"),
-        ("radius" in ball, f"ball diameter {2e3 * Ball().radius:g} mm"),
-        (bool(timed), f"contact time {1e3 * DEFAULT_CONTACT_TIME:g} ms"),
+        ("ball" in given or not neither, f"carom ball {grams}, {across}{_option('ball', offered)}"),
+        ("ball" in given or neither or "mass" in ball, f"ball {grams}"),
+        ("ball" in given or neither or "radius" in ball, f"ball diameter {across}"),
+        (bool(timed), f"contact time {1e3 * DEFAULT_CONTACT_TIME:g} ms{_option('contact_time', offered, SHORTER)}"),
         ("restitution" in tip, f"e {Tip().restitution:g}"),
         ("friction" in tip, f"mu {Tip().friction:g}"),
         ("speed" in stroke, f"stroke {Stroke().speed:g} m/s"),
-        ("offset" in stroke or "offset" in given, f"offset b/R {Stroke().offset:g}"),
+        ("offset" in stroke or "offset" in given, f"offset b/R {offset or Stroke().offset:g}{head_on}"),
     )
     return [words for said, words in known if not said]
+
+
+def _option(name: str, offered: Collection[str], more: str = "") -> str:
+    """The option that says another, where the command has it."""
+    return f" (--{name.replace('_', '-')}{more})" if name in offered else ""
