@@ -56,7 +56,7 @@ def tap(recording: Path, file: Path, output: Path | None, figure: Path | None, *
             check_place(place)
     scene, notes = scene_of(file, given)
     heard, found = _heard(recording, file, scene, given)
-    record = tap_record(found, heard, _predicted(file, scene, found))
+    record = tap_record(found, heard, *_predicted(file, scene, found))
     about = scene_record(replace(scene, cue=found.cue))
     if output is not None:
         if found.rivals:
@@ -101,12 +101,14 @@ def _heard(recording: Path, file: Path, scene: Scene, given: dict[str, Any]) -> 
         raise InputError(recording, "", str(error)) from None
 
 
-def _predicted(file: Path, scene: Scene, found: TapFit) -> dict[str, Predicted]:
+def _predicted(file: Path, scene: Scene, found: TapFit) -> tuple[dict[str, Predicted], str]:
+    """The scene's numbers with the fitted wood, and the regime of its stroke."""
     from cuefem.io import InputError
+    from cuefem.strike import strike
     from cuefem.tap import predicted
 
     try:
-        return predicted(scene, found)
+        return predicted(scene, found), strike(replace(scene, cue=found.cue)).regime
     except ValueError as error:
         raise InputError(file, "", str(error)) from None
 

@@ -11,7 +11,7 @@ import numpy as np
 from rich.table import Table
 
 from cuefem.report.records import Record
-from cuefem.report.tables import NONE, grams, significant, table_of, with_caption
+from cuefem.report.tables import MISCUE, NONE, grams, significant, table_of, with_caption
 from cuefem.ringing import Ringing
 from cuefem.tap import Predicted, TapFit
 from cuefem.tones import HIGH, LOW
@@ -23,7 +23,7 @@ UNITS = {
 KINDS = {"steady": "steady hum", "harmonic": "sum of others?", "twin": "twin of the other"}
 
 
-def tap_record(found: TapFit, heard: Ringing, numbers: Mapping[str, Predicted]) -> Record:
+def tap_record(found: TapFit, heard: Ringing, numbers: Mapping[str, Predicted], regime: str) -> Record:
     """The wood, the tones and their modes, what the scene's numbers become; errors are standard deviations."""
     wood = {
         name: {"value": getattr(found.wood, name), "error": error, "before": getattr(found.before, name)}
@@ -38,6 +38,7 @@ def tap_record(found: TapFit, heard: Ringing, numbers: Mapping[str, Predicted]) 
         "tones": [asdict(m.tone) | {"mode": m.mode, "model_frequency": m.frequency} for m in found.matched],
         "shaft_mass": found.cue.shaft_mass,
         "predicted": {name: asdict(number) for name, number in numbers.items()},
+        "regime": regime,
         "taps": heard.taps,
         "clipped": heard.clipped,
         "notes": [*found.notes, *_clipping(heard)],
@@ -91,7 +92,10 @@ def _numbers(record: Record, about: Record) -> Any:
     made.add_row("end mass (stick)", *(grams(felt[key]) for key in ("value", "error", "before")))
     angles = (f"{np.degrees(squirt[key]):.4f}°" for key in ("value", "error", "before"))
     made.add_row(f"squirt at b/R {about['stroke']['offset']:g}", *angles)
-    return with_caption(made, "±: one standard deviation, from the wood alone; not from the model of the stroke")
+    missed = [MISCUE] if record["regime"] == "miscue" else []
+    return with_caption(
+        made, *missed, "±: one standard deviation, from the wood alone; not from the model of the stroke"
+    )
 
 
 def tap_figure(found: TapFit, heard: Ringing, title: str, kind: str) -> bytes:
