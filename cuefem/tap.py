@@ -30,7 +30,7 @@ RIVAL = np.log(20)  # a hypothesis whose odds are better than 1 : 20 is not rule
 STEP = 0.02  # of central differences in the logarithms
 OUTLIER = 4.5  # standard deviations
 POOR = 5e-3  # misfit that a good drawing of an even shaft does not have
-OURS = 0.7  # of the clear tones' power: less is explained where the drawing is another shaft's
+OURS = 0.8  # of the clear tones' power: less is explained where the drawing is another shaft's
 FAR = 0.97  # of ln `FACTOR`: an E as far from the file's is at the end of the search
 FOLDED = 1e-3  # relative, of a tone that may be a whole multiple of another
 FREE = [0, 2]  # of (ln E, ln G/E, ln rho), where G/E is kept
@@ -274,7 +274,8 @@ def remarks(found: TapFit, *, edge: bool = False) -> list[str]:
     if wrong:
         lines.append(f"no bending tone of this shaft: {', '.join(f'{f:.1f}' for f in wrong)} Hz")
     if missed := sorted(set(range(1, max(ours))) - set(ours)):
-        lines.append(f"not heard: mode{'s' if len(missed) > 1 else ''} {', '.join(map(str, missed))}")
+        doubt = ": more than were heard, check that it is the shaft drawn" if len(missed) > len(ours) else ""
+        lines.append(f"not heard: mode{'s' if len(missed) > 1 else ''} {', '.join(map(str, missed))}{doubt}")
     if any(m.tone.kind == "twin" for m in found.matched):
         lines.append("some tones are double: the shaft bends unlike in two planes; their means are taken")
     return lines

@@ -170,11 +170,14 @@ def test_the_drawing_of_another_shaft_is_doubted() -> None:
 @pytest.mark.heavy
 def test_recordings_of_all_other_shafts_are_doubted() -> None:
     """25 pairs of a drawing and a recording: the right ones alone without doubt."""
-    heard = {name: tones(ringing(tap.recording(tap.ringing_shaft(tap.true(name)), 20.0, 1), 48000.0)) for name in NAMES}
-    doubts = ("the tones cannot be told apart", "loud tones are none", "E at the end of the search", "the tones fit to")
+    clean = {name: tap.ringing_shaft(tap.true(name), 20000.0)[:, :1] for name in NAMES}
+    heard = {name: tones(ringing(tap.recording(clean[name], 20.0, 1), 20000.0)) for name in NAMES}
+    doubts = ("cannot be told apart", "loud tones are none", "E at the end", "the tones fit to", "more than were heard")
     for name in NAMES:
         found = {other: tap.hung(name).fit(heard[other]).notes for other in NAMES}
-        assert [other for other, notes in found.items() if not any(n.startswith(doubts) for n in notes)] == [name]
+        assert [other for other, notes in found.items() if not any(doubt in " ".join(notes) for doubt in doubts)] == [
+            name
+        ]
 
 
 @pytest.mark.parametrize("name", ["kim", "pool_maple"])
