@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import itertools
 import re
+from decimal import Decimal
 from pathlib import Path
 
 from cuefem.cue import Cue, Material, Segment
@@ -43,7 +44,12 @@ def load_profile(path: Path, material: Material) -> Cue:
         raise InputError(path, "", f"must hold at least 2 points; got {len(points)}")
     ends = _corners(points)
     pairs = itertools.pairwise(ends)
-    return Cue(tuple(Segment(x1 - x0, d0, d1, material) for (x0, d0), (x1, d1) in pairs))
+    return Cue(tuple(Segment(_apart(x0, x1), d0, d1, material) for (x0, d0), (x1, d1) in pairs))
+
+
+def _apart(first: float, last: float) -> float:
+    """The distance as decimals have it: 10 and 210 mm are 0.2 m apart, which floats miss by their last digit."""
+    return float(Decimal(repr(last)) - Decimal(repr(first)))
 
 
 def _units(path: Path, line: int, cells: list[str]) -> tuple[str, str]:

@@ -15,10 +15,13 @@ from cuefem.cue import Material
 from cuefem.effects import Effect
 from cuefem.io.errors import InputError, nearest, shown
 from cuefem.io.units import quantity, text
+from cuefem.materials import MATERIALS
 from cuefem.quantity import Quantity
 
 Kind = TypeVar("Kind")
 
+NAMES = {known.material: name for name, known in MATERIALS.items()}
+ABSENT = ("tip_bore", "butt_bore")  # left out where they are 0, which is their default: a bore that is not there
 _CONFIG = ConfigDict(extra="forbid", arbitrary_types_allowed=True)
 
 
@@ -135,7 +138,7 @@ def table(instance: Any) -> dict[str, Any]:
     return {
         name: _entry(f"{type(instance).__name__}.{name}", value, hints[name])
         for name, value in found.items()
-        if value is not None and not (isinstance(value, tuple) and not value)
+        if value is not None and not (isinstance(value, tuple) and not value) and not (name in ABSENT and value == 0)
     }
 
 
@@ -147,6 +150,8 @@ def _entry(name: str, value: Any, hint: Any) -> Any:
         return file_value(value, marks[0])
     if isinstance(value, Effect):
         return {"type": type(value).__name__, **table(value)}
+    if isinstance(value, Material) and value in NAMES:
+        return NAMES[value]
     if is_dataclass(value):
         return table(value)
     if isinstance(value, tuple):

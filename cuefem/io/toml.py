@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -167,7 +168,7 @@ def toml_text(thing: Cue | Scene) -> str:
     document = tomlkit.document()
     for name, value in table(thing).items():
         document.add(name, _item(value))
-    return tomlkit.dumps(document)
+    return re.sub(r"(?<!\n)\n\[", "\n\n[", tomlkit.dumps(document)).rstrip("\n") + "\n"  # a blank line before a table
 
 
 def _item(value: Any) -> Any:

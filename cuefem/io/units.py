@@ -108,16 +108,19 @@ def _bare(wanted: Quantity, value: Any) -> float:
 
 
 def text(value: float, unit: str) -> str:
-    """An SI number with a unit that reads well ("12 mm"); `number` makes the identical float of it."""
+    """An SI number with a unit that reads well ("12 mm"), with the fewest digits of which `number` makes the same float.
+
+    Where those are more than in SI (0.1 rad), it is written in SI.
+    """
     _, example = EXAMPLES.get(unit, ("", f"1 {unit}"))
     friendly = example.split(" ", 1)[1]
-    if not math.isfinite(value):
-        return f"{value} {unit}"
-    scale = _scale(friendly, unit)
+    scale = _scale(friendly, unit) if math.isfinite(value) else None
     if scale is not None:
-        written = f"{_plain(Decimal(repr(value)) / scale)} {friendly}"
-        if number(written, unit) == value:
-            return written
+        exact = Decimal(repr(value))
+        for digits in range(len(exact.normalize().as_tuple().digits)):
+            written = f"{_plain(Decimal(f'{exact / scale:.{digits}e}'))} {friendly}"
+            if number(written, unit) == value:
+                return written
     return f"{value!r} {unit}"
 
 
