@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import MISSING, dataclass, fields, is_dataclass, replace
 from typing import Any, NamedTuple
 
+from cuefem.cue import LumpedCue
 from cuefem.effects import Effect
 from cuefem.scene import Outcome, Scene
 
@@ -83,7 +84,18 @@ def _with(scene: Scene, name: str, kind: type[Effect]) -> Variant:
     try:
         return Variant(name, effect, False, replace(scene, effects=(*scene.effects, effect)))
     except ValueError as error:  # it does not go with this cue or with another effect
-        return Variant(name, effect, False, None, str(error))
+        return Variant(name, effect, False, None, _reason(scene, effect, error))
+
+
+def _reason(scene: Scene, effect: Effect, error: ValueError) -> str:
+    """Why the effect cannot be added, without the place in a list that it never stood in."""
+    name = type(effect).__name__
+    if isinstance(scene.cue, LumpedCue) and effect.needs_beam:
+        return "needs a cue of segments"
+    others = [other for other in scene.effects if name in other.excludes or type(other).__name__ in effect.excludes]
+    if others:
+        return f"does not go with {', '.join(type(other).__name__ for other in others)}"
+    return str(error).replace(f"Scene.effects[{len(scene.effects)}]", name)
 
 
 @dataclass(frozen=True)

@@ -58,13 +58,13 @@ def test_an_effect_that_does_not_go_with_the_scene_says_so() -> None:
     short = cf.Cue((cf.Segment(0.15, 0.012, 0.013, CUE.segments[0].material),), 0.5)
     found = {v.name: v for v in variants(replace(SCENE, cue=short, effects=(DOME,)))}
     assert found["Support"].scene is None
-    assert found["Support"].reason == "Scene.effects[1].position must be in [0, 0.15] m, on the cue; got 0.2032"
+    assert found["Support"].reason == "Support.position must be in [0, 0.15] m, on the cue; got 0.2032"
 
 
 def test_a_lumped_cue_refuses_what_needs_a_beam() -> None:
     found = effects_record(cf.Scene(cf.LumpedCue(0.54, 0.006), stroke=cf.Stroke(offset=0.3)))
     named = rows(found)
-    assert "finite-element" in named["TipDome"]["refused"]
+    assert named["TipDome"]["refused"] == "needs a cue of segments"
     assert named["TipShear"]["refused"] is None
     assert found["base"]["end_mass"] == pytest.approx(0.006, rel=1e-9)
 
@@ -175,6 +175,6 @@ def test_the_table(tmp_path: Path) -> None:
     cf.save(SCENE, tmp_path / "scene.toml")
     status, out, err = call("effects", tmp_path / "scene.toml")
     assert (status, err) == (0, "")
-    assert "without   TipDome (radius 9.5 mm)" in out
+    assert "without TipDome (radius 9.5 mm)" in out
     assert re.search("not tried: Joint.*: no usual value to try", out)
     assert "Not worth its time: Support" in out
