@@ -120,29 +120,32 @@ def worth(rows: Sequence[Record]) -> Record:
 
 def effects_table(record: Record, scene: Record) -> Group:
     """The effects, what matters most first, and what to make of it."""
-    columns = ["", "effect", "squirt", "end mass", "ball speed", "spin", "unknowns", "CPU time"]
+    columns = ["", "squirt", "end mass", "ball speed, m/s", "spin, rad/s", "unknowns", "CPU time"]
     offset = scene["stroke"]["offset"]
-    table = table_of(f"What each effect is worth at offset b/R = {offset:g}", columns, text_columns=2)
+    table = table_of(f"What each effect is worth at offset b/R = {offset:g}", columns)
     base = record["base"]
     table.add_row(
-        "",
         "the scene as it is",
         degrees(base["squirt"]),
         _grams(base["end_mass"]),
-        f"{base['ball_speed']:.4f} m/s",
-        f"{base['spin']:.2f} rad/s",
+        f"{base['ball_speed']:.4f}",
+        f"{base['spin']:.2f}",
         str(base["unknowns"]),
         seconds_words(base["seconds"]),
         style="bold",
     )
-    for row in record["effects"]:
-        if not row["refused"]:
-            table.add_row(*_cells(row), style=None if row["matters"] else "dim")
     percent = f"{100 * record['rtol']:.3g} %"
+    tried = [row for row in record["effects"] if not row["refused"]]
+    for row in (row for row in tried if row["matters"]):
+        table.add_row(*_cells(row))
+    if any(not row["matters"] for row in tried):  # a row and no style alone says so, also where colours are not
+        table.add_row(f"changes less than {percent}:", style="dim")
+    for row in (row for row in tried if not row["matters"]):
+        table.add_row(*_cells(row), style="dim")
     return with_caption(
         table,
         "without: an effect of the scene left out; with: one it does not list, at a textbook value; changes of row one",
-        f"end mass: the lumped one with the same squirt; dim: nothing changes by {percent}, the tolerance",
+        f"end mass: the lumped one with the same squirt; {percent}: the tolerance, of squirt, ball speed and spin",
         *_not_tried(record["effects"]),
         assumptions(scene),
         "",
@@ -163,7 +166,7 @@ def _cells(row: Record) -> tuple[str, ...]:
     word = "without" if row["listed"] else "with"
     squirt, speed, spin = (_percent(row["change"][name]["relative"]) for name in ("squirt", "ball_speed", "spin"))
     figures = (squirt, _grams(row["end_mass"]), speed, spin)
-    return (word, row["words"], *figures, str(row["unknowns"]), seconds_words(row["seconds"]))
+    return (f"{word} {row['words']}", *figures, str(row["unknowns"]), seconds_words(row["seconds"]))
 
 
 def _percent(part: float | None) -> str:

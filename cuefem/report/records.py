@@ -33,7 +33,8 @@ UNITS = {
     **dict.fromkeys(("length", "balance_point", "radius", "pivot_length"), "m"),
     **dict.fromkeys(("speed", "ball_speed", "ball_velocity", "cue_speed"), "m/s"),
     **dict.fromkeys(("contact_time", "duration"), "s"),
-    **{"frequencies": "Hz", "near": "Hz", "tip_amplitudes": "1/sqrt(kg)", "squirt": "rad", "spin": "rad/s"},
+    **dict.fromkeys(("frequencies", "near", "nearest"), "Hz"),
+    **{"tip_amplitudes": "1/sqrt(kg)", "squirt": "rad", "spin": "rad/s"},
     **{"coupling": "1/kg", "seconds": "s", "impulse": "N s", "energy": "J", "E": "Pa", "G": "Pa", "rho": "kg/m^3"},
 }
 
@@ -73,13 +74,18 @@ def scene_record(scene: Scene) -> Record:
 
 
 def modes_record(scene: Scene, *, count: int, near: float | None) -> Record:
-    """Frequencies and tip amplitudes of the scene's cue: the ``count`` lowest modes or those nearest ``near`` Hz."""
+    """Frequencies and tip amplitudes of the scene's cue: the ``count`` lowest modes or those nearest ``near`` Hz.
+
+    "nearest": the frequency nearest ``near``, None without it.
+    """
     if not isinstance(scene.cue, Cue):
         raise ValueError("modes need a cue of segments; got a lumped cue, which has none")
     found = modes(scene.cue, count, near, effects=scene.cue_effects)
     amplitudes, _ = found.shape(0.0)
+    nearest = None if near is None else min(found.frequencies.tolist(), key=lambda f: abs(f - near))
     return {
         "near": near,
+        "nearest": nearest,
         "rigid": found.rigid,
         "frequencies": found.frequencies.tolist(),
         "tip_amplitudes": amplitudes.tolist(),

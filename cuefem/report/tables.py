@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import fields
 from typing import Any
 
-from rich import box
 from rich.console import Group
 from rich.padding import Padding
 from rich.table import Table
@@ -17,17 +16,15 @@ from cuefem.cue import Cue, LumpedCue
 from cuefem.effects import Effect
 from cuefem.io.schema import table as file_table
 from cuefem.report.records import Record, cue_record
+from cuefem.report.whole import WholeTable
 from cuefem.validation import NOISE, number
 
 NONE = "–"
 
 
 def table_of(title: str, columns: Sequence[str], *, text_columns: int = 1) -> Table:
-    """An empty table: text to the left, numbers to the right."""
-    made = Table(title=title, box=box.SIMPLE_HEAD, title_justify="left", title_style="bold")
-    for i, column in enumerate(columns):
-        made.add_column(column, justify="left" if i < text_columns else "right", no_wrap=i >= text_columns)
-    return made
+    """An empty table: text to the left, numbers to the right; no cell of it is ever cut."""
+    return WholeTable(title, columns, text_columns=text_columns)
 
 
 def with_caption(table: Table, *lines: str) -> Group:
@@ -104,11 +101,14 @@ def modes_table(record: Record) -> Group:
     """Modes of a free cue (or of one held by the scene's effects)."""
     near = record["near"]
     title = "Bending modes" if near is None else f"Bending modes nearest {near:g} Hz"
-    table = table_of(title, ["frequency", "period", "tip amplitude"], text_columns=0)
+    marked = [] if near is None else [""]
+    table = table_of(title, ["frequency", "period", "tip amplitude", *marked], text_columns=0)
     for frequency, amplitude in zip(record["frequencies"], record["tip_amplitudes"], strict=True):
         period = f"{1e3 / frequency:.4g} ms"
-        table.add_row(f"{frequency:.2f} Hz", period, f"{amplitude:.3f} /√kg")
-    caption = f"{record['rigid']} rigid motions at 0 Hz not listed; amplitudes of the mass-normalised modes"
+        mark = ["nearest" if frequency == record["nearest"] else "" for _ in marked]
+        table.add_row(f"{frequency:.2f} Hz", period, f"{amplitude:.3f} /√kg", *mark)
+    motions = "1 rigid motion" if record["rigid"] == 1 else f"{record['rigid']} rigid motions"
+    caption = f"{motions} at 0 Hz not listed; amplitudes of the mass-normalised modes"
     return with_caption(table, caption)
 
 
@@ -123,7 +123,7 @@ def end_mass_table(record: Record, scene: Record) -> Group:
             table.add_row(name, *[NONE] * 4)
             refused.append(f"{drive}: {values['reason']}")
             continue
-        spread = f"{significant(1e3 * values['lowest'])} – {grams(values['highest'])}"
+        spread = f"{significant(1e3 * values['lowest'])}–{grams(values['highest'])}"
         row = (grams(values["end_mass"]), spread, grams(values["cue_end_mass"]), f"{values['eps']:.4f}")
         table.add_row(name, *row)
     return with_caption(
@@ -131,7 +131,7 @@ def end_mass_table(record: Record, scene: Record) -> Group:
         assumptions(scene),
         *refused,
         "m_e: felt across the cue at the tip (stick: the one that squirt takes); spread: a quarter of the modes to all",
-        "m_c = 4 m_e: cue end of the paper's two-part cue (nu_c 1/3); eps = m_c / ball",
+        "m_c = 4 m_e: cue end of the paper's two-part cue (nu_c 1/3); eps: m_c as a part of the ball's mass",
         *_tip_effects(scene, "stick and squirt take effects at the tip for end mass, velocity and force do without"),
     )
 
@@ -145,7 +145,8 @@ _ROWS: tuple[tuple[str, str, Any], ...] = (
     ("squirt", "squirt", degrees),
     ("natural pivot length", "pivot_length", millimetres),
     ("ball speed", "ball_speed", lambda v: f"{v:.4f} m/s"),
-    ("ball velocity, normal / tangent", "ball_velocity", lambda v: f"{v[1]:.4f} / {v[0]:.4f} m/s"),
+    ("ball velocity, normal", "ball_velocity", lambda v: f"{v[1]:.4f} m/s"),
+    ("ball velocity, tangent", "ball_velocity", lambda v: f"{v[0]:.4f} m/s"),
     ("spin", "spin", lambda v: f"{v:.3f} rad/s"),
     ("cue speed after", "cue_speed", lambda v: f"{v:.4f} m/s"),
     ("contact time", "duration", lambda v: f"{1e3 * v:.4f} ms"),
@@ -175,7 +176,12 @@ def strike_table(record: Record, scene: Record) -> Group:
 
 def _left_out(scene: Record, record: Record, unit: str) -> list[str]:
     """What the lumped models make of the effects at the tip."""
-    lumped = f"; lumped has them as a coupling of {record['coupling']:.4g} {unit}" if record["coupling"] else ""
+    lumped = (
+        f"; lumped has them as a coupling of {record['coupling']:.4g} {unit}, the tip's "
+        "speed across the cue by a unit of impulse along it"
+        if record["coupling"]
+        else ""
+    )
     return _tip_effects(scene, f"two-part and A.31 leave the effects at the tip out{lumped}")
 
 
@@ -220,13 +226,14 @@ VERDICT_WORDS = (
 
 def claims_table(record: Sequence[Record]) -> Table:
     """Claims of sources beside what follows from their equations."""
-    columns = ["source", "what", "verdict", "printed", "ours", "unit", "difference"]
-    table = table_of("Claims of the sources, checked", columns, text_columns=3)
+    columns = ["source: what, unit", "verdict", "printed", "ours", "difference"]
+    table = table_of("Claims of the sources, checked", columns, text_columns=2)
     for claim in record:
         gap = claim["difference"]
         shown = NONE if gap is None else f"< {NOISE:g}" if abs(gap) < NOISE else f"{gap:.2g}"
-        numbers = (number(claim["printed"], 6), number(claim["derived"], 6), claim["unit"], shown)
-        table.add_row(claim["source"], claim["what"], claim["verdict"], *numbers)
+        unit = f", {claim['unit']}" if claim["unit"] else ""
+        numbers = (number(claim["printed"], 6), number(claim["derived"], 6), shown)
+        table.add_row(f"{claim['source']}: {claim['what']}{unit}", claim["verdict"], *numbers)
     return table
 
 
@@ -242,4 +249,4 @@ def materials_table(record: Record) -> Group:
 
 def _with_range(values: Record, key: str, *, scale: float) -> str:
     low, high = values["ranges"][key]
-    return f"{values[key] / scale:.4g} ({low / scale:.4g} – {high / scale:.4g})"
+    return f"{values[key] / scale:.4g} ({low / scale:.4g}–{high / scale:.4g})"
