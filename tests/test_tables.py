@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import os
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -16,6 +17,7 @@ from rich.console import Console
 from scipy.io import wavfile
 
 import cuefem as cf
+from cuefem.cli import main
 from cuefem.materials import MATERIALS
 from cuefem.report.tables import table_of
 from studies import tap
@@ -174,3 +176,15 @@ def test_captions_explain_in_plain_words(name: str, said: str, shown: Callable[[
     text = " ".join(rendered(shown(name), 80).split())
     assert said in text
     assert "Scene.effects[" not in text
+
+
+@pytest.mark.parametrize("width", [80, 78])
+def test_no_command_s_summary_is_cut(width: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("shutil.get_terminal_size", lambda *_: os.terminal_size((width, 24)))
+    status, out, _ = call("--help")
+    listed = out.split("Commands:\n")[1].splitlines()
+    assert status == 0
+    assert "…" not in out
+    assert [line.split()[0] for line in listed] == sorted(main.commands)  # a line each
+    assert all(re.search(r"[^.]\.$", line) for line in listed)
+    assert max(map(len, out.splitlines())) <= width

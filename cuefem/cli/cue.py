@@ -44,7 +44,7 @@ def end_mass(file: Path, **given: Any) -> None:
     show(file, given, end_mass_record, lambda found, about: [end_mass_table(found, about)])
 
 
-@click.command()
+@click.command(short_help="One stroke: squirt, speed, spin and pivot length.")
 @file_options
 @blow_options
 @offset_option
@@ -61,7 +61,7 @@ def strike(file: Path, **given: Any) -> None:
     show(file, given, results, lambda found, about: [strike_table(found, about)])
 
 
-@click.command()
+@click.command(short_help="What each effect is worth: dropped, or added, one at a time.")
 @file_options
 @blow_options
 @offset_option
@@ -80,7 +80,7 @@ def effects(file: Path, **given: Any) -> None:
     show(file, given, results, lambda found, about: [effects_table(found, about)])
 
 
-@click.command()
+@click.command(short_help="What accuracy costs, and the resolution to take.")
 @file_options
 @blow_options
 @offset_option
@@ -103,7 +103,7 @@ def cost(file: Path, most: int, output: Path | None, **given: Any) -> None:
     show(file, given, results, lambda found, about: cost_tables(found))
 
 
-@click.command()
+@click.command(short_help="All of it, as tables or as a page with figures.")
 @file_options
 @blow_options
 @offset_option

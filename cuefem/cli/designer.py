@@ -11,7 +11,7 @@ import click
 from cuefem.cli.common import scene_of
 
 
-@click.command()
+@click.command(short_help="Turn a cue's knobs on a page, and see what that does.")
 @click.argument("scene", type=click.Path(path_type=Path), required=False)
 @click.option("--port", type=click.IntRange(0, 65535), default=8470, show_default=True, help="0: any free one.")
 @click.option("--open/--no-open", "show", default=True, help="Open it in the browser.", show_default=True)

@@ -3,29 +3,39 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import click
 
-from cuefem.cli.common import print_all, print_json
+from cuefem.cli.common import check_free, force_option, print_all, print_json, shape_options, with_body
 
 
-@click.command()
+@click.command(short_help="Write FILE as another kind of file: .toml, .vtk or .vtu.")
 @click.argument("file", type=click.Path(path_type=Path))
 @click.argument("output", type=click.Path(path_type=Path))
-@click.option("--material", metavar="NAME", help="Material of a .csv or surface (see `cuefem materials`).")
-@click.option("--length-unit", metavar="UNIT", help="Unit of a .stl, .ply or .obj surface; mm if left out.")
-def convert(file: Path, output: Path, **given: str | None) -> None:
+@shape_options
+@force_option
+def convert(file: Path, output: Path, body_mass: str | None, force: bool, **given: str | None) -> None:
     """Write FILE as another kind of file: OUTPUT ends in .toml, .vtk or .vtu."""
     from cuefem.io import load, save
     from cuefem.io.assumed import assumed
     from cuefem.io.profile import SHAPES
+    from cuefem.scene import Scene
 
-    save(load(file, **given), output)
-    said = {"body_mass", *(name for name, value in given.items() if value is not None)}
+    check_free(output, force=force)
+    found = load(file, **given)
+    if body_mass is not None:
+        if isinstance(found, Scene):
+            found = replace(found, cue=with_body(found.cue, file, body_mass))
+        else:
+            found = with_body(found, file, body_mass)
+    save(found, output)
+    said = {name for name, value in (given | {"body_mass": body_mass}).items() if value is not None}
     notes = assumed(file, said) if file.suffix.lower() in SHAPES else []
     if notes:
         click.echo(f"assumed: {'; '.join(notes)}")
+    click.echo(f"wrote {output}")
 
 
 @click.command()

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 DRIVES = ("A.31", "stick", "velocity", "force", "squirt")
 
 
-@click.command()
+@click.command(short_help="The end mass as a simulator takes it: pooltool's CueSpecs.")
 @file_options
 @blow_options
 @offset_option
@@ -60,7 +60,7 @@ def handover(file: Path, whom: str, drive: Any, output: Path | None, as_json: bo
     click.echo(text if output is None or as_json else f"wrote {output}")
 
 
-@click.command()
+@click.command(short_help="Mode shapes and the strike's motion for ParaView.")
 @file_options
 @blow_options
 @offset_option

@@ -18,7 +18,7 @@ SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)
 TRADE = {"kg": (1e3, "g"), "m": (1e3, "mm"), "rad": (math.degrees(1), "°"), "N/m": (1, "N/m"), "": (1, "")}
 
 
-@click.command()
+@click.command(short_help="How much a design's numbers scatter, and what drives it.")
 @click.argument("study", type=click.Path(path_type=Path))
 @click.option("--workers", type=click.IntRange(min=1), help="Processes; left out, this one works alone.")
 @click.option("--dask", metavar="ADDRESS", help='A Dask scheduler to work on, e.g. "tcp://host:8786".')

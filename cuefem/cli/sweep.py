@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from cuefem.io.database import Database
 
 
-@click.command()
+@click.command(short_help="Evaluate every design of a STUDY (.toml) into a database.")
 @click.argument("study", type=click.Path(path_type=Path))
 @click.option("--output", type=click.Path(path_type=Path), help="The database, STUDY.sqlite where left out.")
 @click.option("--workers", type=click.IntRange(min=1), help="Processes; left out, this one works alone.")

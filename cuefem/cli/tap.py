@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from cuefem.tap import Predicted, TapFit
 
 
-@click.command()
+@click.command(short_help="The shaft's wood by ear: E, G, density from a tapped sound.")
 @click.argument("recording", type=click.Path(path_type=Path))
 @click.option("--scene", "file", type=click.Path(path_type=Path), metavar="FILE", required=True, help="Cue or scene.")
 @click.option("--mass", metavar="MASS", help='What the hung shaft weighs, e.g. "118 g"; without it density is kept.')

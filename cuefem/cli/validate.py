@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from cuefem.validation import Claim
 
 
-@click.command()
+@click.command(short_help="What the sources print beside what follows from them.")
 @click.option("--studies", type=click.Path(path_type=Path), default=Path("studies"), show_default=True)
 @click.option("--json", "as_json", is_flag=True, help="As JSON.")
 def validate(studies: Path, as_json: bool) -> None:
