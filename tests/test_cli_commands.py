@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -238,8 +239,25 @@ def test_unusual_numbers_are_remarked(kim: str) -> None:
 
 
 def test_convert(kim: str, tmp_path: Path) -> None:
-    run("convert", kim, str(tmp_path / "kim.vtu"))
-    assert cf.load(tmp_path / "kim.vtu") == KIM
+    goal = str(tmp_path / "kim.vtu")
+    assert run("convert", kim, goal) == f"wrote {goal}\n"
+    assert cf.load(goal) == KIM
+    assert run("convert", kim, goal, "--force", "--body-mass", "15 oz") == f"wrote {goal}\n"
+    assert cf.load(goal) == replace(KIM, body_mass=0.425242846875)
+
+
+def test_convert_says_what_it_assumed(scene: str, tmp_path: Path) -> None:
+    (tmp_path / "shaft.csv").write_text("x [mm],diameter [mm]\n0,12\n700,21\n")
+    shaft, goal = str(tmp_path / "shaft.csv"), str(tmp_path / "shaft.toml")
+    assert run("convert", shaft, goal).splitlines() == [
+        "assumed: material hard maple (choose with --material); no mass behind the shaft (--body-mass gives it)",
+        f"wrote {goal}",
+    ]
+    told = run("convert", shaft, goal, "--body-mass", "420 g", "--material", "ash", "--force")
+    assert told == f"wrote {goal}\n"
+    assert cf.load(goal).body_mass == 0.42
+    run("convert", scene, goal, "--body-mass", "0.4 kg", "--force")
+    assert cf.load(goal) == replace(SCENE, cue=replace(KIM, body_mass=0.4))
 
 
 def test_schema_is_json() -> None:

@@ -99,6 +99,23 @@ def test_bad_files_are_not_converted(tmp_path: Path, name: str) -> None:
     assert sorted(tmp_path.iterdir()) == before
 
 
+@pytest.mark.parametrize("suffix", ["toml", "vtk", "vtu"])
+def test_a_drawing_that_is_there_is_not_replaced_unasked(tmp_path: Path, suffix: str) -> None:
+    (tmp_path / "good.toml").write_text(GOOD)
+    kept = tmp_path / f"kept.{suffix}"
+    kept.write_text("somebody's work")
+    assert refused("convert", tmp_path / "good.toml", kept) == f"{kept}: is there already: --force replaces it"
+    assert kept.read_text() == "somebody's work"
+
+
+def test_convert_refuses_a_mass_behind_a_lumped_cue(tmp_path: Path) -> None:
+    lumped = tmp_path / "lumped.toml"
+    lumped.write_text("[cue]\nmass = '540 g'\nend_mass = '6 g'\n")
+    said = refused("convert", lumped, tmp_path / "out.toml", "--body-mass", "1 kg")
+    assert said == f"{lumped}: --body-mass: must be left out: a lumped cue is whole"
+    assert not (tmp_path / "out.toml").exists()
+
+
 @pytest.mark.parametrize(
     ("arguments", "line"),
     [

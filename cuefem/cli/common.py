@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 if TYPE_CHECKING:
+    from cuefem.cue import Cue, LumpedCue
     from cuefem.quantity import Quantity
     from cuefem.scene import Scene
 
@@ -28,8 +29,12 @@ def file_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 def cue_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """What every command takes that the file of a cue may leave out."""
+    return click.option("--json", "as_json", is_flag=True, help="SI numbers as JSON.")(shape_options(command))
+
+
+def shape_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """What the file of a shape cannot say."""
     for option in (
-        click.option("--json", "as_json", is_flag=True, help="SI numbers as JSON."),
         click.option("--body-mass", metavar="MASS", help='Mass of the cue behind FILE\'s segments, e.g. "420 g".'),
         click.option("--material", metavar="NAME", help="Material of a .csv or surface (see `cuefem materials`)."),
         click.option("--length-unit", metavar="UNIT", help="Unit of a .stl, .ply or .obj surface; mm if left out."),
@@ -47,6 +52,20 @@ def blow_options(command: Callable[..., Any]) -> Callable[..., Any]:
 def offset_option(command: Callable[..., Any]) -> Callable[..., Any]:
     """The option that replaces the stroke's offset."""
     return click.option("--offset", metavar="B/R", help="Offset over ball radius, in (-1, 1).")(command)
+
+
+def force_option(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The option of every command that writes a drawing."""
+    return click.option("--force", is_flag=True, help="Replace a drawing that is there already.")(command)
+
+
+def check_free(drawing: Path, *, force: bool) -> None:
+    """Refuse to replace a drawing, which is somebody's work, unasked; pages, figures and tables are made again."""
+    from cuefem.io import InputError, check_place
+
+    if drawing.exists() and not drawing.is_dir() and not force:
+        raise InputError(drawing, "", "is there already: --force replaces it")
+    check_place(drawing)
 
 
 def measured(file: Path, option: str, given: str, wanted: Quantity) -> float:
@@ -85,8 +104,6 @@ def scene_of(file: Path, given: dict[str, Any]) -> tuple[Scene, list[str]]:
 
 def _with_options(scene: Scene, file: Path, given: dict[str, Any]) -> Scene:
     """The scene with what the command's options replace."""
-    from cuefem.cue import Cue
-    from cuefem.io import InputError
     from cuefem.quantity import Quantity
     from cuefem.scene import Ball
 
@@ -99,11 +116,20 @@ def _with_options(scene: Scene, file: Path, given: dict[str, Any]) -> Scene:
         time = measured(file, "--contact-time", given["contact_time"], Quantity("s", "(0, inf)"))
         scene = replace(scene, tip=replace(scene.tip, contact_time=time, stiffness=None))
     if given["body_mass"] is not None:
-        mass = measured(file, "--body-mass", given["body_mass"], Quantity("kg", "[0, inf)"))
-        if not isinstance(scene.cue, Cue):
-            raise InputError(file, "--body-mass", "must be left out: a lumped cue is whole")
-        scene = replace(scene, cue=replace(scene.cue, body_mass=mass))
+        scene = replace(scene, cue=with_body(scene.cue, file, given["body_mass"]))
     return scene
+
+
+def with_body(cue: Cue | LumpedCue, file: Path, given: str) -> Cue:
+    """The cue with the mass behind its segments that --body-mass says."""
+    from cuefem.cue import Cue
+    from cuefem.io import InputError
+    from cuefem.quantity import Quantity
+
+    mass = measured(file, "--body-mass", given, Quantity("kg", "[0, inf)"))
+    if not isinstance(cue, Cue):
+        raise InputError(file, "--body-mass", "must be left out: a lumped cue is whole")
+    return replace(cue, body_mass=mass)
 
 
 def show(file: Path, given: dict[str, Any], results: Callable[[Scene], Any], tables: Callable[..., Any]) -> None:

@@ -108,7 +108,7 @@ def _bare(wanted: Quantity, value: Any) -> float:
 
 
 def text(value: float, unit: str) -> str:
-    """An SI number with a unit that reads well ("12 mm"), with the fewest digits of which `number` makes the same float.
+    """A number in a unit that reads well ("12 mm"), with the fewest digits that `number` takes for the same float.
 
     Where those are more than in SI (0.1 rad), it is written in SI.
     """
