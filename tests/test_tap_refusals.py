@@ -106,6 +106,15 @@ def test_places_where_nothing_can_be_written(options: tuple[str, ...], tmp_path:
     assert list(tmp_path.iterdir()) == [tmp_path / "dir.toml"]
 
 
+def test_a_drawing_that_is_there_is_not_replaced_unasked(tmp_path: Path) -> None:
+    (tmp_path / "mine.toml").write_text("somebody's work")
+    said = refused(tmp_path / "none.wav", "--scene", KIM, "-o", tmp_path / "mine.toml")
+    assert said == f"{tmp_path / 'mine.toml'}: is there already: --force replaces it"
+    said = refused(tmp_path / "none.wav", "--scene", KIM, "-o", tmp_path / "mine.toml", "--force")
+    assert said.startswith(f"{tmp_path / 'none.wav'}: ")
+    assert (tmp_path / "mine.toml").read_text() == "somebody's work"
+
+
 @pytest.mark.parametrize("mass", [0.002, 11.8, 1e-300, 1e300])
 def test_a_mass_that_no_such_shaft_has(mass: float) -> None:
     """Below that of the other parts, and kilograms for grams."""

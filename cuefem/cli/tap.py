@@ -10,7 +10,9 @@ import click
 
 from cuefem.cli.common import (
     blow_options,
+    check_free,
     cue_options,
+    force_option,
     measured,
     offset_option,
     print_all,
@@ -35,15 +37,17 @@ if TYPE_CHECKING:
     "-o", "--output", type=click.Path(path_type=Path), metavar="NEW.toml", help="Write FILE with the fitted wood."
 )
 @click.option("--figure", type=click.Path(path_type=Path), metavar="FIGURE", help="Draw the spectrum: .png or .svg.")
+@force_option
 @cue_options
 @blow_options
 @offset_option
-def tap(recording: Path, file: Path, output: Path | None, figure: Path | None, **given: Any) -> None:
+def tap(recording: Path, file: Path, output: Path | None, figure: Path | None, force: bool, **given: Any) -> None:
     """The shaft's wood by ear: E, G and density from a recording of the shaft, hung free and tapped.
 
     RECORDING is a .wav of one or more taps. Its tones are matched to the bending modes of the shaft in FILE.
     """
     from cuefem.io import FIGURES, InputError, check_place, save, save_figure
+    from cuefem.io.unusual import unusual
     from cuefem.report.records import scene_record
     from cuefem.report.tap import UNITS, tap_figure, tap_record, tap_tables
 
@@ -51,9 +55,10 @@ def tap(recording: Path, file: Path, output: Path | None, figure: Path | None, *
         raise InputError(figure, "--figure", f"must end in .png or .svg; got {figure.suffix!r}")
     if output is not None and output.suffix != ".toml":
         raise InputError(output, "--output", f"must end in .toml; got {output.suffix!r}")
-    for place in (output, figure):
-        if place is not None:
-            check_place(place)
+    if output is not None:
+        check_free(output, force=force)
+    if figure is not None:
+        check_place(figure)
     scene, notes = scene_of(file, given)
     heard, found = _heard(recording, file, scene, given)
     record = tap_record(found, heard, *_predicted(file, scene, found))
@@ -67,9 +72,8 @@ def tap(recording: Path, file: Path, output: Path | None, figure: Path | None, *
     if figure is not None:
         save_figure(tap_figure(found, heard, f"{recording.name}: {file.name}", figure.suffix[1:]), figure)
     if given["as_json"]:
-        print_json(
-            {"file": str(file), "recording": str(recording), "assumed": notes, "scene": about, **record, "units": UNITS}
-        )
+        said = {"file": str(file), "recording": str(recording), "assumed": notes, "unusual": unusual(scene)}
+        print_json({**said, "scene": about, **record, "units": UNITS})
         return
     assumed = [f"assumed: {'; '.join(notes)}"] if notes else []
     written = [f"wrote {path}" for path in (output, figure) if path is not None]
@@ -119,7 +123,7 @@ def _updated(file: Path, scene: Scene, found: TapFit, given: dict[str, Any]) -> 
     from cuefem.io import load
     from cuefem.matching import with_material
 
-    E, G, rho = (float(f"{getattr(found.wood, name):.6g}") for name in ("E", "G", "rho"))
-    cue = with_material(found.cue, found.wood, replace(found.wood, E=E, G=G, rho=rho))
+    short = {name: float(f"{getattr(found.wood, name):.6g}") for name in ("E", "G", "rho", "loss", "nu")}
+    cue = with_material(found.cue, found.wood, replace(found.wood, **short))
     held = load(file, material=given["material"], length_unit=given["length_unit"])
     return cue if isinstance(held, Cue) else replace(held, cue=cue)
