@@ -306,7 +306,7 @@ def front(
         from pymoo.core.problem import Problem
         from pymoo.optimize import minimize as evolve
     except ImportError as error:
-        raise ModuleNotFoundError("front needs pymoo: pip install 'cuefem[optimize]'") from error
+        raise ModuleNotFoundError("front needs pymoo: pip install '.[optimize]' in the clone") from error
     sign = -1.0 if largest else 1.0
     low, high = design.bounds
 

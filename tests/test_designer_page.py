@@ -18,7 +18,7 @@ from cuefem.designer.start import first_scene
 from cuefem.materials import material
 
 sync_api = pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
-pytest.importorskip("nicegui", reason="needs NiceGUI: pip install 'cuefem[designer]'")
+pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
 pytestmark = [
     pytest.mark.heavy,
     pytest.mark.skipif(BROWSER is None, reason="needs Chromium: apt-get install chromium"),

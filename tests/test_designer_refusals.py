@@ -22,11 +22,11 @@ def refused(*arguments: object) -> str:
 def test_without_the_library_it_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delitem(sys.modules, "cuefem.designer.app", raising=False)
     monkeypatch.setitem(sys.modules, "nicegui", None)
-    assert refused() == "the designer needs nicegui: pip install 'cuefem[designer]'"
+    assert refused() == "the designer needs nicegui: pip install '.[designer]' in the clone"
 
 
 def test_wrong_files_are_refused(tmp_path: Path) -> None:
-    pytest.importorskip("nicegui", reason="needs NiceGUI: pip install 'cuefem[designer]'")
+    pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
     lumped = tmp_path / "lumped.toml"
     cf.save(cf.Scene(cf.LumpedCue(0.5, 0.006)), lumped)
     assert refused(lumped) == f"{lumped}: cue must have segments, a shape that can be changed; got a lumped cue"
@@ -35,7 +35,7 @@ def test_wrong_files_are_refused(tmp_path: Path) -> None:
 
 
 def test_a_port_in_use_is_refused() -> None:
-    pytest.importorskip("nicegui", reason="needs NiceGUI: pip install 'cuefem[designer]'")
+    pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
         assert refused("--port", port) == f"--port must be a free one; got {port}: Address already in use"

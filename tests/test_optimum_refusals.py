@@ -45,4 +45,4 @@ def test_a_front_without_its_library(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pymoo", None)
     with pytest.raises(ModuleNotFoundError) as refused:
         front(DESIGN, "tip_stiffness")
-    assert str(refused.value) == "front needs pymoo: pip install 'cuefem[optimize]'"
+    assert str(refused.value) == "front needs pymoo: pip install '.[optimize]' in the clone"

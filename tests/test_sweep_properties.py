@@ -205,7 +205,9 @@ def test_parquet_holds_every_bit(tmp_path: Path) -> None:
 
 def test_without_its_library_parquet_is_refused_with_a_word(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pyarrow", None)
-    with pytest.raises(ValueError, match=r"out.parquet: needs the library pyarrow: pip install 'cuefem\[parquet\]'"):
+    with pytest.raises(
+        ValueError, match=r"out.parquet: needs the library pyarrow: pip install '.\[parquet\]' in the clone"
+    ):
         export_path("out.parquet")
 
 

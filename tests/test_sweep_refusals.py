@@ -210,6 +210,17 @@ def test_an_export_of_an_unknown_kind(tmp_path: Path, suffix: str) -> None:
     untouched(tmp_path, "must end in .csv or .parquet", "sweep", study, "--export", tmp_path / f"out.{suffix}")
 
 
+def test_without_its_library_parquet_is_refused_before_the_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    study = written(tmp_path)
+    untouched(tmp_path, "pip install '.[parquet]' in the clone", "sweep", study, "--export", tmp_path / "out.parquet")
+
+
+def test_an_export_that_cannot_be_written_is_refused_before_the_run(tmp_path: Path) -> None:
+    study = written(tmp_path)
+    untouched(tmp_path, "No such file or directory", "sweep", study, "--export", tmp_path / "nowhere" / "out.csv")
+
+
 def test_workers_and_a_cluster(tmp_path: Path) -> None:
     code, out, err = call("sweep", written(tmp_path), "--workers", 2, "--dask", "tcp://localhost:8786")
     assert (code, out) == (2, "")
@@ -219,4 +230,4 @@ def test_workers_and_a_cluster(tmp_path: Path) -> None:
 def test_without_its_library_dask_is_refused_with_a_word(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
     study = written(tmp_path)
-    untouched(tmp_path, "pip install 'cuefem[distributed]'", "sweep", study, "--dask", "tcp://localhost:1")
+    untouched(tmp_path, "pip install '.[distributed]' in the clone", "sweep", study, "--dask", "tcp://localhost:1")

@@ -25,7 +25,7 @@ def designer(scene: Path | None, port: int, show: bool) -> None:
     except ModuleNotFoundError as error:
         if error.name is None or error.name.startswith("cuefem"):
             raise
-        raise ValueError(f"the designer needs {error.name}: pip install 'cuefem[designer]'") from None
+        raise ValueError(f"the designer needs {error.name}: pip install '.[designer]' in the clone") from None
     from cuefem.designer.model import knobs_of
     from cuefem.designer.start import NAME, first_scene
     from cuefem.io import InputError

@@ -28,11 +28,14 @@ def sweep(study: Path, output: Path | None, export: Path | None, as_json: bool, 
     Interrupted, even by kill -9, the same command goes on where it stopped. Numbers are SI.
     """
     from cuefem.design import sweep as run
+    from cuefem.io import check_place
     from cuefem.io.database import Database, export_path
     from cuefem.io.study import load_study
 
     wanted = load_study(study)
     goal = None if export is None else export_path(export)
+    if goal is not None:
+        check_place(goal)
     with ExitStack() as open_things:
         pool = open_things.enter_context(opened(**where))
         database = open_things.enter_context(Database(output or study.with_suffix(".sqlite"), wanted))

@@ -50,7 +50,9 @@ def dask(address: str) -> Iterator[Pool]:
     try:
         from distributed import Client
     except ImportError:
-        raise ValueError("a Dask cluster needs the library distributed: pip install 'cuefem[distributed]'") from None
+        raise ValueError(
+            "a Dask cluster needs the library distributed: pip install '.[distributed]' in the clone"
+        ) from None
     try:
         client = Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError, TypeError) as error:

@@ -158,9 +158,9 @@ def export_path(path: str | Path) -> Path:
         raise InputError(path, "", f"must end in .csv or .parquet; got {shown(path.suffix)}")
     if path.suffix == ".parquet":
         try:
-            import pyarrow  # noqa: F401
+            import pyarrow.parquet  # noqa: F401
         except ImportError:
-            raise InputError(path, "", "needs the library pyarrow: pip install 'cuefem[parquet]'") from None
+            raise InputError(path, "", "needs the library pyarrow: pip install '.[parquet]' in the clone") from None
     return path
 
 
