@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from itertools import takewhile
-from typing import Any
 
 import numpy as np
 
@@ -97,25 +96,25 @@ def _outcome(contact: Contact, scene: Scene, side: float) -> Outcome:
         squirt=side * math.atan2(s * p_n - c * p_t, s * p_t + c * p_n) + 0.0,
         ball_velocity=impulse / M,
         ball_speed=math.hypot(p_t, p_n) / M,
-        spin=side * contact.twist / (nu * M * scalar("Ball.radius", scene.ball.radius)),
-        cue_speed=laws.speed - contact.along / inertia,
+        spin=float(side * contact.twist / (nu * M * scalar("Ball.radius", scene.ball.radius))),
+        cue_speed=float(laws.speed - contact.along / inertia),
         impulse=impulse,
-        duration=contact.time,
+        duration=float(contact.time),
         regime=regime(contact),
         jam=jams(contact),
-        phases=tuple(contact.phases),
+        phases=tuple(phase._replace(start=float(phase.start), end=float(phase.end)) for phase in contact.phases),
         energy=_energy(contact, inertia),
         unknowns=len(contact.z),
         history=contact.history(side),
     )
 
 
-def _energy(contact: Contact, inertia: float) -> dict[str, Any]:
+def _energy(contact: Contact, inertia: float) -> dict[str, float]:
     laws, z = contact.laws, contact.z
     p_t, p_n = contact.impulse
     rigid = z[contact.velocities][: contact.quiet]
     vibrating = np.concatenate([z[: contact.velocities.start], z[contact.velocities][contact.quiet :]])
-    return {
+    account = {
         "initial": inertia * laws.speed**2 / 2,
         "ball translation": (p_t**2 + p_n**2) / (2 * laws.ball_mass),
         "ball rotation": contact.twist**2 / (2 * laws.inertia * laws.ball_mass),
@@ -125,6 +124,7 @@ def _energy(contact: Contact, inertia: float) -> dict[str, Any]:
         "friction loss": contact.friction_loss,
         **contact.other_losses(),
     }
+    return {name: float(joules) for name, joules in account.items()}
 
 
 def first_contact(contact: Contact) -> list[Phase]:

@@ -12,6 +12,7 @@ from scipy.integrate import quad
 from strike_scenes import KIM_AT, hand_made, kim_scene, lumped_scenes, numbers, pool_cue, shaft_scenes, sound
 
 from cuefem import Ball, Cue, LumpedCue, Material, Outcome, Resolution, Scene, Segment, Stroke, Tip, strike
+from cuefem.effects import Elevation, PowerLawTip, SecondHit
 from cuefem.strike import strike_modes
 
 EXACT = 1e-10
@@ -216,3 +217,12 @@ def test_a_lumped_cue_loses_nothing_to_vibration(scene):
     sound(outcome)
     assert outcome.energy["cue vibration"] == 0
     assert np.all(np.isfinite(numbers(outcome)))
+
+
+@pytest.mark.parametrize("extra", [(), (PowerLawTip(1.5),), (Elevation(0.1),), (SecondHit(),)])
+def test_single_numbers_are_plain_floats_that_print_well(extra):
+    found = strike(Scene(LumpedCue(0.54, 0.006), stroke=Stroke(offset=0.3), effects=extra))
+    numbers = [found.squirt, found.ball_speed, found.spin, found.cue_speed, found.duration, *found.energy.values()]
+    times = [time for phase in found.phases for time in (phase.start, phase.end)]
+    assert {type(value) for value in (*numbers, *times)} == {float}
+    assert "np." not in repr(found.energy)
