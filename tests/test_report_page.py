@@ -18,6 +18,7 @@ from command_line import call
 
 import cuefem as cf
 from cuefem.accuracy import resolve
+from cuefem.materials import material
 from cuefem.report.drawings import cue_drawing, front_drawing, modes_drawing, strike_drawing
 from cuefem.report.figures import WIDE, Axis, Curve, Mark, apart, chart, path, round_step
 from cuefem.report.page import page
@@ -155,8 +156,7 @@ def test_names_are_text_and_no_markup() -> None:
     text = page("<script>alert(1)</script> & co.toml", LUMPED, notes=["a < b", "ash (take --material)"])
     assert "<script>alert" not in text
     assert "&lt;script&gt;alert(1)&lt;/script&gt; &amp; co.toml" in text
-    assert "assumed: a &lt; b" in text
-    assert 'assumed: ash (take <span class="option">--material)</span></p>' in text
+    assert 'assumed: a &lt; b; ash (take <span class="option">--material)</span></p>' in text
     assert_sound(text)
 
 
@@ -320,3 +320,34 @@ def test_offsets_that_slip_long_are_shaded(pool: str) -> None:
     shaded = Reader(page("kim.toml", slippery)).text
     assert any(text.startswith("shaded: the tip slips past the greatest compression") for text in shaded)
     assert "shaded: " not in pool
+
+
+def test_the_page_says_how_exact_its_numbers_are(pool: str) -> None:
+    outcome = resolve(scene("pool_low_deflection"), 1e-2)
+    words = " ".join(" ".join(Reader(pool).text).split())
+    assert f"Squirt, ball speed and spin here: estimated relative error {outcome.error:.1e}, 1 % asked." in words
+    assert "estimated relative error" not in page("lumped.toml", LUMPED)
+
+
+def test_the_blow_is_in_the_materials_of_the_cue() -> None:
+    def styles(blow: cf.Scene) -> list[str]:
+        return [style for _, style in strike_drawing(blow, 0.03).pieces]
+
+    shot = scene("pool_low_deflection")
+    drawn = [piece.material for piece in front_drawing(shot).pieces]
+    assert styles(shot) == drawn[: len(styles(shot))]
+    assert styles(shot)[0] == "m-leather"
+    assert len(styles(shot)) > 1
+    maple = replace(shot, cue=cf.Cue((cf.Segment(0.7, 0.012, 0.021, material("hard maple")),), 0.42))
+    assert styles(maple) == ["m-hard-maple"]
+    assert 'class="piece m-leather"' not in page("maple.toml", maple)
+    assert styles(LUMPED) == ["m-other"]
+
+
+def test_the_struck_end_is_as_long_as_its_segments() -> None:
+    shot = scene("pool_low_deflection")
+    made = strike_drawing(shot, 0.03)
+    scale = made.ball[2] / shot.ball.radius
+    ends = [max(float(n) for n in re.findall(r"(-?[0-9.]+) -?[0-9.]+", outline)) for outline, _ in made.pieces]
+    assert ends == pytest.approx([min(300 + scale * x, WIDE) for x in shot.cue.nodes[1 : len(ends) + 1]], abs=0.01)
+    assert ends[-1] == pytest.approx(WIDE, abs=0.01)

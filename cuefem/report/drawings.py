@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from cuefem.cue import Cue, Material, Segment
+from cuefem.cue import Cue, LumpedCue, Material, Segment
 from cuefem.effects import CueEffect, TipDome
 from cuefem.materials import MATERIALS
 from cuefem.modes import Modes
@@ -147,7 +147,7 @@ class StrikeDrawing:
     height: float
     ball: tuple[float, float, float]  # centre and radius
     contact: tuple[float, float]
-    tip: str
+    pieces: tuple[tuple[str, str], ...]  # the cue's end: outline and material's class, from the tip on
     cue_line: float
     path_end: tuple[float, float]
     straight_end: tuple[float, float]
@@ -168,20 +168,40 @@ def strike_drawing(scene: Scene, squirt: float) -> StrikeDrawing:
     angle = np.linspace(1, -1, 25) * math.asin(across / 2 / radius)
     front_x = apex + scale * radius * (1 - np.cos(angle)) if r else np.full(25, apex)
     front_y = line + scale * across / 2 * np.linspace(1, -1, 25) if not r else line + scale * radius * np.sin(angle)
-    edge = scale * across / 2
-    tip = path([*front_x, WIDE, WIDE], [*front_y, line - edge, line + edge]) + "Z"
+    pieces = _struck_end(scene.cue, across, (front_x, front_y), apex=apex, line=line, scale=scale)
     reach = float(centre[0]) - 6
     fall = reach * math.tan(squirt)
     return StrikeDrawing(
         150.0,
         (float(centre[0]), middle, float(scale * R)),
         (apex + scale * r * (1 - math.cos(phi)), line + scale * r * math.sin(phi)),
-        tip,
+        pieces,
         line,
         (float(centre[0]) - reach, middle + fall),
         (float(centre[0]) - reach, middle),
         (line - 6, middle + fall + 16) if phi >= 0 else (line + 15, middle + fall - 9),
     )
+
+
+def _struck_end(
+    cue: Cue | LumpedCue, across: float, front: tuple[Any, Any], *, apex: float, line: float, scale: float
+) -> tuple[tuple[str, str], ...]:
+    """The segments as far as the drawing goes, the first with the tip's front; a lumped cue has no material."""
+    reach = (WIDE - apex) / scale
+    parts = [(0.0, reach, across, across, "m-other")]
+    if isinstance(cue, Cue):
+        parts = [
+            (x, x + s.length, s.tip_diameter, s.butt_diameter, style_of(material_name(s.material)))
+            for x, s in zip(cue.nodes[:-1], cue.segments, strict=True)
+            if x < reach
+        ]
+    found = []
+    for x, end, first, last, style in parts:
+        near, far = apex + scale * x, min(apex + scale * end, WIDE)
+        wide = scale * first / 2, scale * (first + (last - first) * min(1, (reach - x) / (end - x))) / 2
+        xs, ys = ([*front[0]], [*front[1]]) if x == 0 else ([near, near], [line + wide[0], line - wide[0]])
+        found.append((path([*xs, far, far], [*ys, line - wide[1], line + wide[1]]) + "Z", style))
+    return tuple(found)
 
 
 class ModeRow(NamedTuple):

@@ -131,6 +131,7 @@ def _context(scene: Scene, found: Record) -> Record:
         "figures": _key_figures(record, found["end_masses"], outcome),
         "strike": strike_drawing(scene, outcome.squirt),
         "squirt": degrees(outcome.squirt),
+        "error": "" if outcome.error is None else f"{outcome.error:.1e}",
         "warning": MISCUE if outcome.regime == "miscue" else "",
         "cue": _cue_part(scene) if isinstance(cue, Cue) else None,
         "modes": modes_drawing(modes(cue, effects=scene.cue_effects), cue.length) if isinstance(cue, Cue) else None,
