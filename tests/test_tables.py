@@ -30,6 +30,7 @@ COMMANDS = {
     "modes": (["modes", POOL, "--near", "250"], "frequency"),
     "end mass": (["end-mass", POOL], "squirt, at b/R 0.375"),
     "strike": (["strike", POOL], "natural pivot length"),
+    "bare strike": (["strike", "meshes/kim.toml"], "ball velocity, normal"),
     "effects": (["effects", POOL], "RollingContact"),
     "cost": (["cost", POOL, "--most", "24"], "elements x order"),
     "report": (["report", POOL], "two-part, this cue"),
@@ -169,6 +170,7 @@ def test_what_changes_little_is_told_without_colours(shown: Callable[[str], list
     [
         ("effects", "not tried: Elevation (angle 5 deg): does not go with TipShear"),
         ("end mass", "eps: m_c as a part of the ball's mass"),
+        ("bare strike", "coupled: vibrating shaft in time, modes kept for 0.5 % of squirt; two-part"),
         ("strike", "/kg, the tip's speed across the cue by a unit of impulse along it"),
     ],
 )

@@ -170,7 +170,8 @@ def strike_table(record: Record, scene: Record) -> Group:
     felt = grams(record["end_mass"])
     coupled = record["models"].get("coupled", {})
     missed = [MISCUE] if coupled.get("regime") == "miscue" else []
-    models = [f"coupled: vibrating shaft in time; two-part and A.31: end mass m_e {felt} (stick)"]
+    exact = ", modes kept for 0.5 % of squirt" if "length" in scene["cue"] and coupled.get("error") is None else ""
+    models = [f"coupled: vibrating shaft in time{exact}; two-part and A.31: end mass m_e {felt} (stick)"]
     return with_caption(table, *missed, assumptions(scene), *models, *_left_out(scene, record, "/kg"))
 
 
