@@ -97,6 +97,9 @@ def test_scene_of_a_lumped_cue(tmp_path: Path) -> None:
         ("19 oz", "kg", 0.538640939375),
         ("782.3 kg/m^3", "kg/m^3", 782.3),
         ("0.7823 g/cm**3", "kg/m^3", 782.3),
+        ("0.7823 g/cm3", "kg/m^3", 782.3),
+        ("782.3 kg/m3", "kg/m^3", 782.3),
+        ("40 g mm2", "kg m^2", 4e-8),
         ("12.6 GPa", "Pa", 12.6e9),
         ("1.2 ms", "s", 0.0012),
         ("30 deg", "rad", 0.5235987755982989),
@@ -123,6 +126,12 @@ def test_lathe_profile_merges_straight_tapers(tmp_path: Path) -> None:
     assert cue.body_mass == 0
     assert ash.segments[0].material != cue.segments[0].material
     assert replace(ash.segments[1], material=cue.segments[1].material) == cue.segments[1]
+
+
+def test_units_of_a_profile_stand_in_brackets_of_either_kind(tmp_path: Path) -> None:
+    (tmp_path / "square.csv").write_text("x [mm],diameter [in]\n0,0.5\n700,0.8\n")
+    (tmp_path / "round.csv").write_text("x (mm), diameter (in)\n0,0.5\n700,0.8\n")
+    assert cf.load(tmp_path / "round.csv") == cf.load(tmp_path / "square.csv")
 
 
 def test_lathe_profile_keeps_a_bend_of_a_micrometre(tmp_path: Path) -> None:

@@ -89,7 +89,8 @@ CHANGES = [
         CUE,
         "[[segments]]",
         "[[segment]]",
-        "body_mass: must be one of the keys segments, cue, ball, tip, stroke, effects, accuracy; got body_mass",
+        "segment: must be one of the keys segments, cue, ball, tip, stroke, effects, accuracy; got segment = "
+        "[{'length': '700 mm', 'tip_diameter': '12 mm', 'butt_diam...; did you mean 'segments'?",
     ),
     (CUE, "[[segments]]", "[segments]", "segments: must be an array of tables; got {'length': '700 mm'"),
     (CUE, '{ E = "12.6 GPa"', '"hard mapel" #', "segments[0].material: "),
@@ -114,6 +115,22 @@ CHANGES = [
         "effects[0].stiffness: must be in [0, inf] N/m; got '1e999 N/m'",
     ),
     (SCENE, "[cue]", "cue = 3\n[cew]", "cew: must be one of the keys"),
+    (
+        CUE,
+        '"12 mm"',
+        '"20,5 mm"',
+        f"segments[0].tip_diameter: must be in (0, inf) m, {LENGTH}; got '20,5 mm'; a decimal",
+    ),
+    (
+        *(CUE, 'length = "700 mm"', "length = 700 mm"),
+        "must be TOML; got a syntax error: Expected newline or end of document after a statement "
+        "(at line 4, column 14); a value with a unit stands in quotes",
+    ),
+    (
+        *(SCENE, 'mass = "210 g"', 'diameter = "61.5 mm"'),
+        "ball.diameter: must be one of the keys mass, radius, inertia; got diameter = '61.5 mm'; "
+        "did you mean 'radius', half of it?",
+    ),
 ]
 
 
@@ -199,6 +216,15 @@ HEADER = "x [mm],diameter [mm]\n"
         ("0,12\n700,21\n", "line 1: must be the header \"x [mm],diameter [mm]\"; got '0,12'"),
         ("x,diameter\n0,12\n", "line 1: must be the header \"x [mm],diameter [mm]\"; got 'x,diameter'"),
         ("x [kg],diameter [mm]\n0,12\n", "line 1, x: must be in a unit of length, such as mm; got 'kg'"),
+        (
+            "x [mm];diameter [mm]\n0;12\n",
+            "line 1: must be the header \"x [mm],diameter [mm]\"; got 'x [mm];diameter [mm]'; commas part the columns",
+        ),
+        (HEADER + "0;12\n700;21\n", "line 2: must be two numbers, x and diameter; got '0;12'; commas part the columns"),
+        (
+            HEADER + "0,12,5\n",
+            "line 2: must be two numbers, x and diameter; got '0,12,5'; commas part the columns, numbers",
+        ),
         (HEADER, "must hold at least 2 points; got 0"),
         (HEADER + "0,12\n", "must hold at least 2 points; got 1"),
         (HEADER + "0,12\n350\n", "line 3: must be two numbers, x and diameter; got '350'"),

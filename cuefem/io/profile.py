@@ -21,7 +21,8 @@ SHAPES = (".csv", *SURFACES)  # the files that say a shaft's shape and no materi
 # Points closer than this to a straight taper lie on it, m: the rounding of a file, far below what a lathe measures.
 _STRAIGHT = 1e-9
 
-_HEADER = re.compile(r"\s*(x|diameter)\s*\[([^]]+)\]\s*")
+_HEADER = re.compile(r"\s*(x|diameter)\s*[\[(]([^])]+)[\])]\s*")
+_COMMAS = "; commas part the columns, numbers have a decimal point"
 _POSITION, _DIAMETER = Quantity("m", "(-inf, inf)"), Quantity("m", "(0, inf)")
 
 Point = tuple[float, float]  # position, diameter, m
@@ -56,7 +57,8 @@ def _units(path: Path, line: int, cells: list[str]) -> tuple[str, str]:
     found = [_HEADER.fullmatch(cell) for cell in cells]
     names = [match[1] if match else None for match in found]
     if names != ["x", "diameter"]:
-        problem = f'must be the header "x [mm],diameter [mm]"; got {shown(",".join(cells))}'
+        hint = _COMMAS if any(";" in cell for cell in cells) else ""
+        problem = f'must be the header "x [mm],diameter [mm]"; got {shown(",".join(cells))}{hint}'
         raise InputError(path, f"line {line}", problem)
     units = (found[0][2], found[1][2])  # type: ignore[index]
     for name, unit in zip(names, units, strict=True):
@@ -70,7 +72,9 @@ def _units(path: Path, line: int, cells: list[str]) -> tuple[str, str]:
 
 def _point(path: Path, line: int, cells: list[str], units: tuple[str, str], before: list[Point]) -> Point:
     if len(cells) != 2:
-        raise InputError(path, f"line {line}", f"must be two numbers, x and diameter; got {shown(','.join(cells))}")
+        hint = _COMMAS if len(cells) > 2 or ";" in cells[0] else ""
+        problem = f"must be two numbers, x and diameter; got {shown(','.join(cells))}{hint}"
+        raise InputError(path, f"line {line}", problem)
     read = []
     for name, cell, unit, wanted in zip(("x", "diameter"), cells, units, (_POSITION, _DIAMETER), strict=True):
         try:

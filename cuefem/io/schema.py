@@ -68,7 +68,9 @@ def keys_of(kind: type) -> list[str]:
 def unknown_key(name: str, value: Any, names: list[str], *, file: str, key: str) -> InputError:
     """The error for a key that is none of ``names``."""
     wanted = f"must be one of the keys {', '.join(names)}"
-    return InputError(file, joined(key, name), f"{wanted}; got {name} = {shown(value)}{nearest(name, names)}")
+    half = name == "diameter" and "radius" in names
+    hint = "; did you mean 'radius', half of it?" if half else nearest(name, names)
+    return InputError(file, joined(key, name), f"{wanted}; got {name} = {shown(value)}{hint}")
 
 
 def _input_error(error: ValidationError, kind: type, *, file: str, key: str) -> InputError:

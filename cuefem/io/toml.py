@@ -45,12 +45,20 @@ def read_text(path: Path) -> str:
 
 def read_tables(path: Path) -> dict[str, Any]:
     """A TOML file as plain tables."""
+    text = read_text(path)
     try:
-        return tomllib.loads(read_text(path))
+        return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise InputError(path, "", f"must be TOML; got a syntax error: {error}") from None
+        raise InputError(path, "", f"must be TOML; got a syntax error: {error}{_unquoted(text, str(error))}") from None
     except RecursionError:
         raise InputError(path, "", "must be TOML nested less deeply") from None
+
+
+def _unquoted(text: str, error: str) -> str:
+    """A hint where the line of a syntax error has a value with a unit and no quotes."""
+    found = re.search(r"at line (\d+)", error)
+    line = text.splitlines()[int(found[1]) - 1] if found else ""
+    return "; a value with a unit stands in quotes" if re.search(r"=\s*[-+.\d]+\s*[^\W\d_]", line) else ""
 
 
 def load_toml(path: Path, cue_file: Callable[[Path], Cue]) -> Cue | Scene:
@@ -108,9 +116,10 @@ def named_material(name: str, path: Path, key: str) -> Material:
 
 def _scene(found: dict[str, Any], path: Path, cue_file: Callable[[Path], Cue]) -> Scene:
     names = [*keys_of(Scene), "accuracy"]
-    for name in found:
-        if name not in names:
-            raise unknown_key(name, found[name], ["segments", *names], file=str(path), key="")
+    unknown = [name for name in found if name not in names]
+    if unknown:  # a misspelt one first: beside [[segment]], body_mass is no fault
+        name = next((name for name in unknown if nearest(name, ["segments", *names])), unknown[0])
+        raise unknown_key(name, found[name], ["segments", *names], file=str(path), key="")
     if "cue" not in found:
         raise InputError(path, "cue", "must be given: [[segments]] make a cue, [cue] a scene; got neither")
     _accuracy(found.get("accuracy"), path)

@@ -17,6 +17,7 @@ _TEXT = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[+-]?[0-9]+)?|[+-]
 _FACTOR = r"(?:[A-Za-zµμ°]{1,30}(?:(?:\^|\*\*)-?[0-9]|[²³])?|1)"
 _PRODUCT = rf"\({_FACTOR}(?:(?:\s*\*\s*|\s){_FACTOR}){{1,3}}\)"  # below a stroke: rad/(N m)
 _UNIT = re.compile(rf"{_FACTOR}(?:(?:\s*[*/]\s*|\s){_FACTOR}){{0,6}}(?:\s*/\s*{_PRODUCT})?")
+_POWER = re.compile(r"m([23])\b")  # g/cm3 as people write it
 
 
 @functools.cache
@@ -31,6 +32,7 @@ def _scale(unit: str, wanted: str) -> Decimal | None:
     """How many ``wanted`` one ``unit`` is; None where pint knows no such unit or it is of another kind."""
     import pint
 
+    unit = _POWER.sub(r"m^\1", unit)
     if not _UNIT.fullmatch(unit):
         return None
     try:
@@ -45,6 +47,7 @@ def _known(unit: str) -> bool:
     """Whether pint knows the unit."""
     import pint
 
+    unit = _POWER.sub(r"m^\1", unit)
     if not _UNIT.fullmatch(unit):
         return False
     try:
@@ -88,7 +91,9 @@ def quantity(wanted: Quantity, value: Any) -> float:
 
 
 def _why(value: str) -> str:
-    """What is wrong with the unit of a text that `number` refused; nothing where it has none."""
+    """What is wrong with a text that `number` refused; nothing where it has no unit."""
+    if re.match(r"\s*[-+]?[0-9]+,[0-9]", value):
+        return "; a decimal point, no comma"
     found = _TEXT.fullmatch(value)
     if not found or not found[2]:
         return ""
