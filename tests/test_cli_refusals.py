@@ -245,6 +245,17 @@ def test_sizes_out_of_all_proportion(length: str, tmp_path: Path) -> None:
     assert "out of all proportion" in err
 
 
+@pytest.mark.parametrize("command", ["report", "end-mass"])
+def test_a_tip_as_thin_as_a_hair(tmp_path: Path, command: str) -> None:
+    path = tmp_path / "cue.toml"
+    path.write_text(GOOD.replace("tip_bore", "# tip_bore").replace("butt_bore", "# ").replace("12 mm", "0.012 mm"))
+    status, out, err = call(command, path)
+    assert (status, out) == (2, "")
+    assert err.splitlines()[0].startswith("unusual: segments[0].tip_diameter 0.012 mm; check the unit")
+    assert err.splitlines()[-1].startswith(f"cuefem: {path}: the end mass comes out as -")
+    assert err.splitlines()[-1].endswith("check sizes, E and the contact time")
+
+
 def test_more_memory_than_there_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(*_: object, **__: object) -> None:
         raise MemoryError

@@ -114,6 +114,11 @@ def _end_mass(scene: Scene, spread: Callable[[Drive], Spread], drive: Drive, *, 
     except ValueError as error:
         names = ("end_mass", "lowest", "highest", "cue_end_mass", "eps")
         return {**dict.fromkeys(names), "reason": str(error)}
+    if not felt > 0:
+        raise ValueError(
+            f"the end mass comes out as {1e3 * felt:.4g} g ({drive}), which no cue has: its tip is far too weak for a "
+            f"contact of {1e3 * float(scene.contact_time):.4g} ms; check sizes, E and the contact time"
+        )
     whole = float(cue_end_mass(felt))
     return {
         "end_mass": felt,
