@@ -33,7 +33,8 @@ class Material:
     def __post_init__(self) -> None:
         check_fields(self)
         if 2 * self.nu * self.G >= self.E:
-            raise ValueError(f"Material.G must be in (0, {self.E / (2 * self.nu)}) Pa, E/(2 nu); got {self.G}")
+            bound = f"(0, {self.E / (2 * self.nu)}) Pa, E/(2 nu) of E = {self.E} Pa, nu = {self.nu}"
+            raise ValueError(f"Material.G must be in {bound}; got {self.G}")
 
     @property
     def effective_poisson_ratio(self) -> float:

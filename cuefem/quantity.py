@@ -91,7 +91,7 @@ class Quantity:
     def check(self, name: str, value: Any) -> Any:
         """``value`` as a float or a read-only float array; the errors name field, bound, unit and value."""
         if isinstance(value, bool | str) or value is None:
-            raise TypeError(f"{name} must be a number in {self.bounds}; got {value!r}")
+            raise TypeError(f"{name} must be a number in {self.bounds}; got {shown(value)}")
         if isinstance(value, int | float | np.integer | np.floating):
             if not self.holds(float(value)):
                 raise ValueError(f"{name} must be in {self.bounds}; got {value}")
@@ -102,7 +102,7 @@ class Quantity:
         try:
             array = np.array(value, dtype=float)
         except (TypeError, ValueError):
-            raise TypeError(f"{name} must be a number in {self.bounds}; got {value!r}") from None
+            raise TypeError(f"{name} must be a number in {self.bounds}; got {shown(value)}") from None
         wrong = ~self.holds(array)
         if wrong.any():
             index = tuple(int(i) for i in np.argwhere(wrong)[0])
@@ -152,15 +152,29 @@ def scalar(name: str, value: Number) -> float:
 
 
 def check_kind(name: str, value: Any, kind: type | tuple[type, ...]) -> None:
-    """TypeError unless ``value`` is an instance of ``kind``."""
+    """TypeError unless ``value`` is an instance of ``kind``; it names the field that is one, where there is."""
     if not isinstance(value, kind):
         wanted = " or ".join(k.__name__ for k in (kind if isinstance(kind, tuple) else (kind,)))
-        raise TypeError(f"{name} must be a {wanted}; got {value!r}")
+        raise TypeError(f"{name} must be a {wanted}; got {_in_short(value, kind)}")
+
+
+def _in_short(value: Any, kind: type | tuple[type, ...]) -> str:
+    """What was given: a number or a text as it is, the rest by its type; of a dataclass, the field that was meant."""
+    if not dataclasses.is_dataclass(value) or isinstance(value, type):
+        return shown(value)
+    meant = [field.name for field in dataclasses.fields(value) if isinstance(getattr(value, field.name), kind)]
+    return f"a {type(value).__name__}" + (f": pass its {meant[0]}" if meant else "")
+
+
+def shown(value: Any) -> str:
+    """A value as it stands in a message: quoted where it is text, and cut where it is long."""
+    text = repr(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 def check_count(name: str, value: Any, least: int) -> None:
     """TypeError or ValueError unless ``value`` is a whole number of at least ``least``."""
     if isinstance(value, bool) or not isinstance(value, int | np.integer):
-        raise TypeError(f"{name} must be a whole number >= {least}; got {value!r}")
+        raise TypeError(f"{name} must be a whole number >= {least}; got {shown(value)}")
     if value < least or not math.isfinite(value):
         raise ValueError(f"{name} must be a whole number >= {least}; got {value}")

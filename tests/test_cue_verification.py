@@ -142,7 +142,10 @@ def test_segment_refuses(change: dict[str, float], message: str) -> None:
         ({"rho": float("inf")}, "Material.rho must be in (0, inf) kg/m^3; got inf"),
         ({"loss": 1.0}, "Material.loss must be in [0, 1); got 1.0"),
         ({"nu": 0.6}, "Material.nu must be in [0, 0.5]; got 0.6"),
-        ({"E": 6e9, "G": 10e9}, "Material.G must be in (0, 10000000000.0) Pa, E/(2 nu); got 10000000000.0"),
+        (
+            {"E": 6e9, "G": 10e9},
+            "Material.G must be in (0, 10000000000.0) Pa, E/(2 nu) of E = 6000000000.0 Pa, nu = 0.3; got 10000000000.0",
+        ),
     ],
 )
 def test_material_refuses(change: dict[str, float], message: str) -> None:

@@ -38,4 +38,4 @@ def test_a_port_in_use_is_refused() -> None:
     pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
-        assert refused("--port", port) == f"--port must be a free one; got {port}: Address already in use"
+        assert refused("--port", port) == f"--port must be a free one (0 takes any); got {port}: Address already in use"

@@ -231,5 +231,5 @@ def test_modes_refuses(arguments: dict[str, object], kind: type[Exception], mess
 
 
 def test_modes_of_a_lumped_cue() -> None:
-    with pytest.raises(TypeError, match="modes cue must be a Cue; got LumpedCue"):
+    with pytest.raises(TypeError, match="modes cue must be a Cue; got a LumpedCue"):
         modes(LumpedCue(0.5, 0.01))  # type: ignore[arg-type]

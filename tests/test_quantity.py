@@ -11,8 +11,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from cuefem.cue import Cue, Material, Segment
 from cuefem.quantity import Number, Quantity, check_count, check_fields, check_kind, quantities, scalar
+from cuefem.scene import Scene
 
+SCENE = Scene(Cue((Segment(0.7, 0.012, 0.021, Material(12.6e9, 0.84e9, 782.0)),)))
 INTERVALS = ["(0, inf)", "[0, inf)", "[0, inf]", "[0, 1]", "(-1, 1)", "(-inf, inf)"]
 
 
@@ -120,6 +123,12 @@ def test_kinds_and_counts() -> None:
     check_kind("x", 3, (int, str))
     with pytest.raises(TypeError, match=r"x must be a int or str; got 2\.5"):
         check_kind("x", 2.5, (int, str))
+    with pytest.raises(TypeError, match=r"^x must be a Cue; got a Scene: pass its cue$"):
+        check_kind("x", SCENE, Cue)
+    with pytest.raises(TypeError, match=r"^x must be a Cue; got a Ball$"):
+        check_kind("x", SCENE.ball, Cue)
+    with pytest.raises(TypeError, match=r"^x must be a Cue; got \[0, 1, 2, .*\.\.\.$"):
+        check_kind("x", list(range(1000)), Cue)
     check_count("n", np.int64(4), 1)
     for wrong in (True, 2.0, "2", None):
         with pytest.raises(TypeError, match="n must be a whole number >= 1"):

@@ -51,5 +51,5 @@ def _free(port: int) -> int:
         try:
             tried.bind(("127.0.0.1", port))
         except OSError as error:
-            raise ValueError(f"--port must be a free one; got {port}: {error.strerror}") from None
+            raise ValueError(f"--port must be a free one (0 takes any); got {port}: {error.strerror}") from None
         return int(tried.getsockname()[1])

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from cuefem.cue import Cue
-from cuefem.io.errors import InputError, reason
+from cuefem.io.errors import InputError, reason, shown
 from cuefem.io.profile import DEFAULT_MATERIAL, SHAPES, SURFACES, load_profile
 from cuefem.io.toml import load_accuracy, load_cue, load_toml, named_material, read_text, toml_text
 from cuefem.io.units import number
@@ -79,7 +79,7 @@ def save(obj: Cue | Scene, path: str | os.PathLike[str]) -> None:
     objs, ValueError for a scene of arrays.
     """
     if not isinstance(obj, Cue | Scene):
-        raise TypeError(f"save writes a Cue or a Scene; got {obj!r}")
+        raise TypeError(f"save writes a Cue or a Scene; got {shown(obj)}")
     path = Path(path)
     if path.suffix.lower() == ".toml":
         content = toml_text(obj)

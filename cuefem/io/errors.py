@@ -5,7 +5,10 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 from os import PathLike
-from typing import Any
+
+from cuefem.quantity import shown
+
+__all__ = ["InputError", "nearest", "reason", "shown"]
 
 
 class InputError(ValueError):
@@ -19,12 +22,6 @@ class InputError(ValueError):
         self.file, self.key, self.problem = str(file), key, problem
         parts = [part for part in (self.file, key, problem) if part]
         super().__init__(" ".join(": ".join(parts).split()))
-
-
-def shown(value: Any) -> str:
-    """A value as it stands in a message: quoted where it is text, and cut where it is long."""
-    text = repr(value)
-    return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 def nearest(name: str, names: Iterable[str]) -> str:
