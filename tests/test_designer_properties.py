@@ -166,3 +166,14 @@ def test_no_impossible_cue_is_made(changes: dict[str, float], words: str) -> Non
 def test_a_lumped_cue_has_no_knobs() -> None:
     with pytest.raises(ValueError, match="cue must have segments, a shape that can be changed; got a lumped cue"):
         knobs_of(cf.Scene(cf.LumpedCue(0.5, 0.006)))
+
+
+def test_what_is_unusual_is_not_said_to_be_assumed() -> None:
+    pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
+    from cuefem.designer.app import Opened, _head
+
+    scene = replace(first_scene(), ball=cf.Ball(radius=0.05715))
+    head = _head(Opened("mine.toml", scene, ["material hard maple"]), scene)
+    assert "assumed: material hard maple<" in head
+    assert ">unusual: ball radius 57.15 mm" in head
+    assert "unusual" not in _head(Opened("mine.toml", first_scene(), []), first_scene())

@@ -332,7 +332,7 @@ class Desk:
             except FAILURES as error:
                 self._say(f"not opened: {' '.join(str(error).split()).replace(f'{folder}/', '')}")
                 return
-        await self._open(Opened(name, scene, [*notes, *unusual(scene)]))
+        await self._open(Opened(name, scene, notes))
 
     def _save(self) -> None:
         """The design as the knobs say, be it answered yet or not."""
@@ -348,7 +348,8 @@ class Desk:
         self.report.disable()
         self._say("writing the report …")
         try:
-            text = await _computed(lambda: report_page(name, scene, notes=self.opened.notes))
+            notes, remarks = self.opened.notes, unusual(scene)
+            text = await _computed(lambda: report_page(name, scene, notes=notes, remarks=remarks))
         except FAILURES as error:
             self._say(" ".join(str(error).split()))
             return
@@ -361,7 +362,7 @@ class Desk:
 def _head(opened: Opened, scene: Scene) -> str:
     facts = [plain_cue_line(scene.cue), assumptions(scene_record(scene))]
     facts += [f"with {', '.join(map(effect_words, scene.effects))}"] if scene.effects else []
-    facts += [f"assumed: {note}" for note in opened.notes]
+    facts += [f"assumed: {note}" for note in opened.notes] + [f"unusual: {remark}" for remark in unusual(opened.scene)]
     lines = "".join(f'<p class="fact">{escape(fact)}</p>' for fact in facts)
     return f'<p class="kind">cuefem designer</p><h1>{escape(opened.name)}</h1>{lines}'
 
