@@ -141,7 +141,7 @@ def test_bad_options(tmp_path: Path, arguments: list[str], line: str) -> None:
 @pytest.mark.parametrize(
     ("content", "line"),
     [
-        (CSV + "0,12\n700,21\n350,16\n", "line 4, x: must be in (0.7, inf) m, beyond the line before"),
+        (CSV + "0,12\n700,21\n350,16\n", "line 4, x: must be in (700, inf) mm, beyond the line before"),
         (CSV + "0,12\n700,-21\n", "line 3, diameter: must be in (0, inf) m; got '-21 mm'"),
         ("0,12\n700,21\n", 'line 1: must be the header "x [mm],diameter [mm]"'),
         ("", "must hold a cue or a scene; got an empty file"),

@@ -234,9 +234,9 @@ HEADER = "x [mm],diameter [mm]\n"
         (HEADER + "nan,12\n700,0\n", "line 2, x: must be in (-inf, inf) m; got 'nan mm'"),
         (
             HEADER + "0,12\n700,21\n350,16\n",
-            "line 4, x: must be in (0.7, inf) m, beyond the line before (points run from tip to butt); got '350 mm'",
+            "line 4, x: must be in (700, inf) mm, beyond the line before (points run from tip to butt); got '350 mm'",
         ),
-        (HEADER + "0,12\n0,21\n", "line 3, x: must be in (0.0, inf) m, beyond the line before"),
+        (HEADER + "0,12\n0,21\n", "line 3, x: must be in (0, inf) mm, beyond the line before"),
     ],
 )
 def test_profiles(tmp_path: Path, content: str, line: str) -> None:

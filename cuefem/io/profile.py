@@ -83,7 +83,7 @@ def _point(path: Path, line: int, cells: list[str], units: tuple[str, str], befo
             raise InputError(path, f"line {line}, {name}", str(error)) from None
     x, diameter = read
     if before and x <= before[-1][0]:
-        bound = f"must be in ({before[-1][0]}, inf) m, beyond the line before"
+        bound = f"must be in ({before[-1][0] / number(f'1 {units[0]}', 'm'):g}, inf) {units[0]}, beyond the line before"
         raise InputError(path, f"line {line}, x", f"{bound} (points run from tip to butt); got '{cells[0]} {units[0]}'")
     return x, diameter
 
