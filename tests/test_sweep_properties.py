@@ -211,6 +211,14 @@ def test_without_its_library_parquet_is_refused_with_a_word(monkeypatch: pytest.
         export_path("out.parquet")
 
 
+def test_a_base_scene_in_a_wrong_unit_is_remarked(tmp_path: Path) -> None:
+    study = written(tmp_path, scene=SCENE.replace('"420 g"', '"42 kg"'))
+    code, _, err = call("sweep", study)
+    assert code == 0
+    assert err.startswith("unusual: mass of the whole cue 42.1")
+    assert err.count("\n") == 1
+
+
 def test_the_command_sweeps_and_goes_on(tmp_path: Path) -> None:
     study = written(tmp_path)
     code, out, err = call("sweep", study)

@@ -87,7 +87,6 @@ def scene_of(file: Path, given: dict[str, Any]) -> tuple[Scene, list[str]]:
     from cuefem.cue import Cue
     from cuefem.io import load
     from cuefem.io.assumed import assumed, assumed_blow
-    from cuefem.io.unusual import unusual
     from cuefem.scene import Scene, Stroke
 
     found = load(file, material=given["material"], length_unit=given.get("length_unit"))
@@ -97,9 +96,16 @@ def scene_of(file: Path, given: dict[str, Any]) -> tuple[Scene, list[str]]:
         found = Scene(found, stroke=Stroke(offset=DEFAULT_OFFSET))
         notes += assumed_blow({}, said, offered=given, offset=DEFAULT_OFFSET)
     scene = _with_options(found, file, given)
+    remark(scene)
+    return scene, notes
+
+
+def remark(scene: Scene) -> None:
+    """Say on stderr what is unusual, as a wrong unit makes it."""
+    from cuefem.io.unusual import unusual
+
     for line in unusual(scene):
         click.echo(f"unusual: {line}", err=True)
-    return scene, notes
 
 
 def _with_options(scene: Scene, file: Path, given: dict[str, Any]) -> Scene:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from cuefem.cli.common import print_all, print_json
+from cuefem.cli.common import print_all, print_json, remark
 from cuefem.cli.sweep import bar, opened
 
 if TYPE_CHECKING:
@@ -33,6 +33,7 @@ def scatter(study: Path, as_json: bool, **where: Any) -> None:
     from cuefem.scatter import drivers
 
     wanted, sample = load_scatter(study)
+    remark(wanted.study.base)
     with opened(**where) as pool, bar((len(wanted.causes) + 2) * sample.count, 0) as progress:
         try:
             found = drivers(wanted, sample.count, seed=sample.seed, pool=pool, progress=progress)

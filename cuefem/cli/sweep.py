@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from cuefem.cli.common import remark
+
 if TYPE_CHECKING:
     from cuefem.design import Pool, Row
     from cuefem.io.database import Database
@@ -36,6 +38,7 @@ def sweep(study: Path, output: Path | None, export: Path | None, as_json: bool, 
     goal = None if export is None else export_path(export)
     if goal is not None:
         check_place(goal)
+    remark(wanted.base)
     with ExitStack() as open_things:
         pool = open_things.enter_context(opened(**where))
         database = open_things.enter_context(Database(output or study.with_suffix(".sqlite"), wanted))
