@@ -54,7 +54,7 @@ def test_the_command_prints_and_draws(tmp_path: Path) -> None:
     figure = tmp_path / "cost.svg"
     status, out, err = call("cost", KIM, "--most", 24, "--output", figure)
     assert (status, err) == (0, "")
-    assert "assumed: default ball and tip, offset b/R 0.3" in out
+    assert "assumed: carom ball 210 g, 61.5 mm (--ball); contact time 2 ms" in " ".join(out.split())
     assert "What to take" in out
     assert "1e-06, not reached" in out
     assert figure.read_text(encoding="utf-8").startswith("<?xml")

@@ -362,7 +362,8 @@ class Desk:
 def _head(opened: Opened, scene: Scene) -> str:
     facts = [plain_cue_line(scene.cue), assumptions(scene_record(scene))]
     facts += [f"with {', '.join(map(effect_words, scene.effects))}"] if scene.effects else []
-    facts += [f"assumed: {note}" for note in opened.notes] + [f"unusual: {remark}" for remark in unusual(opened.scene)]
+    facts += [f"assumed: {'; '.join(opened.notes)}"] if opened.notes else []
+    facts += [f"unusual: {remark}" for remark in unusual(opened.scene)]
     lines = "".join(f'<p class="fact">{escape(fact)}</p>' for fact in facts)
     return f'<p class="kind">cuefem designer</p><h1>{escape(opened.name)}</h1>{lines}'
 
