@@ -201,13 +201,14 @@ def draw_seconds(path: Path) -> None:
                 panel.loglog(seconds(part, name), [max(p.error, 1e-13) for p in curve], "o-", label=name)
             panel.set(title=title, xlabel="seconds", ylabel="largest relative error")
             panel.legend()
+        axes[2].set_xlim(right=30)  # room for the legend
         plain_ticks(axes[1].xaxis, (0.005, 0.01, 0.02, 0.05, 0.1, 0.2))
         for i, name in enumerate(list(points.models())[:-1]):
             error = float(np.median(np.abs(points.model_errors(name))))
             axes[3].loglog(model_seconds(name), error, "os^v<>DPX*"[i % 10], label=name)
-        axes[3].set(title="(d) models", xlabel="seconds", ylabel="median relative error of squirt")
+        axes[3].set(title="(d) models", xlabel="seconds", ylabel="median relative error of squirt", xlim=(1e-7, 1))
         plain_ticks(axes[3].yaxis, (0.01, 0.02, 0.05, 0.1, 0.2, 0.5))
-        axes[3].legend(fontsize=7)
+        axes[3].legend(fontsize=7, loc="lower left")
         for panel, (name, rows) in zip(axes[4:], grown().items(), strict=True):
             n, t = np.array([row[0] for row in rows]), np.array([row[1] for row in rows])
             power = 3 if "modes kept" in name else 1
