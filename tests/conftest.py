@@ -1,6 +1,9 @@
 """Settings of every test: hypothesis draws the same examples on every machine and in every run."""
 
 import os
+import pkgutil
+from contextlib import suppress
+from importlib import import_module
 
 # Before NumPy is loaded: the package's small dense matrices gain nothing from BLAS threads, and two of them on a busy
 # machine can be a hundred times slower than one.
@@ -8,6 +11,13 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(name, "1")
 
 from hypothesis import settings  # noqa: E402
+
+import cuefem  # noqa: E402
+
+# hypothesis draws from the constants of the modules that are loaded: with all of them no worker's order matters
+for found in pkgutil.walk_packages(cuefem.__path__, "cuefem."):
+    with suppress(ImportError):  # an extra that is not installed
+        import_module(found.name)
 
 settings.register_profile("cuefem", derandomize=True, deadline=None, database=None, print_blob=True)
 settings.load_profile("cuefem")
