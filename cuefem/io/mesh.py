@@ -17,8 +17,6 @@ from cuefem.cue import Cue, Material, Segment
 from cuefem.io.errors import InputError, reason, shown
 from cuefem.quantity import quantities
 
-SUFFIXES = (".vtk", ".vtu")
-
 # What a damaged mesh file makes meshio raise: it checks little itself.
 DAMAGED = (
     *(meshio.ReadError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError, AssertionError),
