@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -66,6 +66,17 @@ def check_free(drawing: Path, *, force: bool) -> None:
     if drawing.exists() and not drawing.is_dir() and not force:
         raise InputError(drawing, "", "is there already: --force replaces it")
     check_place(drawing)
+
+
+@contextmanager
+def blaming(file: Path) -> Iterator[None]:
+    """Say of which file a value is bad, where that only shows when it is computed, as of an effect off the cue."""
+    from cuefem.io import InputError
+
+    try:
+        yield
+    except ValueError as error:
+        raise InputError(file, "", str(error)) from None
 
 
 def measured(file: Path, option: str, given: str, wanted: Quantity) -> float:
@@ -140,16 +151,13 @@ def with_body(cue: Cue | LumpedCue, file: Path, given: str) -> Cue:
 
 def show(file: Path, given: dict[str, Any], results: Callable[[Scene], Any], tables: Callable[..., Any]) -> None:
     """Compute all of it first, then print it all: as JSON, or as a heading and tables."""
-    from cuefem.io import InputError
     from cuefem.io.unusual import unusual
     from cuefem.report.records import UNITS, plain, scene_record
     from cuefem.report.tables import cue_line, effect_words
 
     scene, notes = scene_of(file, given)
-    try:
+    with blaming(file):
         about, found = scene_record(scene), results(scene)
-    except ValueError as error:  # what only shows when it is computed, such as an effect off the cue
-        raise InputError(file, "", str(error)) from None
     if given["as_json"]:
         said = {"file": str(file), "assumed": notes, "unusual": unusual(scene)}
         print_json({**said, "scene": about, **found, "units": UNITS})

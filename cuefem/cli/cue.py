@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from cuefem.cli.common import blow_options, file_options, followed, measured, offset_option, scene_of, show
+from cuefem.cli.common import blaming, blow_options, file_options, followed, measured, offset_option, scene_of, show
 
 if TYPE_CHECKING:
     from cuefem.scene import Scene
@@ -133,9 +133,7 @@ def _write_page(file: Path, output: Path, given: dict[str, Any]) -> None:
     if given["as_json"]:
         raise InputError(output, "--output", "must be left out with --json: a page is no JSON")
     scene, notes = scene_of(file, given)
-    try:
+    with blaming(file):
         text = page(file.name, scene, rtol=load_accuracy(file), notes=notes, remarks=unusual(scene), track=followed)
-    except ValueError as error:
-        raise InputError(file, "", str(error)) from None
     save_page(text, output)
     click.echo(f"wrote {output}")

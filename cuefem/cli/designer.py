@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from cuefem.cli.common import scene_of
+from cuefem.cli.common import blaming, scene_of
 
 
 @click.command(short_help="Turn a cue's knobs on a page, and see what that does.")
@@ -28,7 +28,6 @@ def designer(scene: Path | None, port: int, show: bool) -> None:
         raise ValueError(f"the designer needs {error.name}: pip install '.[designer]' in the clone") from None
     from cuefem.designer.model import knobs_of
     from cuefem.designer.start import NAME, first_scene
-    from cuefem.io import InputError
 
     def read(path: Path) -> Any:
         return scene_of(path, {"material": None, "body_mass": None})
@@ -37,10 +36,8 @@ def designer(scene: Path | None, port: int, show: bool) -> None:
         first = Opened(NAME, first_scene(), [])
     else:
         first = Opened(scene.name, *read(scene))
-        try:
+        with blaming(scene):
             knobs_of(first.scene)
-        except ValueError as error:
-            raise InputError(scene, "", str(error)) from None
     serve(first, read, port=_free(port), show=show, announce=click.echo)
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from cuefem.cli.common import (
+    blaming,
     blow_options,
     file_options,
     followed,
@@ -49,10 +50,8 @@ def handover(file: Path, whom: str, drive: Any, output: Path | None, as_json: bo
     if output is not None and output.suffix != ".json":
         raise InputError(output, "--output", f"must end in .json; got {output.suffix!r}")
     scene, notes = scene_of(file, given)
-    try:
+    with blaming(file):
         found = pooltool_record(file.stem, scene, drive=drive)
-    except ValueError as error:
-        raise InputError(file, "", str(error)) from None
     found["notes"] += [f"assumed: {note}" for note in notes] + [f"unusual: {remark}" for remark in unusual(scene)]
     text = json.dumps(plain(found), indent=2, allow_nan=False, ensure_ascii=False)
     if output is not None:
@@ -82,10 +81,8 @@ def animate(file: Path, output: Path, as_json: bool, **given: Any) -> None:
         drawn["until"] = measured(file, "--until", drawn["until"], Quantity("s", "(0, inf)"))
     check_new(output)
     scene, notes = scene_of(file, given)
-    try:
+    with blaming(file):
         put = _animation(scene, **drawn)
-    except ValueError as error:
-        raise InputError(file, "", str(error)) from None
     write_whole_folder(output, put)
     if as_json:
         print_json({"folder": str(output), "frames": drawn["frames"], "assumed": notes})

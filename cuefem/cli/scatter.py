@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from cuefem.cli.common import print_all, print_json, remark
+from cuefem.cli.common import blaming, print_all, print_json, remark
 from cuefem.cli.sweep import bar, opened
 
 if TYPE_CHECKING:
@@ -28,17 +28,13 @@ def scatter(study: Path, as_json: bool, **where: Any) -> None:
 
     STUDY is that of a sweep, with [sample], and with correlations and groups. Shares are Sobol indices.
     """
-    from cuefem.io import InputError
     from cuefem.io.study import load_scatter
     from cuefem.scatter import drivers
 
     wanted, sample = load_scatter(study)
     remark(wanted.study.base)
-    with opened(**where) as pool, bar((len(wanted.causes) + 2) * sample.count, 0) as progress:
-        try:
-            found = drivers(wanted, sample.count, seed=sample.seed, pool=pool, progress=progress)
-        except ValueError as error:
-            raise InputError(study, "", str(error)) from None
+    with opened(**where) as pool, bar((len(wanted.causes) + 2) * sample.count, 0) as progress, blaming(study):
+        found = drivers(wanted, sample.count, seed=sample.seed, pool=pool, progress=progress)
     if as_json:
         print_json(
             {"file": str(study), "count": sample.count, "seed": sample.seed, "responses": _record(wanted, found)}

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from cuefem.cli.common import (
+    blaming,
     blow_options,
     check_free,
     cue_options,
@@ -93,28 +94,21 @@ def _heard(recording: Path, file: Path, scene: Scene, given: dict[str, Any]) -> 
         raise InputError(file, "", "must hold a cue of segments: a lumped cue has no tones")
     mass = given["mass"]
     mass = None if mass is None else measured(file, "--mass", mass, Quantity("kg", "(0, inf)"))
-    try:
+    with blaming(file):
         test = TapTest(scene.cue, segment=given["segment"], mass=mass, effects=scene.cue_effects)
-    except ValueError as error:
-        raise InputError(file, "", str(error)) from None
     sound = load_recording(recording)
-    try:
+    with blaming(recording):
         heard = ringing(sound.samples, sound.rate)
         return heard, test.fit(tones(heard))
-    except ValueError as error:
-        raise InputError(recording, "", str(error)) from None
 
 
 def _predicted(file: Path, scene: Scene, found: TapFit) -> tuple[dict[str, Predicted], str]:
     """The scene's numbers with the fitted wood, and the regime of its stroke."""
-    from cuefem.io import InputError
     from cuefem.strike import strike
     from cuefem.tap import predicted
 
-    try:
+    with blaming(file):
         return predicted(scene, found), strike(replace(scene, cue=found.cue)).regime
-    except ValueError as error:
-        raise InputError(file, "", str(error)) from None
 
 
 def _updated(file: Path, scene: Scene, found: TapFit, given: dict[str, Any]) -> Any:
