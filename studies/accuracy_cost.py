@@ -258,7 +258,7 @@ def seconds_report() -> str:
         "\n".join(
             [
                 "# Seconds of accuracy\n",
-                f"{_machine()}, {os.cpu_count()} cores, one BLAS thread, Python {platform.python_version()}, numpy "
+                f"{common.processor()}, one BLAS thread, Python {platform.python_version()}, numpy "
                 f"{np.__version__}, scipy {scipy.__version__}. Median processor\nseconds of five; the models: one "
                 "stroke of pool_maple, 1 ms, b/R 0.3.\n",
                 "| part | how | error | ms |\n|---|---|---|---|",
@@ -273,11 +273,6 @@ def seconds_report() -> str:
         )
         + "\n"
     )
-
-
-def _machine() -> str:
-    model = [line.split(":")[1].strip() for line in contact_cost._cpuinfo() if line.startswith("model name")]
-    return model[0] if model else platform.machine()
 
 
 def main() -> None:

@@ -21,7 +21,6 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from pathlib import Path
 from statistics import median
 from typing import Any
 
@@ -34,7 +33,7 @@ from cuefem.batch import CueBatch, batch_frequencies, batch_stick
 from cuefem.cue import SegmentRows
 from cuefem.design import Levels, Pool, Response, Row, Sample, Span, Study, Vary, processes, sweep
 from studies import batch
-from studies.common import STUDIES, cue, scene, table
+from studies.common import STUDIES, cue, processor, scene, table
 
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 SWEPT_AT = Resolution(1, 24, 12)
@@ -214,20 +213,12 @@ def text(size: Size, tell: Callable[[str], object] = lambda line: None) -> str:
         f"each tenth {min(memory):.1f} to {max(memory):.1f} MiB."
     )
     tell(stream)
-    model = next((line.split(":")[1].strip() for line in _cpuinfo() if line.startswith("model name")), "")
-    machine = (
-        f"{model or platform.machine()}, {os.cpu_count()} cores, one BLAS thread, Python {platform.python_version()}"
-    )
+    machine = f"{processor()}, one BLAS thread, Python {platform.python_version()}"
     return (
         f"# Shafts a second\n\n{machine},\nnumpy {np.__version__}, scipy {scipy.__version__}; load "
         f"{os.getloadavg()[0]:.1f} when written. Per second of one core's own time; errors: [batch.md](batch.md).\n\n"
         f"{table(['what', 'shafts a second and core'], rows)}\n{sweeps}\n\n{stream}\n"
     )
-
-
-def _cpuinfo() -> list[str]:
-    path = Path("/proc/cpuinfo")
-    return path.read_text(encoding="utf-8").splitlines() if path.exists() else []
 
 
 def main() -> None:

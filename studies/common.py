@@ -6,6 +6,8 @@ Tables are read back and compared by `cuefem.validation.disagreements`.
 from __future__ import annotations
 
 import math
+import os
+import platform
 from collections.abc import Iterable, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
@@ -27,6 +29,14 @@ STUDIES = Path(__file__).parent
 MESHES = STUDIES.parent / "meshes"
 NAMES = ("kim", "pool_maple", "pool_hollow", "carbon", "whole_cue")
 STYLE = {"svg.hashsalt": "cuefem", "svg.fonttype": "path", "font.size": 10, "axes.grid": True, "grid.alpha": 0.3}
+
+
+def processor() -> str:
+    """The machine that seconds are of: its processor and number of cores."""
+    path = Path("/proc/cpuinfo")
+    lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
+    model = next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), platform.machine())
+    return f"{model}, {os.cpu_count()} cores"
 
 
 @cache

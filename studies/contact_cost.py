@@ -218,16 +218,10 @@ def seconds() -> str:
 
 def machine() -> list[str]:
     """What the seconds are of: two lines."""
-    model = next((line.split(":")[1].strip() for line in _cpuinfo() if line.startswith("model name")), "")
     return [
-        f"{model or platform.machine()}, {os.cpu_count()} cores, one BLAS thread, Python {platform.python_version()},",
+        f"{common.processor()}, one BLAS thread, Python {platform.python_version()},",
         f"numpy {np.__version__}, scipy {scipy.__version__}.",
     ]
-
-
-def _cpuinfo() -> list[str]:
-    path = Path("/proc/cpuinfo")
-    return path.read_text(encoding="utf-8").splitlines() if path.exists() else []
 
 
 def main() -> None:

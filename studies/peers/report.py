@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import platform
 from pathlib import Path
 from textwrap import fill
@@ -11,6 +10,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import scipy
 
+from studies.common import processor
 from studies.peers.contest import TARGETS, Contest, Contestant
 
 TITLES = {"modes": "modes: f3 to f5", "end_mass": "end_mass: force, 2 ms"}
@@ -62,19 +62,11 @@ whose distance from the beam is the model's and not the mesh's alone, and its ti
 OpenSeesPy factors once only where it says so. ROSS, CalculiX and sfepy take no part in the end mass."""
 
 
-def machine() -> str:
-    """Processor and number of cores."""
-    path = Path("/proc/cpuinfo")
-    lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
-    model = next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), platform.machine())
-    return f"{model}, {os.cpu_count()} cores"
-
-
 def text(contest: Contest) -> str:
     """Tables: what was asked for, and every contestant."""
     versions = {"Python": platform.python_version(), "numpy": np.__version__, "scipy": scipy.__version__}
     versions |= {NAMES[peer]: version for peer, version in contest.versions.items()}
-    lines = ["# Seconds against peers", "", f"{machine()}, one thread."]
+    lines = ["# Seconds against peers", "", f"{processor()}, one thread."]
     lines += [fill(", ".join(map(" ".join, versions.items())) + ".", 120)]
     lines += ["", *(f"{NAMES.get(peer, peer)}: {why}." for peer, why in contest.missing.items())]
     lines += [*([""] if contest.missing else []), NOTES, "", "## What was asked for", ""]
