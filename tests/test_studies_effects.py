@@ -129,7 +129,7 @@ def test_what_the_two_sentences_say():
     assert max(hard, key=hard.get) == "RollingContact"
     for name in effects.SCENES:
         assert all(abs(effects.worth(name)[small].squirt) < 5e-3 for small in effects.SMALL)
-        assert effects.worth(name)["TipDome"].squirt > 0.2
+        assert effects.worth(name)["TipDome"].squirt > (0.15 if name == "break_cue" else 0.3)
         assert -0.25 < effects.worth(name)["TipShear"].squirt < -0.05
 
 
