@@ -38,8 +38,8 @@ def _small_offset_pivot(solver: Solver, _: Any) -> Array:
 
 
 def _pivot(solver: Solver, i: int, offset: float, squirt: float) -> float:
-    dome = solver.dome_radius(i)
-    return float(natural_pivot_length(offset, squirt, radius=solver.scenes[i].ball.radius, dome_radius=dome))
+    scene = solver.scenes[i]
+    return float(natural_pivot_length(offset, squirt, radius=scene.ball.radius, dome_radius=scene.dome_radius))
 
 
 def _struck(value: Callable[[Solver, int, Any], float]) -> Callable[[Solver, Any], Array]:

@@ -12,7 +12,7 @@ import numpy as np
 from cuefem.batch import BatchModes, CueBatch, batch_frequencies, batch_modes, stick_of
 from cuefem.beam import assemble
 from cuefem.cue import Array, Cue, LumpedCue
-from cuefem.effects import Support, TipDome
+from cuefem.effects import Support
 from cuefem.endmass import flexible, small_offset_slope, stick
 from cuefem.modes import Modes, TipModes, lumped_tip_modes, solve
 from cuefem.resolution import tip_modes_from
@@ -53,9 +53,6 @@ class Solver(Protocol):
     def strike(self, i: int, offset: float | None) -> Outcome:
         """The coupled strike of a design at an offset b/R, or at its scene's own."""
 
-    def dome_radius(self, i: int) -> float:
-        """Radius of a design's domed tip, m; 0 where none is modelled."""
-
 
 class _Strikes:
     """Coupled strikes of designs by their tip modes, each made once."""
@@ -77,11 +74,6 @@ class _Strikes:
                 scene = replace(scene, stroke=replace(scene.stroke, offset=offset))
             self._outcomes[i, offset] = strike_modes(scene, self.tip(i))
         return self._outcomes[i, offset]
-
-    def dome_radius(self, i: int) -> float:
-        """Radius of a design's domed tip, m; 0 where none is modelled."""
-        domes = (effect.radius for effect in self.scenes[i].effects if isinstance(effect, TipDome))
-        return float(next(domes, 0.0))
 
 
 class Together(_Strikes):

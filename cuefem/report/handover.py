@@ -15,7 +15,7 @@ from typing import Literal
 import numpy as np
 
 from cuefem.cue import Cue, LumpedCue
-from cuefem.effects import Elevation, TipDome
+from cuefem.effects import Elevation
 from cuefem.endmass import formula_of, stick
 from cuefem.modes import TipModes, lumped_tip_modes
 from cuefem.quantity import scalar
@@ -80,11 +80,7 @@ def _cue_specs(name: str, scene: Scene) -> Record:
         first, last = scene.cue.segments[0], scene.cue.segments[-1]
         specs |= {"length": scene.cue.length}
         specs |= {"shaft_radius_at_tip": first.tip_diameter / 2, "shaft_radius_at_butt": last.butt_diameter / 2}
-    return specs | {"tip_radius": _dome(scene) or NICKEL}
-
-
-def _dome(scene: Scene) -> float | None:
-    return next((effect.radius for effect in scene.effects if isinstance(effect, TipDome)), None)
+    return specs | {"tip_radius": scene.dome_radius or NICKEL}
 
 
 def _notes(scene: Scene) -> list[str]:
@@ -93,7 +89,7 @@ def _notes(scene: Scene) -> list[str]:
         notes.append("a lumped cue has no length and no radii: pooltool's own stay")
     elif scene.cue.body_mass:
         notes.append("length and shaft_radius_at_butt are those of the file's segments; M is the whole cue's")
-    if _dome(scene) is None:
+    if not scene.dome_radius:
         notes.append("tip_radius: pooltool's own, a nickel's; the scene has no TipDome")
     for raised in (effect for effect in scene.effects if isinstance(effect, Elevation)):
         told = f"the cue is raised by {np.degrees(raised.angle):.3g}°"

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from cuefem.cue import Cue, LumpedCue
-from cuefem.effects import TipDome, TipEffect
+from cuefem.effects import TipEffect
 from cuefem.endmass import Drive, Spread, end_mass_spreads, formula_of, lump
 from cuefem.impulse import impulse
 from cuefem.materials import MATERIALS
@@ -174,8 +174,8 @@ def outcome_record(outcome: Outcome, scene: Scene) -> Record:
 def _pivot_length(scene: Scene, squirt: Any) -> Any:
     if not np.all(scene.stroke.offset):
         return None
-    dome = next((effect.radius for effect in scene.effects if isinstance(effect, TipDome)), 0.0)
-    return natural_pivot_length(scene.stroke.offset, squirt, radius=scene.ball.radius, dome_radius=dome)
+    radii = {"radius": scene.ball.radius, "dome_radius": scene.dome_radius}
+    return natural_pivot_length(scene.stroke.offset, squirt, **radii)
 
 
 def strike_record(scene: Scene, outcome: Outcome | None = None) -> Record:
