@@ -148,5 +148,5 @@ def test_every_number_of_a_design_is_written() -> None:
     assert written["balance"] == found.scene.cue.balance_point
     text = table_markup(found, None) + key_markup(found, found)
     assert "nan" not in text
-    assert text.count("data-number") == len(written) == 15
+    assert text.count("data-number") == len(written) == 16
     assert "the same" in text
