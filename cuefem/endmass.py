@@ -5,6 +5,7 @@ For the tip's transverse impulse response h(t) = sum phi_k^2 cos(omega_k t):
 - "force": a half-sine force of length T; impulse over tip velocity at T.
 - "velocity": the tip follows (1 - cos(pi t/T))/2; impulse needed over final velocity.
 - "stick": the tip must follow the ball, as in the coupled strike when the offset goes to zero (recommended).
+- "offset": the same at the scene's own offset; what the impulse solver takes for a finite-element cue.
 - "squirt": the lumped end mass whose squirt is that of the coupled strike, at this offset, speed and friction.
 """
 
@@ -29,16 +30,20 @@ from cuefem.scene import Outcome, Resolution, Scene, Stroke
 from cuefem.strike import strike_modes
 from cuefem.transverse import StickLimit
 
-Drive = Literal["stick", "velocity", "force", "squirt"]
+Drive = Literal["stick", "offset", "velocity", "force", "squirt"]
+
+# Offsets whose end masses are worked at a time, so that the arrays of modes by offsets stay small.
+BLOCK = 1024
 
 
 def end_mass(scene: Scene, drive: Drive = "stick", at: Resolution | None = None) -> Any:
     """Effective end mass m_e of a scene's cue, kg: the inertia that the ball feels across the cue at the tip.
 
-    drive: the definition, see the module. The pulse is as long as the scene's head-on contact time; "stick" also takes
-    the ball's mass, inertia factor and restitution from the scene. A LumpedCue answers its own end_mass. at: left out,
-    modes are kept by frequency (`default_resolution`). Cost: one eigenproblem of the beam, for two of the drives one
-    more of the size of the modes kept. ValueError for an unknown drive.
+    drive: the definition, see the module. The pulse is as long as the scene's head-on contact time; "stick" and
+    "offset" also take the ball's mass, inertia factor and restitution from the scene, and "offset" its offset, which
+    may be an array. A LumpedCue answers its own end_mass. at: left out, modes are kept by frequency
+    (`default_resolution`). Cost: one eigenproblem of the beam, for three of the drives one more of the size of the
+    modes kept. ValueError for an unknown drive.
     """
     formula = formula_of(drive)
     if isinstance(scene.cue, LumpedCue):
@@ -88,15 +93,21 @@ def end_mass_spreads(scene: Scene, at: Resolution | None = None) -> Callable[[Dr
 
 def _strikes(drive: str, tip: TipModes, scene: Scene) -> bool:
     """Whether a definition takes a coupled strike, because nothing else says it."""
-    if drive != "stick":
+    if drive not in ("stick", "offset"):
         return drive == "squirt"
     along = np.any(tip.amplitude[tip.omega > 0, 0] != 0)  # rod modes change the course of the normal impulse
     return bool(along) or any(isinstance(effect, TipEffect) for effect in scene.effects)
 
 
-def formula_of(drive: str) -> Callable[[TipModes, Scene], float]:
+def formula_of(drive: str) -> Callable[[TipModes, Scene], Any]:
     """The definition of that name, as a function of tip modes and scene; ValueError for an unknown one."""
-    formulas = {"stick": stick, "velocity": velocity, "force": force, "squirt": squirt_equivalent}
+    formulas: dict[str, Callable[[TipModes, Scene], Any]] = {
+        "stick": stick,
+        "offset": stick_at_offset,
+        "velocity": velocity,
+        "force": force,
+        "squirt": squirt_equivalent,
+    }
     if drive not in formulas:
         raise ValueError(f"end_mass drive must be one of {', '.join(formulas)}; got {drive!r}")
     return formulas[drive]
@@ -130,10 +141,66 @@ def stick(tip: TipModes, scene: Scene) -> float:
     return float(limit.end_mass(stick_impulse(tip, limit)))
 
 
-def stick_impulse(tip: TipModes, limit: StickLimit) -> float:
+def stick_at_offset(tip: TipModes, scene: Scene) -> Any:
+    """End mass of a tip that sticks from the first touch, at the scene's own offset, kg (physics.md section 6).
+
+    A bare cue's is that of `stick` with the contact of the offset (`limit_at`), exact to first order in the lightness
+    of the cue's end. With effects at the tip or axial waves it is the lumped one with the squirt of a coupled strike
+    that never slips; the two ways differ in second order, by about 1 % at b/R 0.3. The same on either side, and head on
+    that of `stick`. Offsets may be an array, and speeds, of which a bare cue's end mass knows nothing. ValueError where
+    the squirt is that of no end mass. Cost: each different offset some milliseconds (with a tail or damping two matrix
+    exponentials).
+    """
+    b, stroke = np.abs(scene.stroke.offset), scene.stroke
+    if _strikes("offset", tip, scene):
+        return _each(lambda x, U: _stuck_end_mass(tip, replace(scene, stroke=Stroke(U, x))), b, stroke.speed)
+    if tip.resistance is not None:
+        return _each(lambda x, _: _end_mass_at(tip, scene, x), b, 1.0)
+    if np.ndim(b) == 0:
+        return float(_end_mass_at(tip, scene, b))
+    flat, places = np.unique(b, return_inverse=True)
+    found = [_end_mass_at(tip, scene, flat[i : i + BLOCK]) for i in range(0, len(flat), BLOCK)]
+    return np.concatenate(found)[places.ravel()].reshape(b.shape)
+
+
+def _each(function: Callable[[float, float], float], offset: Any, speed: Any) -> Any:
+    """The function of every offset and speed, which broadcast; each pair is worked once."""
+    b, U = np.broadcast_arrays(offset, speed)
+    pairs, places = np.unique(np.stack([b.ravel(), U.ravel()]), axis=1, return_inverse=True)
+    found = np.array([function(*pair) for pair in pairs.T.tolist()])
+    return found[places.ravel()].reshape(b.shape) if b.shape else float(found[0])
+
+
+def limit_at(scene: Scene, offset: Any) -> StickLimit:
+    """The law of a tip that sticks at offsets b/R >= 0, where a light cue end leaves the force along the cue.
+
+    Then F_t = F_n tan(phi). With D = 1 + 1/Q0 + sin(phi)^2/nu the contact is that of the mass M cos(phi)^2/D, of the
+    length T cos(phi) sqrt((1 + 1/Q0)/D), and the tip's velocity runs as K P - 1, K = (1 + e)(1 + 1/nu + 1/Q0)/D.
+    """
+    limit, q = StickLimit.of(scene), scene.ball.mass / scene.axial_mass
+    share = (1 + q) / (1 + q + offset**2 / scene.ball.inertia)
+    return replace(limit, K=limit.K * share, T=limit.T * np.sqrt((1 - offset**2) * share))
+
+
+def _end_mass_at(tip: TipModes, scene: Scene, offset: Any) -> Any:
+    limit = limit_at(scene, offset)
+    try:
+        return limit.end_mass(stick_impulse(tip, limit))
+    except ValueError:
+        where = f"offset {offset:g}" if np.ndim(offset) == 0 else f"offsets from {offset.min():g} to {offset.max():g}"
+        raise ValueError(f"end_mass drive 'offset': a tip that sticks has no end mass's squirt; got {where}") from None
+
+
+def _stuck_end_mass(tip: TipModes, scene: Scene) -> float:
+    if scene.stroke.offset == 0:
+        return stick(tip, scene)
+    return _with_squirt(sticking_squirt(tip, scene), _gripping(scene), "offset")
+
+
+def stick_impulse(tip: TipModes, limit: StickLimit) -> Any:
     """J of a cue without effects at the tip, kg: in closed form, or for modes that are damped or radiate in time."""
     if tip.resistance is None:
-        return float(limit.transverse_impulse(*flexible(tip)))
+        return limit.transverse_impulse(*flexible(tip))
     return damped.stick_impulse(tip, limit)
 
 
@@ -151,28 +218,51 @@ def small_offset_slope(tip: TipModes, scene: Scene) -> float:
 
     The first slip vanishes in the limit, like sqrt(b); endless friction takes it out, and leaves an error of b^2.
     """
-    gripping = replace(scene, tip=replace(scene.tip, friction=math.inf), stroke=Stroke(1.0, 1e-5))
-    phi, outcome = gripping.stroke.angle, strike_modes(gripping, tip)
+    small = replace(scene, stroke=Stroke(scalar("Stroke.speed", scene.stroke.speed), 1e-5))
+    return sticking_squirt(tip, small) / float(small.stroke.angle)
+
+
+def sticking_squirt(tip: TipModes, scene: Scene) -> float:
+    """Squirt, rad, away from the side struck, of a coupled strike with endless friction, for all that is pressed."""
+    outcome = strike_modes(_gripping(scene), tip)
     # past the peak of a tip without restitution nothing presses, but endless friction would go on pulling
     p_t, p_n = np.sum([phase.impulse for phase in outcome.phases if phase.press != "rigid"], axis=0)
-    return float(1 - math.atan2(p_t, p_n) / phi)
+    return float(abs(scene.stroke.angle) - math.atan2(p_t, p_n))
+
+
+def _gripping(scene: Scene) -> Scene:
+    return replace(scene, tip=replace(scene.tip, friction=math.inf))
 
 
 def lump(scene: Scene, at: Resolution | None = None) -> LumpedCue:
-    """The lumped cue that has the coupled strike's squirt in the small-offset limit, dome and shear included.
+    """The lumped cue that squirts as the coupled strike does at the scene's own offset, while its tip sticks.
 
-    Its end mass is the stick end mass of the cue alone; what effects at the tip (`TipDome`, `TipShear`) add or take
-    goes into the coupling, which is proportional to sin(phi) and is given for the scene's own offset.
+    Its end mass is "offset" of the cue alone; what effects at the tip (`TipDome`, `TipShear`) add or take goes into the
+    coupling, about proportional to sin(phi). ValueError where no lumped cue squirts so.
     """
-    if isinstance(scene.cue, LumpedCue):
-        return scene.cue
-    tip, limit = tip_modes_of(scene, at), StickLimit.of(scene)
+    return scene.cue if isinstance(scene.cue, LumpedCue) else lump_modes(scene, tip_modes_of(scene, at))
+
+
+def lump_modes(scene: Scene, tip: TipModes) -> LumpedCue:
+    """The same of a cue that is given by its tip modes."""
     effects = tuple(effect for effect in scene.effects if not isinstance(effect, TipEffect))
-    end_mass = stick(tip, replace(scene, effects=effects))
-    if len(effects) == len(scene.effects):
-        return LumpedCue(scene.axial_mass, end_mass)
-    slope = limit.coupling(limit.impulse(small_offset_slope(tip, scene)), end_mass)
-    return LumpedCue(scene.axial_mass, end_mass, slope * abs(scalar("Stroke.offset", scene.stroke.offset)))
+    cue = LumpedCue(scene.axial_mass, stick_at_offset(tip, replace(scene, effects=effects)))
+    if len(effects) == len(scene.effects) or scalar("Stroke.offset", scene.stroke.offset) == 0:
+        return cue
+    return replace(cue, coupling=_coupling(cue, scene, sticking_squirt(tip, scene)))
+
+
+def _coupling(cue: LumpedCue, scene: Scene, squirt: float) -> float:
+    """The coupling with which a lumped cue's squirt, where its tip never slips, is ``squirt`` rad."""
+    most, side = (1 - 1e-9) / math.sqrt(cue.mass * cue.end_mass), np.sign(scene.stroke.offset)
+
+    def excess(part: float) -> float:
+        coupled = replace(cue, coupling=part * most)
+        return float(side * impact(replace(_gripping(scene), cue=coupled, effects=())).squirt) - squirt
+
+    if not excess(-1.0) < 0 < excess(1.0):
+        raise ValueError(f"lump: no coupling of a lumped cue has the squirt {squirt:.6g} rad of a tip that sticks")
+    return most * zero(excess, -1.0, 1.0)
 
 
 def squirt_equivalent(tip: TipModes, scene: Scene) -> float:
@@ -192,14 +282,20 @@ def equivalent_end_mass(outcome: Outcome, scene: Scene) -> float:
         raise ValueError(
             f"end_mass drive 'squirt': the stroke miscues at offset {scene.stroke.offset}; got no end mass"
         )
+    return _with_squirt(float(np.sign(scene.stroke.offset) * outcome.squirt), scene, "squirt")
+
+
+def _with_squirt(squirt: float, scene: Scene, drive: Drive) -> float:
+    """The lumped end mass, kg, whose impulse-solver squirt is ``squirt``, rad, away from the side struck."""
+    side = np.sign(scene.stroke.offset)
 
     def excess(log_mass: float) -> float:
         lumped = LumpedCue(scene.axial_mass, math.exp(log_mass))
-        return abs(impact(replace(scene, cue=lumped, effects=())).squirt) - abs(outcome.squirt)
+        return float(side * impact(replace(scene, cue=lumped, effects=())).squirt) - squirt
 
     low, high = math.log(1e-9), math.log(1e3)
     if not excess(low) < 0 < excess(high):
         raise ValueError(
-            f"end_mass drive 'squirt': no lumped end mass in [1e-9, 1e3] kg has the squirt {outcome.squirt:.6g} rad"
+            f"end_mass drive {drive!r}: no lumped end mass in [1e-9, 1e3] kg has the squirt {squirt:.6g} rad"
         )
     return math.exp(zero(excess, low, high))

@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike
 
 from cuefem.contact import Contact, Course
 from cuefem.cue import Array, Cue
-from cuefem.effects import Elevation, TipDome
+from cuefem.effects import Elevation
 from cuefem.history import Stretch
 from cuefem.modes import Modes, TipModes
 from cuefem.nonlinear import SteppedContact
@@ -92,8 +92,8 @@ def _read(scene: Scene, found: Modes, tip: TipModes, *, contact: Contact, times:
     q, ball = _positions(contact, times)
     vectors, across = _bending(found, tip)
     R = scalar("Ball.radius", scene.ball.radius)
-    dome = sum(effect.radius for effect in scene.effects if isinstance(effect, TipDome))
-    centre = (dome + R) * normal - [dome, 0.0] + ball.gone @ np.array([tangent, normal])
+    r = scene.dome_radius
+    centre = (r + R) * normal - [r, 0.0] + ball.gone @ np.array([tangent, normal])
     s, c = np.sin(phi + ball.contact), np.cos(phi + ball.contact)
     F_t, F_n = _forces(contact, times).T
     return Motion(

@@ -98,6 +98,11 @@ class Scene:
         return self.cue.mass + math.fsum(effect.axial_mass for effect in self.effects)
 
     @property
+    def dome_radius(self) -> float:
+        """Radius of the tip's dome, m: the sum over all effects, 0 where none is modelled."""
+        return math.fsum(effect.dome_radius for effect in self.effects)
+
+    @property
     def head_on_mass(self) -> Any:
         """The m_n of 1/m_n = 1/M + 1/m_a, kg."""
         return 1 / (1 / self.ball.mass + 1 / self.axial_mass)

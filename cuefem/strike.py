@@ -58,7 +58,8 @@ def struck(scene: Scene, tip: TipModes) -> Contact:
     )
     levers = [effect.lever(laws.phi) for effect in scene.effects if isinstance(effect, TipEffect)]
     if levers:
-        tip = replace(tip, amplitude=tip.amplitude + np.outer(tip.rotation, np.sum(levers, axis=0)))
+        whole = [math.fsum(parts) for parts in zip(*levers, strict=True)]  # in any order the same to the last bit
+        tip = replace(tip, amplitude=tip.amplitude + np.outer(tip.rotation, whole))
     contact = contact_of(scene, tip, laws)
     run(contact)
     for effect in scene.effects:
@@ -82,7 +83,7 @@ def contact_of(scene: Scene, tip: TipModes, laws: Laws) -> Contact:
     shears = [effect.ratio for effect in scene.effects if isinstance(effect, TipShear)]
     if not shears:
         return Contact(tip, laws)
-    return ShearContact(tip, laws, compliance=sum(1 / ratio for ratio in shears) / laws.stiffness)
+    return ShearContact(tip, laws, compliance=math.fsum(1 / ratio for ratio in shears) / laws.stiffness)
 
 
 def _outcome(contact: Contact, scene: Scene, side: float) -> Outcome:

@@ -5,7 +5,6 @@ Tables are read back and compared by `cuefem.validation.disagreements`.
 
 from __future__ import annotations
 
-import math
 import os
 import platform
 from collections.abc import Iterable, Sequence
@@ -19,10 +18,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from cuefem import Cue, LumpedCue, Scene, Stroke, Tip, load
-from cuefem.endmass import stick_impulse
 from cuefem.impact import impact
-from cuefem.modes import TipModes
-from cuefem.transverse import StickLimit
 from cuefem.validation import number
 
 STUDIES = Path(__file__).parent
@@ -60,20 +56,6 @@ def at_offset(struck: Scene, offset: float) -> Scene:
 def lumped_squirt(struck: Scene, end_mass: float) -> float:
     """Squirt of the impulse solver with this end mass at the scene's offset, rad."""
     return float(impact(replace(struck, cue=LumpedCue(struck.axial_mass, end_mass), effects=())).squirt)
-
-
-def stick_at_offset(tip: TipModes, struck: Scene) -> float:
-    """End mass, kg, of a tip that sticks, at the scene's own offset: exact to first order in the cue's lightness.
-
-    A light cue end leaves the ball's force along the cue, F_t = F_n tan(phi). With D = 1 + 1/Q0 + sin(phi)^2/nu the
-    tip's velocity against the ball then runs as K P(t) - 1, K = (1 + e)(1 + 1/nu + 1/Q0)/D, over a contact of
-    T cos(phi) sqrt((1 + 1/Q0)/D). At offset 0 this is the stick end mass.
-    """
-    limit = StickLimit.of(struck)
-    q, b = struck.ball.mass / struck.axial_mass, struck.stroke.offset
-    share = (1 + q) / (1 + q + b**2 / struck.ball.inertia)
-    there = replace(limit, K=limit.K * share, T=limit.T * math.sqrt((1 - b**2) * share))
-    return float(there.end_mass(stick_impulse(tip, there)))
 
 
 def slope(x: Iterable[float], y: Iterable[float]) -> float:

@@ -7,7 +7,7 @@ elements and polynomial order of the finite-element cue leave out.
 counts;
 (c) Kim's shaft made ever lighter at fixed shape: [Kim]'s first order in epsilon;
 (d) an offset that vanishes: the impulse solver fed with the stick end mass, all cues of meshes/.
-Equations: physics.md sections 2, 3, 5, 6 and, for the end mass at an offset, `common.stick_at_offset`; how fast each
+Equations: physics.md sections 2, 3, 5, 6 and, for the end mass at an offset, `stick_at_offset`; how fast each
 road is and why is said in the table. Parts: convergence_roads.py computes. e = 3/4, mu = 0.7, a ball of 210 g.
 Writes convergence.md and convergence_*.svg beside itself; takes about 20 s.
 """
@@ -136,7 +136,7 @@ ENDLESS = (
 LIGHT = (
     "psi over [Kim]'s first order in epsilon, minus 1, T = 1 ms, 22 modes; rho, E and G times a factor. With the "
     "small-offset stick end mass the first order is missed for good, by {missed}: at an offset the blow is shorter and "
-    "changes the tip's velocity by less, so the end mass there is another one. With that (`common.stick_at_offset`) it "
+    "changes the tip's velocity by less, so the end mass there is another one. With that (`stick_at_offset`) it "
     "is exact, at a rate of {rate:.2f} in the factor (b/R 0.5): the first slip."
 )
 OFFSET = (

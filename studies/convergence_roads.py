@@ -10,10 +10,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from common import at_offset, cue, lumped_squirt, scene, stick_at_offset
+from common import at_offset, cue, lumped_squirt, scene
 
 from cuefem import Cue, Resolution, Scene, squirt
-from cuefem.endmass import flexible, force, stick, velocity
+from cuefem.endmass import flexible, force, stick, stick_at_offset, velocity
 from cuefem.modes import TipModes
 from cuefem.resolution import default_resolution, tip_modes_of
 from cuefem.strike import strike_modes
@@ -107,7 +107,7 @@ def first_order(struck: Scene, end_mass: float) -> float:
 def light(modes: int = 22, lightest: float = -5.0) -> dict[float, Road]:
     """(c) Kim's shaft, T = 1 ms, rho, E and G all times a factor: psi over the first order of two end masses, minus 1.
 
-    "stick": the small-offset end mass; "stick at the offset": `common.stick_at_offset`. One road an offset.
+    "stick": the small-offset end mass; "stick at the offset": `stick_at_offset`. One road an offset.
     """
     factors = 10.0 ** np.arange(0.0, lightest - 0.1, -0.5)
     heavy = tip_modes_of(scene(cue("kim")), Resolution(8, 26, modes))
@@ -140,7 +140,7 @@ def plain_tip(struck: Scene) -> TipModes:
 def small_offset(name: str, modes: int | None = None, smallest: float = -6.0) -> Road:
     """(d) Coupled squirt over that of the impulse solver, minus 1, T = 1 ms, against the offset.
 
-    "stick": fed with the stick end mass; "stick at the offset": with that of `common.stick_at_offset`.
+    "stick": fed with the stick end mass; "stick at the offset": with that of `stick_at_offset`.
     """
     struck = scene(cue(name))
     tip = plain_tip(struck) if modes is None else tip_modes_of(struck, Resolution(12, 26, modes))

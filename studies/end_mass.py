@@ -1,10 +1,10 @@
 """Which definition of effective end mass predicts the squirt of a vibrating shaft?
 
-What: the four definitions (force, velocity, stick, squirt-equivalent) and the stick end mass at the offset on all cues
-of meshes/ for contacts of 0.5 to 4 ms; each fed to the impulse solver at b/R 0.1, 0.3 and 0.5, against the coupled
+What: the five definitions (force, velocity, stick, stick at the offset, squirt-equivalent) on all cues of
+meshes/ for contacts of 0.5 to 4 ms; each fed to the impulse solver at b/R 0.1, 0.3 and 0.5, against the coupled
 strike; [Kim]'s 12 g (m_c; m_e = 3 g at the tip) likewise; and end mass against contact time, beside the square-root law
 of a semi-infinite beam. e = 3/4, mu = 0.7, a ball of 210 g; modes kept by frequency (0.5 %).
-Equations: physics.md section 6; `common.stick_at_offset`; a semi-infinite Euler beam: m = C rhoA sqrt(T sqrt(EI/rhoA)).
+Equations: physics.md section 6; `stick_at_offset`; a semi-infinite Euler beam: m = C rhoA sqrt(T sqrt(EI/rhoA)).
 Writes end_mass.md and end_mass.svg beside itself; takes about 5 s.
 """
 
@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.integrate import quad
 
-from cuefem.endmass import force, squirt_equivalent, stick, velocity
+from cuefem.endmass import force, squirt_equivalent, stick, stick_at_offset, velocity
 from cuefem.resolution import tip_modes_of
 from cuefem.strike import strike_modes
 from cuefem.transverse import StickLimit
@@ -53,7 +53,7 @@ class Case(NamedTuple):
 def case(name: str, time: float, offset: float, tip: object) -> Case:
     """A case from the cue's tip modes."""
     struck = common.scene(common.cue(name), time, offset)
-    drives = {"stick at the offset": common.stick_at_offset, "stick": stick, "velocity": velocity, "force": force}
+    drives = {"stick at the offset": stick_at_offset, "stick": stick, "velocity": velocity, "force": force}
     masses = {**{drive: mass(tip, struck) for drive, mass in drives.items()}, "Kim's 3 g": KIM_END}
     outcome = strike_modes(struck, tip)
     errors = {drive: common.lumped_squirt(struck, m) / outcome.squirt - 1 for drive, m in masses.items()}

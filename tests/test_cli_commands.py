@@ -115,7 +115,7 @@ def test_strike(kim: str) -> None:
         assert model["regime"] == expected.regime
         pivot = natural_pivot_length(0.3, expected.squirt, radius=BALL.radius)
         assert model["pivot_length"] == pytest.approx(pivot, rel=1e-12)
-    a31 = alciatore_a31(0.3, mass_ratio=BALL.mass / cf.end_mass(blow))
+    a31 = alciatore_a31(0.3, mass_ratio=BALL.mass / cf.end_mass(blow, "offset"))
     assert found["A.31"]["squirt"] == pytest.approx(a31, rel=1e-12)
     assert f"{math.degrees(a31):.3f}°" in run("strike", kim)
 

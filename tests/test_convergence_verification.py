@@ -10,6 +10,7 @@ from orders import assert_order, observed_orders
 
 from cuefem import Resolution
 from cuefem.beam import assemble
+from cuefem.endmass import stick_at_offset
 from cuefem.modes import modes
 from cuefem.resolution import tip_modes_of
 from cuefem.strike import strike_modes
@@ -109,7 +110,7 @@ def test_lighter_tip_modes_are_those_of_a_lighter_cue(kim_tip):
 
 def test_the_end_mass_at_no_offset_is_the_stick_end_mass(kim_tip):
     struck = common.at_offset(KIM, 0.0)
-    assert common.stick_at_offset(kim_tip, struck) == pytest.approx(roads.stick(kim_tip, struck), rel=1e-13)
+    assert stick_at_offset(kim_tip, struck) == pytest.approx(roads.stick(kim_tip, struck), rel=1e-13)
 
 
 # (d)

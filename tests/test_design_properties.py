@@ -261,7 +261,8 @@ def test_fingerprints_tell_studies_apart() -> None:
     ("text", "words"),
     [
         ("squrit(0.3)", "did you mean squirt"),
-        ("end_mass(3)", "takes nothing in brackets"),
+        ("mass(3)", "takes nothing in brackets"),
+        ("end_mass(1)", r"an offset b/R in \(-1, 1\)"),
         ("frequency", r"frequency\(n\), n a whole number >= 1"),
         ("frequency(1.5)", "a whole number"),
         ("squirt(1)", r"an offset b/R in \(-1, 1\)"),

@@ -280,7 +280,8 @@ def test_a_lumped_cue_answers_its_own(drive: str) -> None:
 
 
 def test_refusals() -> None:
-    with pytest.raises(ValueError, match="end_mass drive must be one of stick, velocity, force, squirt; got 'push'"):
+    message = "end_mass drive must be one of stick, offset, velocity, force, squirt; got 'push'"
+    with pytest.raises(ValueError, match=message):
         end_mass(scene(kim(), 1e-3), "push")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match=r"Ball\.mass must be one number; got an array of shape"):
         end_mass(replace(scene(kim(), 1e-3), ball=Ball(mass=np.array([0.17, 0.21]))))

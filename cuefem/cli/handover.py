@@ -24,7 +24,7 @@ from cuefem.cli.common import (
 if TYPE_CHECKING:
     from cuefem.scene import Scene
 
-DRIVES = ("A.31", "stick", "velocity", "force", "squirt")
+DRIVES = ("A.31", "stick", "offset", "velocity", "force", "squirt")
 
 
 @click.command(short_help="The end mass as a simulator takes it: pooltool's CueSpecs.")

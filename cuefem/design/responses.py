@@ -22,6 +22,7 @@ class Kind(NamedTuple):
     """A family of responses: its unit, what it is, what its argument is ("", "mode", "offset"), how it is found.
 
     strikes: whether it takes the tip's modes up to the contact's cutoff. segments: whether it needs a cue of segments.
+    limit: whether without an offset it is that of small offsets, not of the scene's own.
     """
 
     unit: str
@@ -30,6 +31,7 @@ class Kind(NamedTuple):
     argument: str = ""
     strikes: bool = False
     segments: bool = False
+    limit: bool = False
 
 
 def _small_offset_pivot(solver: Solver, _: Any) -> Array:
@@ -38,8 +40,8 @@ def _small_offset_pivot(solver: Solver, _: Any) -> Array:
 
 
 def _pivot(solver: Solver, i: int, offset: float, squirt: float) -> float:
-    dome = solver.dome_radius(i)
-    return float(natural_pivot_length(offset, squirt, radius=solver.scenes[i].ball.radius, dome_radius=dome))
+    scene = solver.scenes[i]
+    return float(natural_pivot_length(offset, squirt, radius=scene.ball.radius, dome_radius=scene.dome_radius))
 
 
 def _struck(value: Callable[[Solver, int, Any], float]) -> Callable[[Solver, Any], Array]:
@@ -57,16 +59,21 @@ def _pivot_length(solver: Solver, offset: float | None) -> Array:
     return _struck(lambda solver, i, found: _pivot(solver, i, offset, found.squirt))(solver, offset)
 
 
+def _end_mass(solver: Solver, offset: float | None) -> Array:
+    return solver.stick[0] if offset is None else solver.stick_at(offset)
+
+
 _SQUIRT = _struck(lambda s, i, found: found.squirt)
 _SPEED = _struck(lambda s, i, found: found.ball_speed)
 _VIBRATION = _struck(lambda s, i, found: found.energy["cue vibration"])
 _PIVOT = "natural pivot length: of small offsets, or of the coupled strike at an offset"
+_END_MASS = "stick end mass, of small offsets; of a tip that sticks at an offset"
 _STATIC = "static: force across the tip over its deflection, the butt end clamped"
 _BALANCE = "centre of the segments' mass, from the tip"
 KINDS = {
-    "end_mass": Kind("kg", "stick end mass", lambda s, _: s.stick[0], strikes=True),
+    "end_mass": Kind("kg", _END_MASS, _end_mass, "offset", strikes=True, limit=True),
     "squirt_slope": Kind("", "squirt over phi in the limit of small offsets", lambda s, _: s.stick[1], strikes=True),
-    "pivot_length": Kind("m", _PIVOT, _pivot_length, "offset", strikes=True),
+    "pivot_length": Kind("m", _PIVOT, _pivot_length, "offset", strikes=True, limit=True),
     "mass": Kind("kg", "mass of the cue", lambda s, _: s.mass),
     "shaft_mass": Kind("kg", "mass of the segments", lambda s, _: s.shaft_mass, segments=True),
     "balance_point": Kind("m", _BALANCE, lambda s, _: s.balance_point, segments=True),
@@ -83,7 +90,8 @@ _NAME = re.compile(r"(\w+)(?:\(\s*([^()\s]+)\s*\))?")
 class Response:
     """One number asked of every design: a kind by name, and the number of the mode or the offset b/R it is asked at.
 
-    Without an offset a strike is at the scene's own; "pivot_length" without one is that of small offsets.
+    Without an offset a strike is at the scene's own; "pivot_length" and "end_mass" without one are those of small
+    offsets.
     """
 
     kind: str
@@ -117,7 +125,8 @@ class Response:
     @property
     def in_time(self) -> bool:
         """Whether it takes a strike in time, some milliseconds a design."""
-        return KINDS[self.kind].argument == "offset" and (self.kind != "pivot_length" or self.argument is not None)
+        kind = KINDS[self.kind]
+        return kind.argument == "offset" and not (kind.limit and self.argument is None)
 
     @property
     def segments(self) -> bool:

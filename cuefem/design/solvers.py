@@ -12,8 +12,8 @@ import numpy as np
 from cuefem.batch import BatchModes, CueBatch, batch_frequencies, batch_modes, stick_of
 from cuefem.beam import assemble
 from cuefem.cue import Array, Cue, LumpedCue
-from cuefem.effects import Support, TipDome
-from cuefem.endmass import flexible, small_offset_slope, stick
+from cuefem.effects import Support
+from cuefem.endmass import flexible, small_offset_slope, stick, stick_at_offset
 from cuefem.modes import Modes, TipModes, lumped_tip_modes, solve
 from cuefem.resolution import tip_modes_from
 from cuefem.scene import Outcome, Resolution, Scene
@@ -50,11 +50,11 @@ class Solver(Protocol):
     def stick(self) -> tuple[Array, Array]:
         """(Stick end mass, kg; small-offset squirt over phi.)"""
 
+    def stick_at(self, offset: float) -> Array:
+        """End mass of a tip that sticks at an offset b/R, kg, (designs,)."""
+
     def strike(self, i: int, offset: float | None) -> Outcome:
         """The coupled strike of a design at an offset b/R, or at its scene's own."""
-
-    def dome_radius(self, i: int) -> float:
-        """Radius of a design's domed tip, m; 0 where none is modelled."""
 
 
 class _Strikes:
@@ -69,6 +69,16 @@ class _Strikes:
         """Tip modes of a design."""
         raise AssertionError(f"{type(self).__name__} has no tip modes of its own")
 
+    def stick_at(self, offset: float) -> Array:
+        """End mass of a tip that sticks at an offset b/R, kg, (designs,)."""
+        return np.array([self._stick_at(i, offset) for i in range(len(self.scenes))])
+
+    def _stick_at(self, i: int, offset: float) -> float:
+        scene = self.scenes[i]
+        if isinstance(scene.cue, LumpedCue):
+            return float(scene.cue.end_mass)
+        return float(stick_at_offset(self.tip(i), replace(scene, stroke=replace(scene.stroke, offset=offset))))
+
     def strike(self, i: int, offset: float | None) -> Outcome:
         """The coupled strike of a design at an offset b/R, or at its scene's own; each is made once."""
         if (i, offset) not in self._outcomes:
@@ -77,11 +87,6 @@ class _Strikes:
                 scene = replace(scene, stroke=replace(scene.stroke, offset=offset))
             self._outcomes[i, offset] = strike_modes(scene, self.tip(i))
         return self._outcomes[i, offset]
-
-    def dome_radius(self, i: int) -> float:
-        """Radius of a design's domed tip, m; 0 where none is modelled."""
-        domes = (effect.radius for effect in self.scenes[i].effects if isinstance(effect, TipDome))
-        return float(next(domes, 0.0))
 
 
 class Together(_Strikes):

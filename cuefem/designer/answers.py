@@ -10,24 +10,19 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-import numpy as np
-
-from cuefem.cue import Array, LumpedCue
+from cuefem.cue import Array
 from cuefem.design.solvers import static_tip_stiffness
 from cuefem.designer.model import cue_of
-from cuefem.effects import TipEffect
-from cuefem.endmass import Drive, equivalent_end_mass, formula_of, stick
-from cuefem.impulse import impulse
+from cuefem.endmass import Drive, equivalent_end_mass, formula_of
 from cuefem.modes import Modes, TipModes, mesh_for, modes
-from cuefem.report.records import DRIVES, Record, bare_scene, outcome_record
+from cuefem.report.records import DRIVES, Record, outcome_record, two_part_curve
 from cuefem.resolution import default_resolution, tip_modes_of
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.sensitivity import sensitivity
 from cuefem.strike import strike_modes
 
 TONES = 5  # bending modes that are shown
-OFFSETS = tuple(round(0.06 * i, 2) for i in range(1, 11))  # b/R of the coupled curve
-FINE_OFFSETS = tuple(round(0.02 * i, 2) for i in range(1, 31))  # of the lumped one
+OFFSETS = tuple(round(0.06 * i, 2) for i in range(1, 11))  # b/R of both curves
 MOST_DENSITY_MODES = 45  # where end mass lives takes all modes of the mesh: cubic
 
 
@@ -60,8 +55,8 @@ class Answers:
     """What is known at once, SI. end_masses: by definition, None where a definition has no answer.
 
     strike: as `outcome_record`, of the coupled strike at the scene's own offset. tip_stiffness: of a static load across
-    the cue at its tip, the butt end clamped. lumped: the impulse solver's curve with the stick end mass of the cue
-    without effects at its tip. tip: the tip modes, for what comes later.
+    the cue at its tip, the butt end clamped. lumped: the impulse solver's curve, at each offset with the end mass
+    of the tip that sticks there, of the cue without effects at its tip. tip: the tip modes, for what comes later.
     """
 
     scene: Scene
@@ -83,14 +78,13 @@ def answers(scene: Scene) -> Answers:
     cue = cue_of(scene)
     tip = tip_modes_of(scene)
     outcome = strike_modes(scene, tip)
-    bare = replace(scene, effects=tuple(effect for effect in scene.effects if not isinstance(effect, TipEffect)))
     return Answers(
         scene=scene,
         end_masses={drive: _end_mass(scene, drive, tip, outcome) for drive in DRIVES},
         strike=outcome_record(outcome, scene),
         found=modes(cue, TONES, effects=scene.cue_effects),
         tip_stiffness=static_tip_stiffness(scene, Resolution(*mesh_for(cue, TONES), TONES)),
-        lumped=lumped_curve(scene, LumpedCue(scene.axial_mass, stick(tip, bare))),
+        lumped=lumped_curve(scene, tip),
         tip=tip,
     )
 
@@ -104,11 +98,10 @@ def _end_mass(scene: Scene, drive: Drive, tip: TipModes, outcome: Outcome) -> fl
         return None
 
 
-def lumped_curve(scene: Scene, cue: LumpedCue) -> Curve:
-    """The impulse solver's curve of a lumped cue in the scene's place."""
-    many = replace(scene, stroke=replace(scene.stroke, offset=np.array(FINE_OFFSETS)))
-    found = outcome_record(impulse(bare_scene(many, cue)), many)
-    return Curve(FINE_OFFSETS, found["squirt"], found["pivot_length"])
+def lumped_curve(scene: Scene, tip: TipModes) -> Curve:
+    """The impulse solver's curve, the cue lumped at each offset; nan where there is no such lumped cue."""
+    found = two_part_curve(scene, OFFSETS, tip)
+    return Curve(OFFSETS, found["squirt"], found["pivot_length"])
 
 
 def coupled_points(found: Answers) -> Iterator[tuple[float, float, float]]:

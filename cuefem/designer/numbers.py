@@ -28,6 +28,7 @@ def rows(found: Answers) -> list[Row]:
     cue, strike, offset = cue_of(found.scene), found.strike, found.scene.stroke.offset
     masses = {
         "stick": "end mass m_e, stick (small offsets)",
+        "offset": f"end mass m_e, stick at b/R {offset:g}",
         "velocity": "end mass m_e, velocity",
         "force": "end mass m_e, force",
         "squirt": f"end mass m_e, squirt-equivalent at b/R {offset:g}",

@@ -62,6 +62,11 @@ class Effect:
         """Mass that the effect adds to the cue's motion along its axis, kg, at its first position."""
         return 0.0
 
+    @property
+    def dome_radius(self) -> float:
+        """What the effect adds to the radius of the tip's dome, m."""
+        return 0.0
+
 
 @dataclass(frozen=True)
 class CueEffect(Effect):

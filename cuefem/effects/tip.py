@@ -26,6 +26,11 @@ class TipDome(TipEffect):
 
     radius: Annotated[float, Quantity("m", "[0, inf)")]
 
+    @property
+    def dome_radius(self) -> float:
+        """The dome's own: the levers of two domes add, and so do their radii."""
+        return self.radius
+
     def lever(self, phi: float) -> tuple[float, float]:
         """The contact is at r (1 - cos(phi)) along x and -r sin(phi) along w from the apex; rotation is w'."""
         return -self.radius * math.sin(phi), self.radius * (1 - math.cos(phi))

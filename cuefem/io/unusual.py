@@ -7,7 +7,6 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 from cuefem.cue import Cue, Segment
-from cuefem.effects import TipDome
 from cuefem.scene import Scene
 
 JUMP = 1.5  # of the diameter between two segments
@@ -43,7 +42,7 @@ USUAL = (
     Usual(lambda s: [("ball mass", s.ball.mass)], 0.08, 0.4, 1e3, "g", "140 to 210 is usual"),
     Usual(lambda s: [("stroke speed", s.stroke.speed)], 0.01, 30.0, 1, "m/s", "0.5 to 12 is usual"),
     Usual(
-        lambda s: [("TipDome radius", effect.radius) for effect in s.effects if isinstance(effect, TipDome)],
+        lambda s: [("TipDome radius", s.dome_radius)] if s.dome_radius else [],
         *(0.005, 0.02, 1e3, "mm", "9 to 10.6 is usual, a dime's or a nickel's"),
     ),
     Usual(

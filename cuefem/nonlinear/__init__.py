@@ -45,8 +45,7 @@ def stepped_contact(scene: Scene, tip: TipModes, laws: Laws) -> SteppedContact:
     law, clock = law_of(scene, laws)
     turning = None
     if any(isinstance(effect, RollingContact) for effect in scene.effects):
-        dome = TipDome(math.fsum(effect.radius for effect in scene.effects if isinstance(effect, TipDome)))
-        turning = Turning(scalar("Ball.radius", scene.ball.radius), dome)
+        turning = Turning(scalar("Ball.radius", scene.ball.radius), TipDome(scene.dome_radius))
     shears = [effect.ratio for effect in scene.effects if isinstance(effect, TipShear)]
     if not shears:
         return SteppedContact(tip, laws, law=law, turning=turning, clock=clock)

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cuefem.cue import Cue, LumpedCue, Material, Segment
-from cuefem.effects import CueEffect, TipDome
+from cuefem.effects import CueEffect
 from cuefem.materials import MATERIALS
 from cuefem.modes import Modes
 from cuefem.quantity import scalar
@@ -94,9 +94,8 @@ def _drawn(scene: Scene, title: str, *, length: float, across: float) -> CueDraw
     )
     above = 14.0 if signs and across > 1 else 3.0
     axis = above + widest / 2
-    dome = max((effect.radius for effect in scene.effects if isinstance(effect, TipDome)), default=0.0)
     pieces = tuple(
-        _piece(segment, x, scale=scale, across=across, axis=axis, length=length, dome=dome if x == 0 else 0.0)
+        _piece(segment, x, scale=scale, across=across, axis=axis, length=length, dome=0.0 if x else scene.dome_radius)
         for x, segment in shown
     )
     low_tick = across > 1 or length < cue.length
@@ -158,7 +157,7 @@ def strike_drawing(scene: Scene, squirt: float) -> StrikeDrawing:
     """The blow at the scene's offset; lengths and the angle of squirt are true."""
     R = scalar("Ball.radius", scene.ball.radius)
     phi = math.asin(scalar("Stroke.offset", scene.stroke.offset))
-    r = max((effect.radius for effect in scene.effects if isinstance(effect, TipDome)), default=0.0)
+    r = scene.dome_radius
     across = scene.cue.segments[0].tip_diameter if isinstance(scene.cue, Cue) else 0.4 * R
     apex, scale = 300.0, 1.9e3 * 0.03 / R
     middle = 75.0

@@ -15,8 +15,8 @@ from typing import Literal
 import numpy as np
 
 from cuefem.cue import Cue, LumpedCue
-from cuefem.effects import Elevation, TipDome
-from cuefem.endmass import formula_of, stick
+from cuefem.effects import Elevation
+from cuefem.endmass import formula_of
 from cuefem.modes import TipModes, lumped_tip_modes
 from cuefem.quantity import scalar
 from cuefem.report.records import DRIVES, Record
@@ -25,7 +25,7 @@ from cuefem.scene import Scene
 from cuefem.squirt import alciatore_a31, alciatore_a31_mass_ratio
 from cuefem.strike import strike_modes
 
-Handed = Literal["A.31", "stick", "velocity", "force", "squirt"]
+Handed = Literal["A.31", "stick", "offset", "velocity", "force", "squirt"]
 HANDED: tuple[Handed, ...] = ("A.31", *DRIVES)
 OFFSETS = (0.1, 0.2, 0.3, 0.4, 0.5)
 POOLTOOL_INERTIA = 0.4  # its 5/2
@@ -34,6 +34,7 @@ NICKEL = 0.0106045  # m, the dome of pooltool's own cue
 MEANING = {
     "A.31": "the end mass whose [A.31] squirt is that of the coupled strike, at this offset, speed and contact time",
     "stick": "the inertia across the cue that the ball feels in the coupled strike as the offset goes to zero",
+    "offset": "the inertia across the cue that the ball feels at this offset in a coupled strike whose tip never slips",
     "velocity": "impulse over final velocity of a tip that is moved like (1 - cos(pi t/T))/2",
     "force": "impulse over final velocity of a tip that is pushed by a half sine of length T",
     "squirt": "the end mass whose squirt in the impulse solver (restitution, friction) is that of the coupled strike",
@@ -80,11 +81,7 @@ def _cue_specs(name: str, scene: Scene) -> Record:
         first, last = scene.cue.segments[0], scene.cue.segments[-1]
         specs |= {"length": scene.cue.length}
         specs |= {"shaft_radius_at_tip": first.tip_diameter / 2, "shaft_radius_at_butt": last.butt_diameter / 2}
-    return specs | {"tip_radius": _dome(scene) or NICKEL}
-
-
-def _dome(scene: Scene) -> float | None:
-    return next((effect.radius for effect in scene.effects if isinstance(effect, TipDome)), None)
+    return specs | {"tip_radius": scene.dome_radius or NICKEL}
 
 
 def _notes(scene: Scene) -> list[str]:
@@ -93,7 +90,7 @@ def _notes(scene: Scene) -> list[str]:
         notes.append("a lumped cue has no length and no radii: pooltool's own stay")
     elif scene.cue.body_mass:
         notes.append("length and shaft_radius_at_butt are those of the file's segments; M is the whole cue's")
-    if _dome(scene) is None:
+    if not scene.dome_radius:
         notes.append("tip_radius: pooltool's own, a nickel's; the scene has no TipDome")
     for raised in (effect for effect in scene.effects if isinstance(effect, Elevation)):
         told = f"the cue is raised by {np.degrees(raised.angle):.3g}°"
@@ -119,7 +116,7 @@ def _end_mass(scene: Scene, tip: TipModes, drive: Handed) -> float:
         return _a31_end_mass(scene, tip)
     if isinstance(scene.cue, LumpedCue):
         return scalar("LumpedCue.end_mass", scene.cue.end_mass)
-    return stick(tip, scene) if drive == "stick" else formula_of(drive)(tip, scene)
+    return float(formula_of(drive)(tip, scene))
 
 
 def _a31_end_mass(scene: Scene, tip: TipModes) -> float:

@@ -321,7 +321,13 @@ def _end_masses(record: Record, squirt: Record) -> Record:
     }
 
 
-DRIVE_WORDS = {"stick": "stick", "velocity": "velocity", "force": "force", "squirt": "squirt-equivalent"}
+DRIVE_WORDS = {
+    "stick": "stick",
+    "offset": "at this offset",
+    "velocity": "velocity",
+    "force": "force",
+    "squirt": "squirt-equivalent",
+}
 
 
 def _energy(outcome: Outcome) -> list[tuple[str, str, float, str]]:

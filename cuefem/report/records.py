@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
 
 from cuefem.cue import Cue, LumpedCue
-from cuefem.effects import TipDome, TipEffect
-from cuefem.endmass import Drive, Spread, end_mass_spreads, formula_of, lump
+from cuefem.effects import TipEffect
+from cuefem.endmass import Drive, Spread, end_mass_spreads, formula_of, lump_modes, stick_at_offset
 from cuefem.impulse import impulse
 from cuefem.materials import MATERIALS
 from cuefem.modes import TipModes, modes
@@ -22,7 +22,7 @@ from cuefem.squirt import alciatore_a31, cue_end_mass, natural_pivot_length
 from cuefem.strike import strike, strike_modes
 from cuefem.validation import Claim
 
-DRIVES: tuple[Drive, ...] = ("stick", "velocity", "force", "squirt")
+DRIVES: tuple[Drive, ...] = ("stick", "offset", "velocity", "force", "squirt")
 OFFSETS = (0.1, 0.2, 0.3, 0.4, 0.5)
 PAPER_CUE_END_MASS = 0.012  # kg, [Kim]'s m_c of a real cue; the tip feels a quarter of it
 
@@ -95,8 +95,8 @@ def modes_record(scene: Scene, *, count: int, near: float | None) -> Record:
 def end_mass_record(scene: Scene, *, tip: TipModes | None = None) -> Record:
     """The end masses m_e, how far they spread over the modes kept, [Kim]'s m_c and eps = m_c/M of each.
 
-    "squirt" is that at the scene's own offset. A definition that has no answer here says why instead. tip: better tip
-    modes than those that the spread is over, where they are known.
+    "offset" and "squirt" are those at the scene's own offset. A definition that has no answer here says why instead.
+    tip: better tip modes than those that the spread is over, where they are known.
     """
     spread = end_mass_spreads(scene)
     return {
@@ -129,34 +129,53 @@ def _end_mass(scene: Scene, spread: Callable[[Drive], Spread], drive: Drive, *, 
     }
 
 
-@dataclass(frozen=True)
-class Lumped:
-    """The scene's cue as the impulse solver takes it: two_part has its stick end mass without effects at the tip;
-    coupled has them too, as the coupling of `lump` per b/R, None where they add nothing or no lumped cue has them."""
+def two_part_cues(scene: Scene, offsets: Sequence[float], tip: TipModes | None) -> list[LumpedCue | None]:
+    """The scene's cue as the impulse solver takes it at each offset, without effects at its tip.
 
-    two_part: LumpedCue
-    coupling: float | None
+    Its end mass is that of a tip that sticks at this offset; None where none has that squirt. tip: the cue's tip modes,
+    None of a lumped cue, which keeps its end mass.
+    """
+    if tip is None:
+        assert isinstance(scene.cue, LumpedCue)
+        return [replace(scene.cue, coupling=0.0)] * len(offsets)
+    bare = replace(scene, effects=tuple(effect for effect in scene.effects if not isinstance(effect, TipEffect)))
+    try:
+        masses = stick_at_offset(tip, _at(bare, np.array(offsets)))
+    except ValueError:
+        if len(offsets) == 1:
+            return [None]
+        return [cue for offset in offsets for cue in two_part_cues(scene, [offset], tip)]
+    return [LumpedCue(scene.axial_mass, felt) for felt in masses.tolist()]
 
-    @classmethod
-    def of(cls, scene: Scene) -> Lumped:
-        """Both from one solution for the small-offset limit."""
-        offset = scalar("Stroke.offset", scene.stroke.offset) or 0.1
-        try:
-            cue = lump(replace(scene, stroke=replace(scene.stroke, offset=offset)))
-        except ValueError:  # an offset, or an effect, beyond any lumped cue's coupling
-            bare = tuple(effect for effect in scene.effects if not isinstance(effect, TipEffect))
-            cue = lump(replace(scene, effects=bare))
-        coupling = scalar("LumpedCue.coupling", cue.coupling)
-        return cls(LumpedCue(cue.mass, cue.end_mass), coupling / abs(offset) if coupling else None)
 
-    def coupled(self, offset: Any) -> LumpedCue | None:
-        """The cue with its coupling at an offset, or an array of offsets."""
-        if self.coupling is None:
-            return None
-        try:
-            return replace(self.two_part, coupling=self.coupling * np.abs(offset))
-        except ValueError:
-            return None
+def _coupling_slope(scene: Scene, tip: TipModes | None) -> float:
+    """What effects at the tip add to `two_part_cues`, as a coupling per b/R; zero where no lumped cue has them.
+
+    It is found at the scene's own offset, or head on at 0.1.
+    """
+    offset = scalar("Stroke.offset", scene.stroke.offset) or 0.1
+    try:
+        cue = scene.cue if tip is None else lump_modes(_at(scene, offset), tip)
+    except ValueError:  # an offset, or an effect, beyond any lumped cue's coupling
+        return 0.0
+    assert isinstance(cue, LumpedCue)
+    return scalar("LumpedCue.coupling", cue.coupling) / abs(offset)
+
+
+def _coupled(cue: LumpedCue | None, coupling: float) -> LumpedCue | None:
+    """The cue with a coupling; None where no cue has it."""
+    try:
+        return cue and replace(cue, coupling=coupling)
+    except ValueError:
+        return None
+
+
+def _at(scene: Scene, offset: Any) -> Scene:
+    return replace(scene, stroke=replace(scene.stroke, offset=offset))
+
+
+def _known_tip(scene: Scene) -> TipModes | None:
+    return None if isinstance(scene.cue, LumpedCue) else tip_modes_of(scene)
 
 
 def bare_scene(scene: Scene, cue: LumpedCue) -> Scene:
@@ -174,68 +193,92 @@ def outcome_record(outcome: Outcome, scene: Scene) -> Record:
 def _pivot_length(scene: Scene, squirt: Any) -> Any:
     if not np.all(scene.stroke.offset):
         return None
-    dome = next((effect.radius for effect in scene.effects if isinstance(effect, TipDome)), 0.0)
-    return natural_pivot_length(scene.stroke.offset, squirt, radius=scene.ball.radius, dome_radius=dome)
+    radii = {"radius": scene.ball.radius, "dome_radius": scene.dome_radius}
+    return natural_pivot_length(scene.stroke.offset, squirt, **radii)
 
 
 def strike_record(scene: Scene, outcome: Outcome | None = None) -> Record:
     """One strike by every model, by the model's name; a model that says less leaves keys out.
 
     outcome: of the coupled strike, where it is known. "lumped" is there where effects at the tip couple the cue's
-    motion along and across; "two-part" and "A.31" leave those effects out.
+    motion along and across; "two-part" and "A.31" leave those effects out. They take the end mass of a tip that sticks
+    at this offset, and are left out where there is none.
     """
-    cue = Lumped.of(scene)
-    a31 = _a31(scene, cue.two_part)
+    offset, tip = scalar("Stroke.offset", scene.stroke.offset), _known_tip(scene)
+    (cue,), coupling = two_part_cues(scene, [offset], tip), _coupling_slope(scene, tip) * abs(offset)
     models = {"coupled": outcome_record(strike(scene) if outcome is None else outcome, scene)}
-    if (coupled := cue.coupled(scene.stroke.offset)) is not None:
+    coupled = _coupled(cue, coupling) if coupling else None
+    if coupled is not None:
         models["lumped"] = outcome_record(impulse(bare_scene(scene, coupled)), scene)
-    models["two-part"] = outcome_record(impulse(bare_scene(scene, cue.two_part)), scene)
-    models["A.31"] = {"squirt": a31, "pivot_length": _pivot_length(scene, a31)}
-    return {"end_mass": cue.two_part.end_mass, "coupling": _coupling(cue, scene.stroke.offset), "models": models}
-
-
-def _coupling(cue: Lumped, offset: Any) -> float:
-    coupled = cue.coupled(offset)
-    return 0.0 if coupled is None else float(coupled.coupling)
+    if cue is not None:
+        models["two-part"] = outcome_record(impulse(bare_scene(scene, cue)), scene)
+        a31 = _a31(scene, cue)
+        models["A.31"] = {"squirt": a31, "pivot_length": _pivot_length(scene, a31)}
+    return {
+        "end_mass": None if cue is None else cue.end_mass,
+        "coupling": 0.0 if coupled is None else coupling,
+        "models": models,
+    }
 
 
 def _a31(scene: Scene, cue: LumpedCue) -> Any:
     return alciatore_a31(scene.stroke.offset, mass_ratio=scene.ball.mass / cue.end_mass, inertia=scene.ball.inertia)
 
 
+def _curve(
+    scene: Scene,
+    offsets: Sequence[float],
+    cues: Sequence[LumpedCue | None],
+    squirt: Callable[[Scene, LumpedCue], Any] = lambda scene, cue: impulse(bare_scene(scene, cue)).squirt,
+) -> Record:
+    """Squirt and natural pivot length of a lumped cue an offset, nan where there is none."""
+    found: Record = {"squirt": np.full(len(offsets), np.nan), "pivot_length": np.full(len(offsets), np.nan)}
+    for i, (offset, cue) in enumerate(zip(offsets, cues, strict=True)):
+        if cue is not None:
+            struck = _at(scene, offset)
+            found["squirt"][i] = squirt(struck, cue)
+            found["pivot_length"][i] = _pivot_length(struck, found["squirt"][i])
+    return found
+
+
+def two_part_curve(scene: Scene, offsets: Sequence[float], tip: TipModes | None) -> Record:
+    """The impulse solver's squirt and natural pivot length against the offset, each with its own `two_part_cues`."""
+    return _curve(scene, offsets, two_part_cues(scene, offsets, tip))
+
+
 def squirt_record(scene: Scene, offsets: Sequence[float] = OFFSETS, *, tip: TipModes | None = None) -> Record:
     """Squirt and natural pivot length against the offset: coupled in time, lumped (where effects at the tip couple the
-    cue's motions), two parts of this cue, [Kim]'s 12 g, [A.31].
+    cue's motions), two parts of this cue, [Kim]'s 12 g, [A.31]; nan where there is no lumped cue. "end_mass": that of
+    the tip that sticks at each offset, without effects at the tip.
 
     tip: the cue's tip modes, where they are known.
     """
-    cue = Lumped.of(scene)
-    many = replace(scene, stroke=replace(scene.stroke, offset=np.array(offsets)))
+    tip = _known_tip(scene) if tip is None else tip
+    cues, slope = two_part_cues(scene, offsets, tip), _coupling_slope(scene, tip)
     struck = _struck(scene, offsets, tip)
-    models = {"coupled, this cue": np.array([outcome.squirt for outcome in struck])}
-    if (coupled := cue.coupled(np.array(offsets))) is not None:
-        models["lumped, this cue"] = impulse(bare_scene(many, coupled)).squirt
+    coupled = np.array([outcome.squirt for outcome in struck])
+    pivots = _pivot_length(_at(scene, np.array(offsets)), coupled)
+    found: Record = {"coupled, this cue": {"squirt": coupled, "pivot_length": pivots}}
+    if slope:
+        lumped = [_coupled(cue, slope * abs(b)) for cue, b in zip(cues, offsets, strict=True)]
+        found["lumped, this cue"] = _curve(scene, offsets, lumped)
     papers = LumpedCue.two_part(scene.axial_mass, PAPER_CUE_END_MASS)
-    models["two-part, this cue"] = impulse(bare_scene(many, cue.two_part)).squirt
-    models["two-part, 12 g"] = impulse(bare_scene(many, papers)).squirt
-    models["A.31, this cue"] = _a31(many, cue.two_part)
-    found: Record = {
-        name: {"squirt": squirt, "pivot_length": _pivot_length(many, squirt)} for name, squirt in models.items()
-    }
+    found["two-part, this cue"] = _curve(scene, offsets, cues)
+    found["two-part, 12 g"] = _curve(scene, offsets, [papers] * len(offsets))
+    found["A.31, this cue"] = _curve(scene, offsets, cues, _a31)
     found["coupled, this cue"]["regime"] = [outcome.regime for outcome in struck]
     return {
         "offsets": list(offsets),
-        "end_mass": cue.two_part.end_mass,
-        "coupling": cue.coupling or 0.0,
+        "end_mass": [None if cue is None else cue.end_mass for cue in cues],
+        "coupling": slope,
         "models": found,
     }
 
 
 def _struck(scene: Scene, offsets: Sequence[float], tip: TipModes | None) -> list[Outcome]:
     scenes = [replace(scene, stroke=replace(scene.stroke, offset=b)) for b in offsets]
-    if isinstance(scene.cue, LumpedCue):
+    if tip is None:
         return [strike(one) for one in scenes]
-    tip = tip_modes_of(scene) if tip is None else tip
     return [strike_modes(one, tip) for one in scenes]
 
 

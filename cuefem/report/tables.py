@@ -39,7 +39,7 @@ def grams(mass: float) -> str:
 
 def degrees(angle: float) -> str:
     """An angle in degrees, to a thousandth."""
-    return f"{math.degrees(angle):.3f}°"
+    return f"{math.degrees(angle):.3f}°" if math.isfinite(angle) else NONE
 
 
 def millimetres(length: float | None) -> str:
@@ -118,7 +118,7 @@ def end_mass_table(record: Record, scene: Record) -> Group:
     table = table_of("Effective end mass", columns)
     refused = []
     for drive, values in record["drives"].items():
-        name = f"{drive}, at b/R {record['offset']:g}" if drive == "squirt" else drive
+        name = f"{drive}, at b/R {record['offset']:g}" if drive in ("offset", "squirt") else drive
         if values["end_mass"] is None:
             table.add_row(name, *[NONE] * 4)
             refused.append(f"{drive}: {values['reason']}")
@@ -130,9 +130,9 @@ def end_mass_table(record: Record, scene: Record) -> Group:
         table,
         assumptions(scene),
         *refused,
-        "m_e: felt across the cue at the tip (stick: the one that squirt takes); spread: a quarter of the modes to all",
+        "m_e: felt across the cue at the tip (offset: what lumped models take); spread: a quarter of the modes to all",
         "m_c = 4 m_e: cue end of the paper's two-part cue (nu_c 1/3); eps: m_c as a part of the ball's mass",
-        *_tip_effects(scene, "stick and squirt take effects at the tip for end mass, velocity and force do without"),
+        *_tip_effects(scene, "stick, offset and squirt take effects at the tip for end mass; velocity, force do not"),
     )
 
 
@@ -167,11 +167,11 @@ def strike_table(record: Record, scene: Record) -> Group:
         values = [model.get(key) for model in models.values()]
         if any(value is not None for value in values):
             table.add_row(label, *(NONE if value is None else written(value) for value in values))
-    felt = grams(record["end_mass"])
+    felt = NONE if record["end_mass"] is None else grams(record["end_mass"])
     coupled = record["models"].get("coupled", {})
     missed = [MISCUE] if coupled.get("regime") == "miscue" else []
     exact = ", modes kept for 0.5 % of squirt" if "length" in scene["cue"] and coupled.get("error") is None else ""
-    models = [f"coupled: vibrating shaft in time{exact}; two-part and A.31: end mass m_e {felt} (stick)"]
+    models = [f"coupled: vibrating shaft in time{exact}; two-part and A.31: end mass m_e {felt} (offset)"]
     return with_caption(table, *missed, assumptions(scene), *models, *_left_out(scene, record, "/kg"))
 
 
@@ -202,9 +202,10 @@ def _missed(model: Record, i: int) -> str:
 
 def squirt_table(record: Record, scene: Record) -> Group:
     """Squirt against the offset."""
-    felt = grams(record["end_mass"])
+    known = [mass for mass in record["end_mass"] if mass is not None]
+    felt = f"{significant(1e3 * known[0])} to {grams(known[-1])}" if known else NONE
     models = (
-        f"coupled: in time; two-part: m_e {felt} (stick); 12 g: the paper's m_c, m_e 3 g; A.31: Alciatore's formula"
+        f"coupled: in time; two-part: m_e {felt} (offset); 12 g: the paper's m_c, m_e 3 g; A.31: Alciatore's formula"
     )
     table = _by_offset("Squirt", record, key="squirt", written=degrees)
     return with_caption(table, assumptions(scene), models, *_left_out(scene, record, "b/R /kg"))
