@@ -25,8 +25,8 @@ from cuefem.history import F_N, F_T, V_N, V_T, History
 from cuefem.modes import TipModes
 
 Grip = Literal["slip", "stick", "slip back"]
-# The last four: past the peak of a nearly dead tip, averaged over its ringing (`cuefem.ringing_tip`).
-Press = Literal["load", "unload", "rigid", "ringing", "capped", "rubbed", "rubbed back"]
+# The last five: past the peak of a nearly dead tip, averaged over its ringing (`cuefem.ringing_tip`).
+Press = Literal["load", "unload", "rigid", "ringing", "capped", "rubbed", "rubbed back", "swinging"]
 SIDE = {"slip": 1.0, "slip back": -1.0, "stick": 0.0}
 # Grip and press of a phase in which ball and tip are apart, before they touch again (the effect SecondHit).
 APART = ("apart", "free")

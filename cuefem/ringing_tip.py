@@ -11,19 +11,22 @@ ringing carries only e^2 of the tip's energy. Its amplitude a stays but for damp
 - F_n does not pass the old peak P: a <= P - N, for beyond it the tip is softer and takes the energy ("capped"; a = 0
   there is ordinary loading);
 - stick holds in the whole of a swing only where mu (N -+ a) >= |T +- h a|. Where it does not, the contact slips for a
-  part of each swing, and what that rubs off is of the size of the ringing's own energy: a falls to the bound within a
-  few swings and follows it ("rubbed"). A contact at the end of stick has no ringing left;
+  part of each swing, by v_t of the size of e: the mean motion still sticks. While it slips v_n is off by h v_t, which
+  moves F_n by -k h times the slip. Where that opposes the swing, a falls to the bound within a few swings and follows
+  it ("rubbed"): a contact at the end of stick then has no ringing left. Where it adds to the swing (side h < 0 and the
+  bound is met at the least F_n), a grows instead, up to where the peak, or a longer slip, takes as much ("swinging");
 - ball and cue part where N <= a.
 
 So phases past the peak are linear again, without the fast swing in them. Where a swing decides about the grip (stick
-sets in, or begins at the peak with more ringing than friction bears), a few swings are followed exactly instead.
+sets in, or the tip swings beyond what friction bears), a few swings are followed exactly instead; while it goes on
+swinging so, the mean motion leaps `LEAP` contact times ahead from one such look to the next.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 
@@ -40,9 +43,12 @@ RINGING, FASTER = 1e-4, 10.0
 LEAST = 1e-9
 # After so many exact phases that did not settle, the ringing has come down to what friction bears.
 UNSETTLED = 40
+# While it swings beyond friction's bound: how far the mean motion leaps, in contact times; for how many exact phases
+# the swing is followed then; by how much more it swings once it has met the bound, where that grows by itself.
+LEAP, LOOK, GROWN = 1 / 256, 6, 1.1
 # Of the amplitude where it leaves a bound: a little less than the bound, so that it does not meet it again by rounding.
 BELOW = 1 - 1e-12
-AVERAGED = ("ringing", "capped", "rubbed", "rubbed back")
+AVERAGED = ("ringing", "capped", "rubbed", "rubbed back", "swinging")
 SLIPS: dict[str, Grip] = {"rubbed": "slip", "rubbed back": "slip back"}
 
 
@@ -76,12 +82,13 @@ class RingingContact(Contact):
     """A contact that is averaged over the tip's ringing past the peak; the spring's state is then its amplitude.
 
     dropped: energy that the averaging took out of the state, J. angle: of the swing as an averaged phase starts, rad.
-    unsettled: exact phases since the last averaged one.
+    unsettled: exact phases since the last averaged one. kept: the amplitude during a leap, N.
     """
 
     dropped: float = 0.0
     angle: float = 0.0
     unsettled: int = 0
+    kept: float = 0.0
 
     @property
     def rings(self) -> bool:
@@ -118,11 +125,13 @@ class RingingContact(Contact):
 
     def _averaged(self, grip: Grip, press: Press) -> Flow:
         held, decay = super().flow(grip, "rigid"), self._swing(grip).decay
+        if press == "swinging":
+            decay = math.log(2) / (LEAP * self.laws.time)  # an hourglass
         unit = np.zeros(len(self.z))
         unit[self.spring] = 1.0
         A = held.A - decay * np.outer(unit, unit)
         normal, tangent = held.rows[F_N], held.rows[F_T]
-        if press == "ringing":
+        if press in ("ringing", "swinging"):
             amplitude = self.root_stiffness("load") * unit
         elif press == "capped":
             amplitude = -normal  # and the peak beside it
@@ -149,6 +158,11 @@ class RingingContact(Contact):
         size = len(self.flow(grip, press).rows)
         AMPLITUDE, RELIEF = size - 2, size - 1
         known = self.peak if press == "capped" else 0.0  # of the amplitude, beside its row
+        if press == "swinging":
+            weights = np.zeros((3, size))
+            weights[0, AMPLITUDE] = 1.0
+            weights[1:, F_N], weights[1:, F_T] = mu, (-1.0, 1.0)
+            return ["leapt", "slipped", "slipped back"], Guards(weights, np.array([-self.kept / 2, slack, slack]))
         found: list[tuple[str, dict[int, float], float]] = [("apart", {F_N: 1.0, AMPLITUDE: -1.0}, -known)]
         if press == "capped":
             found.append(("reloaded", {AMPLITUDE: 1.0}, known))
@@ -213,7 +227,7 @@ class RingingContact(Contact):
         exact: tuple[str, Grip, Press] = (event, grip, "unload")
         if parts is None or parts.N <= parts.amplitude:
             return exact
-        amplitude = parts.amplitude
+        amplitude, press = parts.amplitude, cast(Press, "ringing")
         if grip != "stick":
             if -SIDE[grip] * float(self.c_t @ parts.mean) <= self._reach(grip, amplitude):
                 return exact
@@ -221,11 +235,24 @@ class RingingContact(Contact):
             self.unsettled += 1
             if self.unsettled <= UNSETTLED:
                 return exact
-            amplitude = borne
+            if self._grows(parts):
+                self.unsettled, self.kept, press = UNSETTLED - LOOK, amplitude, "swinging"
+            else:
+                amplitude = borne
         self.dropped += (float(self.z @ self.z) - float(parts.mean @ parts.mean) + parts.mean[self.spring] ** 2) / 2
-        self.z, self.angle, self.unsettled = parts.mean, parts.angle, 0
-        self._set(min(amplitude, max(self.peak - parts.N, 0.0)))
-        return event, grip, "ringing"
+        self.z, self.angle = parts.mean, parts.angle
+        if press == "ringing":
+            self.unsettled, amplitude = 0, min(amplitude, max(self.peak - parts.N, 0.0))
+        self._set(amplitude)
+        return event, grip, press
+
+    def _grows(self, parts: Parts) -> bool:
+        """Whether slipping for a part of each swing makes it swing more, on the side where it slips."""
+        return self._pumps(1.0 if parts.T > 0 else -1.0)
+
+    def _pumps(self, side: float) -> bool:
+        """Whether slipping to one side makes the contact swing more: at the least F_n, against the lever."""
+        return -self.laws.friction < side * self.lever < 0
 
     def _set(self, amplitude: float) -> None:
         self.z = self.z.copy()
@@ -245,6 +272,9 @@ class RingingContact(Contact):
     def _leave(self, grip: Grip, press: Press) -> None:
         super()._leave(grip, press)
         if press not in AVERAGED:
+            return
+        if press == "swinging":
+            self._set(min(self.kept, max(self.peak - float(self.flow(grip, press).rows[F_N] @ self.z), 0.0)))
             return
         if press == "ringing":
             self.angle = math.fmod(self.angle + self._swing(grip).omega * (self.time - self.courses[-1].start), math.tau)
@@ -267,7 +297,7 @@ class RingingContact(Contact):
     def _next_averaged(self, event: str, grip: Grip, press: Press) -> tuple[str, Grip, Press] | None:
         if event == "apart":
             return None
-        if event == "gripped":
+        if event == "gripped" or press == "swinging":
             return self._swung(event, grip)
         if event == "reloaded":
             self._set(self.peak)
@@ -277,6 +307,11 @@ class RingingContact(Contact):
             return event, grip, "ringing"
         if event == "capped":
             return event, grip, "capped"
+        if event in SLIPS and self._pumps(SIDE[SLIPS[event]]):
+            grown = GROWN * self.root_stiffness("load") * float(self.z[self.spring])
+            self._set(min(grown, max(self.peak - float(self.force("stick", "ringing")[1]), 0.0)))
+            self.angle, self.unsettled = math.pi, 0
+            return self._swung(event, grip)
         if event in SLIPS and self._share(SIDE[SLIPS[event]]):
             return event, grip, event  # type: ignore[return-value]
         side = SLIPS[press if event == "used up" else event]
