@@ -34,8 +34,9 @@ APART = ("apart", "free")
 # A contact that lasts this many head-on contact times (and a period and a half of the slowest vibration, on which a
 # rigid tip may ride), or changes phase this often, does not end.
 LONGEST, MOST_PHASES = 200, 5_000
-# A contact of more cells than this is given up: seconds of work, and 300 MB of history. It takes a tip of e < 1e-5 that
-# rings, 1/e times faster than the contact, under a cue that presses it on.
+# A contact of more cells than this is given up: seconds of work, and 300 MB of history. It takes a tip that rings, 1/e
+# times faster than the contact, under a cue that presses it on, and whose ringing cannot be averaged
+# (`cuefem.ringing_tip`).
 MOST_CELLS = 500_000
 # |F_t| may pass mu F_n by this part of the force scale: at mu = mu_c, and where F_n vanishes at separation, the two are
 # equal but for rounding.
@@ -223,6 +224,11 @@ class Contact:
         self.phases.append(Phase("blow", "load", self.time, self.time, (p_t, 0.0)))
 
     @property
+    def patience(self) -> float:
+        """The part of `MOST_PHASES` and `MOST_CELLS` after which the contact is given up."""
+        return 1.0
+
+    @property
     def impulse(self) -> tuple[float, float]:
         """Impulse (t, n) on the ball so far, N s."""
         ball_t, ball_n = self.ball_t, self.ball_n
@@ -255,7 +261,7 @@ class Contact:
         before = self.impulse
         flow = self.flow(grip, press)
         self.courses.append(Course(self.time, flow.A, flow.rate, self.z))
-        limit = min(self.longest, self.time + (MOST_CELLS - self.cells) * flow.step)
+        limit = min(self.longest, self.time + (MOST_CELLS * self.patience - self.cells) * flow.step)
         arrival = march(flow, self.z, guards, start=self.time, limit=limit)
         if arrival is None:
             raise self.endless(grip, press)
@@ -392,7 +398,7 @@ def run(contact: Contact, press: Press = "load") -> None:
     grip = contact.first_grip(press)
     step: tuple[str, Grip, Press] | None = None if contact.parted else ("touch", grip, press)
     while step is not None:
-        if len(contact.phases) > MOST_PHASES:
+        if len(contact.phases) > MOST_PHASES * contact.patience:
             raise contact.endless(grip, press)
         _, grip, press = step
         step = contact.go(grip, press)

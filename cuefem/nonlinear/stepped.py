@@ -22,6 +22,9 @@ PAST = 1e-10
 # Tolerances of a step, relative and beside the size that a state has in a strike; the longest step in contact times,
 # since an event that comes and goes within a step is not seen.
 RELATIVE, ABSOLUTE, LONGEST_STEP = 1e-11, 1e-13, 0.01
+# A tip of less restitution than this may ring too fast to be stepped through: it is given up after so many rates of
+# change, which take seconds.
+SMALL, MOST_RATES = 1e-3, 50_000
 
 
 class Hold(NamedTuple):
@@ -48,13 +51,15 @@ class Turning(NamedTuple):
 class SteppedContact(Contact):
     """A contact with a nonlinear tip law, a turning normal, or both; see `cuefem.nonlinear`.
 
-    clock: about the contact's time, s. deepest: the compression at the last peak, m.
+    clock: about the contact's time, s. deepest: the compression at the last peak, m. rates: how many
+    rates of change were asked for.
     """
 
     law: TipLaw = field(default_factory=lambda: TipLaw(1.0, 1.0, 1.0))
     turning: Turning | None = None
     clock: float = 1.0
     deepest: float = 0.0
+    rates: int = 0
 
     extra_states: ClassVar[int] = 5
 
@@ -239,8 +244,18 @@ class SteppedContact(Contact):
     def _solved(
         self, hold: Hold | None, span: tuple[float, ...], ends: Sequence[Callable[[Array], float]], z: Array
     ) -> Any:
+        def rate(_: float, z: Array) -> Array:
+            self.rates += 1
+            if self.rates > MOST_RATES and 0 < self.law.restitution < SMALL:
+                raise RuntimeError(
+                    f"a tip of restitution {self.law.restitution:g} rings too fast to be stepped through with "
+                    "PowerLawTip, RollingContact or Elevation (it was given up after "
+                    f"{self.time:.6g} s and {len(self.phases)} phases); give it a Tip.restitution of at least {SMALL:g}"
+                )
+            return self.clock * self.change(z, hold)
+
         solved = solve_ivp(
-            lambda _, z: self.clock * self.change(z, hold),
+            rate,
             np.array(span) / self.clock,
             z,
             method="DOP853",
