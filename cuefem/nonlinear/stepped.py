@@ -16,15 +16,15 @@ from cuefem.cue import Array
 from cuefem.effects import TipDome
 from cuefem.history import SteppedHistory, Stretch
 from cuefem.nonlinear.law import TipLaw
+from cuefem.ringing_tip import RINGING
 
 # A phase that starts past an end by this part of its size is over at once.
 PAST = 1e-10
 # Tolerances of a step, relative and beside the size that a state has in a strike; the longest step in contact times,
 # since an event that comes and goes within a step is not seen.
 RELATIVE, ABSOLUTE, LONGEST_STEP = 1e-11, 1e-13, 0.01
-# A tip of less restitution than this may ring too fast to be stepped through: it is given up after so many rates of
-# change, which take seconds.
-SMALL, MOST_RATES = 1e-3, 50_000
+# A nearly dead tip may ring too fast to be stepped through: it is given up after so many rates of change.
+MOST_RATES = 8_000
 
 
 class Hold(NamedTuple):
@@ -246,12 +246,8 @@ class SteppedContact(Contact):
     ) -> Any:
         def rate(_: float, z: Array) -> Array:
             self.rates += 1
-            if self.rates > MOST_RATES and 0 < self.law.restitution < SMALL:
-                raise RuntimeError(
-                    f"a tip of restitution {self.law.restitution:g} rings too fast to be stepped through with "
-                    "PowerLawTip, RollingContact or Elevation (it was given up after "
-                    f"{self.time:.6g} s and {len(self.phases)} phases); give it a Tip.restitution of at least {SMALL:g}"
-                )
+            if self.rates > MOST_RATES and 0 < self.law.restitution <= RINGING:
+                raise self._ringing()
             return self.clock * self.change(z, hold)
 
         solved = solve_ivp(
@@ -274,7 +270,21 @@ class SteppedContact(Contact):
 
     def _unload(self, grip: Grip) -> tuple[str, Grip, Press] | None:
         self.deepest = float(self.z[self.depth])
+        if 0 < self.law.restitution <= RINGING and self._presses_on(grip):
+            raise self._ringing()
         return super()._unload(grip)
+
+    def _presses_on(self, grip: Grip) -> bool:
+        """Whether a nearly dead tip is pressed on past its peak, and rings (`cuefem.ringing_tip`)."""
+        peak = float(self.force(grip, "load")[1])
+        return self._pressed_together(grip) and float(self.force(grip, "rigid")[1]) > peak / 2
+
+    def _ringing(self) -> RuntimeError:
+        return RuntimeError(
+            f"a tip of restitution {self.law.restitution:g} rings too fast to be stepped through with PowerLawTip, "
+            f"RollingContact or Elevation (given up after {self.time:.6g} s and {len(self.phases)} phases); "
+            f"give it a Tip.restitution above {RINGING:g}"
+        )
 
     def _press(self, old: Press, new: Press) -> None:
         """The compression is the state: nothing to keep."""
