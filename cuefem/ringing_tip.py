@@ -26,7 +26,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 import numpy as np
 
@@ -228,7 +228,8 @@ class RingingContact(Contact):
         exact: tuple[str, Grip, Press] = (event, grip, "unload")
         if parts is None or parts.amplitude >= parts.N:
             return exact
-        amplitude, press = parts.amplitude, cast(Press, "ringing")
+        amplitude = parts.amplitude
+        press: Press = "ringing"
         if grip != "stick":
             if -SIDE[grip] * float(self.c_t @ parts.mean) <= self._reach(grip, amplitude):
                 return exact
