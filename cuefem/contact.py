@@ -25,7 +25,8 @@ from cuefem.history import F_N, F_T, V_N, V_T, History
 from cuefem.modes import TipModes
 
 Grip = Literal["slip", "stick", "slip back"]
-Press = Literal["load", "unload", "rigid"]
+# The last five: past the peak of a nearly dead tip, averaged over its ringing (`cuefem.ringing_tip`).
+Press = Literal["load", "unload", "rigid", "ringing", "capped", "rubbed", "rubbed back", "swinging"]
 SIDE = {"slip": 1.0, "slip back": -1.0, "stick": 0.0}
 # Grip and press of a phase in which ball and tip are apart, before they touch again (the effect SecondHit).
 APART = ("apart", "free")
@@ -33,8 +34,9 @@ APART = ("apart", "free")
 # A contact that lasts this many head-on contact times (and a period and a half of the slowest vibration, on which a
 # rigid tip may ride), or changes phase this often, does not end.
 LONGEST, MOST_PHASES = 200, 5_000
-# A contact of more cells than this is given up: seconds of work, and 300 MB of history. It takes a tip of e < 1e-5 that
-# rings, 1/e times faster than the contact, under a cue that presses it on.
+# A contact of more cells than this is given up: seconds of work, and 300 MB of history. It takes a tip that rings, 1/e
+# times faster than the contact, under a cue that presses it on, and whose ringing cannot be averaged
+# (`cuefem.ringing_tip`).
 MOST_CELLS = 500_000
 # |F_t| may pass mu F_n by this part of the force scale: at mu = mu_c, and where F_n vanishes at separation, the two are
 # equal but for rounding.
@@ -222,6 +224,11 @@ class Contact:
         self.phases.append(Phase("blow", "load", self.time, self.time, (p_t, 0.0)))
 
     @property
+    def patience(self) -> float:
+        """The part of `MOST_PHASES` and `MOST_CELLS` after which the contact is given up."""
+        return 1.0
+
+    @property
     def impulse(self) -> tuple[float, float]:
         """Impulse (t, n) on the ball so far, N s."""
         ball_t, ball_n = self.ball_t, self.ball_n
@@ -254,7 +261,7 @@ class Contact:
         before = self.impulse
         flow = self.flow(grip, press)
         self.courses.append(Course(self.time, flow.A, flow.rate, self.z))
-        limit = min(self.longest, self.time + (MOST_CELLS - self.cells) * flow.step)
+        limit = min(self.longest, self.time + (MOST_CELLS * self.patience - self.cells) * flow.step)
         arrival = march(flow, self.z, guards, start=self.time, limit=limit)
         if arrival is None:
             raise self.endless(grip, press)
@@ -391,7 +398,7 @@ def run(contact: Contact, press: Press = "load") -> None:
     grip = contact.first_grip(press)
     step: tuple[str, Grip, Press] | None = None if contact.parted else ("touch", grip, press)
     while step is not None:
-        if len(contact.phases) > MOST_PHASES:
+        if len(contact.phases) > MOST_PHASES * contact.patience:
             raise contact.endless(grip, press)
         _, grip, press = step
         step = contact.go(grip, press)

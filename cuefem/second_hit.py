@@ -10,6 +10,7 @@ import numpy as np
 from cuefem.contact import APART, Contact, Course, Phase, run
 from cuefem.flow import Flow, Guards, integral_of_product, march
 from cuefem.nonlinear import SteppedContact
+from cuefem.ringing_tip import RINGING
 from cuefem.scene import Outcome
 from cuefem.shear import ShearContact
 
@@ -44,10 +45,11 @@ def hits(outcome: Outcome) -> tuple[Hit, ...]:
 def follow(contact: Contact, window: float) -> None:
     """Follow cue and ball for ``window``, s, after their separation, and through every contact that begins in it.
 
-    ValueError for a dead tip: it would come back with the whole force of its peak at once, and chatter without end.
+    ValueError for a dead tip, or one that is nearly so: it would come back with the whole force of its peak at once,
+    and chatter without end.
     """
-    if contact.laws.restitution == 0:
-        raise ValueError("SecondHit takes a Tip.restitution in (0, 1]; got 0.0")
+    if contact.laws.restitution <= RINGING:
+        raise ValueError(f"SecondHit takes a Tip.restitution in ({RINGING:g}, 1]; got {contact.laws.restitution}")
     until, near = contact.time + window, OVERLAP * contact.laws.speed * contact.laws.time
     while _fly(contact, until, near):
         run(contact, "unload")

@@ -11,7 +11,10 @@ from cuefem.contact import SIDE, Contact, Grip, Press
 from cuefem.cue import Array
 from cuefem.flow import Flow, Pushes
 from cuefem.history import F_T
+from cuefem.ringing_tip import RINGING
 
+# Of the phases and cells that a contact may take, those of a nearly dead tip: a second or so.
+HASTE = 0.02
 SLIDE = 4  # the output that the base model has not: the velocity at which the massless patch slides
 
 
@@ -29,6 +32,11 @@ class ShearContact(Contact):
     extra_states: ClassVar[int] = 1
     slide: ClassVar[int] = SLIDE
     outputs: ClassVar[int] = 5
+
+    @property
+    def patience(self) -> float:
+        """Its ringing is not averaged: a nearly dead tip that rings on is given up soon."""
+        return HASTE if 0 < self.laws.restitution <= RINGING else 1.0
 
     @property
     def shear(self) -> int:

@@ -14,6 +14,7 @@ from cuefem.effects import Elevation, PowerLawTip, RollingContact, SecondHit, Ti
 from cuefem.modes import TipModes, lumped_tip_modes
 from cuefem.quantity import check_kind, scalar
 from cuefem.resolution import tip_modes_of
+from cuefem.ringing_tip import RINGING, ringing_contact
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.shear import ShearContact
 
@@ -82,7 +83,7 @@ def contact_of(scene: Scene, tip: TipModes, laws: Laws) -> Contact:
         return stepped_contact(scene, tip, laws)
     shears = [effect.ratio for effect in scene.effects if isinstance(effect, TipShear)]
     if not shears:
-        return Contact(tip, laws)
+        return ringing_contact(tip, laws) if 0 < laws.restitution <= RINGING else Contact(tip, laws)
     return ShearContact(tip, laws, compliance=math.fsum(1 / ratio for ratio in shears) / laws.stiffness)
 
 

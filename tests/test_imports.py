@@ -29,6 +29,7 @@ ORDER = [
     "flow",
     "history",
     "contact",
+    "ringing_tip",
     "shear",
     "nonlinear",
     "second_hit",

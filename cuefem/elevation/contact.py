@@ -170,6 +170,10 @@ class RaisedContact(SteppedContact):
         """(F_t, F_n) now, N, if the contact gripped and pressed in this way."""
         return np.array(self.reading(self.z, self._hold(grip, press))[2:])
 
+    def _presses_on(self, grip: Grip) -> bool:
+        """Not known without a phase of a rigid tip: one that rings is given up after `MOST_RATES`."""
+        return False
+
     def _keep(self, hold: Any) -> list[int]:
         """Rows whose velocities a phase keeps at zero."""
         tip = [T, P] if hold.grip == "stick" else []

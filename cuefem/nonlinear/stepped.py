@@ -16,12 +16,15 @@ from cuefem.cue import Array
 from cuefem.effects import TipDome
 from cuefem.history import SteppedHistory, Stretch
 from cuefem.nonlinear.law import TipLaw
+from cuefem.ringing_tip import RINGING
 
 # A phase that starts past an end by this part of its size is over at once.
 PAST = 1e-10
 # Tolerances of a step, relative and beside the size that a state has in a strike; the longest step in contact times,
 # since an event that comes and goes within a step is not seen.
 RELATIVE, ABSOLUTE, LONGEST_STEP = 1e-11, 1e-13, 0.01
+# A nearly dead tip may ring too fast to be stepped through: it is given up after so many rates of change.
+MOST_RATES = 8_000
 
 
 class Hold(NamedTuple):
@@ -48,13 +51,15 @@ class Turning(NamedTuple):
 class SteppedContact(Contact):
     """A contact with a nonlinear tip law, a turning normal, or both; see `cuefem.nonlinear`.
 
-    clock: about the contact's time, s. deepest: the compression at the last peak, m.
+    clock: about the contact's time, s. deepest: the compression at the last peak, m. rates: how many
+    rates of change were asked for.
     """
 
     law: TipLaw = field(default_factory=lambda: TipLaw(1.0, 1.0, 1.0))
     turning: Turning | None = None
     clock: float = 1.0
     deepest: float = 0.0
+    rates: int = 0
 
     extra_states: ClassVar[int] = 5
 
@@ -239,8 +244,14 @@ class SteppedContact(Contact):
     def _solved(
         self, hold: Hold | None, span: tuple[float, ...], ends: Sequence[Callable[[Array], float]], z: Array
     ) -> Any:
+        def rate(_: float, z: Array) -> Array:
+            self.rates += 1
+            if self.rates > MOST_RATES and 0 < self.law.restitution <= RINGING:
+                raise self._ringing()
+            return self.clock * self.change(z, hold)
+
         solved = solve_ivp(
-            lambda _, z: self.clock * self.change(z, hold),
+            rate,
             np.array(span) / self.clock,
             z,
             method="DOP853",
@@ -259,7 +270,21 @@ class SteppedContact(Contact):
 
     def _unload(self, grip: Grip) -> tuple[str, Grip, Press] | None:
         self.deepest = float(self.z[self.depth])
+        if 0 < self.law.restitution <= RINGING and self._presses_on(grip):
+            raise self._ringing()
         return super()._unload(grip)
+
+    def _presses_on(self, grip: Grip) -> bool:
+        """Whether a nearly dead tip is pressed on past its peak, and rings (`cuefem.ringing_tip`)."""
+        peak = float(self.force(grip, "load")[1])
+        return self._pressed_together(grip) and float(self.force(grip, "rigid")[1]) > peak / 2
+
+    def _ringing(self) -> RuntimeError:
+        return RuntimeError(
+            f"a tip of restitution {self.law.restitution:g} rings too fast to be stepped through with PowerLawTip, "
+            f"RollingContact or Elevation (given up after {self.time:.6g} s and {len(self.phases)} phases); "
+            f"give it a Tip.restitution above {RINGING:g}"
+        )
 
     def _press(self, old: Press, new: Press) -> None:
         """The compression is the state: nothing to keep."""

@@ -240,7 +240,16 @@ def _events(outcome: Outcome) -> Iterator[tuple[float, str]]:
 
 def _turn(before: Any, after: Any) -> str:
     grips = {"stick": "the tip sticks", "slip": "the tip slips", "slip back": "the tip slips back"}
-    presses = {"load": "pressed beyond its old peak", "unload": "greatest compression", "rigid": "greatest compression"}
+    presses = {
+        "load": "pressed beyond its old peak",
+        "unload": "greatest compression",
+        "rigid": "greatest compression",
+        "ringing": "the tip rings",
+        "capped": "the tip rings less and less",
+        "rubbed": "friction damps the ringing",
+        "rubbed back": "friction damps the ringing",
+        "swinging": "the tip rings and slips by turns",
+    }
     words = []
     if after.press != before.press:
         words.append(presses.get(after.press, after.press))
