@@ -34,7 +34,7 @@ class Weight(Effect):
 
 
 POSITIVE = st.floats(0, math.inf, exclude_min=True, exclude_max=True)
-SIZES = st.floats(1e-6, 1e3)
+SIZES = st.floats(1e-6, 10)
 FINITE = st.floats(allow_nan=False, allow_infinity=False)
 
 

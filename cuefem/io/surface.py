@@ -34,7 +34,10 @@ def load_surface(path: Path, material: Material, length_unit: str | None = None)
     except ValueError:
         raise InputError(path, "length unit", f"must be a unit of length, such as mm; got {shown(unit)}") from None
     rows = [(scale * length, *np.multiply(scale, [*outer, *bore])) for length, outer, bore in read_surface(path).pieces]
-    return Cue(tuple(Segment(row[0], row[1], row[2], material, row[3], row[4]) for row in rows))
+    try:
+        return Cue(tuple(Segment(row[0], row[1], row[2], material, row[3], row[4]) for row in rows))
+    except ValueError as error:
+        raise InputError(path, "", str(error)) from None
 
 
 def read_surface(path: Path) -> Sliced:
@@ -60,7 +63,7 @@ def _faces(path: Path) -> tuple[Array, Index]:
     try:
         if path.suffix.lower() == ".ply" and b"end_header" not in path.read_bytes():
             raise meshio.ReadError("its header does not end")  # meshio would read on for ever
-        with quiet(), np.errstate(invalid="ignore"):  # a signalling nan in 32 bits; it is refused below
+        with quiet():  # a signalling nan in 32 bits is refused below
             mesh = _FORMATS[path.suffix.lower()].read(str(path))
             points = np.asarray(mesh.points, float)
         blocks = [(block.type, np.asarray(block.data, dtype=np.intp)) for block in mesh.cells]
