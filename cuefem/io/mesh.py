@@ -130,7 +130,7 @@ class _Unpacker:
         return found
 
 
-class _CountedReader(_vtu.VtuReader):  # type: ignore[misc]
+class _CountedReader(_vtu.VtuReader):
     """meshio's reader, with all that it decodes counted: many arrays may name the same data."""
 
     def __init__(self, path: Path, budget: _Budget) -> None:
