@@ -11,7 +11,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cuefem.quantity import Number, Quantity, check_fields, check_kind
+from cuefem.quantity import DIAMETER, LENGTH, MOST_SEGMENTS, Number, Quantity, check_fields, check_kind
 
 Array = NDArray[np.float64]
 
@@ -83,9 +83,9 @@ class Segment:
     material whose core is wood.
     """
 
-    length: Annotated[float, Quantity("m", "(0, inf)")]
-    tip_diameter: Annotated[float, Quantity("m", "(0, inf)")]
-    butt_diameter: Annotated[float, Quantity("m", "(0, inf)")]
+    length: Annotated[float, LENGTH]
+    tip_diameter: Annotated[float, DIAMETER]
+    butt_diameter: Annotated[float, DIAMETER]
     material: Material
     tip_bore: Annotated[float, Quantity("m", "[0, inf)")] = 0.0
     butt_bore: Annotated[float, Quantity("m", "[0, inf)")] = 0.0
@@ -206,6 +206,8 @@ class Cue:
         object.__setattr__(self, "segments", tuple(self.segments))
         if not self.segments:
             raise ValueError("Cue.segments must hold at least one Segment; got none, a cue without mass")
+        if len(self.segments) > MOST_SEGMENTS:
+            raise ValueError(f"Cue.segments must hold at most {MOST_SEGMENTS} segments; got {len(self.segments)}")
         for i, segment in enumerate(self.segments):
             check_kind(f"Cue.segments[{i}]", segment, Segment)
 

@@ -114,6 +114,15 @@ class Quantity:
         return array
 
 
+# What a cue and a blow can be at most, in one place: a wrong unit is refused before it costs hours. Each bound is far
+# from all that is real, so that scaled and extreme scenes can still be computed.
+LENGTH = Quantity("m", "(0, 1000]")  # of a segment: a cue is 1.5 m long
+DIAMETER = Quantity("m", "(0, 10]")  # a cue is 0.03 m wide
+CONTACT_TIME = Quantity("s", "[1e-6, 10]")  # leather's is 1e-3 s; in 1e-6 s sound goes through 4 mm of wood
+MOST_SEGMENTS = 2000  # of a cue: one every 0.7 mm
+MOST_UNKNOWNS = 50_000  # of a beam: a cue of 30 segments takes 10,000 for the modes of the shortest contact
+
+
 @functools.cache
 def quantities(kind: type) -> tuple[tuple[str, Quantity, bool, bool], ...]:
     """The dimensioned fields of a dataclass: (name, quantity, whether None is allowed, whether an array is)."""

@@ -15,6 +15,7 @@ from cuefem.beam import assemble
 from cuefem.cue import Cue
 from cuefem.effects import TipEffect
 from cuefem.modes import Modes, TipModes, mesh_for, modes_below, solve, tip_modes
+from cuefem.quantity import CONTACT_TIME
 from cuefem.scene import Resolution, Scene
 from cuefem.tail import tail
 
@@ -29,6 +30,9 @@ MOST = 400
 def default_resolution(scene: Scene, *, periods: float = PERIODS_KEPT) -> Resolution:
     """The resolution meant where none is given: modes kept by frequency, up to ``periods`` / contact time."""
     assert isinstance(scene.cue, Cue)
+    if not CONTACT_TIME.holds(scene.contact_time):  # that of a stiffness: one that is given is bounded already
+        got = f"{scene.tip.stiffness:.6g} N/m, {scene.contact_time:.3g} s"
+        raise ValueError(f"Tip.stiffness must make a head-on contact time in {CONTACT_TIME.bounds}; got {got}")
     count = min(modes_below(scene.cue, 2 * np.pi * periods / scene.contact_time), MOST)
     elements, order = mesh_for(scene.cue, count)
     return Resolution(elements, order, count)

@@ -10,7 +10,7 @@ import numpy as np
 
 from cuefem.cue import Array, Cue, LumpedCue
 from cuefem.effects import CueEffect, Effect, check_effects
-from cuefem.quantity import Number, Quantity, check_count, check_fields, check_kind
+from cuefem.quantity import CONTACT_TIME, Number, Quantity, check_count, check_fields, check_kind
 
 DEFAULT_CONTACT_TIME = 2e-3  # s, [Kim] sec. 4
 
@@ -39,7 +39,7 @@ class Tip:
 
     restitution: Annotated[Number, Quantity("", "[0, 1]")] = 0.75
     friction: Annotated[Number, Quantity("", "[0, inf]")] = 0.7
-    contact_time: Annotated[float | None, Quantity("s", "(0, inf)")] = None
+    contact_time: Annotated[float | None, CONTACT_TIME] = None
     stiffness: Annotated[float | None, Quantity("N/m", "(0, inf)")] = None
 
     def __post_init__(self) -> None:

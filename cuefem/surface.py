@@ -20,6 +20,7 @@ from cuefem.cue import Array
 Index = NDArray[np.intp]
 
 SAME = 1e-6  # of the length: points closer than this are one
+CROWDED = 100  # points that are one, on average: more are a heap of which every pair would be counted
 FLAT = 1e-5  # of the length: a triangle that reaches less far along the axis lies across it
 UPRIGHT = 1e-3  # rad: an axis nearer than this to x, y or z is that
 SLENDER = 5.0  # length over the widest diameter, at least
@@ -180,7 +181,10 @@ def _welded(points: Array, triangles: Index, near: float) -> tuple[Array, Index]
     from scipy.sparse.csgraph import connected_components
     from scipy.spatial import KDTree
 
-    pairs = KDTree(points).query_pairs(near, output_type="ndarray")
+    tree = KDTree(points)
+    if tree.count_neighbors(tree, near) > CROWDED * len(points):
+        raise ValueError(f"must have its corners apart; got more than {CROWDED} in one place on average")
+    pairs = tree.query_pairs(near, output_type="ndarray")
     graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(points),) * 2)
     _, label = connected_components(graph, directed=False)
     _, first = np.unique(label, return_index=True)

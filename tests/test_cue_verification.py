@@ -121,10 +121,10 @@ PIECE = Segment(0.7, 0.012, 0.021, MAPLE)
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"length": 0.0}, "Segment.length must be in (0, inf) m; got 0.0"),
-        ({"length": -0.1}, "Segment.length must be in (0, inf) m; got -0.1"),
-        ({"length": float("nan")}, "Segment.length must be in (0, inf) m; got nan"),
-        ({"tip_diameter": float("inf")}, "Segment.tip_diameter must be in (0, inf) m; got inf"),
+        ({"length": 0.0}, "Segment.length must be in (0, 1000] m; got 0.0"),
+        ({"length": -0.1}, "Segment.length must be in (0, 1000] m; got -0.1"),
+        ({"length": float("nan")}, "Segment.length must be in (0, 1000] m; got nan"),
+        ({"tip_diameter": float("inf")}, "Segment.tip_diameter must be in (0, 10] m; got inf"),
         ({"butt_bore": -1e-3}, "Segment.butt_bore must be in [0, inf) m; got -0.001"),
         ({"tip_bore": 0.013}, "Segment.tip_bore must be in [0, 0.012) m, its outer diameter; got 0.013"),
         ({"butt_bore": 0.021}, "Segment.butt_bore must be in [0, 0.021) m, its outer diameter; got 0.021"),
@@ -154,9 +154,9 @@ def test_material_refuses(change: dict[str, float], message: str) -> None:
 
 def test_wrong_kinds() -> None:
     assert refusal(lambda: replace(PIECE, length="12 mm"), TypeError).startswith(
-        "Segment.length must be a number in (0, inf) m; got '12 mm'"
+        "Segment.length must be a number in (0, 1000] m; got '12 mm'"
     )
-    assert "Segment.length must be a number in (0, inf) m; got True" in refusal(
+    assert "Segment.length must be a number in (0, 1000] m; got True" in refusal(
         lambda: replace(PIECE, length=True), TypeError
     )
     assert "Segment.material must be a Material; got 'maple'" in refusal(

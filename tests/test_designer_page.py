@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 from command_line import call
 from designer_browser import BROWSER, opened, served, settled, shown, turn
+from surfaces import revolved, written
 
 import cuefem as cf
 from cuefem.designer.model import knobs_of
@@ -130,10 +131,16 @@ def test_a_pinned_design_is_compared(browser: Any, address: str) -> None:
         page.wait_for_function("document.querySelectorAll('thead th').length === 2")
 
 
+PIECE = """[[segments]]
+length = "1 mm"
+tip_diameter = "12 mm"
+butt_diameter = "12 mm"
+material = "ash"
+"""
 WRONG = {
     "broken.toml": ("[[segments", "broken.toml: must be TOML; got a syntax error"),
     "empty.toml": ("", "empty.toml: must hold a cue or a scene; got an empty file"),
-    "bare.toml": ("[[segments]]\nlength = 0.7\n", "segments[0].length: must be in (0, inf) m, a length with its unit"),
+    "bare.toml": ("[[segments]]\nlength = 0.7\n", "segments[0].length: must be in (0, 1000] m, a length with its unit"),
     "lumped.toml": (
         '[cue]\nmass = "0.5 kg"\nend_mass = "6 g"\n',
         "cue must have segments, a shape that can be changed",
@@ -141,7 +148,9 @@ WRONG = {
     "elsewhere.toml": ('cue = "shaft.toml"\n', "elsewhere.toml: cue: shaft.toml: cannot be read: No such file"),
     "profile.csv": ("a,b\n1,2\n", "profile.csv:"),
     "<b>.toml": ("x = 1", "<b>.toml: x: "),
-    "notes.txt": ("x = 1", "a file must be a .toml, .csv, .vtk or .vtu of at most 5 MB"),
+    "notes.txt": ("x = 1", "a file must be a .toml, .csv, .vtk, .vtu, .stl, .ply or .obj of at most 5 MB"),
+    "many.toml": (PIECE * 2001, "many.toml: segments: must hold at most 2000 segments; got 2001"),
+    "long.toml": (PIECE.replace("1 mm", "1e9 m"), "segments[0].length: must be in (0, 1000] m; got '1e9 m'"),
 }
 
 
@@ -161,6 +170,77 @@ def test_a_wrong_file_is_refused_and_the_page_stays(browser: Any, address: str, 
             assert page.get_by_role("heading", level=1).inner_text() == "pool_maple.toml"
         turn(page, "tip_diameter", "ArrowLeft")
         assert page.get_by_role("alert").inner_text() == ""
+
+
+SENT = """async ([name, text]) => {
+  const form = new FormData();
+  if (name === null) form.append("a", text); else form.append("a", new Blob([text]), name);
+  const url = [...document.querySelectorAll("*")].map(e => e.__vueParentComponent?.props?.url).find(u => u);
+  const answer = await fetch(url, { method: "POST", body: form });
+  return answer.status;
+}"""
+NAMES = {
+    "a" * 300 + ".toml": "a file's name must be of at most 255 bytes; got 305",
+    "..": "a file must have a name; got '..'",
+    "": "a file must have a name; got ''",
+    None: "no file was sent",
+    "../../up.toml": "up.toml: must hold a cue or a scene; got an empty file",
+}
+
+
+def test_a_name_that_no_file_has_is_refused(browser: Any, address: str) -> None:
+    context = browser.new_context()
+    page = context.new_page()
+    page.set_default_timeout(30_000)
+    page.goto(address)
+    settled(page)
+    for name, words in NAMES.items():
+        page.evaluate(SENT, [name, " "])
+        page.locator("[role=alert] .said").filter(has_text=f"not opened: {words}").wait_for()
+    context.close()
+
+
+SLOW = """
+import time
+import cuefem.designer.app as app
+quick = app.answers
+def slow(scene):
+    end = time.monotonic() + (15 if abs(scene.stroke.offset - 0.31) < 1e-9 else 0)
+    while time.monotonic() < end:
+        pass
+    return quick(scene)
+app.answers = slow
+"""
+
+
+def test_another_tab_is_answered_while_a_slow_design_computes(browser: Any, tmp_path: Path) -> None:
+    with (
+        served(tmp_path, before=SLOW) as address,
+        opened(browser, address) as slow,
+        opened(browser, address) as quick,
+    ):
+        slow.locator('[data-knob="offset"] [role="slider"]').focus()
+        slow.keyboard.press("ArrowRight")
+        slow.wait_for_function("document.querySelector('.answers').ariaBusy === 'true'")
+        was = shown(quick, "end_mass_stick")
+        quick.locator('[data-knob="tip_diameter"] [role="slider"]').focus()
+        quick.keyboard.press("ArrowLeft")
+        quick.wait_for_function(
+            "was => document.querySelector('[data-number=end_mass_stick]').innerText !== was", arg=was
+        )
+        assert slow.evaluate("document.querySelector('.answers').ariaBusy") == "true"
+        settled(slow)
+        settled(quick)
+
+
+def test_a_surface_is_opened(browser: Any, address: str, tmp_path: Path) -> None:
+    for name, binary in (("ascii.stl", False), ("binary.stl", True), ("shaft.ply", False)):
+        path = written(tmp_path / name, *revolved([(0, 0), (0, 0.006), (0.7, 0.0105), (0.7, 0)], 16), binary=binary)
+        with opened(browser, address) as page:
+            page.locator("input[type=file]").set_input_files(path)
+            page.get_by_role("heading", level=1, name=name).wait_for()
+            settled(page)
+            assert shown(page, "shaft_mass").endswith(" g")
 
 
 def test_a_file_is_opened_changed_and_taken_back(browser: Any, address: str, tmp_path: Path) -> None:

@@ -252,7 +252,7 @@ def test_schema_says_units_bounds_and_other_forms() -> None:
     schema = json.loads(json.dumps(json_schema(), allow_nan=False))
     found = schema["$defs"]
     length = found["Segment"]["properties"]["length"]
-    assert length == {"type": "string", "description": 'a length with its unit, such as "12 mm"; in (0, inf) m'}
+    assert length == {"type": "string", "description": 'a length with its unit, such as "12 mm"; in (0, 1000] m'}
     offset = found["Stroke"]["properties"]["offset"]
     assert (offset["type"], offset["exclusiveMinimum"], offset["exclusiveMaximum"]) == ("number", -1, 1)
     assert found["Ball"]["properties"]["radius"]["default"] == "30.75 mm"

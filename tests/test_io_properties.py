@@ -34,7 +34,7 @@ class Weight(Effect):
 
 
 POSITIVE = st.floats(0, math.inf, exclude_min=True, exclude_max=True)
-SIZES = st.floats(1e-6, 1e3)
+SIZES = st.floats(1e-6, 10)
 FINITE = st.floats(allow_nan=False, allow_infinity=False)
 
 
@@ -59,7 +59,7 @@ LUMPED = st.builds(
     lambda mass, end_mass, part: cf.LumpedCue(mass, end_mass, part / math.sqrt(mass * end_mass)),
     *(SIZES, SIZES, st.floats(-0.9, 0.9)),
 )
-TIPS = st.builds(cf.Tip, st.floats(0, 1), st.floats(0, math.inf), st.none() | POSITIVE) | st.builds(
+TIPS = st.builds(cf.Tip, st.floats(0, 1), st.floats(0, math.inf), st.none() | st.floats(1e-6, 10)) | st.builds(
     cf.Tip, st.floats(0, 1), stiffness=POSITIVE
 )
 WEIGHTS = st.builds(Weight, SIZES, st.floats(0, math.inf), st.floats(-1e9, math.inf), st.none() | POSITIVE)

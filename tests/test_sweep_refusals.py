@@ -26,7 +26,7 @@ CHANGES = {
     "no steps": ("count = 16", "count = 0", "vary[0]: count must be a whole number >= 1; got 0"),
     "half a step": ("count = 16", "count = 1.5", "count must be a whole number >= 1; got 1.5"),
     "no count": ("count = 16", "", "vary[0].count: must be given"),
-    "a unit of another kind": ('"1.2 ms"]', '"1.2 mm"]', "vary[1].values[1]: must be in (0, inf) s, a time with"),
+    "a unit of another kind": ('"1.2 ms"]', '"1.2 mm"]', "vary[1].values[1]: must be in [1e-6, 10] s, a time with"),
     "contradictory units": ('high = "15 mm"', 'high = "15 g"', "vary[0].high: must be in [0, inf) m, a length with"),
     "no unit": ('high = "15 mm"', "high = 15", "vary[0].high: must be in [0, inf) m, a length with its unit"),
     "fields of two units": ('"cue.segments[0].butt_bore"', '"ball.mass"', "fields of one unit; got 'kg' and 'm'"),

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cuefem.cue import Array, Cue
+from cuefem.quantity import MOST_UNKNOWNS
 
 # Points closer than this part of the cue's length are one.
 NEAR = 1e-9
@@ -83,6 +84,7 @@ def mesh_cue(
             raise ValueError(f"an effect's position must be in [0, {cue.length}] m, on the cue; got {x}")
         if np.min(np.abs(np.array(breaks) - x)) > NEAR * cue.length:  # else the two points are one
             breaks.append(x)
+    check_work((len(breaks) - 1) * elements * (2 * order + 1), f"{len(breaks) - 1} pieces")
     ends = np.sort(np.array(breaks))
     steps = np.arange(elements) / elements
     nodes = np.append((ends[:-1, None] + np.diff(ends)[:, None] * steps).ravel(), ends[-1])
@@ -94,6 +96,13 @@ def mesh_cue(
     for node in {int(np.argmin(np.abs(nodes - x))) for x in splits}:
         first[node:] += 2
     return Mesh(nodes, piece, nodes[:-1] - cue.nodes[piece], first, int(first[-1]) + stride + 2, order)
+
+
+def check_work(unknowns: float, what: str) -> None:
+    """ValueError where a mesh would have more unknowns than can be solved in a reasonable time and memory."""
+    if unknowns > MOST_UNKNOWNS:
+        asked = "ask for fewer modes or elements, draw fewer segments, or check sizes and materials"
+        raise ValueError(f"the mesh must have at most {MOST_UNKNOWNS} unknowns; got {unknowns:.6g}, of {what}: {asked}")
 
 
 class Links(NamedTuple):

@@ -121,7 +121,7 @@ def remark(scene: Scene) -> None:
 
 def _with_options(scene: Scene, file: Path, given: dict[str, Any]) -> Scene:
     """The scene with what the command's options replace."""
-    from cuefem.quantity import Quantity
+    from cuefem.quantity import CONTACT_TIME, Quantity
     from cuefem.scene import Ball
 
     if given.get("ball") is not None:
@@ -130,7 +130,7 @@ def _with_options(scene: Scene, file: Path, given: dict[str, Any]) -> Scene:
         offset = measured(file, "--offset", given["offset"], Quantity("", "(-1, 1)"))
         scene = replace(scene, stroke=replace(scene.stroke, offset=offset))
     if given.get("contact_time") is not None:
-        time = measured(file, "--contact-time", given["contact_time"], Quantity("s", "(0, inf)"))
+        time = measured(file, "--contact-time", given["contact_time"], CONTACT_TIME)
         scene = replace(scene, tip=replace(scene.tip, contact_time=time, stiffness=None))
     if given["body_mass"] is not None:
         scene = replace(scene, cue=with_body(scene.cue, file, given["body_mass"]))

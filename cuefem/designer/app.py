@@ -16,11 +16,16 @@ from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
 import numpy as np
-from nicegui import app, events, ui
+from nicegui import app, background_tasks, events, ui
+from starlette.datastructures import UploadFile
+from starlette.exceptions import HTTPException
 from starlette.middleware.trustedhost import TrustedHostMiddleware
+from starlette.requests import ClientDisconnect, Request
+from starlette.responses import Response
 
 from cuefem.designer import numbers, pictures
 from cuefem.designer.answers import Answers, Curve, Density, answers, coupled_points, density
+from cuefem.designer.door import KINDS, LARGEST_FILE, REJECTED, Door, file_name
 from cuefem.designer.model import Knobs, knobs_of, turned
 from cuefem.designer.sliders import Choice, Slider, choices, sliders, without
 from cuefem.designer.style import SCRIPT, STYLE
@@ -33,10 +38,9 @@ from cuefem.report.tables import assumptions, effect_words, plain_cue_line
 from cuefem.scene import Scene
 
 HOST = "127.0.0.1"
-LARGEST_FILE = 5_000_000  # bytes
-REJECTED = f"a file must be a .toml, .csv, .vtk or .vtu of at most {LARGEST_FILE // 10**6} MB"
+LONGEST_WORK = 60.0  # s that an answer may take: no cue that people play with needs a tenth
 IDLE = 0.12  # s without a move, after which what takes longer is computed
-FAILURES = (ValueError, RuntimeError, ArithmeticError, MemoryError)
+FAILURES = (ValueError, RuntimeError, ArithmeticError, MemoryError, OSError)
 
 Read = Callable[[Path], tuple[Scene, list[str]]]
 
@@ -65,6 +69,7 @@ def serve(first: Opened, read: Read, *, port: int, show: bool, announce: Callabl
         Desk(first, read)
 
     app.add_middleware(TrustedHostMiddleware, allowed_hosts=[HOST, "localhost"])
+    app.add_middleware(Door, origins=(f"http://{HOST}:{port}", f"http://localhost:{port}"))
     app.on_startup(lambda: announce(f"http://{HOST}:{port}/"))
     ui.run(
         host=HOST,
@@ -81,13 +86,17 @@ def serve(first: Opened, read: Read, *, port: int, show: bool, announce: Callabl
 
 
 async def _computed(work: Callable[..., Any], *arguments: Any) -> Any:
-    """Work done beside the page's own, where overflows are errors as they are in the commands."""
+    """Work done beside the page's own, where overflows are errors as they are in the commands; RuntimeError where it
+    takes too long."""
 
     def guarded() -> Any:
         with np.errstate(over="raise", divide="raise", invalid="raise"):
             return work(*arguments)
 
-    return await asyncio.to_thread(guarded)
+    try:
+        return await asyncio.wait_for(asyncio.to_thread(guarded), LONGEST_WORK)
+    except TimeoutError:
+        raise RuntimeError(f"this takes more than {LONGEST_WORK:g} s: draw fewer segments, or check sizes") from None
 
 
 class Desk:
@@ -125,9 +134,11 @@ class Desk:
             self.upload = ui.upload(
                 auto_upload=True,
                 max_file_size=LARGEST_FILE,
-                on_upload=self._uploaded,
                 on_rejected=lambda: self._say(f"not opened: {REJECTED}"),
-            ).props('accept=".toml,.csv,.vtk,.vtu"')
+            ).props(f'accept="{",".join(KINDS)}"')
+            address = self.upload.props["url"]
+            app.remove_route(address)  # NiceGUI's own takes no form without a file
+            app.post(address, include_in_schema=False)(self._sent)
         with ui.element("div").classes("desk"):
             self.panel = ui.element("section").classes("knobs").props('aria-label="knobs"')
             self.side = ui.element("div").classes("answers")
@@ -320,19 +331,49 @@ class Desk:
         self._show_file()
         await self._moved()
 
-    async def _uploaded(self, event: events.UploadEventArguments) -> None:
-        self.upload.reset()
-        name = Path(event.file.name).name
-        with TemporaryDirectory() as folder:
-            path = Path(folder) / name
-            await event.file.save(path)
-            try:
-                scene, notes = await asyncio.to_thread(self.read, path)
-                knobs_of(scene)
-            except FAILURES as error:
-                self._say(f"not opened: {' '.join(str(error).split()).replace(f'{folder}/', '')}")
-                return
-        await self._open(Opened(name, scene, notes))
+    async def _sent(self, request: Request) -> Response:
+        """A file from the browser: it is taken at once, and read when that has been answered."""
+        name, content, said = "", b"", ""
+        try:
+            async with request.form(max_files=1, max_fields=10) as form:
+                file = next((part for part in form.values() if isinstance(part, UploadFile)), None)
+                if file is not None:
+                    content = await file.read()
+                name = file_name(file and file.filename)
+        except HTTPException:
+            said = "no file was sent"
+        except ValueError as error:
+            said = str(error)
+        except ClientDisconnect:
+            return Response(status_code=400)
+        if len(content) > LARGEST_FILE:
+            said = REJECTED
+        with self.upload:
+            self.upload.reset()
+            if said:
+                self._say(f"not opened: {said}")
+            else:
+                background_tasks.create(self._uploaded(name, content), name="open a file")
+        return Response(status_code=400 if said else 200)
+
+    async def _uploaded(self, name: str, content: bytes) -> None:
+        def read() -> tuple[Scene, list[str]]:
+            with TemporaryDirectory() as folder:
+                path = Path(folder) / name
+                path.write_bytes(content)
+                try:
+                    scene, notes = self.read(path)
+                    knobs_of(scene)
+                except FAILURES as error:
+                    raise ValueError(" ".join(str(error).split()).replace(f"{folder}/", "")) from None
+            return scene, notes
+
+        try:
+            scene, notes = await _computed(read)
+        except FAILURES as error:
+            self._say(f"not opened: {error}")
+        else:
+            await self._open(Opened(name, scene, notes))
 
     def _save(self) -> None:
         """The design as the knobs say, be it answered yet or not."""

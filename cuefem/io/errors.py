@@ -5,10 +5,11 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 from os import PathLike
+from pathlib import Path
 
 from cuefem.quantity import shown
 
-__all__ = ["InputError", "nearest", "reason", "shown"]
+__all__ = ["InputError", "nearest", "read_bytes", "reason", "shown"]
 
 
 class InputError(ValueError):
@@ -29,6 +30,17 @@ def nearest(name: str, names: Iterable[str]) -> str:
     known = {known.casefold(): known for known in names}
     close = difflib.get_close_matches(name.casefold(), known, n=1, cutoff=0.5)
     return f"; did you mean {known[close[0]]!r}?" if close else ""
+
+
+def read_bytes(path: Path, most: int) -> bytes:
+    """What a file holds, read no further than ``most`` bytes; OSError where it cannot be read, InputError beyond."""
+    with path.open("rb") as file:
+        content = file.read(most + 1)
+    if len(content) > most:
+        size = path.stat().st_size
+        got = f"{size / 1e6:.3g}" if size > most else "more"
+        raise InputError(path, "", f"must be a file of at most {most / 1e6:g} MB; got {got}")
+    return content
 
 
 def reason(error: OSError) -> str:

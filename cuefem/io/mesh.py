@@ -4,24 +4,30 @@ from __future__ import annotations
 
 import contextlib
 import io
+import lzma
+import re
+import threading
 import warnings
 import zlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import meshio
 import numpy as np
+from meshio.vtu import _vtu
 
 from cuefem.cue import Cue, Material, Segment
-from cuefem.io.errors import InputError, reason, shown
-from cuefem.quantity import quantities
+from cuefem.io.errors import InputError, read_bytes, reason, shown
+from cuefem.quantity import MOST_SEGMENTS, quantities
 
 # What a damaged mesh file makes meshio raise: it checks little itself.
 DAMAGED = (
     *(meshio.ReadError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError, AssertionError),
-    *(SyntaxError, EOFError, MemoryError, RecursionError, zlib.error, SystemExit),
+    *(SyntaxError, EOFError, MemoryError, RecursionError, zlib.error, lzma.LZMAError, SystemExit),
 )
+LARGEST_MESH = 20_000_000  # bytes, of the file and of all that is unpacked of it: ten times what any cue takes
+_ALONE = threading.Lock()
 _AGREES = 1e-9  # of the cue's length: a cell's stored length against its points
 
 
@@ -51,27 +57,108 @@ def save_mesh(cue: Cue, path: Path) -> None:
 
 @contextlib.contextmanager
 def quiet() -> Iterator[None]:
-    """Nothing of what meshio says on stdout and stderr: what is wrong with a file is said once, as an InputError."""
+    """meshio left to itself: what is wrong with a file is said once, as an InputError, nothing on stdout and stderr.
+
+    Overflows are no errors here, as they are where a command computes: meshio takes the text of an ASCII .stl for a
+    number of triangles first, on purpose. One file at a time, since output and warnings belong to the whole process.
+    """
     nowhere = io.StringIO()
-    with warnings.catch_warnings(), contextlib.redirect_stderr(nowhere), contextlib.redirect_stdout(nowhere):
+    with _ALONE, warnings.catch_warnings(), contextlib.redirect_stderr(nowhere), contextlib.redirect_stdout(nowhere):
         warnings.simplefilter("ignore")
-        yield
+        with np.errstate(all="ignore"):
+            yield
 
 
 def _format(path: Path) -> Any:
     return meshio.vtu if path.suffix.lower() == ".vtu" else meshio.vtk
 
 
+def _read(path: Path) -> meshio.Mesh:
+    """The mesh of a file that is not too big, nor too big when it is unpacked."""
+    content = read_bytes(path, LARGEST_MESH)
+    with quiet():
+        if path.suffix.lower() == ".vtu":
+            return _read_vtu(path, content)
+        for kind in re.findall(rb"^\s*DATASET\s+(\S+)", content, re.IGNORECASE | re.MULTILINE):
+            if kind.upper() != b"UNSTRUCTURED_GRID":  # a structured one may be said to have any number of points
+                raise meshio.ReadError(f"DATASET must be UNSTRUCTURED_GRID; got {shown(kind.decode('latin-1'))}")
+        return meshio.vtk.read(str(path))
+
+
+def _read_vtu(path: Path, content: bytes) -> meshio.Mesh:
+    if b"<!" in content.replace(b"\0", b"").replace(b"<!--", b""):
+        raise meshio.ReadError("it must have no document type, whose entities may unfold to any size")
+    budget = _Budget(LARGEST_MESH)
+    names = {"zlib": _Unpacker(zlib.decompressobj, budget), "lzma": _Unpacker(lzma.LZMADecompressor, budget)}
+    kept = {name: getattr(_vtu, name) for name in names}
+    try:
+        for name, unpacker in names.items():  # by these names meshio unpacks, wherever the data stand in the file
+            setattr(_vtu, name, unpacker)
+        found = _CountedReader(path, budget)
+    finally:
+        for name, module in kept.items():
+            setattr(_vtu, name, module)
+    return meshio.Mesh(found.points, found.cells, cell_data=found.cell_data)
+
+
+class _Budget:
+    """How many bytes may still be unpacked."""
+
+    def __init__(self, left: int) -> None:
+        self.left = left
+
+    def spend(self, size: int) -> None:
+        """Take ``size`` bytes; ReadError where there are no more."""
+        self.left -= size
+        if self.left < 0:
+            raise meshio.ReadError(f"its data must be at most {LARGEST_MESH / 1e6:g} MB when they are unpacked")
+
+
+class _Unpacker:
+    """In zlib's or lzma's place: unpacks no further than the budget goes."""
+
+    def __init__(self, begin: Callable[[], Any], budget: _Budget) -> None:
+        self.begin, self.budget = begin, budget
+
+    def decompress(self, data: bytes) -> bytes:
+        """All of ``data`` unpacked."""
+        unpacker = self.begin()
+        found: bytes = unpacker.decompress(data, self.budget.left + 1)
+        self.budget.spend(len(found))
+        if not unpacker.eof:
+            raise EOFError("compressed data end too early")
+        return found
+
+
+class _CountedReader(_vtu.VtuReader):
+    """meshio's reader, with all that it decodes counted: many arrays may name the same data."""
+
+    def __init__(self, path: Path, budget: _Budget) -> None:
+        self.budget = budget
+        super().__init__(str(path))
+
+    def read_uncompressed_binary(self, data: str, dtype: Any) -> Any:
+        """Numbers of base64 text."""
+        self.budget.spend(len(data))
+        return super().read_uncompressed_binary(data, dtype)
+
+    def read_compressed_binary(self, data: str, dtype: Any) -> Any:
+        """Numbers of compressed base64 text."""
+        self.budget.spend(len(data))
+        return super().read_compressed_binary(data, dtype)
+
+
 def load_mesh(path: Path) -> Cue:
     """The cue of a line mesh with this module's cell data, cells from tip to butt."""
     try:
-        with quiet():
-            mesh = _format(path).read(str(path))
+        mesh = _read(path)
         data = {name: np.concatenate(blocks).astype(float) for name, blocks in mesh.cell_data.items()}
         kinds, x = {block.type for block in mesh.cells}, np.asarray(mesh.points, float)[:, 0]
         cells = np.concatenate([block.data for block in mesh.cells])
     except OSError as error:
         raise InputError(path, "", f"cannot be read: {reason(error)}") from None
+    except InputError:
+        raise
     except DAMAGED as error:
         said = f"{type(error).__name__} {error}".strip()
         raise InputError(
@@ -83,6 +170,8 @@ def load_mesh(path: Path) -> Cue:
     for name in wanted:
         if name not in data:
             raise InputError(path, f"cell data {name}", f"must be given, a number a cell; got {shown(sorted(data))}")
+    if len(cells) > MOST_SEGMENTS:
+        raise InputError(path, "cells", f"must be at most {MOST_SEGMENTS}; got {len(cells)}")
     lengths = x[cells[:, 1]] - x[cells[:, 0]]
     return _cue(path, {name: data[name] for name in wanted}, lengths)
 

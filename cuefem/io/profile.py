@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import itertools
+import math
 import re
 from decimal import Decimal
 from pathlib import Path
@@ -12,7 +13,7 @@ from cuefem.cue import Cue, Material, Segment
 from cuefem.io.errors import InputError, shown
 from cuefem.io.toml import read_text
 from cuefem.io.units import number, quantity
-from cuefem.quantity import Quantity
+from cuefem.quantity import DIAMETER, Quantity
 
 DEFAULT_MATERIAL = "hard maple"
 DEFAULT_UNIT = "mm"  # of a surface's coordinates
@@ -23,7 +24,7 @@ _STRAIGHT = 1e-9
 
 _HEADER = re.compile(r"\s*(x|diameter)\s*[\[(]([^])]+)[\])]\s*")
 _COMMAS = "; commas part the columns, numbers have a decimal point"
-_POSITION, _DIAMETER = Quantity("m", "(-inf, inf)"), Quantity("m", "(0, inf)")
+_POSITION, _DIAMETER = Quantity("m"), DIAMETER
 
 Point = tuple[float, float]  # position, diameter, m
 
@@ -43,9 +44,11 @@ def load_profile(path: Path, material: Material) -> Cue:
         points.append(_point(path, line, cells, units, points))
     if len(points) < 2:
         raise InputError(path, "", f"must hold at least 2 points; got {len(points)}")
-    ends = _corners(points)
-    pairs = itertools.pairwise(ends)
-    return Cue(tuple(Segment(_apart(x0, x1), d0, d1, material) for (x0, d0), (x1, d1) in pairs))
+    pairs = itertools.pairwise(_corners(points))
+    try:
+        return Cue(tuple(Segment(_apart(x0, x1), d0, d1, material) for (x0, d0), (x1, d1) in pairs))
+    except ValueError as error:
+        raise InputError(path, "", str(error)) from None
 
 
 def _apart(first: float, last: float) -> float:
@@ -91,13 +94,19 @@ def _point(path: Path, line: int, cells: list[str], units: tuple[str, str], befo
 def _corners(points: list[Point]) -> list[Point]:
     """The points where the taper changes: each straight run is taken as far as all its points lie on it."""
     ends, first = [points[0]], 0
+    least, most = _slopes(points[0], points[1])
     for last in range(2, len(points)):
-        if not _straight(points[first : last + 1]):
+        (x0, d0), (x1, d1) = points[first], points[last]
+        if not least <= (d1 - d0) / (x1 - x0) <= most:
             first = last - 1
             ends.append(points[first])
+            least, most = -math.inf, math.inf
+        low, high = _slopes(points[first], points[last])
+        least, most = max(least, low), min(most, high)
     return [*ends, points[-1]]
 
 
-def _straight(run: list[Point]) -> bool:
-    (x0, d0), (x1, d1) = run[0], run[-1]
-    return all(abs(d0 + (d1 - d0) * (x - x0) / (x1 - x0) - d) <= _STRAIGHT for x, d in run)
+def _slopes(start: Point, point: Point) -> tuple[float, float]:
+    """The least and the largest slope of a straight taper from ``start`` that ``point`` lies on."""
+    (x0, d0), (x, d) = start, point
+    return (d - _STRAIGHT - d0) / (x - x0), (d + _STRAIGHT - d0) / (x - x0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import re
 from pathlib import Path
 
 import meshio
@@ -15,7 +16,8 @@ from cuefem.io.profile import DEFAULT_UNIT
 from cuefem.io.units import number
 from cuefem.surface import Index, Sliced, sliced, surface
 
-_FORMATS = {".stl": meshio.stl, ".ply": meshio.ply, ".obj": meshio.obj}
+_VERTEX = re.compile(rb"^[ \t]*vertex[ \t]+(\S+)[ \t]+(\S+)[ \t]+(\S+)", re.IGNORECASE | re.MULTILINE)
+_FORMATS = {".stl": meshio.stl, ".ply": meshio.ply}
 # What a surface may hold beside faces: corners and edges that a program wrote too.
 _PASSED_OVER = ("vertex", "line")
 _POLYGONS = ("triangle", "quad", "polygon")
@@ -34,7 +36,10 @@ def load_surface(path: Path, material: Material, length_unit: str | None = None)
     except ValueError:
         raise InputError(path, "length unit", f"must be a unit of length, such as mm; got {shown(unit)}") from None
     rows = [(scale * length, *np.multiply(scale, [*outer, *bore])) for length, outer, bore in read_surface(path).pieces]
-    return Cue(tuple(Segment(row[0], row[1], row[2], material, row[3], row[4]) for row in rows))
+    try:
+        return Cue(tuple(Segment(row[0], row[1], row[2], material, row[3], row[4]) for row in rows))
+    except ValueError as error:
+        raise InputError(path, "", str(error)) from None
 
 
 def read_surface(path: Path) -> Sliced:
@@ -55,13 +60,47 @@ def _read(path: Path, changed: int, size: int) -> Sliced:
         raise InputError(path, "", str(error)) from None
 
 
+def _read_ascii_stl(path: Path) -> meshio.Mesh | None:
+    """The triangles of an ASCII .stl, in capitals or not, whatever its lines end with; None of another file."""
+    if path.suffix.lower() != ".stl":
+        return None
+    content = path.read_bytes()
+    count = int.from_bytes(content[80:84], "little")
+    if len(content) == 84 + 50 * count:  # binary, be its head "solid" or not
+        return None
+    rows = _VERTEX.findall(content)
+    if not rows or len(rows) % 3:
+        return None
+    points, where = np.unique(np.array(rows, dtype=float), axis=0, return_inverse=True)
+    return meshio.Mesh(points, [("triangle", where.reshape(-1, 3))])
+
+
+def _read_obj(path: Path) -> meshio.Mesh:
+    """Corners and faces of an .obj; meshio wants a normal for every corner, which few programs write."""
+    points: list[list[float]] = []
+    faces: dict[int, list[list[int]]] = {}
+    for line in path.read_bytes().decode("latin-1").replace("\\\n", " ").splitlines():
+        kind, *words = line.split() or [""]
+        if kind == "v":
+            points.append([float(word) for word in words[:3]])
+        elif kind == "f":
+            corners = [int(word.split("/")[0]) for word in words]
+            if 0 in corners:
+                raise ValueError("a face names corner 0, and corners are counted from 1")
+            places = [corner - 1 if corner > 0 else len(points) + corner for corner in corners]
+            faces.setdefault(len(places), []).append(places)
+    cells = [("polygon", np.array(own, dtype=np.intp)) for own in faces.values()]
+    return meshio.Mesh(np.array(points).reshape(-1, 3), cells)
+
+
 def _faces(path: Path) -> tuple[Array, Index]:
     """Corners and triangles of a surface file; faces of more corners as fans."""
     try:
         if path.suffix.lower() == ".ply" and b"end_header" not in path.read_bytes():
             raise meshio.ReadError("its header does not end")  # meshio would read on for ever
-        with quiet(), np.errstate(invalid="ignore"):  # a signalling nan in 32 bits; it is refused below
-            mesh = _FORMATS[path.suffix.lower()].read(str(path))
+        with quiet():  # a signalling nan in 32 bits is refused below
+            own = _read_obj(path) if path.suffix.lower() == ".obj" else _read_ascii_stl(path)
+            mesh = own or _FORMATS[path.suffix.lower()].read(str(path))
             points = np.asarray(mesh.points, float)
         blocks = [(block.type, np.asarray(block.data, dtype=np.intp)) for block in mesh.cells]
     except OSError as error:

@@ -13,10 +13,10 @@ import tomlkit
 
 from cuefem.cue import Cue, LumpedCue, Material
 from cuefem.effects import CueEffect, Effect
-from cuefem.io.errors import InputError, nearest, reason, shown
+from cuefem.io.errors import InputError, nearest, read_bytes, reason, shown
 from cuefem.io.schema import build, effect_kinds, joined, keys_of, table, unknown_key
 from cuefem.materials import material
-from cuefem.quantity import Quantity, check_fields
+from cuefem.quantity import MOST_SEGMENTS, Quantity, check_fields
 from cuefem.scene import Scene
 
 
@@ -30,10 +30,17 @@ class Accuracy:
         check_fields(self)
 
 
+LARGEST_TEXT = 1_000_000  # bytes: five times what as many segments as there may be take
+DEEPEST = 20  # parts of a dotted key: the deepest that means anything, segments.material.E, has three
+_PART = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')"""
+# More parts than that in a key, for which tomllib takes the square of their number.
+_DEEP_KEY = re.compile(rf"""(?<![A-Za-z0-9_."' \t-])[ \t]*+{_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{DEEPEST}}}""")
+
+
 def read_text(path: Path) -> str:
-    """A file's text; InputError where it cannot be read, is not UTF-8, or is empty."""
+    """A file's text; InputError where it cannot be read, is too long, is not UTF-8, or is empty."""
     try:
-        content = path.read_bytes().decode("utf-8-sig")
+        content = read_bytes(path, LARGEST_TEXT).decode("utf-8-sig")
     except OSError as error:
         raise InputError(path, "", f"cannot be read: {reason(error)}") from None
     except UnicodeDecodeError as error:
@@ -46,6 +53,10 @@ def read_text(path: Path) -> str:
 def read_tables(path: Path) -> dict[str, Any]:
     """A TOML file as plain tables."""
     text = read_text(path)
+    deep = _DEEP_KEY.search(text)
+    if deep:
+        line = text.count("\n", 0, deep.start() + 1) + 1
+        raise InputError(path, f"line {line}", f"must be TOML nested less deeply, keys of at most {DEEPEST} parts")
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
@@ -93,6 +104,9 @@ def _accuracy(found: Any, path: Path) -> float | None:
 def _cue(found: dict[str, Any], path: Path, key: str) -> Cue:
     segments = found.get("segments")
     if isinstance(segments, list):
+        if len(segments) > MOST_SEGMENTS:
+            problem = f"must hold at most {MOST_SEGMENTS} segments; got {len(segments)}"
+            raise InputError(path, joined(key, "segments"), problem)
         within = joined(key, "segments")
         found = {**found, "segments": [_segment(s, path, joined(within, i)) for i, s in enumerate(segments)]}
     return build(Cue, found, file=str(path), key=key)

@@ -13,6 +13,7 @@ from cuefem.io.errors import shown
 from cuefem.quantity import EXAMPLES, Quantity
 
 _TEXT = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[+-]?[0-9]+)?|[+-]?inf|nan)\s*(.*?)\s*", re.IGNORECASE)
+LONGEST_TEXT = 200  # letters of a number and its unit: beyond it matching takes the square of them
 # Names, each with a one-digit power, multiplied and divided: all that pint gets to evaluate.
 _FACTOR = r"(?:[A-Za-zµμ°]{1,30}(?:(?:\^|\*\*)-?[0-9]|[²³])?|1)"
 _PRODUCT = rf"\({_FACTOR}(?:(?:\s*\*\s*|\s){_FACTOR}){{1,3}}\)"  # below a stroke: rad/(N m)
@@ -61,7 +62,7 @@ def _known(unit: str) -> bool:
 
 def number(text: str, unit: str) -> float:
     """The number of ``unit`` that ``text`` ("12 mm") says; ValueError where it has no unit, a wrong or unknown one."""
-    found = _TEXT.fullmatch(text)
+    found = _TEXT.fullmatch(text) if len(text) <= LONGEST_TEXT else None
     if not found or not found[2]:
         raise ValueError("a number and a unit")
     scale = _scale(found[2], unit)
@@ -92,6 +93,8 @@ def quantity(wanted: Quantity, value: Any) -> float:
 
 def _why(value: str) -> str:
     """What is wrong with a text that `number` refused; nothing where it has no unit."""
+    if len(value) > LONGEST_TEXT:
+        return f", of {len(value)} letters"
     if re.match(r"\s*[-+]?[0-9]+,[0-9]", value):
         return "; a decimal point, no comma"
     found = _TEXT.fullmatch(value)
