@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -22,6 +22,7 @@ class Kind(NamedTuple):
     """A family of responses: its unit, what it is, what its argument is ("", "mode", "offset"), how it is found.
 
     strikes: whether it takes the tip's modes up to the contact's cutoff. segments: whether it needs a cue of segments.
+    reasons: why it is nan of designs that have none, None where it is a number.
     """
 
     unit: str
@@ -30,10 +31,11 @@ class Kind(NamedTuple):
     argument: str = ""
     strikes: bool = False
     segments: bool = False
+    reasons: Callable[[Solver], Sequence[str | None]] | None = None
 
 
 def _small_offset_pivot(solver: Solver, _: Any) -> Array:
-    slopes = solver.stick[1]
+    slopes = solver.stick.squirt
     return np.array([_pivot(solver, i, SMALL, slope * np.arcsin(SMALL)) for i, slope in enumerate(slopes)])
 
 
@@ -57,6 +59,10 @@ def _pivot_length(solver: Solver, offset: float | None) -> Array:
     return _struck(lambda solver, i, found: _pivot(solver, i, offset, found.squirt))(solver, offset)
 
 
+def _stick_reasons(solver: Solver) -> Sequence[str | None]:
+    return solver.stick.reasons
+
+
 _SQUIRT = _struck(lambda s, i, found: found.squirt)
 _SPEED = _struck(lambda s, i, found: found.ball_speed)
 _VIBRATION = _struck(lambda s, i, found: found.energy["cue vibration"])
@@ -64,8 +70,10 @@ _PIVOT = "natural pivot length: of small offsets, or of the coupled strike at an
 _STATIC = "static: force across the tip over its deflection, the butt end clamped"
 _BALANCE = "centre of the segments' mass, from the tip"
 KINDS = {
-    "end_mass": Kind("kg", "stick end mass", lambda s, _: s.stick[0], strikes=True),
-    "squirt_slope": Kind("", "squirt over phi in the limit of small offsets", lambda s, _: s.stick[1], strikes=True),
+    "end_mass": Kind("kg", "stick end mass", lambda s, _: s.stick.end_mass, strikes=True, reasons=_stick_reasons),
+    "squirt_slope": Kind(
+        "", "squirt over phi in the limit of small offsets", lambda s, _: s.stick.squirt, strikes=True
+    ),
     "pivot_length": Kind("m", _PIVOT, _pivot_length, "offset", strikes=True),
     "mass": Kind("kg", "mass of the cue", lambda s, _: s.mass),
     "shaft_mass": Kind("kg", "mass of the segments", lambda s, _: s.shaft_mass, segments=True),
@@ -132,6 +140,11 @@ class Response:
     def values(self, solver: Solver) -> Array:
         """The response of every design, (designs,)."""
         return KINDS[self.kind].values(solver, self.argument)
+
+    def reason(self, solver: Solver, i: int) -> str | None:
+        """Why a design's response is nan, where that is known."""
+        reasons = KINDS[self.kind].reasons
+        return None if reasons is None else reasons(solver)[i]
 
 
 def _usage(kind: str) -> str:
