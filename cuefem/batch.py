@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from cuefem.beam import element_matrices, table
 from cuefem.cue import Array, Cue, Section, SegmentRows, section_properties
 from cuefem.scene import Resolution, Scene
 from cuefem.tail import STEPS
-from cuefem.transverse import StickLimit
+from cuefem.transverse import StickLimit, stick_reason
 
 # Cues worked at a time: more of them, and their matrices no longer fit the cache (half as fast at 256).
 BLOCK = 64
@@ -113,6 +114,25 @@ class BatchModes:
     top: Array | None = None
 
 
+class Stick(NamedTuple):
+    """Stick end masses, kg, and small-offset squirts over phi, of cues: two arrays (cues,), and `reasons`.
+
+    A cue whose squirt no end mass has (a light shaft alone, at a long contact time, runs ahead of the ball and has a
+    negative one) has an end mass of nan and a reason. Its squirt is a number.
+    """
+
+    end_mass: Array
+    squirt: Array
+
+    @property
+    def reasons(self) -> tuple[str | None, ...]:
+        """Why a cue has no end mass, None where it has one."""
+        return tuple(
+            stick_reason(slope) if np.isnan(mass) else None
+            for mass, slope in zip(self.end_mass.tolist(), self.squirt.tolist(), strict=True)
+        )
+
+
 def batch_frequencies(batch: CueBatch, count: int, *, at: Resolution) -> Array:
     """The ``count`` lowest flexible frequencies of every cue, Hz, (cues, count). Cubic in the unknowns of a cue."""
     return np.concatenate([_block_frequencies(block, count, at) for block in batch.blocks()])
@@ -125,30 +145,46 @@ def batch_modes(batch: CueBatch, count: int, *, at: Resolution, ended: bool = Fa
 
 def batch_stick(
     batch: CueBatch, scenes: Scene | Sequence[Scene] | StickLimit, *, at: Resolution, ended: bool = False
-) -> tuple[Array, Array]:
-    """(stick end mass, kg; small-offset squirt over phi) of every cue in its scene's place: two arrays (cues,).
+) -> Stick:
+    """Stick end mass, kg, and small-offset squirt over phi, of every cue in its scene's place.
 
-    scenes: one for every cue, or one for all, or a `StickLimit` of the cues' `mass`, whose parts may be arrays (cues,).
-    They give ball, tip and contact time; their cues are not used, and effects are not taken (one cue at a time has
-    them). ended: the modes end in the vectors of `cuefem.tail`, and fade (`cuefem.transverse.fade`) where that has a
-    dashpot. 18 modes then hold wooden shafts to 1e-3 at 0.7, 1 and 2 ms, where a plain sum wants 35, for a tenth more
-    time; none does at 1.2 to 1.4 ms, when waves of higher modes are just back (studies/batch.py, up to 2e-2). The
-    single cue's `end_mass` at a resolution is the plain sum.
+    Parameters
+    ----------
+    batch
+        The cues.
+    scenes
+        One for every cue, or one for all, or a `StickLimit` of the cues' `mass`, whose parts may be arrays (cues,).
+        They give ball, tip and contact time; their cues are not used, and effects are not taken (one cue at a time has
+        them).
+    at
+        Order and modes of every cue. Take an order of 5/3 of the modes.
+    ended
+        The modes end in the vectors of `cuefem.tail`, and fade (`cuefem.transverse.fade`) where that has a dashpot. The
+        single cue's `end_mass` at a resolution is the plain sum.
+
+    Returns
+    -------
+    Stick
+        Unpacks as ``end_mass, squirt``. A cue that has no end mass gets nan, and one of the ``reasons``.
+
+    Notes
+    -----
+    Accuracy on wood, over contact times of 0.5 to 3 ms: studies/batch_wood.md. The largest errors stand near
+    2L/c, when the front of the shear wave is just back at the tip; only more modes take them away.
     """
     law = _law(batch, scenes)
     parts = []
     for start, block in zip(range(0, len(batch), BLOCK), batch.blocks(), strict=True):
         found = _block_modes(block, at.modes, at, ended)
         parts.append(stick_of(block, found, law[start : start + BLOCK]))
-    end_mass, slope = (np.concatenate(part) for part in zip(*parts, strict=True))
-    return end_mass, slope
+    return Stick(*(np.concatenate(part) for part in zip(*parts, strict=True)))
 
 
-def stick_of(batch: CueBatch, found: BatchModes, scenes: Scene | Sequence[Scene] | StickLimit) -> tuple[Array, Array]:
-    """(stick end mass, kg; small-offset squirt over phi) from the modes of cues, each in its own scene's place."""
+def stick_of(batch: CueBatch, found: BatchModes, scenes: Scene | Sequence[Scene] | StickLimit) -> Stick:
+    """Stick end mass, kg, and small-offset squirt over phi, from the modes of cues, each in its own scene's place."""
     law = _law(batch, scenes)
     J = law.transverse_impulse(2 * np.pi * found.frequencies, found.tip, found.rigid, top=found.top)
-    return law.end_mass(J), law.slope(J)
+    return Stick(law.end_masses(J), law.slope(J))
 
 
 def _law(batch: CueBatch, scenes: Scene | Sequence[Scene] | StickLimit) -> StickLimit:

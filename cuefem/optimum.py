@@ -157,7 +157,7 @@ class Design:
         batch = CueBatch(rows, np.full(len(points), self.scene.cue.body_mass))
         match name:
             case "squirt":
-                return batch_stick(batch, self.scene, at=self.at)[1][:, None]
+                return batch_stick(batch, self.scene, at=self.at).squirt[:, None]
             case "first_frequency":
                 return batch_frequencies(batch, 1, at=self.at)
             case "tip_diameter":

@@ -33,7 +33,7 @@ def half_sine_velocity(omega: Array, phi: Array, rigid: Any, *, T: float) -> Any
 
 def smooth_start_impulse(omega: Array, phi: Array, rigid: Any, *, T: float) -> Any:
     """Impulse that makes the tip follow the velocity (1 - cos(pi t/T))/2 from 0 to T, N s per m/s."""
-    W, residues, direct = _mobility(omega, phi, rigid)
+    W, residues, direct = mobility(omega, phi, rigid)
     return direct + (residues * smooth_start_swing(W, T)).sum(axis=-1)
 
 
@@ -90,7 +90,7 @@ class StickLimit:
         top: rad/s, (...): what vibrates near the frequency ``top`` and above it fades out and only gives way, see
         `fade`; left out, all modes vibrate to the end.
         """
-        W, residues, direct = _mobility(omega, phi, rigid + self.c)
+        W, residues, direct = mobility(omega, phi, rigid + self.c)
         swing = self.swing(W)
         if top is not None:
             settled = np.divide(_beside(self.K - 1), W, out=np.zeros_like(W), where=W > 0)
@@ -115,15 +115,36 @@ class StickLimit:
         return J / ((1 + self.e) * self.head_on_mass)
 
     def end_mass(self, J: Any) -> Any:
-        """The end mass of a lumped cue that takes the transverse impulse J, kg: (K - 1)/J = 1/m + c."""
-        rest = (self.K - 1) / J - self.c
-        if np.any(rest <= 0):
-            raise ValueError("end_mass drive 'stick': the squirt is larger than that of any end mass; see cuefem.lump")
-        return 1 / rest
+        """The end mass of a lumped cue that takes the transverse impulse J, kg: (K - 1)/J = 1/m + c.
+
+        ValueError where no end mass does, with the reason of `stick_reason`.
+        """
+        found = self.end_masses(J)
+        for i in np.argwhere(np.isnan(found))[:1]:
+            slope = float(np.broadcast_to(self.slope(J), np.shape(found))[tuple(i)])
+            raise ValueError(f"end_mass drive 'stick': {stick_reason(slope)}; see cuefem.lump")
+        return found
+
+    def end_masses(self, J: Any) -> Any:
+        """As `end_mass`, of a stack: nan where no end mass takes J, and `stick_reason` of the squirt says why."""
+        rest = np.divide(self.K - 1, J, out=np.full(np.shape(J), np.nan), where=np.asarray(J) > 0) - self.c
+        found = np.divide(1.0, rest, out=np.full(np.shape(rest), np.nan), where=rest > 0)
+        return found if np.ndim(found) else found[()]
 
     def coupling(self, J: Any, end_mass: Any) -> Any:
         """The coupling per sin(phi) with which ``end_mass`` takes the transverse impulse J, 1/kg."""
         return (J * (1 / end_mass + self.c) - (self.K - 1)) / ((1 + self.e) * self.head_on_mass)
+
+
+def stick_reason(slope: float) -> str:
+    """Why no end mass has this squirt over phi, where none has it."""
+    if not np.isfinite(slope):
+        return "the squirt is not a number"
+    if slope < 0:
+        return f"the squirt is {slope:.4g} times phi, below that of any end mass: so light a cue runs ahead of the ball"
+    if slope == 0:
+        return "there is no squirt, which asks for an end mass of 0"
+    return f"the squirt is {slope:.4g} times phi, larger than that of any end mass"
 
 
 def fade(x: Array) -> Array:
@@ -141,7 +162,7 @@ def _beside(value: Any) -> Any:
     return np.asarray(value)[..., None] if np.ndim(value) else value
 
 
-def _mobility(omega: Array, phi: Array, still: Any) -> tuple[Array, Array, Any]:
+def mobility(omega: Array, phi: Array, still: Any) -> tuple[Array, Array, Any]:
     """The force that a unit velocity step of the tip takes: direct delta(t) + sum of residues sin(W t).
 
     In Laplace's terms 1/D(s) = 1/(sum phi^2 s^2/(s^2 + omega^2) + still) = direct + sum residues W/(s^2 + W^2), whose

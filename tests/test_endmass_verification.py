@@ -17,7 +17,7 @@ from cuefem import Ball, Cue, LumpedCue, Resolution, Scene, end_mass, modes
 from cuefem.endmass import end_mass_spread, flexible, force, stick, velocity
 from cuefem.modes import TipModes
 from cuefem.resolution import default_resolution, tip_modes_of
-from cuefem.transverse import _mobility, _response
+from cuefem.transverse import _response, mobility
 
 
 def few_modes(count: int = 6) -> TipModes:
@@ -127,7 +127,7 @@ def test_semi_infinite_euler_beam(
 def test_semi_infinite_euler_beam_after_a_velocity_step(long_rod: tuple[TipModes, Scene, float]) -> None:
     """The step law sqrt(2/pi) from the machinery of "stick", whose drive begins with a step: no ball, c = 0."""
     tip, found, unit = long_rod
-    poles, residues, direct = _mobility(*flexible(tip))
+    poles, residues, direct = mobility(*flexible(tip))
     T = found.contact_time
     impulse = direct + residues @ _response(poles, T, (0.0, T))
     np.testing.assert_allclose(impulse / unit, math.sqrt(2 / math.pi), rtol=0.01)

@@ -97,6 +97,32 @@ def test_killed_ten_times_over(
     assert rows_of(output) == whole
 
 
+def test_a_second_sweep_is_refused_and_a_killed_one_lets_go(
+    study: Path, whole: list[tuple[Any, ...]], tmp_path: Path
+) -> None:
+    """Two processes on one file: the second ends at once, in one line; once the first is killed it goes on."""
+    output = tmp_path / "out.sqlite"
+    first = started(study, output, "--workers", "1")
+    began = time.monotonic()
+    while written_so_far(output) == 0 and time.monotonic() - began < 60:
+        time.sleep(0.02)
+    second = subprocess.run(command(study, output), env=ENVIRONMENT, capture_output=True, check=False)
+    assert first.poll() is None
+    assert second.returncode == 2
+    assert second.stdout == b""
+    (line,) = second.stderr.decode().splitlines()
+    assert (
+        line
+        == f"cuefem: {output}: another sweep (process {first.pid}) is at work on it: let it end, or name another file"
+    )
+    children = psutil.Process(first.pid).children(recursive=True)
+    first.send_signal(signal.SIGKILL)
+    first.wait()
+    psutil.wait_procs(children, timeout=20)
+    subprocess.run(command(study, output), env=ENVIRONMENT, capture_output=True, check=True)
+    assert rows_of(output) == whole
+
+
 def swept(study: Path, output: Path, **more: Any) -> list[tuple[Any, ...]]:
     with Database(output, load_study(study)) as database:
         sweep(database.study, database, **more)

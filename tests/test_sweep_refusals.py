@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sqlite3
 import sys
 from collections.abc import Callable
@@ -11,7 +12,7 @@ import pytest
 from command_line import call
 from sweeps import SCENE, STRUCK, STUDY, rows_of, written
 
-from cuefem.design import Row, sweep
+from cuefem.design import sweep
 from cuefem.io import database as tables
 from cuefem.io.study import load_study
 
@@ -127,7 +128,7 @@ def altered(path: Path, *statements: str) -> None:
 
 
 DATABASES: dict[str, tuple[Callable[[Path], object], str]] = {
-    "a newer schema": (lambda p: altered(p, "PRAGMA user_version = 99"), "must be of schema 1 or older; got 99"),
+    "a newer schema": (lambda p: altered(p, "PRAGMA user_version = 99"), "must be of schema 2 or older; got 99"),
     "another program's": (lambda p: altered(p, "PRAGMA application_id = 7"), "must be a database of `cuefem sweep`"),
     "no database": (lambda p: p.write_bytes(b"design,end_mass\n" * 100), "file is not a database"),
     "a torn one": (lambda p: p.write_bytes(p.read_bytes()[:5000]), "cannot be read or written as a database"),
@@ -178,7 +179,7 @@ def test_a_full_disk_loses_nothing_that_was_written(tmp_path: Path, monkeypatch:
 
     def cramped(path: Path) -> sqlite3.Connection:
         file = open_file(path)
-        file.execute("PRAGMA max_page_count = 7")
+        file.execute("PRAGMA max_page_count = 9")
         return file
 
     with monkeypatch.context() as full:
@@ -192,16 +193,42 @@ def test_a_full_disk_loses_nothing_that_was_written(tmp_path: Path, monkeypatch:
     assert rows_of(tmp_path / "study.sqlite") == rows_of(tmp_path / "whole.sqlite")
 
 
-def test_two_sweeps_into_one_database_do_not_mix(tmp_path: Path) -> None:
-    """The second to write a block is told so; the first one's rows stay."""
+def test_a_second_sweep_on_a_file_is_refused_until_the_first_ends(tmp_path: Path) -> None:
+    """At once, before it works or touches the file; the first goes on."""
+    path = written(tmp_path)
+    study = load_study(path)
+    with tables.Database(tmp_path / "study.sqlite", study) as first:
+        untouched(tmp_path, f"study.sqlite: another sweep (process {os.getpid()}) is at work on it", "sweep", path)
+        sweep(study, first)
+        untouched(tmp_path, "is at work on it: let it end, or name another file", "sweep", path)
+    assert call("sweep", path)[0] == 0
+    assert len(rows_of(tmp_path / "study.sqlite")) == 64
+    assert not list(tmp_path.glob("*.lock"))
+
+
+def test_a_second_sweep_by_another_name_of_the_file(tmp_path: Path) -> None:
     study = load_study(written(tmp_path))
-    path = tmp_path / "out.sqlite"
-    with tables.Database(path, study) as first, tables.Database(path, study) as second:
-        blocks: list[list[Row]] = []
-        sweep(study, first, progress=blocks.append)
-        with pytest.raises(ValueError, match=r"out.sqlite: .* UNIQUE constraint failed"):
-            second.write(blocks[0])
-    assert len(rows_of(path)) == 64
+    (tmp_path / "other.sqlite").symlink_to(tmp_path / "study.sqlite")
+    with (
+        tables.Database(tmp_path / "study.sqlite", study),
+        pytest.raises(ValueError, match=r"other.sqlite: another sweep \(process \d+\) is at work on it"),
+    ):
+        tables.Database(tmp_path / "other.sqlite", study)
+
+
+def test_a_lock_that_nobody_holds_any_more(tmp_path: Path) -> None:
+    """What a killed sweep leaves behind keeps nobody out."""
+    study = written(tmp_path)
+    (tmp_path / "study.sqlite.lock").write_text("4242\n", encoding="utf-8")
+    assert call("sweep", study)[0] == 0
+    assert not (tmp_path / "study.sqlite.lock").exists()
+
+
+def test_a_refused_database_is_not_left_locked(tmp_path: Path) -> None:
+    (tmp_path / "study.sqlite").write_bytes(b"design,end_mass\n" * 100)
+    untouched(tmp_path, "file is not a database", "sweep", written(tmp_path))
+    (tmp_path / "study.sqlite").unlink()
+    assert call("sweep", tmp_path / "study.toml")[0] == 0
 
 
 @pytest.mark.parametrize("suffix", ["xlsx", "sqlite"])

@@ -42,7 +42,10 @@ def sweep(study: Path, output: Path | None, export: Path | None, as_json: bool, 
     with ExitStack() as open_things:
         pool = open_things.enter_context(opened(**where))
         database = open_things.enter_context(Database(output or study.with_suffix(".sqlite"), wanted))
-        before, _ = database.count()
+        before = database.held()
+        for first, what in database.damaged.items():
+            again = f"{first} to {min(first + wanted.block, wanted.size) - 1}"
+            click.echo(f"damaged: {database.path}: {what}; designs {again} are computed again", err=True)
         with bar(wanted.size, before) as progress:
             run(wanted, database, pool=pool, progress=progress)
         if goal is not None:

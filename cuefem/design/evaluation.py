@@ -21,8 +21,9 @@ Failed = (ValueError, RuntimeError, ArithmeticError, np.linalg.LinAlgError)
 
 @dataclass(frozen=True)
 class Evaluation:
-    """Responses of designs: values (designs, responses), SI, nan where a design failed; reasons, None where it did
-    not."""
+    """Responses of designs: values (designs, responses), SI, nan where a design has none; reasons, None where it has
+    all.
+    """
 
     values: Array
     reasons: tuple[str | None, ...]
@@ -35,7 +36,8 @@ def evaluate(
 
     Bare cues with equally many segments are worked as arrays, in blocks; scenes with effects, and lumped cues, one by
     one. at: one resolution for all; left out, the finest that any of them would have by itself. A scene that has no
-    answer gets a reason and does not disturb the others. ValueError for a response that is none.
+    answer gets a reason and does not disturb the others; one without an end mass keeps its other responses.
+    ValueError for a response that is none.
     """
     asked = tuple(Response.of(one) if isinstance(one, str) else one for one in responses)
     at = at or common_resolution(scenes, asked)
@@ -44,7 +46,8 @@ def evaluate(
     while waiting:
         rows = waiting.pop()
         try:
-            values[rows] = _values([scenes[i] for i in rows], asked, at)
+            values[rows], why = _values([scenes[i] for i in rows], asked, at)
+            reasons |= {i: reason for i, reason in zip(rows, why, strict=True) if reason}
         except Failed as error:
             if len(rows) == 1:
                 reasons[rows[0]] = " ".join(str(error).split())
@@ -62,8 +65,11 @@ def _blocks(scenes: Sequence[Scene]) -> list[list[int]]:
     return [rows[start : start + BLOCK] for rows in groups.values() for start in range(0, len(rows), BLOCK)]
 
 
-def _values(scenes: Sequence[Scene], responses: Sequence[Response], at: Resolution) -> Array:
-    """Responses (designs, responses) of scenes that can be worked together; ValueError where one has none."""
+def _values(scenes: Sequence[Scene], responses: Sequence[Response], at: Resolution) -> tuple[Array, list[str | None]]:
+    """(responses (designs, responses) of scenes that can be worked together; why one is missing, a design each).
+
+    ValueError where a response is no number and does not say why.
+    """
     bare = isinstance(scenes[0].cue, Cue) and not scenes[0].effects
     lacking = [one.name for one in responses if one.segments and not isinstance(scenes[0].cue, Cue)]
     if lacking:
@@ -71,9 +77,13 @@ def _values(scenes: Sequence[Scene], responses: Sequence[Response], at: Resoluti
     count = max([0, *(one.modes for one in responses)])
     solver: Solver = (Together if bare else OneByOne)(scenes, at, count)
     found = np.column_stack([one.values(solver) for one in responses])
-    for wrong in np.argwhere(np.isnan(found))[:1]:
-        raise ValueError(f"{responses[wrong[1]].name} is not a number")
-    return found
+    why: list[str | None] = [None] * len(scenes)
+    for i, j in np.argwhere(np.isnan(found)):
+        reason = responses[j].reason(solver, i)
+        if reason is None:
+            raise ValueError(f"{responses[j].name} is not a number")
+        why[i] = why[i] or f"{responses[j].name}: {reason}"
+    return found, why
 
 
 def common_resolution(scenes: Sequence[Scene], responses: Sequence[Response]) -> Resolution:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -23,6 +23,7 @@ class Kind(NamedTuple):
 
     strikes: whether it takes the tip's modes up to the contact's cutoff. segments: whether it needs a cue of segments.
     limit: whether without an offset it is that of small offsets, not of the scene's own.
+    reasons: why it is nan of designs that have none, None where it is a number.
     """
 
     unit: str
@@ -32,10 +33,11 @@ class Kind(NamedTuple):
     strikes: bool = False
     segments: bool = False
     limit: bool = False
+    reasons: Callable[[Solver], Sequence[str | None]] | None = None
 
 
 def _small_offset_pivot(solver: Solver, _: Any) -> Array:
-    slopes = solver.stick[1]
+    slopes = solver.stick.squirt
     return np.array([_pivot(solver, i, SMALL, slope * np.arcsin(SMALL)) for i, slope in enumerate(slopes)])
 
 
@@ -60,7 +62,11 @@ def _pivot_length(solver: Solver, offset: float | None) -> Array:
 
 
 def _end_mass(solver: Solver, offset: float | None) -> Array:
-    return solver.stick[0] if offset is None else solver.stick_at(offset)
+    return solver.stick.end_mass if offset is None else solver.stick_at(offset)
+
+
+def _stick_reasons(solver: Solver) -> Sequence[str | None]:
+    return solver.stick.reasons
 
 
 _SQUIRT = _struck(lambda s, i, found: found.squirt)
@@ -71,8 +77,10 @@ _END_MASS = "stick end mass, of small offsets; of a tip that sticks at an offset
 _STATIC = "static: force across the tip over its deflection, the butt end clamped"
 _BALANCE = "centre of the segments' mass, from the tip"
 KINDS = {
-    "end_mass": Kind("kg", _END_MASS, _end_mass, "offset", strikes=True, limit=True),
-    "squirt_slope": Kind("", "squirt over phi in the limit of small offsets", lambda s, _: s.stick[1], strikes=True),
+    "end_mass": Kind("kg", _END_MASS, _end_mass, "offset", strikes=True, limit=True, reasons=_stick_reasons),
+    "squirt_slope": Kind(
+        "", "squirt over phi in the limit of small offsets", lambda s, _: s.stick.squirt, strikes=True
+    ),
     "pivot_length": Kind("m", _PIVOT, _pivot_length, "offset", strikes=True, limit=True),
     "mass": Kind("kg", "mass of the cue", lambda s, _: s.mass),
     "shaft_mass": Kind("kg", "mass of the segments", lambda s, _: s.shaft_mass, segments=True),
@@ -141,6 +149,11 @@ class Response:
     def values(self, solver: Solver) -> Array:
         """The response of every design, (designs,)."""
         return KINDS[self.kind].values(solver, self.argument)
+
+    def reason(self, solver: Solver, i: int) -> str | None:
+        """Why a design's response is nan, where that is known."""
+        reasons = KINDS[self.kind].reasons
+        return None if reasons is None else reasons(solver)[i]
 
 
 def _usage(kind: str) -> str:

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from cuefem.batch import BatchModes, CueBatch, batch_frequencies, batch_modes, stick_of
+from cuefem.batch import BatchModes, CueBatch, Stick, batch_frequencies, batch_modes, stick_of
 from cuefem.beam import assemble
 from cuefem.cue import Array, Cue, LumpedCue
 from cuefem.effects import Support
@@ -47,8 +47,8 @@ class Solver(Protocol):
         """The lowest bending frequencies, Hz, (designs, n)."""
 
     @property
-    def stick(self) -> tuple[Array, Array]:
-        """(Stick end mass, kg; small-offset squirt over phi.)"""
+    def stick(self) -> Stick:
+        """Stick end mass, kg, nan where a design has none, and small-offset squirt over phi."""
 
     def stick_at(self, offset: float) -> Array:
         """End mass of a tip that sticks at an offset b/R, kg, (designs,)."""
@@ -135,8 +135,8 @@ class Together(_Strikes):
         return BatchModes(found.frequencies[:, :n], found.tip[:, :n], found.rigid)
 
     @cached_property
-    def stick(self) -> tuple[Array, Array]:
-        """(Stick end mass, kg; small-offset squirt over phi.)"""
+    def stick(self) -> Stick:
+        """Stick end mass, kg, nan where a design has none, and small-offset squirt over phi."""
         return stick_of(self.batch, self._kept, self.scenes)
 
     def tip(self, i: int) -> TipModes:
@@ -211,19 +211,21 @@ class OneByOne(_Strikes):
         return replace(found, frequencies=found.frequencies[:count], vectors=found.vectors[:, :count])
 
     @cached_property
-    def stick(self) -> tuple[Array, Array]:
-        """(Stick end mass, kg; small-offset squirt over phi.)"""
+    def stick(self) -> Stick:
+        """Stick end mass, kg, nan where a design has none, and small-offset squirt over phi."""
         both = np.array([self._stick(i) for i in range(len(self.scenes))])
-        return both[:, 0], both[:, 1]
+        return Stick(both[:, 0], both[:, 1])
 
     def _stick(self, i: int) -> tuple[Any, float]:
-        scene, tip = self.scenes[i], self.tip(i)
-        if scene.effects or isinstance(scene.cue, LumpedCue):
-            own = scene.cue.end_mass if isinstance(scene.cue, LumpedCue) else stick(tip, scene)
-            return own, small_offset_slope(tip, scene)
-        limit = StickLimit.of(scene)
+        scene, tip, limit = self.scenes[i], self.tip(i), StickLimit.of(self.scenes[i])
+        if isinstance(scene.cue, LumpedCue):
+            return scene.cue.end_mass, small_offset_slope(tip, scene)
+        if scene.effects:
+            slope = small_offset_slope(tip, scene)
+            none = np.isnan(limit.end_masses(limit.impulse(slope)))
+            return np.nan if none else stick(tip, scene), slope
         J = limit.transverse_impulse(*flexible(tip))
-        return limit.end_mass(J), float(limit.slope(J))
+        return limit.end_masses(J), float(limit.slope(J))
 
 
 def static_tip_stiffness(scene: Scene, at: Resolution) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Future, wait
 from typing import Any, NamedTuple, Protocol
@@ -18,7 +19,7 @@ Block = tuple[int, list[tuple[Value, ...]]]
 
 
 class Row(NamedTuple):
-    """A design: its number, what varied, its responses in SI (None where it failed), and why it failed, or None."""
+    """A design: its number, what varied, its responses in SI (None where it has none), and why it has none, or None."""
 
     design: int
     values: tuple[Value, ...]
@@ -47,9 +48,9 @@ def evaluated(study: Study, first: int, designs: list[tuple[Value, ...]]) -> lis
     found = evaluate(list(scenes.values()), study.responses, at=study.resolution)
     numbers = dict(zip(scenes, found.values.tolist(), strict=True))
     reasons |= dict(zip(scenes, found.reasons, strict=True))
-    nothing = (None,) * len(study.responses)
+    nothing = [math.nan] * len(study.responses)
     return [
-        Row(first + i, values, nothing if reasons[i] else tuple(numbers[i]), reasons[i])
+        Row(first + i, values, tuple(None if x != x else x for x in numbers.get(i, nothing)), reasons[i])
         for i, values in enumerate(designs)
     ]
 

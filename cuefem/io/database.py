@@ -1,23 +1,28 @@
 """Tables of design studies as SQLite databases: one file, one writer, every block of designs written whole or not.
 
 A rollback journal and one transaction a block: what a kill or a full disk interrupts is as if it had not begun. Numbers
-are stored as they are, eight bytes each; the study that they belong to stands beside them.
+are stored as they are, eight bytes each; the study that they belong to stands beside them, and a checksum of each row:
+a row that is not as it was written is not exported, and its block is computed again. A lock beside the file keeps a
+second sweep out (`cuefem.io.lock`).
 """
 
 from __future__ import annotations
 
+import hashlib
 import json
 import sqlite3
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Self
 
 from cuefem.design import Row, Study
 from cuefem.io.errors import InputError, shown
+from cuefem.io.lock import Lock
 
-# SQLite's marks in the head of the file: whose database it is, and the version of its tables.
-APPLICATION, SCHEMA = 0x43754665, 1
+# SQLite's marks in the head of the file: whose database it is, and the version of its tables. The first had no
+# checksums: what it holds is taken as it stands, and gets them when more is written.
+APPLICATION, SCHEMA = 0x43754665, 2
 # A reader may hold the file while a block waits to be written, s.
 PATIENCE = 60.0
 
@@ -25,31 +30,44 @@ PATIENCE = 60.0
 class Database:
     """The table of one study; a `cuefem.design.Store`. A context manager: closes the file.
 
-    Made where there is none. InputError, and the file as it was, where it holds another study or a newer schema.
+    Made where there is none. InputError, and the file as it was, where it holds another study or a newer schema, where
+    it is damaged beyond single rows, and while another `Database` has it open.
+
+    damaged: {number of a block's first design: what is wrong in the block}; such blocks count as not there.
     """
 
     def __init__(self, path: str | Path, study: Study) -> None:
         self.path, self.study = Path(path), study
-        with self._refusing():
-            self._file = connect(self.path)
+        self.damaged: dict[int, str] = {}
+        self._lock = Lock(self.path)
         try:
             with self._refusing():
-                self._claim()
-        except InputError:
-            self._file.close()
+                self._file = connect(self.path)
+                try:
+                    self._claim()
+                except BaseException:
+                    self._file.close()
+                    raise
+        except BaseException:
+            self._lock.release()
             raise
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the file, and let others have it."""
         self._file.close()
+        self._lock.release()
 
     @contextmanager
     def _refusing(self) -> Iterator[None]:
         try:
             yield
-        except sqlite3.Error as error:
+        except (sqlite3.Error, UnicodeDecodeError, OverflowError) as error:
             raise InputError(self.path, "", f"cannot be read or written as a database: {error}") from None
 
     def _claim(self) -> None:
@@ -61,10 +79,59 @@ class Database:
             raise InputError(self.path, "", "must be a database of `cuefem sweep`; got another one")
         if schema > SCHEMA:
             raise InputError(self.path, "", f"must be of schema {SCHEMA} or older; got {schema}, of a newer cuefem")
+        wrong = self._one("PRAGMA integrity_check(1)")
+        if wrong != "ok":
+            raise self._damage(str(wrong))
         record = self._one("SELECT value FROM study WHERE key = 'record'")
         if record is None:
             raise InputError(self.path, "", "must hold this study; got a database without one")
-        self._compare(json.loads(record))
+        try:
+            self._compare(json.loads(record))
+        except (ValueError, TypeError, AttributeError) as error:
+            if isinstance(error, InputError):
+                raise
+            raise self._damage("the study in it cannot be read") from None
+        self._checked = self._one("SELECT 1 FROM sqlite_master WHERE name = 'checksums'") is not None
+        if self._checked != (schema == SCHEMA):
+            raise self._damage(f"it says that it is of schema {schema}")
+        self._verify()
+
+    def _damage(self, what: str) -> InputError:
+        return InputError(
+            self.path, "", f"is damaged: {what}; take a copy of it from before, or delete it to begin anew"
+        )
+
+    def _verify(self) -> None:
+        """Find the blocks that are not as they were written: rows lost or with other values than their checksum's."""
+        size, last, count = self.study.block, -1, 0
+        for row, good in self._with_checksums():
+            design = row[0]
+            if not 0 <= design < self.study.size:
+                raise self._damage(f"it holds a design {design}, and the study has {self.study.size}")
+            first = design - design % size
+            if first != last:
+                self._check_whole(last, count)
+                last, count = first, 0
+            count += 1
+            if not good:
+                self.damaged.setdefault(first, f"design {design} is not as it was written")
+        self._check_whole(last, count)
+
+    def _check_whole(self, first: int, count: int) -> None:
+        """Note a block of which rows are lost."""
+        wanted = min(self.study.block, self.study.size - first)
+        if first >= 0 and count < wanted:
+            self.damaged.setdefault(first, f"{wanted - count} of the designs {first} to {first + wanted - 1} are lost")
+
+    def _with_checksums(self) -> Iterator[tuple[tuple[Any, ...], bool]]:
+        """All rows in the order of the designs, and whether each is as it was written."""
+        if not self._checked:
+            for row in self._file.execute("SELECT * FROM designs ORDER BY design"):
+                yield row, True
+            return
+        query = "SELECT checksums.checksum, designs.* FROM designs LEFT JOIN checksums USING (design) ORDER BY design"
+        for kept, *row in self._file.execute(query):
+            yield tuple(row), kept == checksum(row)
 
     def _compare(self, other: dict[str, Any]) -> None:
         own = json.loads(json.dumps(self.study.record))
@@ -84,6 +151,8 @@ class Database:
             self._file.execute("CREATE TABLE study (key TEXT PRIMARY KEY, value TEXT NOT NULL)")
             self._file.execute("CREATE TABLE columns (name TEXT PRIMARY KEY, unit TEXT NOT NULL, role TEXT NOT NULL)")
             self._file.execute(f"CREATE TABLE designs (design INTEGER PRIMARY KEY, {', '.join(columns)}, failure TEXT)")
+            self._file.execute(CHECKSUMS)
+            self._checked = True
             found = [("fingerprint", study.fingerprint), ("record", json.dumps(study.record))]
             self._file.executemany("INSERT INTO study VALUES (?, ?)", found)
             roles = ["varied"] * len(study.vary) + ["response"] * len(study.responses)
@@ -106,16 +175,43 @@ class Database:
         return None if row is None else row[0]
 
     def holds(self, first: int) -> bool:
-        """Whether the block that begins with design number ``first`` is there."""
+        """Whether the block that begins with design number ``first`` is there, and as it was written."""
         with self._refusing():
-            return self._one("SELECT 1 FROM designs WHERE design = ?", (first,)) is not None
+            return (
+                first not in self.damaged and self._one("SELECT 1 FROM designs WHERE design = ?", (first,)) is not None
+            )
 
     def write(self, rows: list[Row]) -> None:
-        """Add a block, whole, and on the disk when this returns."""
+        """Add a block, whole, and on the disk when this returns; in place of a damaged one."""
         marks = ", ".join("?" * (len(self.study.columns) + 2))
         flat = [(row.design, *row.values, *row.responses, row.failure) for row in rows]
+        first, last = rows[0].design, rows[-1].design
         with self._refusing(), self._transaction():
+            if not self._checked:
+                self._add_checksums()
+            if first in self.damaged:
+                for name in ("designs", "checksums"):
+                    self._file.execute(f"DELETE FROM {name} WHERE design BETWEEN ? AND ?", (first, last))
             self._file.executemany(f"INSERT INTO designs VALUES ({marks})", flat)
+            sums = [(row[0], checksum(row)) for row in flat]
+            self._file.executemany("INSERT OR REPLACE INTO checksums VALUES (?, ?)", sums)
+        self._checked = True
+        self.damaged.pop(first, None)
+
+    def _add_checksums(self) -> None:
+        """Those of the rows of the first schema, as they stand."""
+        self._file.execute(CHECKSUMS)
+        self._file.execute(f"PRAGMA user_version = {SCHEMA}")
+        rows = self._file.execute("SELECT * FROM designs").fetchall()
+        self._file.executemany("INSERT INTO checksums VALUES (?, ?)", [(row[0], checksum(row)) for row in rows])
+
+    def held(self) -> int:
+        """How many designs are there, and as they were written."""
+        size = self.study.block
+        with self._refusing():
+            count = self._one("SELECT count(*) FROM designs")
+            between = "SELECT count(*) FROM designs WHERE design BETWEEN ? AND ?"
+            return int(count - sum(self._one(between, (first, first + size - 1)) for first in self.damaged))
 
     def count(self) -> tuple[int, int]:
         """(designs there, those that failed)."""
@@ -131,14 +227,32 @@ class Database:
         return None if found is None else (found[0], found[1])
 
     def rows(self) -> Iterator[tuple[Any, ...]]:
-        """All rows in the order of the designs, streamed: number, what varied, responses, failure."""
+        """All rows in the order of the designs, streamed: number, what varied, responses, failure.
+
+        InputError at a row that is not as it was written.
+        """
         with self._refusing():
-            yield from self._file.execute("SELECT * FROM designs ORDER BY design")
+            for row, good in self._with_checksums():
+                if not good:
+                    raise self._damage(f"design {row[0]} is not as it was written")
+                yield row
 
 
 def connect(path: Path) -> sqlite3.Connection:
     """A connection in which transactions are begun by hand."""
     return sqlite3.connect(path, timeout=PATIENCE, isolation_level=None)
+
+
+CHECKSUMS = "CREATE TABLE checksums (design INTEGER PRIMARY KEY, checksum BLOB NOT NULL)"
+
+
+def checksum(row: Sequence[Any]) -> bytes:
+    """Of a row's number, values, responses and failure, as SQLite gives them back: numbers by all their bits."""
+    design, *values, failure = row
+    # a column of numbers gives back 1 as 1.0, -0.0 as 0.0, and nan as nothing
+    kept = [v if v is None or isinstance(v, (str, bytes)) else float(v) + 0.0 for v in values]
+    told = repr((design, [None if v != v else v for v in kept], failure))
+    return hashlib.blake2b(told.encode("utf-8", "backslashreplace"), digest_size=8).digest()
 
 
 def _quoted(name: str) -> str:
