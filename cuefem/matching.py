@@ -23,7 +23,7 @@ MODES = 24
 FACTOR = 3.0  # E of the wood lies within this factor of the file's
 RATIOS = (1 / 45, 1 / 2.3)  # of G/E: woods 1/16 to 1/9, tubes of carbon fibre to 1/2.5
 TOLERANCE = 4e-3  # relative, of a tone against its mode: beam, drawing and grain
-WRONG, DOUBTFUL = 0.05, 0.5  # chances that a tone, or a whole multiple of a louder one, is no mode
+WRONG, DOUBTFUL = 0.05, 0.5  # chances that a tone, or one that is faint or a multiple of a louder one, is no mode
 UNHEARD = 0.3  # chance that the recording misses a mode
 SPREADS = (0.5, 0.5)  # of ln E and ln G/E about the file's, standard deviations before anything is heard
 REFINED = 20  # hypotheses
@@ -111,7 +111,7 @@ class ModeTable:
     def hypotheses(self, tones: Sequence[Tone]) -> list[Hypothesis]:
         """Hypotheses that explain a tone or more, the best first, no two of the same E."""
         heard = np.log([tone.frequency for tone in tones])
-        wrong = np.array([DOUBTFUL if tone.kind == "harmonic" else WRONG for tone in tones])
+        wrong = np.array([DOUBTFUL if tone.kind in ("harmonic", "faint") else WRONG for tone in tones])
         ratios = np.linspace(*self.shaft.ratios, 41)
         proposed = np.concatenate([self._proposed(heard, r) for r in ratios])
         scores = self._scores(proposed, heard, wrong, 3 * TOLERANCE)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cuefem.cue import Array
+from cuefem.hum import Hum, without_hum
 from cuefem.quantity import Quantity
 
 HOP = 0.02  # s, of the envelope: two periods of the lowest tone that a phone hears
@@ -25,13 +26,15 @@ class Ringing:
     """Free decays after taps, all of one length.
 
     traces: (traces, samples), one for each tap and channel. rate: samples a second, Hz. taps: how many. clipped: s
-    that the longest run of clipped samples lasted after its tap and that are left out; 0 without any.
+    that the longest run of clipped samples lasted after its tap and that are left out; 0 without any. hum: the mains
+    hum that was taken out, None without any.
     """
 
     traces: Array
     rate: float
     taps: int
     clipped: float
+    hum: Hum | None = None
 
 
 def ringing(signal: ArrayLike, rate: float) -> Ringing:
@@ -49,9 +52,10 @@ def ringing(signal: ArrayLike, rate: float) -> Ringing:
     if (peak := float(np.abs(signal).max(initial=0.0))) > LOUDEST:
         raise ValueError(f"a recording must hold samples within [-{LOUDEST:g}, {LOUDEST:g}]; got {peak:.3g}")
     signal = _channels(signal - signal.mean(axis=0))
+    clipped = _clipped(signal)
+    signal, hum = without_hum(signal, rate)
     onsets = _onsets(signal, rate)
     ends = [*onsets[1:], len(signal)]
-    clipped = _clipped(signal)
     begun = [_after(clipped, a, b) for a, b in zip(onsets, ends, strict=True)]
     lengths = np.subtract(ends, begun)
     if lengths.max() < SHORTEST * rate:
@@ -62,7 +66,7 @@ def ringing(signal: ArrayLike, rate: float) -> Ringing:
     size = int(min(lengths[kept].min(), LONGEST * rate))
     traces = np.concatenate([signal[begun[i] : begun[i] + size].T for i in kept])
     lost = max((begun[i] - onsets[i]) / rate for i in kept)
-    return Ringing(traces, rate, len(kept), lost)
+    return Ringing(traces, rate, len(kept), lost, hum)
 
 
 def _channels(signal: Array) -> Array:

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from cuefem.chance import by_chance
 from cuefem.cue import Array, Cue, Material
 from cuefem.effects import Joint, PointMass
 from cuefem.endmass import end_mass
@@ -19,6 +20,8 @@ from cuefem.matching import FACTOR, RATIOS, ModeTable, Shaft, assigned, main_mat
 from cuefem.quantity import Quantity, check_kind
 from cuefem.scene import Scene
 from cuefem.strike import strike
+from cuefem.tap_doubts import FAR, missing, refusals, shear_coefficients
+from cuefem.tap_fit import Matched, TapFit
 from cuefem.tones import Tone
 
 MODEL = 2e-3  # relative, of a mode's frequency: diameters to 0.1 %, uneven grain, the beam
@@ -31,51 +34,7 @@ STEP = 0.02  # of central differences in the logarithms
 OUTLIER = 4.5  # standard deviations
 POOR = 5e-3  # misfit that a good drawing of an even shaft does not have
 OURS = 0.8  # of the clear tones' power: less is explained where the drawing is another shaft's
-FAR = 0.97  # of ln `FACTOR`: an E as far from the file's is at the end of the search
 FOLDED = 1e-3  # relative, of a tone that may be a whole multiple of another
-FREE = [0, 2]  # of (ln E, ln G/E, ln rho), where G/E is kept
-
-
-@dataclass(frozen=True)
-class Matched:
-    """A tone and its mode (1 the lowest), None for a wrong tone; frequency: the fitted shaft's of that mode, Hz."""
-
-    tone: Tone
-    mode: int | None
-    frequency: float | None
-
-
-@dataclass(frozen=True)
-class TapFit:
-    """What a tap tells of a shaft's wood.
-
-    cue: with the fitted wood. frequencies: of its modes, Hz. wood, before: its material, fitted and as the file had
-    it. covariance: of (ln E, ln G/E, ln rho), (3, 3). matched: every tone. told: whether the tones tell G; otherwise
-    the file's G/E is kept. weighed: whether rho comes from a mass. rivals: other wood that explains the tones nearly
-    as well: (E in Pa, odds against it). loss: median loss factor of the tones matched, an upper bound of the wood's.
-    misfit: root mean square of the tones' relative distances from their modes, sharp tones counting more. notes: what
-    a person should know, one line each.
-    """
-
-    cue: Cue
-    frequencies: Array
-    wood: Material
-    before: Material
-    covariance: Array
-    matched: tuple[Matched, ...]
-    told: bool
-    weighed: bool
-    rivals: tuple[tuple[float, float], ...]
-    loss: float
-    misfit: float
-    notes: tuple[str, ...]
-
-    @property
-    def errors(self) -> tuple[float, float, float]:
-        """Standard deviations of E, Pa, G, Pa, and rho, kg/m3."""
-        E, r, rho = np.sqrt(np.diag(self.covariance))
-        both = np.sqrt(max(E**2 + r**2 + 2 * self.covariance[0, 1], 0.0))
-        return self.wood.E * E, self.wood.G * both, self.wood.rho * rho
 
 
 @dataclass(frozen=True)
@@ -136,7 +95,7 @@ class TapTest:
 
     def fit(self, tones: Sequence[Tone]) -> TapFit:
         """The wood that explains the tones best. ValueError where they are no bending tones of any such shaft."""
-        used = [tone for tone in tones if tone.kind in ("tone", "harmonic")]
+        used = [tone for tone in tones if tone.kind in ("tone", "harmonic", "faint")]
         found = self.table.hypotheses(used) if used else []
         clear = sum(tone.kind == "tone" for tone in used)
         explained = sum(mode >= 0 for mode in found[0].modes) if found else 0
@@ -166,12 +125,13 @@ class TapTest:
             for tone in tones
         )
         rivals = [(h, found[0].score - h.score) for h in found[1:]]
+        chance = by_chance(self.table, tones)
         return self._told(
-            np.exp(f), matched, theta, covariance, told, [(h, odds) for h, odds in rivals if odds < RIVAL]
+            np.exp(f), matched, theta, covariance, told, [(h, odds) for h, odds in rivals if odds < RIVAL], chance
         )
 
     def _told(
-        self, frequencies: Array, matched: Any, theta: Array, covariance: Array, told: bool, rivals: Any
+        self, frequencies: Array, matched: Any, theta: Array, covariance: Array, told: bool, rivals: Any, chance: float
     ) -> TapFit:
         E, ratio, rho = map(float, np.exp(theta))
         wood = replace(self.shaft.wood, E=E, G=ratio * E, rho=rho)
@@ -191,26 +151,31 @@ class TapTest:
             loss=float(np.median([m.tone.loss for m in ours])),
             misfit=float(np.sqrt(np.average(gaps**2, weights=1 / trust))),
             notes=(),
+            chance=chance,
         )
         edge = bool(told and not self.shaft.ratios[0] < theta[1] < self.shaft.ratios[1])
-        return replace(found, notes=(*self.notes, *remarks(found, edge=edge)))
+        doubts, kappa = tuple(refusals(found, edge=edge)), shear_coefficients(found.cue, wood)
+        notes = (*self.notes, *remarks(found, edge=edge))
+        return replace(found, notes=notes, shear_coefficients=kappa, refusals=doubts)
 
     def _solved(self, theta: Array, heard: Array, own: Array, sd: Array) -> tuple[Array, Array, bool]:
         """(ln E, ln G/E, ln rho), their covariance, whether G is told; by Gauss and Newton."""
         for _ in range(3):
             rows, right = self._rows(theta, heard, own, sd)
             told = _tells_ratio(rows)
-            away = self.shaft.start[1] - theta[1]
-            if told:
-                step = np.linalg.lstsq(rows, right)[0]
-            else:
-                step = np.insert(np.linalg.lstsq(rows[:, FREE], right - rows[:, 1] * away)[0], 1, away)
+            free = self._free(told=told)
+            step = np.array([0.0, 0.0 if told else self.shaft.start[1] - theta[1], 0.0])
+            step[free] = np.linalg.lstsq(rows[:, free], right - rows @ step)[0]
             theta = theta + step
             theta[1] = np.clip(theta[1], *self.shaft.ratios)
         rows, right = self._rows(theta, heard, own, sd)
         freedom = max(len(rows) - 2 - told, 1)
         rows[:-1] /= np.sqrt(max(1.0, float(right[:-1] @ right[:-1]) / freedom))  # they fit no better than they do
-        return theta, _covariance(rows, told=told), told
+        return theta, _covariance(rows, self._free(told=told)), told
+
+    def _free(self, *, told: bool) -> list[int]:
+        """Which of (ln E, ln G/E, ln rho) are sought; the others are the file's."""
+        return [0, *([1] if told else []), *([2] if self.weighed else [])]
 
     def _rows(self, theta: Array, heard: Array, own: Array, sd: Array) -> tuple[Array, Array]:
         """The linear least-squares problem at theta: a row for each tone matched, the last for the density."""
@@ -230,15 +195,17 @@ def _tells_ratio(rows: Array) -> bool:
     return bool(remains * TOLD > 1)
 
 
-def _covariance(rows: Array, *, told: bool) -> Array:
-    """Of (ln E, ln G/E, ln rho); of a ratio that is kept, with what its own error does to the others."""
-    if told:
-        return np.asarray(np.linalg.inv(rows.T @ rows))
-    free = rows[:, FREE]
-    inner = np.linalg.inv(free.T @ free)
-    drift = np.insert(-inner @ free.T @ rows[:, 1], 1, 1.0)
-    covariance = KEPT**2 * np.outer(drift, drift)
-    covariance[np.ix_(FREE, FREE)] += inner
+def _covariance(rows: Array, free: list[int]) -> Array:
+    """Of (ln E, ln G/E, ln rho); of what is kept, with what its own error does to those sought."""
+    inner = np.linalg.inv(rows[:, free].T @ rows[:, free])
+    covariance = np.zeros((3, 3))
+    covariance[np.ix_(free, free)] = inner
+    # the last row is the scale's, which says nothing of a density that is kept
+    for kept in {0, 1, 2} - set(free):
+        tones = rows[:-1] if kept == 2 else rows
+        drift = np.zeros(3)
+        drift[kept], drift[free] = 1.0, -inner @ tones[:, free].T @ tones[:, kept]
+        covariance += {1: KEPT, 2: DENSITY}[kept] ** 2 * np.outer(drift, drift)
     return covariance
 
 
@@ -259,7 +226,9 @@ def remarks(found: TapFit, *, edge: bool = False) -> list[str]:
         why = "one tone cannot tell" if len(ours) == 1 else "these tones cannot tell"
         lines.append(f"{why} G from E: the file's G/E is kept, taken to be known to {100 * KEPT:.0f} %")
     if not found.weighed:
-        lines.append(f"not weighed: the file's density is kept, taken to be known to {100 * DENSITY:.0f} % (--mass)")
+        lines.append(
+            f"not weighed: the file's density is kept as it is, taken to be known to {100 * DENSITY:.0f} % (--mass)"
+        )
     if edge:
         lines.append(f"G/E at the end of what shafts have ({RATIOS[0]:.3g} to {RATIOS[1]:.3g}): check the drawing")
     clear = [m for m in found.matched if m.tone.kind == "tone"]
@@ -273,7 +242,7 @@ def remarks(found: TapFit, *, edge: bool = False) -> list[str]:
     wrong = [m.tone.frequency for m in clear if m.mode is None]
     if wrong:
         lines.append(f"no bending tone of this shaft: {', '.join(f'{f:.1f}' for f in wrong)} Hz")
-    if missed := sorted(set(range(1, max(ours))) - set(ours)):
+    if missed := missing(found):
         doubt = ": more than were heard, check that it is the shaft drawn" if len(missed) > len(ours) else ""
         lines.append(f"not heard: mode{'s' if len(missed) > 1 else ''} {', '.join(map(str, missed))}{doubt}")
     if any(m.tone.kind == "twin" for m in found.matched):

@@ -41,6 +41,7 @@ HARMONICS = (2, 3, 4, 5, 7)
 LOUD = 4  # tones that make sums
 WEAKER = 0.35  # a square wave's third harmonic has a third of its amplitude
 CLOCK = 5e-5  # relative, of a phone's sampling rate
+FAINT = 2.0  # of the least amplitude that is a tone: below, the second of two that overlap would not be told
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,8 @@ class Tone:
     """One tone. frequency: of the undamped body, Hz; error: its standard deviation, Hz, `CLOCK` included.
 
     decay: of the amplitude, 1/s, and decay_error. level: amplitude at the start, all traces together, in the
-    recording's units. snr: that over its standard deviation. kind: "tone"; "steady" (a hum); "harmonic" (a multiple
+    recording's units. snr: that over its standard deviation. kind: "tone"; "faint" (two that overlap would sound alike,
+    so its error holds the width of its line); "steady" (a hum); "harmonic" (a multiple
     or sum of louder ones, as clipping makes); "twin" (the weaker of two planes of bending; the other's error holds
     their distance).
     """
@@ -247,9 +249,12 @@ class _Spectrum:
         for k in range(len(w)):
             natural = np.hypot(w[k], a[k]) / (2 * np.pi)
             error = np.hypot(errors[0, k] / (2 * np.pi), CLOCK * natural)
+            vague = error / natural
             kind = "steady" if a[k] < STEADY else "tone"
+            if kind == "tone" and heard[k] < FAINT * np.sqrt(2 * faintest):
+                kind, error = "faint", np.hypot(error, a[k] / (2 * np.pi))
             lossy = 2 * a[k] > LOSSY * w[k]
-            if heard[k] ** 2 / 2 >= faintest and error < VAGUE * natural and not lossy and LOW <= natural <= HIGH:
+            if heard[k] ** 2 / 2 >= faintest and vague < VAGUE and not lossy and LOW <= natural <= HIGH:
                 found.append(Tone(natural, error, a[k], errors[1, k], level[k], heard[k], kind))
         return found
 

@@ -23,7 +23,8 @@ from cuefem.effects.loss import section_loss
 from cuefem.matching import main_material, with_material
 from cuefem.report.tap import draw_spectrum
 from cuefem.ringing import ringing
-from cuefem.tap import TapFit, TapTest
+from cuefem.tap import TapTest
+from cuefem.tap_fit import TapFit
 from cuefem.tones import tones
 from studies.common import NAMES, STUDIES, cue, figure, scene, table
 

@@ -1,4 +1,4 @@
-"""Recordings, masses and options that a tap test refuses: status 2, one line, nothing written (regression)."""
+"""What a tap test refuses: status 2, or 1 where it doubts what it hears, one line, nothing written (regression)."""
 
 from __future__ import annotations
 
@@ -149,15 +149,18 @@ def test_tones_of_another_thing() -> None:
 
 
 def test_what_cannot_be_told_apart_is_not_written(tmp_path: Path) -> None:
-    """One tone, of the seventh mode perhaps."""
+    """One tone, of the seventh mode perhaps: refused with status 1, told and written with --force."""
     path, new = tmp_path / "tap.wav", tmp_path / "new.toml"
     wavfile.write(path, 10000, tap.recording(one_tone(2600.0), 30.0, 0).astype(np.float32))
-    said = refused(path, "--scene", KIM, "-o", new)
-    assert said.startswith(f"{path}: tones cannot be told apart: E ")
+    status, out, err = call("tap", path, "--scene", KIM, "-o", new)
+    assert (status, out, err.count("\n")) == (1, "", 1)
+    assert err.startswith(f"cuefem: {path}: refused, --force goes on: ")
+    assert "tones cannot be told apart: E " in err
     assert not new.exists()
-    status, out, _ = call("tap", path, "--scene", KIM)
+    status, out, _ = call("tap", path, "--scene", KIM, "-o", new, "--force")
     assert status == 0
     assert "the tones cannot be told apart" in " ".join(out.split())
+    assert new.exists()
 
 
 def one_tone(frequency: float) -> np.ndarray:

@@ -13,7 +13,8 @@ import pytest
 from cuefem import end_mass, modes
 from cuefem.matching import MODES, main_material
 from cuefem.ringing import Ringing, ringing
-from cuefem.tap import KEPT, SCALE, TapFit, TapTest, predicted
+from cuefem.tap import KEPT, SCALE, TapTest, predicted
+from cuefem.tap_fit import TapFit
 from cuefem.tones import Tone, tones
 from studies import tap
 from studies.common import NAMES, cue, scene

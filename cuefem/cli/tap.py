@@ -13,7 +13,6 @@ from cuefem.cli.common import (
     blow_options,
     check_free,
     cue_options,
-    force_option,
     measured,
     offset_option,
     print_all,
@@ -24,7 +23,8 @@ from cuefem.cli.common import (
 if TYPE_CHECKING:
     from cuefem.ringing import Ringing
     from cuefem.scene import Scene
-    from cuefem.tap import Predicted, TapFit
+    from cuefem.tap import Predicted
+    from cuefem.tap_fit import TapFit
 
 
 @click.command(short_help="The shaft's wood by ear: E, G, density from a tapped sound.")
@@ -38,14 +38,15 @@ if TYPE_CHECKING:
     "-o", "--output", type=click.Path(path_type=Path), metavar="NEW.toml", help="Write FILE with the fitted wood."
 )
 @click.option("--figure", type=click.Path(path_type=Path), metavar="FIGURE", help="Draw the spectrum: .png or .svg.")
-@force_option
+@click.option("--force", is_flag=True, help="Go on in spite of doubts; replace a drawing that is there already.")
 @cue_options
 @blow_options
 @offset_option
 def tap(recording: Path, file: Path, output: Path | None, figure: Path | None, force: bool, **given: Any) -> None:
     """The shaft's wood by ear: E, G and density from a recording of the shaft, hung free and tapped.
 
-    RECORDING is a .wav of one or more taps. Its tones are matched to the bending modes of the shaft in FILE.
+    RECORDING is a .wav of one or more taps. Its tones are matched to the bending modes of the shaft in FILE. Where they
+    are not this shaft's, or the wood is like no such wood, nothing is told or written without --force (status 1).
     """
     from cuefem.io import FIGURES, InputError, check_place, save, save_figure
     from cuefem.io.unusual import unusual
@@ -62,13 +63,11 @@ def tap(recording: Path, file: Path, output: Path | None, figure: Path | None, f
         check_place(figure)
     scene, notes = scene_of(file, given)
     heard, found = _heard(recording, file, scene, given)
+    if found.refusals and not force:
+        raise RuntimeError(f"{recording}: refused, --force goes on: {'; '.join(found.refusals)}")
     record = tap_record(found, heard, *_predicted(file, scene, found))
     about = scene_record(replace(scene, cue=found.cue))
     if output is not None:
-        if found.rivals:
-            others = ", ".join(f"{E / 1e9:.3g}" for E, _ in found.rivals)
-            problem = f"tones cannot be told apart: E {found.wood.E / 1e9:.3g} or {others} GPa; nothing is written"
-            raise InputError(recording, "", problem)
         save(_updated(file, scene, found, given), output)
     if figure is not None:
         save_figure(tap_figure(found, heard, f"{recording.name}: {file.name}", figure.suffix[1:]), figure)

@@ -10,17 +10,32 @@ from typing import Any
 import numpy as np
 from rich.table import Table
 
+from cuefem.chance import LEVEL
 from cuefem.report.records import Record
 from cuefem.report.tables import MISCUE, NONE, grams, significant, table_of, with_caption
 from cuefem.ringing import Ringing
-from cuefem.tap import Predicted, TapFit
+from cuefem.tap import Predicted
+from cuefem.tap_fit import TapFit
 from cuefem.tones import HIGH, LOW
 
 UNITS = {
     **{"E": "Pa", "G": "Pa", "rho": "kg/m^3", "frequency": "Hz", "error": "as its number", "decay": "1/s"},
-    **{"end_mass": "kg", "squirt": "rad", "shaft_mass": "kg", "clipped": "s", "covariance": "of ln E, ln G/E, ln rho"},
+    **{
+        "end_mass": "kg",
+        "squirt": "rad",
+        "shaft_mass": "kg",
+        "clipped": "s",
+        "mains": "Hz",
+        "level": "dB",
+        "covariance": "of ln E, ln G/E, ln rho",
+    },
 }
-KINDS = {"steady": "steady hum", "harmonic": "sum of others?", "twin": "twin of the other"}
+KINDS = {
+    "faint": "too faint to tell",
+    "steady": "steady hum",
+    "harmonic": "sum of others?",
+    "twin": "twin of the other",
+}
 
 
 def tap_record(found: TapFit, heard: Ringing, numbers: Mapping[str, Predicted], regime: str) -> Record:
@@ -35,14 +50,26 @@ def tap_record(found: TapFit, heard: Ringing, numbers: Mapping[str, Predicted], 
         "weighed": found.weighed,
         "rivals": [{"E": E, "odds_against": odds} for E, odds in found.rivals],
         "misfit": found.misfit,
+        "chance": found.chance,
+        "shear_coefficients": found.shear_coefficients,
+        "refusals": list(found.refusals),
         "tones": [asdict(m.tone) | {"mode": m.mode, "model_frequency": m.frequency} for m in found.matched],
         "shaft_mass": found.cue.shaft_mass,
         "predicted": {name: asdict(number) for name, number in numbers.items()},
         "regime": regime,
         "taps": heard.taps,
         "clipped": heard.clipped,
-        "notes": [*found.notes, *_clipping(heard)],
+        "hum": None if heard.hum is None else asdict(heard.hum),
+        "notes": [*found.notes, *_clipping(heard), *_hum(heard)],
     }
+
+
+def _hum(heard: Ringing) -> list[str]:
+    if heard.hum is None:
+        return []
+    hum = heard.hum
+    tones = ", ".join(f"{k * hum.mains:.0f}" for k in hum.multiples)
+    return [f"a mains hum of {hum.mains:.2f} Hz, {hum.level:+.0f} dB of the rest, is taken out: {tones} Hz"]
 
 
 def _clipping(heard: Ringing) -> list[str]:
@@ -81,9 +108,21 @@ def _wood(record: Record) -> Any:
         made.add_row(name, f"{values[0]} {unit}", f"{values[1]} {unit}", relative, f"{values[2]} {unit}")
     return with_caption(
         made,
+        f"G goes with {_shear(record['shear_coefficients'])}: what the tones tell is their product",
         f"loss factor of the tones {record['wood']['loss']:.4f} (median; of the wood at most)",
+        f"{_share(record['chance'])} of random sets of tones fit this shaft as well",
+        *(f"doubt: {doubt}" for doubt in record["refusals"]),
         *(f"note: {note}" for note in record["notes"]),
     )
+
+
+def _shear(found: tuple[float, float]) -> str:
+    least, most = (f"{one:.3f}" for one in found)
+    return f"a shear coefficient of {least}" if least == most else f"shear coefficients of {least} to {most}"
+
+
+def _share(chance: float) -> str:
+    return f"{100 * chance:.1f} % or less" if chance <= LEVEL else f"{100 * chance:.2g} %"
 
 
 def _numbers(record: Record, about: Record) -> Any:

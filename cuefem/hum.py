@@ -1,0 +1,91 @@
+"""Mains hum in a recording: 50 or 60 Hz and its multiples, found by their steadiness and taken out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cuefem.cue import Array
+
+MAINS = (50.0, 60.0)  # Hz
+ASTRAY = 0.3  # Hz that a grid runs fast or slow, the clock of the recorder included
+MOST = 24  # multiples that are looked for
+WINDOW = 0.2  # s: the multiples are told apart, and a tap spoils few windows
+PIECE = 4.0  # s over which the grid keeps its frequency
+LIKE, STEADY = 0.35, 0.6  # a window's amplitude is like the median one within LIKE; a hum's are in STEADY of them
+FEWEST = 2  # multiples: a single steady line may be anything
+
+
+@dataclass(frozen=True)
+class Hum:
+    """mains: 50 or 60 Hz as measured. multiples: of it that were taken out. level: mean power over what is left, dB."""
+
+    mains: float
+    multiples: tuple[int, ...]
+    level: float
+
+
+def without_hum(signal: Array, rate: float) -> tuple[Array, Hum | None]:
+    """The recording, (samples, channels), without its mains hum, and that hum; unchanged where there is none."""
+    pieces = np.array_split(signal, max(1, round(len(signal) / (PIECE * rate))))
+    found = [_hum(piece, rate) for piece in pieces]
+    heard = [(base, multiples) for base, multiples, _ in found if multiples]
+    if not heard:
+        return signal, None
+    clean = np.concatenate([piece - hum for piece, (_, _, hum) in zip(pieces, found, strict=True)])
+    power = np.square(signal - clean).sum() / max(np.square(clean).sum(), np.finfo(float).tiny)
+    multiples = sorted(set().union(*(own for _, own in heard)))
+    return clean, Hum(float(np.median([base for base, _ in heard])), tuple(multiples), float(10 * np.log10(power)))
+
+
+def _hum(piece: Array, rate: float) -> tuple[float, tuple[int, ...], Array]:
+    """(mains frequency, its multiples heard, their sound) of some seconds."""
+    best: tuple[float, float, tuple[int, ...]] = (0.0, 0.0, ())
+    for mains in MAINS:
+        strength, base, multiples = _steady(piece, rate, mains)
+        if multiples and strength > best[0]:
+            best = strength, base, multiples
+    _, base, multiples = best
+    return base, multiples, _sound(piece, rate, base, multiples) if multiples else np.zeros_like(piece)
+
+
+def _steady(piece: Array, rate: float, mains: float) -> tuple[float, float, tuple[int, ...]]:
+    """(power of the steady multiples, the grid's own frequency, which they are)."""
+    size = int(WINDOW * rate)
+    starts = np.arange(0, len(piece) - size + 1, size // 2)
+    if len(starts) < 4:
+        return 0.0, mains, ()
+    k = np.arange(1, 1 + min(MOST, int(0.45 * rate / mains)))
+    wave = np.exp(-2j * np.pi * mains * np.outer(k, np.arange(size)) / rate) * np.hanning(size)
+    heard = np.array([wave @ piece[start : start + size] for start in starts])  # (windows, multiples, channels)
+    heard = heard * np.exp(-2j * np.pi * mains * np.outer(starts, k) / rate)[:, :, None]
+    turns = 2 * np.pi * k * (starts / rate)[:, None]
+    unit = heard / np.maximum(np.abs(heard), np.finfo(float).tiny)
+    off = np.linspace(-ASTRAY, ASTRAY, 2 * int(ASTRAY * 12 * k[-1] * len(piece) / rate) + 1)
+    together = [np.square(np.abs((unit * np.exp(-1j * turns * d)[:, :, None]).mean(axis=0))).sum() for d in off]
+    best = float(off[int(np.argmax(together))])
+    turned = heard * np.exp(-1j * turns * best)[:, :, None]
+    middle = np.median(turned.real, axis=0) + 1j * np.median(turned.imag, axis=0)
+    like = (np.abs(turned - middle) <= LIKE * np.abs(middle)).mean(axis=0)  # (multiples, channels)
+    steady = (like >= STEADY).any(axis=1)
+    strength = float(np.square(np.abs(middle[steady])).sum())
+    # a tap shakes some multiples; where a few are steady, all up to the highest of them are the mains'
+    multiples = tuple(range(1, int(k[steady][-1]) + 1)) if steady.sum() >= FEWEST else ()
+    return strength, mains + best, multiples
+
+
+def _sound(piece: Array, rate: float, base: float, multiples: tuple[int, ...]) -> Array:
+    """The multiples' sines by least squares, in which loud stretches, after a tap, count less."""
+    t = np.arange(len(piece)) / rate
+    angle = 2 * np.pi * base * t[:, None] * np.array(multiples)
+    basis = np.hstack([np.cos(angle), np.sin(angle)])
+    hop = int(WINDOW / 4 * rate)
+    weight, sound = np.ones(len(piece)), np.zeros_like(piece)
+    for _ in range(4):
+        scaled = basis * weight[:, None]
+        sound = basis @ np.linalg.solve(scaled.T @ basis, scaled.T @ piece)
+        rest = np.square(piece - sound).sum(axis=1)
+        level = np.sqrt(np.add.reduceat(rest, np.arange(0, len(rest), hop)) / hop)
+        weight = np.repeat(1 / (level + 1e-3 * level.max() + np.finfo(float).tiny), hop)[: len(piece)] ** 2
+    return np.asarray(sound)
