@@ -243,7 +243,7 @@ class Beams:
 
 
 def _beams(batch: CueBatch, at: Resolution) -> Beams:
-    order, elements = at.order, at.elements
+    order, elements = at.order, at.elements if isinstance(at.elements, int) else max(at.elements)
     pieces = batch.rows.length.shape[1]
     sizes = np.repeat(batch.rows.length / elements, elements, axis=1)
     steps = np.tile(np.arange(elements), pieces)[:, None] + table(order).points

@@ -19,35 +19,40 @@ from cuefem.quantity import CONTACT_TIME
 from cuefem.scene import Resolution, Scene
 from cuefem.tail import tail
 
-# Modes are kept up to this many periods in a contact. With a tail 30 hold end mass and squirt to 0.2 % for all cues of
-# meshes/ and T from 0.7 to 4 ms (tests/test_resolution_verification.py); a plain sum wants more, the carbon cue's is
-# 1 % off even with a hundred.
+# Modes are kept up to this many periods in a contact, with a tail; a plain sum wants more, the carbon cue's is 1 % off
+# even with a hundred.
 PERIODS_KEPT, PLAIN_PERIODS = 30, 60
-# Never more than this, which a contact of a fraction of a millisecond would ask for: the tail does the rest.
-MOST = 400
+# But never fewer than LEAST, however long the contact. The end mass of a tip that sticks needs more: its velocity
+# begins with a step, whose front comes back from the butt at 2 L/c with frequencies of 10 to 80 kHz, whatever the
+# contact time. What these numbers hold: studies/default_accuracy.md.
+LEAST, LEAST_STUCK = 40, 120
+# Never more than this by default, which a contact of a fraction of a millisecond would ask for: the tail does the rest,
+# and more would take over a second. MOST is the last rung of `resolve`.
+MOST_KEPT, MOST = 200, 400
 
 
-def default_resolution(scene: Scene, *, periods: float = PERIODS_KEPT) -> Resolution:
-    """The resolution meant where none is given: modes kept by frequency, up to ``periods`` / contact time."""
+def default_resolution(scene: Scene, *, periods: float = PERIODS_KEPT, least: int = LEAST) -> Resolution:
+    """The resolution meant where none is given: modes kept by frequency, up to ``periods`` / contact time, at least
+    ``least``."""
     assert isinstance(scene.cue, Cue)
     if not CONTACT_TIME.holds(scene.contact_time):  # that of a stiffness: one that is given is bounded already
         got = f"{scene.tip.stiffness:.6g} N/m, {scene.contact_time:.3g} s"
         raise ValueError(f"Tip.stiffness must make a head-on contact time in {CONTACT_TIME.bounds}; got {got}")
-    count = min(modes_below(scene.cue, 2 * np.pi * periods / scene.contact_time), MOST)
+    count = min(max(modes_below(scene.cue, 2 * np.pi * periods / scene.contact_time), least), MOST_KEPT)
     elements, order = mesh_for(scene.cue, count)
     return Resolution(elements, order, count)
 
 
-def tip_modes_of(scene: Scene, at: Resolution | None = None) -> TipModes:
+def tip_modes_of(scene: Scene, at: Resolution | None = None, *, least: int = LEAST) -> TipModes:
     """Tip modes of the scene's finite-element cue, with its effects; with a tail where no resolution is given."""
-    return tip_modes_from(modes_of(scene, at), scene)
+    return tip_modes_from(modes_of(scene, at, least=least), scene)
 
 
-def modes_of(scene: Scene, at: Resolution | None = None) -> Modes:
+def modes_of(scene: Scene, at: Resolution | None = None, *, least: int = LEAST) -> Modes:
     """Bending modes that a strike of the scene's finite-element cue takes; with a tail where no resolution is given."""
     if at is not None:
         return _kept(scene, at)
-    return tail(_kept(scene, default_resolution(scene)), turning=turning(scene))
+    return tail(_kept(scene, default_resolution(scene, least=least)), turning=turning(scene))
 
 
 def _kept(scene: Scene, at: Resolution) -> Modes:

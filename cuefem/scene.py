@@ -126,17 +126,20 @@ class Scene:
 class Resolution:
     """How finely a finite-element cue is computed.
 
-    elements: of each smooth piece of the cue. order: polynomial degree p of the rotation (the deflection has p + 1).
-    modes: flexible bending modes kept; rigid ones always are. All whole numbers >= 1.
+    elements: of each smooth piece of the cue; or a tuple, one number a segment. order: polynomial degree p of the
+    rotation (the deflection has p + 1). modes: flexible bending modes kept; rigid ones always are. All whole numbers
+    >= 1.
     """
 
-    elements: int
+    elements: int | tuple[int, ...]
     order: int
     modes: int
 
     def __post_init__(self) -> None:
-        for name in ("elements", "order", "modes"):
+        for name in ("order", "modes"):
             check_count(f"Resolution.{name}", getattr(self, name), 1)
+        for count in self.elements if isinstance(self.elements, tuple) else (self.elements,):
+            check_count("Resolution.elements", count, 1)
 
 
 @dataclass(frozen=True)

@@ -23,11 +23,12 @@ def strike(scene: Scene, at: Resolution | None = None) -> Outcome:
     """Outcome of the coupled strike of any cue: its modes, the tip and the ball, in time.
 
     at: a Resolution gives the plain sum over the modes asked for; left out, modes are kept by frequency so that squirt
-    and end mass are within 0.5 %. A lumped cue needs none. Phases (slip or stick, loaded, unloaded or reloaded) are
-    propagated exactly and their ends found as roots, so the modes kept are the only approximation. Fields of the scene
-    are single numbers. Outcome.phases are `cuefem.contact.Phase`; Outcome.history gives forces and velocities at any
-    time. energy: "ball translation", "ball rotation", "cue" (rigid motion), "cue vibration", "tip loss", "friction
-    loss". RuntimeError where the ball never leaves. Cost: cubic in the modes, a few milliseconds for 24.
+    is within 0.5 % (what was measured: studies/default_accuracy.md). A lumped cue needs none. Phases (slip or stick,
+    loaded, unloaded or reloaded) are propagated exactly and their ends found as roots, so the modes kept are the only
+    approximation. Fields of the scene are single numbers. Outcome.phases are `cuefem.contact.Phase`; Outcome.history
+    gives forces and velocities at any time. energy: "ball translation", "ball rotation", "cue" (rigid motion), "cue
+    vibration", "tip loss", "friction loss". RuntimeError where the ball never leaves. Cost: cubic in the modes, a few
+    milliseconds for 24.
     """
     check_kind("strike scene", scene, Scene)
     if isinstance(scene.cue, LumpedCue):

@@ -97,6 +97,12 @@ class StickLimit:
             swing = settled + fade(W / _beside(top)) * (swing - settled)
         return direct * (self.K - 1) + (residues * swing).sum(axis=-1)
 
+    def ringing(self, omega: Array, phi: Array, rigid: Any, *, tail: int) -> float:
+        """Part of J, relative, that the ``tail`` highest vibrations of a held tip swing by, as long as they ring."""
+        W, residues, direct = _mobility(omega, phi, rigid + self.c)
+        J = direct * (self.K - 1) + residues @ self.swing(W)
+        return float(np.sum((residues / W)[len(W) - tail :]) / J)
+
     def swing(self, W: Array) -> Array:
         """Integral of sin(W (T - s)) (K P(s) - 1) ds over 0..T."""
         T = _beside(self.T)

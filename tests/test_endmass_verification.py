@@ -258,7 +258,7 @@ def test_kim_shaft(drive: str, T: float, grams: float) -> None:
     assert 1e-6 < (high - low) / value < 0.01
 
 
-@pytest.mark.parametrize(("e", "grams"), [(0.0, 2.55), (0.75, 5.27), (1.0, 5.60)])
+@pytest.mark.parametrize(("e", "grams"), [(0.0, 2.54), (0.75, 5.27), (1.0, 5.60)])
 def test_stick_depends_on_restitution(e: float, grams: float) -> None:
     np.testing.assert_allclose(1e3 * end_mass(scene(kim(), 1e-3, restitution=e)), grams, rtol=2e-3)
 

@@ -75,19 +75,29 @@ class Mesh:
 
 
 def mesh_cue(
-    cue: Cue, *, elements: int, order: int, positions: tuple[float, ...] = (), splits: tuple[float, ...] = ()
+    cue: Cue,
+    *,
+    elements: int | tuple[int, ...],
+    order: int,
+    positions: tuple[float, ...] = (),
+    splits: tuple[float, ...] = (),
 ) -> Mesh:
-    """Mesh a cue with ``elements`` a smooth piece: between ends of segments and ``positions``; split at ``splits``."""
+    """Mesh a cue: a node at every end of a segment and at ``positions``, split at ``splits``.
+
+    elements: of every smooth piece between such nodes; or one number a segment, which are shared out over its smooth
+    pieces by their lengths, at least one to each.
+    """
     breaks = list(cue.nodes)
     for x in sorted(set(positions)):
         if not 0 <= x <= cue.length * (1 + NEAR):
             raise ValueError(f"an effect's position must be in [0, {cue.length}] m, on the cue; got {x}")
         if np.min(np.abs(np.array(breaks) - x)) > NEAR * cue.length:  # else the two points are one
             breaks.append(x)
-    check_work((len(breaks) - 1) * elements * (2 * order + 1), f"{len(breaks) - 1} pieces")
     ends = np.sort(np.array(breaks))
-    steps = np.arange(elements) / elements
-    nodes = np.append((ends[:-1, None] + np.diff(ends)[:, None] * steps).ravel(), ends[-1])
+    counts = _elements_between(cue, ends, elements)
+    check_work(sum(counts.tolist()) * (2 * order + 1), f"{len(counts)} pieces")
+    shares = zip(ends, np.diff(ends), counts, strict=False)
+    nodes = np.append(np.concatenate([start + span * (np.arange(n) / n) for start, span, n in shares]), ends[-1])
     middles = (nodes[:-1] + nodes[1:]) / 2
     piece = np.searchsorted(cue.nodes, middles, side="right") - 1
     stride = 2 * order + 1
@@ -103,6 +113,19 @@ def check_work(unknowns: float, what: str) -> None:
     if unknowns > MOST_UNKNOWNS:
         asked = "ask for fewer modes or elements, draw fewer segments, or check sizes and materials"
         raise ValueError(f"the mesh must have at most {MOST_UNKNOWNS} unknowns; got {unknowns:.6g}, of {what}: {asked}")
+
+
+def _elements_between(cue: Cue, ends: Array, elements: int | tuple[int, ...]) -> NDArray[np.intp]:
+    """How many elements each smooth piece between ``ends`` gets: (len(ends) - 1,)."""
+    if not isinstance(elements, tuple):
+        return np.full(len(ends) - 1, elements)
+    if len(elements) != len(cue.segments):
+        raise ValueError(
+            f"Resolution.elements must be one number or {len(cue.segments)} of them, one a segment; got {len(elements)}"
+        )
+    segment = np.searchsorted(cue.nodes, (ends[:-1] + ends[1:]) / 2, side="right") - 1
+    part = np.diff(ends) / np.diff(cue.nodes)[segment]
+    return np.maximum(np.ceil(np.array(elements)[segment] * part - NEAR), 1).astype(int)
 
 
 class Links(NamedTuple):

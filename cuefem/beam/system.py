@@ -12,8 +12,8 @@ from cuefem.beam.basis import local_basis, table
 from cuefem.beam.mesh import ActsOnCue, Links, Mesh, Terms, mesh_cue
 from cuefem.cue import Array, Cue, Section
 
-# Below this many unknowns a dense eigenproblem is the faster one.
-DENSE_LIMIT = 400
+# Below this many unknowns a dense eigenproblem is the faster one, whatever number of modes is wanted.
+DENSE_LIMIT = 220
 
 
 @dataclass(frozen=True)
@@ -103,8 +103,8 @@ def element_matrices(section: Section, sizes: Array, length: float, order: int) 
     return (stiff @ t.stiffness).reshape(shape), (heavy @ t.mass).reshape(shape)
 
 
-def assemble(cue: Cue, *, elements: int, order: int, effects: tuple[ActsOnCue, ...] = ()) -> System:
-    """Assemble a cue with the effects that act on it."""
+def assemble(cue: Cue, *, elements: int | tuple[int, ...], order: int, effects: tuple[ActsOnCue, ...] = ()) -> System:
+    """Assemble a cue with the effects that act on it; elements and order as a Resolution has them."""
     for effect in effects:
         effect.check_on(cue, type(effect).__name__)
     positions = tuple(x for effect in effects for x in effect.positions)

@@ -11,7 +11,7 @@ from cuefem.batch import BLOCK
 from cuefem.cue import Array, Cue
 from cuefem.design.responses import Response
 from cuefem.design.solvers import OneByOne, Solver, Together
-from cuefem.modes import mesh_for, modes_below
+from cuefem.modes import even_mesh_for, modes_below
 from cuefem.resolution import PERIODS_KEPT
 from cuefem.scene import Resolution, Scene
 
@@ -95,5 +95,5 @@ def common_resolution(scenes: Sequence[Scene], responses: Sequence[Response]) ->
             continue
         kept = modes_below(scene.cue, 2 * np.pi * PERIODS_KEPT / scene.contact_time) if strikes else count
         # a mesh of more elements follows shorter waves, and so does one of as many of a higher order
-        mesh, modes = max(mesh, mesh_for(scene.cue, max(kept, count))), max(modes, kept)
+        mesh, modes = max(mesh, even_mesh_for(scene.cue, max(kept, count))), max(modes, kept)
     return Resolution(*mesh, modes)

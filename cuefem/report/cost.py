@@ -71,7 +71,7 @@ def _rung_record(scene: Scene, rung: Rung, seconds: float, best: Any) -> Record:
         plain = {"seconds": perf_counter() - start, "difference": relative_error(outcome, best, scene)}
     return {
         "modes": rung.at.modes,
-        "elements": rung.at.elements,
+        "elements": list(rung.at.elements) if isinstance(rung.at.elements, tuple) else rung.at.elements,
         "order": rung.at.order,
         "unknowns": rung.outcome.unknowns,
         "estimate": rung.outcome.error,
@@ -101,7 +101,7 @@ def _ladder_table(rungs: Sequence[Record]) -> Any:
     for rung in rungs:
         plain = rung["plain"] or {"difference": None, "seconds": None}
         made.add_row(
-            *(str(rung["modes"]), f"{rung['elements']} x {rung['order']}", str(rung["unknowns"])),
+            *(str(rung["modes"]), _mesh(rung), str(rung["unknowns"])),
             *(_error(rung["estimate"]), _error(rung["difference"]), _milliseconds(rung["seconds"])),
             *(_error(plain["difference"]), _milliseconds(plain["seconds"])),
         )
@@ -109,7 +109,7 @@ def _ladder_table(rungs: Sequence[Record]) -> Any:
         made,
         "Largest relative error of squirt, ball speed and spin: estimated, and as the difference from the last row.",
         "Climb: all rows down to this one, what `resolve` takes. Plain sum: the same modes without a tail, by itself.",
-        "elements: of each smooth piece of the cue; order: of their polynomials.",
+        "elements: of all segments together; order: of their polynomials.",
     )
 
 
@@ -117,9 +117,14 @@ def _wanted_table(wanted: Sequence[Record]) -> Any:
     made: Table = table_of("What to take", ("accuracy", "modes", "elements x order", "unknowns", "estimate", "ms"))
     for row in wanted:
         asked = f"{row['rtol']:.0e}" + ("" if row["reached"] else ", not reached: the best is")
-        sizes = (str(row["modes"]), f"{row['elements']} x {row['order']}", str(row["unknowns"]))
+        sizes = (str(row["modes"]), _mesh(row), str(row["unknowns"]))
         made.add_row(asked, *sizes, _error(row["estimate"]), _milliseconds(row["seconds"]))
     return with_caption(made, "With the tail, as `resolve(scene, rtol)` and a file's [accuracy] rtol take it.")
+
+
+def _mesh(row: Record) -> str:
+    elements = row["elements"]
+    return f"{sum(elements) if isinstance(elements, list) else elements} x {row['order']}"
 
 
 def _error(value: float | None) -> str:

@@ -108,7 +108,7 @@ def end_mass_record(scene: Scene, *, tip: TipModes | None = None) -> Record:
 
 def _end_mass(scene: Scene, spread: Callable[[Drive], Spread], drive: Drive, *, tip: TipModes | None = None) -> Record:
     try:
-        felt, lowest, highest = spread(drive)
+        felt, lowest, highest, _ = spread(drive)
         if tip is not None:
             felt = formula_of(drive)(tip, scene)
     except ValueError as error:

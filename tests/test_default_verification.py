@@ -1,0 +1,64 @@
+"""Verification of the default: its stick end mass where the front of the shear wave is back, and its size of mesh."""
+
+import numpy as np
+import pytest
+from cues import LEATHER, MAPLE, kim, scene
+
+from cuefem import Cue, Material, Resolution, Segment, end_mass
+from cuefem.endmass import end_mass_spreads, formula_of
+from cuefem.modes import even_mesh_for, mesh_for, modes
+from cuefem.resolution import LEAST_STUCK, MOST_KEPT, default_resolution, tip_modes_from
+from cuefem.tail import tail
+
+BRASS = Material(1e11, 3.7e10, 8500.0)
+SHORT = Segment(0.001, 0.012, 0.012, LEATHER)
+SHORT_ENDED = Cue((SHORT, Segment(0.7, 0.012, 0.021, MAPLE), Segment(0.001, 0.021, 0.021, LEATHER)), 0.42)
+
+
+@pytest.mark.parametrize("T", [1.41e-3, 2.6e-3])
+def test_the_stick_end_mass_where_the_front_is_back(T: float) -> None:
+    """2 L/c of Kim's cone is 1.43 ms: half a percent there takes frequencies that the contact time does not ask for."""
+    found = scene(kim(), T)
+    exact = formula_of("stick")(tip_modes_from(tail(modes(kim(), 200)), found), found)
+    assert end_mass(found) == pytest.approx(exact, rel=3.5e-3)
+
+
+def test_a_brass_tip_says_what_it_rings_by() -> None:
+    """Its error is beyond half a percent, the estimate with the number above that and above the error."""
+    cue = Cue((Segment(0.008, 0.012, 0.012, BRASS), Segment(0.7, 0.012, 0.021, MAPLE)), 0.4)
+    spread = end_mass_spreads(scene(cue, 1.3e-3))("stick")
+    assert spread.error is not None
+    assert 0.01 < spread.error < 0.1
+    assert spread.lowest <= spread.end_mass * (1 - spread.error)
+    assert spread.highest >= spread.end_mass * (1 + spread.error)
+    wood = end_mass_spreads(scene(kim(), 1.3e-3))("stick")
+    assert wood.error is not None
+    assert wood.error < 5e-3
+
+
+@pytest.mark.parametrize("T", [0.1e-3, 0.3e-3, 2e-3, 5e-3])
+def test_no_default_asks_for_more_than_the_tail_needs(T: float) -> None:
+    """End segments of 1 mm took 400 modes and 810 unknowns; now modes end where the tail takes over."""
+    at = default_resolution(scene(SHORT_ENDED, T))
+    assert 40 <= at.modes <= MOST_KEPT
+    assert default_resolution(scene(SHORT_ENDED, T), least=LEAST_STUCK).modes >= LEAST_STUCK
+
+
+def test_a_short_segment_gets_the_elements_that_its_own_waves_ask_for() -> None:
+    elements, order = mesh_for(SHORT_ENDED, 100)
+    even, even_order = even_mesh_for(SHORT_ENDED, 100)
+    assert elements[0] == elements[2] == 1
+    assert elements[1] >= 5
+    assert sum(elements) * order < 0.6 * 3 * even * even_order
+    found = modes(SHORT_ENDED, 100, at=Resolution(elements, order, 100)).frequencies
+    finer = modes(SHORT_ENDED, 100, at=Resolution(even + 1, even_order + 2, 100)).frequencies
+    np.testing.assert_allclose(found, finer, rtol=2e-7)
+
+
+def test_elements_of_a_segment_are_shared_out_over_its_pieces() -> None:
+    from cuefem.beam import mesh_cue
+
+    mesh = mesh_cue(SHORT_ENDED, elements=(1, 4, 1), order=3, positions=(0.001 + 0.7 / 4,))
+    assert list(np.bincount(mesh.piece)) == [1, 4, 1]
+    with pytest.raises(ValueError, match="must be one number or 3 of them, one a segment; got 2"):
+        mesh_cue(SHORT_ENDED, elements=(1, 4), order=3)
