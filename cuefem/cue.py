@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import takewhile
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -13,6 +14,10 @@ from numpy.typing import ArrayLike, NDArray
 from cuefem.quantity import Number, Quantity, check_fields, check_kind
 
 Array = NDArray[np.float64]
+
+# What is softer than this along the cue, Pa, at its tip is leather: leathers have 0.05 to 0.2 GPa, the softest plastics
+# of ferrules 1.2, woods ten.
+SOFT = 1e9
 
 
 @dataclass(frozen=True)
@@ -213,6 +218,13 @@ class Cue:
     def length(self) -> float:
         """Length of the modelled cue, m."""
         return float(self.nodes[-1])
+
+    @property
+    def leather(self) -> float:
+        """Length of the leather, m: of the first segments whose E is below `SOFT`, 0 where none behind is stiffer."""
+        soft = takewhile(lambda segment: segment.material.E < SOFT, self.segments)
+        count = sum(1 for _ in soft)
+        return float(self.nodes[count]) if count < len(self.segments) else 0.0
 
     @property
     def shaft_mass(self) -> float:

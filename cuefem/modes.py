@@ -41,6 +41,11 @@ class Modes:
         """Angular frequencies, rad/s, (n,)."""
         return 2 * np.pi * self.frequencies
 
+    @property
+    def highest(self) -> float:
+        """Highest angular frequency kept, rad/s, without the tail's."""
+        return float(self.omega[: len(self.omega) - (0 if self.radiation is None else len(self.radiation))][-1])
+
     def shape(self, x: ArrayLike) -> tuple[Array, Array]:
         """Deflection w and rotation theta of every mode at ``x`` m from the tip: two arrays (n, *x.shape).
 
@@ -255,16 +260,23 @@ class TipModes:
         omega, amplitude, approach, rotation = self.omega, self.amplitude, self.approach, self.rotation
         return TipModes(omega[index], amplitude[index], approach[index], rotation[index], damping, radiation)
 
-    def beside(self, omega: Array, along: Array) -> TipModes:
-        """With vibrating modes of amplitude ``along`` the cue after these, (n,) each; damping is added after it."""
-        n = len(omega)
+    def beside(self, omega: Array, along: Array, radiation: Array | None = None) -> TipModes:
+        """With vibrating modes of amplitude ``along`` the cue after these, (n,) each; damping is added after it.
+
+        radiation: of the last of them, where these are a tail.
+        """
+        n, before = len(omega), len(self.omega)
+        own = None if self.radiation is None else np.pad(self.radiation, (0, n))
+        if radiation is not None:
+            theirs = np.pad(radiation, (before + n - len(radiation), 0))
+            own = theirs if own is None else own + theirs
         return TipModes(
             np.concatenate([self.omega, omega]),
             np.concatenate([self.amplitude, np.column_stack([along, np.zeros(n)])]),
             np.concatenate([self.approach, np.zeros(n)]),
             np.concatenate([self.rotation, np.zeros(n)]),
             None if self.damping is None else np.pad(self.damping, (0, n)),
-            None if self.radiation is None else np.pad(self.radiation, (0, n)),
+            own,
         )
 
     def ascending(self) -> TipModes:

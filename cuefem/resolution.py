@@ -63,9 +63,9 @@ def tip_modes_from(found: Modes, scene: Scene) -> TipModes:
     assert isinstance(scene.cue, Cue)
     effects = scene.cue_effects
     tip = tip_modes(found, scene.axial_mass)
-    along = tuple(chain.from_iterable(effect.vibrations(found, scene.cue.body_mass, effects) for effect in effects))
+    along = tuple(chain.from_iterable(effect.vibrations(found, scene.cue, effects) for effect in effects))
     for family in along:
-        tip = tip.beside(family.omega, family.along)
+        tip = tip.beside(family.omega, family.along, family.radiation)
     for effect in effects:
         tip = effect.damp(tip, scene.cue, (found, *along))
     return tip.ascending() if along else tip

@@ -2,13 +2,14 @@
 
 A plain sum over the lowest n modes converges like 1/n to n^-1.3: the modes left out still give way, and carry waves
 away from the tip. `tail` ends the sum by a few Ritz vectors on a dashpot that do both; at equal modes the error of a
-strike falls ten to a thousand times.
+strike falls ten to a thousand times. What it does for bending, `ritz` does for modes of any kind.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.linalg as la
@@ -26,53 +27,68 @@ Deflect = Callable[[Array], Array]
 STEPS, DASHPOT = 2, 0.5
 
 
+class Ritz(NamedTuple):
+    """A tail of k vectors: angular frequencies (k,), vectors (unknowns, k), mass-normalised, and their radiation
+    (k, k), 1/s (see `TipModes`)."""
+
+    omega: Array
+    vectors: Array
+    radiation: Array
+
+
 def tail(found: Modes, *, turning: bool = False, deflect: Deflect | None = None) -> Modes:
     """Modes ended by a tail: what the modes left out do at the tip, as a few more vectors and their radiation.
 
-    The flexibility of the modes left out, as the tip feels it, by `STEPS` steps of Lanczos from the static deflection
-    under a force at the tip (turning: and one under a couple, for a contact off the cue's axis), which match its first
-    moments in 1/omega^2. The chain ends in a dashpot, as the matching end of a line: waves above the frequencies kept
-    leave the tip and do not come back; an end without it would ring. Cost: one factorisation of K, `STEPS` solutions;
-    deflect: the `flexibility` of the system, where it is known already.
+    turning: the contact lies off the cue's axis, where a couple turns the tip beside the force. Cost: one factorisation
+    of K, `STEPS` solutions; deflect: the `flexibility` of the system, where it is known already.
     """
-    system, last = found.system, 2 if turning else 1
-    basis = _krylov(found, last, deflect or flexibility(system))
-    last = basis.shape[1] // STEPS
-    if last == 0:
+    system = found.system
+    kept = np.concatenate([found.rigid_vectors, found.vectors], axis=1)
+    force = np.zeros((system.mesh.unknowns, 2 if turning else 1))
+    np.fill_diagonal(force, 1.0)  # at the tip: on w, and on theta
+    if system.free is not None:
+        force = force[:, np.asarray(abs(system.free.T @ force).sum(axis=0)).ravel() > 0]  # none on what a clamp holds
+    if force.shape[1] == 0:
         return found
-    T = basis.T @ (system.M @ basis)  # what the chain's masses are, where its stiffness is I - shift T
-    squares, mix = la.eigh(np.eye(len(T)) - system.shift * T, T)
-    omega, ends = np.sqrt(squares), mix[-last:]
+    deflect = deflect or flexibility(system)
+    more = ritz(kept, system.K, system.M, force, shift=system.shift, deflect=deflect, highest=found.highest)
     return replace(
         found,
-        frequencies=np.concatenate([found.frequencies, omega / (2 * np.pi)]),
-        vectors=np.concatenate([found.vectors, basis @ mix], axis=1),
-        radiation=DASHPOT / float(found.omega[-1]) * ends.T @ ends,
+        frequencies=np.concatenate([found.frequencies, more.omega / (2 * np.pi)]),
+        vectors=np.concatenate([found.vectors, more.vectors], axis=1),
+        radiation=more.radiation,
     )
 
 
-def _krylov(found: Modes, loads: int, deflect: Deflect) -> Array:
+def ritz(kept: Array, K: Any, M: Any, force: Array, *, shift: float, deflect: Deflect, highest: float) -> Ritz:
+    """Tail of the modes ``kept`` (unknowns, n), all of K q = omega^2 M q up to ``highest`` rad/s, under ``force``.
+
+    The flexibility of the modes left out, as the tip feels it, by `STEPS` steps of Lanczos from the static deflection
+    under each force (unknowns, loads) at the tip, which match its first moments in 1/omega^2. The chain ends in a
+    dashpot, as the matching end of a line: waves above the frequencies kept leave the tip and do not come back; an end
+    without it would ring. deflect: the inverse of K + shift M.
+    """
+    basis = _krylov(kept, K, M, force, shift=shift, deflect=deflect)
+    T = basis.T @ (M @ basis)  # what the chain's masses are, where its stiffness is I - shift T
+    squares, mix = la.eigh(np.eye(len(T)) - shift * T, T)
+    ends = mix[-force.shape[1] :]
+    return Ritz(np.sqrt(squares), basis @ mix, DASHPOT / highest * ends.T @ ends)
+
+
+def _krylov(kept: Array, K: Any, M: Any, force: Array, *, shift: float, deflect: Deflect) -> Array:
     """Basis of the tail, (unknowns, STEPS loads): orthonormal in K + shift M, M-orthogonal to the modes kept."""
-    system = found.system
-    kept = np.concatenate([found.rigid_vectors, found.vectors], axis=1)
-    heavy = system.M @ kept
-    force = np.zeros((system.mesh.unknowns, loads))
-    force[range(loads), range(loads)] = 1.0  # at the tip: on w, and on theta
-    if system.free is not None:
-        force = force[:, np.asarray(abs(system.free.T @ force).sum(axis=0)).ravel() > 0]  # none on what a clamp holds
+    heavy = M @ kept
     steps: list[Array] = []
     for _ in range(STEPS):
         step = deflect(force)
         for _ in range(2):
             step = step - kept @ (heavy.T @ step)
-        step = step / np.sqrt(np.sum(step * (system.M @ step), axis=0))
-        force = system.M @ step
+        step = step / np.sqrt(np.sum(step * (M @ step), axis=0))
+        force = M @ step
         steps.append(step)
     basis = np.concatenate(steps, axis=1)
-    if basis.shape[1] == 0:
-        return basis
     for _ in range(2):  # orthonormal in their order: the last belong to the end of the chain
-        gram = basis.T @ (system.K @ basis) + system.shift * (basis.T @ (system.M @ basis))
+        gram = basis.T @ (K @ basis) + shift * (basis.T @ (M @ basis))
         basis = la.solve_triangular(la.cholesky(gram, lower=True), basis.T, lower=True).T
     return np.asarray(basis)
 
@@ -83,9 +99,14 @@ def flexibility(system: System) -> Deflect:
     S, free = system.K + system.shift * system.M, system.free
     if free is not None:
         S = free.T @ S @ free
+    held = inverse(S)
+    return held if free is None else lambda load: free @ held(free.T @ load)
+
+
+def inverse(S: Any) -> Deflect:
+    """What solves S x = load, for a symmetric positive S, dense or sparse."""
     if isinstance(S, np.ndarray):
         factors = la.cho_factor(S, check_finite=False)
-        held: Deflect = lambda load: la.cho_solve(factors, load)  # noqa: E731
-    else:
-        held = sla.splu(sp.csc_matrix(S)).solve
-    return held if free is None else lambda load: free @ held(free.T @ load)
+        return lambda load: la.cho_solve(factors, load)
+    solve: Deflect = sla.splu(sp.csc_matrix(S)).solve
+    return solve

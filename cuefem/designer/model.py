@@ -21,11 +21,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cuefem.cue import Cue, Material, Segment
+from cuefem.cue import SOFT, Cue, Material, Segment
 from cuefem.effects import Effect, Joint
 from cuefem.scene import Scene
 
-SOFT = 1e9  # Pa; what is softer at the tip is leather
 LONGEST_FERRULE = 0.06  # m
 TAPER_AT = 0.3302  # m, 13 in: how far pool shafts are held straight; half the cue where it is shorter than twice that
 USUAL_BORE = 0.006  # m, the width that a bore begins with where there is none

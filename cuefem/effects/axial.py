@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,14 +13,19 @@ from numpy.typing import NDArray
 from cuefem.beam import System, gather, line_basis, table
 from cuefem.cue import Array, Section
 from cuefem.modes import lowest
+from cuefem.tail import inverse, ritz
 
 
 @dataclass(frozen=True)
 class RodModes:
-    """Flexible rod modes, ascending: vectors (unknowns, n) of the axial displacement, mass-normalised, u(0) > 0."""
+    """Flexible rod modes, ascending: vectors (unknowns, n) of the axial displacement, mass-normalised, u(0) > 0.
+
+    radiation: (tail, tail), 1/s, of the last of them where these are a tail (`cuefem.tail`), None without one.
+    """
 
     vectors: Array
     system: System
+    radiation: Array | None = None
 
     @cached_property
     def strains(self) -> Array:
@@ -44,10 +50,6 @@ class RodModes:
         """Loss factor of every mode, (n,), from that of EA, (elements, q)."""
         return np.einsum("eq,eqn->n", loss.EA, self.strains**2) / self.omega**2
 
-    def below(self, omega: float) -> RodModes:
-        """Those of the modes whose angular frequency is no higher, rad/s."""
-        return RodModes(self.vectors[:, self.omega <= omega], self.system)
-
 
 def _chain_basis(order: int) -> tuple[Array, Array]:
     """Basis and its derivative at the Gauss points: tip end, bubbles, butt end; each (order + 1, q)."""
@@ -61,27 +63,54 @@ def _first(system: System) -> NDArray[np.intp]:
     return system.mesh.order * np.arange(len(system.mesh.piece))
 
 
-def rod_modes(system: System, masses: Sequence[tuple[float, float]], *, below: float) -> RodModes:
+def rod_modes(
+    system: System, masses: Sequence[tuple[float, float]], *, below: float, leather: float = 0.0, tailed: bool = False
+) -> RodModes:
     """Rod modes up to the angular frequency ``below``, rad/s, of an assembled beam's cue, free at both ends.
 
-    masses: (position m, mass kg) of lumps. Element matrices are exact; cost: one symmetric eigenproblem of order times
+    masses: (position m, mass kg) of lumps. leather: length, m, that moves as one with the tip, up to a node. tailed:
+    with the tail of the modes left out. Element matrices are exact; cost: one symmetric eigenproblem of order times
     elements unknowns.
     """
+    front = system.mesh.node(leather)
+    K, M = _matrices(system, masses, front)
+    shift = _shift(system)
+    count = min(_modes_below(system, below) + len(masses), K.shape[0] - 2)
+    vectors = lowest(K, M, count=count + 1, shift=shift)
+    vectors *= np.where(vectors[0] < 0, -1.0, 1.0)
+    flexible = RodModes(_whole(vectors[:, 1:], system, front), system)  # the first is the rigid motion
+    kept = vectors[:, : 1 + int(np.sum(flexible.omega <= below))]
+    radiation = None
+    if tailed:
+        tip = np.eye(len(vectors), 1)
+        more = ritz(kept, K, M, tip, shift=shift, deflect=inverse(K + shift * M), highest=below)
+        kept, radiation = np.concatenate([kept, more.vectors], axis=1), more.radiation
+    return RodModes(_whole(kept[:, 1:], system, front), system, radiation)
+
+
+def _matrices(system: System, masses: Sequence[tuple[float, float]], front: int) -> tuple[Any, Any]:
+    """K and M of the rod from node ``front`` on, which carries the mass of all before it."""
     mesh, section = system.mesh, system.section
     values, slopes = _chain_basis(mesh.order)
     weights, sizes = table(mesh.order).weights, mesh.sizes[:, None]
-    stiff = np.einsum("eq,iq,jq->eij", section.EA * weights / sizes, slopes, slopes)
-    heavy = np.einsum("eq,iq,jq->eij", section.rhoA * weights * sizes, values, values)
-    first = _first(system)
+    stiff = np.einsum("eq,iq,jq->eij", (section.EA * weights / sizes)[front:], slopes, slopes)
+    heavy = np.einsum("eq,iq,jq->eij", (section.rhoA * weights * sizes)[front:], values, values)
+    first = _first(system)[: len(stiff)]
     unknowns = int(first[-1]) + mesh.order + 1
     lumps = np.zeros(unknowns)
+    lumps[0] = np.sum((section.rhoA * weights * sizes)[:front])
     for x, mass in masses:
-        lumps[mesh.order * mesh.node(x)] += mass
-    K = gather(first, unknowns, stiff, point=np.zeros(unknowns))
-    M = gather(first, unknowns, heavy, point=lumps)
-    count = min(_modes_below(system, below) + len(masses), unknowns - 2)
-    vectors = lowest(K, M, count=count + 1, shift=_shift(system))[:, 1:]  # the first is the rigid motion
-    return RodModes(vectors * np.where(vectors[0] < 0, -1.0, 1.0), system).below(below)
+        lumps[mesh.order * max(mesh.node(x) - front, 0)] += mass
+    return gather(first, unknowns, stiff, point=np.zeros(unknowns)), gather(first, unknowns, heavy, point=lumps)
+
+
+def _whole(vectors: Array, system: System, front: int) -> Array:
+    """Vectors of all of the cue's unknowns from those of node ``front`` on: before it nodes move with it, bubbles
+    vanish."""
+    order = system.mesh.order
+    before = np.zeros((order * front, vectors.shape[1]))
+    before[::order] = vectors[0]
+    return np.concatenate([before, vectors])
 
 
 def _modes_below(system: System, omega: float) -> int:

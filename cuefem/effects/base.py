@@ -39,6 +39,10 @@ class AxialVibrations(Vibrations, Protocol):
     def along(self) -> Array:
         """Mass-normalised displacement of the tip along the cue, 1/sqrt(kg), (n,)."""
 
+    @property
+    def radiation(self) -> Array | None:
+        """Of the last of the modes, (tail, tail), 1/s, where these are a tail; None without one."""
+
 
 @dataclass(frozen=True)
 class Effect:
@@ -89,7 +93,7 @@ class CueEffect(Effect):
     def add_to(self, terms: Terms) -> None:
         """Add the effect's point terms to the beam's."""
 
-    def vibrations(self, found: Modes, body_mass: float, effects: Sequence[CueEffect]) -> tuple[AxialVibrations, ...]:
+    def vibrations(self, found: Modes, cue: Cue, effects: Sequence[CueEffect]) -> tuple[AxialVibrations, ...]:
         """Families of modes beside the bending modes ``found``; effects: all that act on the cue."""
         return ()
 
