@@ -7,7 +7,7 @@ an octave below it. What that costs: studies/accuracy_cost.md, and `cuefem cost`
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -28,9 +28,10 @@ from cuefem.tail import Deflect, flexibility, tail
 # Rungs of the ladder: the first number of modes, the ratio of one rung to the next. Errors are first
 # estimated at rung `JUDGED`, an octave above the first.
 FIRST, RATIO, JUDGED = 8, 1.3, 3
-# Errors are taken to fall at least like n^-DECAY; each is judged by the WINDOW rungs below it, an octave. On the forty
-# scenes of tests/accuracy_scenes.py the true error is at most 2.7 times the estimate, at the median 0.16 times; with
-# two rungs it is up to 6 times, two octaves ask for a quarter more modes.
+# Errors are taken to fall at least like n^-DECAY; each is judged by the WINDOW rungs below it, an octave. Most fall
+# faster; the slowest are those of a tip that never slips under a dome, and of soft leather: the blow of the first touch
+# falls like 1/n, and the wave fronts that it sends out come back from every joint before the contact ends. How well the
+# estimates hold over random scenes with every effect: studies/resolve_errors.md.
 DECAY, WINDOW = 0.75, 3
 # What meshes and rounding leave, relative; of a lumped cue rounding alone.
 FLOOR, ROUNDING = 1e-8, 1e-12
@@ -64,12 +65,13 @@ class Rung(NamedTuple):
 def resolve(scene: Scene, rtol: float) -> Outcome:
     """Outcome of the coupled strike to relative accuracy ``rtol``, in (0, 1), at the least resolution that holds it.
 
-    Outcome.error is the estimate of the largest relative error of squirt, ball speed and spin; the true one is within
-    3 times of it on a family of forty scenes. Squirt and spin are taken relative to themselves, squirt to no less than
-    0.01 sin(phi) rad (where it passes through zero). An accuracy that `MOST` modes do not reach gives the best found:
-    its error is above rtol then. A contact that nearly parts and goes on has the
-    error of parting there. A lumped cue is exact but for rounding. Cost: cubic in the modes; all
-    rungs together take about twice the last.
+    Outcome.error is the estimate of the largest relative error of squirt, ball speed and spin; how well it holds over
+    random scenes with every effect is measured in studies/resolve_errors.md. Squirt and spin are taken relative to
+    themselves, squirt to no less than 0.01 sin(phi) rad (where it passes through zero). An accuracy that `MOST` modes
+    do not reach gives the best found: its error is above rtol then. A contact that nearly parts and goes on has the
+    error of parting there, one that parts and nearly goes on that of going on (but not of a dead tip, nor of a raised
+    cue). A lumped cue is exact but for rounding. Cost: cubic in the modes; all rungs together take about twice the
+    last.
     """
     rtol = RTOL.check("resolve rtol", rtol)
     if isinstance(scene.cue, LumpedCue):
@@ -93,7 +95,7 @@ def ladder(scene: Scene) -> Iterator[Rung]:
         if len(counts) > JUDGED:
             values = np.array([_judged(each) for each in outcomes]) / _scale(outcome, scene)
             error = estimated_error(counts, values)
-            courses = (_rungs_apart(outcomes, values), _other_course(counts, outcomes, scene))
+            courses = (_rungs_apart(outcomes, values), _other_course(outcomes, scene))
             error = max(error, *courses, _caught_up(outcome, scene, rung.tip))
             outcome = replace(outcome, error=error)
         yield Rung(rung.at, outcome)
@@ -104,17 +106,25 @@ def resolve_end_mass(scene: Scene, drive: Drive = "stick", rtol: float = 1e-4) -
     rtol, formula = RTOL.check("resolve_end_mass rtol", rtol), formula_of(drive)
     if isinstance(scene.cue, LumpedCue):
         return float(end_mass(scene, drive)), ROUNDING
+    found = None
+    for found in end_mass_ladder(scene, formula):
+        if found[2] <= rtol:
+            break
+    assert found is not None
+    return found[1:]
+
+
+def end_mass_ladder(scene: Scene, formula: Callable[[TipModes, Scene], float]) -> Iterator[tuple[int, float, float]]:
+    """(modes, end mass in kg, its estimated relative error) of ever more modes; infinite below rung `JUDGED`."""
     counts: list[int] = []
     values: list[float] = []
-    error = math.inf
     for rung in _tips(scene):
         counts.append(rung.at.modes)
         values.append(float(formula(rung.tip, scene)))
+        error = math.inf
         if len(counts) > JUDGED:
             error = estimated_error(counts, np.array(values)[:, None] / values[-1])
-        if error <= rtol:
-            break
-    return values[-1], error
+        yield counts[-1], values[-1], error
 
 
 def estimated_error(counts: list[int], values: Array) -> float:
@@ -151,10 +161,10 @@ def _rungs_apart(outcomes: list[Outcome], values: Array) -> float:
     return float(np.abs(values - values[-1])[other].max(initial=0.0))
 
 
-def _other_course(counts: list[int], outcomes: list[Outcome], scene: Scene) -> float:
+def _other_course(outcomes: list[Outcome], scene: Scene) -> float:
     """How far the last outcome is from that of a contact which parts where it may; zero where it may nowhere.
 
-    It may where its normal force dips to less than the error of the dip itself, judged by the rungs below as squirt is.
+    It may where its normal force dips to less than what the rungs below differ by in that dip.
     """
     outcome = outcomes[-1]
     if not outcome.duration or any(isinstance(effect, SecondHit) for effect in scene.effects):
@@ -167,7 +177,7 @@ def _other_course(counts: list[int], outcomes: list[Outcome], scene: Scene) -> f
     for dip in dips[np.argsort(force[dips])][:FEW_DIPS]:
         near = np.clip(time[dip] + SHIFT * time[-1] * np.linspace(-1, 1, 21), 0, time[-1])
         depths = [*(_lowest_force(each, near) for each in outcomes[:-1]), float(force[dip])]
-        if depths[-1] < force.max() * estimated_error(counts, np.array(depths)[:, None] / force.max()):
+        if depths[-1] < max(abs(depth - depths[-1]) for depth in depths):
             edge.append(int(dip))
     return max((_apart_at(dip, time, seen, outcome, scene) for dip in edge), default=0.0)
 

@@ -31,7 +31,11 @@ from cuefem import (
     TipDome,
     TipShear,
 )
+from cuefem.beam import assemble
 from cuefem.effects import Effect
+from cuefem.modes import TipModes, mesh_for, solve
+from cuefem.resolution import tip_modes_from, turning
+from cuefem.tail import tail
 
 SEED, SCENES = 20250, 160
 
@@ -40,7 +44,9 @@ def scene(number: int) -> Scene:
     """Scene ``number`` of the family."""
     rng = np.random.default_rng((SEED, number))
     cue, ball = _cue(rng), Ball(rng.uniform(0.14, 0.22), rng.uniform(0.025, 0.032), rng.uniform(0.3, 0.5))
-    restitution = float(rng.choice([0.0, 1.0, rng.uniform(0.05, 0.95), rng.uniform(0.6, 0.9)], p=[0.07, 0.07, 0.3, 0.56]))
+    restitution = float(
+        rng.choice([0.0, 1.0, rng.uniform(0.05, 0.95), rng.uniform(0.6, 0.9)], p=[0.07, 0.07, 0.3, 0.56])
+    )
     friction = float(rng.choice([math.inf, 0.0, rng.uniform(0.1, 1.5)], p=[0.15, 0.03, 0.82]))
     tip = Tip(restitution, friction, contact_time=float(np.exp(rng.uniform(math.log(3e-4), math.log(4e-3)))))
     stroke = Stroke(float(np.exp(rng.uniform(math.log(0.3), math.log(6)))), float(rng.uniform(-0.6, 0.6)))
@@ -73,7 +79,9 @@ def _cue(rng: np.random.Generator) -> Cue:
         pieces.append(
             Segment(float((ends[i + 1] - ends[i]) * length), first, last, material, hollow * first, hollow * last)
         )
-    return Cue(tuple(pieces), float(rng.choice([0.0, rng.uniform(0.1, 0.45)])) if length > 1 else rng.uniform(0.2, 0.45))
+    return Cue(
+        tuple(pieces), float(rng.choice([0.0, rng.uniform(0.1, 0.45)])) if length > 1 else rng.uniform(0.2, 0.45)
+    )
 
 
 def _effects(rng: np.random.Generator, cue: Cue, restitution: float) -> tuple[Effect, ...]:
@@ -104,3 +112,10 @@ def _effects(rng: np.random.Generator, cue: Cue, restitution: float) -> tuple[Ef
     if restitution > 0 and rng.random() < 0.15:
         chosen.append(SecondHit(10 ** rng.uniform(-3, -2)))
     return tuple(chosen)
+
+
+def reference(struck: Scene, modes: int) -> TipModes:
+    """Tip modes of the scene from many modes with their tail, on a mesh of one element more and two orders less."""
+    elements, order = mesh_for(struck.cue, modes)
+    system = assemble(struck.cue, elements=elements + 1, order=order - 2, effects=struck.cue_effects)
+    return tip_modes_from(tail(solve(system, modes), turning=turning(struck)), struck)
