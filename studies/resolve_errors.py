@@ -112,7 +112,7 @@ def summary(climbs: list[Climb]) -> list[str]:
     """How well the estimates hold over all rungs, and the accuracies asked for over all scenes."""
     ratios = np.array([ratio for climb in climbs for ratio in climb.ratios])
     lines = [
-        f"- {len(climbs)} scenes, {len(ratios)} rungs: true/estimate {np.median(ratios):.2f} at the median, above 1 in "
+        f"- {len(climbs)} of {family.SCENES} scenes, {len(ratios)} rungs: true/estimate {np.median(ratios):.2f} at the median, above 1 in "
         f"{100 * np.mean(ratios > 1):.1f} %, above 3 in {np.sum(ratios > 3)}, at most {ratios.max():.1f}"
     ]
     for rtol in ASKED:
