@@ -10,7 +10,21 @@ import pytest
 from accuracy_scenes import DOME, NAMES, SHEAR, endless_friction, family, scene
 from strike_scenes import CLOSED, imbalance
 
-from cuefem import Cue, Joint, Outcome, Scene, Support, resolve, resolve_end_mass
+from cuefem import (
+    AxialWaves,
+    Ball,
+    Cue,
+    Joint,
+    Material,
+    Outcome,
+    Scene,
+    Segment,
+    Stroke,
+    Support,
+    Tip,
+    resolve,
+    resolve_end_mass,
+)
 from cuefem.accuracy import DECAY, MOST, Rung, estimated_error, ladder
 from cuefem.beam import assemble
 from cuefem.endmass import formula_of
@@ -101,7 +115,7 @@ def test_what_the_tail_radiates_counts_as_cue_vibration() -> None:
     assert ended.energy["cue vibration"] == pytest.approx(plain.energy["cue vibration"], rel=0.05)
 
 
-@pytest.mark.parametrize(("decay", "most"), [(DECAY, 1.0), (1.5, 1.5), (2.0, 3.5), (3.0, 13.0)])
+@pytest.mark.parametrize(("decay", "most"), [(DECAY, 1.0), (1.0, 1.5), (1.5, 2.9), (2.0, 4.8), (3.0, 12.0)])
 def test_an_error_that_falls_as_fast_as_supposed_is_not_underestimated(decay: float, most: float) -> None:
     counts = [20, 26, 34, 44, 57, 74]
     values = 1 + 0.3 * np.array(counts, float)[:, None] ** -decay
@@ -109,10 +123,10 @@ def test_an_error_that_falls_as_fast_as_supposed_is_not_underestimated(decay: fl
     assert 1 - 1e-9 <= over <= most + 1e-9
 
 
-def test_an_error_that_falls_like_one_over_modes_is_held_within_three() -> None:
+def test_an_error_that_falls_like_one_over_the_root_of_modes_is_held_within_two() -> None:
     counts = [20, 26, 34, 44, 57, 74]
-    values = 1 + 0.3 / np.array(counts, float)[:, None]
-    assert 1 < (values[-1, 0] - 1) / estimated_error(counts, values) < 3
+    values = 1 + 0.3 / np.sqrt(np.array(counts, float))[:, None]
+    assert 1 < (values[-1, 0] - 1) / estimated_error(counts, values) < 2
 
 
 HANDFUL = {
@@ -146,6 +160,29 @@ def test_a_contact_that_nearly_parts_says_so() -> None:
     squirts = [rung.outcome.squirt for rung in climbed[-3:]]
     assert np.ptp(squirts) < 2e-3 * squirts[0]
     assert 0.1 < climbed[-1].outcome.error < 0.3
+
+
+def flips() -> Scene:
+    """A low, stiff blow on a cue with soft leather, whose contact nearly parts: rungs part at one number of modes and
+    go on at the next, and end 5 % apart."""
+    leather, wood = Material(6e7, 2e7, 1000.0), Material(9.57e9, 9.337e8, 711.6)
+    cue = Cue((Segment(0.006, 0.0106, 0.0106, leather), Segment(1.09965, 0.0106, 0.02376, wood)), 0.21651)
+    return Scene(cue, Ball(0.17, 0.03), Tip(0.75, 0.1, contact_time=7e-4), Stroke(1.0, 0.61), (AxialWaves(),))
+
+
+def test_the_error_of_a_contact_that_flips_from_rung_to_rung_holds() -> None:
+    """By the differences of the rungs alone 23 to 29 modes agree to 2e-3, and are 5 % off."""
+    here = flips()
+    climbed: list[Rung] = []
+    for rung in ladder(here):
+        climbed.append(rung)
+        if rung.at.modes > 80:
+            break
+    assert np.ptp([rung.outcome.ball_speed for rung in climbed[1:3]]) < 2e-3 * climbed[1].outcome.ball_speed
+    best = climbed[-1].outcome
+    for rung in climbed:
+        if rung.outcome.error is not None:
+            assert true_error(rung.outcome, judged(best), here) <= rung.outcome.error + best.error
 
 
 def test_end_masses_to_an_accuracy() -> None:
