@@ -171,8 +171,7 @@ def rows() -> list[list[object]]:
         made.append(_row(label, names, "stick end mass", np.concatenate([one.errors for one in found]), told))
     for waves in (False, True):
         for label, names in groups:
-            single = len(names) == 1
-            errors = np.concatenate([struck(name, 6 if single else 1, waves) for name in names])
+            errors = np.concatenate([struck(name, 6 if name in common.NAMES else 1, waves) for name in names])
             made.append(_row(label, names, "squirt, AxialWaves" if waves else "squirt", errors, None))
     return made
 
