@@ -169,8 +169,16 @@ def batch_stick(
 
     Notes
     -----
-    Accuracy on wood, over contact times of 0.5 to 3 ms: studies/batch_wood.md. The largest errors stand near
-    2L/c, when the front of the shear wave is just back at the tip; only more modes take them away.
+    Accuracy on 210 random wooden cues at 101 contact times from 0.5 to 3 ms (studies/batch_wood.md), ``ended``: median,
+    95 % and largest error of the end mass in 1e-3, of the worst of bare shafts, with ferrule, and with leather too:
+
+    - ``Resolution(1, 20, 12)``: 1.9, 15.2, 48.0
+    - ``Resolution(1, 30, 18)``: 1.1, 8.6, 31.6
+    - ``Resolution(1, 60, 36)``: 0.9, 4.0, 14.4
+    - ``Resolution(2, 52, 72)``: 0.7, 2.7, 8.7
+
+    The largest stand near 2L/c, when the front of the shear wave is just back at the tip; only more modes take them
+    away.
     """
     law = _law(batch, scenes)
     parts = []
