@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import os
 import shutil
+import socket
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -37,6 +39,7 @@ def served(folder: Path, *arguments: object, before: str = "") -> Iterator[str]:
             assert process.stdout is not None
             address = process.stdout.readline().strip()
             assert address.startswith("http://127.0.0.1:"), complaints.read_text()
+            _await_listening(int(address.rstrip("/").rsplit(":", 1)[1]))
             yield address
         finally:
             process.terminate()
@@ -44,6 +47,14 @@ def served(folder: Path, *arguments: object, before: str = "") -> Iterator[str]:
             process.stdout.close()
     assert complaints.read_text() == ""
     assert [path.name for path in folder.iterdir()] == ["stderr"]
+
+
+def _await_listening(port: int) -> None:
+    """Return when the server listens, which it does a moment after it says its address."""
+    for _ in range(PATIENCE // 50):
+        with suppress(OSError), socket.create_connection(("127.0.0.1", port), timeout=1):
+            return
+        time.sleep(0.05)
 
 
 @contextmanager
