@@ -14,6 +14,7 @@ MOST = 24  # multiples that are looked for
 WINDOW = 0.2  # s: the multiples are told apart, and a tap spoils few windows
 PIECE = 4.0  # s over which the grid keeps its frequency
 LIKE, STEADY = 0.35, 0.6  # a window's amplitude is like the median one within LIKE; a hum's are in STEADY of them
+LEAST = 3e-3  # of the sound's own amplitude: below may be the flank of a window of another tone
 FEWEST = 2  # multiples: a single steady line may be anything
 
 
@@ -68,7 +69,7 @@ def _steady(piece: Array, rate: float, mains: float) -> tuple[float, float, tupl
     turned = heard * np.exp(-1j * turns * best)[:, :, None]
     middle = np.median(turned.real, axis=0) + 1j * np.median(turned.imag, axis=0)
     like = (np.abs(turned - middle) <= LIKE * np.abs(middle)).mean(axis=0)  # (multiples, channels)
-    steady = (like >= STEADY).any(axis=1)
+    steady = ((like >= STEADY) & (np.abs(middle) > LEAST * size / 4 * np.sqrt(np.mean(piece**2)))).any(axis=1)
     strength = float(np.square(np.abs(middle[steady])).sum())
     # a tap shakes some multiples; where a few are steady, all up to the highest of them are the mains'
     multiples = tuple(range(1, int(k[steady][-1]) + 1)) if steady.sum() >= FEWEST else ()

