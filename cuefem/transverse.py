@@ -99,7 +99,7 @@ class StickLimit:
 
     def ringing(self, omega: Array, phi: Array, rigid: Any, *, tail: int) -> float:
         """Part of J, relative, that the ``tail`` highest vibrations of a held tip swing by, as long as they ring."""
-        W, residues, direct = _mobility(omega, phi, rigid + self.c)
+        W, residues, direct = mobility(omega, phi, rigid + self.c)
         J = direct * (self.K - 1) + residues @ self.swing(W)
         return float(np.sum((residues / W)[len(W) - tail :]) / J)
 
