@@ -28,7 +28,7 @@ PERIODS_KEPT, PLAIN_PERIODS = 30, 60
 LEAST, LEAST_STUCK = 40, 120
 # Never more than this by default, which a contact of a fraction of a millisecond would ask for: the tail does the rest,
 # and more would take over a second. MOST is the last rung of `resolve`.
-MOST_KEPT, MOST = 200, 400
+MOST_KEPT, MOST = 160, 400
 
 
 def default_resolution(scene: Scene, *, periods: float = PERIODS_KEPT, least: int = LEAST) -> Resolution:
