@@ -5,13 +5,15 @@ The public names are loaded when they are first used (PEP 562), so that `import 
 
 from __future__ import annotations
 
-import sys
 from importlib import import_module
-from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from cuefem.accuracy import resolve, resolve_end_mass
+    from cuefem.beam.modes import modes
+    from cuefem.contact.motion import motion
+    from cuefem.contact.place import Placed, place
+    from cuefem.contact.strike import strike
     from cuefem.cue import Cue, LumpedCue, Material, Segment
     from cuefem.effects import (
         AxialWaves,
@@ -27,14 +29,10 @@ if TYPE_CHECKING:
         TipDome,
         TipShear,
     )
-    from cuefem.endmass import end_mass, lump
-    from cuefem.impulse import impulse
+    from cuefem.endmass.drives import end_mass
+    from cuefem.endmass.lumped import impulse, lump
     from cuefem.io import load, save
-    from cuefem.modes import modes
-    from cuefem.motion import motion
-    from cuefem.place import Placed, place
     from cuefem.scene import Ball, Outcome, Resolution, Scene, Stroke, Tip
-    from cuefem.strike import strike
 
 __version__ = "0.1.0"
 
@@ -55,14 +53,14 @@ _HOMES = {
         "TipDome",
         "TipShear",
     ],
-    "endmass": ["end_mass", "lump"],
-    "impulse": ["impulse"],
+    "endmass.drives": ["end_mass"],
+    "endmass.lumped": ["impulse", "lump"],
     "io": ["load", "save"],
-    "modes": ["modes"],
-    "motion": ["motion"],
-    "place": ["Placed", "place"],
+    "beam.modes": ["modes"],
+    "contact.motion": ["motion"],
+    "contact.place": ["Placed", "place"],
     "scene": ["Ball", "Outcome", "Resolution", "Scene", "Stroke", "Tip"],
-    "strike": ["strike"],
+    "contact.strike": ["strike"],
 }
 _HOME = {name: home for home, names in _HOMES.items() for name in names}
 
@@ -112,15 +110,3 @@ def __getattr__(name: str) -> Any:
 
 def __dir__() -> list[str]:
     return sorted([*globals(), *_HOME])
-
-
-class _Package(ModuleType):
-    """Keeps `cuefem.modes` the function: importing the file modes.py would otherwise bind the module to that name."""
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        if isinstance(value, ModuleType) and _HOME.get(name) == name:
-            value = getattr(value, name)
-        super().__setattr__(name, value)
-
-
-sys.modules[__name__].__class__ = _Package

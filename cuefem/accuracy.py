@@ -1,7 +1,7 @@
 """An accuracy asked for, and the least work that reaches it: `resolve` and `resolve_end_mass`.
 
-`ladder` climbs the number of modes, each rung ended by a tail (`cuefem.tail`), and judges every rung by those within
-an octave below it. What that costs: studies/accuracy_cost.md, and `cuefem cost` for a scene of one's own.
+`ladder` climbs the number of modes, each rung ended by a tail (`cuefem.beam.tail`), and judges every rung by those
+within an octave below it. What that costs: studies/accuracy_cost.md, and `cuefem cost` for a scene of one's own.
 """
 
 from __future__ import annotations
@@ -14,16 +14,18 @@ from typing import NamedTuple
 import numpy as np
 
 from cuefem.beam import assemble
-from cuefem.contact import APART
+from cuefem.beam.modes import Modes, solve
+from cuefem.beam.tail import Deflect, flexibility, tail
+from cuefem.beam.tip import TipModes
+from cuefem.beam.waves import mesh_for, modes_below
+from cuefem.contact.linear import APART
+from cuefem.contact.strike import strike, strike_modes
 from cuefem.cue import Array, Cue, LumpedCue
 from cuefem.effects import Elevation, SecondHit
-from cuefem.endmass import Drive, end_mass, formula_of
-from cuefem.modes import Modes, TipModes, mesh_for, modes_below, solve
+from cuefem.endmass.drives import Drive, end_mass, formula_of
 from cuefem.quantity import Quantity, scalar
-from cuefem.resolution import MOST, tip_modes_from, turning
 from cuefem.scene import Outcome, Resolution, Scene
-from cuefem.strike import strike, strike_modes
-from cuefem.tail import Deflect, flexibility, tail
+from cuefem.tip_modes import MOST, tip_modes_from, turning
 
 # Rungs of the ladder: the first number of modes, the ratio of one rung to the next. Errors are first
 # estimated at rung `JUDGED`, an octave above the first.

@@ -153,7 +153,7 @@ class Outcome:
     velocity grew at first, the ordinary case of a light end mass. phases: the course of the contact. energy: joules
     by name, "initial" and its parts, which add up to it. unknowns: of the model that was solved. error: estimated
     relative error, None where nothing estimated it. history: forces and velocities during the contact at any time
-    (`cuefem.history.History`), None from the impulse solver.
+    (`cuefem.contact.history.History`), None from the impulse solver.
     """
 
     squirt: Any

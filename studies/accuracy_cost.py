@@ -1,7 +1,7 @@
 """What does accuracy cost: in the beam, in the modes kept, in the contact, and in the model itself?
 
 What: (a) element order against number of elements, in f1 to f10 and the velocity end mass (2 ms, 24 modes); (b) modes
-kept, as a plain sum and with `cuefem.tail`, in squirt, ball speed and spin; (c) exactly propagated phases against
+kept, as a plain sum and with `cuefem.beam.tail`, in squirt, ball speed and spin; (c) exactly propagated phases against
 scipy's solve_ivp and Newmark's steps on the very same phases; (d) the ladder of models from the paper's closed form to
 the coupled strike with effects, in squirt against the fullest. Errors are the largest over a family: five cues of
 meshes/ x (0.7 ms, b/R 0.4), (1 ms, 0.3), (2 ms, 0.1); in (c) Kim's four strokes of contact_cost.py. References: 12

@@ -31,14 +31,16 @@ from cuefem import (
 )
 from cuefem.accuracy import relative_error
 from cuefem.beam import assemble
-from cuefem.contact import Contact
-from cuefem.endmass import velocity
-from cuefem.flow import Arrival
-from cuefem.modes import Modes, mesh_for, solve, tip_modes
-from cuefem.resolution import tip_modes_from, turning
+from cuefem.beam.modes import Modes, solve
+from cuefem.beam.tail import tail
+from cuefem.beam.tip import tip_modes
+from cuefem.beam.waves import mesh_for
+from cuefem.contact.flow import Arrival
+from cuefem.contact.linear import Contact
+from cuefem.contact.strike import strike_modes
+from cuefem.endmass.drives import velocity
 from cuefem.scene import Resolution
-from cuefem.strike import strike_modes
-from cuefem.tail import tail
+from cuefem.tip_modes import tip_modes_from, turning
 
 HERE = Path(__file__).parent
 if str(HERE) not in sys.path:

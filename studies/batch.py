@@ -2,11 +2,10 @@
 
 What: eleven one-piece shafts 70 to 75 cm long, solid and hollow, of wood and carbon; (a) f1 to f5 at order 15; (b)
 the stick end mass by few modes: as a plain sum, ended by the tail with its dashpot that single cues have by default,
-and by the tail that fades (`cuefem.batch`, ended). At T = 0.7, 1 and 2 ms, and at 1.2, 1.3 and 1.4 ms, when the fastest
-bending waves are back from the joint as the contact ends. Reference: 250 modes with a tail, single cues; from about 170
-modes on it stands to 1e-5.
-Equations: physics.md sections 4 and 6. Writes batch.md and batch.svg (values) beside itself; takes about a minute.
-What it costs: batch_seconds.py.
+and by the tail that fades (`cuefem.design.batch`, ended). At T = 0.7, 1 and 2 ms, and at 1.2, 1.3 and 1.4 ms, when the
+fastest bending waves are back from the joint as the contact ends. Reference: 250 modes with a tail, single cues; from
+about 170 modes on it stands to 1e-5. Equations: physics.md sections 4 and 6. Writes batch.md and batch.svg (values)
+beside itself; takes about a minute. What it costs: batch_seconds.py.
 """
 
 from __future__ import annotations
@@ -19,13 +18,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cuefem import Cue, Material, Resolution, Segment
-from cuefem.batch import CueBatch, batch_frequencies, batch_stick
 from cuefem.beam import assemble
-from cuefem.endmass import end_mass, flexible, stick
-from cuefem.modes import Modes, mesh_for, solve
-from cuefem.resolution import tip_modes_from
-from cuefem.tail import flexibility, tail
-from cuefem.transverse import StickLimit
+from cuefem.beam.modes import Modes, solve
+from cuefem.beam.tail import flexibility, tail
+from cuefem.beam.waves import mesh_for
+from cuefem.design.batch import CueBatch, batch_frequencies, batch_stick
+from cuefem.endmass.drives import end_mass, flexible, stick
+from cuefem.endmass.undamped import StickLimit
+from cuefem.tip_modes import tip_modes_from
 from studies.common import STUDIES, cue, figure, scene, table
 
 MAPLE, ASH = Material(12.6e9, 0.84e9, 700.0), Material(13e9, 0.9e9, 680.0)

@@ -29,9 +29,9 @@ import psutil
 import scipy
 
 from cuefem import Resolution, Scene, Tip, end_mass, modes
-from cuefem.batch import CueBatch, batch_frequencies, batch_stick
 from cuefem.cue import SegmentRows
 from cuefem.design import Levels, Pool, Response, Row, Sample, Span, Study, Vary, processes, sweep
+from cuefem.design.batch import CueBatch, batch_frequencies, batch_stick
 from studies import batch
 from studies.common import STUDIES, cue, processor, scene, table
 

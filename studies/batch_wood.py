@@ -18,14 +18,15 @@ from itertools import pairwise
 import numpy as np
 
 from cuefem import Cue, Material, Resolution, Scene, Segment
-from cuefem.batch import CueBatch, batch_modes, stick_of
 from cuefem.beam import assemble
-from cuefem.endmass import flexible
+from cuefem.beam.modes import Modes, solve
+from cuefem.beam.tail import tail
+from cuefem.beam.waves import mesh_for
+from cuefem.design.batch import CueBatch, batch_modes, stick_of
+from cuefem.endmass.drives import flexible
+from cuefem.endmass.undamped import StickLimit, fade, mobility
 from cuefem.materials import material
-from cuefem.modes import Modes, mesh_for, solve
-from cuefem.resolution import tip_modes_from
-from cuefem.tail import tail
-from cuefem.transverse import StickLimit, fade, mobility
+from cuefem.tip_modes import tip_modes_from
 from studies.common import STUDIES, table
 
 KINDS = ("bare wood", "with a ferrule", "with ferrule and leather")

@@ -18,7 +18,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from cuefem import Cue, LumpedCue, Scene, Stroke, Tip, load
-from cuefem.impact import impact
+from cuefem.contact.impulse_space import impact
 from cuefem.validation import number
 
 STUDIES = Path(__file__).parent

@@ -1,11 +1,11 @@
 """What do exactly propagated phases cost against a general ODE solver, at equal accuracy?
 
 What: strokes of meshes/kim.toml (24 flexible modes, T = 1 ms, e = 3/4, mu = 0.7, a ball of 210 g) at four offsets, from
-little slip to a miscue, by cuefem.contact and by scipy's solve_ivp (DOP853, and Radau with its Jacobian) on the very
-same linear phases, their ends found by solve_ivp's events. Each solver's rtol is the loosest power of ten that holds
-squirt and ball speed of all four strokes to 1e-8 of the exact phases; those are checked against cells a third as long.
-Equations: physics.md section 5. Writes contact_cost.md (values, no seconds) and contact_cost_seconds.md (seconds, of
-the machine named there) beside itself; takes about 5 s.
+little slip to a miscue, by cuefem.contact.linear and by scipy's solve_ivp (DOP853, and Radau with its Jacobian) on the
+very same linear phases, their ends found by solve_ivp's events. Each solver's rtol is the loosest power of ten that
+holds squirt and ball speed of all four strokes to 1e-8 of the exact phases; those are checked against cells a third as
+long. Equations: physics.md section 5. Writes contact_cost.md (values, no seconds) and contact_cost_seconds.md (seconds,
+of the machine named there) beside itself; takes about 5 s.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ import scipy.linalg as la
 from scipy.integrate import solve_ivp
 
 from cuefem import Resolution
-from cuefem.contact import Contact, Laws, run
-from cuefem.flow import Arrival, Flow
-from cuefem.modes import TipModes
-from cuefem.resolution import tip_modes_of
+from cuefem.beam.tip import TipModes
+from cuefem.contact.flow import Arrival, Flow
+from cuefem.contact.linear import Contact, Laws, run
+from cuefem.tip_modes import tip_modes_of
 
 HERE = Path(__file__).parent
 if str(HERE) not in sys.path:

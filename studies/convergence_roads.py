@@ -13,11 +13,11 @@ import numpy as np
 from common import at_offset, cue, lumped_squirt, scene
 
 from cuefem import Cue, Resolution, Scene, squirt
-from cuefem.endmass import flexible, force, stick, stick_at_offset, velocity
-from cuefem.modes import TipModes
-from cuefem.resolution import default_resolution, tip_modes_of
-from cuefem.strike import strike_modes
-from cuefem.transverse import StickLimit
+from cuefem.beam.tip import TipModes
+from cuefem.contact.strike import strike_modes
+from cuefem.endmass.drives import flexible, force, stick, stick_at_offset, velocity
+from cuefem.endmass.undamped import StickLimit
+from cuefem.tip_modes import default_resolution, tip_modes_of
 
 OFFSETS = (0.1, 0.3, 0.5)
 STUB = 0.12  # m, [Kim]'s cue end

@@ -21,12 +21,14 @@ from typing import NamedTuple
 import numpy as np
 
 from cuefem import AxialWaves, Cue, Material, Segment, strike
-from cuefem.endmass import flexible, ringing
-from cuefem.modes import Modes, TipModes, modes, modes_below
-from cuefem.resolution import LEAST_STUCK, tip_modes_from
-from cuefem.strike import strike_modes
-from cuefem.tail import tail
-from cuefem.transverse import StickLimit
+from cuefem.beam.modes import Modes, modes
+from cuefem.beam.tail import tail
+from cuefem.beam.tip import TipModes
+from cuefem.beam.waves import modes_below
+from cuefem.contact.strike import strike_modes
+from cuefem.endmass.drives import flexible, ringing
+from cuefem.endmass.undamped import StickLimit
+from cuefem.tip_modes import LEAST_STUCK, tip_modes_from
 
 HERE = Path(__file__).parent
 if str(HERE) not in sys.path:
@@ -94,7 +96,7 @@ def kept(found: Modes, count: int) -> Modes:
 
 
 def stick_impulses(tip: TipModes, limit: StickLimit, times: np.ndarray) -> np.ndarray:
-    """J of a tip that sticks, kg, at all contact times: `cuefem.damped.stick_impulse` from one diagonalisation."""
+    """J of a tip that sticks, kg, at all contact times: `damped.stick_impulse` from one diagonalisation."""
     omega, phi, rigid = flexible(tip)
     moving = (tip.amplitude[:, 1] != 0) & (tip.omega > 0)
     n, row = len(omega), np.concatenate([np.zeros(len(omega)), phi, [np.sqrt(rigid)]])

@@ -28,11 +28,11 @@ import numpy as np
 from scipy.integrate import quad
 
 from cuefem import Cue, Resolution, TipDome
-from cuefem.endmass import equivalent_end_mass, small_offset_slope, stick
-from cuefem.modes import TipModes
-from cuefem.resolution import tip_modes_of
-from cuefem.strike import strike_modes
-from cuefem.transverse import StickLimit
+from cuefem.beam.tip import TipModes
+from cuefem.contact.strike import strike_modes
+from cuefem.endmass.drives import equivalent_end_mass, small_offset_slope, stick
+from cuefem.endmass.undamped import StickLimit
+from cuefem.tip_modes import tip_modes_of
 
 HERE = Path(__file__).parent
 if str(HERE) not in sys.path:

@@ -19,10 +19,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy.integrate import quad
 
-from cuefem.endmass import force, squirt_equivalent, stick, stick_at_offset, velocity
-from cuefem.resolution import tip_modes_of
-from cuefem.strike import strike_modes
-from cuefem.transverse import StickLimit
+from cuefem.contact.strike import strike_modes
+from cuefem.endmass.drives import force, squirt_equivalent, stick, stick_at_offset, velocity
+from cuefem.endmass.undamped import StickLimit
+from cuefem.tip_modes import tip_modes_of
 
 HERE = Path(__file__).parent
 if str(HERE) not in sys.path:

@@ -17,8 +17,8 @@ from pathlib import Path
 import numpy as np
 
 from cuefem import Outcome
-from cuefem.resolution import PLAIN_PERIODS, default_resolution, tip_modes_of
-from cuefem.strike import strike_modes
+from cuefem.contact.strike import strike_modes
+from cuefem.tip_modes import PLAIN_PERIODS, default_resolution, tip_modes_of
 
 HERE = Path(__file__).parent
 if str(HERE) not in sys.path:

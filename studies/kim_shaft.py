@@ -11,7 +11,7 @@ import math
 
 from cuefem import Ball, Outcome, Resolution, Scene, Stroke, Tip, squirt, strike
 from cuefem.effects import Effect, TipDome
-from cuefem.endmass import end_mass
+from cuefem.endmass.drives import end_mass
 from cuefem.validation import Claim
 from studies.kim_tone import CUE_MASS, DENSITY, MAPLE, MASS, SHAFT, front, nearest, pieces
 from studies.kim_walk import EPS, NU_C, B, degrees, quoted

@@ -17,9 +17,9 @@ from pathlib import Path
 import numpy as np
 
 from cuefem import squirt
+from cuefem.beam.modes import modes
 from cuefem.cue import Cue, Material, Segment
 from cuefem.effects import Support
-from cuefem.modes import modes
 
 SHAFT = {"length": 0.7, "tip_radius": 6e-3, "butt_radius": 10.5e-3}  # m
 MASS, CUE_MASS = 0.12, 0.54  # kg

@@ -1,7 +1,7 @@
 """What makes a shaft of little squirt: what buys how much squirt for how much stiffness?
 
-The stick end mass and the small-offset squirt at T = 1 ms (`cuefem.batch`), the static tip stiffness with the joint
-clamped. The first table changes one thing at a time on the hollow-front shaft of meshes/; the second compares the
+The stick end mass and the small-offset squirt at T = 1 ms (`cuefem.design.batch`), the static tip stiffness with the
+joint clamped. The first table changes one thing at a time on the hollow-front shaft of meshes/; the second compares the
 shafts of meshes/ by the coupled strike at b/R = 0.3, bare and with dome and shear of the tip. The third is the shaft of
 least squirt that is as stiff as the solid one, found by gradients (`least_squirt`) and by a quasi-random search, and
 struck. The figure has Pareto fronts of squirt against stiffness and mass (`front`, NSGA-II of pymoo, within 5 %) over
@@ -17,8 +17,8 @@ from functools import cache
 import numpy as np
 
 from cuefem import Cue, Resolution, TipDome, TipShear, resolve, strike
-from cuefem.batch import CueBatch, batch_stick
-from cuefem.optimum import Design, Limit, Variable, front, least_squirt, search
+from cuefem.design.batch import CueBatch, batch_stick
+from cuefem.design.optimum import Design, Limit, Variable, front, least_squirt, search
 from studies.common import STUDIES, cue, figure, scene, table
 
 AT = Resolution(2, 14, 40)

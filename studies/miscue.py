@@ -6,7 +6,7 @@ the paper's own condition mu = tan(phi). And where slip stops ending in compress
 is not valid: where the paper's mu = 0.6 stops working.
 Equations: a miscue is slip that still goes on when e^2 of the normal work is regained,
 tan(phi) (B_nn + mu B_tn) = (1 + e) (mu B_tt + B_tn), a cubic in tan(phi) (cuefem.squirt.miscue_offset); the table's
-last column finds the same edge by bisection on the regime of the general solver (cuefem.impact).
+last column finds the same edge by bisection on the regime of the general solver (cuefem.contact.impulse_space).
 `python -m studies.miscue` writes miscue.md and miscue.svg beside itself; takes a second.
 """
 
@@ -22,8 +22,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 from cuefem import squirt
+from cuefem.contact.impulse_space import impact
 from cuefem.cue import LumpedCue
-from cuefem.impact import impact
 from cuefem.scene import Ball, Scene, Stroke, Tip
 
 E, NU, NU_C = 0.75, 0.4, 0.136

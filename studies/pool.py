@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 
 from cuefem import Ball, Cue, Scene, Stroke, Tip, TipDome, TipShear
+from cuefem.beam.tip import TipModes
+from cuefem.contact.strike import strike_modes
 from cuefem.materials import material
-from cuefem.modes import TipModes
-from cuefem.resolution import tip_modes_of
-from cuefem.strike import strike_modes
+from cuefem.tip_modes import tip_modes_of
 
 common = import_module("common")
 

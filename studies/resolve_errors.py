@@ -20,8 +20,8 @@ import numpy as np
 
 from cuefem import Elevation, PowerLawTip, RollingContact
 from cuefem.accuracy import end_mass_ladder, ladder, relative_error
-from cuefem.endmass import stick
-from cuefem.strike import strike_modes
+from cuefem.contact.strike import strike_modes
+from cuefem.endmass.drives import stick
 
 HERE = Path(__file__).parent
 if str(HERE) not in sys.path:

@@ -32,10 +32,12 @@ from cuefem import (
     TipShear,
 )
 from cuefem.beam import assemble
+from cuefem.beam.modes import solve
+from cuefem.beam.tail import tail
+from cuefem.beam.tip import TipModes
+from cuefem.beam.waves import mesh_for
 from cuefem.effects import Effect
-from cuefem.modes import TipModes, mesh_for, solve
-from cuefem.resolution import tip_modes_from, turning
-from cuefem.tail import tail
+from cuefem.tip_modes import tip_modes_from, turning
 
 SEED, SCENES = 20250, 160
 

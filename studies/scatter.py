@@ -2,8 +2,8 @@
 
 Causes, with sources, stand in scatter_maple.toml: wood (E, G and density, correlated), turning by +-0.05 mm, ferrule,
 leather from new to worn, ball, contact time, and with them the dome and the shear of the tip. Monte Carlo over
-scrambled Sobol points; Sobol indices by Saltelli's estimators (`cuefem.scatter`), correlated wood as one cause. The
-coupled strike at b/R = 0.3, bare and with dome and tip shear. About 30 s.
+scrambled Sobol points; Sobol indices by Saltelli's estimators (`cuefem.design.scatter`), correlated wood as one cause.
+The coupled strike at b/R = 0.3, bare and with dome and tip shear. About 30 s.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from functools import cache
 import numpy as np
 
 from cuefem.design import Response
+from cuefem.design.scatter import Drivers, Scatter, drivers, spread
 from cuefem.io.study import load_scatter
-from cuefem.scatter import Drivers, Scatter, drivers, spread
 from studies.common import STUDIES, figure, table
 
 MODELS = ("bare", "dome and tip shear")

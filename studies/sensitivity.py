@@ -1,8 +1,8 @@
 """Where along a cue does its end mass live: what does a gram put here add?
 
 For each cue of meshes/ and contacts of 0.7, 1 and 2 ms, the stick end mass's density of derivatives to mass
-(`cuefem.sensitivity`): one gram at x adds so many grams of end mass. The gram moves along the axis too; its share of
-that, m_a dm/dm_a, is counted in the curves and under 0.001 g. The table splits the end mass by the sum rule of
+(`cuefem.design.sensitivity`): one gram at x adds so many grams of end mass. The gram moves along the axis too; its
+share of that, m_a dm/dm_a, is counted in the curves and under 0.001 g. The table splits the end mass by the sum rule of
 physics.md section 6 into what mass (rho A), its turning (rho I), bending (EI) and shear (kGA) stiffness hold; what is
 left to 100 % is the stick law's own dependence on ball and axial mass.
 
@@ -17,8 +17,8 @@ from functools import cache
 
 import numpy as np
 
-from cuefem.resolution import default_resolution
-from cuefem.sensitivity import Sensitivity, sensitivity
+from cuefem.design.sensitivity import Sensitivity, sensitivity
+from cuefem.tip_modes import default_resolution
 from studies.common import NAMES, STUDIES, cue, figure, scene, table
 
 TIMES = (0.7e-3, 1e-3, 2e-3)

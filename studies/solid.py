@@ -17,10 +17,11 @@ from functools import cache
 import numpy as np
 
 from cuefem import Cue, Material, Segment, modes
+from cuefem.beam.tip import tip_modes
+from cuefem.beam.waves import modes_below
 from cuefem.cue import shear_coefficient
-from cuefem.endmass import formula_of
+from cuefem.endmass.drives import formula_of
 from cuefem.materials import material
-from cuefem.modes import modes_below, tip_modes
 from studies.common import STUDIES, cue, figure, scene, table
 from studies.solid_body import MAPLE, Array, Body, Fineness, SolidModes, Transverse
 

@@ -24,9 +24,9 @@ import scipy.linalg as la
 
 from cuefem import Resolution, end_mass, modes, resolve, strike
 from cuefem.beam import assemble
-from cuefem.modes import mesh_for
-from cuefem.resolution import tip_modes_of
-from cuefem.strike import strike_modes
+from cuefem.beam.waves import mesh_for
+from cuefem.contact.strike import strike_modes
+from cuefem.tip_modes import tip_modes_of
 
 HERE = Path(__file__).parent
 if str(HERE) not in sys.path:

@@ -2,7 +2,7 @@
 
 Each cue of meshes/ is given other wood (`TRUE` times its file's E, G and density), hung free and tapped at its butt end
 by a half-sine of 0.3 ms; two microphones near the tip hear the sum of its damped modes, sampled at 48 kHz with 16 bits,
-in white noise. `cuefem.tap` has the file, the weighed mass and the recording; errors are medians over `SEEDS`.
+in white noise. `cuefem.tap.wood` has the file, the weighed mass and the recording; errors are medians over `SEEDS`.
 
 `python -m studies.tap example.wav` writes such a recording of pool_maple to try `cuefem tap` on. About 100 s.
 """
@@ -20,12 +20,12 @@ from scipy.io import wavfile
 
 from cuefem import Cue, end_mass, modes
 from cuefem.effects.loss import section_loss
-from cuefem.matching import main_material, with_material
 from cuefem.report.tap import draw_spectrum
-from cuefem.ringing import ringing
-from cuefem.tap import TapTest
-from cuefem.tap_fit import TapFit
-from cuefem.tones import tones
+from cuefem.tap.fit import TapFit
+from cuefem.tap.matching import main_material, with_material
+from cuefem.tap.ringing import ringing
+from cuefem.tap.tones import tones
+from cuefem.tap.wood import TapTest
 from studies.common import NAMES, STUDIES, cue, figure, scene, table
 
 TRUE = {"E": 1.15, "G": 0.85, "rho": 1.06}

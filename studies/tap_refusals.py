@@ -16,12 +16,12 @@ import numpy as np
 from scipy.stats import beta
 
 from cuefem import Cue, Material, Segment
-from cuefem.matching import main_material, with_material
 from cuefem.materials import MATERIALS, WOODS, material
-from cuefem.ringing import ringing
-from cuefem.tap import TapTest
-from cuefem.tap_fit import TapFit
-from cuefem.tones import tones
+from cuefem.tap.fit import TapFit
+from cuefem.tap.matching import main_material, with_material
+from cuefem.tap.ringing import ringing
+from cuefem.tap.tones import tones
+from cuefem.tap.wood import TapTest
 from studies import tap, tap_sounds
 from studies.common import NAMES, STUDIES, cue, table
 

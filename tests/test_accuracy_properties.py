@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from accuracy_scenes import endless_friction, scene
 from hypothesis import given, settings
-from strike_scenes import lumped_scenes, numbers, sound
 
 from cuefem import LumpedCue, Scene, Stroke, resolve, resolve_end_mass, strike
 from cuefem.accuracy import MOST, ladder
+from tests.helpers.accuracy_scenes import endless_friction, scene
+from tests.helpers.strike_scenes import lumped_scenes, numbers, sound
 
 KIM = scene("kim", 1e-3, 0.3)
 

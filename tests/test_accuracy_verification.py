@@ -7,8 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from accuracy_scenes import DOME, NAMES, SHEAR, endless_friction, family, scene
-from strike_scenes import CLOSED, imbalance
 
 from cuefem import (
     AxialWaves,
@@ -27,11 +25,14 @@ from cuefem import (
 )
 from cuefem.accuracy import DECAY, MOST, Rung, estimated_error, ladder
 from cuefem.beam import assemble
-from cuefem.endmass import formula_of
-from cuefem.modes import Modes, mesh_for, solve
-from cuefem.resolution import tip_modes_from, turning
-from cuefem.strike import strike_modes
-from cuefem.tail import tail
+from cuefem.beam.modes import Modes, solve
+from cuefem.beam.tail import tail
+from cuefem.beam.waves import mesh_for
+from cuefem.contact.strike import strike_modes
+from cuefem.endmass.drives import formula_of
+from cuefem.tip_modes import tip_modes_from, turning
+from tests.helpers.accuracy_scenes import DOME, NAMES, SHEAR, endless_friction, family, scene
+from tests.helpers.strike_scenes import CLOSED, imbalance
 
 
 def all_modes(scene: Scene, count: int, *, order: int = 0) -> Modes:

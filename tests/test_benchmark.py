@@ -16,16 +16,17 @@ from typing import Any
 
 import numpy as np
 import pytest
-from cues import kim, pool, scene
-from strike_scenes import KIM_AT, kim_scene
 
 from cuefem import Cue, Resolution, end_mass, modes, resolve, strike
 from cuefem.beam import assemble
-from cuefem.contact import Contact, Laws, run
-from cuefem.endmass import stick
-from cuefem.modes import solve, tip_modes
-from cuefem.resolution import tip_modes_of
-from cuefem.strike import strike_modes
+from cuefem.beam.modes import solve
+from cuefem.beam.tip import tip_modes
+from cuefem.contact.linear import Contact, Laws, run
+from cuefem.contact.strike import strike_modes
+from cuefem.endmass.drives import stick
+from cuefem.tip_modes import tip_modes_of
+from tests.helpers.cues import kim, pool, scene
+from tests.helpers.strike_scenes import KIM_AT, kim_scene
 
 
 def test_modes_of_kim(benchmark: Any) -> None:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from cues import scaled
 from hypothesis import given
 from hypothesis import strategies as st
 
 from cuefem import Cue, Material, Segment
 from cuefem.cue import shear_coefficient
+from tests.helpers.cues import scaled
 
 # From foam to steel; G of each stays below E/(2 nu).
 materials = st.builds(

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from cues import CARBON, FAMILY, FOAM, KIM_DENSITY, LEATHER, MAPLE, kim, soft_tip
 
 from cuefem import Cue, LumpedCue, Material, Segment
 from cuefem.cue import shear_coefficient
+from tests.helpers.cues import CARBON, FAMILY, FOAM, KIM_DENSITY, LEATHER, MAPLE, kim, soft_tip
 
 POINTS, WEIGHTS = (part / 2 for part in np.polynomial.legendre.leggauss(8))
 

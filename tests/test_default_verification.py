@@ -2,13 +2,14 @@
 
 import numpy as np
 import pytest
-from cues import LEATHER, MAPLE, kim, scene
 
 from cuefem import Cue, Material, Resolution, Segment, end_mass
-from cuefem.endmass import end_mass_spreads, formula_of
-from cuefem.modes import even_mesh_for, mesh_for, modes
-from cuefem.resolution import LEAST_STUCK, MOST_KEPT, default_resolution, tip_modes_from
-from cuefem.tail import tail
+from cuefem.beam.modes import modes
+from cuefem.beam.tail import tail
+from cuefem.beam.waves import even_mesh_for, mesh_for
+from cuefem.endmass.drives import end_mass_spreads, formula_of
+from cuefem.tip_modes import LEAST_STUCK, MOST_KEPT, default_resolution, tip_modes_from
+from tests.helpers.cues import LEATHER, MAPLE, kim, scene
 
 BRASS = Material(1e11, 3.7e10, 8500.0)
 SHORT = Segment(0.001, 0.012, 0.012, LEATHER)

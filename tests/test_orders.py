@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from orders import assert_order, observed_orders
+
+from tests.helpers.orders import assert_order, observed_orders
 
 STEPS = 1 / np.array([2.0, 4, 8, 16])
 

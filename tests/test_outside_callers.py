@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from strike_scenes import imbalance, kim_scene
 
 import cuefem as cf
+from tests.helpers.strike_scenes import imbalance, kim_scene
 
 SIGNATURES = {
     "modes": ["cue", "count", "near", "effects", "at"],

@@ -12,11 +12,11 @@ from pathlib import Path
 import meshio
 import numpy as np
 import pytest
-from command_line import call
 
 import cuefem
 from cuefem.cli import main
 from cuefem.io.paraview import shaft_surface
+from tests.helpers.command_line import call
 
 ROOT = Path(__file__).parents[1]
 TEXT = (ROOT / "README.md").read_text(encoding="utf-8")

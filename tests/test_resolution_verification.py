@@ -4,13 +4,14 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from cues import scene
 
 from cuefem import Cue, end_mass, load
-from cuefem.endmass import Drive, formula_of
-from cuefem.modes import TipModes, modes
-from cuefem.resolution import default_resolution, tip_modes_from, tip_modes_of
-from cuefem.tail import tail
+from cuefem.beam.modes import modes
+from cuefem.beam.tail import tail
+from cuefem.beam.tip import TipModes
+from cuefem.endmass.drives import Drive, formula_of
+from cuefem.tip_modes import default_resolution, tip_modes_from, tip_modes_of
+from tests.helpers.cues import scene
 
 MESHES = Path(__file__).parents[1] / "meshes"
 CUES = ["kim", "pool_maple", "pool_hollow", "carbon", "whole_cue"]

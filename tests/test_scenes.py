@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from command_line import call
 
 import cuefem as cf
 from cuefem.accuracy import resolve
 from cuefem.io import load_accuracy
+from tests.helpers.command_line import call
 
 SCENES = Path(__file__).parent.parent / "studies" / "scenes"
 MESHES = SCENES.parent.parent / "meshes"

@@ -9,11 +9,11 @@ from typing import Any
 
 import click
 
-from cuefem.cli.cue import cost, effects, end_mass, modes, report, strike
 from cuefem.cli.designer import designer
 from cuefem.cli.files import convert, materials, schema
 from cuefem.cli.handover import animate, handover
 from cuefem.cli.scatter import scatter
+from cuefem.cli.scene import cost, effects, end_mass, modes, report, strike
 from cuefem.cli.sweep import sweep
 from cuefem.cli.tap import tap
 from cuefem.cli.validate import validate

@@ -113,7 +113,7 @@ def scene_of(file: Path, given: dict[str, Any]) -> tuple[Scene, list[str]]:
 
 def remark(scene: Scene) -> None:
     """Say on stderr what is unusual, as a wrong unit makes it."""
-    from cuefem.io.unusual import unusual
+    from cuefem.report.unusual import unusual
 
     for line in unusual(scene):
         click.echo(f"unusual: {line}", err=True)
@@ -151,9 +151,9 @@ def with_body(cue: Cue | LumpedCue, file: Path, given: str) -> Cue:
 
 def show(file: Path, given: dict[str, Any], results: Callable[[Scene], Any], tables: Callable[..., Any]) -> None:
     """Compute all of it first, then print it all: as JSON, or as a heading and tables."""
-    from cuefem.io.unusual import unusual
-    from cuefem.report.records import UNITS, plain, scene_record
-    from cuefem.report.tables import cue_line, effect_words
+    from cuefem.report.record import UNITS, plain, scene_record
+    from cuefem.report.unusual import unusual
+    from cuefem.report.words import cue_line, effect_words
 
     scene, notes = scene_of(file, given)
     with blaming(file):
@@ -172,7 +172,7 @@ def show(file: Path, given: dict[str, Any], results: Callable[[Scene], Any], tab
 
 def print_json(record: Any) -> None:
     """Print a record for programs."""
-    from cuefem.report.records import plain
+    from cuefem.report.record import plain
 
     click.echo(json.dumps(plain(record), indent=2, allow_nan=False, ensure_ascii=False))
 

@@ -43,9 +43,9 @@ DRIVES = ("A.31", "stick", "offset", "velocity", "force", "squirt")
 def handover(file: Path, whom: str, drive: Any, output: Path | None, as_json: bool, **given: Any) -> None:
     """The end mass as a simulator takes it: pooltool's CueSpecs, and what the number means and is worth; JSON, SI."""
     from cuefem.io import InputError, write_whole
-    from cuefem.io.unusual import unusual
     from cuefem.report.handover import pooltool_record
-    from cuefem.report.records import plain
+    from cuefem.report.record import plain
+    from cuefem.report.unusual import unusual
 
     if output is not None and output.suffix != ".json":
         raise InputError(output, "--output", f"must end in .json; got {output.suffix!r}")
@@ -96,10 +96,10 @@ def _animation(scene: Scene, *, count: int, frames: int, until: float | None, sc
     """Compute all of it, and return what writes it into a folder."""
     import numpy as np
 
+    from cuefem.beam.modes import modes
+    from cuefem.contact.motion import last_contact, motion
     from cuefem.cue import Cue
     from cuefem.io.paraview import save_modes, save_strike
-    from cuefem.modes import modes
-    from cuefem.motion import last_contact, motion
 
     last = 3 * last_contact(scene) if until is None else until
     moving = motion(scene, np.linspace(0, last, frames))

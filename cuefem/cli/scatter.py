@@ -21,9 +21,9 @@ def scatter(study: Path, as_json: bool, **where: Any) -> None:
 
     STUDY is that of a sweep, with [sample], and with correlations and groups. Shares are Sobol indices.
     """
+    from cuefem.design.scatter import drivers
     from cuefem.io.study import load_scatter
     from cuefem.report.scatter import scatter_record, scatter_tables
-    from cuefem.scatter import drivers
 
     wanted, sample = load_scatter(study)
     remark(wanted.study.base)

@@ -21,10 +21,10 @@ from cuefem.cli.common import (
 )
 
 if TYPE_CHECKING:
-    from cuefem.ringing import Ringing
     from cuefem.scene import Scene
-    from cuefem.tap import Predicted
-    from cuefem.tap_fit import TapFit
+    from cuefem.tap.fit import TapFit
+    from cuefem.tap.ringing import Ringing
+    from cuefem.tap.wood import Predicted
 
 
 @click.command(short_help="The shaft's wood by ear: E, G, density from a tapped sound.")
@@ -49,9 +49,9 @@ def tap(recording: Path, file: Path, output: Path | None, figure: Path | None, f
     are not this shaft's, or the wood is like no such wood, nothing is told or written without --force (status 1).
     """
     from cuefem.io import FIGURES, InputError, check_place, save, save_figure
-    from cuefem.io.unusual import unusual
-    from cuefem.report.records import scene_record
+    from cuefem.report.record import scene_record
     from cuefem.report.tap import UNITS, tap_figure, tap_record, tap_tables
+    from cuefem.report.unusual import unusual
 
     if figure is not None and figure.suffix not in FIGURES:
         raise InputError(figure, "--figure", f"must end in .png or .svg; got {figure.suffix!r}")
@@ -85,9 +85,9 @@ def _heard(recording: Path, file: Path, scene: Scene, given: dict[str, Any]) -> 
     from cuefem.io import InputError
     from cuefem.io.sound import load_recording
     from cuefem.quantity import Quantity
-    from cuefem.ringing import ringing
-    from cuefem.tap import TapTest
-    from cuefem.tones import tones
+    from cuefem.tap.ringing import ringing
+    from cuefem.tap.tones import tones
+    from cuefem.tap.wood import TapTest
 
     if not isinstance(scene.cue, Cue):
         raise InputError(file, "", "must hold a cue of segments: a lumped cue has no tones")
@@ -103,8 +103,8 @@ def _heard(recording: Path, file: Path, scene: Scene, given: dict[str, Any]) -> 
 
 def _predicted(file: Path, scene: Scene, found: TapFit) -> tuple[dict[str, Predicted], str]:
     """The scene's numbers with the fitted wood, and the regime of its stroke."""
-    from cuefem.strike import strike
-    from cuefem.tap import predicted
+    from cuefem.contact.strike import strike
+    from cuefem.tap.wood import predicted
 
     with blaming(file):
         return predicted(scene, found), strike(replace(scene, cue=found.cue)).regime
@@ -114,7 +114,7 @@ def _updated(file: Path, scene: Scene, found: TapFit, given: dict[str, Any]) -> 
     """What FILE holds, a cue or a scene, with the fitted wood to six digits."""
     from cuefem.cue import Cue
     from cuefem.io import load
-    from cuefem.matching import with_material
+    from cuefem.tap.matching import with_material
 
     short = {name: float(f"{getattr(found.wood, name):.6g}") for name in ("E", "G", "rho", "loss", "nu")}
     cue = with_material(found.cue, found.wood, replace(found.wood, **short))

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 def validate(studies: Path, as_json: bool) -> None:
     """What the sources print beside what follows: every claim of every study, in a clone of the repository."""
     from cuefem.report import claims_record, claims_table
-    from cuefem.report.tables import VERDICT_WORDS
+    from cuefem.report.claims import VERDICT_WORDS
 
     found = claims_record(_claims(studies))
     if as_json:

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cuefem.batch import BLOCK
+from cuefem.beam.waves import even_mesh_for, modes_below
 from cuefem.cue import Array, Cue
+from cuefem.design.batch import BLOCK
 from cuefem.design.responses import Response
 from cuefem.design.solvers import OneByOne, Solver, Together
-from cuefem.modes import even_mesh_for, modes_below
-from cuefem.resolution import PERIODS_KEPT
 from cuefem.scene import Resolution, Scene
+from cuefem.tip_modes import PERIODS_KEPT
 
 # What a design may fail with: it cannot be made, has no answer, or its numbers break down.
 Failed = (ValueError, RuntimeError, ArithmeticError, np.linalg.LinAlgError)

@@ -9,16 +9,17 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from cuefem.batch import BatchModes, CueBatch, Stick, batch_frequencies, batch_modes, stick_of
 from cuefem.beam import assemble
+from cuefem.beam.modes import Modes, solve
+from cuefem.beam.tip import TipModes, lumped_tip_modes
+from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array, Cue, LumpedCue
+from cuefem.design.batch import BatchModes, CueBatch, Stick, batch_frequencies, batch_modes, stick_of
 from cuefem.effects import Support
-from cuefem.endmass import flexible, small_offset_slope, stick, stick_at_offset
-from cuefem.modes import Modes, TipModes, lumped_tip_modes, solve
-from cuefem.resolution import tip_modes_from
+from cuefem.endmass.drives import flexible, small_offset_slope, stick, stick_at_offset
+from cuefem.endmass.undamped import StickLimit
 from cuefem.scene import Outcome, Resolution, Scene
-from cuefem.strike import strike_modes
-from cuefem.transverse import StickLimit
+from cuefem.tip_modes import tip_modes_from
 
 
 class Solver(Protocol):
@@ -90,7 +91,7 @@ class _Strikes:
 
 
 class Together(_Strikes):
-    """Bare cues of one topology, as arrays (`cuefem.batch`); at most some hundred, whose matrices lie in memory."""
+    """Bare cues of one topology, as arrays (`CueBatch`); at most some hundred, whose matrices lie in memory."""
 
     def __init__(self, scenes: Sequence[Scene], at: Resolution, frequencies: int) -> None:
         super().__init__()

@@ -10,16 +10,21 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+from cuefem.beam.modes import Modes, modes
+from cuefem.beam.tip import TipModes
+from cuefem.beam.waves import mesh_for
+from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array
+from cuefem.design.sensitivity import sensitivity
 from cuefem.design.solvers import static_tip_stiffness
 from cuefem.designer.model import cue_of
-from cuefem.endmass import Drive, equivalent_end_mass, formula_of
-from cuefem.modes import Modes, TipModes, mesh_for, modes
-from cuefem.report.records import DRIVES, Record, outcome_record, two_part_curve
-from cuefem.resolution import default_resolution, tip_modes_of
+from cuefem.endmass.drives import Drive, equivalent_end_mass, formula_of
+from cuefem.report.end_mass import DRIVES
+from cuefem.report.record import Record
+from cuefem.report.squirt import two_part_curve
+from cuefem.report.strike import outcome_record
 from cuefem.scene import Outcome, Resolution, Scene
-from cuefem.sensitivity import sensitivity
-from cuefem.strike import strike_modes
+from cuefem.tip_modes import default_resolution, tip_modes_of
 
 TONES = 5  # bending modes that are shown
 OFFSETS = tuple(round(0.06 * i, 2) for i in range(1, 11))  # b/R of both curves

@@ -30,11 +30,11 @@ from cuefem.designer.model import Knobs, knobs_of, turned
 from cuefem.designer.sliders import Choice, Slider, choices, sliders, without
 from cuefem.designer.style import SCRIPT, STYLE
 from cuefem.io.toml import toml_text
-from cuefem.io.unusual import unusual
-from cuefem.report.fragments import page_style
 from cuefem.report.page import page as report_page
-from cuefem.report.records import scene_record
-from cuefem.report.tables import assumptions, effect_words, plain_cue_line
+from cuefem.report.record import scene_record
+from cuefem.report.templates import page_style
+from cuefem.report.unusual import unusual
+from cuefem.report.words import assumptions, effect_words, plain_cue_line
 from cuefem.scene import Scene
 
 HOST = "127.0.0.1"

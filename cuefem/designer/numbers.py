@@ -9,7 +9,9 @@ from typing import NamedTuple
 
 from cuefem.designer.answers import Answers, note
 from cuefem.designer.model import cue_of
-from cuefem.report.tables import MISCUE, NONE, degrees, grams, millimetres, significant
+from cuefem.report.strike import MISCUE
+from cuefem.report.table import NONE
+from cuefem.report.words import degrees, grams, millimetres, significant
 
 
 class Row(NamedTuple):

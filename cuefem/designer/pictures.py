@@ -9,10 +9,10 @@ import numpy as np
 from cuefem.cue import Array
 from cuefem.designer.answers import Answers, Curve, Density
 from cuefem.designer.model import cue_of
-from cuefem.report import figures
+from cuefem.report import charts as figures
+from cuefem.report.charts import Axis, Mark, chart
 from cuefem.report.drawings import cue_drawing, front_drawing, materials_of, modes_drawing, style_of
-from cuefem.report.figures import Axis, Mark, chart
-from cuefem.report.fragments import chart_markup, cue_markup, shapes_markup
+from cuefem.report.templates import chart_markup, cue_markup, shapes_markup
 from cuefem.scene import Scene
 
 LONGEST_PIVOT = 1.5  # m; beyond it a pivot is behind the cue

@@ -4,10 +4,10 @@ Every effect adds to what is there and overwrites nothing, so their order does n
 effect adds, when it matters, when it is wrong, and where it comes from.
 """
 
+from cuefem.effects.at_tip import PowerLawTip, RollingContact, TipDome, TipShear
 from cuefem.effects.base import CueEffect, Effect, TipEffect, Vibrations, check_effects
-from cuefem.effects.nonlinear import Elevation, PowerLawTip, RollingContact, SecondHit
 from cuefem.effects.on_cue import AxialWaves, Joint, PointMass, StructuralDamping, Support
-from cuefem.effects.tip import TipDome, TipShear
+from cuefem.effects.stroke import Elevation, SecondHit
 
 __all__ = [
     "AxialWaves",

@@ -11,16 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cuefem.beam import System, gather, line_basis, table
+from cuefem.beam.modes import lowest
+from cuefem.beam.tail import inverse, ritz
 from cuefem.cue import Array, Section
-from cuefem.modes import lowest
-from cuefem.tail import inverse, ritz
 
 
 @dataclass(frozen=True)
 class RodModes:
     """Flexible rod modes, ascending: vectors (unknowns, n) of the axial displacement, mass-normalised, u(0) > 0.
 
-    radiation: (tail, tail), 1/s, of the last of them where these are a tail (`cuefem.tail`), None without one.
+    radiation: (tail, tail), 1/s, of the last of them where these are a tail (`cuefem.beam.tail`), None without one.
     """
 
     vectors: Array

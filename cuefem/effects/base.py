@@ -11,7 +11,8 @@ from cuefem.quantity import check_fields, check_kind
 
 if TYPE_CHECKING:
     from cuefem.beam import System, Terms
-    from cuefem.modes import Modes, TipModes
+    from cuefem.beam.modes import Modes
+    from cuefem.beam.tip import TipModes
 
 # Positions are on the cue up to this part of its length: a sum of lengths differs from their total by rounding.
 NEAR = 1e-9

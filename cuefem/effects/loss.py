@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from cuefem.beam import System, table
+from cuefem.beam.tip import TipModes
 from cuefem.cue import Array, Cue, Section, Segment, SegmentRows, section_properties
 from cuefem.effects.base import Vibrations
-from cuefem.modes import TipModes
 
 
 def damped(tip: TipModes, cue: Cue, families: Sequence[Vibrations], *, loss: float | None) -> TipModes:

@@ -13,7 +13,8 @@ from cuefem.quantity import Quantity
 
 if TYPE_CHECKING:
     from cuefem.beam import Terms
-    from cuefem.modes import Modes, TipModes
+    from cuefem.beam.modes import Modes
+    from cuefem.beam.tip import TipModes
 
 
 @dataclass(frozen=True)

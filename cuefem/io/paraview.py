@@ -16,10 +16,10 @@ from typing import Any, NamedTuple
 import meshio
 import numpy as np
 
+from cuefem.beam.modes import Modes
+from cuefem.contact.motion import Motion
 from cuefem.cue import Array, Cue
 from cuefem.io.errors import InputError, reason
-from cuefem.modes import Modes
-from cuefem.motion import Motion
 from cuefem.quantity import scalar
 from cuefem.scene import Scene
 

@@ -8,12 +8,12 @@ from typing import Any
 from cuefem.cue import Cue
 from cuefem.design import METHODS, Levels, Normal, Response, Sample, Span, Study, Vary, paths
 from cuefem.design.paths import quantity_at, value_at
+from cuefem.design.scatter import Scatter
 from cuefem.io.errors import InputError, shown
 from cuefem.io.schema import build, joined, unknown_key
 from cuefem.io.toml import named_material, read_tables
 from cuefem.io.units import quantity
 from cuefem.quantity import Quantity
-from cuefem.scatter import Scatter
 from cuefem.scene import Resolution, Scene, Stroke
 
 KEYS = ["scene", "responses", "vary", "sample", "resolution"]

@@ -1,4 +1,4 @@
-"""Shafts as closed surfaces out of CAD (.stl, .ply, .obj through meshio), sliced by `cuefem.surface` into segments."""
+"""Shafts as closed surfaces out of CAD (.stl, .ply, .obj through meshio), which `slices` cuts into segments."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from cuefem.cue import Array, Cue, Material, Segment
 from cuefem.io.errors import InputError, reason, shown
 from cuefem.io.mesh import DAMAGED, quiet
 from cuefem.io.profile import DEFAULT_UNIT
+from cuefem.io.slices import Index, Sliced, sliced, surface
 from cuefem.io.units import number
-from cuefem.surface import Index, Sliced, sliced, surface
 
 _VERTEX = re.compile(rb"^[ \t]*vertex[ \t]+(\S+)[ \t]+(\S+)[ \t]+(\S+)", re.IGNORECASE | re.MULTILINE)
 _FORMATS = {".stl": meshio.stl, ".ply": meshio.ply}

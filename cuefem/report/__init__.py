@@ -1,25 +1,14 @@
 """What the commands show: records of plain SI numbers for programs, and readable tables made of them for people."""
 
+from cuefem.report.claims import claims_record, claims_table
 from cuefem.report.effects import DEFAULT_RTOL, effects_record, effects_table
-from cuefem.report.records import (
-    claims_record,
-    cue_record,
-    end_mass_record,
-    materials_record,
-    modes_record,
-    report_record,
-    squirt_record,
-    strike_record,
-)
-from cuefem.report.tables import (
-    claims_table,
-    end_mass_table,
-    materials_table,
-    modes_table,
-    pivot_table,
-    squirt_table,
-    strike_table,
-)
+from cuefem.report.end_mass import end_mass_record, end_mass_table
+from cuefem.report.everything import report_record
+from cuefem.report.materials import materials_record, materials_table
+from cuefem.report.modes import modes_record, modes_table
+from cuefem.report.record import cue_record
+from cuefem.report.squirt import pivot_table, squirt_record, squirt_table
+from cuefem.report.strike import strike_record, strike_table
 
 __all__ = [
     "DEFAULT_RTOL",

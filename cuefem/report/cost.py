@@ -11,11 +11,12 @@ import numpy as np
 from rich.table import Table
 
 from cuefem.accuracy import FIRST, JUDGED, MOST, RATIO, Rung, ladder, relative_error
+from cuefem.contact.strike import strike
 from cuefem.cue import Cue
-from cuefem.report.records import Record
-from cuefem.report.tables import NONE, significant, table_of, with_caption
+from cuefem.report.record import Record
+from cuefem.report.table import NONE, table_of, with_caption
+from cuefem.report.words import significant
 from cuefem.scene import Scene
-from cuefem.strike import strike
 
 WANTED = (1e-2, 1e-3, 1e-4, 1e-6)
 # A plain sum past so many modes takes seconds and says nothing new.

@@ -8,12 +8,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from cuefem.beam.modes import Modes
 from cuefem.cue import Cue, LumpedCue, Material, Segment
 from cuefem.effects import CueEffect
 from cuefem.materials import MATERIALS
-from cuefem.modes import Modes
 from cuefem.quantity import scalar
-from cuefem.report.figures import WIDE, Axis, Tick, path
+from cuefem.report.charts import WIDE, Axis, Tick, path
 from cuefem.scene import Scene
 
 FRONT = 0.09  # m of the tip end that is drawn enlarged

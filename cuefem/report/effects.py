@@ -8,11 +8,12 @@ from dataclasses import asdict
 
 from rich.console import Group
 
-from cuefem.ablation import TEXTBOOK, Change, Variant, change, variants
-from cuefem.endmass import equivalent_end_mass
-from cuefem.report.records import Record
+from cuefem.design.worth import TEXTBOOK, Change, Variant, change, variants
+from cuefem.endmass.drives import equivalent_end_mass
+from cuefem.report.record import Record
 from cuefem.report.solve import resolution_for, struck
-from cuefem.report.tables import NONE, assumptions, degrees, effect_words, grams, table_of, with_caption
+from cuefem.report.table import NONE, table_of, with_caption
+from cuefem.report.words import assumptions, degrees, effect_words, grams
 from cuefem.scene import Outcome, Resolution, Scene
 
 DEFAULT_RTOL = 1e-2

@@ -14,16 +14,17 @@ from typing import Literal
 
 import numpy as np
 
+from cuefem.beam.tip import TipModes, lumped_tip_modes
+from cuefem.contact.strike import strike_modes
 from cuefem.cue import Cue, LumpedCue
 from cuefem.effects import Elevation
-from cuefem.endmass import formula_of
-from cuefem.modes import TipModes, lumped_tip_modes
+from cuefem.endmass.drives import formula_of
 from cuefem.quantity import scalar
-from cuefem.report.records import DRIVES, Record
-from cuefem.resolution import tip_modes_of
+from cuefem.report.end_mass import DRIVES
+from cuefem.report.record import Record
 from cuefem.scene import Scene
 from cuefem.squirt import alciatore_a31, alciatore_a31_mass_ratio
-from cuefem.strike import strike_modes
+from cuefem.tip_modes import tip_modes_of
 
 Handed = Literal["A.31", "stick", "offset", "velocity", "force", "squirt"]
 HANDED: tuple[Handed, ...] = ("A.31", *DRIVES)

@@ -13,9 +13,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cuefem.accuracy import Rung, ladder
+from cuefem.beam.modes import modes
+from cuefem.contact.strike import strike
 from cuefem.cue import Cue
-from cuefem.modes import modes
 from cuefem.quantity import scalar
+from cuefem.report.charts import Axis, Chart, Curve, Mark, Span, chart
 from cuefem.report.drawings import (
     cue_drawing,
     front_drawing,
@@ -26,13 +28,14 @@ from cuefem.report.drawings import (
     style_of,
 )
 from cuefem.report.effects import seconds_words
-from cuefem.report.figures import Axis, Chart, Curve, Mark, Span, chart
-from cuefem.report.fragments import environment
-from cuefem.report.records import PAPER_CUE_END_MASS, Record, end_mass_record, squirt_record, strike_record
+from cuefem.report.end_mass import end_mass_record
+from cuefem.report.record import Record
 from cuefem.report.solve import ended_tip_modes
-from cuefem.report.tables import MISCUE, assumptions, degrees, effect_words, grams, millimetres, plain_cue_line
+from cuefem.report.squirt import PAPER_CUE_END_MASS, squirt_record
+from cuefem.report.strike import MISCUE, strike_record
+from cuefem.report.templates import environment
+from cuefem.report.words import assumptions, degrees, effect_words, grams, millimetres, plain_cue_line
 from cuefem.scene import Outcome, Scene
-from cuefem.strike import strike
 
 DEFAULT_RTOL = 1e-2
 OFFSETS = tuple(round(0.03 * i, 2) for i in range(1, 21))  # b/R of the curves

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from cuefem.report.tables import significant, table_of, with_caption
-from cuefem.scatter import Drivers, Scatter
+from cuefem.design.scatter import Drivers, Scatter
+from cuefem.report.table import table_of, with_caption
+from cuefem.report.words import significant
 
 SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)
 TRADE = {"kg": (1e3, "g"), "m": (1e3, "mm"), "rad": (math.degrees(1), "°"), "N/m": (1, "N/m"), "": (1, "")}

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from cuefem.accuracy import ladder
+from cuefem.beam.modes import modes
+from cuefem.beam.tail import tail
+from cuefem.beam.tip import TipModes
+from cuefem.contact.strike import strike, strike_modes
 from cuefem.cue import Cue, LumpedCue
-from cuefem.modes import TipModes, modes
-from cuefem.resolution import tip_modes_from, turning
 from cuefem.scene import Outcome, Resolution, Scene
-from cuefem.strike import strike, strike_modes
-from cuefem.tail import tail
+from cuefem.tip_modes import tip_modes_from, turning
 
 
 def resolution_for(scene: Scene, rtol: float) -> Resolution | None:

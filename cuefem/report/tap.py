@@ -10,13 +10,15 @@ from typing import Any
 import numpy as np
 from rich.table import Table
 
-from cuefem.chance import LEVEL
-from cuefem.report.records import Record
-from cuefem.report.tables import MISCUE, NONE, grams, significant, table_of, with_caption
-from cuefem.ringing import Ringing
-from cuefem.tap import Predicted
-from cuefem.tap_fit import TapFit
-from cuefem.tones import HIGH, LOW
+from cuefem.report.record import Record
+from cuefem.report.strike import MISCUE
+from cuefem.report.table import NONE, table_of, with_caption
+from cuefem.report.words import grams, significant
+from cuefem.tap.chance import LEVEL
+from cuefem.tap.fit import TapFit
+from cuefem.tap.ringing import Ringing
+from cuefem.tap.tones import HIGH, LOW
+from cuefem.tap.wood import Predicted
 
 UNITS = {
     **{"E": "Pa", "G": "Pa", "rho": "kg/m^3", "frequency": "Hz", "error": "as its number", "decay": "1/s"},

@@ -10,8 +10,8 @@ import numpy as np
 import scipy.linalg as la
 
 import cuefem as cf
-from cuefem.endmass import force
-from cuefem.resolution import tip_modes_of
+from cuefem.endmass.drives import force
+from cuefem.tip_modes import tip_modes_of
 from studies.peers.cone import CONE, CONTACT_TIME, MODES
 
 VERSION = cf.__version__

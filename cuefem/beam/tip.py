@@ -1,0 +1,101 @@
+"""What a ball feels of a cue at its tip: the tip modes, with numpy alone."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cuefem.beam.modes import Modes
+from cuefem.cue import Array, LumpedCue
+
+
+@dataclass(frozen=True)
+class TipModes:
+    """All that an impact sees of a cue: B(t) = sum of a_k a_k' cos(omega_k t), the inverse mass at the contact.
+
+    omega: (n,) rad/s, the rigid ones (zero) first. amplitude: (n, 2), the mass-normalised displacement of the contact
+    along and across the cue (u, w), 1/sqrt(kg). approach: (n,), the modal velocities of a cue that moves at unit speed
+    along its axis, sqrt(kg). rotation: (n,) of the tip's section, 1/(m sqrt(kg)). damping: (n, n) viscous, 1/s, of the
+    modal equations q'' + damping q' + omega^2 q = f, None without any. radiation: (n, n) likewise, but nothing is lost:
+    it stands for the waves that leave the tip in modes left out. A lumped cue has omega = 0 throughout.
+    """
+
+    omega: Array
+    amplitude: Array
+    approach: Array
+    rotation: Array
+    damping: Array | None = None
+    radiation: Array | None = None
+
+    @property
+    def resistance(self) -> Array | None:
+        """Damping and radiation together, (n, n), 1/s; None without either."""
+        parts = [part for part in (self.damping, self.radiation) if part is not None]
+        return sum(parts[1:], parts[0]) if parts else None
+
+    def lowest(self, count: int) -> TipModes:
+        """The first ``count`` modes alone."""
+        return self._chosen(np.arange(count))
+
+    def _chosen(self, index: NDArray[np.intp]) -> TipModes:
+        parts = (None if part is None else part[np.ix_(index, index)] for part in (self.damping, self.radiation))
+        damping, radiation = (part if part is not None and part.any() else None for part in parts)
+        omega, amplitude, approach, rotation = self.omega, self.amplitude, self.approach, self.rotation
+        return TipModes(omega[index], amplitude[index], approach[index], rotation[index], damping, radiation)
+
+    def beside(self, omega: Array, along: Array, radiation: Array | None = None) -> TipModes:
+        """With vibrating modes of amplitude ``along`` the cue after these, (n,) each; damping is added after it.
+
+        radiation: of the last of them, where these are a tail.
+        """
+        n, before = len(omega), len(self.omega)
+        own = None if self.radiation is None else np.pad(self.radiation, (0, n))
+        if radiation is not None:
+            theirs = np.pad(radiation, (before + n - len(radiation), 0))
+            own = theirs if own is None else own + theirs
+        return TipModes(
+            np.concatenate([self.omega, omega]),
+            np.concatenate([self.amplitude, np.column_stack([along, np.zeros(n)])]),
+            np.concatenate([self.approach, np.zeros(n)]),
+            np.concatenate([self.rotation, np.zeros(n)]),
+            None if self.damping is None else np.pad(self.damping, (0, n)),
+            own,
+        )
+
+    def ascending(self) -> TipModes:
+        """The same modes in the order of their frequencies."""
+        return self._chosen(np.argsort(self.omega, kind="stable"))
+
+    @property
+    def transverse(self) -> tuple[Array, Array]:
+        """(omega, amplitude across the cue) of the modes that move the contact across the cue."""
+        moving = self.amplitude[:, 1] != 0
+        return self.omega[moving], self.amplitude[moving, 1]
+
+
+def lumped_tip_modes(cue: LumpedCue) -> TipModes:
+    """The two modes without frequency that give a lumped cue's inverse mass (scalar fields)."""
+    root = math.sqrt(cue.mass)
+    across = math.sqrt(1 / cue.end_mass - cue.coupling**2 * cue.mass)
+    amplitude = np.array([[1 / root, cue.coupling * root], [0.0, across]])
+    return TipModes(np.zeros(2), amplitude, np.linalg.solve(amplitude.T, [1.0, 0.0]), np.zeros(2))
+
+
+def tip_modes(found: Modes, axial_mass: float) -> TipModes:
+    """Tip modes of a beam's bending modes beside a rigid axial motion of ``axial_mass`` kg (the first mode)."""
+    vectors = np.concatenate([found.rigid_vectors, found.vectors], axis=1)
+    across, turning = found.system.at_tip(vectors)
+    amplitude = np.zeros((1 + len(across), 2))
+    amplitude[0, 0], amplitude[1:, 1] = axial_mass**-0.5, across
+    approach = np.zeros(len(amplitude))
+    approach[0] = axial_mass**0.5
+    omega = np.concatenate([np.zeros(1 + found.rigid), found.omega])
+    damping = None
+    if found.system.dashpots is not None:
+        damping = np.zeros((len(omega), len(omega)))
+        damping[1:, 1:] = vectors.T @ (found.system.dashpots[:, None] * vectors)
+    radiation = None if found.radiation is None else np.pad(found.radiation, (len(omega) - len(found.radiation), 0))
+    return TipModes(omega, amplitude, approach, np.concatenate([[0.0], turning]), damping, radiation)

@@ -1,0 +1,139 @@
+"""Commands on one cue or scene: modes, end-mass, strike, effects, cost, report."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from cuefem.cli.common import blaming, blow_options, file_options, followed, measured, offset_option, scene_of, show
+
+if TYPE_CHECKING:
+    from cuefem.scene import Scene
+
+
+@click.command()
+@file_options
+@click.option("--near", metavar="HERTZ", help="Those nearest this frequency, instead of the lowest.")
+@click.option("--count", type=click.IntRange(min=1), default=6, show_default=True, help="How many modes.")
+def modes(file: Path, near: str | None, count: int, **given: Any) -> None:
+    """How it rings: bending frequencies and tip amplitudes."""
+    from cuefem.quantity import Quantity
+    from cuefem.report import modes_record, modes_table
+
+    def results(scene: Scene) -> Any:
+        return modes_record(scene, count=count, near=hertz)
+
+    hertz = None
+    if near is not None:
+        with suppress(ValueError):
+            near = f"{float(near)} Hz"
+        hertz = measured(file, "--near", near, Quantity("Hz", "[0, inf)"))
+    show(file, given, results, lambda found, about: [modes_table(found)])
+
+
+@click.command("end-mass")
+@file_options
+@blow_options
+def end_mass(file: Path, **given: Any) -> None:
+    """How much mass the ball feels across the cue at its tip."""
+    from cuefem.report import end_mass_record, end_mass_table
+
+    show(file, given, end_mass_record, lambda found, about: [end_mass_table(found, about)])
+
+
+@click.command(short_help="One stroke: squirt, speed, spin and pivot length.")
+@file_options
+@blow_options
+@offset_option
+def strike(file: Path, **given: Any) -> None:
+    """One stroke: squirt, speed, spin and pivot length; to the file's [accuracy] rtol, where it has one."""
+    from cuefem.accuracy import resolve
+    from cuefem.io import load_accuracy
+    from cuefem.report import strike_record, strike_table
+
+    def results(scene: Scene) -> Any:
+        rtol = load_accuracy(file)
+        return strike_record(scene, None if rtol is None else resolve(scene, rtol))
+
+    show(file, given, results, lambda found, about: [strike_table(found, about)])
+
+
+@click.command(short_help="What each effect is worth: dropped, or added, one at a time.")
+@file_options
+@blow_options
+@offset_option
+def effects(file: Path, **given: Any) -> None:
+    """What each effect is worth: each one listed dropped, each other one added.
+
+    The tolerance is the file's [accuracy] rtol, 1e-2 without it.
+    """
+    from cuefem.io import load_accuracy
+    from cuefem.report import DEFAULT_RTOL, effects_record, effects_table
+
+    def results(scene: Scene) -> Any:
+        rtol = load_accuracy(file)
+        return effects_record(scene, rtol=DEFAULT_RTOL if rtol is None else rtol, track=followed)
+
+    show(file, given, results, lambda found, about: [effects_table(found, about)])
+
+
+@click.command(short_help="What accuracy costs, and the resolution to take.")
+@file_options
+@blow_options
+@offset_option
+@click.option("--most", type=click.IntRange(min=24), default=150, show_default=True, help="Modes at most.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), metavar="FIGURE", help="Draw it too: .png or .svg.")
+def cost(file: Path, most: int, output: Path | None, **given: Any) -> None:
+    """What accuracy costs: error against seconds and unknowns for this scene, and the resolution to take."""
+    from cuefem.io import FIGURES, InputError, save_figure
+    from cuefem.report.cost import cost_figure, cost_record, cost_tables
+
+    if output is not None and output.suffix not in FIGURES:
+        raise InputError(output, "--output", f"must end in .png or .svg; got {output.suffix!r}")
+
+    def results(scene: Scene) -> Any:
+        found = cost_record(scene, most=most, track=followed)
+        if output is not None:
+            save_figure(cost_figure(found, f"{file.name}: what accuracy costs", output.suffix[1:]), output)
+        return found
+
+    show(file, given, results, lambda found, about: cost_tables(found))
+
+
+@click.command(short_help="All of it, as tables or as a page with figures.")
+@file_options
+@blow_options
+@offset_option
+@click.option("-o", "--output", type=click.Path(path_type=Path), metavar="PAGE.html", help="Write a page instead.")
+def report(file: Path, output: Path | None, **given: Any) -> None:
+    """All of it: modes, end masses, squirt and pivot length against offset; as tables, or as a page with figures."""
+    from cuefem.report import end_mass_table, modes_table, pivot_table, report_record, squirt_table
+    from cuefem.report.strike import MISCUE
+
+    def tables(found: Any, about: Any) -> list[Any]:
+        first: list[Any] = [MISCUE, ""] if found["regime"] == "miscue" else []
+        first += [modes_table(found["modes"])] if "modes" in found else []
+        masses, squirt = found["end_masses"], found["squirt"]
+        return [*first, end_mass_table(masses, about), squirt_table(squirt, about), pivot_table(squirt)]
+
+    if output is None:
+        show(file, given, report_record, tables)
+    else:
+        _write_page(file, output, given)
+
+
+def _write_page(file: Path, output: Path, given: dict[str, Any]) -> None:
+    from cuefem.io import InputError, load_accuracy, save_page
+    from cuefem.report.page import page
+    from cuefem.report.unusual import unusual
+
+    if given["as_json"]:
+        raise InputError(output, "--output", "must be left out with --json: a page is no JSON")
+    scene, notes = scene_of(file, given)
+    with blaming(file):
+        text = page(file.name, scene, rtol=load_accuracy(file), notes=notes, remarks=unusual(scene), track=followed)
+    save_page(text, output)
+    click.echo(f"wrote {output}")

@@ -1,0 +1,1 @@
+"""Cue meets ball: the coupled strike in time, and the impulse solver."""

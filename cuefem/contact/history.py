@@ -1,0 +1,89 @@
+"""Forces and velocities of a contact at any time of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from cuefem.contact.flow import ORDERS, Piece
+from cuefem.cue import Array
+
+# The outputs of every phase, in this order.
+V_T, V_N, F_N, F_T = range(4)
+
+
+@dataclass(frozen=True)
+class History:
+    """Forces and velocities of a contact at any time of it, without stepping error.
+
+    Called with times, s, in [0, duration], it returns a dict of arrays of their shape: "force_t", "force_n" on the
+    ball, N, and "velocity_t", "velocity_n" of the ball against the tip, m/s.
+    """
+
+    pieces: tuple[Piece, ...]
+    mirror: float
+
+    def __call__(self, time: ArrayLike) -> dict[str, Array]:
+        """Evaluate the Taylor polynomials of the cells the times fall in."""
+        time, which = _places(time, self.pieces)
+        values = np.empty((4, *time.shape))
+        for i in np.unique(which):
+            here, piece = which == i, self.pieces[i]
+            place = (time[here] - piece.start) / piece.step
+            cell = np.minimum(place.astype(int), piece.coefficients.shape[2] - 1)
+            powers = (place - cell) ** ORDERS[:, None]
+            values[:, here] = (piece.coefficients[:4, :, cell] * powers).sum(axis=1)
+        return _named(values, self.mirror)
+
+
+class Stretch(NamedTuple):
+    """A phase that was stepped: start and end, s; the solver's interpolant in units of ``clock``; what reads a state.
+
+    reading: a state's (v_t, v_n, F_t, F_n).
+    """
+
+    start: float
+    end: float
+    clock: float
+    solution: Callable[[float], Array]
+    reading: Callable[[Array], tuple[float, float, float, float]]
+
+    def outputs(self, time: float) -> tuple[float, float, float, float]:
+        """The outputs at a time of the phase, in their order."""
+        v_t, v_n, F_t, F_n = self.reading(self.solution(min(time, self.end) / self.clock))
+        return v_t, v_n, F_n, F_t
+
+
+@dataclass(frozen=True)
+class SteppedHistory:
+    """What `History` gives, of a contact that was stepped in time: exact to the solver's interpolants, about 1e-9."""
+
+    stretches: tuple[Stretch, ...]
+    mirror: float
+
+    def __call__(self, time: ArrayLike) -> dict[str, Array]:
+        """Evaluate the interpolants of the phases the times fall in."""
+        time, which = _places(time, self.stretches)
+        values = [self.stretches[int(i)].outputs(t) for i, t in zip(which.ravel(), time.ravel(), strict=True)]
+        return _named(np.array(values).reshape(-1, 4).T.reshape(4, *time.shape), self.mirror)
+
+
+def _places(time: ArrayLike, parts: Sequence[Piece] | Sequence[Stretch]) -> tuple[Array, Any]:
+    """Times as an array, and the index of the part that each falls in."""
+    time = np.asarray(time, float)
+    if not parts:
+        raise ValueError("History takes times in [0, duration] s; this contact is a blow, without any")
+    end = parts[-1].end
+    if not np.all((time >= 0) & (time <= end * (1 + 1e-12))):
+        raise ValueError(f"History takes times in [0, {end}] s, the contact's; got {time}")
+    return time, np.asarray(np.searchsorted([part.start for part in parts], time, side="right") - 1)
+
+
+def _named(values: Array, mirror: float) -> dict[str, Array]:
+    """The first four outputs by name; mirror: -1 for a stroke on the other side."""
+    names = {"force_t": F_T, "force_n": F_N, "velocity_t": V_T, "velocity_n": V_N}
+    return {name: values[row] * (mirror if name[-1] == "t" else 1.0) for name, row in names.items()}

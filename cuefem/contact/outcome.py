@@ -1,0 +1,80 @@
+"""The outcome of a contact that is over: energies, regime, jam."""
+
+from __future__ import annotations
+
+import math
+from itertools import takewhile
+
+import numpy as np
+
+from cuefem.contact.linear import APART, Contact, Phase
+from cuefem.quantity import scalar
+from cuefem.scene import Outcome, Scene
+
+
+def _outcome(contact: Contact, scene: Scene, side: float) -> Outcome:
+    laws, tip = contact.laws, contact.tip
+    M, nu = laws.ball_mass, laws.inertia
+    p_t, p_n = contact.impulse
+    s, c = math.sin(laws.phi), math.cos(laws.phi)
+    impulse = np.array([side * p_t, p_n])
+    inertia = float(tip.approach @ tip.approach)  # of a cue that moves as one along its axis
+    return Outcome(
+        squirt=side * math.atan2(s * p_n - c * p_t, s * p_t + c * p_n) + 0.0,
+        ball_velocity=impulse / M,
+        ball_speed=math.hypot(p_t, p_n) / M,
+        spin=float(side * contact.twist / (nu * M * scalar("Ball.radius", scene.ball.radius))),
+        cue_speed=float(laws.speed - contact.along / inertia),
+        impulse=impulse,
+        duration=float(contact.time),
+        regime=regime(contact),
+        jam=jams(contact),
+        phases=tuple(phase._replace(start=float(phase.start), end=float(phase.end)) for phase in contact.phases),
+        energy=_energy(contact, inertia),
+        unknowns=len(contact.z),
+        history=contact.history(side),
+    )
+
+
+def _energy(contact: Contact, inertia: float) -> dict[str, float]:
+    laws, z = contact.laws, contact.z
+    p_t, p_n = contact.impulse
+    rigid = z[contact.velocities][: contact.quiet]
+    vibrating = np.concatenate([z[: contact.velocities.start], z[contact.velocities][contact.quiet :]])
+    account = {
+        "initial": inertia * laws.speed**2 / 2,
+        "ball translation": (p_t**2 + p_n**2) / (2 * laws.ball_mass),
+        "ball rotation": contact.twist**2 / (2 * laws.inertia * laws.ball_mass),
+        "cue": float(rigid @ rigid) / 2,
+        "cue vibration": float(vibrating @ vibrating) / 2 + contact.radiated,
+        "tip loss": contact.tip_loss,
+        "friction loss": contact.friction_loss,
+        **contact.other_losses(),
+    }
+    return {name: float(joules) for name, joules in account.items()}
+
+
+def first_contact(contact: Contact) -> list[Phase]:
+    """The phases up to the first separation."""
+    return list(takewhile(lambda phase: phase[:2] != APART, contact.phases))
+
+
+def regime(contact: Contact) -> str:
+    """How the first slip ended, in the words of the impulse solver (see Outcome)."""
+    if contact.parted:  # thrown apart by the first blow, which stopped the slip at last or did not
+        return "late stick" if abs(contact.c_t @ contact.z) <= 1e-12 * contact.laws.speed else "miscue"
+    phases = first_contact(contact)
+    grips = [phase.grip for phase in phases]
+    first = next((i for i, grip in enumerate(grips) if grip != "slip"), None)
+    if first is None:
+        return "miscue"
+    if grips[first] == "slip back":
+        return "slip reversal"
+    return "stick" if all(phase.press == "load" for phase in phases[: first + 1]) else "late stick"
+
+
+def jams(contact: Contact) -> bool:
+    """Whether the first slip drove the contact's normal velocity further in."""
+    if contact.phases[0].grip != "slip":
+        return False
+    return float(contact.c_n @ (contact.c_n + contact.laws.friction * contact.c_t)) < 0

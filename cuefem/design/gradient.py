@@ -1,0 +1,136 @@
+"""Gradients of end mass and small-offset squirt to every number of a cue's drawing.
+
+Chain rule: the densities of `cuefem.design.sensitivity` times the derivatives of the section properties, which come
+from a complex step through the one formula of `cuefem.cue`. A longer segment stretches its own piece of the shaft.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from cuefem.beam import table
+from cuefem.cue import Array, Cue, Section, SegmentRows, section_properties
+from cuefem.design.sensitivity import Sensitivity, sensitivity
+from cuefem.endmass.drives import Drive
+from cuefem.endmass.undamped import StickLimit
+from cuefem.quantity import check_kind
+from cuefem.scene import Resolution, Scene
+
+STEP = 1e-30  # of a complex step, relative to the number: exact to rounding
+
+
+@dataclass(frozen=True)
+class Gradient:
+    """End mass, kg, small-offset squirt over phi, and their derivatives to the numbers of the drawing.
+
+    end_mass_to, squirt_to: `SegmentRows` of arrays (segments,), per SI unit of each number: E and G at fixed Poisson
+    ratio, nu the effective one at fixed E and G; kappa nan where it follows from the section. The body's mass stays.
+    end_mass_to_body_mass, squirt_to_body_mass: per kg. Squirt is None for a drive other than "stick".
+    """
+
+    end_mass: float
+    squirt: float | None
+    end_mass_to: SegmentRows
+    squirt_to: SegmentRows | None
+    end_mass_to_body_mass: float
+    squirt_to_body_mass: float | None
+
+
+def gradient(scene: Scene, drive: Drive = "stick", at: Resolution | None = None) -> Gradient:
+    """Gradient of a bare finite-element cue's end mass, for "stick" of its squirt b -> 0 over phi too.
+
+    Exact for the modes kept, on the mesh as it is; the contact time is held, from the tip's stiffness too. Cost: that
+    of `sensitivity`, one dense eigenproblem, for however many numbers. Errors: those of `sensitivity`.
+    """
+    check_kind("gradient scene.cue", scene.cue, Cue)
+    assert isinstance(scene.cue, Cue)
+    found, rows = sensitivity(scene, drive, at), drawing(scene.cue)
+    heavier = masses_to(rows)
+    own = densities_to(found, rows)
+    end_mass_to = SegmentRows(*(d + found.axial_mass * m for d, m in zip(own, heavier, strict=True)))
+    if drive != "stick":
+        return Gradient(found.end_mass, None, end_mass_to, None, found.axial_mass, None)
+    squirt, to_m, to_axial = _squirt(scene, found.end_mass)
+    squirt_to = SegmentRows(*(to_m * d + to_axial * m for d, m in zip(end_mass_to, heavier, strict=True)))
+    body = to_m * found.axial_mass + to_axial
+    return Gradient(found.end_mass, squirt, end_mass_to, squirt_to, found.axial_mass, body)
+
+
+def _squirt(scene: Scene, end_mass: float) -> tuple[float, float, float]:
+    """(squirt b -> 0 over phi, its derivatives to the end mass and to the axial mass, 1/kg)."""
+
+    def squirt(m: complex, axial_mass: complex) -> complex:
+        limit = StickLimit.of(scene, axial_mass)
+        return complex(limit.slope((limit.K - 1) / (1 / m + limit.c)))
+
+    m, a = end_mass, scene.axial_mass
+    return squirt(m, a).real, squirt(m + 1j * STEP, a).imag / STEP, squirt(m, a + 1j * STEP).imag / STEP
+
+
+def drawing(cue: Cue) -> SegmentRows:
+    """The numbers of a cue's segments, arrays (segments,)."""
+    return SegmentRows(*np.array([segment.constants for segment in cue.segments]).T)
+
+
+def stepped(rows: SegmentRows) -> Iterator[tuple[int, SegmentRows, Array]]:
+    """(field's index, rows with a complex step in it in every segment, the steps), E and G with the Poisson ratio."""
+    for i, name in enumerate(rows._fields):
+        steps = STEP * np.maximum(np.abs(np.nan_to_num(rows[i])), 1e-3)
+        moved = [*map(np.asarray, rows)]
+        moved[i] = rows[i] + 1j * steps
+        if name in ("E", "G", "core_E", "core_G"):
+            there = rows._fields.index("core_nu" if name.startswith("core") else "nu")
+            nu, sign = rows[there], -1 if name.endswith("E") else 1
+            # nu_e/(1 + nu_e) = 2 nu G/E, so d nu_e = nu_e (1 + nu_e) (dG/G - dE/E)
+            ratio = np.divide(steps, rows[i], out=np.zeros_like(steps), where=rows[i] > 0)
+            moved[there] = nu + 1j * sign * nu * (1 + nu) * ratio
+        yield i, SegmentRows(*moved), steps
+
+
+def derivatives(rows: SegmentRows, of: Callable[[SegmentRows], Array]) -> SegmentRows:
+    """Derivatives of each segment's share of a number, (segments,), to the segment's own numbers."""
+    found = [np.imag(of(moved)) / steps for _, moved, steps in stepped(rows)]
+    return SegmentRows(*(np.where(np.isnan(row), np.nan, slope) for row, slope in zip(rows, found, strict=True)))
+
+
+def masses_to(rows: SegmentRows) -> SegmentRows:
+    """Derivatives of the cue's mass to the numbers of the drawing, kg per SI unit, arrays (segments,)."""
+    t = table(4)
+
+    def mass(moved: SegmentRows) -> Array:
+        columns = SegmentRows(*(row[:, None] for row in moved))
+        section = section_properties(columns, columns.length * t.points)
+        return np.asarray(moved.length * (section.rhoA * t.weights).sum(axis=1))
+
+    return derivatives(rows, mass)
+
+
+def densities_to(found: Sensitivity, rows: SegmentRows) -> SegmentRows:
+    """Derivatives to the numbers of the drawing of the number whose densities are ``found``; the axial mass stays.
+
+    Sections depend on s/length alone, so a longer segment keeps them and stretches the fields: dx grows, the slopes w'
+    and theta' shrink, theta stays.
+    """
+    ends = np.cumsum(rows.length)
+    piece = np.searchsorted(ends[:-1], found.x)
+    t = (found.x - (ends - rows.length)[piece]) / rows.length[piece]
+
+    def sections(moved: SegmentRows) -> Section:
+        each = SegmentRows(*(row[piece] for row in moved))
+        return section_properties(each, each.length * t)
+
+    def gathered(values: Any) -> Array:
+        values = found.weights * values
+        return np.asarray(np.bincount(piece, values.real) + 1j * np.bincount(piece, values.imag))
+
+    def change(moved: SegmentRows) -> Array:
+        section = sections(moved)
+        return gathered(sum(getattr(section, name) * getattr(found, name) for name in ("rhoA", "rhoI", "EI", "kGA")))
+
+    s = sections(rows)
+    stretch = s.rhoA * found.rhoA + s.rhoI * found.rhoI - s.EI * found.EI + s.kGA * (found.kGA - 2 * found.shear_slope)
+    return derivatives(rows, change)._replace(length=np.real(gathered(stretch + 0j)) / rows.length)

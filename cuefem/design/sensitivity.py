@@ -1,0 +1,250 @@
+"""Where end mass lives: exact derivatives of an end mass to the section properties along the cue.
+
+The end mass is a function of the kept modes' squares lambda_k = omega_k^2 and tip amplitudes phi_k. A change of
+stiffness and mass changes those by first-order perturbation over *all* modes of the mesh (kept, dropped and rigid j):
+
+    d lambda_k = dK_kk - lambda_k dM_kk
+    d phi_k = -phi_k dM_kk/2 + sum over j != k of phi_j (dK_jk - lambda_k dM_jk)/(lambda_k - lambda_j)
+
+so that dm is a quadratic form in the modes' curvatures, shears, deflections and rotations at each point: the densities.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from cuefem.beam import System, assemble, table
+from cuefem.beam.modes import solve
+from cuefem.cue import Array, Cue
+from cuefem.endmass.drives import Drive
+from cuefem.endmass.undamped import StickLimit, smooth_start_swing
+from cuefem.quantity import check_kind
+from cuefem.scene import Resolution, Scene
+from cuefem.tip_modes import PLAIN_PERIODS, default_resolution
+
+Response = Callable[[Any], Any]  # of a squared frequency
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """Derivatives of an end mass, kg.
+
+    x: Gauss points of the mesh, m from the tip, (points,). weights: their lengths, m. rhoA, rhoI, EI, kGA: densities of
+    the derivatives per unit length, so that dm = integral of density times the change of the property; rhoA is a pure
+    number per unit: kg of end mass for a kg put there. shear_slope: as kGA, but with w' - theta and w' for the two
+    strains: what a stretched piece of shaft needs (`cuefem.design.gradient`). ball_mass, axial_mass: derivatives to M
+    and m_a (zero but for "stick"), pure numbers. end_mass: kg.
+    """
+
+    x: Array
+    weights: Array
+    rhoA: Array
+    rhoI: Array
+    EI: Array
+    kGA: Array
+    shear_slope: Array
+    ball_mass: float
+    axial_mass: float
+    end_mass: float
+
+
+@dataclass(frozen=True)
+class _Gradient:
+    """An end mass and its derivatives to lambda_k, phi_k of the kept modes, the rigid sum, M and m_a."""
+
+    value: float
+    squares: Array
+    amplitudes: Array
+    rigid: float
+    ball_mass: float = 0.0
+    axial_mass: float = 0.0
+
+
+def sensitivity(scene: Scene, drive: Drive = "stick", at: Resolution | None = None) -> Sensitivity:
+    """Where the end mass of a bare finite-element cue lives: `Sensitivity`, exact for the modes kept.
+
+    drive: "stick", "velocity" or "force". Sum rule (physics.md section 6): the densities times their properties
+    integrate to m_e, for "stick" to m_e - M dm/dM - m_a dm/dm_a. Cost: all modes of the mesh, one dense eigenproblem.
+    """
+    check_kind("sensitivity scene.cue", scene.cue, Cue)
+    assert isinstance(scene.cue, Cue)
+    if drive not in _GRADIENTS:
+        raise ValueError(f"sensitivity drive must be one of {', '.join(_GRADIENTS)}; got {drive!r}")
+    if scene.effects:
+        raise ValueError(f"sensitivity takes a scene without effects; got {len(scene.effects)}")
+    at = at or default_resolution(scene, periods=PLAIN_PERIODS)
+    system = assemble(scene.cue, elements=at.elements, order=at.order)
+    found = solve(system, system.mesh.unknowns - system.rigid.shape[1])
+    kept, squares, phi = at.modes, found.omega**2, found.vectors[0]
+    still = found.rigid_vectors[0]
+    gradient = _GRADIENTS[drive](squares[:kept], phi[:kept], float(still @ still), scene)
+    stiff, heavy = _forms(gradient, squares, phi, still)
+    return _densities(system, np.concatenate([found.rigid_vectors, found.vectors], axis=1), stiff, heavy, gradient)
+
+
+def frequency_sensitivity(scene: Scene, mode: int, at: Resolution) -> Sensitivity:
+    """The same densities of a flexible bending frequency, Hz, the lowest with ``mode`` 1; its value as end_mass.
+
+    Rayleigh's quotient: d lambda_k = dK_kk - lambda_k dM_kk.
+    """
+    check_kind("frequency_sensitivity scene.cue", scene.cue, Cue)
+    assert isinstance(scene.cue, Cue)
+    system = assemble(scene.cue, elements=at.elements, order=at.order)
+    found = solve(system, mode)
+    frequency, square = found.frequencies[-1], found.omega[-1] ** 2
+    stiff = np.array([[1 / (8 * np.pi**2 * frequency)]])
+    value = _Gradient(float(frequency), found.omega, found.omega, 0.0)
+    return _densities(system, found.vectors[:, -1:], stiff, -square * stiff, value)
+
+
+def _forms(gradient: _Gradient, squares: Array, phi: Array, still: Array) -> tuple[Array, Array]:
+    """The quadratic forms in the modes (rigid ones first) that give dm for dK and for dM."""
+    rigid, kept = len(still), len(gradient.squares)
+    all_squares, all_phi = np.concatenate([np.zeros(rigid), squares]), np.concatenate([still, phi])
+    size = len(all_phi)
+    stiff, heavy = np.zeros((size, size)), np.zeros((size, size))
+    rows = rigid + np.arange(kept)
+    gaps = squares[:kept, None] - all_squares
+    gaps[np.arange(kept), rows] = np.inf
+    stiff[rows] = gradient.amplitudes[:, None] * all_phi / gaps
+    stiff[rows, rows] = gradient.squares
+    # no strain, no change of the rigid motions; but a stretched piece strains what was one (`cuefem.design.gradient`)
+    stiff[:rigid, rigid:] -= 2 * gradient.rigid * still[:, None] * phi / squares
+    heavy[rows] = -squares[:kept, None] * stiff[rows]
+    heavy[rows, rows] -= gradient.amplitudes * phi[:kept] / 2
+    heavy[:rigid, :rigid] -= gradient.rigid * np.outer(still, still)
+    return (stiff + stiff.T) / 2, (heavy + heavy.T) / 2
+
+
+def _densities(system: System, vectors: Array, stiff: Array, heavy: Array, gradient: _Gradient) -> Sensitivity:
+    mesh, t = system.mesh, table(system.mesh.order)
+    own = vectors[mesh.first[:, None] + np.arange(len(t.w))]  # (elements, unknowns of an element, modes)
+    h = mesh.sizes[:, None, None]
+    bent, slope = t.dtheta.T @ own / (h * system.length), t.dw.T @ own / h
+    moved, turned = t.w.T @ own, t.theta.T @ own / system.length
+    sheared = slope - turned
+
+    def density(form: Array, fields: Array, others: Array | None = None) -> Array:
+        fields = fields.reshape(-1, fields.shape[-1])
+        others = fields if others is None else others.reshape(fields.shape)
+        return np.asarray(((fields @ form) * others).sum(axis=1))
+
+    x = mesh.nodes[:-1, None] + mesh.sizes[:, None] * t.points
+    return Sensitivity(
+        x=x.ravel(),
+        weights=(mesh.sizes[:, None] * t.weights).ravel(),
+        rhoA=density(heavy, moved),
+        rhoI=density(heavy, turned),
+        EI=density(stiff, bent),
+        kGA=density(stiff, sheared),
+        shear_slope=density(stiff, sheared, slope),
+        ball_mass=gradient.ball_mass,
+        axial_mass=gradient.axial_mass,
+        end_mass=gradient.value,
+    )
+
+
+def _force(squares: Array, phi: Array, rigid: float, scene: Scene) -> _Gradient:
+    T = scene.contact_time
+    given = 2 * T / np.pi
+
+    def response(square: Any) -> Any:
+        x = np.sqrt(square) * T - np.pi
+        return -np.pi * T / 2 * x * np.sinc(x / (2 * np.pi)) ** 2 / (x + 2 * np.pi)
+
+    speed = float(phi**2 @ response(squares)) + rigid * given
+    slope = -given / speed**2
+    amplitudes = slope * 2 * phi * response(squares)
+    return _Gradient(given / speed, slope * phi**2 * _derivative(response, squares), amplitudes, slope * given)
+
+
+def _velocity(squares: Array, phi: Array, rigid: float, scene: Scene) -> _Gradient:
+    T = scene.contact_time
+    held = _Held(squares, phi, rigid)
+    value, to_squares, to_amplitudes, to_still, _ = held.impulse(lambda s: smooth_start_swing(np.sqrt(s), T), 1.0)
+    return _Gradient(value, to_squares, to_amplitudes, to_still)
+
+
+def _stick(squares: Array, phi: Array, rigid: float, scene: Scene) -> _Gradient:
+    limit = StickLimit.of(scene)
+    held = _Held(squares, phi, rigid + limit.c)
+    J, to_squares, to_amplitudes, to_still, to_K = held.impulse(
+        lambda s: limit.swing(np.sqrt(s)), limit.K - 1, lambda s: limit.swing_per_K(np.sqrt(s))
+    )
+    m = float(limit.end_mass(J))
+    scale = m**2 * (limit.K - 1) / J**2  # dm/dJ at fixed c and K
+    c, K, M, m_a = limit.c, limit.K, scene.ball.mass, scene.axial_mass
+    # K = (1 + e)(c + 1/m_a)/(1/M + 1/m_a), c proportional to 1/M
+    dc_dM, head_on = -c / M, limit.head_on_mass
+    dK_dM = (1 + limit.e) * head_on * dc_dM + K * head_on / M**2
+    dK_dma = (-(1 + limit.e) * head_on + K * head_on) / m_a**2
+    per_c, per_K = scale * to_still + m**2, scale * to_K - m**2 / J
+    return _Gradient(
+        m,
+        scale * to_squares,
+        scale * to_amplitudes,
+        scale * to_still,
+        ball_mass=float(per_c * dc_dM + per_K * dK_dM),
+        axial_mass=float(per_K * dK_dma),
+    )
+
+
+_GRADIENTS: dict[str, Callable[[Array, Array, float, Scene], _Gradient]] = {
+    "stick": _stick,
+    "velocity": _velocity,
+    "force": _force,
+}
+
+
+@dataclass(frozen=True)
+class _Held:
+    """The cue with its tip held by the inertia 1/still: J = factor/total + v' R(S) v/total^2 and its derivatives.
+
+    S = diag(lambda) - v v'/total, v = phi omega, total = sum phi^2 + still; see `cuefem.endmass.undamped`.
+    """
+
+    squares: Array
+    phi: Array
+    still: float
+
+    def impulse(self, swing: Response, factor: float, per_factor: Response | None = None) -> tuple[Any, ...]:
+        """(J, dJ/dlambda, dJ/dphi, dJ/dstill, dJ/dfactor) for the response R(mu) = swing(mu)/sqrt(mu)."""
+        omega, total = np.sqrt(self.squares), float(self.phi @ self.phi) + self.still
+        v = self.phi * omega
+        poles, Y = np.linalg.eigh(np.diag(self.squares) - np.outer(v, v) / total)
+
+        def R(mu: Any) -> Any:
+            return swing(mu) / np.sqrt(mu)
+
+        a = Y.T @ v
+        pulled = Y @ (R(poles) * a)
+        P = Y @ (np.outer(a, a) * _divided_differences(R, poles)) @ Y.T / total**2
+        energy = float(v @ pulled)
+        to_v = 2 * pulled / total**2 - 2 * P @ v / total
+        to_total = -factor / total**2 + float(v @ P @ v) / total**2 - 2 * energy / total**3
+        to_squares = np.diag(P) + to_v * self.phi / (2 * omega)
+        to_phi = to_v * omega + to_total * 2 * self.phi
+        to_factor = 1 / total
+        if per_factor is not None:
+            to_factor += float(a**2 @ (per_factor(poles) / np.sqrt(poles))) / total**2
+        return factor / total + energy / total**2, to_squares, to_phi, to_total, to_factor
+
+
+def _derivative(function: Response, at: Array) -> Array:
+    """Derivative of an analytic function by a complex step, exact to rounding."""
+    step = 1e-30 * np.maximum(np.abs(at), 1.0)
+    return np.asarray(np.imag(function(at + 1j * step)) / step)
+
+
+def _divided_differences(function: Response, at: Array) -> Array:
+    """(f(a) - f(b))/(a - b) for all pairs; the derivative between points too close for the difference."""
+    values, gaps = function(at), at[:, None] - at
+    near = np.abs(gaps) < 1e-6 * (np.abs(at[:, None]) + np.abs(at))
+    middles = (at[:, None] + at) / 2
+    differences = (values[:, None] - values) / np.where(near, 1.0, gaps)
+    differences[near] = _derivative(function, middles[near])
+    return np.asarray(differences)

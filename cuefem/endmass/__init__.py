@@ -1,0 +1,1 @@
+"""The effective end mass: its definitions, and a cue as two numbers."""

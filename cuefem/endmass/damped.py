@@ -1,0 +1,69 @@
+"""The drives of `cuefem.endmass.undamped` on modes that are damped or radiate: one matrix exponential a stretch of the
+drive.
+
+z = (omega q, q') of all modes; the tip's transverse velocity is row . z. A tip that must follow a velocity V(t)
+against the ball's inertia 1/c takes the force g with row . z + c J = V, J the integral of g.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.linalg import expm
+
+from cuefem.beam.tip import TipModes
+from cuefem.cue import Array
+from cuefem.endmass.undamped import StickLimit
+
+
+def _motion(tip: TipModes) -> tuple[Array, Array]:
+    n = len(tip.omega)
+    A = np.zeros((2 * n, 2 * n))
+    A[:n, n:], A[n:, :n] = np.diag(tip.omega), -np.diag(tip.omega)
+    if tip.resistance is not None:
+        A[n:, n:] = -tip.resistance
+    return A, np.concatenate([np.zeros(n), tip.amplitude[:, 1]])
+
+
+def half_sine_velocity(tip: TipModes, T: float) -> float:
+    """Tip velocity at the end of a half-sine force of unit height and length T, m/s per N."""
+    A, row = _motion(tip)
+    size, a = len(A), np.pi / T
+    whole = np.zeros((size + 2, size + 2))  # beside z: the force and its quadrature
+    whole[:size, :size], whole[:size, size] = A, row
+    whole[size, size + 1], whole[size + 1, size] = a, -a
+    return float(row @ expm(whole * T)[:size, size + 1])
+
+
+def smooth_start_impulse(tip: TipModes, T: float) -> float:
+    """Impulse that makes the tip follow the velocity (1 - cos(pi t/T))/2 from 0 to T, N s per m/s."""
+    start = np.zeros(2 * len(tip.omega) + 3)
+    start[-2] = np.pi / T / 2  # V' = (a/2) sin(a t)
+    return float((expm(_following(tip, 0.0, np.pi / T) * T) @ start)[-1])
+
+
+def stick_impulse(tip: TipModes, limit: StickLimit) -> float:
+    """J of the limit b -> 0 of the coupled strike (`StickLimit`), kg: the tip follows V = K P(t) - 1."""
+    _, row = _motion(tip)
+    peak = limit.T / (1 + limit.e)
+    a = np.pi / (2 * peak)
+    jump = -1 / (float(row @ row) + limit.c)  # at the first touch V goes from 0 to -1
+    height = limit.K * a / (1 + limit.e)  # of V' = K P'
+    state = np.concatenate([row * jump, [0.0, height, jump]])
+    state = expm(_following(tip, limit.c, a) * peak) @ state
+    if limit.e > 0:
+        state[-3:-1] = height, 0.0
+        state = expm(_following(tip, limit.c, a / limit.e) * (limit.T - peak)) @ state
+    return float(state[-1])
+
+
+def _following(tip: TipModes, c: float, a: float) -> Array:
+    """Motion of (z, V', its quadrature, J) of a tip that follows V, where V' swings with the angular frequency
+    ``a``."""
+    A, row = _motion(tip)
+    size, total = len(A), float(row @ row) + c
+    pull = -(row @ A) / total
+    whole = np.zeros((size + 3, size + 3))
+    whole[:size, :size], whole[:size, size] = A + np.outer(row, pull), row / total
+    whole[size, size + 1], whole[size + 1, size] = a, -a
+    whole[-1, :size], whole[-1, size] = pull, 1 / total
+    return whole

@@ -1,0 +1,45 @@
+"""The modes of a cue: record and table."""
+
+from __future__ import annotations
+
+from rich.console import Group
+
+from cuefem.beam.modes import modes
+from cuefem.cue import Cue
+from cuefem.report.record import Record
+from cuefem.report.table import table_of, with_caption
+from cuefem.scene import Scene
+
+
+def modes_record(scene: Scene, *, count: int, near: float | None) -> Record:
+    """Frequencies and tip amplitudes of the scene's cue: the ``count`` lowest modes or those nearest ``near`` Hz.
+
+    "nearest": the frequency nearest ``near``, None without it.
+    """
+    if not isinstance(scene.cue, Cue):
+        raise ValueError("modes need a cue of segments; got a lumped cue, which has none")
+    found = modes(scene.cue, count, near, effects=scene.cue_effects)
+    amplitudes, _ = found.shape(0.0)
+    nearest = None if near is None else min(found.frequencies.tolist(), key=lambda f: abs(f - near))
+    return {
+        "near": near,
+        "nearest": nearest,
+        "rigid": found.rigid,
+        "frequencies": found.frequencies.tolist(),
+        "tip_amplitudes": amplitudes.tolist(),
+    }
+
+
+def modes_table(record: Record) -> Group:
+    """Modes of a free cue (or of one held by the scene's effects)."""
+    near = record["near"]
+    title = "Bending modes" if near is None else f"Bending modes nearest {near:g} Hz"
+    marked = [] if near is None else [""]
+    table = table_of(title, ["frequency", "period", "tip amplitude", *marked], text_columns=0)
+    for frequency, amplitude in zip(record["frequencies"], record["tip_amplitudes"], strict=True):
+        period = f"{1e3 / frequency:.4g} ms"
+        mark = ["nearest" if frequency == record["nearest"] else "" for _ in marked]
+        table.add_row(f"{frequency:.2f} Hz", period, f"{amplitude:.3f} /√kg", *mark)
+    motions = "1 rigid motion" if record["rigid"] == 1 else f"{record['rigid']} rigid motions"
+    caption = f"{motions} at 0 Hz not listed; amplitudes of the mass-normalised modes"
+    return with_caption(table, caption)

@@ -1,0 +1,59 @@
+"""Records: results as dictionaries of SI numbers, texts and lists that JSON can hold (no NaN, no infinity)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from cuefem.cue import Cue, LumpedCue
+from cuefem.effects import TipEffect
+from cuefem.scene import Scene
+
+Record = dict[str, Any]
+
+UNITS = {
+    **dict.fromkeys(("mass", "shaft_mass", "body_mass", "end_mass", "cue_end_mass", "lowest", "highest"), "kg"),
+    **dict.fromkeys(("length", "balance_point", "radius", "pivot_length"), "m"),
+    **dict.fromkeys(("speed", "ball_speed", "ball_velocity", "cue_speed"), "m/s"),
+    **dict.fromkeys(("contact_time", "duration"), "s"),
+    **dict.fromkeys(("frequencies", "near", "nearest"), "Hz"),
+    **{"tip_amplitudes": "1/sqrt(kg)", "squirt": "rad", "spin": "rad/s"},
+    **{"coupling": "1/kg", "seconds": "s", "impulse": "N s", "energy": "J", "E": "Pa", "G": "Pa", "rho": "kg/m^3"},
+}
+
+
+def plain(value: Any) -> Any:
+    """A value as JSON can say it: arrays as lists, what is infinite or undefined as null."""
+    if isinstance(value, dict):
+        return {str(key): plain(inner) for key, inner in value.items()}
+    if isinstance(value, np.ndarray | np.generic):
+        return plain(value.tolist())
+    if isinstance(value, list | tuple):
+        return [plain(inner) for inner in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def cue_record(cue: Cue | LumpedCue) -> Record:
+    """What a cue is, in a few numbers."""
+    if isinstance(cue, LumpedCue):
+        return {"mass": cue.mass, "end_mass": cue.end_mass, "coupling": cue.coupling}
+    names = ("length", "mass", "shaft_mass", "body_mass", "balance_point")
+    return {name: getattr(cue, name) for name in names} | {"segments": len(cue.segments)}
+
+
+def scene_record(scene: Scene) -> Record:
+    """What a stroke's numbers rest on: cue, ball, tip, stroke and effects."""
+    return {
+        "cue": cue_record(scene.cue),
+        "ball": asdict(scene.ball),
+        "tip": {name: value for name, value in asdict(scene.tip).items() if value is not None}
+        | {"contact_time": scene.contact_time},
+        "stroke": asdict(scene.stroke),
+        "effects": [{"type": type(effect).__name__, **asdict(effect)} for effect in scene.effects],
+        "effects_at_tip": [type(effect).__name__ for effect in scene.effects if isinstance(effect, TipEffect)],
+    }

@@ -1,0 +1,48 @@
+"""Pieces of the report's page by themselves, as markup, for pages that show the same drawings in the same style."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from cuefem.report.charts import Chart
+from cuefem.report.drawings import CueDrawing, ModesDrawing
+
+
+@cache
+def environment() -> Environment:
+    """The templates beside this file; what they insert is text, never markup."""
+    return Environment(
+        loader=PackageLoader("cuefem", "report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+
+
+def page_style() -> str:
+    """The page's style sheet."""
+    return environment().get_template("page.css").render()
+
+
+def chart_markup(found: Chart, name: str) -> str:
+    """A chart as a figure; name: its own on the page."""
+    return str(_macros().chart(found, name))
+
+
+def cue_markup(found: CueDrawing) -> str:
+    """A drawing of the cue as a figure."""
+    return str(_macros().drawing(found))
+
+
+def shapes_markup(found: ModesDrawing) -> str:
+    """Mode shapes as a drawing."""
+    return str(_macros().shapes(found))
+
+
+@cache
+def _macros() -> Any:
+    return environment().get_template("drawings.html.j2").module

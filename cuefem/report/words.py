@@ -1,0 +1,83 @@
+"""Numbers and objects in the words and units of the trade."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import fields
+from typing import Any
+
+from cuefem.cue import Cue, LumpedCue
+from cuefem.effects import Effect
+from cuefem.io.schema import table as file_table
+from cuefem.report.record import Record, cue_record
+from cuefem.report.table import NONE
+
+
+def grams(mass: float) -> str:
+    """A mass in grams, to four digits where they are decimals."""
+    return significant(1e3 * mass) + " g"
+
+
+def degrees(angle: float) -> str:
+    """An angle in degrees, to a thousandth."""
+    return f"{math.degrees(angle):.3f}°" if math.isfinite(angle) else NONE
+
+
+def millimetres(length: float | None) -> str:
+    """A length in whole millimetres."""
+    return NONE if length is None or not math.isfinite(length) else f"{1e3 * length:.0f} mm"
+
+
+def significant(value: float, digits: int = 4) -> str:
+    """A number to so many digits where they are decimals."""
+    if value == 0 or not math.isfinite(value):
+        return f"{value:.0f}"
+    decimals = max(0, digits - 1 - math.floor(math.log10(abs(value))))
+    return f"{value:.{decimals}f}"
+
+
+def assumptions(scene: Record) -> str:
+    """Ball, tip and stroke in one line."""
+    ball, tip, stroke = scene["ball"], scene["tip"], scene["stroke"]
+    return ", ".join(
+        [
+            f"ball {grams(ball['mass'])}, {2e3 * ball['radius']:.4g} mm",
+            f"contact time {1e3 * tip['contact_time']:.4g} ms",
+            f"e {tip['restitution']:g}",
+            f"mu {tip['friction']:g}".replace("inf", "∞"),
+            f"stroke {stroke['speed']:g} m/s",
+        ]
+    )
+
+
+def cue_line(cue: Record) -> str:
+    """A cue in one line."""
+    if "length" not in cue:
+        return f"lumped cue, {grams(cue['mass'])}, end mass {grams(cue['end_mass'])}"
+    pieces = f"{cue['segments']} segment" + ("s" if cue["segments"] > 1 else "")
+    masses = f"segments {grams(cue['shaft_mass'])} + body {grams(cue['body_mass'])}"
+    return f"{1e3 * cue['length']:.4g} mm modelled in {pieces}, cue {grams(cue['mass'])} ({masses})"
+
+
+def plain_cue_line(cue: Cue | LumpedCue) -> str:
+    """A cue in one line."""
+    return cue_line(cue_record(cue))
+
+
+def effect_words(effect: Effect) -> str:
+    """An effect in a few words, what is as by default left out: "PointMass (position 100 mm, mass 5 g)"."""
+    usual = {field.name: field.default for field in fields(effect)}
+    given = {name: value for name, value in file_table(effect).items() if getattr(effect, name) != usual[name]}
+    entries = [f"{name} {_short(value)}" for name, value in given.items()]
+    return type(effect).__name__ + (f" ({', '.join(entries)})" if entries else "")
+
+
+def _short(value: Any) -> str:
+    """A number, with its unit if it has one, to six digits."""
+    number_text, _, unit = str(value).partition(" ")
+    return f"{float(number_text):.6g} {unit}".rstrip()
+
+
+def _tip_effects(scene: Record, words: str) -> list[str]:
+    """A line about effects at the tip, where a scene has any."""
+    return [words] if scene["effects_at_tip"] else []

@@ -1,0 +1,1 @@
+"""The tap test: tones in a recording, and the wood that has them."""

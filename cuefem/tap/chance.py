@@ -1,0 +1,98 @@
+"""Would other tones be explained as well? The chance that tones which are not the shaft's fit it as these do.
+
+The modes of a shaft, with E and G free, lie so close that many sounds find some wood whose modes they meet. So the same
+search is run over random sets of tones: as many, and as dense, each drawn evenly (in ln f) between the middles to its
+neighbours. The p-value is the share of sets, the heard one included, that are explained as well or better. Under the
+assumption that the tones have nothing to do with the shaft it is below `LEVEL` in a share `LEVEL` of recordings.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cuefem.cue import Array
+from cuefem.tap.matching import SPREADS, UNHEARD, WRONG, ModeTable
+from cuefem.tap.tones import HIGH, LOW, Tone
+
+LEVEL = 0.01
+SETS = 199
+WIDTH = 8e-3  # relative, of a tone against its mode in this search; the steps of E and G/E are as fine
+STEP_E, RATIOS = 0.012, 31  # of ln E; number of G/E
+BIN = 2e-3  # of ln f
+SEED = 20
+Bits = NDArray[np.uint32]
+
+
+def random_sets(frequencies: Array, count: int, seed: int = SEED) -> Array:
+    """Sets of ln f, (count, tones), of the density of these frequencies, Hz."""
+    heard = np.sort(np.log(frequencies))
+    if len(heard) == 1:
+        return np.random.default_rng(seed).uniform(np.log(LOW), np.log(HIGH), (count, 1))
+    middles = (heard[1:] + heard[:-1]) / 2
+    low = np.maximum(np.concatenate([[2 * heard[0] - middles[0]], middles]), np.log(LOW))
+    high = np.minimum(np.concatenate([middles, [2 * heard[-1] - middles[-1]]]), np.log(HIGH))
+    return np.asarray(low + (high - low) * np.random.default_rng(seed).uniform(size=(count, len(heard))))
+
+
+def by_chance(table: ModeTable, tones: Sequence[Tone]) -> float:
+    """The p-value of these tones; 1 without any. Cost: a table of a few thousand woods, and sums over it."""
+    clear = [tone.frequency for tone in tones if tone.kind == "tone"]
+    if not clear:
+        return 1.0
+    sets = np.vstack([np.sort(np.log(clear)), random_sets(np.array(clear), SETS)])
+    best = _best(table, sets)
+    return float(np.mean(best >= best[0] - 1e-9))
+
+
+def _best(table: ModeTable, sets: Array) -> Array:
+    """The score of the wood that explains each set best, as `ModeTable` weighs it: (sets,)."""
+    E = np.arange(table.E[0], table.E[-1] + STEP_E / 2, STEP_E)
+    ratio = np.linspace(*table.shaft.ratios, RATIOS)
+    place = np.clip(np.rint((sets - np.log(LOW)) / BIN).astype(int), 0, int(np.log(HIGH / LOW) / BIN))
+    best = np.full(len(sets), -np.inf)
+    for r in ratio:
+        value, bit, audible, known = _explained(table, E, np.full(len(E), r))
+        score = np.zeros((len(sets), len(E)))
+        taken = np.zeros(score.shape, np.uint32)
+        hits = np.zeros(score.shape)
+        for one in place.T:
+            score += value[one]
+            own = bit[one]
+            hits += own > 0
+            taken |= own
+        below: Any = taken.copy()
+        for shift in (1, 2, 4, 8, 16):
+            below |= below >> shift
+        unheard = _count(below & audible & ~taken)
+        score += unheard * np.log(UNHEARD) - 6.0 * (hits - _count(taken)) + known
+        best = np.maximum(best, score.max(axis=1))
+    return best
+
+
+def _explained(table: ModeTable, E: Array, ratio: Array) -> tuple[Array, Bits, Bits, Array]:
+    """Of every ln f and wood the weight and the bit of its mode, (bins, woods); of the wood audible modes, prior."""
+    f = table.log_frequencies(E, ratio)
+    heard = np.log(LOW) + BIN * np.arange(int(np.log(HIGH / LOW) / BIN) + 1)
+    nearest = np.empty((len(heard), len(E)), int)
+    for i, row in enumerate(f):
+        nearest[:, i] = np.searchsorted((row[1:] + row[:-1]) / 2, heard)
+    gap = heard[:, None] - f[np.arange(len(E)), nearest]
+    inside = (f > np.log(LOW)) & (f < np.log(HIGH))
+    count = np.maximum(inside.sum(axis=1), 1)
+    own = -((gap / WIDTH) ** 2) / 2 - np.log(WIDTH * np.sqrt(2 * np.pi) * count) + np.log1p(-WRONG)
+    none = np.log(WRONG / np.log(HIGH / LOW))
+    bit = np.where(own > none, np.uint32(1) << nearest.astype(np.uint32), np.uint32(0))
+    audible = (inside * (np.uint32(1) << np.arange(f.shape[1], dtype=np.uint32))).sum(axis=1).astype(np.uint32)
+    known = ((np.column_stack([E, ratio]) - table.shaft.start[:2]) / SPREADS) ** 2
+    return np.maximum(own, none), bit, audible, -known.sum(axis=1) / 2
+
+
+def _count(bits: Any) -> Any:
+    """How many bits of 32 are set."""
+    bits = bits - ((bits >> 1) & 0x55555555)
+    bits = (bits & 0x33333333) + ((bits >> 2) & 0x33333333)
+    return (((bits + (bits >> 4)) & 0x0F0F0F0F) * np.uint32(0x01010101)) >> 24

@@ -1,0 +1,57 @@
+"""What a tap test finds: tones and their modes, the wood, and whether to believe it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cuefem.cue import Array, Cue, Material
+from cuefem.tap.tones import Tone
+
+
+@dataclass(frozen=True)
+class Matched:
+    """A tone and its mode (1 the lowest), None for a wrong tone; frequency: the fitted shaft's of that mode, Hz."""
+
+    tone: Tone
+    mode: int | None
+    frequency: float | None
+
+
+@dataclass(frozen=True)
+class TapFit:
+    """What a tap tells of a shaft's wood.
+
+    cue: with the fitted wood. frequencies: of its modes, Hz. wood, before: its material, fitted and as the file had
+    it. covariance: of (ln E, ln G/E, ln rho), (3, 3). matched: every tone. told: whether the tones tell G; otherwise
+    the file's G/E is kept. weighed: whether rho comes from a mass. rivals: other wood that explains the tones nearly
+    as well: (E in Pa, odds against it). loss: median loss factor of the tones matched, an upper bound of the wood's.
+    misfit: root mean square of the tones' relative distances from their modes, sharp tones counting more. notes: what
+    a person should know, one line each. chance: p-value of tones that are not the shaft's (`cuefem.tap.chance`).
+    shear_coefficients: least and largest kappa along the wood, with which G goes. refusals: why this is no result to
+    build on, one line each; empty for a sound one.
+    """
+
+    cue: Cue
+    frequencies: Array
+    wood: Material
+    before: Material
+    covariance: Array
+    matched: tuple[Matched, ...]
+    told: bool
+    weighed: bool
+    rivals: tuple[tuple[float, float], ...]
+    loss: float
+    misfit: float
+    notes: tuple[str, ...]
+    chance: float = 1.0
+    shear_coefficients: tuple[float, float] = (0.0, 0.0)
+    refusals: tuple[str, ...] = ()
+
+    @property
+    def errors(self) -> tuple[float, float, float]:
+        """Standard deviations of E, Pa, G, Pa, and rho, kg/m3."""
+        E, r, rho = np.sqrt(np.diag(self.covariance))
+        both = np.sqrt(max(E**2 + r**2 + 2 * self.covariance[0, 1], 0.0))
+        return self.wood.E * E, self.wood.G * both, self.wood.rho * rho

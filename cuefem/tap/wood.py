@@ -1,0 +1,271 @@
+"""The tap test: E, G and density of a shaft's wood from the tones that it rings with, hung free.
+
+The tones fix E/rho and G/rho; the weighed mass fixes rho. Errors: of the tones (`cuefem.tap.tones`), of the beam and
+the drawing (`MODEL`), of the scale, and where the tones do not tell G from E, of the ratio that is kept.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from cuefem.contact.strike import strike
+from cuefem.cue import Array, Cue, Material
+from cuefem.effects import Joint, PointMass
+from cuefem.endmass.drives import end_mass
+from cuefem.quantity import Quantity, check_kind
+from cuefem.scene import Scene
+from cuefem.tap.chance import by_chance
+from cuefem.tap.doubts import FAR, missing, refusals, shear_coefficients
+from cuefem.tap.fit import Matched, TapFit
+from cuefem.tap.matching import FACTOR, RATIOS, ModeTable, Shaft, assigned, main_material, with_material
+from cuefem.tap.tones import Tone
+
+MODEL = 2e-3  # relative, of a mode's frequency: diameters to 0.1 %, uneven grain, the beam
+SCALE = 0.5e-3  # kg, error of a kitchen scale
+DENSITY = 0.1  # relative: a wood's density where it was not weighed (Wood Handbook, coefficient of variation)
+TOLD, KEPT = 0.15, 0.25  # ln G/E: the tones tell it when they leave less than TOLD; otherwise it is known to KEPT
+ODD = 0.15  # relative change of density by the weighed mass that is worth a word
+RIVAL = np.log(20)  # a hypothesis whose odds are better than 1 : 20 is not ruled out
+STEP = 0.02  # of central differences in the logarithms
+OUTLIER = 4.5  # standard deviations
+POOR = 5e-3  # misfit that a good drawing of an even shaft does not have
+OURS = 0.8  # of the clear tones' power: less is explained where the drawing is another shaft's
+FOLDED = 1e-3  # relative, of a tone that may be a whole multiple of another
+
+
+@dataclass(frozen=True)
+class Predicted:
+    """A number of the scene with the fitted wood, its standard deviation from the wood alone, and with the file's."""
+
+    value: float
+    error: float
+    before: float
+
+
+class TapTest:
+    """A hung shaft, ready for recordings.
+
+    segment: whose material is in question, main_material otherwise. mass: of the hung shaft, weighed, kg. model:
+    relative error of a mode's frequency. effects: of a scene; point masses and joints stay on the shaft, supports do
+    not. Cost: 27 solutions of the modes, once. ValueError for a mass that asks for a density
+    beyond a factor `FACTOR` of the file's.
+    """
+
+    def __init__(
+        self,
+        cue: Cue,
+        *,
+        segment: int | None = None,
+        mass: float | None = None,
+        effects: tuple[object, ...] = (),
+        model: float = MODEL,
+    ) -> None:
+        check_kind("TapTest cue", cue, Cue)
+        self.model = Quantity("", "[0, 1)").check("TapTest model", model)
+        wood = main_material(cue, segment)
+        hung = tuple(effect for effect in effects if isinstance(effect, PointMass | Joint))
+        self.shaft, self.weighed, self.notes = Shaft(cue, wood, hung), mass is not None, list[str]()
+        self.rho, self.rho_error = (wood.rho, DENSITY) if mass is None else self._weigh(mass)
+        self.table = ModeTable(self.shaft, self.rho)
+
+    def _weigh(self, mass: float) -> tuple[float, float]:
+        """(density of the wood, its relative error)."""
+        mass = Quantity("kg", "(0, inf)").check("mass", mass)
+        cue, wood = self.shaft.cue, self.shaft.wood
+        drawn = cue.shaft_mass + sum(e.mass for e in self.shaft.effects if isinstance(e, PointMass))
+        own = with_material(cue, wood, replace(wood, rho=2 * wood.rho)).shaft_mass - cue.shaft_mass
+        others = drawn - own
+        low, high = others + own / FACTOR, others + own * FACTOR
+        if not low <= mass <= high:
+            bound = (
+                f"[{1e3 * low:.4g}, {1e3 * high:.4g}] g, the wood's density within a factor {FACTOR:g} of the file's"
+            )
+            raise ValueError(f"mass must be in {bound}; got {1e3 * mass:.4g} g")
+        rho = wood.rho * (mass - others) / own
+        if abs(rho / wood.rho - 1) > ODD:
+            self.notes.append(
+                f"{1e3 * mass:.4g} g makes the wood {rho:.0f} kg/m³, the file has {wood.rho:.0f} (a shaft of "
+                f"{1e3 * drawn:.4g} g): check the scale and the drawing; weigh the drawn shaft alone"
+            )
+        return rho, SCALE / (mass - others)
+
+    def fit(self, tones: Sequence[Tone]) -> TapFit:
+        """The wood that explains the tones best. ValueError where they are no bending tones of any such shaft."""
+        used = [tone for tone in tones if tone.kind in ("tone", "harmonic", "faint")]
+        found = self.table.hypotheses(used) if used else []
+        clear = sum(tone.kind == "tone" for tone in used)
+        explained = sum(mode >= 0 for mode in found[0].modes) if found else 0
+        if explained < (2 if clear >= 3 else 1):
+            tell = ", ".join(f"{tone.frequency:.0f}" for tone in used[:6])
+            raise ValueError(
+                f"tones must be bending tones of this shaft, its E within a factor {FACTOR:g} of the file's; "
+                f"got {tell or 'none'} Hz: check the drawing and that the shaft hung free"
+            )
+        heard = np.log([tone.frequency for tone in used])
+        doubt = [FOLDED if tone.kind == "harmonic" else 0.0 for tone in used]
+        sd = np.hypot(np.hypot([tone.error / tone.frequency for tone in used], self.model), doubt)
+        own, theta = np.array(found[0].modes), np.array([*found[0].theta, np.log(self.rho)])
+        for _ in range(4):
+            theta, covariance, told = self._solved(theta, heard, own, sd)
+            f = self.shaft.log_frequencies(theta)
+            pulls = np.abs(heard - f[own])[own >= 0] / sd[own >= 0]
+            again = assigned(heard, f, OUTLIER * max(1.0, 1.48 * float(np.median(pulls))) * sd)
+            if (again == own).all() or (again >= 0).sum() < (own >= 0).sum() / 2:
+                break
+            own = again
+        modes = {id(tone): int(k) for tone, k in zip(used, own, strict=True) if k >= 0}
+        matched = tuple(
+            Matched(tone, modes[id(tone)] + 1, float(np.exp(f[modes[id(tone)]])))
+            if id(tone) in modes
+            else Matched(tone, None, None)
+            for tone in tones
+        )
+        rivals = [(h, found[0].score - h.score) for h in found[1:]]
+        chance = by_chance(self.table, tones)
+        return self._told(
+            np.exp(f), matched, theta, covariance, told, [(h, odds) for h, odds in rivals if odds < RIVAL], chance
+        )
+
+    def _told(
+        self, frequencies: Array, matched: Any, theta: Array, covariance: Array, told: bool, rivals: Any, chance: float
+    ) -> TapFit:
+        E, ratio, rho = map(float, np.exp(theta))
+        wood = replace(self.shaft.wood, E=E, G=ratio * E, rho=rho)
+        ours = [m for m in matched if m.mode is not None]
+        gaps = np.array([m.tone.frequency / m.frequency - 1 for m in ours])
+        trust = np.array([(m.tone.error / m.tone.frequency) ** 2 + MODEL**2 for m in ours])
+        found = TapFit(
+            cue=with_material(self.shaft.cue, self.shaft.wood, wood),
+            frequencies=frequencies,
+            wood=wood,
+            before=self.shaft.wood,
+            covariance=covariance,
+            matched=matched,
+            told=told,
+            weighed=self.weighed,
+            rivals=tuple((float(np.exp(h.theta[0])), float(np.exp(odds))) for h, odds in rivals),
+            loss=float(np.median([m.tone.loss for m in ours])),
+            misfit=float(np.sqrt(np.average(gaps**2, weights=1 / trust))),
+            notes=(),
+            chance=chance,
+        )
+        edge = bool(told and not self.shaft.ratios[0] < theta[1] < self.shaft.ratios[1])
+        doubts, kappa = tuple(refusals(found, edge=edge)), shear_coefficients(found.cue, wood)
+        notes = (*self.notes, *remarks(found, edge=edge))
+        return replace(found, notes=notes, shear_coefficients=kappa, refusals=doubts)
+
+    def _solved(self, theta: Array, heard: Array, own: Array, sd: Array) -> tuple[Array, Array, bool]:
+        """(ln E, ln G/E, ln rho), their covariance, whether G is told; by Gauss and Newton."""
+        for _ in range(3):
+            rows, right = self._rows(theta, heard, own, sd)
+            told = _tells_ratio(rows)
+            free = self._free(told=told)
+            step = np.array([0.0, 0.0 if told else self.shaft.start[1] - theta[1], 0.0])
+            step[free] = np.linalg.lstsq(rows[:, free], right - rows @ step)[0]
+            theta = theta + step
+            theta[1] = np.clip(theta[1], *self.shaft.ratios)
+        rows, right = self._rows(theta, heard, own, sd)
+        freedom = max(len(rows) - 2 - told, 1)
+        rows[:-1] /= np.sqrt(max(1.0, float(right[:-1] @ right[:-1]) / freedom))  # they fit no better than they do
+        return theta, _covariance(rows, self._free(told=told)), told
+
+    def _free(self, *, told: bool) -> list[int]:
+        """Which of (ln E, ln G/E, ln rho) are sought; the others are the file's."""
+        return [0, *([1] if told else []), *([2] if self.weighed else [])]
+
+    def _rows(self, theta: Array, heard: Array, own: Array, sd: Array) -> tuple[Array, Array]:
+        """The linear least-squares problem at theta: a row for each tone matched, the last for the density."""
+        f, J = self.shaft.log_frequencies(theta), slopes(self.shaft.log_frequencies, theta, step=1e-4)
+        here = own >= 0
+        rows = np.vstack([J[own[here]] / sd[here, None], [0, 0, 1 / self.rho_error]])
+        right = np.append((heard - f[own])[here] / sd[here], (np.log(self.rho) - theta[2]) / self.rho_error)
+        return rows, right
+
+
+def _tells_ratio(rows: Array) -> bool:
+    """Whether the tones leave G/E less than `TOLD`: what remains of its column beside the others."""
+    if len(rows) < 3:
+        return False
+    triangle: Any = np.linalg.qr(rows[:, [0, 2, 1]], mode="r")
+    remains = abs(triangle[2, 2])
+    return bool(remains * TOLD > 1)
+
+
+def _covariance(rows: Array, free: list[int]) -> Array:
+    """Of (ln E, ln G/E, ln rho); of what is kept, with what its own error does to those sought."""
+    inner = np.linalg.inv(rows[:, free].T @ rows[:, free])
+    covariance = np.zeros((3, 3))
+    covariance[np.ix_(free, free)] = inner
+    # the last row is the scale's, which says nothing of a density that is kept
+    for kept in {0, 1, 2} - set(free):
+        tones = rows[:-1] if kept == 2 else rows
+        drift = np.zeros(3)
+        drift[kept], drift[free] = 1.0, -inner @ tones[:, free].T @ tones[:, kept]
+        covariance += {1: KEPT, 2: DENSITY}[kept] ** 2 * np.outer(drift, drift)
+    return covariance
+
+
+def slopes(of: Callable[[Array], Any], theta: Array, *, step: float = STEP) -> Array:
+    """Central differences of a function of (ln E, ln G/E, ln rho): (..., 3)."""
+    moves = step * np.eye(len(theta))
+    return np.stack([np.asarray(of(theta + move) - of(theta - move)) / (2 * step) for move in moves], axis=-1)
+
+
+def remarks(found: TapFit, *, edge: bool = False) -> list[str]:
+    """What a person should know of a fit, one line each."""
+    ours = [m.mode for m in found.matched if m.mode is not None]
+    lines = []
+    if found.rivals:
+        others = ", ".join(f"{E / 1e9:.3g} GPa (1 : {odds:.2g})" for E, odds in found.rivals)
+        lines.append(f"the tones cannot be told apart: E of {others} explains them nearly as well; record more tones")
+    if not found.told:
+        why = "one tone cannot tell" if len(ours) == 1 else "these tones cannot tell"
+        lines.append(f"{why} G from E: the file's G/E is kept, taken to be known to {100 * KEPT:.0f} %")
+    if not found.weighed:
+        lines.append(
+            f"not weighed: the file's density is kept as it is, taken to be known to {100 * DENSITY:.0f} % (--mass)"
+        )
+    if edge:
+        lines.append(f"G/E at the end of what shafts have ({RATIOS[0]:.3g} to {RATIOS[1]:.3g}): check the drawing")
+    clear = [m for m in found.matched if m.tone.kind == "tone"]
+    loud = sum(m.tone.level**2 for m in clear if m.mode is not None)
+    if loud < OURS * sum(m.tone.level**2 for m in clear):
+        lines.append("loud tones are none of this shaft's: check that it is the one drawn, and that it hung free")
+    if abs(np.log(found.wood.E / found.before.E)) > FAR * np.log(FACTOR):
+        lines.append(f"E at the end of the search, a factor {FACTOR:g} from the file's: check the drawing's material")
+    if found.misfit > POOR:
+        lines.append(f"the tones fit to {100 * found.misfit:.2g} % only: check the drawing; errors are widened")
+    wrong = [m.tone.frequency for m in clear if m.mode is None]
+    if wrong:
+        lines.append(f"no bending tone of this shaft: {', '.join(f'{f:.1f}' for f in wrong)} Hz")
+    if missed := missing(found):
+        doubt = ": more than were heard, check that it is the shaft drawn" if len(missed) > len(ours) else ""
+        lines.append(f"not heard: mode{'s' if len(missed) > 1 else ''} {', '.join(map(str, missed))}{doubt}")
+    if any(m.tone.kind == "twin" for m in found.matched):
+        lines.append("some tones are double: the shaft bends unlike in two planes; their means are taken")
+    return lines
+
+
+def predicted(scene: Scene, found: TapFit) -> dict[str, Predicted]:
+    """Stick end mass, kg, and squirt at the scene's offset, rad, with the fitted wood.
+
+    Errors: linear propagation of the wood's covariance alone, by central differences. Cost: eight strikes.
+    """
+
+    def with_wood(wood: Material) -> Array:
+        here = replace(scene, cue=with_material(found.cue, found.wood, wood))
+        return np.array([end_mass(here), strike(here).squirt], float)
+
+    def at(theta: Array) -> Array:
+        E, ratio, rho = np.exp(theta)
+        return with_wood(replace(found.wood, E=E, G=ratio * E, rho=rho))
+
+    wood = found.wood
+    slope = slopes(at, np.log([wood.E, wood.G / wood.E, wood.rho]))
+    errors = np.sqrt(np.einsum("ij,jk,ik->i", slope, found.covariance, slope))
+    values = zip(with_wood(wood), errors, with_wood(found.before), strict=True)
+    return {name: Predicted(*map(float, v)) for name, v in zip(("end_mass", "squirt"), values, strict=True)}

@@ -1,0 +1,137 @@
+"""Properties of modes and end masses: scale, units, bounds and monotony, of every shaft that can be drawn."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from cuefem import Ball, Cue, Material, Resolution, Scene, Segment, Tip, end_mass, modes
+from cuefem.beam.waves import modes_below
+from tests.helpers.cues import FAMILY, kim, scaled
+
+WOOD, SOFT, STIFF = Material(12e9, 0.8e9, 700.0), Material(0.1e9, 0.036e9, 1000.0), Material(200e9, 77e9, 7850.0)
+AT = Resolution(2, 8, 10)
+
+
+@st.composite
+def cues(draw: st.DrawFn) -> Cue:
+    """One to four pieces of 4 mm to 40 cm, 8 to 30 mm wide, some bored, of wood, leather or steel.
+
+    kappa is given: left out, it follows E/G.
+    """
+    pieces = []
+    for _ in range(draw(st.integers(1, 4))):
+        first, last = draw(st.floats(0.008, 0.03)), draw(st.floats(0.008, 0.03))
+        bore = draw(st.sampled_from([0.0, 0.6])) * min(first, last)
+        material = draw(st.sampled_from([WOOD, WOOD, SOFT, STIFF]))
+        pieces.append(Segment(draw(st.floats(0.004, 0.4)), first, last, material, bore, bore, kappa=0.8))
+    return Cue(tuple(pieces), draw(st.floats(0.0, 0.6)))
+
+
+factors = st.floats(0.05, 20.0)
+drives = st.sampled_from(["force", "velocity", "stick"])
+
+
+@given(cues(), factors, factors, factors)
+@settings(max_examples=40)
+def test_frequencies_in_other_units(cue: Cue, length: float, time: float, mass: float) -> None:
+    """Units of length, time, mass a, b, c times smaller: E and G c/(a b^2), rho c/a^3, frequency 1/b, w 1/sqrt(c)."""
+    stiff, heavy = mass / (length * time**2), mass / length**3
+    other = scaled(cue, E=stiff, G=stiff, rho=heavy, length=length)
+    one, two = modes(cue, 5, at=AT), modes(other, 5, at=AT)
+    np.testing.assert_allclose(two.frequencies * time, one.frequencies, rtol=1e-11)
+    shape = one.shape(0.0)
+    np.testing.assert_allclose(two.shape(0.0)[0] * mass**0.5, shape[0], rtol=1e-5)
+    np.testing.assert_allclose(
+        two.shape(0.0)[1] * mass**0.5 * length, shape[1], rtol=1e-4, atol=1e-6 * abs(shape[1]).max()
+    )
+
+
+@given(cues(), drives, factors, factors, factors)
+@settings(max_examples=40)
+def test_end_mass_in_other_units(cue: Cue, drive: str, length: float, time: float, mass: float) -> None:
+    stiff, heavy = mass / (length * time**2), mass / length**3
+    other = replace(scaled(cue, E=stiff, G=stiff, rho=heavy, length=length), body_mass=cue.body_mass * mass)
+    here = Scene(cue, tip=Tip(contact_time=1e-3))
+    there = Scene(other, Ball(mass=0.21 * mass), Tip(contact_time=1e-3 * time))
+    one, two = end_mass(here, drive, AT), end_mass(there, drive, AT)  # type: ignore[arg-type]
+    np.testing.assert_allclose(two, one * mass, rtol=1e-9)
+
+
+@given(cues(), factors, st.sampled_from(["force", "velocity"]))
+@settings(max_examples=40)
+def test_end_mass_is_of_degree_one(cue: Cue, factor: float, drive: str) -> None:
+    """In (rhoA, rhoI, EI, kGA) together, at the same pulse: physics.md section 6; "stick" only with the ball too."""
+    other = scaled(cue, E=factor, G=factor, rho=factor)
+    masses = [end_mass(Scene(c, tip=Tip(contact_time=2e-3)), drive, AT) for c in (cue, other)]  # type: ignore[arg-type]
+    np.testing.assert_allclose(masses[1], masses[0] * factor, rtol=1e-9)
+
+
+@pytest.mark.parametrize("name", FAMILY)
+@pytest.mark.parametrize("drive", ["force", "velocity"])
+def test_degrees_add_up_to_one(name: str, drive: str) -> None:
+    """Euler's theorem, one property at a time: stiffness and mass each take their share, the shares sum to 1."""
+    cue, h = FAMILY[name], 1e-5
+    at = Resolution(2, 14, 20)
+
+    def log_mass(**change: float) -> float:
+        return float(np.log(end_mass(Scene(scaled(cue, **change)), drive, at)))  # type: ignore[arg-type]
+
+    shares = [(log_mass(**{k: 1 + h}) - log_mass(**{k: 1 - h})) / (2 * h) for k in ("E", "G", "rho")]
+    np.testing.assert_allclose(sum(shares), 1.0, rtol=1e-6)
+
+
+@given(cues(), st.floats(1.01, 4.0))
+@settings(max_examples=40)
+def test_stiffer_is_faster_and_heavier_is_slower(cue: Cue, factor: float) -> None:
+    """Rayleigh: with E alone (or G alone) no frequency falls; with both all go like the root, as with mass."""
+    plain = modes(cue, 6, at=AT).frequencies
+    stiff, both = (
+        modes(scaled(cue, E=factor), 6, at=AT).frequencies,
+        modes(scaled(cue, rho=factor), 6, at=AT).frequencies,
+    )
+    assert np.all(stiff >= plain * (1 - 1e-12))
+    assert np.all(stiff <= plain * factor**0.5 * (1 + 1e-12))
+    np.testing.assert_allclose(both, plain / factor**0.5, rtol=1e-11)
+
+
+@given(cues())
+@settings(max_examples=40)
+def test_finer_meshes_never_raise_a_frequency(cue: Cue) -> None:
+    """Rayleigh-Ritz: nested polynomials, frequencies from above."""
+    found = [
+        modes(cue, 5, at=Resolution(elements, order, 5)).frequencies for elements, order in ((1, 5), (2, 5), (2, 9))
+    ]
+    for coarse, fine in pairwise(found):
+        assert np.all(fine <= coarse * (1 + 1e-12))
+
+
+@given(cues(), st.floats(0.0, 8000.0), st.integers(1, 5))
+@settings(max_examples=60)
+def test_near_is_the_nearest(cue: Cue, near: float, count: int) -> None:
+    many = modes_below(cue, 2 * np.pi * near) + count + 6
+    every = modes(cue, many).frequencies
+    wanted = np.sort(every[np.argsort(np.abs(every - near), kind="stable")[:count]])
+    np.testing.assert_allclose(modes(cue, count, near=near).frequencies, wanted, rtol=1e-6)
+
+
+@given(cues(), st.integers(1, 12))
+@settings(max_examples=40)
+def test_modes_below_counts_to_within_one(cue: Cue, mode: int) -> None:
+    """`modes_below` is an estimate: `modes(near=)` allows it to be one too few; too many only cost time."""
+    frequency = float(modes(cue, mode).frequencies[-1])
+    assert mode - 1 <= modes_below(cue, 2 * np.pi * frequency) <= mode + 2 + len(cue.segments)
+
+
+@given(st.floats(0.3e-3, 1.5e-3), st.floats(1.05, 2.0), drives)
+@settings(max_examples=20)
+def test_a_longer_pulse_feels_more(T: float, longer: float, drive: str) -> None:
+    """Kim's shaft, pulses well below the period of its lowest mode, 8 ms."""
+    at = Resolution(2, 20, 25)
+    short, long = (end_mass(Scene(kim(), tip=Tip(contact_time=t)), drive, at) for t in (T, T * longer))  # type: ignore[arg-type]
+    assert 0 < short < long < kim().shaft_mass

@@ -1,0 +1,253 @@
+"""Verification of the modes: rigid ones, orthogonality, `near`, shapes, and pieces that are one."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from cuefem import Cue, LumpedCue, Resolution, Segment, modes
+from cuefem.beam.tip import lumped_tip_modes, tip_modes
+from cuefem.beam.waves import mesh_for
+from tests.helpers.cues import (
+    CARBON,
+    FAMILY,
+    FOAM,
+    MAPLE,
+    isotropic_kim,
+    kim,
+    pool,
+    rod,
+    scaled,
+    soft_tip,
+    stiff_ferrule,
+)
+
+SHAFTS = {**FAMILY, "stiff ferrule": stiff_ferrule()}
+
+
+def scalar_product(
+    cue: Cue, first: tuple[np.ndarray, np.ndarray], second: tuple[np.ndarray, np.ndarray], nodes: np.ndarray
+) -> np.ndarray:
+    """Integral of rhoA w1 w2 + rhoI theta1 theta2 over the cue; each pair (w, theta) at `stations` between nodes."""
+    x, weights = stations(cue, nodes)
+    s = cue.section(x)
+    return first[0] * (weights * s.rhoA) @ second[0].T + first[1] * (weights * s.rhoI) @ second[1].T
+
+
+def stations(cue: Cue, nodes: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
+    """Gauss points and weights of every segment, or between ``nodes``, m."""
+    points, weights = np.polynomial.legendre.leggauss(40)
+    ends = cue.nodes if nodes is None else nodes
+    lengths = np.diff(ends)
+    return (ends[:-1, None] + lengths[:, None] * (points + 1) / 2).ravel(), np.outer(lengths, weights / 2).ravel()
+
+
+@pytest.mark.parametrize("name", SHAFTS)
+def test_two_rigid_modes_and_none_among_the_flexible(name: str) -> None:
+    found = modes(SHAFTS[name], 6)
+    assert found.rigid == 2
+    assert isinstance(found.rigid, int)
+    assert found.frequencies.shape == (6,)
+    assert found.frequencies[0] > 20
+    assert np.all(np.diff(found.frequencies) > 0)
+
+
+@pytest.mark.parametrize("name", SHAFTS)
+def test_modes_are_orthonormal_in_the_mass(name: str) -> None:
+    """By an integral of their own, with the rigid motions translation and rotation among them."""
+    cue = SHAFTS[name]
+    found = modes(cue, 8)
+    nodes = found.system.mesh.nodes
+    x, _ = stations(cue, nodes)
+    shape = found.shape(x)
+    np.testing.assert_allclose(scalar_product(cue, shape, shape, nodes), np.eye(8), rtol=0, atol=1e-9)
+    rigid = np.array([np.ones_like(x), x]), np.array([np.zeros_like(x), np.ones_like(x)])
+    sizes = np.sqrt(np.diag(scalar_product(cue, rigid, rigid, nodes)))
+    np.testing.assert_allclose(scalar_product(cue, rigid, shape, nodes) / sizes[:, None], 0, atol=1e-9)
+
+
+@pytest.mark.parametrize("name", SHAFTS)
+def test_rigid_vectors_are_orthonormal_and_span_the_rigid_motions(name: str) -> None:
+    found = modes(SHAFTS[name], 1)
+    R, M = found.rigid_vectors, found.system.M
+    np.testing.assert_allclose(R.T @ (M @ R), np.eye(2), atol=1e-12)
+    x = np.linspace(0, SHAFTS[name].length, 9)
+    w, theta = found.system.interpolate(R, x)
+    np.testing.assert_allclose(w, w[:, :1] + theta[:, :1] * x, rtol=0, atol=1e-12 * np.abs(w).max())
+    np.testing.assert_allclose(theta, theta[:, :1] * np.ones(9), rtol=1e-10, atol=1e-12 * np.abs(theta).max())
+
+
+@pytest.mark.parametrize("name", SHAFTS)
+def test_strain_energy_gives_the_frequency(name: str) -> None:
+    found = modes(SHAFTS[name], 6)
+    strains = found.system.strains(found.vectors)
+    scale = np.outer(found.omega, found.omega)
+    np.testing.assert_allclose(strains.T @ strains / scale, np.eye(6), atol=1e-12)
+
+
+def test_shape_at_nodes_and_between() -> None:
+    """At a mesh node the shape is the unknown itself; in a rod theta tends to w' where the rod is slender."""
+    cue = pool()
+    found = modes(cue, 4)
+    node = found.system.mesh.node(cue.nodes[2])
+    w, theta = found.system.mesh.unknowns_at(node)
+    values = found.shape(cue.nodes[2])
+    np.testing.assert_allclose(values[0], found.vectors[w], rtol=1e-13)
+    np.testing.assert_allclose(values[1], found.vectors[theta] / cue.length, rtol=1e-13)
+    slender = rod(1e4)
+    found, x, h = modes(slender, 3), np.linspace(0.1, 0.9, 17) * slender.length, 1e-4 * slender.length
+    slope = (found.shape(x + h)[0] - found.shape(x - h)[0]) / (2 * h)
+    turned = found.shape(x)[1]
+    np.testing.assert_allclose(slope, turned, rtol=0, atol=1e-5 * np.abs(turned).max())
+
+
+def test_shape_keeps_the_shape_asked_for() -> None:
+    found = modes(kim(), 3)
+    assert [part.shape for part in found.shape(np.zeros((2, 5)))] == [(3, 2, 5), (3, 2, 5)]
+    assert [part.shape for part in found.shape(0.1)] == [(3,), (3,)]
+    for x in (-1e-9, 0.7000001, math.nan):
+        with pytest.raises(ValueError, match=r"Modes.shape takes positions in \[0, 0.7\] m"):
+            found.shape(x)
+
+
+@pytest.mark.parametrize("name", SHAFTS)
+def test_the_tip_moves_up(name: str) -> None:
+    found = modes(SHAFTS[name], 12)
+    assert np.all(found.shape(0.0)[0] > 0)
+    assert np.all(found.shape(0.0)[1][:3] < 0)  # the tip turns towards the cue's axis
+
+
+def test_free_ends() -> None:
+    """No moment and no shear force at either end, against the largest along the cue."""
+    cue = kim()
+    found = modes(cue, 4, at=Resolution(1, 24, 4))
+    x = (1 - np.cos(np.linspace(0, np.pi, 60))) / 2 * cue.length
+    for k in range(4):
+        w, theta = (np.polynomial.Chebyshev.fit(x, part[k], 28, domain=[0, cue.length]) for part in found.shape(x))
+        s = cue.section(x)
+        for stress in (s.EI * theta.deriv()(x), s.kGA * (w.deriv()(x) - theta(x))):
+            np.testing.assert_allclose(stress[[0, -1]], 0, atol=1e-6 * np.abs(stress).max())
+
+
+def test_mode_k_crosses_zero_k_plus_one_times() -> None:
+    found = modes(kim(), 6)
+    w, _ = found.shape(np.linspace(0, 0.7, 2001))
+    assert [int(np.sum(np.diff(np.sign(row)) != 0)) for row in w] == [2, 3, 4, 5, 6, 7]
+
+
+def test_near_gives_the_nearest() -> None:
+    lowest = modes(kim(), 12).frequencies
+    for near, chosen in ((250.0, [0, 1, 2]), (0.0, [0, 1, 2]), (600.0, [1, 2, 3]), (2000.0, [4, 5, 6])):
+        assert sorted(np.argsort(np.abs(lowest - near))[:3]) == chosen
+        np.testing.assert_allclose(modes(kim(), 3, near=near).frequencies, lowest[chosen], rtol=1e-7)
+
+
+@pytest.mark.parametrize("mode", [0, 1, 2])
+def test_near_an_eigenfrequency(mode: int) -> None:
+    """E and G scaled until 250 Hz *is* the frequency of a mode: no singular matrix, and it comes first of all."""
+    cue = kim()
+    ratio = (250.0 / modes(cue, 3).frequencies[mode]) ** 2
+    tuned = scaled(cue, E=ratio, G=ratio)
+    np.testing.assert_allclose(modes(tuned, 1, near=250.0).frequencies, [250.0], rtol=1e-9)
+    three = modes(tuned, 3, near=250.0)
+    assert np.min(np.abs(three.frequencies / 250.0 - 1)) < 1e-9
+    assert np.all(np.isfinite(three.vectors))
+    exact = float(modes(tuned, 1, near=250.0).frequencies[0])
+    np.testing.assert_allclose(modes(tuned, 1, near=exact).frequencies, [exact], rtol=1e-12)
+
+
+def test_a_piece_cut_in_two_is_the_same_piece() -> None:
+    """Cut at 0.3 of its length, bore and core with it: the same modes once resolved."""
+    whole = Segment(0.7, 0.012, 0.021, CARBON, 0.009, 0.015, core=FOAM)
+    outer, bore = 0.012 + 0.3 * 0.009, 0.009 + 0.3 * 0.006
+    parts = Cue(
+        (
+            replace(whole, length=0.21, butt_diameter=outer, butt_bore=bore),
+            replace(whole, length=0.49, tip_diameter=outer, tip_bore=bore),
+        )
+    )
+    at = Resolution(4, 14, 6)
+    one, two = modes(Cue((whole,)), 6, at=at), modes(parts, 6, at=at)
+    np.testing.assert_allclose(two.frequencies, one.frequencies, rtol=1e-12)
+    x = np.linspace(0, 0.7, 40)
+    for first, second in zip(one.shape(x), two.shape(x), strict=True):
+        np.testing.assert_allclose(second, first, rtol=0, atol=1e-8 * np.abs(first).max())
+
+
+def test_a_core_of_the_same_material_is_solid() -> None:
+    """Where kappa is given; left out, the shell's and the core's coefficients differ from the solid's."""
+    solid = Segment(0.7, 0.012, 0.021, MAPLE, kappa=0.9)
+    cored = replace(solid, tip_bore=0.006, butt_bore=0.009, core=MAPLE)
+    np.testing.assert_allclose(modes(Cue((cored,)), 5).frequencies, modes(Cue((solid,)), 5).frequencies, rtol=1e-12)
+
+
+def test_a_cue_turned_round_has_the_same_frequencies() -> None:
+    cue = soft_tip()
+    turned = Cue(
+        tuple(replace(s, tip_diameter=s.butt_diameter, butt_diameter=s.tip_diameter) for s in cue.segments[::-1])
+    )
+    np.testing.assert_allclose(modes(turned, 5).frequencies, modes(cue, 5).frequencies, rtol=1e-10)
+
+
+def test_body_mass_is_not_felt_across() -> None:
+    np.testing.assert_array_equal(modes(kim(), 4).frequencies, modes(replace(kim(), body_mass=0.0), 4).frequencies)
+
+
+@pytest.mark.parametrize("name", [*SHAFTS, "isotropic"])
+@pytest.mark.parametrize("count", [1, 5, 12, 40])
+def test_the_mesh_left_out_holds_the_modes_asked_for(name: str, count: int) -> None:
+    cue = SHAFTS.get(name, isotropic_kim())
+    elements, order = mesh_for(cue, count)
+    more = tuple(n + 1 for n in elements) if isinstance(elements, tuple) else elements + 1
+    finer = modes(cue, count, at=Resolution(more, order + 4, count)).frequencies
+    found = modes(cue, count).frequencies
+    np.testing.assert_allclose(found, finer, rtol=2e-7)
+    np.testing.assert_allclose(found[:3], finer[:3], rtol=1e-9)
+
+
+def test_tip_modes_are_what_a_ball_feels() -> None:
+    """Inverse mass at once: sum of a a' over the modes; its rigid part is the cue's own, axial and transverse."""
+    cue = kim()
+    found = modes(cue, 5)
+    tip = tip_modes(found, cue.mass)
+    np.testing.assert_array_equal(tip.omega[:3], 0.0)
+    np.testing.assert_allclose(tip.omega[3:], found.omega, rtol=1e-15)
+    np.testing.assert_allclose(tip.amplitude[3:, 1], found.shape(0.0)[0], rtol=1e-13)
+    np.testing.assert_allclose(tip.rotation[3:], found.shape(0.0)[1], rtol=1e-13)
+    np.testing.assert_allclose(tip.amplitude[:, 0] @ tip.amplitude[:, 0], 1 / cue.mass, rtol=1e-14)
+    np.testing.assert_allclose(tip.approach @ tip.approach, cue.mass, rtol=1e-14)
+    x, weights = stations(cue)
+    s, centre = cue.section(x), cue.balance_point
+    spun = weights @ (s.rhoA * (x - centre) ** 2 + s.rhoI)
+    rigid = tip.amplitude[:3, 1] @ tip.amplitude[:3, 1]
+    np.testing.assert_allclose(rigid, 1 / cue.shaft_mass + centre**2 / spun, rtol=1e-12)
+
+
+def test_lumped_cue_as_tip_modes() -> None:
+    tip = lumped_tip_modes(LumpedCue(0.54, 0.004, 3.0))
+    np.testing.assert_allclose(tip.amplitude.T @ tip.amplitude, [[1 / 0.54, 3.0], [3.0, 250.0]], rtol=1e-13)
+    np.testing.assert_allclose(tip.amplitude.T @ tip.approach, [1.0, 0.0], atol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "kind", "message"),
+    [
+        ({"count": 0}, ValueError, "modes count must be a whole number >= 1; got 0"),
+        ({"count": 2.0}, TypeError, "modes count must be a whole number >= 1; got 2.0"),
+        ({"near": -1.0}, ValueError, r"modes near must be in \[0, inf\) Hz; got -1.0"),
+        ({"near": math.nan}, ValueError, r"modes near must be in \[0, inf\) Hz; got nan"),
+        ({"near": "250"}, TypeError, "modes near must be a number"),
+        ({"count": 9, "at": Resolution(1, 1, 1)}, ValueError, "the mesh holds 3 flexible modes; got 9 wanted"),
+    ],
+)
+def test_modes_refuses(arguments: dict[str, object], kind: type[Exception], message: str) -> None:
+    with pytest.raises(kind, match=message):
+        modes(kim(), **arguments)  # type: ignore[arg-type]
+
+
+def test_modes_of_a_lumped_cue() -> None:
+    with pytest.raises(TypeError, match="modes cue must be a Cue; got a LumpedCue"):
+        modes(LumpedCue(0.5, 0.01))  # type: ignore[arg-type]

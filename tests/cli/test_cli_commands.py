@@ -1,0 +1,292 @@
+"""The commands as a user meets them: tables, JSON that agrees with the library, what was assumed (regression)."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import cuefem as cf
+from cuefem.report.words import effect_words
+from cuefem.squirt import alciatore_a31, natural_pivot_length
+from tests.helpers.command_line import call
+
+KIM = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 782.3284453057836), kappa=0.9),), 0.42)
+BALL = cf.Ball()
+BLOW = cf.Stroke(offset=0.3)
+
+
+@pytest.fixture
+def kim(tmp_path: Path) -> str:
+    cf.save(KIM, tmp_path / "kim.toml")
+    return str(tmp_path / "kim.toml")
+
+
+@pytest.fixture
+def scene(tmp_path: Path) -> str:
+    cf.save(SCENE, tmp_path / "scene.toml")
+    return str(tmp_path / "scene.toml")
+
+
+SCENE = cf.Scene(
+    KIM, cf.Ball(0.17, 0.028575), cf.Tip(0.8, 0.6, 1e-3), cf.Stroke(2.0, -0.2), (cf.PointMass(0.1, 0.005),)
+)
+
+
+def run(*arguments: str) -> str:
+    status, out, err = call(*arguments)
+    assert (status, err) == (0, "")
+    return out
+
+
+def as_json(*arguments: str) -> Any:
+    def no_constant(name: str) -> None:
+        raise AssertionError(f"{name} is no JSON")
+
+    return json.loads(run(*arguments, "--json"), parse_constant=no_constant)
+
+
+def test_modes(kim: str) -> None:
+    found = as_json("modes", kim, "--near", "250", "--count", "2")
+    expected = cf.modes(KIM, 2, 250.0)
+    assert found["frequencies"] == pytest.approx(expected.frequencies.tolist(), rel=1e-12)
+    assert found["tip_amplitudes"] == pytest.approx(expected.shape(0.0)[0].tolist(), rel=1e-12)
+    assert (found["rigid"], found["near"], found["units"]["frequencies"]) == (2, 250.0, "Hz")
+    assert as_json("modes", kim, "--near", "0.25 kHz", "--count", "2")["frequencies"] == found["frequencies"]
+    lowest = as_json("modes", kim)["frequencies"]
+    assert lowest == pytest.approx(cf.modes(KIM).frequencies.tolist(), rel=1e-12)
+    shown = run("modes", kim, "--count", "1")
+    assert f"{lowest[0]:.2f} Hz" in shown
+    assert "2 rigid motions" in shown
+
+
+def test_end_mass(kim: str) -> None:
+    found = as_json("end-mass", kim, "--contact-time", "1 ms")
+    assert found["contact_time"] == found["scene"]["tip"]["contact_time"] == 1e-3
+    blow = cf.Scene(KIM, tip=cf.Tip(contact_time=1e-3))
+    for drive in ("stick", "velocity", "force"):
+        values = found["drives"][drive]
+        assert values["end_mass"] == pytest.approx(cf.end_mass(blow, drive), rel=1e-12)
+        assert values["cue_end_mass"] == pytest.approx(4 * values["end_mass"], rel=1e-12)
+        assert values["eps"] == pytest.approx(values["cue_end_mass"] / 0.21, rel=1e-12)
+        assert values["lowest"] <= values["end_mass"] <= values["highest"] < 1.02 * values["lowest"]
+    shown = run("end-mass", kim, "--contact-time", "1 ms")
+    assert f"{1e3 * found['drives']['stick']['end_mass']:.3f} g" in shown
+    assert "contact time 1 ms, e 0.75, mu 0.7" in shown
+
+
+def test_a_bare_cue_gets_defaults_and_says_so(kim: str) -> None:
+    found = as_json("strike", kim)
+    assert found["scene"]["ball"] == {"mass": 0.21, "radius": 0.03075, "inertia": 0.4}
+    assert found["scene"]["stroke"] == {"speed": 1.0, "offset": 0.3}
+    assert found["assumed"] == [
+        *("carom ball 210 g, 61.5 mm (--ball)", "contact time 2 ms (--contact-time; about 1 ms is usual)"),
+        *("e 0.75", "mu 0.7", "stroke 1 m/s", "offset b/R 0.3"),
+    ]
+    words = "assumed: carom ball 210 g, 61.5 mm (--ball); contact time 2 ms (--contact-time; about 1 ms is usual)"
+    assert words in " ".join(run("strike", kim).split())
+    assert "carom ball 210 g, 61.5 mm" in as_json("modes", kim)["assumed"]  # which has no --ball
+
+
+@pytest.mark.parametrize(
+    ("name", "mass", "radius"), [("pool", 0.17, 0.028575), ("carom", 0.21, 0.03075), ("snooker", 0.142, 0.02625)]
+)
+def test_a_ball_by_its_name(kim: str, scene: str, name: str, mass: float, radius: float) -> None:
+    found = as_json("strike", kim, "--ball", name)
+    assert found["scene"]["ball"] == {"mass": mass, "radius": radius, "inertia": 0.4}
+    assert not [words for words in found["assumed"] if "ball" in words]
+    blow = cf.Scene(KIM, cf.Ball(mass, radius), stroke=BLOW)
+    assert found["models"]["coupled"]["squirt"] == pytest.approx(cf.strike(blow).squirt, rel=1e-12)
+    assert as_json("end-mass", scene, "--ball", name)["scene"]["ball"]["mass"] == mass
+
+
+def test_strike(kim: str) -> None:
+    found = as_json("strike", kim, "--offset", "0.3")["models"]
+    blow = cf.Scene(KIM, stroke=BLOW)
+    for name, expected in (("two-part", cf.impulse(blow)), ("coupled", cf.strike(blow))):
+        model = found[name]
+        assert model["squirt"] == pytest.approx(expected.squirt, rel=1e-12)
+        assert model["ball_velocity"] == pytest.approx(expected.ball_velocity.tolist(), rel=1e-12)
+        assert model["spin"] == pytest.approx(expected.spin, rel=1e-12)
+        assert model["regime"] == expected.regime
+        pivot = natural_pivot_length(0.3, expected.squirt, radius=BALL.radius)
+        assert model["pivot_length"] == pytest.approx(pivot, rel=1e-12)
+    a31 = alciatore_a31(0.3, mass_ratio=BALL.mass / cf.end_mass(blow, "offset"))
+    assert found["A.31"]["squirt"] == pytest.approx(a31, rel=1e-12)
+    assert f"{math.degrees(a31):.3f}°" in run("strike", kim)
+
+
+def test_a_miscue_is_said_first(kim: str) -> None:
+    caption = run("strike", kim, "--offset", "0.85").split("how it went")[1]
+    assert "miscue" in caption.splitlines()[0]
+    assert caption.index("this stroke miscues: ") < caption.index("contact time 2 ms")
+    assert "miscues" not in run("strike", kim)
+
+
+def test_head_on_there_is_no_pivot(kim: str) -> None:
+    model = as_json("strike", kim, "--offset", "0")["models"]["two-part"]
+    assert (model["squirt"], model["pivot_length"]) == (0, None)
+    assert "Strike at offset b/R = 0" in run("strike", kim, "--offset", "0")
+
+
+def test_a_scene_file_uses_its_own(scene: str) -> None:
+    found = as_json("strike", scene)
+    assert found["assumed"] == []
+    assert found["scene"]["effects"] == [{"type": "PointMass", "position": 0.1, "mass": 0.005, "rotary_inertia": 0}]
+    assert found["models"]["coupled"]["squirt"] == pytest.approx(cf.strike(SCENE).squirt, rel=1e-12)
+    shown = run("strike", scene)
+    assert "effects: PointMass (position 100 mm, mass 5 g)" in shown
+    assert "assumed" not in shown
+
+
+def test_an_effect_in_words() -> None:
+    assert effect_words(cf.Elevation(math.radians(5))) == "Elevation (angle 5 deg)"
+    assert effect_words(cf.TipShear(0.75)) == "TipShear (ratio 0.75)"
+    assert effect_words(cf.Support(0.2, math.inf)) == "Support (position 200 mm, stiffness inf N/m)"
+    assert effect_words(cf.AxialWaves()) == "AxialWaves"
+
+
+def test_options_replace_what_a_scene_says(scene: str) -> None:
+    told = as_json("strike", scene, "--offset", "0.1", "--contact-time", "2 ms", "--body-mass", "14 oz")["scene"]
+    assert (told["stroke"]["offset"], told["tip"]["contact_time"]) == (0.1, 2e-3)
+    assert told["cue"]["body_mass"] == 0.39689332375
+
+
+def test_report(kim: str) -> None:
+    found = as_json("report", kim)
+    assert found["modes"]["frequencies"] == as_json("modes", kim)["frequencies"]
+    assert found["end_masses"]["drives"] == as_json("end-mass", kim)["drives"]
+    assert found["squirt"]["offsets"] == [0.1, 0.2, 0.3, 0.4, 0.5]
+    models, one = found["squirt"]["models"], as_json("strike", kim)["models"]
+    for many, single in (("coupled", "coupled"), ("two-part", "two-part"), ("A.31", "A.31")):
+        for key in ("squirt", "pivot_length"):
+            assert models[f"{many}, this cue"][key][2] == pytest.approx(one[single][key], rel=1e-12)
+    paper = cf.Scene(cf.LumpedCue.two_part(KIM.mass, 0.012), stroke=BLOW)
+    assert models["two-part, 12 g"]["squirt"][2] == pytest.approx(cf.impulse(paper).squirt, rel=1e-12)
+    shown = run("report", kim)
+    for title in ("Bending modes", "Effective end mass", "Squirt", "Natural pivot length"):
+        assert f"\n{title} " in shown
+
+
+def test_a_report_says_first_that_the_stroke_miscues(kim: str, tmp_path: Path) -> None:
+    shown = run("report", kim, "--offset", "0.7")
+    assert 0 < shown.index("this stroke miscues: ") < shown.index("Bending modes")
+    assert as_json("report", kim, "--offset", "0.7")["regime"] == "miscue"
+    assert "miscue" not in run("report", kim)
+    slippery = cf.Scene(KIM, tip=cf.Tip(friction=0.35), stroke=BLOW)
+    cf.save(slippery, tmp_path / "slippery.toml")
+    regimes = [cf.strike(cf.Scene(KIM, tip=slippery.tip, stroke=cf.Stroke(offset=b))).regime for b in (0.1, 0.4, 0.5)]
+    assert regimes[0] != "miscue"
+    assert regimes[1:] == ["miscue", "miscue"]
+    rows = [line for line in run("report", str(tmp_path / "slippery.toml")).splitlines() if line.strip()[:3] == "0.4"]
+    assert all("miscue" in row for row in rows)
+    assert len(rows) == 2  # of squirt and of pivot length
+
+
+def test_a_lumped_cue_has_no_modes_but_the_rest(tmp_path: Path) -> None:
+    cf.save(cf.Scene(cf.LumpedCue(0.54, 0.006), stroke=BLOW), tmp_path / "lumped.toml")
+    found = as_json("report", str(tmp_path / "lumped.toml"))
+    assert "modes" not in found
+    assert found["end_masses"]["drives"]["force"]["end_mass"] == 0.006
+    assert "lumped cue, 540.0 g, end mass 6.000 g" in run("report", str(tmp_path / "lumped.toml"))
+
+
+def test_a_profile_announces_its_material(tmp_path: Path) -> None:
+    (tmp_path / "shaft.csv").write_text("x [mm],diameter [mm]\n0,12\n700,21\n")
+    shaft = str(tmp_path / "shaft.csv")
+    assert as_json("modes", shaft)["assumed"][0] == "material hard maple (choose with --material)"
+    assert "material hard maple" not in run("modes", shaft, "--material", "ash")
+    run("convert", shaft, str(tmp_path / "shaft.toml"), "--material", "ash")
+    assert cf.load(tmp_path / "shaft.toml") == cf.load(shaft, material="ash")
+
+
+def test_a_profile_announces_that_nothing_is_behind_it(tmp_path: Path) -> None:
+    (tmp_path / "shaft.csv").write_text("x [mm],diameter [mm]\n0,12\n700,21\n")
+    shaft = str(tmp_path / "shaft.csv")
+    words = "no mass behind the shaft (--body-mass gives it)"
+    assert words in as_json("strike", shaft)["assumed"]
+    whole = as_json("strike", shaft, "--body-mass", "15 oz")
+    assert words not in whole["assumed"]
+    bare = as_json("strike", shaft)["models"]["coupled"]["ball_speed"]
+    assert 0.4 * whole["models"]["coupled"]["ball_speed"] < bare < 0.75 * whole["models"]["coupled"]["ball_speed"]
+
+
+def test_a_scene_announces_what_it_leaves_out(kim: str, tmp_path: Path) -> None:
+    scene = tmp_path / "short.toml"
+    scene.write_text("cue = 'kim.toml'\n[ball]\nmass = '170 g'\n[tip]\nfriction = 0.6\n")
+    left = ["ball diameter 61.5 mm", "contact time 2 ms (--contact-time; about 1 ms is usual)"]
+    left += ["e 0.75", "stroke 1 m/s", "offset b/R 0 (head on: [stroke] offset gives another)"]
+    assert as_json("end-mass", str(scene))["assumed"] == left
+    told = as_json("strike", str(scene), "--offset", "0.2", "--contact-time", "1 ms")["assumed"]
+    assert told == ["ball diameter 61.5 mm", "e 0.75", "stroke 1 m/s"]
+    words = as_json("strike", str(scene))["assumed"][-1]
+    assert words == "offset b/R 0 (head on: --offset or [stroke] offset gives another)"
+    scene.write_text("cue = 'shaft.csv'\n[stroke]\noffset = 0.1\n")
+    (tmp_path / "shaft.csv").write_text("x [mm],diameter [mm]\n0,12\n700,21\n")
+    assert as_json("modes", str(scene))["assumed"][:2] == [
+        "material hard maple",
+        "no mass behind the shaft (--body-mass gives it)",
+    ]
+
+
+def test_unusual_numbers_are_remarked(kim: str) -> None:
+    err = call("end-mass", kim, "--contact-time", "1 h")[2]
+    assert err.splitlines()[0] == "unusual: contact time 3600 s; leather's is 0.001 to 0.002 s"
+
+
+def test_convert(kim: str, tmp_path: Path) -> None:
+    goal = str(tmp_path / "kim.vtu")
+    assert run("convert", kim, goal) == f"wrote {goal}\n"
+    assert cf.load(goal) == KIM
+    assert run("convert", kim, goal, "--force", "--body-mass", "15 oz") == f"wrote {goal}\n"
+    assert cf.load(goal) == replace(KIM, body_mass=0.425242846875)
+
+
+def test_convert_says_what_it_assumed(scene: str, tmp_path: Path) -> None:
+    (tmp_path / "shaft.csv").write_text("x [mm],diameter [mm]\n0,12\n700,21\n")
+    shaft, goal = str(tmp_path / "shaft.csv"), str(tmp_path / "shaft.toml")
+    assert run("convert", shaft, goal).splitlines() == [
+        "assumed: material hard maple (choose with --material); no mass behind the shaft (--body-mass gives it)",
+        f"wrote {goal}",
+    ]
+    told = run("convert", shaft, goal, "--body-mass", "420 g", "--material", "ash", "--force")
+    assert told == f"wrote {goal}\n"
+    assert cf.load(goal).body_mass == 0.42
+    run("convert", scene, goal, "--body-mass", "0.4 kg", "--force")
+    assert cf.load(goal) == replace(SCENE, cue=replace(KIM, body_mass=0.4))
+
+
+def test_schema_is_json() -> None:
+    assert json.loads(run("schema")) == as_json("schema")
+
+
+STUDY = """
+from cuefem.validation import Claim
+
+def claims():
+    return [Claim("[Kim] sec. 4", "squirt", 1.0, 0.728, "deg", "rounding", "read off")]
+"""
+
+
+def test_validate(tmp_path: Path) -> None:
+    studies = tmp_path / "papers"
+    studies.mkdir()
+    (studies / "kim.py").write_text(STUDY)
+    (studies / "other.py").write_text("raise RuntimeError('a study without claims() is not run')")
+    (claim,) = as_json("validate", "--studies", str(studies))["claims"]
+    assert (claim["study"], claim["printed"], claim["derived"], claim["verdict"]) == ("kim", 1.0, 0.728, "rounding")
+    assert claim["difference"] == pytest.approx(0.272 / 0.728, rel=1e-12)
+    shown = run("validate", "--studies", str(studies))
+    assert "[Kim] sec. 4" in shown
+    assert "1 rounding" in shown
+    assert "slip: a slip in the paper" in " ".join(shown.split())
+
+
+def test_materials() -> None:
+    found = as_json("materials")
+    assert "hard maple" in found["materials"]
+    assert "hard maple" in run("materials")

@@ -1,0 +1,270 @@
+"""Bad input to a command: status 2, one line on stderr, no traceback, nothing on stdout, no file (regression)."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.helpers.command_line import call
+
+GOOD = """
+[[segments]]
+length = "700 mm"
+tip_diameter = "12 mm"
+butt_diameter = "21 mm"
+tip_bore = "3 mm"
+butt_bore = "4 mm"
+material = { E = "12.6 GPa", G = "840 MPa", rho = "782 kg/m^3" }
+"""
+CSV = "x [mm],diameter [mm]\n"
+
+BAD_FILES = {
+    "negative size": (GOOD.replace("700 mm", "-700 mm"), "segments[0].length: must be in (0, 1000] m; got '-700 mm'"),
+    "zero size": (GOOD.replace("21 mm", "0 mm"), "segments[0].butt_diameter: must be in (0, 10] m; got '0 mm'"),
+    "nan size": (GOOD.replace("12 mm", "nan mm"), "segments[0].tip_diameter: must be in (0, 10] m; got 'nan mm'"),
+    "infinite size": (GOOD.replace("700 mm", "inf m"), "segments[0].length: must be in (0, 1000] m; got 'inf m'"),
+    "wide bore": (
+        GOOD.replace("3 mm", "13 mm"),
+        "segments[0].tip_bore: must be in [0, 0.012) m, its outer diameter; got 0.013",
+    ),
+    "unknown key": (
+        GOOD.replace("length", "lenght"),
+        "segments[0].lenght: must be one of the keys length, tip_diameter, butt_diameter, material, tip_bore, "
+        "butt_bore, core, kappa; got lenght = '700 mm'; did you mean 'length'?",
+    ),
+    "missing unit": (
+        GOOD.replace('"700 mm"', "700"),
+        'segments[0].length: must be in (0, 1000] m, a length with its unit, such as "12 mm"; got 700',
+    ),
+    "empty file": ("", "must hold a cue or a scene; got an empty file"),
+    "no file": (None, "cannot be read: No such file or directory"),
+    "syntax": ("[[segments]\n", "must be TOML; got a syntax error: "),
+    "effect off the cue": (
+        "cue = 'good.toml'\n[[effects]]\ntype = 'PointMass'\nposition = '29 in'\nmass = '5 g'\n",
+        "effects[0].position: must be in [0, 0.7] m, on the cue; got 0.7366",
+    ),
+    "unknown effect": (
+        "cue = 'good.toml'\n[[effects]]\ntype = 'PointMas'\n",
+        "got 'PointMas'; did you mean 'PointMass'?",
+    ),
+    "misspelt effect": (
+        "cue = 'good.toml'\n[[effects]]\ntype = 'PointMass'\npositon = '5 in'\n",
+        "effects[0].positon: must be one of the keys position, mass, rotary_inertia; got positon = '5 in'; "
+        "did you mean 'position'?",
+    ),
+    "unitless effect": (
+        "cue = 'good.toml'\n[[effects]]\ntype = 'PointMass'\nposition = 0.1\nmass = '5 g'",
+        'effects[0].position: must be in [0, inf) m, a length with its unit, such as "12 mm"; got 0.1',
+    ),
+    "offset": ("cue = 'good.toml'\n[stroke]\noffset = 1.0\n", "stroke.offset: must be in (-1, 1); got 1.0"),
+}
+
+
+def refused(*arguments: str | Path) -> str:
+    """What a command says on stderr, once it is clear that it says nothing else and writes nothing."""
+    status, out, err = call(*arguments)
+    assert (status, out) == (2, "")
+    assert err.count("\n") == 1
+    assert err.startswith("cuefem: ")
+    return err.removeprefix("cuefem: ").rstrip("\n")
+
+
+@pytest.mark.parametrize("command", ["strike", "report"])
+@pytest.mark.parametrize(("content", "line"), BAD_FILES.values(), ids=BAD_FILES.keys())
+def test_bad_files(tmp_path: Path, command: str, content: str | None, line: str) -> None:
+    (tmp_path / "good.toml").write_text(GOOD)
+    bad = tmp_path / "bad.toml"
+    if content is not None:
+        bad.write_text(content)
+    before = sorted(tmp_path.iterdir())
+    said = refused(command, bad)
+    assert said.startswith(f"{bad}: ")
+    assert line in said
+    assert sorted(tmp_path.iterdir()) == before
+
+
+@pytest.mark.parametrize("name", BAD_FILES)
+def test_bad_files_are_not_converted(tmp_path: Path, name: str) -> None:
+    content, line = BAD_FILES[name]
+    (tmp_path / "good.toml").write_text(GOOD)
+    bad = tmp_path / "bad.toml"
+    if content is not None:
+        bad.write_text(content)
+    before = sorted(tmp_path.iterdir())
+    for suffix in ("toml", "vtk", "vtu"):
+        assert line in refused("convert", bad, tmp_path / f"out.{suffix}")
+    assert sorted(tmp_path.iterdir()) == before
+
+
+@pytest.mark.parametrize("suffix", ["toml", "vtk", "vtu"])
+def test_a_drawing_that_is_there_is_not_replaced_unasked(tmp_path: Path, suffix: str) -> None:
+    (tmp_path / "good.toml").write_text(GOOD)
+    kept = tmp_path / f"kept.{suffix}"
+    kept.write_text("somebody's work")
+    assert refused("convert", tmp_path / "good.toml", kept) == f"{kept}: is there already: --force replaces it"
+    assert kept.read_text() == "somebody's work"
+
+
+def test_convert_refuses_a_mass_behind_a_lumped_cue(tmp_path: Path) -> None:
+    lumped = tmp_path / "lumped.toml"
+    lumped.write_text("[cue]\nmass = '540 g'\nend_mass = '6 g'\n")
+    said = refused("convert", lumped, tmp_path / "out.toml", "--body-mass", "1 kg")
+    assert said == f"{lumped}: --body-mass: must be left out: a lumped cue is whole"
+    assert not (tmp_path / "out.toml").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        (["strike", "--offset", "1"], "--offset: must be in (-1, 1); got 1.0"),
+        (["strike", "--offset", "-1.5"], "--offset: must be in (-1, 1); got -1.5"),
+        (["strike", "--offset", "nan"], "--offset: must be in (-1, 1); got nan"),
+        (["strike", "--offset", "half"], "--offset: must be a bare number in (-1, 1); got 'half'"),
+        (["end-mass", "--contact-time", "2"], "--contact-time: must be in [1e-6, 10] s, a time with its unit, such as"),
+        (["end-mass", "--contact-time", "-2 ms"], "--contact-time: must be in [1e-6, 10] s; got '-2 ms'"),
+        (["report", "--contact-time", "2 mm"], "--contact-time: must be in [1e-6, 10] s, a time with its unit,"),
+        (["report", "--body-mass", "-1 oz"], "--body-mass: must be in [0, inf) kg; got '-1 oz'"),
+        (["modes", "--near", "-250"], "--near: must be in [0, inf) Hz; got '-250.0 Hz'"),
+        (["modes", "--material", "ash"], "names its materials itself: material is for .csv, .stl, "),
+    ],
+)
+def test_bad_options(tmp_path: Path, arguments: list[str], line: str) -> None:
+    good = tmp_path / "good.toml"
+    good.write_text(GOOD)
+    command, *options = arguments
+    assert refused(command, good, *options).startswith(f"{good}: {line}")
+
+
+@pytest.mark.parametrize(
+    ("content", "line"),
+    [
+        (CSV + "0,12\n700,21\n350,16\n", "line 4, x: must be in (700, inf) mm, beyond the line before"),
+        (CSV + "0,12\n700,-21\n", "line 3, diameter: must be in (0, 10] m; got '-21 mm'"),
+        ("0,12\n700,21\n", 'line 1: must be the header "x [mm],diameter [mm]"'),
+        ("", "must hold a cue or a scene; got an empty file"),
+    ],
+)
+def test_bad_profiles(tmp_path: Path, content: str, line: str) -> None:
+    shaft = tmp_path / "shaft.csv"
+    shaft.write_text(content)
+    assert refused("modes", shaft).startswith(f"{shaft}: {line}")
+
+
+def test_bad_material(tmp_path: Path) -> None:
+    shaft = tmp_path / "shaft.csv"
+    shaft.write_text(CSV + "0,12\n700,21\n")
+    said = refused("modes", shaft, "--material", "hard mapel")
+    assert said.startswith(f"{shaft}: material: ")
+    assert "hard maple" in said
+    assert said.endswith("see `cuefem materials`")
+
+
+def test_a_scene_whose_cue_file_is_missing(tmp_path: Path) -> None:
+    scene = tmp_path / "scene.toml"
+    scene.write_text("cue = 'none.toml'\n")
+    missing = tmp_path / "none.toml"
+    assert refused("strike", scene) == f"{scene}: cue: {missing}: cannot be read: No such file or directory"
+    scene.write_text("cue = 'bad.toml'\n")
+    (tmp_path / "bad.toml").write_text(GOOD.replace("700 mm", "-700 mm"))
+    assert refused("strike", scene).startswith(f"{tmp_path / 'bad.toml'}: segments[0].length: must be in")
+
+
+@pytest.mark.parametrize(
+    ("length", "why"),
+    [
+        ("28 inn", "got '28 inn', an unknown unit ('inn')"),
+        ("28 kg", "got '28 kg', of another kind ('kg')"),
+        ("28", "got '28'"),
+    ],
+)
+def test_wrong_units_say_why(tmp_path: Path, length: str, why: str) -> None:
+    bad = tmp_path / "bad.toml"
+    bad.write_text(GOOD.replace("700 mm", length))
+    assert refused("modes", bad).endswith(f'such as "12 mm"; {why}')
+
+
+def test_a_lumped_cue_has_no_modes(tmp_path: Path) -> None:
+    lumped = tmp_path / "lumped.toml"
+    lumped.write_text("[cue]\nmass = '540 g'\nend_mass = '6 g'\n")
+    assert refused("modes", lumped) == f"{lumped}: modes need a cue of segments; got a lumped cue, which has none"
+    assert refused("modes", lumped, "--body-mass", "1 kg").startswith(f"{lumped}: --body-mass: must be left out")
+
+
+def test_no_studies(tmp_path: Path) -> None:
+    missing = tmp_path / "studies"
+    where = "they are in a clone of cuefem's repository: run there, or name their folder with --studies"
+    assert refused("validate", "--studies", missing) == f"{missing}: cannot be read: no such folder of studies; {where}"
+    missing.mkdir()
+    said = refused("validate", "--studies", missing)
+    assert said == f"{missing}: must hold studies (.py) that define claims(), got none; {where}"
+
+
+def test_wrong_use_ends_with_status_2() -> None:
+    for arguments in (["strike"], ["nonsense"], ["modes", "file.toml", "--count", "0"]):
+        status, out, err = call(*arguments)
+        assert (status, out) == (2, "")
+        assert "Usage: " in err
+
+
+def test_output_that_cannot_be_written(tmp_path: Path) -> None:
+    program = "from cuefem.cli import main; main()"
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
+    environment.pop("PYTHONUNBUFFERED", None)  # what stays in the buffer would fail once more at the end
+    for arguments in (["schema"], ["materials"], ["--help"]):
+        with open("/dev/full", "w") as full:
+            done = subprocess.run(
+                [sys.executable, "-c", program, *arguments], stdout=full, stderr=-1, text=True, env=environment
+            )
+        assert (done.returncode, done.stderr) == (1, "cuefem: cannot write: No space left on device\n")
+
+
+def test_a_whole_process_says_one_line(tmp_path: Path) -> None:
+    bad = tmp_path / "bad.toml"
+    bad.write_text(GOOD.replace("700 mm", "-700 mm"))
+    program = "from cuefem.cli import main; main()"
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
+    done = subprocess.run(
+        [sys.executable, "-c", program, "modes", str(bad)], capture_output=True, text=True, env=environment
+    )
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == f"cuefem: {bad}: segments[0].length: must be in (0, 1000] m; got '-700 mm'\n"
+
+
+@pytest.mark.parametrize(("was", "size"), [("700 mm", "1e-300 m"), ("782 kg/m^3", "1e308 kg/m^3")])
+def test_sizes_out_of_all_proportion(was: str, size: str, tmp_path: Path) -> None:
+    """In bounds, but no double holds what follows from them: status 2, said in one line, no traceback."""
+    path = tmp_path / "cue.toml"
+    path.write_text(GOOD.replace(was, size), encoding="utf-8")
+    status, out, err = call("strike", path)
+    assert status == 2
+    assert out == ""
+    assert [line for line in err.splitlines() if not line.startswith("unusual")] == [err.splitlines()[-1]]
+    assert "out of all proportion" in err
+
+
+@pytest.mark.parametrize("command", ["report", "end-mass"])
+def test_a_tip_as_thin_as_a_hair(tmp_path: Path, command: str) -> None:
+    path = tmp_path / "cue.toml"
+    path.write_text(GOOD.replace("tip_bore", "# tip_bore").replace("butt_bore", "# ").replace("12 mm", "0.012 mm"))
+    status, out, err = call(command, path)
+    assert (status, out) == (2, "")
+    assert err.splitlines()[0].startswith("unusual: segments[0].tip_diameter 0.012 mm; check the unit")
+    assert err.splitlines()[-1].startswith(f"cuefem: {path}: the end mass comes out as -")
+    assert err.splitlines()[-1].endswith("check sizes, E and the contact time")
+
+
+def test_more_memory_than_there_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr("cuefem.report.modes_record", full)
+    path = tmp_path / "cue.toml"
+    path.write_text(GOOD, encoding="utf-8")
+    said = (
+        "cuefem: this needs more memory than there is: ask for less, or check sizes, masses and times (MemoryError)\n"
+    )
+    assert call("modes", path, "--count", "1000000") == (2, "", said)

@@ -1,0 +1,195 @@
+"""The rates at which the finite-element cue reaches the lumped one (studies/convergence.py), and why they are these."""
+
+import sys
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+
+from cuefem import Resolution
+from cuefem.beam import assemble
+from cuefem.beam.modes import modes
+from cuefem.contact.strike import strike_modes
+from cuefem.endmass.drives import stick_at_offset
+from cuefem.tip_modes import tip_modes_of
+from tests.helpers.orders import assert_order, observed_orders
+
+mpl.use("Agg")
+sys.path.append(str(Path(__file__).parents[2] / "studies"))
+import common
+import convergence as study
+import convergence_roads as roads
+
+KIM = common.scene(common.cue("kim"), 1e-3, 0.3)
+
+
+@pytest.fixture(scope="module")
+def kim_tip():
+    return tip_modes_of(KIM, Resolution(8, 20, 22))
+
+
+def test_a_fitted_exponent_is_that_of_the_power_law():
+    x = np.geomspace(1, 100, 7)
+    assert common.slope(x, 3 * x**-1.5) == pytest.approx(-1.5, rel=1e-12)
+    assert common.slope(x, 3 * x**-1.5 * np.exp(0.1 * x)) > 0
+
+
+def test_crests_are_the_largest_of_each_run():
+    assert np.array_equal(common.crests([1, -3, 2, 0.5, -0.25, 0], 3), [3, 0.5])
+
+
+# (a), (b)
+
+
+def test_the_stub_has_the_exact_rigid_end_mass_of_its_frustum():
+    """m_c nu_c/(1 + nu_c) is what its two rigid modes give; nu_c with rotary inertia, 0.309 (without: 0.307)."""
+    tip = tip_modes_of(common.scene(roads.stub()), Resolution(1, 6, 1))
+    assert roads.stub_end_mass() == pytest.approx(roads.rigid_end_mass(tip), rel=1e-12)
+    assert roads.stub_end_mass() == pytest.approx(2.84587e-3, rel=1e-5)
+
+
+def test_stiffness_scales_every_frequency_by_its_root():
+    """What road (a) rests on: one eigenproblem serves all stiffnesses."""
+    soft = roads.stub()
+    (end,) = soft.segments
+    wood = common.replace(end.material, E=9 * end.material.E, G=9 * end.material.G)
+    stiff = common.replace(soft, segments=(common.replace(end, material=wood),))
+    assert modes(stiff, 4).frequencies == pytest.approx(3 * modes(soft, 4).frequencies, rel=1e-9)
+    assert np.array_equal(assemble(stiff, elements=1, order=4).M, assemble(soft, elements=1, order=4).M)
+
+
+@pytest.mark.parametrize(("name", "power"), [("stiff_stub", -1), ("long_contact", -2)])
+def test_force_velocity_and_squirt_become_rigid_and_stick_does_not(name, power):
+    rates, (_, largest) = study.rigid_rates(name), study.envelopes(name)
+    for drive in ("force", "velocity", "squirt"):
+        assert rates[drive] == pytest.approx(power, abs=0.2), drive
+        assert largest[drive][-1] < (5e-4 if drive == "squirt" else 5e-5)
+    assert abs(rates["stick"]) < 0.2
+    assert 0.1 < largest["stick"][-1] < 0.3
+
+
+def test_it_is_friction_that_ends_the_ringing():
+    """Without a cap on the tangential force the coupled squirt rings for ever, as the stick end mass does."""
+    endless, largest = study.rigid_rates("stiff_stub", np.inf), study.envelopes("stiff_stub", np.inf)[1]
+    assert abs(endless["squirt"]) < 0.1
+    assert 0.1 < largest["squirt"][-1] < 0.3
+    assert study.rigid_rates("stiff_stub", 10.0)["squirt"] == pytest.approx(-1, abs=0.2)
+
+
+def test_kims_shaft_at_its_rigid_limit():
+    """physics.md section 6: mass/m_e = 5.494268; squirt 4.093 degrees at b/R 0.3."""
+    tip = tip_modes_of(KIM, Resolution(4, 20, 12))
+    assert 0.12 / roads.rigid_end_mass(tip) == pytest.approx(5.494268, rel=1e-7)
+    assert np.degrees(common.lumped_squirt(KIM, roads.rigid_end_mass(tip))) == pytest.approx(4.093, abs=5e-4)
+
+
+# (c)
+
+
+def test_a_light_cue_reaches_first_order_with_the_end_mass_of_its_offset():
+    for offset, road in study.road("light").items():
+        own, small = road.errors["stick at the offset"], road.errors["stick"]
+        assert abs(own[-1]) < 1.2e-4
+        assert small[-1] == pytest.approx({0.1: -0.0119, 0.3: -0.1014, 0.5: -0.2613}[offset], rel=1e-2)
+    own = np.abs(study.road("light")[0.5].errors["stick at the offset"][-5:])
+    assert_order(0.5, study.road("light")[0.5].along[-5:], own, within=0.04)
+
+
+def test_lighter_tip_modes_are_those_of_a_lighter_cue(kim_tip):
+    cue = KIM.cue
+    (cone,) = cue.segments
+    wood = cone.material
+    wood = common.replace(wood, E=wood.E / 10, G=wood.G / 10, rho=wood.rho / 10)
+    light = common.replace(cue, segments=(common.replace(cone, material=wood),), body_mass=cue.mass - 0.012)
+    meant = tip_modes_of(common.replace(KIM, cue=light), Resolution(8, 20, 22))
+    scaled = roads.lighter(kim_tip, 0.1)
+    assert scaled.omega == pytest.approx(meant.omega, rel=1e-9)
+    assert scaled.amplitude == pytest.approx(meant.amplitude, rel=1e-8)
+
+
+def test_the_end_mass_at_no_offset_is_the_stick_end_mass(kim_tip):
+    struck = common.at_offset(KIM, 0.0)
+    assert stick_at_offset(kim_tip, struck) == pytest.approx(roads.stick(kim_tip, struck), rel=1e-13)
+
+
+# (d)
+
+
+@pytest.mark.parametrize("name", common.NAMES)
+def test_the_lumped_cue_is_reached_like_the_root_of_the_offset(name):
+    road = study.road("small_offset", name)
+    errors = np.abs(road.errors["stick"][:5])
+    assert_order(0.5, road.along[:5][::-1], errors[::-1], within=0.02)
+
+
+@pytest.mark.parametrize("name", common.NAMES)
+def test_the_coefficient_of_the_root_is_slip_times_ringing(name):
+    struck = common.scene(common.cue(name))
+    tip = roads.plain_tip(struck)
+    offsets = np.array([1e-7, 1e-8])
+    there = [common.at_offset(struck, b) for b in offsets]
+    lumped = [common.lumped_squirt(scene, roads.stick(tip, struck)) for scene in there]
+    found = [roads.squirt_of(tip, scene) / psi - 1 for scene, psi in zip(there, lumped, strict=True)]
+    law = roads.root_law(tip, struck)
+    misses = np.abs(found / np.sqrt(offsets) / law - 1)
+    assert misses[0] < 8e-3
+    assert misses[1] < 5e-3
+
+
+@pytest.mark.parametrize("count", [8, 22])
+def test_the_first_slip_lasts_as_derived_and_shortens_with_the_modes(kim_tip, count):
+    tip = kim_tip.lowest(count)
+    outcome = strike_modes(common.at_offset(KIM, 1e-8), tip)
+    first = outcome.phases[0]
+    assert first.grip == "slip"
+    assert first.end / 1e-4 == pytest.approx(roads.first_slip(tip, KIM), rel=1e-3)
+
+
+def test_the_root_belongs_to_the_modes_kept():
+    """The slip shortens with the modes; the ringing force, the law's other factor, grows by a tenth meanwhile."""
+    few, many = (study.road("small_offset", "kim", n).errors["stick"][0] for n in (22, 160))
+    left = study.truncation()
+    assert many / few == pytest.approx(left["fall"], rel=5e-3)
+    tips = [tip_modes_of(KIM, Resolution(12, 26, n)) for n in (22, 160)]
+    ringing = np.divide(*(roads.ringing(tip, KIM) for tip in tips[::-1]))
+    impulses = np.divide(*(roads.StickLimit.of(KIM).transverse_impulse(*roads.flexible(tip)) for tip in tips))
+    assert left["fall"] == pytest.approx(left["slip"] * ringing * impulses, rel=1e-12)
+    assert left["slip"] == pytest.approx(0.539, abs=1e-3)
+    assert ringing == pytest.approx(1.111, abs=1e-3)
+
+
+# modes, elements, order
+
+
+def test_the_tail_of_the_modes_follows_the_compliance_left_out():
+    """As a power of it the tail is the first; their ratio wanders by some per cent and does not settle."""
+    road = study.road("more_modes")
+    far = road.along >= 28
+    assert common.slope(road.errors["compliance"][far], road.errors["squirt"][far]) == pytest.approx(1, abs=0.03)
+    ratios = study.tail_ratios()
+    assert 1.03 < ratios.max() / ratios.min() < 1.1
+    assert study.modes_rate() == pytest.approx(-1.4, abs=0.1)
+
+
+@pytest.mark.parametrize("order", [2, 3])
+def test_squirt_converges_with_two_orders_a_degree(order):
+    road = study.road("more_elements", order)
+    assert_order(2 * order, 1 / road.along, np.abs(road.errors["squirt"]), within=0.06)
+
+
+def test_linear_elements_converge_late_to_second_order():
+    road = study.road("more_elements", 1)
+    orders = observed_orders(1 / road.along, np.abs(road.errors["squirt"]))
+    assert orders[-1] == pytest.approx(2, abs=0.03)
+
+
+def test_the_order_converges_faster_than_any_power():
+    """Every three orders gain more than the three before, from 12 on; at 21 the error is 5e-11."""
+    road = study.road("higher_order")
+    errors = dict(zip(road.along, np.abs(road.errors["squirt"]), strict=True))
+    gains = [errors[p] / errors[p + 3] for p in (12, 15, 18)]
+    assert gains[0] > 10
+    assert gains[1] > 100
+    assert gains[2] > 100
+    assert 1e-13 < errors[21] < 5e-10

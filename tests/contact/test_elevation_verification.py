@@ -1,0 +1,143 @@
+"""A raised cue against exact solutions in the table's frame, and the rates at which it becomes a level one."""
+
+from dataclasses import replace
+from math import asin, cos, inf, sin
+
+import numpy as np
+import pytest
+
+from cuefem import Elevation, LumpedCue, PowerLawTip, Scene, Stroke, Tip, strike
+from cuefem.contact.strike import strike_modes
+from tests.helpers.orders import assert_order
+from tests.helpers.strike_scenes import KIM_AT, hand_made, imbalance, kim_scene, numbers
+
+STEPPED = 1e-9
+
+
+def level_part(raised) -> np.ndarray:
+    """What a raised outcome has in common with a level one: all but the energies that only it has."""
+    extra = ("ball roll", "ball hop", "table loss")
+    kept = {name: part for name, part in raised.energy.items() if name not in extra}
+    return numbers(replace(raised, energy=kept))
+
+
+@pytest.mark.parametrize("table", [0.0, 0.2, 5.0])
+@pytest.mark.parametrize(
+    ("offset", "tip", "effects"),
+    [
+        (0.3, {}, ()),
+        (0.6, {"friction": 0.3}, ()),
+        (-0.5, {"restitution": 0.4}, ()),
+        (0.2, {"friction": inf}, ()),
+        (0.3, {}, (PowerLawTip(1.5),)),
+        (0.0, {"friction": 0.0}, ()),
+    ],
+)
+def test_level_cue_is_not_raised(offset, tip, effects, table):
+    scene = replace(kim_scene(offset, **tip), effects=effects)
+    level, raised = strike(scene, KIM_AT), strike(replace(scene, effects=(*effects, Elevation(0.0, table))), KIM_AT)
+    assert np.abs(level_part(raised) - numbers(level)).max() < STEPPED
+    assert level.regime == raised.regime
+    assert raised.energy["ball roll"] + raised.energy["ball hop"] + abs(raised.energy["table loss"]) < 1e-15
+
+
+@pytest.mark.parametrize(("table", "order"), [(0.0, 2), (0.2, 1)])
+def test_level_cue_is_approached_at_the_rate_of_the_table(table, order):
+    """Frictionless, the table does with the angle's square; its friction, in proportion to the angle."""
+    scene, angles = kim_scene(0.4), 0.04 * 2.0 ** -np.arange(5)
+    bare = strike_modes(scene, hand_made([600.0, 3000.0], [5.0, 8.0], rigid=9.0))
+    tip = hand_made([600.0, 3000.0], [5.0, 8.0], rigid=9.0)
+    raised = [strike_modes(replace(scene, effects=(Elevation(float(a), table),)), tip) for a in angles]
+    for name in ("ball_speed", "spin", "squirt")[: 3 if table == 0 else 2]:
+        errors = [abs(getattr(outcome, name) - getattr(bare, name)) for outcome in raised]
+        assert_order(order, angles, errors, within=[0.16, 0.08, 0.04, 0.02], rounding=1e-12)
+    assert abs(raised[-1].squirt / bare.squirt - 1) < 1e-3
+
+
+class Blow:
+    """A lumped cue and a ball on a table as rigid bodies in the table's frame (x right, y forward, z up).
+
+    Velocities: the cue's along u, w, p (masses M_c, m_e, m_e), the ball's V, its spin; a force along a constraint's row
+    keeps that velocity at zero. With no slip that begins or ends, the tip's impulse is (1 + e) times what stops it.
+    """
+
+    def __init__(self, scene: Scene, angle: float):
+        self.scene = scene
+        cue, ball, phi = scene.cue, scene.ball, asin(scene.stroke.offset)
+        x, u, p = np.eye(3)[0], np.array([0, cos(angle), -sin(angle)]), np.array([0, sin(angle), cos(angle)])
+        self.masses = np.array(
+            [cue.mass, cue.end_mass, cue.end_mass, *3 * [ball.mass], *3 * [ball.inertia * ball.mass * ball.radius**2]]
+        )
+        self.n, self.t, self.p = cos(phi) * u - sin(phi) * x, sin(phi) * u + cos(phi) * x, p
+        self.axes = np.array([u, x, p])
+
+    def row(self, way: np.ndarray, arm: np.ndarray, *, tip: bool) -> np.ndarray:
+        """Velocity along ``way`` of the ball's point at ``arm``, less the tip's."""
+        return np.concatenate([-(self.axes @ way) if tip else np.zeros(3), way, np.cross(arm, way)])
+
+    def after(self, held: list[np.ndarray]) -> np.ndarray:
+        R = self.scene.ball.radius
+        normal = self.row(self.n, -R * self.n, tip=True)
+        start = np.zeros(9)
+        start[0] = self.scene.stroke.speed
+        rows = np.array(held)
+        pull = rows.T / self.masses[:, None]
+
+        def free(v):
+            return v - pull @ np.linalg.solve(rows @ pull, rows @ v)
+
+        start, push = free(start), free(normal / self.masses)
+        return start - (1 + self.scene.tip.restitution) * (normal @ start) / (normal @ push) * push
+
+    def tip_rows(self) -> list[np.ndarray]:
+        arm = -self.scene.ball.radius * self.n
+        return [self.row(way, arm, tip=True) for way in (self.t, self.p)]
+
+    def table_rows(self, *, held: bool) -> list[np.ndarray]:
+        x, y, z = np.eye(3)
+        arm = -self.scene.ball.radius * z
+        return [self.row(way, arm, tip=False) for way in ((z, x, y) if held else (z,))]
+
+
+@pytest.mark.parametrize("angle", [0.05, 0.4, 1.1])
+@pytest.mark.parametrize("exponent", [1.0, 1.5])
+@pytest.mark.parametrize(
+    ("offset", "friction", "table"),
+    [(0.35, 0.0, 0.0), (0.35, inf, 0.0), (0.6, inf, 0.0), (0.0, inf, 1e9), (0.6, 0.0, 1e9), (0.0, 0.0, 1e9)],
+)
+def test_rigid_bodies_on_a_table(angle, offset, exponent, friction, table):
+    scene = Scene(LumpedCue(0.54, 0.02), tip=Tip(0.7, friction, 1e-3), stroke=Stroke(1.4, offset))
+    outcome = strike(replace(scene, effects=(Elevation(angle, table), PowerLawTip(exponent))))
+    blow = Blow(scene, angle)
+    told = blow.after([*(blow.tip_rows() if friction else []), *blow.table_rows(held=table > 0)])
+    assert np.abs(outcome.history.velocity - told[3:6]).max() < STEPPED
+    assert np.abs(outcome.history.spin - told[6:9]).max() < STEPPED / scene.ball.radius
+    assert abs(outcome.cue_speed - told[0]) < STEPPED
+    assert abs(outcome.squirt - np.arctan2(-told[3], told[4])) < STEPPED
+    assert abs(outcome.spin - told[8]) < STEPPED / scene.ball.radius
+    assert abs(outcome.ball_speed - np.hypot(told[3], told[4])) < STEPPED
+    assert imbalance(outcome) < 1e-10
+
+
+def test_table_friction_of_a_head_on_slide():
+    """Head on, the ball's lowest point slides forward throughout: f = -mu N, N = F sin(a), F cos(a) - f drives it."""
+    angle, mu, e = 0.3, 0.15, 0.8
+    scene = Scene(LumpedCue(0.5, 0.01), tip=Tip(e, 0.0, 1e-3), stroke=Stroke(1.0))
+    outcome = strike(replace(scene, effects=(Elevation(angle, mu),)))
+    M, along = scene.ball.mass, cos(angle) - mu * sin(angle)
+    impulse = (1 + e) / (1 / 0.5 + cos(angle) * along / M)
+    assert abs(outcome.ball_speed / (impulse * along / M) - 1) < STEPPED
+    follow = mu * sin(angle) * impulse / (scene.ball.inertia * M * scene.ball.radius)
+    assert abs(outcome.history.spin[0] / -follow - 1) < STEPPED  # forward roll turns about -x
+    slide = impulse * along / M - follow * scene.ball.radius  # of the lowest point, at the end; in proportion before
+    assert abs(outcome.energy["table loss"] / (mu * sin(angle) * impulse * slide / 2) - 1) < STEPPED
+
+
+def test_a_raised_cue_draws_the_more_the_steeper_it_is():
+    rolls = []
+    for angle in (0.0, 0.2, 0.5, 0.9):
+        outcome = strike(replace(kim_scene(0.0), effects=(Elevation(angle, 0.0),)), KIM_AT)
+        rolls.append(outcome.history.spin[0])
+        assert abs(outcome.squirt) + abs(outcome.spin) < 1e-9
+    assert rolls[0] == 0
+    assert np.all(np.diff(rolls) > 0)  # draw turns about +x (cuefem.place)

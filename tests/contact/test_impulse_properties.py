@@ -1,0 +1,260 @@
+"""What every stroke of the impulse solver obeys, whatever the regime: scale, mirror, order, work, energy, shapes."""
+
+from collections import Counter
+from dataclasses import replace
+from math import inf, sqrt
+
+import numpy as np
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from cuefem import Ball, Cue, LumpedCue, Material, Scene, Segment, Stroke, Tip, end_mass, impulse
+
+MANY = settings(max_examples=200, deadline=None)
+PLACES = ("initial", "ball translation", "ball rotation", "cue", "tip loss", "friction loss")
+
+
+def powers(low, high):
+    return st.floats(low, high).map(lambda x: 10**x)
+
+
+@st.composite
+def scenes(draw, widest=3.0, coupled=True):
+    M, nu = draw(powers(-1, 0)), draw(st.floats(0.05, 1))
+    cue, ends = M * draw(powers(-widest, widest)), M * draw(powers(-3 * widest, widest))
+    coupling = draw(st.sampled_from([0.0, 0.3, -0.5, 0.95, -0.95])) / sqrt(cue * ends) if coupled else 0.0
+    offset = draw(st.sampled_from([0.0, 1e-12, 0.3, 0.5, 0.999999]) | st.floats(0, 0.99).map(lambda x: round(x, 9)))
+    friction = draw(st.sampled_from([0.0, inf, 0.7]) | st.floats(0, 3))
+    restitution = draw(st.sampled_from([0.0, 1.0]) | st.floats(0, 1))
+    speed = draw(st.floats(0.1, 10))
+    return Scene(LumpedCue(cue, ends, coupling), Ball(M, 0.03, nu), Tip(restitution, friction), Stroke(speed, offset))
+
+
+def everything(out):
+    """Every number of an outcome, by name."""
+    named = {event.name: event.impulse for event in out.phases} | out.energy
+    fields = ("squirt", "ball_velocity", "ball_speed", "spin", "cue_speed", "impulse")
+    return named | {name: getattr(out, name) for name in fields}
+
+
+def felt(scene):
+    """B of physics.md section 2 from its definition, (t, n), and the first velocity."""
+    s = scene.stroke.offset
+    c = sqrt((1 - s) * (1 + s))
+    k = scene.cue.coupling if s else 0.0
+    frame = np.array([[s, c], [c, -s]])
+    cue = frame.T @ np.array([[1 / scene.cue.mass, k], [k, 1 / scene.cue.end_mass]]) @ frame
+    ball = np.diag([1 + 1 / scene.ball.inertia, 1]) / scene.ball.mass
+    return ball + cue, -scene.stroke.speed * np.array([s, c])
+
+
+@MANY
+@given(scenes())
+@example(Scene(LumpedCue(0.5, 0.2, -2.9), Ball(1.0, 0.03), Tip(0.5, inf), Stroke(1.0, 0.995)))
+def test_never_nan_and_only_the_end_of_a_miscue_s_slip_is_infinite(scene):
+    out = impulse(scene)
+    for name, value in everything(out).items():
+        if name == "slip ends" and out.regime == "miscue":
+            assert value == inf
+        else:
+            assert np.all(np.isfinite(value)), name
+
+
+@MANY
+@given(scenes())
+def test_energy_closes(scene):
+    out = impulse(scene)
+    initial, *parts = (out.energy[name] for name in PLACES)
+    assert set(out.energy) == set(PLACES)
+    assert abs(sum(parts) - initial) < 1e-12 * initial
+    assert min(parts) >= -1e-13 * initial
+    assert initial >= scene.cue.mass * scene.stroke.speed**2 / 2 * (1 - 1e-15)
+    assert out.energy["ball rotation"] == pytest.approx(
+        scene.ball.inertia * scene.ball.mass * (scene.ball.radius * out.spin) ** 2 / 2, rel=1e-13
+    )
+    assert out.energy["ball translation"] == pytest.approx(scene.ball.mass * out.ball_speed**2 / 2, rel=1e-13)
+    if scene.tip.restitution == 1:
+        assert abs(out.energy["tip loss"]) < 1e-15 * initial
+    if scene.tip.friction == 0 or scene.stroke.offset == 0:
+        assert abs(out.energy["friction loss"]) < 1e-15 * initial
+
+
+@MANY
+@given(scenes(), powers(-5, 5))
+def test_impulses_scale_with_the_speed_and_energies_with_its_square(scene, factor):
+    one = impulse(scene)
+    other = impulse(replace(scene, stroke=replace(scene.stroke, speed=scene.stroke.speed * factor)))
+    assert (one.regime, one.jam) == (other.regime, other.jam)
+    for name, value in everything(one).items():
+        power = 0 if name == "squirt" else 2 if name in PLACES else 1
+        scale = one.energy["initial"] if name in PLACES else np.max(np.abs(value))
+        scale = scene.stroke.speed if name == "cue_speed" else scale
+        finite = np.isfinite(value)
+        got = np.asarray(everything(other)[name])[finite] / factor**power
+        least = 1e-13 * scale + np.finfo(float).tiny  # smaller numbers have not all their digits
+        np.testing.assert_allclose(got, np.asarray(value)[finite], rtol=1e-11, atol=least, err_msg=name)
+
+
+@MANY
+@given(scenes())
+def test_a_negative_offset_is_the_exact_mirror_image(scene):
+    right = impulse(scene)
+    left = impulse(replace(scene, stroke=replace(scene.stroke, offset=-scene.stroke.offset)))
+    assert (left.squirt, left.spin, left.cue_speed) == (-right.squirt, -right.spin, right.cue_speed)
+    assert tuple(left.ball_velocity) == (-right.ball_velocity[0], right.ball_velocity[1])
+    assert tuple(left.impulse) == (-right.impulse[0], right.impulse[1])
+    assert (left.phases, left.energy) == (right.phases, right.energy)
+    assert (left.regime, left.jam) == (right.regime, right.jam)
+
+
+@MANY
+@given(scenes())
+def test_momentum_of_ball_and_cue(scene):
+    out = impulse(scene)
+    M, ball = scene.ball.mass, scene.ball
+    np.testing.assert_allclose(out.impulse, M * out.ball_velocity, rtol=1e-14)
+    assert out.ball_speed == pytest.approx(np.hypot(*out.ball_velocity), rel=1e-14)
+    assert out.spin == pytest.approx(out.impulse[0] / (ball.inertia * M * ball.radius), rel=1e-14, abs=0)
+    phi = np.arcsin(scene.stroke.offset)
+    assert out.squirt == pytest.approx(phi - np.arctan2(*out.ball_velocity), abs=1e-13)
+    if scene.cue.coupling == 0:
+        along = np.sin(phi) * out.impulse[0] + np.cos(phi) * out.impulse[1]
+        lost = scene.cue.mass * (scene.stroke.speed - out.cue_speed)
+        assert lost == pytest.approx(along, rel=1e-12, abs=1e-14 * scene.cue.mass * scene.stroke.speed)
+
+
+def test_the_course_retold_from_its_events():
+    """From the three events and B alone: the velocities, their signs, the order of events, and the normal work."""
+    seen: Counter[str] = Counter()
+
+    @settings(max_examples=300, deadline=None)
+    @given(scenes(widest=1.0))
+    @example(Scene(LumpedCue(0.54, 0.3), Ball(), Tip(1.0, 0.35), Stroke(1.0, 0.5)))  # late stick
+    @example(Scene(LumpedCue(0.05, 1.0), Ball(), Tip(0.9, 0.2), Stroke(1.0, 0.3)))  # slip reversal
+    @example(Scene(LumpedCue(0.54, 0.003), Ball(), Tip(0.75, 0.7), Stroke(1.0, 0.3)))  # jam
+    def retell(scene):
+        out = impulse(scene)
+        seen.update([out.regime, "jam"] if out.jam else [out.regime])
+        B, v = felt(scene)
+        mu, U, e = scene.tip.friction, scene.stroke.speed, scene.tip.restitution
+        slip, compressed, final = (event.impulse for event in out.phases)
+        assert 0 < compressed <= final * (1 + 1e-14)
+        assert slip >= 0
+        order = {"stick": slip <= compressed * (1 + 1e-12), "late stick": compressed <= slip <= final * (1 + 1e-12)}
+        assert order.get(out.regime, True)
+        if mu == inf:
+            return  # its slip is a blow without normal impulse
+        pull = {"slip reversal": -mu}.get(out.regime, -B[0, 1] / B[0, 0])
+        ends = np.unique([0.0, min(slip, final), compressed, final])
+        p_t = mu * np.minimum(ends, slip) + (pull * np.maximum(ends - slip, 0) if slip < inf else 0)
+        velocity = v[:, None] + B @ [p_t, ends]
+        scale = U * (1 + np.abs(B @ [p_t, ends]) / U)
+        assert abs(p_t[-1] - out.impulse[0]) < 1e-12 * np.hypot(*out.impulse)
+        # compression ends where the contact stops; before it closes, after it opens
+        assert abs(np.interp(compressed, ends, velocity[1])) < 1e-12 * scale[1].max()
+        assert np.all(velocity[1, ends < compressed] <= 1e-12 * scale[1].max())
+        assert np.all(velocity[1, ends > compressed] >= -1e-12 * scale[1].max())
+        # sliding towards -t until slip ends; Coulomb's cone afterwards
+        assert np.all(velocity[0, ends <= slip] <= 1e-12 * scale[0].max())
+        if out.regime == "slip reversal":
+            assert np.all(velocity[0, ends >= slip] >= -1e-12 * scale[0].max())
+        elif slip < final:
+            assert np.abs(velocity[0, ends >= slip]).max() < 1e-12 * scale[0].max()
+            assert abs(pull) <= mu * (1 + 1e-12)
+        # the normal velocity is straight between events: its work by trapezoids
+        works = (velocity[1, 1:] + velocity[1, :-1]) / 2 * np.diff(ends)
+        spent = -works[ends[1:] <= compressed].sum()
+        returned = works[ends[1:] > compressed].sum()
+        rounding = 1e-12 * max(spent, 1e-2 * np.abs(B[1] @ [p_t, ends]).max() * final)
+        assert abs(returned - e**2 * spent) < rounding
+        assert abs(out.energy["tip loss"] - (1 - e**2) * spent) < rounding
+        if out.jam:
+            assert B[1, 1] + mu * B[1, 0] < 0
+
+    retell()
+    for regime in ("stick", "late stick", "miscue", "slip reversal", "jam"):
+        assert seen[regime] >= 1, (regime, seen)
+
+
+@MANY
+@given(scenes(coupled=False), st.floats(0.01, 1))
+def test_more_restitution_gives_more_speed(scene, more):
+    e = scene.tip.restitution
+    slow, fast = (impulse(replace(scene, tip=replace(scene.tip, restitution=x))) for x in (e, e + (1 - e) * more))
+    assert fast.phases[2].impulse >= slow.phases[2].impulse * (1 - 1e-14)
+    assert fast.phases[1].impulse == slow.phases[1].impulse
+
+
+def many_scenes(rng, shape):
+    M = rng.uniform(0.1, 0.3, shape)
+    cue, ends = M * 10 ** rng.uniform(-1, 2, shape), M * 10 ** rng.uniform(-6, 1, shape)
+    coupling = rng.uniform(-0.9, 0.9, shape) / np.sqrt(cue * ends) * (rng.random(shape) < 0.3)
+    tip = Tip(rng.uniform(0, 1, shape), rng.choice([0.0, inf, 0.7, 0.2], shape))
+    stroke = Stroke(rng.uniform(0.1, 9, shape), rng.choice([0.0, -0.3, 0.5, 0.9], shape))
+    return Scene(LumpedCue(cue, ends, coupling), Ball(M, rng.uniform(0.02, 0.04, shape), 0.4), tip, stroke)
+
+
+def test_an_array_of_strokes_is_its_strokes_one_by_one():
+    rng = np.random.default_rng(5)
+    whole = many_scenes(rng, (40,))
+    out = impulse(whole)
+    for i in range(40):
+        single = Scene(
+            LumpedCue(whole.cue.mass[i], whole.cue.end_mass[i], whole.cue.coupling[i]),
+            Ball(whole.ball.mass[i], whole.ball.radius[i], 0.4),
+            Tip(whole.tip.restitution[i], whole.tip.friction[i]),
+            Stroke(whole.stroke.speed[i], whole.stroke.offset[i]),
+        )
+        one = impulse(single)
+        assert (one.regime, one.jam) == (out.regime[i], out.jam[i])
+        for name, value in everything(one).items():
+            np.testing.assert_allclose(everything(out)[name][i], value, rtol=1e-13, atol=1e-300)
+
+
+@pytest.mark.parametrize("block", [1, 7, 64, 10**6])
+def test_the_block_size_changes_nothing(monkeypatch, block):
+    scene = many_scenes(np.random.default_rng(6), (5, 40))
+    before = impulse(scene)
+    monkeypatch.setattr("cuefem.contact.impulse_space.BLOCK", block)
+    after = impulse(scene)
+    for name, value in everything(before).items():
+        np.testing.assert_allclose(everything(after)[name], value, rtol=4e-15, atol=1e-300, err_msg=name)
+    np.testing.assert_array_equal(after.regime, before.regime)
+    np.testing.assert_array_equal(after.jam, before.jam)
+
+
+def test_fields_broadcast_to_rows_and_columns():
+    offsets, ends = np.linspace(-0.6, 0.6, 5)[:, None], np.array([1e-3, 4e-3, 0.02])
+    out = impulse(Scene(LumpedCue(0.54, ends), stroke=Stroke(2.0, offsets)))
+    assert out.squirt.shape == out.spin.shape == out.regime.shape == out.jam.shape == (5, 3)
+    assert out.ball_velocity.shape == out.impulse.shape == (5, 3, 2)
+    assert {np.shape(value) for value in out.energy.values()} == {(5, 3)}
+    assert [np.shape(event.impulse) for event in out.phases] == [(5, 3)] * 3
+    one = impulse(Scene(LumpedCue(0.54, 4e-3), stroke=Stroke(2.0, float(offsets[3, 0]))))
+    assert out.squirt[3, 1] == pytest.approx(one.squirt, rel=1e-14)
+    assert isinstance(one.squirt, float)
+    assert isinstance(one.regime, str)
+    assert isinstance(one.jam, bool)
+
+
+@pytest.mark.parametrize("shape", [(0,), (3, 0), (0, 2)])
+def test_no_strokes_give_empty_outcomes(shape):
+    out = impulse(Scene(LumpedCue(0.54, 0.003), stroke=Stroke(1.0, np.zeros(shape))))
+    assert out.squirt.shape == out.regime.shape == out.jam.shape == shape
+    assert out.ball_velocity.shape == (*shape, 2)
+    assert {np.shape(value) for value in out.energy.values()} == {shape}
+
+
+def test_a_finite_element_cue_goes_through_its_stick_end_mass():
+    maple = Material(12.6e9, 0.84e9, 700.0)
+    cue = Cue((Segment(0.7, 0.0125, 0.021, maple),), body_mass=0.4)
+    offsets = np.linspace(-0.5, 0.5, 4)
+    scene = Scene(cue, tip=Tip(0.75, 0.7, contact_time=1e-3), stroke=Stroke(1.5, offsets))
+    out = impulse(scene)
+    lumped = replace(scene, cue=LumpedCue(cue.mass, end_mass(scene, "stick")))
+    np.testing.assert_array_equal(out.squirt, impulse(lumped).squirt)
+    np.testing.assert_array_equal(out.ball_velocity, impulse(lumped).ball_velocity)
+    assert out.squirt[3] == -out.squirt[0] > 0.005
+    frictions = replace(scene, tip=Tip(0.75, np.array([0.2, 0.7]), contact_time=1e-3), stroke=Stroke(1.5, 0.5))
+    assert list(impulse(frictions).regime) == ["miscue", "stick"]

@@ -1,0 +1,134 @@
+"""Motion of a strike against its outcome, its forces integrated again, and what a rigid body does (verification)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+
+import cuefem as cf
+from cuefem.contact.motion import Motion, motion
+
+KIM = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 782.3284453057836), kappa=0.9),), 0.42)
+SCENE = cf.Scene(KIM, cf.Ball(0.17, 0.028575), cf.Tip(0.75, 0.7, 1e-3), cf.Stroke(2.0, 0.3))
+AT = cf.Resolution(2, 12, 8)
+EFFECTS: dict[str, tuple[Any, ...]] = {
+    "bare": (),
+    "dome": (cf.TipDome(0.0095),),
+    "shear": (cf.TipShear(1.5),),
+    "support": (cf.Support(0.25, stiffness=1e4, dashpot=5.0),),
+    "damping": (cf.StructuralDamping(),),
+    "second hit": (cf.SecondHit(4e-3),),
+    "power law": (cf.PowerLawTip(1.5),),
+    "power law, second hit": (cf.PowerLawTip(1.5, 2.0), cf.SecondHit(4e-3)),
+    "turning": (cf.RollingContact(), cf.TipDome(0.0095)),
+    "turning, power law, shear": (cf.RollingContact(), cf.PowerLawTip(1.5), cf.TipShear(1.5)),
+}
+STILL = [name for name in EFFECTS if "turning" not in name]  # where the contact keeps its points
+GAUSS, WEIGHTS = np.polynomial.legendre.leggauss(12)
+
+
+def fine(outcome: cf.Outcome, until: float) -> tuple[Any, Any]:
+    """Times and weights of Gauss's rule over a contact up to ``until``, between the ends of its phases."""
+    ends = np.array([0.0, *(phase.end for phase in outcome.phases)])
+    ends = np.unique(np.clip(ends, 0, until))
+    cuts = np.unique(np.concatenate([np.linspace(a, b, 41) for a, b in pairwise(ends)]))
+    half = np.diff(cuts)[:, None] / 2
+    return (cuts[:-1, None] + half * (1 + GAUSS)).ravel(), (half * WEIGHTS).ravel()
+
+
+def slid(found: Motion, scene: cf.Scene) -> Any:
+    """How far the ball's contact point has slid over the cue's, along (t, n), from the positions alone."""
+    phi, (w, theta) = np.arcsin(scene.stroke.offset), found.deflection(np.array(0.0))
+    t, n = np.array([np.sin(phi), np.cos(phi)]), np.array([np.cos(phi), -np.sin(phi)])
+    r = sum(effect.radius for effect in scene.effects if isinstance(effect, cf.TipDome))
+    # where the dome touches, r (n - e_u) from the tip, and the ball, -R n from its centre: both turn about u x w
+    on_cue = np.column_stack([found.along, w]) + np.outer(-theta, r * np.array([-n[1], n[0] - 1]))
+    ball = found.centre - found.centre[0]
+    turning = np.outer(found.turned, -scene.ball.radius * np.array([-n[1], n[0]]))
+    return (ball + turning - on_cue) @ np.array([t, n]).T
+
+
+@pytest.mark.parametrize("offset", [0.3, -0.4])
+@pytest.mark.parametrize("name", STILL)
+def test_the_relative_velocity_is_that_of_the_history(name: str, offset: float) -> None:
+    scene = replace(SCENE, stroke=replace(SCENE.stroke, offset=offset), effects=EFFECTS[name])
+    outcome = cf.strike(scene, AT)
+    until = 0.8 * outcome.phases[-1].end
+    times, weights = fine(outcome, until)
+    known = outcome.history(times)
+    expected = [weights @ known["velocity_t"], weights @ known["velocity_n"]]
+    found = motion(scene, [0.0, until], AT)
+    np.testing.assert_allclose(slid(found, scene)[1], expected, rtol=1e-8, atol=1e-12)
+    assert found.duration == outcome.phases[-1].end
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_the_ball_goes_where_the_forces_push_it(name: str) -> None:
+    """M C'' = F: the centre against the forces, which a turning contact gives in directions that turn."""
+    scene = replace(SCENE, effects=EFFECTS[name])
+    outcome = cf.strike(scene, AT)
+    until = 0.8 * outcome.duration
+    times, weights = fine(outcome, until)
+    found = motion(scene, np.append(times, until), AT)
+    pushed = (weights * (until - times)) @ found.force[:-1] / scene.ball.mass
+    np.testing.assert_allclose(found.centre[-1] - found.centre[0], pushed, rtol=1e-7)
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_the_ball_flies_off_as_the_outcome_says(name: str) -> None:
+    scene = replace(SCENE, effects=EFFECTS[name])
+    outcome = cf.strike(scene, AT)
+    found = motion(scene, outcome.duration + np.array([1e-3, 3e-3]), AT)
+    velocity = np.diff(found.centre, axis=0)[0] / 2e-3
+    s, c = 0.3, np.sqrt(1 - 0.3**2)
+    np.testing.assert_allclose(velocity, outcome.ball_velocity @ [[s, c], [c, -s]], rtol=1e-10)
+    assert np.arctan2(-velocity[1], velocity[0]) == pytest.approx(outcome.squirt, rel=1e-9)
+    assert np.diff(found.turned)[0] / 2e-3 == pytest.approx(-outcome.spin, rel=1e-10)
+
+
+def test_the_shaft_is_what_the_forces_make_of_its_modes() -> None:
+    outcome, until = cf.strike(SCENE, AT), 2e-3
+    found = motion(SCENE, [until], AT)
+    times, weights = fine(outcome, outcome.duration)
+    known, phi = outcome.history(times), SCENE.stroke.angle
+    across = np.cos(phi) * known["force_t"] - np.sin(phi) * known["force_n"]  # on the ball
+    x = np.linspace(0, 0.7, 7)
+    modes = cf.modes(KIM, 8, at=AT)
+    w, theta = modes.shape(x)
+    pulled = -weights * across
+    q = [pulled @ np.sin(omega * (until - times)) / omega for omega in modes.omega]
+    rigid_w, rigid_theta = modes.system.interpolate(modes.rigid_vectors, x)
+    tip, _ = modes.system.at_tip(modes.rigid_vectors)
+    free = tip * (pulled @ (until - times))
+    tips = modes.shape(0.0)[0]
+    deflection, rotation = found.deflection(x)
+    np.testing.assert_allclose(deflection[0], free @ rigid_w + (q * tips) @ w, rtol=0, atol=1e-10 * abs(w).max())
+    np.testing.assert_allclose(rotation[0], free @ rigid_theta + (q * tips) @ theta, rtol=0, atol=1e-9)
+    assert abs(deflection).max() > 1e-4
+
+
+def test_a_stroke_on_the_other_side_is_its_mirror_image() -> None:
+    other = replace(SCENE, stroke=replace(SCENE.stroke, offset=-0.3))
+    times = np.linspace(0, 3e-3, 7)
+    found, mirrored = motion(SCENE, times), motion(other, times)
+    for one, two in zip(found.deflection([0.0, 0.3]), mirrored.deflection([0.0, 0.3]), strict=True):
+        np.testing.assert_array_equal(one, -two)
+    np.testing.assert_array_equal(found.centre * [1, -1], mirrored.centre)
+    np.testing.assert_array_equal(found.force * [1, -1], mirrored.force)
+    np.testing.assert_array_equal(found.along, mirrored.along)
+    np.testing.assert_array_equal(found.turned, -mirrored.turned)
+
+
+def test_a_bent_cue_with_rod_waves() -> None:
+    """Head on the shaft does not bend, and the tip gives way along the cue as the ball does, less the leather."""
+    scene = replace(SCENE, stroke=cf.Stroke(2.0, 0.0), effects=(cf.AxialWaves(),))
+    found = motion(scene, [0.0, 1e-4, 1e-2], AT)
+    np.testing.assert_allclose(found.fields, 0, atol=1e-15)
+    outcome = cf.strike(scene, AT)
+    times, weights = fine(outcome, 1e-4)
+    gap = weights @ outcome.history(times)["velocity_n"]
+    assert found.centre[1, 0] - found.centre[0, 0] - found.along[1] == pytest.approx(gap, rel=1e-9)

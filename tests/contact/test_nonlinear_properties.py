@@ -1,0 +1,198 @@
+"""What holds for every nonlinear effect: energy, mirror, scale, order of the list, what is not listed, refusals."""
+
+import subprocess
+import sys
+from dataclasses import FrozenInstanceError, replace
+from pathlib import Path
+
+import cuefem.contact.second_hit
+import cuefem.contact.strike
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from cuefem import (
+    LumpedCue,
+    PowerLawTip,
+    RollingContact,
+    Scene,
+    SecondHit,
+    Stroke,
+    StructuralDamping,
+    Tip,
+    TipDome,
+    TipShear,
+    end_mass,
+    load,
+    save,
+    strike,
+)
+from cuefem.beam.tip import TipModes
+from cuefem.contact.stepped import SteppedContact
+from cuefem.contact.strike import strike_modes
+from tests.helpers.strike_scenes import (
+    FRICTION,
+    KIM_AT,
+    OFFSET,
+    RESTITUTION,
+    SIGN,
+    hand_made,
+    imbalance,
+    kim_scene,
+    numbers,
+    sound,
+)
+
+FEW = settings(max_examples=12)
+
+
+def bent(damping: float = 0.0) -> TipModes:
+    """A shaft of a few modes by hand whose end section turns with them, each damped or none."""
+    tip = hand_made([500.0, 3000.0, 9000.0], [5.0, 8.0, 7.0], rigid=9.0)
+    tip = replace(tip, rotation=np.array([0, -50.0, -60.0, -80.0, -120.0]))
+    return replace(tip, damping=np.diag(damping * tip.omega)) if damping else tip
+
+
+EFFECTS = st.sets(
+    st.sampled_from([PowerLawTip(1.5), RollingContact(), SecondHit(2e-3), TipDome(0.009), TipShear(0.75)]), min_size=1
+).map(lambda chosen: tuple(sorted(chosen, key=repr)))
+
+
+@FEW
+@given(EFFECTS, RESTITUTION, FRICTION, OFFSET, SIGN, st.sampled_from([0.0, 0.02]))
+def test_energy_closes_and_the_other_side_mirrors(effects, e, friction, offset, side, damping):
+    assume(e >= 0.1 or SecondHit(2e-3) not in effects)
+    scene = replace(kim_scene(offset, restitution=e, friction=friction), effects=effects)
+    outcome = strike_modes(scene, bent(damping))
+    sound(outcome)
+    assert imbalance(outcome) < 1e-10
+    assert ("damping loss" in outcome.energy) == (damping > 0)
+    other = strike_modes(replace(scene, stroke=Stroke(offset=-offset)), bent(damping))
+    odd = [0, 1, 4, 6]  # squirt, V_t, spin, impulse along t
+    mirrored = numbers(other)
+    mirrored[odd] *= -1
+    assert np.array_equal(numbers(outcome), mirrored)
+
+
+@FEW
+@given(st.floats(1.0, 3.0), st.floats(0.2, 8.0), st.floats(0.2, 8.0), OFFSET)
+def test_a_power_law_knows_no_speed_of_its_own(exponent, speed, reference, offset):
+    """The law that lasts T at one speed is the law that lasts T (U/U0)^((1-n)/(1+n)) at another."""
+    scene = replace(kim_scene(offset), stroke=Stroke(speed, offset))
+    time = 1e-3 * (speed / reference) ** ((1 - exponent) / (1 + exponent))
+    other = replace(scene.tip, contact_time=time)
+    first = strike_modes(replace(scene, effects=(PowerLawTip(exponent, reference),)), bent())
+    second = strike_modes(replace(scene, tip=other, effects=(PowerLawTip(exponent, speed),)), bent())
+    assert np.allclose(numbers(first), numbers(second), rtol=1e-9, atol=1e-9 * speed**2)
+
+
+@settings(max_examples=5)
+@given(st.floats(0.1, 10.0), OFFSET)
+def test_speed_scales_out_of_a_linear_law(speed, offset):
+    scene = replace(kim_scene(offset), effects=(PowerLawTip(1.0), SecondHit()))
+    slow, fast = (strike_modes(replace(scene, stroke=Stroke(U, offset)), bent()) for U in (1.0, speed))
+    assert abs(fast.squirt - slow.squirt) < 1e-9
+    assert abs(fast.ball_speed / slow.ball_speed / speed - 1) < 1e-9
+
+
+def test_faster_strokes_squirt_less_on_a_stiffening_tip_and_more_on_a_turning_contact():
+    speeds = [0.5, 1.0, 2.0, 4.0]
+    hertz, turning = (
+        [strike(replace(kim_scene(0.3), stroke=Stroke(U, 0.3), effects=(effect,)), KIM_AT).squirt for U in speeds]
+        for effect in (PowerLawTip(1.5), RollingContact())
+    )
+    assert np.all(np.diff(hertz) < 0)
+    assert np.all(np.diff(turning) > 0)
+
+
+def test_order_of_the_list_does_not_matter():
+    listed = (PowerLawTip(1.5), RollingContact(), SecondHit(), TipDome(0.009))
+    outcomes = [
+        strike_modes(replace(kim_scene(0.4, restitution=0.3), effects=effects), bent())
+        for effects in [listed, listed[::-1], listed[2:] + listed[:2]]
+    ]
+    assert all(np.array_equal(numbers(outcomes[0]), numbers(other)) for other in outcomes[1:])
+    assert all(outcomes[0].phases == other.phases for other in outcomes[1:])
+
+
+def test_what_is_not_listed_is_not_entered(monkeypatch):
+    scene = kim_scene(0.3)
+    bare = strike_modes(scene, bent())
+    calls = []
+
+    def counted(kind, name):
+        own = getattr(kind, name)
+        monkeypatch.setattr(kind, name, lambda *args, **names: calls.append(name) or own(*args, **names))
+
+    counted(SteppedContact, "__post_init__")
+    counted(cuefem.contact.second_hit, "follow")
+    assert np.array_equal(numbers(strike_modes(scene, bent())), numbers(bare))
+    assert strike_modes(replace(scene, effects=(TipShear(0.75),)), bent()).unknowns == bare.unknowns + 1
+    assert calls == []
+    strike_modes(replace(scene, effects=(RollingContact(),)), bent())
+    assert calls == ["__post_init__"]
+    strike_modes(replace(scene, effects=(SecondHit(),)), bent())
+    assert calls == ["__post_init__", "follow"]
+
+
+def test_the_solver_is_loaded_only_for_what_needs_it():
+    code = (
+        "import sys, cuefem as cf\n"
+        "cf.strike(cf.Scene(cf.LumpedCue(0.5, 0.005), stroke=cf.Stroke(offset=0.3)))\n"
+        "inner = {'nonlinear', 'second_hit', 'elevation'}\n"
+        "print(sorted(name for name in inner if f'cuefem.contact.{name}' in sys.modules))\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+@pytest.mark.parametrize("effect", [PowerLawTip(), RollingContact(), SecondHit()])
+def test_each_acts_once(effect):
+    with pytest.raises(ValueError, match=f"{type(effect).__name__} acts once"):
+        replace(kim_scene(), effects=(effect, effect))
+
+
+def test_a_dead_tip_strikes_no_second_time():
+    with pytest.raises(ValueError, match=r"SecondHit takes a Tip\.restitution in \(0\.0001, 1\]; got 0\.0"):
+        strike_modes(replace(kim_scene(restitution=0.0), effects=(SecondHit(),)), bent())
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: PowerLawTip(0.99), r"PowerLawTip.exponent must be in \[1, inf\); got 0.99"),
+        (lambda: PowerLawTip(1.5, 0.0), r"PowerLawTip.speed must be in \(0, inf\) m/s; got 0.0"),
+        (lambda: SecondHit(0.0), r"SecondHit.window must be in \(0, inf\) s; got 0.0"),
+        (lambda: SecondHit(float("inf")), r"SecondHit.window must be in \(0, inf\) s; got inf"),
+    ],
+)
+def test_fields_are_checked(make, message):
+    with pytest.raises(ValueError, match=message):
+        make()
+
+
+def test_effects_are_frozen():
+    with pytest.raises(FrozenInstanceError):
+        PowerLawTip().exponent = 2.0
+
+
+def test_effects_stand_in_files(tmp_path: Path):
+    listed = (PowerLawTip(1.5, 2.0), RollingContact(), SecondHit(4e-3))
+    scene = Scene(LumpedCue(0.54, 0.006), tip=Tip(0.7, 0.6, 1e-3), stroke=Stroke(2.0, 0.3), effects=listed)
+    save(scene, tmp_path / "scene.toml")
+    assert load(tmp_path / "scene.toml") == scene
+    text = (tmp_path / "scene.toml").read_text(encoding="utf-8")
+    assert 'type = "PowerLawTip"' in text
+    assert 'window = "4 ms"' in text
+
+
+def test_they_go_with_the_effects_on_the_cue():
+    scene = replace(
+        kim_scene(0.4),
+        effects=(StructuralDamping(0.02), PowerLawTip(1.5), RollingContact(), TipDome(0.009), SecondHit()),
+    )
+    outcome = strike(scene)
+    sound(outcome)
+    assert outcome.energy["damping loss"] > 0
+    assert 0.002 < end_mass(scene) < 0.05

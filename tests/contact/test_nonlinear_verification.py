@@ -1,0 +1,444 @@
+"""The nonlinear effects against exact solutions, other solvers and the rates at which they vanish."""
+
+from dataclasses import replace
+from math import asin, cos, inf, sin
+
+import numpy as np
+import pytest
+from scipy.integrate import quad, solve_ivp
+
+from cuefem import (
+    Ball,
+    LumpedCue,
+    PowerLawTip,
+    RollingContact,
+    Scene,
+    SecondHit,
+    Stroke,
+    Tip,
+    TipDome,
+    TipShear,
+    impulse,
+    strike,
+)
+from cuefem.beam.tip import TipModes, lumped_tip_modes
+from cuefem.contact.law import TipLaw, loading_time
+from cuefem.contact.linear import Laws
+from cuefem.contact.nonlinear import stepped_contact
+from cuefem.contact.second_hit import hits
+from cuefem.contact.strike import strike_modes
+from tests.helpers.orders import assert_order
+from tests.helpers.strike_scenes import KIM_AT, hand_made, imbalance, kim_scene, numbers
+
+# What solver tolerances of 1e-11 leave of a strike of one or a few phases, beside speeds of 1 m/s.
+STEPPED = 1e-9
+
+
+def bent(count: int = 3) -> TipModes:
+    """A shaft of a few modes by hand whose end section turns with them."""
+    tip = hand_made([500.0, 3000.0, 9000.0][:count], [5.0, 8.0, 7.0][:count], rigid=9.0)
+    return replace(tip, rotation=np.array([0, -50.0, -60.0, -80.0, -120.0][: count + 2]))
+
+
+def worst(first, second) -> float:
+    return float(np.abs(numbers(first) - numbers(second)).max())
+
+
+# ---------------------------------------------------------------------------------------------------------- PowerLawTip
+
+
+@pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 3.7])
+def test_loading_time_is_its_integral(exponent):
+    # s = 1 - y^2 takes the root out of the end
+    told = quad(lambda y: 2 * y / np.sqrt(1 - (1 - y * y) ** (exponent + 1)), 0, 1, epsabs=0, epsrel=1e-13)[0]
+    assert abs(loading_time(exponent) / told - 1) < 1e-12
+
+
+@pytest.mark.parametrize("exponent", [1.0, 1.5, 3.0])
+@pytest.mark.parametrize("e", [0.2, 0.75, 1.0])
+def test_tip_gives_back_the_square_of_its_restitution(exponent, e):
+    law, deepest = TipLaw(2e7, exponent, e), 3e-4
+    spent = quad(law.load, 0, deepest, epsabs=0, epsrel=1e-12)[0]
+    back = quad(lambda d: law.unload(d, deepest), law.rest(deepest), deepest, epsabs=0, epsrel=1e-12)[0]
+    assert abs(back / spent - e**2) < 1e-12
+    assert abs(law.loss(deepest) / (spent - back) - 1) < 1e-12 if e < 1 else law.loss(deepest) == 0
+    assert abs(law.unload(deepest, deepest) / law.load(deepest) - 1) < 1e-14
+
+
+@pytest.mark.parametrize("e", [1.0, 0.75, 0.3, 0.0])
+@pytest.mark.parametrize(("offset", "friction"), [(0.3, 0.7), (0.6, 0.3), (0.2, inf)])
+def test_exponent_one_is_the_bilinear_law(e, offset, friction):
+    scene = kim_scene(offset, restitution=e, friction=friction)
+    exact = strike(scene, KIM_AT)
+    stepped = strike(replace(scene, effects=(PowerLawTip(1.0),)), KIM_AT)
+    assert worst(exact, stepped) < STEPPED
+    assert (exact.regime, exact.jam) == (stepped.regime, stepped.jam)
+    assert abs(stepped.duration / exact.duration - 1) < STEPPED
+    assert imbalance(stepped) < 1e-11
+
+
+@pytest.mark.parametrize("e", [1.0, 0.3, 0.0])
+@pytest.mark.parametrize(("offset", "friction"), [(0.3, 0.7), (0.6, 0.3), (0.2, inf)])
+def test_exponent_one_is_the_bilinear_law_with_a_tangential_spring(e, offset, friction):
+    scene = replace(kim_scene(offset, restitution=e, friction=friction), effects=(TipShear(0.75), TipDome(0.0095)))
+    exact = strike(scene, KIM_AT)
+    stepped = strike(replace(scene, effects=(*scene.effects, PowerLawTip(1.0))), KIM_AT)
+    assert worst(exact, stepped) < STEPPED
+    assert [phase[:2] for phase in exact.phases] == [phase[:2] for phase in stepped.phases]
+    assert imbalance(stepped) < 1e-11
+
+
+def test_exponent_one_has_the_bilinear_history():
+    scene = kim_scene(0.3)
+    exact = strike(scene, KIM_AT)
+    stepped = strike(replace(scene, effects=(PowerLawTip(1.0),)), KIM_AT)
+    times = np.linspace(0, exact.duration * (1 - 1e-9), 101).reshape(1, 101)
+    for name, values in exact.history(times).items():
+        other = stepped.history(times)[name]
+        assert other.shape == (1, 101)
+        assert np.abs(values - other).max() < 1e-7 * max(np.abs(values).max(), 1.0)
+    with pytest.raises(ValueError, match="History takes times in"):
+        stepped.history(2 * exact.duration)
+
+
+def test_exponent_to_one_at_first_order():
+    scene, steps = kim_scene(0.3), 2.0 ** -np.arange(5, 10)
+    bare = strike(scene, KIM_AT).squirt
+    errors = [strike(replace(scene, effects=(PowerLawTip(1 + step),)), KIM_AT).squirt - bare for step in steps]
+    assert_order(1, steps, np.abs(errors), within=[0.08, 0.04, 0.02, 0.01], rounding=1e-11)
+
+
+@pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 3.0])
+@pytest.mark.parametrize("speed", [0.2, 1.0, 7.0])
+@pytest.mark.parametrize("e", [0.0, 0.4, 1.0])
+def test_head_on_contact_time_falls_with_speed(exponent, speed, e):
+    scene = Scene(
+        LumpedCue(0.5, 0.005),
+        tip=Tip(e, contact_time=1.3e-3),
+        stroke=Stroke(speed),
+        effects=(PowerLawTip(exponent, speed=2.0),),
+    )
+    outcome = strike(scene)
+    time = 1.3e-3 * (speed / 2.0) ** ((1 - exponent) / (1 + exponent))
+    assert abs(outcome.duration / time - 1) < STEPPED
+    Q0 = 0.5 / 0.210
+    assert abs(outcome.ball_speed / (speed * (1 + e) * Q0 / (1 + Q0)) - 1) < STEPPED
+
+
+@pytest.mark.parametrize("exponent", [1.5, 2.5])
+@pytest.mark.parametrize(
+    ("offset", "e", "friction", "end_mass"),
+    [
+        (0.3, 0.75, 0.7, 0.006),
+        (0.5, 0.75, 0.2, 0.006),
+        (0.6, 0.4, 0.6, 0.03),
+        (0.4, 0.0, 0.7, 0.01),
+        (0.3, 0.9, inf, 0.02),
+        (-0.45, 1.0, 0.35, 1.5),
+    ],
+)
+def test_lumped_cue_feels_the_restitution_not_the_law(exponent, offset, e, friction, end_mass):
+    scene = Scene(LumpedCue(0.54, end_mass), tip=Tip(e, friction, 1e-3), stroke=Stroke(1.7, offset))
+    lumped = impulse(scene)
+    stepped = strike(replace(scene, effects=(PowerLawTip(exponent),)))
+    assert abs(stepped.squirt - lumped.squirt) < STEPPED
+    assert np.abs(stepped.ball_velocity - lumped.ball_velocity).max() < STEPPED
+    assert stepped.regime == lumped.regime
+    for name, part in lumped.energy.items():
+        assert abs(stepped.energy[name] - part) < STEPPED
+
+
+def sliding_oracle(scene: Scene, tip: TipModes, exponent: float) -> np.ndarray:
+    """(V_t, V_n) of a strike that slips throughout: Newton's equations in SI, by LSODA, phase by phase."""
+    phi, mu, e = asin(scene.stroke.offset), scene.tip.friction, scene.tip.restitution
+    s, c, n = sin(phi), cos(phi), len(tip.omega)
+    t, normal = tip.amplitude @ [s, c], tip.amplitude @ [c, -s]
+    mass, U, T = scene.head_on_mass, 1.0, scene.contact_time
+    depth = U * T / ((1 + e) * loading_time(exponent))
+    k = (exponent + 1) * mass * U**2 / (2 * depth ** (exponent + 1))
+    state, peak = np.concatenate([np.zeros(n), scene.stroke.speed * tip.approach, [0.0, 0.0, 0.0]]), None
+
+    def force(y):
+        if peak is None:
+            return k * max(y[-1], 0.0) ** exponent
+        return k * peak**exponent * (max(y[-1] - (1 - e**2) * peak, 0.0) / (e**2 * peak)) ** exponent
+
+    def change(_, y):
+        q, v, F = y[:n], y[n : 2 * n], force(y)
+        pushed = -(tip.omega**2) * q - normal * F - t * mu * F
+        return np.concatenate([v, pushed, [mu * F / scene.ball.mass, F / scene.ball.mass, normal @ v - y[2 * n + 1]]])
+
+    def deepest(_, y):
+        return normal @ y[n : 2 * n] - y[2 * n + 1]
+
+    def gone(_, y):
+        return y[-1] - (1 - e**2) * peak
+
+    for event in (deepest, gone):
+        event.terminal, event.direction = True, -1
+        found = solve_ivp(
+            change, [0, 20 * T], state, method="LSODA", events=event, rtol=1e-11, atol=1e-13, max_step=T / 100
+        )
+        state = found.y[:, -1]
+        peak = state[-1] if peak is None else peak
+    return state[2 * n : 2 * n + 2]
+
+
+@pytest.mark.parametrize(("exponent", "offset", "friction"), [(1.5, 0.3, 0.0), (2.0, 0.6, 0.05), (1.5, 0.5, 0.1)])
+def test_sliding_strike_of_a_vibrating_cue(exponent, offset, friction):
+    scene = replace(kim_scene(offset, friction=friction), stroke=Stroke(2.5, offset))
+    outcome = strike_modes(replace(scene, effects=(PowerLawTip(exponent),)), bent())
+    assert [phase.grip for phase in outcome.phases] == ["slip", "slip"]
+    assert np.abs(outcome.ball_velocity - sliding_oracle(scene, bent(), exponent)).max() < 1e-8
+
+
+# ------------------------------------------------------------------------------------------------------- RollingContact
+
+
+@pytest.mark.parametrize("effects", [(), (TipDome(0.0095),), (PowerLawTip(1.5),)])
+def test_turning_of_the_contact_vanishes_with_its_time(effects):
+    errors, spins, times = [], [], 1e-3 * 2.0 ** -np.arange(6, 11)
+    for time in times:
+        scene = replace(kim_scene(0.3, contact_time=float(time)), effects=effects)
+        bare, turned = (
+            strike_modes(scene, bent()),
+            strike_modes(replace(scene, effects=(*effects, RollingContact())), bent()),
+        )
+        errors.append(turned.squirt / bare.squirt - 1)
+        spins.append(turned.spin / bare.spin - 1)
+        assert imbalance(turned) < 1e-11
+    assert_order(1, times, errors, within=[0.02, 0.01, 0.005, 0.0025], rounding=1e-10)
+    assert_order(1, times, spins, within=[0.02, 0.01, 0.005, 0.0025], rounding=1e-10)
+
+
+class Plane:
+    """A tip point (a mass along the cue, another across it) slides on a ball, in Cartesian coordinates (u, w).
+
+    Positions of point and ball's centre give the normal and the compression; `true` measures them, else the normal
+    turns at its rate without the compression, as RollingContact has it. Newton's equations with F_t = mu F_n.
+    """
+
+    def __init__(self, scene: Scene, *, true: bool, dome: float = 0.0):
+        self.scene, self.true, self.reach = scene, true, scene.ball.radius + dome
+        self.masses = np.array([scene.cue.mass, scene.cue.end_mass])
+        self.phi = asin(scene.stroke.offset)
+        self.peak = None
+
+    def normal(self, y):
+        phi = y[8]
+        if self.true:
+            line = y[2:4] - y[0:2]
+            phi = np.arctan2(-line[1], line[0])
+        return phi, np.array([cos(phi), -sin(phi)]), np.array([sin(phi), cos(phi)])
+
+    def depth(self, y):
+        return self.reach - np.hypot(*(y[2:4] - y[0:2])) if self.true else y[9]
+
+    def change(self, _, y):
+        _, n, t = self.normal(y)
+        k, e, mu = self.scene.stiffness, self.scene.tip.restitution, self.scene.tip.friction
+        F = k * self.depth(y) if self.peak is None else k / e**2 * (self.depth(y) - (1 - e**2) * self.peak)
+        push = F * n + mu * F * t
+        apart = y[6:8] - y[4:6]
+        turning = -(apart @ t) / self.reach
+        return np.concatenate(
+            [y[4:6], y[6:8], -push / self.masses, push / self.scene.ball.mass, [turning, -(apart @ n)]]
+        )
+
+    def squirt(self):
+        R, T = self.reach, self.scene.contact_time
+        start = [0, 0, R * cos(self.phi), -R * sin(self.phi), self.scene.stroke.speed, 0, 0, 0, self.phi, 0]
+        state = np.array(start)
+
+        def deepest(_, y):
+            return -(y[6:8] - y[4:6]) @ self.normal(y)[1]
+
+        def gone(_, y):
+            return self.depth(y) - (1 - self.scene.tip.restitution**2) * self.peak
+
+        for event in (deepest, gone):
+            event.terminal, event.direction = True, -1
+            found = solve_ivp(
+                self.change, [0, 20 * T], state, "DOP853", events=event, rtol=1e-12, atol=1e-14, max_step=T / 30
+            )
+            state = found.y[:, -1]
+            self.peak = self.depth(state) if self.peak is None else self.peak
+        return np.arctan2(state[7], state[6])  # the cue's line is w = 0; the struck side is w > 0
+
+
+@pytest.mark.parametrize(("offset", "friction"), [(0.4, 0.0), (0.3, 0.05), (0.6, 0.1)])
+def test_turning_contact_in_cartesian_coordinates(offset, friction):
+    cue, tip = LumpedCue(0.54, 0.02), Tip(0.8, friction, 2e-3)
+    scene = Scene(cue, Ball(), tip, Stroke(1.5, offset))
+    outcome = strike(replace(scene, effects=(RollingContact(),)))
+    assert {phase.grip for phase in outcome.phases} == {"slip"}
+    told = Plane(scene, true=False).squirt()
+    assert abs(-outcome.squirt - told) < 1e-8
+    assert abs(outcome.squirt - strike(scene).squirt) > 1e-3  # it is no small thing here
+
+
+def test_dome_lengthens_the_line_of_centres():
+    cue = LumpedCue(0.54, 0.02)
+    scene = Scene(cue, tip=Tip(0.8, 0.05, 2e-3), stroke=Stroke(1.5, 0.4))
+    effects = (TipDome(0.012), RollingContact())
+    domed = replace(kim_scene(), tip=scene.tip, stroke=scene.stroke, effects=effects)
+    outcome = strike_modes(domed, lumped_tip_modes(cue))  # the end section of a lumped cue does not turn
+    assert abs(outcome.squirt + Plane(scene, true=False, dome=0.012).squirt()) < 1e-8
+
+
+def test_directions_turn_as_the_module_says():
+    """dc_t/da = c_n and dc_n/da = c_n', by central differences, dome, spin and all."""
+    scene = replace(kim_scene(0.4), effects=(TipDome(0.011), RollingContact()))
+    laws = Laws(asin(0.4), 0.2, 0.4, stiffness=1e6, restitution=0.7, friction=0.5, time=1e-3, speed=1.0)
+    tip, lever = bent(), TipDome(0.011).lever(laws.phi)
+    tip = replace(tip, amplitude=tip.amplitude + np.outer(tip.rotation, lever))
+    contact = stepped_contact(scene, tip, laws)
+    z, h = contact.z.copy(), 1e-5
+
+    def turned(angle):
+        z[contact.angle] = angle
+        return contact.directions(z)
+
+    (low_t, low_n, _), (_, c_n, passing), (high_t, high_n, _) = (turned(0.2 + step) for step in (-h, 0, h))
+    assert np.abs((high_t - low_t) / (2 * h) - c_n).max() < 1e-9
+    assert np.abs((high_n - low_n) / (2 * h) - passing).max() < 1e-9
+    assert (
+        abs(passing[contact.velocities][1] - 9.0 * cos(asin(0.4) + 0.2) + 50.0 * 0.011 * cos(asin(0.4) + 0.2)) < 1e-12
+    )
+
+
+@pytest.mark.parametrize(
+    ("offset", "grip", "effects"),
+    [
+        (0.2, "stick", (TipDome(0.0095), RollingContact())),
+        (0.5, "stick", (TipDome(0.0095), RollingContact())),
+        (0.2, "slip back", (RollingContact(),)),
+    ],
+)
+def test_turning_contact_of_a_dead_tip_is_held(offset, grip, effects):
+    scene = replace(kim_scene(offset, restitution=0.0, friction=0.9), stroke=Stroke(3.0, offset), effects=effects)
+    outcome = strike(scene, KIM_AT)
+    held = [phase for phase in outcome.phases if phase.press == "rigid" and phase.end > phase.start]
+    assert grip in {phase.grip for phase in held}
+    for phase in outcome.phases:
+        now = outcome.history(np.linspace(phase.start, phase.end, 52)[1:-1])
+        if phase.press == "rigid":
+            assert np.abs(now["velocity_n"]).max() < 1e-9
+        if phase.grip == "stick":
+            assert np.abs(now["velocity_t"]).max() < 1e-9
+
+
+def test_compression_left_out_is_of_second_order():
+    """The true geometry differs from RollingContact's by one order of the contact time more than the turning itself."""
+    errors, times = [], 2e-3 * 2.0 ** -np.arange(2, 7)
+    for time in times:
+        scene = Scene(LumpedCue(0.54, 0.02), tip=Tip(0.8, 0.05, float(time)), stroke=Stroke(1.5, 0.4))
+        turned = strike(replace(scene, effects=(RollingContact(),)))
+        errors.append(abs(turned.squirt + Plane(scene, true=True).squirt()))
+    assert_order(2, times, errors, within=[0.15, 0.08, 0.04, 0.02], rounding=1e-12)
+
+
+# ------------------------------------------------------------------------------------------------------------ SecondHit
+
+
+def springy_cue(frequency: float, part: float) -> TipModes:
+    """A cue of 540 g that vibrates along its axis with one mode of the tip's amplitude ``part`` of the rigid one."""
+    amplitude = np.array([[0.54**-0.5, 0.0], [0.0, 9.0], [part * 0.54**-0.5, 0.0]])
+    return TipModes(np.array([0, 0, 2 * np.pi * frequency]), amplitude, np.array([0.54**0.5, 0, 0]), np.zeros(3))
+
+
+def head_on_oracle(scene: Scene, tip: TipModes, window: float) -> tuple[float, list[tuple[float, float]]]:
+    """Ball speed, and (start, end) of every contact of a head-on strike: displacements, LSODA, one event at a time."""
+    n, k, e, M = len(tip.omega), scene.stiffness, scene.tip.restitution, scene.ball.mass
+    a, peak, press = tip.amplitude[:, 0], 0.0, "load"
+    state, time, spans, until = (
+        np.concatenate([np.zeros(n + 1), scene.stroke.speed * tip.approach, [0.0]]),
+        0.0,
+        [[0.0]],
+        inf,
+    )
+
+    def overlap(y):
+        return a @ y[:n] - y[n]
+
+    def force(y):
+        if press == "free":
+            return 0.0
+        return k * overlap(y) if press == "load" else k / e**2 * (overlap(y) - (1 - e**2) * peak)
+
+    def change(_, y):
+        F = force(y)
+        return np.concatenate([y[n + 1 :], -(tip.omega**2) * y[:n] - a * F, [F / M]])
+
+    ends = {
+        "load": [lambda _, y: a @ y[n + 1 : -1] - y[-1]],
+        "unload": [lambda _, y: overlap(y) - (1 - e**2) * peak, lambda _, y: peak - overlap(y)],
+        "free": [lambda _, y: (1 - e**2) * peak - overlap(y)],
+    }
+    for events in ends.values():
+        for event in events:
+            event.terminal, event.direction = True, -1
+    while True:
+        limit = until if press == "free" else time + 0.1
+        found = solve_ivp(
+            change, [time, limit], state, "LSODA", events=ends[press], rtol=1e-12, atol=1e-14, max_step=2e-5
+        )
+        state, time = found.y[:, -1], found.t[-1]
+        if found.status == 0:
+            return state[-1], [tuple(span) for span in spans]
+        if press == "load":
+            press, peak = "unload", overlap(state)
+        elif press == "unload" and len(found.t_events[1]):
+            press = "load"
+        elif press == "unload":
+            press, until = "free", min(until, time + window)
+            spans[-1].append(time)
+        else:
+            press = "unload"
+            spans.append([time])
+
+
+@pytest.mark.parametrize(("frequency", "part", "e"), [(300.0, 1.5, 0.2), (150.0, 2.0, 0.3), (200.0, 3.0, 0.5)])
+def test_second_hit_of_a_springy_cue(frequency, part, e):
+    tip = springy_cue(frequency, part)
+    scene = Scene(LumpedCue(0.54, 0.005), tip=Tip(e, contact_time=1e-3))
+    speed, spans = head_on_oracle(scene, tip, 8e-3)
+    assert len(spans) > 1
+    outcome = strike_modes(replace(scene, effects=(SecondHit(8e-3),)), tip)
+    found = hits(outcome)
+    assert len(found) == len(spans)
+    for hit, span in zip(found, spans, strict=True):
+        assert np.abs(np.subtract(hit[:2], span)).max() < 1e-7 * outcome.duration
+    assert abs(outcome.ball_speed - speed) < 1e-8
+    assert abs(sum(hit.impulse[1] for hit in found) / outcome.impulse[1] - 1) < 1e-12
+    assert outcome.ball_speed > strike_modes(scene, tip).ball_speed * 1.001
+    assert imbalance(outcome) < 1e-11
+
+
+@pytest.mark.parametrize(
+    ("scene", "effects"),
+    [
+        (kim_scene(0.3, restitution=0.1), (SecondHit(),)),
+        (kim_scene(0.6, restitution=0.5), (SecondHit(), TipShear(0.75))),
+        (kim_scene(0.5, restitution=0.3, friction=0.3), (SecondHit(), TipShear(0.75))),
+    ],
+)
+def test_second_hit_stepped_is_the_exact_one(scene, effects):
+    scene = replace(scene, effects=effects)
+    exact = strike(scene, KIM_AT)
+    stepped = strike(replace(scene, effects=(PowerLawTip(1.0), *effects)), KIM_AT)
+    assert len(hits(exact)) == len(hits(stepped)) > 2
+    assert worst(exact, stepped) < 1e-7  # every hit multiplies what is off before it
+    assert max(imbalance(exact), imbalance(stepped)) < 1e-11
+    force = exact.history(np.array([hit.end + 1e-9 for hit in hits(exact)[:-1]]))
+    assert np.abs(force["force_n"]).max() == 0
+    assert np.all(force["velocity_n"] > 0)
+
+
+def test_without_a_second_hit_nothing_is_added():
+    for effects in ((), (PowerLawTip(),), (RollingContact(),)):
+        scene = replace(kim_scene(0.3), effects=effects)
+        bare, followed = strike(scene, KIM_AT), strike(replace(scene, effects=(*effects, SecondHit())), KIM_AT)
+        assert np.array_equal(numbers(bare), numbers(followed))
+        assert bare.phases == followed.phases
+        assert len(hits(followed)) == 1

@@ -1,0 +1,211 @@
+"""A stroke in the table's frame: rotation, sides, spins, and what it refuses."""
+
+from math import cos, inf, nan, pi, sin
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+import cuefem as cf
+from cuefem.contact.place import axis_offset, offset_of, offset_of_axis
+
+MANY = settings(max_examples=200, deadline=None)
+BALL = cf.Ball(0.17, 0.0286)
+R = BALL.radius
+NORTH = (0.0, 1.0, 0.0)
+INSIDE = st.tuples(st.floats(0, 0.95), st.floats(0, 2 * pi)).map(
+    lambda polar: (R * polar[0] * cos(polar[1]), R + R * polar[0] * sin(polar[1]))
+)
+
+
+def stroke(offset, speed=2.0, end_mass=0.004):
+    return cf.impulse(cf.Scene(cf.LumpedCue(0.54, end_mass), BALL, cf.Tip(0.75, 0.7), cf.Stroke(speed, offset)))
+
+
+def struck(point, direction=NORTH, **how):
+    outcome = stroke(offset_of(point, direction, ball=BALL), **how)
+    return outcome, cf.place(outcome, point, direction, ball=BALL)
+
+
+def about(axis, angle):
+    """Rodrigues' rotation matrix."""
+    x, y, z = np.array(axis) / np.linalg.norm(axis)
+    K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + sin(angle) * K + (1 - cos(angle)) * K @ K
+
+
+def test_a_level_stroke_on_the_equator_is_the_planar_one():
+    for offset in (0.0, 1e-9, 0.3, 0.55, 0.9):
+        outcome, placed = struck((offset * R, R))
+        phi = np.arcsin(offset)
+        normal, tangent = np.array([-sin(phi), cos(phi), 0]), np.array([cos(phi), sin(phi), 0])
+        planar = outcome.ball_velocity[0] * tangent + outcome.ball_velocity[1] * normal
+        np.testing.assert_allclose(placed.velocity, planar, rtol=0, atol=1e-14)
+        np.testing.assert_allclose(placed.spin, [0, 0, outcome.spin], rtol=1e-14, atol=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("side", "spin", "squirt"),
+    [
+        ((1, 0), (0, 0, 1), (-1, 0, 0)),  # right english turns the ball anticlockwise from above; it squirts left
+        ((-1, 0), (0, 0, -1), (1, 0, 0)),  # left english
+        ((0, 1), (-1, 0, 0), (0, 0, -1)),  # follow rolls with the ball, and squirts into the table
+        ((0, -1), (1, 0, 0), (0, 0, 1)),  # draw
+    ],
+)
+def test_english_follow_and_draw(side, spin, squirt):
+    outcome, placed = struck((0.4 * R * side[0], R * (1 + 0.4 * side[1])))
+    assert outcome.squirt > 0.005
+    np.testing.assert_allclose(placed.spin, outcome.spin * np.array(spin), rtol=0, atol=1e-12)
+    expected = outcome.ball_speed * (cos(outcome.squirt) * np.array(NORTH) + sin(outcome.squirt) * np.array(squirt))
+    np.testing.assert_allclose(placed.velocity, expected, rtol=0, atol=1e-13)
+    # follow: a ball that rolls along +y without slip has omega = (-V/R, 0, 0)
+    rolling = np.cross([0, 0, 1 / R], placed.velocity)
+    assert np.sign(np.dot(rolling, placed.spin)) == side[1]
+
+
+@MANY
+@given(INSIDE, st.floats(0, 2 * pi), st.floats(0, 1.2), st.floats(0.1, 10))
+def test_angles_and_sizes_of_any_stroke(point, heading, elevation, length):
+    direction = length * np.array([cos(elevation) * sin(heading), cos(elevation) * cos(heading), -sin(elevation)])
+    unit = direction / length
+    contact = contact_of(point, unit)
+    assume(contact @ unit < -0.05 * R)
+    outcome, placed = struck(point, direction)
+    b = np.linalg.norm(np.cross(contact, unit))
+    offset = offset_of(point, direction, ball=BALL)
+    assert offset == pytest.approx(b / R, rel=1e-12, abs=1e-14)
+    V, spin = placed.velocity, placed.spin
+    assert np.linalg.norm(V) == pytest.approx(outcome.ball_speed, rel=1e-14)
+    assert np.linalg.norm(spin) == pytest.approx(abs(outcome.spin), rel=1e-12, abs=1e-12)
+    assert np.arctan2(np.linalg.norm(np.cross(unit, V)), unit @ V) == pytest.approx(abs(outcome.squirt), abs=1e-14)
+    # all in one plane, the spin across it along R_I x u, the squirt away from the struck side
+    assert abs(spin @ V) < 1e-13 * np.linalg.norm(spin) * np.linalg.norm(V) + 1e-15
+    assert abs(spin @ contact) < 1e-13 * np.linalg.norm(spin) * R + 1e-15
+    beside = contact - (contact @ unit) * unit
+    assert V @ beside <= 1e-16
+    assert spin @ np.cross(contact, unit) >= -1e-16 * np.linalg.norm(spin)
+    # Newton: the impulse that makes V, at the contact, makes the spin
+    torque = np.cross(contact, BALL.mass * V)
+    np.testing.assert_allclose(spin, torque / (0.4 * BALL.mass * R**2), rtol=0, atol=1e-12 * outcome.ball_speed / R)
+
+
+def contact_of(point, unit):
+    """R_I of a point (h, l), from right and forward vectors of the level cue."""
+    right = np.cross(unit, [0, 0, 1])
+    right = right / np.linalg.norm(right)
+    forward = np.cross([0, 0, 1], right)
+    h, up = point[0], point[1] - R
+    return h * right + up * np.array([0, 0, 1]) - np.sqrt(max(R**2 - h**2 - up**2, 0)) * forward
+
+
+@MANY
+@given(INSIDE, st.floats(0, 2 * pi), st.floats(-1, 1))
+def test_turning_the_player_turns_the_outcome(point, turn, elevation):
+    direction = np.array([0.0, cos(elevation), sin(elevation)])
+    assume(contact_of(point, direction) @ direction < -0.05 * R)
+    matrix = about([0, 0, 1], turn)
+    outcome, here = struck(point, direction)
+    there = cf.place(outcome, point, matrix @ direction, ball=BALL)
+    np.testing.assert_allclose(there.velocity, matrix @ here.velocity, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(there.spin, matrix @ here.spin, rtol=0, atol=1e-11)
+
+
+@MANY
+@given(st.floats(0, 0.9), st.floats(0, 2 * pi))
+def test_the_side_of_a_level_stroke_turns_about_its_axis(offset, clock):
+    """Round the cue's axis all points of one offset are alike: the planar result, recovered by rotation."""
+    outcome = stroke(offset)
+    right = cf.place(outcome, (offset * R, R), NORTH, ball=BALL)
+    point = (offset * R * cos(clock), R * (1 + offset * sin(clock)))
+    turned = cf.place(outcome, point, NORTH, ball=BALL)
+    matrix = about(NORTH, -clock)
+    np.testing.assert_allclose(turned.velocity, matrix @ right.velocity, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(turned.spin, matrix @ right.spin, rtol=0, atol=1e-10)
+
+
+def test_an_outcome_of_the_mirrored_stroke_is_placed_alike():
+    for point in ((0.3 * R, R), (-0.2 * R, 1.3 * R)):
+        offset = offset_of(point, NORTH, ball=BALL)
+        one, other = (cf.place(stroke(sign * offset), point, NORTH, ball=BALL) for sign in (1, -1))
+        np.testing.assert_array_equal(one.velocity, other.velocity)
+        np.testing.assert_array_equal(one.spin, other.spin)
+
+
+def test_a_heavy_cue_end_can_squirt_to_the_struck_side():
+    outcome, placed = struck((0.3 * R, R), end_mass=50.0)
+    across = sin(outcome.squirt) * outcome.ball_speed
+    assert placed.velocity[0] == pytest.approx(-across, rel=1e-12)
+
+
+def test_an_elevated_cue_through_the_centre_drives_straight_down():
+    down = np.array([0.0, cos(0.5), -sin(0.5)])
+    outcome, placed = struck((0.0, R * (1 + sin(0.5))), down)
+    np.testing.assert_allclose(placed.velocity, outcome.ball_speed * down, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(placed.spin, 0, rtol=0, atol=1e-12)
+
+
+def test_an_upright_cue_strikes_the_upper_half_behind_the_centre():
+    outcome, placed = struck((0.3 * R, R * (1 + 0.8)), (0, 0, -1.0))
+    assert offset_of((0.3 * R, R * 1.8), (0, 0, -1.0), ball=BALL) == pytest.approx(0.6, rel=1e-14)
+    # struck right of and behind the centre, pushed down: the ball is thrown to the left and ahead
+    assert placed.velocity[0] < 0 < placed.velocity[1]
+    assert placed.velocity[2] == pytest.approx(-outcome.ball_speed * cos(outcome.squirt), rel=1e-14)
+
+
+def test_arrays_of_strokes():
+    h = np.linspace(-0.5, 0.5, 7) * R
+    points = np.stack([h, np.full(7, 1.1 * R)], axis=-1)
+    directions = np.array([[0, 1, 0], [1, 0, 0]])[:, None, :]
+    offsets = offset_of(points, directions, ball=BALL)
+    assert offsets.shape == (2, 7)
+    placed = cf.place(stroke(offsets), points, directions, ball=BALL)
+    assert placed.velocity.shape == placed.spin.shape == (2, 7, 3)
+    one = cf.place(stroke(offsets[1, 2]), points[2], (1, 0, 0), ball=BALL)
+    np.testing.assert_array_equal(placed.velocity[1, 2], one.velocity)
+    np.testing.assert_array_equal(placed.spin[1, 2], one.spin)
+
+
+def test_the_default_ball_and_a_finite_element_cue():
+    maple = cf.Material(12.6e9, 0.84e9, 700.0)
+    cue = cf.Cue((cf.Segment(0.7, 0.0125, 0.021, maple),), body_mass=0.4)
+    point = (0.2 * 0.03075, 0.03075)
+    outcome = cf.strike(cf.Scene(cue, stroke=cf.Stroke(1.0, 0.2)))
+    placed = cf.place(outcome, point, NORTH)
+    assert placed.velocity[0] == pytest.approx(-sin(outcome.squirt) * outcome.ball_speed, rel=1e-9)
+
+
+@given(st.floats(-0.99, 0.99), st.floats(0, 0.02))
+def test_axis_and_contact_offsets_undo_each_other(offset, tip_radius):
+    aside = axis_offset(offset, tip_radius, ball=BALL)
+    assert aside == pytest.approx((R + tip_radius) * offset, rel=1e-15)
+    assert offset_of_axis(aside, tip_radius, ball=BALL) == pytest.approx(offset, rel=1e-14, abs=1e-300)
+
+
+def test_what_it_refuses():
+    out = stroke(0.3)
+    good = (0.3 * R, R)
+    for point, direction, message in [
+        ((R, 1.5 * R), NORTH, r"point must be on the ball, .* R = 0\.0286 m; got \(0\.0286, 0\.0429"),
+        ((nan, R), NORTH, r"point must be in \(-inf, inf\) m; got nan at index 0"),
+        (good, (0, inf, 0), r"direction must be in .*; got inf at index 1"),
+        (good, (0, 0, 0), r"direction must have a length; got \(0, 0, 0\)"),
+        (good, (0, 1), "direction must have 3 components on its last axis"),
+        ((1.0, 2.0, 3.0), NORTH, "point must have 2 components on its last axis"),
+        ((0.0, 0.0), NORTH, "point must be on the side .* got 90 degrees"),
+        ((0.0, 0.2 * R), (0, 0.1, -1.0), "point must be on the side .* degrees"),
+        ((0.31 * R, R), NORTH, r"outcome must be that of a stroke at .*, 0\.31 or -0\.31; got one at 0\.3"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            cf.place(out, point, direction, ball=BALL)
+    with pytest.raises(ValueError, match=r"got one at 0\.3 at index 1"):
+        cf.place(out, [good, (0.2 * R, R)], NORTH, ball=BALL)
+    with pytest.raises(ValueError, match=r"got one at 0\.3"):  # the default ball is another one
+        cf.place(out, good, NORTH)
+    with pytest.raises(ValueError, match=r"axis_distance must be in \(-0\.03.*\) m, .*; got 0\.04 at index 1"):
+        offset_of_axis([0.01, 0.04], 0.0095, ball=BALL)
+    with pytest.raises(ValueError, match=r"axis_distance must be in .*; got nan"):
+        offset_of_axis(nan, 0.0095)
+    with pytest.raises(ValueError, match=r"dome_radius must be in \[0, inf\) m; got -1"):
+        offset_of_axis(0.01, -1.0)

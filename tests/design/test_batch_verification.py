@@ -1,0 +1,181 @@
+"""Many cues as arrays give the numbers of the calls for one (verification)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from cuefem import Ball, Cue, Resolution, Scene, Segment, Tip, end_mass, modes
+from cuefem.beam import assemble
+from cuefem.beam.modes import solve
+from cuefem.beam.tail import tail
+from cuefem.cue import Material
+from cuefem.design.batch import BLOCK, CueBatch, batch_frequencies, batch_modes, batch_stick
+from cuefem.design.solvers import static_tip_stiffness
+from cuefem.endmass.drives import flexible
+from cuefem.endmass.undamped import FADED, StickLimit, fade
+from cuefem.tip_modes import tip_modes_from, tip_modes_of
+from tests.helpers.cues import ABS, CARBON, FAMILY, FOAM, LEATHER, MAPLE, kim, rod, scene, soft_tip, stiff_ferrule
+
+AT = Resolution(1, 14, 7)
+MATERIALS = (MAPLE, LEATHER, ABS, CARBON, FOAM)
+
+
+def random_cues(segments: int, count: int = 25) -> list[Cue]:
+    """Cues with that many segments: any taper, bores and cores, jumps of diameter and material at every joint."""
+    rng = np.random.default_rng(segments)
+
+    def segment() -> Segment:
+        diameters = rng.uniform(0.01, 0.03, 2)
+        bores = diameters * rng.uniform(0, 0.9, 2) * rng.integers(0, 2)
+        core = MATERIALS[rng.integers(5)] if rng.integers(2) else None
+        kappa = rng.uniform(0.6, 1.0) if rng.integers(2) else None
+        return Segment(rng.uniform(0.01, 0.5), *diameters, MATERIALS[rng.integers(5)], *bores, core=core, kappa=kappa)
+
+    return [Cue(tuple(segment() for _ in range(segments)), rng.uniform(0, 0.5)) for _ in range(count)]
+
+
+COLLECTIONS = {f"{n} segments": random_cues(n) for n in (1, 2, 4)}
+COLLECTIONS |= {name: [cue] for name, cue in FAMILY.items()}
+COLLECTIONS |= {"soft tip": [soft_tip()], "stiff ferrule": [stiff_ferrule()], "slender rod": [rod(500)]}
+
+
+@pytest.fixture(params=COLLECTIONS.values(), ids=COLLECTIONS.keys())
+def cues(request: pytest.FixtureRequest) -> list[Cue]:
+    return request.param
+
+
+def test_frequencies_are_those_of_each_cue(cues: list[Cue]) -> None:
+    single = np.array([modes(cue, 5, at=AT).frequencies for cue in cues])
+    np.testing.assert_allclose(batch_frequencies(CueBatch.of(cues), 5, at=AT), single, rtol=1e-10)
+
+
+def test_tip_amplitudes_are_those_of_each_cue(cues: list[Cue]) -> None:
+    found = batch_modes(CueBatch.of(cues), 5, at=AT)
+    for i, cue in enumerate(cues):
+        single = modes(cue, 5, at=AT)
+        np.testing.assert_allclose(found.tip[i], single.vectors[0], rtol=1e-7, atol=1e-9)
+        np.testing.assert_allclose(found.rigid[i], single.rigid_vectors[0] @ single.rigid_vectors[0], rtol=1e-11)
+
+
+def test_stick_end_mass_and_squirt_are_those_of_each_cue(cues: list[Cue]) -> None:
+    """Each in a place of its own: ball, restitution and contact time differ from cue to cue."""
+    rng = np.random.default_rng(3)
+    scenes = []
+    for cue in cues:
+        tip = Tip(rng.uniform(0, 1), contact_time=rng.uniform(0.7e-3, 3e-3))
+        scenes.append(Scene(cue, Ball(rng.uniform(0.15, 0.22), inertia=rng.uniform(0.3, 0.5)), tip))
+    mass, slope = batch_stick(CueBatch.of(cues), scenes, at=AT)
+    for i, one in enumerate(scenes):
+        np.testing.assert_allclose(mass[i], end_mass(one, at=AT), rtol=1e-10)
+        tip_modes, limit = tip_modes_of(one, AT), StickLimit.of(one)
+        omega, phi = tip_modes.transverse
+        J = limit.transverse_impulse(omega[omega > 0], phi[omega > 0], float(np.sum(phi[omega == 0] ** 2)))
+        np.testing.assert_allclose(slope[i], limit.slope(J), rtol=1e-10)
+
+
+def test_modes_end_in_the_tail_of_each_cue(cues: list[Cue]) -> None:
+    found = batch_modes(CueBatch.of(cues), 7, at=AT, ended=True)
+    assert found.top is not None
+    for i, cue in enumerate(cues):
+        single = tail(solve(assemble(cue, elements=AT.elements, order=AT.order), 7))
+        np.testing.assert_allclose(found.frequencies[i], single.frequencies, rtol=1e-9)
+        np.testing.assert_allclose(found.tip[i], abs(single.vectors[0]), rtol=1e-7, atol=1e-9)
+        np.testing.assert_allclose(found.top[i], single.omega[6], rtol=1e-10)
+
+
+def test_end_mass_and_squirt_by_a_tail_that_fades_are_those_of_each_cue(cues: list[Cue]) -> None:
+    """The single cue's own modes, tail and formula; contact times, restitutions (0 too) and balls as arrays."""
+    rng, n = np.random.default_rng(4), len(cues)
+    e = np.where(np.arange(n) % 3 == 1, 0.0, rng.uniform(0, 1, n))
+    ball, nu, T = rng.uniform(0.15, 0.22, n), rng.uniform(0.3, 0.5, n), rng.uniform(0.7e-3, 3e-3, n)
+    batch = CueBatch.of(cues)
+    mass, slope = batch_stick(batch, StickLimit.law(ball, nu, e, T, batch.mass), at=AT, ended=True)
+    for i, cue in enumerate(cues):
+        one = Scene(cue, Ball(ball[i], inertia=nu[i]), Tip(e[i], contact_time=T[i]))
+        found, limit = tail(solve(assemble(cue, elements=AT.elements, order=AT.order), AT.modes)), StickLimit.of(one)
+        J = limit.transverse_impulse(*flexible(tip_modes_from(found, one)), top=found.omega[AT.modes - 1])
+        np.testing.assert_allclose(mass[i], limit.end_mass(J), rtol=1e-10)
+        np.testing.assert_allclose(slope[i], limit.slope(J), rtol=1e-10)
+
+
+def test_a_vibration_fades_above_half_the_highest_frequency() -> None:
+    np.testing.assert_allclose(fade(np.array([0.0, FADED, (1 + FADED) / 2, 1.0, 9.0])), [1, 1, 0.5, 0, 0], atol=1e-15)
+
+
+def test_modes_that_do_not_fade_give_the_plain_sum() -> None:
+    found, limit = batch_modes(CueBatch.of(random_cues(2, 8)), 7, at=AT), StickLimit.of(scene(kim(), 1e-3))
+    omega = 2 * np.pi * found.frequencies
+    plain = limit.transverse_impulse(omega, found.tip, found.rigid)
+    np.testing.assert_allclose(limit.transverse_impulse(omega, found.tip, found.rigid, top=1e9), plain, rtol=1e-15)
+
+
+def test_a_tip_of_given_stiffness_has_the_contact_time_of_each_cue() -> None:
+    cues = random_cues(2, 8)
+    scenes = [Scene(cue, tip=Tip(stiffness=2e6)) for cue in cues]
+    mass, _ = batch_stick(CueBatch.of(cues), scenes, at=AT)
+    np.testing.assert_allclose(mass, [end_mass(one, at=AT) for one in scenes], rtol=1e-10)
+
+
+def test_one_scene_stands_for_all() -> None:
+    cues = random_cues(2, 8)
+    one, each = (batch_stick(CueBatch.of(cues), s, at=AT) for s in (scene(kim(), 1e-3), [scene(c, 1e-3) for c in cues]))
+    np.testing.assert_array_equal(one, each)
+
+
+def test_masses_and_balance_points(cues: list[Cue]) -> None:
+    batch = CueBatch.of(cues)
+    for name in ("mass", "shaft_mass", "balance_point"):
+        np.testing.assert_allclose(getattr(batch, name), [getattr(cue, name) for cue in cues], rtol=1e-12)
+
+
+def test_blocks_do_not_show() -> None:
+    """Cues beyond the first block, and the joint between two blocks, in the order they were given."""
+    cues = [replace(kim(), body_mass=m) for m in np.linspace(0, 1, BLOCK + 3)]
+    cues = [replace(c, segments=(replace(c.segments[0], length=0.6 + 1e-4 * i),)) for i, c in enumerate(cues)]
+    batch, at = CueBatch.of(cues), Resolution(1, 8, 3)
+    whole, (mass, _) = batch_frequencies(batch, 2, at=at), batch_stick(batch, scene(kim(), 1e-3), at=at)
+    for i in (0, BLOCK - 1, BLOCK, BLOCK + 2):
+        np.testing.assert_allclose(whole[i], modes(cues[i], 2, at=at).frequencies, rtol=1e-11)
+        np.testing.assert_allclose(mass[i], end_mass(scene(cues[i], 1e-3), at=at), rtol=1e-11)
+
+
+def test_static_tip_stiffness_of_a_rod_is_in_the_books() -> None:
+    """3 EI/L^3, and kGA/L in series with it."""
+    length, d = 0.7, 0.013
+    bent = 3 * MAPLE.E * np.pi * d**4 / 64 / length**3
+    sheared = 0.9 * MAPLE.G * np.pi * d**2 / 4 / length
+    batch = CueBatch.of([Cue((Segment(length, d, d, MAPLE, kappa=0.9),))])
+    np.testing.assert_allclose(batch.tip_stiffness, [1 / (1 / bent + 1 / sheared)], rtol=1e-13)
+
+
+def test_static_tip_stiffness_of_a_cone_is_in_the_books() -> None:
+    """Without shear 3 E I(tip) (D/d)/L^3, for a solid cone from d to D."""
+    length, d, D = 0.7, 0.012, 0.021
+    hard = Material(12e9, 1e22, 700.0, nu=0.0)
+    batch = CueBatch.of([Cue((Segment(length, d, D, hard, kappa=1.0),))])
+    bent = 3 * hard.E * np.pi * d**4 / 64 * (D / d) ** 3 / length**3
+    np.testing.assert_allclose(batch.tip_stiffness, [bent], rtol=1e-10)
+
+
+@pytest.mark.parametrize("ratio", [1.5, 3.0, 10.0])
+def test_static_tip_stiffness_is_exact_to_steep_cones(ratio: float) -> None:
+    cue = Cue((Segment(0.7, 0.004, 0.004 * ratio, MAPLE, 0.001, 0.0005, core=FOAM),))
+
+    def compliance(x: float) -> float:
+        section = cue.section(x)
+        return float(x**2 / section.EI + 1 / section.kGA)
+
+    found = quad(compliance, 0, 0.7, epsabs=0, epsrel=1e-12, limit=500)[0]
+    np.testing.assert_allclose(CueBatch.of([cue]).tip_stiffness, [1 / found], rtol=1e-11)
+
+
+def test_static_tip_stiffness_is_that_of_the_clamped_beam(cues: list[Cue]) -> None:
+    """Foam rods apart: below 1 N/m the beam's K has lost the whole cue's bending beside its stiffest element's."""
+    single = np.array([static_tip_stiffness(Scene(cue), Resolution(3, 16, 1)) for cue in cues])
+    stiff = single > 1
+    assert stiff.any()
+    np.testing.assert_allclose(CueBatch.of(cues).tip_stiffness[stiff], single[stiff], rtol=1e-8)

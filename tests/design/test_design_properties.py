@@ -1,0 +1,359 @@
+"""Paths, ranges, studies and their evaluation: what holds for any of them (properties)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from cuefem import (
+    LumpedCue,
+    PointMass,
+    Resolution,
+    Scene,
+    Stroke,
+    Support,
+    Tip,
+    TipDome,
+    TipShear,
+    end_mass,
+    modes,
+    strike,
+)
+from cuefem.design import Levels, Response, Sample, Span, Study, Vary, evaluate, paths, replaced
+from cuefem.design.paths import spelt, value_at
+from cuefem.design.responses import KINDS
+from cuefem.endmass.drives import small_offset_slope
+from cuefem.materials import material
+from cuefem.squirt import natural_pivot_length
+from cuefem.tip_modes import tip_modes_of
+from tests.helpers.cues import MAPLE, kim, low_deflection, pool
+
+AT = Resolution(1, 14, 7)
+BASE = Scene(low_deflection(), tip=Tip(contact_time=1.2e-3), stroke=Stroke(2.0, 0.3))
+ALL = tuple(
+    Response.of(name)
+    for name in (
+        *("end_mass", "squirt_slope", "pivot_length", "mass", "shaft_mass", "balance_point", "tip_stiffness"),
+        *("frequency(1)", "frequency(3)", "squirt", "squirt(-0.2)", "ball_speed(0.2)", "vibration_energy"),
+        "pivot_length(0.4)",
+    )
+)
+
+
+def study(*vary: Vary, responses: tuple[str, ...] = ("end_mass",), **more: object) -> Study:
+    return Study(BASE, vary, tuple(map(Response.of, responses)), at=AT, **more)  # type: ignore[arg-type]
+
+
+def varied(path: str, *values: float | str, factor: bool = False, name: str = "") -> Vary:
+    return Vary((path,), Levels(values), name, factor)
+
+
+# paths
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        ("cue.segments[2].tip_bore", 0.008),
+        ("cue.segments[4].material.E", MAPLE.E),
+        ("cue.body_mass", 0.43),
+        ("tip.contact_time", 1.2e-3),
+        ("stroke.offset", 0.3),
+        ("cue.segments[0].kappa", None),
+    ],
+)
+def test_a_path_finds_its_field(path: str, value: float) -> None:
+    (found,) = paths(BASE, path)
+    assert value_at(BASE, found) == value
+    assert spelt(found) == path
+
+
+def test_a_star_is_every_item() -> None:
+    assert [spelt(path) for path in paths(BASE, "cue.segments[*].length")] == [
+        f"cue.segments[{i}].length" for i in range(5)
+    ]
+
+
+@pytest.mark.parametrize(
+    ("path", "words"),
+    [
+        ("cue.segments[2].tip_boar", "got 'cue.segments[2].tip_boar'; did you mean tip_bore"),
+        ("kue.segments[0].length", "did you mean cue"),
+        ("cue.segments[5].length", "where cue.segments has 5 items"),
+        ("cue.segments.length", "where cue.segments has no fields"),
+        ("cue[0]", "where cue is no list"),
+        ("cue.segments[0].core.E", "where cue.segments[0].core is empty"),
+        ("cue.segments[0]", "must name one number or a material"),
+        ("ball", "which holds mass, radius, inertia"),
+        ("effects[*].mass", "of an empty list"),
+        ("effects[0].mass", "where effects has 0 items"),
+        ("cue..length", "must be a path such as cue.segments[0].tip_bore"),
+        ("", "must be a path"),
+        ("cue.zzz", "where cue has segments, body_mass"),
+    ],
+)
+def test_a_path_that_names_no_field_is_refused(path: str, words: str) -> None:
+    with pytest.raises(ValueError, match="must") as error:
+        paths(BASE, path)
+    assert words in str(error.value)
+
+
+def test_values_are_replaced_all_at_once() -> None:
+    """A bore may be wider than the shaft was, where the shaft grows with it; nothing else changes."""
+    (bore,), (outer,) = paths(BASE, "cue.segments[2].tip_bore"), paths(BASE, "cue.segments[2].tip_diameter")
+    found = replaced(BASE, {bore: 0.0126, outer: 0.014})
+    assert found.cue.segments[2] == replace(BASE.cue.segments[2], tip_bore=0.0126, tip_diameter=0.014)
+    assert replaced(found, {bore: 0.008, outer: 0.0125}) == BASE
+
+
+def test_what_is_replaced_is_checked() -> None:
+    (bore,) = paths(BASE, "cue.segments[2].tip_bore")
+    with pytest.raises(ValueError, match=r"Segment.tip_bore must be in \[0, 0.0125\) m, its outer diameter; got 0.02"):
+        replaced(BASE, {bore: 0.02})
+
+
+def test_a_contact_time_takes_a_stiffness_out() -> None:
+    hard = replace(BASE, tip=Tip(stiffness=1e6))
+    (time,) = paths(hard, "tip.contact_time")
+    assert replaced(hard, {time: 2e-3}).tip == Tip(contact_time=2e-3)
+
+
+# ranges
+
+
+@given(low=st.floats(1e-6, 1e3), ratio=st.floats(1.01, 100), count=st.integers(2, 50), log=st.booleans())
+def test_a_span_runs_from_end_to_end(low: float, ratio: float, count: int, log: bool) -> None:
+    span = Span(low, low * ratio, count, log)
+    levels = np.array([span.level(i) for i in range(count)])
+    assert levels[0] == low
+    assert levels[-1] == low * ratio
+    steps = np.diff(np.log(levels) if log else levels)
+    np.testing.assert_allclose(steps, steps[0], rtol=1e-8)
+
+
+@pytest.mark.parametrize("method", ["sobol", "halton", "latin hypercube"])
+def test_a_sample_is_the_same_however_it_is_taken(method: str) -> None:
+    """In parts or whole; every seed has its own; all of it in the unit cube, spread evenly."""
+    sample = Sample(method, 100, 7)
+    parts = [np.concatenate(list(sample.blocks(3, size))) for size in (16, 256)]
+    np.testing.assert_array_equal(parts[0], parts[1])
+    assert parts[0].shape == (100, 3)
+    assert np.all((parts[0] >= 0) & (parts[0] < 1))
+    np.testing.assert_allclose(parts[0].mean(axis=0), 0.5, atol=0.03)
+    assert not np.array_equal(parts[0], np.concatenate(list(replace(sample, seed=8).blocks(3, 256))))
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: Span(2.0, 2.0, 3), "empty range 2.0 to 2.0"),
+        (lambda: Span(2.0, 1.0, 3), "empty range"),
+        (lambda: Span(0.0, 1.0, 3, logarithmic=True), "above 0 where the spacing is logarithmic"),
+        (lambda: Span(0.0, 1.0, 0), "count must be a whole number >= 1"),
+        (lambda: Levels(()), "got an empty range"),
+        (lambda: Vary((), Levels((1.0,))), "path must name a field; got none"),
+        (lambda: Sample("grid", 10, 1), "method must be one of grid, sobol, halton, latin hypercube"),
+        (lambda: Sample("sobol", 0, 1), "count must be a whole number >= 1"),
+        (lambda: Sample("sobol", 2**31, 1), "count must be at most"),
+    ],
+)
+def test_empty_ranges_are_refused(make: object, words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        make()  # type: ignore[operator]
+
+
+# studies
+
+
+def test_a_grid_runs_through_all_levels_the_last_fastest() -> None:
+    found = study(varied("cue.body_mass", 0.1, 0.2), Vary(("ball.mass",), Span(0.16, 0.2, 3)))
+    rows = [row for block in found.blocks() for row in block]
+    assert rows == [(b, m) for b in (0.1, 0.2) for m in (0.16, 0.18, 0.2)]
+    assert found.size == 6
+
+
+@pytest.mark.parametrize("count", [1, 255, 256, 257, 700])
+def test_blocks_hold_every_design_once(count: int) -> None:
+    found = study(Vary(("ball.mass",), Span(0.16, 0.2, count)))
+    blocks = list(found.blocks())
+    assert [len(block) for block in blocks[:-1]] == [found.block] * (len(blocks) - 1)
+    assert sum(map(len, blocks)) == found.size == count
+
+
+def test_a_scene_of_values_factors_and_materials() -> None:
+    found = study(
+        varied("cue.segments[3].material", "ash"),
+        varied("cue.segments[*].material.E", 0.5, factor=True, name="factor"),
+        varied("cue.segments[3].material.rho", 500.0),
+    )
+    made = found.scene(("ash", 0.5, 500.0)).cue.segments
+    assert made[3].material == replace(material("ash"), E=material("ash").E * 0.5, rho=500.0)
+    for i in (0, 1, 2, 4):
+        assert made[i].material == replace(BASE.cue.segments[i].material, E=BASE.cue.segments[i].material.E * 0.5)
+
+
+@pytest.mark.parametrize(
+    ("vary", "words"),
+    [
+        ((varied("cue.segments[0].material", 1.0),), "takes names of materials; got 1.0"),
+        ((varied("ball.mass", "ash"),), r"takes numbers in \(0, inf\) kg; got 'ash'"),
+        ((varied("cue.segments[0].kappa", 1.1, factor=True),), "factor must multiply a number"),
+        (
+            (varied("ball.mass", 0.2), varied("ball.mass", 0.1, name="again")),
+            "a field varies once; got ball.mass twice",
+        ),
+        ((varied("ball.mass", 0.2), varied("ball.radius", 0.03, name="Ball.Mass")), "'ball.mass' twice"),
+        ((Vary(("ball.mass", "ball.radius"), Levels((0.03,))),), "fields of one unit; got 'kg' and 'm'"),
+        ((), "varies something"),
+    ],
+)
+def test_a_study_that_contradicts_itself_is_refused(vary: tuple[Vary, ...], words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        study(*vary)
+
+
+def test_a_lumped_cue_has_no_frequencies() -> None:
+    lumped = Scene(LumpedCue(0.5, 0.005))
+    with pytest.raises(ValueError, match=r"frequency\(1\) needs a cue of segments"):
+        Study(lumped, (varied("ball.mass", 0.2),), (Response.of("frequency(1)"),))
+    assert evaluate([lumped], ["frequency(1)"]).reasons == ("frequency(1) needs a cue of segments; got a lumped cue",)
+
+
+def test_one_resolution_serves_the_hardest_design() -> None:
+    """The shortest contact with the softest wood keeps most modes."""
+    found = Study(
+        BASE,
+        (
+            Vary(("tip.contact_time",), Span(0.8e-3, 2e-3)),
+            Vary(("cue.segments[*].material.E",), Span(0.5, 1), factor=True),
+        ),
+        (Response.of("end_mass"),),
+        Sample("sobol", 16, 1),
+    )
+    softest = found.scene((0.8e-3, 0.5))
+    from cuefem.tip_modes import default_resolution
+
+    assert found.resolution == default_resolution(softest)
+
+
+def test_fingerprints_tell_studies_apart() -> None:
+    one = study(varied("ball.mass", 0.2))
+    others = [
+        study(varied("ball.mass", math.nextafter(0.2, 1))),
+        study(varied("ball.mass", 0.2), responses=("mass",)),
+        replace(one, at=Resolution(1, 14, 8)),
+        replace(one, base=replace(BASE, stroke=Stroke(2.0, 0.31))),
+        replace(one, sample=Sample("sobol", 4, 1)),
+    ]
+    assert len({one.fingerprint, *(other.fingerprint for other in others)}) == 6
+    assert study(varied("ball.mass", 0.2)).fingerprint == one.fingerprint
+
+
+# responses
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("squrit(0.3)", "did you mean squirt"),
+        ("mass(3)", "takes nothing in brackets"),
+        ("end_mass(1)", r"an offset b/R in \(-1, 1\)"),
+        ("frequency", r"frequency\(n\), n a whole number >= 1"),
+        ("frequency(1.5)", "a whole number"),
+        ("squirt(1)", r"an offset b/R in \(-1, 1\)"),
+        ("squirt(x)", "an offset"),
+        ("pivot_length(0)", "without 0"),
+    ],
+)
+def test_a_response_that_is_none_is_refused(text: str, words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        Response.of(text)
+
+
+def test_names_of_responses_read_back() -> None:
+    for one in ALL:
+        assert Response.of(one.name) == one
+    assert {one.kind for one in ALL} == set(KINDS)
+
+
+def singly(scene: Scene) -> dict[str, float]:
+    """Every response by the calls for one cue."""
+    tip = tip_modes_of(scene, AT)
+    slope = small_offset_slope(tip, scene)
+
+    def struck(offset: float) -> object:
+        return strike(replace(scene, stroke=replace(scene.stroke, offset=offset)), AT)
+
+    domes = [effect.radius for effect in scene.effects if isinstance(effect, TipDome)]
+
+    def pivot(offset: float, squirt: float) -> float:
+        return float(natural_pivot_length(offset, squirt, radius=scene.ball.radius, dome_radius=sum(domes)))
+
+    flexible = modes(scene.cue, 3, effects=scene.cue_effects, at=AT).frequencies
+    return {
+        "end_mass": end_mass(scene, at=AT),
+        "squirt_slope": slope,
+        "pivot_length": pivot(1e-5, slope * 1e-5),
+        "mass": scene.cue.mass,
+        "shaft_mass": scene.cue.shaft_mass,
+        "balance_point": scene.cue.balance_point,
+        "frequency(1)": flexible[0],
+        "frequency(3)": flexible[2],
+        "squirt": strike(scene, AT).squirt,
+        "squirt(-0.2)": struck(-0.2).squirt,
+        "ball_speed(0.2)": struck(0.2).ball_speed,
+        "vibration_energy": strike(scene, AT).energy["cue vibration"],
+        "pivot_length(0.4)": pivot(0.4, struck(0.4).squirt),
+    }
+
+
+EFFECTS = {
+    "none": (),
+    "clay": (PointMass(0.05, 0.011),),
+    "bridge": (Support(0.2, 5000.0),),
+    "tip": (TipDome(0.0095), TipShear(0.75)),
+}
+
+
+@pytest.mark.parametrize("effects", EFFECTS.values(), ids=EFFECTS.keys())
+def test_responses_are_those_of_single_calls(effects: tuple[object, ...]) -> None:
+    """Small offsets apart, where the single call strikes at b/R 1e-5, all to 1e-10."""
+    scenes = [replace(BASE, effects=effects), replace(BASE, cue=pool(), effects=effects)]
+    found = evaluate(scenes, ALL, at=AT)
+    assert found.reasons == (None, None)
+    for scene, values in zip(scenes, found.values, strict=True):
+        by_name = dict(zip([one.name for one in ALL], values, strict=True))
+        for name, single in singly(scene).items():
+            near = 1e-9 if name in ("squirt_slope", "pivot_length") else 1e-10
+            np.testing.assert_allclose(by_name[name], single, rtol=near, err_msg=name)
+
+
+def test_a_failing_design_disturbs_no_other() -> None:
+    """A scene without an answer among others: theirs are what they are without it, its reason is said."""
+    feather = replace(kim().segments[0], material=replace(MAPLE, rho=1e-310))
+    deadly = replace(BASE, cue=replace(kim(), segments=(feather,)))
+    scenes = [BASE, deadly, replace(BASE, cue=kim())]
+    with np.errstate(all="ignore"):
+        found = evaluate(scenes, ["end_mass"], at=AT)
+    alone = evaluate([scenes[0], scenes[2]], ["end_mass"], at=AT)
+    assert found.reasons[0] is None
+    assert found.reasons[2] is None
+    assert found.reasons[1]
+    assert np.isnan(found.values[1, 0])
+    np.testing.assert_allclose(found.values[[0, 2]], alone.values, rtol=1e-12)
+
+
+@given(st.permutations(range(6)))
+def test_order_and_company_do_not_matter(order: list[int]) -> None:
+    """Two topologies, with and without effects, in any order."""
+    cues = [low_deflection(), pool(), kim()]
+    scenes = [replace(BASE, cue=cue, effects=effects) for cue in cues for effects in ((), (PointMass(0.1, 0.01),))]
+    at = Resolution(1, 6, 2)
+    found = evaluate([scenes[i] for i in order], ["end_mass", "tip_stiffness"], at=at).values
+    apart = np.concatenate([evaluate([scenes[i]], ["end_mass", "tip_stiffness"], at=at).values for i in order])
+    np.testing.assert_allclose(found, apart, rtol=1e-11)

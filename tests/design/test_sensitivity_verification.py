@@ -1,0 +1,216 @@
+"""Verification of sensitivities: the sum rule, and central differences of the end mass itself."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import get_args
+
+import numpy as np
+import pytest
+
+from cuefem import Cue, LumpedCue, Material, PointMass, Resolution, Scene, Segment, Tip, load
+from cuefem.design.gradient import gradient
+from cuefem.design.sensitivity import Sensitivity, sensitivity
+from cuefem.endmass.drives import Drive, end_mass
+from cuefem.endmass.undamped import StickLimit
+from tests.helpers.cues import carbon_tube, kim, low_deflection
+
+MESHES = Path(__file__).parents[2] / "meshes"
+DRIVES = [drive for drive in get_args(Drive) if drive != "squirt"]
+AT = Resolution(3, 8, 14)
+
+
+def scene(cue: Cue, contact_time: float = 1e-3) -> Scene:
+    return Scene(cue, tip=Tip(contact_time=contact_time))
+
+
+def integral(found: Sensitivity, cue: Cue, *names: str) -> float:
+    """Integral of densities times their properties."""
+    section = cue.section(found.x)
+    return math.fsum(found.weights @ (getattr(found, name) * getattr(section, name)) for name in names)
+
+
+@pytest.mark.parametrize("drive", DRIVES)
+@pytest.mark.parametrize("path", sorted(MESHES.glob("*.toml")), ids=lambda path: path.stem)
+def test_the_parts_add_up_to_the_end_mass(path: Path, drive: Drive) -> None:
+    """physics.md section 6, on every cue in meshes/."""
+    cue = load(path)
+    assert isinstance(cue, Cue)
+    struck = scene(cue)
+    found = sensitivity(struck, drive, Resolution(2, 14, 40))
+    whole = found.end_mass - struck.ball.mass * found.ball_mass - struck.axial_mass * found.axial_mass
+    assert integral(found, cue, "rhoA", "rhoI", "EI", "kGA") == pytest.approx(whole, rel=1e-8)
+    assert found.end_mass == pytest.approx(end_mass(struck, drive, Resolution(2, 14, 40)), rel=1e-11)
+    assert (found.ball_mass == 0) == (drive != "stick")
+
+
+def test_the_stick_drives_sum_is_that_of_physics_md() -> None:
+    """Kim's shaft, 1 ms: 1.0206 m_e."""
+    found = sensitivity(scene(kim()))
+    sum_of_parts = integral(found, kim(), "rhoA", "rhoI", "EI", "kGA")
+    assert sum_of_parts / found.end_mass == pytest.approx(1.0206, abs=6e-5)
+
+
+def slope(function: Callable[[float], float], step: float) -> float:
+    """Derivative at 0 by central differences of two steps, Richardson's: error of step^4."""
+    wide, narrow = ((function(h) - function(-h)) / (2 * h) for h in (step, step / 2))
+    return (4 * narrow - wide) / 3
+
+
+CUES = pytest.mark.parametrize("cue", [kim(), low_deflection(), carbon_tube()], ids=["kim", "hollow", "carbon"])
+
+
+@pytest.mark.parametrize("drive", DRIVES)
+@CUES
+def test_a_gram_somewhere(cue: Cue, drive: Drive) -> None:
+    """The density of rhoA is the end mass that a point mass there adds."""
+    fine = Resolution(4, 20, 14)  # so fine that the node which the point mass needs changes nothing
+    found = sensitivity(scene(cue), drive, fine)
+    i = len(found.x) // 3
+    masses = 1e-6 * np.arange(3)
+    felt = [end_mass(replace(scene(cue), effects=(PointMass(found.x[i], m),)), drive, fine) for m in masses[1:]]
+    bare = end_mass(scene(cue), drive, fine)
+    measured = (4 * (felt[0] - bare) - (felt[1] - bare)) / masses[2]
+    assert measured == pytest.approx(found.rhoA[i] + found.axial_mass, rel=1e-6)
+
+
+def multiplied(cue: Cue, constant: str, factor: float) -> Cue:
+    """The cue with a constant of every material, and every core, multiplied; Poisson's ratio follows."""
+
+    def material(m: Material | None) -> Material | None:
+        return m and replace(m, nu=0.0, **{constant: getattr(m, constant) * factor})
+
+    segments = (replace(s, material=material(s.material), core=material(s.core)) for s in cue.segments)
+    return replace(cue, segments=tuple(segments))
+
+
+@pytest.mark.parametrize("drive", DRIVES)
+@CUES
+@pytest.mark.parametrize(("constant", "names"), [("E", ["EI"]), ("G", ["kGA"]), ("rho", ["rhoA", "rhoI"])])
+def test_a_constant_of_all_materials(cue: Cue, drive: Drive, constant: str, names: list[str]) -> None:
+    """nu = 0 makes the shear coefficient free of E and G; a denser cue is heavier along the axis too."""
+    cue = multiplied(cue, constant, 1.0)
+    found = sensitivity(scene(cue), drive, AT)
+    want = integral(found, cue, *names) + (found.axial_mass * cue.shaft_mass if constant == "rho" else 0.0)
+    measured = slope(lambda h: end_mass(scene(multiplied(cue, constant, 1 + h)), drive, AT), 1e-3)
+    assert measured == pytest.approx(want, rel=1e-6)
+
+
+def test_the_ball_and_the_mass_along_the_axis() -> None:
+    cue, base = kim(), scene(kim())
+    found = sensitivity(base, "stick", AT)
+
+    def ball(h: float) -> float:
+        return end_mass(replace(base, ball=replace(base.ball, mass=base.ball.mass + h)), "stick", AT)
+
+    def body(h: float) -> float:
+        return end_mass(replace(base, cue=replace(cue, body_mass=cue.body_mass + h)), "stick", AT)
+
+    assert slope(ball, 1e-3) == pytest.approx(found.ball_mass, rel=1e-6)
+    assert slope(body, 1e-3) == pytest.approx(found.axial_mass, rel=1e-6)
+
+
+NUMBERS = ["length", "tip_diameter", "butt_diameter", "tip_bore", "butt_bore", "E", "G", "rho"]
+
+
+def changed(cue: Cue, number: str, index: int, factor: float) -> Cue:
+    """The cue with one number of one segment multiplied."""
+    segment = cue.segments[index]
+    if number in ("E", "G", "rho"):
+        material = replace(segment.material, **{number: getattr(segment.material, number) * factor})
+        segment = replace(segment, material=material)
+    else:
+        segment = replace(segment, **{number: getattr(segment, number) * factor})
+    return replace(cue, segments=(*cue.segments[:index], segment, *cue.segments[index + 1 :]))
+
+
+@pytest.mark.parametrize("drive", ["stick", "force"])
+@pytest.mark.parametrize("number", NUMBERS)
+@pytest.mark.parametrize("index", [2, 3])
+def test_a_number_of_the_drawing(number: str, index: int, drive: Drive) -> None:
+    """Of the carbon tube, whose shaft is bored from end to end; squirt too, where the drive has it."""
+    cue = carbon_tube()
+    found = gradient(scene(cue), drive, AT)
+    segment = cue.segments[index]
+    value = getattr(segment.material if number in ("E", "G", "rho") else segment, number)
+
+    def felt(h: float) -> float:
+        return end_mass(scene(changed(cue, number, index, 1 + h)), drive, AT)
+
+    def squirt(h: float) -> float:
+        there = scene(changed(cue, number, index, 1 + h))
+        limit = StickLimit.of(there)
+        return float(limit.slope((limit.K - 1) / (1 / felt(h) + limit.c)))
+
+    # 1e-6 of the number, or of a thousandth of the end mass per relative change, where the derivative is nearly nothing
+    assert slope(felt, 1e-3) / value == pytest.approx(
+        getattr(found.end_mass_to, number)[index], rel=1e-6, abs=1e-9 * found.end_mass / value
+    )
+    if found.squirt_to is not None and found.squirt is not None:
+        assert found.squirt == pytest.approx(squirt(0.0), rel=1e-12)
+        assert slope(squirt, 1e-3) / value == pytest.approx(
+            getattr(found.squirt_to, number)[index], rel=1e-6, abs=1e-9 * found.squirt / value
+        )
+
+
+def filled() -> Cue:
+    """A carbon tube over a core, Poisson's ratios given, the shear coefficient of one piece too."""
+    shell = Material(80e9, 14e9, 1580.0, nu=0.27)
+    core = Material(3e9, 1.1e9, 1100.0, nu=0.33)
+    front = Segment(0.03, 0.012, 0.0125, shell, 0.009, 0.008, core)
+    middle = Segment(0.35, 0.0125, 0.013, shell, 0.0105, 0.0105, core)
+    rear = Segment(0.3, 0.013, 0.021, shell, 0.0105, 0.017, core, kappa=0.8)
+    return Cue((front, middle, rear), body_mass=0.4)
+
+
+def altered(cue: Cue, number: str, index: int, factor: float) -> Cue:
+    """The cue with kappa, or a number of a material ("nu", "core_E"), of one segment multiplied."""
+    segment = cue.segments[index]
+    part, name = ("core", number.removeprefix("core_")) if number.startswith("core") else ("material", number)
+    if number == "kappa":
+        segment = replace(segment, kappa=segment.kappa * factor)
+    else:
+        whole = getattr(segment, part)
+        segment = replace(segment, **{part: replace(whole, **{name: getattr(whole, name) * factor})})
+    return replace(cue, segments=(*cue.segments[:index], segment, *cue.segments[index + 1 :]))
+
+
+@pytest.mark.parametrize("drive", ["stick", "velocity"])
+@pytest.mark.parametrize(
+    ("number", "index"),
+    [*((f"core_{name}", i) for name in ("E", "G", "rho", "nu") for i in (0, 1)), ("nu", 0), ("nu", 1), ("kappa", 2)],
+)
+def test_a_number_of_the_core_and_of_shear(number: str, index: int, drive: Drive) -> None:
+    """By central differences to 1e-6; nu_e/(1 + nu_e) = 2 nu G/E makes a slope to the effective ratio one to nu."""
+    cue = filled()
+    found = gradient(scene(cue), drive, AT)
+    segment = cue.segments[index]
+    chain, whole = 1.0, segment.core if number.startswith("core") else segment.material
+    assert whole is not None
+    value = segment.kappa if number == "kappa" else getattr(whole, number.removeprefix("core_"))
+    if number.endswith("nu"):
+        ratio = 2 * whole.nu * whole.G / whole.E
+        chain = ratio / whole.nu / (1 - ratio) ** 2
+    measured = slope(lambda h: end_mass(scene(altered(cue, number, index, 1 + h)), drive, AT), 1e-3)
+    exact = getattr(found.end_mass_to, number)[index] * chain
+    assert measured / value == pytest.approx(exact, rel=1e-6, abs=1e-9 * found.end_mass / value)
+    assert exact != 0
+
+
+def test_a_shear_coefficient_left_out_has_no_slope() -> None:
+    """Nor has a Poisson's ratio where the coefficient is given."""
+    found = gradient(scene(filled()), "stick", AT)
+    assert np.isnan(found.end_mass_to.kappa).tolist() == [True, True, False]
+    assert found.end_mass_to.nu[2] == found.end_mass_to.core_nu[2] == 0
+
+
+def test_bad_input() -> None:
+    with pytest.raises(ValueError, match="one of stick, velocity, force; got 'push'"):
+        sensitivity(scene(kim()), "push")  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="without effects; got 1"):
+        sensitivity(replace(scene(kim()), effects=(PointMass(0.1, 1e-3),)))
+    with pytest.raises(TypeError, match=r"gradient scene\.cue"):
+        gradient(Scene(LumpedCue(0.5, 0.01)))

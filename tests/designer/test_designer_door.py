@@ -1,0 +1,129 @@
+"""What the designer's server lets in: other pages, big bodies and names that no file has are refused (bad input)."""
+
+from __future__ import annotations
+
+import asyncio
+import re
+import urllib.error
+import urllib.request
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.helpers.designer_browser import served
+
+pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
+from cuefem.designer.door import LARGEST_FILE, REJECTED, Door, file_name
+
+OWN = "http://127.0.0.1:8470"
+PIECE = 1_000_000  # bytes of a body that come together
+
+
+def asked(kind: str, headers: dict[str, str], pieces: int = 0) -> tuple[list[dict[str, Any]], int]:
+    """What a request gets at the door of an application that reads it all and answers 200, and the bytes read."""
+    sent: list[dict[str, Any]] = []
+    left = pieces
+
+    async def receive() -> dict[str, Any]:
+        nonlocal left
+        if kind == "websocket":
+            return {"type": "websocket.connect"}
+        left -= 1
+        return {"type": "http.request", "body": bytes(PIECE if left >= 0 else 0), "more_body": left > 0}
+
+    async def send(message: Any) -> None:
+        sent.append(message)
+
+    async def inside(scope: Any, receive: Callable[[], Any], send: Callable[[Any], Any]) -> None:
+        if scope["type"] == "websocket":
+            await send({"type": "websocket.accept"})
+            return
+        while (await receive())["more_body"]:
+            pass
+        await send({"type": "http.response.start", "status": 200, "headers": []})
+        await send({"type": "http.response.body", "body": b"in"})
+
+    scope = {
+        "type": kind,
+        "method": "POST",
+        "path": "/",
+        "headers": [(k.encode(), v.encode()) for k, v in headers.items()],
+    }
+    asyncio.run(Door(inside, (OWN, "http://localhost:8470"))(scope, receive, send))
+    return sent, PIECE * (pieces - max(left, 0))
+
+
+@pytest.mark.parametrize(
+    "origin", ["http://elsewhere.example", "null", "http://127.0.0.1:9", "https://127.0.0.1:8470", ""]
+)
+def test_other_pages_are_refused(origin: str) -> None:
+    assert asked("websocket", {"origin": origin})[0] == [{"type": "websocket.close", "code": 1008}]
+    sent, read = asked("http", {"origin": origin}, 3)
+    assert (sent[0]["status"], read) == (403, 0)
+
+
+@pytest.mark.parametrize("headers", [{}, {"origin": OWN}, {"origin": "http://localhost:8470"}])
+def test_its_own_page_and_programs_are_let_in(headers: dict[str, str]) -> None:
+    assert asked("websocket", headers)[0] == [{"type": "websocket.accept"}]
+    sent, read = asked("http", headers, 5)
+    assert (sent[0]["status"], read) == (200, 5 * PIECE)
+
+
+def test_a_big_body_is_refused_and_not_read() -> None:
+    sent, read = asked("http", {"content-length": "60000000"}, 60)
+    assert (sent[0]["status"], sent[1]["body"], read) == (413, REJECTED.encode(), 0)
+    for length in ("-1", "many", "9" * 400):
+        assert asked("http", {"content-length": length}, 1)[0][0]["status"] == 413
+    sent, read = asked("http", {}, 60)  # its length is not said
+    assert sent[0]["status"] == 413
+    assert read <= LARGEST_FILE + 2 * PIECE
+
+
+@pytest.mark.parametrize("name", [None, "", " ", ".", "..", "../..", "a/..", "a\\", "a\0.toml", "a\n.toml"])
+def test_no_name(name: str | None) -> None:
+    with pytest.raises(ValueError, match=r"^a file must have a name; got "):
+        file_name(name)
+
+
+def test_names() -> None:
+    assert file_name("../../etc/cue.toml") == "cue.toml"
+    assert file_name("C:\\cues\\Löffel.toml") == "Löffel.toml"
+    assert file_name("a" * 250 + ".toml") == "a" * 250 + ".toml"
+    with pytest.raises(ValueError, match=r"^a file's name must be of at most 255 bytes; got 256$"):
+        file_name("a" * 251 + ".toml")
+    with pytest.raises(ValueError, match=r"^a file's name must be of at most 255 bytes; got 305$"):
+        file_name("é" * 150 + ".toml")
+
+
+FORM = '--X\r\nContent-Disposition: form-data; name="f"{}\r\n\r\nx = 1\r\n--X--\r\n'
+FORMS = {
+    '; filename="cue.toml"': 200,
+    '; filename=".."': 400,
+    '; filename=""': 400,
+    f'; filename="{"a" * 300}.toml"': 400,
+    "": 400,
+}
+
+
+@pytest.mark.heavy
+def test_a_served_page_answers_every_form_and_its_log_stays_empty(tmp_path: Path) -> None:
+    with served(tmp_path) as address:  # it must say nothing on stderr
+        page = urllib.request.urlopen(address, timeout=60).read().decode()
+        found = re.search(r"_nicegui/client/[-0-9a-f]+/upload/\d+", page)
+        assert found is not None
+
+        def status(body: bytes, **headers: str) -> int:
+            kind = {"Content-Type": "multipart/form-data; boundary=X"} | headers
+            try:
+                return int(
+                    urllib.request.urlopen(urllib.request.Request(address + found[0], body, kind), timeout=60).status
+                )
+            except urllib.error.HTTPError as error:
+                return error.code
+
+        for named, expected in FORMS.items():
+            assert status(FORM.format(named).encode()) == expected
+        assert status(FORM.format('; filename="cue.toml"').encode(), Origin="http://elsewhere.example") == 403
+        assert status(b"") == 400

@@ -1,0 +1,179 @@
+"""The designer's knobs: what they leave alone, and that they come back from what they made (properties)."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import cuefem as cf
+from cuefem.cli.common import scene_of
+from cuefem.designer.model import Knobs, knobs_of, outer_diameter, taper_position, turned
+from cuefem.designer.sliders import FERRULES, SHAFTS, choices, sliders, without
+from cuefem.designer.start import first_scene
+from cuefem.materials import MATERIALS
+
+ROOT = Path(__file__).parents[2]
+FILES = [*sorted((ROOT / "meshes").glob("*.toml")), *sorted((ROOT / "studies" / "scenes").glob("*.toml"))]
+SCENES = {f"{path.parent.name}/{path.stem}": scene_of(path, {"body_mass": None, "material": None})[0] for path in FILES}
+
+
+def close(a: Knobs, b: Knobs) -> bool:
+    def same(x: object, y: object) -> bool:
+        return x == pytest.approx(y, rel=1e-9, abs=1e-12) if isinstance(x, float) else x == y
+
+    return all(same(getattr(a, field.name), getattr(b, field.name)) for field in fields(Knobs))
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_knobs_where_they_stand_change_nothing(name: str) -> None:
+    scene = SCENES[name]
+    assert turned(scene, knobs_of(scene)) is scene
+    for slider in sliders(scene):
+        assert slider.turned(knobs_of(scene), slider.shown(knobs_of(scene))) == knobs_of(scene)
+        assert slider.low <= slider.shown(knobs_of(scene)) <= slider.high
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_every_slider_moves_what_it_says_and_nothing_else(name: str) -> None:
+    scene = SCENES[name]
+    own = knobs_of(scene)
+    for slider in sliders(scene):
+        if slider.knob == "joint_position":  # there is no joint to move
+            continue
+        here = slider.shown(own)
+        there = here + slider.step if here + slider.step <= slider.high else here - slider.step
+        if slider.knob == "bore_width" and own.bore_depth == 0:
+            own = replace(own, bore_depth=0.05)
+        wanted = slider.turned(own, there)
+        made = turned(scene, wanted)
+        assert close(knobs_of(made), wanted), slider.knob
+        assert made.cue.length == pytest.approx(scene.cue.length, rel=1e-12)
+        assert made.ball == scene.ball
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_what_has_no_knob_is_kept(name: str) -> None:
+    scene = SCENES[name]
+    wanted = replace(knobs_of(scene), tip_diameter=knobs_of(scene).tip_diameter + 1e-4, joint_compliance=1e-4)
+    made = turned(scene, wanted)
+    assert made.cue.body_mass == scene.cue.body_mass
+    assert [s.material for s in made.cue.segments if s.core] == [s.material for s in scene.cue.segments if s.core]
+    assert [effect for effect in made.effects if not isinstance(effect, cf.Joint)] == list(scene.effects)
+    assert made.stroke == scene.stroke
+    assert made.tip == scene.tip
+
+
+@st.composite
+def knobs(draw: st.DrawFn) -> Knobs:
+    def between(low: float, high: float) -> float:
+        return draw(st.floats(low, high))
+
+    return Knobs(
+        tip_diameter=between(0.010, 0.014),
+        taper_diameter=between(0.012, 0.016),
+        butt_diameter=between(0.018, 0.024),
+        bore_depth=between(0.01, 0.3),
+        bore_width=between(0.002, 0.007),
+        ferrule_length=between(0.002, 0.04),
+        ferrule_material=MATERIALS[draw(st.sampled_from(FERRULES))].material,
+        shaft_material=MATERIALS[draw(st.sampled_from(SHAFTS))].material,
+        joint_position=between(0.1, 0.7),
+        joint_compliance=between(1e-5, 5e-3),
+        contact_time=between(6e-4, 3e-3),
+        offset=between(0, 0.6),
+    )
+
+
+@pytest.mark.parametrize("name", ["meshes/pool_maple", "meshes/pool_hollow", "scenes/snooker"])
+@given(wanted=knobs())
+def test_knobs_come_back_from_the_scene_they_made(name: str, wanted: Knobs) -> None:
+    made = turned(SCENES[name], wanted)
+    found = knobs_of(made)
+    assert close(found, wanted)
+    assert turned(made, found) == made
+    assert made.cue.length == pytest.approx(SCENES[name].cue.length, rel=1e-12)
+
+
+@given(wanted=knobs())
+def test_a_saved_design_loads_as_it_was(wanted: Knobs) -> None:
+    made = turned(first_scene(), wanted)
+    with TemporaryDirectory() as folder:
+        cf.save(made, Path(folder) / "design.toml")
+        assert cf.load(Path(folder) / "design.toml") == made
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_the_drawing_changes_only_between_the_knobs(name: str) -> None:
+    scene = SCENES[name]
+    cue, own = scene.cue, knobs_of(scene)
+    thicker = turned(scene, replace(own, taper_diameter=own.taper_diameter + 1e-3)).cue
+    for x in np.linspace(0, cue.length, 41):
+        hat = np.interp(x, [0, taper_position(cue), cue.length], [0, 1e-3, 0])
+        assert outer_diameter(thicker, x) == pytest.approx(outer_diameter(cue, x) + hat, rel=1e-9)
+
+
+def test_a_whole_new_bore_takes_out_its_wood() -> None:
+    scene = first_scene()
+    made = turned(scene, replace(knobs_of(scene), bore_depth=0.1, bore_width=0.006))
+    gone = np.pi / 4 * 0.006**2 * 0.1 * MATERIALS["hard maple"].material.rho
+    assert scene.cue.shaft_mass - made.cue.shaft_mass == pytest.approx(gone, rel=1e-9)
+    assert [segment.tip_bore for segment in made.cue.segments] == [0, 0.00794, 0.006, 0, 0, 0]
+
+
+def test_the_first_scene_is_the_maple_shaft_of_meshes() -> None:
+    assert first_scene().cue == SCENES["meshes/pool_maple"].cue
+
+
+def test_what_cannot_be_turned_is_said() -> None:
+    assert without(first_scene()) == []
+    assert without(SCENES["meshes/carbon"]) == ["the bore behind the tip is filled, so it stays as it is"]
+    assert without(SCENES["meshes/kim"]) == ["no ferrule is drawn behind the tip, so it has no knob"]
+
+
+def test_the_files_own_materials_are_offered() -> None:
+    own = SCENES["meshes/kim"]
+    (shaft,) = choices(own)
+    assert shaft.name(knobs_of(own)) == "the file's own (E 12.6 GPa)"
+    ferrule, shaft = choices(first_scene())
+    assert (ferrule.name(knobs_of(first_scene())), shaft.name(knobs_of(first_scene()))) == ("melamine", "hard maple")
+    assert set(shaft.materials) | set(ferrule.materials) == set(MATERIALS) - {"leather", "foam"}
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"bore_depth": 0.1, "bore_width": 0.013}, "the bore must be narrower than the cue, 12.8 mm there; got 13 mm"),
+        ({"bore_depth": 0.9}, "the bore must be at most 705.6 mm deep; got 900 mm"),
+        ({"ferrule_length": 0.4}, "the ferrule must be in (0, 324.2) mm long, as its neighbours allow; got 400 mm"),
+        ({"butt_diameter": -0.001}, "the cue must be thicker than nothing; got -1 mm"),
+        ({"joint_compliance": 1e-3, "joint_position": 0.8}, "must be in (0, 0.7366) m"),
+        ({"contact_time": 0.0}, "Tip.contact_time must be in [1e-6, 10] s; got 0.0"),
+    ],
+)
+def test_no_impossible_cue_is_made(changes: dict[str, float], words: str) -> None:
+    scene = first_scene()
+    with pytest.raises(ValueError, match=r"must") as refused:
+        turned(scene, replace(knobs_of(scene), **changes))
+    assert words in str(refused.value)
+
+
+def test_a_lumped_cue_has_no_knobs() -> None:
+    with pytest.raises(ValueError, match="cue must have segments, a shape that can be changed; got a lumped cue"):
+        knobs_of(cf.Scene(cf.LumpedCue(0.5, 0.006)))
+
+
+def test_what_is_unusual_is_not_said_to_be_assumed() -> None:
+    pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
+    from cuefem.designer.app import Opened, _head
+
+    scene = replace(first_scene(), ball=cf.Ball(radius=0.05715))
+    head = _head(Opened("mine.toml", scene, ["material hard maple"]), scene)
+    assert "assumed: material hard maple<" in head
+    assert ">unusual: ball radius 57.15 mm" in head
+    assert "unusual" not in _head(Opened("mine.toml", first_scene(), []), first_scene())

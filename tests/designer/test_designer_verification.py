@@ -1,0 +1,155 @@
+"""The designer's numbers are those of the commands, and its notes those of the piano (verification)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import cuefem as cf
+from cuefem.design.batch import CueBatch
+from cuefem.designer.answers import OFFSETS, answers, coupled_points, density, note
+from cuefem.designer.model import knobs_of, turned
+from cuefem.designer.numbers import Row, difference, key_markup, rows, table_markup
+from cuefem.designer.start import first_scene
+from cuefem.report.end_mass import end_mass_record
+from cuefem.report.modes import modes_record
+from cuefem.report.squirt import squirt_record
+from cuefem.report.strike import strike_record
+from cuefem.report.words import grams
+from tests.helpers.command_line import call
+
+SCENES = Path(__file__).parents[2] / "studies" / "scenes"
+
+
+def loaded(name: str) -> cf.Scene:
+    found = cf.load(SCENES / f"{name}.toml")
+    assert isinstance(found, cf.Scene)
+    return found
+
+
+def designs() -> dict[str, cf.Scene]:
+    first = first_scene()
+    knobs = replace(knobs_of(first), bore_depth=0.12, tip_diameter=0.012, joint_compliance=5e-4, contact_time=9e-4)
+    return {
+        "first": first,
+        "turned": turned(first, knobs),
+        "kim": loaded("kim"),
+        "clay": loaded("clay_on_shaft"),
+        "head on": replace(loaded("kim"), stroke=cf.Stroke(1.0, 0.0)),
+    }
+
+
+@pytest.mark.parametrize("name", designs())
+def test_the_numbers_are_the_commands_own(name: str) -> None:
+    scene = designs()[name]
+    found = answers(scene)
+    masses = end_mass_record(scene)["drives"]
+    assert found.end_masses == {drive: values["end_mass"] for drive, values in masses.items()}
+    struck = strike_record(scene)["models"]["coupled"]
+    for key in ("squirt", "pivot_length", "ball_speed", "spin", "regime"):
+        assert found.strike[key] == struck[key]
+    assert found.frequencies.tolist() == modes_record(scene, count=5, near=None)["frequencies"]
+
+
+@pytest.mark.parametrize("name", ["turned", "kim", "clay"])
+def test_the_curves_are_those_of_the_report(name: str) -> None:
+    scene = designs()[name]
+    found = answers(scene)
+    points = np.array(list(coupled_points(found)))
+    record = squirt_record(scene, OFFSETS)["models"]
+    assert points[:, 0].tolist() == list(OFFSETS)
+    assert points[:, 1] == pytest.approx(record["coupled, this cue"]["squirt"], rel=1e-12)
+    assert points[:, 2] == pytest.approx(record["coupled, this cue"]["pivot_length"], rel=1e-12)
+    lumped = squirt_record(scene, found.lumped.offsets)["models"]["two-part, this cue"]
+    assert found.lumped.squirt == pytest.approx(lumped["squirt"], rel=1e-12)
+    assert found.lumped.pivot_length == pytest.approx(lumped["pivot_length"], rel=1e-12)
+
+
+def test_without_effects_at_the_tip_both_curves_begin_alike() -> None:
+    found = answers(loaded("kim"))
+    assert found.end_masses["offset"] == strike_record(found.scene)["end_mass"]
+    _, squirt, _ = next(coupled_points(found))
+    assert squirt == pytest.approx(np.interp(OFFSETS[0], found.lumped.offsets, found.lumped.squirt), rel=0.1)
+
+
+def test_the_static_stiffness_is_that_of_a_clamped_cue() -> None:
+    scene = replace(first_scene(), effects=())
+    exact = float(CueBatch.of([scene.cue]).tip_stiffness[0])
+    assert answers(scene).tip_stiffness == pytest.approx(exact, rel=1e-7)
+    soft = turned(scene, replace(knobs_of(scene), joint_position=0.6, joint_compliance=1e-3))
+    added = 1e-3 * 0.6**2  # a hinge's: the load's moment there, turned through its lever
+    assert 1 / answers(soft).tip_stiffness - 1 / exact == pytest.approx(added, rel=1e-6)
+
+
+@pytest.mark.parametrize("name", ["first", "kim"])
+def test_the_densities_share_out_the_end_mass(name: str) -> None:
+    scene = replace(designs()[name], effects=())
+    found = density(scene)
+    whole = float((found.from_mass + found.from_stiffness) @ found.weights)
+    step = 1e-4 * scene.ball.mass
+
+    def at(ball: float, body: float) -> float:
+        cue = replace(scene.cue, body_mass=scene.cue.body_mass + body)
+        return cf.end_mass(replace(scene, cue=cue, ball=replace(scene.ball, mass=scene.ball.mass + ball)))
+
+    ball = (at(step, 0) - at(-step, 0)) / (2 * step)
+    axial = (at(0, step) - at(0, -step)) / (2 * step)
+    rest = found.end_mass - scene.ball.mass * ball - scene.axial_mass * axial
+    assert whole == pytest.approx(rest, rel=2e-3)  # with a tail, at other modes
+    assert found.end_mass == pytest.approx(answers(scene).end_masses["stick"], rel=5e-3)
+
+
+def test_the_density_of_a_scene_is_that_of_its_bare_cue() -> None:
+    scene = first_scene()
+    assert density(scene).end_mass == density(replace(scene, effects=())).end_mass
+
+
+@pytest.mark.parametrize(
+    ("frequency", "words"),
+    [(440.0, "A4 +0"), (261.6256, "C4 +0"), (27.5, "A0 +0"), (4186.009, "C8 +0"), (450.0, "A4 +39"), (225.0, "A3 +39")],
+)
+def test_notes_are_those_of_the_piano(frequency: float, words: str) -> None:
+    assert note(frequency) == words
+
+
+def test_a_saved_design_gives_its_numbers_on_the_command_line(tmp_path: Path) -> None:
+    scene = designs()["turned"]
+    cf.save(scene, tmp_path / "design.toml")
+    found = answers(scene)
+    status, out, _ = call("strike", tmp_path / "design.toml")
+    assert status == 0
+    assert f"{np.degrees(found.strike['squirt']):.3f}°" in out
+    status, out, _ = call("end-mass", tmp_path / "design.toml")
+    assert f"{1e3 * found.end_masses['stick']:.3f} g" in out
+
+
+@pytest.mark.parametrize(
+    ("mine", "pinned", "words"),
+    [
+        (5.2e-3, 5.0e-3, "+0.200 g (+4.0\u00a0%)"),
+        (5.0e-3, 5.2e-3, "−0.200 g (−3.8\u00a0%)"),
+        (5.0e-3, 5.0e-3, "the same"),
+        (1e-3, 0.0, "+1.00 g"),
+        (None, 5.0e-3, "–"),
+        (5.0e-3, np.inf, "–"),
+    ],
+)
+def test_differences_are_those_of_the_numbers(mine: float | None, pinned: float | None, words: str) -> None:
+    row = Row("end_mass_stick", "end mass", mine, grams, "g", 1e3)
+    assert difference(row, row._replace(value=pinned)) == words
+
+
+def test_every_number_of_a_design_is_written() -> None:
+    found = answers(designs()["head on"])
+    written = {row.name: row.value for row in rows(found)}
+    assert written["pivot"] is None
+    assert written["squirt"] == 0
+    assert written["mass"] == found.scene.cue.mass
+    assert written["balance"] == found.scene.cue.balance_point
+    text = table_markup(found, None) + key_markup(found, found)
+    assert "nan" not in text
+    assert text.count("data-number") == len(written) == 16
+    assert "the same" in text

@@ -1,0 +1,120 @@
+"""The end mass of a tip that sticks at the scene's own offset: symmetry, limits, and who takes it (properties)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import get_args
+
+import numpy as np
+import pytest
+
+import cuefem as cf
+from cuefem.cli.handover import DRIVES as COMMAND_DRIVES
+from cuefem.design import evaluate
+from cuefem.designer.answers import answers
+from cuefem.designer.numbers import rows
+from cuefem.endmass.drives import Drive, stick, stick_at_offset
+from cuefem.endmass.lumped import lump
+from cuefem.report.end_mass import DRIVES
+from cuefem.report.handover import HANDED, MEANING
+from cuefem.report.page import DRIVE_WORDS
+from cuefem.report.squirt import squirt_record
+from cuefem.report.strike import strike_record
+from tests.helpers.strike_scenes import KIM_AT, hand_made, kim_scene, pool_cue
+
+EFFECTS = {
+    "bare": (),
+    "damped": (cf.StructuralDamping(0.02),),
+    "dome and shear": (cf.TipDome(9e-3), cf.TipShear(0.75)),
+    "axial waves": (cf.AxialWaves(),),
+}
+
+
+def at(scene: cf.Scene, offset: object) -> cf.Scene:
+    return replace(scene, stroke=replace(scene.stroke, offset=offset))
+
+
+def offset_mass(scene: cf.Scene) -> float:
+    return cf.end_mass(scene, "offset", KIM_AT)
+
+
+@pytest.mark.parametrize("effects", EFFECTS.values(), ids=EFFECTS.keys())
+def test_it_tends_to_stick_like_the_square_of_the_offset_on_either_side(effects: tuple[object, ...]) -> None:
+    scene = replace(kim_scene(0.0), effects=effects)
+    limit = cf.end_mass(scene, "stick", KIM_AT)
+    assert offset_mass(scene) == pytest.approx(limit, rel=1e-12)
+    gaps = [offset_mass(at(scene, b)) / limit - 1 for b in (0.02, 0.01)]
+    assert gaps[0] / gaps[1] == pytest.approx(4, rel=0.05)
+    assert abs(gaps[0]) < 1e-2
+    assert offset_mass(at(scene, -0.3)) == pytest.approx(offset_mass(at(scene, 0.3)), rel=1e-12)
+
+
+def test_a_lumped_cue_has_its_own() -> None:
+    cue = cf.LumpedCue(0.54, 5e-3)
+    assert cf.end_mass(cf.Scene(cue, stroke=cf.Stroke(1.0, 0.4)), "offset") == 5e-3
+    assert lump(cf.Scene(cue)) is cue
+
+
+def test_modes_that_are_rigid_have_their_own_at_every_offset() -> None:
+    """A tip that is a lump is that lump, whatever drives it."""
+    tip = hand_made([], [], rigid=14.0)
+    for b in (0.0, 0.2, 0.5, 0.8):
+        assert stick_at_offset(tip, at(kim_scene(), b)) == pytest.approx(stick(tip, kim_scene()), rel=1e-12)
+
+
+@pytest.mark.parametrize("effects", [EFFECTS["bare"], EFFECTS["dome and shear"]], ids=["bare", "dome"])
+def test_arrays_of_offsets_are_one_by_one(effects: tuple[object, ...]) -> None:
+    scene, offsets = replace(kim_scene(), effects=effects), np.array([[0.3, -0.1], [0.0, 0.3]])
+    many = cf.end_mass(at(scene, offsets), "offset", KIM_AT)
+    singles = [offset_mass(at(scene, b)) for b in offsets.ravel().tolist()]
+    np.testing.assert_allclose(many.ravel(), singles, rtol=1e-12)
+
+
+def test_impulse_and_lump_take_it() -> None:
+    scene = kim_scene(0.4)
+    lumped = lump(scene)
+    assert lumped.end_mass == cf.end_mass(scene, "offset") == strike_record(scene)["end_mass"]
+    assert cf.impulse(scene).squirt == cf.impulse(replace(scene, cue=lumped)).squirt
+    curve = squirt_record(scene, (0.1, 0.4))
+    assert curve["end_mass"][1] == pytest.approx(lumped.end_mass, rel=1e-12)
+    assert curve["models"]["two-part, this cue"]["squirt"][1] == pytest.approx(cf.impulse(scene).squirt, rel=1e-12)
+    both = cf.impulse(at(scene, np.array([0.1, 0.4]))).squirt
+    assert both == pytest.approx(curve["models"]["two-part, this cue"]["squirt"], rel=1e-12)
+
+
+@pytest.mark.parametrize("offset", [-0.4, 0.1, 0.3])
+def test_a_lump_with_a_dome_squirts_as_the_strike_that_never_slips(offset: float) -> None:
+    scene = replace(kim_scene(offset), effects=EFFECTS["dome and shear"])
+    gripping = replace(scene, tip=replace(scene.tip, friction=math.inf))
+    lumped = replace(gripping, cue=lump(scene, KIM_AT), effects=())
+    assert cf.impulse(lumped).squirt == pytest.approx(cf.strike(gripping, KIM_AT).squirt, rel=1e-9)
+
+
+def test_where_there_is_none_the_lumped_models_are_left_out() -> None:
+    """A dead tip far off centre: the cue's end runs ahead of the ball."""
+    scene = replace(kim_scene(0.85), tip=cf.Tip(0.0, 0.7, 1e-3))
+    with pytest.raises(ValueError, match="end_mass drive 'offset': a tip that sticks has no end mass's squirt; got"):
+        cf.impulse(scene)
+    record = strike_record(scene)
+    assert record["end_mass"] is None
+    assert set(record["models"]) == {"coupled"}
+    curve = squirt_record(scene, (0.3, 0.85))
+    assert curve["end_mass"][1] is None
+    assert np.isnan(curve["models"]["two-part, this cue"]["squirt"]).tolist() == [False, True]
+
+
+def test_every_definition_stands_in_every_list() -> None:
+    assert set(DRIVES) == set(get_args(Drive)) == set(DRIVE_WORDS)
+    assert set(HANDED) == set(COMMAND_DRIVES) == set(MEANING) == {"A.31", *DRIVES}
+    scene = cf.Scene(pool_cue(), tip=cf.Tip(contact_time=4e-3), stroke=cf.Stroke(1.0, 0.3))
+    named = {row.name for row in rows(answers(scene))}
+    assert {f"end_mass_{drive}" for drive in DRIVES} <= named
+
+
+@pytest.mark.parametrize("effects", [(), (cf.TipDome(9e-3),)], ids=["together", "one by one"])
+def test_a_sweep_asks_for_it_at_an_offset(effects: tuple[object, ...]) -> None:
+    scene = replace(kim_scene(0.2), effects=effects)
+    found = evaluate([scene], ["end_mass", "end_mass(0.4)", "end_mass(0)"], at=KIM_AT).values[0]
+    here = offset_mass(at(scene, 0.4))
+    assert found == pytest.approx([cf.end_mass(scene, "stick", KIM_AT), here, found[0]], rel=1e-8)

@@ -1,0 +1,1 @@
+"""What tests share: cues, scenes, oracles, made-up files; no tests."""

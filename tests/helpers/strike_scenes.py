@@ -1,0 +1,179 @@
+"""Scenes and hypothesis strategies that the tests of the coupled strike share; no tests."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+from math import pi
+
+import numpy as np
+from hypothesis import strategies as st
+
+from cuefem import Ball, Cue, LumpedCue, Material, Outcome, Resolution, Scene, Segment, Stroke, Tip
+from cuefem.beam.tip import TipModes
+from cuefem.contact.impulse_space import inverse_mass
+
+# Energy balance and agreement that rounding leaves, relative.
+CLOSED = 1e-9
+
+
+def maple(E: float = 12.6e9, rho: float = 700.0) -> Material:
+    return Material(E, E / 15, rho)
+
+
+def kim_cue() -> Cue:
+    """[Kim]'s shaft, meshes/kim.toml: a cone of radius 6 to 10.5 mm, 70 cm, 120 g; the whole cue 540 g."""
+    volume = pi / 3 * 0.70 * (0.006**2 + 0.006 * 0.0105 + 0.0105**2)
+    wood = Material(12.6e9, 12.6e9 / 15, 0.120 / volume)
+    return Cue((Segment(0.70, 0.012, 0.021, wood, kappa=0.9),), body_mass=0.420)
+
+
+KIM = kim_cue()
+KIM_TIP = Tip(restitution=0.75, friction=0.7, contact_time=1e-3)
+KIM_AT = Resolution(4, 20, 22)
+
+
+def kim_scene(offset: float = 0.3, **tip: float) -> Scene:
+    return Scene(KIM, tip=replace(KIM_TIP, **tip), stroke=Stroke(offset=offset))
+
+
+def pool_cue(ferrule: float = 0.025) -> Cue:
+    """A generic pool shaft: 6 mm leather 100 times softer than the wood, a ferrule, a pro taper and a cone."""
+    leather = Material(12.6e7, 12.6e7 / 15, 950.0)
+    plastic = Material(3e9, 1.1e9, 1200.0)
+    return Cue(
+        (
+            Segment(0.006, 0.01275, 0.01275, leather),
+            Segment(ferrule, 0.01275, 0.01275, plastic, 0.008, 0.008, core=maple()),
+            Segment(0.30, 0.01275, 0.0132, maple()),
+            Segment(0.41, 0.0132, 0.0215, maple()),
+        ),
+        body_mass=0.4,
+    )
+
+
+def hollow_cue() -> Cue:
+    """A shaft bored from the front, 8 mm wide and 12 cm deep, with a light ferrule."""
+    return Cue(
+        (
+            Segment(0.012, 0.0118, 0.0118, Material(2.5e9, 0.9e9, 1100.0), 0.006, 0.006),
+            Segment(0.12, 0.0118, 0.012, maple(), 0.007, 0.007),
+            Segment(0.60, 0.012, 0.021, maple()),
+        ),
+        body_mass=0.42,
+    )
+
+
+def uniform_rod(slenderness: float, diameter: float = 0.012) -> Cue:
+    """A uniform rod whose length is ``slenderness`` times its radius."""
+    return Cue((Segment(slenderness * diameter / 2, diameter, diameter, maple()),), body_mass=0.3)
+
+
+def stepped_cue() -> Cue:
+    """Radius steps of 5 to 1 and back."""
+    return Cue(tuple(Segment(0.15, d, d, maple()) for d in (0.010, 0.050, 0.010, 0.050)), body_mass=0.2)
+
+
+def weighted_cue() -> Cue:
+    """A shaft with 0.3 kg on its last 4 mm: a point mass at the butt, as a dense short segment."""
+    heavy = Material(200e9, 80e9, 0.3 / (pi / 4 * 0.021**2 * 0.004))
+    return Cue((*KIM.segments, Segment(0.004, 0.021, 0.021, heavy)))
+
+
+def hand_made(omega: list[float], across: list[float], *, mass: float = 0.54, rigid: float = 4.0) -> TipModes:
+    """Tip modes by hand: a rigid axial motion, one rigid transverse motion, vibrating modes of amplitude ``across``."""
+    amplitude = np.zeros((2 + len(omega), 2))
+    amplitude[0, 0], amplitude[1, 1], amplitude[2:, 1] = mass**-0.5, rigid, across
+    approach = np.zeros(len(amplitude))
+    approach[0] = mass**0.5
+    return TipModes(np.r_[0.0, 0.0, omega], amplitude, approach, np.zeros(len(amplitude)))
+
+
+def imbalance(outcome: Outcome) -> float:
+    """What the energy account misses, relative to the energy at the start."""
+    parts = dict(outcome.energy)
+    initial = parts.pop("initial")
+    return abs(sum(parts.values()) - initial) / initial
+
+
+def numbers(outcome: Outcome) -> np.ndarray:
+    """Everything an outcome says, as one vector: angles, speeds, impulses, energies."""
+    return np.array(
+        [
+            outcome.squirt,
+            *outcome.ball_velocity,
+            outcome.ball_speed,
+            outcome.spin,
+            outcome.cue_speed,
+            *outcome.impulse,
+            *outcome.energy.values(),
+        ],
+        float,
+    )
+
+
+def sound(outcome: Outcome) -> None:
+    """What holds for every strike: finite numbers, losses that are losses, an energy account that closes."""
+    assert np.all(np.isfinite(numbers(outcome)))
+    initial = outcome.energy["initial"]
+    assert all(part >= -CLOSED * initial for part in outcome.energy.values())
+    assert imbalance(outcome) < CLOSED
+    thrown = [phase.grip for phase in outcome.phases] == ["blow"]  # apart by endless friction alone
+    assert outcome.impulse[1] == 0 if thrown else outcome.impulse[1] > 0
+    assert abs(outcome.impulse[0]) >= 0
+    times = [(phase.start, phase.end) for phase in outcome.phases]
+    assert times[0][0] == 0
+    assert times[-1][1] == outcome.duration
+    assert all(first[1] == second[0] for first, second in pairwise(times))
+    assert all(start <= end for start, end in times)
+
+
+def logarithmic(low: float, high: float) -> st.SearchStrategy[float]:
+    return st.floats(np.log10(low), np.log10(high)).map(lambda x: float(10**x))
+
+
+RESTITUTION = st.one_of(st.sampled_from([0.0, 1.0, 0.75]), st.floats(0.01, 1.0))
+FRICTION = st.one_of(st.sampled_from([0.0, 1e-6, float("inf"), 0.7]), st.floats(0.02, 2.0))
+OFFSET = st.one_of(st.sampled_from([0.0, 1e-9, 0.3, 0.999]), st.floats(1e-4, 0.95))
+SIGN = st.sampled_from([1.0, -1.0])
+BALL = st.builds(Ball, mass=st.floats(0.05, 0.5), radius=st.floats(0.02, 0.04), inertia=st.floats(0.1, 1.0))
+
+
+@st.composite
+def lumped_scenes(draw: st.DrawFn) -> Scene:
+    """Any lumped cue, coupled or not, any tip, ball and stroke."""
+    mass, end_mass = draw(logarithmic(0.02, 50.0)), draw(logarithmic(1e-5, 2.0))
+    coupling = draw(st.one_of(st.just(0.0), st.floats(-0.9, 0.9))) / np.sqrt(mass * end_mass)
+    tip = Tip(draw(RESTITUTION), draw(FRICTION), contact_time=draw(logarithmic(1e-4, 2e-2)))
+    stroke = Stroke(draw(logarithmic(0.01, 10.0)), draw(SIGN) * draw(OFFSET))
+    return Scene(LumpedCue(mass, end_mass, coupling), draw(BALL), tip, stroke)
+
+
+@st.composite
+def near_miscue_scenes(draw: st.DrawFn) -> Scene:
+    """Lumped cues whose friction is about what sticking needs, mu_c (or just that): late sticks, reversals, miscues."""
+    scene = draw(lumped_scenes())
+    B = inverse_mass(scene.cue, scene.ball, abs(scene.stroke.offset))
+    friction = abs(B.tn / B.tt) * draw(st.one_of(st.just(1.0), st.floats(0.8, 1.5)))
+    return replace(scene, tip=replace(scene.tip, friction=float(friction)))
+
+
+@st.composite
+def shafts(draw: st.DrawFn) -> Cue:
+    """A cue of one to four conical pieces, some bored, of wood, plastic, carbon or leather."""
+    materials = [maple(), maple(16e9, 750.0), Material(3e9, 1.1e9, 1200.0), Material(70e9, 5e9, 1600.0)]
+    pieces = []
+    for i in range(draw(st.integers(1, 4))):
+        first, last = draw(st.floats(0.008, 0.03)), draw(st.floats(0.008, 0.03))
+        bore = draw(st.sampled_from([0.0, 0.0, 0.5])) * min(first, last)
+        length = draw(st.floats(0.003, 0.5)) if i else draw(st.floats(0.3, 0.7))
+        pieces.append(Segment(length, first, last, draw(st.sampled_from(materials)), bore, bore))
+    return Cue(tuple(pieces), body_mass=draw(st.floats(0.0, 1.0)))
+
+
+@st.composite
+def shaft_scenes(draw: st.DrawFn) -> tuple[Scene, Resolution]:
+    """Any finite-element cue, tip, ball and stroke; how finely."""
+    tip = Tip(draw(RESTITUTION), draw(FRICTION), contact_time=draw(logarithmic(3e-4, 5e-3)))
+    stroke = Stroke(1.0, draw(SIGN) * draw(OFFSET))
+    return Scene(draw(shafts()), draw(BALL), tip, stroke), Resolution(4, 8, draw(st.integers(1, 25)))

@@ -1,0 +1,203 @@
+"""Files that unpack, nest or compute without end: one clear line, soon (regression)."""
+
+from __future__ import annotations
+
+import base64
+import lzma
+import re
+import struct
+import time
+import zlib
+from pathlib import Path
+
+import pytest
+
+import cuefem as cf
+from cuefem.io import InputError
+from tests.helpers.command_line import call
+
+SOON = 20.0  # s, where a quiet machine takes less than 1
+PIECE = '[[segments]]\nlength = "{}"\ntip_diameter = "{}"\nbutt_diameter = "21 mm"\nmaterial = "hard maple"\n'
+GOOD = PIECE.format("700 mm", "12 mm")
+TIP = 'cue = "good.toml"\n[stroke]\noffset = 0.3\n[tip]\n'
+LONG = "segments[0].length: must be in (0, 1000] m; got '1e9 m'"
+WIDE = "segments[0].tip_diameter: must be in (0, 10] m; got '99999 mm'"
+SHORT = "tip.contact_time: must be in [1e-6, 10] s; got '1e-12 s'"
+DEEP = "line 2: must be TOML nested less deeply, keys of at most 20 parts"
+FILES = {
+    "long.toml": (PIECE.format("1e9 m", "12 mm"), LONG),
+    "wide.toml": (PIECE.format("700 mm", "99999 mm"), WIDE),
+    "short.toml": (TIP + 'contact_time = "1e-12 s"\n', SHORT),
+    "deep.toml": ("# a key\n" + ".".join(["a"] * 300_000) + " = 1\n", DEEP),
+    "header.toml": ("# a key\n[[" + ".".join(["a"] * 300_000) + "]]\n", DEEP),
+    "many.toml": (PIECE.format("1 mm", "12 mm") * 2001, "segments: must hold at most 2000 segments; got 2001"),
+    "more.toml": (PIECE.format("1 mm", "12 mm") * 40_000, "must be a file of at most 1 MB; got 4"),
+    "blank.toml": (PIECE.format("700" + 200_000 * " " + "x", "12 mm"), "segments[0].length: must be in (0, 1000] m"),
+}
+COMMANDS = {
+    "modes": [],
+    "end-mass": [],
+    "strike": [],
+    "effects": [],
+    "cost": [],
+    "report": [],
+    "handover": [],
+    "animate": ["-o", "folder"],
+    "designer": ["--no-open", "--port", "0"],
+    "convert": ["made.toml"],
+    "tap": ["none.wav", "--scene"],
+}
+STUDY = """scene = "{}"
+responses = ["end_mass"]
+[[vary]]
+path = "cue.segments[0].length"
+values = ["{}"]
+"""
+
+
+def refused(*arguments: object) -> str:
+    """The one line on stderr of a command that refuses in time."""
+    begun = time.monotonic()
+    status, out, err = call(*arguments)
+    assert time.monotonic() - begun < SOON
+    assert (status, out, err.count("\n")) == (2, "", 1), err[-300:]
+    return err.removeprefix("cuefem: ")
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    Path("good.toml").write_text(GOOD)
+    return tmp_path
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_refuses_what_would_not_end(folder: Path, command: str) -> None:
+    if command == "designer":
+        pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
+    for name, (content, line) in FILES.items():
+        Path(name).write_text(content)
+        words = [*COMMANDS[command], name] if command == "tap" else [name, *COMMANDS[command]]
+        assert refused(command, *words).startswith(f"{name}: {line}")
+
+
+@pytest.mark.parametrize("command", ["sweep", "scatter"])
+def test_studies_refuse_it_too(folder: Path, command: str) -> None:
+    for name, (content, line) in FILES.items():
+        Path(name).write_text(content)
+        Path("study.toml").write_text(STUDY.format(name, "0.7 m"))
+        assert refused(command, "study.toml").startswith(f"{name}: {line}")
+    Path("study.toml").write_text(STUDY.format("good.toml", "1e9 m"))
+    line = "study.toml: vary[0].values[0]: must be in (0, 1000] m; got '1e9 m'"
+    assert refused(command, "study.toml").startswith(line)
+    Path("deep.toml").write_text(FILES["deep.toml"][0])
+    assert refused(command, "deep.toml").startswith(f"deep.toml: {DEEP}")
+
+
+def test_options_have_the_same_bounds(folder: Path) -> None:
+    line = "good.toml: --contact-time: must be in [1e-6, 10] s; got '1e-12 s'"
+    assert refused("strike", "good.toml", "--contact-time", "1e-12 s").startswith(line)
+
+
+def test_python_has_the_same_bounds() -> None:
+    ash = cf.Material(12e9, 8e8, 680.0)
+    for make, line in (
+        (lambda: cf.Segment(1e9, 0.012, 0.021, ash), "Segment.length must be in (0, 1000] m; got 1000000000.0"),
+        (lambda: cf.Tip(contact_time=1e-12), "Tip.contact_time must be in [1e-6, 10] s; got 1e-12"),
+        (lambda: cf.Cue((cf.Segment(1e-3, 0.012, 0.012, ash),) * 2001), "Cue.segments must hold at most 2000 segments"),
+        (lambda: cf.end_mass(stiff(1e30)), "Tip.stiffness must make a head-on contact time in [1e-6, 10] s; got 1e+30"),
+        (lambda: cf.end_mass(stiff(1e6), at=cf.Resolution(4000, 8, 4)), "the mesh must have at most 50000 unknowns"),
+        (lambda: cf.modes(stiff(1e6).cue, 10**9), "the mesh must have at most 50000 unknowns; got "),
+    ):
+        with pytest.raises(ValueError, match=f"^{re.escape(line)}"):
+            make()
+
+
+def stiff(stiffness: float) -> cf.Scene:
+    """A shaft struck with a tip of a stiffness."""
+    ash = cf.Material(12e9, 8e8, 680.0)
+    return cf.Scene(cf.Cue((cf.Segment(0.7, 0.012, 0.021, ash),)), tip=cf.Tip(stiffness=stiffness))
+
+
+# --- .vtu that unpack to more than they hold -------------------------------------------------------------------------
+SIZE = 100_000_000  # bytes of zeros
+VTU = """<VTKFile type="UnstructuredGrid" version="0.1" header_type="UInt32" byte_order="LittleEndian"{}>
+<UnstructuredGrid><Piece NumberOfPoints="2" NumberOfCells="1"><CellData>{}</CellData></Piece></UnstructuredGrid>
+{}</VTKFile>"""
+ARRAY = '<DataArray type="Float64" Name="x" format="{}"{}>{}</DataArray>'
+
+
+def blocks(packed: bytes, count: int = 1) -> tuple[bytes, bytes]:
+    return struct.pack(f"<{3 + count}I", count, SIZE, SIZE, *[len(packed)] * count), packed * count
+
+
+def inline(compressor: str, packed: bytes, count: int = 1) -> bytes:
+    text = "".join(base64.b64encode(part).decode() for part in blocks(packed, count))
+    return VTU.format(f' compressor="{compressor}"', ARRAY.format("binary", "", text), "").encode()
+
+
+def appended(packed: bytes, *, raw: bool) -> bytes:
+    head = VTU.format(' compressor="vtkZLibDataCompressor"', ARRAY.format("appended", ' offset="0"', ""), "@")
+    data = b"".join(blocks(packed)) if raw else b"".join(map(base64.b64encode, blocks(packed)))
+    kind = b"raw" if raw else b"base64"
+    return head.encode().replace(b"@", b'<AppendedData encoding="' + kind + b'">_' + data + b"\n</AppendedData>")
+
+
+def named_often() -> bytes:
+    """Data without compression that ten thousand arrays name."""
+    data = base64.b64encode(struct.pack("<I", 2_000_000) + bytes(2_000_000)).decode()
+    arrays = ARRAY.format("appended", ' offset="0"', "") * 10_000
+    return VTU.format("", arrays, f'<AppendedData encoding="base64">_{data}</AppendedData>').encode()
+
+
+ENTITIES = '<!DOCTYPE x [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;&a;">]>'
+UNPACKED = "its data must be at most 20 MB when they are unpacked"
+BOMBS = {
+    "zlib": (lambda: inline("vtkZLibDataCompressor", zlib.compress(bytes(SIZE))), UNPACKED),
+    "many blocks": (lambda: inline("vtkZLibDataCompressor", zlib.compress(bytes(10**6)), 1000), UNPACKED),
+    "lzma": (lambda: inline("vtkLZMADataCompressor", lzma.compress(bytes(SIZE))), UNPACKED),
+    "appended": (lambda: appended(zlib.compress(bytes(SIZE)), raw=False), UNPACKED),
+    "appended raw": (lambda: appended(zlib.compress(bytes(SIZE)), raw=True), UNPACKED),
+    "named often": (named_often, UNPACKED),
+    "entities": (lambda: (ENTITIES + VTU.format("", "&b;", "")).encode(), "it must have no document type"),
+    "big": (lambda: bytes(20_000_001), "must be a file of at most 20 MB; got 20"),
+}
+
+
+@pytest.mark.parametrize("name", BOMBS)
+def test_what_unpacks_without_end_is_refused_while_it_is_unpacked(tmp_path: Path, name: str) -> None:
+    import tracemalloc
+
+    make, line = BOMBS[name]
+    path = tmp_path / "cue.vtu"
+    path.write_bytes(make())
+    tracemalloc.start()
+    try:
+        begun = time.monotonic()
+        with pytest.raises(InputError) as caught:
+            cf.load(path)
+        assert time.monotonic() - begun < SOON
+        assert tracemalloc.get_traced_memory()[1] < 2e8  # bytes
+    finally:
+        tracemalloc.stop()
+    assert line in str(caught.value)
+    assert len(str(caught.value).splitlines()) == 1
+
+
+def test_a_structured_grid_of_any_size_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "cue.vtk"
+    head = "# vtk DataFile Version 3.0\nx\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 9000 9000 9000\n"
+    path.write_text(head + "ORIGIN 0 0 0\nSPACING 1 1 1\n")
+    with pytest.raises(InputError, match="DATASET must be UNSTRUCTURED_GRID; got 'STRUCTURED_POINTS'"):
+        cf.load(path)
+
+
+def test_a_profile_of_many_points_on_a_line_is_read_soon(tmp_path: Path) -> None:
+    path = tmp_path / "shaft.csv"
+    rows = "".join(f"{i * 0.01:.2f},{12 + i * 0.00015:.5f}\n" for i in range(20_001))
+    path.write_text("x [mm],diameter [mm]\n" + rows)
+    begun = time.monotonic()
+    cue = cf.load(path)
+    assert time.monotonic() - begun < SOON
+    assert len(cue.segments) == 1
+    assert cue.length == pytest.approx(0.2, rel=1e-12)

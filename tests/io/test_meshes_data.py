@@ -1,0 +1,131 @@
+"""The reference cues of meshes/ against the numbers that meshes/README.md states for them."""
+
+import itertools
+import math
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import cuefem as cf
+from cuefem.io import number
+from cuefem.materials import MATERIALS
+
+FOLDER = Path(__file__).parents[2] / "meshes"
+INCH, OUNCE = 0.0254, 0.028349523125
+CUES = ["kim", "pool_maple", "pool_hollow", "carbon", "whole_cue"]
+SHAFTS = ["pool_maple", "pool_hollow", "carbon"]
+
+
+def load(name: str) -> cf.Cue:
+    cue = cf.load(FOLDER / f"{name}.toml")
+    assert isinstance(cue, cf.Cue)
+    return cue
+
+
+def test_these_are_all() -> None:
+    assert sorted(path.stem for path in FOLDER.glob("*.toml")) == sorted(CUES)
+    text = (FOLDER / "README.md").read_text()
+    assert all(f"{name}.toml" in text for name in CUES)
+
+
+def test_kim() -> None:
+    """[Kim] sec. 4: radius 6 to 10.5 mm over 0.70 m, 120 g, a cue of 540 g; E 12.6 GPa, G = E/15."""
+    cue = load("kim")
+    (cone,) = cue.segments
+    assert cue.shaft_mass == pytest.approx(0.120, rel=1e-12)
+    assert cue.mass == pytest.approx(0.540, rel=1e-12)
+    assert (cone.length, cone.tip_diameter, cone.butt_diameter, cone.kappa) == (0.70, 0.012, 0.021, 0.9)
+    assert pytest.approx((12.6e9, 15), rel=1e-14) == (cone.material.E, cone.material.E / cone.material.G)
+
+
+def test_the_first_dimensioned_value_of_kim_is_its_length() -> None:
+    text = (FOLDER / "kim.toml").read_text()
+    first = re.search(r'(\w+) = "[\d.]+ \S+"', text)
+    assert first is not None
+    assert first[1] == "length"
+
+
+@pytest.mark.parametrize(
+    ("name", "grams", "centre"),
+    [("pool_maple", 99.98, 17.04), ("pool_hollow", 89.69, 18.17), ("carbon", 90.26, 19.26)],
+)
+def test_pool_shafts(name: str, grams: float, centre: float) -> None:
+    """29 in long, 3 to 4 oz, on a cue of 20 oz, 0.846 in at the joint; centre of mass in inches from the tip."""
+    cue = load(name)
+    assert cue.length == pytest.approx(29 * INCH, rel=1e-12)
+    assert cue.shaft_mass == pytest.approx(grams * 1e-3, abs=5e-6)
+    assert 3 <= cue.shaft_mass / OUNCE <= 4
+    assert cue.mass == pytest.approx(20 * OUNCE, abs=1e-4)
+    assert cue.segments[-1].butt_diameter == pytest.approx(0.846 * INCH, abs=2e-5)
+    assert cue.balance_point == pytest.approx(centre * INCH, abs=0.005 * INCH)
+
+
+def test_whole_cue() -> None:
+    """58 in, near 19 oz, balanced 18 to 19 in from the butt, nothing left to body_mass."""
+    cue = load("whole_cue")
+    assert cue.body_mass == 0
+    assert cue.length == pytest.approx(58 * INCH, rel=1e-12)
+    assert cue.mass == pytest.approx(19 * OUNCE, rel=5e-3)
+    assert (cue.length - cue.balance_point) / INCH == pytest.approx(18.2, abs=0.1)
+    joint = next(i for i, x in enumerate(cue.nodes) if math.isclose(x, 29 * INCH))
+    assert cue.segments[joint - 1].butt_diameter == cue.segments[joint].tip_diameter
+
+
+def test_whole_cue_has_the_maple_shaft() -> None:
+    """The same drawing up to the pin: the last cone is cut there, its slope kept to 0.01 mm."""
+    shaft, cue = load("pool_maple"), load("whole_cue")
+    assert cue.segments[:4] == shaft.segments[:4]
+    last, cut, pin = shaft.segments[4], *cue.segments[4:6]
+    assert cut.length + pin.length == pytest.approx(last.length, rel=1e-12)
+    share = cut.length / last.length
+    there = last.tip_diameter + share * (last.butt_diameter - last.tip_diameter)
+    assert cut.butt_diameter == pytest.approx(there, abs=1e-5)
+
+
+@pytest.mark.parametrize("name", CUES)
+def test_the_outside_runs_without_steps_and_never_narrows(name: str) -> None:
+    segments = load(name).segments
+    for a, b in itertools.pairwise(segments):
+        assert a.butt_diameter == b.tip_diameter
+    assert all(s.butt_diameter >= s.tip_diameter for s in segments)
+
+
+@pytest.mark.parametrize(("name", "diameter"), [("pool_maple", 12.75), ("pool_hollow", 11.85), ("carbon", 12.4)])
+def test_tips(name: str, diameter: float) -> None:
+    tip = load(name).segments[0]
+    assert tip.tip_diameter == tip.butt_diameter == pytest.approx(diameter * 1e-3, rel=1e-12)
+    assert tip.length == pytest.approx(6e-3, rel=1e-12)
+    assert tip.material == MATERIALS["leather"].material
+
+
+def test_pro_taper() -> None:
+    """A pro taper grows by half a millimetre to one millimetre a foot over the stroking length of 12 to 15 in."""
+    for name in SHAFTS:
+        cue = load(name)
+        ends = {round(x / INCH, 2): s.butt_diameter for s, x in zip(cue.segments, cue.nodes[1:], strict=True)}
+        assert 0 < ends[13.0] - cue.segments[0].tip_diameter <= 1.1e-3, name
+
+
+def test_hollow_front_is_lighter_where_it_counts() -> None:
+    front = {name: _mass_to(load(name), 5 * INCH) for name in SHAFTS}
+    assert 0.50 < front["pool_hollow"] / front["pool_maple"] < 0.75
+    assert 0.55 < front["carbon"] / front["pool_maple"] < 0.85
+
+
+def _mass_to(cue: cf.Cue, end: float) -> float:
+    count = 4000
+    x = [(i + 0.5) * end / count for i in range(count)]
+    return float(cue.section(x).rhoA.sum()) * end / count
+
+
+@pytest.mark.parametrize("name", CUES)
+def test_files_are_written_with_units(name: str) -> None:
+    found = tomllib.loads((FOLDER / f"{name}.toml").read_text())
+    assert set(found) <= {"segments", "body_mass"}
+    for segment in found["segments"]:
+        assert set(segment) <= {
+            *("length", "tip_diameter", "butt_diameter", "material", "tip_bore", "butt_bore", "core", "kappa")
+        }
+        assert number(segment["length"], "m") > 0

@@ -1,0 +1,133 @@
+"""What ParaView is given, read back: modes and motion as the library has them, times and files (verification)."""
+
+from __future__ import annotations
+
+import json
+import xml.etree.ElementTree as ET
+from dataclasses import replace
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+
+import cuefem as cf
+from cuefem.contact.motion import last_contact, motion
+from cuefem.io.paraview import AROUND, ball_surface, shaft_surface, vectors
+from tests.helpers.command_line import call
+
+MAPLE = cf.Material(12.6e9, 0.84e9, 782.3284453057836)
+CUE = cf.Cue((cf.Segment(0.025, 0.0125, 0.0128, MAPLE), cf.Segment(0.7, 0.012, 0.021, MAPLE)), 0.42)
+SCENE = cf.Scene(CUE, cf.Ball(0.17, 0.028575), cf.Tip(0.75, 0.7, 1e-3), cf.Stroke(2.0, 0.3))
+
+
+@pytest.fixture
+def scene(tmp_path: Path) -> Path:
+    cf.save(SCENE, tmp_path / "scene.toml")
+    return tmp_path / "scene.toml"
+
+
+def animated(scene: Path, *options: object) -> Path:
+    folder = scene.parent / "seen"
+    assert call("animate", scene, "-o", folder, *options)[::2] == (0, "")
+    return folder
+
+
+def area_and_volume(points: np.ndarray, cells: dict[str, np.ndarray]) -> tuple[float, float]:
+    triangles = [
+        cells[kind][:, corners] for kind in cells for corners in ([0, 1, 2], [0, 2, 3])[: len(cells[kind][0]) - 2]
+    ]
+    a, b, c = points[np.concatenate(triangles)].transpose(1, 0, 2)
+    return np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2, np.einsum("ij,ij->", a, np.cross(b, c)) / 6
+
+
+def test_the_shaft_is_closed_and_faces_outward() -> None:
+    surface = shaft_surface(CUE)
+    _, volume = area_and_volume(surface.points, dict(surface.cells))
+    frusta = [(0.025, 0.0125, 0.0128), (0.7, 0.012, 0.021)]
+    prism = AROUND / (2 * np.pi) * np.sin(2 * np.pi / AROUND)  # of the circle's area, what the polygon holds
+    expected = prism * np.pi / 12 * sum(length * (d**2 + d * D + D**2) for length, d, D in frusta)
+    assert volume == pytest.approx(expected, rel=1e-12)
+    edges = np.concatenate([np.stack([c, np.roll(c, -1, axis=1)], axis=-1).reshape(-1, 2) for _, c in surface.cells])
+    there, back = (set(map(tuple, pairs)) for pairs in (edges, edges[:, ::-1]))
+    assert there == back
+    assert len(there) == len(edges)
+
+
+def test_the_ball_is_round() -> None:
+    surface = ball_surface(0.03)
+    np.testing.assert_allclose(np.linalg.norm(surface.points, axis=1), 0.03, rtol=1e-14)
+    area, volume = area_and_volume(surface.points, dict(surface.cells))
+    assert area == pytest.approx(4 * np.pi * 0.03**2, rel=0.01)
+    assert volume == pytest.approx(4 / 3 * np.pi * 0.03**3, rel=0.02)
+
+
+def test_a_rigid_turn_keeps_the_distances() -> None:
+    """The sign of the rotation: a rigid motion of the beam is one of its surface, to first order."""
+    surface = shaft_surface(CUE)
+    found = cf.modes(CUE)
+    for vector in found.rigid_vectors.T:
+        w, theta = found.system.interpolate(vector[:, None], surface.x)
+        moved = vectors(surface, w[0], theta[0])
+        ends = surface.points[:-1:7], surface.points[1::7][: len(surface.points[:-1:7])]
+        u = moved[:-1:7], moved[1::7][: len(ends[0])]
+        np.testing.assert_allclose(np.sum((ends[1] - ends[0]) * (u[1] - u[0]), axis=1), 0, atol=1e-15)
+
+
+def test_the_modes(scene: Path) -> None:
+    read = meshio.read(animated(scene, "--count", 4, "--frames", 2) / "modes.vtu")
+    found = cf.modes(CUE, 4)
+    shapes, turns = found.shape(read.point_data["x"])
+    np.testing.assert_array_equal(read.field_data["frequencies"], found.frequencies)
+    for k in range(4):
+        np.testing.assert_array_equal(read.point_data[f"mode_{k + 1}"][:, 1], shapes[k])
+        np.testing.assert_array_equal(read.point_data[f"mode_{k + 1}"][:, 0], turns[k] * read.points[:, 1])
+        np.testing.assert_array_equal(read.point_data[f"mode_{k + 1}_theta"], turns[k])
+    np.testing.assert_array_equal(read.points[:, 0], -read.point_data["x"])
+
+
+@pytest.mark.parametrize("scale", [1.0, 20.0])
+def test_the_strike(scene: Path, scale: float) -> None:
+    folder = animated(scene, "--frames", 5, "--scale", scale)
+    times = np.linspace(0, 3 * last_contact(SCENE), 5)
+    found = motion(SCENE, times)
+    shaft = shaft_surface(CUE)
+    w, theta = found.deflection(shaft.x)
+    collection = ET.parse(folder / "strike.pvd").getroot()
+    sets = [entry.attrib for entry in collection.iter("DataSet")]
+    assert collection.get("type") == "Collection"
+    assert sorted(entry["file"] for entry in sets) == sorted(f"strike/{path.name}" for path in folder.glob("strike/*"))
+    assert [float(entry["timestep"]) for entry in sets] == np.repeat(times, 2).tolist()
+    assert [entry["part"] for entry in sets] == ["0", "1"] * 5
+    for i in range(5):
+        read = meshio.read(folder / sets[2 * i]["file"])
+        np.testing.assert_array_equal(read.point_data["w"], w[i])
+        np.testing.assert_array_equal(read.point_data["theta"], theta[i])
+        np.testing.assert_array_equal(
+            read.point_data["displacement"], vectors(shaft, w[i], theta[i], along=found.along[i])
+        )
+        drawn = vectors(shaft, scale * w[i], scale * theta[i], along=found.along[i])
+        np.testing.assert_array_equal(read.points, shaft.points + drawn)
+        np.testing.assert_array_equal(read.field_data["force"], [[*found.force[i], 0]])
+        assert read.field_data["TimeValue"] == [times[i]]
+        ball = meshio.read(folder / sets[2 * i + 1]["file"])
+        np.testing.assert_allclose(ball.points.reshape(-1, 3)[36:-36].mean(axis=0), [*found.centre[i], 0], atol=1e-15)
+    history = cf.strike(SCENE).history(times[1])  # within the contact
+    s, c = 0.3, np.sqrt(1 - 0.09)
+    expected = [s * history["force_t"] + c * history["force_n"], c * history["force_t"] - s * history["force_n"]]
+    np.testing.assert_allclose(found.force[1], expected, rtol=1e-12)
+    np.testing.assert_array_equal(found.force[2:], 0)
+
+
+def test_the_time_of_the_last_frame_and_what_is_said(scene: Path) -> None:
+    status, out, _ = call("animate", scene, "-o", scene.parent / "seen", "--frames", 2, "--until", "4 ms", "--json")
+    assert (status, json.loads(out)["frames"]) == (0, 2)
+    collection = ET.parse(scene.parent / "seen" / "strike.pvd").getroot()
+    assert [float(entry.attrib["timestep"]) for entry in collection.iter("DataSet")] == [0, 0, 0.004, 0.004]
+
+
+def test_effects_go_with_it(scene: Path) -> None:
+    cf.save(replace(SCENE, effects=(cf.TipDome(0.0095), cf.Support(0.25, stiffness=1e4))), scene)
+    read = meshio.read(animated(scene, "--frames", 2) / "modes.vtu")
+    expected = cf.modes(CUE, 6, effects=(cf.Support(0.25, stiffness=1e4),)).frequencies
+    np.testing.assert_array_equal(read.field_data["frequencies"], expected)

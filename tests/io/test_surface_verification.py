@@ -1,0 +1,220 @@
+"""Slices of closed surfaces against the exact polygons, and the shafts that files of them load as (verification)."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import cuefem as cf
+from cuefem.io.slices import TOLERANCE, sliced, surface
+from cuefem.materials import material
+from tests.helpers.command_line import call
+from tests.helpers.orders import assert_order
+from tests.helpers.surfaces import outline_of, revolved, written
+
+MAPLE = material("hard maple")
+CYLINDER = cf.Cue((cf.Segment(0.5, 0.013, 0.013, MAPLE),))
+KIM = cf.Cue((cf.Segment(0.7, 0.012, 0.021, MAPLE),))
+HOLLOW = cf.Cue(
+    (
+        cf.Segment(0.146, 0.01185, 0.01205, MAPLE, 0.006, 0.006),
+        cf.Segment(0.1842, 0.01205, 0.01245, MAPLE),
+        cf.Segment(0.1, 0.01245, 0.0143, MAPLE),
+        cf.Segment(0.3064, 0.0143, 0.0215, MAPLE),
+    )
+)
+STEPPED = cf.Cue((cf.Segment(0.3, 0.012, 0.013, MAPLE), cf.Segment(0.4, 0.018, 0.02, MAPLE)))
+CUES = {"cylinder": CYLINDER, "kim": KIM, "hollow": HOLLOW, "stepped": STEPPED}
+
+
+def polygon(radius: float, facets: int) -> tuple[float, float]:
+    """Area and second moment of a regular polygon of this outer radius."""
+    turn = 2 * np.pi / facets
+    area = facets / 2 * np.sin(turn) * radius**2
+    return area, area * radius**2 * (2 + np.cos(turn)) / 12
+
+
+@pytest.mark.parametrize("facets", [7, 64])
+@pytest.mark.parametrize("name", CUES)
+def test_slices_are_the_polygons_own(name: str, facets: int) -> None:
+    cue = CUES[name]
+    body = surface(*revolved(outline_of(cue), facets))
+    assert body.flats == pytest.approx(np.unique(cue.nodes)[[0, *body_jumps(cue), -1]], abs=1e-12)
+    for x in (0.0, 0.01, 0.1, 0.1459, 0.1461, 0.2999, 0.3001, 0.49):
+        i = np.searchsorted(cue.nodes, x, side="right") - 1
+        s, t = cue.segments[i], (x - cue.nodes[i]) / cue.segments[i].length
+        outer, bore = (
+            polygon((getattr(s, f"tip_{n}") * (1 - t) + getattr(s, f"butt_{n}") * t) / 2, facets)
+            for n in ("diameter", "bore")
+        )
+        cut = body.cut(x)
+        assert cut.area == pytest.approx(outer[0] - bore[0], rel=1e-10)
+        assert cut.moments[:2] == pytest.approx([outer[1] - bore[1]] * 2, rel=1e-10)
+        assert cut.moments[2] == pytest.approx(0, abs=1e-10 * outer[1])
+        assert cut.outlines == (1, int(bore[0] > 0))
+
+
+def body_jumps(cue: cf.Cue) -> list[int]:
+    """Nodes inside the cue with a face across the axis."""
+    return [
+        i
+        for i, (a, b) in enumerate(pairwise(cue.segments), start=1)
+        if (a.butt_diameter, a.butt_bore) != (b.tip_diameter, b.tip_bore)
+    ]
+
+
+@pytest.mark.parametrize("name", CUES)
+def test_a_surface_of_straight_pieces_gives_the_drawing_back(name: str) -> None:
+    """Lengths to rounding; diameters those of the polygon's area, and of its second moment too where it is bored."""
+    cue, facets = CUES[name], 64
+    found = sliced(surface(*revolved(outline_of(cue), facets)))
+    assert [p.length for p in found.pieces] == pytest.approx([s.length for s in cue.segments], rel=1e-9)
+    shrunk = np.sqrt(polygon(1, facets)[0] / np.pi)
+    for piece, segment in zip(found.pieces, cue.segments, strict=True):
+        assert piece.outer == pytest.approx([shrunk * segment.tip_diameter, shrunk * segment.butt_diameter], rel=2e-6)
+        assert piece.bore == pytest.approx([shrunk * segment.tip_bore, shrunk * segment.butt_bore], rel=2e-5)
+    assert found.fit < 1e-10
+    widest = cue.segments[-1].butt_diameter
+    assert found.facets == pytest.approx(widest / 2 * (1 - shrunk), rel=1e-6)
+
+
+@pytest.mark.parametrize("name", ["kim", "hollow"])
+def test_a_loaded_shaft_plays_like_its_drawing(tmp_path: Path, name: str) -> None:
+    """Issue 8: modes and end mass of fine facets within 1e-3 of the drawing."""
+    cue = CUES[name]
+    loaded = cf.load(written(tmp_path / "shaft.stl", *revolved(outline_of(cue), 96)))
+    assert isinstance(loaded, cf.Cue)
+    assert loaded.shaft_mass == pytest.approx(cue.shaft_mass, rel=1e-3)
+    assert cf.modes(loaded).frequencies == pytest.approx(cf.modes(cue).frequencies, rel=1e-3)
+    at = cf.Scene(replace(cue, body_mass=0.4), tip=cf.Tip(contact_time=1e-3))
+    here = replace(at, cue=replace(loaded, body_mass=0.4))
+    for drive in ("stick", "velocity"):
+        assert cf.end_mass(here, drive) == pytest.approx(cf.end_mass(at, drive), rel=1e-3)
+
+
+def test_facets_converge_with_the_second_order() -> None:
+    """Inscribed facets, N a turn, make diameters small by (2 pi/N)^2/12 and frequencies with them."""
+    facets = np.array([16, 32, 64])
+    off = []
+    for n in facets:
+        pieces = sliced(surface(*revolved(outline_of(KIM), int(n)))).pieces
+        cue = cf.Cue(tuple(cf.Segment(p.length, *p.outer, MAPLE, *p.bore) for p in pieces))
+        off.append(1 - cf.modes(cue, 1).frequencies[0] / cf.modes(KIM, 1).frequencies[0])
+    assert_order(2, 1 / facets, off, within=0.02)
+    assert off[-1] == pytest.approx((2 * np.pi / 64) ** 2 / 12, rel=0.02)
+
+
+def test_a_curved_profile_is_followed_within_the_tolerance() -> None:
+    """A pro taper's smooth curve: straight pieces keep within the tolerance of every slice, and say how near."""
+    x = np.linspace(0, 0.7, 141)
+    radius = 0.006 + 0.005 * (x / 0.7) ** 3
+    found = sliced(surface(*revolved([(0, 0), *zip(x, radius, strict=True), (0.7, 0)], 48)))
+    ends = np.concatenate([[0.0], np.cumsum([p.length for p in found.pieces])])
+    outer = np.array([found.pieces[0].outer[0], *(p.outer[1] for p in found.pieces)])
+    exact = 2 * radius * np.sqrt(polygon(1, 48)[0] / np.pi)
+    off = np.abs(np.interp(x, ends, outer) - exact).max()
+    assert 8 < len(found.pieces) < 100
+    assert off <= found.fit * (1 + 1e-9)
+    assert 0.2 * TOLERANCE * found.widest < found.fit <= TOLERANCE * found.widest
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_place_and_direction_do_not_matter(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    points, faces = revolved(outline_of(HOLLOW), 24)
+    straight = sliced(surface(points, faces))
+    moved = sliced(surface(points @ turn.T + rng.normal(size=3), faces if seed else faces[:, ::-1]))
+    for here, there in zip(moved.pieces, straight.pieces, strict=True):
+        assert np.hstack(here) == pytest.approx(np.hstack(there), rel=1e-6, abs=1e-12)
+
+
+def test_a_rounded_end_is_followed_to_its_apex() -> None:
+    t = np.linspace(0, np.pi / 2, 40)[1:]
+    dome = [(0.006 * (1 - np.cos(a)), 0.006 * np.sin(a)) for a in t]
+    found = sliced(surface(*revolved([(0, 0), *dome, (0.7, 0.01), (0.7, 0)], 32)))
+    assert found.fit <= TOLERANCE * found.widest
+    assert found.pieces[0].outer[0] < 0.05 * found.widest
+    volume = sum(
+        np.pi / 12 * p.length * (p.outer[0] ** 2 + p.outer[0] * p.outer[1] + p.outer[1] ** 2) for p in found.pieces
+    )
+    cone = np.pi / 3 * 0.694 * (0.006**2 + 0.006 * 0.01 + 0.01**2)
+    true = (cone + 2 / 3 * np.pi * 0.006**3) * polygon(1, 32)[0] / np.pi
+    assert volume == pytest.approx(true, rel=2e-4)
+
+
+@pytest.mark.parametrize(
+    ("suffix", "binary"), [("stl", True), ("stl", False), ("ply", True), ("ply", False), ("obj", True)]
+)
+def test_every_format_gives_the_same_shaft(tmp_path: Path, suffix: str, binary: bool) -> None:
+    path = written(tmp_path / f"shaft.{suffix}", *revolved(outline_of(STEPPED), 16), binary=binary)
+    loaded = cf.load(path, material="ash")
+    expected = sliced(surface(*revolved(outline_of(STEPPED), 16))).pieces
+    assert [s.length for s in loaded.segments] == pytest.approx([p.length for p in expected], rel=1e-6)
+    assert [s.butt_diameter for s in loaded.segments] == pytest.approx([p.outer[1] for p in expected], rel=1e-6)
+    assert {s.material for s in loaded.segments} == {material("ash")}
+
+
+@pytest.mark.parametrize("name", ["SHAFT.STL", "Shaft.Ply"])
+def test_endings_in_capitals(tmp_path: Path, name: str) -> None:
+    """As CAD programs on other systems write them; through a scene and a command too."""
+    small = written(tmp_path / f"shaft{Path(name.lower()).suffix}", *revolved(outline_of(KIM), 16))
+    loaded, path = cf.load(small), small.rename(tmp_path / name)
+    assert cf.load(path, length_unit="mm") == loaded
+    (tmp_path / "SCENE.TOML").write_text(f"cue = '{name}'\n")
+    assert cf.load(tmp_path / "SCENE.TOML").cue == loaded
+    assert "material hard maple" in call("convert", path, tmp_path / "CUE.VTU")[1]
+    assert cf.load(tmp_path / "CUE.VTU") == loaded
+    assert "ball 210 g" in call("modes", tmp_path / "SCENE.TOML")[1]
+
+
+def test_polygons_are_cut_into_triangles(tmp_path: Path) -> None:
+    turn = 2 * np.pi * np.arange(12) / 12
+    corners = [f"v {x} {6 * np.cos(t)} {6 * np.sin(t)}" for x in (0, 500) for t in turn]
+    sides = [f"f {i + 1} {(i + 1) % 12 + 1} {12 + (i + 1) % 12 + 1} {12 + i + 1}" for i in range(12)]
+    caps = [f"f 1 {i + 2} {i + 1}" for i in range(1, 11)] + [f"f 13 {12 + i + 1} {12 + i + 2}" for i in range(1, 11)]
+    path = tmp_path / "bar.obj"
+    path.write_text("\n".join([*corners, *sides, *caps]) + "\n")
+    (segment,) = cf.load(path).segments
+    assert segment.tip_diameter == pytest.approx(2 * np.sqrt(polygon(0.006, 12)[0] / np.pi), rel=1e-6)
+
+
+def test_unit_of_length(tmp_path: Path) -> None:
+    points, faces = revolved(outline_of(KIM), 16)
+    inches = cf.load(written(tmp_path / "inches.stl", points, faces, unit=0.0254), length_unit="in")
+    assert inches.length == pytest.approx(0.7, rel=1e-6)
+    assert cf.load(tmp_path / "inches.stl").length == pytest.approx(0.7 / 25.4, rel=1e-6)
+
+
+def test_the_reference_surface_is_its_drawing() -> None:
+    """96 inscribed facets: diameters 0.036 % small."""
+    meshes = Path(__file__).parents[2] / "meshes"
+    (found,), (drawn,) = (cf.load(meshes / name).segments for name in ("kim.stl", "kim.toml"))
+    assert found.length == pytest.approx(drawn.length, rel=1e-6)
+    for end in ("tip_diameter", "butt_diameter"):
+        assert getattr(found, end) / getattr(drawn, end) - 1 == pytest.approx(-((2 * np.pi / 96) ** 2) / 12, rel=1e-2)
+
+
+def test_a_scene_names_a_surface(tmp_path: Path) -> None:
+    written(tmp_path / "shaft.stl", *revolved(outline_of(KIM), 16))
+    (tmp_path / "scene.toml").write_text('cue = "shaft.stl"\n')
+    assert cf.load(tmp_path / "scene.toml").cue == cf.load(tmp_path / "shaft.stl")
+
+
+def test_a_command_says_what_it_assumed(tmp_path: Path) -> None:
+    path = written(tmp_path / "shaft.stl", *revolved(outline_of(KIM), 32))
+    said = json.loads(call("modes", path, "--json", "--body-mass", "15 oz")[1])["assumed"]
+    assert said[0] == "lengths in mm (--length-unit gives another)"
+    assert said[1] == "1 conical segment, diameters within 1e-09 of the widest"
+    assert said[2] == "facets round (their corners lie up to 3e-03 of the widest diameter further out)"
+    assert said[3:5] == ["the thinner end is the tip", "material hard maple (choose with --material)"]
+    asked = json.loads(call("modes", path, "--json", "--length-unit", "mm", "--material", "ash")[1])["assumed"]
+    assert not any("lengths" in line or "material" in line for line in asked)
+    _, converted, _ = call("convert", path, tmp_path / "shaft.toml")
+    assert converted.startswith("assumed: lengths in mm")
+    assert cf.load(tmp_path / "shaft.toml") == cf.load(path)

@@ -1,0 +1,123 @@
+"""What a wrong unit or a slip of the pen makes is remarked, and nothing else is (regression)."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+import cuefem as cf
+from cuefem.report.unusual import unusual
+from tests.helpers.command_line import call
+
+ROOT = Path(__file__).parents[2]
+FILES = sorted([*ROOT.glob("meshes/*.*"), *ROOT.glob("studies/scenes/*.toml")])
+SCENE = """
+cue = "cue.toml"
+[ball]
+radius = "28.575 mm"
+[stroke]
+offset = 0.3
+[[effects]]
+type = "TipDome"
+radius = "9.5 mm"
+"""
+CUE = """
+body_mass = "420 g"
+segments = [
+  { length = "25 mm", tip_diameter = "12.7 mm", butt_diameter = "12.7 mm", material = "hard maple" },
+  { length = "400 mm", tip_diameter = "12.8 mm", butt_diameter = "14 mm", material = "hard maple" },
+  { length = "300 mm", tip_diameter = "14 mm", butt_diameter = "21 mm", material = "hard maple" },
+]
+"""
+PROFILE = "x [mm],diameter [mm]\n0,12.5\n250,12.9\n737,21\n"
+
+
+def remarks(path: Path) -> list[str]:
+    found = cf.load(path)
+    return unusual(found if isinstance(found, cf.Scene) else cf.Scene(found))
+
+
+@pytest.mark.parametrize("path", [path for path in FILES if path.suffix != ".md"], ids=lambda path: path.name)
+def test_no_false_alarm(path: Path) -> None:
+    assert remarks(path) == []
+
+
+def test_the_files_of_this_test_are_ordinary(tmp_path: Path) -> None:
+    for name, content in (("cue.toml", CUE), ("scene.toml", SCENE), ("shaft.csv", PROFILE)):
+        (tmp_path / name).write_text(content)
+        assert remarks(tmp_path / name) == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line"),
+    [
+        ("28.575 mm", "57.15 mm", "ball radius 57.15 mm; 26 to 31 is usual: is that the diameter?"),
+        ("28.575 mm", "28.575 m", "ball radius 28575 mm; 26 to 31 is usual: is that the diameter?"),
+        ("9.5 mm", "9.5 m", "TipDome radius 9500 mm; 9 to 10.6 is usual, a dime's or a nickel's"),
+        ("offset = 0.3", 'speed = "200 m/s"', "stroke speed 200 m/s; 0.5 to 12 is usual"),
+        ("[ball]", '[ball]\nmass = "170 kg"', "ball mass 170000 g; 140 to 210 is usual"),
+        ("420 g", "15 kg", "mass of the whole cue 15.09"),
+        ("12.7 mm", "0.0127 mm", "segments[0].tip_diameter 0.0127 mm; check the unit of the diameters"),
+        ("12.8 mm", "12.8 cm", "segments[1].tip_diameter 128 mm; check the unit of the diameters"),
+        ("12.8 mm", "128 mm", "the diameter jumps from 12.7 to 128 mm between segments[0] and segments[1]"),
+        ("12.8 mm", "8.1 mm", "the diameter jumps from 12.7 to 8.1 mm between segments[0] and segments[1]"),
+        ("400 mm", "400 m", "drawn length 400325 mm; check the unit of the lengths"),
+        (
+            '"14 mm", mat',
+            '"14 mm", butt_bore = "3 mm", mat',
+            "the bore of segments[1] comes to a point; is tip_bore left",
+        ),
+        (
+            '"14 mm", mat',
+            '"14 mm", tip_bore = "3 mm", mat',
+            "the bore of segments[1] comes to a point; is butt_bore left",
+        ),
+    ],
+)
+def test_a_slip_is_remarked(tmp_path: Path, old: str, new: str, line: str) -> None:
+    assert old in CUE + SCENE
+    for name, content in (("cue.toml", CUE), ("scene.toml", SCENE)):
+        (tmp_path / name).write_text(content.replace(old, new, 1))
+    assert any(said.startswith(line) for said in remarks(tmp_path / "scene.toml"))
+
+
+@pytest.mark.parametrize(
+    ("content", "begins"),
+    [
+        (
+            "x [mm],diameter [mm]\n0,0.0125\n0.25,0.0129\n0.737,0.021\n",
+            ["drawn length 0.737 mm", "segments[0].tip_d", "drawn"],
+        ),
+        (
+            "x [mm],diameter [mm]\n0,21\n487,12.9\n737,12.5\n",
+            ["the tip is thicker than the butt, 21 and 12.5 mm; is the"],
+        ),
+        ("x [m],diameter [mm]\n0,12\n700,21\n", ["drawn length 700000 mm", "mass of the whole cue 108.2"]),
+        ("x [mm],diameter [cm]\n0,12\n700,21\n", ["segments[0].tip_diameter 120 mm", "mass of the whole cue 10.8"]),
+    ],
+)
+def test_profiles(tmp_path: Path, content: str, begins: list[str]) -> None:
+    (tmp_path / "shaft.csv").write_text(content)
+    found = remarks(tmp_path / "shaft.csv")
+    assert len(found) == len(begins)
+    assert all(line.startswith(begin) for line, begin in zip(found, begins, strict=True))
+
+
+def test_a_lumped_cue(tmp_path: Path) -> None:
+    (tmp_path / "lumped.toml").write_text('[cue]\nmass = "540 kg"\nend_mass = "6 g"\n')
+    assert remarks(tmp_path / "lumped.toml") == ["mass of the whole cue 540 kg; 0.4 to 0.7 is usual"]
+
+
+def test_remarks_stand_on_stderr_in_json_and_on_the_page(tmp_path: Path) -> None:
+    (tmp_path / "cue.toml").write_text(CUE.replace("420 g", "15 kg"))
+    line = "mass of the whole cue 15.09"
+    status, out, err = call("strike", tmp_path / "cue.toml", "--json")
+    assert (status, err.splitlines()) == (0, [f"unusual: {json.loads(out)['unusual'][0]}"])
+    assert json.loads(out)["unusual"][0].startswith(line)
+    assert call("report", tmp_path / "cue.toml", "-o", tmp_path / "page.html")[0] == 0
+    assert f"unusual: {line}" in (tmp_path / "page.html").read_text(encoding="utf-8")
+    (tmp_path / "cue.toml").write_text(CUE)
+    status, out, err = call("strike", tmp_path / "cue.toml", "--json")
+    assert (err, json.loads(out)["unusual"]) == ("", [])

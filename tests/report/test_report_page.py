@@ -1,0 +1,353 @@
+"""The report page: well-formed, self-contained, agrees with the library, and looks right in a browser (regression)."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import shutil
+import subprocess
+from collections import Counter
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import cuefem as cf
+from cuefem.accuracy import resolve
+from cuefem.materials import material
+from cuefem.report.charts import WIDE, Axis, Curve, Mark, apart, chart, path, round_step
+from cuefem.report.drawings import cue_drawing, front_drawing, modes_drawing, strike_drawing
+from cuefem.report.page import page
+from tests.helpers.command_line import call
+
+MESHES = Path(__file__).parents[2] / "meshes"
+SCENES = MESHES.parent / "studies" / "scenes"
+BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+VOID = {"meta", "link", "br"}
+
+LUMPED = cf.Scene(cf.LumpedCue(0.54, 0.006), stroke=cf.Stroke(offset=0.3))
+
+
+def scene(name: str) -> cf.Scene:
+    found = cf.load(SCENES / f"{name}.toml")
+    assert isinstance(found, cf.Scene)
+    return found
+
+
+@pytest.fixture(scope="module")
+def pool() -> str:
+    return page("pool.toml", scene("pool_low_deflection"))
+
+
+class Reader(HTMLParser):
+    """Tags, attributes and text of a page; refuses tags that do not close in order."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.tags: Counter[str] = Counter()
+        self.attributes: list[tuple[str, str]] = []
+        self.text: list[str] = []
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags[tag] += 1
+        self.attributes += [(name, value or "") for name, value in attrs]
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags[tag] += 1
+        self.attributes += [(name, value or "") for name, value in attrs]
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        if "style" not in self.open:
+            self.text.append(data)
+
+
+def assert_sound(text: str) -> Reader:
+    """A page that is whole, needs nothing from outside, and says no nan and no None."""
+    found = Reader(text)
+    assert found.open == []
+    titles_of_curves = text.count("</title></path>")
+    assert found.tags["html"] == found.tags["h1"] == found.tags["title"] - titles_of_curves == 1
+    assert found.tags["script"] == found.tags["img"] == found.tags["iframe"] == 0
+    values = [value for name, value in found.attributes if name in ("href", "src", "xlink:href")]
+    assert values == ["data:,"]
+    assert re.findall(r"url\((?!#)|@import|https?:", text) == []
+    ids = [value for name, value in found.attributes if name == "id"]
+    assert len(ids) == len(set(ids))
+    assert set(re.findall(r"url\(#([^)]*)\)", text)) == set(ids)
+    words = " ".join(found.text)
+    assert not re.search(r"\b(nan|inf|None|Undefined)\b", words)
+    assert not re.search(r"\bnan\b", text)
+    return found
+
+
+def test_a_page_is_whole_and_self_contained(pool: str) -> None:
+    found = assert_sound(pool)
+    words = " ".join(found.text)
+    for title in (
+        "The cue",
+        "How it rings",
+        "What the ball feels across the cue",
+        "The contact",
+        "Against the offset",
+        "Where the energy goes",
+        "By every model",
+        "How exact, at what cost",
+    ):
+        assert title in words
+    for effect in ("TipDome (radius 9.5 mm)", "TipShear (ratio 0.75)", "Support (position 203.2 mm"):
+        assert effect in words
+    assert len(pool.encode()) < 200_000
+
+
+def test_the_pages_numbers_are_the_librarys(pool: str) -> None:
+    blow = scene("pool_low_deflection")
+    outcome = resolve(blow, 1e-2)
+    words = " ".join(Reader(pool).text)
+    assert f"{math.degrees(outcome.squirt):.3f}°" in words
+    assert f"{outcome.ball_speed:.3f} m/s" in words
+    assert f"{1e3 * outcome.duration:.3f} ms" in words
+    assert f"{outcome.error:.1e}" in words
+    for frequency in cf.modes(blow.cue, 5, effects=blow.cue_effects).frequencies:
+        assert (f"{frequency:.1f} Hz" if frequency < 1e3 else f"{frequency / 1e3:.2f} kHz") in words
+    parts = [float(part) for part in re.findall(r'style="width:([0-9.]+)%"', pool)]
+    assert sum(parts) == pytest.approx(100, abs=0.01)
+    assert f"{100 * outcome.energy['ball translation'] / outcome.energy['initial']:.2f} %" in words
+
+
+@pytest.mark.parametrize(
+    "blow",
+    [
+        LUMPED,
+        replace(LUMPED, stroke=cf.Stroke(offset=-0.3)),
+        replace(LUMPED, stroke=cf.Stroke(offset=0.0)),
+        replace(LUMPED, stroke=cf.Stroke(offset=0.75)),
+        replace(LUMPED, cue=cf.LumpedCue(0.54, 0.006, 0.5), effects=(cf.TipShear(0.75),)),
+        replace(LUMPED, tip=cf.Tip(friction=math.inf)),
+        replace(LUMPED, tip=cf.Tip(friction=0.0)),
+    ],
+    ids=["lumped", "left", "head on", "miscue", "coupled", "no slip", "no friction"],
+)
+def test_pages_of_lumped_cues(blow: cf.Scene) -> None:
+    words = " ".join(assert_sound(page("lumped.toml", blow)).text)
+    assert "How it rings" not in words
+    assert "How exact" not in words
+    assert f"{math.degrees(cf.strike(blow).squirt):.3f}°" in words
+
+
+def test_a_page_of_the_other_side_is_the_mirror_image() -> None:
+    right, left = (" ".join(Reader(page("a", replace(LUMPED, stroke=cf.Stroke(offset=b)))).text) for b in (0.3, -0.3))
+    assert "-1.391°" in left
+    assert "-1.391°" not in right
+    assert right.count("1.391°") == left.count("-1.391°")
+
+
+def test_names_are_text_and_no_markup() -> None:
+    text = page("<script>alert(1)</script> & co.toml", LUMPED, notes=["a < b", "ash (take --material)"])
+    assert "<script>alert" not in text
+    assert "&lt;script&gt;alert(1)&lt;/script&gt; &amp; co.toml" in text
+    assert 'assumed: a &lt; b; ash (take <span class="option">--material)</span></p>' in text
+    assert_sound(text)
+
+
+def test_the_work_is_followed_stage_by_stage() -> None:
+    stages: list[str] = []
+    page("a", LUMPED, track=lambda work: (stages.append(stage.name) or stage for stage in work))
+    assert stages == ["outcome", "end_masses", "squirt"]
+
+
+def test_the_command_writes_a_page(tmp_path: Path) -> None:
+    cf.save(LUMPED, tmp_path / "lumped.toml")
+    target = tmp_path / "page.html"
+    target.write_text("old", encoding="utf-8")
+    assert call("report", tmp_path / "lumped.toml", "-o", target) == (0, f"wrote {target}\n", "")
+    assert_sound(target.read_text(encoding="utf-8"))
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["lumped.toml", "page.html"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        (["-o", "page.pdf"], "page.pdf: must end in .html; got '.pdf'"),
+        (["-o", "page.html", "--json"], "page.html: --output: must be left out with --json"),
+        (["-o", "missing/page.html"], "missing/page.html: cannot be written: No such file or directory"),
+        (["-o", "page.html", "--offset", "1"], "lumped.toml: --offset: must be in (-1, 1); got 1.0"),
+    ],
+)
+def test_nothing_is_written_on_bad_input(tmp_path: Path, arguments: list[str], line: str) -> None:
+    cf.save(LUMPED, tmp_path / "lumped.toml")
+    placed = [str(tmp_path / part) if part.startswith(("page", "missing")) else part for part in arguments]
+    status, out, err = call("report", tmp_path / "lumped.toml", *placed)
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert err.startswith(f"cuefem: {tmp_path}/{line}")
+    assert [path.name for path in tmp_path.iterdir()] == ["lumped.toml"]
+
+
+def test_ticks_are_round_numbers() -> None:
+    assert [round_step(length) for length in (1.0, 6.0, 7.0, 0.0123, 5000.0)] == [0.2, 1.0, 2.0, 0.005, 1000.0]
+    scale = Axis("x").over([np.array([0.3, 2.7, np.nan])])
+    assert (scale.low, scale.high, scale.step) == (0.0, 3.0, 0.5)
+    assert [tick.label for tick in scale.ticks(0, 60)] == ["0.0", "0.5", "1.0", "1.5", "2.0", "2.5", "3.0"]
+    assert [tick.at for tick in scale.ticks(0, 60)] == pytest.approx([0, 10, 20, 30, 40, 50, 60])
+    flat = Axis("x").over([np.zeros(3)])
+    assert (flat.low, flat.high) == (0.0, 1.0)
+
+
+def test_labels_stand_apart() -> None:
+    assert apart([10.0, 30.0], 0, 50) == [10.0, 30.0]
+    assert apart([10.0, 12.0, 13.0], 0, 50) == [10.0, 24.0, 38.0]
+    assert apart([48.0, 49.0, 50.0], 0, 50) == [22.0, 36.0, 50.0]
+
+
+def test_a_curve_breaks_where_there_is_no_number() -> None:
+    assert path([0, 1, 2, 3], [0, 1, math.nan, 3]) == "M0.00 0.00L1.00 1.00M3.00 3.00"
+
+
+def test_a_chart_keeps_its_curves_near() -> None:
+    made = chart("t", [Curve("far", [0, 1], [0, 1e9], "c1")], x=Axis("x"), y=Axis("y", 0, 1), marks=[Mark(1, "m")])
+    left, top, right, bottom = made.box
+    numbers = [float(n) for n in re.findall(r"-?[0-9.]+", made.curves[0][2])]
+    assert numbers[0] == pytest.approx(left)
+    assert numbers[2] == pytest.approx(right)
+    assert numbers[3] > top - 2 * (bottom - top)
+    assert made.marks[0].at == pytest.approx(right)
+
+
+def test_the_cue_is_drawn_to_scale() -> None:
+    blow = scene("pool_low_deflection")
+    true, wide, front = cue_drawing(blow, across=1.0), cue_drawing(blow, across=8.0), front_drawing(blow)
+    length, last = blow.cue.length, blow.cue.segments[-1]
+
+    def extent(outline: str) -> tuple[float, float]:
+        points = np.array(re.findall(r"(-?[0-9.]+) (-?[0-9.]+)", outline), float)
+        return float(np.ptp(points[:, 0])), float(np.ptp(points[:, 1]))
+
+    for drawing, across in ((true, 1.0), (wide, 8.0)):
+        along, high = extent(drawing.pieces[-1].outline)
+        assert high / along == pytest.approx(across * last.butt_diameter / last.length, rel=1e-3)
+        assert along == pytest.approx((WIDE - 20) * last.length / length, abs=0.02)
+        assert len(drawing.pieces) == len(blow.cue.segments)
+    assert [sign.label for sign in wide.signs] == ["Support"]
+    assert wide.signs[0].at == pytest.approx(10 + (WIDE - 20) * 0.2032 / length)
+    assert [bool(piece.bore) for piece in wide.pieces] == [False, True, True, False, False, False]
+    along, high = extent(front.pieces[0].outline)
+    assert high / along == pytest.approx(11.85 / 6, rel=2e-3)
+
+
+def test_the_blow_is_drawn_true() -> None:
+    blow = scene("pool_low_deflection")
+    made = strike_drawing(blow, 0.03)
+    x, y, radius = made.ball
+    away = math.hypot(made.contact[0] - x, made.contact[1] - y)
+    assert away == pytest.approx(radius, rel=1e-9)  # the contact lies on the ball
+    assert (y - made.contact[1]) / radius == pytest.approx(0.375, rel=1e-9)  # b/R above its centre
+    fall = (made.path_end[1] - y) / (x - made.path_end[0])
+    assert fall == pytest.approx(math.tan(0.03), rel=1e-9)
+
+
+def test_every_mode_has_its_nodes() -> None:
+    cue = scene("kim").cue
+    made = modes_drawing(cf.modes(cue, 5), cue.length)
+    assert [len(row.nodes) for row in made.rows] == [2, 3, 4, 5, 6]
+
+
+SCRIPT = """<script>
+const parts = [...document.querySelectorAll("section, figure, header")].map(e => e.getBoundingClientRect());
+const texts = [...document.querySelectorAll("svg text")].map(e => e.getBoundingClientRect());
+parent.postMessage(JSON.stringify({
+  inner: innerWidth,
+  scroll: document.documentElement.scrollWidth,
+  wide: parts.filter(r => r.right > innerWidth + 1).length,
+  outside: texts.filter(r => r.right > innerWidth || r.left < 0).length,
+  smallest: Math.min(...texts.map(r => r.height)),
+}), "*");
+</script></body>"""
+# A frame is as narrow as it is told to be; a browser's window is not.
+FRAME = """<!DOCTYPE html><script>onmessage = e => document.title = e.data;</script>
+<iframe src="page.html" width="WIDTH" height="900" style="border: 0"></iframe>"""
+
+
+@pytest.mark.heavy
+@pytest.mark.skipif(BROWSER is None, reason="needs Chromium: apt-get install chromium")
+@pytest.mark.parametrize("width", [1280, 390])
+@pytest.mark.parametrize("name", ["pool_low_deflection", "break_cue", "clay_on_shaft"])
+def test_a_browser_shows_it_without_scrolling_or_complaint(tmp_path: Path, name: str, width: int) -> None:
+    assert BROWSER is not None
+    (tmp_path / "page.html").write_text(page(f"{name}.toml", scene(name)).replace("</body>", SCRIPT), encoding="utf-8")
+    frame = tmp_path / "frame.html"
+    frame.write_text(FRAME.replace("WIDTH", str(width)), encoding="utf-8")
+    options = ["--headless", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr", "--virtual-time-budget=3000"]
+    options.append(f"--user-data-dir={tmp_path / 'profile'}")
+    done = subprocess.run(
+        [BROWSER, *options, "--window-size=1400,1000", "--dump-dom", frame.as_uri()],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=True,
+    )
+    assert "CONSOLE" not in done.stderr
+    said = re.search(r"<title>(\{.*?\})</title>", done.stdout)
+    assert said is not None
+    found = json.loads(said[1])
+    assert found["inner"] == width
+    assert found["scroll"] <= width
+    assert (found["wide"], found["outside"]) == (0, 0)
+    assert found["smallest"] > 6.5  # px, of a text's line: still to be read on a phone
+
+
+def test_a_miscue_is_said_above_all_numbers(pool: str) -> None:
+    shot = scene("kim")
+    missed = page("kim.toml", replace(shot, stroke=replace(shot.stroke, offset=0.7)))
+    assert 0 < missed.index("this stroke miscues: ") < missed.index("<section")
+    assert "miscues" not in pool
+
+
+def test_offsets_that_slip_long_are_shaded(pool: str) -> None:
+    shot = scene("kim")
+    slippery = replace(shot, tip=replace(shot.tip, friction=0.4))
+    regimes = {cf.strike(replace(slippery, stroke=cf.Stroke(1.0, b))).regime for b in (0.3, 0.6)}
+    assert regimes == {"stick", "miscue"}
+    shaded = Reader(page("kim.toml", slippery)).text
+    assert any(text.startswith("shaded: the tip slips past the greatest compression") for text in shaded)
+    assert "shaded: " not in pool
+
+
+def test_the_page_says_how_exact_its_numbers_are(pool: str) -> None:
+    outcome = resolve(scene("pool_low_deflection"), 1e-2)
+    words = " ".join(" ".join(Reader(pool).text).split())
+    assert f"Squirt, ball speed and spin here: estimated relative error {outcome.error:.1e}, 1 % asked." in words
+    assert "estimated relative error" not in page("lumped.toml", LUMPED)
+
+
+def test_the_blow_is_in_the_materials_of_the_cue() -> None:
+    def styles(blow: cf.Scene) -> list[str]:
+        return [style for _, style in strike_drawing(blow, 0.03).pieces]
+
+    shot = scene("pool_low_deflection")
+    drawn = [piece.material for piece in front_drawing(shot).pieces]
+    assert styles(shot) == drawn[: len(styles(shot))]
+    assert styles(shot)[0] == "m-leather"
+    assert len(styles(shot)) > 1
+    maple = replace(shot, cue=cf.Cue((cf.Segment(0.7, 0.012, 0.021, material("hard maple")),), 0.42))
+    assert styles(maple) == ["m-hard-maple"]
+    assert 'class="piece m-leather"' not in page("maple.toml", maple)
+    assert styles(LUMPED) == ["m-other"]
+
+
+def test_the_struck_end_is_as_long_as_its_segments() -> None:
+    shot = scene("pool_low_deflection")
+    made = strike_drawing(shot, 0.03)
+    scale = made.ball[2] / shot.ball.radius
+    ends = [max(float(n) for n in re.findall(r"(-?[0-9.]+) -?[0-9.]+", outline)) for outline, _ in made.pieces]
+    assert ends == pytest.approx([min(300 + scale * x, WIDE) for x in shot.cue.nodes[1 : len(ends) + 1]], abs=0.01)
+    assert ends[-1] == pytest.approx(WIDE, abs=0.01)

@@ -1,0 +1,195 @@
+"""What is no tap is refused, what is one is not; hum is taken out; the text says what the table does (properties)."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.io import wavfile
+
+from cuefem import modes
+from cuefem.materials import WOODS, material
+from cuefem.tap.chance import LEVEL, SETS, by_chance, random_sets
+from cuefem.tap.doubts import unlike
+from cuefem.tap.hum import without_hum
+from cuefem.tap.matching import MODES, main_material
+from cuefem.tap.ringing import Ringing, ringing
+from cuefem.tap.tones import Tone, tones
+from cuefem.tap.wood import TapTest
+from studies import tap, tap_refusals, tap_sounds
+from studies.common import MESHES, NAMES, cue
+from tests.helpers.command_line import call
+
+KIM = MESHES / "kim.toml"
+RATE = 10000
+
+
+@pytest.fixture(scope="module")
+def kim_test() -> TapTest:
+    return TapTest(cue("kim"), mass=tap.true("kim").shaft_mass)
+
+
+@pytest.fixture(scope="module")
+def true_tones() -> np.ndarray:
+    return modes(tap.true("kim"), MODES).frequencies
+
+
+def told(frequency: float, kind: str = "tone") -> Tone:
+    return Tone(frequency, 1e-5 * frequency, 10.0, 0.1, 0.1, 100.0, kind)
+
+
+@pytest.mark.parametrize(("kind", "seed"), [("speech", 0), ("cough", 0)])
+def test_speech_and_coughs_are_refused_and_write_nothing(kind: str, seed: int, tmp_path: Path) -> None:
+    path, new = tmp_path / "talk.wav", tmp_path / "new.toml"
+    wavfile.write(path, tap_sounds.RATE, tap_sounds.other_sound(kind, seed).astype(np.float32))
+    status, out, err = call("tap", path, "--scene", KIM, "-o", new)
+    assert (status, out, err.count("\n"), new.exists()) == (1, "", 1, False)
+    assert "no better than by chance" in err
+
+
+def test_tones_of_a_shaft_are_better_than_chance_and_others_are_not(kim_test: TapTest, true_tones: np.ndarray) -> None:
+    assert by_chance(kim_test.table, [told(f) for f in true_tones[:4]]) == 1 / (SETS + 1)
+    assert by_chance(kim_test.table, [told(true_tones[0])]) > LEVEL
+    assert by_chance(kim_test.table, [told(f, "steady") for f in true_tones[:4]]) == 1
+
+
+@pytest.mark.heavy
+def test_p_values_of_random_tones_are_even(kim_test: TapTest) -> None:
+    """Eighteen sets: of even p-values fewer than two, or more than 16, lie below the half in 1 of 6000 cases."""
+    made = np.exp(random_sets(np.geomspace(90, 3500, 9), 18, seed=1))
+    p = np.array([by_chance(kim_test.table, [told(f) for f in row]) for row in made])
+    assert 2 <= np.sum(p <= 0.5) <= 16
+    assert np.sum(p <= LEVEL) <= 2
+
+
+def test_random_sets_are_as_dense_as_what_was_heard() -> None:
+    heard = np.array([100.0, 200.0, 400.0, 410.0])
+    sets = random_sets(heard, 500)
+    assert sets.shape == (500, 4)
+    middles = np.log(heard[1:] * heard[:-1]) / 2
+    assert (np.diff(sets, axis=1) >= 0).all()
+    assert (sets[:, 0] <= middles[0]).all()
+    assert (sets[:, 3] >= middles[2]).all()
+    assert np.mean(sets[:, 1]) == pytest.approx(np.mean(middles[:2]), abs=0.02)
+
+
+def test_missing_modes_are_refused(kim_test: TapTest, true_tones: np.ndarray) -> None:
+    found = kim_test.fit([told(true_tones[k]) for k in (0, 7, 8, 9)])
+    assert any(line == "6 of the 10 modes that should be heard are missing" for line in found.refusals)
+    assert not kim_test.fit([told(f) for f in true_tones[:5]]).refusals
+
+
+@pytest.mark.parametrize("name", WOODS)
+def test_every_wood_of_the_table_is_like_wood(name: str) -> None:
+    assert unlike(material(name), material("hard maple")) == []
+    assert unlike(material(name), main_material(cue("kim"))) == []
+
+
+def test_wood_far_outside_the_table_is_named() -> None:
+    maple = material("hard maple")
+    (line,) = unlike(replace(maple, G=0.29e9), maple)
+    assert line == "G 0.29 GPa is far outside the 0.8 to 1.8 GPa that woods have"
+    (line,) = unlike(replace(maple, E=5e9), maple)
+    assert line.startswith("E 5 GPa is far outside the 10.3 to 22.3 GPa")
+    (line,) = unlike(replace(maple, rho=1500.0), maple)
+    assert line.startswith("rho 1.5e+03 kg/m³ is far outside the 600 to 905 kg/m³")
+    tube = material("carbon fibre")
+    assert unlike(replace(tube, E=135e9, G=30e9), tube) == []
+    assert len(unlike(replace(tube, E=12e9), tube)) == 1
+    nobody_s = replace(maple, E=1e12)
+    assert unlike(maple, nobody_s) == []  # nothing to compare with
+
+
+@pytest.mark.parametrize("mains", [50.0, 60.0])
+def test_mains_hum_above_the_ring_is_taken_out_and_named(mains: float, kim_test: TapTest, tmp_path: Path) -> None:
+    """7 dB above the ring, the grid 0.05 % off: the same tones to their errors, and the wood to a per cent."""
+    sound = tap.ringing_shaft(tap.true("kim"), RATE)[:, :1]
+    t = np.arange(len(sound)) / RATE
+    hum = sum(np.sin(2 * np.pi * k * 1.0005 * mains * t + k) / k for k in range(1, 13))[:, None]
+    hum *= np.sqrt(np.mean(np.square(sound)) * 10**0.7 / np.mean(np.square(hum)))
+    samples = tap.recording(sound + hum, 30.0, 0)
+    _, found = without_hum(samples, RATE)
+    assert found is not None
+    assert found.mains == pytest.approx(1.0005 * mains, abs=0.02)
+    assert set(found.multiples) >= {1, 2, 3, 4}
+    assert found.level == pytest.approx(7.0, abs=1.0)
+    wood = kim_test.fit(tones(ringing(samples, RATE)))
+    assert not wood.refusals
+    assert pytest.approx(main_material(tap.true("kim")).E, rel=0.01) == wood.wood.E
+    path = tmp_path / "tap.wav"
+    wavfile.write(path, RATE, samples.astype(np.float32))
+    status, out, _ = call("tap", path, "--scene", KIM)
+    assert status == 0
+    assert f"a mains hum of {mains:.0f}.0" in " ".join(out.split())
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_no_hum_is_heard_in_a_tap(name: str) -> None:
+    for taps in (1, 3):
+        heard = tap.recording(tap.ringing_shaft(tap.true(name), RATE)[:, :1], 20.0, 0, taps=taps)
+        clean, hum = without_hum(heard, RATE)
+        assert hum is None
+        assert clean is heard
+
+
+def test_a_faint_tone_is_not_called_another_thing_s(kim_test: TapTest, true_tones: np.ndarray) -> None:
+    """Of two overlapping lines near the noise one is heard between them: too faint to say that it is no mode."""
+    t = np.arange(int(0.6 * 48000)) / 48000
+    pair = sum(A * np.exp(-a * t) * np.cos(2 * np.pi * f * t) for A, a, f in ((1, 200, 2000), (0.8, 250, 2080)))
+    noise = np.random.default_rng(0).standard_normal((24, len(t)))
+    for row in noise[:6]:
+        heard = [*tones(Ringing((100 * np.exp(-5 * t) * np.cos(600 * t) + pair + 1.5 * row)[None], 48000.0, 1, 0.0))]
+        faint = [tone for tone in heard if tone.kind == "faint"]
+        for tone in faint:
+            assert tone.error > tone.decay / (2 * np.pi)
+        if faint:
+            break
+    else:
+        pytest.fail("no faint tone was heard")
+    strange = replace(told(777.0, "faint"), error=30.0)
+    assert kim_test.fit([*(told(f) for f in true_tones[:5]), strange]).notes == ()
+
+
+@pytest.mark.heavy
+def test_the_demonstration_has_no_tone_too_many(tmp_path: Path) -> None:
+    tap.write_example(tmp_path / "tap.wav")
+    rate, samples = wavfile.read(tmp_path / "tap.wav")
+    found = tap.hung("pool_maple").fit(tones(ringing(samples / 32768, rate)))
+    assert not found.refusals
+    assert not any("no bending tone" in note for note in found.notes)
+
+
+def test_density_that_is_not_weighed_is_the_file_s(true_tones: np.ndarray) -> None:
+    for name in ("kim", "pool_maple"):
+        heard = modes(tap.true(name), 6).frequencies
+        found = TapTest(cue(name)).fit([told(f) for f in heard])
+        assert found.wood.rho == pytest.approx(found.before.rho, rel=1e-14)
+        assert found.errors[2] == pytest.approx(0.1 * found.before.rho, rel=1e-12)
+        assert any("density is kept as it is" in note for note in found.notes)
+
+
+def test_the_shear_coefficient_of_g_is_told(tmp_path: Path) -> None:
+    """G times kappa is what the tones tell: with the coefficient halved G doubles."""
+    cone = cue("kim")
+    (one,) = cone.segments
+    other = replace(cone, segments=(replace(one, kappa=0.6),))
+    f, mass = modes(tap.true("kim"), 8).frequencies, tap.true("kim").shaft_mass
+    first, second = (TapTest(drawn, mass=mass).fit([told(x) for x in f]) for drawn in (cone, other))
+    assert (first.shear_coefficients, second.shear_coefficients) == ((0.9, 0.9), (0.6, 0.6))
+    assert pytest.approx(1.5 * first.wood.G, rel=1e-4) == second.wood.G
+    path = tmp_path / "tap.wav"
+    samples = tap.recording(tap.ringing_shaft(tap.true("kim"), RATE)[:, :1], 25.0, 3)
+    wavfile.write(path, RATE, samples.astype(np.float32))
+    assert "G goes with a shear coefficient of 0.900" in " ".join(call("tap", path, "--scene", KIM)[1].split())
+    assert json.loads(call("tap", path, "--scene", KIM, "--json")[1])["shear_coefficients"] == [0.9, 0.9]
+
+
+@pytest.mark.parametrize("seed", [0, 3])
+def test_honest_taps_of_other_wood_are_not_refused(seed: int) -> None:
+    found, wood = tap_refusals.honest(seed)
+    assert tap_refusals.accepted(found)
+    assert found is not None
+    assert found.wood.E / found.wood.rho == pytest.approx(wood.E / wood.rho, rel=0.01)
