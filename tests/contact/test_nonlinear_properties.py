@@ -5,13 +5,13 @@ import sys
 from dataclasses import FrozenInstanceError, replace
 from pathlib import Path
 
-import cuefem.contact.second_hit
-import cuefem.contact.strike
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+import cuefem.contact.second_hit
+import cuefem.contact.strike
 from cuefem import (
     LumpedCue,
     PowerLawTip,
