@@ -18,7 +18,7 @@ from cuefem.cue import Array
 from cuefem.design.sensitivity import sensitivity
 from cuefem.design.solvers import static_tip_stiffness
 from cuefem.designer.model import cue_of
-from cuefem.endmass.drives import Drive, equivalent_end_mass, formula_of
+from cuefem.endmass.drives import Drive, equivalent_end_mass, formula_of, tip_modes_for
 from cuefem.report.end_mass import DRIVES
 from cuefem.report.record import Record
 from cuefem.report.squirt import two_part_curve
@@ -79,17 +79,17 @@ class Answers:
 
 
 def answers(scene: Scene) -> Answers:
-    """What is known at once of a scene with a cue of segments. Cost: the beam's eigenproblem and one strike."""
+    """What is known at once of a scene with a cue of segments. Cost: two eigenproblems of the beam and one strike."""
     cue = cue_of(scene)
-    tip = tip_modes_of(scene)
+    tip, stuck = tip_modes_of(scene), tip_modes_for("offset", scene)
     outcome = strike_modes(scene, tip)
     return Answers(
         scene=scene,
-        end_masses={drive: _end_mass(scene, drive, tip, outcome) for drive in DRIVES},
+        end_masses={drive: _end_mass(scene, drive, stuck, outcome) for drive in DRIVES},
         strike=outcome_record(outcome, scene),
         found=modes(cue, TONES, effects=scene.cue_effects),
         tip_stiffness=static_tip_stiffness(scene, Resolution(*mesh_for(cue, TONES), TONES)),
-        lumped=lumped_curve(scene, tip),
+        lumped=lumped_curve(scene, stuck),
         tip=tip,
     )
 

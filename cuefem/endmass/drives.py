@@ -29,7 +29,7 @@ from cuefem.endmass import undamped as transverse
 from cuefem.endmass.undamped import StickLimit
 from cuefem.quantity import scalar
 from cuefem.scene import Outcome, Resolution, Scene, Stroke
-from cuefem.tip_modes import LEAST_STUCK, PLAIN_PERIODS, default_resolution, tip_modes_of
+from cuefem.tip_modes import LEAST, LEAST_STUCK, PLAIN_PERIODS, default_resolution, tip_modes_of
 
 # Of the swing that a tail could add if it rang without loss, errors of the stick end mass above 0.2 % are less than
 # this part (studies/default_accuracy.md).
@@ -54,7 +54,12 @@ def end_mass(scene: Scene, drive: Drive = "stick", at: Resolution | None = None)
     formula = formula_of(drive)
     if isinstance(scene.cue, LumpedCue):
         return scene.cue.end_mass
-    return formula(tip_modes_of(scene, at, least=LEAST_STUCK), scene)
+    return formula(tip_modes_for(drive, scene, at), scene)
+
+
+def tip_modes_for(drive: str, scene: Scene, at: Resolution | None = None) -> TipModes:
+    """Tip modes that a definition takes of a finite-element cue: those of a strike for "squirt", else more of them."""
+    return tip_modes_of(scene, at, least=LEAST if drive == "squirt" else LEAST_STUCK)
 
 
 class Spread(NamedTuple):
@@ -88,7 +93,7 @@ def end_mass_spreads(scene: Scene, at: Resolution | None = None) -> Callable[[Dr
     if isinstance(scene.cue, LumpedCue):
         same = scalar("LumpedCue.end_mass", scene.cue.end_mass)
         return lambda drive: Spread(same, same, same)
-    tip = tip_modes_of(scene, at, least=LEAST_STUCK)
+    tip = tip_modes_for("stick", scene, at)
     plain = tip if at is not None else tip_modes_of(scene, default_resolution(scene, periods=PLAIN_PERIODS))
     rigid, whole = int(np.sum(plain.omega == 0)), len(plain.omega)
 
@@ -96,7 +101,8 @@ def end_mass_spreads(scene: Scene, at: Resolution | None = None) -> Callable[[Dr
         formula, cutoffs = formula_of(drive), 5 if _strikes(drive, tip, scene) else 13
         least = rigid + math.ceil((whole - rigid) / 4)
         kept = np.unique(np.linspace(least, whole, cutoffs).astype(int))
-        values = [formula(tip, scene), *(formula(plain.lowest(n), scene) for n in kept)]
+        whole_tip = tip_modes_for(drive, scene, at) if drive == "squirt" and at is None else tip
+        values = [formula(whole_tip, scene), *(formula(plain.lowest(n), scene) for n in kept)]
         error = ringing(tip, StickLimit.of(scene)) if drive == "stick" and tip.radiation is not None else None
         reach = [values[0] * (1 + side * (error or 0.0)) for side in (-1, 1)]
         return Spread(values[0], min(*values, *reach), max(*values, *reach), error)

@@ -12,10 +12,9 @@ from cuefem.contact.flow import zero
 from cuefem.contact.impulse_space import impact
 from cuefem.cue import Cue, LumpedCue
 from cuefem.effects import TipEffect
-from cuefem.endmass.drives import _gripping, end_mass, stick_at_offset, sticking_squirt
+from cuefem.endmass.drives import _gripping, end_mass, stick_at_offset, sticking_squirt, tip_modes_for
 from cuefem.quantity import check_kind, scalar
 from cuefem.scene import Outcome, Resolution, Scene
-from cuefem.tip_modes import tip_modes_of
 
 
 def lump(scene: Scene, at: Resolution | None = None) -> LumpedCue:
@@ -24,7 +23,7 @@ def lump(scene: Scene, at: Resolution | None = None) -> LumpedCue:
     Its end mass is "offset" of the cue alone; what effects at the tip (`TipDome`, `TipShear`) add or take goes into the
     coupling, about proportional to sin(phi). ValueError where no lumped cue squirts so.
     """
-    return scene.cue if isinstance(scene.cue, LumpedCue) else lump_modes(scene, tip_modes_of(scene, at))
+    return scene.cue if isinstance(scene.cue, LumpedCue) else lump_modes(scene, tip_modes_for("offset", scene, at))
 
 
 def lump_modes(scene: Scene, tip: TipModes) -> LumpedCue:

@@ -18,7 +18,7 @@ from cuefem.beam.tip import TipModes, lumped_tip_modes
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Cue, LumpedCue
 from cuefem.effects import Elevation
-from cuefem.endmass.drives import formula_of
+from cuefem.endmass.drives import formula_of, tip_modes_for
 from cuefem.quantity import scalar
 from cuefem.report.end_mass import DRIVES
 from cuefem.report.record import Record
@@ -102,22 +102,23 @@ def _notes(scene: Scene) -> list[str]:
 
 
 def _end_masses(scene: Scene, tip: TipModes) -> tuple[dict[str, float | None], dict[str, str]]:
+    stuck = tip if isinstance(scene.cue, LumpedCue) else tip_modes_for("offset", scene)
     masses: dict[str, float | None] = {}
     reasons: dict[str, str] = {}
     for drive in HANDED:
         try:
-            masses[drive] = _end_mass(scene, tip, drive)
+            masses[drive] = _end_mass(scene, tip, stuck, drive)
         except ValueError as error:
             masses[drive], reasons[drive] = None, str(error)
     return masses, reasons
 
 
-def _end_mass(scene: Scene, tip: TipModes, drive: Handed) -> float:
+def _end_mass(scene: Scene, tip: TipModes, stuck: TipModes, drive: Handed) -> float:
     if drive == "A.31":
         return _a31_end_mass(scene, tip)
     if isinstance(scene.cue, LumpedCue):
         return scalar("LumpedCue.end_mass", scene.cue.end_mass)
-    return float(formula_of(drive)(tip, scene))
+    return float(formula_of(drive)(tip if drive == "squirt" else stuck, scene))
 
 
 def _a31_end_mass(scene: Scene, tip: TipModes) -> float:

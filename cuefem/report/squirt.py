@@ -29,6 +29,7 @@ from cuefem.report.strike import (
 from cuefem.report.table import NONE, table_of, with_caption
 from cuefem.report.words import assumptions, degrees, grams, millimetres, significant
 from cuefem.scene import Outcome, Scene
+from cuefem.tip_modes import tip_modes_of
 
 OFFSETS = (0.1, 0.2, 0.3, 0.4, 0.5)
 
@@ -63,8 +64,8 @@ def squirt_record(scene: Scene, offsets: Sequence[float] = OFFSETS, *, tip: TipM
 
     tip: the cue's tip modes, where they are known.
     """
-    tip = _known_tip(scene) if tip is None else tip
-    cues, slope = two_part_cues(scene, offsets, tip), _coupling_slope(scene, tip)
+    stuck = _known_tip(scene) if tip is None else tip
+    cues, slope = two_part_cues(scene, offsets, stuck), _coupling_slope(scene, stuck)
     struck = _struck(scene, offsets, tip)
     coupled = np.array([outcome.squirt for outcome in struck])
     pivots = _pivot_length(_at(scene, np.array(offsets)), coupled)
@@ -87,8 +88,9 @@ def squirt_record(scene: Scene, offsets: Sequence[float] = OFFSETS, *, tip: TipM
 
 def _struck(scene: Scene, offsets: Sequence[float], tip: TipModes | None) -> list[Outcome]:
     scenes = [replace(scene, stroke=replace(scene.stroke, offset=b)) for b in offsets]
-    if tip is None:
+    if isinstance(scene.cue, LumpedCue):
         return [strike(one) for one in scenes]
+    tip = tip_modes_of(scene) if tip is None else tip
     return [strike_modes(one, tip) for one in scenes]
 
 

@@ -13,7 +13,7 @@ from cuefem.beam.tip import TipModes
 from cuefem.contact.strike import strike
 from cuefem.cue import LumpedCue
 from cuefem.effects import TipEffect
-from cuefem.endmass.drives import stick_at_offset
+from cuefem.endmass.drives import stick_at_offset, tip_modes_for
 from cuefem.endmass.lumped import impulse, lump_modes
 from cuefem.quantity import scalar
 from cuefem.report.record import Record
@@ -21,7 +21,6 @@ from cuefem.report.table import NONE, table_of, with_caption
 from cuefem.report.words import _tip_effects, assumptions, degrees, grams, millimetres
 from cuefem.scene import Outcome, Scene
 from cuefem.squirt import alciatore_a31, natural_pivot_length
-from cuefem.tip_modes import tip_modes_of
 
 
 def two_part_cues(scene: Scene, offsets: Sequence[float], tip: TipModes | None) -> list[LumpedCue | None]:
@@ -70,7 +69,7 @@ def _at(scene: Scene, offset: Any) -> Scene:
 
 
 def _known_tip(scene: Scene) -> TipModes | None:
-    return None if isinstance(scene.cue, LumpedCue) else tip_modes_of(scene)
+    return None if isinstance(scene.cue, LumpedCue) else tip_modes_for("offset", scene)
 
 
 def bare_scene(scene: Scene, cue: LumpedCue) -> Scene:

@@ -246,13 +246,13 @@ def test_no_strokes_give_empty_outcomes(shape):
     assert {np.shape(value) for value in out.energy.values()} == {shape}
 
 
-def test_a_finite_element_cue_goes_through_its_stick_end_mass():
+def test_a_finite_element_cue_goes_through_its_end_mass_at_each_offset():
     maple = Material(12.6e9, 0.84e9, 700.0)
     cue = Cue((Segment(0.7, 0.0125, 0.021, maple),), body_mass=0.4)
     offsets = np.linspace(-0.5, 0.5, 4)
     scene = Scene(cue, tip=Tip(0.75, 0.7, contact_time=1e-3), stroke=Stroke(1.5, offsets))
     out = impulse(scene)
-    lumped = replace(scene, cue=LumpedCue(cue.mass, end_mass(scene, "stick")))
+    lumped = replace(scene, cue=LumpedCue(cue.mass, end_mass(scene, "offset")))
     np.testing.assert_array_equal(out.squirt, impulse(lumped).squirt)
     np.testing.assert_array_equal(out.ball_velocity, impulse(lumped).ball_velocity)
     assert out.squirt[3] == -out.squirt[0] > 0.005

@@ -197,7 +197,7 @@ def test_sliding_strike_of_a_vibrating_cue(exponent, offset, friction):
 
 @pytest.mark.parametrize("effects", [(), (TipDome(0.0095),), (PowerLawTip(1.5),)])
 def test_turning_of_the_contact_vanishes_with_its_time(effects):
-    errors, spins, times = [], [], 1e-3 * 2.0 ** -np.arange(6, 11)
+    errors, spins, times = [], [], 1e-3 * 2.0 ** -np.arange(5, 10)
     for time in times:
         scene = replace(kim_scene(0.3, contact_time=float(time)), effects=effects)
         bare, turned = (
@@ -207,8 +207,8 @@ def test_turning_of_the_contact_vanishes_with_its_time(effects):
         errors.append(turned.squirt / bare.squirt - 1)
         spins.append(turned.spin / bare.spin - 1)
         assert imbalance(turned) < 1e-11
-    assert_order(1, times, errors, within=[0.02, 0.01, 0.005, 0.0025], rounding=1e-10)
-    assert_order(1, times, spins, within=[0.02, 0.01, 0.005, 0.0025], rounding=1e-10)
+    assert_order(1, times, errors, within=[0.04, 0.02, 0.01, 0.005], rounding=1e-10)
+    assert_order(1, times, spins, within=[0.04, 0.02, 0.01, 0.005], rounding=1e-10)
 
 
 class Plane:

@@ -24,13 +24,14 @@ from cuefem import (
     modes,
     strike,
 )
+from cuefem.beam.waves import even_mesh_for
 from cuefem.design import Levels, Response, Sample, Span, Study, Vary, evaluate, paths, replaced
 from cuefem.design.paths import spelt, value_at
 from cuefem.design.responses import KINDS
 from cuefem.endmass.drives import small_offset_slope
 from cuefem.materials import material
 from cuefem.squirt import natural_pivot_length
-from cuefem.tip_modes import tip_modes_of
+from cuefem.tip_modes import default_resolution, tip_modes_of
 from tests.helpers.cues import MAPLE, kim, low_deflection, pool
 
 AT = Resolution(1, 14, 7)
@@ -236,9 +237,8 @@ def test_one_resolution_serves_the_hardest_design() -> None:
         Sample("sobol", 16, 1),
     )
     softest = found.scene((0.8e-3, 0.5))
-    from cuefem.tip_modes import default_resolution
-
-    assert found.resolution == default_resolution(softest)
+    count = default_resolution(softest).modes
+    assert found.resolution == Resolution(*even_mesh_for(softest.cue, count), count)
 
 
 def test_fingerprints_tell_studies_apart() -> None:

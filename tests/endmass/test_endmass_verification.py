@@ -16,7 +16,7 @@ from cuefem.beam.tip import TipModes
 from cuefem.endmass.drives import end_mass_spread, flexible, force, stick, velocity
 from cuefem.endmass.undamped import _response, mobility
 from cuefem.tip_modes import default_resolution, tip_modes_of
-from tests.helpers.cues import cone, kim, rod, scene
+from tests.helpers.cues import cone, kim, rod, scaled, scene
 from tests.helpers.orders import assert_order
 
 
@@ -38,8 +38,10 @@ def rigid_ratio(cue: Cue) -> float:
 
 
 def ratio(cue: Cue, periods: float, drive: str) -> float:
-    """mass / m_e for a pulse of so many periods of the lowest mode."""
+    """mass / m_e for a pulse of so many periods of the lowest mode; a slow cue is made stiffer, so that T is 1 s."""
     T = periods / modes(cue, 1).frequencies[0]
+    if T > 1:
+        cue, T = scaled(cue, E=T**2, G=T**2), 1.0
     return cue.shaft_mass / end_mass(scene(cue, T), drive, at=Resolution(1, 20, 8))  # type: ignore[arg-type]
 
 
