@@ -18,7 +18,7 @@ class TipDome(TipEffect):
     section: the contact is r sin(phi) off the axis and r (1 - cos(phi)) behind the apex. B gains u-w terms. Matters:
     always; a 9 mm dome raises small-offset squirt by 10 % (carbon) to 63 % (Kim's shaft; studies/dome.md), and a bare
     strike's plain sum over modes then converges very slowly. Wrong: where the leather shears or flattens so much that
-    it does not follow the section. Source: geometry, physics.md section 8; [Kim] sec. 2 mentions the off-axis contact
+    it does not follow the section. Source: geometry, handbook: Effects; [Kim] sec. 2 mentions the off-axis contact
     and drops it.
     """
 
@@ -46,7 +46,7 @@ class TipShear(TipEffect):
     - nu)/(2 - nu), 0.75 at nu = 0.4. Limit: ratio -> inf is the bare strike, like 1/ratio; with
     endless friction it is not, since nothing damps the patch there. Wrong: leather is no perfect spring, partial slip
     inside the patch is left out, and a leather segment in the cue gives way sideways as well. Source: [Mindlin] J.
-    Appl. Mech. 1949; physics.md section 8.
+    Appl. Mech. 1949; handbook: Effects.
     """
 
     ratio: Annotated[float, Quantity("", "(0, inf)")]
@@ -62,7 +62,7 @@ class PowerLawTip(TipEffect):
     the work given back is exactly e^2; below the old peak the tip is reloaded on it. Matters: contact time then falls
     with speed as U^((1 - n)/(1 + n)), and squirt with it. Wrong: where e itself falls with speed, and at speeds at
     which the leather bottoms out. exponent: in [1, inf). A `TipShear` beside it keeps its constant spring, ratio times
-    the base model's k. Source: Hertz 1882; [Stronge] ch. 6; physics.md section 8. Cost: stepped in time to about 1e-10.
+    the base model's k. Source: Hertz 1882; [Stronge] ch. 6; handbook: Effects. Cost: stepped in time to about 1e-10.
     """
 
     once: ClassVar[bool] = True

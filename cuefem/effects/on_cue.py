@@ -23,7 +23,7 @@ class PointMass(CueEffect):
 
     Adds: mass, kg, to deflection and to the axial motion, and rotary_inertia, kg m2, to rotation, at position, m from
     the tip. Matters: near the tip, within the distance that bending waves travel in a contact. Wrong: where the lump
-    is longer than a bending wave of interest, or stiffens the shaft. Source: physics.md section 8; [BD Feb 2008] clay.
+    is longer than a bending wave of interest, or stiffens the shaft. Source: handbook: Effects; [BD Feb 2008] clay.
     """
 
     position: Annotated[float, Quantity("m", "[0, inf)")]
@@ -53,7 +53,7 @@ class Support(CueEffect):
     from the tip; infinite stiffness takes the unknown out (a clamp). Nothing along the axis. Matters: stiff and near
     the tip; a hand (up to 1e4 N/m) 8 in behind it changes squirt by 1 % at most, 1e6 N/m by up to a quarter.
     Wrong: a hand is no linear spring and lets the cue slide; a clamped beam is softer than a clamped solid face by 1e-3
-    in frequency. Source: physics.md section 8.
+    in frequency. Source: handbook: Effects.
     """
 
     position: Annotated[float, Quantity("m", "[0, inf)")]
@@ -86,7 +86,7 @@ class Joint(CueEffect):
     rad/(N m), and of deflection by shear_compliance, m/N; zero keeps the two sides together. Two more unknowns, of
     which a zero takes one out again; other effects at its place hold on to the butt side. Matters: within the distance
     that bending waves travel in a contact; at a cue's middle joint hardly. Wrong: a joint that rattles or dissipates.
-    Source: two springs in series with the beam; physics.md section 8.
+    Source: two springs in series with the beam; handbook: Effects.
     """
 
     position: Annotated[float, Quantity("m", "(0, inf)")]
@@ -126,7 +126,7 @@ class StructuralDamping(CueEffect):
     stores in that mode; springs and joints store theirs without loss. Matters: hardly within a contact (maple's 0.012
     loses 4 % of a swing's amplitude in a period), much for how long a cue rings. Wrong: loss factors of E and G differ
     and vary with frequency; the coupling of modes by damping is left out. Never proportional to stiffness, which
-    overdamps high modes. Source: physics.md section 8; modal strain energy, Ungar & Kerwin, JASA 34 (1962) 954.
+    overdamps high modes. Source: handbook: Effects; modal strain energy, Ungar & Kerwin, JASA 34 (1962) 954.
     """
 
     loss: Annotated[float | None, Quantity("", "[0, 1)")] = None
@@ -149,7 +149,7 @@ class AxialWaves(CueEffect):
     defined by m_a, and the ball leaves a little faster, because the rod gives back all that it takes: head on 1.1 ms
     and e 0.73 become 1.27 ms and 0.78 on meshes/pool_maple.toml. Wrong: supports do not act along the axis, joints are
     stiff along it; a hard tip drawn into the cue (phenolic, above 1 GPa) gives way in the tip's law and, by about
-    1 % of that, in the rod. Source: physics.md sections 4, 5, 8.
+    1 % of that, in the rod. Source: handbook: The beam, The strike, Effects.
     """
 
     once: ClassVar[bool] = True

@@ -18,8 +18,8 @@ class SecondHit(Effect):
     Outcome.phases, and `cuefem.contact.second_hit.hits` lists them. A tip keeps the set that it had as the ball left,
     and is pressed anew on the curve it was unloaded on. Matters: a soft or dead tip on a shaft that vibrates, a heavy
     cue. Wrong: where the leather recovers its shape meanwhile, or the player's hand pushes or holds the cue; no
-    gravity, no table, and the normal stays that of the first touch unless `RollingContact` turns it. Source: physics.md
-    section 8.
+    gravity, no table, and the normal stays that of the first touch unless `RollingContact` turns it. Source:
+    handbook: Effects.
     """
 
     once: ClassVar[bool] = True
