@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from html import escape
 from importlib.resources import files
 from string import Template
@@ -55,7 +56,13 @@ def page() -> str:
     return PAGE.substitute(style=style, contents="".join(entries), body="".join(bodies))
 
 
+def _text(_: object, tokens: Sequence[Token], index: int, *__: object) -> str:
+    """A text token with letters such as m_e as subscripts."""
+    return re.sub(r"\b([A-Za-zα-ωΩ]{1,2})_([A-Za-z∥⊥0]{1,4})(?![A-Za-z0-9_])", r"\1<sub>\2</sub>", escape(tokens[index].content))
+
+
 _MARKDOWN = MarkdownIt("commonmark", {"html": False}).enable("table")
+_MARKDOWN.add_render_rule("text", _text)
 
 
 def _parsed(name: str, text: str) -> tuple[list[Token], list[tuple[str, str]]]:
