@@ -43,7 +43,7 @@ class Material:
 
     @property
     def effective_poisson_ratio(self) -> float:
-        """The nu_e of physics.md section 4: nu_e/(1 + nu_e) = 2 nu G/E; equals nu where the material is isotropic."""
+        """The nu_e of handbook: The beam: nu_e/(1 + nu_e) = 2 nu G/E; equals nu where the material is isotropic."""
         ratio = 2 * self.nu * self.G / self.E
         return ratio / (1 - ratio)
 

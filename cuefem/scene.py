@@ -109,14 +109,14 @@ class Scene:
 
     @property
     def contact_time(self) -> Any:
-        """Duration T of a head-on blow, s, given or from the tip's stiffness (physics.md section 5)."""
+        """Duration T of a head-on blow, s, given or from the tip's stiffness (handbook: The strike)."""
         if self.tip.stiffness is None:
             return DEFAULT_CONTACT_TIME if self.tip.contact_time is None else self.tip.contact_time
         return math.pi / 2 * (1 + self.tip.restitution) * np.sqrt(self.head_on_mass / self.tip.stiffness)
 
     @property
     def stiffness(self) -> Any:
-        """Loading stiffness k of the tip, N/m, given or from the head-on contact time (physics.md section 5)."""
+        """Loading stiffness k of the tip, N/m, given or from the head-on contact time (handbook: The strike)."""
         if self.tip.stiffness is not None:
             return self.tip.stiffness
         return (math.pi / 2 * (1 + self.tip.restitution) / self.contact_time) ** 2 * self.head_on_mass

@@ -8,9 +8,9 @@ meshes/ x (0.7 ms, b/R 0.4), (1 ms, 0.3), (2 ms, 0.1); in (c) Kim's four strokes
 elements of order 14; 220 modes with a tail on a mesh of another order; exact phases in cells a third as long.
 Left out: AxialWaves and SecondHit (the one lengthens the very contact time that the models share, and the other changes
 what follows the stroke, not it); the tip's geometry, material data and friction, which no refinement improves.
-Equations: physics.md sections 4 to 8. Parts: accuracy_cost_points.py computes. Writes accuracy_cost.md and
-accuracy_cost.svg (values), accuracy_cost_seconds.md and accuracy_cost_seconds.png (seconds of the machine named there)
-beside itself; takes about two minutes.
+Equations: handbook: The beam, The strike, Effective end mass, What the paper says, Effects. Parts:
+accuracy_cost_points.py computes. Writes accuracy_cost.md and accuracy_cost.svg (values), accuracy_cost_seconds.md and
+accuracy_cost_seconds.png (seconds of the machine named there) beside itself; takes about two minutes.
 """
 
 from __future__ import annotations

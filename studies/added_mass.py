@@ -6,8 +6,8 @@ with shear 0.75, with both; beside data/added_mass_players_feb2008.csv (baseline
 0.03 deg, offset not stated). Nothing is fitted. Then what would move the curve to the measured 1.70 at 2 in: the clay's
 length and rotary inertia, where its distance is counted from, the leather, dome, shear, offset, stroke. The modes are
 those of the shaft with its mass, at the default resolution (0.5 %).
-Equations: physics.md sections 5, 8 and 9. A mass throws bending waves back; what returns within the contact with the
-wrong sign takes squirt away, at a distance that grows like sqrt(T).
+Equations: handbook: The strike, Effects, Measured squirt. A mass throws bending waves back; what returns within the
+contact with the wrong sign takes squirt away, at a distance that grows like sqrt(T).
 Writes added_mass.md and added_mass.svg beside itself; takes about 30 s.
 """
 

@@ -4,8 +4,8 @@ What: eleven one-piece shafts 70 to 75 cm long, solid and hollow, of wood and ca
 the stick end mass by few modes: as a plain sum, ended by the tail with its dashpot that single cues have by default,
 and by the tail that fades (`cuefem.design.batch`, ended). At T = 0.7, 1 and 2 ms, and at 1.2, 1.3 and 1.4 ms, when the
 fastest bending waves are back from the joint as the contact ends. Reference: 250 modes with a tail, single cues; from
-about 170 modes on it stands to 1e-5. Equations: physics.md sections 4 and 6. Writes batch.md and batch.svg (values)
-beside itself; takes about a minute. What it costs: batch_seconds.py.
+about 170 modes on it stands to 1e-5. Equations: handbook: The beam, Effective end mass. Writes batch.md and batch.svg
+(values) beside itself; takes about a minute. What it costs: batch_seconds.py.
 """
 
 from __future__ import annotations

@@ -5,7 +5,8 @@ third with a ferrule, a third with ferrule and leather) at every contact time fr
 stick end mass of `batch_stick` at the resolutions that its documentation names, and the plain sum of the modes up to
 30/T that a sweep takes by default. Shaft number i is the same in every run, so that a test can derive a few again.
 Reference: single cues, 240 modes with a tail that fades; on shafts tried 480 modes moved it by 1e-5 to 9e-5 in the
-median and by 2e-3 at most. Equations: physics.md section 6. Writes batch_wood.md beside itself; takes some six minutes.
+median and by 2e-3 at most. Equations: handbook: Effective end mass. Writes batch_wood.md beside itself; takes some six
+minutes.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 What: a support 8 to 12 in behind the tip of bare shafts, as a spring across the cue; change of squirt at b/R 0.3 for
 contacts of 0.7 to 2 ms: the largest over the positions for a hand of 1e4 N/m, and the stiffness that changes squirt by
 1 %. e = 3/4, mu = 0.7, a ball of 210 g, default resolution (the 0.5 % of the modes is the same with and without).
-Equations: physics.md section 8 (Support). The first change is linear in the stiffness.
+Equations: handbook: Effects (Support). The first change is linear in the stiffness.
 Writes bridge.md and bridge.svg beside itself; takes about 30 s.
 """
 

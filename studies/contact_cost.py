@@ -4,7 +4,7 @@ What: strokes of meshes/kim.toml (24 flexible modes, T = 1 ms, e = 3/4, mu = 0.7
 little slip to a miscue, by cuefem.contact.linear and by scipy's solve_ivp (DOP853, and Radau with its Jacobian) on the
 very same linear phases, their ends found by solve_ivp's events. Each solver's rtol is the loosest power of ten that
 holds squirt and ball speed of all four strokes to 1e-8 of the exact phases; those are checked against cells a third as
-long. Equations: physics.md section 5. Writes contact_cost.md (values, no seconds) and contact_cost_seconds.md (seconds,
+long. Equations: handbook: The strike. Writes contact_cost.md (values, no seconds) and contact_cost_seconds.md (seconds,
 of the machine named there) beside itself; takes about 5 s.
 """
 

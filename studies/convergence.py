@@ -7,8 +7,9 @@ elements and polynomial order of the finite-element cue leave out.
 counts;
 (c) Kim's shaft made ever lighter at fixed shape: [Kim]'s first order in epsilon;
 (d) an offset that vanishes: the impulse solver fed with the stick end mass, all cues of meshes/.
-Equations: physics.md sections 2, 3, 5, 6 and, for the end mass at an offset, `stick_at_offset`; how fast each
-road is and why is said in the table. Parts: convergence_roads.py computes. e = 3/4, mu = 0.7, a ball of 210 g.
+Equations: handbook: Inverse mass, The impulse solver, The strike, Effective end mass and, for the end mass at an
+offset, `stick_at_offset`; how fast each road is and why is said in the table. Parts: convergence_roads.py computes. e =
+3/4, mu = 0.7, a ball of 210 g.
 Writes convergence.md and convergence_*.svg beside itself; takes about 20 s.
 """
 

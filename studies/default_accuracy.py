@@ -4,7 +4,7 @@ What: the stick end mass that the default gives against many modes, at 200 conta
 the cues of meshes/ and 40 random ones (woods, carbon tubes, tips of leather or brass, ferrules, bores, 1 to 4 pieces,
 some to the butt); and squirt likewise, at fewer contact times and offsets, with and without AxialWaves. All draws are
 seeded.
-Equations: physics.md section 6, with a tail; the modes of a cue are solved once for all contact times.
+Equations: handbook: Effective end mass, with a tail; the modes of a cue are solved once for all contact times.
 Writes default_accuracy.md beside itself; takes about 3 min.
 """
 

@@ -3,7 +3,7 @@
 What: squirt against the radius of the tip's dome, 0 to 12 mm, for all cues of meshes/ and for pool_maple with a wooden
 tip; the limit b -> 0, b/R 0.3 and 0.5; the lumped end mass with that squirt; and the contact time. T = 1 ms unless
 said, e = 3/4, mu = 0.7, a ball of 210 g; default resolution (0.5 %).
-Equations: physics.md section 8. The contact lies r sin(phi) off the cue's axis, on the side of the ball's centre. The
+Equations: handbook: Effects. The contact lies r sin(phi) off the cue's axis, on the side of the ball's centre. The
 ball's push along the cue is there a couple F r sin(phi) on the tip's section, which bends the shaft towards that side;
 the turning ball carries the tip to the other. The end of a semi-infinite Euler beam moves across at the velocity
 couple/sqrt(EI rhoA), at every moment (w = -i C/(EI k^2), k^2 = omega sqrt(rhoA/EI)), so to first order in r, before a
@@ -46,7 +46,7 @@ MODES = (60, 120, 240)
 TIMES = (0.5e-3, 0.7e-3, 1.0e-3, 1.4e-3, 2.0e-3, 2.8e-3)
 WOODEN = "pool_maple, wooden tip"
 NAMES = ("kim", "pool_maple", WOODEN, "pool_hollow", "carbon", "whole_cue")
-MEASURED = (5.8e-3, 14e-3)  # kg: end masses measured on real cues, physics.md section 6
+MEASURED = (5.8e-3, 14e-3)  # kg: end masses measured on real cues, handbook: Effective end mass
 
 
 class Case(NamedTuple):

@@ -4,7 +4,8 @@ What: the five definitions (force, velocity, stick, stick at the offset, squirt-
 meshes/ for contacts of 0.5 to 4 ms; each fed to the impulse solver at b/R 0.1, 0.3 and 0.5, against the coupled
 strike; [Kim]'s 12 g (m_c; m_e = 3 g at the tip) likewise; and end mass against contact time, beside the square-root law
 of a semi-infinite beam. e = 3/4, mu = 0.7, a ball of 210 g; modes kept by frequency (0.5 %).
-Equations: physics.md section 6; `stick_at_offset`; a semi-infinite Euler beam: m = C rhoA sqrt(T sqrt(EI/rhoA)).
+Equations: handbook: Effective end mass; `stick_at_offset`; a semi-infinite Euler beam: m = C rhoA sqrt(T
+sqrt(EI/rhoA)).
 Writes end_mass.md and end_mass.svg beside itself; takes about 5 s.
 """
 
@@ -34,7 +35,7 @@ SHOWN = (0.5e-3, 1.0e-3, 2.0e-3, 4.0e-3)
 OFFSETS = (0.1, 0.3, 0.5)
 KIM_END = 0.012 / 4  # kg: the paper's m_c = 12 g with nu_c = 1/3, as the tip feels it
 DEFINITIONS = ("stick at the offset", "stick", "velocity", "force", "Kim's 3 g")
-BEAM = {"force": 0.79021, "velocity": 0.54814}  # C of a semi-infinite Euler beam, physics.md section 6
+BEAM = {"force": 0.79021, "velocity": 0.54814}  # C of a semi-infinite Euler beam, handbook: Effective end mass
 STEP = np.sqrt(2 / np.pi)  # C of a step of velocity
 
 

@@ -3,7 +3,7 @@
 What: the cue's kinetic energy at first touch, split after the coupled strike into what the ball has of translation and
 spin, what stays in the cue's rigid motion and in its vibration, and what the tip and friction take; Kim's cue and a
 maple pool cue; T = 1 ms, e = 3/4, mu = 0.7, a ball of 210 g, b/R 0 to 0.75, through the miscue.
-Equations: physics.md section 5 (the energy audit of the coupled strike).
+Equations: handbook: The strike (the energy audit of the coupled strike).
 Writes energy.md and energy.svg beside itself; takes about 3 s.
 """
 

@@ -5,11 +5,11 @@ before a pool ball, bare, with the tip's dome (9.5 mm), with its shear (Mindlin'
 (break shaft 0.9), e = 0.73, mu = 0.7. No shaft that was measured is published beyond its tip's diameter: 48 points of a
 Halton sequence vary wood, leather, ferrule, taper, bore and stroke within the ranges of measured_shafts.py, which were
 written down before they were run, and the band holds 90 % of them. Then what each unknown is worth; squirt against
-contact time and speed, which measured squirt does not depend on; leather whose shear counts twice; and physics.md
-section 9, claim by claim. Equations: physics.md sections 5 and 8; PowerLawTip (its shear a constant spring) and
-RollingContact for the speed. Contact times (0.8 ms phenolic and fast, 1 to 2 ms most, 2 to 3 ms soft and slow) and "no
-practical effect" of hardness: billiards.colostate.edu, FAQ, cue tip.
-Writes measured.md and measured.svg beside itself; takes about 40 s.
+contact time and speed, which measured squirt does not depend on; leather whose shear counts twice; and
+handbook: Measured squirt, claim by claim. Equations: handbook: The strike, Effects; PowerLawTip (its shear a constant
+spring) and RollingContact for the speed. Contact times (0.8 ms phenolic and fast, 1 to 2 ms most, 2 to 3 ms soft and
+slow) and "no practical effect" of hardness: billiards.colostate.edu, FAQ, cue tip. Writes measured.md and measured.svg
+beside itself; takes about 40 s.
 """
 
 from __future__ import annotations
@@ -158,7 +158,7 @@ def speed_table() -> str:
 
 
 def claims_table() -> str:
-    """physics.md section 9, claim by claim."""
+    """handbook: Measured squirt, claim by claim."""
     both = [at_time("dome + shear", T) for T in (1.0e-3, 1.2e-3)]
     without = [at_time(model, T) for model in ("bare", "shear") for T in (1.0e-3, 1.2e-3)]
     soft = [_far(ratio, T) for ratio in (0.3, 0.75) for T in TIMES]
@@ -265,7 +265,7 @@ def report() -> str:
     parts += ["## What each unknown is worth", "pool_maple, b/R 0.375, dome + shear, one at a time.", worth_table()]
     parts += ["## Squirt against contact time, degrees, b/R 0.375", time_table()]
     parts += [f"## Change of squirt from {SPEEDS[0]} to {SPEEDS[1]} mph", speed_table()]
-    parts += ["## The prototype's claims (physics.md section 9)", claims_table()]
+    parts += ["## The prototype's claims (handbook: Measured squirt)", claims_table()]
     return "\n\n".join(part.rstrip("\n") for part in parts) + "\n"
 
 

@@ -3,8 +3,8 @@
 For each cue of meshes/ and contacts of 0.7, 1 and 2 ms, the stick end mass's density of derivatives to mass
 (`cuefem.design.sensitivity`): one gram at x adds so many grams of end mass. The gram moves along the axis too; its
 share of that, m_a dm/dm_a, is counted in the curves and under 0.001 g. The table splits the end mass by the sum rule of
-physics.md section 6 into what mass (rho A), its turning (rho I), bending (EI) and shear (kGA) stiffness hold; what is
-left to 100 % is the stick law's own dependence on ball and axial mass.
+handbook: Effective end mass into what mass (rho A), its turning (rho I), bending (EI) and shear (kGA) stiffness hold;
+what is left to 100 % is the stick law's own dependence on ball and axial mass.
 
 Plain sums over modes up to 30 periods in a contact; in the soft leather of the first 6 mm, whose own modes lie near
 that, the curves still ring with the number kept, and are drawn from 6 mm on. About 25 s.

@@ -79,7 +79,7 @@ def test_section_keeps_the_shape_asked_for() -> None:
     assert all(part.shape == () for part in kim().section(0.1))
 
 
-# Hutchinson 2001; the first two are quoted in physics.md section 4 to three digits
+# Hutchinson 2001; the first two are quoted in handbook: The beam to three digits
 @pytest.mark.parametrize(
     ("material", "kappa"), [(Material(2.6, 1.0, 1.0, nu=0.3), 0.925), (Material(15.0, 1.0, 1.0, nu=0.3), 0.867)]
 )

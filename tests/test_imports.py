@@ -32,6 +32,7 @@ ORDER = [
     "tap",
     "io",
     "report",
+    "handbook",
     "designer",
     "cli",
 ]
@@ -46,6 +47,7 @@ HOMES = {
     "click": {"cli"},
     "rich": {"report", "cli"},
     "jinja2": {"report"},
+    "markdown_it": {"handbook"},
     "sqlite3": {"io"},
     "pyarrow": {"io"},
     "distributed": {"design"},

@@ -48,7 +48,7 @@ def test_keys_of_sources_are_explained() -> None:
 @pytest.mark.parametrize("name", WOODS)
 def test_shear_of_woods(name: str) -> None:
     wood = material(name)
-    assert 9 <= wood.E / wood.G <= 16  # physics.md section 4
+    assert 9 <= wood.E / wood.G <= 16  # handbook: The beam
     assert 15 <= wood.E / wood.rho / 1e6 <= 25  # the specific modulus of hardwoods, GPa m3/Mg
 
 

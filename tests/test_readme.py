@@ -74,6 +74,9 @@ def test_a_new_user_gets_a_report_from_nothing(tmp_path: Path) -> None:
         done = subprocess.run(["bash", "-c", line], cwd=fresh, capture_output=True, text=True, env=clean)
         assert done.returncode == 0, done.stderr
     assert done.stdout == "wrote my_shaft.html\n"
+    command = [".venv/bin/cuefem", "guide", "glossary", "--print"]
+    guide = subprocess.run(command, cwd=fresh, capture_output=True, text=True, check=True)
+    assert "effective end mass" in guide.stdout  # the wheel holds the handbook
     assert "natural pivot length" in (fresh / "my_shaft.html").read_text(encoding="utf-8")
 
 

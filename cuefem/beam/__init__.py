@@ -4,7 +4,7 @@ Deflection w (degree p + 1) and rotation theta (degree p), so that w' can follow
 
     stiffness  EI (theta')^2 + kGA (w' - theta)^2        mass  rhoA w'^2 (in time) + rhoI theta'^2 (in time)
 
-Bending is linear along x from the tip (x = 0) to the butt; [Cowper], physics.md section 4.
+Bending is linear along x from the tip (x = 0) to the butt; [Cowper], handbook: The beam.
 """
 
 from cuefem.beam.basis import Table, line_basis, table

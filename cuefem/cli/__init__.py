@@ -11,6 +11,7 @@ import click
 
 from cuefem.cli.designer import designer
 from cuefem.cli.files import convert, materials, schema
+from cuefem.cli.guide import guide
 from cuefem.cli.handover import animate, handover
 from cuefem.cli.scatter import scatter
 from cuefem.cli.scene import cost, effects, end_mass, modes, report, strike
@@ -88,5 +89,6 @@ for _command in (
     scatter,
     designer,
     tap,
+    guide,
 ):
     main.add_command(_command)

@@ -54,7 +54,7 @@ class Event(NamedTuple):
 
 
 def inverse_mass(cue: LumpedCue, ball: Ball, offset: Any) -> InverseMass:
-    """B = B_ball + B_cue of physics.md section 2 at ``offset`` b/R = sin(phi) >= 0."""
+    """B = B_ball + B_cue of handbook: Inverse mass at ``offset`` b/R = sin(phi) >= 0."""
     s, c = sine_cosine(offset)
     along, across, both = 1 / cue.mass, 1 / cue.end_mass, cue.coupling
     ball_tt, ball_nn = (1 + 1 / ball.inertia) / ball.mass, 1 / ball.mass

@@ -1,8 +1,8 @@
 """A stroke in the table's frame: where on the ball, in which direction, and what comes out in three dimensions.
 
 The frame is [Kim]'s (end of sec. 5): z points up, and a cue that points along +y strikes with its right along +x. The
-impact stays planar, in the plane of the cue's axis and the ball's centre (physics.md section 3); the table's reaction
-to a ball that is driven downwards is not part of it.
+impact stays planar, in the plane of the cue's axis and the ball's centre (handbook: The impulse solver); the table's
+reaction to a ball that is driven downwards is not part of it.
 """
 
 from __future__ import annotations

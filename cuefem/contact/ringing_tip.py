@@ -1,4 +1,4 @@
-"""The contact of a nearly dead tip, which rings much faster than anything else moves (physics.md section 5).
+"""The contact of a nearly dead tip, which rings much faster than anything else moves (handbook: A nearly dead tip).
 
 A tip of small restitution e unloads with the stiffness k/e^2. On that stiff spring ball and cue swing against each
 other with the angular frequency w = sqrt(k B)/e, B the rate of v_n per unit of F_n. Past the peak the forces are

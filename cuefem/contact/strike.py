@@ -1,4 +1,4 @@
-"""The coupled strike: the vibrating shaft meets the ball in time (physics.md section 5)."""
+"""The coupled strike: the vibrating shaft meets the ball in time (handbook: The strike)."""
 
 from __future__ import annotations
 

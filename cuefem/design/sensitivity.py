@@ -67,7 +67,7 @@ class _Gradient:
 def sensitivity(scene: Scene, drive: Drive = "stick", at: Resolution | None = None) -> Sensitivity:
     """Where the end mass of a bare finite-element cue lives: `Sensitivity`, exact for the modes kept.
 
-    drive: "stick", "velocity" or "force". Sum rule (physics.md section 6): the densities times their properties
+    drive: "stick", "velocity" or "force". Sum rule (handbook: Effective end mass): the densities times their properties
     integrate to m_e, for "stick" to m_e - M dm/dM - m_a dm/dm_a. Cost: all modes of the mesh, one dense eigenproblem.
     """
     check_kind("sensitivity scene.cue", scene.cue, Cue)

@@ -45,7 +45,7 @@ class Density:
     """Where the stick end mass of the bare cue lives: kg a metre at x m from the tip; end_mass: what that shares out.
 
     from_mass: what the mass there adds; from_stiffness: what the stiffness there does. Together they integrate to the
-    end mass but for the ball's and the cue's own part in it (physics.md section 6).
+    end mass but for the ball's and the cue's own part in it (handbook: Effective end mass).
     """
 
     x: Array

@@ -11,7 +11,10 @@ NAME = "pool_maple.toml"
 
 
 def first_scene() -> Scene:
-    """A generic maple pool shaft on a pool ball: meshes/pool_maple.toml (its README has the sources), physics.md 9."""
+    """A generic maple pool shaft on a pool ball: meshes/pool_maple.toml; its README has the sources.
+
+    What such a shaft does is in handbook: Measured squirt.
+    """
     leather, melamine, maple = (MATERIALS[name].material for name in ("leather", "melamine", "hard maple"))
     cue = Cue(
         (

@@ -12,14 +12,37 @@ from cuefem.quantity import Quantity
 
 @dataclass(frozen=True)
 class TipDome(TipEffect):
-    """The round end of the tip: the contact lies off the cue's axis, so the axial force bends the shaft.
+    """The round end of the tip: the contact lies off the cue's axis, so that a force along the axis bends the shaft.
 
-    Adds: to each bending mode's displacement of the contact that of a rigid dome of radius r, m, tied to the end
-    section: the contact is r sin(phi) off the axis and r (1 - cos(phi)) behind the apex. B gains u-w terms. Matters:
-    always; a 9 mm dome raises small-offset squirt by 10 % (carbon) to 63 % (Kim's shaft; studies/dome.md), and a bare
-    strike's plain sum over modes then converges very slowly. Wrong: where the leather shears or flattens so much that
-    it does not follow the section. Source: geometry, physics.md section 8; [Kim] sec. 2 mentions the off-axis contact
-    and drops it.
+    Parameters
+    ----------
+    radius : float
+        Radius of the dome, m.
+
+    Notes
+    -----
+    Adds: The contact point moves with the end section of the cue, as the surface of a rigid dome does. At a contact
+    angle phi it lies r sin(phi) off the axis and r (1 - cos(phi)) behind the apex, so the inverse mass B gains terms
+    that couple the motion along the cue with the motion across it.
+
+    Matters when: Always. A dome of 9 mm raises the squirt at small offsets by 10 % (carbon) to 63 % (Kim's shaft).
+    A plain sum over modes then converges very slowly.
+
+    Wrong when: The leather shears or flattens so much that its surface does not follow the end section.
+
+    Limit: The effect vanishes in proportion to the radius as the radius goes to zero.
+
+    Source: handbook: Effects; the geometry. [Kim] section 2 mentions the off-axis contact and drops it.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> shaft = cf.Cue((cf.Segment(0.7, 0.0125, 0.021, wood),), body_mass=0.42)
+    >>> bare = cf.Scene(shaft, stroke=cf.Stroke(offset=0.3))
+    >>> domed = cf.Scene(shaft, stroke=cf.Stroke(offset=0.3), effects=(cf.TipDome(9.5e-3),))
+    >>> cf.strike(domed).squirt > cf.strike(bare).squirt
+    True
     """
 
     needs_beam: ClassVar[bool] = True  # a lumped cue has its coupling for it
@@ -38,15 +61,36 @@ class TipDome(TipEffect):
 
 @dataclass(frozen=True)
 class TipShear(TipEffect):
-    """The leather's tangential give: a massless contact patch on a spring.
+    """The give of the leather along the ball's surface: a massless contact patch on a spring.
 
-    Adds: one state, the spring's force, stiffness ratio times the tip's loading stiffness, lossless, capped by
-    Coulomb's |F_t| <= mu F_n. Matters: at first touch F_t/F_n = ratio tan(phi), so there is no first slip while that
-    is below mu; squirt falls strongly as the ratio falls. ratio: in (0, inf); Mindlin's for a circular contact is 2 (1
-    - nu)/(2 - nu), 0.75 at nu = 0.4. Limit: ratio -> inf is the bare strike, like 1/ratio; with
-    endless friction it is not, since nothing damps the patch there. Wrong: leather is no perfect spring, partial slip
-    inside the patch is left out, and a leather segment in the cue gives way sideways as well. Source: [Mindlin] J.
-    Appl. Mech. 1949; physics.md section 8.
+    Parameters
+    ----------
+    ratio : float
+        Stiffness of the spring over the loading stiffness of the tip, in (0, inf). Mindlin's value for a circular
+        contact is 2 (1 - nu)/(2 - nu), which is 0.75 at a Poisson ratio nu of 0.4.
+
+    Notes
+    -----
+    Adds: One state, the force of a lossless spring along the surface, whose size Coulomb friction limits to mu F_n.
+
+    Matters when: The strike is off centre. At first touch F_t/F_n is ratio tan(phi), so the tip does not slip at first
+    as long as that is below mu. Squirt falls strongly as the ratio falls.
+
+    Wrong when: The leather is no perfect spring, part of the contact patch slips while the rest sticks, or a leather
+    segment drawn into the cue gives way sideways as well.
+
+    Limit: The effect vanishes as 1/ratio as the ratio goes to infinity. With infinite friction it does not, because
+    nothing damps the vibration of the patch there.
+
+    Source: handbook: Effects; R. D. Mindlin, J. Appl. Mech. 16 (1949).
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> cue, stroke = cf.LumpedCue(mass=0.54, end_mass=0.006), cf.Stroke(offset=0.3)
+    >>> sheared = cf.strike(cf.Scene(cue, stroke=stroke, effects=(cf.TipShear(0.75),)))
+    >>> sheared.squirt < cf.strike(cf.Scene(cue, stroke=stroke)).squirt
+    True
     """
 
     ratio: Annotated[float, Quantity("", "(0, inf)")]
@@ -54,15 +98,39 @@ class TipShear(TipEffect):
 
 @dataclass(frozen=True)
 class PowerLawTip(TipEffect):
-    """A tip that stiffens as it is compressed: force over compression is a power law, not a line.
+    """A tip that stiffens as it is compressed: its force is a power of the compression.
 
-    Adds: F = k' d^exponent while loaded, for the base model's k d; 3/2 is Hertz's contact of round bodies, 1 the base
-    model. k' gives a head-on blow at ``speed``, m/s, the tip's contact time. The unloading curve is the loading curve
-    with its compression scaled by e^2, F = F_peak ((d - d0)/(e^2 d_peak))^exponent from d0 = (1 - e^2) d_peak, so that
-    the work given back is exactly e^2; below the old peak the tip is reloaded on it. Matters: contact time then falls
-    with speed as U^((1 - n)/(1 + n)), and squirt with it. Wrong: where e itself falls with speed, and at speeds at
-    which the leather bottoms out. exponent: in [1, inf). A `TipShear` beside it keeps its constant spring, ratio times
-    the base model's k. Source: Hertz 1882; [Stronge] ch. 6; physics.md section 8. Cost: stepped in time to about 1e-10.
+    Parameters
+    ----------
+    exponent : float, default 1.5
+        Exponent of the loading curve, in [1, inf). 3/2 is Hertz's law for round bodies; 1 is the base model.
+    speed : float, default 1.0
+        Speed of the head-on stroke, m/s, that has the tip's contact time.
+
+    Notes
+    -----
+    Adds: While the tip is loaded its force is F = k' d^exponent instead of k d. The constant k' is chosen such that a
+    head-on stroke at `speed` has the tip's contact time. The tip unloads on the same curve with its compression scaled
+    by e^2, F = F_peak ((d - d0)/(e^2 d_peak))^exponent with d0 = (1 - e^2) d_peak, which returns exactly the part e^2
+    of the work; below the old peak it is loaded again on that curve. A `TipShear` keeps its constant spring, ratio
+    times the base model's k. The contact is stepped in time, to about 1e-10.
+
+    Matters when: The speed of the stroke varies. The contact time falls with the speed as U^((1 - exponent)/(1 +
+    exponent)), and squirt falls with it.
+
+    Wrong when: The restitution itself falls with speed, or the leather is compressed so far that it bottoms out.
+
+    Limit: The effect vanishes as the exponent goes to 1.
+
+    Source: handbook: Effects; Hertz 1882; [Stronge] chapter 6.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> cue, law = cf.LumpedCue(mass=0.54, end_mass=0.006), (cf.PowerLawTip(1.5),)
+    >>> slow = cf.strike(cf.Scene(cue, stroke=cf.Stroke(1.0, 0.3), effects=law))
+    >>> cf.strike(cf.Scene(cue, stroke=cf.Stroke(4.0, 0.3), effects=law)).duration < slow.duration
+    True
     """
 
     once: ClassVar[bool] = True
@@ -72,14 +140,31 @@ class PowerLawTip(TipEffect):
 
 @dataclass(frozen=True)
 class RollingContact(TipEffect):
-    """The contact moves over ball and tip while they touch, and its normal turns with it.
+    """The contact point moves over ball and tip while they touch, and the direction of the contact turns with it.
 
-    Adds: the angle of the contact as a state; it grows as the tip passes the ball's centre: its rate is the tip's
-    velocity along t less the ball's, over R + r, r the dome's radius (`TipDome`; none: a sharp point). Matters: little;
-    squirt and spin change by a part of first order in U T/R (about 1 % at 1 m/s and 1 ms), so they grow with speed.
-    Wrong: where the leather gives so far, or is so wide, that its contact is no point; the compression beside R + r
-    (which changes the effect itself by a part of that order again) and the cue's turning are left out. Source: rigid
-    kinematics of two spheres, written out in `cuefem.contact.nonlinear`. Cost: stepped in time to about 1e-10.
+    Notes
+    -----
+    Adds: The angle of the contact becomes a state. It grows while the tip moves past the ball's centre, at a rate equal
+    to the velocity of the dome's centre less that of the ball's centre, along the tangent, over R + r. Here r is the
+    radius of the `TipDome`; without one the tip is a sharp point. The contact is stepped in time, to about 1e-10.
+
+    Matters when: The stroke is fast. The effect is small: squirt and spin change in proportion to U T/R, by about 1 %
+    at 1 m/s and 1 ms.
+
+    Wrong when: The leather gives so far, or is so wide, that its contact is no point. The compression is neglected
+    beside R + r, which changes the effect itself by a part of the order U T/R, and so is the turning of the cue.
+
+    Limit: The effect vanishes in proportion to U T/R, as the stroke becomes slow or the contact short.
+
+    Source: handbook: Effects; rigid kinematics of two spheres.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> cue, stroke = cf.LumpedCue(mass=0.54, end_mass=0.006), cf.Stroke(1.0, 0.3)
+    >>> turned = cf.strike(cf.Scene(cue, stroke=stroke, effects=(cf.RollingContact(),))).squirt
+    >>> abs(turned / cf.strike(cf.Scene(cue, stroke=stroke)).squirt - 1) < 0.05
+    True
     """
 
     once: ClassVar[bool] = True

@@ -19,11 +19,37 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class PointMass(CueEffect):
-    """A lump on the cue: clay, a pin, a weight bolt.
+    """A small heavy piece on the cue, such as clay, a joint pin or a weight bolt.
 
-    Adds: mass, kg, to deflection and to the axial motion, and rotary_inertia, kg m2, to rotation, at position, m from
-    the tip. Matters: near the tip, within the distance that bending waves travel in a contact. Wrong: where the lump
-    is longer than a bending wave of interest, or stiffens the shaft. Source: physics.md section 8; [BD Feb 2008] clay.
+    Parameters
+    ----------
+    position : float
+        Distance from the tip, m.
+    mass : float
+        Mass, kg.
+    rotary_inertia : float, default 0
+        Moment of inertia against turning with the cue, kg m^2.
+
+    Notes
+    -----
+    Adds: The mass takes part in the bending motion and in the motion along the axis; the rotary inertia takes part in
+    the rotation of the section.
+
+    Matters when: The piece sits near the tip, within the distance that bending waves travel during the contact.
+
+    Wrong when: The piece is longer than a bending wave that matters, or it stiffens the shaft.
+
+    Limit: The effect vanishes in proportion to its mass and its rotary inertia as both go to zero.
+
+    Source: handbook: Effects; clay on shafts was measured in Alciatore's Billiards Digest article of February 2008.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> shaft = cf.Cue((cf.Segment(0.7, 0.0125, 0.021, wood),), body_mass=0.42)
+    >>> cf.end_mass(cf.Scene(shaft, effects=(cf.PointMass(0.05, 5e-3),))) > cf.end_mass(cf.Scene(shaft))
+    True
     """
 
     position: Annotated[float, Quantity("m", "[0, inf)")]
@@ -47,13 +73,42 @@ class PointMass(CueEffect):
 
 @dataclass(frozen=True)
 class Support(CueEffect):
-    """What holds the cue from aside: a bridge hand, a grip, a clamp in a test stand.
+    """Something that holds the cue from the side: a bridge hand, a grip, or a clamp in a test stand.
 
-    Adds: springs stiffness, N/m, and rotational_stiffness, N m/rad, and a dashpot, N s/m, across the cue at position, m
-    from the tip; infinite stiffness takes the unknown out (a clamp). Nothing along the axis. Matters: stiff and near
-    the tip; a hand (up to 1e4 N/m) 8 in behind it changes squirt by 1 % at most, 1e6 N/m by up to a quarter.
-    Wrong: a hand is no linear spring and lets the cue slide; a clamped beam is softer than a clamped solid face by 1e-3
-    in frequency. Source: physics.md section 8.
+    Parameters
+    ----------
+    position : float
+        Distance from the tip, m.
+    stiffness : float, default 0
+        Stiffness against deflection, N/m. Infinity clamps the deflection.
+    rotational_stiffness : float, default 0
+        Stiffness against rotation, N m/rad. Infinity clamps the rotation.
+    dashpot : float, default 0
+        Damping of the deflection, N s/m.
+
+    Notes
+    -----
+    Adds: Two springs and a dashpot act across the cue; an infinite stiffness removes the unknown that it clamps.
+    Nothing acts along the axis.
+
+    Matters when: The support is stiff and near the tip. A hand (up to 1e4 N/m) 8 in behind the tip changes squirt by at
+    most 1 %; a support of 1e6 N/m changes it by up to a quarter.
+
+    Wrong when: The hand's nonlinearity or its sliding along the cue matters. A clamped beam also vibrates 1e-3 lower in
+    frequency than a beam with a clamped solid face.
+
+    Limit: The effect vanishes in proportion to both stiffnesses and the dashpot as all three go to zero.
+
+    Source: handbook: Effects.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> shaft = cf.Cue((cf.Segment(0.7, 0.0125, 0.021, wood),), body_mass=0.42)
+    >>> hand = cf.Support(0.2, stiffness=5e3)
+    >>> bool(cf.modes(shaft, 3, effects=(hand,)).frequencies[0] > 0)
+    True
     """
 
     position: Annotated[float, Quantity("m", "[0, inf)")]
@@ -80,13 +135,39 @@ class Support(CueEffect):
 
 @dataclass(frozen=True)
 class Joint(CueEffect):
-    """A joint of the cue that gives: a pin and its collars, a loose ferrule.
+    """A joint of the cue that gives a little: a pin with its collars, or a loose ferrule.
 
-    Adds: at position, m from the tip, between the ends of the cue, a jump of rotation by rotational_compliance,
-    rad/(N m), and of deflection by shear_compliance, m/N; zero keeps the two sides together. Two more unknowns, of
-    which a zero takes one out again; other effects at its place hold on to the butt side. Matters: within the distance
-    that bending waves travel in a contact; at a cue's middle joint hardly. Wrong: a joint that rattles or dissipates.
-    Source: two springs in series with the beam; physics.md section 8.
+    Parameters
+    ----------
+    position : float
+        Distance from the tip, m, between the two ends of the cue.
+    rotational_compliance : float, default 0
+        Jump of the rotation for each unit of bending moment, rad/(N m).
+    shear_compliance : float, default 0
+        Jump of the deflection for each unit of shear force, m/N.
+
+    Notes
+    -----
+    Adds: Rotation and deflection may jump at the joint, which takes two more unknowns; a compliance of zero removes its
+    unknown again. Other effects at the same place are attached to the butt side.
+
+    Matters when: The joint lies within the distance that bending waves travel during the contact; the joint in the
+    middle of a cue hardly matters.
+
+    Wrong when: The joint rattles or dissipates energy.
+
+    Limit: The effect vanishes in proportion to both compliances as they go to zero.
+
+    Source: handbook: Effects; two springs in series with the beam.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> shaft = cf.Cue((cf.Segment(0.7, 0.0125, 0.021, wood),), body_mass=0.42)
+    >>> loose = cf.modes(shaft, 3, effects=(cf.Joint(0.35, rotational_compliance=1e-3),))
+    >>> bool(loose.frequencies[0] < cf.modes(shaft, 3).frequencies[0])
+    True
     """
 
     position: Annotated[float, Quantity("m", "(0, inf)")]
@@ -118,15 +199,36 @@ class Joint(CueEffect):
 
 @dataclass(frozen=True)
 class StructuralDamping(CueEffect):
-    """What the cue's materials lose in every swing.
+    """The energy that the materials of the cue lose in every vibration.
 
-    Adds: to each vibrating mode k the viscous damping eta_k omega_k, 1/s, that loses in a free swing what the mode's
-    loss factor eta_k says (half-power width eta_k omega_k); eta_k is the mean of the materials' loss factors (or of
-    loss, a pure number in [0, 1), for every material instead), weighted with the strain energy that each material
-    stores in that mode; springs and joints store theirs without loss. Matters: hardly within a contact (maple's 0.012
-    loses 4 % of a swing's amplitude in a period), much for how long a cue rings. Wrong: loss factors of E and G differ
-    and vary with frequency; the coupling of modes by damping is left out. Never proportional to stiffness, which
-    overdamps high modes. Source: physics.md section 8; modal strain energy, Ungar & Kerwin, JASA 34 (1962) 954.
+    Parameters
+    ----------
+    loss : float or None, default None
+        Loss factor used for every material, in [0, 1). Each material's own loss factor is used if it is None.
+
+    Notes
+    -----
+    Adds: Each vibrating mode of angular frequency omega and loss factor eta is damped at the rate eta omega, its
+    half-power width. The mode's loss factor is the mean of the materials' loss factors, weighted by the strain energy
+    that each material stores in this mode. Springs and joints store energy without loss.
+
+    Matters when: You ask how long the cue rings. Within one contact it hardly matters: with maple's 0.012 an
+    oscillation loses 4 % of its amplitude in a period.
+
+    Wrong when: The loss factors of E and G differ or vary with frequency, or the damping couples the modes. Damping
+    proportional to stiffness is not used because it damps high modes far too much.
+
+    Limit: The effect vanishes in proportion to the loss factors as they go to zero.
+
+    Source: handbook: Effects; modal strain energy, Ungar & Kerwin, JASA 34 (1962) 954.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0, loss=0.012)
+    >>> shaft = cf.Cue((cf.Segment(0.7, 0.0125, 0.021, wood),), body_mass=0.42)
+    >>> 0 < cf.end_mass(cf.Scene(shaft, effects=(cf.StructuralDamping(),)))
+    True
     """
 
     loss: Annotated[float | None, Quantity("", "[0, 1)")] = None
@@ -140,16 +242,36 @@ class StructuralDamping(CueEffect):
 
 @dataclass(frozen=True)
 class AxialWaves(CueEffect):
-    """Waves along the cue: it is a rod, not rigid along its axis.
+    """Waves along the cue: the cue is an elastic rod along its axis instead of a rigid one.
 
-    Adds: rod modes (EA u', rho A; body_mass rigid at the butt end, point masses at their places) beside the rigid axial
-    motion, as many as lie below the highest bending frequency kept, with a tail where bending has one. Leather drawn at
-    the tip (`Cue.leather`) moves as one along the axis: its give is in the tip's law, its mass stays. Matters: a
-    contact of 1 ms sees the far end of a cue (4.2 m/ms in maple). It lasts longer, because the tip's stiffness stays
-    defined by m_a, and the ball leaves a little faster, because the rod gives back all that it takes: head on 1.1 ms
-    and e 0.73 become 1.27 ms and 0.78 on meshes/pool_maple.toml. Wrong: supports do not act along the axis, joints are
-    stiff along it; a hard tip drawn into the cue (phenolic, above 1 GPa) gives way in the tip's law and, by about
-    1 % of that, in the rod. Source: physics.md sections 4, 5, 8.
+    Notes
+    -----
+    Adds: Rod modes join the rigid motion along the axis, as many as lie below the highest bending frequency that is
+    kept, and with a tail if the bending modes have one. `Cue.body_mass` is rigid and sits at the butt end; point masses
+    sit at their places. Leather drawn at the tip (`Cue.leather`) moves as one piece along the axis, because the tip's
+    force law holds its give already; its mass stays.
+
+    Matters when: The contact is long enough for waves to run along the cue; in 1 ms they run 4.2 m in maple. The
+    contact lasts longer, because the tip's stiffness is still defined with the rigid axial mass, and the ball leaves a
+    little faster, because the rod gives back all the energy that it takes. Head on, 1.1 ms and a restitution of 0.73
+    become 1.27 ms and 0.78 on meshes/pool_maple.toml.
+
+    Wrong when: A support or a joint acts along the axis; here neither does. A hard tip drawn into the cue (phenolic,
+    above 1 GPa) gives in the tip's force law and again, by about 1 % of that, in the rod.
+
+    Limit: The effect vanishes as the axial stiffness EA goes to infinity; the longer contact and the changed squirt
+    fall as 1/EA.
+
+    Source: handbook: The beam, The strike, Effects.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> shaft = cf.Cue((cf.Segment(0.7, 0.0125, 0.021, wood),), body_mass=0.42)
+    >>> rigid = cf.strike(cf.Scene(shaft))
+    >>> rigid.duration < cf.strike(cf.Scene(shaft, effects=(cf.AxialWaves(),))).duration
+    True
     """
 
     once: ClassVar[bool] = True

@@ -13,13 +13,35 @@ from cuefem.quantity import Quantity
 class SecondHit(Effect):
     """The tip catches up with the ball and strikes it again.
 
-    Adds: after each separation the free motion of cue and ball in their plane, and a further contact wherever tip and
-    ball touch again within ``window``, s, of the first separation; its phases follow a phase ("apart", "free") in
-    Outcome.phases, and `cuefem.contact.second_hit.hits` lists them. A tip keeps the set that it had as the ball left,
-    and is pressed anew on the curve it was unloaded on. Matters: a soft or dead tip on a shaft that vibrates, a heavy
-    cue. Wrong: where the leather recovers its shape meanwhile, or the player's hand pushes or holds the cue; no
-    gravity, no table, and the normal stays that of the first touch unless `RollingContact` turns it. Source: physics.md
-    section 8.
+    Parameters
+    ----------
+    window : float, default 5e-3
+        Time after the first separation, s, within which a further contact counts.
+
+    Notes
+    -----
+    Adds: After each separation cue and ball move freely in their plane, and a new contact begins wherever they touch
+    again within the window. Its phases follow a phase ("apart", "free") in `Outcome.phases`, and
+    `cuefem.contact.second_hit.hits` lists the contacts. The tip keeps the compression that it had as the ball left, and
+    is loaded anew on the curve on which it was unloaded.
+
+    Matters when: The tip is soft or dead on a shaft that vibrates, or the cue is heavy.
+
+    Wrong when: The leather recovers its shape between the hits, or the player's hand pushes or holds the cue. Gravity
+    and the table are left out, and the direction of the contact stays that of the first touch unless `RollingContact`
+    turns it.
+
+    Limit: The effect vanishes as the window goes to zero; it changes nothing if the tip does not reach the ball again.
+
+    Source: handbook: Effects.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> cue, stroke = cf.LumpedCue(mass=0.54, end_mass=0.006), cf.Stroke(1.0, 0.3)
+    >>> again = cf.strike(cf.Scene(cue, stroke=stroke, effects=(cf.SecondHit(),)))
+    >>> abs(again.squirt - cf.strike(cf.Scene(cue, stroke=stroke)).squirt) < 1e-12
+    True
     """
 
     once: ClassVar[bool] = True
@@ -29,20 +51,45 @@ class SecondHit(Effect):
 
 @dataclass(frozen=True)
 class Elevation(Effect):
-    """A raised cue: it points down by ``angle`` rad, and the table pushes back while the tip presses the ball onto it.
+    """A raised cue: it points downwards, and the table pushes back while the tip presses the ball onto it.
 
-    Adds: the third dimension. The stroke's offset is to the side, and the plane of the cue's axis and the ball's centre
-    is tilted by the angle; in it the contact is the level one. The table is rigid and keeps the ball from going down,
-    gives it no bounce, and rubs at its lowest point with Coulomb friction (``friction``, ball on cloth); so the tip's
-    friction acts in two directions, and the cue bends in two planes, with the same modes and no twist. Squirt, speed
-    and ball_velocity are then along the table, spin is about the vertical; the rest is in Outcome.history (`velocity`
-    and `spin`, x right, y forward, z up). Matters: already at a few degrees for the spin about level axes and, by the
-    cloth's friction, in proportion to the angle, for the speed; for squirt with the angle's square. The ball's curve
-    after the stroke is none of it. Wrong: for jump shots, which need the bounce of cloth and slate; for a ball frozen
-    to another; where endless tip friction begins with a blow, in which the table does not rub. Not with TipShear,
-    RollingContact, SecondHit, nor a dead tip. angle: in [0, pi/2). Source: rigid-body mechanics, written out in
-    `cuefem.contact.elevation`; ball on cloth 0.15 to 0.4, typically 0.2: Alciatore, billiards.colostate.edu, physical
-    properties.
+    Parameters
+    ----------
+    angle : float
+        Angle of the cue's axis below the horizontal, rad, in [0, pi/2).
+    friction : float, default 0.2
+        Coulomb friction of the ball on the cloth. Measured values are 0.15 to 0.4.
+
+    Notes
+    -----
+    Adds: The third dimension. The stroke's offset is sideways, and the plane of the cue's axis and the ball's centre is
+    tilted by the angle; in that plane the contact is the level one. The rigid table keeps the ball from going down
+    without bouncing it, and rubs at its lowest point. The tip's friction therefore acts in two directions, and the cue
+    bends in two planes with the same modes and without twist. Squirt, speed and `ball_velocity` are then along the
+    table and spin is about the vertical; `Outcome.history` has the rest (`velocity` and `spin`, x right, y forward, z
+    up).
+
+    Matters when: The cue is raised by a few degrees, for the spin about level axes and, in proportion to the angle
+    through the friction of the cloth, for the speed. Squirt changes with the square of the angle. The curve of the ball
+    after the stroke is not included.
+
+    Wrong when: The stroke is a jump shot, which needs the bounce of cloth and slate, the ball is frozen to another one,
+    or infinite tip friction begins with an impulsive blow, in which the table does not rub. It cannot be used with a
+    dead tip, TipShear, RollingContact or SecondHit.
+
+    Limit: The effect vanishes as the angle goes to zero, in proportion to the angle with friction on the cloth and to
+    its square without.
+
+    Source: handbook: Effects; friction of a ball on cloth 0.15 to 0.4, typically 0.2: Alciatore,
+    billiards.colostate.edu, physical properties.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> cue, stroke = cf.LumpedCue(mass=0.54, end_mass=0.006), cf.Stroke(1.0, 0.3)
+    >>> raised = cf.strike(cf.Scene(cue, stroke=stroke, effects=(cf.Elevation(0.1),)))
+    >>> raised.ball_speed < cf.strike(cf.Scene(cue, stroke=stroke)).ball_speed
+    True
     """
 
     once: ClassVar[bool] = True

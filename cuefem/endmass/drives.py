@@ -1,4 +1,4 @@
-"""The definitions of effective end mass, each from the tip modes of a cue (physics.md section 6).
+"""The definitions of effective end mass, each from the tip modes of a cue (handbook: Effective end mass).
 
 For the tip's transverse impulse response h(t) = sum phi_k^2 cos(omega_k t):
 
@@ -161,7 +161,7 @@ def stick(tip: TipModes, scene: Scene) -> float:
 
 
 def stick_at_offset(tip: TipModes, scene: Scene) -> Any:
-    """End mass of a tip that sticks from the first touch, at the scene's own offset, kg (physics.md section 6).
+    """End mass of a tip that sticks from the first touch, at the scene's own offset, kg (handbook: Effective end mass).
 
     A bare cue's is that of `stick` with the contact of the offset (`limit_at`), exact to first order in the lightness
     of the cue's end. With effects at the tip or axial waves it is the lumped one with the squirt of a coupled strike

@@ -2,7 +2,7 @@
 
 The tip's transverse impulse response is h(t) = rigid + sum phi_k^2 cos(omega_k t), 1/kg. All functions take stacks of
 cues: omega and phi of shape (..., n), flexible modes only, and rigid of shape (...), the sum of the rigid motions'
-phi^2. Source: physics.md section 6.
+phi^2. Source: handbook: Effective end mass.
 """
 
 from __future__ import annotations

@@ -40,7 +40,7 @@ from cuefem.scene import Outcome, Scene
 DEFAULT_RTOL = 1e-2
 OFFSETS = tuple(round(0.03 * i, 2) for i in range(1, 21))  # b/R of the curves
 LONGEST_PIVOT = 1.5  # m; beyond it a pivot is behind the cue
-MEASURED_END_MASS = (5.8e-3, 14e-3)  # kg, of real cues; physics.md section 6
+MEASURED_END_MASS = (5.8e-3, 14e-3)  # kg, of real cues; handbook: Effective end mass
 MOST_EVENTS = 12
 LATE = ("late stick", "miscue")
 

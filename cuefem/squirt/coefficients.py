@@ -28,7 +28,7 @@ def lumped(offset: Any, *, cue_mass_ratio: Any, end_mass_ratio: Any, inertia: An
     """Coefficients of any lumped cue, with m the ball's mass.
 
     offset: b/R in (-1, 1); cue_mass_ratio: m_a/M, the cue's mass along its axis; end_mass_ratio: m_e/M, its effective
-    end mass; inertia: nu of the ball. Source: physics.md section 2 (B = B_ball + u u/m_a + w w/m_e).
+    end mass; inertia: nu of the ball. Source: handbook: Inverse mass (B = B_ball + u u/m_a + w w/m_e).
     """
     offset, cue, end, nu = checked(
         offset=offset, cue_mass_ratio=cue_mass_ratio, end_mass_ratio=end_mass_ratio, inertia=inertia

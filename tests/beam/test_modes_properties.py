@@ -66,7 +66,7 @@ def test_end_mass_in_other_units(cue: Cue, drive: str, length: float, time: floa
 @given(cues(), factors, st.sampled_from(["force", "velocity"]))
 @settings(max_examples=40)
 def test_end_mass_is_of_degree_one(cue: Cue, factor: float, drive: str) -> None:
-    """In (rhoA, rhoI, EI, kGA) together, at the same pulse: physics.md section 6; "stick" only with the ball too."""
+    """In (rhoA, rhoI, EI, kGA) together, at the same pulse (handbook: Effective end mass); "stick" the ball too."""
     other = scaled(cue, E=factor, G=factor, rho=factor)
     masses = [end_mass(Scene(c, tip=Tip(contact_time=2e-3)), drive, AT) for c in (cue, other)]  # type: ignore[arg-type]
     np.testing.assert_allclose(masses[1], masses[0] * factor, rtol=1e-9)

@@ -78,7 +78,7 @@ def test_it_is_friction_that_ends_the_ringing():
 
 
 def test_kims_shaft_at_its_rigid_limit():
-    """physics.md section 6: mass/m_e = 5.494268; squirt 4.093 degrees at b/R 0.3."""
+    """handbook: Effective end mass: mass/m_e = 5.494268; squirt 4.093 degrees at b/R 0.3."""
     tip = tip_modes_of(KIM, Resolution(4, 20, 12))
     assert 0.12 / roads.rigid_end_mass(tip) == pytest.approx(5.494268, rel=1e-7)
     assert np.degrees(common.lumped_squirt(KIM, roads.rigid_end_mass(tip))) == pytest.approx(4.093, abs=5e-4)

@@ -39,7 +39,7 @@ def everything(out):
 
 
 def felt(scene):
-    """B of physics.md section 2 from its definition, (t, n), and the first velocity."""
+    """B of handbook: Inverse mass from its definition, (t, n), and the first velocity."""
     s = scene.stroke.offset
     c = sqrt((1 - s) * (1 + s))
     k = scene.cue.coupling if s else 0.0

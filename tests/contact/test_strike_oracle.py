@@ -1,4 +1,4 @@
-"""The coupled strike against an independent oracle: scipy's solve_ivp on the equations of physics.md sections 2 and 5.
+"""The coupled strike against an independent oracle: scipy's solve_ivp on handbook: Inverse mass, The strike.
 
 The oracle shares nothing with cuefem.contact.linear: its state holds modal displacements and the tip's compression, not
 forces, in SI and unscaled, and it steps with DOP853 at tight tolerance, its phases ended by solve_ivp's events.

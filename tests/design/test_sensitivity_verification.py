@@ -36,7 +36,7 @@ def integral(found: Sensitivity, cue: Cue, *names: str) -> float:
 @pytest.mark.parametrize("drive", DRIVES)
 @pytest.mark.parametrize("path", sorted(MESHES.glob("*.toml")), ids=lambda path: path.stem)
 def test_the_parts_add_up_to_the_end_mass(path: Path, drive: Drive) -> None:
-    """physics.md section 6, on every cue in meshes/."""
+    """handbook: Effective end mass, on every cue in meshes/."""
     cue = load(path)
     assert isinstance(cue, Cue)
     struck = scene(cue)

@@ -170,7 +170,7 @@ def test_a_forbidden_effect_is_noticed(effect, monkeypatch):
 
 @pytest.mark.parametrize("effect", EXAMPLES, ids=lambda effect: f"{type(effect).__name__}")
 def test_every_effect_says_what_it_is(effect):
-    words = [f"{word}:" for word in ("Adds", "Matters", "Wrong", "Source")]
+    words = [f"{word}:" for word in ("Adds", "Matters when", "Wrong when", "Limit", "Source")]
     places = [type(effect).__doc__.find(word) for word in words]
     assert -1 not in places
     assert places == sorted(places)

@@ -169,7 +169,7 @@ def normal_rate(e: float, T: float) -> Callable[[float], float]:
 
 
 def stick_constants(found: Scene) -> tuple[float, float]:
-    """(c, K) of physics.md section 6."""
+    """(c, K) of handbook: Effective end mass."""
     M, nu, e, Q0 = found.ball.mass, found.ball.inertia, found.tip.restitution, found.cue.mass / found.ball.mass
     return (1 + 1 / nu) / M, (1 + e) * (1 + 1 / nu + 1 / Q0) / (1 + 1 / Q0)
 
@@ -267,7 +267,7 @@ def test_stick_depends_on_restitution(e: float, grams: float) -> None:
 
 @pytest.mark.parametrize("T", [0.5e-3, 1e-3, 2e-3, 4e-3])
 def test_force_and_velocity_against_stick(T: float) -> None:
-    """Physics.md section 6: 1.9 to 2.1 and 1.16 to 1.18 times the stick value, 0.5 to 4 ms."""
+    """handbook: Effective end mass: 1.9 to 2.1 and 1.16 to 1.18 times the stick value, 0.5 to 4 ms."""
     found = scene(kim(), T)
     unit = end_mass(found, "stick")
     assert 1.85 < end_mass(found, "force") / unit < 2.15

@@ -82,7 +82,7 @@ def test_squirt_equivalent_is_what_the_impulse_solver_wants():
 
 
 def test_definitions_on_kims_shaft_at_one_millisecond():
-    """physics.md section 6: stick 5.3 g, force 10.4 g; the paper's 12 g is 3 g at the tip."""
+    """handbook: Effective end mass: stick 5.3 g, force 10.4 g; the paper's 12 g is 3 g at the tip."""
     struck = common.scene(common.cue("kim"), 1e-3, 0.3)
     case = end_mass.case("kim", 1e-3, 0.3, tip_modes_of(struck))
     assert case.masses["stick"] == pytest.approx(5.27e-3, rel=5e-3)

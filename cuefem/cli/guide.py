@@ -1,0 +1,55 @@
+"""The command that opens the handbook."""
+
+from __future__ import annotations
+
+import tempfile
+import webbrowser
+from pathlib import Path
+
+import click
+
+from cuefem.handbook import CHAPTERS
+
+
+@click.command(short_help="Open the handbook: the physics, a glossary, and what each effect does.")
+@click.argument("chapter", type=click.Choice(CHAPTERS), required=False, metavar="[CHAPTER]")
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), metavar="PAGE.html", help="Write the page here instead."
+)
+@click.option("--print", "in_terminal", is_flag=True, help="Print the text in the terminal instead.")
+def guide(chapter: str | None, output: Path | None, in_terminal: bool) -> None:
+    """Open the handbook in the browser: the physics, a glossary, and what each effect does.
+
+    CHAPTER opens (or prints) one chapter: start, frame, inverse_mass, impulse_solver, beam, strike, dead_tip, end_mass,
+    effects, measured, paper, glossary or sources.
+    """
+    from cuefem.handbook import chapters
+    from cuefem.io import InputError, save_page
+
+    if in_terminal:
+        if output is not None:
+            raise InputError(output, "--output", "must be left out with --print, which writes no page")
+        _print([found.text for found in chapters() if chapter in (None, found.name)])
+        return
+    from cuefem.handbook.page import page
+
+    if output is not None:
+        save_page(page(), output)
+        click.echo(f"wrote {output}")
+        return
+    with tempfile.NamedTemporaryFile(prefix="cuefem-guide-", suffix=".html", delete=False) as made:
+        path = Path(made.name)
+    path.write_text(page(), encoding="utf-8")
+    address = path.as_uri() + (f"#{chapter}" if chapter else "")
+    click.echo(f"opened {address}" if webbrowser.open(address) else f"no browser found; open this file in one: {path}")
+
+
+def _print(texts: list[str]) -> None:
+    from rich.console import Console
+    from rich.markdown import Markdown
+
+    console = Console()
+    if not console.is_terminal:
+        console.width = 100
+    for text in texts:
+        console.print(Markdown(text))

@@ -1,0 +1,69 @@
+"""The handbook: the physics behind the package, one chapter a file, and each effect's five lines from its docstring."""
+
+from __future__ import annotations
+
+import inspect
+from importlib.resources import files
+from typing import NamedTuple
+
+__all__ = ["CHAPTERS", "LINES", "Chapter", "chapters", "effect_lines"]
+
+# The chapters' files in the order of reading.
+CHAPTERS = (
+    "start",
+    "frame",
+    "inverse_mass",
+    "impulse_solver",
+    "beam",
+    "strike",
+    "dead_tip",
+    "end_mass",
+    "effects",
+    "measured",
+    "paper",
+    "glossary",
+    "sources",
+)
+# The headed lines of every effect's docstring, in their order.
+LINES = ("Adds", "Matters when", "Wrong when", "Limit", "Source")
+
+
+class Chapter(NamedTuple):
+    """A chapter: the name of its file, its title, and its markdown text with the title as its first line."""
+
+    name: str
+    title: str
+    text: str
+
+
+def chapters() -> tuple[Chapter, ...]:
+    """Every chapter in the order of reading, the effects' lines included."""
+    return tuple(_chapter(name) for name in CHAPTERS)
+
+
+def _chapter(name: str) -> Chapter:
+    text = files(__package__).joinpath(f"{name}.md").read_text(encoding="utf-8")
+    title = text.partition("\n")[0].removeprefix("# ")
+    return Chapter(name, title, text + _every_effect() if name == "effects" else text)
+
+
+def effect_lines(effect: type) -> dict[str, str]:
+    """The five lines of an effect's docstring by their headings."""
+    found = {}
+    for paragraph in (inspect.getdoc(effect) or "").split("\n\n"):
+        head, _, rest = paragraph.removeprefix("Notes\n-----\n").partition(":")
+        if head in LINES:
+            found[head] = " ".join(rest.split())
+    return found
+
+
+def _every_effect() -> str:
+    """The effects as markdown: a heading, the summary and the five lines of each."""
+    from cuefem.design.worth import effect_kinds  # loaded when used: the list of chapters needs no numpy
+
+    parts = []
+    for name, kind in effect_kinds().items():
+        summary = (inspect.getdoc(kind) or "").partition("\n")[0]
+        lines = "\n".join(f"- **{head}:** {text}" for head, text in effect_lines(kind).items())
+        parts.append(f"\n## {name}\n\n{summary}\n\n{lines}\n")
+    return "".join(parts)

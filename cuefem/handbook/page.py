@@ -1,0 +1,78 @@
+"""The handbook as one HTML page that needs no network."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from html import escape
+from importlib.resources import files
+from string import Template
+
+from markdown_it import MarkdownIt
+from markdown_it.token import Token
+
+from cuefem.handbook import chapters
+
+PAGE = Template("""<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
+<link rel="icon" href="data:,">
+<title>cuefem handbook</title>
+<style>
+$style</style>
+</head>
+<body>
+<header>
+<p class="kind">cuefem</p>
+<p class="name">Handbook</p>
+</header>
+<nav aria-label="Contents">
+<h2>Contents</h2>
+<ol>
+$contents</ol>
+</nav>
+<main>
+$body</main>
+</body>
+</html>
+""")
+
+
+def page() -> str:
+    """The whole handbook with its table of contents."""
+    entries, bodies = [], []
+    for chapter in chapters():
+        tokens, headings = _parsed(chapter.name, chapter.text)
+        inner = "".join(f'<li><a href="#{anchor}">{escape(title)}</a></li>\n' for anchor, title in headings)
+        below = f"<ul>\n{inner}</ul>\n" if inner else ""
+        entries.append(f'<li><a href="#{chapter.name}">{escape(chapter.title)}</a>\n{below}</li>\n')
+        html = _MARKDOWN.renderer.render(tokens, _MARKDOWN.options, {})
+        html = html.replace("<table>", '<div class="scroll"><table>').replace("</table>", "</table></div>")
+        bodies.append(f"<section>\n{html}</section>\n")
+    style = files(__package__).joinpath("page.css").read_text(encoding="utf-8")
+    return PAGE.substitute(style=style, contents="".join(entries), body="".join(bodies))
+
+
+def _text(_: object, tokens: Sequence[Token], index: int, *__: object) -> str:
+    """A text token with letters such as m_e as subscripts."""
+    return re.sub(r"\b([A-Za-zα-ωΩ]{1,2})_([A-Za-z∥⊥0]{1,4})(?![A-Za-z0-9_])", r"\1<sub>\2</sub>", escape(tokens[index].content))
+
+
+_MARKDOWN = MarkdownIt("commonmark", {"html": False}).enable("table")
+_MARKDOWN.add_render_rule("text", _text)
+
+
+def _parsed(name: str, text: str) -> tuple[list[Token], list[tuple[str, str]]]:
+    """A chapter's tokens with anchors at the headings, and anchor and title of those below the chapter's own."""
+    tokens, headings = _MARKDOWN.parse(text), []
+    for i, token in enumerate(tokens):
+        if token.type == "heading_open":
+            title = tokens[i + 1].content
+            anchor = name if token.tag == "h1" else f"{name}-{re.sub(r'[^a-z0-9]+', '-', title.lower()).strip('-')}"
+            token.attrSet("id", anchor)
+            if token.tag == "h2":
+                headings.append((anchor, title))
+    return tokens, headings

@@ -1,0 +1,147 @@
+"""The handbook: every citation names a chapter, every effect has its five lines and stands in it, the page is whole."""
+
+from __future__ import annotations
+
+import re
+import webbrowser
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from cuefem.design.worth import effect_kinds
+from cuefem.handbook import CHAPTERS, LINES, chapters, effect_lines
+from cuefem.handbook.page import page
+from tests.helpers.command_line import call
+
+ROOT = Path(__file__).parents[2]
+TITLES = {chapter.title for chapter in chapters()}
+CITED = re.compile(r"[Hh]andbook:\s+([A-Z][^,;.:()\"`]+(?:,\s+[A-Z][^,;.:()\"`]+)*)")
+SOURCES = sorted(
+    path
+    for folder in ("cuefem", "studies", "tests", "meshes")
+    for path in (ROOT / folder).rglob("*")
+    if path.suffix in (".py", ".md", ".toml") and path != Path(__file__)
+)
+EFFECTS = effect_kinds()
+
+
+def cited_wrongly(text: str) -> list[str]:
+    """The citations in a text that do not begin with a chapter's title, and the places after a comma that do not."""
+    wrong = []
+    for found in CITED.findall(re.sub(r"\n\s*(?:# )?", "\n", text)):
+        first, *others = (" ".join(part.split()) for part in found.split(","))
+        names = [first, *(other for other in others if other[:1].isupper())]
+        wrong += [name for name in names if not any(name == title or name.startswith(title + " ") for title in TITLES)]
+    return wrong
+
+
+def test_every_citation_names_a_chapter() -> None:
+    texts = {path: path.read_text(encoding="utf-8") for path in SOURCES}
+    assert sum(len(CITED.findall(text)) for text in texts.values()) > 40
+    assert {str(path): wrong for path, text in texts.items() if (wrong := cited_wrongly(text))} == {}
+
+
+@pytest.mark.parametrize(
+    ("text", "wrong"),
+    [
+        ("handbook: The strike.", []),
+        ("handbook: The beam, The strike, and more (handbook:\n    Effects).", []),
+        ("handbook: Measured squirt, claim by claim.", []),
+        ("handbook: The stroke.", ["The stroke"]),
+        ("handbook: The beam, The stroke.", ["The stroke"]),
+    ],
+)
+def test_a_wrong_citation_is_found(text: str, wrong: list[str]) -> None:
+    assert cited_wrongly(text) == wrong
+
+
+def test_every_chapter_is_listed_once() -> None:
+    files = {path.stem for path in (ROOT / "cuefem" / "handbook").glob("*.md")}
+    assert (len(CHAPTERS), set(CHAPTERS)) == (len(files), files)
+    assert len(TITLES) == len(CHAPTERS)
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_every_effect_has_five_lines_in_order(name: str) -> None:
+    lines = effect_lines(EFFECTS[name])
+    assert tuple(lines) == LINES
+    assert all(text.endswith(".") for text in lines.values())
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_the_handbook_shows_every_effect(name: str) -> None:
+    (text,) = (chapter.text for chapter in chapters() if chapter.name == "effects")
+    section = text.partition(f"\n## {name}\n")[2].partition("\n## ")[0]
+    assert [line for line in LINES if f"- **{line}:** {effect_lines(EFFECTS[name])[line]}" not in section] == []
+
+
+class Links(HTMLParser):
+    """The anchors of a page, its links, and the tags that are open."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.anchors: list[str] = []
+        self.links: list[str] = []
+        self.open: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        given = dict(attrs)
+        self.anchors += [given["id"] or ""] if "id" in given else []
+        self.links += [given[name] or "" for name in ("href", "src") if name in given]
+        self.open += [tag] if tag not in ("meta", "link", "br", "hr") else []
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+
+def test_the_page_needs_nothing_from_the_network_and_its_links_lead_somewhere() -> None:
+    found = Links()
+    found.feed(page())
+    assert found.open == []
+    assert len(found.anchors) == len(set(found.anchors))
+    assert {link for link in found.links if not link.startswith("#")} == {"data:,"}
+    assert {link[1:] for link in found.links if link.startswith("#")} <= set(found.anchors)
+    assert set(CHAPTERS) <= set(found.anchors)
+
+
+def test_the_page_has_every_chapter_and_every_effect() -> None:
+    html = page()
+    assert [title for title in TITLES if f">{title}</h1>" not in html] == []
+    assert [name for name in EFFECTS if f">{name}</h2>" not in html] == []
+
+
+def test_the_command_writes_the_page(tmp_path: Path) -> None:
+    path = tmp_path / "guide.html"
+    assert call("guide", "-o", path) == (0, f"wrote {path}\n", "")
+    assert path.read_text(encoding="utf-8") == page()
+    assert call("guide", "-o", tmp_path / "guide.txt")[0] == 2
+
+
+@pytest.mark.parametrize(
+    ("there", "said"), [(True, "opened file:"), (False, "no browser found; open this file in one")]
+)
+def test_the_command_opens_a_browser(there: bool, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    opened: list[str] = []
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    monkeypatch.setattr(webbrowser, "open", lambda address: opened.append(address) or there)
+    status, out, err = call("guide", "glossary")
+    assert (status, err) == (0, "")
+    assert out.startswith(said)
+    (made,) = tmp_path.glob("cuefem-guide-*.html")
+    assert opened == [f"{made.as_uri()}#glossary"]
+    assert made.read_text(encoding="utf-8") == page()
+
+
+def test_the_command_prints_a_chapter(tmp_path: Path) -> None:
+    status, out, err = call("guide", "glossary", "--print")
+    assert (status, err) == (0, "")
+    assert "effective end mass" in out
+    assert "Hutchinson" not in out
+    assert "Hutchinson" in call("guide", "--print")[1]
+    assert call("guide", "--print", "-o", tmp_path / "guide.html")[0] == 2
+
+
+def test_the_help_names_every_chapter() -> None:
+    said = " ".join(call("guide", "--help")[1].split())
+    assert [name for name in CHAPTERS if name not in said] == []
