@@ -115,6 +115,15 @@ def test_a_breach_is_found(part: str, source: str, wrong: list[str]) -> None:
     assert out_of_order(part, source) == wrong
 
 
+def test_public_names_are_there() -> None:
+    """Every name of the stub is where it says, `dir` shows it, and it can be imported."""
+    assert {"load", "strike", "CueBatch", "StickLimit"} <= set(dir(cuefem))
+    for name in dir(cuefem):
+        assert getattr(cuefem, name).__name__ == name
+    with pytest.raises(AttributeError, match="stirke"):
+        _ = cuefem.stirke  # type: ignore[attr-defined]
+
+
 HEAVY = ["skfem", "scipy", "pint", "pydantic", "matplotlib", "meshio", "tomlkit", "rich", "click"]
 
 

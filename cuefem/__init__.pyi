@@ -1,0 +1,35 @@
+from .accuracy import resolve as resolve, resolve_end_mass as resolve_end_mass
+from .beam.modes import modes as modes
+from .contact.motion import motion as motion
+from .contact.place import Placed as Placed, place as place
+from .contact.strike import strike as strike
+from .cue import Cue as Cue, LumpedCue as LumpedCue, Material as Material, Segment as Segment
+from .design.batch import CueBatch as CueBatch, batch_stick as batch_stick
+from .effects import (
+    AxialWaves as AxialWaves,
+    Effect as Effect,
+    Elevation as Elevation,
+    Joint as Joint,
+    PointMass as PointMass,
+    PowerLawTip as PowerLawTip,
+    RollingContact as RollingContact,
+    SecondHit as SecondHit,
+    StructuralDamping as StructuralDamping,
+    Support as Support,
+    TipDome as TipDome,
+    TipShear as TipShear,
+)
+from .endmass.drives import end_mass as end_mass
+from .endmass.lumped import impulse as impulse, lump as lump
+from .endmass.undamped import StickLimit as StickLimit
+from .io import load as load, save as save
+from .scene import (
+    Ball as Ball,
+    Outcome as Outcome,
+    Resolution as Resolution,
+    Scene as Scene,
+    Stroke as Stroke,
+    Tip as Tip,
+)
+
+__version__: str
