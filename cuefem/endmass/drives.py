@@ -52,14 +52,19 @@ def end_mass(scene: Scene, drive: Drive = "stick", at: Resolution | None = None)
     ValueError for an unknown drive.
     """
     formula = formula_of(drive)
-    if isinstance(scene.cue, LumpedCue):
-        return scene.cue.end_mass
+    if scene.lumped is not None:
+        return scene.lumped.end_mass
     return formula(tip_modes_for(drive, scene, at), scene)
 
 
 def tip_modes_for(drive: str, scene: Scene, at: Resolution | None = None) -> TipModes:
-    """Tip modes that a definition takes of a finite-element cue: those of a strike for "squirt", else more of them."""
-    return tip_modes_of(scene, at, least=LEAST if drive == "squirt" else LEAST_STUCK)
+    """Tip modes that a definition takes: those of a strike where it is found from one, else more of them."""
+    return tip_modes_of(scene, at, least=LEAST if of_strike(drive, scene) else LEAST_STUCK)
+
+
+def of_strike(drive: str, scene: Scene) -> bool:
+    """Whether the definition is found from the scene's own strike: "squirt" off centre."""
+    return drive == "squirt" and bool(np.any(scene.stroke.offset))
 
 
 class Spread(NamedTuple):
@@ -90,8 +95,8 @@ def end_mass_spreads(scene: Scene, at: Resolution | None = None) -> Callable[[Dr
     The spread is that of plain sums, without a tail. A definition that takes a coupled strike is tried at 5 cutoffs,
     one in closed form at 13.
     """
-    if isinstance(scene.cue, LumpedCue):
-        same = scalar("LumpedCue.end_mass", scene.cue.end_mass)
+    if scene.lumped is not None:
+        same = scalar("LumpedCue.end_mass", scene.lumped.end_mass)
         return lambda drive: Spread(same, same, same)
     tip = tip_modes_for("stick", scene, at)
     plain = tip if at is not None else tip_modes_of(scene, default_resolution(scene, periods=PLAIN_PERIODS))
@@ -101,7 +106,7 @@ def end_mass_spreads(scene: Scene, at: Resolution | None = None) -> Callable[[Dr
         formula, cutoffs = formula_of(drive), 5 if _strikes(drive, tip, scene) else 13
         least = rigid + math.ceil((whole - rigid) / 4)
         kept = np.unique(np.linspace(least, whole, cutoffs).astype(int))
-        whole_tip = tip_modes_for(drive, scene, at) if drive == "squirt" and at is None else tip
+        whole_tip = tip_modes_for(drive, scene, at) if of_strike(drive, scene) and at is None else tip
         values = [formula(whole_tip, scene), *(formula(plain.lowest(n), scene) for n in kept)]
         error = ringing(tip, StickLimit.of(scene)) if drive == "stick" and tip.radiation is not None else None
         reach = [values[0] * (1 + side * (error or 0.0)) for side in (-1, 1)]
