@@ -13,14 +13,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cuefem.beam import assemble
 from cuefem.beam.modes import Modes, solve
+from cuefem.beam.system import assemble
 from cuefem.beam.tail import Deflect, flexibility, tail
 from cuefem.beam.tip import TipModes
 from cuefem.beam.waves import mesh_for, modes_below
 from cuefem.contact.linear import APART
 from cuefem.contact.strike import strike, strike_modes
-from cuefem.cue import Array, Cue, LumpedCue
+from cuefem.cue import Array
 from cuefem.effects import Elevation, SecondHit
 from cuefem.endmass.drives import Drive, end_mass, formula_of
 from cuefem.quantity import Quantity, scalar
@@ -76,7 +76,7 @@ def resolve(scene: Scene, rtol: float) -> Outcome:
     last.
     """
     rtol = RTOL.check("resolve rtol", rtol)
-    if isinstance(scene.cue, LumpedCue):
+    if scene.lumped is not None:
         return replace(strike(scene), error=ROUNDING)
     found = None
     for rung in ladder(scene):
@@ -106,7 +106,7 @@ def ladder(scene: Scene) -> Iterator[Rung]:
 def resolve_end_mass(scene: Scene, drive: Drive = "stick", rtol: float = 1e-4) -> tuple[float, float]:
     """(end mass, kg, its estimated relative error) to relative accuracy ``rtol``; see `cuefem.end_mass`, `resolve`."""
     rtol, formula = RTOL.check("resolve_end_mass rtol", rtol), formula_of(drive)
-    if isinstance(scene.cue, LumpedCue):
+    if scene.lumped is not None:
         return float(end_mass(scene, drive)), ROUNDING
     found = None
     for found in end_mass_ladder(scene, formula):
@@ -242,10 +242,9 @@ class _Tips(NamedTuple):
 
 def _tips(scene: Scene) -> Iterator[_Tips]:
     """Rungs of the ladder: each group of them on one mesh, with one eigenproblem and one factorisation."""
-    assert isinstance(scene.cue, Cue)
     for group in _groups(scene):
-        elements, order = mesh_for(scene.cue, group[-1])
-        system = assemble(scene.cue, elements=elements, order=order, effects=scene.cue_effects)
+        elements, order = mesh_for(scene.shaft, group[-1])
+        system = assemble(scene.shaft, elements=elements, order=order, effects=scene.cue_effects)
         whole, deflect = solve(system, group[-1]), flexibility(system)
         for count in group:
             yield _Tips(Resolution(elements, order, count), scene, whole, deflect)
@@ -253,8 +252,7 @@ def _tips(scene: Scene) -> Iterator[_Tips]:
 
 def _groups(scene: Scene) -> list[list[int]]:
     """Numbers of modes of the rungs, those of one mesh together: the first up to `JUDGED`, then each by itself."""
-    assert isinstance(scene.cue, Cue)
-    first = min(max(FIRST, modes_below(scene.cue, 2 * np.pi * 3 / scene.contact_time)), MOST // 4)
+    first = min(max(FIRST, modes_below(scene.shaft, 2 * np.pi * 3 / scene.contact_time)), MOST // 4)
     counts = [round(first * math.pow(RATIO, k)) for k in range(20)]
     counts = [*(count for count in counts if count < MOST / RATIO**0.5), MOST]
     return [counts[: JUDGED + 1], *([count] for count in counts[JUDGED + 1 :])]

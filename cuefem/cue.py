@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import takewhile
-from typing import Annotated, NamedTuple
+from typing import Annotated, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -269,6 +269,9 @@ class LumpedCue:
     mass: inertia felt along the axis, kg. end_mass: inertia felt across it, the effective end mass m_e (never the m_c
     of [Kim]: see `two_part`), kg. |coupling| < 1/sqrt(mass end_mass). Fields may be arrays that broadcast.
     """
+
+    # A lumped cue has no segments: what needs a drawing asks for them.
+    segments: ClassVar[tuple[Segment, ...]] = ()
 
     mass: Annotated[Number, Quantity("kg", "(0, inf)")]
     end_mass: Annotated[Number, Quantity("kg", "(0, inf)")]

@@ -88,6 +88,18 @@ class Scene:
         check_effects(self.cue, self.effects)
 
     @property
+    def shaft(self) -> Cue:
+        """The finite-element cue, for whatever needs its segments; ValueError for a lumped cue, which has none."""
+        if isinstance(self.cue, LumpedCue):
+            raise ValueError("Scene.cue must be a Cue of segments: its modes or its shape are needed; got a LumpedCue")
+        return self.cue
+
+    @property
+    def lumped(self) -> LumpedCue | None:
+        """The lumped cue, for whatever takes its numbers as they are; None where the cue is of finite elements."""
+        return self.cue if isinstance(self.cue, LumpedCue) else None
+
+    @property
     def cue_effects(self) -> tuple[CueEffect, ...]:
         """Those of the effects that act on the cue, in an order of their own: sums do not depend on the list's."""
         return tuple(sorted((effect for effect in self.effects if isinstance(effect, CueEffect)), key=repr))

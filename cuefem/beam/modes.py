@@ -10,7 +10,8 @@ import scipy.linalg as la
 import scipy.sparse.linalg as sla
 from numpy.typing import ArrayLike
 
-from cuefem.beam import ActsOnCue, System, assemble
+from cuefem.beam.mesh import ActsOnCue
+from cuefem.beam.system import System, assemble
 from cuefem.beam.waves import EVEN, mesh_for, modes_below
 from cuefem.cue import Array, Cue, Section
 from cuefem.quantity import Quantity, check_count, check_kind

@@ -98,13 +98,11 @@ def _animation(scene: Scene, *, count: int, frames: int, until: float | None, sc
 
     from cuefem.beam.modes import modes
     from cuefem.contact.motion import last_contact, motion
-    from cuefem.cue import Cue
     from cuefem.io.paraview import save_modes, save_strike
 
     last = 3 * last_contact(scene) if until is None else until
     moving = motion(scene, np.linspace(0, last, frames))
-    cue = scene.cue
-    assert isinstance(cue, Cue)  # motion takes no other
+    cue = scene.shaft
     found = modes(cue, count, effects=scene.cue_effects)
 
     def put(folder: Path) -> None:

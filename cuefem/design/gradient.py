@@ -12,12 +12,11 @@ from typing import Any
 
 import numpy as np
 
-from cuefem.beam import table
+from cuefem.beam.basis import table
 from cuefem.cue import Array, Cue, Section, SegmentRows, section_properties
 from cuefem.design.sensitivity import Sensitivity, sensitivity
 from cuefem.endmass.drives import Drive
 from cuefem.endmass.undamped import StickLimit
-from cuefem.quantity import check_kind
 from cuefem.scene import Resolution, Scene
 
 STEP = 1e-30  # of a complex step, relative to the number: exact to rounding
@@ -46,9 +45,7 @@ def gradient(scene: Scene, drive: Drive = "stick", at: Resolution | None = None)
     Exact for the modes kept, on the mesh as it is; the contact time is held, from the tip's stiffness too. Cost: that
     of `sensitivity`, one dense eigenproblem, for however many numbers. Errors: those of `sensitivity`.
     """
-    check_kind("gradient scene.cue", scene.cue, Cue)
-    assert isinstance(scene.cue, Cue)
-    found, rows = sensitivity(scene, drive, at), drawing(scene.cue)
+    found, rows = sensitivity(scene, drive, at), drawing(scene.shaft)
     heavier = masses_to(rows)
     own = densities_to(found, rows)
     end_mass_to = SegmentRows(*(d + found.axial_mass * m for d, m in zip(own, heavier, strict=True)))

@@ -111,8 +111,7 @@ class Design:
     @property
     def base(self) -> SegmentRows:
         """The base cue's numbers, arrays (segments,)."""
-        assert isinstance(self.scene.cue, Cue)
-        return drawing(self.scene.cue)
+        return drawing(self.scene.shaft)
 
     @property
     def start(self) -> Array:
@@ -135,13 +134,12 @@ class Design:
 
     def cue(self, point: Array) -> Cue:
         """The cue at a point; ValueError where it cannot be made."""
-        assert isinstance(self.scene.cue, Cue)
         rows = self.rows(point)
         shapes: list[dict[str, Any]] = [
             {name: float(getattr(rows, name)[i]) for name in SHAPES} for i in range(len(rows.length))
         ]
-        segments = (replace(s, **shape) for s, shape in zip(self.scene.cue.segments, shapes, strict=True))
-        return replace(self.scene.cue, segments=tuple(segments))
+        segments = (replace(s, **shape) for s, shape in zip(self.scene.shaft.segments, shapes, strict=True))
+        return replace(self.scene.shaft, segments=tuple(segments))
 
     def along(self, to: SegmentRows) -> Array:
         """A gradient to the drawing's numbers as one to the variables, (variables,)."""
@@ -154,8 +152,7 @@ class Design:
         Complex points for all but "squirt" and "first_frequency".
         """
         rows = self.rows(points)
-        assert isinstance(self.scene.cue, Cue)
-        batch = CueBatch(rows, np.full(len(points), self.scene.cue.body_mass))
+        batch = CueBatch(rows, np.full(len(points), self.scene.shaft.body_mass))
         match name:
             case "squirt":
                 return batch_stick(batch, self.scene, at=self.at).squirt[:, None]

@@ -17,12 +17,12 @@ from typing import Any
 
 import numpy as np
 
-from cuefem.beam import System, assemble, table
+from cuefem.beam.basis import table
 from cuefem.beam.modes import solve
-from cuefem.cue import Array, Cue
+from cuefem.beam.system import System, assemble
+from cuefem.cue import Array
 from cuefem.endmass.drives import Drive
 from cuefem.endmass.undamped import StickLimit, smooth_start_swing
-from cuefem.quantity import check_kind
 from cuefem.scene import Resolution, Scene
 from cuefem.tip_modes import PLAIN_PERIODS, default_resolution
 
@@ -70,14 +70,12 @@ def sensitivity(scene: Scene, drive: Drive = "stick", at: Resolution | None = No
     drive: "stick", "velocity" or "force". Sum rule (physics.md section 6): the densities times their properties
     integrate to m_e, for "stick" to m_e - M dm/dM - m_a dm/dm_a. Cost: all modes of the mesh, one dense eigenproblem.
     """
-    check_kind("sensitivity scene.cue", scene.cue, Cue)
-    assert isinstance(scene.cue, Cue)
     if drive not in _GRADIENTS:
         raise ValueError(f"sensitivity drive must be one of {', '.join(_GRADIENTS)}; got {drive!r}")
     if scene.effects:
         raise ValueError(f"sensitivity takes a scene without effects; got {len(scene.effects)}")
     at = at or default_resolution(scene, periods=PLAIN_PERIODS)
-    system = assemble(scene.cue, elements=at.elements, order=at.order)
+    system = assemble(scene.shaft, elements=at.elements, order=at.order)
     found = solve(system, system.mesh.unknowns - system.rigid.shape[1])
     kept, squares, phi = at.modes, found.omega**2, found.vectors[0]
     still = found.rigid_vectors[0]
@@ -91,9 +89,7 @@ def frequency_sensitivity(scene: Scene, mode: int, at: Resolution) -> Sensitivit
 
     Rayleigh's quotient: d lambda_k = dK_kk - lambda_k dM_kk.
     """
-    check_kind("frequency_sensitivity scene.cue", scene.cue, Cue)
-    assert isinstance(scene.cue, Cue)
-    system = assemble(scene.cue, elements=at.elements, order=at.order)
+    system = assemble(scene.shaft, elements=at.elements, order=at.order)
     found = solve(system, mode)
     frequency, square = found.frequencies[-1], found.omega[-1] ** 2
     stiff = np.array([[1 / (8 * np.pi**2 * frequency)]])

@@ -9,17 +9,17 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from cuefem.beam import assemble
 from cuefem.beam.modes import Modes, solve
-from cuefem.beam.tip import TipModes, lumped_tip_modes
+from cuefem.beam.system import assemble
+from cuefem.beam.tip import TipModes
 from cuefem.contact.strike import strike_modes
-from cuefem.cue import Array, Cue, LumpedCue
+from cuefem.cue import Array
 from cuefem.design.batch import BatchModes, CueBatch, Stick, batch_frequencies, batch_modes, stick_of
 from cuefem.effects import Support
 from cuefem.endmass.drives import flexible, small_offset_slope, stick, stick_at_offset
 from cuefem.endmass.undamped import StickLimit
 from cuefem.scene import Outcome, Resolution, Scene
-from cuefem.tip_modes import tip_modes_from
+from cuefem.tip_modes import tip_modes_from, tip_modes_of
 
 
 class Solver(Protocol):
@@ -76,8 +76,8 @@ class _Strikes:
 
     def _stick_at(self, i: int, offset: float) -> float:
         scene = self.scenes[i]
-        if isinstance(scene.cue, LumpedCue):
-            return float(scene.cue.end_mass)
+        if scene.lumped is not None:
+            return float(scene.lumped.end_mass)
         return float(stick_at_offset(self.tip(i), replace(scene, stroke=replace(scene.stroke, offset=offset))))
 
     def strike(self, i: int, offset: float | None) -> Outcome:
@@ -96,7 +96,7 @@ class Together(_Strikes):
     def __init__(self, scenes: Sequence[Scene], at: Resolution, frequencies: int) -> None:
         super().__init__()
         self.scenes, self.at, self._count = scenes, at, frequencies
-        self.batch = CueBatch.of([scene.cue for scene in scenes if isinstance(scene.cue, Cue)])
+        self.batch = CueBatch.of([scene.shaft for scene in scenes])
 
     @property
     def mass(self) -> Array:
@@ -186,8 +186,7 @@ class OneByOne(_Strikes):
         return [self._solve(scene) for scene in self.scenes]
 
     def _solve(self, scene: Scene) -> Modes:
-        assert isinstance(scene.cue, Cue)
-        system = assemble(scene.cue, elements=self.at.elements, order=self.at.order, effects=scene.cue_effects)
+        system = assemble(scene.shaft, elements=self.at.elements, order=self.at.order, effects=scene.cue_effects)
         return solve(system, max(self.at.modes + 2 - system.rigid.shape[1], self._count))
 
     @property
@@ -199,10 +198,7 @@ class OneByOne(_Strikes):
         """Tip modes of a design, with its effects."""
         if i not in self._tips:
             scene = self.scenes[i]
-            if isinstance(scene.cue, LumpedCue):
-                self._tips[i] = lumped_tip_modes(scene.cue)
-            else:
-                self._tips[i] = tip_modes_from(self._kept(i), scene)
+            self._tips[i] = tip_modes_from(self._kept(i), scene) if scene.cue.segments else tip_modes_of(scene)
         return self._tips[i]
 
     def _kept(self, i: int) -> Modes:
@@ -219,8 +215,8 @@ class OneByOne(_Strikes):
 
     def _stick(self, i: int) -> tuple[Any, float]:
         scene, tip, limit = self.scenes[i], self.tip(i), StickLimit.of(self.scenes[i])
-        if isinstance(scene.cue, LumpedCue):
-            return scene.cue.end_mass, small_offset_slope(tip, scene)
+        if scene.lumped is not None:
+            return scene.lumped.end_mass, small_offset_slope(tip, scene)
         if scene.effects:
             slope = small_offset_slope(tip, scene)
             none = np.isnan(limit.end_masses(limit.impulse(slope)))
@@ -234,9 +230,8 @@ def static_tip_stiffness(scene: Scene, at: Resolution) -> float:
 
     Good to 1e-8; without effects `CueBatch.tip_stiffness` is exact.
     """
-    assert isinstance(scene.cue, Cue)
-    clamp = Support(scene.cue.length, np.inf, np.inf)
-    system = assemble(scene.cue, elements=at.elements, order=at.order, effects=(*scene.cue_effects, clamp))
+    clamp = Support(scene.shaft.length, np.inf, np.inf)
+    system = assemble(scene.shaft, elements=at.elements, order=at.order, effects=(*scene.cue_effects, clamp))
     free = system.free
     assert free is not None
     force = free.T @ np.eye(system.mesh.unknowns, 1)[:, 0]

@@ -52,8 +52,8 @@ def end_mass(scene: Scene, drive: Drive = "stick", at: Resolution | None = None)
     ValueError for an unknown drive.
     """
     formula = formula_of(drive)
-    if isinstance(scene.cue, LumpedCue):
-        return scene.cue.end_mass
+    if scene.lumped is not None:
+        return scene.lumped.end_mass
     return formula(tip_modes_of(scene, at, least=LEAST_STUCK), scene)
 
 
@@ -85,8 +85,8 @@ def end_mass_spreads(scene: Scene, at: Resolution | None = None) -> Callable[[Dr
     The spread is that of plain sums, without a tail. A definition that takes a coupled strike is tried at 5 cutoffs,
     one in closed form at 13.
     """
-    if isinstance(scene.cue, LumpedCue):
-        same = scalar("LumpedCue.end_mass", scene.cue.end_mass)
+    if scene.lumped is not None:
+        same = scalar("LumpedCue.end_mass", scene.lumped.end_mass)
         return lambda drive: Spread(same, same, same)
     tip = tip_modes_of(scene, at, least=LEAST_STUCK)
     plain = tip if at is not None else tip_modes_of(scene, default_resolution(scene, periods=PLAIN_PERIODS))

@@ -10,7 +10,7 @@ import numpy as np
 from cuefem.beam.tip import TipModes
 from cuefem.contact.flow import zero
 from cuefem.contact.impulse_space import impact
-from cuefem.cue import Cue, LumpedCue
+from cuefem.cue import LumpedCue
 from cuefem.effects import TipEffect
 from cuefem.endmass.drives import _gripping, end_mass, stick_at_offset, sticking_squirt
 from cuefem.quantity import check_kind, scalar
@@ -24,11 +24,13 @@ def lump(scene: Scene, at: Resolution | None = None) -> LumpedCue:
     Its end mass is "offset" of the cue alone; what effects at the tip (`TipDome`, `TipShear`) add or take goes into the
     coupling, about proportional to sin(phi). ValueError where no lumped cue squirts so.
     """
-    return scene.cue if isinstance(scene.cue, LumpedCue) else lump_modes(scene, tip_modes_of(scene, at))
+    return scene.lumped or lump_modes(scene, tip_modes_of(scene, at))
 
 
 def lump_modes(scene: Scene, tip: TipModes) -> LumpedCue:
     """The same of a cue that is given by its tip modes."""
+    if scene.lumped is not None:
+        return scene.lumped
     effects = tuple(effect for effect in scene.effects if not isinstance(effect, TipEffect))
     cue = LumpedCue(scene.axial_mass, stick_at_offset(tip, replace(scene, effects=effects)))
     if len(effects) == len(scene.effects) or scalar("Stroke.offset", scene.stroke.offset) == 0:
@@ -57,9 +59,9 @@ def impulse(scene: Scene) -> Outcome:
     where it has none. See `cuefem.contact.impulse_space.impact` for phases and energies.
     """
     check_kind("impulse scene", scene, Scene)
-    if scene.effects and isinstance(scene.cue, LumpedCue):
+    if scene.effects and scene.lumped is not None:
         names = ", ".join(type(effect).__name__ for effect in scene.effects)
         raise ValueError(f"impulse takes a LumpedCue without effects, which need time (see strike); got {names}")
-    if isinstance(scene.cue, Cue):
+    if scene.lumped is None:
         scene = replace(scene, cue=LumpedCue(scene.axial_mass, end_mass(scene, "offset")), effects=())
     return impact(scene)

@@ -14,9 +14,8 @@ from typing import Literal
 
 import numpy as np
 
-from cuefem.beam.tip import TipModes, lumped_tip_modes
+from cuefem.beam.tip import TipModes
 from cuefem.contact.strike import strike_modes
-from cuefem.cue import Cue, LumpedCue
 from cuefem.effects import Elevation
 from cuefem.endmass.drives import formula_of
 from cuefem.quantity import scalar
@@ -52,7 +51,7 @@ def pooltool_record(name: str, scene: Scene, *, drive: Handed = "A.31") -> Recor
 
     drive: which end mass is handed over. ValueError where that one does not exist: "A.31" head on and in a miscue.
     """
-    tip = lumped_tip_modes(scene.cue) if isinstance(scene.cue, LumpedCue) else tip_modes_of(scene)
+    tip = tip_modes_of(scene)
     masses, reasons = _end_masses(scene, tip)
     if drive in reasons:
         raise ValueError(f"end mass {drive!r} does not exist here: {reasons[drive]}")
@@ -78,18 +77,18 @@ def pooltool_record(name: str, scene: Scene, *, drive: Handed = "A.31") -> Recor
 
 def _cue_specs(name: str, scene: Scene) -> Record:
     specs: Record = {"brand": name, "M": scene.axial_mass}
-    if isinstance(scene.cue, Cue):
+    if scene.cue.segments:
         first, last = scene.cue.segments[0], scene.cue.segments[-1]
-        specs |= {"length": scene.cue.length}
+        specs |= {"length": scene.shaft.length}
         specs |= {"shaft_radius_at_tip": first.tip_diameter / 2, "shaft_radius_at_butt": last.butt_diameter / 2}
     return specs | {"tip_radius": scene.dome_radius or NICKEL}
 
 
 def _notes(scene: Scene) -> list[str]:
     notes = ["pooltool takes [A.31], an instantaneous stroke without friction's limit: it knows no miscue"]
-    if isinstance(scene.cue, LumpedCue):
+    if scene.lumped is not None:
         notes.append("a lumped cue has no length and no radii: pooltool's own stay")
-    elif scene.cue.body_mass:
+    elif scene.shaft.body_mass:
         notes.append("length and shaft_radius_at_butt are those of the file's segments; M is the whole cue's")
     if not scene.dome_radius:
         notes.append("tip_radius: pooltool's own, a nickel's; the scene has no TipDome")
@@ -115,8 +114,8 @@ def _end_masses(scene: Scene, tip: TipModes) -> tuple[dict[str, float | None], d
 def _end_mass(scene: Scene, tip: TipModes, drive: Handed) -> float:
     if drive == "A.31":
         return _a31_end_mass(scene, tip)
-    if isinstance(scene.cue, LumpedCue):
-        return scalar("LumpedCue.end_mass", scene.cue.end_mass)
+    if scene.lumped is not None:
+        return scalar("LumpedCue.end_mass", scene.lumped.end_mass)
     return float(formula_of(drive)(tip, scene))
 
 

@@ -15,7 +15,6 @@ import numpy as np
 from cuefem.accuracy import Rung, ladder
 from cuefem.beam.modes import modes
 from cuefem.contact.strike import strike
-from cuefem.cue import Cue
 from cuefem.quantity import scalar
 from cuefem.report.charts import Axis, Chart, Curve, Mark, Span, chart
 from cuefem.report.drawings import (
@@ -86,7 +85,7 @@ def _stages(scene: Scene, rtol: float) -> list[Stage]:
         solved.append(rung)
         return steps
 
-    if isinstance(scene.cue, Cue):
+    if scene.cue.segments:
         first = Stage("steps", climb)
         outcome = Stage("outcome", lambda: solved[0].outcome)
         ended = cache(lambda: ended_tip_modes(scene, solved[0].at))
@@ -127,7 +126,6 @@ def accuracy_steps(scene: Scene, rtol: float) -> tuple[list[Step], Rung]:
 def _context(scene: Scene, found: Record) -> Record:
     outcome: Outcome = found["outcome"]
     record = strike_record(scene, outcome)
-    cue = scene.cue
     return {
         "scene": scene,
         "facts": _facts(scene),
@@ -136,8 +134,8 @@ def _context(scene: Scene, found: Record) -> Record:
         "squirt": degrees(outcome.squirt),
         "error": "" if outcome.error is None else f"{outcome.error:.1e}",
         "warning": MISCUE if outcome.regime == "miscue" else "",
-        "cue": _cue_part(scene) if isinstance(cue, Cue) else None,
-        "modes": modes_drawing(modes(cue, effects=scene.cue_effects), cue.length) if isinstance(cue, Cue) else None,
+        "cue": _cue_part(scene) if scene.cue.segments else None,
+        "modes": _modes_part(scene) if scene.cue.segments else None,
         "contact": None if outcome.history is None else _contact(outcome),
         "by_offset": _by_offset(found["squirt"], scene),
         "slipped": bool(_slipped(found["squirt"])),
@@ -173,9 +171,12 @@ def _key_figures(record: Record, end_masses: Record, outcome: Outcome) -> list[t
     return figures
 
 
+def _modes_part(scene: Scene) -> Any:
+    return modes_drawing(modes(scene.shaft, effects=scene.cue_effects), scene.shaft.length)
+
+
 def _cue_part(scene: Scene) -> Record:
-    cue = scene.cue
-    assert isinstance(cue, Cue)
+    cue = scene.shaft
     rows = [
         {
             "at": f"{1e3 * x:.1f}",
