@@ -1,7 +1,7 @@
 """What is each effect worth in the ready scenes?
 
 What: every scene of scenes/ as it stands, without each effect it lists and with each it does not list, at the textbook
-values of `cuefem.design.worth.TEXTBOOK`: an effect is worth the squirt (ball speed, spin) with it over that without it,
+values (`usual` of each effect): an effect is worth the squirt (ball speed, spin) with it over that without it,
 minus 1. Default resolution. Effects without a usual value (a joint, a mass where none is listed) and Elevation, which
 is the player's, are left out; what a bridge hand is worth in general is in bridge.py, the dome in dome.py.
 Equations: handbook: Effects.

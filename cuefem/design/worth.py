@@ -2,32 +2,12 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator
-from dataclasses import MISSING, dataclass, fields, is_dataclass, replace
-from typing import Any, NamedTuple
+from dataclasses import MISSING, dataclass, fields, replace
+from typing import Any
 
-from cuefem.effects import Effect
+from cuefem.effects import Effect, effect_kinds
 from cuefem.scene import Outcome, Scene
 
-
-class Textbook(NamedTuple):
-    """The values, SI, with which an effect that a scene does not list is tried, and where they come from."""
-
-    values: dict[str, float]
-    source: str
-
-
-TEXTBOOK = {
-    "TipDome": Textbook({"radius": 9.5e-3}, "between a dime's radius (8.95 mm) and a nickel's (10.6 mm)"),
-    "TipShear": Textbook({"ratio": 0.75}, "Mindlin's 2 (1 - nu)/(2 - nu) at nu 0.4, round"),
-    "PowerLawTip": Textbook({"exponent": 1.5}, "Hertz; the tip's contact time is meant at 1 m/s"),
-    "StructuralDamping": Textbook({"loss": 0.012}, "maple's loss factor, for every material"),
-    "AxialWaves": Textbook({}, "the cue's own EA and mass"),
-    "Support": Textbook({"position": 0.2032, "stiffness": 5e3}, "a bridge hand 8 in behind the tip (assumed)"),
-    "Elevation": Textbook({"angle": math.radians(5)}, "5 degrees, a cue over a rail (assumed)"),
-    "RollingContact": Textbook({}, "ball's and dome's own radii"),
-}
 # Effects that have no usual value: they say what is on this cue, and no cue has one of them as a matter of course.
 NO_USUAL_VALUE = "no usual value to try"
 
@@ -47,22 +27,10 @@ class Variant:
     reason: str = ""
 
 
-def effect_kinds() -> dict[str, type[Effect]]:
-    """The package's effects by name."""
-
-    def below(kind: type[Effect]) -> Iterator[type[Effect]]:
-        for child in kind.__subclasses__():
-            yield from below(child)
-        if not kind.__subclasses__() and is_dataclass(kind) and kind.__module__.startswith("cuefem.effects"):
-            yield kind
-
-    return {kind.__name__: kind for kind in sorted(below(Effect), key=lambda kind: kind.__name__)}
-
-
 def variants(scene: Scene) -> tuple[Variant, ...]:
-    """The scene without each effect it lists, then with each kind it does not list at its `TEXTBOOK` value.
+    """The scene without each effect it lists, then with each kind it does not list, at the values that are usual.
 
-    A kind without a textbook value is tried at its defaults, where it has defaults for all.
+    A kind that says no usual values (`Effect.usual`) is tried at its defaults, if it has defaults for all fields.
     """
     dropped = [_without(scene, i) for i in range(len(scene.effects))]
     listed = {type(effect).__name__ for effect in scene.effects}
@@ -76,10 +44,9 @@ def _without(scene: Scene, index: int) -> Variant:
 
 
 def _with(scene: Scene, name: str, kind: type[Effect]) -> Variant:
-    values = TEXTBOOK[name].values if name in TEXTBOOK else {}
-    if name not in TEXTBOOK and any(field.default is MISSING for field in fields(kind)):
+    if kind.usual is None and any(field.default is MISSING for field in fields(kind)):
         return Variant(name, None, False, None, NO_USUAL_VALUE)
-    effect = kind(**values)
+    effect = kind(**(kind.usual.values if kind.usual else {}))
     try:
         return Variant(name, effect, False, replace(scene, effects=(*scene.effects, effect)))
     except ValueError as error:  # it does not go with this cue or with another effect

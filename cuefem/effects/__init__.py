@@ -5,7 +5,7 @@ five lines: what the effect adds, when it matters, when it is wrong, the limit i
 """
 
 from cuefem.effects.at_tip import PowerLawTip, RollingContact, TipDome, TipShear
-from cuefem.effects.base import CueEffect, Effect, TipEffect, Vibrations, check_effects
+from cuefem.effects.base import CueEffect, Effect, TipEffect, Usual, Vibrations, check_effects, effect_kinds
 from cuefem.effects.on_cue import AxialWaves, Joint, PointMass, StructuralDamping, Support
 from cuefem.effects.stroke import Elevation, SecondHit
 
@@ -24,6 +24,8 @@ __all__ = [
     "TipDome",
     "TipEffect",
     "TipShear",
+    "Usual",
     "Vibrations",
     "check_effects",
+    "effect_kinds",
 ]

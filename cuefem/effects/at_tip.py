@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
-from cuefem.effects.base import TipEffect
+from cuefem.effects.base import TipEffect, Usual
 from cuefem.quantity import Quantity
 
 
@@ -46,6 +46,9 @@ class TipDome(TipEffect):
     """
 
     needs_beam: ClassVar[bool] = True  # a lumped cue has its coupling for it
+    usual: ClassVar[Usual | None] = Usual(
+        {"radius": 9.5e-3}, "between a dime's radius (8.95 mm) and a nickel's (10.6 mm)"
+    )
 
     radius: Annotated[float, Quantity("m", "[0, inf)")]
 
@@ -93,6 +96,8 @@ class TipShear(TipEffect):
     True
     """
 
+    usual: ClassVar[Usual | None] = Usual({"ratio": 0.75}, "Mindlin's 2 (1 - nu)/(2 - nu) at nu 0.4, round")
+
     ratio: Annotated[float, Quantity("", "(0, inf)")]
 
 
@@ -134,6 +139,8 @@ class PowerLawTip(TipEffect):
     """
 
     once: ClassVar[bool] = True
+    usual: ClassVar[Usual | None] = Usual({"exponent": 1.5}, "Hertz; the tip's contact time is meant at 1 m/s")
+
     exponent: Annotated[float, Quantity("", "[1, inf)")] = 1.5
     speed: Annotated[float, Quantity("m/s", "(0, inf)")] = 1.0
 
@@ -168,3 +175,4 @@ class RollingContact(TipEffect):
     """
 
     once: ClassVar[bool] = True
+    usual: ClassVar[Usual | None] = Usual({}, "ball's and dome's own radii")

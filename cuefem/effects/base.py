@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, is_dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
 
 from cuefem.cue import Array, Cue, LumpedCue, Section
 from cuefem.quantity import check_fields, check_kind
@@ -46,6 +46,13 @@ class AxialVibrations(Vibrations, Protocol):
         """Of the last of the modes, (tail, tail), 1/s, where these are a tail; None without one."""
 
 
+class Usual(NamedTuple):
+    """The values, SI, at which an effect is tried on a scene that does not list it, and where they come from."""
+
+    values: dict[str, float]
+    source: str
+
+
 @dataclass(frozen=True)
 class Effect:
     """What every effect is: its fields are checked quantities, and it may add mass that a head-on blow feels."""
@@ -55,6 +62,9 @@ class Effect:
     needs_beam: ClassVar[bool] = False
     once: ClassVar[bool] = False
     excludes: ClassVar[tuple[str, ...]] = ()
+    # What to try it at; None for an effect that has defaults for all of its fields, or that says what is on this cue
+    # (a point mass): no cue has one of those as a matter of course.
+    usual: ClassVar[Usual | None] = None
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -117,6 +127,19 @@ class TipEffect(Effect):
         """Displacement (u, w) of the contact per unit rotation of the tip's section, m; phi: the contact's angle,
         rad."""
         return 0.0, 0.0
+
+
+def effect_kinds() -> dict[str, type[Effect]]:
+    """Every effect by its name, which stands as ``type`` in a file; classes that effects derive from are left out."""
+
+    def below(kind: type[Effect]) -> Iterator[type[Effect]]:
+        children = kind.__subclasses__()
+        for child in children:
+            yield from below(child)
+        if not children and is_dataclass(kind):
+            yield kind
+
+    return {kind.__name__: kind for kind in sorted(below(Effect), key=lambda kind: kind.__name__)}
 
 
 def check_effects(cue: Cue | LumpedCue, effects: tuple[Any, ...]) -> None:

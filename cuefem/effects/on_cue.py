@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from cuefem.cue import Cue
-from cuefem.effects.base import NEAR, AxialVibrations, CueEffect, Vibrations
+from cuefem.effects.base import NEAR, AxialVibrations, CueEffect, Usual, Vibrations
 from cuefem.quantity import Quantity
 
 if TYPE_CHECKING:
@@ -110,6 +110,10 @@ class Support(CueEffect):
     >>> bool(cf.modes(shaft, 3, effects=(hand,)).frequencies[0] > 0)
     True
     """
+
+    usual: ClassVar[Usual | None] = Usual(
+        {"position": 0.2032, "stiffness": 5e3}, "a bridge hand 8 in behind the tip (assumed)"
+    )
 
     position: Annotated[float, Quantity("m", "[0, inf)")]
     stiffness: Annotated[float, Quantity("N/m", "[0, inf]")] = 0.0
@@ -231,6 +235,8 @@ class StructuralDamping(CueEffect):
     True
     """
 
+    usual: ClassVar[Usual | None] = Usual({"loss": 0.012}, "maple's loss factor, for every material")
+
     loss: Annotated[float | None, Quantity("", "[0, 1)")] = None
 
     def damp(self, tip: TipModes, cue: Cue, families: Sequence[Vibrations]) -> TipModes:
@@ -275,6 +281,7 @@ class AxialWaves(CueEffect):
     """
 
     once: ClassVar[bool] = True
+    usual: ClassVar[Usual | None] = Usual({}, "the cue's own EA and mass")
 
     def vibrations(self, found: Modes, cue: Cue, effects: Sequence[CueEffect]) -> tuple[AxialVibrations, ...]:
         """The rod modes."""

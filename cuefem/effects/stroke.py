@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
-from cuefem.effects.base import Effect
+from cuefem.effects.base import Effect, Usual
 from cuefem.quantity import Quantity
 
 
@@ -94,6 +95,7 @@ class Elevation(Effect):
 
     once: ClassVar[bool] = True
     excludes: ClassVar[tuple[str, ...]] = ("TipShear", "RollingContact", "SecondHit")
+    usual: ClassVar[Usual | None] = Usual({"angle": math.radians(5)}, "5 degrees, a cue over a rail (assumed)")
 
     angle: Annotated[float, Quantity("rad", "[0, 1.5707963267948966)")]
     friction: Annotated[float, Quantity("", "[0, inf)")] = 0.2

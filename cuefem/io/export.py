@@ -11,7 +11,8 @@ from typing import Any, cast
 from pydantic.json_schema import GenerateJsonSchema
 
 from cuefem.cue import Cue, LumpedCue
-from cuefem.io.schema import adapter, effect_kinds, file_value
+from cuefem.effects import effect_kinds
+from cuefem.io.schema import adapter, file_value
 from cuefem.io.toml import Accuracy
 from cuefem.quantity import quantities
 from cuefem.scene import Scene

@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import re
 import typing
-from collections.abc import Iterator
 from dataclasses import fields, is_dataclass
 from typing import Annotated, Any, TypeVar, cast
 
@@ -45,19 +44,6 @@ def joined(key: str, part: str | int) -> str:
     if isinstance(part, int):
         return f"{key}[{part}]"
     return f"{key}.{part}" if key else part
-
-
-def effect_kinds() -> dict[str, type[Effect]]:
-    """Every effect by the name that stands as ``type`` in a file; families of effects are none."""
-
-    def below(kind: type[Effect]) -> Iterator[type[Effect]]:
-        children = kind.__subclasses__()
-        for child in children:
-            yield from below(child)
-        if not children and is_dataclass(kind):
-            yield kind
-
-    return {kind.__name__: kind for kind in below(Effect)}
 
 
 def keys_of(kind: type) -> list[str]:

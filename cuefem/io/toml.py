@@ -12,9 +12,9 @@ from typing import Annotated, Any
 import tomlkit
 
 from cuefem.cue import Cue, LumpedCue, Material
-from cuefem.effects import CueEffect, Effect
+from cuefem.effects import CueEffect, Effect, effect_kinds
 from cuefem.io.errors import InputError, nearest, read_bytes, reason, shown
-from cuefem.io.schema import build, effect_kinds, joined, keys_of, table, unknown_key
+from cuefem.io.schema import build, joined, keys_of, table, unknown_key
 from cuefem.materials import material
 from cuefem.quantity import MOST_SEGMENTS, Quantity, check_fields
 from cuefem.scene import Scene
@@ -174,7 +174,7 @@ def _scene_cue(found: Any, path: Path, cue_file: Callable[[Path], Cue]) -> Cue |
 
 def _effect(found: Any, path: Path, key: str) -> Effect:
     kinds = effect_kinds()
-    names = ", ".join(sorted(kinds))
+    names = ", ".join(kinds)
     if not isinstance(found, dict) or "type" not in found:
         got = "nothing" if isinstance(found, dict) else shown(found)
         raise InputError(path, joined(key, "type"), f"must be one of {names}; got {got}")

@@ -8,7 +8,8 @@ from dataclasses import asdict
 
 from rich.console import Group
 
-from cuefem.design.worth import TEXTBOOK, Change, Variant, change, variants
+from cuefem.design.worth import Change, Variant, change, variants
+from cuefem.effects import effect_kinds
 from cuefem.endmass.drives import equivalent_end_mass
 from cuefem.report.record import Record
 from cuefem.report.solve import resolution_for, struck
@@ -53,7 +54,7 @@ def effects_record(scene: Scene, *, rtol: float = DEFAULT_RTOL, track: Track = i
         "base": _figures(base, scene) | {"unknowns": base.unknowns, "seconds": seconds},
         "effects": rows,
         "worth": worth(rows),
-        "textbook": {name: {"values": known.values, "source": known.source} for name, known in TEXTBOOK.items()},
+        "textbook": {name: kind.usual._asdict() for name, kind in effect_kinds().items() if kind.usual},
     }
 
 

@@ -1,0 +1,110 @@
+"""An effect that is made up here is found by every command and page (properties).
+
+It is known by its class alone: nothing else of the package is told of it.
+"""
+
+from __future__ import annotations
+
+import gc
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Annotated, Any, ClassVar
+
+import pytest
+
+import cuefem as cf
+from cuefem.design import Levels, Response, Study, Vary
+from cuefem.design.worth import variants
+from cuefem.designer.answers import answers
+from cuefem.designer.model import knobs_of, turned
+from cuefem.effects import CueEffect, Usual, effect_kinds
+from cuefem.io import schema
+from cuefem.quantity import Quantity
+from cuefem.report.page import page
+from tests.helpers.command_line import call
+
+CUE = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 782.3284453057836), kappa=0.9),), 0.42)
+BARE = cf.Scene(CUE, tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(offset=0.3))
+WORDS = "Collar (position 30 mm, mass 4 g)"
+
+
+@pytest.fixture
+def collar() -> Iterator[type[cf.Effect]]:
+    @dataclass(frozen=True)
+    class Collar(CueEffect):
+        """A ring on the shaft."""
+
+        usual: ClassVar[Usual | None] = Usual({"position": 0.03, "mass": 4e-3}, "made up")
+
+        position: Annotated[float, Quantity("m", "[0, inf)")]
+        mass: Annotated[float, Quantity("kg", "[0, inf)")]
+
+        @property
+        def positions(self) -> tuple[float, ...]:
+            """Its place."""
+            return (self.position,)
+
+        def add_to(self, terms: Any) -> None:
+            """Its mass."""
+            terms.add(self.position, "mass", self.mass, 0.0)
+
+    yield Collar
+    schema.adapter.cache_clear()
+    del Collar
+    gc.collect()
+
+
+@pytest.fixture
+def scene(collar: type[cf.Effect]) -> cf.Scene:
+    made: Any = collar
+    return replace(BARE, effects=(made(0.03, 4e-3),))
+
+
+def test_files_hold_it(collar: type[cf.Effect], scene: cf.Scene, tmp_path: Path) -> None:
+    assert effect_kinds()["Collar"] is collar
+    cf.save(scene, tmp_path / "scene.toml")
+    assert 'type = "Collar"' in (tmp_path / "scene.toml").read_text(encoding="utf-8")
+    assert cf.load(tmp_path / "scene.toml") == scene
+    assert json.loads(call("schema")[1])["$defs"]["Collar"]["required"] == ["type", "position", "mass"]
+
+
+def test_commands_and_pages_name_it(scene: cf.Scene, tmp_path: Path) -> None:
+    file = tmp_path / "scene.toml"
+    cf.save(scene, file)
+    for command in ("strike", "report", "end-mass", "modes"):
+        status, out, err = call(command, file)
+        assert (status, err) == (0, "")
+        assert WORDS in out
+    assert json.loads(call("strike", file, "--json")[1])["scene"]["effects"][0]["type"] == "Collar"
+    shown = page("scene.toml", scene)
+    assert f"with {WORDS}" in shown
+    assert ">Collar</text>" in shown  # at its place on the drawing
+
+
+def test_the_designer_keeps_it(scene: cf.Scene) -> None:
+    app = pytest.importorskip("cuefem.designer.app")
+    knobs = replace(knobs_of(scene), offset=0.2)
+    assert turned(scene, knobs).effects == scene.effects
+    assert WORDS in app._head(app.Opened("scene.toml", scene, []), scene)
+    found = answers(scene)
+    assert found.strike["squirt"] == pytest.approx(cf.strike(scene).squirt, rel=1e-12)
+    assert found.strike["squirt"] > cf.strike(BARE).squirt  # the ring lies within reach of the tip
+
+
+def test_it_is_tried_at_its_usual_values(scene: cf.Scene, tmp_path: Path) -> None:
+    (added,) = (v for v in variants(BARE) if v.name == "Collar")
+    assert (added.listed, added.scene) == (False, scene)
+    cf.save(BARE, tmp_path / "bare.toml")
+    assert f"with {WORDS}" in call("effects", tmp_path / "bare.toml")[1]
+    cf.save(scene, tmp_path / "scene.toml")
+    found = json.loads(call("effects", tmp_path / "scene.toml", "--json")[1])
+    assert found["textbook"]["Collar"] == {"values": {"position": 0.03, "mass": 4e-3}, "source": "made up"}
+    assert [row["name"] for row in found["effects"] if row["listed"]] == ["Collar"]
+
+
+def test_a_study_varies_it(scene: cf.Scene) -> None:
+    study = Study(scene, (Vary(("effects[0].mass",), Levels((0.0, 4e-3))),), (Response.of("squirt"),))
+    assert study.scene((4e-3,)) == scene
+    assert study.units[0] == "kg"
