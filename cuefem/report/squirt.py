@@ -13,6 +13,7 @@ from rich.table import Table
 from cuefem.beam.tip import TipModes
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import LumpedCue
+from cuefem.endmass.drives import tip_modes_for
 from cuefem.endmass.lumped import impulse
 from cuefem.report.record import Record
 from cuefem.report.strike import (
