@@ -17,7 +17,6 @@ from cuefem.beam.tail import tail
 from cuefem.beam.tip import TipModes, tip_modes
 from cuefem.beam.waves import mesh_for, modes_below
 from cuefem.cue import Cue
-from cuefem.effects import TipEffect
 from cuefem.quantity import CONTACT_TIME
 from cuefem.scene import Resolution, Scene
 
@@ -66,7 +65,7 @@ def _kept(scene: Scene, at: Resolution) -> Modes:
 
 def turning(scene: Scene) -> bool:
     """Whether an effect takes the contact off the cue's axis, so that the tip's rotation moves it."""
-    return any(any(effect.lever(math.pi / 6)) for effect in scene.effects if isinstance(effect, TipEffect))
+    return any(scene.contact_terms.lever(math.pi / 6))
 
 
 def tip_modes_from(found: Modes, scene: Scene) -> TipModes:

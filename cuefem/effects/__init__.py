@@ -5,7 +5,7 @@ effect adds, when it matters, when it is wrong, and where it comes from.
 """
 
 from cuefem.effects.at_tip import PowerLawTip, RollingContact, TipDome, TipShear
-from cuefem.effects.base import CueEffect, Effect, TipEffect, Vibrations, check_effects
+from cuefem.effects.base import CueEffect, Effect, TipEffect, Vibrations, acting_on_cue, check_effects
 from cuefem.effects.on_cue import AxialWaves, Joint, PointMass, StructuralDamping, Support
 from cuefem.effects.stroke import Elevation, SecondHit
 
@@ -25,5 +25,6 @@ __all__ = [
     "TipEffect",
     "TipShear",
     "Vibrations",
+    "acting_on_cue",
     "check_effects",
 ]

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 from cuefem.effects.base import TipEffect
+from cuefem.effects.law import TipLaw, slowed
+from cuefem.effects.terms import ContactTerms, HeadOn
 from cuefem.quantity import Quantity
 
 
@@ -26,14 +27,9 @@ class TipDome(TipEffect):
 
     radius: Annotated[float, Quantity("m", "[0, inf)")]
 
-    @property
-    def dome_radius(self) -> float:
-        """The dome's own: the levers of two domes add, and so do their radii."""
-        return self.radius
-
-    def lever(self, phi: float) -> tuple[float, float]:
-        """The contact is at r (1 - cos(phi)) along x and -r sin(phi) along w from the apex; rotation is w'."""
-        return -self.radius * math.sin(phi), self.radius * (1 - math.cos(phi))
+    def add_to_contact(self, terms: ContactTerms) -> None:
+        """The dome: the levers of two domes add, and so do their radii."""
+        terms.add_dome(self.radius)
 
 
 @dataclass(frozen=True)
@@ -50,6 +46,10 @@ class TipShear(TipEffect):
     """
 
     ratio: Annotated[float, Quantity("", "(0, inf)")]
+
+    def add_to_contact(self, terms: ContactTerms) -> None:
+        """The patch's spring: springs in series, so that compliances add."""
+        terms.add_compliance(1 / self.ratio)
 
 
 @dataclass(frozen=True)
@@ -69,6 +69,14 @@ class PowerLawTip(TipEffect):
     exponent: Annotated[float, Quantity("", "[1, inf)")] = 1.5
     speed: Annotated[float, Quantity("m/s", "(0, inf)")] = 1.0
 
+    def add_to_contact(self, terms: ContactTerms) -> None:
+        """The power law."""
+        terms.set_law(self._law)
+
+    def _law(self, blow: HeadOn) -> tuple[TipLaw, float]:
+        law = TipLaw.timed(self.exponent, blow.restitution, mass=blow.mass, speed=self.speed, time=blow.time)
+        return law, blow.time * slowed(self.exponent, blow.speed / self.speed)
+
 
 @dataclass(frozen=True)
 class RollingContact(TipEffect):
@@ -83,3 +91,7 @@ class RollingContact(TipEffect):
     """
 
     once: ClassVar[bool] = True
+
+    def add_to_contact(self, terms: ContactTerms) -> None:
+        """The normal turns."""
+        terms.turn()

@@ -26,6 +26,8 @@ class PointMass(CueEffect):
     is longer than a bending wave of interest, or stiffens the shaft. Source: physics.md section 8; [BD Feb 2008] clay.
     """
 
+    part_of_cue: ClassVar[bool] = True
+
     position: Annotated[float, Quantity("m", "[0, inf)")]
     mass: Annotated[float, Quantity("kg", "[0, inf)")]
     rotary_inertia: Annotated[float, Quantity("kg m^2", "[0, inf)")] = 0.0
@@ -88,6 +90,8 @@ class Joint(CueEffect):
     that bending waves travel in a contact; at a cue's middle joint hardly. Wrong: a joint that rattles or dissipates.
     Source: two springs in series with the beam; physics.md section 8.
     """
+
+    part_of_cue: ClassVar[bool] = True
 
     position: Annotated[float, Quantity("m", "(0, inf)")]
     rotational_compliance: Annotated[float, Quantity("rad/(N m)", "[0, inf)")] = 0.0
