@@ -21,7 +21,7 @@ from cuefem.beam.waves import mesh_for, modes_below
 from cuefem.contact.linear import APART
 from cuefem.contact.strike import strike, strike_modes
 from cuefem.cue import Array
-from cuefem.effects import Elevation, SecondHit
+from cuefem.effects import SecondHit
 from cuefem.endmass.drives import Drive, end_mass, formula_of
 from cuefem.quantity import Quantity, scalar
 from cuefem.scene import Outcome, Resolution, Scene
@@ -169,7 +169,7 @@ def _other_course(outcomes: list[Outcome], scene: Scene) -> float:
     It may where its normal force dips to less than what the rungs below differ by in that dip.
     """
     outcome = outcomes[-1]
-    if not outcome.duration or any(isinstance(effect, SecondHit) for effect in scene.effects):
+    if not outcome.duration or scene.contact_terms.window is not None:
         return 0.0  # a blow alone; or the tip comes back by itself, and the two courses end alike
     time = np.linspace(0, float(outcome.duration), LOOKS)
     seen = outcome.history(time)
@@ -206,7 +206,8 @@ def _caught_up(outcome: Outcome, scene: Scene, tip: TipModes) -> float:
 
     Where ball and tip drift apart slowly and touch again, one that never quite parted ends like one with a second hit.
     """
-    if any(isinstance(effect, Elevation | SecondHit) for effect in scene.effects) or not outcome.duration:
+    terms = scene.contact_terms
+    if terms.table is not None or terms.window is not None or not outcome.duration:
         return 0.0
     restitution, end = float(scene.tip.restitution), float(outcome.duration)
     head_on = restitution * float(scene.stroke.speed) * math.cos(scene.stroke.angle)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Annotated, Any
 
 import numpy as np
 
 from cuefem.cue import Array, Cue, LumpedCue
-from cuefem.effects import CueEffect, Effect, check_effects
+from cuefem.effects import CueEffect, Effect, acting_on_cue, check_effects
+from cuefem.effects.terms import ContactTerms
 from cuefem.quantity import CONTACT_TIME, Number, Quantity, check_count, check_fields, check_kind
 
 DEFAULT_CONTACT_TIME = 2e-3  # s, [Kim] sec. 4
@@ -86,6 +87,7 @@ class Scene:
             raise TypeError(f"Scene.effects must be a sequence of effects; got one, {self.effects!r}")
         object.__setattr__(self, "effects", tuple(self.effects))
         check_effects(self.cue, self.effects)
+        _ = self.contact_terms  # refuses what may be given only once
 
     @property
     def shaft(self) -> Cue:
@@ -101,8 +103,23 @@ class Scene:
 
     @property
     def cue_effects(self) -> tuple[CueEffect, ...]:
-        """Those of the effects that act on the cue, in an order of their own: sums do not depend on the list's."""
-        return tuple(sorted((effect for effect in self.effects if isinstance(effect, CueEffect)), key=repr))
+        """The effects that act on the cue, sorted; effects at the tip do not change its modes."""
+        return acting_on_cue(self.effects)
+
+    @property
+    def at_tip(self) -> tuple[Effect, ...]:
+        """The effects at the contact of tip and ball."""
+        return tuple(effect for effect in self.effects if effect.at_tip)
+
+    @property
+    def bare(self) -> Scene:
+        """The scene without its effects at the tip."""
+        return replace(self, effects=tuple(effect for effect in self.effects if not effect.at_tip))
+
+    @property
+    def contact_terms(self) -> ContactTerms:
+        """What the effects add at the contact."""
+        return ContactTerms.of(self.effects)
 
     @property
     def axial_mass(self) -> Any:
@@ -112,7 +129,7 @@ class Scene:
     @property
     def dome_radius(self) -> float:
         """Radius of the tip's dome, m: the sum over all effects, 0 where none is modelled."""
-        return math.fsum(effect.dome_radius for effect in self.effects)
+        return self.contact_terms.dome_radius
 
     @property
     def head_on_mass(self) -> Any:

@@ -18,7 +18,6 @@ import numpy as np
 
 from cuefem.beam.tip import TipModes, lumped_tip_modes, tip_modes
 from cuefem.beam.waves import mesh_for, modes_below
-from cuefem.effects import TipEffect
 from cuefem.quantity import CONTACT_TIME
 from cuefem.scene import Resolution, Scene
 
@@ -120,7 +119,7 @@ def tip_modes_of(scene: Scene, at: Resolution | None = None, *, least: int = LEA
 
 def turning(scene: Scene) -> bool:
     """Whether an effect takes the contact off the cue's axis, so that the tip's rotation moves it."""
-    return any(any(effect.lever(math.pi / 6)) for effect in scene.effects if isinstance(effect, TipEffect))
+    return any(scene.contact_terms.lever(math.pi / 6))
 
 
 def tip_modes_from(found: Modes, scene: Scene) -> TipModes:

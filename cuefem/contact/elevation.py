@@ -23,14 +23,10 @@ import numpy as np
 
 from cuefem.beam.tip import TipModes
 from cuefem.contact.linear import Laws
-from cuefem.contact.nonlinear import law_of
-from cuefem.contact.raised import RaisedContact, RaisedHistory
+from cuefem.contact.raised import RaisedContact
 from cuefem.cue import Array
-from cuefem.effects import Elevation
-from cuefem.quantity import scalar
-from cuefem.scene import Scene
-
-__all__ = ["RaisedContact", "RaisedHistory", "in_both_planes", "raised_contact"]
+from cuefem.effects.law import NormalLaw
+from cuefem.effects.terms import Table
 
 
 def in_both_planes(tip: TipModes) -> tuple[TipModes, Array]:
@@ -58,12 +54,11 @@ def in_both_planes(tip: TipModes) -> tuple[TipModes, Array]:
     return both_modes, np.concatenate([np.zeros(count), tip.amplitude[again, 1]])[order]
 
 
-def raised_contact(scene: Scene, tip: TipModes, laws: Laws) -> RaisedContact:
-    """The contact that the scene's Elevation asks for; ValueError for a dead tip, whose contact has no such phases."""
+def raised_contact(
+    table: Table, tip: TipModes, laws: Laws, *, law: NormalLaw, clock: float, radius: float
+) -> RaisedContact:
+    """The contact of a raised cue; ValueError for a dead tip, whose contact has no such phases."""
     if laws.restitution == 0:
         raise ValueError("Elevation takes a Tip.restitution in (0, 1]; got 0.0")
-    elevation = next(effect for effect in scene.effects if isinstance(effect, Elevation))
-    law, clock = law_of(scene, laws)
     modes, across = in_both_planes(tip)
-    radius = scalar("Ball.radius", scene.ball.radius)
-    return RaisedContact(modes, laws, law=law, clock=clock, elevation=elevation, across=across, radius=radius)
+    return RaisedContact(modes, laws, law=law, clock=clock, raised=table, across=across, radius=radius)

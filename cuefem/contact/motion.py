@@ -25,7 +25,6 @@ from cuefem.contact.linear import Contact, Course
 from cuefem.contact.stepped import SteppedContact
 from cuefem.contact.strike import struck
 from cuefem.cue import Array
-from cuefem.effects import Elevation
 from cuefem.quantity import check_kind, scalar
 from cuefem.scene import Resolution, Scene
 from cuefem.tip_modes import Solved
@@ -65,7 +64,7 @@ def motion(scene: Scene, times: ArrayLike, at: Resolution | None = None) -> Moti
     """
     check_kind("motion scene", scene, Scene)
     times = _checked(times)
-    if any(isinstance(effect, Elevation) for effect in scene.effects):
+    if scene.contact_terms.table is not None:
         raise ValueError("motion takes strokes in the plane of cue and ball; got Elevation")
     solved = Solved(scene, at)
     found, tip = solved.modes, solved.tip

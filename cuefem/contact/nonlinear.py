@@ -17,37 +17,29 @@ v_n does: c_n z' + (R + r) a'^2 = 0. Forces act through the same c_t and c_n, so
 
 from __future__ import annotations
 
-import math
-
 from cuefem.beam.tip import TipModes
-from cuefem.contact.law import TipLaw, slowed
 from cuefem.contact.linear import Laws
 from cuefem.contact.stepped import SteppedContact, Turning
 from cuefem.contact.stepped_shear import SteppedShearContact
-from cuefem.effects import PowerLawTip, RollingContact, TipDome, TipShear
-from cuefem.quantity import scalar
+from cuefem.effects.law import NormalLaw, TipLaw
+from cuefem.effects.terms import ContactTerms, HeadOn
 from cuefem.scene import Scene
 
-__all__ = ["SteppedContact", "TipLaw", "law_of", "stepped_contact"]
+
+def law_of(scene: Scene, laws: Laws) -> tuple[NormalLaw, float]:
+    """The tip's law along the normal, the scene's own or the linear one, and about how long a contact takes, s."""
+    law = scene.contact_terms.law
+    if law is None:
+        return TipLaw(laws.stiffness, 1.0, laws.restitution), laws.time
+    return law(HeadOn(scene.head_on_mass, laws.restitution, laws.time, laws.speed))
 
 
-def law_of(scene: Scene, laws: Laws) -> tuple[TipLaw, float]:
-    """The tip's law, and about how long a contact takes, s."""
-    for power in (effect for effect in scene.effects if isinstance(effect, PowerLawTip)):
-        n = power.exponent
-        law = TipLaw.timed(n, laws.restitution, mass=scene.head_on_mass, speed=power.speed, time=laws.time)
-        return law, laws.time * slowed(n, laws.speed / power.speed)
-    return TipLaw(laws.stiffness, 1.0, laws.restitution), laws.time
-
-
-def stepped_contact(scene: Scene, tip: TipModes, laws: Laws) -> SteppedContact:
-    """The contact that the scene's PowerLawTip and RollingContact ask for, with its TipShear."""
-    law, clock = law_of(scene, laws)
-    turning = None
-    if any(isinstance(effect, RollingContact) for effect in scene.effects):
-        turning = Turning(scalar("Ball.radius", scene.ball.radius), TipDome(scene.dome_radius))
-    shears = [effect.ratio for effect in scene.effects if isinstance(effect, TipShear)]
-    if not shears:
+def stepped_contact(
+    terms: ContactTerms, tip: TipModes, laws: Laws, *, law: NormalLaw, clock: float, radius: float
+) -> SteppedContact:
+    """The contact with a nonlinear law, a turning normal or both, and what gives sideways; radius: of the ball, m."""
+    turning = Turning(radius, terms) if terms.turns else None
+    if not terms.compliance:
         return SteppedContact(tip, laws, law=law, turning=turning, clock=clock)
-    compliance = math.fsum(1 / ratio for ratio in shears) / laws.stiffness
+    compliance = terms.compliance / laws.stiffness
     return SteppedShearContact(tip, laws, law=law, turning=turning, clock=clock, compliance=compliance)

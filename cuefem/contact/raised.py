@@ -13,9 +13,9 @@ from cuefem.contact.history import SteppedHistory
 from cuefem.contact.linear import ROUNDING, Grip, Phase, Press
 from cuefem.contact.stepped import PAST, SteppedContact
 from cuefem.cue import Array
-from cuefem.effects import Elevation
+from cuefem.effects.terms import Table
 
-Table = Literal["slides", "held", "lifted"]
+OnTable = Literal["slides", "held", "lifted"]
 # Rows of the contact, in this order: the tip's velocities against the ball, and the ball's lowest point's.
 T, N, P, UP, ASIDE, AHEAD = range(6)
 SLIDING = ([T, P], [ASIDE, AHEAD])  # of the tip on the ball, and of the ball on the table
@@ -33,7 +33,7 @@ class RaisedHold(NamedTuple):
     grip: Grip
     press: Press
     deepest: float
-    table: Table
+    table: OnTable
 
 
 @dataclass(frozen=True)
@@ -46,15 +46,15 @@ class RaisedHistory(SteppedHistory):
 
 @dataclass
 class RaisedContact(SteppedContact):
-    """The contact of a cue raised by ``elevation``; its tip modes are `cuefem.contact.elevation.in_both_planes`.
+    """The contact of a cue raised as ``raised`` says; its tip modes are `cuefem.contact.elevation.in_both_planes`.
 
     across: their displacement of the contact along p. radius: of the ball, m.
     """
 
-    elevation: Elevation = field(default_factory=lambda: Elevation(0.0))
+    raised: Table = field(default_factory=lambda: Table(0.0, 0.0))
     across: Array = field(default_factory=lambda: np.zeros(0))
     radius: float = 1.0
-    table: Table = "slides"
+    table: OnTable = "slides"
     table_loss: float = 0.0
 
     extra_states: ClassVar[int] = 12
@@ -73,7 +73,7 @@ class RaisedContact(SteppedContact):
     def axes(self) -> tuple[Array, Array, Array]:
         """Right, forward and up in (t, n, p)."""
         s, c = math.sin(self.laws.phi), math.cos(self.laws.phi)
-        sin_a, cos_a = math.sin(self.elevation.angle), math.cos(self.elevation.angle)
+        sin_a, cos_a = math.sin(self.raised.angle), math.cos(self.raised.angle)
         right, forward = np.array([c, -s, 0]), np.array([cos_a * s, cos_a * c, sin_a])
         return right, forward, np.array([-sin_a * s, -sin_a * c, cos_a])
 
@@ -134,7 +134,7 @@ class RaisedContact(SteppedContact):
         if hold.table != "lifted":
             column = unit[:, [UP]].copy()
             if hold.table == "slides":
-                column[[ASIDE, AHEAD], 0] = -self.elevation.friction * self._slip(z, 1)[0]
+                column[[ASIDE, AHEAD], 0] = -self.raised.friction * self._slip(z, 1)[0]
             else:
                 column = np.hstack([column, unit[:, [ASIDE, AHEAD]]])
             push, keep = np.hstack([push, column]), [*keep, UP, *([ASIDE, AHEAD] if hold.table == "held" else [])]
@@ -222,7 +222,7 @@ class RaisedContact(SteppedContact):
         """How the table holds the ball, whose lowest point is at rest: held, sliding away, or not at all."""
         self.table = "held"
         forces = self._now(self._hold(grip, press))
-        if math.hypot(*forces[[ASIDE, AHEAD]]) > self.elevation.friction * forces[UP] + ROUNDING * self.scale:
+        if math.hypot(*forces[[ASIDE, AHEAD]]) > self.raised.friction * forces[UP] + ROUNDING * self.scale:
             self.table = "slides"
             self._head(1, -forces[[ASIDE, AHEAD]])
             forces = self._now(self._hold(grip, press))
@@ -293,7 +293,7 @@ class RaisedContact(SteppedContact):
         ends["lifted"] = lambda z: float(self.contact_forces(z, hold, self.free @ z)[UP]) / scale + ROUNDING
         if hold.table == "slides":
             return ends | {"stopped": lambda z: self._slip(z, 1)[1] / speed}
-        return ends | {"slid": margin(self.elevation.friction, UP, ASIDE, AHEAD)}
+        return ends | {"slid": margin(self.raised.friction, UP, ASIDE, AHEAD)}
 
     def _follow(self, hold: Any, end: float, z: Array, solution: Any) -> None:
         super()._follow(hold, end, z, solution)

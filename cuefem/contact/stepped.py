@@ -12,11 +12,11 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from cuefem.contact.history import SteppedHistory, Stretch
-from cuefem.contact.law import TipLaw
 from cuefem.contact.linear import APART, ROUNDING, SIDE, Contact, Grip, Phase, Press
 from cuefem.contact.ringing_tip import RINGING
 from cuefem.cue import Array
-from cuefem.effects import TipDome
+from cuefem.effects.law import NormalLaw, TipLaw
+from cuefem.effects.terms import ContactTerms
 
 # A phase that starts past an end by this part of its size is over at once.
 PAST = 1e-10
@@ -39,12 +39,12 @@ class Turning(NamedTuple):
     """What a turning contact turns on: the ball's radius and the tip's dome."""
 
     ball_radius: float
-    dome: TipDome
+    terms: ContactTerms
 
     @property
     def reach(self) -> float:
         """Distance of the two centres, m."""
-        return self.ball_radius + self.dome.radius
+        return self.ball_radius + self.terms.dome_radius
 
 
 @dataclass
@@ -55,7 +55,7 @@ class SteppedContact(Contact):
     rates of change were asked for.
     """
 
-    law: TipLaw = field(default_factory=lambda: TipLaw(1.0, 1.0, 1.0))
+    law: NormalLaw = field(default_factory=lambda: TipLaw(1.0, 1.0, 1.0))
     turning: Turning | None = None
     clock: float = 1.0
     deepest: float = 0.0
@@ -80,7 +80,7 @@ class SteppedContact(Contact):
         """(c_t, c_n, c_n') where the contact has turned to: the rows that read v_t, v_n and (V_D - V_C) . t."""
         if self.turning is None:
             return self.c_t, self.c_n, np.zeros(0)
-        turned, dome = float(z[self.angle]), self.turning.dome
+        turned, dome = float(z[self.angle]), self.turning.terms
         phi = self.laws.phi + turned
         s, c = math.sin(phi), math.cos(phi)
         lever = np.subtract(dome.lever(phi), dome.lever(self.laws.phi))
@@ -92,7 +92,7 @@ class SteppedContact(Contact):
         c_n[ball] = -root * math.sin(turned), root * math.cos(turned)
         passing = -c_t
         passing[self.spin] = 0.0
-        passing[self.velocities] += dome.radius * self.tip.rotation
+        passing[self.velocities] += dome.dome_radius * self.tip.rotation
         return c_t, c_n, passing
 
     def _forces(

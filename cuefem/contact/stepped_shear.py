@@ -61,10 +61,7 @@ class SteppedShearContact(SteppedContact):
         return v_t + self.compliance * SIDE[hold.grip] * self.laws.friction * rise
 
     def _stiffness(self, compression: float, hold: Hold) -> float:
-        if hold.press == "load":
-            return self.law.slope(compression)
-        squared = self.law.restitution**2
-        return self.law.slope((compression - self.law.rest(hold.deepest)) / squared) / squared
+        return self.law.slope(compression, None if hold.press == "load" else hold.deepest)
 
     def _follow(self, hold: Hold | None, end: float, z: Array, solution: Any) -> None:
         before = self._stored()

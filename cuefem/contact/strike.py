@@ -8,11 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from cuefem.beam.tip import TipModes
+from cuefem.contact.kinds import contact_of
 from cuefem.contact.linear import Contact, Laws, run
-from cuefem.contact.linear_shear import ShearContact
 from cuefem.contact.outcome import _outcome
-from cuefem.contact.ringing_tip import RINGING, ringing_contact
-from cuefem.effects import Elevation, PowerLawTip, RollingContact, SecondHit, TipEffect, TipShear
 from cuefem.quantity import check_kind, scalar
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import tip_modes_of
@@ -53,31 +51,14 @@ def struck(scene: Scene, tip: TipModes) -> Contact:
         speed=scalar("Stroke.speed", scene.stroke.speed),
     )
     tip = tip if offset else tip.uncoupled
-    levers = [effect.lever(laws.phi) for effect in scene.effects if isinstance(effect, TipEffect)]
-    if levers:
-        whole = [math.fsum(parts) for parts in zip(*levers, strict=True)]  # in any order the same to the last bit
-        tip = replace(tip, amplitude=tip.amplitude + np.outer(tip.rotation, whole))
+    terms = scene.contact_terms
+    lever = terms.lever(laws.phi)
+    if any(lever):
+        tip = replace(tip, amplitude=tip.amplitude + np.outer(tip.rotation, lever))
     contact = contact_of(scene, tip, laws)
     run(contact)
-    for effect in scene.effects:
-        if isinstance(effect, SecondHit):
-            from cuefem.contact.second_hit import follow
+    if terms.window is not None:
+        from cuefem.contact.second_hit import follow
 
-            follow(contact, effect.window)
+        follow(contact, terms.window)
     return contact
-
-
-def contact_of(scene: Scene, tip: TipModes, laws: Laws) -> Contact:
-    """The kind of contact that the scene's effects ask for."""
-    if any(isinstance(effect, Elevation) for effect in scene.effects):
-        from cuefem.contact.elevation import raised_contact
-
-        return raised_contact(scene, tip, laws)
-    if any(isinstance(effect, PowerLawTip | RollingContact) for effect in scene.effects):
-        from cuefem.contact.nonlinear import stepped_contact
-
-        return stepped_contact(scene, tip, laws)
-    shears = [effect.ratio for effect in scene.effects if isinstance(effect, TipShear)]
-    if not shears:
-        return ringing_contact(tip, laws) if 0 < laws.restitution <= RINGING else Contact(tip, laws)
-    return ShearContact(tip, laws, compliance=math.fsum(1 / ratio for ratio in shears) / laws.stiffness)

@@ -5,7 +5,16 @@ five lines: what the effect adds, when it matters, when it is wrong, the limit i
 """
 
 from cuefem.effects.at_tip import PowerLawTip, RollingContact, TipDome, TipShear
-from cuefem.effects.base import CueEffect, Effect, TipEffect, Usual, Vibrations, check_effects, effect_kinds
+from cuefem.effects.base import (
+    CueEffect,
+    Effect,
+    TipEffect,
+    Usual,
+    Vibrations,
+    acting_on_cue,
+    check_effects,
+    effect_kinds,
+)
 from cuefem.effects.on_cue import AxialWaves, Joint, PointMass, StructuralDamping, Support
 from cuefem.effects.stroke import Elevation, SecondHit
 
@@ -26,6 +35,7 @@ __all__ = [
     "TipShear",
     "Usual",
     "Vibrations",
+    "acting_on_cue",
     "check_effects",
     "effect_kinds",
 ]

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 from cuefem.effects.base import TipEffect, Usual
+from cuefem.effects.law import TipLaw, slowed
+from cuefem.effects.terms import ContactTerms, HeadOn
 from cuefem.quantity import Quantity
 
 
@@ -52,14 +53,9 @@ class TipDome(TipEffect):
 
     radius: Annotated[float, Quantity("m", "[0, inf)")]
 
-    @property
-    def dome_radius(self) -> float:
-        """The dome's own: the levers of two domes add, and so do their radii."""
-        return self.radius
-
-    def lever(self, phi: float) -> tuple[float, float]:
-        """The contact is at r (1 - cos(phi)) along x and -r sin(phi) along w from the apex; rotation is w'."""
-        return -self.radius * math.sin(phi), self.radius * (1 - math.cos(phi))
+    def add_to_contact(self, terms: ContactTerms) -> None:
+        """The dome: the levers of two domes add, and so do their radii."""
+        terms.add_dome(self.radius)
 
 
 @dataclass(frozen=True)
@@ -99,6 +95,10 @@ class TipShear(TipEffect):
     usual: ClassVar[Usual | None] = Usual({"ratio": 0.75}, "Mindlin's 2 (1 - nu)/(2 - nu) at nu 0.4, round")
 
     ratio: Annotated[float, Quantity("", "(0, inf)")]
+
+    def add_to_contact(self, terms: ContactTerms) -> None:
+        """The patch's spring: springs in series, so that compliances add."""
+        terms.add_compliance(1 / self.ratio)
 
 
 @dataclass(frozen=True)
@@ -144,6 +144,14 @@ class PowerLawTip(TipEffect):
     exponent: Annotated[float, Quantity("", "[1, inf)")] = 1.5
     speed: Annotated[float, Quantity("m/s", "(0, inf)")] = 1.0
 
+    def add_to_contact(self, terms: ContactTerms) -> None:
+        """The power law."""
+        terms.set_law(self._law)
+
+    def _law(self, blow: HeadOn) -> tuple[TipLaw, float]:
+        law = TipLaw.timed(self.exponent, blow.restitution, mass=blow.mass, speed=self.speed, time=blow.time)
+        return law, blow.time * slowed(self.exponent, blow.speed / self.speed)
+
 
 @dataclass(frozen=True)
 class RollingContact(TipEffect):
@@ -176,3 +184,7 @@ class RollingContact(TipEffect):
 
     once: ClassVar[bool] = True
     usual: ClassVar[Usual | None] = Usual({}, "ball's and dome's own radii")
+
+    def add_to_contact(self, terms: ContactTerms) -> None:
+        """The normal turns."""
+        terms.turn()

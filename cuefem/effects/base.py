@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, is_dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
 
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from cuefem.beam.modes import Modes
     from cuefem.beam.system import System
     from cuefem.beam.tip import TipModes
+    from cuefem.effects.terms import ContactTerms
 
 # Positions are on the cue up to this part of its length: a sum of lengths differs from their total by rounding.
 NEAR = 1e-9
@@ -65,6 +66,9 @@ class Effect:
     # What to try it at; None for an effect that has defaults for all of its fields, or that says what is on this cue
     # (a point mass): no cue has one of those as a matter of course.
     usual: ClassVar[Usual | None] = None
+    # Whether it acts at the tip (the cue without it is `Scene.bare`), and whether it is part of a cue that lies free.
+    at_tip: ClassVar[bool] = False
+    part_of_cue: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -75,9 +79,18 @@ class Effect:
         return 0.0
 
     @property
-    def dome_radius(self) -> float:
-        """What the effect adds to the radius of the tip's dome, m."""
-        return 0.0
+    def positions(self) -> tuple[float, ...]:
+        """Positions on the cue that must be mesh nodes, m from the tip."""
+        return ()
+
+    def check_on(self, cue: Cue, name: str) -> None:
+        """ValueError, in the words of ``name``, unless the effect's positions lie on the cue."""
+        for x in self.positions:
+            if not 0 <= x <= cue.length * (1 + NEAR):
+                raise ValueError(f"{name}.position must be in [0, {cue.length}] m, on the cue; got {x}")
+
+    def add_to_contact(self, terms: ContactTerms) -> None:
+        """Add the effect's terms to the contact's."""
 
 
 @dataclass(frozen=True)
@@ -85,11 +98,6 @@ class CueEffect(Effect):
     """An effect that acts on the cue: it adds terms to the beam (see `cuefem.beam.ActsOnCue`) or to its modes."""
 
     needs_beam: ClassVar[bool] = True
-
-    @property
-    def positions(self) -> tuple[float, ...]:
-        """Positions that must be mesh nodes, m from the tip."""
-        return ()
 
     @property
     def splits(self) -> tuple[float, ...]:
@@ -100,12 +108,6 @@ class CueEffect(Effect):
     def clamps(self) -> tuple[tuple[str, float], ...]:
         """What the effect takes out: (name of the field that is infinite, position in m)."""
         return ()
-
-    def check_on(self, cue: Cue, name: str) -> None:
-        """ValueError, in the words of ``name``, unless the effect's positions lie on the cue."""
-        for x in self.positions:
-            if not 0 <= x <= cue.length * (1 + NEAR):
-                raise ValueError(f"{name}.position must be in [0, {cue.length}] m, on the cue; got {x}")
 
     def add_to(self, terms: Terms) -> None:
         """Add the effect's point terms to the beam's."""
@@ -123,10 +125,12 @@ class CueEffect(Effect):
 class TipEffect(Effect):
     """An effect at the contact between tip and ball."""
 
-    def lever(self, phi: float) -> tuple[float, float]:
-        """Displacement (u, w) of the contact per unit rotation of the tip's section, m; phi: the contact's angle,
-        rad."""
-        return 0.0, 0.0
+    at_tip: ClassVar[bool] = True
+
+
+def acting_on_cue(effects: Iterable[Effect]) -> tuple[CueEffect, ...]:
+    """The effects that act on the cue, sorted, so that sums over them do not depend on the order of the list."""
+    return tuple(sorted((effect for effect in effects if isinstance(effect, CueEffect)), key=repr))
 
 
 def effect_kinds() -> dict[str, type[Effect]]:
@@ -151,7 +155,7 @@ def check_effects(cue: Cue | LumpedCue, effects: tuple[Any, ...]) -> None:
                 f"Scene.effects[{i}] must be an effect that a LumpedCue can have, one at its tip alone; "
                 f"got {type(effect).__name__}, which needs a finite-element Cue"
             )
-        if isinstance(cue, Cue) and isinstance(effect, CueEffect):
+        if isinstance(cue, Cue):
             effect.check_on(cue, f"Scene.effects[{i}]")
     _check_once(effects)
     _check_excluded(effects)

@@ -52,6 +52,8 @@ class PointMass(CueEffect):
     True
     """
 
+    part_of_cue: ClassVar[bool] = True
+
     position: Annotated[float, Quantity("m", "[0, inf)")]
     mass: Annotated[float, Quantity("kg", "[0, inf)")]
     rotary_inertia: Annotated[float, Quantity("kg m^2", "[0, inf)")] = 0.0
@@ -173,6 +175,8 @@ class Joint(CueEffect):
     >>> bool(loose.frequencies[0] < cf.modes(shaft, 3).frequencies[0])
     True
     """
+
+    part_of_cue: ClassVar[bool] = True
 
     position: Annotated[float, Quantity("m", "(0, inf)")]
     rotational_compliance: Annotated[float, Quantity("rad/(N m)", "[0, inf)")] = 0.0

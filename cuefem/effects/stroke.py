@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 from cuefem.effects.base import Effect, Usual
+from cuefem.effects.terms import ContactTerms, Table
 from cuefem.quantity import Quantity
 
 
@@ -48,6 +49,10 @@ class SecondHit(Effect):
     once: ClassVar[bool] = True
 
     window: Annotated[float, Quantity("s", "(0, inf)")] = 5e-3
+
+    def add_to_contact(self, terms: ContactTerms) -> None:
+        """The time in which tip and ball may touch again."""
+        terms.set_window(self.window)
 
 
 @dataclass(frozen=True)
@@ -99,3 +104,7 @@ class Elevation(Effect):
 
     angle: Annotated[float, Quantity("rad", "[0, 1.5707963267948966)")]
     friction: Annotated[float, Quantity("", "[0, inf)")] = 0.2
+
+    def add_to_contact(self, terms: ContactTerms) -> None:
+        """The table under the ball."""
+        terms.set_table(Table(self.angle, self.friction))

@@ -23,7 +23,6 @@ from cuefem.contact.flow import zero
 from cuefem.contact.impulse_space import impact
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array, LumpedCue
-from cuefem.effects import TipEffect
 from cuefem.endmass import damped
 from cuefem.endmass import undamped as transverse
 from cuefem.endmass.undamped import StickLimit
@@ -120,7 +119,7 @@ def _strikes(drive: str, tip: TipModes, scene: Scene) -> bool:
     if drive not in ("stick", "offset"):
         return drive == "squirt"
     along = np.any(tip.amplitude[tip.omega > 0, 0] != 0)  # rod modes change the course of the normal impulse
-    return bool(along) or any(isinstance(effect, TipEffect) for effect in scene.effects)
+    return bool(along) or bool(scene.at_tip)
 
 
 def formula_of(drive: str) -> Callable[[TipModes, Scene], Any]:

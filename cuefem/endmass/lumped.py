@@ -11,7 +11,6 @@ from cuefem.beam.tip import TipModes
 from cuefem.contact.flow import zero
 from cuefem.contact.impulse_space import impact
 from cuefem.cue import LumpedCue
-from cuefem.effects import TipEffect
 from cuefem.endmass.drives import _gripping, end_mass, stick_at_offset, sticking_squirt, tip_modes_for
 from cuefem.quantity import check_kind, scalar
 from cuefem.scene import Outcome, Resolution, Scene
@@ -30,9 +29,8 @@ def lump_modes(scene: Scene, tip: TipModes) -> LumpedCue:
     """The same of a cue that is given by its tip modes."""
     if scene.lumped is not None:
         return scene.lumped
-    effects = tuple(effect for effect in scene.effects if not isinstance(effect, TipEffect))
-    cue = LumpedCue(scene.axial_mass, stick_at_offset(tip, replace(scene, effects=effects)))
-    if len(effects) == len(scene.effects) or scalar("Stroke.offset", scene.stroke.offset) == 0:
+    cue = LumpedCue(scene.axial_mass, stick_at_offset(tip, scene.bare))
+    if not scene.at_tip or scalar("Stroke.offset", scene.stroke.offset) == 0:
         return cue
     return replace(cue, coupling=_coupling(cue, scene, sticking_squirt(tip, scene)))
 

@@ -12,7 +12,7 @@ from typing import Annotated, Any
 import tomlkit
 
 from cuefem.cue import Cue, LumpedCue, Material
-from cuefem.effects import CueEffect, Effect, effect_kinds
+from cuefem.effects import Effect, effect_kinds
 from cuefem.io.errors import InputError, nearest, read_bytes, reason, shown
 from cuefem.io.schema import build, joined, keys_of, table, unknown_key
 from cuefem.materials import material
@@ -150,7 +150,7 @@ def _scene(found: dict[str, Any], path: Path, cue_file: Callable[[Path], Cue]) -
 def _check_effects(scene: Scene, path: Path) -> None:
     """Refuse what only the cue can say: an effect at a position off it."""
     for i, effect in enumerate(scene.effects):
-        if isinstance(effect, CueEffect):
+        if scene.lumped is None:
             try:
                 effect.check_on(scene.shaft, joined("effects", i))
             except ValueError as error:

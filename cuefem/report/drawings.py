@@ -12,7 +12,6 @@ import numpy as np
 
 from cuefem.beam.modes import Modes
 from cuefem.cue import Cue, Material, Segment
-from cuefem.effects import CueEffect
 from cuefem.materials import MATERIALS
 from cuefem.quantity import scalar
 from cuefem.report.charts import WIDE, Axis, Tick, path
@@ -85,11 +84,7 @@ def _drawn(scene: Scene, title: str, *, length: float, across: float) -> CueDraw
     ends = [s.tip_diameter + (s.butt_diameter - s.tip_diameter) * min(1, (length - x) / s.length) for x, s in shown]
     widest = max(*ends, *(s.tip_diameter for _, s in shown)) * scale * across
     signs = tuple(
-        Sign(10 + scale * x, type(effect).__name__)
-        for effect in scene.effects
-        if isinstance(effect, CueEffect)
-        for x in effect.positions
-        if x <= length
+        Sign(10 + scale * x, type(effect).__name__) for effect in scene.effects for x in effect.positions if x <= length
     )
     above = 14.0 if signs and across > 1 else 3.0
     axis = above + widest / 2

@@ -16,7 +16,6 @@ import numpy as np
 
 from cuefem.beam.tip import TipModes
 from cuefem.contact.strike import strike_modes
-from cuefem.effects import Elevation
 from cuefem.endmass.drives import formula_of, of_strike, tip_modes_for
 from cuefem.quantity import scalar
 from cuefem.report.end_mass import DRIVES
@@ -92,8 +91,9 @@ def _notes(scene: Scene) -> list[str]:
         notes.append("length and shaft_radius_at_butt are those of the file's segments; M is the whole cue's")
     if not scene.dome_radius:
         notes.append("tip_radius: pooltool's own, a nickel's; the scene has no TipDome")
-    for raised in (effect for effect in scene.effects if isinstance(effect, Elevation)):
-        told = f"the cue is raised by {np.degrees(raised.angle):.3g}°"
+    table = scene.contact_terms.table
+    if table is not None:
+        told = f"the cue is raised by {np.degrees(table.angle):.3g}°"
         notes.append(f"{told}: its end mass holds the table's push, which pooltool's squirt does not know")
     if scene.ball.inertia != POOLTOOL_INERTIA:
         notes.append(f"pooltool's balls have the inertia factor 0.4; the scene's has {scene.ball.inertia:g}")

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from cuefem.cue import Cue, LumpedCue
-from cuefem.effects import TipEffect
 from cuefem.scene import Scene
 
 Record = dict[str, Any]
@@ -55,5 +54,5 @@ def scene_record(scene: Scene) -> Record:
         | {"contact_time": scene.contact_time},
         "stroke": asdict(scene.stroke),
         "effects": [{"type": type(effect).__name__, **asdict(effect)} for effect in scene.effects],
-        "effects_at_tip": [type(effect).__name__ for effect in scene.effects if isinstance(effect, TipEffect)],
+        "effects_at_tip": [type(effect).__name__ for effect in scene.at_tip],
     }

@@ -12,7 +12,6 @@ from rich.console import Group
 from cuefem.beam.tip import TipModes
 from cuefem.contact.strike import strike
 from cuefem.cue import LumpedCue
-from cuefem.effects import TipEffect
 from cuefem.endmass.drives import stick_at_offset, tip_modes_for
 from cuefem.endmass.lumped import impulse, lump_modes
 from cuefem.quantity import scalar
@@ -31,9 +30,8 @@ def two_part_cues(scene: Scene, offsets: Sequence[float], tip: TipModes) -> list
     """
     if scene.lumped is not None:
         return [replace(scene.lumped, coupling=0.0)] * len(offsets)
-    bare = replace(scene, effects=tuple(effect for effect in scene.effects if not isinstance(effect, TipEffect)))
     try:
-        masses = stick_at_offset(tip, _at(bare, np.array(offsets)))
+        masses = stick_at_offset(tip, _at(scene.bare, np.array(offsets)))
     except ValueError:
         if len(offsets) == 1:
             return [None]

@@ -14,7 +14,7 @@ import numpy as np
 
 from cuefem.contact.strike import strike
 from cuefem.cue import Array, Cue, Material
-from cuefem.effects import Joint, PointMass
+from cuefem.effects import Effect
 from cuefem.endmass.drives import end_mass
 from cuefem.quantity import Quantity, check_kind
 from cuefem.scene import Scene
@@ -61,13 +61,13 @@ class TapTest:
         *,
         segment: int | None = None,
         mass: float | None = None,
-        effects: tuple[object, ...] = (),
+        effects: tuple[Effect, ...] = (),
         model: float = MODEL,
     ) -> None:
         check_kind("TapTest cue", cue, Cue)
         self.model = Quantity("", "[0, 1)").check("TapTest model", model)
         wood = main_material(cue, segment)
-        hung = tuple(effect for effect in effects if isinstance(effect, PointMass | Joint))
+        hung = tuple(effect for effect in effects if effect.part_of_cue)
         self.shaft, self.weighed, self.notes = Shaft(cue, wood, hung), mass is not None, list[str]()
         self.rho, self.rho_error = (wood.rho, DENSITY) if mass is None else self._weigh(mass)
         self.table = ModeTable(self.shaft, self.rho)
@@ -76,7 +76,7 @@ class TapTest:
         """(density of the wood, its relative error)."""
         mass = Quantity("kg", "(0, inf)").check("mass", mass)
         cue, wood = self.shaft.cue, self.shaft.wood
-        drawn = cue.shaft_mass + sum(e.mass for e in self.shaft.effects if isinstance(e, PointMass))
+        drawn = cue.shaft_mass + sum(effect.axial_mass for effect in self.shaft.effects)
         own = with_material(cue, wood, replace(wood, rho=2 * wood.rho)).shaft_mass - cue.shaft_mass
         others = drawn - own
         low, high = others + own / FACTOR, others + own * FACTOR

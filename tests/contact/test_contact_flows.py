@@ -8,8 +8,8 @@ import pytest
 import scipy.linalg as la
 
 from cuefem import AxialWaves, PointMass, StructuralDamping, Support, TipDome, TipShear
+from cuefem.contact.kinds import contact_of
 from cuefem.contact.linear import Contact, Laws
-from cuefem.contact.strike import contact_of
 from cuefem.tip_modes import tip_modes_of
 from tests.helpers.strike_scenes import kim_scene
 

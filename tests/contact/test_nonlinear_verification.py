@@ -22,11 +22,11 @@ from cuefem import (
     strike,
 )
 from cuefem.beam.tip import TipModes, lumped_tip_modes
-from cuefem.contact.law import TipLaw, loading_time
+from cuefem.contact.kinds import contact_of
 from cuefem.contact.linear import Laws
-from cuefem.contact.nonlinear import stepped_contact
 from cuefem.contact.second_hit import hits
 from cuefem.contact.strike import strike_modes
+from cuefem.effects.law import TipLaw, loading_time
 from tests.helpers.orders import assert_order
 from tests.helpers.strike_scenes import KIM_AT, hand_made, imbalance, kim_scene, numbers
 
@@ -290,9 +290,9 @@ def test_directions_turn_as_the_module_says():
     """dc_t/da = c_n and dc_n/da = c_n', by central differences, dome, spin and all."""
     scene = replace(kim_scene(0.4), effects=(TipDome(0.011), RollingContact()))
     laws = Laws(asin(0.4), 0.2, 0.4, stiffness=1e6, restitution=0.7, friction=0.5, time=1e-3, speed=1.0)
-    tip, lever = bent(), TipDome(0.011).lever(laws.phi)
+    tip, lever = bent(), scene.contact_terms.lever(laws.phi)
     tip = replace(tip, amplitude=tip.amplitude + np.outer(tip.rotation, lever))
-    contact = stepped_contact(scene, tip, laws)
+    contact = contact_of(scene, tip, laws)
     z, h = contact.z.copy(), 1e-5
 
     def turned(angle):

@@ -1,16 +1,42 @@
-"""A power law of the tip, loaded and unloaded (the effect PowerLawTip; exponent 1 is the base model's)."""
+"""Laws of the tip along the normal: the force over the compression, loaded and unloaded."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Protocol
 
-from scipy.special import gamma
+
+class NormalLaw(Protocol):
+    """What a contact asks of a nonlinear tip: forces, N, over the compression, m; deepest: the last greatest one, m."""
+
+    @property
+    def restitution(self) -> float:
+        """Energetic coefficient of restitution."""
+
+    def load(self, compression: float) -> float:
+        """Force while the tip is pressed deeper than ever before, N; it passes zero smoothly."""
+
+    def unload(self, compression: float, deepest: float) -> float:
+        """Force on the way back from ``deepest``, N."""
+
+    def rest(self, deepest: float) -> float:
+        """Compression at which the force has gone on the way back from ``deepest``, m."""
+
+    def slope(self, compression: float, deepest: float | None = None) -> float:
+        """Stiffness, N/m: while loaded, or on the way back from ``deepest``."""
+
+    def loss(self, deepest: float) -> float:
+        """Work that loading to ``deepest`` took and unloading does not give back, J."""
 
 
 @dataclass(frozen=True)
 class TipLaw:
-    """Force of the tip over its compression d: stiffness d^exponent, N, while loaded; restitution e."""
+    """A power law (the effect PowerLawTip; exponent 1 is the base model's): F = stiffness d^exponent while loaded, N.
+
+    Unloading follows the loading curve with its compression scaled by e^2, so that the work given back is e^2 of that
+    spent; e is the restitution.
+    """
 
     stiffness: float
     exponent: float
@@ -37,9 +63,12 @@ class TipLaw:
         """Force on the curve that ends at ``deepest``, N: the loading curve, its compression scaled by e^2."""
         return self.load((compression - self.rest(deepest)) / self.restitution**2)
 
-    def slope(self, compression: float) -> float:
-        """Stiffness on the loading curve, N/m."""
-        return self.stiffness * self.exponent * abs(compression) ** (self.exponent - 1)
+    def slope(self, compression: float, deepest: float | None = None) -> float:
+        """Stiffness, N/m: on the loading curve, or on the way back from ``deepest``."""
+        if deepest is None:
+            return self.stiffness * self.exponent * abs(compression) ** (self.exponent - 1)
+        squared = self.restitution**2
+        return self.slope((compression - self.rest(deepest)) / squared) / squared
 
     def loss(self, deepest: float) -> float:
         """Work that loading to ``deepest`` took and unloading did not give back, J."""
@@ -48,6 +77,8 @@ class TipLaw:
 
 def loading_time(exponent: float) -> float:
     """Time to the greatest compression, in depth over speed: the integral of 1/sqrt(1 - s^(n + 1)) over 0..1."""
+    from scipy.special import gamma  # loaded when used: a scene alone needs no scipy
+
     power = 1 / (exponent + 1)
     return float(math.sqrt(math.pi) * gamma(1 + power) / gamma(0.5 + power))
 

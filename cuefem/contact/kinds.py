@@ -1,0 +1,34 @@
+"""The kinds of contact, and which of them a scene's terms ask for."""
+
+from __future__ import annotations
+
+from cuefem.beam.tip import TipModes
+from cuefem.contact.linear import Contact, Laws
+from cuefem.contact.linear_shear import ShearContact
+from cuefem.contact.ringing_tip import RINGING, ringing_contact
+from cuefem.quantity import scalar
+from cuefem.scene import Scene
+
+
+def contact_of(scene: Scene, tip: TipModes, laws: Laws) -> Contact:
+    """The cheapest contact that honours the terms of the scene's effects: exact linear phases where it can.
+
+    ValueError for terms that no contact honours together: a raised cue turns neither normal nor patch, and its tip
+    gives something back.
+    """
+    terms = scene.contact_terms
+    compliance, radius = terms.compliance / laws.stiffness, scalar("Ball.radius", scene.ball.radius)
+    if terms.table is None and terms.law is None and not terms.turns:
+        if compliance:
+            return ShearContact(tip, laws, compliance=compliance)
+        return ringing_contact(tip, laws) if 0 < laws.restitution <= RINGING else Contact(tip, laws)
+    from cuefem.contact.nonlinear import law_of, stepped_contact  # loaded when used: they need a solver
+
+    law, clock = law_of(scene, laws)
+    if terms.table is None:
+        return stepped_contact(terms, tip, laws, law=law, clock=clock, radius=radius)
+    from cuefem.contact.elevation import raised_contact
+
+    if compliance or terms.turns or terms.window is not None:
+        raise ValueError("Elevation takes a tip without give sideways, a fixed normal and a single hit")
+    return raised_contact(terms.table, tip, laws, law=law, clock=clock, radius=radius)
