@@ -187,9 +187,9 @@ def _end_rings(cue: Cue) -> float:
     """
     if len(cue.segments) == 1:
         return 0.0
-    joint = cue.nodes[1:2]
-    own, following = (float((s.EI * s.rhoI)[0]) ** 0.5 for s in (cue.section_in(i, joint * (1 - i)) for i in (0, 1)))
-    if max(own, following) < REFLECTS * min(own, following):
+    sides = cue.section_in(np.arange(2), np.array([cue.nodes[1], 0.0]))  # of the first segment's butt
+    impedances = np.sqrt(sides.EI * sides.rhoI)
+    if impedances.max() < REFLECTS * impedances.min():
         return 0.0
     omega = np.geomspace(1e3, 1e9, 600)
     return float(omega[np.argmax(wave_phase(cue, omega)[1, 0] > np.pi / 2)])
