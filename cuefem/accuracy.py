@@ -17,7 +17,7 @@ from cuefem.beam.modes import Modes, solve
 from cuefem.beam.system import assemble
 from cuefem.beam.tail import Deflect, flexibility, tail
 from cuefem.beam.tip import TipModes
-from cuefem.beam.waves import mesh_for, modes_below
+from cuefem.beam.waves import mesh_for, modes_below, wave_phase
 from cuefem.contact.linear import APART
 from cuefem.contact.strike import strike, strike_modes
 from cuefem.cue import Array
@@ -34,6 +34,10 @@ FIRST, RATIO, JUDGED = 8, 1.3, 3
 # faster; the slowest are those of a tip that never slips under a dome, and of soft leather: the blow of the first touch
 # falls like 1/n, and the wave fronts that it sends out come back from every joint before the contact ends. How well the
 # estimates hold over random scenes with every effect: studies/resolve_errors.md.
+# Rungs may agree and yet be wrong where the cue's first segment has a resonance of its own above all modes kept, as the
+# leather of a tip has between 5 and 100 kHz. The tail stands for that resonance by its flexibility and a dashpot, as if
+# what rings there left for good; the leather keeps it. The truth lies between a tail that radiates and one that
+# rings without loss, so until the modes reach the resonance the difference of the two is a bound of the error too.
 DECAY, WINDOW = 0.75, 3
 # What meshes and rounding leave, relative; of a lumped cue rounding alone.
 FLOOR, ROUNDING = 1e-8, 1e-12
@@ -52,6 +56,8 @@ SLOWLY = 0.3
 GRAZED = 0.03
 # Of the dips of the normal force the lowest few are looked at.
 FEW_DIPS = 3
+# A joint at which the impedance of waves jumps by this throws a third of them back.
+REFLECTS = 2.0
 FORCES = ("force_t", "force_n")
 
 RTOL = Quantity("", "(0, 1)")
@@ -71,9 +77,10 @@ def resolve(scene: Scene, rtol: float) -> Outcome:
     random scenes with every effect is measured in studies/resolve_errors.md. Squirt and spin are taken relative to
     themselves, squirt to no less than 0.01 sin(phi) rad (where it passes through zero). An accuracy that `MOST` modes
     do not reach gives the best found: its error is above rtol then. A contact that nearly parts and goes on has the
-    error of parting there, one that parts and nearly goes on that of going on (but not of a dead tip, nor of a raised
-    cue). A lumped cue is exact but for rounding. Cost: cubic in the modes; all rungs together take about twice the
-    last.
+    error of parting there, one that parts and nearly goes on that of going on (but a dead tip, e = 0, and a raised cue
+    that part are not charged so). A leather tip, or another first segment that reflects waves, is also charged what a
+    tail that rings without loss would change, until the modes reach the segment's own turning resonance. A lumped cue
+    is exact but for rounding. Cost: cubic in the modes; all rungs together take about twice the last.
     """
     rtol = RTOL.check("resolve rtol", rtol)
     if scene.lumped is not None:
@@ -91,14 +98,19 @@ def ladder(scene: Scene) -> Iterator[Rung]:
     """Strikes at ever more modes, with a tail, from a few to `MOST`; Outcome.error from rung `JUDGED` on."""
     counts: list[int] = []
     outcomes: list[Outcome] = []
+    swings: list[float] = []
     for rung in _tips(scene):
         outcome = strike_modes(scene, rung.tip)
         counts, outcomes = [*counts[-WINDOW:], rung.at.modes], [*outcomes[-WINDOW:], outcome]
+        if rung.end_unheard:
+            swings.append(relative_error(strike_modes(scene, _ringing(rung.tip)), outcome, scene))
         if len(counts) > JUDGED:
             values = np.array([_judged(each) for each in outcomes]) / _scale(outcome, scene)
             error = estimated_error(counts, values)
             courses = (_rungs_apart(outcomes, values), _other_course(outcomes, scene))
             error = max(error, *courses, _caught_up(outcome, scene, rung.tip))
+            if rung.end_unheard:
+                error = max(error, *swings[-1 - WINDOW :])
             outcome = replace(outcome, error=error)
         yield Rung(rung.at, outcome)
 
@@ -120,12 +132,17 @@ def end_mass_ladder(scene: Scene, formula: Callable[[TipModes, Scene], float]) -
     """(modes, end mass in kg, its estimated relative error) of ever more modes; infinite below rung `JUDGED`."""
     counts: list[int] = []
     values: list[float] = []
+    swings: list[float] = []
     for rung in _tips(scene):
         counts.append(rung.at.modes)
         values.append(float(formula(rung.tip, scene)))
+        if rung.end_unheard:
+            swings.append(abs(float(formula(_ringing(rung.tip), scene)) / values[-1] - 1))
         error = math.inf
         if len(counts) > JUDGED:
             error = estimated_error(counts, np.array(values)[:, None] / values[-1])
+            if rung.end_unheard:
+                error = max(error, *swings[-1 - WINDOW :])
         yield counts[-1], values[-1], error
 
 
@@ -154,6 +171,28 @@ def _scale(outcome: Outcome, scene: Scene) -> Array:
     least = np.array([LEAST_SQUIRT * abs(scalar("Stroke.offset", scene.stroke.offset)), 0.0, 0.0])
     size = np.maximum(np.abs(_judged(outcome)), least)
     return np.where(size > 0, size, 1.0)  # head on: squirt and spin are zero at every resolution
+
+
+def _ringing(tip: TipModes) -> TipModes:
+    """Those tip modes with a tail that gives nothing away: what it is set vibrating, it goes on ringing with."""
+    return replace(tip, radiation=None)
+
+
+def _end_rings(cue: Cue) -> float:
+    """Angular frequency, rad/s, from which on the cue's first segment has a turning resonance of its own; or zero.
+
+    There the second kind of Timoshenko's waves, in which sections turn against their shear, is a quarter wave long in
+    that segment. It is held there where its butt differs from the next segment by `REFLECTS` or more in the impedance
+    of such waves, sqrt(EI rhoI), as leather does on anything and metal on wood; otherwise it runs on into the cue.
+    """
+    if len(cue.segments) == 1:
+        return 0.0
+    sides = cue.section_in(np.arange(2), np.array([cue.nodes[1], 0.0]))  # of the first segment's butt
+    impedances = np.sqrt(sides.EI * sides.rhoI)
+    if impedances.max() < REFLECTS * impedances.min():
+        return 0.0
+    omega = np.geomspace(1e3, 1e9, 600)
+    return float(omega[np.argmax(wave_phase(cue, omega)[1, 0] > np.pi / 2)])
 
 
 def _rungs_apart(outcomes: list[Outcome], values: Array) -> float:
@@ -232,6 +271,12 @@ class _Tips(NamedTuple):
     scene: Scene
     whole: Modes
     deflect: Deflect
+    end_rings: float
+
+    @property
+    def end_unheard(self) -> bool:
+        """Whether the turning resonance of the cue's first segment lies above all modes kept."""
+        return 2 * math.pi * float(self.whole.frequencies[self.at.modes - 1]) < self.end_rings
 
     @property
     def tip(self) -> TipModes:
@@ -243,12 +288,13 @@ class _Tips(NamedTuple):
 
 def _tips(scene: Scene) -> Iterator[_Tips]:
     """Rungs of the ladder: each group of them on one mesh, with one eigenproblem and one factorisation."""
+    end_rings = _end_rings(scene.shaft)
     for group in _groups(scene):
         elements, order = mesh_for(scene.shaft, group[-1])
         system = assemble(scene.shaft, elements=elements, order=order, effects=scene.cue_effects)
         whole, deflect = solve(system, group[-1]), flexibility(system)
         for count in group:
-            yield _Tips(Resolution(elements, order, count), scene, whole, deflect)
+            yield _Tips(Resolution(elements, order, count), scene, whole, deflect, end_rings)
 
 
 def _groups(scene: Scene) -> list[list[int]]:

@@ -39,14 +39,18 @@ def test_rows_of_end_masses(number: int) -> None:
 
 @pytest.mark.parametrize("part", [STRIKES, MASSES], ids=["strikes", "end masses"])
 def test_the_estimates_hold(part: str) -> None:
-    """True over estimated error is above 1 in at most 5 % of rungs; above 3 in a few, whose cause the study names."""
-    rungs = int(re.findall(r"scenes, (\d+) rungs", part)[0])
-    assert float(re.findall(r"above 1 in ([\d.]+) %", part)[0]) <= 5
-    assert int(re.findall(r"above 3 in (\d+)", part)[0]) <= 0.04 * rungs
+    """True over estimated error is above 1 in at most 5 % of rungs and above 3 in none; of the second family in one."""
+    above = re.findall(r"above 1 in ([\d.]+) %, above 3 in (\d+)", part)
+    assert all(float(percent) <= 5 for percent, _ in above)
+    first, second = (int(three) for _, three in above)
+    assert first == 0
+    assert second <= 1
 
 
-def test_the_accuracies_asked_for_are_met() -> None:
-    answered = re.findall(r"in (\d+) scenes, .*; met in (\d+)", STRIKES)
-    assert len(answered) == 3
-    for asked, met in answered:
-        assert int(met) >= 0.97 * int(asked)
+@pytest.mark.parametrize("part", [STRIKES, MASSES], ids=["strikes", "end masses"])
+def test_the_accuracies_asked_for_are_met(part: str) -> None:
+    """In 98 % of the scenes of the first family."""
+    answered = re.findall(r"in (\d+) scenes, .*; met in (\d+)", part)
+    assert len(answered) == 6
+    for asked, met in answered[:3]:
+        assert int(met) >= 0.98 * int(asked)
