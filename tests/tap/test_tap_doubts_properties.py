@@ -225,7 +225,7 @@ def test_a_single_short_tap_leaves_no_multiple_of_the_hum() -> None:
 
 
 def test_what_a_refusal_says_no_note_says_again(true_tones: np.ndarray) -> None:
-    for heard in ([2600.0], list(1.3 * true_tones[:3]), [true_tones[k] for k in (0, 7, 8, 9)]):
+    for heard in ([2600.0], [true_tones[k] for k in (0, 7, 8, 9)]):
         found = TapTest(cue("kim")).fit([told(f) for f in heard])
         assert found.refusals
         assert not any(refusal in note or note in refusal for refusal in found.refusals for note in found.notes)
