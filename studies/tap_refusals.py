@@ -17,6 +17,7 @@ from scipy.stats import beta
 
 from cuefem import Cue, Material, Segment
 from cuefem.materials import MATERIALS, WOODS, material
+from cuefem.tap.chance import LEVEL, by_chance
 from cuefem.tap.fit import TapFit
 from cuefem.tap.matching import main_material, with_material
 from cuefem.tap.ringing import ringing
@@ -25,18 +26,20 @@ from cuefem.tap.wood import TapTest
 from studies import tap, tap_sounds
 from studies.common import NAMES, STUDIES, cue, table
 
-EACH = 27  # other sounds of each kind
+EACH = 25  # other sounds of each kind
 HONEST, HUMMED = 100, 20
 HUM = 7.0  # dB over the ring
 
 
-def others(kind: str, seed: int) -> TapFit | None:
-    """What the test says of a sound that is no tap; None where it hears no tones that could be a shaft's."""
+def others(kind: str, seed: int) -> tuple[float, TapFit | None]:
+    """What the test says of a sound that is no tap: the p-value, 1 without any tones, and the fit where that is low."""
+    test = tap.hung(NAMES[seed % len(NAMES)])
     try:
         heard = tones(ringing(tap_sounds.other_sound(kind, seed), tap_sounds.RATE))
-        return tap.hung(NAMES[seed % len(NAMES)]).fit(heard)
-    except ValueError:
-        return None
+        chance = by_chance(test.table, heard)
+        return chance, test.fit(heard) if chance <= LEVEL else None
+    except (ValueError, RuntimeError):
+        return 1.0, None
 
 
 def drawing(seed: int, draw: np.random.Generator) -> Cue:
@@ -93,7 +96,7 @@ def honest(seed: int, *, hummed: bool = False) -> tuple[TapFit | None, Material]
     mass = true.shaft_mass + 5e-4 * draw.standard_normal() if draw.uniform() < 0.75 else None
     try:
         return TapTest(drawn, mass=mass).fit(tones(ringing(samples, rate))), wood
-    except ValueError:
+    except (ValueError, RuntimeError):
         return None, wood
 
 
@@ -115,11 +118,11 @@ def text() -> str:
     rows, wrong, total = [], 0, 0
     for kind in tap_sounds.KINDS:
         found = [others(kind, seed) for seed in range(EACH)]
-        taken = sum(map(accepted, found))
-        by_chance = sum(one is not None and one.chance <= 0.01 for one in found)
+        taken = sum(accepted(fit) for _, fit in found)
         wrong, total = wrong + taken, total + EACH
-        rows.append([kind, str(EACH), str(sum(one is None for one in found)), str(by_chance), str(taken)])
-    own = table(["sound", "recordings", "no tones", "p at most 0.01", "taken for a tap"], rows)
+        unlikely = sum(chance <= LEVEL for chance, _ in found)
+        rows.append([kind, str(EACH), str(unlikely), str(taken)])
+    own = table(["sound", "recordings", f"p at most {LEVEL:g}", "taken for a tap"], rows)
     made, causes = [], Counter[str]()
     for name, count, hummed in (("honest", HONEST, False), ("hummed", HUMMED, True)):
         both = [honest(seed, hummed=hummed) for seed in range(count)]

@@ -97,7 +97,10 @@ def _heard(recording: Path, file: Path, scene: Scene, given: dict[str, Any]) -> 
     sound = load_recording(recording)
     with blaming(recording):
         heard = ringing(sound.samples, sound.rate)
+    try:
         return heard, test.fit(tones(heard))
+    except RuntimeError as error:
+        raise RuntimeError(f"{recording}: {error}") from None
 
 
 def _predicted(file: Path, scene: Scene, found: TapFit) -> tuple[dict[str, Predicted], str]:

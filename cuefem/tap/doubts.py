@@ -13,38 +13,77 @@ from cuefem.tap.tones import LOW
 
 FAR = 0.97  # of ln `FACTOR`: an E as far from the file's is at the end of the search
 WIDEST = 1.5  # beyond an end of a range: as far as the range is wide, and at most this factor
-OURS = 0.5  # of the clear tones' power: with less explained, most of the sound is another thing's
+# Of the power of the clear tones: with less than MOST explained the sound is mostly another thing's, and with less than
+# NEARLY_ALL the drawing may be another shaft's.
+MOST, NEARLY_ALL = 0.5, 0.8
+POOR = 5e-3  # misfit that a good drawing of an even shaft does not have
+KEPT = 0.25  # ln G/E of the file, where the tones do not tell it
+DENSITY = 0.1  # relative, of the file's density, where the shaft was not weighed (Wood Handbook, spread of a wood)
 UNITS = {"E": (1e9, "GPa"), "G": (1e9, "GPa"), "rho": (1.0, "kg/m³")}
 
 
 def missing(found: TapFit) -> list[int]:
-    """Modes between `LOW` and the highest one heard that were not heard, 1 the lowest."""
+    """Modes, 1 the lowest, between `LOW` and the highest one heard that were not heard, not even faintly."""
     ours = [match.mode for match in found.matched if match.mode is not None]
-    audible = [k for k, f in enumerate(found.frequencies, start=1) if f > LOW and k < max(ours)]
-    return sorted(set(audible) - set(ours))
+    faint = [match.tone for match in found.matched if match.tone.kind == "faint"]
+    return [
+        mode
+        for mode, f in enumerate(found.frequencies[: max(ours)], start=1)
+        if f > LOW and mode not in ours and not any(abs(tone.frequency - f) < 2 * tone.error for tone in faint)
+    ]
+
+
+def explained(found: TapFit) -> float:
+    """The share of the clear tones' power that lies in modes of the shaft; 1 without clear tones."""
+    clear = [match for match in found.matched if match.tone.kind == "tone"]
+    loud = sum(match.tone.level**2 for match in clear)
+    return sum(match.tone.level**2 for match in clear if match.mode is not None) / loud if loud else 1.0
 
 
 def refusals(found: TapFit, *, edge: bool = False) -> list[str]:
-    """Why the wood should not be believed, one line each."""
+    """Why nobody should build on this result, one line for each reason; edge: G/E stopped at a bound of the search."""
     lines = []
-    ours = {match.mode for match in found.matched if match.mode is not None}
-    clear = [match for match in found.matched if match.tone.kind == "tone"]
+    heard = {match.mode for match in found.matched if match.mode is not None}
+    clear = sum(match.tone.kind == "tone" for match in found.matched)
     if found.chance > LEVEL:
-        share = f"{100 * found.chance:.2g} % of random sets of {len(clear)} tones fit as well, above {100 * LEVEL:g} %"
+        share = f"{100 * found.chance:.2g} % of random sets of {clear} tones fit as well, above {100 * LEVEL:g} %"
         lines.append(f"the tones fit this shaft no better than by chance ({share})")
-    if len(missed := missing(found)) > len(ours):
-        lines.append(f"{len(missed)} of the {len(missed) + len(ours)} modes that should be heard are missing")
-    loud = sum(match.tone.level**2 for match in clear)
-    if sum(match.tone.level**2 for match in clear if match.mode is not None) < OURS * loud:
-        lines.append("most of the sound's power is in tones that are none of this shaft's")
+    if len(missed := missing(found)) > len(heard):
+        lines.append(f"{len(missed)} of the {len(missed) + len(heard)} modes that should be heard are missing")
+    if explained(found) < MOST:
+        lines.append("most of the sound's power is in tones that this shaft does not have")
     if found.rivals:
-        others = ", ".join(f"{E / 1e9:.3g}" for E, _ in found.rivals)
-        lines.append(f"tones cannot be told apart: E {found.wood.E / 1e9:.3g} or {others} GPa")
+        others = ", ".join(f"{E / 1e9:.3g} GPa (odds 1 : {odds:.2g})" for E, odds in found.rivals)
+        lines.append(f"the tones cannot be told apart: E may be {found.wood.E / 1e9:.3g} GPa or {others}")
     if abs(np.log(found.wood.E / found.before.E)) > FAR * np.log(FACTOR):
         lines.append(f"E is at the end of the search, a factor {FACTOR:g} from the file's")
     if edge:
         lines.append(f"G/E is at the end of what shafts have, {RATIOS[0]:.3g} to {RATIOS[1]:.3g}")
     return lines + unlike(found.wood, found.before)
+
+
+def remarks(found: TapFit) -> list[str]:
+    """What else a person should know of a result, one line each; what `refusals` says is not said again."""
+    heard = [match.mode for match in found.matched if match.mode is not None]
+    lines = []
+    if not found.told:
+        why = "one tone cannot tell" if len(heard) == 1 else "these tones cannot tell"
+        lines.append(f"{why} G from E: the file's G/E is kept, taken to be known to {100 * KEPT:.0f} %")
+    if not found.weighed:
+        lines.append(
+            f"not weighed: the file's density is kept as it is, taken to be known to {100 * DENSITY:.0f} % (--mass)"
+        )
+    if MOST <= explained(found) < NEARLY_ALL:
+        lines.append("some loud tones are not this shaft's: check that it is the one drawn, and that it hung free")
+    if found.misfit > POOR:
+        lines.append(f"the tones fit to {100 * found.misfit:.2g} % only: check the drawing; errors are widened")
+    if foreign := [match.tone for match in found.matched if match.tone.kind == "tone" and match.mode is None]:
+        lines.append(f"no bending tone of this shaft: {', '.join(f'{tone.frequency:.1f}' for tone in foreign)} Hz")
+    if missed := missing(found):
+        lines.append(f"not heard: mode{'s' if len(missed) > 1 else ''} {', '.join(map(str, missed))}")
+    if any(match.tone.kind == "twin" for match in found.matched):
+        lines.append("some tones are double: the shaft bends unlike in two planes; their means are taken")
+    return lines
 
 
 def unlike(wood: Material, before: Material) -> list[str]:

@@ -16,6 +16,7 @@ PIECE = 4.0  # s over which the grid keeps its frequency
 LIKE, STEADY = 0.35, 0.6  # a window's amplitude is like the median one within LIKE; a hum's are in STEADY of them
 LEAST = 3e-3  # of the sound's own amplitude: below may be the flank of a window of another tone
 FEWEST = 2  # multiples: a single steady line may be anything
+FITS, FARTHEST = 6, 0.02  # of the hum's sines; Hz that one of them moves the mains frequency at most
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,10 @@ def _hum(piece: Array, rate: float) -> tuple[float, tuple[int, ...], Array]:
         if multiples and strength > best[0]:
             best = strength, base, multiples
     _, base, multiples = best
-    return base, multiples, _sound(piece, rate, base, multiples) if multiples else np.zeros_like(piece)
+    if not multiples:
+        return base, multiples, np.zeros_like(piece)
+    base, sound = _sound(piece, rate, base, multiples)
+    return base, multiples, sound
 
 
 def _steady(piece: Array, rate: float, mains: float) -> tuple[float, float, tuple[int, ...]]:
@@ -76,17 +80,28 @@ def _steady(piece: Array, rate: float, mains: float) -> tuple[float, float, tupl
     return strength, mains + best, multiples
 
 
-def _sound(piece: Array, rate: float, base: float, multiples: tuple[int, ...]) -> Array:
-    """The multiples' sines by least squares, in which loud stretches, after a tap, count less."""
+def _sound(piece: Array, rate: float, base: float, multiples: tuple[int, ...]) -> tuple[float, Array]:
+    """The mains frequency and the multiples' sines, by least squares in which loud stretches, after a tap, count less.
+
+    The frequency is refined by Gauss and Newton's method, since the tap's own ring may have pulled the first estimate.
+    """
     t = np.arange(len(piece)) / rate
-    angle = 2 * np.pi * base * t[:, None] * np.array(multiples)
-    basis = np.hstack([np.cos(angle), np.sin(angle)])
+    turns = 2 * np.pi * t[:, None] * np.array(multiples)
     hop = int(WINDOW / 4 * rate)
     weight, sound = np.ones(len(piece)), np.zeros_like(piece)
-    for _ in range(4):
+    for _ in range(FITS):
+        cosine, sine = np.cos(base * turns), np.sin(base * turns)
+        basis = np.hstack([cosine, sine])
         scaled = basis * weight[:, None]
-        sound = basis @ np.linalg.solve(scaled.T @ basis, scaled.T @ piece)
-        rest = np.square(piece - sound).sum(axis=1)
-        level = np.sqrt(np.add.reduceat(rest, np.arange(0, len(rest), hop)) / hop)
+        gram = scaled.T @ basis
+        parts = np.linalg.solve(gram, scaled.T @ piece)
+        sound = basis @ parts
+        rest = piece - sound
+        drift = (turns * cosine) @ parts[len(multiples) :] - (turns * sine) @ parts[: len(multiples)]  # d sound/d base
+        drift -= basis @ np.linalg.solve(gram, scaled.T @ drift)
+        weighted = drift * weight[:, None]
+        step = float((weighted * rest).sum() / max((weighted * drift).sum(), np.finfo(float).tiny))
+        base += float(np.clip(step, -FARTHEST, FARTHEST))
+        level = np.sqrt(np.add.reduceat(np.square(rest).sum(axis=1), np.arange(0, len(rest), hop)) / hop)
         weight = np.repeat(1 / (level + 1e-3 * level.max() + np.finfo(float).tiny), hop)[: len(piece)] ** 2
-    return np.asarray(sound)
+    return base, np.asarray(sound)

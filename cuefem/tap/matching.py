@@ -23,8 +23,9 @@ MODES = 24
 FACTOR = 3.0  # E of the wood lies within this factor of the file's
 RATIOS = (1 / 45, 1 / 2.3)  # of G/E: woods 1/16 to 1/9, tubes of carbon fibre to 1/2.5
 TOLERANCE = 4e-3  # relative, of a tone against its mode: beam, drawing and grain
-WRONG, DOUBTFUL = 0.05, 0.5  # chances that a tone, or one that is faint or a multiple of a louder one, is no mode
+WRONG, DOUBTFUL = 0.05, 0.5  # chances that a tone, or one that is a multiple of a louder one, is no mode
 UNHEARD = 0.3  # chance that the recording misses a mode
+TWICE = 6.0  # ln of the odds against two tones on one mode: one of them is wrong
 SPREADS = (0.5, 0.5)  # of ln E and ln G/E about the file's, standard deviations before anything is heard
 REFINED = 20  # hypotheses
 SAME = 0.02  # relative: hypotheses whose E is closer are one
@@ -111,7 +112,7 @@ class ModeTable:
     def hypotheses(self, tones: Sequence[Tone]) -> list[Hypothesis]:
         """Hypotheses that explain a tone or more, the best first, no two of the same E."""
         heard = np.log([tone.frequency for tone in tones])
-        wrong = np.array([DOUBTFUL if tone.kind in ("harmonic", "faint") else WRONG for tone in tones])
+        wrong = np.array([DOUBTFUL if tone.kind == "harmonic" else WRONG for tone in tones])
         ratios = np.linspace(*self.shaft.ratios, 41)
         proposed = np.concatenate([self._proposed(heard, r) for r in ratios])
         scores = self._scores(proposed, heard, wrong, 3 * TOLERANCE)
@@ -160,9 +161,9 @@ class ModeTable:
         taken[np.broadcast_to(rows, nearest.shape)[explained], nearest[explained]] = True
         top = np.where(taken, f, -np.inf).max(axis=1)
         unheard = ((f > np.log(LOW)) & (f < top[:, None]) & ~taken).sum(axis=1)
-        twice = explained.sum(axis=1) - taken.sum(axis=1)  # two tones on one mode: one of them is wrong
+        twice = explained.sum(axis=1) - taken.sum(axis=1)
         known = ((theta - self.shaft.start[:2]) / SPREADS) ** 2
-        score = np.maximum(own, none).sum(axis=1) + unheard * np.log(UNHEARD) - 6.0 * twice
+        score = np.maximum(own, none).sum(axis=1) + unheard * np.log(UNHEARD) - TWICE * twice
         return np.asarray(score - known.sum(axis=1) / 2)
 
     def _refined(self, theta: Array, heard: Array, wrong: Array) -> Hypothesis:

@@ -31,8 +31,10 @@ DEEPEST = 1e-11  # of the loudest bin: no recording is quieter, 16 bits are 1e-1
 QUIET = 0.2  # quantile of a block's power: less of the tones is in it than in the median
 MOST = 40
 VAGUE = 3e-3  # relative error of a tone that tells no mode's frequency any more
+STEPS, ROUGH = 12, 3  # of a fit; of one that goes on to look for more tones
 SMALL = 1e-2  # gain of a step in squared standard deviations; the next one is far smaller
 FEWEST = 30  # bins of a block of noise
+PIECE = 1024  # bins that are summed at a time: they stay in the cache
 SLOWEST, FASTEST = 0.01, 0.1  # decay, 1/s; decay over angular frequency
 LOSSY = 0.15  # loss factor: no tone, but what fills a gap of the model
 STEADY = 0.5  # 1/s: what decays more slowly is a hum and no struck body
@@ -70,7 +72,7 @@ class Tone:
 
 
 def tones(heard: Ringing) -> tuple[Tone, ...]:
-    """All tones between `LOW` and `HIGH`, ascending. ValueError where there is none.
+    """All tones between `LOW` and `HIGH`, in ascending order. RuntimeError where no tone decays.
 
     Cost: a few matrix products of (bins x tones^2); under a second for a second of sound.
     """
@@ -80,11 +82,13 @@ def tones(heard: Ringing) -> tuple[Tone, ...]:
         more = spectrum.unexplained(w, a)
         if not len(more) or len(w) >= MOST:
             break
-        w, a = spectrum.fitted(np.concatenate([w, more.real]), np.concatenate([a, more.imag]))
+        w, a = spectrum.fitted(np.concatenate([w, more.real]), np.concatenate([a, more.imag]), steps=ROUGH)
+    if len(w):
+        w, a = spectrum.fitted(w, a)
     found = sorted(spectrum.tones(w, a), key=lambda tone: tone.frequency)
     kinds = _harmonics(_twins(found))
     if not any(tone.kind == "tone" for tone in kinds):
-        raise ValueError(f"a recording must hold a decaying tone between {LOW:g} and {HIGH:g} Hz; got none")
+        raise RuntimeError(f"a recording must hold a decaying tone between {LOW:g} and {HIGH:g} Hz; got none")
     return tuple(kinds)
 
 
@@ -184,11 +188,16 @@ class _Spectrum:
     def _normal(self, basis: Complex, noise: Array) -> tuple[Array, Array]:
         """Real normal matrices and right sides of every trace, weighted by the noise: of its variance a half each in
         real and imaginary part."""
-        weighted = [np.concatenate([(b := basis * np.sqrt(2 / row)).real, b.imag], axis=1) for row in noise]
-        sounds = [
-            np.concatenate([(x := X * np.sqrt(2 / row)).real, x.imag]) for X, row in zip(self.X, noise, strict=True)
-        ]
-        return np.array([b @ b.T for b in weighted]), np.array([b @ x for b, x in zip(weighted, sounds, strict=True)])
+        rows, whole = np.hstack([basis.real, basis.imag]), np.hstack([self.X.real, self.X.imag])
+        weights = np.sqrt(2 / np.hstack([noise, noise]))
+        grams, right = np.zeros((len(noise), len(rows), len(rows))), np.zeros((len(noise), len(rows)))
+        for start in range(0, rows.shape[1], PIECE):
+            piece = slice(start, start + PIECE)
+            for i, (x, weight) in enumerate(zip(whole[:, piece], weights[:, piece], strict=True)):
+                weighted = rows[:, piece] * weight
+                grams[i] += weighted @ weighted.T
+                right[i] += weighted @ (x * weight)
+        return grams, right
 
     def _amplitudes(self, w: Array, a: Array) -> Array:
         linear = self._explained(w, a)[1].reshape(len(self.X), 2, -1)
@@ -212,11 +221,11 @@ class _Spectrum:
             linear.append(c)
         return _solve(H, g), H, np.array(linear), power
 
-    def fitted(self, w: Array, a: Array) -> tuple[Array, Array]:
-        """The tones where the residual is least, from a start within a line's width."""
+    def fitted(self, w: Array, a: Array, steps: int = STEPS) -> tuple[Array, Array]:
+        """The tones where the residual is least, from a start within a line's width, in so many steps at most."""
         noise = self._explained(w, a)[2]
         step, _, _, best = self._step(w, a, noise)
-        for _ in range(12):
+        for _ in range(steps):
             n, scale = len(w), 1.0
             far = np.maximum(2 * a, 1.0)
             limited = np.concatenate([np.clip(step[:n], -far, far), np.clip(step[n:], -0.6 * a, 2 * a)])

@@ -19,21 +19,19 @@ from cuefem.endmass.drives import end_mass
 from cuefem.quantity import Quantity, check_kind
 from cuefem.scene import Scene
 from cuefem.tap.chance import by_chance
-from cuefem.tap.doubts import FAR, missing, refusals, shear_coefficients
+from cuefem.tap.doubts import DENSITY, KEPT, refusals, remarks, shear_coefficients
 from cuefem.tap.fit import Matched, TapFit
-from cuefem.tap.matching import FACTOR, RATIOS, ModeTable, Shaft, assigned, main_material, with_material
+from cuefem.tap.matching import FACTOR, ModeTable, Shaft, assigned, main_material, with_material
 from cuefem.tap.tones import Tone
 
 MODEL = 2e-3  # relative, of a mode's frequency: diameters to 0.1 %, uneven grain, the beam
 SCALE = 0.5e-3  # kg, error of a kitchen scale
-DENSITY = 0.1  # relative: a wood's density where it was not weighed (Wood Handbook, coefficient of variation)
-TOLD, KEPT = 0.15, 0.25  # ln G/E: the tones tell it when they leave less than TOLD; otherwise it is known to KEPT
+TOLD = 0.15  # ln G/E: the tones tell it when they leave it uncertain by less than this
 ODD = 0.15  # relative change of density by the weighed mass that is worth a word
 RIVAL = np.log(20)  # a hypothesis whose odds are better than 1 : 20 is not ruled out
-STEP = 0.02  # of central differences in the logarithms
+STEP = 0.02  # of differences in the logarithms, for the numbers that follow from the wood
 OUTLIER = 4.5  # standard deviations
-POOR = 5e-3  # misfit that a good drawing of an even shaft does not have
-OURS = 0.8  # of the clear tones' power: less is explained where the drawing is another shaft's
+STEPS, SETTLED = 8, 1e-9  # of the least squares; of the logarithms
 FOLDED = 1e-3  # relative, of a tone that may be a whole multiple of another
 
 
@@ -94,14 +92,14 @@ class TapTest:
         return rho, SCALE / (mass - others)
 
     def fit(self, tones: Sequence[Tone]) -> TapFit:
-        """The wood that explains the tones best. ValueError where they are no bending tones of any such shaft."""
-        used = [tone for tone in tones if tone.kind in ("tone", "harmonic", "faint")]
+        """The wood that explains the tones best. RuntimeError where they are no bending tones of any such shaft."""
+        used = [tone for tone in tones if tone.kind in ("tone", "harmonic")]
         found = self.table.hypotheses(used) if used else []
         clear = sum(tone.kind == "tone" for tone in used)
         explained = sum(mode >= 0 for mode in found[0].modes) if found else 0
         if explained < (2 if clear >= 3 else 1):
             tell = ", ".join(f"{tone.frequency:.0f}" for tone in used[:6])
-            raise ValueError(
+            raise RuntimeError(
                 f"tones must be bending tones of this shaft, its E within a factor {FACTOR:g} of the file's; "
                 f"got {tell or 'none'} Hz: check the drawing and that the shaft hung free"
             )
@@ -110,8 +108,7 @@ class TapTest:
         sd = np.hypot(np.hypot([tone.error / tone.frequency for tone in used], self.model), doubt)
         own, theta = np.array(found[0].modes), np.array([*found[0].theta, np.log(self.rho)])
         for _ in range(4):
-            theta, covariance, told = self._solved(theta, heard, own, sd)
-            f = self.shaft.log_frequencies(theta)
+            theta, covariance, told, f = self._solved(theta, heard, own, sd)
             pulls = np.abs(heard - f[own])[own >= 0] / sd[own >= 0]
             again = assigned(heard, f, OUTLIER * max(1.0, 1.48 * float(np.median(pulls))) * sd)
             if (again == own).all() or (again >= 0).sum() < (own >= 0).sum() / 2:
@@ -155,31 +152,39 @@ class TapTest:
         )
         edge = bool(told and not self.shaft.ratios[0] < theta[1] < self.shaft.ratios[1])
         doubts, kappa = tuple(refusals(found, edge=edge)), shear_coefficients(found.cue, wood)
-        notes = (*self.notes, *remarks(found, edge=edge))
+        notes = (*self.notes, *remarks(found))
         return replace(found, notes=notes, shear_coefficients=kappa, refusals=doubts)
 
-    def _solved(self, theta: Array, heard: Array, own: Array, sd: Array) -> tuple[Array, Array, bool]:
-        """(ln E, ln G/E, ln rho), their covariance, whether G is told; by Gauss and Newton."""
-        for _ in range(3):
-            rows, right = self._rows(theta, heard, own, sd)
+    def _solved(self, theta: Array, heard: Array, own: Array, sd: Array) -> tuple[Array, Array, bool, Array]:
+        """(ln E, ln G/E, ln rho), their covariance, whether the tones tell G, and ln of the frequencies there.
+
+        Least squares by Gauss and Newton. The slopes are those of the start: it lies so near that two or three steps
+        bring the frequencies themselves, which are computed anew at every step, to the least squares.
+        """
+        J = slopes(self.shaft.log_frequencies, theta, step=1e-4)
+        f = self.shaft.log_frequencies(theta)
+        for _ in range(STEPS):
+            rows, right = self._rows(theta, f, J, heard, own, sd)
             told = _tells_ratio(rows)
             free = self._free(told=told)
             step = np.array([0.0, 0.0 if told else self.shaft.start[1] - theta[1], 0.0])
             step[free] = np.linalg.lstsq(rows[:, free], right - rows @ step)[0]
-            theta = theta + step
+            before, theta = theta, theta + step
             theta[1] = np.clip(theta[1], *self.shaft.ratios)
-        rows, right = self._rows(theta, heard, own, sd)
+            f = self.shaft.log_frequencies(theta)
+            if np.abs(theta - before).max() < SETTLED:
+                break
+        rows, right = self._rows(theta, f, J, heard, own, sd)
         freedom = max(len(rows) - 2 - told, 1)
-        rows[:-1] /= np.sqrt(max(1.0, float(right[:-1] @ right[:-1]) / freedom))  # they fit no better than they do
-        return theta, _covariance(rows, self._free(told=told)), told
+        rows[:-1] /= np.sqrt(max(1.0, float(right[:-1] @ right[:-1]) / freedom))  # tones that fit badly count less
+        return theta, _covariance(rows, self._free(told=told)), told, f
 
     def _free(self, *, told: bool) -> list[int]:
         """Which of (ln E, ln G/E, ln rho) are sought; the others are the file's."""
         return [0, *([1] if told else []), *([2] if self.weighed else [])]
 
-    def _rows(self, theta: Array, heard: Array, own: Array, sd: Array) -> tuple[Array, Array]:
-        """The linear least-squares problem at theta: a row for each tone matched, the last for the density."""
-        f, J = self.shaft.log_frequencies(theta), slopes(self.shaft.log_frequencies, theta, step=1e-4)
+    def _rows(self, theta: Array, f: Array, J: Array, heard: Array, own: Array, sd: Array) -> tuple[Array, Array]:
+        """The linear least-squares problem at theta: one row for each matched tone, and a last one for the density."""
         here = own >= 0
         rows = np.vstack([J[own[here]] / sd[here, None], [0, 0, 1 / self.rho_error]])
         right = np.append((heard - f[own])[here] / sd[here], (np.log(self.rho) - theta[2]) / self.rho_error)
@@ -209,51 +214,16 @@ def _covariance(rows: Array, free: list[int]) -> Array:
     return covariance
 
 
-def slopes(of: Callable[[Array], Any], theta: Array, *, step: float = STEP) -> Array:
+def slopes(of: Callable[[Array], Any], theta: Array, *, step: float) -> Array:
     """Central differences of a function of (ln E, ln G/E, ln rho): (..., 3)."""
     moves = step * np.eye(len(theta))
     return np.stack([np.asarray(of(theta + move) - of(theta - move)) / (2 * step) for move in moves], axis=-1)
 
 
-def remarks(found: TapFit, *, edge: bool = False) -> list[str]:
-    """What a person should know of a fit, one line each."""
-    ours = [m.mode for m in found.matched if m.mode is not None]
-    lines = []
-    if found.rivals:
-        others = ", ".join(f"{E / 1e9:.3g} GPa (1 : {odds:.2g})" for E, odds in found.rivals)
-        lines.append(f"the tones cannot be told apart: E of {others} explains them nearly as well; record more tones")
-    if not found.told:
-        why = "one tone cannot tell" if len(ours) == 1 else "these tones cannot tell"
-        lines.append(f"{why} G from E: the file's G/E is kept, taken to be known to {100 * KEPT:.0f} %")
-    if not found.weighed:
-        lines.append(
-            f"not weighed: the file's density is kept as it is, taken to be known to {100 * DENSITY:.0f} % (--mass)"
-        )
-    if edge:
-        lines.append(f"G/E at the end of what shafts have ({RATIOS[0]:.3g} to {RATIOS[1]:.3g}): check the drawing")
-    clear = [m for m in found.matched if m.tone.kind == "tone"]
-    loud = sum(m.tone.level**2 for m in clear if m.mode is not None)
-    if loud < OURS * sum(m.tone.level**2 for m in clear):
-        lines.append("loud tones are none of this shaft's: check that it is the one drawn, and that it hung free")
-    if abs(np.log(found.wood.E / found.before.E)) > FAR * np.log(FACTOR):
-        lines.append(f"E at the end of the search, a factor {FACTOR:g} from the file's: check the drawing's material")
-    if found.misfit > POOR:
-        lines.append(f"the tones fit to {100 * found.misfit:.2g} % only: check the drawing; errors are widened")
-    wrong = [m.tone.frequency for m in clear if m.mode is None]
-    if wrong:
-        lines.append(f"no bending tone of this shaft: {', '.join(f'{f:.1f}' for f in wrong)} Hz")
-    if missed := missing(found):
-        doubt = ": more than were heard, check that it is the shaft drawn" if len(missed) > len(ours) else ""
-        lines.append(f"not heard: mode{'s' if len(missed) > 1 else ''} {', '.join(map(str, missed))}{doubt}")
-    if any(m.tone.kind == "twin" for m in found.matched):
-        lines.append("some tones are double: the shaft bends unlike in two planes; their means are taken")
-    return lines
-
-
 def predicted(scene: Scene, found: TapFit) -> dict[str, Predicted]:
     """Stick end mass, kg, and squirt at the scene's offset, rad, with the fitted wood.
 
-    Errors: linear propagation of the wood's covariance alone, by central differences. Cost: eight strikes.
+    Errors: linear propagation of the wood's covariance alone, by forward differences. Cost: five strikes.
     """
 
     def with_wood(wood: Material) -> Array:
@@ -265,7 +235,8 @@ def predicted(scene: Scene, found: TapFit) -> dict[str, Predicted]:
         return with_wood(replace(found.wood, E=E, G=ratio * E, rho=rho))
 
     wood = found.wood
-    slope = slopes(at, np.log([wood.E, wood.G / wood.E, wood.rho]))
+    theta, fitted = np.log([wood.E, wood.G / wood.E, wood.rho]), with_wood(wood)
+    slope = np.stack([(at(theta + move) - fitted) / STEP for move in STEP * np.eye(3)], axis=-1)
     errors = np.sqrt(np.einsum("ij,jk,ik->i", slope, found.covariance, slope))
-    values = zip(with_wood(wood), errors, with_wood(found.before), strict=True)
+    values = zip(fitted, errors, with_wood(found.before), strict=True)
     return {name: Predicted(*map(float, v)) for name, v in zip(("end_mass", "squirt"), values, strict=True)}

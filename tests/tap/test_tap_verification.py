@@ -122,6 +122,7 @@ def test_errors_told_cover_the_errors_made() -> None:
     assert (spread < 1.25).all()
 
 
+@pytest.mark.heavy
 def test_errors_of_predictions_are_those_of_samples() -> None:
     """Linear propagation against samples of the wood's covariance, for the end mass."""
     f = modes(tap.true("kim"), 6).frequencies
