@@ -20,7 +20,7 @@ from cuefem.beam.tip import TipModes
 from cuefem.beam.waves import mesh_for, modes_below, wave_phase
 from cuefem.contact.linear import APART
 from cuefem.contact.strike import strike, strike_modes
-from cuefem.cue import Array
+from cuefem.cue import Array, Cue
 from cuefem.effects import SecondHit
 from cuefem.endmass.drives import Drive, end_mass, formula_of
 from cuefem.quantity import Quantity, scalar

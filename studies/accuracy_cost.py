@@ -6,8 +6,8 @@ scipy's solve_ivp and Newmark's steps on the very same phases; (d) the ladder of
 the coupled strike with effects, in squirt against the fullest. Errors are the largest over a family: five cues of
 meshes/ x (0.7 ms, b/R 0.4), (1 ms, 0.3), (2 ms, 0.1); in (c) Kim's four strokes of contact_cost.py. References: 12
 elements of order 14; 220 modes with a tail on a mesh of another order; exact phases in cells a third as long.
-Left out: AxialWaves and SecondHit (the one lengthens the very contact time that the models share, and the other changes
-what follows the stroke, not it); the tip's geometry, material data and friction, which no refinement improves.
+Left out: AxialWaves, which lengthens the contact time that all the models share; SecondHit, which changes only what
+follows the stroke; the tip's geometry, material data and friction, which no refinement improves.
 Equations: handbook: The beam, The strike, Effective end mass, What the paper says, Effects. Parts:
 accuracy_cost_points.py computes. Writes accuracy_cost.md and accuracy_cost.svg (values), accuracy_cost_seconds.md and
 accuracy_cost_seconds.png (seconds of the machine named there) beside itself; takes about two minutes.
@@ -113,15 +113,15 @@ def conclusions() -> list[str]:
     names = list(points.models())
     off = {name: f"{100 * np.median(np.abs(points.model_errors(name))):.0f} %" for name in names}
     return [
-        f"Order pays more than elements: at a thousand unknowns 8 elements of order 4 leave {size(low.error)} and 4 of "
-        f"order 8 {size(high.error)}, at two thousand 8 of order 8 {size(more.error)} and 4 of order 16 "
-        f"{size(most.error)}.",
-        f"{ended.name.capitalize()} with a tail leave {size(ended.error)}, without it {size(plain.error)}, "
-        f"{plain.error / ended.error:.0f} times as much; the contact adds nothing to that, since even "
-        f"{coarse.name} of Newmark leave {size(coarse.error)} and exact phases {size(0.0)}.",
-        f"No refinement makes up for the model: the paper's 12 g is {off[names[0]]} off at the median, the stick end "
-        f"mass {off['lumped, stick end mass']}, the bare coupled strike {off['coupled']}, with the dome of its "
-        f"tip {off['... and dome']}, and with the tip's shear too {off['... and tip shear']}.",
+        "A higher order pays more than more elements. With a thousand unknowns, 8 elements of order 4 leave an error "
+        f"of {size(low.error)} and 4 elements of order 8 leave {size(high.error)}; with two thousand, 8 of order 8 "
+        f"leave {size(more.error)} and 4 of order 16 {size(most.error)}.",
+        f"{ended.name.capitalize()} with a tail leave an error of {size(ended.error)}; without it the error is "
+        f"{size(plain.error)}, {plain.error / ended.error:.0f} times as large. The contact adds nothing to that: even "
+        f"{coarse.name} of Newmark leave only {size(coarse.error)}, and exact phases {size(0.0)}.",
+        f"No refinement makes up for a wrong model. In the median the paper's 12 g is {off[names[0]]} off, the stick "
+        f"end mass {off['lumped, stick end mass']}, the bare coupled strike {off['coupled']}, the coupled strike with "
+        f"the dome of the tip {off['... and dome']}, and with the shear of the tip too {off['... and tip shear']}.",
     ]
 
 
@@ -133,15 +133,15 @@ def report() -> str:
             f"Largest relative errors over {points.SAID}; below {NOISE:.0e} they are",
             "rounding. Seconds: [accuracy_cost_seconds.md](accuracy_cost_seconds.md).\n",
             *(f"{i}. {sentence}" for i, sentence in enumerate(conclusions(), 1)),
-            "\n## (a) The beam: order against elements\n\nf1 to f10 and the velocity end mass (2 ms, 24 modes); in "
-            "brackets the unknowns of the largest cue; empty: fewer than 24 modes.\n",
+            "\n## (a) The beam: order against elements\n\nf1 to f10 and the velocity end mass (2 ms, 24 modes). "
+            "Brackets hold the unknowns of the largest cue; a cell is empty if there are fewer than 24 modes.\n",
             beam_table(),
             "## (b) The modes kept\n\nSquirt, ball speed and spin, on a mesh that holds the modes to 2e-7.\n",
             modes_table(),
             "## (c) The contact\n\nThe four strokes of [contact_cost.md](contact_cost.md), 24 modes; Newmark's steps "
             "are those of one head-on contact time.\n",
             contact_table(),
-            "## (d) The ladder of models\n\nSquirt less that of the last row, over it.\n",
+            "## (d) The ladder of models\n\nThe error of squirt relative to the last row.\n",
             model_table(),
         ]
     )

@@ -1,11 +1,11 @@
-"""Where on the shaft does added mass raise squirt, and does the model know the measured curve?
+"""Where on the shaft does added mass raise squirt, and does the model give the measured curve?
 
 What: squirt over its own baseline against the position of an added mass, 3, 8, 11 and 34 g at 0.5 to 10 in behind the
 tip of pool_maple, before a pool ball at b/R 0.375, e = 0.73, mu = 0.7, T = 0.7 to 2 ms; bare, with a dome of 9.5 mm,
 with shear 0.75, with both; beside data/added_mass_players_feb2008.csv (baseline 2.30 deg, digitised to 0.05 in and
 0.03 deg, offset not stated). Nothing is fitted. Then what would move the curve to the measured 1.70 at 2 in: the clay's
-length and rotary inertia, where its distance is counted from, the leather, dome, shear, offset, stroke. The modes are
-those of the shaft with its mass, at the default resolution (0.5 %).
+length and rotary inertia, the point from which its distance is measured, the leather, dome, shear, offset, stroke. The
+modes are those of the shaft with its mass, at the default resolution (0.5 %).
 Equations: handbook: The strike, Effects, Measured squirt. A mass throws bending waves back; what returns within the
 contact with the wrong sign takes squirt away, at a distance that grows like sqrt(T).
 Writes added_mass.md and added_mass.svg beside itself; takes about 30 s.
@@ -189,7 +189,7 @@ def mass_table() -> str:
 def label_table() -> str:
     """What a mass adds over what 11 g add: the series that says 3 g, and the model's 3 and 8 g."""
     rows = [[f"{x:g}", f"{s:.2f}", *(f"{share(x, m):.2f}" for m in MASSES[:2])] for x, s in shares().items()]
-    return common.table(["inches", "measured, series that says 3 g", "model, 3 g", "model, 8 g"], rows)
+    return common.table(["inches", "measured, series labelled 3 g", "model, 3 g", "model, 8 g"], rows)
 
 
 def variant_table() -> str:
@@ -225,12 +225,13 @@ def agreement() -> str:
     bare = usual("bare", 1e-3)
     return (
         "What agrees. With dome and shear the curve has the measured shape: it falls steadily, crosses 1 at "
-        f"{reach(usual(time=1e-3)):.1f} in at 1 ms (measured 6.1), dips and comes back. The dip that was never "
-        f"explained is a bending wave thrown back: at {places[0][0]:.1f} in for 0.7 ms, {places[1][0]:.1f} for 1 ms, "
-        f"{places[2][0]:.1f} for 1.2 ms (like T^{dip_growth():.2f}), measured 6.5 to 7. Bare, the model is wrong in "
-        f"kind in contacts of 1 ms: 11 g at 2 in would raise squirt by {100 * (ratio(bare, 11e-3, 2) - 1):.0f} % and "
-        f"at 3.5 in lower it by {100 * (1 - ratio(bare, 11e-3, 3.5)):.0f} %. Root mean square off the 16 points at "
-        f"1.0 and 1.2 ms: {said}."
+        f"{reach(usual(time=1e-3)):.1f} in for a contact of 1 ms (measured 6.1 in), dips below 1 and returns. The "
+        "dip, which had no explanation before, is a bending wave that the added mass throws back. It lies at "
+        f"{places[0][0]:.1f} in for 0.7 ms, {places[1][0]:.1f} in for 1 ms and {places[2][0]:.1f} in for 1.2 ms (like "
+        f"T^{dip_growth():.2f}); measured are 6.5 to 7 in. Without dome and shear the shape is wrong in contacts of 1 "
+        f"ms: 11 g would raise squirt by {100 * (ratio(bare, 11e-3, 2) - 1):.0f} % at 2 in and lower it by "
+        f"{100 * (1 - ratio(bare, 11e-3, 3.5)):.0f} % at 3.5 in. The root mean square difference from the 16 measured "
+        f"points, at 1.0 and 1.2 ms, is: {said}."
     )
 
 
@@ -242,17 +243,17 @@ def failure() -> str:
     soft, far = variants()["shear ratio 0.3"], [ratio(usual(time=T), 11e-3, x) for T in TIMES[:3] for x in (9, 10)]
     best = min(((m, T) for m in MODELS for T in TIMES), key=lambda key: miss(*key))
     return (
-        f"What does not agree. At 2 in 11 g raise squirt to {found['usual']:.2f} (0.7 ms {found['T 0.7 ms']:.2f}, 2 "
-        f"ms {found['T 2 ms']:.2f}), measured {told(2):.2f}; the prototype's 1.66 is not reproduced. The clay's "
-        f"length, its rotary inertia and where its distance counts from hardly matter (at most {found[near]:.2f}), "
-        f"nor do leather, restitution and friction. A shear ratio of 0.3 gives {found['shear ratio 0.3']:.2f}, but "
-        f"then {ratio(soft, 11e-3, 4):.2f} at 4 in (measured {told(4):.2f}) and {ratio(soft, 11e-3, 8):.2f} in the "
-        f"dip. A smaller dome makes the curve steeper ({found['dome 6 mm']:.2f} with 6 mm). The dip is too deep, "
-        f"{min(depths):.2f} to {max(depths):.2f} (measured 0.94), at 1 ms an inch too far back, and at 9 and 10 in "
-        f"squirt still moves by {100 * min(far) - 100:+.0f} to {100 * max(far) - 100:+.0f} % (measured +1 to +3). And "
-        f"the curve alone does not select the model: the smallest miss of all, {miss(*best):.2f}, is {best[0]} alone "
-        f"at {1e3 * best[1]:g} ms, with no dip to speak of and a squirt of {squirt(usual(*best), 0.0, 0.0):.2f}° "
-        "where 2.30 were measured."
+        f"What does not agree. 11 g at 2 in raise squirt by a factor of {found['usual']:.2f} ({found['T 0.7 ms']:.2f} "
+        f"at 0.7 ms, {found['T 2 ms']:.2f} at 2 ms), and {told(2):.2f} was measured. The length of the clay, its "
+        f"rotary inertia and the point from which its distance is measured hardly matter (at most {found[near]:.2f}), "
+        "and neither do the leather, the restitution and the friction. A shear ratio of 0.3 gives "
+        f"{found['shear ratio 0.3']:.2f}, but then {ratio(soft, 11e-3, 4):.2f} at 4 in (measured {told(4):.2f}) and "
+        f"{ratio(soft, 11e-3, 8):.2f} in the dip. A smaller dome makes the curve steeper ({found['dome 6 mm']:.2f} "
+        f"with 6 mm). The dip is too deep, {min(depths):.2f} to {max(depths):.2f} (measured 0.94), and at 1 ms it "
+        f"lies an inch too far back. At 9 and 10 in squirt still changes by {100 * min(far) - 100:+.0f} to "
+        f"{100 * max(far) - 100:+.0f} % (measured +1 to +3 %). The curve alone does not tell which model is right: "
+        f"the smallest difference of all, {miss(*best):.2f}, belongs to {best[0]} alone at {1e3 * best[1]:g} ms, "
+        f"which has almost no dip and a squirt of {squirt(usual(*best), 0.0, 0.0):.2f}°, where 2.30° was measured."
     )
 
 
@@ -260,9 +261,10 @@ def labels() -> str:
     """The series that says 3 g."""
     found, three, eight = list(shares().values()), *([share(x, m) for x in shares()] for m in MASSES[:2])
     return (
-        f"The series that says 3 g adds {min(found):.2f} to {max(found):.2f} of what 11 g add at 2 to 4.7 in. In the "
-        f"model 3 g add {min(three):.2f} to {max(three):.2f} of it and 8 g {min(eight):.2f} to {max(eight):.2f}. "
-        "Added squirt is nearly proportional to a small mass, so the label, or what was digitised, is in doubt."
+        f"The series labelled 3 g adds {min(found):.2f} to {max(found):.2f} of what 11 g add, at 2 to 4.7 in. In the "
+        f"model 3 g add {min(three):.2f} to {max(three):.2f} of it, and 8 g add {min(eight):.2f} to {max(eight):.2f}. "
+        "Because added squirt is nearly proportional to a small mass, either the label or the digitised curve is "
+        "doubtful."
     )
 
 
@@ -271,9 +273,9 @@ def report() -> str:
     parts = ["# Squirt and added mass", agreement(), failure(), labels()]
     parts += ["## 11 g: squirt over its baseline", curve_table()]
     parts += ["## The dip, dome + shear", dip_table()]
-    parts += ["## What would move the curve: 11 g, T = 1.1 ms, dome + shear unless said", variant_table()]
+    parts += ["## What would move the curve: 11 g, T = 1.1 ms, dome + shear except where stated", variant_table()]
     parts += ["## Other masses, dome + shear, T = 1.1 ms", mass_table()]
-    parts += ["## Added squirt over that of 11 g", label_table()]
+    parts += ["## Squirt added, over that added by 11 g", label_table()]
     return "\n\n".join(part.rstrip("\n") for part in parts) + "\n"
 
 

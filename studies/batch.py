@@ -1,11 +1,11 @@
-"""What are the numbers of a batch worth: frequencies at low order, end mass by few modes and a tail that fades?
+"""How accurate are the numbers of a batch: frequencies at low order, end mass by few modes and a tail that fades?
 
 What: eleven one-piece shafts 70 to 75 cm long, solid and hollow, of wood and carbon; (a) f1 to f5 at order 15; (b)
 the stick end mass by few modes: as a plain sum, ended by the tail with its dashpot that single cues have by default,
 and by the tail that fades (`cuefem.design.batch`, ended). At T = 0.7, 1 and 2 ms, and at 1.2, 1.3 and 1.4 ms, when the
-fastest bending waves are back from the joint as the contact ends. Reference: 250 modes with a tail, single cues; from
-about 170 modes on it stands to 1e-5. Equations: handbook: The beam, Effective end mass. Writes batch.md and batch.svg
-(values) beside itself; takes about a minute. What it costs: batch_seconds.py.
+fastest bending waves return from the joint as the contact ends. Reference: 250 modes with a tail, single cues; from
+about 170 modes on it changes by less than 1e-5. Equations: handbook: The beam, Effective end mass. Writes batch.md and
+batch.svg (values) beside itself; takes about a minute. What it costs: batch_seconds.py.
 """
 
 from __future__ import annotations
@@ -171,13 +171,15 @@ def text() -> str:
         f"{CHOSEN.modes} modes and the tail that fades: errors in 1e-3.\n\n"
         + table(["shaft", "f1 to f5, relative", *times], each())
         + "\nErrors of the stick end mass in 1e-3: of the first eight shafts at 0.7, 1 and 2 ms and at 1.2, 1.3 and\n"
-        "1.4 ms, and of the last three shafts at 0.7, 1 and 2 ms. Without an order: single cues with exact modes; the\n"
-        "tail with a dashpot is `end_mass`'s own.\n\n"
+        "1.4 ms, and of the last three shafts at 0.7, 1 and 2 ms. Rows without an order are single cues with exact "
+        "modes;\n"
+        "the tail with a dashpot is the one that `end_mass` uses.\n\n"
         + table(["scheme", "modes", "order", *columns], schemes())
-        + "\nWhat is left at 18 modes is waves of higher frequencies that are just back at the tip when the contact\n"
-        "ends: on wood the fastest bending waves, of 10 to 40 kHz, at 1.2 to 1.4 ms, and about 1 ms those of 50 to\n"
-        "80 kHz at the tip's shear cut-off and above it, where Timoshenko's beam is a picture of a shaft no more. No\n"
-        "tail knows of them, only more modes do. Over all contact times: batch_wood.md.\n"
+        + "\nThe error left at 18 modes comes from waves of higher frequencies that return to the tip just as the "
+        "contact\n"
+        "ends: on wood the fastest bending waves, of 10 to 40 kHz, at 1.2 to 1.4 ms, and near 1 ms those of 50 to\n"
+        "80 kHz, at the tip's shear cut-off and above, where Timoshenko's beam no longer describes a shaft. No tail\n"
+        "accounts for them; only more modes do. The study batch_wood.md covers all contact times.\n"
     )
 
 

@@ -1,9 +1,9 @@
-"""How many shafts a second: batches, sweeps in one process and in two, a million designs streamed.
+"""How many shafts are computed in a second: in batches, in sweeps in one and two processes, in a stream of a million?
 
 What: shafts of one piece, of wood, half of them bored, 20 % up and down in diameters and modulus, at the resolutions
-whose errors batch.py tables; single calls beside them; the public `sweep` in one and in two worker processes, taking
+whose errors are in batch.md; single calls beside them; the public `sweep` in one and in two worker processes, taking
 turns; a million designs through `sweep`, and the memory at each tenth. Per second of a process's own time, the best of
-a few rounds in turns, so that a busy machine matters less; sweeps in processes also by the wall.
+a few rounds in turns, so that a busy machine matters less; sweeps in processes also in elapsed time.
 
     python -m studies.batch_seconds
 

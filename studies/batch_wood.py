@@ -1,12 +1,12 @@
-"""What is the end mass of a batch of wooden shafts worth, whatever the contact time?
+"""How accurate is the end mass of a batch of wooden shafts, whatever the contact time?
 
 What: `SHAFTS` random wooden cues (length, diameters, E, G, density, mass behind the shaft; a third of them bare wood, a
 third with a ferrule, a third with ferrule and leather) at every contact time from 0.5 to 3 ms in steps of 0.025 ms; the
 stick end mass of `batch_stick` at the resolutions that its documentation names, and the plain sum of the modes up to
 30/T that a sweep takes by default. Shaft number i is the same in every run, so that a test can derive a few again.
-Reference: single cues, 240 modes with a tail that fades; on shafts tried 480 modes moved it by 1e-5 to 9e-5 in the
-median and by 2e-3 at most. Equations: handbook: Effective end mass. Writes batch_wood.md beside itself; takes some six
-minutes.
+Reference: single cues, 240 modes with a tail that fades; on the shafts that were tried 480 modes changed it by 1e-5 to
+9e-5 in the median and by 2e-3 at most. Equations: handbook: Effective end mass. Writes batch_wood.md beside itself;
+takes some six minutes.
 """
 
 from __future__ import annotations
@@ -154,12 +154,14 @@ def text(measured: Sequence[Sequence[Sequence[str]]]) -> str:
     return (
         "# What a batch's end masses of wood are worth at any contact time\n\n"
         f"{SHAFTS} random wooden cues; the stick end mass by `batch_stick` against {FINE} modes: errors in 1e-3.\n"
-        f"A plain sum of the modes up to {PERIODS}/T is what a sweep takes by default where all its designs have one\n"
-        "contact time.\n\n"
+        "If all designs of a sweep have one contact time T, the sweep takes by default a plain sum of the modes up to\n"
+        f"{PERIODS}/T.\n\n"
         + families(measured)
-        + "\nThe largest errors of bare wood stand at contact times near 2L/c, 1.1 to 1.6 ms on these shafts: the\n"
-        "front of the shear wave is then just back at the tip as the contact ends, at 10 to 80 kHz. No tail knows of\n"
-        "it, only more modes do. More is to be had by `Resolution(1, 60, 36)` or `Resolution(2, 52, 72)`.\n\n"
+        + "\nThe largest errors of bare wood lie at contact times near 2L/c, 1.1 to 1.6 ms on these shafts: the front "
+        "of\n"
+        "the shear wave, at 10 to 80 kHz, then returns to the tip just as the contact ends. No tail accounts for it; "
+        "only\n"
+        "more modes do. `Resolution(1, 60, 36)` and `Resolution(2, 52, 72)` are more accurate.\n\n"
         "Some of the shafts alone:\n\n" + single()
     )
 

@@ -1,9 +1,10 @@
-"""How stiff must a bridge hand be before squirt knows of it?
+"""How stiff must a bridge hand be to change squirt?
 
 What: a support 8 to 12 in behind the tip of bare shafts, as a spring across the cue; change of squirt at b/R 0.3 for
 contacts of 0.7 to 2 ms: the largest over the positions for a hand of 1e4 N/m, and the stiffness that changes squirt by
-1 %. e = 3/4, mu = 0.7, a ball of 210 g, default resolution (the 0.5 % of the modes is the same with and without).
-Equations: handbook: Effects (Support). The first change is linear in the stiffness.
+1 %. e = 3/4, mu = 0.7, a ball of 210 g, default resolution (its error of 0.5 % is the same with the hand and without
+it).
+Equations: handbook: Effects (Support). A small change is linear in the stiffness.
 Writes bridge.md and bridge.svg beside itself; takes about 30 s.
 """
 
@@ -84,13 +85,13 @@ def conclusions() -> list[str]:
     stiff = {T: min(stiffness_of(name, T) for name in NAMES) for T in TIMES}
     least = stiffness_of("kim", TIMES[-1])
     return [
-        f"A hand of 1e4 N/m, 8 in or more behind the tip, changes squirt by at most {100 * kim:.2f} % on Kim's "
-        f"shaft, 0.7 to 2 ms, and on the other shafts by at most {100 * short:.2f} % up to 1.4 ms; at 2 ms it "
-        f"reaches {100 * long:.2f} % there, a little over the 1 % that was thought to hold for all.",
-        f"It takes {stiff[TIMES[0]]:.0e} N/m to change squirt by 1 % in 0.7 ms, {stiff[TIMES[1]]:.0e} in 1 ms, "
-        f"{stiff[TIMES[-1]]:.0e} in 2 ms (Kim's shaft {least:.1e}); fingers give way at a few 1e3 N/m (assumed). "
-        "Which way squirt goes depends on place and time: the spring throws a bending wave back, and a clamp would "
-        "matter.",
+        f"A hand of 1e4 N/m, 8 in or more behind the tip, changes squirt by at most {100 * kim:.2f} % on Kim's shaft "
+        f"for contacts of 0.7 to 2 ms. On the other shafts the change is at most {100 * short:.2f} % up to 1.4 ms and "
+        f"reaches {100 * long:.2f} % at 2 ms.",
+        f"To change squirt by 1 % a stiffness of {stiff[TIMES[0]]:.0e} N/m is needed at 0.7 ms, {stiff[TIMES[1]]:.0e} "
+        f"N/m at 1 ms, and {stiff[TIMES[-1]]:.0e} N/m at 2 ms (Kim's shaft {least:.1e} N/m). Fingers have a few 1e3 "
+        "N/m (assumed). Whether squirt rises or falls depends on the place of the hand and on the contact time, "
+        "because the spring reflects a bending wave. A clamp would matter.",
     ]
 
 

@@ -1,4 +1,4 @@
-"""What do exactly propagated phases cost against a general ODE solver, at equal accuracy?
+"""What do exactly propagated phases cost compared with a general ODE solver, at equal accuracy?
 
 What: strokes of meshes/kim.toml (24 flexible modes, T = 1 ms, e = 3/4, mu = 0.7, a ball of 210 g) at four offsets, from
 little slip to a miscue, by cuefem.contact.linear and by scipy's solve_ivp (DOP853, and Radau with its Jacobian) on the

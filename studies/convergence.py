@@ -8,7 +8,7 @@ counts;
 (c) Kim's shaft made ever lighter at fixed shape: [Kim]'s first order in epsilon;
 (d) an offset that vanishes: the impulse solver fed with the stick end mass, all cues of meshes/.
 Equations: handbook: Inverse mass, The impulse solver, The strike, Effective end mass and, for the end mass at an
-offset, `stick_at_offset`; how fast each road is and why is said in the table. Parts: convergence_roads.py computes. e =
+offset, `stick_at_offset`; the table says how fast each road is and why. Parts: convergence_roads.py computes. e =
 3/4, mu = 0.7, a ball of 210 g.
 Writes convergence.md and convergence_*.svg beside itself; takes about 20 s.
 """
@@ -125,37 +125,40 @@ def order_table() -> str:
 
 
 RIGID = (
-    "Largest relative error in a window of a factor {window}, errors ring. Force and velocity end mass lose their "
-    "error like {power}. Stick has no limit: the step of velocity that it starts with rings for ever. The coupled "
-    "squirt has one, and as fast: friction caps the ringing of the tangential force at mu F_n, which falls to zero at "
-    "the end."
+    "The table shows the largest relative error in a window of a factor {window}, because the errors ring. Force and "
+    "velocity end mass lose their error like {power}. Stick has no limit, because the step of velocity that it starts "
+    "with rings for ever. The coupled squirt has one and approaches it as fast: friction caps the ringing force along "
+    "the surface at mu F_n, which falls to zero at the end."
 )
 ENDLESS = (
-    "With endless friction nothing caps it: the squirt then has no rigid limit either (rate {rate:.2f}, still "
-    "{left:.0%} off in the last window)."
+    "With infinite friction nothing caps the ringing, and the squirt has no rigid limit either (rate {rate:.2f}, "
+    "still {left:.0%} off in the last window)."
 )
 LIGHT = (
-    "psi over [Kim]'s first order in epsilon, minus 1, T = 1 ms, 22 modes; rho, E and G times a factor. With the "
-    "small-offset stick end mass the first order is missed for good, by {missed}: at an offset the blow is shorter and "
-    "changes the tip's velocity by less, so the end mass there is another one. With that (`stick_at_offset`) it "
-    "is exact, at a rate of {rate:.2f} in the factor (b/R 0.5): the first slip."
+    "The table shows psi over [Kim]'s first order in epsilon, minus 1, for T = 1 ms and 22 modes; rho, E and G are "
+    "multiplied by a factor. With the small-offset stick end mass the first order is never reached: it stays off by "
+    "{missed}. At an offset the blow is shorter and changes the tip's velocity by less, so the end mass there is a "
+    "different one. With that end mass (`stick_at_offset`) the first order is exact; the error falls at a rate of "
+    "{rate:.2f} in the factor (b/R 0.5), which comes from the first slip."
 )
 OFFSET = (
-    "Coupled squirt over that of the impulse solver, minus 1, T = 1 ms. As b -> 0 it is C sqrt(b), C as derived: 2/3 "
-    "of the first slip times the ringing force at the end, of either sign, over the impulse; the rate wavers where the "
-    "slip begins to outlast the period of the highest modes. The slip, not the ringing, shortens as more modes are "
-    "kept, like one over the root of their phi^2 sum, and C with it (Kim, 22 to 160 modes: {fall:.2f} of it left, the "
-    "slip {slip:.2f}): sqrt(b) belongs to the truncation. And it is small: what shows is b^2, the end mass's own "
-    "change with the offset."
+    "The table shows the coupled squirt over that of the impulse solver, minus 1, for T = 1 ms. As b -> 0 it is C "
+    "sqrt(b) with the derived C: 2/3 of the first slip times the ringing force at the end, of either sign, over the "
+    "impulse. The rate varies where the slip begins to last longer than the period of the highest modes. With more "
+    "modes the slip becomes shorter, like one over the root of the sum of their phi^2, and C with it (Kim, 22 to 160 "
+    "modes: {fall:.2f} of C is left, {slip:.2f} of the slip); the ringing does not change. The term sqrt(b) therefore "
+    "belongs to the truncation. It is also small: what the table shows is b^2, the change of the end mass itself with "
+    "the offset."
 )
 MODES = (
-    "Squirt of Kim's cue, b/R 0.3, T = 1 ms, over that of 300 modes, minus 1. An algebraic tail, modes to the power "
-    "{rate:.1f} here. It follows the static compliance of the modes left out, a spring between tip and cue, but is no "
-    "constant times it: from 28 modes on the ratio wanders between {low:.2f} and {high:.2f} and does not settle."
+    "The table shows the squirt of Kim's cue at b/R 0.3 and T = 1 ms over that with 300 modes, minus 1. The error "
+    "falls algebraically, here like the number of modes to the power {rate:.1f}. It follows the static compliance of "
+    "the modes left out, which is a spring between tip and cue, but it is no constant times it: from 28 modes on the "
+    "ratio varies between {low:.2f} and {high:.2f} and does not settle."
 )
 MESH = (
-    "The same with 22 modes, against elements: two orders a degree, 2p. Against the order p of three elements: "
-    "spectral."
+    "The same with 22 modes, against the number of elements: the error falls with the order 2p. Against the order p "
+    "of three elements: the convergence is spectral."
 )
 
 

@@ -191,8 +191,8 @@ def report() -> str:
         "# How far off is the default?\n\n"
         "Contact times are drawn from 0.5 to 3 ms, offsets of squirt from 0.05 to 0.5. A brass tip rings on the wood at"
         " 100 to 250 kHz,\nabove the modes kept: its stick end mass is off by more than half a percent, and the spread"
-        " of `cuefem endmass` says so.\nThe modes it is held against end at 150 kHz, where brass still rings: its true"
-        " error is larger, within the estimate.\n\n" + common.table(columns, rows())
+        " of `cuefem end-mass` shows it.\nThe modes of the reference end at 150 kHz, where brass still rings: the true"
+        " error is larger, but within the estimate.\n\n" + common.table(columns, rows())
     )
 
 

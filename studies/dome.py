@@ -1,8 +1,8 @@
 """How much squirt does the round end of the tip make?
 
 What: squirt against the radius of the tip's dome, 0 to 12 mm, for all cues of meshes/ and for pool_maple with a wooden
-tip; the limit b -> 0, b/R 0.3 and 0.5; the lumped end mass with that squirt; and the contact time. T = 1 ms unless
-said, e = 3/4, mu = 0.7, a ball of 210 g; default resolution (0.5 %).
+tip; the limit b -> 0, b/R 0.3 and 0.5; the lumped end mass with that squirt; and the contact time. T = 1 ms except
+where stated, e = 3/4, mu = 0.7, a ball of 210 g; default resolution (0.5 %).
 Equations: handbook: Effects. The contact lies r sin(phi) off the cue's axis, on the side of the ball's centre. The
 ball's push along the cue is there a couple F r sin(phi) on the tip's section, which bends the shaft towards that side;
 the turning ball carries the tip to the other. The end of a semi-infinite Euler beam moves across at the velocity
@@ -195,30 +195,33 @@ def conclusions() -> list[str]:
     far = [1e3 * c.equivalents[0] for c in (case(n, USUAL) for n in NAMES)]
     inside = sum(case(n, USUAL).end_mass >= MEASURED[0] for n in NAMES)
     return [
-        f"Kim's shaft, b -> 0: psi/phi {kim[0.0].slope:.4f} bare, {kim[6e-3].slope:.4f} at 6 mm, "
-        f"{kim[9e-3].slope:.4f} at 9 mm; squirt grows linearly with the radius. Its end mass goes from "
-        f"{1e3 * kim[0.0].end_mass:.2f} g to {1e3 * kim[9e-3].end_mass:.2f} g at 9 mm.",
-        f"A dome of 9 mm raises small-offset squirt by {min(gains.values()):.0f} % ({min(gains, key=gains.get)}) to "
-        f"{max(gains.values()):.0f} % ({max(gains, key=gains.get)}) and squirt at b/R 0.3 and 0.5 by "
-        f"{min(larger):.0f} to {max(larger):.0f} %. A slender leather segment takes up much of the couple: "
-        f"{gains['pool_maple']:.0f} % with leather, {gains[WOODEN]:.0f} % with wood in its place.",
+        f"On Kim's shaft psi/phi at small offsets is {kim[0.0].slope:.4f} bare, {kim[6e-3].slope:.4f} with a dome of "
+        f"6 mm and {kim[9e-3].slope:.4f} with 9 mm; squirt grows linearly with the radius. The end mass that has this "
+        f"squirt grows from {1e3 * kim[0.0].end_mass:.2f} g to {1e3 * kim[9e-3].end_mass:.2f} g at 9 mm.",
+        f"A dome of 9 mm raises the squirt at small offsets by {min(gains.values()):.0f} % "
+        f"({min(gains, key=gains.get)}) to {max(gains.values()):.0f} % ({max(gains, key=gains.get)}), and the squirt "
+        f"at b/R 0.3 and 0.5 by {min(larger):.0f} to {max(larger):.0f} %. A slender leather segment takes up much of "
+        f"the couple: on pool_maple the gain is {gains['pool_maple']:.0f} % with leather and {gains[WOODEN]:.0f} % "
+        "with wood in its place.",
         f"Measured end masses are {1e3 * MEASURED[0]:g} to {1e3 * MEASURED[1]:g} g. Bare, these cues have {low:.1f} "
-        f"to {high:.1f} g, with 9 mm {low_dome:.1f} to {high_dome:.1f} g, {inside} of {len(NAMES)} within the "
-        f"measured range; at b/R 0.3 the equivalent is {min(far):.1f} to {max(far):.1f} g. The dome leads into the "
-        "lower half of the range, not to 14 g.",
-        "Why more: the push along the cue acts on the side of the ball's centre and bends the tip there; the "
-        "turning ball carries the tip to the other side, so it must push across the harder, and is pushed off its "
-        f"line the more. A semi-infinite beam gives {100 * estimate('kim'):.0f} % more end mass for Kim's tip "
-        f"section and 9 mm, the shaft {100 * (kim[9e-3].end_mass / kim[0.0].end_mass - 1):.0f} %.",
-        "Why it hardly depends on the contact time: the beam's own share grows like sqrt(T), the dome's falls like "
-        f"1/sqrt(T). From 0.5 to 2.8 ms end mass grows like T^{growth('kim', 0.0):.2f} for Kim's bare shaft and "
-        f"T^{growth('kim', USUAL):.2f} with 9 mm.",
-        "A dome on a slender leather wants many modes, since the couple turns the leather's own light end: the "
-        f"default resolution is {100 * shortfall('pool_maple', sheared=False):+.1f} % off {MODES[-1]} modes for "
-        f"pool_maple and {100 * shortfall('pool_maple', sheared=True):+.1f} % with shear "
-        f"({100 * shortfall('carbon', sheared=True):+.1f} % for carbon), and more modes go on adding; with a wooden "
-        f"tip {100 * shortfall(WOODEN, sheared=False):+.2f} and {100 * shortfall(WOODEN, sheared=True):+.2f} %. A "
-        "beam is a poor model of a stub half as long as it is wide.",
+        f"to {high:.1f} g; with a dome of 9 mm they have {low_dome:.1f} to {high_dome:.1f} g, and {inside} of "
+        f"{len(NAMES)} lie in the measured range. The squirt-equivalent end mass at b/R 0.3 is {min(far):.1f} to "
+        f"{max(far):.1f} g. The dome thus leads into the lower half of the measured range, but not up to 14 g.",
+        "Why squirt grows: the force along the cue acts on the side of the tip that faces the ball's centre, and "
+        "bends the tip to that side. The turning ball carries the tip to the other side, so it must push harder "
+        "across the cue, and is itself pushed farther off its line. In the model of a semi-infinite beam the end "
+        f"mass grows by {100 * estimate('kim'):.0f} % for Kim's tip section and 9 mm; on the shaft it grows by "
+        f"{100 * (kim[9e-3].end_mass / kim[0.0].end_mass - 1):.0f} %.",
+        "Why squirt with a dome hardly depends on the contact time: the share of the beam grows like sqrt(T), and "
+        "the share of the dome falls like 1/sqrt(T). From 0.5 to 2.8 ms the end mass grows like "
+        f"T^{growth('kim', 0.0):.2f} for Kim's bare shaft and like T^{growth('kim', USUAL):.2f} with a dome of 9 mm.",
+        "A dome on a slender leather needs many modes, because its couple turns the light end of the leather. The "
+        f"default resolution differs from {MODES[-1]} modes by {100 * shortfall('pool_maple', sheared=False):+.1f} % "
+        f"for pool_maple, by {100 * shortfall('pool_maple', sheared=True):+.1f} % with shear too "
+        f"({100 * shortfall('carbon', sheared=True):+.1f} % for carbon), and still more modes go on adding. With a "
+        f"wooden tip the differences are {100 * shortfall(WOODEN, sheared=False):+.2f} and "
+        f"{100 * shortfall(WOODEN, sheared=True):+.2f} %. A beam is also a poor model of a stub half as long as it is "
+        "wide.",
     ]
 
 

@@ -1,9 +1,9 @@
-"""What is each effect worth in the ready scenes?
+"""How much does each effect change in the ready scenes?
 
 What: every scene of scenes/ as it stands, without each effect it lists and with each it does not list, at the textbook
-values (`usual` of each effect): an effect is worth the squirt (ball speed, spin) with it over that without it,
-minus 1. Default resolution. Effects without a usual value (a joint, a mass where none is listed) and Elevation, which
-is the player's, are left out; what a bridge hand is worth in general is in bridge.py, the dome in dome.py.
+values of `usual` of each effect: an effect changes squirt (ball speed, spin) by its value with the effect over
+that without it, minus 1. Default resolution. Effects without a usual value (a joint, a mass where none is listed) and
+Elevation, which is the player's choice, are left out. bridge.py covers a bridge hand in general, dome.py the dome.
 Equations: handbook: Effects.
 Writes effects.md and effects.svg beside itself; takes about 40 s.
 """
@@ -118,13 +118,13 @@ def conclusions() -> list[str]:
     hard = {effect: 100 * worth("break_cue")[effect].squirt for effect in EFFECTS if effect in worth("break_cue")}
     least = max(abs(x) for effect in SMALL for x in span(effect, SCENES))
     return [
-        f"The dome of the tip is worth the most in every scene but the break, {dome[0]:+.0f} to {dome[1]:+.0f} % of "
-        f"squirt, then its shear, {shear[0]:+.0f} to {shear[1]:+.0f} %, the turning contact, {turning[0]:+.0f} to "
-        f"{turning[1]:+.0f} %, waves along the cue, {axial[0]:+.0f} to {axial[1]:+.0f} %, and the power law, "
-        f"{power[0]:+.0f} to {power[1]:+.0f} %; in the break, at 11 m/s, the turning contact is "
-        f"({hard['RollingContact']:+.0f} %, beyond where it is meant to hold).",
-        "A bridge hand of 5000 N/m, the wood's damping and a second hit are worth less than "
-        f"{np.ceil(10 * least) / 10:.1f} % in all of them: no scene needs them for its squirt.",
+        f"The dome of the tip changes squirt the most in every scene but the break, by {dome[0]:+.0f} to "
+        f"{dome[1]:+.0f} %. The shear of the tip follows with {shear[0]:+.0f} to {shear[1]:+.0f} %, the turning "
+        f"contact with {turning[0]:+.0f} to {turning[1]:+.0f} %, waves along the cue with {axial[0]:+.0f} to "
+        f"{axial[1]:+.0f} %, and the power law with {power[0]:+.0f} to {power[1]:+.0f} %. In the break, at 11 m/s, "
+        f"the turning contact changes the most ({hard['RollingContact']:+.0f} %, more than its assumptions allow).",
+        "A bridge hand of 5000 N/m, the damping of the wood and a second hit change squirt by less than "
+        f"{np.ceil(10 * least) / 10:.1f} % in all scenes: no scene needs them for its squirt.",
     ]
 
 
@@ -133,7 +133,7 @@ def report() -> str:
     parts = ["# What each effect is worth", *conclusions(), "## The scenes", scene_table()]
     for i, quantity in enumerate(QUANTITIES):
         title = f"## Change of {quantity} by the effect, per cent"
-        parts += [title, "Bold: listed by the scene.", worth_table(i)]
+        parts += [title, "Bold: the scene lists this effect.", worth_table(i)]
     return "\n\n".join(part.rstrip("\n") for part in parts) + "\n"
 
 

@@ -161,23 +161,28 @@ def conclusions() -> list[str]:
     half = len(over) // 2
     paper, powers = np.median(sizes(DEFINITIONS[-1], 0.3)), [growth(name, "stick") for name in common.NAMES]
     return [
-        f"Of force, velocity and stick, stick predicts the coupled squirt best: at b/R 0.1 to {small[0]:.1f} % in "
-        f"the median (worst {small[1]:.1f} %). It is a small-offset limit: {small[2]:.0f} % off (worst "
-        f"{small[3]:.0f} %) at 0.3, {small[4]:.0f} % (worst {small[5]:.0f} %) at 0.5. Taken at the offset it is "
-        f"{own[2]:.1f} % off (worst {own[3]:.1f} %) at 0.3 and {own[4]:.1f} % (worst {own[5]:.0f} %) at 0.5.",
-        f"At b/R 0.3 the squirt-equivalent end mass is {low:.1f} to {high:.1f} g; velocity gives "
-        f"{min(over[:half]):.2f} to {max(over[:half]):.2f} times it, force {min(over[half:]):.2f} to "
-        f"{max(over[half:]):.2f}.",
-        f"[Kim]'s 12 g are 3 g at the tip: at b/R 0.3 the squirt they give is off by {100 * paper:.0f} % in the "
-        f"median, and they know nothing of the contact time, with which stick end mass grows like "
-        f"T^{min(powers):.2f} to T^{max(powers):.2f}.",
+        "Of the definitions force, velocity and stick, stick predicts the coupled squirt best: at b/R 0.1 it is "
+        f"{small[0]:.1f} % off in the median (worst {small[1]:.1f} %). It is the limit of small offsets, so it is "
+        f"{small[2]:.0f} % off (worst {small[3]:.0f} %) at 0.3 and {small[4]:.0f} % (worst {small[5]:.0f} %) at 0.5. "
+        f"Stick taken at the offset itself is {own[2]:.1f} % off (worst {own[3]:.1f} %) at 0.3 and {own[4]:.1f} % "
+        f"(worst {own[5]:.0f} %) at 0.5.",
+        f"At b/R 0.3 the squirt-equivalent end mass is {low:.1f} to {high:.1f} g. The definition velocity gives "
+        f"{min(over[:half]):.2f} to {max(over[:half]):.2f} times as much, force {min(over[half:]):.2f} to "
+        f"{max(over[half:]):.2f} times.",
+        "[Kim]'s cue end of 12 g is an end mass of 3 g at the tip. At b/R 0.3 the squirt that it gives is off by "
+        f"{100 * paper:.0f} % in the median, and it does not depend on the contact time, while the stick end mass "
+        f"grows like T^{min(powers):.2f} to T^{max(powers):.2f}.",
     ]
 
 
 def report() -> str:
     """The committed table."""
     parts = ["# Effective end mass: which definition predicts squirt", *conclusions()]
-    parts += ["## How wrong the squirt is", "Size of the relative error, all cues and 0.5 to 4 ms.", summary_table()]
+    parts += [
+        "## How wrong the squirt is",
+        "Size of the relative error over all cues and contact times of 0.5 to 4 ms.",
+        summary_table(),
+    ]
     parts += ["## End mass, g", mass_table(), "## Squirt predicted at b/R 0.3, per cent off", error_table()]
     parts += ["## Growth with the contact time, exponent from 0.5 to 4 ms", growth_table()]
     return "\n\n".join(part.rstrip("\n") for part in parts) + "\n"

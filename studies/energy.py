@@ -1,7 +1,7 @@
 """Where does the energy of a stroke go, against the offset?
 
-What: the cue's kinetic energy at first touch, split after the coupled strike into what the ball has of translation and
-spin, what stays in the cue's rigid motion and in its vibration, and what the tip and friction take; Kim's cue and a
+What: the cue's kinetic energy at first touch, split after the coupled strike into the ball's translation
+and spin, the cue's rigid motion and vibration, and the losses of tip and friction; Kim's cue and a
 maple pool cue; T = 1 ms, e = 3/4, mu = 0.7, a ball of 210 g, b/R 0 to 0.75, through the miscue.
 Equations: handbook: The strike (the energy audit of the coupled strike).
 Writes energy.md and energy.svg beside itself; takes about 3 s.
@@ -90,17 +90,20 @@ def conclusions() -> list[str]:
         slipping, _ = largest(name, "friction loss")
         ball = head_on["ball translation"]
         said.append(
-            f"{name}: head on the ball takes {100 * ball:.1f} %, the cue keeps {100 * head_on['cue']:.1f} % and the "
-            f"tip loses {100 * head_on['tip loss']:.1f} %. Before the first miscue (b/R {miscues(name)[0]:.2f}) spin "
-            f"takes at most {100 * spin:.1f} % (b/R {at:.2f}), vibration of the shaft {100 * vibration:.1f} % (b/R "
-            f"{there:.2f}), friction {100 * slipping:.1f} %."
+            f"{name}: in a head-on stroke the ball takes {100 * ball:.1f} %, the cue keeps "
+            f"{100 * head_on['cue']:.1f} % and the tip loses {100 * head_on['tip loss']:.1f} %. Below the offset of "
+            "the "
+            f"first miscue (b/R {miscues(name)[0]:.2f}) spin takes at most {100 * spin:.1f} % (at b/R {at:.2f}), "
+            "vibration "
+            f"of the shaft {100 * vibration:.1f} % (at b/R {there:.2f}), and friction {100 * slipping:.1f} %."
         )
         if again := gripping_again(name):
             lasting = [duration(name, b) for b in again]
             said[-1] += (
-                f" The edge of the miscue is not sharp: the tip grips again, late, at b/R {again[0]:.2f} to "
-                f"{again[-1]:.2f}, in contacts of {1e3 * min(lasting):.1f} to {1e3 * max(lasting):.1f} ms (at the "
-                f"first miscue {1e3 * duration(name, miscues(name)[0]):.1f} ms)."
+                f" The miscue has no sharp edge: at b/R {again[0]:.2f} to {again[-1]:.2f} the tip slips first and "
+                f"grips late, in contacts of {1e3 * min(lasting):.1f} to {1e3 * max(lasting):.1f} ms (at the first "
+                "miscue "
+                f"{1e3 * duration(name, miscues(name)[0]):.1f} ms)."
             )
     return said
 

@@ -1,4 +1,4 @@
-"""The 250 Hz that [Kim] heard: which bending mode of which piece of his cue it could be.
+"""Which bending mode of which piece of the cue could be the 250 Hz that [Kim] heard?
 
 What: bending frequencies of the 70 cm shaft (free; clamped at its butt; held at the joint, free to turn), of its first
 12 cm (free; clamped) and of a whole cue, for maple's range of E, and the E that puts the nearest modes at 250 Hz.

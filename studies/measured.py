@@ -2,14 +2,14 @@
 
 What: the measured squirt of data/measured_squirt.csv beside the coupled strike of a maple, a hollow and a break shaft
 before a pool ball, bare, with the tip's dome (9.5 mm), with its shear (Mindlin's ratio 0.75), with both; T = 1.1 ms
-(break shaft 0.9), e = 0.73, mu = 0.7. No shaft that was measured is published beyond its tip's diameter: 48 points of a
+(break shaft 0.9), e = 0.73, mu = 0.7. Of the measured shafts only the tip's diameter is published. So 48 points of a
 Halton sequence vary wood, leather, ferrule, taper, bore and stroke within the ranges of measured_shafts.py, which were
-written down before they were run, and the band holds 90 % of them. Then what each unknown is worth; squirt against
-contact time and speed, which measured squirt does not depend on; leather whose shear counts twice; and
-handbook: Measured squirt, claim by claim. Equations: handbook: The strike, Effects; PowerLawTip (its shear a constant
-spring) and RollingContact for the speed. Contact times (0.8 ms phenolic and fast, 1 to 2 ms most, 2 to 3 ms soft and
-slow) and "no practical effect" of hardness: billiards.colostate.edu, FAQ, cue tip. Writes measured.md and measured.svg
-beside itself; takes about 40 s.
+fixed before the first run, and the band holds 90 % of them. Then: how much each unknown changes squirt; squirt against
+contact time and speed, on which measured squirt does not depend; leather whose shear is counted twice; and the claims
+of an earlier prototype, one by one. Equations: handbook: The strike, Effects; PowerLawTip (its shear a constant spring)
+and RollingContact for the speed. Contact times (0.8 ms phenolic and fast, 1 to 2 ms most, 2 to 3 ms soft and slow) and
+"no practical effect" of hardness: billiards.colostate.edu, FAQ, cue tip. Writes measured.md and measured.svg beside
+itself; takes about 40 s.
 """
 
 from __future__ import annotations
@@ -158,7 +158,7 @@ def speed_table() -> str:
 
 
 def claims_table() -> str:
-    """handbook: Measured squirt, claim by claim."""
+    """The claims of an earlier prototype, one by one."""
     both = [at_time("dome + shear", T) for T in (1.0e-3, 1.2e-3)]
     without = [at_time(model, T) for model in ("bare", "shear") for T in (1.0e-3, 1.2e-3)]
     soft = [_far(ratio, T) for ratio in (0.3, 0.75) for T in TIMES]
@@ -195,12 +195,13 @@ def agreement() -> str:
     bare, dome, shear, both = (told(robot, model) for model in MODELS)
     return (
         f"What agrees. At b/R 0.375 dome and shear with textbook values give {both}; the robot measured "
-        f"{baseline.squirt:.2f} and {robot.squirt:.2f}°. Nothing was fitted. No other band holds both values, but "
-        f"those of the bare beam, {bare}, and of the dome alone, {dome}, miss by less than an offset wrong by 1.5 mm "
-        f"moves them; shear alone, {shear}, is out. Dome and shear nearly cancel: over the five measured values the "
-        f"model is off by {100 * miss('bare'):.0f} % bare and {100 * miss('dome + shear'):.0f} % with both (root mean "
-        "square), so levels do not decide. Nor does it help to add the rest: the turning contact makes it "
-        f"{everything('turning'):.2f}°, waves along the cue {everything('axial waves'):.2f}°, both and the power law "
+        f"{baseline.squirt:.2f} and {robot.squirt:.2f}°. Nothing was fitted. No other model has both values in its "
+        f"band. But the bare beam, {bare}, and the dome alone, {dome}, miss them by less than an error of 1.5 mm in "
+        f"the offset would explain; shear alone, {shear}, is excluded. Dome and shear nearly cancel: over the five "
+        f"measured values the bare model is off by {100 * miss('bare'):.0f} % and the model with both by "
+        f"{100 * miss('dome + shear'):.0f} % (root mean square), so the size of squirt does not tell which model is "
+        f"right. More effects do not help: the turning contact makes it {everything('turning'):.2f}°, waves along the "
+        f"cue {everything('axial waves'):.2f}°, and both with the power law "
         f"{everything('power law', 'turning', 'axial waves'):.2f}°."
     )
 
@@ -209,9 +210,9 @@ def indifference() -> str:
     """What contact time and speed say."""
     grown = ", ".join(f"{100 * spread(m):.0f} % {w}" for m, w in zip(MODELS, WORDS, strict=True))
     return (
-        "What decides is the contact time, 0.8 ms of a phenolic tip to 2 ms and more of a soft one. From 0.7 to 2 ms "
-        f"squirt at b/R 0.375 grows by {grown}. Nothing of the kind is found on the table (Alciatore's FAQ: tip "
-        "hardness has no practical effect), and only dome and shear together give that."
+        "The contact time tells which model is right. It runs from 0.8 ms for a phenolic tip to 2 ms and more for a "
+        f"soft one. From 0.7 to 2 ms squirt at b/R 0.375 grows by {grown}. Players see no such growth (Alciatore's "
+        "FAQ: the hardness of the tip has no practical effect), and only dome and shear together change so little."
     )
 
 
@@ -221,11 +222,12 @@ def speed() -> str:
     both, whole = "dome + shear", LAWS[-1]
     hertz, power, turning, net = (f"{100 * speed_change(both, law):+.1f} %" for law in LAWS)
     return (
-        f"Speed decides less. Over the robot's {SPEEDS[0]} to {SPEEDS[1]} mph, where the measured values scatter by "
-        f"{100 * (SERIES[1] / SERIES[0] - 1):.0f} %, Hertz's 3/2 power shortens the contact by {shorter:.0f} %: bare "
-        f"squirt changes by {100 * speed_change('bare', HERTZ):+.1f} %, with dome and shear by {hertz} ({power} if "
-        f"the leather's shear does not stiffen with it). The turning contact adds what grows with speed, {turning}; "
-        f"all together {net}, from {at_speed(both, SPEEDS[0], whole):.2f} to {at_speed(both, SPEEDS[1], whole):.2f}°."
+        f"The speed tells less. Over the robot's {SPEEDS[0]} to {SPEEDS[1]} mph, where the measured values scatter by "
+        f"{100 * (SERIES[1] / SERIES[0] - 1):.0f} %, a tip with Hertz's power 3/2 shortens the contact by "
+        f"{shorter:.0f} %. Bare squirt then changes by {100 * speed_change('bare', HERTZ):+.1f} %, squirt with dome "
+        f"and shear by {hertz} ({power} if the shear of the leather does not stiffen with it). The turning contact "
+        f"adds {turning}, which grows with speed. All together change squirt by {net}, from "
+        f"{at_speed(both, SPEEDS[0], whole):.2f} to {at_speed(both, SPEEDS[1], whole):.2f}°."
     )
 
 
@@ -235,14 +237,14 @@ def failure() -> str:
     both = "dome + shear"
     grown = {m: band(first, m)[0] / band(robot, m)[0] for m in ("bare", both)}
     return (
-        f"What does not agree. At b/R 0.453 the same shaft with both gives {told(first, both)}, measured "
-        f"{first.squirt:.1f}°; the bare beam is nearer, {told(first, 'bare')}. The model's squirt grows by "
-        f"{grown[both]:.2f} from 0.375 (bare {grown['bare']:.2f}), the measured by {first.squirt / robot.squirt:.2f}, "
-        "less than the offset itself (1.21), which no model here does. The low-deflection shaft gives "
-        f"{told(predator, both)}, measured {predator.squirt:.1f}°, and the ratio {low_deflection(both):.2f} (bare "
-        f"{low_deflection('bare'):.2f}), measured {predator.squirt / first.squirt:.2f}; its bore is a guess. The "
-        f"break cue gives {told(stinger, both)} at b/R 0.267, measured {stinger.squirt:.1f}°: a pool shaft a size "
-        "wider with a hard tip is not that cue."
+        f"What does not agree. At b/R 0.453 the same shaft with both effects gives {told(first, both)}, and "
+        f"{first.squirt:.1f}° was measured; the bare beam is nearer, {told(first, 'bare')}. From b/R 0.375 to 0.453 "
+        f"the model's squirt grows by a factor of {grown[both]:.2f} (bare {grown['bare']:.2f}). The measured squirt "
+        f"grows by {first.squirt / robot.squirt:.2f}, less than the offset itself (1.21), which no model here does. "
+        f"The low-deflection shaft gives {told(predator, both)}, measured {predator.squirt:.1f}°; its ratio to the "
+        f"regular shaft is {low_deflection(both):.2f} (bare {low_deflection('bare'):.2f}), measured "
+        f"{predator.squirt / first.squirt:.2f}. Its bore is a guess. The break cue gives {told(stinger, both)} at b/R "
+        f"0.267, measured {stinger.squirt:.1f}°: a pool shaft one size wider with a hard tip is not that cue."
     )
 
 
@@ -251,21 +253,29 @@ def double_count() -> str:
     wood = [at_time(m, pool.TIME, wooden=True) / at_time(m, pool.TIME) - 1 for m in MODELS]
     changes = ", ".join(f"{100 * w:+.0f} % {model}" for w, model in zip(wood, WORDS, strict=True))
     return (
-        "Shear counted twice. The leather segment gives sideways by itself: with maple in its place squirt at 1.1 ms "
-        f"changes by {changes}. The double count does not decide the level; it matters where there is a dome and no "
-        "shear, for a slender leather takes up the dome's couple (and wants more modes than the default, 2 % here: "
-        "dome.md)."
+        "Is shear counted twice? The leather segment also gives way sideways by itself: with maple in its place "
+        f"squirt at 1.1 ms changes by {changes}. Counting it twice therefore hardly changes the size of squirt. It "
+        "matters with a dome and no shear, because a slender leather takes up the couple of the dome (and needs more "
+        "modes than the default, which is 2 % off here: dome.md)."
     )
 
 
 def report() -> str:
     """The committed table."""
     parts = ["# Measured squirt, nothing fitted", agreement(), indifference(), speed(), failure(), double_count()]
-    parts += ["## Squirt, degrees", "Usual values, and the range of 90 % of 48 draws of the unknowns.", level_table()]
-    parts += ["## What each unknown is worth", "pool_maple, b/R 0.375, dome + shear, one at a time.", worth_table()]
+    parts += [
+        "## Squirt, degrees",
+        "The usual values, and the range that holds 90 % of 48 random draws of the unknowns.",
+        level_table(),
+    ]
+    parts += [
+        "## How much each unknown changes squirt",
+        "pool_maple, b/R 0.375, dome + shear, one at a time.",
+        worth_table(),
+    ]
     parts += ["## Squirt against contact time, degrees, b/R 0.375", time_table()]
     parts += [f"## Change of squirt from {SPEEDS[0]} to {SPEEDS[1]} mph", speed_table()]
-    parts += ["## The prototype's claims (handbook: Measured squirt)", claims_table()]
+    parts += ["## Claims of an earlier prototype", claims_table()]
     return "\n\n".join(part.rstrip("\n") for part in parts) + "\n"
 
 

@@ -111,9 +111,9 @@ def six_tenths() -> list[str]:
             cells += [f"{float(value):.5f}", f"{math.degrees(math.asin(float(value))):.3f}"]
         lines.append("| " + " | ".join(cells) + " |")
     whole = turning_ratio(math.radians(45))
-    lines += ["", f"The map of the rigid cue to 45 degrees wants Q0 of at least {whole:.5f} at mu = 0.6."]
+    lines += ["", f"The map of the rigid cue to 45 degrees needs a Q0 of at least {whole:.5f} at mu = 0.6."]
     needed = float(squirt.compression_stick_friction(0.7, end_mass_ratio=TWO_PART.end_mass))
-    lines.append(f"The two-part cue at the paper's limit b/R = 0.7 wants mu of at least {needed:.5f}.")
+    lines.append(f"The two-part cue at the paper's limit b/R = 0.7 needs a mu of at least {needed:.5f}.")
     return lines
 
 

@@ -1,7 +1,7 @@
 """How much do two maple pool shafts of one drawing differ, and what drives the difference?
 
-Causes, with sources, stand in scatter_maple.toml: wood (E, G and density, correlated), turning by +-0.05 mm, ferrule,
-leather from new to worn, ball, contact time, and with them the dome and the shear of the tip. Monte Carlo over
+The causes and their sources are in scatter_maple.toml: wood (E, G and density, correlated), turning by +-0.05 mm,
+ferrule, leather from new to worn, ball, contact time, and with them the dome and the shear of the tip. Monte Carlo over
 scrambled Sobol points; Sobol indices by Saltelli's estimators (`cuefem.design.scatter`), correlated wood as one cause.
 The coupled strike at b/R = 0.3, bare and with dome and tip shear. About 30 s.
 """
@@ -95,10 +95,10 @@ def text() -> str:
     first = table(["of the designs lie below", "mean", "sd", *(f"{100 * share:g} %" for share in SHARES)], spreads())
     columns = ["cause", *(f"{words}: {part}" for words in ("squirt", "end mass") for part in ("alone", "in all"))]
     rest = "\n".join(f"## {model}\n\n{table(columns, shares(model))}" for model in MODELS)
-    wood = table(["correlations of the wood", "end mass, sd in %", "tip stiffness, sd in %"], woods(), 3)
+    wood = table(["correlations of the wood", "end mass, sd in %", "stiffness at the tip, sd in %"], woods(), 3)
     return (
-        "# Scatter of maple pool shafts\n\nb/R = 0.3; causes as in scatter_maple.toml. Shares of the variance in per "
-        f"cent, with their 95 % intervals.\n\n{drawn}\n{first}\n{rest}\n## wood alone\n\n{wood}"
+        "# Scatter of maple pool shafts\n\nOffset b/R = 0.3; the causes are those of scatter_maple.toml. Shares of "
+        f"the variance are in per cent, with 95 % intervals.\n\n{drawn}\n{first}\n{rest}\n## wood alone\n\n{wood}"
     )
 
 

@@ -1,10 +1,10 @@
-"""Where along a cue does its end mass live: what does a gram put here add?
+"""Which part of a cue makes its end mass: how much does a gram added here add?
 
 For each cue of meshes/ and contacts of 0.7, 1 and 2 ms, the stick end mass's density of derivatives to mass
 (`cuefem.design.sensitivity`): one gram at x adds so many grams of end mass. The gram moves along the axis too; its
 share of that, m_a dm/dm_a, is counted in the curves and under 0.001 g. The table splits the end mass by the sum rule of
-handbook: Effective end mass into what mass (rho A), its turning (rho I), bending (EI) and shear (kGA) stiffness hold;
-what is left to 100 % is the stick law's own dependence on ball and axial mass.
+handbook: Effective end mass into the shares of mass (rho A), its turning (rho I), bending (EI) and shear (kGA)
+stiffness; the rest to 100 % is the stick law's own dependence on ball and axial mass.
 
 Plain sums over modes up to 30 periods in a contact; in the soft leather of the first 6 mm, whose own modes lie near
 that, the curves still ring with the number kept, and are drawn from 6 mm on. About 25 s.
@@ -66,7 +66,8 @@ def text() -> str:
     head = ["cue", "T, ms", "end mass, g", *(f"{100 * place:g} cm" for place in PLACES)]
     head += ["mass, %", "its turning, %", "bending, %", "shear, %"]
     return (
-        "# Where end mass lives\n\nGrams of stick end mass that one gram adds at a distance from the tip, and the"
+        "# Which part of the cue makes the end mass\n\nGrams of stick end mass that one gram adds at a distance from "
+        "the tip, and the"
         " shares of the end mass by the sum rule.\n\n" + table(head, rows())
     )
 

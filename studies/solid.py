@@ -1,9 +1,9 @@
-"""How near is the beam to the solid cue, and which shear coefficient is right?
+"""How close is the beam to the solid cue, and which shear coefficient is right?
 
 The same cue by 3-D elasticity (`studies.solid_body`: harmonic m = 1, quadrilaterals of order 6) and by the beam of
 cuefem, both converged below the figures shown. First the shear coefficient: of a rod with its ends held in the plane
 (U = V = 0, free to warp) the lowest mode is a wave of k = pi/L, exactly; Timoshenko's dispersion, solved for kappa G A,
-gives the coefficient that k -> 0 wants. Then free cues: six frequencies, the tip's amplitude, the end masses (from as
+gives the right coefficient as k -> 0. Then free cues: six frequencies, the tip's amplitude, the end masses (from as
 many modes on both sides, those below 20 kHz, without a tail). Last, one feature at a time on a uniform rod. About 60 s.
 """
 
@@ -305,33 +305,34 @@ def text() -> str:
     rules = ["Hutchinson, nu_e", "Cowper, nu_e", "Hutchinson, nu_LT itself"]
     return f"""# Beam and solid
 
-Differences are the beam's value over the solid's, less 1.
+Differences are the beam's value divided by the solid's, minus 1.
 
-The shear coefficient that the long wave of the solid wants. nu_e/(1 + nu_e) = 2 nu_LT G/E:
+The shear coefficient that the long waves of the solid need, with nu_e/(1 + nu_e) = 2 nu_LT G/E:
 
 {table(["section", "nu_e", "solid", *rules], coefficients())}
-Hutchinson's at nu_e is exact, solid and hollow, isotropic or not, whatever E_T: the shear of a rod that bends slowly
-knows of the material only nu_LT G/E. (For the circle it is Timoshenko's own coefficient of 1922.)
+Hutchinson's coefficient at nu_e is exact for solid and hollow sections, isotropic or not, and for every E_T: the
+shear of a rod that bends slowly depends on the material only through nu_LT G/E. (For a solid circle it is
+Timoshenko's own coefficient of 1922.)
 
 Sections of two materials, whose kappa G A the beam takes as the sum of shell and core:
 
 {table(["section", "E I, solid over sum, less 1", "kappa G A, solid, kN", "beam, kN", "beam off by, %"], cored())}
-Free cues, frequencies; last the solid's own error, at most:
+Frequencies of free cues; the last column bounds the error of the solid itself:
 
 {table(["cue", *NUMBERS, "own error"], frequencies())}
-Free cues, amplitude of the tip (mean over its face) and end masses (as many modes in both, those below 20 kHz):
+Free cues: amplitude of the tip (mean over its face) and end masses, from the modes below 20 kHz, equally many in both:
 
 {table(["cue", "tip, mode 1", "mode 3", "mode 6", *MASSES], responses())}
-The stick end mass begins with a step of velocity, which every mode answers: there the highest ones differ most.
+The stick end mass begins with a step of velocity, to which every mode responds, so the highest modes differ most.
 
 Kim's wooden cone with other constants across the grain:
 
 {table(["E_T/E_L", "nu_T", *NUMBERS], across_grain())}
-The error of the first mode of a cone goes with the square of its slope (radius over length):
+The error of a cone's first mode grows like the square of its slope (radius over length):
 
 {table(["slope", "isotropic", "over slope²", "wood (E/G 15)", "over slope²"], slopes())}
-Where the differences of Kim's cone come from, wood: the taper turns bending stress into shear that no beam knows of
-(derived in solid.py), and at higher modes the warping of sections, which a uniform rod has too:
+Causes of the differences on Kim's cone, in wood: the taper turns bending stress into shear, which no beam describes
+(derived in solid.py); in higher modes sections also warp, as they do in a uniform rod:
 
 {table(["wood", *NUMBERS], causes(KIM_WOOD))}
 {table(["isotropic", *NUMBERS], causes(KIM_ISOTROPIC))}

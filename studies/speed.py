@@ -1,4 +1,4 @@
-"""What do the public calls cost, against the bare linear algebra they rest on?
+"""What do the public calls cost, compared with the bare linear algebra that they use?
 
 What: on [Kim]'s shaft (meshes/kim.toml; T = 1 ms, b/R 0.3, e = 3/4, mu = 0.7) warm calls of `modes`, `end_mass`,
 `strike` and `resolve`, and whole processes of the command, beside two calls of LAPACK's size: `scipy.linalg.eigh` of

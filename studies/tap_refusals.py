@@ -1,4 +1,4 @@
-"""How often does the tap test take another sound for a tap, and how often does it refuse an honest one?
+"""How often does the tap test mistake another sound for a tap, and how often does it refuse a real one?
 
 Other sounds: `studies.tap_sounds`, without any tap in them, against the drawings of meshes/ in turn. Honest taps:
 shafts of meshes/ and of random outline, each of another wood drawn evenly from the whole range of a wood of the table

@@ -13,6 +13,7 @@ from markdown_it.token import Token
 
 from cuefem.handbook import chapters
 
+SUBSCRIPT = re.compile(r"\b([A-Za-zα-ωΩ]{1,2})_([A-Za-z∥⊥0]{1,4})(?![A-Za-z0-9_])")
 PAGE = Template("""<!DOCTYPE html>
 <html lang="en">
 <head>
@@ -58,9 +59,7 @@ def page() -> str:
 
 def _text(_: object, tokens: Sequence[Token], index: int, *__: object) -> str:
     """A text token with letters such as m_e as subscripts."""
-    return re.sub(
-        r"\b([A-Za-zα-ωΩ]{1,2})_([A-Za-z∥⊥0]{1,4})(?![A-Za-z0-9_])", r"\1<sub>\2</sub>", escape(tokens[index].content)
-    )
+    return SUBSCRIPT.sub(r"\1<sub>\2</sub>", escape(tokens[index].content))
 
 
 _MARKDOWN = MarkdownIt("commonmark", {"html": False}).enable("table")
