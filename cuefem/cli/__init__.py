@@ -12,6 +12,7 @@ import click
 from cuefem.cli.designer import designer
 from cuefem.cli.files import convert, materials, schema
 from cuefem.cli.handover import animate, handover
+from cuefem.cli.optimize import optimize
 from cuefem.cli.scatter import scatter
 from cuefem.cli.scene import cost, effects, end_mass, modes, report, strike
 from cuefem.cli.sweep import sweep
@@ -86,6 +87,7 @@ for _command in (
     materials,
     sweep,
     scatter,
+    optimize,
     designer,
     tap,
 ):
