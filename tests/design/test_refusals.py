@@ -74,7 +74,7 @@ CALLS: list[tuple[Callable[[], object], str]] = [
         for count, seed, message in (
             (100, 1, "count must be a power of two; got 100: take 64 or 128"),
             (1, 1, "count must be a whole number >= 2; got 1"),
-            (64.0, 1, "count must be a whole number"),
+            (64.0, 1, "TypeError: count must be a whole number"),
             (64, -1, "seed must be a whole number >= 0; got -1"),
         )
     ],
