@@ -1,9 +1,9 @@
 """What lowers the squirt of a shaft, and what does it cost in stiffness?
 
-The stick end mass and the small-offset squirt at T = 1 ms (`cuefem.design.batch`), the static tip stiffness with the
+The stick end mass and the small-offset squirt at T = 1 ms (`cuefem.batch_stick`), the static tip stiffness with the
 joint clamped. The first table changes one thing at a time on the hollow-front shaft of meshes/; the second compares the
 shafts of meshes/ by the coupled strike at b/R = 0.3, bare and with dome and shear of the tip. The third is the shaft of
-least squirt that is as stiff as the solid one, found by gradients (`least_squirt`) and by a quasi-random search, and
+least squirt that is as stiff as the solid one (optimum.toml), found by gradients and by a quasi-random search, and
 struck. The figure has Pareto fronts of squirt against stiffness and mass (`front`, NSGA-II of pymoo, within 5 %) over
 bore, depth, ferrule, tip diameter and taper, and over the walls of the carbon tube. About 60 s.
 """
@@ -13,12 +13,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 
-from cuefem import Cue, Resolution, TipDome, TipShear, resolve, strike
-from cuefem.design.batch import CueBatch, batch_stick
-from cuefem.design.optimum import Design, Limit, Variable, front, least_squirt, search
+from cuefem import Cue, CueBatch, Resolution, TipDome, TipShear, batch_stick, resolve, strike
+from cuefem.design import Response, Span, Vary
+from cuefem.design.optimum import Limit, Problem, front, optimum, search
+from cuefem.io.study import load_optimum
 from studies.common import STUDIES, cue, figure, scene, table
 
 AT = Resolution(2, 14, 40)
@@ -28,49 +30,36 @@ OFFSET, SMALL = 0.3, 0.01
 SEARCHED = 10_000
 TIP = (TipDome(9.5e-3), TipShear(0.75))
 WALLS = (0.001, 0.002, 0.003)
-
-
-def _field(name: str, *segments: int) -> dict[tuple[int, str], float]:
-    return {(i, f"{end}_{name}"): 1.0 for i in segments for end in ("tip", "butt")}
+SQUIRT, STIFFNESS, MASS, WALL = map(Response, ("squirt_slope", "tip_stiffness", "shaft_mass", "wall"))
 
 
 @cache
-def variables() -> tuple[Variable, ...]:
-    """Of pool_hollow: leather, bored ferrule, bored wood, then solid wood to the joint."""
-    rows = cue("pool_hollow").segments
-    tip, ferrule, front_wood, rear = rows[:4]
-    width = {**_field("diameter", 0, 1), (2, "tip_diameter"): 1.0}
-    joined = {(3, "butt_diameter"): 1.0, (4, "tip_diameter"): 1.0}
-    return (
-        Variable("bore", 0.001, 0.009, ferrule.tip_bore, _field("bore", 1, 2)),
-        Variable("bore depth", 0.03, 0.25, front_wood.length, {(2, "length"): 1.0, (3, "length"): -1.0}),
-        Variable("ferrule length", 0.005, 0.03, ferrule.length, {(1, "length"): 1.0, (2, "length"): -1.0}),
-        Variable("tip diameter", 0.011, 0.0135, tip.tip_diameter, width),
-        Variable("end of the taper", 0.0122, 0.016, rear.butt_diameter, joined),
-    )
-
-
-@cache
-def carbon() -> Design:
+def carbon() -> Problem:
     """The carbon tube: its wall at the tip end, at the joint, and how wide it is in front."""
-    plug, tube, rear, joint = cue("carbon").segments[1:]
-    inside = {(2, "tip_bore"): 1.0, (2, "butt_bore"): 1.0, (3, "tip_bore"): 1.0}
-    behind = {(3, "butt_bore"): 1.0, (4, "tip_bore"): 1.0, (4, "butt_bore"): 1.0}
-    width = {**_field("diameter", 0, 1), **_field("diameter", 2), (3, "tip_diameter"): 1.0}
+
+    def vary(name: str, low: float, high: float, *fields: str) -> Vary:
+        return Vary(tuple(f"cue.segments{field}" for field in fields), Span(low, high), name)
+
+    ends = [f"[{i}].{end}_diameter" for i in (0, 1, 2) for end in ("tip", "butt")]
     moved = (
-        Variable("bore in front", 0.006, 0.0122, tube.tip_bore, inside),
-        Variable("bore at the joint", 0.013, 0.019, joint.tip_bore, behind),
-        Variable("diameter in front", 0.011, 0.0135, plug.tip_diameter, width),
+        vary("bore in front", 0.006, 0.0122, "[2].tip_bore", "[2].butt_bore", "[3].tip_bore"),
+        vary("bore at the joint", 0.013, 0.019, "[3].butt_bore", "[4].tip_bore", "[4].butt_bore"),
+        vary("diameter in front", 0.011, 0.0135, *ends, "[3].tip_diameter"),
     )
-    assert rear.butt_bore == joint.tip_bore
-    return Design(scene(cue("carbon")), moved, (Limit("wall", low=0.0006),), COARSE)
+    return Problem(scene(cue("carbon")), moved, SQUIRT, (Limit(WALL, low=0.0006),), COARSE)
 
 
 STEPS = {"bore": 1e-3, "bore depth": 0.0254, "ferrule length": 0.005, "tip diameter": 5e-4, "end of the taper": 1e-3}
 
 
-def design() -> Design:
-    return Design(scene(cue("pool_hollow")), variables(), (Limit("wall", low=0.001),), AT)
+@cache
+def wanted() -> Problem:
+    """As stiff as the solid shaft, walls of 2 mm, at the coarse resolution: what `cuefem optimize` is shown on."""
+    return load_optimum(STUDIES / "optimum.toml")
+
+
+def design() -> Problem:
+    return replace(wanted(), limits=(Limit(WALL, low=0.001),), at=AT)
 
 
 def measures(struck: Cue) -> tuple[float, float, float]:
@@ -90,10 +79,10 @@ def changes() -> Iterator[list[str | float]]:
         return [words, by, *here, *gained]
 
     yield ["as it is", "", *base, "", ""]
-    for k, variable in enumerate(variables()):
+    for k, (name, step) in enumerate(STEPS.items()):
         point = design().start
-        point[k] += STEPS[variable.name]
-        yield row(variable.name, f"+{1e3 * STEPS[variable.name]:g} mm", design().cue(point))
+        point[k] += step
+        yield row(name, f"+{1e3 * step:g} mm", design().scene(point).cue)
     tip, ferrule, *rest = hollow.segments
     heavier = replace(ferrule, material=replace(ferrule.material, rho=1.5 * ferrule.material.rho))
     grams = 1e3 * (heavier.mass - ferrule.mass)
@@ -112,20 +101,14 @@ def shafts() -> Iterator[list[str | float]]:
         yield [words, *measures(cue(name)), *(number for pair in told for number in pair)]
 
 
-def wanted() -> Design:
-    """As stiff as the solid shaft, walls of 2 mm, at the coarse resolution."""
-    stiff = CueBatch.of([cue("pool_maple")]).tip_stiffness[0]
-    return replace(design(), limits=(Limit("tip_stiffness", low=round(stiff, 1)), Limit("wall", low=0.002)), at=COARSE)
-
-
 def optima() -> Iterator[list[str | float]]:
     asked = wanted()
     points, squirt, within = search(asked, SEARCHED, seed=7)
     best = int(np.where(within, squirt, np.inf).argmin())
-    yield ["best of a quasi-random search", str(SEARCHED), *_checked(asked.cue(points[best]), squirt[best]), ""]
-    found = least_squirt(asked)
+    yield ["best of a quasi-random search", str(SEARCHED), *_checked(asked.scene(points[best]).cue, squirt[best]), ""]
+    found = optimum(asked)
     held = ", ".join(found.active)
-    yield ["by exact gradients", str(found.evaluations), *_checked(found.cue, found.squirt), held]
+    yield ["by exact gradients", str(found.evaluations), *_checked(found.scene.cue, found.value), held]
 
 
 def _checked(made: Cue, squirt: float) -> list[float]:
@@ -152,7 +135,7 @@ def text() -> str:
         "resolve",
     ]
     third = table(["least squirt", *sought, "squirt at b/R 0.3, °", "held by (SI)"], optima())
-    limits = ", ".join(f"{limit.quantity} >= {limit.low:g}" for limit in wanted().limits)
+    limits = ", ".join(f"{limit.response.name} >= {limit.low:g}" for limit in wanted().limits)
     return (
         f"# Shafts of little squirt\n\nContact time 1 ms, bare shafts.\n\n{first}\n{second}\nLeast squirt of bore, "
         "depth, ferrule, tip "
@@ -164,11 +147,11 @@ def draw() -> None:
     with figure(STUDIES / "low_squirt.svg", (1, 2), (10.4, 5.0)) as axes:
         stiff, heavy = axes
         for wall, colour in zip(WALLS, ("#99bbdd", "#4477aa", "#223355"), strict=True):
-            asked = replace(design(), limits=(Limit("wall", low=wall),), at=COARSE)
-            _front(stiff, asked, "tip_stiffness", 1e-3, f"maple, wall ≥ {1e3 * wall:g} mm", colour)
-            _front(heavy, asked, "mass", 1e3, f"maple, wall ≥ {1e3 * wall:g} mm", colour)
-        _front(stiff, carbon(), "tip_stiffness", 1e-3, "carbon tube, wall ≥ 0.6 mm", "#cc6644")
-        _front(heavy, carbon(), "mass", 1e3, "carbon tube, wall ≥ 0.6 mm", "#cc6644")
+            asked = replace(design(), limits=(Limit(WALL, low=wall),), at=COARSE)
+            _front(stiff, asked, STIFFNESS, 1e-3, f"maple, wall ≥ {1e3 * wall:g} mm", colour)
+            _front(heavy, asked, MASS, 1e3, f"maple, wall ≥ {1e3 * wall:g} mm", colour)
+        _front(stiff, carbon(), STIFFNESS, 1e-3, "carbon tube, wall ≥ 0.6 mm", "#cc6644")
+        _front(heavy, carbon(), MASS, 1e3, "carbon tube, wall ≥ 0.6 mm", "#cc6644")
         for axis, quantity, scale in ((stiff, "tip_stiffness", 1e-3), (heavy, "shaft_mass", 1e3)):
             for name, mark in zip(SHAFTS, "sD^", strict=True):
                 here = scale * float(getattr(CueBatch.of([cue(name)]), quantity)[0]), measures(cue(name))[1]
@@ -183,11 +166,10 @@ def draw() -> None:
         heavy.legend(fontsize=8, title="best for given limits (tip 11 to 13.5 mm)", title_fontsize=8, loc="lower right")
 
 
-def _front(axis: object, asked: Design, against: str, scale: float, label: str, colour: str) -> None:
+def _front(axis: Any, asked: Problem, against: Response, scale: float, label: str, colour: str) -> None:
     points, _ = front(asked, against, size=40, rounds=100)
-    fine = replace(asked, at=AT)
-    squirt, value = (fine.quantity(name, points)[:, 0] for name in ("squirt", against))
-    axis.plot(scale * value, squirt, "o-", ms=3, color=colour, label=label)
+    fine = replace(asked, at=AT, limits=()).values(points, against)
+    axis.plot(scale * fine[:, 1], fine[:, 0], "o-", ms=3, color=colour, label=label)
 
 
 if __name__ == "__main__":

@@ -13,6 +13,7 @@ from cuefem.cli.designer import designer
 from cuefem.cli.files import convert, materials, schema
 from cuefem.cli.guide import guide
 from cuefem.cli.handover import animate, handover
+from cuefem.cli.optimize import optimize
 from cuefem.cli.scatter import scatter
 from cuefem.cli.scene import cost, effects, end_mass, modes, report, strike
 from cuefem.cli.sweep import sweep
@@ -87,6 +88,7 @@ for _command in (
     materials,
     sweep,
     scatter,
+    optimize,
     designer,
     tap,
     guide,

@@ -1,327 +1,407 @@
-"""The cue of least squirt under limits, by exact gradients; and fronts of squirt against another quantity.
+"""The best design within limits: what a sweep varies and asks for, searched instead of tabulated.
 
-A design is a point of numbers (`Variable`) that move fields of a cue's segments linearly. Squirt is its small-offset
-limit over phi; its gradient and those of all limits are exact (`cuefem.design.gradient`), so SLSQP wants tens of
-evaluations.
+Where every derivative is exact (`cuefem.design.gradient`, complex steps), SLSQP needs tens of evaluations; otherwise
+differential evolution needs thousands. `front` trades two responses off against each other.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.optimize import minimize
-from scipy.stats import qmc
 
-from cuefem.cue import Array, Cue, SegmentRows
-from cuefem.design.batch import CueBatch, batch_frequencies, batch_stick
-from cuefem.design.gradient import densities_to, drawing, gradient
+from cuefem.cue import Array, SegmentRows
+from cuefem.design.batch import CueBatch
+from cuefem.design.evaluation import evaluate
+from cuefem.design.gradient import STEP, densities_to, drawing, gradient
+from cuefem.design.paths import Path, value_at
+from cuefem.design.ranges import Span
+from cuefem.design.responses import Response
 from cuefem.design.sensitivity import frequency_sensitivity
-from cuefem.quantity import check_kind
+from cuefem.design.study import Study, Vary
 from cuefem.scene import Resolution, Scene
 
-QUANTITIES = ("squirt", "tip_stiffness", "tip_diameter", "wall", "mass", "balance_point", "first_frequency")
-SHAPES = SegmentRows._fields[:5]  # what a variable may move
-MODEST = Resolution(2, 8, 12)  # for speed: for numbers to trust give a finer one
-TOLERANCE = 1e-6  # of a limit's own size (1 where it is 0): how near its value is to be named active
+TOLERANCE = 1e-6  # relative to a limit's own size (1 if it is 0): a value nearer than this makes the limit active
+EXCLUDED = 1e9  # score of a design that breaks a limit: worse than any within the limits
+SHAPES = ("length", "tip_diameter", "butt_diameter", "tip_bore", "butt_bore", "kappa")
+MATERIAL = ("E", "G", "rho")
+Progress = Callable[[int, float], object]
 
-
-@dataclass(frozen=True)
-class Variable:
-    """A number that moves fields of a cue: each is its value in the base cue + slope (number - start).
-
-    fields: {(segment, field): slope}, field one of `SHAPES`. Bounds low <= start <= high, SI.
-    """
-
-    name: str
-    low: float
-    high: float
-    start: float
-    fields: Mapping[tuple[int, str], float]
-
-    def __post_init__(self) -> None:
-        if not self.low < self.high or not self.low <= self.start <= self.high:
-            raise ValueError(
-                f"Variable {self.name!r} must have low < high and start in [low, high]; got {self.low}, "
-                f"{self.high} and {self.start}"
-            )
-        for _, field in self.fields:
-            if field not in SHAPES:
-                raise ValueError(f"Variable {self.name!r} must move fields among {', '.join(SHAPES)}; got {field!r}")
+# Responses that follow from the drawing alone, (designs, parts); a limit holds for every part.
+_DRAWN: dict[str, Callable[[CueBatch], Array]] = {
+    "mass": lambda batch: batch.mass[:, None],
+    "shaft_mass": lambda batch: batch.shaft_mass[:, None],
+    "balance_point": lambda batch: batch.balance_point[:, None],
+    "tip_stiffness": lambda batch: batch.tip_stiffness[:, None],
+    "tip_diameter": lambda batch: batch.rows.tip_diameter[:, :1],
+    "wall": lambda batch: batch.walls,
+}
 
 
 @dataclass(frozen=True)
 class Limit:
-    """A quantity of `QUANTITIES` held in [low, high], SI.
+    """A response that must stay in [low, high], in SI units."""
 
-    tip_stiffness: N/m, force over deflection with the last segment's end clamped. tip_diameter: m. wall: least wall
-    of a bored section, m. mass, balance_point: of the segments, kg and m from the tip. first_frequency: Hz, free.
-    """
-
-    quantity: str
+    response: Response
     low: float = -np.inf
     high: float = np.inf
 
     def __post_init__(self) -> None:
-        if self.quantity not in QUANTITIES[1:]:
-            raise ValueError(f"Limit.quantity must be one of {', '.join(QUANTITIES[1:])}; got {self.quantity!r}")
         if not self.low <= self.high or not np.isfinite([self.low, self.high]).any():
-            raise ValueError(f"Limit {self.quantity} must have low <= high, one finite; got {self.low} and {self.high}")
+            bounds = f"{self.low} and {self.high}"
+            raise ValueError(f"limit on {self.response.name} must have low <= high, one finite; got {bounds}")
+
+    @property
+    def sides(self) -> list[tuple[int, float]]:
+        """(1, low) and (-1, high), without infinite bounds."""
+        return [(sign, value) for sign, value in ((1, self.low), (-1, self.high)) if np.isfinite(value)]
 
 
 @dataclass(frozen=True)
 class Optimum:
     """The best design found.
 
-    numbers: of the variables, by name. values: of the quantities asked for, by name. active: names of the limits and
-    bounds that hold it, as "tip_stiffness >= 1500.0". evaluations: of squirt and its gradient.
+    scene: with the best cue. value: of the objective. numbers: what varied, by name. values: the objective and the
+    limited responses, by name. active: the limits and ends of ranges that hold the design, as "tip_stiffness >= 1500".
+    evaluations: of the objective. exact: whether exact gradients led there, which finds a local optimum.
     """
 
-    cue: Cue
-    squirt: float
+    scene: Scene
+    value: float
     numbers: dict[str, float]
     values: dict[str, float]
     active: tuple[str, ...]
     evaluations: int
+    exact: bool
 
 
 @dataclass(frozen=True)
-class Design:
-    """A scene whose cue varies: the problem that `least_squirt`, `search` and `front` solve."""
+class Problem:
+    """What to make as small (or, with ``largest``, as large) as possible, by varying what, within which limits.
 
-    scene: Scene
-    variables: tuple[Variable, ...]
+    at: the one resolution of all designs; the default is that of a `Study`.
+    """
+
+    base: Scene
+    vary: tuple[Vary, ...]
+    objective: Response
     limits: tuple[Limit, ...] = ()
-    at: Resolution = MODEST
+    at: Resolution | None = None
+    largest: bool = False
 
     def __post_init__(self) -> None:
-        check_kind("Design.scene.cue", self.scene.cue, Cue)
-        if self.scene.effects:
-            raise ValueError(f"Design takes a scene without effects; got {len(self.scene.effects)}")
-        if not self.variables:
-            raise ValueError("Design must hold at least one Variable; got none")
-        count = len(self.base.length)
-        for variable in self.variables:
-            for segment, _ in variable.fields:
-                if not 0 <= segment < count:
-                    raise ValueError(f"Variable {variable.name!r} must move segments 0 to {count - 1}; got {segment}")
+        for vary in self.vary:
+            if not isinstance(vary.range, Span):
+                raise ValueError(f"{vary.name} must have low and high, between which an optimum is sought")
+        _ = self.study  # checks fields and responses
 
-    @property
-    def base(self) -> SegmentRows:
-        """The base cue's numbers, arrays (segments,)."""
-        return drawing(self.scene.shaft)
-
-    @property
-    def start(self) -> Array:
-        """The base design, (variables,)."""
-        return np.array([v.start for v in self.variables])
+    @cached_property
+    def study(self) -> Study:
+        """The same variables and responses as a study, the objective first."""
+        asked = dict.fromkeys((self.objective, *(limit.response for limit in self.limits)))
+        return Study(self.base, self.vary, tuple(asked), at=self.at)
 
     @property
     def bounds(self) -> Array:
-        """Low and high, (2, variables)."""
-        return np.array([[v.low for v in self.variables], [v.high for v in self.variables]])
-
-    def rows(self, points: Array) -> SegmentRows:
-        """Numbers of the cues at points (..., variables), arrays (..., segments)."""
-        shape = (*points.shape[:-1], len(self.base.length))
-        moved = {name: np.broadcast_to(row, shape).astype(points.dtype) for name, row in self.base._asdict().items()}
-        for k, variable in enumerate(self.variables):
-            for (segment, field), slope in variable.fields.items():
-                moved[field][..., segment] += slope * (points[..., k] - variable.start)
-        return SegmentRows(**moved)
-
-    def cue(self, point: Array) -> Cue:
-        """The cue at a point; ValueError where it cannot be made."""
-        rows = self.rows(point)
-        shapes: list[dict[str, Any]] = [
-            {name: float(getattr(rows, name)[i]) for name in SHAPES} for i in range(len(rows.length))
-        ]
-        segments = (replace(s, **shape) for s, shape in zip(self.scene.shaft.segments, shapes, strict=True))
-        return replace(self.scene.shaft, segments=tuple(segments))
-
-    def along(self, to: SegmentRows) -> Array:
-        """A gradient to the drawing's numbers as one to the variables, (variables,)."""
-        moves = ([getattr(to, f)[i] * slope for (i, f), slope in v.fields.items()] for v in self.variables)
-        return np.array([sum(each) for each in moves])
-
-    def quantity(self, name: str, points: Array) -> Array:
-        """A quantity of `QUANTITIES` at points (n, variables): (n, parts), for "wall" a part an end of a bored segment.
-
-        Complex points for all but "squirt" and "first_frequency".
-        """
-        rows = self.rows(points)
-        batch = CueBatch(rows, np.full(len(points), self.scene.shaft.body_mass))
-        match name:
-            case "squirt":
-                return batch_stick(batch, self.scene, at=self.at).squirt[:, None]
-            case "first_frequency":
-                return batch_frequencies(batch, 1, at=self.at)
-            case "tip_diameter":
-                return rows.tip_diameter[:, :1]
-            case "wall":
-                walls = [(rows.tip_diameter - rows.tip_bore) / 2, (rows.butt_diameter - rows.butt_bore) / 2]
-                return np.concatenate(walls, axis=1)[:, np.tile(self._bored, 2)]
-            case "mass":
-                return batch.shaft_mass[:, None]
-        return np.asarray(getattr(batch, name))[:, None]
+        """Lowest and highest values, (2, variables)."""
+        return np.array([vary.range.ends for vary in self.vary], float).T
 
     @property
-    def _bored(self) -> Array:
-        """Which segments have, or can get, a bore, (segments,)."""
-        moved = {i for variable in self.variables for i, field in variable.fields if field.endswith("bore")}
-        base = self.base
-        return np.array([i in moved or base.tip_bore[i] + base.butt_bore[i] > 0 for i in range(len(base.length))])
+    def start(self) -> Array:
+        """The base design as a point, (variables,), moved into the ranges; the middle where the base holds no value."""
+        low, high = self.bounds
+        held = [
+            1.0 if vary.factor else 0.0 if vary.shift else value_at(self.base, vary.fields(self.base)[0])
+            for vary in self.vary
+        ]
+        middle = (low + high) / 2
+        return np.clip([m if value is None else value for value, m in zip(held, middle, strict=True)], low, high)
 
-    def slopes(self, name: str, point: Array) -> Array:
-        """Exact derivatives of a quantity to the variables, (parts, variables); not of "squirt": see `gradient`."""
-        if name == "first_frequency":
-            cue = self.cue(point)
-            found = frequency_sensitivity(replace(self.scene, cue=cue), 1, self.at)
-            return self.along(densities_to(found, drawing(cue)))[None]
-        step = 1e-30
-        return np.imag(self.quantity(name, point + 1j * step * np.eye(len(point)))).T / step
+    def scene(self, point: Array) -> Scene:
+        """The design at a point; ValueError if it cannot be made."""
+        return self.study.scene(tuple(point.tolist()))
 
-    def possible(self, points: Array) -> Array:
-        """Which points are cues at all: lengths and diameters above 0, bores in [0, diameter); (n,) of booleans."""
-        rows = self.rows(points)
-        good = (rows.length > 0) & (rows.tip_bore >= 0) & (rows.butt_bore >= 0)
-        good &= (rows.tip_diameter > rows.tip_bore) & (rows.butt_diameter > rows.butt_bore)
-        return np.asarray(good.all(axis=1))
+    def values(self, points: Array, *more: Response) -> Array:
+        """Responses of the study, then ``more``, at points (n, variables): (n, responses), nan if there is none."""
+        asked = (*self.study.responses, *more)
+        found, scenes = np.full((len(points), len(asked)), np.nan), dict[int, Scene]()
+        for i, point in enumerate(points):
+            try:
+                scenes[i] = self.scene(point)
+            except ValueError:
+                continue
+        if scenes:
+            found[list(scenes)] = evaluate(list(scenes.values()), asked, at=self.study.resolution).values
+        return found
 
-    def room(self, points: Array) -> Array:
-        """How far points are inside the limits, relative to each limit's size, below 0 outside; (n, constraints)."""
-        found = [np.full((len(points), 1), np.inf)]
-        for limit in self.limits:
-            values = self.quantity(limit.quantity, points)
-            found += [sign * (values - value) / _size(value) for sign, value in _sides(limit)]
-        return np.concatenate(found, axis=1)
+    def room(self, values: Array) -> Array:
+        """How far values (n, responses) lie inside the limits, relative to each limit's size: (n, sides).
+
+        Negative outside, and where a response has no value.
+        """
+        found = [
+            sign * (values[:, self.study.responses.index(limit.response)] - bound) / _size(bound)
+            for limit in self.limits
+            for sign, bound in limit.sides
+        ]
+        return np.nan_to_num(np.reshape(found, (-1, len(values))).T, nan=-EXCLUDED)
+
+    @cached_property
+    def exact(self) -> bool:
+        """Whether all derivatives are exact: dimensions and moduli of a bare cue's segments vary, and every response
+        follows from the drawing, or is a frequency, the small-offset squirt or the stick end mass."""
+        moved = {path for vary in self.vary for path in (*vary.fields(self.base), *vary.givers(self.base))}
+        known = {*_DRAWN, "frequency", "squirt_slope", "end_mass"}
+        drawn = all(one.kind in known and not one.in_time for one in self.study.responses)
+        return drawn and not self.base.effects and None not in map(_row, moved)
+
+    def derived(self, response: Response, point: Array) -> tuple[Array, Array]:
+        """Parts of a response at a point and their exact derivatives: (parts,), (parts, variables).
+
+        "wall" has a part for each end of every segment, other responses have one.
+        """
+        scene, at, moves = self.scene(point), self.study.resolution, self._moves(point)
+        cue: Any = scene.cue
+        match response.kind:
+            case "squirt_slope" | "end_mass":
+                found = gradient(scene, "stick", at)
+                squirt = response.kind == "squirt_slope"
+                value, to = (found.squirt, found.squirt_to) if squirt else (found.end_mass, found.end_mass_to)
+                assert value is not None
+                assert to is not None
+                return np.array([value]), _along(to, moves)
+            case "frequency":
+                density = frequency_sensitivity(scene, response.modes, at)
+                return np.array([density.end_mass]), _along(densities_to(density, drawing(cue)), moves)
+        rows = SegmentRows(*(row + 1j * STEP * move for row, move in zip(drawing(cue), moves, strict=True)))
+        parts = _DRAWN[response.kind](CueBatch(rows, np.full(len(point), cue.body_mass)))
+        return parts[0].real, parts.imag.T / STEP
+
+    def _moves(self, point: Array) -> SegmentRows:
+        """Derivatives of the drawing's numbers to the variables, arrays (variables, segments)."""
+        cue: Any = self.scene(point).cue
+        moves = SegmentRows(*np.zeros((len(SegmentRows._fields), len(point), len(cue.segments))))
+        for k, shifted in enumerate(point + 1j * STEP * np.eye(len(point))):
+            for path, number in self.study.numbers(dict(enumerate(shifted.tolist()))).items():
+                i, name = _row(path) or (0, "")
+                getattr(moves, name)[k, i] = np.imag(number) / STEP
+        rows = drawing(cue)
+        for kind in ("", "core_"):  # nu_e/(1 + nu_e) = 2 nu G/E, so d nu_e = nu_e (1 + nu_e) (dG/G - dE/E)
+            E, G, nu = (getattr(rows, f"{kind}{name}") for name in ("E", "G", "nu"))
+            dE, dG = (getattr(moves, f"{kind}{name}") for name in ("E", "G"))
+            with np.errstate(invalid="ignore"):
+                getattr(moves, f"{kind}nu")[:] = np.where(E > 0, nu * (1 + nu) * (dG / G - dE / E), 0.0)
+        return moves
 
 
-def _sides(limit: Limit) -> list[tuple[int, float]]:
-    return [(sign, value) for sign, value in ((1, limit.low), (-1, limit.high)) if np.isfinite(value)]
+def _row(path: Path) -> tuple[int, str] | None:
+    """The segment and the name among `SegmentRows` of a field; None for a field that is not among them."""
+    match path:
+        case ("cue", "segments", int(i), str(name)) if name in SHAPES:
+            return i, name
+        case ("cue", "segments", int(i), "material" | "core" as owner, str(name)) if name in MATERIAL:
+            return i, name if owner == "material" else f"core_{name}"
+    return None
 
 
-def _size(value: float) -> float:
-    return abs(value) or 1.0
+def _along(to: SegmentRows, moves: SegmentRows) -> Array:
+    """A gradient to the drawing's numbers as one to the variables, (1, variables); E and G carry their nu along."""
+    names = (name for name in SegmentRows._fields if not name.endswith("nu"))
+    return np.sum([np.nan_to_num(getattr(to, n)) @ getattr(moves, n).T for n in names], axis=0)[None]
 
 
-def least_squirt(design: Design, *, start: Array | None = None, iterations: int = 60) -> Optimum:
-    """The design of least small-offset squirt within bounds and limits, from ``start`` (left out, the base cue).
+def _size(bound: float) -> float:
+    return abs(bound) or 1.0
 
-    SLSQP in numbers scaled to their bounds, every gradient exact. A local optimum; `search` tells whether a better one
-    lies elsewhere. ValueError where no design near is within the limits, naming those it breaks.
+
+def optimum(
+    problem: Problem,
+    *,
+    start: Array | None = None,
+    iterations: int = 60,
+    seed: int = 0,
+    progress: Progress = lambda count, best: None,
+) -> Optimum:
+    """The best design within ranges and limits.
+
+    Parameters
+    ----------
+    problem : Problem
+        What varies, what is asked, and the limits.
+    start : array, optional
+        The point to start from; the default is the base design.
+    iterations : int
+        At most so many steps of SLSQP, or generations of differential evolution.
+    seed : int
+        Of differential evolution.
+    progress : callable, optional
+        Called with the number of evaluations and the best objective so far.
+
+    Returns
+    -------
+    Optimum
+        With exact gradients a local optimum; `search` shows whether a better one lies elsewhere.
+
+    Raises
+    ------
+    ValueError
+        If no design near is within the limits; the message names the limits that are broken.
+
+    Notes
+    -----
+    With exact derivatives, SLSQP (`scipy.optimize.minimize`) in numbers scaled to their ranges. Otherwise differential
+    evolution (`scipy.optimize.differential_evolution`), a population of 15 designs a variable; among designs that break
+    a limit it prefers those that break it least.
     """
-    low, high = design.bounds
-    asked: dict[bytes, tuple[float, Array]] = {}
-
-    def squirt(u: Array) -> tuple[float, Array]:
-        if u.tobytes() not in asked:
-            point = np.clip(low + u * (high - low), low, high)
-            found = gradient(replace(design.scene, cue=design.cue(point)), "stick", design.at)
-            assert found.squirt is not None
-            assert found.squirt_to is not None
-            asked[u.tobytes()] = found.squirt, design.along(found.squirt_to) * (high - low)
-        return asked[u.tobytes()]
-
-    first = (design.start if start is None else np.asarray(start, float)) - low
-    result = minimize(
-        squirt,
-        first / (high - low),
-        jac=True,
-        method="SLSQP",
-        bounds=[(0, 1)] * len(low),
-        constraints=[_constraint(design, limit, side) for limit in design.limits for side in _sides(limit)],
-        options={"maxiter": iterations, "ftol": 1e-9},
-    )
-    point = np.clip(low + result.x * (high - low), low, high)
-    broken = [text for text, room in _rooms(design, point) if room < -TOLERANCE]
-    if broken or not result.success:
-        raise ValueError(f"least_squirt found no design within {', '.join(broken) or 'the limits'}: {result.message}")
-    names = dict.fromkeys(("squirt", *(limit.quantity for limit in design.limits)))
-    values = {name: float(design.quantity(name, point[None]).min()) for name in names}
-    active = tuple(text for text, room in _rooms(design, point) if room < TOLERANCE)
-    numbers = {v.name: float(p) for v, p in zip(design.variables, point, strict=True)}
-    return Optimum(design.cue(point), float(result.fun), numbers, values, active, len(asked))
+    low, high = problem.bounds
+    first = (problem.start if start is None else np.asarray(start, float)) - low
+    seek = _by_gradients if problem.exact else _by_evolution
+    u, count, trouble = seek(problem, np.clip(first / (high - low), 0, 1), iterations, seed, progress)
+    point = np.clip(low + u * (high - low), low, high)
+    values = problem.values(point[None])
+    rooms = _rooms(problem, point, values)
+    broken = [words for words, room in rooms if not room >= -TOLERANCE]
+    if broken or trouble:
+        raise ValueError(f"no design within {', '.join(broken) or 'the limits'} was found: {trouble or 'none is near'}")
+    named = dict(zip((one.name for one in problem.study.responses), values[0].tolist(), strict=True))
+    numbers = {vary.name: float(p) for vary, p in zip(problem.vary, point, strict=True)}
+    active = tuple(words for words, room in rooms if room < TOLERANCE)
+    return Optimum(problem.scene(point), values[0, 0].item(), numbers, named, active, count, problem.exact)
 
 
-def _constraint(design: Design, limit: Limit, side: tuple[int, float]) -> dict[str, Any]:
-    low, high = design.bounds
-    sign, value = side
-    scale = sign / _size(value)
-
-    def point(u: Array) -> Array:
-        return np.clip(low + u * (high - low), low, high)
-
-    return {
-        "type": "ineq",
-        "fun": lambda u: scale * (design.quantity(limit.quantity, point(u)[None])[0] - value),
-        "jac": lambda u: scale * design.slopes(limit.quantity, point(u)) * (high - low),
-    }
+def _scale(problem: Problem, point: Array) -> float:
+    """The sign and size of the objective for a minimiser: pure numbers as they are, others in units of the first."""
+    if problem.objective.unit == "":
+        size = 1.0
+    else:
+        first = problem.values(point[None])[0, 0]
+        size = abs(first) if np.isfinite(first) and first else 1.0
+    return (-1 if problem.largest else 1) / size
 
 
-def _rooms(design: Design, point: Array) -> list[tuple[str, float]]:
-    """(words, how far inside relative to its size) of every limit and bound."""
-    found = []
-    for limit in design.limits:
-        values = design.quantity(limit.quantity, point[None])[0]
-        for sign, value in _sides(limit):
-            text = f"{limit.quantity} {'>=' if sign > 0 else '<='} {value:g}"
-            found.append((text, float((sign * (values - value)).min() / _size(value))))
-    for variable, p in zip(design.variables, point, strict=True):
-        width = variable.high - variable.low
-        found.append((f"{variable.name} >= {variable.low:g}", (p - variable.low) / width))
-        found.append((f"{variable.name} <= {variable.high:g}", (variable.high - p) / width))
+def _by_gradients(
+    problem: Problem, start: Array, iterations: int, seed: int, progress: Progress
+) -> tuple[Array, int, str]:
+    """(the best point, scaled to the ranges; evaluations; what went wrong, or "") of SLSQP."""
+    from scipy.optimize import minimize
+
+    low, high = problem.bounds
+    scale = _scale(problem, low + start * (high - low))
+    known: dict[tuple[bytes, Response], tuple[Array, Array]] = {}
+
+    def found(u: Array, response: Response) -> tuple[Array, Array]:
+        key = u.tobytes(), response
+        if key not in known:
+            values, slopes = problem.derived(response, np.clip(low + u * (high - low), low, high))
+            known[key] = values, slopes * (high - low)
+        return known[key]
+
+    def objective(u: Array) -> tuple[float, Array]:
+        values, slopes = found(u, problem.objective)
+        progress(evaluations(), float(values[0]))
+        return scale * values[0], scale * slopes[0]
+
+    def evaluations() -> int:
+        return sum(response == problem.objective for _, response in known)
+
+    def constraint(response: Response, sign: int, bound: float) -> dict[str, Any]:
+        unit = sign / _size(bound)
+        fun, jac = (lambda u: unit * (found(u, response)[0] - bound)), (lambda u: unit * found(u, response)[1])
+        return {"type": "ineq", "fun": fun, "jac": jac}
+
+    sides = [constraint(limit.response, *side) for limit in problem.limits for side in limit.sides]
+    options = {"maxiter": iterations, "ftol": 1e-9}
+    box = [(0, 1)] * len(low)
+    try:
+        result = minimize(objective, start, jac=True, method="SLSQP", bounds=box, constraints=sides, options=options)
+    except ValueError as error:
+        return start, evaluations(), f"a design in the ranges cannot be made ({error})"
+    return result.x, evaluations(), "" if result.success else result.message
+
+
+def _by_evolution(
+    problem: Problem, start: Array, iterations: int, seed: int, progress: Progress
+) -> tuple[Array, int, str]:
+    """(the best point, scaled to the ranges; evaluations; what went wrong, or "") of differential evolution."""
+    from scipy.optimize import differential_evolution
+
+    low, high = problem.bounds
+    scale, seen, best = _scale(problem, low + start * (high - low)), 0, np.inf
+
+    def scores(u: Array) -> Array:
+        nonlocal seen, best
+        values = problem.values(low + u.T * (high - low))
+        missing = np.minimum(problem.room(values), 0).sum(axis=1)
+        own = np.nan_to_num(scale * values[:, 0], nan=EXCLUDED)
+        found = np.where(missing < 0, EXCLUDED - missing, own)
+        seen, best = seen + len(found), min(best, found.min())
+        progress(seen, best / scale)
+        return found
+
+    box, generator = [(0, 1)] * len(low), np.random.default_rng(seed)
+    shared = {"vectorized": True, "updating": "deferred", "polish": False, "tol": 1e-6, "maxiter": iterations}
+    result = differential_evolution(scores, box, x0=start, rng=generator, **shared)
+    return result.x, seen, "" if result.fun < EXCLUDED else "differential evolution met none"
+
+
+def _rooms(problem: Problem, point: Array, values: Array) -> list[tuple[str, float]]:
+    """(words, how far inside relative to its size) of every limit and every end of a range."""
+    sides = [(limit.response.name, sign, bound) for limit in problem.limits for sign, bound in limit.sides]
+    words = [f"{name} {'>=' if sign > 0 else '<='} {bound:g}" for name, sign, bound in sides]
+    found = list(zip(words, problem.room(values)[0].tolist(), strict=True))
+    for vary, p, low, high in zip(problem.vary, point, *problem.bounds, strict=True):
+        found.append((f"{vary.name} >= {low:g}", (p - low) / (high - low)))
+        found.append((f"{vary.name} <= {high:g}", (high - p) / (high - low)))
     return found
 
 
-def search(design: Design, count: int, *, seed: int = 0) -> tuple[Array, Array, Array]:
-    """(points (count, variables); squirt over phi; whether within the limits) of a quasi-random search.
+def search(problem: Problem, count: int, *, seed: int = 0) -> tuple[Array, Array, Array]:
+    """(points (count, variables); objective; whether within the limits) of a quasi-random search, Halton's sequence.
 
-    Halton's sequence over the bounds, worked as arrays; points that make no cue have squirt nan.
+    A point that makes no cue has the objective nan.
     """
-    points = qmc.scale(qmc.Halton(len(design.variables), seed=seed).random(count), *design.bounds)
-    good = design.possible(points)
-    squirt, within = np.full(count, np.nan), np.zeros(count, bool)
-    squirt[good] = design.quantity("squirt", points[good])[:, 0]
-    within[good] = (design.room(points[good]) >= 0).all(axis=1)
-    return points, squirt, within
+    from scipy.stats import qmc
+
+    points = qmc.scale(qmc.Halton(len(problem.vary), seed=seed).random(count), *problem.bounds)
+    values = problem.values(points)
+    within = np.isfinite(values[:, 0]) & (problem.room(values) >= 0).all(axis=1)
+    return points, values[:, 0], np.asarray(within)
 
 
 def front(
-    design: Design, against: str, *, largest: bool = True, size: int = 40, rounds: int = 40, seed: int = 0
+    problem: Problem, against: Response, *, largest: bool = True, size: int = 40, rounds: int = 40, seed: int = 0
 ) -> tuple[Array, Array]:
-    """Pareto front of squirt against another quantity: (points (n, variables); (squirt, quantity) (n, 2)), by squirt.
+    """Pareto front of the objective and another response: (points (n, variables); both values (n, 2)), in order of the
+    objective.
 
-    against: of `QUANTITIES`, wanted large, or small with ``largest`` false. NSGA-II of pymoo (the extra "optimize"),
-    a population of ``size`` over ``rounds`` generations, worked as arrays.
+    against: wanted large, or small if ``largest`` is false. NSGA-II of pymoo (the extra "optimize"), a population of
+    ``size`` over ``rounds`` generations.
     """
-    if against not in QUANTITIES[1:]:
-        raise ValueError(f"front against must be one of {', '.join(QUANTITIES[1:])}; got {against!r}")
     try:
         from pymoo.algorithms.moo.nsga2 import NSGA2
-        from pymoo.core.problem import Problem
+        from pymoo.core.problem import Problem as Evolved
         from pymoo.optimize import minimize as evolve
     except ImportError as error:
         raise ModuleNotFoundError("front needs pymoo: pip install '.[optimize]' in the clone") from error
-    sign = -1.0 if largest else 1.0
-    low, high = design.bounds
+    if against == problem.objective:
+        raise ValueError(f"front against must be another response than the objective; got {against.name}")
+    signs = np.array([-1.0 if problem.largest else 1.0, -1.0 if largest else 1.0])
+    low, high = problem.bounds
+    shown = replace(problem, limits=(*problem.limits, Limit(against, low=-EXCLUDED)))
+    columns = [0, shown.study.responses.index(against)]
 
-    class Shafts(Problem):
+    class Shafts(Evolved):
         def _evaluate(self, x: Array, out: dict[str, Array], *_: object, **__: object) -> None:
-            good = design.possible(x)
-            out["F"], room = np.full((len(x), 2), 1e9), np.full((len(x), constraints), -1.0)
-            if good.any():
-                both = (design.quantity("squirt", x[good])[:, 0], sign * design.quantity(against, x[good]).min(axis=1))
-                out["F"][good] = np.stack(both, axis=1)
-                room[good] = np.minimum(design.room(x[good]), 1e9)
-            out["G"] = -room
+            values = shown.values(x)
+            out["F"] = np.nan_to_num(signs * values[:, columns], nan=EXCLUDED)
+            out["G"] = -shown.room(values)
 
-    constraints = design.room(design.start[None]).shape[1]
-    problem = Shafts(n_var=len(low), n_obj=2, n_ieq_constr=constraints, xl=low, xu=high)
-    found = evolve(problem, NSGA2(pop_size=size), ("n_gen", rounds), seed=seed, verbose=False)
+    shafts = Shafts(n_var=len(low), n_obj=2, n_ieq_constr=shown.room(np.ones((1, 99))).shape[1], xl=low, xu=high)
+    found = evolve(shafts, NSGA2(pop_size=size), ("n_gen", rounds), seed=seed, verbose=False)
     if found.X is None:
         raise ValueError("front found no design within the limits")
     order = np.argsort(found.F[:, 0])
-    return np.atleast_2d(found.X)[order], found.F[order] * (1.0, sign)
+    return np.atleast_2d(found.X)[order], (signs * found.F)[order]

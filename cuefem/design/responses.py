@@ -10,7 +10,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cuefem.cue import Array
+from cuefem.cue import Array, Cue
+from cuefem.design.batch import CueBatch
 from cuefem.design.solvers import Solver
 from cuefem.squirt import natural_pivot_length
 
@@ -69,6 +70,11 @@ def _stick_reasons(solver: Solver) -> Sequence[str | None]:
     return solver.stick.reasons
 
 
+def _drawn(value: Callable[[CueBatch], Array]) -> Callable[[Solver, Any], Array]:
+    """A response that follows from the drawings of designs with equally many segments."""
+    return lambda solver, _: value(CueBatch.of([scene.cue for scene in solver.scenes if isinstance(scene.cue, Cue)]))
+
+
 _SQUIRT = _struck(lambda s, i, found: found.squirt)
 _SPEED = _struck(lambda s, i, found: found.ball_speed)
 _VIBRATION = _struck(lambda s, i, found: found.energy["cue vibration"])
@@ -76,6 +82,7 @@ _PIVOT = "natural pivot length: of small offsets, or of the coupled strike at an
 _END_MASS = "stick end mass, of small offsets; of a tip that sticks at an offset"
 _STATIC = "static: force across the tip over its deflection, the butt end clamped"
 _BALANCE = "centre of the segments' mass, from the tip"
+_WALL = "thinnest wall of the segments, at their ends; where solid, the radius"
 KINDS = {
     "end_mass": Kind("kg", _END_MASS, _end_mass, "offset", strikes=True, limit=True, reasons=_stick_reasons),
     "squirt_slope": Kind(
@@ -86,6 +93,8 @@ KINDS = {
     "shaft_mass": Kind("kg", "mass of the segments", lambda s, _: s.shaft_mass, segments=True),
     "balance_point": Kind("m", _BALANCE, lambda s, _: s.balance_point, segments=True),
     "tip_stiffness": Kind("N/m", _STATIC, lambda s, _: s.tip_stiffness, segments=True),
+    "tip_diameter": Kind("m", "diameter of the tip", _drawn(lambda b: b.rows.tip_diameter[:, 0]), segments=True),
+    "wall": Kind("m", _WALL, _drawn(lambda b: b.walls.min(axis=1)), segments=True),
     "frequency": Kind("Hz", "of a bending mode", lambda s, n: s.frequencies[:, n - 1], "mode", segments=True),
     "squirt": Kind("rad", "of the coupled strike", _SQUIRT, "offset", strikes=True),
     "ball_speed": Kind("m/s", "after the coupled strike", _SPEED, "offset", strikes=True),

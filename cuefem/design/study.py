@@ -188,7 +188,16 @@ class Study:
         shifts, and last what is taken."""
         named = {p: material(v) for i, v in values.items() if isinstance(v, str) for p in self._fields[i]}
         scene: Scene = replaced(self.base, named) if named else self.base
-        numbers, taken = dict[Path, Any](), list[tuple[Path, float]]()
+        numbers = self.numbers(values, scene)
+        return replaced(scene, numbers) if numbers else scene
+
+    def numbers(self, values: dict[int, Any], scene: Scene | None = None) -> dict[Path, Any]:
+        """The numbers that these values put into the fields of a scene, the base scene by default.
+
+        Plain arithmetic on the values, so that complex values carry a derivative along.
+        """
+        scene = self.base if scene is None else scene
+        numbers, taken = dict[Path, Any](), list[tuple[Path, Any]]()
 
         def now(path: Path) -> Any:
             return numbers.get(path, value_at(scene, path))
@@ -203,7 +212,7 @@ class Study:
                 taken += [(path, numbers[fields[0]] - before[0]) for path in self._givers[i]]
         for path, gain in taken:
             numbers[path] = now(path) - gain
-        return replaced(scene, numbers) if numbers else scene
+        return numbers
 
     @cached_property
     def resolution(self) -> Resolution:

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from cuefem.design import METHODS, Levels, Normal, Response, Sample, Span, Study, Vary, paths
+from cuefem.design.optimum import Limit, Problem
 from cuefem.design.paths import quantity_at, value_at
 from cuefem.design.scatter import Scatter
 from cuefem.io.errors import InputError, shown
@@ -17,6 +18,8 @@ from cuefem.scene import Resolution, Scene, Stroke
 
 KEYS = ["scene", "responses", "vary", "sample", "resolution"]
 SCATTER_KEYS = [*KEYS, "correlations", "groups"]
+OPTIMUM_KEYS = ["scene", "objective", "limit", "vary", "resolution"]
+LIMIT_KEYS = ["response", "low", "high"]
 VARY_KEYS = [
     *("path", "name", "values", "low", "high", "count", "spacing", "middle", "sd", "factor", "shift", "taken_from"),
 ]
@@ -50,6 +53,43 @@ def load_scatter(path: str | Path, *, offset: float = 0.3) -> tuple[Scatter, Sam
         raise error if isinstance(error, InputError) else InputError(path, "", str(error)) from None
 
 
+def load_optimum(path: str | Path, *, offset: float = 0.3) -> Problem:
+    """An optimisation from a TOML file: [[vary]] and the scene as in a study, [objective] with ``minimize`` or
+    ``maximize``, and [[limit]] tables of a response with low or high; InputError, one line, if the file is none."""
+    path = Path(path)
+    found = read_tables(path)
+    _check_keys(found, OPTIMUM_KEYS, path, "")
+    base = _base(found, path, offset)
+    objective = found.get("objective")
+    if not isinstance(objective, dict) or len(objective) != 1 or not {"minimize", "maximize"} & set(objective):
+        got = shown(objective) if "objective" in found else "nothing"
+        raise InputError(path, "objective", f'must be a table such as minimize = "squirt_slope"; got {got}')
+    ((aim, asked),) = objective.items()
+    limits = _list(found, "limit", path) if "limit" in found else []
+    try:
+        return Problem(
+            base,
+            tuple(_vary(table, base, path, i, sample=True) for i, table in enumerate(_list(found, "vary", path))),
+            _response(asked, path, joined("objective", aim)),
+            tuple(_limit(table, path, joined("limit", i)) for i, table in enumerate(limits)),
+            _resolution(found, path),
+            largest=aim == "maximize",
+        )
+    except ValueError as error:
+        raise error if isinstance(error, InputError) else InputError(path, "", str(error)) from None
+
+
+def _limit(table: Any, path: Path, key: str) -> Limit:
+    _check_keys(table, LIMIT_KEYS, path, key)
+    response = _response(table.get("response"), path, joined(key, "response"))
+    unit = Quantity(response.unit)
+    sides = {side: _value(table[side], unit, path, joined(key, side)) for side in ("low", "high") if side in table}
+    try:
+        return Limit(response, **sides)  # type: ignore[arg-type]
+    except ValueError as error:
+        raise InputError(path, key, str(error)) from None
+
+
 def _correlations(given: Any, path: Path) -> dict[tuple[str, str], float]:
     if not isinstance(given, list):
         raise InputError(path, "correlations", f"must be a list of [name, name, number]; got {shown(given)}")
@@ -77,14 +117,20 @@ def _groups(tables: dict[str, Any], path: Path) -> dict[str, tuple[str, ...]]:
 def _study(found: dict[str, Any], path: Path, offset: float, known: list[str]) -> Study:
     _check_keys(found, known, path, "")
     base = _base(found, path, offset)
-    responses = tuple(_response(text, path, i) for i, text in enumerate(_list(found, "responses", path)))
+    asked = enumerate(_list(found, "responses", path))
+    responses = tuple(_response(text, path, joined("responses", i)) for i, text in asked)
     vary = tuple(_vary(table, base, path, i, found.get("sample")) for i, table in enumerate(_list(found, "vary", path)))
     sample = _sample(found["sample"], path) if "sample" in found else None
-    at = build(Resolution, found["resolution"], file=str(path), key="resolution") if "resolution" in found else None
     try:
-        return Study(base, vary, responses, sample, at)
+        return Study(base, vary, responses, sample, _resolution(found, path))
     except ValueError as error:
-        raise InputError(path, "", str(error)) from None
+        raise error if isinstance(error, InputError) else InputError(path, "", str(error)) from None
+
+
+def _resolution(found: dict[str, Any], path: Path) -> Resolution | None:
+    if "resolution" not in found:
+        return None
+    return build(Resolution, found["resolution"], file=str(path), key="resolution")
 
 
 def _check_keys(found: Any, known: list[str], path: Path, key: str) -> None:
@@ -98,7 +144,7 @@ def _check_keys(found: Any, known: list[str], path: Path, key: str) -> None:
 def _list(found: dict[str, Any], key: str, path: Path) -> list[Any]:
     value = found.get(key)
     if not isinstance(value, list) or not value:
-        what = "[[vary]] tables" if key == "vary" else 'a list such as ["end_mass", "squirt(0.3)"]'
+        what = f"[[{key}]] tables" if key != "responses" else 'a list such as ["end_mass", "squirt(0.3)"]'
         raise InputError(path, key, f"must be {what}, one at least; got {shown(value) if key in found else 'nothing'}")
     return value
 
@@ -114,11 +160,11 @@ def _base(found: dict[str, Any], path: Path, offset: float) -> Scene:
     return base if isinstance(base, Scene) else Scene(base, stroke=Stroke(offset=offset))
 
 
-def _response(text: Any, path: Path, i: int) -> Response:
+def _response(text: Any, path: Path, key: str) -> Response:
     try:
         return Response.of(text if isinstance(text, str) else repr(text))
     except ValueError as error:
-        raise InputError(path, joined("responses", i), str(error)) from None
+        raise InputError(path, key, str(error)) from None
 
 
 def _vary(table: Any, base: Scene, path: Path, i: int, sample: Any) -> Vary:

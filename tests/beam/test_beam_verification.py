@@ -12,7 +12,7 @@ from tests.helpers.cues import CARBON, FOAM, KIM_DENSITY, MAPLE, isotropic_kim, 
 from tests.helpers.exact import shot_frequency, uniform_frequencies
 from tests.helpers.orders import assert_order
 
-KIM_FREE = np.array([121.4816650127, 328.8249787923, 637.9759377717])  # Hz, issue 2
+KIM_FREE = np.array([121.4816650127, 328.8249787923, 637.9759377717])  # Hz
 
 
 def frequencies(cue: Cue, elements: int, order: int, count: int = 3) -> np.ndarray:

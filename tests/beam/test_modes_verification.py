@@ -230,24 +230,3 @@ def test_lumped_cue_as_tip_modes() -> None:
     tip = lumped_tip_modes(LumpedCue(0.54, 0.004, 3.0))
     np.testing.assert_allclose(tip.amplitude.T @ tip.amplitude, [[1 / 0.54, 3.0], [3.0, 250.0]], rtol=1e-13)
     np.testing.assert_allclose(tip.amplitude.T @ tip.approach, [1.0, 0.0], atol=1e-14)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "kind", "message"),
-    [
-        ({"count": 0}, ValueError, "modes count must be a whole number >= 1; got 0"),
-        ({"count": 2.0}, TypeError, "modes count must be a whole number >= 1; got 2.0"),
-        ({"near": -1.0}, ValueError, r"modes near must be in \[0, inf\) Hz; got -1.0"),
-        ({"near": math.nan}, ValueError, r"modes near must be in \[0, inf\) Hz; got nan"),
-        ({"near": "250"}, TypeError, "modes near must be a number"),
-        ({"count": 9, "at": Resolution(1, 1, 1)}, ValueError, "the mesh holds 3 flexible modes; got 9 wanted"),
-    ],
-)
-def test_modes_refuses(arguments: dict[str, object], kind: type[Exception], message: str) -> None:
-    with pytest.raises(kind, match=message):
-        modes(kim(), **arguments)  # type: ignore[arg-type]
-
-
-def test_modes_of_a_lumped_cue() -> None:
-    with pytest.raises(TypeError, match="modes cue must be a Cue; got a LumpedCue"):
-        modes(LumpedCue(0.5, 0.01))  # type: ignore[arg-type]

@@ -98,7 +98,7 @@ def test_tip_shear_of_one_lowers_squirt_by_a_fifth():
 
 # --- supports ---------------------------------------------------------------------------------------------------------
 
-CLAMPED = [30.0962060889, 135.9070113953]  # Hz, Kim's isotropic cone clamped at the butt (issue 5)
+CLAMPED = [30.0962060889, 135.9070113953]  # Hz, Kim's isotropic cone clamped at the butt
 
 
 @pytest.mark.parametrize(("stiffness", "within"), [(inf, 1e-11), (1e12, 1e-7)])

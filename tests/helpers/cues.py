@@ -23,7 +23,7 @@ def kim() -> Cue:
 
 
 def isotropic_kim() -> Cue:
-    """Kim's cone with G = E/2.6 and kappa = 39/44, the one of issue 2's frequencies."""
+    """Kim's cone with G = E/2.6 and kappa = 39/44, that of the published frequencies."""
     return Cue((Segment(0.7, 0.012, 0.021, Material(12.6e9, 12.6e9 / 2.6, KIM_DENSITY), kappa=39 / 44),))
 
 

@@ -110,6 +110,35 @@ low = "0.8 ms"
 high = "1.5 ms"
 """
 
+# The least squirt of a bore and a width of the tip, as stiff as 300 N/m.
+OPTIMUM = """
+scene = "scene.toml"
+
+[objective]
+minimize = "squirt_slope"
+
+[resolution]
+elements = 1
+order = 8
+modes = 4
+
+[[limit]]
+response = "tip_stiffness"
+low = "300 N/m"
+
+[[vary]]
+name = "bore"
+path = "cue.segments[0].tip_bore"
+low = "1 mm"
+high = "9 mm"
+
+[[vary]]
+name = "tip"
+path = "cue.segments[0].tip_diameter"
+low = "10 mm"
+high = "13 mm"
+"""
+
 
 def written(folder: Path, study: str = STUDY, scene: str = SCENE, name: str = "study.toml") -> Path:
     """A study, and its scene beside it."""

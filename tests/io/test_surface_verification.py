@@ -85,7 +85,7 @@ def test_a_surface_of_straight_pieces_gives_the_drawing_back(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["kim", "hollow"])
 def test_a_loaded_shaft_plays_like_its_drawing(tmp_path: Path, name: str) -> None:
-    """Issue 8: modes and end mass of fine facets within 1e-3 of the drawing."""
+    """Modes and end mass of fine facets within 1e-3 of the drawing."""
     cue = CUES[name]
     loaded = cf.load(written(tmp_path / "shaft.stl", *revolved(outline_of(cue), 96)))
     assert isinstance(loaded, cf.Cue)

@@ -85,7 +85,7 @@ def test_a_change_is_that_of_two_strikes(record: Any, name: str) -> None:
 
 def test_signs_and_sizes_on_kims_shaft(record: Any) -> None:
     named = rows(record)
-    # a dome of 9 mm makes 0.117 of 0.0713 (issue 5), so that dropping it takes 0.39
+    # a dome of 9 mm makes 0.117 of 0.0713, so that dropping it takes 0.39
     assert named["TipDome"]["change"]["squirt"]["relative"] == pytest.approx(-0.39, abs=0.05)
     assert -0.6 < named["PointMass"]["change"]["squirt"]["relative"] < -0.2
     assert -0.3 < named["TipShear"]["change"]["squirt"]["relative"] < -0.05  # added: shear takes some

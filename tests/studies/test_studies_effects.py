@@ -51,7 +51,7 @@ def test_figures_are_drawn(tmp_path):
 
 
 def test_dome_on_kims_shaft():
-    """Issue 5: 0.0713 bare, about 0.10 at 6 mm, 0.117 at 9 mm; linear in the radius."""
+    """0.0713 bare, about 0.10 at 6 mm, 0.117 at 9 mm; linear in the radius."""
     bare, six, nine = (dome.case("kim", r).slope for r in (0.0, 6e-3, 9e-3))
     assert bare == pytest.approx(0.0713, rel=2e-3)
     assert six == pytest.approx(0.1013, rel=2e-3)
@@ -101,7 +101,7 @@ def test_a_wooden_tip_needs_no_more_modes_than_the_default():
 
 
 def test_a_hand_on_kims_shaft():
-    """Issue 5: at most 1e4 N/m 8 in or more behind the tip changes squirt by less than 1 %, b/R 0.3, 0.7 to 2 ms."""
+    """At most 1e4 N/m 8 in or more behind the tip changes squirt by less than 1 %, b/R 0.3, 0.7 to 2 ms."""
     assert max(abs(bridge.worst("kim", T)[1]) for T in bridge.TIMES) == pytest.approx(0.0073, abs=2e-4)
     assert bridge.stiffness_of("kim", 2e-3) == pytest.approx(1.4e4, rel=0.03)
 

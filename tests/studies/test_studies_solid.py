@@ -121,7 +121,7 @@ def test_the_shear_coefficient_of_the_long_wave(name: str) -> None:
 
 @pytest.mark.parametrize(("wood", "bound"), [(solid.KIM_ISOTROPIC, 1e-5), (solid.KIM_WOOD, 2e-4)], ids=["iso", "wood"])
 def test_the_beam_of_kims_cone(wood: Material, bound: float) -> None:
-    """Issue 8: six free modes within 1e-5 (isotropic) and 2e-4 (wood) of the solid; with Cowper's coefficient not."""
+    """Six free modes within 1e-5 (isotropic) and 2e-4 (wood) of the solid; with Cowper's coefficient not."""
     body = Body(solid.kim(wood), solid.ACROSS, solid.ROUGH).modes(8).frequencies
     off = np.abs(modes(solid.kim(wood), 6).frequencies / body - 1)
     assert bound / 10 < off.max() < bound

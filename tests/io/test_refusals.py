@@ -1,14 +1,18 @@
-"""Every bad file in one clear line: file, key path, bound with unit, value got (regression)."""
+"""What files are refused for: each with the one line that names file, key path, bound with unit and value got."""
 
 from __future__ import annotations
 
 import os
+import struct
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import cuefem as cf
 from cuefem.io import InputError
+from tests.helpers.command_line import call
+from tests.helpers.surfaces import revolved, written
 
 CUE = """
 body_mass = "420 g"
@@ -134,9 +138,9 @@ CHANGES = [
 ]
 
 
-def refused(path: Path) -> str:
+def refused(path: Path, **options: str) -> str:
     with pytest.raises(InputError) as caught:
-        cf.load(path)
+        cf.load(path, **options)
     said = str(caught.value)
     assert said.startswith(f"{path}: ")
     assert len(said.splitlines()) == 1
@@ -151,32 +155,6 @@ def test_one_wrong_entry(tmp_path: Path, good: str, old: str, new: str, line: st
     assert old in good
     path.write_text(good.replace(old, new, 1))
     assert refused(path).startswith(line)
-
-
-@pytest.mark.parametrize(
-    ("content", "line"),
-    [
-        (b"", "must hold a cue or a scene; got an empty file"),
-        (b" \n\n", "must hold a cue or a scene; got an empty file"),
-        (b"\xff\xfe\x00", "must be UTF-8 text; got byte 0xff"),
-        (b"length = \n", "must be TOML; got a syntax error: Invalid value (at line 1, column 10)"),
-        (b"a = 1\na = 2\n", "must be TOML; got a syntax error: Cannot overwrite a value (at line 2, column 6)"),
-        (b"a = " + b"[" * 5000, "must be TOML nested less deeply"),
-        (b"# nothing\n", "cue: must be given: [[segments]] make a cue, [cue] a scene; got neither"),
-        (b"cue = 3\n", "cue: must be a table or the path of a cue file; got 3"),
-        (b"cue = 'missing.toml'\n", None),
-        (b"segments = []\n", "segments: must hold at least one Segment; got none, a cue without mass"),
-        (b"[[segments]]\n", "segments[0].length: must be given"),
-    ],
-)
-def test_no_file_to_read(tmp_path: Path, content: bytes, line: str | None) -> None:
-    path = tmp_path / "file.toml"
-    path.write_bytes(content)
-    if line is None:
-        with pytest.raises(InputError, match=r"missing.toml: cannot be read: No such file or directory"):
-            cf.load(path)
-    else:
-        assert refused(path).startswith(line)
 
 
 def test_a_scene_is_no_cue_of_a_scene(tmp_path: Path) -> None:
@@ -205,46 +183,6 @@ def test_a_file_without_permission(tmp_path: Path) -> None:
         assert refused(path) == "cannot be read: Permission denied"
 
 
-HEADER = "x [mm],diameter [mm]\n"
-
-
-@pytest.mark.parametrize(
-    ("content", "line"),
-    [
-        ("", "must hold a cue or a scene; got an empty file"),
-        ("# x\n", 'must begin with the header "x [mm],diameter [mm]"; got comments alone'),
-        ("0,12\n700,21\n", "line 1: must be the header \"x [mm],diameter [mm]\"; got '0,12'"),
-        ("x,diameter\n0,12\n", "line 1: must be the header \"x [mm],diameter [mm]\"; got 'x,diameter'"),
-        ("x [kg],diameter [mm]\n0,12\n", "line 1, x: must be in a unit of length, such as mm; got 'kg'"),
-        (
-            "x [mm];diameter [mm]\n0;12\n",
-            "line 1: must be the header \"x [mm],diameter [mm]\"; got 'x [mm];diameter [mm]'; commas part the columns",
-        ),
-        (HEADER + "0;12\n700;21\n", "line 2: must be two numbers, x and diameter; got '0;12'; commas part the columns"),
-        (
-            HEADER + "0,12,5\n",
-            "line 2: must be two numbers, x and diameter; got '0,12,5'; commas part the columns, numbers",
-        ),
-        (HEADER, "must hold at least 2 points; got 0"),
-        (HEADER + "0,12\n", "must hold at least 2 points; got 1"),
-        (HEADER + "0,12\n350\n", "line 3: must be two numbers, x and diameter; got '350'"),
-        (HEADER + "0,12\n700,wide\n", "line 3, diameter: must be in (0, 10] m, a length"),
-        (HEADER + "0,12\n\n700,-21\n", "line 4, diameter: must be in (0, 10] m; got '-21 mm'"),
-        (HEADER + "0,12\n700,0\n", "line 3, diameter: must be in (0, 10] m; got '0 mm'"),
-        (HEADER + "nan,12\n700,0\n", "line 2, x: must be in (-inf, inf) m; got 'nan mm'"),
-        (
-            HEADER + "0,12\n700,21\n350,16\n",
-            "line 4, x: must be in (700, inf) mm, beyond the line before (points run from tip to butt); got '350 mm'",
-        ),
-        (HEADER + "0,12\n0,21\n", "line 3, x: must be in (0, inf) mm, beyond the line before"),
-    ],
-)
-def test_profiles(tmp_path: Path, content: str, line: str) -> None:
-    path = tmp_path / "shaft.csv"
-    path.write_text(content)
-    assert refused(path).startswith(line)
-
-
 @pytest.mark.parametrize(
     ("old", "new", "line"),
     [
@@ -267,3 +205,150 @@ def test_meshes(tmp_path: Path, old: str, new: str, line: str) -> None:
     assert old in content
     path.write_text(content.replace(old, new, 1))
     assert refused(path).startswith(line)
+
+
+POINTS, FACES = revolved([(0, 0), (0, 0.006), (0.7, 0.0105), (0.7, 0)], 16)
+BUTT = len(POINTS) - 1
+
+
+def moved(*, across: float = 1.0, bend: float = 0.0) -> np.ndarray:
+    points = revolved([(0, 0), *((x, 0.006) for x in np.linspace(0, 0.7, 30)), (0.7, 0)], 16)[0]
+    points[:, 1] *= across
+    points[:, 2] += bend * points[:, 0] ** 2
+    return points
+
+
+BAR = revolved([(0, 0), *((x, 0.006) for x in np.linspace(0, 0.7, 30)), (0.7, 0)], 16)[1]
+BESIDE = np.concatenate([POINTS, POINTS + np.array([0, 0.03, 0])]), np.concatenate([FACES, FACES + len(POINTS)])
+SHEET = np.concatenate([FACES[:8], FACES[:8, ::-1]])
+SHORT = revolved([(0, 0), (0, 0.02), (0.15, 0.02), (0.15, 0)], 16)
+TURNED = np.concatenate([FACES[:20], FACES[20:21, ::-1], FACES[21:]])
+
+# One triangle, its first corner a signalling nan
+SIGNALLING = bytes(80) + struct.pack("<I", 1) + bytes(12) + struct.pack("<I", 0x7F80FF00) + bytes(34)
+
+SURFACES = {
+    "open": (POINTS, FACES[1:], "must be closed, two triangles at every edge; got 3 loose edges, one at (0, 0, 0)"),
+    "turned": (POINTS, TURNED, "must have its triangles turned the same way; got about "),
+    "no volume": (POINTS, SHEET, "must enclose a volume; got a surface that encloses none"),
+    "short": (*SHORT, "must be slender, at least 5 times as long as wide; got 150 by 40"),
+    "flat": (
+        moved(across=1.05),
+        BAR,
+        "must be round, second moments within 2 % of each other; got second moments 9.8 %",
+    ),
+    "square": (
+        *revolved([(0, 0), (0, 0.006), (0.7, 0.006), (0.7, 0)], 4),
+        "must be round, its second moment within 2 % of a disc's; got a section 4.7 % off at 0 from its thinner end",
+    ),
+    "bent": (
+        moved(bend=0.003),
+        BAR,
+        "must be straight, its sections' centres within 2 % of the width of one axis; got ",
+    ),
+    "two beside each other": (*BESIDE, "must be one piece across the axis; got 2 outlines at 0 from its thinner end"),
+}
+
+
+@pytest.mark.parametrize("name", SURFACES)
+def test_no_shaft(tmp_path: Path, name: str) -> None:
+    points, faces, line = SURFACES[name]
+    path = tmp_path / "shaft.ply"
+    assert refused(written(path, points, faces, binary=False)).startswith(line)
+    status, out, err = call("modes", path)
+    assert (status, out) == (2, "")
+    assert err.startswith(f"cuefem: {path}: {line}")
+
+
+def test_no_surface_file(tmp_path: Path) -> None:
+    assert refused(tmp_path / "none.stl") == "cannot be read: No such file or directory"
+    (tmp_path / "folder.stl").mkdir()
+    assert refused(tmp_path / "folder.stl") == "cannot be read: Is a directory"
+
+
+@pytest.mark.parametrize("unit", ["kg", "furlnog", "", "mm mm"])
+def test_no_unit_of_length(tmp_path: Path, unit: str) -> None:
+    path = written(tmp_path / "shaft.stl", POINTS, FACES)
+    assert refused(path, length_unit=unit) == f"length unit: must be a unit of length, such as mm; got {unit!r}"
+
+
+def test_options_are_for_the_files_that_lack_them(tmp_path: Path) -> None:
+    path = tmp_path / "shaft.csv"
+    path.write_text("x [mm],diameter [mm]\n0,12\n700,21\n")
+    line = "has its own units of length: length_unit is for .stl, .ply and .obj files alone; got 'mm'"
+    assert refused(path, length_unit="mm") == line
+    path = written(tmp_path / "shaft.stl", POINTS, FACES)
+    assert refused(path, material="hard mapel").startswith("material: no material is called 'hard mapel'")
+
+
+HEADER = "x [mm],diameter [mm]\n"
+NO_FACES = "faces: must be triangles", "must be a ."
+TOML: list[tuple[bytes, str]] = [
+    (b"", "must hold a cue or a scene; got an empty file"),
+    (b" \n\n", "must hold a cue or a scene; got an empty file"),
+    (b"\xff\xfe\x00", "must be UTF-8 text; got byte 0xff"),
+    (b"length = \n", "must be TOML; got a syntax error: Invalid value (at line 1, column 10)"),
+    (b"a = 1\na = 2\n", "must be TOML; got a syntax error: Cannot overwrite a value (at line 2, column 6)"),
+    (b"a = " + b"[" * 5000, "must be TOML nested less deeply"),
+    (b"# nothing\n", "cue: must be given: [[segments]] make a cue, [cue] a scene; got neither"),
+    (b"cue = 3\n", "cue: must be a table or the path of a cue file; got 3"),
+    (b"cue = 'missing.toml'\n", "cue: missing.toml: cannot be read: No such file or directory"),
+    (b"segments = []\n", "segments: must hold at least one Segment; got none, a cue without mass"),
+    (b"[[segments]]\n", "segments[0].length: must be given"),
+]
+PROFILES: list[tuple[str, str]] = [
+    ("", "must hold a cue or a scene; got an empty file"),
+    ("# x\n", 'must begin with the header "x [mm],diameter [mm]"; got comments alone'),
+    ("0,12\n700,21\n", "line 1: must be the header \"x [mm],diameter [mm]\"; got '0,12'"),
+    ("x,diameter\n0,12\n", "line 1: must be the header \"x [mm],diameter [mm]\"; got 'x,diameter'"),
+    ("x [kg],diameter [mm]\n0,12\n", "line 1, x: must be in a unit of length, such as mm; got 'kg'"),
+    (
+        "x [mm];diameter [mm]\n0;12\n",
+        "line 1: must be the header \"x [mm],diameter [mm]\"; got 'x [mm];diameter [mm]'; commas part the columns",
+    ),
+    (HEADER + "0;12\n700;21\n", "line 2: must be two numbers, x and diameter; got '0;12'; commas part the columns"),
+    (
+        HEADER + "0,12,5\n",
+        "line 2: must be two numbers, x and diameter; got '0,12,5'; commas part the columns, numbers",
+    ),
+    (HEADER, "must hold at least 2 points; got 0"),
+    (HEADER + "0,12\n", "must hold at least 2 points; got 1"),
+    (HEADER + "0,12\n350\n", "line 3: must be two numbers, x and diameter; got '350'"),
+    (HEADER + "0,12\n700,wide\n", "line 3, diameter: must be in (0, 10] m, a length"),
+    (HEADER + "0,12\n\n700,-21\n", "line 4, diameter: must be in (0, 10] m; got '-21 mm'"),
+    (HEADER + "0,12\n700,0\n", "line 3, diameter: must be in (0, 10] m; got '0 mm'"),
+    (HEADER + "nan,12\n700,0\n", "line 2, x: must be in (-inf, inf) m; got 'nan mm'"),
+    (
+        HEADER + "0,12\n700,21\n350,16\n",
+        "line 4, x: must be in (700, inf) mm, beyond the line before (points run from tip to butt); got '350 mm'",
+    ),
+    (HEADER + "0,12\n0,21\n", "line 3, x: must be in (0, inf) mm, beyond the line before"),
+]
+SURFACE_FILES: list[tuple[str, bytes, str | tuple[str, str]]] = [
+    ("shaft.stl", b"", NO_FACES),
+    ("shaft.stl", b"x" * 200, NO_FACES),
+    ("shaft.stl", b"solid nothing\nendsolid nothing\n" + 90 * b" ", NO_FACES),
+    ("shaft.ply", b"ply\nformat ascii 1.0\nend_header\n", NO_FACES),
+    ("shaft.ply", b"ply\nformat ascii 1.0\nelement vertex 3\n", "must be a .ply surface; got a file that meshio"),
+    ("shaft.ply", b"solid\n", "must be a .ply surface; got a file that meshio cannot read"),
+    ("shaft.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\n", NO_FACES),
+    ("shaft.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "faces: must name corners in [0, 3); got another"),
+    ("shaft.obj", b"v 0 0 0\nv 1 0 0\nf 1 2\n", "faces: must have three corners or more; got one of fewer"),
+    ("shaft.stl", SIGNALLING, "corners: must be finite x, y, z; got others"),
+    ("shaft.obj", b"v 0 0 0\nv 1 nan 0\nv 0 1 0\nf 1 2 3\n", "corners: must be finite x, y, z; got others"),
+]
+FILES = [
+    *(("file.toml", content, line) for content, line in TOML),
+    *(("shaft.csv", content.encode(), line) for content, line in PROFILES),
+    *SURFACE_FILES,
+]
+
+
+@pytest.mark.parametrize(("name", "content", "line"), FILES)
+def test_contents(tmp_path: Path, name: str, content: bytes, line: str | tuple[str, str]) -> None:
+    path = tmp_path / name
+    path.write_bytes(content)
+    with pytest.raises(InputError) as caught:
+        cf.load(path)
+    assert len(str(caught.value).splitlines()) == 1
+    assert str(caught.value).removeprefix(f"{path}: ").replace(f"{tmp_path}/", "").startswith(line)

@@ -1,0 +1,66 @@
+"""`cuefem optimize`: the best design within limits."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import click
+
+from cuefem.cli.common import blaming, check_free, force_option, print_all, print_json, remark
+
+
+@click.command(short_help="Find the best design of a STUDY (.toml) within its limits.")
+@click.argument("study", type=click.Path(path_type=Path))
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="Write the best design as a scene (.toml).")
+@click.option("--iterations", type=click.IntRange(min=1), default=60, show_default=True, help="At most so many steps.")
+@click.option("--seed", type=click.IntRange(min=0), default=0, help="Of the search where no exact gradients exist.")
+@click.option("--json", "as_json", is_flag=True, help="SI numbers as JSON.")
+@force_option
+def optimize(study: Path, output: Path | None, iterations: int, seed: int, as_json: bool, force: bool) -> None:
+    """Optimum: the design of STUDY (.toml) with the smallest or largest objective within its ranges and limits.
+
+    STUDY has the [[vary]] tables of a sweep, an [objective] and [[limit]] tables. Where exact gradients exist (a bare
+    cue, its dimensions and materials) it takes tens of evaluations, otherwise thousands. Numbers are SI.
+    """
+    from cuefem.design.optimum import optimum
+    from cuefem.io import save
+    from cuefem.io.study import load_optimum
+
+    wanted = load_optimum(study)
+    if output is not None:
+        check_free(output, force=force)
+    remark(wanted.base)
+    with blaming(study), _counter() as progress:
+        found = optimum(wanted, iterations=iterations, seed=seed, progress=progress)
+    if output is not None:
+        save(found.scene, output)
+    aim = "maximize" if wanted.largest else "minimize"
+    units = dict(zip(wanted.study.columns, wanted.study.units, strict=True))
+    if as_json:
+        about = {"file": str(study), "written": output and str(output), "objective": {aim: wanted.objective.name}}
+        numbers = {"value": found.value, "numbers": found.numbers, "values": found.values, "active": found.active}
+        search = {"evaluations": found.evaluations, "exact_gradients": found.exact}
+        print_json({**about, **numbers, **search, "resolution": vars(wanted.study.resolution), "units": units})
+        return
+    way = "by exact gradients" if found.exact else "by differential evolution"
+    lines = [f"{aim} {wanted.objective.name}: {found.evaluations} evaluations {way}", ""]
+    both = {**found.numbers, **found.values}
+    width = max(map(len, both))
+    lines += [f"{name:{width}}  {value:.6g} {units[name]}".rstrip() for name, value in both.items()]
+    lines += ["", f"held by: {', '.join(found.active) or 'nothing'}"]
+    print_all([*lines, *([f"wrote {output}"] if output else [])])
+
+
+@contextmanager
+def _counter() -> Iterator[Callable[[int, float], object]]:
+    """The number of evaluations and the best value on stderr, if a person looks on."""
+    from rich.console import Console
+
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield lambda count, best: None
+        return
+    with console.status("computing") as status:
+        yield lambda count, best: status.update(f"{count} evaluations, {best:.6g}")

@@ -1,0 +1,132 @@
+"""Effects that cannot be: calls and scene files, each with a part of the one line that says why."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from math import inf, nan
+from pathlib import Path
+
+import pytest
+
+from cuefem import (
+    AxialWaves,
+    Effect,
+    Joint,
+    LumpedCue,
+    PointMass,
+    PowerLawTip,
+    RollingContact,
+    Scene,
+    SecondHit,
+    StructuralDamping,
+    Support,
+    TipDome,
+    TipShear,
+    load,
+    modes,
+)
+from tests.helpers.refusals import refuses
+from tests.helpers.strike_scenes import KIM, kim_scene
+
+
+def listed(*effects: Effect) -> Callable[[], Scene]:
+    return lambda: replace(kim_scene(), effects=effects)
+
+
+def lumped(*effects: Effect) -> Callable[[], Scene]:
+    return lambda: replace(kim_scene(), cue=LumpedCue(0.54, 0.005), effects=effects)
+
+
+CLAMP, TURNED, SHEAR = Support(0.7, inf, inf), Support(0.7, 0.0, inf), TipShear(0.75)
+ON, BETWEEN = (
+    "position must be in [0, 0.7] m, on the cue",
+    "position must be in (0, 0.7) m, between the ends of the cue",
+)
+OFF = ((PointMass(0.71, 0.01), ON), (Support(0.8, 1.0), ON), (Joint(0.7, 1e-3), BETWEEN), (Joint(0.9), BETWEEN))
+FINITE = (PointMass(0.1, 0.01), Support(0.1, 5.0), Joint(0.1), AxialWaves(), TipDome(0.01))
+CALLS: list[tuple[Callable[[], object], str]] = [
+    (lambda: PointMass(nan, 0.01), "PointMass.position must be in [0, inf) m; got nan"),
+    (lambda: PointMass(inf, 0.01), "PointMass.position must be in [0, inf) m; got inf"),
+    (lambda: PointMass(-0.1, 0.01), "PointMass.position must be in [0, inf) m; got -0.1"),
+    (lambda: PointMass(0.1, -0.01), "PointMass.mass must be in [0, inf) kg; got -0.01"),
+    (lambda: PointMass(0.1, inf), "PointMass.mass must be in [0, inf) kg; got inf"),
+    (lambda: PointMass(0.1, 0.1, -1.0), "PointMass.rotary_inertia must be in [0, inf) kg m^2; got -1.0"),
+    (lambda: Support(nan), "Support.position must be in [0, inf) m; got nan"),
+    (lambda: Support(0.1, -1.0), "Support.stiffness must be in [0, inf] N/m; got -1.0"),
+    (lambda: Support(0.1, 0, nan), "Support.rotational_stiffness must be in [0, inf] N m/rad; got nan"),
+    (lambda: Support(0.1, dashpot=inf), "Support.dashpot must be in [0, inf) N s/m; got inf"),
+    (lambda: Joint(0.0), "Joint.position must be in (0, inf) m; got 0.0"),
+    (lambda: Joint(nan), "Joint.position must be in (0, inf) m; got nan"),
+    (lambda: Joint(0.1, -1.0), "Joint.rotational_compliance must be in [0, inf) rad/(N m); got -1.0"),
+    (lambda: Joint(0.1, inf), "Joint.rotational_compliance must be in [0, inf) rad/(N m); got inf"),
+    (lambda: Joint(0.1, 0, inf), "Joint.shear_compliance must be in [0, inf) m/N; got inf"),
+    (lambda: StructuralDamping(1.0), "StructuralDamping.loss must be in [0, 1); got 1.0"),
+    (lambda: StructuralDamping(-0.1), "StructuralDamping.loss must be in [0, 1); got -0.1"),
+    (lambda: TipDome(-0.01), "TipDome.radius must be in [0, inf) m; got -0.01"),
+    (lambda: TipShear(0.0), "TipShear.ratio must be in (0, inf); got 0.0"),
+    (lambda: TipShear(inf), "TipShear.ratio must be in (0, inf); got inf"),
+    *[
+        (lambda value=value: PointMass(0.1, value), "TypeError: PointMass.mass must be a number in [0, inf) kg; got ")
+        for value in ("10 g", None, True)
+    ],
+    *[(listed(SHEAR, effect), f"Scene.effects[1].{words}") for effect, words in OFF],
+    *[(lambda e=e: modes(KIM, 3, effects=(e,)), f"{type(e).__name__}.{words}") for e, words in OFF],
+    (
+        listed(CLAMP, Support(0.2, inf), CLAMP),
+        "Scene.effects[2].stiffness must be in [0, inf) N/m at 0.7 m, where effects[0] is a clamp already; got inf",
+    ),
+    (listed(CLAMP, TURNED), "Scene.effects[1].rotational_stiffness must be in [0, inf) N m/rad at"),
+    (lambda: modes(KIM, 3, effects=(CLAMP, TURNED)), "a clamp must be the only one at its place; got two at 0.7 m"),
+    *[(lumped(SHEAR, effect), f"got {type(effect).__name__}, which needs a finite-element Cue") for effect in FINITE],
+    (lumped(SHEAR, AxialWaves()), "Scene.effects[1] must be an effect that a LumpedCue can have"),
+    (
+        listed(AxialWaves(), SHEAR, AxialWaves()),
+        "Scene.effects[2] must be another effect, AxialWaves acts once; got Axial",
+    ),
+    *[
+        (listed(once, once), f"{type(once).__name__} acts once")
+        for once in (PowerLawTip(), RollingContact(), SecondHit())
+    ],
+    (listed(SHEAR, "TipDome"), "TypeError: Scene.effects[1] must be a Effect; got 'TipDome'"),  # type: ignore[arg-type]
+]
+
+
+@pytest.mark.parametrize(("ask", "message"), CALLS, ids=[message for _, message in CALLS])
+def test_calls(ask: Callable[[], object], message: str) -> None:
+    refuses(ask, message)
+
+
+def test_what_is_just_allowed() -> None:
+    """The very end is on the cue, but for rounding; springs beside a clamp, and a clamp of the rotation beside one of
+    the deflection, are no second clamp."""
+    assert modes(KIM, 1, effects=(Support(0.7 * (1 + 1e-12), inf, inf),)).rigid == 0
+    replace(kim_scene(), effects=(Support(0.7, inf), TURNED, Support(0.7, 5.0)))
+
+
+SCENE = """
+[[effects]]
+type = "AxialWaves"
+[[effects]]
+{effect}
+[cue]
+body_mass = "0.42 kg"
+[[cue.segments]]
+length = "0.7 m"
+tip_diameter = "12 mm"
+butt_diameter = "21 mm"
+material = {{ E = "12.6 GPa", G = "0.84 GPa", rho = "700 kg/m^3" }}
+"""
+
+
+FILES = [
+    ('type = "Joint"\nposition = "0.71 m"', "effects[1].position: must be in (0, 0.7) m, between"),
+    ('type = "PointMass"\nposition = "71 cm"\nmass = "5 g"', "effects[1].position: must be in [0, 0.7] m, on"),
+    ('type = "Joint"\nposition = 0.3', "effects[1].position: must be in (0, inf) m, a length with its unit"),
+    ('type = "AxialWaves"', "effects[1]: must be another effect, AxialWaves acts once"),
+]
+
+
+@pytest.mark.parametrize(("effect", "message"), FILES)
+def test_files(tmp_path: Path, effect: str, message: str) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text(SCENE.format(effect=effect), encoding="utf-8")
+    refuses(lambda: load(path), f"{path}: {message}")
