@@ -62,6 +62,7 @@ class Rung(NamedTuple):
 
     at: Resolution
     outcome: Outcome
+    tip: TipModes
 
 
 def resolve(scene: Scene, rtol: float) -> Outcome:
@@ -78,13 +79,16 @@ def resolve(scene: Scene, rtol: float) -> Outcome:
     rtol = RTOL.check("resolve rtol", rtol)
     if scene.lumped is not None:
         return replace(strike(scene), error=ROUNDING)
-    found = None
+    *_, last = climb(scene, rtol)
+    return last.outcome
+
+
+def climb(scene: Scene, rtol: float) -> Iterator[Rung]:
+    """The rungs of `ladder` up to the first whose error is within ``rtol``, or up to the last there is."""
     for rung in ladder(scene):
-        found = rung.outcome
-        if found.error is not None and found.error <= rtol:
-            break
-    assert found is not None
-    return found
+        yield rung
+        if rung.outcome.error is not None and rung.outcome.error <= rtol:
+            return
 
 
 def ladder(scene: Scene) -> Iterator[Rung]:
@@ -92,15 +96,16 @@ def ladder(scene: Scene) -> Iterator[Rung]:
     counts: list[int] = []
     outcomes: list[Outcome] = []
     for rung in _tips(scene):
-        outcome = strike_modes(scene, rung.tip)
+        tip = rung.tip
+        outcome = strike_modes(scene, tip)
         counts, outcomes = [*counts[-WINDOW:], rung.at.modes], [*outcomes[-WINDOW:], outcome]
         if len(counts) > JUDGED:
             values = np.array([_judged(each) for each in outcomes]) / _scale(outcome, scene)
             error = estimated_error(counts, values)
             courses = (_rungs_apart(outcomes, values), _other_course(outcomes, scene))
-            error = max(error, *courses, _caught_up(outcome, scene, rung.tip))
+            error = max(error, *courses, _caught_up(outcome, scene, tip))
             outcome = replace(outcome, error=error)
-        yield Rung(rung.at, outcome)
+        yield Rung(rung.at, outcome, tip)
 
 
 def resolve_end_mass(scene: Scene, drive: Drive = "stick", rtol: float = 1e-4) -> tuple[float, float]:

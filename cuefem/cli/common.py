@@ -152,7 +152,8 @@ def with_body(found: Cue | Scene, file: Path, given: str) -> Any:
 
 def show(file: Path, given: dict[str, Any], results: Callable[[Scene], Any], tables: Callable[..., Any]) -> None:
     """Compute all of it first, then print it all: as JSON, or as a heading and tables."""
-    from cuefem.report.record import UNITS, plain, scene_record
+    from cuefem.report.quantities import UNITS
+    from cuefem.report.record import plain, scene_record
     from cuefem.report.unusual import unusual
     from cuefem.report.words import cue_line, effect_words
 

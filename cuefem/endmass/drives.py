@@ -29,7 +29,7 @@ from cuefem.endmass import undamped as transverse
 from cuefem.endmass.undamped import StickLimit
 from cuefem.quantity import scalar
 from cuefem.scene import Outcome, Resolution, Scene, Stroke
-from cuefem.tip_modes import LEAST_STUCK, PLAIN_PERIODS, default_resolution, tip_modes_of
+from cuefem.tip_modes import LEAST_STUCK, Solved, tip_modes_of
 
 # Of the swing that a tail could add if it rang without loss, errors of the stick end mass above 0.2 % are less than
 # this part (studies/default_accuracy.md).
@@ -79,17 +79,19 @@ def end_mass_spread(scene: Scene, drive: Drive = "stick", at: Resolution | None 
     return end_mass_spreads(scene, at)(drive)[1:3]
 
 
-def end_mass_spreads(scene: Scene, at: Resolution | None = None) -> Callable[[Drive], Spread]:
+def end_mass_spreads(
+    scene: Scene, at: Resolution | None = None, *, solved: Solved | None = None
+) -> Callable[[Drive], Spread]:
     """The end mass and its spread by definition, for any number of definitions from one eigenproblem of the beam.
 
     The spread is that of plain sums, without a tail. A definition that takes a coupled strike is tried at 5 cutoffs,
-    one in closed form at 13.
+    one in closed form at 13. solved: the scene's modes, if they are known already.
     """
     if scene.lumped is not None:
         same = scalar("LumpedCue.end_mass", scene.lumped.end_mass)
         return lambda drive: Spread(same, same, same)
-    tip = tip_modes_of(scene, at, least=LEAST_STUCK)
-    plain = tip if at is not None else tip_modes_of(scene, default_resolution(scene, periods=PLAIN_PERIODS))
+    solved = solved or Solved(scene, at)
+    tip, plain = solved.tip_stuck, solved.tip_plain
     rigid, whole = int(np.sum(plain.omega == 0)), len(plain.omega)
 
     def spread(drive: Drive) -> Spread:

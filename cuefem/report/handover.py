@@ -20,6 +20,7 @@ from cuefem.effects import Elevation
 from cuefem.endmass.drives import formula_of
 from cuefem.quantity import scalar
 from cuefem.report.end_mass import DRIVES
+from cuefem.report.quantities import units_of
 from cuefem.report.record import Record
 from cuefem.scene import Scene
 from cuefem.squirt import alciatore_a31, alciatore_a31_mass_ratio
@@ -43,7 +44,7 @@ SIGNS = (
     "a is b/R of the contact, positive on the ball's left, and alpha positive to the left: "
     "alpha(a) = -squirt(offset = a); end_mass is m_e, felt at the tip, not the four times larger m_c of the cue's end"
 )
-UNITS = {"M": "kg", "m": "kg", "end_mass": "kg", "length": "m", "R": "m", "radius": "m", "squirt": "rad"}
+UNITS = units_of("end_mass", "length", "radius", "squirt") | {"M": "kg", "m": "kg", "R": "m"}
 
 
 def pooltool_record(name: str, scene: Scene, *, drive: Handed = "A.31") -> Record:
