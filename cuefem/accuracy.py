@@ -22,7 +22,7 @@ from cuefem.contact.linear import APART
 from cuefem.contact.strike import strike, strike_modes
 from cuefem.cue import Array
 from cuefem.effects import Elevation, SecondHit
-from cuefem.endmass.drives import Drive, end_mass, formula_of
+from cuefem.endmass.drives import end_mass, formula_of
 from cuefem.quantity import Quantity, scalar
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import MOST, tip_modes_from, turning
@@ -108,7 +108,7 @@ def ladder(scene: Scene) -> Iterator[Rung]:
         yield Rung(rung.at, outcome, tip)
 
 
-def resolve_end_mass(scene: Scene, drive: Drive = "stick", rtol: float = 1e-4) -> tuple[float, float]:
+def resolve_end_mass(scene: Scene, drive: str = "stick", rtol: float = 1e-4) -> tuple[float, float]:
     """(end mass, kg, its estimated relative error) to relative accuracy ``rtol``; see `cuefem.end_mass`, `resolve`."""
     rtol, formula = RTOL.check("resolve_end_mass rtol", rtol), formula_of(drive)
     if scene.lumped is not None:

@@ -18,8 +18,7 @@ from cuefem.cue import Array
 from cuefem.design.sensitivity import sensitivity
 from cuefem.design.solvers import static_tip_stiffness
 from cuefem.designer.model import cue_of
-from cuefem.endmass.drives import Drive, formula_of
-from cuefem.report.end_mass import DRIVES
+from cuefem.endmass.drives import DEFINITIONS, formula_of
 from cuefem.report.record import Record
 from cuefem.report.squirt import two_part_curve
 from cuefem.report.strike import outcome_record
@@ -65,7 +64,7 @@ class Answers:
     """
 
     scene: Scene
-    end_masses: dict[Drive, float | None]
+    end_masses: dict[str, float | None]
     strike: Record
     found: Modes
     tip_stiffness: float
@@ -84,7 +83,7 @@ def answers(scene: Scene) -> Answers:
     outcome = strike_modes(scene, solved.tip)
     return Answers(
         scene=scene,
-        end_masses={drive: _end_mass(drive, solved) for drive in DRIVES},
+        end_masses={drive: _end_mass(drive, solved) for drive in DEFINITIONS},
         strike=outcome_record(outcome, scene),
         found=modes(cue, TONES, effects=scene.cue_effects),
         tip_stiffness=static_tip_stiffness(scene, Resolution(*mesh_for(cue, TONES), TONES)),
@@ -93,7 +92,7 @@ def answers(scene: Scene) -> Answers:
     )
 
 
-def _end_mass(drive: Drive, solved: Solved) -> float | None:
+def _end_mass(drive: str, solved: Solved) -> float | None:
     scene = solved.scene
     try:
         return float(formula_of(drive)(solved.tip_stuck, scene))

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from cuefem.designer.answers import Answers, note
 from cuefem.designer.model import cue_of
+from cuefem.endmass.drives import DEFINITIONS
 from cuefem.report.quantities import NONE, QUANTITIES, Known, significant
 from cuefem.report.strike import MISCUE
 
@@ -30,13 +31,7 @@ class Row(NamedTuple):
 def rows(found: Answers) -> list[Row]:
     """All numbers of a design, each with its definition."""
     cue, strike, offset = cue_of(found.scene), found.strike, found.scene.stroke.offset
-    masses = {
-        "stick": "end mass m_e, stick (small offsets)",
-        "offset": f"end mass m_e, stick at b/R {offset:g}",
-        "velocity": "end mass m_e, velocity",
-        "force": "end mass m_e, force",
-        "squirt": f"end mass m_e, squirt-equivalent at b/R {offset:g}",
-    }
+    labels = {one.name: f"end mass m_e, {one.label_at(offset)}" for one in DEFINITIONS.values()}
     pivot = strike["pivot_length"]
 
     def row(name: str, quantity: str, value: float | None, label: str = "") -> Row:
@@ -46,7 +41,7 @@ def rows(found: Answers) -> list[Row]:
     return [
         row("squirt", "squirt", strike["squirt"], f"squirt, coupled, at b/R {offset:g}"),
         row("pivot", "pivot_length", None if pivot is None else float(pivot)),
-        *(row(f"end_mass_{drive}", "end_mass", felt, masses[drive]) for drive, felt in found.end_masses.items()),
+        *(row(f"end_mass_{drive}", "end_mass", felt, labels[drive]) for drive, felt in found.end_masses.items()),
         row("shaft_mass", "shaft_mass", cue.shaft_mass),
         row("mass", "mass", cue.mass),
         row("balance", "balance_point", cue.balance_point),

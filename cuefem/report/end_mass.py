@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from rich.console import Group
 
-from cuefem.endmass.drives import Drive, Spread, end_mass_spreads
+from cuefem.endmass.drives import DEFINITIONS, Spread, spreads_of
 from cuefem.report.quantities import NONE, grams, significant
 from cuefem.report.record import Record
 from cuefem.report.table import table_of, with_caption
@@ -15,8 +15,6 @@ from cuefem.scene import Scene
 from cuefem.squirt import cue_end_mass
 from cuefem.tip_modes import Solved
 
-DRIVES: tuple[Drive, ...] = ("stick", "offset", "velocity", "force", "squirt")
-
 
 def end_mass_record(scene: Scene, *, solved: Solved | None = None) -> Record:
     """The end masses m_e, their range while fewer modes are kept, and [Kim]'s m_c and eps = m_c/M of each.
@@ -24,15 +22,15 @@ def end_mass_record(scene: Scene, *, solved: Solved | None = None) -> Record:
     "offset" and "squirt" are those at the scene's own offset. A definition that has no answer says why instead.
     solved: the scene's modes, if they are known already.
     """
-    spread = end_mass_spreads(scene, solved=solved)
+    spread = spreads_of(solved or Solved(scene))
     return {
         "contact_time": scene.contact_time,
         "offset": scene.stroke.offset,
-        "drives": {drive: _end_mass(scene, spread, drive) for drive in DRIVES},
+        "drives": {drive: _end_mass(scene, spread, drive) for drive in DEFINITIONS},
     }
 
 
-def _end_mass(scene: Scene, spread: Callable[[Drive], Spread], drive: Drive) -> Record:
+def _end_mass(scene: Scene, spread: Callable[[str], Spread], drive: str) -> Record:
     try:
         felt, lowest, highest, _ = spread(drive)
     except ValueError as error:
@@ -59,7 +57,7 @@ def end_mass_table(record: Record, scene: Record) -> Group:
     table = table_of("Effective end mass", columns)
     refused = []
     for drive, values in record["drives"].items():
-        name = f"{drive}, at b/R {record['offset']:g}" if drive in ("offset", "squirt") else drive
+        name = f"{drive}, at b/R {record['offset']:g}" if DEFINITIONS[drive].at_offset else drive
         if values["end_mass"] is None:
             table.add_row(name, *[NONE] * 4)
             refused.append(f"{drive}: {values['reason']}")

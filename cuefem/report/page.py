@@ -15,6 +15,7 @@ from cuefem.accuracy import Rung, climb
 from cuefem.beam.modes import modes
 from cuefem.beam.tip import TipModes
 from cuefem.contact.strike import strike_modes
+from cuefem.endmass.drives import DEFINITIONS
 from cuefem.quantity import scalar
 from cuefem.report.charts import Axis, Chart, Span
 from cuefem.report.contact import contact_part
@@ -254,7 +255,10 @@ def _end_masses(record: Record, squirt: Record) -> Record:
     def row(name: str, felt: float, spread: tuple[float, float]) -> MassRow:
         return MassRow(name, place(felt), place(spread[0]), place(spread[1]), grams(felt))
 
-    rows = [row(DRIVE_WORDS[n], values["end_mass"], (values["lowest"], values["highest"])) for n, values in drives]
+    rows = [
+        row(DEFINITIONS[n].label_at(record["offset"]), values["end_mass"], (values["lowest"], values["highest"]))
+        for n, values in drives
+    ]
     rows.append(row("the paper's 12 g", paper, (paper, paper)))
     return {
         "rows": rows,
@@ -263,18 +267,9 @@ def _end_masses(record: Record, squirt: Record) -> Record:
         "ends": (left, right),
         "height": 26.0 * len(rows) + 44,
         "reasons": [values["reason"] for values in record["drives"].values() if values["end_mass"] is None],
-        "offset": f"{record['offset']:g}",
+        "meanings": [(one.label_at(record["offset"]), one.meaning) for one in DEFINITIONS.values()],
         "coupling": squirt["coupling"],
     }
-
-
-DRIVE_WORDS = {
-    "stick": "stick",
-    "offset": "at this offset",
-    "velocity": "velocity",
-    "force": "force",
-    "squirt": "squirt-equivalent",
-}
 
 
 def _energy(outcome: Outcome) -> list[tuple[str, str, float, str]]:
