@@ -22,7 +22,7 @@ from cuefem.contact.linear import APART
 from cuefem.contact.strike import strike, strike_modes
 from cuefem.cue import Array, Cue
 from cuefem.effects import SecondHit
-from cuefem.endmass.drives import Drive, end_mass, formula_of
+from cuefem.endmass.drives import end_mass, formula_of
 from cuefem.quantity import Quantity, scalar
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import MOST, tip_modes_from, turning
@@ -68,6 +68,7 @@ class Rung(NamedTuple):
 
     at: Resolution
     outcome: Outcome
+    tip: TipModes
 
 
 def resolve(scene: Scene, rtol: float) -> Outcome:
@@ -85,13 +86,16 @@ def resolve(scene: Scene, rtol: float) -> Outcome:
     rtol = RTOL.check("resolve rtol", rtol)
     if scene.lumped is not None:
         return replace(strike(scene), error=ROUNDING)
-    found = None
+    *_, last = climb(scene, rtol)
+    return last.outcome
+
+
+def climb(scene: Scene, rtol: float) -> Iterator[Rung]:
+    """The rungs of `ladder` up to the first whose error is within ``rtol``, or up to the last there is."""
     for rung in ladder(scene):
-        found = rung.outcome
-        if found.error is not None and found.error <= rtol:
-            break
-    assert found is not None
-    return found
+        yield rung
+        if rung.outcome.error is not None and rung.outcome.error <= rtol:
+            return
 
 
 def ladder(scene: Scene) -> Iterator[Rung]:
@@ -100,22 +104,23 @@ def ladder(scene: Scene) -> Iterator[Rung]:
     outcomes: list[Outcome] = []
     swings: list[float] = []
     for rung in _tips(scene):
-        outcome = strike_modes(scene, rung.tip)
+        tip = rung.tip
+        outcome = strike_modes(scene, tip)
         counts, outcomes = [*counts[-WINDOW:], rung.at.modes], [*outcomes[-WINDOW:], outcome]
         if rung.end_unheard:
-            swings.append(relative_error(strike_modes(scene, _ringing(rung.tip)), outcome, scene))
+            swings.append(relative_error(strike_modes(scene, _ringing(tip)), outcome, scene))
         if len(counts) > JUDGED:
             values = np.array([_judged(each) for each in outcomes]) / _scale(outcome, scene)
             error = estimated_error(counts, values)
             courses = (_rungs_apart(outcomes, values), _other_course(outcomes, scene))
-            error = max(error, *courses, _caught_up(outcome, scene, rung.tip))
+            error = max(error, *courses, _caught_up(outcome, scene, tip))
             if rung.end_unheard:
                 error = max(error, *swings[-1 - WINDOW :])
             outcome = replace(outcome, error=error)
-        yield Rung(rung.at, outcome)
+        yield Rung(rung.at, outcome, tip)
 
 
-def resolve_end_mass(scene: Scene, drive: Drive = "stick", rtol: float = 1e-4) -> tuple[float, float]:
+def resolve_end_mass(scene: Scene, drive: str = "stick", rtol: float = 1e-4) -> tuple[float, float]:
     """(end mass, kg, its estimated relative error) to relative accuracy ``rtol``; see `cuefem.end_mass`, `resolve`."""
     rtol, formula = RTOL.check("resolve_end_mass rtol", rtol), formula_of(drive)
     if scene.lumped is not None:

@@ -23,8 +23,8 @@ from cuefem.beam.system import assemble
 from cuefem.beam.tip import tip_modes
 from cuefem.contact.linear import Contact, Laws, run
 from cuefem.contact.strike import strike_modes
-from cuefem.endmass.drives import stick, tip_modes_for
-from cuefem.tip_modes import tip_modes_of
+from cuefem.endmass.drives import stick
+from cuefem.tip_modes import Solved, tip_modes_of
 from tests.helpers.cues import kim, pool, scene
 from tests.helpers.strike_scenes import KIM_AT, kim_scene
 
@@ -54,7 +54,7 @@ def test_stick_end_mass(benchmark: Any, cue: Cue) -> None:
 def test_stick_end_mass_from_tip_modes(benchmark: Any) -> None:
     """The closed form alone, its eigenproblem of the modes kept included."""
     found = scene(kim(), 2e-3)
-    tip = tip_modes_for("stick", found)
+    tip = Solved(found).tip_stuck
     np.testing.assert_allclose(benchmark(stick, tip, found), end_mass(found), rtol=1e-12)
 
 

@@ -93,6 +93,31 @@ def measured(file: Path, option: str, given: str, wanted: Quantity) -> float:
         raise InputError(file, option, str(error)) from None
 
 
+class Definitions(click.Choice[str]):
+    """The names of the end-mass definitions, and ``more``; read only when a command needs them, for they load much."""
+
+    def __init__(self, *more: str) -> None:
+        self.more, self.case_sensitive = more, True
+
+    @property
+    def choices(self) -> tuple[str, ...]:  # type: ignore[override]
+        """All names."""
+        from cuefem.endmass.drives import DEFINITIONS
+
+        return (*self.more, *DEFINITIONS)
+
+
+class WithDefinitions(click.Command):
+    """A command whose help ends with the definitions of the end mass."""
+
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write name and meaning of every definition."""
+        from cuefem.endmass.drives import DEFINITIONS
+
+        with formatter.section("Definitions of the end mass"):
+            formatter.write_dl([(one.name, one.meaning) for one in DEFINITIONS.values()])
+
+
 def scene_of(file: Path, given: dict[str, Any]) -> tuple[Scene, list[str]]:
     """The scene that a command computes, and what was assumed because nobody said it."""
     from cuefem.io import load
@@ -152,7 +177,8 @@ def with_body(found: Cue | Scene, file: Path, given: str) -> Any:
 
 def show(file: Path, given: dict[str, Any], results: Callable[[Scene], Any], tables: Callable[..., Any]) -> None:
     """Compute all of it first, then print it all: as JSON, or as a heading and tables."""
-    from cuefem.report.record import UNITS, plain, scene_record
+    from cuefem.report.quantities import UNITS
+    from cuefem.report.record import plain, scene_record
     from cuefem.report.unusual import unusual
     from cuefem.report.words import cue_line, effect_words
 

@@ -15,7 +15,6 @@ import numpy as np
 from cuefem.beam.basis import table
 from cuefem.cue import Array, Cue, Section, SegmentRows, section_properties
 from cuefem.design.sensitivity import Sensitivity, sensitivity
-from cuefem.endmass.drives import Drive
 from cuefem.endmass.undamped import StickLimit
 from cuefem.scene import Resolution, Scene
 
@@ -39,7 +38,7 @@ class Gradient:
     squirt_to_body_mass: float | None
 
 
-def gradient(scene: Scene, drive: Drive = "stick", at: Resolution | None = None) -> Gradient:
+def gradient(scene: Scene, drive: str = "stick", at: Resolution | None = None) -> Gradient:
     """Gradient of a bare finite-element cue's end mass, for "stick" of its squirt b -> 0 over phi too.
 
     Exact for the modes kept, on the mesh as it is; the contact time is held, from the tip's stiffness too. Cost: that

@@ -21,7 +21,6 @@ from cuefem.beam.basis import table
 from cuefem.beam.modes import solve
 from cuefem.beam.system import System, assemble
 from cuefem.cue import Array
-from cuefem.endmass.drives import Drive
 from cuefem.endmass.undamped import StickLimit, smooth_start_swing
 from cuefem.scene import Resolution, Scene
 from cuefem.tip_modes import PLAIN_PERIODS, default_resolution
@@ -64,7 +63,7 @@ class _Gradient:
     axial_mass: float = 0.0
 
 
-def sensitivity(scene: Scene, drive: Drive = "stick", at: Resolution | None = None) -> Sensitivity:
+def sensitivity(scene: Scene, drive: str = "stick", at: Resolution | None = None) -> Sensitivity:
     """Where the end mass of a bare finite-element cue lives: `Sensitivity`, exact for the modes kept.
 
     drive: "stick", "velocity" or "force". Sum rule (handbook: Effective end mass): the densities times their properties

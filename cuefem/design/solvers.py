@@ -16,7 +16,7 @@ from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array
 from cuefem.design.batch import BatchModes, CueBatch, Stick, batch_frequencies, batch_modes, stick_of
 from cuefem.effects import Support
-from cuefem.endmass.drives import flexible, small_offset_slope, stick, stick_at_offset
+from cuefem.endmass.drives import DEFINITIONS, Definition, flexible, small_offset_slope, stick
 from cuefem.endmass.undamped import StickLimit
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import tip_modes_from, tip_modes_of
@@ -54,6 +54,9 @@ class Solver(Protocol):
     def stick_at(self, offset: float) -> Array:
         """End mass of a tip that sticks at an offset b/R, kg, (designs,)."""
 
+    def end_mass(self, i: int, definition: Definition, offset: float | None) -> float:
+        """End mass of a design by a definition, kg, at an offset b/R or at its scene's own."""
+
     def strike(self, i: int, offset: float | None) -> Outcome:
         """The coupled strike of a design at an offset b/R, or at its scene's own."""
 
@@ -72,21 +75,20 @@ class _Strikes:
 
     def stick_at(self, offset: float) -> Array:
         """End mass of a tip that sticks at an offset b/R, kg, (designs,)."""
-        return np.array([self._stick_at(i, offset) for i in range(len(self.scenes))])
+        return np.array([self.end_mass(i, DEFINITIONS["offset"], offset) for i in range(len(self.scenes))])
 
-    def _stick_at(self, i: int, offset: float) -> float:
+    def end_mass(self, i: int, definition: Definition, offset: float | None) -> float:
+        """End mass of a design by a definition, kg, at an offset b/R or at its scene's own."""
+        return float(definition.of(self.tip(i), self._scene(i, offset)))
+
+    def _scene(self, i: int, offset: float | None) -> Scene:
         scene = self.scenes[i]
-        if scene.lumped is not None:
-            return float(scene.lumped.end_mass)
-        return float(stick_at_offset(self.tip(i), replace(scene, stroke=replace(scene.stroke, offset=offset))))
+        return scene if offset is None else replace(scene, stroke=replace(scene.stroke, offset=offset))
 
     def strike(self, i: int, offset: float | None) -> Outcome:
         """The coupled strike of a design at an offset b/R, or at its scene's own; each is made once."""
         if (i, offset) not in self._outcomes:
-            scene = self.scenes[i]
-            if offset is not None:
-                scene = replace(scene, stroke=replace(scene.stroke, offset=offset))
-            self._outcomes[i, offset] = strike_modes(scene, self.tip(i))
+            self._outcomes[i, offset] = strike_modes(self._scene(i, offset), self.tip(i))
         return self._outcomes[i, offset]
 
 

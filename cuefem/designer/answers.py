@@ -18,13 +18,12 @@ from cuefem.cue import Array
 from cuefem.design.sensitivity import sensitivity
 from cuefem.design.solvers import static_tip_stiffness
 from cuefem.designer.model import cue_of
-from cuefem.endmass.drives import Drive, equivalent_end_mass, formula_of, tip_modes_for
-from cuefem.report.end_mass import DRIVES
+from cuefem.endmass.drives import DEFINITIONS, formula_of
 from cuefem.report.record import Record
 from cuefem.report.squirt import two_part_curve
 from cuefem.report.strike import outcome_record
-from cuefem.scene import Outcome, Resolution, Scene
-from cuefem.tip_modes import default_resolution, tip_modes_of
+from cuefem.scene import Resolution, Scene
+from cuefem.tip_modes import Solved, default_resolution
 
 TONES = 5  # bending modes that are shown
 OFFSETS = tuple(round(0.06 * i, 2) for i in range(1, 11))  # b/R of both curves
@@ -65,7 +64,7 @@ class Answers:
     """
 
     scene: Scene
-    end_masses: dict[Drive, float | None]
+    end_masses: dict[str, float | None]
     strike: Record
     found: Modes
     tip_stiffness: float
@@ -79,33 +78,31 @@ class Answers:
 
 
 def answers(scene: Scene) -> Answers:
-    """What is known at once of a scene with a cue of segments. Cost: two eigenproblems of the beam and one strike."""
-    cue = cue_of(scene)
-    tip, stuck = tip_modes_of(scene), tip_modes_for("offset", scene)
-    outcome = strike_modes(scene, tip)
+    """What is known at once of a scene with a cue of segments. Cost: the beam's eigenproblem and one strike."""
+    cue, solved = cue_of(scene), Solved(scene)
+    outcome = strike_modes(scene, solved.tip)
     return Answers(
         scene=scene,
-        end_masses={drive: _end_mass(scene, drive, stuck, outcome) for drive in DRIVES},
+        end_masses={drive: _end_mass(drive, solved) for drive in DEFINITIONS},
         strike=outcome_record(outcome, scene),
         found=modes(cue, TONES, effects=scene.cue_effects),
         tip_stiffness=static_tip_stiffness(scene, Resolution(*mesh_for(cue, TONES), TONES)),
-        lumped=lumped_curve(scene, stuck),
-        tip=tip,
+        lumped=lumped_curve(solved),
+        tip=solved.tip,
     )
 
 
-def _end_mass(scene: Scene, drive: Drive, tip: TipModes, outcome: Outcome) -> float | None:
+def _end_mass(drive: str, solved: Solved) -> float | None:
+    scene = solved.scene
     try:
-        if drive == "squirt" and scene.stroke.offset:  # its strike is known
-            return equivalent_end_mass(outcome, scene)
-        return float(formula_of(drive)(tip, scene))
+        return float(formula_of(drive)(solved.tip_stuck, scene))
     except ValueError:
         return None
 
 
-def lumped_curve(scene: Scene, tip: TipModes) -> Curve:
-    """The impulse solver's curve, the cue lumped at each offset; nan where there is no such lumped cue."""
-    found = two_part_curve(scene, OFFSETS, tip)
+def lumped_curve(solved: Solved) -> Curve:
+    """The impulse solver's curve, the cue lumped at each offset; nan where no lumped cue has that squirt."""
+    found = two_part_curve(solved, OFFSETS)
     return Curve(OFFSETS, found["squirt"], found["pivot_length"])
 
 

@@ -151,7 +151,7 @@ class Desk:
             self.keys = ui.html(sanitize=False)
         with ui.element("div").classes("rest"):
             self.cue = self._section("The cue")
-            self.charts = self._section("Against the offset")
+            self.charts = self._section("Squirt and pivot length against the offset")
             with ui.element("div").classes("grid2"):
                 self.lives = self._section("Where end mass lives")
                 with ui.element("section"):

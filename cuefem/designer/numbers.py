@@ -3,78 +3,67 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from html import escape
 from typing import NamedTuple
 
 from cuefem.designer.answers import Answers, note
 from cuefem.designer.model import cue_of
+from cuefem.endmass.drives import DEFINITIONS
+from cuefem.report.quantities import NONE, QUANTITIES, Known, significant
 from cuefem.report.strike import MISCUE
-from cuefem.report.table import NONE
-from cuefem.report.words import degrees, grams, millimetres, significant
 
 
 class Row(NamedTuple):
-    """A number: its name on the page, what it is, SI (None: there is none), how it is written, and a unit's size."""
+    """A number: its name on the page, what it is in full, its value in SI (None if it has none), and its quantity."""
 
     name: str
     label: str
     value: float | None
-    written: Callable[[float], str]
-    unit: str
-    scale: float
+    known: Known
+
+    @property
+    def text(self) -> str:
+        """The value with its unit."""
+        return self.known.written(self.value)
 
 
 def rows(found: Answers) -> list[Row]:
     """All numbers of a design, each with its definition."""
     cue, strike, offset = cue_of(found.scene), found.strike, found.scene.stroke.offset
-    masses = {
-        "stick": "end mass m_e, stick (small offsets)",
-        "offset": f"end mass m_e, stick at b/R {offset:g}",
-        "velocity": "end mass m_e, velocity",
-        "force": "end mass m_e, force",
-        "squirt": f"end mass m_e, squirt-equivalent at b/R {offset:g}",
-    }
+    labels = {one.name: f"end mass m_e, {one.label_at(offset)}" for one in DEFINITIONS.values()}
     pivot = strike["pivot_length"]
+
+    def row(name: str, quantity: str, value: float | None, label: str = "") -> Row:
+        known = QUANTITIES[quantity]
+        return Row(name, label or known.label, value, known)
+
     return [
-        Row("squirt", f"squirt, coupled, at b/R {offset:g}", strike["squirt"], degrees, "°", 180 / math.pi),
-        Row("pivot", "natural pivot length", None if pivot is None else float(pivot), millimetres, "mm", 1e3),
-        *(Row(f"end_mass_{drive}", masses[drive], felt, grams, "g", 1e3) for drive, felt in found.end_masses.items()),
-        Row("shaft_mass", "mass of what is drawn", cue.shaft_mass, grams, "g", 1e3),
-        Row("mass", "mass of the cue", cue.mass, grams, "g", 1e3),
-        Row("balance", "balance point of what is drawn, from the tip", cue.balance_point, _tenths, "mm", 1e3),
-        Row("stiffness", "static stiffness at the tip, butt clamped", found.tip_stiffness, _stiffness, "N/m", 1.0),
-        *(Row(f"mode{i}", f"mode {i}", f, _hertz, "Hz", 1.0) for i, f in enumerate(found.frequencies.tolist(), 1)),
+        row("squirt", "squirt", strike["squirt"], f"squirt, coupled, at b/R {offset:g}"),
+        row("pivot", "pivot_length", None if pivot is None else float(pivot)),
+        *(row(f"end_mass_{drive}", "end_mass", felt, labels[drive]) for drive, felt in found.end_masses.items()),
+        row("shaft_mass", "shaft_mass", cue.shaft_mass),
+        row("mass", "mass", cue.mass),
+        row("balance", "balance_point", cue.balance_point),
+        row("stiffness", "tip_stiffness", found.tip_stiffness, STIFFNESS),
+        *(row(f"mode{i}", "frequencies", f, f"mode {i}") for i, f in enumerate(found.frequencies.tolist(), 1)),
     ]
 
 
-def _tenths(length: float) -> str:
-    return f"{1e3 * length:.1f} mm"
-
-
-def _stiffness(value: float) -> str:
-    return f"{significant(value)} N/m"
-
-
-def _hertz(frequency: float) -> str:
-    return f"{frequency:.2f} Hz"
-
-
-def _text(row: Row) -> str:
-    return NONE if row.value is None or not math.isfinite(row.value) else row.written(row.value)
+STIFFNESS = f"{QUANTITIES['tip_stiffness'].label}, static, butt clamped"
 
 
 def difference(row: Row, other: Row) -> str:
     """How much more a number is than another: in its unit and in percent."""
     if row.value is None or other.value is None or not (math.isfinite(row.value) and math.isfinite(other.value)):
         return NONE
-    more = row.value - other.value
+    more, unit = row.value - other.value, row.known.shown_unit
     if abs(more) <= 1e-12 * abs(other.value):
         return "the same"
-    space = "" if row.unit == "°" else " "
+    space = "" if unit == "°" else " "
     sign = "+" if more > 0 else "−"
     part = f" ({100 * more / abs(other.value):+.1f}\u00a0%)".replace("-", "−") if other.value else ""
-    return f"{sign}{significant(abs(more) * row.scale, 3)}{space}{row.unit}{part}"
+    return f"{sign}{significant(abs(more) * row.known.scale, 3)}{space}{unit}{part}"
 
 
 def table_markup(found: Answers, pinned: Answers | None) -> str:
@@ -87,7 +76,7 @@ def table_markup(found: Answers, pinned: Answers | None) -> str:
 
 
 def _line(row: Row, other: Row | None) -> str:
-    cells = [_text(row), *([_text(other), difference(row, other)] if other else [])]
+    cells = [row.text, *([other.text, difference(row, other)] if other else [])]
     first, *rest = (escape(cell) for cell in cells)
     label = escape(row.label if other is None or other.label == row.label else f"{row.label} (pinned: {other.label})")
     others = "".join(f"<td>{cell}</td>" for cell in rest)
@@ -95,12 +84,12 @@ def _line(row: Row, other: Row | None) -> str:
 
 
 KEYS = {
-    "squirt": ("squirt", "coupled, at this offset"),
-    "pivot": ("pivot length", "natural: turned there, no squirt"),
-    "end_mass_stick": ("end mass m<sub>e</sub>", "stick: at small offsets"),
-    "stiffness": ("tip stiffness", "static, butt end clamped"),
-    "balance": ("balance point", "from the tip, as drawn"),
-    "shaft_mass": ("mass", "as drawn, no body"),
+    "squirt": ("squirt", "coupled strike at this offset"),
+    "pivot": ("natural pivot length", "pivot about this point and squirt cancels"),
+    "end_mass_stick": ("end mass m<sub>e</sub>", "felt by the ball, small offsets"),
+    "stiffness": ("shaft stiffness at the tip", "static, butt end clamped"),
+    "balance": ("balance point", "of the drawn part, from the tip"),
+    "shaft_mass": ("mass", "of the drawn part"),
 }
 
 
@@ -110,7 +99,7 @@ def key_markup(found: Answers, pinned: Answers | None) -> str:
     parts = []
     for name, (label, remark) in KEYS.items():
         said = difference(mine[name], theirs[name]) if theirs else remark
-        value = escape(_text(mine[name]))
+        value = escape(mine[name].text)
         parts.append(
             f'<div><dt>{label}</dt><dd><b data-key="{name}">{value}</b><small>{escape(said)}</small></dd></div>'
         )

@@ -6,16 +6,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cuefem.cue import Array
 from cuefem.designer.answers import Answers, Curve, Density
 from cuefem.designer.model import cue_of
 from cuefem.report import charts as figures
-from cuefem.report.charts import Axis, Mark, chart
+from cuefem.report.charts import Axis, chart
 from cuefem.report.drawings import cue_drawing, front_drawing, materials_of, modes_drawing, style_of
+from cuefem.report.squirt import offset_charts as report_charts
 from cuefem.report.templates import chart_markup, cue_markup, shapes_markup
 from cuefem.scene import Scene
 
-LONGEST_PIVOT = 1.5  # m; beyond it a pivot is behind the cue
 HIGH = 280.0
 
 
@@ -33,31 +32,19 @@ def cue_pictures(scene: Scene) -> str:
 def offset_charts(
     found: Answers, coupled: Curve | None, pinned: tuple[Answers, Curve | None] | None, *, current: bool
 ) -> str:
-    """Squirt and pivot length against the offset. current: whether the coupled curve is this design's yet."""
+    """Squirt and pivot length against the offset. current: whether the coupled curve is of this design already."""
     lines: list[tuple[str, str, Curve]] = []
     if coupled is not None:
         lines.append(("coupled, in time", "c1", coupled) if current else ("coupled, before", "c1 stale", coupled))
     lines.append(("lumped, stick end mass", "c3", found.lumped))
     if pinned is not None:
         lines.append(("pinned, coupled", "c2", pinned[1]) if pinned[1] else ("pinned, lumped", "c2", pinned[0].lumped))
-    own = abs(float(found.scene.stroke.offset))
-    here = [Mark(own, "here")] if 0 < own <= found.lumped.offsets[-1] else []
-    at = Axis("offset b/R", 0.0, found.lumped.offsets[-1])
-    squirt = [
-        figures.Curve(name, np.r_[0.0, c.offsets], np.degrees(np.r_[0.0, c.squirt]), style) for name, style, c in lines
-    ]
-    pivot = [figures.Curve(name, c.offsets, _millimetres(c), style) for name, style, c in lines]
-    highest = max([0.1, *(float(np.nanmax(curve.y, initial=0.0)) / 1e3 for curve in pivot)])
-    up = Axis("", 0.0).over([np.array([1e3 * min(LONGEST_PIVOT, highest)])]).high
-    charts = (
-        chart("Squirt", squirt, x=at, y=Axis("squirt, degrees"), marks=here, height=HIGH),
-        chart("Natural pivot length", pivot, x=at, y=Axis("pivot length, mm", 0.0, up), marks=here, height=HIGH),
+    charts = report_charts(
+        [(name, style, one.squirt, one.pivot_length) for name, style, one in lines],
+        *(found.lumped.offsets, float(found.scene.stroke.offset)),
+        height=HIGH,
     )
     return f'<div class="grid2">{"".join(chart_markup(c, f"offset{i}") for i, c in enumerate(charts))}</div>'
-
-
-def _millimetres(curve: Curve) -> Array:
-    return 1e3 * np.where(np.asarray(curve.squirt) > 0, curve.pivot_length, np.nan)
 
 
 def density_chart(found: Density, pinned: Density | None) -> str:
@@ -65,8 +52,8 @@ def density_chart(found: Density, pinned: Density | None) -> str:
     mm = 1e3 * found.x
     curves = [
         figures.Curve("whole", mm, 10 * (found.from_mass + found.from_stiffness), "c1"),
-        figures.Curve("by the mass there", mm, 10 * found.from_mass, "c3"),
-        figures.Curve("by the stiffness there", mm, 10 * found.from_stiffness, "c4"),
+        figures.Curve("from the mass there", mm, 10 * found.from_mass, "c3"),
+        figures.Curve("from the stiffness there", mm, 10 * found.from_stiffness, "c4"),
     ]
     if pinned is not None:
         curves.append(

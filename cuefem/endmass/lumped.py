@@ -11,9 +11,10 @@ from cuefem.beam.tip import TipModes
 from cuefem.contact.flow import zero
 from cuefem.contact.impulse_space import impact
 from cuefem.cue import LumpedCue
-from cuefem.endmass.drives import _gripping, end_mass, stick_at_offset, sticking_squirt, tip_modes_for
+from cuefem.endmass.drives import _gripping, end_mass, stick_at_offset, sticking_squirt
 from cuefem.quantity import check_kind, scalar
 from cuefem.scene import Outcome, Resolution, Scene
+from cuefem.tip_modes import Solved
 
 
 def lump(scene: Scene, at: Resolution | None = None) -> LumpedCue:
@@ -22,7 +23,7 @@ def lump(scene: Scene, at: Resolution | None = None) -> LumpedCue:
     Its end mass is "offset" of the cue alone; what effects at the tip (`TipDome`, `TipShear`) add or take goes into the
     coupling, about proportional to sin(phi). ValueError where no lumped cue squirts so.
     """
-    return scene.lumped or lump_modes(scene, tip_modes_for("offset", scene, at))
+    return scene.lumped or lump_modes(scene, Solved(scene, at).tip_stuck)
 
 
 def lump_modes(scene: Scene, tip: TipModes) -> LumpedCue:

@@ -12,9 +12,9 @@ from rich.table import Table
 
 from cuefem.accuracy import FIRST, JUDGED, MOST, RATIO, Rung, ladder, relative_error
 from cuefem.contact.strike import strike
+from cuefem.report.quantities import NONE, significant, written
 from cuefem.report.record import Record
-from cuefem.report.table import NONE, table_of, with_caption
-from cuefem.report.words import significant
+from cuefem.report.table import table_of, with_caption
 from cuefem.scene import Scene
 
 WANTED = (1e-2, 1e-3, 1e-4, 1e-6)
@@ -100,14 +100,15 @@ def _ladder_table(rungs: Sequence[Record]) -> Any:
         plain = rung["plain"] or {"difference": None, "seconds": None}
         made.add_row(
             *(str(rung["modes"]), _mesh(rung), str(rung["unknowns"])),
-            *(_error(rung["estimate"]), _error(rung["difference"]), _milliseconds(rung["seconds"])),
-            *(_error(plain["difference"]), _milliseconds(plain["seconds"])),
+            *(written("error", rung["estimate"]), written("error", rung["difference"]), _milliseconds(rung["seconds"])),
+            *(written("error", plain["difference"]), _milliseconds(plain["seconds"])),
         )
     return with_caption(
         made,
-        "Largest relative error of squirt, ball speed and spin: estimated, and as the difference from the last row.",
-        "Climb: all rows down to this one, what `resolve` takes. Plain sum: the same modes without a tail, by itself.",
-        "elements: of all segments together; order: of their polynomials.",
+        "Largest relative error of squirt, ball speed and spin: as estimated, and as the difference from the last row.",
+        "ms, climb: time of all rows down to this one, as `resolve` takes it. Plain sum: the same modes without "
+        "what the modes left out add (the tail).",
+        "elements: number for all segments together; order: degree of their polynomials.",
     )
 
 
@@ -116,17 +117,13 @@ def _wanted_table(wanted: Sequence[Record]) -> Any:
     for row in wanted:
         asked = f"{row['rtol']:.0e}" + ("" if row["reached"] else ", not reached: the best is")
         sizes = (str(row["modes"]), _mesh(row), str(row["unknowns"]))
-        made.add_row(asked, *sizes, _error(row["estimate"]), _milliseconds(row["seconds"]))
-    return with_caption(made, "With the tail, as `resolve(scene, rtol)` and a file's [accuracy] rtol take it.")
+        made.add_row(asked, *sizes, written("error", row["estimate"]), _milliseconds(row["seconds"]))
+    return with_caption(made, "With the tail, as `resolve(scene, rtol)` and a file's [accuracy] rtol compute.")
 
 
 def _mesh(row: Record) -> str:
     elements = row["elements"]
     return f"{sum(elements) if isinstance(elements, list) else elements} x {row['order']}"
-
-
-def _error(value: float | None) -> str:
-    return NONE if value is None else f"{value:.1e}"
 
 
 def _milliseconds(value: float | None) -> str:

@@ -8,14 +8,19 @@ from dataclasses import asdict
 
 from rich.console import Group
 
+from cuefem.accuracy import climb
+from cuefem.beam.modes import modes
+from cuefem.beam.tail import tail
+from cuefem.contact.strike import strike, strike_modes
 from cuefem.design.worth import Change, Variant, change, variants
 from cuefem.effects import effect_kinds
 from cuefem.endmass.drives import equivalent_end_mass
+from cuefem.report.quantities import NONE, degrees, grams
 from cuefem.report.record import Record
-from cuefem.report.solve import resolution_for, struck
-from cuefem.report.table import NONE, table_of, with_caption
-from cuefem.report.words import assumptions, degrees, effect_words, grams
+from cuefem.report.table import table_of, with_caption
+from cuefem.report.words import assumptions, effect_words
 from cuefem.scene import Outcome, Resolution, Scene
+from cuefem.tip_modes import tip_modes_from, turning
 
 DEFAULT_RTOL = 1e-2
 # A strike is timed as the quickest of some, as many as fit in this many seconds.
@@ -24,6 +29,14 @@ TIMED, TRIES = 0.3, 5
 MARGIN = 3
 
 Track = Callable[[Sequence[Variant]], Iterable[Variant]]
+
+
+def struck(scene: Scene, at: Resolution | None) -> Outcome:
+    """A scene's strike with its modes solved anew at a resolution and ended by a tail; None for a lumped cue."""
+    if at is None:
+        return strike(scene)
+    found = modes(scene.shaft, at.modes, effects=scene.cue_effects, at=at)
+    return strike_modes(scene, tip_modes_from(tail(found, turning=turning(scene)), scene))
 
 
 def timed_strike(scene: Scene, at: Resolution | None) -> tuple[Outcome, float]:
@@ -44,7 +57,10 @@ def effects_record(scene: Scene, *, rtol: float = DEFAULT_RTOL, track: Track = i
     All strikes are at the resolution that the scene itself needs, so that their errors are alike and it is the effect
     that shows. track: follows the work, an iterator over the variants.
     """
-    at = resolution_for(scene, rtol / MARGIN)
+    at = None
+    if scene.lumped is None:
+        *_, rung = climb(scene, rtol / MARGIN)
+        at = rung.at
     base, seconds = timed_strike(scene, at)
     rows = [_row(variant, scene, base, rtol=rtol, at=at) for variant in track(variants(scene))]
     rows.sort(key=lambda row: -1.0 if row["weight"] is None else row["weight"], reverse=True)
@@ -129,7 +145,7 @@ def effects_table(record: Record, scene: Record) -> Group:
     table.add_row(
         "the scene as it is",
         degrees(base["squirt"]),
-        _grams(base["end_mass"]),
+        grams(base["end_mass"]),
         f"{base['ball_speed']:.4f}",
         f"{base['spin']:.2f}",
         str(base["unknowns"]),
@@ -146,8 +162,9 @@ def effects_table(record: Record, scene: Record) -> Group:
         table.add_row(*_cells(row), style="dim")
     return with_caption(
         table,
-        "without: an effect of the scene left out; with: one it does not list, at a textbook value; changes of row one",
-        f"end mass: the lumped one with the same squirt; {percent}: the tolerance, of squirt, ball speed and spin",
+        "without: the scene with this effect left out; with: one it does not list added, at a usual value; "
+        "per cent: change from the first row",
+        f"end mass: of the lumped cue with the same squirt; {percent}: the tolerance of squirt, ball speed and spin",
         *_not_tried(record["effects"]),
         assumptions(scene),
         "",
@@ -167,7 +184,7 @@ def _not_tried(rows: Sequence[Record]) -> list[str]:
 def _cells(row: Record) -> tuple[str, ...]:
     word = "without" if row["listed"] else "with"
     squirt, speed, spin = (_percent(row["change"][name]["relative"]) for name in ("squirt", "ball_speed", "spin"))
-    figures = (squirt, _grams(row["end_mass"]), speed, spin)
+    figures = (squirt, grams(row["end_mass"]), speed, spin)
     return (f"{word} {row['words']}", *figures, str(row["unknowns"]), seconds_words(row["seconds"]))
 
 
@@ -175,10 +192,6 @@ def _percent(part: float | None) -> str:
     if part is None:
         return NONE
     return "0 %" if abs(part) < 5e-6 else f"{100 * part:+.3f} %" if abs(part) < 1e-3 else f"{100 * part:+.2f} %"
-
-
-def _grams(mass: float | None) -> str:
-    return NONE if mass is None else grams(mass)
 
 
 def seconds_words(seconds: float) -> str:

@@ -6,36 +6,33 @@ from collections.abc import Callable
 
 from rich.console import Group
 
-from cuefem.beam.tip import TipModes
-from cuefem.endmass.drives import Drive, Spread, end_mass_spreads, formula_of
+from cuefem.endmass.drives import DEFINITIONS, Spread, spreads_of
+from cuefem.report.quantities import NONE, grams, significant
 from cuefem.report.record import Record
-from cuefem.report.table import NONE, table_of, with_caption
-from cuefem.report.words import _tip_effects, assumptions, grams, significant
+from cuefem.report.table import table_of, with_caption
+from cuefem.report.words import assumptions, tip_effect_notes
 from cuefem.scene import Scene
 from cuefem.squirt import cue_end_mass
+from cuefem.tip_modes import Solved
 
-DRIVES: tuple[Drive, ...] = ("stick", "offset", "velocity", "force", "squirt")
 
+def end_mass_record(scene: Scene, *, solved: Solved | None = None) -> Record:
+    """The end masses m_e, their range while fewer modes are kept, and [Kim]'s m_c and eps = m_c/M of each.
 
-def end_mass_record(scene: Scene, *, tip: TipModes | None = None) -> Record:
-    """The end masses m_e, how far they spread over the modes kept, [Kim]'s m_c and eps = m_c/M of each.
-
-    "offset" and "squirt" are those at the scene's own offset. A definition that has no answer here says why instead.
-    tip: better tip modes than those that the spread is over, where they are known.
+    "offset" and "squirt" are those at the scene's own offset. A definition that has no answer says why instead.
+    solved: the scene's modes, if they are known already.
     """
-    spread = end_mass_spreads(scene)
+    spread = spreads_of(solved or Solved(scene))
     return {
         "contact_time": scene.contact_time,
         "offset": scene.stroke.offset,
-        "drives": {drive: _end_mass(scene, spread, drive, tip=tip) for drive in DRIVES},
+        "drives": {drive: _end_mass(scene, spread, drive) for drive in DEFINITIONS},
     }
 
 
-def _end_mass(scene: Scene, spread: Callable[[Drive], Spread], drive: Drive, *, tip: TipModes | None = None) -> Record:
+def _end_mass(scene: Scene, spread: Callable[[str], Spread], drive: str) -> Record:
     try:
         felt, lowest, highest, _ = spread(drive)
-        if tip is not None:
-            felt = formula_of(drive)(tip, scene)
     except ValueError as error:
         names = ("end_mass", "lowest", "highest", "cue_end_mass", "eps")
         return {**dict.fromkeys(names), "reason": str(error)}
@@ -56,11 +53,11 @@ def _end_mass(scene: Scene, spread: Callable[[Drive], Spread], drive: Drive, *, 
 
 def end_mass_table(record: Record, scene: Record) -> Group:
     """The end masses by definition."""
-    columns = ["definition", "m_e", "spread over modes", "m_c", "eps"]
+    columns = ["definition", "m_e", "spread", "m_c", "eps"]
     table = table_of("Effective end mass", columns)
     refused = []
     for drive, values in record["drives"].items():
-        name = f"{drive}, at b/R {record['offset']:g}" if drive in ("offset", "squirt") else drive
+        name = f"{drive}, at b/R {record['offset']:g}" if DEFINITIONS[drive].at_offset else drive
         if values["end_mass"] is None:
             table.add_row(name, *[NONE] * 4)
             refused.append(f"{drive}: {values['reason']}")
@@ -72,7 +69,10 @@ def end_mass_table(record: Record, scene: Record) -> Group:
         table,
         assumptions(scene),
         *refused,
-        "m_e: felt across the cue at the tip (offset: what lumped models take); spread: a quarter of the modes to all",
+        "m_e: effective end mass, the inertia felt by the ball across the cue at its tip (lumped models take offset)",
+        "spread: range while keeping 25 to 100 % of the modes",
         "m_c = 4 m_e: cue end of the paper's two-part cue (nu_c 1/3); eps: m_c as a part of the ball's mass",
-        *_tip_effects(scene, "stick, offset and squirt take effects at the tip for end mass; velocity, force do not"),
+        *tip_effect_notes(
+            scene, "stick, offset and squirt count effects at the tip as end mass; velocity and force do not"
+        ),
     )

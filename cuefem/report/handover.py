@@ -10,48 +10,37 @@ an end mass of its own, the drive "A.31".
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Literal
 
 import numpy as np
 
 from cuefem.beam.tip import TipModes
 from cuefem.contact.strike import strike_modes
-from cuefem.endmass.drives import formula_of, of_strike, tip_modes_for
-from cuefem.quantity import scalar
-from cuefem.report.end_mass import DRIVES
+from cuefem.endmass.drives import DEFINITIONS, formula_of
+from cuefem.report.quantities import units_of
 from cuefem.report.record import Record
 from cuefem.scene import Scene
 from cuefem.squirt import alciatore_a31, alciatore_a31_mass_ratio
-from cuefem.tip_modes import tip_modes_of
+from cuefem.tip_modes import Solved
 
-Handed = Literal["A.31", "stick", "offset", "velocity", "force", "squirt"]
-HANDED: tuple[Handed, ...] = ("A.31", *DRIVES)
 OFFSETS = (0.1, 0.2, 0.3, 0.4, 0.5)
 POOLTOOL_INERTIA = 0.4  # its 5/2
 NICKEL = 0.0106045  # m, the dome of pooltool's own cue
 
-MEANING = {
-    "A.31": "the end mass whose [A.31] squirt is that of the coupled strike, at this offset, speed and contact time",
-    "stick": "the inertia across the cue that the ball feels in the coupled strike as the offset goes to zero",
-    "offset": "the inertia across the cue that the ball feels at this offset in a coupled strike whose tip never slips",
-    "velocity": "impulse over final velocity of a tip that is moved like (1 - cos(pi t/T))/2",
-    "force": "impulse over final velocity of a tip that is pushed by a half sine of length T",
-    "squirt": "the end mass whose squirt in the impulse solver (restitution, friction) is that of the coupled strike",
-}
+A31_MEANING = "the end mass whose [A.31] squirt is that of the coupled strike, at this offset, speed and contact time"
 SIGNS = (
     "a is b/R of the contact, positive on the ball's left, and alpha positive to the left: "
     "alpha(a) = -squirt(offset = a); end_mass is m_e, felt at the tip, not the four times larger m_c of the cue's end"
 )
-UNITS = {"M": "kg", "m": "kg", "end_mass": "kg", "length": "m", "R": "m", "radius": "m", "squirt": "rad"}
+UNITS = units_of("end_mass", "length", "radius", "squirt") | {"M": "kg", "m": "kg", "R": "m"}
 
 
-def pooltool_record(name: str, scene: Scene, *, drive: Handed = "A.31") -> Record:
+def pooltool_record(name: str, scene: Scene, *, drive: str = "A.31") -> Record:
     """pooltool's CueSpecs of a scene's cue, SI, what their end mass means, and what squirt it gives beside ours.
 
     drive: which end mass is handed over. ValueError where that one does not exist: "A.31" head on and in a miscue.
     """
-    tip = tip_modes_of(scene)
-    masses, reasons = _end_masses(scene, tip)
+    solved = Solved(scene)
+    masses, reasons = _end_masses(solved)
     if drive in reasons:
         raise ValueError(f"end mass {drive!r} does not exist here: {reasons[drive]}")
     return {
@@ -60,7 +49,7 @@ def pooltool_record(name: str, scene: Scene, *, drive: Handed = "A.31") -> Recor
         "BallParams": {"m": scene.ball.mass, "R": scene.ball.radius},
         "end_mass": {
             "drive": drive,
-            "meaning": MEANING[drive],
+            "meaning": A31_MEANING if drive == "A.31" else DEFINITIONS[drive].meaning,
             "contact_time": scene.contact_time,
             "offset": scene.stroke.offset,
             "speed": scene.stroke.speed,
@@ -69,7 +58,7 @@ def pooltool_record(name: str, scene: Scene, *, drive: Handed = "A.31") -> Recor
         },
         "signs": SIGNS,
         "notes": _notes(scene),
-        "squirt": _worth(scene, tip, masses[drive]),
+        "squirt": _worth(scene, solved.tip, masses[drive]),
         "units": UNITS,
     }
 
@@ -100,24 +89,21 @@ def _notes(scene: Scene) -> list[str]:
     return notes
 
 
-def _end_masses(scene: Scene, tip: TipModes) -> tuple[dict[str, float | None], dict[str, str]]:
-    stuck = tip_modes_for("offset", scene)
+def _end_masses(solved: Solved) -> tuple[dict[str, float | None], dict[str, str]]:
     masses: dict[str, float | None] = {}
     reasons: dict[str, str] = {}
-    for drive in HANDED:
+    for drive in ("A.31", *DEFINITIONS):
         try:
-            masses[drive] = _end_mass(scene, tip, stuck, drive)
+            masses[drive] = _end_mass(solved, drive)
         except ValueError as error:
             masses[drive], reasons[drive] = None, str(error)
     return masses, reasons
 
 
-def _end_mass(scene: Scene, tip: TipModes, stuck: TipModes, drive: Handed) -> float:
+def _end_mass(solved: Solved, drive: str) -> float:
     if drive == "A.31":
-        return _a31_end_mass(scene, tip)
-    if scene.lumped is not None:
-        return scalar("LumpedCue.end_mass", scene.lumped.end_mass)
-    return float(formula_of(drive)(tip if of_strike(drive, scene) else stuck, scene))
+        return _a31_end_mass(solved.scene, solved.tip)
+    return float(formula_of(drive)(solved.tip_stuck, solved.scene))
 
 
 def _a31_end_mass(scene: Scene, tip: TipModes) -> float:

@@ -7,7 +7,8 @@ from dataclasses import asdict
 from rich.console import Group
 
 from cuefem.materials import MATERIALS
-from cuefem.report.record import UNITS, Record
+from cuefem.report.quantities import QUANTITIES, units_of
+from cuefem.report.record import Record
 from cuefem.report.table import table_of, with_caption
 
 
@@ -23,20 +24,23 @@ def materials_record() -> Record:
             }
             for name, known in MATERIALS.items()
         },
-        "units": {name: UNITS[name] for name in ("E", "G", "rho")},
+        "units": units_of("E", "G", "rho"),
     }
 
 
 def materials_table(record: Record) -> Group:
     """Materials: modulus, shear modulus and density with their ranges, loss factor; sources."""
-    table = table_of("Materials", ["name", "E, GPa", "G, GPa", "rho, kg/m³", "loss"])
+    columns = [f"{name}, {QUANTITIES[name].shown_unit}" for name in ("E", "G", "rho")]
+    table = table_of("Materials", ["name", *columns, "loss"])
     for name, values in record["materials"].items():
-        cells = (_with_range(values, key, scale=scale) for key, scale in (("E", 1e9), ("G", 1e9), ("rho", 1.0)))
+        cells = (_with_range(values, name) for name in ("E", "G", "rho"))
         table.add_row(name, *cells, f"{values['loss']:g}")
     sources = (f"{name}: {values['source']}" for name, values in record["materials"].items())
-    return with_caption(table, "with the ranges in which real pieces lie; `cuefem materials --json` has more", *sources)
+    return with_caption(
+        table, "in brackets the range of real pieces; loss: loss factor; `cuefem materials --json` has more", *sources
+    )
 
 
-def _with_range(values: Record, key: str, *, scale: float) -> str:
-    low, high = values["ranges"][key]
-    return f"{values[key] / scale:.4g} ({low / scale:.4g}–{high / scale:.4g})"
+def _with_range(values: Record, name: str) -> str:
+    middle, low, high = (QUANTITIES[name].scale * value for value in (values[name], *values["ranges"][name]))
+    return f"{middle:.4g} ({low:.4g}–{high:.4g})"

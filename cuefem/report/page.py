@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict
-from functools import cache, partial
-from itertools import islice, pairwise
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from functools import cache, cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from cuefem.accuracy import Rung, ladder
+from cuefem.accuracy import Rung, climb
 from cuefem.beam.modes import modes
-from cuefem.contact.strike import strike
+from cuefem.beam.tip import TipModes
+from cuefem.contact.strike import strike_modes
+from cuefem.endmass.drives import DEFINITIONS
 from cuefem.quantity import scalar
-from cuefem.report.charts import Axis, Chart, Curve, Mark, Span, chart
+from cuefem.report.charts import Axis, Chart, Span
+from cuefem.report.contact import contact_part
 from cuefem.report.drawings import (
     cue_drawing,
     front_drawing,
@@ -28,19 +30,18 @@ from cuefem.report.drawings import (
 )
 from cuefem.report.effects import seconds_words
 from cuefem.report.end_mass import end_mass_record
+from cuefem.report.quantities import GRIPS, QUANTITIES, degrees, grams, written
 from cuefem.report.record import Record
-from cuefem.report.solve import ended_tip_modes
-from cuefem.report.squirt import PAPER_CUE_END_MASS, squirt_record
-from cuefem.report.strike import MISCUE, strike_record
+from cuefem.report.squirt import PAPER_CUE_END_MASS, offset_charts, squirt_record
+from cuefem.report.strike import BRIEF, MISCUE, model_rows, strike_record
 from cuefem.report.templates import environment
-from cuefem.report.words import assumptions, degrees, effect_words, grams, millimetres, plain_cue_line
+from cuefem.report.words import assumptions, effect_words, plain_cue_line
 from cuefem.scene import Outcome, Scene
+from cuefem.tip_modes import LEAST_STUCK, Solved
 
 DEFAULT_RTOL = 1e-2
 OFFSETS = tuple(round(0.03 * i, 2) for i in range(1, 21))  # b/R of the curves
-LONGEST_PIVOT = 1.5  # m; beyond it a pivot is behind the cue
 MEASURED_END_MASS = (5.8e-3, 14e-3)  # kg, of real cues; handbook: Effective end mass
-MOST_EVENTS = 12
 LATE = ("late stick", "miscue")
 
 # A model's class on the page, by the beginning of its name.
@@ -48,7 +49,7 @@ STYLES = {"coupled": "c1", "lumped": "c2", "two-part, this": "c3", "A.31": "c4",
 
 
 class Stage(NamedTuple):
-    """One step of the computation of a page, for who follows it."""
+    """One step of the computation of a page, for a progress bar."""
 
     name: str
     work: Callable[[], Any]
@@ -77,24 +78,43 @@ def page(
     return template.render(name=name, asked=asked, **said, **_context(scene, found)) + "\n"
 
 
+@dataclass(frozen=True, eq=False)
+class _ToAccuracy(Solved):
+    """A scene solved as finely as an accuracy asks for, by the last rung that its strike climbed to."""
+
+    rung: Rung | None = None
+
+    @cached_property
+    def tip(self) -> TipModes:
+        """Those of the rung."""
+        assert self.rung is not None
+        return self.rung.tip
+
+    @cached_property
+    def tip_stuck(self) -> TipModes:
+        """Those of the rung too, unless an end mass takes more modes by default."""
+        assert self.rung is not None
+        return self.tip if self.rung.at.modes >= LEAST_STUCK else self.tip_modes(LEAST_STUCK)
+
+
 def _stages(scene: Scene, rtol: float) -> list[Stage]:
-    solved: list[Rung] = []  # what the later stages need of the first
+    rungs: list[tuple[Rung, float]] = []
+    solved = cache(lambda: _ToAccuracy(scene, rung=rungs[-1][0]) if rungs else Solved(scene))
 
-    def climb() -> list[Step]:
-        steps, rung = accuracy_steps(scene, rtol)
-        solved.append(rung)
-        return steps
+    def climbed() -> list[Step]:
+        begun = time.perf_counter()
+        rungs.extend((rung, time.perf_counter() - begun) for rung in climb(scene, rtol))
+        return [_step(rung, seconds, rtol) for rung, seconds in rungs]
 
-    if scene.cue.segments:
-        first = Stage("steps", climb)
-        outcome = Stage("outcome", lambda: solved[0].outcome)
-        ended = cache(lambda: ended_tip_modes(scene, solved[0].at))
-        masses = Stage("end_masses", lambda: end_mass_record(scene, tip=ended()))
-        return [first, outcome, masses, Stage("squirt", lambda: squirt_record(scene, OFFSETS, tip=ended()))]
+    def outcome() -> Outcome:
+        return rungs[-1][0].outcome if rungs else strike_modes(scene, solved().tip)
+
     return [
-        Stage("outcome", lambda: strike(scene)),
-        Stage("end_masses", lambda: end_mass_record(scene)),
-        Stage("squirt", lambda: squirt_record(scene, OFFSETS)),
+        *([Stage("steps", climbed)] if scene.lumped is None else []),
+        Stage("outcome", outcome),
+        Stage("end_masses", lambda: end_mass_record(scene, solved=solved())),
+        Stage("squirt", lambda: squirt_record(scene, OFFSETS, solved=solved())),
+        Stage("strike", lambda: strike_record(scene, outcome(), solved=solved())),
     ]
 
 
@@ -109,23 +129,16 @@ class Step(NamedTuple):
     reached: bool
 
 
-def accuracy_steps(scene: Scene, rtol: float) -> tuple[list[Step], Rung]:
-    """The rungs that a strike to relative accuracy ``rtol`` takes, and the last of them."""
-    begun, steps = time.perf_counter(), []
-    for rung in ladder(scene):
-        error = rung.outcome.error
-        reached = error is not None and error <= rtol
-        written = "–" if error is None else f"{error:.1e}"
-        spent = seconds_words(time.perf_counter() - begun)
-        steps.append(Step(rung.at.modes, rung.outcome.unknowns, degrees(rung.outcome.squirt), written, spent, reached))
-        if reached:
-            break
-    return steps, rung
+def _step(rung: Rung, seconds: float, rtol: float) -> Step:
+    outcome = rung.outcome
+    reached = outcome.error is not None and outcome.error <= rtol
+    sizes = rung.at.modes, outcome.unknowns
+    return Step(*sizes, degrees(outcome.squirt), written("error", outcome.error), seconds_words(seconds), reached)
 
 
 def _context(scene: Scene, found: Record) -> Record:
     outcome: Outcome = found["outcome"]
-    record = strike_record(scene, outcome)
+    record = found["strike"]
     return {
         "scene": scene,
         "facts": _facts(scene),
@@ -136,12 +149,12 @@ def _context(scene: Scene, found: Record) -> Record:
         "warning": MISCUE if outcome.regime == "miscue" else "",
         "cue": _cue_part(scene) if scene.cue.segments else None,
         "modes": _modes_part(scene) if scene.cue.segments else None,
-        "contact": None if outcome.history is None else _contact(outcome),
+        "contact": None if outcome.history is None else contact_part(outcome),
         "by_offset": _by_offset(found["squirt"], scene),
         "slipped": bool(_slipped(found["squirt"])),
         "end_masses": _end_masses(found["end_masses"], found["squirt"]),
         "energy": _energy(outcome),
-        "models": _models(record),
+        "models": {"names": list(record["models"]), "rows": model_rows(record, BRIEF)},
         "coupling": record["coupling"],
         "steps": found.get("steps"),
     }
@@ -159,16 +172,20 @@ def _facts(scene: Scene) -> list[str]:
 
 def _key_figures(record: Record, end_masses: Record, outcome: Outcome) -> list[tuple[str, str, str]]:
     coupled, felt = record["models"]["coupled"], end_masses["drives"]["squirt"]["end_mass"]
-    figures = [
-        ("squirt", degrees(outcome.squirt), f"{math.tan(abs(outcome.squirt)) * 1e3:.0f} mm in a metre"),
-        ("natural pivot length", millimetres(coupled["pivot_length"]), "where turning the cue undoes squirt"),
-        ("end mass", "–" if felt is None else grams(felt), "the lumped one that squirts as much"),
-        ("ball speed", f"{outcome.ball_speed:.3f} m/s", f"cue after: {outcome.cue_speed:.3f} m/s"),
-        ("spin", f"{outcome.spin:.1f} rad/s", f"{abs(outcome.spin) / (2 * math.pi):.1f} turns a second"),
+    remarks = {
+        "squirt": f"{math.tan(abs(outcome.squirt)) * 1e3:.0f} mm aside in a metre",
+        "pivot_length": "pivot the cue about this point and squirt cancels",
+        "end_mass": "effective, at the tip: a lumped cue with it squirts as much",
+        "ball_speed": f"the cue goes on at {written('cue_speed', outcome.cue_speed, brief=True)}",
+        "spin": f"{abs(outcome.spin) / (2 * math.pi):.1f} turns a second",
+        "duration": f"grip: {GRIPS[outcome.regime][1]}",
+    }
+    values = coupled | {"end_mass": felt}
+    return [
+        (QUANTITIES[name].label, written(name, values[name], brief=True), remark)
+        for name, remark in remarks.items()
+        if name != "duration" or outcome.duration is not None
     ]
-    if outcome.duration is not None:
-        figures.append(("contact", f"{1e3 * outcome.duration:.3f} ms", f"how it went: {outcome.regime}"))
-    return figures
 
 
 def _modes_part(scene: Scene) -> Any:
@@ -197,96 +214,14 @@ def _cue_part(scene: Scene) -> Record:
     }
 
 
-def _contact(outcome: Outcome) -> Record:
-    events = list(_events(outcome))
-    t = np.linspace(0, outcome.duration, 401)
-    history = outcome.history(t)
-    ms = 1e3 * t
-    slipping = [phase for phase in outcome.phases if phase.grip.startswith("slip")]
-    spans = [Span(1e3 * phase.start, 1e3 * phase.end, "slip") for phase in slipping]
-    marks = [Mark(1e3 * at, str(i + 1)) for i, (at, _) in enumerate(events)]
-
-    def drawn(title: str, label: str, curves: list[Curve]) -> Chart:
-        return chart(title, curves, x=Axis("time, ms", 0.0, float(ms[-1])), y=Axis(label), spans=spans, marks=marks)
-
-    return {
-        "charts": [
-            drawn(
-                "Force of the tip on the ball",
-                "force, N",
-                [
-                    Curve("along the normal", ms, history["force_n"], "c1"),
-                    Curve("along the tangent", ms, history["force_t"], "c2"),
-                ],
-            ),
-            drawn(
-                "Velocity of the ball against the tip",
-                "velocity, m/s",
-                [
-                    Curve("along the normal", ms, history["velocity_n"], "c1"),
-                    Curve("along the tangent", ms, history["velocity_t"], "c2"),
-                ],
-            ),
-        ],
-        "events": [(str(i + 1), f"{1e3 * at:.4f} ms", words) for i, (at, words) in enumerate(events)],
-        "slips": bool(spans),
-    }
-
-
-def _events(outcome: Outcome) -> Iterator[tuple[float, str]]:
-    """Moments at which one phase becomes another, s, in words; at most so many, and the last."""
-    phases = outcome.phases
-    yield phases[0].start, "first touch, the tip slips" if phases[0].grip != "stick" else "first touch, the tip sticks"
-    for before, after in islice(pairwise(phases), MOST_EVENTS):
-        yield after.start, _turn(before, after)
-    yield phases[-1].end, "separation"
-
-
-def _turn(before: Any, after: Any) -> str:
-    grips = {"stick": "the tip sticks", "slip": "the tip slips", "slip back": "the tip slips back"}
-    presses = {
-        "load": "pressed beyond its old peak",
-        "unload": "greatest compression",
-        "rigid": "greatest compression",
-        "ringing": "the tip rings",
-        "capped": "the tip rings less and less",
-        "rubbed": "friction damps the ringing",
-        "rubbed back": "friction damps the ringing",
-        "swinging": "the tip rings and slips by turns",
-    }
-    words = []
-    if after.press != before.press:
-        words.append(presses.get(after.press, after.press))
-    if after.grip != before.grip:
-        words.append(grips.get(after.grip, after.grip))
-    return ", ".join(words) or "goes on"
-
-
 def _style(model: str) -> str:
     return next(style for start, style in STYLES.items() if model.startswith(start))
 
 
-def _by_offset(record: Record, scene: Scene) -> list[Chart]:
-    offsets = np.array(record["offsets"])
-    own = abs(scalar("Stroke.offset", scene.stroke.offset))
-    models = [(name, found, _style(name)) for name, found in record["models"].items()]
-    at = Axis("offset b/R", 0.0, float(offsets[-1]))
-    squirt = [
-        Curve(name, np.r_[0.0, offsets], np.degrees(np.r_[0.0, found["squirt"]]), style)
-        for name, found, style in models
-    ]
-    pivot = [
-        Curve(name, offsets, 1e3 * np.where(found["squirt"] > 0, found["pivot_length"], np.nan), style)
-        for name, found, style in models
-    ]
-    longest = min(LONGEST_PIVOT, max(float(np.nanmax(curve.y, initial=0.1)) for curve in pivot) / 1e3)
-    highest = Axis("", 0.0).over([np.array([1e3 * longest])]).high
-    here = [Mark(own, "here")] if 0 < own <= offsets[-1] else []
-    drawn = partial(chart, x=at, marks=here, spans=_slipped(record), height=300)
-    return [
-        drawn("Squirt", squirt, y=Axis("squirt, degrees")),
-        drawn("Natural pivot length", pivot, y=Axis("pivot length, mm", 0.0, highest)),
-    ]
+def _by_offset(record: Record, scene: Scene) -> tuple[Chart, Chart]:
+    lines = [(name, _style(name), one["squirt"], one["pivot_length"]) for name, one in record["models"].items()]
+    own = scalar("Stroke.offset", scene.stroke.offset)
+    return offset_charts(lines, record["offsets"], own, height=300, spans=_slipped(record))
 
 
 def _slipped(record: Record) -> list[Span]:
@@ -320,7 +255,10 @@ def _end_masses(record: Record, squirt: Record) -> Record:
     def row(name: str, felt: float, spread: tuple[float, float]) -> MassRow:
         return MassRow(name, place(felt), place(spread[0]), place(spread[1]), grams(felt))
 
-    rows = [row(DRIVE_WORDS[n], values["end_mass"], (values["lowest"], values["highest"])) for n, values in drives]
+    rows = [
+        row(DEFINITIONS[n].label_at(record["offset"]), values["end_mass"], (values["lowest"], values["highest"]))
+        for n, values in drives
+    ]
     rows.append(row("the paper's 12 g", paper, (paper, paper)))
     return {
         "rows": rows,
@@ -329,18 +267,9 @@ def _end_masses(record: Record, squirt: Record) -> Record:
         "ends": (left, right),
         "height": 26.0 * len(rows) + 44,
         "reasons": [values["reason"] for values in record["drives"].values() if values["end_mass"] is None],
-        "offset": f"{record['offset']:g}",
+        "meanings": [(one.label_at(record["offset"]), one.meaning) for one in DEFINITIONS.values()],
         "coupling": squirt["coupling"],
     }
-
-
-DRIVE_WORDS = {
-    "stick": "stick",
-    "offset": "at this offset",
-    "velocity": "velocity",
-    "force": "force",
-    "squirt": "squirt-equivalent",
-}
 
 
 def _energy(outcome: Outcome) -> list[tuple[str, str, float, str]]:
@@ -354,23 +283,3 @@ def _energy(outcome: Outcome) -> list[tuple[str, str, float, str]]:
 
 def _joules(energy: float) -> str:
     return f"{energy:.4g} J" if abs(energy) >= 1 else f"{1e3 * energy:.4g} mJ"
-
-
-def _models(record: Record) -> Record:
-    names = list(record["models"])
-    rows = []
-    for label, key, written in MODEL_ROWS:
-        values = [record["models"][name].get(key) for name in names]
-        if any(value is not None for value in values):
-            rows.append((label, ["–" if value is None else written(value) for value in values]))
-    return {"names": names, "rows": rows}
-
-
-MODEL_ROWS: tuple[tuple[str, str, Callable[[Any], str]], ...] = (
-    ("squirt", "squirt", degrees),
-    ("pivot length", "pivot_length", millimetres),
-    ("ball speed", "ball_speed", lambda v: f"{v:.3f} m/s"),
-    ("spin", "spin", lambda v: f"{v:.1f} rad/s"),
-    ("cue speed after", "cue_speed", lambda v: f"{v:.3f} m/s"),
-    ("how it went", "regime", str),
-)

@@ -13,19 +13,9 @@ from cuefem.scene import Scene
 
 Record = dict[str, Any]
 
-UNITS = {
-    **dict.fromkeys(("mass", "shaft_mass", "body_mass", "end_mass", "cue_end_mass", "lowest", "highest"), "kg"),
-    **dict.fromkeys(("length", "balance_point", "radius", "pivot_length"), "m"),
-    **dict.fromkeys(("speed", "ball_speed", "ball_velocity", "cue_speed"), "m/s"),
-    **dict.fromkeys(("contact_time", "duration"), "s"),
-    **dict.fromkeys(("frequencies", "near", "nearest"), "Hz"),
-    **{"tip_amplitudes": "1/sqrt(kg)", "squirt": "rad", "spin": "rad/s"},
-    **{"coupling": "1/kg", "seconds": "s", "impulse": "N s", "energy": "J", "E": "Pa", "G": "Pa", "rho": "kg/m^3"},
-}
-
 
 def plain(value: Any) -> Any:
-    """A value as JSON can say it: arrays as lists, what is infinite or undefined as null."""
+    """A value as JSON can hold it: arrays become lists, infinite and undefined numbers become null."""
     if isinstance(value, dict):
         return {str(key): plain(inner) for key, inner in value.items()}
     if isinstance(value, np.ndarray | np.generic):
@@ -46,7 +36,7 @@ def cue_record(cue: Cue | LumpedCue) -> Record:
 
 
 def scene_record(scene: Scene) -> Record:
-    """What a stroke's numbers rest on: cue, ball, tip, stroke and effects."""
+    """The scene that a result is for: cue, ball, tip, stroke and effects."""
     return {
         "cue": cue_record(scene.cue),
         "ball": asdict(scene.ball),

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 from cuefem.design.scatter import Drivers, Scatter
+from cuefem.report.quantities import TRADE, significant
 from cuefem.report.table import table_of, with_caption
-from cuefem.report.words import significant
 
 SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)
-TRADE = {"kg": (1e3, "g"), "m": (1e3, "mm"), "rad": (math.degrees(1), "°"), "N/m": (1, "N/m"), "": (1, "")}
+
+DRIVERS = "What drives the spread: share of the variance, in per cent"
 
 
 def scatter_record(wanted: Scatter, found: Drivers) -> dict[str, Any]:
@@ -40,7 +40,7 @@ def scatter_tables(wanted: Scatter, found: Drivers) -> list[Any]:
     """The spread of every response, and what drives it."""
     count = len(found.spread.values)
     spreads = table_of("Spread", ["response", "mean", "sd", *(f"{100 * share:g} %" for share in SHARES)])
-    shares = table_of("What drives it: share of the variance, in per cent", ["response, cause", "alone", "in all"])
+    shares = table_of(DRIVERS, ["response, cause", "alone", "in all"])
     for k, response in enumerate(wanted.study.responses):
         scale, unit = TRADE.get(response.unit, (1, response.unit))
         numbers = [found.spread.mean[k], found.spread.sd[k], *found.spread.quantiles(SHARES)[:, k]]
@@ -50,8 +50,11 @@ def scatter_tables(wanted: Scatter, found: Drivers) -> list[Any]:
         for i in found.total[:, k].argsort()[::-1]:
             both = ((found.first, found.first_interval), (found.total, found.total_interval))
             shares.add_row(f"  {found.causes[i]}", *(_share(value[i, k], ends[:, i, k]) for value, ends in both))
-    drawn = f"{count} designs; of them so many lie below the value"
-    words = ("alone: what would go, were the cause known; in all: what would stay, were all others known",)
+    drawn = f"{count} designs; a column headed 5 %: 5 % of them lie below its value; sd: standard deviation"
+    words = (
+        "alone: the part of the variance that goes away if this cause is known; in all: the part that stays if all "
+        "other causes are known",
+    )
     grouped = [f"{c}: {', '.join(n)}" for c, n in wanted.groups.items()]
     intervals = "in brackets 95 % intervals, bootstrapped"
     return [with_caption(spreads, drawn), with_caption(shares, *words, intervals, *grouped)]

@@ -1,35 +1,35 @@
-"""Squirt and pivot length against the offset: records and tables."""
+"""Squirt and pivot length against the offset: record, tables and charts."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from rich.console import Group
 from rich.table import Table
 
-from cuefem.beam.tip import TipModes
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import LumpedCue
-from cuefem.endmass.drives import tip_modes_for
 from cuefem.endmass.lumped import impulse
-from cuefem.report.record import Record
-from cuefem.report.strike import (
-    _a31,
-    _at,
-    _coupled,
-    _coupling_slope,
-    _left_out,
-    _pivot_length,
+from cuefem.report.charts import Axis, Chart, Curve, Mark, Span, chart
+from cuefem.report.models import (
+    a31_squirt,
+    at_offset,
     bare_scene,
+    coupling_slope,
+    model_notes,
+    pivot_length,
     two_part_cues,
+    with_coupling,
 )
-from cuefem.report.table import NONE, table_of, with_caption
-from cuefem.report.words import assumptions, degrees, grams, millimetres, significant
-from cuefem.scene import Outcome, Scene
-from cuefem.tip_modes import tip_modes_of
+from cuefem.report.quantities import NONE, grams, significant, written
+from cuefem.report.record import Record
+from cuefem.report.strike import PIVOT
+from cuefem.report.table import table_of, with_caption
+from cuefem.report.words import assumptions
+from cuefem.scene import Scene
+from cuefem.tip_modes import Solved
 
 OFFSETS = (0.1, 0.2, 0.3, 0.4, 0.5)
 
@@ -42,42 +42,41 @@ def _curve(
     cues: Sequence[LumpedCue | None],
     squirt: Callable[[Scene, LumpedCue], Any] = lambda scene, cue: impulse(bare_scene(scene, cue)).squirt,
 ) -> Record:
-    """Squirt and natural pivot length of a lumped cue an offset, nan where there is none."""
+    """Squirt and natural pivot length of one lumped cue an offset; nan at an offset that has no such cue."""
     found: Record = {"squirt": np.full(len(offsets), np.nan), "pivot_length": np.full(len(offsets), np.nan)}
     for i, (offset, cue) in enumerate(zip(offsets, cues, strict=True)):
         if cue is not None:
-            struck = _at(scene, offset)
+            struck = at_offset(scene, offset)
             found["squirt"][i] = squirt(struck, cue)
-            found["pivot_length"][i] = _pivot_length(struck, found["squirt"][i])
+            found["pivot_length"][i] = pivot_length(struck, found["squirt"][i])
     return found
 
 
-def two_part_curve(scene: Scene, offsets: Sequence[float], tip: TipModes) -> Record:
+def two_part_curve(solved: Solved, offsets: Sequence[float]) -> Record:
     """The impulse solver's squirt and natural pivot length against the offset, each with its own `two_part_cues`."""
-    return _curve(scene, offsets, two_part_cues(scene, offsets, tip))
+    return _curve(solved.scene, offsets, two_part_cues(solved.scene, offsets, solved.tip_stuck))
 
 
-def squirt_record(scene: Scene, offsets: Sequence[float] = OFFSETS, *, tip: TipModes | None = None) -> Record:
-    """Squirt and natural pivot length against the offset: coupled in time, lumped (where effects at the tip couple the
-    cue's motions), two parts of this cue, [Kim]'s 12 g, [A.31]; nan where there is no lumped cue. "end_mass": that of
-    the tip that sticks at each offset, without effects at the tip.
+def squirt_record(scene: Scene, offsets: Sequence[float] = OFFSETS, *, solved: Solved | None = None) -> Record:
+    """Squirt and natural pivot length against the offset, by every model; nan where a model has no lumped cue.
 
-    tip: the cue's tip modes, where they are known.
+    The models are: coupled in time; lumped (if effects at the tip couple the cue's motions); two-part of this cue and
+    of [Kim]'s 12 g; and [A.31]. "end_mass": that of a tip that sticks at each offset, without effects at the tip.
+    solved: the scene's modes, if they are known already.
     """
-    stuck = tip_modes_for("offset", scene) if tip is None else tip
-    tip = tip_modes_of(scene) if tip is None else tip
-    cues, slope = two_part_cues(scene, offsets, stuck), _coupling_slope(scene, stuck)
-    struck = _struck(scene, offsets, tip)
+    solved = solved or Solved(scene)
+    cues, slope = two_part_cues(scene, offsets, solved.tip_stuck), coupling_slope(scene, solved.tip_stuck)
+    struck = [strike_modes(at_offset(scene, offset), solved.tip) for offset in offsets]
     coupled = np.array([outcome.squirt for outcome in struck])
-    pivots = _pivot_length(_at(scene, np.array(offsets)), coupled)
+    pivots = pivot_length(at_offset(scene, np.array(offsets)), coupled)
     found: Record = {"coupled, this cue": {"squirt": coupled, "pivot_length": pivots}}
     if slope:
-        lumped = [_coupled(cue, slope * abs(b)) for cue, b in zip(cues, offsets, strict=True)]
+        lumped = [with_coupling(cue, slope * abs(b)) for cue, b in zip(cues, offsets, strict=True)]
         found["lumped, this cue"] = _curve(scene, offsets, lumped)
     papers = LumpedCue.two_part(scene.axial_mass, PAPER_CUE_END_MASS)
     found["two-part, this cue"] = _curve(scene, offsets, cues)
     found["two-part, 12 g"] = _curve(scene, offsets, [papers] * len(offsets))
-    found["A.31, this cue"] = _curve(scene, offsets, cues, _a31)
+    found["A.31, this cue"] = _curve(scene, offsets, cues, a31_squirt)
     found["coupled, this cue"]["regime"] = [outcome.regime for outcome in struck]
     return {
         "offsets": list(offsets),
@@ -87,22 +86,17 @@ def squirt_record(scene: Scene, offsets: Sequence[float] = OFFSETS, *, tip: TipM
     }
 
 
-def _struck(scene: Scene, offsets: Sequence[float], tip: TipModes) -> list[Outcome]:
-    scenes = [replace(scene, stroke=replace(scene.stroke, offset=b)) for b in offsets]
-    return [strike_modes(one, tip) for one in scenes]
-
-
-def _by_offset(title: str, record: Record, *, key: str, written: Any) -> Table:
+def _by_offset(title: str, record: Record, name: str) -> Table:
     models = record["models"]
     table = table_of(title, ["b/R", *models], text_columns=0)
     for i, offset in enumerate(record["offsets"]):
-        cells = (written(model[key][i]) + _missed(model, i) for model in models.values())
+        cells = (written(name, model[name][i]) + _missed(model, i) for model in models.values())
         table.add_row(f"{offset:g}", *cells)
     return table
 
 
 def _missed(model: Record, i: int) -> str:
-    """A word beside the number of a stroke that miscues, where a model tells."""
+    """A word beside the number of a stroke that miscues, if the model tells."""
     return ", miscue" if "miscue" in model.get("regime", ())[i : i + 1] else ""
 
 
@@ -111,14 +105,48 @@ def squirt_table(record: Record, scene: Record) -> Group:
     known = [mass for mass in record["end_mass"] if mass is not None]
     felt = f"{significant(1e3 * known[0])} to {grams(known[-1])}" if known else NONE
     models = (
-        f"coupled: in time; two-part: m_e {felt} (offset); 12 g: the paper's m_c, m_e 3 g; A.31: Alciatore's formula"
+        f"coupled: vibrating shaft in time; two-part: end mass m_e {felt} (offset); 12 g: the mass m_c of the paper's "
+        "cue end, m_e 3 g; A.31: Alciatore's formula"
     )
-    table = _by_offset("Squirt", record, key="squirt", written=degrees)
-    return with_caption(table, assumptions(scene), models, *_left_out(scene, record, "b/R /kg"))
+    table = _by_offset("Squirt", record, "squirt")
+    return with_caption(table, assumptions(scene), models, *model_notes(scene, record, "b/R /kg"))
 
 
 def pivot_table(record: Record) -> Group:
     """Natural pivot length against the offset."""
-    caption = "from the tip to the bridge about which turning the cue undoes squirt"
-    table = _by_offset("Natural pivot length", record, key="pivot_length", written=millimetres)
-    return with_caption(table, caption)
+    return with_caption(_by_offset("Natural pivot length", record, "pivot_length"), PIVOT)
+
+
+LONGEST_PIVOT = 1.5  # m; beyond it a pivot is behind the cue
+
+
+def offset_charts(
+    lines: Sequence[tuple[str, str, Any, Any]],
+    offsets: Sequence[float],
+    own: float,
+    *,
+    height: float,
+    spans: Sequence[Span] = (),
+) -> tuple[Chart, Chart]:
+    """Charts of squirt and of pivot length against the offset.
+
+    lines: name, class on the page, squirt in rad and pivot length in m of every curve. own: the offset of the scene's
+    stroke, which is marked. spans: offsets to shade.
+    """
+    x = np.array(offsets)
+    squirt = [Curve(name, np.r_[0.0, x], np.degrees(np.r_[0.0, angle]), style) for name, style, angle, _ in lines]
+    pivot = [
+        Curve(name, x, 1e3 * np.where(np.asarray(angle) > 0, length, np.nan), style)
+        for name, style, angle, length in lines
+    ]
+    longest = max([0.1, *(float(np.nanmax(curve.y, initial=0.0)) / 1e3 for curve in pivot)])
+    highest = Axis("", 0.0).over([np.array([1e3 * min(LONGEST_PIVOT, longest)])]).high
+    at, here = Axis("offset b/R", 0.0, float(x[-1])), [Mark(abs(own), "here")] if 0 < abs(own) <= x[-1] else []
+
+    def drawn(title: str, curves: list[Curve], y: Axis) -> Chart:
+        return chart(title, curves, x=at, y=y, marks=here, spans=spans, height=height)
+
+    return (
+        drawn("Squirt", squirt, Axis("squirt, degrees")),
+        drawn("Natural pivot length", pivot, Axis("pivot length, mm", 0.0, highest)),
+    )

@@ -2,104 +2,55 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
-from typing import Any
-
-import numpy as np
 from rich.console import Group
 
-from cuefem.beam.tip import TipModes
-from cuefem.contact.strike import strike
-from cuefem.cue import LumpedCue
-from cuefem.endmass.drives import stick_at_offset, tip_modes_for
-from cuefem.endmass.lumped import impulse, lump_modes
+from cuefem.contact.strike import strike_modes
+from cuefem.endmass.lumped import impulse
 from cuefem.quantity import scalar
+from cuefem.report.models import (
+    a31_squirt,
+    bare_scene,
+    coupling_slope,
+    model_notes,
+    pivot_length,
+    two_part_cues,
+    with_coupling,
+)
+from cuefem.report.quantities import GRIPS, NONE, QUANTITIES, grams, written
 from cuefem.report.record import Record
-from cuefem.report.table import NONE, table_of, with_caption
-from cuefem.report.words import _tip_effects, assumptions, degrees, grams, millimetres
+from cuefem.report.table import table_of, with_caption
+from cuefem.report.words import assumptions
 from cuefem.scene import Outcome, Scene
-from cuefem.squirt import alciatore_a31, natural_pivot_length
-
-
-def two_part_cues(scene: Scene, offsets: Sequence[float], tip: TipModes) -> list[LumpedCue | None]:
-    """The scene's cue as the impulse solver takes it at each offset, without effects at its tip.
-
-    Its end mass is that of a tip that sticks at this offset; None where none has that squirt. A lumped cue keeps its
-    end mass. tip: the cue's tip modes.
-    """
-    if scene.lumped is not None:
-        return [replace(scene.lumped, coupling=0.0)] * len(offsets)
-    try:
-        masses = stick_at_offset(tip, _at(scene.bare, np.array(offsets)))
-    except ValueError:
-        if len(offsets) == 1:
-            return [None]
-        return [cue for offset in offsets for cue in two_part_cues(scene, [offset], tip)]
-    return [LumpedCue(scene.axial_mass, felt) for felt in masses.tolist()]
-
-
-def _coupling_slope(scene: Scene, tip: TipModes) -> float:
-    """What effects at the tip add to `two_part_cues`, as a coupling per b/R; zero where no lumped cue has them.
-
-    It is found at the scene's own offset, or head on at 0.1.
-    """
-    offset = scalar("Stroke.offset", scene.stroke.offset) or 0.1
-    try:
-        cue = lump_modes(_at(scene, offset), tip)
-    except ValueError:  # an offset, or an effect, beyond any lumped cue's coupling
-        return 0.0
-    return scalar("LumpedCue.coupling", cue.coupling) / abs(offset)
-
-
-def _coupled(cue: LumpedCue | None, coupling: float) -> LumpedCue | None:
-    """The cue with a coupling; None where no cue has it."""
-    try:
-        return cue and replace(cue, coupling=coupling)
-    except ValueError:
-        return None
-
-
-def _at(scene: Scene, offset: Any) -> Scene:
-    return replace(scene, stroke=replace(scene.stroke, offset=offset))
-
-
-def bare_scene(scene: Scene, cue: LumpedCue) -> Scene:
-    """The scene with a lumped cue in its cue's place, and without effects."""
-    return replace(scene, cue=cue, effects=())
+from cuefem.tip_modes import Solved
 
 
 def outcome_record(outcome: Outcome, scene: Scene) -> Record:
-    """A strike's outcome with the natural pivot length of its squirt (none at offset 0)."""
+    """A strike's outcome with the natural pivot length of its squirt (None at offset 0)."""
     names = ("squirt", "ball_speed", "ball_velocity", "spin", "cue_speed", "impulse", "duration", "regime", "energy")
     found = {name: getattr(outcome, name) for name in (*names, "unknowns", "error")}
-    return found | {"pivot_length": _pivot_length(scene, outcome.squirt)}
+    return found | {"pivot_length": pivot_length(scene, outcome.squirt)}
 
 
-def _pivot_length(scene: Scene, squirt: Any) -> Any:
-    if not np.all(scene.stroke.offset):
-        return None
-    radii = {"radius": scene.ball.radius, "dome_radius": scene.dome_radius}
-    return natural_pivot_length(scene.stroke.offset, squirt, **radii)
-
-
-def strike_record(scene: Scene, outcome: Outcome | None = None) -> Record:
+def strike_record(scene: Scene, outcome: Outcome | None = None, *, solved: Solved | None = None) -> Record:
     """One strike by every model, by the model's name; a model that says less leaves keys out.
 
-    outcome: of the coupled strike, where it is known. "lumped" is there where effects at the tip couple the cue's
-    motion along and across; "two-part" and "A.31" leave those effects out. They take the end mass of a tip that sticks
-    at this offset, and are left out where there is none.
+    "coupled" is the vibrating cue in time. "two-part" (the impulse solver) and "A.31" take the end mass of a tip that
+    sticks at this offset, leave out effects at the tip, and are missing if no end mass has that squirt. "lumped" is
+    the impulse solver with the coupling that effects at the tip add, if they add any. outcome: of the coupled strike,
+    if it is known already; solved: the scene's modes, if they are.
     """
-    offset, tip = scalar("Stroke.offset", scene.stroke.offset), tip_modes_for("offset", scene)
-    (cue,), coupling = two_part_cues(scene, [offset], tip), _coupling_slope(scene, tip) * abs(offset)
-    models = {"coupled": outcome_record(strike(scene) if outcome is None else outcome, scene)}
-    coupled = _coupled(cue, coupling) if coupling else None
+    solved = solved or Solved(scene)
+    offset = scalar("Stroke.offset", scene.stroke.offset)
+    (cue,) = two_part_cues(scene, [offset], solved.tip_stuck)
+    coupling = coupling_slope(scene, solved.tip_stuck) * abs(offset)
+    models = {"coupled": outcome_record(outcome or strike_modes(scene, solved.tip), scene)}
+    coupled = with_coupling(cue, coupling) if coupling else None
     if coupled is not None:
         models["lumped"] = outcome_record(impulse(bare_scene(scene, coupled)), scene)
     if cue is not None:
         models["two-part"] = outcome_record(impulse(bare_scene(scene, cue)), scene)
-        a31 = _a31(scene, cue)
-        models["A.31"] = {"squirt": a31, "pivot_length": _pivot_length(scene, a31)}
+        squirt = a31_squirt(scene, cue)
+        models["A.31"] = {"squirt": squirt, "pivot_length": pivot_length(scene, squirt)}
     return {
         "end_mass": None if cue is None else cue.end_mass,
         "coupling": 0.0 if coupled is None else coupling,
@@ -107,49 +58,48 @@ def strike_record(scene: Scene, outcome: Outcome | None = None) -> Record:
     }
 
 
-def _a31(scene: Scene, cue: LumpedCue) -> Any:
-    return alciatore_a31(scene.stroke.offset, mass_ratio=scene.ball.mass / cue.end_mass, inertia=scene.ball.inertia)
-
-
-_ROWS: tuple[tuple[str, str, Any], ...] = (
-    ("squirt", "squirt", degrees),
-    ("natural pivot length", "pivot_length", millimetres),
-    ("ball speed", "ball_speed", lambda v: f"{v:.4f} m/s"),
-    ("ball velocity, normal", "ball_velocity", lambda v: f"{v[1]:.4f} m/s"),
-    ("ball velocity, tangent", "ball_velocity", lambda v: f"{v[0]:.4f} m/s"),
-    ("spin", "spin", lambda v: f"{v:.3f} rad/s"),
-    ("cue speed after", "cue_speed", lambda v: f"{v:.4f} m/s"),
-    ("contact time", "duration", lambda v: f"{1e3 * v:.4f} ms"),
-    ("how it went", "regime", str),
-    ("estimated error", "error", lambda v: f"{v:.1e}"),
+# What is shown of a strike, in this order; a vector by its parts (along the tangent, along the normal).
+BRIEF = ("squirt", "pivot_length", "ball_speed", "spin", "cue_speed", "regime")
+WHOLE = (
+    *("squirt", "pivot_length", "ball_speed", ("ball_velocity", 1, "normal"), ("ball_velocity", 0, "tangent")),
+    *("spin", "cue_speed", "duration", "regime", "error"),
 )
 
-MISCUE = "this stroke miscues: the tip slips on the ball to the end; its squirt and pivot length are no shot's"
+
+def model_rows(record: Record, shown: tuple[str | tuple[str, int, str], ...] = WHOLE) -> list[tuple[str, list[str]]]:
+    """A label and a text for each model, for every quantity that any of the models has."""
+    rows = []
+    for row in shown:
+        name, part, words = row if isinstance(row, tuple) else (row, None, "")
+        values = [model.get(name) for model in record["models"].values()]
+        if any(value is not None for value in values):
+            label = f"{QUANTITIES[name].label}, {words}" if words else QUANTITIES[name].label
+            parts = [value if value is None or part is None else value[part] for value in values]
+            rows.append((label, [written(name, value, brief=shown is BRIEF) for value in parts]))
+    return rows
+
+
+MISCUE = "this stroke miscues: the tip slips on the ball to the end; not a valid shot: ignore squirt and pivot length"
 
 
 def strike_table(record: Record, scene: Record) -> Group:
     """One strike, a column for each model."""
-    models = record["models"]
-    offset = scene["stroke"]["offset"]
-    table = table_of(f"Strike at offset b/R = {offset:g}", ["", *models])
-    for label, key, written in _ROWS:
-        values = [model.get(key) for model in models.values()]
-        if any(value is not None for value in values):
-            table.add_row(label, *(NONE if value is None else written(value) for value in values))
+    coupled = record["models"]["coupled"]
+    table = table_of(f"Strike at offset b/R = {scene['stroke']['offset']:g}", ["", *record["models"]])
+    for label, texts in model_rows(record):
+        table.add_row(label, *texts)
     felt = NONE if record["end_mass"] is None else grams(record["end_mass"])
-    coupled = record["models"].get("coupled", {})
-    missed = [MISCUE] if coupled.get("regime") == "miscue" else []
-    exact = ", modes kept for 0.5 % of squirt" if "length" in scene["cue"] and coupled.get("error") is None else ""
-    models = [f"coupled: vibrating shaft in time{exact}; two-part and A.31: end mass m_e {felt} (offset)"]
-    return with_caption(table, *missed, assumptions(scene), *models, *_left_out(scene, record, "/kg"))
-
-
-def _left_out(scene: Record, record: Record, unit: str) -> list[str]:
-    """What the lumped models make of the effects at the tip."""
-    lumped = (
-        f"; lumped has them as a coupling of {record['coupling']:.4g} {unit}, the tip's "
-        "speed across the cue by a unit of impulse along it"
-        if record["coupling"]
-        else ""
+    missed = [MISCUE] if coupled["regime"] == "miscue" else []
+    exact = ", modes kept for 0.5 % of squirt" if "length" in scene["cue"] and coupled["error"] is None else ""
+    return with_caption(
+        table,
+        *missed,
+        assumptions(scene),
+        f"coupled: vibrating shaft in time{exact}; two-part and A.31: end mass m_e {felt} (offset)",
+        f"natural pivot length: {PIVOT}",
+        *(f"grip, {word}: {full}" for word, full in GRIPS.values() if word == GRIPS[coupled["regime"]][0]),
+        *model_notes(scene, record, "/kg"),
     )
-    return _tip_effects(scene, f"two-part and A.31 leave the effects at the tip out{lumped}")
+
+
+PIVOT = "pivot the cue about this point, so far from the tip, and squirt cancels"

@@ -12,9 +12,8 @@ from rich.padding import Padding
 from rich.table import Column, Table
 from rich.text import Text
 
-ROOMY = 3  # spaces between columns where there is room, beside one at either edge
-
-TIGHT = 2  # and where there is none, without edges
+# Spaces between columns: in a wide terminal, with one more at either edge; and in a narrow one, without edges.
+ROOMY, TIGHT = 3, 2
 
 
 class WholeTable(Table):
@@ -31,7 +30,7 @@ class WholeTable(Table):
         self.text_columns = text_columns
 
     def add_row(self, *cells: str, **options: Any) -> None:  # type: ignore[override]
-        """A row of plain strings; what looks like markup in them is none."""
+        """A row of plain strings; brackets in them are not taken for markup."""
         found = (Text(cell, no_wrap=i >= self.text_columns) for i, cell in enumerate(cells))
         super().add_row(*found, **options)
 
@@ -63,9 +62,10 @@ class WholeTable(Table):
 
 
 def shared(ranges: Sequence[tuple[int, int]], spare: int, *, first: Sequence[int]) -> list[int]:
-    """Widths from least to natural that fill ``spare`` together: the widest columns give way, ``first`` before others.
+    """The width of each column, so that together they fill ``spare`` characters.
 
-    ranges: least and natural width of each column; the least widths fit.
+    The widest columns are made narrower first, those of ``first`` before the others. ranges: the least and the natural
+    width of each column; the least widths together fit.
     """
     widths = [most for _, most in ranges]
     for group in (first, range(len(ranges))):
@@ -74,14 +74,11 @@ def shared(ranges: Sequence[tuple[int, int]], spare: int, *, first: Sequence[int
     return widths
 
 
-NONE = "–"
-
-
 def table_of(title: str, columns: Sequence[str], *, text_columns: int = 1) -> Table:
-    """An empty table: text to the left, numbers to the right; no cell of it is ever cut."""
+    """An empty table: text to the left, numbers to the right; no cell is ever cut."""
     return WholeTable(title, columns, text_columns=text_columns)
 
 
 def with_caption(table: Table, *lines: str) -> Group:
-    """A table and, below it in its own width, what it rests on."""
+    """The table, then caption lines that state its assumptions."""
     return Group(table, *(Padding(Text(line, style="dim"), (0, 0, 0, 2), expand=False) for line in lines), "")

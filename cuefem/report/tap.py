@@ -10,32 +10,24 @@ from typing import Any
 import numpy as np
 from rich.table import Table
 
+from cuefem.report.quantities import NONE, grams, units_of, written
 from cuefem.report.record import Record
 from cuefem.report.strike import MISCUE
-from cuefem.report.table import NONE, table_of, with_caption
-from cuefem.report.words import grams, significant
+from cuefem.report.table import table_of, with_caption
 from cuefem.tap.chance import LEVEL
 from cuefem.tap.fit import TapFit
 from cuefem.tap.ringing import Ringing
 from cuefem.tap.tones import HIGH, LOW
 from cuefem.tap.wood import Predicted
 
-UNITS = {
-    **{"E": "Pa", "G": "Pa", "rho": "kg/m^3", "frequency": "Hz", "error": "as its number", "decay": "1/s"},
-    **{
-        "end_mass": "kg",
-        "squirt": "rad",
-        "shaft_mass": "kg",
-        "clipped": "s",
-        "mains": "Hz",
-        "level": "dB",
-        "covariance": "of ln E, ln G/E, ln rho",
-    },
+UNITS = units_of("E", "G", "rho", "end_mass", "squirt", "shaft_mass") | {
+    **{"frequency": "Hz", "error": "as its number", "decay": "1/s", "clipped": "s", "mains": "Hz", "level": "dB"},
+    "covariance": "of ln E, ln G/E, ln rho",
 }
 KINDS = {
     "faint": "too faint to tell",
     "steady": "steady hum",
-    "harmonic": "sum of others?",
+    "harmonic": "sum of other tones?",
     "twin": "twin of the other",
 }
 
@@ -94,7 +86,7 @@ def _tones(record: Record) -> Any:
         f, model = tone["frequency"], tone["model_frequency"]
         level = f"{20 * np.log10(tone['level'] / strongest):.0f} dB"
         loss = f"{tone['decay'] / (np.pi * f):.4f}"
-        mode = KINDS.get(tone["kind"], "none of it") if model is None else str(tone["mode"])
+        mode = KINDS.get(tone["kind"], "not of this shaft") if model is None else str(tone["mode"])
         fitted = (NONE, NONE) if model is None else (f"{model:.2f} Hz", f"{100 * (f / model - 1):+.2f} %")
         table.add_row(f"{f:.2f} Hz", f"{tone['error']:.2g} Hz", loss, level, mode, *fitted)
     taps = f"{record['taps']} tap" + ("s" if record["taps"] > 1 else "")
@@ -103,15 +95,14 @@ def _tones(record: Record) -> Any:
 
 def _wood(record: Record) -> Any:
     made: Table = table_of("The wood", ["", "fitted", "±", "", "in the file"])
-    for name, unit, scale in (("E", "GPa", 1e9), ("G", "GPa", 1e9), ("rho", "kg/m³", 1.0)):
+    for name in ("E", "G", "rho"):
         own = record["wood"][name]
-        relative = f"{100 * own['error'] / own['value']:.2g} %"
-        values = [significant(own[key] / scale) for key in ("value", "error", "before")]
-        made.add_row(name, f"{values[0]} {unit}", f"{values[1]} {unit}", relative, f"{values[2]} {unit}")
+        value, error, before = (written(name, own[key]) for key in ("value", "error", "before"))
+        made.add_row(name, value, error, f"{100 * own['error'] / own['value']:.2g} %", before)
     return with_caption(
         made,
-        f"G goes with {_shear(record['shear_coefficients'])}: what the tones tell is their product",
-        f"loss factor of the tones {record['wood']['loss']:.4f} (median; of the wood at most)",
+        f"the tones tell G times the shear coefficient; here {_shear(record['shear_coefficients'])}",
+        f"loss factor {record['wood']['loss']:.4f}, the median of the tones: the wood's own is at most that",
         f"{_share(record['chance'])} of random sets of tones fit this shaft as well",
         *(f"doubt: {doubt}" for doubt in record["refusals"]),
         *(f"note: {note}" for note in record["notes"]),
@@ -135,7 +126,9 @@ def _numbers(record: Record, about: Record) -> Any:
     made.add_row(f"squirt at b/R {about['stroke']['offset']:g}", *angles)
     missed = [MISCUE] if record["regime"] == "miscue" else []
     return with_caption(
-        made, *missed, "±: one standard deviation, from the wood alone; not from the model of the stroke"
+        made,
+        *missed,
+        "±: one standard deviation that comes from the wood; the error of the stroke's model is not in it",
     )
 
 

@@ -1,39 +1,15 @@
-"""Numbers and objects in the words and units of the trade."""
+"""A cue, a scene and its effects in a line of words each."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import fields
 from typing import Any
 
 from cuefem.cue import Cue, LumpedCue
 from cuefem.effects import Effect
 from cuefem.io.schema import table as file_table
+from cuefem.report.quantities import grams
 from cuefem.report.record import Record, cue_record
-from cuefem.report.table import NONE
-
-
-def grams(mass: float) -> str:
-    """A mass in grams, to four digits where they are decimals."""
-    return significant(1e3 * mass) + " g"
-
-
-def degrees(angle: float) -> str:
-    """An angle in degrees, to a thousandth."""
-    return f"{math.degrees(angle):.3f}°" if math.isfinite(angle) else NONE
-
-
-def millimetres(length: float | None) -> str:
-    """A length in whole millimetres."""
-    return NONE if length is None or not math.isfinite(length) else f"{1e3 * length:.0f} mm"
-
-
-def significant(value: float, digits: int = 4) -> str:
-    """A number to so many digits where they are decimals."""
-    if value == 0 or not math.isfinite(value):
-        return f"{value:.0f}"
-    decimals = max(0, digits - 1 - math.floor(math.log10(abs(value))))
-    return f"{value:.{decimals}f}"
 
 
 def assumptions(scene: Record) -> str:
@@ -65,7 +41,7 @@ def plain_cue_line(cue: Cue | LumpedCue) -> str:
 
 
 def effect_words(effect: Effect) -> str:
-    """An effect in a few words, what is as by default left out: "PointMass (position 100 mm, mass 5 g)"."""
+    """An effect in a few words, without what is at its default: "PointMass (position 100 mm, mass 5 g)"."""
     usual = {field.name: field.default for field in fields(effect)}
     given = {name: value for name, value in file_table(effect).items() if getattr(effect, name) != usual[name]}
     entries = [f"{name} {_short(value)}" for name, value in given.items()]
@@ -78,6 +54,6 @@ def _short(value: Any) -> str:
     return f"{float(number_text):.6g} {unit}".rstrip()
 
 
-def _tip_effects(scene: Record, words: str) -> list[str]:
-    """A line about effects at the tip, where a scene has any."""
+def tip_effect_notes(scene: Record, words: str) -> list[str]:
+    """The words as a caption line, if the scene has effects at the tip."""
     return [words] if scene["effects_at_tip"] else []

@@ -121,7 +121,7 @@ def test_strike(kim: str) -> None:
 
 
 def test_a_miscue_is_said_first(kim: str) -> None:
-    caption = run("strike", kim, "--offset", "0.85").split("how it went")[1]
+    caption = run("strike", kim, "--offset", "0.85").split("grip")[1]
     assert "miscue" in caption.splitlines()[0]
     assert caption.index("this stroke miscues: ") < caption.index("contact time 2 ms")
     assert "miscues" not in run("strike", kim)

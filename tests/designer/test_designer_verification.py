@@ -16,9 +16,9 @@ from cuefem.designer.numbers import Row, difference, key_markup, rows, table_mar
 from cuefem.designer.start import first_scene
 from cuefem.report.end_mass import end_mass_record
 from cuefem.report.modes import modes_record
+from cuefem.report.quantities import grams
 from cuefem.report.squirt import squirt_record
 from cuefem.report.strike import strike_record
-from cuefem.report.words import grams
 from tests.helpers.command_line import call
 
 SCENES = Path(__file__).parents[2] / "studies" / "scenes"

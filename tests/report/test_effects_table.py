@@ -15,8 +15,7 @@ from cuefem.accuracy import resolve
 from cuefem.design.worth import change, variants
 from cuefem.effects import effect_kinds
 from cuefem.report import effects_record
-from cuefem.report.effects import MARGIN, advice
-from cuefem.report.solve import struck
+from cuefem.report.effects import MARGIN, advice, struck
 from tests.helpers.command_line import call
 
 CUE = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 782.3284453057836), kappa=0.9),), 0.42)

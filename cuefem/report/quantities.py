@@ -1,0 +1,145 @@
+"""The quantities that records, tables and pages hold: what each is called, its SI unit, and how it is written.
+
+One entry here is all that a new quantity takes: the units of the records, the rows of every table, the page's and the
+designer's numbers are made of these.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+NONE = "–"
+# The units in which a cue maker reads what a record holds in SI: how many of them one SI unit is, and their name.
+TRADE = {
+    "kg": (1e3, "g"),
+    "m": (1e3, "mm"),
+    "s": (1e3, "ms"),
+    "rad": (math.degrees(1), "°"),
+    "Pa": (1e-9, "GPa"),
+    "kg/m^3": (1.0, "kg/m³"),
+    "1/sqrt(kg)": (1.0, "/√kg"),
+}
+
+
+class Known(NamedTuple):
+    """A quantity: its name for people, its SI unit ("" for a pure number or a word), and its decimals in trade units.
+
+    decimals: None for four digits in all.
+    """
+
+    label: str
+    unit: str = ""
+    decimals: int | None = None
+
+    @property
+    def shown_unit(self) -> str:
+        """The unit that people read it in."""
+        return TRADE.get(self.unit, (1.0, self.unit))[1]
+
+    @property
+    def scale(self) -> float:
+        """How many of the units that people read one SI unit is."""
+        return TRADE.get(self.unit, (1.0, self.unit))[0]
+
+    def number(self, value: float, *, brief: bool = False) -> str:
+        """A value in the unit that people read, without it; brief: a decimal less."""
+        decimals = self.decimals
+        if decimals is None:
+            return significant(self.scale * value)
+        return f"{self.scale * value:.{max(decimals - brief, 0)}f}"
+
+    def written(self, value: Any, *, brief: bool = False) -> str:
+        """A value with its unit; a dash where there is none, words as they are."""
+        if isinstance(value, str):
+            return value
+        if value is None or not math.isfinite(value):
+            return NONE
+        space = "" if self.shown_unit in ("°", "") else " "
+        return f"{self.number(float(value), brief=brief)}{space}{self.shown_unit}"
+
+
+class _Error(Known):
+    """A relative error, of which only the size means anything."""
+
+    def number(self, value: float, *, brief: bool = False) -> str:
+        """Two digits and a power of ten."""
+        return f"{value:.1e}"
+
+
+def significant(value: float, digits: int = 4) -> str:
+    """A number to so many digits where they are decimals."""
+    if value == 0 or not math.isfinite(value):
+        return f"{value:.0f}"
+    decimals = max(0, digits - 1 - math.floor(math.log10(abs(value))))
+    return f"{value:.{decimals}f}"
+
+
+QUANTITIES = {
+    "mass": Known("mass of the cue", "kg"),
+    "shaft_mass": Known("mass of the drawn part", "kg"),
+    "body_mass": Known("mass behind the drawn part", "kg"),
+    "end_mass": Known("end mass", "kg"),
+    "cue_end_mass": Known("mass of the cue's end", "kg"),
+    "lowest": Known("lowest", "kg"),
+    "highest": Known("highest", "kg"),
+    "length": Known("length", "m", 0),
+    "balance_point": Known("balance point of the drawn part, from the tip", "m", 1),
+    "radius": Known("radius", "m", 2),
+    "squirt": Known("squirt", "rad", 3),
+    "pivot_length": Known("natural pivot length", "m", 0),
+    "speed": Known("speed", "m/s", 4),
+    "ball_speed": Known("ball speed", "m/s", 4),
+    "ball_velocity": Known("ball velocity", "m/s", 4),
+    "spin": Known("spin", "rad/s", 3),
+    "cue_speed": Known("cue speed after", "m/s", 4),
+    "contact_time": Known("contact time of a head-on blow", "s"),
+    "duration": Known("contact time", "s", 4),
+    "regime": Known("grip"),
+    "error": _Error("estimated error"),
+    "energy": Known("energy", "J"),
+    "impulse": Known("impulse", "N s"),
+    "coupling": Known("coupling", "1/kg"),
+    "tip_stiffness": Known("shaft stiffness at the tip", "N/m"),
+    "frequencies": Known("frequency", "Hz", 2),
+    "near": Known("frequency asked for", "Hz"),
+    "nearest": Known("nearest frequency", "Hz", 2),
+    "tip_amplitudes": Known("tip amplitude", "1/sqrt(kg)", 3),
+    "E": Known("E", "Pa"),
+    "G": Known("G", "Pa"),
+    "rho": Known("rho", "kg/m^3"),
+    "seconds": Known("seconds", "s"),
+}
+UNITS = {name: known.unit for name, known in QUANTITIES.items() if known.unit}
+# How the tip gripped the ball, by the regime of a strike: a word for tables, and the same in full.
+GRIPS = {
+    "stick": ("held", "the tip held the ball, at once or after a short slip"),
+    "late stick": ("held late", "slipped first, then held late, near a miscue"),
+    "slip reversal": ("slipped back", "slipped first, then slipped back"),
+    "miscue": ("miscue", "slipped to the end, a miscue"),
+}
+
+
+def units_of(*names: str) -> dict[str, str]:
+    """The SI units of some quantities."""
+    return {name: UNITS[name] for name in names}
+
+
+def written(name: str, value: Any, *, brief: bool = False) -> str:
+    """A value of the quantity of that name, with its unit."""
+    return QUANTITIES[name].written(GRIPS[value][0] if name == "regime" and value else value, brief=brief)
+
+
+def grams(mass: float | None) -> str:
+    """A mass in grams, to four digits where they are decimals."""
+    return QUANTITIES["mass"].written(mass)
+
+
+def degrees(angle: float | None) -> str:
+    """An angle in degrees, to a thousandth."""
+    return QUANTITIES["squirt"].written(angle)
+
+
+def millimetres(length: float | None) -> str:
+    """A length in whole millimetres."""
+    return QUANTITIES["length"].written(length)

@@ -1,0 +1,69 @@
+"""A command or a page solves no eigenproblem of a cue twice (properties)."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import cuefem as cf
+from cuefem.beam import modes
+from cuefem.designer.answers import answers
+from tests.helpers.command_line import call
+
+KIM = Path(__file__).parents[2] / "studies/scenes/kim.toml"
+
+
+@pytest.fixture
+def solved(monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, str]]:
+    """Every eigenproblem of bending that is solved: its unknowns, and its stiffness as a digest."""
+    found: list[tuple[int, str]] = []
+    lowest = modes.lowest
+
+    def noted(K: Any, M: Any, **options: Any) -> Any:
+        whole = K if isinstance(K, np.ndarray) else K.toarray()
+        found.append((len(whole), hashlib.sha256(whole.tobytes()).hexdigest()))
+        return lowest(K, M, **options)
+
+    monkeypatch.setattr(modes, "lowest", noted)
+    return found
+
+
+def command(*arguments: str) -> Callable[[Path], None]:
+    def run(folder: Path) -> None:
+        placed = [str(folder / part) if part == "page.html" else part for part in arguments]
+        assert call(placed[0], KIM, *placed[1:])[0] == 0
+
+    return run
+
+
+def designer(folder: Path) -> None:
+    scene = cf.load(KIM)
+    assert isinstance(scene, cf.Scene)
+    answers(scene)
+
+
+@pytest.mark.parametrize(
+    ("work", "count"),
+    [
+        # a strike, an end mass (more modes), the range of the end masses (plain sums), and the frequencies shown
+        (command("report"), 4),
+        # the strike of a page climbs to an accuracy, here on its first mesh
+        (command("report", "-o", "page.html"), 4),
+        (command("strike"), 2),  # the end mass of the two-part model takes more modes
+        (command("end-mass"), 2),
+        (command("modes"), 1),
+        (command("handover"), 1),
+        (designer, 3),
+    ],
+    ids=["report", "page", "strike", "end mass", "modes", "handover", "designer"],
+)
+def test_no_eigenproblem_is_solved_twice(
+    work: Callable[[Path], None], count: int, solved: list[tuple[int, str]], tmp_path: Path
+) -> None:
+    work(tmp_path)
+    assert len(set(solved)) == len(solved) == count
