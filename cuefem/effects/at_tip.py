@@ -51,11 +51,11 @@ class TipDome(TipEffect):
 
     @property
     def dome_radius(self) -> float:
-        """The dome's own: the levers of two domes add, and so do their radii."""
+        """The radius of the dome; the levers of two domes add, and so do their radii."""
         return self.radius
 
     def lever(self, phi: float) -> tuple[float, float]:
-        """The contact is at r (1 - cos(phi)) along x and -r sin(phi) along w from the apex; rotation is w'."""
+        """Displacement per unit rotation of a contact r (1 - cos(phi)) behind the apex and -r sin(phi) off it."""
         return -self.radius * math.sin(phi), self.radius * (1 - math.cos(phi))
 
 
