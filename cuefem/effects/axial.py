@@ -1,4 +1,4 @@
-"""Rod modes of a cue on the beam's own mesh: stiffness EA (u')^2, mass rhoA u'^2 (in time), and lumps at nodes."""
+"""Modes of a cue as a rod along its axis, on the mesh of the beam: stiffness EA, mass rhoA, and lumps at nodes."""
 
 from __future__ import annotations
 
@@ -19,9 +19,10 @@ from cuefem.cue import Array, Section
 
 @dataclass(frozen=True)
 class RodModes:
-    """Flexible rod modes, ascending: vectors (unknowns, n) of the axial displacement, mass-normalised, u(0) > 0.
+    """Flexible rod modes with ascending frequency.
 
-    radiation: (tail, tail), 1/s, of the last of them where these are a tail (`cuefem.beam.tail`), None without one.
+    vectors: (unknowns, n), the axial displacement in each mode, mass-normalised and positive at the tip. radiation:
+    (tail, tail), 1/s, the damping of the last modes if they are a tail (`cuefem.beam.tail`); None without a tail.
     """
 
     vectors: Array
@@ -39,7 +40,7 @@ class RodModes:
 
     @property
     def omega(self) -> Array:
-        """Angular frequencies, rad/s, (n,): the root of the strain energy, exact to rounding for low modes too."""
+        """Angular frequencies, rad/s, (n,), from the strain energy, which is exact to rounding for low modes too."""
         return np.sqrt(np.sum(self.strains**2, axis=(0, 1)))
 
     @property
@@ -48,30 +49,30 @@ class RodModes:
         return self.vectors[0]
 
     def loss_factors(self, loss: Section) -> Array:
-        """Loss factor of every mode, (n,), from that of EA, (elements, q)."""
+        """Loss factor of every mode, (n,), from the loss factor of EA at the Gauss points, (elements, q)."""
         return np.einsum("eq,eqn->n", loss.EA, self.strains**2) / self.omega**2
 
 
 def _chain_basis(order: int) -> tuple[Array, Array]:
-    """Basis and its derivative at the Gauss points: tip end, bubbles, butt end; each (order + 1, q)."""
+    """Basis functions and their derivatives at the Gauss points, each (order + 1, q): tip end, bubbles, butt end."""
     values, slopes = line_basis(order, table(order).points)
     chain = np.r_[0, 2 : order + 1, 1]
     return values[chain], slopes[chain]
 
 
 def _first(system: System) -> NDArray[np.intp]:
-    """Every element's first unknown: neighbours share one."""
+    """The first unknown of every element; neighbours share one unknown."""
     return system.mesh.order * np.arange(len(system.mesh.piece))
 
 
 def rod_modes(
     system: System, masses: Sequence[tuple[float, float]], *, below: float, leather: float = 0.0, tailed: bool = False
 ) -> RodModes:
-    """Rod modes up to the angular frequency ``below``, rad/s, of an assembled beam's cue, free at both ends.
+    """Rod modes up to the angular frequency ``below``, rad/s, of an assembled beam that is free at both ends.
 
-    masses: (position m, mass kg) of lumps. leather: length, m, that moves as one with the tip, up to a node. tailed:
-    with the tail of the modes left out. Element matrices are exact; cost: one symmetric eigenproblem of order times
-    elements unknowns.
+    masses: (position m, mass kg) of each lump. leather: length, m, of the piece that moves rigidly with the tip; it
+    ends at a node. tailed: whether to add the tail of the modes left out. The element matrices are exact; the cost is
+    one symmetric eigenproblem with order times elements unknowns.
     """
     front = system.mesh.node(leather)
     K, M = _matrices(system, masses, front)
@@ -90,7 +91,7 @@ def rod_modes(
 
 
 def _matrices(system: System, masses: Sequence[tuple[float, float]], front: int) -> tuple[Any, Any]:
-    """K and M of the rod from node ``front`` on, which carries the mass of all before it."""
+    """K and M of the rod behind node ``front``, which carries the mass of everything before it."""
     mesh, section = system.mesh, system.section
     values, slopes = _chain_basis(mesh.order)
     weights, sizes = table(mesh.order).weights, mesh.sizes[:, None]
@@ -106,8 +107,10 @@ def _matrices(system: System, masses: Sequence[tuple[float, float]], front: int)
 
 
 def _whole(vectors: Array, system: System, front: int) -> Array:
-    """Vectors of all of the cue's unknowns from those of node ``front`` on: before it nodes move with it, bubbles
-    vanish."""
+    """Vectors of all unknowns of the cue from those behind node ``front``.
+
+    The nodes before it move with it, and the bubbles there vanish.
+    """
     order = system.mesh.order
     before = np.zeros((order * front, vectors.shape[1]))
     before[::order] = vectors[0]
@@ -115,7 +118,7 @@ def _whole(vectors: Array, system: System, front: int) -> Array:
 
 
 def _modes_below(system: System, omega: float) -> int:
-    """About how many flexible rod modes lie below ``omega`` rad/s: the waves' phase over pi, one more a piece."""
+    """About how many flexible rod modes lie below ``omega`` rad/s: the phase of the waves over pi, and one a piece."""
     section, mesh = system.section, system.mesh
     slowness = np.sqrt(section.rhoA / section.EA) @ table(mesh.order).weights
     return int(omega * (slowness @ mesh.sizes) / np.pi) + 2 + int(mesh.piece[-1])

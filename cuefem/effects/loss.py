@@ -1,4 +1,4 @@
-"""Modal damping from the loss factors of a cue's materials."""
+"""The damping of the modes from the loss factors of a cue's materials."""
 
 from __future__ import annotations
 
@@ -15,9 +15,10 @@ from cuefem.effects.base import Vibrations
 
 
 def damped(tip: TipModes, cue: Cue, families: Sequence[Vibrations], *, loss: float | None) -> TipModes:
-    """Tip modes whose vibrating modes, the families' one after the other, lose eta_k omega_k each.
+    """Tip modes in which each vibrating mode k is damped at the rate eta_k omega_k.
 
-    loss: of every material instead of its own.
+    families: the vibrating modes of the tip, one family after the other. loss: loss factor used for every material
+    instead of its own.
     """
     factors = section_loss(cue, families[0].system, loss)
     rates = [family.loss_factors(factors) * family.omega for family in families]
@@ -27,10 +28,10 @@ def damped(tip: TipModes, cue: Cue, families: Sequence[Vibrations], *, loss: flo
 
 
 def section_loss(cue: Cue, system: System, loss: float | None) -> Section:
-    """Loss factor of each of a section's stiffnesses at the Gauss points, (elements, q): shell and core, weighted.
+    """Loss factor of each stiffness of the section at the Gauss points, (elements, q), shell and core together.
 
-    A loss factor is the imaginary part of a modulus over its real part, and stiffnesses are linear in the moduli: the
-    ratio of a section with moduli times loss factors to the elastic one.
+    A loss factor is the imaginary part of a modulus over its real part, and the stiffnesses are linear in the moduli.
+    The result is therefore the section with every modulus multiplied by its loss factor, over the elastic section.
     """
     mesh, elastic = system.mesh, system.section
     rows = np.array([_lossy(segment, loss) for segment in cue.segments]).T
@@ -40,7 +41,7 @@ def section_loss(cue: Cue, system: System, loss: float | None) -> Section:
 
 
 def _lossy(segment: Segment, loss: float | None) -> Array:
-    """The segment's constants with moduli times loss factors."""
+    """The constants of a segment with every modulus multiplied by its loss factor."""
     shell = segment.material.loss if loss is None else loss
     core = 0.0 if segment.core is None else segment.core.loss if loss is None else loss
     c = SegmentRows(*segment.constants)

@@ -60,16 +60,16 @@ class PointMass(CueEffect):
 
     @property
     def axial_mass(self) -> float:
-        """The lump moves with the cue."""
+        """The piece moves along the axis with the cue."""
         return self.mass
 
     @property
     def positions(self) -> tuple[float, ...]:
-        """The lump's own."""
+        """The position of the piece."""
         return (self.position,)
 
     def add_to(self, terms: Terms) -> None:
-        """The lump's inertia."""
+        """Add the mass and the rotary inertia."""
         terms.add(self.position, "mass", self.mass, self.rotary_inertia)
 
 
@@ -124,17 +124,17 @@ class Support(CueEffect):
 
     @property
     def positions(self) -> tuple[float, ...]:
-        """The support's own."""
+        """The position of the support."""
         return (self.position,)
 
     @property
     def clamps(self) -> tuple[tuple[str, float], ...]:
-        """Deflection, rotation, or both, where the stiffness is infinite."""
+        """Deflection, rotation or both, if their stiffness is infinite."""
         names = ("stiffness", "rotational_stiffness")
         return tuple((name, self.position) for name in names if math.isinf(getattr(self, name)))
 
     def add_to(self, terms: Terms) -> None:
-        """The support's springs and dashpot."""
+        """Add the springs and the dashpot."""
         terms.add(self.position, "stiffness", self.stiffness, self.rotational_stiffness)
         terms.add(self.position, "dashpot", self.dashpot, 0.0)
 
@@ -184,23 +184,23 @@ class Joint(CueEffect):
 
     @property
     def positions(self) -> tuple[float, ...]:
-        """The joint's own."""
+        """The position of the joint."""
         return (self.position,)
 
     @property
     def splits(self) -> tuple[float, ...]:
-        """The joint's own place, unless it is stiff in both."""
+        """The position of the joint, unless both compliances are zero."""
         return (self.position,) if self.rotational_compliance or self.shear_compliance else ()
 
     def check_on(self, cue: Cue, name: str) -> None:
-        """A joint has cue on both sides."""
+        """ValueError unless the cue goes on at both sides of the joint."""
         if not NEAR * cue.length < self.position < cue.length * (1 - NEAR):
             raise ValueError(
                 f"{name}.position must be in (0, {cue.length}) m, between the ends of the cue; got {self.position}"
             )
 
     def add_to(self, terms: Terms) -> None:
-        """The joint's compliances; those of joints at one place add up."""
+        """Add the compliances; those of several joints at one place add up."""
         if self.splits:
             terms.join(self.position, self.shear_compliance, self.rotational_compliance)
 
@@ -244,7 +244,7 @@ class StructuralDamping(CueEffect):
     loss: Annotated[float | None, Quantity("", "[0, 1)")] = None
 
     def damp(self, tip: TipModes, cue: Cue, families: Sequence[Vibrations]) -> TipModes:
-        """Diagonal damping of the vibrating modes of every family."""
+        """The tip modes with every vibrating mode damped."""
         from cuefem.effects.loss import damped  # loaded when used: it needs scikit-fem
 
         return damped(tip, cue, families, loss=self.loss)

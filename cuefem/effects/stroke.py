@@ -75,9 +75,9 @@ class Elevation(Effect):
     table and spin is about the vertical; `Outcome.history` has the rest (`velocity` and `spin`, x right, y forward, z
     up).
 
-    Matters when: The cue is raised by a few degrees, for the spin about level axes and, in proportion to the angle
-    through the friction of the cloth, for the speed. Squirt changes with the square of the angle. The curve of the ball
-    after the stroke is not included.
+    Matters when: The cue is raised by even a few degrees. The ball then spins about level axes too, the friction of the
+    cloth takes speed from it in proportion to the angle, and its squirt changes with the square of the angle. The curve
+    of the ball after the stroke is not included.
 
     Wrong when: The stroke is a jump shot, which needs the bounce of cloth and slate, the ball is frozen to another one,
     or infinite tip friction begins with an impulsive blow, in which the table does not rub. It cannot be used with a
