@@ -18,7 +18,7 @@ from cuefem.beam.system import assemble
 from cuefem.beam.tail import Deflect, flexibility, tail
 from cuefem.beam.tip import TipModes
 from cuefem.beam.waves import mesh_for, modes_below, wave_phase
-from cuefem.contact.linear import APART
+from cuefem.contact.state import APART
 from cuefem.contact.strike import strike, strike_modes
 from cuefem.cue import Array, Cue
 from cuefem.effects import SecondHit

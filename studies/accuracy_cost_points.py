@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 from importlib import import_module
 from itertools import pairwise
@@ -35,8 +35,7 @@ from cuefem.beam.system import assemble
 from cuefem.beam.tail import tail
 from cuefem.beam.tip import tip_modes
 from cuefem.beam.waves import mesh_for
-from cuefem.contact.flow import Arrival
-from cuefem.contact.linear import Contact
+from cuefem.contact.linear import Exact
 from cuefem.contact.strike import strike_modes
 from cuefem.endmass.drives import velocity
 from cuefem.scene import Resolution
@@ -164,8 +163,7 @@ def _fresh(count: int, *, by_tail: bool) -> Outcome:
 # (c) the contact
 
 
-@dataclass
-class Newmark(Contact):
+class Newmark(Exact):
     """The same phases by Newmark's constant-average-acceleration steps, their ends by a shortened last step.
 
     In first-order form that rule is the trapezoidal one: z' = A z, (1 - A h/2) z(t + h) = (1 + A h/2) z(t).
@@ -173,11 +171,12 @@ class Newmark(Contact):
 
     steps: int = 1000
 
-    def go(self, grip: Any, press: Any) -> Any:
+    def follow(self, grip: Any, press: Any) -> str:
         """One phase."""
-        flow, (names, guards) = self.flow(grip, press), self._guards(grip, press)
-        rows, h = guards.weights @ flow.rows, self.laws.time / self.steps
-        advance, z = _trapezoid(flow.A, h), self.z
+        contact = self.contact
+        flow, (names, guards) = self.flow(grip, press), self.guards(grip, press)
+        rows, h = guards.weights @ flow.rows, contact.laws.time / self.steps
+        advance, z, before, start = _trapezoid(flow.A, h), contact.z, contact.impulse, contact.time
         values = rows @ z + guards.constants
         while True:
             following = advance @ z
@@ -185,12 +184,14 @@ class Newmark(Contact):
             fallen = np.flatnonzero((after < 0) & ((values > 0) | (after < values)))
             if len(fallen):
                 break
-            z, values, self.time = following, after, self.time + h
+            z, values, contact.time = following, after, contact.time + h
         fractions = np.maximum(values[fallen], 0) / (np.maximum(values[fallen], 0) - after[fallen])
         guard, fraction = int(fallen[np.argmin(fractions)]), float(fractions.min())
         state = _trapezoid(flow.A, fraction * h) @ z
-        self._take(Arrival(self.time + fraction * h, state, guard, []), grip, press, self.impulse)
-        return self._next(names[guard], grip, press)
+        self.arrive(contact.time + fraction * h, state, [])
+        self.patch.end(self, grip, press)
+        contact.end_phase(grip, press, start, before)
+        return names[guard]
 
 
 def _trapezoid(A: np.ndarray, h: float) -> np.ndarray:
@@ -201,7 +202,7 @@ def _trapezoid(A: np.ndarray, h: float) -> np.ndarray:
 def contact_points(kind: str) -> list[Point]:
     """Kim's four strokes of contact_cost by one solver, at rising accuracy."""
     if kind == "exact":
-        return [_contact_point("exact phases", Contact, contact_cost.worst(contact_cost.Fine))]
+        return [_contact_point("exact phases", Exact, contact_cost.worst(contact_cost.Fine))]
     if kind == "Newmark":
         return [_contact_point(f"{n} steps", Newmark, steps=n) for n in STEPS]
     return [
@@ -209,7 +210,7 @@ def contact_points(kind: str) -> list[Point]:
     ]
 
 
-def _contact_point(name: str, kind: type[Contact], error: float | None = None, **options: Any) -> Point:
+def _contact_point(name: str, kind: type[Exact], error: float | None = None, **options: Any) -> Point:
     worst = contact_cost.worst(kind, **options) if error is None else error
     unknowns = len(contact_cost.struck(0.3).z)
     return Point(name, worst, unknowns, lambda: contact_cost.struck(0.3, kind, **options))

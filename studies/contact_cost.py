@@ -16,7 +16,7 @@ import platform
 import subprocess
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -31,8 +31,10 @@ from scipy.integrate import solve_ivp
 
 from cuefem import Resolution
 from cuefem.beam.tip import TipModes
-from cuefem.contact.flow import Arrival, Flow
-from cuefem.contact.linear import Contact, Laws, run
+from cuefem.contact.flow import Flow
+from cuefem.contact.linear import Exact
+from cuefem.contact.phases import run
+from cuefem.contact.state import Contact, Laws
 from cuefem.tip_modes import tip_modes_of
 
 HERE = Path(__file__).parent
@@ -46,8 +48,7 @@ THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 TOLERANCES = dict.fromkeys(("DOP853", "Radau"), 10.0 ** -np.arange(3, 13))
 
 
-@dataclass
-class Fine(Contact):
+class Fine(Exact):
     """The exact phases in cells a third as long."""
 
     def flow(self, grip: Any, press: Any) -> Flow:
@@ -57,17 +58,18 @@ class Fine(Contact):
         return self.flows[grip, press]
 
 
-@dataclass
-class Stepped(Contact):
+class Stepped(Exact):
     """The same phases, followed by solve_ivp and ended by its events."""
 
     method: str = "DOP853"
     rtol: float = 1e-10
     evaluations: int = 0
 
-    def go(self, grip: Any, press: Any) -> Any:
+    def follow(self, grip: Any, press: Any) -> str:
         """One phase."""
-        flow, (names, guards) = self.flow(grip, press), self._guards(grip, press)
+        contact = self.contact
+        flow, (names, guards) = self.flow(grip, press), self.guards(grip, press)
+        before, start = contact.impulse, contact.time
 
         def event(weights: np.ndarray, constant: float) -> Callable[[float, np.ndarray], float]:
             row = weights @ flow.rows
@@ -80,18 +82,20 @@ class Stepped(Contact):
 
         found = solve_ivp(
             lambda _, z: flow.A @ z,
-            (self.time, self.time + 20 * self.laws.time),
-            self.z,
+            (start, start + 20 * contact.laws.time),
+            contact.z,
             method=self.method,
             rtol=self.rtol,
-            atol=self.rtol * 1e-2 * self.laws.speed,
+            atol=self.rtol * 1e-2 * contact.laws.speed,
             events=[event(*pair) for pair in zip(guards.weights, guards.constants, strict=True)],
             **({"jac": flow.A} if self.method == "Radau" else {}),
         )
         self.evaluations += found.nfev
         guard = next(i for i, hits in enumerate(found.t_events) if len(hits))
-        self._take(Arrival(float(found.t[-1]), found.y[:, -1], guard, []), grip, press, self.impulse)
-        return self._next(names[guard], grip, press)
+        self.arrive(float(found.t[-1]), found.y[:, -1], [])
+        self.patch.end(self, grip, press)
+        contact.end_phase(grip, press, start, before)
+        return names[guard]
 
 
 @cache
@@ -112,11 +116,18 @@ def stroke(offset: float) -> tuple[TipModes, Laws]:
     return tip_modes_of(scene, AT), laws
 
 
-def struck(offset: float, kind: type[Contact] = Contact, **options: Any) -> Contact:
+def struck(offset: float, kind: type[Exact] = Exact, **options: Any) -> Contact:
     """A stroke, from first touch to separation."""
-    contact = kind(*stroke(offset), **options)
-    run(contact)
-    return contact
+    return solved(offset, kind, **options).contact
+
+
+def solved(offset: float, kind: type[Exact], **options: Any) -> Any:
+    """The same with all that its kind of contact counted."""
+    found = kind.of(*stroke(offset))
+    for name, value in options.items():
+        setattr(found, name, value)
+    run(found)
+    return found
 
 
 def answer(contact: Contact) -> np.ndarray:
@@ -125,7 +136,7 @@ def answer(contact: Contact) -> np.ndarray:
     return np.array([laws.phi - math.atan2(p_t, p_n), math.hypot(p_t, p_n) / laws.ball_mass])
 
 
-def worst(kind: type[Contact], **options: Any) -> float:
+def worst(kind: type[Exact], **options: Any) -> float:
     """Largest error of squirt or speed over the strokes, against the exact phases."""
     exact = [answer(struck(offset)) for offset in OFFSETS]
     found = [answer(struck(offset, kind, **options)) for offset in OFFSETS]

@@ -21,7 +21,9 @@ from cuefem import Cue, Resolution, end_mass, modes, resolve, strike
 from cuefem.beam.modes import solve
 from cuefem.beam.system import assemble
 from cuefem.beam.tip import tip_modes
-from cuefem.contact.linear import Contact, Laws, run
+from cuefem.contact.linear import Exact
+from cuefem.contact.phases import run
+from cuefem.contact.state import Contact, Laws
 from cuefem.contact.strike import strike_modes
 from cuefem.endmass.drives import stick
 from cuefem.tip_modes import Solved, tip_modes_of
@@ -96,9 +98,9 @@ def test_a_bare_scene_costs_what_the_strike_costs(request: pytest.FixtureRequest
             time=scene.contact_time,
             speed=speed,
         )
-        contact = Contact(tip_modes(found, cue.mass), laws)
-        run(contact)
-        return contact
+        kind = Exact.of(tip_modes(found, cue.mass), laws)
+        run(kind)
+        return kind.contact
 
     def seconds(work: Callable[[], Any]) -> float:
         start = process_time()

@@ -1,7 +1,7 @@
 """The contact of a raised cue, in three dimensions, with the table under the ball (the effect Elevation).
 
 The cue's axis u points down by the elevation a. w points to the right of it, level; n and t lie in the plane of u and w
-as in `cuefem.contact.linear` (phi > 0: the ball is struck on its right), and p = t x n stands on that plane, upwards.
+as in `cuefem.contact.state` (phi > 0: the ball is struck on its right), and p = t x n stands on that plane, upwards.
 Vectors are written in (t, n, p):
 
     u = (s, c, 0), w = (c, -s, 0), up z = cos(a) p - sin(a) u, forward f = cos(a) u + sin(a) p.
@@ -22,8 +22,8 @@ from __future__ import annotations
 import numpy as np
 
 from cuefem.beam.tip import TipModes
-from cuefem.contact.linear import Laws
-from cuefem.contact.raised import RaisedContact
+from cuefem.contact.raised import Raised
+from cuefem.contact.state import Laws
 from cuefem.cue import Array
 from cuefem.effects.law import NormalLaw
 from cuefem.effects.terms import Table
@@ -54,11 +54,9 @@ def in_both_planes(tip: TipModes) -> tuple[TipModes, Array]:
     return both_modes, np.concatenate([np.zeros(count), tip.amplitude[again, 1]])[order]
 
 
-def raised_contact(
-    table: Table, tip: TipModes, laws: Laws, *, law: NormalLaw, clock: float, radius: float
-) -> RaisedContact:
+def raised_contact(table: Table, tip: TipModes, laws: Laws, *, law: NormalLaw, clock: float, radius: float) -> Raised:
     """The contact of a raised cue; ValueError for a dead tip, whose contact has no such phases."""
     if laws.restitution == 0:
         raise ValueError("Elevation takes a Tip.restitution in (0, 1]; got 0.0")
     modes, across = in_both_planes(tip)
-    return RaisedContact(modes, laws, law=law, clock=clock, raised=table, across=across, radius=radius)
+    return Raised(modes, laws, law=law, clock=clock, table=table, across=across, radius=radius)

@@ -181,6 +181,18 @@ class Guards(NamedTuple):
     constants: Array
 
 
+# A guard by name: the weights of outputs, and a constant.
+Guard = tuple[str, dict[int, float], float]
+
+
+def guards_of(found: list[Guard], outputs: int) -> tuple[list[str], Guards]:
+    """The names of guards, and the guards, from one entry each."""
+    weights = np.zeros((len(found), outputs))
+    for row, (_, terms, _) in zip(weights, found, strict=True):
+        row[list(terms)] = list(terms.values())
+    return [name for name, _, _ in found], Guards(weights, np.array([constant for _, _, constant in found]))
+
+
 class Piece(NamedTuple):
     """A stretch of a phase: start, s; cell length, s; Taylor coefficients (m, degree + 1, cells)."""
 

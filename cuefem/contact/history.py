@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from cuefem.contact.flow import ORDERS, Piece
+from cuefem.contact.stretches import Stepping
 from cuefem.cue import Array
 
 # The outputs of every phase, in this order.
@@ -40,29 +41,11 @@ class History:
         return _named(values, self.mirror)
 
 
-class Stretch(NamedTuple):
-    """A phase that was stepped: start and end, s; the solver's interpolant in units of ``clock``; what reads a state.
-
-    reading: a state's (v_t, v_n, F_t, F_n).
-    """
-
-    start: float
-    end: float
-    clock: float
-    solution: Callable[[float], Array]
-    reading: Callable[[Array], tuple[float, float, float, float]]
-
-    def outputs(self, time: float) -> tuple[float, float, float, float]:
-        """The outputs at a time of the phase, in their order."""
-        v_t, v_n, F_t, F_n = self.reading(self.solution(min(time, self.end) / self.clock))
-        return v_t, v_n, F_n, F_t
-
-
 @dataclass(frozen=True)
 class SteppedHistory:
     """What `History` gives, of a contact that was stepped in time: exact to the solver's interpolants, about 1e-9."""
 
-    stretches: tuple[Stretch, ...]
+    stretches: tuple[Stepping, ...]
     mirror: float
 
     def __call__(self, time: ArrayLike) -> dict[str, Array]:
@@ -72,7 +55,10 @@ class SteppedHistory:
         return _named(np.array(values).reshape(-1, 4).T.reshape(4, *time.shape), self.mirror)
 
 
-def _places(time: ArrayLike, parts: Sequence[Piece] | Sequence[Stretch]) -> tuple[Array, Any]:
+AnyHistory = History | SteppedHistory
+
+
+def _places(time: ArrayLike, parts: Sequence[Piece] | Sequence[Stepping]) -> tuple[Array, Any]:
     """Times as an array, and the index of the part that each falls in."""
     time = np.asarray(time, float)
     if not parts:

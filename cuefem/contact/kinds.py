@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from cuefem.beam.tip import TipModes
-from cuefem.contact.linear import Contact, Laws
-from cuefem.contact.linear_shear import ShearContact
-from cuefem.contact.ringing_tip import RINGING, ringing_contact
+from cuefem.contact.linear import Exact
+from cuefem.contact.phases import Kind
+from cuefem.contact.ringing_tip import RINGING
+from cuefem.contact.state import Laws
 from cuefem.quantity import scalar
 from cuefem.scene import Scene
 
 
-def contact_of(scene: Scene, tip: TipModes, laws: Laws) -> Contact:
+def contact_of(scene: Scene, tip: TipModes, laws: Laws) -> Kind:
     """The cheapest contact that honours the terms of the scene's effects: exact linear phases where it can.
 
     ValueError for terms that no contact honours together: a raised cue turns neither normal nor patch, and its tip
@@ -20,8 +21,8 @@ def contact_of(scene: Scene, tip: TipModes, laws: Laws) -> Contact:
     compliance, radius = terms.compliance / laws.stiffness, scalar("Ball.radius", scene.ball.radius)
     if terms.table is None and terms.law is None and not terms.turns:
         if compliance:
-            return ShearContact(tip, laws, compliance=compliance)
-        return ringing_contact(tip, laws) if 0 < laws.restitution <= RINGING else Contact(tip, laws)
+            return Exact.of(tip, laws, compliance)
+        return Exact.averaged(tip, laws) if 0 < laws.restitution <= RINGING else Exact.of(tip, laws)
     from cuefem.contact.nonlinear import law_of, stepped_contact  # loaded when used: they need a solver
 
     law, clock = law_of(scene, laws)

@@ -15,21 +15,17 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-import scipy.linalg as la
 from numpy.typing import ArrayLike
 
 from cuefem.beam.modes import Modes
 from cuefem.beam.tip import TipModes
-from cuefem.contact.history import Stretch
-from cuefem.contact.linear import Contact, Course
-from cuefem.contact.stepped import SteppedContact
+from cuefem.contact.phases import Kind
+from cuefem.contact.state import Contact
 from cuefem.contact.strike import struck
 from cuefem.cue import Array
 from cuefem.quantity import check_kind, scalar
 from cuefem.scene import Resolution, Scene
 from cuefem.tip_modes import Solved
-
-_GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(8)  # exact for the interpolants of DOP853, of degree 7
 
 
 @dataclass(frozen=True)
@@ -68,8 +64,7 @@ def motion(scene: Scene, times: ArrayLike, at: Resolution | None = None) -> Moti
         raise ValueError("motion takes strokes in the plane of cue and ball; got Elevation")
     solved = Solved(scene, at)
     found, tip = solved.modes, solved.tip
-    contact = struck(scene, tip)
-    return _read(scene, found, tip, contact=contact, times=times)
+    return _read(scene, found, tip, kind=struck(scene, tip), times=times)
 
 
 def last_contact(scene: Scene, at: Resolution | None = None) -> float:
@@ -84,19 +79,19 @@ def _checked(times: ArrayLike) -> Array:
     return times
 
 
-def _read(scene: Scene, found: Modes, tip: TipModes, *, contact: Contact, times: Array) -> Motion:
-    phi, side = contact.laws.phi, math.copysign(1.0, scalar("Stroke.offset", scene.stroke.offset))
+def _read(scene: Scene, found: Modes, tip: TipModes, *, kind: Kind, times: Array) -> Motion:
+    phi, side = kind.contact.laws.phi, math.copysign(1.0, scalar("Stroke.offset", scene.stroke.offset))
     tangent, normal = np.array([math.sin(phi), math.cos(phi)]), np.array([math.cos(phi), -math.sin(phi)])
-    q, ball = _positions(contact, times)
+    q, ball = _positions(kind, times)
     vectors, across = _bending(found, tip)
     R = scalar("Ball.radius", scene.ball.radius)
     r = scene.dome_radius
     centre = (r + R) * normal - [r, 0.0] + ball.gone @ np.array([tangent, normal])
     s, c = np.sin(phi + ball.contact), np.cos(phi + ball.contact)
-    F_t, F_n = _forces(contact, times).T
+    F_t, F_n = _forces(kind, times).T
     return Motion(
         times,
-        contact.time,
+        kind.contact.time,
         found,
         fields=side * vectors @ q[across],
         along=tip.amplitude[:, 0] @ q,
@@ -122,13 +117,14 @@ class _Ball(NamedTuple):
     contact: Array
 
 
-def _positions(contact: Contact, times: Array) -> tuple[Array, _Ball]:
+def _positions(kind: Kind, times: Array) -> tuple[Array, _Ball]:
     """Coordinates of all tip modes (modes, n), and the ball's."""
-    n, quiet, size = contact.velocities.start, contact.quiet, len(contact.z)
-    states = np.array(list(_states(contact, _unstated(contact), times))).T
-    vibrating = states[:n] / contact.tip.omega[quiet:, None]
+    contact = kind.contact
+    slots, quiet, size = contact.slots, contact.quiet, len(contact.z)
+    states = np.array(list(_states(kind, _unstated(contact), times))).T
+    vibrating = states[slots.vibration] / contact.omega[:, None]
     t, n_, rolled = states[-3:]
-    angle = states[contact.angle] if isinstance(contact, SteppedContact) else np.zeros(len(times))
+    angle = states[slots["angle"]] if "angle" in slots else np.zeros(len(times))
     return np.concatenate([states[size : size + quiet], vibrating]), _Ball(np.column_stack([t, n_]), rolled, angle)
 
 
@@ -136,27 +132,19 @@ def _unstated(contact: Contact) -> Array:
     """Rows that read velocities whose positions are no state: rigid modes, the ball's (t, n), its surface's; m/s."""
     quiet, M, nu = contact.quiet, contact.laws.ball_mass, contact.laws.inertia
     rows = np.zeros((quiet + 3, len(contact.z)))
-    rows[range(quiet), contact.velocities.start + np.arange(quiet)] = 1.0
-    rows[quiet + 1, contact.ball_n] = M**-0.5
-    if isinstance(contact, SteppedContact):  # whose ball turns by a state of its own
-        rows[quiet, contact.ball_t], rows[quiet + 2, contact.spin] = M**-0.5, (nu * M) ** -0.5
-    else:
-        rows[quiet, contact.ball_t] = 1 / (M * contact.c_t[contact.ball_t])
-        rows[quiet + 2] = rows[quiet] / nu
+    rows[range(quiet), contact.slots.velocities.start + np.arange(quiet)] = 1.0
+    rows[quiet:] = contact.read[:3] / contact.per[:3, None] / np.array([[M], [M], [nu * M]])
     return rows
 
 
-def _states(contact: Contact, rows: Array, times: Array) -> Iterator[Array]:
+def _states(kind: Kind, rows: Array, times: Array) -> Iterator[Array]:
     """States at ``times``, and below them the integrals over time of ``rows`` of them."""
-    rate = max(contact.fastest, 1 / contact.laws.time)
-    touching = contact.stretches if isinstance(contact, SteppedContact) else contact.courses
-    parts: list[Course | Stretch] = [*touching, Course(contact.time, contact.free, rate, contact.z)]
-    gone, size = np.zeros(len(rows)), len(contact.z)
+    parts = kind.stretches()
+    gone, size = np.zeros(len(rows)), len(kind.contact.z)
     for part, end in zip(parts, [*(later.start for later in parts[1:]), math.inf], strict=True):
         own = times[(times >= part.start) & (times < end)]
         last = [end] if end < math.inf else []
-        spans = np.append(own, last) - part.start
-        for state in _walk(part, rows, spans) if isinstance(part, Course) else _read_off(part, rows, spans):
+        for state in part.states(rows, np.append(own, last) - part.start):
             state[size:] += gone
             if len(own):
                 own = own[1:]
@@ -165,43 +153,11 @@ def _states(contact: Contact, rows: Array, times: Array) -> Iterator[Array]:
                 gone = state[size:]
 
 
-def _walk(course: Course, rows: Array, spans: Array) -> Iterator[Array]:
-    """States and integrals, from zero on, ``spans`` s after the start of a course, ascending."""
-    size, scale = len(course.state), course.rate / float(np.linalg.norm(rows))
-    A = np.zeros((size + len(rows),) * 2)
-    A[:size, :size], A[size:, :size] = course.A, scale * rows  # the integrals change as fast as the rest
-    z, before = np.concatenate([course.state, np.zeros(len(rows))]), 0.0
-    taken, onward = 0.0, np.eye(len(A))
-    for span in spans:
-        if abs(span - before - taken) > 1e-13 * taken:  # even times are so but for rounding: one exponential will do
-            taken = span - before
-            onward = la.expm(A * taken)
-        z, before = onward @ z, span
-        state = z.copy()
-        state[size:] /= scale
-        yield state
-
-
-def _read_off(part: Stretch, rows: Array, spans: Array) -> Iterator[Array]:
-    """What `_walk` gives, of a stretch that was stepped."""
-    solution: Any = part.solution
-    steps = np.asarray(solution.ts) * part.clock - part.start
-    before, gone = 0.0, np.zeros(len(rows))
-    for span in spans:
-        knots = np.unique([before, *steps[(steps > before) & (steps < span)], span])
-        if len(knots) > 1:
-            half = np.diff(knots)[:, None] / 2
-            places = (part.start + knots[:-1, None] + half * (1 + _GAUSS)).ravel()
-            gone = gone + rows @ solution(np.minimum(places, part.end) / part.clock) @ (half * _WEIGHTS).ravel()
-        before = span
-        yield np.concatenate([solution(min(part.start + span, part.end) / part.clock), gone])
-
-
-def _forces(contact: Contact, times: Array) -> Array:
-    """Force on the ball (t, n), where these have turned to, N, (n, 2): none after the contact."""
+def _forces(kind: Kind, times: Array) -> Array:
+    """Force on the ball (t, n), where these have turned to, N, (n, 2): none after the contact, or in a blow alone."""
     force = np.zeros((len(times), 2))
-    pressed = times <= contact.time
-    if pressed.any() and (contact.pieces or isinstance(contact, SteppedContact)):
-        known = contact.history(1.0)(times[pressed])
+    pressed = times <= kind.contact.time
+    if pressed.any() and len(kind.stretches()) > 1:
+        known = kind.history(1.0)(times[pressed])
         force[pressed] = np.column_stack([known["force_t"], known["force_n"]])
     return force

@@ -18,9 +18,8 @@ v_n does: c_n z' + (R + r) a'^2 = 0. Forces act through the same c_t and c_n, so
 from __future__ import annotations
 
 from cuefem.beam.tip import TipModes
-from cuefem.contact.linear import Laws
-from cuefem.contact.stepped import SteppedContact, Turning
-from cuefem.contact.stepped_shear import SteppedShearContact
+from cuefem.contact.state import Laws
+from cuefem.contact.stepped import Stepped, Turning
 from cuefem.effects.law import NormalLaw, TipLaw
 from cuefem.effects.terms import ContactTerms, HeadOn
 from cuefem.scene import Scene
@@ -36,10 +35,8 @@ def law_of(scene: Scene, laws: Laws) -> tuple[NormalLaw, float]:
 
 def stepped_contact(
     terms: ContactTerms, tip: TipModes, laws: Laws, *, law: NormalLaw, clock: float, radius: float
-) -> SteppedContact:
+) -> Stepped:
     """The contact with a nonlinear law, a turning normal or both, and what gives sideways; radius: of the ball, m."""
     turning = Turning(radius, terms) if terms.turns else None
-    if not terms.compliance:
-        return SteppedContact(tip, laws, law=law, turning=turning, clock=clock)
     compliance = terms.compliance / laws.stiffness
-    return SteppedShearContact(tip, laws, law=law, turning=turning, clock=clock, compliance=compliance)
+    return Stepped.of(tip, laws, law=law, clock=clock, turning=turning, compliance=compliance)

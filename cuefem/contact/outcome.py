@@ -7,13 +7,15 @@ from itertools import takewhile
 
 import numpy as np
 
-from cuefem.contact.linear import APART, Contact, Phase
+from cuefem.contact.phases import Kind
+from cuefem.contact.state import APART, Contact, Phase
 from cuefem.quantity import scalar
 from cuefem.scene import Outcome, Scene
 
 
-def _outcome(contact: Contact, scene: Scene, side: float) -> Outcome:
-    laws, tip = contact.laws, contact.tip
+def outcome_of(kind: Kind, scene: Scene, side: float) -> Outcome:
+    """The outcome of a contact that is over; side: -1 for a stroke at a negative offset."""
+    contact, laws, tip = kind.contact, kind.contact.laws, kind.contact.tip
     M, nu = laws.ball_mass, laws.inertia
     p_t, p_n = contact.impulse
     s, c = math.sin(laws.phi), math.cos(laws.phi)
@@ -30,26 +32,26 @@ def _outcome(contact: Contact, scene: Scene, side: float) -> Outcome:
         regime=regime(contact),
         jam=jams(contact),
         phases=tuple(phase._replace(start=float(phase.start), end=float(phase.end)) for phase in contact.phases),
-        energy=_energy(contact, inertia),
+        energy=_energy(kind, inertia),
         unknowns=len(contact.z),
-        history=contact.history(side),
+        history=kind.history(side),
     )
 
 
-def _energy(contact: Contact, inertia: float) -> dict[str, float]:
-    laws, z = contact.laws, contact.z
+def _energy(kind: Kind, inertia: float) -> dict[str, float]:
+    contact = kind.contact
+    laws, z, slots = contact.laws, contact.z, contact.slots
     p_t, p_n = contact.impulse
-    rigid = z[contact.velocities][: contact.quiet]
-    vibrating = np.concatenate([z[: contact.velocities.start], z[contact.velocities][contact.quiet :]])
+    rigid, vibrating = z[slots.rigid], np.concatenate([z[slots.vibration], z[slots.swinging]])
     account = {
         "initial": inertia * laws.speed**2 / 2,
         "ball translation": (p_t**2 + p_n**2) / (2 * laws.ball_mass),
         "ball rotation": contact.twist**2 / (2 * laws.inertia * laws.ball_mass),
         "cue": float(rigid @ rigid) / 2,
         "cue vibration": float(vibrating @ vibrating) / 2 + contact.radiated,
-        "tip loss": contact.tip_loss,
+        "tip loss": kind.tip_loss(),
         "friction loss": contact.friction_loss,
-        **contact.other_losses(),
+        **kind.other_losses(),
     }
     return {name: float(joules) for name, joules in account.items()}
 

@@ -3,37 +3,31 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 
+from cuefem.beam.tip import TipModes
 from cuefem.contact.history import SteppedHistory
-from cuefem.contact.linear import ROUNDING, Grip, Phase, Press
-from cuefem.contact.stepped import PAST, SteppedContact
+from cuefem.contact.patch import RigidPatch
+from cuefem.contact.phases import ROUNDING, Step, next_phase
+from cuefem.contact.state import Contact, Grip, Laws, Press
+from cuefem.contact.stepped import PAST, SLOTS, End, Ends, Hold, OnTable, Stepped, Way
 from cuefem.cue import Array
+from cuefem.effects.law import NormalLaw
 from cuefem.effects.terms import Table
 
-OnTable = Literal["slides", "held", "lifted"]
 # Rows of the contact, in this order: the tip's velocities against the ball, and the ball's lowest point's.
 T, N, P, UP, ASIDE, AHEAD = range(6)
 SLIDING = ([T, P], [ASIDE, AHEAD])  # of the tip on the ball, and of the ball on the table
 # A point that slides more slowly than this part of the stroke's speed keeps its direction.
 REST = 1e-6
+# Rows whose velocities are held at zero, by how the table holds the ball.
+HELD: dict[OnTable, list[int]] = {"none": [], "lifted": [], "slides": [UP], "held": [UP, ASIDE, AHEAD]}
 # Events of which a phase may have been past from its start, and those that change how the table holds the ball.
 AT_ONCE, AT_TABLE = ("compressed", "slipped", "slid", "lifted"), ("lifted", "landed", "stopped", "slid")
 # A compression, in strokes' lengths, at which a touch shows which way its forces go.
 PROBE = 1e-6
-
-
-class RaisedHold(NamedTuple):
-    """How the contact holds in a phase: at the tip, and at the table."""
-
-    grip: Grip
-    press: Press
-    deepest: float
-    table: OnTable
 
 
 @dataclass(frozen=True)
@@ -44,62 +38,79 @@ class RaisedHistory(SteppedHistory):
     spin: Array = field(default_factory=lambda: np.zeros(3))
 
 
-@dataclass
-class RaisedContact(SteppedContact):
-    """The contact of a cue raised as ``raised`` says; its tip modes are `cuefem.contact.elevation.in_both_planes`.
+class Raised(Stepped):
+    """The stepped contact of a cue raised over a table; its tip modes are `cuefem.contact.elevation.in_both_planes`.
 
-    across: their displacement of the contact along p. radius: of the ball, m.
+    Slots beside those of a stepped contact: "ball_p", "spin_t" and "spin_n", the ball's velocity and spin across the
+    plane; "height" of the ball over the table, m; "scraped", what the table rubs off in a phase, J; "tip_way" and
+    "ball_way", the angles of the directions in which tip and ball slide, rad. across: the modes' displacement of the
+    contact along p. radius: of the ball, m. hold_on_table: how the table holds the ball.
     """
 
-    raised: Table = field(default_factory=lambda: Table(0.0, 0.0))
-    across: Array = field(default_factory=lambda: np.zeros(0))
-    radius: float = 1.0
-    table: OnTable = "slides"
-    table_loss: float = 0.0
+    lost_in = ("rubbed", "damped", "gone", "scraped")
 
-    extra_states: ClassVar[int] = 12
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        size = len(self.z)
-        self.ball_p, self.spin_t, self.spin_n, self.height, self.scraped, *self.ways = range(size - 7, size)
-        self.losses = [*self.losses, self.scraped]
-        self.sizes[self.height], self.sizes[self.scraped] = self.sizes[self.depth], self.sizes[self.rubbed]
+    def __init__(
+        self,
+        tip: TipModes,
+        laws: Laws,
+        *,
+        law: NormalLaw,
+        clock: float,
+        table: Table,
+        across: Array,
+        radius: float,
+    ) -> None:
+        more = ("ball_p", "spin_t", "spin_n", "height", "scraped", "tip_way", "ball_way")
+        super().__init__(Contact(tip, laws, (*SLOTS, *more)), RigidPatch(), law=law, clock=clock)
+        self.table, self.across, self.radius = table, across, radius
+        self.on_table: OnTable = "slides"
+        self.table_loss = 0.0
+        slots = self.contact.slots
+        self.ball = slots.of("ball_t", "ball_n", "ball_p")  # where the ball's velocity (t, n, p) stands in the state
+        self.turns = slots.of("spin_t", "spin_n", "spin")  # and its spin
+        self.ways = slots.of("tip_way", "ball_way")
+        self.sizes[slots["height"]], self.sizes[slots["scraped"]] = self.sizes[slots.of("depth", "rubbed")]
         self.sizes[self.ways] = 1.0
         self.rows = self._rows()
         self.gram = self.rows @ self.rows.T
+        self._read_along_table()
+
+    def _read_along_table(self) -> None:
+        """Impulses are read along the table, in (t, n) of the level stroke; the table's part is in them."""
+        contact, laws = self.contact, self.contact.laws
+        s, c = math.sin(laws.phi), math.cos(laws.phi)
+        right, forward, up = self.axes
+        root = math.sqrt(laws.ball_mass)
+        contact.read[:], contact.per[:] = 0.0, 1.0
+        contact.read[0, self.ball] = root * (s * forward + c * right)
+        contact.read[1, self.ball] = root * (c * forward - s * right)
+        contact.read[2, self.turns] = math.sqrt(laws.inertia * laws.ball_mass) * up  # what turned it about the vertical
+        contact.read[3, contact.slots.velocities] = -contact.tip.approach  # what the cue gave along its axis
+        contact.along_before = laws.speed * float(contact.tip.approach @ contact.tip.approach)
 
     @property
     def axes(self) -> tuple[Array, Array, Array]:
         """Right, forward and up in (t, n, p)."""
-        s, c = math.sin(self.laws.phi), math.cos(self.laws.phi)
-        sin_a, cos_a = math.sin(self.raised.angle), math.cos(self.raised.angle)
+        s, c = math.sin(self.contact.laws.phi), math.cos(self.contact.laws.phi)
+        sin_a, cos_a = math.sin(self.table.angle), math.cos(self.table.angle)
         right, forward = np.array([c, -s, 0]), np.array([cos_a * s, cos_a * c, sin_a])
         return right, forward, np.array([-sin_a * s, -sin_a * c, cos_a])
 
     def _rows(self) -> Array:
-        rows, (right, forward, up) = np.zeros((6, len(self.z))), self.axes
-        root, turn = self.laws.ball_mass**-0.5, (self.laws.inertia * self.laws.ball_mass) ** -0.5
-        rows[T], rows[N] = self.c_t, self.c_n
-        rows[P, self.velocities], rows[P, self.ball_p], rows[P, self.spin_t] = -self.across, root, -turn
+        contact, slots, (right, forward, up) = self.contact, self.contact.slots, self.axes
+        rows, mass = np.zeros((6, len(contact.z))), contact.laws.ball_mass
+        root, turn = mass**-0.5, (contact.laws.inertia * mass) ** -0.5
+        rows[T], rows[N] = contact.c_t, contact.c_n
+        rows[P, slots.velocities], rows[P, slots["ball_p"]], rows[P, slots["spin_t"]] = -self.across, root, -turn
         for row, way in ((UP, up), (ASIDE, right), (AHEAD, forward)):
             rows[row, self.ball] = root * way
         for row, way in ((ASIDE, right), (AHEAD, forward)):
             rows[row, self.turns] = -turn * np.cross(up, way)
         return rows
 
-    @property
-    def ball(self) -> list[int]:
-        """Where the ball's velocity (t, n, p) stands in the state."""
-        return [self.ball_t, self.ball_n, self.ball_p]
-
-    @property
-    def turns(self) -> list[int]:
-        """Where the ball's spin (t, n, p) stands in the state."""
-        return [self.spin_t, self.spin_n, self.spin]
-
-    def _hold(self, grip: Grip, press: Press) -> Any:
-        return RaisedHold(grip, press, self.deepest, self.table)
+    def hold(self, grip: Grip, press: Press) -> Hold:
+        """The hold of a phase that starts now, at the tip and at the table."""
+        return Hold(grip, press, self.deepest, self.on_table)
 
     def _slip(self, z: Array, i: int) -> tuple[Array, float]:
         """Unit vector along which the tip (0) or the ball's lowest point (1) slides, and its speed along it, m/s."""
@@ -114,27 +125,28 @@ class RaisedContact(SteppedContact):
         """
         (x, y), speed = self._slip(z, i)
         aside = float(np.array([-y, x]) @ (self.rows[SLIDING[i]] @ rate))
-        return aside * speed / (speed**2 + (REST * self.laws.speed) ** 2)
+        return aside * speed / (speed**2 + (REST * self.contact.laws.speed) ** 2)
 
     def _head(self, i: int, way: Array) -> None:
         """Say which way a point slides, or is about to."""
-        self.z = self.z.copy()
-        self.z[self.ways[i]] = math.atan2(way[1], way[0])
+        contact = self.contact
+        contact.z = contact.z.copy()
+        contact.z[self.ways[i]] = math.atan2(way[1], way[0])
 
-    def contact_forces(self, z: Array, hold: Any, free: Array) -> Array:
+    def contact_forces(self, z: Array, hold: Hold, free: Array) -> Array:
         """The six forces, N, in the order of the rows."""
         push = np.zeros((6, 0))  # columns: what each unknown adds to the forces
         known, keep = np.zeros(6), []
-        known[N] = self._pressing(float(z[self.depth]), hold)
+        known[N] = self.pressing(z, hold)
         unit = np.eye(6)
         if hold.grip == "stick":
             push, keep = unit[:, [T, P]], [T, P]
         else:
-            known[[T, P]] = -self.laws.friction * known[N] * self._slip(z, 0)[0]
+            known[[T, P]] = -self.contact.laws.friction * known[N] * self._slip(z, 0)[0]
         if hold.table != "lifted":
             column = unit[:, [UP]].copy()
             if hold.table == "slides":
-                column[[ASIDE, AHEAD], 0] = -self.raised.friction * self._slip(z, 1)[0]
+                column[[ASIDE, AHEAD], 0] = -self.table.friction * self._slip(z, 1)[0]
             else:
                 column = np.hstack([column, unit[:, [ASIDE, AHEAD]]])
             push, keep = np.hstack([push, column]), [*keep, UP, *([ASIDE, AHEAD] if hold.table == "held" else [])]
@@ -143,201 +155,178 @@ class RaisedContact(SteppedContact):
         falling = (self.rows @ free + self.gram @ known)[keep]
         return known - push @ np.linalg.solve((self.gram @ push)[keep], falling)
 
-    def change(self, z: Array, hold: Any) -> Array:
-        """Rate of change of the state, 1/s."""
-        rate = self.free @ z
+    def change(self, z: Array, hold: Hold | None) -> Array:
+        """Rate of change of the state, 1/s; ball and tip touch."""
+        assert hold is not None
+        rate, slots = self.contact.free @ z, self.contact.slots
         forces, velocities = self.contact_forces(z, hold, rate), self.rows @ z
         rate = rate + self.rows.T @ forces
-        rate[self.depth] = -velocities[N]
-        rate[self.height] = velocities[UP]
-        rate[self.rubbed] = -forces[[T, P]] @ velocities[[T, P]]
-        rate[self.scraped] = -forces[[UP, ASIDE, AHEAD]] @ velocities[[UP, ASIDE, AHEAD]]
+        rate[slots["depth"]] = -velocities[N]
+        rate[slots["height"]] = velocities[UP]
+        rate[slots["rubbed"]] = -forces[[T, P]] @ velocities[[T, P]]
+        rate[slots["scraped"]] = -forces[[UP, ASIDE, AHEAD]] @ velocities[[UP, ASIDE, AHEAD]]
         if hold.grip == "slip":
             rate[self.ways[0]] = self._turning(z, rate, 0)
         if hold.table == "slides":
             rate[self.ways[1]] = self._turning(z, rate, 1)
-        if len(self.dampers):
-            powers = (self.dampers @ z) ** 2
-            rate[self.damped], rate[self.gone] = powers[: self.lossy].sum(), powers[self.lossy :].sum()
+        self._damped(rate, z)
         return rate
 
-    def reading(self, z: Array, hold: Any) -> tuple[float, float, float, float]:
-        """(v_t, v_n, F_t, F_n) of a state."""
-        forces = self.contact_forces(z, hold, self.free @ z)
+    def reading(self, z: Array, hold: Hold | None) -> tuple[float, float, float, float]:
+        """(v_t, v_n, F_t, F_n) of a state; ball and tip touch."""
+        assert hold is not None
+        forces = self.contact_forces(z, hold, self.contact.free @ z)
         return float(self.rows[T] @ z), float(self.rows[N] @ z), float(forces[T]), float(forces[N])
-
-    def force(self, grip: Grip, press: Press) -> Array:
-        """(F_t, F_n) now, N, if the contact gripped and pressed in this way."""
-        return np.array(self.reading(self.z, self._hold(grip, press))[2:])
 
     def _presses_on(self, grip: Grip) -> bool:
         """Not known without a phase of a rigid tip: one that rings is given up after `MOST_RATES`."""
         return False
 
-    def _keep(self, hold: Any) -> list[int]:
+    def _keep(self, hold: Hold) -> list[int]:
         """Rows whose velocities a phase keeps at zero."""
         tip = [T, P] if hold.grip == "stick" else []
-        table = {"lifted": [], "slides": [UP], "held": [UP, ASIDE, AHEAD]}[hold.table]
-        return [*tip, *table]
+        return [*tip, *HELD[hold.table]]
 
     def _stop(self, rows: Array) -> float:
         """A blow that takes the velocities that ``rows`` read away; the energy that it takes, J."""
         if not len(rows):
             return 0.0
-        taken = rows.T @ np.linalg.solve(rows @ rows.T, rows @ self.z)  # orthogonal to what is left
-        self.z = self.z - taken
+        taken = rows.T @ np.linalg.solve(rows @ rows.T, rows @ self.contact.z)  # orthogonal to what is left
+        self.contact.z = self.contact.z - taken
         return float(taken @ taken) / 2
 
-    def _now(self, hold: Any) -> Array:
+    def _now(self, hold: Hold) -> Array:
         """The six forces, or at a touch, where there are none yet, those of a slight compression."""
-        z = self.z.copy()
-        if abs(self._pressing(float(z[self.depth]), hold)) < ROUNDING * self.scale:
-            z[self.depth] += PROBE * self.laws.speed * self.clock
-        return self.contact_forces(z, hold, self.free @ z)
+        contact = self.contact
+        z = contact.z.copy()
+        if abs(self.pressing(z, hold)) < ROUNDING * contact.scale:
+            z[contact.slots["depth"]] += PROBE * contact.laws.speed * self.clock
+        return self.contact_forces(z, hold, contact.free @ z)
 
-    def first_grip(self, press: Press = "load") -> Grip:
+    def first_grip(self, press: Press) -> Grip:
         """How the first touch grips at the tip, and at the table."""
-        velocity = self.rows[[T, P]] @ self.z
+        velocity = self.rows[[T, P]] @ self.contact.z
         grip: Grip = "slip"
-        self.table = "held"
+        self.on_table = "held"
         if math.hypot(*velocity) == 0:
             grip = self.grip_at_rest(press)
-        elif math.isfinite(self.laws.friction):
+        elif math.isfinite(self.contact.laws.friction):
             self._head(0, velocity)
         else:
-            self.friction_loss += self._stop(self.rows[[T, P, UP]])
+            self.contact.friction_loss += self._stop(self.rows[[T, P, UP]])
             grip = "stick"
         self._rest_on_table(grip, press)
         return grip
 
     def grip_at_rest(self, press: Press) -> Grip:
         """Stick where friction can hold the contact, else the way it starts to slip."""
-        forces = self._now(self._hold("stick", press))
-        if math.hypot(*forces[[T, P]]) <= self.laws.friction * forces[N] + ROUNDING * self.scale:
+        forces = self._now(self.hold("stick", press))
+        if math.hypot(*forces[[T, P]]) <= self.contact.laws.friction * forces[N] + ROUNDING * self.contact.scale:
             return "stick"
         self._head(0, -forces[[T, P]])
         return "slip"
 
     def _rest_on_table(self, grip: Grip, press: Press) -> None:
         """How the table holds the ball, whose lowest point is at rest: held, sliding away, or not at all."""
-        self.table = "held"
-        forces = self._now(self._hold(grip, press))
-        if math.hypot(*forces[[ASIDE, AHEAD]]) > self.raised.friction * forces[UP] + ROUNDING * self.scale:
-            self.table = "slides"
+        self.on_table = "held"
+        slack = ROUNDING * self.contact.scale
+        forces = self._now(self.hold(grip, press))
+        if math.hypot(*forces[[ASIDE, AHEAD]]) > self.table.friction * forces[UP] + slack:
+            self.on_table = "slides"
             self._head(1, -forces[[ASIDE, AHEAD]])
-            forces = self._now(self._hold(grip, press))
-        if forces[UP] < -ROUNDING * self.scale:
-            self.table = "lifted"
+            forces = self._now(self.hold(grip, press))
+        if forces[UP] < -slack:
+            self.on_table = "lifted"
 
-    def go(self, grip: Grip, press: Press) -> tuple[str, Grip, Press] | None:
-        """Follow one phase to its end; what ended it, and what comes next (None: the ball has left)."""
-        hold = self._hold(grip, press)
-        ends = self._ends(hold)
-        event = next((name for name in AT_ONCE if name in ends and ends[name](self.z) < -PAST), None)
-        if event is None:
-            event, *way = self._way(hold, ends, until=self.longest)
-            if event is None:
-                raise self.endless(grip, press)
-            self._follow(hold, *way)
-        else:
-            self.phases.append(Phase(grip, press, self.time, self.time, (0.0, 0.0)))
+    def _at_once(self, ends: Ends) -> str | None:
+        """An end of which the state is past already, of those that a phase may start past."""
+        return next((name for name in AT_ONCE if name in ends and ends[name](self.contact.z) < -PAST), None)
+
+    def next(self, event: str, grip: Grip, press: Press) -> Step | None:
+        """What follows; a change at the table leaves grip and press as they are."""
         if event in AT_TABLE:
-            self._at_table(event, hold)
-            return event, grip, press
+            self._at_table(event, self.hold(grip, press))
+            return Step(event, grip, press)
         if event == "slipped":
-            self._head(0, -self._now(hold)[[T, P]])
-        step = self._next(event, grip, press)
+            self._head(0, -self._now(self.hold(grip, press))[[T, P]])
+        step = next_phase(self, event, grip, press)
         if step is not None:
-            self._settle(self._hold(*step[1:]))
+            self._settle(self.hold(step.grip, step.press))
         return step
 
-    def _at_table(self, event: str, hold: Any) -> None:
+    def _at_table(self, event: str, hold: Hold) -> None:
         """What follows where the ball is lifted off the table, lands on it, stops sliding on it or starts to."""
         if event == "lifted":
-            self.table = "lifted"
+            self.on_table = "lifted"
         elif event == "slid":
-            self.table = "slides"
+            self.on_table = "slides"
             self._head(1, -self._now(hold)[[ASIDE, AHEAD]])
         elif event == "landed":
-            self.table = "slides"
-            self.table_loss += self._stop(self.rows[self._keep(self._hold(*hold[:2]))])
-            self._head(1, self.rows[SLIDING[1]] @ self.z)
-            self.z[self.height] = 0.0
+            self.on_table = "slides"
+            self.table_loss += self._stop(self.rows[self._keep(self.hold(hold.grip, hold.press))])
+            self._head(1, self.rows[SLIDING[1]] @ self.contact.z)
+            self.contact.put(height=0.0)
         else:
-            self._rest_on_table(*hold[:2])
-            self._settle(self._hold(*hold[:2]))
+            self._rest_on_table(hold.grip, hold.press)
+            self._settle(self.hold(hold.grip, hold.press))
 
-    def _ends(self, hold: Any) -> dict[str, Callable[[Array], float]]:
+    def _ends(self, hold: Hold) -> Ends:
         """What ends a phase, by name: functions of the state, of the order of 1, that fall through zero there."""
-        speed, depth, scale = self.laws.speed, self.laws.speed * self.clock, self.scale
+        contact, slots = self.contact, self.contact.slots
+        speed, depth, scale = contact.laws.speed, contact.laws.speed * self.clock, contact.scale
 
-        def margin(friction: float, normal: int, *sides: int) -> Callable[[Array], float]:
+        def margin(friction: float, normal: int, *sides: int) -> End:
             def left(z: Array) -> float:
-                forces = self.contact_forces(z, hold, self.free @ z)
+                forces = self.contact_forces(z, hold, contact.free @ z)
                 return (friction * float(forces[normal]) - math.hypot(*forces[list(sides)])) / scale + ROUNDING
 
             return left
 
-        ends: dict[str, Callable[[Array], float]] = {}
+        ends: Ends = {}
         if hold.press == "load":
             ends["compressed"] = lambda z: -float(self.rows[N] @ z) / speed
         else:
-            ends["apart"] = lambda z: (float(z[self.depth]) - self.law.rest(hold.deepest)) / depth
-            ends["reloaded"] = lambda z: (hold.deepest - float(z[self.depth])) / depth
+            ends["apart"] = lambda z: (float(z[slots["depth"]]) - self.law.rest(hold.deepest)) / depth
+            ends["reloaded"] = lambda z: (hold.deepest - float(z[slots["depth"]])) / depth
         if hold.grip == "slip":
             ends["gripped"] = lambda z: self._slip(z, 0)[1] / speed
-        elif math.isfinite(self.laws.friction):
-            ends["slipped"] = margin(self.laws.friction, N, T, P)
+        elif math.isfinite(contact.laws.friction):
+            ends["slipped"] = margin(contact.laws.friction, N, T, P)
         if hold.table == "lifted":
-            return ends | {"landed": lambda z: float(z[self.height]) / depth}
-        ends["lifted"] = lambda z: float(self.contact_forces(z, hold, self.free @ z)[UP]) / scale + ROUNDING
+            return ends | {"landed": lambda z: float(z[slots["height"]]) / depth}
+        ends["lifted"] = lambda z: float(self.contact_forces(z, hold, contact.free @ z)[UP]) / scale + ROUNDING
         if hold.table == "slides":
             return ends | {"stopped": lambda z: self._slip(z, 1)[1] / speed}
-        return ends | {"slid": margin(self.raised.friction, UP, ASIDE, AHEAD)}
+        return ends | {"slid": margin(self.table.friction, UP, ASIDE, AHEAD)}
 
-    def _follow(self, hold: Any, end: float, z: Array, solution: Any) -> None:
-        super()._follow(hold, end, z, solution)
-        self.table_loss += float(z[self.scraped])
+    def _take(self, hold: Hold | None, way: Way) -> None:
+        super()._take(hold, way)
+        self.table_loss += float(way.z[self.contact.slots["scraped"]])
 
-    def _settle(self, hold: Any) -> None:
+    def _settle(self, hold: Hold) -> None:
         """Take out of the directions that a phase holds what rounding, and a slip's last turn, left there."""
-        self.friction_loss += self._stop(self.rows[self._keep(hold)])
+        self.contact.friction_loss += self._stop(self.rows[self._keep(hold)])
 
     def _vectors(self) -> tuple[Array, Array]:
         """Velocity, m/s, and spin times radius, m/s, of the ball: (right, forward, up)."""
-        axes, mass = np.array(self.axes), self.laws.ball_mass
-        return axes @ self.z[self.ball] * mass**-0.5, axes @ self.z[self.turns] * (self.laws.inertia * mass) ** -0.5
-
-    @property
-    def impulse(self) -> tuple[float, float]:
-        """Impulse on the ball along the table, in (t, n) of the level stroke, N s; the table's part is in it."""
-        s, c = math.sin(self.laws.phi), math.cos(self.laws.phi)
-        right, forward, _ = self._vectors()[0] * self.laws.ball_mass
-        return float(s * forward + c * right), float(c * forward - s * right)
-
-    @property
-    def along(self) -> float:
-        """What the cue gave along its axis, N s."""
-        return float(self.tip.approach @ (self.laws.speed * self.tip.approach - self.z[self.velocities]))
-
-    @property
-    def twist(self) -> float:
-        """The part of the impulse that turned the ball about the vertical, N s."""
-        return float(self._vectors()[1][2]) * self.laws.inertia * self.laws.ball_mass
+        axes, laws, z = np.array(self.axes), self.contact.laws, self.contact.z
+        mass = laws.ball_mass
+        return axes @ z[self.ball] * mass**-0.5, axes @ z[self.turns] * (laws.inertia * mass) ** -0.5
 
     def other_losses(self) -> dict[str, float]:
         """The ball's turning about level axes, its motion upwards, and what the table took, J."""
         (_, _, hop), turning = self._vectors()
-        mass = self.laws.ball_mass
+        laws = self.contact.laws
+        mass = laws.ball_mass
         return {
             **super().other_losses(),
-            "ball roll": float(turning[:2] @ turning[:2]) * self.laws.inertia * mass / 2,
+            "ball roll": float(turning[:2] @ turning[:2]) * laws.inertia * mass / 2,
             "ball hop": float(hop) ** 2 * mass / 2,
             "table loss": self.table_loss,
         }
 
-    def history(self, mirror: float) -> RaisedHistory:  # type: ignore[override]
+    def history(self, mirror: float) -> RaisedHistory:
         """Forces and velocities so far, and the ball's; mirror: -1 for a stroke on the other side."""
         velocity, turning = self._vectors()
         side = np.array([mirror, 1.0, 1.0])
-        return RaisedHistory(tuple(self.stretches), mirror, velocity * side, turning / self.radius * side * mirror)
+        return RaisedHistory(tuple(self.steppings), mirror, velocity * side, turning / self.radius * side * mirror)

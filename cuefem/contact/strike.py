@@ -9,8 +9,9 @@ import numpy as np
 
 from cuefem.beam.tip import TipModes
 from cuefem.contact.kinds import contact_of
-from cuefem.contact.linear import Contact, Laws, run
-from cuefem.contact.outcome import _outcome
+from cuefem.contact.outcome import outcome_of
+from cuefem.contact.phases import Kind, run
+from cuefem.contact.state import Laws
 from cuefem.quantity import check_kind, scalar
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import tip_modes_of
@@ -22,7 +23,7 @@ def strike(scene: Scene, at: Resolution | None = None) -> Outcome:
     at: a Resolution gives the plain sum over the modes asked for; left out, modes are kept by frequency so that squirt
     is within 0.5 % (what was measured: studies/default_accuracy.md). A lumped cue needs none. Phases (slip or stick,
     loaded, unloaded or reloaded) are propagated exactly and their ends found as roots, so the modes kept are the only
-    approximation. Fields of the scene are single numbers. Outcome.phases are `cuefem.contact.linear.Phase`;
+    approximation. Fields of the scene are single numbers. Outcome.phases are `cuefem.contact.state.Phase`;
     Outcome.history gives forces and velocities at any time. energy: "ball translation", "ball rotation", "cue" (rigid
     motion), "cue vibration", "tip loss", "friction loss". RuntimeError where the ball never leaves. Cost: cubic in the
     modes, a few milliseconds for 24.
@@ -33,11 +34,10 @@ def strike(scene: Scene, at: Resolution | None = None) -> Outcome:
 
 def strike_modes(scene: Scene, tip: TipModes) -> Outcome:
     """The coupled strike of a cue that is given by its tip modes."""
-    contact = struck(scene, tip)
-    return _outcome(contact, scene, math.copysign(1.0, scalar("Stroke.offset", scene.stroke.offset)))
+    return outcome_of(struck(scene, tip), scene, math.copysign(1.0, scalar("Stroke.offset", scene.stroke.offset)))
 
 
-def struck(scene: Scene, tip: TipModes) -> Contact:
+def struck(scene: Scene, tip: TipModes) -> Kind:
     """The contact of a strike when it is over, solved for the side b >= 0: its phases, courses and last state."""
     offset = scalar("Stroke.offset", scene.stroke.offset)
     laws = Laws(
@@ -55,10 +55,10 @@ def struck(scene: Scene, tip: TipModes) -> Contact:
     lever = terms.lever(laws.phi)
     if any(lever):
         tip = replace(tip, amplitude=tip.amplitude + np.outer(tip.rotation, lever))
-    contact = contact_of(scene, tip, laws)
-    run(contact)
+    kind = contact_of(scene, tip, laws)
+    run(kind)
     if terms.window is not None:
         from cuefem.contact.second_hit import follow
 
-        follow(contact, terms.window)
-    return contact
+        follow(kind, terms.window)
+    return kind

@@ -9,7 +9,8 @@ import scipy.linalg as la
 
 from cuefem import AxialWaves, PointMass, StructuralDamping, Support, TipDome, TipShear
 from cuefem.contact.kinds import contact_of
-from cuefem.contact.linear import Contact, Laws
+from cuefem.contact.linear import Exact
+from cuefem.contact.state import Laws
 from cuefem.tip_modes import tip_modes_of
 from tests.helpers.strike_scenes import kim_scene
 
@@ -17,16 +18,17 @@ RNG = np.random.default_rng(3)
 GRIPS, PRESSES = ("slip", "slip back", "stick"), ("load", "unload", "rigid")
 
 
-def contact(*effects, friction=0.7) -> Contact:
+def contact(*effects, friction=0.7) -> Exact:
     scene = replace(kim_scene(0.4), effects=effects)
     laws = Laws(math.asin(0.4), 0.21, 0.4, scene.stiffness, 0.75, friction, scene.contact_time, 1.0)
     return contact_of(scene, tip_modes_of(scene), laws)
 
 
-def possible(here: Contact, grip: str, press: str) -> np.ndarray:
+def possible(here: Exact, grip: str, press: str) -> np.ndarray:
     """States that the phase can be in: stick holds v_t, a rigid tip v_n, unless a spring takes the patch along."""
-    held = [here.c_n] * (press == "rigid") + [here.c_t] * (grip == "stick" and here.extra_states == 0)
-    z = RNG.normal(size=(len(here.z), 4))
+    held = [here.contact.c_n] * (press == "rigid")
+    held += [here.contact.c_t] * (grip == "stick" and "shear" not in here.contact.slots)
+    z = RNG.normal(size=(len(here.contact.z), 4))
     basis = np.linalg.qr(np.array(held).T)[0] if held else np.zeros((len(z), 0))
     return z - basis @ (basis.T @ z)
 

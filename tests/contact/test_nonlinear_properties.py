@@ -29,7 +29,7 @@ from cuefem import (
     strike,
 )
 from cuefem.beam.tip import TipModes
-from cuefem.contact.stepped import SteppedContact
+from cuefem.contact.stepped import Stepped
 from cuefem.contact.strike import strike_modes
 from tests.helpers.strike_scenes import (
     FRICTION,
@@ -125,15 +125,15 @@ def test_what_is_not_listed_is_not_entered(monkeypatch):
         own = getattr(kind, name)
         monkeypatch.setattr(kind, name, lambda *args, **names: calls.append(name) or own(*args, **names))
 
-    counted(SteppedContact, "__post_init__")
+    counted(Stepped, "__init__")
     counted(cuefem.contact.second_hit, "follow")
     assert np.array_equal(numbers(strike_modes(scene, bent())), numbers(bare))
     assert strike_modes(replace(scene, effects=(TipShear(0.75),)), bent()).unknowns == bare.unknowns + 1
     assert calls == []
     strike_modes(replace(scene, effects=(RollingContact(),)), bent())
-    assert calls == ["__post_init__"]
+    assert calls == ["__init__"]
     strike_modes(replace(scene, effects=(SecondHit(),)), bent())
-    assert calls == ["__post_init__", "follow"]
+    assert calls == ["__init__", "follow"]
 
 
 def test_the_solver_is_loaded_only_for_what_needs_it():

@@ -23,8 +23,8 @@ from cuefem import (
 )
 from cuefem.beam.tip import TipModes, lumped_tip_modes
 from cuefem.contact.kinds import contact_of
-from cuefem.contact.linear import Laws
 from cuefem.contact.second_hit import hits
+from cuefem.contact.state import Laws
 from cuefem.contact.strike import strike_modes
 from cuefem.effects.law import TipLaw, loading_time
 from tests.helpers.orders import assert_order
@@ -292,19 +292,18 @@ def test_directions_turn_as_the_module_says():
     laws = Laws(asin(0.4), 0.2, 0.4, stiffness=1e6, restitution=0.7, friction=0.5, time=1e-3, speed=1.0)
     tip, lever = bent(), scene.contact_terms.lever(laws.phi)
     tip = replace(tip, amplitude=tip.amplitude + np.outer(tip.rotation, lever))
-    contact = contact_of(scene, tip, laws)
-    z, h = contact.z.copy(), 1e-5
+    kind = contact_of(scene, tip, laws)
+    slots = kind.contact.slots
+    z, h = kind.contact.z.copy(), 1e-5
 
     def turned(angle):
-        z[contact.angle] = angle
-        return contact.directions(z)
+        z[slots["angle"]] = angle
+        return kind.directions(z)
 
     (low_t, low_n, _), (_, c_n, passing), (high_t, high_n, _) = (turned(0.2 + step) for step in (-h, 0, h))
     assert np.abs((high_t - low_t) / (2 * h) - c_n).max() < 1e-9
     assert np.abs((high_n - low_n) / (2 * h) - passing).max() < 1e-9
-    assert (
-        abs(passing[contact.velocities][1] - 9.0 * cos(asin(0.4) + 0.2) + 50.0 * 0.011 * cos(asin(0.4) + 0.2)) < 1e-12
-    )
+    assert abs(passing[slots.velocities][1] - 9.0 * cos(asin(0.4) + 0.2) + 50.0 * 0.011 * cos(asin(0.4) + 0.2)) < 1e-12
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,6 @@
 """Verification: a nearly dead tip, averaged over its ringing, against exact phases and a model written differently.
 
-The exact phases (`cuefem.contact.linear.Contact`) follow every swing; where both can be had they must meet as e -> 0.
+The exact phases (`cuefem.contact.linear.Exact`) follow every swing; where both can be had they must meet as e -> 0.
 The oracle of a slipping tip steps the mean motion in displacements with scipy, and finds where tip and ball part from
 the forces alone: the amplitude is what is left below the old peak by the largest mean force so far.
 """
@@ -14,8 +14,10 @@ from scipy.integrate import solve_ivp
 
 from cuefem import Ball, LumpedCue, Outcome, Resolution, Scene, Stroke, Tip, strike
 from cuefem.beam.tip import TipModes
-from cuefem.contact.linear import Contact, Laws, run
-from cuefem.contact.ringing_tip import AVERAGED, RingingContact
+from cuefem.contact.linear import Exact
+from cuefem.contact.phases import run
+from cuefem.contact.ringing_tip import AVERAGED, Ringing
+from cuefem.contact.state import Laws
 from cuefem.contact.strike import strike_modes
 from cuefem.tip_modes import tip_modes_of
 from tests.helpers.strike_scenes import hand_made, imbalance, kim_cue
@@ -123,9 +125,11 @@ def both(scene: Scene, tip: TipModes) -> tuple[np.ndarray, np.ndarray]:
         scene.stroke.speed,
     )
     found = []
-    for contact in (RingingContact(tip, laws), Contact(tip, laws)):
-        run(contact)
-        found.append(np.array(contact.impulse))
+    ringing, exact = Exact.of(tip, laws), Exact.of(tip, laws)
+    ringing.ringing = Ringing(ringing)
+    for kind in (ringing, exact):
+        run(kind)
+        found.append(np.array(kind.contact.impulse))
     return found[0], found[1]
 
 

@@ -34,8 +34,10 @@ from cuefem import (
     strike,
 )
 from cuefem.beam.tip import TipModes
-from cuefem.contact import linear as contact
 from cuefem.contact.impulse_space import inverse_mass
+from cuefem.contact.linear import Exact
+from cuefem.contact.phases import run
+from cuefem.contact.state import Laws
 from cuefem.contact.strike import strike_modes
 from tests.helpers.strike_scenes import (
     KIM,
@@ -231,19 +233,17 @@ def test_effects_under_which_ringing_is_not_averaged_say_so_soon(effect, message
         strike(scene, FEW)
 
 
-def jamming(seed: int) -> contact.Contact:
+def jamming(seed: int) -> Exact:
     """The contact of a dead tip with a cue of random modes that move its tip along and across, run to its end."""
     rng = np.random.default_rng(seed)
     tip = hand_made(list(np.sort(10 ** rng.uniform(2.5, 4.5, 4))), list(rng.normal(size=4) * 10))
     tip.amplitude[2:, 0] = rng.normal(size=4)
     scene = Scene(LumpedCue(0.54, 0.01), Ball(), Tip(0.0, 0.7, contact_time=5e-3), Stroke(offset=0.1))
     ball, law = scene.ball, scene.tip
-    laws = contact.Laws(
-        np.arcsin(0.1), ball.mass, ball.inertia, scene.stiffness, 0.0, law.friction, scene.contact_time, 1.0
-    )
-    found = contact.Contact(tip, laws)
-    contact.run(found)
-    assert len(found.phases) < 200
+    laws = Laws(np.arcsin(0.1), ball.mass, ball.inertia, scene.stiffness, 0.0, law.friction, scene.contact_time, 1.0)
+    found = Exact.of(tip, laws)
+    run(found)
+    assert len(found.contact.phases) < 200
     return found
 
 
@@ -255,17 +255,19 @@ def test_a_dead_tip_in_a_jam_lets_go_instead_of_chattering():
     let_go = []
     for seed in range(200):
         dead = jamming(seed)
-        last, force = dead.phases[-1], dead.force("stick", "rigid")[1]
-        if (last.grip, last.press) != ("stick", "rigid") or force < 1e-2 * dead.peak:
+        end = dead.contact
+        last, force = end.phases[-1], dead.force("stick", "rigid")[1]
+        if (last.grip, last.press) != ("stick", "rigid") or force < 1e-2 * end.peak:
             continue
-        stiff = contact.Contact(dead.tip, replace(dead.laws, restitution=1e-4))
-        stiff.z, stiff.peak = dead.z.copy(), dead.peak
-        stiff.z[stiff.spring] = force / stiff.root_stiffness("unload")
+        kind = Exact.of(end.tip, replace(end.laws, restitution=1e-4))
+        stiff = kind.contact
+        stiff.z, stiff.peak = end.z, end.peak
+        stiff.put(spring=force / kind.root_stiffness("unload"))
         step = ("touch", "stick", "unload")
         while step is not None:
-            step = stiff.go(*step[1:])
+            step = kind.next(kind.follow(*step[1:]), *step[1:])
         assert (stiff.phases[-1].grip, stiff.phases[-1].press) == ("slip", "unload")
-        let_go.append(stiff.time / dead.laws.time)
+        let_go.append(stiff.time / end.laws.time)
     assert len(let_go) >= 3
     assert max(let_go) < 0.01
 
@@ -414,9 +416,10 @@ def test_fields_of_arrays_are_refused_by_name(field, part, cue):
         strike(replace(Scene(cue, stroke=Stroke(offset=0.3)), **part))
 
 
-@pytest.mark.parametrize("limit", [("LONGEST", 0.3), ("MOST_PHASES", 0), ("MOST_CELLS", 1)])
+@pytest.mark.parametrize("limit", [("state.LONGEST", 0.3), ("phases.MOST_PHASES", 0), ("linear.MOST_CELLS", 1)])
 def test_a_strike_that_does_not_separate_says_so_with_its_state(monkeypatch, limit):
-    monkeypatch.setattr(contact, *limit)
+    name, most = limit
+    monkeypatch.setattr(f"cuefem.contact.{name}", most)
     scene = Scene(LumpedCue(0.54, 0.003), stroke=Stroke(offset=0.3))
     message = r"does not leave the cue: after .* s and \d+ phases .*v_t = .*v_n = .*F_n = .*F_t = .*check restitution"
     with pytest.raises(RuntimeError, match=message):

@@ -1,0 +1,212 @@
+"""The state of a contact: the tip modes and the ball, what has been lost, and the phases gone through.
+
+The state is z = (omega q of the vibrating modes, velocities of all modes, ball's normal and tangential velocity, and
+slots of the kind of contact), scaled so that |z|^2/2 is the energy outside friction's and the tip's losses: velocities
+in sqrt(kg) m/s, the ball's with sqrt(M); where the ball's turning has no slot of its own, the tangential one is that of
+the ball's surface, with sqrt(M nu/(1 + nu)).
+
+With the contact's velocities v_t = c_t . z and v_n = c_n . z (ball less tip), a force (F_t, F_n) on the ball adds
+c_t F_t + c_n F_n to z'.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from cuefem.beam.tip import TipModes
+from cuefem.cue import Array
+
+Grip = Literal["slip", "stick", "slip back"]
+# The last five: past the peak of a nearly dead tip, averaged over its ringing (`cuefem.contact.ringing_tip`).
+Press = Literal["load", "unload", "rigid", "ringing", "capped", "rubbed", "rubbed back", "swinging"]
+SIDE = {"slip": 1.0, "slip back": -1.0, "stick": 0.0}
+# Grip and press of a phase in which ball and tip are apart, before they touch again (the effect SecondHit).
+APART = ("apart", "free")
+# A contact that lasts this many head-on contact times (and a period and a half of the slowest vibration, on which a
+# rigid tip may ride) does not end.
+LONGEST = 200
+
+
+class Phase(NamedTuple):
+    """One phase of a contact.
+
+    Attributes
+    ----------
+    grip : str
+        "slip", "stick" or "slip back"; "blow" for the blow of endless friction, "apart" between two hits.
+    press : str
+        How the tip is pressed: "load", "unload", "rigid" (a dead tip past its peak), "free" between two hits, and the
+        phases of a nearly dead tip that rings (`cuefem.contact.ringing_tip`).
+    start, end : float
+        Times from first touch, s.
+    impulse : tuple of float
+        Impulse (t, n) on the ball in this phase, N s.
+    """
+
+    grip: str
+    press: str
+    start: float
+    end: float
+    impulse: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Laws:
+    """The constants of a contact in SI; phi: the angle of the contact, rad; time: the head-on contact time, s."""
+
+    phi: float
+    ball_mass: float
+    inertia: float
+    stiffness: float
+    restitution: float
+    friction: float
+    time: float
+    speed: float
+
+
+class Slots:
+    """Where the parts of a state stand: omega q of the vibrating modes, all modes' velocities, and one name a slot."""
+
+    def __init__(self, rigid: int, vibrating: int, names: tuple[str, ...]) -> None:
+        start = rigid + 2 * vibrating
+        self.vibration = slice(0, vibrating)
+        self.velocities = slice(vibrating, start)
+        self.rigid = slice(vibrating, vibrating + rigid)
+        self.swinging = slice(vibrating + rigid, start)
+        self.places = {name: start + i for i, name in enumerate(names)}
+        self.size = start + len(names)
+
+    def __getitem__(self, name: str) -> int:
+        return self.places[name]
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.places
+
+    def of(self, *names: str) -> list[int]:
+        """The places of several slots."""
+        return [self.places[name] for name in names]
+
+
+@dataclass
+class Contact:
+    """Tip modes and laws of a contact; its state, what it has lost, J, and its phases so far.
+
+    names: the slots of its kind, behind ball_n and ball_t. peak: the tip's force at the last greatest compression, N.
+    parted: whether the blow of endless friction alone threw ball and tip apart.
+    """
+
+    tip: TipModes
+    laws: Laws
+    names: tuple[str, ...]
+    time: float = 0.0
+    friction_loss: float = 0.0
+    damping_loss: float = 0.0
+    radiated: float = 0.0
+    peak: float = 0.0
+    parted: bool = False
+    phases: list[Phase] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        tip, laws = self.tip, self.laws
+        s, c = math.sin(laws.phi), math.cos(laws.phi)
+        modal = tip.amplitude @ np.array([[s, c], [c, -s]])  # (u, w) to (t, n)
+        vibrating = tip.omega > 0
+        self.quiet = int(np.sum(~vibrating))  # rigid modes come first
+        omega = self.omega = tip.omega[vibrating]
+        slots = self.slots = Slots(self.quiet, len(omega), ("ball_n", "ball_t", *self.names))
+        n, size = len(omega), slots.size
+        mass, nu = laws.ball_mass, laws.inertia
+        self.c_t, self.c_n = np.zeros(size), np.zeros(size)
+        self.c_t[slots.velocities], self.c_n[slots.velocities] = -modal[:, 0], -modal[:, 1]
+        self.c_n[slots["ball_n"]] = mass**-0.5
+        if "spin" in slots:
+            self.c_t[slots["ball_t"]], self.c_t[slots["spin"]] = mass**-0.5, (nu * mass) ** -0.5
+        else:
+            self.c_t[slots["ball_t"]] = (mass * nu / (1 + nu)) ** -0.5
+        self.free = np.zeros((size, size))  # the motion without forces at the contact
+        turning = np.arange(slots.swinging.start, slots.swinging.stop)
+        self.free[np.arange(n), turning], self.free[turning, np.arange(n)] = omega, -omega
+        self.fastest = float(omega.max(initial=0.0))
+        self.dampers = np.zeros((0, size))  # rows whose squares add up to the damped power
+        if tip.damping is not None:
+            self._damp(tip.damping)
+        self.lossy = len(self.dampers)  # those after them radiate
+        if tip.radiation is not None:
+            self._damp(tip.radiation)
+        self.z = np.zeros(size)
+        self.z[slots.velocities] = laws.speed * tip.approach
+        self.read, self.per = self._readings()
+        self.along_before = 0.0
+
+    def _damp(self, damping: Array) -> None:
+        modes = np.flatnonzero(damping.any(axis=1))  # a tail's radiation is that of a few
+        strengths, directions = np.linalg.eigh(damping[np.ix_(modes, modes)])
+        acting = strengths > 1e-14 * strengths.max(initial=0.0)
+        rows = np.zeros((int(acting.sum()), len(self.free)))
+        rows[:, self.slots.velocities.start + modes] = (directions[:, acting] * np.sqrt(strengths[acting])).T
+        self.dampers = np.concatenate([self.dampers, rows])
+        self.free[self.slots.velocities, self.slots.velocities] -= damping
+        self.fastest += float(strengths.max(initial=0.0))
+
+    def _readings(self) -> tuple[Array, Array]:
+        """Rows that read the impulse on the ball (t, n), the part that turns it, and that along the cue; over divisors.
+
+        A division keeps the digits of small impulses that a product with its inverse would round away.
+        """
+        rows, per, slots = np.zeros((4, len(self.z))), np.ones(4), self.slots
+        t, n = slots.of("ball_t", "ball_n")
+        rows[0, t], rows[1, n], per[:2] = 1.0, 1.0, (self.c_t[t], self.c_n[n])
+        if "spin" in slots:  # of the tangential force, wherever its direction was
+            rows[2, slots["spin"]] = math.sqrt(self.laws.inertia * self.laws.ball_mass)
+        else:
+            rows[2, t], per[2] = 1.0, per[0]
+        rows[3, t], rows[3, n] = math.sin(self.laws.phi) / per[0], math.cos(self.laws.phi) / per[1]
+        return rows, per
+
+    @property
+    def impulse(self) -> tuple[float, float]:
+        """Impulse (t, n) on the ball so far, N s."""
+        p_t, p_n = self.read[:2] @ self.z / self.per[:2]
+        return float(p_t), float(p_n)
+
+    @property
+    def twist(self) -> float:
+        """The part of the impulse that turned the ball, N s."""
+        return float(self.read[2] @ self.z / self.per[2])
+
+    @property
+    def along(self) -> float:
+        """The part of the impulse along the cue, N s."""
+        return self.along_before + float(self.read[3] @ self.z)
+
+    @property
+    def scale(self) -> float:
+        """Scale of the contact's force, N."""
+        return self.laws.speed * math.sqrt(self.laws.stiffness / float(self.c_n @ self.c_n))
+
+    @property
+    def patience(self) -> float:
+        """How long the contact may last at most, s.
+
+        A dead tip may stay on a slow mode, slower still with the ball on it, by no more than the second term.
+        """
+        longest = LONGEST * self.laws.time
+        if len(self.omega):
+            still = np.delete(self.c_n, np.arange(self.slots.swinging.start, self.slots.swinging.stop))
+            longest += 10 / float(self.omega.min()) * float(np.linalg.norm(self.c_n) / np.linalg.norm(still))
+        return longest
+
+    def put(self, **slots: float) -> None:
+        """Set slots of the state by name; the array is a new one, since courses keep the old."""
+        self.z = self.z.copy()
+        for name, value in slots.items():
+            self.z[self.slots[name]] = value
+
+    def end_phase(self, grip: str, press: str, start: float, before: tuple[float, float]) -> None:
+        """Write down a phase that has ended now; before: the impulse on the ball at its start, N s."""
+        after = self.impulse
+        self.phases.append(Phase(grip, press, start, self.time, (after[0] - before[0], after[1] - before[1])))
