@@ -173,16 +173,43 @@ class Resolution:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a strike leaves behind; from a scene of arrays every field has their broadcast shape, vectors one axis more.
+    """What a strike leaves behind.
 
-    squirt: rad, positive when the ball leaves on the far side of the cue line from the struck side. ball_velocity:
-    (t, n), m/s. ball_speed: m/s. spin: p_t/(nu M R), rad/s. cue_speed: along the cue's axis, m/s. impulse: (t, n) on
-    the ball, N s. duration: s, None from the impulse solver. regime: how the first slip ended: "stick" (or never
-    was), "late stick" (past the greatest compression), "slip reversal", "miscue" (never). jam: whether the normal
-    velocity grew at first, the ordinary case of a light end mass. phases: the course of the contact. energy: joules
-    by name, "initial" and its parts, which add up to it. unknowns: of the model that was solved. error: estimated
-    relative error, None where nothing estimated it. history: forces and velocities during the contact at any time
-    (`cuefem.contact.history.History`), None from the impulse solver.
+    From a scene of arrays every field has their broadcast shape; vectors have one axis more.
+
+    Attributes
+    ----------
+    squirt : float or array
+        Angle between the ball's path and the cue's, rad; positive when the ball leaves on the far side of the cue's
+        line from the side that is struck.
+    ball_velocity : array
+        Velocity of the ball (t, n), m/s: t along the ball's surface, n into the ball at the contact.
+    ball_speed : float or array
+        m/s.
+    spin : float or array
+        Angular velocity of the ball, p_t/(nu M R), rad/s.
+    cue_speed : float or array
+        Speed of the cue along its axis after the stroke, m/s.
+    impulse : array
+        Impulse on the ball (t, n), N s.
+    duration : float or None
+        Of the contact, s; None from the impulse solver.
+    regime : str or array
+        How the first slip ended: "stick" (at once, or while the tip was being compressed), "late stick" (past the
+        greatest compression), "slip reversal", "miscue" (it never ended).
+    jam : bool or array
+        Whether friction pressed ball and tip together at first, so that they closed faster: usual for a light end mass.
+    phases : tuple
+        The course of the contact.
+    energy : dict
+        J by name: "initial", and the parts that add up to it.
+    unknowns : int
+        Of the model that was solved.
+    error : float or None
+        Estimated relative error; None if nothing estimated it.
+    history : History or None
+        Forces and velocities during the contact, at any time (`cuefem.contact.history.History`); None from the impulse
+        solver.
     """
 
     squirt: Any

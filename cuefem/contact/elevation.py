@@ -30,7 +30,7 @@ from cuefem.effects.terms import Table
 
 
 def in_both_planes(tip: TipModes) -> tuple[TipModes, Array]:
-    """The tip modes with their like across the plane of cue and ball, and every mode's displacement along p."""
+    """The tip modes, each bending mode repeated in the perpendicular plane, and every mode's displacement along p."""
     again = np.flatnonzero(tip.amplitude[:, 1] != 0)
     count, more = len(tip.omega), len(again)
     omega = np.concatenate([tip.omega, tip.omega[again]])

@@ -19,10 +19,17 @@ V_T, V_N, F_N, F_T = range(4)
 
 @dataclass(frozen=True)
 class History:
-    """Forces and velocities of a contact at any time of it, without stepping error.
+    """Forces and velocities at any time of a contact, without stepping error.
 
-    Called with times, s, in [0, duration], it returns a dict of arrays of their shape: "force_t", "force_n" on the
-    ball, N, and "velocity_t", "velocity_n" of the ball against the tip, m/s.
+    Call it with times, s, in [0, duration]. It returns a dict of arrays of their shape: "force_t" and "force_n" on the
+    ball, N; "velocity_t" and "velocity_n" of the ball against the tip, m/s. ValueError for other times.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> outcome = cf.strike(cf.Scene(cf.LumpedCue(0.54, 0.01), stroke=cf.Stroke(offset=0.3)))
+    >>> sorted(outcome.history(outcome.duration / 2))
+    ['force_n', 'force_t', 'velocity_n', 'velocity_t']
     """
 
     pieces: tuple[Piece, ...]
@@ -43,7 +50,7 @@ class History:
 
 @dataclass(frozen=True)
 class SteppedHistory:
-    """What `History` gives, of a contact that was stepped in time: exact to the solver's interpolants, about 1e-9."""
+    """What `History` gives, for a contact that was stepped in time; accurate to the interpolants, about 1e-9."""
 
     stretches: tuple[Stepping, ...]
     mirror: float

@@ -1,8 +1,8 @@
-"""Where cue and ball are at any time of a strike and after it: the state of the contact, course by course.
+"""Where cue and ball are at any time of a strike and after it.
 
-A contact is a chain of linear courses z' = A z (`cuefem.contact.linear`), so that between their starts exp(A t) gives
-the state, and beside it the integrals of those velocities whose positions are no state (rigid motions and ball),
-without stepping error; one that is stepped (`cuefem.contact.nonlinear`) is read off the solver's interpolants.
+Every kind of contact gives its motion as stretches of time (`cuefem.contact.stretches`): linear courses, whose states
+are exponentials, or phases that were stepped, which are read off the solver's interpolants. Positions of rigid motions
+and of the ball are no part of the state: they are integrals of velocities, carried along.
 Coordinates: u along the cue in the direction of the stroke and w across it, on the side that is struck at a positive
 offset; their origin is the tip's centre at first touch.
 """
@@ -30,12 +30,27 @@ from cuefem.tip_modes import Solved
 
 @dataclass(frozen=True)
 class Motion:
-    """Cue and ball at ``times`` s, (n,), of a strike whose (last) contact ends at ``duration`` s.
+    """Cue and ball at given times of a strike.
 
-    fields: (unknowns, n), the beam's motion in the unknowns of ``modes``. along: (n,) m, the tip's along the cue; waves
-    in the shaft's length (AxialWaves) are in it, but not along the shaft. centre: (n, 2) m, the ball's centre (u, w).
-    turned: (n,) rad, the ball's angle about u x w. force: (n, 2) N, on the ball, (u, w); none where endless friction
-    gives a blow.
+    Attributes
+    ----------
+    times : (n,) array
+        Times from first touch, s.
+    duration : float
+        When the last contact ends, s.
+    modes : Modes
+        The bending modes of the cue.
+    fields : (unknowns, n) array
+        The beam's motion, in the unknowns of ``modes``; `deflection` reads it anywhere.
+    along : (n,) array
+        Way of the tip along the cue, m. Waves in the shaft's length (`AxialWaves`) are in it; their shape along the
+        shaft is not given.
+    centre : (n, 2) array
+        The ball's centre (u, w), m.
+    turned : (n,) array
+        Angle that the ball has turned through about u x w, rad.
+    force : (n, 2) array
+        Force on the ball (u, w), N; zero where endless friction gives a blow.
     """
 
     times: Array
@@ -48,15 +63,59 @@ class Motion:
     force: Array
 
     def deflection(self, x: ArrayLike) -> tuple[Array, Array]:
-        """Deflection w, m, and rotation theta, rad, at ``x`` m from the tip: two arrays (n, *x.shape)."""
+        """Shape of the cue.
+
+        Parameters
+        ----------
+        x : array_like
+            Positions, m from the tip.
+
+        Returns
+        -------
+        w, theta : arrays of shape (n, *x.shape)
+            Deflection, m, and rotation, rad, at each time.
+        """
         return self.modes.system.interpolate(self.fields, np.asarray(x, float))
 
 
 def motion(scene: Scene, times: ArrayLike, at: Resolution | None = None) -> Motion:
-    """Motion of a scene's strike at ``times``, s from first touch, ascending, >= 0; after the contact all fly free.
+    """Follow cue and ball through a strike and after it.
 
-    at: as in `strike`. ValueError for a lumped cue, and for a raised one (Elevation), which leaves the plane. Cost:
-    that of the strike, and a matrix exponential of its unknowns for each time.
+    Parameters
+    ----------
+    scene : Scene
+        A level stroke of a cue of segments.
+    times : array_like
+        Ascending times, s from first touch, >= 0. After the contact cue and ball fly freely.
+    at : Resolution, optional
+        As in `strike`.
+
+    Returns
+    -------
+    Motion
+
+    Raises
+    ------
+    ValueError
+        For a lumped cue, which has no shape; for a raised one (`Elevation`), which leaves the plane; for times that do
+        not ascend.
+
+    Notes
+    -----
+    u points along the cue in the direction of the stroke and w across it, to the side that is struck at a positive
+    offset; the origin is the tip's centre at first touch. Between phases the state follows z' = A z, so that exp(A t)
+    gives it without stepping error. Beside the strike, each time costs a matrix exponential.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> cue = cf.Cue((cf.Segment(0.74, 0.012, 0.0215, wood),), body_mass=0.42)
+    >>> moved = cf.motion(cf.Scene(cue, stroke=cf.Stroke(offset=0.3)), [0.0, 1e-3], cf.Resolution(2, 8, 6))
+    >>> moved.centre.shape
+    (2, 2)
+    >>> bool(moved.along[1] > moved.along[0])
+    True
     """
     check_kind("motion scene", scene, Scene)
     times = _checked(times)
@@ -68,7 +127,7 @@ def motion(scene: Scene, times: ArrayLike, at: Resolution | None = None) -> Moti
 
 
 def last_contact(scene: Scene, at: Resolution | None = None) -> float:
-    """When a strike's last contact ends, s."""
+    """Time at which the last contact of a strike ends, s."""
     return motion(scene, [0.0], at).duration
 
 

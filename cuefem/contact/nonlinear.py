@@ -1,6 +1,6 @@
 """The contact where its laws are not linear: the effects PowerLawTip and RollingContact, stepped in time.
 
-The state is that of `cuefem.contact.linear`, except that the ball's velocities stand in the frame of the first touch
+The state is that of `cuefem.contact.state`, except that the ball's velocities stand in the frame of the first touch
 and the tip's force is replaced by its compression; the angle that the contact has turned through and the energies lost
 follow as states of their own, so that the energy account closes to the solver's tolerance.
 

@@ -27,26 +27,60 @@ _COORDINATE, _COMPONENT = Quantity("m"), Quantity("")
 
 @dataclass(frozen=True)
 class Placed:
-    """The ball after a stroke, in the table's frame: velocity (m/s) and spin (rad/s), x, y, z on the last axis."""
+    """The ball after a stroke, in the table's frame.
+
+    Attributes
+    ----------
+    velocity : array
+        x, y, z on the last axis, m/s.
+    spin : array
+        x, y, z on the last axis, rad/s.
+    """
 
     velocity: Array
     spin: Array
 
 
 def place(outcome: Outcome, point: ArrayLike, direction: ArrayLike, *, ball: Ball | None = None) -> Placed:
-    """An outcome turned into the table's frame: velocity and spin of the ball as vectors.
+    """Turn an outcome into the table's frame.
 
-    point: (h, l), m: the contact lies h to the right of the ball's centre as the player looks along the cue, and l
-    above the table, on the half of the ball that faces the player. direction: of the cue's motion, of any length. ball:
-    that of the outcome's scene (default `Ball()`). The outcome must be that of a stroke at offset
-    `offset_of(point, direction)`, of either sign; arrays broadcast, vectors on the last axis.
+    Parameters
+    ----------
+    outcome : Outcome
+        Of a stroke at the offset `offset_of(point, direction)`, of either sign. Arrays broadcast.
+    point : array_like
+        (h, l), m: the contact lies h to the right of the ball's centre as the player looks along the cue, and l above
+        the table, on the half of the ball that faces the player.
+    direction : array_like
+        Direction of the cue's motion (x, y, z), of any length.
+    ball : Ball, optional
+        The ball of the outcome's scene; by default `Ball()`.
 
-    The ball leaves at the squirt angle from ``direction``, away from the struck side, and spins about R_I x u ([Kim]
-    end of sec. 5), R_I from the centre to the contact. A level cue along +y: struck right (h > 0), spin along +z (right
-    english) and squirt to -x; struck high (l > R), spin along -x (follow) and squirt into the table; struck low, spin
-    along +x (draw).
+    Returns
+    -------
+    Placed
+        Velocity and spin of the ball as vectors.
 
-    ValueError where the point is not on the ball, the cue does not meet it there, or the outcome has another offset.
+    Raises
+    ------
+    ValueError
+        If the point is not on the ball, if the cue does not meet the ball there, or if the outcome has another offset.
+
+    Notes
+    -----
+    The ball leaves at the squirt angle from ``direction``, away from the side that is struck, and spins about R_I x u
+    ([Kim] end of sec. 5), R_I from the centre to the contact. For a level cue along +y: struck right (h > 0), it spins
+    along +z (right english) and squirts to -x; struck high (l > R), it spins along -x (follow) and squirts into the
+    table; struck low, it spins along +x (draw).
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> outcome = cf.strike(cf.Scene(cf.LumpedCue(0.54, 0.01), stroke=cf.Stroke(offset=0.3)))
+    >>> R = cf.Ball().radius
+    >>> placed = cf.place(outcome, (0.3 * R, R), (0, 1, 0))
+    >>> bool(placed.velocity[0] < 0), bool(placed.spin[2] > 0)
+    (True, True)
     """
     ball = Ball() if ball is None else ball
     offset, axis, along = _geometry(point, direction, ball)
@@ -61,27 +95,76 @@ def place(outcome: Outcome, point: ArrayLike, direction: ArrayLike, *, ball: Bal
 
 
 def offset_of(point: ArrayLike, direction: ArrayLike, *, ball: Ball | None = None) -> Any:
-    """Offset b/R >= 0 of a stroke at a point (h, l) in a direction, as in `place`: the `Stroke.offset` to compute.
+    """Offset b/R >= 0 of a stroke at a point of the ball, in a direction: the `Stroke.offset` to compute.
 
-    b is the distance of the ball's centre from the line through the contact along the cue's motion. A level cue has
-    b^2 = h^2 + (l - R)^2. Broadcasts.
+    Parameters
+    ----------
+    point, direction : array_like
+        As in `place`; they broadcast.
+    ball : Ball, optional
+        By default `Ball()`.
+
+    Returns
+    -------
+    float or array
+        b is the distance of the ball's centre from the line through the contact along the cue's motion; for a level cue
+        b^2 = h^2 + (l - R)^2.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> from cuefem.contact.place import offset_of
+    >>> R = cf.Ball().radius
+    >>> float(round(offset_of((0.3 * R, R), (0, 1, 0)), 12))
+    0.3
     """
     return _geometry(point, direction, Ball() if ball is None else ball)[0][()]
 
 
 def axis_offset(contact_offset: Any, tip_radius: Any, *, ball: Ball | None = None) -> Any:
-    """[B.1]: distance b_axis of the cue's axis from the ball's centre, m, of a contact at offset b/R.
+    """Distance of the cue's axis from the ball's centre, of a contact at offset b/R.
 
-    A domed tip of radius r, m, touches beside its own axis: b_axis = (R + r) b/R (`squirt.axis_offset`).
+    A domed tip of radius r touches the ball beside its own axis: b_axis = (R + r) b/R ([B.1], `squirt.axis_offset`).
+
+    Parameters
+    ----------
+    contact_offset : float or array
+        b/R, in (-1, 1).
+    tip_radius : float or array
+        Radius r of the tip's dome, m.
+    ball : Ball, optional
+        By default `Ball()`.
+
+    Returns
+    -------
+    float or array
+        b_axis, m.
     """
     radius = (Ball() if ball is None else ball).radius
     return squirt.axis_offset(contact_offset, radius=radius, dome_radius=tip_radius)
 
 
 def offset_of_axis(axis_distance: Any, tip_radius: Any, *, ball: Ball | None = None) -> Any:
-    """Offset b/R of the contact of a tip of radius r, m, whose cue's axis passes b_axis, m, from the ball's centre.
+    """Offset b/R of the contact of a domed tip; the inverse of `axis_offset`.
 
-    The inverse of `axis_offset`. ValueError where such a cue passes the ball: |b_axis| >= R + r.
+    Parameters
+    ----------
+    axis_distance : float or array
+        Distance b_axis of the cue's axis from the ball's centre, m.
+    tip_radius : float or array
+        Radius r of the tip's dome, m.
+    ball : Ball, optional
+        By default `Ball()`.
+
+    Returns
+    -------
+    float or array
+        b/R.
+
+    Raises
+    ------
+    ValueError
+        If such a cue passes the ball: |b_axis| >= R + r.
     """
     reach = 2 * axis_offset(0.5, tip_radius, ball=ball)  # R + r: it is linear in the offset
     distance = _COORDINATE.check("axis_distance", axis_distance)

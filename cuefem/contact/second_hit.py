@@ -25,7 +25,24 @@ class Hit(NamedTuple):
 
 
 def hits(outcome: Outcome) -> tuple[Hit, ...]:
-    """The contacts of a strike, the first one first; more than one only where the scene lists SecondHit."""
+    """List the contacts of a strike, the first one first.
+
+    Parameters
+    ----------
+    outcome : Outcome
+        Of a coupled strike; more than one contact needs the effect `SecondHit`.
+
+    Returns
+    -------
+    tuple of Hit
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> from cuefem.contact.second_hit import hits
+    >>> len(hits(cf.strike(cf.Scene(cf.LumpedCue(0.54, 0.01)))))
+    1
+    """
     parts: list[list[Phase]] = [[]]
     for phase in outcome.phases:
         if phase[:2] == APART:
