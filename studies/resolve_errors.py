@@ -2,7 +2,7 @@
 
 What: every rung of the ladder that has an estimate, up to some fifty modes (25 where the contact is stepped in time),
 against references of 1.5 and 2 times the modes of the last rung, on another mesh of another order. The true error is
-known only as well as the two references agree: their difference is subtracted before it is divided by the estimate.
+known no better than the two references agree: what they differ by is taken off it before it is divided by the estimate.
 The family: resolve_family.py. Left out: lumped cues, which are exact, and accuracies that take more modes than that.
 The committed table holds those of the family's 160 scenes that have been computed so far; a run computes all. Writes
 resolve_errors.md beside itself; takes about ten minutes.
@@ -133,14 +133,11 @@ def report(struck: list[Climb], masses: list[Climb]) -> str:
     return "\n".join(
         [
             "# Do the errors that resolve promises hold?\n",
-            "Random scenes with every effect (resolve_family.py). The true error is taken against a reference of up "
-            "to twice",
-            'the modes and stands in brackets; "-" means that these rungs did not reach the accuracy.\n',
-            "A ratio above 3 means that the rungs agree on a wrong value. A soft tip that has a dome, or never slips, "
-            "turns its",
-            "end section at the frequencies at which a shear wave crosses the leather once. These lie above all modes "
-            "kept on",
-            "these rungs, and neither the tail nor the lower rungs show it until the modes reach that far.\n",
+            "Random scenes with every effect (resolve_family.py); true errors against references of up to twice the",
+            "modes. In brackets the true error; -: not within these rungs.\n",
+            "Where the ratio is above 3 the rungs stand on a false plateau: a soft tip under a dome, or one that never",
+            "slips, turns its end section at frequencies at which shear waves cross the leather once, above all modes",
+            "kept there; neither the tail nor the rungs below know of it until modes reach that far.\n",
             "## Strikes: squirt, ball speed and spin\n",
             *summary(struck),
             "",
