@@ -1,4 +1,4 @@
-"""What lowers the squirt of a shaft, and what does it cost in stiffness?
+"""What makes a shaft of little squirt: what buys how much squirt for how much stiffness?
 
 The stick end mass and the small-offset squirt at T = 1 ms (`cuefem.batch_stick`), the static tip stiffness with the
 joint clamped. The first table changes one thing at a time on the hollow-front shaft of meshes/; the second compares the
@@ -63,7 +63,7 @@ def design() -> Problem:
 
 
 def measures(struck: Cue) -> tuple[float, float, float]:
-    """(stick end mass, g; squirt b -> 0 over phi; stiffness at the tip, N/m)."""
+    """(stick end mass, g; squirt b -> 0 over phi; tip stiffness, N/m)."""
     batch = CueBatch.of([struck])
     end_mass, slope = batch_stick(batch, scene(struck), at=AT)
     return 1e3 * float(end_mass[0]), float(slope[0]), float(batch.tip_stiffness[0])
@@ -122,23 +122,15 @@ def _checked(made: Cue, squirt: float) -> list[float]:
 
 
 def text() -> str:
-    columns = ["end mass, g", "squirt/φ, b → 0", "stiffness at the tip, N/m"]
+    columns = ["end mass, g", "squirt/φ, b → 0", "tip stiffness, N/m"]
     first = table(["change", "by", *columns, "squirt, %", "stiffness, %"], changes())
     struck = ["squirt at b/R 0.3, °", "to solid", "with dome and shear, °", "to solid"]
     second = table(["shaft", *columns, *struck], shafts())
-    sought = [
-        "evaluations",
-        "stiffness at the tip, N/m",
-        "squirt/φ sought",
-        "batch, fine",
-        "strike, b/R 0.01",
-        "resolve",
-    ]
+    sought = ["evaluations", "tip stiffness, N/m", "squirt/φ sought", "batch, fine", "strike, b/R 0.01", "resolve"]
     third = table(["least squirt", *sought, "squirt at b/R 0.3, °", "held by (SI)"], optima())
     limits = ", ".join(f"{limit.response.name} >= {limit.low:g}" for limit in wanted().limits)
     return (
-        f"# Shafts of little squirt\n\nContact time 1 ms, bare shafts.\n\n{first}\n{second}\nLeast squirt of bore, "
-        "depth, ferrule, tip "
+        f"# Shafts of little squirt\n\nT = 1 ms, bare.\n\n{first}\n{second}\nLeast squirt of bore, depth, ferrule, tip "
         f"and taper with {limits} (SI); squirt is over φ at small offsets.\n\n{third}"
     )
 
@@ -158,7 +150,7 @@ def draw() -> None:
                 axis.plot(*here, mark, ms=9, color="#cc6644" if name == "carbon" else "#4477aa", mec="black")
                 axis.annotate(SHAFTS[name], here, xytext=(-8, -12), textcoords="offset points", fontsize=9, ha="right")
             axis.set(ylabel="squirt over φ, small offset", ylim=(0.02, 0.1))
-        stiff.set(xlabel="static stiffness at the tip, N/mm (joint clamped)", title="how stiff can little squirt be?")
+        stiff.set(xlabel="static tip stiffness, N/mm (joint clamped)", title="how stiff can little squirt be?")
         stiff.set(xscale="log", xlim=(0.2, 2.1))
         stiff.set_xticks(ticks := (0.2, 0.3, 0.4, 0.6, 0.8, 1, 1.5, 2), [f"{tick:g}" for tick in ticks], minor=False)
         stiff.set_xticks((), minor=True)

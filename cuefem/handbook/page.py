@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from functools import cache
 from html import escape
 from importlib.resources import files
 from string import Template
@@ -58,8 +59,25 @@ def page() -> str:
 
 
 def _text(_: object, tokens: Sequence[Token], index: int, *__: object) -> str:
-    """A text token with letters such as m_e as subscripts."""
-    return SUBSCRIPT.sub(r"\1<sub>\2</sub>", escape(tokens[index].content))
+    """A text token with letters such as m_e as subscripts, and its citations of chapters as links."""
+    return _linked(SUBSCRIPT.sub(r"\1<sub>\2</sub>", escape(tokens[index].content)))
+
+
+def _linked(text: str) -> str:
+    names = _names()
+    title = "|".join(map(re.escape, names))
+    cited = rf"(?<=handbook: )(?:{title})(?:, (?:{title}))*"
+
+    def link(one: re.Match[str]) -> str:
+        return f'<a href="#{names[one[0]]}">{one[0]}</a>'
+
+    return re.sub(cited, lambda found: re.sub(title, link, found[0]), text)
+
+
+@cache
+def _names() -> dict[str, str]:
+    """The chapters' names by their titles."""
+    return {chapter.title: chapter.name for chapter in chapters()}
 
 
 _MARKDOWN = MarkdownIt("commonmark", {"html": False}).enable("table")

@@ -111,6 +111,10 @@ def test_the_page_has_every_chapter_and_every_effect() -> None:
     assert [name for name in EFFECTS if f">{name}</h2>" not in html] == []
 
 
+def test_citations_on_the_page_are_links() -> None:
+    assert 'handbook: <a href="#beam">The beam</a>, <a href="#strike">The strike</a>, <a href="#effects">' in page()
+
+
 def test_the_command_writes_the_page(tmp_path: Path) -> None:
     path = tmp_path / "guide.html"
     assert call("guide", "-o", path) == (0, f"wrote {path}\n", "")
