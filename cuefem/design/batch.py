@@ -31,7 +31,20 @@ STATIC_POINTS = 48
 class CueBatch:
     """Cues with the same number of segments, as arrays.
 
-    rows: `cuefem.cue.SegmentRows` of arrays (cues, segments), one row of numbers a segment. body_mass: (cues,), kg.
+    Parameters
+    ----------
+    rows : SegmentRows
+        The numbers of the drawings in SI units, each an array (cues, segments).
+    body_mass : array
+        Mass of each cue that is not modelled by segments, kg, (cues,).
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(12.6e9, 0.84e9, 700.0)
+    >>> batch = cf.CueBatch.of([cf.Cue((cf.Segment(0.74, d, 0.0215, wood),), 0.42) for d in (0.0115, 0.0135)])
+    >>> batch.shaft_mass.round(4)
+    array([0.1142, 0.1268])
     """
 
     rows: SegmentRows
@@ -39,7 +52,7 @@ class CueBatch:
 
     @classmethod
     def of(cls, cues: Sequence[Cue]) -> CueBatch:
-        """Stack cues; ValueError where their numbers of segments differ."""
+        """Stack cues; ValueError if their numbers of segments differ."""
         counts = sorted({len(cue.segments) for cue in cues})
         if len(counts) != 1:
             raise ValueError(f"CueBatch takes cues of one topology; got {counts} segments")
@@ -134,7 +147,7 @@ class Stick(NamedTuple):
 
     @property
     def reasons(self) -> tuple[str | None, ...]:
-        """Why a cue has no end mass, None where it has one."""
+        """Why a cue has no end mass; None if it has one."""
         return tuple(
             stick_reason(slope) if np.isnan(mass) else None
             for mass, slope in zip(self.end_mass.tolist(), self.squirt.tolist(), strict=True)
@@ -154,26 +167,43 @@ def batch_modes(batch: CueBatch, count: int, *, at: Resolution, ended: bool = Fa
 def batch_stick(
     batch: CueBatch, scenes: Scene | Sequence[Scene] | StickLimit, *, at: Resolution, ended: bool = False
 ) -> Stick:
-    """Stick end mass, kg, and small-offset squirt over phi, of every cue in its scene's place.
+    """Stick end mass and small-offset squirt of many cues.
 
     Parameters
     ----------
-    batch
+    batch : CueBatch
         The cues.
-    scenes
-        One for every cue, or one for all, or a `StickLimit` of the cues' `mass`, whose parts may be arrays (cues,).
-        They give ball, tip and contact time; their cues are not used, and effects are not taken (one cue at a time has
-        them).
-    at
-        Order and modes of every cue. Take an order of 5/3 of the modes.
-    ended
-        The modes end in the vectors of `cuefem.beam.tail`, and fade (`cuefem.endmass.undamped.fade`) where that has a
-        dashpot. The single cue's `end_mass` at a resolution is the plain sum.
+    scenes : Scene, list of Scene, or StickLimit
+        The ball, the tip and the contact time: one scene for all cues, one for each, or a `StickLimit` made with the
+        cues' ``mass``, whose parts may be arrays (cues,). The cues of the scenes are not used. Scenes with effects are
+        refused; `end_mass` takes them, one cue at a time.
+    at : Resolution
+        Elements, order and modes of every cue. Take an order of 5/3 of the modes.
+    ended : bool
+        Whether a tail (`cuefem.beam.tail`) stands for the modes that are left out, fading where it has a dashpot
+        (`cuefem.endmass.undamped.fade`). Without it the result is the plain sum of modes that `end_mass` gives for one
+        cue at a resolution.
 
     Returns
     -------
     Stick
-        Unpacks as ``end_mass, squirt``. A cue that has no end mass gets nan, and one of the ``reasons``.
+        Unpacks as ``end_mass, squirt``: kg, and squirt over phi = asin(b/R). A cue without an end mass gets nan, and
+        ``reasons`` says why.
+
+    Raises
+    ------
+    ValueError
+        If there are neither one nor as many scenes as cues, or if a scene has effects.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(12.6e9, 0.84e9, 700.0)
+    >>> cues = [cf.Cue((cf.Segment(0.74, d, 0.0215, wood),), 0.42) for d in (0.0115, 0.0135)]
+    >>> scene = cf.Scene(cues[0], tip=cf.Tip(contact_time=1e-3))
+    >>> end_mass, squirt = cf.batch_stick(cf.CueBatch.of(cues), scene, at=cf.Resolution(1, 30, 18))
+    >>> bool(end_mass[0] < end_mass[1])
+    True
 
     Notes
     -----
@@ -185,8 +215,8 @@ def batch_stick(
     - ``Resolution(1, 60, 36)``: 0.9, 4.0, 14.4
     - ``Resolution(2, 52, 72)``: 0.7, 2.7, 8.7
 
-    The largest stand near 2L/c, when the front of the shear wave is just back at the tip; only more modes take them
-    away.
+    The largest errors occur near the contact time 2L/c, when the front of the shear wave is just back at the tip; only
+    more modes reduce them.
     """
     law = _law(batch, scenes)
     parts = []

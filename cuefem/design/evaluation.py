@@ -15,14 +15,14 @@ from cuefem.design.solvers import OneByOne, Solver, Together
 from cuefem.scene import Resolution, Scene
 from cuefem.tip_modes import PERIODS_KEPT
 
-# What a design may fail with: it cannot be made, has no answer, or its numbers break down.
+# A design may fail because it cannot be made, has no answer, or its numbers overflow.
 Failed = (ValueError, RuntimeError, ArithmeticError, np.linalg.LinAlgError)
 
 
 @dataclass(frozen=True)
 class Evaluation:
-    """Responses of designs: values (designs, responses), SI, nan where a design has none; reasons, None where it has
-    all.
+    """Responses of designs: values (designs, responses) in SI units, nan if a response has no value; reasons, why a
+    design lacks a value, None if it has all.
     """
 
     values: Array
@@ -35,9 +35,9 @@ def evaluate(
     """The responses of every scene.
 
     Bare cues with equally many segments are worked as arrays, in blocks; scenes with effects, and lumped cues, one by
-    one. at: one resolution for all; left out, the finest that any of them would have by itself. A scene that has no
-    answer gets a reason and does not disturb the others; one without an end mass keeps its other responses.
-    ValueError for a response that is none.
+    one. ``at`` is one resolution for all; the default is the finest that any of the scenes would have by itself. A
+    scene without an answer gets a reason and does not disturb the others; one without an end mass keeps its other
+    responses. ValueError if a name is not that of a response.
     """
     asked = tuple(Response.of(one) if isinstance(one, str) else one for one in responses)
     at = at or common_resolution(scenes, asked)
@@ -57,7 +57,7 @@ def evaluate(
 
 
 def _blocks(scenes: Sequence[Scene]) -> list[list[int]]:
-    """Indices of scenes that are worked together: bare cues by topology in blocks, others each alone."""
+    """Indices of scenes that are worked together: bare cues in blocks by number of segments, others one by one."""
     groups: dict[int, list[int]] = {}
     for i, scene in enumerate(scenes):
         together = len(scene.cue.segments) if not scene.effects else 0
@@ -68,7 +68,7 @@ def _blocks(scenes: Sequence[Scene]) -> list[list[int]]:
 def _values(scenes: Sequence[Scene], responses: Sequence[Response], at: Resolution) -> tuple[Array, list[str | None]]:
     """(responses (designs, responses) of scenes that can be worked together; why one is missing, a design each).
 
-    ValueError where a response is no number and does not say why.
+    ValueError if a response is no number and does not say why.
     """
     bare = scenes[0].cue.segments and not scenes[0].effects
     lacking = [one.name for one in responses if one.segments and not scenes[0].cue.segments]
@@ -87,7 +87,7 @@ def _values(scenes: Sequence[Scene], responses: Sequence[Response], at: Resoluti
 
 
 def common_resolution(scenes: Sequence[Scene], responses: Sequence[Response]) -> Resolution:
-    """One resolution that serves every scene as its own default would; modes by frequency where a strike asks them."""
+    """One resolution that serves every scene as its own default would; modes by frequency for strikes."""
     count, strikes = max([1, *(one.modes for one in responses)]), any(one.strikes for one in responses)
     mesh, modes = (1, 1), 1
     for scene in scenes:

@@ -26,7 +26,7 @@ class Gradient:
     """End mass, kg, small-offset squirt over phi, and their derivatives to the numbers of the drawing.
 
     end_mass_to, squirt_to: `SegmentRows` of arrays (segments,), per SI unit of each number: E and G at fixed Poisson
-    ratio, nu the effective one at fixed E and G; kappa nan where it follows from the section. The body's mass stays.
+    ratio, nu the effective one at fixed E and G; kappa nan if it follows from the section. The body's mass stays.
     end_mass_to_body_mass, squirt_to_body_mass: per kg. Squirt is None for a drive other than "stick".
     """
 
@@ -39,10 +39,30 @@ class Gradient:
 
 
 def gradient(scene: Scene, drive: str = "stick", at: Resolution | None = None) -> Gradient:
-    """Gradient of a bare finite-element cue's end mass, for "stick" of its squirt b -> 0 over phi too.
+    """Derivatives of a bare cue's end mass, and of its small-offset squirt, to every number of its drawing.
 
-    Exact for the modes kept, on the mesh as it is; the contact time is held, from the tip's stiffness too. Cost: that
-    of `sensitivity`, one dense eigenproblem, for however many numbers. Errors: those of `sensitivity`.
+    Parameters
+    ----------
+    scene : Scene
+        With a finite-element cue and without effects. The contact time is held, also if the tip's stiffness gives it.
+    drive : str
+        The definition of the end mass: "stick", "velocity" or "force". Only "stick" has a squirt.
+    at : Resolution, optional
+        The default is that of `sensitivity`.
+
+    Returns
+    -------
+    Gradient
+        Exact for the modes kept, on the mesh as it is.
+
+    Raises
+    ------
+    TypeError, ValueError
+        As `sensitivity` does.
+
+    Notes
+    -----
+    The cost is one dense eigenproblem, for however many numbers.
     """
     found, rows = sensitivity(scene, drive, at), drawing(scene.shaft)
     heavier = masses_to(rows)

@@ -111,7 +111,7 @@ class Problem:
 
     @property
     def start(self) -> Array:
-        """The base design as a point, (variables,), moved into the ranges; the middle where the base holds no value."""
+        """The base design as a point, (variables,), moved into the ranges, or their middle if it has no value."""
         low, high = self.bounds
         held = [
             1.0 if vary.factor else 0.0 if vary.shift else value_at(self.base, vary.fields(self.base)[0])

@@ -21,12 +21,12 @@ Step = str | int
 Path = tuple[Step, ...]
 
 _STEP = re.compile(r"\.?([A-Za-z_]\w*)|\[(\d+|\*)\]")
-# Fields of which a dataclass takes one at most: setting the one takes the other out.
+# Fields of which a dataclass takes one at most: setting one removes the other.
 _INSTEAD = {("Tip", "contact_time"): "stiffness", ("Tip", "stiffness"): "contact_time"}
 
 
 def paths(scene: Scene, text: str) -> tuple[Path, ...]:
-    """The fields of a scene that a path names, "[*]" spelt out; ValueError, with the nearest names, where it is none.
+    """The fields of a scene that a path names, "[*]" spelt out; ValueError, suggesting similar names, if none matches.
 
     A field is a number or a whole material.
     """
@@ -65,7 +65,7 @@ def _below(path: Path, value: Any, step: str, text: str) -> list[tuple[Path, Any
 
 
 def _meant(here: str, name: str, names: list[str]) -> str:
-    """The nearest names, or all there are."""
+    """Words that suggest similar names, or all names."""
     if not names:
         return f", where {here} has no fields"
     close = difflib.get_close_matches(name, names, n=3, cutoff=0.5)
@@ -73,7 +73,7 @@ def _meant(here: str, name: str, names: list[str]) -> str:
 
 
 def _field(scene: Scene, path: Path, text: str) -> Path:
-    """The path, where it ends at a field that can vary."""
+    """The path, checked to end at a field that can vary."""
     if quantity_at(scene, path) is None and not is_material(scene, path):
         below = value_at(scene, path)
         names = [field.name for field in fields(below)] if is_dataclass(below) else []
@@ -96,7 +96,7 @@ def value_at(scene: Scene, path: Path) -> Any:
 
 
 def quantity_at(scene: Scene, path: Path) -> Quantity | None:
-    """Unit and bounds of the number at a path; None where there stands something else."""
+    """Unit and bounds of the number at a path; None if the field is no number."""
     *above, last = path
     owner = value_at(scene, tuple(above))
     if not is_dataclass(owner):

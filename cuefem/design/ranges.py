@@ -69,7 +69,7 @@ class Span:
         return self.count
 
     def level(self, i: int) -> float:
-        """The i-th of ``count`` values; the middle where there is one."""
+        """The i-th of ``count`` values; the middle if there is only one."""
         if i == self.count - 1 > 0:
             return self.high
         return self.quantile(i / (self.count - 1) if self.count > 1 else 0.5)
@@ -134,7 +134,7 @@ class Normal:
 
 @dataclass(frozen=True)
 class Sample:
-    """A quasi-random sample of ``count`` designs in place of the grid; method: one of `METHODS` (scipy.stats.qmc).
+    """A quasi-random sample of ``count`` designs instead of the grid; method: one of `METHODS` (scipy.stats.qmc).
 
     Points are made as they are used, but for "latin hypercube", whose points are made at once (8 bytes a number).
     """

@@ -23,9 +23,9 @@ SMALL = 1e-6
 class Kind(NamedTuple):
     """A family of responses: its unit, what it is, what its argument is ("", "mode", "offset"), how it is found.
 
-    strikes: whether it takes the tip's modes up to the contact's cutoff. segments: whether it needs a cue of segments.
-    limit: whether without an offset it is that of small offsets, not of the scene's own.
-    reasons: why it is nan of designs that have none, None where it is a number.
+    strikes: whether it needs the tip's modes up to the contact's cutoff. segments: whether it needs a cue of segments.
+    limit: whether without an offset it is the limit of small offsets, instead of the value at the scene's own offset.
+    reasons: for each design, why its response is nan, or None if it is a number.
     """
 
     unit: str
@@ -49,7 +49,7 @@ def _pivot(solver: Solver, i: int, offset: float, squirt: float) -> float:
 
 
 def _struck(value: Callable[[Solver, int, Any], float]) -> Callable[[Solver, Any], Array]:
-    """A response of one coupled strike a design, at an offset or, where none is said, the scene's own."""
+    """A response of one coupled strike of each design, at the given offset; by default at the scene's own."""
 
     def values(solver: Solver, offset: float | None) -> Array:
         return np.array([value(solver, i, solver.strike(i, offset)) for i in range(len(solver.scenes))])
@@ -121,9 +121,9 @@ _NAME = re.compile(r"(\w+)(?:\(\s*([^()\s]+)\s*\))?")
 
 @dataclass(frozen=True)
 class Response:
-    """One number asked of every design: a kind by name, and the number of the mode or the offset b/R it is asked at.
+    """One number asked of every design: the name of a kind, and the number of the mode or the offset b/R.
 
-    Without an offset a strike is at the scene's own; "pivot_length" and "end_mass" without one are those of small
+    Without an offset, a strike is at the scene's own; "pivot_length" and "end_mass" are then the limits of small
     offsets.
     """
 
@@ -132,7 +132,7 @@ class Response:
 
     @classmethod
     def of(cls, text: str) -> Response:
-        """Read "squirt(0.3)"; ValueError, with the nearest names, where it is no response."""
+        """Read text such as "squirt(0.3)"; ValueError, suggesting similar names, if no response matches."""
         found = _NAME.fullmatch(text.strip())
         if not found or found[1] not in kinds():
             close = difflib.get_close_matches(text.partition("(")[0], kinds(), n=3, cutoff=0.5)
@@ -176,7 +176,7 @@ class Response:
         return kinds()[self.kind].values(solver, self.argument)
 
     def reason(self, solver: Solver, i: int) -> str | None:
-        """Why a design's response is nan, where that is known."""
+        """Why a design's response is nan, if that is known."""
         reasons = kinds()[self.kind].reasons
         return None if reasons is None else reasons(solver)[i]
 

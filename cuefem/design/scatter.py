@@ -31,12 +31,24 @@ Progress = Callable[[list[Row]], object]
 
 @dataclass(frozen=True)
 class Scatter:
-    """What scatters together in a study.
+    """A study whose ranges are distributions, with correlations and groups.
 
-    study: its ranges are the distributions; its own sample is not used. correlations: {(name, name): r}, r in (-1, 1)
-    between normal scores: of normal numbers, and of the logarithms of logarithmic ones, their correlation itself; other
-    numbers get the rank correlation 6/pi asin(r/2). groups: {name: names of what varies} that count as one cause;
-    numbers that are correlated need a group in common, or get one of their own.
+    Parameters
+    ----------
+    study : Study
+        Its ranges are the distributions; its own sample is not used.
+    correlations : mapping, optional
+        {(name, name): r}, with r in (-1, 1) between the normal scores of two numbers. For normal numbers, and for the
+        logarithms of logarithmic ones, r is the correlation itself; other numbers get the rank correlation
+        6/pi asin(r/2).
+    groups : mapping, optional
+        {name: names of what varies}, each counted as one cause. Correlated numbers must share a group; without one
+        they form a group of their own.
+
+    Raises
+    ------
+    ValueError
+        If a name is unknown, correlations contradict one another, or a group separates correlated numbers.
     """
 
     study: Study
@@ -174,7 +186,7 @@ def spread(
 ) -> Spread:
     """The distribution of a study's responses over ``count`` designs, a power of two: a scrambled Sobol sequence.
 
-    pool, progress: as in `sweep`. ValueError where no design has an answer.
+    pool, progress: as in `sweep`. ValueError if no design has an answer.
     """
     rows = _rows(scatter, scores(len(scatter.names), count, seed=seed), pool, progress)
     return _spread(rows)
@@ -186,7 +198,7 @@ def drivers(
     """Sobol indices of a study's responses, by (causes + 2) ``count`` designs, ``count`` a power of two.
 
     Estimators of Saltelli et al. (Comput. Phys. Commun. 181 (2010) 259, table 2 b, f) as scipy.stats has them; error
-    about 1/sqrt(count) or less, see the intervals. ValueError where a design has no answer, naming the first reason, or
+    about 1/sqrt(count) or less, see the intervals. ValueError if a design has no answer, naming the first reason, or
     a response does not scatter.
     """
     size = len(scatter.names)

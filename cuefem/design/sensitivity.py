@@ -64,10 +64,34 @@ class _Gradient:
 
 
 def sensitivity(scene: Scene, drive: str = "stick", at: Resolution | None = None) -> Sensitivity:
-    """Where the end mass of a bare finite-element cue lives: `Sensitivity`, exact for the modes kept.
+    """Derivatives of a bare cue's end mass to the section properties along it.
 
-    drive: "stick", "velocity" or "force". Sum rule (handbook: Effective end mass): the densities times their properties
-    integrate to m_e, for "stick" to m_e - M dm/dM - m_a dm/dm_a. Cost: all modes of the mesh, one dense eigenproblem.
+    Parameters
+    ----------
+    scene : Scene
+        With a finite-element cue and without effects.
+    drive : str
+        The definition of the end mass: "stick", "velocity" or "force".
+    at : Resolution, optional
+        The default is that of `end_mass` without a tail.
+
+    Returns
+    -------
+    Sensitivity
+        Exact for the modes kept, on the mesh as it is.
+
+    Raises
+    ------
+    TypeError
+        If the cue is lumped.
+    ValueError
+        If the drive is another one, or the scene has effects.
+
+    Notes
+    -----
+    The formulas stand at the top of `cuefem.design.sensitivity`. The densities times their properties integrate to m_e,
+    for "stick" to m_e - M dm/dM - m_a dm/dm_a: m_e scales with all masses and stiffnesses together. The cost is one
+    dense eigenproblem for all modes of the mesh.
     """
     if drive not in _GRADIENTS:
         raise ValueError(f"sensitivity drive must be one of {', '.join(_GRADIENTS)}; got {drive!r}")
@@ -84,7 +108,7 @@ def sensitivity(scene: Scene, drive: str = "stick", at: Resolution | None = None
 
 
 def frequency_sensitivity(scene: Scene, mode: int, at: Resolution) -> Sensitivity:
-    """The same densities of a flexible bending frequency, Hz, the lowest with ``mode`` 1; its value as end_mass.
+    """The same densities for a flexible bending frequency, Hz, counted from 1; the field ``end_mass`` holds its value.
 
     Rayleigh's quotient: d lambda_k = dK_kk - lambda_k dM_kk.
     """

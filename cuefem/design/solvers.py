@@ -49,7 +49,7 @@ class Solver(Protocol):
 
     @property
     def stick(self) -> Stick:
-        """Stick end mass, kg, nan where a design has none, and small-offset squirt over phi."""
+        """Stick end mass, kg, nan if a design has none, and small-offset squirt over phi."""
 
     def stick_at(self, offset: float) -> Array:
         """End mass of a tip that sticks at an offset b/R, kg, (designs,)."""
@@ -139,7 +139,7 @@ class Together(_Strikes):
 
     @cached_property
     def stick(self) -> Stick:
-        """Stick end mass, kg, nan where a design has none, and small-offset squirt over phi."""
+        """Stick end mass, kg, nan if a design has none, and small-offset squirt over phi."""
         return stick_of(self.batch, self._kept, self.scenes)
 
     def tip(self, i: int) -> TipModes:
@@ -211,7 +211,7 @@ class OneByOne(_Strikes):
 
     @cached_property
     def stick(self) -> Stick:
-        """Stick end mass, kg, nan where a design has none, and small-offset squirt over phi."""
+        """Stick end mass, kg, nan if a design has none, and small-offset squirt over phi."""
         both = np.array([self._stick(i) for i in range(len(self.scenes))])
         return Stick(both[:, 0], both[:, 1])
 

@@ -20,18 +20,29 @@ from cuefem.design.responses import Response
 from cuefem.materials import material
 from cuefem.scene import Resolution, Scene
 
-# Designs evaluated, and written, at a time; fewer where each takes a strike in time.
+# Designs evaluated, and written, at a time; fewer if each takes a strike in time.
 BLOCK, STRUCK_BLOCK = 256, 16
 
 
 @dataclass(frozen=True)
 class Vary:
-    """What varies: fields by path, all set to one value of a range; with ``factor``, all multiplied by it; with
-    ``shift``, moved by it.
+    """What varies: fields, and the range of values that they take together.
 
-    name: of its column; the path where there is one. Values are SI numbers (pure numbers for a factor) or names of
-    materials. "[*]" in a path stands for every item of a list. taken_from: fields that lose what the first of the paths
-    gains: a length taken from the next segment's leaves the cue as long as it was, and the joint between them moves.
+    Parameters
+    ----------
+    paths : tuple of str
+        The fields, as in "cue.segments[0].tip_bore"; "[*]" stands for every item of a list.
+    range : Levels, Span or Normal
+        The values: SI numbers (pure numbers for a factor) or names of materials.
+    name : str
+        Name of the column; the default is the paths.
+    factor : bool
+        Multiply the fields by the value, instead of setting them to it.
+    shift : bool
+        Add the value to the fields, instead of setting them to it.
+    taken_from : tuple of str
+        Fields that lose what the first of the paths gains: if a length is taken from the next segment's, the cue stays
+        as long as it was, and the joint between the two moves.
     """
 
     paths: tuple[str, ...]
@@ -54,14 +65,14 @@ class Vary:
         return isinstance(self.range.ends[0], str)
 
     def fields(self, base: Scene) -> tuple[Path, ...]:
-        """The fields of a scene that vary; ValueError where there is none, or a value is not what stands there."""
+        """The fields of a scene that vary; ValueError if a path names no field, or a value does not fit the field."""
         found = tuple(path for text in self.paths for path in paths(base, text))
         for path in found:
             self._check_field(base, path)
         return found
 
     def givers(self, base: Scene) -> tuple[Path, ...]:
-        """The fields of `taken_from`; ValueError where one is no number, or has another unit than what it gives to."""
+        """The fields of `taken_from`; ValueError if one is no number, or its unit differs from that of what varies."""
         found = tuple(path for text in self.taken_from for path in paths(base, text))
         gainer = self.fields(base)[0]
         for path in found:
@@ -81,7 +92,7 @@ class Vary:
             raise ValueError(f"{spelt(path)} takes numbers in {wanted.bounds}; got {values[0]!r}")
 
     def unit(self, base: Scene) -> str:
-        """SI unit of its values, "" for factors and names; ValueError where its fields have different ones."""
+        """SI unit of its values, "" for factors and names; ValueError if its fields have different units."""
         wanted = [quantity_at(base, path) for path in self.fields(base)]
         units = sorted({"" if self.factor or one is None else one.unit for one in wanted})
         if len(units) > 1:
@@ -100,10 +111,26 @@ class Vary:
 
 @dataclass(frozen=True)
 class Study:
-    """A design study; ValueError where a path names no field, or a response asks what the scene has not.
+    """A design study: a base scene, what varies in it, and what is asked of every design.
 
-    at: one resolution for all designs, so that responses do not jump between them; left out, the one that serves the
-    design of the range that needs most. A grid runs through the last of ``vary`` fastest.
+    Parameters
+    ----------
+    base : Scene
+        The scene in which fields vary.
+    vary : tuple of Vary
+        What varies. Without a sample, all combinations are designs (a grid), the last of ``vary`` running fastest.
+    responses : tuple of Response
+        What is asked of every design.
+    sample : Sample, optional
+        A quasi-random sample in place of the grid.
+    at : Resolution, optional
+        One resolution for all designs, so that responses do not jump between them. The default serves the design of the
+        ranges that needs the finest one.
+
+    Raises
+    ------
+    ValueError
+        If a path names no field, two columns have one name, or a response needs segments and the cue is lumped.
     """
 
     base: Scene
@@ -151,7 +178,7 @@ class Study:
 
     @property
     def block(self) -> int:
-        """Number of designs of a block, the last one excepted."""
+        """Number of designs in a block; the last block may hold fewer."""
         slow = any(one.in_time for one in self.responses) or self.base.effects
         return STRUCK_BLOCK if slow else BLOCK
 
@@ -180,7 +207,7 @@ class Study:
         return tuple(vary.givers(self.base) for vary in self.vary)
 
     def scene(self, values: tuple[Value, ...]) -> Scene:
-        """The design of these values; ValueError where there is none, such as a bore wider than its shaft."""
+        """The design with these values; ValueError if it cannot be made, such as a bore wider than its shaft."""
         return self._made(dict(enumerate(values)))
 
     def _made(self, values: dict[int, Value]) -> Scene:
@@ -216,11 +243,11 @@ class Study:
 
     @cached_property
     def resolution(self) -> Resolution:
-        """The one resolution of all designs: that given, or of the ends of the ranges."""
+        """The one resolution of all designs: the given one, or one that serves the ends of all ranges."""
         return self.at or common_resolution(self._extremes(), self.responses)
 
     def _extremes(self) -> list[Scene]:
-        """The base, every end of every range alone, and together those ends that each ask for most modes."""
+        """The base, every end of every range alone, and the scene with every range at its most demanding end."""
         scenes, finest = [self.base], dict[int, Value]()
         for i, vary in enumerate(self.vary):
             most = 0
@@ -233,7 +260,7 @@ class Study:
         return scenes + self._tried(finest)
 
     def _tried(self, values: dict[int, Value]) -> list[Scene]:
-        """The scene of these values, or none: an end of a range may be no design by itself."""
+        """The scene with these values in a list, or an empty list: an end of a range may be no design by itself."""
         try:
             return [self._made(values)]
         except ValueError:
@@ -241,7 +268,7 @@ class Study:
 
     @property
     def record(self) -> dict[str, Any]:
-        """All that its numbers depend on, as JSON can say it."""
+        """All that its numbers depend on, in a form that JSON can hold."""
         return {
             "cuefem": import_module("cuefem").__version__,
             "scene": repr(self.base),
@@ -254,5 +281,5 @@ class Study:
 
     @property
     def fingerprint(self) -> str:
-        """A hash of the record: equal where, and only where, two studies ask for the same table."""
+        """A hash of the record: equal if, and only if, two studies ask for the same table."""
         return hashlib.sha256(json.dumps(self.record, sort_keys=True).encode()).hexdigest()

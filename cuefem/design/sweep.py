@@ -19,7 +19,7 @@ Block = tuple[int, list[tuple[Value, ...]]]
 
 
 class Row(NamedTuple):
-    """A design: its number, what varied, its responses in SI (None where it has none), and why it has none, or None."""
+    """A design: its number, what varied, its responses in SI (None if missing), and why one is missing, or None."""
 
     design: int
     values: tuple[Value, ...]
@@ -58,10 +58,23 @@ def evaluated(study: Study, first: int, designs: list[tuple[Value, ...]]) -> lis
 def sweep(
     study: Study, store: Store, *, pool: Pool | None = None, progress: Callable[[list[Row]], object] = lambda rows: None
 ) -> None:
-    """Evaluate what the store does not hold yet, and write it, a block at a time; blocks come in any order.
+    """Evaluate the designs of a study that the store does not hold yet, and write them, a block at a time.
 
-    pool: executors to evaluate blocks in; left out, this process does. Only this process writes. progress: told of
-    every block once it is written. RuntimeError where the pool breaks time after time.
+    Parameters
+    ----------
+    study : Study
+        What to evaluate.
+    store : Store
+        Where the rows go. Only this process writes, and blocks may come in any order.
+    pool : Pool, optional
+        Executors that evaluate the blocks; by default this process does.
+    progress : callable, optional
+        Called with the rows of every block once they are written.
+
+    Raises
+    ------
+    RuntimeError
+        If the pool breaks time after time.
     """
     if pool is None:
         for first, designs in _missing(study, store):

@@ -16,7 +16,7 @@ PATIENCE = 10
 
 @dataclass(frozen=True)
 class Pool:
-    """How to open an executor (again, where it broke), and how many blocks to hand out ahead."""
+    """How to open an executor, and reopen it if it breaks, and how many blocks to hand out ahead."""
 
     open: Callable[[], AbstractContextManager[Executor]]
     ahead: int
@@ -46,7 +46,7 @@ def _follow() -> None:
 
 @contextmanager
 def dask(address: str) -> Iterator[Pool]:
-    """The workers of the Dask scheduler at an address; ValueError where the library or the scheduler is not there."""
+    """The workers of the Dask scheduler at an address; ValueError if the library or the scheduler is missing."""
     try:
         from distributed import Client
     except ImportError:

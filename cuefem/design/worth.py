@@ -16,8 +16,8 @@ NO_USUAL_VALUE = "no usual value to try"
 class Variant:
     """A scene that differs by one effect.
 
-    name: the effect's. effect: what was dropped or added, None where there is no usual value to add. listed: whether
-    the scene lists it. scene: the other scene, None where it cannot be; reason: why.
+    name: the effect's. effect: what was dropped or added, None if there is no usual value to add. listed: whether
+    the scene lists it. scene: the other scene, None if it cannot be made; reason: why.
     """
 
     name: str
@@ -30,7 +30,7 @@ class Variant:
 def variants(scene: Scene) -> tuple[Variant, ...]:
     """The scene without each effect it lists, then with each kind it does not list, at the values that are usual.
 
-    A kind that says no usual values (`Effect.usual`) is tried at its defaults, if it has defaults for all fields.
+    A kind without usual values (`Effect.usual`) is tried at its defaults, if every field has one.
     """
     dropped = [_without(scene, i) for i in range(len(scene.effects))]
     listed = {type(effect).__name__ for effect in scene.effects}

@@ -1,4 +1,4 @@
-"""The only part of cuefem that opens files: cues and scenes as TOML, lathe profiles as CSV, cues as meshes,
+"""The only part of cuefem that opens files: cues and scenes as TOML, lathe profiles as CSV, cues as line meshes, and
 shafts as CAD surfaces."""
 
 from __future__ import annotations
@@ -34,12 +34,39 @@ _MESHES = (".vtk", ".vtu")
 
 
 def load(path: str | os.PathLike[str], *, material: str | None = None, length_unit: str | None = None) -> Cue | Scene:
-    """A cue or a scene from a file: .toml ([[segments]] at the top = cue, [cue] = scene), .csv, .vtk, .vtu, or a closed
-    CAD surface, .stl, .ply, .obj (see `cuefem.io.surface`).
+    """Load a cue or a scene from a file.
 
-    material: name of the material of a lathe profile or a surface ("hard maple" where left out). length_unit: of a
-    surface's coordinates ("mm" where left out). Errors: InputError, one line that names file, key, bound, unit and the
-    value got.
+    Parameters
+    ----------
+    path : str or path
+        A drawing or a scene (.toml), a lathe profile (.csv), a line mesh (.vtk, .vtu), or a closed CAD surface (.stl,
+        .ply, .obj).
+    material : str, optional
+        Name of the material of a lathe profile or a surface; the default is "hard maple". Other files name their
+        materials themselves.
+    length_unit : str, optional
+        Unit of a surface's coordinates; the default is "mm".
+
+    Returns
+    -------
+    Cue or Scene
+        A .toml file with [[segments]] at its top is a cue, one with [cue] is a scene.
+
+    Raises
+    ------
+    InputError
+        A ValueError in one line that names the file, the key, the bound with its unit, and the value in the file.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> cue = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 700.0)),))
+    >>> import tempfile, pathlib
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder) / "cue.toml"
+    ...     cf.save(cue, path)
+    ...     cf.load(path) == cue
+    True
     """
     path = Path(path)
     if material is not None and path.suffix.lower() not in SHAPES:
@@ -73,10 +100,27 @@ def _load_cue(path: Path, material: str | None = None, length_unit: str | None =
 
 
 def save(obj: Cue | Scene, path: str | os.PathLike[str]) -> None:
-    """Write a cue or scene as .toml, or a cue as .vtk or .vtu; `load` reads back exactly what was saved.
+    """Write a cue or a scene into a file, from which `load` reads back exactly the same object.
 
-    The file appears whole or not at all. Errors: InputError where the file cannot be written, TypeError for other
-    objs, ValueError for a scene of arrays.
+    Parameters
+    ----------
+    obj : Cue or Scene
+        What to write.
+    path : str or path
+        A .toml file; for a cue also a line mesh, .vtk or .vtu. The file appears whole or not at all.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written.
+    TypeError
+        If ``obj`` is neither a cue nor a scene.
+    ValueError
+        If the scene holds arrays, which have no place in a file.
+
+    Examples
+    --------
+    See `load`.
     """
     if not isinstance(obj, Cue | Scene):
         raise TypeError(f"save writes a Cue or a Scene; got {shown(obj)}")
@@ -94,7 +138,7 @@ def save(obj: Cue | Scene, path: str | os.PathLike[str]) -> None:
 
 
 def save_page(text: str, path: str | os.PathLike[str]) -> None:
-    """Write a page as .html, whole or not at all. Errors: InputError."""
+    """Write a page as .html, whole or not at all; InputError if that fails."""
     path = Path(path)
     if path.suffix != ".html":
         raise InputError(path, "", f"must end in .html; got {path.suffix!r}")
@@ -102,7 +146,7 @@ def save_page(text: str, path: str | os.PathLike[str]) -> None:
 
 
 def save_figure(content: bytes, path: str | os.PathLike[str]) -> None:
-    """Write a drawn figure as .png or .svg, whole or not at all. Errors: InputError."""
+    """Write a drawn figure as .png or .svg, whole or not at all; InputError if that fails."""
     path = Path(path)
     if path.suffix.lower() not in FIGURES:
         raise InputError(path, "", f"must end in .png or .svg; got {path.suffix!r}")
@@ -123,7 +167,7 @@ def write_whole(path: Path, put: Callable[[Path], object]) -> None:
 
 
 def check_place(path: Path) -> None:
-    """InputError, before anything is computed, where no file can be written at ``path``."""
+    """Raise InputError, before anything is computed, if no file can be written at ``path``."""
     goal = Path(os.path.realpath(path))
     held = goal.parent.is_dir()
     if goal.is_dir() or not held or not os.access(goal.parent, os.W_OK):

@@ -76,5 +76,5 @@ def assumed_blow(
 
 
 def _option(name: str, offered: Collection[str], more: str = "") -> str:
-    """The option that says another, where the command has it."""
+    """The option that gives another value, if the command has it."""
     return f" (--{name.replace('_', '-')}{more})" if name in offered else ""

@@ -30,10 +30,10 @@ PATIENCE = 60.0
 class Database:
     """The table of one study; a `cuefem.design.Store`. A context manager: closes the file.
 
-    Made where there is none. InputError, and the file as it was, where it holds another study or a newer schema, where
-    it is damaged beyond single rows, and while another `Database` has it open.
+    The file is made if it does not exist. InputError, with the file left as it was, if it holds another study or a
+    newer schema, if more than single rows are damaged, or while another `Database` has it open.
 
-    damaged: {number of a block's first design: what is wrong in the block}; such blocks count as not there.
+    damaged: {number of a block's first design: what is wrong in the block}; such blocks count as missing.
     """
 
     def __init__(self, path: str | Path, study: Study) -> None:
@@ -266,7 +266,7 @@ def headings(study: Study) -> list[str]:
 
 
 def export_path(path: str | Path) -> Path:
-    """The path of an export; InputError where its kind is unknown or its library is not there."""
+    """The path of an export; InputError if its kind is unknown or its library is missing."""
     path = Path(path)
     if path.suffix not in (".csv", ".parquet"):
         raise InputError(path, "", f"must end in .csv or .parquet; got {shown(path.suffix)}")

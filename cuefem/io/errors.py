@@ -33,7 +33,7 @@ def nearest(name: str, names: Iterable[str]) -> str:
 
 
 def read_bytes(path: Path, most: int) -> bytes:
-    """What a file holds, read no further than ``most`` bytes; OSError where it cannot be read, InputError beyond."""
+    """The bytes of a file; OSError if it cannot be read, InputError if it holds more than ``most``."""
     with path.open("rb") as file:
         content = file.read(most + 1)
     if len(content) > most:

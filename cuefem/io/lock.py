@@ -17,7 +17,7 @@ class Lock:
     """A lock on a file, held until it is released, by one holder at a time: of this process or of any other.
 
     The system locks an empty file beside it, PATH.lock, and forgets the lock when the process ends; the file itself
-    stays free for readers. InputError where another holds it. Where the lock's file cannot be made, nothing beside it
+    stays free for readers. InputError if another holds it. Where the lock's file cannot be made, nothing beside it
     can, a database's journal neither: nobody writes there, and there is nothing to hold.
     """
 
@@ -29,7 +29,7 @@ class Lock:
             pass
 
     def _taken(self, path: Path) -> bool:
-        """Whether it is held now, or cannot be; False where the file that was locked is gone already."""
+        """Whether it is held now, or cannot be; False if the locked file is gone already."""
         try:
             file = os.open(self.beside, os.O_RDWR | os.O_CREAT, 0o666)
         except OSError:
@@ -59,7 +59,7 @@ class Lock:
         return True
 
     def release(self) -> None:
-        """Let others have it; nothing where it is released already."""
+        """Let others have it; does nothing if it is released already."""
         if self._file is None:
             return
         file, self._file = self._file, None

@@ -108,7 +108,7 @@ class _Budget:
         self.left = left
 
     def spend(self, size: int) -> None:
-        """Take ``size`` bytes; ReadError where there are no more."""
+        """Take ``size`` bytes; ReadError if there are no more."""
         self.left -= size
         if self.left < 0:
             raise meshio.ReadError(f"its data must be at most {LARGEST_MESH / 1e6:g} MB when they are unpacked")

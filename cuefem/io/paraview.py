@@ -144,7 +144,7 @@ def save_pvd(path: Path, series: Iterable[tuple[float, int, str]]) -> None:
 
 
 def check_new(folder: Path) -> None:
-    """InputError where a folder, or anything of its name, is there already."""
+    """InputError if a folder, or anything of its name, is there already."""
     if folder.exists() or folder.is_symlink():
         raise InputError(folder, "", "must be a new folder; there is one, or a file, of that name")
 

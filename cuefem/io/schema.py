@@ -20,7 +20,7 @@ from cuefem.quantity import Quantity
 Kind = TypeVar("Kind")
 
 NAMES = {known.material: name for name, known in MATERIALS.items()}
-ABSENT = ("tip_bore", "butt_bore")  # left out where they are 0, which is their default: a bore that is not there
+ABSENT = ("tip_bore", "butt_bore")  # not written if 0, their default: a bore that is not there
 _CONFIG = ConfigDict(extra="forbid", arbitrary_types_allowed=True)
 
 
@@ -115,7 +115,7 @@ def _wanted(hint: Any) -> str:
 
 
 def file_value(value: float, mark: Quantity) -> str | float:
-    """A number as it stands in a file: text with a unit, or bare where it has none."""
+    """A number as it stands in a file: text with a unit, or a bare number if it has no dimension."""
     return text(value, mark.unit) if mark.unit else value
 
 

@@ -149,7 +149,7 @@ def _polygon(start: Array, end: Array, outline: Index) -> Slice:
 
 
 def surface(points: Array, triangles: Index) -> Surface:
-    """The surface laid along x, its thinner end at 0. ValueError where it is not closed or not slender."""
+    """The surface laid along x, its thinner end at 0; ValueError if it is not closed or not slender."""
     size = float(np.ptp(points, axis=0).max()) if len(points) else 0.0
     if not np.isfinite(size) or size <= 0 or not len(triangles):
         raise ValueError("must be a surface with finite corners and some extent; got none")
@@ -247,7 +247,7 @@ def sliced(body: Surface, tolerance: float = TOLERANCE) -> Sliced:
     """The straight pieces that keep within ``tolerance`` (of the widest diameter) of the slices of a surface.
 
     Slices lie at every level of corners, between the levels, and at least `SLICES` in all; jumps at the faces across
-    the axis are kept. ValueError where a section is not one round piece about the axis.
+    the axis are kept. ValueError if a section is not one round piece about the axis.
     """
     pieces: list[Piece] = []
     fit = facets = 0.0

@@ -28,18 +28,20 @@ FACTOR = Quantity("", "(0, inf)")
 
 
 def load_study(path: str | Path, *, offset: float = 0.3) -> Study:
-    """A design study from a TOML file; InputError, one line, where it is none.
+    """Load a design study from a TOML file; InputError in one line if it is not a valid study.
 
-    offset: b/R of a base that is a bare cue, which gets the default ball and tip. Values carry their units as text.
+    offset: b/R of the stroke if the base is a bare cue, which gets the default ball and tip. Values carry their units
+    as text.
     """
     path = Path(path)
     return _study(read_tables(path), path, offset, KEYS)
 
 
 def load_scatter(path: str | Path, *, offset: float = 0.3) -> tuple[Scatter, Sample]:
-    """What scatters, and the sample to draw, from a study's file with [sample], correlations and groups as well.
+    """Load a study with distributions, and the sample to draw, from a TOML file with [sample], correlations and groups.
 
-    correlations: lists of two names and a number; groups: a table of lists of names. InputError where it is none.
+    In the file, correlations are lists of two names and a number, groups a table of lists of names. InputError in one
+    line if it is not valid.
     """
     path = Path(path)
     found = read_tables(path)
@@ -54,8 +56,11 @@ def load_scatter(path: str | Path, *, offset: float = 0.3) -> tuple[Scatter, Sam
 
 
 def load_optimum(path: str | Path, *, offset: float = 0.3) -> Problem:
-    """An optimisation from a TOML file: [[vary]] and the scene as in a study, [objective] with ``minimize`` or
-    ``maximize``, and [[limit]] tables of a response with low or high; InputError, one line, if the file is none."""
+    """Load an optimisation from a TOML file; InputError in one line if it is not valid.
+
+    The file has the scene and the [[vary]] tables of a study, [objective] with ``minimize`` or ``maximize``, and
+    [[limit]] tables of a response with low or high.
+    """
     path = Path(path)
     found = read_tables(path)
     _check_keys(found, OPTIMUM_KEYS, path, "")

@@ -26,7 +26,7 @@ _POLYGONS = ("triangle", "quad", "polygon")
 def load_surface(path: Path, material: Material, length_unit: str | None = None) -> Cue:
     """The shaft that a closed surface bounds, in one material: its thinner end is the tip.
 
-    A surface holds no unit: ``length_unit`` of its coordinates, mm where left out. Segments keep within 5e-5 of the
+    A surface holds no unit: ``length_unit`` is that of its coordinates, mm by default. Segments keep within 5e-5 of the
     widest diameter of the slices, which are exact for the facets; facets inscribed in the true form, N a turn, make
     diameters small by 3.3/N^2.
     """

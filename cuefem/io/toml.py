@@ -38,7 +38,7 @@ _DEEP_KEY = re.compile(rf"""(?<![A-Za-z0-9_."' \t-])[ \t]*+{_PART}(?:[ \t]*+\.[ 
 
 
 def read_text(path: Path) -> str:
-    """A file's text; InputError where it cannot be read, is too long, is not UTF-8, or is empty."""
+    """A file's text; InputError if it cannot be read, is too long, is not UTF-8, or is empty."""
     try:
         content = read_bytes(path, LARGEST_TEXT).decode("utf-8-sig")
     except OSError as error:
@@ -66,7 +66,7 @@ def read_tables(path: Path) -> dict[str, Any]:
 
 
 def _unquoted(text: str, error: str) -> str:
-    """A hint where the line of a syntax error has a value with a unit and no quotes."""
+    """A hint if the line of a syntax error has a value with a unit and no quotes."""
     found = re.search(r"at line (\d+)", error)
     line = text.splitlines()[int(found[1]) - 1] if found else ""
     return "; a value with a unit stands in quotes" if re.search(r"=\s*[-+.\d]+\s*[^\W\d_]", line) else ""
@@ -91,7 +91,7 @@ def load_cue(path: Path) -> Cue:
 
 
 def load_accuracy(path: str | Path) -> float | None:
-    """The relative accuracy rtol that a scene file's [accuracy] table asks for; None where it asks for none."""
+    """The relative accuracy rtol that a scene file's [accuracy] table asks for; None if there is no such table."""
     path = Path(path)
     found = read_tables(path) if path.suffix.lower() == ".toml" else {}
     return _accuracy(found.get("accuracy"), path)

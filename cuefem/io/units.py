@@ -30,7 +30,7 @@ def _registry() -> Any:
 
 @functools.cache
 def _scale(unit: str, wanted: str) -> Decimal | None:
-    """How many ``wanted`` one ``unit`` is; None where pint knows no such unit or it is of another kind."""
+    """How many ``wanted`` one ``unit`` is; None if pint knows no such unit or it is of another kind."""
     import pint
 
     unit = _POWER.sub(r"m^\1", unit)
@@ -61,7 +61,7 @@ def _known(unit: str) -> bool:
 
 
 def number(text: str, unit: str) -> float:
-    """The number of ``unit`` that ``text`` ("12 mm") says; ValueError where it has no unit, a wrong or unknown one."""
+    """The number of ``unit`` that ``text`` ("12 mm") says; ValueError if its unit is missing, wrong or unknown."""
     found = _TEXT.fullmatch(text) if len(text) <= LONGEST_TEXT else None
     if not found or not found[2]:
         raise ValueError("a number and a unit")
@@ -92,7 +92,7 @@ def quantity(wanted: Quantity, value: Any) -> float:
 
 
 def _why(value: str) -> str:
-    """What is wrong with a text that `number` refused; nothing where it has no unit."""
+    """What is wrong with a text that `number` refused; empty if it has no unit."""
     if len(value) > LONGEST_TEXT:
         return f", of {len(value)} letters"
     if re.match(r"\s*[-+]?[0-9]+,[0-9]", value):
