@@ -23,21 +23,23 @@ BALLS = {"pool": (0.170, 0.028575), "carom": (0.210, 0.03075), "snooker": (0.142
 
 
 def file_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The file and what every command on a file takes."""
+    """The file argument, and the options of every command on a file."""
     return click.argument("file", type=click.Path(path_type=Path))(cue_options(command))
 
 
 def cue_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """What every command takes that the file of a cue may leave out."""
+    """The options for what the file of a cue may leave out, and --json."""
     return click.option("--json", "as_json", is_flag=True, help="SI numbers as JSON.")(shape_options(command))
 
 
 def shape_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """What the file of a shape cannot say."""
+    """The options for what a file of a shape cannot say: mass, material and unit."""
     for option in (
         click.option("--body-mass", metavar="MASS", help='Mass of the cue behind FILE\'s segments, e.g. "420 g".'),
-        click.option("--material", metavar="NAME", help="Material of a .csv or surface (see `cuefem materials`)."),
-        click.option("--length-unit", metavar="UNIT", help="Unit of a .stl, .ply or .obj surface; mm if left out."),
+        click.option(
+            "--material", metavar="NAME", help="Material of a .csv or a CAD surface (see `cuefem materials`)."
+        ),
+        click.option("--length-unit", metavar="UNIT", help="Unit of a .stl, .ply or .obj surface; mm by default."),
     ):
         command = option(command)
     return command
@@ -45,22 +47,30 @@ def shape_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 def blow_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """The options that replace the scene's ball and contact time."""
-    ball = click.option("--ball", type=click.Choice(tuple(BALLS)), help="Instead of the scene's; carom in a bare cue.")
-    return ball(click.option("--contact-time", metavar="TIME", help='Head-on contact time, e.g. "2 ms".')(command))
+    ball = click.option(
+        "--ball", type=click.Choice(tuple(BALLS)), help="The ball; by default the scene's, carom for a bare cue."
+    )
+    return ball(
+        click.option("--contact-time", metavar="TIME", help='How long the tip touches the ball head on, e.g. "1 ms".')(
+            command
+        )
+    )
 
 
 def offset_option(command: Callable[..., Any]) -> Callable[..., Any]:
     """The option that replaces the stroke's offset."""
-    return click.option("--offset", metavar="B/R", help="Offset over ball radius, in (-1, 1).")(command)
+    return click.option("--offset", metavar="B/R", help="How far off centre the tip hits, in ball radii, in (-1, 1).")(
+        command
+    )
 
 
 def force_option(command: Callable[..., Any]) -> Callable[..., Any]:
     """The option of every command that writes a drawing."""
-    return click.option("--force", is_flag=True, help="Replace a drawing that is there already.")(command)
+    return click.option("--force", is_flag=True, help="Replace a drawing that exists already.")(command)
 
 
 def check_free(drawing: Path, *, force: bool) -> None:
-    """Refuse to replace a drawing, which is somebody's work, unasked; pages, figures and tables are made again."""
+    """Refuse to replace a drawing, which is somebody's work, without --force; pages and figures can be made again."""
     from cuefem.io import InputError, check_place
 
     if drawing.exists() and not drawing.is_dir() and not force:
@@ -70,7 +80,7 @@ def check_free(drawing: Path, *, force: bool) -> None:
 
 @contextmanager
 def blaming(file: Path) -> Iterator[None]:
-    """Say of which file a value is bad, where that only shows when it is computed, as of an effect off the cue."""
+    """Name the file in an error that shows only while computing, such as an effect that lies off the cue."""
     from cuefem.io import InputError
 
     try:
@@ -119,7 +129,7 @@ class WithDefinitions(click.Command):
 
 
 def scene_of(file: Path, given: dict[str, Any]) -> tuple[Scene, list[str]]:
-    """The scene that a command computes, and what was assumed because nobody said it."""
+    """The scene that a command computes, and what was assumed because neither file nor options say it."""
     from cuefem.io import load
     from cuefem.io.assumed import assumed, assumed_blow
     from cuefem.scene import Scene, Stroke
@@ -136,7 +146,7 @@ def scene_of(file: Path, given: dict[str, Any]) -> tuple[Scene, list[str]]:
 
 
 def remark(scene: Scene) -> None:
-    """Say on stderr what is unusual, as a wrong unit makes it."""
+    """Say on stderr which numbers are unusual; a wrong unit is the most common reason."""
     from cuefem.report.unusual import unusual
 
     for line in unusual(scene):
@@ -144,7 +154,7 @@ def remark(scene: Scene) -> None:
 
 
 def _with_options(scene: Scene, file: Path, given: dict[str, Any]) -> Scene:
-    """The scene with what the command's options replace."""
+    """The scene with the values that the command's options give."""
     from cuefem.quantity import CONTACT_TIME, Quantity
     from cuefem.scene import Ball
 
@@ -216,7 +226,7 @@ def print_all(things: Sequence[Any]) -> None:
 
 
 def followed(work: Sequence[Any]) -> Iterable[Any]:
-    """The work, with a bar on stderr where a person looks on."""
+    """The work, with a progress bar if stderr is a terminal."""
     from rich.console import Console
     from rich.progress import track
 

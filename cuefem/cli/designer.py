@@ -11,14 +11,20 @@ import click
 from cuefem.cli.common import blaming, scene_of
 
 
-@click.command(short_help="Turn a cue's knobs on a page, and see what that does.")
+@click.command(short_help="Change a cue with sliders on a page and see the effect.")
 @click.argument("scene", type=click.Path(path_type=Path), required=False)
-@click.option("--port", type=click.IntRange(0, 65535), default=8470, show_default=True, help="0: any free one.")
-@click.option("--open/--no-open", "show", default=True, help="Open it in the browser.", show_default=True)
+@click.option(
+    "--port",
+    type=click.IntRange(0, 65535),
+    default=8470,
+    show_default=True,
+    help="Port of the page; 0 takes any free one.",
+)
+@click.option("--open/--no-open", "show", default=True, help="Open the page in the browser.", show_default=True)
 def designer(scene: Path | None, port: int, show: bool) -> None:
-    """A page on this computer: turn a cue's knobs and see at once what that does to end mass and squirt.
+    """Open a page on this computer: change a cue with sliders and see its end mass and squirt at once.
 
-    SCENE is a cue or a scene, as FILE is elsewhere; a maple pool shaft without it.
+    SCENE is a cue or scene file, as FILE is for other commands; by default a maple pool shaft.
     """
     try:
         from cuefem.designer.app import Opened, serve
@@ -42,7 +48,7 @@ def designer(scene: Path | None, port: int, show: bool) -> None:
 
 
 def _free(port: int) -> int:
-    """The port, if nobody listens there; any free one for 0."""
+    """The port, if it is free; any free one for 0."""
     with socket.socket() as tried:
         tried.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:

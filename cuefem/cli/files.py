@@ -10,13 +10,13 @@ import click
 from cuefem.cli.common import check_free, force_option, print_all, print_json, shape_options, with_body
 
 
-@click.command(short_help="Write FILE as another kind of file: .toml, .vtk or .vtu.")
+@click.command(short_help="Convert FILE to .toml, .vtk or .vtu.")
 @click.argument("file", type=click.Path(path_type=Path))
 @click.argument("output", type=click.Path(path_type=Path))
 @shape_options
 @force_option
 def convert(file: Path, output: Path, body_mass: str | None, force: bool, **given: str | None) -> None:
-    """Write FILE as another kind of file: OUTPUT ends in .toml, .vtk or .vtu."""
+    """Convert FILE to another kind of file: OUTPUT ends in .toml, .vtk or .vtu."""
     from cuefem.io import load, save
     from cuefem.io.assumed import assumed
     from cuefem.io.profile import SHAPES
@@ -34,9 +34,9 @@ def convert(file: Path, output: Path, body_mass: str | None, force: bool, **give
 
 
 @click.command()
-@click.option("--json", "as_json", is_flag=True, help="The same: the schema is JSON.")
+@click.option("--json", "as_json", is_flag=True, help="Changes nothing: the schema is JSON.")
 def schema(as_json: bool) -> None:
-    """JSON schema of cue and scene files, for editors."""
+    """Print the JSON schema of cue and scene files, for editors."""
     from cuefem.io.export import json_schema
 
     click.echo(json.dumps(json_schema(), indent=2, allow_nan=False, ensure_ascii=False))
@@ -45,7 +45,7 @@ def schema(as_json: bool) -> None:
 @click.command()
 @click.option("--json", "as_json", is_flag=True, help="As JSON.")
 def materials(as_json: bool) -> None:
-    """The materials that a file can name, with their sources."""
+    """List the materials that a file can name, with their sources."""
     from cuefem.report import materials_record, materials_table
 
     found = materials_record()

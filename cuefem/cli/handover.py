@@ -27,21 +27,25 @@ if TYPE_CHECKING:
     from cuefem.scene import Scene
 
 
-@click.command(cls=WithDefinitions, short_help="The end mass as a simulator takes it: pooltool's CueSpecs.")
+@click.command(cls=WithDefinitions, short_help="The end mass for a simulator: pooltool's CueSpecs.")
 @file_options
 @blow_options
 @offset_option
-@click.option("--for", "whom", type=click.Choice(["pooltool"]), default="pooltool", show_default=True, help="For whom.")
-@click.option("--drive", type=Definitions("A.31"), default="A.31", show_default=True, help="Which end mass.")
+@click.option(
+    "--for", "whom", type=click.Choice(["pooltool"]), default="pooltool", show_default=True, help="The simulator."
+)
+@click.option(
+    "--drive", type=Definitions("A.31"), default="A.31", show_default=True, help="Which definition of the end mass."
+)
 @click.option(
     "-o",
     "--output",
     type=click.Path(path_type=Path),
     metavar="CUE.json",
-    help="Write a file; with --json print it too.",
+    help="Write to a file; with --json print it too.",
 )
 def handover(file: Path, whom: str, drive: Any, output: Path | None, as_json: bool, **given: Any) -> None:
-    """The end mass as a simulator takes it: pooltool's CueSpecs, and what the number means and is worth; JSON, SI."""
+    """Print the end mass for a simulator as JSON: pooltool's CueSpecs, what the number means and how well it works."""
     from cuefem.io import InputError, write_whole
     from cuefem.report.handover import pooltool_record
     from cuefem.report.record import plain
@@ -59,17 +63,19 @@ def handover(file: Path, whom: str, drive: Any, output: Path | None, as_json: bo
     click.echo(text if output is None or as_json else f"wrote {output}")
 
 
-@click.command(short_help="Mode shapes and the strike's motion for ParaView.")
+@click.command(short_help="Mode shapes and the moving cue for ParaView.")
 @file_options
 @blow_options
 @offset_option
 @click.option("--count", type=click.IntRange(1, 100), default=6, show_default=True, help="How many modes.")
-@click.option("--frames", type=click.IntRange(2, 10_000), default=61, show_default=True, help="Times of the strike.")
-@click.option("--until", metavar="TIME", help="Of the last frame; three contact times where left out.")
-@click.option("--scale", type=float, default=1.0, show_default=True, help="What bending is drawn with.")
+@click.option(
+    "--frames", type=click.IntRange(2, 10_000), default=61, show_default=True, help="How many frames of the strike."
+)
+@click.option("--until", metavar="TIME", help="Time of the last frame; by default three contact times.")
+@click.option("--scale", type=float, default=1.0, show_default=True, help="Bending is drawn this many times enlarged.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), required=True, metavar="FOLDER", help="A new folder.")
 def animate(file: Path, output: Path, as_json: bool, **given: Any) -> None:
-    """Mode shapes and the strike's motion for ParaView: FOLDER/modes.vtu, FOLDER/strike.pvd and its frames."""
+    """Write mode shapes and the cue's motion in a strike for ParaView: FOLDER/modes.vtu, FOLDER/strike.pvd, frames."""
     from cuefem.io import InputError
     from cuefem.io.paraview import check_new, write_whole_folder
     from cuefem.quantity import Quantity

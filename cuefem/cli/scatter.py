@@ -11,15 +11,15 @@ from cuefem.cli.common import blaming, print_all, print_json, remark
 from cuefem.cli.sweep import bar, opened
 
 
-@click.command(short_help="How much a design's numbers scatter, and what drives it.")
+@click.command(short_help="How much a design's numbers scatter, and why.")
 @click.argument("study", type=click.Path(path_type=Path))
-@click.option("--workers", type=click.IntRange(min=1), help="Processes; left out, this one works alone.")
+@click.option("--workers", type=click.IntRange(min=1), help="How many processes; by default this one alone.")
 @click.option("--dask", metavar="ADDRESS", help='A Dask scheduler to work on, e.g. "tcp://host:8786".')
 @click.option("--json", "as_json", is_flag=True, help="SI numbers as JSON.")
 def scatter(study: Path, as_json: bool, **where: Any) -> None:
-    """Scatter of wood, turning and strokes: the distribution of STUDY's (.toml) responses, and what drives it.
+    """Show how much the responses of STUDY (.toml) scatter with wood, turning and stroke, and which cause matters most.
 
-    STUDY is that of a sweep, with [sample], and with correlations and groups. Shares are Sobol indices.
+    STUDY is the study of a sweep with [sample]; it may have correlations and groups. Shares are Sobol indices.
     """
     from cuefem.design.scatter import drivers
     from cuefem.io.study import load_scatter

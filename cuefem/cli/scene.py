@@ -24,12 +24,12 @@ if TYPE_CHECKING:
     from cuefem.scene import Scene
 
 
-@click.command()
+@click.command(short_help="How the cue rings: its bending frequencies.")
 @file_options
-@click.option("--near", metavar="HERTZ", help="Those nearest this frequency, instead of the lowest.")
+@click.option("--near", metavar="HERTZ", help="Show the modes nearest this frequency, not the lowest.")
 @click.option("--count", type=click.IntRange(min=1), default=6, show_default=True, help="How many modes.")
 def modes(file: Path, near: str | None, count: int, **given: Any) -> None:
-    """How it rings: bending frequencies and tip amplitudes."""
+    """Show how the cue rings: its bending frequencies and tip amplitudes."""
     from cuefem.quantity import Quantity
     from cuefem.report import modes_record, modes_table
 
@@ -44,11 +44,11 @@ def modes(file: Path, near: str | None, count: int, **given: Any) -> None:
     show(file, given, results, lambda found, about: [modes_table(found)])
 
 
-@click.command("end-mass", cls=WithDefinitions)
+@click.command("end-mass", cls=WithDefinitions, short_help="The effective end mass, by every definition.")
 @file_options
 @blow_options
 def end_mass(file: Path, **given: Any) -> None:
-    """How much mass the ball feels across the cue at its tip."""
+    """Show the effective end mass: how much mass the ball has to push aside at the tip."""
     from cuefem.report import end_mass_record, end_mass_table
 
     show(file, given, end_mass_record, lambda found, about: [end_mass_table(found, about)])
@@ -59,7 +59,7 @@ def end_mass(file: Path, **given: Any) -> None:
 @blow_options
 @offset_option
 def strike(file: Path, **given: Any) -> None:
-    """One stroke: squirt, speed, spin and pivot length; to the file's [accuracy] rtol, where it has one."""
+    """Compute one stroke: squirt, speed, spin and pivot length; to the rtol of the file's [accuracy], if it has one."""
     from cuefem.accuracy import resolve
     from cuefem.io import load_accuracy
     from cuefem.report import strike_record, strike_table
@@ -71,14 +71,14 @@ def strike(file: Path, **given: Any) -> None:
     show(file, given, results, lambda found, about: [strike_table(found, about)])
 
 
-@click.command(short_help="What each effect is worth: dropped, or added, one at a time.")
+@click.command(short_help="What each effect changes, left out or added.")
 @file_options
 @blow_options
 @offset_option
 def effects(file: Path, **given: Any) -> None:
-    """What each effect is worth: each one listed dropped, each other one added.
+    """Show what each effect changes: every effect of FILE is left out, every other one added, one at a time.
 
-    The tolerance is the file's [accuracy] rtol, 1e-2 without it.
+    An effect matters if it changes more than the rtol of the file's [accuracy], by default 1e-2.
     """
     from cuefem.io import load_accuracy
     from cuefem.report import DEFAULT_RTOL, effects_record, effects_table
@@ -90,14 +90,18 @@ def effects(file: Path, **given: Any) -> None:
     show(file, given, results, lambda found, about: [effects_table(found, about)])
 
 
-@click.command(short_help="What accuracy costs, and the resolution to take.")
+@click.command(short_help="What accuracy costs, and which resolution to take.")
 @file_options
 @blow_options
 @offset_option
-@click.option("--most", type=click.IntRange(min=24), default=150, show_default=True, help="Modes at most.")
-@click.option("-o", "--output", type=click.Path(path_type=Path), metavar="FIGURE", help="Draw it too: .png or .svg.")
+@click.option(
+    "--most", type=click.IntRange(min=24), default=150, show_default=True, help="The largest number of modes."
+)
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), metavar="FIGURE", help="Also draw a figure: .png or .svg."
+)
 def cost(file: Path, most: int, output: Path | None, **given: Any) -> None:
-    """What accuracy costs: error against seconds and unknowns for this scene, and the resolution to take."""
+    """Show what accuracy costs for this scene: error against time and unknowns, and which resolution to take."""
     from cuefem.io import FIGURES, InputError, save_figure
     from cuefem.report.cost import cost_figure, cost_record, cost_tables
 
@@ -113,13 +117,15 @@ def cost(file: Path, most: int, output: Path | None, **given: Any) -> None:
     show(file, given, results, lambda found, about: cost_tables(found))
 
 
-@click.command(short_help="All of it, as tables or as a page with figures.")
+@click.command(short_help="Everything about a cue, as tables or as a page.")
 @file_options
 @blow_options
 @offset_option
-@click.option("-o", "--output", type=click.Path(path_type=Path), metavar="PAGE.html", help="Write a page instead.")
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), metavar="PAGE.html", help="Write a page with figures instead."
+)
 def report(file: Path, output: Path | None, **given: Any) -> None:
-    """All of it: modes, end masses, squirt and pivot length against offset; as tables, or as a page with figures."""
+    """Show modes, end masses, squirt and pivot length against offset, as tables or as a page with figures."""
     from cuefem.report import end_mass_table, modes_table, pivot_table, report_record, squirt_table
     from cuefem.report.strike import MISCUE
 

@@ -17,17 +17,17 @@ if TYPE_CHECKING:
     from cuefem.io.database import Database
 
 
-@click.command(short_help="Evaluate every design of a STUDY (.toml) into a database.")
+@click.command(short_help="Compute every design of a STUDY (.toml).")
 @click.argument("study", type=click.Path(path_type=Path))
-@click.option("--output", type=click.Path(path_type=Path), help="The database, STUDY.sqlite where left out.")
-@click.option("--workers", type=click.IntRange(min=1), help="Processes; left out, this one works alone.")
+@click.option("--output", type=click.Path(path_type=Path), help="The database; by default STUDY.sqlite.")
+@click.option("--workers", type=click.IntRange(min=1), help="How many processes; by default this one alone.")
 @click.option("--dask", metavar="ADDRESS", help='A Dask scheduler to work on, e.g. "tcp://host:8786".')
-@click.option("--export", type=click.Path(path_type=Path), help="Write the table as .csv or .parquet, too.")
-@click.option("--json", "as_json", is_flag=True, help="What was done, as JSON.")
+@click.option("--export", type=click.Path(path_type=Path), help="Also write the table as .csv or .parquet.")
+@click.option("--json", "as_json", is_flag=True, help="Say as JSON what was done.")
 def sweep(study: Path, output: Path | None, export: Path | None, as_json: bool, **where: Any) -> None:
-    """Design study: evaluate every design of STUDY (.toml) into an SQLite database.
+    """Compute every design of STUDY (.toml) and store the results in an SQLite database.
 
-    Interrupted, even by kill -9, the same command goes on where it stopped. Numbers are SI.
+    If it is interrupted, even by kill -9, the same command goes on where it stopped. Numbers are SI.
     """
     from cuefem.design import sweep as run
     from cuefem.io import check_place
@@ -55,7 +55,7 @@ def sweep(study: Path, output: Path | None, export: Path | None, as_json: bool, 
 
 @contextmanager
 def opened(workers: int | None, dask: str | None) -> Iterator[Pool | None]:
-    """Where to work: processes, a cluster, or None for here."""
+    """The processes or the cluster to work on; None for this process."""
     from cuefem.design import dask as cluster
     from cuefem.design import processes
 
@@ -70,7 +70,7 @@ def opened(workers: int | None, dask: str | None) -> Iterator[Pool | None]:
 
 @contextmanager
 def bar(total: int, done: int) -> Iterator[Callable[[list[Row]], object]]:
-    """A bar on stderr, with rate and time left, where a person looks on."""
+    """A progress bar with rate and time left, if stderr is a terminal."""
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 

@@ -29,24 +29,30 @@ if TYPE_CHECKING:
 
 @click.command(short_help="The shaft's wood by ear: E, G, density from a tapped sound.")
 @click.argument("recording", type=click.Path(path_type=Path))
-@click.option("--scene", "file", type=click.Path(path_type=Path), metavar="FILE", required=True, help="Cue or scene.")
-@click.option("--mass", metavar="MASS", help='What the hung shaft weighs, e.g. "118 g"; without it density is kept.')
+@click.option(
+    "--scene", "file", type=click.Path(path_type=Path), metavar="FILE", required=True, help="The cue or scene."
+)
+@click.option(
+    "--mass", metavar="MASS", help='Weight of the shaft as it hung, e.g. "118 g"; without it the density stays.'
+)
 @click.option(
     "--material-of", "segment", type=click.IntRange(min=0), metavar="N", help="Fit segment N's material, 0 at the tip."
 )
 @click.option(
     "-o", "--output", type=click.Path(path_type=Path), metavar="NEW.toml", help="Write FILE with the fitted wood."
 )
-@click.option("--figure", type=click.Path(path_type=Path), metavar="FIGURE", help="Draw the spectrum: .png or .svg.")
-@click.option("--force", is_flag=True, help="Go on in spite of doubts; replace a drawing that is there already.")
+@click.option(
+    "--figure", type=click.Path(path_type=Path), metavar="FIGURE", help="Also draw the spectrum: .png or .svg."
+)
+@click.option("--force", is_flag=True, help="Go on in spite of doubts; replace an existing drawing.")
 @cue_options
 @blow_options
 @offset_option
 def tap(recording: Path, file: Path, output: Path | None, figure: Path | None, force: bool, **given: Any) -> None:
-    """The shaft's wood by ear: E, G and density from a recording of the shaft, hung free and tapped.
+    """Find the shaft's wood by ear: E, G and density from a recording of the shaft, hung free and tapped.
 
-    RECORDING is a .wav of one or more taps. Its tones are matched to the bending modes of the shaft in FILE. Where they
-    are not this shaft's, or the wood is like no such wood, nothing is told or written without --force (status 1).
+    RECORDING is a .wav of one or more taps. Its tones are matched to the bending modes of the shaft in FILE. If
+    they do not fit this shaft, or no such wood exists, nothing is shown or written without --force (status 1).
     """
     from cuefem.io import FIGURES, InputError, check_place, save, save_figure
     from cuefem.report.record import scene_record

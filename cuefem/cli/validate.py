@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from cuefem.validation import Claim
 
 
-@click.command(short_help="What the sources print beside what follows from them.")
+@click.command(short_help="Check every claim of the sources.")
 @click.option("--studies", type=click.Path(path_type=Path), default=Path("studies"), show_default=True)
 @click.option("--json", "as_json", is_flag=True, help="As JSON.")
 def validate(studies: Path, as_json: bool) -> None:
-    """What the sources print beside what follows: every claim of every study, in a clone of the repository."""
+    """Check every claim of the sources against what follows from their equations; needs a clone of the repository."""
     from cuefem.report import claims_record, claims_table
     from cuefem.report.claims import VERDICT_WORDS
 

@@ -7,7 +7,7 @@ script again, Dash and Panel send whole figures), its sliders have roles and key
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from html import escape
@@ -29,12 +29,11 @@ from cuefem.designer.door import KINDS, LARGEST_FILE, REJECTED, Door, file_name
 from cuefem.designer.model import Knobs, knobs_of, turned
 from cuefem.designer.sliders import Choice, Slider, choices, sliders, without
 from cuefem.designer.style import SCRIPT, STYLE
+from cuefem.designer.words import ABOUT, Opened, head_markup
 from cuefem.io.toml import toml_text
 from cuefem.report.page import page as report_page
-from cuefem.report.record import scene_record
 from cuefem.report.templates import page_style
 from cuefem.report.unusual import unusual
-from cuefem.report.words import assumptions, effect_words, plain_cue_line
 from cuefem.scene import Scene
 
 HOST = "127.0.0.1"
@@ -43,14 +42,6 @@ IDLE = 0.12  # s without a move, after which what takes longer is computed
 FAILURES = (ValueError, RuntimeError, ArithmeticError, MemoryError, OSError)
 
 Read = Callable[[Path], tuple[Scene, list[str]]]
-
-
-class Opened(NamedTuple):
-    """A scene with the name of its file, and what was assumed because the file does not say it."""
-
-    name: str
-    scene: Scene
-    notes: Sequence[str]
 
 
 class Pinned(NamedTuple):
@@ -86,8 +77,7 @@ def serve(first: Opened, read: Read, *, port: int, show: bool, announce: Callabl
 
 
 async def _computed(work: Callable[..., Any], *arguments: Any) -> Any:
-    """Work done beside the page's own, where overflows are errors as they are in the commands; RuntimeError where it
-    takes too long."""
+    """Work done in a thread, with overflows as errors; RuntimeError if it takes too long."""
 
     def guarded() -> Any:
         with np.errstate(over="raise", divide="raise", invalid="raise"):
@@ -100,7 +90,7 @@ async def _computed(work: Callable[..., Any], *arguments: Any) -> Any:
 
 
 class Desk:
-    """What one browser tab works on. A move is answered at once; what takes longer follows when nobody moves a knob."""
+    """What one browser tab works on. A move is answered at once; slower results follow while no knob is moved."""
 
     def __init__(self, first: Opened, read: Read) -> None:
         self.read, self.opened = read, first
@@ -296,7 +286,7 @@ class Desk:
         assert found is not None
         self.cue.set_content(pictures.cue_pictures(found.scene))
         self.shapes.set_content(pictures.shapes_picture(found))
-        self.head.set_content(_head(self.opened, found.scene))
+        self.head.set_content(head_markup(self.opened, found.scene))
         self._show_charts()
         self._show_density(current=self.current)
 
@@ -398,20 +388,3 @@ class Desk:
             self.report.enable()
         self._say("")
         ui.download.content(text, f"{Path(name).stem}.html")
-
-
-def _head(opened: Opened, scene: Scene) -> str:
-    facts = [plain_cue_line(scene.cue), assumptions(scene_record(scene))]
-    facts += [f"with {', '.join(map(effect_words, scene.effects))}"] if scene.effects else []
-    facts += [f"assumed: {'; '.join(opened.notes)}"] if opened.notes else []
-    facts += [f"unusual: {remark}" for remark in unusual(opened.scene)]
-    lines = "".join(f'<p class="fact">{escape(fact)}</p>' for fact in facts)
-    return f'<p class="kind">cuefem designer</p><h1>{escape(opened.name)}</h1>{lines}'
-
-
-ABOUT = """<p>Numbers are those of <code>cuefem strike</code>, <code>end-mass</code> and <code>modes</code> for the
-saved file, by the same functions; an [accuracy] table of the opened file is no part of the design and is not saved. End
-mass m<sub>e</sub>: what the ball feels across the cue at its tip; stick is its limit of small offsets, the
-paper&#8217;s m<sub>c</sub> is four times m<sub>e</sub>. A knob that was not moved changes nothing; diameters change
-evenly between their three places, a joint that bends by 0 is stiff, the ferrule takes its length from the wood behind
-it, and everything without a knob stays as the file has it.</p>"""

@@ -1,4 +1,4 @@
-"""How knobs stand on the page: names, units of the trade, ranges; and which materials are offered."""
+"""The knobs as the page shows them: names, units, ranges, and the materials on offer."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def _wide_enough(slider: Slider, knobs: Knobs) -> Slider:
 
 
 def _bore(cue: Cue) -> Slider:
-    label = f"Bore depth, behind {1e3 * bore_mouth(cue):.4g} mm"
+    label = f"Bore depth, from {1e3 * bore_mouth(cue):.4g} mm on"
     return Slider("bore_depth", label, "mm", 1e3, 0, round(min(300.0, 1e3 * deepest_bore(cue)), 1), 1)
 
 
@@ -123,11 +123,11 @@ def _offered(names: tuple[str, ...], own: Material) -> dict[str, Material]:
 
 
 def without(scene: Scene) -> list[str]:
-    """What there is no knob for in this scene, in words."""
+    """Sentences about the parts of this scene that have no knob."""
     knobs = knobs_of(scene)
     reasons = []
     if knobs.ferrule_length is None:
-        reasons.append("no ferrule is drawn behind the tip, so it has no knob")
+        reasons.append("no ferrule is drawn behind the tip, so there is no knob for it")
     if knobs.bore_depth is None:
         reasons.append("the bore behind the tip is filled, so it stays as it is")
     return reasons

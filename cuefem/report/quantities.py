@@ -43,11 +43,11 @@ class Known(NamedTuple):
         return TRADE.get(self.unit, (1.0, self.unit))[0]
 
     def number(self, value: float, *, brief: bool = False) -> str:
-        """A value in the unit that people read, without it; brief: a decimal less."""
+        """A value in the unit that people read, without it; brief: three decimals at most."""
         decimals = self.decimals
         if decimals is None:
             return significant(self.scale * value)
-        return f"{self.scale * value:.{max(decimals - brief, 0)}f}"
+        return f"{self.scale * value:.{min(decimals, 3) if brief else decimals}f}"
 
     def written(self, value: Any, *, brief: bool = False) -> str:
         """A value with its unit; a dash where there is none, words as they are."""

@@ -172,10 +172,10 @@ def test_a_lumped_cue_has_no_knobs() -> None:
 
 def test_what_is_unusual_is_not_said_to_be_assumed() -> None:
     pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
-    from cuefem.designer.app import Opened, _head
+    from cuefem.designer.words import Opened, head_markup
 
     scene = replace(first_scene(), ball=cf.Ball(radius=0.05715))
-    head = _head(Opened("mine.toml", scene, ["material hard maple"]), scene)
+    head = head_markup(Opened("mine.toml", scene, ["material hard maple"]), scene)
     assert "assumed: material hard maple<" in head
     assert ">unusual: ball radius 57.15 mm" in head
-    assert "unusual" not in _head(Opened("mine.toml", first_scene(), []), first_scene())
+    assert "unusual" not in head_markup(Opened("mine.toml", first_scene(), []), first_scene())

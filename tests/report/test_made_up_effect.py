@@ -19,6 +19,7 @@ from cuefem.design import Levels, Response, Study, Vary
 from cuefem.design.worth import variants
 from cuefem.designer.answers import answers
 from cuefem.designer.model import knobs_of, turned
+from cuefem.designer.words import Opened, head_markup
 from cuefem.effects import CueEffect, Usual, effect_kinds
 from cuefem.io import schema
 from cuefem.quantity import Quantity
@@ -84,10 +85,9 @@ def test_commands_and_pages_name_it(scene: cf.Scene, tmp_path: Path) -> None:
 
 
 def test_the_designer_keeps_it(scene: cf.Scene) -> None:
-    app = pytest.importorskip("cuefem.designer.app")
     knobs = replace(knobs_of(scene), offset=0.2)
     assert turned(scene, knobs).effects == scene.effects
-    assert WORDS in app._head(app.Opened("scene.toml", scene, []), scene)
+    assert WORDS in head_markup(Opened("scene.toml", scene, []), scene)
     found = answers(scene)
     assert found.strike["squirt"] == pytest.approx(cf.strike(scene).squirt, rel=1e-12)
     assert found.strike["squirt"] > cf.strike(BARE).squirt  # the ring lies within reach of the tip

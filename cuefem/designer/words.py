@@ -1,0 +1,39 @@
+"""The words of the designer's page: its head, and the explanation at its foot."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from html import escape
+from typing import NamedTuple
+
+from cuefem.report.record import scene_record
+from cuefem.report.unusual import unusual
+from cuefem.report.words import assumptions, effect_words, plain_cue_line
+from cuefem.scene import Scene
+
+
+class Opened(NamedTuple):
+    """A scene with the name of its file, and what was assumed because the file does not say it."""
+
+    name: str
+    scene: Scene
+    notes: Sequence[str]
+
+
+def head_markup(opened: Opened, scene: Scene) -> str:
+    """The head of the page: the file's name, and the cue, the stroke and the effects in words."""
+    facts = [plain_cue_line(scene.cue), assumptions(scene_record(scene))]
+    facts += [f"with {', '.join(map(effect_words, scene.effects))}"] if scene.effects else []
+    facts += [f"assumed: {'; '.join(opened.notes)}"] if opened.notes else []
+    facts += [f"unusual: {remark}" for remark in unusual(opened.scene)]
+    lines = "".join(f'<p class="fact">{escape(fact)}</p>' for fact in facts)
+    return f'<p class="kind">cuefem designer</p><h1>{escape(opened.name)}</h1>{lines}'
+
+
+ABOUT = """<p>The numbers are the same as those of <code>cuefem strike</code>, <code>end-mass</code> and
+<code>modes</code> for the saved file. An [accuracy] table of the opened file is not saved. End mass m<sub>e</sub>
+is how much mass the ball has to push aside at the tip; less of it means less squirt. &#8220;Stick&#8221; means that
+the tip does not slip on the ball. The m<sub>c</sub> of the paper is four times m<sub>e</sub>. A knob that you do
+not move changes nothing. A diameter changes evenly up to the next of its three places. A joint that bends by 0 is
+stiff. A longer ferrule takes its length from the wood behind it. Everything without a knob stays as it is in the
+file.</p>"""
