@@ -72,16 +72,43 @@ class Rung(NamedTuple):
 
 
 def resolve(scene: Scene, rtol: float) -> Outcome:
-    """Outcome of the coupled strike to relative accuracy ``rtol``, in (0, 1), at the least resolution that holds it.
+    """Outcome of the coupled strike to a relative accuracy, at the least resolution that reaches it.
 
-    Outcome.error is the estimate of the largest relative error of squirt, ball speed and spin; how well it holds over
-    random scenes with every effect is measured in studies/resolve_errors.md. Squirt and spin are taken relative to
-    themselves, squirt to no less than 0.01 sin(phi) rad (where it passes through zero). An accuracy that `MOST` modes
-    do not reach gives the best found: its error is above rtol then. A contact that nearly parts and goes on has the
-    error of parting there, one that parts and nearly goes on that of going on (but a dead tip, e = 0, and a raised cue
-    that part are not charged so). A leather tip, or another first segment that reflects waves, is also charged what a
-    tail that rings without loss would change, until the modes reach the segment's own turning resonance. A lumped cue
-    is exact but for rounding. Cost: cubic in the modes; all rungs together take about twice the last.
+    Parameters
+    ----------
+    scene
+        As `cuefem.strike` takes it. A lumped cue is exact but for rounding.
+    rtol
+        The accuracy wanted, in (0, 1): the largest relative error of squirt, ball speed and spin.
+
+    Returns
+    -------
+    Outcome
+        ``.error`` is the estimated error. If even 400 modes do not reach ``rtol``, the best outcome found is returned,
+        and its error is above ``rtol``.
+
+    Raises
+    ------
+    ValueError
+        If rtol is out of bounds.
+
+    Notes
+    -----
+    Squirt is taken relative to itself, but to no less than 0.01 sin(phi) rad, since it may pass through zero. A contact
+    that nearly parts and goes on has the error of parting there; one that parts and nearly goes on has the error of
+    going on (except for a dead tip and a raised cue). A leather tip, or another first segment that reflects waves, is
+    also charged what a tail that rings without loss would change, until the modes reach the segment's own turning
+    resonance. How well the estimate holds over random scenes with every effect
+    is measured in studies/resolve_errors.md. Cost: cubic in the modes; all steps together take about twice the last.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> cue = cf.Cue((cf.Segment(0.7, 0.012, 0.021, wood),), body_mass=0.43)
+    >>> scene = cf.Scene(cue, tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(offset=0.3))
+    >>> cf.resolve(scene, rtol=1e-2).error < 1e-2
+    True
     """
     rtol = RTOL.check("resolve rtol", rtol)
     if scene.lumped is not None:
@@ -121,7 +148,34 @@ def ladder(scene: Scene) -> Iterator[Rung]:
 
 
 def resolve_end_mass(scene: Scene, drive: str = "stick", rtol: float = 1e-4) -> tuple[float, float]:
-    """(end mass, kg, its estimated relative error) to relative accuracy ``rtol``; see `cuefem.end_mass`, `resolve`."""
+    """Effective end mass to a relative accuracy, at the least resolution that reaches it.
+
+    Parameters
+    ----------
+    scene, drive
+        As `cuefem.end_mass` takes them.
+    rtol
+        The relative accuracy wanted, in (0, 1).
+
+    Returns
+    -------
+    (float, float)
+        The end mass, kg, and its estimated relative error, which is above ``rtol`` if even 400 modes do not reach it.
+
+    Raises
+    ------
+    ValueError
+        If rtol is out of bounds, or the definition is unknown or has no answer for this scene.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> cue = cf.Cue((cf.Segment(0.7, 0.012, 0.021, wood),), body_mass=0.43)
+    >>> felt, error = cf.resolve_end_mass(cf.Scene(cue, tip=cf.Tip(contact_time=1e-3)), "stick", rtol=1e-2)
+    >>> round(1e3 * felt, 1), error < 1e-2  # g
+    (4.8, True)
+    """
     rtol, formula = RTOL.check("resolve_end_mass rtol", rtol), formula_of(drive)
     if scene.lumped is not None:
         return float(end_mass(scene, drive)), ROUNDING

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -59,10 +60,7 @@ class System:
         """
         mesh, t = self.mesh, table(self.mesh.order)
         own = vectors[mesh.first[:, None] + np.arange(len(t.w))]  # (elements, unknowns of an element, k)
-        h = mesh.sizes[:, None, None]
-        bent, sheared = t.dtheta.T @ own / (h * self.length), t.dw.T @ own / h - t.theta.T @ own / self.length
-        bent *= np.sqrt(self.section.EI * t.weights * mesh.sizes[:, None])[:, :, None]
-        sheared *= np.sqrt(self.section.kGA * t.weights * mesh.sizes[:, None])[:, :, None]
+        bent, sheared = weighted_strains(own, self.section, mesh.sizes, self.length, mesh.order)
         held = np.flatnonzero(self.springs)
         sprung = np.sqrt(self.springs[held])[:, None] * vectors[held]
         jumps = np.sqrt(self.links.stiffness)[:, None] * (vectors[self.links.after] - vectors[self.links.before])
@@ -82,6 +80,23 @@ class System:
         values = (np.einsum("iq,qik->kq", basis, own).reshape(-1, *x.shape) for basis in (w, theta))
         deflection, rotation = values
         return deflection, rotation / self.length
+
+
+def slopes(own: Array, h: Array, length: Any, order: int) -> tuple[Array, Array, Array]:
+    """(theta', w', theta) at the Gauss points from elements' own unknowns (..., elements, u, k): (..., elements, q, k).
+
+    h: sizes of the elements, m; length: that scales theta, m; both broadcast against the results.
+    """
+    t = table(order)
+    return t.dtheta.T @ own / (h * length), t.dw.T @ own / h, t.theta.T @ own / length
+
+
+def weighted_strains(own: Array, section: Section, sizes: Array, length: Any, order: int) -> tuple[Array, Array]:
+    """Curvature and shear of elements' own unknowns (..., elements, u, k), times the roots of stiffness and weight."""
+    bent, slope, turned = slopes(own, sizes[..., None, None], length, order)
+    weights = table(order).weights * sizes[..., None]
+    bent *= np.sqrt(section.EI * weights)[..., None]
+    return bent, (slope - turned) * np.sqrt(section.kGA * weights)[..., None]
 
 
 def sections(cue: Cue, mesh: Mesh) -> Section:

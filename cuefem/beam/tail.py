@@ -60,37 +60,51 @@ def tail(found: Modes, *, turning: bool = False, deflect: Deflect | None = None)
     )
 
 
-def ritz(kept: Array, K: Any, M: Any, force: Array, *, shift: float, deflect: Deflect, highest: float) -> Ritz:
-    """Tail of the modes ``kept`` (unknowns, n), all of K q = omega^2 M q up to ``highest`` rad/s, under ``force``.
+def ritz(
+    kept: Array, K: Any, M: Any, force: Array, *, shift: float | Array, deflect: Deflect, highest: float | Array
+) -> Ritz:
+    """Tail of the modes ``kept`` (unknowns, n) of K q = omega^2 M q, all of them up to ``highest`` rad/s.
 
-    The flexibility of the modes left out, as the tip feels it, by `STEPS` steps of Lanczos from the static deflection
-    under each force (unknowns, loads) at the tip, which match its first moments in 1/omega^2. The chain ends in a
-    dashpot, as the matching end of a line: waves above the frequencies kept leave the tip and do not come back; an end
-    without it would ring. deflect: the inverse of K + shift M.
+    The flexibility of the modes left out, as the tip feels it under each force (unknowns, loads), by `STEPS` steps of
+    Lanczos from the static deflections, which match its first moments in 1/omega^2. The chain ends in a dashpot, as the
+    matching end of a line does: waves above the frequencies kept leave the tip and do not come back; without it the end
+    would ring. deflect: multiplication by the inverse of K + shift M. Everything may be a stack of beams: arrays with
+    one axis more in front, shift and highest of shape (beams,).
     """
+    shift, highest = (np.asarray(value)[..., None, None] for value in (shift, highest))
     basis = _krylov(kept, K, M, force, shift=shift, deflect=deflect)
-    T = basis.T @ (M @ basis)  # what the chain's masses are, where its stiffness is I - shift T
-    squares, mix = la.eigh(np.eye(len(T)) - shift * T, T)
-    ends = mix[-force.shape[1] :]
-    return Ritz(np.sqrt(squares), basis @ mix, DASHPOT / highest * ends.T @ ends)
+    t, mix = np.linalg.eigh(_gram(basis, M))  # the chain's masses; its stiffness is 1 - shift t
+    t, mix = t[..., ::-1], (mix / np.sqrt(t)[..., None, :])[..., ::-1]
+    ends = mix[..., -force.shape[-1] :, :]
+    return Ritz(np.sqrt(1 / t - shift[..., 0]), basis @ mix, DASHPOT / highest * (_transposed(ends) @ ends))
 
 
-def _krylov(kept: Array, K: Any, M: Any, force: Array, *, shift: float, deflect: Deflect) -> Array:
+def _krylov(kept: Array, K: Any, M: Any, force: Array, *, shift: Array, deflect: Deflect) -> Array:
     """Basis of the tail, (unknowns, STEPS loads): orthonormal in K + shift M, M-orthogonal to the modes kept."""
-    heavy = M @ kept
+    heavy = _transposed(M @ kept)
     steps: list[Array] = []
     for _ in range(STEPS):
         step = deflect(force)
         for _ in range(2):
-            step = step - kept @ (heavy.T @ step)
-        step = step / np.sqrt(np.sum(step * (M @ step), axis=0))
+            step = step - kept @ (heavy @ step)
+        step = step / np.sqrt(np.sum(step * (M @ step), axis=-2, keepdims=True))
         force = M @ step
         steps.append(step)
-    basis = np.concatenate(steps, axis=1)
+    basis = np.concatenate(steps, axis=-1)
     for _ in range(2):  # orthonormal in their order: the last belong to the end of the chain
-        gram = basis.T @ (K @ basis) + shift * (basis.T @ (M @ basis))
-        basis = la.solve_triangular(la.cholesky(gram, lower=True), basis.T, lower=True).T
+        lower = np.linalg.cholesky(_gram(basis, K) + shift * _gram(basis, M))
+        basis = _transposed(np.linalg.solve(lower, _transposed(basis)))
     return np.asarray(basis)
+
+
+def _gram(vectors: Array, A: Any) -> Array:
+    """vectors' A vectors, (k, k)."""
+    return np.asarray(_transposed(vectors) @ (A @ vectors))
+
+
+def _transposed(stack: Array) -> Array:
+    """The matrices of a stack transposed."""
+    return np.swapaxes(stack, -1, -2)
 
 
 def flexibility(system: System) -> Deflect:

@@ -15,8 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 from cuefem.beam.basis import table
-from cuefem.beam.system import element_matrices
-from cuefem.beam.tail import STEPS
+from cuefem.beam.system import element_matrices, weighted_strains
+from cuefem.beam.tail import ritz
 from cuefem.cue import Array, Cue, Section, SegmentRows, section_properties
 from cuefem.endmass.undamped import StickLimit, stick_reason
 from cuefem.scene import Resolution, Scene
@@ -281,10 +281,7 @@ class Beams:
         """Strains of ``vectors`` (cues, unknowns, k) times roots of stiffness: (cues, rows, k); K = S'S of all."""
         t, stride, elements = table(self.order), 2 * self.order + 1, self.sizes.shape[1]
         own = vectors[:, stride * np.arange(elements)[:, None] + np.arange(len(t.w))]  # (cues, elements, unknowns, k)
-        h, length = self.sizes[..., None, None], self.length[:, None, None, None]
-        bent, sheared = t.dtheta.T @ own / (h * length), t.dw.T @ own / h - t.theta.T @ own / length
-        roots = (np.sqrt(part * t.weights * self.sizes[..., None]) for part in (self.section.EI, self.section.kGA))
-        both = [part * root[..., None] for part, root in zip((bent, sheared), roots, strict=True)]
+        both = weighted_strains(own, self.section, self.sizes, self.length[:, None, None, None], self.order)
         return np.concatenate([part.reshape(len(vectors), -1, vectors.shape[2]) for part in both], axis=1)
 
 
@@ -357,39 +354,25 @@ def _block_modes(batch: CueBatch, count: int, at: Resolution, ended: bool) -> Ba
     tip, rigid, top = np.abs(np.einsum("bj,bjk->bk", vectors[:, 0], mix)), _rigid_tip(batch), None
     if ended:
         top = omega[:, -1]
-        high, follow = _tail(beams, back, vectors @ mix)
+        high, follow = _tail(beams, back, vectors @ mix, top)
         omega, tip = np.concatenate([omega, high], axis=1), np.concatenate([tip, follow], axis=1)
     return BatchModes(omega / (2 * np.pi), tip, rigid, top)
 
 
-def _tail(beams: Beams, back: Array, flexible: Array) -> tuple[Array, Array]:
-    """(omega, w(0)) of the vectors that end the modes, (cues, steps) each: `beam.tail.tail` without its dashpot."""
+def _tail(beams: Beams, back: Array, flexible: Array, top: Array) -> tuple[Array, Array]:
+    """(omega, w(0)) of the vectors that end the modes up to ``top``, (cues, steps) each; their dashpot is left out."""
     rigid = beams.rigid
-    rigid = rigid @ np.linalg.inv(np.linalg.cholesky(_gram(rigid, beams.M))).transpose(0, 2, 1)
-    kept = np.concatenate([rigid, flexible], axis=2)
-    heavy = (beams.M @ kept).transpose(0, 2, 1)
+    mass = rigid.transpose(0, 2, 1) @ (beams.M @ rigid)
+    rigid = rigid @ np.linalg.inv(np.linalg.cholesky(mass)).transpose(0, 2, 1)
     force = np.zeros((*back.shape[:2], 1))
     force[:, 0] = 1.0
-    steps = []
-    for _ in range(STEPS):
-        step = back @ (back.transpose(0, 2, 1) @ force)
-        for _ in range(2):
-            step = step - kept @ (heavy @ step)
-        step = step / np.sqrt(_gram(step, beams.M))
-        force = beams.M @ step
-        steps.append(step)
-    basis, shift = np.concatenate(steps, axis=2), beams.shift[:, None, None]
-    for _ in range(2):
-        gram = _gram(basis, beams.K) + shift * _gram(basis, beams.M)
-        basis = basis @ np.linalg.inv(np.linalg.cholesky(gram)).transpose(0, 2, 1)
-    t, mix = np.linalg.eigh(_gram(basis, beams.M))
-    tip = np.einsum("bj,bjk->bk", basis[:, 0], mix) / np.sqrt(t)
-    return np.sqrt(1 / t - beams.shift[:, None])[:, ::-1], np.abs(tip)[:, ::-1]
 
+    def deflect(load: Array) -> Array:
+        return np.asarray(back @ (back.transpose(0, 2, 1) @ load))
 
-def _gram(vectors: Array, A: Array) -> Array:
-    """vectors' A vectors, (cues, k, k)."""
-    return np.asarray(vectors.transpose(0, 2, 1) @ (A @ vectors))
+    kept = np.concatenate([rigid, flexible], axis=2)
+    found = ritz(kept, beams.K, beams.M, force, shift=beams.shift, deflect=deflect, highest=top)
+    return found.omega, np.abs(found.vectors[:, 0])
 
 
 def _polished(beams: Beams, vectors: Array) -> tuple[Array, Array]:

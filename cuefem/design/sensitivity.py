@@ -19,9 +19,9 @@ import numpy as np
 
 from cuefem.beam.basis import table
 from cuefem.beam.modes import solve
-from cuefem.beam.system import System, assemble
+from cuefem.beam.system import System, assemble, slopes
 from cuefem.cue import Array
-from cuefem.endmass.undamped import StickLimit, smooth_start_swing
+from cuefem.endmass.undamped import StickLimit, half_sine_response, smooth_start_swing
 from cuefem.scene import Resolution, Scene
 from cuefem.tip_modes import PLAIN_PERIODS, default_resolution
 
@@ -142,10 +142,8 @@ def _forms(gradient: _Gradient, squares: Array, phi: Array, still: Array) -> tup
 def _densities(system: System, vectors: Array, stiff: Array, heavy: Array, gradient: _Gradient) -> Sensitivity:
     mesh, t = system.mesh, table(system.mesh.order)
     own = vectors[mesh.first[:, None] + np.arange(len(t.w))]  # (elements, unknowns of an element, modes)
-    h = mesh.sizes[:, None, None]
-    bent, slope = t.dtheta.T @ own / (h * system.length), t.dw.T @ own / h
-    moved, turned = t.w.T @ own, t.theta.T @ own / system.length
-    sheared = slope - turned
+    bent, slope, turned = slopes(own, mesh.sizes[:, None, None], system.length, mesh.order)
+    moved, sheared = t.w.T @ own, slope - turned
 
     def density(form: Array, fields: Array, others: Array | None = None) -> Array:
         fields = fields.reshape(-1, fields.shape[-1])
@@ -172,8 +170,7 @@ def _force(squares: Array, phi: Array, rigid: float, scene: Scene) -> _Gradient:
     given = 2 * T / np.pi
 
     def response(square: Any) -> Any:
-        x = np.sqrt(square) * T - np.pi
-        return -np.pi * T / 2 * x * np.sinc(x / (2 * np.pi)) ** 2 / (x + 2 * np.pi)
+        return half_sine_response(np.sqrt(square), T)
 
     speed = float(phi**2 @ response(squares)) + rigid * given
     slope = -given / speed**2

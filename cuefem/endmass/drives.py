@@ -78,7 +78,7 @@ def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None) -
     >>> cue = cf.Cue((cf.Segment(0.7, 0.012, 0.021, wood),), body_mass=0.43)
     >>> scene = cf.Scene(cue, tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(offset=0.3))
     >>> round(1e3 * cf.end_mass(scene), 1), round(1e3 * cf.end_mass(scene, "offset"), 1)  # g
-    (5.3, 4.8)
+    (4.8, 4.4)
     """
     definition = definition_of(drive)
     if scene.lumped is not None:

@@ -18,16 +18,41 @@ from cuefem.tip_modes import Solved
 
 
 def lump(scene: Scene, at: Resolution | None = None) -> LumpedCue:
-    """The lumped cue that squirts as the coupled strike does at the scene's own offset, while its tip sticks.
+    """The lumped cue that squirts at the scene's own offset as the coupled strike does whose tip never slips.
 
-    Its end mass is "offset" of the cue alone; what effects at the tip (`TipDome`, `TipShear`) add or take goes into the
-    coupling, about proportional to sin(phi). ValueError where no lumped cue squirts so.
+    Parameters
+    ----------
+    scene
+        The cue, ball, tip and stroke. A `LumpedCue` is returned as it is.
+    at
+        How finely the cue is computed; by default as in `cuefem.strike`.
+
+    Returns
+    -------
+    LumpedCue
+        Its mass is the cue's along the axis, its end mass "offset" of the cue alone (see `cuefem.end_mass`). What
+        effects at the tip (`TipDome`, `TipShear`) add goes into the coupling, which is about proportional to sin(phi).
+
+    Raises
+    ------
+    ValueError
+        If no lumped cue has that squirt.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> cue = cf.Cue((cf.Segment(0.7, 0.012, 0.021, wood),), body_mass=0.43)
+    >>> scene = cf.Scene(cue, tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(offset=0.3))
+    >>> lumped = cf.lump(scene)
+    >>> round(1e3 * lumped.end_mass, 1), lumped.coupling  # g, 1/kg
+    (4.4, 0.0)
     """
     return scene.lumped or lump_modes(scene, Solved(scene, at).tip_stuck)
 
 
 def lump_modes(scene: Scene, tip: TipModes) -> LumpedCue:
-    """The same of a cue that is given by its tip modes."""
+    """As `lump`, from the scene's tip modes."""
     if scene.lumped is not None:
         return scene.lumped
     cue = LumpedCue(scene.axial_mass, stick_at_offset(tip, scene.bare))
@@ -37,7 +62,7 @@ def lump_modes(scene: Scene, tip: TipModes) -> LumpedCue:
 
 
 def _coupling(cue: LumpedCue, scene: Scene, squirt: float) -> float:
-    """The coupling with which a lumped cue's squirt, where its tip never slips, is ``squirt`` rad."""
+    """The coupling, 1/kg, with which the squirt of a lumped cue whose tip never slips is ``squirt``, rad."""
     most, side = (1 - 1e-9) / math.sqrt(cue.mass * cue.end_mass), np.sign(scene.stroke.offset)
 
     def excess(part: float) -> float:
@@ -50,11 +75,37 @@ def _coupling(cue: LumpedCue, scene: Scene, squirt: float) -> float:
 
 
 def impulse(scene: Scene) -> Outcome:
-    """Outcome of a stroke from the general impulse solver ([Stronge]'s construction), exact in every regime.
+    """Outcome of a stroke from the general impulse solver: no time and no vibration, exact in every regime.
 
-    Array fields of cue, ball, tip and stroke broadcast; a million strokes take about a second. A finite-element cue is
-    lumped first, at every offset anew: its axial mass and its end mass "offset" (see `cuefem.end_mass`), ValueError
-    where it has none. See `cuefem.contact.impulse_space.impact` for phases and energies.
+    Parameters
+    ----------
+    scene
+        Cue, ball, tip and stroke, whose fields may be arrays that broadcast: a million strokes take about a second. A
+        finite-element cue is lumped first, at every offset anew: it counts by its axial mass and its end mass "offset"
+        (see `cuefem.end_mass`).
+
+    Returns
+    -------
+    Outcome
+        With the arrays' broadcast shape. See `cuefem.contact.impulse_space.impact` for phases and energies.
+
+    Raises
+    ------
+    ValueError
+        If a lumped cue has effects, which need time (see `cuefem.strike`), or if a finite-element cue has no such end
+        mass.
+
+    Notes
+    -----
+    [Stronge]'s construction in impulse space, with his energetic coefficient of restitution (physics.md section 3).
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> scene = cf.Scene(cf.LumpedCue.two_part(mass=0.54, cue_end_mass=0.012), stroke=cf.Stroke(offset=0.3))
+    >>> outcome = cf.impulse(scene)
+    >>> outcome.regime, round(float(outcome.squirt), 4)  # rad
+    ('stick', 0.0127)
     """
     check_kind("impulse scene", scene, Scene)
     if scene.effects and scene.lumped is not None:

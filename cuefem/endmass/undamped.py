@@ -22,13 +22,17 @@ FADED = 0.5
 
 
 def half_sine_velocity(omega: Array, phi: Array, rigid: Any, *, T: float) -> Any:
-    """Tip velocity at the end of a half-sine force of unit height and length T, m/s per N.
+    """Tip velocity at the end of a half-sine force of unit height and length T, m/s per N."""
+    return (phi**2 * half_sine_response(omega, T)).sum(axis=-1) + rigid * 2 * T / np.pi
 
-    Each mode gives a (1 + cos(omega T))/(a^2 - omega^2), a = pi/T, written with sinc so that it is exact at omega = a.
+
+def half_sine_response(omega: Any, T: float) -> Any:
+    """Integral of cos(omega (T - s)) sin(pi s/T) ds over 0..T, s: what one mode gives per phi^2.
+
+    It is a (1 + cos(omega T))/(a^2 - omega^2), a = pi/T, written with sinc so that it is exact at omega = a.
     """
     x = omega * T - np.pi
-    velocities = -np.pi * T / 2 * x * np.sinc(x / (2 * np.pi)) ** 2 / (x + 2 * np.pi)
-    return (phi**2 * velocities).sum(axis=-1) + rigid * 2 * T / np.pi
+    return -np.pi * T / 2 * x * np.sinc(x / (2 * np.pi)) ** 2 / (x + 2 * np.pi)
 
 
 def smooth_start_impulse(omega: Array, phi: Array, rigid: Any, *, T: float) -> Any:

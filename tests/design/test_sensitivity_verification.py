@@ -211,5 +211,5 @@ def test_bad_input() -> None:
         sensitivity(scene(kim()), "push")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="without effects; got 1"):
         sensitivity(replace(scene(kim()), effects=(PointMass(0.1, 1e-3),)))
-    with pytest.raises(TypeError, match=r"gradient scene\.cue"):
+    with pytest.raises(ValueError, match=r"Scene\.cue must be a Cue of segments"):
         gradient(Scene(LumpedCue(0.5, 0.01)))
