@@ -101,7 +101,7 @@ def modes(
 
     Notes
     -----
-    Timoshenko's beam, free at both ends unless an effect holds it (physics.md section 4). Costs one dense symmetric
+    Timoshenko's beam, free at both ends unless an effect holds it (handbook: The beam). Costs one dense symmetric
     eigenproblem, cubic in the unknowns.
 
     Examples

@@ -97,7 +97,7 @@ def impulse(scene: Scene) -> Outcome:
 
     Notes
     -----
-    [Stronge]'s construction in impulse space, with his energetic coefficient of restitution (physics.md section 3).
+    [Stronge]'s construction in impulse space, with his energetic coefficient of restitution (handbook: The impulse solver).
 
     Examples
     --------
