@@ -97,7 +97,8 @@ def impulse(scene: Scene) -> Outcome:
 
     Notes
     -----
-    [Stronge]'s construction in impulse space, with his energetic coefficient of restitution (handbook: The impulse solver).
+    [Stronge]'s construction in impulse space, with his energetic coefficient of restitution (handbook: The impulse
+    solver).
 
     Examples
     --------
