@@ -184,7 +184,8 @@ def mobility(omega: Array, phi: Array, still: Any) -> tuple[Array, Array, Any]:
     v = phi * omega
     diagonal = omega[..., None] ** 2 * np.eye(omega.shape[-1])
     squares, vectors = np.linalg.eigh(diagonal - v[..., :, None] * v[..., None, :] / total[..., None])
-    W = np.sqrt(np.maximum(squares, 0))
+    # of a clamped cue the lowest is 0: a small one gives its limit, where rounding below 0 would lose the term
+    W = np.sqrt(np.maximum(squares, 1e-12 * omega[..., :1] ** 2))
     weights = (np.einsum("...i,...ij->...j", v, vectors) / total) ** 2
     return W, np.divide(weights, W, out=np.zeros_like(W), where=W > 0), 1 / total[..., 0]
 
