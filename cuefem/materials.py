@@ -171,7 +171,7 @@ WOODS: tuple[str, ...] = tuple(_WOODS)
 
 
 def material(name: str) -> Material:
-    """The material of this name in `MATERIALS`; ValueError that offers the nearest names for any other."""
+    """The material of this name in `MATERIALS`; ValueError, suggesting similar names, if there is none."""
     if name not in MATERIALS:
         near = get_close_matches(name.lower(), MATERIALS, n=3, cutoff=0.5)
         offer = f"nearest: {', '.join(near)}" if near else f"known: {', '.join(MATERIALS)}"

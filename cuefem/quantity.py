@@ -1,4 +1,4 @@
-"""Dimensioned, bounded fields: one declaration serves a dataclass's checks, its units at the edge, its JSON schema."""
+"""Fields with a unit and bounds, declared once: the checks of a dataclass, units in files and JSON schema follow."""
 
 from __future__ import annotations
 
@@ -30,16 +30,16 @@ EXAMPLES = {
     "Hz": ("a frequency", "250 Hz"),
 }
 
-# A field that `impulse` broadcasts may hold an array; everything else holds one number.
+# Fields that `impulse` broadcasts may hold an array; all others hold one number.
 Number = float | NDArray[np.float64]
 
 
 @dataclasses.dataclass(frozen=True)
 class Quantity:
-    """The SI unit of a field ("" for a pure number) and the interval it must lie in.
+    """The SI unit of a field ("" for a pure number) and the interval in which its value must lie.
 
-    ``interval`` is written as in mathematics, "(0, inf)" or "[0, 1]"; a round bracket excludes its end, so infinity
-    is a legal value only of an interval that closes with "inf]". NaN lies in no interval.
+    ``interval`` is written as in mathematics, "(0, inf)" or "[0, 1]". A round bracket excludes its end, so infinity is
+    allowed only by an interval that closes with "inf]". NaN lies in no interval.
     """
 
     unit: str
@@ -60,7 +60,7 @@ class Quantity:
 
     @property
     def bounds(self) -> str:
-        """The interval and its unit as they stand in messages: "(0, inf) m"."""
+        """The interval and its unit as messages write them: "(0, inf) m"."""
         return f"{self.interval} {self.unit}".rstrip()
 
     @property
@@ -70,7 +70,7 @@ class Quantity:
         return f'{what} with its unit, such as "{example}"'
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
-        """Pydantic's hook: the validation context's "read" makes a number of what stands in a file."""
+        """Pydantic's hook: the function "read" of the validation context turns a file's text into a number."""
         from pydantic_core import core_schema
 
         def read(value: Any, info: Any) -> Any:
@@ -114,8 +114,8 @@ class Quantity:
         return array
 
 
-# What a cue and a blow can be at most, in one place: a wrong unit is refused before it costs hours. Each bound is far
-# from all that is real, so that scaled and extreme scenes can still be computed.
+# Bounds of a cue and a blow, so that a wrong unit is refused before it costs hours. Each bound is far from anything
+# real, so that scaled and extreme scenes can still be computed.
 LENGTH = Quantity("m", "(0, 1000]")  # of a segment: a cue is 1.5 m long
 DIAMETER = Quantity("m", "(0, 10]")  # a cue is 0.03 m wide
 CONTACT_TIME = Quantity("s", "[1e-6, 10]")  # leather's is 1e-3 s; in 1e-6 s sound goes through 4 mm of wood
@@ -161,14 +161,14 @@ def scalar(name: str, value: Number) -> float:
 
 
 def check_kind(name: str, value: Any, kind: type | tuple[type, ...]) -> None:
-    """TypeError unless ``value`` is an instance of ``kind``; it names the field that is one, where there is."""
+    """TypeError unless ``value`` is an instance of ``kind``; if one of its fields is, the message names that field."""
     if not isinstance(value, kind):
         wanted = " or ".join(k.__name__ for k in (kind if isinstance(kind, tuple) else (kind,)))
         raise TypeError(f"{name} must be a {wanted}; got {_in_short(value, kind)}")
 
 
 def _in_short(value: Any, kind: type | tuple[type, ...]) -> str:
-    """What was given: a number or a text as it is, the rest by its type; of a dataclass, the field that was meant."""
+    """A value for a message: numbers and texts as they are, others by type; for a dataclass, the field to pass."""
     if not dataclasses.is_dataclass(value) or isinstance(value, type):
         return shown(value)
     meant = [field.name for field in dataclasses.fields(value) if isinstance(getattr(value, field.name), kind)]
@@ -176,7 +176,7 @@ def _in_short(value: Any, kind: type | tuple[type, ...]) -> str:
 
 
 def shown(value: Any) -> str:
-    """A value as it stands in a message: quoted where it is text, and cut where it is long."""
+    """A value for a message: text in quotes, and cut if it is long."""
     text = repr(value)
     return text if len(text) <= 60 else f"{text[:57]}..."
 

@@ -1,4 +1,4 @@
-"""scikit-fem's hierarchical line basis, tabulated once an order: what element matrices are contracted from."""
+"""scikit-fem's hierarchical line basis, tabulated once for each order; element matrices are contracted from it."""
 
 from __future__ import annotations
 

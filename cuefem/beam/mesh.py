@@ -1,4 +1,4 @@
-"""Elements and nodes of a cue, and the point terms that effects add at its nodes."""
+"""The mesh of a cue, and the point terms that effects add at its nodes."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from cuefem.cue import Array, Cue
 from cuefem.quantity import MOST_UNKNOWNS
 
-# Points closer than this part of the cue's length are one.
+# Two points count as one if they are closer than this fraction of the cue's length.
 NEAR = 1e-9
 
 
 class ActsOnCue(Protocol):
-    """What the beam asks of an effect that acts on the cue."""
+    """What an effect that acts on the cue must offer to the beam."""
 
     @property
     def positions(self) -> tuple[float, ...]:
@@ -27,7 +27,7 @@ class ActsOnCue(Protocol):
         """Positions where deflection and rotation may jump, m from the tip."""
 
     def check_on(self, cue: Cue, name: str) -> None:
-        """ValueError unless the effect, called ``name``, finds its place on the cue."""
+        """ValueError, naming the effect ``name``, unless all its positions lie on the cue."""
 
     def add_to(self, terms: Terms) -> None:
         """Add the effect's point terms."""
@@ -39,7 +39,7 @@ class Mesh:
 
     nodes: (elements + 1,) m. piece: (elements,) index of the segment an element lies in. offset: (elements,) m from
     that segment's tip end to the element's. first: (elements,) the element's first unknown. unknowns: their number.
-    Neighbours share the two unknowns of their node, but where a joint splits it.
+    Neighbouring elements share the two unknowns of their node, unless a joint splits the node.
     """
 
     nodes: Array
@@ -60,11 +60,11 @@ class Mesh:
 
     @property
     def last(self) -> NDArray[np.intp]:
-        """Every element's last but one unknown, the deflection of its butt end: (elements,)."""
+        """The deflection of every element's butt end, its last unknown but one: (elements,)."""
         return self.first + 2 * self.order + 1
 
     def unknowns_at(self, node: int) -> tuple[int, int]:
-        """Unknowns (w, theta) of a node; those of the butt side where a joint splits it."""
+        """Unknowns (w, theta) of a node; if a joint splits it, those of the butt side."""
         first = int(self.first[node]) if node < len(self.first) else self.unknowns - 2
         return first, first + 1
 
@@ -109,14 +109,14 @@ def mesh_cue(
 
 
 def check_work(unknowns: float, what: str) -> None:
-    """ValueError where a mesh would have more unknowns than can be solved in a reasonable time and memory."""
+    """ValueError if a mesh would have more unknowns than can be solved in a reasonable time and memory."""
     if unknowns > MOST_UNKNOWNS:
         asked = "ask for fewer modes or elements, draw fewer segments, or check sizes and materials"
         raise ValueError(f"the mesh must have at most {MOST_UNKNOWNS} unknowns; got {unknowns:.6g}, of {what}: {asked}")
 
 
 def _elements_between(cue: Cue, ends: Array, elements: int | tuple[int, ...]) -> NDArray[np.intp]:
-    """How many elements each smooth piece between ``ends`` gets: (len(ends) - 1,)."""
+    """Number of elements in each smooth piece between ``ends``: (len(ends) - 1,)."""
     if not isinstance(elements, tuple):
         return np.full(len(ends) - 1, elements)
     if len(elements) != len(cue.segments):
@@ -151,7 +151,7 @@ class Terms:
         self.fixed: set[int] = set()
 
     def add(self, x: float, kind: str, w: float, theta: float) -> None:
-        """Add ``w`` to the deflection's and ``theta`` to the rotation's diagonal term at position ``x``; inf fixes."""
+        """Add diagonal terms at position ``x``: ``w`` for the deflection, ``theta`` for the rotation; inf clamps."""
         terms: dict[int, float] = getattr(self, kind)
         for unknown, value in zip(self.mesh.unknowns_at(self.mesh.node(x)), (w, theta), strict=True):
             if np.isinf(value):
@@ -162,7 +162,7 @@ class Terms:
                 terms[unknown] = terms.get(unknown, 0.0) + value
 
     def join(self, x: float, w: float, theta: float) -> None:
-        """Let deflection and rotation jump at position ``x``, by compliances ``w`` and ``theta``; zero ties them."""
+        """Let deflection and rotation jump at position ``x``, with compliances ``w`` and ``theta``; zero: no jump."""
         node = self.mesh.node(x)
         pairs = zip(self.mesh.unknowns_before(node), self.mesh.unknowns_at(node), strict=True)
         for pair, value in zip(pairs, (w, theta), strict=True):

@@ -1,4 +1,4 @@
-"""K and M of a cue and its effects: element matrices, point terms, what is held and what stays free."""
+"""The matrices K and M of a cue and its effects, and the unknowns that clamps and stiff joints take out."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from cuefem.beam.basis import local_basis, table
 from cuefem.beam.mesh import ActsOnCue, Links, Mesh, Terms, mesh_cue
 from cuefem.cue import Array, Cue, Section
 
-# Below this many unknowns a dense eigenproblem is the faster one, whatever number of modes is wanted.
+# Below this many unknowns a dense eigenproblem is faster than a sparse one, however many modes are wanted.
 DENSE_LIMIT = 220
 
 
@@ -43,7 +43,7 @@ class System:
 
     @property
     def free(self) -> sp.csc_matrix | None:
-        """All unknowns from those that are free, (unknowns, free); None where neither a clamp nor a tie takes any."""
+        """Matrix from the free unknowns to all of them, (unknowns, free); None if no clamp or tie takes any out."""
         if len(self.fixed) + len(self.tied) == 0:
             return None
         source = np.arange(self.mesh.unknowns)
@@ -55,8 +55,8 @@ class System:
     def strains(self, vectors: Array) -> Array:
         """Strains of unknowns ``vectors`` (unknowns, k), times roots of stiffness, (rows, k): K = strains' strains.
 
-        A rigid motion has strains of rounding only, where K times it is rounding times the stiffest element: with
-        strains a low mode keeps its frequency beside a stiff short piece.
+        For a rigid motion the strains are zero to rounding, while K times it is rounding times the stiffest element.
+        So energies taken from strains keep low frequencies exact beside a stiff short piece.
         """
         mesh, t = self.mesh, table(self.mesh.order)
         own = vectors[mesh.first[:, None] + np.arange(len(t.w))]  # (elements, unknowns of an element, k)
@@ -158,7 +158,7 @@ def _shift(cue: Cue, section: Section, sizes: Array) -> float:
 def gather(
     first: NDArray[np.intp], unknowns: int, blocks: Array, *, point: Array, links: Links | None = None
 ) -> Array | sp.csc_matrix:
-    """The matrix of a chain of element blocks (elements, u, u) that start at unknown ``first``, and of point terms."""
+    """The matrix summed from element blocks (elements, u, u), each from its unknown ``first`` on, and point terms."""
     u = blocks.shape[-1]
     if unknowns <= DENSE_LIMIT:
         dense = np.diag(point)

@@ -1,8 +1,9 @@
-"""The tail of the modes: what those left out do at the tip, as a few more vectors and their radiation.
+"""The tail: a few vectors that stand for the modes left out of a sum.
 
-A plain sum over the lowest n modes converges like 1/n to n^-1.3: the modes left out still give way, and carry waves
-away from the tip. `tail` ends the sum by a few Ritz vectors on a dashpot that do both; at equal modes the error of a
-strike falls ten to a thousand times. What it does for bending, `ritz` does for modes of any kind.
+A plain sum over the lowest n modes converges only like 1/n to n^-1.3, because the modes left out also give way under
+the force at the tip and carry waves away from it. `tail` adds a few Ritz vectors on a dashpot that do both. With the
+same number of modes the error of a strike falls ten to a thousand times. `tail` is for bending; `ritz` serves modes of
+any kind.
 """
 
 from __future__ import annotations
@@ -22,8 +23,8 @@ from cuefem.cue import Array
 
 Deflect = Callable[[Array], Array]
 
-# Steps of Lanczos in the tail, and its dashpot in units of 1/(the highest frequency kept). Measured: one step is up to
-# thirty times worse, three are no better; a dashpot of 0.35 to 1.5 changes errors by less than a factor of two.
+# Number of Lanczos steps, and the dashpot in units of 1/(the highest frequency kept). Measured: one step is up to
+# thirty times worse and three are no better; any dashpot from 0.35 to 1.5 changes errors by less than a factor of two.
 STEPS, DASHPOT = 2, 0.5
 
 
@@ -37,17 +38,17 @@ class Ritz(NamedTuple):
 
 
 def tail(found: Modes, *, turning: bool = False, deflect: Deflect | None = None) -> Modes:
-    """Modes ended by a tail: what the modes left out do at the tip, as a few more vectors and their radiation.
+    """The modes with a tail: a few more vectors, and their radiation, that stand for the modes left out.
 
-    turning: the contact lies off the cue's axis, where a couple turns the tip beside the force. Cost: one factorisation
-    of K, `STEPS` solutions; deflect: the `flexibility` of the system, where it is known already.
+    turning: whether the contact lies off the cue's axis, so that a couple acts at the tip beside the force. deflect:
+    the `flexibility` of the system, if it is known already. Cost: one factorisation of K and `STEPS` solutions.
     """
     system = found.system
     kept = np.concatenate([found.rigid_vectors, found.vectors], axis=1)
     force = np.zeros((system.mesh.unknowns, 2 if turning else 1))
     np.fill_diagonal(force, 1.0)  # at the tip: on w, and on theta
-    if system.free is not None:
-        force = force[:, np.asarray(abs(system.free.T @ force).sum(axis=0)).ravel() > 0]  # none on what a clamp holds
+    if system.free is not None:  # no force acts on an unknown that a clamp holds
+        force = force[:, np.asarray(abs(system.free.T @ force).sum(axis=0)).ravel() > 0]
     if force.shape[1] == 0:
         return found
     deflect = deflect or flexibility(system)
@@ -108,8 +109,7 @@ def _transposed(stack: Array) -> Array:
 
 
 def flexibility(system: System) -> Deflect:
-    """Deflections (unknowns, k) of the beam under loads (unknowns, k), on the springs shift M that modes are shifted
-    by."""
+    """The function from loads (unknowns, k) to deflections (unknowns, k) of the beam on springs shift M."""
     S, free = system.K + system.shift * system.M, system.free
     if free is not None:
         S = free.T @ S @ free
@@ -118,7 +118,7 @@ def flexibility(system: System) -> Deflect:
 
 
 def inverse(S: Any) -> Deflect:
-    """What solves S x = load, for a symmetric positive S, dense or sparse."""
+    """The function that solves S x = load, for a symmetric positive S, dense or sparse."""
     if isinstance(S, np.ndarray):
         factors = la.cho_factor(S, check_finite=False)
         return lambda load: la.cho_solve(factors, load)

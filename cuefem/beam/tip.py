@@ -1,4 +1,4 @@
-"""What a ball feels of a cue at its tip: the tip modes, with numpy alone."""
+"""The tip modes, which are all that a ball feels of a cue. This file needs numpy alone."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ class TipModes:
     omega: (n,) rad/s, the rigid ones (zero) first. amplitude: (n, 2), the mass-normalised displacement of the contact
     along and across the cue (u, w), 1/sqrt(kg). approach: (n,), the modal velocities of a cue that moves at unit speed
     along its axis, sqrt(kg). rotation: (n,) of the tip's section, 1/(m sqrt(kg)). damping: (n, n) viscous, 1/s, of the
-    modal equations q'' + damping q' + omega^2 q = f, None without any. radiation: (n, n) likewise, but nothing is lost:
-    it stands for the waves that leave the tip in modes left out. A lumped cue has omega = 0 throughout.
+    modal equations q'' + damping q' + omega^2 q = f, or None. radiation: (n, n), likewise, but its energy is not lost:
+    it stands for waves that leave the tip in the modes left out. In a lumped cue all omega are 0.
     """
 
     omega: Array
@@ -51,9 +51,9 @@ class TipModes:
         return TipModes(omega[index], amplitude[index], approach[index], rotation[index], damping, radiation)
 
     def beside(self, omega: Array, along: Array, radiation: Array | None = None) -> TipModes:
-        """With vibrating modes of amplitude ``along`` the cue after these, (n,) each; damping is added after it.
+        """These modes followed by n vibrating ones that move the tip by ``along``, (n,), along the cue, undamped.
 
-        radiation: of the last of them, where these are a tail.
+        radiation: that of the last of them, if they end in a tail.
         """
         n, before = len(omega), len(self.omega)
         own = None if self.radiation is None else np.pad(self.radiation, (0, n))
@@ -75,7 +75,7 @@ class TipModes:
 
     @property
     def uncoupled(self) -> TipModes:
-        """The modes for a head-on blow: the coupling of a lumped cue has the sign of the offset, so there it is 0."""
+        """The modes for a head-on blow, where a lumped cue's coupling is 0, since it changes sign with the offset."""
         if not np.any(self.amplitude[:, 0] * self.amplitude[:, 1]):
             return self
         along, across = np.sqrt(np.sum(self.amplitude**2, axis=0))

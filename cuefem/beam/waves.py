@@ -1,4 +1,4 @@
-"""How fine a mesh must be: bending waves over the segments, and the modes below a frequency."""
+"""How fine a mesh must be, judged by the bending waves on each segment; and how many modes lie below a frequency."""
 
 from __future__ import annotations
 
@@ -10,9 +10,8 @@ from numpy.typing import ArrayLike
 
 from cuefem.cue import Array, Cue
 
-# A sparse eigenproblem costs by the modes wanted, a dense one by the cube of its unknowns: the two cost the same where
-# as many modes are wanted as this many unknowns go into the unknowns, cubed. Measured: 6 modes of 270 unknowns, 30 of
-# 450, 150 of 780.
+# A sparse eigenproblem costs in proportion to the modes wanted, a dense one to the cube of the unknowns. They cost the
+# same when the number of modes is (unknowns/EVEN)^3. Measured: 6 modes of 270 unknowns, 30 of 450, 150 of 780.
 EVEN = 145
 
 
@@ -58,12 +57,12 @@ def mesh_for(cue: Cue, count: int) -> tuple[int | tuple[int, ...], int]:
     """(elements, order) that hold the ``count`` lowest flexible modes to 2e-7 in frequency, the first five to 1e-9.
 
     A polynomial of degree p follows a wave of phase P over its element once p > P/2; the error then falls faster than
-    exponentially, and SPARE orders more give that accuracy. Of all orders up to HIGHEST_ORDER, with as many elements
-    in every segment as its own waves ask for, the one with the fewest unknowns is taken.
+    exponentially, and SPARE more orders give that accuracy. Every order up to HIGHEST_ORDER is tried, with as many
+    elements in each segment as its waves need, and the one with the fewest unknowns is taken.
     """
     phases = _phases(cue, count)
     orders = np.arange(SPARE + 1, HIGHEST_ORDER + 1)
-    # a single element is the cheaper the lower its order, so that of one segment's orders the least is taken
+    # where one element is enough, a lower order is cheaper; argmin finds the lowest order
     elements = np.ceil(phases / (2 * (orders - SPARE))[:, None]).astype(int)
     best = int(np.argmin(elements.sum(axis=1) * orders))
     found = tuple(map(int, elements[best]))
@@ -71,7 +70,7 @@ def mesh_for(cue: Cue, count: int) -> tuple[int | tuple[int, ...], int]:
 
 
 def even_mesh_for(cue: Cue, count: int) -> tuple[int, int]:
-    """(elements, order) of `mesh_for` with equally many elements in every segment, as cues that share a mesh have."""
+    """(elements, order) as from `mesh_for`, but with the same number of elements in every segment, for many cues."""
     longest = float(_phases(cue, count).max())
     elements = math.ceil(longest / 2 / (HIGHEST_ORDER - SPARE))
     return elements, math.ceil(longest / elements / 2) + SPARE

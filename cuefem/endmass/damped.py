@@ -1,5 +1,6 @@
-"""The drives of `cuefem.endmass.undamped` on modes that are damped or radiate: one matrix exponential a stretch of the
-drive.
+"""The drives of `cuefem.endmass.undamped` on modes that are damped or radiate, by matrix exponentials.
+
+Each smooth stretch of a drive takes one matrix exponential.
 
 z = (omega q, q') of all modes; the tip's transverse velocity is row . z. A tip that must follow a velocity V(t)
 against the ball's inertia 1/c takes the force g with row . z + c J = V, J the integral of g.

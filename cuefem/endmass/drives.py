@@ -183,12 +183,12 @@ def stick(tip: TipModes, scene: Scene) -> float:
 def stick_at_offset(tip: TipModes, scene: Scene) -> Any:
     """End mass of a tip that sticks from the first touch, at the scene's own offset, kg (handbook: Effective end mass).
 
-    A bare cue's is that of `stick` with the contact of the offset (`limit_at`), exact to first order in the lightness
-    of the cue's end. With effects at the tip or axial waves it is the lumped one with the squirt of a coupled strike
-    that never slips; the two ways differ in second order, by about 1 % at b/R 0.3. The same on either side, and head on
-    that of `stick`. Offsets may be an array, and speeds, of which a bare cue's end mass knows nothing. ValueError where
-    the squirt is that of no end mass. Cost: each different offset some milliseconds (with a tail or damping two matrix
-    exponentials).
+    For a bare cue it is that of `stick` with the contact at this offset (`limit_at`), exact to first order in the
+    lightness of the cue's end. With effects at the tip or axial waves it is the lumped end mass with the squirt of a
+    coupled strike that never slips. The two ways differ in second order, by about 1 % at b/R 0.3. Both sides of the
+    ball are alike, and head on it is `stick`. Offsets and speeds may be arrays; a bare cue's end mass does not depend
+    on the speed. ValueError if no end mass has that squirt. Cost: some milliseconds for each different offset (with a
+    tail or damping two matrix exponentials).
     """
     b, stroke = np.abs(scene.stroke.offset), scene.stroke
     if _couples(tip, scene):
@@ -203,7 +203,7 @@ def stick_at_offset(tip: TipModes, scene: Scene) -> Any:
 
 
 def _each(function: Callable[[float, float], float], offset: Any, speed: Any) -> Any:
-    """The function of every offset and speed, which broadcast; each pair is worked once."""
+    """The function's values at every offset and speed, which broadcast; each different pair is computed once."""
     b, U = np.broadcast_arrays(offset, speed)
     pairs, places = np.unique(np.stack([b.ravel(), U.ravel()]), axis=1, return_inverse=True)
     found = np.array([function(*pair) for pair in pairs.T.tolist()])
@@ -237,7 +237,7 @@ def _stuck_end_mass(tip: TipModes, scene: Scene) -> float:
 
 
 def stick_impulse(tip: TipModes, limit: StickLimit) -> Any:
-    """J of a cue without effects at the tip, kg: in closed form, or for modes that are damped or radiate in time."""
+    """J of a cue without effects at the tip, kg: in closed form if nothing is damped or radiates, else in time."""
     if tip.resistance is None:
         return limit.transverse_impulse(*flexible(tip))
     return damped.stick_impulse(tip, limit)
@@ -276,7 +276,7 @@ def small_offset_slope(tip: TipModes, scene: Scene) -> float:
 
 
 def sticking_squirt(tip: TipModes, scene: Scene) -> float:
-    """Squirt, rad, away from the side struck, of a coupled strike with endless friction, for all that is pressed."""
+    """Squirt, rad, away from the side struck, of a coupled strike with endless friction, while tip and ball press."""
     outcome = strike_modes(_gripping(scene), tip)
     # past the peak of a tip without restitution nothing presses, but endless friction would go on pulling
     p_t, p_n = np.sum([phase.impulse for phase in outcome.phases if phase.press != "rigid"], axis=0)
@@ -288,9 +288,9 @@ def _gripping(scene: Scene) -> Scene:
 
 
 def squirt_equivalent(tip: TipModes, scene: Scene) -> float:
-    """The lumped end mass whose impulse-solver squirt equals that of the coupled strike, kg; head on its limit, stick.
+    """The lumped end mass whose impulse-solver squirt is that of the coupled strike, kg; head on, its limit `stick`.
 
-    ValueError where there is none: see `equivalent_end_mass`.
+    ValueError if there is none: see `equivalent_end_mass`.
     """
     return stick(tip, scene) if scene.stroke.offset == 0 else equivalent_end_mass(strike_modes(scene, tip), scene)
 
@@ -298,7 +298,7 @@ def squirt_equivalent(tip: TipModes, scene: Scene) -> float:
 def equivalent_end_mass(outcome: Outcome, scene: Scene) -> float:
     """The lumped end mass, kg, whose impulse-solver squirt is that of a scene's outcome, off centre.
 
-    ValueError where the strike miscued: a sliding tip's squirt does not depend on the end mass.
+    ValueError if the strike miscued, since the squirt of a sliding tip does not depend on the end mass.
     """
     if outcome.regime == "miscue":
         raise ValueError(

@@ -1,4 +1,4 @@
-"""What prescribed drives across the cue do at its tip, in closed form from the modes: the mathematics of end mass.
+"""Closed forms, from the modes, for what prescribed drives across the cue do at its tip: the mathematics of end mass.
 
 The tip's transverse impulse response is h(t) = rigid + sum phi_k^2 cos(omega_k t), 1/kg. All functions take stacks of
 cues: omega and phi of shape (..., n), flexible modes only, and rigid of shape (...), the sum of the rigid motions'
@@ -17,7 +17,8 @@ from cuefem.cue import Array
 from cuefem.quantity import scalar
 from cuefem.scene import Scene
 
-# Where modes begin to fade, of the highest frequency kept: measured, 0.35 to 0.65 serve alike (studies/batch.py).
+# Modes begin to fade at this part of the highest frequency kept. Measured: 0.35 to 0.65 serve equally well
+# (studies/batch.py).
 FADED = 0.5
 
 
@@ -84,7 +85,7 @@ class StickLimit:
         return cls(c, K, restitution, contact_time, head_on_mass)
 
     def __getitem__(self, part: slice) -> StickLimit:
-        """A part of a stack; numbers stand for all."""
+        """A part of a stack; a field that is one number holds for all."""
         values = (getattr(self, one.name) for one in fields(self))
         return StickLimit(*(value[part] if np.ndim(value) else value for value in values))
 
@@ -136,7 +137,7 @@ class StickLimit:
         return found
 
     def end_masses(self, J: Any) -> Any:
-        """As `end_mass`, of a stack: nan where no end mass takes J, and `stick_reason` of the squirt says why."""
+        """As `end_mass`, but of a stack: nan where no end mass takes J; `stick_reason` of the squirt then says why."""
         rest = np.divide(self.K - 1, J, out=np.full(np.shape(J), np.nan), where=np.asarray(J) > 0) - self.c
         found = np.divide(1.0, rest, out=np.full(np.shape(rest), np.nan), where=rest > 0)
         return found if np.ndim(found) else found[()]
@@ -147,7 +148,7 @@ class StickLimit:
 
 
 def stick_reason(slope: float) -> str:
-    """Why no end mass has this squirt over phi, where none has it."""
+    """The reason why no end mass has this squirt over phi."""
     if not np.isfinite(slope):
         return "the squirt is not a number"
     if slope < 0:
@@ -158,7 +159,7 @@ def stick_reason(slope: float) -> str:
 
 
 def fade(x: Array) -> Array:
-    """What of a vibration is kept, at ``x`` times the highest frequency: 1 up to `FADED`, 0 from 1 on.
+    """The part of a vibration that is kept at ``x`` times the highest frequency: 1 up to `FADED`, 0 from 1 on.
 
     Far above the pulse's own frequencies sin(W (T - s)) leaves V(T)/W, the beam giving way, and a ringing of
     cos(W T)/W. A sum over modes that ends sharply keeps of the ringing what its last modes chance to have; one that
@@ -168,7 +169,7 @@ def fade(x: Array) -> Array:
 
 
 def _beside(value: Any) -> Any:
-    """A number, or a stack as it meets stacks of modes: (...) as (..., 1)."""
+    """A number as it is, or a stack (...) as (..., 1), so that it broadcasts against stacks of modes."""
     return np.asarray(value)[..., None] if np.ndim(value) else value
 
 
@@ -183,7 +184,8 @@ def mobility(omega: Array, phi: Array, still: Any) -> tuple[Array, Array, Any]:
     v = phi * omega
     diagonal = omega[..., None] ** 2 * np.eye(omega.shape[-1])
     squares, vectors = np.linalg.eigh(diagonal - v[..., :, None] * v[..., None, :] / total[..., None])
-    W = np.sqrt(np.maximum(squares, 0))
+    # of a clamped cue the lowest is 0: a small one gives its limit, where rounding below 0 would lose the term
+    W = np.sqrt(np.maximum(squares, 1e-12 * omega[..., :1] ** 2))
     weights = (np.einsum("...i,...ij->...j", v, vectors) / total) ** 2
     return W, np.divide(weights, W, out=np.zeros_like(W), where=W > 0), 1 / total[..., 0]
 

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 
-from cuefem import Cue, LumpedCue, Resolution, Scene, end_mass, modes
+from cuefem import Cue, LumpedCue, Resolution, Scene, Support, end_mass, modes
 from cuefem.beam.tip import TipModes
 from cuefem.endmass.drives import end_mass_spread, flexible, force, stick, velocity
-from cuefem.endmass.undamped import _response, mobility
+from cuefem.endmass.undamped import _response, mobility, smooth_start_impulse
 from cuefem.tip_modes import default_resolution, tip_modes_of
 from tests.helpers.cues import cone, kim, rod, scaled, scene
 from tests.helpers.orders import assert_order
@@ -278,3 +278,13 @@ def test_a_lumped_cue_answers_its_own(drive: str) -> None:
     found = Scene(LumpedCue(0.54, 0.0123))
     assert end_mass(found, drive) == 0.0123  # type: ignore[arg-type]
     assert end_mass_spread(found, drive) == (0.0123, 0.0123)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("modes", [8, 12, 20, 31])
+def test_a_clamped_cue_is_the_limit_of_a_cue_that_hardly_moves(modes: int) -> None:
+    """Without rigid motion the held tip has a frequency of 0, which rounding may push below it."""
+    clamp = Support(0.7, math.inf, math.inf)
+    omega, phi, rigid = flexible(tip_modes_of(replace(scene(kim(), 1.3e-3), effects=(clamp,)), Resolution(3, 8, modes)))
+    assert rigid == 0
+    exact = smooth_start_impulse(omega, phi, 1e-10, T=1.3e-3)
+    assert smooth_start_impulse(omega, phi, rigid, T=1.3e-3) == pytest.approx(exact, rel=1e-8)
