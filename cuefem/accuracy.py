@@ -13,16 +13,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cuefem.beam import assemble
 from cuefem.beam.modes import Modes, solve
+from cuefem.beam.system import assemble
 from cuefem.beam.tail import Deflect, flexibility, tail
 from cuefem.beam.tip import TipModes
 from cuefem.beam.waves import mesh_for, modes_below
 from cuefem.contact.linear import APART
 from cuefem.contact.strike import strike, strike_modes
-from cuefem.cue import Array, Cue, LumpedCue
+from cuefem.cue import Array
 from cuefem.effects import Elevation, SecondHit
-from cuefem.endmass.drives import Drive, end_mass, formula_of
+from cuefem.endmass.drives import end_mass, formula_of
 from cuefem.quantity import Quantity, scalar
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import MOST, tip_modes_from, turning
@@ -65,18 +65,44 @@ class Rung(NamedTuple):
 
 
 def resolve(scene: Scene, rtol: float) -> Outcome:
-    """Outcome of the coupled strike to relative accuracy ``rtol``, in (0, 1), at the least resolution that holds it.
+    """Outcome of the coupled strike to a relative accuracy, at the least resolution that reaches it.
 
-    Outcome.error is the estimate of the largest relative error of squirt, ball speed and spin; how well it holds over
-    random scenes with every effect is measured in studies/resolve_errors.md. Squirt and spin are taken relative to
-    themselves, squirt to no less than 0.01 sin(phi) rad (where it passes through zero). An accuracy that `MOST` modes
-    do not reach gives the best found: its error is above rtol then. A contact that nearly parts and goes on has the
-    error of parting there, one that parts and nearly goes on that of going on (but not of a dead tip, nor of a raised
-    cue). A lumped cue is exact but for rounding. Cost: cubic in the modes; all rungs together take about twice the
-    last.
+    Parameters
+    ----------
+    scene
+        As `cuefem.strike` takes it. A lumped cue is exact but for rounding.
+    rtol
+        The accuracy wanted, in (0, 1): the largest relative error of squirt, ball speed and spin.
+
+    Returns
+    -------
+    Outcome
+        ``.error`` is the estimated error. If even 400 modes do not reach ``rtol``, the best outcome found is returned,
+        and its error is above ``rtol``.
+
+    Raises
+    ------
+    ValueError
+        If rtol is out of bounds.
+
+    Notes
+    -----
+    Squirt is taken relative to itself, but to no less than 0.01 sin(phi) rad, since it may pass through zero. A contact
+    that nearly parts and goes on has the error of parting there; one that parts and nearly goes on has the error of
+    going on (except for a dead tip and a raised cue). How well the estimate holds over random scenes with every effect
+    is measured in studies/resolve_errors.md. Cost: cubic in the modes; all steps together take about twice the last.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> cue = cf.Cue((cf.Segment(0.7, 0.012, 0.021, wood),), body_mass=0.43)
+    >>> scene = cf.Scene(cue, tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(offset=0.3))
+    >>> cf.resolve(scene, rtol=1e-2).error < 1e-2
+    True
     """
     rtol = RTOL.check("resolve rtol", rtol)
-    if isinstance(scene.cue, LumpedCue):
+    if scene.lumped is not None:
         return replace(strike(scene), error=ROUNDING)
     found = None
     for rung in ladder(scene):
@@ -103,10 +129,37 @@ def ladder(scene: Scene) -> Iterator[Rung]:
         yield Rung(rung.at, outcome)
 
 
-def resolve_end_mass(scene: Scene, drive: Drive = "stick", rtol: float = 1e-4) -> tuple[float, float]:
-    """(end mass, kg, its estimated relative error) to relative accuracy ``rtol``; see `cuefem.end_mass`, `resolve`."""
+def resolve_end_mass(scene: Scene, drive: str = "stick", rtol: float = 1e-4) -> tuple[float, float]:
+    """Effective end mass to a relative accuracy, at the least resolution that reaches it.
+
+    Parameters
+    ----------
+    scene, drive
+        As `cuefem.end_mass` takes them.
+    rtol
+        The relative accuracy wanted, in (0, 1).
+
+    Returns
+    -------
+    (float, float)
+        The end mass, kg, and its estimated relative error, which is above ``rtol`` if even 400 modes do not reach it.
+
+    Raises
+    ------
+    ValueError
+        If rtol is out of bounds, or the definition is unknown or has no answer for this scene.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> cue = cf.Cue((cf.Segment(0.7, 0.012, 0.021, wood),), body_mass=0.43)
+    >>> felt, error = cf.resolve_end_mass(cf.Scene(cue, tip=cf.Tip(contact_time=1e-3)), "stick", rtol=1e-2)
+    >>> round(1e3 * felt, 1), error < 1e-2  # g
+    (4.8, True)
+    """
     rtol, formula = RTOL.check("resolve_end_mass rtol", rtol), formula_of(drive)
-    if isinstance(scene.cue, LumpedCue):
+    if scene.lumped is not None:
         return float(end_mass(scene, drive)), ROUNDING
     found = None
     for found in end_mass_ladder(scene, formula):
@@ -242,10 +295,9 @@ class _Tips(NamedTuple):
 
 def _tips(scene: Scene) -> Iterator[_Tips]:
     """Rungs of the ladder: each group of them on one mesh, with one eigenproblem and one factorisation."""
-    assert isinstance(scene.cue, Cue)
     for group in _groups(scene):
-        elements, order = mesh_for(scene.cue, group[-1])
-        system = assemble(scene.cue, elements=elements, order=order, effects=scene.cue_effects)
+        elements, order = mesh_for(scene.shaft, group[-1])
+        system = assemble(scene.shaft, elements=elements, order=order, effects=scene.cue_effects)
         whole, deflect = solve(system, group[-1]), flexibility(system)
         for count in group:
             yield _Tips(Resolution(elements, order, count), scene, whole, deflect)
@@ -253,8 +305,7 @@ def _tips(scene: Scene) -> Iterator[_Tips]:
 
 def _groups(scene: Scene) -> list[list[int]]:
     """Numbers of modes of the rungs, those of one mesh together: the first up to `JUDGED`, then each by itself."""
-    assert isinstance(scene.cue, Cue)
-    first = min(max(FIRST, modes_below(scene.cue, 2 * np.pi * 3 / scene.contact_time)), MOST // 4)
+    first = min(max(FIRST, modes_below(scene.shaft, 2 * np.pi * 3 / scene.contact_time)), MOST // 4)
     counts = [round(first * math.pow(RATIO, k)) for k in range(20)]
     counts = [*(count for count in counts if count < MOST / RATIO**0.5), MOST]
     return [counts[: JUDGED + 1], *([count] for count in counts[JUDGED + 1 :])]

@@ -1,4 +1,4 @@
-"""Geometry of a cue, from its drawing to the section properties of a beam; and the lumped cues of the papers."""
+"""Cues: the geometry of a drawing and the section properties that a beam takes from it; and the papers' lumped cues."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import takewhile
-from typing import Annotated, NamedTuple
+from typing import Annotated, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,18 +15,41 @@ from cuefem.quantity import DIAMETER, LENGTH, MOST_SEGMENTS, Number, Quantity, c
 
 Array = NDArray[np.float64]
 
-# What is softer than this along the cue, Pa, at its tip is leather: leathers have 0.05 to 0.2 GPa, the softest plastics
-# of ferrules 1.2, woods ten.
+# A material at the tip with a smaller E than this, Pa, counts as leather: leathers have 0.05 to 0.2 GPa, the softest
+# plastics of ferrules 1.2 GPa, woods about 10 GPa.
 SOFT = 1e9
 
 
 @dataclass(frozen=True)
 class Material:
-    """A linear elastic material, isotropic or wood along the grain.
+    """A linear elastic material: isotropic, or wood along the grain.
 
-    E: Young's modulus along the cue, Pa. G: shear modulus in planes that hold the cue's axis, Pa, free of E.
-    rho: density, kg/m3. loss: loss factor of bending, a pure number. nu: Poisson's ratio of a pull along the axis,
-    used for the shear coefficient alone (`shear_coefficient`), where 2 nu G/E must stay below 1.
+    Parameters
+    ----------
+    E
+        Young's modulus along the cue, Pa.
+    G
+        Shear modulus in planes that contain the cue's axis, Pa. It need not follow from E and nu; wood's does not.
+    rho
+        Density, kg/m3.
+    loss
+        Loss factor of bending. It counts only in scenes with `StructuralDamping`.
+    nu
+        Poisson's ratio of a pull along the axis. Only the shear coefficient uses it.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of bounds, or if 2 nu G/E is not below 1.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> maple = cf.Material(E=12.6e9, G=1.1e9, rho=700.0)
+    >>> cf.Material(E=12.6e9, G=-1.0, rho=700.0)
+    Traceback (most recent call last):
+    ...
+    ValueError: Material.G must be in (0, inf) Pa; got -1.0
     """
 
     E: Annotated[float, Quantity("Pa", "(0, inf)")]
@@ -43,7 +66,7 @@ class Material:
 
     @property
     def effective_poisson_ratio(self) -> float:
-        """The nu_e of physics.md section 4: nu_e/(1 + nu_e) = 2 nu G/E; equals nu where the material is isotropic."""
+        """The nu_e with nu_e/(1 + nu_e) = 2 nu G/E (physics.md section 4); nu itself if the material is isotropic."""
         ratio = 2 * self.nu * self.G / self.E
         return ratio / (1 - ratio)
 
@@ -54,14 +77,14 @@ def shear_coefficient(nu: ArrayLike, bore_ratio: ArrayLike = 0.0) -> Array:
     nu: effective Poisson ratio; bore_ratio: bore over outer diameter, in [0, 1). Both broadcast.
     Source: Hutchinson, J. Appl. Mech. 68 (2001) 87, circle and hollow circle.
     """
-    nu, c = np.asarray(nu), np.asarray(bore_ratio) ** 2  # complex ones are derivatives by a complex step
+    nu, c = np.asarray(nu), np.asarray(bore_ratio) ** 2  # they may be complex: derivatives take a complex step
     above = 6 * (1 + c) ** 2 * (1 + nu) ** 2
     below = 7 + 34 * c + 7 * c**2 + nu * (12 + 48 * c + 12 * c**2) + nu**2 * (4 + 16 * c + 4 * c**2)
     return np.asarray(above / below)
 
 
 class Section(NamedTuple):
-    """Section properties at the points asked for, each an array of their shape.
+    """Section properties at some points, each an array of the points' shape.
 
     EA: axial stiffness, N. EI: bending stiffness, N m2. kGA: shear stiffness kappa G A, N.
     rhoA: mass per length, kg/m. rhoI: rotary inertia per length, kg m.
@@ -76,11 +99,38 @@ class Section(NamedTuple):
 
 @dataclass(frozen=True)
 class Segment:
-    """A conical piece of a cue, solid or bored, the bore empty or filled with a core of another material.
+    """A conical piece of a cue: solid, hollow, or with a core of another material in its bore.
 
-    Diameters in m, tip end and butt end, linear between. kappa: shear coefficient of the whole section, core included;
-    left out, `shear_coefficient` of the shell plus that of the core. A ferrule over a tenon is a segment of ferrule
-    material whose core is wood.
+    Diameters run linearly from the tip end to the butt end.
+
+    Parameters
+    ----------
+    length
+        m.
+    tip_diameter, butt_diameter
+        Outer diameters at the two ends, m.
+    material
+        Of the shell, or of the whole piece if it has no bore.
+    tip_bore, butt_bore
+        Diameters of the bore at the two ends, m; each smaller than the outer diameter.
+    core
+        Material that fills the bore; by default the bore is empty. A ferrule over a tenon is a segment of ferrule
+        material with a core of wood.
+    kappa
+        Timoshenko's shear coefficient of the whole section. By default shell and core each have that of their shape
+        and Poisson's ratio (Hutchinson 2001).
+
+    Raises
+    ------
+    ValueError
+        If a number is out of bounds, or if a bore is not smaller than its outer diameter.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> shaft = cf.Segment(0.7, 0.012, 0.021, cf.Material(E=12.6e9, G=0.84e9, rho=700.0))
+    >>> round(shaft.mass, 4)
+    0.1074
     """
 
     length: Annotated[float, LENGTH]
@@ -118,7 +168,7 @@ class Segment:
 
     @cached_property
     def constants(self) -> Array:
-        """The piece as one row of numbers, in the order of `SegmentRows`; the rows of a cue are evaluated together."""
+        """The piece as one row of numbers in the order of `SegmentRows`, so that many pieces are evaluated together."""
         shell, core = self.material, self.core
         inner = (core.E, core.G, core.rho, core.effective_poisson_ratio) if core else (0.0, 0.0, 0.0, 0.0)
         return np.array(
@@ -136,7 +186,7 @@ class Segment:
 
 
 class SegmentRows(NamedTuple):
-    """A segment as numbers, or many as arrays; nu is the effective Poisson ratio, kappa nan where not given."""
+    """The numbers of one segment, or arrays of many; nu is the effective Poisson ratio, kappa is nan if not given."""
 
     length: Array
     tip_diameter: Array
@@ -155,7 +205,7 @@ class SegmentRows(NamedTuple):
 
 
 def section_properties(c: SegmentRows, s: Array) -> Section:
-    """Section properties at distances ``s`` from the tip end of the segments ``c`` (broadcasting): the one formula."""
+    """Section properties at distances ``s``, m, from the tip ends of the segments ``c``; both broadcast."""
     t = s / c.length
     outer = c.tip_diameter + (c.butt_diameter - c.tip_diameter) * t
     bore = c.tip_bore + (c.butt_bore - c.tip_bore) * t
@@ -190,10 +240,30 @@ def _shear_coefficients(c: SegmentRows, bore_ratio: Array) -> tuple[Array, Array
 
 @dataclass(frozen=True)
 class Cue:
-    """A cue as segments from tip to butt, and the rest of its mass.
+    """A cue drawn as segments from tip to butt, and the mass of the rest.
 
-    body_mass: kg of the cue that is not modelled; it moves along the axis only ([Kim] sec. 4), so it is felt by a
-    head-on blow and not by bending.
+    Parameters
+    ----------
+    segments
+        `Segment`s from the tip on.
+    body_mass
+        Mass of the cue that is not drawn, kg. It moves along the cue's axis only ([Kim] sec. 4): a head-on blow feels
+        it, bending does not.
+
+    Raises
+    ------
+    TypeError
+        If the segments are not a sequence of `Segment`.
+    ValueError
+        If there is no segment, or more than 2000.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> cue = cf.Cue((cf.Segment(0.7, 0.012, 0.021, wood),), body_mass=0.43)
+    >>> cue.length, round(cue.shaft_mass, 4), round(cue.mass, 4)
+    (0.7, 0.1074, 0.5374)
     """
 
     segments: tuple[Segment, ...]
@@ -223,7 +293,7 @@ class Cue:
 
     @property
     def leather(self) -> float:
-        """Length of the leather, m: of the first segments whose E is below `SOFT`, 0 where none behind is stiffer."""
+        """Length of the leather tip, m: of the first segments with E below `SOFT`; 0 if the whole cue is that soft."""
         soft = takewhile(lambda segment: segment.material.E < SOFT, self.segments)
         count = sum(1 for _ in soft)
         return float(self.nodes[count]) if count < len(self.segments) else 0.0
@@ -245,7 +315,7 @@ class Cue:
         return math.fsum(moments) / self.shaft_mass
 
     def section(self, x: ArrayLike) -> Section:
-        """Section properties at positions ``x`` in [0, length] m from the tip; at a jump those of the butt side."""
+        """Section properties at ``x`` in [0, length] m from the tip; where two segments meet, those of the rear one."""
         x = np.asarray(x, float)
         if not np.all((x >= 0) & (x <= self.length)):
             raise ValueError(f"Cue.section takes positions in [0, {self.length}] m; got {x}")
@@ -263,12 +333,38 @@ class Cue:
 
 @dataclass(frozen=True)
 class LumpedCue:
-    """A cue as two numbers (and, for a domed tip, three): its inverse mass at the tip.
+    """A cue as two numbers, or three for a domed tip: its inverse mass at the tip.
 
-    In the cue's frame (along u, across w) the tip's inverse mass is [[1/mass, coupling], [coupling, 1/end_mass]], 1/kg.
-    mass: inertia felt along the axis, kg. end_mass: inertia felt across it, the effective end mass m_e (never the m_c
-    of [Kim]: see `two_part`), kg. |coupling| < 1/sqrt(mass end_mass). Fields may be arrays that broadcast.
+    Parameters
+    ----------
+    mass
+        Inertia that the ball feels along the cue's axis, kg.
+    end_mass
+        Inertia that the ball feels across it, kg: the effective end mass m_e. It is not the m_c of [Kim], which is four
+        times as large: see `two_part`.
+    coupling
+        Velocity of the tip across the cue per unit of impulse along it, 1/kg; between -1 and 1 over
+        sqrt(mass end_mass). It is meant for positive offsets, and changes sign with the offset.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of bounds.
+
+    Notes
+    -----
+    Along u and across w the tip's inverse mass is [[1/mass, coupling], [coupling, 1/end_mass]]. Fields may be arrays,
+    which broadcast, for `cuefem.impulse`; `cuefem.strike` takes single numbers.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> cf.LumpedCue.two_part(mass=0.54, cue_end_mass=0.012).end_mass  # [Kim]'s cue end of 12 g
+    0.003
     """
+
+    # No segments: this is how code that draws or describes a cue tells a lumped one from a finite-element one.
+    segments: ClassVar[tuple[Segment, ...]] = ()
 
     mass: Annotated[Number, Quantity("kg", "(0, inf)")]
     end_mass: Annotated[Number, Quantity("kg", "(0, inf)")]
@@ -288,7 +384,7 @@ class LumpedCue:
 
     @classmethod
     def two_part(cls, mass: Number, cue_end_mass: Number, nu_c: Number = 1 / 3) -> LumpedCue:
-        """[Kim] sec. 4: a body of the cue's whole ``mass`` along the axis, a cue end of mass m_c across it.
+        """[Kim] sec. 4: the whole ``mass`` moves along the axis, and only a cue end of mass m_c across it.
 
         cue_end_mass: [Kim]'s m_c, kg; nu_c: inertia factor of the cue end. The tip feels m_e = m_c nu_c/(1 + nu_c).
         """

@@ -1,4 +1,4 @@
-"""What is there, and which physics acts: ball, tip, stroke, scene; how finely it is computed; what comes out."""
+"""A scene (ball, tip, stroke, cue and effects), how finely it is computed, and the outcome of its strike."""
 
 from __future__ import annotations
 
@@ -17,7 +17,31 @@ DEFAULT_CONTACT_TIME = 2e-3  # s, [Kim] sec. 4
 
 @dataclass(frozen=True)
 class Ball:
-    """A billiard ball: mass, kg; radius, m; inertia factor nu of I = nu M R^2 (2/5 for a solid ball)."""
+    """A billiard ball; by default a carom ball.
+
+    Parameters
+    ----------
+    mass
+        M, kg.
+    radius
+        R, m.
+    inertia
+        The factor nu of the moment of inertia nu M R^2; 2/5 for a solid ball.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of bounds.
+
+    Notes
+    -----
+    Fields may be arrays, which broadcast, for `cuefem.impulse`.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> pool = cf.Ball(mass=0.170, radius=0.028575)
+    """
 
     mass: Annotated[Number, Quantity("kg", "(0, inf)")] = 0.210
     radius: Annotated[Number, Quantity("m", "(0, inf)")] = 0.03075
@@ -31,10 +55,31 @@ class Ball:
 class Tip:
     """The leather between cue and ball.
 
-    restitution: energetic coefficient of restitution e ([Stronge]); with a vibrating cue e = 0 is not the limit of
-    small e: a spring that gives nothing back parts at its greatest compression, a dead tip presses on. friction:
-    Coulomb mu between tip and ball, inf for a tip that never slips. contact_time: of a head-on blow, s; stiffness: of
-    the tip while it is loaded, N/m. Give one of the two; neither means 2 ms, both is an error.
+    Parameters
+    ----------
+    restitution
+        Energetic coefficient of restitution e ([Stronge]), in [0, 1].
+    friction
+        Coulomb's mu between tip and ball; inf for a tip that never slips.
+    contact_time
+        Duration of a head-on blow, s. By default 2 ms ([Kim] sec. 4), unless a stiffness is given.
+    stiffness
+        Stiffness of the tip while it is loaded, N/m, instead of a contact time: each fixes the other.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of bounds, or if both contact_time and stiffness are given.
+
+    Notes
+    -----
+    With a vibrating cue, e = 0 is not the limit of small e: a spring that gives nothing back parts at its greatest
+    compression, while a dead tip presses on.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> tip = cf.Tip(restitution=0.75, friction=0.6, contact_time=1e-3)
     """
 
     restitution: Annotated[Number, Quantity("", "[0, 1]")] = 0.75
@@ -53,7 +98,27 @@ class Tip:
 
 @dataclass(frozen=True)
 class Stroke:
-    """The cue at first touch: its speed along its axis, m/s, and the offset b/R of the contact, in (-1, 1)."""
+    """The cue at first touch.
+
+    Parameters
+    ----------
+    speed
+        Speed of the cue along its axis, m/s.
+    offset
+        Where it hits: the distance b of the contact from the ball's centre line over the ball's radius R, in (-1, 1).
+
+    Raises
+    ------
+    ValueError
+        If a number is out of bounds.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> stroke = cf.Stroke(speed=2.0, offset=0.3)
+    >>> round(float(stroke.angle), 4)  # phi = asin(b/R), rad
+    0.3047
+    """
 
     speed: Annotated[Number, Quantity("m/s", "(0, inf)")] = 1.0
     offset: Annotated[Number, Quantity("", "(-1, 1)")] = 0.0
@@ -69,7 +134,33 @@ class Stroke:
 
 @dataclass(frozen=True)
 class Scene:
-    """What is there (cue, ball, tip), how it is struck, and which physics acts beyond the base model."""
+    """A stroke: cue, ball and tip, how the ball is struck, and which effects act beyond the base model.
+
+    Parameters
+    ----------
+    cue
+        A `Cue` of segments, which vibrates, or a `LumpedCue`.
+    ball, tip, stroke
+        By default a carom ball, a leather tip with a contact time of 2 ms, and a head-on blow at 1 m/s.
+    effects
+        Effects such as `TipDome` or `PointMass`, in any order. What is not listed costs nothing.
+
+    Raises
+    ------
+    TypeError
+        If a field is of another kind.
+    ValueError
+        If an effect does not go with the cue or with another effect.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> cue = cf.Cue((cf.Segment(0.7, 0.012, 0.021, wood),), body_mass=0.43)
+    >>> scene = cf.Scene(cue, tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(offset=0.3), effects=[cf.TipDome(0.01)])
+    >>> round(scene.stiffness)  # of the tip, N/m, from the contact time
+    1140968
+    """
 
     cue: Cue | LumpedCue
     ball: Ball = field(default_factory=Ball)
@@ -88,18 +179,30 @@ class Scene:
         check_effects(self.cue, self.effects)
 
     @property
+    def shaft(self) -> Cue:
+        """The finite-element cue, for what needs its modes or shape; ValueError for a lumped cue, which has none."""
+        if isinstance(self.cue, LumpedCue):
+            raise ValueError("Scene.cue must be a Cue of segments: its modes or its shape are needed; got a LumpedCue")
+        return self.cue
+
+    @property
+    def lumped(self) -> LumpedCue | None:
+        """The lumped cue, for what takes its numbers as they are; None if the cue is of finite elements."""
+        return self.cue if isinstance(self.cue, LumpedCue) else None
+
+    @property
     def cue_effects(self) -> tuple[CueEffect, ...]:
-        """Those of the effects that act on the cue, in an order of their own: sums do not depend on the list's."""
+        """The effects that act on the cue, sorted, so that sums do not depend on the order in which they are listed."""
         return tuple(sorted((effect for effect in self.effects if isinstance(effect, CueEffect)), key=repr))
 
     @property
     def axial_mass(self) -> Any:
-        """Mass m_a that a head-on blow feels, kg: the cue's and what effects add."""
+        """Mass m_a that a head-on blow feels, kg: the cue's mass and the mass that effects add."""
         return self.cue.mass + math.fsum(effect.axial_mass for effect in self.effects)
 
     @property
     def dome_radius(self) -> float:
-        """Radius of the tip's dome, m: the sum over all effects, 0 where none is modelled."""
+        """Radius of the tip's dome, m: the sum over all effects, 0 if none adds to it."""
         return math.fsum(effect.dome_radius for effect in self.effects)
 
     @property
@@ -126,9 +229,26 @@ class Scene:
 class Resolution:
     """How finely a finite-element cue is computed.
 
-    elements: of each smooth piece of the cue; or a tuple, one number a segment. order: polynomial degree p of the
-    rotation (the deflection has p + 1). modes: flexible bending modes kept; rigid ones always are. All whole numbers
-    >= 1.
+    Parameters
+    ----------
+    elements
+        Number of elements in each smooth piece of the cue; or a tuple with one number for each segment.
+    order
+        Polynomial degree p of the rotation; the deflection has degree p + 1.
+    modes
+        Number of flexible bending modes kept. The rigid ones are always kept.
+
+    Raises
+    ------
+    TypeError
+        If a number is not whole.
+    ValueError
+        If a number is below 1.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> fine = cf.Resolution(elements=4, order=16, modes=60)
     """
 
     elements: int | tuple[int, ...]

@@ -1,25 +1,29 @@
-"""The resolution meant where none is given, and a scene's tip modes at a resolution.
+"""From a scene to its tip modes, the one way for every cue; and the default resolution.
 
-Where a Resolution is given, the modes asked for are summed plainly. Where none is, modes are kept by frequency and
-ended by a tail (`cuefem.beam.tail`), without which no bound on their frequency holds every cue to half a percent.
+The tip modes are all that an impact sees of a cue. A lumped cue is two of them, of zero frequency. A finite-element cue
+is solved: where a Resolution is given, the modes asked for are summed plainly. By default modes are kept by frequency
+and ended by a tail (`cuefem.beam.tail`), without which no bound on their frequency holds every cue to half a percent.
+scikit-fem is loaded when a finite-element cue is solved, not before.
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import chain
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cuefem.beam import assemble
-from cuefem.beam.modes import Modes, solve
-from cuefem.beam.tail import tail
-from cuefem.beam.tip import TipModes, tip_modes
+from cuefem.beam.tip import TipModes, lumped_tip_modes, tip_modes
 from cuefem.beam.waves import mesh_for, modes_below
-from cuefem.cue import Cue
 from cuefem.effects import TipEffect
 from cuefem.quantity import CONTACT_TIME
 from cuefem.scene import Resolution, Scene
+
+if TYPE_CHECKING:
+    from cuefem.beam.modes import Modes
 
 # Modes are kept up to this many periods in a contact, with a tail; a plain sum wants more, the carbon cue's is 1 % off
 # even with a hundred.
@@ -34,34 +38,84 @@ MOST_KEPT, MOST = 160, 400
 
 
 def default_resolution(scene: Scene, *, periods: float = PERIODS_KEPT, least: int = LEAST) -> Resolution:
-    """The resolution meant where none is given: modes kept by frequency, up to ``periods`` / contact time, at least
-    ``least``."""
-    assert isinstance(scene.cue, Cue)
-    if not CONTACT_TIME.holds(scene.contact_time):  # that of a stiffness: one that is given is bounded already
+    """The default resolution: modes up to the frequency ``periods`` / contact time, and at least ``least`` of them."""
+    cue = scene.shaft
+    if not CONTACT_TIME.holds(scene.contact_time):  # one made by a stiffness; a contact time given is bounded already
         got = f"{scene.tip.stiffness:.6g} N/m, {scene.contact_time:.3g} s"
         raise ValueError(f"Tip.stiffness must make a head-on contact time in {CONTACT_TIME.bounds}; got {got}")
-    count = min(max(modes_below(scene.cue, 2 * np.pi * periods / scene.contact_time), least), MOST_KEPT)
-    elements, order = mesh_for(scene.cue, count)
+    count = min(max(modes_below(cue, 2 * np.pi * periods / scene.contact_time), least), MOST_KEPT)
+    elements, order = mesh_for(cue, count)
     return Resolution(elements, order, count)
 
 
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """A scene and its modes, each eigenproblem solved when it is first asked for, and once.
+
+    Nothing here depends on the stroke: one solved scene serves strikes at every speed and offset. at: the resolution of
+    all modes; by default that of `default_resolution`, ended by a tail.
+    """
+
+    scene: Scene
+    at: Resolution | None = None
+    _kept: dict[tuple[Resolution, bool], Modes] = field(default_factory=dict, init=False, repr=False)
+
+    @property
+    def modes(self) -> Modes:
+        """Bending modes that a strike takes; ValueError for a lumped cue, which has none."""
+        return self._modes(LEAST)
+
+    @cached_property
+    def tip(self) -> TipModes:
+        """Tip modes that a strike takes."""
+        return self.tip_modes(LEAST)
+
+    @cached_property
+    def tip_stuck(self) -> TipModes:
+        """Tip modes that an end mass takes: those of a strike, but at least `LEAST_STUCK` of them by default."""
+        return self.tip_modes(LEAST_STUCK)
+
+    @cached_property
+    def tip_plain(self) -> TipModes:
+        """Tip modes summed plainly, without a tail: twice the frequencies of a strike's by default."""
+        if self.at is not None or self.scene.lumped is not None:
+            return self.tip
+        plain = default_resolution(self.scene, periods=PLAIN_PERIODS)
+        return tip_modes_from(self._solved(plain, ended=False), self.scene)
+
+    def tip_modes(self, least: int) -> TipModes:
+        """Tip modes of any cue, with the scene's effects: by default at least ``least`` bending modes."""
+        if self.scene.lumped is not None:
+            return lumped_tip_modes(self.scene.lumped)
+        return tip_modes_from(self._modes(least), self.scene)
+
+    def _modes(self, least: int) -> Modes:
+        if self.at is not None:
+            return self._solved(self.at, ended=False)
+        return self._solved(default_resolution(self.scene, least=least), ended=True)
+
+    def _solved(self, at: Resolution, *, ended: bool) -> Modes:
+        """Bending modes at a resolution, plain or ended by a tail; each solved once."""
+        if (at, ended) not in self._kept:
+            from cuefem.beam.modes import solve
+            from cuefem.beam.system import assemble
+            from cuefem.beam.tail import tail
+
+            if ended:
+                found = tail(self._solved(at, ended=False), turning=turning(self.scene))
+            else:
+                effects = self.scene.cue_effects
+                system = assemble(self.scene.shaft, elements=at.elements, order=at.order, effects=effects)
+                # a support makes flexible modes of rigid ones: with it as many modes in all, so that its limits are
+                # continuous
+                found = solve(system, at.modes + 2 - system.rigid.shape[1])
+            self._kept[at, ended] = found
+        return self._kept[at, ended]
+
+
 def tip_modes_of(scene: Scene, at: Resolution | None = None, *, least: int = LEAST) -> TipModes:
-    """Tip modes of the scene's finite-element cue, with its effects; with a tail where no resolution is given."""
-    return tip_modes_from(modes_of(scene, at, least=least), scene)
-
-
-def modes_of(scene: Scene, at: Resolution | None = None, *, least: int = LEAST) -> Modes:
-    """Bending modes that a strike of the scene's finite-element cue takes; with a tail where no resolution is given."""
-    if at is not None:
-        return _kept(scene, at)
-    return tail(_kept(scene, default_resolution(scene, least=least)), turning=turning(scene))
-
-
-def _kept(scene: Scene, at: Resolution) -> Modes:
-    assert isinstance(scene.cue, Cue)
-    system = assemble(scene.cue, elements=at.elements, order=at.order, effects=scene.cue_effects)
-    # a support makes flexible modes of rigid ones: with it as many modes in all, so that its limits are continuous
-    return solve(system, at.modes + 2 - system.rigid.shape[1])
+    """Tip modes of any scene's cue, with its effects; ended by a tail where no resolution is given."""
+    return Solved(scene, at).tip_modes(least)
 
 
 def turning(scene: Scene) -> bool:
@@ -71,12 +125,11 @@ def turning(scene: Scene) -> bool:
 
 def tip_modes_from(found: Modes, scene: Scene) -> TipModes:
     """Tip modes of the scene's finite-element cue from its bending modes, with what its effects add to them."""
-    assert isinstance(scene.cue, Cue)
-    effects = scene.cue_effects
+    cue, effects = scene.shaft, scene.cue_effects
     tip = tip_modes(found, scene.axial_mass)
-    along = tuple(chain.from_iterable(effect.vibrations(found, scene.cue, effects) for effect in effects))
+    along = tuple(chain.from_iterable(effect.vibrations(found, cue, effects) for effect in effects))
     for family in along:
         tip = tip.beside(family.omega, family.along, family.radiation)
     for effect in effects:
-        tip = effect.damp(tip, scene.cue, (found, *along))
+        tip = effect.damp(tip, cue, (found, *along))
     return tip.ascending() if along else tip

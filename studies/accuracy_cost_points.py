@@ -30,8 +30,8 @@ from cuefem import (
     strike,
 )
 from cuefem.accuracy import relative_error
-from cuefem.beam import assemble
 from cuefem.beam.modes import Modes, solve
+from cuefem.beam.system import assemble
 from cuefem.beam.tail import tail
 from cuefem.beam.tip import tip_modes
 from cuefem.beam.waves import mesh_for

@@ -18,8 +18,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cuefem import Cue, Material, Resolution, Segment
-from cuefem.beam import assemble
 from cuefem.beam.modes import Modes, solve
+from cuefem.beam.system import assemble
 from cuefem.beam.tail import flexibility, tail
 from cuefem.beam.waves import mesh_for
 from cuefem.design.batch import CueBatch, batch_frequencies, batch_stick

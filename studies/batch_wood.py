@@ -18,8 +18,8 @@ from itertools import pairwise
 import numpy as np
 
 from cuefem import Cue, Material, Resolution, Scene, Segment
-from cuefem.beam import assemble
 from cuefem.beam.modes import Modes, solve
+from cuefem.beam.system import assemble
 from cuefem.beam.tail import tail
 from cuefem.beam.waves import mesh_for
 from cuefem.design.batch import CueBatch, batch_modes, stick_of

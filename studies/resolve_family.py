@@ -31,8 +31,8 @@ from cuefem import (
     TipDome,
     TipShear,
 )
-from cuefem.beam import assemble
 from cuefem.beam.modes import solve
+from cuefem.beam.system import assemble
 from cuefem.beam.tail import tail
 from cuefem.beam.tip import TipModes
 from cuefem.beam.waves import mesh_for

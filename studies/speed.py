@@ -23,7 +23,7 @@ import numpy as np
 import scipy.linalg as la
 
 from cuefem import Resolution, end_mass, modes, resolve, strike
-from cuefem.beam import assemble
+from cuefem.beam.system import assemble
 from cuefem.beam.waves import mesh_for
 from cuefem.contact.strike import strike_modes
 from cuefem.tip_modes import tip_modes_of

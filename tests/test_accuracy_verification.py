@@ -24,8 +24,8 @@ from cuefem import (
     resolve_end_mass,
 )
 from cuefem.accuracy import DECAY, MOST, Rung, estimated_error, ladder
-from cuefem.beam import assemble
 from cuefem.beam.modes import Modes, solve
+from cuefem.beam.system import assemble
 from cuefem.beam.tail import tail
 from cuefem.beam.waves import mesh_for
 from cuefem.contact.strike import strike_modes

@@ -18,8 +18,8 @@ import numpy as np
 import pytest
 
 from cuefem import Cue, Resolution, end_mass, modes, resolve, strike
-from cuefem.beam import assemble
 from cuefem.beam.modes import solve
+from cuefem.beam.system import assemble
 from cuefem.beam.tip import tip_modes
 from cuefem.contact.linear import Contact, Laws, run
 from cuefem.contact.strike import strike_modes

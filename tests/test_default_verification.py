@@ -57,7 +57,7 @@ def test_a_short_segment_gets_the_elements_that_its_own_waves_ask_for() -> None:
 
 
 def test_elements_of_a_segment_are_shared_out_over_its_pieces() -> None:
-    from cuefem.beam import mesh_cue
+    from cuefem.beam.mesh import mesh_cue
 
     mesh = mesh_cue(SHORT_ENDED, elements=(1, 4, 1), order=3, positions=(0.001 + 0.7 / 4,))
     assert list(np.bincount(mesh.piece)) == [1, 4, 1]

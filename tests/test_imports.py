@@ -131,6 +131,8 @@ HEAVY = ["skfem", "scipy", "pint", "pydantic", "matplotlib", "meshio", "tomlkit"
         ("import cuefem", ["numpy", *HEAVY]),
         ("import cuefem; cuefem.Cue; cuefem.Scene", HEAVY),
         ("import cuefem.squirt", HEAVY),
+        ("import cuefem; cuefem.strike(cuefem.Scene(cuefem.LumpedCue(0.5, 0.006)))", HEAVY),
+        ("import cuefem; cuefem.end_mass(cuefem.Scene(cuefem.LumpedCue(0.5, 0.006)))", ["skfem"]),
         ("import cuefem.cli", [name for name in ["numpy", *HEAVY] if name != "click"]),
     ],
 )

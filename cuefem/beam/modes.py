@@ -10,7 +10,8 @@ import scipy.linalg as la
 import scipy.sparse.linalg as sla
 from numpy.typing import ArrayLike
 
-from cuefem.beam import ActsOnCue, System, assemble
+from cuefem.beam.mesh import ActsOnCue
+from cuefem.beam.system import System, assemble
 from cuefem.beam.waves import EVEN, mesh_for, modes_below
 from cuefem.cue import Array, Cue, Section
 from cuefem.quantity import Quantity, check_count, check_kind
@@ -22,7 +23,7 @@ class Modes:
 
     frequencies: (n,) Hz. vectors: (unknowns, n), mass-normalised. rigid: the number of rigid motions, whose frequency
     is exactly zero. rigid_vectors: (unknowns, rigid), mass-normalised. system: the assembled beam. radiation: see
-    `TipModes`, None but where `cuefem.accuracy` ends the modes kept by a tail.
+    `TipModes`; None unless the modes end in a tail (`cuefem.beam.tail`).
     """
 
     frequencies: Array
@@ -71,9 +72,45 @@ def modes(
 ) -> Modes:
     """Flexible bending modes of a cue: the ``count`` lowest, or the ``count`` nearest to ``near`` Hz.
 
-    effects: those of a scene; the ones that act on the cue count. at: a Resolution (its ``modes`` is not used here);
-    left out, one that holds the frequencies asked for to 2e-7, the first five to 1e-9. Cost: one dense symmetric
+    Parameters
+    ----------
+    cue
+        A `Cue` of segments.
+    count
+        How many modes.
+    near
+        A frequency, Hz. By default the lowest modes are given.
+    effects
+        Effects of a scene. Those that act on the cue count; effects at the tip do not change its modes.
+    at
+        A `Resolution`, of which only elements and order count. By default frequencies hold to 2e-7, the first five to
+        1e-9.
+
+    Returns
+    -------
+    Modes
+        ``.frequencies`` in Hz, ascending; ``.rigid``, the number of rigid motions; ``.shape(x)``, deflection and
+        rotation of every mode at ``x`` m from the tip.
+
+    Raises
+    ------
+    TypeError
+        If the cue is lumped: it has no modes.
+    ValueError
+        If the mesh of ``at`` holds fewer modes.
+
+    Notes
+    -----
+    Timoshenko's beam, free at both ends unless an effect holds it (physics.md section 4). Costs one dense symmetric
     eigenproblem, cubic in the unknowns.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> found = cf.modes(cf.Cue((cf.Segment(0.7, 0.012, 0.021, wood),)), count=2)
+    >>> [round(float(f), 1) for f in found.frequencies]
+    [128.0, 343.8]
     """
     check_kind("modes cue", cue, Cue)
     check_count("modes count", count, 1)
@@ -90,7 +127,7 @@ def modes(
 
 
 def _on_the_cue(effects: tuple[Any, ...]) -> tuple[ActsOnCue, ...]:
-    """Those of a scene's effects that act on the cue; one at the tip leaves its modes as they are."""
+    """The effects that act on the cue; effects at the tip do not change its modes."""
     for effect in effects:
         if not hasattr(effect, "axial_mass"):
             raise TypeError(f"modes effects must be effects, as a Scene takes them; got {effect!r}")
@@ -98,10 +135,11 @@ def _on_the_cue(effects: tuple[Any, ...]) -> tuple[ActsOnCue, ...]:
 
 
 def solve(system: System, count: int) -> Modes:
-    """The lowest ``count`` flexible modes of an assembled beam; the rigid ones are known and need no eigenvalue.
+    """The lowest ``count`` flexible modes of an assembled beam. The rigid ones are known and need no eigenvalue.
 
-    Solves the inverse form M q = mu (K + sigma M) q, whose large mu are the low modes, where `eigh(K, M)` loses them to
-    the high ones; then `_polished`. Relative errors stay near rounding, soft tips and stiff ferrules included.
+    `eigh(K, M)` would lose the low modes in the rounding of the high ones. So this solves the inverse form
+    M q = mu (K + sigma M) q, whose largest mu are the lowest modes, and then takes one step of `_polished`. Relative
+    errors stay near rounding, even with soft tips and stiff ferrules.
     """
     held = _held(system)
     if count > held:
@@ -122,8 +160,9 @@ def solve(system: System, count: int) -> Modes:
 def _polished(system: System, flexible: Array, rigid: Array) -> tuple[Array, Array]:
     """(omega, vectors) of one Rayleigh-Ritz step on mass-normalised modes, with the energy taken from the strains.
 
-    K itself has lost eps times its largest entry, which a stiff short element makes 1e-9 of the lowest mode's square
-    and more; the strains have not, and the error of the vectors enters squared: about 5e-15 at every size.
+    K carries a rounding error of eps times its largest entry. A stiff short element makes that 1e-9 of the lowest
+    mode's square, and more. The strains do not have it, and the error of the vectors enters squared: about 5e-15 is
+    left at every size.
     """
     flexible = flexible - rigid @ (rigid.T @ (system.M @ flexible))
     strains = system.strains(flexible)

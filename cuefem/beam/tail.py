@@ -16,8 +16,8 @@ import scipy.linalg as la
 import scipy.sparse as sp
 import scipy.sparse.linalg as sla
 
-from cuefem.beam import System
 from cuefem.beam.modes import Modes
+from cuefem.beam.system import System
 from cuefem.cue import Array
 
 Deflect = Callable[[Array], Array]

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cuefem.beam.modes import Modes
 from cuefem.cue import Array, LumpedCue
+from cuefem.quantity import scalar
+
+if TYPE_CHECKING:
+    from cuefem.beam.modes import Modes
 
 
 @dataclass(frozen=True)
@@ -70,6 +74,14 @@ class TipModes:
         return self._chosen(np.argsort(self.omega, kind="stable"))
 
     @property
+    def uncoupled(self) -> TipModes:
+        """The modes for a head-on blow: the coupling of a lumped cue has the sign of the offset, so there it is 0."""
+        if not np.any(self.amplitude[:, 0] * self.amplitude[:, 1]):
+            return self
+        along, across = np.sqrt(np.sum(self.amplitude**2, axis=0))
+        return replace(self, amplitude=np.diag([along, across]), approach=np.array([1 / along, 0.0]))
+
+    @property
     def transverse(self) -> tuple[Array, Array]:
         """(omega, amplitude across the cue) of the modes that move the contact across the cue."""
         moving = self.amplitude[:, 1] != 0
@@ -77,10 +89,13 @@ class TipModes:
 
 
 def lumped_tip_modes(cue: LumpedCue) -> TipModes:
-    """The two modes without frequency that give a lumped cue's inverse mass (scalar fields)."""
-    root = math.sqrt(cue.mass)
-    across = math.sqrt(1 / cue.end_mass - cue.coupling**2 * cue.mass)
-    amplitude = np.array([[1 / root, cue.coupling * root], [0.0, across]])
+    """The two modes of zero frequency that give a lumped cue's inverse mass; its fields must be single numbers."""
+    mass, end_mass, coupling = (
+        scalar(f"LumpedCue.{name}", getattr(cue, name)) for name in ("mass", "end_mass", "coupling")
+    )
+    root = math.sqrt(mass)
+    across = math.sqrt(1 / end_mass - coupling**2 * mass)
+    amplitude = np.array([[1 / root, coupling * root], [0.0, across]])
     return TipModes(np.zeros(2), amplitude, np.linalg.solve(amplitude.T, [1.0, 0.0]), np.zeros(2))
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 if TYPE_CHECKING:
-    from cuefem.cue import Cue, LumpedCue
+    from cuefem.cue import Cue
     from cuefem.quantity import Quantity
     from cuefem.scene import Scene
 
@@ -93,9 +93,33 @@ def measured(file: Path, option: str, given: str, wanted: Quantity) -> float:
         raise InputError(file, option, str(error)) from None
 
 
+class Definitions(click.Choice[str]):
+    """The names of the end-mass definitions, and ``more``; read only when a command needs them, for they load much."""
+
+    def __init__(self, *more: str) -> None:
+        self.more, self.case_sensitive = more, True
+
+    @property
+    def choices(self) -> tuple[str, ...]:  # type: ignore[override]
+        """All names."""
+        from cuefem.endmass.drives import DEFINITIONS
+
+        return (*self.more, *DEFINITIONS)
+
+
+class WithDefinitions(click.Command):
+    """A command whose help ends with the definitions of the end mass."""
+
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write name and meaning of every definition."""
+        from cuefem.endmass.drives import DEFINITIONS
+
+        with formatter.section("Definitions of the end mass"):
+            formatter.write_dl([(one.name, one.meaning) for one in DEFINITIONS.values()])
+
+
 def scene_of(file: Path, given: dict[str, Any]) -> tuple[Scene, list[str]]:
     """The scene that a command computes, and what was assumed because nobody said it."""
-    from cuefem.cue import Cue
     from cuefem.io import load
     from cuefem.io.assumed import assumed, assumed_blow
     from cuefem.scene import Scene, Stroke
@@ -103,7 +127,7 @@ def scene_of(file: Path, given: dict[str, Any]) -> tuple[Scene, list[str]]:
     found = load(file, material=given["material"], length_unit=given.get("length_unit"))
     said = {name for name, value in given.items() if value is not None}
     notes = assumed(file, said, offered=given)
-    if isinstance(found, Cue):
+    if not isinstance(found, Scene):
         found = Scene(found, stroke=Stroke(offset=DEFAULT_OFFSET))
         notes += assumed_blow({}, said, offered=given, offset=DEFAULT_OFFSET)
     scene = _with_options(found, file, given)
@@ -133,20 +157,22 @@ def _with_options(scene: Scene, file: Path, given: dict[str, Any]) -> Scene:
         time = measured(file, "--contact-time", given["contact_time"], CONTACT_TIME)
         scene = replace(scene, tip=replace(scene.tip, contact_time=time, stiffness=None))
     if given["body_mass"] is not None:
-        scene = replace(scene, cue=with_body(scene.cue, file, given["body_mass"]))
+        scene = with_body(scene, file, given["body_mass"])
     return scene
 
 
-def with_body(cue: Cue | LumpedCue, file: Path, given: str) -> Cue:
-    """The cue with the mass behind its segments that --body-mass says."""
-    from cuefem.cue import Cue
+def with_body(found: Cue | Scene, file: Path, given: str) -> Any:
+    """The cue or scene of a file with the mass behind its segments that --body-mass says."""
     from cuefem.io import InputError
     from cuefem.quantity import Quantity
+    from cuefem.scene import Scene
 
     mass = measured(file, "--body-mass", given, Quantity("kg", "[0, inf)"))
-    if not isinstance(cue, Cue):
+    if not isinstance(found, Scene):
+        return replace(found, body_mass=mass)
+    if not found.cue.segments:
         raise InputError(file, "--body-mass", "must be left out: a lumped cue is whole")
-    return replace(cue, body_mass=mass)
+    return replace(found, cue=replace(found.shaft, body_mass=mass))
 
 
 def show(file: Path, given: dict[str, Any], results: Callable[[Scene], Any], tables: Callable[..., Any]) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 from pathlib import Path
 
 import click
@@ -21,15 +20,11 @@ def convert(file: Path, output: Path, body_mass: str | None, force: bool, **give
     from cuefem.io import load, save
     from cuefem.io.assumed import assumed
     from cuefem.io.profile import SHAPES
-    from cuefem.scene import Scene
 
     check_free(output, force=force)
     found = load(file, **given)
     if body_mass is not None:
-        if isinstance(found, Scene):
-            found = replace(found, cue=with_body(found.cue, file, body_mass))
-        else:
-            found = with_body(found, file, body_mass)
+        found = with_body(found, file, body_mass)
     save(found, output)
     said = {name for name, value in (given | {"body_mass": body_mass}).items() if value is not None}
     notes = assumed(file, said) if file.suffix.lower() in SHAPES else []

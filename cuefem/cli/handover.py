@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from cuefem.cli.common import (
+    Definitions,
+    WithDefinitions,
     blaming,
     blow_options,
     file_options,
@@ -24,15 +26,13 @@ from cuefem.cli.common import (
 if TYPE_CHECKING:
     from cuefem.scene import Scene
 
-DRIVES = ("A.31", "stick", "offset", "velocity", "force", "squirt")
 
-
-@click.command(short_help="The end mass as a simulator takes it: pooltool's CueSpecs.")
+@click.command(cls=WithDefinitions, short_help="The end mass as a simulator takes it: pooltool's CueSpecs.")
 @file_options
 @blow_options
 @offset_option
 @click.option("--for", "whom", type=click.Choice(["pooltool"]), default="pooltool", show_default=True, help="For whom.")
-@click.option("--drive", type=click.Choice(DRIVES), default="A.31", show_default=True, help="Which end mass.")
+@click.option("--drive", type=Definitions("A.31"), default="A.31", show_default=True, help="Which end mass.")
 @click.option(
     "-o",
     "--output",
@@ -98,13 +98,11 @@ def _animation(scene: Scene, *, count: int, frames: int, until: float | None, sc
 
     from cuefem.beam.modes import modes
     from cuefem.contact.motion import last_contact, motion
-    from cuefem.cue import Cue
     from cuefem.io.paraview import save_modes, save_strike
 
     last = 3 * last_contact(scene) if until is None else until
     moving = motion(scene, np.linspace(0, last, frames))
-    cue = scene.cue
-    assert isinstance(cue, Cue)  # motion takes no other
+    cue = scene.shaft
     found = modes(cue, count, effects=scene.cue_effects)
 
     def put(folder: Path) -> None:

@@ -8,7 +8,17 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from cuefem.cli.common import blaming, blow_options, file_options, followed, measured, offset_option, scene_of, show
+from cuefem.cli.common import (
+    WithDefinitions,
+    blaming,
+    blow_options,
+    file_options,
+    followed,
+    measured,
+    offset_option,
+    scene_of,
+    show,
+)
 
 if TYPE_CHECKING:
     from cuefem.scene import Scene
@@ -34,7 +44,7 @@ def modes(file: Path, near: str | None, count: int, **given: Any) -> None:
     show(file, given, results, lambda found, about: [modes_table(found)])
 
 
-@click.command("end-mass")
+@click.command("end-mass", cls=WithDefinitions)
 @file_options
 @blow_options
 def end_mass(file: Path, **given: Any) -> None:

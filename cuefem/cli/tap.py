@@ -81,7 +81,6 @@ def tap(recording: Path, file: Path, output: Path | None, figure: Path | None, f
 
 
 def _heard(recording: Path, file: Path, scene: Scene, given: dict[str, Any]) -> tuple[Ringing, TapFit]:
-    from cuefem.cue import Cue
     from cuefem.io import InputError
     from cuefem.io.sound import load_recording
     from cuefem.quantity import Quantity
@@ -89,12 +88,12 @@ def _heard(recording: Path, file: Path, scene: Scene, given: dict[str, Any]) -> 
     from cuefem.tap.tones import tones
     from cuefem.tap.wood import TapTest
 
-    if not isinstance(scene.cue, Cue):
+    if not scene.cue.segments:
         raise InputError(file, "", "must hold a cue of segments: a lumped cue has no tones")
     mass = given["mass"]
     mass = None if mass is None else measured(file, "--mass", mass, Quantity("kg", "(0, inf)"))
     with blaming(file):
-        test = TapTest(scene.cue, segment=given["segment"], mass=mass, effects=scene.cue_effects)
+        test = TapTest(scene.shaft, segment=given["segment"], mass=mass, effects=scene.cue_effects)
     sound = load_recording(recording)
     with blaming(recording):
         heard = ringing(sound.samples, sound.rate)
@@ -112,11 +111,11 @@ def _predicted(file: Path, scene: Scene, found: TapFit) -> tuple[dict[str, Predi
 
 def _updated(file: Path, scene: Scene, found: TapFit, given: dict[str, Any]) -> Any:
     """What FILE holds, a cue or a scene, with the fitted wood to six digits."""
-    from cuefem.cue import Cue
     from cuefem.io import load
+    from cuefem.scene import Scene
     from cuefem.tap.matching import with_material
 
     short = {name: float(f"{getattr(found.wood, name):.6g}") for name in ("E", "G", "rho", "loss", "nu")}
     cue = with_material(found.cue, found.wood, replace(found.wood, **short))
     held = load(file, material=given["material"], length_unit=given["length_unit"])
-    return cue if isinstance(held, Cue) else replace(held, cue=cue)
+    return replace(held, cue=cue) if isinstance(held, Scene) else cue

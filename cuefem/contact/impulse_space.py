@@ -131,9 +131,11 @@ def impact(scene: Scene) -> Outcome:
     "ball translation", "ball rotation", "cue", "tip loss", "friction loss", which add up to "initial". The coupling of
     a LumpedCue is meant for positive offsets and changes sign with them, so that all is odd in the offset.
     """
-    assert isinstance(scene.cue, LumpedCue)
+    cue = scene.lumped
+    if cue is None:
+        raise ValueError("impact takes a LumpedCue; got a Cue, which cuefem.impulse lumps first")
     fields = {
-        **{f"LumpedCue.{name}": getattr(scene.cue, name) for name in ("mass", "end_mass", "coupling")},
+        **{f"LumpedCue.{name}": getattr(cue, name) for name in ("mass", "end_mass", "coupling")},
         **{f"Ball.{name}": getattr(scene.ball, name) for name in ("mass", "inertia", "radius")},
         **{f"Tip.{name}": getattr(scene.tip, name) for name in ("restitution", "friction")},
         **{f"Stroke.{name}": getattr(scene.stroke, name) for name in ("speed", "offset")},

@@ -24,11 +24,11 @@ from cuefem.contact.history import Stretch
 from cuefem.contact.linear import Contact, Course
 from cuefem.contact.stepped import SteppedContact
 from cuefem.contact.strike import struck
-from cuefem.cue import Array, Cue
+from cuefem.cue import Array
 from cuefem.effects import Elevation
 from cuefem.quantity import check_kind, scalar
 from cuefem.scene import Resolution, Scene
-from cuefem.tip_modes import modes_of, tip_modes_from
+from cuefem.tip_modes import Solved
 
 _GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(8)  # exact for the interpolants of DOP853, of degree 7
 
@@ -67,10 +67,8 @@ def motion(scene: Scene, times: ArrayLike, at: Resolution | None = None) -> Moti
     times = _checked(times)
     if any(isinstance(effect, Elevation) for effect in scene.effects):
         raise ValueError("motion takes strokes in the plane of cue and ball; got Elevation")
-    if not isinstance(scene.cue, Cue):
-        raise ValueError("motion takes a cue of segments; got a lumped cue, which has no shape")
-    found = modes_of(scene, at)
-    tip = tip_modes_from(found, scene)
+    solved = Solved(scene, at)
+    found, tip = solved.modes, solved.tip
     contact = struck(scene, tip)
     return _read(scene, found, tip, contact=contact, times=times)
 

@@ -7,12 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from cuefem.beam.tip import TipModes, lumped_tip_modes
+from cuefem.beam.tip import TipModes
 from cuefem.contact.linear import Contact, Laws, run
 from cuefem.contact.linear_shear import ShearContact
 from cuefem.contact.outcome import _outcome
 from cuefem.contact.ringing_tip import RINGING, ringing_contact
-from cuefem.cue import LumpedCue
 from cuefem.effects import Elevation, PowerLawTip, RollingContact, SecondHit, TipEffect, TipShear
 from cuefem.quantity import check_kind, scalar
 from cuefem.scene import Outcome, Resolution, Scene
@@ -31,11 +30,6 @@ def strike(scene: Scene, at: Resolution | None = None) -> Outcome:
     modes, a few milliseconds for 24.
     """
     check_kind("strike scene", scene, Scene)
-    if isinstance(scene.cue, LumpedCue):
-        for name in ("mass", "end_mass", "coupling"):
-            scalar(f"LumpedCue.{name}", getattr(scene.cue, name))
-        cue = scene.cue if scalar("Stroke.offset", scene.stroke.offset) else replace(scene.cue, coupling=0.0)
-        return strike_modes(scene, lumped_tip_modes(cue))
     return strike_modes(scene, tip_modes_of(scene, at))
 
 
@@ -58,6 +52,7 @@ def struck(scene: Scene, tip: TipModes) -> Contact:
         time=scene.contact_time,
         speed=scalar("Stroke.speed", scene.stroke.speed),
     )
+    tip = tip if offset else tip.uncoupled
     levers = [effect.lever(laws.phi) for effect in scene.effects if isinstance(effect, TipEffect)]
     if levers:
         whole = [math.fsum(parts) for parts in zip(*levers, strict=True)]  # in any order the same to the last bit

@@ -14,7 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cuefem.beam import element_matrices, table
+from cuefem.beam.basis import table
+from cuefem.beam.system import element_matrices
 from cuefem.beam.tail import STEPS
 from cuefem.cue import Array, Cue, Section, SegmentRows, section_properties
 from cuefem.endmass.undamped import StickLimit, stick_reason

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cuefem.beam.waves import even_mesh_for, modes_below
-from cuefem.cue import Array, Cue
+from cuefem.cue import Array
 from cuefem.design.batch import BLOCK
 from cuefem.design.responses import Response
 from cuefem.design.solvers import OneByOne, Solver, Together
@@ -60,8 +60,8 @@ def _blocks(scenes: Sequence[Scene]) -> list[list[int]]:
     """Indices of scenes that are worked together: bare cues in blocks by number of segments, others one by one."""
     groups: dict[int, list[int]] = {}
     for i, scene in enumerate(scenes):
-        bare = isinstance(scene.cue, Cue) and not scene.effects
-        groups.setdefault(len(scene.cue.segments) if bare and isinstance(scene.cue, Cue) else -i, []).append(i)
+        together = len(scene.cue.segments) if not scene.effects else 0
+        groups.setdefault(together or -i, []).append(i)
     return [rows[start : start + BLOCK] for rows in groups.values() for start in range(0, len(rows), BLOCK)]
 
 
@@ -70,8 +70,8 @@ def _values(scenes: Sequence[Scene], responses: Sequence[Response], at: Resoluti
 
     ValueError if a response is no number and does not say why.
     """
-    bare = isinstance(scenes[0].cue, Cue) and not scenes[0].effects
-    lacking = [one.name for one in responses if one.segments and not isinstance(scenes[0].cue, Cue)]
+    bare = scenes[0].cue.segments and not scenes[0].effects
+    lacking = [one.name for one in responses if one.segments and not scenes[0].cue.segments]
     if lacking:
         raise ValueError(f"{lacking[0]} needs a cue of segments; got a lumped cue")
     count = max([0, *(one.modes for one in responses)])
@@ -91,9 +91,9 @@ def common_resolution(scenes: Sequence[Scene], responses: Sequence[Response]) ->
     count, strikes = max([1, *(one.modes for one in responses)]), any(one.strikes for one in responses)
     mesh, modes = (1, 1), 1
     for scene in scenes:
-        if not isinstance(scene.cue, Cue):
+        if not scene.cue.segments:
             continue
-        kept = modes_below(scene.cue, 2 * np.pi * PERIODS_KEPT / scene.contact_time) if strikes else count
+        kept = modes_below(scene.shaft, 2 * np.pi * PERIODS_KEPT / scene.contact_time) if strikes else count
         # a mesh of more elements follows shorter waves, and so does one of as many of a higher order
-        mesh, modes = max(mesh, even_mesh_for(scene.cue, max(kept, count))), max(modes, kept)
+        mesh, modes = max(mesh, even_mesh_for(scene.shaft, max(kept, count))), max(modes, kept)
     return Resolution(*mesh, modes)

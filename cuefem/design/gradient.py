@@ -12,12 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from cuefem.beam import table
+from cuefem.beam.basis import table
 from cuefem.cue import Array, Cue, Section, SegmentRows, section_properties
 from cuefem.design.sensitivity import Sensitivity, sensitivity
-from cuefem.endmass.drives import Drive
 from cuefem.endmass.undamped import StickLimit
-from cuefem.quantity import check_kind
 from cuefem.scene import Resolution, Scene
 
 STEP = 1e-30  # of a complex step, relative to the number: exact to rounding
@@ -40,7 +38,7 @@ class Gradient:
     squirt_to_body_mass: float | None
 
 
-def gradient(scene: Scene, drive: Drive = "stick", at: Resolution | None = None) -> Gradient:
+def gradient(scene: Scene, drive: str = "stick", at: Resolution | None = None) -> Gradient:
     """Derivatives of a bare cue's end mass, and of its small-offset squirt, to every number of its drawing.
 
     Parameters
@@ -66,9 +64,7 @@ def gradient(scene: Scene, drive: Drive = "stick", at: Resolution | None = None)
     -----
     The cost is one dense eigenproblem, for however many numbers.
     """
-    check_kind("gradient scene.cue", scene.cue, Cue)
-    assert isinstance(scene.cue, Cue)
-    found, rows = sensitivity(scene, drive, at), drawing(scene.cue)
+    found, rows = sensitivity(scene, drive, at), drawing(scene.shaft)
     heavier = masses_to(rows)
     own = densities_to(found, rows)
     end_mass_to = SegmentRows(*(d + found.axial_mass * m for d, m in zip(own, heavier, strict=True)))

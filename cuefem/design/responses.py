@@ -10,9 +10,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cuefem.cue import Array, Cue
+from cuefem.cue import Array
 from cuefem.design.batch import CueBatch
 from cuefem.design.solvers import Solver
+from cuefem.endmass.drives import DEFINITIONS, Definition
 from cuefem.squirt import natural_pivot_length
 
 # The offset that stands for the limit b -> 0 in formulas; they leave an error of its square.
@@ -72,7 +73,7 @@ def _stick_reasons(solver: Solver) -> Sequence[str | None]:
 
 def _drawn(value: Callable[[CueBatch], Array]) -> Callable[[Solver, Any], Array]:
     """A response that follows from the drawings of designs with equally many segments."""
-    return lambda solver, _: value(CueBatch.of([scene.cue for scene in solver.scenes if isinstance(scene.cue, Cue)]))
+    return lambda solver, _: value(CueBatch.of([scene.shaft for scene in solver.scenes]))
 
 
 _SQUIRT = _struck(lambda s, i, found: found.squirt)
@@ -100,6 +101,21 @@ KINDS = {
     "ball_speed": Kind("m/s", "after the coupled strike", _SPEED, "offset", strikes=True),
     "vibration_energy": Kind("J", "left ringing in the cue by the coupled strike", _VIBRATION, "offset", strikes=True),
 }
+
+
+def kinds() -> dict[str, Kind]:
+    """All kinds of responses by name: those of `KINDS`, and "end_mass_NAME" for every definition of the end mass."""
+    return KINDS | {f"end_mass_{name}": _defined(one) for name, one in DEFINITIONS.items()}
+
+
+def _defined(definition: Definition) -> Kind:
+    def values(solver: Solver, offset: float | None) -> Array:
+        return np.array([solver.end_mass(i, definition, offset) for i in range(len(solver.scenes))])
+
+    about = f"end mass: {definition.meaning}"
+    return Kind("kg", about, values, "offset" if definition.at_offset else "", strikes=True)
+
+
 _NAME = re.compile(r"(\w+)(?:\(\s*([^()\s]+)\s*\))?")
 
 
@@ -118,10 +134,10 @@ class Response:
     def of(cls, text: str) -> Response:
         """Read text such as "squirt(0.3)"; ValueError, suggesting similar names, if no response matches."""
         found = _NAME.fullmatch(text.strip())
-        if not found or found[1] not in KINDS:
-            close = difflib.get_close_matches(text.partition("(")[0], KINDS, n=3, cutoff=0.5)
+        if not found or found[1] not in kinds():
+            close = difflib.get_close_matches(text.partition("(")[0], kinds(), n=3, cutoff=0.5)
             hint = f"; did you mean {' or '.join(close)}?" if close else ""
-            raise ValueError(f"must be one of {', '.join(map(_usage, KINDS))}; got {text!r}{hint}")
+            raise ValueError(f"must be one of {', '.join(map(_usage, kinds()))}; got {text!r}{hint}")
         return cls(found[1], _argument(found[1], found[2], text))
 
     @property
@@ -132,23 +148,23 @@ class Response:
     @property
     def unit(self) -> str:
         """SI unit, "" for a pure number."""
-        return KINDS[self.kind].unit
+        return kinds()[self.kind].unit
 
     @property
     def strikes(self) -> bool:
         """Whether it takes the tip's modes up to the contact's cutoff."""
-        return KINDS[self.kind].strikes
+        return kinds()[self.kind].strikes
 
     @property
     def in_time(self) -> bool:
         """Whether it takes a strike in time, some milliseconds a design."""
-        kind = KINDS[self.kind]
+        kind = kinds()[self.kind]
         return kind.argument == "offset" and not (kind.limit and self.argument is None)
 
     @property
     def segments(self) -> bool:
         """Whether it needs a cue of segments."""
-        return KINDS[self.kind].segments
+        return kinds()[self.kind].segments
 
     @property
     def modes(self) -> int:
@@ -157,21 +173,21 @@ class Response:
 
     def values(self, solver: Solver) -> Array:
         """The response of every design, (designs,)."""
-        return KINDS[self.kind].values(solver, self.argument)
+        return kinds()[self.kind].values(solver, self.argument)
 
     def reason(self, solver: Solver, i: int) -> str | None:
         """Why a design's response is nan, if that is known."""
-        reasons = KINDS[self.kind].reasons
+        reasons = kinds()[self.kind].reasons
         return None if reasons is None else reasons(solver)[i]
 
 
 def _usage(kind: str) -> str:
-    argument = KINDS[kind].argument
+    argument = kinds()[kind].argument
     return f"{kind}({argument})" if argument == "mode" else f"{kind}[({argument})]" if argument else kind
 
 
 def _argument(kind: str, given: str | None, text: str) -> float | int | None:
-    wanted = KINDS[kind].argument
+    wanted = kinds()[kind].argument
     if given is None and wanted != "mode":
         return None
     if wanted == "":

@@ -9,17 +9,17 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from cuefem.beam import assemble
 from cuefem.beam.modes import Modes, solve
-from cuefem.beam.tip import TipModes, lumped_tip_modes
+from cuefem.beam.system import assemble
+from cuefem.beam.tip import TipModes
 from cuefem.contact.strike import strike_modes
-from cuefem.cue import Array, Cue, LumpedCue
+from cuefem.cue import Array
 from cuefem.design.batch import BatchModes, CueBatch, Stick, batch_frequencies, batch_modes, stick_of
 from cuefem.effects import Support
-from cuefem.endmass.drives import flexible, small_offset_slope, stick, stick_at_offset
+from cuefem.endmass.drives import DEFINITIONS, Definition, flexible, small_offset_slope, stick
 from cuefem.endmass.undamped import StickLimit
 from cuefem.scene import Outcome, Resolution, Scene
-from cuefem.tip_modes import tip_modes_from
+from cuefem.tip_modes import tip_modes_from, tip_modes_of
 
 
 class Solver(Protocol):
@@ -54,6 +54,9 @@ class Solver(Protocol):
     def stick_at(self, offset: float) -> Array:
         """End mass of a tip that sticks at an offset b/R, kg, (designs,)."""
 
+    def end_mass(self, i: int, definition: Definition, offset: float | None) -> float:
+        """End mass of a design by a definition, kg, at an offset b/R or at its scene's own."""
+
     def strike(self, i: int, offset: float | None) -> Outcome:
         """The coupled strike of a design at an offset b/R, or at its scene's own."""
 
@@ -72,21 +75,20 @@ class _Strikes:
 
     def stick_at(self, offset: float) -> Array:
         """End mass of a tip that sticks at an offset b/R, kg, (designs,)."""
-        return np.array([self._stick_at(i, offset) for i in range(len(self.scenes))])
+        return np.array([self.end_mass(i, DEFINITIONS["offset"], offset) for i in range(len(self.scenes))])
 
-    def _stick_at(self, i: int, offset: float) -> float:
+    def end_mass(self, i: int, definition: Definition, offset: float | None) -> float:
+        """End mass of a design by a definition, kg, at an offset b/R or at its scene's own."""
+        return float(definition.of(self.tip(i), self._scene(i, offset)))
+
+    def _scene(self, i: int, offset: float | None) -> Scene:
         scene = self.scenes[i]
-        if isinstance(scene.cue, LumpedCue):
-            return float(scene.cue.end_mass)
-        return float(stick_at_offset(self.tip(i), replace(scene, stroke=replace(scene.stroke, offset=offset))))
+        return scene if offset is None else replace(scene, stroke=replace(scene.stroke, offset=offset))
 
     def strike(self, i: int, offset: float | None) -> Outcome:
         """The coupled strike of a design at an offset b/R, or at its scene's own; each is made once."""
         if (i, offset) not in self._outcomes:
-            scene = self.scenes[i]
-            if offset is not None:
-                scene = replace(scene, stroke=replace(scene.stroke, offset=offset))
-            self._outcomes[i, offset] = strike_modes(scene, self.tip(i))
+            self._outcomes[i, offset] = strike_modes(self._scene(i, offset), self.tip(i))
         return self._outcomes[i, offset]
 
 
@@ -96,7 +98,7 @@ class Together(_Strikes):
     def __init__(self, scenes: Sequence[Scene], at: Resolution, frequencies: int) -> None:
         super().__init__()
         self.scenes, self.at, self._count = scenes, at, frequencies
-        self.batch = CueBatch.of([scene.cue for scene in scenes if isinstance(scene.cue, Cue)])
+        self.batch = CueBatch.of([scene.shaft for scene in scenes])
 
     @property
     def mass(self) -> Array:
@@ -186,8 +188,7 @@ class OneByOne(_Strikes):
         return [self._solve(scene) for scene in self.scenes]
 
     def _solve(self, scene: Scene) -> Modes:
-        assert isinstance(scene.cue, Cue)
-        system = assemble(scene.cue, elements=self.at.elements, order=self.at.order, effects=scene.cue_effects)
+        system = assemble(scene.shaft, elements=self.at.elements, order=self.at.order, effects=scene.cue_effects)
         return solve(system, max(self.at.modes + 2 - system.rigid.shape[1], self._count))
 
     @property
@@ -199,10 +200,7 @@ class OneByOne(_Strikes):
         """Tip modes of a design, with its effects."""
         if i not in self._tips:
             scene = self.scenes[i]
-            if isinstance(scene.cue, LumpedCue):
-                self._tips[i] = lumped_tip_modes(scene.cue)
-            else:
-                self._tips[i] = tip_modes_from(self._kept(i), scene)
+            self._tips[i] = tip_modes_from(self._kept(i), scene) if scene.cue.segments else tip_modes_of(scene)
         return self._tips[i]
 
     def _kept(self, i: int) -> Modes:
@@ -219,8 +217,8 @@ class OneByOne(_Strikes):
 
     def _stick(self, i: int) -> tuple[Any, float]:
         scene, tip, limit = self.scenes[i], self.tip(i), StickLimit.of(self.scenes[i])
-        if isinstance(scene.cue, LumpedCue):
-            return scene.cue.end_mass, small_offset_slope(tip, scene)
+        if scene.lumped is not None:
+            return scene.lumped.end_mass, small_offset_slope(tip, scene)
         if scene.effects:
             slope = small_offset_slope(tip, scene)
             none = np.isnan(limit.end_masses(limit.impulse(slope)))
@@ -234,9 +232,8 @@ def static_tip_stiffness(scene: Scene, at: Resolution) -> float:
 
     Good to 1e-8; without effects `CueBatch.tip_stiffness` is exact.
     """
-    assert isinstance(scene.cue, Cue)
-    clamp = Support(scene.cue.length, np.inf, np.inf)
-    system = assemble(scene.cue, elements=at.elements, order=at.order, effects=(*scene.cue_effects, clamp))
+    clamp = Support(scene.shaft.length, np.inf, np.inf)
+    system = assemble(scene.shaft, elements=at.elements, order=at.order, effects=(*scene.cue_effects, clamp))
     free = system.free
     assert free is not None
     force = free.T @ np.eye(system.mesh.unknowns, 1)[:, 0]

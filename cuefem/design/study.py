@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 
-from cuefem.cue import Cue
 from cuefem.design.evaluation import common_resolution
 from cuefem.design.paths import Path, paths, quantity_at, replaced, spelt, value_at
 from cuefem.design.ranges import Levels, Normal, Sample, Span, Value
@@ -148,7 +147,7 @@ class Study:
         twice = [name for name in names if names.count(name) > 1]
         if twice:
             raise ValueError(f"columns must have different names; got {twice[0]!r} twice")
-        lacking = [one.name for one in self.responses if one.segments and not isinstance(self.base.cue, Cue)]
+        lacking = [one.name for one in self.responses if one.segments and not self.base.cue.segments]
         if lacking:
             raise ValueError(f"{lacking[0]} needs a cue of segments; got a lumped cue")
 

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from dataclasses import MISSING, dataclass, fields, is_dataclass, replace
 from typing import Any, NamedTuple
 
-from cuefem.cue import LumpedCue
 from cuefem.effects import Effect
 from cuefem.scene import Outcome, Scene
 
@@ -90,7 +89,7 @@ def _with(scene: Scene, name: str, kind: type[Effect]) -> Variant:
 def _reason(scene: Scene, effect: Effect, error: ValueError) -> str:
     """Why the effect cannot be added, without the place in a list that it never stood in."""
     name = type(effect).__name__
-    if isinstance(scene.cue, LumpedCue) and effect.needs_beam:
+    if effect.needs_beam and not scene.cue.segments:
         return "needs a cue of segments"
     others = [other for other in scene.effects if name in other.excludes or type(other).__name__ in effect.excludes]
     if others:

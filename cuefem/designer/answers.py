@@ -18,8 +18,7 @@ from cuefem.cue import Array
 from cuefem.design.sensitivity import sensitivity
 from cuefem.design.solvers import static_tip_stiffness
 from cuefem.designer.model import cue_of
-from cuefem.endmass.drives import Drive, equivalent_end_mass, formula_of
-from cuefem.report.end_mass import DRIVES
+from cuefem.endmass.drives import DEFINITIONS, equivalent_end_mass, formula_of
 from cuefem.report.record import Record
 from cuefem.report.squirt import two_part_curve
 from cuefem.report.strike import outcome_record
@@ -65,7 +64,7 @@ class Answers:
     """
 
     scene: Scene
-    end_masses: dict[Drive, float | None]
+    end_masses: dict[str, float | None]
     strike: Record
     found: Modes
     tip_stiffness: float
@@ -85,7 +84,7 @@ def answers(scene: Scene) -> Answers:
     outcome = strike_modes(scene, tip)
     return Answers(
         scene=scene,
-        end_masses={drive: _end_mass(scene, drive, tip, outcome) for drive in DRIVES},
+        end_masses={drive: _end_mass(scene, drive, tip, outcome) for drive in DEFINITIONS},
         strike=outcome_record(outcome, scene),
         found=modes(cue, TONES, effects=scene.cue_effects),
         tip_stiffness=static_tip_stiffness(scene, Resolution(*mesh_for(cue, TONES), TONES)),
@@ -94,7 +93,7 @@ def answers(scene: Scene) -> Answers:
     )
 
 
-def _end_mass(scene: Scene, drive: Drive, tip: TipModes, outcome: Outcome) -> float | None:
+def _end_mass(scene: Scene, drive: str, tip: TipModes, outcome: Outcome) -> float | None:
     try:
         if drive == "squirt" and scene.stroke.offset:  # its strike is known
             return equivalent_end_mass(outcome, scene)

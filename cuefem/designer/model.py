@@ -94,9 +94,7 @@ def _first_without_bore(pieces: Sequence[Segment], first: int) -> int:
 
 def cue_of(scene: Scene) -> Cue:
     """The scene's cue; ValueError for a lumped one, which has no shape."""
-    if not isinstance(scene.cue, Cue):
-        raise ValueError("cue must have segments, a shape that can be changed; got a lumped cue")
-    return scene.cue
+    return scene.shaft
 
 
 def taper_position(cue: Cue) -> float:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from cuefem.designer.answers import Answers, note
 from cuefem.designer.model import cue_of
+from cuefem.endmass.drives import DEFINITIONS
 from cuefem.report.strike import MISCUE
 from cuefem.report.table import NONE
 from cuefem.report.words import degrees, grams, millimetres, significant
@@ -28,18 +29,12 @@ class Row(NamedTuple):
 def rows(found: Answers) -> list[Row]:
     """All numbers of a design, each with its definition."""
     cue, strike, offset = cue_of(found.scene), found.strike, found.scene.stroke.offset
-    masses = {
-        "stick": "end mass m_e, stick (small offsets)",
-        "offset": f"end mass m_e, stick at b/R {offset:g}",
-        "velocity": "end mass m_e, velocity",
-        "force": "end mass m_e, force",
-        "squirt": f"end mass m_e, squirt-equivalent at b/R {offset:g}",
-    }
+    labels = {one.name: f"end mass m_e, {one.label_at(offset)}" for one in DEFINITIONS.values()}
     pivot = strike["pivot_length"]
     return [
         Row("squirt", f"squirt, coupled, at b/R {offset:g}", strike["squirt"], degrees, "°", 180 / math.pi),
         Row("pivot", "natural pivot length", None if pivot is None else float(pivot), millimetres, "mm", 1e3),
-        *(Row(f"end_mass_{drive}", masses[drive], felt, grams, "g", 1e3) for drive, felt in found.end_masses.items()),
+        *(Row(f"end_mass_{drive}", labels[drive], felt, grams, "g", 1e3) for drive, felt in found.end_masses.items()),
         Row("shaft_mass", "mass of what is drawn", cue.shaft_mass, grams, "g", 1e3),
         Row("mass", "mass of the cue", cue.mass, grams, "g", 1e3),
         Row("balance", "balance point of what is drawn, from the tip", cue.balance_point, _tenths, "mm", 1e3),

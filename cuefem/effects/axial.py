@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cuefem.beam import System, gather, line_basis, table
+from cuefem.beam.basis import line_basis, table
 from cuefem.beam.modes import lowest
+from cuefem.beam.system import System, gather
 from cuefem.beam.tail import inverse, ritz
 from cuefem.cue import Array, Section
 

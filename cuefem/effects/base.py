@@ -10,8 +10,9 @@ from cuefem.cue import Array, Cue, LumpedCue, Section
 from cuefem.quantity import check_fields, check_kind
 
 if TYPE_CHECKING:
-    from cuefem.beam import System, Terms
+    from cuefem.beam.mesh import Terms
     from cuefem.beam.modes import Modes
+    from cuefem.beam.system import System
     from cuefem.beam.tip import TipModes
 
 # Positions are on the cue up to this part of its length: a sum of lengths differs from their total by rounding.

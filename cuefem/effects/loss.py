@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from cuefem.beam import System, table
+from cuefem.beam.basis import table
+from cuefem.beam.system import System
 from cuefem.beam.tip import TipModes
 from cuefem.cue import Array, Cue, Section, Segment, SegmentRows, section_properties
 from cuefem.effects.base import Vibrations

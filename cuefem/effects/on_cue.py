@@ -12,7 +12,7 @@ from cuefem.effects.base import NEAR, AxialVibrations, CueEffect, Vibrations
 from cuefem.quantity import Quantity
 
 if TYPE_CHECKING:
-    from cuefem.beam import Terms
+    from cuefem.beam.mesh import Terms
     from cuefem.beam.modes import Modes
     from cuefem.beam.tip import TipModes
 

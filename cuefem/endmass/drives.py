@@ -1,12 +1,9 @@
 """The definitions of effective end mass, each from the tip modes of a cue (physics.md section 6).
 
-For the tip's transverse impulse response h(t) = sum phi_k^2 cos(omega_k t):
-
-- "force": a half-sine force of length T; impulse over tip velocity at T.
-- "velocity": the tip follows (1 - cos(pi t/T))/2; impulse needed over final velocity.
-- "stick": the tip must follow the ball, as in the coupled strike when the offset goes to zero (recommended).
-- "offset": the same at the scene's own offset; what the impulse solver takes for a finite-element cue.
-- "squirt": the lumped end mass whose squirt is that of the coupled strike, at this offset, speed and friction.
+The effective end mass m_e is the inertia that the ball feels across the cue at the tip. A vibrating cue has no single
+one: how much of it takes part depends on how the tip is driven. `DEFINITIONS`, at the end of this file, is the table of
+the definitions that every command, page and sweep reads. All of them follow from the tip's transverse impulse response
+h(t) = sum phi_k^2 cos(omega_k t).
 """
 
 from __future__ import annotations
@@ -14,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, Literal, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -29,39 +26,72 @@ from cuefem.endmass import undamped as transverse
 from cuefem.endmass.undamped import StickLimit
 from cuefem.quantity import scalar
 from cuefem.scene import Outcome, Resolution, Scene, Stroke
-from cuefem.tip_modes import LEAST_STUCK, PLAIN_PERIODS, default_resolution, tip_modes_of
+from cuefem.tip_modes import Solved
 
-# Of the swing that a tail could add if it rang without loss, errors of the stick end mass above 0.2 % are less than
-# this part (studies/default_accuracy.md).
+# An estimate of the error of the stick end mass takes this part of the swing that a tail could add if it rang without
+# loss. Measured: it covers all errors above 0.2 % (studies/default_accuracy.md).
 HEARD = 0.6
-
-Drive = Literal["stick", "offset", "velocity", "force", "squirt"]
 
 # Offsets whose end masses are worked at a time, so that the arrays of modes by offsets stay small.
 BLOCK = 1024
 
 
-def end_mass(scene: Scene, drive: Drive = "stick", at: Resolution | None = None) -> Any:
-    """Effective end mass m_e of a scene's cue, kg: the inertia that the ball feels across the cue at the tip.
+def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None) -> Any:
+    """Effective end mass m_e of a scene's cue: the inertia that the ball feels across the cue at the tip.
 
-    drive: the definition, see the module. The pulse is as long as the scene's head-on contact time; "stick" and
-    "offset" also take the ball's mass, inertia factor and restitution from the scene, and "offset" its offset, which
-    may be an array. A LumpedCue answers its own end_mass. at: left out, modes are kept by frequency
-    (`default_resolution`), 120 at least: within 0.5 % but at a tip of metal, where `end_mass_spreads` estimates the
-    error. Cost: one eigenproblem of the beam, for three of the drives one more of the size of the modes kept.
-    ValueError for an unknown drive.
+    Parameters
+    ----------
+    scene
+        The cue, and what the pulse depends on. The pulse lasts the scene's head-on contact time. "stick" and "offset"
+        also depend on the ball's mass and inertia factor and on the tip's restitution; "offset" and "squirt" on the
+        scene's offset; "squirt" on speed and friction too. For "offset" the offset and the speed may be arrays.
+    drive
+        Which definition, by its name in `cuefem.endmass.drives.DEFINITIONS`:
+
+        - "stick": the tip sticks to the ball as in the coupled strike, in the limit of small offsets. Recommended.
+        - "offset": the same at the scene's own offset; this is what the impulse solver takes.
+        - "velocity": the tip's velocity rises like (1 - cos(pi t/T))/2.
+        - "force": the tip is pushed by a half-sine force.
+        - "squirt": the lumped end mass that has the squirt of the coupled strike.
+    at
+        How finely the cue is computed. By default modes are kept by frequency (`default_resolution`), at least 120 of
+        them, which holds 0.5 % unless the tip is of metal; `cuefem.resolve_end_mass` estimates the error.
+
+    Returns
+    -------
+    float or ndarray
+        kg. A `LumpedCue` answers its own ``end_mass``, whatever the definition.
+
+    Raises
+    ------
+    ValueError
+        If the definition is unknown, or has no answer for this scene (a miscue, a clamped tip).
+
+    Notes
+    -----
+    Costs one eigenproblem of the beam; "stick", "offset" and "velocity" one more of the size of the modes kept.
+    Definitions and formulas: physics.md section 6.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> cue = cf.Cue((cf.Segment(0.7, 0.012, 0.021, wood),), body_mass=0.43)
+    >>> scene = cf.Scene(cue, tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(offset=0.3))
+    >>> round(1e3 * cf.end_mass(scene), 1), round(1e3 * cf.end_mass(scene, "offset"), 1)  # g
+    (4.8, 4.4)
     """
-    formula = formula_of(drive)
-    if isinstance(scene.cue, LumpedCue):
-        return scene.cue.end_mass
-    return formula(tip_modes_of(scene, at, least=LEAST_STUCK), scene)
+    definition = definition_of(drive)
+    if scene.lumped is not None:
+        return scene.lumped.end_mass
+    return definition.of(Solved(scene, at).tip_stuck, scene)
 
 
 class Spread(NamedTuple):
-    """An end mass, and the smallest and largest where fewer modes are kept: from a quarter of them to all; kg.
+    """An end mass, and the smallest and largest value while only 25 to 100 % of the modes are kept; kg.
 
-    error: the relative error that `ringing` gives the definition "stick", to which lowest and highest reach at least;
-    None for the others, and where a resolution was given.
+    error: the estimated relative error of the definition "stick" (see `ringing`); lowest and highest reach at least as
+    far. None for other definitions, and where a resolution was given.
     """
 
     end_mass: float
@@ -70,33 +100,34 @@ class Spread(NamedTuple):
     error: float | None = None
 
 
-def end_mass_spread(scene: Scene, drive: Drive = "stick", at: Resolution | None = None) -> tuple[float, float]:
-    """Smallest and largest end mass, kg, when only the lowest modes are kept: from a quarter of them to all.
+def end_mass_spread(scene: Scene, drive: str = "stick", at: Resolution | None = None) -> tuple[float, float]:
+    """Smallest and largest end mass, kg, while only the lowest 25 to 100 % of the modes are kept.
 
     Wave fronts that return just before the pulse ends make false plateaus, so one doubling of the modes proves nothing.
     """
-    formula_of(drive)
+    definition_of(drive)
     return end_mass_spreads(scene, at)(drive)[1:3]
 
 
-def end_mass_spreads(scene: Scene, at: Resolution | None = None) -> Callable[[Drive], Spread]:
-    """The end mass and its spread by definition, for any number of definitions from one eigenproblem of the beam.
+def end_mass_spreads(scene: Scene, at: Resolution | None = None) -> Callable[[str], Spread]:
+    """A function that gives the end mass and its spread by any definition; the beam is solved once for all of them."""
+    return spreads_of(Solved(scene, at))
 
-    The spread is that of plain sums, without a tail. A definition that takes a coupled strike is tried at 5 cutoffs,
-    one in closed form at 13.
+
+def spreads_of(solved: Solved) -> Callable[[str], Spread]:
+    """As `end_mass_spreads`, of a solved scene.
+
+    The spread is that of plain sums, without a tail, at 13 numbers of modes; at 5 where each takes a coupled strike.
     """
-    if isinstance(scene.cue, LumpedCue):
-        same = scalar("LumpedCue.end_mass", scene.cue.end_mass)
-        return lambda drive: Spread(same, same, same)
-    tip = tip_modes_of(scene, at, least=LEAST_STUCK)
-    plain = tip if at is not None else tip_modes_of(scene, default_resolution(scene, periods=PLAIN_PERIODS))
-    rigid, whole = int(np.sum(plain.omega == 0)), len(plain.omega)
+    scene = solved.scene
 
-    def spread(drive: Drive) -> Spread:
-        formula, cutoffs = formula_of(drive), 5 if _strikes(drive, tip, scene) else 13
+    def spread(drive: str) -> Spread:
+        definition, tip, plain = definition_of(drive), solved.tip_stuck, solved.tip_plain
+        rigid, whole = int(np.sum(plain.omega == 0)), len(plain.omega)
+        cutoffs = 5 if definition.strikes(tip, scene) else 13
         least = rigid + math.ceil((whole - rigid) / 4)
         kept = np.unique(np.linspace(least, whole, cutoffs).astype(int))
-        values = [formula(tip, scene), *(formula(plain.lowest(n), scene) for n in kept)]
+        values = [float(definition.of(each, scene)) for each in (tip, *map(plain.lowest, kept.tolist()))]
         error = ringing(tip, StickLimit.of(scene)) if drive == "stick" and tip.radiation is not None else None
         reach = [values[0] * (1 + side * (error or 0.0)) for side in (-1, 1)]
         return Spread(values[0], min(*values, *reach), max(*values, *reach), error)
@@ -104,26 +135,22 @@ def end_mass_spreads(scene: Scene, at: Resolution | None = None) -> Callable[[Dr
     return spread
 
 
-def _strikes(drive: str, tip: TipModes, scene: Scene) -> bool:
-    """Whether a definition takes a coupled strike, because nothing else says it."""
-    if drive not in ("stick", "offset"):
-        return drive == "squirt"
+def _couples(tip: TipModes, scene: Scene) -> bool:
+    """Whether the closed form of a sticking tip does not hold, so that a coupled strike must be solved."""
     along = np.any(tip.amplitude[tip.omega > 0, 0] != 0)  # rod modes change the course of the normal impulse
     return bool(along) or any(isinstance(effect, TipEffect) for effect in scene.effects)
 
 
+def definition_of(drive: str) -> Definition:
+    """The definition of that name; ValueError, naming those there are, if there is none."""
+    if drive not in DEFINITIONS:
+        raise ValueError(f"end_mass drive must be one of {', '.join(DEFINITIONS)}; got {drive!r}")
+    return DEFINITIONS[drive]
+
+
 def formula_of(drive: str) -> Callable[[TipModes, Scene], Any]:
-    """The definition of that name, as a function of tip modes and scene; ValueError for an unknown one."""
-    formulas: dict[str, Callable[[TipModes, Scene], Any]] = {
-        "stick": stick,
-        "offset": stick_at_offset,
-        "velocity": velocity,
-        "force": force,
-        "squirt": squirt_equivalent,
-    }
-    if drive not in formulas:
-        raise ValueError(f"end_mass drive must be one of {', '.join(formulas)}; got {drive!r}")
-    return formulas[drive]
+    """The end mass of that definition, kg, as a function of tip modes and scene; ValueError for an unknown one."""
+    return definition_of(drive).of
 
 
 def force(tip: TipModes, scene: Scene) -> float:
@@ -149,7 +176,7 @@ def stick(tip: TipModes, scene: Scene) -> float:
     coupled strike's own small-offset squirt.
     """
     limit = StickLimit.of(scene)
-    if _strikes("stick", tip, scene):
+    if _couples(tip, scene):
         return float(limit.end_mass(limit.impulse(small_offset_slope(tip, scene))))
     return float(limit.end_mass(stick_impulse(tip, limit)))
 
@@ -165,7 +192,7 @@ def stick_at_offset(tip: TipModes, scene: Scene) -> Any:
     exponentials).
     """
     b, stroke = np.abs(scene.stroke.offset), scene.stroke
-    if _strikes("offset", tip, scene):
+    if _couples(tip, scene):
         return _each(lambda x, U: _stuck_end_mass(tip, replace(scene, stroke=Stroke(U, x))), b, stroke.speed)
     if tip.resistance is not None:
         return _each(lambda x, _: _end_mass_at(tip, scene, x), b, 1.0)
@@ -281,7 +308,7 @@ def equivalent_end_mass(outcome: Outcome, scene: Scene) -> float:
     return _with_squirt(float(np.sign(scene.stroke.offset) * outcome.squirt), scene, "squirt")
 
 
-def _with_squirt(squirt: float, scene: Scene, drive: Drive) -> float:
+def _with_squirt(squirt: float, scene: Scene, drive: str) -> float:
     """The lumped end mass, kg, whose impulse-solver squirt is ``squirt``, rad, away from the side struck."""
     side = np.sign(scene.stroke.offset)
 
@@ -295,3 +322,76 @@ def _with_squirt(squirt: float, scene: Scene, drive: Drive) -> float:
             f"end_mass drive {drive!r}: no lumped end mass in [1e-9, 1e3] kg has the squirt {squirt:.6g} rad"
         )
     return math.exp(zero(excess, low, high))
+
+
+class Definition(NamedTuple):
+    """One definition of the effective end mass, and what commands, pages and sweeps say of it.
+
+    name: as `end_mass` takes it. label: in a few words. meaning: in plain English. formula: how it is computed. value:
+    the end mass of a vibrating cue, kg, from its tip modes and its scene. at_offset: whether it is the end mass at the
+    scene's own offset. strikes: whether it takes a coupled strike of these tip modes.
+    """
+
+    name: str
+    label: str
+    meaning: str
+    formula: str
+    value: Callable[[TipModes, Scene], Any]
+    at_offset: bool = False
+    strikes: Callable[[TipModes, Scene], bool] = lambda tip, scene: False
+
+    def of(self, tip: TipModes, scene: Scene) -> Any:
+        """The end mass of any cue by this definition, kg; a lumped cue has its own whatever the definition."""
+        return self.value(tip, scene) if scene.lumped is None else scene.lumped.end_mass
+
+    def label_at(self, offset: Any) -> str:
+        """The label, with the offset b/R where the definition is of the scene's own."""
+        return f"{self.label} at b/R {offset:g}" if self.at_offset else self.label
+
+
+# The one table of the definitions, in the order in which they are shown. What is added here is found everywhere.
+DEFINITIONS: dict[str, Definition] = {
+    one.name: one
+    for one in (
+        Definition(
+            "stick",
+            "stick, small offsets",
+            "the inertia across the cue that the ball feels in the coupled strike as the offset goes to zero",
+            "(K - 1)/J - c = 1/m_e, J the impulse across the cue that makes the tip follow V(t) = K P(t) - 1",
+            stick,
+            strikes=_couples,
+        ),
+        Definition(
+            "offset",
+            "stick",
+            "the inertia across the cue that the ball feels at this offset in a coupled strike whose tip never slips",
+            "as stick, with the K and T of the contact at this offset",
+            stick_at_offset,
+            at_offset=True,
+            strikes=_couples,
+        ),
+        Definition(
+            "velocity",
+            "velocity",
+            "impulse over final velocity of a tip that is moved like (1 - cos(pi t/T))/2",
+            "m_e = integral of F dt over 0..T, F the force that gives the tip that velocity",
+            velocity,
+        ),
+        Definition(
+            "force",
+            "force",
+            "impulse over final velocity of a tip that is pushed by a half sine of length T",
+            "m_e = (2 T/pi)/(integral of h(T - t) sin(pi t/T) dt over 0..T)",
+            force,
+        ),
+        Definition(
+            "squirt",
+            "squirt-equivalent",
+            "the end mass whose squirt in the impulse solver (restitution, friction) is that of the coupled strike",
+            "squirt of impulse(LumpedCue(m_a, m_e)) = squirt of strike(scene), solved for m_e",
+            squirt_equivalent,
+            at_offset=True,
+            strikes=lambda tip, scene: True,
+        ),
+    )
+}

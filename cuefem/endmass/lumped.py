@@ -10,7 +10,7 @@ import numpy as np
 from cuefem.beam.tip import TipModes
 from cuefem.contact.flow import zero
 from cuefem.contact.impulse_space import impact
-from cuefem.cue import Cue, LumpedCue
+from cuefem.cue import LumpedCue
 from cuefem.effects import TipEffect
 from cuefem.endmass.drives import _gripping, end_mass, stick_at_offset, sticking_squirt
 from cuefem.quantity import check_kind, scalar
@@ -19,16 +19,43 @@ from cuefem.tip_modes import tip_modes_of
 
 
 def lump(scene: Scene, at: Resolution | None = None) -> LumpedCue:
-    """The lumped cue that squirts as the coupled strike does at the scene's own offset, while its tip sticks.
+    """The lumped cue that squirts at the scene's own offset as the coupled strike does whose tip never slips.
 
-    Its end mass is "offset" of the cue alone; what effects at the tip (`TipDome`, `TipShear`) add or take goes into the
-    coupling, about proportional to sin(phi). ValueError where no lumped cue squirts so.
+    Parameters
+    ----------
+    scene
+        The cue, ball, tip and stroke. A `LumpedCue` is returned as it is.
+    at
+        How finely the cue is computed; by default as in `cuefem.strike`.
+
+    Returns
+    -------
+    LumpedCue
+        Its mass is the cue's along the axis, its end mass "offset" of the cue alone (see `cuefem.end_mass`). What
+        effects at the tip (`TipDome`, `TipShear`) add goes into the coupling, which is about proportional to sin(phi).
+
+    Raises
+    ------
+    ValueError
+        If no lumped cue has that squirt.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> cue = cf.Cue((cf.Segment(0.7, 0.012, 0.021, wood),), body_mass=0.43)
+    >>> scene = cf.Scene(cue, tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(offset=0.3))
+    >>> lumped = cf.lump(scene)
+    >>> round(1e3 * lumped.end_mass, 1), lumped.coupling  # g, 1/kg
+    (4.4, 0.0)
     """
-    return scene.cue if isinstance(scene.cue, LumpedCue) else lump_modes(scene, tip_modes_of(scene, at))
+    return scene.lumped or lump_modes(scene, tip_modes_of(scene, at))
 
 
 def lump_modes(scene: Scene, tip: TipModes) -> LumpedCue:
-    """The same of a cue that is given by its tip modes."""
+    """As `lump`, from the scene's tip modes."""
+    if scene.lumped is not None:
+        return scene.lumped
     effects = tuple(effect for effect in scene.effects if not isinstance(effect, TipEffect))
     cue = LumpedCue(scene.axial_mass, stick_at_offset(tip, replace(scene, effects=effects)))
     if len(effects) == len(scene.effects) or scalar("Stroke.offset", scene.stroke.offset) == 0:
@@ -37,7 +64,7 @@ def lump_modes(scene: Scene, tip: TipModes) -> LumpedCue:
 
 
 def _coupling(cue: LumpedCue, scene: Scene, squirt: float) -> float:
-    """The coupling with which a lumped cue's squirt, where its tip never slips, is ``squirt`` rad."""
+    """The coupling, 1/kg, with which the squirt of a lumped cue whose tip never slips is ``squirt``, rad."""
     most, side = (1 - 1e-9) / math.sqrt(cue.mass * cue.end_mass), np.sign(scene.stroke.offset)
 
     def excess(part: float) -> float:
@@ -50,16 +77,42 @@ def _coupling(cue: LumpedCue, scene: Scene, squirt: float) -> float:
 
 
 def impulse(scene: Scene) -> Outcome:
-    """Outcome of a stroke from the general impulse solver ([Stronge]'s construction), exact in every regime.
+    """Outcome of a stroke from the general impulse solver: no time and no vibration, exact in every regime.
 
-    Array fields of cue, ball, tip and stroke broadcast; a million strokes take about a second. A finite-element cue is
-    lumped first, at every offset anew: its axial mass and its end mass "offset" (see `cuefem.end_mass`), ValueError
-    where it has none. See `cuefem.contact.impulse_space.impact` for phases and energies.
+    Parameters
+    ----------
+    scene
+        Cue, ball, tip and stroke, whose fields may be arrays that broadcast: a million strokes take about a second. A
+        finite-element cue is lumped first, at every offset anew: it counts by its axial mass and its end mass "offset"
+        (see `cuefem.end_mass`).
+
+    Returns
+    -------
+    Outcome
+        With the arrays' broadcast shape. See `cuefem.contact.impulse_space.impact` for phases and energies.
+
+    Raises
+    ------
+    ValueError
+        If a lumped cue has effects, which need time (see `cuefem.strike`), or if a finite-element cue has no such end
+        mass.
+
+    Notes
+    -----
+    [Stronge]'s construction in impulse space, with his energetic coefficient of restitution (physics.md section 3).
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> scene = cf.Scene(cf.LumpedCue.two_part(mass=0.54, cue_end_mass=0.012), stroke=cf.Stroke(offset=0.3))
+    >>> outcome = cf.impulse(scene)
+    >>> outcome.regime, round(float(outcome.squirt), 4)  # rad
+    ('stick', 0.0127)
     """
     check_kind("impulse scene", scene, Scene)
-    if scene.effects and isinstance(scene.cue, LumpedCue):
+    if scene.effects and scene.lumped is not None:
         names = ", ".join(type(effect).__name__ for effect in scene.effects)
         raise ValueError(f"impulse takes a LumpedCue without effects, which need time (see strike); got {names}")
-    if isinstance(scene.cue, Cue):
+    if scene.lumped is None:
         scene = replace(scene, cue=LumpedCue(scene.axial_mass, end_mass(scene, "offset")), effects=())
     return impact(scene)

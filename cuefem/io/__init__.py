@@ -128,12 +128,12 @@ def save(obj: Cue | Scene, path: str | os.PathLike[str]) -> None:
     if path.suffix.lower() == ".toml":
         content = toml_text(obj)
         write_whole(path, lambda temporary: temporary.write_text(content, encoding="utf-8"))
-    elif path.suffix.lower() in _MESHES and isinstance(obj, Cue):
+    elif path.suffix.lower() in _MESHES and not isinstance(obj, Scene):
         from cuefem.io.mesh import save_mesh
 
         write_whole(path, lambda temporary: save_mesh(obj, temporary))
     else:
-        allowed = ".toml, .vtk or .vtu" if isinstance(obj, Cue) else ".toml, for a scene"
+        allowed = ".toml, for a scene" if isinstance(obj, Scene) else ".toml, .vtk or .vtu"
         raise InputError(path, "", f"must end in {allowed}; got {path.suffix!r}")
 
 

@@ -109,8 +109,7 @@ def save_strike(folder: Path, scene: Scene, found: Motion, *, scale: float = 1.0
 
     scale: what bending is drawn with; the displacement beside the points is the true one.
     """
-    assert isinstance(scene.cue, Cue)  # motion takes no other
-    shaft, ball = shaft_surface(scene.cue), ball_surface(scalar("Ball.radius", scene.ball.radius))
+    shaft, ball = shaft_surface(scene.shaft), ball_surface(scalar("Ball.radius", scene.ball.radius))
     w, theta = found.deflection(shaft.x)
     centres, forces = (np.pad(plane, [(0, 0), (0, 1)]) for plane in (found.centre, found.force))
     (folder / "strike").mkdir()

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from cuefem.cue import Cue
 from cuefem.design import METHODS, Levels, Normal, Response, Sample, Span, Study, Vary, paths
 from cuefem.design.optimum import Limit, Problem
 from cuefem.design.paths import quantity_at, value_at
@@ -163,7 +162,7 @@ def _base(found: dict[str, Any], path: Path, offset: float) -> Scene:
         got = shown(name) if "scene" in found else "nothing"
         raise InputError(path, "scene", f"must be the path of a scene or a cue, from this file's folder; got {got}")
     base = load(path.parent / name)
-    return Scene(base, stroke=Stroke(offset=offset)) if isinstance(base, Cue) else base
+    return base if isinstance(base, Scene) else Scene(base, stroke=Stroke(offset=offset))
 
 
 def _response(text: Any, path: Path, key: str) -> Response:

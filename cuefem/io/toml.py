@@ -150,9 +150,9 @@ def _scene(found: dict[str, Any], path: Path, cue_file: Callable[[Path], Cue]) -
 def _check_effects(scene: Scene, path: Path) -> None:
     """Refuse what only the cue can say: an effect at a position off it."""
     for i, effect in enumerate(scene.effects):
-        if isinstance(effect, CueEffect) and isinstance(scene.cue, Cue):
+        if isinstance(effect, CueEffect):
             try:
-                effect.check_on(scene.cue, joined("effects", i))
+                effect.check_on(scene.shaft, joined("effects", i))
             except ValueError as error:
                 key, _, problem = str(error).partition(" ")
                 raise InputError(path, key, problem) from None

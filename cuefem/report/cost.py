@@ -12,7 +12,6 @@ from rich.table import Table
 
 from cuefem.accuracy import FIRST, JUDGED, MOST, RATIO, Rung, ladder, relative_error
 from cuefem.contact.strike import strike
-from cuefem.cue import Cue
 from cuefem.report.record import Record
 from cuefem.report.table import NONE, table_of, with_caption
 from cuefem.report.words import significant
@@ -33,8 +32,6 @@ def cost_record(scene: Scene, *, most: int = MOST, track: Track = iter) -> Recor
     rungs); "difference" from the last rung; "seconds" of all rungs up to it, which is what `cuefem.resolve` takes, and
     "plain", the sum without a tail: its own difference and seconds. ValueError for a lumped cue, which is exact.
     """
-    if not isinstance(scene.cue, Cue):
-        raise ValueError("cost needs a cue of segments; got a lumped cue, which is exact at once")
     climbed = _climbed(scene, most, track)
     best = climbed[-1][0].outcome
     rungs = [_rung_record(scene, rung, seconds, best) for rung, seconds in track(climbed)]

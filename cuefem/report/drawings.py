@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import accumulate
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from cuefem.beam.modes import Modes
-from cuefem.cue import Cue, LumpedCue, Material, Segment
+from cuefem.cue import Cue, Material, Segment
 from cuefem.effects import CueEffect
 from cuefem.materials import MATERIALS
 from cuefem.quantity import scalar
@@ -67,20 +69,17 @@ def style_of(name: str) -> str:
 
 def cue_drawing(scene: Scene, *, across: float) -> CueDrawing:
     """The whole cue, its diameters ``across`` times as large as its length."""
-    assert isinstance(scene.cue, Cue)
     title = "True to scale" if across == 1 else f"Diameters {across:g} times enlarged"
-    return _drawn(scene, title, length=scene.cue.length, across=across)
+    return _drawn(scene, title, length=scene.shaft.length, across=across)
 
 
 def front_drawing(scene: Scene) -> CueDrawing:
     """The tip end, true to scale, with its dome."""
-    assert isinstance(scene.cue, Cue)
-    return _drawn(scene, "The tip end, true to scale", length=min(FRONT, scene.cue.length), across=1.0)
+    return _drawn(scene, "The tip end, true to scale", length=min(FRONT, scene.shaft.length), across=1.0)
 
 
 def _drawn(scene: Scene, title: str, *, length: float, across: float) -> CueDrawing:
-    cue = scene.cue
-    assert isinstance(cue, Cue)
+    cue = scene.shaft
     scale = (WIDE - 20) / length
     shown = [(x, segment) for x, segment in zip(cue.nodes[:-1], cue.segments, strict=True) if x < length]
     ends = [s.tip_diameter + (s.butt_diameter - s.tip_diameter) * min(1, (length - x) / s.length) for x, s in shown]
@@ -158,7 +157,7 @@ def strike_drawing(scene: Scene, squirt: float) -> StrikeDrawing:
     R = scalar("Ball.radius", scene.ball.radius)
     phi = math.asin(scalar("Stroke.offset", scene.stroke.offset))
     r = scene.dome_radius
-    across = scene.cue.segments[0].tip_diameter if isinstance(scene.cue, Cue) else 0.4 * R
+    across = scene.cue.segments[0].tip_diameter if scene.cue.segments else 0.4 * R
     apex, scale = 300.0, 1.9e3 * 0.03 / R
     middle = 75.0
     centre = (apex + scale * (r - (R + r) * math.cos(phi)), middle)
@@ -167,7 +166,7 @@ def strike_drawing(scene: Scene, squirt: float) -> StrikeDrawing:
     angle = np.linspace(1, -1, 25) * math.asin(across / 2 / radius)
     front_x = apex + scale * radius * (1 - np.cos(angle)) if r else np.full(25, apex)
     front_y = line + scale * across / 2 * np.linspace(1, -1, 25) if not r else line + scale * radius * np.sin(angle)
-    pieces = _struck_end(scene.cue, across, (front_x, front_y), apex=apex, line=line, scale=scale)
+    pieces = _struck_end(scene.cue.segments, across, (front_x, front_y), apex=apex, line=line, scale=scale)
     reach = float(centre[0]) - 6
     fall = reach * math.tan(squirt)
     return StrikeDrawing(
@@ -183,15 +182,16 @@ def strike_drawing(scene: Scene, squirt: float) -> StrikeDrawing:
 
 
 def _struck_end(
-    cue: Cue | LumpedCue, across: float, front: tuple[Any, Any], *, apex: float, line: float, scale: float
+    segments: Sequence[Segment], across: float, front: tuple[Any, Any], *, apex: float, line: float, scale: float
 ) -> tuple[tuple[str, str], ...]:
     """The segments as far as the drawing goes, the first with the tip's front; a lumped cue has no material."""
     reach = (WIDE - apex) / scale
     parts = [(0.0, reach, across, across, "m-other")]
-    if isinstance(cue, Cue):
+    if segments:
+        ends = [0.0, *accumulate(s.length for s in segments)]
         parts = [
             (x, x + s.length, s.tip_diameter, s.butt_diameter, style_of(material_name(s.material)))
-            for x, s in zip(cue.nodes[:-1], cue.segments, strict=True)
+            for x, s in zip(ends, segments, strict=False)
             if x < reach
         ]
     found = []

@@ -7,14 +7,12 @@ from collections.abc import Callable
 from rich.console import Group
 
 from cuefem.beam.tip import TipModes
-from cuefem.endmass.drives import Drive, Spread, end_mass_spreads, formula_of
+from cuefem.endmass.drives import DEFINITIONS, Spread, end_mass_spreads, formula_of
 from cuefem.report.record import Record
 from cuefem.report.table import NONE, table_of, with_caption
 from cuefem.report.words import _tip_effects, assumptions, grams, significant
 from cuefem.scene import Scene
 from cuefem.squirt import cue_end_mass
-
-DRIVES: tuple[Drive, ...] = ("stick", "offset", "velocity", "force", "squirt")
 
 
 def end_mass_record(scene: Scene, *, tip: TipModes | None = None) -> Record:
@@ -27,11 +25,11 @@ def end_mass_record(scene: Scene, *, tip: TipModes | None = None) -> Record:
     return {
         "contact_time": scene.contact_time,
         "offset": scene.stroke.offset,
-        "drives": {drive: _end_mass(scene, spread, drive, tip=tip) for drive in DRIVES},
+        "drives": {drive: _end_mass(scene, spread, drive, tip=tip) for drive in DEFINITIONS},
     }
 
 
-def _end_mass(scene: Scene, spread: Callable[[Drive], Spread], drive: Drive, *, tip: TipModes | None = None) -> Record:
+def _end_mass(scene: Scene, spread: Callable[[str], Spread], drive: str, *, tip: TipModes | None = None) -> Record:
     try:
         felt, lowest, highest, _ = spread(drive)
         if tip is not None:
@@ -60,7 +58,7 @@ def end_mass_table(record: Record, scene: Record) -> Group:
     table = table_of("Effective end mass", columns)
     refused = []
     for drive, values in record["drives"].items():
-        name = f"{drive}, at b/R {record['offset']:g}" if drive in ("offset", "squirt") else drive
+        name = f"{drive}, at b/R {record['offset']:g}" if DEFINITIONS[drive].at_offset else drive
         if values["end_mass"] is None:
             table.add_row(name, *[NONE] * 4)
             refused.append(f"{drive}: {values['reason']}")

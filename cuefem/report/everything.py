@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from cuefem.contact.strike import strike
-from cuefem.cue import Cue
 from cuefem.report.end_mass import end_mass_record
 from cuefem.report.modes import modes_record
 from cuefem.report.record import Record
@@ -13,6 +12,6 @@ from cuefem.scene import Scene
 
 def report_record(scene: Scene, *, count: int = 6) -> Record:
     """All of it: modes, end masses, squirt and pivot length; and how the scene's own stroke goes."""
-    found: Record = {"modes": modes_record(scene, count=count, near=None)} if isinstance(scene.cue, Cue) else {}
+    found: Record = {"modes": modes_record(scene, count=count, near=None)} if scene.cue.segments else {}
     found |= {"end_masses": end_mass_record(scene), "squirt": squirt_record(scene)}
     return found | {"regime": strike(scene).regime}

@@ -10,36 +10,23 @@ an end mass of its own, the drive "A.31".
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Literal
 
 import numpy as np
 
-from cuefem.beam.tip import TipModes, lumped_tip_modes
+from cuefem.beam.tip import TipModes
 from cuefem.contact.strike import strike_modes
-from cuefem.cue import Cue, LumpedCue
 from cuefem.effects import Elevation
-from cuefem.endmass.drives import formula_of
-from cuefem.quantity import scalar
-from cuefem.report.end_mass import DRIVES
+from cuefem.endmass.drives import DEFINITIONS, formula_of
 from cuefem.report.record import Record
 from cuefem.scene import Scene
 from cuefem.squirt import alciatore_a31, alciatore_a31_mass_ratio
 from cuefem.tip_modes import tip_modes_of
 
-Handed = Literal["A.31", "stick", "offset", "velocity", "force", "squirt"]
-HANDED: tuple[Handed, ...] = ("A.31", *DRIVES)
 OFFSETS = (0.1, 0.2, 0.3, 0.4, 0.5)
 POOLTOOL_INERTIA = 0.4  # its 5/2
 NICKEL = 0.0106045  # m, the dome of pooltool's own cue
 
-MEANING = {
-    "A.31": "the end mass whose [A.31] squirt is that of the coupled strike, at this offset, speed and contact time",
-    "stick": "the inertia across the cue that the ball feels in the coupled strike as the offset goes to zero",
-    "offset": "the inertia across the cue that the ball feels at this offset in a coupled strike whose tip never slips",
-    "velocity": "impulse over final velocity of a tip that is moved like (1 - cos(pi t/T))/2",
-    "force": "impulse over final velocity of a tip that is pushed by a half sine of length T",
-    "squirt": "the end mass whose squirt in the impulse solver (restitution, friction) is that of the coupled strike",
-}
+A31_MEANING = "the end mass whose [A.31] squirt is that of the coupled strike, at this offset, speed and contact time"
 SIGNS = (
     "a is b/R of the contact, positive on the ball's left, and alpha positive to the left: "
     "alpha(a) = -squirt(offset = a); end_mass is m_e, felt at the tip, not the four times larger m_c of the cue's end"
@@ -47,12 +34,12 @@ SIGNS = (
 UNITS = {"M": "kg", "m": "kg", "end_mass": "kg", "length": "m", "R": "m", "radius": "m", "squirt": "rad"}
 
 
-def pooltool_record(name: str, scene: Scene, *, drive: Handed = "A.31") -> Record:
+def pooltool_record(name: str, scene: Scene, *, drive: str = "A.31") -> Record:
     """pooltool's CueSpecs of a scene's cue, SI, what their end mass means, and what squirt it gives beside ours.
 
     drive: which end mass is handed over. ValueError where that one does not exist: "A.31" head on and in a miscue.
     """
-    tip = lumped_tip_modes(scene.cue) if isinstance(scene.cue, LumpedCue) else tip_modes_of(scene)
+    tip = tip_modes_of(scene)
     masses, reasons = _end_masses(scene, tip)
     if drive in reasons:
         raise ValueError(f"end mass {drive!r} does not exist here: {reasons[drive]}")
@@ -62,7 +49,7 @@ def pooltool_record(name: str, scene: Scene, *, drive: Handed = "A.31") -> Recor
         "BallParams": {"m": scene.ball.mass, "R": scene.ball.radius},
         "end_mass": {
             "drive": drive,
-            "meaning": MEANING[drive],
+            "meaning": A31_MEANING if drive == "A.31" else DEFINITIONS[drive].meaning,
             "contact_time": scene.contact_time,
             "offset": scene.stroke.offset,
             "speed": scene.stroke.speed,
@@ -78,18 +65,18 @@ def pooltool_record(name: str, scene: Scene, *, drive: Handed = "A.31") -> Recor
 
 def _cue_specs(name: str, scene: Scene) -> Record:
     specs: Record = {"brand": name, "M": scene.axial_mass}
-    if isinstance(scene.cue, Cue):
+    if scene.cue.segments:
         first, last = scene.cue.segments[0], scene.cue.segments[-1]
-        specs |= {"length": scene.cue.length}
+        specs |= {"length": scene.shaft.length}
         specs |= {"shaft_radius_at_tip": first.tip_diameter / 2, "shaft_radius_at_butt": last.butt_diameter / 2}
     return specs | {"tip_radius": scene.dome_radius or NICKEL}
 
 
 def _notes(scene: Scene) -> list[str]:
     notes = ["pooltool takes [A.31], an instantaneous stroke without friction's limit: it knows no miscue"]
-    if isinstance(scene.cue, LumpedCue):
+    if scene.lumped is not None:
         notes.append("a lumped cue has no length and no radii: pooltool's own stay")
-    elif scene.cue.body_mass:
+    elif scene.shaft.body_mass:
         notes.append("length and shaft_radius_at_butt are those of the file's segments; M is the whole cue's")
     if not scene.dome_radius:
         notes.append("tip_radius: pooltool's own, a nickel's; the scene has no TipDome")
@@ -104,7 +91,7 @@ def _notes(scene: Scene) -> list[str]:
 def _end_masses(scene: Scene, tip: TipModes) -> tuple[dict[str, float | None], dict[str, str]]:
     masses: dict[str, float | None] = {}
     reasons: dict[str, str] = {}
-    for drive in HANDED:
+    for drive in ("A.31", *DEFINITIONS):
         try:
             masses[drive] = _end_mass(scene, tip, drive)
         except ValueError as error:
@@ -112,11 +99,9 @@ def _end_masses(scene: Scene, tip: TipModes) -> tuple[dict[str, float | None], d
     return masses, reasons
 
 
-def _end_mass(scene: Scene, tip: TipModes, drive: Handed) -> float:
+def _end_mass(scene: Scene, tip: TipModes, drive: str) -> float:
     if drive == "A.31":
         return _a31_end_mass(scene, tip)
-    if isinstance(scene.cue, LumpedCue):
-        return scalar("LumpedCue.end_mass", scene.cue.end_mass)
     return float(formula_of(drive)(tip, scene))
 
 

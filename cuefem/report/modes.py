@@ -5,7 +5,6 @@ from __future__ import annotations
 from rich.console import Group
 
 from cuefem.beam.modes import modes
-from cuefem.cue import Cue
 from cuefem.report.record import Record
 from cuefem.report.table import table_of, with_caption
 from cuefem.scene import Scene
@@ -16,9 +15,7 @@ def modes_record(scene: Scene, *, count: int, near: float | None) -> Record:
 
     "nearest": the frequency nearest ``near``, None without it.
     """
-    if not isinstance(scene.cue, Cue):
-        raise ValueError("modes need a cue of segments; got a lumped cue, which has none")
-    found = modes(scene.cue, count, near, effects=scene.cue_effects)
+    found = modes(scene.shaft, count, near, effects=scene.cue_effects)
     amplitudes, _ = found.shape(0.0)
     nearest = None if near is None else min(found.frequencies.tolist(), key=lambda f: abs(f - near))
     return {

@@ -15,7 +15,7 @@ import numpy as np
 from cuefem.accuracy import Rung, ladder
 from cuefem.beam.modes import modes
 from cuefem.contact.strike import strike
-from cuefem.cue import Cue
+from cuefem.endmass.drives import DEFINITIONS
 from cuefem.quantity import scalar
 from cuefem.report.charts import Axis, Chart, Curve, Mark, Span, chart
 from cuefem.report.drawings import (
@@ -86,7 +86,7 @@ def _stages(scene: Scene, rtol: float) -> list[Stage]:
         solved.append(rung)
         return steps
 
-    if isinstance(scene.cue, Cue):
+    if scene.cue.segments:
         first = Stage("steps", climb)
         outcome = Stage("outcome", lambda: solved[0].outcome)
         ended = cache(lambda: ended_tip_modes(scene, solved[0].at))
@@ -127,7 +127,6 @@ def accuracy_steps(scene: Scene, rtol: float) -> tuple[list[Step], Rung]:
 def _context(scene: Scene, found: Record) -> Record:
     outcome: Outcome = found["outcome"]
     record = strike_record(scene, outcome)
-    cue = scene.cue
     return {
         "scene": scene,
         "facts": _facts(scene),
@@ -136,8 +135,8 @@ def _context(scene: Scene, found: Record) -> Record:
         "squirt": degrees(outcome.squirt),
         "error": "" if outcome.error is None else f"{outcome.error:.1e}",
         "warning": MISCUE if outcome.regime == "miscue" else "",
-        "cue": _cue_part(scene) if isinstance(cue, Cue) else None,
-        "modes": modes_drawing(modes(cue, effects=scene.cue_effects), cue.length) if isinstance(cue, Cue) else None,
+        "cue": _cue_part(scene) if scene.cue.segments else None,
+        "modes": _modes_part(scene) if scene.cue.segments else None,
         "contact": None if outcome.history is None else _contact(outcome),
         "by_offset": _by_offset(found["squirt"], scene),
         "slipped": bool(_slipped(found["squirt"])),
@@ -173,9 +172,12 @@ def _key_figures(record: Record, end_masses: Record, outcome: Outcome) -> list[t
     return figures
 
 
+def _modes_part(scene: Scene) -> Any:
+    return modes_drawing(modes(scene.shaft, effects=scene.cue_effects), scene.shaft.length)
+
+
 def _cue_part(scene: Scene) -> Record:
-    cue = scene.cue
-    assert isinstance(cue, Cue)
+    cue = scene.shaft
     rows = [
         {
             "at": f"{1e3 * x:.1f}",
@@ -319,7 +321,10 @@ def _end_masses(record: Record, squirt: Record) -> Record:
     def row(name: str, felt: float, spread: tuple[float, float]) -> MassRow:
         return MassRow(name, place(felt), place(spread[0]), place(spread[1]), grams(felt))
 
-    rows = [row(DRIVE_WORDS[n], values["end_mass"], (values["lowest"], values["highest"])) for n, values in drives]
+    rows = [
+        row(DEFINITIONS[n].label_at(record["offset"]), values["end_mass"], (values["lowest"], values["highest"]))
+        for n, values in drives
+    ]
     rows.append(row("the paper's 12 g", paper, (paper, paper)))
     return {
         "rows": rows,
@@ -328,18 +333,9 @@ def _end_masses(record: Record, squirt: Record) -> Record:
         "ends": (left, right),
         "height": 26.0 * len(rows) + 44,
         "reasons": [values["reason"] for values in record["drives"].values() if values["end_mass"] is None],
-        "offset": f"{record['offset']:g}",
+        "meanings": [(one.label_at(record["offset"]), one.meaning) for one in DEFINITIONS.values()],
         "coupling": squirt["coupling"],
     }
-
-
-DRIVE_WORDS = {
-    "stick": "stick",
-    "offset": "at this offset",
-    "velocity": "velocity",
-    "force": "force",
-    "squirt": "squirt-equivalent",
-}
 
 
 def _energy(outcome: Outcome) -> list[tuple[str, str, float, str]]:

@@ -40,8 +40,8 @@ def plain(value: Any) -> Any:
 
 def cue_record(cue: Cue | LumpedCue) -> Record:
     """What a cue is, in a few numbers."""
-    if isinstance(cue, LumpedCue):
-        return {"mass": cue.mass, "end_mass": cue.end_mass, "coupling": cue.coupling}
+    if not cue.segments:
+        return {name: getattr(cue, name) for name in ("mass", "end_mass", "coupling")}
     names = ("length", "mass", "shaft_mass", "body_mass", "balance_point")
     return {name: getattr(cue, name) for name in names} | {"segments": len(cue.segments)}
 

@@ -7,14 +7,13 @@ from cuefem.beam.modes import modes
 from cuefem.beam.tail import tail
 from cuefem.beam.tip import TipModes
 from cuefem.contact.strike import strike, strike_modes
-from cuefem.cue import Cue, LumpedCue
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import tip_modes_from, turning
 
 
 def resolution_for(scene: Scene, rtol: float) -> Resolution | None:
     """The least resolution at which a strike's estimated error is within ``rtol``; None of a lumped cue."""
-    if isinstance(scene.cue, LumpedCue):
+    if scene.lumped is not None:
         return None
     for rung in ladder(scene):
         found = rung.at
@@ -25,8 +24,7 @@ def resolution_for(scene: Scene, rtol: float) -> Resolution | None:
 
 def ended_tip_modes(scene: Scene, at: Resolution) -> TipModes:
     """Tip modes at a resolution, ended by a tail as those of `cuefem.accuracy` are."""
-    assert isinstance(scene.cue, Cue)
-    found = modes(scene.cue, at.modes, effects=scene.cue_effects, at=at)
+    found = modes(scene.shaft, at.modes, effects=scene.cue_effects, at=at)
     return tip_modes_from(tail(found, turning=turning(scene)), scene)
 
 

@@ -11,7 +11,7 @@ from rich.console import Group
 from rich.table import Table
 
 from cuefem.beam.tip import TipModes
-from cuefem.contact.strike import strike, strike_modes
+from cuefem.contact.strike import strike_modes
 from cuefem.cue import LumpedCue
 from cuefem.endmass.lumped import impulse
 from cuefem.report.record import Record
@@ -20,7 +20,6 @@ from cuefem.report.strike import (
     _at,
     _coupled,
     _coupling_slope,
-    _known_tip,
     _left_out,
     _pivot_length,
     bare_scene,
@@ -29,6 +28,7 @@ from cuefem.report.strike import (
 from cuefem.report.table import NONE, table_of, with_caption
 from cuefem.report.words import assumptions, degrees, grams, millimetres, significant
 from cuefem.scene import Outcome, Scene
+from cuefem.tip_modes import tip_modes_of
 
 OFFSETS = (0.1, 0.2, 0.3, 0.4, 0.5)
 
@@ -51,7 +51,7 @@ def _curve(
     return found
 
 
-def two_part_curve(scene: Scene, offsets: Sequence[float], tip: TipModes | None) -> Record:
+def two_part_curve(scene: Scene, offsets: Sequence[float], tip: TipModes) -> Record:
     """The impulse solver's squirt and natural pivot length against the offset, each with its own `two_part_cues`."""
     return _curve(scene, offsets, two_part_cues(scene, offsets, tip))
 
@@ -63,7 +63,7 @@ def squirt_record(scene: Scene, offsets: Sequence[float] = OFFSETS, *, tip: TipM
 
     tip: the cue's tip modes, where they are known.
     """
-    tip = _known_tip(scene) if tip is None else tip
+    tip = tip_modes_of(scene) if tip is None else tip
     cues, slope = two_part_cues(scene, offsets, tip), _coupling_slope(scene, tip)
     struck = _struck(scene, offsets, tip)
     coupled = np.array([outcome.squirt for outcome in struck])
@@ -85,10 +85,8 @@ def squirt_record(scene: Scene, offsets: Sequence[float] = OFFSETS, *, tip: TipM
     }
 
 
-def _struck(scene: Scene, offsets: Sequence[float], tip: TipModes | None) -> list[Outcome]:
+def _struck(scene: Scene, offsets: Sequence[float], tip: TipModes) -> list[Outcome]:
     scenes = [replace(scene, stroke=replace(scene.stroke, offset=b)) for b in offsets]
-    if tip is None:
-        return [strike(one) for one in scenes]
     return [strike_modes(one, tip) for one in scenes]
 
 

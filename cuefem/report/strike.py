@@ -24,15 +24,14 @@ from cuefem.squirt import alciatore_a31, natural_pivot_length
 from cuefem.tip_modes import tip_modes_of
 
 
-def two_part_cues(scene: Scene, offsets: Sequence[float], tip: TipModes | None) -> list[LumpedCue | None]:
+def two_part_cues(scene: Scene, offsets: Sequence[float], tip: TipModes) -> list[LumpedCue | None]:
     """The scene's cue as the impulse solver takes it at each offset, without effects at its tip.
 
-    Its end mass is that of a tip that sticks at this offset; None where none has that squirt. tip: the cue's tip modes,
-    None of a lumped cue, which keeps its end mass.
+    Its end mass is that of a tip that sticks at this offset; None where none has that squirt. A lumped cue keeps its
+    end mass. tip: the cue's tip modes.
     """
-    if tip is None:
-        assert isinstance(scene.cue, LumpedCue)
-        return [replace(scene.cue, coupling=0.0)] * len(offsets)
+    if scene.lumped is not None:
+        return [replace(scene.lumped, coupling=0.0)] * len(offsets)
     bare = replace(scene, effects=tuple(effect for effect in scene.effects if not isinstance(effect, TipEffect)))
     try:
         masses = stick_at_offset(tip, _at(bare, np.array(offsets)))
@@ -43,17 +42,16 @@ def two_part_cues(scene: Scene, offsets: Sequence[float], tip: TipModes | None) 
     return [LumpedCue(scene.axial_mass, felt) for felt in masses.tolist()]
 
 
-def _coupling_slope(scene: Scene, tip: TipModes | None) -> float:
+def _coupling_slope(scene: Scene, tip: TipModes) -> float:
     """What effects at the tip add to `two_part_cues`, as a coupling per b/R; zero where no lumped cue has them.
 
     It is found at the scene's own offset, or head on at 0.1.
     """
     offset = scalar("Stroke.offset", scene.stroke.offset) or 0.1
     try:
-        cue = scene.cue if tip is None else lump_modes(_at(scene, offset), tip)
+        cue = lump_modes(_at(scene, offset), tip)
     except ValueError:  # an offset, or an effect, beyond any lumped cue's coupling
         return 0.0
-    assert isinstance(cue, LumpedCue)
     return scalar("LumpedCue.coupling", cue.coupling) / abs(offset)
 
 
@@ -67,10 +65,6 @@ def _coupled(cue: LumpedCue | None, coupling: float) -> LumpedCue | None:
 
 def _at(scene: Scene, offset: Any) -> Scene:
     return replace(scene, stroke=replace(scene.stroke, offset=offset))
-
-
-def _known_tip(scene: Scene) -> TipModes | None:
-    return None if isinstance(scene.cue, LumpedCue) else tip_modes_of(scene)
 
 
 def bare_scene(scene: Scene, cue: LumpedCue) -> Scene:
@@ -99,7 +93,7 @@ def strike_record(scene: Scene, outcome: Outcome | None = None) -> Record:
     motion along and across; "two-part" and "A.31" leave those effects out. They take the end mass of a tip that sticks
     at this offset, and are left out where there is none.
     """
-    offset, tip = scalar("Stroke.offset", scene.stroke.offset), _known_tip(scene)
+    offset, tip = scalar("Stroke.offset", scene.stroke.offset), tip_modes_of(scene)
     (cue,), coupling = two_part_cues(scene, [offset], tip), _coupling_slope(scene, tip) * abs(offset)
     models = {"coupled": outcome_record(strike(scene) if outcome is None else outcome, scene)}
     coupled = _coupled(cue, coupling) if coupling else None

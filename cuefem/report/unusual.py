@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from itertools import pairwise
 from typing import Any, NamedTuple
 
-from cuefem.cue import Cue, Segment
+from cuefem.cue import Segment
 from cuefem.scene import Scene
 
 JUMP = 1.5  # of the diameter between two segments
@@ -24,7 +24,7 @@ class Usual(NamedTuple):
 
 
 def _segments(scene: Scene) -> tuple[Segment, ...]:
-    return scene.cue.segments if isinstance(scene.cue, Cue) else ()
+    return scene.cue.segments
 
 
 def _diameters(scene: Scene) -> Iterable[tuple[str, float]]:
@@ -46,12 +46,12 @@ USUAL = (
         *(0.005, 0.02, 1e3, "mm", "9 to 10.6 is usual, a dime's or a nickel's"),
     ),
     Usual(
-        lambda s: [("drawn length", s.cue.length)] if isinstance(s.cue, Cue) else [],
+        lambda s: [("drawn length", s.shaft.length)] if s.cue.segments else [],
         *(0.3, 3.0, 1e3, "mm", "check the unit of the lengths"),
     ),
     Usual(_diameters, 0.005, 0.06, 1e3, "mm", "check the unit of the diameters"),
     Usual(
-        lambda s: [("drawn mass", s.cue.shaft_mass)] if isinstance(s.cue, Cue) else [],
+        lambda s: [("drawn mass", s.shaft.shaft_mass)] if s.cue.segments else [],
         *(0.02, float("inf"), 1e3, "g", "check the sizes and the densities"),
     ),
     Usual(lambda s: [("mass of the whole cue", float(s.cue.mass))], 0, 1.0, 1, "kg", "0.4 to 0.7 is usual"),

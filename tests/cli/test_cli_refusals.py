@@ -190,7 +190,10 @@ def test_wrong_units_say_why(tmp_path: Path, length: str, why: str) -> None:
 def test_a_lumped_cue_has_no_modes(tmp_path: Path) -> None:
     lumped = tmp_path / "lumped.toml"
     lumped.write_text("[cue]\nmass = '540 g'\nend_mass = '6 g'\n")
-    assert refused("modes", lumped) == f"{lumped}: modes need a cue of segments; got a lumped cue, which has none"
+    assert (
+        refused("modes", lumped)
+        == f"{lumped}: Scene.cue must be a Cue of segments: its modes or its shape are needed; got a LumpedCue"
+    )
     assert refused("modes", lumped, "--body-mass", "1 kg").startswith(f"{lumped}: --body-mass: must be left out")
 
 

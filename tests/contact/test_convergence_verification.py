@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from cuefem import Resolution
-from cuefem.beam import assemble
 from cuefem.beam.modes import modes
+from cuefem.beam.system import assemble
 from cuefem.contact.strike import strike_modes
 from cuefem.endmass.drives import stick_at_offset
 from cuefem.tip_modes import tip_modes_of

@@ -9,8 +9,8 @@ import pytest
 from scipy.integrate import quad
 
 from cuefem import Ball, Cue, Resolution, Scene, Segment, Tip, end_mass, modes
-from cuefem.beam import assemble
 from cuefem.beam.modes import solve
+from cuefem.beam.system import assemble
 from cuefem.beam.tail import tail
 from cuefem.cue import Material
 from cuefem.design.batch import BLOCK, CueBatch, batch_frequencies, batch_modes, batch_stick

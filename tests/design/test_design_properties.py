@@ -26,8 +26,8 @@ from cuefem import (
 )
 from cuefem.design import Levels, Response, Sample, Span, Study, Vary, evaluate, paths, replaced
 from cuefem.design.paths import spelt, value_at
-from cuefem.design.responses import KINDS
-from cuefem.endmass.drives import small_offset_slope
+from cuefem.design.responses import KINDS, kinds
+from cuefem.endmass.drives import DEFINITIONS, small_offset_slope
 from cuefem.materials import material
 from cuefem.squirt import natural_pivot_length
 from cuefem.tip_modes import tip_modes_of
@@ -40,7 +40,8 @@ ALL = tuple(
     for name in (
         *("end_mass", "squirt_slope", "pivot_length", "mass", "shaft_mass", "balance_point", "tip_stiffness"),
         *("frequency(1)", "frequency(3)", "squirt", "squirt(-0.2)", "ball_speed(0.2)", "vibration_energy"),
-        "pivot_length(0.4)",
+        *("pivot_length(0.4)", "end_mass_stick", "end_mass_offset(0.4)", "end_mass_velocity", "end_mass_force"),
+        *("end_mass_offset", "end_mass_squirt", "end_mass_squirt(-0.4)"),
     )
 )
 
@@ -278,7 +279,7 @@ def test_a_response_that_is_none_is_refused(text: str, words: str) -> None:
 def test_names_of_responses_read_back() -> None:
     for one in ALL:
         assert Response.of(one.name) == one
-    assert {one.kind for one in ALL} == set(KINDS)
+    assert {one.kind for one in ALL} == set(kinds()) > set(KINDS)
 
 
 def singly(scene: Scene) -> dict[str, float]:
@@ -286,8 +287,11 @@ def singly(scene: Scene) -> dict[str, float]:
     tip = tip_modes_of(scene, AT)
     slope = small_offset_slope(tip, scene)
 
+    def off_centre(scene: Scene, offset: float) -> Scene:
+        return replace(scene, stroke=replace(scene.stroke, offset=offset))
+
     def struck(offset: float) -> object:
-        return strike(replace(scene, stroke=replace(scene.stroke, offset=offset)), AT)
+        return strike(off_centre(scene, offset), AT)
 
     domes = [effect.radius for effect in scene.effects if isinstance(effect, TipDome)]
 
@@ -309,6 +313,9 @@ def singly(scene: Scene) -> dict[str, float]:
         "ball_speed(0.2)": struck(0.2).ball_speed,
         "vibration_energy": strike(scene, AT).energy["cue vibration"],
         "pivot_length(0.4)": pivot(0.4, struck(0.4).squirt),
+        **{f"end_mass_{drive}": end_mass(scene, drive, AT) for drive in DEFINITIONS},
+        "end_mass_offset(0.4)": end_mass(off_centre(scene, 0.4), "offset", AT),
+        "end_mass_squirt(-0.4)": end_mass(off_centre(scene, -0.4), "squirt", AT),
     }
 
 

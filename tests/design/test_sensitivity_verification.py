@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import get_args
 
 import numpy as np
 import pytest
@@ -14,12 +13,12 @@ import pytest
 from cuefem import Cue, LumpedCue, Material, PointMass, Resolution, Scene, Segment, Tip, load
 from cuefem.design.gradient import gradient
 from cuefem.design.sensitivity import Sensitivity, sensitivity
-from cuefem.endmass.drives import Drive, end_mass
+from cuefem.endmass.drives import end_mass
 from cuefem.endmass.undamped import StickLimit
 from tests.helpers.cues import carbon_tube, kim, low_deflection
 
 MESHES = Path(__file__).parents[2] / "meshes"
-DRIVES = [drive for drive in get_args(Drive) if drive != "squirt"]
+DRIVES = ["stick", "velocity", "force"]
 AT = Resolution(3, 8, 14)
 
 
@@ -35,7 +34,7 @@ def integral(found: Sensitivity, cue: Cue, *names: str) -> float:
 
 @pytest.mark.parametrize("drive", DRIVES)
 @pytest.mark.parametrize("path", sorted(MESHES.glob("*.toml")), ids=lambda path: path.stem)
-def test_the_parts_add_up_to_the_end_mass(path: Path, drive: Drive) -> None:
+def test_the_parts_add_up_to_the_end_mass(path: Path, drive: str) -> None:
     """physics.md section 6, on every cue in meshes/."""
     cue = load(path)
     assert isinstance(cue, Cue)
@@ -65,7 +64,7 @@ CUES = pytest.mark.parametrize("cue", [kim(), low_deflection(), carbon_tube()], 
 
 @pytest.mark.parametrize("drive", DRIVES)
 @CUES
-def test_a_gram_somewhere(cue: Cue, drive: Drive) -> None:
+def test_a_gram_somewhere(cue: Cue, drive: str) -> None:
     """The density of rhoA is the end mass that a point mass there adds."""
     fine = Resolution(4, 20, 14)  # so fine that the node which the point mass needs changes nothing
     found = sensitivity(scene(cue), drive, fine)
@@ -90,7 +89,7 @@ def multiplied(cue: Cue, constant: str, factor: float) -> Cue:
 @pytest.mark.parametrize("drive", DRIVES)
 @CUES
 @pytest.mark.parametrize(("constant", "names"), [("E", ["EI"]), ("G", ["kGA"]), ("rho", ["rhoA", "rhoI"])])
-def test_a_constant_of_all_materials(cue: Cue, drive: Drive, constant: str, names: list[str]) -> None:
+def test_a_constant_of_all_materials(cue: Cue, drive: str, constant: str, names: list[str]) -> None:
     """nu = 0 makes the shear coefficient free of E and G; a denser cue is heavier along the axis too."""
     cue = multiplied(cue, constant, 1.0)
     found = sensitivity(scene(cue), drive, AT)
@@ -130,7 +129,7 @@ def changed(cue: Cue, number: str, index: int, factor: float) -> Cue:
 @pytest.mark.parametrize("drive", ["stick", "force"])
 @pytest.mark.parametrize("number", NUMBERS)
 @pytest.mark.parametrize("index", [2, 3])
-def test_a_number_of_the_drawing(number: str, index: int, drive: Drive) -> None:
+def test_a_number_of_the_drawing(number: str, index: int, drive: str) -> None:
     """Of the carbon tube, whose shaft is bored from end to end; squirt too, where the drive has it."""
     cue = carbon_tube()
     found = gradient(scene(cue), drive, AT)
@@ -183,7 +182,7 @@ def altered(cue: Cue, number: str, index: int, factor: float) -> Cue:
     ("number", "index"),
     [*((f"core_{name}", i) for name in ("E", "G", "rho", "nu") for i in (0, 1)), ("nu", 0), ("nu", 1), ("kappa", 2)],
 )
-def test_a_number_of_the_core_and_of_shear(number: str, index: int, drive: Drive) -> None:
+def test_a_number_of_the_core_and_of_shear(number: str, index: int, drive: str) -> None:
     """By central differences to 1e-6; nu_e/(1 + nu_e) = 2 nu G/E makes a slope to the effective ratio one to nu."""
     cue = filled()
     found = gradient(scene(cue), drive, AT)

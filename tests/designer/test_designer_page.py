@@ -143,7 +143,7 @@ WRONG = {
     "bare.toml": ("[[segments]]\nlength = 0.7\n", "segments[0].length: must be in (0, 1000] m, a length with its unit"),
     "lumped.toml": (
         '[cue]\nmass = "0.5 kg"\nend_mass = "6 g"\n',
-        "cue must have segments, a shape that can be changed",
+        "Scene.cue must be a Cue of segments",
     ),
     "elsewhere.toml": ('cue = "shaft.toml"\n', "elsewhere.toml: cue: shaft.toml: cannot be read: No such file"),
     "profile.csv": ("a,b\n1,2\n", "profile.csv:"),

@@ -164,7 +164,9 @@ def test_no_impossible_cue_is_made(changes: dict[str, float], words: str) -> Non
 
 
 def test_a_lumped_cue_has_no_knobs() -> None:
-    with pytest.raises(ValueError, match="cue must have segments, a shape that can be changed; got a lumped cue"):
+    with pytest.raises(
+        ValueError, match=r"Scene.cue must be a Cue of segments: its modes or its shape are needed; got a LumpedCue"
+    ):
         knobs_of(cf.Scene(cf.LumpedCue(0.5, 0.006)))
 
 

@@ -29,7 +29,10 @@ def test_wrong_files_are_refused(tmp_path: Path) -> None:
     pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
     lumped = tmp_path / "lumped.toml"
     cf.save(cf.Scene(cf.LumpedCue(0.5, 0.006)), lumped)
-    assert refused(lumped) == f"{lumped}: cue must have segments, a shape that can be changed; got a lumped cue"
+    assert (
+        refused(lumped)
+        == f"{lumped}: Scene.cue must be a Cue of segments: its modes or its shape are needed; got a LumpedCue"
+    )
     missing = tmp_path / "missing.toml"
     assert refused(missing) == f"{missing}: cannot be read: No such file or directory"
 

@@ -21,14 +21,14 @@ from cuefem import (
     load,
     strike,
 )
-from cuefem.beam import assemble
 from cuefem.beam.modes import Modes, solve
+from cuefem.beam.system import assemble
 from cuefem.beam.tail import tail
 from cuefem.beam.waves import mesh_for
 from cuefem.contact.strike import strike_modes
 from cuefem.effects.axial import rod_modes
 from cuefem.materials import MATERIALS
-from cuefem.tip_modes import modes_of, tip_modes_from
+from cuefem.tip_modes import Solved, tip_modes_from
 from tests.helpers.orders import assert_order
 from tests.helpers.strike_scenes import imbalance
 
@@ -217,7 +217,7 @@ def test_losses_of_the_leather_are_those_of_bending_alone():
     tips = []
     for one in (cue, losing):
         lossy = Scene(one, Ball(), TIP, Stroke(), (AxialWaves(), StructuralDamping()))
-        tips.append(tip_modes_from(modes_of(lossy), lossy))
+        tips.append(Solved(lossy).tip)
     first, second = tips
     along = (first.amplitude[:, 0] != 0) & (first.omega > 0)
     np.testing.assert_array_equal(np.diag(first.damping)[along], np.diag(second.damping)[along])

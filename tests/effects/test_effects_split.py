@@ -18,9 +18,9 @@ import cuefem as cf
 from cuefem.design import evaluate
 from cuefem.designer.answers import answers, coupled_points
 from cuefem.effects import Effect
+from cuefem.endmass.drives import DEFINITIONS
 from cuefem.endmass.lumped import lump
 from cuefem.report.drawings import cue_drawing, front_drawing, strike_drawing
-from cuefem.report.end_mass import DRIVES
 from cuefem.report.everything import report_record
 from cuefem.report.handover import pooltool_record
 from cuefem.report.strike import strike_record
@@ -82,7 +82,7 @@ def rolled(struck: cf.Scene) -> Any:
 ASKED = {
     "dome radius": lambda s: s.dome_radius,
     "strike": lambda s: outcome_numbers(cf.strike(s, AT)),
-    "end masses": lambda s: [cf.end_mass(s, drive, AT) for drive in DRIVES],
+    "end masses": lambda s: [cf.end_mass(s, drive, AT) for drive in DEFINITIONS],
     "lumped": lumped,
     "motion": moved,
     "sweep": swept,

@@ -28,8 +28,8 @@ from cuefem import (
     modes,
     strike,
 )
-from cuefem.beam import assemble
 from cuefem.beam.modes import solve
+from cuefem.beam.system import assemble
 from cuefem.contact.strike import strike_modes
 from cuefem.effects import Effect
 from cuefem.effects.axial import rod_modes

@@ -4,24 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import get_args
 
 import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.cli.handover import DRIVES as COMMAND_DRIVES
 from cuefem.design import evaluate
-from cuefem.designer.answers import answers
-from cuefem.designer.numbers import rows
-from cuefem.endmass.drives import Drive, stick, stick_at_offset
+from cuefem.endmass.drives import stick, stick_at_offset
 from cuefem.endmass.lumped import lump
-from cuefem.report.end_mass import DRIVES
-from cuefem.report.handover import HANDED, MEANING
-from cuefem.report.page import DRIVE_WORDS
 from cuefem.report.squirt import squirt_record
 from cuefem.report.strike import strike_record
-from tests.helpers.strike_scenes import KIM_AT, hand_made, kim_scene, pool_cue
+from tests.helpers.strike_scenes import KIM_AT, hand_made, kim_scene
 
 EFFECTS = {
     "bare": (),
@@ -102,14 +95,6 @@ def test_where_there_is_none_the_lumped_models_are_left_out() -> None:
     curve = squirt_record(scene, (0.3, 0.85))
     assert curve["end_mass"][1] is None
     assert np.isnan(curve["models"]["two-part, this cue"]["squirt"]).tolist() == [False, True]
-
-
-def test_every_definition_stands_in_every_list() -> None:
-    assert set(DRIVES) == set(get_args(Drive)) == set(DRIVE_WORDS)
-    assert set(HANDED) == set(COMMAND_DRIVES) == set(MEANING) == {"A.31", *DRIVES}
-    scene = cf.Scene(pool_cue(), tip=cf.Tip(contact_time=4e-3), stroke=cf.Stroke(1.0, 0.3))
-    named = {row.name for row in rows(answers(scene))}
-    assert {f"end_mass_{drive}" for drive in DRIVES} <= named
 
 
 @pytest.mark.parametrize("effects", [(), (cf.TipDome(9e-3),)], ids=["together", "one by one"])

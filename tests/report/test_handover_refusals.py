@@ -68,7 +68,9 @@ def test_a_cue_that_is_raised() -> None:
 
 
 def test_a_lumped_cue_has_no_shape() -> None:
-    with pytest.raises(ValueError, match="motion takes a cue of segments; got a lumped cue"):
+    with pytest.raises(
+        ValueError, match=r"Scene.cue must be a Cue of segments: its modes or its shape are needed; got a LumpedCue"
+    ):
         motion(replace(SCENE, cue=cf.LumpedCue(0.54, 0.005)), [0.0])
 
 

@@ -17,7 +17,8 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.report.handover import HANDED, NICKEL, pooltool_record
+from cuefem.endmass.drives import DEFINITIONS
+from cuefem.report.handover import NICKEL, pooltool_record
 from cuefem.squirt import alciatore_a31, alciatore_a31_mass_ratio
 from tests.helpers.command_line import call
 
@@ -61,6 +62,9 @@ def test_their_formula_turns_the_ball_as_our_strike_does(offset: float) -> None:
     found = pooltool_record("kim", struck)
     alpha = pooltool_squirt(found["BallParams"]["m"], found["CueSpecs"]["end_mass"], a=offset)
     assert -alpha == pytest.approx(cf.strike(struck).squirt, rel=1e-12)
+
+
+HANDED = ("A.31", *DEFINITIONS)
 
 
 @pytest.mark.parametrize("drive", HANDED)

@@ -1,0 +1,75 @@
+"""Every cue becomes tip modes through one door, and each eigenproblem of a scene is solved once (properties)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import cuefem as cf
+from cuefem.beam import modes as bending
+from cuefem.contact.strike import strike_modes
+from cuefem.tip_modes import Solved, default_resolution, tip_modes_of
+from tests.helpers.strike_scenes import kim_scene
+
+LUMPED = cf.Scene(cf.LumpedCue(0.54, 0.006, 3.0), stroke=cf.Stroke(offset=0.3))
+
+
+@pytest.fixture
+def solutions(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """The numbers of modes that were solved for, one entry an eigenproblem."""
+    found: list[int] = []
+    solve = bending.solve
+    monkeypatch.setattr(bending, "solve", lambda system, count: found.append(count) or solve(system, count))
+    return found
+
+
+def test_a_solved_scene_solves_each_eigenproblem_once(solutions: list[int]) -> None:
+    scene = kim_scene(0.3)
+    solved = Solved(scene)
+    assert solutions == []
+    for _ in range(2):
+        assert solved.modes is not None
+        assert solved.tip.radiation is not None
+        assert solved.tip_stuck.radiation is not None
+        assert solved.tip_plain.radiation is None
+    wanted = [default_resolution(scene), default_resolution(scene, least=120), default_resolution(scene, periods=60)]
+    assert sorted(solutions) == sorted({at.modes for at in wanted})
+
+
+def test_one_resolution_is_one_eigenproblem(solutions: list[int]) -> None:
+    solved = Solved(kim_scene(0.3), cf.Resolution(3, 8, 12))
+    for tip in (solved.tip, solved.tip_stuck, solved.tip_plain):
+        assert np.array_equal(tip.omega, solved.tip.omega)
+    assert solutions == [12]
+
+
+def test_the_modes_serve_every_stroke() -> None:
+    scene = kim_scene(0.3)
+    tip = Solved(scene).tip
+    for struck in (replace(scene, stroke=cf.Stroke(2.0, -0.4)), replace(scene, stroke=cf.Stroke(0.5, 0.0))):
+        assert strike_modes(struck, tip).squirt == cf.strike(struck).squirt
+
+
+def test_a_lumped_cue_goes_the_same_way() -> None:
+    tip = tip_modes_of(LUMPED)
+    assert not tip.omega.any()
+    assert strike_modes(LUMPED, tip).squirt == cf.strike(LUMPED).squirt
+    inverse = tip.amplitude.T @ tip.amplitude
+    assert inverse == pytest.approx(np.array([[1 / 0.54, 3.0], [3.0, 1 / 0.006]]), rel=1e-12)
+
+
+def test_head_on_a_lumped_cue_has_no_coupling() -> None:
+    head_on = replace(LUMPED, stroke=cf.Stroke())
+    plain = replace(head_on, cue=cf.LumpedCue(0.54, 0.006))
+    assert cf.strike(head_on).squirt == 0
+    assert cf.strike(head_on).ball_speed == pytest.approx(cf.strike(plain).ball_speed, rel=1e-12)
+
+
+def test_what_needs_segments_says_so() -> None:
+    for ask in (lambda: LUMPED.shaft, lambda: Solved(LUMPED).modes, lambda: default_resolution(LUMPED)):
+        with pytest.raises(ValueError, match=r"must be a Cue of segments: .* got a LumpedCue"):
+            ask()
+    assert LUMPED.lumped is LUMPED.cue
+    assert kim_scene(0.3).lumped is None
