@@ -36,8 +36,8 @@ NO_USUAL_VALUE = "no usual value to try"
 class Variant:
     """A scene that differs by one effect.
 
-    name: the effect's. effect: what was dropped or added, None if there is no usual value to add. listed: whether
-    the scene lists it. scene: the other scene, None if it cannot be made; reason: why.
+    name: the effect's. effect: what was dropped or added, None where there is no usual value to add. listed: whether
+    the scene lists it. scene: the other scene, None where it cannot be; reason: why.
     """
 
     name: str
@@ -62,7 +62,7 @@ def effect_kinds() -> dict[str, type[Effect]]:
 def variants(scene: Scene) -> tuple[Variant, ...]:
     """The scene without each effect it lists, then with each kind it does not list at its `TEXTBOOK` value.
 
-    A kind without a textbook value is tried at its defaults, if every field has one.
+    A kind without a textbook value is tried at its defaults, where it has defaults for all.
     """
     dropped = [_without(scene, i) for i in range(len(scene.effects))]
     listed = {type(effect).__name__ for effect in scene.effects}
