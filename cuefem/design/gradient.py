@@ -57,8 +57,8 @@ def gradient(scene: Scene, drive: str = "stick", at: Resolution | None = None) -
 
     Raises
     ------
-    TypeError, ValueError
-        As `sensitivity` does.
+    ValueError
+        If the cue is lumped, the drive is another one, or the scene has effects.
 
     Notes
     -----

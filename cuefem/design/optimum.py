@@ -164,7 +164,7 @@ class Problem:
         "wall" has a part for each end of every segment, other responses have one.
         """
         scene, at, moves = self.scene(point), self.study.resolution, self._moves(point)
-        cue: Any = scene.cue
+        cue = scene.shaft
         match response.kind:
             case "squirt_slope" | "end_mass":
                 found = gradient(scene, "stick", at)
@@ -182,7 +182,7 @@ class Problem:
 
     def _moves(self, point: Array) -> SegmentRows:
         """Derivatives of the drawing's numbers to the variables, arrays (variables, segments)."""
-        cue: Any = self.scene(point).cue
+        cue = self.scene(point).shaft
         moves = SegmentRows(*np.zeros((len(SegmentRows._fields), len(point), len(cue.segments))))
         for k, shifted in enumerate(point + 1j * STEP * np.eye(len(point))):
             for path, number in self.study.numbers(dict(enumerate(shifted.tolist()))).items():

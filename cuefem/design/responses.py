@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cuefem.cue import Array, Cue
+from cuefem.cue import Array
 from cuefem.design.batch import CueBatch
 from cuefem.design.solvers import Solver
 from cuefem.endmass.drives import DEFINITIONS, Definition
@@ -73,7 +73,7 @@ def _stick_reasons(solver: Solver) -> Sequence[str | None]:
 
 def _drawn(value: Callable[[CueBatch], Array]) -> Callable[[Solver, Any], Array]:
     """A response that follows from the drawings of designs with equally many segments."""
-    return lambda solver, _: value(CueBatch.of([scene.cue for scene in solver.scenes if isinstance(scene.cue, Cue)]))
+    return lambda solver, _: value(CueBatch.of([scene.shaft for scene in solver.scenes]))
 
 
 _SQUIRT = _struck(lambda s, i, found: found.squirt)

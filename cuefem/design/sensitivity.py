@@ -82,10 +82,8 @@ def sensitivity(scene: Scene, drive: str = "stick", at: Resolution | None = None
 
     Raises
     ------
-    TypeError
-        If the cue is lumped.
     ValueError
-        If the drive is another one, or the scene has effects.
+        If the cue is lumped, the drive is another one, or the scene has effects.
 
     Notes
     -----
