@@ -21,7 +21,7 @@ from cuefem.report.quantities import units_of
 from cuefem.report.record import Record
 from cuefem.scene import Scene
 from cuefem.squirt import alciatore_a31, alciatore_a31_mass_ratio
-from cuefem.tip_modes import tip_modes_of
+from cuefem.tip_modes import Solved
 
 OFFSETS = (0.1, 0.2, 0.3, 0.4, 0.5)
 POOLTOOL_INERTIA = 0.4  # its 5/2
@@ -40,8 +40,8 @@ def pooltool_record(name: str, scene: Scene, *, drive: str = "A.31") -> Record:
 
     drive: which end mass is handed over. ValueError where that one does not exist: "A.31" head on and in a miscue.
     """
-    tip = tip_modes_of(scene)
-    masses, reasons = _end_masses(scene, tip)
+    solved = Solved(scene)
+    masses, reasons = _end_masses(solved)
     if drive in reasons:
         raise ValueError(f"end mass {drive!r} does not exist here: {reasons[drive]}")
     return {
@@ -59,7 +59,7 @@ def pooltool_record(name: str, scene: Scene, *, drive: str = "A.31") -> Record:
         },
         "signs": SIGNS,
         "notes": _notes(scene),
-        "squirt": _worth(scene, tip, masses[drive]),
+        "squirt": _worth(scene, solved.tip, masses[drive]),
         "units": UNITS,
     }
 
@@ -89,21 +89,21 @@ def _notes(scene: Scene) -> list[str]:
     return notes
 
 
-def _end_masses(scene: Scene, tip: TipModes) -> tuple[dict[str, float | None], dict[str, str]]:
+def _end_masses(solved: Solved) -> tuple[dict[str, float | None], dict[str, str]]:
     masses: dict[str, float | None] = {}
     reasons: dict[str, str] = {}
     for drive in ("A.31", *DEFINITIONS):
         try:
-            masses[drive] = _end_mass(scene, tip, drive)
+            masses[drive] = _end_mass(solved, drive)
         except ValueError as error:
             masses[drive], reasons[drive] = None, str(error)
     return masses, reasons
 
 
-def _end_mass(scene: Scene, tip: TipModes, drive: str) -> float:
+def _end_mass(solved: Solved, drive: str) -> float:
     if drive == "A.31":
-        return _a31_end_mass(scene, tip)
-    return float(formula_of(drive)(tip, scene))
+        return _a31_end_mass(solved.scene, solved.tip)
+    return float(formula_of(drive)(solved.tip_stuck, solved.scene))
 
 
 def _a31_end_mass(scene: Scene, tip: TipModes) -> float:
