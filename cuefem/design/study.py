@@ -8,7 +8,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from importlib import import_module
+from importlib.metadata import version
 from typing import Any
 
 import numpy as np
@@ -270,7 +270,7 @@ class Study:
     def record(self) -> dict[str, Any]:
         """All that its numbers depend on, in a form that JSON can hold."""
         return {
-            "cuefem": import_module("cuefem").__version__,
+            "cuefem": version("cuefem"),
             "scene": repr(self.base),
             "vary": [repr(vary) for vary in self.vary],
             "responses": [one.name for one in self.responses],

@@ -247,7 +247,7 @@ def _end_masses(record: Record, squirt: Record) -> Record:
     paper = PAPER_CUE_END_MASS / 4
     largest = max([MEASURED_END_MASS[1], *(values["highest"] for _, values in drives)])
     across = Axis("m_e, g", 0.0).over([np.array([1e3 * largest])])
-    left, right = 178.0, 372.0
+    left, right = 212.0, 372.0
 
     def place(mass: float) -> float:
         return float(across.place(1e3 * mass, left, right))

@@ -57,7 +57,7 @@ def designer(folder: Path) -> None:
         (command("strike"), 2),  # the end mass of the two-part model takes more modes
         (command("end-mass"), 2),
         (command("modes"), 1),
-        (command("handover"), 1),
+        (command("handover"), 2),
         (designer, 3),
     ],
     ids=["report", "page", "strike", "end mass", "modes", "handover", "designer"],
