@@ -15,12 +15,16 @@ from cuefem.quantity import Quantity
 class TipDome(TipEffect):
     """The round end of the tip: the contact lies off the cue's axis, so the axial force bends the shaft.
 
-    Adds: to each bending mode's displacement of the contact that of a rigid dome of radius r, m, tied to the end
-    section: the contact is r sin(phi) off the axis and r (1 - cos(phi)) behind the apex. B gains u-w terms. Matters:
-    always; a 9 mm dome raises small-offset squirt by 10 % (carbon) to 63 % (Kim's shaft; studies/dome.md), and a bare
-    strike's plain sum over modes then converges very slowly. Wrong: where the leather shears or flattens so much that
-    it does not follow the section. Source: geometry, physics.md section 8; [Kim] sec. 2 mentions the off-axis contact
-    and drops it.
+    radius: of the dome, m. The radii of several domes add.
+
+    Adds: to each bending mode, the displacement of the contact on a rigid dome of radius r tied to the end section. The
+    contact is r sin(phi) off the axis and r (1 - cos(phi)) behind the apex; the inverse mass gains terms that couple
+    motion along and across the cue.
+    Matters when: always. A 9 mm dome raises squirt at small offsets by 10 % (carbon) to 63 % (Kim's shaft;
+    studies/dome.md); a plain sum over modes then converges very slowly.
+    Wrong when: the leather shears or flattens so much that it does not follow the end section.
+    Limit: radius 0 is the bare strike.
+    Source: geometry, physics.md section 8; [Kim] sec. 2 mentions the off-axis contact and drops it.
     """
 
     needs_beam: ClassVar[bool] = True  # a lumped cue has its coupling for it
@@ -34,15 +38,19 @@ class TipDome(TipEffect):
 
 @dataclass(frozen=True)
 class TipShear(TipEffect):
-    """The leather's tangential give: a massless contact patch on a spring.
+    """The leather gives way sideways: a massless contact patch on a spring.
 
-    Adds: one state, the spring's force, stiffness ratio times the tip's loading stiffness, lossless, capped by
-    Coulomb's |F_t| <= mu F_n. Matters: at first touch F_t/F_n = ratio tan(phi), so there is no first slip while that
-    is below mu; squirt falls strongly as the ratio falls. ratio: in (0, inf); Mindlin's for a circular contact is 2 (1
-    - nu)/(2 - nu), 0.75 at nu = 0.4. Limit: ratio -> inf is the bare strike, like 1/ratio; with
-    endless friction it is not, since nothing damps the patch there. Wrong: leather is no perfect spring, partial slip
-    inside the patch is left out, and a leather segment in the cue gives way sideways as well. Source: [Mindlin] J.
-    Appl. Mech. 1949; physics.md section 8.
+    ratio: of the spring's stiffness to the tip's loading stiffness, in (0, inf). Mindlin's for a circular contact is
+    2 (1 - nu)/(2 - nu), 0.75 at nu = 0.4. Several springs act in series.
+
+    Adds: one state, the spring's force. The spring is lossless; Coulomb friction limits it, |F_t| <= mu F_n.
+    Matters when: the ratio is low, since squirt falls strongly with it. At first touch F_t/F_n = ratio tan(phi), so the
+    contact does not slip first while that is below mu.
+    Wrong when: the leather is no perfect spring; slip in a part of the patch alone is left out; and leather that is
+    drawn into the cue gives way sideways as well.
+    Limit: ratio -> inf is the bare strike, like 1/ratio; with endless friction it is not, since nothing then damps the
+    patch.
+    Source: [Mindlin] J. Appl. Mech. 1949; physics.md section 8.
     """
 
     ratio: Annotated[float, Quantity("", "(0, inf)")]
@@ -54,15 +62,19 @@ class TipShear(TipEffect):
 
 @dataclass(frozen=True)
 class PowerLawTip(TipEffect):
-    """A tip that stiffens as it is compressed: force over compression is a power law, not a line.
+    """A tip that stiffens as it is compressed: its force is a power of the compression. It acts once.
 
-    Adds: F = k' d^exponent while loaded, for the base model's k d; 3/2 is Hertz's contact of round bodies, 1 the base
-    model. k' gives a head-on blow at ``speed``, m/s, the tip's contact time. The unloading curve is the loading curve
-    with its compression scaled by e^2, F = F_peak ((d - d0)/(e^2 d_peak))^exponent from d0 = (1 - e^2) d_peak, so that
-    the work given back is exactly e^2; below the old peak the tip is reloaded on it. Matters: contact time then falls
-    with speed as U^((1 - n)/(1 + n)), and squirt with it. Wrong: where e itself falls with speed, and at speeds at
-    which the leather bottoms out. exponent: in [1, inf). A `TipShear` beside it keeps its constant spring, ratio times
-    the base model's k. Source: Hertz 1882; [Stronge] ch. 6; physics.md section 8. Cost: stepped in time to about 1e-10.
+    exponent: n >= 1; 3/2 is Hertz's contact of round bodies, 1 the base model. speed: of the head-on blow that lasts
+    the tip's contact time, m/s.
+
+    Adds: F = k' d^n while the tip is loaded, in place of k d. Unloading follows the loading curve with its compression
+    scaled by e^2, F = F_peak ((d - d0)/(e^2 d_peak))^n from d0 = (1 - e^2) d_peak, so that the work given back is
+    exactly e^2 of that spent; below the old peak the tip is reloaded on that curve. A `TipShear` keeps its constant
+    spring, ratio times the base model's k. The contact is stepped in time, to about 1e-10.
+    Matters when: speeds differ. Contact time falls with speed as U^((1 - n)/(1 + n)), and squirt with it.
+    Wrong when: e itself falls with speed, or the leather bottoms out.
+    Limit: exponent 1 is the base model.
+    Source: Hertz 1882; [Stronge] ch. 6; physics.md section 8.
     """
 
     once: ClassVar[bool] = True
@@ -80,14 +92,16 @@ class PowerLawTip(TipEffect):
 
 @dataclass(frozen=True)
 class RollingContact(TipEffect):
-    """The contact moves over ball and tip while they touch, and its normal turns with it.
+    """The contact moves over ball and tip while they touch, and its normal turns with it. It acts once.
 
-    Adds: the angle of the contact as a state; it grows as the tip passes the ball's centre: its rate is the tip's
-    velocity along t less the ball's, over R + r, r the dome's radius (`TipDome`; none: a sharp point). Matters: little;
-    squirt and spin change by a part of first order in U T/R (about 1 % at 1 m/s and 1 ms), so they grow with speed.
-    Wrong: where the leather gives so far, or is so wide, that its contact is no point; the compression beside R + r
-    (which changes the effect itself by a part of that order again) and the cue's turning are left out. Source: rigid
-    kinematics of two spheres, written out in `cuefem.contact.nonlinear`. Cost: stepped in time to about 1e-10.
+    Adds: the angle of the contact as a state. Its rate is the tip's velocity along t less the ball's, over R + r; r is
+    the radius of the tip's dome (`TipDome`; without one, the tip is a sharp point). The contact is stepped in time, to
+    about 1e-10.
+    Matters when: the stroke is fast: squirt and spin change by about U T/R, 1 % at 1 m/s and 1 ms.
+    Wrong when: the leather gives so far, or is so wide, that the contact is no point. The compression beside R + r,
+    which changes the effect by a part U T/R of itself, and the turning of the cue are left out.
+    Limit: a short contact, T -> 0, is the bare strike.
+    Source: rigid kinematics of two spheres, written out in `cuefem.contact.nonlinear`.
     """
 
     once: ClassVar[bool] = True
