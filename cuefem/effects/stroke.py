@@ -13,7 +13,7 @@ from cuefem.quantity import Quantity
 
 @dataclass(frozen=True)
 class SecondHit(Effect):
-    """The tip catches up with the ball and strikes it again.
+    """The tip catches up with the ball and strikes it again. It acts once.
 
     Parameters
     ----------
