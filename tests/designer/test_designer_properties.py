@@ -133,7 +133,7 @@ def test_the_first_scene_is_the_maple_shaft_of_meshes() -> None:
 def test_what_cannot_be_turned_is_said() -> None:
     assert without(first_scene()) == []
     assert without(SCENES["meshes/carbon"]) == ["the bore behind the tip is filled, so it stays as it is"]
-    assert without(SCENES["meshes/kim"]) == ["no ferrule is drawn behind the tip, so it has no knob"]
+    assert without(SCENES["meshes/kim"]) == ["no ferrule is drawn behind the tip, so there is no knob for it"]
 
 
 def test_the_files_own_materials_are_offered() -> None:
