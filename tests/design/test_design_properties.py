@@ -42,7 +42,7 @@ ALL = tuple(
         *("end_mass", "squirt_slope", "pivot_length", "mass", "shaft_mass", "balance_point", "tip_stiffness"),
         *("frequency(1)", "frequency(3)", "squirt", "squirt(-0.2)", "ball_speed(0.2)", "vibration_energy"),
         *("pivot_length(0.4)", "end_mass_stick", "end_mass_offset(0.4)", "end_mass_velocity", "end_mass_force"),
-        *("end_mass_offset", "end_mass_squirt", "end_mass_squirt(-0.4)"),
+        *("end_mass_offset", "end_mass_squirt", "end_mass_squirt(-0.4)", "wall", "tip_diameter"),
     )
 )
 
