@@ -11,7 +11,7 @@ import click
 from cuefem.handbook import CHAPTERS
 
 
-@click.command(short_help="Open the handbook: the physics, a glossary, and what each effect does.")
+@click.command(short_help="Open the handbook: physics, glossary, and every effect.")
 @click.argument("chapter", type=click.Choice(CHAPTERS), required=False, metavar="[CHAPTER]")
 @click.option(
     "-o", "--output", type=click.Path(path_type=Path), metavar="PAGE.html", help="Write the page here instead."

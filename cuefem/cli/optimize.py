@@ -14,7 +14,9 @@ from cuefem.cli.common import blaming, check_free, force_option, print_all, prin
 @click.command(short_help="Find the best design of a STUDY (.toml) within its limits.")
 @click.argument("study", type=click.Path(path_type=Path))
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Write the best design as a scene (.toml).")
-@click.option("--iterations", type=click.IntRange(min=1), default=60, show_default=True, help="At most so many steps.")
+@click.option(
+    "--iterations", type=click.IntRange(min=1), default=60, show_default=True, help="Largest number of steps."
+)
 @click.option("--seed", type=click.IntRange(min=0), default=0, help="Of the search where no exact gradients exist.")
 @click.option("--json", "as_json", is_flag=True, help="SI numbers as JSON.")
 @force_option

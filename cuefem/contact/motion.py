@@ -144,8 +144,8 @@ def _read(scene: Scene, found: Modes, tip: TipModes, *, kind: Kind, times: Array
     q, ball = _positions(kind, times)
     vectors, across = _bending(found, tip)
     R = scalar("Ball.radius", scene.ball.radius)
-    r = scene.dome_radius
-    centre = (r + R) * normal - [r, 0.0] + ball.gone @ np.array([tangent, normal])
+    aside, back = scene.contact_terms.lever(phi)  # where on the cue's end the contact lies
+    centre = R * normal + [-back, aside] + ball.gone @ np.array([tangent, normal])
     s, c = np.sin(phi + ball.contact), np.cos(phi + ball.contact)
     F_t, F_n = _forces(kind, times).T
     return Motion(

@@ -7,7 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cuefem import Cue, Material, Resolution, Segment, beam, modes
+from cuefem import Cue, Material, Resolution, Segment, modes
+from cuefem.beam.mesh import mesh_cue
+from cuefem.beam.system import assemble
 from tests.helpers.cues import CARBON, FOAM, KIM_DENSITY, MAPLE, isotropic_kim, kim, rod, soft_tip, stiff_ferrule
 from tests.helpers.exact import shot_frequency, uniform_frequencies
 from tests.helpers.orders import assert_order
@@ -112,7 +114,7 @@ def test_dense_and_sparse_agree(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_node_at_every_jump_and_position() -> None:
     """A smooth piece is one polynomial: element ends stand at segment ends and at positions, none twice."""
-    mesh = beam.mesh_cue(COMPOSITE, elements=2, order=3, positions=(0.1, 0.006, 0.1))
+    mesh = mesh_cue(COMPOSITE, elements=2, order=3, positions=(0.1, 0.006, 0.1))
     for x in (0.0, 0.006, 0.1, 0.306, 0.706):
         assert np.min(np.abs(mesh.nodes - x)) < 1e-15
     assert len(mesh.nodes) == 2 * 4 + 1
@@ -122,7 +124,7 @@ def test_a_node_at_every_jump_and_position() -> None:
 def test_quadrature_is_exact_for_a_cone() -> None:
     """The assembled mass of a cone gives its exact mass, first and second moments."""
     cue = Cue((replace(kim().segments[0], tip_bore=0.003, butt_bore=0.012),))
-    system = beam.assemble(cue, elements=3, order=1)
+    system = assemble(cue, elements=3, order=1)
     moved = system.rigid.T @ system.M @ system.rigid
     x, weights = np.polynomial.legendre.leggauss(12)
     x = (x + 1) / 2 * cue.length

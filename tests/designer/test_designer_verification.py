@@ -16,7 +16,7 @@ from cuefem.designer.numbers import Row, difference, key_markup, rows, table_mar
 from cuefem.designer.start import first_scene
 from cuefem.report.end_mass import end_mass_record
 from cuefem.report.modes import modes_record
-from cuefem.report.quantities import grams
+from cuefem.report.quantities import QUANTITIES
 from cuefem.report.squirt import squirt_record
 from cuefem.report.strike import strike_record
 from tests.helpers.command_line import call
@@ -138,7 +138,7 @@ def test_a_saved_design_gives_its_numbers_on_the_command_line(tmp_path: Path) ->
     ],
 )
 def test_differences_are_those_of_the_numbers(mine: float | None, pinned: float | None, words: str) -> None:
-    row = Row("end_mass_stick", "end mass", mine, grams, "g", 1e3)
+    row = Row("end_mass_stick", "end mass", mine, QUANTITIES["end_mass"])
     assert difference(row, row._replace(value=pinned)) == words
 
 

@@ -11,7 +11,7 @@ import pytest
 import cuefem as cf
 from cuefem.contact.strike import strike_modes
 from cuefem.endmass.drives import stick, stick_at_offset
-from cuefem.tip_modes import tip_modes_of
+from cuefem.tip_modes import Solved
 
 MESHES = Path(__file__).parents[2] / "meshes"
 
@@ -23,10 +23,10 @@ def errors(name: str, times: np.ndarray, offset: float) -> np.ndarray:
     found = []
     for time in times:
         scene = cf.Scene(cue, tip=cf.Tip(contact_time=float(time)), stroke=cf.Stroke(1.0, offset))
-        tip = tip_modes_of(scene)
-        masses = (stick_at_offset(tip, scene), stick(tip, scene))
+        solved = Solved(scene)
+        masses = (stick_at_offset(solved.tip_stuck, scene), stick(solved.tip_stuck, scene))
         lumped = [replace(scene, cue=cf.LumpedCue(cue.mass, mass)) for mass in masses]
-        found.append([cf.impulse(one).squirt / strike_modes(scene, tip).squirt - 1 for one in lumped])
+        found.append([cf.impulse(one).squirt / strike_modes(scene, solved.tip).squirt - 1 for one in lumped])
     return np.abs(found).T
 
 

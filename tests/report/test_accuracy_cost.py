@@ -77,4 +77,4 @@ def test_a_lumped_cue_has_no_cost(tmp_path: Path) -> None:
     save(Scene(LumpedCue(0.5, 0.006)), path)
     status, out, err = call("cost", path)
     assert (status, out) == (2, "")
-    assert "a lumped cue" in err
+    assert "must be a Cue of segments" in err

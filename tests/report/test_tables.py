@@ -140,7 +140,7 @@ def test_a_terminal_gets_it_whole(columns: str, monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setenv("COLUMNS", columns)
     out = re.sub(r"\x1b\[[0-9;]*m", "", call("materials")[1])
     assert "…" not in out
-    table, _ = out.split("with the ranges")
+    table, _ = out.split("in brackets the range")
     rows = [line for line in table.splitlines() if "(" in line]
     assert len(rows) == len(MATERIALS)
     assert all(name in row for name, row in zip(MATERIALS, rows, strict=True))

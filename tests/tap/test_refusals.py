@@ -42,7 +42,7 @@ RECORDINGS = {
     "nan": (np.where(np.arange(RATE) == 7, np.nan, NOISE), "a recording must hold finite samples; got nan or inf"),
     "loud": (1e30 * NOISE, "a recording must hold samples within [-1e+12, 1e+12]; got 3.9e+29"),
     "noise": (NOISE, "must hold a decaying tone between 60 and 8000 Hz; got none"),
-    "hum": (np.sin(2 * np.pi * 150 * T), "must hold a decaying tone between 60 and 8000 Hz; got none"),
+    "hum": (np.sin(2 * np.pi * 150 * T), "the tones fit this shaft no better than by chance"),
     "clipped": (decaying(300.0, 0.001)[: int(1.6 * RATE)], "clipped beyond use: record with less gain or farther away"),
     "long": (np.zeros(130 * RATE), "must last 120 s at most; got 130 s"),
 }
