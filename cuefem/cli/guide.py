@@ -51,5 +51,7 @@ def _print(texts: list[str]) -> None:
     console = Console()
     if not console.is_terminal:
         console.width = 100
-    for text in texts:
+    for i, text in enumerate(texts):
+        if i:
+            console.print()
         console.print(Markdown(text))

@@ -21,7 +21,7 @@ from cuefem.cli.common import blaming, check_free, force_option, print_all, prin
 @click.option("--json", "as_json", is_flag=True, help="SI numbers as JSON.")
 @force_option
 def optimize(study: Path, output: Path | None, iterations: int, seed: int, as_json: bool, force: bool) -> None:
-    """Optimum: the design of STUDY (.toml) with the smallest or largest objective within its ranges and limits.
+    """Find the design of STUDY (.toml) with the smallest or largest objective within its ranges and limits.
 
     STUDY has the [[vary]] tables of a sweep, an [objective] and [[limit]] tables. Where exact gradients exist (a bare
     cue, its dimensions and materials) it takes tens of evaluations, otherwise thousands. Numbers are SI.

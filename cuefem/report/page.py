@@ -145,7 +145,7 @@ def _context(scene: Scene, found: Record) -> Record:
         "figures": _key_figures(record, found["end_masses"], outcome),
         "strike": strike_drawing(scene, outcome.squirt),
         "squirt": degrees(outcome.squirt),
-        "error": "" if outcome.error is None else f"{outcome.error:.1e}",
+        "error": "" if outcome.error is None else f"{100.0 * outcome.error:.2g} %",
         "warning": MISCUE if outcome.regime == "miscue" else "",
         "cue": _cue_part(scene) if scene.cue.segments else None,
         "modes": _modes_part(scene) if scene.cue.segments else None,

@@ -91,12 +91,13 @@ def strike_table(record: Record, scene: Record) -> Group:
     felt = NONE if record["end_mass"] is None else grams(record["end_mass"])
     missed = [MISCUE] if coupled["regime"] == "miscue" else []
     exact = ", modes kept for 0.5 % of squirt" if "length" in scene["cue"] and coupled["error"] is None else ""
+    pivots = any(model.get("pivot_length") is not None for model in record["models"].values())
     return with_caption(
         table,
         *missed,
         assumptions(scene),
         f"coupled: vibrating shaft in time{exact}; two-part and A.31: end mass m_e {felt} (offset)",
-        f"natural pivot length: {PIVOT}",
+        *([f"natural pivot length: {PIVOT}"] if pivots else []),
         *(f"grip, {word}: {full}" for word, full in GRIPS.values() if word == GRIPS[coupled["regime"]][0]),
         *model_notes(scene, record, "/kg"),
     )

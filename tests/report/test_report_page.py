@@ -325,8 +325,10 @@ def test_offsets_that_slip_long_are_shaded(pool: str) -> None:
 def test_the_page_says_how_exact_its_numbers_are(pool: str) -> None:
     outcome = resolve(scene("pool_low_deflection"), 1e-2)
     words = " ".join(" ".join(Reader(pool).text).split())
-    assert f"Squirt, ball speed and spin here: estimated relative error {outcome.error:.1e}, 1 % asked." in words
-    assert "estimated relative error" not in page("lumped.toml", LUMPED)
+    assert (
+        f"Squirt, ball speed and spin here: estimated error {100.0 * outcome.error:.2g} %; 1 % was asked for." in words
+    )
+    assert "estimated error" not in page("lumped.toml", LUMPED)
 
 
 def test_the_blow_is_in_the_materials_of_the_cue() -> None:
