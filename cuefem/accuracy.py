@@ -18,6 +18,7 @@ from cuefem.beam.system import assemble
 from cuefem.beam.tail import Deflect, flexibility, tail
 from cuefem.beam.tip import TipModes
 from cuefem.beam.waves import mesh_for, modes_below, wave_phase
+from cuefem.contact.ringing_tip import RINGING
 from cuefem.contact.state import APART
 from cuefem.contact.strike import strike, strike_modes
 from cuefem.cue import Array, Cue
@@ -96,10 +97,10 @@ def resolve(scene: Scene, rtol: float) -> Outcome:
     -----
     Squirt is taken relative to itself, but to no less than 0.01 sin(phi) rad, since it may pass through zero. A contact
     that nearly parts and goes on has the error of parting there; one that parts and nearly goes on has the error of
-    going on (except for a dead tip and a raised cue). A leather tip, or another first segment that reflects waves, is
-    also charged what a tail that rings without loss would change, until the modes reach the segment's own turning
-    resonance. How well the estimate holds over random scenes with every effect
-    is measured in studies/resolve_errors.md. Cost: cubic in the modes; all steps together take about twice the last.
+    going on (except for a dead or nearly dead tip, e <= 1e-4, and a raised cue). A leather tip, or another first
+    segment that reflects waves, is also charged what a tail that rings without loss would change, until the modes reach
+    the segment's own turning resonance. How well the estimate holds over random scenes with every effect is measured in
+    studies/resolve_errors.md. Cost: cubic in the modes; all steps together take about twice the last.
 
     Examples
     --------
@@ -309,7 +310,7 @@ def _caught_up(outcome: Outcome, scene: Scene, tip: TipModes) -> float:
         return 0.0
     restitution, end = float(scene.tip.restitution), float(outcome.duration)
     head_on = restitution * float(scene.stroke.speed) * math.cos(scene.stroke.angle)
-    if restitution == 0 or outcome.history(end)["velocity_n"] > SLOWLY * head_on:
+    if restitution <= RINGING or outcome.history(end)["velocity_n"] > SLOWLY * head_on:
         return 0.0
     again = strike_modes(replace(scene, effects=(*scene.effects, SecondHit(end / 2))), tip)
     flight = next((phase for phase in again.phases if phase[:2] == APART), None)

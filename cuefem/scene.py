@@ -208,6 +208,12 @@ class Scene:
         return replace(self, effects=tuple(effect for effect in self.effects if not effect.at_tip))
 
     @property
+    def level(self) -> Scene:
+        """The scene with a level cue: without effects that put a table under the ball."""
+        kept = tuple(effect for effect in self.effects if ContactTerms.of((effect,)).table is None)
+        return self if len(kept) == len(self.effects) else replace(self, effects=kept)
+
+    @property
     def contact_terms(self) -> ContactTerms:
         """What the effects add at the contact."""
         return ContactTerms.of(self.effects)

@@ -17,7 +17,7 @@ from cuefem.cli.common import blaming, check_free, force_option, print_all, prin
 @click.option(
     "--iterations", type=click.IntRange(min=1), default=60, show_default=True, help="Largest number of steps."
 )
-@click.option("--seed", type=click.IntRange(min=0), default=0, help="Of the search where no exact gradients exist.")
+@click.option("--seed", type=click.IntRange(min=0), default=0, help="Random seed, used only without exact gradients.")
 @click.option("--json", "as_json", is_flag=True, help="SI numbers as JSON.")
 @force_option
 def optimize(study: Path, output: Path | None, iterations: int, seed: int, as_json: bool, force: bool) -> None:
@@ -43,7 +43,7 @@ def optimize(study: Path, output: Path | None, iterations: int, seed: int, as_js
     if as_json:
         about = {"file": str(study), "written": output and str(output), "objective": {aim: wanted.objective.name}}
         numbers = {"value": found.value, "numbers": found.numbers, "values": found.values, "active": found.active}
-        search = {"evaluations": found.evaluations, "exact_gradients": found.exact}
+        search = {"evaluations": found.evaluations, "exact_gradients": found.exact, "unfinished": found.unfinished}
         print_json({**about, **numbers, **search, "resolution": vars(wanted.study.resolution), "units": units})
         return
     way = "by exact gradients" if found.exact else "by differential evolution"
@@ -52,6 +52,8 @@ def optimize(study: Path, output: Path | None, iterations: int, seed: int, as_js
     width = max(map(len, both))
     lines += [f"{name:{width}}  {value:.6g} {units[name]}".rstrip() for name, value in both.items()]
     lines += ["", f"held by: {', '.join(found.active) or 'nothing'}"]
+    if found.unfinished:
+        lines.append(f"not finished: {found.unfinished}; more --iterations may find a better design")
     print_all([*lines, *([f"wrote {output}"] if output else [])])
 
 

@@ -13,7 +13,7 @@ from cuefem.cli.sweep import bar, opened
 
 @click.command(short_help="How much a design's numbers scatter, and why.")
 @click.argument("study", type=click.Path(path_type=Path))
-@click.option("--workers", type=click.IntRange(min=1), help="How many processes; by default this one alone.")
+@click.option("--workers", type=click.IntRange(min=1), help="Number of worker processes; by default none is started.")
 @click.option("--dask", metavar="ADDRESS", help='A Dask scheduler to work on, e.g. "tcp://host:8786".')
 @click.option("--json", "as_json", is_flag=True, help="SI numbers as JSON.")
 def scatter(study: Path, as_json: bool, **where: Any) -> None:

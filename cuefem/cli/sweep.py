@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 @click.command(short_help="Compute every design of a STUDY (.toml).")
 @click.argument("study", type=click.Path(path_type=Path))
 @click.option("--output", type=click.Path(path_type=Path), help="The database; by default STUDY.sqlite.")
-@click.option("--workers", type=click.IntRange(min=1), help="How many processes; by default this one alone.")
+@click.option("--workers", type=click.IntRange(min=1), help="Number of worker processes; by default none is started.")
 @click.option("--dask", metavar="ADDRESS", help='A Dask scheduler to work on, e.g. "tcp://host:8786".')
 @click.option("--export", type=click.Path(path_type=Path), help="Also write the table as .csv or .parquet.")
 @click.option("--json", "as_json", is_flag=True, help="Say as JSON what was done.")

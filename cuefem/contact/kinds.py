@@ -31,5 +31,5 @@ def contact_of(scene: Scene, tip: TipModes, laws: Laws) -> Kind:
     from cuefem.contact.elevation import raised_contact
 
     if compliance or terms.turns or terms.window is not None:
-        raise ValueError("Elevation takes a tip without give sideways, a fixed normal and a single hit")
+        raise ValueError("a raised cue (Elevation) takes a tip without give sideways, a fixed normal and a single hit")
     return raised_contact(terms.table, tip, laws, law=law, clock=clock, radius=radius)

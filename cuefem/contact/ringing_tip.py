@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 # followed in exact phases down to a restitution of 1e-4: there it was off by 6e-3 at worst.
 RINGING, FASTER = 1e-4, 10.0
 # Below this, restitution makes no difference but to rounding, which grows like 1/e.
-LEAST = 1e-9
+LEAST = 1e-8
 # After so many exact phases that did not settle, the ringing has come down to what friction bears.
 UNSETTLED = 40
 # While it swings beyond friction's bound: how far the mean motion leaps, in contact times; for how many exact phases

@@ -67,6 +67,7 @@ class Optimum:
     scene: with the best cue. value: of the objective. numbers: what varied, by name. values: the objective and the
     limited responses, by name. active: the limits and ends of ranges that hold the design, as "tip_stiffness >= 1500".
     evaluations: of the objective. exact: whether exact gradients led there, which finds a local optimum.
+    unfinished: why the search stopped before it had converged, "" if it converged.
     """
 
     scene: Scene
@@ -76,6 +77,7 @@ class Optimum:
     active: tuple[str, ...]
     evaluations: int
     exact: bool
+    unfinished: str = ""
 
 
 @dataclass(frozen=True)
@@ -259,17 +261,17 @@ def optimum(
     low, high = problem.bounds
     first = (problem.start if start is None else np.asarray(start, float)) - low
     seek = _by_gradients if problem.exact else _by_evolution
-    u, count, trouble = seek(problem, np.clip(first / (high - low), 0, 1), iterations, seed, progress)
+    u, count, unfinished = seek(problem, np.clip(first / (high - low), 0, 1), iterations, seed, progress)
     point = np.clip(low + u * (high - low), low, high)
     values = problem.values(point[None])
     rooms = _rooms(problem, point, values)
     broken = [words for words, room in rooms if not room >= -TOLERANCE]
-    if broken or trouble:
-        raise ValueError(f"no design within {', '.join(broken) or 'the limits'} was found: {trouble or 'none is near'}")
+    if broken:
+        raise ValueError(f"no design within {', '.join(broken)} was found: {unfinished or 'none is near'}")
     named = dict(zip((one.name for one in problem.study.responses), values[0].tolist(), strict=True))
     numbers = {vary.name: float(p) for vary, p in zip(problem.vary, point, strict=True)}
     active = tuple(words for words, room in rooms if room < TOLERANCE)
-    return Optimum(problem.scene(point), values[0, 0].item(), numbers, named, active, count, problem.exact)
+    return Optimum(problem.scene(point), values[0, 0].item(), numbers, named, active, count, problem.exact, unfinished)
 
 
 def _scale(problem: Problem, point: Array) -> float:
@@ -285,7 +287,7 @@ def _scale(problem: Problem, point: Array) -> float:
 def _by_gradients(
     problem: Problem, start: Array, iterations: int, seed: int, progress: Progress
 ) -> tuple[Array, int, str]:
-    """(the best point, scaled to the ranges; evaluations; what went wrong, or "") of SLSQP."""
+    """(the best point, scaled to the ranges; evaluations; why it stopped too early, or "") of SLSQP."""
     from scipy.optimize import minimize
 
     low, high = problem.bounds
@@ -318,14 +320,14 @@ def _by_gradients(
     try:
         result = minimize(objective, start, jac=True, method="SLSQP", bounds=box, constraints=sides, options=options)
     except ValueError as error:
-        return start, evaluations(), f"a design in the ranges cannot be made ({error})"
+        raise ValueError(f"no design was found: a design in the ranges cannot be made ({error})") from None
     return result.x, evaluations(), "" if result.success else result.message
 
 
 def _by_evolution(
     problem: Problem, start: Array, iterations: int, seed: int, progress: Progress
 ) -> tuple[Array, int, str]:
-    """(the best point, scaled to the ranges; evaluations; what went wrong, or "") of differential evolution."""
+    """As `_by_gradients`, by differential evolution."""
     from scipy.optimize import differential_evolution
 
     low, high = problem.bounds
@@ -344,7 +346,7 @@ def _by_evolution(
     box, generator = [(0, 1)] * len(low), np.random.default_rng(seed)
     shared = {"vectorized": True, "updating": "deferred", "polish": False, "tol": 1e-6, "maxiter": iterations}
     result = differential_evolution(scores, box, x0=start, rng=generator, **shared)
-    return result.x, seen, "" if result.fun < EXCLUDED else "differential evolution met none"
+    return result.x, seen, "" if result.success else result.message.rstrip(".")
 
 
 def _rooms(problem: Problem, point: Array, values: Array) -> list[tuple[str, float]]:

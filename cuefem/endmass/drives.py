@@ -54,7 +54,8 @@ def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None) -
         - "squirt": the lumped end mass that has the squirt of the coupled strike.
     at
         How finely the cue is computed. By default modes are kept by frequency (`default_resolution`), at least 120 of
-        them, which holds 0.5 % unless the tip is of metal; `cuefem.resolve_end_mass` estimates the error.
+        them, which holds 0.5 % but for rare cues (0.53 % at most) and metal tips; `cuefem.resolve_end_mass` estimates
+        the error.
 
     Returns
     -------
@@ -284,7 +285,8 @@ def sticking_squirt(tip: TipModes, scene: Scene) -> float:
 
 
 def _gripping(scene: Scene) -> Scene:
-    return replace(scene, tip=replace(scene.tip, friction=math.inf))
+    """The scene with a tip that never slips and a level cue: the table's push is no part of an end mass."""
+    return replace(scene.level, tip=replace(scene.tip, friction=math.inf))
 
 
 def squirt_equivalent(tip: TipModes, scene: Scene) -> float:

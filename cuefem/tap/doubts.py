@@ -46,7 +46,8 @@ def refusals(found: TapFit, *, edge: bool = False) -> list[str]:
     heard = {match.mode for match in found.matched if match.mode is not None}
     clear = sum(match.tone.kind == "tone" for match in found.matched)
     if found.chance > LEVEL:
-        share = f"{100 * found.chance:.2g} % of random sets of {clear} tone{'s' if clear != 1 else ''} fit as well, above {100 * LEVEL:g} %"
+        sets = f"random sets of {clear} tones" if clear > 1 else "random single tones"
+        share = f"{100 * found.chance:.2g} % of {sets} fit as well, above {100 * LEVEL:g} %"
         lines.append(f"the tones fit this shaft no better than by chance ({share})")
     if len(missed := missing(found)) > len(heard):
         lines.append(f"{len(missed)} of the {len(missed) + len(heard)} modes that should be heard are missing")

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from cuefem import Cue, Material, Resolution, Segment, modes
+from cuefem.beam import system
 from cuefem.beam.mesh import mesh_cue
 from cuefem.beam.system import assemble
 from tests.helpers.cues import CARBON, FOAM, KIM_DENSITY, MAPLE, isotropic_kim, kim, rod, soft_tip, stiff_ferrule
@@ -102,7 +103,7 @@ def test_dense_and_sparse_agree(monkeypatch: pytest.MonkeyPatch) -> None:
     cue = stiff_ferrule()
     found = {}
     for limit in (0, 10**6):
-        monkeypatch.setattr(beam.system, "DENSE_LIMIT", limit)
+        monkeypatch.setattr(system, "DENSE_LIMIT", limit)
         found[limit] = modes(cue, 8, at=Resolution(2, 16, 8))
     assert isinstance(found[10**6].system.K, np.ndarray)
     assert not isinstance(found[0].system.K, np.ndarray)
@@ -124,8 +125,8 @@ def test_a_node_at_every_jump_and_position() -> None:
 def test_quadrature_is_exact_for_a_cone() -> None:
     """The assembled mass of a cone gives its exact mass, first and second moments."""
     cue = Cue((replace(kim().segments[0], tip_bore=0.003, butt_bore=0.012),))
-    system = assemble(cue, elements=3, order=1)
-    moved = system.rigid.T @ system.M @ system.rigid
+    found = assemble(cue, elements=3, order=1)
+    moved = found.rigid.T @ found.M @ found.rigid
     x, weights = np.polynomial.legendre.leggauss(12)
     x = (x + 1) / 2 * cue.length
     s = cue.section(x)

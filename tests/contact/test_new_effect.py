@@ -93,7 +93,7 @@ def test_it_is_seen_in_the_motion_and_in_the_bare_scene():
 
 
 def test_what_no_contact_honours_together_is_refused_by_its_terms():
-    with pytest.raises(ValueError, match="Elevation takes a tip without give sideways, a fixed normal and a single"):
+    with pytest.raises(ValueError, match="takes a tip without give sideways, a fixed normal and a single"):
         strike(struck(soft_patch()(), Elevation(0.1)), AT)
 
 

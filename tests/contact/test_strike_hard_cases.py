@@ -197,7 +197,7 @@ def test_small_restitution(e):
 
     Towards e -> 0 the answer tends to a limit, linearly. It is not that of e = 0, which goes on pressing past the peak.
     """
-    outcome, limit = hit(kim_scene(0.3, restitution=e)), hit(kim_scene(0.3, restitution=1e-9))
+    outcome, limit = hit(kim_scene(0.3, restitution=e)), hit(kim_scene(0.3, restitution=1e-8))
     assert abs(outcome.squirt - limit.squirt) < 0.1 * e
 
 
@@ -211,7 +211,7 @@ def test_small_restitution_that_rings():
 @pytest.mark.parametrize("offset", [0.9, 0.999])
 def test_smaller_restitution_that_rings(e, offset):
     """Thousands of reloads, if they were followed: the tip's ringing is averaged, and the answer tends to a limit."""
-    outcome, limit = hit(kim_scene(offset, restitution=e), FEW), hit(kim_scene(offset, restitution=1e-9), FEW)
+    outcome, limit = hit(kim_scene(offset, restitution=e), FEW), hit(kim_scene(offset, restitution=1e-8), FEW)
     assert abs(outcome.squirt - limit.squirt) < 0.1 * e + 1e-12
     assert abs(outcome.ball_speed / limit.ball_speed - 1) < 2 * e + 1e-9
     assert len(outcome.phases) < 20
