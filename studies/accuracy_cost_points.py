@@ -125,7 +125,9 @@ def _modes_of(index: int, count: int, spare: int) -> Modes:
     """Modes of a scene's cue on a mesh for ``spare`` modes; odd spare: of another order."""
     cue = cue_of(family()[index])
     elements, order = mesh_for(cue, spare)
-    return solve(assemble(cue, elements=elements + spare % 2, order=order - 2 * (spare % 2)), count)
+    odd = spare % 2
+    more = elements + odd if isinstance(elements, int) else tuple(each + odd for each in elements)
+    return solve(assemble(cue, elements=more, order=order - 2 * odd), count)
 
 
 def ended(found: Modes, scene: Scene, *, by_tail: bool) -> Outcome:

@@ -27,6 +27,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.integrate import quad
 
+import cuefem as cf
 from cuefem import Cue, Resolution, TipDome
 from cuefem.beam.tip import TipModes
 from cuefem.contact.strike import strike_modes
@@ -72,6 +73,14 @@ def tip(name: str, time: float) -> TipModes:
     return tip_modes_of(common.scene(cue(name), time))
 
 
+def _equivalent(outcome: cf.Outcome, scene: cf.Scene) -> float:
+    """The lumped end mass with that squirt, kg; nan if no end mass has it (a light cue that runs ahead of the ball)."""
+    try:
+        return equivalent_end_mass(outcome, scene)
+    except ValueError:
+        return float("nan")
+
+
 @cache
 def case(name: str, radius: float, time: float = 1e-3) -> Case:
     """One cue, dome and contact time."""
@@ -79,7 +88,7 @@ def case(name: str, radius: float, time: float = 1e-3) -> Case:
     struck, modes = replace(common.scene(cue(name), time), effects=effects), tip(name, time)
     there = [common.at_offset(struck, b) for b in OFFSETS]
     outcomes = [strike_modes(s, modes) for s in there]
-    equivalents = tuple(equivalent_end_mass(o, s) for o, s in zip(outcomes, there, strict=True))
+    equivalents = tuple(_equivalent(o, s) for o, s in zip(outcomes, there, strict=True))
     squirts = tuple(float(o.squirt) for o in outcomes)
     limit = small_offset_slope(modes, struck)
     return Case(name, radius, time, limit, stick(modes, struck), squirts, equivalents)
