@@ -256,14 +256,14 @@ def _end_rings(cue: Cue) -> float:
 
 
 def _rungs_apart(outcomes: list[Outcome], values: Array) -> float:
-    """How far the last outcome is from those of rungs whose contact took another course; zero where none did."""
+    """Difference of the last outcome from rungs whose contact took another course; zero if all took the same."""
     lasted = np.array([float(outcome.duration) for outcome in outcomes])
     other = np.abs(lasted / lasted[-1] - 1) > COURSE
     return float(np.abs(values - values[-1])[other].max(initial=0.0))
 
 
 def _other_course(outcomes: list[Outcome], scene: Scene) -> float:
-    """How far the last outcome is from that of a contact which parts where it may; zero where it may nowhere.
+    """Difference of the last outcome from one whose contact parts where it nearly does; zero if it nowhere does.
 
     It may where its normal force dips to less than what the rungs below differ by in that dip.
     """

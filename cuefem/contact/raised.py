@@ -24,7 +24,7 @@ SLIDING = ([T, P], [ASIDE, AHEAD])  # of the tip on the ball, and of the ball on
 REST = 1e-6
 # Rows whose velocities are held at zero, by how the table holds the ball.
 HELD: dict[OnTable, list[int]] = {"none": [], "lifted": [], "slides": [UP], "held": [UP, ASIDE, AHEAD]}
-# Events of which a phase may have been past from its start, and those that change how the table holds the ball.
+# Ends that may be passed already as a phase starts, and ends that change how the table holds the ball.
 AT_ONCE, AT_TABLE = ("compressed", "slipped", "slid", "lifted"), ("lifted", "landed", "stopped", "slid")
 # A compression, in strokes' lengths, at which a touch shows which way its forces go.
 PROBE = 1e-6
@@ -239,7 +239,7 @@ class Raised(Stepped):
             self.on_table = "lifted"
 
     def _at_once(self, ends: Ends) -> str | None:
-        """An end of which the state is past already, of those that a phase may start past."""
+        """The first end that is passed already as the phase starts, if a phase may start so."""
         return next((name for name in AT_ONCE if name in ends and ends[name](self.contact.z) < -PAST), None)
 
     def next(self, event: str, grip: Grip, press: Press) -> Step | None:
