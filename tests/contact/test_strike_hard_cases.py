@@ -210,10 +210,14 @@ def test_small_restitution_that_rings():
 @pytest.mark.parametrize("e", [1e-4, 1e-6, 1e-8, 1e-12, 5e-324])
 @pytest.mark.parametrize("offset", [0.9, 0.999])
 def test_smaller_restitution_that_rings(e, offset):
-    """Thousands of reloads, if they were followed: the tip's ringing is averaged, and the answer tends to a limit."""
-    outcome, limit = hit(kim_scene(offset, restitution=e), FEW), hit(kim_scene(offset, restitution=1e-8), FEW)
+    """Thousands of reloads, if they were followed: the tip's ringing is averaged, and the answer tends to a limit.
+
+    The reference is itself off that limit by its own e of 1e-8, so below it the difference stays.
+    """
+    reference = 1e-8
+    outcome, limit = hit(kim_scene(offset, restitution=e), FEW), hit(kim_scene(offset, restitution=reference), FEW)
     assert abs(outcome.squirt - limit.squirt) < 0.1 * e + 1e-12
-    assert abs(outcome.ball_speed / limit.ball_speed - 1) < 2 * e + 1e-9
+    assert abs(outcome.ball_speed / limit.ball_speed - 1) < 2 * max(e, reference)
     assert len(outcome.phases) < 20
 
 
