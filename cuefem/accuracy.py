@@ -38,7 +38,8 @@ FIRST, RATIO, JUDGED = 8, 1.3, 3
 # Rungs may agree and yet be wrong where the cue's first segment has a resonance of its own above all modes kept, as the
 # leather of a tip has between 5 and 100 kHz. The tail stands for that resonance by its flexibility and a dashpot, as if
 # what rings there left for good; the leather keeps it. The truth lies between a tail that radiates and one that
-# rings without loss, so until the modes reach the resonance the difference of the two is a bound of the error too.
+# rings without loss, so until the modes are a rung past the resonance the difference of the two is a bound of the
+# error too: modes that just reach it render it no better.
 DECAY, WINDOW = 0.75, 3
 # What meshes and rounding leave, relative; of a lumped cue rounding alone.
 FLOOR, ROUNDING = 1e-8, 1e-12
@@ -98,8 +99,8 @@ def resolve(scene: Scene, rtol: float) -> Outcome:
     Squirt is taken relative to itself, but to no less than 0.01 sin(phi) rad, since it may pass through zero. A contact
     that nearly parts and goes on has the error of parting there; one that parts and nearly goes on has the error of
     going on (except for a dead or nearly dead tip, e <= 1e-4, and a raised cue). A leather tip, or another first
-    segment that reflects waves, is also charged what a tail that rings without loss would change, until the modes reach
-    the segment's own turning resonance. How well the estimate holds over random scenes with every effect is measured in
+    segment that reflects waves, is also charged what a tail that rings without loss would change, until the modes are
+    well past the segment's own turning resonance. How well the estimate holds over random scenes with every effect is measured in
     studies/resolve_errors.md. Cost: cubic in the modes; all steps together take about twice the last.
 
     Examples
@@ -335,8 +336,8 @@ class _Tips(NamedTuple):
 
     @property
     def end_unheard(self) -> bool:
-        """Whether the turning resonance of the cue's first segment lies above all modes kept."""
-        return 2 * math.pi * float(self.whole.frequencies[self.at.modes - 1]) < self.end_rings
+        """Whether the modes kept stop short of a rung past the turning resonance of the cue's first segment."""
+        return 2 * math.pi * float(self.whole.frequencies[self.at.modes - 1]) < RATIO * self.end_rings
 
     @property
     def tip(self) -> TipModes:
