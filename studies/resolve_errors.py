@@ -127,7 +127,7 @@ def summary(climbs: list[Climb], drawn: int) -> list[str]:
     return lines
 
 
-FAMILIES = ("The first family:", "The second family:", "The third family, drawn after the last change to the estimates:")
+FAMILIES = ("The first family:", "The second family:", "The third family, the check:")
 
 
 def section(title: str, climbs: list[Climb]) -> list[str]:

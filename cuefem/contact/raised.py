@@ -20,6 +20,7 @@ from cuefem.effects.terms import Table
 # Rows of the contact, in this order: the tip's velocities against the ball, and the ball's lowest point's.
 T, N, P, UP, ASIDE, AHEAD = range(6)
 SLIDING = ([T, P], [ASIDE, AHEAD])  # of the tip on the ball, and of the ball on the table
+UNIT = np.eye(6)
 # A point that slides more slowly than this part of the stroke's speed keeps its direction.
 REST = 1e-6
 # Rows whose velocities are held at zero, by how the table holds the ball.
@@ -72,6 +73,7 @@ class Raised(Stepped):
         self.sizes[slots["height"]], self.sizes[slots["scraped"]] = self.sizes[slots.of("depth", "rubbed")]
         self.sizes[self.ways] = 1.0
         self.rows = self._rows()
+        self.sliding = tuple(self.rows[rows] for rows in SLIDING)
         self.gram = self.rows @ self.rows.T
         self._read_along_table()
 
@@ -112,19 +114,23 @@ class Raised(Stepped):
         """The hold of a phase that starts now, at the tip and at the table."""
         return Hold(grip, press, self.deepest, self.on_table)
 
-    def _slip(self, z: Array, i: int) -> tuple[Array, float]:
-        """Unit vector along which the tip (0) or the ball's lowest point (1) slides, and its speed along it, m/s."""
+    def _way_of(self, z: Array, i: int) -> tuple[float, float]:
+        """Unit vector along which the tip (0) or the ball's lowest point (1) slides."""
         angle = float(z[self.ways[i]])
-        along = np.array([math.cos(angle), math.sin(angle)])
-        return along, float(along @ (self.rows[SLIDING[i]] @ z))
+        return math.cos(angle), math.sin(angle)
 
-    def _turning(self, z: Array, rate: Array, i: int) -> float:
-        """Rate at which that direction turns, rad/s: its speed, not its components, then falls through zero at an end.
+    def _slip(self, z: Array, i: int) -> float:
+        """Speed along it, m/s."""
+        (x, y), (a, b) = self._way_of(z, i), self.sliding[i] @ z
+        return float(x * a + y * b)
 
-        A point that hardly moves keeps its direction.
+    def _turning(self, z: Array, velocities: Array, rates: Array, i: int) -> float:
+        """Rate at which it turns, rad/s: the speed, not its components, then falls through zero at an end.
+
+        velocities, rates: the six of the contact, and how they change. A point that hardly moves keeps its direction.
         """
-        (x, y), speed = self._slip(z, i)
-        aside = float(np.array([-y, x]) @ (self.rows[SLIDING[i]] @ rate))
+        (x, y), (a, b) = self._way_of(z, i), SLIDING[i]
+        aside, speed = float(x * rates[b] - y * rates[a]), float(x * velocities[a] + y * velocities[b])
         return aside * speed / (speed**2 + (REST * self.contact.laws.speed) ** 2)
 
     def _head(self, i: int, way: Array) -> None:
@@ -134,41 +140,42 @@ class Raised(Stepped):
         contact.z[self.ways[i]] = math.atan2(way[1], way[0])
 
     def contact_forces(self, z: Array, hold: Hold, free: Array) -> Array:
-        """The six forces, N, in the order of the rows."""
-        push = np.zeros((6, 0))  # columns: what each unknown adds to the forces
-        known, keep = np.zeros(6), []
-        known[N] = self.pressing(z, hold)
-        unit = np.eye(6)
-        if hold.grip == "stick":
-            push, keep = unit[:, [T, P]], [T, P]
-        else:
-            known[[T, P]] = -self.contact.laws.friction * known[N] * self._slip(z, 0)[0]
-        if hold.table != "lifted":
-            column = unit[:, [UP]].copy()
-            if hold.table == "slides":
-                column[[ASIDE, AHEAD], 0] = -self.table.friction * self._slip(z, 1)[0]
-            else:
-                column = np.hstack([column, unit[:, [ASIDE, AHEAD]]])
-            push, keep = np.hstack([push, column]), [*keep, UP, *([ASIDE, AHEAD] if hold.table == "held" else [])]
+        """The six forces, N, in the order of the rows; free: the rate of the state without them."""
+        return self._forces_against(z, hold, self.rows @ free)
+
+    def _forces_against(self, z: Array, hold: Hold, falling: Array) -> Array:
+        """The six forces, N; falling: rates of the six velocities without them, m/s2."""
+        known, F_n = np.zeros(6), self.pressing(z, hold)
+        known[N] = F_n
+        if hold.grip != "stick":
+            x, y = self._way_of(z, 0)
+            known[T], known[P] = -self.contact.laws.friction * F_n * x, -self.contact.laws.friction * F_n * y
+        keep = self._keep(hold)
         if not keep:
             return known
-        falling = (self.rows @ free + self.gram @ known)[keep]
-        return known - push @ np.linalg.solve((self.gram @ push)[keep], falling)
+        kept, push = self.gram[keep], UNIT[:, keep]
+        if hold.table == "slides":  # the last of the unknown forces is the table's push upwards, which brings friction
+            x, y = self._way_of(z, 1)
+            push[ASIDE, -1], push[AHEAD, -1] = -self.table.friction * x, -self.table.friction * y
+        return known - push @ np.linalg.solve(kept @ push, falling[keep] + kept @ known)
 
     def change(self, z: Array, hold: Hold | None) -> Array:
         """Rate of change of the state, 1/s; ball and tip touch."""
         assert hold is not None
-        rate, slots = self.contact.free @ z, self.contact.slots
-        forces, velocities = self.contact_forces(z, hold, rate), self.rows @ z
-        rate = rate + self.rows.T @ forces
+        free, slots = self.contact.free @ z, self.contact.slots
+        velocities, falling = self.rows @ z, self.rows @ free
+        forces = self._forces_against(z, hold, falling)
+        rate = free + forces @ self.rows
         rate[slots["depth"]] = -velocities[N]
         rate[slots["height"]] = velocities[UP]
-        rate[slots["rubbed"]] = -forces[[T, P]] @ velocities[[T, P]]
-        rate[slots["scraped"]] = -forces[[UP, ASIDE, AHEAD]] @ velocities[[UP, ASIDE, AHEAD]]
+        powers = -forces * velocities
+        rate[slots["rubbed"]] = powers[T] + powers[P]
+        rate[slots["scraped"]] = powers[UP] + powers[ASIDE] + powers[AHEAD]
+        rates = falling + self.gram @ forces
         if hold.grip == "slip":
-            rate[self.ways[0]] = self._turning(z, rate, 0)
+            rate[self.ways[0]] = self._turning(z, velocities, rates, 0)
         if hold.table == "slides":
-            rate[self.ways[1]] = self._turning(z, rate, 1)
+            rate[self.ways[1]] = self._turning(z, velocities, rates, 1)
         self._damped(rate, z)
         return rate
 
@@ -289,14 +296,14 @@ class Raised(Stepped):
             ends["apart"] = lambda z: (float(z[slots["depth"]]) - self.law.rest(hold.deepest)) / depth
             ends["reloaded"] = lambda z: (hold.deepest - float(z[slots["depth"]])) / depth
         if hold.grip == "slip":
-            ends["gripped"] = lambda z: self._slip(z, 0)[1] / speed
+            ends["gripped"] = lambda z: self._slip(z, 0) / speed
         elif math.isfinite(contact.laws.friction):
             ends["slipped"] = margin(contact.laws.friction, N, T, P)
         if hold.table == "lifted":
             return ends | {"landed": lambda z: float(z[slots["height"]]) / depth}
         ends["lifted"] = lambda z: float(self.contact_forces(z, hold, contact.free @ z)[UP]) / scale + ROUNDING
         if hold.table == "slides":
-            return ends | {"stopped": lambda z: self._slip(z, 1)[1] / speed}
+            return ends | {"stopped": lambda z: self._slip(z, 1) / speed}
         return ends | {"slid": margin(self.table.friction, UP, ASIDE, AHEAD)}
 
     def _take(self, hold: Hold | None, way: Way) -> None:

@@ -28,19 +28,21 @@ def assert_printed(row: list[object]) -> None:
 @pytest.mark.parametrize("name", ["kim", "carbon"])
 def test_stick_end_masses_again(name: str) -> None:
     found = study.stuck(name)
-    assert_printed(study._row(name, [name], "stick end mass", found.errors, found.estimate))
+    assert_printed(study.row(name, [name], "stick end mass", found.errors, found.estimates))
 
 
 @pytest.mark.heavy
 def test_squirt_again() -> None:
-    assert_printed(study._row("kim", ["kim"], "squirt", study.struck("kim", 6, False), None))
+    assert_printed(study.row("carbon", ["carbon"], "squirt", study.struck("carbon", study.STRIKES, False)))
 
 
 def test_half_a_percent_or_an_estimate_above_it() -> None:
-    for what, _, _, _, _, most, largest, estimate in ROWS:
-        assert float(largest) < (float(estimate) if float(largest) > 0.5 else 0.5)
+    """The default holds 0.5 %; where it does not, the estimate that comes with each number is above its error."""
+    for what, _, _, count, _, most, largest, _, ratio in ROWS:
+        assert int(count) >= {"stick end mass": 200, "stick end mass, AxialWaves": 5}.get(what, 25)
         assert float(most) < 0.62
-        if what.startswith("squirt"):
-            assert float(largest) < 0.2
+        if what == "stick end mass" and float(largest) > 0.5:
+            assert float(ratio) < 1
+        else:
+            assert float(largest) < 0.5
     assert sum(int(row[2]) for row in ROWS if row[0] == "stick end mass") == 45
-    assert all(int(row[3]) >= 200 for row in ROWS if row[0] == "stick end mass")
