@@ -100,8 +100,8 @@ def resolve(scene: Scene, rtol: float) -> Outcome:
     that nearly parts and goes on has the error of parting there; one that parts and nearly goes on has the error of
     going on (except for a dead or nearly dead tip, e <= 1e-4, and a raised cue). A leather tip, or another first
     segment that reflects waves, is also charged what a tail that rings without loss would change, until the modes are
-    well past the segment's own turning resonance. How well the estimate holds over random scenes with every effect is measured in
-    studies/resolve_errors.md. Cost: cubic in the modes; all steps together take about twice the last.
+    well past the segment's own turning resonance. How well the estimate holds over random scenes with every effect is
+    measured in studies/resolve_errors.md. Cost: cubic in the modes; all steps together take about twice the last.
 
     Examples
     --------
