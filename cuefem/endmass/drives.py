@@ -90,8 +90,8 @@ def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None) -
 class Spread(NamedTuple):
     """An end mass, and the smallest and largest value while only 25 to 100 % of the modes are kept; kg.
 
-    error: the estimated relative error of the definition "stick" (see `ringing`); lowest and highest reach at least as
-    far. None for other definitions, and where a resolution was given.
+    error: the definition's own estimate of its relative error (`Definition.error`); lowest and highest reach at least
+    as far. None if the definition has no such estimate, or if a resolution was given.
     """
 
     end_mass: float
@@ -128,7 +128,7 @@ def spreads_of(solved: Solved) -> Callable[[str], Spread]:
         least = rigid + math.ceil((whole - rigid) / 4)
         kept = np.unique(np.linspace(least, whole, cutoffs).astype(int))
         values = [float(definition.of(each, scene)) for each in (tip, *map(plain.lowest, kept.tolist()))]
-        error = ringing(tip, StickLimit.of(scene)) if drive == "stick" and tip.radiation is not None else None
+        error = definition.error(tip, scene)
         reach = [values[0] * (1 + side * (error or 0.0)) for side in (-1, 1)]
         return Spread(values[0], min(*values, *reach), max(*values, *reach), error)
 
@@ -258,6 +258,10 @@ def ringing(tip: TipModes, limit: StickLimit) -> float:
     return HEARD * limit.ringing(omega, phi, rigid, tail=tail) * (1 + felt * limit.c)  # end mass goes with J so
 
 
+def _stick_error(tip: TipModes, scene: Scene) -> float | None:
+    return None if tip.radiation is None else ringing(tip, StickLimit.of(scene))
+
+
 def flexible(tip: TipModes) -> tuple[Array, Array, float]:
     """(omega, phi) of the modes that vibrate across the cue, and the sum of the rigid ones' phi^2."""
     omega, phi = tip.transverse
@@ -330,7 +334,8 @@ class Definition(NamedTuple):
 
     name: as `end_mass` takes it. label: in a few words. meaning: in plain English. formula: how it is computed. value:
     the end mass of a vibrating cue, kg, from its tip modes and its scene. at_offset: whether it is the end mass at the
-    scene's own offset. strikes: whether it takes a coupled strike of these tip modes.
+    scene's own offset. strikes: whether it takes a coupled strike of these tip modes. error: its estimated relative
+    error with these tip modes, None if there is no estimate. counts_tip: whether effects at the tip count in it.
     """
 
     name: str
@@ -340,6 +345,8 @@ class Definition(NamedTuple):
     value: Callable[[TipModes, Scene], Any]
     at_offset: bool = False
     strikes: Callable[[TipModes, Scene], bool] = lambda tip, scene: False
+    error: Callable[[TipModes, Scene], float | None] = lambda tip, scene: None
+    counts_tip: bool = False
 
     def of(self, tip: TipModes, scene: Scene) -> Any:
         """The end mass of any cue by this definition, kg; a lumped cue has its own whatever the definition."""
@@ -361,6 +368,8 @@ DEFINITIONS: dict[str, Definition] = {
             "(K - 1)/J - c = 1/m_e, J the impulse across the cue that makes the tip follow V(t) = K P(t) - 1",
             stick,
             strikes=_couples,
+            error=_stick_error,
+            counts_tip=True,
         ),
         Definition(
             "offset",
@@ -370,6 +379,7 @@ DEFINITIONS: dict[str, Definition] = {
             stick_at_offset,
             at_offset=True,
             strikes=_couples,
+            counts_tip=True,
         ),
         Definition(
             "velocity",
@@ -393,6 +403,7 @@ DEFINITIONS: dict[str, Definition] = {
             squirt_equivalent,
             at_offset=True,
             strikes=lambda tip, scene: True,
+            counts_tip=True,
         ),
     )
 }
