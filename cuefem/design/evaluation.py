@@ -35,9 +35,10 @@ def evaluate(
     """The responses of every scene.
 
     Bare cues with equally many segments are worked as arrays, in blocks; scenes with effects, and lumped cues, one by
-    one. ``at`` is one resolution for all; the default is the finest that any of the scenes would have by itself. A
-    scene without an answer gets a reason and does not disturb the others; one without an end mass keeps its other
-    responses. ValueError if a name is not that of a response.
+    one. ``at`` is one resolution for all; by default it is `common_resolution`, which is coarser than the default of
+    `cuefem.end_mass`: stick end masses differ from that by up to 2 %. A scene without an answer gets a reason and does
+    not disturb the others; one without an end mass keeps its other responses. ValueError if no response has one of the
+    names.
     """
     asked = tuple(Response.of(one) if isinstance(one, str) else one for one in responses)
     at = at or common_resolution(scenes, asked)
@@ -87,7 +88,12 @@ def _values(scenes: Sequence[Scene], responses: Sequence[Response], at: Resoluti
 
 
 def common_resolution(scenes: Sequence[Scene], responses: Sequence[Response]) -> Resolution:
-    """One resolution that serves every scene as its own default would; modes by frequency for strikes."""
+    """One resolution for all scenes: the most modes that any needs, and a mesh that carries them.
+
+    A strike keeps the modes up to `PERIODS_KEPT` periods a contact. `cuefem.end_mass` is finer: it keeps at least 120
+    modes and lets a tail stand for those above. Designs compare well with each other, but their stick end masses are
+    off by up to 2 %: on the reference cues 1.2 % at 2 ms (maple) and 1.8 % at 1.5 ms (carbon).
+    """
     count, strikes = max([1, *(one.modes for one in responses)]), any(one.strikes for one in responses)
     mesh, modes = (1, 1), 1
     for scene in scenes:

@@ -124,8 +124,8 @@ class Study:
     sample : Sample, optional
         A quasi-random sample in place of the grid.
     at : Resolution, optional
-        One resolution for all designs, so that responses do not jump between them. The default serves the design of the
-        ranges that needs the finest one.
+        One resolution for all designs, so that responses do not jump between them. The default is that of the design
+        in the ranges that needs most modes (`common_resolution`: stick end masses are off by up to 2 %).
 
     Raises
     ------
