@@ -128,18 +128,21 @@ class WithDefinitions(click.Command):
             formatter.write_dl([(one.name, one.meaning) for one in DEFINITIONS.values()])
 
 
-def scene_of(file: Path, given: dict[str, Any]) -> tuple[Scene, list[str]]:
-    """The scene that a command computes, and what was assumed because neither file nor options say it."""
+def scene_of(file: Path, given: dict[str, Any], *, blow: bool = True) -> tuple[Scene, list[str]]:
+    """The scene that a command computes, and what was assumed because neither file nor options say it.
+
+    blow: whether ball, tip and stroke matter to the command, so that what is assumed of them is told too.
+    """
     from cuefem.io import load
     from cuefem.io.assumed import assumed, assumed_blow
     from cuefem.scene import Scene, Stroke
 
     found = load(file, material=given["material"], length_unit=given.get("length_unit"))
     said = {name for name, value in given.items() if value is not None}
-    notes = assumed(file, said, offered=given)
+    notes = assumed(file, said, offered=given, blow=blow)
     if not isinstance(found, Scene):
         found = Scene(found, stroke=Stroke(offset=DEFAULT_OFFSET))
-        notes += assumed_blow({}, said, offered=given, offset=DEFAULT_OFFSET)
+        notes += assumed_blow({}, said, offered=given, offset=DEFAULT_OFFSET) if blow else []
     scene = _with_options(found, file, given)
     remark(scene)
     return scene, notes
@@ -185,14 +188,21 @@ def with_body(found: Cue | Scene, file: Path, given: str) -> Any:
     return replace(found, cue=replace(found.shaft, body_mass=mass))
 
 
-def show(file: Path, given: dict[str, Any], results: Callable[[Scene], Any], tables: Callable[..., Any]) -> None:
-    """Compute all of it first, then print it all: as JSON, or as a heading and tables."""
+def show(
+    file: Path,
+    given: dict[str, Any],
+    results: Callable[[Scene], Any],
+    tables: Callable[..., Any],
+    *,
+    blow: bool = True,
+) -> None:
+    """Compute all of it first, then print it all: as JSON, or as a heading and tables. blow: see `scene_of`."""
     from cuefem.report.quantities import UNITS
     from cuefem.report.record import plain, scene_record
     from cuefem.report.unusual import unusual
     from cuefem.report.words import cue_line, effect_words
 
-    scene, notes = scene_of(file, given)
+    scene, notes = scene_of(file, given, blow=blow)
     with blaming(file):
         about, found = scene_record(scene), results(scene)
     if given["as_json"]:

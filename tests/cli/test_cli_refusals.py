@@ -128,7 +128,9 @@ def test_convert_refuses_a_mass_behind_a_lumped_cue(tmp_path: Path) -> None:
         (["end-mass", "--contact-time", "-2 ms"], "--contact-time: must be in [1e-6, 10] s; got '-2 ms'"),
         (["report", "--contact-time", "2 mm"], "--contact-time: must be in [1e-6, 10] s, a time with its unit,"),
         (["report", "--body-mass", "-1 oz"], "--body-mass: must be in [0, inf) kg; got '-1 oz'"),
-        (["modes", "--near", "-250"], "--near: must be in [0, inf) Hz; got '-250.0 Hz'"),
+        (["modes", "--near", "-250"], "--near: must be in [0, inf) Hz, such as 250 or \"0.25 kHz\"; got '-250'"),
+        (["modes", "--near", "abc"], "--near: must be in [0, inf) Hz, such as 250 or \"0.25 kHz\"; got 'abc'"),
+        (["modes", "--near", "3 mm"], "--near: must be in [0, inf) Hz, such as 250 or \"0.25 kHz\"; got '3 mm'"),
         (["modes", "--material", "ash"], "names its materials itself: material is for .csv, .stl, "),
     ],
 )
