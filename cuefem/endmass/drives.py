@@ -157,8 +157,10 @@ def force(tip: TipModes, scene: Scene) -> float:
     """Impulse of a half-sine force over the tip velocity at its end, kg. Converges like 1/modes^2 (it has kinks)."""
     T = scene.contact_time
     if tip.resistance is None:
-        return 2 * T / np.pi / float(transverse.half_sine_velocity(*flexible(tip), T=T))
-    return 2 * T / np.pi / damped.half_sine_velocity(tip, T)
+        final = float(transverse.half_sine_velocity(*flexible(tip), T=T))
+    else:
+        final = damped.half_sine_velocity(tip, T)
+    return 2 * T / np.pi / final  # the impulse of a half sine of unit height over the velocity it gives
 
 
 def velocity(tip: TipModes, scene: Scene) -> float:

@@ -158,6 +158,15 @@ def stick_reason(slope: float) -> str:
     return f"the squirt is {slope:.4g} times phi, larger than that of any end mass"
 
 
+def loading(e: Any, T: Any) -> tuple[Any, Any]:
+    """Time of the bilinear tip's largest force, s, and the angular frequency of its loading, rad/s.
+
+    The head-on force is a quarter of a sine up to its peak and another one down, which e makes 1/e times as fast.
+    """
+    peak = T / (1 + e)
+    return peak, np.pi / (2 * peak)
+
+
 def fade(x: Array) -> Array:
     """The part of a vibration that is kept at ``x`` times the highest frequency: 1 up to `FADED`, 0 from 1 on.
 
@@ -206,8 +215,7 @@ def _normal_impulse(W: Array, e: Any, T: Any) -> Array:
 
     Two quarter periods: (1 - cos)/(1 + e) while the tip is loaded, T/(1 + e) long, then (1 + e sin)/(1 + e).
     """
-    peak = T / (1 + e)
-    a = np.pi / (2 * peak)
+    peak, a = loading(e, T)
     total = _response(W, T, (0.0, T)) - _response(W, T, (0.0, peak), a=a)
     if np.any(e > 0):
         rate = a / np.where(e > 0, e, 1.0)  # where e = 0 the tip does not unload, and the span is empty
