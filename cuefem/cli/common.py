@@ -28,12 +28,12 @@ def file_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def cue_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The options for what the file of a cue may leave out, and --json."""
+    """The options for what a cue's file may leave out, and --json."""
     return click.option("--json", "as_json", is_flag=True, help="SI numbers as JSON.")(shape_options(command))
 
 
 def shape_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The options for what a file of a shape cannot say: mass, material and unit."""
+    """The options for what a file that holds only a shape leaves out: mass, material and unit."""
     for option in (
         click.option("--body-mass", metavar="MASS", help='Mass of the cue behind FILE\'s segments, e.g. "420 g".'),
         click.option(
@@ -70,7 +70,7 @@ def force_option(command: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def check_free(drawing: Path, *, force: bool) -> None:
-    """Refuse to replace a drawing, which is somebody's work, without --force; pages and figures can be made again."""
+    """Refuse to replace a drawing without --force, for it is somebody's work; pages and figures can be made again."""
     from cuefem.io import InputError, check_place
 
     if drawing.exists() and not drawing.is_dir() and not force:
@@ -80,7 +80,7 @@ def check_free(drawing: Path, *, force: bool) -> None:
 
 @contextmanager
 def blaming(file: Path) -> Iterator[None]:
-    """Name the file in an error that shows only while computing, such as an effect that lies off the cue."""
+    """Name the file in errors that appear only while computing, such as an effect that lies off the cue."""
     from cuefem.io import InputError
 
     try:
@@ -104,7 +104,7 @@ def measured(file: Path, option: str, given: str, wanted: Quantity) -> float:
 
 
 class Definitions(click.Choice[str]):
-    """The names of the end-mass definitions, and ``more``; read only when a command needs them, for they load much."""
+    """The names of the end-mass definitions, and ``more``; loaded only when a command needs them, for it is slow."""
 
     def __init__(self, *more: str) -> None:
         self.more, self.case_sensitive = more, True

@@ -122,7 +122,7 @@ def _predicted(file: Path, scene: Scene, found: TapFit) -> tuple[dict[str, Predi
 
 
 def _updated(file: Path, scene: Scene, found: TapFit, given: dict[str, Any]) -> Any:
-    """What FILE holds, a cue or a scene, with the fitted wood to six digits."""
+    """The cue or scene of FILE with the fitted wood, to six digits."""
     from cuefem.io import load
     from cuefem.scene import Scene
     from cuefem.tap.matching import with_material

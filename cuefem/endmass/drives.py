@@ -115,9 +115,10 @@ def end_mass_spreads(scene: Scene, at: Resolution | None = None) -> Callable[[st
 
 
 def spreads_of(solved: Solved) -> Callable[[str], Spread]:
-    """As `end_mass_spreads`, of a solved scene.
+    """As `end_mass_spreads`, from a solved scene.
 
-    The spread is that of plain sums, without a tail, at 13 numbers of modes; at 5 where each takes a coupled strike.
+    The spread is over plain sums, without a tail, of 13 different numbers of modes; of 5, if each takes a coupled
+    strike.
     """
     scene = solved.scene
 
@@ -142,7 +143,7 @@ def _couples(tip: TipModes, scene: Scene) -> bool:
 
 
 def definition_of(drive: str) -> Definition:
-    """The definition of that name; ValueError, naming those there are, if there is none."""
+    """The definition of that name; ValueError, listing all names, if there is none."""
     if drive not in DEFINITIONS:
         raise ValueError(f"end_mass drive must be one of {', '.join(DEFINITIONS)}; got {drive!r}")
     return DEFINITIONS[drive]
@@ -174,8 +175,8 @@ def velocity(tip: TipModes, scene: Scene) -> float:
 def stick(tip: TipModes, scene: Scene) -> float:
     """End mass of the limit b -> 0 of the coupled strike, kg: `cuefem.endmass.undamped.StickLimit`.
 
-    Effects at the tip (a dome, shear) and axial waves have no part in that formula: with them it is fed with the
-    coupled strike's own small-offset squirt.
+    That formula knows no effects at the tip (a dome, shear) and no axial waves: with them it takes the squirt of the
+    coupled strike at a small offset.
     """
     limit = StickLimit.of(scene)
     if _couples(tip, scene):
@@ -214,7 +215,7 @@ def _each(function: Callable[[float, float], float], offset: Any, speed: Any) ->
 
 
 def limit_at(scene: Scene, offset: Any) -> StickLimit:
-    """The law of a tip that sticks at offsets b/R >= 0, where a light cue end leaves the force along the cue.
+    """The law of a tip that sticks at offsets b/R >= 0. A light cue end leaves the force along the cue.
 
     Then F_t = F_n tan(phi). With D = 1 + 1/Q0 + sin(phi)^2/nu the contact is that of the mass M cos(phi)^2/D, of the
     length T cos(phi) sqrt((1 + 1/Q0)/D), and the tip's velocity runs as K P - 1, K = (1 + e)(1 + 1/nu + 1/Q0)/D.

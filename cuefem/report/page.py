@@ -269,6 +269,7 @@ def _end_masses(record: Record, squirt: Record) -> Record:
         "reasons": [values["reason"] for values in record["drives"].values() if values["end_mass"] is None],
         "meanings": [(one.label_at(record["offset"]), one.meaning) for one in DEFINITIONS.values()],
         "coupling": squirt["coupling"],
+        "counted": "; ".join(one.label for one in DEFINITIONS.values() if one.counts_tip),
     }
 
 
