@@ -59,7 +59,7 @@ RUBBED: dict[str, Press] = {"rubbed": "rubbed", "rubbed back": "rubbed back"}
 
 
 class Swing(NamedTuple):
-    """The fast swing in a grip: the direction it moves the state in, B, its frequency, rad/s, and its decay, 1/s."""
+    """The fast swing in a grip: the direction in which the state moves, B, the frequency, rad/s, and the decay, 1/s."""
 
     pull: Array
     give: float

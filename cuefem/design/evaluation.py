@@ -34,11 +34,11 @@ def evaluate(
 ) -> Evaluation:
     """The responses of every scene.
 
-    Bare cues with equally many segments are worked as arrays, in blocks; scenes with effects, and lumped cues, one by
-    one. ``at`` is one resolution for all; by default it is `common_resolution`, which is coarser than the default of
-    `cuefem.end_mass`: stick end masses differ from that by up to 2 %. A scene without an answer gets a reason and does
-    not disturb the others; one without an end mass keeps its other responses. ValueError if no response has one of the
-    names.
+    Bare cues with the same number of segments are computed as arrays, in blocks; scenes with effects, and lumped cues,
+    one by one. ``at`` is one resolution for all; by default it is `common_resolution`, which is coarser than the
+    default of `cuefem.end_mass`: stick end masses differ from that by up to 2 %. A scene without an answer gets a
+    reason and does not disturb the others; one without an end mass keeps its other responses. ValueError if no response
+    has one of the names.
     """
     asked = tuple(Response.of(one) if isinstance(one, str) else one for one in responses)
     at = at or common_resolution(scenes, asked)
@@ -52,13 +52,13 @@ def evaluate(
         except Failed as error:
             if len(rows) == 1:
                 reasons[rows[0]] = " ".join(str(error).split())
-            else:  # who it was shows one by one
+            else:  # one by one they show which it was
                 waiting += [[i] for i in rows]
     return Evaluation(values, tuple(reasons.get(i) for i in range(len(scenes))))
 
 
 def _blocks(scenes: Sequence[Scene]) -> list[list[int]]:
-    """Indices of scenes that are worked together: bare cues in blocks by number of segments, others one by one."""
+    """Indices of scenes to compute together: bare cues in blocks by number of segments, others one by one."""
     groups: dict[int, list[int]] = {}
     for i, scene in enumerate(scenes):
         together = len(scene.cue.segments) if not scene.effects else 0
@@ -67,9 +67,9 @@ def _blocks(scenes: Sequence[Scene]) -> list[list[int]]:
 
 
 def _values(scenes: Sequence[Scene], responses: Sequence[Response], at: Resolution) -> tuple[Array, list[str | None]]:
-    """(responses (designs, responses) of scenes that can be worked together; why one is missing, a design each).
+    """(responses (designs, responses) of scenes that can be computed together; for each design why one is missing).
 
-    ValueError if a response is no number and does not say why.
+    ValueError if a response is not a number and gives no reason.
     """
     bare = scenes[0].cue.segments and not scenes[0].effects
     lacking = [one.name for one in responses if one.segments and not scenes[0].cue.segments]

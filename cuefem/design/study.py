@@ -72,7 +72,7 @@ class Vary:
         return found
 
     def givers(self, base: Scene) -> tuple[Path, ...]:
-        """The fields of `taken_from`; ValueError if one is no number, or its unit differs from that of what varies."""
+        """The fields of `taken_from`; ValueError if one holds no number, or has another unit than what varies."""
         found = tuple(path for text in self.taken_from for path in paths(base, text))
         gainer = self.fields(base)[0]
         for path in found:
@@ -105,7 +105,7 @@ class Vary:
         return "factor" if self.factor else "shift" if self.shift else "set"
 
     def applied(self, value: float, before: Any) -> float:
-        """A field that held ``before``, with this value of the range."""
+        """The new value of a field that held ``before``, for this value of the range."""
         return before * value if self.factor else before + value if self.shift else value
 
 

@@ -6,5 +6,6 @@ scikit-fem always, and those of the following that are installed:
     pip install ngsolve openseespy sfepy ross-rotordynamics "plotly<6"
     apt-get install calculix-ccx
 
-The others are skipped, and the output says so. A peer is one file; contest.py says how they are timed, report.py what is printed.
+The others are skipped, and the output says so. A peer is one file; contest.py says how they are timed, report.py what
+is printed.
 """
