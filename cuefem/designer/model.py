@@ -1,7 +1,8 @@
 """The knobs of a cue, and a scene with its knobs turned.
 
-A scene stays as its file has it but for the knobs that were moved: a knob at the scene's own value changes nothing, and
-what has no knob (other segments, effects, the ball) is kept. What a knob means in any cue, told by its drawing alone:
+A scene stays as its file has it except for the knobs that were moved: a knob at the scene's own value changes nothing,
+and what has no knob (other segments, effects, the ball) is kept. What a knob means in any cue, told by its drawing
+alone:
 
 - The leather is the soft segments at the tip; the ferrule is the segment behind it, where that is short and of another
   material than the next; the shaft is what follows, as far as it is of one material.

@@ -54,8 +54,8 @@ def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None) -
         - "squirt": the lumped end mass that has the squirt of the coupled strike.
     at
         How finely the cue is computed. By default modes are kept by frequency (`default_resolution`), at least 120 of
-        them, which holds 0.5 % but for rare cues (0.53 % at most) and metal tips; `cuefem.resolve_end_mass` estimates
-        the error.
+        them. That is exact to 0.5 % except for rare cues (0.53 % at most) and metal tips; `cuefem.resolve_end_mass`
+        estimates the error.
 
     Returns
     -------

@@ -49,7 +49,7 @@ class Mark(NamedTuple):
 
 @dataclass(frozen=True)
 class Axis:
-    """An axis: what it measures, and its ends in those units (None: as the data ask)."""
+    """An axis: what it measures, and its ends in those units (None: fitted to the data)."""
 
     label: str
     low: float | None = None

@@ -3,8 +3,8 @@
 pooltool turns the ball by [A.31] with nu = 2/5, whatever the ball: alpha = -atan((5/2) a sqrt(1 - a^2)/(1 + m/end_mass
 + (5/2)(1 - a^2))), its own words in `pooltool.physics.resolve.stick_ball.squirt`; a is b/R of the contact, positive on
 the ball's left, alpha positive to the left. [A.31] knows neither restitution nor the tip's dome: with the stick end
-mass it gives 11 to 42 % less squirt than the coupled strike of the ready scenes. What makes it right, at one offset, is
-an end mass of its own, the drive "A.31".
+mass it gives 11 to 42 % less squirt than the coupled strike of the ready scenes. With an end mass made for it, the
+drive "A.31", it is right at one offset.
 """
 
 from __future__ import annotations

@@ -119,7 +119,7 @@ def _stages(scene: Scene, rtol: float) -> list[Stage]:
 
 
 class Step(NamedTuple):
-    """A rung of the ladder of resolutions: what it takes, what it gives, its estimated error, seconds so far."""
+    """A step of the ladder of resolutions: modes and unknowns, squirt, its estimated error, and seconds so far."""
 
     modes: int
     unknowns: int
