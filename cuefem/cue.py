@@ -315,7 +315,7 @@ class Cue:
         return math.fsum(moments) / self.shaft_mass
 
     def section(self, x: ArrayLike) -> Section:
-        """Section properties at ``x`` in [0, length] m from the tip; where two segments meet, those of the rear one."""
+        """Section properties at ``x`` in [0, length] m from the tip; where two segments meet, the rear one's."""
         x = np.asarray(x, float)
         if not np.all((x >= 0) & (x <= self.length)):
             raise ValueError(f"Cue.section takes positions in [0, {self.length}] m; got {x}")

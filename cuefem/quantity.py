@@ -164,7 +164,11 @@ def check_kind(name: str, value: Any, kind: type | tuple[type, ...]) -> None:
     """TypeError unless ``value`` is an instance of ``kind``; if one of its fields is, the message names that field."""
     if not isinstance(value, kind):
         wanted = " or ".join(k.__name__ for k in (kind if isinstance(kind, tuple) else (kind,)))
-        raise TypeError(f"{name} must be a {wanted}; got {_in_short(value, kind)}")
+        raise TypeError(f"{name} must be {_a(wanted)}; got {_in_short(value, kind)}")
+
+
+def _a(noun: str) -> str:
+    return f"{'an' if noun[0] in 'AEIOUaeiou' else 'a'} {noun}"
 
 
 def _in_short(value: Any, kind: type | tuple[type, ...]) -> str:
@@ -172,7 +176,7 @@ def _in_short(value: Any, kind: type | tuple[type, ...]) -> str:
     if not dataclasses.is_dataclass(value) or isinstance(value, type):
         return shown(value)
     meant = [field.name for field in dataclasses.fields(value) if isinstance(getattr(value, field.name), kind)]
-    return f"a {type(value).__name__}" + (f": pass its {meant[0]}" if meant else "")
+    return _a(type(value).__name__) + (f": pass its {meant[0]}" if meant else "")
 
 
 def shown(value: Any) -> str:

@@ -71,7 +71,7 @@ class Solved:
 
     @cached_property
     def tip_stuck(self) -> TipModes:
-        """Tip modes that an end mass takes: those of a strike, but at least `LEAST_STUCK` of them by default."""
+        """Tip modes for an end mass: as for a strike, but at least `LEAST_STUCK` of them by default."""
         return self.tip_modes(LEAST_STUCK)
 
     @cached_property
@@ -105,15 +105,15 @@ class Solved:
             else:
                 effects = self.scene.cue_effects
                 system = assemble(self.scene.shaft, elements=at.elements, order=at.order, effects=effects)
-                # a support makes flexible modes of rigid ones: with it as many modes in all, so that its limits are
-                # continuous
+                # a support makes rigid modes flexible; the number of modes in all stays the same, so that its limits
+                # are continuous
                 found = solve(system, at.modes + 2 - system.rigid.shape[1])
             self._kept[at, ended] = found
         return self._kept[at, ended]
 
 
 def tip_modes_of(scene: Scene, at: Resolution | None = None, *, least: int = LEAST) -> TipModes:
-    """Tip modes of any scene's cue, with its effects; ended by a tail where no resolution is given."""
+    """Tip modes of any scene's cue, with its effects; ended by a tail if no resolution is given."""
     return Solved(scene, at).tip_modes(least)
 
 

@@ -16,11 +16,11 @@ NOISE = 1e-9  # relative differences below it are rounding errors, the same on n
 
 @dataclass(frozen=True)
 class Claim:
-    """One statement of a source: where it stands, what it is of, its value there and ours, and why they differ.
+    """One statement of a source: where it stands, what it is about, its value there and ours, and why they differ.
 
-    printed, derived: numbers in ``unit``, None where the source (or the derivation) gives no number. verdict: one of
-    VERDICTS; "rounding" is a figure that its own digits or its stated approximation explain. cause: in a few words,
-    empty where they agree without a remark.
+    printed, derived: numbers in ``unit``, None if the source (or the derivation) gives no number. verdict: one of
+    VERDICTS; "rounding" means that the source's own digits or its stated approximation explain the difference. cause:
+    in a few words, empty if the two agree without a remark.
     """
 
     source: str

@@ -3,14 +3,14 @@
 What: (a) element order against number of elements, in f1 to f10 and the velocity end mass (2 ms, 24 modes); (b) modes
 kept, as a plain sum and with `cuefem.beam.tail`, in squirt, ball speed and spin; (c) exactly propagated phases against
 scipy's solve_ivp and Newmark's steps on the very same phases; (d) the ladder of models from the paper's closed form to
-the coupled strike with effects, in squirt against the fullest. Errors are the largest over a family: five cues of
-meshes/ x (0.7 ms, b/R 0.4), (1 ms, 0.3), (2 ms, 0.1); in (c) Kim's four strokes of contact_cost.py. References: 12
-elements of order 14; 220 modes with a tail on a mesh of another order; exact phases in cells a third as long.
-Left out: AxialWaves, which lengthens the contact time that all the models share; SecondHit, which changes only what
-follows the stroke; the tip's geometry, material data and friction, which no refinement improves.
-Equations: handbook: The beam, The strike, Effective end mass, What the paper says, Effects. Parts:
-accuracy_cost_points.py computes. Writes accuracy_cost.md and accuracy_cost.svg (values), accuracy_cost_seconds.md and
-accuracy_cost_seconds.png (seconds of the machine named there) beside itself; takes about two minutes.
+the coupled strike with effects, in squirt against the most complete model. Errors are the largest over a family: five
+cues of meshes/ x (0.7 ms, b/R 0.4), (1 ms, 0.3), (2 ms, 0.1); in (c) Kim's four strokes of contact_cost.py. References:
+12 elements of order 14; 220 modes with a tail on a mesh of another order; exact phases in cells a third as long. Left
+out: AxialWaves, which lengthens the contact time that all the models share; SecondHit, which changes only what follows
+the stroke; the tip's geometry, material data and friction, which no refinement improves. Equations: handbook: The beam,
+The strike, Effective end mass, What the paper says, Effects. Parts: accuracy_cost_points.py computes. Writes
+accuracy_cost.md and accuracy_cost.svg (values), accuracy_cost_seconds.md and accuracy_cost_seconds.png (seconds of the
+machine named there) beside itself; takes about two minutes.
 """
 
 from __future__ import annotations

@@ -237,7 +237,7 @@ def lumped(scene: Scene, drive: Any) -> Any:
 
 
 def coupled(scene: Scene, rungs: int) -> Any:
-    """Squirt of the coupled strike with the effects of the first rungs, at the resolution meant where none is given."""
+    """Squirt of the coupled strike with the effects of the first rungs, at the default resolution."""
     return strike(with_effects(scene, rungs)).squirt
 
 

@@ -6,7 +6,7 @@ elements and polynomial order of the finite-element cue leave out.
 (b) Kim's whole shaft in an ever longer contact at a fixed offset: the rigid shaft; (a) is (b) again, as only omega T
 counts;
 (c) Kim's shaft made ever lighter at fixed shape: [Kim]'s first order in epsilon;
-(d) an offset that vanishes: the impulse solver fed with the stick end mass, all cues of meshes/.
+(d) a vanishing offset: the impulse solver with the stick end mass, for all cues of meshes/.
 Equations: handbook: Inverse mass, The impulse solver, The strike, Effective end mass and, for the end mass at an
 offset, `stick_at_offset`; the table says how fast each road is and why. Parts: convergence_roads.py computes. e =
 3/4, mu = 0.7, a ball of 210 g.

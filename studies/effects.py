@@ -1,11 +1,10 @@
 """How much does each effect change in the ready scenes?
 
-What: every scene of scenes/ as it stands, without each effect it lists and with each it does not list, at the textbook
-values of `usual` of each effect: an effect changes squirt (ball speed, spin) by its value with the effect over
-that without it, minus 1. Default resolution. Effects without a usual value (a joint, a mass where none is listed) and
-Elevation, which is the player's choice, are left out. bridge.py covers a bridge hand in general, dome.py the dome.
-Equations: handbook: Effects.
-Writes effects.md and effects.svg beside itself; takes about 40 s.
+What: every scene of scenes/ as it stands, then without each effect that it lists, and with each that it does not list
+(at the effect's textbook value, `usual`). The change is squirt (ball speed, spin) with the effect over that without it,
+minus 1. Default resolution. Effects without a usual value (a joint, a mass that is not listed) and Elevation, which is
+the player's choice, are left out. bridge.py covers a bridge hand in general, dome.py the dome. Equations: handbook:
+Effects. Writes effects.md and effects.svg beside itself; takes about 40 s.
 """
 
 from __future__ import annotations

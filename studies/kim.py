@@ -1,13 +1,13 @@
 """Every claim of [Kim], H.-C. Kim, "Motions of a billiard ball after a cue stroke", against its own equations.
 
-What: each numbered result of the paper is evaluated as printed and beside it what follows from the equations of motion
+What: each numbered result of the paper is evaluated as printed, beside what follows from the equations of motion
 (kim_walk.py: the impulse equations dv = B dp, followed from event to event), at one stroke: b/R = 0.5, the paper's
 two-part cue (epsilon = m_c/M = 2/35, Q0 = M_c/M = 18/7, nu_c = 1/3), e = 3/4, mu = 0.7 (a rigid cue: Q0 = 3, nu_c =
 0.136, mu = 0.6). Limits epsilon -> 0 are Richardson-extrapolated from the exact law. Numbers that the text quotes stand
-beside the same quantity derived. Sections are the paper's, I (introduction) to VI (summary).
-Equations: handbook: Frame and signs, Inverse mass, The impulse solver, What the paper says; cuefem.squirt. Parts:
-kim_stroke.py (I to IV), kim_cue.py (V, VI), kim_shaft.py (the cue end, and what finite elements say of the shaft).
-`python -m studies.kim` writes kim.md and kim_*.svg beside itself; takes seconds.
+beside the same quantities as derived. Sections are the paper's, I (introduction) to VI (summary). Equations: handbook:
+Frame and signs, Inverse mass, The impulse solver, What the paper says; cuefem.squirt. Parts: kim_stroke.py (I to IV),
+kim_cue.py (V, VI), kim_shaft.py (the cue end, and what finite elements say of the shaft). `python -m studies.kim`
+writes kim.md and kim_*.svg beside itself; takes seconds.
 """
 
 from __future__ import annotations

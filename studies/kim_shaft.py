@@ -1,7 +1,7 @@
 """What [Kim] says of the shaft itself, its cue end, and finite elements: end mass, dome, slip, tone. Part of kim.py.
 
 Kim's shaft (E 12.6 GPa, E/G 15, kappa 0.9), 540 g along its axis, T = 2 ms head on, 22 flexible bending modes; numbers
-to four digits, about what the modes left out allow.
+to four digits, which is about as exact as these modes allow.
 """
 
 from __future__ import annotations

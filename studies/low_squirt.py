@@ -1,11 +1,11 @@
-"""What makes a shaft of little squirt: what buys how much squirt for how much stiffness?
+"""What lowers the squirt of a shaft, and how much stiffness does that cost?
 
 The stick end mass and the small-offset squirt at T = 1 ms (`cuefem.batch_stick`), the static tip stiffness with the
 joint clamped. The first table changes one thing at a time on the hollow-front shaft of meshes/; the second compares the
-shafts of meshes/ by the coupled strike at b/R = 0.3, bare and with dome and shear of the tip. The third is the shaft of
-least squirt that is as stiff as the solid one (optimum.toml), found by gradients and by a quasi-random search, and
-struck. The figure has Pareto fronts of squirt against stiffness and mass (`front`, NSGA-II of pymoo, within 5 %) over
-bore, depth, ferrule, tip diameter and taper, and over the walls of the carbon tube. About 60 s.
+shafts of meshes/ by the coupled strike at b/R = 0.3, bare and with dome and shear of the tip. The third has the shaft
+of least squirt among those as stiff as the solid one (optimum.toml), found by gradients and by a quasi-random search,
+and then struck. The figure has Pareto fronts of squirt against stiffness and mass (`front`, NSGA-II of pymoo, within 5
+%) over bore, depth, ferrule, tip diameter and taper, and over the walls of the carbon tube. About 60 s.
 """
 
 from __future__ import annotations

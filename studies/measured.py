@@ -6,10 +6,10 @@ before a pool ball, bare, with the tip's dome (9.5 mm), with its shear (Mindlin'
 Halton sequence vary wood, leather, ferrule, taper, bore and stroke within the ranges of measured_shafts.py, which were
 fixed before the first run, and the band holds 90 % of them. Then: how much each unknown changes squirt; squirt against
 contact time and speed, on which measured squirt does not depend; leather whose shear is counted twice; and the claims
-of an earlier prototype, one by one. Equations: handbook: The strike, Effects; PowerLawTip (its shear a constant spring)
-and RollingContact for the speed. Contact times (0.8 ms phenolic and fast, 1 to 2 ms most, 2 to 3 ms soft and slow) and
-"no practical effect" of hardness: billiards.colostate.edu, FAQ, cue tip. Writes measured.md and measured.svg beside
-itself; takes about 40 s.
+of an earlier prototype, each checked. Equations: handbook: The strike, Effects; PowerLawTip (its shear a constant
+spring) and RollingContact for the speed. Contact times (0.8 ms phenolic and fast, 1 to 2 ms most, 2 to 3 ms soft and
+slow) and "no practical effect" of hardness: billiards.colostate.edu, FAQ, cue tip. Writes measured.md and measured.svg
+beside itself; takes about 40 s.
 """
 
 from __future__ import annotations

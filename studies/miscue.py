@@ -2,12 +2,12 @@
 
 What: the largest offset b/R before a miscue against friction, for [Kim]'s rigid cue (Q0 = 3, nu_c = 0.136) and two-part
 cue (Q0 = 18/7, epsilon = 2/35), for the [A.31]-like limit (the same end mass, e = 0) and for a cue end without mass,
-the paper's own condition mu = tan(phi). And where slip stops ending in compression, beyond which [Kim]'s closed form
-is not valid: where the paper's mu = 0.6 stops working.
-Equations: a miscue is slip that still goes on when e^2 of the normal work is regained,
-tan(phi) (B_nn + mu B_tn) = (1 + e) (mu B_tt + B_tn), a cubic in tan(phi) (cuefem.squirt.miscue_offset); the table's
-last column finds the same edge by bisection on the regime of the general solver (cuefem.contact.impulse_space).
-`python -m studies.miscue` writes miscue.md and miscue.svg beside itself; takes a second.
+the paper's own condition mu = tan(phi). And the offset beyond which slip no longer ends during compression, so that
+[Kim]'s closed form is not valid: where the paper's mu = 0.6 stops working. Equations: a miscue is slip that still goes
+on when e^2 of the normal work is regained, tan(phi) (B_nn + mu B_tn) = (1 + e) (mu B_tt + B_tn), a cubic in tan(phi)
+(cuefem.squirt.miscue_offset); the table's last column finds the same edge by bisection on the regime of the general
+solver (cuefem.contact.impulse_space). `python -m studies.miscue` writes miscue.md and miscue.svg beside itself; takes a
+second.
 """
 
 from __future__ import annotations

@@ -6,8 +6,8 @@ share of that, m_a dm/dm_a, is counted in the curves and under 0.001 g. The tabl
 handbook: Effective end mass into the shares of mass (rho A), its turning (rho I), bending (EI) and shear (kGA)
 stiffness; the rest to 100 % is the stick law's own dependence on ball and axial mass.
 
-Plain sums over modes up to 30 periods in a contact; in the soft leather of the first 6 mm, whose own modes lie near
-that, the curves still ring with the number kept, and are drawn from 6 mm on. About 25 s.
+The sums are plain, over the modes up to 30 periods in a contact. In the first 6 mm, soft leather whose own modes lie
+near that limit, the curves still depend on the number of modes kept, so they are drawn from 6 mm on. About 25 s.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 What: on [Kim]'s shaft (meshes/kim.toml; T = 1 ms, b/R 0.3, e = 3/4, mu = 0.7) warm calls of `modes`, `end_mass`,
 `strike` and `resolve`, and whole processes of the command, beside two calls of LAPACK's size: `scipy.linalg.eigh` of
 the matrices that `modes` assembles for five modes, and `scipy.linalg.expm` of a 50 x 50 matrix of norm 1. All take
-turns in one process of one BLAS thread, so that a busy machine is busy for all; medians of processor time and their
+turns in one process with one BLAS thread, so that a busy machine slows all alike; medians of processor time and their
 ratios. Writes speed_seconds.md beside itself, of the machine named there; takes about 30 s.
 """
 

@@ -4,7 +4,7 @@ Other sounds: `studies.tap_sounds`, without any tap in them, against the drawing
 shafts of meshes/ and of random outline, each of another wood drawn evenly from the whole range of a wood of the table
 (a tube from that of carbon fibre), diameters off by 0.1 %, weighed to 0.5 g or not at all, one or two taps, 10 to 40
 dB, 44.1 or 48 kHz; the file says hard maple, or what it says. Hummed: the same with mains hum 7 dB above the ring.
-Refused: status 1 or 2 without --force. About 30 minutes.
+Refused: status 1 or 2 without --doubted. About 30 minutes.
 
 A shaft that was not weighed keeps the density of its drawing. Where the wood's own is another, the fixed masses of
 ferrule and tip weigh too much or too little against the wood, and E/rho with them: the two are shown apart.

@@ -1,6 +1,6 @@
 """Sounds that a phone may hear instead of a tap, made by formula: speech, coughs, claps, notes, slams, other things.
 
-Each is drawn by a seed. None is a recording of anybody; they stand for the kinds of sound, not for one voice or room.
+Each is drawn by a seed. None is a recording; they stand for kinds of sound, not for one voice or room.
 """
 
 from __future__ import annotations

@@ -69,7 +69,7 @@ def true_error(outcome: Outcome, best: np.ndarray, scene: Scene) -> float:
 
 def moment(found: Modes, power: int, *, past: int) -> np.ndarray:
     """Sum of [w, theta][w, theta]' / (omega^2 + shift)^power over the modes from number ``past`` on."""
-    w, theta = found.system.at_tip(found.vectors[:, past:])
+    w, theta = found.system.tip_displacement(found.vectors[:, past:])
     rows = np.array([w, theta]) / (found.omega[past:] ** 2 + found.system.shift) ** (power / 2)
     return np.asarray(rows @ rows.T)
 

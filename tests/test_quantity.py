@@ -121,7 +121,7 @@ def test_scalar_refuses_arrays() -> None:
 
 def test_kinds_and_counts() -> None:
     check_kind("x", 3, (int, str))
-    with pytest.raises(TypeError, match=r"x must be a int or str; got 2\.5"):
+    with pytest.raises(TypeError, match=r"x must be an int or str; got 2\.5"):
         check_kind("x", 2.5, (int, str))
     with pytest.raises(TypeError, match=r"^x must be a Cue; got a Scene: pass its cue$"):
         check_kind("x", SCENE, Cue)

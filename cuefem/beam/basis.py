@@ -16,7 +16,7 @@ from cuefem.cue import Array
 class Table(NamedTuple):
     """scikit-fem's hierarchical line basis on the reference element [0, 1], tabulated at Gauss points.
 
-    Local unknowns: w and theta of the left node, the bubbles of w, those of theta, w and theta of the right node.
+    Local unknowns: w and theta of the left node, the bubbles of w, the bubbles of theta, w and theta of the right node.
     points, weights: (q,). w, dw, theta, dtheta: (unknowns, q). stiffness: (4 q, unknowns^2), mass: (2 q, unknowns^2),
     the products that element matrices are contracted from.
     """

@@ -55,9 +55,9 @@ class Modes:
         return self.system.interpolate(self.vectors, x)
 
     def loss_factors(self, loss: Section) -> Array:
-        """Loss factor of every mode, (n,), from those of EI and kGA at the Gauss points, (elements, q).
+        """Loss factor of every mode, (n,), from the loss factors of EI and kGA at the Gauss points, (elements, q).
 
-        The mean of the losses, weighted with the strain energy that is stored there; springs store theirs without loss.
+        It is the mean of the losses, weighted with the strain energy stored there; springs store energy without loss.
         """
         weights = np.concatenate([loss.EI.ravel(), loss.kGA.ravel()])
         return np.asarray(weights @ self.system.strains(self.vectors)[: len(weights)] ** 2 / self.omega**2)

@@ -66,8 +66,8 @@ class System:
         jumps = np.sqrt(self.links.stiffness)[:, None] * (vectors[self.links.after] - vectors[self.links.before])
         return np.concatenate([bent.reshape(-1, own.shape[2]), sheared.reshape(-1, own.shape[2]), sprung, jumps])
 
-    def at_tip(self, vectors: Array) -> tuple[Array, Array]:
-        """(w, theta) of unknowns ``vectors`` (unknowns, k) at the tip: two arrays (k,)."""
+    def tip_displacement(self, vectors: Array) -> tuple[Array, Array]:
+        """Deflection w and rotation theta of unknowns ``vectors`` (unknowns, k) at the tip: two arrays (k,)."""
         return vectors[0], vectors[1] / self.length
 
     def interpolate(self, vectors: Array, x: Array) -> tuple[Array, Array]:

@@ -102,7 +102,7 @@ def lumped_tip_modes(cue: LumpedCue) -> TipModes:
 def tip_modes(found: Modes, axial_mass: float) -> TipModes:
     """Tip modes of a beam's bending modes beside a rigid axial motion of ``axial_mass`` kg (the first mode)."""
     vectors = np.concatenate([found.rigid_vectors, found.vectors], axis=1)
-    across, turning = found.system.at_tip(vectors)
+    across, turning = found.system.tip_displacement(vectors)
     amplitude = np.zeros((1 + len(across), 2))
     amplitude[0, 0], amplitude[1:, 1] = axial_mass**-0.5, across
     approach = np.zeros(len(amplitude))

@@ -28,12 +28,12 @@ def file_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def cue_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The options for what the file of a cue may leave out, and --json."""
+    """The options for what a cue's file may leave out, and --json."""
     return click.option("--json", "as_json", is_flag=True, help="SI numbers as JSON.")(shape_options(command))
 
 
 def shape_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The options for what a file of a shape cannot say: mass, material and unit."""
+    """The options for what a file that holds only a shape leaves out: mass, material and unit."""
     for option in (
         click.option("--body-mass", metavar="MASS", help='Mass of the cue behind FILE\'s segments, e.g. "420 g".'),
         click.option(
@@ -70,7 +70,7 @@ def force_option(command: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def check_free(drawing: Path, *, force: bool) -> None:
-    """Refuse to replace a drawing, which is somebody's work, without --force; pages and figures can be made again."""
+    """Refuse to replace a drawing without --force, for it is somebody's work; pages and figures can be made again."""
     from cuefem.io import InputError, check_place
 
     if drawing.exists() and not drawing.is_dir() and not force:
@@ -80,7 +80,7 @@ def check_free(drawing: Path, *, force: bool) -> None:
 
 @contextmanager
 def blaming(file: Path) -> Iterator[None]:
-    """Name the file in an error that shows only while computing, such as an effect that lies off the cue."""
+    """Name the file in errors that appear only while computing, such as an effect that lies off the cue."""
     from cuefem.io import InputError
 
     try:
@@ -104,7 +104,7 @@ def measured(file: Path, option: str, given: str, wanted: Quantity) -> float:
 
 
 class Definitions(click.Choice[str]):
-    """The names of the end-mass definitions, and ``more``; read only when a command needs them, for they load much."""
+    """The names of the end-mass definitions, and ``more``; loaded only when a command needs them, for it is slow."""
 
     def __init__(self, *more: str) -> None:
         self.more, self.case_sensitive = more, True
@@ -128,18 +128,21 @@ class WithDefinitions(click.Command):
             formatter.write_dl([(one.name, one.meaning) for one in DEFINITIONS.values()])
 
 
-def scene_of(file: Path, given: dict[str, Any]) -> tuple[Scene, list[str]]:
-    """The scene that a command computes, and what was assumed because neither file nor options say it."""
+def scene_of(file: Path, given: dict[str, Any], *, blow: bool = True) -> tuple[Scene, list[str]]:
+    """The scene that a command computes, and what was assumed because neither file nor options say it.
+
+    blow: whether ball, tip and stroke matter to the command, so that what is assumed of them is told too.
+    """
     from cuefem.io import load
     from cuefem.io.assumed import assumed, assumed_blow
     from cuefem.scene import Scene, Stroke
 
     found = load(file, material=given["material"], length_unit=given.get("length_unit"))
     said = {name for name, value in given.items() if value is not None}
-    notes = assumed(file, said, offered=given)
+    notes = assumed(file, said, offered=given, blow=blow)
     if not isinstance(found, Scene):
         found = Scene(found, stroke=Stroke(offset=DEFAULT_OFFSET))
-        notes += assumed_blow({}, said, offered=given, offset=DEFAULT_OFFSET)
+        notes += assumed_blow({}, said, offered=given, offset=DEFAULT_OFFSET) if blow else []
     scene = _with_options(found, file, given)
     remark(scene)
     return scene, notes
@@ -185,14 +188,21 @@ def with_body(found: Cue | Scene, file: Path, given: str) -> Any:
     return replace(found, cue=replace(found.shaft, body_mass=mass))
 
 
-def show(file: Path, given: dict[str, Any], results: Callable[[Scene], Any], tables: Callable[..., Any]) -> None:
-    """Compute all of it first, then print it all: as JSON, or as a heading and tables."""
+def show(
+    file: Path,
+    given: dict[str, Any],
+    results: Callable[[Scene], Any],
+    tables: Callable[..., Any],
+    *,
+    blow: bool = True,
+) -> None:
+    """Compute all of it first, then print it all: as JSON, or as a heading and tables. blow: see `scene_of`."""
     from cuefem.report.quantities import UNITS
     from cuefem.report.record import plain, scene_record
     from cuefem.report.unusual import unusual
     from cuefem.report.words import cue_line, effect_words
 
-    scene, notes = scene_of(file, given)
+    scene, notes = scene_of(file, given, blow=blow)
     with blaming(file):
         about, found = scene_record(scene), results(scene)
     if given["as_json"]:

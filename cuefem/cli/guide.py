@@ -11,8 +11,16 @@ import click
 from cuefem.handbook import CHAPTERS
 
 
+def _known(context: click.Context, parameter: click.Parameter, chapter: str | None) -> str | None:
+    if chapter is None or chapter in CHAPTERS:
+        return chapter
+    from cuefem.io.errors import nearest
+
+    raise ValueError(f"CHAPTER must be one of {', '.join(CHAPTERS)}; got {chapter!r}{nearest(chapter, CHAPTERS)}")
+
+
 @click.command(short_help="Open the handbook: physics, glossary, and every effect.")
-@click.argument("chapter", type=click.Choice(CHAPTERS), required=False, metavar="[CHAPTER]")
+@click.argument("chapter", callback=_known, required=False, metavar="[CHAPTER]")
 @click.option(
     "-o", "--output", type=click.Path(path_type=Path), metavar="PAGE.html", help="Write the page here instead."
 )

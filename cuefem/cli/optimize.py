@@ -4,11 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from math import isfinite
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from cuefem.cli.common import blaming, check_free, force_option, print_all, print_json, remark
+
+if TYPE_CHECKING:
+    from cuefem.design.optimum import Problem
+    from cuefem.scene import Scene
 
 
 @click.command(short_help="Find the best design of a STUDY (.toml) within its limits.")
@@ -24,7 +30,7 @@ def optimize(study: Path, output: Path | None, iterations: int, seed: int, as_js
     """Find the design of STUDY (.toml) with the smallest or largest objective within its ranges and limits.
 
     STUDY has the [[vary]] tables of a sweep, an [objective] and [[limit]] tables. Where exact gradients exist (a bare
-    cue, its dimensions and materials) it takes tens of evaluations, otherwise thousands. Numbers are SI.
+    cue, its dimensions and materials) it takes tens of evaluations, otherwise thousands.
     """
     from cuefem.design.optimum import optimum
     from cuefem.io import save
@@ -37,7 +43,7 @@ def optimize(study: Path, output: Path | None, iterations: int, seed: int, as_js
     with blaming(study), _counter() as progress:
         found = optimum(wanted, iterations=iterations, seed=seed, progress=progress)
     if output is not None:
-        save(found.scene, output)
+        save(_rounded(found.scene, wanted), output)
     aim = "maximize" if wanted.largest else "minimize"
     units = dict(zip(wanted.study.columns, wanted.study.units, strict=True))
     if as_json:
@@ -50,11 +56,28 @@ def optimize(study: Path, output: Path | None, iterations: int, seed: int, as_js
     lines = [f"{aim} {wanted.objective.name}: {found.evaluations} evaluations {way}", ""]
     both = {**found.numbers, **found.values}
     width = max(map(len, both))
-    lines += [f"{name:{width}}  {value:.6g} {units[name]}".rstrip() for name, value in both.items()]
-    lines += ["", f"held by: {', '.join(found.active) or 'nothing'}"]
+    lines += [f"{name:{width}}  {_short(value, units[name])}" for name, value in both.items()]
+    held = (words.rsplit(" ", 2) for words in found.active)
+    held_by = [f"{name} {sign} {_short(float(bound), units[name])}" for name, sign, bound in held]
+    lines += ["", f"held by: {', '.join(held_by) or 'nothing'}"]
     if found.unfinished:
         lines.append(f"not finished: {found.unfinished}; more --iterations may find a better design")
     print_all([*lines, *([f"wrote {output}"] if output else [])])
+
+
+def _short(value: float, unit: str) -> str:
+    """A number to six digits, in the unit in which scene files are written: "204.493 mm"."""
+    from cuefem.io.units import text
+
+    return text(float(f"{value:.6g}"), unit) if unit else f"{value:.6g}"
+
+
+def _rounded(scene: Scene, wanted: Problem) -> Scene:
+    """The scene with the numbers that varied to nine digits, far within the tolerance of the limits."""
+    from cuefem.design.paths import replaced, value_at
+
+    moved = {path for vary in wanted.vary for path in (*vary.fields(scene), *vary.givers(scene))}
+    return replaced(scene, {path: float(f"{value_at(scene, path):.9g}") for path in moved})
 
 
 @contextmanager
@@ -67,4 +90,8 @@ def _counter() -> Iterator[Callable[[int, float], object]]:
         yield lambda count, best: None
         return
     with console.status("computing") as status:
-        yield lambda count, best: status.update(f"{count} evaluations, {best:.6g}")
+        yield lambda count, best: status.update(_progress(count, best))
+
+
+def _progress(count: int, best: float) -> str:
+    return f"{count} evaluations, " + (f"{best:.6g}" if isfinite(best) else "no design within the limits yet")

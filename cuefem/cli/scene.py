@@ -14,7 +14,6 @@ from cuefem.cli.common import (
     blow_options,
     file_options,
     followed,
-    measured,
     offset_option,
     scene_of,
     show,
@@ -30,18 +29,27 @@ if TYPE_CHECKING:
 @click.option("--count", type=click.IntRange(min=1), default=6, show_default=True, help="How many modes.")
 def modes(file: Path, near: str | None, count: int, **given: Any) -> None:
     """Show how the cue rings: its bending frequencies and tip amplitudes."""
-    from cuefem.quantity import Quantity
     from cuefem.report import modes_record, modes_table
 
     def results(scene: Scene) -> Any:
         return modes_record(scene, count=count, near=hertz)
 
-    hertz = None
-    if near is not None:
+    hertz = None if near is None else _hertz(file, near)
+    show(file, given, results, lambda found, about: [modes_table(found)], blow=False)
+
+
+def _hertz(file: Path, near: str) -> float:
+    """The frequency that --near gives: a number of hertz, or a number with its unit."""
+    from cuefem.io import InputError
+    from cuefem.io.units import number
+    from cuefem.quantity import Quantity
+
+    wanted = Quantity("Hz", "[0, inf)")
+    for text in (near, f"{near} Hz"):
         with suppress(ValueError):
-            near = f"{float(near)} Hz"
-        hertz = measured(file, "--near", near, Quantity("Hz", "[0, inf)"))
-    show(file, given, results, lambda found, about: [modes_table(found)])
+            if wanted.holds(hertz := number(text, "Hz")):
+                return hertz
+    raise InputError(file, "--near", f'must be in {wanted.bounds}, such as 250 or "0.25 kHz"; got {near!r}')
 
 
 @click.command("end-mass", cls=WithDefinitions, short_help="The effective end mass, by every definition.")

@@ -44,15 +44,18 @@ if TYPE_CHECKING:
 @click.option(
     "--figure", type=click.Path(path_type=Path), metavar="FIGURE", help="Also draw the spectrum: .png or .svg."
 )
-@click.option("--force", is_flag=True, help="Go on in spite of doubts; replace an existing drawing.")
+@click.option("--doubted", is_flag=True, help="Show and write the result even if it is doubted.")
+@click.option("--force", is_flag=True, help="Replace an existing drawing; also does what --doubted does.")
 @cue_options
 @blow_options
 @offset_option
-def tap(recording: Path, file: Path, output: Path | None, figure: Path | None, force: bool, **given: Any) -> None:
+def tap(
+    recording: Path, file: Path, output: Path | None, figure: Path | None, force: bool, doubted: bool, **given: Any
+) -> None:
     """Find the shaft's wood by ear: E, G and density from a recording of the shaft, hung free and tapped.
 
     RECORDING is a .wav of one or more taps. Its tones are matched to the bending modes of the shaft in FILE. If
-    they do not fit this shaft, or no such wood exists, nothing is shown or written without --force (status 1).
+    they do not fit this shaft, or no such wood exists, nothing is shown or written without --doubted (status 1).
     """
     from cuefem.io import FIGURES, InputError, check_place, save, save_figure
     from cuefem.report.record import scene_record
@@ -69,8 +72,8 @@ def tap(recording: Path, file: Path, output: Path | None, figure: Path | None, f
         check_place(figure)
     scene, notes = scene_of(file, given)
     heard, found = _heard(recording, file, scene, given)
-    if found.refusals and not force:
-        raise RuntimeError(f"{recording}: refused, --force goes on: {'; '.join(found.refusals)}")
+    if found.refusals and not (doubted or force):
+        raise RuntimeError(f"{recording}: refused, --doubted goes on: {'; '.join(found.refusals)}")
     record = tap_record(found, heard, *_predicted(file, scene, found))
     about = scene_record(replace(scene, cue=found.cue))
     if output is not None:
@@ -119,7 +122,7 @@ def _predicted(file: Path, scene: Scene, found: TapFit) -> tuple[dict[str, Predi
 
 
 def _updated(file: Path, scene: Scene, found: TapFit, given: dict[str, Any]) -> Any:
-    """What FILE holds, a cue or a scene, with the fitted wood to six digits."""
+    """The cue or scene of FILE with the fitted wood, to six digits."""
     from cuefem.io import load
     from cuefem.scene import Scene
     from cuefem.tap.matching import with_material

@@ -25,11 +25,11 @@ REACH, DEGREE = 3.0, 27  # 3^28/28! = 8e-17
 CELLS = 24  # of a block, after the first cell: many phases end in that
 ORDERS = np.arange(DEGREE + 1)
 FACTORIALS = np.array([float(factorial(j)) for j in ORDERS])
-# Where guards are looked at inside a cell (its end included).
+# Places inside a cell (its end included) at which guards are sampled.
 SAMPLES = (np.array([0.15, 0.35, 0.6, 0.8, 1.0]) + np.arange(3)[:, None]).ravel() / 3
 _PLACES = np.r_[0.0, SAMPLES]
 _LOOKS = np.concatenate([_PLACES[:, None] ** ORDERS, ORDERS * _PLACES[:, None] ** np.maximum(ORDERS - 1, 0)])
-# A guard that dips below zero and is back between two samples counts from this depth on, relative to its size.
+# A guard that dips below zero between two samples counts if the dip is this deep, relative to its size.
 DEEP = 1e-13
 # Integrals over 0..1 of u^(i + j), and of (1 - u)^i/i! u^j.
 _MOMENTS = 1 / (np.add.outer(ORDERS, ORDERS) + 1.0)
@@ -56,8 +56,8 @@ def pushed(free: Array, pushes: Pushes, held: Array | None = None) -> tuple[Arra
     """(A, rows, directions): a free motion and what pushes it, A = free + directions' rows where held' z is zero.
 
     held: (n, k) orthonormal columns; forces along them keep held' z at zero: A is P A P, P orthogonal to them. Each
-    term is projected by itself: with a light end mass the contact's directions are nearly parallel, and what is left of
-    them would drown in the rounding of the whole.
+    term is projected by itself: with a light end mass the contact's directions are nearly parallel, and what remains of
+    them would be lost in the rounding of the whole.
     """
     directions, rows = (np.array([push[i] for push in pushes]).reshape(-1, len(free)) for i in (0, 1))
     if held is not None:
@@ -242,8 +242,8 @@ def march(flow: Flow, z: Array, guards: Guards, *, start: float, limit: float) -
 def _first_sign_change(values: Array) -> tuple[int, int, float] | None:
     """The cell, the guard and the fraction of the cell where a guard (guards, degree + 1, cells) first turns negative.
 
-    Between two samples a guard is convex or concave but for rare wiggles of no depth, so that where it falls at the
-    first, rises at the second and the tangents meet below zero, it may dip there.
+    Between two samples a guard is convex or concave, except for rare wiggles of no depth. So it may dip below zero
+    where it falls at the first sample, rises at the second, and the tangents meet below zero.
     """
     looks = _LOOKS @ values  # (guards, places and slopes there, cells)
     at, slope = looks[:, : len(_PLACES)], looks[:, len(_PLACES) :]
@@ -308,7 +308,7 @@ def zero(function: Callable[[float], float], low: float, high: float) -> float:
     """The zero of a continuous function between two places of opposite sign, to 1e-15 and to rounding.
 
     Chandrupatla's method (Adv. Eng. Software 28 (1997) 145): inverse quadratic interpolation where it is safe, else
-    bisection. scipy.optimize has it too, but to load that is a fifth of a cold start.
+    bisection. scipy.optimize has it too, but loading that would take a fifth of a cold start.
     """
     a, b = low, high
     at_a, at_b, part = function(a), function(b), 0.5

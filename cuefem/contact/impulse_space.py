@@ -24,7 +24,7 @@ from cuefem.squirt.arguments import sine_cosine
 
 # Strokes worked at a time, so that the intermediate arrays stay in cache.
 BLOCK = 8192
-# Stands for endless friction: its slip is over after 1e-100 of the blow, and its square is still a number.
+# Stands for endless friction: slip then ends after 1e-100 of the blow, and the square is still a number.
 ENDLESS = 1e100
 
 REGIMES = np.array(["stick", "late stick", "miscue", "slip reversal"])
@@ -32,7 +32,7 @@ SLIPPING = 2  # from this index on, the tip slips at separation
 
 
 class InverseMass(NamedTuple):
-    """The contact's inverse mass B in (t, n), 1/kg, and what of it cancels in part, written so that nothing does.
+    """The contact's inverse mass B in (t, n), 1/kg, and sums of its entries, written so that no digits cancel.
 
     det: the determinant, a sum of positive terms, 1/kg2. cross_t = s B_nn - c B_tn and cross_n = c B_tt - s B_tn, 1/kg,
     s and c the sine and cosine of the contact's angle: the cue's mass along its axis drops out of them.

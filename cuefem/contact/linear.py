@@ -22,11 +22,11 @@ from cuefem.contact.state import APART, SIDE, Contact, Grip, Laws, Press
 from cuefem.contact.stretches import Course, free_course
 from cuefem.cue import Array
 
-# A contact of more cells than this is given up: seconds of work, and 300 MB of history. It takes a tip that rings, 1/e
-# times faster than the contact, under a cue that presses it on, and whose ringing cannot be averaged
+# A contact of more cells than this is given up: it would take seconds, and 300 MB of history. Only a tip that rings,
+# 1/e times faster than the contact, needs so many, if a cue presses it on and its ringing cannot be averaged
 # (`cuefem.contact.ringing_tip`).
 MOST_CELLS = 500_000
-# With more dampers than this the response to them costs more than the exponential of a matrix.
+# With more dampers than this, the response to them costs more than the exponential of a matrix.
 FEW = 4
 
 
@@ -93,7 +93,7 @@ class Exact:
         return np.asarray(contact.c_n + SIDE[grip] * contact.laws.friction * contact.c_t)
 
     def _rigid(self, grip: Grip) -> Flow:
-        """e = 0 past the peak: forces keep v_n (and in stick v_t) at zero; the tip's force is no state any more."""
+        """e = 0 past the peak: forces keep v_n (and in stick v_t) at zero; the tip's force is no longer a state."""
         if grip == "stick":
             return self.patch.rigidly_held(self)
         c_n, pull = self.contact.c_n, self.pull(grip)
@@ -161,7 +161,7 @@ class Exact:
         return names[arrival.guard]
 
     def arrive(self, time: float, state: Array, pieces: list[Piece]) -> None:
-        """Go to a time and a state on known pieces, and add up what was damped on the way."""
+        """Move on to a time and a state, and add up what was damped on the known pieces up to there."""
         contact, first = self.contact, self.patch.outputs
         rows = range(first, first + len(contact.dampers))
         losses = [sum(integral_of_product(piece, row, row) for piece in pieces) for row in rows]

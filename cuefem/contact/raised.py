@@ -25,9 +25,9 @@ UNIT = np.eye(6)
 REST = 1e-6
 # Rows whose velocities are held at zero, by how the table holds the ball.
 HELD: dict[OnTable, list[int]] = {"none": [], "lifted": [], "slides": [UP], "held": [UP, ASIDE, AHEAD]}
-# Ends that may be passed already as a phase starts, and ends that change how the table holds the ball.
+# Ends that may be behind already when a phase starts, and ends that change how the table holds the ball.
 AT_ONCE, AT_TABLE = ("compressed", "slipped", "slid", "lifted"), ("lifted", "landed", "stopped", "slid")
-# A compression, in strokes' lengths, at which a touch shows which way its forces go.
+# The compression, as a part of the stroke's length, at which a touch shows the direction of its forces.
 PROBE = 1e-6
 
 
@@ -134,7 +134,7 @@ class Raised(Stepped):
         return aside * speed / (speed**2 + (REST * self.contact.laws.speed) ** 2)
 
     def _head(self, i: int, way: Array) -> None:
-        """Say which way a point slides, or is about to."""
+        """Set the direction in which a point slides, or is about to slide."""
         contact = self.contact
         contact.z = contact.z.copy()
         contact.z[self.ways[i]] = math.atan2(way[1], way[0])
@@ -186,7 +186,7 @@ class Raised(Stepped):
         return float(self.rows[T] @ z), float(self.rows[N] @ z), float(forces[T]), float(forces[N])
 
     def _presses_on(self, grip: Grip) -> bool:
-        """Not known without a phase of a rigid tip: one that rings is given up after `MOST_RATES`."""
+        """Only a phase of a rigid tip could tell; a tip that rings is given up after `MOST_RATES`."""
         return False
 
     def _keep(self, hold: Hold) -> list[int]:
@@ -203,7 +203,7 @@ class Raised(Stepped):
         return float(taken @ taken) / 2
 
     def _now(self, hold: Hold) -> Array:
-        """The six forces, or at a touch, where there are none yet, those of a slight compression."""
+        """The six forces; at first touch, where there are none yet, those of a slight compression."""
         contact = self.contact
         z = contact.z.copy()
         if abs(self.pressing(z, hold)) < ROUNDING * contact.scale:
@@ -246,7 +246,7 @@ class Raised(Stepped):
             self.on_table = "lifted"
 
     def _at_once(self, ends: Ends) -> str | None:
-        """The first end that is passed already as the phase starts, if a phase may start so."""
+        """The first end that is behind already when the phase starts, among those that may be."""
         return next((name for name in AT_ONCE if name in ends and ends[name](self.contact.z) < -PAST), None)
 
     def next(self, event: str, grip: Grip, press: Press) -> Step | None:
@@ -311,7 +311,7 @@ class Raised(Stepped):
         self.table_loss += float(way.z[self.contact.slots["scraped"]])
 
     def _settle(self, hold: Hold) -> None:
-        """Take out of the directions that a phase holds what rounding, and a slip's last turn, left there."""
+        """Remove what rounding, or the last turn of a slip, left in the directions that the phase holds."""
         self.contact.friction_loss += self._stop(self.rows[self._keep(hold)])
 
     def _vectors(self) -> tuple[Array, Array]:

@@ -6,12 +6,12 @@ other with the angular frequency w = sqrt(k B)/e, B the rate of v_n per unit of 
     F_n = N + a cos(wt),    F_t = T + (f or -h) a cos(wt),    f = mu side in slip, h = c_t.c_n/c_t.c_t in stick,
 
 where N and T are the forces that hold v_n (in stick also v_t) at zero. The mean motion feels N and T alone, and the
-ringing carries only e^2 of the tip's energy. Its amplitude a stays but for damping, and what limits it:
+ringing carries only e^2 of the tip's energy. Its amplitude a is constant except for damping and these limits:
 
 - F_n does not pass the old peak P: a <= P - N, for beyond it the tip is softer and takes the energy ("capped"; a = 0
   there is ordinary loading);
-- stick holds in the whole of a swing only where mu (N -+ a) >= |T +- h a|. Where it does not, the contact slips for a
-  part of each swing, by v_t of the size of e: the mean motion still sticks. While it slips v_n is off by h v_t, which
+- stick lasts for the whole of a swing only if mu (N -+ a) >= |T +- h a|. Otherwise the contact slips for a part of
+  each swing, with a v_t of the order e: the mean motion still sticks. While it slips v_n is off by h v_t, which
   moves F_n by -k h times the slip. Where that opposes the swing, a falls to the bound within a few swings and follows
   it ("rubbed"): a contact at the end of stick then has no ringing left. Where it adds to the swing (side h < 0 and the
   bound is met at the least F_n), a grows instead, up to where the peak, or a longer slip, takes as much ("swinging");
@@ -43,14 +43,15 @@ if TYPE_CHECKING:
 # where the contact sticks (tests/contact/test_ringing_tip_verification.py). Of 150 random cues of loud modes eight were
 # followed in exact phases down to a restitution of 1e-4: there it was off by 6e-3 at worst.
 RINGING, FASTER = 1e-4, 10.0
-# Below this, restitution makes no difference but to rounding, which grows like 1/e.
+# Below this, restitution changes nothing but the rounding, which grows like 1/e.
 LEAST = 1e-8
-# After so many exact phases that did not settle, the ringing has come down to what friction bears.
+# After so many exact phases that did not settle, the ringing counts as down to what friction bears.
 UNSETTLED = 40
-# While it swings beyond friction's bound: how far the mean motion leaps, in contact times; for how many exact phases
-# the swing is followed then; by how much more it swings once it has met the bound, where that grows by itself.
+# While the tip swings beyond friction's bound: how far the mean motion leaps, in contact times; for how many exact
+# phases the swing is then followed; and by how much more it swings once it has met the bound, if the swing grows by
+# itself.
 LEAP, LOOK, GROWN = 1 / 256, 6, 1.1
-# Of the amplitude where it leaves a bound: a little less than the bound, so that it does not meet it again by rounding.
+# The amplitude after it left a bound, relative to that: a little less, so that rounding does not bring it back.
 BELOW = 1 - 1e-12
 AVERAGED = ("ringing", "capped", "rubbed", "rubbed back", "swinging")
 SLIPS: dict[str, Grip] = {"rubbed": "slip", "rubbed back": "slip back"}
@@ -58,7 +59,7 @@ RUBBED: dict[str, Press] = {"rubbed": "rubbed", "rubbed back": "rubbed back"}
 
 
 class Swing(NamedTuple):
-    """The fast swing in a grip: the direction it moves the state in, B, its frequency, rad/s, and its decay, 1/s."""
+    """The fast swing in a grip: the direction in which the state moves, B, the frequency, rad/s, and the decay, 1/s."""
 
     pull: Array
     give: float
@@ -77,7 +78,7 @@ class Parts(NamedTuple):
 
 
 class Ringing:
-    """What averaging makes of the phases past the peak (of ``exact``); the slot "spring" then holds the amplitude.
+    """The averaged phases past the peak of the contact ``exact``; the slot "spring" then holds the amplitude.
 
     dropped: energy that the averaging took out of the state, J. angle: of the swing as an averaged phase starts, rad.
     unsettled: exact phases since the last averaged one. kept: the amplitude during a leap, N.
@@ -105,7 +106,7 @@ class Ringing:
 
     @property
     def _spring(self) -> float:
-        """What stands in the slot of the tip's force, or of the amplitude."""
+        """The value in the slot of the tip's force, or of the amplitude."""
         return float(self.exact.contact.z[self.exact.contact.slots["spring"]])
 
     def _swing(self, grip: Grip) -> Swing:
@@ -146,7 +147,7 @@ class Ringing:
         return Flow(A, rows, max(held.rate, float(np.linalg.norm(A))), drive)
 
     def _share(self, side: float) -> float:
-        """How much of friction's margin on one side a unit of the amplitude uses up."""
+        """How much of friction's margin on one side each unit of amplitude uses up."""
         return abs(self._friction + side * self.lever)
 
     def guards(self, grip: Grip, press: Press) -> tuple[list[str], Guards]:
@@ -221,7 +222,7 @@ class Ringing:
         return min(margin / share if (share := self._share(side)) else math.inf for side, margin in margins.items())
 
     def _settle(self, event: str, grip: Grip) -> Step:
-        """An averaged phase where the exact one, unloading, can be averaged from here on; else that."""
+        """An averaged phase, if the exact, unloading one can be averaged from here on; otherwise the exact one."""
         parts = self._parts(grip)
         exact = Step(event, grip, "unload")
         if parts is None or parts.amplitude >= parts.N:
@@ -260,7 +261,7 @@ class Ringing:
         self.exact.contact.put(spring=amplitude / self.exact.root_stiffness("load"))
 
     def _swung(self, event: str, grip: Grip) -> Step:
-        """Back to the exact phase: put the swing into the state."""
+        """Return to the exact phase: put the swing into the state."""
         contact = self.exact.contact
         swing, amplitude = self._swing(grip), self.exact.root_stiffness("load") * self._spring
         contact.put(spring=0.0)
@@ -272,7 +273,7 @@ class Ringing:
         return Step(event, grip, "unload")
 
     def end(self, grip: Grip, press: Press, start: float) -> None:
-        """What the end of an averaged phase, begun at ``start`` s, leaves of the swing: its amplitude and angle."""
+        """Amplitude and angle of the swing at the end of an averaged phase that began at ``start`` s."""
         contact = self.exact.contact
         rows = self.exact.flow(grip, press).rows
         if press == "swinging":
@@ -289,7 +290,7 @@ class Ringing:
         self._set(BELOW * max(known + float(rows[-2] @ contact.z), 0.0))
 
     def next(self, event: str, grip: Grip, press: Press) -> Step | None:
-        """What follows the end of a phase, averaged where it can be."""
+        """The phase that follows, averaged if it can be."""
         if press in AVERAGED:
             return self._next_averaged(event, grip, press)
         if event == "steady":

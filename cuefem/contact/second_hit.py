@@ -11,8 +11,8 @@ from cuefem.contact.ringing_tip import RINGING
 from cuefem.contact.state import APART, Phase
 from cuefem.scene import Outcome
 
-# Tip and ball touch where they would overlap by this part of a stroke's length, speed times contact time: a dead tip
-# leaves the ball with no velocity but its rounding.
+# Tip and ball touch if they would overlap by this part of a stroke's length, speed times contact time: a dead tip
+# leaves the ball with no relative velocity but rounding.
 OVERLAP = 1e-10
 
 
@@ -59,8 +59,8 @@ def hits(outcome: Outcome) -> tuple[Hit, ...]:
 def follow(kind: Kind, window: float) -> None:
     """Follow cue and ball for ``window``, s, after their separation, and through every contact that begins in it.
 
-    ValueError for a dead tip, or one that is nearly so: it would come back with the whole force of its peak at once,
-    and chatter without end.
+    ValueError for a dead or nearly dead tip: it would come back with the whole force of its peak at once, and chatter
+    without end.
     """
     contact, laws = kind.contact, kind.contact.laws
     if laws.restitution <= RINGING:

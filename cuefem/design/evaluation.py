@@ -34,10 +34,11 @@ def evaluate(
 ) -> Evaluation:
     """The responses of every scene.
 
-    Bare cues with equally many segments are worked as arrays, in blocks; scenes with effects, and lumped cues, one by
-    one. ``at`` is one resolution for all; the default is the finest that any of the scenes would have by itself. A
-    scene without an answer gets a reason and does not disturb the others; one without an end mass keeps its other
-    responses. ValueError if a name is not that of a response.
+    Bare cues with the same number of segments are computed as arrays, in blocks; scenes with effects, and lumped cues,
+    one by one. ``at`` is one resolution for all; by default it is `common_resolution`, which is coarser than the
+    default of `cuefem.end_mass`: stick end masses differ from that by up to 2 %. A scene without an answer gets a
+    reason and does not disturb the others; one without an end mass keeps its other responses. ValueError if no response
+    has one of the names.
     """
     asked = tuple(Response.of(one) if isinstance(one, str) else one for one in responses)
     at = at or common_resolution(scenes, asked)
@@ -51,13 +52,13 @@ def evaluate(
         except Failed as error:
             if len(rows) == 1:
                 reasons[rows[0]] = " ".join(str(error).split())
-            else:  # who it was shows one by one
+            else:  # one by one they show which it was
                 waiting += [[i] for i in rows]
     return Evaluation(values, tuple(reasons.get(i) for i in range(len(scenes))))
 
 
 def _blocks(scenes: Sequence[Scene]) -> list[list[int]]:
-    """Indices of scenes that are worked together: bare cues in blocks by number of segments, others one by one."""
+    """Indices of scenes to compute together: bare cues in blocks by number of segments, others one by one."""
     groups: dict[int, list[int]] = {}
     for i, scene in enumerate(scenes):
         together = len(scene.cue.segments) if not scene.effects else 0
@@ -66,9 +67,9 @@ def _blocks(scenes: Sequence[Scene]) -> list[list[int]]:
 
 
 def _values(scenes: Sequence[Scene], responses: Sequence[Response], at: Resolution) -> tuple[Array, list[str | None]]:
-    """(responses (designs, responses) of scenes that can be worked together; why one is missing, a design each).
+    """(responses (designs, responses) of scenes that can be computed together; for each design why one is missing).
 
-    ValueError if a response is no number and does not say why.
+    ValueError if a response is not a number and gives no reason.
     """
     bare = scenes[0].cue.segments and not scenes[0].effects
     lacking = [one.name for one in responses if one.segments and not scenes[0].cue.segments]
@@ -87,7 +88,12 @@ def _values(scenes: Sequence[Scene], responses: Sequence[Response], at: Resoluti
 
 
 def common_resolution(scenes: Sequence[Scene], responses: Sequence[Response]) -> Resolution:
-    """One resolution that serves every scene as its own default would; modes by frequency for strikes."""
+    """One resolution for all scenes: the most modes that any needs, and a mesh that carries them.
+
+    A strike keeps the modes up to `PERIODS_KEPT` periods a contact. `cuefem.end_mass` is finer: it keeps at least 120
+    modes and lets a tail stand for those above. Designs compare well with each other, but their stick end masses are
+    off by up to 2 %: on the reference cues 1.2 % at 2 ms (maple) and 1.8 % at 1.5 ms (carbon).
+    """
     count, strikes = max([1, *(one.modes for one in responses)]), any(one.strikes for one in responses)
     mesh, modes = (1, 1), 1
     for scene in scenes:

@@ -111,6 +111,30 @@ class Problem:
         """Lowest and highest values, (2, variables)."""
         return np.array([vary.range.ends for vary in self.vary], float).T
 
+    def points(self, parts: Array) -> Array:
+        """Points from parts in [0, 1] of the ranges, (..., variables); logarithmic spacing goes in equal ratios."""
+        low, high = self.bounds
+        even = low + parts * (high - low)
+        return np.clip(np.where(self._log_ratio > 0, low * np.exp(parts * self._log_ratio), even), low, high)
+
+    def parts(self, points: Array) -> Array:
+        """The inverse of `points`."""
+        low, high = self.bounds
+        found, even = (points - low) / (high - low), self._log_ratio == 0
+        found[..., ~even] = np.log(points[..., ~even] / low[~even]) / self._log_ratio[~even]
+        return np.clip(found, 0, 1)
+
+    def stretch(self, points: Array) -> Array:
+        """Derivatives of `points` to their parts, (..., variables)."""
+        low, high = self.bounds
+        return np.where(self._log_ratio > 0, points * self._log_ratio, high - low)
+
+    @cached_property
+    def _log_ratio(self) -> Array:
+        """Logarithm of high over low of the ranges with logarithmic spacing, 0 of the others."""
+        spans = [vary.range for vary in self.vary if isinstance(vary.range, Span)]
+        return np.array([np.log(span.high / span.low) if span.logarithmic else 0.0 for span in spans])
+
     @property
     def start(self) -> Array:
         """The base design as a point, (variables,), moved into the ranges, or their middle if it has no value."""
@@ -240,7 +264,8 @@ def optimum(
     seed : int
         Of differential evolution.
     progress : callable, optional
-        Called with the number of evaluations and the best objective so far.
+        Called with the number of evaluations and an objective: with exact gradients that of the design tried last,
+        otherwise the best so far within the limits, nan as long as there is none.
 
     Returns
     -------
@@ -254,15 +279,15 @@ def optimum(
 
     Notes
     -----
-    With exact derivatives, SLSQP (`scipy.optimize.minimize`) in numbers scaled to their ranges. Otherwise differential
+    With exact derivatives, SLSQP (`scipy.optimize.minimize`) in numbers scaled to their ranges (their logarithms, if
+    the spacing is logarithmic). Otherwise differential
     evolution (`scipy.optimize.differential_evolution`), a population of 15 designs a variable; among designs that break
     a limit it prefers those that break it least.
     """
-    low, high = problem.bounds
-    first = (problem.start if start is None else np.asarray(start, float)) - low
+    first = problem.parts(problem.start if start is None else np.asarray(start, float))
     seek = _by_gradients if problem.exact else _by_evolution
-    u, count, unfinished = seek(problem, np.clip(first / (high - low), 0, 1), iterations, seed, progress)
-    point = np.clip(low + u * (high - low), low, high)
+    u, count, unfinished = seek(problem, first, iterations, seed, progress)
+    point = problem.points(u)
     values = problem.values(point[None])
     rooms = _rooms(problem, point, values)
     broken = [words for words, room in rooms if not room >= -TOLERANCE]
@@ -290,15 +315,15 @@ def _by_gradients(
     """(the best point, scaled to the ranges; evaluations; why it stopped too early, or "") of SLSQP."""
     from scipy.optimize import minimize
 
-    low, high = problem.bounds
-    scale = _scale(problem, low + start * (high - low))
+    scale = _scale(problem, problem.points(start))
     known: dict[tuple[bytes, Response], tuple[Array, Array]] = {}
 
     def found(u: Array, response: Response) -> tuple[Array, Array]:
         key = u.tobytes(), response
         if key not in known:
-            values, slopes = problem.derived(response, np.clip(low + u * (high - low), low, high))
-            known[key] = values, slopes * (high - low)
+            point = problem.points(u)
+            values, slopes = problem.derived(response, point)
+            known[key] = values, slopes * problem.stretch(point)
         return known[key]
 
     def objective(u: Array) -> tuple[float, Array]:
@@ -316,7 +341,7 @@ def _by_gradients(
 
     sides = [constraint(limit.response, *side) for limit in problem.limits for side in limit.sides]
     options = {"maxiter": iterations, "ftol": 1e-9}
-    box = [(0, 1)] * len(low)
+    box = [(0, 1)] * len(start)
     try:
         result = minimize(objective, start, jac=True, method="SLSQP", bounds=box, constraints=sides, options=options)
     except ValueError as error:
@@ -330,20 +355,19 @@ def _by_evolution(
     """As `_by_gradients`, by differential evolution."""
     from scipy.optimize import differential_evolution
 
-    low, high = problem.bounds
-    scale, seen, best = _scale(problem, low + start * (high - low)), 0, np.inf
+    scale, seen, best = _scale(problem, problem.points(start)), 0, np.inf
 
     def scores(u: Array) -> Array:
         nonlocal seen, best
-        values = problem.values(low + u.T * (high - low))
+        values = problem.values(problem.points(u.T))
         missing = np.minimum(problem.room(values), 0).sum(axis=1)
         own = np.nan_to_num(scale * values[:, 0], nan=EXCLUDED)
         found = np.where(missing < 0, EXCLUDED - missing, own)
         seen, best = seen + len(found), min(best, found.min())
-        progress(seen, best / scale)
+        progress(seen, best / scale if best < EXCLUDED else np.nan)
         return found
 
-    box, generator = [(0, 1)] * len(low), np.random.default_rng(seed)
+    box, generator = [(0, 1)] * len(start), np.random.default_rng(seed)
     shared = {"vectorized": True, "updating": "deferred", "polish": False, "tol": 1e-6, "maxiter": iterations}
     result = differential_evolution(scores, box, x0=start, rng=generator, **shared)
     return result.x, seen, "" if result.success else result.message.rstrip(".")
@@ -367,7 +391,7 @@ def search(problem: Problem, count: int, *, seed: int = 0) -> tuple[Array, Array
     """
     from scipy.stats import qmc
 
-    points = qmc.scale(qmc.Halton(len(problem.vary), seed=seed).random(count), *problem.bounds)
+    points = problem.points(qmc.Halton(len(problem.vary), seed=seed).random(count))
     values = problem.values(points)
     within = np.isfinite(values[:, 0]) & (problem.room(values) >= 0).all(axis=1)
     return points, values[:, 0], np.asarray(within)

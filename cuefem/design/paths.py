@@ -1,5 +1,4 @@
-"""A field of a scene by its path, as in "cue.segments[0].tip_bore": what it is, what it holds, and the scene with it
-replaced.
+"""A field of a scene by its path, as in "cue.segments[0].tip_bore": its unit, its value, and how to replace it.
 
 "[*]" stands for every item of a list: "cue.segments[*].material.E" is the modulus of every segment's material.
 """
@@ -96,7 +95,7 @@ def value_at(scene: Scene, path: Path) -> Any:
 
 
 def quantity_at(scene: Scene, path: Path) -> Quantity | None:
-    """Unit and bounds of the number at a path; None if the field is no number."""
+    """Unit and bounds of the number at a path; None if the field holds no number."""
     *above, last = path
     owner = value_at(scene, tuple(above))
     if not is_dataclass(owner):

@@ -136,7 +136,7 @@ class Normal:
 class Sample:
     """A quasi-random sample of ``count`` designs instead of the grid; method: one of `METHODS` (scipy.stats.qmc).
 
-    Points are made as they are used, but for "latin hypercube", whose points are made at once (8 bytes a number).
+    Points are made as they are used; only those of "latin hypercube" are all made at the start (8 bytes a number).
     """
 
     method: str
@@ -154,7 +154,7 @@ class Sample:
     def blocks(self, dimensions: int, size: int) -> Iterator[Array]:
         """Points in [0, 1) of ``size`` designs at a time, each (size, dimensions)."""
         engine = _engine(self.method, dimensions, self.seed)
-        if self.method == "latin hypercube":  # a part of it is none
+        if self.method == "latin hypercube":  # a part of one is not one
             points = engine.random(self.count)
             yield from (points[start : start + size] for start in range(0, self.count, size))
             return

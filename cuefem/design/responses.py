@@ -104,7 +104,7 @@ KINDS = {
 
 
 def kinds() -> dict[str, Kind]:
-    """All kinds of responses by name: those of `KINDS`, and "end_mass_NAME" for every definition of the end mass."""
+    """All kinds of responses by name: `KINDS`, and "end_mass_NAME" for every definition of the end mass."""
     return KINDS | {f"end_mass_{name}": _defined(one) for name, one in DEFINITIONS.items()}
 
 

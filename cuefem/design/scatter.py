@@ -2,10 +2,10 @@
 
 The ranges of a study (`cuefem.design`) are distributions: `Normal`, `Span` (uniform), `Levels` (equally likely). Normal
 scores z = L n, n independent and L L' their correlations (a Gaussian copula), give the numbers by each range's quantile
-at the share below z. Sobol indices need independent causes: correlated numbers are one cause, a group, drawn
-anew together. A group's first-order index is the part of the variance that would go if all its numbers were known, its
-total index the part that would stay if all but its numbers were; what one number of it does apart is not asked, for
-the others go with it.
+at the share below z. Sobol indices need independent causes, so correlated numbers are one cause, a group, whose numbers
+are drawn together. A group's first-order index is the part of the variance that would vanish if all its numbers were
+known; its total index is the part that would remain if all other numbers were. Single numbers of a group have no index
+of their own.
 """
 
 from __future__ import annotations

@@ -34,8 +34,8 @@ class Sensitivity:
 
     x: Gauss points of the mesh, m from the tip, (points,). weights: their lengths, m. rhoA, rhoI, EI, kGA: densities of
     the derivatives per unit length, so that dm = integral of density times the change of the property; rhoA is a pure
-    number per unit: kg of end mass for a kg put there. shear_slope: as kGA, but with w' - theta and w' for the two
-    strains: what a stretched piece of shaft needs (`cuefem.design.gradient`). ball_mass, axial_mass: derivatives to M
+    number per unit: kg of end mass for a kg put there. shear_slope: like kGA, but with w' - theta and w' as the two
+    strains, as a stretched piece of shaft needs it (`cuefem.design.gradient`). ball_mass, axial_mass: derivatives to M
     and m_a (zero but for "stick"), pure numbers. end_mass: kg.
     """
 

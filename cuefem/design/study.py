@@ -72,7 +72,7 @@ class Vary:
         return found
 
     def givers(self, base: Scene) -> tuple[Path, ...]:
-        """The fields of `taken_from`; ValueError if one is no number, or its unit differs from that of what varies."""
+        """The fields of `taken_from`; ValueError if one holds no number, or has another unit than what varies."""
         found = tuple(path for text in self.taken_from for path in paths(base, text))
         gainer = self.fields(base)[0]
         for path in found:
@@ -105,7 +105,7 @@ class Vary:
         return "factor" if self.factor else "shift" if self.shift else "set"
 
     def applied(self, value: float, before: Any) -> float:
-        """A field that held ``before``, with this value of the range."""
+        """The new value of a field that held ``before``, for this value of the range."""
         return before * value if self.factor else before + value if self.shift else value
 
 
@@ -124,8 +124,8 @@ class Study:
     sample : Sample, optional
         A quasi-random sample in place of the grid.
     at : Resolution, optional
-        One resolution for all designs, so that responses do not jump between them. The default serves the design of the
-        ranges that needs the finest one.
+        One resolution for all designs, so that responses do not jump between them. The default is that of the design
+        in the ranges that needs most modes (`common_resolution`: stick end masses are off by up to 2 %).
 
     Raises
     ------

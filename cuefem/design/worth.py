@@ -16,8 +16,8 @@ NO_USUAL_VALUE = "no usual value to try"
 class Variant:
     """A scene that differs by one effect.
 
-    name: the effect's. effect: what was dropped or added, None where there is no usual value to add. listed: whether
-    the scene lists it. scene: the other scene, None where it cannot be; reason: why.
+    name: of the effect. effect: the one that was dropped or added; None if it has no usual value to add. listed:
+    whether the scene lists it. scene: the other scene; None if it cannot be made; reason: why not.
     """
 
     name: str

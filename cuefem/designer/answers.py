@@ -1,7 +1,7 @@
 """What the designer shows of a scene: the numbers of `cuefem end-mass`, `strike` and `modes`, by the same functions.
 
-At once: what one solution of the beam gives, and the strike at the scene's own offset. Later, while nobody turns a
-knob: the coupled squirt at other offsets, strike by strike, and where end mass lives.
+At once it shows what one solution of the beam gives, and the strike at the scene's own offset. Later, while nobody
+turns a knob, it adds the coupled squirt at other offsets, strike by strike, and where end mass lives.
 """
 
 from __future__ import annotations
@@ -41,10 +41,10 @@ class Curve:
 
 @dataclass(frozen=True)
 class Density:
-    """Where the stick end mass of the bare cue lives: kg a metre at x m from the tip; end_mass: what that shares out.
+    """Where the stick end mass of the bare cue lives: kg a metre at x m from the tip; end_mass: the whole, kg.
 
-    from_mass: what the mass there adds; from_stiffness: what the stiffness there does. Together they integrate to the
-    end mass but for the ball's and the cue's own part in it (handbook: Effective end mass).
+    from_mass: what the mass there adds; from_stiffness: what the stiffness there adds. Together they integrate to the
+    end mass except for the parts of the ball's mass and of the mass along the axis (handbook: Effective end mass).
     """
 
     x: Array
@@ -56,11 +56,11 @@ class Density:
 
 @dataclass(frozen=True)
 class Answers:
-    """What is known at once, SI. end_masses: by definition, None where a definition has no answer.
+    """The numbers computed at once, SI. end_masses: by definition, None where a definition has no answer.
 
     strike: as `outcome_record`, of the coupled strike at the scene's own offset. tip_stiffness: of a static load across
-    the cue at its tip, the butt end clamped. lumped: the impulse solver's curve, at each offset with the end mass
-    of the tip that sticks there, of the cue without effects at its tip. tip: the tip modes, for what comes later.
+    the cue at its tip, the butt end clamped. lumped: the impulse solver's curve, with the end mass of a tip that sticks
+    at each offset and without effects at the tip. tip: the tip modes, for what is computed later.
     """
 
     scene: Scene
@@ -78,7 +78,7 @@ class Answers:
 
 
 def answers(scene: Scene) -> Answers:
-    """What is known at once of a scene with a cue of segments. Cost: the beam's eigenproblem and one strike."""
+    """The numbers computed at once, for a cue of segments. Cost: the beam's eigenproblem and one strike."""
     cue, solved = cue_of(scene), Solved(scene)
     outcome = strike_modes(scene, solved.tip)
     return Answers(
@@ -101,7 +101,7 @@ def _end_mass(drive: str, solved: Solved) -> float | None:
 
 
 def lumped_curve(solved: Solved) -> Curve:
-    """The impulse solver's curve, the cue lumped at each offset; nan where no lumped cue has that squirt."""
+    """The impulse solver's curve, with the cue lumped at each offset; nan if no lumped cue has that squirt."""
     found = two_part_curve(solved, OFFSETS)
     return Curve(OFFSETS, found["squirt"], found["pivot_length"])
 
@@ -115,7 +115,7 @@ def coupled_points(found: Answers) -> Iterator[tuple[float, float, float]]:
 
 
 def density(scene: Scene) -> Density:
-    """Where the stick end mass of the cue lives, its effects left out."""
+    """Where the stick end mass of the cue lives, without the scene's effects."""
     bare = replace(scene, effects=())
     at = default_resolution(bare)
     if at.modes > MOST_DENSITY_MODES:

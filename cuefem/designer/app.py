@@ -37,8 +37,8 @@ from cuefem.report.unusual import unusual
 from cuefem.scene import Scene
 
 HOST = "127.0.0.1"
-LONGEST_WORK = 60.0  # s that an answer may take: no cue that people play with needs a tenth
-IDLE = 0.12  # s without a move, after which what takes longer is computed
+LONGEST_WORK = 60.0  # s that an answer may take: no cue that people play with needs a tenth of it
+IDLE = 0.12  # s without a move before the slower results are computed
 FAILURES = (ValueError, RuntimeError, ArithmeticError, MemoryError, OSError)
 
 Read = Callable[[Path], tuple[Scene, list[str]]]
@@ -214,7 +214,7 @@ class Desk:
     # --- what happens ----------------------------------------------------------------------------------------------
 
     def _say(self, words: str) -> None:
-        """Say what went wrong, or take it back."""
+        """Say what went wrong, or clear the message."""
         self.message.set_content(f'<p class="said">{escape(words)}</p>' if words else "")
 
     async def _turn(self, knobs: Knobs) -> None:
@@ -257,7 +257,7 @@ class Desk:
         return True
 
     async def _refine(self, move: int) -> None:
-        """The coupled curve, then where end mass lives, unless a knob is moved meanwhile."""
+        """Compute the coupled curve, then where end mass lives, unless a knob is moved meanwhile."""
         found, points = self.found, []
         assert found is not None
         await asyncio.sleep(IDLE)
@@ -322,7 +322,7 @@ class Desk:
         await self._moved()
 
     async def _sent(self, request: Request) -> Response:
-        """A file from the browser: it is taken at once, and read when that has been answered."""
+        """Take a file from the browser at once, and read it after the request has been answered."""
         name, content, said = "", b"", ""
         try:
             async with request.form(max_files=1, max_fields=10) as form:
@@ -366,7 +366,7 @@ class Desk:
             await self._open(Opened(name, scene, notes))
 
     def _save(self) -> None:
-        """The design as the knobs say, be it answered yet or not."""
+        """Save the design that the knobs say, even if its numbers are not there yet."""
         try:
             scene = turned(self.opened.scene, self.knobs)
         except FAILURES as error:

@@ -9,14 +9,14 @@ from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 LARGEST_FILE = 5_000_000  # bytes
-AROUND_FILE = 10_000  # bytes that a form has around its file
+AROUND_FILE = 10_000  # bytes of a form beside its file
 LONGEST_NAME = 255  # bytes: what file systems take
 KINDS = (".toml", ".csv", ".vtk", ".vtu", ".stl", ".ply", ".obj")
 REJECTED = f"a file must be a {', '.join(KINDS[:-1])} or {KINDS[-1]} of at most {LARGEST_FILE // 10**6} MB"
 
 
 class TooBig(Exception):
-    """More was sent than is read."""
+    """More was sent than the server reads."""
 
 
 class Door:
@@ -43,7 +43,7 @@ class Door:
             await self.app(scope, receive, send)
 
     async def _bounded(self, headers: Headers, scope: Scope, receive: Receive, send: Send) -> None:
-        """A request whose body is read no further than a file and its form go."""
+        """Pass a request on, and stop reading its body where it is longer than a file and its form may be."""
         most, read, begun = LARGEST_FILE + AROUND_FILE, 0, False
 
         async def counted() -> Message:
@@ -75,7 +75,7 @@ async def _refused(status: int, words: str, scope: Scope, receive: Receive, send
 
 
 def file_name(given: Any) -> str:
-    """The name of a file as its browser sent it, without folders; ValueError where no file can have it."""
+    """The name of a file as the browser sent it, without folders; ValueError if no file can have that name."""
     name = str(given or "").replace("\\", "/").rsplit("/", 1)[-1]
     if name.strip() in ("", ".", "..") or not name.isprintable():
         raise ValueError(f"a file must have a name; got {name[:20]!r}")

@@ -1,7 +1,8 @@
 """The knobs of a cue, and a scene with its knobs turned.
 
-A scene stays as its file has it but for the knobs that were moved: a knob at the scene's own value changes nothing, and
-what has no knob (other segments, effects, the ball) is kept. What a knob means in any cue, told by its drawing alone:
+A scene stays as its file has it except for the knobs that were moved: a knob at the scene's own value changes nothing,
+and what has no knob (other segments, effects, the ball) is kept. What a knob means in any cue, told by its drawing
+alone:
 
 - The leather is the soft segments at the tip; the ferrule is the segment behind it, where that is short and of another
   material than the next; the shaft is what follows, as far as it is of one material.
@@ -26,14 +27,14 @@ from cuefem.effects import Effect, Joint
 from cuefem.scene import Scene
 
 LONGEST_FERRULE = 0.06  # m
-TAPER_AT = 0.3302  # m, 13 in: how far pool shafts are held straight; half the cue where it is shorter than twice that
-USUAL_BORE = 0.006  # m, the width that a bore begins with where there is none
-SAME = 1e-9  # of a length: what is nearer is the same
+TAPER_AT = 0.3302  # m, 13 in: so far pool shafts stay nearly straight; half the length of a cue shorter than twice that
+USUAL_BORE = 0.006  # m, the width of a new bore
+SAME = 1e-9  # relative to a length: places closer than this are the same
 
 
 @dataclass(frozen=True)
 class Knobs:
-    """What a person can turn; SI. None: the scene has no such part, or it is none that a knob can turn.
+    """What a person can turn; SI. None: the scene has no such part, or no knob can change it.
 
     Diameters at the tip, `TAPER_AT` behind it and at the end, m; bore: depth from its mouth and width, m; joint:
     distance from the tip, m, and rotational compliance, rad/(N m); contact time of a head-on blow, s; offset b/R.
@@ -55,7 +56,7 @@ class Knobs:
 
 @dataclass(frozen=True)
 class Parts:
-    """Where a cue's parts are, by its segments' indices. ferrule: empty without one. bore: None where it is filled."""
+    """Where a cue's parts are, by its segments' indices. ferrule: empty without one. bore: None if it is filled."""
 
     ferrule: range
     shaft: range
@@ -118,7 +119,7 @@ def deepest_bore(cue: Cue) -> float:
 
 
 def knobs_of(scene: Scene) -> Knobs:
-    """Where a scene's knobs stand; ValueError for a lumped cue."""
+    """The settings of a scene's knobs; ValueError for a lumped cue."""
     cue = cue_of(scene)
     parts, pieces = Parts.of(cue), cue.segments
     ferrule = parts.ferrule
@@ -158,11 +159,11 @@ def outer_diameter(cue: Cue, x: float) -> float:
 
 
 def turned(scene: Scene, knobs: Knobs) -> Scene:
-    """The scene with its knobs turned; itself where none was. ValueError where no such cue can be made."""
+    """The scene with its knobs turned, or the scene itself if none was. ValueError if no such cue can be made."""
     cue = cue_of(scene)
     own = knobs_of(scene)
     changed = _with_bore(_with_diameters(_with_ferrule(cue, own, knobs), own, knobs), knobs)
-    changed = _with_materials(changed, knobs)  # last: it is by their materials that parts are told
+    changed = _with_materials(changed, knobs)  # last, because the parts are told by their materials
     found = scene if changed is cue else replace(scene, cue=changed)
     if knobs.contact_time != own.contact_time:
         found = replace(found, tip=replace(scene.tip, contact_time=knobs.contact_time, stiffness=None))
@@ -172,7 +173,7 @@ def turned(scene: Scene, knobs: Knobs) -> Scene:
 
 
 def _with_materials(cue: Cue, knobs: Knobs) -> Cue:
-    """Another ferrule, another shaft; the ferrule's tenon is of the shaft's wood where it was."""
+    """Set the ferrule's and the shaft's material; a tenon of the shaft's wood changes with the shaft."""
     parts, pieces = Parts.of(cue), list(cue.segments)
     old = pieces[parts.shaft.start].material
     for i in parts.shaft:
@@ -203,7 +204,7 @@ def _with_ferrule(cue: Cue, own: Knobs, knobs: Knobs) -> Cue:
         raise ValueError(
             f"the ferrule must be in ({least:.6g}, {most:.6g}) mm long, as its neighbours allow; got {got:.6g} mm"
         )
-    onward = -more / behind.length  # of the cone behind, which keeps its line
+    onward = -more / behind.length  # of the cone behind the ferrule, which keeps its line
     outer = behind.tip_diameter + (behind.tip_diameter - behind.butt_diameter) * onward
     bore = max(0.0, behind.tip_bore + (behind.tip_bore - behind.butt_bore) * onward)
     flush = ferrule.butt_diameter + outer - behind.tip_diameter
@@ -246,7 +247,7 @@ def _split_at(cue: Cue, x: float) -> Cue:
 
 
 def _with_bore(cue: Cue, knobs: Knobs) -> Cue:
-    """The bore as deep and wide as the knobs say: its own shape made wider, and carried on as wide as it ends."""
+    """The bore as deep and wide as the knobs say: its shape is widened, and continued as wide as it ends."""
     bore, deepest, near = Parts.of(cue).bore, deepest_bore(cue), SAME * cue.length
     if bore is None or knobs.bore_depth is None or knobs.bore_width is None:
         return cue

@@ -14,12 +14,12 @@ from cuefem.scene import Scene
 
 SHAFTS = (*WOODS, "carbon fibre")
 FERRULES = tuple(name for name in MATERIALS if name not in (*SHAFTS, "foam", "leather"))
-DECIMALS = 9  # of what is shown: beyond it a slider's own rounding begins
+DECIMALS = 9  # shown at most: beyond them a slider's own rounding begins
 
 
 @dataclass(frozen=True)
 class Slider:
-    """A number to be turned: its field of `Knobs`, its words, and its range in ``unit``; ``scale`` units are one SI."""
+    """A number to turn: its field of `Knobs`, its label, its range in ``unit``; one SI unit is ``scale`` of them."""
 
     knob: str
     label: str
@@ -30,41 +30,41 @@ class Slider:
     step: float
 
     def shown(self, knobs: Knobs) -> float:
-        """Where it stands, in its unit."""
+        """Its value in its unit."""
         return round(getattr(knobs, self.knob) * self.scale, DECIMALS)
 
     def turned(self, knobs: Knobs, shown: float) -> Knobs:
-        """The knobs with this one at a place in its unit; the very same where it stands there already."""
+        """The knobs with this one set to a value in its unit; the same object if it has that value."""
         if abs(shown - self.shown(knobs)) < 10.0**-DECIMALS:
             return knobs
         changed: dict[str, Any] = {self.knob: shown / self.scale}
         return replace(knobs, **changed)
 
     def written(self, shown: float) -> str:
-        """A place with its unit."""
+        """A value with its unit."""
         return f"{shown:.6g} {self.unit}".rstrip()
 
     @property
     def decimals(self) -> int:
-        """Of a step."""
+        """How many decimals a step has."""
         return len(f"{self.step:g}".partition(".")[2])
 
 
 @dataclass(frozen=True)
 class Choice:
-    """A material to be chosen: its field of `Knobs`, its words, and what there is by name, the scene's own included."""
+    """A material to choose: its field of `Knobs`, its label, and the materials by name, the scene's own included."""
 
     knob: str
     label: str
     materials: dict[str, Material]
 
     def name(self, knobs: Knobs) -> str:
-        """The name of the one that is chosen."""
+        """The name of the chosen material."""
         return next(name for name, known in self.materials.items() if known == getattr(knobs, self.knob))
 
 
 def sliders(scene: Scene) -> tuple[Slider, ...]:
-    """The sliders that a scene has, each wide enough for where it stands."""
+    """The sliders that a scene has; each range includes the scene's own value."""
     cue, knobs = cue_of(scene), knobs_of(scene)
     wanted = [make(cue) for name, make in _SLIDERS.items() if getattr(knobs, name) is not None]
     return tuple(_wide_enough(slider, knobs) for slider in wanted)
@@ -104,7 +104,7 @@ _SLIDERS: dict[str, Callable[[Cue], Slider]] = {
 
 
 def choices(scene: Scene) -> tuple[Choice, ...]:
-    """The materials that a scene lets choose."""
+    """The materials that can be chosen in a scene."""
     knobs = knobs_of(scene)
     found = (
         ("ferrule_material", "Ferrule material", FERRULES),

@@ -1,4 +1,4 @@
-"""The scene that the designer opens with where no file is named."""
+"""The scene that the designer opens if no file is named."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ NAME = "pool_maple.toml"
 def first_scene() -> Scene:
     """A generic maple pool shaft on a pool ball: meshes/pool_maple.toml; its README has the sources.
 
-    What such a shaft does is in handbook: Measured squirt.
+    How such a shaft plays is told in handbook: Measured squirt.
     """
     leather, melamine, maple = (MATERIALS[name].material for name in ("leather", "melamine", "hard maple"))
     cue = Cue(

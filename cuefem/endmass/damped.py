@@ -13,7 +13,7 @@ from scipy.linalg import expm
 
 from cuefem.beam.tip import TipModes
 from cuefem.cue import Array
-from cuefem.endmass.undamped import StickLimit
+from cuefem.endmass.undamped import StickLimit, loading
 
 
 def _motion(tip: TipModes) -> tuple[Array, Array]:
@@ -45,8 +45,7 @@ def smooth_start_impulse(tip: TipModes, T: float) -> float:
 def stick_impulse(tip: TipModes, limit: StickLimit) -> float:
     """J of the limit b -> 0 of the coupled strike (`StickLimit`), kg: the tip follows V = K P(t) - 1."""
     _, row = _motion(tip)
-    peak = limit.T / (1 + limit.e)
-    a = np.pi / (2 * peak)
+    peak, a = loading(limit.e, limit.T)
     jump = -1 / (float(row @ row) + limit.c)  # at the first touch V goes from 0 to -1
     height = limit.K * a / (1 + limit.e)  # of V' = K P'
     state = np.concatenate([row * jump, [0.0, height, jump]])

@@ -54,8 +54,8 @@ def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None) -
         - "squirt": the lumped end mass that has the squirt of the coupled strike.
     at
         How finely the cue is computed. By default modes are kept by frequency (`default_resolution`), at least 120 of
-        them, which holds 0.5 % but for rare cues (0.53 % at most) and metal tips; `cuefem.resolve_end_mass` estimates
-        the error.
+        them. That is exact to 0.5 % except for rare cues (0.53 % at most) and metal tips; `cuefem.resolve_end_mass`
+        estimates the error.
 
     Returns
     -------
@@ -90,8 +90,8 @@ def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None) -
 class Spread(NamedTuple):
     """An end mass, and the smallest and largest value while only 25 to 100 % of the modes are kept; kg.
 
-    error: the estimated relative error of the definition "stick" (see `ringing`); lowest and highest reach at least as
-    far. None for other definitions, and where a resolution was given.
+    error: the definition's own estimate of its relative error (`Definition.error`); lowest and highest reach at least
+    as far. None if the definition has no such estimate, or if a resolution was given.
     """
 
     end_mass: float
@@ -115,9 +115,10 @@ def end_mass_spreads(scene: Scene, at: Resolution | None = None) -> Callable[[st
 
 
 def spreads_of(solved: Solved) -> Callable[[str], Spread]:
-    """As `end_mass_spreads`, of a solved scene.
+    """As `end_mass_spreads`, from a solved scene.
 
-    The spread is that of plain sums, without a tail, at 13 numbers of modes; at 5 where each takes a coupled strike.
+    The spread is over plain sums, without a tail, of 13 different numbers of modes; of 5, if each takes a coupled
+    strike.
     """
     scene = solved.scene
 
@@ -128,7 +129,7 @@ def spreads_of(solved: Solved) -> Callable[[str], Spread]:
         least = rigid + math.ceil((whole - rigid) / 4)
         kept = np.unique(np.linspace(least, whole, cutoffs).astype(int))
         values = [float(definition.of(each, scene)) for each in (tip, *map(plain.lowest, kept.tolist()))]
-        error = ringing(tip, StickLimit.of(scene)) if drive == "stick" and tip.radiation is not None else None
+        error = definition.error(tip, scene)
         reach = [values[0] * (1 + side * (error or 0.0)) for side in (-1, 1)]
         return Spread(values[0], min(*values, *reach), max(*values, *reach), error)
 
@@ -142,7 +143,7 @@ def _couples(tip: TipModes, scene: Scene) -> bool:
 
 
 def definition_of(drive: str) -> Definition:
-    """The definition of that name; ValueError, naming those there are, if there is none."""
+    """The definition of that name; ValueError, listing all names, if there is none."""
     if drive not in DEFINITIONS:
         raise ValueError(f"end_mass drive must be one of {', '.join(DEFINITIONS)}; got {drive!r}")
     return DEFINITIONS[drive]
@@ -157,8 +158,10 @@ def force(tip: TipModes, scene: Scene) -> float:
     """Impulse of a half-sine force over the tip velocity at its end, kg. Converges like 1/modes^2 (it has kinks)."""
     T = scene.contact_time
     if tip.resistance is None:
-        return 2 * T / np.pi / float(transverse.half_sine_velocity(*flexible(tip), T=T))
-    return 2 * T / np.pi / damped.half_sine_velocity(tip, T)
+        final = float(transverse.half_sine_velocity(*flexible(tip), T=T))
+    else:
+        final = damped.half_sine_velocity(tip, T)
+    return 2 * T / np.pi / final  # the impulse of a half sine of unit height over the velocity it gives
 
 
 def velocity(tip: TipModes, scene: Scene) -> float:
@@ -172,8 +175,8 @@ def velocity(tip: TipModes, scene: Scene) -> float:
 def stick(tip: TipModes, scene: Scene) -> float:
     """End mass of the limit b -> 0 of the coupled strike, kg: `cuefem.endmass.undamped.StickLimit`.
 
-    Effects at the tip (a dome, shear) and axial waves have no part in that formula: with them it is fed with the
-    coupled strike's own small-offset squirt.
+    That formula knows no effects at the tip (a dome, shear) and no axial waves: with them it takes the squirt of the
+    coupled strike at a small offset.
     """
     limit = StickLimit.of(scene)
     if _couples(tip, scene):
@@ -212,7 +215,7 @@ def _each(function: Callable[[float, float], float], offset: Any, speed: Any) ->
 
 
 def limit_at(scene: Scene, offset: Any) -> StickLimit:
-    """The law of a tip that sticks at offsets b/R >= 0, where a light cue end leaves the force along the cue.
+    """The law of a tip that sticks at offsets b/R >= 0. A light cue end leaves the force along the cue.
 
     Then F_t = F_n tan(phi). With D = 1 + 1/Q0 + sin(phi)^2/nu the contact is that of the mass M cos(phi)^2/D, of the
     length T cos(phi) sqrt((1 + 1/Q0)/D), and the tip's velocity runs as K P - 1, K = (1 + e)(1 + 1/nu + 1/Q0)/D.
@@ -256,6 +259,10 @@ def ringing(tip: TipModes, limit: StickLimit) -> float:
     omega, phi, rigid = flexible(tip)
     felt = float(limit.end_mass(limit.transverse_impulse(omega, phi, rigid)))
     return HEARD * limit.ringing(omega, phi, rigid, tail=tail) * (1 + felt * limit.c)  # end mass goes with J so
+
+
+def _stick_error(tip: TipModes, scene: Scene) -> float | None:
+    return None if tip.radiation is None else ringing(tip, StickLimit.of(scene))
 
 
 def flexible(tip: TipModes) -> tuple[Array, Array, float]:
@@ -330,7 +337,8 @@ class Definition(NamedTuple):
 
     name: as `end_mass` takes it. label: in a few words. meaning: in plain English. formula: how it is computed. value:
     the end mass of a vibrating cue, kg, from its tip modes and its scene. at_offset: whether it is the end mass at the
-    scene's own offset. strikes: whether it takes a coupled strike of these tip modes.
+    scene's own offset. strikes: whether it takes a coupled strike of these tip modes. error: its estimated relative
+    error with these tip modes, None if there is no estimate. counts_tip: whether effects at the tip count in it.
     """
 
     name: str
@@ -340,6 +348,8 @@ class Definition(NamedTuple):
     value: Callable[[TipModes, Scene], Any]
     at_offset: bool = False
     strikes: Callable[[TipModes, Scene], bool] = lambda tip, scene: False
+    error: Callable[[TipModes, Scene], float | None] = lambda tip, scene: None
+    counts_tip: bool = False
 
     def of(self, tip: TipModes, scene: Scene) -> Any:
         """The end mass of any cue by this definition, kg; a lumped cue has its own whatever the definition."""
@@ -361,6 +371,8 @@ DEFINITIONS: dict[str, Definition] = {
             "(K - 1)/J - c = 1/m_e, J the impulse across the cue that makes the tip follow V(t) = K P(t) - 1",
             stick,
             strikes=_couples,
+            error=_stick_error,
+            counts_tip=True,
         ),
         Definition(
             "offset",
@@ -370,6 +382,7 @@ DEFINITIONS: dict[str, Definition] = {
             stick_at_offset,
             at_offset=True,
             strikes=_couples,
+            counts_tip=True,
         ),
         Definition(
             "velocity",
@@ -393,6 +406,7 @@ DEFINITIONS: dict[str, Definition] = {
             squirt_equivalent,
             at_offset=True,
             strikes=lambda tip, scene: True,
+            counts_tip=True,
         ),
     )
 }

@@ -30,8 +30,8 @@ def lump(scene: Scene, at: Resolution | None = None) -> LumpedCue:
     Returns
     -------
     LumpedCue
-        Its mass is the cue's along the axis, its end mass "offset" of the cue alone (see `cuefem.end_mass`). What
-        effects at the tip (`TipDome`, `TipShear`) add goes into the coupling, which is about proportional to sin(phi).
+        Its mass is the cue's along the axis, its end mass "offset" of the cue alone (see `cuefem.end_mass`). Effects at
+        the tip (`TipDome`, `TipShear`) go into the coupling, which is about proportional to sin(phi).
 
     Raises
     ------
@@ -81,8 +81,8 @@ def impulse(scene: Scene) -> Outcome:
     ----------
     scene
         Cue, ball, tip and stroke, whose fields may be arrays that broadcast: a million strokes take about a second. A
-        finite-element cue is lumped first, at every offset anew: it counts by its axial mass and its end mass "offset"
-        (see `cuefem.end_mass`).
+        finite-element cue is first replaced, at every offset anew, by its axial mass and its end mass "offset" (see
+        `cuefem.end_mass`).
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Closed forms, from the modes, for what prescribed drives across the cue do at its tip: the mathematics of end mass.
+"""Closed forms, from the modes, for what prescribed drives across the cue do at its tip; end masses follow from them.
 
 The tip's transverse impulse response is h(t) = rigid + sum phi_k^2 cos(omega_k t), 1/kg. All functions take stacks of
 cues: omega and phi of shape (..., n), flexible modes only, and rigid of shape (...), the sum of the rigid motions'
@@ -78,7 +78,7 @@ class StickLimit:
 
     @classmethod
     def law(cls, ball_mass: Any, inertia: Any, restitution: Any, contact_time: Any, axial_mass: Any) -> StickLimit:
-        """The limit of numbers in kg and s, or of stacks of them that broadcast: thousands of contacts at once."""
+        """The limit from numbers in kg and s, or from stacks of them that broadcast: thousands of contacts at once."""
         c = (1 + 1 / inertia) / ball_mass
         head_on_mass = 1 / (1 / ball_mass + 1 / axial_mass)
         K = (1 + restitution) * head_on_mass * (c + 1 / axial_mass)
@@ -92,8 +92,8 @@ class StickLimit:
     def transverse_impulse(self, omega: Array, phi: Array, rigid: Any, *, top: Any = None) -> Any:
         """J of a bare cue's modes, kg.
 
-        top: rad/s, (...): what vibrates near the frequency ``top`` and above it fades out and only gives way, see
-        `fade`; left out, all modes vibrate to the end.
+        top: rad/s, (...): vibrations near the frequency ``top`` and above fade out and only give way (see `fade`); by
+        default all modes vibrate to the end.
         """
         W, residues, direct = mobility(omega, phi, rigid + self.c)
         swing = self.swing(W)
@@ -103,7 +103,7 @@ class StickLimit:
         return direct * (self.K - 1) + (residues * swing).sum(axis=-1)
 
     def ringing(self, omega: Array, phi: Array, rigid: Any, *, tail: int) -> float:
-        """Part of J, relative, that the ``tail`` highest vibrations of a held tip swing by, as long as they ring."""
+        """How far, relative to J, the ``tail`` highest vibrations of a held tip make it swing while they ring."""
         W, residues, direct = mobility(omega, phi, rigid + self.c)
         J = direct * (self.K - 1) + residues @ self.swing(W)
         return float(np.sum((residues / W)[len(W) - tail :]) / J)
@@ -128,7 +128,7 @@ class StickLimit:
     def end_mass(self, J: Any) -> Any:
         """The end mass of a lumped cue that takes the transverse impulse J, kg: (K - 1)/J = 1/m + c.
 
-        ValueError where no end mass does, with the reason of `stick_reason`.
+        ValueError, with the reason of `stick_reason`, if no end mass does.
         """
         found = self.end_masses(J)
         for i in np.argwhere(np.isnan(found))[:1]:
@@ -137,7 +137,7 @@ class StickLimit:
         return found
 
     def end_masses(self, J: Any) -> Any:
-        """As `end_mass`, but of a stack: nan where no end mass takes J; `stick_reason` of the squirt then says why."""
+        """As `end_mass`, for a stack: nan where no end mass gives J; `stick_reason` then says why."""
         rest = np.divide(self.K - 1, J, out=np.full(np.shape(J), np.nan), where=np.asarray(J) > 0) - self.c
         found = np.divide(1.0, rest, out=np.full(np.shape(rest), np.nan), where=rest > 0)
         return found if np.ndim(found) else found[()]
@@ -158,12 +158,21 @@ def stick_reason(slope: float) -> str:
     return f"the squirt is {slope:.4g} times phi, larger than that of any end mass"
 
 
+def loading(e: Any, T: Any) -> tuple[Any, Any]:
+    """Time of the bilinear tip's largest force, s, and the angular frequency of its loading, rad/s.
+
+    The head-on force is a quarter of a sine up to its peak and another one down, which e makes 1/e times as fast.
+    """
+    peak = T / (1 + e)
+    return peak, np.pi / (2 * peak)
+
+
 def fade(x: Array) -> Array:
     """The part of a vibration that is kept at ``x`` times the highest frequency: 1 up to `FADED`, 0 from 1 on.
 
     Far above the pulse's own frequencies sin(W (T - s)) leaves V(T)/W, the beam giving way, and a ringing of
-    cos(W T)/W. A sum over modes that ends sharply keeps of the ringing what its last modes chance to have; one that
-    fades keeps what waves of its frequencies bring back to the tip by then.
+    cos(W T)/W. If the sum over modes ends sharply, the ringing that it keeps depends on its last modes by chance. If it
+    fades out, it keeps what waves of these frequencies bring back to the tip by then.
     """
     return np.cos(np.pi / 2 * np.clip((x - FADED) / (1 - FADED), 0, 1)) ** 2
 
@@ -206,8 +215,7 @@ def _normal_impulse(W: Array, e: Any, T: Any) -> Array:
 
     Two quarter periods: (1 - cos)/(1 + e) while the tip is loaded, T/(1 + e) long, then (1 + e sin)/(1 + e).
     """
-    peak = T / (1 + e)
-    a = np.pi / (2 * peak)
+    peak, a = loading(e, T)
     total = _response(W, T, (0.0, T)) - _response(W, T, (0.0, peak), a=a)
     if np.any(e > 0):
         rate = a / np.where(e > 0, e, 1.0)  # where e = 0 the tip does not unload, and the span is empty

@@ -13,15 +13,18 @@ from cuefem.scene import DEFAULT_CONTACT_TIME, Ball, Stroke, Tip
 SHORTER = "; about 1 ms is usual"  # a pool ball's, measured; 2 ms is [Kim]'s
 
 
-def assumed(path: Path, given: Collection[str], *, offered: Collection[str] = ()) -> list[str]:
-    """What a loaded cue or scene file leaves to defaults. given: options said besides, such as "offset"; offered: all
-    that the command has."""
+def assumed(path: Path, given: Collection[str], *, offered: Collection[str] = (), blow: bool = True) -> list[str]:
+    """What a loaded cue or scene file leaves to defaults.
+
+    given: the options that were given as well, such as "offset". offered: all options that the command has. blow:
+    whether ball, tip and stroke count.
+    """
     found = read_tables(path) if path.suffix.lower() == ".toml" else {}
     if "cue" not in found:
         return _profile(path, given, " (choose with --material)")
     cue = found["cue"]
     shaft = _profile(path.parent / cue, given) if isinstance(cue, str) else []
-    return [*shaft, *assumed_blow(found, given, offered=offered)]
+    return [*shaft, *(assumed_blow(found, given, offered=offered) if blow else [])]
 
 
 def _profile(path: Path, given: Collection[str], choose: str = "") -> list[str]:

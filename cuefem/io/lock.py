@@ -17,8 +17,8 @@ class Lock:
     """A lock on a file, held until it is released, by one holder at a time: of this process or of any other.
 
     The system locks an empty file beside it, PATH.lock, and forgets the lock when the process ends; the file itself
-    stays free for readers. InputError if another holds it. Where the lock's file cannot be made, nothing beside it
-    can, a database's journal neither: nobody writes there, and there is nothing to hold.
+    stays free for readers. InputError if another holder has it. If the lock's file cannot be made, no file can be made
+    beside it, not even a database's journal: then nobody can write there, and nothing needs to be locked.
     """
 
     def __init__(self, path: Path) -> None:
@@ -29,7 +29,7 @@ class Lock:
             pass
 
     def _taken(self, path: Path) -> bool:
-        """Whether it is held now, or cannot be; False if the locked file is gone already."""
+        """Whether the lock is held now, or none is needed; False if the locked file is gone already."""
         try:
             file = os.open(self.beside, os.O_RDWR | os.O_CREAT, 0o666)
         except OSError:
@@ -46,7 +46,7 @@ class Lock:
         except OSError as error:
             os.close(file)
             raise InputError(path, "", f"cannot be locked against a second sweep: {reason(error)}") from None
-        try:  # who held it before may have removed the file between opening and locking
+        try:  # the holder before may have removed the file between opening and locking
             same = os.path.samestat(os.fstat(file), os.stat(self.beside))
         except OSError:
             same = False

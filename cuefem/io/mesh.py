@@ -57,10 +57,10 @@ def save_mesh(cue: Cue, path: Path) -> None:
 
 @contextlib.contextmanager
 def quiet() -> Iterator[None]:
-    """meshio left to itself: what is wrong with a file is said once, as an InputError, nothing on stdout and stderr.
+    """Keep meshio quiet: a fault of a file is told once, as an InputError, and nothing goes to stdout or stderr.
 
-    Overflows are no errors here, as they are where a command computes: meshio takes the text of an ASCII .stl for a
-    number of triangles first, on purpose. One file at a time, since output and warnings belong to the whole process.
+    Overflows are not errors here, unlike in computations: meshio at first reads the text of an ASCII .stl as a number
+    of triangles, on purpose. One file at a time, since output and warnings belong to the whole process.
     """
     nowhere = io.StringIO()
     with _ALONE, warnings.catch_warnings(), contextlib.redirect_stderr(nowhere), contextlib.redirect_stdout(nowhere):

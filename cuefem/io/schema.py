@@ -52,7 +52,7 @@ def keys_of(kind: type) -> list[str]:
 
 
 def unknown_key(name: str, value: Any, names: list[str], *, file: str, key: str) -> InputError:
-    """The error for a key that is none of ``names``."""
+    """The error for a key that is not among ``names``."""
     wanted = f"must be one of the keys {', '.join(names)}"
     half = name == "diameter" and "radius" in names
     hint = "; did you mean 'radius', half of it?" if half else nearest(name, names)

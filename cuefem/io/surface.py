@@ -26,9 +26,9 @@ _POLYGONS = ("triangle", "quad", "polygon")
 def load_surface(path: Path, material: Material, length_unit: str | None = None) -> Cue:
     """The shaft that a closed surface bounds, in one material: its thinner end is the tip.
 
-    A surface holds no unit: ``length_unit`` is that of its coordinates, mm by default. Segments keep within 5e-5 of the
-    widest diameter of the slices, which are exact for the facets; facets inscribed in the true form, N a turn, make
-    diameters small by 3.3/N^2.
+    A surface holds no unit: ``length_unit`` is that of its coordinates, mm by default. The segments follow the slices,
+    which are exact for the facets, to 5e-5 of the widest diameter. If N facets a turn are inscribed in the true form,
+    diameters come out too small by the part 3.3/N^2.
     """
     unit = DEFAULT_UNIT if length_unit is None else length_unit
     try:

@@ -121,7 +121,7 @@ def _segment(found: Any, path: Path, key: str) -> Any:
 
 
 def named_material(name: str, path: Path, key: str) -> Material:
-    """A material of the table; InputError with the names that are near."""
+    """A material of the table; InputError, suggesting similar names, if there is none."""
     try:
         return material(name)
     except ValueError as error:
@@ -131,7 +131,7 @@ def named_material(name: str, path: Path, key: str) -> Material:
 def _scene(found: dict[str, Any], path: Path, cue_file: Callable[[Path], Cue]) -> Scene:
     names = [*keys_of(Scene), "accuracy"]
     unknown = [name for name in found if name not in names]
-    if unknown:  # a misspelt one first: beside [[segment]], body_mass is no fault
+    if unknown:  # a misspelt key first: beside [[segment]], body_mass is not the fault
         name = next((name for name in unknown if nearest(name, ["segments", *names])), unknown[0])
         raise unknown_key(name, found[name], ["segments", *names], file=str(path), key="")
     if "cue" not in found:

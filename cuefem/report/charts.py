@@ -49,14 +49,14 @@ class Mark(NamedTuple):
 
 @dataclass(frozen=True)
 class Axis:
-    """An axis: what it measures, and its ends in those units (None: as the data ask)."""
+    """An axis: what it measures, and its ends in those units (None: fitted to the data)."""
 
     label: str
     low: float | None = None
     high: float | None = None
 
     def over(self, values: Sequence[ArrayLike]) -> Scale:
-        """The axis over these values, its ends at round numbers where none are given."""
+        """The axis over these values; ends that are not given are set to round numbers."""
         all_values = np.concatenate([np.ravel(np.asarray(v, float)) for v in values])
         finite = all_values[np.isfinite(all_values)]
         low = float(finite.min(initial=0.0)) if self.low is None else self.low
@@ -96,7 +96,7 @@ def round_step(length: float, most: int = 6) -> float:
 
 
 def path(x: ArrayLike, y: ArrayLike) -> str:
-    """Points as an SVG path to a hundredth of a unit, broken where they are no numbers."""
+    """Points as an SVG path to a hundredth of a unit, interrupted where they are not numbers."""
     pieces, begun = [], False
     for a, b in zip(np.ravel(np.asarray(x, float)), np.ravel(np.asarray(y, float)), strict=True):
         if math.isfinite(a) and math.isfinite(b):

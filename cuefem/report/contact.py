@@ -53,7 +53,7 @@ def contact_part(outcome: Outcome) -> Record:
 
 
 def _events(outcome: Outcome) -> Iterator[tuple[float, str]]:
-    """The moments, s, at which one phase becomes another, in words: the first `MOST_EVENTS` of them, and the last."""
+    """The moments, s, at which the phase changes, in words: the first `MOST_EVENTS` of them, and the last."""
     phases = outcome.phases
     yield phases[0].start, "first touch, the tip slips" if phases[0].grip != "stick" else "first touch, the tip sticks"
     for before, after in islice(pairwise(phases), MOST_EVENTS):

@@ -21,7 +21,7 @@ FRONT = 0.09  # m of the tip end that is drawn enlarged
 
 
 class Piece(NamedTuple):
-    """A segment's outline and its bore's, as paths, with the classes of its materials on the page."""
+    """The outlines of a segment and of its bore, as paths, with the page's classes for their materials."""
 
     outline: str
     material: str
@@ -67,7 +67,7 @@ def style_of(name: str) -> str:
 
 
 def cue_drawing(scene: Scene, *, across: float) -> CueDrawing:
-    """The whole cue, its diameters ``across`` times as large as its length."""
+    """The whole cue, with its diameters drawn ``across`` times enlarged."""
     title = "True to scale" if across == 1 else f"Diameters {across:g} times enlarged"
     return _drawn(scene, title, length=scene.shaft.length, across=across)
 
@@ -179,7 +179,7 @@ def strike_drawing(scene: Scene, squirt: float) -> StrikeDrawing:
 def _struck_end(
     segments: Sequence[Segment], across: float, front: tuple[Any, Any], *, apex: float, line: float, scale: float
 ) -> tuple[tuple[str, str], ...]:
-    """The segments as far as the drawing goes, the first with the tip's front; a lumped cue has no material."""
+    """The segments as far as the drawing reaches, the first with the tip's front; a lumped cue has no material."""
     reach = (WIDE - apex) / scale
     parts = [(0.0, reach, across, across, "m-other")]
     if segments:
@@ -217,7 +217,7 @@ class ModesDrawing:
 
 
 def modes_drawing(found: Modes, length: float, *, row: float = 38.0) -> ModesDrawing:
-    """The modes' deflections, each as high as the others."""
+    """The modes' deflections, all drawn equally high."""
     left, right = 10.0, WIDE - 78.0
     x = np.linspace(0, length, 241)
     shapes, _ = found.shape(x)

@@ -84,7 +84,7 @@ def _figures(outcome: Outcome, scene: Scene) -> Record:
 
 
 def _end_mass(outcome: Outcome, scene: Scene) -> float | None:
-    """The squirt-equivalent end mass; None head on, in a miscue, and where no lumped cue squirts so much."""
+    """The squirt-equivalent end mass; None head on, in a miscue, and if no lumped cue has that squirt."""
     try:
         return equivalent_end_mass(outcome, scene) if scene.stroke.offset else None
     except ValueError:

@@ -10,7 +10,7 @@ from cuefem.endmass.drives import DEFINITIONS, Spread, spreads_of
 from cuefem.report.quantities import NONE, grams, significant
 from cuefem.report.record import Record
 from cuefem.report.table import table_of, with_caption
-from cuefem.report.words import assumptions, tip_effect_notes
+from cuefem.report.words import assumptions, listed, tip_effect_notes
 from cuefem.scene import Scene
 from cuefem.squirt import cue_end_mass
 from cuefem.tip_modes import Solved
@@ -19,8 +19,8 @@ from cuefem.tip_modes import Solved
 def end_mass_record(scene: Scene, *, solved: Solved | None = None) -> Record:
     """The end masses m_e, their range while fewer modes are kept, and [Kim]'s m_c and eps = m_c/M of each.
 
-    "offset" and "squirt" are those at the scene's own offset. A definition that has no answer says why instead.
-    solved: the scene's modes, if they are known already.
+    A definition `at_offset` is taken at the scene's own offset; one that has no answer says why instead. solved: the
+    scene's modes, if they are known already.
     """
     spread = spreads_of(solved or Solved(scene))
     return {
@@ -72,7 +72,11 @@ def end_mass_table(record: Record, scene: Record) -> Group:
         "m_e: effective end mass, the inertia felt by the ball across the cue at its tip (lumped models take offset)",
         "spread: range while keeping 25 to 100 % of the modes",
         "m_c = 4 m_e: cue end of the paper's two-part cue (nu_c 1/3); eps: m_c as a part of the ball's mass",
-        *tip_effect_notes(
-            scene, "stick, offset and squirt count effects at the tip as end mass; velocity and force do not"
-        ),
+        *tip_effect_notes(scene, _counted()),
     )
+
+
+def _counted() -> str:
+    """Which definitions count effects at the tip as end mass."""
+    counting, others = ([one.name for one in DEFINITIONS.values() if one.counts_tip is c] for c in (True, False))
+    return f"{listed(counting)} count effects at the tip as end mass; {listed(others)} do not"

@@ -1,10 +1,10 @@
-"""The end mass as other people's software takes it: pooltool's CueSpecs, with what the number means and is worth.
+"""The end mass for other people's software: pooltool's CueSpecs, with what the number means and how well it works.
 
 pooltool turns the ball by [A.31] with nu = 2/5, whatever the ball: alpha = -atan((5/2) a sqrt(1 - a^2)/(1 + m/end_mass
 + (5/2)(1 - a^2))), its own words in `pooltool.physics.resolve.stick_ball.squirt`; a is b/R of the contact, positive on
 the ball's left, alpha positive to the left. [A.31] knows neither restitution nor the tip's dome: with the stick end
-mass it gives 11 to 42 % less squirt than the coupled strike of the ready scenes. What makes it right, at one offset, is
-an end mass of its own, the drive "A.31".
+mass it gives 11 to 42 % less squirt than the coupled strike of the ready scenes. With an end mass made for it, the
+drive "A.31", it is right at one offset.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ UNITS = units_of("end_mass", "length", "radius", "squirt") | {"M": "kg", "m": "k
 def pooltool_record(name: str, scene: Scene, *, drive: str = "A.31") -> Record:
     """pooltool's CueSpecs of a scene's cue, SI, what their end mass means, and what squirt it gives beside ours.
 
-    drive: which end mass is handed over. ValueError where that one does not exist: "A.31" head on and in a miscue.
+    drive: which end mass is handed over. ValueError if it does not exist, as "A.31" head on and in a miscue.
     """
     solved = Solved(scene)
     masses, reasons = _end_masses(solved)
@@ -83,7 +83,7 @@ def _notes(scene: Scene) -> list[str]:
     table = scene.contact_terms.table
     if table is not None:
         told = f"the cue is raised by {np.degrees(table.angle):.3g}°"
-        notes.append(f"{told}: its end mass holds the table's push, which pooltool's squirt does not know")
+        notes.append(f"{told}: its end mass includes the table's push, which pooltool's squirt does not know")
     if scene.ball.inertia != POOLTOOL_INERTIA:
         notes.append(f"pooltool's balls have the inertia factor 0.4; the scene's has {scene.ball.inertia:g}")
     return notes
@@ -117,7 +117,7 @@ def _a31_end_mass(scene: Scene, tip: TipModes) -> float:
 
 
 def _worth(scene: Scene, tip: TipModes, end_mass: float | None) -> Record:
-    """Squirt against the offset: that of the coupled strike, and pooltool's from the number handed over; rad."""
+    """Squirt against the offset, rad: of the coupled strike, and of pooltool with the number handed over."""
     assert end_mass is not None
     struck = [strike_modes(replace(scene, stroke=replace(scene.stroke, offset=b)), tip) for b in OFFSETS]
     theirs = alciatore_a31(np.array(OFFSETS), mass_ratio=scene.ball.mass / end_mass, inertia=POOLTOOL_INERTIA)

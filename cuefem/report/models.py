@@ -81,7 +81,7 @@ def a31_squirt(scene: Scene, cue: LumpedCue) -> Any:
 
 
 def model_notes(scene: Record, record: Record, unit: str) -> list[str]:
-    """A caption line about what the lumped models make of effects at the tip, if the scene has any."""
+    """A caption line that says how the lumped models treat effects at the tip, if the scene has any."""
     lumped = (
         f"; lumped includes them as a coupling of {record['coupling']:.4g} {unit}, the tip's "
         "speed across the cue by a unit of impulse along it"

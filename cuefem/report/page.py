@@ -119,7 +119,7 @@ def _stages(scene: Scene, rtol: float) -> list[Stage]:
 
 
 class Step(NamedTuple):
-    """A rung of the ladder of resolutions: what it takes, what it gives, its estimated error, seconds so far."""
+    """A step of the ladder of resolutions: modes and unknowns, squirt, its estimated error, and seconds so far."""
 
     modes: int
     unknowns: int
@@ -269,6 +269,7 @@ def _end_masses(record: Record, squirt: Record) -> Record:
         "reasons": [values["reason"] for values in record["drives"].values() if values["end_mass"] is None],
         "meanings": [(one.label_at(record["offset"]), one.meaning) for one in DEFINITIONS.values()],
         "coupling": squirt["coupling"],
+        "counted": "; ".join(one.label for one in DEFINITIONS.values() if one.counts_tip),
     }
 
 

@@ -50,7 +50,7 @@ class Known(NamedTuple):
         return f"{self.scale * value:.{min(decimals, 3) if brief else decimals}f}"
 
     def written(self, value: Any, *, brief: bool = False) -> str:
-        """A value with its unit; a dash where there is none, words as they are."""
+        """A value with its unit; a dash if there is no value; words unchanged."""
         if isinstance(value, str):
             return value
         if value is None or not math.isfinite(value):

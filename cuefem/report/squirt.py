@@ -58,10 +58,10 @@ def two_part_curve(solved: Solved, offsets: Sequence[float]) -> Record:
 
 
 def squirt_record(scene: Scene, offsets: Sequence[float] = OFFSETS, *, solved: Solved | None = None) -> Record:
-    """Squirt and natural pivot length against the offset, by every model; nan where a model has no lumped cue.
+    """Squirt and natural pivot length against the offset, by every model; nan at offsets where no lumped cue fits.
 
-    The models are: coupled in time; lumped (if effects at the tip couple the cue's motions); two-part of this cue and
-    of [Kim]'s 12 g; and [A.31]. "end_mass": that of a tip that sticks at each offset, without effects at the tip.
+    The models are: coupled in time; lumped (if effects at the tip couple the cue's motions); two-part, with this cue
+    and with [Kim]'s 12 g; and [A.31]. "end_mass": of a tip that sticks at each offset, without effects at the tip.
     solved: the scene's modes, if they are known already.
     """
     solved = solved or Solved(scene)

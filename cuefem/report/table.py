@@ -64,8 +64,8 @@ class WholeTable(Table):
 def shared(ranges: Sequence[tuple[int, int]], spare: int, *, first: Sequence[int]) -> list[int]:
     """The width of each column, so that together they fill ``spare`` characters.
 
-    The widest columns are made narrower first, those of ``first`` before the others. ranges: the least and the natural
-    width of each column; the least widths together fit.
+    The widest columns are made narrower first, those of ``first`` before the others. ranges: the smallest and the
+    natural width of each column; the smallest widths fit together.
     """
     widths = [most for _, most in ranges]
     for group in (first, range(len(ranges))):

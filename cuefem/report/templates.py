@@ -1,4 +1,4 @@
-"""Pieces of the report's page by themselves, as markup, for pages that show the same drawings in the same style."""
+"""Single pieces of the report's page, as markup, for other pages that show the same drawings in the same style."""
 
 from __future__ import annotations
 

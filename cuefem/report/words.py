@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import fields
 from typing import Any
 
@@ -52,6 +53,12 @@ def _short(value: Any) -> str:
     """A number, with its unit if it has one, to six digits."""
     number_text, _, unit = str(value).partition(" ")
     return f"{float(number_text):.6g} {unit}".rstrip()
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names as a sentence lists them: "stick, offset and squirt"."""
+    *others, last = names
+    return f"{', '.join(others)} and {last}" if others else last
 
 
 def tip_effect_notes(scene: Record, words: str) -> list[str]:

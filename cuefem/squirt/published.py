@@ -26,9 +26,9 @@ def alciatore_a31(offset: Any, *, mass_ratio: Any, inertia: Any = 0.4) -> Any:
 
 
 def alciatore_a31_mass_ratio(offset: Any, squirt: Any, *, inertia: Any = 0.4) -> Any:
-    """The M/m_e whose `alciatore_a31` squirt is ``squirt``, rad: its end mass is what a simulator on [A.31] wants.
+    """The M/m_e with which `alciatore_a31` gives the squirt ``squirt``, rad: simulators that use [A.31] need it.
 
-    ValueError where no end mass in (0, inf) has it: head on, and at or beyond the squirt of an endless one.
+    ValueError if no end mass in (0, inf) has it: head on, and at or beyond the squirt of an infinite end mass.
     """
     offset, squirt, nu = checked(offset=offset, squirt=squirt, inertia=inertia)
     s, c = sine_cosine(offset)

@@ -33,7 +33,7 @@ def compression_impulse(beta: Coefficients, offset: Any) -> Any:
 
 
 def restitution_factor(beta: Coefficients, offset: Any, friction: Any) -> Any:
-    """[Kim] eq. G:res: G of v_perp(p_f) = -e G v_perp(0); nan where slip never ends.
+    """[Kim] eq. G:res: G of v_perp(p_f) = -e G v_perp(0); nan if slip never ends.
 
     At least 1 where the closed form holds and m_e <= m_a. Written without 1/gamma, so that it is 1 head on and at m_e =
     m_a, where beta_x = 0.

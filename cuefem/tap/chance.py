@@ -1,9 +1,10 @@
-"""Would other tones be explained as well? The chance that tones which are not the shaft's fit it as these do.
+"""How likely is it that tones which are not the shaft's fit it as well as these do?
 
-The modes of a shaft, with E and G free, lie so close that many sounds find some wood whose modes they meet. So the same
-search is run over random sets of tones: as many, and as dense, each drawn evenly (in ln f) between the middles to its
-neighbours. The p-value is the share of sets, the heard one included, that are explained as well or better. Under the
-assumption that the tones have nothing to do with the shaft it is below `LEVEL` in a share `LEVEL` of recordings.
+The modes of a shaft whose E and G are free lie so close together that many sounds match the modes of some wood. So the
+same search is run over random sets of tones: as many tones, equally dense, each drawn evenly (in ln f) between the
+midpoints to its neighbours. The p-value is the share of all sets, the recorded one included, that are explained as well
+as the recorded one or better. If the tones have nothing to do with the shaft, it falls below `LEVEL` in a share `LEVEL`
+of recordings.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ Bits = NDArray[np.uint32]
 
 
 def random_sets(frequencies: Array, count: int, seed: int = SEED) -> Array:
-    """Sets of ln f, (count, tones), of the density of these frequencies, Hz."""
+    """Random sets of ln f, (count, tones), as dense as these frequencies, Hz."""
     heard = np.sort(np.log(frequencies))
     if len(heard) == 1:
         return np.random.default_rng(seed).uniform(np.log(LOW), np.log(HIGH), (count, 1))
@@ -39,7 +40,7 @@ def random_sets(frequencies: Array, count: int, seed: int = SEED) -> Array:
 
 
 def by_chance(table: ModeTable, tones: Sequence[Tone]) -> float:
-    """The p-value of these tones; 1 without any. Cost: a table of a few thousand woods, and sums over it."""
+    """The p-value of these tones; 1 if there are none. Cost: a table of a few thousand woods, and sums over it."""
     clear = [tone.frequency for tone in tones if tone.kind == "tone"]
     if not clear:
         return 1.0

@@ -1,4 +1,4 @@
-"""When a tap test is no result to build on: modes missing, tones explained no better than by chance, odd wood."""
+"""Reasons to doubt a tap test: modes are missing, the tones fit no better than by chance, or the wood is odd."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from cuefem.tap.fit import TapFit
 from cuefem.tap.matching import FACTOR, RATIOS
 from cuefem.tap.tones import LOW
 
-FAR = 0.97  # of ln `FACTOR`: an E as far from the file's is at the end of the search
-WIDEST = 1.5  # beyond an end of a range: as far as the range is wide, and at most this factor
-# Of the power of the clear tones: with less than MOST explained the sound is mostly another thing's, and with less than
-# NEARLY_ALL the drawing may be another shaft's.
+FAR = 0.97  # of ln `FACTOR`: an E this far from the file's is at the end of the search
+WIDEST = 1.5  # a range is widened by its own width at both ends, at most by this factor
+# Shares of the clear tones' power: if the shaft explains less than MOST, the sound comes mostly from something else; if
+# less than NEARLY_ALL, the drawing may be that of another shaft.
 MOST, NEARLY_ALL = 0.5, 0.8
 POOR = 5e-3  # misfit that a good drawing of an even shaft does not have
-KEPT = 0.25  # ln G/E of the file, where the tones do not tell it
-DENSITY = 0.1  # relative, of the file's density, where the shaft was not weighed (Wood Handbook, spread of a wood)
+KEPT = 0.25  # error of the file's ln G/E, if the tones do not determine it
+DENSITY = 0.1  # relative error of the file's density, if the shaft was not weighed (Wood Handbook, spread of a wood)
 UNITS = {"E": (1e9, "GPa"), "G": (1e9, "GPa"), "rho": (1.0, "kg/m³")}
 
 
@@ -41,7 +41,7 @@ def explained(found: TapFit) -> float:
 
 
 def refusals(found: TapFit, *, edge: bool = False) -> list[str]:
-    """Why nobody should build on this result, one line for each reason; edge: G/E stopped at a bound of the search."""
+    """Reasons not to trust this result, one line each; edge: whether G/E stopped at a bound of the search."""
     lines = []
     heard = {match.mode for match in found.matched if match.mode is not None}
     clear = sum(match.tone.kind == "tone" for match in found.matched)
@@ -64,35 +64,36 @@ def refusals(found: TapFit, *, edge: bool = False) -> list[str]:
 
 
 def remarks(found: TapFit) -> list[str]:
-    """What else a person should know of a result, one line each; what `refusals` says is not said again."""
+    """What else is worth knowing about a result, one line each, without repeating `refusals`."""
     heard = [match.mode for match in found.matched if match.mode is not None]
     lines = []
     if not found.told:
         why = "one tone cannot tell" if len(heard) == 1 else "these tones cannot tell"
-        lines.append(f"{why} G from E: the file's G/E is kept, taken to be known to {100 * KEPT:.0f} %")
+        lines.append(f"{why} G from E: the file's G/E is kept, and assumed known to {100 * KEPT:.0f} %")
     if not found.weighed:
         lines.append(
-            f"not weighed: the file's density is kept as it is, taken to be known to {100 * DENSITY:.0f} % (--mass)"
+            f"not weighed (--mass): the file's density is kept as it is, and assumed known to {100 * DENSITY:.0f} %"
         )
     if MOST <= explained(found) < NEARLY_ALL:
         lines.append("some loud tones are not this shaft's: check that it is the one drawn, and that it hung free")
     if found.misfit > POOR:
         lines.append(f"the tones fit to {100 * found.misfit:.2g} % only: check the drawing; errors are widened")
     if foreign := [match.tone for match in found.matched if match.tone.kind == "tone" and match.mode is None]:
-        lines.append(f"no bending tone of this shaft: {', '.join(f'{tone.frequency:.1f}' for tone in foreign)} Hz")
+        lines.append(f"not a bending tone of this shaft: {', '.join(f'{tone.frequency:.1f}' for tone in foreign)} Hz")
     if missed := missing(found):
         lines.append(f"not heard: mode{'s' if len(missed) > 1 else ''} {', '.join(map(str, missed))}")
     if any(match.tone.kind == "twin" for match in found.matched):
-        lines.append("some tones are double: the shaft bends unlike in two planes; their means are taken")
+        lines.append("some tones are double: the shaft bends differently in two planes; their means are used")
     return lines
 
 
 def unlike(wood: Material, before: Material) -> list[str]:
     """Which of E, G and rho lie far outside the table's ranges for materials like the file's, one line each.
 
-    Materials like the file's: all woods for a wood, otherwise the entries themselves whose widened ranges hold the
-    file's E, G and rho. Nothing is said of a file's material that is like none in the table. A range is widened by its
-    own width, at most by `WIDEST`: for the density and E of woods, whose ranges are one standard deviation, to three.
+    If the file's material is a wood, it is compared with all woods; otherwise with those entries whose widened ranges
+    hold its E, G and rho. If there is no such entry, nothing is refused. A range is widened by its own width, at most
+    by the factor `WIDEST`: the ranges of the density and E of woods are one standard deviation to either side, and
+    become three.
     """
     like = [name for name in MATERIALS if all(_within(getattr(before, key), [name], key) for key in UNITS)]
     if any(name in WOODS for name in like):
@@ -121,7 +122,7 @@ def _widened(own: Range) -> Range:
 
 
 def shear_coefficients(cue: Cue, wood: Material) -> tuple[float, float]:
-    """Least and largest shear coefficient of the sections of this material, where it is the shell."""
+    """Smallest and largest shear coefficient of the sections that are made of this material."""
     found = []
     for segment in cue.segments:
         if segment.material != wood and segment.core != wood:

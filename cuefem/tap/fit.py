@@ -12,7 +12,7 @@ from cuefem.tap.tones import Tone
 
 @dataclass(frozen=True)
 class Matched:
-    """A tone and its mode (1 the lowest), None for a wrong tone; frequency: the fitted shaft's of that mode, Hz."""
+    """A tone and its mode (1 is the lowest), None if it has none. frequency: of that mode in the fitted shaft, Hz."""
 
     tone: Tone
     mode: int | None
@@ -21,16 +21,16 @@ class Matched:
 
 @dataclass(frozen=True)
 class TapFit:
-    """What a tap tells of a shaft's wood.
+    """What a tap tells about a shaft's wood.
 
     cue: with the fitted wood. frequencies: of its modes, Hz. wood, before: its material, fitted and as the file had
-    it. covariance: of (ln E, ln G/E, ln rho), (3, 3). matched: every tone. told: whether the tones tell G; otherwise
-    the file's G/E is kept. weighed: whether rho comes from a mass. rivals: other wood that explains the tones nearly
-    as well: (E in Pa, odds against it). loss: median loss factor of the tones matched, an upper bound of the wood's.
-    misfit: root mean square of the tones' relative distances from their modes, sharp tones counting more. notes: what
-    a person should know, one line each. chance: p-value of tones that are not the shaft's (`cuefem.tap.chance`).
-    shear_coefficients: least and largest kappa along the wood, with which G goes. refusals: why this is no result to
-    build on, one line each; empty for a sound one.
+    it. covariance: of (ln E, ln G/E, ln rho), (3, 3). matched: every tone. told: whether the tones determine G;
+    otherwise the file's G/E is kept. weighed: whether rho comes from a mass. rivals: other wood that explains the tones
+    nearly as well: (E in Pa, odds against it). loss: median loss factor of the tones matched, an upper bound of the
+    wood's. misfit: root mean square of the tones' relative distances from their modes, sharp tones counting more.
+    notes: what a person should know, one line each. chance: p-value of tones that are not the shaft's
+    (`cuefem.tap.chance`). shear_coefficients: smallest and largest kappa along the wood; the value of G belongs to
+    them. refusals: reasons not to trust the result, one line each; empty for a sound one.
     """
 
     cue: Cue

@@ -13,15 +13,15 @@ ASTRAY = 0.3  # Hz that a grid runs fast or slow, the clock of the recorder incl
 MOST = 24  # multiples that are looked for
 WINDOW = 0.2  # s: the multiples are told apart, and a tap spoils few windows
 PIECE = 4.0  # s over which the grid keeps its frequency
-LIKE, STEADY = 0.35, 0.6  # a window's amplitude is like the median one within LIKE; a hum's are in STEADY of them
-LEAST = 3e-3  # of the sound's own amplitude: below may be the flank of a window of another tone
+LIKE, STEADY = 0.35, 0.6  # a hum's amplitude is within LIKE of its median in at least STEADY of the windows
+LEAST = 3e-3  # of the sound's own amplitude: a weaker line may be the flank of another tone
 FEWEST = 2  # multiples: a single steady line may be anything
-FITS, FARTHEST = 6, 0.02  # of the hum's sines; Hz that one of them moves the mains frequency at most
+FITS, FARTHEST = 6, 0.02  # fits of the hum's sines; Hz by which one of them moves the mains frequency at most
 
 
 @dataclass(frozen=True)
 class Hum:
-    """mains: 50 or 60 Hz as measured. multiples: of it that were taken out. level: mean power over what is left, dB."""
+    """mains: measured frequency, Hz. multiples: those removed. level: their mean power over the rest's, dB."""
 
     mains: float
     multiples: tuple[int, ...]
@@ -29,7 +29,7 @@ class Hum:
 
 
 def without_hum(signal: Array, rate: float) -> tuple[Array, Hum | None]:
-    """The recording, (samples, channels), without its mains hum, and that hum; unchanged where there is none."""
+    """The recording, (samples, channels), without its mains hum, and that hum (None if there is none)."""
     pieces = np.array_split(signal, max(1, round(len(signal) / (PIECE * rate))))
     found = [_hum(piece, rate) for piece in pieces]
     heard = [(base, multiples) for base, multiples, _ in found if multiples]
@@ -56,7 +56,7 @@ def _hum(piece: Array, rate: float) -> tuple[float, tuple[int, ...], Array]:
 
 
 def _steady(piece: Array, rate: float, mains: float) -> tuple[float, float, tuple[int, ...]]:
-    """(power of the steady multiples, the grid's own frequency, which they are)."""
+    """(power of the steady multiples, the mains frequency as measured, the numbers of those multiples)."""
     size = int(WINDOW * rate)
     starts = np.arange(0, len(piece) - size + 1, size // 2)
     if len(starts) < 4:
@@ -75,7 +75,7 @@ def _steady(piece: Array, rate: float, mains: float) -> tuple[float, float, tupl
     like = (np.abs(turned - middle) <= LIKE * np.abs(middle)).mean(axis=0)  # (multiples, channels)
     steady = ((like >= STEADY) & (np.abs(middle) > LEAST * size / 4 * np.sqrt(np.mean(piece**2)))).any(axis=1)
     strength = float(np.square(np.abs(middle[steady])).sum())
-    # a tap shakes some multiples; where a few are steady, all up to the highest of them are the mains'
+    # a tap disturbs some multiples: if a few are steady, all up to the highest of them count as hum
     multiples = tuple(range(1, int(k[steady][-1]) + 1)) if steady.sum() >= FEWEST else ()
     return strength, mains + best, multiples
 

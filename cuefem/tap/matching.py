@@ -1,8 +1,9 @@
 """Which bending mode each tone is: hypotheses about a shaft's wood, weighed by how well they explain the tones heard.
 
-A hypothesis is E and G/E of the wood. Every tone on every mode proposes them; a tone is then a mode's, within
-`TOLERANCE`, or a wrong one, anywhere in the band; an unheard mode below the highest one heard counts a little against
-it. So neither a missing mode nor a wrong tone shifts the count, as counting upwards would.
+A hypothesis is E and G/E of the wood; every pair of a tone and a mode proposes some. Under a hypothesis each tone
+either belongs to a mode, within `TOLERANCE`, or is wrong and may lie anywhere in the band, and every mode below the
+highest one heard that was not heard counts a little against it. So neither a missing mode nor a wrong tone shifts the
+numbers of the others, as it would if modes were counted upwards.
 """
 
 from __future__ import annotations
@@ -55,7 +56,7 @@ def with_material(cue: Cue, old: Material, new: Material) -> Cue:
 
 @dataclass(frozen=True)
 class Shaft:
-    """A cue whose wood is in question. wood: as the file has it. effects: those that stay on while it hangs."""
+    """A cue whose wood is sought. wood: that of the file. effects: those that stay on the cue while it hangs."""
 
     cue: Cue
     wood: Material
@@ -76,14 +77,14 @@ class Shaft:
 
     @property
     def ratios(self) -> tuple[float, float]:
-        """Bounds of ln G/E: `RATIOS`, and where the wood's Poisson ratio allows it (`Material`)."""
+        """Bounds of ln G/E: `RATIOS`, and no higher than the wood's Poisson ratio allows (`Material`)."""
         top = min(RATIOS[1], 0.95 / (2 * self.wood.nu)) if self.wood.nu else RATIOS[1]
         return float(np.log(RATIOS[0])), float(np.log(top))
 
 
 @dataclass(frozen=True)
 class Hypothesis:
-    """theta: (ln E, ln G/E). modes: of each tone its mode, 0 the lowest, -1 a wrong tone. score: ln of its weight."""
+    """theta: (ln E, ln G/E). modes: the mode of each tone, 0 is the lowest, -1 means none. score: ln of its weight."""
 
     theta: Array
     modes: tuple[int, ...]
@@ -130,7 +131,7 @@ class ModeTable:
         return apart
 
     def _unlike(self, proposed: Array, heard: Array) -> list[Array]:
-        """The first `REFINED` of the hypotheses (n, 2) that give some tone another mode."""
+        """The first `REFINED` of the hypotheses (n, 2) that differ in the mode of some tone."""
         f = self.log_frequencies(*proposed.T)
         first: dict[tuple[int, ...], Array] = {}
         for theta, row in zip(proposed, f, strict=True):
@@ -184,7 +185,7 @@ class ModeTable:
 
 
 def assigned(heard: Array, f: Array, width: float | Array) -> Array:
-    """Of each tone its mode, the nearest within ``width`` (in ln f), the nearest tone first; -1 without one."""
+    """The mode of each tone: the nearest within ``width`` (in ln f) that no nearer tone has, or -1."""
     gaps = np.abs(heard[:, None] - f)
     own, width = np.full(len(heard), -1), np.broadcast_to(width, len(heard))
     for i in np.argsort(gaps.min(axis=1)):

@@ -17,7 +17,7 @@ FAINT = 0.05  # of the loudest hop's power: taps below are left out
 CONTACT = 0.002  # s after the loudest sample: by then the knuckle or mallet has left
 SHORTEST, LONGEST = 0.1, 0.6  # s of ringing: less does not tell tones apart, more is noise
 TAPS = 6
-LOUDEST = 1e12  # whatever its units are: beyond, powers overflow
+LOUDEST = 1e12  # in any unit: beyond this, powers overflow
 RATES = Quantity("Hz", "[8000, 384000]")
 
 
@@ -25,9 +25,9 @@ RATES = Quantity("Hz", "[8000, 384000]")
 class Ringing:
     """Free decays after taps, all of one length.
 
-    traces: (traces, samples), one for each tap and channel. rate: samples a second, Hz. taps: how many. clipped: s
-    that the longest run of clipped samples lasted after its tap and that are left out; 0 without any. hum: the mains
-    hum that was taken out, None without any.
+    traces: (traces, samples), one for each tap and channel. rate: samples a second, Hz. taps: how many. clipped: the
+    longest time after a tap, s, that was left out because samples were clipped; 0 if none was. hum: the mains hum that
+    was removed, if any.
     """
 
     traces: Array
@@ -40,7 +40,7 @@ class Ringing:
 def ringing(signal: ArrayLike, rate: float) -> Ringing:
     """The free decays in a recording, (samples,) or (samples, channels), of at most `TAPS` taps.
 
-    ValueError where it is too short, not finite, beyond `LOUDEST`, silent, or clipped to its end.
+    ValueError if it is too short, not finite, beyond `LOUDEST`, silent, or clipped to its end.
     """
     rate = RATES.check("ringing rate", rate)
     signal = np.asarray(signal, float)
@@ -70,7 +70,7 @@ def ringing(signal: ArrayLike, rate: float) -> Ringing:
 
 
 def _channels(signal: Array) -> Array:
-    """The channels that say something of their own: not silent, not a copy of one before."""
+    """The channels, without those that are silent or a copy of another one."""
     kept: list[Array] = []
     for channel in signal.T:
         power = channel @ channel
@@ -83,7 +83,7 @@ def _channels(signal: Array) -> Array:
 
 
 def _onsets(signal: Array, rate: float) -> list[int]:
-    """First free samples after each tap: a rise of the envelope, its loudest sample, and the contact's end."""
+    """The first free sample after each tap: a rise of the envelope, its loudest sample, and the end of contact."""
     hop = int(HOP * rate)
     count = len(signal) // hop
     hops = np.square(signal[: count * hop]).sum(axis=1).reshape(count, hop).sum(axis=1)

@@ -23,27 +23,27 @@ from cuefem.tap.ringing import Ringing
 Complex = NDArray[np.complex128]
 
 LOW, HIGH = 60.0, 8000.0  # Hz: what a phone hears of a shaft
-LOWEST = 15.0  # Hz: tones below `LOW` are explained too, so that their flanks bias no other, but not told
+LOWEST = 15.0  # Hz: tones below `LOW` are fitted too, so that their flanks bias no other tone, but not reported
 WINDOWS = (3.0, 12.0, 50.0, 200.0)  # 1/s, decays of the matched filters: a factor of four loses 0.5 dB
 FALSE_ALARM = 1e-8  # of a bin under a window; a recording has 1e5 of them
 BLOCK = (100.0, 0.35)  # Hz and of the frequency: over either, whichever is wider, the noise is taken to be level
 DEEPEST = 1e-11  # of the loudest bin: no recording is quieter, 16 bits are 1e-10
 QUIET = 0.2  # quantile of a block's power: less of the tones is in it than in the median
 MOST = 40
-VAGUE = 3e-3  # relative error of a tone that tells no mode's frequency any more
-STEPS, ROUGH = 12, 3  # of a fit; of one that goes on to look for more tones
+VAGUE = 3e-3  # a tone with a larger relative error than this does not tell a mode's frequency
+STEPS, ROUGH = 12, 3  # steps of the last fit; of those between which more tones are sought
 SMALL = 1e-2  # gain of a step in squared standard deviations; the next one is far smaller
 FEWEST = 30  # bins of a block of noise
 PIECE = 1024  # bins that are summed at a time: they stay in the cache
 SLOWEST, FASTEST = 0.01, 0.1  # decay, 1/s; decay over angular frequency
-LOSSY = 0.15  # loss factor: no tone, but what fills a gap of the model
+LOSSY = 0.15  # loss factor above which it is no tone but fills a gap of the model
 STEADY = 0.5  # 1/s: what decays more slowly is a hum and no struck body
-NEAR, SHADOW = 0.03, 0.05  # relative: so close to a stronger tone a peak below this amplitude ratio is its shadow
+NEAR, SHADOW = 0.03, 0.05  # relative: a peak so near a stronger tone, below this part of its amplitude, is its shadow
 HARMONICS = (2, 3, 4, 5, 7)
-LOUD = 4  # tones that make sums
+LOUD = 4  # how many of the loudest tones may add up to another one
 WEAKER = 0.35  # a square wave's third harmonic has a third of its amplitude
 CLOCK = 5e-5  # relative, of a phone's sampling rate
-FAINT = 2.0  # of the least amplitude that is a tone: below, the second of two that overlap would not be told
+FAINT = 2.0  # times the smallest amplitude of a tone: below it, two overlapping tones could not be told from one
 
 
 @dataclass(frozen=True)
@@ -51,10 +51,10 @@ class Tone:
     """One tone. frequency: of the undamped body, Hz; error: its standard deviation, Hz, `CLOCK` included.
 
     decay: of the amplitude, 1/s, and decay_error. level: amplitude at the start, all traces together, in the
-    recording's units. snr: that over its standard deviation. kind: "tone"; "faint" (two that overlap would sound alike,
-    so its error holds the width of its line); "steady" (a hum); "harmonic" (a multiple
-    or sum of louder ones, as clipping makes); "twin" (the weaker of two planes of bending; the other's error holds
-    their distance).
+    recording's units. snr: that over its standard deviation. kind: "tone"; "faint" (two overlapping tones could not be
+    told from it, so its error includes the width of its line); "steady" (a hum); "harmonic" (a multiple or a sum of
+    louder ones, as clipping makes); "twin" (the weaker tone of two planes of bending; the error of the stronger one
+    includes their distance).
     """
 
     frequency: float
@@ -72,7 +72,7 @@ class Tone:
 
 
 def tones(heard: Ringing) -> tuple[Tone, ...]:
-    """All tones between `LOW` and `HIGH`, in ascending order. RuntimeError where no tone decays.
+    """All tones between `LOW` and `HIGH`, in ascending order. RuntimeError if none of them decays.
 
     Cost: a few matrix products of (bins x tones^2); under a second for a second of sound.
     """
@@ -118,7 +118,7 @@ class _Spectrum:
         return cls(omega, X, np.exp(-1j * omega / heard.rate), bins, _blocks(frequencies[bins]), size, heard.rate)
 
     def unexplained(self, w: Array, a: Array) -> Complex:
-        """Peaks that stand out of the residual of the tones (w, a), as w + i a; strongest of those that are near."""
+        """Peaks that stand out of the residual of the tones (w, a), as w + i a; of near ones the strongest."""
         residual = self.X - self._explained(w, a)[0]
         whole = np.zeros((len(self.X), self.size // 2 + 1), complex)
         whole[:, self.bins] = residual
@@ -138,7 +138,7 @@ class _Spectrum:
         return self._apart(sorted(peaks, key=lambda peak: -peak[0]), w, a)
 
     def _apart(self, peaks: list[tuple[float, float, complex]], w: Array, a: Array) -> Complex:
-        """Peaks, score, amplitude and place of each, that are no flank of a stronger one and no shadow of a tone."""
+        """Places of the peaks (score, amplitude, place) that are no flank of a stronger peak nor shadow of a tone."""
         kept: list[complex] = []
         level = self._amplitudes(w, a)
         for _, amplitude, peak in peaks:
@@ -222,7 +222,7 @@ class _Spectrum:
         return _solve(H, g), H, np.array(linear), power
 
     def fitted(self, w: Array, a: Array, steps: int = STEPS) -> tuple[Array, Array]:
-        """The tones where the residual is least, from a start within a line's width, in so many steps at most."""
+        """The tones of smallest residual, from a start within a line's width, in at most ``steps`` steps."""
         noise = self._explained(w, a)[2]
         step, _, _, best = self._step(w, a, noise)
         for _ in range(steps):
@@ -244,7 +244,7 @@ class _Spectrum:
         return w, a
 
     def tones(self, w: Array, a: Array) -> list[Tone]:
-        """Tones with their uncertainties; those too faint left out."""
+        """Tones with their uncertainties, without those that are too faint."""
         if not len(w):
             return []
         noise = self._explained(w, a)[2]
@@ -280,7 +280,7 @@ def _blocks(frequencies: Array) -> NDArray[np.intp]:
 
 
 def _solve(matrix: Array, right: Array) -> Array:
-    """Solution of a positive semidefinite system, columns scaled; the least one where tones coincide."""
+    """Solution of a positive semidefinite system with scaled columns; the smallest one if tones coincide."""
     scale = 1 / np.sqrt(np.maximum(np.diag(matrix), np.finfo(float).tiny))
     scaled = matrix * scale[:, None] * scale
     values, vectors = np.linalg.eigh(scaled)
@@ -290,7 +290,7 @@ def _solve(matrix: Array, right: Array) -> Array:
 
 
 def _twins(found: list[Tone]) -> list[Tone]:
-    """Two planes of an imperfectly round shaft ring apart: the pair's mean stands for it, half its distance its error.
+    """Pairs of tones of a shaft that is not quite round: the mean stands for both, half the distance is its error.
 
     Bending modes lie farther apart than `NEAR`.
     """

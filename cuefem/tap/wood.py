@@ -1,7 +1,8 @@
 """The tap test: E, G and density of a shaft's wood from the tones that it rings with, hung free.
 
-The tones fix E/rho and G/rho; the weighed mass fixes rho. Errors: of the tones (`cuefem.tap.tones`), of the beam and
-the drawing (`MODEL`), of the scale, and where the tones do not tell G from E, of the ratio that is kept.
+The tones fix E/rho and G/rho; the weighed mass fixes rho. Its error comes from the tones (`cuefem.tap.tones`), from the
+beam and the drawing (`MODEL`), from the scale, and from G/E, if the tones do not tell G from E and the file's ratio is
+kept.
 """
 
 from __future__ import annotations
@@ -26,18 +27,18 @@ from cuefem.tap.tones import Tone
 
 MODEL = 2e-3  # relative, of a mode's frequency: diameters to 0.1 %, uneven grain, the beam
 SCALE = 0.5e-3  # kg, error of a kitchen scale
-TOLD = 0.15  # ln G/E: the tones tell it when they leave it uncertain by less than this
+TOLD = 0.15  # ln G/E: the tones determine it if they leave it uncertain by less than this
 ODD = 0.15  # relative change of density by the weighed mass that is worth a word
 RIVAL = np.log(20)  # a hypothesis whose odds are better than 1 : 20 is not ruled out
 STEP = 0.02  # of differences in the logarithms, for the numbers that follow from the wood
 OUTLIER = 4.5  # standard deviations
-STEPS, SETTLED = 8, 1e-9  # of the least squares; of the logarithms
-FOLDED = 1e-3  # relative, of a tone that may be a whole multiple of another
+STEPS, SETTLED = 8, 1e-9  # steps of the least squares; change of the logarithms at which they have converged
+FOLDED = 1e-3  # relative error of a tone that may be a whole multiple of another
 
 
 @dataclass(frozen=True)
 class Predicted:
-    """A number of the scene with the fitted wood, its standard deviation from the wood alone, and with the file's."""
+    """A number of the scene: with the fitted wood, its standard deviation (the wood's alone), with the file's wood."""
 
     value: float
     error: float
@@ -47,10 +48,10 @@ class Predicted:
 class TapTest:
     """A hung shaft, ready for recordings.
 
-    segment: whose material is in question, main_material otherwise. mass: of the hung shaft, weighed, kg. model:
-    relative error of a mode's frequency. effects: of a scene; point masses and joints stay on the shaft, supports do
-    not. Cost: 27 solutions of the modes, once. ValueError for a mass that asks for a density
-    beyond a factor `FACTOR` of the file's.
+    segment: the one whose material is sought; by default it is the main material (`main_material`). mass: of the shaft
+    as it hangs, weighed, kg. model: relative error of a mode's frequency. effects: of a scene; point masses and joints
+    stay on the shaft, supports do not. Cost: 27 solutions of the modes, once. ValueError if the mass asks for a density
+    further than a factor `FACTOR` from the file's.
     """
 
     def __init__(
@@ -92,7 +93,7 @@ class TapTest:
         return rho, SCALE / (mass - others)
 
     def fit(self, tones: Sequence[Tone]) -> TapFit:
-        """The wood that explains the tones best. RuntimeError where they are no bending tones of any such shaft."""
+        """The wood that explains the tones best. RuntimeError if they are not the bending tones of any such shaft."""
         used = [tone for tone in tones if tone.kind in ("tone", "harmonic")]
         found = self.table.hypotheses(used) if used else []
         clear = sum(tone.kind == "tone" for tone in used)
@@ -201,11 +202,11 @@ def _tells_ratio(rows: Array) -> bool:
 
 
 def _covariance(rows: Array, free: list[int]) -> Array:
-    """Of (ln E, ln G/E, ln rho); of what is kept, with what its own error does to those sought."""
+    """Covariance of (ln E, ln G/E, ln rho), including what the errors of kept values do to the others."""
     inner = np.linalg.inv(rows[:, free].T @ rows[:, free])
     covariance = np.zeros((3, 3))
     covariance[np.ix_(free, free)] = inner
-    # the last row is the scale's, which says nothing of a density that is kept
+    # the last row is that of the scale, which says nothing about a density that is kept
     for kept in {0, 1, 2} - set(free):
         tones = rows[:-1] if kept == 2 else rows
         drift = np.zeros(3)

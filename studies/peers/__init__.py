@@ -1,10 +1,11 @@
 """Side by side: cuefem and what one would use instead, on the same cone, with the error and the seconds of each.
 
-`python -m studies.peers` writes peers.md and peers.png here, in about two minutes, with the peers that the Python it is
-run by has: scikit-fem always, and what is installed of
+`python -m studies.peers` writes peers.md and peers.png here, in about two minutes, with the peers that this Python has:
+scikit-fem always, and those of the following that are installed:
 
     pip install ngsolve openseespy sfepy ross-rotordynamics "plotly<6"
     apt-get install calculix-ccx
 
-Others are skipped with a word. A peer is one file; contest.py says how they are timed, report.py what is printed.
+The others are skipped, and the output says so. A peer is one file; contest.py says how they are timed, report.py what
+is printed.
 """

@@ -1,6 +1,7 @@
 """The contest of all peers that are installed, about two minutes: writes peers.md and peers.png.
 
-Beside itself where every peer took part; else into the folder it is called from, so that no committed row is lost.
+They are written beside this file if every peer took part; otherwise into the current folder, so that no committed row
+is lost.
 """
 
 from __future__ import annotations

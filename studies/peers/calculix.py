@@ -1,8 +1,8 @@
 """CalculiX: the cone as a solid of 20-node bricks, half of it (bending in the plane of symmetry).
 
-A solid is another model: it has the beam's frequencies only so far as Timoshenko's assumptions hold. What can be made
-alike is: Poisson's ratios are 0, where Timoshenko's coefficient of a circle is 6/7, and the shear moduli along the
-grain carry the rest of the cone's kappa G. A run is a process of its own, its start and files included.
+A solid is another model: it has the beam's frequencies only as far as Timoshenko's assumptions hold. What can be
+matched is matched: Poisson's ratios are 0, where Timoshenko's coefficient of a circle is 6/7, and the shear moduli
+along the grain carry the rest of the cone's kappa G. A run is a process of its own, its start and files included.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""Who takes part and how they are timed: each peer in its own process, turn about, so that load falls on all alike.
+"""Who takes part and how they are timed: each peer in its own process, in turns, so that load falls on all alike.
 
 A peer is a file beside this one with VERSION and CONTESTANTS, {task: {label: call}}; it raises ImportError where its
 package is missing. A call goes from the cone's numbers to the answer: mesh, assembly and solution are timed, imports
-are not, and whatever a package keeps from its first call on (tables, compiled code) is its own.
+are not, and a package may keep whatever it wants from its first call on (tables, compiled code).
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 ROSS takes its coefficient from Poisson's ratio, here E/(2G) - 1 = 6.5, so the elements are given the cone's own. It
 solves both planes, torsion and stretching at once (6 unknowns a node) as one unsymmetric first-order system, which is
-more than is asked; the bending frequencies are those that come in pairs. Its sparse solver takes longer and loses
+more than was asked for; the bending frequencies are those that come in pairs. Its sparse solver takes longer and loses
 modes of a free shaft.
 """
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import math
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -89,7 +91,7 @@ def test_a_bare_cue_gets_defaults_and_says_so(kim: str) -> None:
     ]
     words = "assumed: carom ball 210 g, 61.5 mm (--ball); contact time 2 ms (--contact-time; about 1 ms is usual)"
     assert words in " ".join(run("strike", kim).split())
-    assert "carom ball 210 g, 61.5 mm" in as_json("modes", kim)["assumed"]  # which has no --ball
+    assert as_json("modes", kim)["assumed"] == []  # neither ball nor blow matters to it
 
 
 @pytest.mark.parametrize(
@@ -202,6 +204,20 @@ def test_a_profile_announces_its_material(tmp_path: Path) -> None:
     assert "material hard maple" not in run("modes", shaft, "--material", "ash")
     run("convert", shaft, str(tmp_path / "shaft.toml"), "--material", "ash")
     assert cf.load(tmp_path / "shaft.toml") == cf.load(shaft, material="ash")
+
+
+def test_modes_assume_nothing_of_ball_and_blow(tmp_path: Path) -> None:
+    shaft = tmp_path / "shaft.csv"
+    shaft.write_text("x [mm],diameter [mm]\n0,12\n700,21\n")
+    told = as_json("modes", str(shaft))["assumed"]
+    assert [words.split()[0] for words in told] == ["material", "no"]
+    assert any(words.startswith("carom ball") for words in as_json("end-mass", str(shaft))["assumed"])
+
+
+def test_the_package_of_commands_runs_as_a_program() -> None:
+    done = subprocess.run([sys.executable, "-m", "cuefem.cli", "--version"], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("cuefem, version ")
 
 
 def test_a_profile_announces_that_nothing_is_behind_it(tmp_path: Path) -> None:

@@ -102,7 +102,7 @@ def test_the_shaft_is_what_the_forces_make_of_its_modes() -> None:
     pulled = -weights * across
     q = [pulled @ np.sin(omega * (until - times)) / omega for omega in modes.omega]
     rigid_w, rigid_theta = modes.system.interpolate(modes.rigid_vectors, x)
-    tip, _ = modes.system.at_tip(modes.rigid_vectors)
+    tip, _ = modes.system.tip_displacement(modes.rigid_vectors)
     free = tip * (pulled @ (until - times))
     tips = modes.shape(0.0)[0]
     deflection, rotation = found.deflection(x)

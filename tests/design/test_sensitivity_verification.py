@@ -46,7 +46,7 @@ def test_the_parts_add_up_to_the_end_mass(path: Path, drive: str) -> None:
     assert (found.ball_mass == 0) == (drive != "stick")
 
 
-def test_the_stick_drives_sum_is_that_of_physics_md() -> None:
+def test_the_stick_drives_sum_is_that_of_the_handbook() -> None:
     """Kim's shaft, 1 ms: 1.0206 m_e."""
     found = sensitivity(scene(kim()))
     sum_of_parts = integral(found, kim(), "rhoA", "rhoI", "EI", "kGA")

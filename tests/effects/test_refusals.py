@@ -86,7 +86,7 @@ CALLS: list[tuple[Callable[[], object], str]] = [
         (listed(once, once), f"{type(once).__name__} acts once")
         for once in (PowerLawTip(), RollingContact(), SecondHit())
     ],
-    (listed(SHEAR, "TipDome"), "TypeError: Scene.effects[1] must be a Effect; got 'TipDome'"),  # type: ignore[arg-type]
+    (listed(SHEAR, "TipDome"), "TypeError: Scene.effects[1] must be an Effect; got 'TipDome'"),  # type: ignore[arg-type]
 ]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -57,6 +58,18 @@ def test_every_command_tells_it(made_up: Definition, file: Path) -> None:
     assert handed["end_mass"]["meaning"] == MEANING
     assert handed["CueSpecs"]["end_mass"] == pytest.approx(felt, rel=1e-6)
     assert "rigid" in pooltool_record("cue", kim_scene(0.3))["end_mass"]["others"]
+
+
+def test_the_table_says_whether_the_tip_counts_in_it(
+    made_up: Definition, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cf.save(replace(kim_scene(0.3), effects=(cf.TipDome(9e-3),)), tmp_path / "domed.toml")
+    counts = "count effects at the tip as end mass;"
+    told = " ".join(call("end-mass", tmp_path / "domed.toml")[1].split())
+    assert f"stick, offset and squirt {counts} velocity, force and rigid do not" in told
+    monkeypatch.setitem(DEFINITIONS, "rigid", made_up._replace(counts_tip=True))
+    told = " ".join(call("end-mass", tmp_path / "domed.toml")[1].split())
+    assert f"stick, offset, squirt and rigid {counts} velocity and force do not" in told
 
 
 @pytest.mark.parametrize("command", ["end-mass", "handover"])

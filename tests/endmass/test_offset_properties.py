@@ -43,6 +43,19 @@ def test_it_tends_to_stick_like_the_square_of_the_offset_on_either_side(effects:
     assert offset_mass(at(scene, -0.3)) == pytest.approx(offset_mass(at(scene, 0.3)), rel=1e-12)
 
 
+@pytest.mark.parametrize("drive", ["stick", "offset"])
+def test_a_raised_cue_with_a_dome_has_the_end_mass_of_the_level_one(drive: str) -> None:
+    """The table's push is no part of an end mass; the dome is, and it is the scene's either way."""
+    dome = (cf.TipDome(9e-3),)
+    level, raised = (
+        cf.end_mass(replace(kim_scene(0.3), effects=effects), drive, KIM_AT)
+        for effects in (dome, (*dome, cf.Elevation(0.1)))
+    )
+    assert raised == pytest.approx(level, rel=1e-12)
+    bare = cf.end_mass(kim_scene(0.3), drive, KIM_AT)
+    assert abs(level / bare - 1) > 1e-3
+
+
 def test_a_lumped_cue_has_its_own() -> None:
     cue = cf.LumpedCue(0.54, 5e-3)
     assert cf.end_mass(cf.Scene(cue, stroke=cf.Stroke(1.0, 0.4)), "offset") == 5e-3

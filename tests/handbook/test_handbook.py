@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from cuefem.design.worth import effect_kinds
+from cuefem.endmass.drives import DEFINITIONS, end_mass
 from cuefem.handbook import CHAPTERS, LINES, chapters, effect_lines
 from cuefem.handbook.page import page
 from tests.helpers.command_line import call
@@ -144,6 +145,21 @@ def test_the_command_prints_a_chapter(tmp_path: Path) -> None:
     assert "Hutchinson" not in out
     assert "Hutchinson" in call("guide", "--print")[1]
     assert call("guide", "--print", "-o", tmp_path / "guide.html")[0] == 2
+
+
+def test_a_misspelt_chapter_is_suggested() -> None:
+    status, out, err = call("guide", "glosary")
+    assert (status, out) == (2, "")
+    assert err.endswith("got 'glosary'; did you mean 'glossary'?\n")
+
+
+def test_the_definitions_of_end_mass_are_those_of_the_table() -> None:
+    """The chapter and the docstring of `end_mass` list every definition, in the order of the table."""
+    chapter = (ROOT / "cuefem" / "handbook" / "end_mass.md").read_text(encoding="utf-8")
+    assert re.findall(r"^- \*\*(\w+)\*\*", chapter, re.MULTILINE) == [*DEFINITIONS]
+    assert re.findall(r'^ +- "(\w+)": ', end_mass.__doc__ or "", re.MULTILINE) == [*DEFINITIONS]
+    numbers = {5: "five", 6: "six", 7: "seven"}
+    assert f"there are {numbers[len(DEFINITIONS)]} definitions" in chapter
 
 
 def test_the_help_names_every_chapter() -> None:

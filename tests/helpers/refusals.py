@@ -30,7 +30,12 @@ def command_refuses(message: str, *arguments: object) -> None:
 
 
 def untouched(folder: Path, message: str, *arguments: object) -> None:
-    """The command refuses, and every file of the folder is as it was."""
-    before = {path: path.read_bytes() for path in folder.iterdir()}
+    """The command refuses, and every file and folder inside the folder is as it was."""
+    before = contents(folder)
     command_refuses(message, *arguments)
-    assert {path: path.read_bytes() for path in folder.iterdir()} == before
+    assert contents(folder) == before
+
+
+def contents(folder: Path) -> dict[Path, bytes]:
+    """The bytes of every file inside a folder; none for a folder."""
+    return {path: path.read_bytes() if path.is_file() else b"" for path in folder.rglob("*")}

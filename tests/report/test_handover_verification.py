@@ -138,7 +138,7 @@ def test_a_scene_without_a_dome() -> None:
 
 def test_a_raised_cue_is_remarked() -> None:
     raised = replace(SCENE, effects=(cf.Elevation(0.1),))
-    note = "the cue is raised by 5.73°: its end mass holds the table's push, which pooltool's squirt does not know"
+    note = "the cue is raised by 5.73°: its end mass includes the table's push, which pooltool's squirt does not know"
     assert note in pooltool_record("raised", raised)["notes"]
     assert not any("raised" in note for note in pooltool_record("level", SCENE)["notes"])
 

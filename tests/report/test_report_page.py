@@ -326,7 +326,8 @@ def test_the_page_says_how_exact_its_numbers_are(pool: str) -> None:
     outcome = resolve(scene("pool_low_deflection"), 1e-2)
     words = " ".join(" ".join(Reader(pool).text).split())
     assert (
-        f"Squirt, ball speed and spin here: estimated error {100.0 * outcome.error:.2g} %; 1 % was asked for." in words
+        f"Squirt, ball speed and spin on this page have an estimated error of {100.0 * outcome.error:.2g} %; "
+        "1 % was asked for." in words
     )
     assert "estimated error" not in page("lumped.toml", LUMPED)
 

@@ -150,19 +150,22 @@ def test_tones_of_another_thing() -> None:
         TapTest(cue("kim")).fit([])
 
 
-def test_what_cannot_be_told_apart_is_not_written(tmp_path: Path) -> None:
-    """One tone, of the seventh mode perhaps: refused with status 1, told and written with --force."""
+@pytest.mark.parametrize("option", ["--doubted", "--force"])
+def test_what_cannot_be_told_apart_is_not_written(tmp_path: Path, option: str) -> None:
+    """One tone, of the seventh mode perhaps: refused with status 1, told and written when asked to go on."""
     path, new = tmp_path / "tap.wav", tmp_path / "new.toml"
     wavfile.write(path, 10000, tap.recording(one_tone(2600.0), 30.0, 0).astype(np.float32))
     status, out, err = call("tap", path, "--scene", KIM, "-o", new)
     assert (status, out, err.count("\n")) == (1, "", 1)
-    assert err.startswith(f"cuefem: {path}: refused, --force goes on: ")
+    assert err.startswith(f"cuefem: {path}: refused, --doubted goes on: ")
     assert "tones cannot be told apart: E " in err
     assert not new.exists()
-    status, out, _ = call("tap", path, "--scene", KIM, "-o", new, "--force")
+    status, out, _ = call("tap", path, "--scene", KIM, "-o", new, option)
     assert status == 0
     assert "the tones cannot be told apart" in " ".join(out.split())
     assert new.exists()
+    # a drawing that is there takes --force
+    assert call("tap", path, "--scene", KIM, "-o", new, option)[0] == (0 if option == "--force" else 2)
 
 
 def one_tone(frequency: float) -> np.ndarray:

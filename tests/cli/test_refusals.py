@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -10,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.helpers.command_line import call
+from tests.helpers.refusals import untouched
 
 GOOD = """
 [[segments]]
@@ -100,101 +102,62 @@ def test_bad_files_are_not_converted(tmp_path: Path, name: str) -> None:
     assert sorted(tmp_path.iterdir()) == before
 
 
-@pytest.mark.parametrize("suffix", ["toml", "vtk", "vtu"])
-def test_a_drawing_that_is_there_is_not_replaced_unasked(tmp_path: Path, suffix: str) -> None:
-    (tmp_path / "good.toml").write_text(GOOD)
-    kept = tmp_path / f"kept.{suffix}"
-    kept.write_text("somebody's work")
-    assert refused("convert", tmp_path / "good.toml", kept) == f"{kept}: is there already: --force replaces it"
-    assert kept.read_text() == "somebody's work"
+FILES = {
+    "good.toml": GOOD,
+    "bad.toml": GOOD.replace("700 mm", "-700 mm"),
+    "inn.toml": GOOD.replace("700 mm", "28 inn"),
+    "kg.toml": GOOD.replace("700 mm", "28 kg"),
+    "bare.toml": GOOD.replace("700 mm", "28"),
+    "lumped.toml": "[cue]\nmass = '540 g'\nend_mass = '6 g'\n",
+    "of_none.toml": "cue = 'none.toml'\n",
+    "of_bad.toml": "cue = 'bad.toml'\n",
+    "shaft.csv": CSV + "0,12\n700,21\n",
+    "back.csv": CSV + "0,12\n700,21\n350,16\n",
+    "thin.csv": CSV + "0,12\n700,-21\n",
+    "headless.csv": "0,12\n700,21\n",
+    "empty.csv": "",
+    **{f"kept.{suffix}": "somebody's work" for suffix in ("toml", "vtk", "vtu")},
+}
+HERTZ = 'good.toml: --near: must be in [0, inf) Hz, such as 250 or "0.25 kHz"; got '
+LENGTH = 'a length with its unit, such as "12 mm"; got '
+# Commands on these files, each with a part of the one line that says why they are refused.
+COMMANDS = [
+    ("strike good.toml --offset 1", "good.toml: --offset: must be in (-1, 1); got 1.0"),
+    ("strike good.toml --offset -1.5", "good.toml: --offset: must be in (-1, 1); got -1.5"),
+    ("strike good.toml --offset nan", "good.toml: --offset: must be in (-1, 1); got nan"),
+    ("strike good.toml --offset half", "good.toml: --offset: must be a bare number in (-1, 1); got 'half'"),
+    ("end-mass good.toml --contact-time 2", "--contact-time: must be in [1e-6, 10] s, a time with its unit, such as"),
+    ("end-mass good.toml --contact-time '-2 ms'", "good.toml: --contact-time: must be in [1e-6, 10] s; got '-2 ms'"),
+    ("report good.toml --contact-time '2 mm'", "--contact-time: must be in [1e-6, 10] s, a time with its unit, such"),
+    ("report good.toml --body-mass '-1 oz'", "good.toml: --body-mass: must be in [0, inf) kg; got '-1 oz'"),
+    ("modes good.toml --near -250", f"{HERTZ}'-250'"),
+    ("modes good.toml --near abc", f"{HERTZ}'abc'"),
+    ("modes good.toml --near '3 mm'", f"{HERTZ}'3 mm'"),
+    ("modes good.toml --material ash", "names its materials itself: material is for .csv, .stl, "),
+    ("modes back.csv", "back.csv: line 4, x: must be in (700, inf) mm, beyond the line before"),
+    ("modes thin.csv", "thin.csv: line 3, diameter: must be in (0, 10] m; got '-21 mm'"),
+    ("modes headless.csv", 'headless.csv: line 1: must be the header "x [mm],diameter [mm]"'),
+    ("modes empty.csv", "empty.csv: must hold a cue or a scene; got an empty file"),
+    ("modes shaft.csv --material 'hard mapel'", "hard maple"),
+    ("modes shaft.csv --material 'hard mapel'", "see `cuefem materials`"),
+    ("strike of_none.toml", "of_none.toml: cue: none.toml: cannot be read: No such file or directory"),
+    ("strike of_bad.toml", "cuefem: bad.toml: segments[0].length: must be in"),
+    ("modes inn.toml", f"{LENGTH}'28 inn', an unknown unit ('inn')"),
+    ("modes kg.toml", f"{LENGTH}'28 kg', of another kind ('kg')"),
+    ("modes bare.toml", f"{LENGTH}'28'"),
+    ("modes lumped.toml", "lumped.toml: Scene.cue must be a Cue of segments: its modes or its shape are needed; got"),
+    ("modes lumped.toml --body-mass '1 kg'", "lumped.toml: --body-mass: must be left out: a lumped cue is whole"),
+    ("convert lumped.toml out.toml --body-mass '1 kg'", "--body-mass: must be left out: a lumped cue is whole"),
+    *((f"convert good.toml kept.{kind}", "is there already: --force replaces it") for kind in ("toml", "vtk", "vtu")),
+]
 
 
-def test_convert_refuses_a_mass_behind_a_lumped_cue(tmp_path: Path) -> None:
-    lumped = tmp_path / "lumped.toml"
-    lumped.write_text("[cue]\nmass = '540 g'\nend_mass = '6 g'\n")
-    said = refused("convert", lumped, tmp_path / "out.toml", "--body-mass", "1 kg")
-    assert said == f"{lumped}: --body-mass: must be left out: a lumped cue is whole"
-    assert not (tmp_path / "out.toml").exists()
-
-
-@pytest.mark.parametrize(
-    ("arguments", "line"),
-    [
-        (["strike", "--offset", "1"], "--offset: must be in (-1, 1); got 1.0"),
-        (["strike", "--offset", "-1.5"], "--offset: must be in (-1, 1); got -1.5"),
-        (["strike", "--offset", "nan"], "--offset: must be in (-1, 1); got nan"),
-        (["strike", "--offset", "half"], "--offset: must be a bare number in (-1, 1); got 'half'"),
-        (["end-mass", "--contact-time", "2"], "--contact-time: must be in [1e-6, 10] s, a time with its unit, such as"),
-        (["end-mass", "--contact-time", "-2 ms"], "--contact-time: must be in [1e-6, 10] s; got '-2 ms'"),
-        (["report", "--contact-time", "2 mm"], "--contact-time: must be in [1e-6, 10] s, a time with its unit,"),
-        (["report", "--body-mass", "-1 oz"], "--body-mass: must be in [0, inf) kg; got '-1 oz'"),
-        (["modes", "--near", "-250"], "--near: must be in [0, inf) Hz; got '-250.0 Hz'"),
-        (["modes", "--material", "ash"], "names its materials itself: material is for .csv, .stl, "),
-    ],
-)
-def test_bad_options(tmp_path: Path, arguments: list[str], line: str) -> None:
-    good = tmp_path / "good.toml"
-    good.write_text(GOOD)
-    command, *options = arguments
-    assert refused(command, good, *options).startswith(f"{good}: {line}")
-
-
-@pytest.mark.parametrize(
-    ("content", "line"),
-    [
-        (CSV + "0,12\n700,21\n350,16\n", "line 4, x: must be in (700, inf) mm, beyond the line before"),
-        (CSV + "0,12\n700,-21\n", "line 3, diameter: must be in (0, 10] m; got '-21 mm'"),
-        ("0,12\n700,21\n", 'line 1: must be the header "x [mm],diameter [mm]"'),
-        ("", "must hold a cue or a scene; got an empty file"),
-    ],
-)
-def test_bad_profiles(tmp_path: Path, content: str, line: str) -> None:
-    shaft = tmp_path / "shaft.csv"
-    shaft.write_text(content)
-    assert refused("modes", shaft).startswith(f"{shaft}: {line}")
-
-
-def test_bad_material(tmp_path: Path) -> None:
-    shaft = tmp_path / "shaft.csv"
-    shaft.write_text(CSV + "0,12\n700,21\n")
-    said = refused("modes", shaft, "--material", "hard mapel")
-    assert said.startswith(f"{shaft}: material: ")
-    assert "hard maple" in said
-    assert said.endswith("see `cuefem materials`")
-
-
-def test_a_scene_whose_cue_file_is_missing(tmp_path: Path) -> None:
-    scene = tmp_path / "scene.toml"
-    scene.write_text("cue = 'none.toml'\n")
-    missing = tmp_path / "none.toml"
-    assert refused("strike", scene) == f"{scene}: cue: {missing}: cannot be read: No such file or directory"
-    scene.write_text("cue = 'bad.toml'\n")
-    (tmp_path / "bad.toml").write_text(GOOD.replace("700 mm", "-700 mm"))
-    assert refused("strike", scene).startswith(f"{tmp_path / 'bad.toml'}: segments[0].length: must be in")
-
-
-@pytest.mark.parametrize(
-    ("length", "why"),
-    [
-        ("28 inn", "got '28 inn', an unknown unit ('inn')"),
-        ("28 kg", "got '28 kg', of another kind ('kg')"),
-        ("28", "got '28'"),
-    ],
-)
-def test_wrong_units_say_why(tmp_path: Path, length: str, why: str) -> None:
-    bad = tmp_path / "bad.toml"
-    bad.write_text(GOOD.replace("700 mm", length))
-    assert refused("modes", bad).endswith(f'such as "12 mm"; {why}')
-
-
-def test_a_lumped_cue_has_no_modes(tmp_path: Path) -> None:
-    lumped = tmp_path / "lumped.toml"
-    lumped.write_text("[cue]\nmass = '540 g'\nend_mass = '6 g'\n")
-    assert (
-        refused("modes", lumped)
-        == f"{lumped}: Scene.cue must be a Cue of segments: its modes or its shape are needed; got a LumpedCue"
-    )
-    assert refused("modes", lumped, "--body-mass", "1 kg").startswith(f"{lumped}: --body-mass: must be left out")
+@pytest.mark.parametrize(("command", "message"), COMMANDS)
+def test_commands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: str, message: str) -> None:
+    for name, content in FILES.items():
+        (tmp_path / name).write_text(content)
+    monkeypatch.chdir(tmp_path)
+    untouched(tmp_path, message, *shlex.split(command))
 
 
 def test_no_studies(tmp_path: Path) -> None:

@@ -1,0 +1,41 @@
+"""What the designer's command refuses, in one line, before it serves anything (bad input)."""
+
+from __future__ import annotations
+
+import socket
+import sys
+from pathlib import Path
+
+import pytest
+
+import cuefem as cf
+from tests.helpers.refusals import command_refuses
+
+NICEGUI = "needs NiceGUI: pip install '.[designer]' in the clone"
+
+
+def test_without_the_library_it_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delitem(sys.modules, "cuefem.designer.app", raising=False)
+    monkeypatch.setitem(sys.modules, "nicegui", None)
+    command_refuses("the designer needs nicegui: pip install '.[designer]' in the clone", "designer", "--no-open")
+
+
+@pytest.mark.parametrize(
+    ("file", "message"),
+    [
+        ("lumped.toml", "lumped.toml: Scene.cue must be a Cue of segments: its modes or its shape are needed"),
+        ("missing.toml", "missing.toml: cannot be read: No such file or directory"),
+    ],
+)
+def test_files(tmp_path: Path, file: str, message: str) -> None:
+    pytest.importorskip("nicegui", reason=NICEGUI)
+    cf.save(cf.Scene(cf.LumpedCue(0.5, 0.006)), tmp_path / "lumped.toml")
+    command_refuses(message, "designer", "--no-open", tmp_path / file)
+
+
+def test_a_port_in_use(tmp_path: Path) -> None:
+    pytest.importorskip("nicegui", reason=NICEGUI)
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        message = f"--port must be a free one (0 takes any); got {port}: Address already in use"
+        command_refuses(message, "designer", "--no-open", "--port", port)

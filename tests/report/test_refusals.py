@@ -1,0 +1,94 @@
+"""What cannot be handed over or moved: calls and commands, each with a part of the one line that says why."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import cuefem as cf
+from cuefem.contact.motion import motion
+from cuefem.squirt import alciatore_a31_mass_ratio
+from tests.helpers.command_line import call
+from tests.helpers.refusals import command_refuses, refuses, untouched
+
+KIM = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 782.3284453057836), kappa=0.9),), 0.42)
+SCENE = cf.Scene(KIM, cf.Ball(0.17, 0.028575), cf.Tip(0.75, 0.7, 1e-3), cf.Stroke(2.0, 0.3))
+RAISED = replace(SCENE, effects=(cf.Elevation(0.1),))
+LUMPED = replace(SCENE, cue=cf.LumpedCue(0.54, 0.005))
+TIMES = "motion takes ascending times in [0, inf) s; got"
+CALLS: list[tuple[Callable[[], object], str]] = [
+    (lambda: alciatore_a31_mass_ratio(0.3, 0.0), "endless end mass in [A.31]; got 0 rad at offset 0.3"),
+    (lambda: alciatore_a31_mass_ratio(0.3, -0.01), "endless end mass in [A.31]; got -0.01 rad at offset 0.3"),
+    (lambda: alciatore_a31_mass_ratio(0.3, 1.5), "endless end mass in [A.31]; got 1.5 rad at offset 0.3"),
+    (lambda: motion(SCENE, [-1e-3]), TIMES),
+    (lambda: motion(SCENE, [1e-3, 0.0]), TIMES),
+    (lambda: motion(SCENE, [np.nan]), TIMES),
+    (lambda: motion(SCENE, []), TIMES),
+    (lambda: motion(SCENE, [np.inf]), TIMES),
+    (lambda: motion(RAISED, [0.0]), "motion takes strokes in the plane of cue and ball; got Elevation"),
+    (lambda: motion(LUMPED, [0.0]), "Scene.cue must be a Cue of segments: its modes or its shape are needed"),
+]
+UNTIL = "scene.toml: --until: must be in (0, inf) s, a time with its unit, such as \"1.2 ms\"; got '3'"
+COMMANDS = [
+    ("handover scene.toml -o cue.json --offset 0", "scene.toml: end mass 'A.31' does not exist here: [A.31] has no"),
+    (
+        "handover scene.toml -o cue.json --offset 0.9",
+        "the stroke miscues at offset 0.9; got no end mass",
+    ),
+    ("handover scene.toml -o cue.json --offset 1.5", "scene.toml: --offset: must be in (-1, 1)"),
+    ("handover scene.toml -o cue.toml", "cue.toml: --output: must end in .json; got '.toml'"),
+    ("handover scene.toml -o none/cue.json", "none/cue.json: cannot be written: "),
+    ("handover scene.toml -o dir.json", "dir.json: cannot be written: "),
+    ("animate scene.toml -o seen --until 3", UNTIL),
+    ("animate scene.toml -o seen --until '-1 ms'", "--until: must be in (0, inf) s; got '-1 ms'"),
+    ("animate scene.toml -o seen --scale nan", "--scale: must be finite; got nan"),
+    ("animate raised.toml -o seen", "in the plane of cue and ball; got Elevation"),
+    ("animate scene.toml -o dir.json", "dir.json: must be a new folder; there is one"),
+    ("animate scene.toml -o none/seen --frames 2", "seen: cannot be written: No such file or directory"),
+]
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    cf.save(SCENE, tmp_path / "scene.toml")
+    cf.save(RAISED, tmp_path / "raised.toml")
+    (tmp_path / "dir.json").mkdir()
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.mark.parametrize(("ask", "message"), CALLS)
+def test_calls(ask: Callable[[], object], message: str) -> None:
+    refuses(ask, message)
+
+
+@pytest.mark.parametrize(("command", "message"), COMMANDS, ids=[command for command, _ in COMMANDS])
+def test_commands(folder: Path, command: str, message: str) -> None:
+    untouched(folder, message, *shlex.split(command))
+
+
+@pytest.mark.parametrize("options", [("--count", "0"), ("--count", "101"), ("--frames", "1"), ("--frames", "10001")])
+def test_an_animation_of_too_few_or_too_many(folder: Path, options: tuple[str, ...]) -> None:
+    status, out, err = call("animate", "scene.toml", "-o", "seen", *options)
+    assert (status, out) == (2, "")
+    assert f"Invalid value for '{options[0]}': {options[1]} is not in the range" in err
+    assert not (folder / "seen").exists()
+
+
+def test_a_head_on_stroke_has_its_stick_end_mass(folder: Path) -> None:
+    assert call("handover", "scene.toml", "--offset", "0", "--drive", "stick")[0] == 0
+
+
+def test_an_animation_that_stops_half_way(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("cuefem.io.paraview.save_pvd", full)
+    arguments = shlex.split("animate scene.toml -o seen --frames 2")
+    command_refuses("seen: cannot be written: No space left on device", *arguments)
+    assert not (folder / "seen").exists()
