@@ -323,15 +323,14 @@ class Desk:
 
     async def _sent(self, request: Request) -> Response:
         """Take a file from the browser at once, and read it after the request has been answered."""
-        name, content, said = "", b"", ""
+        name, content, said = "", b"", "no file was sent"
         try:
             async with request.form(max_files=1, max_fields=10) as form:
                 file = next((part for part in form.values() if isinstance(part, UploadFile)), None)
                 if file is not None:
-                    content = await file.read()
-                name = file_name(file and file.filename)
+                    name, content, said = file_name(file.filename), await file.read(), ""
         except HTTPException:
-            said = "no file was sent"
+            pass  # not a form
         except ValueError as error:
             said = str(error)
         except ClientDisconnect:

@@ -172,10 +172,9 @@ def test_a_wrong_file_is_refused_and_the_page_stays(browser: Any, address: str, 
         assert page.get_by_role("alert").inner_text() == ""
 
 
-SENT = """async ([name, text]) => {
+SENT = """async ([url, name, text]) => {
   const form = new FormData();
   if (name === null) form.append("a", text); else form.append("a", new Blob([text]), name);
-  const url = [...document.querySelectorAll("*")].map(e => e.__vueParentComponent?.props?.url).find(u => u);
   const answer = await fetch(url, { method: "POST", body: form });
   return answer.status;
 }"""
@@ -194,8 +193,11 @@ def test_a_name_that_no_file_has_is_refused(browser: Any, address: str) -> None:
     page.set_default_timeout(30_000)
     page.goto(address)
     settled(page)
+    with page.expect_request(lambda asked: asked.method == "POST") as sent:  # tells where files go
+        page.locator("input[type=file]").set_input_files({"name": "a.toml", "mimeType": "", "buffer": b" "})
+    page.locator("[role=alert] .said").filter(has_text="not opened: a.toml").wait_for()
     for name, words in NAMES.items():
-        page.evaluate(SENT, [name, " "])
+        page.evaluate(SENT, [sent.value.url, name, " "])
         page.locator("[role=alert] .said").filter(has_text=f"not opened: {words}").wait_for()
     context.close()
 
