@@ -140,6 +140,7 @@ HANDFUL = {
 }
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("name", HANDFUL)
 def test_the_estimated_error_holds(name: str) -> None:
     here = HANDFUL[name]

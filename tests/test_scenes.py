@@ -69,6 +69,7 @@ def test_cues_weigh_what_their_comments_say(name: str, ounces: float) -> None:
     assert scene(name).cue.mass == pytest.approx(ounces * 0.028349523125, rel=2e-3)
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("name", READY)
 def test_a_ready_scene_is_what_its_readme_says(name: str) -> None:
     found, outcome = scene(name), resolve(scene(name), 1e-3)

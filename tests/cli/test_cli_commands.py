@@ -94,6 +94,7 @@ def test_a_bare_cue_gets_defaults_and_says_so(kim: str) -> None:
     assert as_json("modes", kim)["assumed"] == []  # neither ball nor blow matters to it
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize(
     ("name", "mass", "radius"), [("pool", 0.17, 0.028575), ("carom", 0.21, 0.03075), ("snooker", 0.142, 0.02625)]
 )
@@ -174,6 +175,7 @@ def test_report(kim: str) -> None:
         assert f"\n{title} " in shown
 
 
+@pytest.mark.heavy
 def test_a_report_says_first_that_the_stroke_miscues(kim: str, tmp_path: Path) -> None:
     shown = run("report", kim, "--offset", "0.7")
     assert 0 < shown.index("this stroke miscues: ") < shown.index("Bending modes")
@@ -249,6 +251,7 @@ def test_a_scene_announces_what_it_leaves_out(kim: str, tmp_path: Path) -> None:
     ]
 
 
+@pytest.mark.heavy
 def test_unusual_numbers_are_remarked(kim: str) -> None:
     err = call("end-mass", kim, "--contact-time", "2 s")[2]
     assert err.splitlines()[0] == "unusual: contact time 2 s; leather's is 0.001 to 0.002 s"

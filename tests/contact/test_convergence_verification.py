@@ -59,6 +59,7 @@ def test_stiffness_scales_every_frequency_by_its_root():
     assert np.array_equal(assemble(stiff, elements=1, order=4).M, assemble(soft, elements=1, order=4).M)
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize(("name", "power"), [("stiff_stub", -1), ("long_contact", -2)])
 def test_force_velocity_and_squirt_become_rigid_and_stick_does_not(name, power):
     rates, (_, largest) = study.rigid_rates(name), study.envelopes(name)
@@ -69,6 +70,7 @@ def test_force_velocity_and_squirt_become_rigid_and_stick_does_not(name, power):
     assert 0.1 < largest["stick"][-1] < 0.3
 
 
+@pytest.mark.heavy
 def test_it_is_friction_that_ends_the_ringing():
     """Without a cap on the tangential force the coupled squirt rings for ever, as the stick end mass does."""
     endless, largest = study.rigid_rates("stiff_stub", np.inf), study.envelopes("stiff_stub", np.inf)[1]

@@ -21,6 +21,7 @@ def level_part(raised) -> np.ndarray:
     return numbers(replace(raised, energy=kept))
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("table", [0.0, 0.2, 5.0])
 @pytest.mark.parametrize(
     ("offset", "tip", "effects"),
@@ -41,6 +42,7 @@ def test_level_cue_is_not_raised(offset, tip, effects, table):
     assert raised.energy["ball roll"] + raised.energy["ball hop"] + abs(raised.energy["table loss"]) < 1e-15
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize(("table", "order"), [(0.0, 2), (0.2, 1)])
 def test_level_cue_is_approached_at_the_rate_of_the_table(table, order):
     """Frictionless, the table does with the angle's square; its friction, in proportion to the angle."""

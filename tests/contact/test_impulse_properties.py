@@ -80,6 +80,7 @@ def test_energy_closes(scene):
         assert abs(out.energy["friction loss"]) < 1e-15 * initial
 
 
+@pytest.mark.heavy
 @MANY
 @given(scenes(), powers(-5, 5))
 def test_impulses_scale_with_the_speed_and_energies_with_its_square(scene, factor):
@@ -124,6 +125,7 @@ def test_momentum_of_ball_and_cue(scene):
         assert lost == pytest.approx(along, rel=1e-12, abs=1e-14 * scene.cue.mass * scene.stroke.speed)
 
 
+@pytest.mark.heavy
 def test_the_course_retold_from_its_events():
     """From the three events and B alone: the velocities, their signs, the order of events, and the normal work."""
     seen: Counter[str] = Counter()

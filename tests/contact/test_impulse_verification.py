@@ -54,6 +54,7 @@ def equals_closed_form(scene):
     assert np.all(np.abs(events[0] - form.impulses.slip) <= np.maximum(1e-12, 1e-15 * condition) * form.impulses.slip)
 
 
+@pytest.mark.heavy
 @MANY
 @given(
     phi=st.floats(0, radians(85)).map(rounded),
@@ -147,6 +148,7 @@ def close(out: Outcome, told, scene: Scene, tolerance: float) -> None:
     assert abs(float(told.friction_loss) - out.energy["friction loss"]) < tolerance * initial
 
 
+@pytest.mark.heavy
 def test_two_oracles_agree_in_every_regime():
     rng = np.random.default_rng(8)
     seen: Counter[str] = Counter()

@@ -66,6 +66,7 @@ def test_the_relative_velocity_is_that_of_the_history(name: str, offset: float) 
     assert found.duration == outcome.phases[-1].end
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("name", EFFECTS)
 def test_the_ball_goes_where_the_forces_push_it(name: str) -> None:
     """M C'' = F: the centre against the forces, which a turning contact gives in directions that turn."""

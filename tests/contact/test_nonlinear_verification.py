@@ -195,6 +195,7 @@ def test_sliding_strike_of_a_vibrating_cue(exponent, offset, friction):
 # ------------------------------------------------------------------------------------------------------- RollingContact
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("effects", [(), (TipDome(0.0095),), (PowerLawTip(1.5),)])
 def test_turning_of_the_contact_vanishes_with_its_time(effects):
     errors, spins, times = [], [], 1e-3 * 2.0 ** -np.arange(5, 10)
@@ -414,6 +415,7 @@ def test_second_hit_of_a_springy_cue(frequency, part, e):
     assert imbalance(outcome) < 1e-11
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize(
     ("scene", "effects"),
     [
@@ -434,6 +436,7 @@ def test_second_hit_stepped_is_the_exact_one(scene, effects):
     assert np.all(force["velocity_n"] > 0)
 
 
+@pytest.mark.heavy
 def test_without_a_second_hit_nothing_is_added():
     for effects in ((), (PowerLawTip(),), (RollingContact(),)):
         scene = replace(kim_scene(0.3), effects=effects)

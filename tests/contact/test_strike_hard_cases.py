@@ -304,6 +304,7 @@ print(json.dumps(found))
 """
 
 
+@pytest.mark.heavy
 def test_the_answer_does_not_depend_on_the_number_of_blas_threads():
     """Threads change the order of sums: nothing may amplify that rounding."""
     answers = []

@@ -210,6 +210,7 @@ def test_the_oracle_tells_the_same_course(name):
     met(told, outcome, scene)
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("name", LOUD)
 def test_the_oracle_tells_the_same_course_of_a_loud_cue(name):
     offset, e, mu, time, omega, across, mass, rigid = LOUD[name]

@@ -30,6 +30,7 @@ def test_stick_end_mass() -> None:
     np.testing.assert_allclose(batch_stick(shafts, struck, at=batch.CHOSEN, ended=True)[0], fine, rtol=1e-3)
 
 
+@pytest.mark.heavy
 def test_every_number_is_told() -> None:
     told: list[str] = []
     found = batch_seconds.text(Size(shafts=8, rounds=1, swept=256, streamed=2**10), told.append)

@@ -355,6 +355,7 @@ def test_a_failing_design_disturbs_no_other() -> None:
     np.testing.assert_allclose(found.values[[0, 2]], alone.values, rtol=1e-12)
 
 
+@pytest.mark.heavy
 @given(st.permutations(range(6)))
 def test_order_and_company_do_not_matter(order: list[int]) -> None:
     """Two topologies, with and without effects, in any order."""

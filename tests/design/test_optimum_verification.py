@@ -82,6 +82,7 @@ def test_gradients_against_differences(problem: Problem, response: Response) -> 
     assert measured == pytest.approx(exact * width, rel=1e-6, abs=1e-6 * np.abs(exact * width).max())
 
 
+@pytest.mark.heavy
 def test_the_optimum_is_within_its_limits_and_names_those_that_hold_it() -> None:
     found = best()
     assert found.value < PROBLEM.values(PROBLEM.start[None])[0, 0]
@@ -112,6 +113,7 @@ def test_no_worse_than_a_search_in_a_hundredth_of_the_evaluations() -> None:
     assert found.evaluations <= 100
 
 
+@pytest.mark.heavy
 def test_without_exact_gradients_evolution_comes_near() -> None:
     """The same problem, declared inexact by an effect that changes nothing: a mass of next to nothing."""
     problem = Problem(SCENE, (BORE, TIP), SQUIRT, (Limit(WALL, low=0.0015),), Resolution(1, 6, 8))

@@ -62,6 +62,7 @@ def test_a_mixed_sample_has_the_correlations_too() -> None:
         assert np.corrcoef(E, rho)[0, 1] == pytest.approx(0.9, abs=0.01)
 
 
+@pytest.mark.heavy
 def test_seeds() -> None:
     """The same seed gives the same bits, intervals and all; another seed other designs and nearly the same answer."""
     scatter = Scatter(STUDY, {("E", "rho"): 0.4})
@@ -73,6 +74,7 @@ def test_seeds() -> None:
     assert first.first == pytest.approx(other.first, abs=0.1)
 
 
+@pytest.mark.heavy
 def test_indices_are_shares() -> None:
     """Of the mass wood has all; contact time has no part in mass or stiffness; no total is below its first order."""
     found = drivers(Scatter(STUDY), 512, seed=1)

@@ -127,6 +127,7 @@ def test_indices_by_their_definition() -> None:
     assert found.total[:, 0] == pytest.approx([1 - by_time, 1 - by_wood], abs=0.02)
 
 
+@pytest.mark.heavy
 def test_workers_give_the_same_bits() -> None:
     from cuefem.design import processes
 

@@ -89,6 +89,7 @@ def threads(count: int) -> Pool:
     return Pool(lambda: ThreadPoolExecutor(count), 2 * count + 1)
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("count", [1, 3])
 def test_any_executor_gives_the_same_table(tmp_path: Path, count: int) -> None:
     study = written(tmp_path, STRUCK)

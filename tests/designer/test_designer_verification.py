@@ -42,6 +42,7 @@ def designs() -> dict[str, cf.Scene]:
     }
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("name", designs())
 def test_the_numbers_are_the_commands_own(name: str) -> None:
     scene = designs()[name]
@@ -54,6 +55,7 @@ def test_the_numbers_are_the_commands_own(name: str) -> None:
     assert found.frequencies.tolist() == modes_record(scene, count=5, near=None)["frequencies"]
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("name", ["turned", "kim", "clay"])
 def test_the_curves_are_those_of_the_report(name: str) -> None:
     scene = designs()[name]
@@ -84,6 +86,7 @@ def test_the_static_stiffness_is_that_of_a_clamped_cue() -> None:
     assert 1 / answers(soft).tip_stiffness - 1 / exact == pytest.approx(added, rel=1e-6)
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("name", ["first", "kim"])
 def test_the_densities_share_out_the_end_mass(name: str) -> None:
     scene = replace(designs()[name], effects=())
@@ -115,6 +118,7 @@ def test_notes_are_those_of_the_piano(frequency: float, words: str) -> None:
     assert note(frequency) == words
 
 
+@pytest.mark.heavy
 def test_a_saved_design_gives_its_numbers_on_the_command_line(tmp_path: Path) -> None:
     scene = designs()["turned"]
     cf.save(scene, tmp_path / "design.toml")

@@ -126,6 +126,7 @@ def whole() -> dict[str, Any]:
     return {name: ask(scene(WHOLE)) for name, ask in ASKED.items()}
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("asked", ASKED)
 @pytest.mark.parametrize("split", ["dome 4 + 5 mm", "dome 5 + 4 mm"])
 def test_two_domes_are_one_of_the_sum_of_their_radii(split: str, asked: str, whole: dict[str, Any]) -> None:

@@ -83,6 +83,7 @@ def test_the_rigid_limit_is_reached_like_pulse_length_to_minus_two(
     assert_order(2, 1 / counts, errors, within=3 / counts[:-1] ** 2 + 1e-4, rounding=1e-13)
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("formula", [force, velocity])
 def test_so_with_all_modes(formula: Callable[[TipModes, Scene], float]) -> None:
     """The ringing of ten modes averaged over an octave of pulse lengths under a smooth window."""

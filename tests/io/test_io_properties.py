@@ -108,6 +108,7 @@ def test_every_number_is_written_so_that_it_reads_back(value: float, unit: str) 
     assert number(text(value, unit), unit) == value
 
 
+@pytest.mark.heavy
 @given(st.text(max_size=30) | st.from_regex(r"[0-9.]{1,4} ?[a-zA-Z*/^0-9()]{0,12}", fullmatch=True))
 @settings(max_examples=400, deadline=None)
 def test_no_text_is_more_than_refused(given_text: str) -> None:

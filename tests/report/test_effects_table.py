@@ -68,6 +68,7 @@ def test_a_lumped_cue_refuses_what_needs_a_beam() -> None:
     assert found["base"]["end_mass"] == pytest.approx(0.006, rel=1e-9)
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("name", ["TipDome", "PointMass", "Support", "TipShear", "AxialWaves"])
 def test_a_change_is_that_of_two_strikes(record: Any, name: str) -> None:
     row = rows(record)[name]
@@ -160,6 +161,7 @@ def test_the_command(tmp_path: Path) -> None:
     assert {row["name"] for row in found["effects"]} == set(effect_kinds())
 
 
+@pytest.mark.heavy
 def test_the_table(tmp_path: Path) -> None:
     cf.save(SCENE, tmp_path / "scene.toml")
     status, out, err = call("effects", tmp_path / "scene.toml")

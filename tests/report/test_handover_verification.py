@@ -136,6 +136,7 @@ def test_a_scene_without_a_dome() -> None:
     assert any("nickel" in note for note in found["notes"])
 
 
+@pytest.mark.heavy
 def test_a_raised_cue_is_remarked() -> None:
     raised = replace(SCENE, effects=(cf.Elevation(0.1),))
     note = "the cue is raised by 5.73°: its end mass includes the table's push, which pooltool's squirt does not know"
@@ -143,6 +144,7 @@ def test_a_raised_cue_is_remarked() -> None:
     assert not any("raised" in note for note in pooltool_record("level", SCENE)["notes"])
 
 
+@pytest.mark.heavy
 def test_a31_with_the_stick_end_mass_turns_the_ball_too_little() -> None:
     """The module's figures, and why the end mass handed over is another."""
     less: list[float] = []

@@ -93,6 +93,7 @@ def test_the_designer_keeps_it(scene: cf.Scene) -> None:
     assert found.strike["squirt"] > cf.strike(BARE).squirt  # the ring lies within reach of the tip
 
 
+@pytest.mark.heavy
 def test_it_is_tried_at_its_usual_values(scene: cf.Scene, tmp_path: Path) -> None:
     (added,) = (v for v in variants(BARE) if v.name == "Collar")
     assert (added.listed, added.scene) == (False, scene)

@@ -332,6 +332,7 @@ def test_the_page_says_how_exact_its_numbers_are(pool: str) -> None:
     assert "estimated error" not in page("lumped.toml", LUMPED)
 
 
+@pytest.mark.heavy
 def test_the_blow_is_in_the_materials_of_the_cue() -> None:
     def styles(blow: cf.Scene) -> list[str]:
         return [style for _, style in strike_drawing(blow, 0.03).pieces]

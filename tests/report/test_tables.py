@@ -94,6 +94,7 @@ def shown(files: dict[str, str]) -> Callable[[str], list[Any]]:
     return of
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("width", [80, 60])
 @pytest.mark.parametrize("name", COMMANDS)
 def test_nothing_of_a_commands_tables_is_lost(name: str, width: int, shown: Callable[[str], list[Any]]) -> None:

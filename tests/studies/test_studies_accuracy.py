@@ -41,6 +41,7 @@ def test_a_tail_pays_more_than_modes():
     assert ended[1].error < plain[-1].error  # 17 modes with a tail beat 96 without
 
 
+@pytest.mark.heavy
 def test_the_contact_adds_nothing():
     exact, newmark = (accuracy_cost.curves("contact")[name] for name in ("exact", "Newmark"))
     assert exact[0].error < 1e-12

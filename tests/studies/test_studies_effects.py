@@ -133,6 +133,7 @@ def test_what_the_two_sentences_say():
         assert -0.25 < effects.worth(name)["TipShear"].squirt < -0.05
 
 
+@pytest.mark.heavy
 def test_worth_is_with_over_without_whether_listed_or_not():
     found = effects.worth("carom")
     dropped = replace(effects.scene("carom"), effects=effects.scene("carom").effects[1:])

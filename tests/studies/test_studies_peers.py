@@ -64,6 +64,7 @@ def test_the_bare_eigenproblem_is_that_of_cuefem():
         np.testing.assert_allclose(ours.CONTESTANTS["modes"][label](), ours.modes(), rtol=1e-10)
 
 
+@pytest.mark.heavy
 def test_a_peer_that_is_missing_is_skipped_with_a_word(monkeypatch, tmp_path):
     monkeypatch.setattr(contest, "ROUNDS", 1)
     monkeypatch.setattr(contest, "TURN", 0.0)

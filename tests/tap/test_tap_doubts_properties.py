@@ -41,6 +41,7 @@ def told(frequency: float, kind: str = "tone") -> Tone:
     return Tone(frequency, 1e-5 * frequency, 10.0, 0.1, 0.1, 100.0, kind)
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize(("kind", "seed"), [("speech", 0), ("cough", 0)])
 def test_speech_and_coughs_are_refused_and_write_nothing(kind: str, seed: int, tmp_path: Path) -> None:
     path, new = tmp_path / "talk.wav", tmp_path / "new.toml"
@@ -103,6 +104,7 @@ def test_wood_far_outside_the_table_is_named() -> None:
     assert unlike(maple, nobody_s) == []  # nothing to compare with
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("mains", [50.0, 60.0])
 def test_mains_hum_above_the_ring_is_taken_out_and_named(mains: float, kim_test: TapTest, tmp_path: Path) -> None:
     """7 dB above the ring, the grid 0.05 % off: the same tones to their errors, and the wood to a per cent."""
@@ -126,6 +128,7 @@ def test_mains_hum_above_the_ring_is_taken_out_and_named(mains: float, kim_test:
     assert f"a mains hum of {mains:.0f}.0" in " ".join(out.split())
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("name", NAMES)
 def test_no_hum_is_heard_in_a_tap(name: str) -> None:
     for taps in (1, 3):
@@ -135,6 +138,7 @@ def test_no_hum_is_heard_in_a_tap(name: str) -> None:
         assert clean is heard
 
 
+@pytest.mark.heavy
 def test_a_tone_near_the_noise_is_faint_and_as_uncertain_as_its_line_is_wide() -> None:
     """It may be two that overlap. Twice the least amplitude that is heard at all makes it a tone."""
     t = np.arange(int(0.6 * RATE)) / RATE
@@ -151,6 +155,7 @@ def test_a_tone_near_the_noise_is_faint_and_as_uncertain_as_its_line_is_wide() -
     assert heard(4.0).error < heard(4.0).decay / (2 * np.pi)
 
 
+@pytest.mark.heavy
 def test_a_faint_tone_says_nothing_for_a_mode_or_against_it(kim_test: TapTest, true_tones: np.ndarray) -> None:
     honest = kim_test.fit([told(f) for f in true_tones[:5]])
     strange = replace(told(777.0, "faint"), error=30.0)
@@ -181,6 +186,7 @@ def test_density_that_is_not_weighed_is_the_file_s(true_tones: np.ndarray) -> No
         assert any("density is kept as it is" in note for note in found.notes)
 
 
+@pytest.mark.heavy
 def test_the_shear_coefficient_of_g_is_told(tmp_path: Path) -> None:
     """G times kappa is what the tones tell: with the coefficient halved G doubles."""
     cone = cue("kim")
@@ -199,6 +205,7 @@ def test_the_shear_coefficient_of_g_is_told(tmp_path: Path) -> None:
     assert json.loads(call("tap", path, "--scene", KIM, "--json")[1])["shear_coefficients"] == [0.9, 0.9]
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("seed", [0, 3])
 def test_honest_taps_of_other_wood_are_not_refused(seed: int) -> None:
     found, wood = tap_refusals.honest(seed)

@@ -89,6 +89,7 @@ def test_samples_of_every_kind_read_alike(kind: str, tmp_path: Path) -> None:
     assert found.samples == pytest.approx(wanted)
 
 
+@pytest.mark.heavy
 def test_a_limiter_s_harmonics_are_no_modes(kim_test: TapTest) -> None:
     """A phone that squeezes loud sounds makes sums of the loud tones, such as f2 + 2 f1: none is taken for a mode."""
     soft = np.tanh(3 * tap.recording(tap.ringing_shaft(tap.true("kim"), RATE)[:, :1], 40.0, 0))
@@ -155,6 +156,7 @@ def test_a_wrong_tone_is_left_out(kim_test: TapTest, true_tones: np.ndarray) -> 
     assert any("200.0, 777.0 Hz" in note for note in fooled.notes)
 
 
+@pytest.mark.heavy
 def test_the_drawing_of_another_shaft_is_doubted() -> None:
     """Tones that fit in part, or by wood at the end of the search: what was found is told, with the doubt."""
 
@@ -211,6 +213,7 @@ def test_a_mass_against_the_drawing_is_remarked() -> None:
     assert "check the scale and the drawing" in note
 
 
+@pytest.mark.heavy
 def test_a_drawing_says_no_unit_and_no_butt(tmp_path: Path, sound: np.ndarray) -> None:
     """A surface in inches with the rest of the cue behind it tells what the scene of its drawing tells."""
     recording, drawn, new = (tmp_path / name for name in ("tap.wav", "kim.obj", "new.toml"))
@@ -229,6 +232,7 @@ def test_a_drawing_says_no_unit_and_no_butt(tmp_path: Path, sound: np.ndarray) -
     assert pytest.approx(found.segments[0].material.E, rel=1e-5) == record["wood"]["E"]["value"]
 
 
+@pytest.mark.heavy
 def test_a_stroke_that_miscues_is_said_to(tmp_path: Path, sound: np.ndarray) -> None:
     recording = tmp_path / "tap.wav"
     wavfile.write(recording, RATE, (sound * 32767).astype(np.int16))
@@ -239,6 +243,7 @@ def test_a_stroke_that_miscues_is_said_to(tmp_path: Path, sound: np.ndarray) -> 
     assert "miscue" not in call("tap", recording, "--scene", KIM)[1]
 
 
+@pytest.mark.heavy
 def test_the_command(tmp_path: Path, sound: np.ndarray) -> None:
     recording, scene, new, figure = (tmp_path / name for name in ("tap.wav", "scene.toml", "new.toml", "spectrum.svg"))
     wavfile.write(recording, RATE, (sound * 32767).astype(np.int16))
