@@ -86,7 +86,7 @@ def timed(block: str) -> object:
     return pytest.param(block, marks=marks, id=" ".join(block.split()[:3]))
 
 
-@pytest.mark.parametrize("block", map(timed, COMMANDS))
+@pytest.mark.parametrize("block", list(map(timed, COMMANDS)))
 def test_commands_run(block: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("meshes", "studies"):
         shutil.copytree(ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("*.svg", "*.png", "*.py", "data"))
