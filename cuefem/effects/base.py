@@ -83,6 +83,14 @@ class Effect:
         """Positions on the cue that must be mesh nodes, m from the tip."""
         return ()
 
+    def mass_on(self, cue: Cue) -> float:
+        """Mass that the effect adds to the motion of this cue along its axis, kg."""
+        return self.axial_mass
+
+    def left_on(self, cue: Cue) -> tuple[Effect, ...]:
+        """What is left of the effect on a cue whose tip is bare (`Scene.bare`)."""
+        return () if self.at_tip else (self,)
+
     def check_on(self, cue: Cue, name: str) -> None:
         """ValueError, in the words of ``name``, unless the effect's positions lie on the cue."""
         for x in self.positions:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Annotated, ClassVar
+from functools import lru_cache
+from typing import TYPE_CHECKING, Annotated, ClassVar
 
 import numpy as np
 
-from cuefem.cue import Array
-from cuefem.effects.base import TipEffect
+from cuefem.cue import SOFT, Array, Cue
+from cuefem.effects.base import CueEffect, Effect
+from cuefem.effects.leather_law import Curves, LeatherLaw
 from cuefem.effects.leather_table import (
     CURVATURE,
     HEAD_ON_RADIUS,
@@ -21,13 +23,18 @@ from cuefem.effects.leather_table import (
     of_tip,
     punch_gain,
 )
-from cuefem.quantity import DIAMETER, Quantity
+from cuefem.effects.on_cue import PointMass
+from cuefem.effects.terms import ContactTerms
+from cuefem.quantity import DIAMETER, Quantity, check_kind
+
+if TYPE_CHECKING:
+    from cuefem.beam.mesh import Terms
 
 RADII = np.linspace(0.0, 0.5, 101)  # over D: radii of the patches at which curves are given
 
 
 @dataclass(frozen=True)
-class LeatherTip(TipEffect):
+class LeatherTip(CueEffect):
     """A tip by what one can measure of it: its height, its dome and its leather.
 
     Parameters
@@ -42,6 +49,10 @@ class LeatherTip(TipEffect):
         Poisson's ratio of the leather, in [0.2, 0.45].
     rho : float, default 1000.0
         Density of the leather, kg/m^3.
+    shear : float, optional
+        A constant stiffness along the surface, N/m, in the place of one that follows the load: for comparison.
+    rolls : bool, default True
+        Whether the normal turns as the contact rolls over ball and dome; False for comparison.
 
     Raises
     ------
@@ -53,7 +64,12 @@ class LeatherTip(TipEffect):
     -----
     Adds: The static give of a short domed cylinder of leather in 3-D elasticity, its base held on the ferrule: the
     normal force over the depth of the ball's contact, the stiffness of the patch along the surface, the lever of the
-    contact about the ferrule's end, and the mass of the leather.
+    contact about the ferrule's end, and the mass of the leather, lumped there. It is the whole tip: the cue is drawn
+    without its leather, and contact time and stiffness of the `Tip` follow from it. The tip unloads along the curve of
+    its normal force with the depth scaled by e^2, which gives back e^2 of the work. The force along the surface grows
+    by the patch's stiffness times what the surfaces shift, falls with that stiffness as the patch shrinks, and is
+    bounded by mu F_n. The normal turns as the contact rolls over ball and dome. `Outcome.energy` has "tip shear": what
+    the spring along the surface loses because its stiffness changes.
 
     Matters when: Always. The whole tip gives sideways two to three times as much as along the normal, where the patch
     alone gives 4/3 times as much, and the contact grows stiffer and shorter with the speed of the stroke.
@@ -80,13 +96,54 @@ class LeatherTip(TipEffect):
 
     needs_beam: ClassVar[bool] = True
     once: ClassVar[bool] = True
-    excludes: ClassVar[tuple[str, ...]] = ("TipDome", "TipShear", "PowerLawTip")
+    at_tip: ClassVar[bool] = True
+    part_of_cue: ClassVar[bool] = True
+    excludes: ClassVar[tuple[str, ...]] = ("TipDome", "TipShear", "PowerLawTip", "RollingContact", "Elevation")
 
     height: Annotated[float, Quantity("m", "(0, inf)")]
     dome_radius: Annotated[float, Quantity("m", "(0, inf]")]
     E: Annotated[float, Quantity("Pa", "(0, inf)")]
     nu: Annotated[float, Quantity("", "[0.2, 0.45]")] = 0.4
     rho: Annotated[float, Quantity("kg/m^3", "(0, inf)")] = 1000.0
+    shear: Annotated[float | None, Quantity("N/m", "(0, inf)")] = None
+    rolls: bool = True
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_kind("LeatherTip.rolls", self.rolls, bool)
+
+    @property
+    def positions(self) -> tuple[float, ...]:
+        """The end of the ferrule."""
+        return (0.0,)
+
+    def check_on(self, cue: Cue, name: str) -> None:
+        """ValueError if the cue is drawn with its leather, or the tip cannot be on it."""
+        if cue.leather:
+            raise ValueError(
+                f"{name} must be the only leather: draw the cue without its first {1e3 * cue.leather:.4g} mm, which "
+                f"have an E below {SOFT / 1e9:g} GPa; got a {type(self).__name__} before them"
+            )
+        self.check_diameter(cue.segments[0].tip_diameter)
+
+    def add_to(self, terms: Terms) -> None:
+        """Add the mass of the leather, lumped at the end of the ferrule."""
+        terms.add(0.0, "mass", self.mass_on(terms.cue), 0.0)
+
+    def mass_on(self, cue: Cue) -> float:
+        """Mass of the leather on this cue, kg."""
+        return self.mass(cue.segments[0].tip_diameter)
+
+    def left_on(self, cue: Cue) -> tuple[Effect, ...]:
+        """The mass of the leather stays on a cue whose tip is bare."""
+        return (PointMass(0.0, self.mass_on(cue)),)
+
+    def add_to_contact(self, terms: ContactTerms) -> None:
+        """The whole tip, and the normal that turns."""
+        if terms.tip_diameter is not None:  # a lumped cue is refused in words
+            terms.set_tip(OnCue(self, terms.tip_diameter))
+        if self.rolls:
+            terms.turn()
 
     def check_diameter(self, diameter: float) -> None:
         """Refuse a tip that cannot be on a shaft, or that the table does not cover.
@@ -289,3 +346,37 @@ class LeatherTip(TipEffect):
         direct = np.diagonal(self._compliance(diameter, offset, at), axis1=1, axis2=2)
         below = self.height - self._drop(self._place(diameter, offset)[0] * diameter / 2)
         return RADII, direct - punch_gain(below / diameter, self.nu, at)
+
+
+@dataclass(frozen=True)
+class OnCue:
+    """A tip of leather on a cue's end of a diameter, m: what a contact asks of it (`cuefem.effects.terms.WholeTip`)."""
+
+    tip: LeatherTip
+    diameter: float
+
+    @property
+    def dome_radius(self) -> float:
+        """Radius of the dome, m; 0 for a flat tip."""
+        return self.tip.dome_radius if math.isfinite(self.tip.dome_radius) else 0.0
+
+    def lever(self, phi: float) -> tuple[float, float]:
+        """Displacement (u, w) of the contact per unit rotation of the ferrule's end section, m."""
+        return self.tip.lever(phi, self.diameter)
+
+    def rolling_radius(self, phi: float) -> float:
+        """Radius of the dome, m, or 0 where the contact is on the rim."""
+        return self.dome_radius if self.tip.dome_radius * math.sin(phi) < self.diameter / 2 else 0.0
+
+    def law(self, ball_radius: float, offset: float, restitution: float) -> LeatherLaw:
+        """The forces on a ball of that radius, m, that is struck at b/R = offset."""
+        return _law(self, ball_radius, offset, restitution)
+
+
+@lru_cache(maxsize=256)
+def _law(on: OnCue, ball_radius: float, offset: float, restitution: float) -> LeatherLaw:
+    """The law of a tip; scenes ask for it again and again."""
+    patch, depth, force = (part[1:] for part in on.tip.head_on(on.diameter, ball_radius))
+    radius, shear = on.tip.shear_stiffness(on.diameter, offset)
+    of_patch = patch * np.interp(patch, radius[1:], shear[1:] / radius[1:])  # nearly straight, other than the stiffness
+    return LeatherLaw.fitted(Curves(depth, force, of_patch), restitution, on.tip.shear)
