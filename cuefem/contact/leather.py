@@ -37,6 +37,8 @@ TOLERANCE, SETTLED, ROUNDS = 1e-9, 1e-9, 14
 WILD = 1e6
 # A step is the contact's time over a power of two: the longest, the first and the shortest.
 LONGEST, FIRST, SHORTEST = 4, 5, 30
+# A step that goes past the parting is this short.
+CROSSING = 9
 # Steps that a contact may take before it is given up: some ten seconds.
 MOST_STEPS = 20_000
 # A tip that gives back less than this part of the speed presses on past its peak, and rings.
@@ -84,6 +86,7 @@ class Leather:
         self.marches: list[Marched] = []
         self.responses: dict[tuple[int, int], Response] = {}
         self.halvings = FIRST
+        self.leaving = 0.0  # v_n at the end of the last step, m/s
         # the forces on the rows, by Taylor's series at the end of the last step in units of its length; or by their
         # last values alone
         self.series, self.series_step = np.zeros((TAYLOR, 4)), 0.0
@@ -166,6 +169,7 @@ class Leather:
     def _step(self, hold: Hold, coordinates: Complex) -> Piece:
         """The longest step that holds the tolerance."""
         opens = self._opens(hold)
+        self._shorten(hold)
         while self.halvings <= SHORTEST:
             response = self._response(OPENING.power if opens else EVEN.power)
             found = self._solved(hold, coordinates, response)
@@ -184,6 +188,16 @@ class Leather:
             slots = self.contact.slots.of("depth", "angle")
             return Piece(self.contact.time, 1.0, response, coordinates, forces, motion, slots)
         raise self._stuck(hold)
+
+    def _shorten(self, hold: Hold) -> None:
+        """No step past the parting, where forces fall with a root of time, but for the last."""
+        if hold.apart or hold.press == "load" or hold.grows or self.leaving <= 0:
+            return
+        depth = float(self.contact.z[self.contact.slots["depth"]])
+        left = (depth - self.law.rest(self.tip_forces.deepest)) / self.leaving / self.contact.laws.time
+        if left < 2.0**-LONGEST:
+            least = CROSSING if left < 2.0**-CROSSING else math.ceil(-math.log2(0.85 * left))
+            self.halvings = max(self.halvings, least)
 
     def _opens(self, hold: Hold) -> bool:
         """Whether the patch is but opening, so that forces grow with a power of the root of time."""
@@ -216,6 +230,8 @@ class Leather:
     def _crossing(self, piece: Piece, ends: dict[str, Array]) -> tuple[str, float] | None:
         """The first end in a step, and the part of the step at which it is."""
         rule, first, until = piece.response.rule, None, math.inf
+        if np.min(list(ends.values())) >= -PAST:
+            return None
         for name, values in ends.items():
             past = np.flatnonzero((values < -PAST) & (rule.times <= until))
             if len(past) == 0:
@@ -229,56 +245,61 @@ class Leather:
         return first
 
     def _leg(self, hold: Hold, coordinates: Complex, until: float, near: float = 0.0) -> tuple[str, Complex]:
-        """Steps up to the first end of a leg, or to ``until``, s."""
-        while self.contact.time < until:
+        """Steps up to the first end of a leg, or to ``until``, s, and what was lost in them."""
+        first, before, event = len(self.pieces), self._stored(hold), ""
+        while not event and self.contact.time < until:
             if len(self.pieces) > MOST_STEPS:
                 raise self._stuck(hold)
             piece = self._step(hold, coordinates)
             event, part = self._crossing(piece, self._ends(hold, piece.motion, near)) or ("", 1.0)
             if part > 0:
                 coordinates = self._take(replace(piece, part=part), hold)
-            if event:
-                return event, coordinates
-            deepest = float(piece.motion.depth[-1])
-            if deepest > self.law.most:
-                raise self.law.too_deep(deepest)
-        return "late", coordinates
+        if len(self.pieces) > first:
+            self._lose(hold, self.pieces[first:], before)
+        return event or "late", coordinates
 
     def _take(self, piece: Piece, hold: Hold) -> Complex:
-        """Go to the end of a piece: its losses, and the state there; the coordinates there."""
-        contact, response, motion, whole = self.contact, piece.response, piece.motion, piece.part == 1.0
-        rule, step, sums = response.rule, response.step, response.step * response.rule.sums(piece.part)
-        if len(self.damping):
-            nodes = response.all_coordinates(piece.coordinates, piece.forces)
-            powers = (self.damping @ nodes).real ** 2 @ sums
-            contact.damping_loss += float(powers[: contact.lossy].sum())
-            contact.radiated += float(powers[contact.lossy :].sum())
+        """Go to the end of a piece; the coordinates there."""
+        response, motion, rule = piece.response, piece.motion, piece.response.rule
+        whole = piece.part == 1.0
         if whole:
             coordinates, values = response.coordinates(piece.coordinates, piece.forces), _LAST
         else:
-            coordinates = self.free.shift(piece.coordinates, step, rule, piece.forces, piece.part)
+            coordinates = self.free.shift(piece.coordinates, response.step, rule, piece.forces, piece.part)
             values = rule.polynomials(piece.part)
-        before = self._stored(hold)
-        contact.time = piece.end
-        contact.put(depth=float(values @ motion.depth), angle=float(values @ motion.angle))
-        contact.put(shear=float(values @ motion.F_t if hold.grip == "stick" else self.force(hold.grip, hold.press)[0]))
-        self._lose(hold, motion, sums, before)
+        depth, angle, held, self.leaving = (
+            values @ part for part in (motion.depth, motion.angle, motion.F_t, motion.v_n)
+        )
+        if depth > self.law.most:
+            raise self.law.too_deep(float(depth))
+        self.contact.time = piece.end
+        self.contact.put(depth=float(depth), angle=float(angle), shear=float(held))
+        if hold.grip != "stick":
+            self.contact.put(shear=float(self.force(hold.grip, hold.press)[0]))
         self.series[0], self.series_step = piece.forces @ values, 0.0
         if whole and rule is EVEN:
-            self.series, self.series_step = rule.slopes @ piece.forces.T, step
+            self.series, self.series_step = rule.slopes @ piece.forces.T, response.step
         self.pieces.append(piece)
         return coordinates
 
-    def _lose(self, hold: Hold, motion: Motion, sums: Array, before: float) -> None:
-        """Add up what was lost along the surface; before: what the spring held at the start, J."""
+    def _lose(self, hold: Hold, pieces: list[Piece], before: float) -> None:
+        """Add up what was lost in a leg; before: what the spring along the surface held at its start, J."""
+        contact = self.contact
+        for piece in pieces if len(self.damping) else []:
+            nodes = piece.response.all_coordinates(piece.coordinates, piece.forces)
+            powers = (self.damping @ nodes).real ** 2 @ piece.sums(piece.part)
+            contact.damping_loss += float(powers[: contact.lossy].sum())
+            contact.radiated += float(powers[contact.lossy :].sum())
         if hold.apart:
             return
-        if hold.grip == "stick" and not hold.grows:  # by parts: at the end k_t falls with the root of time
-            self.sheared += before - self._stored(hold) - float(sums @ (motion.F_t * motion.v_t))
+        motion = Motion(*(np.concatenate(parts) for parts in zip(*(piece.motion for piece in pieces), strict=True)))
+        sums = np.concatenate([piece.sums(piece.part) for piece in pieces])
+        if math.isinf(contact.laws.friction) and not hold.grows:  # by parts: it sticks to the end, where k_t falls with
+            self.sheared += before - self._stored(hold) - float(sums @ (motion.F_t * motion.v_t))  # a root of time
             return
         self.sheared += float(sums @ self.tip_forces.wasted(hold, motion))
         if hold.grip != "stick":
-            self.contact.friction_loss -= float(sums @ (motion.F_t * self.tip_forces.slides(hold, motion)))
+            contact.friction_loss -= float(sums @ (motion.F_t * self.tip_forces.slides(hold, motion)))
 
     def _stored(self, hold: Hold) -> float:
         """Energy that the spring along the surface holds now, J."""

@@ -49,7 +49,7 @@ class Piece:
         values = np.stack([self.motion.v_t, self.motion.v_n, self.motion.F_n, self.motion.F_t])
         return np.asarray(values @ self.response.rule.polynomials(part).T)
 
-    def _sums(self, part: float) -> Array:
+    def sums(self, part: float) -> Array:
         """From values at the nodes to their integral up to a part of the step, (NODES,), s."""
         return self.response.step * self.response.rule.sums(part)
 
@@ -72,8 +72,8 @@ class Piece:
         """States at times, s, each with the integrals of ``rows`` since the start; and these up to the end."""
         nodes = rows @ self._states()
         parts = [min((float(time) - self.start) / self.response.step, self.part) for time in times]
-        found = [np.concatenate([self._state(part), nodes @ self._sums(part)]) for part in parts]
-        return found, nodes @ self._sums(self.part)
+        found = [np.concatenate([self._state(part), nodes @ self.sums(part)]) for part in parts]
+        return found, nodes @ self.sums(self.part)
 
 
 class Marched(NamedTuple):

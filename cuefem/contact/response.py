@@ -74,18 +74,21 @@ class Rule(NamedTuple):
 
         return value
 
-    def gauss(self, part: float) -> tuple[Array, Array]:
-        """(times, weights) of many Gauss points up to a part of the step's time, all as parts of it."""
+    def weighted(self, part: float) -> tuple[Array, Array]:
+        """(times, weights times the Lagrange polynomials) of many Gauss points up to a part of the step's time.
+
+        Shapes (points,) and (points, NODES).
+        """
         half = part ** (1 / self.power) / 2
         place = half * (1 + _MANY)
-        return place**self.power, half * _MANY_WEIGHTS * self.power * place ** (self.power - 1)
+        weights = half * _MANY_WEIGHTS * self.power * place ** (self.power - 1)
+        return place**self.power, weights[:, None] * self.polynomials(place**self.power)
 
     def sums(self, part: float) -> Array:
         """From values at the nodes to the integral up to a part of the step's time, (NODES,)."""
         if part == 1.0:
             return self.integral[-1]
-        times, weights = self.gauss(part)
-        return np.asarray(weights @ self.polynomials(times))
+        return np.asarray(self.weighted(part)[1].sum(axis=0))
 
 
 def _rule(power: int) -> Rule:
@@ -132,15 +135,31 @@ class FreeMotion:
     @classmethod
     def of(cls, contact: Contact, rows: Array) -> Self:
         """The free motion of a contact's states."""
-        A = contact.free
-        columns: list[tuple[complex, Any, Any, Any]] = []
-        for places in _coupled(A):
-            columns += _turning(A, places)
-        size, count = len(A), len(columns)
-        vectors, onto = np.zeros((size, count), complex), np.zeros((count, size), complex)
-        for k, (_, places, vector, left) in enumerate(columns):
-            vectors[places, k], onto[k, places] = vector, left
-        return cls(np.array([column[0] for column in columns]), vectors, onto, rows)
+        A, slots = contact.free, contact.slots
+        coupled = A[slots.velocities, slots.velocities] != 0  # by what damps or radiates
+        damped = coupled.any(axis=1)
+        still = np.flatnonzero(~damped)
+        swinging = still[still >= contact.quiet] - contact.quiet  # undamped modes: (omega q, velocity)
+        alone = np.concatenate(
+            [slots.velocities.start + still[still < contact.quiet], np.arange(slots.velocities.stop, len(A))]
+        )
+        rates = [1j * contact.omega[swinging], np.zeros(len(alone), complex)]
+        first = len(swinging) + len(alone)
+        vectors, onto = np.zeros((len(A), first), complex), np.zeros((first, len(A)), complex)
+        k = np.arange(len(swinging))
+        vectors[swinging, k], onto[k, swinging] = -1j, 1j
+        vectors[slots.swinging.start + swinging, k], onto[k, slots.swinging.start + swinging] = 1.0, 1.0
+        vectors[alone, len(swinging) + np.arange(len(alone))] = 1.0
+        onto[len(swinging) + np.arange(len(alone)), alone] = 1.0
+        for group in _groups(coupled, np.flatnonzero(damped).tolist()):
+            of_swing = [mode - contact.quiet for mode in group if mode >= contact.quiet]
+            places = np.array(of_swing + [slots.velocities.start + mode for mode in group])
+            found, right, left = _turning(A[np.ix_(places, places)])
+            wide, high = np.zeros((len(A), len(found)), complex), np.zeros((len(found), len(A)), complex)
+            wide[places], high[:, places] = right, left
+            rates.append(found)
+            vectors, onto = np.concatenate([vectors, wide], axis=1), np.concatenate([onto, high])
+        return cls(np.concatenate(rates), vectors, onto, rows)
 
     @cached_property
     def readings(self) -> Complex:
@@ -158,8 +177,8 @@ class FreeMotion:
 
     def shift(self, xi: Complex, step: float, rule: Rule, forces: Array, part: float) -> Complex:
         """The coordinates after a ``part`` of a step, s, whose forces are (m, NODES) at its nodes."""
-        time, weights = rule.gauss(part)
-        loads = forces @ rule.polynomials(time).T * weights
+        time, weighted = rule.weighted(part)
+        loads = forces @ weighted.T
         onward = _turns(self.rates, step * (part - time))
         driven = (onward * (self.drives @ loads)).sum(axis=1)
         return np.asarray(_turns(self.rates, np.array(step * part)) * xi + step * driven)
@@ -176,26 +195,21 @@ def _turns(rates: Complex, times: Array) -> Complex:
     return found
 
 
-def _coupled(A: Array) -> list[list[int]]:
-    """The groups of states that turn into each other."""
-    joined, left, groups = (A != 0) | (A.T != 0), list(range(len(A))), []
+def _groups(coupled: Array, left: list[int]) -> list[list[int]]:
+    """The groups of modes that damping couples with each other."""
+    groups: list[list[int]] = []
     while left:
         group, fresh = {left[0]}, [left[0]]
         while fresh:
-            found = set(np.flatnonzero(joined[fresh].any(axis=0)).tolist()) - group
+            found = set(np.flatnonzero(coupled[fresh].any(axis=0)).tolist()) - group
             group, fresh = group | found, sorted(found)
         groups.append(sorted(group))
-        left = [place for place in left if place not in group]
+        left = [mode for mode in left if mode not in group]
     return groups
 
 
-def _turning(A: Array, places: Any) -> list[tuple[complex, Any, Any, Any]]:
-    """(rate, places, vector, left vector) of a group of states; of a pair of conjugates one, which counts twice."""
-    if len(places) == 1:
-        return [(complex(A[places[0], places[0]]), places, np.ones(1), np.ones(1))]
-    own = A[np.ix_(places, places)]
-    if len(places) == 2 and own[1, 1] == 0:  # an undamped mode: (omega q, velocity)
-        return [(1j * own[0, 1], places, np.array([-1j, 1.0]), np.array([1j, 1.0]))]
+def _turning(own: Array) -> tuple[Complex, Complex, Complex]:
+    """(rates, vectors, left vectors) of a group of states; of a pair of conjugates one, which counts twice."""
     rates, vectors = np.linalg.eig(own)
     if np.linalg.cond(vectors) > DEFECTIVE:  # two rates are one, as of a critically damped mode: take them apart
         own = own + NUDGE * np.linalg.norm(own) * np.diag(np.linspace(-1.0, 0.0, len(own)))
@@ -203,7 +217,7 @@ def _turning(A: Array, places: Any) -> list[tuple[complex, Any, Any, Any]]:
     left = np.linalg.inv(vectors)
     kept = np.flatnonzero(rates.imag >= 0)
     twice = np.where(rates[kept].imag > 0, 2.0, 1.0)
-    return [(rates[i], places, factor * vectors[:, i], left[i]) for i, factor in zip(kept.tolist(), twice, strict=True)]
+    return rates[kept].astype(complex), vectors[:, kept] * twice, left[kept].astype(complex)
 
 
 # The row and the node of each entry of what is read in a step.
@@ -235,7 +249,12 @@ class Response(NamedTuple):
         """The response of a free motion over a step, s."""
         rates, count, m = free.rates, len(free.rates), len(free.rows)
         ahead = (rule.times[1:, None] - rule.between) * step  # of a Gauss point to the next node
-        onward = _turns(rates, ahead).transpose(1, 2, 0).copy().view(float)  # (NODES - 1, POINTS, 2 k)
+        if rule.power == 1:  # the nodes lie evenly about the middle
+            onward = _turns(rates, ahead[: NODES // 2])
+            onward = np.concatenate([onward, onward[:, (NODES - 1) // 2 - 1 :: -1]], axis=1)
+        else:
+            onward = _turns(rates, ahead)
+        onward = onward.transpose(1, 2, 0).copy().view(float)  # (NODES - 1, POINTS, 2 k)
         pieces = rule.values.transpose(0, 2, 1) * (step * rule.weights)[:, None, :] @ onward
         pieces = pieces.view(complex)  # (NODES - 1, NODES, k)
         hops = _turns(rates, np.diff(rule.times) * step).T

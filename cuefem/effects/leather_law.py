@@ -71,7 +71,7 @@ class LeatherLaw:
         return np.asarray(np.multiply.accumulate(powers, axis=0, out=powers))
 
     def at(self, depth: Array) -> tuple[Array, Array]:
-        """(F, k_t), N and N/m, at virtual compressions, m, (n,); nothing where these are negative."""
+        """(F, k_t), N and N/m, at virtual compressions, m, (n,): zero where these are negative."""
         powers = self._powers(depth)
         force, give = self._terms @ powers
         if self.steady is not None:

@@ -58,6 +58,11 @@ def test_the_energy_account_closes_and_nothing_is_gained(offset, speed, e, frict
     assert (found.energy["tip loss"] > slack) == (e < 1 - 1e-6)
 
 
+@pytest.mark.parametrize(("offset", "friction"), [(0.0, 0.7), (0.2, inf), (0.375, 0.7), (0.453, 0.6), (0.8, 0.3)])
+def test_with_the_default_modes_and_their_tail_the_account_closes_too(offset, friction) -> None:
+    assert imbalance(strike(leather_scene(offset, friction=friction))) < 1e-9
+
+
 @pytest.mark.parametrize("effect", EVERY, ids=lambda effect: type(effect).__name__)
 def test_each_effect_goes_with_it(effect) -> None:
     found = strike(leather_scene(0.375, effect), AT)
