@@ -69,6 +69,8 @@ class Effect:
     # Whether it acts at the tip (the cue without it is `Scene.bare`), and whether it is part of a cue that lies free.
     at_tip: ClassVar[bool] = False
     part_of_cue: ClassVar[bool] = False
+    # Whether it gives the whole tip, so that the `Tip` has no contact time of its own.
+    whole_tip: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         check_fields(self)

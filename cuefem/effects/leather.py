@@ -98,6 +98,7 @@ class LeatherTip(CueEffect):
     once: ClassVar[bool] = True
     at_tip: ClassVar[bool] = True
     part_of_cue: ClassVar[bool] = True
+    whole_tip: ClassVar[bool] = True
     excludes: ClassVar[tuple[str, ...]] = ("TipDome", "TipShear", "PowerLawTip", "RollingContact", "Elevation")
 
     height: Annotated[float, Quantity("m", "(0, inf)")]

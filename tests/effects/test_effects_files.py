@@ -3,6 +3,7 @@
 from math import inf
 
 from cuefem import AxialWaves, Joint, LeatherTip, StructuralDamping, load, save
+from cuefem.io.assumed import assumed
 from tests.effects.test_refusals import SCENE
 
 
@@ -32,5 +33,6 @@ def test_a_scene_file_holds_a_whole_tip(tmp_path):
         path.write_text(SCENE.format(effect=text.format(dome, more)), encoding="utf-8")
         scene = load(path)
         assert scene.effects == (AxialWaves(), told)
+        assert "contact time" not in " ".join(assumed(path, ()))  # it follows from the tip
         save(scene, path)
         assert load(path) == scene
