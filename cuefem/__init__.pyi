@@ -10,6 +10,7 @@ from .effects import (
     Effect as Effect,
     Elevation as Elevation,
     Joint as Joint,
+    LeatherTip as LeatherTip,
     PointMass as PointMass,
     PowerLawTip as PowerLawTip,
     RollingContact as RollingContact,

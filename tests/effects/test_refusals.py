@@ -10,7 +10,9 @@ import pytest
 from cuefem import (
     AxialWaves,
     Effect,
+    Elevation,
     Joint,
+    LeatherTip,
     LumpedCue,
     PointMass,
     PowerLawTip,
@@ -19,13 +21,14 @@ from cuefem import (
     SecondHit,
     StructuralDamping,
     Support,
+    Tip,
     TipDome,
     TipShear,
     load,
     modes,
 )
 from tests.helpers.refusals import refuses
-from tests.helpers.strike_scenes import KIM, kim_scene
+from tests.helpers.strike_scenes import KIM, kim_scene, pool_cue
 
 
 def listed(*effects: Effect) -> Callable[[], Scene]:
@@ -42,7 +45,9 @@ ON, BETWEEN = (
     "position must be in (0, 0.7) m, between the ends of the cue",
 )
 OFF = ((PointMass(0.71, 0.01), ON), (Support(0.8, 1.0), ON), (Joint(0.7, 1e-3), BETWEEN), (Joint(0.9), BETWEEN))
-FINITE = (PointMass(0.1, 0.01), Support(0.1, 5.0), Joint(0.1), AxialWaves(), TipDome(0.01))
+LEATHER = LeatherTip(6e-3, 9.5e-3, 1.4e8)
+FINITE = (PointMass(0.1, 0.01), Support(0.1, 5.0), Joint(0.1), AxialWaves(), TipDome(0.01), LEATHER)
+PARTS = (TipDome(0.01), SHEAR, PowerLawTip(), RollingContact(), Elevation(0.1))
 CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: PointMass(nan, 0.01), "PointMass.position must be in [0, inf) m; got nan"),
     (lambda: PointMass(inf, 0.01), "PointMass.position must be in [0, inf) m; got inf"),
@@ -84,8 +89,32 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     ),
     *[
         (listed(once, once), f"{type(once).__name__} acts once")
-        for once in (PowerLawTip(), RollingContact(), SecondHit())
+        for once in (PowerLawTip(), RollingContact(), SecondHit(), LEATHER)
     ],
+    *[
+        (listed(part, LEATHER), f"must be an effect that goes with effects[0], {type(part).__name__}; got LeatherTip")
+        for part in PARTS
+    ],
+    (
+        listed(LEATHER, TipDome(0.01)),
+        "Scene.effects[0] must be an effect that goes with effects[1], TipDome; got Leath",
+    ),
+    (listed(LEATHER), "Tip.contact_time must be left out beside an effect that gives the whole tip, from which it fol"),
+    (
+        lambda: replace(kim_scene(), tip=Tip(stiffness=1e6), effects=(LEATHER,)),
+        "Tip.stiffness must be left out beside an effect that gives the whole tip, from which it follows; got 1",
+    ),
+    (
+        lambda: replace(kim_scene(), cue=pool_cue(), tip=Tip(), effects=(AxialWaves(), LEATHER)),
+        "Scene.effects[1] must be the only leather: draw the cue without its first 6 mm, which have an E below 1 GPa",
+    ),
+    (lambda: modes(pool_cue(), effects=(LEATHER,)), "LeatherTip must be the only leather: draw the cue without its"),
+    (
+        lambda: replace(kim_scene(), tip=Tip(), effects=(replace(LEATHER, dome_radius=5e-3),)),
+        "LeatherTip.dome_radius must be in [0.006, inf] m, half of the tip's diameter or more; got 0.005",
+    ),
+    (lambda: replace(LEATHER, shear=0.0), "LeatherTip.shear must be in (0, inf) N/m; got 0.0"),
+    (lambda: replace(LEATHER, rolls="no"), "TypeError: LeatherTip.rolls must be a bool; got 'no'"),
     (listed(SHEAR, "TipDome"), "TypeError: Scene.effects[1] must be an Effect; got 'TipDome'"),  # type: ignore[arg-type]
 ]
 
