@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from cuefem.cue import Array, Cue, LumpedCue
-from cuefem.effects import CueEffect, Effect, acting_on_cue, check_effects
+from cuefem.effects import CueEffect, Effect, LeatherTip, acting_on_cue, check_effects
 from cuefem.effects.leather_law import LeatherLaw
 from cuefem.effects.terms import ContactTerms
 from cuefem.quantity import CONTACT_TIME, Number, Quantity, check_count, check_fields, check_kind, scalar
@@ -272,11 +272,19 @@ class Scene:
             return self.tip.stiffness
         return (math.pi / 2 * (1 + self.tip.restitution) / self.contact_time) ** 2 * self.head_on_mass
 
+    @property
+    def leather(self) -> LeatherTip:
+        """The scene's tip of leather; ValueError if it has none."""
+        found = next((effect for effect in self.effects if isinstance(effect, LeatherTip)), None)
+        if found is None:
+            raise ValueError("Scene.effects must hold a LeatherTip; got none")
+        return found
+
     def tip_law(self, restitution: float = 1.0, offset: float = 0.0) -> LeatherLaw:
         """The law of a whole tip (`LeatherTip`) on this cue and ball; ValueError if the scene has none."""
         whole = self.contact_terms.tip
         if whole is None:
-            raise ValueError("Scene.effects must hold a LeatherTip: the law of a whole tip is asked for; got none")
+            raise ValueError("Scene.effects must hold a LeatherTip, whose law is asked for; got none")
         return whole.law(scalar("Ball.radius", self.ball.radius), abs(offset), restitution)
 
     @property
