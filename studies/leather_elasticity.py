@@ -4,8 +4,8 @@ A tip is a domed cylinder of linear, isotropic leather on a rigid ferrule, solve
 are tabulated, over height, dome, Poisson's ratio and the patch's radius: the compliance along the normal and along the
 surface of a patch with Hertz's pressure anywhere on the dome, and force and depth of a ball that is pressed on it head
 on. `cuefem.effects.leather_table` holds the coordinates and reads the table. The page compares the solid with exact
-solutions, and the table with the solid at random tips. python -m studies.leather_elasticity computes the table in ten
-minutes and the page in three; with the word page only the page.
+solutions, and the table with the solid at random tips. python -m studies.leather_elasticity computes the table in
+twenty minutes and the page in four; with the word page only the page.
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ def geometry(shape: Shape, where: Sequence[Patch], load: Array, nus: Array, n: d
 
 
 def build(n: dict[str, int] = COUNTS) -> lt.Table:
-    """The whole table, in about ten minutes."""
+    """The whole table."""
     nus = (1 - np.exp(-lt.nodes(*lt.NU, n["nu"]))) / 2
     panels = len(lt.PANELS) - 1
     first = (n["curvature"], n["height"], n["nu"])
