@@ -2,10 +2,10 @@
 
 With t the angle about the axis, u_r = U(r, z) cos mt, u_t = V(r, z) sin mt, u_z = W(r, z) cos mt, and every strain is a
 function of (r, z) times cos mt or sin mt (`Solid._parts`). z runs from the base, which is held, to the apex. The unit
-square (x, y) is mapped exactly onto the section, r = x D/2 and z = y H(r), so that one scikit-fem basis serves every
-tip. Rows of elements are eliminated from the base upwards; what is left is the compliance of the top surface alone
-(`Solid.surface`), on which each patch of load is a quadratic form. The unit of length is the diameter, that of stress
-is Young's modulus.
+square (x, y) is mapped exactly onto the section, r = sin(pi x/2) D/2 and z = y H(r), so that one scikit-fem basis
+serves every tip. Rows of elements are eliminated from the base upwards; what is left is the compliance of the top
+surface alone (`Solid.surface`), on which each patch of load is a quadratic form. The unit of length is the diameter,
+that of stress is Young's modulus.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from skfem import Basis, ElementQuadP, MeshQuad
 
 Array = NDArray[np.float64]
+SOLVED = (10, 12, 15, 18, 22, 26, 31)  # harmonics above 8 that are computed; the others are interpolated
 POINTS = 48  # Gauss points along a ray of a patch, and over each part of the half circle of rays
 
 
@@ -36,10 +37,10 @@ class Fineness(NamedTuple):
     harmonics: int
 
 
-def usual(order: int = 4, across: int = 6, up: int = 5, harmonics: int = 30) -> Fineness:
+def usual(order: int = 4, radial: int = 6, up: int = 5, harmonics: int = 30) -> Fineness:
     """Elements that shrink towards the rim, and towards base and top."""
-    x, y = np.linspace(0, 1, across + 1), np.linspace(0, 1, up + 1)
-    ends = 0.6 * x + 0.4 * np.sin(np.pi / 2 * x), 0.5 * y + 0.25 * (1 - np.cos(np.pi * y))
+    x, y = np.linspace(0, 1, radial + 1), np.linspace(0, 1, up + 1)
+    ends = x, 0.5 * y + 0.25 * (1 - np.cos(np.pi * y))
     return Fineness(order, *(tuple(e.tolist()) for e in ends), harmonics)
 
 
@@ -51,12 +52,14 @@ def fitted(height: float, radius: float, order: int = 5) -> Fineness:
     while out[-1] + 1.6 * step < 1:
         out.append(out[-1] + step)
         step *= 2
-    across = (0.0, 0.5 * edge, 0.85 * edge, *out, *((1.0,) if edge < 1 else ()))
+    ends = (0.0, 0.5 * edge, 0.85 * edge, *out, *((1.0,) if edge < 1 else ()))
     depth, step = [0.0], 0.3 * radius
     while depth[-1] + 1.6 * step < height:
         depth.append(depth[-1] + step)
         step *= 2
-    return Fineness(order, across, tuple(1 - d / height for d in (height, *depth[::-1])), 0)
+    return Fineness(
+        order, tuple(across(np.array(ends) / 2).tolist()), tuple(1 - d / height for d in (height, *depth[::-1])), 0
+    )
 
 
 @dataclass(frozen=True)
@@ -111,13 +114,19 @@ def grid(how: Fineness) -> Grid:
     return Grid(basis, value, slope_x, slope_y, x, y, basis.dx, nodes, trace)
 
 
+def across(radius: Array | float) -> Array:
+    """x of the reference square at a radius over D: r = sin(pi x/2)/2, in which a hemisphere is smooth at its rim."""
+    return np.asarray(np.arcsin(np.minimum(2 * np.asarray(radius), 1.0)) * 2 / np.pi)
+
+
 def lobatto(order: int) -> Array:
     """The ``order`` + 1 Chebyshev points of [0, 1], ends included."""
     return np.asarray(0.5 - 0.5 * np.cos(np.pi * np.arange(order + 1) / order))
 
 
-def lagrange(x: Array, how: Fineness) -> Array:
-    """Values at ``x`` of the functions that are 1 at one surface node and 0 at the others, (len(x), nodes)."""
+def lagrange(radius: Array, how: Fineness) -> Array:
+    """Values at ``radius``, over D, of the functions that are 1 at one node and 0 at the others, (points, nodes)."""
+    x = across(radius)
     ends, local = np.array(how.across), lobatto(how.order)
     cell = np.clip(np.searchsorted(ends, x, side="right") - 1, 0, len(ends) - 2)
     place = (x - ends[cell]) / np.diff(ends)[cell]
@@ -142,12 +151,12 @@ class Solid:
         """Volume strain and the scaled strains (rr, tt, zz, rz, rt, tz) of the three fields' functions: the part
         without m and the part in proportion to m; (cells, strains x points, 3 functions)."""
         g, shape = self.grid, self.shape
-        r = g.x / 2
+        r, stretch = np.sin(np.pi / 2 * g.x) / 2, np.pi / 4 * np.cos(np.pi / 2 * g.x)
         height = shape.height - drop(r, shape.curvature)
         slope = -shape.curvature * r / np.sqrt(1 - np.square(shape.curvature * r))
         f, fz = g.value, g.slope_y / height
-        fr = 2 * g.slope_x - g.slope_y * (g.y * slope / height)
-        root = np.sqrt(r * g.weight * height / 2)
+        fr = g.slope_x / stretch - g.slope_y * (g.y * slope / height)
+        root = np.sqrt(r * g.weight * height * stretch)
         none, fa = np.zeros_like(f), f / r
         two = math.sqrt(2)
         plain = [
@@ -245,6 +254,25 @@ class Solid:
         return np.asarray(values @ la.cho_solve(la.cho_factor(carried), values.T))
 
 
+def surfaces(solid: Solid, nu: float, *, every: bool = False) -> list[Array]:
+    """`Solid.surface` for all harmonics; every: computed for each of them, not for some of the higher ones.
+
+    m times it hardly changes from one high m to the next, so it is interpolated; patches get little from those.
+    """
+    highest = solid.how.harmonics
+    solved = [m for m in range(highest + 1) if every or m <= 8 or m == highest or m in SOLVED]
+    known = {m: solid.surface(nu, m) for m in solved}
+    found = []
+    for m in range(highest + 1):
+        if m not in known:
+            low, high = max(k for k in solved if k < m), min(k for k in solved if k > m)
+            part = (m - low) / (high - low)
+            found.append(((1 - part) * low * known[low] + part * high * known[high]) / m)
+        else:
+            found.append(known[m])
+    return found
+
+
 # Patches
 
 
@@ -293,7 +321,7 @@ def loads(shape: Shape, patch: Patch, how: Fineness, powers: Sequence[float] = (
     weight = np.array([(flat * np.cos(beta) ** (2 * power + 1)).ravel() for power in powers])
     weight /= weight.sum(axis=1)[:, None]
     radius, turned = np.hypot(x, y), np.arctan2(y, x)
-    functions = lagrange(np.minimum(2 * radius, 1.0), how)
+    functions = lagrange(radius, how)
     m = np.arange(how.harmonics + 1)[:, None, None]
     even, odd = np.cos(m * turned) * weight, np.sin(m * turned) * weight
     along = [f @ functions for f in (even * np.cos(turned), -odd * np.sin(turned), even)]  # of a load along x, x and z
@@ -339,7 +367,7 @@ def head_on(shape: Shape, surface: Array, radius: float, how: Fineness, terms: i
     shapes = np.polynomial.legendre.legvander(2 * x * x - 1, terms).T * np.cos(beta) * area
     nodes = surface.shape[0] // 3
     axial = surface[2 * nodes :, 2 * nodes :]
-    load = shapes @ lagrange(np.minimum(2 * p, 1.0), how)
+    load = shapes @ lagrange(p, how)
     matrix = np.hstack([load @ axial @ load[:-1].T, -shapes.sum(axis=1)[:, None]])
     k = shape.curvature
     gaps = np.array([p * p / (1 + np.sqrt(np.maximum(1 - np.square(k * p), 0))), p * p / 2, p**4 / 8])

@@ -20,8 +20,13 @@ from cuefem.cue import Array
 # What the table covers: height over D, D over the dome's radius, Poisson's ratio, radius of the patch over D.
 HEIGHT, CURVATURE, POISSON, RADIUS = (2 / 15, 1.5), (0.0, 2.0), (0.2, 0.45), (0.06, 0.5)
 HEAD_ON_RADIUS = (0.04, 0.45)
+# Curvatures between which everything is smooth: at the first the lowest tip becomes one without a side below its dome,
+# at the second patches are no longer asked for near the rim, where sin(phi) is far above 0.6.
+PANELS = (0.0, 1.0, 1.5, 2.0)
 WALL = 0.002  # over D: the least height of the side below the dome; lower ones are taken for it
 SOFTENED = 0.1  # over D: heights enter as log(wall + this)
+NEAR_RIM = 0.1  # over D: patches are near the rim if it cuts them at this radius
+AXIS = 0.01  # place: C_nt over the place is wanted on the axis as well
 
 
 def nodes(low: float, high: float, count: int) -> Array:
@@ -46,9 +51,29 @@ def sag(curvature: float) -> float:
     return curvature / 4 / (1 + math.sqrt(1 - curvature**2 / 4))
 
 
+def steepness(curvature: float) -> float:
+    """The coordinate that stands for the curvature: the angle of the dome at its rim."""
+    return math.asin(min(curvature / 2, 1.0))
+
+
+def panel_of(curvature: float) -> int:
+    """Which of the PANELS a curvature is in."""
+    return sum(curvature > end for end in PANELS[1:-1])
+
+
+def inner(curvature: float) -> float:
+    """The place up to which patches are not near the rim; of steep domes, where sin(phi) is 0.64."""
+    k = min(curvature, PANELS[2])
+    return (
+        (math.sqrt(1 - (NEAR_RIM * k) ** 2) - 2 * NEAR_RIM * math.sqrt(1 - k**2 / 4)) * k / max(curvature, k)
+        if k
+        else 0.8
+    )
+
+
 def farthest(curvature: float) -> float:
-    """The outermost place in the table: the rim, or on the steepest domes one beyond sin(phi) = 0.6."""
-    return 1 - 0.25 * max(curvature - 1, 0.0) ** 4
+    """The outermost place in the table."""
+    return 1.0 if curvature <= PANELS[2] else inner(curvature)
 
 
 def heights(curvature: float) -> tuple[float, float]:
@@ -68,8 +93,6 @@ def poisson_coordinate(nu: float) -> float:
 
 
 NU = (poisson_coordinate(POISSON[0]), poisson_coordinate(POISSON[1]))
-PLACE = 1e-4  # of the square of the place, over that of the farthest: C_nt/place is wanted on the axis as well
-LOG_RADIUS = (math.log(RADIUS[0]), math.log(RADIUS[1]))
 LOG_HEAD_ON = (math.log(HEAD_ON_RADIUS[0]), math.log(HEAD_ON_RADIUS[1]))
 
 
@@ -101,13 +124,16 @@ def half_space_head_on(nu: float, radius: Array) -> Array:
 class Table(NamedTuple):
     """The table's values; the first axes are the panel of the curvature, curvature, height and Poisson's ratio.
 
-    patch: (..., place, radius, 3), the logarithms of C_nn and C_tt over a half-space's, and C_nt over the place and
-    over the root of C_nn C_tt. head_on: (..., radius, 2, 3), the logarithms of force and depth over a half-space's for
-    the three gaps. punch: (height, nu, radius, 2), by how much a rigid patch that sticks is stiffer than a
-    Hertz-weighted one, on a flat tip and on its axis, over the same difference on a half-space.
+    whole, cut, rim: (..., place, radius, 3), the logarithms of C_nn and C_tt over a half-space's, and C_nt over the
+    place and over the root of C_nn C_tt: of patches away from the rim, those that it cuts, and those near it (in all
+    panels but the last). head_on: (..., radius, 2, 3), the logarithms of force and depth over a half-space's for the
+    three gaps. punch: (height, nu, radius, 2), by how much a rigid patch that sticks is stiffer than a Hertz-weighted
+    one, on a flat tip and on its axis, over the same difference on a half-space.
     """
 
-    patch: Array
+    whole: Array
+    cut: Array
+    rim: Array
     head_on: Array
     punch: Array
 
@@ -120,43 +146,80 @@ def table() -> Table:
 
 
 class TipTable(NamedTuple):
-    """The table of one tip: `Table` without its first axes; punch by its height."""
+    """The table of one tip: `Table` without its first axes; rim is None on steep domes."""
 
     curvature: float
     nu: float
-    patch: Array
+    whole: Array
+    cut: Array
+    rim: Array | None
     head_on: Array
 
 
 @lru_cache(maxsize=64)
 def of_tip(height: float, curvature: float, nu: float) -> TipTable:
     """The table of one tip."""
-    whole = table()
-    panel = min(int(curvature), 1)
-    count = whole.patch.shape[1:4]
-    k = weights(curvature, float(panel), panel + 1.0, count[0])
-    u = weights(poisson_coordinate(nu), *NU, count[2])
-    h = weights(height_coordinate(height, curvature), *heights(curvature), count[1])
-    mixed = [np.einsum("k,h,u,khu...->...", k, h, u, part[panel]) for part in (whole.patch, whole.head_on)]
-    return TipTable(curvature, nu, *mixed)
+    all_tips = table()
+    panel = panel_of(curvature)
+    counts = all_tips.whole.shape[1:4]
+    low, high = (steepness(end) for end in PANELS[panel : panel + 2])
+    k = weights(steepness(curvature), low, high, counts[0])
+    h = weights(height_coordinate(height, curvature), *heights(curvature), counts[1])
+    u = weights(poisson_coordinate(nu), *NU, counts[2])
+
+    def mixed(part: Array) -> Array:
+        for weight in (k, h, u):
+            part = np.tensordot(weight, part, 1)
+        return part
+
+    whole, cut, straight = (mixed(part[panel]) for part in (all_tips.whole, all_tips.cut, all_tips.head_on))
+    rim = mixed(all_tips.rim[panel]) if panel < len(all_tips.rim) else None
+    return TipTable(curvature, nu, whole, cut, rim, straight)
+
+
+def radii(sheet: str, curvature: float, place: float) -> tuple[float, float]:
+    """Range of the logarithm of the patch's radius in one of the sheets of the table: whole, cut or rim."""
+    ends = {"whole": (RADIUS[0], 0.0), "cut": (0.0, RADIUS[1]), "rim": RADIUS}[sheet]
+    low, high = (math.log(end or edge(curvature, place)) for end in ends)
+    return low, high
 
 
 def compliance(tip: TipTable, place: float, radius: Array) -> Array:
     """E D times the compliance in (n, t) of Hertz-weighted patches, at radii up to 1/2; (radii, 2, 2).
 
-    Patches smaller than the table's have the rest beyond the half-space's compliance of the smallest one; if that
-    reaches over the rim, its ratio to the half-space's.
+    Patches smaller than the table's have the rest beyond the half-space's compliance of the smallest one. If that
+    reaches over the rim, they go on as a constant and a part in proportion to 1/radius, from the two smallest ones.
     """
-    far = farthest(tip.curvature)
-    s = weights(place**2, PLACE * far**2, far**2, tip.patch.shape[0])
     at = np.maximum(radius, RADIUS[0])
-    found = np.einsum("ac,ra->rc", np.tensordot(s, tip.patch, 1), weights(np.log(at), *LOG_RADIUS, tip.patch.shape[1]))
-    base, here = half_space(tip.nu, at), half_space(tip.nu, radius)
-    direct = np.exp(found[:, :2])
-    within = edge(tip.curvature, place) >= RADIUS[0]
-    direct = here + (direct - 1) * base if within else direct * here
-    across = found[:, 2] * place * np.sqrt(np.prod(np.exp(found[:, :2]) * base, axis=1))
-    return np.stack([np.stack([direct[:, 0], across], -1), np.stack([across, direct[:, 1]], -1)], -2)
+    found = _read(tip, place, at)
+    if np.all(at == radius):
+        return found
+    if edge(tip.curvature, place) >= RADIUS[0]:
+        more = half_space(tip.nu, radius) - half_space(tip.nu, at)
+        return np.asarray(found + more[:, None] * np.eye(2))
+    first, second = _read(tip, place, np.array([1.0, 1.5]) * RADIUS[0])
+    return np.asarray(found + 3 * (first - second) * (RADIUS[0] / radius - RADIUS[0] / at)[:, None, None])
+
+
+def _read(tip: TipTable, place: float, radius: Array) -> Array:
+    """E D times the compliance at radii that the table has."""
+    k, limit = tip.curvature, inner(tip.curvature)
+
+    def sheet(name: str, values: Array, low: float, high: float) -> Array:
+        s = np.tensordot(weights(place, low, high, len(values)), values, 1)
+        ends = radii(name, k, min(max(place, low), high))
+        if ends[0] >= ends[1]:  # on the axis no patch of the table is cut
+            return np.broadcast_to(s[0], (len(radius), 3))
+        return np.asarray(weights(np.log(radius), *ends, len(s)) @ s)
+
+    if place > limit and tip.rim is not None:
+        found = sheet("rim", tip.rim, limit, 1.0)
+    else:
+        whole, cut = sheet("whole", tip.whole, AXIS, limit), sheet("cut", tip.cut, AXIS, limit)
+        found = np.where((radius <= edge(k, min(place, limit)))[:, None], whole, cut)
+    normal, shear = (np.exp(found[:, :2]) * half_space(tip.nu, radius)).T
+    across = found[:, 2] * place * np.sqrt(normal * shear)
+    return np.array([[normal, across], [across, shear]]).transpose(2, 0, 1)
 
 
 def punch_gain(height: float, nu: float, radius: Array) -> Array:
@@ -167,7 +230,7 @@ def punch_gain(height: float, nu: float, radius: Array) -> Array:
     kept = table().punch
     h = weights(height_coordinate(height, 0.0), *heights(0.0), kept.shape[0])
     u = weights(poisson_coordinate(nu), *NU, kept.shape[1])
-    a = weights(np.log(np.maximum(radius, RADIUS[0])), *LOG_RADIUS, kept.shape[2])
+    a = weights(np.log(np.maximum(radius, RADIUS[0])), *radii("rim", 0.0, 0.0), kept.shape[2])
     return np.asarray(half_space(nu, radius) / 6 * np.einsum("h,u,huac,ra->rc", h, u, kept, a))
 
 

@@ -69,6 +69,24 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: TipDome(-0.01), "TipDome.radius must be in [0, inf) m; got -0.01"),
     (lambda: TipShear(0.0), "TipShear.ratio must be in (0, inf); got 0.0"),
     (lambda: TipShear(inf), "TipShear.ratio must be in (0, inf); got inf"),
+    (lambda: LeatherTip(0.0, 9.5e-3, 1e8), "LeatherTip.height must be in (0, inf) m; got 0.0"),
+    (lambda: LeatherTip(6e-3, 0.0, 1e8), "LeatherTip.dome_radius must be in (0, inf] m; got 0.0"),
+    (lambda: LeatherTip(6e-3, nan, 1e8), "LeatherTip.dome_radius must be in (0, inf] m; got nan"),
+    (lambda: LeatherTip(6e-3, 9.5e-3, inf), "LeatherTip.E must be in (0, inf) Pa; got inf"),
+    (lambda: LeatherTip(6e-3, 9.5e-3, 1e8, 0.5), "LeatherTip.nu must be in [0.2, 0.45]; got 0.5"),
+    (lambda: LeatherTip(6e-3, 9.5e-3, 1e8, rho=0.0), "LeatherTip.rho must be in (0, inf) kg/m^3; got 0.0"),
+    (lambda: LeatherTip(6e-3, 6e-3, 1e8).mass(0.013), "LeatherTip.dome_radius must be in [0.0065, inf] m, half of"),
+    (lambda: LeatherTip(2e-3, 9.5e-3, 1e8).mass(0.01275), "LeatherTip.height must be in (0.00245661, inf) m, above"),
+    (lambda: LeatherTip(1e-3, inf, 1e8).mass(0.01275), "LeatherTip.height must be in [0.0017, 0.019125] m on a tip"),
+    (lambda: LeatherTip(0.02, inf, 1e8).mass(0.01275), "LeatherTip.height must be in [0.0017, 0.019125] m on a tip"),
+    (lambda: LeatherTip(6e-3, inf, 1e8).mass(-1.0), "diameter must be in (0, 10] m; got -1.0"),
+    (lambda: LeatherTip(6e-3, inf, 1e8).compliance(0.012, 0.1, 7e-3), "patch must be in (0, 0.006] m; got 0.007"),
+    (lambda: LeatherTip(6e-3, inf, 1e8).compliance(0.012, 1.0, 1e-3), "offset must be in (-1, 1); got 1.0"),
+    (lambda: LeatherTip(6e-3, inf, 1e8).head_on(0.012, 0.0), "ball_radius must be in (0, inf) m; got 0.0"),
+    *[
+        (listed(LeatherTip(6e-3, 9.5e-3, 1e8), other), f"effects[1], {type(other).__name__}; got LeatherTip")
+        for other in (TipDome(9e-3), SHEAR, PowerLawTip(1.5))
+    ],
     *[
         (lambda value=value: PointMass(0.1, value), "TypeError: PointMass.mass must be a number in [0, inf) kg; got ")
         for value in ("10 g", None, True)
