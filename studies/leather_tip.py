@@ -221,8 +221,8 @@ def text() -> str:
         "than was measured, and the dip at 6 to 7 in is deeper.\n\n"
         "What it rests on: how the shrinking patch lets the force along the surface go. Here F_t falls with the\n"
         "patch's stiffness. If instead each ring of the patch lost only the strain that it took since it touched,\n"
-        "which is as admissible, a sketch gives 8 to 11 % less squirt (2.18 degrees at b/R 0.375), and partial slip takes a\n"
-        "part of that back at large offsets. The agreement at b/R 0.375 is therefore worth about a tenth.\n\n"
+        "which is as admissible, a sketch gives 8 to 11 % less squirt (2.18 degrees at b/R 0.375), and partial slip\n"
+        "takes a part of that back at large offsets. The agreement at b/R 0.375 is therefore worth about a tenth.\n\n"
         f"## What was predicted\n\n{prediction_table()}\n"
         f"## Speed\n\nSquirt, deg, at b/R 0.375.\n\n{speed_table()}\n"
         f"## Leather\n\nSquirt, deg, at b/R 0.375 and {SPEED:g} m/s.\n\n{leather_table()}\n"
@@ -240,14 +240,14 @@ def draw() -> None:
             left.plot(SPEEDS, [struck(model, maple(), speed=U)[0] for U in SPEEDS], label=model, **wide)
             squirts = [struck(model, maple(), leather=replace(LEATHER, E=E))[0] for E in MODULI]
             right.semilogx([E / 1e6 for E in MODULI], squirts, label=model, **wide)
-        left.plot([3.6 * 0.44704, 7.8 * 0.44704], [2.34, 2.54], "k", linewidth=6, alpha=0.3, label="measured (robot)")
+        left.fill_between(np.multiply([3.6, 7.8], 0.44704), 2.34, 2.54, color="k", alpha=0.15, label="measured (robot)")
         left.axhline(2.30, color="k", linestyle=":", label="measured (another day)")
         right.axhspan(2.30, 2.43, color="k", alpha=0.15, label="measured")
         left.set_xlabel("speed of the stroke, m/s")
         right.set_xlabel("E of the leather, MPa")
         for axes in (left, right):
             axes.set_ylabel("squirt at b/R 0.375, degrees")
-            axes.set_ylim(1.0, 3.4)
+            axes.set_ylim(1.6, 2.8)
             axes.legend(loc="lower left", fontsize=8)
         right.set_xticks([40, 70, 100, 140, 200, 400], ["40", "70", "100", "140", "200", "400"])
         right.minorticks_off()
