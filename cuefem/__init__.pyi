@@ -1,5 +1,6 @@
 from .accuracy import resolve as resolve, resolve_end_mass as resolve_end_mass
 from .beam.modes import modes as modes
+from .contact.calibrated import leather_modulus as leather_modulus
 from .contact.motion import motion as motion
 from .contact.place import Placed as Placed, place as place
 from .contact.strike import strike as strike
@@ -10,6 +11,7 @@ from .effects import (
     Effect as Effect,
     Elevation as Elevation,
     Joint as Joint,
+    LeatherTip as LeatherTip,
     PointMass as PointMass,
     PowerLawTip as PowerLawTip,
     RollingContact as RollingContact,

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
+from itertools import chain
 from typing import Annotated, Any
 
 import numpy as np
 
 from cuefem.cue import Array, Cue, LumpedCue
-from cuefem.effects import CueEffect, Effect, acting_on_cue, check_effects
+from cuefem.effects import CueEffect, Effect, LeatherTip, acting_on_cue, check_effects
+from cuefem.effects.leather_law import LeatherLaw
 from cuefem.effects.terms import ContactTerms
-from cuefem.quantity import CONTACT_TIME, Number, Quantity, check_count, check_fields, check_kind
+from cuefem.quantity import CONTACT_TIME, Number, Quantity, check_count, check_fields, check_kind, scalar
 
 DEFAULT_CONTACT_TIME = 2e-3  # s, [Kim] sec. 4
 
@@ -178,7 +180,14 @@ class Scene:
             raise TypeError(f"Scene.effects must be a sequence of effects; got one, {self.effects!r}")
         object.__setattr__(self, "effects", tuple(self.effects))
         check_effects(self.cue, self.effects)
-        _ = self.contact_terms  # refuses what may be given only once
+        whole = self.contact_terms.tip is not None  # the terms refuse what may be given only once
+        for name, unit in (("contact_time", "s"), ("stiffness", "N/m")):
+            given = getattr(self.tip, name)
+            if whole and given is not None:
+                raise ValueError(
+                    f"Tip.{name} must be left out beside an effect that gives the whole tip, from which it follows; "
+                    f"got {given} {unit}"
+                )
 
     @property
     def shaft(self) -> Cue:
@@ -204,24 +213,33 @@ class Scene:
 
     @property
     def bare(self) -> Scene:
-        """The scene without its effects at the tip."""
-        return replace(self, effects=tuple(effect for effect in self.effects if not effect.at_tip))
+        """The scene without its effects at the tip: the mass and the contact time of a whole tip stay."""
+        if self.lumped is not None:
+            return replace(self, effects=tuple(effect for effect in self.effects if not effect.at_tip))
+        kept = tuple(chain.from_iterable(effect.left_on(self.shaft) for effect in self.effects))
+        timed = self.tip if self.contact_terms.tip is None else replace(self.tip, contact_time=self.contact_time)
+        return replace(self, tip=timed, effects=kept)
 
     @property
     def level(self) -> Scene:
         """The scene with a level cue: without effects that put a table under the ball."""
-        kept = tuple(effect for effect in self.effects if ContactTerms.of((effect,)).table is None)
+        kept = tuple(effect for effect in self.effects if ContactTerms.of((effect,), self._tip_diameter).table is None)
         return self if len(kept) == len(self.effects) else replace(self, effects=kept)
 
     @property
     def contact_terms(self) -> ContactTerms:
         """What the effects add at the contact."""
-        return ContactTerms.of(self.effects)
+        return ContactTerms.of(self.effects, self._tip_diameter)
+
+    @property
+    def _tip_diameter(self) -> float | None:
+        return None if self.lumped is not None else self.shaft.segments[0].tip_diameter
 
     @property
     def axial_mass(self) -> Any:
         """Mass m_a that a head-on blow feels, kg: the cue's mass and the mass that effects add."""
-        return self.cue.mass + math.fsum(effect.axial_mass for effect in self.effects)
+        added = (effect.axial_mass if self.lumped else effect.mass_on(self.shaft) for effect in self.effects)
+        return self.cue.mass + math.fsum(added)
 
     @property
     def dome_radius(self) -> float:
@@ -235,7 +253,14 @@ class Scene:
 
     @property
     def contact_time(self) -> Any:
-        """Duration T of a head-on blow, s, given or from the tip's stiffness (handbook: The strike)."""
+        """Duration T of a head-on blow, s, given or from the tip's stiffness (handbook: The strike).
+
+        A whole tip (`LeatherTip`) has it from its own law, at the stroke's speed, on a cue that is rigid along its
+        axis; with the stiffness it is what stands for such a tip where a linear one is asked for: in end masses, in the
+        choice of modes, in reports.
+        """
+        if self.contact_terms.tip is not None:
+            return (1 + self.tip.restitution) * self._loading_time
         if self.tip.stiffness is None:
             return DEFAULT_CONTACT_TIME if self.tip.contact_time is None else self.tip.contact_time
         return math.pi / 2 * (1 + self.tip.restitution) * np.sqrt(self.head_on_mass / self.tip.stiffness)
@@ -246,6 +271,26 @@ class Scene:
         if self.tip.stiffness is not None:
             return self.tip.stiffness
         return (math.pi / 2 * (1 + self.tip.restitution) / self.contact_time) ** 2 * self.head_on_mass
+
+    @property
+    def leather(self) -> LeatherTip:
+        """The scene's tip of leather; ValueError if it has none."""
+        found = next((effect for effect in self.effects if isinstance(effect, LeatherTip)), None)
+        if found is None:
+            raise ValueError("Scene.effects must hold a LeatherTip; got none")
+        return found
+
+    def tip_law(self, restitution: float = 1.0, offset: float = 0.0) -> LeatherLaw:
+        """The law of a whole tip (`LeatherTip`) on this cue and ball; ValueError if the scene has none."""
+        whole = self.contact_terms.tip
+        if whole is None:
+            raise ValueError("Scene.effects must hold a LeatherTip, whose law is asked for; got none")
+        return whole.law(scalar("Ball.radius", self.ball.radius), abs(offset), restitution)
+
+    @property
+    def _loading_time(self) -> Any:
+        """Time that a head-on blow takes a whole tip to its greatest compression, s."""
+        return self.tip_law().blow(self.head_on_mass, self.stroke.speed)[1]
 
 
 @dataclass(frozen=True)

@@ -39,8 +39,10 @@ MOST_KEPT, MOST = 160, 400
 def default_resolution(scene: Scene, *, periods: float = PERIODS_KEPT, least: int = LEAST) -> Resolution:
     """The default resolution: modes up to the frequency ``periods`` / contact time, and at least ``least`` of them."""
     cue = scene.shaft
-    if not CONTACT_TIME.holds(scene.contact_time):  # one made by a stiffness; a contact time given is bounded already
-        got = f"{scene.tip.stiffness:.6g} N/m, {scene.contact_time:.3g} s"
+    if not CONTACT_TIME.holds(
+        scene.contact_time
+    ):  # one made by a stiffness; or by a whole tip; one given is bounded already
+        got = f"{scene.stiffness:.6g} N/m, {scene.contact_time:.3g} s"
         raise ValueError(f"Tip.stiffness must make a head-on contact time in {CONTACT_TIME.bounds}; got {got}")
     count = min(max(modes_below(cue, 2 * np.pi * periods / scene.contact_time), least), MOST_KEPT)
     elements, order = mesh_for(cue, count)

@@ -142,8 +142,8 @@ class Terms:
     At a joint the butt side's unknowns are the node's.
     """
 
-    def __init__(self, mesh: Mesh) -> None:
-        self.mesh = mesh
+    def __init__(self, mesh: Mesh, cue: Cue) -> None:
+        self.mesh, self.cue = mesh, cue
         self.stiffness: dict[int, float] = {}
         self.dashpot: dict[int, float] = {}
         self.mass: dict[int, float] = {}

@@ -127,7 +127,7 @@ def assemble(cue: Cue, *, elements: int | tuple[int, ...], order: int, effects: 
     mesh = mesh_cue(cue, elements=elements, order=order, positions=positions, splits=splits)
     section = sections(cue, mesh)
     stiff, heavy = element_matrices(section, mesh.sizes, cue.length, order)
-    terms = Terms(mesh)
+    terms = Terms(mesh, cue)
     for effect in effects:
         effect.add_to(terms)
     scale = np.ones(mesh.unknowns)

@@ -18,6 +18,7 @@ from cuefem.cli.scatter import scatter
 from cuefem.cli.scene import cost, effects, end_mass, modes, report, strike
 from cuefem.cli.sweep import sweep
 from cuefem.cli.tap import tap
+from cuefem.cli.tip import tip
 from cuefem.cli.validate import validate
 
 # Before NumPy is loaded: small dense matrices gain nothing from BLAS threads, and two of them on a busy machine can be
@@ -91,6 +92,7 @@ for _command in (
     optimize,
     designer,
     tap,
+    tip,
     guide,
 ):
     main.add_command(_command)

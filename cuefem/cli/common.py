@@ -195,8 +195,12 @@ def show(
     tables: Callable[..., Any],
     *,
     blow: bool = True,
+    change: Callable[[Scene], Scene] | None = None,
 ) -> None:
-    """Compute all of it first, then print it all: as JSON, or as a heading and tables. blow: see `scene_of`."""
+    """Compute all of it first, then print it all: as JSON, or as a heading and tables.
+
+    blow: see `scene_of`. change: what the command's own options make of the scene.
+    """
     from cuefem.report.quantities import UNITS
     from cuefem.report.record import plain, scene_record
     from cuefem.report.unusual import unusual
@@ -204,6 +208,7 @@ def show(
 
     scene, notes = scene_of(file, given, blow=blow)
     with blaming(file):
+        scene = scene if change is None else change(scene)
         about, found = scene_record(scene), results(scene)
     if given["as_json"]:
         said = {"file": str(file), "assumed": notes, "unusual": unusual(scene)}

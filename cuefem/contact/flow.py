@@ -276,9 +276,9 @@ def _roots(coefficients: Array, low: float, high: float) -> list[float]:
     """The first root of a guard that is negative at ``high``, or below its lowest point before it; or none."""
     falling = _polynomial(coefficients)
     if falling(high) < 0:
-        return [_root(falling, low, high)]
+        return [first_fall(falling, low, high)]
     lowest = zero(_polynomial(ORDERS[1:] * coefficients[1:]), low, high)
-    return [_root(falling, low, lowest)] if falling(lowest) < -DEEP * np.abs(coefficients).max() else []
+    return [first_fall(falling, low, lowest)] if falling(lowest) < -DEEP * np.abs(coefficients).max() else []
 
 
 def _polynomial(coefficients: Array) -> Callable[[float], float]:
@@ -294,7 +294,8 @@ def _polynomial(coefficients: Array) -> Callable[[float], float]:
     return value
 
 
-def _root(falling: Callable[[float], float], low: float, high: float) -> float:
+def first_fall(falling: Callable[[float], float], low: float, high: float) -> float:
+    """Where a function that is negative at ``high`` falls through zero after ``low``, where it may be zero itself."""
     if falling(low) > 0:
         return zero(falling, low, high)
     # zero at the start of a phase by its nature: it may still rise before it falls

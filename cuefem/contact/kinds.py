@@ -18,6 +18,10 @@ def contact_of(scene: Scene, tip: TipModes, laws: Laws) -> Kind:
     gives something back.
     """
     terms = scene.contact_terms
+    if terms.tip is not None:
+        from cuefem.contact.leather import whole_tip_contact  # loaded when used
+
+        return whole_tip_contact(scene, tip, laws)
     compliance, radius = terms.compliance / laws.stiffness, scalar("Ball.radius", scene.ball.radius)
     if terms.table is None and terms.law is None and not terms.turns:
         if compliance:

@@ -15,6 +15,7 @@ from cuefem.effects.base import (
     check_effects,
     effect_kinds,
 )
+from cuefem.effects.leather import LeatherTip
 from cuefem.effects.on_cue import AxialWaves, Joint, PointMass, StructuralDamping, Support
 from cuefem.effects.stroke import Elevation, SecondHit
 
@@ -24,6 +25,7 @@ __all__ = [
     "Effect",
     "Elevation",
     "Joint",
+    "LeatherTip",
     "PointMass",
     "PowerLawTip",
     "RollingContact",

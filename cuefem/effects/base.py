@@ -69,6 +69,8 @@ class Effect:
     # Whether it acts at the tip (the cue without it is `Scene.bare`), and whether it is part of a cue that lies free.
     at_tip: ClassVar[bool] = False
     part_of_cue: ClassVar[bool] = False
+    # Whether it gives the whole tip, so that the `Tip` has no contact time of its own.
+    whole_tip: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -82,6 +84,14 @@ class Effect:
     def positions(self) -> tuple[float, ...]:
         """Positions on the cue that must be mesh nodes, m from the tip."""
         return ()
+
+    def mass_on(self, cue: Cue) -> float:
+        """Mass that the effect adds to the motion of this cue along its axis, kg."""
+        return self.axial_mass
+
+    def left_on(self, cue: Cue) -> tuple[Effect, ...]:
+        """What is left of the effect on a cue whose tip is bare (`Scene.bare`)."""
+        return () if self.at_tip else (self,)
 
     def check_on(self, cue: Cue, name: str) -> None:
         """ValueError, in the words of ``name``, unless the effect's positions lie on the cue."""

@@ -291,7 +291,7 @@ class AxialWaves(CueEffect):
         """The rod modes."""
         from cuefem.effects.axial import rod_modes  # loaded when used: it needs scikit-fem
 
-        masses = [(effect.positions[0], effect.axial_mass) for effect in effects if effect.axial_mass]
+        masses = [(effect.positions[0], effect.mass_on(cue)) for effect in effects if effect.mass_on(cue)]
         masses.append((cue.length, cue.body_mass))
         tailed = found.radiation is not None
         return (rod_modes(found.system, masses, below=found.highest, leather=cue.leather, tailed=tailed),)

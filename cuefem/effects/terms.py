@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 from typing import NamedTuple, Protocol
 
 from cuefem.effects.law import NormalLaw
+from cuefem.effects.leather_law import LeatherLaw
 
 # Displacement (u, w) of the contact per unit rotation of the tip's end section, m, over the contact's angle, rad.
 Lever = Callable[[float], tuple[float, float]]
@@ -19,6 +20,23 @@ class HeadOn(NamedTuple):
     restitution: float
     time: float
     speed: float
+
+
+class WholeTip(Protocol):
+    """A tip that gives everything at the contact: where this is on the cue, and the forces there."""
+
+    @property
+    def dome_radius(self) -> float:
+        """Radius of its dome, m; 0 for a flat tip."""
+
+    def lever(self, phi: float) -> tuple[float, float]:
+        """Displacement (u, w) of the contact per unit rotation of the cue's end section, m; phi >= 0, rad."""
+
+    def rolling_radius(self, phi: float) -> float:
+        """Radius of what the ball rolls on at that angle, m; 0 for an edge."""
+
+    def law(self, ball_radius: float, offset: float, restitution: float) -> LeatherLaw:
+        """Its forces on a ball of that radius, m, that is struck at b/R = offset >= 0."""
 
 
 # Makes a tip's law along the normal from its head-on blow, and tells about how long the contact takes, s.
@@ -43,22 +61,25 @@ class ContactTerms:
     """Terms of the contact; each effect of a scene adds its own (`Effect.add_to_contact`), in any order.
 
     What may be given only once (law, turning normal, table, window) is refused the second time. `cuefem.contact.kinds`
-    reads the terms and picks the cheapest contact that can honour them.
+    reads the terms and picks the cheapest contact that can honour them. tip_diameter: of the cue's end, m; None for a
+    lumped cue, which has none.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, tip_diameter: float | None = None) -> None:
+        self.tip_diameter = tip_diameter
         self.levers: list[Lever] = []
         self.dome_radii: list[float] = []
         self.compliances: list[float] = []
         self.law: MakeLaw | None = None
+        self.tip: WholeTip | None = None
         self.turns = False
         self.table: Table | None = None
         self.window: float | None = None
 
     @classmethod
-    def of(cls, effects: Iterable[ActsAtContact]) -> ContactTerms:
+    def of(cls, effects: Iterable[ActsAtContact], tip_diameter: float | None = None) -> ContactTerms:
         """The terms of all these effects together."""
-        terms = cls()
+        terms = cls(tip_diameter)
         for effect in effects:
             effect.add_to_contact(terms)
         return terms
@@ -79,6 +100,11 @@ class ContactTerms:
         """Replace the tip's linear law along the normal by the one that ``law`` makes for its head-on blow."""
         self._refuse_twice("law of the tip", self.law is not None)
         self.law = law
+
+    def set_tip(self, tip: WholeTip) -> None:
+        """Give the tip as a whole: where the contact is on it, and the forces there."""
+        self._refuse_twice("whole tip", self.tip is not None)
+        self.tip = tip
 
     def turn(self) -> None:
         """Let the normal turn as the contact moves over ball and tip."""
@@ -102,7 +128,7 @@ class ContactTerms:
     @property
     def dome_radius(self) -> float:
         """Radius of the tip's dome, m; 0 without one."""
-        return math.fsum(self.dome_radii)
+        return math.fsum(self.dome_radii) + (0.0 if self.tip is None else self.tip.dome_radius)
 
     @property
     def compliance(self) -> float:
@@ -116,5 +142,6 @@ class ContactTerms:
         """
         s, c = math.sin(phi), math.cos(phi)
         domes = [(-radius * s, radius * (1 - c)) for radius in self.dome_radii]
-        parts = [*domes, *(lever(phi) for lever in self.levers)]
+        whole = [] if self.tip is None else [self.tip.lever(phi)]
+        parts = [*domes, *whole, *(lever(phi) for lever in self.levers)]
         return math.fsum(u for u, _ in parts), math.fsum(w for _, w in parts)

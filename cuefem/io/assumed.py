@@ -6,6 +6,7 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
+from cuefem.effects import effect_kinds
 from cuefem.io.profile import DEFAULT_MATERIAL, DEFAULT_UNIT, SHAPES, SURFACES
 from cuefem.io.toml import read_tables
 from cuefem.scene import DEFAULT_CONTACT_TIME, Ball, Stroke, Tip
@@ -62,7 +63,8 @@ def assumed_blow(
     ball, tip, stroke = (found.get(name, {}) for name in ("ball", "tip", "stroke"))
     grams, across = f"{1e3 * Ball().mass:g} g", f"{2e3 * Ball().radius:g} mm"
     neither = not {"mass", "radius"} & {*ball}
-    timed = {"contact_time", "stiffness"} & {*tip, *given}
+    effects = (effect_kinds().get(str(effect.get("type"))) for effect in found.get("effects", ()))
+    timed = {"contact_time", "stiffness"} & {*tip, *given} or any(kind and kind.whole_tip for kind in effects)
     option = "--offset or " if "offset" in offered else ""
     head_on = f" (head on: {option}[stroke] offset gives another)" if offset is None else ""
     known = (

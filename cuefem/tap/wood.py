@@ -75,7 +75,7 @@ class TapTest:
         """(density of the wood, its relative error)."""
         mass = Quantity("kg", "(0, inf)").check("mass", mass)
         cue, wood = self.shaft.cue, self.shaft.wood
-        drawn = cue.shaft_mass + sum(effect.axial_mass for effect in self.shaft.effects)
+        drawn = cue.shaft_mass + sum(effect.mass_on(cue) for effect in self.shaft.effects)
         own = with_material(cue, wood, replace(wood, rho=2 * wood.rho)).shaft_mass - cue.shaft_mass
         others = drawn - own
         low, high = others + own / FACTOR, others + own * FACTOR

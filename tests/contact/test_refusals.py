@@ -6,7 +6,8 @@ from math import inf, nan
 import numpy as np
 import pytest
 
-from cuefem import Ball, Cue, LumpedCue, Material, Scene, Segment, Stroke, Tip, TipShear, impulse
+from cuefem import Ball, Cue, LumpedCue, Material, Scene, Segment, Stroke, Tip, TipShear, impulse, strike
+from tests.helpers.leather_scenes import leather_scene
 from tests.helpers.refusals import refuses
 
 MAKERS = {
@@ -82,6 +83,8 @@ CALLS: list[tuple[Callable[[], object], str]] = [
         lambda: impulse(Scene(LumpedCue(0.54, 0.005), effects=(TipShear(0.75),))),
         "impulse takes a LumpedCue without effects",
     ),
+    (lambda: strike(leather_scene(e=0.05)), "Tip.restitution must be in [0.1, 1] beside LeatherTip, whose contact is"),
+    (lambda: strike(leather_scene(speed=60.0)), "mm): give LeatherTip a larger height or E, or Stroke a lower speed"),
 ]
 
 

@@ -1,6 +1,9 @@
 """Effects in a scene file (regression)."""
 
-from cuefem import AxialWaves, Joint, StructuralDamping, load, save
+from math import inf
+
+from cuefem import AxialWaves, Joint, LeatherTip, StructuralDamping, load, save
+from cuefem.io.assumed import assumed
 from tests.effects.test_refusals import SCENE
 
 
@@ -17,3 +20,19 @@ def test_a_scene_file_holds_every_linear_effect(tmp_path):
     assert scene.effects == (AxialWaves(), joint, StructuralDamping(), StructuralDamping(0.012))
     save(scene, path)
     assert load(path) == scene
+
+
+def test_a_scene_file_holds_a_whole_tip(tmp_path):
+    text = 'type = "LeatherTip"\nheight = "6 mm"\ndome_radius = "{}"\nE = "140 MPa"\n{}'
+    path = tmp_path / "scene.toml"
+    for dome, more, told in (
+        ("9.5 mm", "", LeatherTip(6e-3, 9.5e-3, 140e6)),
+        ("inf m", 'nu = 0.3\nrho = "900 kg/m^3"', LeatherTip(6e-3, inf, 140e6, 0.3, 900.0)),
+        ("0.375 in", 'shear = "4e5 N/m"\nrolls = false', LeatherTip(6e-3, 9.525e-3, 140e6, shear=4e5, rolls=False)),
+    ):
+        path.write_text(SCENE.format(effect=text.format(dome, more)), encoding="utf-8")
+        scene = load(path)
+        assert scene.effects == (AxialWaves(), told)
+        assert "contact time" not in " ".join(assumed(path, ()))  # it follows from the tip
+        save(scene, path)
+        assert load(path) == scene

@@ -10,7 +10,9 @@ import pytest
 from cuefem import (
     AxialWaves,
     Effect,
+    Elevation,
     Joint,
+    LeatherTip,
     LumpedCue,
     PointMass,
     PowerLawTip,
@@ -19,13 +21,14 @@ from cuefem import (
     SecondHit,
     StructuralDamping,
     Support,
+    Tip,
     TipDome,
     TipShear,
     load,
     modes,
 )
 from tests.helpers.refusals import refuses
-from tests.helpers.strike_scenes import KIM, kim_scene
+from tests.helpers.strike_scenes import KIM, kim_scene, pool_cue
 
 
 def listed(*effects: Effect) -> Callable[[], Scene]:
@@ -42,7 +45,9 @@ ON, BETWEEN = (
     "position must be in (0, 0.7) m, between the ends of the cue",
 )
 OFF = ((PointMass(0.71, 0.01), ON), (Support(0.8, 1.0), ON), (Joint(0.7, 1e-3), BETWEEN), (Joint(0.9), BETWEEN))
-FINITE = (PointMass(0.1, 0.01), Support(0.1, 5.0), Joint(0.1), AxialWaves(), TipDome(0.01))
+LEATHER = LeatherTip(6e-3, 9.5e-3, 1.4e8)
+FINITE = (PointMass(0.1, 0.01), Support(0.1, 5.0), Joint(0.1), AxialWaves(), TipDome(0.01), LEATHER)
+PARTS = (TipDome(0.01), SHEAR, PowerLawTip(), RollingContact(), Elevation(0.1))
 CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: PointMass(nan, 0.01), "PointMass.position must be in [0, inf) m; got nan"),
     (lambda: PointMass(inf, 0.01), "PointMass.position must be in [0, inf) m; got inf"),
@@ -64,6 +69,24 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: TipDome(-0.01), "TipDome.radius must be in [0, inf) m; got -0.01"),
     (lambda: TipShear(0.0), "TipShear.ratio must be in (0, inf); got 0.0"),
     (lambda: TipShear(inf), "TipShear.ratio must be in (0, inf); got inf"),
+    (lambda: LeatherTip(0.0, 9.5e-3, 1e8), "LeatherTip.height must be in (0, inf) m; got 0.0"),
+    (lambda: LeatherTip(6e-3, 0.0, 1e8), "LeatherTip.dome_radius must be in (0, inf] m; got 0.0"),
+    (lambda: LeatherTip(6e-3, nan, 1e8), "LeatherTip.dome_radius must be in (0, inf] m; got nan"),
+    (lambda: LeatherTip(6e-3, 9.5e-3, inf), "LeatherTip.E must be in (0, inf) Pa; got inf"),
+    (lambda: LeatherTip(6e-3, 9.5e-3, 1e8, 0.5), "LeatherTip.nu must be in [0.2, 0.45]; got 0.5"),
+    (lambda: LeatherTip(6e-3, 9.5e-3, 1e8, rho=0.0), "LeatherTip.rho must be in (0, inf) kg/m^3; got 0.0"),
+    (lambda: LeatherTip(6e-3, 6e-3, 1e8).mass(0.013), "LeatherTip.dome_radius must be in [0.0065, inf] m, half of"),
+    (lambda: LeatherTip(2e-3, 9.5e-3, 1e8).mass(0.01275), "LeatherTip.height must be in (0.00245661, inf) m, above"),
+    (lambda: LeatherTip(1e-3, inf, 1e8).mass(0.01275), "LeatherTip.height must be in [0.0017, 0.019125] m on a tip"),
+    (lambda: LeatherTip(0.02, inf, 1e8).mass(0.01275), "LeatherTip.height must be in [0.0017, 0.019125] m on a tip"),
+    (lambda: LeatherTip(6e-3, inf, 1e8).mass(-1.0), "diameter must be in (0, 10] m; got -1.0"),
+    (lambda: LeatherTip(6e-3, inf, 1e8).compliance(0.012, 0.1, 7e-3), "patch must be in (0, 0.006] m; got 0.007"),
+    (lambda: LeatherTip(6e-3, inf, 1e8).compliance(0.012, 1.0, 1e-3), "offset must be in (-1, 1); got 1.0"),
+    (lambda: LeatherTip(6e-3, inf, 1e8).head_on(0.012, 0.0), "ball_radius must be in (0, inf) m; got 0.0"),
+    *[
+        (listed(LeatherTip(6e-3, 9.5e-3, 1e8), other), f"effects[1], {type(other).__name__}; got LeatherTip")
+        for other in (TipDome(9e-3), SHEAR, PowerLawTip(1.5))
+    ],
     *[
         (lambda value=value: PointMass(0.1, value), "TypeError: PointMass.mass must be a number in [0, inf) kg; got ")
         for value in ("10 g", None, True)
@@ -84,8 +107,32 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     ),
     *[
         (listed(once, once), f"{type(once).__name__} acts once")
-        for once in (PowerLawTip(), RollingContact(), SecondHit())
+        for once in (PowerLawTip(), RollingContact(), SecondHit(), LEATHER)
     ],
+    *[
+        (listed(part, LEATHER), f"must be an effect that goes with effects[0], {type(part).__name__}; got LeatherTip")
+        for part in PARTS
+    ],
+    (
+        listed(LEATHER, TipDome(0.01)),
+        "Scene.effects[0] must be an effect that goes with effects[1], TipDome; got Leath",
+    ),
+    (listed(LEATHER), "Tip.contact_time must be left out beside an effect that gives the whole tip, from which it fol"),
+    (
+        lambda: replace(kim_scene(), tip=Tip(stiffness=1e6), effects=(LEATHER,)),
+        "Tip.stiffness must be left out beside an effect that gives the whole tip, from which it follows; got 1",
+    ),
+    (
+        lambda: replace(kim_scene(), cue=pool_cue(), tip=Tip(), effects=(AxialWaves(), LEATHER)),
+        "Scene.effects[1] must be the only leather: draw the cue without its first 6 mm, which have an E below 1 GPa",
+    ),
+    (lambda: modes(pool_cue(), effects=(LEATHER,)), "LeatherTip must be the only leather: draw the cue without its"),
+    (
+        lambda: replace(kim_scene(), tip=Tip(), effects=(replace(LEATHER, dome_radius=5e-3),)),
+        "LeatherTip.dome_radius must be in [0.006, inf] m, half of the tip's diameter or more; got 0.005",
+    ),
+    (lambda: replace(LEATHER, shear=0.0), "LeatherTip.shear must be in (0, inf) N/m; got 0.0"),
+    (lambda: replace(LEATHER, rolls="no"), "TypeError: LeatherTip.rolls must be a bool; got 'no'"),
     (listed(SHEAR, "TipDome"), "TypeError: Scene.effects[1] must be an Effect; got 'TipDome'"),  # type: ignore[arg-type]
 ]
 

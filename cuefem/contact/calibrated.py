@@ -1,0 +1,70 @@
+"""The leather's modulus from how long it touches the ball: a head-on blow, solved for E."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from cuefem.contact.strike import strike
+from cuefem.quantity import CONTACT_TIME
+from cuefem.scene import Scene
+
+CLOSE = 1e-9  # of the contact time
+FIRST_SLOPE = -0.4  # of ln T over ln E, about
+
+
+def leather_modulus(scene: Scene, contact_time: float) -> float:
+    """Young's modulus of the leather with which a head-on blow takes a given time.
+
+    Parameters
+    ----------
+    scene
+        A scene with a `LeatherTip`, whose own E is where the search starts. The blow has the scene's cue, ball, speed,
+        restitution and other effects (`AxialWaves` make it longer), but no offset.
+    contact_time
+        How long ball and tip touch, s, in [1e-5, 1] s.
+
+    Returns
+    -------
+    float
+        E, Pa.
+
+    Raises
+    ------
+    ValueError
+        If the scene has no `LeatherTip`, the contact time is out of bounds, or the leather would have to be so soft
+        that the ball is pressed further into it than its law is known.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> cue = cf.Cue((cf.Segment(0.7, 0.01275, 0.021, wood),), body_mass=0.43)
+    >>> tip = cf.LeatherTip(height=6e-3, dome_radius=9.5e-3, E=100e6)
+    >>> scene = cf.Scene(cue, cf.Ball(0.17, 0.028575), cf.Tip(0.73), cf.Stroke(2.0), (tip,))
+    >>> E = cf.leather_modulus(scene, 1.1e-3)
+    >>> round(E / 1e6)  # MPa
+    151
+    """
+    from scipy.optimize import root_scalar
+
+    contact_time = CONTACT_TIME.check("leather_modulus contact_time", contact_time)
+    head_on = replace(scene, stroke=replace(scene.stroke, offset=0.0))
+
+    def too_long(logarithm: float) -> float:
+        return math.log(strike(with_modulus(head_on, math.exp(logarithm))).duration / contact_time)
+
+    first = math.log(scene.leather.E)
+    guess = first - too_long(first) / FIRST_SLOPE
+    if abs(guess - first) < CLOSE:
+        return scene.leather.E
+    found = root_scalar(too_long, x0=first, x1=guess, method="secant", xtol=CLOSE)
+    if not found.converged:
+        raise RuntimeError(f"no E of the leather was found for a contact of {contact_time:g} s: {found.flag}")
+    return math.exp(found.root)
+
+
+def with_modulus(scene: Scene, E: float) -> Scene:
+    """The scene with another E of its leather, Pa."""
+    leather = scene.leather
+    return replace(scene, effects=tuple(replace(leather, E=E) if each is leather else each for each in scene.effects))

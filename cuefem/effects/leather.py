@@ -1,0 +1,388 @@
+"""The leather tip from its geometry: a domed cylinder of leather on the ferrule."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+import numpy as np
+
+from cuefem.cue import SOFT, Array, Cue
+from cuefem.effects.base import CueEffect, Effect
+from cuefem.effects.leather_law import Curves, LeatherLaw
+from cuefem.effects.leather_table import (
+    CURVATURE,
+    HEAD_ON_RADIUS,
+    HEIGHT,
+    TipTable,
+    compliance,
+    farthest,
+    head_on,
+    of_tip,
+    punch_gain,
+)
+from cuefem.effects.on_cue import PointMass
+from cuefem.effects.terms import ContactTerms
+from cuefem.quantity import DIAMETER, Number, Quantity, check_kind
+
+if TYPE_CHECKING:
+    from cuefem.beam.mesh import Terms
+
+RADII = np.linspace(0.0, 0.5, 101)  # over D: radii of the patches at which curves are given
+
+
+@dataclass(frozen=True)
+class LeatherTip(CueEffect):
+    """A tip by what one can measure of it: its height, its dome and its leather.
+
+    Parameters
+    ----------
+    height : float
+        Height of the leather from the ferrule to the apex of the dome, m.
+    dome_radius : float
+        Radius of the dome, m; inf for a flat tip.
+    E : float
+        Young's modulus of the leather, Pa.
+    nu : float, default 0.4
+        Poisson's ratio of the leather, in [0.2, 0.45].
+    rho : float, default 1000.0
+        Density of the leather, kg/m^3.
+    shear : float, optional
+        A constant stiffness along the surface, N/m, in the place of one that follows the load: for comparison.
+    rolls : bool, default True
+        Whether the normal turns as the contact rolls over ball and dome; False for comparison.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of bounds; by the methods, if the tip cannot be on a shaft of that diameter, or if it is
+        outside the table of the elasticity: heights of 2/15 to 3/2 of the diameter, domes of half of it or more.
+
+    Notes
+    -----
+    Adds: The static give of a short domed cylinder of leather in 3-D elasticity, its base held on the ferrule: the
+    normal force over the depth of the ball's contact, the stiffness of the patch along the surface, the lever of the
+    contact about the ferrule's end, and the mass of the leather, lumped there. It is the whole tip: the cue is drawn
+    without its leather, and contact time and stiffness of the `Tip` follow from it. The tip unloads along the curve of
+    its normal force with the depth scaled by e^2, which gives back e^2 of the work. The force along the surface grows
+    by the patch's stiffness times what the surfaces shift, falls with that stiffness as the patch shrinks, and is
+    bounded by mu F_n. The normal turns as the contact rolls over ball and dome. `Outcome.energy` has "tip shear": what
+    the spring along the surface loses because its stiffness changes.
+
+    Matters when: Always. The whole tip gives sideways two to three times as much as along the normal, where the patch
+    alone gives 4/3 times as much, and the contact grows stiffer and shorter with the speed of the stroke.
+
+    Wrong when: The leather is strained far (it is linear here), layered or loose, or its patch grows over the rim,
+    where the pressure is cut off. As the patch shrinks, all of it lets go in proportion here; were every ring to let go
+    of its own strain alone, which is the least at the edge, squirt would be 8 to 11 % lower.
+
+    Limit: The give vanishes in proportion to 1/E; with a stiff leather the dome's lever is what is left.
+
+    Source: handbook: Effects; studies/leather_elasticity.py; K. L. Johnson, Contact Mechanics (1985), chapters 3 and 4.
+
+    The offset b/R is the sine of the angle phi between the cue's axis and the normal of the contact. The contact lies
+    r sin(phi) off the axis, or on the rim where the dome ends before that. Elastic methods take a ``diameter``, that
+    of the tip, m.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> tip = cf.LeatherTip(height=6e-3, dome_radius=9.5e-3, E=100e6)
+    >>> give = tip.compliance(diameter=12.75e-3, offset=0.375, patch=2e-3)
+    >>> bool(give[1, 1] > 2 * give[0, 0])
+    True
+    """
+
+    needs_beam: ClassVar[bool] = True
+    once: ClassVar[bool] = True
+    at_tip: ClassVar[bool] = True
+    part_of_cue: ClassVar[bool] = True
+    whole_tip: ClassVar[bool] = True
+    excludes: ClassVar[tuple[str, ...]] = ("TipDome", "TipShear", "PowerLawTip", "RollingContact", "Elevation")
+
+    height: Annotated[float, Quantity("m", "(0, inf)")]
+    dome_radius: Annotated[float, Quantity("m", "(0, inf]")]
+    E: Annotated[float, Quantity("Pa", "(0, inf)")]
+    nu: Annotated[float, Quantity("", "[0.2, 0.45]")] = 0.4
+    rho: Annotated[float, Quantity("kg/m^3", "(0, inf)")] = 1000.0
+    shear: Annotated[float | None, Quantity("N/m", "(0, inf)")] = None
+    rolls: bool = True
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_kind("LeatherTip.rolls", self.rolls, bool)
+
+    @property
+    def positions(self) -> tuple[float, ...]:
+        """The end of the ferrule."""
+        return (0.0,)
+
+    def check_on(self, cue: Cue, name: str) -> None:
+        """ValueError if the cue is drawn with its leather, or the tip cannot be on it."""
+        if cue.leather:
+            raise ValueError(
+                f"{name} must be the only leather: draw the cue without its first {1e3 * cue.leather:.4g} mm, which "
+                f"have an E below {SOFT / 1e9:g} GPa; got a {type(self).__name__} before them"
+            )
+        self.check_diameter(cue.segments[0].tip_diameter)
+
+    def add_to(self, terms: Terms) -> None:
+        """Add the mass of the leather, lumped at the end of the ferrule."""
+        terms.add(0.0, "mass", self.mass_on(terms.cue), 0.0)
+
+    def mass_on(self, cue: Cue) -> float:
+        """Mass of the leather on this cue, kg."""
+        return self.mass(cue.segments[0].tip_diameter)
+
+    def left_on(self, cue: Cue) -> tuple[Effect, ...]:
+        """The mass of the leather stays on a cue whose tip is bare."""
+        return (PointMass(0.0, self.mass_on(cue)),)
+
+    def add_to_contact(self, terms: ContactTerms) -> None:
+        """The whole tip, and the normal that turns."""
+        if terms.tip_diameter is not None:  # a lumped cue is refused in words
+            terms.set_tip(OnCue(self, terms.tip_diameter))
+        if self.rolls:
+            terms.turn()
+
+    def check_diameter(self, diameter: float) -> None:
+        """Refuse a tip that cannot be on a shaft, or that the table does not cover.
+
+        Parameters
+        ----------
+        diameter
+            Diameter of the tip, m.
+
+        Raises
+        ------
+        ValueError
+            In one line, with the bound.
+        """
+        DIAMETER.check("diameter", diameter)
+        if self.dome_radius < diameter / 2:
+            raise ValueError(
+                f"LeatherTip.dome_radius must be in [{diameter / 2:.6g}, inf] m, half of the tip's diameter or more; "
+                f"got {self.dome_radius}"
+            )
+        deep = self._drop(diameter / 2)
+        if self.height <= deep:
+            raise ValueError(
+                f"LeatherTip.height must be in ({deep:.6g}, inf) m, above the dome's depth on a tip of {diameter} m; "
+                f"got {self.height}"
+            )
+        low, high = (part * diameter for part in HEIGHT)
+        if not low * (1 - 1e-9) <= self.height <= high * (1 + 1e-9):
+            raise ValueError(
+                f"LeatherTip.height must be in [{low:.6g}, {high:.6g}] m on a tip of {diameter} m, "
+                f"where the table of its elasticity ends; got {self.height}"
+            )
+
+    def mass(self, diameter: float) -> float:
+        """Mass of the leather.
+
+        Parameters
+        ----------
+        diameter
+            Diameter of the tip, m.
+
+        Returns
+        -------
+        float
+            Mass of the domed cylinder, kg.
+        """
+        self.check_diameter(diameter)
+        deep, rim = self._drop(diameter / 2), diameter / 2
+        dome = math.pi * deep * (3 * rim**2 + deep**2) / 6
+        return self.rho * (math.pi * rim**2 * (self.height - deep) + dome)
+
+    def lever(self, phi: float, diameter: float) -> tuple[float, float]:
+        """Where the contact is, about the end of the ferrule.
+
+        Parameters
+        ----------
+        phi
+            Angle of the contact, rad.
+        diameter
+            Diameter of the tip, m.
+
+        Returns
+        -------
+        tuple of float
+            Displacement (u, w) of the contact per unit rotation of the ferrule's end section, m: along the cue and
+            across it. On the dome (-r sin(phi), -(h - r (1 - cos(phi)))), on the rim (-D/2, -(h - depth of the dome)).
+        """
+        off = min(self._off_axis(phi), diameter / 2)
+        return -math.copysign(off, phi), -(self.height - self._drop(off))
+
+    def compliance(self, diameter: float, offset: float, patch: Number) -> Array:
+        """The mean displacement of a patch under a load in proportion to Hertz's pressure, weighted with the load.
+
+        Parameters
+        ----------
+        diameter
+            Diameter of the tip, m.
+        offset
+            b/R in (-1, 1), the sine of the contact's angle.
+        patch
+            Radius of the patch in the plane that touches the dome at its centre, m, at most half of the diameter; one
+            or an array of them.
+
+        Returns
+        -------
+        ndarray
+            (..., 2, 2), m/N, symmetric, in (n, t): n into the leather, t in the plane of the cue's axis and the
+            contact, for positive offsets away from the axis and down the dome. With both reversed (n into the ball, t
+            towards the axis) it is the same matrix. The opposite offset has the opposite coupling, in the same frame.
+
+        Notes
+        -----
+        Where the patch reaches over the rim, the traction there is cut off and the rest scaled up. On a steep dome
+        the contact stays short of the rim, where the table ends, and only the directions turn further (b/R > 0.6).
+        """
+        self.check_diameter(diameter)
+        radii = np.asarray(Quantity("m", f"(0, {diameter / 2}]").check("patch", patch)) / diameter
+        found = self._compliance(diameter, offset, radii.ravel()) / (self.E * diameter)
+        return np.asarray(found.reshape(*radii.shape, 2, 2))
+
+    def head_on(self, diameter: float, ball_radius: float) -> tuple[Array, Array, Array]:
+        """The force over the depth of a ball that is pressed on the dome, without friction.
+
+        Parameters
+        ----------
+        diameter
+            Diameter of the tip, m.
+        ball_radius
+            Radius of the ball, m.
+
+        Returns
+        -------
+        tuple of ndarray
+            Radius of the patch, m; depth by which ball and ferrule have come closer, m; force, N. All start at zero
+            and rise, up to the largest patch, 0.45 diameters wide in radius. Beyond it take the force to go on along
+            the slope of the last two points, that of the patch as it is: its edge is at the rim by then.
+
+        Notes
+        -----
+        The ball is rigid, and the pressure acts along the axis, in between the normal of the dome and that of the
+        ball. It vanishes at the edge of the patch.
+        """
+        Quantity("m", "(0, inf)").check("ball_radius", ball_radius)
+        radius = np.linspace(0.0, HEAD_ON_RADIUS[1], 91)[1:]
+        found = head_on(self._table(diameter), radius, ball_radius / diameter)
+        force, depth = np.vstack([np.zeros(2), found * [self.E * diameter**2, diameter]]).T
+        return np.append(0.0, radius * diameter), depth, force
+
+    def shear_stiffness(self, diameter: float, offset: float) -> tuple[Array, Array]:
+        """The stiffness along the surface of a patch that sticks to the ball and moves as one.
+
+        Parameters
+        ----------
+        diameter
+            Diameter of the tip, m.
+        offset
+            b/R in (-1, 1), the sine of the contact's angle.
+
+        Returns
+        -------
+        tuple of ndarray
+            Radius of the patch, from zero to half of the diameter, m; stiffness along t, N/m.
+
+        Notes
+        -----
+        From the compliance of the Hertz-weighted patch, less what a rigid patch gives less than it: on a half-space a
+        sixth, 0.05 (1 - nu/2)/(G a), and on thin leather what a leather layer as thick as that below the patch has.
+        """
+        at, give = self._punch(diameter, offset)
+        stiffness = np.maximum.accumulate(1 / give[:, 1])  # near the rim it levels off, to a thousandth
+        return at * diameter, np.append(0.0, self.E * diameter * stiffness)
+
+    def normal_ratio(self, diameter: float, offset: float) -> tuple[Array, Array]:
+        """The stiffness along the normal of a patch that sticks, off the axis over that on it.
+
+        Parameters
+        ----------
+        diameter
+            Diameter of the tip, m.
+        offset
+            b/R in (-1, 1), the sine of the contact's angle.
+
+        Returns
+        -------
+        tuple of ndarray
+            Radius of the patch, from zero to half of the diameter, m; the ratio, which is 1 for the smallest patches.
+        """
+        at, give = self._punch(diameter, offset)
+        ratio = self._punch(diameter, 0.0)[1][:, 0] / give[:, 0]
+        return at * diameter, np.append(1.0, ratio)
+
+    def _drop(self, off: float) -> float:
+        """Depth of the dome below its apex at a distance from the axis, m."""
+        return off**2 / self.dome_radius / (1 + math.sqrt(max(1 - (off / self.dome_radius) ** 2, 0.0)))
+
+    def _off_axis(self, phi: float) -> float:
+        """Distance of the contact from the axis on a dome without a rim, m."""
+        return abs(self.dome_radius * math.sin(phi)) if phi else 0.0
+
+    def _table(self, diameter: float) -> TipTable:
+        self.check_diameter(diameter)
+        curvature = min(diameter / self.dome_radius, CURVATURE[1])
+        return of_tip(self.height / diameter, curvature, self.nu)
+
+    def _place(self, diameter: float, offset: float) -> tuple[float, float]:
+        """Distance of the patch's centre from the axis, over the tip's radius, and the angle there that is missing."""
+        Quantity("", "(-1, 1)").check("offset", offset)
+        phi, curvature = math.asin(abs(offset)), diameter / self.dome_radius
+        place = min(2 * self._off_axis(phi) / diameter, farthest(min(curvature, CURVATURE[1])))
+        return place, phi - math.asin(min(curvature * place / 2, 1.0))
+
+    def _compliance(self, diameter: float, offset: float, radii: Array) -> Array:
+        """E D times the compliance at radii over D."""
+        place, missing = self._place(diameter, offset)
+        found = compliance(self._table(diameter), place, radii)
+        turn = np.array([[math.cos(missing), -math.sin(missing)], [math.sin(missing), math.cos(missing)]])
+        found = turn @ found @ turn.T
+        found = (found + found.transpose(0, 2, 1)) / 2  # of rounding
+        return found * np.array([[1, math.copysign(1, offset)], [math.copysign(1, offset), 1]])
+
+    def _punch(self, diameter: float, offset: float) -> tuple[Array, Array]:
+        """Radii over D from zero up, and E D times the two direct compliances of a patch that sticks beyond zero."""
+        at = RADII[1:]
+        direct = np.diagonal(self._compliance(diameter, offset, at), axis1=1, axis2=2)
+        below = self.height - self._drop(self._place(diameter, offset)[0] * diameter / 2)
+        return RADII, direct - punch_gain(below / diameter, self.nu, at)
+
+
+@dataclass(frozen=True)
+class OnCue:
+    """A tip of leather on a cue's end of a diameter, m: what a contact asks of it (`cuefem.effects.terms.WholeTip`)."""
+
+    tip: LeatherTip
+    diameter: float
+
+    @property
+    def dome_radius(self) -> float:
+        """Radius of the dome, m; 0 for a flat tip."""
+        return self.tip.dome_radius if math.isfinite(self.tip.dome_radius) else 0.0
+
+    def lever(self, phi: float) -> tuple[float, float]:
+        """Displacement (u, w) of the contact per unit rotation of the ferrule's end section, m."""
+        return self.tip.lever(phi, self.diameter)
+
+    def rolling_radius(self, phi: float) -> float:
+        """Radius of the dome, m, or 0 where the contact is on the rim."""
+        return self.dome_radius if self.tip.dome_radius * math.sin(phi) < self.diameter / 2 else 0.0
+
+    def law(self, ball_radius: float, offset: float, restitution: float) -> LeatherLaw:
+        """The forces on a ball of that radius, m, that is struck at b/R = offset."""
+        return _law(self, ball_radius, offset, restitution)
+
+
+@lru_cache(maxsize=256)
+def _law(on: OnCue, ball_radius: float, offset: float, restitution: float) -> LeatherLaw:
+    """The law of a tip; scenes ask for it again and again."""
+    patch, depth, force = (part[1:] for part in on.tip.head_on(on.diameter, ball_radius))
+    radius, shear = on.tip.shear_stiffness(on.diameter, offset)
+    of_patch = patch * np.interp(patch, radius[1:], shear[1:] / radius[1:])  # nearly straight, other than the stiffness
+    return LeatherLaw.fitted(Curves(depth, force, of_patch), restitution, on.tip.shear)

@@ -1,0 +1,152 @@
+"""Law of a tip of leather: its force along the normal, and its stiffness along the surface, over its compression.
+
+Both are fitted in y, the root of the compression: Hertz's contact of two spheres has the force y^3 and the patch y, and
+what the leather's finite height and width add is a power series in the patch over the height: F = y^3 (f0 + f1 y +
+...), and for the give along the surface, that of a half-space in series with the rest, y/k_t = g0 + g1 y + ... Both are
+smooth from the first touch on.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from cuefem.cue import Array
+
+# Terms of the two series.
+TERMS = 7
+TINY = 1e-300  # stands for nothing in a divisor
+_GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(48)
+_ANGLES = (1 + _GAUSS) * math.pi / 4
+
+
+class Curves(NamedTuple):
+    """What a tip of leather gives, (n,) each, ascending, without zero.
+
+    depth, force: of a head-on blow, m and N. shear: stiffness along the surface, N/m, of the patch that it then has.
+    """
+
+    depth: Array
+    force: Array
+    shear: Array
+
+
+@dataclass(frozen=True)
+class LeatherLaw:
+    """A tip's law: the series of F and k_t in the root of the compression, the restitution e, and how deep they hold.
+
+    Unloading follows the loading curve with its compression scaled by e^2, so that the work given back is e^2 of that
+    spent. The compression that the loading curve has at the same force is called the virtual one. steady: a constant
+    stiffness along the surface, N/m, in the place of the series.
+    """
+
+    force_terms: tuple[float, ...]
+    give_terms: tuple[float, ...]
+    restitution: float
+    most: float
+    steady: float | None = None
+
+    @classmethod
+    def fitted(cls, curves: Curves, restitution: float, steady: float | None = None) -> LeatherLaw:
+        """The law through the curves, by least squares of relative differences."""
+        root = np.sqrt(curves.depth)
+        force, give = _series(root, curves.force, lowest=3), _series(root, root / curves.shear, lowest=0)
+        return cls(force, give, restitution, float(curves.depth[-1]), steady)
+
+    @cached_property
+    def _terms(self) -> Array:
+        """F and y^2/k_t in the powers of y, 1 and up: (2, powers)."""
+        terms = np.zeros((2, 2 + len(self.force_terms)))
+        terms[0, 2:], terms[1, : len(self.give_terms)] = self.force_terms, self.give_terms
+        return terms
+
+    def _powers(self, depth: Array) -> Array:
+        """Powers of y, 1 and up, at virtual compressions (n,): (powers, n)."""
+        powers = np.empty((self._terms.shape[1], *np.shape(depth)))
+        powers[:] = np.sqrt(np.maximum(depth, 0.0))
+        return np.asarray(np.multiply.accumulate(powers, axis=0, out=powers))
+
+    def at(self, depth: Array) -> tuple[Array, Array]:
+        """(F, k_t), N and N/m, at virtual compressions, m, (n,): zero where these are negative."""
+        powers = self._powers(depth)
+        force, give = self._terms @ powers
+        if self.steady is not None:
+            return force, np.full_like(force, self.steady)
+        return force, powers[1] / (give + TINY)
+
+    def slopes(self, depth: Array) -> tuple[Array, Array]:
+        """(dF, dk_t 2 y^2) over the virtual compression y^2, (n,): k_t itself has no slope at the first touch."""
+        powers = self._powers(depth)
+        force, give = self._terms * np.arange(1, len(powers) + 1) @ powers  # y times what they are over y
+        by = 2 * powers[1]
+        of_force = np.divide(force, by, out=np.zeros_like(force), where=by > 0)
+        if self.steady is not None:
+            return of_force, np.zeros_like(force)
+        _, k = self.at(depth)
+        return of_force, 2 * k - np.divide(k**2 * give, powers[1], out=np.zeros_like(k), where=by > 0)
+
+    @property
+    def first_ratio(self) -> float:
+        """k_t over the slope of F at the first touch; infinite for a constant k_t."""
+        return 1 / (1.5 * self.force_terms[0] * self.give_terms[0]) if self.steady is None else math.inf
+
+    def work(self, depth: Any) -> Any:
+        """Work that loading to a compression takes, J."""
+        y = np.sqrt(np.maximum(depth, 0.0))
+        return sum(2 / (5 + k) * term * y ** (5 + k) for k, term in enumerate(self.force_terms))
+
+    def virtual(self, depth: Any, deepest: float | None) -> Any:
+        """The virtual compression, m, of one on the loading curve, or on the way back from ``deepest``."""
+        return depth if deepest is None else (depth - self.rest(deepest)) / self.restitution**2
+
+    def rest(self, deepest: float) -> float:
+        """Compression, m, at which a tip unloaded from ``deepest`` has lost its force."""
+        return (1 - self.restitution**2) * deepest
+
+    def loss(self, deepest: float) -> float:
+        """Work that loading to ``deepest`` took and unloading did not give back, J."""
+        return (1 - self.restitution**2) * float(self.work(deepest))
+
+    def blow(self, mass: Any, speed: Any) -> tuple[Any, Any]:
+        """(greatest compression, m, time to it, s) of a head-on blow of a reduced mass, kg, at a speed, m/s."""
+        mass, speed = np.broadcast_arrays(np.asarray(mass, float), np.asarray(speed, float))
+        energy = mass * speed**2 / 2
+        deepest = self._deepest(energy)
+        if np.max(deepest) > self.most:
+            raise self.too_deep(float(np.max(deepest)))
+        cosine, sine = np.cos(_ANGLES), np.sin(_ANGLES)
+        left = self.work(deepest)[..., None] - self.work(deepest[..., None] * cosine**2)
+        rates = 2 * deepest[..., None] * cosine * sine / np.sqrt(2 * left / mass[..., None])
+        time = rates @ _WEIGHTS * math.pi / 4
+        return deepest[()], time[()]
+
+    def _deepest(self, energy: Array) -> Array:
+        """The compression that takes this work, by Newton's method in logarithms, where the law is nearly straight."""
+        depth = np.full(energy.shape, self.most)
+        for _ in range(60):
+            work = self.work(depth)
+            step = np.log(work / energy) * work / (depth * self.at(depth.ravel())[0].reshape(depth.shape))
+            depth = depth * np.exp(-np.clip(step, -1.0, 1.0))
+            if np.all(np.abs(step) < 1e-14):
+                break
+        return depth
+
+    def too_deep(self, depth: float) -> ValueError:
+        """The error of a tip that is compressed further than its curves go."""
+        return ValueError(
+            f"the tip's leather is compressed by {1e3 * depth:.3g} mm, further than its law is known "
+            f"({1e3 * self.most:.3g} mm): give LeatherTip a larger height or E, or Stroke a lower speed"
+        )
+
+
+def _series(y: Array, values: Array, *, lowest: int) -> tuple[float, ...]:
+    """Coefficients of y^lowest and up that reach the values with the least relative differences."""
+    scale = float(y[-1])
+    powers = lowest + np.arange(min(TERMS, len(y)))
+    rows = (y[:, None] / scale) ** powers / values[:, None]
+    found = np.linalg.lstsq(rows, np.ones(len(y)), rcond=None)[0] / scale**powers
+    return tuple(float(term) for term in found)

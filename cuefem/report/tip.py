@@ -1,0 +1,102 @@
+"""The leather tip of a scene by itself: record and table."""
+
+from __future__ import annotations
+
+import numpy as np
+from rich.console import Group
+
+from cuefem.effects.leather_law import LeatherLaw
+from cuefem.report.quantities import NONE, QUANTITIES, grams, significant
+from cuefem.report.record import Record
+from cuefem.report.table import table_of, with_caption
+from cuefem.scene import Scene
+
+SPEEDS = (0.5, 1.0, 2.0, 3.0, 5.0, 8.0)  # m/s
+OFFSETS = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5)  # b/R
+CURVE = 41  # points of the force over the depth
+
+
+def tip_record(scene: Scene) -> Record:
+    """What a tip of leather does: head on at several speeds, sideways at several offsets, and its force over depth.
+
+    A speed at which the leather would be pressed further than its law is known has None. The shear ratio is that of a
+    patch which sticks, as large as the greatest of a head-on blow at the scene's speed, along the surface over along
+    the normal.
+    """
+    leather, diameter = scene.leather, scene.shaft.segments[0].tip_diameter
+    restitution = float(scene.tip.restitution)
+    law = scene.tip_law(restitution)
+    patches, depths, _ = leather.head_on(diameter, float(scene.ball.radius))
+    speeds = sorted({*SPEEDS, float(scene.stroke.speed)})
+    deepest, _ = law.blow(scene.head_on_mass, scene.stroke.speed)
+    patch = float(np.interp(deepest, depths, patches))
+    along = np.linspace(0.0, law.most, CURVE)
+    return {
+        "tip_mass": leather.mass(diameter),
+        "contact_time": scene.contact_time,
+        "E": leather.E,
+        "blows": [_blow(scene, law, speed, patches, depths) for speed in speeds],
+        "shear_ratios": [
+            {"offset": offset, "ratio": _shear_ratio(scene, float(deepest), patch, offset)} for offset in OFFSETS
+        ],
+        "patch": 2 * patch,
+        "curve": {"depth": along, "force": law.at(along)[0]},
+    }
+
+
+def _blow(scene: Scene, law: LeatherLaw, speed: float, patches: np.ndarray, depths: np.ndarray) -> Record:
+    """A head-on blow at a speed, m/s, of a cue that is rigid along its axis."""
+    try:
+        deepest, loading = law.blow(scene.head_on_mass, speed)
+    except ValueError:
+        return {"speed": speed, "contact_time": None, "force": None, "depth": None, "patch": None}
+    return {
+        "speed": speed,
+        "contact_time": (1 + law.restitution) * loading,
+        "force": float(law.at(np.array([deepest]))[0][0]),
+        "depth": deepest,
+        "patch": 2 * float(np.interp(deepest, depths, patches)),
+    }
+
+
+def _shear_ratio(scene: Scene, deepest: float, patch: float, offset: float) -> float:
+    """Stiffness of a patch of that radius along the surface over that along the normal."""
+    leather, diameter = scene.leather, scene.shaft.segments[0].tip_diameter
+    normal = float(scene.tip_law().slopes(np.array([deepest]))[0][0])
+    normal *= float(np.interp(patch, *leather.normal_ratio(diameter, offset)))
+    return float(np.interp(patch, *leather.shear_stiffness(diameter, offset))) / normal
+
+
+def tip_tables(record: Record, scene: Record, wanted: float | None) -> list[Group | str]:
+    """A tip's blows head on, its shear ratio, and the leather that has the contact time asked for."""
+    kinds = ("contact_time", "force", "depth", "patch")
+    columns = ["ball or cue at", "contact time", *(QUANTITIES[kind].label for kind in kinds[1:])]
+    blows = table_of("Head on", columns, text_columns=0)
+    for blow in record["blows"]:
+        cells = (NONE if blow[kind] is None else QUANTITIES[kind].written(blow[kind]) for kind in kinds)
+        blows.add_row(f"{blow['speed']:g} m/s", *cells)
+    shear = table_of("Sideways", ["b/R", "shear ratio"], text_columns=0)
+    for at in record["shear_ratios"]:
+        shear.add_row(f"{at['offset']:g}", f"{at['ratio']:.3f}")
+    tip = scene["tip"]
+    lines = [f"mass of the leather {grams(record['tip_mass'])}; E {significant(record['E'] / 1e6)} MPa"]
+    if wanted is not None:
+        lines.append(f"E is what makes a head-on blow at {scene['stroke']['speed']:g} m/s last {1e3 * wanted:g} ms")
+    return [
+        *lines,
+        "",
+        with_caption(
+            blows,
+            f"restitution {tip['restitution']:g}; the cue is taken as rigid along its axis",
+            *([f"{NONE}: the leather would be pressed further than its law is known"] if _unknown(record) else []),
+        ),
+        with_caption(
+            shear,
+            "stiffness along the surface over that along the normal, of a patch that sticks "
+            f"({1e3 * record['patch']:.1f} mm wide, the largest head on at {scene['stroke']['speed']:g} m/s)",
+        ),
+    ]
+
+
+def _unknown(record: Record) -> bool:
+    return any(blow["contact_time"] is None for blow in record["blows"])

@@ -1,0 +1,145 @@
+"""What every stroke with a tip of leather keeps: energy, mirrors, the order of effects, its motion and history."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import permutations
+from math import inf
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from cuefem import (
+    AxialWaves,
+    Joint,
+    PointMass,
+    SecondHit,
+    StructuralDamping,
+    Support,
+    end_mass,
+    impulse,
+    lump,
+    motion,
+    strike,
+)
+from cuefem.contact.second_hit import hits
+from cuefem.contact.strike import strike_modes
+from tests.helpers.leather_scenes import AT, LEATHER, leather_scene
+from tests.helpers.strike_scenes import hand_made, imbalance
+
+EVERY = (
+    AxialWaves(),
+    StructuralDamping(0.02),
+    Support(0.2, 5e3, 1.0, 20.0),
+    PointMass(0.1, 0.011),
+    Joint(0.3, 1e-4, 1e-8),
+    SecondHit(),
+)
+
+
+@settings(max_examples=25)
+@given(
+    offset=st.floats(-0.85, 0.85),
+    speed=st.floats(0.2, 6.0),
+    e=st.floats(0.15, 1.0),
+    friction=st.one_of(st.floats(0.0, 2.0), st.just(inf)),
+    E=st.floats(6e7, 4e8),
+    shear=st.one_of(st.none(), st.floats(1e5, 1e6)),
+    rolls=st.booleans(),
+)
+def test_the_energy_account_closes_and_nothing_is_gained(offset, speed, e, friction, E, shear, rolls) -> None:
+    tip = replace(LEATHER, E=E * (1 + speed / 3), shear=shear, rolls=rolls)
+    found = strike(leather_scene(offset, speed=speed, e=e, friction=friction, leather=tip), AT)
+    assert imbalance(found) < 1e-9
+    slack = 1e-9 * found.energy["initial"]
+    assert all(found.energy[name] > -slack for name in ("tip loss", "tip shear", "friction loss"))
+    assert (found.energy["tip loss"] > slack) == (e < 1 - 1e-6)
+
+
+@pytest.mark.parametrize(("offset", "friction"), [(0.0, 0.7), (0.2, inf), (0.375, 0.7), (0.453, 0.6), (0.8, 0.3)])
+def test_with_the_default_modes_and_their_tail_the_account_closes_too(offset, friction) -> None:
+    assert imbalance(strike(leather_scene(offset, friction=friction))) < 1e-9
+
+
+@pytest.mark.parametrize("effect", EVERY, ids=lambda effect: type(effect).__name__)
+def test_each_effect_goes_with_it(effect) -> None:
+    found = strike(leather_scene(0.375, effect), AT)
+    assert imbalance(found) < 1e-9
+    assert abs(found.squirt / strike(leather_scene(), AT).squirt - 1) < 0.5
+
+
+def test_the_order_of_effects_does_not_matter() -> None:
+    scene = leather_scene(0.375, *EVERY)
+    told = strike(scene, AT)
+    assert imbalance(told) < 1e-9
+    for effects in list(permutations(scene.effects))[::300]:
+        assert strike(replace(scene, effects=effects), AT).squirt == pytest.approx(told.squirt, rel=1e-9)
+    split = replace(
+        scene, effects=(PointMass(0.1, 0.004), PointMass(0.1, 0.007), *scene.effects[:4], *scene.effects[5:])
+    )
+    assert strike(split, AT).squirt == pytest.approx(told.squirt, rel=1e-9)
+
+
+def test_a_stroke_on_the_other_side_is_the_mirror_image() -> None:
+    right, left = strike(leather_scene(0.3), AT), strike(leather_scene(-0.3), AT)
+    assert (left.squirt, left.spin) == (-right.squirt, -right.spin)
+    assert (left.ball_speed, left.duration) == (right.ball_speed, right.duration)
+    time = np.linspace(0, right.duration, 9)
+    assert left.history(time)["force_t"] == pytest.approx(-right.history(time)["force_t"], abs=1e-9)
+    assert strike(leather_scene(0.0), AT).squirt == 0
+
+
+def test_the_history_adds_up_to_the_impulse() -> None:
+    found = strike(leather_scene(leather=replace(LEATHER, rolls=False)), AT)  # so that n and t stand still
+    time = np.linspace(0, found.duration, 4001)
+    seen = found.history(time)
+    for name, impulse_on_ball in zip(("force_t", "force_n"), found.impulse, strict=True):
+        assert np.trapezoid(seen[name], time) == pytest.approx(impulse_on_ball, rel=1e-5)
+    assert np.all(seen["force_n"] > -1e-3)
+    assert np.all(np.abs(seen["force_t"]) <= 0.7 * seen["force_n"] + 1e-3)
+    with pytest.raises(ValueError, match="History takes times in"):
+        found.history(2 * found.duration)
+
+
+def test_the_motion_ends_as_the_outcome_says_and_is_smooth() -> None:
+    scene = leather_scene(0.3, SecondHit(1e-3))
+    found = strike(scene, AT)
+    time = np.linspace(0.0, found.duration + 1e-3, 200)
+    moved = motion(scene, time, AT)
+    assert moved.duration == found.duration
+    way = moved.centre[-1] - moved.centre[-2]
+    assert np.hypot(*way) / (time[-1] - time[-2]) == pytest.approx(found.ball_speed, rel=1e-9)
+    assert np.arctan2(-way[1], way[0]) == pytest.approx(found.squirt, rel=1e-9)
+    # the force that is told is that which moves the ball
+    pushed = np.gradient(np.gradient(moved.centre, time, axis=0), time, axis=0)[20:90] * scene.ball.mass
+    assert pushed == pytest.approx(moved.force[20:90], abs=2e-3 * moved.force.max())
+
+
+def test_a_second_hit_is_followed() -> None:
+    cue = hand_made([500.0, 3000.0, 9000.0], [5.0, 8.0, 7.0], rigid=9.0)
+    cue = cue.beside(2 * np.pi * np.array([300.0]), np.array([2.5])).ascending()  # a spring in the cue's length
+    found = strike_modes(leather_scene(0.1, SecondHit(0.01), e=0.5), cue)
+    assert imbalance(found) < 1e-9
+    first, second = hits(found)
+    assert second.start > first.end
+    assert np.add(first.impulse, second.impulse) == pytest.approx(found.impulse, rel=1e-9)
+    alone = strike_modes(leather_scene(0.1, e=0.5), cue)
+    assert alone.impulse == pytest.approx(first.impulse, rel=1e-9)
+    apart = found.history(np.linspace(first.end, second.start, 7)[1:-1])
+    assert np.all(apart["force_n"] == 0)
+
+
+def test_a_faster_stroke_is_a_shorter_contact_with_the_same_squirt() -> None:
+    slow, fast = (strike(leather_scene(speed=speed)) for speed in (1.0, 4.0))
+    assert fast.duration < 0.75 * slow.duration
+    assert fast.squirt == pytest.approx(slow.squirt, rel=0.03)
+
+
+def test_what_takes_a_linear_tip_has_one_of_its_contact_time() -> None:
+    scene = leather_scene(0.3)
+    for drive in ("stick", "offset", "velocity", "force", "squirt"):
+        assert 3e-3 < end_mass(scene, drive, AT) < 20e-3
+    assert impulse(scene).squirt > 0
+    assert lump(scene, AT).mass == scene.axial_mass

@@ -1,0 +1,345 @@
+"""The contact of a whole tip of leather: against another solver, in its limits, and how its errors fall."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import asin, atan2, inf
+
+import numpy as np
+import pytest
+from scipy.integrate import quad, solve_ivp
+
+from cuefem import PointMass, Resolution, Scene, Tip, TipDome, resolve, strike
+from cuefem.beam.tip import TipModes
+from cuefem.contact import leather
+from cuefem.contact.response import EVEN
+from cuefem.contact.state import Grip, Press
+from cuefem.contact.strike import strike_modes
+from cuefem.contact.tip_forces import Hold, TipForces
+from cuefem.effects.terms import ContactTerms
+from tests.helpers.leather_scenes import AT, LEATHER, POOL, SHAFT, leather_scene
+from tests.helpers.orders import assert_order
+from tests.helpers.strike_scenes import hand_made, imbalance
+
+D = 0.01275
+
+
+def bent() -> TipModes:
+    """A shaft of a few modes by hand whose end section turns with them."""
+    tip = hand_made([500.0, 3000.0, 9000.0], [5.0, 8.0, 7.0], rigid=9.0)
+    return replace(tip, rotation=np.array([0, -50.0, -60.0, -80.0, -120.0]))
+
+
+def away(first, second) -> float:
+    """Largest relative difference of squirt, speed, spin and duration."""
+    told, best = ([o.squirt, o.ball_speed, o.spin, o.duration] for o in (first, second))
+    return float(np.abs(np.array(told) / best - 1).max())
+
+
+# Against other solvers
+
+
+def by_other_solver(scene: Scene, tip: TipModes) -> tuple[float, float, float]:
+    """(squirt, ball's spin in m/s of its surface, duration) of a tip that never slips; equations written out anew.
+
+    Vectors are (u, w). States: q and q' of the modes, the ball's velocity, its surface's by spin, compression, angle of
+    the contact, F_t while the patch grows and then F_t/k_t.
+    """
+    law, leather_tip = scene.tip_law(scene.tip.restitution, scene.stroke.offset), scene.effects[0]
+    n, M, nu, R, r = len(tip.omega), POOL.mass, POOL.inertia, POOL.radius, leather_tip.dome_radius
+    phi_0 = asin(scene.stroke.offset)
+
+    def at(x: float) -> tuple[float, float]:
+        F, k = law.at(np.array([x]))
+        return float(F[0]), float(k[0])
+
+    def rate(z: np.ndarray, deepest: float | None) -> np.ndarray:
+        q, v, ball, spin, d, a, held = z[:n], z[n : 2 * n], z[2 * n : 2 * n + 2], *z[2 * n + 2 :]
+        phi = phi_0 + a
+        t, normal = np.array([np.sin(phi), np.cos(phi)]), np.array([np.cos(phi), -np.sin(phi)])
+        moves = tip.amplitude + np.outer(tip.rotation, leather_tip.lever(phi, D))
+        centre = tip.amplitude + np.outer(tip.rotation, (0.0, r - leather_tip.height))
+        gap = ball - v @ moves
+        F_n, k = at(law.virtual(d, deepest))
+        F_t = held if deepest is None else k * held
+        force = F_n * normal + F_t * t
+        v_t = gap @ t + spin
+        wound = -v_t * (k if deepest is None else 1.0)
+        turning = (v @ centre - ball) @ t / (R + r) if leather_tip.rolls else 0.0
+        return np.concatenate(
+            [v, -(tip.omega**2) * q - moves @ force, force / M, [F_t / (nu * M), -gap @ normal, turning, wound]]
+        )
+
+    def follow(z, start, deepest, end):
+        end.terminal, end.direction = True, -1
+        told = solve_ivp(
+            lambda _, z: rate(z, deepest), (start, 0.02), z, "DOP853", events=end, rtol=1e-11, atol=1e-13, max_step=2e-5
+        )
+        return told.y[:, -1], float(told.t[-1])
+
+    z = np.zeros(2 * n + 6)
+    z[n : 2 * n] = scene.stroke.speed * tip.approach
+    z, time = follow(z, 0.0, None, lambda _, z: rate(z, None)[2 * n + 3] + (1.0 if z[2 * n + 3] == 0 else 0.0))
+    deepest = float(z[2 * n + 3])
+    z[-1] /= at(deepest)[1]
+    z, time = follow(z, time, deepest, lambda _, z: (z[2 * n + 3] - law.rest(deepest)) / deepest)
+    ball = z[2 * n : 2 * n + 2]
+    return atan2(-ball[1], ball[0]), float(z[2 * n + 2]), time
+
+
+@pytest.mark.parametrize(("e", "offset", "rolls"), [(0.73, 0.3, True), (1.0, 0.45, True), (0.4, 0.2, False)])
+def test_another_solver_gives_the_same(e: float, offset: float, rolls: bool) -> None:
+    scene = leather_scene(offset, e=e, friction=inf, leather=replace(LEATHER, rolls=rolls))
+    found, (squirt, surface, duration) = strike_modes(scene, bent()), by_other_solver(scene, bent())
+    assert found.squirt == pytest.approx(squirt, rel=1e-7)
+    assert found.spin * POOL.radius == pytest.approx(surface, rel=1e-7)
+    assert found.duration == pytest.approx(duration, rel=1e-6)
+
+
+def by_kicks(scene: Scene, tip: TipModes, dt: float) -> tuple[float, float]:
+    """(squirt, duration) by plain kicks and turns of the modes, with friction's bound on F_t; of low order in dt."""
+    law, leather_tip = scene.tip_law(scene.tip.restitution, scene.stroke.offset), scene.effects[0]
+    M, nu, R, r, mu = POOL.mass, POOL.inertia, POOL.radius, leather_tip.dome_radius, scene.tip.friction
+    grid = np.linspace(0, law.most, 50_001)
+    F_of, k_of = law.at(grid)
+    omega = tip.omega
+    c, s = np.cos(omega * dt), np.where(omega > 0, np.sin(omega * dt) / np.where(omega > 0, omega, 1), dt)
+    q, v, ball = np.zeros(len(omega)), scene.stroke.speed * tip.approach, np.zeros(2)
+    phi, spin, depth, deepest, F_t, F_n, k_before, time = asin(scene.stroke.offset), *np.zeros(7)
+    centre = tip.amplitude + np.outer(tip.rotation, (0.0, r - leather_tip.height))
+    while True:
+        t, n = np.array([np.sin(phi), np.cos(phi)]), np.array([np.cos(phi), -np.sin(phi)])
+        moves = tip.amplitude + np.outer(tip.rotation, leather_tip.lever(phi, D))
+        for half in (0, 1):
+            push = F_t * t + F_n * n
+            v, ball, spin = v - moves @ push * dt / 2, ball + push * dt / 2 / M, spin + F_t * dt / 2 / (nu * M)
+            if half:
+                break
+            before = q
+            q, v = c * q + s * v, c * v - omega**2 * s * q
+            mean = (q - before) / dt
+            gap = ball - mean @ moves
+            phi += dt * ((mean @ centre - ball) @ t) / (R + r)
+            depth, time = depth - gap @ n * dt, time + dt
+            deepest = max(deepest, depth)
+            virtual = law.virtual(depth, None if depth == deepest else deepest)
+            if virtual <= 0:
+                return atan2(-ball[1], ball[0]), time
+            F_n, k = np.interp(virtual, grid, F_of), np.interp(virtual, grid, k_of)
+            F_t *= min(k / k_before, 1.0) if k_before else 1.0
+            F_t = float(np.clip(F_t - k * (gap @ t + spin) * dt, -mu * F_n, mu * F_n))
+            k_before = k
+
+
+@pytest.mark.parametrize(("offset", "friction"), [(0.3, 0.7), (0.45, 0.45), (0.5, 0.2)])
+def test_plain_kicks_with_friction_come_ever_nearer(offset: float, friction: float) -> None:
+    scene = leather_scene(offset, friction=friction)
+    told = strike_modes(scene, bent())
+    assert {phase.grip for phase in told.phases} != {"stick"}
+    errors = []
+    for dt in (4e-6, 1e-6):
+        squirt, duration = by_kicks(scene, bent(), dt)
+        errors.append(abs(squirt / told.squirt - 1))
+        assert duration == pytest.approx(told.duration, abs=4 * dt)
+    assert errors[1] < 1e-3
+    assert errors[1] < 0.6 * errors[0]
+
+
+@pytest.mark.parametrize("speed", [1.0, 2.0, 5.0])
+def test_head_on_the_contact_time_is_that_of_the_law_by_quadrature(speed: float) -> None:
+    scene = leather_scene(0.0, speed=speed)
+    assert strike(scene, AT).duration == pytest.approx(scene.contact_time, rel=1e-7)
+    law, mass = scene.tip_law(), scene.head_on_mass
+    deepest, loading = law.blow(mass, speed)
+    assert law.work(deepest) == pytest.approx(mass * speed**2 / 2, rel=1e-12)
+    told = quad(  # depth = deepest (1 - s^2), so that the integrand stays finite
+        lambda s: 2 * deepest * s / np.sqrt(2 * (law.work(deepest) - law.work(deepest * (1 - s**2))) / mass),
+        1e-9,
+        1,
+        epsabs=0,
+        epsrel=1e-9,
+        limit=200,
+    )[0]
+    assert loading == pytest.approx(told, rel=1e-7)
+    each = leather_scene(0.0).tip_law().blow(mass, np.array([speed, 2 * speed]))[1]
+    assert each[0] == pytest.approx(loading, rel=1e-12)
+
+
+def test_a_head_on_blow_takes_the_linear_time_of_its_stiffness() -> None:
+    scene = leather_scene(0.0)
+    linear = Scene(SHAFT, POOL, Tip(0.73, stiffness=scene.stiffness), scene.stroke, (PointMass(0, LEATHER.mass(D)),))
+    assert linear.contact_time == pytest.approx(scene.contact_time, rel=1e-12)
+    assert scene.bare.contact_time == scene.contact_time
+    assert scene.bare.axial_mass == pytest.approx(scene.axial_mass, rel=1e-14)
+
+
+# How errors fall
+
+
+def test_errors_fall_with_the_tolerance_of_a_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene, tip = leather_scene(), bent()
+    monkeypatch.setattr(leather, "SETTLED", 1e-13)
+    monkeypatch.setattr(leather, "TOLERANCE", 1e-13)
+    best, errors = strike_modes(scene, tip), []
+    for name in ("LONGEST", "FIRST", "CROSSING"):  # steps as long as the tolerance lets them be
+        monkeypatch.setattr(leather, name, 1)
+    tolerances = (1e-3, 1e-4, 1e-6, 1e-8, 1e-10)
+    for tolerance in tolerances:
+        monkeypatch.setattr(leather, "TOLERANCE", tolerance)
+        errors.append(away(strike_modes(scene, tip), best))
+    assert all(error < 3 * tolerance for error, tolerance in zip(errors, tolerances, strict=True))
+    assert errors[-1] < 1e-5 * errors[0]
+
+
+def test_errors_fall_with_the_modes() -> None:
+    found = [strike(leather_scene(), Resolution(3, 14, modes)).squirt for modes in (5, 10, 20, 40)]
+    errors = np.abs(np.array(found[:-1]) / found[-1] - 1)
+    assert np.all(np.diff(errors) < 0)
+    assert errors[-1] < 5e-3
+
+
+def test_resolve_bounds_its_error() -> None:
+    scene = leather_scene()
+    best, rough = resolve(scene, 1e-4), resolve(scene, 3e-2)
+    assert rough.unknowns < best.unknowns
+    for name in ("squirt", "ball_speed", "spin"):
+        assert abs(getattr(rough, name) / getattr(best, name) - 1) < rough.error <= 3e-2
+
+
+# Limits
+
+
+@pytest.mark.parametrize("friction", [0.7, 0.15])
+def test_a_stiff_tip_is_the_bare_contact_with_the_domes_lever(friction: float) -> None:
+    # few modes stand still in so short a contact, so that its law along the normal makes no difference
+    at, stiff = Resolution(2, 8, 4), replace(LEATHER, rolls=False)
+    bare = Scene(
+        SHAFT,
+        POOL,
+        Tip(0.73, friction, contact_time=1e-6),
+        leather_scene().stroke,
+        (PointMass(0.0, LEATHER.mass(D)), TipDome(LEATHER.dome_radius), behind(LEATHER.height)),
+    )
+    told, errors = strike(bare, at).squirt, []
+    for E, hard in ((1e11, 1e2), (1e12, 1e3)):
+        k = hard * replace(stiff, E=E).shear_stiffness(D, 0.375)[1][-1]
+        found = strike(leather_scene(friction=friction, leather=replace(stiff, E=E, shear=k)), at)
+        errors.append(abs(found.squirt / told - 1))
+    assert errors[-1] < 1e-3
+    assert errors[-1] <= errors[0] + 1e-12  # a tip that slips all the time is there from the start
+
+
+def behind(height: float):
+    """A made-up tip whose contact lies ``height``, m, before the end of the cue."""
+    from dataclasses import dataclass
+
+    from cuefem.effects import TipEffect
+
+    @dataclass(frozen=True)
+    class Before(TipEffect):
+        """That."""
+
+        def add_to_contact(self, terms: ContactTerms) -> None:
+            terms.add_lever(lambda phi: (0.0, -height))
+
+    return Before()
+
+
+def test_a_flat_tip_is_struck_on_its_rim() -> None:
+    flat = replace(LEATHER, dome_radius=inf)
+    scene = leather_scene(0.3, leather=flat)
+    assert scene.dome_radius == 0
+    assert scene.contact_terms.lever(asin(0.3)) == pytest.approx((-D / 2, -6e-3), rel=1e-12)
+    found = strike(scene, AT)
+    assert imbalance(found) < 1e-9
+    assert 0 < found.squirt < 0.1
+    nearly = replace(LEATHER, dome_radius=1.0)
+    assert strike(leather_scene(0.3, leather=nearly), AT).squirt == pytest.approx(found.squirt, rel=5e-3)
+
+
+def test_without_friction_the_ball_does_not_turn_and_leaves_along_the_normal() -> None:
+    found = strike(leather_scene(0.3, friction=0.0, leather=replace(LEATHER, rolls=False)), AT)
+    assert found.spin == 0
+    assert found.squirt == pytest.approx(asin(0.3), rel=1e-12)
+
+
+def test_great_friction_tends_to_a_tip_that_never_slips() -> None:
+    told = strike(leather_scene(friction=inf), AT)
+    errors = [abs(strike(leather_scene(friction=mu), AT).squirt / told.squirt - 1) for mu in (1.0, 10.0, 100.0)]
+    assert errors[0] > errors[1] > errors[2]
+    assert errors[2] < 1e-6
+    assert told.energy["friction loss"] == 0
+
+
+def test_a_slow_stroke_does_not_turn_the_contact() -> None:
+    def turned(speed: float) -> float:
+        soft = leather_scene(0.3, speed=speed)
+        fixed = leather_scene(0.3, speed=speed, leather=replace(LEATHER, rolls=False))
+        return abs(strike_modes(soft, bent()).squirt - strike_modes(fixed, bent()).squirt)
+
+    times = np.array([speed * leather_scene(0.3, speed=speed).contact_time for speed in (0.4, 0.1, 0.025)])
+    assert_order(1.0, times, [turned(speed) for speed in (0.4, 0.1, 0.025)], within=0.2)
+
+
+# The forces
+
+
+def walked(force: TipForces, legs: list[tuple[Press, Grip, np.ndarray]]) -> float:
+    """Work that a walk through (normal, tangential) displacements takes, J; each leg is straight, (2,) m, in 1 s."""
+    depth, held, work = 0.0, 0.0, 0.0
+    for press, grip, (normal, along) in legs:
+        pieces = 40 if normal else 1
+        for _ in range(pieces):
+            n, t = normal / pieces, along / pieces
+            depths, v_t = depth + n * EVEN.times, np.full(len(EVEN.times), -t)
+            F_t, F_n = force.at(Hold(grip, press, grows=normal > 0), held, v_t, depths, EVEN.integral)
+            work += float(EVEN.sums(1.0) @ (F_n * n + F_t * t))
+            depth, held = depth + n, float(F_t[-1])
+        if press == "load":
+            force.deepest = depth
+    return work
+
+
+@pytest.mark.parametrize("e", [1.0, 0.73])
+def test_no_closed_path_gives_back_more_than_was_put_in(e: float) -> None:
+    law, rng = leather_scene().tip_law(e, 0.375), np.random.default_rng(2)
+    for _ in range(20):
+        deep, back = rng.uniform(2e-4, 1e-3), rng.uniform(0.3, 1.0)
+        rest = (1 - e**2) * deep
+        shears = rng.uniform(-3e-4, 3e-4, 4)
+        up = back * (deep - rest)
+        legs = [
+            ("load", "stick", (deep, shears[0])),
+            ("unload", "stick", (0.0, shears[1])),  # at rest along the normal
+            ("unload", "stick", (-up, shears[2])),
+            ("unload", "stick", (0.0, shears[3])),
+            ("unload", "stick", (0.9 * up, 0.0)),
+            ("unload", "stick", (0.0, -shears.sum())),
+            ("unload", "stick", (-0.9 * up - (deep - rest - up), 0.0)),
+        ]
+        work = walked(TipForces(law, inf), [(p, g, np.array(d)) for p, g, d in legs])
+        assert work > law.loss(deep) - 1e-12
+    # to and fro along the normal with nothing along the surface costs what the law says and no more
+    legs = [("load", "stick", (8e-4, 0.0)), ("unload", "stick", (-8e-4 * e**2, 0.0))]
+    work = walked(TipForces(law, inf), [(p, g, np.array(d)) for p, g, d in legs])
+    assert work == pytest.approx(law.loss(8e-4), rel=1e-6, abs=1e-9)
+
+
+def test_held_while_the_stiffness_falls_the_force_would_give_energy_away() -> None:
+    """The path of Elata and Berryman: the law above loses on it what a force that is held would win."""
+    law, shear = leather_scene().tip_law(1.0, 0.375), 3e-4
+    k_deep, k_shallow = (float(law.at(np.array([d]))[1][0]) for d in (8e-4, 2e-4))
+    gained = (k_deep * shear) ** 2 / 2 * (1 / k_shallow - 1 / k_deep)  # sheared deep, held, let go shallow
+    legs = [("load", "stick", (8e-4, 0.0)), ("unload", "stick", (0.0, shear)), ("unload", "stick", (-6e-4, 0.0))]
+    legs += [("unload", "stick", (0.0, -shear)), ("unload", "stick", (-2e-4, 0.0))]
+    lost = walked(TipForces(law, inf), [(p, g, np.array(d)) for p, g, d in legs])
+    assert gained > 0.01
+    assert lost == pytest.approx((k_deep - k_shallow) * shear**2 / 2, rel=1e-6)
+
+
+def test_what_is_lost_along_the_surface_vanishes_with_a_constant_stiffness() -> None:
+    for offset in (0.2, 0.45):
+        following = strike(leather_scene(offset, e=1.0), AT).energy
+        constant = strike(leather_scene(offset, e=1.0, leather=replace(LEATHER, shear=4e5)), AT).energy
+        assert 1e-3 < following["tip shear"] / following["initial"] < 0.03
+        assert abs(constant["tip shear"]) < 1e-9 * constant["initial"]

@@ -1,0 +1,83 @@
+"""Properties of the leather tip over all that its table covers."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from cuefem import LeatherTip
+
+DIAMETERS = st.floats(8e-3, 15e-3)
+TIPS = st.builds(
+    LeatherTip,
+    height=st.floats(2e-3, 12e-3),
+    dome_radius=st.one_of(st.just(math.inf), st.floats(6e-3, 15e-3), st.floats(15e-3, 10.0)),
+    E=st.floats(1e7, 1e9),
+    nu=st.floats(0.2, 0.45),
+)
+OFFSETS = st.floats(-0.6, 0.6)
+
+
+def possible(tip: LeatherTip, diameter: float) -> LeatherTip:
+    try:
+        tip.check_diameter(diameter)
+    except ValueError:
+        assume(False)
+    return tip
+
+
+@settings(max_examples=200, deadline=None)
+@given(TIPS, DIAMETERS, OFFSETS, st.floats(0.005, 0.5))
+def test_compliance(tip: LeatherTip, diameter: float, offset: float, patch: float) -> None:
+    """Symmetric and positive definite, mirrored with the offset, in proportion to 1/E."""
+    give = possible(tip, diameter).compliance(diameter, offset, patch * diameter)
+    near = {"rtol": 1e-9, "atol": 1e-12 * give[0, 0]}
+    assert give[0, 1] == give[1, 0]
+    assert np.all(np.linalg.eigvalsh(give) > 0)
+    np.testing.assert_allclose(tip.compliance(diameter, -offset, patch * diameter), give * [[1, -1], [-1, 1]], **near)
+    np.testing.assert_allclose(
+        replace(tip, E=2 * tip.E).compliance(diameter, offset, patch * diameter), give / 2, **near
+    )
+
+
+@settings(max_examples=100, deadline=None)
+@given(TIPS, DIAMETERS, st.floats(0.02, 0.05))
+def test_head_on(tip: LeatherTip, diameter: float, ball: float) -> None:
+    """Radius, depth and force rise together from zero, and the force ever faster."""
+    curves = possible(tip, diameter).head_on(diameter, ball)
+    assert all(curve[0] == 0 and np.all(np.diff(curve) > 0) for curve in curves)
+    assert np.all(np.diff(np.diff(curves[2]) / np.diff(curves[1])) > 0)
+
+
+@settings(max_examples=60, deadline=None)
+@given(TIPS, DIAMETERS, OFFSETS)
+def test_a_patch_that_sticks(tip: LeatherTip, diameter: float, offset: float) -> None:
+    """It never grows softer with its radius, and is stiffer than a Hertz-weighted one, but not by far."""
+    radius, stiffness = possible(tip, diameter).shear_stiffness(diameter, offset)
+    assert radius[0] == stiffness[0] == 0
+    assert np.all(np.diff(stiffness) >= 0)
+    gain = stiffness[1:] * tip.compliance(diameter, offset, radius[1:])[:, 1, 1]
+    assert np.all((gain > 1) & (gain < 1.7))
+    radius, ratio = tip.normal_ratio(diameter, offset)
+    assert ratio[0] == 1
+    assert np.all(ratio > 0)
+
+
+@given(TIPS, DIAMETERS, st.floats(-0.6, 0.6))
+def test_lever(tip: LeatherTip, diameter: float, phi: float) -> None:
+    """The contact lies on the dome or on its rim, and the mass is between that of cylinders."""
+    along, across = possible(tip, diameter).lever(phi, diameter)
+    assert abs(along) <= diameter / 2
+    assert math.copysign(1, along) == -math.copysign(1, phi)
+    assert -tip.height <= across < 0
+    if abs(math.sin(phi)) * tip.dome_radius < diameter / 2:
+        np.testing.assert_allclose(along, -tip.dome_radius * math.sin(phi) if phi else 0.0)
+        if math.isfinite(tip.dome_radius):
+            drop = 2 * tip.dome_radius * math.sin(phi / 2) ** 2
+            np.testing.assert_allclose(-across, tip.height - drop, rtol=1e-9)
+    whole = tip.rho * math.pi / 4 * diameter**2 * tip.height
+    assert whole / 3 < tip.mass(diameter) <= whole * (1 + 1e-12)

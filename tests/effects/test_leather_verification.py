@@ -1,0 +1,141 @@
+"""The leather tip's elasticity against exact solutions and other methods, and its table against the solution itself."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from cuefem import LeatherTip
+from cuefem.effects import leather_table as lt
+from studies.leather_body import Patch, Shape, Solid, compliance, fitted, head_on, loads, surfaces, usual
+from studies.leather_elasticity import solved
+
+TIP, DIAMETER = LeatherTip(6e-3, 9.5e-3, 100e6), 12.75e-3
+SHAPE = Shape(6 / 12.75, 12.75 / 9.5)
+PATCH = Patch(2 * 0.375 * 9.5 / 12.75, 2 / 12.75)
+
+
+# --- the solid --------------------------------------------------------------------------------------------------------
+
+
+def test_a_long_tip_is_a_rod() -> None:
+    """EA/h along the axis, from the difference of two lengths, which the end's own give has dropped out of; 3EI/h^3
+    across it on a slender rod. Over D: EA is pi/4, EI pi/64."""
+    how = usual(4, 4, 6, 1)
+    short, long, slender = (solved(Shape(h, 0.0), 0.3, Patch(0.0, 0.45), how) for h in (4.0, 6.0, 30.0))
+    assert abs((long - short)[0, 0] * math.pi / 4 / 2 - 1) < 1e-3
+    assert abs(slender[1, 1] * 3 * math.pi / 64 / 30**3 - 1) < 5e-3
+
+
+def test_a_small_patch_has_a_half_space_below_it() -> None:
+    """Within 5 % at a/h = 1/16, and the difference falls as a/h."""
+    errors = []
+    for radius in (1 / 32, 1 / 64, 1 / 128):
+        shape, how = Shape(0.5, 0.0), fitted(0.5, radius, 4)._replace(harmonics=1)
+        found = np.diagonal(solved(shape, 0.4, Patch(0.0, radius), how))
+        errors.append(1 - found / lt.half_space(0.4, radius))
+    assert np.all(np.abs(errors[0]) < 0.05)
+    np.testing.assert_allclose(np.divide(errors[0], errors[1]), 2, rtol=0.05)
+    np.testing.assert_allclose(np.divide(errors[1], errors[2]), 2, rtol=0.05)
+
+
+def test_hertz() -> None:
+    """A small contact is Hertz's, force and depth alike, for gaps of second and of fourth order."""
+    shape, how = Shape(1.0, 0.0), fitted(1.0, 0.01)
+    found = head_on(shape, Solid(shape, how).surface(0.3, 0), 0.01, how)
+    np.testing.assert_allclose(found / lt.half_space_head_on(0.3, np.array(0.01)), 1, rtol=5e-3)
+
+
+@pytest.mark.heavy
+def test_refinement() -> None:
+    """Of the table's mesh and harmonics: less than 0.2 %, of the coupling too."""
+    coarse = solved(SHAPE, 0.4, PATCH)
+    fine = solved(SHAPE, 0.4, PATCH, usual(6, 8, 6, 48))
+    np.testing.assert_allclose(coarse, fine, rtol=2e-3)
+    assert abs(coarse[0, 1] - coarse[1, 0]) < 1e-9
+
+
+def test_harmonics_that_are_interpolated() -> None:
+    """They take less than a thousandth from a patch near the rim, where the most of them count."""
+    solid, patch = Solid(SHAPE, usual(4, 6, 5, 36)), Patch(0.8, 0.08)
+    load = loads(SHAPE, patch, solid.how)
+    some, every = (compliance(surfaces(solid, 0.4, every=all_of_them), load) for all_of_them in (False, True))
+    np.testing.assert_allclose(some, every, rtol=1e-3)
+    assert np.any(some != every)
+
+
+# --- the table --------------------------------------------------------------------------------------------------------
+
+
+def test_values() -> None:
+    """h 6, D 12.75, r 9.5 mm, nu 0.4, E 100 MPa, b/R 0.375, a 2 mm: an independent solution with scikit-fem's own
+    assembly of quadratic elements gave these."""
+    give = 1e6 * TIP.compliance(DIAMETER, 0.375, 2e-3)
+    np.testing.assert_allclose(np.diagonal(give), [1.938, 4.597], rtol=3e-3)
+    assert abs(abs(give[0, 1]) / 0.129 - 1) < 0.01
+    assert give[0, 1] == give[1, 0] < 0
+    normal = 1 / (give[0, 0] - 1e6 * 0.05 * 0.6 / (100e6 / 2.8 * 2e-3))  # a rigid patch's, as on a half-space
+    radius, stiffness = TIP.shear_stiffness(DIAMETER, 0.375)
+    assert abs(np.interp(2e-3, radius, stiffness) / 1e6 / normal / 0.376 - 1) < 0.01
+
+
+RANDOM = [  # height, diameter, dome radius, mm; nu; b/R; patch, mm
+    (3.4, 11.8, 8.95, 0.33, 0.21, 1.2),
+    (8.0, 13.6, 10.6, 0.25, 0.5, 2.5),
+    (2.3, 9.3, 12.0, 0.44, 0.1, 3.1),
+    (11.0, 9.0, 6.2, 0.28, 0.58, 0.9),
+    (5.0, 14.2, math.inf, 0.37, 0.0, 4.4),
+]
+
+
+@pytest.mark.parametrize(("height", "diameter", "dome", "nu", "offset", "patch"), RANDOM)
+def test_the_table_is_the_solution(
+    height: float, diameter: float, dome: float, nu: float, offset: float, patch: float
+) -> None:
+    place = 2 * offset * dome / diameter if offset else 0.0
+    tip = LeatherTip(1e-3 * height, 1e-3 * dome, 1.0, nu)
+    exact = solved(Shape(height / diameter, diameter / dome), nu, Patch(place, patch / diameter))
+    give = 1e-3 * diameter * tip.compliance(1e-3 * diameter, offset, 1e-3 * patch)
+    np.testing.assert_allclose(np.diagonal(give), np.diagonal(exact), rtol=5e-3)
+    assert abs(give[0, 1] - exact[0, 1]) < 5e-3 * math.sqrt(exact[0, 0] * exact[1, 1])
+
+
+@pytest.mark.parametrize(("height", "diameter", "dome", "nu", "offset", "patch"), RANDOM[:2])
+def test_the_head_on_table_is_the_solution(
+    height: float, diameter: float, dome: float, nu: float, offset: float, patch: float
+) -> None:
+    tip, shape, ball = (
+        LeatherTip(1e-3 * height, 1e-3 * dome, 1.0, nu),
+        Shape(height / diameter, diameter / dome),
+        28.575,
+    )
+    how = fitted(shape.height, patch / diameter)
+    gaps = np.array([shape.curvature, diameter / ball, (diameter / ball) ** 3])
+    force, depth = head_on(shape, Solid(shape, how).surface(nu, 0), patch / diameter, how) @ gaps
+    radii, depths, forces = tip.head_on(1e-3 * diameter, 1e-3 * ball)
+    assert abs(np.interp(1e-3 * patch, radii, depths) / (depth * 1e-3 * diameter) - 1) < 5e-3
+    assert abs(np.interp(1e-3 * patch, radii, forces) / (force * (1e-3 * diameter) ** 2) - 1) < 5e-3
+
+
+# --- head on ----------------------------------------------------------------------------------------------------------
+
+
+def contact_time(tip: LeatherTip, speed: float, restitution: float = 0.73) -> float:
+    """Of a rigid cue of 567 g and a pool ball, s: to the greatest depth, and e times that back."""
+    mass = 1 / (1 / 0.170 + 1 / 0.567)
+    _, depth, force = tip.head_on(DIAMETER, 28.575e-3)
+    work = np.append(0.0, np.cumsum(np.diff(depth) * (force[1:] + force[:-1]) / 2))
+    energy = mass * speed**2 / 2
+    deepest = np.interp(energy, work, depth)
+    angle = (np.arange(2000) + 0.5) / 2000 * math.pi / 2
+    at = deepest * np.sin(angle)
+    speeds = np.sqrt(2 / mass * (energy - np.interp(at, depth, work)))
+    return float(np.mean(deepest * np.cos(angle) / speeds) * math.pi / 2 * (1 + restitution))
+
+
+@pytest.mark.parametrize(("speed", "time"), [(1.0, 1.35e-3), (2.0, 1.14e-3), (5.0, 0.89e-3)])
+def test_contact_time(speed: float, time: float) -> None:
+    """A unilateral iteration on the nodes of another mesh gave these."""
+    assert abs(contact_time(LeatherTip(6e-3, 9.5e-3, 140e6), speed) / time - 1) < 0.02
