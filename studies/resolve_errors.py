@@ -4,7 +4,7 @@ What: every rung of the ladder that has an estimate, up to some fifty modes (25 
 against references of 1.5 and 2 times the modes of the last rung, on another mesh of another order. The true error is
 known no better than the two references agree: what they differ by is taken off it before it is divided by the estimate.
 The families: resolve_family.py. Left out: lumped cues, which are exact, and accuracies that take more modes than that.
-Writes resolve_errors.md beside itself; takes about ten minutes.
+Writes resolve_errors.md beside itself; takes about 20 minutes.
 """
 
 from __future__ import annotations

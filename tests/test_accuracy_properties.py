@@ -87,6 +87,7 @@ def test_a_dead_or_nearly_dead_tip_resolves(restitution: float, rtol: float) -> 
     assert 0 < found.error <= rtol
 
 
+@pytest.mark.heavy
 def test_a_ladder_climbs_to_the_most_modes() -> None:
     counts = []
     for rung in ladder(scene("kim", 1e-4, 0.3)):

@@ -94,6 +94,7 @@ def out_of_order(part: str, source: str) -> list[str]:
 SOURCES = sorted(path for path in PACKAGE.rglob("*.py") if path != PACKAGE / "__init__.py")
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: str(path.relative_to(PACKAGE)))
 def test_imports_run_one_way(path: Path) -> None:
     assert out_of_order(part_of(path), path.read_text(encoding="utf-8")) == []

@@ -148,6 +148,7 @@ def test_the_first_slip_lasts_as_derived_and_shortens_with_the_modes(kim_tip, co
     assert first.end / 1e-4 == pytest.approx(roads.first_slip(tip, KIM), rel=1e-3)
 
 
+@pytest.mark.heavy
 def test_the_root_belongs_to_the_modes_kept():
     """The slip shortens with the modes; the ringing force, the law's other factor, grows by a tenth meanwhile."""
     few, many = (study.road("small_offset", "kim", n).errors["stick"][0] for n in (22, 160))
@@ -164,6 +165,7 @@ def test_the_root_belongs_to_the_modes_kept():
 # modes, elements, order
 
 
+@pytest.mark.heavy
 def test_the_tail_of_the_modes_follows_the_compliance_left_out():
     """As a power of it the tail is the first; their ratio wanders by some per cent and does not settle."""
     road = study.road("more_modes")

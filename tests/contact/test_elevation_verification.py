@@ -135,6 +135,7 @@ def test_table_friction_of_a_head_on_slide():
     assert abs(outcome.energy["table loss"] / (mu * sin(angle) * impulse * slide / 2) - 1) < STEPPED
 
 
+@pytest.mark.heavy
 def test_a_raised_cue_draws_the_more_the_steeper_it_is():
     rolls = []
     for angle in (0.0, 0.2, 0.5, 0.9):

@@ -97,6 +97,7 @@ def test_impulses_scale_with_the_speed_and_energies_with_its_square(scene, facto
         np.testing.assert_allclose(got, np.asarray(value)[finite], rtol=1e-11, atol=least, err_msg=name)
 
 
+@pytest.mark.heavy
 @MANY
 @given(scenes())
 def test_a_negative_offset_is_the_exact_mirror_image(scene):

@@ -77,6 +77,7 @@ def test_exponent_one_is_the_bilinear_law(e, offset, friction):
     assert imbalance(stepped) < 1e-11
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("e", [1.0, 0.3, 0.0])
 @pytest.mark.parametrize(("offset", "friction"), [(0.3, 0.7), (0.6, 0.3), (0.2, inf)])
 def test_exponent_one_is_the_bilinear_law_with_a_tangential_spring(e, offset, friction):

@@ -81,6 +81,7 @@ def test_a_sum_of_correlated_numbers() -> None:
     assert apart.first[:, 0] == pytest.approx(terms**2 / (terms**2).sum(), abs=0.01)
 
 
+@pytest.mark.heavy
 def test_quantiles_of_a_monotone_response() -> None:
     """Of one lognormal number the response's quantiles are the responses of its quantiles."""
     vary = Vary(("cue.segments[*].material.E",), Normal(1.0, 0.22, logarithmic=True), "E", factor=True)

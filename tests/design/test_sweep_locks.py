@@ -16,6 +16,7 @@ from tests.helpers.refusals import command_refuses, untouched
 from tests.helpers.sweeps import STRUCK, rows_of, written
 
 
+@pytest.mark.heavy
 def test_a_full_disk_loses_nothing_that_was_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """What was written before stays, whole blocks of it; with room again the sweep goes on to the same table."""
     study, open_file = written(tmp_path, STRUCK), tables.connect

@@ -35,6 +35,7 @@ def swept(study: Path, output: Path, **more: Any) -> list[tuple[Any, ...]]:
     return rows_of(output)
 
 
+@pytest.mark.heavy
 def test_the_table_holds_every_design(study: Path, tmp_path: Path) -> None:
     """Each evaluated alone, from what the table says of it, gives the same to 1e-10."""
     found = load_study(study)
@@ -120,6 +121,7 @@ def breaking(blocks: Callable[[], int]) -> Pool:
     return Pool(start, 2)
 
 
+@pytest.mark.heavy
 def test_a_pool_that_breaks_is_opened_again(tmp_path: Path) -> None:
     study = written(tmp_path, STRUCK)
     rows = swept(study, tmp_path / "pool.sqlite", pool=breaking(lambda: 3))

@@ -80,6 +80,7 @@ def test_energy_closes_with_every_effect_alone(scene):
     sound(strike(scene, AT))
 
 
+@pytest.mark.heavy
 @settings(max_examples=40, deadline=None)
 @given(scenes(st.tuples(*EFFECTS)))
 def test_energy_closes_with_all_effects_together(scene):

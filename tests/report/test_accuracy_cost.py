@@ -43,6 +43,7 @@ def test_what_is_recommended_is_what_resolve_takes(record: dict) -> None:
     assert record["wanted"][-1]["estimate"] == best
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize(("kind", "start"), [("png", b"\x89PNG"), ("svg", b"<?xml")])
 def test_figures_are_the_same_twice(record: dict, kind: str, start: bytes) -> None:
     content = cost_figure(record, "a title", kind)

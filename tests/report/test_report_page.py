@@ -305,6 +305,7 @@ def test_a_browser_shows_it_without_scrolling_or_complaint(tmp_path: Path, name:
     assert found["smallest"] > 6.5  # px, of a text's line: still to be read on a phone
 
 
+@pytest.mark.heavy
 def test_a_miscue_is_said_above_all_numbers(pool: str) -> None:
     shot = scene("kim")
     missed = page("kim.toml", replace(shot, stroke=replace(shot.stroke, offset=0.7)))

@@ -110,6 +110,7 @@ def test_a_free_body_has_two_modes_without_frequency() -> None:
     assert found[2] > 700
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("name", ["solid, E/G 15", "bore 0.8, maple"])
 def test_the_shear_coefficient_of_the_long_wave(name: str) -> None:
     """Hutchinson's at the effective Poisson ratio; Cowper's is off by half a per cent and more."""

@@ -177,6 +177,7 @@ def test_the_demonstration_has_no_tone_too_many(tmp_path: Path) -> None:
     assert not any("no bending tone" in note for note in found.notes)
 
 
+@pytest.mark.heavy
 def test_density_that_is_not_weighed_is_the_file_s(true_tones: np.ndarray) -> None:
     for name in ("kim", "pool_maple"):
         heard = modes(tap.true(name), 6).frequencies

@@ -28,6 +28,7 @@ def decaying(frequency: float, decay: float, seed: int, noise: float) -> Ringing
     return Ringing((clean + noise * np.random.default_rng(seed).standard_normal(len(t)))[None], RATE, 1, 0.0)
 
 
+@pytest.mark.heavy
 def test_one_tone_reaches_the_bound_of_cramer_and_rao() -> None:
     """var w = var a = 16 a^3 s^2/(A^2 rate), the bound of a damped sinusoid that decays within the record."""
     frequency, decay, noise = 1234.5, 30.0, 0.5
