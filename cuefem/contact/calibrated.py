@@ -10,7 +10,9 @@ from cuefem.quantity import CONTACT_TIME
 from cuefem.scene import Scene
 
 CLOSE = 1e-9  # of the contact time
-FIRST_SLOPE = -0.4  # of ln T over ln E, about
+# The search starts from leather that is stiffer than any, which is not pressed too deep, and goes on along the slope of
+# ln T over ln E, about.
+STIFF, FIRST_SLOPE = 1e9, -0.4
 
 
 def leather_modulus(scene: Scene, contact_time: float) -> float:
@@ -19,7 +21,7 @@ def leather_modulus(scene: Scene, contact_time: float) -> float:
     Parameters
     ----------
     scene
-        A scene with a `LeatherTip`, whose own E is where the search starts. The blow has the scene's cue, ball, speed,
+        A scene with a `LeatherTip`, of which E does not matter. The blow has the scene's cue, ball, speed,
         restitution and other effects (`AxialWaves` make it longer), but no offset.
     contact_time
         How long ball and tip touch, s, in [1e-5, 1] s.
@@ -54,10 +56,8 @@ def leather_modulus(scene: Scene, contact_time: float) -> float:
     def too_long(logarithm: float) -> float:
         return math.log(strike(with_modulus(head_on, math.exp(logarithm))).duration / contact_time)
 
-    first = math.log(scene.leather.E)
+    first = math.log(STIFF)
     guess = first - too_long(first) / FIRST_SLOPE
-    if abs(guess - first) < CLOSE:
-        return scene.leather.E
     found = root_scalar(too_long, x0=first, x1=guess, method="secant", xtol=CLOSE)
     if not found.converged:
         raise RuntimeError(f"no E of the leather was found for a contact of {contact_time:g} s: {found.flag}")

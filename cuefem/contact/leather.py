@@ -294,8 +294,8 @@ class Leather:
             return
         motion = Motion(*(np.concatenate(parts) for parts in zip(*(piece.motion for piece in pieces), strict=True)))
         sums = np.concatenate([piece.sums(piece.part) for piece in pieces])
-        if math.isinf(contact.laws.friction) and not hold.grows:  # by parts: it sticks to the end, where k_t falls with
-            self.sheared += before - self._stored(hold) - float(sums @ (motion.F_t * motion.v_t))  # a root of time
+        if hold.grip == "stick" and not hold.grows:  # by parts: it may stick to the end, where k_t falls with a root
+            self.sheared += before - self._stored(hold) - float(sums @ (motion.F_t * motion.v_t))  # of time
             return
         self.sheared += float(sums @ self.tip_forces.wasted(hold, motion))
         if hold.grip != "stick":
@@ -333,6 +333,8 @@ class Leather:
         contact = self.contact
         before, start, first = contact.impulse, contact.time, len(self.pieces)
         self.grows = self.grows or press == "load"
+        if grip != "stick":
+            self._bound(Hold(grip, press, self.grows))
         coordinates, event = self.free.onto @ contact.z, "turned"
         while event == "turned":
             event, coordinates = self._leg(Hold(grip, press, self.grows), coordinates, self.longest)
@@ -344,6 +346,12 @@ class Leather:
         self.marches.append(Marched(start, tuple(self.pieces[first:])))
         contact.end_phase(grip, press, start, before)
         return event
+
+    def _bound(self, hold: Hold) -> None:
+        """Put F_t on friction's bound, which the stick before went past by rounding: a slip over at once keeps it."""
+        held = self._stored(hold)
+        self.contact.put(shear=float(self.force(hold.grip, hold.press)[0]))
+        self.sheared += held - self._stored(hold)
 
     def _settle(self, coordinates: Complex) -> None:
         """Put the coordinates into the state."""

@@ -87,7 +87,7 @@ def tip_tables(record: Record, scene: Record, wanted: float | None) -> list[Grou
         "",
         with_caption(
             blows,
-            f"restitution {tip['restitution']:g}; the cue is taken as rigid along its axis",
+            f"restitution {tip['restitution']:g}; the cue is rigid along its axis (AxialWaves lengthen a blow)",
             *([f"{NONE}: the leather would be pressed further than its law is known"] if _unknown(record) else []),
         ),
         with_caption(

@@ -50,7 +50,9 @@ def effect_words(effect: Effect) -> str:
 
 
 def _short(value: Any) -> str:
-    """A number, with its unit if it has one, to six digits."""
+    """A number, with its unit if it has one, to six digits; true or false."""
+    if isinstance(value, bool):
+        return str(value).lower()
     number_text, _, unit = str(value).partition(" ")
     return f"{float(number_text):.6g} {unit}".rstrip()
 

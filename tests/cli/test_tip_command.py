@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -38,6 +39,13 @@ def test_modulus_from_a_contact_time(file: Path) -> None:
     assert (status, err) == (0, "")
     assert "E is what makes a head-on blow at 2 m/s last 1 ms" in out
     assert "2 m/s       1.000 ms" in out
+
+
+def test_a_fixed_normal_is_named(tmp_path: Path) -> None:
+    cf.save(leather_scene(leather=replace(LEATHER, rolls=False)), tmp_path / "fixed.toml")
+    status, out, err = call("tip", tmp_path / "fixed.toml")
+    assert (status, err) == (0, "")
+    assert "rolls false" in out
 
 
 def test_a_speed_beyond_the_law_has_no_numbers(file: Path) -> None:

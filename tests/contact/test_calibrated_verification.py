@@ -18,6 +18,11 @@ def test_the_law_of_a_rigid_cue_gives_its_modulus_back(E: float) -> None:
     assert leather_modulus(leather_scene(), float(told)) == pytest.approx(E, rel=1e-6)
 
 
+def test_it_does_not_matter_which_leather_the_scene_has() -> None:
+    soft = leather_scene(leather=replace(LEATHER, E=1e6))  # a ball would be pressed through it
+    assert leather_modulus(soft, 1.1e-3) == pytest.approx(leather_modulus(leather_scene(), 1.1e-3), rel=1e-9)
+
+
 def test_axial_waves_are_counted() -> None:
     scene = leather_scene(0.0, AxialWaves())
     found = leather_modulus(scene, 1.1e-3)
