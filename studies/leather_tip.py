@@ -4,7 +4,7 @@ What: pool_maple, pool_hollow and the added masses of measured.py and added_mass
 spring that gives only along the normal, on the leather drawn as a beam), the patchwork (the same with a dome of 9.5 mm
 and a shear ratio of 0.75), and `LeatherTip` (6 mm high, dome 9.5 mm, nu 0.4, E 140 MPa, nothing fitted). The first two
 take the head-on contact time that the third has at that speed and E. Pool ball, e = 0.73, mu = 0.7; 2 m/s if not said.
-Equations: handbook: A tip of leather; compliances: leather_elasticity.py. Predictions were written down, from a sketch
+Equations: handbook: Effects; compliances: leather_elasticity.py. Predictions were written down, from a sketch
 of the model stepped in another way, before this program was first run; they stand in `PREDICTED`.
 Writes leather_tip.md and leather_tip.svg beside itself; takes about a minute.
 """

@@ -170,7 +170,7 @@ def test_endings_in_capitals(tmp_path: Path, name: str) -> None:
     assert cf.load(tmp_path / "SCENE.TOML").cue == loaded
     assert "material hard maple" in call("convert", path, tmp_path / "CUE.VTU")[1]
     assert cf.load(tmp_path / "CUE.VTU") == loaded
-    assert "ball 210 g" in call("modes", tmp_path / "SCENE.TOML")[1]
+    assert "700 mm modelled in 1 segment" in call("modes", tmp_path / "SCENE.TOML")[1]
 
 
 def test_polygons_are_cut_into_triangles(tmp_path: Path) -> None:
