@@ -110,7 +110,8 @@ def test_modes_that_do_not_fade_give_the_plain_sum() -> None:
     found, limit = batch_modes(CueBatch.of(random_cues(2, 8)), 7, at=AT), StickLimit.of(scene(kim(), 1e-3))
     omega = 2 * np.pi * found.frequencies
     plain = limit.transverse_impulse(omega, found.tip, found.rigid)
-    np.testing.assert_allclose(limit.transverse_impulse(omega, found.tip, found.rigid, top=1e9), plain, rtol=1e-15)
+    faded = limit.transverse_impulse(omega, found.tip, found.rigid, top=1e9)
+    np.testing.assert_allclose(faded, plain, rtol=4e-15)  # the same sum in another order: a few roundings
 
 
 def test_a_tip_of_given_stiffness_has_the_contact_time_of_each_cue() -> None:
