@@ -86,7 +86,7 @@ def test_the_account_closes_over_random_damped_strokes() -> None:
     worst = 0.0
     for _ in range(120):
         tip = replace(LEATHER, E=10 ** draw.uniform(7.8, 8.7), height=draw.uniform(3e-3, 8e-3))
-        friction = float(draw.choice([draw.uniform(0.1, 1.2), 1000.0, inf]))
+        friction = float(draw.choice([draw.uniform(0.1, 1.2), inf]))
         scene = leather_scene(
             draw.uniform(-0.55, 0.55),
             StructuralDamping(draw.uniform(0.005, 0.03)),
