@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from rich.console import Group
 
+from cuefem.effects import LeatherTip
 from cuefem.effects.leather_law import LeatherLaw
 from cuefem.report.quantities import NONE, QUANTITIES, grams, significant
 from cuefem.report.record import Record
@@ -30,6 +31,7 @@ def tip_record(scene: Scene) -> Record:
     speeds = sorted({*SPEEDS, float(scene.stroke.speed)})
     deepest, _ = law.blow(scene.head_on_mass, scene.stroke.speed)
     patch = float(np.interp(deepest, depths, patches))
+    slope = float(law.slopes(np.array([deepest]))[0][0])
     along = np.linspace(0.0, law.most, CURVE)
     return {
         "tip_mass": leather.mass(diameter),
@@ -37,7 +39,7 @@ def tip_record(scene: Scene) -> Record:
         "E": leather.E,
         "blows": [_blow(scene, law, speed, patches, depths) for speed in speeds],
         "shear_ratios": [
-            {"offset": offset, "ratio": _shear_ratio(scene, float(deepest), patch, offset)} for offset in OFFSETS
+            {"offset": offset, "ratio": _shear_ratio(leather, diameter, patch, slope, offset)} for offset in OFFSETS
         ],
         "patch": 2 * patch,
         "curve": {"depth": along, "force": law.at(along)[0]},
@@ -59,11 +61,9 @@ def _blow(scene: Scene, law: LeatherLaw, speed: float, patches: np.ndarray, dept
     }
 
 
-def _shear_ratio(scene: Scene, deepest: float, patch: float, offset: float) -> float:
-    """Stiffness of a patch of that radius along the surface over that along the normal."""
-    leather, diameter = scene.leather, scene.shaft.segments[0].tip_diameter
-    normal = float(scene.tip_law().slopes(np.array([deepest]))[0][0])
-    normal *= float(np.interp(patch, *leather.normal_ratio(diameter, offset)))
+def _shear_ratio(leather: LeatherTip, diameter: float, patch: float, slope: float, offset: float) -> float:
+    """Stiffness of a patch of that radius along the surface over that along the normal (slope: on the axis)."""
+    normal = slope * float(np.interp(patch, *leather.normal_ratio(diameter, offset)))
     return float(np.interp(patch, *leather.shear_stiffness(diameter, offset))) / normal
 
 
