@@ -246,7 +246,7 @@ class Raised(Stepped):
             self.on_table = "lifted"
 
     def _at_once(self, ends: Ends) -> str | None:
-        """The first end that is behind already when the phase starts, among those that may be."""
+        """The first end in `AT_ONCE` that the state has already passed when the phase starts."""
         return next((name for name in AT_ONCE if name in ends and ends[name](self.contact.z) < -PAST), None)
 
     def next(self, event: str, grip: Grip, press: Press) -> Step | None:

@@ -5,7 +5,7 @@ surface the patch hangs on a spring of stiffness k_t, which grows and shrinks wi
 
     F_t' = -k_t (v_t - s) while the patch grows,    (F_t/k_t)' = -(v_t - s) while it shrinks,
 
-where s is the velocity at which the patch slides: none in stick, and in slip the one that keeps F_t = +-mu F_n. New
+where s is the velocity at which the patch slides: zero in stick; in slip, what keeps F_t equal to +-mu F_n. New
 ground joins the patch without a strain; a patch that shrinks lets its part of the force go. Either way the spring's
 energy F_t^2/(2 k_t) loses |k_t'| F_t^2/(2 k_t^2), so that no closed path gives back more than was put in. Were F_t held
 while k_t falls, one would (Elata and Berryman, Mech. Mater. 24 (1996) 229).

@@ -265,7 +265,7 @@ def optimum(
         Of differential evolution.
     progress : callable, optional
         Called with the number of evaluations and an objective: with exact gradients that of the design tried last,
-        otherwise the best so far within the limits, nan as long as there is none.
+        otherwise the best so far within the limits, nan until one is found.
 
     Returns
     -------

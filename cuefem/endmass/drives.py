@@ -143,7 +143,7 @@ def _couples(tip: TipModes, scene: Scene) -> bool:
 
 
 def definition_of(drive: str) -> Definition:
-    """The definition of that name; ValueError, listing all names, if there is none."""
+    """The definition of that name; ValueError that lists all names if no definition has it."""
     if drive not in DEFINITIONS:
         raise ValueError(f"end_mass drive must be one of {', '.join(DEFINITIONS)}; got {drive!r}")
     return DEFINITIONS[drive]

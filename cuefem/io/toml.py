@@ -121,7 +121,7 @@ def _segment(found: Any, path: Path, key: str) -> Any:
 
 
 def named_material(name: str, path: Path, key: str) -> Material:
-    """A material of the table; InputError, suggesting similar names, if there is none."""
+    """A material of the table; InputError that suggests similar names if no material has this one."""
     try:
         return material(name)
     except ValueError as error:

@@ -29,7 +29,7 @@ class Hum:
 
 
 def without_hum(signal: Array, rate: float) -> tuple[Array, Hum | None]:
-    """The recording, (samples, channels), without its mains hum, and that hum (None if there is none)."""
+    """The recording, (samples, channels), without its mains hum, and that hum; None if no hum was found."""
     pieces = np.array_split(signal, max(1, round(len(signal) / (PIECE * rate))))
     found = [_hum(piece, rate) for piece in pieces]
     heard = [(base, multiples) for base, multiples, _ in found if multiples]

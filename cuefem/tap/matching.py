@@ -56,7 +56,7 @@ def with_material(cue: Cue, old: Material, new: Material) -> Cue:
 
 @dataclass(frozen=True)
 class Shaft:
-    """A cue whose wood is sought. wood: that of the file. effects: those that stay on the cue while it hangs."""
+    """A cue whose wood is sought. wood: as the file has it. effects: what stays on the cue while it hangs."""
 
     cue: Cue
     wood: Material

@@ -70,7 +70,7 @@ def ringing(signal: ArrayLike, rate: float) -> Ringing:
 
 
 def _channels(signal: Array) -> Array:
-    """The channels, without those that are silent or a copy of another one."""
+    """The channels, without silent ones and copies of others."""
     kept: list[Array] = []
     for channel in signal.T:
         power = channel @ channel
