@@ -4,7 +4,7 @@ The normal turns as the contact rolls over ball and dome, as in `cuefem.contact.
 mode turns exactly (`cuefem.contact.response`). What is left to find are the forces at the nodes of a step. They are
 iterated: forces move the ball and the tip, which are pressed together and sheared, which makes forces. That converges
 faster than geometrically, because a force moves things only with the square of time. A step is halved until the last
-terms of its forces' series are below `TOLERANCE`, and ends where the phase does.
+terms of its forces' series are below `TipForces.tolerance`, and ends where the phase does.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from cuefem.contact.history import MarchedHistory
 from cuefem.contact.marched import Marched, Motion, Piece
 from cuefem.contact.phases import ROUNDING, Step, Stretch, endless, next_phase
 from cuefem.contact.response import EVEN, NODES, OPENING, TAYLOR, Complex, FreeMotion, Response
+from cuefem.contact.ringed_patch import RingForces
 from cuefem.contact.state import APART, SIDE, Contact, Grip, Laws, Press
 from cuefem.contact.stretches import free_course
 from cuefem.contact.tip_forces import Hold, TipForces
@@ -29,10 +30,8 @@ from cuefem.effects.terms import ContactTerms
 from cuefem.quantity import scalar
 from cuefem.scene import Scene
 
-# What the last terms of a step's forces may add to an impulse, beside the whole one of a head-on blow: the outcome is
-# then exact to about a hundredth of that. And of the force's size: where the iteration of a step has settled, in so
-# many rounds at most.
-TOLERANCE, SETTLED, ROUNDS = 1e-9, 1e-9, 14
+# Where the iteration of a step has settled, of the force's size, in so many rounds at most.
+SETTLED, ROUNDS = 1e-9, 14
 # An iteration whose forces run away by this, squared and in units of the force's size, does not settle any more.
 WILD = 1e6
 # A step is the contact's time over a power of two: the longest, the first and the shortest.
@@ -74,7 +73,8 @@ class Leather:
     def __init__(self, tip: TipModes, laws: Laws, *, law: LeatherLaw, radius: float, terms: ContactTerms) -> None:
         assert terms.tip is not None
         contact = self.contact = Contact(tip, laws, ("spin", "depth", "angle", "shear"))
-        self.law, self.tip_forces = law, TipForces(law, laws.friction)
+        self.law = law
+        self.tip_forces = (RingForces if terms.tip.partial_slip else TipForces)(law, laws.friction)
         self.terms, self.dome = terms, terms.tip.rolling_radius(laws.phi)
         self.reach = radius + self.dome if terms.turns else math.inf
         self.grows, self.sheared, self.longest = True, 0.0, contact.patience
@@ -179,7 +179,7 @@ class Leather:
             loads, motion = found
             forces = np.concatenate([loads[_ACROSS].reshape(NODES, 2).T, loads[2 * NODES :].reshape(2, NODES)])
             last = float(np.abs(response.rule.waves[-2:] @ forces[:3].T).max())
-            error = last * response.step / (TOLERANCE * self.impulse)
+            error = last * response.step / (self.tip_forces.tolerance * self.impulse)
             if error > 1:
                 self.halvings += 2 if error > 1e3 else 1
                 continue
@@ -267,13 +267,12 @@ class Leather:
         else:
             coordinates = self.free.shift(piece.coordinates, response.step, rule, piece.forces, piece.part)
             values = rule.polynomials(piece.part)
-        depth, angle, held, self.leaving = (
-            values @ part for part in (motion.depth, motion.angle, motion.F_t, motion.v_n)
-        )
+        depth, angle, self.leaving = (values @ part for part in (motion.depth, motion.angle, motion.v_n))
+        held = 0.0 if hold.apart else self.tip_forces.go(hold, piece)
         if depth > self.law.most:
             raise self.law.too_deep(float(depth))
         self.contact.time = piece.end
-        self.contact.put(depth=float(depth), angle=float(angle), shear=float(held))
+        self.contact.put(depth=float(depth), angle=float(angle), shear=held)
         if hold.grip != "stick":
             self.contact.put(shear=float(self.force(hold.grip, hold.press)[0]))
         self.series[0], self.series_step = piece.forces @ values, 0.0
@@ -294,8 +293,13 @@ class Leather:
             return
         motion = Motion(*(np.concatenate(parts) for parts in zip(*(piece.motion for piece in pieces), strict=True)))
         sums = np.concatenate([piece.sums(piece.part) for piece in pieces])
+        missing = before - self._stored(hold) - float(sums @ (motion.F_t * motion.v_t))
+        if self.tip_forces.whole_account:
+            contact.friction_loss += missing if math.isfinite(contact.laws.friction) else 0.0
+            self.sheared += 0.0 if math.isfinite(contact.laws.friction) else missing
+            return
         if hold.grip == "stick" and not hold.grows:  # by parts: it may stick to the end, where k_t falls with a root
-            self.sheared += before - self._stored(hold) - float(sums @ (motion.F_t * motion.v_t))  # of time
+            self.sheared += missing  # of time
             return
         self.sheared += float(sums @ self.tip_forces.wasted(hold, motion))
         if hold.grip != "stick":
@@ -390,6 +394,7 @@ class Leather:
         contact, start, first = self.contact, self.contact.time, len(self.pieces)
         self.sheared += self._stored(Hold("stick", "unload", grows=False))  # a constant spring alone still holds any
         contact.put(shear=0.0)
+        self.tip_forces.let_go()
         self.halvings, self.series, self.series_step = FIRST, np.zeros((TAYLOR, 4)), 0.0
         state, lost = contact.z, (contact.damping_loss, contact.radiated)
         flight = Hold("stick", "unload", grows=True, apart=True)

@@ -29,6 +29,10 @@ class WholeTip(Protocol):
     def dome_radius(self) -> float:
         """Radius of its dome, m; 0 for a flat tip."""
 
+    @property
+    def partial_slip(self) -> bool:
+        """Whether its patch slips ring by ring."""
+
     def lever(self, phi: float) -> tuple[float, float]:
         """Displacement (u, w) of the contact per unit rotation of the cue's end section, m; phi >= 0, rad."""
 

@@ -179,13 +179,13 @@ def test_a_head_on_blow_takes_the_linear_time_of_its_stiffness() -> None:
 def test_errors_fall_with_the_tolerance_of_a_step(monkeypatch: pytest.MonkeyPatch) -> None:
     scene, tip = leather_scene(), bent()
     monkeypatch.setattr(leather, "SETTLED", 1e-13)
-    monkeypatch.setattr(leather, "TOLERANCE", 1e-13)
+    monkeypatch.setattr(TipForces, "tolerance", 1e-13)
     best, errors = strike_modes(scene, tip), []
     for name in ("LONGEST", "FIRST", "CROSSING"):  # steps as long as the tolerance lets them be
         monkeypatch.setattr(leather, name, 1)
     tolerances = (1e-3, 1e-4, 1e-6, 1e-8, 1e-10)
     for tolerance in tolerances:
-        monkeypatch.setattr(leather, "TOLERANCE", tolerance)
+        monkeypatch.setattr(TipForces, "tolerance", tolerance)
         errors.append(away(strike_modes(scene, tip), best))
     assert all(error < 3 * tolerance for error, tolerance in zip(errors, tolerances, strict=True))
     assert errors[-1] < 1e-5 * errors[0]

@@ -74,6 +74,10 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: LeatherTip(6e-3, nan, 1e8), "LeatherTip.dome_radius must be in (0, inf] m; got nan"),
     (lambda: LeatherTip(6e-3, 9.5e-3, inf), "LeatherTip.E must be in (0, inf) Pa; got inf"),
     (lambda: LeatherTip(6e-3, 9.5e-3, 1e8, 0.5), "LeatherTip.nu must be in [0.2, 0.45]; got 0.5"),
+    (
+        lambda: LeatherTip(6e-3, 9.5e-3, 1e8, shear=1e6, partial_slip=True),
+        "LeatherTip.shear must be left out beside partial_slip = True; got 1000000.0",
+    ),
     (lambda: LeatherTip(6e-3, 9.5e-3, 1e8, rho=0.0), "LeatherTip.rho must be in (0, inf) kg/m^3; got 0.0"),
     (lambda: LeatherTip(6e-3, 6e-3, 1e8).mass(0.013), "LeatherTip.dome_radius must be in [0.0065, inf] m, half of"),
     (lambda: LeatherTip(2e-3, 9.5e-3, 1e8).mass(0.01275), "LeatherTip.height must be in (0.00245661, inf) m, above"),

@@ -4,22 +4,29 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 
-from cuefem import Tip, strike
+from cuefem import AxialWaves, Tip, strike
+from cuefem.effects import Effect
 from cuefem.validation import disagreements
 from studies import leather_release as study
 from studies.common import STUDIES
 
 
-@pytest.mark.parametrize("offset", [0.2, -0.2, 0.45])
-def test_the_scaled_rule_is_what_cuefem_computes(offset: float) -> None:
-    scene = study.struck_scene(offset)
-    ours, theirs = strike(scene), study.stepped(scene, "scaled", 2e-6)
-    assert theirs.squirt == pytest.approx(math.degrees(ours.squirt), rel=1e-3)
+@pytest.mark.parametrize(
+    ("offset", "partial", "more"),
+    [(0.2, False, ()), (-0.2, False, ()), (0.45, False, ()), (0.2, True, ()), (-0.45, True, (AxialWaves(),))],
+)
+def test_what_cuefem_computes_is_stepped_alike(offset: float, partial: bool, more: tuple[Effect, ...]) -> None:
+    scene = study.struck_scene(offset, leather=replace(study.LEATHER, partial_slip=partial), more=more)
+    ours, theirs = strike(scene), study.stepped(scene, "rings that slip" if partial else "scaled", 2e-6)
+    first = ours.energy["initial"]
+    assert theirs.squirt == pytest.approx(math.degrees(ours.squirt), rel=2e-3)
     assert theirs.time == pytest.approx(1e3 * ours.duration, abs=4e-3)  # it ends with a step
-    assert theirs.lost == pytest.approx(ours.energy["tip shear"] / ours.energy["initial"], rel=6e-3)
+    assert theirs.lost == pytest.approx(ours.energy["tip shear"] / first, rel=6e-3, abs=1e-5)
+    assert theirs.slid == pytest.approx(ours.energy["friction loss"] / first, rel=0.02, abs=1e-4)
 
 
 @pytest.mark.parametrize("rule", study.RULES)

@@ -1,0 +1,60 @@
+"""A patch of leather that slips ring by ring: energy, mirrors, and the limits of friction."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import inf
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from cuefem import AxialWaves, SecondHit, StructuralDamping, strike
+from tests.helpers.leather_scenes import AT, LEATHER, leather_scene
+from tests.helpers.strike_scenes import imbalance
+
+RINGS = replace(LEATHER, partial_slip=True)
+
+
+@settings(max_examples=12)
+@given(
+    offset=st.floats(-0.7, 0.7),
+    speed=st.floats(0.2, 6.0),
+    e=st.floats(0.2, 1.0),
+    friction=st.one_of(st.floats(0.0, 2.0), st.just(inf)),
+    rolls=st.booleans(),
+)
+def test_the_energy_account_closes_and_nothing_is_gained(offset, speed, e, friction, rolls) -> None:
+    tip = replace(RINGS, E=1e8 * (1 + speed / 3), rolls=rolls)
+    found = strike(leather_scene(offset, speed=speed, e=e, friction=friction, leather=tip), AT)
+    assert imbalance(found) < 1e-7
+    slack = 1e-7 * found.energy["initial"]
+    assert all(found.energy[name] > -slack for name in ("tip loss", "tip shear", "friction loss"))
+
+
+def test_the_other_side_mirrors() -> None:
+    left, right = (strike(leather_scene(side * 0.375, leather=RINGS), AT) for side in (-1, 1))
+    assert left.squirt == -right.squirt
+    assert left.duration == right.duration
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.05])
+def test_a_tip_that_slides_all_the_time_knows_no_rings(friction) -> None:
+    rings, whole = (strike(leather_scene(friction=friction, leather=tip), AT) for tip in (RINGS, LEATHER))
+    assert rings.regime == whole.regime == "miscue"
+    assert rings.squirt == pytest.approx(whole.squirt, rel=1e-7)
+
+
+def test_all_that_the_patch_loses_is_friction_unless_that_is_endless() -> None:
+    found = {mu: strike(leather_scene(friction=mu, leather=RINGS), AT).energy for mu in (0.7, inf)}
+    assert found[0.7]["friction loss"] > 1e-4 * found[0.7]["initial"]
+    assert abs(found[0.7]["tip shear"]) < 1e-12 * found[0.7]["initial"]
+    assert found[inf]["friction loss"] == 0
+    assert found[inf]["tip shear"] > 1e-4 * found[inf]["initial"]
+
+
+@pytest.mark.parametrize("effect", [AxialWaves(), StructuralDamping(0.02), SecondHit()])
+def test_other_effects_go_with_it(effect) -> None:
+    found = strike(leather_scene(0.375, effect, leather=RINGS), AT)
+    assert imbalance(found) < 1e-7
+    assert found.squirt < strike(leather_scene(0.375, effect), AT).squirt
