@@ -55,7 +55,7 @@ from tests.helpers.strike_scenes import (
     weighted_cue,
 )
 
-HERE = Path(__file__).parent
+ROOT = Path(__file__).parents[2]
 FEW = Resolution(4, 12, 12)
 
 
@@ -310,9 +310,9 @@ def test_the_answer_does_not_depend_on_the_number_of_blas_threads():
     answers = []
     for threads in ("1", "2"):
         names = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
-        environment = {**os.environ, **dict.fromkeys(names, threads), "PYTHONPATH": str(HERE.parent)}
+        environment = {**os.environ, **dict.fromkeys(names, threads), "PYTHONPATH": str(ROOT)}
         run = subprocess.run(
-            [sys.executable, "-c", THREADS, str(HERE)], capture_output=True, text=True, check=True, env=environment
+            [sys.executable, "-c", THREADS, str(ROOT)], capture_output=True, text=True, check=True, env=environment
         )
         answers.append(np.array(json.loads(run.stdout)))
     assert np.abs(answers[1] - answers[0]).max() < 1e-10 * np.abs(answers[0]).max()
@@ -438,7 +438,7 @@ def test_a_segment_may_be_short_and_thin():
     assert np.all(np.isfinite(numbers(outcome)))
 
 
-MESHES = sorted((HERE.parent / "meshes").glob("*.toml"))
+MESHES = sorted((ROOT / "meshes").glob("*.toml"))
 EVERY = list(
     product((0.0, 1e-6, 0.5, 1.0), (0.0, 1e-6, 0.3, 5.0, inf), (0.0, 0.1, -0.4, 0.7, 0.999), (5e-5, 1e-3, 5e-2))
 )
