@@ -3,7 +3,7 @@
 The tip modes are all that an impact sees of a cue. A lumped cue is two of them, of zero frequency. A finite-element cue
 is solved: where a Resolution is given, the modes asked for are summed plainly. By default modes are kept by frequency
 and ended by a tail (`cuefem.beam.tail`), without which no bound on their frequency holds every cue to half a percent.
-scikit-fem is loaded when a finite-element cue is solved, not before.
+The beam's solver is loaded when a finite-element cue is solved, not before.
 """
 
 from __future__ import annotations

@@ -6,6 +6,7 @@ import math
 import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
+from decimal import Decimal
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -16,7 +17,7 @@ from hypothesis import strategies as st
 import cuefem as cf
 from cuefem.effects import Effect
 from cuefem.io import InputError
-from cuefem.io.units import number, quantity, text
+from cuefem.io.units import USUAL, number, quantity, scale_by_pint, text
 from cuefem.quantity import EXAMPLES, Quantity, check_fields
 
 
@@ -106,6 +107,17 @@ def test_meshes_read_back_exactly(suffix: str, cue: cf.Cue) -> None:
 @settings(max_examples=300)
 def test_every_number_is_written_so_that_it_reads_back(value: float, unit: str) -> None:
     assert number(text(value, unit), unit) == value
+
+
+@pytest.mark.parametrize(("unit", "wanted"), [(unit, wanted) for wanted in USUAL for unit in USUAL[wanted]])
+def test_the_usual_units_are_those_of_pint(unit: str, wanted: str) -> None:
+    assert scale_by_pint(unit, wanted) == Decimal(USUAL[wanted][unit])
+
+
+def test_every_unit_that_is_written_is_a_usual_one() -> None:
+    assert USUAL.keys() == EXAMPLES.keys()
+    for unit, (_, example) in EXAMPLES.items():
+        assert {unit, example.split(" ", 1)[1]} <= USUAL[unit].keys()
 
 
 @pytest.mark.heavy
