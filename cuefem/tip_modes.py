@@ -106,7 +106,9 @@ class Solved:
                 found = tail(self._solved(at, ended=False), turning=turning(self.scene))
             else:
                 effects = self.scene.cue_effects
-                system = assemble(self.scene.shaft, elements=at.elements, order=at.order, effects=effects)
+                system = assemble(
+                    self.scene.shaft, elements=at.elements, order=at.order, effects=effects, count=at.modes
+                )
                 # a support makes rigid modes flexible; the number of modes in all stays the same, so that its limits
                 # are continuous
                 found = solve(system, at.modes + 2 - system.rigid.shape[1])
