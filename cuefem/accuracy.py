@@ -352,7 +352,7 @@ def _tips(scene: Scene) -> Iterator[_Tips]:
     end_rings = _end_rings(scene.shaft)
     for group in _groups(scene):
         elements, order = mesh_for(scene.shaft, group[-1])
-        system = assemble(scene.shaft, elements=elements, order=order, effects=scene.cue_effects)
+        system = assemble(scene.shaft, elements=elements, order=order, effects=scene.cue_effects, count=group[-1])
         whole, deflect = solve(system, group[-1]), flexibility(system)
         for count in group:
             yield _Tips(Resolution(elements, order, count), scene, whole, deflect, end_rings)

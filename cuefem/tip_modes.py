@@ -3,7 +3,7 @@
 The tip modes are all that an impact sees of a cue. A lumped cue is two of them, of zero frequency. A finite-element cue
 is solved: where a Resolution is given, the modes asked for are summed plainly. By default modes are kept by frequency
 and ended by a tail (`cuefem.beam.tail`), without which no bound on their frequency holds every cue to half a percent.
-scikit-fem is loaded when a finite-element cue is solved, not before.
+The beam's solver is loaded when a finite-element cue is solved, not before.
 """
 
 from __future__ import annotations
@@ -106,7 +106,9 @@ class Solved:
                 found = tail(self._solved(at, ended=False), turning=turning(self.scene))
             else:
                 effects = self.scene.cue_effects
-                system = assemble(self.scene.shaft, elements=at.elements, order=at.order, effects=effects)
+                system = assemble(
+                    self.scene.shaft, elements=at.elements, order=at.order, effects=effects, count=at.modes
+                )
                 # a support makes rigid modes flexible; the number of modes in all stays the same, so that its limits
                 # are continuous
                 found = solve(system, at.modes + 2 - system.rigid.shape[1])

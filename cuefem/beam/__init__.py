@@ -1,4 +1,4 @@
-"""The shaft as a Timoshenko beam in p-version finite elements on scikit-fem: a cue and its effects become K and M.
+"""The shaft as a Timoshenko beam in p-version finite elements: a cue and its effects become K and M.
 
 The deflection w has polynomial degree p + 1 and the rotation theta degree p, so that w' can follow theta and nothing
 locks:
@@ -7,6 +7,6 @@ locks:
 
 Bending is linear along x from the tip (x = 0) to the butt; see [Cowper] and handbook: The beam.
 
-`system` assembles K and M, `modes` solves for the bending modes, `tail` stands for the modes left out, and `tip` holds
-what an impact sees of them. Only `tip` and `waves` do without scikit-fem, so this package hands on no names.
+The basis functions are scikit-fem's hierarchical ones, tabulated (`basis`). `system` assembles K and M, `modes` solves
+for the bending modes, `tail` stands for the modes left out, and `tip` holds what an impact sees of them.
 """

@@ -1,4 +1,7 @@
-"""scikit-fem's hierarchical line basis, tabulated once for each order; element matrices are contracted from it."""
+"""scikit-fem's hierarchical line basis, tabulated once for each order; element matrices are contracted from it.
+
+It is written out here, since loading scikit-fem takes longer than solving a beam; a test compares the two.
+"""
 
 from __future__ import annotations
 
@@ -6,9 +9,7 @@ import functools
 from typing import NamedTuple
 
 import numpy as np
-from skfem import ElementLinePp
-from skfem.quadrature import get_quadrature
-from skfem.refdom import RefLine
+from numpy.polynomial.legendre import leggauss
 
 from cuefem.cue import Array
 
@@ -32,10 +33,20 @@ class Table(NamedTuple):
 
 
 def line_basis(degree: int, points: Array) -> tuple[Array, Array]:
-    """scikit-fem's hierarchical basis of ``degree`` and its derivative at reference ``points``: two (degree + 1, q)."""
-    element = ElementLinePp(max(degree, 3))  # hierarchical: lower degrees are its first functions
-    both = [element.lbasis(points[None, :], i) for i in range(degree + 1)]
-    return np.array([value for value, _ in both]), np.array([slope[0] for _, slope in both])
+    """scikit-fem's hierarchical basis of ``degree`` and its derivative at reference ``points``: two (degree + 1, q).
+
+    1 - x and x, then the integrals of the Legendre polynomials, which vanish at both ends, each with a derivative of
+    unit norm on [-1, 1].
+    """
+    x = 2 * points - 1
+    legendre = [np.ones_like(x), x]
+    for n in range(1, degree):
+        legendre.append(((2 * n + 1) * x * legendre[n] - n * legendre[n - 1]) / (n + 1))
+    values, slopes = [1 - points, points], [-np.ones_like(x), np.ones_like(x)]
+    for n in range(2, degree + 1):
+        values.append((legendre[n] - legendre[n - 2]) / (2 * (2 * n - 1)) ** 0.5)
+        slopes.append(legendre[n - 1] * (2 * (2 * n - 1)) ** 0.5)
+    return np.array(values), np.array(slopes)
 
 
 def local_basis(order: int, points: Array) -> tuple[Array, Array, Array, Array]:
@@ -54,8 +65,8 @@ def local_basis(order: int, points: Array) -> tuple[Array, Array, Array, Array]:
 @functools.cache
 def table(order: int) -> Table:
     """The tabulated basis of one polynomial order, made once; Gauss points exact for cones (degree 2 order + 4)."""
-    points, weights = get_quadrature(RefLine, 2 * order + 7)
-    points = points[0]
+    points, weights = leggauss(order + 4)
+    points, weights = (points + 1) / 2, weights / 2
     w, dw, t, dt = local_basis(order, points)
 
     def product(a: Array, b: Array) -> Array:

@@ -6,13 +6,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import scipy.linalg as la
-import scipy.sparse.linalg as sla
 from numpy.typing import ArrayLike
 
+from cuefem.beam.lapack import lapack
 from cuefem.beam.mesh import ActsOnCue
-from cuefem.beam.system import System, assemble
-from cuefem.beam.waves import EVEN, mesh_for, modes_below
+from cuefem.beam.system import System, assemble, suits_dense
+from cuefem.beam.waves import mesh_for, modes_below
 from cuefem.cue import Array, Cue, Section
 from cuefem.quantity import Quantity, check_count, check_kind
 
@@ -120,7 +119,7 @@ def modes(
     below = 0 if near is None else modes_below(cue, 2 * np.pi * near)
     wanted = below + count + (0 if near is None else 2)
     elements, order = mesh_for(cue, wanted) if at is None else (at.elements, at.order)
-    system = assemble(cue, elements=elements, order=order, effects=effects)
+    system = assemble(cue, elements=elements, order=order, effects=effects, count=wanted)
     if near is None:
         return solve(system, count)
     return _nearest(solve(system, min(wanted, _held(system))), count, near)
@@ -166,7 +165,7 @@ def _polished(system: System, flexible: Array, rigid: Array) -> tuple[Array, Arr
     """
     flexible = flexible - rigid @ (rigid.T @ (system.M @ flexible))
     strains = system.strains(flexible)
-    inverse, mix = la.eigh(flexible.T @ (system.M @ flexible), strains.T @ strains, check_finite=False)
+    inverse, mix = _all_of(flexible.T @ (system.M @ flexible), strains.T @ strains)
     return 1 / np.sqrt(inverse[::-1]), flexible @ (mix / np.sqrt(inverse))[:, ::-1]
 
 
@@ -177,7 +176,7 @@ def _held(system: System) -> int:
 
 def lowest(K: Any, M: Any, *, count: int, shift: float) -> Array:
     """Vectors (unknowns, count) of the ``count`` lowest omega^2 of K q = omega^2 M q, ascending, with q' M q = 1."""
-    if not isinstance(K, np.ndarray) and count > (K.shape[0] / EVEN) ** 3:
+    if not isinstance(K, np.ndarray) and suits_dense(K.shape[0], count):
         K, M = K.toarray(), M.toarray()
     if isinstance(K, np.ndarray):
         inverse, vectors = _largest(M, K + shift * M, count)
@@ -189,14 +188,24 @@ def _largest(A: Any, B: Any, count: int) -> tuple[Array, Array]:
     """The ``count`` largest mu of A q = mu B q, descending, with q' B q = 1 (dense)."""
     scale = 1 / np.sqrt(B.diagonal())
     A, B = A * scale[:, None] * scale, B * scale[:, None] * scale
-    mu, vectors = la.eigh(A, B, check_finite=False, overwrite_a=True, overwrite_b=True)
+    mu, vectors = _all_of(A, B)
     return mu[::-1][:count], vectors[:, ::-1][:, :count] * scale[:, None]
+
+
+def _all_of(A: Array, B: Array) -> tuple[Array, Array]:
+    """Every mu of A q = mu B q, ascending, and vectors with q' B q = 1; A and B symmetric, B positive definite."""
+    mu, vectors, failed = lapack().dsygvd(A.T, B.T, uplo="L")
+    if failed:
+        raise np.linalg.LinAlgError(f"the eigenproblem of the modes has no solution (dsygvd {failed})")
+    return mu, vectors
 
 
 def _lowest_sparse(K: Any, M: Any, *, count: int, shift: float) -> Array:
     """Vectors of the ``count`` lowest omega^2 of sparse K q = omega^2 M q, with q' M q = 1: shift-inverted Lanczos."""
+    from scipy.sparse.linalg import eigsh
+
     start = np.ones(K.shape[0])  # a fixed start, so that the same input gives the same numbers
-    squares, vectors = sla.eigsh(K, count, M, sigma=-shift, v0=start)
+    squares, vectors = eigsh(K, count, M, sigma=-shift, v0=start)
     return np.asarray(vectors[:, np.argsort(squares)])
 
 

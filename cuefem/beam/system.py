@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from cuefem.beam.basis import local_basis, table
 from cuefem.beam.mesh import ActsOnCue, Links, Mesh, Terms, mesh_cue
+from cuefem.beam.waves import EVEN
 from cuefem.cue import Array, Cue, Section
+
+if TYPE_CHECKING:
+    import scipy.sparse as sp  # loaded when used: few cues need it
 
 # Below this many unknowns a dense eigenproblem is faster than a sparse one, however many modes are wanted.
 DENSE_LIMIT = 220
@@ -21,7 +24,7 @@ DENSE_LIMIT = 220
 class System:
     """The assembled beam: K q = omega^2 M q, in w (m) and theta times the cue's length (m).
 
-    K, M: (unknowns, unknowns), dense arrays, or sparse above `DENSE_LIMIT` unknowns. rigid: (unknowns, r), the exact
+    K, M: (unknowns, unknowns), arrays or sparse (`suits_dense`). rigid: (unknowns, r), the exact
     rigid motions that stay free (two for a free cue). dashpots: diagonal of the viscous matrix, None without one.
     fixed: unknowns that a clamp takes out. shift: a square frequency of the order of the lowest mode's, rad2/s2.
     section: at the Gauss points, arrays (elements, q). springs: the part of K's diagonal that effects add. links: the
@@ -46,6 +49,8 @@ class System:
         """Matrix from the free unknowns to all of them, (unknowns, free); None if no clamp or tie takes any out."""
         if len(self.fixed) + len(self.tied) == 0:
             return None
+        import scipy.sparse as sp
+
         source = np.arange(self.mesh.unknowns)
         source[self.tied[:, 0]] = self.tied[:, 1]
         rows = np.flatnonzero(~np.isin(source, self.fixed))
@@ -118,8 +123,13 @@ def element_matrices(section: Section, sizes: Array, length: float, order: int) 
     return (stiff @ t.stiffness).reshape(shape), (heavy @ t.mass).reshape(shape)
 
 
-def assemble(cue: Cue, *, elements: int | tuple[int, ...], order: int, effects: tuple[ActsOnCue, ...] = ()) -> System:
-    """Assemble a cue with the effects that act on it; elements and order as a Resolution has them."""
+def assemble(
+    cue: Cue, *, elements: int | tuple[int, ...], order: int, effects: tuple[ActsOnCue, ...] = (), count: int = 0
+) -> System:
+    """Assemble a cue with the effects that act on it; elements and order as a Resolution has them.
+
+    count: how many modes will be wanted of it; by default few.
+    """
     for effect in effects:
         effect.check_on(cue, type(effect).__name__)
     positions = tuple(x for effect in effects for x in effect.positions)
@@ -140,8 +150,9 @@ def assemble(cue: Cue, *, elements: int | tuple[int, ...], order: int, effects: 
         return diagonal * scale
 
     springs, links = point(terms.stiffness), terms.links(scale)
-    K = gather(mesh.first, mesh.unknowns, stiff, point=springs, links=links)
-    M = gather(mesh.first, mesh.unknowns, heavy, point=point(terms.mass))
+    dense = suits_dense(mesh.unknowns, count)
+    K = gather(mesh.first, mesh.unknowns, stiff, point=springs, links=links, dense=dense)
+    M = gather(mesh.first, mesh.unknowns, heavy, point=point(terms.mass), dense=dense)
     fixed = np.array(sorted(terms.fixed), dtype=np.intp)
     rigid = _rigid_motions(mesh, cue.length, springs, fixed)
     dashpots = point(terms.dashpot) if terms.dashpot else None
@@ -155,16 +166,29 @@ def _shift(cue: Cue, section: Section, sizes: Array) -> float:
     return 500 * stiffness / mass / cue.length**4
 
 
+def suits_dense(unknowns: int, count: int) -> bool:
+    """Whether a dense eigenproblem gives the lowest ``count`` modes faster than a sparse one."""
+    return unknowns <= DENSE_LIMIT or count > (unknowns / EVEN) ** 3
+
+
 def gather(
-    first: NDArray[np.intp], unknowns: int, blocks: Array, *, point: Array, links: Links | None = None
+    first: NDArray[np.intp],
+    unknowns: int,
+    blocks: Array,
+    *,
+    point: Array,
+    links: Links | None = None,
+    dense: bool | None = None,
 ) -> Array | sp.csc_matrix:
     """The matrix summed from element blocks (elements, u, u), each from its unknown ``first`` on, and point terms."""
     u = blocks.shape[-1]
-    if unknowns <= DENSE_LIMIT:
-        dense = np.diag(point)
+    if suits_dense(unknowns, 0) if dense is None else dense:
+        whole = np.diag(point)
         for start, block in zip(first, blocks, strict=True):
-            dense[start : start + u, start : start + u] += block
-        return dense if links is None or not len(links.stiffness) else dense + _linked(links, unknowns).toarray()
+            whole[start : start + u, start : start + u] += block
+        return whole if links is None or not len(links.stiffness) else whole + _linked(links, unknowns).toarray()
+    import scipy.sparse as sp
+
     rows = first[:, None, None] + np.arange(u)[:, None] + np.zeros((u, u), dtype=int)
     columns = rows.transpose(0, 2, 1)
     whole = sp.coo_matrix((blocks.ravel(), (rows.ravel(), columns.ravel())), shape=(unknowns,) * 2) + sp.diags(point)
@@ -172,6 +196,8 @@ def gather(
 
 
 def _linked(links: Links, unknowns: int) -> sp.csc_matrix:
+    import scipy.sparse as sp
+
     before, after, k = links
     rows, columns = np.r_[before, after, before, after], np.r_[before, after, after, before]
     return sp.csc_matrix((np.r_[k, k, -k, -k], (rows, columns)), shape=(unknowns, unknowns))

@@ -13,10 +13,8 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
-import scipy.linalg as la
-import scipy.sparse as sp
-import scipy.sparse.linalg as sla
 
+from cuefem.beam.lapack import lapack
 from cuefem.beam.modes import Modes
 from cuefem.beam.system import System
 from cuefem.cue import Array
@@ -120,7 +118,12 @@ def flexibility(system: System) -> Deflect:
 def inverse(S: Any) -> Deflect:
     """The function that solves S x = load, for a symmetric positive S, dense or sparse."""
     if isinstance(S, np.ndarray):
-        factors = la.cho_factor(S, check_finite=False)
-        return lambda load: la.cho_solve(factors, load)
-    solve: Deflect = sla.splu(sp.csc_matrix(S)).solve
+        factor, failed = lapack().dpotrf(S, lower=1, clean=0)
+        if failed:
+            raise np.linalg.LinAlgError(f"the stiffness must be positive definite; dpotrf stopped at row {failed}")
+        return lambda load: np.asarray(lapack().dpotrs(factor, load, lower=1)[0])
+    import scipy.sparse as sp
+    from scipy.sparse.linalg import splu
+
+    solve: Deflect = splu(sp.csc_matrix(S)).solve
     return solve

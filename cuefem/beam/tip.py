@@ -42,9 +42,10 @@ class TipModes:
 
     def lowest(self, count: int) -> TipModes:
         """The first ``count`` modes alone."""
-        return self._chosen(np.arange(count))
+        return self.those(np.arange(count))
 
-    def _chosen(self, index: NDArray[np.intp]) -> TipModes:
+    def those(self, index: NDArray[np.intp]) -> TipModes:
+        """Some of the modes alone, in the order of their numbers ``index``."""
         parts = (None if part is None else part[np.ix_(index, index)] for part in (self.damping, self.radiation))
         damping, radiation = (part if part is not None and part.any() else None for part in parts)
         omega, amplitude, approach, rotation = self.omega, self.amplitude, self.approach, self.rotation
@@ -71,7 +72,7 @@ class TipModes:
 
     def ascending(self) -> TipModes:
         """The same modes in the order of their frequencies."""
-        return self._chosen(np.argsort(self.omega, kind="stable"))
+        return self.those(np.argsort(self.omega, kind="stable"))
 
     @property
     def uncoupled(self) -> TipModes:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import socket
 from pathlib import Path
 from typing import Any
 
@@ -49,6 +48,8 @@ def designer(scene: Path | None, port: int, show: bool) -> None:
 
 def _free(port: int) -> int:
     """The port, if it is free; any free one for 0."""
+    import socket  # loaded when used, as all that one command needs
+
     with socket.socket() as tried:
         tried.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:

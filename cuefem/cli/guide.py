@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
-import webbrowser
 from pathlib import Path
 
 import click
@@ -45,6 +43,9 @@ def guide(chapter: str | None, output: Path | None, in_terminal: bool) -> None:
         save_page(page(), output)
         click.echo(f"wrote {output}")
         return
+    import tempfile
+    import webbrowser
+
     with tempfile.NamedTemporaryFile(prefix="cuefem-guide-", suffix=".html", delete=False) as made:
         path = Path(made.name)
     path.write_text(page(), encoding="utf-8")

@@ -245,7 +245,7 @@ class StructuralDamping(CueEffect):
 
     def damp(self, tip: TipModes, cue: Cue, families: Sequence[Vibrations]) -> TipModes:
         """The tip modes with every vibrating mode damped."""
-        from cuefem.effects.loss import damped  # loaded when used: it needs scikit-fem
+        from cuefem.effects.loss import damped  # loaded when used: it solves the beam
 
         return damped(tip, cue, families, loss=self.loss)
 
@@ -289,7 +289,7 @@ class AxialWaves(CueEffect):
 
     def vibrations(self, found: Modes, cue: Cue, effects: Sequence[CueEffect]) -> tuple[AxialVibrations, ...]:
         """The rod modes."""
-        from cuefem.effects.axial import rod_modes  # loaded when used: it needs scikit-fem
+        from cuefem.effects.axial import rod_modes  # loaded when used: it solves the beam
 
         masses = [(effect.positions[0], effect.mass_on(cue)) for effect in effects if effect.mass_on(cue)]
         masses.append((cue.length, cue.body_mass))

@@ -8,12 +8,43 @@ against the ball's inertia 1/c takes the force g with row . z + c J = V, J the i
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
-from scipy.linalg import expm
 
 from cuefem.beam.tip import TipModes
 from cuefem.cue import Array
+from cuefem.endmass import undamped
 from cuefem.endmass.undamped import StickLimit, loading
+
+# Coefficients of the diagonal Padé approximant of exp of degree 13, and the norm up to which it is exact to rounding.
+_PADE = [float(math.comb(13, j) * math.factorial(26 - j) // math.factorial(13)) for j in range(14)]
+_REACH = 4.25
+
+
+def expm(X: Array) -> Array:
+    """exp(X) by scaling and squaring (Higham, SIAM J. Matrix Anal. Appl. 26 (2005) 1179).
+
+    scipy has it too, but would take half of a cold `cuefem end-mass` to load.
+    """
+    one, second = np.eye(len(X)), X @ X
+    fourth = second @ second
+    sixth = fourth @ second
+    norm = max(np.linalg.norm(power, 1) ** (1 / n) for n, power in ((4, fourth), (6, sixth)))
+    halvings = max(0, math.ceil(math.log2(norm / _REACH))) if norm > 0 else 0
+    X, second, fourth, sixth = (
+        power / 2.0 ** (n * halvings) for n, power in ((1, X), (2, second), (4, fourth), (6, sixth))
+    )
+
+    def half(c: list[float]) -> Array:
+        low = c[3] * sixth + c[2] * fourth + c[1] * second + c[0] * one
+        return np.asarray(sixth @ (c[6] * sixth + c[5] * fourth + c[4] * second) + low)
+
+    odd, even = X @ half(_PADE[1::2]), half(_PADE[0::2])
+    found = np.linalg.solve(even - odd, even + odd)
+    for _ in range(halvings):
+        found = found @ found
+    return np.asarray(found)
 
 
 def _motion(tip: TipModes) -> tuple[Array, Array]:
@@ -26,7 +57,19 @@ def _motion(tip: TipModes) -> tuple[Array, Array]:
 
 
 def half_sine_velocity(tip: TipModes, T: float) -> float:
-    """Tip velocity at the end of a half-sine force of unit height and length T, m/s per N."""
+    """Tip velocity at the end of a half-sine force of unit height and length T, m/s per N.
+
+    Modes that neither damping nor radiation touches, all but the tail's in a cue without damping, have a closed form.
+    """
+    assert tip.resistance is not None
+    touched = tip.resistance.any(axis=1)
+    alone, rigid = ~touched & (tip.omega > 0), ~touched & (tip.omega == 0)
+    phi, still = tip.amplitude[alone, 1], float(np.sum(tip.amplitude[rigid, 1] ** 2))
+    free = float(undamped.half_sine_velocity(tip.omega[alone], phi, still, T=T))
+    return free + _half_sine_velocity(tip.those(np.flatnonzero(touched)), T)
+
+
+def _half_sine_velocity(tip: TipModes, T: float) -> float:
     A, row = _motion(tip)
     size, a = len(A), np.pi / T
     whole = np.zeros((size + 2, size + 2))  # beside z: the force and its quadrature

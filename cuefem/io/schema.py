@@ -5,10 +5,9 @@ from __future__ import annotations
 import functools
 import re
 import typing
-from dataclasses import fields, is_dataclass
-from typing import Annotated, Any, TypeVar, cast
-
-from pydantic import ConfigDict, TypeAdapter, ValidationError
+from contextlib import suppress
+from dataclasses import MISSING, fields, is_dataclass
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar, cast
 
 from cuefem.cue import Material
 from cuefem.effects import Effect
@@ -17,21 +16,81 @@ from cuefem.io.units import quantity, text
 from cuefem.materials import MATERIALS
 from cuefem.quantity import Quantity
 
+if TYPE_CHECKING:
+    from pydantic import TypeAdapter, ValidationError
+
 Kind = TypeVar("Kind")
 
 NAMES = {known.material: name for name, known in MATERIALS.items()}
 ABSENT = ("tip_bore", "butt_bore")  # not written if 0, their default: a bore that is not there
-_CONFIG = ConfigDict(extra="forbid", arbitrary_types_allowed=True)
 
 
 @functools.cache
 def adapter(kind: Any) -> TypeAdapter[Any]:
     """Pydantic's validator of lists of ``kind``: it takes a configuration for plain dataclasses only from a holder."""
-    return TypeAdapter(list[kind], config=_CONFIG)
+    from pydantic import ConfigDict, TypeAdapter
+
+    return TypeAdapter(list[kind], config=ConfigDict(extra="forbid", arbitrary_types_allowed=True))
 
 
 def build(kind: type[Kind], table: Any, *, file: str, key: str) -> Kind:
     """A ``kind`` from a file's table of keys and values; InputError names file, key path, bound, unit and value."""
+    with suppress(_Unclear):
+        return cast(Kind, _plainly(kind, table))
+    return build_by_pydantic(kind, table, file=file, key=key)
+
+
+class _Unclear(Exception):
+    """A table that is wrong, or written in a way that only pydantic knows to read."""
+
+
+def _plainly(hint: Any, value: Any) -> Any:
+    """What a faultless table says, without pydantic, which takes longer to load than a beam to solve; else _Unclear.
+
+    hint: a dataclass, the `Annotated` type of one of its fields, or a tuple or a choice of these.
+    """
+    if typing.get_origin(hint) is Annotated:
+        marks = [mark for mark in hint.__metadata__ if isinstance(mark, Quantity)]
+        if len(marks) == 1:
+            return _cleared(quantity, marks[0], value)
+        raise _Unclear
+    if hint is bool and isinstance(value, bool):
+        return value
+    if typing.get_origin(hint) is tuple and isinstance(value, list):
+        inner, *_ = typing.get_args(hint)
+        return tuple(_plainly(inner, item) for item in value)
+    choices = [member for member in typing.get_args(hint) or (hint,) if is_dataclass(member)]
+    if any(isinstance(value, cast(type, choice)) for choice in choices):
+        return value
+    if len(choices) != 1 or not isinstance(value, dict):
+        raise _Unclear
+    kind = cast(Any, choices[0])
+    hints, needed = _expected(kind)
+    if not needed <= value.keys() <= hints.keys():
+        raise _Unclear
+    return _cleared(kind, **{name: _plainly(hints[name], item) for name, item in value.items()})
+
+
+@functools.cache
+def _expected(kind: type) -> tuple[dict[str, Any], set[str]]:
+    """The types of a dataclass's fields, and the names of those that have no default."""
+    hints = typing.get_type_hints(kind, include_extras=True)
+    needed = {field.name for field in fields(kind) if field.default is MISSING and field.default_factory is MISSING}
+    return {field.name: hints[field.name] for field in fields(kind)}, needed
+
+
+def _cleared(make: Any, *arguments: Any, **named: Any) -> Any:
+    """What ``make`` makes of the arguments; _Unclear if it refuses them."""
+    try:
+        return make(*arguments, **named)
+    except (TypeError, ValueError):
+        raise _Unclear from None
+
+
+def build_by_pydantic(kind: type[Kind], table: Any, *, file: str, key: str) -> Kind:
+    """As `build`, by pydantic's validator, which says exactly what is wrong with a table."""
+    from pydantic import ValidationError
+
     try:
         made = adapter(cast(Any, kind)).validate_python([table], context={"read": quantity})
     except ValidationError as error:

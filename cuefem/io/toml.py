@@ -9,8 +9,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
-import tomlkit
-
 from cuefem.cue import Cue, LumpedCue, Material
 from cuefem.effects import Effect, effect_kinds
 from cuefem.io.errors import InputError, nearest, read_bytes, reason, shown
@@ -209,6 +207,8 @@ def _spelt_out(kind: type[Effect], found: dict[str, Any], path: Path, key: str) 
 
 def toml_text(thing: Cue | Scene) -> str:
     """A cue or scene as TOML that `load_toml` reads back exactly."""
+    import tomlkit  # loaded when used, as for all that writes
+
     document = tomlkit.document()
     for name, value in table(thing).items():
         document.add(name, _item(value))
@@ -217,6 +217,8 @@ def toml_text(thing: Cue | Scene) -> str:
 
 def _item(value: Any) -> Any:
     """Segments and effects as [[tables]], what lies inside them in one line."""
+    import tomlkit
+
     if isinstance(value, dict):
         made = tomlkit.table()
         for name, inner in value.items():
@@ -231,6 +233,8 @@ def _item(value: Any) -> Any:
 
 
 def _row(found: dict[str, Any]) -> Any:
+    import tomlkit
+
     made = tomlkit.table()
     for name, inner in found.items():
         if isinstance(inner, dict):

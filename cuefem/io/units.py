@@ -21,6 +21,27 @@ _UNIT = re.compile(rf"{_FACTOR}(?:(?:\s*[*/]\s*|\s){_FACTOR}){{0,6}}(?:\s*/\s*{_
 _POWER = re.compile(r"m([23])\b")  # g/cm3 as people write it
 
 
+# How many SI units one of the units that cues are drawn in is, exactly as pint has it: a test compares them all. pint
+# knows every other unit, and takes longer to load than all of a command's work.
+USUAL = {
+    "m": {"m": "1", "mm": "0.001", "cm": "0.01", "in": "0.0254", "inch": "0.0254", "ft": "0.3048"},
+    "kg": {"kg": "1", "g": "0.001", "oz": "0.028349523125", "lb": "0.45359237"},
+    "s": {"s": "1", "ms": "0.001", "us": "0.000001", "µs": "0.000001"},
+    "m/s": {"m/s": "1", "km/h": "0.2777777777777777777777777778", "mph": "0.44704", "ft/s": "0.3048"},
+    "Pa": {"Pa": "1", "MPa": "1E+6", "GPa": "1E+9"},
+    "kg/m^3": dict.fromkeys(("kg/m^3", "kg/m3", "kg/m³"), "1") | dict.fromkeys(("g/cm^3", "g/cm3", "g/cm³"), "1000"),
+    "N/m": {"N/m": "1", "N/mm": "1000", "kN/m": "1000"},
+    "N m/rad": {"N m/rad": "1"},
+    "rad/(N m)": {"rad/(N m)": "1"},
+    "m/N": {"m/N": "1"},
+    "N m": {"N m": "1"},
+    "N s/m": {"N s/m": "1"},
+    "kg m^2": {"kg m^2": "1", "g mm^2": "1E-9"},
+    "rad": {"rad": "1", "deg": "0.01745329251994329576923690768"},
+    "Hz": {"Hz": "1", "kHz": "1000"},
+}
+
+
 @functools.cache
 def _registry() -> Any:
     import pint
@@ -31,6 +52,12 @@ def _registry() -> Any:
 @functools.cache
 def _scale(unit: str, wanted: str) -> Decimal | None:
     """How many ``wanted`` one ``unit`` is; None if pint knows no such unit or it is of another kind."""
+    usual = USUAL.get(wanted, {}).get(unit)
+    return scale_by_pint(unit, wanted) if usual is None else Decimal(usual)
+
+
+def scale_by_pint(unit: str, wanted: str) -> Decimal | None:
+    """As `_scale`, for units that are not `USUAL`."""
     import pint
 
     unit = _POWER.sub(r"m^\1", unit)

@@ -1,32 +1,8 @@
-"""What the commands show: records of plain SI numbers for programs, and readable tables made of them for people."""
+"""What the commands show: records of plain SI numbers for programs, and readable tables made of them for people.
 
-from cuefem.report.claims import claims_record, claims_table
-from cuefem.report.effects import DEFAULT_RTOL, effects_record, effects_table
-from cuefem.report.end_mass import end_mass_record, end_mass_table
-from cuefem.report.everything import report_record
-from cuefem.report.materials import materials_record, materials_table
-from cuefem.report.modes import modes_record, modes_table
-from cuefem.report.record import cue_record
-from cuefem.report.squirt import pivot_table, squirt_record, squirt_table
-from cuefem.report.strike import strike_record, strike_table
+The names stand in `__init__.pyi`; each is loaded when it is first used, so that a command loads its own tables alone.
+"""
 
-__all__ = [
-    "DEFAULT_RTOL",
-    "claims_record",
-    "claims_table",
-    "cue_record",
-    "effects_record",
-    "effects_table",
-    "end_mass_record",
-    "end_mass_table",
-    "materials_record",
-    "materials_table",
-    "modes_record",
-    "modes_table",
-    "pivot_table",
-    "report_record",
-    "squirt_record",
-    "squirt_table",
-    "strike_record",
-    "strike_table",
-]
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -6,8 +6,10 @@ import math
 import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
+from decimal import Decimal
 from pathlib import Path
 from typing import Annotated, Any
+from unittest import mock
 
 import pytest
 from hypothesis import given, settings
@@ -15,8 +17,8 @@ from hypothesis import strategies as st
 
 import cuefem as cf
 from cuefem.effects import Effect
-from cuefem.io import InputError
-from cuefem.io.units import number, quantity, text
+from cuefem.io import InputError, schema
+from cuefem.io.units import USUAL, number, quantity, scale_by_pint, text
 from cuefem.quantity import EXAMPLES, Quantity, check_fields
 
 
@@ -33,6 +35,7 @@ class Weight(Effect):
         check_fields(self)
 
 
+MESHES = Path(__file__).parents[2] / "meshes"
 POSITIVE = st.floats(0, math.inf, exclude_min=True, exclude_max=True)
 SIZES = st.floats(1e-6, 10)
 FINITE = st.floats(allow_nan=False, allow_infinity=False)
@@ -89,10 +92,26 @@ def saved_and_loaded(thing: cf.Cue | cf.Scene, name: str) -> cf.Cue | cf.Scene:
         return cf.load(path)
 
 
+ALL_BY_PYDANTIC = mock.patch.object(schema, "_plainly", side_effect=schema._Unclear)
+
+
 @given(CUES | SCENES)
 @settings(max_examples=100, deadline=None)
 def test_toml_reads_back_exactly(thing: cf.Cue | cf.Scene) -> None:
     assert saved_and_loaded(thing, "thing.toml") == thing
+
+
+@given(CUES | SCENES)
+@settings(max_examples=30, deadline=None)
+def test_pydantic_reads_the_same(thing: cf.Cue | cf.Scene) -> None:
+    with ALL_BY_PYDANTIC:
+        assert saved_and_loaded(thing, "thing.toml") == thing
+
+
+def test_a_faultless_drawing_needs_no_pydantic() -> None:
+    with mock.patch.object(schema, "build_by_pydantic", side_effect=AssertionError):
+        for name in ("kim.toml", "pool_hollow.toml"):
+            assert isinstance(cf.load(MESHES / name), cf.Cue)
 
 
 @pytest.mark.parametrize("suffix", ["vtk", "vtu"])
@@ -106,6 +125,17 @@ def test_meshes_read_back_exactly(suffix: str, cue: cf.Cue) -> None:
 @settings(max_examples=300)
 def test_every_number_is_written_so_that_it_reads_back(value: float, unit: str) -> None:
     assert number(text(value, unit), unit) == value
+
+
+@pytest.mark.parametrize(("unit", "wanted"), [(unit, wanted) for wanted in USUAL for unit in USUAL[wanted]])
+def test_the_usual_units_are_those_of_pint(unit: str, wanted: str) -> None:
+    assert scale_by_pint(unit, wanted) == Decimal(USUAL[wanted][unit])
+
+
+def test_every_unit_that_is_written_is_a_usual_one() -> None:
+    assert USUAL.keys() == EXAMPLES.keys()
+    for unit, (_, example) in EXAMPLES.items():
+        assert {unit, example.split(" ", 1)[1]} <= USUAL[unit].keys()
 
 
 @pytest.mark.heavy
@@ -143,3 +173,5 @@ def test_a_damaged_file_is_refused_or_read(data: st.DataObject, suffix: str) -> 
         loaded, refusal = outcome(lambda: cf.load(path))
         assert refusal.startswith(f"{path}: ") if refusal else isinstance(loaded, cf.Cue)
         assert len(refusal.splitlines()) <= 1
+        with ALL_BY_PYDANTIC:
+            assert outcome(lambda: cf.load(path)) == (loaded, refusal)
