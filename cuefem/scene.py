@@ -369,6 +369,8 @@ class Outcome:
     history : History or None
         Forces and velocities during the contact, at any time (`cuefem.contact.history.History`); None from the impulse
         solver.
+    kernel : str or None
+        What ran the contact: "c", the compiled kernel, or "python"; None from the impulse solver.
     """
 
     squirt: Any
@@ -385,3 +387,4 @@ class Outcome:
     unknowns: int = 0
     error: float | None = None
     history: Any = None
+    kernel: str | None = None

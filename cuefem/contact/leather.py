@@ -69,7 +69,7 @@ class Leather:
     "shear", the force F_t, N. grows: whether the patch does. sheared: energy that the spring along the surface lost, J.
     """
 
-    haste = 1.0
+    haste, kernel = 1.0, "python"
 
     def __init__(self, tip: TipModes, laws: Laws, *, law: LeatherLaw, radius: float, terms: ContactTerms) -> None:
         assert terms.tip is not None
