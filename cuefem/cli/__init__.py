@@ -68,10 +68,11 @@ def _forget_output() -> None:
 def _version(ctx: click.Context, _: click.Parameter, asked: bool) -> None:
     if not asked or ctx.resilient_parsing:
         return
-    from cuefem import __version__
+    from importlib.metadata import version
+
     from cuefem.contact.kernel import described
 
-    click.echo(f"cuefem, version {__version__}\ncontact: {described()}")
+    click.echo(f"cuefem, version {version('cuefem')}\ncontact: {described()}")
     ctx.exit()
 
 

@@ -7,7 +7,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from dataclasses import replace
-from math import inf
+from math import asin, inf
 
 import numpy as np
 import pytest
@@ -24,11 +24,15 @@ from cuefem import (
     TipShear,
     motion,
 )
+from cuefem.beam.tip import TipModes
 from cuefem.contact import kernel
 from cuefem.contact.kernel import VARIABLE
+from cuefem.contact.leather import Leather
+from cuefem.contact.state import Laws
 from cuefem.contact.strike import strike_modes
 from cuefem.tip_modes import tip_modes_of
 from tests.helpers.kernels import BUILT
+from tests.helpers.leather_scenes import AT, LEATHER, POOL, leather_scene
 from tests.helpers.strike_scenes import KIM_AT, hand_made, kim_scene, numbers, pool_cue
 
 # Rounding, relative to the whole impulse and the whole energy, of up to a thousand cells of 28 terms.
@@ -109,6 +113,83 @@ def test_the_kernel_agrees_with_python_on_loud_modes(seed: int, both) -> None:
     for effects in ((), (SHEAR,)):
         shaped = replace(scene, effects=effects)
         agree(*both(lambda shaped=shaped: strike_modes(shaped, tip)))
+
+
+WHOLE = {
+    "stick": leather_scene(),
+    "head on": leather_scene(0.0),
+    "mirrored": leather_scene(-0.45),
+    "slip": leather_scene(0.5, friction=0.2),
+    "slip all through": leather_scene(0.6, friction=0.05),
+    "endless friction": leather_scene(friction=inf),
+    "fast": leather_scene(speed=5.0),
+    "lossless": leather_scene(e=1.0),
+    "little restitution": leather_scene(e=0.2),
+    "flat": leather_scene(0.3, leather=replace(LEATHER, dome_radius=inf)),
+    "steady": leather_scene(leather=replace(LEATHER, shear=1e6, rolls=False)),
+    "damped": leather_scene(0.375, StructuralDamping(0.02)),
+    "hit twice": leather_scene(0.375, SecondHit(0.02)),
+    "with waves": leather_scene(0.375, AxialWaves()),
+}
+
+
+@BUILT
+@pytest.mark.parametrize("name", WHOLE)
+def test_the_kernel_agrees_with_python_on_a_whole_tip(name: str, both) -> None:
+    """To `AGREE`, unless an iteration of forces that has all but settled takes a round more in one of the two."""
+    scene = WHOLE[name]
+    tip = tip_modes_of(scene, AT)
+    agree(*both(lambda: strike_modes(scene, tip)))
+
+
+@BUILT
+def test_a_lever_that_is_a_function_keeps_a_whole_tip_in_python(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(VARIABLE, "c")
+    scene, tip = leather_scene(), tip_modes_of(leather_scene(), AT)
+    laws = Laws(asin(0.375), POOL.mass, POOL.inertia, scene.stiffness, 0.73, 0.7, scene.contact_time, 2.0)
+    for lever, name in ((None, "c"), (lambda phi: (-1e-3, 0.0), "python")):
+        terms = scene.contact_terms
+        if lever is not None:
+            terms.add_lever(lever)
+        here = Leather(tip, laws, law=scene.tip_law(0.73, 0.375), radius=POOL.radius, terms=terms)
+        assert here.kernel == name
+
+
+def heavy(mass: float = 50.0) -> TipModes:
+    """A cue that presses the leather deeper than its scene's own would."""
+    return hand_made([500.0, 3000.0], [5.0, 8.0], mass=mass)
+
+
+@BUILT
+@pytest.mark.parametrize(
+    ("scene", "error", "words"),
+    [
+        (leather_scene(0.1, speed=14.0), ValueError, "leather is compressed by"),
+        (leather_scene(), RuntimeError, "could not be stepped on"),
+    ],
+)
+def test_a_whole_tip_gives_up_where_python_does(scene, error, words, monkeypatch: pytest.MonkeyPatch) -> None:
+    if error is RuntimeError:
+        monkeypatch.setattr("cuefem.contact.leather.MOST_STEPS", 5)
+    said = []
+    for name in ("python", "c"):
+        monkeypatch.setenv(VARIABLE, name)
+        with pytest.raises(error, match=words) as raised:
+            strike_modes(scene, heavy())
+        said.append(str(raised.value))
+    assert said[0] == said[1]
+
+
+@BUILT
+@pytest.mark.parametrize("scene", [leather_scene(0.375, SecondHit(0.02)), leather_scene(0.4, StructuralDamping(0.02))])
+def test_motion_takes_what_the_kernel_leaves_of_a_whole_tip(scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    times, found = np.linspace(0, 3e-3, 7), []
+    for name in ("python", "c"):
+        monkeypatch.setenv(VARIABLE, name)
+        found.append(motion(scene, times, AT))
+    for part in ("fields", "along", "centre", "turned"):
+        one, other = (getattr(each, part) for each in found)
+        assert np.abs(one - other).max() < 10 * AGREE * np.abs(one).max()
 
 
 @BUILT

@@ -22,6 +22,13 @@
 #define FAST
 #endif
 
+/* Small loops that are to be compiled for the processor of the function that they stand in. */
+#if defined(__GNUC__)
+#define INLINE static inline __attribute__((always_inline))
+#else
+#define INLINE static inline
+#endif
+
 /* A function of one number. */
 typedef double (*function)(const void *of, double x);
 
