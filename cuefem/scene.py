@@ -379,6 +379,8 @@ class Outcome:
     history : History or None
         Forces and velocities during the contact, at any time (`cuefem.contact.history.History`); None from the impulse
         solver.
+    kernel : str or None
+        What ran the contact: "c", the compiled kernel, or "python"; None from the impulse solver.
     """
 
     squirt: Any
@@ -395,3 +397,4 @@ class Outcome:
     unknowns: int = 0
     error: float | None = None
     history: Any = field(default=None, repr=False)
+    kernel: str | None = None

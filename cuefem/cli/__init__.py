@@ -65,8 +65,19 @@ def _forget_output() -> None:
         os.dup2(nowhere, sys.stdout.fileno())
 
 
+def _version(ctx: click.Context, _: click.Parameter, asked: bool) -> None:
+    if not asked or ctx.resilient_parsing:
+        return
+    from importlib.metadata import version
+
+    from cuefem.contact.kernel import described
+
+    click.echo(f"cuefem, version {version('cuefem')}\ncontact: {described()}")
+    ctx.exit()
+
+
 @click.group(cls=_OneLine, context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(package_name="cuefem")
+@click.option("--version", is_flag=True, expose_value=False, is_eager=True, callback=_version, help="Show the version.")
 def main() -> None:
     """From a cue shaft's drawing to its effective end mass and squirt.
 

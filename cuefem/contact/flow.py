@@ -19,9 +19,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from cuefem.contact.kernel import library
+from cuefem.contact.kernel import linear as compiled
 from cuefem.cue import Array
 
 REACH, DEGREE = 3.0, 27  # 3^28/28! = 8e-17
+# With more pushes than this, the response to them costs more than the exponential of a matrix.
+FEW = 8
 CELLS = 24  # of a block, after the first cell: many phases end in that
 ORDERS = np.arange(DEGREE + 1)
 FACTORIALS = np.array([float(factorial(j)) for j in ORDERS])
@@ -52,8 +56,8 @@ def exponential(X: Array) -> Array:
 Pushes = list[tuple[Array, Array]]
 
 
-def pushed(free: Array, pushes: Pushes, held: Array | None = None) -> tuple[Array, Array, Array]:
-    """(A, rows, directions): a free motion and what pushes it, A = free + directions' rows where held' z is zero.
+def pushed(free: Array, pushes: Pushes, held: Array | None = None) -> tuple[Callable[[], Array], Array, Array]:
+    """(makes A, rows, directions): a free motion and what pushes it, A = free + directions' rows where held' z is zero.
 
     held: (n, k) orthonormal columns; forces along them keep held' z at zero: A is P A P, P orthogonal to them. Each
     term is projected by itself: with a light end mass the contact's directions are nearly parallel, and what remains of
@@ -63,9 +67,14 @@ def pushed(free: Array, pushes: Pushes, held: Array | None = None) -> tuple[Arra
     if held is not None:
         for _ in range(2):
             directions, rows = (part - (part @ held) @ held.T for part in (directions, rows))
-        free = free - (free @ held) @ held.T
-        directions, rows = np.concatenate([directions, -held.T]), np.concatenate([rows, held.T @ free])
-    return free + directions.T @ rows, rows, directions
+        across = free @ held
+        of_held = held.T @ free - (held.T @ across) @ held.T
+        directions, rows = np.concatenate([directions, -held.T]), np.concatenate([rows, of_held])
+
+    def whole() -> Array:
+        return (free if held is None else free - across @ held.T) + directions.T @ rows
+
+    return whole, rows, directions
 
 
 class Drive(NamedTuple):
@@ -103,12 +112,25 @@ class Drive(NamedTuple):
 
 @dataclass(frozen=True)
 class Flow:
-    """The motion of z' = A z and of its outputs rows @ z; rate: a bound on |A|, 1/s; drive: A's form, if it has one."""
+    """The motion of z' = A z and of its outputs rows @ z; rate: a bound on |A|, 1/s; drive: A's form, if it has one.
 
-    A: Array
+    own: A, or what makes it when it is asked for, which the compiled kernel never does.
+    """
+
+    own: Array | Callable[[], Array]
     rows: Array
     rate: float
     drive: Drive | None = None
+
+    @cached_property
+    def A(self) -> Array:
+        """The matrix of the motion."""
+        return self.own() if callable(self.own) else self.own
+
+    @cached_property
+    def few(self) -> Drive | None:
+        """The drive, if it has so few pushes that the response to them is cheap."""
+        return self.drive if self.drive is not None and len(self.drive.rows) <= FEW else None
 
     @property
     def step(self) -> float:
@@ -123,8 +145,8 @@ class Flow:
     @cached_property
     def advance(self) -> Array:
         """exp(A h)."""
-        if self.drive is not None:
-            return self.drive.exponential(self.step, self.taylor[len(self.rows) :])
+        if self.few is not None:
+            return self.few.exponential(self.step, self.taylor[len(self.rows) :])
         quarter = exponential(self.per_cell / 4)
         half = quarter @ quarter
         return np.asarray(half @ half)
@@ -132,7 +154,7 @@ class Flow:
     @cached_property
     def taylor(self) -> Array:
         """Rows that give Taylor coefficients in the fraction of a cell: outputs' and drive's, (m + r, 28, n)."""
-        rows = self.rows if self.drive is None else np.concatenate([self.rows, self.drive.rows])
+        rows = self.rows if self.few is None else np.concatenate([self.rows, self.few.rows])
         out = np.empty((DEGREE + 1, *rows.shape))
         out[0] = rows
         for before, after in pairwise(out):
@@ -217,6 +239,14 @@ class Arrival(NamedTuple):
 
 def march(flow: Flow, z: Array, guards: Guards, *, start: float, limit: float) -> Arrival | None:
     """Follow the flow from state ``z`` at ``start`` to the first sign change of a guard; None if none by ``limit``."""
+    kernel = library()
+    if kernel is not None and flow.drive is not None:
+        found = compiled.march(kernel, flow, z, guards, start=start, limit=limit, block=CELLS, terms=len(ORDERS))
+        if found.status == compiled.FOUND:
+            return Arrival(found.time, found.state, found.guard, [Piece(*each) for each in found.stretches])
+        if found.status == compiled.LATE:
+            return None
+        # numbers overflowed: what that leads to is for the code below to say
     pieces: list[Piece] = []
     time = start
     for states, polynomials in flow.blocks(z):

@@ -17,9 +17,21 @@ import numpy as np
 from cuefem.beam.tip import TipModes
 from cuefem.contact.flow import first_fall
 from cuefem.contact.history import MarchedHistory
+from cuefem.contact.kernel import leather as compiled
+from cuefem.contact.kernel import library
 from cuefem.contact.marched import Marched, Motion, Piece
 from cuefem.contact.phases import ROUNDING, Step, Stretch, endless, next_phase
-from cuefem.contact.response import EVEN, NODES, OPENING, TAYLOR, Complex, FreeMotion, Response
+from cuefem.contact.response import (
+    EVEN,
+    MANY,
+    MANY_WEIGHTS,
+    NODES,
+    OPENING,
+    TAYLOR,
+    Complex,
+    FreeMotion,
+    Response,
+)
 from cuefem.contact.ringed_patch import RingForces
 from cuefem.contact.state import APART, SIDE, Contact, Grip, Laws, Press
 from cuefem.contact.stretches import free_course
@@ -84,12 +96,15 @@ class Leather:
         self.size = self.impulse / laws.time  # and its force, N
         self.pieces: list[Piece] = []
         self.marches: list[Marched] = []
-        self.responses: dict[tuple[int, int], Response] = {}
+        self.responses: dict[tuple[int, bool], Response] = {}
         self.halvings = FIRST
         self.leaving = 0.0  # v_n at the end of the last step, m/s
         # the forces on the rows, by Taylor's series at the end of the last step in units of its length; or by their
         # last values alone
         self.series, self.series_step = np.zeros((TAYLOR, 4)), 0.0
+        found = None if terms.levers or terms.tip.partial_slip else library()  # levers and rings are Python's
+        self.steps = None if found is None else compiled.Steps(found, self, (EVEN, OPENING), (MANY, MANY_WEIGHTS))
+        self.kernel = "python" if self.steps is None else "c"
 
     def _rows(self) -> Array:
         """The velocities that forces act on: ball less tip along (t, n) of the first touch, spin, the tip's turning."""
@@ -117,8 +132,7 @@ class Leather:
         t + i n stands for a vector; seen from the contact it turns by exp(-i angle).
         """
         own, integral, answer = (response.own @ coordinates).real, response.integral, response.answer
-        slots = self.contact.slots
-        depth_0, angle_0, held = self.contact.z[slots.of("depth", "angle", "shear")].tolist()
+        depth_0, angle_0, held = self.kept
         loads, most = self._guess(response), (SETTLED * self.size) ** 2
         fixed, before = loads[_ACROSS].view(complex), np.zeros(NODES, complex)
         angle = np.full(NODES, angle_0)
@@ -159,19 +173,29 @@ class Leather:
             values = np.broadcast_to(self.series[0], (NODES, 4))
         return np.concatenate([values[:, :2].ravel(), values[:, 2], values[:, 3]])
 
-    def _response(self, rule_power: int) -> Response:
-        key = self.halvings, rule_power
+    @property
+    def kept(self) -> list[float]:
+        """Compression, m, angle, and force of the spring along the surface, N: the slots that are no coordinates."""
+        found: list[float] = self.contact.z[self.contact.slots.of("depth", "angle", "shear")].tolist()
+        return found
+
+    def _response(self, halvings: int, opens: bool) -> Response:
+        key = halvings, opens
         if key not in self.responses:
-            step = self.contact.laws.time / 2**self.halvings
-            self.responses[key] = Response.of(self.free, step, EVEN if rule_power == 1 else OPENING)
+            self.responses[key] = Response.of(self.free, self._length(halvings), OPENING if opens else EVEN)
         return self.responses[key]
+
+    def _length(self, halvings: int) -> float:
+        """Of a step, s."""
+        return self.contact.laws.time / 2**halvings
 
     def _step(self, hold: Hold, coordinates: Complex) -> Piece:
         """The longest step that holds the tolerance."""
         opens = self._opens(hold)
         self._shorten(hold)
         while self.halvings <= SHORTEST:
-            response = self._response(OPENING.power if opens else EVEN.power)
+            key = self.halvings, opens
+            response = self._response(*key)
             found = self._solved(hold, coordinates, response)
             if found is None:
                 self.halvings += 2
@@ -186,7 +210,18 @@ class Leather:
             if error < 1e-3 and self.halvings > LONGEST:
                 self.halvings -= 1
             slots = self.contact.slots.of("depth", "angle")
-            return Piece(self.contact.time, 1.0, response, coordinates, forces, motion, slots)
+            return Piece(
+                self.contact.time,
+                1.0,
+                response.step,
+                response.rule,
+                key,
+                self._response,
+                coordinates,
+                forces,
+                motion,
+                slots,
+            )
         raise self._stuck(hold)
 
     def _shorten(self, hold: Hold) -> None:
@@ -229,7 +264,7 @@ class Leather:
 
     def _crossing(self, piece: Piece, ends: dict[str, Array]) -> tuple[str, float] | None:
         """The first end in a step, and the part of the step at which it is."""
-        rule, first, until = piece.response.rule, None, math.inf
+        rule, first, until = piece.rule, None, math.inf
         if np.min(list(ends.values())) >= -PAST:
             return None
         for name, values in ends.items():
@@ -246,7 +281,10 @@ class Leather:
 
     def _leg(self, hold: Hold, coordinates: Complex, until: float, near: float = 0.0) -> tuple[str, Complex]:
         """Steps up to the first end of a leg, or to ``until``, s, and what was lost in them."""
-        first, before, event = len(self.pieces), self._stored(hold), ""
+        before = self._stored(hold)
+        if self.steps is not None:
+            return self._compiled_leg(self.steps, hold, coordinates, until, near, before)
+        first, event = len(self.pieces), ""
         while not event and self.contact.time < until:
             if len(self.pieces) > MOST_STEPS:
                 raise self._stuck(hold)
@@ -255,8 +293,41 @@ class Leather:
             if part > 0:
                 coordinates = self._take(replace(piece, part=part), hold)
         if len(self.pieces) > first:
-            self._lose(hold, self.pieces[first:], before)
+            self._lose(hold, self._losses(hold, self.pieces[first:]), before)
         return event or "late", coordinates
+
+    def _compiled_leg(
+        self, steps: compiled.Steps, hold: Hold, coordinates: Complex, until: float, near: float, before: float
+    ) -> tuple[str, Complex]:
+        """The same in the compiled kernel; before: what the spring along the surface held at its start, J."""
+        numbers = compiled.Numbers(
+            self.tip_forces.tolerance, SETTLED, WILD, OPENED, PAST, ROUNDING, ROUNDS, LONGEST, SHORTEST, CROSSING, MOST_STEPS
+        )
+        status, event, found, losses, records = steps.leg(hold, coordinates, until, near, numbers)
+        if status == compiled.TOO_DEEP:
+            raise self.law.too_deep(self.kept[0])
+        for record in map(steps.read, records):
+            rule, key = OPENING if record.opens else EVEN, (record.halvings, record.opens)
+            moved, slots = Motion(*record.motion), self.contact.slots.of("depth", "angle")
+            self.pieces.append(
+                Piece(
+                    record.start,
+                    record.part,
+                    record.length,
+                    rule,
+                    key,
+                    self._response,
+                    record.coordinates,
+                    record.forces,
+                    moved,
+                    slots,
+                )
+            )
+        if status not in (compiled.ENDED, compiled.LATE):
+            raise self._stuck(hold)
+        if len(records):
+            self._lose(hold, losses, before)
+        return event or "late", found
 
     def _take(self, piece: Piece, hold: Hold) -> Complex:
         """Go to the end of a piece; the coordinates there."""
@@ -281,19 +352,31 @@ class Leather:
         self.pieces.append(piece)
         return coordinates
 
-    def _lose(self, hold: Hold, pieces: list[Piece], before: float) -> None:
-        """Add up what was lost in a leg; before: what the spring along the surface held at its start, J."""
-        contact = self.contact
+    def _losses(self, hold: Hold, pieces: list[Piece]) -> Array:
+        """Integrals over a leg, J: the work of F_t, what its spring wasted, what was rubbed off, and each damper's."""
+        found = np.zeros(3 + len(self.damping))
         for piece in pieces if len(self.damping) else []:
             nodes = piece.response.all_coordinates(piece.coordinates, piece.forces)
-            powers = (self.damping @ nodes).real ** 2 @ piece.sums(piece.part)
-            contact.damping_loss += float(powers[: contact.lossy].sum())
-            contact.radiated += float(powers[contact.lossy :].sum())
+            found[3:] += (self.damping @ nodes).real ** 2 @ piece.sums(piece.part)
         if hold.apart:
-            return
+            return found
         motion = Motion(*(np.concatenate(parts) for parts in zip(*(piece.motion for piece in pieces), strict=True)))
         sums = np.concatenate([piece.sums(piece.part) for piece in pieces])
-        missing = before - self._stored(hold) - float(sums @ (motion.F_t * motion.v_t))
+        found[0] = sums @ (motion.F_t * motion.v_t)
+        if hold.grip != "stick" or hold.grows:
+            found[1] = sums @ self.tip_forces.wasted(hold, motion)
+        if hold.grip != "stick":
+            found[2] = sums @ (motion.F_t * self.tip_forces.slides(hold, motion))
+        return found
+
+    def _lose(self, hold: Hold, losses: Array, before: float) -> None:
+        """Note what was lost in a leg; before: what the spring along the surface held at its start, J."""
+        contact, (worked, wasted, rubbed, *damped) = self.contact, losses.tolist()
+        contact.damping_loss += math.fsum(damped[: contact.lossy])
+        contact.radiated += math.fsum(damped[contact.lossy :])
+        if hold.apart:
+            return
+        missing = before - self._stored(hold) - worked
         if self.tip_forces.whole_account:
             contact.friction_loss += missing if math.isfinite(contact.laws.friction) else 0.0
             self.sheared += 0.0 if math.isfinite(contact.laws.friction) else missing
@@ -301,9 +384,8 @@ class Leather:
         if hold.grip == "stick" and not hold.grows:  # by parts: it may stick to the end, where k_t falls with a root
             self.sheared += missing  # of time
             return
-        self.sheared += float(sums @ self.tip_forces.wasted(hold, motion))
-        if hold.grip != "stick":
-            contact.friction_loss -= float(sums @ (motion.F_t * self.tip_forces.slides(hold, motion)))
+        self.sheared += wasted
+        contact.friction_loss -= rubbed
 
     def _stored(self, hold: Hold) -> float:
         """Energy that the spring along the surface holds now, J."""

@@ -13,6 +13,7 @@ from typing import Self
 import numpy as np
 
 from cuefem.beam.tip import TipModes
+from cuefem.contact import kernel
 from cuefem.contact.flow import Drive, Flow, Guard, Guards, Piece, Pushes, guards_of, integral_of_product, march, pushed
 from cuefem.contact.history import F_N, F_T, V_N, History
 from cuefem.contact.patch import Patch, RigidPatch, SpringPatch, losses_of
@@ -26,8 +27,6 @@ from cuefem.cue import Array
 # 1/e times faster than the contact, needs so many, if a cue presses it on and its ringing cannot be averaged
 # (`cuefem.contact.ringing_tip`).
 MOST_CELLS = 500_000
-# With more dampers than this, the response to them costs more than the exponential of a matrix.
-FEW = 4
 
 
 class Exact:
@@ -39,7 +38,7 @@ class Exact:
 
     def __init__(self, contact: Contact, patch: Patch, ringing: Ringing | None = None) -> None:
         self.contact, self.patch, self.ringing = contact, patch, ringing
-        self.longest = contact.patience
+        self.longest, self.kernel = contact.patience, kernel.name()
         self.haste = patch.haste if 0 < contact.laws.restitution <= RINGING else 1.0
         self.flows: dict[tuple[Grip, Press], Flow] = {}
         self.pieces: list[Piece] = []
@@ -111,12 +110,10 @@ class Exact:
         """
         contact = self.contact
         A, drives, directions = pushed(contact.free, pushes, held)
-        drive = None
-        if len(contact.dampers) <= FEW:
-            drives = np.concatenate([drives, contact.dampers])
-            directions = np.concatenate([directions, -contact.dampers])
-            drive = Drive(contact.omega, contact.slots.swinging, drives, directions)
-        rate = rate or max(float(np.linalg.norm(A)), contact.fastest, 1 / contact.laws.time)
+        drives = np.concatenate([drives, contact.dampers])
+        directions = np.concatenate([directions, -contact.dampers])
+        drive = Drive(contact.omega, contact.slots.swinging, drives, directions)
+        rate = rate or max(float(np.linalg.norm(A())), contact.fastest, 1 / contact.laws.time)
         rows = np.array([contact.c_t, contact.c_n, *forces])
         return Flow(A, np.concatenate([rows, contact.dampers]), rate, drive)
 
@@ -144,7 +141,7 @@ class Exact:
         self.patch.begin(self, grip, press)
         names, guards = self.guards(grip, press)
         before, start, flow = contact.impulse, contact.time, self.flow(grip, press)
-        self.courses.append(Course(start, flow.A, flow.rate, contact.z))
+        self.courses.append(Course(start, lambda: flow.A, flow.rate, contact.z))
         cells = sum(piece.coefficients.shape[2] for piece in self.pieces)
         limit = min(self.longest, start + (MOST_CELLS * self.haste - cells) * flow.step)
         arrival = march(flow, contact.z, guards, start=start, limit=limit)
@@ -220,7 +217,7 @@ class Exact:
         arrival = march(flow, np.append(contact.z, 0.0), Guards(weights, np.array([near])), start=start, limit=until)
         if arrival is None or arrival.time > until:
             return False
-        self.courses.append(Course(start, contact.free, flow.rate, contact.z))
+        self.courses.append(Course(start, lambda: contact.free, flow.rate, contact.z))
         self.arrive(arrival.time, arrival.state[:-1], arrival.pieces)
         contact.z[contact.slots["spring"]] = 0.0
         contact.end_phase(*APART, start, contact.impulse)

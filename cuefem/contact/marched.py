@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from cuefem.contact.response import Complex, Response
+from cuefem.contact.response import Complex, Response, Rule
 from cuefem.cue import Array
 
 
@@ -27,31 +27,40 @@ class Motion(NamedTuple):
 class Piece:
     """A step that was taken, from ``start``, s, up to ``part`` of it.
 
-    coordinates: at its start. forces: on the rows, (m, NODES). slots: those of compression and angle in the state.
+    step: length of the whole, s. key: of its response, by which ``responds`` makes it or knows it. coordinates: at its
+    start. forces: on the rows, (m, NODES). slots: those of compression and angle in the state.
     """
 
     start: float
     part: float
-    response: Response
+    step: float
+    rule: Rule
+    key: tuple[int, bool]
+    responds: Callable[[int, bool], Response]
     coordinates: Complex
     forces: Array
     motion: Motion
     slots: list[int]
 
     @property
+    def response(self) -> Response:
+        """Of the whole step."""
+        return self.responds(*self.key)
+
+    @property
     def end(self) -> float:
         """Where it ends, s."""
-        return self.start + self.part * self.response.step
+        return self.start + self.part * self.step
 
     def outputs(self, time: Array) -> Array:
         """(v_t, v_n, F_n, F_t) at times, s, (4, n)."""
-        part = np.minimum((time - self.start) / self.response.step, self.part)
+        part = np.minimum((time - self.start) / self.step, self.part)
         values = np.stack([self.motion.v_t, self.motion.v_n, self.motion.F_n, self.motion.F_t])
-        return np.asarray(values @ self.response.rule.polynomials(part).T)
+        return np.asarray(values @ self.rule.polynomials(part).T)
 
     def sums(self, part: float) -> Array:
         """From values at the nodes to their integral up to a part of the step, (NODES,), s."""
-        return self.response.step * self.response.rule.sums(part)
+        return self.step * self.rule.sums(part)
 
     def _states(self) -> Array:
         """The states at the nodes, (size, NODES)."""
@@ -62,8 +71,8 @@ class Piece:
 
     def _state(self, part: float) -> Array:
         """The state at a part of the step."""
-        rule, free = self.response.rule, self.response.free
-        state = free.state(free.shift(self.coordinates, self.response.step, rule, self.forces, part))
+        rule, free = self.rule, self.response.free
+        state = free.state(free.shift(self.coordinates, self.step, rule, self.forces, part))
         values = rule.polynomials(part)
         state[self.slots] = values @ self.motion.depth, values @ self.motion.angle
         return state
@@ -71,7 +80,7 @@ class Piece:
     def states(self, rows: Array, times: Array) -> tuple[list[Array], Array]:
         """States at times, s, each with the integrals of ``rows`` since the start; and these up to the end."""
         nodes = rows @ self._states()
-        parts = [min((float(time) - self.start) / self.response.step, self.part) for time in times]
+        parts = [min((float(time) - self.start) / self.step, self.part) for time in times]
         found = [np.concatenate([self._state(part), nodes @ self.sums(part)]) for part in parts]
         return found, nodes @ self.sums(self.part)
 

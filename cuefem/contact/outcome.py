@@ -35,6 +35,7 @@ def outcome_of(kind: Kind, scene: Scene, side: float) -> Outcome:
         energy=_energy(kind, inertia),
         unknowns=len(contact.z),
         history=kind.history(side),
+        kernel=kind.kernel,
     )
 
 

@@ -47,6 +47,7 @@ class Kind(Protocol):
 
     contact: Contact
     longest: float  # when the contact is given up, s
+    kernel: str  # what runs it: "c", or "python"
     haste: float  # the part of what it may take in phases before it is given up
 
     def first_grip(self, press: Press) -> Grip:

@@ -33,7 +33,7 @@ POINTS = NODES // 2 + 3
 DEFECTIVE, NUDGE = 1e7, 1e-9
 # Terms of the series with which the forces of a step are guessed from those of the one before.
 TAYLOR = 4
-_MANY, _MANY_WEIGHTS = np.polynomial.legendre.leggauss(3 * NODES)
+MANY, MANY_WEIGHTS = np.polynomial.legendre.leggauss(3 * NODES)
 
 
 class Rule(NamedTuple):
@@ -80,8 +80,8 @@ class Rule(NamedTuple):
         Shapes (points,) and (points, NODES).
         """
         half = part ** (1 / self.power) / 2
-        place = half * (1 + _MANY)
-        weights = half * _MANY_WEIGHTS * self.power * place ** (self.power - 1)
+        place = half * (1 + MANY)
+        weights = half * MANY_WEIGHTS * self.power * place ** (self.power - 1)
         return place**self.power, weights[:, None] * self.polynomials(place**self.power)
 
     def sums(self, part: float) -> Array:

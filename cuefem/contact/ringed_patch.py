@@ -72,7 +72,7 @@ class RingForces(TipForces):
 
     def go(self, hold: Hold, piece: Piece) -> float:
         """Take the rings to the end of a step; the force along the surface there, N."""
-        motion, rule, part = piece.motion, piece.response.rule, piece.part
+        motion, rule, part = piece.motion, piece.rule, piece.part
         nodes = np.flatnonzero(rule.times < part * (1 - 1e-12))
         ends = rule.polynomials(part)
         depth = np.append(motion.depth[nodes], ends @ motion.depth)

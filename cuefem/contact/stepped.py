@@ -87,7 +87,7 @@ class Stepped:
     were asked for.
     """
 
-    haste = 1.0
+    haste, kernel = 1.0, "python"
     lost_in: tuple[str, ...] = ("rubbed", "damped", "gone")
 
     def __init__(

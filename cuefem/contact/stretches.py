@@ -14,10 +14,10 @@ _GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(8)  # exact for the interpola
 
 
 class Course(NamedTuple):
-    """From a start, s, on the state z moves by z' = A z, with |A| <= rate, 1/s."""
+    """From a start, s, on the state z moves by z' = A z, with |A| <= rate, 1/s; ``matrix`` makes A."""
 
     start: float
-    A: Array
+    matrix: Callable[[], Array]
     rate: float
     state: Array
 
@@ -27,7 +27,7 @@ class Course(NamedTuple):
 
         size, scale = len(self.state), self.rate / float(np.linalg.norm(rows))
         A = np.zeros((size + len(rows),) * 2)
-        A[:size, :size], A[size:, :size] = self.A, scale * rows  # the integrals change as fast as the rest
+        A[:size, :size], A[size:, :size] = self.matrix(), scale * rows  # the integrals change as fast as the rest
         z, before = np.concatenate([self.state, np.zeros(len(rows))]), 0.0
         taken, onward = 0.0, np.eye(len(A))
         for span in spans:
@@ -83,4 +83,4 @@ class Stepping(NamedTuple):
 
 def free_course(contact: Contact) -> Course:
     """The motion of cue and ball from now on, without a contact."""
-    return Course(contact.time, contact.free, max(contact.fastest, 1 / contact.laws.time), contact.z)
+    return Course(contact.time, lambda: contact.free, max(contact.fastest, 1 / contact.laws.time), contact.z)

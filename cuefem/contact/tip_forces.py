@@ -63,7 +63,7 @@ class TipForces:
 
     def go(self, hold: Hold, piece: Piece) -> float:
         """Go to the end of a step; the force along the surface there, N."""
-        return float(piece.response.rule.polynomials(piece.part) @ piece.motion.F_t)
+        return float(piece.rule.polynomials(piece.part) @ piece.motion.F_t)
 
     def let_go(self) -> None:
         """Ball and tip are apart: there is nothing to keep."""

@@ -43,7 +43,7 @@ def possible(here: Exact, grip: str, press: str) -> np.ndarray:
 def test_a_driven_motion_is_its_exponential(effects, grip, press):
     here = contact(*effects)
     flow, z = here.flow(grip, press), possible(here, grip, press)
-    assert flow.drive is not None
+    assert flow.few is not None
     exact = la.expm(flow.A * flow.step) @ z
     assert np.abs(flow.advance @ z - exact).max() < 1e-13 * np.abs(exact).max()
 
@@ -51,6 +51,6 @@ def test_a_driven_motion_is_its_exponential(effects, grip, press):
 def test_many_dampers_take_the_exponential_of_a_matrix():
     here = contact(StructuralDamping(0.01))
     flow = here.flow("stick", "load")
-    assert flow.drive is None
+    assert flow.few is None
     exact = la.expm(flow.A * flow.step)
     assert np.abs(flow.advance - exact).max() < 1e-13 * np.abs(exact).max()

@@ -1,4 +1,7 @@
-"""Exact propagation of linear systems, its roots and its integrals, against scipy's expm and closed forms."""
+"""Exact propagation of linear systems, its roots and its integrals, against scipy's expm and closed forms.
+
+All of it in Python, and once more in the compiled kernel where it is built.
+"""
 
 from itertools import islice
 
@@ -7,9 +10,16 @@ import pytest
 import scipy.linalg as la
 from scipy.integrate import quad
 
-from cuefem.contact.flow import CELLS, DEGREE, Flow, Guards, exponential, integral_of_product, march, zero
+from cuefem.contact.flow import CELLS, DEGREE, Drive, Flow, Guards, exponential, integral_of_product, march, zero
+from cuefem.contact.kernel import VARIABLE
+from tests.helpers.kernels import KERNELS
 
 RNG = np.random.default_rng(7)
+
+
+@pytest.fixture(autouse=True, params=KERNELS)
+def kernel(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(VARIABLE, request.param)
 
 
 def system(kind: str, n: int = 12) -> np.ndarray:
@@ -28,7 +38,13 @@ def oscillator(omega: float = 1.0, *, rows: list[list[float]], phase: float = 0.
     """z = (sin, cos)(omega t + phase, as a constant third component is kept) and outputs of it."""
     A = np.zeros((3, 3))
     A[0, 1], A[1, 0] = omega, -omega
-    return Flow(A, np.array(rows, float), omega), np.array([np.sin(phase), np.cos(phase), 1.0])
+    drive = Drive(np.array([omega]), slice(1, 2), np.zeros((0, 3)), np.zeros((0, 3)))
+    return Flow(A, np.array(rows, float), omega, drive), np.array([np.sin(phase), np.cos(phase), 1.0])
+
+
+def pushing(A: np.ndarray) -> Drive:
+    """A motion without oscillators: one push a state."""
+    return Drive(np.zeros(0), slice(0, 0), A, np.eye(len(A)))
 
 
 def only(weights: list[list[float]], constants: list[float]) -> Guards:
@@ -65,7 +81,9 @@ def test_the_first_root_is_found_far_and_near(periods):
     """1.001 - t/(2 pi periods): a guard without oscillation, its root in any cell of any block."""
     A = np.array([[0.0, 1.0], [0.0, 0.0]])
     end = 2 * np.pi * periods
-    arrival = march(Flow(A, np.eye(2), 1.0), np.array([0.0, 1.0]), only([[-1.0, 0]], [end]), start=0.0, limit=1e9)
+    arrival = march(
+        Flow(A, np.eye(2), 1.0, pushing(A)), np.array([0.0, 1.0]), only([[-1.0, 0]], [end]), start=0.0, limit=1e9
+    )
     assert arrival is not None
     assert abs(arrival.time - end) < 1e-13 * end
     assert abs(arrival.state[0] - end) < 1e-12 * end
@@ -125,7 +143,7 @@ def test_a_guard_that_starts_at_zero_and_rises_and_falls_in_one_cell():
     """t - 40 t^2 on a cell of length 1: back at zero at 0.025, before the first sample."""
     A = np.zeros((3, 3))
     A[0, 1] = A[1, 2] = 1.0
-    flow = Flow(A, np.eye(3), 1.0)
+    flow = Flow(A, np.eye(3), 1.0, pushing(A))
     arrival = march(flow, np.array([0.0, 1.0, -80.0]), only([[1, 0, 0]], [0.0]), start=0.0, limit=10.0)
     assert arrival is not None
     assert abs(arrival.time - 0.025) < 1e-14
