@@ -39,6 +39,17 @@ INCHES = (0.5, 1, 1.5, 2, 2.5, 3, 3.5, 4, 5, 6, 7, 8, 9, 10)
 GRID = (2, 3, 4, 5, 6, 6.5, 7, 7.5, 8, 9, 10)
 FINE = tuple(np.arange(5.0, 10.01, 0.25))
 CLAY = 1700.0  # kg/m3, modelling clay
+# What LeatherTip should say, from leather_tip.md, written down before it was run here. Not to be changed.
+PREDICTED = {
+    "11 g at 2 in, contact of 0.8 ms": "1.62",
+    "11 g at 2 in, contact of 2 ms": "1.50",
+    "dip of 11 g, in, contact of 0.8 ms": "6.3",
+    "dip of 11 g, in, contact of 1.2 ms": "7.0",
+    "dip of 11 g, in, contact of 2 ms": "8.0",
+    "rms miss of 16 points, contact of 1.2 ms": "0.07",
+    "what 3 g add over what 11 g add, 2 to 4.7 in": "0.25 to 0.35",
+    "clip's length and rotary inertia, at 2 in": "less than 0.02",
+}
 
 
 class Setup(NamedTuple):
@@ -276,6 +287,8 @@ def report() -> str:
     parts += ["## What would move the curve: 11 g, T = 1.1 ms, dome + shear except where stated", variant_table()]
     parts += ["## Other masses, dome + shear, T = 1.1 ms", mass_table()]
     parts += ["## Squirt added, over that added by 11 g", label_table()]
+    said = common.predictions(PREDICTED)
+    parts += ["## LeatherTip: what was predicted", "Written down before it was run here.", said]
     return "\n\n".join(part.rstrip("\n") for part in parts) + "\n"
 
 

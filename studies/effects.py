@@ -40,6 +40,15 @@ EFFECTS = (
 )
 SMALL = EFFECTS[-3:]
 QUANTITIES = ("squirt", "ball speed", "spin")
+# What LeatherTip should say, from leather_tip.md, written down before it was run here. Not to be changed.
+PREDICTED = {
+    "squirt of pool_low_deflection, deg": "1.8",
+    "squirt of carom, deg": "2.3",
+    "squirt of snooker, deg": "1.7",
+    "squirt of clay_on_shaft, deg": "3.7",
+    "AxialWaves, per cent": "+3 to +10",
+    "Support, StructuralDamping, SecondHit, per cent": "below 0.5",
+}
 
 
 class Worth(NamedTuple):
@@ -133,6 +142,8 @@ def report() -> str:
     for i, quantity in enumerate(QUANTITIES):
         title = f"## Change of {quantity} by the effect, per cent"
         parts += [title, "Bold: the scene lists this effect.", worth_table(i)]
+    said = common.predictions(PREDICTED)
+    parts += ["## LeatherTip: what was predicted", "Written down before it was run here.", said]
     return "\n\n".join(part.rstrip("\n") for part in parts) + "\n"
 
 

@@ -39,6 +39,25 @@ HERTZ = "T of Hertz's power"
 LAWS = (HERTZ, "power law", "turning", "power law and turning")
 SERIES = (2.34, 2.54)  # deg, what it measured there
 WORDS = ("bare", "with the dome", "with shear", "with both")
+# What LeatherTip should say, from leather_tip.md, written down before it was run here. Not to be changed.
+PREDICTED = {
+    "b/R 0.187, deg": "1.2",
+    "b/R 0.320, deg": "2.05",
+    "b/R 0.375, deg": "2.38",
+    "b/R 0.453, deg": "2.84",
+    "growth from b/R 0.320 to 0.453": "1.39",
+    "growth from b/R 0.375 to 0.453": "1.19",
+    "rms miss of the 2007 series as told": "36 %",
+    "rms miss of the 2007 series, offsets 1.8 mm less": "8 %",
+    "low-deflection shaft, bore 8.5 mm, b/R 0.453, deg": "1.99",
+    "that over maple": "0.70",
+    "that over maple, bore 7.4 mm": "0.74",
+    "that over maple, bore 10.2 mm": "0.62",
+    "break cue, b/R 0.267, deg": "2.0",
+    "squirt from 0.8 to 2 ms of contact": "within 2 %",
+    "squirt from 3.6 to 7.8 mph": "within 2 %",
+    "rms miss over the seven values": "25 %",
+}
 
 
 @cache
@@ -276,6 +295,8 @@ def report() -> str:
     parts += ["## Squirt against contact time, degrees, b/R 0.375", time_table()]
     parts += [f"## Change of squirt from {SPEEDS[0]} to {SPEEDS[1]} mph", speed_table()]
     parts += ["## Claims of an earlier prototype", claims_table()]
+    said = common.predictions(PREDICTED)
+    parts += ["## LeatherTip: what was predicted", "Written down before it was run here.", said]
     return "\n\n".join(part.rstrip("\n") for part in parts) + "\n"
 
 
