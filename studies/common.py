@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 import platform
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import cache
@@ -75,6 +75,12 @@ def table(columns: Sequence[str], rows: Iterable[Sequence[Any]], digits: int = 4
         return "| " + " | ".join(c if isinstance(c, str) else number(c, digits) for c in cells) + " |"
 
     return "\n".join([line(columns), "|" + "---|" * len(columns), *map(line, rows)]) + "\n"
+
+
+def predictions(predicted: Mapping[str, str], *more: tuple[str, Mapping[str, str]]) -> str:
+    """Numbers by name: what was predicted, and (column, its values) of what was found and measured."""
+    rows = [[name, said, *(values.get(name, "") for _, values in more)] for name, said in predicted.items()]
+    return table(["number", "predicted", *(column for column, _ in more)], rows)
 
 
 @contextmanager

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class PointMass(CueEffect):
-    """A small heavy piece on the cue, such as clay, a joint pin or a weight bolt.
+    """A small heavy piece on the cue, such as a clip, a joint pin or a weight bolt.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ class PointMass(CueEffect):
 
     Limit: The effect vanishes in proportion to its mass and its rotary inertia as both go to zero.
 
-    Source: handbook: Effects; clay on shafts was measured in Alciatore's Billiards Digest article of February 2008.
+    Source: handbook: Effects; D. Alciatore, Billiards Digest, February 2008: binder clips on a shaft.
 
     Examples
     --------
