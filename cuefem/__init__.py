@@ -4,8 +4,8 @@ The public names stand in `__init__.pyi`; each is loaded when it is first used, 
 nothing.
 """
 
-import lazy_loader
+import lazy_loader as _lazy_loader
 
 __version__ = "0.1.0"
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = _lazy_loader.attach_stub(__name__, __file__)

@@ -26,6 +26,7 @@ from .endmass.lumped import impulse as impulse, lump as lump
 from .endmass.undamped import StickLimit as StickLimit
 from .games import usual_scene as usual_scene
 from .io import load as load, save as save
+from .slips import Unusual as Unusual
 from .scene import (
     Ball as Ball,
     Outcome as Outcome,

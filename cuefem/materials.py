@@ -207,9 +207,40 @@ LEATHERS: Mapping[str, Leather] = MappingProxyType(
 
 
 def material(name: str) -> Material:
-    """The material of this name in `MATERIALS`; ValueError, suggesting similar names, if there is none."""
-    if name not in MATERIALS:
-        near = get_close_matches(name.lower(), MATERIALS, n=3, cutoff=0.5)
-        offer = f"nearest: {', '.join(near)}" if near else f"known: {', '.join(MATERIALS)}"
-        raise ValueError(f"no material is called {name!r}; {offer}")
-    return MATERIALS[name].material
+    """The material of this name in `MATERIALS`, in any case; ValueError, suggesting others, if there is none."""
+    plain = " ".join(name.replace("_", " ").replace("-", " ").casefold().split())
+    plain = _ALSO.get(plain, plain)
+    if plain not in MATERIALS:
+        raise ValueError(f"no material is called {name!r}; {_offer(plain)}")
+    return MATERIALS[plain].material
+
+
+def _offer(name: str) -> str:
+    """The materials that a name may mean: those that share a word with it, then those that are spelt like it."""
+    words = {word for word in name.split() if len(word) > 2}
+    near = [known for word in words for known in _KINDS.get(word, ())]
+    near += [known for known in MATERIALS if words & {*known.split()} or any(known.startswith(word) for word in words)]
+    near += [] if near else get_close_matches(name, MATERIALS, n=3, cutoff=0.6)
+    return f"nearest: {', '.join(dict.fromkeys(near))}" if near else f"known: {', '.join(MATERIALS)}"
+
+
+# Other names of entries: spellings, and words that mean one entry alone.
+_ALSO = {
+    "sugar maple": "hard maple",
+    "rock maple": "hard maple",
+    "white ash": "ash",
+    "purple heart": "purpleheart",
+    "carbon": "carbon fibre",
+    "carbon fiber": "carbon fibre",
+    "cfrp": "carbon fibre",
+    "stainless steel": "steel",
+    "aluminum": "aluminium",
+}
+# Words of materials that are not in the table, and what is offered for them.
+_KINDS = {
+    **dict.fromkeys(("wood", "timber", "oak", "beech", "ebony", "cherry", "walnut", "hickory", "cocobolo"), WOODS),
+    **dict.fromkeys(
+        ("plastic", "ivory", "bone", "horn", "juma", "elforyn", "ferrule"), tuple(_COMPOSITES_AND_PLASTICS)[3:]
+    ),
+    **dict.fromkeys(("metal", "iron", "alloy"), tuple(_METALS)),
+}

@@ -11,6 +11,8 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cuefem.slips import remark
+
 # What a unit measures, with an example from a file: for messages, the JSON schema, and the units that `save` writes.
 EXAMPLES = {
     "m": ("a length", "12 mm"),
@@ -168,6 +170,8 @@ def check_fields(instance: Any) -> None:
         checked = quantity.check(f"{kind.__name__}.{name}", value)
         if not arrays:
             scalar(f"{kind.__name__}.{name}", checked)
+        if isinstance(checked, float):
+            remark(kind.__name__, name, checked)
         if checked is not value:
             object.__setattr__(instance, name, checked)
 

@@ -16,6 +16,8 @@ PACKAGE = Path(cuefem.__file__).parent
 
 # Every part of cuefem; a part imports only what stands above it. A folder is one part.
 ORDER = [
+    "slips",
+    "notebook",
     "quantity",
     "cue",
     "materials",
@@ -36,6 +38,7 @@ ORDER = [
     "handbook",
     "designer",
     "cli",
+    "__main__",
 ]
 HOMES = {
     "skfem": {"beam", "effects"},

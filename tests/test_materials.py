@@ -109,10 +109,13 @@ def test_leather_from_contact_time() -> None:
     [
         ("hard mapel", "hard maple"),
         ("Maple", "hard maple"),
-        ("carbon fiber", "carbon fibre"),
-        ("aluminum", "aluminium"),
-        ("ABS", "abs"),
+        ("carbon fiver", "carbon fibre"),
+        ("alu", "aluminium"),
+        ("ABS plastic", "abs"),
         ("steal", "steel"),
+        ("Birch", "yellow birch"),
+        ("ebony", "hard maple"),
+        ("ivory", "melamine"),
     ],
 )
 def test_an_unknown_name_offers_near_ones(name: str, offer: str) -> None:
@@ -130,3 +133,18 @@ def test_the_table_cannot_be_written_to() -> None:
         MATERIALS["wood"] = MATERIALS["ash"]  # type: ignore[index]
     with pytest.raises(TypeError):
         MATERIALS["ash"].ranges["E"] = (0, 1)  # type: ignore[index]
+
+
+@pytest.mark.parametrize(
+    ("name", "meant"),
+    [
+        ("Hard Maple", "hard maple"),
+        (" HARD_MAPLE", "hard maple"),
+        ("sugar maple", "hard maple"),
+        ("Carbon Fiber", "carbon fibre"),
+        ("aluminum", "aluminium"),
+        ("ABS", "abs"),
+    ],
+)
+def test_a_name_in_another_spelling(name: str, meant: str) -> None:
+    assert material(name) is MATERIALS[meant].material

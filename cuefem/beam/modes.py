@@ -13,6 +13,7 @@ from cuefem.beam.mesh import ActsOnCue
 from cuefem.beam.system import System, assemble, suits_dense
 from cuefem.beam.waves import mesh_for, modes_below
 from cuefem.cue import Array, Cue, Section
+from cuefem.notebook import brief, table
 from cuefem.quantity import Quantity, check_count, check_kind
 
 
@@ -31,6 +32,16 @@ class Modes:
     rigid_vectors: Array
     system: System
     radiation: Array | None = None
+
+    def __repr__(self) -> str:
+        first = self.frequencies[:6]
+        more = f" and {len(self.frequencies) - len(first)} more" if len(first) < len(self.frequencies) else ""
+        return f"Modes({brief(first)} Hz{more}, {self.rigid} rigid)"
+
+    def _repr_html_(self) -> str:
+        """The modes as a notebook shows them."""
+        rows = [(str(i), f"{one:.2f}") for i, one in enumerate(self.frequencies, start=1)]
+        return table(("mode", "frequency, Hz"), rows, f"{self.rigid} rigid motions, then")
 
     @property
     def omega(self) -> Array:

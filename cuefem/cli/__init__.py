@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+import warnings
 from contextlib import suppress
 from typing import Any
 
@@ -20,6 +21,7 @@ from cuefem.cli.sweep import sweep
 from cuefem.cli.tap import tap
 from cuefem.cli.tip import tip
 from cuefem.cli.validate import validate
+from cuefem.slips import Unusual
 
 # Before NumPy is loaded: small dense matrices gain nothing from BLAS threads, and two of them on a busy machine can be
 # a hundred times slower than one.
@@ -43,7 +45,8 @@ class _OneLine(click.Group):
         import numpy as np  # not for --help
 
         try:
-            with np.errstate(over="raise", divide="raise", invalid="raise"):
+            with np.errstate(over="raise", divide="raise", invalid="raise"), warnings.catch_warnings():
+                warnings.filterwarnings("ignore", category=Unusual)  # commands say it in their own words: `remark`
                 return super().invoke(ctx)
         except (ArithmeticError, MemoryError) as error:
             what = "sizes, masses or times are out of all proportion, so that numbers overflow"

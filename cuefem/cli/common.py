@@ -33,7 +33,9 @@ def shape_options(command: Callable[..., Any]) -> Callable[..., Any]:
         click.option(
             "--material", metavar="NAME", help="Material of a .csv or a CAD surface (see `cuefem materials`)."
         ),
-        click.option("--length-unit", metavar="UNIT", help="Unit of a .stl, .ply or .obj surface; mm by default."),
+        click.option(
+            "--length-unit", metavar="UNIT", help="Unit of a CAD surface, by default mm, or of a .csv that names none."
+        ),
     ):
         command = option(command)
     return command

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -43,7 +44,8 @@ def designer(scene: Path | None, port: int, show: bool) -> None:
         first = Opened(scene.name, *read(scene))
         with blaming(scene):
             knobs_of(first.scene)
-    serve(first, read, port=_free(port), show=show, announce=click.echo)
+    with suppress(KeyboardInterrupt):  # Ctrl-C is how one ends it
+        serve(first, read, port=_free(port), show=show, announce=click.echo)
 
 
 def _free(port: int) -> int:

@@ -300,8 +300,9 @@ class Leather:
         self, steps: compiled.Steps, hold: Hold, coordinates: Complex, until: float, near: float, before: float
     ) -> tuple[str, Complex]:
         """The same in the compiled kernel; before: what the spring along the surface held at its start, J."""
+        tolerance = self.tip_forces.tolerance
         numbers = compiled.Numbers(
-            self.tip_forces.tolerance, SETTLED, WILD, OPENED, PAST, ROUNDING, ROUNDS, LONGEST, SHORTEST, CROSSING, MOST_STEPS
+            tolerance, SETTLED, WILD, OPENED, PAST, ROUNDING, ROUNDS, LONGEST, SHORTEST, CROSSING, MOST_STEPS
         )
         status, event, found, losses, records = steps.leg(hold, coordinates, until, near, numbers)
         if status == compiled.TOO_DEEP:

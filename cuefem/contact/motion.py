@@ -62,6 +62,9 @@ class Motion:
     turned: Array
     force: Array
 
+    def __repr__(self) -> str:
+        return f"Motion({len(self.times)} times to {self.times[-1]:.4g} s, duration={self.duration:.4g} s)"
+
     def deflection(self, x: ArrayLike) -> tuple[Array, Array]:
         """Shape of the cue.
 

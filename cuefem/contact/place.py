@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from cuefem import squirt
 from cuefem.cue import Array
+from cuefem.notebook import said
 from cuefem.quantity import Quantity
 from cuefem.scene import Ball, Outcome
 from cuefem.squirt.arguments import first_failure
@@ -39,6 +40,9 @@ class Placed:
 
     velocity: Array
     spin: Array
+
+    def __repr__(self) -> str:
+        return said("Placed", vars(self).items())
 
 
 def place(outcome: Outcome, point: ArrayLike, direction: ArrayLike, *, ball: Ball | None = None) -> Placed:

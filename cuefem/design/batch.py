@@ -50,6 +50,9 @@ class CueBatch:
     rows: SegmentRows
     body_mass: Array
 
+    def __repr__(self) -> str:
+        return f"CueBatch({self.rows.length.shape[0]} cues of {self.rows.length.shape[1]} segments)"
+
     @classmethod
     def of(cls, cues: Sequence[Cue]) -> CueBatch:
         """Stack cues; ValueError if their numbers of segments differ."""

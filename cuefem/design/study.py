@@ -18,6 +18,7 @@ from cuefem.design.paths import Path, paths, quantity_at, replaced, spelt, value
 from cuefem.design.ranges import Levels, Normal, Sample, Span, Value
 from cuefem.design.responses import Response
 from cuefem.materials import material
+from cuefem.notebook import spelt_out
 from cuefem.scene import Resolution, Scene
 
 # Designs evaluated, and written, at a time; fewer if each takes a strike in time.
@@ -271,7 +272,7 @@ class Study:
         """All that its numbers depend on, in a form that JSON can hold."""
         return {
             "cuefem": version("cuefem"),
-            "scene": repr(self.base),
+            "scene": spelt_out(self.base),
             "vary": [repr(vary) for vary in self.vary],
             "responses": [one.name for one in self.responses],
             "sample": repr(self.sample),

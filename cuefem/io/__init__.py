@@ -11,7 +11,7 @@ from pathlib import Path
 
 from cuefem.cue import Cue
 from cuefem.io.errors import InputError, reason, shown
-from cuefem.io.profile import DEFAULT_MATERIAL, SHAPES, SURFACES, load_profile
+from cuefem.io.profile import DEFAULT_MATERIAL, SHAPES, SURFACES, TABLES, load_profile
 from cuefem.io.toml import load_accuracy, load_cue, load_toml, named_material, read_text, toml_text
 from cuefem.io.units import number
 from cuefem.scene import Scene
@@ -45,7 +45,7 @@ def load(path: str | os.PathLike[str], *, material: str | None = None, length_un
         Name of the material of a lathe profile or a surface; the default is "hard maple". Other files name their
         materials themselves.
     length_unit : str, optional
-        Unit of a surface's coordinates; the default is "mm".
+        Unit of a surface's coordinates, "mm" by default, or of a lathe profile whose columns name none.
 
     Returns
     -------
@@ -72,8 +72,8 @@ def load(path: str | os.PathLike[str], *, material: str | None = None, length_un
     if material is not None and path.suffix.lower() not in SHAPES:
         files = f"{', '.join(SHAPES[:-1])} and {SHAPES[-1]}"
         raise InputError(path, "", f"names its materials itself: material is for {files} files alone; got {material!r}")
-    if length_unit is not None and path.suffix.lower() not in SURFACES:
-        files = f"{', '.join(SURFACES[:-1])} and {SURFACES[-1]}"
+    if length_unit is not None and path.suffix.lower() not in SHAPES:
+        files = f"{', '.join(SHAPES[:-1])} and {SHAPES[-1]}"
         problem = f"has its own units of length: length_unit is for {files} files alone; got {length_unit!r}"
         raise InputError(path, "", problem)
     if path.suffix.lower() == ".toml":
@@ -85,7 +85,7 @@ def _load_cue(path: Path, material: str | None = None, length_unit: str | None =
     if path.suffix.lower() == ".toml":
         return load_cue(path)
     if path.suffix.lower() == ".csv":
-        return load_profile(path, named_material(material or DEFAULT_MATERIAL, path, "material"))
+        return load_profile(path, named_material(material or DEFAULT_MATERIAL, path, "material"), length_unit)
     if path.suffix.lower() in _MESHES:
         from cuefem.io.mesh import load_mesh
 
@@ -96,7 +96,8 @@ def _load_cue(path: Path, material: str | None = None, length_unit: str | None =
         return load_surface(path, named_material(material or DEFAULT_MATERIAL, path, "material"), length_unit)
     if path.is_dir():
         raise InputError(path, "", "cannot be read: it is a folder")
-    raise InputError(path, "", f"must end in .toml, .csv, .vtk, .vtu, .stl, .ply or .obj; got {path.suffix!r}")
+    hint = "; save the table as .csv" if path.suffix.lower() in TABLES else ""
+    raise InputError(path, "", f"must end in .toml, .csv, .vtk, .vtu, .stl, .ply or .obj; got {path.suffix!r}{hint}")
 
 
 def save(obj: Cue | Scene, path: str | os.PathLike[str]) -> None:

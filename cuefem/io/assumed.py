@@ -9,7 +9,7 @@ from typing import Any
 from cuefem.cue import Cue
 from cuefem.effects import effect_kinds
 from cuefem.games import GAMES, usual_tip
-from cuefem.io.profile import DEFAULT_MATERIAL, DEFAULT_UNIT, SHAPES, SURFACES
+from cuefem.io.profile import DEFAULT_MATERIAL, DEFAULT_UNIT, SHAPES, SURFACES, profile_notes
 from cuefem.io.toml import read_tables
 from cuefem.scene import DEFAULT_CONTACT_TIME, Ball, Stroke, Tip
 
@@ -38,7 +38,7 @@ def _profile(path: Path, given: Collection[str], choose: str = "") -> list[str]:
     unit = f"lengths in {DEFAULT_UNIT}{choose and ' (--length-unit gives another)'}"
     return [
         *([unit] if lengths else []),
-        *(_fit(path) if path.suffix.lower() in SURFACES else []),
+        *(_fit(path) if path.suffix.lower() in SURFACES else profile_notes(path)),
         *([] if "material" in given else [f"material {DEFAULT_MATERIAL}{choose}"]),
         *([] if "body_mass" in given else ["no mass behind the shaft (--body-mass gives it)"]),
     ]

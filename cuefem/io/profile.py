@@ -2,46 +2,53 @@
 
 from __future__ import annotations
 
-import csv
 import itertools
 import math
-import re
+from collections.abc import Sequence
+from dataclasses import dataclass
 from decimal import Decimal
 from pathlib import Path
 
 from cuefem.cue import Cue, Material, Segment
+from cuefem.io.cells import Row, decimal_mark, parted, plain, read_rows
+from cuefem.io.columns import DIAMETER, EXAMPLE, PLACE, RADIUS, Column, Header, from_butt, read_header, unit_of
 from cuefem.io.errors import InputError, shown
-from cuefem.io.toml import read_text
 from cuefem.io.units import number, quantity
-from cuefem.quantity import DIAMETER, Quantity
+from cuefem.quantity import DIAMETER as WIDTH
+from cuefem.quantity import Quantity
 
 DEFAULT_MATERIAL = "hard maple"
 DEFAULT_UNIT = "mm"  # of a surface's coordinates
 SURFACES = (".stl", ".ply", ".obj")
 SHAPES = (".csv", *SURFACES)  # the files that say a shaft's shape and no material
+TABLES = (".xlsx", ".xls", ".ods", ".numbers", ".txt", ".tsv", ".dat")  # files that can be saved as .csv
 # Points closer than this to a straight taper lie on it, m: the rounding of a file, far below what a lathe measures.
 _STRAIGHT = 1e-9
+_SAME = 0.005  # relative: two columns that say one thing in two units
 
-_HEADER = re.compile(r"\s*(x|diameter)\s*[\[(]([^])]+)[\])]\s*")
-_COMMAS = "; commas part the columns, numbers have a decimal point"
-_POSITION, _DIAMETER = Quantity("m"), DIAMETER
+_POSITION = Quantity("m")
+_USUAL = {"mm": 1e-3, "in": 25.4e-3, "cm": 1e-2, "m": 1.0}  # units of a column that names none
+_LENGTHS, _WIDTHS = (0.3, 1.6), (0.0075, 0.04)  # m: of shafts and cues, by which such a unit is guessed
 
 Point = tuple[float, float]  # position, diameter, m
 
 
-def load_profile(path: Path, material: Material) -> Cue:
-    """The shaft of a CSV with the header ``x [mm],diameter [mm]`` (any units of length), x rising from tip to butt.
+@dataclass(frozen=True)
+class Profile:
+    """The points of a shaft from tip to butt, and what its reader should know of how they were read."""
 
-    The first x may have any value: the shaft begins there. One segment an interval; straight tapers become one.
+    points: tuple[Point, ...]
+    notes: tuple[str, ...]
+
+
+def load_profile(path: Path, material: Material, length_unit: str | None = None) -> Cue:
+    """The shaft of a CSV that names a column x and a column diameter (or radius), with their units of length.
+
+    Separator, decimal mark, encoding, order and names of the columns may be any usual ones. The first x may have any
+    value: the shaft begins there. One segment an interval; straight tapers become one. length_unit: of columns that
+    name none.
     """
-    lines = list(enumerate(read_text(path).splitlines(), start=1))
-    rows = [(i, next(csv.reader([line]))) for i, line in lines if line.strip() and not line.lstrip().startswith("#")]
-    if not rows:
-        raise InputError(path, "", 'must begin with the header "x [mm],diameter [mm]"; got comments alone')
-    units = _units(path, *rows[0])
-    points: list[Point] = []
-    for line, cells in rows[1:]:
-        points.append(_point(path, line, cells, units, points))
+    points = read_profile(path, length_unit).points
     if len(points) < 2:
         raise InputError(path, "", f"must hold at least 2 points; got {len(points)}")
     pairs = itertools.pairwise(_corners(points))
@@ -51,47 +58,175 @@ def load_profile(path: Path, material: Material) -> Cue:
         raise InputError(path, "", str(error)) from None
 
 
+def profile_notes(path: Path) -> tuple[str, ...]:
+    """What the reader of a profile's results should know of how it was read; the units do not matter."""
+    return read_profile(path, DEFAULT_UNIT, checked=False).notes
+
+
+def read_profile(path: Path, length_unit: str | None = None, *, checked: bool = True) -> Profile:
+    """The points of a CSV. checked: whether a unit that is given although the file names its own is refused."""
+    rows = read_rows(path)
+    if not rows:
+        raise InputError(path, "", f"must begin with the header {EXAMPLE}; got comments alone")
+    header = read_header(path, rows)
+    for line, cells in header.rows:
+        if len(cells) > header.width:
+            problem = f"must have no more numbers than there are columns, {header.width}; got {shown(','.join(cells))}"
+            hint = "where commas part the columns, write decimal points, or part the columns by semicolons"
+            raise InputError(path, f"line {line}", f"{problem}; {hint}")
+    numbers = [parted(cell)[0] for column in header.used for cell in _cells(header.rows, column)]
+    mark = decimal_mark(numbers)
+    columns = _with_units(path, header, length_unit, mark, checked)
+    place, width, spare = _chosen(path, header, columns, mark)
+    x = [_number(path, header.rows[i], place, mark) for i in range(len(header.rows))]
+    d = [_number(path, header.rows[i], width, mark) for i in range(len(header.rows))]
+    points = _ordered(path, header, place, list(zip(x, d, strict=True)))
+    return Profile(points, _notes(header, place, width, spare, points))
+
+
+def _notes(
+    header: Header, place: Column, width: Column, spare: Sequence[str], points: Sequence[Point]
+) -> tuple[str, ...]:
+    names = [*header.unused, *spare]
+    butt, first = from_butt(place), points[0][0] if points else 0.0
+    told = f"{first / number(f'1 {place.unit}', 'm'):.6g} {place.unit}"
+    notes = {
+        f"column{'s' if len(names) > 1 else ''} {', '.join(map(shown, names))} {'are' if len(names) > 1 else 'is'} not "
+        "used": bool(names),
+        f"diameters are twice the column {shown(width.name)}": width.kind == RADIUS,
+        f"x is measured from the butt, as {shown(place.name)} says": butt,
+        f"the shaft begins at its first point, x = {told}: nothing is drawn before it": first > 0 and not butt,
+    }
+    return tuple(note for note, holds in notes.items() if holds)
+
+
+def _cells(rows: Sequence[Row], column: Column) -> list[str]:
+    return [cells[column.index] if column.index < len(cells) else "" for _, cells in rows]
+
+
+def _with_units(path: Path, header: Header, given: str | None, mark: str, checked: bool) -> list[Column]:
+    """The columns with the units that header, cells or ``given`` say; InputError if there are none."""
+    columns = []
+    for column in header.used:
+        beside = {unit_of(rest) for _, rest in map(parted, _cells(header.rows, column)) if rest}
+        unit = column.unit or ("".join(beside) if len(beside) == 1 else "")
+        columns.append(Column(column.kind, column.index, column.name, unit))
+    bare = [column for column in columns if not column.unit]
+    if given is not None and checked:
+        if not bare:
+            problem = f"names its units itself: length_unit is for a table without units; got {shown(given)}"
+            raise InputError(path, "", problem)
+        if not unit_of(given):
+            raise InputError(path, "length unit", f"must be a unit of length, such as mm; got {shown(given)}")
+    if bare and given is None:
+        raise InputError(path, f"line {header.line}", _no_unit(header, columns, bare, mark))
+    unit = unit_of(given) if given is not None else ""
+    return [Column(c.kind, c.index, c.name, c.unit or unit) for c in columns]
+
+
+def _no_unit(header: Header, columns: Sequence[Column], bare: Sequence[Column], mark: str) -> str:
+    """What is said of columns without a unit, with the one that their numbers look like."""
+    option = "or give --length-unit"
+    if len(bare) < len(columns):
+        name = bare[0].name
+        example = f"such as {chr(34)}{name} [mm]{chr(34)}"
+        return f"the column {shown(name)} has no unit: write one in brackets, {example}, {option}"
+    unit = _guess(header, columns, mark)
+    written = ",".join(f"{column.name} [{unit or 'mm'}]" for column in columns)
+    return f"the columns have no unit: write {chr(34)}{written}{chr(34)}, if these are {unit or 'mm'}, {option}"
+
+
+def _guess(header: Header, columns: Sequence[Column], mark: str) -> str:
+    """The one unit with which a table has the size of a shaft; "" if none or several have it."""
+    try:
+        x, d = (
+            [float(plain(parted(cell)[0], mark)) for cell in _cells(header.rows, column)]
+            for column in (_first(columns, PLACE), _first(columns, DIAMETER, RADIUS))
+        )
+        return _only(
+            [
+                unit
+                for unit, scale in _USUAL.items()
+                if _LENGTHS[0] <= scale * (max(x) - min(x)) <= _LENGTHS[1]
+                and _WIDTHS[0] <= scale * min(d) <= scale * max(d) <= _WIDTHS[1]
+            ]
+        )
+    except ValueError:
+        return ""
+
+
+def _only(found: Sequence[str]) -> str:
+    return found[0] if len(found) == 1 else ""
+
+
+def _first(columns: Sequence[Column], *kinds: str) -> Column:
+    return next(column for kind in kinds for column in columns if column.kind == kind)
+
+
+def _chosen(path: Path, header: Header, columns: Sequence[Column], mark: str) -> tuple[Column, Column, list[str]]:
+    """The column of places, that of diameters, and the names of others that say the same."""
+    place, width = _first(columns, PLACE), _first(columns, DIAMETER, RADIUS)
+    spare = []
+    for column in columns:
+        if column in (place, width):
+            continue
+        used = place if column.kind == PLACE else width
+        pairs = [(_number(path, row, used, mark), _number(path, row, column, mark)) for row in header.rows]
+        largest = max((abs(one) for one, _ in pairs), default=0.0)
+        if any(abs(one - other) > _SAME * largest for one, other in pairs):
+            word = "place" if column.kind == PLACE else "diameter"
+            both = f"{shown(used.name)} and {shown(column.name)}"
+            problem = f"two columns may be the {word}, {both}, and they differ: keep one"
+            raise InputError(path, f"line {header.line}", problem)
+        spare.append(column.name)
+    return place, width, spare
+
+
+def _number(path: Path, row: Row, column: Column, mark: str) -> float:
+    """A cell as an SI number, a radius doubled."""
+    line, cells = row
+    cell = cells[column.index] if column.index < len(cells) else ""
+    kind, where = column.kind, f"line {line}, {column.kind}"
+    text, rest = parted(cell)
+    unit = (unit_of(rest) if rest else column.unit) or ""
+    if not text or not unit:
+        raise InputError(path, where, f"must be a number; got {shown(cell) if cell else 'nothing'}")
+    try:
+        value = quantity(_POSITION if kind == PLACE else WIDTH, f"{plain(text, mark)} {unit}")
+    except ValueError as error:
+        raise InputError(path, where, str(error)) from None
+    return 2 * value if kind == RADIUS else value
+
+
+def _ordered(path: Path, header: Header, place: Column, points: list[Point]) -> tuple[Point, ...]:
+    """The points from tip to butt; InputError if their order goes both ways."""
+    if from_butt(place):
+        most = max((x for x, _ in points), default=0.0)
+        points = [(_apart(x, most), d) for x, d in points]
+    lines = list(zip((line for line, _ in header.rows), points, strict=True))
+    if all(here[1][0] > there[1][0] for here, there in itertools.pairwise(lines)):  # butt first
+        lines.reverse()
+    kept: list[Point] = []
+    for line, (x, d) in lines:
+        if kept and (x, d) == kept[-1]:
+            continue  # written twice
+        if kept and x <= kept[-1][0]:
+            scale = number(f"1 {place.unit}", "m")
+            before, here = (f"{value / scale:g}" for value in (kept[-1][0], x))
+            problem = f"must be beyond {before} {place.unit}, the x of the line before (points run from tip to butt)"
+            step = "; a step in the diameter is two points a little apart, such as "
+            hint = f"{step}{before} and {x / scale + 0.1:g} {place.unit}" if x == kept[-1][0] else ""
+            raise InputError(path, f"line {line}, x", f"{problem}; got '{here} {place.unit}'{hint}")
+        kept.append((x, d))
+    return tuple(kept)
+
+
 def _apart(first: float, last: float) -> float:
     """The distance as decimals have it: 10 and 210 mm are 0.2 m apart, which floats miss by their last digit."""
     return float(Decimal(repr(last)) - Decimal(repr(first)))
 
 
-def _units(path: Path, line: int, cells: list[str]) -> tuple[str, str]:
-    found = [_HEADER.fullmatch(cell) for cell in cells]
-    names = [match[1] if match else None for match in found]
-    if names != ["x", "diameter"]:
-        hint = _COMMAS if any(";" in cell for cell in cells) else ""
-        problem = f'must be the header "x [mm],diameter [mm]"; got {shown(",".join(cells))}{hint}'
-        raise InputError(path, f"line {line}", problem)
-    units = (found[0][2], found[1][2])  # type: ignore[index]
-    for name, unit in zip(names, units, strict=True):
-        try:
-            number(f"1 {unit}", "m")
-        except ValueError:
-            problem = f"must be in a unit of length, such as mm; got {shown(unit)}"
-            raise InputError(path, f"line {line}, {name}", problem) from None
-    return units
-
-
-def _point(path: Path, line: int, cells: list[str], units: tuple[str, str], before: list[Point]) -> Point:
-    if len(cells) != 2:
-        hint = _COMMAS if len(cells) > 2 or ";" in cells[0] else ""
-        problem = f"must be two numbers, x and diameter; got {shown(','.join(cells))}{hint}"
-        raise InputError(path, f"line {line}", problem)
-    read = []
-    for name, cell, unit, wanted in zip(("x", "diameter"), cells, units, (_POSITION, _DIAMETER), strict=True):
-        try:
-            read.append(quantity(wanted, f"{cell} {unit}"))
-        except ValueError as error:
-            raise InputError(path, f"line {line}, {name}", str(error)) from None
-    x, diameter = read
-    if before and x <= before[-1][0]:
-        bound = f"must be in ({before[-1][0] / number(f'1 {units[0]}', 'm'):g}, inf) {units[0]}, beyond the line before"
-        raise InputError(path, f"line {line}, x", f"{bound} (points run from tip to butt); got '{cells[0]} {units[0]}'")
-    return x, diameter
-
-
-def _corners(points: list[Point]) -> list[Point]:
+def _corners(points: Sequence[Point]) -> list[Point]:
     """The points where the taper changes: each straight run is taken as far as all its points lie on it."""
     ends, first = [points[0]], 0
     least, most = _slopes(points[0], points[1])

@@ -33,6 +33,12 @@ def _diameters(scene: Scene) -> Iterable[tuple[str, float]]:
         yield f"segments[{i}].butt_diameter", segment.butt_diameter
 
 
+def _thin_tip(scene: Scene) -> Iterable[tuple[str, float]]:
+    """The diameter at the tip, if it is no wrong unit's."""
+    ends = [segment.tip_diameter for segment in _segments(scene)[:1]]
+    return [("diameter at the tip", end) for end in ends if 0.005 <= end <= 0.06]
+
+
 # Beyond every cue and every table, yet within a factor of ten: what a unit is wrong by.
 USUAL = (
     Usual(
@@ -53,6 +59,7 @@ USUAL = (
         *(0.3, 3.0, 1e3, "mm", "check the unit of the lengths"),
     ),
     Usual(_diameters, 0.005, 0.06, 1e3, "mm", "check the unit of the diameters"),
+    Usual(_thin_tip, 0.0075, 0.06, 1e3, "mm", "8.5 to 14 is usual: is that the radius?"),
     Usual(
         lambda s: [("drawn mass", s.shaft.shaft_mass)] if s.cue.segments else [],
         *(0.02, float("inf"), 1e3, "g", "check the sizes and the densities"),

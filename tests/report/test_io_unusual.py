@@ -94,6 +94,10 @@ def test_a_slip_is_remarked(tmp_path: Path, old: str, new: str, line: str) -> No
             "x [mm],diameter [mm]\n0,21\n487,12.9\n737,12.5\n",
             ["the tip is thicker than the butt, 21 and 12.5 mm; is the"],
         ),
+        (
+            "x [mm],diameter [mm]\n0,6.4\n737,10.7\n",
+            ["diameter at the tip 6.4 mm; 8.5 to 14 is usual: is that the rad"],
+        ),
         ("x [m],diameter [mm]\n0,12\n700,21\n", ["drawn length 700000 mm", "mass of the whole cue 108.2"]),
         ("x [mm],diameter [cm]\n0,12\n700,21\n", ["segments[0].tip_diameter 120 mm", "mass of the whole cue 10.8"]),
     ],

@@ -1,0 +1,152 @@
+"""The header of a lathe profile, as people write it: which column is the place, which the diameter, in which units."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from cuefem.io.cells import Row, is_number
+from cuefem.io.errors import InputError, shown
+from cuefem.io.units import number
+
+EXAMPLE = '"x [mm],diameter [mm]"'
+TITLES = 20  # lines that may stand above the header
+
+PLACE, DIAMETER, RADIUS, BORE = "x", "diameter", "radius", "bore"
+# The words by which a column is known, most telling first: "bore diameter" is a bore, "diameter at x" a diameter.
+_WORDS = {
+    BORE: {"bore", "bored", "inner", "inside", "id", "hole", "hollow", "bohrung"},
+    RADIUS: {"radius", "radii", "rad", "r", "halbmesser"},
+    DIAMETER: {
+        *("diameter", "diameters", "dia", "diam", "d", "ø", "od", "width", "thickness"),
+        *("durchmesser", "diamètre", "diametre", "diámetro", "diametro"),
+    },
+    PLACE: {
+        *("x", "z", "position", "pos", "place", "location", "station", "distance", "dist", "length", "along", "from"),
+        *("abstand", "länge", "distancia", "posición", "posizione", "distanza"),
+    },
+}
+_UNITS = {
+    "mm": ("mm", "millimeter", "millimeters", "millimetre", "millimetres"),
+    "cm": ("cm", "centimeter", "centimeters", "centimetre", "centimetres"),
+    "m": ("m", "meter", "meters", "metre", "metres"),
+    "in": ("in", "inch", "inches", '"', "''", "″", "”", "zoll"),
+    "ft": ("ft", "foot", "feet"),
+}
+_UNIT_OF = {word: unit for unit, words in _UNITS.items() for word in words}
+_OTHERS = ("kg", "g", "oz", "lb", "s", "ms", "n", "deg", "°", "%")  # units of no length
+_BRACKETS = re.compile(r"[\[({<]([^])}>]*)[\])}>]")
+_TOKENS = re.compile(r"[^\W\d_]+")
+_BUTT = {"butt", "joint"}  # where x is measured from, if "from" stands before it
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column that is used: what it holds, where it stands, its name in the file, and its unit ("" if it has none)."""
+
+    kind: str
+    index: int
+    name: str
+    unit: str
+
+
+@dataclass(frozen=True)
+class Header:
+    """The columns of a profile that say a place and a diameter, those that do not, and the lines below."""
+
+    line: int
+    used: tuple[Column, ...]
+    unused: tuple[str, ...]
+    width: int
+    rows: tuple[Row, ...]
+
+
+def unit_of(text: str) -> str:
+    """The unit of length that a text names, as `cuefem.io.units` knows it; "" if it names none."""
+    word = text.strip().strip(".[](){}<>").strip()
+    known = _UNIT_OF.get(word.casefold(), "")
+    if known or not word:
+        return known
+    try:
+        number(f"1 {word}", "m")
+    except ValueError:
+        return ""
+    return word
+
+
+def read_header(path: Path, rows: Sequence[Row]) -> Header:
+    """The header of a profile's rows; InputError if no row names a place and a diameter."""
+    for i, (line, cells) in enumerate(rows[:TITLES]):
+        columns = [_column(path, line, j, cell) for j, cell in enumerate(cells)]
+        used = tuple(column for column in columns if column.kind)
+        kinds = {column.kind for column in used}
+        if PLACE in kinds and kinds & {DIAMETER, RADIUS}:
+            _refuse_bore(path, line, used)
+            below = rows[i + 1 :]
+            units = [unit_of(cell) for cell in below[0][1]] if below else []
+            if units and all(unit or not cell for unit, cell in zip(units, below[0][1], strict=True)):
+                used = tuple(_with_unit(column, units) for column in used)
+                below = below[1:]
+            unused = tuple(column.name for column in columns if column.name and not column.kind)
+            return Header(line, used, unused, len(cells), tuple(below))
+        if len(cells) > 1 and all(map(is_number, cells)):
+            break
+    line, cells = rows[0]
+    if all(map(is_number, cells)):
+        raise InputError(path, f"line {line}", f"must name the columns, such as {EXAMPLE}; got numbers, {_got(cells)}")
+    wanted = f"must name one column for the place along the shaft and one for the diameter, such as {EXAMPLE}"
+    raise InputError(path, f"line {line}", f"{wanted}; got {_got(cells)}")
+
+
+def _got(cells: Sequence[str]) -> str:
+    return shown(",".join(cells))
+
+
+def _with_unit(column: Column, units: Sequence[str]) -> Column:
+    unit = units[column.index] if column.index < len(units) else ""
+    return Column(column.kind, column.index, column.name, column.unit or unit)
+
+
+def _column(path: Path, line: int, index: int, cell: str) -> Column:
+    """What a cell of a header says; its kind is "" if it is neither a place nor a width."""
+    text = cell.replace("⌀", "ø").replace("Ø", "ø").casefold()
+    inside = _BRACKETS.findall(text)
+    unit = next(filter(None, map(unit_of, inside)), "")
+    words = _TOKENS.findall(_BRACKETS.sub(" ", text) if unit else text)
+    if not unit and len(words) > 1 and words[-1] in _UNIT_OF:
+        unit = _UNIT_OF[words.pop()]
+    if not unit and text.rstrip().endswith(('"', "″", "”")):
+        unit = "in"
+    kind = _kind(words)
+    if words == ["id"] and not unit:  # the number of a row, no inner diameter
+        kind = ""
+    if kind and inside and not unit and inside[0].strip() in _OTHERS:
+        problem = f"must be in a unit of length, such as mm; got {shown(inside[0])}"
+        raise InputError(path, f"line {line}, {kind}", problem)
+    return Column(kind, index, cell, unit)
+
+
+def _kind(words: Sequence[str]) -> str:
+    """The kind of column that words mean; a long word may be misspelt."""
+    for kind, known in _WORDS.items():
+        if known & set(words):
+            return kind
+    long = {word: kind for kind, known in _WORDS.items() for word in known if len(word) > 4}
+    close = [difflib.get_close_matches(word, long, n=1, cutoff=0.8) for word in words if len(word) > 4]
+    return next((long[found[0]] for found in close if found), "")
+
+
+def _refuse_bore(path: Path, line: int, used: Sequence[Column]) -> None:
+    bore = next((column for column in used if column.kind == BORE), None)
+    if bore is not None:
+        problem = "is a bore, which a .csv cannot draw: draw a hollow shaft as a .toml"
+        raise InputError(path, f"line {line}", f"the column {shown(bore.name)} {problem}")
+
+
+def from_butt(column: Column) -> bool:
+    """Whether a column of places says that it counts from the butt."""
+    words = _TOKENS.findall(column.name.casefold())
+    return "from" in words and bool(_BUTT & set(words[words.index("from") :])) and "tip" not in words

@@ -1,0 +1,113 @@
+"""Numbers that cannot be meant: in SI units no cue has them, and in mm, g or ms it would.
+
+A class of this table checks its numbers when it is made. Only such numbers are remarked: a scene may be scaled, and a
+limit may be taken (a dome of one metre is nearly flat), without a word.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+import warnings
+from pathlib import Path
+from types import FrameType
+from typing import NamedTuple
+
+
+class Unusual(UserWarning):
+    """A number that looks like one in another unit: everything in Python is in SI units.
+
+    Where warnings are errors, `warnings.filterwarnings("ignore", category=cuefem.Unusual)` lets such numbers pass.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> import cuefem as cf
+    >>> with warnings.catch_warnings(record=True) as told:
+    ...     warnings.simplefilter("always")
+    ...     dome = cf.TipDome(9.5)
+    >>> print(told[0].message)
+    TipDome.radius is 9.5 m, which no cue has: is it 9.5 mm? Write 0.0095 (m)
+    """
+
+
+class Usual(NamedTuple):
+    """Between which numbers (SI) a field of real cues lies, its unit, and other units that people think in."""
+
+    least: float
+    most: float
+    unit: str
+    others: tuple[tuple[str, float], ...]
+
+
+_MM, _IN = ("mm", 1e-3), ("in", 25.4e-3)
+_G, _OZ = ("g", 1e-3), ("oz", 28.349523125e-3)
+_PLACE = Usual(0.01, 1.6, "m", (_MM, _IN))
+_DIAMETER = Usual(0.0075, 0.04, "m", (_MM, _IN))
+_BORE = Usual(0.001, 0.03, "m", (_MM, _IN))
+_DOME = Usual(0.005, 0.02, "m", (_MM, _IN))
+_STIFF = Usual(5e6, 6e11, "Pa", (("GPa", 1e9), ("MPa", 1e6)))
+_DENSITY = Usual(40.0, 2e4, "kg/m^3", (("g/cm^3", 1e3),))
+_TIME = Usual(2e-4, 0.01, "s", (("ms", 1e-3), ("us", 1e-6)))
+
+USUAL = {
+    ("Material", "E"): _STIFF,
+    ("Material", "G"): _STIFF,
+    ("Material", "rho"): _DENSITY,
+    ("Segment", "length"): Usual(0.002, 1.6, "m", (_MM, _IN)),
+    ("Segment", "tip_diameter"): _DIAMETER,
+    ("Segment", "butt_diameter"): _DIAMETER,
+    ("Segment", "tip_bore"): _BORE,
+    ("Segment", "butt_bore"): _BORE,
+    ("Cue", "body_mass"): Usual(0.05, 0.8, "kg", (_G, _OZ)),
+    ("LumpedCue", "mass"): Usual(0.1, 1.0, "kg", (_G, _OZ)),
+    ("LumpedCue", "end_mass"): Usual(1e-3, 0.1, "kg", (_G,)),
+    ("Ball", "mass"): Usual(0.08, 0.4, "kg", (_G, _OZ)),
+    ("Ball", "radius"): Usual(0.02, 0.07, "m", (_MM, _IN)),
+    ("Tip", "contact_time"): _TIME,
+    ("TipDome", "radius"): _DOME,
+    ("LeatherTip", "height"): Usual(0.001, 0.015, "m", (_MM, _IN)),
+    ("LeatherTip", "dome_radius"): _DOME,
+    ("LeatherTip", "E"): Usual(5e6, 1e9, "Pa", (("GPa", 1e9), ("MPa", 1e6))),
+    ("LeatherTip", "rho"): _DENSITY,
+    ("PointMass", "position"): _PLACE,
+    ("PointMass", "mass"): Usual(5e-4, 0.1, "kg", (_G, _OZ)),
+    ("Support", "position"): _PLACE,
+    ("Joint", "position"): _PLACE,
+    ("SecondHit", "window"): Usual(1e-3, 0.1, "s", (("ms", 1e-3),)),
+}
+FAR = 5.0  # times beyond the usual: nearer than this a number may be meant
+_PACKAGE = str(Path(__file__).parent)
+
+
+def slip(kind: str, name: str, value: float) -> str:
+    """What is said of a field whose number cannot be meant; "" of all others."""
+    usual = USUAL.get((kind, name))
+    if usual is None or usual.least / FAR <= value <= FAR * usual.most or not math.isfinite(value):
+        return ""
+    meant = [(unit, scale) for unit, scale in usual.others if usual.least <= value * scale <= usual.most]
+    if not meant:
+        return ""
+    units = " or ".join(f"{value:g} {unit}" for unit, _ in meant)
+    written = " or ".join(f"{value * scale:.4g}" for _, scale in meant)
+    return f"{kind}.{name} is {value:g} {usual.unit}, which no cue has: is it {units}? Write {written} ({usual.unit})"
+
+
+def remark(kind: str, name: str, value: float) -> None:
+    """Warn of a number that cannot be meant, at the line that lies outside this package."""
+    said = slip(kind, name, value)
+    if said:
+        warnings.warn(said, Unusual, stacklevel=_outside())
+
+
+def _outside() -> int:
+    """How many frames above `remark` the call into this package stands."""
+    frame: FrameType | None = sys._getframe(1)
+    level, inside = 0, 0
+    while frame is not None:
+        level += 1
+        name = frame.f_code.co_filename
+        written = name == "<string>" and inside == level - 1 and frame.f_back is not None  # dataclasses' own __init__
+        inside = level if name.startswith(_PACKAGE) or written else inside
+        frame = frame.f_back
+    return inside + 1

@@ -1,0 +1,216 @@
+"""Odd but honest CSVs: each is read as it was meant, or refused in words that a cue maker understands."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+import cuefem as cf
+from cuefem.io import InputError
+from cuefem.io.assumed import assumed
+from cuefem.materials import material
+from tests.helpers.command_line import call
+
+MAPLE = material("hard maple")
+MEANT = ((0.0, 12.75), (330.0, 13.2), (736.6, 21.5))  # mm
+INCHES = ((0.0, 0.5), (13.0, 0.52), (29.0, 0.85))
+
+
+@dataclass(frozen=True)
+class Odd:
+    """A file, the points that it means (mm), and what is said of it."""
+
+    content: str | bytes
+    points: tuple[tuple[float, float], ...] = MEANT
+    said: tuple[str, ...] = ()
+
+
+def in_inches(points: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
+    return tuple((25.4 * x, 25.4 * d) for x, d in points)
+
+
+PLAIN = "x [mm],diameter [mm]\n0,12.75\n330,13.2\n736.6,21.5\n"
+GERMAN = "x [mm];Durchmesser [mm]\n0,0;12,75\n330,0;13,2\n736,6;21,5\n"
+TABS = PLAIN.replace(",", "\t")
+READ = {
+    "plain": Odd(PLAIN),
+    "semicolons and decimal commas": Odd(GERMAN),
+    "semicolons and decimal points": Odd(PLAIN.replace(",", ";")),
+    "tabs": Odd(TABS),
+    "tabs and decimal commas": Odd(TABS.replace(".", ",")),
+    "Excel's Unicode text": Odd(TABS.replace("\n", "\r\n").encode("utf-16")),
+    "UTF-16, big end first, no mark": Odd(PLAIN.encode("utf-16-be")),
+    "byte order mark and Windows lines": Odd(b"\xef\xbb\xbf" + PLAIN.replace("\n", "\r\n").encode()),
+    "a diameter sign of Windows": Odd(GERMAN.replace("Durchmesser", "Ø").encode("cp1252")),
+    "decimal commas in quotes": Odd('"x [mm]","diameter [mm]"\n"0,0","12,75"\n"330,0","13,2"\n"736,6","21,5"\n'),
+    "a line that names the separator": Odd("sep=;\n" + GERMAN),
+    "columns in spaces": Odd("x_mm  dia_mm\n0      12.75\n330    13.2\n736.6  21.5\n"),
+    "commas in the header, semicolons below": Odd("x [mm],diameter [mm]\n0;12,75\n330;13,2\n736,6;21,5\n"),
+    "extra columns": Odd(
+        "No,x [mm],diameter [mm],note\n1,0,12.75,ferrule\n2,330,13.2,\n3,736.6,21.5,joint\n",
+        said=("columns 'No', 'note' are not used",),
+    ),
+    "swapped columns": Odd("diameter [mm],x [mm]\n12.75,0\n13.2,330\n21.5,736.6\n"),
+    "loose names": Odd("Distance from tip (in),Dia. (in)\n0,0.5\n13,0.52\n29,0.85\n", in_inches(INCHES)),
+    "names in capitals": Odd("POS_MM,DIA_MM\n0,12.75\n330,13.2\n736.6,21.5\n"),
+    "a name misspelt": Odd("positon [mm],diamter [mm]\n0,12.75\n330,13.2\n736.6,21.5\n"),
+    "radius for diameter": Odd(
+        "x [mm],radius [mm]\n0,6.375\n330,6.6\n736.6,10.75\n", said=("diameters are twice the column 'radius [mm]'",)
+    ),
+    "it begins after 0": Odd(
+        "x [mm],diameter [mm]\n10,12.75\n340,13.2\n746.6,21.5\n",
+        said=("the shaft begins at its first point, x = 10 mm: nothing is drawn before it",),
+    ),
+    "a line of units": Odd("x,diameter\nmm,mm\n0,12.75\n330,13.2\n736.6,21.5\n"),
+    "units beside the numbers": Odd("x,diameter\n0 mm,12.75 mm\n330 mm,13.2mm\n736.6 mm,21.5 mm\n"),
+    "titles above": Odd("Shaft 12; maple\nmeasured by Ann; 3 May\n\n" + GERMAN),
+    "empty rows and columns of a spreadsheet": Odd(
+        "x [mm],diameter [mm],,\n0,12.75,,\n,,,\n330,13.2,,\n736.6,21.5,,\n,,,\n,,,\n"
+    ),
+    "butt first": Odd("x [mm],diameter [mm]\n736.6,21.5\n330,13.2\n0,12.75\n"),
+    "from the butt": Odd(
+        "distance from joint [mm],diameter [mm]\n0,21.5\n406.6,13.2\n736.6,12.75\n",
+        said=("x is measured from the butt, as 'distance from joint [mm]' says",),
+    ),
+    "both units twice": Odd(
+        "x (in),x (mm),d (in),d (mm)\n0,0,0.5,12.7\n13,330.2,0.52,13.208\n29,736.6,0.85,21.59\n",
+        in_inches(INCHES),
+        said=("columns 'x (mm)', 'd (mm)' are not used",),
+    ),
+    "fractions of an inch": Odd(
+        'x [in],diameter [in]\n0,1/2"\n14 1/2,17/32\n29,27/32\n', in_inches(((0, 0.5), (14.5, 17 / 32), (29, 27 / 32)))
+    ),
+    "marks of thousands": Odd(
+        '"x [mm]","diameter [mm]"\n"0.0","9.5"\n"800.0","18.0"\n"1,470.5","29.0"\n',
+        ((0, 9.5), (800, 18), (1470.5, 29)),
+    ),
+    "a point written twice": Odd("x [mm],diameter [mm]\n0,12.75\n330,13.2\n330,13.2\n736.6,21.5\n"),
+}
+
+REFUSED = {
+    "no units": (
+        "x,diameter\n0,12.75\n330,13.2\n736.6,21.5\n",
+        'line 1: the columns have no unit: write "x [mm],diameter [mm]", if these are mm, or give --length-unit',
+    ),
+    "one unit": (
+        "x [mm],diameter\n0,0.5\n330,0.52\n736.6,0.85\n",
+        "line 1: the column 'diameter' has no unit: write one in brackets, such as \"diameter [mm]\", or give --length",
+    ),
+    "no names": (
+        "0,12.75\n330,13.2\n736.6,21.5\n",
+        "line 1: must name the columns, such as \"x [mm],diameter [mm]\"; got numbers, '0,12.75'",
+    ),
+    "other names": (
+        "a,b\n1,2\n3,4\n",
+        "line 1: must name one column for the place along the shaft and one for the dia",
+    ),
+    "commas for both": (
+        "x [mm],diameter [mm]\n0,0,12,75\n330,0,13,2\n736,6,21,5\n",
+        "line 2: must have no more numbers than there are columns, 2; got '0,0,12,75'; where commas part the columns, "
+        "write decimal points, or part the columns by semicolons",
+    ),
+    "a spreadsheet": (b"PK\x03\x04" + bytes(60), "is a spreadsheet, not a .csv: in its program, save it as CSV"),
+    "a bore": (
+        "x [mm],diameter [mm],bore [mm]\n0,12.75,6\n736.6,21.5,6\n",
+        "line 1: the column 'bore [mm]' is a bore, which a .csv cannot draw: draw a hollow shaft as a .toml",
+    ),
+    "two diameters": (
+        "x [mm],diameter 1 [mm],diameter 2 [mm]\n0,12.75,12.9\n736.6,21.5,21.4\n",
+        "line 1: two columns may be the diameter, 'diameter 1 [mm]' and 'diameter 2 [mm]', and they differ: keep one",
+    ),
+    "a point out of order": (
+        "x [mm],diameter [mm]\n0,12.75\n736.6,21.5\n330,13.2\n",
+        "line 4, x: must be beyond 736.6 mm, the x of the line before (points run from tip to butt); got '330 mm'",
+    ),
+    "a step": (
+        "x [mm],diameter [mm]\n0,12.75\n25,12.75\n25,13\n736.6,21.5\n",
+        "line 4, x: must be beyond 25 mm, the x of the line before (points run from tip to butt); got '25 mm'; a step "
+        "in the diameter is two points a little apart, such as 25 and 25.1 mm",
+    ),
+    "a word": (
+        "x [mm],diameter [mm]\n0,12.75\n330,about 13\n736.6,21.5\n",
+        "line 3, diameter: must be a number; got 'about 13'",
+    ),
+    "a gap": ("x [mm],diameter [mm]\n0,12.75\n330,\n736.6,21.5\n", "line 3, diameter: must be a number; got nothing"),
+    "points and commas": (
+        "x [mm];diameter [mm]\n0;12.75\n330,5;13.2\n736.6;21.5\n",
+        "line 3, x: must be written with the decimal point of the other numbers; got '330,5'",
+    ),
+    "no length": (
+        "x [kg],diameter [mm]\n0,12\n700,21\n",
+        "line 1, x: must be in a unit of length, such as mm; got 'kg'",
+    ),
+    "a line without end": ("x [mm],diameter [mm]\n0," + 200_000 * "1" + "\n", "line 2: must be shorter; got "),
+    "a picture": (
+        b"\x89PNG\r\n\x1a\n" + bytes(range(256)),
+        "must be text, a table of numbers; got a file of another kind",
+    ),
+}
+
+
+def drawn(points: tuple[tuple[float, float], ...]) -> cf.Cue:
+    pairs = itertools.pairwise(points)
+    return cf.Cue(tuple(cf.Segment((b[0] - a[0]) / 1e3, a[1] / 1e3, b[1] / 1e3, MAPLE) for a, b in pairs))
+
+
+def written(folder: Path, content: str | bytes) -> Path:
+    path = folder / "shaft.csv"
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    return path
+
+
+def test_there_are_enough_of_them() -> None:
+    assert len(READ) + len(REFUSED) >= 20
+
+
+@pytest.mark.parametrize("name", READ)
+def test_read_as_meant(name: str, tmp_path: Path) -> None:
+    odd = READ[name]
+    found = cf.load(written(tmp_path, odd.content))
+    assert isinstance(found, cf.Cue)
+    for segment, meant in zip(found.segments, drawn(odd.points).segments, strict=True):
+        sizes = segment.length, segment.tip_diameter, segment.butt_diameter
+        assert sizes == pytest.approx((meant.length, meant.tip_diameter, meant.butt_diameter), rel=1e-12, abs=0)
+    told = assumed(tmp_path / "shaft.csv", {"material", "body_mass"})
+    assert tuple(told) == odd.said
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_refused_in_words(name: str, tmp_path: Path) -> None:
+    content, words = REFUSED[name]
+    path = written(tmp_path, content)
+    with pytest.raises(InputError) as caught:
+        cf.load(path)
+    line = str(caught.value).removeprefix(f"{path}: ")
+    assert line.startswith(words)
+    assert len(line.splitlines()) == 1
+    status, out, err = call("modes", path)
+    assert (status, out, err) == (2, "", f"cuefem: {caught.value}\n")
+
+
+def test_the_unit_of_a_profile_that_names_none(tmp_path: Path) -> None:
+    path = written(tmp_path, "x,diameter\n0,0.5\n13,0.52\n29,0.85\n")
+    found = cf.load(path, length_unit="in")
+    assert found == cf.load(written(tmp_path, "x [in],diameter [in]\n0,0.5\n13,0.52\n29,0.85\n"))
+    with pytest.raises(InputError, match="names its units itself: length_unit is for a table without units; got 'mm'"):
+        cf.load(path, length_unit="mm")
+    path = written(tmp_path, "x,diameter\n0,0.5\n13,0.52\n29,0.85\n")
+    with pytest.raises(InputError, match="length unit: must be a unit of length, such as mm; got 'kg'"):
+        cf.load(path, length_unit="kg")
+
+
+def test_the_notes_stand_where_results_are_read(tmp_path: Path) -> None:
+    path = written(tmp_path, READ["it begins after 0"].content)
+    status, out, _ = call("modes", path, "--body-mass", "15 oz", "--material", "Hard Maple")
+    assert status == 0
+    assert "assumed: the shaft begins at its first point, x = 10 mm: nothing is drawn before it\n" in out
+
+
+@pytest.mark.parametrize("name", ["spreadsheet.xlsx", "shaft.ods", "shaft.txt", "shaft.tsv"])
+def test_a_table_of_another_kind_of_file(name: str, tmp_path: Path) -> None:
+    (tmp_path / name).write_bytes(b"PK\x03\x04")
+    with pytest.raises(InputError, match=rf"got '{Path(name).suffix}'; save the table as \.csv$"):
+        cf.load(tmp_path / name)

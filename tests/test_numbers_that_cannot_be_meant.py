@@ -1,0 +1,95 @@
+"""Numbers that look like another unit are remarked in Python, and no others (properties)."""
+
+from __future__ import annotations
+
+import dataclasses
+import shutil
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+import cuefem as cf
+from cuefem import slips
+from cuefem.effects import effect_kinds
+from tests.helpers.command_line import call
+
+ROOT = Path(__file__).parents[1]
+WOOD = cf.Material(12.6e9, 0.84e9, 700.0)
+SEGMENT = cf.Segment(0.7, 0.012, 0.021, WOOD)
+SLIPS: list[tuple[Callable[[], object], str]] = [
+    (lambda: cf.TipDome(9.5), "TipDome.radius is 9.5 m, which no cue has: is it 9.5 mm? Write 0.0095 (m)"),
+    (
+        lambda: cf.Segment(700, 0.012, 0.021, WOOD),
+        "Segment.length is 700 m, which no cue has: is it 700 mm? Write 0.7 (m)",
+    ),
+    (
+        lambda: cf.Segment(29, 0.012, 0.021, WOOD),
+        "Segment.length is 29 m, which no cue has: is it 29 mm or 29 in? Write",
+    ),
+    (lambda: cf.Segment(0.7, 0.5, 0.85, WOOD), "Segment.tip_diameter is 0.5 m, which no cue has: is it 0.5 in? Write"),
+    (lambda: cf.Cue((SEGMENT,), 15), "Cue.body_mass is 15 kg, which no cue has: is it 15 oz? Write 0.4252 (kg)"),
+    (lambda: cf.Ball(170), "Ball.mass is 170 kg, which no cue has: is it 170 g? Write 0.17 (kg)"),
+    (lambda: cf.Ball(0.17, 28.575), "Ball.radius is 28.575 m, which no cue has: is it 28.575 mm? Write 0.02857 (m)"),
+    (lambda: cf.Tip(contact_time=1.1), "Tip.contact_time is 1.1 s, which no cue has: is it 1.1 ms? Write 0.0011 (s)"),
+    (lambda: cf.Material(12.6, 0.84e0, 700), "Material.E is 12.6 Pa, which no cue has: is it 12.6 GPa or 12.6 MPa?"),
+    (lambda: cf.Material(12.6e9, 0.84e9, 0.7), "Material.rho is 0.7 kg/m^3, which no cue has: is it 0.7 g/cm^3? Write"),
+    (lambda: cf.LumpedCue(540, 0.006), "LumpedCue.mass is 540 kg, which no cue has: is it 540 g? Write 0.54 (kg)"),
+    (lambda: cf.PointMass(100, 0.005), "PointMass.position is 100 m, which no cue has: is it 100 mm? Write 0.1 (m)"),
+]
+LIMITS: list[Callable[[], object]] = [
+    lambda: cf.TipDome(1.0),
+    lambda: cf.TipDome(1e3),
+    lambda: cf.Tip(contact_time=1e-6),
+    lambda: cf.Ball(1e6),
+    lambda: cf.Segment(5.0, 0.06, 0.06, WOOD),
+    lambda: cf.LumpedCue(5.0, 1e-9),
+    lambda: cf.LeatherTip(0.006, float("inf"), 1e12),
+]
+
+
+@pytest.mark.parametrize(("make", "words"), SLIPS)
+def test_a_slip_of_units_is_remarked_where_it_stands(make: Callable[[], object], words: str) -> None:
+    with pytest.warns(cf.Unusual) as told:
+        make()
+    assert str(told[0].message).startswith(words)
+    assert {Path(one.filename).name for one in told} == {Path(__file__).name}
+
+
+@pytest.mark.parametrize("make", LIMITS)
+def test_limits_and_scales_pass_without_a_word(make: Callable[[], object]) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        make()
+
+
+FILES = sorted({*ROOT.glob("meshes/*.toml"), *ROOT.glob("studies/scenes/*.toml"), *ROOT.glob("meshes/*.vtu")})
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
+def test_ready_files_pass_without_a_word(path: Path) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        cf.load(path)
+
+
+def test_a_file_s_slip_is_told_to_the_one_who_loads_it(tmp_path: Path) -> None:
+    shutil.copy(ROOT / "meshes" / "pool_maple.toml", tmp_path / "cue.toml")
+    path = tmp_path / "scene.toml"
+    ball = '[stroke]\noffset = 0.3\n[ball]\nmass = "170 g"\nradius = "28.575 mm"\n'
+    path.write_text(f'cue = "cue.toml"\n{ball}[[effects]]\ntype = "TipDome"\nradius = "9.5 m"\n')
+    with pytest.warns(cf.Unusual, match="is it 9.5 mm") as told:
+        cf.load(path)
+    assert Path(told[0].filename).name == Path(__file__).name
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        status, _, err = call("strike", path)  # says it in its own words
+    assert (status, err) == (0, "unusual: TipDome radius 9500 mm; 9 to 10.6 is usual, a dime's or a nickel's\n")
+
+
+def test_every_entry_is_a_field() -> None:
+    kinds = {kind.__name__: kind for kind in (cf.Material, cf.Segment, cf.Cue, cf.LumpedCue, cf.Ball, cf.Tip)}
+    kinds |= effect_kinds()
+    for name, field in slips.USUAL:
+        assert field in {one.name for one in dataclasses.fields(kinds[name])}

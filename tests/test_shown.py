@@ -1,0 +1,65 @@
+"""How objects show themselves: short in a terminal, a table in a notebook; what `dir` lists (regression)."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import cuefem as cf
+from cuefem.notebook import spelt_out
+
+ROOT = Path(__file__).parents[1]
+CUE = cf.load(ROOT / "meshes" / "pool_hollow.toml")
+assert isinstance(CUE, cf.Cue)
+SCENE = cf.Scene(CUE, stroke=cf.Stroke(1.0, 0.3), effects=(cf.TipDome(0.0095),))
+LUMPED = cf.Scene(cf.LumpedCue(0.5, 0.006), stroke=cf.Stroke(1.0, np.linspace(0, 0.4, 50)))
+THINGS = {
+    "cue": (lambda: CUE, "Cue(6 segments, 0.7366 m, "),
+    "scene": (lambda: SCENE, "Scene(cue=Cue(6 segments, 0.7366 m, "),
+    "outcome": (lambda: cf.strike(SCENE), "Outcome(squirt=0.0"),
+    "array": (lambda: cf.impulse(LUMPED), "Outcome(squirt=array(50,), ball_speed=array(50,), "),
+    "modes": (lambda: cf.modes(CUE, 40), "Modes(["),
+    "motion": (lambda: cf.motion(SCENE, np.linspace(0, 1e-3, 30)), "Motion(30 times to 0.001 s, "),
+    "batch": (lambda: cf.CueBatch.of([CUE, CUE]), "CueBatch(2 cues of 6 segments)"),
+}
+
+
+@pytest.mark.parametrize("name", THINGS)
+def test_short_in_a_terminal(name: str) -> None:
+    make, begins = THINGS[name]
+    shown = repr(make())
+    assert shown.startswith(begins)
+    assert len(shown) < 400
+    assert "\n" not in shown
+
+
+@pytest.mark.parametrize("name", ["cue", "scene", "outcome", "array", "modes"])
+def test_a_table_in_a_notebook(name: str) -> None:
+    html = THINGS[name][0]()._repr_html_()
+    parts = ET.fromstring(f"<div>{html}</div>")
+    assert parts.find(".//table") is not None
+    assert (parts.find(".//{http://www.w3.org/2000/svg}polygon") is not None) == (name in ("cue", "scene"))
+
+
+def test_all_of_an_object_can_still_be_written_out() -> None:
+    """What tells studies apart; `eval` makes the same object of it."""
+    names = {name: getattr(cf, name) for name in dir(cf)} | {"inf": float("inf")}
+    assert eval(spelt_out(SCENE), names) == SCENE
+
+
+def test_dir_lists_public_names_alone() -> None:
+    assert dir(cf) == sorted(cf.__all__)
+    program = "import cuefem; print([name for name in vars(cuefem) if not name.startswith('_')])"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"
+
+
+def test_the_package_runs_as_a_program() -> None:
+    done = subprocess.run([sys.executable, "-m", "cuefem", "--version"], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("cuefem, version ")
