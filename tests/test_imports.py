@@ -31,6 +31,7 @@ ORDER = [
     "contact",
     "endmass",
     "accuracy",
+    "side",
     "design",
     "tap",
     "io",
