@@ -30,6 +30,7 @@ ORDER = [
     "accuracy",
     "design",
     "tap",
+    "measured",
     "io",
     "report",
     "handbook",
@@ -51,6 +52,7 @@ HOMES = {
     "sqlite3": {"io"},
     "pyarrow": {"io"},
     "distributed": {"design"},
+    "emcee": {"measured"},
     "nicegui": {"designer"},
     "starlette": {"designer"},
 }
