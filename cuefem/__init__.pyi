@@ -25,6 +25,10 @@ from .endmass.drives import end_mass as end_mass
 from .endmass.lumped import impulse as impulse, lump as lump
 from .endmass.undamped import StickLimit as StickLimit
 from .io import load as load, save as save
+from .side.accuracy import resolve_side_strike as resolve_side_strike
+from .side.motion import SideMotion as SideMotion, side_motion as side_motion
+from .side.scene import SideStrike as SideStrike, Striker as Striker
+from .side.strike import SideOutcome as SideOutcome, side_strike as side_strike
 from .scene import (
     Ball as Ball,
     Outcome as Outcome,

@@ -350,7 +350,7 @@ class _Tips(NamedTuple):
 def _tips(scene: Scene) -> Iterator[_Tips]:
     """Rungs of the ladder: each group of them on one mesh, with one eigenproblem and one factorisation."""
     end_rings = _end_rings(scene.shaft)
-    for group in _groups(scene):
+    for group in rung_counts(scene.shaft, scene.contact_time):
         elements, order = mesh_for(scene.shaft, group[-1])
         system = assemble(scene.shaft, elements=elements, order=order, effects=scene.cue_effects)
         whole, deflect = solve(system, group[-1]), flexibility(system)
@@ -358,9 +358,12 @@ def _tips(scene: Scene) -> Iterator[_Tips]:
             yield _Tips(Resolution(elements, order, count), scene, whole, deflect, end_rings)
 
 
-def _groups(scene: Scene) -> list[list[int]]:
-    """Numbers of modes of the rungs, those of one mesh together: the first up to `JUDGED`, then each by itself."""
-    first = min(max(FIRST, modes_below(scene.shaft, 2 * np.pi * 3 / scene.contact_time)), MOST // 4)
+def rung_counts(cue: Cue, time: float) -> list[list[int]]:
+    """Numbers of modes of the rungs for a contact that takes ``time``, s; those of one mesh stand together.
+
+    The first group goes up to `JUDGED`; then each stands by itself.
+    """
+    first = min(max(FIRST, modes_below(cue, 2 * np.pi * 3 / time)), MOST // 4)
     counts = [round(first * math.pow(RATIO, k)) for k in range(20)]
     counts = [*(count for count in counts if count < MOST / RATIO**0.5), MOST]
     return [counts[: JUDGED + 1], *([count] for count in counts[JUDGED + 1 :])]

@@ -18,6 +18,7 @@ import numpy as np
 
 from cuefem.beam.tip import TipModes, lumped_tip_modes, tip_modes
 from cuefem.beam.waves import mesh_for, modes_below
+from cuefem.cue import Cue
 from cuefem.quantity import CONTACT_TIME
 from cuefem.scene import Resolution, Scene
 
@@ -44,7 +45,12 @@ def default_resolution(scene: Scene, *, periods: float = PERIODS_KEPT, least: in
     ):  # one made by a stiffness; or by a whole tip; one given is bounded already
         got = f"{scene.stiffness:.6g} N/m, {scene.contact_time:.3g} s"
         raise ValueError(f"Tip.stiffness must make a head-on contact time in {CONTACT_TIME.bounds}; got {got}")
-    count = min(max(modes_below(cue, 2 * np.pi * periods / scene.contact_time), least), MOST_KEPT)
+    return resolution_for(cue, scene.contact_time, periods=periods, least=least)
+
+
+def resolution_for(cue: Cue, time: float, *, periods: float = PERIODS_KEPT, least: int = LEAST) -> Resolution:
+    """Modes up to the frequency ``periods`` / time, at least ``least`` of them, on the mesh that holds them."""
+    count = min(max(modes_below(cue, 2 * np.pi * periods / time), least), MOST_KEPT)
     elements, order = mesh_for(cue, count)
     return Resolution(elements, order, count)
 

@@ -28,6 +28,7 @@ ORDER = [
     "contact",
     "endmass",
     "accuracy",
+    "side",
     "design",
     "tap",
     "measured",

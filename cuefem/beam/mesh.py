@@ -34,6 +34,29 @@ class ActsOnCue(Protocol):
 
 
 @dataclass(frozen=True)
+class Place:
+    """A place on the cue, m from the tip, that must be a node of the mesh, because a force acts there."""
+
+    position: float
+
+    @property
+    def positions(self) -> tuple[float, ...]:
+        """The place."""
+        return (self.position,)
+
+    @property
+    def splits(self) -> tuple[float, ...]:
+        """None: the beam goes on through it."""
+        return ()
+
+    def check_on(self, cue: Cue, name: str) -> None:
+        """Nothing: `mesh_cue` refuses places off the cue."""
+
+    def add_to(self, terms: Terms) -> None:
+        """Nothing is there but the node."""
+
+
+@dataclass(frozen=True)
 class Mesh:
     """Elements of a cue: a node at every end of a segment and at every position an effect asks for.
 

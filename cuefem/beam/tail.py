@@ -37,16 +37,18 @@ class Ritz(NamedTuple):
     radiation: Array
 
 
-def tail(found: Modes, *, turning: bool = False, deflect: Deflect | None = None) -> Modes:
+def tail(found: Modes, *, turning: bool = False, deflect: Deflect | None = None, position: float = 0.0) -> Modes:
     """The modes with a tail: a few more vectors, and their radiation, that stand for the modes left out.
 
     turning: whether the contact lies off the cue's axis, so that a couple acts at the tip beside the force. deflect:
-    the `flexibility` of the system, if it is known already. Cost: one factorisation of K and `STEPS` solutions.
+    the `flexibility` of the system, if it is known already. position: where the force acts, m from the tip; a node.
+    Cost: one factorisation of K and `STEPS` solutions.
     """
     system = found.system
     kept = np.concatenate([found.rigid_vectors, found.vectors], axis=1)
     force = np.zeros((system.mesh.unknowns, 2 if turning else 1))
-    np.fill_diagonal(force, 1.0)  # at the tip: on w, and on theta
+    places = system.mesh.unknowns_at(system.mesh.node(position))[: force.shape[1]]  # w, and theta
+    force[list(places), np.arange(force.shape[1])] = 1.0
     if system.free is not None:  # no force acts on an unknown that a clamp holds
         force = force[:, np.asarray(abs(system.free.T @ force).sum(axis=0)).ravel() > 0]
     if force.shape[1] == 0:

@@ -108,9 +108,30 @@ def tip_modes(found: Modes, axial_mass: float) -> TipModes:
     approach = np.zeros(len(amplitude))
     approach[0] = axial_mass**0.5
     omega = np.concatenate([np.zeros(1 + found.rigid), found.omega])
+    damping, radiation = _resistances(found, vectors, len(omega))
+    return TipModes(omega, amplitude, approach, np.concatenate([[0.0], turning]), damping, radiation)
+
+
+def side_modes(found: Modes, position: float) -> TipModes:
+    """All that a body feels which strikes the beam from the side at ``position``, m from the tip, a node.
+
+    The first direction of the contact is that of the body's rebound, against the deflection w of the beam; nothing
+    moves along the second. The beam is at rest.
+    """
+    vectors = np.concatenate([found.rigid_vectors, found.vectors], axis=1)
+    deflection, rotation = found.system.mesh.unknowns_at(found.system.mesh.node(position))
+    omega = np.concatenate([np.zeros(found.rigid), found.omega])
+    damping, radiation = _resistances(found, vectors, len(omega))
+    amplitude = np.column_stack([-vectors[deflection], np.zeros(len(omega))])
+    turning = vectors[rotation] / found.system.length
+    return TipModes(omega, amplitude, np.zeros(len(omega)), turning, damping, radiation)
+
+
+def _resistances(found: Modes, vectors: Array, count: int) -> tuple[Array | None, Array | None]:
+    """Damping by dashpots and radiation by a tail of ``count`` modes, whose last ones are the bending ``vectors``."""
     damping = None
     if found.system.dashpots is not None:
-        damping = np.zeros((len(omega), len(omega)))
-        damping[1:, 1:] = vectors.T @ (found.system.dashpots[:, None] * vectors)
-    radiation = None if found.radiation is None else np.pad(found.radiation, (len(omega) - len(found.radiation), 0))
-    return TipModes(omega, amplitude, approach, np.concatenate([[0.0], turning]), damping, radiation)
+        own = vectors.T @ (found.system.dashpots[:, None] * vectors)
+        damping = np.pad(own, (count - len(own), 0))
+    radiation = None if found.radiation is None else np.pad(found.radiation, (count - len(found.radiation), 0))
+    return damping, radiation

@@ -118,7 +118,7 @@ def motion(scene: Scene, times: ArrayLike, at: Resolution | None = None) -> Moti
     True
     """
     check_kind("motion scene", scene, Scene)
-    times = _checked(times)
+    times = ascending(times)
     if scene.contact_terms.table is not None:
         raise ValueError("motion takes strokes in the plane of cue and ball; got Elevation")
     solved = Solved(scene, at)
@@ -131,7 +131,8 @@ def last_contact(scene: Scene, at: Resolution | None = None) -> float:
     return motion(scene, [0.0], at).duration
 
 
-def _checked(times: ArrayLike) -> Array:
+def ascending(times: ArrayLike) -> Array:
+    """Times as an array, (n,); ValueError unless they ascend from zero or later."""
     times = np.atleast_1d(np.asarray(times, float))
     if not (times.ndim == 1 and times.size and np.all(np.isfinite(times)) and np.all(np.diff(times, prepend=0) >= 0)):
         raise ValueError(f"motion takes ascending times in [0, inf) s; got {times}")
@@ -141,13 +142,13 @@ def _checked(times: ArrayLike) -> Array:
 def _read(scene: Scene, found: Modes, tip: TipModes, *, kind: Kind, times: Array) -> Motion:
     phi, side = kind.contact.laws.phi, math.copysign(1.0, scalar("Stroke.offset", scene.stroke.offset))
     tangent, normal = np.array([math.sin(phi), math.cos(phi)]), np.array([math.cos(phi), -math.sin(phi)])
-    q, ball = _positions(kind, times)
+    q, ball = positions_of(kind, times)
     vectors, across = _bending(found, tip)
     R = scalar("Ball.radius", scene.ball.radius)
     aside, back = scene.contact_terms.lever(phi)  # where on the cue's end the contact lies
     centre = R * normal + [-back, aside] + ball.gone @ np.array([tangent, normal])
     s, c = np.sin(phi + ball.contact), np.cos(phi + ball.contact)
-    F_t, F_n = _forces(kind, times).T
+    F_t, F_n = forces_of(kind, times).T
     return Motion(
         times,
         kind.contact.time,
@@ -176,7 +177,7 @@ class _Ball(NamedTuple):
     contact: Array
 
 
-def _positions(kind: Kind, times: Array) -> tuple[Array, _Ball]:
+def positions_of(kind: Kind, times: Array) -> tuple[Array, _Ball]:
     """Coordinates of all tip modes (modes, n), and the ball's."""
     contact = kind.contact
     slots, quiet, size = contact.slots, contact.quiet, len(contact.z)
@@ -212,7 +213,7 @@ def _states(kind: Kind, rows: Array, times: Array) -> Iterator[Array]:
                 gone = state[size:]
 
 
-def _forces(kind: Kind, times: Array) -> Array:
+def forces_of(kind: Kind, times: Array) -> Array:
     """Force on the ball (t, n), where these have turned to, N, (n, 2): none after the contact, or in a blow alone."""
     force = np.zeros((len(times), 2))
     pressed = times <= kind.contact.time

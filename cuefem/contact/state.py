@@ -56,7 +56,10 @@ class Phase(NamedTuple):
 
 @dataclass(frozen=True)
 class Laws:
-    """The constants of a contact in SI; phi: the angle of the contact, rad; time: the head-on contact time, s."""
+    """The constants of a contact in SI; phi: the angle of the contact, rad; time: the head-on contact time, s.
+
+    incoming: the ball's own speed towards the cue at first touch, m/s; only a strike from the side has one.
+    """
 
     phi: float
     ball_mass: float
@@ -66,6 +69,7 @@ class Laws:
     friction: float
     time: float
     speed: float
+    incoming: float = 0.0
 
 
 class Slots:
@@ -139,6 +143,7 @@ class Contact:
             self._damp(tip.radiation)
         self.z = np.zeros(size)
         self.z[slots.velocities] = laws.speed * tip.approach
+        self.z[slots["ball_n"]] = -laws.incoming * math.sqrt(mass)
         self.read, self.per = self._readings()
         self.along_before = 0.0
 
@@ -169,7 +174,7 @@ class Contact:
 
     @property
     def impulse(self) -> tuple[float, float]:
-        """Impulse (t, n) on the ball so far, N s."""
+        """Impulse (t, n) on the ball so far, N s; of one that came in, its momentum."""
         p_t, p_n = self.read[:2] @ self.z / self.per[:2]
         return float(p_t), float(p_n)
 

@@ -156,43 +156,46 @@ def effect_kinds() -> dict[str, type[Effect]]:
     return {kind.__name__: kind for kind in sorted(below(Effect), key=lambda kind: kind.__name__)}
 
 
-def check_effects(cue: Cue | LumpedCue, effects: tuple[Any, ...]) -> None:
-    """TypeError or ValueError unless the effects go with the cue and with each other; messages name the effect."""
+def check_effects(cue: Cue | LumpedCue, effects: tuple[Any, ...], scene: str = "Scene") -> None:
+    """TypeError or ValueError unless the effects go with the cue and with each other.
+
+    Messages name the effect; scene: the name of the class that holds the effects.
+    """
     for i, effect in enumerate(effects):
-        check_kind(f"Scene.effects[{i}]", effect, Effect)
+        check_kind(f"{scene}.effects[{i}]", effect, Effect)
         if isinstance(cue, LumpedCue) and effect.needs_beam:
             raise ValueError(
-                f"Scene.effects[{i}] must be an effect that a LumpedCue can have, one at its tip alone; "
+                f"{scene}.effects[{i}] must be an effect that a LumpedCue can have, one at its tip alone; "
                 f"got {type(effect).__name__}, which needs a finite-element Cue"
             )
         if isinstance(cue, Cue):
-            effect.check_on(cue, f"Scene.effects[{i}]")
-    _check_once(effects)
-    _check_excluded(effects)
+            effect.check_on(cue, f"{scene}.effects[{i}]")
+    _check_once(effects, scene)
+    _check_excluded(effects, scene)
     if isinstance(cue, Cue):
-        _check_clamps(cue, effects)
+        _check_clamps(cue, effects, scene)
 
 
-def _check_once(effects: tuple[Effect, ...]) -> None:
+def _check_once(effects: tuple[Effect, ...], scene: str) -> None:
     for i, effect in enumerate(effects):
         if effect.once and any(type(other) is type(effect) for other in effects[:i]):
             raise ValueError(
-                f"Scene.effects[{i}] must be another effect, {type(effect).__name__} acts once; got {effect}"
+                f"{scene}.effects[{i}] must be another effect, {type(effect).__name__} acts once; got {effect}"
             )
 
 
-def _check_excluded(effects: tuple[Effect, ...]) -> None:
+def _check_excluded(effects: tuple[Effect, ...], scene: str) -> None:
     names = [type(effect).__name__ for effect in effects]
     for i, effect in enumerate(effects):
         for other in effect.excludes:
             if other in names:
                 raise ValueError(
-                    f"Scene.effects[{i}] must be an effect that goes with effects[{names.index(other)}], {other}; "
+                    f"{scene}.effects[{i}] must be an effect that goes with effects[{names.index(other)}], {other}; "
                     f"got {names[i]}, which does not"
                 )
 
 
-def _check_clamps(cue: Cue, effects: tuple[Effect, ...]) -> None:
+def _check_clamps(cue: Cue, effects: tuple[Effect, ...], scene: str) -> None:
     """Two clamps of one unknown at one place are a slip of the pen: nothing is left for the second to hold."""
     found: list[tuple[int, str, float]] = []
     for i, effect in enumerate(effects):
@@ -201,7 +204,7 @@ def _check_clamps(cue: Cue, effects: tuple[Effect, ...]) -> None:
             if first is not None:
                 unit = "N/m" if name == "stiffness" else "N m/rad"
                 raise ValueError(
-                    f"Scene.effects[{i}].{name} must be in [0, inf) {unit} at {x} m, "
+                    f"{scene}.effects[{i}].{name} must be in [0, inf) {unit} at {x} m, "
                     f"where effects[{first}] is a clamp already; got inf"
                 )
             found.append((i, name, x))

@@ -1,0 +1,195 @@
+"""The scene of a strike from the side: a striker with its own law of contact, a beam, a place and a speed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+
+from cuefem.cue import Cue
+from cuefem.effects import CueEffect, Effect, acting_on_cue, check_effects
+from cuefem.effects.base import NEAR
+from cuefem.effects.law import TipLaw, loading_time
+from cuefem.effects.terms import ContactTerms
+from cuefem.quantity import CONTACT_TIME, Quantity, check_fields, check_kind
+
+# Hertz's force grows with this power of the compression: F = 4/3 E* sqrt(R) d^(3/2).
+HERTZ = 1.5
+
+
+@dataclass(frozen=True)
+class Striker:
+    """What strikes a beam from the side: a ball or a hammer, with its law of contact.
+
+    Exactly one law is given: a ``stiffness``, a ``contact_time``, or Hertz's law by ``modulus`` and ``radius``.
+
+    Parameters
+    ----------
+    mass
+        kg.
+    restitution
+        Energetic coefficient of restitution e of the contact itself, in [0, 1]: what it gives back is e^2 of the work
+        that pressed it. Off a heavy wall the striker bounces with e times its speed.
+    stiffness
+        Of a linear contact while it is pressed, N/m.
+    contact_time
+        Of a linear contact: how long the striker, all by itself, touches a wall that does not give, s. With
+        a restitution of 1 the stiffness is mass (pi/contact_time)^2. On a beam that gives way the contact is shorter.
+    modulus
+        Hertz's E* of 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 of striker and beam, Pa.
+    radius
+        Hertz's R of 1/R = 1/R1 + 1/R2 where they touch, m. For a ball of radius R1 on a flat side it is R1; on a round
+        one, sqrt(R1^2 R2/(R1 + R2)) comes close (handbook: The side strike).
+
+    Raises
+    ------
+    ValueError
+        If a number is out of bounds, or if not exactly one law is given.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> hammer = cf.Striker(mass=0.1, restitution=0.9, stiffness=1e6)
+    >>> ball = cf.Striker(mass=0.02, restitution=0.8, contact_time=1e-3)
+    >>> steel = cf.Striker(mass=0.028, restitution=1.0, modulus=12e9, radius=9.5e-3)
+    >>> round(1e3 * steel.wall_time(speed=1.0), 3)  # ms
+    0.162
+    """
+
+    mass: Annotated[float, Quantity("kg", "(0, inf)")]
+    restitution: Annotated[float, Quantity("", "[0, 1]")]
+    stiffness: Annotated[float | None, Quantity("N/m", "(0, inf)")] = None
+    contact_time: Annotated[float | None, CONTACT_TIME] = None
+    modulus: Annotated[float | None, Quantity("Pa", "(0, inf)")] = None
+    radius: Annotated[float | None, Quantity("m", "(0, inf)")] = None
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+        marks = (("stiffness", "N/m"), ("contact_time", "s"), ("modulus", "Pa"), ("radius", "m"))
+        given = [(name, getattr(self, name), unit) for name, unit in marks if getattr(self, name) is not None]
+        if [name for name, _, _ in given] not in (["stiffness"], ["contact_time"], ["modulus", "radius"]):
+            got = ", ".join(f"{name} {value} {unit}" for name, value, unit in given) or "none of them"
+            raise ValueError(
+                "Striker takes one law of contact: stiffness (N/m), contact_time (s), "
+                f"or modulus (Pa) with radius (m); got {got}"
+            )
+
+    @property
+    def law(self) -> TipLaw:
+        """Force over compression: a power law, F = stiffness d^exponent while it is pressed."""
+        if self.modulus is not None and self.radius is not None:
+            return TipLaw(4 / 3 * self.modulus * math.sqrt(self.radius), HERTZ, self.restitution)
+        if self.stiffness is not None:
+            return TipLaw(self.stiffness, 1.0, self.restitution)
+        assert self.contact_time is not None
+        root = math.pi / 2 * (1 + self.restitution) / self.contact_time
+        return TipLaw(self.mass * root**2, 1.0, self.restitution)
+
+    def wall_time(self, speed: float) -> float:
+        """How long the striker touches a wall that does not give, s; speed: m/s, which only Hertz's law depends on."""
+        return self.time_on(math.inf, speed)
+
+    def time_on(self, mass: float, speed: float) -> float:
+        """How long the striker touches a free rigid body of ``mass``, kg, head on at ``speed``, m/s: a time in s."""
+        law, felt = self.law, 1 / (1 / self.mass + 1 / mass)
+        power = law.exponent + 1
+        depth = (power * felt * speed**2 / (2 * law.stiffness)) ** (1 / power)
+        return (1 + self.restitution) * loading_time(law.exponent) * depth / speed
+
+
+@dataclass(frozen=True)
+class SideStrike:
+    """A strike from the side: a ball or a hammer hits a beam across its axis, away from any table.
+
+    Parameters
+    ----------
+    cue
+        The beam: a `Cue` of segments, or a bat, a stick or a club drawn as one. Its ``body_mass`` takes no part, since
+        it moves along the axis only.
+    striker
+        What hits it, with the law of the contact.
+    position
+        Where it is hit, m from the tip.
+    speed
+        Of the striker, across the axis, m/s. The beam is at rest.
+    effects
+        Effects that act on the cue (`PointMass`, `Support`, `Joint`, `StructuralDamping`), and `SecondHit`, which
+        follows the striker on to further touches. `AxialWaves` changes nothing here. Effects of the cue's tip are
+        refused: the striker does not touch it.
+
+    Raises
+    ------
+    TypeError
+        If a field is of another kind.
+    ValueError
+        If the place lies off the cue, or an effect does not go with a strike from the side.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> shaft = cf.Cue((cf.Segment(0.7, 0.012, 0.021, wood),))
+    >>> ball = cf.Striker(mass=0.02, restitution=0.8, contact_time=1e-3)
+    >>> scene = cf.SideStrike(shaft, ball, position=0.01, effects=[cf.PointMass(0.1, 2e-3)])
+    >>> round(cf.side_strike(scene).apparent_restitution, 3)
+    -0.721
+    """
+
+    cue: Cue
+    striker: Striker
+    position: Annotated[float, Quantity("m", "[0, inf)")] = 0.0
+    speed: Annotated[float, Quantity("m/s", "(0, inf)")] = 1.0
+    effects: tuple[Effect, ...] = ()
+
+    def __post_init__(self) -> None:
+        check_kind("SideStrike.cue", self.cue, Cue)
+        check_kind("SideStrike.striker", self.striker, Striker)
+        check_fields(self)
+        if isinstance(self.effects, Effect):
+            raise TypeError(f"SideStrike.effects must be a sequence of effects; got one, {self.effects!r}")
+        object.__setattr__(self, "effects", tuple(self.effects))
+        if self.position > self.cue.length * (1 + NEAR):
+            bounds = f"[0, {self.cue.length}] m, on the cue"
+            raise ValueError(f"SideStrike.position must be in {bounds}; got {self.position}")
+        check_effects(self.cue, self.effects, "SideStrike")
+        for i, effect in enumerate(self.effects):
+            if effect.at_tip and ContactTerms.of((effect,), self.cue.segments[0].tip_diameter).window is None:
+                raise ValueError(
+                    f"SideStrike.effects[{i}] must be an effect on the cue or SecondHit: the striker does not touch "
+                    f"the cue's tip; got {type(effect).__name__}"
+                )
+
+    @property
+    def cue_effects(self) -> tuple[CueEffect, ...]:
+        """The effects that act on the cue, sorted."""
+        return acting_on_cue(self.effects)
+
+    @property
+    def window(self) -> float | None:
+        """How long striker and beam are followed after they part, s; None: not at all."""
+        return ContactTerms.of(self.effects, self.cue.segments[0].tip_diameter).window
+
+    @property
+    def rigid_mass(self) -> float:
+        """Mass that the striker would feel if the beam were rigid and free, kg, without rotary inertia of effects."""
+        points, weights = np.polynomial.legendre.leggauss(4)  # exact for cones
+        total = np.zeros((2, 2))
+        for segment, start in zip(self.cue.segments, self.cue.nodes[:-1], strict=True):
+            s = segment.length * (1 + points) / 2
+            found, x = segment.section(s), start + s - self.position
+            w = weights * segment.length / 2
+            total += [[w @ found.rhoA, w @ (found.rhoA * x)], [0.0, w @ (found.rhoA * x**2 + found.rhoI)]]
+        for effect in self.cue_effects:
+            mass = effect.mass_on(self.cue)
+            if mass:
+                x = effect.positions[0] - self.position
+                total += mass * np.array([[1.0, x], [0.0, x**2]])
+        m, first, second = total[0, 0], total[0, 1], total[1, 1]
+        return float(m - first**2 / second)
+
+    @property
+    def contact_time(self) -> float:
+        """Duration of the contact if the beam were rigid and free, s: the scale of time in which modes are chosen."""
+        return self.striker.time_on(self.rigid_mass, self.speed)
