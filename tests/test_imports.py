@@ -34,6 +34,7 @@ ORDER = [
     "side",
     "design",
     "tap",
+    "measured",
     "io",
     "report",
     "handbook",
@@ -56,6 +57,7 @@ HOMES = {
     "sqlite3": {"io"},
     "pyarrow": {"io"},
     "distributed": {"design"},
+    "emcee": {"measured"},
     "nicegui": {"designer"},
     "starlette": {"designer"},
 }

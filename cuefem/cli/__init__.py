@@ -14,6 +14,7 @@ from cuefem.cli.designer import designer
 from cuefem.cli.files import convert, materials, schema
 from cuefem.cli.guide import guide
 from cuefem.cli.handover import animate, handover
+from cuefem.cli.measured import compare
 from cuefem.cli.optimize import optimize
 from cuefem.cli.scatter import scatter
 from cuefem.cli.scene import cost, effects, end_mass, modes, report, strike
@@ -107,6 +108,7 @@ for _command in (
     designer,
     tap,
     tip,
+    compare,
     guide,
 ):
     main.add_command(_command)

@@ -75,7 +75,7 @@ def load_toml(path: Path, cue_file: Callable[[Path], Cue]) -> Cue | Scene:
     found = read_tables(path)
     if "segments" in found and "cue" not in found:
         return _cue(found, path, "")
-    return _scene(found, path, cue_file)
+    return scene_of_tables(found, path, cue_file)
 
 
 def load_cue(path: Path) -> Cue:
@@ -126,7 +126,8 @@ def named_material(name: str, path: Path, key: str) -> Material:
         raise InputError(path, key, f"{error}; see `cuefem materials`") from None
 
 
-def _scene(found: dict[str, Any], path: Path, cue_file: Callable[[Path], Cue]) -> Scene:
+def scene_of_tables(found: dict[str, Any], path: Path, cue_file: Callable[[Path], Cue]) -> Scene:
+    """A scene from a file's tables; ``cue_file`` loads the cue file that it names."""
     names = [*keys_of(Scene), "accuracy"]
     unknown = [name for name in found if name not in names]
     if unknown:  # a misspelt key first: beside [[segment]], body_mass is not the fault

@@ -1,0 +1,58 @@
+"""Commands on cues that somebody measured: compare, estimate."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from cuefem.cli.common import blaming, followed, print_all, print_json, remark
+
+
+@click.command(short_help="A documented cue: everything measured beside everything computed.")
+@click.argument("folder", metavar="CUE_FOLDER", type=click.Path(path_type=Path))
+@click.option("--template", is_flag=True, help="Make CUE_FOLDER with files to fill in, instead.")
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), metavar="PAGE.html", help="Write a page with figures instead."
+)
+@click.option("--json", "as_json", is_flag=True, help="SI numbers as JSON.")
+def compare(folder: Path, template: bool, output: Path | None, as_json: bool) -> None:
+    """Compute everything that was measured on the cue in CUE_FOLDER, and show both with errors and residuals.
+
+    The folder holds the shaft's drawing, cue.toml or cue.csv; measured.toml, with what was measured; and long series as
+    a CSV each, squirt.csv and added_mass.csv for two. Only the drawing must be there. Nothing is fitted.
+    """
+    from cuefem.io import InputError, check_place, save_page
+    from cuefem.io.documented import load_documented, write_template
+    from cuefem.measured.documented import compare as compared
+    from cuefem.measured.documented import zeros
+    from cuefem.report.documented import compare_page, compare_record, compare_tables
+    from cuefem.report.record import scene_record
+    from cuefem.report.unusual import unusual
+
+    if template:
+        write_template(folder)
+        click.echo(f"wrote {folder}")
+        return
+    if output is not None:
+        if as_json:
+            raise InputError(output, "--output", "must be left out with --json: a page is no JSON")
+        check_place(output)
+    cue, notes = load_documented(folder)
+    remark(cue.scene)
+    with blaming(folder):
+        rows = compared(cue, track=followed)
+        record = compare_record(cue, rows, zeros(cue, rows))
+    if output is not None:
+        save_page(compare_page(cue, rows, record, notes), output)
+        click.echo(f"wrote {output}")
+        return
+    if as_json:
+        said = {"file": str(folder), "assumed": notes, "unusual": unusual(cue.scene)}
+        print_json({**said, "scene": scene_record(cue.scene), **record, "units": UNITS})
+        return
+    assumed = [f"assumed: {'; '.join(notes)}"] if notes else []
+    print_all([cue.name, *assumed, "", *compare_tables(cue, record)])
+
+
+UNITS = {"residual": "", "pull": "", "zero": "m", "squirt": "rad", "squirt_error": "rad"}

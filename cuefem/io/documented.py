@@ -1,0 +1,181 @@
+"""A documented cue as a folder: the drawing, measured.toml with what was measured, and a CSV for each long series."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Iterator
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from cuefem.io import InputError, load
+from cuefem.io.assumed import assumed_blow
+from cuefem.io.errors import nearest, shown
+from cuefem.io.schema import build, joined, keys_of, unknown_key
+from cuefem.io.toml import read_tables, read_text, scene_of_tables
+from cuefem.io.units import quantity
+from cuefem.measured.documented import DocumentedCue
+from cuefem.measured.kinds import KINDS, Measurement
+from cuefem.measured.unknowns import KINDS as UNKNOWNS
+from cuefem.measured.unknowns import NAMES, Prior
+from cuefem.quantity import Quantity, quantities
+from cuefem.scene import Scene
+
+MEASURED = "measured.toml"
+DRAWINGS = ("cue.toml", "cue.csv")
+SCENE_KEYS = ("cue", "ball", "tip", "stroke", "effects")
+OWN_KEYS = ("name", "source", "unknowns")
+TEMPLATE = ("README.md", "added_mass.csv", "cue.toml", MEASURED, "squirt.csv")
+
+_COLUMN = re.compile(r"\s*([a-z_]+)\s*(?:\[([^\]]+)\])?\s*")
+
+
+def load_documented(folder: Path) -> tuple[DocumentedCue, list[str]]:
+    """The documented cue of a folder, and what its files leave to defaults; InputError if they cannot be used."""
+    if not folder.is_dir():
+        raise InputError(folder, "", "must be the folder of a documented cue (`--template` makes one); got no folder")
+    path = folder / MEASURED
+    tables = read_tables(path) if path.exists() else {}
+    known = [*OWN_KEYS, *SCENE_KEYS, *KINDS]
+    for name, value in tables.items():
+        if name not in known:
+            raise unknown_key(name, value, known, file=str(path), key="")
+    scene = _scene(folder, path, tables)
+    found = tuple(_measurements(folder, path, tables))
+    priors = tuple(_priors(path, tables.get("unknowns", [])))
+    name, source = (_words(path, tables, key) for key in ("name", "source"))
+    try:
+        made = DocumentedCue(name or folder.resolve().name, scene, found, priors, source)
+    except ValueError as error:
+        raise InputError(path, "", str(error)) from None
+    return made, assumed_blow(tables, ["offset"], offered=())
+
+
+def write_template(folder: Path) -> None:
+    """Make a folder with the files of a documented cue, to be filled in; InputError if it exists."""
+    try:
+        folder.mkdir()
+    except OSError as error:
+        raise InputError(folder, "", f"cannot be made: {error.strerror}") from None
+    for name in TEMPLATE:
+        text = files(__package__).joinpath("documented_template", name).read_text(encoding="utf-8")
+        (folder / name).write_text(text, encoding="utf-8")
+
+
+def _words(path: Path, tables: dict[str, Any], key: str) -> str:
+    value = tables.get(key, "")
+    if not isinstance(value, str):
+        raise InputError(path, key, f"must be text; got {shown(value)}")
+    return value
+
+
+def _scene(folder: Path, path: Path, tables: dict[str, Any]) -> Scene:
+    parts = {key: tables[key] for key in SCENE_KEYS if key in tables}
+    if "cue" not in parts:
+        there = next((name for name in DRAWINGS if (folder / name).exists()), None)
+        if there is None:
+            raise InputError(folder, "", f"must hold the shaft's drawing, {' or '.join(DRAWINGS)}; got none")
+        parts["cue"] = there
+    scene = scene_of_tables(parts, path, _drawing)
+    if scene.lumped is not None:
+        raise InputError(path, "cue", "must be a cue of segments, which can be measured; got a lumped cue")
+    return scene
+
+
+def _drawing(path: Path) -> Any:
+    found = load(path)
+    if isinstance(found, Scene):
+        raise InputError(
+            path, "cue", "must be absent here: this file is the drawing; ball and tip stand in " + MEASURED
+        )
+    return found
+
+
+def _measurements(folder: Path, path: Path, tables: dict[str, Any]) -> Iterator[Measurement]:
+    for key, kind in KINDS.items():
+        rows = tables.get(key, [])
+        if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
+            raise InputError(path, key, f"must be tables, [[{key}]]; got {shown(rows)}")
+        for i, row in enumerate(rows):
+            yield build(kind, row, file=str(path), key=joined(key, i))
+        series = folder / f"{key}.csv"
+        if series.exists():
+            yield from _series(series, kind)
+    for other in sorted(folder.glob("*.csv")):
+        if other.name not in DRAWINGS and other.stem not in KINDS:
+            names = ", ".join(f"{key}.csv" for key in KINDS)
+            raise InputError(other, "", f"must be one of {names}{nearest(other.stem, KINDS)}")
+
+
+def _series(path: Path, kind: type[Measurement]) -> Iterator[Measurement]:
+    """The measurements of a CSV: a column a key, with its unit in the heading; empty cells are left out."""
+    lines = list(enumerate(read_text(path).splitlines(), start=1))
+    rows = [(i, next(csv.reader([line]))) for i, line in lines if line.strip() and not line.lstrip().startswith("#")]
+    if not rows:
+        raise InputError(path, "", "must begin with a line of headings; got comments alone")
+    marks = {name: mark for name, mark, *_ in quantities(kind)}
+    (first, headings), *others = rows
+    columns = [_column(path, first, heading, kind, marks) for heading in headings]
+    for line, cells in others:
+        if len(cells) != len(columns):
+            raise InputError(path, f"line {line}", f"must have {len(columns)} cells, as the headings; got {len(cells)}")
+        filled = [(name, unit, cell.strip()) for (name, unit), cell in zip(columns, cells, strict=True) if cell.strip()]
+        table = {name: _cell(path, line, name, cell, unit, marks.get(name)) for name, unit, cell in filled}
+        yield build(kind, table, file=str(path), key=f"line {line}")
+
+
+def _column(path: Path, line: int, heading: str, kind: type, marks: dict[str, Quantity]) -> tuple[str, str]:
+    found, names = _COLUMN.fullmatch(heading), keys_of(kind)
+    if not found or found[1] not in names:
+        hint = nearest(heading.partition("[")[0].strip(), names)
+        raise InputError(path, f"line {line}", f"must have headings {', '.join(names)}; got {shown(heading)}{hint}")
+    name, unit = found[1], found[2] or ""
+    wanted = marks[name].unit if name in marks else ""
+    if bool(wanted) != bool(unit):
+        example = f'"{name} [{wanted}]"' if wanted else f'"{name}"'
+        raise InputError(path, f"line {line}, {name}", f"must be the heading {example}; got {shown(heading)}")
+    return name, unit
+
+
+def _cell(path: Path, line: int, name: str, cell: str, unit: str, mark: Quantity | None) -> Any:
+    """What a cell says, as a table of the file would: a text with its unit, a number, or words."""
+    if unit:
+        return f"{cell} {unit}"
+    if mark is None and name not in ("mode",):
+        return cell
+    try:
+        return int(cell) if mark is None else float(cell)
+    except ValueError:
+        raise InputError(path, f"line {line}, {name}", f"must be a number; got {shown(cell)}") from None
+
+
+def _priors(path: Path, rows: Any) -> Iterator[Prior]:
+    if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
+        raise InputError(path, "unknowns", f"must be tables, [[unknowns]]; got {shown(rows)}")
+    for i, row in enumerate(rows):
+        key = joined("unknowns", i)
+        name = row.get("name")
+        if name not in NAMES:
+            hint = nearest(str(name), NAMES)
+            raise InputError(path, joined(key, "name"), f"must be one of {', '.join(NAMES)}; got {shown(name)}{hint}")
+        for other in row:
+            if other not in keys_of(Prior):
+                raise unknown_key(other, row[other], keys_of(Prior), file=str(path), key=key)
+        unit = UNKNOWNS[name].unit if name in UNKNOWNS else ""
+        marks = {
+            "spread": Quantity("", "[0, 3]"),
+            "low": Quantity(unit, "(0, inf)"),
+            "high": Quantity(unit, "(0, inf)"),
+        }
+        values = {}
+        for each, mark in marks.items():
+            if each in row:
+                try:
+                    values[each] = quantity(mark, row[each])
+                except ValueError as error:
+                    raise InputError(path, joined(key, each), str(error)) from None
+        try:
+            yield Prior(name, **values)
+        except ValueError as error:
+            raise InputError(path, key, str(error)) from None

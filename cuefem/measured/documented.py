@@ -1,0 +1,157 @@
+"""A documented cue: its drawing, the stroke, what was measured on it, and the table of measured and computed values."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from cuefem.cue import Array
+from cuefem.measured.kinds import KINDS, Measurement, Setup, Squirt
+from cuefem.measured.unknowns import Prior, Unknown, unknowns_of
+from cuefem.quantity import check_kind
+from cuefem.scene import Scene
+
+STEP = 0.1  # of differences, in standard deviations of a prior
+
+Track = Callable[[Sequence[Any]], Iterable[Any]]
+
+
+@dataclass(frozen=True)
+class DocumentedCue:
+    """A cue that was measured.
+
+    Parameters
+    ----------
+    name : str
+        What it is called.
+    scene : Scene
+        Its drawing with the ball and the tip; the stroke's speed holds where a measurement gives none.
+    found : tuple
+        The measurements, of the classes in `cuefem.measured.kinds.KINDS`.
+    priors : tuple of Prior, optional
+        What is known of what is unknown, beyond the usual.
+    source : str, optional
+        Where the numbers come from.
+
+    Raises
+    ------
+    TypeError
+        If a field is of another kind.
+    ValueError
+        If a prior is of something that the cue does not have.
+    """
+
+    name: str
+    scene: Scene
+    found: tuple[Measurement, ...]
+    priors: tuple[Prior, ...] = ()
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        check_kind("DocumentedCue.scene", self.scene, Scene)
+        for i, one in enumerate(self.found):
+            check_kind(f"DocumentedCue.found[{i}]", one, Measurement)
+        _ = self.scene.shaft, self.unknowns
+
+    @cached_property
+    def unknowns(self) -> tuple[Unknown, ...]:
+        """What its drawing leaves open."""
+        return unknowns_of(self.scene, self.found, self.priors)
+
+    def setup(self, z: Array | None = None) -> Setup:
+        """The scene with its unknowns ``z`` standard deviations of their priors off the usual values."""
+        made = Setup(self.scene)
+        for unknown, each in zip(self.unknowns, np.zeros(len(self.unknowns)) if z is None else z, strict=True):
+            made = unknown.setup(made, float(each))
+        return made
+
+    def computed(self, z: Array | None = None, also: Sequence[Measurement] = ()) -> Array:
+        """The values of its measurements by the model, SI, and of others ``also``."""
+        setup = self.setup(z)
+        return np.array([one.computed(setup) for one in (*self.found, *also)])
+
+    def slopes(
+        self, z: Array, also: Sequence[Measurement] = (), *, at: Array | None = None, track: Track = iter
+    ) -> Array:
+        """Derivatives of the values with respect to the unknowns, (values, unknowns), by central differences.
+
+        By one-sided ones from the values ``at`` that point, if these are given.
+        """
+        columns = []
+        for move in track(list(STEP * np.eye(len(z)))):
+            above = self.computed(z + move, also)
+            rise = above - at if at is not None else (above - self.computed(z - move, also)) / 2
+            columns.append(rise / STEP)
+        return np.array(columns).T.reshape(-1, len(z))
+
+    @property
+    def lacking(self) -> list[str]:
+        """What a useful data set has and this one does not, and what that costs."""
+        said = (kind.lacking([one for one in self.found if isinstance(one, kind)]) for kind in KINDS.values())
+        return [words for words in said if words]
+
+
+class Row(NamedTuple):
+    """A measurement beside the model's value, both with one standard deviation, SI.
+
+    spread: of the computed value, from the priors of what the drawing leaves open. residual: measured less computed, in
+    units of the measurement's error. pull: the same in units of both errors together.
+    """
+
+    measurement: Measurement
+    measured: float
+    error: float
+    computed: float
+    spread: float
+    residual: float
+    pull: float
+
+
+def compare(cue: DocumentedCue, *, track: Track = iter) -> tuple[Row, ...]:
+    """Every measurement of a documented cue beside the model's value, nothing fitted.
+
+    Cost: one strike for each squirt, times one more than there are unknowns. track: follows these steps.
+    """
+    z = np.zeros(len(cue.unknowns))
+    at = cue.computed(z)
+    spread = np.sqrt(np.sum(cue.slopes(z, at=at, track=track) ** 2, axis=1))
+    return rows_of(cue, at, spread)
+
+
+def rows_of(cue: DocumentedCue, computed: Array, spread: Array) -> tuple[Row, ...]:
+    """The table of computed values with their standard deviations."""
+    made = []
+    for one, value, error in zip(cue.found, computed.tolist(), spread.tolist(), strict=True):
+        gap = one.measured - value
+        made.append(Row(one, one.measured, one.sd, value, error, gap / one.sd, gap / float(np.hypot(one.sd, error))))
+    return tuple(made)
+
+
+class Zero(NamedTuple):
+    """What the two sides of a squirt tell of the zero of the offset, m, with its error.
+
+    It is how far every stroke hit to the left of its aim: positive if squirt is larger on the left.
+    """
+
+    measurement: Squirt
+    zero: float
+    error: float
+
+
+def zeros(cue: DocumentedCue, rows: Sequence[Row]) -> tuple[Zero, ...]:
+    """The zero of the offset by each squirt that was measured on both sides.
+
+    Squirt is taken to be proportional to the offset there, which is right to a fifth.
+    """
+    radius = float(cue.scene.ball.radius)
+    made = []
+    for row in rows:
+        one = row.measurement
+        if isinstance(one, Squirt) and one.left is not None and one.right is not None:
+            slope = row.measured / (one.offset * radius)
+            made.append(Zero(one, (one.left - one.right) / 2 / slope, abs(one.sd / slope)))
+    return tuple(made)

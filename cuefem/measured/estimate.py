@@ -1,0 +1,189 @@
+"""The unknowns of a documented cue from all its measurements together, and which measurement to make next.
+
+The posterior is that of independent normal errors and the priors of `cuefem.measured.unknowns`. Here it is taken as
+normal about its mode, which Gauss and Newton's method finds (the approximation of Laplace); `cuefem.measured.sampler`
+checks that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from cuefem.cue import Array
+from cuefem.measured.documented import DocumentedCue, Row, Track, rows_of
+from cuefem.measured.kinds import KINDS, Measurement, Squirt
+
+STEPS, SETTLED = 12, 0.05  # steps at most; length of a step, in standard deviations of the result, that ends them
+HALVINGS = 6
+FARTHEST = 1.5  # standard deviations of the priors, a step
+TARGET = 0.3  # b/R of the squirt that is predicted where the scene has no offset
+
+
+class Value(NamedTuple):
+    """An unknown: its name and words, its unit, what it was taken to be, and what it is now.
+
+    low, high: the ends of the interval that holds it with 68 %; narrowed: the part of the prior's width that is left.
+    """
+
+    name: str
+    words: str
+    unit: str
+    before: float
+    value: float
+    low: float
+    high: float
+    narrowed: float
+
+
+class Worth(NamedTuple):
+    """What a further measurement would tell.
+
+    bits: about all unknowns. narrows: the unknown that it narrows most; left: the part of its error that is left.
+    squirt_left: the relative error of the squirt that is left.
+    """
+
+    measurement: Measurement
+    bits: float
+    narrows: str
+    left: float
+    squirt_left: float
+
+
+@dataclass(frozen=True, eq=False)
+class Estimate:
+    """The unknowns of a cue after its measurements.
+
+    z: (unknowns,) mode, in standard deviations of the priors. covariance: (unknowns, unknowns). computed: (n,) values
+    of the measurements there. slopes: (n, unknowns). misfit: the sum of squares of the residuals and the priors there.
+    converged: whether the last step was short.
+    """
+
+    cue: DocumentedCue
+    z: Array
+    covariance: Array
+    computed: Array
+    slopes: Array
+    misfit: float
+    converged: bool
+
+    @property
+    def values(self) -> tuple[Value, ...]:
+        """The unknowns in their units."""
+        made = []
+        for unknown, z, sd in zip(self.cue.unknowns, self.z, np.sqrt(np.diag(self.covariance)), strict=True):
+            at = (float(z), float(z - sd), float(z + sd))
+            names = (unknown.name, unknown.words, unknown.unit, unknown.usual)
+            made.append(Value(*names, *(unknown.value(each) for each in at), float(sd)))
+        return tuple(made)
+
+    @property
+    def rows(self) -> tuple[Row, ...]:
+        """The measurements beside the values with the estimated unknowns."""
+        spread = np.sqrt(np.einsum("ij,jk,ik->i", self.slopes, self.covariance, self.slopes))
+        return rows_of(self.cue, self.computed, spread)
+
+    def predicted(self, what: Measurement) -> tuple[float, float]:
+        """Value of something else by the model with the estimated unknowns, and its error; SI."""
+        at, slope = self._also((what,))
+        return float(at[0]), float(np.sqrt(slope[0] @ self.covariance @ slope[0]))
+
+    def _also(self, others: Sequence[Measurement]) -> tuple[Array, Array]:
+        bare = DocumentedCue(self.cue.name, self.cue.scene, (), self.cue.priors)
+        bare.__dict__["unknowns"] = self.cue.unknowns  # those of all measurements, the zeros too
+        at = bare.computed(self.z, others)
+        return at, bare.slopes(self.z, others)
+
+    def next(self) -> tuple[Worth, ...]:
+        """What each further measurement would tell, the most telling about squirt first."""
+        target = squirt_of(self.cue)
+        others = [one for kind in KINDS.values() for one in kind.next(self.cue.scene)]
+        at, slopes = self._also((target, *others))
+        to_squirt, variance = slopes[0], float(slopes[0] @ self.covariance @ slopes[0])
+        made = []
+        for one, slope in zip(others, slopes[1:], strict=True):
+            along = self.covariance @ slope
+            whole = float(slope @ along) + one.sd**2
+            after = self.covariance - np.outer(along, along) / whole
+            left = np.sqrt(np.diag(after) / np.diag(self.covariance))
+            i = int(np.argmin(left))
+            squirt = variance - float(to_squirt @ along) ** 2 / whole
+            bits = 0.5 * np.log2(whole / one.sd**2)
+            relative = float(np.sqrt(max(squirt, 0.0))) / abs(float(at[0]))
+            made.append(Worth(one, float(bits), self.cue.unknowns[i].words, float(left[i]), relative))
+        return tuple(sorted(made, key=lambda worth: worth.squirt_left))
+
+
+def squirt_of(cue: DocumentedCue) -> Squirt:
+    """The squirt that an estimate predicts: at the scene's own offset; its value does not count."""
+    own = abs(float(cue.scene.stroke.offset))
+    return Squirt(offset=own or TARGET, left=0.0, right=0.0, error=1.0)
+
+
+def estimate(cue: DocumentedCue, *, track: Track = iter) -> Estimate:
+    """The unknowns that all measurements of a cue and the priors together make most likely, with their errors.
+
+    Parameters
+    ----------
+    cue : DocumentedCue
+        At least one measurement.
+    track : callable, optional
+        Follows the steps.
+
+    Returns
+    -------
+    Estimate
+        The mode and the covariance of a normal posterior about it.
+
+    Raises
+    ------
+    ValueError
+        If nothing was measured, or nothing is unknown.
+
+    Notes
+    -----
+    Gauss and Newton's method, steps of at most 1.5 standard deviations of the priors, halved while they lead upwards or
+    to a cue that cannot be. Cost: some five steps, each one computation of all values more than there are unknowns.
+    """
+    if not cue.found or not cue.unknowns:
+        what = "measurements" if not cue.found else "unknowns"
+        raise ValueError(f"estimate takes a cue with {what}; got none")
+    measured, sd = np.array([[one.measured, one.sd] for one in cue.found]).T
+    z = np.zeros(len(cue.unknowns))
+    at = cue.computed(z)
+    cost, converged = _cost(z, (measured - at) / sd), False
+    for _ in track(range(STEPS)):
+        if converged:
+            continue  # a progress bar runs to its end
+        slopes = cue.slopes(z)
+        J = slopes / sd[:, None]
+        inverse = J.T @ J + np.eye(len(z))
+        step = np.linalg.solve(inverse, J.T @ ((measured - at) / sd) - z)
+        length = float(np.sqrt(step @ inverse @ step))
+        step *= min(1.0, FARTHEST / max(float(np.abs(step).max()), 1e-12))
+        converged = length < SETTLED
+        for halving in range(0 if converged else HALVINGS):
+            there = z + step / 2**halving
+            found = _computed(cue, there)
+            after = np.inf if found is None else _cost(there, (measured - found) / sd)
+            if found is not None and after < cost:
+                z, at, cost = there, found, after
+                break
+        else:
+            break
+    return Estimate(cue, z, np.linalg.inv(inverse), at, slopes, float(cost), converged)
+
+
+def _cost(z: Array, r: Array) -> float:
+    return float(r @ r + z @ z)
+
+
+def _computed(cue: DocumentedCue, z: Array) -> Array | None:
+    """The values; None for a cue that cannot be, such as one with a bore wider than itself."""
+    try:
+        return cue.computed(z)
+    except ValueError:
+        return None

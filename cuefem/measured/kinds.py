@@ -1,0 +1,380 @@
+"""The measurements that a documented cue may hold, one class each; a new one takes a class and an entry in `KINDS`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Annotated, Any, ClassVar, NamedTuple
+
+from cuefem.measured.numbers import TONES, Numbers, numbers_of
+from cuefem.quantity import CONTACT_TIME, LENGTH, Quantity, check_fields
+from cuefem.scene import Scene
+from cuefem.tap.wood import MODEL, SCALE
+
+MASS = Quantity("kg", "(0, inf)")
+ANGLE = Quantity("rad", "(-1.5, 1.5)")
+ERROR = "(0, inf)"
+PARTS = ("shaft", "cue")
+INCH = 0.0254
+# What one can reach with simple means, for advice on what to measure next.
+FORCE_AND_DIAL = 0.02  # relative, of a static stiffness: a kitchen scale and a dial gauge
+STRING = 1e-3  # m, of a balance point
+GOOD_SQUIRT = 8.7e-4  # rad, 0.05 degrees: the mean of some shots on either side
+GOOD_TIME = 0.05  # relative, of a contact time
+
+
+class Setup(NamedTuple):
+    """A scene as it was measured.
+
+    zeros: how far the strokes of each series hit beside where they were aimed, m, by its name. squirt_factor: true
+    squirt over that of the model.
+    """
+
+    scene: Scene
+    zeros: Mapping[str, float] = MappingProxyType({})
+    squirt_factor: float = 1.0
+
+    @property
+    def numbers(self) -> Numbers:
+        """What its cue does."""
+        return numbers_of(self.scene)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Measurement:
+    """Something that was measured: its error is one standard deviation, in the unit of the value."""
+
+    # Its key in a file; the SI unit of its value; what it is, for people; what is lost without it.
+    key: ClassVar[str] = ""
+    unit: ClassVar[str] = ""
+    words: ClassVar[str] = ""
+    costs: ClassVar[str] = ""
+
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+
+    @property
+    def measured(self) -> float:
+        """The measured value."""
+        return float(self.value)  # type: ignore[attr-defined]
+
+    @property
+    def sd(self) -> float:
+        """Its error, one standard deviation."""
+        return float(self.error)  # type: ignore[attr-defined]
+
+    @property
+    def label(self) -> str:
+        """What was measured, in a few words."""
+        return self.words
+
+    def computed(self, setup: Setup) -> float:
+        """The same by the model, SI."""
+        raise NotImplementedError
+
+    @classmethod
+    def lacking(cls, found: Sequence[Any]) -> str:
+        """What is missing of this kind in a data set, and what that costs; empty if nothing is."""
+        return "" if found else f"{cls.words}: {cls.costs}"
+
+    @classmethod
+    def next(cls, scene: Scene) -> tuple[Measurement, ...]:
+        """Measurements of this kind that one could make on the cue; their values do not count."""
+        return ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Weight(Measurement):
+    """A weight: of the drawn shaft with its tip, or of the whole cue."""
+
+    key: ClassVar[str] = "weight"
+    unit: ClassVar[str] = "kg"
+    words: ClassVar[str] = "weight"
+    costs: ClassVar[str] = "the density of the wood stays open, and with it a tenth of the squirt"
+
+    of: str = "shaft"
+    value: Annotated[float, MASS]
+    error: Annotated[float, Quantity("kg", ERROR)]
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.of not in PARTS:
+            raise ValueError(f"Weight.of must be one of {', '.join(PARTS)}; got {self.of!r}")
+
+    @property
+    def label(self) -> str:
+        """Of which part."""
+        return f"weight of the {self.of}"
+
+    def computed(self, setup: Setup) -> float:
+        """That of the drawing."""
+        return setup.numbers.shaft_mass + (setup.scene.shaft.body_mass if self.of == "cue" else 0.0)
+
+    @classmethod
+    def next(cls, scene: Scene) -> tuple[Measurement, ...]:
+        """The shaft on a kitchen scale."""
+        return (cls(value=scene.shaft.shaft_mass, error=SCALE),)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Balance(Measurement):
+    """The balance point of the shaft, from the end of the tip."""
+
+    key: ClassVar[str] = "balance"
+    unit: ClassVar[str] = "m"
+    words: ClassVar[str] = "balance point of the shaft"
+    costs: ClassVar[str] = "heavy parts that the drawing leaves out (an insert, a pin) go unnoticed"
+
+    value: Annotated[float, LENGTH]
+    error: Annotated[float, Quantity("m", ERROR)]
+
+    def computed(self, setup: Setup) -> float:
+        """That of the drawing."""
+        return setup.numbers.balance_point
+
+    @classmethod
+    def next(cls, scene: Scene) -> tuple[Measurement, ...]:
+        """The shaft on an edge."""
+        return (cls(value=scene.shaft.balance_point, error=STRING),)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tone(Measurement):
+    """A tone of the shaft, hung free and tapped: mode 1 is the lowest."""
+
+    key: ClassVar[str] = "tone"
+    unit: ClassVar[str] = "Hz"
+    words: ClassVar[str] = "tones of the hung shaft"
+    costs: ClassVar[str] = "E and G of the wood stay those of a table, uncertain by a fifth and more"
+
+    mode: int
+    value: Annotated[float, Quantity("Hz", "(0, inf)")]
+    error: Annotated[float, Quantity("Hz", ERROR)]
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if isinstance(self.mode, bool) or not 1 <= self.mode <= TONES:
+            raise ValueError(f"Tone.mode must be in [1, {TONES}], 1 the lowest; got {self.mode!r}")
+
+    @property
+    def sd(self) -> float:
+        """With what a beam and a drawing leave open, as in a tap test."""
+        return float((self.error**2 + (MODEL * self.value) ** 2) ** 0.5)
+
+    @property
+    def label(self) -> str:
+        """Which one."""
+        return f"tone {self.mode}"
+
+    def computed(self, setup: Setup) -> float:
+        """Of the beam."""
+        return float(setup.numbers.frequencies[self.mode - 1])
+
+    @classmethod
+    def next(cls, scene: Scene) -> tuple[Measurement, ...]:
+        """The four lowest, by ear of a telephone."""
+        found = numbers_of(scene).frequencies[:4]
+        return tuple(cls(mode=i + 1, value=float(f), error=0.1) for i, f in enumerate(found))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stiffness(Measurement):
+    """A static stiffness: a force across the ferrule's end over its deflection, the shaft clamped behind it.
+
+    free_length: from the force to the clamp; without it, the whole shaft, clamped at its joint.
+    """
+
+    key: ClassVar[str] = "stiffness"
+    unit: ClassVar[str] = "N/m"
+    words: ClassVar[str] = "static stiffness, at two free lengths"
+    costs: ClassVar[str] = "a bore in the front and the wood's E cannot be told apart; a hidden bore goes unnoticed"
+
+    free_length: Annotated[float | None, LENGTH] = None
+    value: Annotated[float, Quantity("N/m", "(0, inf)")]
+    error: Annotated[float, Quantity("N/m", ERROR)]
+
+    @property
+    def label(self) -> str:
+        """Over which length."""
+        return "stiffness, whole" if self.free_length is None else f"stiffness, {1e3 * self.free_length:.4g} mm free"
+
+    def computed(self, setup: Setup) -> float:
+        """One linear solution of the beam."""
+        wood = setup.scene.shaft.length - setup.scene.shaft.leather
+        return setup.numbers.stiffness(wood if self.free_length is None else self.free_length)
+
+    @classmethod
+    def lacking(cls, found: Sequence[Any]) -> str:
+        """One length tells E; the second, near the tip, tells the bore."""
+        if len({one.free_length for one in found}) == 1:
+            return "static stiffness at a second free length: a bore in the front and the wood's E cannot be told apart"
+        return super().lacking(found)
+
+    @classmethod
+    def next(cls, scene: Scene) -> tuple[Measurement, ...]:
+        """The whole shaft, and its last 8 in."""
+        lengths = (None, 8 * INCH)
+        made = []
+        for free in lengths:
+            if free is None or free < scene.shaft.length:
+                value = cls(free_length=free, value=1.0, error=1.0).computed(Setup(scene))
+                made.append(cls(free_length=free, value=value, error=FORCE_AND_DIAL * value))
+        return tuple(made)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Squirt(Measurement):
+    """Squirt at an offset b/R: one value, or left and right, whose mean is free of the zero of the offset.
+
+    error: of each of the values given. series: strokes that were aimed alike share an error of the offset, zero_error,
+    one standard deviation, where only one side was measured. speed: of the cue, by default the scene's.
+    """
+
+    key: ClassVar[str] = "squirt"
+    unit: ClassVar[str] = "rad"
+    words: ClassVar[str] = "squirt, left and right, at three offsets and two speeds"
+    costs: ClassVar[str] = "nothing here tests the tip or the contact"
+
+    offset: Annotated[float, Quantity("", "(0, 1)")]
+    value: Annotated[float | None, ANGLE] = None
+    left: Annotated[float | None, ANGLE] = None
+    right: Annotated[float | None, ANGLE] = None
+    error: Annotated[float, Quantity("rad", ERROR)]
+    speed: Annotated[float | None, Quantity("m/s", "(0, inf)")] = None
+    series: str = ""
+    zero_error: Annotated[float | None, Quantity("m", "(0, inf)")] = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        sides = (self.left is None) + (self.right is None)
+        if sides == 1 or (sides == 0) == (self.value is not None):
+            raise ValueError("Squirt.value must be given, or left and right without it; got " + self._given())
+        if sides == 0 and self.zero_error is not None:
+            raise ValueError(
+                f"Squirt.zero_error must be absent beside left and right, whose mean has none; got {self.zero_error} m"
+            )
+
+    def _given(self) -> str:
+        given = [name for name in ("value", "left", "right") if getattr(self, name) is not None]
+        return " and ".join(given) or "none of them"
+
+    @property
+    def measured(self) -> float:
+        """The mean of both sides."""
+        if self.left is not None and self.right is not None:
+            return (self.left + self.right) / 2
+        assert self.value is not None
+        return self.value
+
+    @property
+    def sd(self) -> float:
+        """Of the mean."""
+        return self.error / (1.0 if self.left is None else 2**0.5)
+
+    @property
+    def label(self) -> str:
+        """At which offset and speed."""
+        at = "" if self.speed is None else f", {self.speed:.3g} m/s"
+        return f"squirt at b/R {self.offset:g}{at}{', ' + self.series if self.series else ''}"
+
+    def computed(self, setup: Setup) -> float:
+        """Of the coupled strike; the mean of both sides, to first order, if both were measured."""
+        aside = 0.0 if self.left is not None else setup.zeros.get(self.series, 0.0)
+        offset = self.offset + aside / float(setup.scene.ball.radius)
+        return setup.squirt_factor * setup.numbers.squirt(min(max(offset, -0.99), 0.99), self.speed)
+
+    @classmethod
+    def lacking(cls, found: Sequence[Any]) -> str:
+        """Which part of the full set is missing."""
+        if not found:
+            return super().lacking(found)
+        offsets, speeds = ({getattr(one, name) for one in found} for name in ("offset", "speed"))
+        parts = []
+        if any(one.left is None for one in found):
+            parts.append("the other side (a zero error of the offset stays in the numbers)")
+        if len(offsets) < 3:
+            parts.append(f"three offsets, here {len(offsets)} (the growth with the offset, which tests the tip)")
+        if len(speeds) < 2:
+            parts.append("a second speed (whether the contact time counts)")
+        return f"squirt: {'; '.join(parts)}" if parts else ""
+
+    @classmethod
+    def next(cls, scene: Scene) -> tuple[Measurement, ...]:
+        """Left and right at a medium offset."""
+        return (cls(offset=0.3, left=0.03, right=0.03, error=GOOD_SQUIRT * 2**0.5),)
+
+
+@dataclass(frozen=True, kw_only=True)
+class AddedMass(Measurement):
+    """Squirt with a mass on the shaft, over that without it; position: from the end of the tip.
+
+    value, baseline: squirt with and without the mass at the same stroke; error: of each of them.
+    """
+
+    key: ClassVar[str] = "added_mass"
+    unit: ClassVar[str] = ""
+    words: ClassVar[str] = "squirt with masses added near the tip"
+    costs: ClassVar[str] = "the part of the shaft that takes part in the blow is not tested"
+
+    mass: Annotated[float, MASS]
+    position: Annotated[float, LENGTH]
+    value: Annotated[float, ANGLE]
+    baseline: Annotated[float, ANGLE]
+    error: Annotated[float, Quantity("rad", ERROR)]
+    offset: Annotated[float, Quantity("", "(0, 1)")]
+    speed: Annotated[float | None, Quantity("m/s", "(0, inf)")] = None
+
+    @property
+    def measured(self) -> float:
+        """The ratio."""
+        return self.value / self.baseline
+
+    @property
+    def sd(self) -> float:
+        """Of the ratio, from the value's error alone: the baseline's is one for the whole series."""
+        return self.error / abs(self.baseline)
+
+    @property
+    def label(self) -> str:
+        """Which mass, where."""
+        return f"squirt ratio, {1e3 * self.mass:.3g} g at {1e3 * self.position:.4g} mm"
+
+    def computed(self, setup: Setup) -> float:
+        """Two coupled strikes."""
+        with_mass = setup.numbers.squirt(self.offset, self.speed, (self.mass, self.position))
+        return with_mass / setup.numbers.squirt(self.offset, self.speed)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactTime(Measurement):
+    """How long the tip touches the ball in a head-on blow; speed: of the cue, by default the scene's."""
+
+    key: ClassVar[str] = "contact_time"
+    unit: ClassVar[str] = "s"
+    words: ClassVar[str] = "contact time of a head-on blow"
+    costs: ClassVar[str] = "the leather's E stays that of a table, uncertain by a factor of two"
+
+    value: Annotated[float, CONTACT_TIME]
+    error: Annotated[float, Quantity("s", ERROR)]
+    speed: Annotated[float | None, Quantity("m/s", "(0, inf)")] = None
+
+    @property
+    def label(self) -> str:
+        """At which speed."""
+        return self.words if self.speed is None else f"contact time at {self.speed:.3g} m/s"
+
+    def computed(self, setup: Setup) -> float:
+        """Of the coupled strike."""
+        return setup.numbers.duration(self.speed)
+
+    @classmethod
+    def next(cls, scene: Scene) -> tuple[Measurement, ...]:
+        """By a circuit of foil, or on video."""
+        return (cls(value=float(scene.contact_time), error=GOOD_TIME * float(scene.contact_time)),)
+
+
+_KINDS: tuple[type[Measurement], ...] = (Weight, Balance, Tone, Stiffness, ContactTime, Squirt, AddedMass)
+KINDS: dict[str, type[Measurement]] = {kind.key: kind for kind in _KINDS}

@@ -1,0 +1,116 @@
+"""What a shaft and its stroke do: tones, stiffness, squirt, contact time, each beam and stroke solved once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property, lru_cache
+from typing import Any
+
+import numpy as np
+
+from cuefem.beam.modes import modes
+from cuefem.beam.system import assemble
+from cuefem.beam.waves import mesh_for
+from cuefem.contact.strike import strike_modes
+from cuefem.cue import Array, Cue
+from cuefem.effects import Effect, PointMass, Support
+from cuefem.scene import Outcome, Scene, Stroke
+from cuefem.tip_modes import Solved
+
+TONES = 8  # tones that are solved together
+STATIC = 8  # modes for which the mesh of a static load is made: it is exact to 1e-8
+
+
+@dataclass(frozen=True, eq=False)
+class Numbers:
+    """A scene's cue as it is measured."""
+
+    scene: Scene
+    _solved: dict[tuple[Effect, ...], Solved] = field(default_factory=dict, init=False, repr=False)
+    _struck: dict[Scene, Outcome] = field(default_factory=dict, init=False, repr=False)
+
+    @property
+    def tip_height(self) -> float:
+        """Height of a whole tip, which stands before the first segment, m; 0 if the tip is drawn."""
+        return 0.0 if self.scene.contact_terms.tip is None else self.scene.leather.height
+
+    @property
+    def hung(self) -> tuple[Effect, ...]:
+        """The effects that stay on a cue which hangs free or is weighed."""
+        return tuple(effect for effect in self.scene.cue_effects if effect.part_of_cue)
+
+    @property
+    def shaft_mass(self) -> float:
+        """Mass of the drawn part with its tip, kg."""
+        cue = self.scene.shaft
+        return cue.shaft_mass + sum(effect.mass_on(cue) for effect in self.hung)
+
+    @property
+    def balance_point(self) -> float:
+        """Centre of mass of the drawn part, m from the end of the tip; the leather of a whole tip sits at its foot."""
+        cue = self.scene.shaft
+        moment = cue.shaft_mass * cue.balance_point
+        moment += sum(effect.mass_on(cue) * effect.positions[0] for effect in self.hung if effect.mass_on(cue))
+        return self.tip_height + moment / self.shaft_mass
+
+    @cached_property
+    def frequencies(self) -> Array:
+        """Tones of the cue, hung free, Hz."""
+        return modes(self.scene.shaft, TONES, effects=self.hung).frequencies
+
+    def stiffness(self, free: float) -> float:
+        """Static stiffness, N/m: a force across the ferrule's end, the shaft clamped ``free`` m behind it."""
+        cue = _without_leather(self.scene.shaft)
+        if not free <= cue.length * (1 + 1e-9):
+            raise ValueError(f"stiffness free_length must be in (0, {cue.length:.4g}] m, that of the wood; got {free}")
+        elements, order = mesh_for(cue, STATIC)
+        clamp = Support(min(free, cue.length), np.inf, np.inf)
+        system = assemble(cue, elements=elements, order=order, effects=(clamp,))
+        held = system.free
+        assert held is not None
+        force = held.T @ np.eye(system.mesh.unknowns, 1)[:, 0]
+        K = held.T @ system.K @ held
+        K = K if isinstance(K, np.ndarray) else K.toarray()
+        return float(1 / (force @ np.linalg.solve(K, force)))
+
+    def squirt(self, offset: float, speed: float | None = None, lump: tuple[float, float] | None = None) -> float:
+        """Squirt of the coupled strike, rad; lump: mass, kg, and its place, m from the end of the tip."""
+        return float(self._strike(offset, speed, lump).squirt)
+
+    def duration(self, speed: float | None = None) -> float:
+        """Contact time of a head-on blow, s."""
+        return float(self._strike(0.0, speed, None).duration)
+
+    def _strike(self, offset: float, speed: float | None, lump: tuple[float, float] | None) -> Outcome:
+        scene = self._with_lump(lump)
+        own = float(scene.stroke.speed)
+        scene = replace(scene, stroke=Stroke(own if speed is None else speed, offset))
+        if scene not in self._struck:
+            self._struck[scene] = strike_modes(scene, self._solved[scene.effects].tip)
+        return self._struck[scene]
+
+    def _with_lump(self, lump: tuple[float, float] | None) -> Scene:
+        scene = self.scene
+        if lump is not None:
+            mass, position = lump
+            place = position - self.tip_height
+            if not 0 <= place <= scene.shaft.length:
+                low, high = self.tip_height, self.tip_height + scene.shaft.length
+                bound = f"[{low:.4g}, {high:.4g}] m, on the shaft"
+                raise ValueError(f"added_mass position must be in {bound}; got {position}")
+            scene = replace(scene, effects=(*scene.effects, PointMass(place, mass)))
+        self._solved.setdefault(scene.effects, Solved(scene))
+        return scene
+
+
+@lru_cache(maxsize=32)
+def numbers_of(scene: Scene) -> Numbers:
+    """What a scene's cue does, the same object for the same scene."""
+    return Numbers(scene)
+
+
+def _without_leather(cue: Cue) -> Cue:
+    """The cue from the ferrule's end on."""
+    soft = cue.leather
+    kept: Any = tuple(s for s, x in zip(cue.segments, cue.nodes, strict=False) if x >= soft * (1 - 1e-9))
+    return replace(cue, segments=kept) if soft else cue

@@ -1,0 +1,290 @@
+"""What documented cues tell: measured beside computed, and what the measurements together say of the unknowns."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from cuefem.measured.documented import DocumentedCue, Row, Zero
+from cuefem.measured.estimate import Estimate, Value, Worth
+from cuefem.measured.kinds import AddedMass, Squirt
+from cuefem.report.charts import WIDE, Axis, Chart, Curve, Tick, chart
+from cuefem.report.drawings import cue_drawing, front_drawing
+from cuefem.report.quantities import NONE, TRADE
+from cuefem.report.record import Record
+from cuefem.report.table import table_of, with_caption
+from cuefem.report.templates import environment
+from cuefem.report.words import effect_words, plain_cue_line
+
+OFFSETS = tuple(round(0.05 * i, 2) for i in range(1, 11))  # b/R of the computed curve
+EDGE = 5.0  # residuals beyond this are drawn at the edge
+FAR = 3.0  # residuals that deserve a word
+
+
+def text_of(value: float, error: float | None, unit: str) -> str:
+    """A value and its error in the units that people read, the error to two digits."""
+    scale, name = TRADE.get(unit, (1.0, unit))
+    tail = "" if not name else name if name == "°" else f" {name}"
+    if error is None or not math.isfinite(error) or error <= 0:
+        return f"{scale * value:.4g}{tail}"
+    decimals = max(0, 1 - math.floor(math.log10(scale * error)))
+    return f"{scale * value:.{decimals}f} ± {scale * error:.{decimals}f}{tail}"
+
+
+def row_record(row: Row) -> Record:
+    """A measurement beside the model's value."""
+    one = row.measurement
+    names = ("measured", "error", "computed", "spread", "residual", "pull")
+    return {"kind": one.key, "what": one.label, "unit": one.unit, "source": one.source} | {
+        name: getattr(row, name) for name in names
+    }
+
+
+def compare_record(cue: DocumentedCue, rows: Sequence[Row], zeros: Sequence[Zero]) -> Record:
+    """Everything measured beside everything computed, and what is missing."""
+    return {
+        "name": cue.name,
+        "source": cue.source,
+        "rows": [row_record(row) for row in rows],
+        "rms_pull": _rms([row.pull for row in rows]),
+        "zeros": [{"what": zero.measurement.label, "zero": zero.zero, "error": zero.error} for zero in zeros],
+        "open": [unknown.words for unknown in cue.unknowns],
+        "lacking": cue.lacking,
+    }
+
+
+def _rms(values: Sequence[float]) -> float | None:
+    return float(np.sqrt(np.mean(np.square(values)))) if len(values) else None
+
+
+def _signed(value: float) -> str:
+    return f"{value:+.1f}"
+
+
+def compare_tables(cue: DocumentedCue, record: Record) -> list[Any]:
+    """For people: the table, the zeros, what is missing."""
+    made: list[Any] = []
+    if record["rows"]:
+        table = table_of("Measured and computed", ["what", "measured", "computed", "residual", "of both"])
+        for row in record["rows"]:
+            texts = (text_of(row[value], row[error], row["unit"]) for value, error in PAIRS)
+            table.add_row(row["what"], *texts, _signed(row["residual"]), _signed(row["pull"]))
+        made.append(with_caption(table, *captions(record)))
+    made += [f"{words}" for words in zero_lines(record)]
+    if record["lacking"]:
+        made += ["not measured, and what that costs:", *(f"  {words}" for words in record["lacking"])]
+    return made
+
+
+PAIRS = (("measured", "error"), ("computed", "spread"))
+
+
+def captions(record: Record) -> list[str]:
+    """What the columns of the table are."""
+    return [
+        "Every ± is one standard deviation; that of a computed value comes from what the drawing leaves open: "
+        f"{', '.join(record['open'])}.",
+        "Residual: measured less computed, in units of the measurement's error; of both: of both errors together "
+        f"(root mean square {record['rms_pull']:.2f}).",
+    ]
+
+
+def zero_lines(record: Record) -> list[str]:
+    """What the two sides say of the zero of the offset."""
+    if not record["zeros"]:
+        return []
+    weights = np.array([1 / zero["error"] ** 2 for zero in record["zeros"]])
+    mean = float(weights @ [zero["zero"] for zero in record["zeros"]] / weights.sum())
+    told, side = text_of(abs(mean), float(weights.sum() ** -0.5), "m"), "left" if mean > 0 else "right"
+    return [f"The strokes hit {told} to the {side} of their aim; the mean of left and right is free of it"]
+
+
+class Bar(NamedTuple):
+    """A residual on the page: its words, its places for both errors together and for the measurement's alone."""
+
+    what: str
+    at: float
+    alone: float
+    text: str
+    style: str
+
+
+def compare_page(cue: DocumentedCue, rows: Sequence[Row], record: Record, notes: Sequence[str]) -> str:
+    """The comparison as a page."""
+    scene = cue.scene
+    left, right = 210.0, WIDE - 44
+    across = Axis("", -EDGE, EDGE).over([[0.0]])
+
+    def place(value: float) -> float:
+        return float(across.place(min(max(value, -EDGE), EDGE), left, right))
+
+    bars = [
+        Bar(row.measurement.label, place(row.pull), place(row.residual), _signed(row.pull), _style(row.pull))
+        for row in rows
+    ]
+    drawings = [cue_drawing(scene, across=1.0), cue_drawing(scene, across=8.0), front_drawing(scene)]
+    table = [
+        (
+            row["what"],
+            *(text_of(row[value], row[error], row["unit"]) for value, error in PAIRS),
+            _signed(row["residual"]),
+            _signed(row["pull"]),
+            row["source"],
+        )
+        for row in record["rows"]
+    ]
+    template = environment().get_template("documented.html.j2")
+    facts = [plain_cue_line(scene.cue), *(f"with {effect_words(effect)}" for effect in scene.effects)]
+    facts += [cue.source] if cue.source else []
+    figures = _figures(rows, record)
+    text = template.render(
+        name=cue.name,
+        facts=facts,
+        notes=list(notes),
+        figures=figures,
+        bars=bars,
+        ticks=[Tick(place(tick), f"{tick:g}") for tick in (-4, -2, 0, 2, 4)],
+        ends=(left, right),
+        band=(place(-2), place(2)),
+        height=22.0 * len(bars) + 44,
+        table=table,
+        captions=captions(record) if rows else [],
+        zeros=zero_lines(record),
+        lacking=record["lacking"],
+        drawings=drawings,
+        charts=[*_squirt_charts(cue, rows), *_mass_charts(rows)],
+        sourced=any(row["source"] for row in record["rows"]),
+    )
+    return text + "\n"
+
+
+def _style(pull: float) -> str:
+    return "c2" if abs(pull) > FAR else "c1"
+
+
+def _figures(rows: Sequence[Row], record: Record) -> list[tuple[str, str, str]]:
+    if not rows:
+        return [("measurements", "0", "nothing was measured")]
+    near = sum(abs(row.pull) <= 2 for row in rows)
+    return [
+        ("measurements", f"{len(rows)}", f"of {len({row.measurement.key for row in rows})} kinds"),
+        ("within two errors", f"{near}", "of both measurement and drawing"),
+        ("root mean square", f"{record['rms_pull']:.2f}", "of the residuals, in errors; 1 is what errors alone make"),
+        ("kinds missing", f"{len(record['lacking'])}", "in part or whole, listed below"),
+    ]
+
+
+def _crosses(x: Any, y: Any, error: Any, width: float) -> tuple[Any, Any]:
+    """Points with error bars as one broken line."""
+    gap = np.full(len(x), np.nan)
+    across = np.column_stack([x - width, x + width, gap, x, x, gap])
+    up = np.column_stack([y, y, gap, y - error, y + error, gap])
+    return across.ravel(), up.ravel()
+
+
+def _squirt_charts(cue: DocumentedCue, rows: Sequence[Row]) -> list[Chart]:
+    """Squirt against offset, if it was measured."""
+    found = [(row, row.measurement) for row in rows if isinstance(row.measurement, Squirt)]
+    if not found:
+        return []
+    setup = cue.setup()
+    x = np.array([one.offset for _, one in found])
+    y, error = (np.degrees([getattr(row, name) for row, _ in found]) for name in ("measured", "error"))
+    top = max([*OFFSETS[:1], *(each for each in OFFSETS if each <= x.max() + 0.05)])
+    offsets = [each for each in OFFSETS if each <= top]
+    curve = np.degrees([setup.numbers.squirt(each) for each in offsets])
+    speed = f"{float(cue.scene.stroke.speed):.3g} m/s"
+    curves = [
+        Curve("measured", *_crosses(x, y, error, 0.006), "c1"),
+        Curve(f"computed, {speed}", [0.0, *offsets], [0.0, *curve], "c2"),
+    ]
+    return [chart("Squirt against the offset", curves, x=Axis("offset b/R", 0.0), y=Axis("squirt, °", 0.0))]
+
+
+def _mass_charts(rows: Sequence[Row]) -> list[Chart]:
+    """Squirt with masses over that without, a chart for each mass."""
+    masses = sorted({row.measurement.mass for row in rows if isinstance(row.measurement, AddedMass)})
+    made = []
+    for mass in masses:
+        own = [row for row in rows if isinstance(row.measurement, AddedMass) and row.measurement.mass == mass]
+        own.sort(key=lambda row: row.measurement.position)  # type: ignore[attr-defined]
+        x = np.array([1e3 * row.measurement.position for row in own])  # type: ignore[attr-defined]
+        y, error, computed = (
+            np.array([getattr(row, name) for row in own]) for name in ("measured", "error", "computed")
+        )
+        curves = [Curve("measured", *_crosses(x, y, error, 2.0), "c1"), Curve("computed", x, computed, "c2")]
+        title = f"Squirt with {1e3 * mass:.3g} g on the shaft, over that without"
+        low = 0.1 * math.floor(10 * min((y - error).min(), computed.min()))
+        ends = Axis("distance from the end of the tip, mm", 0.0), Axis("ratio", low)
+        made.append(chart(title, curves, x=ends[0], y=ends[1]))
+    return made
+
+
+def value_record(value: Value) -> Record:
+    """An unknown before and after."""
+    return value._asdict()
+
+
+def worth_record(worth: Worth) -> Record:
+    """What a further measurement would tell."""
+    one = worth.measurement
+    about = {"kind": one.key, "what": one.label, "unit": one.unit, "error": one.sd}
+    return about | {name: value for name, value in worth._asdict().items() if name != "measurement"}
+
+
+def estimate_record(found: Estimate, worths: Sequence[Worth], squirt: tuple[float, float], offset: float) -> Record:
+    """What all measurements together say."""
+    return {
+        "name": found.cue.name,
+        "values": [value_record(value) for value in found.values],
+        "correlations": _correlations(found),
+        "rows": [row_record(row) for row in found.rows],
+        "misfit": found.misfit,
+        "measurements": len(found.cue.found),
+        "converged": found.converged,
+        "squirt": squirt[0],
+        "squirt_error": squirt[1],
+        "offset": offset,
+        "next": [worth_record(worth) for worth in worths],
+    }
+
+
+def _correlations(found: Estimate) -> list[list[float]]:
+    sd = np.sqrt(np.diag(found.covariance))
+    return (found.covariance / np.outer(sd, sd)).tolist()  # type: ignore[no-any-return]
+
+
+def estimate_tables(record: Record) -> list[Any]:
+    """For people: the unknowns, how the measurements fit then, and what to measure next."""
+    unknowns = table_of("What the measurements tell", ["unknown", "drawing", "estimate", "68 %", "error left"])
+    for value in record["values"]:
+        unit, ends = value["unit"], (value["low"], value["high"])
+        low, high = (text_of(end, None, unit) for end in ends)
+        cells = text_of(value["before"], None, unit), text_of(value["value"], None, unit), f"{low} to {high}"
+        unknowns.add_row(value["words"], *cells, f"{100 * value['narrowed']:.0f} %")
+    misfit, count = record["misfit"], record["measurements"]
+    notes = [f"Misfit {misfit:.1f} of {count} measurements and the priors: about {count} is what errors alone make."]
+    if misfit > count + 3 * math.sqrt(2 * count):
+        notes.append(
+            "It is too large: a measurement, an error or the model is wrong, and the intervals are too narrow."
+        )
+    if not record["converged"]:
+        notes.append("The search did not settle: the measurements contradict each other.")
+    notes.append("Error left: the width of the interval over that before any measurement.")
+    fit = table_of("Measured and computed with the estimate", ["what", "measured", "computed", "residual"])
+    for row in record["rows"]:
+        texts = (text_of(row[value], row[error], row["unit"]) for value, error in PAIRS)
+        fit.add_row(row["what"], *texts, _signed(row["residual"]))
+    squirt = text_of(record["squirt"], record["squirt_error"], "rad")
+    line = f"squirt at b/R {record['offset']:g} by the model with these unknowns: {squirt}"
+    coming = table_of("What to measure next", ["measurement", "with an error of", "narrows most", "to", "squirt then"])
+    coming_rows = record["next"]
+    for worth in coming_rows:
+        error = text_of(worth["error"], None, worth["unit"]) if worth["unit"] else NONE
+        left = f"{100 * worth['left']:.0f} %"
+        coming.add_row(worth["what"], error, worth["narrows"], left, f"± {100 * worth['squirt_left']:.1f} %")
+    caption = "The most telling about squirt first; squirt then: the relative error of the squirt above that is left."
+    return [with_caption(unknowns, *notes), with_caption(fit), line, "", with_caption(coming, caption)]

@@ -1,0 +1,78 @@
+"""The commands on documented cues: numbers of the library, the template, the page (regression)."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from cuefem.io.documented import TEMPLATE, load_documented
+from cuefem.measured.documented import compare
+from cuefem.measured.kinds import KINDS
+from tests.helpers.command_line import call
+from tests.helpers.documented import SOME, folder
+
+
+def test_numbers(tmp_path: Path) -> None:
+    place = folder(tmp_path / "cue")
+    status, out, err = call("compare", place, "--json")
+    assert (status, err) == (0, "")
+    found = json.loads(out)
+    cue, _ = load_documented(place)
+    for told, row in zip(found["rows"], compare(cue), strict=True):
+        assert told["what"] == row.measurement.label
+        assert [told[name] for name in ("computed", "spread", "pull")] == [row.computed, row.spread, row.pull]
+    assert found["name"] == "a cue"
+    assert "carom ball 210 g" in found["assumed"][0]
+    assert len(found["lacking"]) == 5
+
+
+def test_a_table_for_people(tmp_path: Path) -> None:
+    status, out, err = call("compare", folder(tmp_path / "cue"))
+    assert (status, err) == (0, "")
+    assert "weight of the shaft" in out
+    assert "100.00 ± 0.50 g" in out
+    assert "not measured, and what that costs" in out
+
+
+def test_series_and_file_are_read_alike(tmp_path: Path) -> None:
+    """A measurement reads the same from measured.toml and from a CSV."""
+    tone = '[[tone]]\nmode = 1\nvalue = "95 Hz"\nerror = "0.2 Hz"\n'
+    assert tone in SOME
+    place = folder(tmp_path / "cue", SOME.replace(tone, ""))
+    (place / "tone.csv").write_text("# by ear\nmode,value [Hz],error [Hz],source\n1,95,0.2,\n", encoding="utf-8")
+    (before, _), (after, _) = load_documented(folder(tmp_path / "other")), load_documented(place)
+    assert set(before.found) == set(after.found)
+
+
+@pytest.mark.parametrize("drawing", ["cue.toml", "cue.csv"])
+def test_only_the_shaft_must_be_there(tmp_path: Path, drawing: str) -> None:
+    place = folder(tmp_path / "cue")
+    (place / "measured.toml").unlink()
+    if drawing == "cue.csv":
+        (place / "cue.toml").unlink()
+        (place / "cue.csv").write_text("x [mm],diameter [mm]\n0,12.75\n730,21\n", encoding="utf-8")
+    status, out, err = call("compare", place)
+    assert (status, err) == (0, "")
+    assert all(kind.words in out for kind in KINDS.values())
+
+
+def test_the_template_holds_every_kind(tmp_path: Path) -> None:
+    place = tmp_path / "mine"
+    assert call("compare", place, "--template") == (0, f"wrote {place}\n", "")
+    assert sorted(path.name for path in place.iterdir()) == sorted(TEMPLATE)
+    cue, notes = load_documented(place)
+    assert {type(one) for one in cue.found} == set(KINDS.values())
+    assert (cue.lacking, notes) == ([], [])
+
+
+def test_the_page_has_every_row(tmp_path: Path) -> None:
+    place, page = folder(tmp_path / "cue"), tmp_path / "page.html"
+    (place / "squirt.csv").write_text("offset,value [deg],error [deg]\n0.3,1.5,0.1\n", encoding="utf-8")
+    assert call("compare", place, "-o", page) == (0, f"wrote {page}\n", "")
+    text = page.read_text(encoding="utf-8")
+    cue, _ = load_documented(place)
+    assert all(f">{one.label}<" in text for one in cue.found)
+    assert "Squirt against the offset" in text
+    assert "http" not in text.replace("http://www.w3.org", "")

@@ -1,0 +1,69 @@
+"""A small documented cue for tests: cheap measurements on a plain shaft, and folders of one."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import cuefem as cf
+from cuefem.measured.documented import DocumentedCue
+from cuefem.measured.kinds import Measurement, Stiffness, Tone, Weight
+from cuefem.measured.unknowns import Prior
+
+WOOD = cf.Material(E=13.86e9, G=1.2e9, rho=705.0)
+SHAFT = cf.Cue((cf.Segment(0.13, 0.012, 0.0122, WOOD, 0.006, 0.006), cf.Segment(0.6, 0.0122, 0.021, WOOD)), 0.45)
+SCENE = cf.Scene(SHAFT, cf.Ball(0.170, 0.028575), cf.Tip(0.73, 0.7, 1.1e-3), cf.Stroke(2.0, 0.3))
+DRAWING = """body_mass = "450 g"
+
+[[segments]]
+length = "130 mm"
+tip_diameter = "12 mm"
+butt_diameter = "12.2 mm"
+tip_bore = "6 mm"
+butt_bore = "6 mm"
+material = "hard maple"
+
+[[segments]]
+length = "600 mm"
+tip_diameter = "12.2 mm"
+butt_diameter = "21 mm"
+material = "hard maple"
+"""
+SOME = """name = "a cue"
+
+[tip]
+contact_time = "1.1 ms"
+
+[[weight]]
+value = "100 g"
+error = "0.5 g"
+
+[[tone]]
+mode = 1
+value = "95 Hz"
+error = "0.2 Hz"
+
+[[stiffness]]
+free_length = "8 in"
+value = "4600 N/m"
+error = "90 N/m"
+"""
+
+
+def documented(*found: Measurement, priors: tuple[Prior, ...] = ()) -> DocumentedCue:
+    """The cue with some measurements."""
+    return DocumentedCue("a cue", SCENE, found, priors)
+
+
+def blank() -> tuple[Measurement, ...]:
+    """The cheap measurements, with errors and without values that mean anything."""
+    tones = (Tone(mode=i + 1, value=f, error=0.2) for i, f in enumerate((95.0, 280.0, 560.0, 930.0)))
+    stiff = Stiffness(value=360.0, error=7.0), Stiffness(free_length=0.2032, value=4600.0, error=90.0)
+    return (Weight(value=0.1, error=5e-4), *tones, *stiff)
+
+
+def folder(place: Path, measured: str = SOME, drawing: str = DRAWING) -> Path:
+    """A folder of a documented cue."""
+    place.mkdir()
+    (place / "cue.toml").write_text(drawing, encoding="utf-8")
+    (place / "measured.toml").write_text(measured, encoding="utf-8")
+    return place

@@ -1,0 +1,105 @@
+"""What documented cues compute: exact static stiffness, errors from priors, residuals, the zero of the offset."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import cuefem as cf
+from cuefem.cue import shear_coefficient
+from cuefem.measured.documented import compare, zeros
+from cuefem.measured.kinds import AddedMass, Balance, ContactTime, Setup, Squirt, Stiffness, Tone, Weight
+from cuefem.measured.numbers import numbers_of
+from tests.helpers.documented import SCENE, SHAFT, WOOD, blank, documented
+from tests.helpers.leather_scenes import leather_scene
+
+ROD = replace(SCENE, cue=cf.Cue((cf.Segment(0.7, 0.014, 0.014, WOOD),)))
+
+
+@pytest.mark.parametrize("free", [None, 0.7, 0.3, 0.1])
+def test_stiffness_of_a_rod_is_exact(free: float | None) -> None:
+    L, second, A = free or 0.7, np.pi / 64 * 0.014**4, np.pi / 4 * 0.014**2
+    shear = float(shear_coefficient(WOOD.effective_poisson_ratio)) * WOOD.G * A
+    exact = 1 / (L**3 / (3 * WOOD.E * second) + L / shear)
+    found = Stiffness(free_length=free, value=1.0, error=1.0).computed(Setup(ROD))
+    assert found == pytest.approx(exact, rel=1e-8)
+
+
+def test_stiffness_is_that_behind_the_leather() -> None:
+    leather = cf.Segment(0.006, 0.012, 0.012, cf.Material(1e8, 3.6e7, 1000.0))
+    drawn = replace(SCENE, cue=cf.Cue((leather, *SHAFT.segments)))
+    for free in (None, 0.2):
+        one = Stiffness(free_length=free, value=1.0, error=1.0)
+        assert one.computed(Setup(drawn)) == pytest.approx(one.computed(Setup(SCENE)), rel=1e-12)
+
+
+def test_weight_and_balance_hold_the_tip() -> None:
+    scene = leather_scene()
+    tip = scene.leather.mass_on(scene.shaft)
+    found = numbers_of(scene)
+    assert found.shaft_mass == pytest.approx(scene.shaft.shaft_mass + tip, rel=1e-14)
+    assert Weight(of="cue", value=1.0, error=1.0).computed(Setup(scene)) == pytest.approx(scene.shaft.mass + tip)
+    moment = scene.shaft.shaft_mass * scene.shaft.balance_point
+    expected = scene.leather.height + moment / found.shaft_mass
+    assert Balance(value=1.0, error=1.0).computed(Setup(scene)) == pytest.approx(expected, rel=1e-14)
+
+
+def test_squirt_and_time_are_those_of_a_strike() -> None:
+    for scene in (SCENE, leather_scene()):
+        struck = cf.strike(replace(scene, stroke=cf.Stroke(1.5, 0.25)))
+        one = Squirt(offset=0.25, value=0.03, error=1e-3, speed=1.5)
+        assert one.computed(Setup(scene)) == pytest.approx(struck.squirt, rel=1e-12)
+        assert one.computed(Setup(scene, squirt_factor=1.1)) == pytest.approx(1.1 * struck.squirt, rel=1e-12)
+        head_on = cf.strike(replace(scene, stroke=cf.Stroke(1.5, 0.0)))
+        time = ContactTime(value=1e-3, error=1e-4, speed=1.5)
+        assert time.computed(Setup(scene)) == pytest.approx(head_on.duration, rel=1e-12)
+
+
+def test_an_added_mass_stands_behind_the_leather() -> None:
+    scene = leather_scene()
+    lump = cf.PointMass(0.05 - scene.leather.height, 5e-3)
+    heavy = replace(scene, effects=(*scene.effects, lump), stroke=cf.Stroke(scene.stroke.speed, 0.3))
+    plain = replace(scene, stroke=cf.Stroke(scene.stroke.speed, 0.3))
+    one = AddedMass(mass=5e-3, position=0.05, value=0.05, baseline=0.04, error=1e-3, offset=0.3)
+    assert one.computed(Setup(scene)) == pytest.approx(cf.strike(heavy).squirt / cf.strike(plain).squirt, rel=1e-12)
+    assert one.measured == pytest.approx(1.25)
+
+
+def test_a_zero_of_the_offset_moves_one_side_alone() -> None:
+    """One side is at another offset; the mean of both is not, and their difference tells the zero."""
+    radius, aside = float(SCENE.ball.radius), 1e-3
+    setup = Setup(SCENE, {"a": aside})
+    both = [cf.strike(replace(SCENE, stroke=cf.Stroke(2.0, 0.3 + side * aside / radius))).squirt for side in (1, -1)]
+    alone = Squirt(offset=0.3, value=0.03, error=1e-3, series="a", zero_error=1e-3)
+    sides = Squirt(offset=0.3, left=both[0], right=both[1], error=1e-3, series="a")
+    assert alone.computed(setup) == pytest.approx(both[0], rel=1e-12)
+    assert sides.computed(setup) == pytest.approx(cf.strike(SCENE).squirt, rel=1e-12)
+    cue = documented(sides)
+    (told,) = zeros(cue, compare(cue))
+    assert told.zero == pytest.approx(aside, rel=0.2)
+    assert told.error > 0
+
+
+def test_residuals_are_in_errors() -> None:
+    rows = compare(documented(*blank()))
+    for row in rows:
+        assert row.residual == pytest.approx((row.measured - row.computed) / row.error)
+        assert row.pull == pytest.approx((row.measured - row.computed) / np.hypot(row.error, row.spread))
+    weight, tone = rows[0], rows[1]
+    # by hand: the weight is proportional to the density, the tone to the root of E/rho and little else
+    assert weight.spread / weight.computed == pytest.approx(np.log(780 / 630) / 2, rel=2e-2)
+    E, rho = np.log(16.9 / 10.8) / 2, np.log(780 / 630) / 2
+    assert tone.spread / tone.computed == pytest.approx(np.hypot(E, rho) / 2, rel=5e-2)
+
+
+def test_what_is_missing_is_named() -> None:
+    assert len(documented().lacking) == 7
+    one = documented(Stiffness(value=400.0, error=8.0), Squirt(offset=0.3, value=0.03, error=1e-3))
+    said = " ".join(one.lacking)
+    assert "static stiffness at a second free length" in said
+    assert "three offsets, here 1" in said
+    assert "the other side" in said
+    assert "tones" in said
+    assert "tones" not in " ".join(documented(Tone(mode=1, value=95.0, error=0.2)).lacking)

@@ -1,0 +1,116 @@
+"""What documented cues refuse: measurements that cannot be, folders that are none (regression)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from cuefem.measured.documented import DocumentedCue
+from cuefem.measured.estimate import estimate
+from cuefem.measured.kinds import AddedMass, Setup, Squirt, Stiffness, Tone, Weight
+from cuefem.measured.unknowns import Prior
+from tests.helpers.command_line import call
+from tests.helpers.documented import DRAWING, SCENE, SOME, documented, folder
+from tests.helpers.refusals import command_refuses, refuses, untouched
+
+CALLS: dict[str, tuple[Callable[[], object], str]] = {
+    "weight": (lambda: Weight(of="butt", value=0.4, error=1e-3), "Weight.of must be one of shaft, cue; got 'butt'"),
+    "error": (lambda: Weight(value=0.1, error=0.0), "Weight.error must be in (0, inf) kg; got 0.0"),
+    "mode": (lambda: Tone(mode=9, value=95.0, error=0.2), "Tone.mode must be in [1, 8], 1 the lowest; got 9"),
+    "one side": (lambda: Squirt(offset=0.3, left=0.03, error=1e-3), "or left and right without it; got left"),
+    "three": (lambda: Squirt(offset=0.3, value=0.03, left=0.03, right=0.03, error=1e-3), "got value and left and"),
+    "nothing": (lambda: Squirt(offset=0.3, error=1e-3), "without it; got none of them"),
+    "zero": (
+        lambda: Squirt(offset=0.3, left=0.03, right=0.03, error=1e-3, zero_error=1e-3),
+        "Squirt.zero_error must be absent beside left and right, whose mean has none; got 0.001 m",
+    ),
+    "prior": (lambda: Prior("colour", 0.1), "Prior.name must be one of E, G, rho, bore, taper"),
+    "two priors": (lambda: Prior("E", 0.1, 1e9, 2e9), "or low and high without it"),
+    "ends": (lambda: Prior("E", low=2e9, high=1e9), "Prior.low must be in (0, high)"),
+    "no dome": (lambda: documented(priors=(Prior("dome", 0.1),)), "got 'dome', which it does not have"),
+    "no cue": (lambda: DocumentedCue("a", "cue", ()), "TypeError: DocumentedCue.scene must be a Scene"),  # type: ignore[arg-type]
+    "found": (lambda: documented("a tone"), "TypeError: DocumentedCue.found[0] must be a Measurement"),  # type: ignore[arg-type]
+    "too long": (
+        lambda: Stiffness(free_length=0.8, value=1.0, error=1.0).computed(Setup(SCENE)),
+        "stiffness free_length must be in (0, 0.73] m, that of the wood; got 0.8",
+    ),
+    "beside": (
+        lambda: AddedMass(mass=0.01, position=0.8, value=0.1, baseline=0.1, error=0.01, offset=0.3).computed(
+            Setup(SCENE)
+        ),
+        "added_mass position must be in [0, 0.73] m, on the shaft; got 0.8",
+    ),
+    "no estimate": (lambda: estimate(documented()), "estimate takes a cue with measurements; got none"),
+}
+
+
+@pytest.mark.parametrize(("ask", "message"), CALLS.values(), ids=CALLS.keys())
+def test_refusals(ask: Callable[[], object], message: str) -> None:
+    refuses(ask, message)
+
+
+FILES = {
+    "key": ('[[weigth]]\nvalue = "1 g"\n', "measured.toml: weigth: must be one of the keys name, source"),
+    "unit": (
+        '[[weight]]\nvalue = 100\nerror = "1 g"\n',
+        "weight[0].value: must be in (0, inf) kg, a mass with its unit",
+    ),
+    "missing": ('[[weight]]\nvalue = "100 g"\n', "weight[0].error: must be given, in (0, inf) kg"),
+    "extra": (
+        '[[tone]]\nvalue = "1 Hz"\nerror = "1 Hz"\nmode = 1\nloud = 1\n',
+        "tone[0].loud: must be one of the keys",
+    ),
+    "no table": ('weight = "100 g"\n', "weight: must be tables, [[weight]]; got '100 g'"),
+    "squirt": ('[[squirt]]\noffset = 0.3\nerror = "1 deg"\n', "squirt[0].value: must be given, or left and right"),
+    "name": ("name = 3\n", "name: must be text; got 3"),
+    "unknown": ('[[unknowns]]\nname = "bor"\n', "unknowns[0].name: must be one of E, G, rho, bore"),
+    "prior": ('[[unknowns]]\nname = "bore"\nlow = 6\nhigh = 7\n', "unknowns[0].low: must be in (0, inf) m, a length"),
+    "closed": ('[[unknowns]]\nname = "dome"\nspread = 0.1\n', "unknowns must be of this cue; got 'dome'"),
+    "lumped": (
+        'cue = { mass = "0.5 kg", end_mass = "6 g" }\n',
+        "cue: must be a cue of segments, which can be measured",
+    ),
+}
+
+
+@pytest.mark.parametrize(("text", "message"), FILES.values(), ids=FILES.keys())
+def test_files(text: str, message: str, tmp_path: Path) -> None:
+    command_refuses(message, "compare", folder(tmp_path / "cue", text))
+
+
+SERIES = {
+    "heading": ("squirt.csv", "offset,sqirt [deg]\n0.3,2\n", "must have headings source, offset, value"),
+    "unit": ("squirt.csv", "offset,value,error [deg]\n0.3,2,1\n", 'line 1, value: must be the heading "value [rad]"'),
+    "cells": (
+        "squirt.csv",
+        "offset,value [deg],error [deg]\n0.3,2\n",
+        "line 2: must have 3 cells, as the headings; got 2",
+    ),
+    "number": ("squirt.csv", "offset,value [deg],error [deg]\na,2,1\n", "line 2, offset: must be a number; got 'a'"),
+    "value": ("tone.csv", "mode,value [Hz],error [Hz]\n1,x,1\n", "line 2.value: must be in (0, inf) Hz"),
+    "empty": ("tone.csv", "# nothing\n", "must begin with a line of headings; got comments alone"),
+    "name": ("squirts.csv", "offset\n", "squirts.csv: must be one of weight.csv"),
+}
+
+
+@pytest.mark.parametrize(("name", "text", "message"), SERIES.values(), ids=SERIES.keys())
+def test_series(name: str, text: str, message: str, tmp_path: Path) -> None:
+    place = folder(tmp_path / "cue")
+    (place / name).write_text(text, encoding="utf-8")
+    command_refuses(message, "compare", place)
+
+
+def test_folders(tmp_path: Path) -> None:
+    command_refuses("got no folder", "compare", tmp_path / "none")
+    empty = tmp_path / "empty"
+    empty.mkdir()
+    command_refuses("must hold the shaft's drawing, cue.toml or cue.csv; got none", "compare", empty)
+    untouched(tmp_path, "cannot be made: File exists", "compare", empty, "--template")
+    scene = folder(tmp_path / "scene", SOME, f"[cue]\n{DRAWING.replace('[[segments]]', '[[cue.segments]]')}")
+    command_refuses("this file is the drawing; ball and tip stand in measured.toml", "compare", scene)
+    place = folder(tmp_path / "cue")
+    untouched(tmp_path, "must be left out with --json", "compare", place, "--json", "-o", tmp_path / "page.html")
+    untouched(tmp_path, "cannot be written", "compare", place, "-o", tmp_path / "no" / "page.html")
+    assert call("compare", tmp_path / "cue")[0] == 0

@@ -1,0 +1,75 @@
+"""The published cues: their folders hold the numbers of the data, and compare to what their page says (validation)."""
+
+from __future__ import annotations
+
+import csv
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from cuefem.io.documented import load_documented
+from cuefem.measured.kinds import AddedMass, Measurement, Squirt
+from cuefem.report.documented import text_of
+from studies.common import STUDIES
+from tests.helpers.command_line import call
+
+HOME = STUDIES / "measured"
+FOLDERS = sorted(path for path in HOME.iterdir() if path.is_dir())
+PLAYERS = HOME / "players_maple"
+CUES = {"Players": "players_maple", "Predator": "predator_z", "Stinger": "stinger"}
+
+
+def rows(name: str) -> list[dict[str, str]]:
+    lines = (STUDIES / "data" / f"{name}.csv").read_text(encoding="utf-8").splitlines()
+    return list(csv.DictReader(line for line in lines if not line.startswith("#")))
+
+
+def found(folder: str, kind: type[Measurement]) -> list[Measurement]:
+    return [one for one in load_documented(HOME / folder)[0].found if isinstance(one, kind)]
+
+
+def test_squirts_are_those_of_the_data() -> None:
+    """Every row of the data stands in a folder."""
+    for row in rows("measured_squirt"):
+        own = found(CUES[row["cue"].split()[0]], Squirt)
+        values = [(one.offset, round(math.degrees(one.measured), 6)) for one in own]
+        assert (float(row["b_over_R"]), float(row["squirt_deg"])) in values
+
+
+def test_added_masses_are_those_of_the_data() -> None:
+    told = [(r["mass_g"], r["distance_in"], r["squirt_deg"]) for r in rows("added_mass_players_feb2008")]
+    own = [
+        (1e3 * one.mass, one.position / 0.0254, math.degrees(one.value))
+        for one in load_documented(PLAYERS)[0].found
+        if isinstance(one, AddedMass)
+    ]
+    assert np.array(own) == pytest.approx(np.array(told, float), rel=1e-12)
+
+
+def test_the_page_says_what_is_computed() -> None:
+    """The table of the folder's README, one line a measurement that is not of the series of added masses."""
+    text = (HOME / "README.md").read_text(encoding="utf-8")
+    for path in FOLDERS:
+        assert f"[{path.name}]({path.name}/measured.toml)" in text
+        cue, _ = load_documented(path)
+        for one in cue.found:
+            if not isinstance(one, AddedMass):
+                computed = text_of(one.computed(cue.setup()), None, one.unit)
+                told = text_of(one.measured, one.sd, one.unit)
+                assert f"| {cue.name} | {one.label} | {told} | {computed} |" in text
+
+
+@pytest.mark.parametrize("name", ["predator_z", "predator_z2", "stinger"])
+def test_compare(name: str, tmp_path: Path) -> None:
+    status, _, err = call("compare", HOME / name, "-o", tmp_path / "page.html")
+    assert (status, err) == (0, "")
+    assert "Measured less computed" in (tmp_path / "page.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.heavy
+def test_compare_the_longest(tmp_path: Path) -> None:
+    status, _, err = call("compare", PLAYERS, "-o", tmp_path / "page.html")
+    assert (status, err) == (0, "")
+    assert "Squirt with 11 g on the shaft" in (tmp_path / "page.html").read_text(encoding="utf-8")
