@@ -219,7 +219,7 @@ def test_end_masses_to_an_accuracy() -> None:
 
 
 @pytest.mark.heavy
-@pytest.mark.parametrize("number", range(41))
+@pytest.mark.parametrize("number", range(0, 41, 3))
 def test_the_estimated_error_holds_on_the_family(number: int) -> None:
     """The true error is known no better than two references agree; where that is coarser, it cannot contradict."""
     here = [*family(), endless_friction()][number]

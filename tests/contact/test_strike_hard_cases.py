@@ -361,7 +361,7 @@ def test_loud_cues_under_a_nearly_dead_tip(e):
 
 
 @pytest.mark.heavy
-@settings(max_examples=4000, deadline=None)
+@settings(max_examples=1500, deadline=None)
 @given(loud_strikes())
 def test_many_loud_cues(drawn):
     outcome = strike_modes(*drawn)
