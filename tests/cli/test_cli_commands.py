@@ -298,4 +298,7 @@ def test_validate(tmp_path: Path) -> None:
 def test_materials() -> None:
     found = as_json("materials")
     assert "hard maple" in found["materials"]
-    assert "hard maple" in run("materials")
+    assert found["leathers"]["medium"]["E"] == 140e6
+    shown = run("materials")
+    assert "hard maple" in shown
+    assert "hard leather of a LeatherTip: E 360 MPa; 0.8 ms head on" in shown
