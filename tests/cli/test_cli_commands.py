@@ -244,7 +244,7 @@ def test_a_scene_announces_what_it_leaves_out(cue: str, tmp_path: Path) -> None:
 @pytest.mark.heavy
 def test_unusual_numbers_are_remarked(kim: str) -> None:
     err = call("end-mass", kim, "--contact-time", "2 s")[2]
-    assert err.splitlines()[0] == "unusual: contact time 2 s; leather's is 0.001 to 0.002 s"
+    assert err.splitlines()[0] == "unusual: head-on contact time 2 s; leather's is 0.001 to 0.002 s"
 
 
 def test_convert(cue: str, tmp_path: Path) -> None:
