@@ -26,7 +26,9 @@ OFFSETS = (0.1, 0.2, 0.3, 0.4, 0.5)
 POOLTOOL_INERTIA = 0.4  # its 5/2
 NICKEL = 0.0106045  # m, the dome of pooltool's own cue
 
-A31_MEANING = "the end mass whose [A.31] squirt is that of the coupled strike, at this offset, speed and contact time"
+A31_MEANING = (
+    "the end mass whose [A.31] squirt is that of the coupled strike, at this offset, speed and head-on contact time"
+)
 SIGNS = (
     "a is b/R of the contact, positive on the ball's left, and alpha positive to the left: "
     "alpha(a) = -squirt(offset = a); end_mass is m_e, felt at the tip, not the four times larger m_c of the cue's end"

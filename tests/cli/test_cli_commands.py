@@ -244,7 +244,7 @@ def test_a_scene_announces_what_it_leaves_out(cue: str, tmp_path: Path) -> None:
 @pytest.mark.heavy
 def test_unusual_numbers_are_remarked(kim: str) -> None:
     err = call("end-mass", kim, "--contact-time", "2 s")[2]
-    assert err.splitlines()[0] == "unusual: contact time 2 s; leather's is 0.001 to 0.002 s"
+    assert err.splitlines()[0] == "unusual: head-on contact time 2 s; leather's is 0.001 to 0.002 s"
 
 
 def test_convert(cue: str, tmp_path: Path) -> None:
@@ -298,4 +298,7 @@ def test_validate(tmp_path: Path) -> None:
 def test_materials() -> None:
     found = as_json("materials")
     assert "hard maple" in found["materials"]
-    assert "hard maple" in run("materials")
+    assert found["leathers"]["medium"]["E"] == 140e6
+    shown = run("materials")
+    assert "hard maple" in shown
+    assert "hard leather of a LeatherTip: E 360 MPa; 0.8 ms head on" in shown
