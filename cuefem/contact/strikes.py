@@ -137,4 +137,4 @@ def _together(found: list[dict[str, Any]]) -> Outcome:
     columns = {name: np.array([numbers[name] for numbers in found]) for name in NUMBERS}
     ran = " and ".join(sorted({numbers["kernel"] for numbers in found}))
     unknowns = max(numbers["unknowns"] for numbers in found)
-    return Outcome(**columns, phases=(), energy=energy, unknowns=unknowns, kernel=ran)
+    return Outcome(**columns, phases=(), energy=energy, unknowns=unknowns, kernel=ran)  # type: ignore[arg-type]
