@@ -1,7 +1,8 @@
 """Builds the compiled kernel of the contact into the package, where there is a C compiler; goes on without it if not.
 
 Hatchling calls it for wheels and for editable installs. `python hatch_build.py` builds the kernel in place.
-The C compiler is `cc`, or what the environment variable CC names; CUEFEM_KERNEL=python leaves the kernel out.
+The C compiler is `cc`, or what the environment variable CC names, with CFLAGS behind its flags; CUEFEM_KERNEL=python
+leaves the kernel out.
 """
 
 from __future__ import annotations
@@ -37,28 +38,31 @@ def build() -> Path | None:
     """Compile the kernel beside its sources; None, and a word, where that cannot be."""
     found = kernel()
     binary: Path = found.BINARY
-    binary.unlink(missing_ok=True)
     compiler = shlex.split(os.environ.get("CC", "cc"))
     if os.environ.get(found.VARIABLE) == "python":
-        print(f"cuefem: {found.VARIABLE}=python, so the compiled kernel is left out", file=sys.stderr)
-        return None
+        return left_out(binary, f"{found.VARIABLE}=python, so the compiled kernel is left out")
     if not compiler or not shutil.which(compiler[0]):
-        print("cuefem: no C compiler (cc), so the contact will run in Python", file=sys.stderr)
-        return None
+        return left_out(binary, "no C compiler (cc), so the contact will run in Python")
     sources = [str(path) for path in sorted(found.HERE.glob("*.c"))]
     about = f'-DCUEFEM_SOURCES="{found.digest()}"'
     made = binary.with_suffix(f".{os.getpid()}")  # another process may load the kernel meanwhile
     said = ""
+    own = shlex.split(os.environ.get("CFLAGS", ""))
     for flags in (FLAGS, ["-O2"]):
-        command = [*compiler, "-std=gnu11", "-fPIC", "-shared", *flags, about, "-o", str(made), *sources, "-lm"]
+        command = [*compiler, "-std=gnu11", "-fPIC", "-shared", *flags, *own, about, "-o", str(made), *sources, "-lm"]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         if done.returncode == 0:
             made.replace(binary)
             return binary
         said = said or done.stderr.strip()
     made.unlink(missing_ok=True)
-    print(f"cuefem: the kernel does not compile, so the contact will run in Python:\n{said}", file=sys.stderr)
-    return None
+    return left_out(binary, f"the kernel does not compile, so the contact will run in Python:\n{said}")
+
+
+def left_out(binary: Path, why: str) -> None:
+    """Say why there is no kernel, and leave none of an earlier time behind."""
+    binary.unlink(missing_ok=True)
+    print(f"cuefem: {why}", file=sys.stderr)
 
 
 def platform_tag() -> str:

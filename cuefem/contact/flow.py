@@ -228,6 +228,13 @@ class Piece(NamedTuple):
         return self.start + self.step * self.coefficients.shape[2]
 
 
+def pieces_of(start: float, step: float, cells: Array, fraction: float) -> list[Piece]:
+    """The pieces of a phase from its cells, the last of which was cut at a fraction of a cell."""
+    whole = cells.shape[2] - 1
+    pieces = [Piece(start, step, cells[:, :, :whole])] if whole else []
+    return [*pieces, Piece(start + whole * step, step * fraction, cells[:, :, whole:])] if fraction else pieces
+
+
 class Arrival(NamedTuple):
     """The end of a phase: its time, the state, the index of the guard that changed sign, and the way there."""
 

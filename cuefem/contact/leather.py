@@ -415,6 +415,10 @@ class Leather:
         """A patch that stops sliding holds: the spring's force is continuous."""
         return "stick"
 
+    def at_once(self, grip: Grip, press: Press, most: float) -> bool:
+        """Phases are stepped one by one."""
+        return False
+
     def follow(self, grip: Grip, press: Press) -> str:
         """Step through one phase, leg by leg."""
         contact = self.contact

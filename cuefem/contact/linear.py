@@ -8,18 +8,35 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import partial
 from typing import Self
 
 import numpy as np
 
 from cuefem.beam.tip import TipModes
 from cuefem.contact import kernel
-from cuefem.contact.flow import Drive, Flow, Guard, Guards, Piece, Pushes, guards_of, integral_of_product, march, pushed
+from cuefem.contact.flow import (
+    CELLS,
+    ORDERS,
+    REACH,
+    Drive,
+    Flow,
+    Guard,
+    Guards,
+    Piece,
+    Pushes,
+    guards_of,
+    integral_of_product,
+    march,
+    pieces_of,
+    pushed,
+)
 from cuefem.contact.history import F_N, F_T, V_N, History
+from cuefem.contact.kernel import contact as compiled
 from cuefem.contact.patch import Patch, RigidPatch, SpringPatch, losses_of
 from cuefem.contact.phases import ROUNDING, Step, Stretch, endless, next_phase
 from cuefem.contact.ringing_tip import AVERAGED, LEAST, RINGING, Ringing
-from cuefem.contact.state import APART, SIDE, Contact, Grip, Laws, Press
+from cuefem.contact.state import APART, SIDE, Contact, Grip, Laws, Phase, Press
 from cuefem.contact.stretches import Course, free_course
 from cuefem.cue import Array
 
@@ -134,6 +151,33 @@ class Exact:
     def grip_at_rest(self, press: Press) -> Grip:
         """The patch's."""
         return self.patch.grip_at_rest(self, press)
+
+    def at_once(self, grip: Grip, press: Press, most: float) -> bool:
+        """In the compiled kernel: a tip that gives something back, and whose swings are all followed."""
+        contact, found = self.contact, kernel.library()
+        if found is None or self.ringing is not None or contact.laws.restitution == 0:
+            return False
+        cells, slack = MOST_CELLS * self.haste, ROUNDING * contact.scale
+        limits = compiled.Limits(CELLS, len(ORDERS), most, cells, self.longest, REACH, slack)
+        compliance, unit = self.patch.spring
+        whole = compiled.contact(found, contact, grip, press, compliance=compliance, unit=unit, limits=limits)
+        if whole is None:
+            return False
+        states = np.array([*(phase.state for phase in whole.phases), whole.state])
+        impulses = np.diff(contact.read[:2] @ states.T / contact.per[:2, None]).T.tolist()
+        for phase, (p_t, p_n) in zip(whole.phases, impulses, strict=True):
+            matrix = partial(self._matrix, phase.grip, phase.press)
+            self.courses.append(Course(phase.start, matrix, REACH / phase.step, phase.state))
+            self.pieces += pieces_of(phase.start, phase.step, phase.cells, phase.fraction)
+            contact.phases.append(Phase(phase.grip, phase.press, phase.start, phase.end, (p_t, p_n)))
+        contact.time, contact.z, contact.peak = whole.time, whole.state, whole.peak
+        contact.friction_loss += whole.rubbed
+        contact.damping_loss += float(whole.damped[: contact.lossy].sum())
+        contact.radiated += float(whole.damped[contact.lossy :].sum())
+        return True
+
+    def _matrix(self, grip: Grip, press: Press) -> Array:
+        return self.flow(grip, press).A
 
     def follow(self, grip: Grip, press: Press) -> str:
         """March through one phase, cell by cell."""

@@ -28,6 +28,7 @@ class Patch(Protocol):
     """The tangential part of a contact; an exact one asks for flows, a stepped one for forces."""
 
     haste: float  # of a nearly dead tip: the part of what a contact may take in phases before it is given up
+    spring: tuple[float, float]  # its compliance, m/N, and its state's unit per newton; zeros if it does not give
     slide: int  # of an exact phase: the output that is the velocity at which the patch slides,
     outputs: int  # and how many outputs stand before those of the dampers
 
@@ -77,7 +78,7 @@ class Patch(Protocol):
 class RigidPatch:
     """A patch that does not give: stick keeps v_t at zero."""
 
-    haste, slide, outputs = 1.0, V_T, 4
+    haste, slide, outputs, spring = 1.0, V_T, 4, (0.0, 0.0)
 
     def first_grip(self, kind: Kind, press: Press, stiffness: float) -> Grip:
         """The tip slips unless it does not move aside or friction is endless, which begins with a blow."""
@@ -175,6 +176,7 @@ class SpringPatch:
 
     def __init__(self, compliance: float, unit: float) -> None:
         self.compliance, self.unit, self.lost = compliance, unit, 0.0
+        self.spring = compliance, unit
 
     def first_grip(self, kind: Kind, press: Press, stiffness: float) -> Grip:
         """The patch sticks from a touch on where the spring's force grows more slowly than friction's bound."""

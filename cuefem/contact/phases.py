@@ -56,6 +56,9 @@ class Kind(Protocol):
     def grip_at_rest(self, press: Press) -> Grip:
         """How a contact goes on that has stopped sliding."""
 
+    def at_once(self, grip: Grip, press: Press, most: float) -> bool:
+        """Go through all phases from this one on, at most so many, if the kind can do that in one: whether it did."""
+
     def follow(self, grip: Grip, press: Press) -> str:
         """Move through one phase to its end; the name of what ended it. RuntimeError if nothing does."""
 
@@ -98,7 +101,8 @@ def run(kind: Kind, press: Press = "load") -> None:
     contact = kind.contact
     contact.parted = False  # of this touch: a second hit is another
     grip = kind.first_grip(press)
-    step = None if contact.parted else Step("touch", grip, press)
+    left = MOST_PHASES * kind.haste - len(contact.phases)
+    step = None if contact.parted or kind.at_once(grip, press, left) else Step("touch", grip, press)
     while step is not None:
         if len(contact.phases) > MOST_PHASES * kind.haste:
             raise endless(kind, step.grip, step.press)

@@ -201,8 +201,9 @@ class Contact:
         """
         longest = LONGEST * self.laws.time
         if len(self.omega):
-            still = np.delete(self.c_n, np.arange(self.slots.swinging.start, self.slots.swinging.stop))
-            longest += 10 / float(self.omega.min()) * float(np.linalg.norm(self.c_n) / np.linalg.norm(still))
+            before, after = self.c_n[: self.slots.swinging.start], self.c_n[self.slots.swinging.stop :]
+            still = float(before @ before + after @ after)
+            longest += 10 / float(self.omega.min()) * math.sqrt(float(self.c_n @ self.c_n) / still)
         return longest
 
     def put(self, **slots: float) -> None:

@@ -210,6 +210,10 @@ class Stepped:
         """The patch's."""
         return self.patch.grip_at_rest(self, press)
 
+    def at_once(self, grip: Grip, press: Press, most: float) -> bool:
+        """Phases are stepped one by one."""
+        return False
+
     def follow(self, grip: Grip, press: Press) -> str:
         """Step through one phase, unless it is over at once."""
         contact, hold = self.contact, self.hold(grip, press)

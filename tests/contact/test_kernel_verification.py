@@ -104,6 +104,16 @@ def test_the_kernel_agrees_with_python(name: str, both) -> None:
 
 
 @BUILT
+@pytest.mark.parametrize("name", ["stick", "miscue", "dome and shear", "damped", "hit twice"])
+def test_phase_by_phase_the_kernel_agrees_as_well(name: str, both, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where a contact takes more phases, or more cells, than there is room for at once."""
+    monkeypatch.setattr("cuefem.contact.kernel.contact.PHASES", 2)
+    scene = SCENES[name]
+    tip = tip_modes_of(scene)
+    agree(*both(lambda: strike_modes(scene, tip)))
+
+
+@BUILT
 @pytest.mark.parametrize("seed", range(6))
 def test_the_kernel_agrees_with_python_on_loud_modes(seed: int, both) -> None:
     """Many phases: modes that throw the contact about."""

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from cuefem.contact.kernel.structures import pointer, structure
 from cuefem.cue import Array
 
 if TYPE_CHECKING:
@@ -25,40 +26,33 @@ HALVINGS, ROWS, MOTIONS, HEAD = 40, 4, 6, 5
 STEPS = 32
 
 
-def _structure(name: str, *fields: tuple[Any, str]) -> Any:
-    """A structure of C: types, each with the names of its fields, in order."""
-    return type(
-        name, (ctypes.Structure,), {"_fields_": [(each, kind) for kind, names in fields for each in names.split()]}
-    )
-
-
-_Rule = _structure(
+_Rule = structure(
     "_Rule",
     (c_int, "power nodes points many_points terms"),
     (c_void_p, "times integral waves between values weights slopes many many_weights"),
 )
-_Free = _structure("_Free", (c_int, "modes dampers"), (c_void_p, "rates readings drives"))
-_Response = _structure("_Response", (c_double, "step"), (c_void_p, "own answer last turned"))
-_Law = _structure(
+_Free = structure("_Free", (c_int, "modes dampers"), (c_void_p, "rates readings drives"))
+_Response = structure("_Response", (c_double, "step"), (c_void_p, "own answer last turned"))
+_Law = structure(
     "_Law",
     (c_int, "force_terms give_terms"),
     (c_void_p, "force give"),
     (c_double, "restitution most steady first_ratio"),
 )
-_Bounds = _structure(
+_Bounds = structure(
     "_Bounds",
     (c_double, "tolerance settled wild opened past rounding"),
     (c_int, "rounds longest shortest crossing most_steps"),
 )
-_Hold = _structure("_Hold", (c_int, "side loading grows apart"))
-_Contact = _structure("_Contact", (c_double, "friction size impulse dome reach clock speed"))
-_Course = _structure(
+_Hold = structure("_Hold", (c_int, "side loading grows apart"))
+_Contact = structure("_Contact", (c_double, "friction size impulse dome reach clock speed"))
+_Course = structure(
     "_Course",
     (c_double, "time depth angle shear leaving deepest series_step"),
     (c_double * 16, "series"),
     (c_int, "halvings steps written event needed"),
 )
-_Leg = _structure("_Leg", (c_void_p, "rules free responses law bounds contact course coordinates losses room"))
+_Leg = structure("_Leg", (c_void_p, "rules free responses law bounds contact course coordinates losses room"))
 
 
 class _Functions(NamedTuple):
@@ -228,8 +222,3 @@ class Steps:
             record[forces:motion].reshape(ROWS, self.nodes),
             record[motion:].reshape(MOTIONS, self.nodes),
         )
-
-
-def pointer(array: Array | Complex) -> int:
-    """Where an array's numbers stand."""
-    return int(array.ctypes.data)

@@ -2,32 +2,15 @@
 
    A state moves as oscillators that a few rows push: x' = omega y, y' = -omega x, and for each push z' += push (row z).
    A term of its Taylor series costs as much as the state is long, where a dense matrix costs the square of that. */
-#include "kernel.h"
+#include "linear.h"
 
 #include <string.h>
 
-enum { TERMS = 28, PLACES = 16, MOST_GUARDS = 8 };
-enum { FOUND = 0, MORE = 1, LATE = 2, NOT_FINITE = 3, REFUSED = 4 };
+enum { PLACES = 16 };
 /* A guard that dips below zero between two samples counts if the dip is this deep, relative to its size. */
 static const double DEEP = 1e-13;
 static const double PLACE[PLACES] = {0,      0.15 / 3, 0.35 / 3, 0.6 / 3,  0.8 / 3,  1.0 / 3,  1.15 / 3, 1.35 / 3,
                                      1.6 / 3, 1.8 / 3,  2.0 / 3,  2.15 / 3, 2.35 / 3, 2.6 / 3, 2.8 / 3, 1.0};
-
-/* size: of the state, whose first `turning` entries turn with those from `at` on. rows: (outputs + pushed, size), what is
-   read and then what pushes. pushes: (pushed, size). weights: (guards, outputs); constants: (guards,). cells_a_block: how
-   many cells are followed between two looks at the time, after a first one alone. */
-struct flow {
-    int size, turning, at, outputs, pushed, guards, cells_a_block, terms;
-    double step;
-    const double *omega, *rows, *pushes, *weights, *constants;
-};
-
-/* Where a phase is: the state is beside it. start: of the block, s; cell: in the block; block: its number. At the end:
-   guard, and the fraction of the last cell at which it fell. */
-struct place {
-    double start, fraction;
-    int cell, block, guard, written;
-};
 
 /* The part of a row that is not zero, and the earlier row that it equals, or -1. */
 struct extent {

@@ -5,10 +5,11 @@ from __future__ import annotations
 import ctypes
 from ctypes import c_double, c_int, c_void_p
 from functools import cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from cuefem.contact.kernel.structures import pointer, structure
 from cuefem.cue import Array
 
 if TYPE_CHECKING:
@@ -19,23 +20,13 @@ FOUND, MORE, LATE, NOT_FINITE, REFUSED = range(5)
 CELLS, FIRST_CELLS = 512, 128
 
 
-class _Flow(ctypes.Structure):
-    """`struct flow`."""
-
-    _fields_ = [
-        *((name, c_int) for name in ("size", "turning", "at", "outputs", "pushed", "guards", "cells_a_block", "terms")),
-        ("step", c_double),
-        *((name, c_void_p) for name in ("omega", "rows", "pushes", "weights", "constants")),
-    ]
-
-
-class _Place(ctypes.Structure):
-    """`struct place`."""
-
-    _fields_ = [
-        *((name, c_double) for name in ("start", "fraction")),
-        *((name, c_int) for name in ("cell", "block", "guard", "written")),
-    ]
+_Flow = structure(
+    "_Flow",
+    (c_int, "size turning at outputs pushed guards cells_a_block terms"),
+    (c_double, "step"),
+    (c_void_p, "omega rows pushes weights constants"),
+)
+_Place = structure("_Place", (c_double, "start fraction"), (c_int, "cell block guard written"))
 
 
 class Marched(NamedTuple):
@@ -49,11 +40,11 @@ class Marched(NamedTuple):
 
 
 @cache
-def _functions(library: ctypes.CDLL) -> tuple[ctypes._NamedFuncPointer, ctypes._NamedFuncPointer]:
+def _functions(library: ctypes.CDLL) -> tuple[Any, Any]:
     room, run = library.cuefem_march_room, library.cuefem_march
     room.restype, room.argtypes = ctypes.c_ssize_t, [c_int] * 3
     run.restype = c_int
-    run.argtypes = [ctypes.POINTER(_Flow), c_void_p, ctypes.POINTER(_Place), c_double, c_int, c_void_p, c_void_p]
+    run.argtypes = [c_void_p, c_void_p, c_void_p, c_double, c_int, c_void_p, c_void_p]
     return room, run
 
 
@@ -72,16 +63,17 @@ def march(
     kept = [np.ascontiguousarray(part) for part in (drive.omega, rows, drive.pushes, *guards)]
     told = _Flow(
         len(z), len(drive.omega), drive.turning.start, outputs, len(drive.pushes), len(guards.constants), block, terms,
-        flow.step, *(part.ctypes.data for part in kept),
+        flow.step, *map(pointer, kept),
     )  # fmt: skip
     place, state = _Place(start, 0.0, 0, 0, -1, 0), z.copy()
     room = np.empty(room_of(len(z), outputs, len(drive.pushes)))
     stretches: list[tuple[float, float, Array]] = []
+    arguments = ctypes.addressof(told), pointer(state), ctypes.addressof(place)
     status, most = MORE, FIRST_CELLS
     while status == MORE:
         before = place.start + place.cell * flow.step
         cells = np.empty((most, outputs, terms))
-        status = run(told, state.ctypes.data, place, limit, most, cells.ctypes.data, room.ctypes.data)
+        status = run(*arguments, limit, most, pointer(cells), pointer(room))
         found = cells[: place.written].transpose(1, 2, 0)
         whole = place.written - (status == FOUND)
         if whole:
