@@ -68,3 +68,13 @@ def test_where_it_fails() -> None:
     hard = found["Stinger", "0.267"]
     assert hard[5] == f"{study.break_cue('LeatherTip'):.2f}"
     assert float(hard[5]) < 0.9 * float(hard[2])
+
+
+def test_the_readmes_opening_says_what_the_page_found() -> None:
+    opening = " ".join((STUDIES.parent / "README.md").read_text(encoding="utf-8").split("## ")[0].split())
+    rows = [line.split("|")[2:5] for line in COMMITTED.splitlines() if line.startswith("| largest over smallest")]
+    (bare_speed, _, speed), (bare_leather, _, leather) = ([cell.strip().split()[0] for cell in row] for row in rows)
+    robot = next(line.split("|")[6].strip() for line in COMMITTED.splitlines() if line.startswith("| Players (robot"))
+    assert f"({robot}°; measured 2.30 and 2.43°)" in opening
+    assert f"by {speed} % from 0.8 to 7 m/s and by {leather} % from soft to hard leather" in opening
+    assert f"changes by {bare_speed} and {bare_leather} %" in opening
