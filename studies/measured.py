@@ -245,7 +245,7 @@ def failure() -> str:
         f"0.453; dome and shear give {', '.join(told(row, both) for row in series)}: too much everywhere, most near "
         f"the middle. From b/R 0.320 to 0.453 measured squirt grows by {first.squirt / series[1].squirt:.2f}, more "
         f"than the offset (1.42); the model's by {grown[both]:.2f} (bare {grown['bare']:.2f}). An error of 1.8 mm in "
-        "the zero of that series would explain it (LeatherTip, below). The low-deflection shaft, its bore as its "
+        "the zero of that series would explain most of it (LeatherTip, below). The low-deflection shaft, bored as its "
         f"stiffness asks for, gives {told(predator, both)}, measured {predator.squirt:.1f}°; its ratio to the regular "
         f"shaft is {low_deflection(both):.2f} (bare {low_deflection('bare'):.2f}), measured "
         f"{predator.squirt / first.squirt:.2f}. The break cue gives {told(stinger, both)} at b/R 0.267, measured "

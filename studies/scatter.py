@@ -166,7 +166,7 @@ def leather_text() -> str:
 
 
 def draw() -> None:
-    with figure(STUDIES / "scatter.svg", (2, 3), (14, 7.2)) as axes:
+    with figure(STUDIES / "scatter.svg", (2, 3), (13, 7.2)) as axes:
         for k, (axis, (words, scale)) in enumerate(zip(axes[0], SCALES.values(), strict=False)):
             samples = {model: scale * found(model).spread.responses[:, k] for model in MODELS}
             if k:
@@ -196,8 +196,10 @@ def _bars(axis: Any, one: Drivers, k: int, model: str, colour: str) -> None:
     order = one.total[:, k].argsort()
     share, ends = 100 * one.total[order, k], 100 * one.total_interval[:, order, k]
     names = [WORDS[one.causes[i]] for i in order]
+    names = [name.replace(": ", ":\n").replace(" MPa, ", " MPa,\n").replace(" mm, ", " mm,\n") for name in names]
     axis.barh(names, share, color=colour, alpha=0.6, xerr=np.abs(ends - share), ecolor="#333333", capsize=3)
-    axis.set(title=f"what drives squirt: {model}", xlabel="share of squirt's variance, %", xlim=(0, 100))
+    axis.set(title=f"squirt, {model}", xlabel="share of squirt's variance, %", xlim=(0, 100))
+    axis.tick_params(axis="y", labelsize=8)
     axis.grid(visible=False, axis="y")
 
 
