@@ -2,36 +2,56 @@
 
 from __future__ import annotations
 
+from itertools import count
 from pathlib import Path
 from typing import Any
 
 import click
 
 from cuefem.cli.common import blaming, print_all, print_json, remark
-from cuefem.cli.sweep import bar, opened
+from cuefem.cli.sweep import bar, check_page, opened
 
 
 @click.command(short_help="How much a design's numbers scatter, and why.")
 @click.argument("study", type=click.Path(path_type=Path))
 @click.option("--workers", type=click.IntRange(min=1), help="Number of worker processes; by default none is started.")
 @click.option("--dask", metavar="ADDRESS", help='A Dask scheduler to work on, e.g. "tcp://host:8786".')
+@click.option(
+    "-o", "--page", type=click.Path(path_type=Path), metavar="PAGE.html", help="Also draw the designs on a page."
+)
 @click.option("--json", "as_json", is_flag=True, help="SI numbers as JSON.")
-def scatter(study: Path, as_json: bool, **where: Any) -> None:
+def scatter(study: Path, page: Path | None, as_json: bool, **where: Any) -> None:
     """Show how much the responses of STUDY (.toml) scatter with wood, turning and stroke, and which cause matters most.
 
     STUDY is the study of a sweep with [sample]; it may have correlations and groups. Shares are Sobol indices.
     """
     from cuefem.design.scatter import drivers
+    from cuefem.io import save_page
     from cuefem.io.study import load_scatter
-    from cuefem.report.scatter import scatter_record, scatter_tables
+    from cuefem.report.scatter import cause_rows, scatter_record, scatter_tables, scatter_words, spread_rows
+    from cuefem.report.study import table_of_study
+    from cuefem.report.study_page import Scattered, study_page
 
     wanted, sample = load_scatter(study)
     remark(wanted.study.base)
-    with opened(**where) as pool, bar((len(wanted.causes) + 2) * sample.count, 0) as progress, blaming(study):
+    check_page(page)
+    total = (len(wanted.causes) + 2) * sample.count
+    with opened(**where) as pool, bar(total) as progress, blaming(study):
+        progress.begin(0)
         found = drivers(wanted, sample.count, seed=sample.seed, pool=pool, progress=progress)
+    if page is not None:
+        table = table_of_study(wanted.study, zip(count(), found.spread.values, found.spread.responses, strict=False))
+        assert table is not None
+        facts = [f"{len(found.spread.values)} designs, as wood, turning and strokes scatter"]
+        save_page(
+            study_page(
+                study.stem, table, facts, scattered=Scattered(spread_rows(wanted, found), cause_rows(wanted, found))
+            ),
+            page,
+        )
     if as_json:
         print_json(
             {"file": str(study), "count": sample.count, "seed": sample.seed, "responses": scatter_record(wanted, found)}
         )
         return
-    print_all(scatter_tables(wanted, found))
+    print_all([*scatter_tables(wanted, found), *scatter_words(wanted, found), *([f"wrote {page}"] if page else [])])

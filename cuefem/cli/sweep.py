@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from cuefem.cli.common import remark
+from cuefem.cli.common import print_all, print_json, remark
 
 if TYPE_CHECKING:
     from cuefem.design import Pool, Row
     from cuefem.io.database import Database
+    from cuefem.report.study import Table
 
 
 @click.command(short_help="Compute every design of a STUDY (.toml).")
@@ -23,34 +23,56 @@ if TYPE_CHECKING:
 @click.option("--workers", type=click.IntRange(min=1), help="Number of worker processes; by default none is started.")
 @click.option("--dask", metavar="ADDRESS", help='A Dask scheduler to work on, e.g. "tcp://host:8786".')
 @click.option("--export", type=click.Path(path_type=Path), help="Also write the table as .csv or .parquet.")
-@click.option("--json", "as_json", is_flag=True, help="Say as JSON what was done.")
-def sweep(study: Path, output: Path | None, export: Path | None, as_json: bool, **where: Any) -> None:
-    """Compute every design of STUDY (.toml) and store the results in an SQLite database.
+@click.option(
+    "-o", "--page", type=click.Path(path_type=Path), metavar="PAGE.html", help="Also draw the designs on a page."
+)
+@click.option("--json", "as_json", is_flag=True, help="Say as JSON what was done, with the summary.")
+def sweep(
+    study: Path, output: Path | None, export: Path | None, page: Path | None, as_json: bool, **where: Any
+) -> None:
+    """Compute every design of STUDY (.toml), store the results in an SQLite database, and sum them up.
 
-    If it is interrupted, even by kill -9, the same command goes on where it stopped. Numbers are SI.
+    The summary names the best designs, what drives each result, and where two results trade off. If it is
+    interrupted, even by kill -9, the same command goes on where it stopped. Numbers are SI.
     """
     from cuefem.design import sweep as run
     from cuefem.io import check_place
     from cuefem.io.database import Database, export_path
     from cuefem.io.study import load_study
+    from cuefem.report.study import table_of_study
 
     wanted = load_study(study)
     goal = None if export is None else export_path(export)
     if goal is not None:
         check_place(goal)
+    check_page(page)
     remark(wanted.base)
     with ExitStack() as open_things:
+        progress = open_things.enter_context(bar(wanted.size))
         pool = open_things.enter_context(opened(**where))
         database = open_things.enter_context(Database(output or study.with_suffix(".sqlite"), wanted))
         before = database.held()
+        progress.begin(before)
         for first, what in database.damaged.items():
             again = f"{first} to {min(first + wanted.block, wanted.size) - 1}"
             click.echo(f"damaged: {database.path}: {what}; designs {again} are computed again", err=True)
-        with bar(wanted.size, before) as progress:
-            run(wanted, database, pool=pool, progress=progress)
+        run(wanted, database, pool=pool, progress=progress)
+        progress.end()
         if goal is not None:
             _export(database, goal)
-        _tell(database, before, goal, as_json)
+        count = len(wanted.vary)
+        rows = ((design, row[:count], row[count:-1]) for design, *row in database.rows())
+        _tell(database, before, goal, as_json, table_of_study(wanted, rows), page)
+
+
+def check_page(page: Path | None) -> None:
+    """Refuse, before anything is computed, a page that cannot be written."""
+    from cuefem.io import InputError, check_place
+
+    if page is not None:
+        if page.suffix != ".html":
+            raise InputError(page, "--page", f"must end in .html; got {page.suffix!r}")
+        check_place(page)
 
 
 @contextmanager
@@ -68,25 +90,52 @@ def opened(workers: int | None, dask: str | None) -> Iterator[Pool | None]:
         yield processes(workers) if workers else None
 
 
+class Progress:
+    """Takes the rows of finished blocks; shown as a bar with rate and times from the first second on."""
+
+    def __init__(self, bar: Any, total: int) -> None:
+        self.bar, self.total = bar, total
+        self.task = bar.add_task("choosing modes", total=None, rate="") if bar else None
+
+    def begin(self, done: int) -> None:
+        """From here on designs are computed, of which so many are done."""
+        if self.bar:
+            self.bar.update(self.task, description="designs", total=self.total, completed=done)
+
+    def __call__(self, rows: list[Row]) -> None:
+        """Count the rows of a block."""
+        if self.bar:
+            speed = self.bar.tasks[0].speed
+            self.bar.update(self.task, advance=len(rows), rate=f"{speed:.3g} designs/s" if speed else "")
+
+    def end(self) -> None:
+        """Take the bar away."""
+        if self.bar:
+            self.bar.stop()
+
+
 @contextmanager
-def bar(total: int, done: int) -> Iterator[Callable[[list[Row]], object]]:
-    """A progress bar with rate and time left, if stderr is a terminal."""
+def bar(total: int) -> Iterator[Progress]:
+    """A progress bar, if stderr is a terminal."""
     from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        SpinnerColumn,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
+    from rich.progress import Progress as Bar
 
     console = Console(stderr=True)
     if not console.is_terminal:
-        yield lambda rows: None
+        yield Progress(None, total)
         return
-    columns = (BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[rate]}"), TimeRemainingColumn())
-    with Progress(*columns, console=console, transient=True) as bar:
-        task = bar.add_task("", total=total, completed=done, rate="")
-
-        def progress(rows: list[Row]) -> None:
-            speed = bar.tasks[0].speed
-            bar.update(task, advance=len(rows), rate=f"{speed:.3g} designs/s" if speed else "")
-
-        yield progress
+    texts = TextColumn("{task.description}"), TextColumn("{task.fields[rate]}")
+    columns = (SpinnerColumn(), texts[0], BarColumn(), MofNCompleteColumn(), texts[1], TimeElapsedColumn())
+    with Bar(*columns, TimeRemainingColumn(), console=console, transient=True) as found:
+        yield Progress(found, total)
 
 
 def _export(database: Database, goal: Path) -> None:
@@ -97,17 +146,33 @@ def _export(database: Database, goal: Path) -> None:
     write_whole(goal, lambda temporary: write(database, temporary))
 
 
-def _tell(database: Database, before: int, goal: Path | None, as_json: bool) -> None:
+def _tell(
+    database: Database, before: int, goal: Path | None, as_json: bool, table: Table | None, page: Path | None
+) -> None:
+    from cuefem.io import InputError, save_page
+    from cuefem.report.study import study_record, study_tables
+
     designs, failed = database.count()
     first = database.first_failure()
+    if page is not None:
+        if table is None:
+            raise InputError(page, "--page", "needs at least two designs with an answer; got fewer")
+        from cuefem.report.study_page import study_page
+
+        facts = [f"{designs} designs of {database.path.name}" + (f", {failed} without an answer" if failed else "")]
+        save_page(study_page(database.path.stem, table, facts), page)
     if as_json:
         found: dict[str, Any] = {"database": str(database.path), "export": goal and str(goal), "designs": designs}
         found |= {"evaluated": designs - before, "failed": failed, "resolution": vars(database.study.resolution)}
-        click.echo(json.dumps(found | {"first_failure": first and first[1]}, indent=2))
+        found |= {"first_failure": first and first[1], "summary": table and study_record(table)}
+        print_json(found | {"page": page and str(page)})
         return
     words = [f"{designs} designs in {database.path}"]
     words += [f"{before} of them from before"] if before else []
     words += [f"exported to {goal}"] if goal else []
+    words += [f"drawn on {page}"] if page else []
     click.echo(", ".join(words))
     if first:
         click.echo(f"{failed} failed, the first of them design {first[0]}: {first[1]}")
+    if table is not None:
+        print_all(["", *study_tables(table)])

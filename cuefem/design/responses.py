@@ -25,7 +25,8 @@ class Kind(NamedTuple):
 
     strikes: whether it needs the tip's modes up to the contact's cutoff. segments: whether it needs a cue of segments.
     limit: whether without an offset it is the limit of small offsets, instead of the value at the scene's own offset.
-    reasons: for each design, why its response is nan, or None if it is a number.
+    reasons: for each design, why its response is nan, or None if it is a number. better: which a player wants, "lower"
+    or "higher", by which a summary picks designs; "" if neither.
     """
 
     unit: str
@@ -36,6 +37,7 @@ class Kind(NamedTuple):
     segments: bool = False
     limit: bool = False
     reasons: Callable[[Solver], Sequence[str | None]] | None = None
+    better: str = "lower"
 
 
 def _small_offset_pivot(solver: Solver, _: Any) -> Array:
@@ -89,16 +91,20 @@ KINDS = {
     "squirt_slope": Kind(
         "", "squirt over phi in the limit of small offsets", lambda s, _: s.stick.squirt, strikes=True
     ),
-    "pivot_length": Kind("m", _PIVOT, _pivot_length, "offset", strikes=True, limit=True),
-    "mass": Kind("kg", "mass of the cue", lambda s, _: s.mass),
-    "shaft_mass": Kind("kg", "mass of the segments", lambda s, _: s.shaft_mass, segments=True),
-    "balance_point": Kind("m", _BALANCE, lambda s, _: s.balance_point, segments=True),
-    "tip_stiffness": Kind("N/m", _STATIC, lambda s, _: s.tip_stiffness, segments=True),
-    "tip_diameter": Kind("m", "diameter of the tip", _drawn(lambda b: b.rows.tip_diameter[:, 0]), segments=True),
-    "wall": Kind("m", _WALL, _drawn(lambda b: b.walls.min(axis=1)), segments=True),
-    "frequency": Kind("Hz", "of a bending mode", lambda s, n: s.frequencies[:, n - 1], "mode", segments=True),
+    "pivot_length": Kind("m", _PIVOT, _pivot_length, "offset", strikes=True, limit=True, better="higher"),
+    "mass": Kind("kg", "mass of the cue", lambda s, _: s.mass, better=""),
+    "shaft_mass": Kind("kg", "mass of the segments", lambda s, _: s.shaft_mass, segments=True, better=""),
+    "balance_point": Kind("m", _BALANCE, lambda s, _: s.balance_point, segments=True, better=""),
+    "tip_stiffness": Kind("N/m", _STATIC, lambda s, _: s.tip_stiffness, segments=True, better="higher"),
+    "tip_diameter": Kind(
+        "m", "diameter of the tip", _drawn(lambda b: b.rows.tip_diameter[:, 0]), segments=True, better=""
+    ),
+    "wall": Kind("m", _WALL, _drawn(lambda b: b.walls.min(axis=1)), segments=True, better="higher"),
+    "frequency": Kind(
+        "Hz", "of a bending mode", lambda s, n: s.frequencies[:, n - 1], "mode", segments=True, better=""
+    ),
     "squirt": Kind("rad", "of the coupled strike", _SQUIRT, "offset", strikes=True),
-    "ball_speed": Kind("m/s", "after the coupled strike", _SPEED, "offset", strikes=True),
+    "ball_speed": Kind("m/s", "after the coupled strike", _SPEED, "offset", strikes=True, better="higher"),
     "vibration_energy": Kind("J", "left ringing in the cue by the coupled strike", _VIBRATION, "offset", strikes=True),
 }
 
@@ -149,6 +155,11 @@ class Response:
     def unit(self) -> str:
         """SI unit, "" for a pure number."""
         return kinds()[self.kind].unit
+
+    @property
+    def better(self) -> str:
+        """Which a player wants: "lower", "higher", or neither, ""."""
+        return kinds()[self.kind].better
 
     @property
     def strikes(self) -> bool:

@@ -12,9 +12,10 @@ import hashlib
 import json
 import sqlite3
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
+from os import PathLike
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, NamedTuple, Self
 
 from cuefem.design import Row, Study
 from cuefem.io.errors import InputError, shown
@@ -236,6 +237,46 @@ class Database:
                 if not good:
                     raise self._damage(f"design {row[0]} is not as it was written")
                 yield row
+
+
+class Stored(NamedTuple):
+    """The table of a database without its study: columns in their order, their units, and the rows as `Database.rows`
+    has them. named: columns of names of materials. sampled: whether the designs are a sample and no grid."""
+
+    varied: tuple[str, ...]
+    responses: tuple[str, ...]
+    units: dict[str, str]
+    named: tuple[str, ...]
+    sampled: bool
+    rows: list[tuple[Any, ...]]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """All columns but the number of the design and its failure."""
+        return (*self.varied, *self.responses)
+
+
+def read_stored(path: str | PathLike[str]) -> Stored:
+    """What a database of `cuefem sweep` holds, read only, also while a sweep writes on; InputError if it is none."""
+    path = Path(path)
+    if not path.is_file():
+        raise InputError(path, "", "cannot be read: no such file")
+    try:
+        with closing(sqlite3.connect(f"{path.resolve().as_uri()}?mode=ro", uri=True, timeout=PATIENCE)) as file:
+            if file.execute("PRAGMA application_id").fetchone()[0] != APPLICATION:
+                raise InputError(path, "", "must be a database of `cuefem sweep`; got another one")
+            about = {name: (unit, role) for name, unit, role in file.execute("SELECT name, unit, role FROM columns")}
+            kinds = {name: kind for _, name, kind, *_ in file.execute("PRAGMA table_info(designs)") if name in about}
+            record = json.loads(file.execute("SELECT value FROM study WHERE key = 'record'").fetchone()[0])
+            rows = file.execute("SELECT * FROM designs ORDER BY design").fetchall()
+    except (sqlite3.Error, TypeError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(path, "", f"cannot be read as a database: {error}") from None
+    by_role = {role: tuple(name for name in kinds if about[name][1] == role) for role in ("varied", "response")}
+    units = {name: unit for name, (unit, _) in about.items()}
+    named = tuple(name for name, kind in kinds.items() if kind == "TEXT")
+    return Stored(by_role["varied"], by_role["response"], units, named, record["sample"] != "None", rows)
 
 
 def connect(path: Path) -> sqlite3.Connection:

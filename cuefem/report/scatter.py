@@ -39,13 +39,12 @@ def scatter_record(wanted: Scatter, found: Drivers) -> dict[str, Any]:
 def scatter_tables(wanted: Scatter, found: Drivers) -> list[Any]:
     """The spread of every response, and what drives it."""
     count = len(found.spread.values)
-    spreads = table_of("Spread", ["response", "mean", "sd", *(f"{100 * share:g} %" for share in SHARES)])
+    head, rows = spread_rows(wanted, found)
+    spreads = table_of("Spread", head)
+    for row in rows:
+        spreads.add_row(*row)
     shares = table_of(DRIVERS, ["response, cause", "alone", "in all"])
     for k, response in enumerate(wanted.study.responses):
-        scale, unit = TRADE.get(response.unit, (1, response.unit))
-        numbers = [found.spread.mean[k], found.spread.sd[k], *found.spread.quantiles(SHARES)[:, k]]
-        name = f"{response.name}, {unit}" if unit else response.name
-        spreads.add_row(name, *(significant(scale * value) for value in numbers))
         shares.add_row(response.name, "", "", style="bold")
         for i in found.total[:, k].argsort()[::-1]:
             both = ((found.first, found.first_interval), (found.total, found.total_interval))
@@ -58,6 +57,49 @@ def scatter_tables(wanted: Scatter, found: Drivers) -> list[Any]:
     grouped = [f"{c}: {', '.join(n)}" for c, n in wanted.groups.items()]
     intervals = "in brackets 95 % intervals, bootstrapped"
     return [with_caption(spreads, drawn), with_caption(shares, *words, intervals, *grouped)]
+
+
+def spread_rows(wanted: Scatter, found: Drivers) -> tuple[list[str], list[list[str]]]:
+    """The distribution of every response: a heading and a row each."""
+    rows = []
+    for k, response in enumerate(wanted.study.responses):
+        scale, unit = TRADE.get(response.unit, (1, response.unit))
+        numbers = [found.spread.mean[k], found.spread.sd[k], *found.spread.quantiles(SHARES)[:, k]]
+        name = f"{response.name}, {unit}" if unit else response.name
+        rows.append([name, *(significant(scale * value) for value in numbers)])
+    return ["response", "mean", "sd", *(f"{100 * share:g} %" for share in SHARES)], rows
+
+
+def cause_rows(wanted: Scatter, found: Drivers) -> tuple[list[str], list[list[str]]]:
+    """The shares of every cause in a row, the strongest first, a column a response: alone, and in brackets in all."""
+    names = [response.name for response in wanted.study.responses]
+    order = found.total.max(axis=1).argsort()[::-1]
+    rows = [
+        [
+            found.causes[i],
+            *(
+                f"{100 * max(found.first[i, k], 0.0):.0f} % ({100 * found.total[i, k]:.0f} %)"
+                for k in range(len(names))
+            ),
+        ]
+        for i in order
+    ]
+    return ["cause", *names], rows
+
+
+def scatter_words(wanted: Scatter, found: Drivers) -> list[str]:
+    """The result in a sentence for each response."""
+    lines = []
+    for k, response in enumerate(wanted.study.responses):
+        scale, unit = TRADE.get(response.unit, (1, response.unit))
+        low, high = (significant(scale * value) for value in found.spread.quantiles((0.05, 0.95))[:, k])
+        most = found.total[:, k].argsort()[::-1][:2]
+        named = " and ".join(f"{found.causes[i]} ({100 * found.total[i, k]:.0f} %)" for i in most)
+        lines.append(
+            f"{response.name}: nine in ten lie from {low} to {high} {unit}".rstrip()
+            + f"; the strongest causes are {named}"
+        )
+    return lines
 
 
 def _share(value: float, ends: Any) -> str:

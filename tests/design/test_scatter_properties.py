@@ -124,3 +124,10 @@ def test_the_command_says_what_the_function_gives(tmp_path: Path) -> None:
     assert f"end_mass, g {1e3 * found.spread.mean[0]:.3f}" in " ".join(out.split())
     assert "128 designs" in out
     assert "wood: E, density" in out
+    assert "end_mass: nine in ten lie from " in out
+    code, out, err = call("scatter", study, "-o", tmp_path / "page.html")
+    assert (code, err) == (0, "")
+    assert out.splitlines()[-1] == f"wrote {tmp_path / 'page.html'}"
+    page = (tmp_path / "page.html").read_text(encoding="utf-8")
+    assert page.count('<path class="s') == 128
+    assert "Best designs" not in page

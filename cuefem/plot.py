@@ -1,0 +1,231 @@
+"""Figures of cues and strokes for researchers: each function draws on a matplotlib axes and returns it.
+
+>>> import matplotlib
+>>> matplotlib.use("agg")
+>>> import cuefem as cf
+>>> from cuefem import plot
+>>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+>>> scene = cf.Scene(cf.Cue((cf.Segment(0.7, 0.012, 0.021, wood),), 0.43), stroke=cf.Stroke(offset=0.3))
+>>> axes = plot.forces(scene)
+>>> axes.get_xlabel()
+'time, ms'
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from cuefem.beam.modes import modes as solved_modes
+from cuefem.contact.strike import strike, strike_modes
+from cuefem.cue import Cue, Material
+from cuefem.design.sensitivity import sensitivity
+from cuefem.quantity import check_count, check_kind
+from cuefem.scene import Outcome, Resolution, Scene
+from cuefem.tip_modes import Solved
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+__all__ = ["end_mass", "forces", "modes", "shaft", "squirt"]
+
+OFFSETS = tuple(np.round(np.arange(0.0, 0.525, 0.025), 3).tolist())
+_SOFT, _WOODY, _METAL = 1e9, (300.0, 1250.0), 2500.0  # Pa: leather and foam; kg/m3: woods, metals
+_LOCAL = 5e-4  # m: where end mass lives is drawn from behind the leather, and beyond this
+
+
+def _axes(given: Axes | None) -> Axes:
+    """The axes to draw on; a figure's own are made if none are given."""
+    if given is not None:
+        return given
+    import matplotlib.pyplot as plt
+
+    return plt.subplots(figsize=(6.4, 3.6), layout="constrained")[1]
+
+
+def _cue_of(thing: Cue | Scene) -> Cue:
+    check_kind("cue", thing, (Cue, Scene))
+    return thing.shaft if isinstance(thing, Scene) else thing
+
+
+def _colour(material: Material) -> str:
+    """Of leather, wood, carbon, metal or plastic, told by stiffness and density."""
+    if material.E < _SOFT:
+        return "#8fa3b5"
+    if material.rho > _METAL:
+        return "#b9bcc2"
+    if material.E > 5 * _SOFT and _WOODY[0] < material.rho < _WOODY[1]:
+        return "#e0c697"
+    return "#6b6f76" if material.E > 25 * _SOFT else "#f4efe1"
+
+
+def shaft(cue: Cue | Scene, ax: Axes | None = None) -> Axes:
+    """Draw a cue from its side, tip on the left; leather, wood, carbon, metal and plastics have their colours.
+
+    Parameters
+    ----------
+    cue : Cue or Scene
+        A cue of segments, or a scene with one.
+    ax : matplotlib axes, optional
+        Where to draw; by default on a new figure.
+
+    Returns
+    -------
+    matplotlib axes
+        Lengths along it in mm, diameters in mm at another scale.
+    """
+    drawn, axes = _cue_of(cue), _axes(ax)
+    for segment, x in zip(drawn.segments, drawn.nodes, strict=False):
+        ends = np.array([x, x + segment.length]) * 1e3
+        outer = np.array([segment.tip_diameter, segment.butt_diameter]) * 5e2
+        bore = np.array([segment.tip_bore, segment.butt_bore]) * 5e2
+        axes.fill_between(ends, -outer, outer, facecolor=_colour(segment.material), edgecolor="#555", linewidth=0.6)
+        if bore.any():
+            inside = "white" if segment.core is None else _colour(segment.core)
+            axes.fill_between(ends, -bore, bore, facecolor=inside, edgecolor="#555", linewidth=0.4)
+    axes.set(xlabel="from the tip, mm", ylabel="radius, mm", xlim=(0, 1e3 * drawn.length))
+    return axes
+
+
+def modes(cue: Cue | Scene, count: int = 4, ax: Axes | None = None, *, at: Resolution | None = None) -> Axes:
+    """Draw the lowest bending modes of a cue, each scaled to its largest deflection.
+
+    Parameters
+    ----------
+    cue : Cue or Scene
+        A cue of segments, or a scene, whose effects on the cue count.
+    count : int
+        How many modes.
+    ax : matplotlib axes, optional
+        Where to draw; by default on a new figure.
+    at : Resolution, optional
+        As for `cuefem.modes`.
+
+    Returns
+    -------
+    matplotlib axes
+        Places along the cue in mm; a legend names the frequencies.
+    """
+    drawn, axes = _cue_of(cue), _axes(ax)
+    check_count("count", count, 1)
+    found = solved_modes(drawn, count, effects=cue.cue_effects if isinstance(cue, Scene) else (), at=at)
+    x = np.linspace(0, drawn.length, 400)
+    for frequency, deflection in zip(found.frequencies, found.shape(x)[0], strict=True):
+        axes.plot(1e3 * x, deflection / np.abs(deflection).max(), label=f"{frequency:.0f} Hz")
+    axes.axhline(0, color="#888", linewidth=0.6)
+    axes.set(xlabel="from the tip, mm", ylabel="deflection", xlim=(0, 1e3 * drawn.length))
+    axes.legend(ncols=2)
+    return axes
+
+
+def squirt(
+    scenes: Scene | Mapping[str, Scene],
+    offsets: Sequence[float] = OFFSETS,
+    ax: Axes | None = None,
+    *,
+    at: Resolution | None = None,
+) -> Axes:
+    """Draw squirt against the offset, from coupled strikes; a line ends where the stroke miscues.
+
+    Parameters
+    ----------
+    scenes : Scene, or mapping of names to scenes
+        Each gives a line. The offset of its own stroke does not matter.
+    offsets : sequence of float
+        b/R, in (-1, 1).
+    ax : matplotlib axes, optional
+        Where to draw; by default on a new figure.
+    at : Resolution, optional
+        As for `cuefem.strike`.
+
+    Returns
+    -------
+    matplotlib axes
+        Degrees against b/R; a cross on the line of no squirt marks the first offset at which a scene miscues.
+    """
+    named = scenes if isinstance(scenes, Mapping) else {"": scenes}
+    axes = _axes(ax)
+    for name, scene in named.items():
+        check_kind(f"scenes[{name!r}]" if name else "scenes", scene, Scene)
+        tip = Solved(scene, at).tip
+        angles, missed = [], None
+        for offset in offsets:
+            outcome = strike_modes(replace(scene, stroke=replace(scene.stroke, offset=offset)), tip)
+            lost = outcome.regime == "miscue"
+            missed = offset if lost and missed is None else missed
+            angles.append(math.nan if lost else math.degrees(outcome.squirt))
+        (line,) = axes.plot(offsets, angles, label=name or None)
+        if missed is not None:
+            axes.plot([missed], [0], "x", color=line.get_color(), clip_on=False)
+    axes.set(xlabel="offset b/R", ylabel="squirt, degrees")
+    if any(named):
+        axes.legend()
+    return axes
+
+
+def forces(stroke: Scene | Outcome, ax: Axes | None = None, *, at: Resolution | None = None) -> Axes:
+    """Draw the forces on the ball in the course of a coupled strike.
+
+    Parameters
+    ----------
+    stroke : Scene or Outcome
+        A scene, which is struck, or what `cuefem.strike` returned.
+    ax : matplotlib axes, optional
+        Where to draw; by default on a new figure.
+    at : Resolution, optional
+        As for `cuefem.strike`.
+
+    Returns
+    -------
+    matplotlib axes
+        Newtons against milliseconds, along the normal and along the tangent.
+
+    Raises
+    ------
+    ValueError
+        If the outcome has no course in time, as that of `cuefem.impulse`.
+    """
+    check_kind("stroke", stroke, (Scene, Outcome))
+    outcome = strike(stroke, at) if isinstance(stroke, Scene) else stroke
+    if outcome.history is None:
+        raise ValueError("forces needs an outcome of strike; got one without a course in time")
+    axes, times = _axes(ax), np.linspace(0, outcome.duration, 400)
+    found = outcome.history(times)
+    for name, label in (("force_n", "along the normal"), ("force_t", "along the tangent")):
+        axes.plot(1e3 * times, found[name], label=label)
+    axes.axhline(0, color="#888", linewidth=0.6)
+    axes.set(xlabel="time, ms", ylabel="force on the ball, N", xlim=(0, 1e3 * outcome.duration))
+    axes.legend()
+    return axes
+
+
+def end_mass(scene: Scene, ax: Axes | None = None, *, at: Resolution | None = None) -> Axes:
+    """Draw where the stick end mass lives: the grams that one gram more at each place would add to it.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a cue of segments and without effects.
+    ax : matplotlib axes, optional
+        Where to draw; by default on a new figure.
+    at : Resolution, optional
+        As for `cuefem.end_mass`.
+
+    Returns
+    -------
+    matplotlib axes
+        Grams a gram against mm from the tip. A tip of soft leather is left out: its own modes lie too near the limit
+        of those kept.
+    """
+    check_kind("scene", scene, Scene)
+    found, axes = sensitivity(scene, at=at), _axes(ax)
+    behind = found.x > scene.shaft.leather + _LOCAL
+    axes.plot(1e3 * found.x[behind], (found.rhoA + found.axial_mass)[behind])
+    axes.axhline(0, color="#888", linewidth=0.6)
+    axes.set(xlabel="from the tip, mm", ylabel="end mass a gram adds, g", xlim=(0, 1e3 * scene.shaft.length))
+    axes.set_title(f"end mass {1e3 * found.end_mass:.3g} g", fontsize="medium")
+    return axes

@@ -1,0 +1,249 @@
+"""What a study of many designs says: the best of them, what drives the results, and where two results trade off."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from cuefem.cue import Array
+from cuefem.design import Response, Study
+from cuefem.report.quantities import TRADE, significant
+from cuefem.report.table import table_of, with_caption
+
+MOST_LEVELS = 24  # values of a column that are groups of their own; of more, each group is a range
+RANGES = 12  # so many then
+CLEAR = 0.2  # rank correlation from which on a trend is told
+SHOWN = 7  # designs of a front in the terminal
+
+DRIVES = "What drives the results: the part of the spread between designs that goes with one column alone"
+TREND = "rises, falls: how the result goes as the column grows; parts that only act together are in no column"
+
+
+@dataclass(frozen=True)
+class Table:
+    """Designs that have an answer, as columns.
+
+    values: what varied, numbers or names. results: (designs, responses).
+    """
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    responses: tuple[Response, ...]
+    numbers: Array
+    values: tuple[np.ndarray, ...]
+    results: Array
+
+    @cached_property
+    def shares(self) -> Array:
+        """Part of the variance of each response that goes with each column alone, (columns, responses)."""
+        return np.array([_shares(column, self.results) for column in self.values])
+
+    @cached_property
+    def trends(self) -> list[list[str]]:
+        """ "rises", "falls" or nothing, by column and response."""
+        return [[_trend(column, result) for result in self.results.T] for column in self.values]
+
+    def best(self, k: int) -> int:
+        """The row of the best design for a response."""
+        result = self.results[:, k]
+        return int(result.argmax() if self.responses[k].better == "higher" else result.argmin())
+
+    @property
+    def judged(self) -> list[int]:
+        """The responses of which one way is better; all of them if there is none."""
+        return [k for k, response in enumerate(self.responses) if response.better] or [*range(len(self.responses))]
+
+    @cached_property
+    def wanted(self) -> Array:
+        """The results, turned so that less is better."""
+        signs = [-1.0 if response.better == "higher" else 1.0 for response in self.responses]
+        return self.results * np.array(signs)
+
+    @cached_property
+    def pair(self) -> tuple[int, int] | None:
+        """The first response that is judged, and the one that speaks most against it; None if there is one alone."""
+        first, *others = self.judged
+        if not others:
+            return None
+        ranks = [_ranks(column) for column in self.wanted.T]
+        return first, min(others, key=lambda k: _correlation(ranks[first], ranks[k]))
+
+    @cached_property
+    def front(self) -> list[int]:
+        """Rows of which no other is better in one response of the pair and as good in the other, in their order."""
+        if self.pair is None:
+            return []
+        first, second = self.wanted[:, self.pair[0]], self.wanted[:, self.pair[1]]
+        rows, least = [], np.inf
+        for i in np.lexsort((second, first)).tolist():
+            if second[i] < least:
+                rows.append(i)
+                least = second[i]
+        return rows
+
+
+def table_of_study(study: Study, rows: Iterable[tuple[int, Sequence[Any], Sequence[Any]]]) -> Table | None:
+    """The designs that have all answers; None if there are fewer than two. rows: number, what varied, responses."""
+    good = [row for row in rows if None not in row[2] and not any(value != value for value in row[2])]
+    if len(good) < 2:
+        return None
+    columns = tuple(np.array(column) for column in zip(*(row[1] for row in good), strict=True))
+    results = np.array([row[2] for row in good], float)
+    numbers = np.array([row[0] for row in good])
+    return Table(
+        study.columns[: len(study.vary)], study.units[: len(study.vary)], study.responses, numbers, columns, results
+    )
+
+
+def _groups(column: np.ndarray) -> np.ndarray:
+    """The number of the group of each value: its own, or a range of values with as many designs as others."""
+    levels, which = np.unique(column, return_inverse=True)
+    if len(levels) <= MOST_LEVELS or column.dtype.kind not in "fi":
+        return which
+    count = max(2, min(RANGES, len(column) // 8))
+    return np.asarray(np.searchsorted(np.quantile(column, np.arange(1, count) / count), column, side="right"))
+
+
+def _shares(column: np.ndarray, results: Array) -> Array:
+    """Variance of the groups' means over the whole, (responses,); ranges less what chance gives them."""
+    which = _groups(column)
+    sizes = np.bincount(which)
+    kept = sizes > 0
+    means = np.array([np.bincount(which, weights=r)[kept] / sizes[kept] for r in results.T]).T
+    whole = results.var(axis=0)
+    between = (sizes[kept, None] * (means - results.mean(axis=0)) ** 2).sum(axis=0) / len(results)
+    share = np.divide(between, whole, out=np.zeros_like(whole), where=whole > 0)
+    groups, count = int(kept.sum()), len(results)
+    if groups < len(np.unique(column)) and count > groups:
+        share = np.clip(1 - (1 - share) * (count - 1) / (count - groups), 0.0, 1.0)
+    return np.asarray(share)
+
+
+def _ranks(values: Array) -> Array:
+    return np.unique(values, return_inverse=True)[1].astype(float)
+
+
+def _correlation(one: Array, other: Array) -> float:
+    spread = one.std() * other.std()
+    return float(np.mean((one - one.mean()) * (other - other.mean())) / spread) if spread > 0 else 0.0
+
+
+def _trend(column: np.ndarray, result: Array) -> str:
+    if column.dtype.kind not in "fi":
+        return ""
+    found = _correlation(_ranks(column), _ranks(result))
+    return "rises" if found > CLEAR else "falls" if found < -CLEAR else ""
+
+
+def heading(name: str, unit: str) -> str:
+    """A column's name with the unit that people read it in."""
+    shown = TRADE.get(unit, (1.0, unit))[1]
+    return f"{name}, {shown}" if shown else name
+
+
+def shown(value: Any, unit: str) -> str:
+    """A value of a column in that unit, without it; names as they are."""
+    if isinstance(value, str):
+        return str(value)
+    return significant(TRADE.get(unit, (1.0, unit))[0] * float(value))
+
+
+def study_record(table: Table) -> dict[str, Any]:
+    """The summary for programs, SI."""
+
+    def design(i: int) -> dict[str, Any]:
+        at = {name: column[i].item() for name, column in zip(table.names, table.values, strict=True)}
+        found = {response.name: table.results[i, k] for k, response in enumerate(table.responses)}
+        return {"design": int(table.numbers[i]), "at": at, "responses": found}
+
+    names = [response.name for response in table.responses]
+    record: dict[str, Any] = {
+        "best": {
+            table.responses[k].name: {"better": table.responses[k].better, **design(table.best(k))}
+            for k in table.judged
+        },
+        "drives": {
+            name: {
+                column: {"share": table.shares[j, k], "trend": table.trends[j][k] or None}
+                for j, column in enumerate(table.names)
+            }
+            for k, name in enumerate(names)
+        },
+    }
+    if table.pair is not None:
+        record["front"] = {"of": [names[k] for k in table.pair], "designs": [design(i) for i in table.front]}
+    return record
+
+
+def best_rows(table: Table) -> tuple[list[str], list[list[str]]]:
+    """The best design for each response: a heading and a row each."""
+    head = ["best for", "value", "all designs", "design", *map(heading, table.names, table.units)]
+    rows = []
+    for k in table.judged:
+        response, i, result = table.responses[k], table.best(k), table.results[:, k]
+        ends = " to ".join(shown(end, response.unit) for end in (result.min(), result.max()))
+        at = [shown(column[i], unit) for column, unit in zip(table.values, table.units, strict=True)]
+        which = f"{response.better} is better" if response.better else "the lowest"
+        name = f"{heading(response.name, response.unit)} ({which})"
+        rows.append([name, shown(result[i], response.unit), ends, str(table.numbers[i]), *at])
+    return head, rows
+
+
+def drive_rows(table: Table) -> tuple[list[str], list[list[str]]]:
+    """Which part of each response's spread goes with each column."""
+    rows = [
+        [
+            response.name,
+            *(f"{100 * table.shares[j, k]:.0f} % {table.trends[j][k]}".strip() for j in range(len(table.names))),
+        ]
+        for k, response in enumerate(table.responses)
+    ]
+    return ["result", *table.names], rows
+
+
+def front_rows(table: Table, most: int) -> tuple[list[str], list[list[str]]]:
+    """Designs along the front, evenly picked."""
+    assert table.pair is not None
+    picked = np.unique(np.linspace(0, len(table.front) - 1, min(most, len(table.front))).round().astype(int))
+    two = [table.responses[k] for k in table.pair]
+    head = ["design", *(heading(one.name, one.unit) for one in two), *map(heading, table.names, table.units)]
+    rows = []
+    for i in (table.front[j] for j in picked):
+        found = [shown(table.results[i, k], one.unit) for k, one in zip(table.pair, two, strict=True)]
+        at = [shown(column[i], unit) for column, unit in zip(table.values, table.units, strict=True)]
+        rows.append([str(table.numbers[i]), *found, *at])
+    return head, rows
+
+
+def front_words(table: Table) -> str:
+    """What the front is."""
+    assert table.pair is not None
+    one, other = (table.responses[k] for k in table.pair)
+    count = len(table.front)
+    if count == 1:
+        return f"{one.name} and {other.name}: one design is the best for both"
+    return f"{one.name} against {other.name}: {count} designs, of which none is beaten in both"
+
+
+def study_tables(table: Table) -> list[Any]:
+    """The summary for people."""
+    made = list[Any]()
+    for title, (head, rows), words in (
+        ("Best designs", best_rows(table), ()),
+        (DRIVES, drive_rows(table), (TREND,)),
+    ):
+        found = table_of(title, head)
+        for row in rows:
+            found.add_row(*row)
+        made.append(with_caption(found, *words))
+    if table.pair is not None:
+        head, rows = front_rows(table, SHOWN)
+        found = table_of(f"Trade-off, {front_words(table)}", head)
+        for row in rows:
+            found.add_row(*row)
+        made.append(found)
+    return made

@@ -1,0 +1,131 @@
+"""The summary of a study: best designs, drivers and fronts against what they are by definition (verification)."""
+
+from __future__ import annotations
+
+import itertools
+import json
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from cuefem.design import Response
+from cuefem.design.responses import KINDS
+from cuefem.report.study import Table
+from tests.helpers.command_line import call
+from tests.helpers.sweeps import SCENE, STUDY
+
+PAIR = (Response.of("end_mass"), Response.of("tip_stiffness"))
+
+
+def table(columns: dict[str, np.ndarray], results: np.ndarray, responses: tuple[Response, ...] = PAIR) -> Table:
+    units = ("",) * len(columns)
+    return Table(tuple(columns), units, responses, np.arange(len(results)), tuple(columns.values()), results)
+
+
+def test_shares_of_a_grid_are_those_of_its_formula() -> None:
+    """y = 3 a + b + 2 a c on a, b, c = -1, 0, 1: variances 6, 2/3 and 16/9 of a sum."""
+    a, b, c = np.array(list(itertools.product((-1.0, 0.0, 1.0), repeat=3))).T
+    y = 3 * a + b + 2 * a * c
+    found = table({"a": a, "b": b, "c": c}, np.stack([y, -b], axis=1))
+    whole = 9 * 2 / 3 + 2 / 3 + 4 * 4 / 9
+    assert found.shares[:, 0] == pytest.approx([6 / whole, 2 / 3 / whole, 0.0], rel=1e-12, abs=1e-12)
+    assert found.shares[:, 1] == pytest.approx([0, 1, 0], abs=1e-12)
+    assert [row[0] for row in found.trends] == ["rises", "rises", ""]
+    assert found.trends[1][1] == "falls"
+
+
+@pytest.mark.parametrize("count", [500, 2000])
+def test_shares_of_a_sample(count: int) -> None:
+    """y = x + z/2 has 80 and 20 per cent of them; a column that changes nothing has nothing."""
+    x, z, w = np.random.default_rng(3).random((3, count))
+    found = table({"x": x, "z": z, "w": w}, np.stack([x + z / 2, w], axis=1))
+    assert found.shares[:, 0] == pytest.approx([0.8, 0.2, 0.0], abs=2 / np.sqrt(count))
+
+
+def test_names_are_groups_of_their_own() -> None:
+    wood = np.array(["maple", "ash"] * 6)
+    found = table({"wood": wood}, np.stack([np.where(wood == "ash", 1.0, 2.0), np.arange(12.0)], axis=1))
+    assert found.shares[0, 0] == pytest.approx(1.0, rel=1e-12)
+    assert found.trends == [["", ""]]
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_front_is_what_none_beats(seed: int) -> None:
+    results = np.random.default_rng(seed).integers(0, 12, (60, 2)).astype(float)  # with ties
+    found = table({"x": np.arange(60.0)}, results)
+    wanted = results * [1, -1]  # stiffness is better if it is higher
+    beaten = [any((other <= own).all() and (other < own).any() for other in wanted) for own in wanted]
+    assert {tuple(wanted[i]) for i in found.front} == {tuple(w) for w, b in zip(wanted, beaten, strict=True) if not b}
+    assert all(not beaten[i] for i in found.front)
+    assert found.best(0) in np.flatnonzero(results[:, 0] == results[:, 0].min())
+    assert found.best(1) in np.flatnonzero(results[:, 1] == results[:, 1].max())
+
+
+def test_the_pair_is_the_strongest_trade_off() -> None:
+    x = np.linspace(0, 1, 20)
+    three = (Response.of("end_mass"), Response.of("squirt(0.3)"), Response.of("tip_stiffness"))
+    found = table({"x": x}, np.stack([x, x, x], axis=1), three)
+    assert found.pair == (0, 2)
+    assert len(found.front) == 20
+    neutral = table({"x": x}, np.stack([x, x], axis=1), (Response.of("frequency(1)"), Response.of("end_mass")))
+    assert (neutral.judged, neutral.pair) == ([1], None)
+
+
+def test_every_kind_says_which_way_is_better() -> None:
+    assert {kind.better for kind in KINDS.values()} == {"lower", "higher", ""}
+    assert Response.of("end_mass_force").better == "lower"
+
+
+class _Read(HTMLParser):
+    def __init__(self) -> None:
+        super().__init__()
+        self.counts: dict[str, int] = {}
+        self.links: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        kind = f"{tag}.{dict(attrs).get('class') or ''}"
+        self.counts[kind] = self.counts.get(kind, 0) + 1
+        self.links += [value or "" for name, value in attrs if name in ("src", "href")]
+
+
+def test_the_command_ends_with_a_summary_and_a_page(tmp_path: Path) -> None:
+    (tmp_path / "scene.toml").write_text(SCENE)
+    (tmp_path / "study.toml").write_text(STUDY)
+    code, out, err = call("sweep", tmp_path / "study.toml", "-o", tmp_path / "page.html")
+    assert (code, err) == (0, "")
+    assert out.splitlines()[0] == f"64 designs in {tmp_path / 'study.sqlite'}, drawn on {tmp_path / 'page.html'}"
+    for words in ("end_mass, g (lower is better)", "tip_stiffness, N/m (higher is better)", "falls", "Trade-off"):
+        assert words in " ".join(out.split())
+    told = json.loads(call("sweep", tmp_path / "study.toml", "--json")[1])["summary"]
+    best = told["best"]["end_mass"]
+    assert best["at"]["bore"] == pytest.approx(0.011, rel=1e-12)  # the widest of those that exist
+    assert best["at"]["tip.contact_time"] == 0.8e-3
+    assert told["drives"]["end_mass"]["bore"]["trend"] == "falls"
+    assert told["front"]["of"] == ["end_mass", "tip_stiffness"]
+    assert told["front"]["designs"][0]["design"] == best["design"]
+    page = (tmp_path / "page.html").read_text(encoding="utf-8")
+    read = _Read()
+    read.feed(page)
+    assert sum(count for kind, count in read.counts.items() if kind.startswith("path.s")) == 48  # a line a design
+    assert read.counts["svg.small"] == 3 * 3 + 1
+    assert read.links == ["data:,"]
+    assert len(page) < 500_000
+
+
+def test_a_page_is_refused_before_anything_is_computed(tmp_path: Path) -> None:
+    (tmp_path / "scene.toml").write_text(SCENE)
+    (tmp_path / "study.toml").write_text(STUDY)
+    code, _, err = call("sweep", tmp_path / "study.toml", "-o", tmp_path / "page.pdf")
+    assert (code, err) == (2, f"cuefem: {tmp_path / 'page.pdf'}: --page: must end in .html; got '.pdf'\n")
+    assert not (tmp_path / "study.sqlite").exists()
+
+
+def test_no_design_has_no_summary(tmp_path: Path) -> None:
+    (tmp_path / "scene.toml").write_text(SCENE)
+    study = STUDY.replace('low = "0 mm"', 'low = "13 mm"').replace('high = "15 mm"', 'high = "14 mm"')
+    (tmp_path / "study.toml").write_text(study.replace("count = 16", "count = 2"))
+    code, out, _ = call("sweep", tmp_path / "study.toml")
+    assert code == 0
+    assert "Best designs" not in out

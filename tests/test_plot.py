@@ -1,0 +1,86 @@
+"""Figures for researchers: axes with what the numbers say (properties)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+
+import cuefem as cf
+from cuefem.design.sensitivity import sensitivity
+
+HOLLOW = cf.load(Path(__file__).parents[1] / "meshes" / "pool_hollow.toml")
+assert isinstance(HOLLOW, cf.Cue)
+SCENE = cf.Scene(HOLLOW, cf.Ball(0.17, 0.028575), cf.Tip(0.73, 0.6, contact_time=1e-3), cf.Stroke(2.0, 0.3))
+AT = cf.Resolution(1, 16, 20)
+
+
+@pytest.fixture(autouse=True)
+def _closed(monkeypatch: pytest.MonkeyPatch) -> object:
+    plt.switch_backend("agg")
+    yield
+    plt.close("all")
+
+
+def line(axes: Axes, i: int = 0) -> tuple[np.ndarray, np.ndarray]:
+    x, y = axes.lines[i].get_data()
+    return np.asarray(x), np.asarray(y)
+
+
+def test_a_shaft_is_as_long_and_wide_as_drawn() -> None:
+    axes = cf.plot.shaft(SCENE)
+    assert axes.get_xlim()[1] == pytest.approx(736.6, rel=1e-12)
+    corners = np.concatenate([path.vertices for made in axes.collections for path in made.get_paths()])
+    assert corners[:, 1].max() == pytest.approx(21.5 / 2, rel=1e-12)
+    colours = {tuple(made.get_facecolor()[0]) for made in axes.collections}
+    assert len(colours) == 4  # leather, ferrule, wood, and the bore
+
+
+def test_modes_are_those_of_the_cue() -> None:
+    axes = cf.plot.modes(HOLLOW, 3)
+    named = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert named == [f"{f:.0f} Hz" for f in cf.modes(HOLLOW, 3).frequencies]
+    assert all(np.abs(line(axes, i)[1]).max() == 1 for i in range(3))
+    held = cf.plot.modes(cf.Scene(HOLLOW, effects=(cf.Support(0.7, 1e6),)), 3)
+    assert [text.get_text() for text in held.get_legend().get_texts()] != named
+
+
+def test_squirt_is_that_of_strikes_and_ends_at_a_miscue() -> None:
+    axes = cf.plot.squirt({"hollow": SCENE}, [0.0, 0.3, 0.8], at=AT)
+    x, y = line(axes)
+    assert x.tolist() == [0.0, 0.3, 0.8]
+    assert y[:2].tolist() == [0.0, pytest.approx(np.degrees(cf.strike(SCENE, AT).squirt), rel=1e-12)]
+    assert np.isnan(y[2])
+    assert line(axes, 1)[0].tolist() == [0.8]
+
+
+def test_forces_add_up_to_the_impulse() -> None:
+    outcome = cf.strike(SCENE, AT)
+    for axes in (cf.plot.forces(outcome), cf.plot.forces(SCENE, at=AT)):
+        for i, part in enumerate(outcome.impulse[::-1]):
+            x, y = line(axes, i)
+            assert np.trapezoid(y, 1e-3 * x) == pytest.approx(part, rel=2e-3)
+    with pytest.raises(ValueError, match="forces needs an outcome of strike"):
+        cf.plot.forces(cf.impulse(cf.Scene(cf.LumpedCue(0.5, 0.006))))
+
+
+def test_where_end_mass_lives() -> None:
+    figure, given = plt.subplots()
+    axes = cf.plot.end_mass(SCENE, given, at=AT)
+    assert axes is given
+    assert figure.axes == [axes]
+    x, y = line(axes)
+    found = sensitivity(SCENE, at=AT)
+    assert x[0] > 6  # behind the leather
+    assert y[-1] == pytest.approx(found.rhoA[-1] + found.axial_mass, rel=1e-12)
+
+
+def test_a_lumped_cue_has_no_shape() -> None:
+    for draw in (cf.plot.shaft, cf.plot.modes):
+        with pytest.raises(ValueError, match="its modes or its shape are needed"):
+            draw(cf.Scene(cf.LumpedCue(0.5, 0.006)))
+        with pytest.raises(TypeError, match="cue must be a Cue or Scene"):
+            draw(3)
