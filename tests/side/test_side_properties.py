@@ -114,7 +114,7 @@ def test_the_order_and_the_splitting_of_effects_do_not_matter() -> None:
 
 @pytest.mark.parametrize(
     "effect",
-    [PointMass(0.02, 1e-12), Support(0.02, 1e-7), Joint(0.02, 1e-14), StructuralDamping(1e-12)],
+    [PointMass(0.02, 1e-12), Support(0.02, 1e-7), Joint(0.02, 1e-10), StructuralDamping(1e-12)],
     ids=lambda effect: type(effect).__name__,
 )
 def test_an_effect_that_vanishes_is_none(effect: object) -> None:
