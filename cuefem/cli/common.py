@@ -107,11 +107,11 @@ def scene_of(
     so that what is assumed of them is told too. settled: options that have no say, for the command finds their value.
     """
     from cuefem.games import DEFAULT_GAME
-    from cuefem.io import InputError, load
+    from cuefem.io import InputError, load_stroke
     from cuefem.io.assumed import assumed, assumed_usual
     from cuefem.scene import Scene
 
-    found = load(file, material=given["material"], length_unit=given.get("length_unit"))
+    found = load_stroke(file, material=given["material"], length_unit=given.get("length_unit"))
     said = {name for name, value in given.items() if value is not None} | {*settled}
     notes = assumed(file, said, offered=given, blow=blow)
     if isinstance(found, Scene):

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from cuefem.cue import Cue
     from cuefem.quantity import Quantity
     from cuefem.scene import Scene
+    from cuefem.side.scene import SideStrike
 
 Command = Callable[..., Any]
 
@@ -102,18 +103,18 @@ def measured(file: Path, name: str, given: str, wanted: Quantity) -> float:
         raise InputError(file, name, str(error)) from None
 
 
-def with_body(found: Cue | Scene, file: Path, given: str) -> Any:
+def with_body(found: Cue | Scene | SideStrike, file: Path, given: str) -> Any:
     """The cue or scene of a file with the mass behind its segments that --body-mass says."""
+    from cuefem.cue import Cue
     from cuefem.io import InputError
     from cuefem.quantity import Quantity
-    from cuefem.scene import Scene
 
     mass = measured(file, "--body-mass", given, Quantity("kg", "[0, inf)"))
-    if not isinstance(found, Scene):
+    if isinstance(found, Cue):
         return replace(found, body_mass=mass)
-    if not found.cue.segments:
+    if not isinstance(found.cue, Cue):
         raise InputError(file, "--body-mass", "must be left out: a lumped cue is whole")
-    return replace(found, cue=replace(found.shaft, body_mass=mass))
+    return replace(found, cue=replace(found.cue, body_mass=mass))
 
 
 def usual(cue: Cue, file: Path, given: dict[str, Any]) -> Scene:

@@ -17,6 +17,7 @@ CHAPTERS = (
     "strike",
     "dead_tip",
     "end_mass",
+    "side",
     "effects",
     "measured",
     "paper",
