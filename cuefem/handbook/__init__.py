@@ -20,6 +20,7 @@ CHAPTERS = (
     "end_mass",
     "effects",
     "measured",
+    "measuring",
     "paper",
     "glossary",
     "sources",
