@@ -14,7 +14,7 @@ from cuefem.cli.designer import designer
 from cuefem.cli.files import convert, materials, schema
 from cuefem.cli.guide import guide
 from cuefem.cli.handover import animate, handover
-from cuefem.cli.measured import compare
+from cuefem.cli.measured import compare, estimate
 from cuefem.cli.optimize import optimize
 from cuefem.cli.scatter import scatter
 from cuefem.cli.scene import cost, effects, end_mass, modes, report, strike
@@ -23,6 +23,7 @@ from cuefem.cli.sweep import sweep
 from cuefem.cli.tap import tap
 from cuefem.cli.tip import tip
 from cuefem.cli.validate import validate
+from cuefem.cli.weigh import weigh
 from cuefem.slips import Unusual
 
 # Before NumPy is loaded: small dense matrices gain nothing from BLAS threads, and two of them on a busy machine can be
@@ -111,6 +112,8 @@ for _command in (
     tap,
     tip,
     compare,
+    estimate,
+    weigh,
     guide,
 ):
     main.add_command(_command)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -56,3 +57,39 @@ def compare(folder: Path, template: bool, output: Path | None, as_json: bool) ->
 
 
 UNITS = {"residual": "", "pull": "", "zero": "m", "squirt": "rad", "squirt_error": "rad"}
+
+
+@click.command(short_help="Wood, bore and tip from everything measured on a cue together.")
+@click.argument("folder", metavar="CUE_FOLDER", type=click.Path(path_type=Path))
+@click.option("--sample", type=click.IntRange(min=500), metavar="N", help="Check by N draws of a sampler (an extra).")
+@click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of the sampler.")
+@click.option("--json", "as_json", is_flag=True, help="SI numbers as JSON.")
+def estimate(folder: Path, sample: int | None, seed: int, as_json: bool) -> None:
+    """Find the wood, the bore and the tip that all measurements in CUE_FOLDER together make most likely.
+
+    The folder is that of `cuefem compare`. The priors are those of the table of materials and of the folder's
+    [[unknowns]]. Then: which measurement would tell most.
+    """
+    from cuefem.io.documented import load_documented
+    from cuefem.measured.estimate import estimate as estimated
+    from cuefem.measured.estimate import squirt_of
+    from cuefem.report.documented import estimate_record, estimate_tables, sampled_record, sampled_table
+    from cuefem.report.record import scene_record
+
+    cue, notes = load_documented(folder)
+    remark(cue.scene)
+    with blaming(folder):
+        found = estimated(cue, track=followed)
+        target = squirt_of(cue)
+        record: Any = estimate_record(found, found.next(), found.predicted(target), target.offset)
+        if sample is not None:
+            from cuefem.measured.sampler import sampled
+
+            record |= {"sampled": sampled_record(found, sampled(found, sample, seed=seed, track=followed))}
+    if as_json:
+        said = {"file": str(folder), "assumed": notes}
+        print_json({**said, "scene": scene_record(cue.scene), **record, "units": UNITS})
+        return
+    assumed = [f"assumed: {'; '.join(notes)}"] if notes else []
+    more = [sampled_table(record["sampled"])] if sample is not None else []
+    print_all([cue.name, *assumed, "", *estimate_tables(record), *more])

@@ -20,6 +20,7 @@ CHAPTERS = (
     "side",
     "effects",
     "measured",
+    "measuring",
     "paper",
     "glossary",
     "sources",

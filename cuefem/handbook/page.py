@@ -8,8 +8,10 @@ from functools import cache
 from html import escape
 from importlib.resources import files
 from string import Template
+from typing import Any
 
 from markdown_it import MarkdownIt
+from markdown_it.renderer import RendererHTML
 from markdown_it.token import Token
 
 from cuefem.handbook import chapters
@@ -80,8 +82,18 @@ def _names() -> dict[str, str]:
     return {chapter.title: chapter.name for chapter in chapters()}
 
 
+def _fence(renderer: RendererHTML, tokens: Sequence[Token], index: int, *more: Any) -> str:
+    """A block of code; one of the kind "drawing" names a drawing beside this file, which stands in its place."""
+    token = tokens[index]
+    if token.info != "drawing":
+        return RendererHTML.fence(renderer, tokens, index, *more)
+    drawn = files(__package__).joinpath(f"{token.content.strip()}.svg").read_text(encoding="utf-8")
+    return f"<figure>\n{drawn}</figure>\n"
+
+
 _MARKDOWN = MarkdownIt("commonmark", {"html": False}).enable("table")
 _MARKDOWN.add_render_rule("text", _text)
+_MARKDOWN.add_render_rule("fence", _fence)
 
 
 def _parsed(name: str, text: str) -> tuple[list[Token], list[tuple[str, str]]]:

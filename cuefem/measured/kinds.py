@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Annotated, Any, ClassVar, NamedTuple
 
 from cuefem.measured.numbers import TONES, Numbers, numbers_of
 from cuefem.quantity import CONTACT_TIME, LENGTH, Quantity, check_fields
 from cuefem.scene import Scene
+from cuefem.side.scene import Striker
 from cuefem.tap.wood import MODEL, SCALE
 
 MASS = Quantity("kg", "(0, inf)")
@@ -21,6 +22,7 @@ INCH = 0.0254
 FORCE_AND_DIAL = 0.02  # relative, of a static stiffness: a kitchen scale and a dial gauge
 STRING = 1e-3  # m, of a balance point
 GOOD_SQUIRT = 8.7e-4  # rad, 0.05 degrees: the mean of some shots on either side
+GOOD_END_MASS = 0.03  # relative, of a pendulum test: ten swings on either side
 GOOD_TIME = 0.05  # relative, of a contact time
 
 
@@ -376,5 +378,44 @@ class ContactTime(Measurement):
         return (cls(value=float(scene.contact_time), error=GOOD_TIME * float(scene.contact_time)),)
 
 
-_KINDS: tuple[type[Measurement], ...] = (Weight, Balance, Tone, Stiffness, ContactTime, Squirt, AddedMass)
+@dataclass(frozen=True, kw_only=True)
+class EndMass(Measurement):
+    """The end mass by the pendulum test (`cuefem.measured.pendulum`): that which a light ball feels from the side.
+
+    ball_mass, restitution, contact_time: of the ball on the shaft held firm, as in that test. position: of the blow,
+    from the end of the tip.
+    """
+
+    key: ClassVar[str] = "end_mass"
+    unit: ClassVar[str] = "kg"
+    words: ClassVar[str] = "end mass, by a pendulum"
+    costs: ClassVar[str] = "the mass that makes squirt is not measured as such"
+
+    value: Annotated[float, MASS]
+    error: Annotated[float, Quantity("kg", ERROR)]
+    ball_mass: Annotated[float, MASS]
+    restitution: Annotated[float, Quantity("", "(0, 1]")]
+    contact_time: Annotated[float, CONTACT_TIME]
+    position: Annotated[float, LENGTH]
+
+    @property
+    def label(self) -> str:
+        """At which contact time."""
+        return f"end mass, pendulum, {1e3 * self.contact_time:.3g} ms"
+
+    def computed(self, setup: Setup) -> float:
+        """Of a strike from the side."""
+        striker = Striker(self.ball_mass, self.restitution, contact_time=self.contact_time)
+        return setup.numbers.end_mass(striker, self.position)
+
+    @classmethod
+    def next(cls, scene: Scene) -> tuple[Measurement, ...]:
+        """A ball of 8 g that touches a wall for 1 ms, 10 mm behind the ferrule's end."""
+        place = 0.01 + numbers_of(scene).tip_height
+        blank = cls(value=1.0, error=1.0, ball_mass=8e-3, restitution=0.8, contact_time=1e-3, position=place)
+        value = blank.computed(Setup(scene))
+        return (replace(blank, value=value, error=GOOD_END_MASS * value),)
+
+
+_KINDS: tuple[type[Measurement], ...] = (Weight, Balance, Tone, Stiffness, ContactTime, EndMass, Squirt, AddedMass)
 KINDS: dict[str, type[Measurement]] = {kind.key: kind for kind in _KINDS}

@@ -15,6 +15,8 @@ from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array, Cue
 from cuefem.effects import Effect, PointMass, Support
 from cuefem.scene import Outcome, Scene, Stroke
+from cuefem.side.scene import SideStrike, Striker
+from cuefem.side.strike import side_strike
 from cuefem.tip_modes import Solved
 
 TONES = 8  # tones that are solved together
@@ -81,6 +83,12 @@ class Numbers:
         """Contact time of a head-on blow, s."""
         return float(self._strike(0.0, speed, None).duration)
 
+    def end_mass(self, striker: Striker, position: float) -> float:
+        """Effective mass, kg, that a striker feels across the shaft hung free; position: m from the end of the tip."""
+        held = tuple(effect for effect in self.scene.bare.cue_effects if effect.part_of_cue)
+        place = self.place(position, "end_mass position")
+        return side_strike(SideStrike(self.scene.shaft, striker, place, effects=held)).effective_mass
+
     def _strike(self, offset: float, speed: float | None, lump: tuple[float, float] | None) -> Outcome:
         scene = self._with_lump(lump)
         own = float(scene.stroke.speed)
@@ -89,21 +97,25 @@ class Numbers:
             self._struck[scene] = strike_modes(scene, self._solved[scene.effects].tip)
         return self._struck[scene]
 
+    def place(self, position: float, name: str) -> float:
+        """Where the drawing has what lies ``position`` m from the end of the tip, m; ValueError off the shaft."""
+        place, length = position - self.tip_height, self.scene.shaft.length
+        if not 0 <= place <= length:
+            bound = f"[{self.tip_height:.4g}, {self.tip_height + length:.4g}] m, on the shaft"
+            raise ValueError(f"{name} must be in {bound}; got {position}")
+        return place
+
     def _with_lump(self, lump: tuple[float, float] | None) -> Scene:
         scene = self.scene
         if lump is not None:
             mass, position = lump
-            place = position - self.tip_height
-            if not 0 <= place <= scene.shaft.length:
-                low, high = self.tip_height, self.tip_height + scene.shaft.length
-                bound = f"[{low:.4g}, {high:.4g}] m, on the shaft"
-                raise ValueError(f"added_mass position must be in {bound}; got {position}")
+            place = self.place(position, "added_mass position")
             scene = replace(scene, effects=(*scene.effects, PointMass(place, mass)))
         self._solved.setdefault(scene.effects, Solved(scene))
         return scene
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=128)
 def numbers_of(scene: Scene) -> Numbers:
     """What a scene's cue does, the same object for the same scene."""
     return Numbers(scene)

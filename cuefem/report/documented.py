@@ -11,6 +11,7 @@ import numpy as np
 from cuefem.measured.documented import DocumentedCue, Row, Zero
 from cuefem.measured.estimate import Estimate, Value, Worth
 from cuefem.measured.kinds import AddedMass, Squirt
+from cuefem.measured.sampler import Sample
 from cuefem.report.charts import WIDE, Axis, Chart, Curve, Tick, chart
 from cuefem.report.drawings import cue_drawing, front_drawing
 from cuefem.report.quantities import NONE, TRADE
@@ -288,3 +289,28 @@ def estimate_tables(record: Record) -> list[Any]:
         coming.add_row(worth["what"], error, worth["narrows"], left, f"± {100 * worth['squirt_left']:.1f} %")
     caption = "The most telling about squirt first; squirt then: the relative error of the squirt above that is left."
     return [with_caption(unknowns, *notes), with_caption(fit), line, "", with_caption(coming, caption)]
+
+
+def sampled_record(found: Estimate, sample: Sample) -> Record:
+    """What the sampler found, beside the estimate."""
+    names = ("missed", "correlation", "steps", "acceptance")
+    record: Record = {name: getattr(sample, name) for name in names}
+    return record | {"draws": len(sample.z), "values": [value_record(value) for value in sample.values]}
+
+
+def sampled_table(record: Record) -> Any:
+    """For people."""
+    table = table_of("By the sampler", ["unknown", "median", "68 %", "error left"])
+    for value in record["values"]:
+        middle, low, high = (text_of(value[name], None, value["unit"]) for name in ("value", "low", "high"))
+        table.add_row(value["words"], middle, f"{low} to {high}", f"{100 * value['narrowed']:.0f} %")
+    times = record["steps"] / record["correlation"]
+    lines = [
+        f"{record['draws']} draws, {times:.0f} autocorrelation times for each walker, "
+        f"{100 * record['acceptance']:.0f} % of the moves taken.",
+        f"The sampler works on an expansion to second order, which misses {record['missed']:.2f} errors of a "
+        "measurement (root mean square).",
+    ]
+    if not record["missed"] < 0.5 or times < 20:
+        lines.append("That is too much, or these are too few draws: do not rely on this table.")
+    return with_caption(table, *lines)

@@ -1,0 +1,182 @@
+"""The inverse: exact data are found again, errors cover on made-up cues, the sampler agrees, what to measure next."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from cuefem.measured.documented import DocumentedCue
+from cuefem.measured.estimate import Estimate, estimate
+from cuefem.measured.kinds import KINDS, Measurement, Stiffness, Tone, Weight
+from cuefem.measured.sampler import Expansion, sampled
+from cuefem.measured.unknowns import Prior
+from tests.helpers.documented import SCENE, blank, documented
+
+CLOSED = Prior("contact time", 0.0)  # nothing here depends on it
+WIDE = 1.959964
+
+
+def measured_as(cue: DocumentedCue, values: np.ndarray) -> DocumentedCue:
+    """The cue with other values measured."""
+    found = tuple(replace(one, value=float(value)) for one, value in zip(cue.found, values, strict=True))  # type: ignore[call-arg]
+    return replace(cue, found=found)
+
+
+def made_up(seed: int, found: tuple[Measurement, ...] = blank(), size: float = 1.0) -> tuple[DocumentedCue, np.ndarray]:
+    """A cue whose unknowns are drawn from their priors, measured with noise; and these unknowns."""
+    generator = np.random.default_rng(seed)
+    cue = documented(*found, priors=(CLOSED,))
+    z = size * generator.normal(size=len(cue.unknowns))
+    exact = cue.computed(z)
+    # errors follow the values, as a person would state them
+    scaled = tuple(
+        replace(one, value=float(value), error=one.error * float(value) / one.measured)  # type: ignore[call-arg,attr-defined]
+        for one, value in zip(cue.found, exact, strict=True)
+    )
+    cue = replace(cue, found=scaled)
+    noise = generator.normal(size=len(exact)) * [one.sd for one in cue.found]
+    return measured_as(cue, exact + noise), z
+
+
+def test_exact_data_are_found_again() -> None:
+    """With small errors the priors do not count, and four unknowns come back from seven values."""
+    small = tuple(replace(one, error=1e-3 * one.error) for one in blank() if not isinstance(one, Tone))  # type: ignore[call-arg,attr-defined]
+    cue = documented(*small, priors=(CLOSED, Prior("G", 0.0)))
+    z = np.array([0.7, -0.4, 0.5])
+    found = estimate(measured_as(cue, cue.computed(z)))
+    assert [unknown.name for unknown in cue.unknowns] == ["E", "rho", "bore"]
+    assert found.converged
+    assert found.z == pytest.approx(z, abs=2e-3)
+    for value, unknown, each in zip(found.values, cue.unknowns, z, strict=True):
+        assert value.value == pytest.approx(unknown.value(float(each)), rel=1e-3)
+        assert value.low < value.value < value.high
+        assert value.narrowed < 0.05
+
+
+def test_a_linear_case_is_that_of_the_textbook() -> None:
+    """One weight, one unknown: the mean of prior and measurement by their weights."""
+    one = Weight(value=0.110, error=5e-3)
+    cue = documented(one, priors=(CLOSED, *(Prior(name, 0.0) for name in ("E", "G", "bore"))))
+    (unknown,) = cue.unknowns
+    drawn = float(cue.computed()[0])
+    slope = drawn * unknown.spread
+    found = estimate(cue)
+    # ln(mass) is linear in z; the mass nearly so
+    assert found.z[0] == pytest.approx(slope * (0.110 - drawn) / (slope**2 + 5e-3**2), rel=0.1)
+    assert found.covariance[0, 0] == pytest.approx(1 / (1 + (slope / 5e-3) ** 2), rel=0.2)
+
+
+def test_a_closed_unknown_is_held_and_an_open_one_opened() -> None:
+    assert [one.name for one in documented(*blank()).unknowns] == ["E", "G", "rho", "bore", "contact time"]
+    (taper,) = (one for one in documented(priors=(Prior("taper", 0.2),)).unknowns if one.name == "taper")
+    assert (taper.usual, taper.spread) == (pytest.approx(9e-3), 0.2)
+    (bore,) = (one for one in documented(priors=(Prior("bore", low=5e-3, high=8e-3),)).unknowns if one.name == "bore")
+    assert bore.value(1.0) == pytest.approx(8e-3)
+    assert bore.value(-1.0) == pytest.approx(5e-3)
+
+
+@pytest.mark.parametrize("name", ["E", "G", "rho", "bore", "taper", "contact time"])
+def test_every_unknown_is_put_where_it_belongs(name: str) -> None:
+    """A changed unknown reads back, and at its usual value nothing changes."""
+    from cuefem.measured.kinds import Setup
+    from cuefem.measured.unknowns import KINDS as UNKNOWNS
+
+    cue = documented(priors=(Prior("taper", 0.1),))
+    (unknown,) = (one for one in cue.unknowns if one.name == name)
+    moved = unknown.setup(Setup(SCENE), 0.5).scene
+    assert UNKNOWNS[name].of(moved) == pytest.approx(unknown.value(0.5), rel=1e-12)
+    back = replace(unknown, usual=unknown.usual).put(Setup(moved), unknown.usual).scene
+    assert UNKNOWNS[name].of(back) == pytest.approx(unknown.usual, rel=1e-12)
+
+
+def pulls_of(count: int) -> np.ndarray:
+    """How far the unknowns of made-up cues lie off their estimates, in the stated errors."""
+    made = []
+    for seed in range(count):
+        cue, z = made_up(seed)
+        found = estimate(cue)
+        assert found.converged
+        made.append((found.z - z) / np.sqrt(np.diag(found.covariance)))
+    return np.array(made)
+
+
+def test_errors_of_made_up_cues_are_of_the_stated_size() -> None:
+    """Twelve cues of four unknowns: their mean square is 1 to three standard deviations, sqrt(2/48) each."""
+    assert np.mean(pulls_of(12) ** 2) == pytest.approx(1, abs=0.62)
+
+
+@pytest.mark.heavy
+def test_intervals_cover_the_unknowns_of_made_up_cues() -> None:
+    """A hundred cues of four unknowns drawn from the priors: 68 and 95 % intervals."""
+    pulls = np.abs(pulls_of(100))
+    assert 0.60 <= np.mean(pulls < 1) <= 0.76
+    assert 0.90 <= np.mean(pulls < WIDE) <= 0.99
+
+
+@pytest.fixture(scope="module")
+def found() -> Estimate:
+    return estimate(made_up(5, size=0.7)[0])
+
+
+def test_the_sampler_agrees_with_the_estimate(found: Estimate) -> None:
+    """Two ways to the same posterior, one by its width at the top and one by draws."""
+    sample = sampled(found, 10_000, seed=2)
+    sd = np.sqrt(np.diag(found.covariance))
+    assert sample.missed < 0.1
+    assert sample.steps > 20 * sample.correlation
+    assert sample.z.mean(axis=0) == pytest.approx(found.z, abs=float(0.25 * sd.max()))
+    assert np.abs(sample.z.mean(axis=0) - found.z) / sd == pytest.approx(0, abs=0.25)
+    assert sample.z.std(axis=0) == pytest.approx(sd, rel=0.15)
+    for ours, theirs in zip(found.values, sample.values, strict=True):
+        assert (theirs.name, theirs.unit, theirs.before) == (ours.name, ours.unit, ours.before)
+        assert theirs.low < theirs.value < theirs.high
+
+
+def test_the_sampler_is_exact_on_its_own_target(found: Estimate) -> None:
+    """The mean of draws is that of the posterior on a grid, in the two unknowns of a smaller problem."""
+    cue = documented(
+        Weight(value=0.105, error=2e-3),
+        Tone(mode=1, value=97.0, error=1.0),
+        priors=(CLOSED, Prior("G", 0.0), Prior("bore", 0.0)),
+    )
+    small = estimate(cue)
+    expansion = Expansion.about(small)
+    axis = [np.linalg.norm(small.covariance[i, i] ** 0.5) * np.linspace(-6, 6, 161) + small.z[i] for i in range(2)]
+    grid = np.stack(np.meshgrid(*axis, indexing="ij"), axis=-1)
+    measured, sd = np.array([[one.measured, one.sd] for one in cue.found]).T
+    cost = np.sum(((measured - expansion.values(grid.reshape(-1, 2))) / sd) ** 2, axis=-1) + np.sum(
+        grid.reshape(-1, 2) ** 2, axis=-1
+    )
+    weight = np.exp(-0.5 * (cost - cost.min()))
+    mean = weight @ grid.reshape(-1, 2) / weight.sum()
+    spread = np.sqrt(weight @ (grid.reshape(-1, 2) - mean) ** 2 / weight.sum())
+    sample = sampled(small, 10_000, seed=3)
+    assert (sample.z.mean(axis=0) - mean) / spread == pytest.approx(0, abs=0.1)
+    assert sample.z.std(axis=0) == pytest.approx(spread, rel=0.1)
+
+
+def test_the_sampler_is_deterministic(found: Estimate) -> None:
+    one, same, other = (sampled(found, 600, seed=seed).z for seed in (7, 7, 8))
+    assert np.array_equal(one, same)
+    assert not np.array_equal(one, other)
+
+
+def test_what_a_next_measurement_would_tell_is_what_it_tells() -> None:
+    """The predicted narrowing by a stiffness is that of an estimate with it, at the same values."""
+    cue, _ = made_up(9, blank()[:4], size=0.5)
+    before = estimate(cue)
+    worths = before.next()
+    assert {type(worth.measurement) for worth in worths} <= set(KINDS.values())
+    told = next(w for w in worths if isinstance(w.measurement, Stiffness) and w.measurement.free_length)
+    value = before.predicted(told.measurement)[0]
+    more = replace(told.measurement, value=value)  # type: ignore[call-arg]
+    after = estimate(replace(cue, found=(*cue.found, more)))
+    ratio = np.sqrt(np.diag(after.covariance) / np.diag(before.covariance))
+    words = [unknown.words for unknown in cue.unknowns]
+    assert told.narrows == words[int(np.argmin(ratio))]
+    assert told.left == pytest.approx(float(ratio.min()), rel=0.05)
+    gain = 0.5 * np.log2(np.linalg.det(before.covariance) / np.linalg.det(after.covariance))
+    assert told.bits == pytest.approx(gain, rel=0.05)
+    assert [worth.squirt_left for worth in worths] == sorted(worth.squirt_left for worth in worths)
