@@ -91,10 +91,10 @@ def tap(
 
 def _as_drawn(scene: Scene, file: Path, given: dict[str, Any]) -> Scene:
     """The scene of FILE; of a cue alone the scene with the cue as it is drawn, its leather included."""
-    from cuefem.io import load
+    from cuefem.io import load_stroke
     from cuefem.scene import Scene
 
-    held = load(file, material=given["material"], length_unit=given["length_unit"])
+    held = load_stroke(file, material=given["material"], length_unit=given["length_unit"])
     if isinstance(held, Scene):
         return scene
     return Scene(held if given["body_mass"] is None else with_body(held, file, given["body_mass"]))

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from cuefem.cli.common import BALLS, blaming, measured, offset_option, print_all, print_json, scene_of, shape_options
+from cuefem.cli.common import blaming, print_all, print_json, scene_of, shape_options
+from cuefem.cli.strokes import Games, measured, offset_option
 
 if TYPE_CHECKING:
     from cuefem.measured.pendulum import Bounces, PendulumTest, Told, Weighed
@@ -59,7 +60,7 @@ WAYS = ("swing", "height", "speed", "frames")
     "--position", metavar="LENGTH", default="10 mm", show_default=True, help="Of the blow, from the tip's end."
 )
 @click.option("--json", "as_json", is_flag=True, help="SI numbers as JSON.")
-@click.option("--ball", type=click.Choice(tuple(BALLS)), help="The cue ball, for squirt; by default the scene's.")
+@click.option("--ball", type=Games(), help="The cue ball, for squirt; by default the scene's.")
 @shape_options
 @offset_option
 def weigh(plan: bool, end_mass: str | None, file: Path | None, as_json: bool, **given: Any) -> None:
@@ -163,10 +164,11 @@ def _squirt(
 ) -> tuple[Told | None, float | None, list[str]]:
     """What the end mass says about squirt: through the drawing, or as a lumped cue's; and what was assumed."""
     from cuefem.measured.pendulum import lumped_squirt, squirt_told
-    from cuefem.scene import Ball, Stroke, Tip
+    from cuefem.games import GAMES
+    from cuefem.scene import Stroke, Tip
 
     if file is None:
-        ball = Ball(*BALLS[given["ball"] or "pool"])
+        ball = GAMES[given["ball"] or "pool"].ball
         offset = 0.3 if given["offset"] is None else _read("--offset", given["offset"], "", "(-1, 1)")
         cue, kind = 0.54, given["ball"] or "pool"
         body = given["body_mass"]
