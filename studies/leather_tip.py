@@ -21,6 +21,7 @@ import numpy as np
 
 from cuefem import AxialWaves, Cue, LeatherTip, PointMass, Resolution, Scene, Stroke, Tip, strike
 from cuefem.contact import leather as contact
+from cuefem.contact.tip_forces import TipForces
 from cuefem.effects import Effect
 from studies import common, pool
 from studies import measured_shafts as shafts
@@ -180,7 +181,7 @@ def with_modes(modes: int) -> float:
 @cache
 def with_tolerance(tolerance: float) -> float:
     """Squirt at b/R 0.375 with another tolerance of the steps, deg, and no longest one but that of the contact."""
-    with patch.multiple(contact, TOLERANCE=tolerance, LONGEST=0, FIRST=0):
+    with patch.object(TipForces, "tolerance", tolerance), patch.multiple(contact, LONGEST=0, FIRST=0):
         return math.degrees(strike(pool.leather_scene(maple())).squirt)
 
 

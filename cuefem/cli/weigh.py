@@ -163,8 +163,8 @@ def _squirt(
     test: PendulumTest, weighed: Weighed, file: Path | None, given: dict[str, Any]
 ) -> tuple[Told | None, float | None, list[str]]:
     """What the end mass says about squirt: through the drawing, or as a lumped cue's; and what was assumed."""
-    from cuefem.measured.pendulum import lumped_squirt, squirt_told
     from cuefem.games import GAMES
+    from cuefem.measured.pendulum import lumped_squirt, squirt_told
     from cuefem.scene import Stroke, Tip
 
     if file is None:
