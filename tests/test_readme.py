@@ -1,4 +1,7 @@
-"""The README's words are kept: its commands run, its files load, its Python runs, its paths are there."""
+"""The README's words are kept, and those of the handbook's chapters on use.
+
+Their commands run, their files load, their Python runs, their paths are there.
+"""
 
 import os
 import re
@@ -19,10 +22,16 @@ from cuefem.io.paraview import shaft_surface
 from tests.helpers.command_line import call
 
 ROOT = Path(__file__).parents[1]
-TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+# the README, and the chapters of the handbook that hold what it has no room for
+MORE = [
+    (ROOT / "cuefem" / "handbook" / f"{name}.md").read_text(encoding="utf-8")
+    for name in ("files", "working", "accuracy")
+]
+TEXT = "\n".join([README, *MORE])
 BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```", TEXT, flags=re.MULTILINE | re.DOTALL)
 SHAFT = cuefem.Cue((cuefem.Segment(0.7, 0.0128, 0.021, cuefem.Material(13.9e9, 1.2e9, 705.0)),), 0.42)
-LINKS = re.findall(r"\]\(([^)#]+)\)", TEXT)
+LINKS = re.findall(r"\]\(([^)#]+)\)", README)
 
 
 def blocks(kind: str) -> list[str]:
@@ -30,6 +39,10 @@ def blocks(kind: str) -> list[str]:
 
 
 FIRST, OWN_SHAFT, *COMMANDS = blocks("sh")
+
+
+def test_a_newcomer_reads_it_at_once() -> None:
+    assert len(README.splitlines()) < 150
 
 
 def test_every_block_is_of_a_kind_that_runs() -> None:

@@ -26,8 +26,8 @@ def _known(context: click.Context, parameter: click.Parameter, chapter: str | No
 def guide(chapter: str | None, output: Path | None, in_terminal: bool) -> None:
     """Open the handbook in the browser: the physics, a glossary, and what each effect does.
 
-    CHAPTER opens (or prints) one chapter: start, frame, inverse_mass, impulse_solver, beam, strike, dead_tip, end_mass,
-    side, effects, measured, measuring, paper, glossary or sources.
+    CHAPTER opens (or prints) one chapter: start, files, working, frame, inverse_mass, impulse_solver, beam, strike,
+    dead_tip, end_mass, side, effects, measured, measuring, accuracy, paper, glossary or sources.
     """
     from cuefem.handbook import chapters
     from cuefem.io import InputError, save_page

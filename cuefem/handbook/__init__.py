@@ -10,6 +10,8 @@ __all__ = ["CHAPTERS", "LINES", "Chapter", "chapters", "effect_lines"]
 # The chapters' files in the order of reading.
 CHAPTERS = (
     "start",
+    "files",
+    "working",
     "frame",
     "inverse_mass",
     "impulse_solver",
@@ -21,6 +23,7 @@ CHAPTERS = (
     "effects",
     "measured",
     "measuring",
+    "accuracy",
     "paper",
     "glossary",
     "sources",

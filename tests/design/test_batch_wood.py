@@ -1,4 +1,4 @@
-"""What batches of wooden shafts are worth at any contact time: shafts of the study derived again, and what the README
+"""What batches of wooden shafts are worth at any contact time: shafts of the study derived again, and what the handbook
 says of it (regression)."""
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ def test_some_shafts_alone() -> None:
     assert disagreements(committed, batch_wood.single()) == []
 
 
-def test_the_readme_says_what_was_measured() -> None:
-    """The README's median, 95 % and largest of the recommended resolution, in per cent, are the worst family's."""
+def test_the_handbook_says_what_was_measured() -> None:
+    """The handbook's median, 95 % and largest of the recommended resolution, in per cent, are the worst family's."""
     rows = [line.split(" | ") for line in COMMITTED.splitlines() if line.startswith("| `Resolution(1, 30, 18)`")]
     worst = [max(float(row[k].rstrip(" |")) for row in rows) for k in (3, 4, 5)]
-    readme = (STUDIES.parent / "README.md").read_text(encoding="utf-8")
-    found = re.search(r"within ([\d.]+) % in the median,\s+([\d.]+) % in 95 of 100, ([\d.]+) % at worst", readme)
+    said = (STUDIES.parent / "cuefem" / "handbook" / "working.md").read_text(encoding="utf-8")
+    found = re.search(r"within ([\d.]+) % in the median,\s+([\d.]+) % in 95 of 100, ([\d.]+) % at worst", said)
     assert found is not None
     assert [float(part) for part in found.groups()] == [pytest.approx(value / 10, abs=0.051) for value in worst]

@@ -1,4 +1,4 @@
-"""The committed table of default_accuracy.py: a sample of its rows derived again, and what the README says of it."""
+"""The committed table of default_accuracy.py: a sample of its rows derived again, and what is said of it."""
 
 import sys
 from pathlib import Path
