@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -72,7 +73,7 @@ class Mesh:
     unknowns: int
     order: int
 
-    @property
+    @cached_property
     def sizes(self) -> Array:
         """Lengths of the elements, m."""
         return np.diff(self.nodes)

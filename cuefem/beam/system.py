@@ -27,7 +27,8 @@ class System:
     K, M: (unknowns, unknowns), arrays or sparse (`suits_dense`). rigid: (unknowns, r), the exact
     rigid motions that stay free (two for a free cue). dashpots: diagonal of the viscous matrix, None without one.
     fixed: unknowns that a clamp takes out. shift: a square frequency of the order of the lowest mode's, rad2/s2.
-    section: at the Gauss points, arrays (elements, q). springs: the part of K's diagonal that effects add. links: the
+    section: at the Gauss points, arrays (elements, q). roots: (elements, 2 q, u), whose squares roots' roots are the
+    elements' stiffness (`stiffness_roots`). springs: the part of K's diagonal that effects add. links: the
     springs of joints. tied: (n, 2) pairs of unknowns (tip side, butt side) that a joint keeps equal.
     """
 
@@ -40,6 +41,7 @@ class System:
     fixed: NDArray[np.intp]
     shift: float
     section: Section
+    roots: Array
     springs: Array
     links: Links
     tied: NDArray[np.intp]
@@ -60,16 +62,19 @@ class System:
     def strains(self, vectors: Array) -> Array:
         """Strains of unknowns ``vectors`` (unknowns, k), times roots of stiffness, (rows, k): K = strains' strains.
 
-        For a rigid motion the strains are zero to rounding, while K times it is rounding times the stiffest element.
+        First those of bending and of shear at the Gauss points, element by element, then of springs and links. For a
+        rigid motion the strains are zero to rounding, while K times it is rounding times the stiffest element.
         So energies taken from strains keep low frequencies exact beside a stiff short piece.
         """
-        mesh, t = self.mesh, table(self.mesh.order)
-        own = vectors[mesh.first[:, None] + np.arange(len(t.w))]  # (elements, unknowns of an element, k)
-        bent, sheared = weighted_strains(own, self.section, mesh.sizes, self.length, mesh.order)
+        mesh, u = self.mesh, self.roots.shape[2]
+        own = vectors[mesh.first[:, None] + np.arange(u)]  # (elements, unknowns of an element, k)
+        strained = (self.roots @ own).reshape(-1, own.shape[2])
         held = np.flatnonzero(self.springs)
+        if len(held) + len(self.links.stiffness) == 0:
+            return np.asarray(strained)
         sprung = np.sqrt(self.springs[held])[:, None] * vectors[held]
         jumps = np.sqrt(self.links.stiffness)[:, None] * (vectors[self.links.after] - vectors[self.links.before])
-        return np.concatenate([bent.reshape(-1, own.shape[2]), sheared.reshape(-1, own.shape[2]), sprung, jumps])
+        return np.concatenate([strained, sprung, jumps])
 
     def tip_displacement(self, vectors: Array) -> tuple[Array, Array]:
         """Deflection w and rotation theta of unknowns ``vectors`` (unknowns, k) at the tip: two arrays (k,)."""
@@ -104,6 +109,26 @@ def weighted_strains(own: Array, section: Section, sizes: Array, length: Any, or
     return bent, (slope - turned) * np.sqrt(section.kGA * weights)[..., None]
 
 
+def stiffness_roots(section: Section, sizes: Array, length: float, order: int) -> Array:
+    """The weighted strains of each element's unknowns, (elements, 2 q, u): its stiffness is roots' roots.
+
+    Curvatures, then shears, at the Gauss points; ``length`` scales theta.
+    """
+    t, h = table(order), sizes[:, None, None]
+    weights = t.weights * sizes[:, None]
+    bent = np.sqrt(section.EI * weights)[..., None] * (t.dtheta.T / (h * length))
+    sheared = np.sqrt(section.kGA * weights)[..., None] * (t.dw.T / h - t.theta.T / length)
+    return np.concatenate([bent, sheared], axis=1)
+
+
+def mass_roots(section: Section, sizes: Array, length: float, order: int) -> Array:
+    """As `stiffness_roots`, for the mass: deflections, then rotations."""
+    t, weights = table(order), table(order).weights * sizes[:, None]
+    moved = np.sqrt(section.rhoA * weights)[..., None] * t.w.T
+    turned = (np.sqrt(section.rhoI * weights) / length)[..., None] * t.theta.T
+    return np.concatenate([moved, turned], axis=1)
+
+
 def sections(cue: Cue, mesh: Mesh) -> Section:
     """Section properties at the Gauss points of every element: arrays (elements, q)."""
     s = mesh.offset[:, None] + mesh.sizes[:, None] * table(mesh.order).points
@@ -136,7 +161,7 @@ def assemble(
     splits = tuple(x for effect in effects for x in effect.splits)
     mesh = mesh_cue(cue, elements=elements, order=order, positions=positions, splits=splits)
     section = sections(cue, mesh)
-    stiff, heavy = element_matrices(section, mesh.sizes, cue.length, order)
+    roots, heavy = (each(section, mesh.sizes, cue.length, order) for each in (stiffness_roots, mass_roots))
     terms = Terms(mesh, cue)
     for effect in effects:
         effect.add_to(terms)
@@ -151,19 +176,24 @@ def assemble(
 
     springs, links = point(terms.stiffness), terms.links(scale)
     dense = suits_dense(mesh.unknowns, count)
-    K = gather(mesh.first, mesh.unknowns, stiff, point=springs, links=links, dense=dense)
-    M = gather(mesh.first, mesh.unknowns, heavy, point=point(terms.mass), dense=dense)
+    K = gather(mesh.first, mesh.unknowns, squared(roots), point=springs, links=links, dense=dense)
+    M = gather(mesh.first, mesh.unknowns, squared(heavy), point=point(terms.mass), dense=dense)
     fixed = np.array(sorted(terms.fixed), dtype=np.intp)
     rigid = _rigid_motions(mesh, cue.length, springs, fixed)
     dashpots = point(terms.dashpot) if terms.dashpot else None
     shift = _shift(cue, section, mesh.sizes)
-    return System(mesh, K, M, rigid, cue.length, dashpots, fixed, shift, section, springs, links, terms.ties())
+    return System(mesh, K, M, rigid, cue.length, dashpots, fixed, shift, section, roots, springs, links, terms.ties())
 
 
 def _shift(cue: Cue, section: Section, sizes: Array) -> float:
     # 4.73^4 EI/(rhoA L^4), the lowest free mode of the uniform rod with the mean stiffness and mass
     stiffness, mass = (float(np.sum(sizes @ part)) for part in (section.EI, section.rhoA))
     return 500 * stiffness / mass / cue.length**4
+
+
+def squared(roots: Array) -> Array:
+    """roots' roots of every element: exactly symmetric."""
+    return roots.swapaxes(-1, -2) @ roots
 
 
 def suits_dense(unknowns: int, count: int) -> bool:

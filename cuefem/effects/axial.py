@@ -78,7 +78,7 @@ def rod_modes(
     K, M = _matrices(system, masses, front)
     shift = _shift(system)
     count = min(_modes_below(system, below) + len(masses), K.shape[0] - 2)
-    vectors = lowest(K, M, count=count + 1, shift=shift)
+    _, vectors = lowest(K, M, count=count + 1, shift=shift)
     vectors *= np.where(vectors[0] < 0, -1.0, 1.0)
     flexible = RodModes(_whole(vectors[:, 1:], system, front), system)  # the first is the rigid motion
     kept = vectors[:, : 1 + int(np.sum(flexible.omega <= below))]
