@@ -58,6 +58,7 @@ LEAST_RESTITUTION = 0.1
 PAST = 1e-10
 # The patch has just opened where the compression is below this part of the law's greatest.
 OPENED = 1e-6
+RULES = compiled.Rules((EVEN, OPENING), (MANY, MANY_WEIGHTS))
 _LAST = np.eye(NODES)[-1]
 _ACROSS, _SPIN, _ROTATION = slice(0, 2 * NODES), slice(2 * NODES, 3 * NODES), slice(3 * NODES, 4 * NODES)
 
@@ -103,7 +104,7 @@ class Leather:
         # last values alone
         self.series, self.series_step = np.zeros((TAYLOR, 4)), 0.0
         found = None if terms.levers or terms.tip.partial_slip else library()  # levers and rings are Python's
-        self.steps = None if found is None else compiled.Steps(found, self, (EVEN, OPENING), (MANY, MANY_WEIGHTS))
+        self.steps = None if found is None else compiled.Steps(found, self, RULES)
         self.kernel = "python" if self.steps is None else "c"
 
     def _rows(self) -> Array:

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cuefem.contact.strike import strike_modes
+from cuefem.cue import Cue
 from cuefem.quantity import check_count, check_kind
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import Solved, default_resolution, turning
@@ -82,20 +83,24 @@ class _Job(NamedTuple):
 
 def _jobs(scenes: tuple[Scene, ...], at: Resolution | None) -> Iterator[_Job]:
     groups: dict[Any, list[int]] = {}
+    resolutions: dict[tuple[Cue, float], Resolution] = {}
     for i, scene in enumerate(scenes):
         with _Numbered(i):
-            groups.setdefault(_modes_of(scene, at), []).append(i)
+            groups.setdefault(_modes_of(scene, at, resolutions), []).append(i)
     for rows in groups.values():
         solved = Solved(scenes[rows[0]], at)
         for start in range(0, len(rows), CHUNK):
             yield _Job(solved, tuple((i, scenes[i]) for i in rows[start : start + CHUNK]))
 
 
-def _modes_of(scene: Scene, at: Resolution | None) -> tuple[Any, ...]:
-    """What the tip modes of a scene depend on."""
+def _modes_of(scene: Scene, at: Resolution | None, resolutions: dict[tuple[Cue, float], Resolution]) -> tuple[Any, ...]:
+    """What the tip modes of a scene depend on; resolutions: the default ones known so far."""
     if scene.lumped is not None:
         return (scene.lumped,)
-    resolution = default_resolution(scene) if at is None else at
+    resolution = at
+    if resolution is None:
+        timed = scene.shaft, float(scene.contact_time)
+        resolution = resolutions.get(timed) or resolutions.setdefault(timed, default_resolution(scene))
     return scene.cue, scene.cue_effects, float(scene.axial_mass), turning(scene), resolution
 
 

@@ -11,7 +11,7 @@ enum { T, N, SPIN, ROTATION };
 enum { V_T, V_N, F_T, F_N, DEPTH, ANGLE, MOTIONS };
 enum { ENDED = 0, FULL = 1, LATE = 2, NEEDS = 3, STUCK = 4, TOO_DEEP = 5, REFUSED = 6 };
 enum { TOUCH, COMPRESSED, APART, RELOADED, TURNED, GRIPPED, SLIPPED, SLIPPED_BACK, NO_EVENT };
-enum { RULES = 2, HALVINGS = 40, FORCE_TERMS = 16 };
+enum { HALVINGS = 40, TOGETHER = 4 }; /* of a table; loops side by side */
 
 /* `Rule`: between, weights (NODES - 1, POINTS); values (NODES - 1, POINTS, NODES); integral, waves (NODES, NODES); slopes
    (TAYLOR, NODES); many, many_weights: Gauss points on (-1, 1). */
@@ -65,7 +65,7 @@ struct course {
 struct leg {
     const struct rule *rules;
     const struct free_motion *free;
-    const struct response *responses; /* (RULES, HALVINGS); step is zero where it is missing */
+    const struct response *responses; /* (rules, HALVINGS); step is zero where it is missing */
     const struct law *law;
     const struct bounds *bounds;
     const struct contact *contact;
@@ -174,6 +174,27 @@ INLINE double dot(const double *one, const double *other, int count)
     return total;
 }
 
+/* Products of the rows of a matrix with a vector, four at a time, which keeps four sums going side by side. */
+INLINE void products(const double *restrict rows, int count, int width, const double *restrict vector,
+                     double *restrict found, int apart)
+{
+    int r = 0;
+    for (; r + TOGETHER <= count; r += TOGETHER) {
+        const double *restrict row = rows + (size_t)r * width;
+        double sums[TOGETHER] = {0};
+        for (int i = 0; i < width; i++) {
+            sums[0] += row[i] * vector[i];
+            sums[1] += row[width + i] * vector[i];
+            sums[2] += row[2 * width + i] * vector[i];
+            sums[3] += row[3 * width + i] * vector[i];
+        }
+        for (int q = 0; q < TOGETHER; q++)
+            found[(size_t)(r + q) * apart] = sums[q];
+    }
+    for (; r < count; r++)
+        found[(size_t)r * apart] = dot(rows + (size_t)r * width, vector, width);
+}
+
 struct wave {
     const struct rule *rule;
     double terms[NODES];
@@ -274,17 +295,21 @@ FAST EXPORTED int cuefem_leather_respond(const struct free_motion *free, const s
                 turns(free, (rule->times[i] - rule->between[gap * POINTS + p]) * step, own + (size_t)p * wide);
             turns(free, (rule->times[i] - rule->times[gap]) * step, hop);
             for (int j = 0; j < NODES; j++) {
-                double *restrict real = driven + (size_t)j * wide, *restrict imaginary = real + modes;
+                double *real = driven + (size_t)j * wide, *imaginary = real + modes;
                 for (int k = 0; k < modes; k++) {
                     double before = real[k];
                     real[k] = before * hop[k] - imaginary[k] * hop[modes + k];
                     imaginary[k] = before * hop[modes + k] + imaginary[k] * hop[k];
                 }
-                for (int p = 0; p < POINTS; p++) {
-                    double weight = step * rule->weights[gap * POINTS + p] * rule->values[(gap * POINTS + p) * NODES + j];
+                for (int p = 0; p < POINTS; p += TOGETHER) {
                     const double *restrict turn = own + (size_t)p * wide;
+                    double weights[TOGETHER];
+                    for (int q = 0; q < TOGETHER; q++)
+                        weights[q] = step * rule->weights[gap * POINTS + p + q] *
+                                     rule->values[(gap * POINTS + p + q) * NODES + j];
                     for (int k = 0; k < wide; k++)
-                        real[k] += weight * turn[k];
+                        real[k] += weights[0] * turn[k] + weights[1] * turn[k + wide] + weights[2] * turn[k + 2 * wide] +
+                                   weights[3] * turn[k + 3 * wide];
                 }
             }
         }
@@ -297,9 +322,8 @@ FAST EXPORTED int cuefem_leather_respond(const struct free_motion *free, const s
                 row[modes + k] = -(read[0] * turned[modes + k] + read[1] * turned[k]);
             }
             double *answer = response->answer + (size_t)(r * NODES + i) * ALL;
-            for (int m = 0; m < ROWS && i; m++)
-                for (int j = 0; j < NODES; j++)
-                    answer[m * NODES + j] = dot(pairs + (size_t)(r * ROWS + m) * wide, driven + (size_t)j * wide, wide);
+            for (int j = 0; j < NODES && i; j++)
+                products(pairs + (size_t)r * ROWS * wide, ROWS, wide, driven + (size_t)j * wide, answer + j, NODES);
         }
     }
     memcpy(response->last, driven, sizeof(double) * NODES * wide);
@@ -317,13 +341,9 @@ struct solved {
 FAST static void times_matrix(const double *restrict matrix, const double *restrict vector, int rows,
                               const double *restrict plus, double *restrict found)
 {
-    for (int r = 0; r < rows; r++) {
-        const double *restrict row = matrix + (size_t)r * ALL;
-        double total = 0;
-        for (int i = 0; i < ALL; i++)
-            total += row[i] * vector[i];
-        found[r] = total + plus[r];
-    }
+    products(matrix, rows, ALL, vector, found, 1);
+    for (int r = 0; r < rows; r++)
+        found[r] += plus[r];
 }
 
 static void guess(const struct leg *leg, const struct rule *rule, double step, double *loads)
@@ -589,7 +609,7 @@ FAST EXPORTED int cuefem_leather_leg(const struct leg *leg, const struct hold *h
     struct course *course = leg->course;
     int modes = leg->free->modes, dampers = leg->free->dampers, rows = ROWS + dampers;
     double *own = leg->room + 4 * (size_t)modes, *damped = own + (size_t)rows * NODES;
-    if (leg->law->force_terms > FORCE_TERMS || bounds->shortest >= HALVINGS)
+    if (bounds->shortest >= HALVINGS)
         return REFUSED;
     for (;;) {
         if (!(course->time < until))
@@ -611,8 +631,7 @@ FAST EXPORTED int cuefem_leather_leg(const struct leg *leg, const struct hold *h
                 course->needed = opens;
                 return NEEDS;
             }
-            for (int r = 0; r < rows * NODES; r++)
-                own[r] = dot(response->own + (size_t)r * 2 * modes, leg->coordinates, 2 * modes);
+            products(response->own, rows * NODES, 2 * modes, leg->coordinates, own, 1);
             if (!settle(leg, hold, rule, response, own, &step)) {
                 course->halvings += 2;
                 continue;

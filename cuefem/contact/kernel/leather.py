@@ -116,19 +116,32 @@ class Record(NamedTuple):
     motion: Array
 
 
+class Rules:
+    """The rules of steps, as `struct rule` of leather.c has them; many: Gauss points on (-1, 1) and weights."""
+
+    def __init__(self, rules: Sequence[Rule], many: tuple[Array, Array]) -> None:
+        self._kept = list[Array]()
+        self.told = (_Rule * len(rules))(*(self._of(rule, many) for rule in rules))
+        self.nodes = len(rules[0].times)
+
+    def _of(self, rule: Rule, many: tuple[Array, Array]) -> Any:
+        counts = len(rule.times), rule.between.shape[1], len(many[0]), len(rule.slopes)
+        parts = (rule.times, rule.integral, rule.waves, rule.between, rule.values, rule.weights, rule.slopes, *many)
+        self._kept += (kept := [np.ascontiguousarray(part) for part in parts])
+        return _Rule(rule.power, *counts, *map(pointer, kept))
+
+
 class Steps:
     """The compiled steps of one contact; it keeps the arrays that they work on."""
 
-    def __init__(
-        self, library: ctypes.CDLL, leather: Leather, rules: Sequence[Rule], many: tuple[Array, Array]
-    ) -> None:
+    def __init__(self, library: ctypes.CDLL, leather: Leather, rules: Rules) -> None:
         self.call, self.leather, self._kept = _functions(library), leather, list[Any]()
         free, law = leather.free, leather.law
-        self.modes, self.dampers, self.nodes = len(free.rates), len(leather.damping), len(rules[0].times)
+        self.modes, self.dampers, self.nodes = len(free.rates), len(leather.damping), rules.nodes
         readings = np.concatenate([free.readings, leather.damping])
         series = [np.array(terms) for terms in (law.force_terms, law.give_terms)]
         contact = leather.contact.laws
-        self.rules = (_Rule * len(rules))(*(self._rule(rule, many) for rule in rules))
+        self.rules = rules.told
         self.free = _Free(self.modes, self.dampers, *map(self._at, (free.rates, readings, free.drives)))
         self.law = _Law(
             *map(len, series), *map(self._at, series), law.restitution, law.most, law.steady or 0.0, law.first_ratio
@@ -136,7 +149,7 @@ class Steps:
         self.contact = _Contact(
             contact.friction, leather.size, leather.impulse, leather.dome, leather.reach, contact.time, contact.speed
         )
-        self.responses = (_Response * (len(rules) * HALVINGS))()
+        self.responses = (_Response * (len(rules.told) * HALVINGS))()
         self.course, self.bounds = _Course(), _Bounds()
         self.room = np.empty(self.call.room(self.modes, self.dampers))
         self.coordinates, self.losses = np.empty(2 * self.modes), np.empty(3 + self.dampers)
@@ -150,11 +163,6 @@ class Steps:
         """Where an array's numbers stand; it is kept."""
         self._kept.append(np.ascontiguousarray(array))
         return pointer(self._kept[-1])
-
-    def _rule(self, rule: Rule, many: tuple[Array, Array]) -> ctypes.Structure:
-        counts = len(rule.times), rule.between.shape[1], len(many[0]), len(rule.slopes)
-        parts = (rule.times, rule.integral, rule.waves, rule.between, rule.values, rule.weights, rule.slopes, *many)
-        return _Rule(rule.power, *counts, *map(self._at, parts))
 
     def leg(self, hold: Hold, coordinates: Complex, until: float, near: float, numbers: Numbers) -> Taken:
         """Step on to the first end of a leg, or to ``until``, s; the contact's own numbers follow."""
