@@ -12,7 +12,7 @@ heavy ball, the dome raises the end mass by the part
     (1 + e) m_n r/(T sqrt(EI rhoA)) * int P'(x)/sqrt(1 - x) dx / int (K P - 1)/sqrt(1 - x) dx
 
 x = t/T, P the normal impulse so far over its total. The end mass itself grows like sqrt(T), this part like 1/T.
-At the end LeatherTip, beside dome and shear that are told its contact time. Writes dome.md and dome.svg beside itself;
+The end of the page is dome_leather.py's. Writes dome.md and dome.svg beside itself;
 takes about 60 s.
 """
 
@@ -33,11 +33,9 @@ from cuefem.contact.strike import strike_modes
 from cuefem.endmass.drives import equivalent_end_mass, small_offset_slope, stick
 from cuefem.endmass.undamped import StickLimit
 from cuefem.tip_modes import tip_modes_of
-from studies import common, pool
+from studies import common, dome_leather, pool
 
 RADII = (0.0, 3e-3, 6e-3, 9e-3, 12e-3)
-LEATHER_NAMES, LEATHER_RADII = ("pool_maple", "pool_hollow", "carbon"), (7e-3, 9.5e-3, 12e-3, 15e-3, np.inf)
-HARDNESSES = (40e6, 100e6, 140e6, 400e6)  # Pa; a flat tip of the softest is pressed further than its law is known
 USUAL = 9e-3  # a dime's 8.95 mm
 OFFSETS = (0.3, 0.5)
 MODES = (60, 120, 240)
@@ -45,15 +43,6 @@ TIMES = (0.5e-3, 0.7e-3, 1.0e-3, 1.4e-3, 2.0e-3, 2.8e-3)
 WOODEN = "pool_maple, wooden tip"
 NAMES = ("kim", "pool_maple", WOODEN, "pool_hollow", "carbon", "whole_cue")
 MEASURED = (5.8e-3, 14e-3)  # kg: end masses measured on real cues, handbook: Effective end mass
-# What LeatherTip should say, from leather_tip.md, written down before it was run here. Not to be changed.
-PREDICTED = {
-    "pool_maple, b/R 0.3, dome 7 mm over 9.5 mm": "0.89",
-    "pool_maple, b/R 0.3, dome 12 mm over 9.5 mm": "1.08",
-    "pool_maple, b/R 0.3, flat over 9.5 mm": "1.25",
-    "pool_hollow, b/R 0.3, flat over 9.5 mm": "1.35",
-    "pool_maple, dome 9.5 mm, E 400 over 40 MPa": "1.01",
-    "pool_maple, flat, E 400 over 40 MPa": "1.15",
-}
 
 
 class Case(NamedTuple):
@@ -250,101 +239,6 @@ def report() -> str:
     return "\n\n".join(part.rstrip("\n") for part in parts) + "\n"
 
 
-@cache
-def leather(name: str, radius: float, E: float = pool.LEATHER.E) -> float:
-    """Squirt, deg, at OFFSETS[0] and 2 m/s with LeatherTip, its dome of a radius, m; inf: flat."""
-    return float(np.degrees(cf.strike(_with_leather(name, radius, E)).squirt))
-
-
-@cache
-def _with_leather(name: str, radius: float, E: float) -> cf.Scene:
-    tip = replace(pool.LEATHER, dome_radius=radius, E=E)
-    shaft = pool.without_leather(cue(name))
-    return cf.Scene(shaft, stroke=cf.Stroke(pool.SPEED, OFFSETS[0]), effects=(tip,))
-
-
-@cache
-def patchwork(name: str, radius: float, E: float = pool.LEATHER.E) -> float:
-    """Squirt, deg, of dome and shear with the contact time that LeatherTip has head on; flat: no dome."""
-    time = float(_with_leather(name, radius, E).contact_time)
-    effects = (TipDome(radius), pool.SHEAR) if np.isfinite(radius) else (pool.SHEAR,)
-    return float(np.degrees(cf.strike(replace(common.scene(cue(name), time, OFFSETS[0]), effects=effects)).squirt))
-
-
-def _radius(radius: float) -> str:
-    return f"{1e3 * radius:g} mm" if np.isfinite(radius) else "flat"
-
-
-def leather_table() -> str:
-    """Squirt of the patchwork and of LeatherTip against the radius."""
-    rows = [
-        [name, model.__name__.replace("leather", pool.MODERN), *(f"{model(name, r):.2f}" for r in LEATHER_RADII)]
-        for name in LEATHER_NAMES
-        for model in (patchwork, leather)
-    ]
-    return common.table(["cue", "tip", *map(_radius, LEATHER_RADII)], rows)
-
-
-def hardness_table() -> str:
-    """Squirt against the leather's modulus, round and flat."""
-    rows = [
-        [name, _radius(radius), *_by_hardness(name, radius), f"{hard(name, radius):.2f}"]
-        for name in LEATHER_NAMES
-        for radius in (pool.LEATHER.dome_radius, np.inf)
-    ]
-    return common.table(["cue", "dome", *(f"{E / 1e6:g} MPa" for E in HARDNESSES), "hardest over softest"], rows)
-
-
-def _by_hardness(name: str, radius: float) -> list[str]:
-    found = [f"{leather(name, radius, E):.2f}" for E in _hardnesses(radius)]
-    return ["too soft"] * (len(HARDNESSES) - len(found)) + found
-
-
-def _hardnesses(radius: float) -> tuple[float, ...]:
-    return HARDNESSES if np.isfinite(radius) else HARDNESSES[1:]
-
-
-def hard(name: str, radius: float) -> float:
-    """Squirt with the hardest leather over that with the softest."""
-    moduli = _hardnesses(radius)
-    return leather(name, radius, moduli[-1]) / leather(name, radius, moduli[0])
-
-
-def leather_found() -> dict[str, str]:
-    """What was found, by the names of PREDICTED."""
-    usual = pool.LEATHER.dome_radius
-    over = [leather("pool_maple", r) / leather("pool_maple", usual) for r in (7e-3, 12e-3, np.inf)]
-    over.append(leather("pool_hollow", np.inf) / leather("pool_hollow", usual))
-    numbers = (*over, hard("pool_maple", usual), hard("pool_maple", np.inf))
-    found = {name: f"{value:.2f}" for name, value in zip(PREDICTED, numbers, strict=True)}
-    last = list(PREDICTED)[-1]
-    return {**found, last: f"{found[last]} from 100 MPa"}
-
-
-def leather_text() -> str:
-    """What LeatherTip says of the dome."""
-    flat = [leather(n, np.inf) / leather(n, pool.LEATHER.dome_radius) - 1 for n in LEATHER_NAMES]
-    apart = [leather(n, r) / patchwork(n, r) - 1 for n in LEATHER_NAMES for r in LEATHER_RADII[:-1]]
-    return (
-        f"With LeatherTip a rounder tip squirts less, too. A flat tip, which the ball meets on its rim, squirts "
-        f"{100 * min(flat):.0f} to {100 * max(flat):.0f} % more than one with a dome of 9.5 mm. The patchwork cannot "
-        "say that: without its dome the force acts on the axis. With a dome the two differ by "
-        f"{100 * min(apart):+.0f} to {100 * max(apart):+.0f} %. That squirt does not depend on the hardness of the "
-        "tip is a matter of the dome: with 9.5 mm it changes by a factor of "
-        f"{', '.join(f'{hard(n, 9.5e-3):.2f} ({n})' for n in LEATHER_NAMES)} from 40 to 400 MPa, with a flat tip by "
-        f"{', '.join(f'{hard(n, np.inf):.2f}' for n in LEATHER_NAMES)} from 100 to 400 MPa."
-    )
-
-
-def leather_report() -> str:
-    """The end of the page: LeatherTip."""
-    parts = [f"## LeatherTip beside the patchwork: squirt at b/R 0.3 and {pool.SPEED:g} m/s, degrees", leather_text()]
-    parts += [leather_table(), "## LeatherTip: squirt against the leather's modulus, degrees", hardness_table()]
-    parts += ["## LeatherTip: what was predicted and found", "Predicted before it was run here."]
-    parts += [common.predictions(PREDICTED, ("found", leather_found()))]
-    return "\n\n".join(part.rstrip("\n") for part in parts) + "\n"
-
-
 def figures(folder: Path) -> None:
     """Draw into ``folder``."""
     with common.figure(Path(folder) / "dome.svg", (1, 3), (14, 4.2)) as (left, right, third):
@@ -364,20 +258,12 @@ def figures(folder: Path) -> None:
         right.set(xlabel="contact time T, ms", ylabel="end mass that has the squirt, b → 0, g", ylim=(0, None))
         right.set(title="A dome takes out the contact time")
         right.legend(fontsize=8)
-        for i, name in enumerate(LEATHER_NAMES):
-            for model, style in ((leather, "o-"), (patchwork, "s:")):
-                found = [model(name, r) for r in LEATHER_RADII]
-                label = f"{name}, {pool.MODERN if model is leather else 'patchwork'}"
-                third.plot(range(len(found)), found, style, color=f"C{i}", label=label)
-        third.set_xticks(range(len(LEATHER_RADII)), [_radius(r) for r in LEATHER_RADII])
-        third.set(xlabel="dome", ylabel="squirt at b/R 0.3, degrees", ylim=(0, None))
-        third.set(title=f"{pool.MODERN} beside the patchwork")
-        third.legend(fontsize=8, loc="lower left")
+        dome_leather.draw(third)
 
 
 def main() -> None:
     """Write the table and the figure."""
-    (common.STUDIES / "dome.md").write_text(f"{report()}\n{leather_report()}", encoding="utf-8")
+    (common.STUDIES / "dome.md").write_text(f"{report()}\n{dome_leather.report()}", encoding="utf-8")
     figures(common.STUDIES)
 
 

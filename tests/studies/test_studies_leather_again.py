@@ -7,7 +7,7 @@ import pytest
 
 from cuefem.design import evaluate
 from cuefem.validation import disagreements
-from studies import added_mass_leather, dome, effects, low_squirt, measured_leather, pool, scatter
+from studies import added_mass_leather, dome_leather, effects, low_squirt, measured_leather, pool, scatter
 from studies import measured_shafts as shafts
 from studies.common import STUDIES
 
@@ -15,7 +15,7 @@ MODERN = pool.MODERN
 PREDICTIONS = {
     "measured": measured_leather.PREDICTED,
     "added_mass": added_mass_leather.PREDICTED,
-    "dome": dome.PREDICTED,
+    "dome": dome_leather.PREDICTED,
     "effects": effects.PREDICTED,
     "scatter": scatter.PREDICTED,
     "low_squirt": low_squirt.PREDICTED,
@@ -92,7 +92,7 @@ def test_shares_of_the_small_clip() -> None:
 
 
 def test_dome() -> None:
-    for tip, model in (("patchwork", dome.patchwork), (MODERN, dome.leather)):
+    for tip, model in (("patchwork", dome_leather.patchwork), (MODERN, dome_leather.leather)):
         cells = row("dome", "pool_maple", tip)
         assert (cells[3], cells[6]) == (f"{model('pool_maple', 9.5e-3):.2f}", f"{model('pool_maple', np.inf):.2f}")
 
