@@ -213,6 +213,7 @@ def test_modes_assume_nothing_of_ball_and_blow(tmp_path: Path) -> None:
     shaft.write_text("x [mm],diameter [mm]\n0,12\n700,21\n")
     told = as_json("modes", str(shaft))["assumed"]
     assert [words.split()[0] for words in told] == ["material", "no"]
+    assert set(as_json("modes", str(shaft))["scene"]) == {"cue", "effects"}
     assert any(words.startswith("carom ball") for words in as_json("end-mass", str(shaft))["assumed"])
 
 
