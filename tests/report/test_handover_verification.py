@@ -1,8 +1,9 @@
 """What is handed to pooltool: its own squirt from our number, and the JSON's words (verification).
 
 pooltool pins a development build of its graphics; for the test that wants it (0.6.0), in an environment of its own
-whose Python POOLTOOL_PYTHON names: pip install --no-deps pooltool-billiards, and then what it imports: numpy scipy attrs rich numba
-numpy-quaternion panda3d panda3d-gltf panda3d-simplepbr pillow cattrs msgpack msgpack-numpy pyyaml h5py h11.
+whose Python POOLTOOL_PYTHON names: pip install --no-deps pooltool-billiards, and then what it imports: numpy scipy
+attrs rich numba numpy-quaternion panda3d panda3d-gltf panda3d-simplepbr pillow cattrs msgpack msgpack-numpy pyyaml
+h5py h11.
 """
 
 from __future__ import annotations
