@@ -161,7 +161,8 @@ def show(
         about, found = scene_record(scene), results(scene)
     if given["as_json"]:
         said = {"file": str(file), "assumed": notes, "unusual": unusual(scene)}
-        print_json({**said, "scene": about, **found, "units": UNITS})
+        struck = about if blow else {name: value for name, value in about.items() if name in ("cue", "effects")}
+        print_json({**said, "scene": struck, **found, "units": UNITS})
         return
     lines = [f"{file.name}: {cue_line(plain(about['cue']))}"]
     if scene.effects:

@@ -16,6 +16,7 @@ from cuefem.cli.common import (
     blaming,
     file_options,
     followed,
+    print_all,
     print_json,
     scene_of,
 )
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
 @click.option(
     "--drive", type=Definitions("A.31"), default="A.31", show_default=True, help="Which definition of the end mass."
 )
+@click.option("--length", metavar="LENGTH", help="Of the whole cue; by default the drawing's, or 58 in behind a shaft.")
 @click.option(
     "-o",
     "--output",
@@ -42,10 +44,16 @@ if TYPE_CHECKING:
     metavar="CUE.json",
     help="Write to a file; with --json print it too.",
 )
-def handover(file: Path, whom: str, drive: Any, output: Path | None, as_json: bool, **given: Any) -> None:
-    """Print the end mass for a simulator as JSON: pooltool's CueSpecs, what the number means and how well it works."""
+def handover(
+    file: Path, whom: str, drive: Any, length: str | None, output: Path | None, as_json: bool, **given: Any
+) -> None:
+    """Print the end mass for a simulator as JSON: pooltool's CueSpecs, what the number means and how well it works.
+
+    With -o it prints the end mass against the offset for people.
+    """
     from cuefem.io import InputError, write_whole
-    from cuefem.report.handover import pooltool_record
+    from cuefem.quantity import LENGTH
+    from cuefem.report.handover import handover_table, pooltool_record
     from cuefem.report.record import plain
     from cuefem.report.unusual import unusual
 
@@ -53,12 +61,16 @@ def handover(file: Path, whom: str, drive: Any, output: Path | None, as_json: bo
         raise InputError(output, "--output", f"must end in .json; got {output.suffix!r}")
     scene, notes = scene_of(file, given)
     with blaming(file, given):
-        found = pooltool_record(file.stem, scene, drive=drive)
+        whole = None if length is None else measured(file, "--length", length, LENGTH)
+        found = pooltool_record(file.stem, scene, drive=drive, length=whole)
     found["notes"] += [f"assumed: {note}" for note in notes] + [f"unusual: {remark}" for remark in unusual(scene)]
     text = json.dumps(plain(found), indent=2, allow_nan=False, ensure_ascii=False)
     if output is not None:
         write_whole(output, lambda temporary: temporary.write_text(text + "\n", encoding="utf-8"))
-    click.echo(text if output is None or as_json else f"wrote {output}")
+    if output is None or as_json:
+        click.echo(text)
+    else:
+        print_all([f"wrote {output}", "", handover_table(found)])
 
 
 @click.command(short_help="Mode shapes and the moving cue for ParaView.")

@@ -12,17 +12,23 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from rich.console import Group
 
 from cuefem.beam.tip import TipModes
 from cuefem.contact.strike import strike_modes
 from cuefem.endmass.drives import DEFINITIONS, formula_of
-from cuefem.report.quantities import units_of
+from cuefem.report.quantities import NONE, units_of, written
 from cuefem.report.record import Record
+from cuefem.report.table import table_of, with_caption
 from cuefem.scene import Scene
 from cuefem.squirt import alciatore_a31, alciatore_a31_mass_ratio
 from cuefem.tip_modes import Solved
 
 OFFSETS = (0.1, 0.2, 0.3, 0.4, 0.5)
+FASTER = (0.5, 1.0, 2.0)  # times the stroke's speed: at which the end mass is given too
+SAME = 1e-6  # relative: end masses that are one
+WHOLE_CUE = 1.4732  # m, 58 in: pool cues, and pooltool's own
+SHORTEST_CUE = 1.2  # m: a drawing that is shorter is a shaft's
 POOLTOOL_INERTIA = 0.4  # its 5/2
 NICKEL = 0.0106045  # m, the dome of pooltool's own cue
 
@@ -36,18 +42,21 @@ SIGNS = (
 UNITS = units_of("end_mass", "length", "radius", "squirt") | {"M": "kg", "m": "kg", "R": "m"}
 
 
-def pooltool_record(name: str, scene: Scene, *, drive: str = "A.31") -> Record:
+def pooltool_record(name: str, scene: Scene, *, drive: str = "A.31", length: float | None = None) -> Record:
     """pooltool's CueSpecs of a scene's cue, SI, what their end mass means, and what squirt it gives beside ours.
 
-    drive: which end mass is handed over. ValueError if it does not exist, as "A.31" head on and in a miscue.
+    length: of the whole cue, m; by default that of the drawing if it is a whole cue's. drive: which end mass is handed
+    over. ValueError if it does not exist, as "A.31" head on and in a miscue.
     """
     solved = Solved(scene)
     masses, reasons = _end_masses(solved)
     if drive in reasons:
         raise ValueError(f"end mass {drive!r} does not exist here: {reasons[drive]}")
+    worth = _worth(scene, solved.tip, masses[drive])
+    by_offset = _by_offset(scene, solved.tip, worth)
     return {
         "for": "pooltool",
-        "CueSpecs": _cue_specs(name, scene) | {"end_mass": masses[drive]},
+        "CueSpecs": _cue_specs(name, scene, length) | {"end_mass": masses[drive]},
         "BallParams": {"m": scene.ball.mass, "R": scene.ball.radius},
         "end_mass": {
             "drive": drive,
@@ -59,27 +68,37 @@ def pooltool_record(name: str, scene: Scene, *, drive: str = "A.31") -> Record:
             "reasons": reasons,
         },
         "signs": SIGNS,
-        "notes": _notes(scene),
-        "squirt": _worth(scene, solved.tip, masses[drive]),
+        "notes": [*_notes(scene, length), by_offset["words"]],
+        "squirt": worth,
+        "by_offset": by_offset,
         "units": UNITS,
     }
 
 
-def _cue_specs(name: str, scene: Scene) -> Record:
+def _cue_specs(name: str, scene: Scene, length: float | None) -> Record:
     specs: Record = {"brand": name, "M": scene.axial_mass}
     if scene.cue.segments:
         first, last = scene.cue.segments[0], scene.cue.segments[-1]
-        specs |= {"length": scene.shaft.length}
-        specs |= {"shaft_radius_at_tip": first.tip_diameter / 2, "shaft_radius_at_butt": last.butt_diameter / 2}
+        specs |= {"length": length or (scene.shaft.length if _is_whole(scene) else WHOLE_CUE)}
+        specs |= {"shaft_radius_at_tip": first.tip_diameter / 2}
+        specs |= {"shaft_radius_at_butt": last.butt_diameter / 2} if _is_whole(scene) else {}
+    elif length:
+        specs |= {"length": length}
     return specs | {"tip_radius": scene.dome_radius or NICKEL}
 
 
-def _notes(scene: Scene) -> list[str]:
+def _is_whole(scene: Scene) -> bool:
+    """Whether the drawing is a whole cue's, from tip to bumper."""
+    return not scene.shaft.body_mass or scene.shaft.length >= SHORTEST_CUE
+
+
+def _notes(scene: Scene, length: float | None) -> list[str]:
     notes = ["pooltool takes [A.31], an instantaneous stroke without friction's limit: it knows no miscue"]
     if scene.lumped is not None:
         notes.append("a lumped cue has no length and no radii: pooltool's own stay")
-    elif scene.shaft.body_mass:
-        notes.append("length and shaft_radius_at_butt are those of the file's segments; M is the whole cue's")
+    elif not _is_whole(scene):
+        usual = "" if length else ", 58 in, for the file draws the shaft alone (--length gives another)"
+        notes.append(f"length and M are the whole cue's{usual}; shaft_radius_at_butt stays pooltool's own")
     if not scene.dome_radius:
         notes.append("tip_radius: pooltool's own, a nickel's; the scene has no TipDome")
     table = scene.contact_terms.table
@@ -115,7 +134,7 @@ def _a31_end_mass(scene: Scene, tip: TipModes) -> float:
     outcome = strike_modes(scene, tip)
     if outcome.regime == "miscue":
         raise ValueError(f"the stroke miscues at offset {offset}; got no end mass")
-    return float(scene.ball.mass / alciatore_a31_mass_ratio(offset, outcome.squirt, inertia=POOLTOOL_INERTIA))
+    return _mass_of(scene, float(offset), float(outcome.squirt))
 
 
 def _worth(scene: Scene, tip: TipModes, end_mass: float | None) -> Record:
@@ -129,3 +148,67 @@ def _worth(scene: Scene, tip: TipModes, end_mass: float | None) -> Record:
         "regimes": [outcome.regime for outcome in struck],
         "pooltool": theirs.tolist(),
     }
+
+
+def _by_offset(scene: Scene, tip: TipModes, worth: Record) -> Record:
+    """The end mass that [A.31] takes at each offset, kg, None in a miscue, at several speeds."""
+    speeds = [factor * float(scene.stroke.speed) for factor in FASTER]
+    masses = [_masses(scene, tip, worth) if factor == 1 else _masses_at(scene, tip, factor) for factor in FASTER]
+    own = masses[FASTER.index(1.0)]
+    apart = [
+        abs(other / mass - 1)
+        for row in masses
+        for mass, other in zip(own, row, strict=True)
+        if mass is not None and other is not None
+    ]
+    matters = max(apart, default=0.0) > SAME
+    slow, fast = (f"{speed:g}" for speed in (speeds[0], speeds[-1]))
+    words = (
+        f"the end mass depends on the speed, by up to {100 * max(apart):.2g} % from {slow} to {fast} m/s: "
+        "by_offset has it at three speeds"
+        if matters
+        else "the speed drops out: end mass and squirt are the same at every speed, for the tip's law is linear"
+    )
+    return {
+        "offsets": list(OFFSETS),
+        "end_mass": own,
+        "speed_matters": matters,
+        "speeds": speeds,
+        "end_mass_at_speeds": masses,
+        "words": words,
+    }
+
+
+def _masses_at(scene: Scene, tip: TipModes, factor: float) -> list[float | None]:
+    """As `_masses` at another speed; a tip whose contact time changes with it is solved anew."""
+    other = replace(scene, stroke=replace(scene.stroke, speed=factor * scene.stroke.speed))
+    return _masses(other, Solved(other).tip if scene.contact_terms.tip is not None else tip)
+
+
+def _masses(scene: Scene, tip: TipModes, worth: Record | None = None) -> list[float | None]:
+    """The end masses of [A.31] for the squirt of the coupled strike at each of `OFFSETS`."""
+    if worth is None:
+        struck = [strike_modes(replace(scene, stroke=replace(scene.stroke, offset=b)), tip) for b in OFFSETS]
+        worth = {"coupled": [one.squirt for one in struck], "regimes": [one.regime for one in struck]}
+    return [
+        None if regime == "miscue" or squirt <= 0 else _mass_of(scene, offset, squirt)
+        for offset, squirt, regime in zip(OFFSETS, worth["coupled"], worth["regimes"], strict=True)
+    ]
+
+
+def _mass_of(scene: Scene, offset: float, squirt: float) -> float:
+    return float(scene.ball.mass / alciatore_a31_mass_ratio(offset, squirt, inertia=POOLTOOL_INERTIA))
+
+
+def handover_table(record: Record) -> Group:
+    """The equivalent end mass against the offset, for people."""
+    found = record["by_offset"]
+    speeds = found["speeds"] if found["speed_matters"] else [found["speeds"][FASTER.index(1.0)]]
+    rows = found["end_mass_at_speeds"] if found["speed_matters"] else [found["end_mass"]]
+    heads = [f"end mass at {speed:g} m/s" for speed in speeds] if found["speed_matters"] else ["end mass"]
+    table = table_of("Equivalent end mass for [A.31]", ["offset b/R", *heads, "squirt"], text_columns=0)
+    for i, offset in enumerate(found["offsets"]):
+        masses = [NONE if row[i] is None else f"{1e3 * row[i]:.3f} g" for row in rows]
+        missed = record["squirt"]["regimes"][i] == "miscue"
+        table.add_row(f"{offset:g}", *masses, "miscue" if missed else written("squirt", record["squirt"]["coupled"][i]))
+    return with_caption(table, found["words"])

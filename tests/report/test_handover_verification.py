@@ -1,14 +1,18 @@
 """What is handed to pooltool: its own squirt from our number, and the JSON's words (verification).
 
-pooltool pins a development build of its graphics; for the two tests that want it (0.6.0): pip install --no-deps
-pooltool-billiards, and then what it imports: numba numpy-quaternion panda3d panda3d-gltf panda3d-simplepbr pillow
-cattrs msgpack msgpack-numpy pyyaml h5py h11.
+pooltool pins a development build of its graphics; for the test that wants it (0.6.0), in an environment of its own
+whose Python POOLTOOL_PYTHON names: pip install --no-deps pooltool-billiards, and then what it imports: numpy scipy
+attrs rich numba numpy-quaternion panda3d panda3d-gltf panda3d-simplepbr pillow cattrs msgpack msgpack-numpy pyyaml
+h5py h11.
 """
 
 from __future__ import annotations
 
 import json
 import math
+import os
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -26,6 +30,7 @@ KIM = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 782.3284
 SCENE = cf.Scene(KIM, cf.Ball(0.17, 0.028575), cf.Tip(0.75, 0.7, 1e-3), cf.Stroke(2.0, 0.3), (cf.TipDome(0.0095),))
 # CueSpecs of pooltool 0.6.0, in its order
 CUE_SPECS = ("brand", "M", "length", "tip_radius", "shaft_radius_at_tip", "shaft_radius_at_butt", "end_mass")
+OF_A_SHAFT = {*CUE_SPECS} - {"shaft_radius_at_butt"}  # a file that draws the shaft alone
 
 
 def pooltool_squirt(mass: float, end_mass: float, a: float) -> float:
@@ -83,10 +88,9 @@ def test_each_end_mass_and_its_squirt(drive: Any) -> None:
 
 def test_the_json_of_the_command(scene: Path, tmp_path: Path) -> None:
     found = as_json(scene)
-    assert tuple(sorted(found["CueSpecs"])) == tuple(sorted(CUE_SPECS))
+    assert set(found["CueSpecs"]) == OF_A_SHAFT
     specs = found["CueSpecs"]
-    expected = {"M": KIM.mass, "length": 0.7, "tip_radius": 0.0095}
-    expected |= {"shaft_radius_at_tip": 0.006, "shaft_radius_at_butt": 0.0105}
+    expected = {"M": KIM.mass, "length": 1.4732, "tip_radius": 0.0095, "shaft_radius_at_tip": 0.006}
     assert {name: specs[name] for name in expected} == expected
     assert specs["brand"] == "scene"
     assert found["end_mass"]["drive"] == "A.31"
@@ -94,10 +98,51 @@ def test_the_json_of_the_command(scene: Path, tmp_path: Path) -> None:
     assert (found["units"]["end_mass"], found["units"]["length"]) == ("kg", "m")
     assert "alpha(a) = -squirt" in found["signs"]
     status, out, err = call("handover", scene, "--for", "pooltool", "-o", tmp_path / "cue.json")
-    assert (status, out, err) == (0, f"wrote {tmp_path / 'cue.json'}\n", "")
+    assert (status, out.splitlines()[0], err) == (0, f"wrote {tmp_path / 'cue.json'}", "")
+    assert "the speed drops out" in out
     assert json.loads((tmp_path / "cue.json").read_text(encoding="utf-8")) == found
     assert as_json(scene, "-o", tmp_path / "again.json", "--json") == found
     assert (tmp_path / "again.json").read_bytes() == (tmp_path / "cue.json").read_bytes()
+
+
+@pytest.mark.parametrize("offset", [0.1, 0.3, 0.5])
+def test_the_end_mass_against_the_offset_gives_our_squirt_at_each(offset: float) -> None:
+    found = pooltool_record("kim", SCENE)["by_offset"]
+    mass = found["end_mass"][found["offsets"].index(offset)]
+    struck = cf.strike(replace(SCENE, stroke=replace(SCENE.stroke, offset=offset)))
+    assert -pooltool_squirt(0.17, mass, a=offset) == pytest.approx(struck.squirt, rel=1e-12)
+    assert not found["speed_matters"]
+    for row in found["end_mass_at_speeds"]:
+        assert row == pytest.approx(found["end_mass"], rel=1e-9)
+
+
+def test_how_the_speed_matters_with_leather() -> None:
+    leather = replace(SCENE, tip=cf.Tip(0.75, 0.7), effects=(cf.LeatherTip(0.006, 0.0095, 140e6),))
+    record = pooltool_record("kim", leather)
+    found = record["by_offset"]
+    assert found["speeds"] == [1.0, 2.0, 4.0]
+    assert found["speed_matters"]
+    assert found["words"] in record["notes"]
+    for speed, row in zip(found["speeds"], found["end_mass_at_speeds"], strict=True):
+        struck = cf.strike(replace(leather, stroke=cf.Stroke(speed, 0.3)))
+        assert -pooltool_squirt(0.17, row[2], a=0.3) == pytest.approx(struck.squirt, rel=1e-9)
+
+
+def test_a_miscue_has_no_end_mass(scene: Path, tmp_path: Path) -> None:
+    slippery = replace(SCENE, tip=cf.Tip(0.75, 0.3, 1e-3), stroke=cf.Stroke(2.0, 0.1))
+    found = pooltool_record("kim", slippery)
+    missed = [regime == "miscue" for regime in found["squirt"]["regimes"]]
+    assert any(missed)
+    assert [mass is None for mass in found["by_offset"]["end_mass"]] == missed
+
+
+def test_the_length_is_the_whole_cue_s(scene: Path) -> None:
+    told = as_json(scene, "--length", "57 in")
+    assert told["CueSpecs"]["length"] == pytest.approx(1.4478, rel=1e-12)
+    assert any(note.startswith("length and M are the whole cue's; shaft_radius") for note in told["notes"])
+    assert any("58 in, for the file draws the shaft alone" in note for note in as_json(scene)["notes"])
+    whole = pooltool_record("drawn whole", replace(SCENE, cue=replace(KIM, body_mass=0.0)))["CueSpecs"]
+    assert (whole["length"], whole["shaft_radius_at_butt"]) == (0.7, 0.0105)
 
 
 def test_what_a_lumped_cue_leaves_out() -> None:
@@ -106,28 +151,44 @@ def test_what_a_lumped_cue_leaves_out() -> None:
     assert found["CueSpecs"] == {"brand": "two parts", "M": 0.54, "tip_radius": NICKEL, "end_mass": 0.005}
 
 
-def test_pooltool_itself(scene: Path) -> None:
-    datatypes = pytest.importorskip("pooltool.objects.cue.datatypes")
-    theirs = pytest.importorskip("pooltool.physics.resolve.stick_ball.squirt")
-    for offset in (-0.4, 0.1, 0.3, 0.5):
-        struck = replace(SCENE, stroke=replace(SCENE.stroke, offset=offset))
-        found = as_json(scene, f"--offset={offset}")
-        cue = datatypes.Cue(a=offset, b=0.0, specs=datatypes.CueSpecs(**found["CueSpecs"]))
-        alpha = theirs.get_squirt_angle(found["BallParams"]["m"], cue.specs.end_mass, cue.a, 1.0)
-        assert -alpha == pytest.approx(cf.strike(struck).squirt, rel=1e-12)
-        assert {name for name in CUE_SPECS if not hasattr(cue.specs, name)} == set()
+IN_POOLTOOL = """
+import json, sys
+import pooltool as pt
+from pooltool.physics.resolve.stick_ball.instantaneous_point import InstantaneousPoint
+from pooltool.physics.resolve.stick_ball.squirt import get_squirt_angle
+
+answers = []
+for offset, found in json.load(sys.stdin):
+    specs = pt.objects.CueSpecs(**found["CueSpecs"])
+    cue = pt.Cue(V0=2.0, phi=90.0, a=offset, b=0.0, specs=specs)
+    ball = pt.Ball("cue", params=pt.BallParams(**found["BallParams"]))
+    alpha = get_squirt_angle(ball.params.m, specs.end_mass, offset, 1.0)
+    _, after = InstantaneousPoint().resolve(cue, ball)
+    answers.append((alpha, after.state.rvw[1].tolist(), specs.length))
+print(json.dumps(answers))
+"""
+
+
+def pooltool_python() -> str:
+    """A Python that has pooltool: this one, or that of its own environment, whose pins are not ours."""
+    for python in (sys.executable, os.environ.get("POOLTOOL_PYTHON", "")):
+        if python and subprocess.run([python, "-c", "import pooltool"], capture_output=True).returncode == 0:
+            return python
+    pytest.skip("no pooltool here: POOLTOOL_PYTHON names the Python of an environment that has it")
 
 
 def test_a_ball_that_pooltool_strikes(scene: Path) -> None:
-    """pooltool's own stroke leaves its aim by our squirt, to the side that is not struck."""
-    resolver = pytest.importorskip("pooltool.physics.resolve.stick_ball.instantaneous_point")
-    objects = pytest.importorskip("pooltool.objects")
-    found = as_json(scene)
-    cue = objects.Cue(V0=2.0, phi=90.0, a=0.3, b=0.0, specs=objects.CueSpecs(**found["CueSpecs"]))
-    ball = objects.Ball("cue", params=objects.BallParams(**found["BallParams"]))
-    _, after = resolver.InstantaneousPoint().resolve(cue, ball)
-    x, y, _ = after.state.rvw[1]
-    assert math.atan2(x, y) == pytest.approx(cf.strike(SCENE).squirt, rel=1e-9)  # aimed along y, struck on the left
+    """pooltool reads what is handed over; its own stroke leaves its aim by our squirt, away from the struck side."""
+    python = pooltool_python()
+    offsets = (-0.4, 0.1, 0.3, 0.5)
+    sent = json.dumps([(offset, as_json(scene, f"--offset={offset}")) for offset in offsets])
+    done = subprocess.run([python, "-c", IN_POOLTOOL], input=sent, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    for offset, (alpha, (x, y, _), length) in zip(offsets, json.loads(done.stdout), strict=True):
+        ours = cf.strike(replace(SCENE, stroke=replace(SCENE.stroke, offset=offset))).squirt
+        assert -alpha == pytest.approx(ours, rel=1e-12)
+        assert math.atan2(x, y) == pytest.approx(ours, rel=1e-9)  # aimed along y, struck on the left
+        assert length == 1.4732
 
 
 def test_a_scene_without_a_dome() -> None:
