@@ -283,6 +283,19 @@ def test_a_second_hit_is_followed() -> None:
     assert abs(sum(j for name, j in energy.items() if name != "initial") / energy["initial"] - 1) < 1e-10
 
 
+def test_a_contact_that_outlasts_the_window_is_the_last() -> None:
+    """Stepped contacts: no flight goes back in time to the window's end."""
+    striker = Striker(0.05, 0.8, modulus=1e9, radius=0.02)
+    scene, at = SideStrike(kim(), striker, 0.0), Resolution(1, 8, 4)
+    once, followed = side_strike(scene, at), side_strike(replace(scene, effects=(SecondHit(20e-3),)), at)
+    flight = next(phase for phase in followed.phases if phase.grip == "apart")
+    window = flight.end - once.duration + 1e-6  # ends in the middle of the second touch
+    cut = side_strike(replace(scene, effects=(SecondHit(window),)), at)
+    assert sum(phase.grip == "apart" for phase in cut.phases) == 1
+    assert cut.duration > once.duration + window
+    assert cut.rebound_speed > once.rebound_speed
+
+
 def test_stiffness_and_contact_time_are_one_law() -> None:
     timed = side_strike(SideStrike(kim(), BALL), FEW)
     stiff = side_strike(SideStrike(kim(), Striker(0.005, 0.8, stiffness=BALL.law.stiffness)), FEW)
