@@ -8,6 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
+from scipy.optimize import brentq
+from scipy.special import ellipe, ellipk
 
 from cuefem import (
     Cue,
@@ -58,8 +60,8 @@ def side_ratio(cue: Cue, striker: Striker, position: float = 0.0) -> float:
 @pytest.mark.parametrize("restitution", [1.0, 0.5])
 @pytest.mark.parametrize(
     ("cue", "limit"),
-    [(rod(3e3), 4.0), (cone(3e3, 0.4), 6.8318457694)],
-    ids=["rod", "cone 0.4"],
+    [(rod(3e3), 4.0), (cone(3e3, 0.4), 6.8318457694), (kim(), 5.494268)],
+    ids=["rod", "cone 0.4", "kim"],
 )
 def test_rigid_limits_at_the_end(cue: Cue, limit: float, restitution: float) -> None:
     """A free rigid rod is felt as 1/4 of its mass, a cone of 0.4 as 1/6.83."""
@@ -119,6 +121,28 @@ def test_hertz_on_a_rigid_body(restitution: float) -> None:
     force = outcome.history(np.linspace(0, outcome.duration, 2001))["force_n"]
     assert abs(force.max() / peak - 1) < 1e-4
     assert abs(outcome.phases[0].end / (duration / (1 + restitution)) - 1) < 2e-5
+
+
+@pytest.mark.parametrize(("ball", "stronger"), [(1.0, 0.01), (3.0, 0.04)])
+def test_a_round_side_as_one_radius(ball: float, stronger: float) -> None:
+    """A ball on a round beam touches it in an ellipse; R = sqrt(R1^2 R2/(R1 + R2)) is so much too soft (handbook).
+
+    Hertz's integrals with a = E* = 1, e^2 = 1 - b^2: half the curvatures are A = p0 b/e^2 (K - E) and
+    B = p0 b/e^2 (E/b^2 - K), the depth is p0 b K, the force 2/3 pi b p0.
+    """
+    curvatures = 1 / ball, 1 / ball + 1.0  # along the beam and around it; the beam's radius is 1
+
+    def misfit(x: float) -> float:  # x = (b/a)^2
+        K, E = ellipk(1 - x), ellipe(1 - x)
+        return float((E / x - K) / (K - E) - curvatures[1] / curvatures[0])
+
+    x = brentq(misfit, 1e-4, 1 - 1e-9)
+    K, E = ellipk(1 - x), ellipe(1 - x)
+    b = math.sqrt(x)
+    p0 = curvatures[1] / 2 * (1 - x) / (b * (E / x - K))
+    force, depth = 2 * math.pi * b * p0 / 3, b * p0 * K
+    radius = math.sqrt(ball**2 / (ball + 1.0))
+    assert abs(force / (4 / 3 * math.sqrt(radius) * depth**1.5) - 1 - stronger) < 0.003
 
 
 def test_times_against_a_wall() -> None:
@@ -281,6 +305,19 @@ def test_a_second_hit_is_followed() -> None:
     assert any(phase.grip == "apart" for phase in twice.phases)
     energy = twice.energy
     assert abs(sum(j for name, j in energy.items() if name != "initial") / energy["initial"] - 1) < 1e-10
+
+
+def test_a_contact_that_outlasts_the_window_is_the_last() -> None:
+    """Stepped contacts: no flight goes back in time to the window's end."""
+    striker = Striker(0.05, 0.8, modulus=1e9, radius=0.02)
+    scene, at = SideStrike(kim(), striker, 0.0), Resolution(1, 8, 4)
+    once, followed = side_strike(scene, at), side_strike(replace(scene, effects=(SecondHit(20e-3),)), at)
+    flight = next(phase for phase in followed.phases if phase.grip == "apart")
+    window = flight.end - once.duration + 1e-6  # ends in the middle of the second touch
+    cut = side_strike(replace(scene, effects=(SecondHit(window),)), at)
+    assert sum(phase.grip == "apart" for phase in cut.phases) == 1
+    assert cut.duration > once.duration + window
+    assert cut.rebound_speed > once.rebound_speed
 
 
 def test_stiffness_and_contact_time_are_one_law() -> None:
