@@ -30,7 +30,7 @@ def test_numbers(tmp_path: Path) -> None:
         assert [told[name] for name in ("computed", "spread", "pull")] == [row.computed, row.spread, row.pull]
     assert found["name"] == "a cue"
     assert "carom ball 210 g" in found["assumed"][0]
-    assert len(found["lacking"]) == 5
+    assert found["lacking"] == cue.lacking != []
 
 
 def test_a_table_for_people(tmp_path: Path) -> None:
