@@ -17,6 +17,7 @@ from cuefem.cli.measured import compare, estimate
 from cuefem.cli.optimize import optimize
 from cuefem.cli.scatter import scatter
 from cuefem.cli.scene import cost, effects, end_mass, modes, report, strike
+from cuefem.cli.side import side
 from cuefem.cli.sweep import sweep
 from cuefem.cli.tap import tap
 from cuefem.cli.tip import tip
@@ -80,6 +81,7 @@ for _command in (
     modes,
     end_mass,
     strike,
+    side,
     effects,
     cost,
     report,

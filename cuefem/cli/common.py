@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from cuefem.cue import Cue
     from cuefem.quantity import Quantity
     from cuefem.scene import Scene
+    from cuefem.side.scene import SideStrike
 
 DEFAULT_OFFSET = 0.3  # of a bare cue file, b/R
 # Mass, kg, and radius, m, of the balls that people play with; sources: studies/scenes (pool 2.25 in and at most 6 oz,
@@ -133,11 +134,11 @@ def scene_of(file: Path, given: dict[str, Any], *, blow: bool = True) -> tuple[S
 
     blow: whether ball, tip and stroke matter to the command, so that what is assumed of them is told too.
     """
-    from cuefem.io import load
+    from cuefem.io import load_stroke
     from cuefem.io.assumed import assumed, assumed_blow
     from cuefem.scene import Scene, Stroke
 
-    found = load(file, material=given["material"], length_unit=given.get("length_unit"))
+    found = load_stroke(file, material=given["material"], length_unit=given.get("length_unit"))
     said = {name for name, value in given.items() if value is not None}
     notes = assumed(file, said, offered=given, blow=blow)
     if not isinstance(found, Scene):
@@ -174,18 +175,18 @@ def _with_options(scene: Scene, file: Path, given: dict[str, Any]) -> Scene:
     return scene
 
 
-def with_body(found: Cue | Scene, file: Path, given: str) -> Any:
+def with_body(found: Cue | Scene | SideStrike, file: Path, given: str) -> Any:
     """The cue or scene of a file with the mass behind its segments that --body-mass says."""
+    from cuefem.cue import Cue
     from cuefem.io import InputError
     from cuefem.quantity import Quantity
-    from cuefem.scene import Scene
 
     mass = measured(file, "--body-mass", given, Quantity("kg", "[0, inf)"))
-    if not isinstance(found, Scene):
+    if isinstance(found, Cue):
         return replace(found, body_mass=mass)
-    if not found.cue.segments:
+    if not isinstance(found.cue, Cue):
         raise InputError(file, "--body-mass", "must be left out: a lumped cue is whole")
-    return replace(found, cue=replace(found.shaft, body_mass=mass))
+    return replace(found, cue=replace(found.cue, body_mass=mass))
 
 
 def show(

@@ -29,7 +29,7 @@ def guide(chapter: str | None, output: Path | None, in_terminal: bool) -> None:
     """Open the handbook in the browser: the physics, a glossary, and what each effect does.
 
     CHAPTER opens (or prints) one chapter: start, frame, inverse_mass, impulse_solver, beam, strike, dead_tip, end_mass,
-    effects, measured, measuring, paper, glossary or sources.
+    side, effects, measured, measuring, paper, glossary or sources.
     """
     from cuefem.handbook import chapters
     from cuefem.io import InputError, save_page

@@ -123,11 +123,11 @@ def _predicted(file: Path, scene: Scene, found: TapFit) -> tuple[dict[str, Predi
 
 def _updated(file: Path, scene: Scene, found: TapFit, given: dict[str, Any]) -> Any:
     """The cue or scene of FILE with the fitted wood, to six digits."""
-    from cuefem.io import load
+    from cuefem.io import load_stroke
     from cuefem.scene import Scene
     from cuefem.tap.matching import with_material
 
     short = {name: float(f"{getattr(found.wood, name):.6g}") for name in ("E", "G", "rho", "loss", "nu")}
     cue = with_material(found.cue, found.wood, replace(found.wood, **short))
-    held = load(file, material=given["material"], length_unit=given["length_unit"])
+    held = load_stroke(file, material=given["material"], length_unit=given["length_unit"])
     return replace(held, cue=cue) if isinstance(held, Scene) else cue

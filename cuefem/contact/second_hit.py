@@ -67,7 +67,7 @@ def follow(kind: Kind, window: float) -> None:
         raise ValueError(f"SecondHit takes a Tip.restitution in ({RINGING:g}, 1]; got {laws.restitution}")
     until, near = contact.time + window, OVERLAP * laws.speed * laws.time
     start = contact.time
-    while kind.fly(until, near):
+    while contact.time < until and kind.fly(until, near):  # a contact may end after the window: no flight back in time
         kind.longest += contact.time - start
         run(kind, "unload")
         start = contact.time

@@ -18,6 +18,7 @@ CHAPTERS = (
     "strike",
     "dead_tip",
     "end_mass",
+    "side",
     "effects",
     "measured",
     "measuring",

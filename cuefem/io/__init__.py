@@ -15,6 +15,7 @@ from cuefem.io.profile import DEFAULT_MATERIAL, SHAPES, SURFACES, load_profile
 from cuefem.io.toml import load_accuracy, load_cue, load_toml, named_material, read_text, toml_text
 from cuefem.io.units import number
 from cuefem.scene import Scene
+from cuefem.side.scene import SideStrike
 
 __all__ = [
     "DEFAULT_MATERIAL",
@@ -22,6 +23,7 @@ __all__ = [
     "check_place",
     "load",
     "load_accuracy",
+    "load_stroke",
     "number",
     "save",
     "save_page",
@@ -33,7 +35,9 @@ FIGURES = (".png", ".svg")
 _MESHES = (".vtk", ".vtu")
 
 
-def load(path: str | os.PathLike[str], *, material: str | None = None, length_unit: str | None = None) -> Cue | Scene:
+def load(
+    path: str | os.PathLike[str], *, material: str | None = None, length_unit: str | None = None
+) -> Cue | Scene | SideStrike:
     """Load a cue or a scene from a file.
 
     Parameters
@@ -49,8 +53,9 @@ def load(path: str | os.PathLike[str], *, material: str | None = None, length_un
 
     Returns
     -------
-    Cue or Scene
-        A .toml file with [[segments]] at its top is a cue, one with [cue] is a scene.
+    Cue, Scene or SideStrike
+        A .toml file with [[segments]] at its top is a cue, one with [cue] is a scene; if it has a [striker] too, it is
+        a strike from the side.
 
     Raises
     ------
@@ -99,12 +104,20 @@ def _load_cue(path: Path, material: str | None = None, length_unit: str | None =
     raise InputError(path, "", f"must end in .toml, .csv, .vtk, .vtu, .stl, .ply or .obj; got {path.suffix!r}")
 
 
-def save(obj: Cue | Scene, path: str | os.PathLike[str]) -> None:
+def load_stroke(path: Path, *, material: str | None = None, length_unit: str | None = None) -> Cue | Scene:
+    """A cue or the scene of a stroke along it; InputError for a strike from the side."""
+    found = load(path, material=material, length_unit=length_unit)
+    if isinstance(found, SideStrike):
+        raise InputError(path, "striker", "must be absent here: `cuefem side` takes a strike from the side")
+    return found
+
+
+def save(obj: Cue | Scene | SideStrike, path: str | os.PathLike[str]) -> None:
     """Write a cue or a scene into a file, from which `load` reads back exactly the same object.
 
     Parameters
     ----------
-    obj : Cue or Scene
+    obj : Cue, Scene or SideStrike
         What to write.
     path : str or path
         A .toml file; for a cue also a line mesh, .vtk or .vtu. The file appears whole or not at all.
@@ -122,18 +135,18 @@ def save(obj: Cue | Scene, path: str | os.PathLike[str]) -> None:
     --------
     See `load`.
     """
-    if not isinstance(obj, Cue | Scene):
-        raise TypeError(f"save writes a Cue or a Scene; got {shown(obj)}")
+    if not isinstance(obj, Cue | Scene | SideStrike):
+        raise TypeError(f"save writes a Cue, a Scene or a SideStrike; got {shown(obj)}")
     path = Path(path)
     if path.suffix.lower() == ".toml":
         content = toml_text(obj)
         write_whole(path, lambda temporary: temporary.write_text(content, encoding="utf-8"))
-    elif path.suffix.lower() in _MESHES and not isinstance(obj, Scene):
+    elif path.suffix.lower() in _MESHES and isinstance(obj, Cue):
         from cuefem.io.mesh import save_mesh
 
         write_whole(path, lambda temporary: save_mesh(obj, temporary))
     else:
-        allowed = ".toml, for a scene" if isinstance(obj, Scene) else ".toml, .vtk or .vtu"
+        allowed = ".toml, .vtk or .vtu" if isinstance(obj, Cue) else ".toml, for a scene"
         raise InputError(path, "", f"must end in {allowed}; got {path.suffix!r}")
 
 

@@ -16,6 +16,7 @@ from cuefem.io.schema import adapter, file_value
 from cuefem.io.toml import Accuracy
 from cuefem.quantity import quantities
 from cuefem.scene import Scene
+from cuefem.side.scene import SideStrike
 
 
 class _Generator(GenerateJsonSchema):
@@ -59,9 +60,9 @@ def _held(hint: Any) -> Iterator[type]:
 
 
 def json_schema() -> dict[str, Any]:
-    """JSON schema of a file: a scene, or a cue alone."""
+    """JSON schema of a file: a scene, a strike from the side, or a cue alone."""
     effects = effect_kinds()
-    kinds: tuple[type, ...] = (Scene, Accuracy, *effects.values())
+    kinds: tuple[type, ...] = (Scene, SideStrike, Accuracy, *effects.values())
     found: dict[str, Any] = {}
     for kind in kinds:
         found |= _definitions(kind)
@@ -72,15 +73,16 @@ def json_schema() -> dict[str, Any]:
         found[name]["required"] = ["type", *found[name].get("required", [])]
     named = {"type": "string", "description": "a name from `cuefem materials`"}
     found["Material"] = {"anyOf": [named, found["Material"]]}
-    scene = found["Scene"]["properties"]
     path = {"type": "string", "description": "path of a cue file, relative to this one"}
-    scene["cue"] = {"anyOf": [path, _ref(Cue.__name__), _ref(LumpedCue.__name__)]}
-    scene["effects"]["items"] = {"anyOf": [_ref(name) for name in effects]} if effects else False
-    scene["accuracy"] = _ref(Accuracy.__name__)
+    for kind, cues in ((Scene, (Cue, LumpedCue)), (SideStrike, (Cue,))):
+        scene = found[kind.__name__]["properties"]
+        scene["cue"] = {"anyOf": [path, *(_ref(cue.__name__) for cue in cues)]}
+        scene["effects"]["items"] = {"anyOf": [_ref(name) for name in effects]} if effects else False
+        scene["accuracy"] = _ref(Accuracy.__name__)
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": "A cuefem file: a scene, or a cue alone",
-        "anyOf": [_ref(Scene.__name__), _ref(Cue.__name__)],
+        "title": "A cuefem file: a scene, a strike from the side, or a cue alone",
+        "anyOf": [_ref(kind.__name__) for kind in (Scene, SideStrike, Cue)],
         "$defs": dict(sorted(found.items())),
     }
 

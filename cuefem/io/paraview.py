@@ -22,6 +22,8 @@ from cuefem.cue import Array, Cue
 from cuefem.io.errors import InputError, reason
 from cuefem.quantity import scalar
 from cuefem.scene import Scene
+from cuefem.side.motion import SideMotion
+from cuefem.side.scene import SideStrike
 
 AROUND = 24  # points of a ring
 LONGEST = 0.01  # m between rings, at most
@@ -109,7 +111,38 @@ def save_strike(folder: Path, scene: Scene, found: Motion, *, scale: float = 1.0
 
     scale: what bending is drawn with; the displacement beside the points is the true one.
     """
-    shaft, ball = shaft_surface(scene.shaft), ball_surface(scalar("Ball.radius", scene.ball.radius))
+    _save_series(folder, scene.shaft, scalar("Ball.radius", scene.ball.radius), found, scale=scale, track=track)
+
+
+def save_side_strike(
+    folder: Path, scene: SideStrike, found: SideMotion, *, scale: float = 1.0, track: Track = iter
+) -> None:
+    """Write folder/strike.pvd and its files as `save_strike` does.
+
+    The striker comes along Y. It is drawn as a ball of Hertz's radius, or as large as phenolic of its mass would be.
+    """
+    striker, count = scene.striker, len(found.times)
+    radius = striker.radius or (striker.mass / 1700 * 3 / (4 * np.pi)) ** (1 / 3)
+    inside = min(scene.position, scene.cue.length)
+    piece = int(np.clip(np.searchsorted(scene.cue.nodes, inside, side="right") - 1, 0, len(scene.cue.segments) - 1))
+    part = (inside - scene.cue.nodes[piece]) / scene.cue.segments[piece].length
+    ends = scene.cue.segments[piece].tip_diameter, scene.cue.segments[piece].butt_diameter
+    side = (ends[0] + part * (ends[1] - ends[0])) / 2
+    whole = Motion(
+        found.times,
+        found.duration,
+        found.modes,
+        found.fields,
+        along=np.zeros(count),
+        centre=np.column_stack([np.full(count, -inside), found.striker - radius - side]),
+        turned=np.zeros(count),
+        force=np.column_stack([np.zeros(count), -found.force]),
+    )
+    _save_series(folder, scene.cue, radius, whole, scale=scale, track=track)
+
+
+def _save_series(folder: Path, cue: Cue, radius: float, found: Motion, *, scale: float, track: Track) -> None:
+    shaft, ball = shaft_surface(cue), ball_surface(radius)
     w, theta = found.deflection(shaft.x)
     centres, forces = (np.pad(plane, [(0, 0), (0, 1)]) for plane in (found.centre, found.force))
     (folder / "strike").mkdir()

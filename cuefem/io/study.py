@@ -155,13 +155,13 @@ def _list(found: dict[str, Any], key: str, path: Path) -> list[Any]:
 
 
 def _base(found: dict[str, Any], path: Path, offset: float) -> Scene:
-    from cuefem.io import load
+    from cuefem.io import load_stroke
 
     name = found.get("scene")
     if not isinstance(name, str):
         got = shown(name) if "scene" in found else "nothing"
         raise InputError(path, "scene", f"must be the path of a scene or a cue, from this file's folder; got {got}")
-    base = load(path.parent / name)
+    base = load_stroke(path.parent / name)
     return base if isinstance(base, Scene) else Scene(base, stroke=Stroke(offset=offset))
 
 

@@ -1,4 +1,7 @@
-"""Cues and scenes as TOML: `[[segments]]` at the top is a cue, `[cue]` (a table, or the path of a cue file) a scene."""
+"""Cues and scenes as TOML: `[[segments]]` at the top is a cue, `[cue]` (a table, or the path of a cue file) a scene.
+
+A scene with a `[striker]` is a strike from the side (`SideStrike`).
+"""
 
 from __future__ import annotations
 
@@ -18,6 +21,7 @@ from cuefem.io.schema import build, joined, keys_of, table, unknown_key
 from cuefem.materials import material
 from cuefem.quantity import MOST_SEGMENTS, Quantity, check_fields
 from cuefem.scene import Scene
+from cuefem.side.scene import SideStrike
 
 
 @dataclass(frozen=True)
@@ -72,11 +76,13 @@ def _unquoted(text: str, error: str) -> str:
     return "; a value with a unit stands in quotes" if re.search(r"=\s*[-+.\d]+\s*[^\W\d_]", line) else ""
 
 
-def load_toml(path: Path, cue_file: Callable[[Path], Cue]) -> Cue | Scene:
+def load_toml(path: Path, cue_file: Callable[[Path], Cue]) -> Cue | Scene | SideStrike:
     """The cue or scene of a TOML file; ``cue_file`` loads the cue file that a scene names."""
     found = read_tables(path)
     if "segments" in found and "cue" not in found:
         return _cue(found, path, "")
+    if "striker" in found:
+        return _side_strike(found, path, cue_file)
     return scene_of_tables(found, path, cue_file)
 
 
@@ -130,22 +136,41 @@ def named_material(name: str, path: Path, key: str) -> Material:
 
 def scene_of_tables(found: dict[str, Any], path: Path, cue_file: Callable[[Path], Cue]) -> Scene:
     """A scene from a file's tables; ``cue_file`` loads the cue file that it names."""
-    names = [*keys_of(Scene), "accuracy"]
+    _check_keys(found, [*keys_of(Scene), "accuracy"], path)
+    if "cue" not in found:
+        raise InputError(path, "cue", "must be given: [[segments]] make a cue, [cue] a scene; got neither")
+    scene = build(Scene, _parts(found, path, cue_file), file=str(path), key="")
+    _check_effects(scene, path)
+    return scene
+
+
+def _check_keys(found: dict[str, Any], names: list[str], path: Path) -> None:
     unknown = [name for name in found if name not in names]
     if unknown:  # a misspelt key first: beside [[segment]], body_mass is not the fault
         name = next((name for name in unknown if nearest(name, ["segments", *names])), unknown[0])
         raise unknown_key(name, found[name], ["segments", *names], file=str(path), key="")
-    if "cue" not in found:
-        raise InputError(path, "cue", "must be given: [[segments]] make a cue, [cue] a scene; got neither")
+
+
+def _parts(found: dict[str, Any], path: Path, cue_file: Callable[[Path], Cue]) -> dict[str, Any]:
+    """The fields of a scene: its tables, with the cue and the effects made."""
     _accuracy(found.get("accuracy"), path)
     parts = {name: value for name, value in found.items() if name != "accuracy"}
     parts["cue"] = _scene_cue(found["cue"], path, cue_file)
     effects = found.get("effects")
     if isinstance(effects, list):
         parts["effects"] = [_effect(e, path, joined("effects", i)) for i, e in enumerate(effects)]
-    scene = build(Scene, parts, file=str(path), key="")
-    _check_effects(scene, path)
-    return scene
+    return parts
+
+
+def _side_strike(found: dict[str, Any], path: Path, cue_file: Callable[[Path], Cue]) -> SideStrike:
+    """A strike from the side, which [striker] makes."""
+    _check_keys(found, [*keys_of(SideStrike), "accuracy"], path)
+    if "cue" not in found:
+        raise InputError(path, "cue", "must be given: a table or the path of a cue file; got nothing")
+    parts = _parts(found, path, cue_file)
+    if isinstance(parts["cue"], LumpedCue):
+        raise InputError(path, "cue", "must be a cue of segments: a lumped cue has no side; got mass and end_mass")
+    return build(SideStrike, parts, file=str(path), key="")
 
 
 def _check_effects(scene: Scene, path: Path) -> None:
@@ -187,7 +212,7 @@ def _effect(found: Any, path: Path, key: str) -> Effect:
     return build(kinds[name], rest, file=str(path), key=key)
 
 
-def toml_text(thing: Cue | Scene) -> str:
+def toml_text(thing: Cue | Scene | SideStrike) -> str:
     """A cue or scene as TOML that `load_toml` reads back exactly."""
     document = tomlkit.document()
     for name, value in table(thing).items():

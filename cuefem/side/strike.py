@@ -85,7 +85,8 @@ def side_strike(scene: SideStrike, at: Resolution | None = None) -> SideOutcome:
         What is there, and which effects act.
     at : Resolution, optional
         How finely the beam is computed: the plain sum over the modes asked for. By default modes are kept by frequency
-        and completed by a tail. `cuefem.resolve_side_strike` reaches an accuracy that is asked for.
+        and completed by a tail, so that e_A is within 1e-4. `cuefem.resolve_side_strike` reaches an accuracy that is
+        asked for.
 
     Returns
     -------

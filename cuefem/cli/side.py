@@ -1,0 +1,128 @@
+"""The command on a strike from the side."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from cuefem.cli.common import blaming, cue_options, followed, measured, print_all, print_json, with_body
+
+if TYPE_CHECKING:
+    from cuefem.side.scene import SideStrike
+
+# Of a file that has no [striker]: a light ball, and how long it touches a wall.
+MASS, RESTITUTION, CONTACT_TIME = 0.02, 0.8, 1e-3
+
+
+@click.command(short_help="A strike from the side: rebound and effective mass.")
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option("--position", metavar="LENGTH", help='Where the shaft is struck, from the tip, e.g. "20 mm".')
+@click.option("--mass", metavar="MASS", help='Of the striker, e.g. "20 g".')
+@click.option("--restitution", metavar="E", help="Of the striker off a heavy wall, in [0, 1].")
+@click.option("--contact-time", metavar="TIME", help='How long it touches a wall, e.g. "1 ms".')
+@click.option("--speed", metavar="SPEED", help='Of the striker, e.g. "1 m/s".')
+@click.option("--places", type=click.IntRange(2, 200), default=9, show_default=True, help="Places along the shaft.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), metavar="FOLDER", help="Also the motion for ParaView.")
+@click.option("--frames", type=click.IntRange(2, 10_000), default=61, show_default=True, help="How many frames of it.")
+@cue_options
+def side(file: Path, places: int, output: Path | None, frames: int, as_json: bool, **given: Any) -> None:
+    """Strike a shaft, a bat or a stick from the side with a ball or a hammer, and show how that bounces off.
+
+    FILE is a cue or a scene; with a [striker] in it nothing else is needed.
+    """
+    from cuefem.io import load_accuracy
+    from cuefem.report.quantities import UNITS
+    from cuefem.report.side import side_record, side_scene_record, side_tables
+    from cuefem.report.words import cue_line, effect_words
+    from cuefem.side.accuracy import resolve_side_strike
+    from cuefem.side.strike import side_strike
+
+    if output is not None:
+        from cuefem.io.paraview import check_new
+
+        check_new(output)
+    scene, notes = _scene(file, given)
+    rtol = load_accuracy(file)
+    with blaming(file):
+        outcome = side_strike(scene) if rtol is None else resolve_side_strike(scene, rtol)
+        about, found = side_scene_record(scene), side_record(scene, outcome, places=places)
+        put = None if output is None else _animation(scene, outcome.duration, frames)
+    if output is not None and put is not None:
+        from cuefem.io.paraview import write_whole_folder
+
+        write_whole_folder(output, put)
+    if as_json:
+        print_json({"file": str(file), "assumed": notes, "scene": about, **found, "units": UNITS})
+        return
+    lines = [f"{file.name}: {cue_line(about['cue'])}"]
+    if scene.effects:
+        lines.append(f"effects: {', '.join(map(effect_words, scene.effects))}")
+    if notes:
+        lines.append(f"assumed: {'; '.join(notes)}")
+    written = [] if output is None else [f"wrote {output}: strike.pvd and {frames} frames"]
+    print_all([*lines, "", *side_tables(found, about), *written])
+
+
+def _scene(file: Path, given: dict[str, Any]) -> tuple[SideStrike, list[str]]:
+    """The scene of a file and its options, and what was assumed."""
+    from cuefem.cue import Cue
+    from cuefem.io import InputError, load
+    from cuefem.io.assumed import assumed
+    from cuefem.quantity import CONTACT_TIME as TIMES
+    from cuefem.quantity import Quantity
+    from cuefem.side.scene import SideStrike, Striker
+
+    found = load(file, material=given["material"], length_unit=given["length_unit"])
+    said = {name for name, value in given.items() if value is not None}
+    notes = assumed(file, said, offered=given, blow=False)
+    if given["body_mass"] is not None:
+        found = with_body(found, file, given["body_mass"])
+    if not isinstance(found, SideStrike):
+        cue = found if isinstance(found, Cue) else found.cue
+        if not isinstance(cue, Cue):
+            raise InputError(file, "cue", "must be a cue of segments: a lumped cue has no side")
+        notes += _assumed(said)
+        effects = () if isinstance(found, Cue) else found.cue_effects
+        found = SideStrike(cue, Striker(MASS, RESTITUTION, contact_time=CONTACT_TIME), effects=effects)
+    numbers = {
+        "mass": Quantity("kg", "(0, inf)"),
+        "restitution": Quantity("", "[0, 1]"),
+        "contact_time": TIMES,
+        "position": Quantity("m", "[0, inf)"),
+        "speed": Quantity("m/s", "(0, inf)"),
+    }
+    options = {name: f"--{name.replace('_', '-')}" for name in numbers}
+    read: dict[str, Any] = {
+        n: measured(file, options[n], given[n], numbers[n]) for n in numbers if given[n] is not None
+    }
+    striker: dict[str, Any] = {name: read.pop(name) for name in ("mass", "restitution", "contact_time") if name in read}
+    if "contact_time" in striker:
+        striker |= {"stiffness": None, "modulus": None, "radius": None}
+    with blaming(file):
+        return replace(found, striker=replace(found.striker, **striker), **read), notes
+
+
+def _assumed(said: set[str]) -> list[str]:
+    known = (
+        ("mass", f"striker {1e3 * MASS:g} g"),
+        ("restitution", f"e {RESTITUTION:g}"),
+        ("contact_time", f"{1e3 * CONTACT_TIME:g} ms against a wall"),
+        ("position", "struck at the tip"),
+        ("speed", "1 m/s"),
+    )
+    return [f"{words} (--{name.replace('_', '-')})" for name, words in known if name not in said]
+
+
+def _animation(scene: SideStrike, duration: float, frames: int) -> Callable[[Path], None]:
+    """Compute the motion, and return what writes it into a folder."""
+    import numpy as np
+
+    from cuefem.io.paraview import save_side_strike
+    from cuefem.side.motion import side_motion
+
+    moving = side_motion(scene, np.linspace(0, 3 * duration, frames))
+    return lambda folder: save_side_strike(folder, scene, moving, track=followed)
