@@ -70,6 +70,7 @@ def estimate(folder: Path, sample: int | None, seed: int, as_json: bool) -> None
     The folder is that of `cuefem compare`. The priors are those of the table of materials and of the folder's
     [[unknowns]]. Then: which measurement would tell most.
     """
+    from cuefem.io import InputError
     from cuefem.io.documented import load_documented
     from cuefem.measured.estimate import estimate as estimated
     from cuefem.measured.estimate import squirt_of
@@ -85,7 +86,10 @@ def estimate(folder: Path, sample: int | None, seed: int, as_json: bool) -> None
         if sample is not None:
             from cuefem.measured.sampler import sampled
 
-            record |= {"sampled": sampled_record(found, sampled(found, sample, seed=seed, track=followed))}
+            try:
+                record |= {"sampled": sampled_record(found, sampled(found, sample, seed=seed, track=followed))}
+            except ModuleNotFoundError as error:
+                raise InputError(folder, "--sample", str(error)) from None
     if as_json:
         said = {"file": str(folder), "assumed": notes}
         print_json({**said, "scene": scene_record(cue.scene), **record, "units": UNITS})

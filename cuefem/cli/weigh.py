@@ -128,7 +128,7 @@ def _test(given: dict[str, Any]) -> PendulumTest:
     else:
         raise InputError(NAME, "--contact-time", "must be given, or --press and --press-depth; got nothing")
     later = given["contact_time_error"]
-    about = {
+    about: dict[str, Any] = {
         "restitution": restitution,
         "restitution_error": 0.0
         if e is None

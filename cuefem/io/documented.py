@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from cuefem.io import InputError, load
 from cuefem.io.assumed import assumed_blow
@@ -114,7 +114,7 @@ def _series(path: Path, kind: type[Measurement]) -> Iterator[Measurement]:
     rows = [(i, next(csv.reader([line]))) for i, line in lines if line.strip() and not line.lstrip().startswith("#")]
     if not rows:
         raise InputError(path, "", "must begin with a line of headings; got comments alone")
-    marks = {name: mark for name, mark, *_ in quantities(kind)}
+    marks = {name: mark for name, mark, *_ in quantities(cast(Any, kind))}
     (first, headings), *others = rows
     columns = [_column(path, first, heading, kind, marks) for heading in headings]
     for line, cells in others:

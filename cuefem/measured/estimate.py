@@ -75,9 +75,9 @@ class Estimate:
         """The unknowns in their units."""
         made = []
         for unknown, z, sd in zip(self.cue.unknowns, self.z, np.sqrt(np.diag(self.covariance)), strict=True):
-            at = (float(z), float(z - sd), float(z + sd))
             names = (unknown.name, unknown.words, unknown.unit, unknown.usual)
-            made.append(Value(*names, *(unknown.value(each) for each in at), float(sd)))
+            at, low, high = (unknown.value(float(each)) for each in (z, z - sd, z + sd))
+            made.append(Value(*names, at, low, high, float(sd)))
         return tuple(made)
 
     @property
@@ -165,16 +165,32 @@ def estimate(cue: DocumentedCue, *, track: Track = iter) -> Estimate:
         length = float(np.sqrt(step @ inverse @ step))
         step *= min(1.0, FARTHEST / max(float(np.abs(step).max()), 1e-12))
         converged = length < SETTLED
-        for halving in range(0 if converged else HALVINGS):
-            there = z + step / 2**halving
-            found = _computed(cue, there)
-            after = np.inf if found is None else _cost(there, (measured - found) / sd)
-            if found is not None and after < cost:
-                z, at, cost = there, found, after
-                break
-        else:
+        if converged:
+            continue
+        best = _lowest(cue, z, step, cost, measured, sd)
+        if best is None:
             break
+        z, at, cost = best
     return Estimate(cue, z, np.linalg.inv(inverse), at, slopes, float(cost), converged)
+
+
+def _lowest(
+    cue: DocumentedCue, z: Array, step: Array, cost: float, measured: Array, sd: Array
+) -> tuple[Array, Array, float] | None:
+    """The lowest point along a step, halved as long as that leads lower; None if no point is below ``cost``.
+
+    The first half is always tried: far from the measurements whole steps go to and fro.
+    """
+    best = None
+    for halving in range(HALVINGS):
+        there = z + step / 2**halving
+        found = _computed(cue, there)
+        after = np.inf if found is None else _cost(there, (measured - found) / sd)
+        if found is not None and after < (cost if best is None else best[2]):
+            best = there, found, after
+        elif best is not None:
+            break
+    return best
 
 
 def _cost(z: Array, r: Array) -> float:

@@ -10,11 +10,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Annotated, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
-from cuefem.cue import LumpedCue
+from cuefem.cue import Array, LumpedCue
 from cuefem.endmass.lumped import impulse
 from cuefem.measured.documented import DocumentedCue
 from cuefem.measured.estimate import Estimate, estimate, squirt_of
@@ -133,7 +133,7 @@ class Bounces:
         speed = WAYS[self.way].speed
         return None if speed is None else float(np.mean([speed(x, self.thread) for x in self.before]))
 
-    def _speeds(self, readings: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
+    def _speeds(self, readings: Sequence[float]) -> tuple[Array, Array]:
         of = WAYS[self.way].of
         values = [of(x, self.thread) for x in readings]
         if self.way == "frames":
@@ -223,7 +223,11 @@ class PendulumTest:
     def as_measured(self, weighed: Weighed, position: float) -> EndMass:
         """The result as a measurement of a documented cue; position: of the blow, m from the end of the tip."""
         error = weighed.relative_error * weighed.end_mass
-        about = {"ball_mass": self.ball_mass, "restitution": min(weighed.restitution, 1.0), "position": position}
+        about: dict[str, Any] = {
+            "ball_mass": self.ball_mass,
+            "restitution": min(weighed.restitution, 1.0),
+            "position": position,
+        }
         return EndMass(value=weighed.end_mass, error=error, contact_time=self.contact_time, **about)
 
 
@@ -291,7 +295,7 @@ def squirt_told(test: PendulumTest, weighed: Weighed, scene: Scene, position: fl
     return Told(drawn, one.value, _with_model(before), _with_model(after), target.offset, found)
 
 
-def _fields(one: EndMass) -> dict[str, float]:
+def _fields(one: EndMass) -> dict[str, Any]:
     names = ("value", "error", "ball_mass", "restitution", "contact_time", "position")
     return {name: getattr(one, name) for name in names}
 

@@ -116,7 +116,7 @@ class Expansion:
     @classmethod
     def about(cls, found: Estimate, *, track: Track = iter) -> Expansion:
         """By differences of one standard deviation along each axis, and along the sum of each pair."""
-        axes = np.linalg.cholesky(found.covariance)
+        axes = np.asarray(np.linalg.cholesky(found.covariance), float)
         n, at = len(found.z), found.computed
         unit = STEP * np.eye(n)
 

@@ -153,7 +153,8 @@ def _tip(words: str, name: str, unit: str, spread: float) -> Kind:
 
     def put(scene: Scene, value: float) -> Scene:
         old: LeatherTip = scene.leather
-        new = replace(old, **{name: value})
+        given: dict[str, Any] = {name: value}
+        new = replace(old, **given)
         return replace(scene, effects=tuple(new if effect is old else effect for effect in scene.effects))
 
     return Kind(words, unit, of, lambda _: spread, put)

@@ -255,7 +255,7 @@ def estimate_record(found: Estimate, worths: Sequence[Worth], squirt: tuple[floa
 
 def _correlations(found: Estimate) -> list[list[float]]:
     sd = np.sqrt(np.diag(found.covariance))
-    return (found.covariance / np.outer(sd, sd)).tolist()  # type: ignore[no-any-return]
+    return (found.covariance / np.outer(sd, sd)).tolist()
 
 
 def estimate_tables(record: Record) -> list[Any]:

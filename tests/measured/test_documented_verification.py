@@ -10,7 +10,7 @@ import pytest
 import cuefem as cf
 from cuefem.cue import shear_coefficient
 from cuefem.measured.documented import compare, zeros
-from cuefem.measured.kinds import AddedMass, Balance, ContactTime, Setup, Squirt, Stiffness, Tone, Weight
+from cuefem.measured.kinds import KINDS, AddedMass, Balance, ContactTime, Setup, Squirt, Stiffness, Tone, Weight
 from cuefem.measured.numbers import numbers_of
 from tests.helpers.documented import SCENE, SHAFT, WOOD, blank, documented
 from tests.helpers.leather_scenes import leather_scene
@@ -95,7 +95,7 @@ def test_residuals_are_in_errors() -> None:
 
 
 def test_what_is_missing_is_named() -> None:
-    assert len(documented().lacking) == 7
+    assert len(documented().lacking) == len(KINDS)
     one = documented(Stiffness(value=400.0, error=8.0), Squirt(offset=0.3, value=0.03, error=1e-3))
     said = " ".join(one.lacking)
     assert "static stiffness at a second free length" in said
