@@ -51,6 +51,24 @@ h1, h2 { font-weight: 700; letter-spacing: 0; font-family: inherit; } h2 { line-
 .q-slider__track-container:focus-visible .q-slider__thumb { outline: 3px solid var(--c2);
   outline-offset: 2px; border-radius: 50%; }
 .unseen { display: none; }
+.wrong { margin: 0 0 0.3rem; padding: 0.1rem 0.5rem; font-size: 0.82rem; line-height: 1.3; color: var(--ink);
+  border-left: 4px solid var(--c2); background: var(--slip); }
+.units { min-width: 6.5rem; } .units .q-field__native { color: var(--ink) !important; }
+.units .q-field__control, .units .q-field__marginal { height: 2.1rem !important; min-height: 0 !important; }
+.units .q-field__native { min-height: 0 !important; padding-bottom: 2px; }
+.units .q-field__label { top: 7px; color: var(--soft); }
+.q-field__native, .q-field__input { color: var(--ink); } .q-field__label { color: var(--soft); }
+.dialog { background: var(--card); color: var(--ink); border: 1px solid var(--rule); border-radius: 10px;
+  padding: 1.1rem 1.4rem; width: min(42rem, calc(100vw - 2rem)); max-width: none !important; }
+.wide-field { width: 100%; }
+.pins { display: grid; gap: 0.4rem; margin: 0 0 0.6rem; }
+.pin { display: flex; flex-wrap: wrap; gap: 0.5rem; align-items: center; }
+.pin .q-field { width: 15rem; max-width: 100%; }
+.pin .nicegui-html { width: auto; } .pin .q-field__control { height: 2.1rem !important; }
+td small { color: var(--soft); }
+.miss { fill: var(--c2); opacity: 0.28; }
+.under p { margin: 0.2rem 0; }
+.q-btn.disabled { opacity: 0.55 !important; }
 @media (max-width: 860px) {
   .desk { grid-template-columns: minmax(0, 1fr); }
   .knobs { position: static; max-height: none; order: 2; }
@@ -66,6 +84,28 @@ h1, h2 { font-weight: 700; letter-spacing: 0; font-family: inherit; } h2 { line-
 
 SCRIPT = """
 <script>
+// What this browser keeps: the desk of this tab, and the last desk of all tabs; nothing of it leaves the computer.
+window.cuefem = {
+  kept(key) {
+    const link = location.hash.startsWith("#d=") ? location.hash.slice(3) : "";
+    if (location.hash) history.replaceState(null, "", location.pathname);
+    const read = (store, name) => { try { return store().getItem(name) || ""; } catch { return ""; } };
+    const kept = read(() => sessionStorage, key) || read(() => localStorage, key);
+    return { link, kept, units: read(() => localStorage, "cuefem-units") };
+  },
+  keep(key, text) {
+    for (const store of [() => sessionStorage, () => localStorage]) try { store().setItem(key, text); } catch {}
+  },
+  remember(units) { try { localStorage.setItem("cuefem-units", units); } catch {} },
+};
+addEventListener("hashchange", () => { if (location.hash.startsWith("#d=")) location.reload(); });
+addEventListener("keydown", event => {
+  if (!(event.ctrlKey || event.metaKey) || event.altKey || event.target.closest("input[type=text], textarea")) return;
+  const key = event.key.toLowerCase(), redo = key === "y" || (key === "z" && event.shiftKey);
+  if (key !== "z" && key !== "y") return;
+  event.preventDefault();
+  document.querySelector(redo ? "[data-redo]" : "[data-undo]").click();
+});
 document.addEventListener("click", event => {
   const button = event.target.closest(".tone");
   if (!button) return;

@@ -171,11 +171,33 @@ def test_a_lumped_cue_has_no_knobs() -> None:
 
 
 def test_what_is_unusual_is_not_said_to_be_assumed() -> None:
-    pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
-    from cuefem.designer.words import Opened, head_markup
+    from cuefem.designer.design import Design
+    from cuefem.designer.units import INCHES
+    from cuefem.designer.words import head_markup
 
     scene = replace(first_scene(), ball=cf.Ball(radius=0.05715))
-    head = head_markup(Opened("mine.toml", scene, ["material hard maple"]), scene)
+    head = head_markup(Design.of("mine.toml", scene, ["material hard maple"]))
     assert "assumed: material hard maple<" in head
     assert ">unusual: ball radius 57.15 mm" in head
-    assert "unusual" not in head_markup(Opened("mine.toml", first_scene(), []), first_scene())
+    assert "unusual" not in head_markup(Design.of("mine.toml", first_scene()))
+    assert ">unusual: ball radius 2.250 in" in head_markup(Design.of("mine.toml", scene), INCHES)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_sliders_in_inches_turn_the_same_knobs(name: str) -> None:
+    from cuefem.designer.units import INCHES
+
+    own = knobs_of(SCENES[name])
+    for slider, metric in zip(sliders(SCENES[name], INCHES), sliders(SCENES[name]), strict=True):
+        assert slider.turned(own, slider.shown(own)) == own
+        assert (slider.unit == "in") == (metric.unit == "mm")
+        assert slider.low <= slider.shown(own) <= slider.high
+        for mine, theirs in ((slider.most, metric.most), (slider.least, metric.least)):
+            assert mine / slider.scale == pytest.approx(theirs / metric.scale, rel=1e-9, abs=1e-12)
+
+
+def test_half_an_inch_is_saved_as_such() -> None:
+    from cuefem.designer.units import INCHES
+
+    tip = sliders(first_scene(), INCHES)[0]
+    assert tip.turned(knobs_of(first_scene()), 0.5).tip_diameter == 0.0127
