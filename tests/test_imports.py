@@ -24,6 +24,7 @@ ORDER = [
     "beam",
     "effects",
     "scene",
+    "games",
     "tip_modes",
     "contact",
     "endmass",

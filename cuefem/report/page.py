@@ -163,7 +163,7 @@ def _context(scene: Scene, found: Record) -> Record:
 def _facts(scene: Scene) -> list[str]:
     about = {
         "ball": asdict(scene.ball),
-        "tip": {**asdict(scene.tip), "contact_time": scene.contact_time},
+        "tip": {**asdict(scene.tip), "contact_time": scene.known_contact_time},
         "stroke": asdict(scene.stroke),
     }
     effects = [f"with {effect_words(effect)}" for effect in scene.effects]

@@ -35,7 +35,10 @@ def _diameters(scene: Scene) -> Iterable[tuple[str, float]]:
 
 # Beyond every cue and every table, yet within a factor of ten: what a unit is wrong by.
 USUAL = (
-    Usual(lambda s: [("contact time", s.contact_time)], 1e-5, 0.05, 1, "s", "leather's is 0.001 to 0.002 s"),
+    Usual(
+        lambda s: [] if s.known_contact_time is None else [("contact time", s.known_contact_time)],
+        *(1e-5, 0.05, 1, "s", "leather's is 0.001 to 0.002 s"),
+    ),
     Usual(
         lambda s: [("ball radius", s.ball.radius)], 0.02, 0.04, 1e3, "mm", "26 to 31 is usual: is that the diameter?"
     ),
