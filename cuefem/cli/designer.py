@@ -24,7 +24,8 @@ from cuefem.cli.common import blaming, scene_of
 def designer(scene: Path | None, port: int, show: bool) -> None:
     """Open a page on this computer: change a cue with sliders and see its end mass and squirt at once.
 
-    SCENE is a cue or scene file, as FILE is for other commands; by default a maple pool shaft.
+    SCENE is a cue or scene file, as FILE is for other commands; by default a maple pool shaft. A cue alone gets a usual
+    stroke of pool.
     """
     try:
         from cuefem.designer.app import serve

@@ -19,16 +19,22 @@ from cuefem.designer.computing import FAILURES, Memory, Results, computed
 from cuefem.designer.controls import ChoiceField, NumberField, button
 from cuefem.designer.design import Design, History, Step
 from cuefem.designer.door import KINDS
+from cuefem.designer.editing import game_of, with_game
 from cuefem.designer.kept import LONGEST_NAME, MOST_PINNED, key_of, steps_of, text_of
 from cuefem.designer.links import LinkDialog
 from cuefem.designer.numbers import Column, csv_text
+from cuefem.designer.opening import PresetMenu, ShapeDialog, asked, reading
 from cuefem.designer.pinned import PinnedList
-from cuefem.designer.receiving import Receiver, read_file
+from cuefem.designer.presets import Preset
+from cuefem.designer.presets import opened as preset_opened
+from cuefem.designer.receiving import Receiver
 from cuefem.designer.results import ResultsSide
-from cuefem.designer.sliders import choices, sliders, without
+from cuefem.designer.sheet import Sheet
+from cuefem.designer.sliders import GROUPS, choices, sliders, without
 from cuefem.designer.style import SCRIPT, STYLE
 from cuefem.designer.units import METRIC, SYSTEMS, System
-from cuefem.designer.words import head_markup
+from cuefem.designer.words import MEASURED, head_markup
+from cuefem.games import GAMES
 from cuefem.io.toml import toml_text
 from cuefem.report.page import page as report_page
 from cuefem.report.templates import page_style
@@ -78,6 +84,7 @@ class Desk:
             self.head = ui.html(sanitize=False)
             with ui.element("div").classes("actions"):
                 button("Open a file", lambda: self.receiver.pick())
+                PresetMenu(self._ready)
                 button("Save as .toml", self._save)
                 self.report = button("Write the report", self._report)
                 self.undo = button("Undo", lambda: self._go(self.history.undo)).props("data-undo")
@@ -91,6 +98,7 @@ class Desk:
         with ui.element("div").classes("unseen"):
             self.receiver = Receiver(KINDS, self._received, self.say)
         self.links = LinkDialog(self.open_link)
+        self.shape = ShapeDialog(self._opened)
         with ui.element("div").classes("desk"):
             self.panel = ui.element("section").classes("knobs").props('aria-label="knobs"')
             self.side = ui.element("div").classes("answers")
@@ -98,6 +106,8 @@ class Desk:
                 self.results = ResultsSide()
         with self.results.above_table:
             self.pins = PinnedList(self._rename, self._work_on, self._compare_with, self._unpin, self._export)
+        with self.results.below_cue:
+            self.sheet = Sheet(self.edit)
         self._show_design()
 
     def _show_design(self) -> None:
@@ -116,6 +126,7 @@ class Desk:
         self.redo.set_enabled(self.history.can_redo)
         self.reference = min(self.reference, max(0, len(self.pinned) - 1))
         self.pins.show(self.pinned, self.reference)
+        self.sheet.show(self.design.scene, self.system)
         self._show_head()
 
     def _make_knobs(self) -> None:
@@ -130,10 +141,17 @@ class Desk:
             for choice in choices(scene):
                 turn = lambda material, knob=choice.knob: self.turn(knob, **{knob: material})  # noqa: E731
                 self.choosers.append(ChoiceField(choice, choice.name(self.design.knobs), turn))
-            for slider in sliders(scene, self.system):
-                slider = slider.reaching(slider.shown(self.design.knobs))
-                slide = lambda value, slider=slider: self._slid(slider, value)  # noqa: E731
-                self.fields.append(NumberField(slider, slider.shown(self.design.knobs), slide))
+            known = {slider.knob: slider for slider in sliders(scene, self.system)}
+            for title, names in GROUPS.items():
+                ui.html(f"<h3>{title}</h3>", sanitize=False)
+                if title == "Stroke":
+                    self.game = ui.select(list(GAMES), value=game_of(scene), label="Usual ball, tip and stroke of")
+                    self.game.on_value_change(lambda event: self._play(event.value))
+                    self.game.props("outlined dense").classes("choice")
+                for slider in (known[name] for name in names if name in known):
+                    slider = slider.reaching(slider.shown(self.design.knobs))
+                    slide = lambda value, slider=slider: self._slid(slider, value)  # noqa: E731
+                    self.fields.append(NumberField(slider, slider.shown(self.design.knobs), slide))
             for words in without(scene):
                 ui.html(f'<p class="hint">{escape(words)}</p>', sanitize=False)
 
@@ -193,7 +211,31 @@ class Desk:
         except FAILURES as error:
             return self.system.said(" ".join(str(error).split()))
         self._put(Step(design, self.pinned), label)
+        self.sheet.show(design.scene, self.system)
         return ""
+
+    def _play(self, game: str | None) -> None:
+        if game and game != game_of(self.design.scene):
+            words = self.edit(lambda scene: with_game(scene, game))
+            if words:
+                self.say(words)
+                self.game.set_value(game_of(self.design.scene))
+
+    def edit(self, change: Callable[[Scene], Scene], label: str = "") -> str:
+        """Change anything of the scene; what is wrong if that cannot be: then the design stays as it is."""
+        try:
+            design = self.design.edited(change(self.design.scene))
+        except FAILURES as error:
+            return self.system.said(" ".join(str(error).split()))
+        self._put(Step(design, self.pinned), label)
+        self._show_design()
+        return ""
+
+    def _ready(self, preset: Preset) -> None:
+        scene, notes = preset_opened(preset)
+        design = Design.of(Path(preset.file).name, scene, [*notes, f"{MEASURED}{preset.measured}"])
+        self.opened = design
+        self.open(design)
 
     def _named(self, name: str) -> None:
         if name.strip() and name != self.design.name:
@@ -368,14 +410,24 @@ class Desk:
 
     async def _received(self, name: str, content: bytes) -> None:
         try:
-            scene, notes = await computed(read_file, name, content, self.read)
+            known = await computed(reading, name, content, self.read)
+        except FAILURES as error:
+            self.say(f"not opened: {error}")
+            return
+        if asked(name):
+            self.shape.ask(name, known, self.system)
+        else:
+            self._opened(name, *known)
+
+    def _opened(self, name: str, scene: Scene, notes: list[str]) -> None:
+        try:
             design = Design.of(name, scene, notes)
         except FAILURES as error:
             self.say(f"not opened: {error}")
-        else:
-            self.opened = design
-            self.say("")
-            self.open(design)
+            return
+        self.opened = design
+        self.say("")
+        self.open(design)
 
     def _save(self) -> None:
         ui.download.content(toml_text(self.design.scene), f"{Path(self.design.name).stem}.toml")

@@ -67,7 +67,8 @@ def offset_charts(
         lines.append(("lumped, stick end mass", "c3", found.lumped))
     charts = report_charts(
         [(name, style, _smooth(one.squirt), _smooth(one.pivot_length)) for name, style, one in lines],
-        *(FINE, float(found.scene.stroke.offset)),
+        FINE.tolist(),
+        float(found.scene.stroke.offset),
         height=HIGH,
         spans=limits,
         units=system.units,

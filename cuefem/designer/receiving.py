@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Awaitable, Callable
-from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import Any
 
 from nicegui import app, background_tasks, ui
 from starlette.datastructures import UploadFile
@@ -13,7 +10,6 @@ from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect, Request
 from starlette.responses import Response
 
-from cuefem.designer.computing import FAILURES
 from cuefem.designer.door import LARGEST_FILE, REJECTED, file_name
 
 
@@ -59,14 +55,3 @@ class Receiver:
             else:
                 background_tasks.create(self.taken(name, content), name="open a file")
         return Response(status_code=400 if said else 200)
-
-
-def read_file(name: str, content: bytes, read: Callable[[Path], Any]) -> Any:
-    """What ``read`` makes of a file's content; ValueError in one line, without the folder that it lay in."""
-    with TemporaryDirectory() as folder:
-        path = Path(folder) / name
-        path.write_bytes(content)
-        try:
-            return read(path)
-        except FAILURES as error:
-            raise ValueError(" ".join(str(error).split()).replace(f"{folder}/", "")) from None

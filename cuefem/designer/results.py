@@ -23,7 +23,10 @@ class ResultsSide:
         with ui.element("section").classes("key-strip"):
             self.keys = ui.html(sanitize=False)
         with ui.element("div").classes("rest") as self.rest:
-            self.cue = self._section("The cue")
+            with ui.element("section"):
+                ui.html("<h2>The cue</h2>", sanitize=False)
+                self.cue = ui.html(sanitize=False)
+                self.below_cue = ui.element("div")
             self.charts = self._section("Squirt and pivot length against the offset")
             with ui.element("div").classes("grid2"):
                 self.lives = self._section("Where end mass lives")

@@ -98,7 +98,12 @@ def _in_system(slider: Slider, system: System) -> Slider:
         return slider
     per, step = scale / slider.scale, STEPS_IN_INCHES[slider.step]
     low, high = step * math.floor(slider.low * per / step), step * math.ceil(slider.high * per / step)
-    ends = {"low": round(low, 6), "high": round(high, 6), "least": slider.least * per, "most": slider.most * per}
+    ends: dict[str, Any] = {
+        "low": round(low, 6),
+        "high": round(high, 6),
+        "least": slider.least * per,
+        "most": slider.most * per,
+    }
     return replace(slider, unit=unit, scale=scale, step=step, **ends)
 
 
@@ -128,7 +133,31 @@ _SLIDERS: dict[str, Callable[[Cue, System], Slider]] = {
     "joint_compliance": lambda *_: Slider("joint_compliance", "Joint bends", "mrad/(N m)", 1e3, 0, 5, 0.05, 0, 100),
     "joint_position": _joint,
     "contact_time": lambda *_: Slider("contact_time", "Contact time (hard–soft tip)", "ms", 1e3, 0.6, 3, 0.01, 0.2, 20),
+    "tip_height": lambda *_: Slider("tip_height", "Height of the leather", "mm", 1e3, 2, 12, 0.1, 0.5, 40),
+    "tip_dome": lambda *_: Slider("tip_dome", "Radius of the dome", "mm", 1e3, 6, 20, 0.1, 3, 500),
+    "leather": lambda *_: Slider(
+        "leather", "Leather, E (30 soft, 140 medium, 360 hard)", "MPa", 1e-6, 20, 500, 5, 1, 20_000
+    ),
+    "restitution": lambda *_: Slider("restitution", "Bounce of the tip, e", "", 1.0, 0.5, 0.95, 0.01, 0, 1),
+    "friction": lambda *_: Slider("friction", "Friction of tip and ball", "", 1.0, 0.2, 1.2, 0.01, 0.01, 10),
+    "bridge_stiffness": lambda *_: Slider("bridge_stiffness", "Bridge hand holds", "N/mm", 1e-3, 0, 30, 0.5, 0, 1000),
+    "bridge_position": lambda cue, _: Slider(
+        "bridge_position", "Bridge at", "mm", 1e3, 20, round(1e3 * cue.length - 10), 1, 1, round(1e3 * cue.length - 1)
+    ),
+    "speed": lambda *_: Slider("speed", "Speed of the cue", "m/s", 1.0, 0.3, 12, 0.1, 0.01, 40),
+    "body_mass": lambda *_: Slider("body_mass", "Mass behind what is drawn", "g", 1e3, 0, 700, 5, 0, 5000),
     "offset": lambda *_: Slider("offset", "Offset b/R", "", 1.0, 0, 0.9, 0.01, -0.95, 0.95),
+}
+
+
+# The knobs under headings; those that a scene does not have are left out.
+GROUPS = {
+    "Shaft": ("tip_diameter", "taper_diameter", "butt_diameter", "bore_depth", "bore_width", "ferrule_length"),
+    "Tip": ("tip_height", "tip_dome", "leather", "contact_time", "restitution", "friction"),
+    "Stroke": ("speed", "offset"),
+    "Joint, bridge and butt": (
+        *("joint_compliance", "joint_position", "bridge_stiffness", "bridge_position", "body_mass"),
+    ),
 }
 
 

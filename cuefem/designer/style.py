@@ -19,6 +19,15 @@ h1, h2 { font-weight: 700; letter-spacing: 0; font-family: inherit; } h2 { line-
 .knob .line { display: flex; justify-content: space-between; align-items: center; gap: 0.4rem; font-size: 0.88rem;
   line-height: 1.2; }
 .knob .line > :first-child { flex: 1; width: auto; }
+.knobs h3 { margin: 0.8rem 0 0.3rem; font-size: 0.95rem; font-weight: 650; line-height: 1.3; }
+.sheet table { width: 100%; } .sheet td { padding: 0.15rem 0.25rem 0.15rem 0; min-width: 5rem; }
+.sheet .row, .sheet .cells { display: flex; flex-wrap: wrap; gap: 0.4rem; align-items: end; margin: 0 0 0.5rem; }
+.sheet .cell { width: 9.4rem; } .sheet .cell.broad { width: 11rem; }
+.sheet .q-field__label { font-size: 0.95rem; }
+.sheet .card { border: 1px solid var(--rule); border-radius: 8px; padding: 0.5rem 0.7rem; margin: 0 0 0.5rem; }
+.sheet h4 { margin: 0 0 0.3rem; font-size: 0.9rem; font-weight: 650; line-height: 1.3; }
+.sheet .nicegui-html { width: auto; } .menu-item { color: var(--ink); max-width: 34rem; }
+.menu-item small { display: block; color: var(--soft); white-space: normal; }
 .hint { font-size: 0.8rem; line-height: 1.3; }
 .knob .q-field { width: 6.2rem; flex: none; } .knob .q-field:has([aria-label*="mrad"]) { width: 9rem; }
 .knob .q-field__control, .knob .q-field__marginal { height: 1.7rem !important; min-height: 0 !important; }

@@ -10,13 +10,17 @@ from cuefem.report.record import scene_record
 from cuefem.report.unusual import unusual
 from cuefem.report.words import assumptions, effect_words, plain_cue_line
 
+MEASURED = "measured on such cues: "  # with it a note begins that is no assumption
+
 
 def head_markup(design: Design, system: System = METRIC) -> str:
     """The head of the page: the design's name, and the cue, the stroke and the effects in words."""
     scene = design.scene
     facts = [plain_cue_line(scene.cue), assumptions(scene_record(scene))]
     facts += [f"with {', '.join(map(effect_words, scene.effects))}"] if scene.effects else []
-    facts += [f"assumed: {'; '.join(design.notes)}"] if design.notes else []
+    assumed = [note for note in design.notes if not note.startswith(MEASURED)]
+    facts += [f"assumed: {'; '.join(assumed)}"] if assumed else []
+    facts += [note for note in design.notes if note.startswith(MEASURED)]
     facts += [f"unusual: {remark}" for remark in unusual(scene)]
     lines = "".join(f'<p class="fact">{escape(system.said(fact))}</p>' for fact in facts)
     return f'<p class="kind">cuefem designer</p><h1>{escape(design.name)}</h1>{lines}'
