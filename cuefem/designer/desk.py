@@ -32,6 +32,7 @@ from cuefem.designer.results import ResultsSide
 from cuefem.designer.sheet import Sheet
 from cuefem.designer.sliders import GROUPS, choices, sliders, without
 from cuefem.designer.style import SCRIPT, STYLE
+from cuefem.designer.tapside import TapSide
 from cuefem.designer.units import METRIC, SYSTEMS, System
 from cuefem.designer.words import MEASURED, head_markup
 from cuefem.games import GAMES
@@ -108,6 +109,7 @@ class Desk:
             self.pins = PinnedList(self._rename, self._work_on, self._compare_with, self._unpin, self._export)
         with self.results.below_cue:
             self.sheet = Sheet(self.edit)
+            self.tap = TapSide(self.receiver.address, lambda: self.design.scene, self.edit)
         self._show_design()
 
     def _show_design(self) -> None:
@@ -127,6 +129,7 @@ class Desk:
         self.reference = min(self.reference, max(0, len(self.pinned) - 1))
         self.pins.show(self.pinned, self.reference)
         self.sheet.show(self.design.scene, self.system)
+        self.tap.show(self.system)
         self._show_head()
 
     def _make_knobs(self) -> None:
@@ -409,6 +412,9 @@ class Desk:
     # --- files -----------------------------------------------------------------------------------------------------
 
     async def _received(self, name: str, content: bytes) -> None:
+        if name.lower().endswith(".wav"):
+            await self.tap.listen(content)
+            return
         try:
             known = await computed(reading, name, content, self.read)
         except FAILURES as error:

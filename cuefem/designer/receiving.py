@@ -25,9 +25,9 @@ class Receiver:
             max_file_size=LARGEST_FILE,
             on_rejected=lambda: say(f"not opened: {REJECTED}"),
         ).props(f'accept="{",".join(kinds)}"')
-        address = self.upload.props["url"]
-        app.remove_route(address)  # NiceGUI's own takes no form without a file
-        app.post(address, include_in_schema=False)(self._sent)
+        self.address = str(self.upload.props["url"])
+        app.remove_route(self.address)  # NiceGUI's own takes no form without a file
+        app.post(self.address, include_in_schema=False)(self._sent)
 
     def pick(self) -> None:
         """Let the person choose a file."""

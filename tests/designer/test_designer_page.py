@@ -9,11 +9,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+from scipy.io import wavfile
 
 import cuefem as cf
 from cuefem.designer.model import knobs_of
 from cuefem.designer.start import first_scene
+from cuefem.tap.matching import with_material
 from tests.helpers.command_line import call
 from tests.helpers.designer_browser import BROWSER, opened, served, settled, shown, turn
 
@@ -112,7 +115,7 @@ WRONG = {
     "elsewhere.toml": ('cue = "shaft.toml"\n', "elsewhere.toml: cue: shaft.toml: cannot be read: No such file"),
     "profile.csv": ("a,b\n1,2\n", "profile.csv:"),
     "<b>.toml": ("x = 1", "<b>.toml: x: "),
-    "notes.txt": ("x = 1", "a file must be a .toml, .csv, .vtk, .vtu, .stl, .ply or .obj of at most 5 MB"),
+    "notes.txt": ("x = 1", "a file must be a .toml, .csv, .vtk, .vtu, .stl, .ply, .obj or .wav of at most 5 MB"),
     "many.toml": (PIECE * 2001, "many.toml: segments: must hold at most 2000 segments; got 2001"),
     "long.toml": (PIECE.replace("1 mm", "1e9 m"), "segments[0].length: must be in (0, 1000] m; got '1e9 m'"),
 }
@@ -240,7 +243,7 @@ def test_a_person_starts_from_nothing(browser: Any, address: str, tmp_path: Path
     (tmp_path / "mine.csv").write_text("x [mm],diameter [mm]\n0,12.75\n330,13.2\n736.6,21.5\n")
     with opened(browser, address) as page:
         page.locator("input[type=file]").first.set_input_files(tmp_path / "mine.csv")
-        page.get_by_label("Weight, g").fill("5 oz")
+        page.get_by_label("Weight, g").fill("3 oz")
         page.get_by_role("button", name="Open it", exact=True).last.click()
         page.get_by_text("the whole cue must weigh more than what is drawn").wait_for()
         page.get_by_label("Weight, g").fill("19 oz")
@@ -264,6 +267,34 @@ def test_a_person_starts_from_nothing(browser: Any, address: str, tmp_path: Path
         ready = cf.load(ROOT / "studies" / "scenes" / "pool_low_deflection.toml")
         kept = tuple(effect for effect in ready.effects if not isinstance(effect, cf.Support))
         assert cf.load(saved(page, tmp_path)) == replace(ready, effects=kept)
+
+
+def test_a_tap_tells_the_wood(browser: Any, address: str, tmp_path: Path) -> None:
+    """A recording made by the model, in another wood than the design's, is dropped; its wood is taken over."""
+    wood = cf.Material(11.3e9, 1.0e9, 660.0)
+    scene = first_scene()
+    maple = scene.cue.segments[-1].material
+    hung = with_material(scene.cue, maple, wood)
+    effects = tuple(effect for effect in scene.effects if isinstance(effect, cf.LeatherTip))
+    tones = cf.modes(hung, 6, effects=effects).frequencies
+    t = np.arange(4 * 44100) / 44100
+    sound = sum(np.exp(-5.0 * (1 + i) * t) * np.sin(2 * np.pi * f * t) for i, f in enumerate(tones))
+    sound = np.r_[np.zeros(4410), 0.1 * sound] + 1e-5 * np.random.default_rng(1).standard_normal(len(t) + 4410)
+    wavfile.write(tmp_path / "tap.wav", 44100, np.int16(32767 * sound))
+    with opened(browser, address) as page:
+        was = shown(page, "mode1")
+        page.get_by_text("Tap test: what wood is it?").click()
+        page.get_by_label("Weight of the shaft as it hangs, g").fill(f"{1e3 * hung.shaft_mass + 0.7:.2f}")
+        page.wait_for_timeout(300)
+        page.locator("input[type=file]").first.set_input_files(tmp_path / "tap.wav")
+        page.get_by_role("button", name="Take this wood into the design").click()
+        page.wait_for_function("was => document.querySelector('[data-number=mode1]').innerText !== was", arg=was)
+        settled(page)
+        found = cf.load(saved(page, tmp_path)).cue.segments[-1].material
+        assert pytest.approx(wood.E, rel=0.02) == found.E
+        assert shown(page, "mode1") == f"{tones[0]:.2f} Hz" or float(shown(page, "mode1")[:-3]) == pytest.approx(
+            tones[0], rel=2e-3
+        )
 
 
 SENT = """async ([url, name, text]) => {
