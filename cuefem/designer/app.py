@@ -37,6 +37,7 @@ def serve(first: Design, read: Read, *, port: int, show: bool, announce: Callabl
         dark=None,
         language="en-US",
         reload=False,
+        reconnect_timeout=30.0,  # s: a busy computer may be silent for longer than the default, 3 s
         tailwind=False,
         show_welcome_message=False,
     )

@@ -163,7 +163,7 @@ THIS = "this design"
 def table_markup(columns: Sequence[Column], reference: int, system: System = METRIC) -> str:
     """All numbers as a table, a column for every design; the first is the one in work."""
     names = [THIS, *(column.design.name for column in columns[1:])]
-    head = "".join(f'<th scope="col">{escape(name)}</th>' for name in ["", *names])
+    head = "".join(f'<th scope="col">{escape(name)}</th>' for name in ["number", *names])
     body = "".join(map(_line, compared(columns, reference, system)))
     return f'<div class="scroll"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>'
 
@@ -236,7 +236,7 @@ def _warned(safety: str) -> str:
 def tones_markup(frequencies: Sequence[float]) -> str:
     """A button for every tone, with its note."""
     buttons = (
-        f'<button type="button" class="tone" data-hz="{hertz:.3f}" aria-label="play mode {i}, {hertz:.1f} hertz">'
+        f'<button type="button" class="tone" data-hz="{hertz:.3f}"><span class="spoken">play mode {i}: </span>'
         f"▶ {hertz:.1f} Hz <small>{escape(note(hertz))} ct</small></button>"
         for i, hertz in enumerate(frequencies, 1)
     )

@@ -99,7 +99,7 @@ class Sheet:
     def _card(self, title: str) -> ui.element:
         made = ui.element("div").classes("card").props(f'role="group" aria-label="{escape(title)}"')
         with made:
-            ui.html(f"<h4>{escape(title)}</h4>", sanitize=False)
+            ui.html(f"<h3>{escape(title)}</h3>", sanitize=False)
         return made
 
     def _numbers(self, thing: Any, path: Path) -> None:

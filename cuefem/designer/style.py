@@ -25,7 +25,7 @@ h1, h2 { font-weight: 700; letter-spacing: 0; font-family: inherit; } h2 { line-
 .sheet .cell { width: 9.4rem; } .sheet .cell.broad { width: 11rem; }
 .sheet .q-field__label { font-size: 0.95rem; }
 .sheet .card { border: 1px solid var(--rule); border-radius: 8px; padding: 0.5rem 0.7rem; margin: 0 0 0.5rem; }
-.sheet h4 { margin: 0 0 0.3rem; font-size: 0.9rem; font-weight: 650; line-height: 1.3; }
+.sheet h3 { margin: 0 0 0.3rem; font-size: 0.9rem; font-weight: 650; line-height: 1.3; }
 .sheet .nicegui-html { width: auto; } .menu-item { color: var(--ink); max-width: 34rem; }
 .menu-item small { display: block; color: var(--soft); white-space: normal; }
 .hint { font-size: 0.8rem; line-height: 1.3; }
@@ -60,6 +60,7 @@ h1, h2 { font-weight: 700; letter-spacing: 0; font-family: inherit; } h2 { line-
 .q-slider__track-container:focus-visible .q-slider__thumb { outline: 3px solid var(--c2);
   outline-offset: 2px; border-radius: 50%; }
 .unseen { display: none; }
+.spoken { position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%); white-space: nowrap; }
 .wrong { margin: 0 0 0.3rem; padding: 0.1rem 0.5rem; font-size: 0.82rem; line-height: 1.3; color: var(--ink);
   border-left: 4px solid var(--c2); background: var(--slip); }
 .units { min-width: 6.5rem; } .units .q-field__native { color: var(--ink) !important; }
@@ -203,7 +204,11 @@ const spoken = ["aria-label", "aria-valuemin", "aria-valuemax", "aria-valuenow",
 const speak = slider => {
   const inner = slider.querySelector(".q-slider__track-container");
   inner.setAttribute("role", "slider");
-  for (const name of spoken) inner.setAttribute(name, slider.getAttribute(name));
+  for (const name of spoken) {
+    if (!slider.hasAttribute(name)) continue;
+    inner.setAttribute(name, slider.getAttribute(name));
+    slider.removeAttribute(name);
+  }
 };
 new MutationObserver(changes => {
   for (const { target, type, addedNodes } of changes) {

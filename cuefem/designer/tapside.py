@@ -16,8 +16,8 @@ from cuefem.scene import Scene
 
 SECONDS = 6  # that are recorded
 HOW = """<p>Weigh the bare shaft. Hang it on two loops of thread, 22 % of its length from either end. Put the microphone
-a hand&#8217;s breadth from the tip end. Tap the joint end crosswise with something small and hard, three times, a second
-apart, and let it ring. Draw the shaft first as it hangs: the tones are compared with this design.</p>"""
+a hand&#8217;s breadth from the tip end. Tap the joint end crosswise with something small and hard, three times, a
+second apart, and let it ring. Draw the shaft first as it hangs: the tones are compared with this design.</p>"""
 
 
 class TapSide:

@@ -182,7 +182,7 @@ def test_nothing_is_lost(browser: Any, address: str) -> None:
     with opened(browser, link) as page:
         assert shown(page, "end_mass_stick") == bored
         names = page.locator("thead th").all_inner_texts()
-        assert names == ["", "this design", "pool_maple 1"]
+        assert names == ["number", "this design", "pool_maple 1"]
         page.get_by_role("button", name="Undo").click()
         page.wait_for_function(
             "was => document.querySelector('[data-number=end_mass_stick]').innerText === was", arg=was
