@@ -28,6 +28,7 @@ from cuefem.report.strike import outcome_record
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import Solved, default_resolution
 
+AT_ONCE = "stick"  # the definition of the end mass that is shown with every move
 TONES = 5  # bending modes that are shown
 OFFSETS = tuple(round(0.04 * i, 2) for i in range(1, 21))  # b/R of both curves
 MISCUES = 3  # of the coupled curve's points that miscue, one after the other: nothing new comes after them
@@ -81,12 +82,11 @@ class Density:
 
 @dataclass(frozen=True)
 class Answers:
-    """The numbers computed at once, SI. end_masses: by definition, None where a definition has no answer.
+    """The numbers of a design, SI. end_masses: by definition, None where one has no answer; `AT_ONCE` alone at first.
 
     strike: as `outcome_record`, of the coupled strike at the scene's own offset. tip_stiffness: of a static load across
-    the cue at its tip, the butt end clamped. lumped: the impulse solver's curve, with the end mass of a tip that sticks
-    at each offset and without effects at the tip. tip: the tip modes, for what is computed later. safety: see
-    `safety`.
+    the cue at its tip, the butt end clamped. safety: see `safety`. solved: for what is computed later. lumped: the
+    impulse solver's curve, with the end mass of a tip that sticks at each offset and without effects at the tip.
     """
 
     scene: Scene
@@ -94,9 +94,19 @@ class Answers:
     strike: Record
     found: Modes
     tip_stiffness: float
-    lumped: Curve
-    tip: TipModes
+    solved: Solved
     safety: str
+    lumped: Curve | None = None
+
+    @property
+    def tip(self) -> TipModes:
+        """The tip modes."""
+        return self.solved.tip
+
+    @property
+    def complete(self) -> bool:
+        """Whether `completed` has added the slower numbers."""
+        return self.lumped is not None
 
     @property
     def frequencies(self) -> Array:
@@ -110,14 +120,19 @@ def answers(scene: Scene) -> Answers:
     outcome = strike_modes(scene, solved.tip)
     return Answers(
         scene=scene,
-        end_masses={drive: _end_mass(drive, solved) for drive in DEFINITIONS},
+        end_masses={AT_ONCE: _end_mass(AT_ONCE, solved)},
         strike=outcome_record(outcome, scene),
         found=modes(cue, TONES, effects=scene.cue_effects),
         tip_stiffness=static_tip_stiffness(scene, Resolution(*mesh_for(cue, TONES), TONES)),
-        lumped=lumped_curve(solved),
-        tip=solved.tip,
+        solved=solved,
         safety=safety(outcome),
     )
+
+
+def completed(found: Answers) -> Answers:
+    """The numbers with all definitions of the end mass, and the lumped curve: with a leather tip they take a second."""
+    masses = {drive: _end_mass(drive, found.solved) for drive in DEFINITIONS}
+    return replace(found, end_masses=masses, lumped=lumped_curve(found.solved))
 
 
 def _end_mass(drive: str, solved: Solved) -> float | None:

@@ -14,7 +14,7 @@ from typing import Any
 
 from nicegui import background_tasks, ui
 
-from cuefem.designer.answers import answers, coupled_points, density
+from cuefem.designer.answers import answers, completed, coupled_points, density
 from cuefem.designer.computing import FAILURES, Memory, Results, computed
 from cuefem.designer.controls import ChoiceField, NumberField, button
 from cuefem.designer.design import Design, History, Step
@@ -375,6 +375,11 @@ class Desk:
         one = self.memory.get(scene)
         if one is None:
             one = self.memory.put(await computed(answers, scene), self._scenes())
+            self._show_numbers()
+        if not one.found.complete:
+            one.found = await computed(completed, one.found)
+            if move != self.moves:
+                return
             self._show_numbers()
         if not one.whole:
             work = _after(coupled_points(one.found), len(one.points))

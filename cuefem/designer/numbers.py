@@ -19,6 +19,8 @@ from cuefem.endmass.drives import DEFINITIONS
 from cuefem.report.quantities import NONE, QUANTITIES, Known, significant
 from cuefem.report.strike import MISCUE
 
+WAITING = "…"
+
 
 class Row(NamedTuple):
     """A number: its name on the page, what it is in full, its value in SI (None if it has none), and its quantity."""
@@ -27,15 +29,16 @@ class Row(NamedTuple):
     label: str
     value: float | None
     known: Known
+    waiting: bool = False  # it is not computed yet
 
     def text(self, system: System = METRIC) -> str:
         """The value with its unit."""
-        return self.known.written(self.value, units=system.units)
+        return WAITING if self.waiting else self.known.written(self.value, units=system.units)
 
     def number(self, system: System = METRIC) -> str:
         """The value without its unit; a dash if there is none."""
         if self.value is None or not math.isfinite(self.value):
-            return NONE
+            return WAITING if self.waiting else NONE
         return self.known.number(self.value, units=system.units)
 
 
@@ -52,7 +55,12 @@ def rows(found: Answers) -> list[Row]:
     return [
         row("squirt", "squirt", strike["squirt"], f"squirt, coupled, at b/R {offset:g}"),
         row("pivot", "pivot_length", None if pivot is None else float(pivot)),
-        *(row(f"end_mass_{drive}", "end_mass", felt, labels[drive]) for drive, felt in found.end_masses.items()),
+        *(
+            row(f"end_mass_{drive}", "end_mass", found.end_masses.get(drive), labels[drive])._replace(
+                waiting=drive not in found.end_masses
+            )
+            for drive in DEFINITIONS
+        ),
         row("shaft_mass", "shaft_mass", cue.shaft_mass),
         row("mass", "mass", cue.mass),
         row("balance", "balance_point", cue.balance_point),
@@ -108,9 +116,6 @@ class Line(NamedTuple):
         number = self.numbers[i]
         space = "" if self.unit in ("", "°") else " "
         return number if number in (WAITING, NONE) else f"{number}{space}{self.unit}"
-
-
-WAITING = "…"
 
 
 def compared(columns: Sequence[Column], reference: int, system: System) -> list[Line]:

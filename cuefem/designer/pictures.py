@@ -63,7 +63,7 @@ def offset_charts(
     if coupled is not None:
         lines.append(("coupled, in time", "c1", coupled) if current else ("coupled, before", "c1 stale", coupled))
     lines += [(one.name, style, one.coupled) for one, style in zip(pinned, cycle(STYLES), strict=False) if one.coupled]
-    if not pinned or coupled is None:
+    if found.lumped is not None and (not pinned or coupled is None):
         lines.append(("lumped, stick end mass", "c3", found.lumped))
     charts = report_charts(
         [(name, style, _smooth(one.squirt), _smooth(one.pivot_length)) for name, style, one in lines],
