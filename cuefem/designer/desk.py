@@ -235,7 +235,11 @@ class Desk:
         return ""
 
     def _ready(self, preset: Preset) -> None:
-        scene, notes = preset_opened(preset)
+        try:
+            scene, notes = preset_opened(preset)
+        except FAILURES as error:
+            self.say(f"not opened: {' '.join(str(error).split())}")
+            return
         design = Design.of(Path(preset.file).name, scene, [*notes, f"{MEASURED}{preset.measured}"])
         self.opened = design
         self.open(design)
