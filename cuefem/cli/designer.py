@@ -24,26 +24,27 @@ from cuefem.cli.common import blaming, scene_of
 def designer(scene: Path | None, port: int, show: bool) -> None:
     """Open a page on this computer: change a cue with sliders and see its end mass and squirt at once.
 
-    SCENE is a cue or scene file, as FILE is for other commands; by default a maple pool shaft.
+    SCENE is a cue or scene file, as FILE is for other commands; by default a maple pool shaft. A cue alone gets a usual
+    stroke of pool.
     """
     try:
-        from cuefem.designer.app import Opened, serve
+        from cuefem.designer.app import serve
     except ModuleNotFoundError as error:
         if error.name is None or error.name.startswith("cuefem"):
             raise
         raise ValueError(f"the designer needs {error.name}: pip install '.[designer]' in the clone") from None
-    from cuefem.designer.model import knobs_of
+    from cuefem.designer.design import Design
     from cuefem.designer.start import NAME, first_scene
 
     def read(path: Path) -> Any:
         return scene_of(path, {"material": None, "body_mass": None})
 
     if scene is None:
-        first = Opened(NAME, first_scene(), [])
+        first = Design.of(NAME, first_scene())
     else:
-        first = Opened(scene.name, *read(scene))
+        found = read(scene)
         with blaming(scene):
-            knobs_of(first.scene)
+            first = Design.of(scene.name, *found)
     with suppress(KeyboardInterrupt):  # Ctrl-C is how one ends it
         serve(first, read, port=_free(port), show=show, announce=click.echo)
 

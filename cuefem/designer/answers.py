@@ -7,8 +7,11 @@ turns a knob, it adds the coupled squirt at other offsets, strike by strike, and
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
 
 from cuefem.beam.modes import Modes, modes
 from cuefem.beam.tip import TipModes
@@ -22,21 +25,44 @@ from cuefem.endmass.drives import DEFINITIONS, formula_of
 from cuefem.report.record import Record
 from cuefem.report.squirt import two_part_curve
 from cuefem.report.strike import outcome_record
-from cuefem.scene import Resolution, Scene
+from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import Solved, default_resolution
 
+AT_ONCE = "stick"  # the definition of the end mass that is shown with every move
 TONES = 5  # bending modes that are shown
-OFFSETS = tuple(round(0.06 * i, 2) for i in range(1, 11))  # b/R of both curves
+OFFSETS = tuple(round(0.04 * i, 2) for i in range(1, 21))  # b/R of both curves
+MISCUES = 3  # of the coupled curve's points that miscue, one after the other: nothing new comes after them
 MOST_DENSITY_MODES = 45  # where end mass lives takes all modes of the mesh: cubic
 
 
 @dataclass(frozen=True)
 class Curve:
-    """Squirt, rad, and natural pivot length, m, against the offset b/R."""
+    """Squirt, rad, and natural pivot length, m, against `OFFSETS`; nan where it is not known, or not yet."""
 
-    offsets: tuple[float, ...]
     squirt: Array
     pivot_length: Array
+
+
+class Point(NamedTuple):
+    """Squirt, rad, and natural pivot length, m, of the coupled strike at an offset b/R, and how safe it is."""
+
+    offset: float
+    squirt: float
+    pivot_length: float
+    safety: str  # "safe", "slips" or "miscue"
+
+
+SLIPPING = 0.25  # of the blow's impulse, passed on while the tip slips: from there on squirt grows fast
+
+
+def safety(outcome: Outcome) -> str:
+    """How far a stroke is from its limit: "miscue"; "slips" through much of the blow, or at first; or "safe"."""
+    if outcome.regime == "miscue":
+        return "miscue"
+    pressed = [(phase.grip, abs(phase.impulse[1])) for phase in outcome.phases]
+    slipped = sum(impulse for grip, impulse in pressed if grip in ("slip", "slip back"))
+    late = outcome.regime != "stick" or slipped > SLIPPING * sum(impulse for _, impulse in pressed)
+    return "slips" if late else "safe"
 
 
 @dataclass(frozen=True)
@@ -56,11 +82,11 @@ class Density:
 
 @dataclass(frozen=True)
 class Answers:
-    """The numbers computed at once, SI. end_masses: by definition, None where a definition has no answer.
+    """The numbers of a design, SI. end_masses: by definition, None where one has no answer; `AT_ONCE` alone at first.
 
     strike: as `outcome_record`, of the coupled strike at the scene's own offset. tip_stiffness: of a static load across
-    the cue at its tip, the butt end clamped. lumped: the impulse solver's curve, with the end mass of a tip that sticks
-    at each offset and without effects at the tip. tip: the tip modes, for what is computed later.
+    the cue at its tip, the butt end clamped. safety: see `safety`. solved: for what is computed later. lumped: the
+    impulse solver's curve, with the end mass of a tip that sticks at each offset and without effects at the tip.
     """
 
     scene: Scene
@@ -68,8 +94,19 @@ class Answers:
     strike: Record
     found: Modes
     tip_stiffness: float
-    lumped: Curve
-    tip: TipModes
+    solved: Solved
+    safety: str
+    lumped: Curve | None = None
+
+    @property
+    def tip(self) -> TipModes:
+        """The tip modes."""
+        return self.solved.tip
+
+    @property
+    def complete(self) -> bool:
+        """Whether `completed` has added the slower numbers."""
+        return self.lumped is not None
 
     @property
     def frequencies(self) -> Array:
@@ -83,13 +120,19 @@ def answers(scene: Scene) -> Answers:
     outcome = strike_modes(scene, solved.tip)
     return Answers(
         scene=scene,
-        end_masses={drive: _end_mass(drive, solved) for drive in DEFINITIONS},
+        end_masses={AT_ONCE: _end_mass(AT_ONCE, solved)},
         strike=outcome_record(outcome, scene),
         found=modes(cue, TONES, effects=scene.cue_effects),
         tip_stiffness=static_tip_stiffness(scene, Resolution(*mesh_for(cue, TONES), TONES)),
-        lumped=lumped_curve(solved),
-        tip=solved.tip,
+        solved=solved,
+        safety=safety(outcome),
     )
+
+
+def completed(found: Answers) -> Answers:
+    """The numbers with all definitions of the end mass, and the lumped curve: with a leather tip they take a second."""
+    masses = {drive: _end_mass(drive, found.solved) for drive in DEFINITIONS}
+    return replace(found, end_masses=masses, lumped=lumped_curve(found.solved))
 
 
 def _end_mass(drive: str, solved: Solved) -> float | None:
@@ -103,15 +146,28 @@ def _end_mass(drive: str, solved: Solved) -> float | None:
 def lumped_curve(solved: Solved) -> Curve:
     """The impulse solver's curve, with the cue lumped at each offset; nan if no lumped cue has that squirt."""
     found = two_part_curve(solved, OFFSETS)
-    return Curve(OFFSETS, found["squirt"], found["pivot_length"])
+    return Curve(found["squirt"], found["pivot_length"])
 
 
-def coupled_points(found: Answers) -> Iterator[tuple[float, float, float]]:
-    """(offset, squirt, pivot length) of the coupled strike, offset by offset, each computed when it is asked for."""
+def coupled_points(found: Answers) -> Iterator[Point]:
+    """The coupled strike offset by offset, each computed when it is asked for; it ends well beyond the miscue."""
+    missed = 0
     for offset in OFFSETS:
         scene = replace(found.scene, stroke=replace(found.scene.stroke, offset=offset))
-        record = outcome_record(strike_modes(scene, found.tip), scene)
-        yield offset, record["squirt"], float(record["pivot_length"])
+        outcome = strike_modes(scene, found.tip)
+        record = outcome_record(outcome, scene)
+        yield Point(offset, record["squirt"], float(record["pivot_length"]), safety(outcome))
+        missed = missed + 1 if outcome.regime == "miscue" else 0
+        if missed == MISCUES:
+            return
+
+
+def curve_of(points: Sequence[Point]) -> Curve:
+    """The curve through points at the first of `OFFSETS`."""
+    squirt, pivot = np.full(len(OFFSETS), np.nan), np.full(len(OFFSETS), np.nan)
+    squirt[: len(points)] = [point.squirt for point in points]
+    pivot[: len(points)] = [point.pivot_length for point in points]
+    return Curve(squirt, pivot)
 
 
 def density(scene: Scene) -> Density:

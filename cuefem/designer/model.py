@@ -17,17 +17,20 @@ alone:
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from cuefem.cue import SOFT, Cue, Material, Segment
-from cuefem.effects import Effect, Joint
+from cuefem.effects import Effect, Joint, LeatherTip, Support
 from cuefem.scene import Scene
 
 LONGEST_FERRULE = 0.06  # m
 TAPER_AT = 0.3302  # m, 13 in: so far pool shafts stay nearly straight; half the length of a cue shorter than twice that
+BRIDGE_AT = 0.2032  # m, 8 in
 USUAL_BORE = 0.006  # m, the width of a new bore
 SAME = 1e-9  # relative to a length: places closer than this are the same
 
@@ -37,7 +40,9 @@ class Knobs:
     """What a person can turn; SI. None: the scene has no such part, or no knob can change it.
 
     Diameters at the tip, `TAPER_AT` behind it and at the end, m; bore: depth from its mouth and width, m; joint:
-    distance from the tip, m, and rotational compliance, rad/(N m); contact time of a head-on blow, s; offset b/R.
+    distance from the tip, m, and rotational compliance, rad/(N m); bridge: distance from the tip, m, and stiffness,
+    N/m; contact time of a head-on blow, s; of a leather tip: height and radius of the dome, m, and E, Pa; speed, m/s;
+    offset b/R; mass behind the segments, kg.
     """
 
     tip_diameter: float
@@ -51,7 +56,16 @@ class Knobs:
     joint_position: float
     joint_compliance: float
     contact_time: float | None
+    tip_height: float | None
+    tip_dome: float | None
+    leather: float | None
+    restitution: float
+    friction: float | None
+    bridge_position: float
+    bridge_stiffness: float
+    speed: float
     offset: float
+    body_mass: float
 
 
 @dataclass(frozen=True)
@@ -123,7 +137,7 @@ def knobs_of(scene: Scene) -> Knobs:
     cue = cue_of(scene)
     parts, pieces = Parts.of(cue), cue.segments
     ferrule = parts.ferrule
-    joint = joint_of(scene)
+    joint, bridge, leather = joint_of(scene), bridge_of(scene), leather_of(scene)
     return Knobs(
         tip_diameter=pieces[0].tip_diameter,
         taper_diameter=outer_diameter(cue, taper_position(cue)),
@@ -136,8 +150,28 @@ def knobs_of(scene: Scene) -> Knobs:
         joint_position=joint.position,
         joint_compliance=joint.rotational_compliance,
         contact_time=None if scene.contact_terms.tip is not None else float(scene.contact_time),
+        tip_height=leather.height if leather else None,
+        tip_dome=leather.dome_radius if leather and math.isfinite(leather.dome_radius) else None,
+        leather=leather.E if leather else None,
+        restitution=float(scene.tip.restitution),
+        friction=float(scene.tip.friction) if math.isfinite(scene.tip.friction) else None,
+        bridge_position=bridge.position,
+        bridge_stiffness=bridge.stiffness,
+        speed=float(scene.stroke.speed),
         offset=float(scene.stroke.offset),
+        body_mass=cue.body_mass,
     )
+
+
+def leather_of(scene: Scene) -> LeatherTip | None:
+    """The scene's leather tip, if it has one."""
+    return next((effect for effect in scene.effects if isinstance(effect, LeatherTip)), None)
+
+
+def bridge_of(scene: Scene) -> Support:
+    """The scene's first soft support across the cue; without one, a hand that does not hold it, 8 in behind the tip."""
+    own = (e for e in scene.effects if isinstance(e, Support) and math.isfinite(e.stiffness))
+    return next(own, Support(min(BRIDGE_AT, 0.5 * cue_of(scene).length), 0.0))
 
 
 def joint_of(scene: Scene) -> Joint:
@@ -164,12 +198,32 @@ def turned(scene: Scene, knobs: Knobs) -> Scene:
     own = knobs_of(scene)
     changed = _with_bore(_with_diameters(_with_ferrule(cue, own, knobs), own, knobs), knobs)
     changed = _with_materials(changed, knobs)  # last, because the parts are told by their materials
-    found = scene if changed is cue else replace(scene, cue=changed)
+    if knobs.body_mass != own.body_mass:
+        changed = replace(changed, body_mass=knobs.body_mass)
+    parts: dict[str, Any] = {
+        "cue": changed,
+        "tip": _with_fields(scene.tip, own, knobs, ("restitution", "friction")),
+        "stroke": _with_fields(scene.stroke, own, knobs, ("speed", "offset")),
+        "effects": _with_bridge(_with_joint(_with_leather(scene, own, knobs), scene, knobs), scene, knobs),
+    }
     if own.contact_time is not None and knobs.contact_time != own.contact_time:
-        found = replace(found, tip=replace(scene.tip, contact_time=knobs.contact_time, stiffness=None))
-    if knobs.offset != own.offset:
-        found = replace(found, stroke=replace(scene.stroke, offset=knobs.offset))
-    return _with_joint(found, own, knobs)
+        parts["tip"] = replace(parts["tip"], contact_time=knobs.contact_time, stiffness=None)
+    same = all(value is getattr(scene, name) or value == getattr(scene, name) for name, value in parts.items())
+    return scene if same else replace(scene, **parts)
+
+
+def _with_fields(held: Any, own: Knobs, knobs: Knobs, names: Sequence[str]) -> Any:
+    """A part of the scene with those of its fields changed whose knobs were turned."""
+    changed = {name: getattr(knobs, name) for name in names if getattr(knobs, name) != getattr(own, name)}
+    return replace(held, **changed) if changed else held
+
+
+def _with_leather(scene: Scene, own: Knobs, knobs: Knobs) -> tuple[Effect, ...]:
+    """The effects with the leather tip's fields changed whose knobs were turned."""
+    fields = {"tip_height": "height", "tip_dome": "dome_radius", "leather": "E"}
+    turned_ones = [(field, name) for name, field in fields.items() if getattr(knobs, name) != getattr(own, name)]
+    changed: dict[str, Any] = {field: getattr(knobs, name) for field, name in turned_ones}
+    return tuple(replace(e, **changed) if changed and isinstance(e, LeatherTip) else e for e in scene.effects)
 
 
 def _with_materials(cue: Cue, knobs: Knobs) -> Cue:
@@ -278,13 +332,20 @@ def _with_bore(cue: Cue, knobs: Knobs) -> Cue:
     return _with_segments(cue, pieces)
 
 
-def _with_joint(scene: Scene, own: Knobs, knobs: Knobs) -> Scene:
+def _with_joint(effects: tuple[Effect, ...], scene: Scene, knobs: Knobs) -> tuple[Effect, ...]:
     joint = joint_of(scene)
     moved = replace(joint, position=knobs.joint_position, rotational_compliance=knobs.joint_compliance)
-    if joint in scene.effects:
-        return scene if moved == joint else _with_effects(scene, [moved if e is joint else e for e in scene.effects])
-    return _with_effects(scene, [*scene.effects, moved]) if knobs.joint_compliance else scene
+    return _exchanged(effects, joint, moved, needed=knobs.joint_compliance > 0)
 
 
-def _with_effects(scene: Scene, effects: Sequence[Effect]) -> Scene:
-    return replace(scene, effects=tuple(effects))
+def _with_bridge(effects: tuple[Effect, ...], scene: Scene, knobs: Knobs) -> tuple[Effect, ...]:
+    bridge = bridge_of(scene)
+    moved = replace(bridge, position=knobs.bridge_position, stiffness=knobs.bridge_stiffness)
+    return _exchanged(effects, bridge, moved, needed=knobs.bridge_stiffness > 0)
+
+
+def _exchanged(effects: tuple[Effect, ...], old: Effect, new: Effect, *, needed: bool) -> tuple[Effect, ...]:
+    """The effects with one exchanged for another, which is added, if it is needed, where they do not have the first."""
+    if old in effects:
+        return tuple(new if effect == old else effect for effect in effects)
+    return (*effects, new) if needed else effects

@@ -1,17 +1,25 @@
-"""The designer's numbers in words: values as the commands write them, and how they differ from a pinned design's."""
+"""The designer's numbers in words: values as the commands write them, side by side with those of pinned designs."""
 
 from __future__ import annotations
 
+import csv
+import io
 import math
+import re
 from collections.abc import Sequence
 from html import escape
 from typing import NamedTuple
 
 from cuefem.designer.answers import Answers, note
+from cuefem.designer.design import Design
 from cuefem.designer.model import cue_of
+from cuefem.designer.sliders import choices, sliders
+from cuefem.designer.units import METRIC, System
 from cuefem.endmass.drives import DEFINITIONS
 from cuefem.report.quantities import NONE, QUANTITIES, Known, significant
 from cuefem.report.strike import MISCUE
+
+WAITING = "…"
 
 
 class Row(NamedTuple):
@@ -21,11 +29,17 @@ class Row(NamedTuple):
     label: str
     value: float | None
     known: Known
+    waiting: bool = False  # it is not computed yet
 
-    @property
-    def text(self) -> str:
+    def text(self, system: System = METRIC) -> str:
         """The value with its unit."""
-        return self.known.written(self.value)
+        return WAITING if self.waiting else self.known.written(self.value, units=system.units)
+
+    def number(self, system: System = METRIC) -> str:
+        """The value without its unit; a dash if there is none."""
+        if self.value is None or not math.isfinite(self.value):
+            return WAITING if self.waiting else NONE
+        return self.known.number(self.value, units=system.units)
 
 
 def rows(found: Answers) -> list[Row]:
@@ -41,7 +55,12 @@ def rows(found: Answers) -> list[Row]:
     return [
         row("squirt", "squirt", strike["squirt"], f"squirt, coupled, at b/R {offset:g}"),
         row("pivot", "pivot_length", None if pivot is None else float(pivot)),
-        *(row(f"end_mass_{drive}", "end_mass", felt, labels[drive]) for drive, felt in found.end_masses.items()),
+        *(
+            row(f"end_mass_{drive}", "end_mass", found.end_masses.get(drive), labels[drive])._replace(
+                waiting=drive not in found.end_masses
+            )
+            for drive in DEFINITIONS
+        ),
         row("shaft_mass", "shaft_mass", cue.shaft_mass),
         row("mass", "mass", cue.mass),
         row("balance", "balance_point", cue.balance_point),
@@ -53,34 +72,139 @@ def rows(found: Answers) -> list[Row]:
 STIFFNESS = f"{QUANTITIES['tip_stiffness'].label}, static, butt clamped"
 
 
-def difference(row: Row, other: Row) -> str:
-    """How much more a number is than another: in its unit and in percent."""
-    if row.value is None or other.value is None or not (math.isfinite(row.value) and math.isfinite(other.value)):
+def percent(value: float | None, other: float | None) -> str:
+    """How much more a number is than another, in percent; a dash if one is missing, or the other is 0."""
+    if value is None or other is None or not (math.isfinite(value) and math.isfinite(other)):
         return NONE
-    more, unit = row.value - other.value, row.known.shown_unit
-    if abs(more) <= 1e-12 * abs(other.value):
+    if abs(value - other) <= 1e-12 * abs(other):
         return "the same"
+    return f"{100 * (value - other) / abs(other):+.1f}\u00a0%".replace("-", "−") if other else NONE
+
+
+def difference(row: Row, other: Row, system: System = METRIC) -> str:
+    """How much more a number is than another: in its unit and in percent."""
+    part = percent(row.value, other.value)
+    if row.value is None or other.value is None or part == "the same":
+        return part
+    more, (scale, unit) = row.value - other.value, row.known.shown_in(system.units)
+    if not math.isfinite(more):
+        return NONE
     space = "" if unit == "°" else " "
     sign = "+" if more > 0 else "−"
-    part = f" ({100 * more / abs(other.value):+.1f}\u00a0%)".replace("-", "−") if other.value else ""
-    return f"{sign}{significant(abs(more) * row.known.scale, 3)}{space}{unit}{part}"
+    said = f"{sign}{significant(abs(more) * scale, 3)}{space}{unit}"
+    return said if part == NONE else f"{said} ({part})"
 
 
-def table_markup(found: Answers, pinned: Answers | None) -> str:
-    """All numbers as a table, beside those of a pinned design."""
-    mine, theirs = rows(found), {row.name: row for row in rows(pinned)} if pinned else {}
-    heads = ["", "this design", *(["pinned", "difference"] if pinned else [])]
-    head = "".join(f'<th scope="col">{words}</th>' for words in heads)
-    body = "".join(_line(row, theirs.get(row.name)) for row in mine)
+class Column(NamedTuple):
+    """A design beside others; found: None while it is computed."""
+
+    design: Design
+    found: Answers | None
+
+
+class Line(NamedTuple):
+    """A row of the comparison: every design's number in the unit, and its difference from one design's in percent."""
+
+    name: str
+    label: str
+    unit: str
+    numbers: list[str]
+    parts: list[str]
+
+    def text(self, i: int) -> str:
+        """A design's number with its unit."""
+        number = self.numbers[i]
+        space = "" if self.unit in ("", "°") else " "
+        return number if number in (WAITING, NONE) else f"{number}{space}{self.unit}"
+
+
+def compared(columns: Sequence[Column], reference: int, system: System) -> list[Line]:
+    """All numbers of all designs, then the settings in which they differ. reference: the one compared with."""
+    found = [rows(column.found) if column.found else None for column in columns]
+    lines = []
+    for i, row in enumerate(next(one for one in found if one)):
+        beside = [one[i] if one else None for one in found]
+        same = len({one.label for one in beside if one}) == 1
+        lines.append(
+            Line(
+                row.name,
+                row.label if same else row.label.partition(" at b/R")[0].rstrip(","),
+                row.known.shown_in(system.units)[1],
+                [one.number(system) if one else WAITING for one in beside],
+                _parts([one.value if one else None for one in beside], reference),
+            )
+        )
+    return [*lines, *_settings([column.design for column in columns], reference, system)]
+
+
+def _parts(values: Sequence[float | None], reference: int) -> list[str]:
+    """Differences in percent from one of the values, which has none itself; empty where there is nothing to say."""
+    if len(values) == 1:
+        return [""]
+    return ["" if i == reference else percent(value, values[reference]) for i, value in enumerate(values)]
+
+
+def _settings(designs: Sequence[Design], reference: int, system: System) -> list[Line]:
+    """The knobs that do not stand alike in all designs."""
+    turned = [{slider.knob: slider for slider in sliders(design.scene, system)} for design in designs]
+    chosen = [{choice.knob: choice for choice in choices(design.scene)} for design in designs]
+    lines = []
+    for knob, known in {knob: one[knob] for one in reversed(turned) for knob in one}.items():
+        beside = list(zip(turned, designs, strict=True))
+        numbers = [one[knob].text(one[knob].shown(d.knobs)) if knob in one else NONE for one, d in beside]
+        if len(set(numbers)) > 1:
+            values = [getattr(design.knobs, knob) for design in designs]
+            lines.append(Line(knob, known.label.partition(", from")[0], known.unit, numbers, _parts(values, reference)))
+    for knob, label in {knob: one[knob].label for one in chosen for knob in one}.items():
+        names = [one[knob].name(d.knobs) if knob in one else NONE for one, d in zip(chosen, designs, strict=True)]
+        if len(set(names)) > 1:
+            lines.append(Line(knob, label, "", names, [""] * len(designs)))
+    return lines
+
+
+THIS = "this design"
+
+
+def table_markup(columns: Sequence[Column], reference: int, system: System = METRIC) -> str:
+    """All numbers as a table, a column for every design; the first is the one in work."""
+    names = [THIS, *(column.design.name for column in columns[1:])]
+    head = "".join(f'<th scope="col">{escape(name)}</th>' for name in ["number", *names])
+    body = "".join(map(_line, compared(columns, reference, system)))
     return f'<div class="scroll"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>'
 
 
-def _line(row: Row, other: Row | None) -> str:
-    cells = [row.text, *([other.text, difference(row, other)] if other else [])]
-    first, *rest = (escape(cell) for cell in cells)
-    label = escape(row.label if other is None or other.label == row.label else f"{row.label} (pinned: {other.label})")
-    others = "".join(f"<td>{cell}</td>" for cell in rest)
-    return f'<tr><th class="text" scope="row">{label}</th><td data-number="{row.name}">{first}</td>{others}</tr>'
+def _line(line: Line) -> str:
+    first, *others = (
+        f"<span>{escape(line.text(i))}</span>" + (f" <small>{escape(part)}</small>" if part else "")
+        for i, part in enumerate(line.parts)
+    )
+    cells = "".join(f"<td>{cell}</td>" for cell in others)
+    named = first.replace("<span>", f'<span data-number="{line.name}">', 1)
+    return f'<tr><th class="text" scope="row">{escape(line.label)}</th><td>{named}</td>{cells}</tr>'
+
+
+def csv_text(columns: Sequence[Column], reference: int, system: System = METRIC) -> str:
+    """The table as CSV: for every design its numbers and, beside others, how much they differ, in percent."""
+    names = [THIS, *(column.design.name for column in columns[1:])]
+    differing = [len(columns) > 1 and i != reference for i in range(len(columns))]
+    head = ["", "unit"]
+    for name, differs in zip(names, differing, strict=True):
+        head += [name, f"{name}, % from {names[reference]}"] if differs else [name]
+    file = io.StringIO()
+    writer = csv.writer(file)
+    writer.writerow(map(_plain, head))
+    for line in compared(columns, reference, system):
+        cells = [line.label, line.unit]
+        for number, part, differs in zip(line.numbers, line.parts, differing, strict=True):
+            said = part.removesuffix("\u00a0%").replace("−", "-").replace("the same", "0")
+            cells += [number, said] if differs else [number]
+        writer.writerow(map(_plain, cells))
+    return file.getvalue()
+
+
+def _plain(cell: str) -> str:
+    """A cell that no spreadsheet takes for a formula."""
+    return f"'{cell}" if re.match(r"[=@\t\r]|[-+](?![0-9])", cell) else cell
 
 
 KEYS = {
@@ -93,24 +217,31 @@ KEYS = {
 }
 
 
-def key_markup(found: Answers, pinned: Answers | None) -> str:
-    """The numbers that matter most, each with its definition or its difference from the pinned design's."""
-    mine, theirs = ({row.name: row for row in rows(one)} if one else {} for one in (found, pinned))
+def key_markup(found: Answers, other: Answers | None, system: System = METRIC) -> str:
+    """The numbers that matter most, each with its definition or its difference from the design compared with."""
+    mine, theirs = ({row.name: row for row in rows(one)} if one else {} for one in (found, other))
     parts = []
     for name, (label, remark) in KEYS.items():
-        said = difference(mine[name], theirs[name]) if theirs else remark
-        value = escape(mine[name].text)
+        said = difference(mine[name], theirs[name], system) if theirs else remark
+        value = escape(mine[name].text(system))
         parts.append(
             f'<div><dt>{label}</dt><dd><b data-key="{name}">{value}</b><small>{escape(said)}</small></dd></div>'
         )
-    missed = f'<p class="miscue">{escape(MISCUE)}</p>' if found.strike["regime"] == "miscue" else ""
-    return f'<dl class="key">{"".join(parts)}</dl>{missed}'
+    return f'<dl class="key">{"".join(parts)}</dl>{_warned(found.safety)}'
+
+
+LATE = "near a miscue: the tip slips through much of this blow, and squirt is larger for it"
+
+
+def _warned(safety: str) -> str:
+    said = {"miscue": MISCUE, "slips": LATE}.get(safety)
+    return f'<p class="miscue">{escape(said)}</p>' if said else ""
 
 
 def tones_markup(frequencies: Sequence[float]) -> str:
     """A button for every tone, with its note."""
     buttons = (
-        f'<button type="button" class="tone" data-hz="{hertz:.3f}" aria-label="play mode {i}, {hertz:.1f} hertz">'
+        f'<button type="button" class="tone" data-hz="{hertz:.3f}"><span class="spoken">play mode {i}: </span>'
         f"▶ {hertz:.1f} Hz <small>{escape(note(hertz))} ct</small></button>"
         for i, hertz in enumerate(frequencies, 1)
     )

@@ -3,24 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import cycle
+from typing import NamedTuple
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
-from cuefem.designer.answers import Answers, Curve, Density
+from cuefem.cue import Array
+from cuefem.designer.answers import OFFSETS, Answers, Curve, Density, Point
 from cuefem.designer.model import cue_of
+from cuefem.designer.units import METRIC, System
 from cuefem.report import charts as figures
-from cuefem.report.charts import Axis, chart
+from cuefem.report.charts import Axis, Span, chart
 from cuefem.report.drawings import cue_drawing, front_drawing, materials_of, modes_drawing, seen, style_of
 from cuefem.report.squirt import offset_charts as report_charts
 from cuefem.report.templates import chart_markup, cue_markup, shapes_markup
 from cuefem.scene import Scene
 
 HIGH = 280.0
+STYLES = ("c2", "c4", "c3", "c5")  # of pinned designs, in turn
+LIMITS = {"slips": ("slip", "slips through much of the blow"), "miscue": ("miss", "slips off the ball (a miscue)")}
 
 
-def cue_pictures(scene: Scene) -> str:
+def cue_pictures(scene: Scene, system: System = METRIC) -> str:
     """The cue to scale, enlarged across, its tip end; and which colour is which material."""
-    whole, wide, front = cue_drawing(scene, across=1.0), cue_drawing(scene, across=8.0), front_drawing(scene)
+    units = system.units
+    whole, wide = (cue_drawing(scene, across=across, units=units) for across in (1.0, 8.0))
+    front = front_drawing(scene, units=units)
     cue = cue_of(scene)
     hollow = any((s.tip_bore or s.butt_bore) and s.core is None for s in cue.segments)
     named = [(name, style_of(name)) for name in materials_of(seen(scene))] + ([("bore", "hollow")] if hollow else [])
@@ -29,43 +38,93 @@ def cue_pictures(scene: Scene) -> str:
     return f'{cue_markup(whole)}{near}<p class="legend">{legend}</p>'
 
 
+class Drawn(NamedTuple):
+    """A pinned design's curves by its name; None while they are computed."""
+
+    name: str
+    coupled: Curve | None
+    density: Density | None
+
+
 def offset_charts(
-    found: Answers, coupled: Curve | None, pinned: tuple[Answers, Curve | None] | None, *, current: bool
+    found: Answers,
+    coupled: Curve | None,
+    pinned: Sequence[Drawn],
+    *,
+    current: bool,
+    limits: Sequence[Span] = (),
+    system: System = METRIC,
 ) -> str:
-    """Squirt and pivot length against the offset. current: whether the coupled curve is of this design already."""
+    """Squirt and pivot length against the offset, the coupled curves of all designs: like with like.
+
+    current: whether the coupled curve is of this design already. limits: where this design's strokes are not safe.
+    """
     lines: list[tuple[str, str, Curve]] = []
     if coupled is not None:
         lines.append(("coupled, in time", "c1", coupled) if current else ("coupled, before", "c1 stale", coupled))
-    lines.append(("lumped, stick end mass", "c3", found.lumped))
-    if pinned is not None:
-        lines.append(("pinned, coupled", "c2", pinned[1]) if pinned[1] else ("pinned, lumped", "c2", pinned[0].lumped))
+    lines += [(one.name, style, one.coupled) for one, style in zip(pinned, cycle(STYLES), strict=False) if one.coupled]
+    if found.lumped is not None and (not pinned or coupled is None):
+        lines.append(("lumped, stick end mass", "c3", found.lumped))
     charts = report_charts(
-        [(name, style, one.squirt, one.pivot_length) for name, style, one in lines],
-        *(found.lumped.offsets, float(found.scene.stroke.offset)),
+        [(name, style, _smooth(one.squirt), _smooth(one.pivot_length)) for name, style, one in lines],
+        FINE.tolist(),
+        float(found.scene.stroke.offset),
         height=HIGH,
+        spans=limits,
+        units=system.units,
     )
     return f'<div class="grid2">{"".join(chart_markup(c, f"offset{i}") for i, c in enumerate(charts))}</div>'
 
 
-def density_chart(found: Density, pinned: Density | None) -> str:
-    """Where end mass lives along the cue, in grams a centimetre; and how near to the tip half of it does."""
-    mm = 1e3 * found.x
+FINE = np.linspace(OFFSETS[0], OFFSETS[-1], 10 * (len(OFFSETS) - 1) + 1)
+
+
+def _smooth(values: Array) -> Array:
+    """A curve at `FINE` offsets through its values at `OFFSETS`, without overshoot; nan where those are."""
+    known = np.flatnonzero(np.isfinite(values))
+    if len(known) < 2:
+        return np.full(len(FINE), np.nan)
+    return np.asarray(PchipInterpolator(np.array(OFFSETS)[known], values[known], extrapolate=False)(FINE))
+
+
+def limits_of(points: Sequence[Point]) -> tuple[list[Span], str]:
+    """Where strokes are not safe, as parts to shade; and from which offsets on, in a sentence."""
+    spans: list[Span] = []
+    starts: dict[str, float] = {}
+    half = 0.5 * (OFFSETS[1] - OFFSETS[0])
+    for i, point in enumerate(points):
+        if point.safety != "safe":
+            last = i == len(points) - 1 and point.safety == "miscue"
+            end = OFFSETS[-1] if last else point.offset + half
+            spans.append(Span(point.offset - half, min(end, OFFSETS[-1]), LIMITS[point.safety][0]))
+            starts.setdefault(point.safety, point.offset - half)
+    said = [f"{LIMITS[name][1]} from b/R {start:.2f} on" for name, start in starts.items()]
+    return spans, f"Shaded: the tip {', and '.join(said)}." if said else ""
+
+
+def density_chart(found: Density, pinned: Sequence[Drawn], system: System = METRIC) -> str:
+    """Where end mass lives along the cue, and how near to the tip half of it does."""
+    (per_metre, length), (per_kilogram, mass) = system.units["m"], system.units["kg"]
+    per, scale = ("cm", 0.01 * per_kilogram) if length == "mm" else (length, per_kilogram / per_metre)
+    x = per_metre * found.x
     curves = [
-        figures.Curve("whole", mm, 10 * (found.from_mass + found.from_stiffness), "c1"),
-        figures.Curve("from the mass there", mm, 10 * found.from_mass, "c3"),
-        figures.Curve("from the stiffness there", mm, 10 * found.from_stiffness, "c4"),
+        figures.Curve("whole", x, scale * (found.from_mass + found.from_stiffness), "c1"),
+        *(
+            figures.Curve(f"{one.name}, whole", per_metre * d.x, scale * (d.from_mass + d.from_stiffness), style)
+            for one, style in zip(pinned, cycle(STYLES), strict=False)
+            if (d := one.density)
+        ),
     ]
-    if pinned is not None:
-        curves.append(
-            figures.Curve("pinned, whole", 1e3 * pinned.x, 10 * (pinned.from_mass + pinned.from_stiffness), "c2")
-        )
+    if not pinned:
+        curves.append(figures.Curve("from the mass there", x, scale * found.from_mass, "c3"))
+        curves.append(figures.Curve("from the stiffness there", x, scale * found.from_stiffness, "c4"))
     made = chart(
         *("End mass per length of cue", curves),
-        x=Axis("distance from the tip, mm", 0.0),
-        y=Axis("end mass, g/cm"),
+        x=Axis(f"distance from the tip, {length}", 0.0),
+        y=Axis(f"end mass, {mass}/{per}"),
         height=HIGH,
     )
-    half = f"Half of it lies within {1e3 * half_within(found):.0f} mm of the tip."
+    half = f"Half of it lies within {system.length(half_within(found), 3)} of the tip."
     return chart_markup(made, "density") + f"<p>{half} Stick end mass of the bare cue, without effects.</p>"
 
 
@@ -75,12 +134,6 @@ def half_within(found: Density) -> float:
     return float(found.x[int(np.argmax(sums >= sums[-1] / 2))])
 
 
-def shapes_picture(found: Answers) -> str:
+def shapes_picture(found: Answers, system: System = METRIC) -> str:
     """The bending modes."""
-    return shapes_markup(modes_drawing(found.found, cue_of(found.scene).length))
-
-
-def curve_of(points: Sequence[tuple[float, float, float]]) -> Curve:
-    """A curve of (offset, squirt, pivot length)."""
-    offsets, squirt, pivot = zip(*points, strict=True)
-    return Curve(offsets, np.array(squirt), np.array(pivot))
+    return shapes_markup(modes_drawing(found.found, cue_of(found.scene).length, units=system.units))

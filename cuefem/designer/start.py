@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from cuefem.cue import Cue, Segment
-from cuefem.effects import TipDome, TipShear
+from cuefem.games import usual_scene
 from cuefem.materials import MATERIALS
-from cuefem.scene import Ball, Scene, Stroke, Tip
+from cuefem.scene import Scene
 
 NAME = "pool_maple.toml"
 
 
-def first_scene() -> Scene:
-    """A generic maple pool shaft on a pool ball: meshes/pool_maple.toml; its README has the sources.
-
-    How such a shaft plays is told in handbook: Measured squirt.
-    """
+def first_cue() -> Cue:
+    """A generic maple pool shaft: meshes/pool_maple.toml; its README has the sources."""
     leather, melamine, maple = (MATERIALS[name].material for name in ("leather", "melamine", "hard maple"))
-    cue = Cue(
+    return Cue(
         (
             Segment(0.006, 0.01275, 0.01275, leather),
             Segment(0.025, 0.01275, 0.0128, melamine, 0.00794, 0.00794, maple),
@@ -26,5 +23,11 @@ def first_scene() -> Scene:
         ),
         body_mass=0.467,
     )
-    tip = Tip(restitution=0.73, friction=0.7, contact_time=1.1e-3)
-    return Scene(cue, Ball(0.170, 0.028575), tip, Stroke(2.0, 0.3), (TipDome(9.5e-3), TipShear(0.75)))
+
+
+def first_scene() -> Scene:
+    """A usual stroke of pool with that shaft, as the commands give it to the drawing of a cue alone.
+
+    How such a shaft plays is told in handbook: Measured squirt.
+    """
+    return usual_scene(first_cue())

@@ -19,6 +19,15 @@ h1, h2 { font-weight: 700; letter-spacing: 0; font-family: inherit; } h2 { line-
 .knob .line { display: flex; justify-content: space-between; align-items: center; gap: 0.4rem; font-size: 0.88rem;
   line-height: 1.2; }
 .knob .line > :first-child { flex: 1; width: auto; }
+.knobs h3 { margin: 0.8rem 0 0.3rem; font-size: 0.95rem; font-weight: 650; line-height: 1.3; }
+.sheet table { width: 100%; } .sheet td { padding: 0.15rem 0.25rem 0.15rem 0; min-width: 5rem; }
+.sheet .row, .sheet .cells { display: flex; flex-wrap: wrap; gap: 0.4rem; align-items: end; margin: 0 0 0.5rem; }
+.sheet .cell { width: 9.4rem; } .sheet .cell.broad { width: 11rem; }
+.sheet .q-field__label { font-size: 0.95rem; }
+.sheet .card { border: 1px solid var(--rule); border-radius: 8px; padding: 0.5rem 0.7rem; margin: 0 0 0.5rem; }
+.sheet h3 { margin: 0 0 0.3rem; font-size: 0.9rem; font-weight: 650; line-height: 1.3; }
+.sheet .nicegui-html { width: auto; } .menu-item { color: var(--ink); max-width: 34rem; }
+.menu-item small { display: block; color: var(--soft); white-space: normal; }
 .hint { font-size: 0.8rem; line-height: 1.3; }
 .knob .q-field { width: 6.2rem; flex: none; } .knob .q-field:has([aria-label*="mrad"]) { width: 9rem; }
 .knob .q-field__control, .knob .q-field__marginal { height: 1.7rem !important; min-height: 0 !important; }
@@ -51,6 +60,25 @@ h1, h2 { font-weight: 700; letter-spacing: 0; font-family: inherit; } h2 { line-
 .q-slider__track-container:focus-visible .q-slider__thumb { outline: 3px solid var(--c2);
   outline-offset: 2px; border-radius: 50%; }
 .unseen { display: none; }
+.spoken { position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%); white-space: nowrap; }
+.wrong { margin: 0 0 0.3rem; padding: 0.1rem 0.5rem; font-size: 0.82rem; line-height: 1.3; color: var(--ink);
+  border-left: 4px solid var(--c2); background: var(--slip); }
+.units { min-width: 6.5rem; } .units .q-field__native { color: var(--ink) !important; }
+.units .q-field__control, .units .q-field__marginal { height: 2.1rem !important; min-height: 0 !important; }
+.units .q-field__native { min-height: 0 !important; padding-bottom: 2px; }
+.units .q-field__label { top: 7px; color: var(--soft); }
+.q-field__native, .q-field__input { color: var(--ink); } .q-field__label { color: var(--soft); }
+.dialog { background: var(--card); color: var(--ink); border: 1px solid var(--rule); border-radius: 10px;
+  padding: 1.1rem 1.4rem; width: min(42rem, calc(100vw - 2rem)); max-width: none !important; }
+.wide-field { width: 100%; }
+.pins { display: grid; gap: 0.4rem; margin: 0 0 0.6rem; }
+.pin { display: flex; flex-wrap: wrap; gap: 0.5rem; align-items: center; }
+.pin .q-field { width: 15rem; max-width: 100%; }
+.pin .nicegui-html { width: auto; } .pin .q-field__control { height: 2.1rem !important; }
+td small { color: var(--soft); }
+.miss { fill: var(--c2); opacity: 0.28; }
+.under p { margin: 0.2rem 0; }
+.q-btn.disabled { opacity: 0.55 !important; }
 @media (max-width: 860px) {
   .desk { grid-template-columns: minmax(0, 1fr); }
   .knobs { position: static; max-height: none; order: 2; }
@@ -66,6 +94,99 @@ h1, h2 { font-weight: 700; letter-spacing: 0; font-family: inherit; } h2 { line-
 
 SCRIPT = """
 <script>
+// What this browser keeps: the desk of this tab, and the last desk of all tabs; nothing of it leaves the computer.
+window.cuefem = {
+  kept(key) {
+    const link = location.hash.startsWith("#d=") ? location.hash.slice(3) : "";
+    if (location.hash) history.replaceState(null, "", location.pathname);
+    const read = (store, name) => { try { return store().getItem(name) || ""; } catch { return ""; } };
+    const kept = read(() => sessionStorage, key) || read(() => localStorage, key);
+    return { link, kept, units: read(() => localStorage, "cuefem-units") };
+  },
+  keep(key, text) {
+    for (const store of [() => sessionStorage, () => localStorage]) try { store().setItem(key, text); } catch {}
+  },
+  remember(units) { try { localStorage.setItem("cuefem-units", units); } catch {} },
+};
+// Recordings: from the microphone, a chosen or a dropped file of any kind that the browser plays, sent as .wav.
+const said = words => {
+  document.querySelector(".tap .beside").innerHTML = "<p class=wrong role=alert></p>";
+  document.querySelector(".tap .beside p").textContent = words;
+};
+const wave = (pieces, rate) => {
+  const size = pieces.reduce((sum, piece) => sum + piece.length, 0);
+  const view = new DataView(new ArrayBuffer(44 + 2 * size));
+  const text = (at, words) => [...words].forEach((letter, i) => view.setUint8(at + i, letter.charCodeAt(0)));
+  text(0, "RIFF"); view.setUint32(4, 36 + 2 * size, true); text(8, "WAVEfmt "); view.setUint32(16, 16, true);
+  view.setUint16(20, 1, true); view.setUint16(22, 1, true); view.setUint32(24, rate, true);
+  view.setUint32(28, 2 * rate, true); view.setUint16(32, 2, true); view.setUint16(34, 16, true);
+  text(36, "data"); view.setUint32(40, 2 * size, true);
+  let at = 44;
+  for (const piece of pieces) for (const x of piece) {
+    view.setInt16(at, Math.round(32767 * Math.max(-1, Math.min(1, x))), true);
+    at += 2;
+  }
+  return new Blob([view], { type: "audio/wav" });
+};
+Object.assign(window.cuefem, {
+  sends(address) { this.address = address; },
+  send(blob, name) {
+    const form = new FormData();
+    form.append("file", blob, name);
+    return fetch(this.address, { method: "POST", body: form });
+  },
+  async take(file) {
+    if (!file.type.startsWith("audio/") || file.name.toLowerCase().endsWith(".wav")) return this.send(file, file.name);
+    try {
+      const sound = await new OfflineAudioContext(1, 1, 48000).decodeAudioData(await file.arrayBuffer());
+      await this.send(wave([sound.getChannelData(0)], sound.sampleRate), "tap.wav");
+    } catch { said("this browser cannot read " + file.name + ": save it as .wav"); }
+  },
+  pick() {
+    const input = document.createElement("input");
+    input.type = "file"; input.accept = "audio/*,.wav";
+    input.onchange = () => input.files[0] && this.take(input.files[0]);
+    input.click();
+  },
+  async record(seconds) {
+    let stream, context;
+    try {
+      const plain = { echoCancellation: false, noiseSuppression: false, autoGainControl: false };
+      stream = await navigator.mediaDevices.getUserMedia({ audio: plain });
+      context = new AudioContext();
+      const code = "registerProcessor('taken', class extends AudioWorkletProcessor { process(inputs) { " +
+        "if (inputs[0][0]) this.port.postMessage(inputs[0][0].slice()); return true; } });";
+      const address = URL.createObjectURL(new Blob([code], { type: "text/javascript" }));
+      await context.audioWorklet.addModule(address);
+      URL.revokeObjectURL(address);
+      const node = new AudioWorkletNode(context, "taken"), pieces = [];
+      node.port.onmessage = event => pieces.push(event.data);
+      context.createMediaStreamSource(stream).connect(node);
+      for (let left = seconds; left > 0; left--) {
+        said("Recording: tap now. " + left + " s left.");
+        await new Promise(done => setTimeout(done, 1000));
+      }
+      document.querySelector(".tap .beside").innerHTML = "";
+      await this.send(wave(pieces, context.sampleRate), "tap.wav");
+    } catch (error) { said("no microphone could be used (" + error.message + "): choose a recording instead"); }
+    stream?.getTracks().forEach(track => track.stop());
+    context?.close();
+  },
+});
+addEventListener("dragover", event => event.preventDefault());
+addEventListener("drop", event => {
+  if (!event.dataTransfer?.files.length) return;
+  event.preventDefault();
+  window.cuefem.take(event.dataTransfer.files[0]);
+});
+addEventListener("hashchange", () => { if (location.hash.startsWith("#d=")) location.reload(); });
+addEventListener("keydown", event => {
+  if (!(event.ctrlKey || event.metaKey) || event.altKey || event.target.closest("input[type=text], textarea")) return;
+  const key = event.key.toLowerCase(), redo = key === "y" || (key === "z" && event.shiftKey);
+  if (key !== "z" && key !== "y") return;
+  event.preventDefault();
+  document.querySelector(redo ? "[data-redo]" : "[data-undo]").click();
+});
 document.addEventListener("click", event => {
   const button = event.target.closest(".tone");
   if (!button) return;
@@ -83,7 +204,11 @@ const spoken = ["aria-label", "aria-valuemin", "aria-valuemax", "aria-valuenow",
 const speak = slider => {
   const inner = slider.querySelector(".q-slider__track-container");
   inner.setAttribute("role", "slider");
-  for (const name of spoken) inner.setAttribute(name, slider.getAttribute(name));
+  for (const name of spoken) {
+    if (!slider.hasAttribute(name)) continue;
+    inner.setAttribute(name, slider.getAttribute(name));
+    slider.removeAttribute(name);
+  }
 };
 new MutationObserver(changes => {
   for (const { target, type, addedNodes } of changes) {

@@ -2,32 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from html import escape
-from typing import NamedTuple
 
+from cuefem.designer.design import Design
+from cuefem.designer.units import METRIC, System
 from cuefem.report.record import scene_record
 from cuefem.report.unusual import unusual
 from cuefem.report.words import assumptions, effect_words, plain_cue_line
-from cuefem.scene import Scene
+
+MEASURED = "measured on such cues: "  # with it a note begins that is no assumption
 
 
-class Opened(NamedTuple):
-    """A scene with the name of its file, and what was assumed because the file does not say it."""
-
-    name: str
-    scene: Scene
-    notes: Sequence[str]
-
-
-def head_markup(opened: Opened, scene: Scene) -> str:
-    """The head of the page: the file's name, and the cue, the stroke and the effects in words."""
+def head_markup(design: Design, system: System = METRIC) -> str:
+    """The head of the page: the design's name, and the cue, the stroke and the effects in words."""
+    scene = design.scene
     facts = [plain_cue_line(scene.cue), assumptions(scene_record(scene))]
     facts += [f"with {', '.join(map(effect_words, scene.effects))}"] if scene.effects else []
-    facts += [f"assumed: {'; '.join(opened.notes)}"] if opened.notes else []
-    facts += [f"unusual: {remark}" for remark in unusual(opened.scene)]
-    lines = "".join(f'<p class="fact">{escape(fact)}</p>' for fact in facts)
-    return f'<p class="kind">cuefem designer</p><h1>{escape(opened.name)}</h1>{lines}'
+    assumed = [note for note in design.notes if not note.startswith(MEASURED)]
+    facts += [f"assumed: {'; '.join(assumed)}"] if assumed else []
+    facts += [note for note in design.notes if note.startswith(MEASURED)]
+    facts += [f"unusual: {remark}" for remark in unusual(scene)]
+    lines = "".join(f'<p class="fact">{escape(system.said(fact))}</p>' for fact in facts)
+    return f'<p class="kind">cuefem designer</p><h1>{escape(design.name)}</h1>{lines}'
 
 
 ABOUT = """<p>The numbers are the same as those of <code>cuefem strike</code>, <code>end-mass</code> and

@@ -94,6 +94,17 @@ def load_cue(path: Path) -> Cue:
     return _cue(found, path, "")
 
 
+def scene_of_table(found: Any, name: str) -> Scene:
+    """The scene of nested tables as `schema.table` makes them; it holds its cue itself. name: for messages."""
+
+    def no_file(path: Path) -> Cue:
+        raise InputError(name, "cue", "must be a table of its own; got the path of a file")
+
+    if not isinstance(found, dict):
+        raise InputError(name, "", f"must be a table; got {shown(found)}")
+    return _scene(found, Path(name), no_file)
+
+
 def load_accuracy(path: str | Path) -> float | None:
     """The relative accuracy rtol that a scene file's [accuracy] table asks for; None if there is no such table."""
     path = Path(path)

@@ -15,6 +15,7 @@ from cuefem.cue import Cue, Material, Segment
 from cuefem.materials import MATERIALS
 from cuefem.quantity import scalar
 from cuefem.report.charts import WIDE, Axis, Tick, path
+from cuefem.report.quantities import TRADE, Units
 from cuefem.scene import Scene
 
 FRONT = 0.09  # m of the tip end that is drawn enlarged
@@ -47,6 +48,7 @@ class CueDrawing:
     signs: tuple[Sign, ...]
     ticks: tuple[Tick, ...]
     across: float
+    unit: str = "mm"
 
 
 def material_name(material: Material) -> str:
@@ -76,18 +78,18 @@ def style_of(name: str) -> str:
     return "m-" + name.replace(" ", "-") if name in MATERIALS else "m-other"
 
 
-def cue_drawing(scene: Scene, *, across: float) -> CueDrawing:
+def cue_drawing(scene: Scene, *, across: float, units: Units = TRADE) -> CueDrawing:
     """The whole cue, with its diameters drawn ``across`` times enlarged."""
     title = "True to scale" if across == 1 else f"Diameters {across:g} times enlarged"
-    return _drawn(scene, title, length=seen(scene).length, across=across)
+    return _drawn(scene, title, length=seen(scene).length, across=across, units=units)
 
 
-def front_drawing(scene: Scene) -> CueDrawing:
+def front_drawing(scene: Scene, *, units: Units = TRADE) -> CueDrawing:
     """The tip end, true to scale, with its dome."""
-    return _drawn(scene, "The tip end, true to scale", length=min(FRONT, seen(scene).length), across=1.0)
+    return _drawn(scene, "The tip end, true to scale", length=min(FRONT, seen(scene).length), across=1.0, units=units)
 
 
-def _drawn(scene: Scene, title: str, *, length: float, across: float) -> CueDrawing:
+def _drawn(scene: Scene, title: str, *, length: float, across: float, units: Units) -> CueDrawing:
     cue = seen(scene)
     ahead = cue.length - scene.shaft.length  # positions on the cue count from behind the leather
     scale = (WIDE - 20) / length
@@ -107,9 +109,10 @@ def _drawn(scene: Scene, title: str, *, length: float, across: float) -> CueDraw
         for x, segment in shown
     )
     low_tick = across > 1 or length < cue.length
-    places = Axis("mm", 0.0, 1e3 * length).over([np.zeros(1)])
+    per_metre, unit = units["m"]
+    places = Axis(unit, 0.0, per_metre * length).over([np.zeros(1)])
     ticks = places.ticks(10.0, WIDE - 10.0) if low_tick else ()
-    return CueDrawing(title, axis + widest / 2 + (16 if low_tick else 3), axis, pieces, signs, ticks, across)
+    return CueDrawing(title, axis + widest / 2 + (16 if low_tick else 3), axis, pieces, signs, ticks, across, unit)
 
 
 def _piece(
@@ -229,9 +232,10 @@ class ModesDrawing:
     height: float
     rows: tuple[ModeRow, ...]
     ticks: tuple[Tick, ...]
+    unit: str = "mm"
 
 
-def modes_drawing(found: Modes, length: float, *, row: float = 38.0) -> ModesDrawing:
+def modes_drawing(found: Modes, length: float, *, row: float = 38.0, units: Units = TRADE) -> ModesDrawing:
     """The modes' deflections, all drawn equally high."""
     left, right = 10.0, WIDE - 78.0
     x = np.linspace(0, length, 241)
@@ -244,5 +248,6 @@ def modes_drawing(found: Modes, length: float, *, row: float = 38.0) -> ModesDra
         nodes = places[change] + (places[1] - places[0]) * high[change] / (high[change] - high[change + 1])
         written = f"{frequency:.1f} Hz" if frequency < 1e3 else f"{frequency / 1e3:.2f} kHz"
         rows.append(ModeRow(axis, path(places, axis - 0.42 * row * high), tuple(nodes.tolist()), written))
-    ticks = Axis("mm", 0.0, 1e3 * length).over([np.zeros(1)]).ticks(left, right)
-    return ModesDrawing(row * len(rows) + 32, tuple(rows), ticks)
+    per_metre, unit = units["m"]
+    ticks = Axis(unit, 0.0, per_metre * length).over([np.zeros(1)]).ticks(left, right)
+    return ModesDrawing(row * len(rows) + 32, tuple(rows), ticks, unit)

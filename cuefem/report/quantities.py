@@ -7,6 +7,7 @@ designer's numbers are made of these.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 NONE = "–"
@@ -20,6 +21,10 @@ TRADE = {
     "kg/m^3": (1.0, "kg/m³"),
     "1/sqrt(kg)": (1.0, "/√kg"),
 }
+# The same for who measures in inches and ounces, and the decimals that each of these units takes more.
+IMPERIAL = TRADE | {"kg": (1e3 / 28.349523125, "oz"), "m": (1e3 / 25.4, "in")}
+_FINER = {"in": 2, "oz": 0}
+Units = Mapping[str, tuple[float, str]]
 
 
 class Known(NamedTuple):
@@ -35,34 +40,40 @@ class Known(NamedTuple):
     @property
     def shown_unit(self) -> str:
         """The unit that people read it in."""
-        return TRADE.get(self.unit, (1.0, self.unit))[1]
+        return self.shown_in()[1]
 
     @property
     def scale(self) -> float:
         """How many of the units that people read one SI unit is."""
-        return TRADE.get(self.unit, (1.0, self.unit))[0]
+        return self.shown_in()[0]
 
-    def number(self, value: float, *, brief: bool = False) -> str:
+    def shown_in(self, units: Units = TRADE) -> tuple[float, str]:
+        """How many of the units that people read one SI unit is, and the name of that unit."""
+        return units.get(self.unit, (1.0, self.unit))
+
+    def number(self, value: float, *, brief: bool = False, units: Units = TRADE) -> str:
         """A value in the unit that people read, without it; brief: three decimals at most."""
-        decimals = self.decimals
-        if decimals is None:
-            return significant(self.scale * value)
-        return f"{self.scale * value:.{min(decimals, 3) if brief else decimals}f}"
+        scale, unit = self.shown_in(units)
+        if self.decimals is None:
+            return significant(scale * value)
+        decimals = self.decimals + _FINER.get(unit, 0)
+        return f"{scale * value:.{min(decimals, 3) if brief else decimals}f}"
 
-    def written(self, value: Any, *, brief: bool = False) -> str:
+    def written(self, value: Any, *, brief: bool = False, units: Units = TRADE) -> str:
         """A value with its unit; a dash if there is no value; words unchanged."""
         if isinstance(value, str):
             return value
         if value is None or not math.isfinite(value):
             return NONE
-        space = "" if self.shown_unit in ("°", "") else " "
-        return f"{self.number(float(value), brief=brief)}{space}{self.shown_unit}"
+        unit = self.shown_in(units)[1]
+        space = "" if unit in ("°", "") else " "
+        return f"{self.number(float(value), brief=brief, units=units)}{space}{unit}"
 
 
 class _Error(Known):
     """A relative error, of which only the size means anything."""
 
-    def number(self, value: float, *, brief: bool = False) -> str:
+    def number(self, value: float, *, brief: bool = False, units: Units = TRADE) -> str:
         """Two digits and a power of ten."""
         return f"{value:.1e}"
 

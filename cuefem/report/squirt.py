@@ -23,7 +23,7 @@ from cuefem.report.models import (
     two_part_cues,
     with_coupling,
 )
-from cuefem.report.quantities import NONE, grams, significant, written
+from cuefem.report.quantities import NONE, TRADE, Units, grams, significant, written
 from cuefem.report.record import Record
 from cuefem.report.strike import PIVOT
 from cuefem.report.table import table_of, with_caption
@@ -127,20 +127,22 @@ def offset_charts(
     *,
     height: float,
     spans: Sequence[Span] = (),
+    units: Units = TRADE,
 ) -> tuple[Chart, Chart]:
     """Charts of squirt and of pivot length against the offset.
 
     lines: name, class on the page, squirt in rad and pivot length in m of every curve. own: the offset of the scene's
-    stroke, which is marked. spans: offsets to shade.
+    stroke, which is marked. spans: offsets to shade. units: of the pivot length.
     """
     x = np.array(offsets)
+    per_metre, unit = units["m"]
     squirt = [Curve(name, np.r_[0.0, x], np.degrees(np.r_[0.0, angle]), style) for name, style, angle, _ in lines]
     pivot = [
-        Curve(name, x, 1e3 * np.where(np.asarray(angle) > 0, length, np.nan), style)
+        Curve(name, x, per_metre * np.where(np.asarray(angle) > 0, length, np.nan), style)
         for name, style, angle, length in lines
     ]
-    longest = max([0.1, *(float(np.nanmax(curve.y, initial=0.0)) / 1e3 for curve in pivot)])
-    highest = Axis("", 0.0).over([np.array([1e3 * min(LONGEST_PIVOT, longest)])]).high
+    longest = max([0.1, *(float(np.nanmax(curve.y, initial=0.0)) / per_metre for curve in pivot)])
+    highest = Axis("", 0.0).over([np.array([per_metre * min(LONGEST_PIVOT, longest)])]).high
     at, here = Axis("offset b/R", 0.0, float(x[-1])), [Mark(abs(own), "here")] if 0 < abs(own) <= x[-1] else []
 
     def drawn(title: str, curves: list[Curve], y: Axis) -> Chart:
@@ -148,5 +150,5 @@ def offset_charts(
 
     return (
         drawn("Squirt", squirt, Axis("squirt, degrees")),
-        drawn("Natural pivot length", pivot, Axis("pivot length, mm", 0.0, highest)),
+        drawn("Natural pivot length", pivot, Axis(f"pivot length, {unit}", 0.0, highest)),
     )

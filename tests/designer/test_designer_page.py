@@ -5,18 +5,20 @@ from __future__ import annotations
 import re
 import statistics
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+from scipy.io import wavfile
 
 import cuefem as cf
 from cuefem.designer.model import knobs_of
 from cuefem.designer.start import first_scene
-from cuefem.materials import material
+from cuefem.tap.matching import with_material
 from tests.helpers.command_line import call
 from tests.helpers.designer_browser import BROWSER, opened, served, settled, shown, turn
-from tests.helpers.surfaces import revolved, written
 
 sync_api = pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
 pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
@@ -84,51 +86,16 @@ def test_moved_sliders_give_the_numbers_of_the_command_line(browser: Any, addres
         turn(page, "tip_diameter", "ArrowLeft", 4)
         turn(page, "bore_depth", "PageUp", 3)
         turn(page, "joint_compliance", "ArrowRight", 6)
-        turn(page, "contact_time", "ArrowLeft", 5)
+        turn(page, "leather", "ArrowRight", 2)
         turn(page, "offset", "ArrowRight", 2)
         assert all(shown(page, name) != was for name, was in before.items())
         path = saved(page, tmp_path)
         made = cf.load(path)
         assert made.cue.segments[0].tip_diameter == pytest.approx(12.55e-3)
         assert made.stroke.offset == pytest.approx(0.32)
-        assert made.tip.contact_time == pytest.approx(1.05e-3)
+        assert made.effects[0] == replace(first_scene().effects[0], E=150e6)
         assert made.effects[-1] == cf.Joint(knobs_of(first_scene()).joint_position, 3e-4)
         assert_as_commanded(page, path)
-
-
-def test_a_material_and_a_number_are_chosen(browser: Any, address: str, tmp_path: Path) -> None:
-    with opened(browser, address) as page:
-        page.get_by_role("combobox", name="Shaft material").click()
-        page.get_by_role("option", name="ash", exact=True).click()
-        page.get_by_label("Ferrule length, mm, as a number").fill("12.5")
-        settled(page)
-        made = cf.load(path := saved(page, tmp_path))
-        assert [segment.length for segment in made.cue.segments][1] == pytest.approx(12.5e-3)
-        assert made.cue.segments[-1].material == material("ash")
-        assert made.cue.segments[1].core == material("ash")
-        assert_as_commanded(page, path)
-
-
-def test_a_pinned_design_is_compared(browser: Any, address: str) -> None:
-    with opened(browser, address) as page:
-        was = shown(page, "end_mass_stick")
-        page.get_by_role("button", name="Pin this design").click()
-        row = page.locator("tr", has=page.locator('[data-number="end_mass_stick"]')).locator("td")
-        page.wait_for_function("document.querySelectorAll('thead th').length === 4")
-        assert row.all_inner_texts() == [was, was, "the same"]
-        turn(page, "tip_diameter", "ArrowLeft", 10)
-        now, pinned, difference = row.all_inner_texts()
-        grams = float(now.split()[0]) - float(was.split()[0])
-        assert pinned == was
-        assert grams < 0
-        found = re.fullmatch(r"−([0-9.]+) g \(−([0-9.]+)\s%\)", difference)
-        assert found is not None
-        assert float(found[1]) == pytest.approx(-grams, abs=2e-3)
-        assert float(found[2]) == pytest.approx(-100 * grams / float(was.split()[0]), abs=0.06)
-        assert page.locator(".legend", has_text="pinned, coupled").count() == 2
-        assert page.locator(".legend", has_text="pinned, whole").count() == 1
-        page.get_by_role("button", name="Take the pin off").click()
-        page.wait_for_function("document.querySelectorAll('thead th').length === 2")
 
 
 PIECE = """[[segments]]
@@ -148,7 +115,7 @@ WRONG = {
     "elsewhere.toml": ('cue = "shaft.toml"\n', "elsewhere.toml: cue: shaft.toml: cannot be read: No such file"),
     "profile.csv": ("a,b\n1,2\n", "profile.csv:"),
     "<b>.toml": ("x = 1", "<b>.toml: x: "),
-    "notes.txt": ("x = 1", "a file must be a .toml, .csv, .vtk, .vtu, .stl, .ply or .obj of at most 5 MB"),
+    "notes.txt": ("x = 1", "a file must be a .toml, .csv, .vtk, .vtu, .stl, .ply, .obj or .wav of at most 5 MB"),
     "many.toml": (PIECE * 2001, "many.toml: segments: must hold at most 2000 segments; got 2001"),
     "long.toml": (PIECE.replace("1 mm", "1e9 m"), "segments[0].length: must be in (0, 1000] m; got '1e9 m'"),
 }
@@ -169,7 +136,165 @@ def test_a_wrong_file_is_refused_and_the_page_stays(browser: Any, address: str, 
             assert shown(page, "squirt") == was
             assert page.get_by_role("heading", level=1).inner_text() == "pool_maple.toml"
         turn(page, "tip_diameter", "ArrowLeft")
-        assert page.get_by_role("alert").inner_text() == ""
+        assert page.get_by_role("alert").count() == 0
+
+
+def typed(page: Any, label: str, text: str) -> None:
+    """Type a number into its field, and wait for all that follows."""
+    page.get_by_label(f"{label}, as a number").fill(text)
+    page.wait_for_timeout(400)  # it is heard when nobody has typed for 200 ms
+    settled(page)
+
+
+IS = "was => document.querySelector('[data-number=end_mass_stick]').innerText === was"
+
+
+def test_nothing_is_lost(browser: Any, address: str) -> None:
+    """Typed with a comma, undone, reloaded, opened in another tab, and by a link in another browser."""
+    with opened(browser, address) as page:
+        was = shown(page, "end_mass_stick")
+        typed(page, "Tip diameter, mm", "11,8")
+        assert page.get_by_label("Tip diameter, mm, as a number").input_value() == "11,8"
+        thin = shown(page, "end_mass_stick")
+        assert float(thin.split()[0]) < float(was.split()[0])
+        page.keyboard.press("Escape")
+        page.get_by_role("button", name="Undo").click()
+        page.wait_for_function(
+            "was => document.querySelector('[data-number=end_mass_stick]').innerText === was", arg=was
+        )
+        page.get_by_role("button", name="Redo").click()
+        page.wait_for_function(
+            "was => document.querySelector('[data-number=end_mass_stick]').innerText === was", arg=thin
+        )
+        page.get_by_role("button", name="Pin this design").click()
+        typed(page, "Bore depth, from 25 mm on, mm", "100")
+        bored = shown(page, "end_mass_stick")
+        page.reload()
+        settled(page)
+        assert shown(page, "end_mass_stick") == bored
+        page.get_by_role("button", name="Link").click()
+        link = page.get_by_label("Link", exact=True).input_value()
+        other = page.context.new_page()
+        other.set_default_timeout(30_000)
+        other.goto(address)
+        settled(other)
+        assert shown(other, "end_mass_stick") == bored
+    with opened(browser, link) as page:
+        assert shown(page, "end_mass_stick") == bored
+        names = page.locator("thead th").all_inner_texts()
+        assert names == ["number", "this design", "pool_maple 1"]
+        page.get_by_role("button", name="Undo").click()
+        page.wait_for_function(
+            "was => document.querySelector('[data-number=end_mass_stick]').innerText === was", arg=was
+        )
+
+
+def test_a_wrong_number_is_said_beside_its_field_and_inches_are_remembered(browser: Any, address: str) -> None:
+    with opened(browser, address) as page:
+        was = shown(page, "shaft_mass")
+        typed(page, "Tip diameter, mm", "99")
+        knob = page.locator(".knob").filter(has_text="Tip diameter")
+        said = "must be from 4 to 30.00 mm; the design keeps 12.75 mm"
+        assert knob.get_by_role("alert").inner_text() == said
+        typed(page, "Tip diameter, mm", "twelve")
+        assert knob.get_by_role("alert").inner_text().startswith("must be a number, such as 11.8 or 11,8")
+        typed(page, "Bore width, mm", "11")
+        typed(page, "Tip diameter, mm", "8")
+        typed(page, "Bore depth, from 25 mm on, mm", "20")
+        assert "the bore must be narrower than the cue" in page.locator(".knob .wrong").last.inner_text()
+        assert shown(page, "shaft_mass") != was
+        page.get_by_role("combobox", name="Units").click()
+        page.get_by_role("option", name="in, oz").click()
+        page.get_by_label("Tip diameter, in, as a number").wait_for()
+        page.reload()
+        settled(page)
+        assert shown(page, "shaft_mass").endswith(" oz")
+        assert shown(page, "balance").endswith(" in")
+        typed(page, "Tip diameter, in", "29/64")
+        assert page.get_by_label("Tip diameter, in, as a number").input_value() == "29/64"
+        metric = page.locator("body").inner_text()
+        assert not re.search(r"[0-9] (mm|g)\b", metric.partition("The numbers are the same")[0])
+
+
+def test_three_designs_are_compared_and_exported(browser: Any, address: str, tmp_path: Path) -> None:
+    with opened(browser, address) as page:
+        page.get_by_role("button", name="Pin this design").click()
+        turn(page, "tip_diameter", "ArrowLeft", 10)
+        page.get_by_role("button", name="Pin this design").click()
+        turn(page, "bore_depth", "PageUp", 3)
+        page.get_by_label("name of pinned design 2").fill("thin")
+        page.wait_for_function("[...document.querySelectorAll('thead th')].some(e => e.innerText === 'thin')")
+        cells = page.locator("tr", has=page.locator('[data-number="end_mass_stick"]')).locator("td").all_inner_texts()
+        values = [float(cell.split(" g")[0]) for cell in cells]
+        parts = [float(found[1].replace("−", "-")) for cell in cells if (found := re.search(r"([−+][0-9.]+)\s%", cell))]
+        assert parts == pytest.approx([100 * (values[i] / values[1] - 1) for i in (0, 2)], abs=0.06)
+        assert page.locator(".legend", has_text="coupled, in time").filter(has_text="thin").count() == 2
+        with page.expect_download() as waiting:
+            page.get_by_role("button", name="Save the table as .csv").click()
+        waiting.value.save_as(tmp_path / "table.csv")
+        head, *lines = (tmp_path / "table.csv").read_text(encoding="utf-8-sig").splitlines()
+        assert head.startswith('"",unit,this design,' if head[0] == '"' else ",unit,this design,")
+        assert head.endswith('thin,"thin, % from pool_maple 1"')
+        assert any(line.startswith("Tip diameter,mm,12.25,") for line in lines)
+
+
+def test_a_person_starts_from_nothing(browser: Any, address: str, tmp_path: Path) -> None:
+    """A drawing with its weight in ounces, a game, a ready cue, and any field of it."""
+    (tmp_path / "mine.csv").write_text("x [mm],diameter [mm]\n0,12.75\n330,13.2\n736.6,21.5\n")
+    with opened(browser, address) as page:
+        page.locator("input[type=file]").first.set_input_files(tmp_path / "mine.csv")
+        page.get_by_label("Weight, g").fill("3 oz")
+        page.get_by_role("button", name="Open it", exact=True).last.click()
+        page.get_by_text("the whole cue must weigh more than what is drawn").wait_for()
+        page.get_by_label("Weight, g").fill("19 oz")
+        page.get_by_role("button", name="Open it", exact=True).last.click()
+        page.get_by_role("heading", level=1, name="mine.csv").wait_for()
+        settled(page)
+        made = cf.load(saved(page, tmp_path))
+        assert made.cue.mass == pytest.approx(19 * 28.349523125e-3, rel=1e-9)
+        bare = cf.load(tmp_path / "mine.csv")
+        assert made == cf.usual_scene(replace(bare, body_mass=made.cue.body_mass))
+        page.get_by_text("Everything in this design").click()
+        page.get_by_role("group", name="Segment 1", exact=True).get_by_role("button", name="Split").click()
+        page.get_by_role("group", name="Segment 3", exact=True).wait_for()
+        page.get_by_role("checkbox", name="AxialWaves").wait_for()
+        page.get_by_role("button", name="Ready cues").click()
+        page.get_by_text("Pool: low-deflection shaft on a bridge").click()
+        page.get_by_role("heading", level=1, name="pool_low_deflection.toml").wait_for()
+        page.get_by_role("checkbox", name="Support acts").click()
+        page.get_by_role("checkbox", name="Support", exact=True).wait_for()
+        settled(page)
+        ready = cf.load(ROOT / "studies" / "scenes" / "pool_low_deflection.toml")
+        kept = tuple(effect for effect in ready.effects if not isinstance(effect, cf.Support))
+        assert cf.load(saved(page, tmp_path)) == replace(ready, effects=kept)
+
+
+def test_a_tap_tells_the_wood(browser: Any, address: str, tmp_path: Path) -> None:
+    """A recording made by the model, in another wood than the design's, is dropped; its wood is taken over."""
+    wood = cf.Material(11.3e9, 1.0e9, 660.0)
+    scene = first_scene()
+    maple = scene.cue.segments[-1].material
+    hung = with_material(scene.cue, maple, wood)
+    effects = tuple(effect for effect in scene.effects if isinstance(effect, cf.LeatherTip))
+    tones = cf.modes(hung, 6, effects=effects).frequencies
+    t = np.arange(4 * 44100) / 44100
+    sound = sum(np.exp(-5.0 * (1 + i) * t) * np.sin(2 * np.pi * f * t) for i, f in enumerate(tones))
+    sound = np.r_[np.zeros(4410), 0.1 * sound] + 1e-5 * np.random.default_rng(1).standard_normal(len(t) + 4410)
+    wavfile.write(tmp_path / "tap.wav", 44100, np.int16(32767 * sound))
+    with opened(browser, address) as page:
+        was = shown(page, "mode1")
+        page.get_by_text("Tap test: what wood is it?").click()
+        page.get_by_label("Weight of the shaft as it hangs, g").fill(f"{1e3 * hung.shaft_mass + 0.7:.2f}")
+        page.wait_for_timeout(300)
+        page.locator("input[type=file]").first.set_input_files(tmp_path / "tap.wav")
+        page.get_by_role("button", name="Take this wood into the design").click()
+        page.wait_for_function("was => document.querySelector('[data-number=mode1]').innerText !== was", arg=was)
+        settled(page)
+        found = cf.load(saved(page, tmp_path)).cue.segments[-1].material
+        assert pytest.approx(wood.E, rel=0.02) == found.E
+        assert shown(page, "mode1") == f"{tones[0]:.2f} Hz" or float(shown(page, "mode1")[:-3]) == pytest.approx(
+            tones[0], rel=2e-3
+        )
 
 
 SENT = """async ([url, name, text]) => {
@@ -202,49 +327,6 @@ def test_a_name_that_no_file_has_is_refused(browser: Any, address: str) -> None:
     context.close()
 
 
-SLOW = """
-import time
-import cuefem.designer.app as app
-quick = app.answers
-def slow(scene):
-    end = time.monotonic() + (15 if abs(scene.stroke.offset - 0.31) < 1e-9 else 0)
-    while time.monotonic() < end:
-        pass
-    return quick(scene)
-app.answers = slow
-"""
-
-
-def test_another_tab_is_answered_while_a_slow_design_computes(browser: Any, tmp_path: Path) -> None:
-    with (
-        served(tmp_path, before=SLOW) as address,
-        opened(browser, address) as slow,
-        opened(browser, address) as quick,
-    ):
-        slow.locator('[data-knob="offset"] [role="slider"]').focus()
-        slow.keyboard.press("ArrowRight")
-        slow.wait_for_function("document.querySelector('.answers').ariaBusy === 'true'")
-        was = shown(quick, "end_mass_stick")
-        quick.locator('[data-knob="tip_diameter"] [role="slider"]').focus()
-        quick.keyboard.press("ArrowLeft")
-        quick.wait_for_function(
-            "was => document.querySelector('[data-number=end_mass_stick]').innerText !== was", arg=was
-        )
-        assert slow.evaluate("document.querySelector('.answers').ariaBusy") == "true"
-        settled(slow)
-        settled(quick)
-
-
-def test_a_surface_is_opened(browser: Any, address: str, tmp_path: Path) -> None:
-    for name, binary in (("ascii.stl", False), ("binary.stl", True), ("shaft.ply", False)):
-        path = written(tmp_path / name, *revolved([(0, 0), (0, 0.006), (0.7, 0.0105), (0.7, 0)], 16), binary=binary)
-        with opened(browser, address) as page:
-            page.locator("input[type=file]").set_input_files(path)
-            page.get_by_role("heading", level=1, name=name).wait_for()
-            settled(page)
-            assert shown(page, "shaft_mass").endswith(" g")
-
-
 def test_a_file_is_opened_changed_and_taken_back(browser: Any, address: str, tmp_path: Path) -> None:
     with opened(browser, address) as page:
         page.locator("input[type=file]").set_input_files(ROOT / "meshes" / "kim.toml")
@@ -252,10 +334,9 @@ def test_a_file_is_opened_changed_and_taken_back(browser: Any, address: str, tmp
         settled(page)
         assert page.get_by_text("no ferrule is drawn behind the tip").count() == 1
         assert page.locator('[data-knob="ferrule_length"]').count() == 0
-        assumed = "assumed: a usual stroke of pool; ball 170 g, 57.15 mm; a leather tip 6 mm high"
-        assert page.get_by_text(assumed).count() == 1
+        assert page.get_by_text("assumed: a usual stroke of pool").count() == 1
         path = saved(page, tmp_path)
-        assert cf.load(path).cue == cf.load(ROOT / "meshes" / "kim.toml")
+        assert cf.load(path) == cf.usual_scene(cf.load(ROOT / "meshes" / "kim.toml"))
         assert_as_commanded(page, path)
         was = shown(page, "squirt")
         turn(page, "taper_diameter", "ArrowRight", 3)
@@ -264,41 +345,23 @@ def test_a_file_is_opened_changed_and_taken_back(browser: Any, address: str, tmp
         page.wait_for_function("was => document.querySelector('[data-number=squirt]').innerText === was", arg=was)
 
 
-def test_an_impossible_cue_is_said_and_the_next_move_answers(browser: Any, address: str) -> None:
-    with opened(browser, address) as page:
-        turn(page, "bore_depth", "ArrowRight", 3)
-        page.get_by_label("Tip diameter, mm, as a number").fill("8")
-        page.get_by_label("Bore width, mm, as a number").fill("11")
-        page.locator("[role=alert] .said").filter(
-            has_text="the bore must be narrower than the cue, 8.496 mm there; got 11 mm"
-        ).wait_for()
-        page.get_by_role("button", name="Back to the file").click()
-        page.wait_for_function("document.querySelector('[role=alert]').innerText === ''")
-        assert shown(page, "shaft_mass") == "99.98 g"
-        page.get_by_label("Offset b/R, as a number").fill("7")
-        page.keyboard.press("Tab")
-        page.locator("[role=alert] .said").filter(has_text="Offset b/R must be in [0, 0.6]").wait_for()
-        assert page.get_by_label("Offset b/R, as a number").input_value() == "0.30"
-
-
 def test_it_is_worked_by_keys_alone(browser: Any, address: str) -> None:
     with opened(browser, address) as page:
         reached = []
-        for _ in range(40):
+        for _ in range(80):
             page.keyboard.press("Tab")
             reached.append(
                 page.evaluate("(e => [e.getAttribute('role'), e.ariaLabel || e.innerText])(document.activeElement)")
             )
-            if reached[-1] == ["slider", "Offset b/R"]:
-                break
         sliders = [label for role, label in reached if role == "slider"]
         assert sliders[0] == "Tip diameter, mm"
-        assert len(sliders) == page.locator("[data-knob] [role=slider]").count() == 10
+        assert len(sliders) == page.locator("[data-knob] [role=slider]").count() == 18
         assert (
             page.evaluate("getComputedStyle(document.activeElement.querySelector('.q-slider__thumb')).outlineStyle")
             != "none"
         )
         slider = page.get_by_role("slider", name="Offset b/R")
+        slider.focus()
         assert slider.get_attribute("aria-valuenow") == "0.3"
         was = shown(page, "squirt")
         page.keyboard.press("ArrowRight")
@@ -380,15 +443,6 @@ def test_the_report_is_exported(browser: Any, address: str, tmp_path: Path) -> N
         assert squirt == pytest.approx(float(shown(page, "squirt").rstrip("°")), rel=5e-3)  # of its own accuracy
 
 
-def test_a_scene_of_the_command_line_is_opened(browser: Any, tmp_path: Path) -> None:
-    scene = ROOT / "studies" / "scenes" / "pool_low_deflection.toml"
-    (tmp_path / "server").mkdir()
-    with served(tmp_path / "server", scene) as address, opened(browser, address) as page:
-        made = cf.load(path := saved(page, tmp_path))
-        assert made == cf.load(scene)
-        assert_as_commanded(page, path)
-
-
 WATCH = """() => {
   window.trips = [];
   const number = () => document.querySelector("[data-key=end_mass_stick]")?.innerText;
@@ -400,10 +454,10 @@ WATCH = """() => {
 }"""
 
 
-@pytest.mark.parametrize("pause", [30, 450])
 def test_round_trips_are_told(
-    browser: Any, address: str, capsys: pytest.CaptureFixture[str], record_property: Any, pause: int
+    browser: Any, address: str, capsys: pytest.CaptureFixture[str], record_property: Any
 ) -> None:
+    pause = 30  # ms
     with opened(browser, address) as page:
         page.evaluate(WATCH)
         page.locator('[data-knob="tip_diameter"] [role="slider"]').focus()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import io
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,10 +12,13 @@ import pytest
 
 import cuefem as cf
 from cuefem.design.batch import CueBatch
-from cuefem.designer.answers import OFFSETS, answers, coupled_points, density, note
+from cuefem.designer.answers import OFFSETS, answers, completed, coupled_points, curve_of, density, note
+from cuefem.designer.design import Design
 from cuefem.designer.model import knobs_of, turned
-from cuefem.designer.numbers import Row, difference, key_markup, rows, table_markup
+from cuefem.designer.numbers import Column, Row, compared, csv_text, difference, key_markup, rows, table_markup
+from cuefem.designer.pictures import limits_of
 from cuefem.designer.start import first_scene
+from cuefem.designer.units import INCHES
 from cuefem.report.end_mass import end_mass_record
 from cuefem.report.modes import modes_record
 from cuefem.report.quantities import QUANTITIES
@@ -32,7 +37,7 @@ def loaded(name: str) -> cf.Scene:
 
 def designs() -> dict[str, cf.Scene]:
     first = first_scene()
-    knobs = replace(knobs_of(first), bore_depth=0.12, tip_diameter=0.012, joint_compliance=5e-4, contact_time=9e-4)
+    knobs = replace(knobs_of(first), bore_depth=0.12, tip_diameter=0.012, joint_compliance=5e-4, leather=3e8)
     return {
         "first": first,
         "turned": turned(first, knobs),
@@ -46,7 +51,7 @@ def designs() -> dict[str, cf.Scene]:
 @pytest.mark.parametrize("name", designs())
 def test_the_numbers_are_the_commands_own(name: str) -> None:
     scene = designs()[name]
-    found = answers(scene)
+    found = completed(answers(scene))
     masses = end_mass_record(scene)["drives"]
     assert found.end_masses == {drive: values["end_mass"] for drive, values in masses.items()}
     struck = strike_record(scene)["models"]["coupled"]
@@ -59,22 +64,25 @@ def test_the_numbers_are_the_commands_own(name: str) -> None:
 @pytest.mark.parametrize("name", ["turned", "kim", "clay"])
 def test_the_curves_are_those_of_the_report(name: str) -> None:
     scene = designs()[name]
-    found = answers(scene)
-    points = np.array(list(coupled_points(found)))
+    found = completed(answers(scene))
+    points = list(coupled_points(found))
+    known = len(points)
     record = squirt_record(scene, OFFSETS)["models"]
-    assert points[:, 0].tolist() == list(OFFSETS)
-    assert points[:, 1] == pytest.approx(record["coupled, this cue"]["squirt"], rel=1e-12)
-    assert points[:, 2] == pytest.approx(record["coupled, this cue"]["pivot_length"], rel=1e-12)
-    lumped = squirt_record(scene, found.lumped.offsets)["models"]["two-part, this cue"]
-    assert found.lumped.squirt == pytest.approx(lumped["squirt"], rel=1e-12)
-    assert found.lumped.pivot_length == pytest.approx(lumped["pivot_length"], rel=1e-12)
+    assert [point.offset for point in points] == list(OFFSETS[:known])
+    assert known == len(OFFSETS) or [point.safety for point in points[-3:]] == ["miscue"] * 3
+    coupled, curve = record["coupled, this cue"], curve_of(points)
+    assert curve.squirt[:known] == pytest.approx(coupled["squirt"][:known], rel=1e-12)
+    assert curve.pivot_length[:known] == pytest.approx(coupled["pivot_length"][:known], rel=1e-12)
+    assert np.isnan(curve.squirt[known:]).all()
+    assert found.lumped.squirt == pytest.approx(record["two-part, this cue"]["squirt"], rel=1e-12, nan_ok=True)
+    pivot = record["two-part, this cue"]["pivot_length"]
+    assert found.lumped.pivot_length == pytest.approx(pivot, rel=1e-12, nan_ok=True)
 
 
 def test_without_effects_at_the_tip_both_curves_begin_alike() -> None:
-    found = answers(loaded("kim"))
+    found = completed(answers(loaded("kim")))
     assert found.end_masses["offset"] == strike_record(found.scene)["end_mass"]
-    _, squirt, _ = next(coupled_points(found))
-    assert squirt == pytest.approx(np.interp(OFFSETS[0], found.lumped.offsets, found.lumped.squirt), rel=0.1)
+    assert next(coupled_points(found)).squirt == pytest.approx(found.lumped.squirt[0], rel=0.1)
 
 
 def test_the_static_stiffness_is_that_of_a_clamped_cue() -> None:
@@ -147,13 +155,49 @@ def test_differences_are_those_of_the_numbers(mine: float | None, pinned: float 
 
 
 def test_every_number_of_a_design_is_written() -> None:
-    found = answers(designs()["head on"])
+    found = completed(answers(designs()["head on"]))
     written = {row.name: row.value for row in rows(found)}
     assert written["pivot"] is None
     assert written["squirt"] == 0
     assert written["mass"] == found.scene.cue.mass
     assert written["balance"] == found.scene.cue.balance_point
-    text = table_markup(found, None) + key_markup(found, found)
+    mine = Design.of("mine", designs()["head on"])
+    text = table_markup([Column(mine, found)], 0) + key_markup(found, found)
     assert "nan" not in text
     assert text.count("data-number") == len(written) == 16
     assert "the same" in text
+
+
+def test_designs_stand_side_by_side_like_with_like() -> None:
+    scene = replace(loaded("kim"), effects=())
+    own = Design.of("kim", scene)
+    thin = replace(own, name='=1+"thin, new"', knobs=replace(own.knobs, tip_diameter=own.knobs.tip_diameter - 5e-4))
+    columns = [Column(own, answers(scene)), Column(replace(own, name="b"), answers(scene)), Column(thin, None)]
+    columns.append(Column(thin, answers(thin.scene)))
+    lines = {line.name: line for line in compared(columns, 1, INCHES)}
+    felt = [column.found.end_masses["stick"] for column in (columns[0], columns[3]) if column.found]
+    assert lines["end_mass_stick"].parts[:3] == ["the same", "", "–"]
+    part = float(lines["end_mass_stick"].parts[3].removesuffix("\u00a0%").replace("−", "-"))
+    assert part == pytest.approx(100 * (felt[1] / felt[0] - 1), abs=0.051)
+    assert float(lines["end_mass_stick"].numbers[0]) == pytest.approx(felt[0] / 28.349523125e-3, rel=1e-3)
+    assert lines["tip_diameter"].unit == "in"
+    assert "butt_diameter" not in lines  # alike in all
+    rows_read = list(csv.reader(io.StringIO(csv_text(columns, 1))))
+    assert rows_read[0][:6] == ["", "unit", "this design", "this design, % from b", "b", """'=1+"thin, new\""""]
+    assert {len(row) for row in rows_read} == {9}
+    squirt = next(row for row in rows_read if row[0].startswith("squirt"))
+    assert float(squirt[7]) == pytest.approx(np.degrees(columns[3].found.strike["squirt"]), abs=5e-4)  # type: ignore[union-attr]
+    assert float(squirt[8]) < 0
+
+
+def test_limits_are_shaded_and_said() -> None:
+    found = answers(replace(loaded("kim"), effects=(), tip=cf.Tip(friction=0.5)))
+    spans, said = limits_of(list(coupled_points(found)))
+    assert "slips off the ball (a miscue) from b/R" in said
+    assert spans[-1].style == "miss"
+    assert spans[-1].end == OFFSETS[-1]
+    start = min(span.start for span in spans)
+    safe = answers(replace(found.scene, stroke=replace(found.scene.stroke, offset=start - 0.03)))
+    assert (safe.safety, "miscue" in key_markup(safe, None)) == ("safe", False)
+    missed = answers(replace(found.scene, stroke=replace(found.scene.stroke, offset=0.75)))
+    assert (missed.safety, "miscue" in key_markup(missed, None)) == ("miscue", True)

@@ -78,13 +78,16 @@ def opened(browser: Any, address: str, *, width: int = 1280, scheme: str = "ligh
 
 
 def _own(url: str, address: str) -> bool:
+    address = address.partition("#")[0]  # a link holds a design behind it
     return url.startswith((address, address.replace("http", "ws"), "data:", f"blob:{address}"))
 
 
 SETTLED = """() => {
   const knobs = [...document.querySelectorAll(".knob")];
   const heard = knobs.every(knob => {
-    const said = knob.querySelector("[role=slider]").ariaValueNow, taken = knob.querySelector("input").value;
+    if (knob.querySelector(".wrong")) return true;
+    const said = knob.querySelector("[role=slider]").ariaValueNow;
+    const taken = knob.querySelector("input").value.replace(",", ".");
     return Math.abs(said - taken) < 0.6 * knob.querySelector("[data-step]").dataset.step;
   });
   return knobs.length > 0 && heard && document.querySelector(".answers").ariaBusy === "false";

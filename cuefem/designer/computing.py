@@ -1,0 +1,68 @@
+"""What the page computes of its designs, off the page's own loop: the newest move first, slower results after it."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from cuefem.designer.answers import Answers, Curve, Density, Point, curve_of
+from cuefem.scene import Scene
+
+LONGEST_WORK = 60.0  # s that an answer may take: no cue that people play with needs a tenth of it
+FAILURES = (ValueError, RuntimeError, ArithmeticError, MemoryError, OSError)
+MOST_KEPT = 12  # designs whose results are kept beside those on the page: to undo at once
+
+
+async def computed(work: Callable[..., Any], *arguments: Any) -> Any:
+    """Work done in a thread, with overflows as errors; RuntimeError if it takes too long."""
+
+    def guarded() -> Any:
+        with np.errstate(over="raise", divide="raise", invalid="raise"):
+            return work(*arguments)
+
+    try:
+        return await asyncio.wait_for(asyncio.to_thread(guarded), LONGEST_WORK)
+    except TimeoutError:
+        raise RuntimeError(f"this takes more than {LONGEST_WORK:g} s: draw fewer segments, or check sizes") from None
+
+
+@dataclass
+class Results:
+    """What is known of one design so far. whole: whether its coupled curve is; failed: whether it has none."""
+
+    found: Answers
+    points: tuple[Point, ...] = ()
+    whole: bool = False
+    density: Density | None = None
+
+    @property
+    def coupled(self) -> Curve | None:
+        """The coupled curve, as far as it is known."""
+        return curve_of(self.points) if self.points else None
+
+
+class Memory:
+    """Results by their scenes, the least recently used of them forgotten."""
+
+    def __init__(self) -> None:
+        self.results: dict[Scene, Results] = {}
+
+    def get(self, scene: Scene) -> Results | None:
+        """What is known of a scene."""
+        found = self.results.pop(scene, None)
+        if found is not None:
+            self.results[scene] = found
+        return found
+
+    def put(self, found: Answers, keep: Iterable[Scene]) -> Results:
+        """Remember a scene's first results; those to keep, and the latest, are not forgotten."""
+        made = self.results[found.scene] = Results(found)
+        kept = {*keep, found.scene}
+        for scene in list(self.results)[:-MOST_KEPT]:
+            if scene not in kept:
+                del self.results[scene]
+        return made

@@ -1,0 +1,468 @@
+"""What one browser tab works on. A move is answered at once; slower results follow while nothing is moved."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import time
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from dataclasses import replace
+from html import escape
+from pathlib import Path
+from typing import Any
+
+from nicegui import background_tasks, ui
+
+from cuefem.designer.answers import answers, completed, coupled_points, density
+from cuefem.designer.computing import FAILURES, Memory, Results, computed
+from cuefem.designer.controls import ChoiceField, NumberField, button
+from cuefem.designer.design import Design, History, Step
+from cuefem.designer.door import KINDS
+from cuefem.designer.editing import game_of, with_game
+from cuefem.designer.kept import LONGEST_NAME, MOST_PINNED, key_of, steps_of, text_of
+from cuefem.designer.links import LinkDialog
+from cuefem.designer.numbers import Column, csv_text
+from cuefem.designer.opening import PresetMenu, ShapeDialog, asked, reading
+from cuefem.designer.pinned import PinnedList
+from cuefem.designer.presets import Preset
+from cuefem.designer.presets import opened as preset_opened
+from cuefem.designer.receiving import Receiver
+from cuefem.designer.results import ResultsSide
+from cuefem.designer.sheet import Sheet
+from cuefem.designer.sliders import GROUPS, choices, sliders, without
+from cuefem.designer.style import SCRIPT, STYLE
+from cuefem.designer.tapside import TapSide
+from cuefem.designer.units import METRIC, SYSTEMS, System
+from cuefem.designer.words import MEASURED, head_markup
+from cuefem.games import GAMES
+from cuefem.io.toml import toml_text
+from cuefem.report.page import page as report_page
+from cuefem.report.templates import page_style
+from cuefem.report.unusual import unusual
+from cuefem.scene import Scene
+
+IDLE = 0.12  # s without a move before the slower results are computed
+SHOWN_EVERY = 4  # points of a curve that is computed
+
+Read = Callable[[Path], tuple[Scene, list[str]]]
+
+
+class Desk:
+    """The state of the page, its history, and what its buttons do."""
+
+    def __init__(self, first: Design, read: Read) -> None:
+        self.read, self.opened, self.key = read, first, key_of(first)
+        self.history = History([Step(first)])
+        self.wanted = first.knobs
+        self.system: System = METRIC
+        self.memory = Memory()
+        self.mine: Results | None = None  # what is shown of the design in work
+        self.before: Results | None = None  # the last whole results, shown pale until there are new ones
+        self.reference = 0  # which pinned design the others are compared with
+        self.moves = self.answered = 0
+        self.busy = False
+        self.client = ui.context.client
+        self._build()
+        ui.timer(0.05, self._begin, once=True)
+
+    @property
+    def design(self) -> Design:
+        """The design in work."""
+        return self.history.now.design
+
+    @property
+    def pinned(self) -> tuple[Design, ...]:
+        """The designs beside it."""
+        return self.history.now.pinned
+
+    # --- what is there ---------------------------------------------------------------------------------------------
+
+    def _build(self) -> None:
+        ui.add_css(page_style() + STYLE)
+        ui.add_body_html(SCRIPT)
+        with ui.element("header"):
+            self.head = ui.html(sanitize=False)
+            with ui.element("div").classes("actions"):
+                button("Open a file", lambda: self.receiver.pick())
+                PresetMenu(self._ready)
+                button("Save as .toml", self._save)
+                self.report = button("Write the report", self._report)
+                self.undo = button("Undo", lambda: self._go(self.history.undo)).props("data-undo")
+                self.redo = button("Redo", lambda: self._go(self.history.redo)).props("data-redo")
+                button("Back to the file", lambda: self.open(self.opened))
+                button("Link", lambda: self.links.show(text_of([self.history.now])))
+                button("Pin this design", self._pin)
+                self.units = ui.select(list(SYSTEMS), value=METRIC.name, label="Units", on_change=self._switch)
+                self.units.props("outlined dense options-dense").classes("units")
+            self.message = ui.html(sanitize=False).on("click", lambda: self.say(""))
+        with ui.element("div").classes("unseen"):
+            self.receiver = Receiver(KINDS, self._received, self.say)
+        self.links = LinkDialog(self.open_link)
+        self.shape = ShapeDialog(self._opened)
+        with ui.element("div").classes("desk"):
+            self.panel = ui.element("section").classes("knobs").props('aria-label="knobs"')
+            self.side = ui.element("div").classes("answers")
+            with self.side:
+                self.results = ResultsSide()
+        with self.results.above_table:
+            self.pins = PinnedList(self._rename, self._work_on, self._compare_with, self._unpin, self._export)
+        with self.results.below_cue:
+            self.sheet = Sheet(self.edit)
+            self.tap = TapSide(self.receiver.address, lambda: self.design.scene, self.edit)
+        self._show_design()
+
+    def _show_design(self) -> None:
+        """The knobs of the design; they are made anew if they are others, and stand elsewhere if not."""
+        made = (self.design.base, self.system)
+        self.wanted = self.design.knobs
+        if getattr(self, "made", None) == made:
+            for field in self.fields:
+                field.show(field.slider.shown(self.design.knobs))
+            for chooser in self.choosers:
+                chooser.show(chooser.choice.name(self.design.knobs))
+        else:
+            self.made = made
+            self._make_knobs()
+        self.undo.set_enabled(self.history.can_undo)
+        self.redo.set_enabled(self.history.can_redo)
+        self.reference = min(self.reference, max(0, len(self.pinned) - 1))
+        self.pins.show(self.pinned, self.reference)
+        self.sheet.show(self.design.scene, self.system)
+        self.tap.show(self.system)
+        self._show_head()
+
+    def _make_knobs(self) -> None:
+        scene = self.design.base
+        self.panel.clear()
+        self.fields: list[NumberField] = []
+        self.choosers: list[ChoiceField] = []
+        with self.panel:
+            ui.html("<h2>Knobs</h2>", sanitize=False)
+            name = ui.input("Name of the design", value=self.design.name, on_change=lambda e: self._named(e.value))
+            name.props(f"outlined dense debounce=300 maxlength={LONGEST_NAME}").classes("choice")
+            for choice in choices(scene):
+                turn = lambda material, knob=choice.knob: self.turn(knob, **{knob: material})  # noqa: E731
+                self.choosers.append(ChoiceField(choice, choice.name(self.design.knobs), turn))
+            known = {slider.knob: slider for slider in sliders(scene, self.system)}
+            for title, names in GROUPS.items():
+                ui.html(f"<h3>{title}</h3>", sanitize=False)
+                if title == "Stroke":
+                    self.game = ui.select(list(GAMES), value=game_of(scene), label="Usual ball, tip and stroke of")
+                    self.game.on_value_change(lambda event: self._play(event.value))
+                    self.game.props("outlined dense").classes("choice")
+                for slider in (known[name] for name in names if name in known):
+                    slider = slider.reaching(slider.shown(self.design.knobs))
+                    slide = lambda value, slider=slider: self._slid(slider, value)  # noqa: E731
+                    self.fields.append(NumberField(slider, slider.shown(self.design.knobs), slide))
+            for words in without(scene):
+                ui.html(f'<p class="hint">{escape(words)}</p>', sanitize=False)
+
+    def _show_head(self) -> None:
+        self.head.set_content(head_markup(self.design, self.system))
+
+    # --- where it begins, and what is kept -------------------------------------------------------------------------
+
+    async def _begin(self) -> None:
+        """Take up what this browser kept, and the design of a link if the page was opened by one."""
+        found: dict[str, str] = {}
+        with suppress(TimeoutError):
+            found = await self.client.run_javascript(f"cuefem.kept({json.dumps(self.key)})", timeout=20) or {}
+        self.system = SYSTEMS.get(str(found.get("units")), METRIC)
+        self.units.set_value(self.system.name)
+        with suppress(*FAILURES):  # what an older version kept
+            if found.get("kept"):
+                self.history = History(*steps_of(str(found["kept"])))
+        self._show_design()
+        if found.get("link"):
+            self.open_link(str(found["link"]))
+        await self._moved()
+
+    def _keep(self) -> None:
+        text = text_of(self.history.steps, self.history.at)
+        self.client.run_javascript(f"cuefem.keep({json.dumps(self.key)}, {json.dumps(text)})")
+
+    def open_link(self, text: str) -> None:
+        """Go on from the designs of a link; what was there before can be had by undoing."""
+        try:
+            steps, at = steps_of(text)
+        except FAILURES as error:
+            self.say(f"not opened: {' '.join(str(error).split())}")
+        else:
+            self._put(steps[at])
+            self._show_design()
+
+    # --- what a person does ----------------------------------------------------------------------------------------
+
+    def say(self, words: str) -> None:
+        """Say what went wrong, or clear the message."""
+        said = escape(self.system.said(words))
+        self.message.set_content(f'<p class="said" role="alert">{said}</p>' if words else "")
+
+    def _slid(self, slider: Any, value: float) -> str:
+        knobs = slider.turned(self.wanted, value)
+        return "" if knobs is self.wanted else self.turn(slider.knob, **{slider.knob: getattr(knobs, slider.knob)})
+
+    def turn(self, label: str, **changed: Any) -> str:
+        """Turn knobs; what is wrong if no such cue can be made: then the design stays as it is."""
+        self.wanted = replace(self.wanted, **changed)
+        if self.wanted == self.design.knobs:
+            return ""
+        design = replace(self.design, knobs=self.wanted)
+        try:
+            design.scene  # noqa: B018
+        except FAILURES as error:
+            return self.system.said(" ".join(str(error).split()))
+        self._put(Step(design, self.pinned), label)
+        self.sheet.show(design.scene, self.system)
+        return ""
+
+    def _play(self, game: str | None) -> None:
+        if game and game != game_of(self.design.scene):
+            words = self.edit(lambda scene: with_game(scene, game))
+            if words:
+                self.say(words)
+                self.game.set_value(game_of(self.design.scene))
+
+    def edit(self, change: Callable[[Scene], Scene], label: str = "") -> str:
+        """Change anything of the scene; what is wrong if that cannot be: then the design stays as it is."""
+        try:
+            design = self.design.edited(change(self.design.scene))
+        except FAILURES as error:
+            return self.system.said(" ".join(str(error).split()))
+        self._put(Step(design, self.pinned), label)
+        self._show_design()
+        return ""
+
+    def _ready(self, preset: Preset) -> None:
+        try:
+            scene, notes = preset_opened(preset)
+        except FAILURES as error:
+            self.say(f"not opened: {' '.join(str(error).split())}")
+            return
+        design = Design.of(Path(preset.file).name, scene, [*notes, f"{MEASURED}{preset.measured}"])
+        self.opened = design
+        self.open(design)
+
+    def _named(self, name: str) -> None:
+        if name.strip() and name != self.design.name:
+            self._put(Step(replace(self.design, name=name.strip()), self.pinned), "name", move=False)
+            self._show_head()
+
+    def _put(self, step: Step, label: str = "", *, move: bool = True) -> None:
+        """Go on to a step: keep it, and compute it."""
+        self.history.put(step, label, when=time.monotonic())
+        self._keep()
+        self.undo.set_enabled(self.history.can_undo)
+        self.redo.set_enabled(self.history.can_redo)
+        if move:
+            background_tasks.create(self._moved(), name="answer a move")
+
+    def _go(self, way: Callable[[], Step]) -> None:
+        way()
+        self._keep()
+        self._show_design()
+        background_tasks.create(self._moved(), name="answer a move")
+
+    def open(self, design: Design) -> None:
+        """Work on another design, beside those that are pinned."""
+        self._put(Step(design, self.pinned))
+        self._show_design()
+
+    def _switch(self, event: Any) -> None:
+        if self.system is not SYSTEMS[event.value]:
+            self.system = SYSTEMS[event.value]
+            self.client.run_javascript(f"cuefem.remember({json.dumps(event.value)})")
+            self._show_design()
+            self._show_all()
+
+    # --- designs to compare with -----------------------------------------------------------------------------------
+
+    def _pin(self) -> None:
+        if len(self.pinned) >= MOST_PINNED:
+            self.say(f"at most {MOST_PINNED} designs can be pinned: take one off first")
+            return
+        taken = {design.name for design in self.pinned}
+        stem = Path(self.design.name).stem if self.design.name.endswith(KINDS) else self.design.name
+        names = (f"{stem[: LONGEST_NAME - 4]} {i}" for i in range(1, MOST_PINNED + 2))
+        name = next(name for name in names if name not in taken)
+        self._pinned((*self.pinned, replace(self.design, name=name)))
+
+    def _pinned(self, pinned: tuple[Design, ...], label: str = "") -> None:
+        self._put(Step(self.design, pinned), label, move=label != "rename")
+        if label != "rename":
+            self._show_design()
+        self._show_all()
+
+    def _rename(self, i: int, name: str) -> None:
+        if name.strip() and i < len(self.pinned) and name.strip() != self.pinned[i].name:
+            changed = replace(self.pinned[i], name=name.strip()[:LONGEST_NAME])
+            self._pinned((*self.pinned[:i], changed, *self.pinned[i + 1 :]), "rename")
+
+    def _unpin(self, i: int) -> None:
+        self._pinned((*self.pinned[:i], *self.pinned[i + 1 :]))
+
+    def _work_on(self, i: int) -> None:
+        self.open(self.pinned[i])
+
+    def _compare_with(self, i: int) -> None:
+        self.reference = i
+        self.pins.show(self.pinned, i)
+        self._show_numbers()
+
+    def _columns(self) -> list[Column]:
+        known = [self.mine, *(self.memory.get(design.scene) for design in self.pinned)]
+        designs = (self.design, *self.pinned)
+        return [Column(design, one.found if one else None) for design, one in zip(designs, known, strict=True)]
+
+    def _export(self) -> None:
+        if self.mine is not None:
+            text = csv_text(self._columns(), self.reference + 1 if self.pinned else 0, self.system)
+            ui.download.content("\ufeff" + text, f"{Path(self.design.name).stem}.csv")  # Excel reads it as UTF-8
+
+    # --- what is computed ------------------------------------------------------------------------------------------
+
+    async def _moved(self) -> None:
+        """Answer the newest move; one that came while the last was computed is answered after it."""
+        self.moves += 1
+        self.side.props("aria-busy=true")
+        if self.busy:
+            return
+        self.busy = True
+        try:
+            while self.answered < self.moves:
+                self.answered = self.moves
+                good = await self._answer()
+        finally:
+            self.busy = False
+        move = self.moves
+        if good:
+            await self._refine(move)
+        if move == self.moves:
+            self.side.props("aria-busy=false")
+
+    async def _answer(self) -> bool:
+        design = self.design
+        found = self.memory.get(design.scene)
+        try:
+            if found is None:
+                found = self.memory.put(await computed(answers, design.scene), self._scenes())
+        except FAILURES as error:
+            self.say(f"{' '.join(str(error).split())}. The numbers are still those of the design before.")
+            return False
+        if self.mine is not None and self.mine.whole:
+            self.before = self.mine
+        self.mine = found
+        self.say("")
+        self._show_numbers()
+        await asyncio.sleep(0)  # they are on their way while the pictures are drawn
+        self._show_head()
+        self.results.show_cue(found, self.system)
+        self._show_curves()
+        return True
+
+    def _scenes(self) -> list[Scene]:
+        return [self.design.scene, *(design.scene for design in self.pinned)]
+
+    async def _refine(self, move: int) -> None:
+        """Compute the coupled curve, where end mass lives, and both of the pinned designs, unless a knob is moved."""
+        await asyncio.sleep(IDLE)
+        for scene in self._scenes():
+            with suppress(*FAILURES):  # a strike at another offset may have no answer: then there is no curve
+                async for _ in self._steps_of(scene, move):
+                    pass
+            if move != self.moves:
+                return
+
+    async def _steps_of(self, scene: Scene, move: int) -> Any:
+        """Compute all that is shown of a scene, step by step, and show it, as long as nothing is moved."""
+        one = self.memory.get(scene)
+        if one is None:
+            one = self.memory.put(await computed(answers, scene), self._scenes())
+            self._show_numbers()
+        if not one.found.complete:
+            one.found = await computed(completed, one.found)
+            if move != self.moves:
+                return
+            self._show_numbers()
+        if not one.whole:
+            work = _after(coupled_points(one.found), len(one.points))
+            while move == self.moves and (point := await computed(next, work, None)):
+                one.points = (*one.points, point)
+                if len(one.points) % SHOWN_EVERY == 1:
+                    self._show_curves()
+                yield point
+            if move != self.moves:
+                return
+            one.whole = True
+        self._show_curves()
+        if one.density is None:
+            one.density = await computed(density, scene)
+            if move == self.moves:
+                self._show_curves()
+
+    # --- what is shown ---------------------------------------------------------------------------------------------
+
+    def _show_all(self) -> None:
+        if self.mine is not None:
+            self._show_numbers()
+            self.results.show_cue(self.mine, self.system)
+            self._show_curves()
+
+    def _show_numbers(self) -> None:
+        self.results.show_numbers(self._columns(), self.reference + 1 if self.pinned else 0, self.system)
+
+    def _show_curves(self) -> None:
+        if self.mine is not None:
+            pinned = [(design, self.memory.get(design.scene)) for design in self.pinned]
+            self.results.show_charts(self.mine, self.before, pinned, self.system)
+            self.results.show_density(self.mine, self.before, pinned, self.system)
+
+    # --- files -----------------------------------------------------------------------------------------------------
+
+    async def _received(self, name: str, content: bytes) -> None:
+        if name.lower().endswith(".wav"):
+            await self.tap.listen(content)
+            return
+        try:
+            known = await computed(reading, name, content, self.read)
+        except FAILURES as error:
+            self.say(f"not opened: {error}")
+            return
+        if asked(name):
+            self.shape.ask(name, known, self.system)
+        else:
+            self._opened(name, *known)
+
+    def _opened(self, name: str, scene: Scene, notes: list[str]) -> None:
+        try:
+            design = Design.of(name, scene, notes)
+        except FAILURES as error:
+            self.say(f"not opened: {error}")
+            return
+        self.opened = design
+        self.say("")
+        self.open(design)
+
+    def _save(self) -> None:
+        ui.download.content(toml_text(self.design.scene), f"{Path(self.design.name).stem}.toml")
+
+    async def _report(self) -> None:
+        design = self.design
+        self.report.disable()
+        self.say("writing the report …")
+        try:
+            given: dict[str, Any] = {"notes": list(design.notes), "remarks": unusual(design.scene)}
+            text = await computed(lambda: report_page(design.name, design.scene, **given))
+        except FAILURES as error:
+            self.say(" ".join(str(error).split()))
+            return
+        finally:
+            self.report.enable()
+        self.say("")
+        ui.download.content(text, f"{Path(design.name).stem}.html")
+
+
+def _after(points: Iterator[Any], count: int) -> Iterator[Any]:
+    """The points but for the first ``count``, which are known: a curve goes on where it was left."""
+    return points if count == 0 else (point for i, point in enumerate(points) if i >= count)

@@ -1,0 +1,130 @@
+"""Ways to begin: ready cues, files, and what the page asks where a file holds a shape alone."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from html import escape
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from nicegui import ui
+
+from cuefem.cue import Cue
+from cuefem.designer.computing import FAILURES
+from cuefem.designer.controls import Beside, button
+from cuefem.designer.presets import PRESETS, Preset, ready_cue
+from cuefem.designer.units import System, typed
+from cuefem.games import DEFAULT_GAME, GAMES, usual_scene
+from cuefem.io import load
+from cuefem.io.profile import DEFAULT_MATERIAL, SHAPES
+from cuefem.materials import MATERIALS, material
+from cuefem.scene import Scene
+
+_CUE = re.compile(r"""^\s*cue\s*=\s*["']([^"'\n]+)["']""", re.MULTILINE)
+
+
+def asked(name: str) -> bool:
+    """Whether a file of this name holds a shape alone, so that its material, weight and game are asked for."""
+    return name.lower().endswith(SHAPES)
+
+
+def reading(name: str, content: bytes, read: Callable[[Path], Any]) -> Any:
+    """The cue of a shape's file; else scene and notes, as ``read`` makes them. ValueError in one line.
+
+    A scene that names a ready cue finds it, wherever the scene lies.
+    """
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / name
+        try:
+            path.write_bytes(_with_ready_cue(name, content, Path(folder)))
+            return load(path) if asked(name) else read(path)
+        except FAILURES as error:
+            raise ValueError(" ".join(str(error).split()).replace(f"{folder}/", "")) from None
+
+
+def _with_ready_cue(name: str, content: bytes, folder: Path) -> bytes:
+    """The content of a scene, with the ready cue that it names beside it."""
+    text = content.decode(errors="replace") if name.lower().endswith(".toml") else ""
+    found = _CUE.search(text)
+    ready = ready_cue(found[1]) if found and "meshes/" in found[1] else None
+    if found is None or ready is None:
+        return content
+    beside = f"ready_{Path(found[1]).name}"
+    (folder / beside).write_bytes(ready)
+    return text.replace(found[0], f'cue = "{beside}"', 1).encode()
+
+
+class PresetMenu:
+    """The ready cues and scenes, each with what was measured on such cues."""
+
+    def __init__(self, chosen: Callable[[Preset], None]) -> None:
+        with button("Ready cues", lambda: None), ui.menu().props('aria-label="ready cues"'):
+            for preset in PRESETS:
+                with ui.menu_item(on_click=partial(chosen, preset)).classes("menu-item"):
+                    measured = escape(f"measured on such cues: {preset.measured}")
+                    ui.html(f"<span>{escape(preset.name)}</span><small>{measured}</small>", sanitize=False)
+
+
+class ShapeDialog:
+    """Asks for what a shape cannot say: the weight of the rest, the material, the game."""
+
+    def __init__(self, opened: Callable[[str, Scene, list[str]], None]) -> None:
+        self.opened = opened
+        self.name, self.unit = "", "g"
+        self.cue: Cue | None = None
+        self.dialog = ui.dialog().props('aria-label="What the file does not say"')
+        with self.dialog, ui.element("div").classes("dialog"):
+            ui.html("<h2>What the file does not say</h2>", sanitize=False)
+            self.facts = ui.html(sanitize=False)
+            self.weight = ui.input("Weight", value="").props("outlined dense inputmode=decimal autocomplete=off")
+            self.which = ui.radio({"rest": "of the rest of the cue", "whole": "of the whole cue"}, value="whole")
+            self.which.props("inline dense")
+            self.material = ui.select(list(MATERIALS), value=DEFAULT_MATERIAL, label="Material of the shaft")
+            self.material.props("outlined dense").classes("wide-field")
+            self.game = ui.select(list(GAMES), value=DEFAULT_GAME, label="Game").classes("wide-field")
+            self.game.props("outlined dense")
+            self.beside = Beside()
+            with ui.element("div").classes("actions"):
+                button("Open it", self._open)
+                button("Cancel", self.dialog.close)
+
+    def ask(self, name: str, cue: Cue, system: System) -> None:
+        """Ask about a shape."""
+        self.name, self.cue, self.unit = name, cue, system.units["kg"][1]
+        sizes = (system.length(size) for size in (cue.length, cue.segments[0].tip_diameter))
+        self.facts.set_content(f"<p>{escape(name)}: {' long, tip '.join(sizes)} wide. How heavy is the cue?</p>")
+        self.weight.props(f'label="Weight, {self.unit}"')
+        self.weight.set_value("")
+        self.beside.say("")
+        self.dialog.open()
+
+    def _open(self) -> None:
+        try:
+            scene = self._scene()
+        except FAILURES as error:
+            self.beside.say(" ".join(str(error).split()))
+            return
+        self.dialog.close()
+        game = self.game.value
+        self.opened(self.name, scene, [f"a usual stroke of {game}"])
+
+    def _scene(self) -> Scene:
+        assert self.cue is not None
+        try:
+            weight = typed(str(self.weight.value), self.unit)
+        except ValueError as error:
+            raise ValueError(f"the weight {error}") from None
+        kilograms = weight * {"g": 1e-3, "oz": 28.349523125e-3}[self.unit]
+        wood = material(self.material.value)
+        cue = replace(self.cue, segments=tuple(replace(s, material=wood) for s in self.cue.segments))
+        rest = kilograms - (cue.shaft_mass if self.which.value == "whole" else 0.0)
+        if rest < 0:
+            drawn = cue.shaft_mass / kilograms * weight
+            raise ValueError(
+                f"the whole cue must weigh more than what is drawn, {drawn:.4g} {self.unit}; got {weight:g}"
+            )
+        return usual_scene(replace(cue, body_mass=float(f"{rest:.12g}")), self.game.value)

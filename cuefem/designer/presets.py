@@ -1,0 +1,69 @@
+"""The ready cues and scenes: what each is, and what was measured on such cues."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from cuefem.cue import Cue
+from cuefem.games import usual_scene
+from cuefem.io import load
+from cuefem.scene import Scene
+
+_NOT = "nothing was measured on such a cue"
+_PLAIN = "2.30 and 2.43° at b/R 0.375, 2.5° at b/R 0.453 (Players, 12.75 mm; Billiards Digest 2007, 2008)"
+_LOW = "1.8° at b/R 0.453 (Predator Z, 11.85 mm; Billiards Digest 2007)"
+_BREAK = "2.4° at b/R 0.267 (Stinger, 13.5 mm; Alciatore, TP B.1)"
+_KIM = "a tone near 250 Hz and 120 g (Kim 2022); no squirt"
+_CLAY = "squirt with masses on a Players shaft (Billiards Digest 2008)"
+
+
+class Preset(NamedTuple):
+    """A ready file: its path from the folder of `meshes`, its name, its game, and what was measured on such cues."""
+
+    file: str
+    name: str
+    game: str
+    measured: str
+
+
+PRESETS = (
+    Preset("meshes/pool_maple.toml", "Pool: plain maple shaft", "pool", _PLAIN),
+    Preset("meshes/pool_hollow.toml", "Pool: low-deflection shaft, hollow front", "pool", _LOW),
+    Preset("meshes/carbon.toml", "Pool: carbon-fibre shaft", "pool", _NOT),
+    Preset("meshes/whole_cue.toml", "Pool: a whole cue of two pieces", "pool", _PLAIN),
+    Preset("meshes/kim.toml", "Carom: the shaft of Kim's paper", "carom", _KIM),
+    Preset("studies/scenes/kim.toml", "Carom: Kim's shaft, bare, 2 ms", "carom", _KIM),
+    Preset("studies/scenes/pool_low_deflection.toml", "Pool: low-deflection shaft on a bridge", "pool", _LOW),
+    Preset("studies/scenes/carom.toml", "Carom: stiff conical shaft", "carom", _NOT),
+    Preset("studies/scenes/break_cue.toml", "Pool: a break at 25 mph, phenolic tip", "pool", _BREAK),
+    Preset("studies/scenes/snooker.toml", "Snooker: thin ash shaft, brass ferrule", "snooker", _NOT),
+    Preset(
+        "studies/scenes/clay_on_shaft.toml",
+        "Pool: 11 g of clay on the shaft",
+        "pool",
+        _CLAY,
+    ),
+)
+
+
+def folder() -> Path:
+    """Where the ready files lie: in the package as it is installed, or in the clone."""
+    inside = Path(str(files("cuefem"))) / "ready"
+    return inside if inside.is_dir() else inside.parents[1]
+
+
+def opened(preset: Preset) -> tuple[Scene, list[str]]:
+    """The scene of a ready file, and what was assumed for it."""
+    found: Any = load(folder() / preset.file)
+    if isinstance(found, Cue):
+        return usual_scene(found, preset.game), [f"a usual stroke of {preset.game}"]
+    return found, []
+
+
+def ready_cue(name: str) -> bytes | None:
+    """The content of a ready cue file of this name."""
+    path = folder() / "meshes" / Path(name).name
+    known = {Path(preset.file).name for preset in PRESETS if preset.file.startswith("meshes/")}
+    return path.read_bytes() if Path(name).name in known and path.is_file() else None

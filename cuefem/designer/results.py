@@ -1,0 +1,87 @@
+"""The results' side of the page: it shows what is known, and what is still computed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from nicegui import ui
+
+from cuefem.designer import numbers, pictures
+from cuefem.designer.answers import OFFSETS
+from cuefem.designer.computing import Results
+from cuefem.designer.design import Design
+from cuefem.designer.numbers import Column
+from cuefem.designer.pictures import Drawn
+from cuefem.designer.units import System
+from cuefem.designer.words import ABOUT
+
+
+class ResultsSide:
+    """The elements that show results."""
+
+    def __init__(self) -> None:
+        with ui.element("section").classes("key-strip"):
+            self.keys = ui.html(sanitize=False)
+        with ui.element("div").classes("rest") as self.rest:
+            with ui.element("section"):
+                ui.html("<h2>The cue</h2>", sanitize=False)
+                self.cue = ui.html(sanitize=False)
+                self.below_cue = ui.element("div")
+            self.charts = self._section("Squirt and pivot length against the offset")
+            with ui.element("div").classes("grid2"):
+                self.lives = self._section("Where end mass lives")
+                with ui.element("section"):
+                    ui.html("<h2>How it rings</h2>", sanitize=False)
+                    self.shapes = ui.html(sanitize=False)
+                    self.tones = ui.html(sanitize=False)
+            with ui.element("section"):
+                ui.html("<h2>All numbers</h2>", sanitize=False)
+                self.above_table = ui.element("div")
+                self.table = ui.html(sanitize=False)
+            ui.html(ABOUT, sanitize=False)
+
+    def _section(self, title: str) -> ui.html:
+        with ui.element("section"):
+            ui.html(f"<h2>{title}</h2>", sanitize=False)
+            return ui.html(sanitize=False)
+
+    def show_numbers(self, columns: Sequence[Column], reference: int, system: System) -> None:
+        """The numbers of the first design beside the others'."""
+        found, other = columns[0].found, columns[reference].found
+        if found is None:
+            return
+        self.keys.set_content(numbers.key_markup(found, other if reference else None, system))
+        self.tones.set_content(numbers.tones_markup(found.frequencies.tolist()))
+        self.table.set_content(numbers.table_markup(columns, reference, system))
+
+    def show_cue(self, mine: Results, system: System) -> None:
+        """The cue and its mode shapes."""
+        self.cue.set_content(pictures.cue_pictures(mine.found.scene, system))
+        self.shapes.set_content(pictures.shapes_picture(mine.found, system))
+
+    def show_charts(
+        self, mine: Results, before: Results | None, pinned: Sequence[tuple[Design, Results | None]], system: System
+    ) -> None:
+        """The curves against the offset. before: of the design before, until the first point of this one is known."""
+        current = bool(mine.points)
+        shown = mine if current or before is None else before
+        spans, said = pictures.limits_of(mine.points)
+        drawn = [Drawn(d.name, one.coupled if one else None, one.density if one else None) for d, one in pinned]
+        markup = pictures.offset_charts(mine.found, shown.coupled, drawn, current=current, limits=spans, system=system)
+        waiting = sum(one is None or not one.whole for _, one in pinned)
+        words = [said, f"Still computing {waiting} of the pinned designs." if waiting else ""]
+        if not mine.whole:
+            words = [f"Computing the coupled curve: {len(mine.points)} of {len(OFFSETS)} offsets.", *words]
+        lines = "".join(f"<p>{line}</p>" for line in words if line)
+        self.charts.set_content(markup + f'<div class="under" aria-live="off">{lines}</div>')
+
+    def show_density(
+        self, mine: Results, before: Results | None, pinned: Sequence[tuple[Design, Results | None]], system: System
+    ) -> None:
+        """Where end mass lives."""
+        current = mine.density is not None
+        shown = mine if current or before is None else before
+        if shown.density is not None:
+            drawn = [Drawn(d.name, None, one.density if one else None) for d, one in pinned]
+            self.lives.set_content(pictures.density_chart(shown.density, drawn, system))
+        self.lives.classes(remove="stale") if current else self.lives.classes(add="stale")

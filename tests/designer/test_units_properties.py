@@ -1,0 +1,74 @@
+"""Numbers as people type them, in millimetres or inches (properties)."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from cuefem.designer.units import INCHES, METRIC, typed
+from cuefem.report.quantities import QUANTITIES
+
+TYPED = {
+    ("11,8", "mm"): 11.8,
+    ("11.8", "mm"): 11.8,
+    (" 11.80 ", "mm"): 11.8,
+    ("11", "mm"): 11.0,
+    (",5", "ms"): 0.5,
+    ("11,", "mm"): 11.0,
+    ("-3", ""): -3.0,
+    ("−3", ""): -3.0,
+    ("29/64", "in"): 29 / 64,
+    ("1 1/8", "in"): 1.125,
+    ("1-1/8 in", "in"): 1.125,
+    ('1/2"', "in"): 0.5,
+    ("1/2 inch", "mm"): 12.7,
+    ("12 mm", "mm"): 12.0,
+    ("12mm", "mm"): 12.0,
+    ("12,7 mm", "in"): 0.5,
+    ("19 oz", "g"): 19 * 28.349523125,
+    ("1e-3", "mm"): None,
+    ("1,234.5", "mm"): None,
+    ("1.234,5", "mm"): None,
+    ("twelve", "mm"): None,
+    ("", "mm"): None,
+    ("12 g", "mm"): None,
+    ("0.3 mm", ""): None,
+    ("1/0", "in"): None,
+    ("9" * 50, "mm"): None,
+}
+
+
+@pytest.mark.parametrize(("text", "unit"), TYPED)
+def test_a_typed_number_is_taken_as_typed_or_refused_in_words(text: str, unit: str) -> None:
+    value = TYPED[text, unit]
+    if value is not None:
+        assert typed(text, unit) == pytest.approx(value, rel=1e-15)
+        return
+    with pytest.raises(ValueError, match=r"^must be (in|a) "):
+        typed(text, unit)
+
+
+@given(st.floats(0.001, 5000).map(lambda x: round(x, 4)), st.sampled_from([".", ","]))
+def test_point_and_comma_are_one(value: float, point: str) -> None:
+    assert typed(f"{value:.4f}".replace(".", point), "mm") == value
+
+
+@given(st.floats(0.001, 2))
+def test_both_systems_write_the_same_length_and_mass(value: float) -> None:
+    for name, unit, most in (("length", "m", 0.5e-3), ("radius", "m", 0.005e-3), ("mass", "kg", 1e-3 * value)):
+        known = QUANTITIES[name]
+        for system in (METRIC, INCHES):
+            scale, _ = system.units[unit]
+            number, shown_unit = known.written(value, units=system.units).split(" ")
+            assert float(number) / scale == pytest.approx(value, abs=1.01 * most)
+            assert typed(number, shown_unit) == float(number)
+
+
+def test_sentences_are_said_in_inches() -> None:
+    said = "736.6 mm modelled in 5 segments, cue 567 g; E 12.6 GPa, 3.5 g/cm, squirt 1.2°, 2 to 40 mm, 0.7 m"
+    expected = (
+        "29.00 in modelled in 5 segments, cue 20.00 oz; E 12.6 GPa, 3.5 g/cm, squirt 1.2°, 0.07874 to 1.575 in, 0.7 m"
+    )
+    assert INCHES.said(said) == expected
+    assert METRIC.said(said) is said
