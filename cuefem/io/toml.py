@@ -102,7 +102,7 @@ def scene_of_table(found: Any, name: str) -> Scene:
 
     if not isinstance(found, dict):
         raise InputError(name, "", f"must be a table; got {shown(found)}")
-    return _scene(found, Path(name), no_file)
+    return scene_of_tables(found, Path(name), no_file)
 
 
 def load_accuracy(path: str | Path) -> float | None:
