@@ -25,6 +25,7 @@ from .effects import (
 from .endmass.drives import end_mass as end_mass
 from .endmass.lumped import impulse as impulse, lump as lump
 from .endmass.undamped import StickLimit as StickLimit
+from .games import usual_scene as usual_scene
 from .io import load as load, save as save
 from .slips import Unusual as Unusual
 from .scene import (

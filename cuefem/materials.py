@@ -25,6 +25,20 @@ Range = tuple[float, float]
 
 
 @dataclass(frozen=True)
+class Leather:
+    """The leather of a tip that is given by its geometry (`cuefem.LeatherTip`), SI, and where its numbers are from.
+
+    contact_time: of a head-on blow of the reference tip at 2 m/s, s (see `LEATHERS`), which fixes E.
+    """
+
+    E: float
+    nu: float
+    rho: float
+    contact_time: float
+    source: str
+
+
+@dataclass(frozen=True)
 class Documented:
     """A material, the ranges in which real pieces of it lie (SI; keys E, G, rho, loss, nu), and its source."""
 
@@ -168,6 +182,28 @@ _METALS = {
 
 MATERIALS: Mapping[str, Documented] = MappingProxyType(_WOODS | _COMPOSITES_AND_PLASTICS | _METALS)
 WOODS: tuple[str, ...] = tuple(_WOODS)
+
+# The leathers of tips by their hardness. No source gives an E that was measured on the leather of a tip, so each is
+# that with which a head-on blow at 2 m/s lasts as long as is published: a maple pool shaft and a pool ball (a cue of
+# 566 g; 170 g, 57.15 mm), a tip 12.75 mm wide and 6 mm high, its dome of 9.5 mm, e = 0.73 (studies/leather_tip.toml).
+_INFERRED = "E is inferred from that time and not measured. nu and density: textbook values of compressed sole leather"
+LEATHERS: Mapping[str, Leather] = MappingProxyType(
+    {
+        "soft": Leather(
+            *(30e6, 0.4, 1000.0, 2.0e-3),
+            f"2 ms head on at 2 m/s: the longest of the published contact times, 0.8 to 2 ms. {_INFERRED}",
+        ),
+        "medium": Leather(
+            *(140e6, 0.4, 1000.0, 1.135e-3),
+            "1.135 ms head on at 2 m/s: Alciatore, billiards.colostate.edu, high-speed video, 1.0 to 1.2 ms of medium "
+            f"leather. {_INFERRED}",
+        ),
+        "hard": Leather(
+            *(360e6, 0.4, 1000.0, 0.8e-3),
+            f"0.8 ms head on at 2 m/s: the shortest of the published contact times, 0.8 to 2 ms. {_INFERRED}",
+        ),
+    }
+)
 
 
 def material(name: str) -> Material:

@@ -41,11 +41,13 @@ class Quantity:
     """The SI unit of a field ("" for a pure number) and the interval in which its value must lie.
 
     ``interval`` is written as in mathematics, "(0, inf)" or "[0, 1]". A round bracket excludes its end, so infinity is
-    allowed only by an interval that closes with "inf]". NaN lies in no interval.
+    allowed only by an interval that closes with "inf]". NaN lies in no interval. ``words``: names that a file or an
+    option may give for a value, each with the value.
     """
 
     unit: str
     interval: str = "(-inf, inf)"
+    words: tuple[tuple[str, float], ...] = ()
 
     @functools.cached_property
     def ends(self) -> tuple[float, float]:
@@ -69,7 +71,13 @@ class Quantity:
     def example(self) -> str:
         """What the unit measures, with an example: 'a length with its unit, such as "12 mm"'."""
         what, example = EXAMPLES.get(self.unit, ("a quantity", f"3 {self.unit}"))
-        return f'{what} with its unit, such as "{example}"'
+        named = ", or " + ", ".join(f'"{word}"' for word, _ in self.words) if self.words else ""
+        return f'{what} with its unit, such as "{example}"{named}'
+
+    @property
+    def endless(self) -> bool:
+        """Whether infinity is a value, which needs no unit."""
+        return self.interval.endswith("inf]")
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
         """Pydantic's hook: the function "read" of the validation context turns a file's text into a number."""
@@ -83,7 +91,8 @@ class Quantity:
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
         """Pydantic's hook: text with a unit, or a bare number within its bounds."""
         if self.unit:
-            return {"type": "string", "description": f"{self.example}; in {self.bounds}"}
+            kinds = ["string", "number"] if self.endless else "string"  # inf alone is a number without a unit
+            return {"type": kinds, "description": f"{self.example}; in {self.bounds}"}
         low, high = self.ends
         bounds = {"minimum" if self.interval[0] == "[" else "exclusiveMinimum": low}
         bounds["maximum" if self.interval[-1] == "]" else "exclusiveMaximum"] = high
@@ -114,6 +123,16 @@ class Quantity:
             return float(array)
         array.flags.writeable = False
         return array
+
+
+class Flag:
+    """Marks a field that is true or false: no other word of a file is read as either."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
+        """Pydantic's hook: true or false as they are."""
+        from pydantic_core import core_schema
+
+        return core_schema.bool_schema(strict=True)
 
 
 # Bounds of a cue and a blow, so that a wrong unit is refused before it costs hours. Each bound is far from anything

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import chain
 from typing import Annotated, Any
 
@@ -11,7 +12,7 @@ import numpy as np
 
 from cuefem.cue import Array, Cue, LumpedCue
 from cuefem.effects import CueEffect, Effect, LeatherTip, acting_on_cue, check_effects
-from cuefem.effects.leather_law import LeatherLaw
+from cuefem.effects.leather_law import LeatherLaw, TooDeep
 from cuefem.effects.terms import ContactTerms
 from cuefem.notebook import brief, said, table
 from cuefem.quantity import CONTACT_TIME, Number, Quantity, check_count, check_fields, check_kind, quantities, scalar
@@ -264,7 +265,7 @@ class Scene:
         """The m_n of 1/m_n = 1/M + 1/m_a, kg."""
         return 1 / (1 / self.ball.mass + 1 / self.axial_mass)
 
-    @property
+    @cached_property
     def contact_time(self) -> Any:
         """Duration T of a head-on blow, s, given or from the tip's stiffness (handbook: The strike).
 
@@ -273,10 +274,18 @@ class Scene:
         choice of modes, in reports.
         """
         if self.contact_terms.tip is not None:
-            return (1 + self.tip.restitution) * self._loading_time
+            return (1 + scalar("Tip.restitution", self.tip.restitution)) * self._loading_time
         if self.tip.stiffness is None:
             return DEFAULT_CONTACT_TIME if self.tip.contact_time is None else self.tip.contact_time
         return math.pi / 2 * (1 + self.tip.restitution) * np.sqrt(self.head_on_mass / self.tip.stiffness)
+
+    @property
+    def known_contact_time(self) -> Any:
+        """The `contact_time`, or None for leather that the blow presses further than its law is known."""
+        try:
+            return self.contact_time
+        except TooDeep:
+            return None
 
     @property
     def stiffness(self) -> Any:
@@ -303,7 +312,8 @@ class Scene:
     @property
     def _loading_time(self) -> Any:
         """Time that a head-on blow takes a whole tip to its greatest compression, s."""
-        return self.tip_law().blow(self.head_on_mass, self.stroke.speed)[1]
+        mass, speed = scalar("Ball.mass", self.head_on_mass), scalar("Stroke.speed", self.stroke.speed)
+        return self.tip_law().blow(mass, speed)[1]
 
 
 @dataclass(frozen=True)
@@ -393,11 +403,11 @@ class Outcome:
     duration: Any
     regime: Any
     jam: Any
-    phases: tuple[Any, ...]
+    phases: tuple[Any, ...] = field(repr=False)
     energy: dict[str, Any]
     unknowns: int = 0
     error: float | None = None
-    history: Any = None
+    history: Any = field(default=None, repr=False)
 
     def __repr__(self) -> str:
         return said("Outcome", self._shown())

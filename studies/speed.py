@@ -33,7 +33,7 @@ if str(HERE) not in sys.path:
     sys.path.append(str(HERE))  # studies are files, not a package
 common, contact_cost = import_module("common"), import_module("contact_cost")
 
-COMMANDS = ("--help", "end-mass meshes/kim.toml")
+COMMANDS = ("--help", "end-mass studies/scenes/kim.toml")
 ROUNDS, STARTS = 40, 7
 
 

@@ -26,6 +26,7 @@ ORDER = [
     "beam",
     "effects",
     "scene",
+    "games",
     "tip_modes",
     "contact",
     "endmass",

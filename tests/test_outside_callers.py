@@ -70,3 +70,13 @@ def test_save_by_keyword(tmp_path: Path) -> None:
     cue = kim_scene().cue
     cf.save(obj=cue, path=tmp_path / "kim.toml")
     assert cf.load(tmp_path / "kim.toml") == cue
+
+
+def test_an_outcome_prints_in_a_few_lines() -> None:
+    assert len(repr(cf.strike(kim_scene(0.3)))) < 1000
+
+
+def test_a_contact_time_is_computed_once() -> None:
+    scene = cf.usual_scene(kim_scene().cue)
+    assert scene.contact_time is scene.contact_time
+    assert replace(scene, stroke=cf.Stroke(4.0)).contact_time < 0.9 * scene.contact_time

@@ -41,7 +41,7 @@ def test_the_first_block_is_two_complete_commands() -> None:
     assert BLOCKS[0] == ("sh", FIRST)
     lines = FIRST.splitlines()
     assert len(lines) == 2
-    assert lines[0].endswith("cuefem report meshes/kim.toml")
+    assert lines[0].endswith("cuefem report studies/scenes/kim.toml")
     assert lines[1].endswith("pytest")
     assert all(line.startswith("python3 -m venv") for line in lines)
 

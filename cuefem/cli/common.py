@@ -3,23 +3,17 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager, suppress
-from dataclasses import replace
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-if TYPE_CHECKING:
-    from cuefem.cue import Cue
-    from cuefem.quantity import Quantity
-    from cuefem.scene import Scene
+from cuefem.cli.strokes import refuse_game, usual, with_options
 
-DEFAULT_OFFSET = 0.3  # of a bare cue file, b/R
-# Mass, kg, and radius, m, of the balls that people play with; sources: studies/scenes (pool 2.25 in and at most 6 oz,
-# carom UMB 61.5 mm, snooker WPBSA 52.5 mm and what sets are sold at).
-BALLS = {"pool": (0.170, 0.028575), "carom": (0.210, 0.03075), "snooker": (0.142, 0.02625)}
+if TYPE_CHECKING:
+    from cuefem.scene import Scene
 
 
 def file_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -47,25 +41,6 @@ def shape_options(command: Callable[..., Any]) -> Callable[..., Any]:
     return command
 
 
-def blow_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The options that replace the scene's ball and contact time."""
-    ball = click.option(
-        "--ball", type=click.Choice(tuple(BALLS)), help="The ball; by default the scene's, carom for a bare cue."
-    )
-    return ball(
-        click.option("--contact-time", metavar="TIME", help='How long the tip touches the ball head on, e.g. "1 ms".')(
-            command
-        )
-    )
-
-
-def offset_option(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The option that replaces the stroke's offset."""
-    return click.option("--offset", metavar="B/R", help="How far off centre the tip hits, in ball radii, in (-1, 1).")(
-        command
-    )
-
-
 def force_option(command: Callable[..., Any]) -> Callable[..., Any]:
     """The option of every command that writes a drawing."""
     return click.option("--force", is_flag=True, help="Replace a drawing that exists already.")(command)
@@ -81,28 +56,21 @@ def check_free(drawing: Path, *, force: bool) -> None:
 
 
 @contextmanager
-def blaming(file: Path) -> Iterator[None]:
-    """Name the file in errors that appear only while computing, such as an effect that lies off the cue."""
+def blaming(file: Path, given: Collection[str] = ()) -> Iterator[None]:
+    """Name the file in errors that appear only while computing, such as an effect that lies off the cue.
+
+    given: the options that the command has, to be named where they help.
+    """
+    from cuefem.effects.leather_law import TooDeep
     from cuefem.io import InputError
 
     try:
         yield
+    except InputError:  # which names a file already
+        raise
     except ValueError as error:
-        raise InputError(file, "", str(error)) from None
-
-
-def measured(file: Path, option: str, given: str, wanted: Quantity) -> float:
-    """An option's text as a checked SI number."""
-    from cuefem.io import InputError
-    from cuefem.io.units import quantity
-
-    value: Any = given
-    with suppress(ValueError):
-        value = float(given) if wanted.unit == "" else value
-    try:
-        return quantity(wanted, value)
-    except ValueError as error:
-        raise InputError(file, option, str(error)) from None
+        help_words = " (--tip-height, --leather, --speed)" if isinstance(error, TooDeep) and "leather" in given else ""
+        raise InputError(file, "", f"{error}{help_words}") from None
 
 
 class Definitions(click.Choice[str]):
@@ -130,22 +98,32 @@ class WithDefinitions(click.Command):
             formatter.write_dl([(one.name, one.meaning) for one in DEFINITIONS.values()])
 
 
-def scene_of(file: Path, given: dict[str, Any], *, blow: bool = True) -> tuple[Scene, list[str]]:
+def scene_of(
+    file: Path, given: dict[str, Any], *, blow: bool = True, settled: Collection[str] = ()
+) -> tuple[Scene, list[str]]:
     """The scene that a command computes, and what was assumed because neither file nor options say it.
 
-    blow: whether ball, tip and stroke matter to the command, so that what is assumed of them is told too.
+    A cue alone gets a game's usual stroke (`cuefem.games`). blow: whether ball, tip and stroke matter to the command,
+    so that what is assumed of them is told too. settled: options that have no say, for the command finds their value.
     """
-    from cuefem.io import load
-    from cuefem.io.assumed import assumed, assumed_blow
-    from cuefem.scene import Scene, Stroke
+    from cuefem.games import DEFAULT_GAME
+    from cuefem.io import InputError, load
+    from cuefem.io.assumed import assumed, assumed_usual
+    from cuefem.scene import Scene
 
     found = load(file, material=given["material"], length_unit=given.get("length_unit"))
-    said = {name for name, value in given.items() if value is not None}
+    said = {name for name, value in given.items() if value is not None} | {*settled}
     notes = assumed(file, said, offered=given, blow=blow)
-    if not isinstance(found, Scene):
-        found = Scene(found, stroke=Stroke(offset=DEFAULT_OFFSET))
-        notes += assumed_blow({}, said, offered=given, offset=DEFAULT_OFFSET) if blow else []
-    scene = _with_options(found, file, given)
+    if isinstance(found, Scene):
+        refuse_game(file, given)
+        scene = with_options(found, file, given)
+    else:
+        try:
+            scene = usual(found, file, given)
+        except InputError:
+            remark(Scene(found))
+            raise
+        notes += assumed_usual(found, given.get("game") or DEFAULT_GAME, said, offered=given, blow=blow)
     remark(scene)
     return scene, notes
 
@@ -158,38 +136,6 @@ def remark(scene: Scene) -> None:
         click.echo(f"unusual: {line}", err=True)
 
 
-def _with_options(scene: Scene, file: Path, given: dict[str, Any]) -> Scene:
-    """The scene with the values that the command's options give."""
-    from cuefem.quantity import CONTACT_TIME, Quantity
-    from cuefem.scene import Ball
-
-    if given.get("ball") is not None:
-        scene = replace(scene, ball=Ball(*BALLS[given["ball"]]))
-    if given.get("offset") is not None:
-        offset = measured(file, "--offset", given["offset"], Quantity("", "(-1, 1)"))
-        scene = replace(scene, stroke=replace(scene.stroke, offset=offset))
-    if given.get("contact_time") is not None:
-        time = measured(file, "--contact-time", given["contact_time"], CONTACT_TIME)
-        scene = replace(scene, tip=replace(scene.tip, contact_time=time, stiffness=None))
-    if given["body_mass"] is not None:
-        scene = with_body(scene, file, given["body_mass"])
-    return scene
-
-
-def with_body(found: Cue | Scene, file: Path, given: str) -> Any:
-    """The cue or scene of a file with the mass behind its segments that --body-mass says."""
-    from cuefem.io import InputError
-    from cuefem.quantity import Quantity
-    from cuefem.scene import Scene
-
-    mass = measured(file, "--body-mass", given, Quantity("kg", "[0, inf)"))
-    if not isinstance(found, Scene):
-        return replace(found, body_mass=mass)
-    if not found.cue.segments:
-        raise InputError(file, "--body-mass", "must be left out: a lumped cue is whole")
-    return replace(found, cue=replace(found.shaft, body_mass=mass))
-
-
 def show(
     file: Path,
     given: dict[str, Any],
@@ -198,18 +144,19 @@ def show(
     *,
     blow: bool = True,
     change: Callable[[Scene], Scene] | None = None,
+    settled: Collection[str] = (),
 ) -> None:
     """Compute all of it first, then print it all: as JSON, or as a heading and tables.
 
-    blow: see `scene_of`. change: what the command's own options make of the scene.
+    blow, settled: see `scene_of`. change: what the command's own options make of the scene.
     """
     from cuefem.report.quantities import UNITS
     from cuefem.report.record import plain, scene_record
     from cuefem.report.unusual import unusual
     from cuefem.report.words import cue_line, effect_words
 
-    scene, notes = scene_of(file, given, blow=blow)
-    with blaming(file):
+    scene, notes = scene_of(file, given, blow=blow, settled=settled)
+    with blaming(file, given):
         scene = scene if change is None else change(scene)
         about, found = scene_record(scene), results(scene)
     if given["as_json"]:

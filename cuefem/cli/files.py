@@ -7,7 +7,8 @@ from pathlib import Path
 
 import click
 
-from cuefem.cli.common import check_free, force_option, print_all, print_json, shape_options, with_body
+from cuefem.cli.common import check_free, force_option, print_all, print_json, shape_options
+from cuefem.cli.strokes import with_body
 
 
 @click.command(short_help="Convert FILE to .toml, .vtk or .vtu.")

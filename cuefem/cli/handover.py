@@ -14,15 +14,13 @@ from cuefem.cli.common import (
     Definitions,
     WithDefinitions,
     blaming,
-    blow_options,
     file_options,
     followed,
-    measured,
-    offset_option,
     print_all,
     print_json,
     scene_of,
 )
+from cuefem.cli.strokes import blow_options, measured, offset_option
 
 if TYPE_CHECKING:
     from cuefem.scene import Scene
@@ -62,7 +60,7 @@ def handover(
     if output is not None and output.suffix != ".json":
         raise InputError(output, "--output", f"must end in .json; got {output.suffix!r}")
     scene, notes = scene_of(file, given)
-    with blaming(file):
+    with blaming(file, given):
         whole = None if length is None else measured(file, "--length", length, LENGTH)
         found = pooltool_record(file.stem, scene, drive=drive, length=whole)
     found["notes"] += [f"assumed: {note}" for note in notes] + [f"unusual: {remark}" for remark in unusual(scene)]
@@ -99,7 +97,7 @@ def animate(file: Path, output: Path, as_json: bool, **given: Any) -> None:
         drawn["until"] = measured(file, "--until", drawn["until"], Quantity("s", "(0, inf)"))
     check_new(output)
     scene, notes = scene_of(file, given)
-    with blaming(file):
+    with blaming(file, given):
         put = _animation(scene, **drawn)
     write_whole_folder(output, put)
     if as_json:

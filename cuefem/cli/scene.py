@@ -11,13 +11,12 @@ import click
 from cuefem.cli.common import (
     WithDefinitions,
     blaming,
-    blow_options,
     file_options,
     followed,
-    offset_option,
     scene_of,
     show,
 )
+from cuefem.cli.strokes import blow_options, offset_option, tip_options
 
 if TYPE_CHECKING:
     from cuefem.scene import Scene
@@ -25,6 +24,7 @@ if TYPE_CHECKING:
 
 @click.command(short_help="How the cue rings: its bending frequencies.")
 @file_options
+@tip_options
 @click.option("--near", metavar="HERTZ", help="Show the modes nearest this frequency, not the lowest.")
 @click.option("--count", type=click.IntRange(min=1), default=6, show_default=True, help="How many modes.")
 def modes(file: Path, near: str | None, count: int, **given: Any) -> None:
@@ -138,8 +138,10 @@ def report(file: Path, output: Path | None, **given: Any) -> None:
     from cuefem.report.strike import MISCUE
 
     def tables(found: Any, about: Any) -> list[Any]:
-        first: list[Any] = [MISCUE, ""] if found["regime"] == "miscue" else []
-        first += [modes_table(found["modes"])] if "modes" in found else []
+        shown = [modes_table(found["modes"])] if "modes" in found else []
+        if "no_contact" in found:
+            return [*shown, f"no end mass and no squirt: {found['no_contact']}"]
+        first: list[Any] = [MISCUE, "", *shown] if found["regime"] == "miscue" else shown
         masses, squirt = found["end_masses"], found["squirt"]
         return [*first, end_mass_table(masses, about), squirt_table(squirt, about), pivot_table(squirt)]
 
@@ -157,7 +159,7 @@ def _write_page(file: Path, output: Path, given: dict[str, Any]) -> None:
     if given["as_json"]:
         raise InputError(output, "--output", "must be left out with --json: a page is no JSON")
     scene, notes = scene_of(file, given)
-    with blaming(file):
+    with blaming(file, given):
         text = page(file.name, scene, rtol=load_accuracy(file), notes=notes, remarks=unusual(scene), track=followed)
     save_page(text, output)
     click.echo(f"wrote {output}")

@@ -10,17 +10,16 @@ import click
 
 from cuefem.cli.common import (
     blaming,
-    blow_options,
     check_free,
     cue_options,
-    measured,
-    offset_option,
     print_all,
     print_json,
     scene_of,
 )
+from cuefem.cli.strokes import blow_options, measured, offset_option, with_body
 
 if TYPE_CHECKING:
+    from cuefem.cue import Cue
     from cuefem.scene import Scene
     from cuefem.tap.fit import TapFit
     from cuefem.tap.ringing import Ringing
@@ -54,8 +53,9 @@ def tap(
 ) -> None:
     """Find the shaft's wood by ear: E, G and density from a recording of the shaft, hung free and tapped.
 
-    RECORDING is a .wav of one or more taps. Its tones are matched to the bending modes of the shaft in FILE. If
-    they do not fit this shaft, or no such wood exists, nothing is shown or written without --doubted (status 1).
+    RECORDING is a .wav of one or more taps. Its tones are matched to the bending modes of the shaft in FILE, as it is
+    drawn there; ball and tip matter to the squirt that follows alone. If the tones do not fit this shaft, or no such
+    wood exists, nothing is shown or written without --doubted (status 1).
     """
     from cuefem.io import FIGURES, InputError, check_place, save, save_figure
     from cuefem.report.record import scene_record
@@ -71,11 +71,11 @@ def tap(
     if figure is not None:
         check_place(figure)
     scene, notes = scene_of(file, given)
-    heard, found = _heard(recording, file, scene, given)
+    heard, found = _heard(recording, file, _as_drawn(scene, file, given), given)
     if found.refusals and not (doubted or force):
         raise RuntimeError(f"{recording}: refused, --doubted goes on: {'; '.join(found.refusals)}")
     record = tap_record(found, heard, *_predicted(file, scene, found))
-    about = scene_record(replace(scene, cue=found.cue))
+    about = scene_record(replace(scene, cue=_struck(scene, found)))
     if output is not None:
         save(_updated(file, scene, found, given), output)
     if figure is not None:
@@ -87,6 +87,24 @@ def tap(
     assumed = [f"assumed: {'; '.join(notes)}"] if notes else []
     written = [f"wrote {path}" for path in (output, figure) if path is not None]
     print_all([f"{recording.name}, {file.name}", *assumed, "", *tap_tables(record, about), *written])
+
+
+def _as_drawn(scene: Scene, file: Path, given: dict[str, Any]) -> Scene:
+    """The scene of FILE; of a cue alone the scene with the cue as it is drawn, its leather included."""
+    from cuefem.io import load
+    from cuefem.scene import Scene
+
+    held = load(file, material=given["material"], length_unit=given["length_unit"])
+    if isinstance(held, Scene):
+        return scene
+    return Scene(held if given["body_mass"] is None else with_body(held, file, given["body_mass"]))
+
+
+def _struck(scene: Scene, found: TapFit) -> Cue:
+    """The fitted cue as the scene has it: a scene with a whole tip has no drawn leather."""
+    from cuefem.games import without_leather
+
+    return found.cue if scene.contact_terms.tip is None else without_leather(found.cue)
 
 
 def _heard(recording: Path, file: Path, scene: Scene, given: dict[str, Any]) -> tuple[Ringing, TapFit]:
@@ -118,7 +136,8 @@ def _predicted(file: Path, scene: Scene, found: TapFit) -> tuple[dict[str, Predi
     from cuefem.tap.wood import predicted
 
     with blaming(file):
-        return predicted(scene, found), strike(replace(scene, cue=found.cue)).regime
+        cue = _struck(scene, found)
+        return predicted(scene, replace(found, cue=cue)), strike(replace(scene, cue=cue)).regime
 
 
 def _updated(file: Path, scene: Scene, found: TapFit, given: dict[str, Any]) -> Any:

@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 
 from cuefem.contact.strike import strike
-from cuefem.quantity import CONTACT_TIME
+from cuefem.quantity import CONTACT_TIME, scalar
 from cuefem.scene import Scene
 
 CLOSE = 1e-9  # of the contact time
@@ -50,7 +50,8 @@ def leather_modulus(scene: Scene, contact_time: float) -> float:
     """
     from scipy.optimize import root_scalar
 
-    contact_time = CONTACT_TIME.check("leather_modulus contact_time", contact_time)
+    name = "leather_modulus contact_time"
+    contact_time = scalar(name, CONTACT_TIME.check(name, contact_time))
     head_on = replace(scene, stroke=replace(scene.stroke, offset=0.0))
 
     def too_long(logarithm: float) -> float:

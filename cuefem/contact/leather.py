@@ -55,8 +55,8 @@ def whole_tip_contact(scene: Scene, tip: TipModes, laws: Laws) -> Leather:
     """The contact of a scene with a whole tip; ValueError for one that gives next to nothing back."""
     if laws.restitution < LEAST_RESTITUTION:
         raise ValueError(
-            f"Tip.restitution must be in [{LEAST_RESTITUTION}, 1] beside LeatherTip, whose contact is stepped in time; "
-            f"got {laws.restitution}"
+            f"Tip.restitution must be in [{LEAST_RESTITUTION}, 1] beside LeatherTip; got {laws.restitution}: leather "
+            "that gives back less rings on the ball while it is unloaded, which is not computed (cue tips: 0.7 to 0.85)"
         )
     law = scene.tip_law(laws.restitution, scalar("Stroke.offset", scene.stroke.offset))
     return Leather(tip, laws, law=law, radius=scalar("Ball.radius", scene.ball.radius), terms=scene.contact_terms)

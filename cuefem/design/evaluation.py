@@ -99,7 +99,10 @@ def common_resolution(scenes: Sequence[Scene], responses: Sequence[Response]) ->
     for scene in scenes:
         if not scene.cue.segments:
             continue
-        kept = modes_below(scene.shaft, 2 * np.pi * PERIODS_KEPT / scene.contact_time) if strikes else count
+        time = scene.known_contact_time if strikes else None
+        if strikes and time is None:  # its contact fails by itself, with its reason, and stops no other design
+            continue
+        kept = count if time is None else modes_below(scene.shaft, 2 * np.pi * PERIODS_KEPT / time)
         # a mesh of more elements follows shorter waves, and so does one of as many of a higher order
         mesh, modes = max(mesh, even_mesh_for(scene.shaft, max(kept, count))), max(modes, kept)
     return Resolution(*mesh, modes)

@@ -50,7 +50,7 @@ class Knobs:
     shaft_material: Material
     joint_position: float
     joint_compliance: float
-    contact_time: float
+    contact_time: float | None
     offset: float
 
 
@@ -135,7 +135,7 @@ def knobs_of(scene: Scene) -> Knobs:
         shaft_material=pieces[parts.shaft.start].material,
         joint_position=joint.position,
         joint_compliance=joint.rotational_compliance,
-        contact_time=float(scene.contact_time),
+        contact_time=None if scene.contact_terms.tip is not None else float(scene.contact_time),
         offset=float(scene.stroke.offset),
     )
 
@@ -165,7 +165,7 @@ def turned(scene: Scene, knobs: Knobs) -> Scene:
     changed = _with_bore(_with_diameters(_with_ferrule(cue, own, knobs), own, knobs), knobs)
     changed = _with_materials(changed, knobs)  # last, because the parts are told by their materials
     found = scene if changed is cue else replace(scene, cue=changed)
-    if knobs.contact_time != own.contact_time:
+    if own.contact_time is not None and knobs.contact_time != own.contact_time:
         found = replace(found, tip=replace(scene.tip, contact_time=knobs.contact_time, stiffness=None))
     if knobs.offset != own.offset:
         found = replace(found, stroke=replace(scene.stroke, offset=knobs.offset))

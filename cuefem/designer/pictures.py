@@ -10,7 +10,7 @@ from cuefem.designer.answers import Answers, Curve, Density
 from cuefem.designer.model import cue_of
 from cuefem.report import charts as figures
 from cuefem.report.charts import Axis, chart
-from cuefem.report.drawings import cue_drawing, front_drawing, materials_of, modes_drawing, style_of
+from cuefem.report.drawings import cue_drawing, front_drawing, materials_of, modes_drawing, seen, style_of
 from cuefem.report.squirt import offset_charts as report_charts
 from cuefem.report.templates import chart_markup, cue_markup, shapes_markup
 from cuefem.scene import Scene
@@ -23,7 +23,7 @@ def cue_pictures(scene: Scene) -> str:
     whole, wide, front = cue_drawing(scene, across=1.0), cue_drawing(scene, across=8.0), front_drawing(scene)
     cue = cue_of(scene)
     hollow = any((s.tip_bore or s.butt_bore) and s.core is None for s in cue.segments)
-    named = [(name, style_of(name)) for name in materials_of(cue)] + ([("bore", "hollow")] if hollow else [])
+    named = [(name, style_of(name)) for name in materials_of(seen(scene))] + ([("bore", "hollow")] if hollow else [])
     legend = "".join(f'<span><i class="swatch {style}"></i>{name}</span> ' for name, style in named)
     near = f'<div class="grid2">{cue_markup(wide)}{cue_markup(front)}</div>'
     return f'{cue_markup(whole)}{near}<p class="legend">{legend}</p>'

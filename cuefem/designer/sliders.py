@@ -130,4 +130,6 @@ def without(scene: Scene) -> list[str]:
         reasons.append("no ferrule is drawn behind the tip, so there is no knob for it")
     if knobs.bore_depth is None:
         reasons.append("the bore behind the tip is filled, so it stays as it is")
+    if knobs.contact_time is None:
+        reasons.append("the contact time follows from the leather tip, so there is no knob for it")
     return reasons

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, is_dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
 
 from cuefem.cue import Array, Cue, LumpedCue, Section
@@ -71,6 +72,8 @@ class Effect:
     part_of_cue: ClassVar[bool] = False
     # Whether it gives the whole tip, so that the `Tip` has no contact time of its own.
     whole_tip: ClassVar[bool] = False
+    # Keys of a file that stand for several fields: by key and by the name that it holds, the fields, SI.
+    named: ClassVar[Mapping[str, Mapping[str, Mapping[str, float]]]] = MappingProxyType({})
 
     def __post_init__(self) -> None:
         check_fields(self)

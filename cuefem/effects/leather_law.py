@@ -24,6 +24,10 @@ _GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(48)
 _ANGLES = (1 + _GAUSS) * math.pi / 4
 
 
+class TooDeep(ValueError):
+    """A tip of leather is compressed further than its law is known: there is no contact to speak of."""
+
+
 class Curves(NamedTuple):
     """What a tip of leather gives, (n,) each, ascending, without zero.
 
@@ -135,9 +139,9 @@ class LeatherLaw:
                 break
         return depth
 
-    def too_deep(self, depth: float) -> ValueError:
+    def too_deep(self, depth: float) -> TooDeep:
         """The error of a tip that is compressed further than its curves go."""
-        return ValueError(
+        return TooDeep(
             f"the tip's leather is compressed by {1e3 * depth:.3g} mm, further than its law is known "
             f"({1e3 * self.most:.3g} mm): give LeatherTip a larger height or E, or Stroke a lower speed"
         )

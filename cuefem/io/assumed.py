@@ -6,7 +6,9 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
+from cuefem.cue import Cue
 from cuefem.effects import effect_kinds
+from cuefem.games import GAMES, usual_tip
 from cuefem.io.profile import DEFAULT_MATERIAL, DEFAULT_UNIT, SHAPES, SURFACES, profile_notes
 from cuefem.io.toml import read_tables
 from cuefem.scene import DEFAULT_CONTACT_TIME, Ball, Stroke, Tip
@@ -56,26 +58,60 @@ def _fit(path: Path) -> list[str]:
     ]
 
 
-def assumed_blow(
-    found: dict[str, Any], given: Collection[str], *, offered: Collection[str], offset: float | None = None
+def assumed_usual(
+    cue: Cue, game: str, given: Collection[str], *, offered: Collection[str], blow: bool = True
 ) -> list[str]:
-    """What a scene's tables leave out of ball, tip and stroke. offset: of a cue alone, which has no tables."""
+    """What a cue alone gets of its game's usual stroke (`cuefem.games`); arguments as for `assumed`."""
+    known, timed = GAMES[game], "contact_time" in given
+    ball, tip = known.ball, usual_tip(cue, game)
+    drawn = f"{1e3 * cue.leather:.4g} mm"
+    height = (
+        f"the drawn leather, {drawn}, taken as a leather tip of that height"
+        if cue.leather
+        else f"a leather tip {1e3 * tip.height:g} mm high, put on what is drawn"
+    )
+    if cue.leather and "tip_height" in given:
+        height = f"the drawn leather, {drawn}, left out: the leather tip stands in its place"
+    sizes = f"{1e3 * ball.mass:g} g, {2e3 * ball.radius:g} mm"
+    said = (
+        (False, f"a usual stroke of {game}{_option('game', offered)}"),
+        (
+            not blow or "ball" in given,
+            f"ball {sizes}{_option('ball', offered)}",
+        ),
+        (timed or (not cue.leather and "tip_height" in given), f"{height}{_option('tip_height', offered)}"),
+        (timed or "dome" in given, f"its dome {1e3 * tip.dome_radius:g} mm{_option('dome', offered)}"),
+        (
+            timed or "leather" in given,
+            f"its leather {known.leather}, E {1e-6 * tip.E:g} MPa{_option('leather', offered)}",
+        ),
+        (not blow or "restitution" in given, f"e {known.restitution:g}{_option('restitution', offered)}"),
+        (not blow or "friction" in given, f"mu {known.friction:g}{_option('friction', offered)}"),
+        (not blow or "speed" in given, f"stroke {known.speed:g} m/s{_option('speed', offered)}"),
+        (not blow or "offset" in given, f"offset b/R {known.offset:g}{_option('offset', offered)}"),
+    )
+    return [words for told, words in said if not told]
+
+
+def assumed_blow(found: dict[str, Any], given: Collection[str], *, offered: Collection[str]) -> list[str]:
+    """What a scene's tables leave out of ball, tip and stroke."""
     ball, tip, stroke = (found.get(name, {}) for name in ("ball", "tip", "stroke"))
     grams, across = f"{1e3 * Ball().mass:g} g", f"{2e3 * Ball().radius:g} mm"
     neither = not {"mass", "radius"} & {*ball}
     effects = (effect_kinds().get(str(effect.get("type"))) for effect in found.get("effects", ()))
     timed = {"contact_time", "stiffness"} & {*tip, *given} or any(kind and kind.whole_tip for kind in effects)
     option = "--offset or " if "offset" in offered else ""
-    head_on = f" (head on: {option}[stroke] offset gives another)" if offset is None else ""
+    head_on = f" (head on: {option}[stroke] offset gives another)"
+    time = f"{1e3 * DEFAULT_CONTACT_TIME:g} ms{_option('contact_time', offered, SHORTER)}"
     known = (
         ("ball" in given or not neither, f"carom ball {grams}, {across}{_option('ball', offered)}"),
         ("ball" in given or neither or "mass" in ball, f"ball {grams}"),
         ("ball" in given or neither or "radius" in ball, f"ball diameter {across}"),
-        (bool(timed), f"contact time {1e3 * DEFAULT_CONTACT_TIME:g} ms{_option('contact_time', offered, SHORTER)}"),
-        ("restitution" in tip, f"e {Tip().restitution:g}"),
-        ("friction" in tip, f"mu {Tip().friction:g}"),
-        ("speed" in stroke, f"stroke {Stroke().speed:g} m/s"),
-        ("offset" in stroke or "offset" in given, f"offset b/R {offset or Stroke().offset:g}{head_on}"),
+        (bool(timed), f"head-on contact time {time}"),
+        ("restitution" in {*tip, *given}, f"e {Tip().restitution:g}{_option('restitution', offered)}"),
+        ("friction" in {*tip, *given}, f"mu {Tip().friction:g}{_option('friction', offered)}"),
+        ("speed" in {*stroke, *given}, f"stroke {Stroke().speed:g} m/s{_option('speed', offered)}"),
+        ("offset" in {*stroke, *given}, f"offset b/R {Stroke().offset:g}{head_on}"),
     )
     return [words for said, words in known if not said]
 

@@ -70,6 +70,10 @@ def json_schema() -> dict[str, Any]:
     for name in effects:
         found[name]["properties"] = {"type": {"const": name}, **found[name]["properties"]}
         found[name]["required"] = ["type", *found[name].get("required", [])]
+        for word, names in effects[name].named.items():
+            found[name]["properties"][word] = {"enum": [*names]}
+            meant = {key for values in names.values() for key in values}
+            found[name]["required"] = [key for key in found[name]["required"] if key not in meant]
     named = {"type": "string", "description": "a name from `cuefem materials`"}
     found["Material"] = {"anyOf": [named, found["Material"]]}
     scene = found["Scene"]["properties"]

@@ -48,7 +48,8 @@ def joined(key: str, part: str | int) -> str:
 
 def keys_of(kind: type) -> list[str]:
     """The keys that a table of ``kind`` may have."""
-    return [field.name for field in fields(kind)] if is_dataclass(kind) else []
+    names = [field.name for field in fields(kind)] if is_dataclass(kind) else []
+    return [*names, *(kind.named if issubclass(kind, Effect) else ())]
 
 
 def unknown_key(name: str, value: Any, names: list[str], *, file: str, key: str) -> InputError:
@@ -111,6 +112,8 @@ def _wanted(hint: Any) -> str:
         return f"a table with the keys {', '.join(keys_of(cast(type, hint)))}{named}"
     if typing.get_origin(hint) is tuple:
         return "an array of tables" if is_dataclass(typing.get_args(hint)[0]) else "an array"
+    if hint is bool or bool in typing.get_args(hint):
+        return "true or false"
     return f"a {getattr(hint, '__name__', hint)}"
 
 

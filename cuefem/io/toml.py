@@ -14,9 +14,9 @@ import tomlkit
 from cuefem.cue import Cue, LumpedCue, Material
 from cuefem.effects import Effect, effect_kinds
 from cuefem.io.errors import InputError, nearest, read_bytes, reason, shown
-from cuefem.io.schema import build, joined, keys_of, table, unknown_key
+from cuefem.io.schema import build, file_value, joined, keys_of, table, unknown_key
 from cuefem.materials import material
-from cuefem.quantity import MOST_SEGMENTS, Quantity, check_fields
+from cuefem.quantity import MOST_SEGMENTS, Quantity, check_fields, quantities
 from cuefem.scene import Scene
 
 
@@ -183,7 +183,28 @@ def _effect(found: Any, path: Path, key: str) -> Effect:
         problem = f"must be one of {names}; got {shown(name)}{nearest(str(name), kinds)}"
         raise InputError(path, joined(key, "type"), problem)
     rest = {field: value for field, value in found.items() if field != "type"}
-    return build(kinds[name], rest, file=str(path), key=key)
+    return build(kinds[name], _spelt_out(kinds[name], rest, path, key), file=str(path), key=key)
+
+
+def _spelt_out(kind: type[Effect], found: dict[str, Any], path: Path, key: str) -> dict[str, Any]:
+    """The table with the fields in the place of each word that stands for several, such as the name of a leather."""
+    marks = {name: mark for name, mark, *_ in quantities(kind)}  # type: ignore[arg-type]
+    for word, names in kind.named.items():
+        wanted = f"must be one of {', '.join(names)}"
+        meant = [*dict.fromkeys(name for values in names.values() for name in values)]
+        here, first = joined(key, word), meant[0]
+        if word not in found:
+            if first not in found and set(found) <= {*keys_of(kind)}:  # a misspelt key is told first
+                raise InputError(path, here, f"{wanted}, or {first} be given in its place; got nothing")
+            continue
+        given = found[word]
+        if not isinstance(given, str) or given not in names:
+            raise InputError(path, here, f"{wanted}; got {shown(given)}{nearest(str(given), names)}")
+        if twice := [name for name in meant if name in found]:
+            raise InputError(path, joined(key, twice[0]), f"must be left out beside {word}, which gives it")
+        rest = {name: value for name, value in found.items() if name != word}
+        found = rest | {name: file_value(value, marks[name]) for name, value in names[given].items()}
+    return found
 
 
 def toml_text(thing: Cue | Scene) -> str:

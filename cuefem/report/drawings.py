@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import accumulate
 from typing import Any, NamedTuple
 
@@ -61,6 +61,16 @@ def materials_of(cue: Cue) -> tuple[str, ...]:
     return tuple(dict.fromkeys(map(material_name, found)))
 
 
+def seen(scene: Scene) -> Cue:
+    """The cue as one sees it: with the leather of a tip that is given as a whole, in front of its segments."""
+    cue = scene.shaft
+    if scene.contact_terms.tip is None:
+        return cue
+    across = cue.segments[0].tip_diameter
+    tip = Segment(scene.leather.height, across, across, MATERIALS["leather"].material)
+    return replace(cue, segments=(tip, *cue.segments))
+
+
 def style_of(name: str) -> str:
     """A material's class on the page."""
     return "m-" + name.replace(" ", "-") if name in MATERIALS else "m-other"
@@ -69,22 +79,26 @@ def style_of(name: str) -> str:
 def cue_drawing(scene: Scene, *, across: float) -> CueDrawing:
     """The whole cue, with its diameters drawn ``across`` times enlarged."""
     title = "True to scale" if across == 1 else f"Diameters {across:g} times enlarged"
-    return _drawn(scene, title, length=scene.shaft.length, across=across)
+    return _drawn(scene, title, length=seen(scene).length, across=across)
 
 
 def front_drawing(scene: Scene) -> CueDrawing:
     """The tip end, true to scale, with its dome."""
-    return _drawn(scene, "The tip end, true to scale", length=min(FRONT, scene.shaft.length), across=1.0)
+    return _drawn(scene, "The tip end, true to scale", length=min(FRONT, seen(scene).length), across=1.0)
 
 
 def _drawn(scene: Scene, title: str, *, length: float, across: float) -> CueDrawing:
-    cue = scene.shaft
+    cue = seen(scene)
+    ahead = cue.length - scene.shaft.length  # positions on the cue count from behind the leather
     scale = (WIDE - 20) / length
     shown = [(x, segment) for x, segment in zip(cue.nodes[:-1], cue.segments, strict=True) if x < length]
     ends = [s.tip_diameter + (s.butt_diameter - s.tip_diameter) * min(1, (length - x) / s.length) for x, s in shown]
     widest = max(*ends, *(s.tip_diameter for _, s in shown)) * scale * across
     signs = tuple(
-        Sign(10 + scale * x, type(effect).__name__) for effect in scene.effects for x in effect.positions if x <= length
+        Sign(10 + scale * (x + ahead), type(effect).__name__)
+        for effect in scene.effects
+        for x in effect.positions
+        if x + ahead <= length and not effect.whole_tip
     )
     above = 14.0 if signs and across > 1 else 3.0
     axis = above + widest / 2
@@ -161,7 +175,8 @@ def strike_drawing(scene: Scene, squirt: float) -> StrikeDrawing:
     angle = np.linspace(1, -1, 25) * math.asin(across / 2 / radius)
     front_x = apex + scale * radius * (1 - np.cos(angle)) if r else np.full(25, apex)
     front_y = line + scale * across / 2 * np.linspace(1, -1, 25) if not r else line + scale * radius * np.sin(angle)
-    pieces = _struck_end(scene.cue.segments, across, (front_x, front_y), apex=apex, line=line, scale=scale)
+    segments = scene.cue.segments and seen(scene).segments
+    pieces = _struck_end(segments, across, (front_x, front_y), apex=apex, line=line, scale=scale)
     reach = float(centre[0]) - 6
     fall = reach * math.tan(squirt)
     return StrikeDrawing(

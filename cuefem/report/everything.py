@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from cuefem.contact.strike import strike_modes
+from cuefem.effects.leather_law import TooDeep
 from cuefem.report.end_mass import end_mass_record
 from cuefem.report.modes import modes_record
 from cuefem.report.record import Record
@@ -12,8 +13,15 @@ from cuefem.tip_modes import Solved
 
 
 def report_record(scene: Scene, *, count: int = 6) -> Record:
-    """Modes, end masses, squirt and pivot length, and the regime of the scene's own stroke, from one solved scene."""
+    """Modes, end masses, squirt and pivot length, and the regime of the scene's own stroke, from one solved scene.
+
+    Where the stroke presses a leather tip further than its law is known, modes and the reason, "no_contact".
+    """
     solved = Solved(scene)
     found: Record = {"modes": modes_record(scene, count=count, near=None)} if scene.cue.segments else {}
+    try:
+        scene.contact_time  # noqa: B018
+    except TooDeep as error:
+        return found | {"no_contact": str(error)}
     found |= {"end_masses": end_mass_record(scene, solved=solved), "squirt": squirt_record(scene, solved=solved)}
     return found | {"regime": strike_modes(scene, solved.tip).regime}

@@ -32,7 +32,9 @@ SHORTEST_CUE = 1.2  # m: a drawing that is shorter is a shaft's
 POOLTOOL_INERTIA = 0.4  # its 5/2
 NICKEL = 0.0106045  # m, the dome of pooltool's own cue
 
-A31_MEANING = "the end mass whose [A.31] squirt is that of the coupled strike, at this offset, speed and contact time"
+A31_MEANING = (
+    "the end mass whose [A.31] squirt is that of the coupled strike, at this offset, speed and head-on contact time"
+)
 SIGNS = (
     "a is b/R of the contact, positive on the ball's left, and alpha positive to the left: "
     "alpha(a) = -squirt(offset = a); end_mass is m_e, felt at the tip, not the four times larger m_c of the cue's end"

@@ -6,14 +6,14 @@ from dataclasses import asdict
 
 from rich.console import Group
 
-from cuefem.materials import MATERIALS
+from cuefem.materials import LEATHERS, MATERIALS
 from cuefem.report.quantities import QUANTITIES, units_of
 from cuefem.report.record import Record
 from cuefem.report.table import table_of, with_caption
 
 
 def materials_record() -> Record:
-    """The materials that a file can name: values, ranges, sources."""
+    """The materials that a file can name, and the leathers of a tip: values, ranges, sources."""
     return {
         "materials": {
             name: {
@@ -24,7 +24,8 @@ def materials_record() -> Record:
             }
             for name, known in MATERIALS.items()
         },
-        "units": units_of("E", "G", "rho"),
+        "leathers": {name: asdict(leather) for name, leather in LEATHERS.items()},
+        "units": units_of("E", "G", "rho", "contact_time"),
     }
 
 
@@ -36,9 +37,12 @@ def materials_table(record: Record) -> Group:
         cells = (_with_range(values, name) for name in ("E", "G", "rho"))
         table.add_row(name, *cells, f"{values['loss']:g}")
     sources = (f"{name}: {values['source']}" for name, values in record["materials"].items())
-    return with_caption(
-        table, "in brackets the range of real pieces; loss: loss factor; `cuefem materials --json` has more", *sources
+    leathers = (
+        f"{name} leather of a LeatherTip: E {1e-6 * values['E']:g} MPa; {values['source']}"
+        for name, values in record["leathers"].items()
     )
+    said = "in brackets the range of real pieces; loss: loss factor; `cuefem materials --json` has more"
+    return with_caption(table, said, *sources, *leathers)
 
 
 def _with_range(values: Record, name: str) -> str:

@@ -25,6 +25,7 @@ from cuefem.report.drawings import (
     material_name,
     materials_of,
     modes_drawing,
+    seen,
     strike_drawing,
     style_of,
 )
@@ -163,7 +164,7 @@ def _context(scene: Scene, found: Record) -> Record:
 def _facts(scene: Scene) -> list[str]:
     about = {
         "ball": asdict(scene.ball),
-        "tip": {**asdict(scene.tip), "contact_time": scene.contact_time},
+        "tip": {**asdict(scene.tip), "contact_time": scene.known_contact_time},
         "stroke": asdict(scene.stroke),
     }
     effects = [f"with {effect_words(effect)}" for effect in scene.effects]
@@ -205,7 +206,7 @@ def _cue_part(scene: Scene) -> Record:
         }
         for x, s in zip(cue.nodes[:-1], cue.segments, strict=True)
     ]
-    names = materials_of(cue)
+    names = materials_of(seen(scene))
     hollow = any((s.tip_bore or s.butt_bore) and s.core is None for s in cue.segments)
     return {
         "drawings": [cue_drawing(scene, across=1.0), cue_drawing(scene, across=8.0), front_drawing(scene)],

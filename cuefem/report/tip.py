@@ -64,13 +64,15 @@ def _blow(scene: Scene, law: LeatherLaw, speed: float, patches: np.ndarray, dept
 def _shear_ratio(leather: LeatherTip, diameter: float, patch: float, slope: float, offset: float) -> float:
     """Stiffness of a patch of that radius along the surface over that along the normal (slope: on the axis)."""
     normal = slope * float(np.interp(patch, *leather.normal_ratio(diameter, offset)))
+    if leather.shear is not None:
+        return leather.shear / normal
     return float(np.interp(patch, *leather.shear_stiffness(diameter, offset))) / normal
 
 
 def tip_tables(record: Record, scene: Record, wanted: float | None) -> list[Group | str]:
     """A tip's blows head on, its shear ratio, and the leather that has the contact time asked for."""
     kinds = ("contact_time", "force", "depth", "patch")
-    columns = ["ball or cue at", "contact time", *(QUANTITIES[kind].label for kind in kinds[1:])]
+    columns = ["ball or cue at", *(QUANTITIES[kind].label for kind in kinds)]
     blows = table_of("Head on", columns, text_columns=0)
     for blow in record["blows"]:
         cells = (NONE if blow[kind] is None else QUANTITIES[kind].written(blow[kind]) for kind in kinds)

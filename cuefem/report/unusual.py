@@ -41,14 +41,17 @@ def _thin_tip(scene: Scene) -> Iterable[tuple[str, float]]:
 
 # Beyond every cue and every table, yet within a factor of ten: what a unit is wrong by.
 USUAL = (
-    Usual(lambda s: [("contact time", s.contact_time)], 1e-5, 0.05, 1, "s", "leather's is 0.001 to 0.002 s"),
+    Usual(
+        lambda s: [] if s.known_contact_time is None else [("head-on contact time", s.known_contact_time)],
+        *(1e-5, 0.05, 1, "s", "leather's is 0.001 to 0.002 s"),
+    ),
     Usual(
         lambda s: [("ball radius", s.ball.radius)], 0.02, 0.04, 1e3, "mm", "26 to 31 is usual: is that the diameter?"
     ),
     Usual(lambda s: [("ball mass", s.ball.mass)], 0.08, 0.4, 1e3, "g", "140 to 210 is usual"),
     Usual(lambda s: [("stroke speed", s.stroke.speed)], 0.01, 30.0, 1, "m/s", "0.5 to 12 is usual"),
     Usual(
-        lambda s: [("TipDome radius", s.dome_radius)] if s.dome_radius else [],
+        lambda s: [("dome radius", s.dome_radius)] if s.dome_radius else [],
         *(0.005, 0.02, 1e3, "mm", "9 to 10.6 is usual, a dime's or a nickel's"),
     ),
     Usual(

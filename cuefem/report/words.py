@@ -19,12 +19,16 @@ def assumptions(scene: Record) -> str:
     return ", ".join(
         [
             f"ball {grams(ball['mass'])}, {2e3 * ball['radius']:.4g} mm",
-            f"contact time {1e3 * tip['contact_time']:.4g} ms",
+            f"head-on contact time {_milliseconds(tip['contact_time'])}",
             f"e {tip['restitution']:g}",
             f"mu {tip['friction']:g}".replace("inf", "∞"),
             f"stroke {stroke['speed']:g} m/s",
         ]
     )
+
+
+def _milliseconds(time: float | None) -> str:
+    return "unknown" if time is None else f"{1e3 * time:.4g} ms"
 
 
 def cue_line(cue: Record) -> str:

@@ -23,8 +23,15 @@ BLOW = cf.Stroke(offset=0.3)
 
 
 @pytest.fixture
+def cue(tmp_path: Path) -> str:
+    cf.save(KIM, tmp_path / "cue.toml")
+    return str(tmp_path / "cue.toml")
+
+
+@pytest.fixture
 def kim(tmp_path: Path) -> str:
-    cf.save(KIM, tmp_path / "kim.toml")
+    """Kim's shaft with the base model's ball and tip: what a cue alone gets is tested in test_usual_strokes.py."""
+    cf.save(cf.Scene(KIM, stroke=BLOW), tmp_path / "kim.toml")
     return str(tmp_path / "kim.toml")
 
 
@@ -78,20 +85,7 @@ def test_end_mass(kim: str) -> None:
         assert values["lowest"] <= values["end_mass"] <= values["highest"] < 1.02 * values["lowest"]
     shown = run("end-mass", kim, "--contact-time", "1 ms")
     assert f"{1e3 * found['drives']['stick']['end_mass']:.3f} g" in shown
-    assert "contact time 1 ms, e 0.75, mu 0.7" in shown
-
-
-def test_a_bare_cue_gets_defaults_and_says_so(kim: str) -> None:
-    found = as_json("strike", kim)
-    assert found["scene"]["ball"] == {"mass": 0.21, "radius": 0.03075, "inertia": 0.4}
-    assert found["scene"]["stroke"] == {"speed": 1.0, "offset": 0.3}
-    assert found["assumed"] == [
-        *("carom ball 210 g, 61.5 mm (--ball)", "contact time 2 ms (--contact-time; about 1 ms is usual)"),
-        *("e 0.75", "mu 0.7", "stroke 1 m/s", "offset b/R 0.3"),
-    ]
-    words = "assumed: carom ball 210 g, 61.5 mm (--ball); contact time 2 ms (--contact-time; about 1 ms is usual)"
-    assert words in " ".join(run("strike", kim).split())
-    assert as_json("modes", kim)["assumed"] == []  # neither ball nor blow matters to it
+    assert "head-on contact time 1 ms, e 0.75, mu 0.7" in shown
 
 
 @pytest.mark.heavy
@@ -126,7 +120,7 @@ def test_strike(kim: str) -> None:
 def test_a_miscue_is_said_first(kim: str) -> None:
     caption = run("strike", kim, "--offset", "0.85").split("grip")[1]
     assert "miscue" in caption.splitlines()[0]
-    assert caption.index("this stroke miscues: ") < caption.index("contact time 2 ms")
+    assert caption.index("this stroke miscues: ") < caption.index("head-on contact time 2 ms")
     assert "miscues" not in run("strike", kim)
 
 
@@ -208,15 +202,6 @@ def test_a_profile_announces_its_material(tmp_path: Path) -> None:
     assert cf.load(tmp_path / "shaft.toml") == cf.load(shaft, material="ash")
 
 
-def test_modes_assume_nothing_of_ball_and_blow(tmp_path: Path) -> None:
-    shaft = tmp_path / "shaft.csv"
-    shaft.write_text("x [mm],diameter [mm]\n0,12\n700,21\n")
-    told = as_json("modes", str(shaft))["assumed"]
-    assert [words.split()[0] for words in told] == ["material", "no"]
-    assert set(as_json("modes", str(shaft))["scene"]) == {"cue", "effects"}
-    assert any(words.startswith("carom ball") for words in as_json("end-mass", str(shaft))["assumed"])
-
-
 def test_the_package_of_commands_runs_as_a_program() -> None:
     done = subprocess.run([sys.executable, "-m", "cuefem.cli", "--version"], capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
@@ -234,14 +219,18 @@ def test_a_profile_announces_that_nothing_is_behind_it(tmp_path: Path) -> None:
     assert 0.4 * whole["models"]["coupled"]["ball_speed"] < bare < 0.75 * whole["models"]["coupled"]["ball_speed"]
 
 
-def test_a_scene_announces_what_it_leaves_out(kim: str, tmp_path: Path) -> None:
+def test_a_scene_announces_what_it_leaves_out(cue: str, tmp_path: Path) -> None:
     scene = tmp_path / "short.toml"
-    scene.write_text("cue = 'kim.toml'\n[ball]\nmass = '170 g'\n[tip]\nfriction = 0.6\n")
-    left = ["ball diameter 61.5 mm", "contact time 2 ms (--contact-time; about 1 ms is usual)"]
-    left += ["e 0.75", "stroke 1 m/s", "offset b/R 0 (head on: [stroke] offset gives another)"]
+    scene.write_text("cue = 'cue.toml'\n[ball]\nmass = '170 g'\n[tip]\nfriction = 0.6\n")
+    left = ["ball diameter 61.5 mm", "head-on contact time 2 ms (--contact-time; about 1 ms is usual)"]
+    left += [
+        "e 0.75 (--restitution)",
+        "stroke 1 m/s (--speed)",
+        "offset b/R 0 (head on: [stroke] offset gives another)",
+    ]
     assert as_json("end-mass", str(scene))["assumed"] == left
     told = as_json("strike", str(scene), "--offset", "0.2", "--contact-time", "1 ms")["assumed"]
-    assert told == ["ball diameter 61.5 mm", "e 0.75", "stroke 1 m/s"]
+    assert told == ["ball diameter 61.5 mm", "e 0.75 (--restitution)", "stroke 1 m/s (--speed)"]
     words = as_json("strike", str(scene))["assumed"][-1]
     assert words == "offset b/R 0 (head on: --offset or [stroke] offset gives another)"
     scene.write_text("cue = 'shaft.csv'\n[stroke]\noffset = 0.1\n")
@@ -255,14 +244,14 @@ def test_a_scene_announces_what_it_leaves_out(kim: str, tmp_path: Path) -> None:
 @pytest.mark.heavy
 def test_unusual_numbers_are_remarked(kim: str) -> None:
     err = call("end-mass", kim, "--contact-time", "2 s")[2]
-    assert err.splitlines()[0] == "unusual: contact time 2 s; leather's is 0.001 to 0.002 s"
+    assert err.splitlines()[0] == "unusual: head-on contact time 2 s; leather's is 0.001 to 0.002 s"
 
 
-def test_convert(kim: str, tmp_path: Path) -> None:
-    goal = str(tmp_path / "kim.vtu")
-    assert run("convert", kim, goal) == f"wrote {goal}\n"
+def test_convert(cue: str, tmp_path: Path) -> None:
+    goal = str(tmp_path / "cue.vtu")
+    assert run("convert", cue, goal) == f"wrote {goal}\n"
     assert cf.load(goal) == KIM
-    assert run("convert", kim, goal, "--force", "--body-mass", "15 oz") == f"wrote {goal}\n"
+    assert run("convert", cue, goal, "--force", "--body-mass", "15 oz") == f"wrote {goal}\n"
     assert cf.load(goal) == replace(KIM, body_mass=0.425242846875)
 
 
@@ -309,4 +298,7 @@ def test_validate(tmp_path: Path) -> None:
 def test_materials() -> None:
     found = as_json("materials")
     assert "hard maple" in found["materials"]
-    assert "hard maple" in run("materials")
+    assert found["leathers"]["medium"]["E"] == 140e6
+    shown = run("materials")
+    assert "hard maple" in shown
+    assert "hard leather of a LeatherTip: E 360 MPa; 0.8 ms head on" in shown

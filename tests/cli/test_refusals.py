@@ -219,6 +219,10 @@ def test_a_tip_as_thin_as_a_hair(tmp_path: Path, command: str) -> None:
     status, out, err = call(command, path)
     assert (status, out) == (2, "")
     assert err.splitlines()[0].startswith("unusual: segments[0].tip_diameter 0.012 mm; check the unit")
+    assert err.splitlines()[-1].startswith(f"cuefem: {path}: LeatherTip.height must be in ")
+    status, out, err = call(command, path, "--contact-time", "2 ms", "--ball", "carom")
+    assert (status, out) == (2, "")
+    assert err.splitlines()[0].startswith("unusual: segments[0].tip_diameter 0.012 mm; check the unit")
     assert err.splitlines()[-1].startswith(f"cuefem: {path}: the end mass comes out as -")
     assert err.splitlines()[-1].endswith("check sizes, E and the contact time")
 

@@ -2,14 +2,29 @@
 
 from collections.abc import Callable
 from math import inf, nan
+from typing import Any
 
 import numpy as np
 import pytest
 
-from cuefem import Ball, Cue, LumpedCue, Material, Scene, Segment, Stroke, Tip, TipShear, impulse, strike
+from cuefem import (
+    Ball,
+    Cue,
+    LumpedCue,
+    Material,
+    Scene,
+    Segment,
+    Stroke,
+    Tip,
+    TipShear,
+    impulse,
+    leather_modulus,
+    strike,
+)
 from tests.helpers.leather_scenes import leather_scene
 from tests.helpers.refusals import refuses
 
+TWO: Any = np.array([1.0, 2.0])
 MAKERS = {
     "LumpedCue.mass": lambda x: LumpedCue(x, 0.003),
     "LumpedCue.end_mass": lambda x: LumpedCue(0.54, x),
@@ -83,7 +98,13 @@ CALLS: list[tuple[Callable[[], object], str]] = [
         lambda: impulse(Scene(LumpedCue(0.54, 0.005), effects=(TipShear(0.75),))),
         "impulse takes a LumpedCue without effects",
     ),
-    (lambda: strike(leather_scene(e=0.05)), "Tip.restitution must be in [0.1, 1] beside LeatherTip, whose contact is"),
+    (lambda: strike(leather_scene(speed=TWO)), "Stroke.speed must be one number; got an array of shape (2,)"),
+    (lambda: strike(leather_scene(e=TWO / 4)), "Tip.restitution must be one number; got an array of shape (2,)"),
+    (lambda: leather_modulus(leather_scene(), TWO), "leather_modulus contact_time must be one number; got an array"),
+    (
+        lambda: strike(leather_scene(e=0.05)),
+        "LeatherTip; got 0.05: leather that gives back less rings on",
+    ),
     (lambda: strike(leather_scene(speed=60.0)), "mm): give LeatherTip a larger height or E, or Stroke a lower speed"),
 ]
 

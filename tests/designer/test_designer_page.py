@@ -252,7 +252,8 @@ def test_a_file_is_opened_changed_and_taken_back(browser: Any, address: str, tmp
         settled(page)
         assert page.get_by_text("no ferrule is drawn behind the tip").count() == 1
         assert page.locator('[data-knob="ferrule_length"]').count() == 0
-        assert page.get_by_text("assumed: carom ball 210 g, 61.5 mm; contact time 2 ms").count() == 1
+        assumed = "assumed: a usual stroke of pool; ball 170 g, 57.15 mm; a leather tip 6 mm high"
+        assert page.get_by_text(assumed).count() == 1
         path = saved(page, tmp_path)
         assert cf.load(path).cue == cf.load(ROOT / "meshes" / "kim.toml")
         assert_as_commanded(page, path)

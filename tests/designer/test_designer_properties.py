@@ -63,7 +63,7 @@ def test_what_has_no_knob_is_kept(name: str) -> None:
     wanted = replace(knobs_of(scene), tip_diameter=knobs_of(scene).tip_diameter + 1e-4, joint_compliance=1e-4)
     made = turned(scene, wanted)
     assert made.cue.body_mass == scene.cue.body_mass
-    assert [s.material for s in made.cue.segments if s.core] == [s.material for s in scene.cue.segments if s.core]
+    assert {s.material for s in made.cue.segments if s.core} == {s.material for s in scene.cue.segments if s.core}
     assert [effect for effect in made.effects if not isinstance(effect, cf.Joint)] == list(scene.effects)
     assert made.stroke == scene.stroke
     assert made.tip == scene.tip
@@ -93,6 +93,8 @@ def knobs(draw: st.DrawFn) -> Knobs:
 @pytest.mark.parametrize("name", ["meshes/pool_maple", "meshes/pool_hollow", "scenes/snooker"])
 @given(wanted=knobs())
 def test_knobs_come_back_from_the_scene_they_made(name: str, wanted: Knobs) -> None:
+    if SCENES[name].contact_terms.tip is not None:
+        wanted = replace(wanted, contact_time=None)  # it follows from the leather
     made = turned(SCENES[name], wanted)
     found = knobs_of(made)
     assert close(found, wanted)
@@ -127,13 +129,15 @@ def test_a_whole_new_bore_takes_out_its_wood() -> None:
 
 
 def test_the_first_scene_is_the_maple_shaft_of_meshes() -> None:
-    assert first_scene().cue == SCENES["meshes/pool_maple"].cue
+    assert first_scene().cue == cf.load(ROOT / "meshes/pool_maple.toml")
 
 
 def test_what_cannot_be_turned_is_said() -> None:
     assert without(first_scene()) == []
-    assert without(SCENES["meshes/carbon"]) == ["the bore behind the tip is filled, so it stays as it is"]
-    assert without(SCENES["meshes/kim"]) == ["no ferrule is drawn behind the tip, so there is no knob for it"]
+    follows = "the contact time follows from the leather tip, so there is no knob for it"
+    assert without(SCENES["meshes/carbon"]) == ["the bore behind the tip is filled, so it stays as it is", follows]
+    assert without(SCENES["meshes/kim"]) == ["no ferrule is drawn behind the tip, so there is no knob for it", follows]
+    assert without(SCENES["scenes/kim"]) == ["no ferrule is drawn behind the tip, so there is no knob for it"]
 
 
 def test_the_files_own_materials_are_offered() -> None:

@@ -4,7 +4,9 @@ from collections.abc import Callable
 from dataclasses import replace
 from math import inf, nan
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
 from cuefem import (
@@ -46,6 +48,7 @@ ON, BETWEEN = (
 )
 OFF = ((PointMass(0.71, 0.01), ON), (Support(0.8, 1.0), ON), (Joint(0.7, 1e-3), BETWEEN), (Joint(0.9), BETWEEN))
 LEATHER = LeatherTip(6e-3, 9.5e-3, 1.4e8)
+TWO: Any = np.array([0.01, 0.012])
 FINITE = (PointMass(0.1, 0.01), Support(0.1, 5.0), Joint(0.1), AxialWaves(), TipDome(0.01), LEATHER)
 PARTS = (TipDome(0.01), SHEAR, PowerLawTip(), RollingContact(), Elevation(0.1))
 CALLS: list[tuple[Callable[[], object], str]] = [
@@ -83,6 +86,11 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: LeatherTip(6e-3, inf, 1e8).compliance(0.012, 0.1, 7e-3), "patch must be in (0, 0.006] m; got 0.007"),
     (lambda: LeatherTip(6e-3, inf, 1e8).compliance(0.012, 1.0, 1e-3), "offset must be in (-1, 1); got 1.0"),
     (lambda: LeatherTip(6e-3, inf, 1e8).head_on(0.012, 0.0), "ball_radius must be in (0, inf) m; got 0.0"),
+    (lambda: LEATHER.mass(TWO), "diameter must be one number; got an array of shape (2,)"),
+    (lambda: LEATHER.compliance(0.012, TWO, 1e-3), "offset must be one number; got an array of shape (2,)"),
+    (lambda: LEATHER.shear_stiffness(0.012, TWO), "offset must be one number; got an array of shape (2,)"),
+    (lambda: LEATHER.lever(TWO, 0.012), "phi must be one number; got an array of shape (2,)"),
+    (lambda: LEATHER.head_on(0.012, TWO), "ball_radius must be one number; got an array of shape (2,)"),
     *[
         (listed(LeatherTip(6e-3, 9.5e-3, 1e8), other), f"effects[1], {type(other).__name__}; got LeatherTip")
         for other in (TipDome(9e-3), SHEAR, PowerLawTip(1.5))
@@ -131,7 +139,7 @@ CALLS: list[tuple[Callable[[], object], str]] = [
         lambda: replace(kim_scene(), tip=Tip(), effects=(replace(LEATHER, dome_radius=5e-3),)),
         "LeatherTip.dome_radius must be in [0.006, inf] m, half of the tip's diameter or more; got 0.005",
     ),
-    (lambda: replace(LEATHER, shear=0.0), "LeatherTip.shear must be in (0, inf) N/m; got 0.0"),
+    (lambda: replace(LEATHER, shear=0.0), "LeatherTip.shear must be in (0, 1e8] N/m; got 0.0"),
     (lambda: replace(LEATHER, rolls="no"), "TypeError: LeatherTip.rolls must be a bool; got 'no'"),
     (listed(SHEAR, "TipDome"), "TypeError: Scene.effects[1] must be an Effect; got 'TipDome'"),  # type: ignore[arg-type]
 ]

@@ -55,7 +55,7 @@ def test_the_command_prints_and_draws(tmp_path: Path) -> None:
     figure = tmp_path / "cost.svg"
     status, out, err = call("cost", KIM, "--most", 24, "--output", figure)
     assert (status, err) == (0, "")
-    assert "assumed: carom ball 210 g, 61.5 mm (--ball); contact time 2 ms" in " ".join(out.split())
+    assert "assumed: a usual stroke of pool (--game); ball 170 g, 57.15 mm (--ball)" in " ".join(out.split())
     assert "What to take" in out
     assert "1e-06, not reached" in out
     assert figure.read_text(encoding="utf-8").startswith("<?xml")

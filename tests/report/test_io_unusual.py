@@ -55,7 +55,7 @@ def test_the_files_of_this_test_are_ordinary(tmp_path: Path) -> None:
     [
         ("28.575 mm", "57.15 mm", "ball radius 57.15 mm; 26 to 31 is usual: is that the diameter?"),
         ("28.575 mm", "28.575 m", "ball radius 28575 mm; 26 to 31 is usual: is that the diameter?"),
-        ("9.5 mm", "9.5 m", "TipDome radius 9500 mm; 9 to 10.6 is usual, a dime's or a nickel's"),
+        ("9.5 mm", "9.5 m", "dome radius 9500 mm; 9 to 10.6 is usual, a dime's or a nickel's"),
         ("offset = 0.3", 'speed = "200 m/s"', "stroke speed 200 m/s; 0.5 to 12 is usual"),
         ("[ball]", '[ball]\nmass = "170 kg"', "ball mass 170000 g; 140 to 210 is usual"),
         ("420 g", "15 kg", "mass of the whole cue 15.09"),

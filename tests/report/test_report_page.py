@@ -244,6 +244,16 @@ def test_the_cue_is_drawn_to_scale() -> None:
     assert high / along == pytest.approx(11.85 / 6, rel=2e-3)
 
 
+def test_a_leather_tip_is_drawn_in_front_of_the_cue() -> None:
+    blow = cf.usual_scene(scene("kim").shaft)
+    blow = replace(blow, effects=(*blow.effects, cf.PointMass(0.05, 0.01)))
+    for drawing, length in ((cue_drawing(blow, across=8.0), 0.706), (front_drawing(blow), 0.09)):
+        assert [piece.material for piece in drawing.pieces] == ["m-leather", "m-other"]
+        assert [sign.label for sign in drawing.signs] == ["PointMass"]
+        assert drawing.signs[0].at == pytest.approx(10 + (WIDE - 20) * 0.056 / length)
+    assert strike_drawing(blow, 0.03).pieces[0][1] == "m-leather"
+
+
 def test_the_blow_is_drawn_true() -> None:
     blow = scene("pool_low_deflection")
     made = strike_drawing(blow, 0.03)

@@ -1,0 +1,167 @@
+"""What people usually play with, by the game: the ball, tip and stroke that a drawing of a cue alone is given."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+
+from cuefem.cue import SOFT, Cue
+from cuefem.effects import LeatherTip
+from cuefem.materials import LEATHERS
+from cuefem.quantity import check_kind
+from cuefem.scene import Ball, Scene, Stroke, Tip
+
+
+@dataclass(frozen=True)
+class Game:
+    """A usual stroke of a game, SI, and where its numbers are from.
+
+    Attributes
+    ----------
+    ball
+        The ball.
+    height
+        Height of the leather from the ferrule to the apex of the dome, m.
+    dome_radius
+        Radius of the dome, m.
+    leather
+        Name of the leather in `cuefem.materials.LEATHERS`.
+    restitution, friction
+        Of tip and ball.
+    speed
+        Speed of the cue, m/s.
+    offset
+        Where the ball is hit, b/R: well off centre, and far from a miscue.
+    source
+        Where the numbers are from; "usual" marks those that players and shops agree on without a single source.
+    """
+
+    ball: Ball
+    height: float
+    dome_radius: float
+    speed: float
+    source: str
+    leather: str = "medium"
+    restitution: float = 0.73
+    friction: float = 0.7
+    offset: float = 0.3
+
+    @property
+    def tip(self) -> LeatherTip:
+        """The usual tip."""
+        leather = LEATHERS[self.leather]
+        return LeatherTip(self.height, self.dome_radius, leather.E, leather.nu, leather.rho)
+
+
+_ALL = (
+    "Restitution: playing cues 0.71 to 0.75 (billiards.colostate.edu, FAQ, cue tip efficiency; TP A.30). Friction: "
+    "chalked leather, 0.6 to 0.7 (usual). Leather: see `cuefem materials`"
+)
+GAMES: Mapping[str, Game] = MappingProxyType(
+    {
+        "pool": Game(
+            *(Ball(mass=0.170, radius=0.028575), 6e-3, 9.5e-3, 2.0),
+            "Ball: WPA 57.15 mm, 156 to 170 g. Height: usual, 4 to 8 mm. Dome: usual, between a dime's (8.96 mm) and a "
+            f"nickel's (10.6 mm) radius. Speed: a medium stroke (usual). {_ALL}",
+        ),
+        "carom": Game(
+            *(Ball(mass=0.210, radius=0.03075), 4e-3, 9.5e-3, 3.0),
+            f"Ball: UMB 61 to 61.5 mm, 205 to 220 g. Height, dome and speed: assumed. {_ALL}",
+        ),
+        "snooker": Game(
+            *(Ball(mass=0.142, radius=0.02625), 4e-3, 7e-3, 3.0),
+            "Ball: WPBSA 52.5 mm; sets are sold at 140 to 143 g. Height, dome (flatter than half-round, on a tip of "
+            f"9.5 mm) and speed: assumed. {_ALL}",
+        ),
+    }
+)
+DEFAULT_GAME = "pool"
+
+
+def without_leather(cue: Cue) -> Cue:
+    """The cue without the leather that is drawn at its tip (`Cue.leather`)."""
+    if not cue.leather:
+        return cue
+    first = next(i for i, segment in enumerate(cue.segments) if segment.material.E >= SOFT)
+    return replace(cue, segments=cue.segments[first:])
+
+
+def usual_tip(cue: Cue, game: str = DEFAULT_GAME) -> LeatherTip:
+    """The game's usual tip, as high as the leather that the cue is drawn with, if it is.
+
+    Parameters
+    ----------
+    cue
+        A drawing.
+    game
+        "pool", "carom" or "snooker".
+
+    Returns
+    -------
+    LeatherTip
+        Of the game's usual dome and leather.
+
+    Raises
+    ------
+    ValueError
+        If no game has that name.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> from cuefem.games import usual_tip
+    >>> usual_tip(cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 700.0)),))).height
+    0.006
+    """
+    found = _game(game).tip
+    return replace(found, height=cue.leather) if cue.leather else found
+
+
+def usual_scene(cue: Cue, game: str = DEFAULT_GAME, *, tip: LeatherTip | None = None) -> Scene:
+    """A game's usual stroke with a cue: what the commands give to the drawing of a cue alone.
+
+    Parameters
+    ----------
+    cue
+        A drawing. Leather that is drawn at its tip is taken off, and the tip stands in its place; a drawing without
+        leather ends at the ferrule, and the tip is put on it.
+    game
+        "pool", "carom" or "snooker": `GAMES` has their numbers and where these are from.
+    tip
+        In the place of `usual_tip`.
+
+    Returns
+    -------
+    Scene
+        The cue with the game's ball, tip, speed and offset.
+
+    Raises
+    ------
+    ValueError
+        If no game has that name, or the tip cannot be on this cue.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> cue = cf.Cue((cf.Segment(0.7, 0.01275, 0.021, wood),), body_mass=0.43)
+    >>> scene = cf.usual_scene(cue)
+    >>> scene.ball.mass, scene.stroke.speed, scene.leather.dome_radius
+    (0.17, 2.0, 0.0095)
+    """
+    check_kind("usual_scene cue", cue, Cue)
+    known = _game(game)
+    return Scene(
+        without_leather(cue),
+        known.ball,
+        Tip(known.restitution, known.friction),
+        Stroke(known.speed, known.offset),
+        (usual_tip(cue, game) if tip is None else tip,),
+    )
+
+
+def _game(name: str) -> Game:
+    if name not in GAMES:
+        raise ValueError(f"game must be one of {', '.join(GAMES)}; got {name!r}")
+    return GAMES[name]

@@ -1,0 +1,94 @@
+"""A leather tip in a scene file, in the words of a cue maker: coins, soft, medium or hard, flat (regression)."""
+
+from __future__ import annotations
+
+import json
+from math import inf
+from pathlib import Path
+
+import pytest
+
+import cuefem as cf
+from cuefem.effects.leather import DOMES
+from cuefem.io.export import json_schema
+from cuefem.materials import LEATHERS
+from tests.helpers.leather_scenes import SHAFT
+from tests.helpers.refusals import refuses
+
+GIVEN = {"height": '"6 mm"', "dome_radius": '"9.5 mm"', "leather": '"medium"'}
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    cf.save(SHAFT, tmp_path / "shaft.toml")
+    return tmp_path / "scene.toml"
+
+
+def put(file: Path, **entries: str | None) -> Path:
+    """A scene with a leather tip of these entries; None leaves one out."""
+    rows = [f"{name} = {value}" for name, value in (GIVEN | entries).items() if value is not None]
+    file.write_text("\n".join(["cue = 'shaft.toml'", "[[effects]]", "type = 'LeatherTip'", *rows]))
+    return file
+
+
+def tip_of(file: Path) -> cf.LeatherTip:
+    scene = cf.load(file)
+    assert isinstance(scene, cf.Scene)
+    return scene.leather
+
+
+@pytest.mark.parametrize("name", LEATHERS)
+def test_a_leather_by_its_name(file: Path, name: str) -> None:
+    known = LEATHERS[name]
+    assert tip_of(put(file, leather=f"'{name}'")) == cf.LeatherTip(6e-3, 9.5e-3, known.E, known.nu, known.rho)
+
+
+@pytest.mark.parametrize(
+    ("text", "radius"),
+    [
+        *(("'dime'", 17.91e-3 / 2), ("'nickel'", 21.21e-3 / 2), ("'Nickel'", 21.21e-3 / 2), ("'9 mm'", 9e-3)),
+        *(("'flat'", inf), ("inf", inf), ("'inf'", inf), ("'inf m'", inf)),
+    ],
+)
+def test_a_dome_by_a_coin_a_length_or_flat(file: Path, text: str, radius: float) -> None:
+    assert tip_of(put(file, dome_radius=text)).dome_radius == pytest.approx(radius, rel=1e-12)
+    cf.save(cf.load(file), file)
+    assert tip_of(file).dome_radius == pytest.approx(radius, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("entries", "message"),
+    [
+        ({"leather": None}, "effects[0].leather: must be one of soft, medium, hard, or E be given in its place; got"),
+        (
+            {"leather": "'sofd'"},
+            "leather: must be one of soft, medium, hard; got 'sofd'; did you mean 'soft'?",
+        ),
+        ({"leather": "3"}, "effects[0].leather: must be one of soft, medium, hard; got 3"),
+        ({"E": "'1 MPa'"}, "effects[0].E: must be left out beside leather, which gives it"),
+        ({"nu": "0.3"}, "effects[0].nu: must be left out beside leather, which gives it"),
+        ({"leather": None, "lether": "'soft'"}, "got lether = 'soft'; did you mean 'leather'?"),
+        ({"dome_radius": "'penny'"}, 'such as "12 mm", or "dime", "nickel", "flat"; got \'penny\''),
+        ({"dome_radius": "9.5"}, 'such as "12 mm", or "dime", "nickel", "flat"; got 9.5'),
+        ({"dome_radius": "-inf"}, '"flat"; got -inf'),
+        ({"height": "inf"}, "effects[0].height: must be in (0, inf) m, a length with its unit"),
+        ({"rolls": "'no'"}, "effects[0].rolls: must be true or false; got 'no'"),
+        ({"rolls": "0"}, "effects[0].rolls: must be true or false; got 0"),
+        ({"shear": "'1e9 N/m'"}, "effects[0].shear: must be in (0, 1e8] N/m; got '1e9 N/m'"),
+    ],
+)
+def test_refusals(file: Path, entries: dict[str, str | None], message: str) -> None:
+    refuses(lambda: cf.load(put(file, **entries)), message)
+
+
+def test_rolls_is_read_as_it_stands(file: Path) -> None:
+    assert tip_of(put(file, rolls="false")).rolls is False
+    assert tip_of(put(file, rolls="true")).rolls is True
+
+
+def test_the_schema_knows_the_words() -> None:
+    found = json_schema()["$defs"]["LeatherTip"]
+    assert found["properties"]["leather"] == {"enum": [*LEATHERS]}
+    assert found["required"] == ["type", "height", "dome_radius"]
+    assert all(f'"{word}"' in found["properties"]["dome_radius"]["description"] for word in DOMES)
+    json.dumps(found, allow_nan=False)

@@ -1,0 +1,68 @@
+"""What a cue alone is given, by the game: a tip for the drawn leather, and times as published (properties)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import cuefem as cf
+from cuefem.games import GAMES, usual_tip, without_leather
+from cuefem.materials import LEATHERS, material
+from tests.helpers.refusals import refuses
+
+ROOT = Path(__file__).parents[1]
+WOOD = cf.Segment(0.7, 0.0118, 0.021, material("hard maple"))
+
+
+def leather(length: float) -> cf.Segment:
+    return cf.Segment(length, 0.0118, 0.0118, material("leather"))
+
+
+@pytest.mark.parametrize("name", LEATHERS)
+def test_a_leather_touches_the_ball_as_long_as_it_says(name: str) -> None:
+    scene = cf.load(ROOT / "studies/leather_tip.toml")
+    assert isinstance(scene, cf.Scene)
+    known = LEATHERS[name]
+    tip = replace(scene.leather, E=known.E, nu=known.nu, rho=known.rho)
+    assert replace(scene, effects=(tip,)).contact_time == pytest.approx(known.contact_time, rel=3e-3)
+    assert len(known.source) > 40
+
+
+@pytest.mark.parametrize("game", GAMES)
+def test_a_cue_without_leather_gets_the_game_s_tip_on_what_is_drawn(game: str) -> None:
+    cue = cf.Cue((WOOD,), 0.4)
+    scene, known = cf.usual_scene(cue, game), GAMES[game]
+    assert scene.cue == cue
+    assert scene.effects == (known.tip,)
+    assert (scene.ball, scene.stroke) == (known.ball, cf.Stroke(known.speed, known.offset))
+    assert scene.tip == cf.Tip(known.restitution, known.friction)
+    assert known.tip.E == LEATHERS["medium"].E
+    assert 2e-4 < scene.contact_time < 3e-3
+    assert len(known.source) > 40
+
+
+def test_the_drawn_leather_is_the_tip_s_height() -> None:
+    drawn = cf.Cue((leather(3e-3), leather(2e-3), WOOD), 0.4)
+    scene = cf.usual_scene(drawn)
+    assert scene.cue == cf.Cue((WOOD,), 0.4)
+    assert scene.leather == replace(GAMES["pool"].tip, height=5e-3)
+    assert usual_tip(drawn, "snooker").height == 5e-3
+    assert cf.usual_scene(drawn, tip=replace(scene.leather, height=7e-3)).leather.height == 7e-3
+
+
+def test_a_cue_as_soft_as_leather_has_no_leather() -> None:
+    cue = cf.Cue((leather(0.7),))
+    assert without_leather(cue) is cue
+
+
+def test_refusals() -> None:
+    refuses(
+        lambda: cf.usual_scene(cf.Cue((WOOD,)), "croquet"), "game must be one of pool, carom, snooker; got 'croquet'"
+    )
+    refuses(lambda: usual_tip(cf.Cue((WOOD,)), "golf"), "game must be one of pool, carom, snooker; got 'golf'")
+    refuses(
+        lambda: cf.usual_scene(cf.LumpedCue(0.5, 0.01)), "TypeError: usual_scene cue must be a Cue; got a LumpedCue"
+    )
+    refuses(lambda: cf.usual_scene(cf.Cue((leather(1e-3), WOOD))), "LeatherTip.height must be in")
