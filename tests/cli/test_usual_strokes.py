@@ -115,6 +115,7 @@ def test_modes_assume_the_tip_alone(folder: Path) -> None:
         ["--dome"],
         ["--leather"],
     ]
+    assert set(as_json("modes", "shaft.toml")["scene"]) == {"cue", "effects"}
 
 
 def test_a_contact_time_takes_the_spring_and_the_cue_as_drawn(folder: Path) -> None:

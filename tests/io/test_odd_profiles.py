@@ -206,7 +206,7 @@ def test_the_notes_stand_where_results_are_read(tmp_path: Path) -> None:
     path = written(tmp_path, READ["it begins after 0"].content)
     status, out, _ = call("modes", path, "--body-mass", "15 oz", "--material", "Hard Maple")
     assert status == 0
-    assert "assumed: the shaft begins at its first point, x = 10 mm: nothing is drawn before it\n" in out
+    assert "the shaft begins at its first point, x = 10 mm: nothing is drawn before it" in " ".join(out.split())
 
 
 @pytest.mark.parametrize("name", ["spreadsheet.xlsx", "shaft.ods", "shaft.txt", "shaft.tsv"])
