@@ -95,7 +95,7 @@ class Weight(Measurement):
     key: ClassVar[str] = "weight"
     unit: ClassVar[str] = "kg"
     words: ClassVar[str] = "weight"
-    costs: ClassVar[str] = "the density of the wood stays open, and with it a tenth of the squirt"
+    costs: ClassVar[str] = "the density of the wood stays uncertain by a tenth, which is 4 % of the squirt"
 
     of: str = "shaft"
     value: Annotated[float, MASS]

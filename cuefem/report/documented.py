@@ -170,8 +170,9 @@ def _figures(rows: Sequence[Row], record: Record) -> list[tuple[str, str, str]]:
     if not rows:
         return [("measurements", "0", "nothing was measured")]
     near = sum(abs(row.pull) <= 2 for row in rows)
+    kinds = len({row.measurement.key for row in rows})
     return [
-        ("measurements", f"{len(rows)}", f"of {len({row.measurement.key for row in rows})} kinds"),
+        ("measurements", f"{len(rows)}", f"of {kinds} kind{'s' if kinds > 1 else ''}"),
         ("within two errors", f"{near}", "of both measurement and drawing"),
         ("root mean square", f"{record['rms_pull']:.2f}", "of the residuals, in errors; 1 is what errors alone make"),
         ("kinds missing", f"{len(record['lacking'])}", "in part or whole, listed below"),
