@@ -239,4 +239,6 @@ def static_tip_stiffness(scene: Scene, at: Resolution) -> float:
     force = free.T @ np.eye(system.mesh.unknowns, 1)[:, 0]
     K = free.T @ system.K @ free
     K = K if isinstance(K, np.ndarray) else K.toarray()
-    return float(1 / (force @ np.linalg.solve(K, force)))
+    bent = np.linalg.solve(K, force)
+    # the work of the force less the strain energy, twice: the rounding of K enters it squared
+    return float(1 / (2 * force @ bent - np.sum(system.strains((free @ bent)[:, None]) ** 2)))

@@ -4,7 +4,9 @@
 scikit-fem always, and those of the following that are installed:
 
     pip install ngsolve openseespy sfepy ross-rotordynamics "plotly<6"
-    apt-get install calculix-ccx
+    apt-get install calculix-ccx libblas3
+
+(openseespy is installed without libblas3 and then does not start.)
 
 The others are skipped, and the output says so. A peer is one file; contest.py says how they are timed, report.py what
 is printed.
