@@ -65,6 +65,8 @@ def offset_charts(
     lines += [(one.name, style, one.coupled) for one, style in zip(pinned, cycle(STYLES), strict=False) if one.coupled]
     if found.lumped is not None and (not pinned or coupled is None):
         lines.append(("lumped, stick end mass", "c3", found.lumped))
+    if not lines:  # nothing is computed yet
+        return ""
     charts = report_charts(
         [(name, style, _smooth(one.squirt), _smooth(one.pivot_length)) for name, style, one in lines],
         FINE.tolist(),

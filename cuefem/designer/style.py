@@ -22,7 +22,7 @@ h1, h2 { font-weight: 700; letter-spacing: 0; font-family: inherit; } h2 { line-
 .knobs h3 { margin: 0.8rem 0 0.3rem; font-size: 0.95rem; font-weight: 650; line-height: 1.3; }
 .sheet table { width: 100%; } .sheet td { padding: 0.15rem 0.25rem 0.15rem 0; min-width: 5rem; }
 .sheet .row, .sheet .cells { display: flex; flex-wrap: wrap; gap: 0.4rem; align-items: end; margin: 0 0 0.5rem; }
-.sheet .cell { width: 9.4rem; } .sheet .cell.broad { width: 11rem; }
+.sheet .cell { width: min(9.4rem, calc(50% - 0.4rem)); } .sheet .cell.broad { width: 11rem; }
 .sheet .q-field__label { font-size: 0.95rem; }
 .sheet .card { border: 1px solid var(--rule); border-radius: 8px; padding: 0.5rem 0.7rem; margin: 0 0 0.5rem; }
 .sheet h3 { margin: 0 0 0.3rem; font-size: 0.9rem; font-weight: 650; line-height: 1.3; }

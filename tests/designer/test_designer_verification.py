@@ -16,7 +16,7 @@ from cuefem.designer.answers import OFFSETS, answers, completed, coupled_points,
 from cuefem.designer.design import Design
 from cuefem.designer.model import knobs_of, turned
 from cuefem.designer.numbers import Column, Row, compared, csv_text, difference, key_markup, rows, table_markup
-from cuefem.designer.pictures import limits_of
+from cuefem.designer.pictures import limits_of, offset_charts
 from cuefem.designer.start import first_scene
 from cuefem.designer.units import INCHES
 from cuefem.report.end_mass import end_mass_record
@@ -188,6 +188,13 @@ def test_designs_stand_side_by_side_like_with_like() -> None:
     squirt = next(row for row in rows_read if row[0].startswith("squirt"))
     assert float(squirt[7]) == pytest.approx(np.degrees(columns[3].found.strike["squirt"]), abs=5e-4)  # type: ignore[union-attr]
     assert float(squirt[8]) < 0
+
+
+def test_before_any_curve_is_known_nothing_is_drawn() -> None:
+    found = answers(loaded("kim"))
+    assert not found.complete
+    assert offset_charts(found, None, [], current=False) == ""
+    assert offset_charts(completed(found), None, [], current=False).count("<svg") > 1
 
 
 def test_limits_are_shaded_and_said() -> None:

@@ -88,6 +88,7 @@ SETTLED = """() => {
     if (knob.querySelector(".wrong")) return true;
     const said = knob.querySelector("[role=slider]").ariaValueNow;
     const taken = knob.querySelector("input").value.replace(",", ".");
+    if (taken.includes("/")) return true;  // typed as a fraction of an inch
     return Math.abs(said - taken) < 0.6 * knob.querySelector("[data-step]").dataset.step;
   });
   return knobs.length > 0 && heard && document.querySelector(".answers").ariaBusy === "false";
