@@ -355,7 +355,7 @@ def test_it_is_worked_by_keys_alone(browser: Any, address: str) -> None:
             )
         sliders = [label for role, label in reached if role == "slider"]
         assert sliders[0] == "Tip diameter, mm"
-        assert len(sliders) == page.locator("[data-knob] [role=slider]").count() == 18
+        assert len(set(sliders)) == page.locator("[data-knob] [role=slider]").count() == 18
         assert (
             page.evaluate("getComputedStyle(document.activeElement.querySelector('.q-slider__thumb')).outlineStyle")
             != "none"
