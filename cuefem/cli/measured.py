@@ -10,7 +10,7 @@ import click
 from cuefem.cli.common import blaming, followed, print_all, print_json, remark
 
 
-@click.command(short_help="A documented cue: everything measured beside everything computed.")
+@click.command(short_help="A documented cue: measured and computed, side by side.")
 @click.argument("folder", metavar="CUE_FOLDER", type=click.Path(path_type=Path))
 @click.option("--template", is_flag=True, help="Make CUE_FOLDER with files to fill in, instead.")
 @click.option(

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 
 # Words for the radius of a dome, m: half of the coin's diameter (United States Mint: 17.91 and 21.21 mm).
 DOMES = {"dime": 8.955e-3, "nickel": 10.605e-3, "flat": math.inf}
+STIFFEST = 1000  # times E height: the greatest stiffness along the surface, N/m
 RADII = np.linspace(0.0, 0.5, 101)  # over D: radii of the patches at which curves are given
 
 
@@ -55,7 +56,7 @@ class LeatherTip(CueEffect):
         Density of the leather, kg/m^3.
     shear : float, optional
         A constant stiffness along the surface, N/m, in the place of one that follows the load: for comparison. It is
-        1e8 at most, where squirt is within 0.2 % of that of a surface which does not give at all.
+        1000 E height at most, where squirt is within 0.1 % of that of a surface which does not give at all.
     rolls : bool, default True
         Whether the normal turns as the contact rolls over ball and dome; False for comparison.
     partial_slip : bool, default False
@@ -118,7 +119,7 @@ class LeatherTip(CueEffect):
     E: Annotated[float, Quantity("Pa", "(0, inf)")]
     nu: Annotated[float, Quantity("", "[0.2, 0.45]")] = 0.4
     rho: Annotated[float, Quantity("kg/m^3", "(0, inf)")] = 1000.0
-    shear: Annotated[float | None, Quantity("N/m", "(0, 1e8]")] = None
+    shear: Annotated[float | None, Quantity("N/m", "(0, inf)")] = None
     rolls: Annotated[bool, Flag()] = True
     partial_slip: Annotated[bool, Flag()] = False
 
@@ -126,6 +127,11 @@ class LeatherTip(CueEffect):
         super().__post_init__()
         check_kind("LeatherTip.rolls", self.rolls, bool)
         check_kind("LeatherTip.partial_slip", self.partial_slip, bool)
+        if self.shear is not None and self.shear > STIFFEST * self.E * self.height:
+            raise ValueError(
+                f"LeatherTip.shear must be in (0, {STIFFEST * self.E * self.height:.6g}] N/m, "
+                f"{STIFFEST} times E height; got {self.shear}"
+            )
         if self.partial_slip and self.shear is not None:
             raise ValueError(f"LeatherTip.shear must be left out beside partial_slip = True; got {self.shear}")
 

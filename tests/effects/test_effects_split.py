@@ -16,7 +16,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.design import evaluate
-from cuefem.designer.answers import answers, coupled_points
+from cuefem.designer.answers import answers, completed, coupled_points
 from cuefem.effects import Effect
 from cuefem.endmass.drives import DEFINITIONS
 from cuefem.endmass.lumped import lump
@@ -60,7 +60,7 @@ def moved(struck: cf.Scene) -> Any:
 
 
 def designed(struck: cf.Scene) -> Any:
-    found = answers(struck)
+    found = completed(answers(struck))
     curve = [found.lumped.squirt, found.lumped.pivot_length, *islice(coupled_points(found), 2)]
     return [found.end_masses, found.strike, found.tip_stiffness, curve]
 

@@ -11,8 +11,9 @@ import pytest
 import cuefem as cf
 from cuefem.design.evaluation import evaluate
 from cuefem.design.responses import Response
-from cuefem.designer.answers import answers
-from cuefem.designer.numbers import rows, table_markup
+from cuefem.designer.answers import answers, completed
+from cuefem.designer.design import Design
+from cuefem.designer.numbers import Column, rows, table_markup
 from cuefem.endmass.drives import DEFINITIONS, Definition, end_mass_spreads, flexible
 from cuefem.report.handover import pooltool_record
 from cuefem.report.page import page
@@ -84,9 +85,9 @@ def test_both_pages_show_it(made_up: Definition) -> None:
     shown = page("a cue", scene)
     assert "rigid body at b/R 0.3" in shown
     assert MEANING in shown
-    found = answers(scene)
+    found = completed(answers(scene))
     assert "end_mass_rigid" in {row.name for row in rows(found)}
-    assert "end mass m_e, rigid body at b/R 0.3" in table_markup(found, None)
+    assert "end mass m_e, rigid body at b/R 0.3" in table_markup([Column(Design.of("a cue", scene), found)], 0)
 
 
 def test_a_sweep_can_ask_for_it(made_up: Definition) -> None:

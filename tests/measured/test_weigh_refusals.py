@@ -61,7 +61,7 @@ COMMANDS = {
     ),
     "off": (
         (*BALL, *TIME, "--restitution", "0.8", "--scene", MESHES / "kim.toml", "--position", "2 m"),
-        "end_mass position must be in [0, 0.7] m, on the shaft; got 2.0",
+        "end_mass position must be in [0.006, 0.706] m, on the shaft; got 2.0",
     ),
 }
 
