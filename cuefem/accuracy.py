@@ -24,7 +24,7 @@ from cuefem.contact.strike import strike, strike_modes
 from cuefem.cue import Array, Cue
 from cuefem.effects import SecondHit
 from cuefem.endmass.drives import end_mass, formula_of
-from cuefem.quantity import Quantity, scalar
+from cuefem.quantity import Quantity, check_kind, scalar
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import MOST, tip_modes_from, turning
 
@@ -112,6 +112,7 @@ def resolve(scene: Scene, rtol: float) -> Outcome:
     >>> cf.resolve(scene, rtol=1e-2).error < 1e-2
     True
     """
+    check_kind("resolve scene", scene, Scene)
     rtol = RTOL.check("resolve rtol", rtol)
     if scene.lumped is not None:
         return replace(strike(scene), error=ROUNDING)
@@ -178,6 +179,7 @@ def resolve_end_mass(scene: Scene, drive: str = "stick", rtol: float = 1e-4) -> 
     >>> round(1e3 * felt, 1), error < 1e-2  # g
     (4.8, True)
     """
+    check_kind("resolve_end_mass scene", scene, Scene)
     rtol, formula = RTOL.check("resolve_end_mass rtol", rtol), formula_of(drive)
     if scene.lumped is not None:
         return float(end_mass(scene, drive)), ROUNDING

@@ -42,7 +42,7 @@ STEP, RINGS = 1e-6, 400  # s, and how many
 OFFSETS = (0.187, 0.32, 0.375, 0.453, 0.5)
 SPEEDS = (0.8, 2.0, 7.0)  # m/s
 MODULI = (40e6, 140e6, 400e6)  # Pa
-# Squirt, deg: Players maple shaft; robot of 2007 and 2008, and the series of September 2007 (see measured_shafts.py).
+# Squirt, deg: Players maple shaft; a robot in 2008 (b/R 0.375), by hand in September 2007 (see measured_shafts.py).
 MEASURED = {0.187: "0.55 to 1.13", 0.32: "1.43", 0.375: "2.30, 2.43", 0.453: "2.5", 0.5: ""}
 
 
@@ -259,11 +259,11 @@ rings that slip are cuefem's too: `LeatherTip(..., partial_slip=True)`.
 
 Which rule is nearer to leather is open. The rings are what elasticity says; but leather gives back only half of the
 work that presses it, and no measurement of how it relaxes along its surface was found. Against measured squirt: the
-scaled rule is right at b/R 0.375 without waves along the cue, and 7 % too high with them; the rings that slip are a
-tenth too low without the waves, and right with them. Waves are there whether they are computed or not, so that the
+scaled rule is right at b/R 0.375 without waves along the cue, and 9 % too high with them; the rings that slip are 8 %
+too low without the waves, and right with them. Waves are there whether they are computed or not, so that the
 agreement of the scaled rule without them may be two errors of a tenth that cancel. At b/R 0.453 every rule gives too
-much (2.6 to 3.1 degrees for 2.5), and at b/R 0.32 far more than the 1.43 degrees of 2007, a series with a zero error of
-its own. What would decide it: squirt of one shaft at five offsets, left and right, to 3 %.
+much (2.6 to 3.1 degrees for 2.5), and at b/R 0.32 far more than the 1.43 degrees of 2007, a series whose zero may be
+off. What would decide it: squirt of one shaft at five offsets, left and right, to 3 %.
 
 That squirt hardly depends on the leather's stiffness holds by every rule, to 2 to 4 %. That it hardly depends on speed
 holds by the scaled rule to 4 %, by the rings to 7 %, and ends at 7 m/s if the rings slip (14 %).

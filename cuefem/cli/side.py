@@ -87,8 +87,9 @@ def _scene(file: Path, given: dict[str, Any]) -> tuple[SideStrike, list[str]]:
         if not isinstance(cue, Cue):
             raise InputError(file, "cue", "must be a cue of segments: a lumped cue has no side")
         notes += _assumed(said)
-        effects = () if isinstance(found, Cue) else found.cue_effects
-        found = SideStrike(cue, Striker(MASS, RESTITUTION, contact_time=CONTACT_TIME), effects=effects)
+        with blaming(file):  # of a whole tip its mass stays
+            effects = () if isinstance(found, Cue) else found.bare.cue_effects
+            found = SideStrike(cue, Striker(MASS, RESTITUTION, contact_time=CONTACT_TIME), effects=effects)
     numbers = {
         "mass": Quantity("kg", "(0, inf)"),
         "restitution": Quantity("", "[0, 1]"),

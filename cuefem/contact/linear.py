@@ -157,6 +157,8 @@ class Exact:
         contact, found = self.contact, kernel.library()
         if found is None or self.ringing is not None or contact.laws.restitution == 0:
             return False
+        if (type(self).flow, type(self).follow) != (Exact.flow, Exact.follow):  # a kind that moves in another way
+            return False
         cells, slack = MOST_CELLS * self.haste, ROUNDING * contact.scale
         limits = compiled.Limits(CELLS, len(ORDERS), most, cells, self.longest, REACH, slack)
         compliance, unit = self.patch.spring

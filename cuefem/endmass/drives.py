@@ -23,7 +23,7 @@ from cuefem.cue import Array, LumpedCue
 from cuefem.endmass import damped
 from cuefem.endmass import undamped as transverse
 from cuefem.endmass.undamped import StickLimit
-from cuefem.quantity import scalar
+from cuefem.quantity import check_kind, scalar
 from cuefem.scene import Outcome, Resolution, Scene, Stroke
 from cuefem.tip_modes import Solved
 
@@ -81,6 +81,7 @@ def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None) -
     >>> round(1e3 * cf.end_mass(scene), 1), round(1e3 * cf.end_mass(scene, "offset"), 1)  # g
     (4.8, 4.4)
     """
+    check_kind("end_mass scene", scene, Scene)
     definition = definition_of(drive)
     if scene.lumped is not None:
         return scene.lumped.end_mass

@@ -48,6 +48,7 @@ def lump(scene: Scene, at: Resolution | None = None) -> LumpedCue:
     >>> round(1e3 * lumped.end_mass, 1), lumped.coupling  # g, 1/kg
     (4.4, 0.0)
     """
+    check_kind("lump scene", scene, Scene)
     return scene.lumped or lump_modes(scene, Solved(scene, at).tip_stuck)
 
 

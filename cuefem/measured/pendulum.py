@@ -218,7 +218,13 @@ class PendulumTest:
         if self.wall is None:
             budget["restitution"] = budget.pop("held shaft, after")
             del budget["held shaft, before"]
-        return Weighed(self, self.ball_mass * (1 + a) / (e - a), a, e, budget)
+        found = Weighed(self, self.ball_mass * (1 + a) / (e - a), a, e, budget)
+        if found.relative_error > 1:
+            raise ValueError(
+                "the readings must tell the end mass to within its own size: the ball came back from the free shaft "
+                f"nearly as from the held one; got an error of {100 * found.relative_error:.3g} %"
+            )
+        return found
 
     def as_measured(self, weighed: Weighed, position: float) -> EndMass:
         """The result as a measurement of a documented cue; position: of the blow, m from the end of the tip."""

@@ -59,6 +59,10 @@ COMMANDS = {
         ),
         "--press: must go with readings that tell a speed; got frames",
     ),
+    "too near": (
+        (*BALL[:4], "--after", "161.9 mm", "--held-after", "162 mm", *BALL[6:], *TIME),
+        "the readings must tell the end mass to within its own size",
+    ),
     "off": (
         (*BALL, *TIME, "--restitution", "0.8", "--scene", MESHES / "kim.toml", "--position", "2 m"),
         "end_mass position must be in [0.006, 0.706] m, on the shaft; got 2.0",

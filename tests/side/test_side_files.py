@@ -162,3 +162,17 @@ def test_other_commands_refuse_its_file_in_words(tmp_path: Path) -> None:
     command_refuses("SideStrike.position must be in", "side", tmp_path / "side.toml", "--position", "2 m")
     (tmp_path / "lumped.toml").write_text('[cue]\nmass = "540 g"\nend_mass = "4 g"\n', encoding="utf-8")
     command_refuses("a lumped cue has no side", "side", tmp_path / "lumped.toml")
+
+
+def test_a_scene_with_a_whole_tip_keeps_the_mass_of_its_leather(tmp_path: Path) -> None:
+    scene = cf.usual_scene(pool())
+    cf.save(scene, tmp_path / "scene.toml")
+    status, out, err = call("side", str(tmp_path / "scene.toml"), "--json")
+    assert (status, err) == (0, "")
+    assert json.loads(out)["scene"]["effects"][0]["mass"] == pytest.approx(scene.leather.mass_on(scene.shaft))
+
+
+@pytest.mark.parametrize("ask", [cf.end_mass, cf.lump, lambda cue: cf.resolve(cue, 1e-2), cf.resolve_end_mass])
+def test_a_cue_alone_is_refused_where_a_scene_is_meant(ask: Callable[[cf.Cue], object]) -> None:
+    with pytest.raises(TypeError, match="scene must be a Scene; got a Cue"):
+        ask(kim())
