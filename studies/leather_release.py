@@ -35,7 +35,7 @@ from cuefem import AxialWaves, LeatherTip, Scene, Stroke, Tip, strike
 from cuefem.effects import Effect
 from cuefem.effects.leather_law import LeatherLaw
 from cuefem.tip_modes import tip_modes_of
-from studies.leather_tip import LEATHER, STUDIES, maple, pool, table, without_leather
+from studies.leather_tip import LEATHER, STUDIES, maple, pool, table
 
 RULES = ("scaled", "rings", "rings that slip")
 STEP, RINGS = 1e-6, 400  # s, and how many
@@ -55,7 +55,7 @@ def struck_scene(
 ) -> Scene:
     """The maple shaft struck with a tip of leather."""
     tip = tip or Tip(pool.RESTITUTION, pool.FRICTION)
-    return Scene(without_leather(maple()), pool.BALL, tip, Stroke(speed, offset), (leather, *more))
+    return Scene(pool.without_leather(maple()), pool.BALL, tip, Stroke(speed, offset), (leather, *more))
 
 
 @dataclass

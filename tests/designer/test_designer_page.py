@@ -128,7 +128,7 @@ def test_a_wrong_file_is_refused_and_the_page_stays(browser: Any, address: str, 
         for name, (text, words) in WRONG.items():
             (tmp_path / name).write_text(text, encoding="utf-8")
             page.locator("input[type=file]").set_input_files(tmp_path / name)
-            alert = page.locator("[role=alert] .said").filter(has_text=words)
+            alert = page.locator(".said[role=alert]").filter(has_text=words)
             alert.wait_for()
             assert alert.inner_text().startswith("not opened: ")
             assert "Traceback" not in alert.inner_text()
@@ -320,10 +320,10 @@ def test_a_name_that_no_file_has_is_refused(browser: Any, address: str) -> None:
     settled(page)
     with page.expect_request(lambda asked: asked.method == "POST") as sent:  # tells where files go
         page.locator("input[type=file]").set_input_files({"name": "a.toml", "mimeType": "", "buffer": b" "})
-    page.locator("[role=alert] .said").filter(has_text="not opened: a.toml").wait_for()
+    page.locator(".said[role=alert]").filter(has_text="not opened: a.toml").wait_for()
     for name, words in NAMES.items():
         page.evaluate(SENT, [sent.value.url, name, " "])
-        page.locator("[role=alert] .said").filter(has_text=f"not opened: {words}").wait_for()
+        page.locator(".said[role=alert]").filter(has_text=f"not opened: {words}").wait_for()
     context.close()
 
 

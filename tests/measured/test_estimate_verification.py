@@ -122,7 +122,7 @@ def found() -> Estimate:
 
 def test_the_sampler_agrees_with_the_estimate(found: Estimate) -> None:
     """Two ways to the same posterior, one by its width at the top and one by draws."""
-    sample = sampled(found, 10_000, seed=2)
+    sample = sampled(found, 20_000, seed=2)
     sd = np.sqrt(np.diag(found.covariance))
     assert sample.missed < 0.1
     assert sample.steps > 20 * sample.correlation

@@ -18,8 +18,9 @@ import cuefem as cf
 from cuefem.design import Levels, Response, Study, Vary
 from cuefem.design.worth import variants
 from cuefem.designer.answers import answers
+from cuefem.designer.design import Design
 from cuefem.designer.model import knobs_of, turned
-from cuefem.designer.words import Opened, head_markup
+from cuefem.designer.words import head_markup
 from cuefem.effects import CueEffect, Usual, effect_kinds
 from cuefem.io import schema
 from cuefem.quantity import Quantity
@@ -87,7 +88,7 @@ def test_commands_and_pages_name_it(scene: cf.Scene, tmp_path: Path) -> None:
 def test_the_designer_keeps_it(scene: cf.Scene) -> None:
     knobs = replace(knobs_of(scene), offset=0.2)
     assert turned(scene, knobs).effects == scene.effects
-    assert WORDS in head_markup(Opened("scene.toml", scene, []), scene)
+    assert WORDS in head_markup(Design.of("scene.toml", scene))
     found = answers(scene)
     assert found.strike["squirt"] == pytest.approx(cf.strike(scene).squirt, rel=1e-12)
     assert found.strike["squirt"] > cf.strike(BARE).squirt  # the ring lies within reach of the tip
