@@ -79,9 +79,10 @@ def test_ones_own_shaft_takes_three_commands(tmp_path: Path) -> None:
 def test_a_new_user_gets_a_report_from_nothing(tmp_path: Path) -> None:
     fresh = tmp_path / "cuefem"
     fresh.mkdir()
-    for name in ("README.md", "pyproject.toml"):
+    for name in ("README.md", "pyproject.toml", "hatch_build.py", "LICENSE"):
         shutil.copy(ROOT / name, fresh)
-    shutil.copytree(ROOT / "cuefem", fresh / "cuefem", ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("cuefem", "meshes", "studies/scenes"):
+        shutil.copytree(ROOT / name, fresh / name, ignore=shutil.ignore_patterns("__pycache__"))
     for line in OWN_SHAFT.splitlines():
         clean = {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "VIRTUAL_ENV"))}
         done = subprocess.run(["bash", "-c", line], cwd=fresh, capture_output=True, text=True, env=clean)

@@ -236,10 +236,11 @@ def test_a_drawing_says_no_unit_and_no_butt(tmp_path: Path, sound: np.ndarray) -
 def test_a_stroke_that_miscues_is_said_to(tmp_path: Path, sound: np.ndarray) -> None:
     recording = tmp_path / "tap.wav"
     wavfile.write(recording, RATE, (sound * 32767).astype(np.int16))
-    status, out, _ = call("tap", recording, "--scene", KIM, "--offset", "0.9")
+    spring = ("--contact-time", "2 ms", "--offset", "0.9")
+    status, out, _ = call("tap", recording, "--scene", KIM, *spring)
     assert status == 0
     assert "this stroke miscues" in out
-    assert json.loads(call("tap", recording, "--scene", KIM, "--offset", "0.9", "--json")[1])["regime"] == "miscue"
+    assert json.loads(call("tap", recording, "--scene", KIM, *spring, "--json")[1])["regime"] == "miscue"
     assert "miscue" not in call("tap", recording, "--scene", KIM)[1]
 
 
