@@ -151,9 +151,8 @@ def show(
     blow, settled: see `scene_of`. change: what the command's own options make of the scene.
     """
     from cuefem.report.quantities import UNITS
-    from cuefem.report.record import plain, scene_record
+    from cuefem.report.record import scene_record
     from cuefem.report.unusual import unusual
-    from cuefem.report.words import cue_line, effect_words
 
     scene, notes = scene_of(file, given, blow=blow, settled=settled)
     with blaming(file, given):
@@ -164,12 +163,20 @@ def show(
         struck = about if blow else {name: value for name, value in about.items() if name in ("cue", "effects")}
         print_json({**said, "scene": struck, **found, "units": UNITS})
         return
+    print_all([*head_lines(file, about, scene.effects, notes), "", *tables(found, about)])
+
+
+def head_lines(file: Path, about: dict[str, Any], effects: Sequence[Any], notes: Sequence[str]) -> list[str]:
+    """What stands above a command's tables: the file and its cue, the effects, and what was assumed."""
+    from cuefem.report.record import plain
+    from cuefem.report.words import cue_line, effect_words
+
     lines = [f"{file.name}: {cue_line(plain(about['cue']))}"]
-    if scene.effects:
-        lines.append(f"effects: {', '.join(map(effect_words, scene.effects))}")
+    if effects:
+        lines.append(f"effects: {', '.join(map(effect_words, effects))}")
     if notes:
         lines.append(f"assumed: {'; '.join(notes)}")
-    print_all([*lines, "", *tables(found, about)])
+    return lines
 
 
 def print_json(record: Any) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from cuefem.cli.common import blaming, cue_options, followed, print_all, print_json
+from cuefem.cli.common import blaming, cue_options, followed, head_lines, print_all, print_json
 from cuefem.cli.strokes import measured, with_body
 
 if TYPE_CHECKING:
@@ -38,7 +38,6 @@ def side(file: Path, places: int, output: Path | None, frames: int, as_json: boo
     from cuefem.io import load_accuracy
     from cuefem.report.quantities import UNITS
     from cuefem.report.side import side_record, side_scene_record, side_tables
-    from cuefem.report.words import cue_line, effect_words
     from cuefem.side.accuracy import resolve_side_strike
     from cuefem.side.strike import side_strike
 
@@ -59,13 +58,8 @@ def side(file: Path, places: int, output: Path | None, frames: int, as_json: boo
     if as_json:
         print_json({"file": str(file), "assumed": notes, "scene": about, **found, "units": UNITS})
         return
-    lines = [f"{file.name}: {cue_line(about['cue'])}"]
-    if scene.effects:
-        lines.append(f"effects: {', '.join(map(effect_words, scene.effects))}")
-    if notes:
-        lines.append(f"assumed: {'; '.join(notes)}")
     written = [] if output is None else [f"wrote {output}: strike.pvd and {frames} frames"]
-    print_all([*lines, "", *side_tables(found, about), *written])
+    print_all([*head_lines(file, about, scene.effects, notes), "", *side_tables(found, about), *written])
 
 
 def _scene(file: Path, given: dict[str, Any]) -> tuple[SideStrike, list[str]]:
