@@ -13,9 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cuefem.beam.modes import Modes, solve
+from cuefem.beam.spectrum import Ended, ended
 from cuefem.beam.system import assemble
-from cuefem.beam.tail import Deflect, flexibility, tail
 from cuefem.beam.tip import TipModes
 from cuefem.beam.waves import mesh_for, modes_below, wave_phase
 from cuefem.contact.ringing_tip import RINGING
@@ -328,36 +327,33 @@ def _caught_up(outcome: Outcome, scene: Scene, tip: TipModes) -> float:
 
 
 class _Tips(NamedTuple):
-    """Tip modes of one rung; rungs of one mesh share its modes and its flexibility."""
+    """Tip modes of one rung, before what the effects add to them."""
 
     at: Resolution
     scene: Scene
-    whole: Modes
-    deflect: Deflect
+    found: Ended
     end_rings: float
 
     @property
     def end_unheard(self) -> bool:
         """Whether the modes kept stop short of a rung past the turning resonance of the cue's first segment."""
-        return 2 * math.pi * float(self.whole.frequencies[self.at.modes - 1]) < RATIO * self.end_rings
+        return self.found.highest < RATIO * self.end_rings
 
     @property
     def tip(self) -> TipModes:
         """Those of the rung, with their tail."""
-        n = self.at.modes
-        kept = replace(self.whole, frequencies=self.whole.frequencies[:n], vectors=self.whole.vectors[:, :n])
-        return tip_modes_from(tail(kept, turning=turning(self.scene), deflect=self.deflect), self.scene)
+        return tip_modes_from(self.found, self.scene)
 
 
 def _tips(scene: Scene) -> Iterator[_Tips]:
-    """Rungs of the ladder: each group of them on one mesh, with one eigenproblem and one factorisation."""
+    """Rungs of the ladder: each group of them on one mesh, with one eigenproblem."""
     end_rings = _end_rings(scene.shaft)
     for group in rung_counts(scene.shaft, scene.contact_time):
         elements, order = mesh_for(scene.shaft, group[-1])
         system = assemble(scene.shaft, elements=elements, order=order, effects=scene.cue_effects, count=group[-1])
-        whole, deflect = solve(system, group[-1]), flexibility(system)
+        family = ended(system, group[-1], turning=turning(scene))
         for count in group:
-            yield _Tips(Resolution(elements, order, count), scene, whole, deflect, end_rings)
+            yield _Tips(Resolution(elements, order, count), scene, family(count), end_rings)
 
 
 def rung_counts(cue: Cue, time: float) -> list[list[int]]:

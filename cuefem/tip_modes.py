@@ -24,6 +24,7 @@ from cuefem.scene import Resolution, Scene
 
 if TYPE_CHECKING:
     from cuefem.beam.modes import Modes
+    from cuefem.beam.spectrum import Ended
 
 # Modes are kept up to this many periods in a contact, with a tail; a plain sum wants more, the carbon cue's is 1 % off
 # even with a hundred.
@@ -74,12 +75,12 @@ class Solved:
 
     scene: Scene
     at: Resolution | None = None
-    _kept: dict[tuple[Resolution, bool], Modes] = field(default_factory=dict, init=False, repr=False)
+    _kept: dict[tuple[Resolution, bool], Ended] = field(default_factory=dict, init=False, repr=False)
 
     @property
     def modes(self) -> Modes:
         """Bending modes that a strike takes; ValueError for a lumped cue, which has none."""
-        return self._modes(LEAST)
+        return self._modes(LEAST).modes
 
     @cached_property
     def tip(self) -> TipModes:
@@ -105,29 +106,27 @@ class Solved:
             return lumped_tip_modes(self.scene.lumped)
         return tip_modes_from(self._modes(least), self.scene)
 
-    def _modes(self, least: int) -> Modes:
+    def _modes(self, least: int) -> Ended:
         if self.at is not None:
             return self._solved(self.at, ended=False)
         return self._solved(spared(default_resolution(self.scene, least=least)), ended=True)
 
-    def _solved(self, at: Resolution, *, ended: bool) -> Modes:
+    def _solved(self, at: Resolution, *, ended: bool) -> Ended:
         """Bending modes at a resolution, plain or ended by a tail; each solved once."""
         if (at, ended) not in self._kept:
             from cuefem.beam.modes import solve
+            from cuefem.beam.spectrum import ended as ended_modes
             from cuefem.beam.system import assemble
-            from cuefem.beam.tail import tail
 
+            effects = self.scene.cue_effects
+            system = assemble(self.scene.shaft, elements=at.elements, order=at.order, effects=effects, count=at.modes)
+            # a support makes rigid modes flexible; the number of modes in all stays the same, so that its limits
+            # are continuous
+            count = at.modes + 2 - system.rigid.shape[1]
             if ended:
-                found = tail(self._solved(at, ended=False), turning=turning(self.scene))
+                self._kept[at, ended] = ended_modes(system, count, turning=turning(self.scene))(count)
             else:
-                effects = self.scene.cue_effects
-                system = assemble(
-                    self.scene.shaft, elements=at.elements, order=at.order, effects=effects, count=at.modes
-                )
-                # a support makes rigid modes flexible; the number of modes in all stays the same, so that its limits
-                # are continuous
-                found = solve(system, at.modes + 2 - system.rigid.shape[1])
-            self._kept[at, ended] = found
+                self._kept[at, ended] = solve(system, count)
         return self._kept[at, ended]
 
 
@@ -141,7 +140,7 @@ def turning(scene: Scene) -> bool:
     return any(scene.contact_terms.lever(math.pi / 6))
 
 
-def tip_modes_from(found: Modes, scene: Scene) -> TipModes:
+def tip_modes_from(found: Ended, scene: Scene) -> TipModes:
     """Tip modes of the scene's finite-element cue from its bending modes, with what its effects add to them."""
     cue, effects = scene.shaft, scene.cue_effects
     tip = tip_modes(found, scene.axial_mass)

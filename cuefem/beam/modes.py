@@ -49,6 +49,11 @@ class Modes:
         return table(("mode", "frequency, Hz"), rows, f"{self.rigid} rigid motions, then")
 
     @property
+    def modes(self) -> Modes:
+        """These modes themselves; see `cuefem.beam.spectrum.TipSpectrum.modes`."""
+        return self
+
+    @property
     def omega(self) -> Array:
         """Angular frequencies, rad/s, (n,)."""
         return 2 * np.pi * self.frequencies
@@ -57,6 +62,11 @@ class Modes:
     def highest(self) -> float:
         """Highest angular frequency kept, rad/s, without the tail's."""
         return float(self.omega[: len(self.omega) - (0 if self.radiation is None else len(self.radiation))][-1])
+
+    @property
+    def at_tip(self) -> tuple[Array, Array]:
+        """Deflection, 1/sqrt(kg), and rotation, 1/(m sqrt(kg)), of the tip in the rigid motions, then in the modes."""
+        return self.system.tip_displacement(np.concatenate([self.rigid_vectors, self.vectors], axis=1))
 
     def shape(self, x: ArrayLike) -> tuple[Array, Array]:
         """Deflection w and rotation theta of every mode at ``x`` m from the tip: two arrays (n, *x.shape).
@@ -167,7 +177,7 @@ def solve(system: System, count: int) -> Modes:
     flexible = vectors[:, rigid:]
     if free is not None:
         flexible = free @ flexible
-    rigid_vectors = _normalised(system)
+    rigid_vectors = normalised(system)
     omega, flexible = _polished(system, squares[rigid:], flexible, rigid_vectors)
     flexible *= np.where(flexible[0] < 0, -1.0, 1.0)
     return Modes(omega / (2 * np.pi), flexible, rigid, rigid_vectors, system)
@@ -244,7 +254,7 @@ def _lowest_sparse(K: Any, M: Any, *, count: int, shift: float) -> tuple[Array, 
     return squares[order], vectors[:, order]
 
 
-def _normalised(system: System) -> Array:
+def normalised(system: System) -> Array:
     """The exact rigid motions, made orthonormal in the mass."""
     rigid = system.rigid
     if rigid.shape[1] == 0:

@@ -14,6 +14,7 @@ from cuefem.quantity import scalar
 
 if TYPE_CHECKING:
     from cuefem.beam.modes import Modes
+    from cuefem.beam.spectrum import Ended
 
 
 @dataclass(frozen=True)
@@ -100,16 +101,15 @@ def lumped_tip_modes(cue: LumpedCue) -> TipModes:
     return TipModes(np.zeros(2), amplitude, np.linalg.solve(amplitude.T, [1.0, 0.0]), np.zeros(2))
 
 
-def tip_modes(found: Modes, axial_mass: float) -> TipModes:
+def tip_modes(found: Ended, axial_mass: float) -> TipModes:
     """Tip modes of a beam's bending modes beside a rigid axial motion of ``axial_mass`` kg (the first mode)."""
-    vectors = np.concatenate([found.rigid_vectors, found.vectors], axis=1)
-    across, turning = found.system.tip_displacement(vectors)
+    across, turning = found.at_tip
     amplitude = np.zeros((1 + len(across), 2))
     amplitude[0, 0], amplitude[1:, 1] = axial_mass**-0.5, across
     approach = np.zeros(len(amplitude))
     approach[0] = axial_mass**0.5
     omega = np.concatenate([np.zeros(1 + found.rigid), found.omega])
-    damping, radiation = _resistances(found, vectors, len(omega))
+    damping, radiation = _resistances(found, len(omega))
     return TipModes(omega, amplitude, approach, np.concatenate([[0.0], turning]), damping, radiation)
 
 
@@ -122,16 +122,17 @@ def side_modes(found: Modes, position: float) -> TipModes:
     vectors = np.concatenate([found.rigid_vectors, found.vectors], axis=1)
     deflection, rotation = found.system.mesh.unknowns_at(found.system.mesh.node(position))
     omega = np.concatenate([np.zeros(found.rigid), found.omega])
-    damping, radiation = _resistances(found, vectors, len(omega))
+    damping, radiation = _resistances(found, len(omega))
     amplitude = np.column_stack([-vectors[deflection], np.zeros(len(omega))])
     turning = vectors[rotation] / found.system.length
     return TipModes(omega, amplitude, np.zeros(len(omega)), turning, damping, radiation)
 
 
-def _resistances(found: Modes, vectors: Array, count: int) -> tuple[Array | None, Array | None]:
-    """Damping by dashpots and radiation by a tail of ``count`` modes, whose last ones are the bending ``vectors``."""
+def _resistances(found: Ended, count: int) -> tuple[Array | None, Array | None]:
+    """Damping by dashpots and radiation by a tail of ``count`` modes, whose last ones are those ``found``."""
     damping = None
     if found.system.dashpots is not None:
+        vectors = np.concatenate([found.rigid_vectors, found.vectors], axis=1)
         own = vectors.T @ (found.system.dashpots[:, None] * vectors)
         damping = np.pad(own, (count - len(own), 0))
     radiation = None if found.radiation is None else np.pad(found.radiation, (count - len(found.radiation), 0))

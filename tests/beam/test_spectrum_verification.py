@@ -1,0 +1,94 @@
+"""Verification of the tip's spectrum: it is the modes and their tail, without the shapes."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+
+from cuefem import PointMass, Support
+from cuefem.beam.modes import solve
+from cuefem.beam.spectrum import TipSpectrum, ended, reduced
+from cuefem.beam.system import System, assemble
+from cuefem.beam.tail import tail
+from cuefem.effects import acting_on_cue
+from tests.helpers.cues import kim, pool, soft_tip, stiff_ferrule
+
+mpl.use("Agg")
+sys.path.append(str(Path(__file__).parents[2] / "studies"))
+from default_accuracy import random_cue
+
+COUNT = 30
+
+
+def drawn(number: int) -> Any:
+    return random_cue(np.random.default_rng([7, number]))
+
+
+CUES = {"kim": kim, "pool": pool, "soft tip": soft_tip, **{f"random {n}": (lambda n=n: drawn(n)) for n in range(8)}}
+
+
+def beam(cue: Any, effects: Any = ()) -> System:
+    return assemble(cue, elements=2, order=20, effects=acting_on_cue(effects), count=400)
+
+
+@pytest.mark.parametrize("turning", [False, True])
+@pytest.mark.parametrize("name", CUES)
+def test_it_is_the_modes_and_their_tail(name: str, turning: bool) -> None:
+    system = beam(CUES[name]())
+    found, theirs = ended(system, COUNT, turning=turning)(COUNT), tail(solve(system, COUNT), turning=turning)
+    np.testing.assert_allclose(found.omega, theirs.omega, rtol=2e-9)
+    np.testing.assert_allclose(found.omega[:COUNT], theirs.omega[:COUNT], rtol=5e-11)
+    assert found.highest == pytest.approx(theirs.highest, rel=1e-11)
+    assert found.radiation is not None
+    assert theirs.radiation is not None
+    np.testing.assert_allclose(abs(found.radiation), abs(theirs.radiation), rtol=1e-7)
+    for own, their in zip(found.at_tip, theirs.at_tip, strict=True):
+        np.testing.assert_allclose(abs(own), abs(their), rtol=0, atol=1e-8 * abs(their).max())
+
+
+@pytest.mark.parametrize("name", ["kim", "pool", "random 3"])
+def test_its_shapes_are_those_of_the_modes(name: str) -> None:
+    system = beam(CUES[name]())
+    found = ended(system, COUNT, turning=True)(COUNT)
+    assert isinstance(found, TipSpectrum)
+    modes = found.modes
+    every = np.concatenate([modes.rigid_vectors, modes.vectors], axis=1)
+    np.testing.assert_allclose(every.T @ (system.M @ every), np.eye(every.shape[1]), atol=1e-9)
+    np.testing.assert_allclose(modes.at_tip, found.at_tip, atol=1e-9 * np.abs(found.at_tip).max())
+    plain = solve(system, COUNT)
+    assert np.all(plain.vectors[0] > 0)
+    np.testing.assert_allclose(modes.vectors[:, :COUNT], plain.vectors, atol=1e-8 * np.abs(plain.vectors).max())
+
+
+def test_every_number_of_modes_comes_from_one_form() -> None:
+    system = beam(pool())
+    family = ended(system, COUNT, turning=False)
+    for count in (8, 17, COUNT):
+        np.testing.assert_allclose(family(count).omega, ended(system, count, turning=False)(count).omega, rtol=1e-13)
+
+
+def test_effects_that_stay_on_the_beam_are_in_it() -> None:
+    effects = (PointMass(0.3, 0.005, 1e-6), Support(0.2, 2e4, dashpot=3.0))
+    system = beam(kim(), effects)
+    found, theirs = ended(system, COUNT, turning=False)(COUNT), tail(solve(system, COUNT))
+    assert isinstance(found, TipSpectrum)
+    assert found.rigid == theirs.rigid == system.rigid.shape[1]
+    np.testing.assert_allclose(found.omega[:COUNT], theirs.omega[:COUNT], rtol=1e-11)
+    np.testing.assert_allclose(
+        found.modes.shape(np.array([0.2]))[0][:COUNT], theirs.shape(np.array([0.2]))[0][:COUNT], atol=1e-8
+    )
+
+
+@pytest.mark.parametrize(("cue", "effects"), [(stiff_ferrule(), ()), (kim(), (Support(0.3, np.inf),))])
+def test_uneven_stiffness_and_clamps_take_the_shapes(cue: Any, effects: Any) -> None:
+    """The rounding of K shows beside a steel ferrule of 1 mm: there the Rayleigh-Ritz step is taken."""
+    system = beam(cue, effects)
+    assert not isinstance(ended(system, COUNT, turning=False)(COUNT), TipSpectrum)
+    if not effects:
+        lowest = np.sqrt(reduced(system).squares[2])
+        assert 5e-12 < abs(lowest / solve(system, 1).omega[0] - 1) < 1e-9
