@@ -16,7 +16,7 @@ import numpy as np
 from cuefem.beam.spectrum import Ended, ended
 from cuefem.beam.system import assemble
 from cuefem.beam.tip import TipModes
-from cuefem.beam.waves import mesh_for, modes_below, wave_phase
+from cuefem.beam.waves import SPARE, modes_below, wave_phase
 from cuefem.contact.ringing_tip import RINGING
 from cuefem.contact.state import APART
 from cuefem.contact.strike import strike, strike_modes
@@ -25,7 +25,7 @@ from cuefem.effects import SecondHit
 from cuefem.endmass.drives import end_mass, formula_of
 from cuefem.quantity import Quantity, check_kind, scalar
 from cuefem.scene import Outcome, Resolution, Scene
-from cuefem.tip_modes import MOST, tip_modes_from, turning
+from cuefem.tip_modes import MOST, lean_mesh, tip_modes_from, turning
 
 # Rungs of the ladder: the first number of modes, the ratio of one rung to the next. Errors are first
 # estimated at rung `JUDGED`, an octave above the first.
@@ -349,11 +349,11 @@ def _tips(scene: Scene) -> Iterator[_Tips]:
     """Rungs of the ladder: each group of them on one mesh, with one eigenproblem."""
     end_rings = _end_rings(scene.shaft)
     for group in rung_counts(scene.shaft, scene.contact_time):
-        elements, order = mesh_for(scene.shaft, group[-1])
-        system = assemble(scene.shaft, elements=elements, order=order, effects=scene.cue_effects, count=group[-1])
+        elements, orders = lean_mesh(scene, group[-1], spare=SPARE)
+        system = assemble(scene.shaft, elements=elements, order=orders, effects=scene.cue_effects, count=group[-1])
         family = ended(system, group[-1], turning=turning(scene))
         for count in group:
-            yield _Tips(Resolution(elements, order, count), scene, family(count), end_rings)
+            yield _Tips(Resolution(elements, max(orders), count), scene, family(count), end_rings)
 
 
 def rung_counts(cue: Cue, time: float) -> list[list[int]]:

@@ -9,7 +9,7 @@ The beam's solver is loaded when a finite-element cue is solved, not before.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import chain
 from typing import TYPE_CHECKING
@@ -17,8 +17,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cuefem.beam.tip import TipModes, lumped_tip_modes, tip_modes
-from cuefem.beam.waves import mesh_for, modes_below
+from cuefem.beam.waves import HIGHEST_ORDER, SPARE_ENDED, WIDEST, ended_mesh_for, mesh_for, modes_below
 from cuefem.cue import Cue
+from cuefem.effects.base import CueEffect
 from cuefem.quantity import CONTACT_TIME
 from cuefem.scene import Resolution, Scene
 
@@ -36,10 +37,6 @@ LEAST, LEAST_STUCK = 40, 120
 # Never more than this by default, which a contact of a fraction of a millisecond would ask for: the tail does the rest,
 # and more would take over a second. MOST is the last rung of `resolve`.
 MOST_KEPT, MOST = 160, 400
-# Where a tail ends the modes a coarser mesh does than their frequencies ask for: this many orders less, down to
-# LOWEST_ORDER, change a stick end mass by up to 3e-5 (40 random cues, tests/test_default_verification.py), and the
-# default is good to 5e-3.
-SPARED, LOWEST_ORDER = 4, 6
 
 
 def default_resolution(scene: Scene, *, periods: float = PERIODS_KEPT, least: int = LEAST) -> Resolution:
@@ -58,11 +55,6 @@ def resolution_for(cue: Cue, time: float, *, periods: float = PERIODS_KEPT, leas
     count = min(max(modes_below(cue, 2 * np.pi * periods / time), least), MOST_KEPT)
     elements, order = mesh_for(cue, count)
     return Resolution(elements, order, count)
-
-
-def spared(at: Resolution) -> Resolution:
-    """The resolution with the mesh that is enough where a tail ends the modes."""
-    return replace(at, order=max(at.order - SPARED, min(at.order, LOWEST_ORDER)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +101,7 @@ class Solved:
     def _modes(self, least: int) -> Ended:
         if self.at is not None:
             return self._solved(self.at, ended=False)
-        return self._solved(spared(default_resolution(self.scene, least=least)), ended=True)
+        return self._solved(default_resolution(self.scene, least=least), ended=True)
 
     def _solved(self, at: Resolution, *, ended: bool) -> Ended:
         """Bending modes at a resolution, plain or ended by a tail; each solved once."""
@@ -118,13 +110,16 @@ class Solved:
             from cuefem.beam.spectrum import ended as ended_modes
             from cuefem.beam.system import assemble
 
-            effects = self.scene.cue_effects
-            system = assemble(self.scene.shaft, elements=at.elements, order=at.order, effects=effects, count=at.modes)
+            scene, cue, effects = self.scene, self.scene.shaft, self.scene.cue_effects
+            elements: int | tuple[int, ...]
+            order: int | tuple[int, ...]
+            elements, order = lean_mesh(scene, at.modes) if ended else (at.elements, at.order)
+            system = assemble(cue, elements=elements, order=order, effects=effects, count=at.modes)
             # a support makes rigid modes flexible; the number of modes in all stays the same, so that its limits
             # are continuous
             count = at.modes + 2 - system.rigid.shape[1]
             if ended:
-                self._kept[at, ended] = ended_modes(system, count, turning=turning(self.scene))(count)
+                self._kept[at, ended] = ended_modes(system, count, turning=turning(scene))(count)
             else:
                 self._kept[at, ended] = solve(system, count)
         return self._kept[at, ended]
@@ -133,6 +128,15 @@ class Solved:
 def tip_modes_of(scene: Scene, at: Resolution | None = None, *, least: int = LEAST) -> TipModes:
     """Tip modes of any scene's cue, with its effects; ended by a tail if no resolution is given."""
     return Solved(scene, at).tip_modes(least)
+
+
+def lean_mesh(scene: Scene, count: int, *, spare: int = SPARE_ENDED) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """(elements, orders) for ``count`` modes of the scene's cue, ended by a tail: see `ended_mesh_for`.
+
+    Other modes than those of bending have the elements' highest order everywhere, so elements stay shorter for them.
+    """
+    vibrate = any(type(effect).vibrations is not CueEffect.vibrations for effect in scene.cue_effects)
+    return ended_mesh_for(scene.shaft, count, spare=spare, widest=HIGHEST_ORDER if vibrate else WIDEST)
 
 
 def turning(scene: Scene) -> bool:

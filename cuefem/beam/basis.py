@@ -18,8 +18,7 @@ class Table(NamedTuple):
     """scikit-fem's hierarchical line basis on the reference element [0, 1], tabulated at Gauss points.
 
     Local unknowns: w and theta of the left node, the bubbles of w, the bubbles of theta, w and theta of the right node.
-    points, weights: (q,). w, dw, theta, dtheta: (unknowns, q). stiffness: (4 q, unknowns^2), mass: (2 q, unknowns^2),
-    the products that element matrices are contracted from.
+    points, weights: (q,). w, dw, theta, dtheta: (unknowns, q).
     """
 
     points: Array
@@ -28,8 +27,6 @@ class Table(NamedTuple):
     dw: Array
     theta: Array
     dtheta: Array
-    stiffness: Array
-    mass: Array
 
 
 def line_basis(degree: int, points: Array) -> tuple[Array, Array]:
@@ -67,7 +64,13 @@ def table(order: int) -> Table:
     """The tabulated basis of one polynomial order, made once; Gauss points exact for cones (degree 2 order + 4)."""
     points, weights = leggauss(order + 4)
     points, weights = (points + 1) / 2, weights / 2
-    w, dw, t, dt = local_basis(order, points)
+    return Table(points, weights, *local_basis(order, points))
+
+
+@functools.cache
+def products(order: int) -> tuple[Array, Array]:
+    """What stacks of element matrices are contracted from: stiffness (4 q, unknowns^2), mass (2 q, unknowns^2)."""
+    points, _, w, dw, t, dt = table(order)
 
     def product(a: Array, b: Array) -> Array:
         both = np.einsum("iq,jq->qij", a, b)
@@ -75,4 +78,4 @@ def table(order: int) -> Table:
 
     stiffness = np.concatenate([product(dt, dt), product(dw, dw), -2 * product(dw, t), product(t, t)])
     mass = np.concatenate([product(w, w), product(t, t)])
-    return Table(points, weights, w, dw, t, dt, stiffness, mass)
+    return stiffness, mass

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple, Protocol
@@ -63,7 +64,8 @@ class Mesh:
 
     nodes: (elements + 1,) m. piece: (elements,) index of the segment an element lies in. offset: (elements,) m from
     that segment's tip end to the element's. first: (elements,) the element's first unknown. unknowns: their number.
-    Neighbouring elements share the two unknowns of their node, unless a joint splits the node.
+    orders: (elements,) the polynomial orders; order: the highest of them, by which all are tabulated. Neighbouring
+    elements share the two unknowns of their node, unless a joint splits the node.
     """
 
     nodes: Array
@@ -71,7 +73,12 @@ class Mesh:
     offset: Array
     first: NDArray[np.intp]
     unknowns: int
-    order: int
+    orders: NDArray[np.intp]
+
+    @cached_property
+    def order(self) -> int:
+        """The highest order of an element."""
+        return int(self.orders.max())
 
     @cached_property
     def sizes(self) -> Array:
@@ -85,7 +92,31 @@ class Mesh:
     @property
     def last(self) -> NDArray[np.intp]:
         """The deflection of every element's butt end, its last unknown but one: (elements,)."""
-        return self.first + 2 * self.order + 1
+        return self.first + 2 * self.orders + 1
+
+    @cached_property
+    def _held(self) -> list[NDArray[np.intp]]:
+        """For each element, which of the unknowns of the highest order it has."""
+        p = self.order
+        found = {q: np.r_[0, 1, 2 : 2 + q, 2 + p : 1 + p + q, 2 * p + 1, 2 * p + 2] for q in set(self.orders.tolist())}
+        return [found[q] for q in self.orders.tolist()]
+
+    def own(self, vectors: Array) -> Array:
+        """The elements' own unknowns of the highest order, (elements, u, k), of ``vectors`` (unknowns, k)."""
+        if np.all(self.orders == self.order):
+            return vectors[self.first[:, None] + np.arange(2 * self.order + 3)]
+        found = np.zeros((len(self.orders), 2 * self.order + 3, vectors.shape[1]))
+        for each, start, held in zip(found, self.first, self._held, strict=True):
+            each[held] = vectors[start : start + len(held)]
+        return found
+
+    def blocks(self, roots: Array) -> Sequence[Array]:
+        """roots' roots of every element, exactly symmetric, in the unknowns that it has; roots: (elements, rows, u)."""
+        if np.all(self.orders == self.order):
+            squared: Array = roots.swapaxes(-1, -2) @ roots
+            return list(squared)
+        parts = (each[:, held] for each, held in zip(roots, self._held, strict=True))
+        return [part.T @ part for part in parts]
 
     def unknowns_at(self, node: int) -> tuple[int, int]:
         """Unknowns (w, theta) of a node; if a joint splits it, those of the butt side."""
@@ -102,14 +133,14 @@ def mesh_cue(
     cue: Cue,
     *,
     elements: int | tuple[int, ...],
-    order: int,
+    order: int | tuple[int, ...],
     positions: tuple[float, ...] = (),
     splits: tuple[float, ...] = (),
 ) -> Mesh:
     """Mesh a cue: a node at every end of a segment and at ``positions``, split at ``splits``.
 
     elements: of every smooth piece between such nodes; or one number a segment, which are shared out over its smooth
-    pieces by their lengths, at least one to each.
+    pieces by their lengths, at least one to each. order: of every element; or one number a segment.
     """
     breaks = list(cue.nodes)
     for x in sorted(set(positions)):
@@ -119,17 +150,17 @@ def mesh_cue(
             breaks.append(x)
     ends = np.sort(np.array(breaks))
     counts = _elements_between(cue, ends, elements)
-    check_work(sum(counts.tolist()) * (2 * order + 1), f"{len(counts)} pieces")
+    check_work(sum(counts.tolist()) * (2 * int(np.max(order)) + 1), f"{len(counts)} pieces")
     shares = zip(ends, np.diff(ends), counts, strict=False)
     nodes = np.append(np.concatenate([start + span * (np.arange(n) / n) for start, span, n in shares]), ends[-1])
     middles = (nodes[:-1] + nodes[1:]) / 2
     piece = np.searchsorted(cue.nodes, middles, side="right") - 1
-    stride = 2 * order + 1
-    count = len(middles)
-    first = stride * np.arange(count)
+    orders = np.broadcast_to(order, len(cue.segments))[piece]
+    strides = 2 * orders + 1
+    first = np.cumsum(strides) - strides
     for node in {int(np.argmin(np.abs(nodes - x))) for x in splits}:
         first[node:] += 2
-    return Mesh(nodes, piece, nodes[:-1] - cue.nodes[piece], first, int(first[-1]) + stride + 2, order)
+    return Mesh(nodes, piece, nodes[:-1] - cue.nodes[piece], first, int(first[-1] + strides[-1]) + 2, orders)
 
 
 def check_work(unknowns: float, what: str) -> None:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cuefem.beam.basis import local_basis, table
+from cuefem.beam.basis import local_basis, products, table
 from cuefem.beam.mesh import ActsOnCue, Links, Mesh, Terms, mesh_cue
 from cuefem.beam.waves import EVEN
 from cuefem.cue import Array, Cue, Section
@@ -28,8 +29,9 @@ class System:
     rigid motions that stay free (two for a free cue). dashpots: diagonal of the viscous matrix, None without one.
     fixed: unknowns that a clamp takes out. shift: a square frequency of the order of the lowest mode's, rad2/s2.
     section: at the Gauss points, arrays (elements, q). roots: (elements, 2 q, u), whose squares roots' roots are the
-    elements' stiffness (`stiffness_roots`). springs: the part of K's diagonal that effects add. links: the
-    springs of joints. tied: (n, 2) pairs of unknowns (tip side, butt side) that a joint keeps equal.
+    elements' stiffness (`stiffness_roots`); with columns of the bubbles that an element of a low order does not have.
+    springs: the part of K's diagonal that effects add. links: the springs of joints. tied: (n, 2) pairs of unknowns
+    (tip side, butt side) that a joint keeps equal.
     """
 
     mesh: Mesh
@@ -66,8 +68,7 @@ class System:
         rigid motion the strains are zero to rounding, while K times it is rounding times the stiffest element.
         So energies taken from strains keep low frequencies exact beside a stiff short piece.
         """
-        mesh, u = self.mesh, self.roots.shape[2]
-        own = vectors[mesh.first[:, None] + np.arange(u)]  # (elements, unknowns of an element, k)
+        own = self.mesh.own(vectors)
         strained = (self.roots @ own).reshape(-1, own.shape[2])
         held = np.flatnonzero(self.springs)
         if len(held) + len(self.links.stiffness) == 0:
@@ -86,7 +87,7 @@ class System:
         element = np.clip(np.searchsorted(mesh.nodes, x.ravel(), side="right") - 1, 0, len(mesh.piece) - 1)
         local = (x.ravel() - mesh.nodes[element]) / mesh.sizes[element]
         w, _, theta, _ = local_basis(mesh.order, local)
-        own = vectors[mesh.first[element][:, None] + np.arange(len(w))]  # (points, unknowns of an element, k)
+        own = mesh.own(vectors)[element]  # (points, unknowns of an element, k)
         values = (np.einsum("iq,qik->kq", basis, own).reshape(-1, *x.shape) for basis in (w, theta))
         deflection, rotation = values
         return deflection, rotation / self.length
@@ -145,13 +146,19 @@ def element_matrices(section: Section, sizes: Array, length: float, order: int) 
     stiff = np.concatenate([EI / (h * length**2), kGA / h, kGA / length, kGA * h / length**2], axis=-1)
     heavy = np.concatenate([section.rhoA * t.weights * h, section.rhoI * t.weights * h / length**2], axis=-1)
     shape = (*stiff.shape[:-1], len(t.w), len(t.w))
-    return (stiff @ t.stiffness).reshape(shape), (heavy @ t.mass).reshape(shape)
+    of_stiffness, of_mass = products(order)
+    return (stiff @ of_stiffness).reshape(shape), (heavy @ of_mass).reshape(shape)
 
 
 def assemble(
-    cue: Cue, *, elements: int | tuple[int, ...], order: int, effects: tuple[ActsOnCue, ...] = (), count: int = 0
+    cue: Cue,
+    *,
+    elements: int | tuple[int, ...],
+    order: int | tuple[int, ...],
+    effects: tuple[ActsOnCue, ...] = (),
+    count: int = 0,
 ) -> System:
-    """Assemble a cue with the effects that act on it; elements and order as a Resolution has them.
+    """Assemble a cue with the effects that act on it; elements and order as a Resolution has them, or as `mesh_cue`.
 
     count: how many modes will be wanted of it; by default few.
     """
@@ -161,7 +168,7 @@ def assemble(
     splits = tuple(x for effect in effects for x in effect.splits)
     mesh = mesh_cue(cue, elements=elements, order=order, positions=positions, splits=splits)
     section = sections(cue, mesh)
-    roots, heavy = (each(section, mesh.sizes, cue.length, order) for each in (stiffness_roots, mass_roots))
+    roots, heavy = (each(section, mesh.sizes, cue.length, mesh.order) for each in (stiffness_roots, mass_roots))
     terms = Terms(mesh, cue)
     for effect in effects:
         effect.add_to(terms)
@@ -176,8 +183,8 @@ def assemble(
 
     springs, links = point(terms.stiffness), terms.links(scale)
     dense = suits_dense(mesh.unknowns, count)
-    K = gather(mesh.first, mesh.unknowns, squared(roots), point=springs, links=links, dense=dense)
-    M = gather(mesh.first, mesh.unknowns, squared(heavy), point=point(terms.mass), dense=dense)
+    K = gather(mesh.first, mesh.unknowns, mesh.blocks(roots), point=springs, links=links, dense=dense)
+    M = gather(mesh.first, mesh.unknowns, mesh.blocks(heavy), point=point(terms.mass), dense=dense)
     fixed = np.array(sorted(terms.fixed), dtype=np.intp)
     rigid = _rigid_motions(mesh, cue.length, springs, fixed)
     dashpots = point(terms.dashpot) if terms.dashpot else None
@@ -191,11 +198,6 @@ def _shift(cue: Cue, section: Section, sizes: Array) -> float:
     return 500 * stiffness / mass / cue.length**4
 
 
-def squared(roots: Array) -> Array:
-    """roots' roots of every element: exactly symmetric."""
-    return roots.swapaxes(-1, -2) @ roots
-
-
 def suits_dense(unknowns: int, count: int) -> bool:
     """Whether a dense eigenproblem gives the lowest ``count`` modes faster than a sparse one."""
     return unknowns <= DENSE_LIMIT or count > (unknowns / EVEN) ** 3
@@ -204,24 +206,24 @@ def suits_dense(unknowns: int, count: int) -> bool:
 def gather(
     first: NDArray[np.intp],
     unknowns: int,
-    blocks: Array,
+    blocks: Sequence[Array] | Array,
     *,
     point: Array,
     links: Links | None = None,
     dense: bool | None = None,
 ) -> Array | sp.csc_matrix:
-    """The matrix summed from element blocks (elements, u, u), each from its unknown ``first`` on, and point terms."""
-    u = blocks.shape[-1]
+    """The matrix summed from element blocks, each (u, u) from its unknown ``first`` on, and point terms."""
     if suits_dense(unknowns, 0) if dense is None else dense:
         whole = np.diag(point)
         for start, block in zip(first, blocks, strict=True):
-            whole[start : start + u, start : start + u] += block
+            here = slice(start, start + len(block))
+            whole[here, here] += block
         return whole if links is None or not len(links.stiffness) else whole + _linked(links, unknowns).toarray()
     import scipy.sparse as sp
 
-    rows = first[:, None, None] + np.arange(u)[:, None] + np.zeros((u, u), dtype=int)
-    columns = rows.transpose(0, 2, 1)
-    whole = sp.coo_matrix((blocks.ravel(), (rows.ravel(), columns.ravel())), shape=(unknowns,) * 2) + sp.diags(point)
+    places = [start + np.indices(block.shape).reshape(2, -1) for start, block in zip(first, blocks, strict=True)]
+    values = np.concatenate([block.ravel() for block in blocks])
+    whole = sp.coo_matrix((values, np.concatenate(places, axis=1)), shape=(unknowns,) * 2) + sp.diags(point)
     return sp.csc_matrix(whole if links is None else whole + _linked(links, unknowns))
 
 

@@ -12,7 +12,7 @@ from cuefem.quantity import check_fields, check_kind
 
 if TYPE_CHECKING:
     from cuefem.beam.mesh import Terms
-    from cuefem.beam.modes import Modes
+    from cuefem.beam.spectrum import Ended
     from cuefem.beam.system import System
     from cuefem.beam.tip import TipModes
     from cuefem.effects.terms import ContactTerms
@@ -125,7 +125,7 @@ class CueEffect(Effect):
     def add_to(self, terms: Terms) -> None:
         """Add the effect's point terms to the beam's."""
 
-    def vibrations(self, found: Modes, cue: Cue, effects: Sequence[CueEffect]) -> tuple[AxialVibrations, ...]:
+    def vibrations(self, found: Ended, cue: Cue, effects: Sequence[CueEffect]) -> tuple[AxialVibrations, ...]:
         """Families of modes beside the bending modes ``found``; effects: all that act on the cue."""
         return ()
 

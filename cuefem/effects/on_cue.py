@@ -13,7 +13,7 @@ from cuefem.quantity import Quantity
 
 if TYPE_CHECKING:
     from cuefem.beam.mesh import Terms
-    from cuefem.beam.modes import Modes
+    from cuefem.beam.spectrum import Ended
     from cuefem.beam.tip import TipModes
 
 
@@ -287,7 +287,7 @@ class AxialWaves(CueEffect):
     once: ClassVar[bool] = True
     usual: ClassVar[Usual | None] = Usual({}, "the cue's own EA and mass")
 
-    def vibrations(self, found: Modes, cue: Cue, effects: Sequence[CueEffect]) -> tuple[AxialVibrations, ...]:
+    def vibrations(self, found: Ended, cue: Cue, effects: Sequence[CueEffect]) -> tuple[AxialVibrations, ...]:
         """The rod modes."""
         from cuefem.effects.axial import rod_modes  # loaded when used: it solves the beam
 
