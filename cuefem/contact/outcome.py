@@ -31,7 +31,7 @@ def outcome_of(kind: Kind, scene: Scene, side: float) -> Outcome:
         duration=float(contact.time),
         regime=regime(contact),
         jam=jams(contact),
-        phases=tuple(phase._replace(start=float(phase.start), end=float(phase.end)) for phase in contact.phases),
+        phases=tuple(contact.phases),
         energy=_energy(kind, inertia),
         unknowns=len(contact.z),
         history=kind.history(side),
@@ -43,13 +43,13 @@ def _energy(kind: Kind, inertia: float) -> dict[str, float]:
     contact = kind.contact
     laws, z, slots = contact.laws, contact.z, contact.slots
     p_t, p_n = contact.impulse
-    rigid, vibrating = z[slots.rigid], np.concatenate([z[slots.vibration], z[slots.swinging]])
+    rigid, swings, speeds = z[slots.rigid], z[slots.vibration], z[slots.swinging]
     account = {
         "initial": inertia * laws.speed**2 / 2,
         "ball translation": (p_t**2 + p_n**2) / (2 * laws.ball_mass),
         "ball rotation": contact.twist**2 / (2 * laws.inertia * laws.ball_mass),
         "cue": float(rigid @ rigid) / 2,
-        "cue vibration": float(vibrating @ vibrating) / 2 + contact.radiated,
+        "cue vibration": float(swings @ swings + speeds @ speeds) / 2 + contact.radiated,
         "tip loss": kind.tip_loss(),
         "friction loss": contact.friction_loss,
         **kind.other_losses(),
