@@ -163,15 +163,16 @@ class Exact:
         whole = compiled.contact(found, contact, grip, press, compliance=compliance, unit=unit, limits=limits)
         if whole is None:
             return False
-        for phase in whole.phases:
+        for phase, state in zip(whole.phases, whole.starts, strict=True):
             matrix = partial(self._matrix, phase.grip, phase.press)
-            self.courses.append(Course(phase.start, matrix, phase.rate, phase.state))
-            self.pieces.append(Piece(phase.start, phase.lengths, phase.cells))
+            self.courses.append(Course(phase.start, matrix, phase.rate, state))
             contact.phases.append(Phase(phase.grip, phase.press, phase.start, phase.end, phase.impulse))
+        if len(whole.lengths):  # one piece for them all: each of its cells has its own length
+            self.pieces.append(Piece(whole.phases[0].start, whole.lengths, whole.cells))
         contact.time, contact.z, contact.peak = whole.time, whole.state, whole.peak
         contact.friction_loss += whole.rubbed
-        contact.damping_loss += float(whole.damped[: contact.lossy].sum())
-        contact.radiated += float(whole.damped[contact.lossy :].sum())
+        contact.damping_loss += sum(whole.damped[: contact.lossy])
+        contact.radiated += sum(whole.damped[contact.lossy :])
         return True
 
     def _matrix(self, grip: Grip, press: Press) -> Array:

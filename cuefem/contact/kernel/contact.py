@@ -44,31 +44,36 @@ class Limits(NamedTuple):
 
 
 class Gone(NamedTuple):
-    """A phase that was gone through: grip, press, start and end, s, the state at its start, the ball's impulse, N s.
+    """A phase that was gone through: grip, press, start and end, s, the ball's impulse in it, N s.
 
-    rate: a bound on the motion, 1/s. lengths: of its cells, s. cells: of the outputs (outputs, terms, cells).
+    rate: a bound on the motion, 1/s. cells: how many.
     """
 
     grip: Any
     press: Any
     start: float
     end: float
-    state: Array
     impulse: tuple[float, float]
     rate: float
-    lengths: Array
-    cells: Array
+    cells: int
 
 
 class Whole(NamedTuple):
-    """A contact that is over: time, s, state, peak, N, what friction rubbed off and each damper took, J; its phases."""
+    """A contact that is over: time, s, state, peak, N, what friction rubbed off and each damper took, J; its phases.
+
+    starts: the state at the start of each phase (phases, size). lengths: of all cells, s. cells: (outputs, terms,
+    cells).
+    """
 
     time: float
     state: Array
     peak: float
     rubbed: float
-    damped: Array
+    damped: list[float]
     phases: list[Gone]
+    starts: Array
+    lengths: Array
+    cells: Array
 
 
 @cache
@@ -92,17 +97,29 @@ def contact(
     norm_t, norm_n = math.sqrt(contact.c_t @ contact.c_t), math.sqrt(contact.c_n @ contact.c_n)
     rate = contact.fastest + root / laws.restitution * (norm_n + min(laws.friction, 2.0) * norm_t)
     rate += norm_t / unit if compliance else 0.0
-    cells = int(min(laws.time * rate / limits.reach + 100, limits.most_cells))
+    cells = int(
+        min(100 + 100 * (laws.time * rate // (100 * limits.reach)), limits.most_cells)
+    )  # few lengths of an array
     if cells * outputs > 2**20:  # a nearly dead tip, followed swing by swing
         return None
     most = int(max(0, min(PHASES, limits.most_phases)))
-    n, given = len(contact.omega), (contact.omega, contact.c_t, contact.c_n, contact.dampers.ravel(), contact.z)
-    counts = [len(part) for part in given], (dampers, cells, PHASES * size, cells * outputs * limits.terms)
-    parts, at = _room.of(*counts[0], *counts[1], room_of(size, outputs, dampers))
-    for part, numbers in zip(parts, given, strict=False):
-        part[:] = numbers
-    z, damped, lengths, starts, found, _ = parts[4:]
-    damped[:] = 0.0
+    n, width = len(contact.omega), outputs * limits.terms
+    parts, at = _room.of(
+        n,
+        size,
+        size,
+        dampers * size,
+        size,
+        dampers,
+        cells,
+        PHASES * size,
+        cells * width,
+        room_of(size, outputs, dampers),
+    )
+    omega, c_t, c_n, damping, z, damped, lengths, starts, found, _ = parts
+    omega[:], c_t[:], c_n[:], z[:] = contact.omega, contact.c_t, contact.c_n, contact.z
+    if dampers:
+        damping[:], damped[:] = contact.dampers.ravel(), 0.0
     plain = _Plain(
         size, n, slots.swinging.start, slots["spring"], slots["shear"] if compliance else -1,
         slots["ball_t"], slots["ball_n"], dampers, most, cells,
@@ -117,12 +134,12 @@ def contact(
     )  # fmt: skip
     if status != FOUND:
         return None
-    lengths, states = lengths[: told.cells].copy(), starts[: told.phases * size].reshape(-1, size).copy()
-    found = found[: told.cells * outputs * limits.terms].reshape(-1, outputs, limits.terms).copy().transpose(1, 2, 0)
-    gone = []
-    for i, state in enumerate(states):
-        one = phases[i]
-        own = slice(one.first, one.first + one.cells)
-        names, impulse = (GRIPS[one.side], PRESSES[one.press]), (one.impulse_t, one.impulse_n)
-        gone.append(Gone(*names, one.start, one.end, state, impulse, one.rate, lengths[own], found[:, :, own]))
-    return Whole(told.time, z.copy(), told.peak, told.rubbed, damped.copy(), gone)
+    gone = [
+        Gone(
+            GRIPS[one.side], PRESSES[one.press], one.start, one.end, (one.impulse_t, one.impulse_n), one.rate, one.cells
+        )
+        for one in phases[: told.phases]
+    ]
+    starts, lengths = starts[: told.phases * size].copy().reshape(-1, size), lengths[: told.cells].copy()
+    cells_of = found[: told.cells * width].copy().reshape(-1, outputs, limits.terms).transpose(1, 2, 0)
+    return Whole(told.time, z.copy(), told.peak, told.rubbed, damped.tolist(), gone, starts, lengths, cells_of)

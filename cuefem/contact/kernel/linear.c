@@ -349,7 +349,8 @@ int cuefem_stride(const struct flow *flow, double *z, struct place *place, doubl
             cut(flow->outputs, place->fraction, own);
             advance(work.wide, work.series, place->fraction * by, work.now);
             memcpy(z, work.now, sizeof(double) * flow->size);
-            lengths[place->written++] = place->fraction * length;
+            lengths[place->written] = place->fraction * length;
+            place->written += lengths[place->written] > 0;
             place->start += place->fraction * length;
             return FOUND;
         }

@@ -30,12 +30,16 @@ class Room(threading.local):
 
     def __init__(self) -> None:
         self._numbers, self._at = np.empty(0), 0
+        self._last: tuple[tuple[int, ...], tuple[list[Array], list[int]]] = (), ([], [])
 
     def of(self, *counts: int) -> tuple[list[Array], list[int]]:
         """Arrays of so many doubles, whose values are anything, and where they stand; good until the next call."""
-        ends = list(accumulate(counts, initial=0))
-        if ends[-1] > len(self._numbers):
-            self._numbers = np.empty(ends[-1])
-            self._at = pointer(self._numbers)
-        places = list(pairwise(ends))
-        return [self._numbers[first:end] for first, end in places], [self._at + 8 * first for first, _ in places]
+        if self._last[0] != counts:
+            ends = list(accumulate(counts, initial=0))
+            if ends[-1] > len(self._numbers):
+                self._numbers = np.empty(ends[-1])
+                self._at = pointer(self._numbers)
+            places = list(pairwise(ends))
+            parts = [self._numbers[first:end] for first, end in places]
+            self._last = counts, (parts, [self._at + 8 * first for first, _ in places])
+        return self._last[1]
