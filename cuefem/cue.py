@@ -318,7 +318,7 @@ class Cue:
         count = sum(1 for _ in soft)
         return float(self.nodes[count]) if count < len(self.segments) else 0.0
 
-    @property
+    @cached_property
     def shaft_mass(self) -> float:
         """Mass of the segments, kg."""
         return math.fsum(s.mass for s in self.segments)

@@ -2,9 +2,11 @@
 
 A cell is so short (|A| h <= 3) that the Taylor series of degree 27 is exact to rounding, so the scalar outputs are
 known as polynomials on every cell: their roots, integrals and values in between carry no time-stepping error. From
-cell to cell the state moves by exp(A h). No eigenvectors of A are used: a slipping contact can be defective or growing,
-and there a matrix exponential does not fail. Where A is oscillators that a few outputs drive, exp(A h) is their free
-rotation and their response to those outputs' Taylor series (`Drive`), one product instead of nine.
+cell to cell the state moves by exp(A h). (The compiled kernel, which makes the series anew in every cell, lets a cell
+be as long as the state's own series allows: a fast mode that hardly moves, or dies away, does not shorten it.) No
+eigenvectors of A are used: a slipping contact can be defective or growing, and there a matrix exponential does not
+fail. Where A is oscillators that a few outputs drive, exp(A h) is their free rotation and their response to those
+outputs' Taylor series (`Drive`), one product instead of nine.
 """
 
 from __future__ import annotations
@@ -14,7 +16,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from math import factorial
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -216,23 +218,26 @@ def guards_of(found: list[Guard], outputs: int) -> tuple[list[str], Guards]:
 
 
 class Piece(NamedTuple):
-    """A stretch of a phase: start, s; cell length, s; Taylor coefficients (m, degree + 1, cells)."""
+    """A stretch of a phase: start, s; lengths of its cells, s; Taylor coefficients in these (m, degree + 1, cells)."""
 
     start: float
-    step: float
+    lengths: Array
     coefficients: Array
+
+    @classmethod
+    def even(cls, start: float, length: float, coefficients: Array) -> Self:
+        """One of cells that are equally long, s."""
+        return cls(start, np.full(coefficients.shape[2], length), coefficients)
+
+    @property
+    def ends(self) -> Array:
+        """Where its cells end, s."""
+        return np.asarray(self.start + np.cumsum(self.lengths))
 
     @property
     def end(self) -> float:
         """End of the stretch, s."""
-        return self.start + self.step * self.coefficients.shape[2]
-
-
-def pieces_of(start: float, step: float, cells: Array, fraction: float) -> list[Piece]:
-    """The pieces of a phase from its cells, the last of which was cut at a fraction of a cell."""
-    whole = cells.shape[2] - 1
-    pieces = [Piece(start, step, cells[:, :, :whole])] if whole else []
-    return [*pieces, Piece(start + whole * step, step * fraction, cells[:, :, whole:])] if fraction else pieces
+        return float(self.ends[-1])
 
 
 class Arrival(NamedTuple):
@@ -250,7 +255,7 @@ def march(flow: Flow, z: Array, guards: Guards, *, start: float, limit: float) -
     if kernel is not None and flow.drive is not None:
         found = compiled.march(kernel, flow, z, guards, start=start, limit=limit, block=CELLS, terms=len(ORDERS))
         if found.status == compiled.FOUND:
-            return Arrival(found.time, found.state, found.guard, [Piece(*each) for each in found.stretches])
+            return Arrival(found.time, found.state, found.guard, [Piece.even(*each) for each in found.stretches])
         if found.status == compiled.LATE:
             return None
         # numbers overflowed: what that leads to is for the code below to say
@@ -265,13 +270,13 @@ def march(flow: Flow, z: Array, guards: Guards, *, start: float, limit: float) -
         if arrival is not None:
             cell, guard, fraction = arrival
             if cell:
-                pieces.append(Piece(time, flow.step, polynomials[:, :, :cell]))
+                pieces.append(Piece.even(time, flow.step, polynomials[:, :, :cell]))
             if fraction:
                 shorter = polynomials[:, :, cell : cell + 1] * fraction ** ORDERS[:, None]
-                pieces.append(Piece(time + cell * flow.step, flow.step * fraction, shorter))
+                pieces.append(Piece.even(time + cell * flow.step, flow.step * fraction, shorter))
             end = time + (cell + fraction) * flow.step
             return Arrival(end, flow.state(states[:, cell], fraction), guard, pieces)
-        pieces.append(Piece(time, flow.step, polynomials))
+        pieces.append(Piece.even(time, flow.step, polynomials))
         time += states.shape[1] * flow.step
     return None
 
@@ -374,4 +379,4 @@ def zero(function: Callable[[float], float], low: float, high: float) -> float:
 def integral_of_product(piece: Piece, first: int, second: int) -> float:
     """Integral over a stretch of the product of two outputs, exact."""
     a, b = piece.coefficients[first], piece.coefficients[second]
-    return float(np.vdot(a, _MOMENTS @ b)) * piece.step
+    return float(np.vdot(a * piece.lengths, _MOMENTS @ b))

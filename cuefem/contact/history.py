@@ -42,9 +42,10 @@ class History:
         values = np.empty((4, *time.shape))
         for i in np.unique(which):
             here, piece = which == i, self.pieces[i]
-            place = (time[here] - piece.start) / piece.step
-            cell = np.minimum(place.astype(int), piece.coefficients.shape[2] - 1)
-            powers = (place - cell) ** ORDERS[:, None]
+            ends = piece.ends
+            cell = np.minimum(np.searchsorted(ends, time[here], side="right"), len(ends) - 1)
+            place = 1 + (time[here] - ends[cell]) / piece.lengths[cell]
+            powers = place ** ORDERS[:, None]
             values[:, here] = (piece.coefficients[:4, :, cell] * powers).sum(axis=1)
         return _named(values, self.mirror)
 

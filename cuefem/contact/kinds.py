@@ -7,17 +7,18 @@ from cuefem.contact.linear import Exact
 from cuefem.contact.phases import Kind
 from cuefem.contact.ringing_tip import RINGING
 from cuefem.contact.state import Laws
+from cuefem.effects.terms import ContactTerms
 from cuefem.quantity import scalar
 from cuefem.scene import Scene
 
 
-def contact_of(scene: Scene, tip: TipModes, laws: Laws) -> Kind:
+def contact_of(scene: Scene, tip: TipModes, laws: Laws, terms: ContactTerms | None = None) -> Kind:
     """The cheapest contact that honours the terms of the scene's effects: exact linear phases where it can.
 
-    ValueError for terms that no contact honours together: a raised cue turns neither normal nor patch, and its tip
-    gives something back.
+    terms: the scene's, where they are known. ValueError for terms that no contact honours together: a raised cue turns
+    neither normal nor patch, and its tip gives something back.
     """
-    terms = scene.contact_terms
+    terms = terms or scene.contact_terms
     if terms.tip is not None:
         from cuefem.contact.leather import whole_tip_contact  # loaded when used
 

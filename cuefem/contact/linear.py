@@ -16,7 +16,6 @@ import numpy as np
 from cuefem.beam.tip import TipModes
 from cuefem.contact import kernel
 from cuefem.contact.flow import (
-    CELLS,
     ORDERS,
     REACH,
     Drive,
@@ -28,7 +27,6 @@ from cuefem.contact.flow import (
     guards_of,
     integral_of_product,
     march,
-    pieces_of,
     pushed,
 )
 from cuefem.contact.history import F_N, F_T, V_N, History
@@ -160,22 +158,21 @@ class Exact:
         if (type(self).flow, type(self).follow) != (Exact.flow, Exact.follow):  # a kind that moves in another way
             return False
         cells, slack = MOST_CELLS * self.haste, ROUNDING * contact.scale
-        limits = compiled.Limits(CELLS, len(ORDERS), most, cells, self.longest, REACH, slack)
+        limits = compiled.Limits(len(ORDERS), most, cells, self.longest, REACH, slack)
         compliance, unit = self.patch.spring
         whole = compiled.contact(found, contact, grip, press, compliance=compliance, unit=unit, limits=limits)
         if whole is None:
             return False
-        states = np.array([*(phase.state for phase in whole.phases), whole.state])
-        impulses = np.diff(contact.read[:2] @ states.T / contact.per[:2, None]).T.tolist()
-        for phase, (p_t, p_n) in zip(whole.phases, impulses, strict=True):
+        for phase, state in zip(whole.phases, whole.starts, strict=True):
             matrix = partial(self._matrix, phase.grip, phase.press)
-            self.courses.append(Course(phase.start, matrix, REACH / phase.step, phase.state))
-            self.pieces += pieces_of(phase.start, phase.step, phase.cells, phase.fraction)
-            contact.phases.append(Phase(phase.grip, phase.press, phase.start, phase.end, (p_t, p_n)))
+            self.courses.append(Course(phase.start, matrix, phase.rate, state))
+            contact.phases.append(Phase(phase.grip, phase.press, phase.start, phase.end, phase.impulse))
+        if len(whole.lengths):  # one piece for them all: each of its cells has its own length
+            self.pieces.append(Piece(whole.phases[0].start, whole.lengths, whole.cells))
         contact.time, contact.z, contact.peak = whole.time, whole.state, whole.peak
         contact.friction_loss += whole.rubbed
-        contact.damping_loss += float(whole.damped[: contact.lossy].sum())
-        contact.radiated += float(whole.damped[contact.lossy :].sum())
+        contact.damping_loss += sum(whole.damped[: contact.lossy])
+        contact.radiated += sum(whole.damped[contact.lossy :])
         return True
 
     def _matrix(self, grip: Grip, press: Press) -> Array:

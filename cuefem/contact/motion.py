@@ -194,9 +194,9 @@ def positions_of(kind: Kind, times: Array) -> tuple[Array, _Ball]:
 def _unstated(contact: Contact) -> Array:
     """Rows that read velocities whose positions are no state: rigid modes, the ball's (t, n), its surface's; m/s."""
     quiet, M, nu = contact.quiet, contact.laws.ball_mass, contact.laws.inertia
-    rows = np.zeros((quiet + 3, len(contact.z)))
+    rows, (read, per) = np.zeros((quiet + 3, len(contact.z))), contact.readings
     rows[range(quiet), contact.slots.velocities.start + np.arange(quiet)] = 1.0
-    rows[quiet:] = contact.read[:3] / contact.per[:3, None] / np.array([[M], [M], [nu * M]])
+    rows[quiet:] = read[:3] / per[:3, None] / np.array([[M], [M], [nu * M]])
     return rows
 
 

@@ -17,7 +17,7 @@ def outcome_of(kind: Kind, scene: Scene, side: float) -> Outcome:
     """The outcome of a contact that is over; side: -1 for a stroke at a negative offset."""
     contact, laws, tip = kind.contact, kind.contact.laws, kind.contact.tip
     M, nu = laws.ball_mass, laws.inertia
-    p_t, p_n = contact.impulse
+    (p_t, p_n), twist = contact.impulse, contact.twist
     s, c = math.sin(laws.phi), math.cos(laws.phi)
     impulse = np.array([side * p_t, p_n])
     inertia = float(tip.approach @ tip.approach)  # of a cue that moves as one along its axis
@@ -25,31 +25,31 @@ def outcome_of(kind: Kind, scene: Scene, side: float) -> Outcome:
         squirt=side * math.atan2(s * p_n - c * p_t, s * p_t + c * p_n) + 0.0,
         ball_velocity=impulse / M,
         ball_speed=math.hypot(p_t, p_n) / M,
-        spin=float(side * contact.twist / (nu * M * scalar("Ball.radius", scene.ball.radius))),
+        spin=float(side * twist / (nu * M * scalar("Ball.radius", scene.ball.radius))),
         cue_speed=float(laws.speed - contact.along / inertia),
         impulse=impulse,
         duration=float(contact.time),
         regime=regime(contact),
         jam=jams(contact),
-        phases=tuple(phase._replace(start=float(phase.start), end=float(phase.end)) for phase in contact.phases),
-        energy=_energy(kind, inertia),
+        phases=tuple(contact.phases),
+        energy=_energy(kind, inertia, p_t, p_n, twist),
         unknowns=len(contact.z),
         history=kind.history(side),
         kernel=kind.kernel,
     )
 
 
-def _energy(kind: Kind, inertia: float) -> dict[str, float]:
+def _energy(kind: Kind, inertia: float, p_t: float, p_n: float, twist: float) -> dict[str, float]:
+    """J by name; inertia, kg, of the cue along its axis; the ball's impulse, and the part that turned it, N s."""
     contact = kind.contact
     laws, z, slots = contact.laws, contact.z, contact.slots
-    p_t, p_n = contact.impulse
-    rigid, vibrating = z[slots.rigid], np.concatenate([z[slots.vibration], z[slots.swinging]])
+    rigid, swings, speeds = z[slots.rigid], z[slots.vibration], z[slots.swinging]
     account = {
         "initial": inertia * laws.speed**2 / 2,
         "ball translation": (p_t**2 + p_n**2) / (2 * laws.ball_mass),
-        "ball rotation": contact.twist**2 / (2 * laws.inertia * laws.ball_mass),
+        "ball rotation": twist**2 / (2 * laws.inertia * laws.ball_mass),
         "cue": float(rigid @ rigid) / 2,
-        "cue vibration": float(vibrating @ vibrating) / 2 + contact.radiated,
+        "cue vibration": float(swings @ swings + speeds @ speeds) / 2 + contact.radiated,
         "tip loss": kind.tip_loss(),
         "friction loss": contact.friction_loss,
         **kind.other_losses(),

@@ -83,11 +83,12 @@ class Raised(Stepped):
         s, c = math.sin(laws.phi), math.cos(laws.phi)
         right, forward, up = self.axes
         root = math.sqrt(laws.ball_mass)
-        contact.read[:], contact.per[:] = 0.0, 1.0
-        contact.read[0, self.ball] = root * (s * forward + c * right)
-        contact.read[1, self.ball] = root * (c * forward - s * right)
-        contact.read[2, self.turns] = math.sqrt(laws.inertia * laws.ball_mass) * up  # what turned it about the vertical
-        contact.read[3, contact.slots.velocities] = -contact.tip.approach  # what the cue gave along its axis
+        read, per = contact.readings
+        read[:], per[:] = 0.0, 1.0
+        read[0, self.ball] = root * (s * forward + c * right)
+        read[1, self.ball] = root * (c * forward - s * right)
+        read[2, self.turns] = math.sqrt(laws.inertia * laws.ball_mass) * up  # what turned it about the vertical
+        read[3, contact.slots.velocities] = -contact.tip.approach  # what the cue gave along its axis
         contact.along_before = laws.speed * float(contact.tip.approach @ contact.tip.approach)
 
     @property

@@ -13,7 +13,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Literal, NamedTuple
+from functools import cached_property
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -95,6 +96,25 @@ class Slots:
         return [self.places[name] for name in names]
 
 
+# What damps the strikes of one cue is the same: the last one, and what it was split into.
+_last: tuple[Array, tuple[Any, Array, float]] | None = None
+
+
+def _split(damping: Array) -> tuple[Any, Array, float]:
+    """(the modes that a damping acts on, rows over them whose squares add up to its power, its greatest strength)."""
+    global _last  # of two threads each finds what it looks for, or makes it
+    known = _last
+    if known is not None and known[0] is damping:
+        return known[1]
+    modes = np.flatnonzero(damping.any(axis=1))  # a tail's radiation is that of a few
+    strengths, directions = np.linalg.eigh(damping[np.ix_(modes, modes)])
+    acting = strengths > 1e-14 * strengths.max(initial=0.0)
+    rows = (directions[:, acting] * np.sqrt(strengths[acting])).T
+    found = modes, rows, float(strengths.max(initial=0.0))
+    _last = damping, found
+    return found
+
+
 @dataclass
 class Contact:
     """Tip modes and laws of a contact; its state, what it has lost, J, and its phases so far.
@@ -119,11 +139,10 @@ class Contact:
         s, c = math.sin(laws.phi), math.cos(laws.phi)
         modal = tip.amplitude @ np.array([[s, c], [c, -s]])  # (u, w) to (t, n)
         vibrating = tip.omega > 0
-        self.quiet = int(np.sum(~vibrating))  # rigid modes come first
+        self.quiet = len(vibrating) - int(np.count_nonzero(vibrating))  # rigid modes come first
         omega = self.omega = tip.omega[vibrating]
         slots = self.slots = Slots(self.quiet, len(omega), ("ball_n", "ball_t", *self.names))
-        n, size = len(omega), slots.size
-        mass, nu = laws.ball_mass, laws.inertia
+        size, mass, nu = slots.size, laws.ball_mass, laws.inertia
         self.c_t, self.c_n = np.zeros(size), np.zeros(size)
         self.c_t[slots.velocities], self.c_n[slots.velocities] = -modal[:, 0], -modal[:, 1]
         self.c_n[slots["ball_n"]] = mass**-0.5
@@ -131,9 +150,6 @@ class Contact:
             self.c_t[slots["ball_t"]], self.c_t[slots["spin"]] = mass**-0.5, (nu * mass) ** -0.5
         else:
             self.c_t[slots["ball_t"]] = (mass * nu / (1 + nu)) ** -0.5
-        self.free = np.zeros((size, size))  # the motion without forces at the contact
-        turning = np.arange(slots.swinging.start, slots.swinging.stop)
-        self.free[np.arange(n), turning], self.free[turning, np.arange(n)] = omega, -omega
         self.fastest = float(omega.max(initial=0.0))
         self.dampers = np.zeros((0, size))  # rows whose squares add up to the damped power
         if tip.damping is not None:
@@ -144,20 +160,29 @@ class Contact:
         self.z = np.zeros(size)
         self.z[slots.velocities] = laws.speed * tip.approach
         self.z[slots["ball_n"]] = -laws.incoming * math.sqrt(mass)
-        self.read, self.per = self._readings()
         self.along_before = 0.0
 
-    def _damp(self, damping: Array) -> None:
-        modes = np.flatnonzero(damping.any(axis=1))  # a tail's radiation is that of a few
-        strengths, directions = np.linalg.eigh(damping[np.ix_(modes, modes)])
-        acting = strengths > 1e-14 * strengths.max(initial=0.0)
-        rows = np.zeros((int(acting.sum()), len(self.free)))
-        rows[:, self.slots.velocities.start + modes] = (directions[:, acting] * np.sqrt(strengths[acting])).T
-        self.dampers = np.concatenate([self.dampers, rows])
-        self.free[self.slots.velocities, self.slots.velocities] -= damping
-        self.fastest += float(strengths.max(initial=0.0))
+    @cached_property
+    def free(self) -> Array:
+        """The motion without forces at the contact, (size, size)."""
+        n, slots, size = len(self.omega), self.slots, self.slots.size
+        found = np.zeros((size, size))
+        turning = np.arange(slots.swinging.start, slots.swinging.stop)
+        found[np.arange(n), turning], found[turning, np.arange(n)] = self.omega, -self.omega
+        for damping in (self.tip.damping, self.tip.radiation):
+            if damping is not None:
+                found[slots.velocities, slots.velocities] -= damping
+        return found
 
-    def _readings(self) -> tuple[Array, Array]:
+    def _damp(self, damping: Array) -> None:
+        modes, ways, strongest = _split(damping)
+        rows = np.zeros((len(ways), self.slots.size))
+        rows[:, self.slots.velocities.start + modes] = ways
+        self.dampers = np.concatenate([self.dampers, rows])
+        self.fastest += strongest
+
+    @cached_property
+    def readings(self) -> tuple[Array, Array]:
         """Rows that read the impulse on the ball (t, n), the part that turns it, and that along the cue; over divisors.
 
         A division keeps the digits of small impulses that a product with its inverse would round away.
@@ -175,18 +200,20 @@ class Contact:
     @property
     def impulse(self) -> tuple[float, float]:
         """Impulse (t, n) on the ball so far, N s; of one that came in, its momentum."""
-        p_t, p_n = self.read[:2] @ self.z / self.per[:2]
-        return float(p_t), float(p_n)
+        rows, per = self.readings
+        p_t, p_n = (rows[:2] @ self.z / per[:2]).tolist()
+        return p_t, p_n
 
     @property
     def twist(self) -> float:
         """The part of the impulse that turned the ball, N s."""
-        return float(self.read[2] @ self.z / self.per[2])
+        rows, per = self.readings
+        return float(rows[2] @ self.z / per[2])
 
     @property
     def along(self) -> float:
         """The part of the impulse along the cue, N s."""
-        return self.along_before + float(self.read[3] @ self.z)
+        return self.along_before + float(self.readings[0][3] @ self.z)
 
     @property
     def scale(self) -> float:
@@ -215,4 +242,6 @@ class Contact:
     def end_phase(self, grip: str, press: str, start: float, before: tuple[float, float]) -> None:
         """Write down a phase that has ended now; before: the impulse on the ball at its start, N s."""
         after = self.impulse
-        self.phases.append(Phase(grip, press, start, self.time, (after[0] - before[0], after[1] - before[1])))
+        self.phases.append(
+            Phase(grip, press, float(start), float(self.time), (after[0] - before[0], after[1] - before[1]))
+        )

@@ -88,7 +88,7 @@ def struck(scene: Scene, tip: TipModes) -> Kind:
     lever = terms.lever(laws.phi)
     if any(lever):
         tip = replace(tip, amplitude=tip.amplitude + np.outer(tip.rotation, lever))
-    kind = contact_of(scene, tip, laws)
+    kind = contact_of(scene, tip, laws, terms)
     run(kind)
     if terms.window is not None:
         from cuefem.contact.second_hit import follow

@@ -23,6 +23,7 @@ from cuefem import (
     TipDome,
     TipShear,
     motion,
+    strike,
 )
 from cuefem.beam.tip import TipModes
 from cuefem.contact import kernel
@@ -123,6 +124,36 @@ def test_the_kernel_agrees_with_python_on_loud_modes(seed: int, both) -> None:
     for effects in ((), (SHEAR,)):
         shaped = replace(scene, effects=effects)
         agree(*both(lambda shaped=shaped: strike_modes(shaped, tip)))
+
+
+@BUILT
+@pytest.mark.parametrize("seed", range(24))
+def test_the_kernel_agrees_with_python_on_a_random_family(seed: int, both) -> None:
+    """Cells as long as the motion allows, against equal ones: any friction, restitution, contact time and effects."""
+    rng = np.random.default_rng(100 + seed)
+    friction = rng.choice([0.0, inf, rng.uniform(0.05, 1.0), 0.7], p=[0.05, 0.1, 0.35, 0.5])
+    scene = kim_scene(
+        rng.uniform(-0.7, 0.7),
+        friction=friction,
+        restitution=rng.uniform(0.2, 1.0),
+        contact_time=10 ** rng.uniform(-3.2, -2.6),
+    )
+    effects = SHEAR, DOME, StructuralDamping(0.02)
+    scene = replace(scene, effects=tuple(effect for effect in effects if rng.random() < 0.4))
+    if seed % 3:
+        tip = tip_modes_of(scene, KIM_AT)
+    else:
+        omega, amplitude = np.sort(10 ** rng.uniform(2.5, 4.3, 8)), rng.uniform(0.5, 9.0, 8)
+        tip = hand_made(omega.tolist(), amplitude.tolist(), rigid=rng.uniform(2.0, 9.0))
+    agree(*both(lambda: strike_modes(scene, tip)))
+
+
+@BUILT
+def test_a_cell_is_as_long_as_the_motion_allows(both) -> None:
+    """The dashpot that ends the modes is fast, but dies away: its bound would ask for six times as many cells."""
+    scene = kim_scene(0.3)
+    python, c = (sum(len(piece.lengths) for piece in found.history.pieces) for found in both(lambda: strike(scene)))
+    assert python / 12 < c < python / 4
 
 
 WHOLE = {

@@ -13,15 +13,16 @@ enum { MOST_PUSHED = 5 };
 /* spring, shear: where the tip's force stands in the state, and the patch's, or -1 on a rigid patch. unit: of that state
    per newton. slack: by which |F_t| may pass mu F_n, N. */
 struct plain {
-    int size, turning, at, spring, shear, dampers, cells_a_block, most_phases, most_cells;
+    int size, turning, at, spring, shear, ball_t, ball_n, dampers, most_phases, most_cells;
     double root, restitution, friction, compliance, unit, fastest, slack, longest, reach;
     const double *omega, *c_t, *c_n, *damping; /* (turning,), (size,), (size,), (dampers, size) */
 };
 
-/* A phase that was gone through: side 1, 0, -1; first of its cells and how many; the fraction of the last one. */
+/* A phase that was gone through: side 1, 0, -1; first of its cells and how many; impulse (t, n) on the ball in it, N s;
+   rate: a bound on the motion, 1/s. */
 struct phase {
     int side, press, first, cells;
-    double start, end, step, fraction;
+    double start, end, rate, impulse_t, impulse_n;
 };
 
 /* time, s; peak, N; what was rubbed off, J. damped: (dampers,) J, stands apart. */
@@ -163,7 +164,7 @@ static void set_up(const struct plain *plain, int side, int press, double peak, 
             names[g++] = way > 0 ? SLIPPED : SLIPPED_BACK;
         }
     flow->size = size, flow->turning = plain->turning, flow->at = plain->at, flow->outputs = outputs, flow->pushed = k;
-    flow->guards = g, flow->cells_a_block = plain->cells_a_block, flow->terms = TERMS;
+    flow->guards = g, flow->terms = TERMS;
     flow->step = plain->reach / rate;
     flow->omega = plain->omega;
 }
@@ -182,17 +183,13 @@ FAST static double integral(const double *one, const double *other, double (*mom
 }
 
 /* Add up what a phase loses. */
-static void lose(const struct plain *plain, const struct phase *phase, const double *coefficients, int outputs,
-                 struct outcome *outcome, double *damped)
+static void lose(const struct plain *plain, const struct phase *phase, const double *coefficients,
+                 const double *lengths, int outputs, double (*moments)[TERMS], struct outcome *outcome, double *damped)
 {
-    double moments[TERMS][TERMS];
-    for (int i = 0; i < TERMS; i++)
-        for (int j = 0; j < TERMS; j++)
-            moments[i][j] = 1.0 / (i + j + 1);
     int first = outputs - plain->dampers, slide = plain->shear >= 0 ? SLIDE : V_T;
     for (int c = 0; c < phase->cells; c++) {
         const double *own = coefficients + (size_t)(phase->first + c) * outputs * TERMS;
-        double length = c == phase->cells - 1 ? phase->step * phase->fraction : phase->step;
+        double length = lengths[phase->first + c];
         if (phase->side)
             outcome->rubbed -= length * integral(own + F_T * TERMS, own + slide * TERMS, moments);
         for (int d = 0; d < plain->dampers; d++)
@@ -209,16 +206,21 @@ EXPORTED ptrdiff_t cuefem_contact_room(int size, int outputs, int dampers)
 }
 
 /* Run a contact from its first grip to its end. z: the state. starts: (most_phases, size), the state as each phase starts.
-   coefficients: (most_cells, outputs, TERMS). FOUND: it has ended. MORE: it takes more phases or cells than there is room
+   coefficients: (most_cells, outputs, TERMS); lengths: (most_cells,), s. FOUND: it has ended. MORE: it takes more phases or cells than there is room
    for. Otherwise as `cuefem_march`; what it was given is then as good as lost. */
 EXPORTED int cuefem_contact(const struct plain *plain, int side, int press, double *z, struct outcome *outcome,
-                            struct phase *phases, double *starts, double *coefficients, double *damped, double *room)
+                            struct phase *phases, double *starts, double *coefficients, double *lengths,
+                            double *damped, double *room)
 {
     int size = plain->size, springy = plain->shear >= 0, outputs = 4 + springy + plain->dampers, names[MOST_GUARDS];
     int pushed = MOST_PUSHED + plain->dampers;
     double *rows = room, *pushes = rows + (size_t)(outputs + pushed) * size, *weights = pushes + (size_t)pushed * size;
     double *constants = weights + MOST_GUARDS * outputs, *row = constants + MOST_GUARDS, *rest = row + size;
     struct flow flow = {.rows = rows, .pushes = pushes, .weights = weights, .constants = constants};
+    double moments[TERMS][TERMS];
+    for (int i = 0; i < TERMS; i++)
+        for (int j = 0; j < TERMS; j++)
+            moments[i][j] = 1.0 / (i + j + 1);
     for (;;) {
         if (outcome->phases == plain->most_phases || outcome->cells >= plain->most_cells)
             return MORE;
@@ -232,20 +234,23 @@ EXPORTED int cuefem_contact(const struct plain *plain, int side, int press, doub
         struct phase *phase = phases + outcome->phases;
         memcpy(starts + (size_t)outcome->phases * size, z, sizeof(double) * size);
         struct place place = {.start = outcome->time, .guard = -1};
-        int status = cuefem_march(&flow, z, &place, plain->longest, plain->most_cells - outcome->cells,
-                                  coefficients + (size_t)outcome->cells * outputs * TERMS, rest);
+        double before_t = z[plain->ball_t], before_n = z[plain->ball_n];
+        int status = cuefem_stride(&flow, z, &place, plain->longest, plain->most_cells - outcome->cells,
+                                   coefficients + (size_t)outcome->cells * outputs * TERMS, lengths + outcome->cells,
+                                   rest);
         if (status != FOUND)
             return status;
         phase->side = side, phase->press = press, phase->first = outcome->cells, phase->cells = place.written;
-        phase->start = outcome->time, phase->step = flow.step, phase->fraction = place.fraction;
-        phase->end = outcome->time = place.start + (place.cell + place.fraction) * flow.step;
+        phase->start = outcome->time, phase->end = outcome->time = place.start, phase->rate = plain->reach / flow.step;
         outcome->phases++;
         outcome->cells += place.written;
-        lose(plain, phase, coefficients, outputs, outcome, damped);
+        lose(plain, phase, coefficients, lengths, outputs, moments, outcome, damped);
         if (springy && side)
             z[plain->shear] = plain->unit * side * plain->friction * root * z[plain->spring];
         else if (!springy && !side)
             add(z, -product(plain->c_t, z, size) / product(plain->c_t, plain->c_t, size), plain->c_t, size);
+        phase->impulse_t = (z[plain->ball_t] - before_t) / plain->c_t[plain->ball_t];
+        phase->impulse_n = (z[plain->ball_n] - before_n) / plain->c_n[plain->ball_n];
         switch (names[place.guard]) {
         case APART: return FOUND;
         case COMPRESSED:

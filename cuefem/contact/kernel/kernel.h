@@ -17,7 +17,7 @@
 /* A copy of a function for processors with AVX2, chosen when the library is loaded, where that is possible. */
 #if defined(__x86_64__) && defined(__gnu_linux__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) && \
     !defined(__SANITIZE_ADDRESS__)
-#define FAST __attribute__((target_clones("avx2", "default")))
+#define FAST __attribute__((target_clones("arch=skylake-avx512", "avx2", "default")))
 #else
 #define FAST
 #endif

@@ -9,6 +9,9 @@
 enum { PLACES = 16 };
 /* A guard that dips below zero between two samples counts if the dip is this deep, relative to its size. */
 static const double DEEP = 1e-13;
+/* The last term of a cell's series is this part of its state at most, the one before it FALLS as much; no cell is more
+   than WIDEST times as long as the one before. */
+static const double LEFT_OUT = 1e-16, FALLS = 8, WIDEST = 4;
 static const double PLACE[PLACES] = {0,      0.15 / 3, 0.35 / 3, 0.6 / 3,  0.8 / 3,  1.0 / 3,  1.15 / 3, 1.35 / 3,
                                      1.6 / 3, 1.8 / 3,  2.0 / 3,  2.15 / 3, 2.35 / 3, 2.6 / 3, 2.8 / 3, 1.0};
 
@@ -212,23 +215,69 @@ EXPORTED ptrdiff_t cuefem_march_room(int size, int outputs, int pushed)
     return (TERMS + 1 + all) * wide + TERMS * count + extents;
 }
 
+/* Where the parts of the memory lie that a flow is followed in. */
+struct work {
+    int wide;
+    double *series, *now, *copies, *read;
+    struct extent *extents;
+};
+
+static struct work begin(const struct flow *flow, const double *z, double *room)
+{
+    int count = flow->outputs + flow->pushed;
+    struct work work = {.wide = padded(flow->size), .series = room};
+    work.now = work.series + (size_t)TERMS * work.wide;
+    work.copies = work.now + work.wide;
+    work.read = work.copies + (size_t)(count + flow->pushed) * work.wide;
+    work.extents = (struct extent *)(work.read + (size_t)TERMS * count);
+    look_over(flow, work.extents, work.copies);
+    memset(work.now, 0, sizeof(double) * work.wide);
+    memcpy(work.now, z, sizeof(double) * flow->size);
+    return work;
+}
+
+/* The Taylor coefficients of the outputs over a cell of `by` times the flow's step; the guards' are `values`. Whether all
+   of these are finite. */
+static int look(const struct flow *flow, const struct work *work, double by, double *own, double (*values)[TERMS])
+{
+    int outputs = flow->outputs, count = outputs + flow->pushed, finite = 1;
+    double power = 1;
+    for (int j = 0; j < TERMS; j++, power *= by)
+        for (int k = 0; k < outputs; k++)
+            own[k * TERMS + j] = power * work->read[(size_t)j * count + k];
+    for (int g = 0; g < flow->guards; g++) {
+        memset(values[g], 0, sizeof values[g]);
+        for (int k = 0; k < outputs; k++) {
+            double weight = flow->weights[g * outputs + k];
+            if (weight != 0)
+                for (int j = 0; j < TERMS; j++)
+                    values[g][j] += weight * own[k * TERMS + j];
+        }
+        values[g][0] += flow->constants[g];
+        finite &= all_finite(values[g], TERMS);
+    }
+    return finite;
+}
+
+/* Cut a cell at a fraction of it. */
+static void cut(int outputs, double fraction, double *own)
+{
+    double power = 1;
+    for (int j = 0; j < TERMS; j++, power *= fraction)
+        for (int k = 0; k < outputs; k++)
+            own[k * TERMS + j] *= power;
+}
+
 /* Follow a flow from the state z for at most `most` cells. coefficients: (most, outputs, TERMS), of the cells gone
    through, the last of them cut at the sign change. FOUND: a guard fell. MORE: all cells are used; call again. LATE: past
    the limit, s. NOT_FINITE: something overflowed. */
 EXPORTED int cuefem_march(const struct flow *flow, double *z, struct place *place, double limit, int most,
                           double *coefficients, double *room)
 {
-    int size = flow->size, outputs = flow->outputs, count = outputs + flow->pushed;
     if (flow->terms != TERMS || flow->guards < 1 || flow->guards > MOST_GUARDS)
         return REFUSED;
-    int wide = padded(size);
-    double *series = room, *now = series + (size_t)TERMS * wide, *copies = now + wide;
-    double *read = copies + (size_t)(count + flow->pushed) * wide;
-    struct extent *extents = (struct extent *)(read + (size_t)TERMS * count);
+    struct work work = begin(flow, z, room);
     double values[MOST_GUARDS][TERMS];
-    look_over(flow, extents, copies);
-    memset(now, 0, sizeof(double) * wide);
-    memcpy(now, z, sizeof(double) * size);
     for (place->written = 0; place->written < most;) {
         int cells = place->block ? flow->cells_a_block : 1;
         if (place->cell == cells) {
@@ -238,40 +287,79 @@ EXPORTED int cuefem_march(const struct flow *flow, double *z, struct place *plac
         }
         if (place->cell == 0 && place->start >= limit)
             return LATE;
-        memcpy(series, now, sizeof(double) * wide);
-        expand(flow, extents, copies, series, read);
-        double *own = coefficients + (size_t)place->written * outputs * TERMS;
-        for (int k = 0; k < outputs; k++)
-            for (int j = 0; j < TERMS; j++)
-                own[k * TERMS + j] = read[(size_t)j * count + k];
-        for (int g = 0; g < flow->guards; g++) {
-            memset(values[g], 0, sizeof values[g]);
-            for (int k = 0; k < outputs; k++) {
-                double weight = flow->weights[g * outputs + k];
-                if (weight != 0)
-                    for (int j = 0; j < TERMS; j++)
-                        values[g][j] += weight * own[k * TERMS + j];
-            }
-            values[g][0] += flow->constants[g];
-            if (!all_finite(values[g], TERMS))
-                return NOT_FINITE;
-        }
+        memcpy(work.series, work.now, sizeof(double) * work.wide);
+        expand(flow, work.extents, work.copies, work.series, work.read);
+        double *own = coefficients + (size_t)place->written * flow->outputs * TERMS;
+        if (!look(flow, &work, 1, own, values))
+            return NOT_FINITE;
         place->written++;
         place->guard = first_sign_change(values, flow->guards, &place->fraction);
         if (place->guard >= 0) {
-            double power = 1;
-            for (int j = 0; j < TERMS; j++, power *= place->fraction)
-                for (int k = 0; k < outputs; k++)
-                    own[k * TERMS + j] *= power;
-            advance(wide, series, place->fraction, now);
-            memcpy(z, now, sizeof(double) * size);
+            cut(flow->outputs, place->fraction, own);
+            advance(work.wide, work.series, place->fraction, work.now);
+            memcpy(z, work.now, sizeof(double) * flow->size);
             return FOUND;
         }
-        advance(wide, series, 1, now);
-        if (!all_finite(now, size))
+        advance(work.wide, work.series, 1, work.now);
+        if (!all_finite(work.now, flow->size))
             return NOT_FINITE;
         place->cell++;
     }
-    memcpy(z, now, sizeof(double) * size);
+    memcpy(z, work.now, sizeof(double) * flow->size);
+    return MORE;
+}
+
+/* How much longer than the step that a series was made for its cell may be, so that what it leaves out is lost in the
+   rounding of the state: the last two terms tell. */
+static double stretch(int wide, const double *series)
+{
+    double first = 0, last = 0, before = 0;
+    const double *one = series + (size_t)(TERMS - 1) * wide, *other = one - wide;
+    for (int i = 0; i < wide; i++) {
+        first += series[i] * series[i];
+        last += one[i] * one[i];
+        before += other[i] * other[i];
+    }
+    double most = LEFT_OUT * LEFT_OUT * first, by = WIDEST;
+    if (last > 0)
+        by = fmin(by, pow(most / last, 0.5 / (TERMS - 1)));
+    if (before > 0)
+        by = fmin(by, pow(FALLS * FALLS * most / before, 0.5 / (TERMS - 2)));
+    return by;
+}
+
+/* As `cuefem_march`, but in cells as long as the motion allows, the first of about flow->step. lengths: (most,), s. */
+int cuefem_stride(const struct flow *flow, double *z, struct place *place, double limit, int most, double *coefficients,
+                  double *lengths, double *room)
+{
+    struct work work = begin(flow, z, room);
+    struct flow own_flow = *flow;
+    double values[MOST_GUARDS][TERMS];
+    for (place->written = 0; place->written < most;) {
+        if (place->start >= limit)
+            return LATE;
+        memcpy(work.series, work.now, sizeof(double) * work.wide);
+        expand(&own_flow, work.extents, work.copies, work.series, work.read);
+        double by = stretch(work.wide, work.series), length = by * own_flow.step;
+        double *own = coefficients + (size_t)place->written * flow->outputs * TERMS;
+        if (!(by > 0) || !look(flow, &work, by, own, values))
+            return NOT_FINITE;
+        place->guard = first_sign_change(values, flow->guards, &place->fraction);
+        if (place->guard >= 0) {
+            cut(flow->outputs, place->fraction, own);
+            advance(work.wide, work.series, place->fraction * by, work.now);
+            memcpy(z, work.now, sizeof(double) * flow->size);
+            lengths[place->written] = place->fraction * length;
+            place->written += lengths[place->written] > 0;
+            place->start += place->fraction * length;
+            return FOUND;
+        }
+        advance(work.wide, work.series, by, work.now);
+        if (!all_finite(work.now, flow->size))
+            return NOT_FINITE;
+        lengths[place->written++] = length;
+        place->start += length;
+        own_flow.step = length;
+    }
     return MORE;
 }

@@ -26,5 +26,7 @@ struct place {
 EXPORTED ptrdiff_t cuefem_march_room(int size, int outputs, int pushed);
 EXPORTED int cuefem_march(const struct flow *flow, double *z, struct place *place, double limit, int most,
                           double *coefficients, double *room);
+int cuefem_stride(const struct flow *flow, double *z, struct place *place, double limit, int most, double *coefficients,
+                  double *lengths, double *room);
 
 #endif
