@@ -31,6 +31,7 @@ from cuefem.report.drawings import (
 )
 from cuefem.report.effects import seconds_words
 from cuefem.report.end_mass import end_mass_record
+from cuefem.report.glossary import with_words
 from cuefem.report.quantities import GRIPS, QUANTITIES, degrees, grams, written
 from cuefem.report.record import Record
 from cuefem.report.squirt import PAPER_CUE_END_MASS, offset_charts, squirt_record
@@ -76,7 +77,7 @@ def page(
     template = environment().get_template("page.html.j2")
     asked = f"{100 * rtol:.3g} %"
     said = {"notes": list(notes), "remarks": list(remarks)}
-    return template.render(name=name, asked=asked, **said, **_context(scene, found)) + "\n"
+    return with_words(template.render(name=name, asked=asked, **said, **_context(scene, found))) + "\n"
 
 
 @dataclass(frozen=True, eq=False)
