@@ -51,7 +51,9 @@ h1, h2 { font-weight: 700; letter-spacing: 0; font-family: inherit; } h2 { line-
 .key-strip .key dd { font-size: 1.25rem; white-space: nowrap; } .key-strip .key small { white-space: normal; }
 .key b { font-weight: 650; }
 .miscue { color: var(--c2); }
-.stale { opacity: 0.4; }
+.stale { opacity: 0.4; } b.stale { opacity: 1; animation: pale 0.2s 0.35s forwards; }
+@keyframes pale { to { opacity: 0.4; } }
+.waiting table { opacity: 0.4; transition: opacity 0.2s 0.4s; }
 .tones { display: flex; flex-wrap: wrap; gap: 0.4rem; max-width: none; }
 .tone { font: inherit; font-size: 0.86rem; color: var(--ink); background: var(--paper); border: 1px solid var(--soft);
   border-radius: 6px; padding: 0.25rem 0.6rem; cursor: pointer; font-variant-numeric: tabular-nums; }
