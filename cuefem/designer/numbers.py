@@ -16,8 +16,11 @@ from cuefem.designer.model import cue_of
 from cuefem.designer.sliders import choices, sliders
 from cuefem.designer.units import METRIC, System
 from cuefem.endmass.drives import DEFINITIONS
+from cuefem.report.glossary import subscripts
 from cuefem.report.quantities import NONE, QUANTITIES, Known, significant
 from cuefem.report.strike import MISCUE
+from cuefem.report.trust import trust_line, trust_lines
+from cuefem.scene import Scene
 
 WAITING = "…"
 
@@ -182,7 +185,7 @@ def _line(line: Line) -> str:
     )
     cells = "".join(f"<td>{cell}</td>" for cell in others)
     named = first.replace("<span>", f'<span data-number="{line.name}">', 1)
-    return f'<tr><th class="text" scope="row">{escape(line.label)}</th><td>{named}</td>{cells}</tr>'
+    return f'<tr><th class="text" scope="row">{subscripts(escape(line.label))}</th><td>{named}</td>{cells}</tr>'
 
 
 def csv_text(columns: Sequence[Column], reference: int, system: System = METRIC) -> str:
@@ -233,6 +236,12 @@ def key_markup(found: Answers, other: Answers | None, system: System = METRIC, b
         value = f'<b data-key="{name}"{pale}>{escape(row.text(system))}</b>'
         parts.append(f"<div><dt>{label}</dt><dd>{value}<small>{escape(said)}</small></dd></div>")
     return f'<dl class="key">{"".join(parts)}</dl>{_warned(found.safety)}'
+
+
+def trust_markup(scene: Scene) -> str:
+    """How far the numbers can be trusted: a line, and what stands behind it folded away."""
+    lines = "".join(f"<p>{escape(line)}</p>" for line in trust_lines(scene))
+    return f"<details><summary>{escape(trust_line(scene))}</summary>{lines}</details>"
 
 
 LATE = "near a miscue: the tip slips through much of this blow, and squirt is larger for it"

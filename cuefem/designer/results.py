@@ -24,6 +24,7 @@ class ResultsSide:
         self.before: Answers | None = None
         with ui.element("section").classes("key-strip"):
             self.keys = ui.html(sanitize=False)
+            self.trust = ui.html(sanitize=False).classes("trust")
         with ui.element("div").classes("rest") as self.rest:
             with ui.element("section"):
                 ui.html("<h2>The cue</h2>", sanitize=False)
@@ -66,6 +67,7 @@ class ResultsSide:
     def show_cue(self, mine: Results, system: System) -> None:
         """The cue."""
         self.cue.set_content(pictures.cue_pictures(mine.found.scene, system))
+        self.trust.set_content(explained(numbers.trust_markup(mine.found.scene)))
 
     def show_charts(
         self, mine: Results, before: Results | None, pinned: Sequence[tuple[Design, Results | None]], system: System

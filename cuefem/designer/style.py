@@ -81,7 +81,17 @@ td small { color: var(--soft); }
 .miss { fill: var(--c2); opacity: 0.28; }
 .under p { margin: 0.2rem 0; }
 .q-btn.disabled { opacity: 0.55 !important; }
-@media (max-width: 860px) {
+.trust summary { font-size: 0.86rem; } .trust p { font-size: 0.86rem; } .trust details { margin-top: 0.5rem; }
+@media print {
+  .words, .actions, .knob .q-slider, .sheet, .tones, .pins, .q-field__append { display: none !important; }
+  .q-layout, .q-page-container { display: block; } .desk { display: block; }
+  .knobs { max-height: none; overflow: visible; columns: 3; position: static; break-inside: avoid; }
+  .knobs h2 { column-span: all; } .knob, .choice { break-inside: avoid; margin: 0; } .knob .line { line-height: 1.1; }
+  .desk .grid2 { grid-template-columns: 1fr 1fr !important; } .desk section { margin: 0 0 0.6rem; }
+  .desk svg.chart text { font-size: 11px; } .desk .grid2 .wide svg text { font-size: 9px; }
+  .key-strip { position: static !important; }
+}
+@media screen and (max-width: 860px) {
   .desk { grid-template-columns: minmax(0, 1fr); }
   .knobs { position: static; max-height: none; order: 2; }
   .desk > .answers { display: contents; }

@@ -86,7 +86,12 @@ def definitions(used: set[str] | None = None) -> str:
 
 
 def _with_code(meaning: str) -> str:
-    return re.sub(r"`([^`]*)`", r"<code>\1</code>", escape(meaning))
+    return subscripts(re.sub(r"`([^`]*)`", r"<code>\1</code>", escape(meaning)))
+
+
+def subscripts(markup: str) -> str:
+    """Letters such as m_e as they are printed."""
+    return re.sub(r"(?<!\w)(\w)_(\w)(?!\w)", r"\1<sub>\2</sub>", markup)
 
 
 def with_words(page: str) -> str:

@@ -37,6 +37,7 @@ from cuefem.report.record import Record
 from cuefem.report.squirt import PAPER_CUE_END_MASS, offset_charts, squirt_record
 from cuefem.report.strike import BRIEF, MISCUE, model_rows, strike_record
 from cuefem.report.templates import environment
+from cuefem.report.trust import off, trust_lines
 from cuefem.report.words import assumptions, effect_words, plain_cue_line
 from cuefem.scene import Outcome, Scene
 from cuefem.tip_modes import LEAST_STUCK, Solved
@@ -148,6 +149,8 @@ def _context(scene: Scene, found: Record) -> Record:
         "strike": strike_drawing(scene, outcome.squirt),
         "squirt": degrees(outcome.squirt),
         "error": "" if outcome.error is None else f"{100.0 * outcome.error:.2g} %",
+        "off": off(scene),
+        "trust": trust_lines(scene),
         "warning": MISCUE if outcome.regime == "miscue" else "",
         "cue": _cue_part(scene) if scene.cue.segments else None,
         "modes": _modes_part(scene) if scene.cue.segments else None,
