@@ -83,9 +83,11 @@ td small { color: var(--soft); }
 .q-btn.disabled { opacity: 0.55 !important; }
 .trust summary { font-size: 0.86rem; } .trust p { font-size: 0.86rem; } .trust details { margin-top: 0.5rem; }
 @media print {
-  .words, .actions, .knob .q-slider, .sheet, .tones, .pins, .q-field__append { display: none !important; }
+  .words, .actions, .knob .q-slider, .q-expansion-item--collapsed, .tones, .pins, .choice .q-field__append {
+    display: none !important; }
   .q-layout, .q-page-container { display: block; } .desk { display: block; }
-  .knobs { max-height: none; overflow: visible; columns: 3; position: static; break-inside: avoid; }
+  .knobs { max-height: none; overflow: visible; columns: 3; position: static; break-inside: auto; }
+  .knob .q-field, .knob .q-field:has([aria-label*="mrad"]) { width: 11rem; } .knobs h3 { break-after: avoid; }
   .knobs h2 { column-span: all; } .knob, .choice { break-inside: avoid; margin: 0; } .knob .line { line-height: 1.1; }
   .desk .grid2 { grid-template-columns: 1fr 1fr !important; } .desk section { margin: 0 0 0.6rem; }
   .desk svg.chart text { font-size: 11px; } .desk .grid2 .wide svg text { font-size: 9px; }
