@@ -1,14 +1,15 @@
 """What the designer shows of a scene: the numbers of `cuefem end-mass`, `strike` and `modes`, by the same functions.
 
-At once it shows what one solution of the beam gives, and the strike at the scene's own offset. Later, while nobody
-turns a knob, it adds the coupled squirt at other offsets, strike by strike, and where end mass lives.
+At once it shows the strike at the scene's own offset, which takes few modes. The stick end mass takes many more; it
+follows with the tones and the static stiffness as soon as no newer move waits. Later, while nobody turns a knob, come
+the coupled squirt at other offsets, strike by strike, and where end mass lives.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -28,7 +29,7 @@ from cuefem.report.strike import outcome_record
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import Solved, default_resolution
 
-AT_ONCE = "stick"  # the definition of the end mass that is shown with every move
+FIRST = "stick"  # the definition of the end mass that is computed before the others
 TONES = 5  # bending modes that are shown
 OFFSETS = tuple(round(0.04 * i, 2) for i in range(1, 21))  # b/R of both curves
 MISCUES = 3  # of the coupled curve's points that miscue, one after the other: nothing new comes after them
@@ -82,20 +83,21 @@ class Density:
 
 @dataclass(frozen=True)
 class Answers:
-    """The numbers of a design, SI. end_masses: by definition, None where one has no answer; `AT_ONCE` alone at first.
+    """The numbers of a design, SI; those that are not computed yet are missing or None.
 
-    strike: as `outcome_record`, of the coupled strike at the scene's own offset. tip_stiffness: of a static load across
-    the cue at its tip, the butt end clamped. safety: see `safety`. solved: for what is computed later. lumped: the
-    impulse solver's curve, with the end mass of a tip that sticks at each offset and without effects at the tip.
+    strike: as `outcome_record`, of the coupled strike at the scene's own offset. safety: see `safety`. solved: for what
+    is computed later. end_masses: by definition, None where one has no answer. found: the lowest bending modes.
+    tip_stiffness: of a static load across the cue at its tip, the butt end clamped. lumped: the impulse solver's curve,
+    with the end mass of a tip that sticks at each offset and without effects at the tip.
     """
 
     scene: Scene
-    end_masses: dict[str, float | None]
     strike: Record
-    found: Modes
-    tip_stiffness: float
     solved: Solved
     safety: str
+    end_masses: Mapping[str, float | None] = field(default_factory=dict)
+    found: Modes | None = None
+    tip_stiffness: float | None = None
     lumped: Curve | None = None
 
     @property
@@ -104,28 +106,37 @@ class Answers:
         return self.solved.tip
 
     @property
+    def has_end_mass(self) -> bool:
+        """Whether `with_end_mass` has added its numbers."""
+        return self.found is not None
+
+    @property
     def complete(self) -> bool:
         """Whether `completed` has added the slower numbers."""
         return self.lumped is not None
 
     @property
     def frequencies(self) -> Array:
-        """The lowest bending frequencies, Hz."""
-        return self.found.frequencies
+        """The lowest bending frequencies, Hz; none if they are not computed yet."""
+        return self.found.frequencies if self.found is not None else np.zeros(0)
 
 
 def answers(scene: Scene) -> Answers:
-    """The numbers computed at once, for a cue of segments. Cost: the beam's eigenproblem and one strike."""
-    cue, solved = cue_of(scene), Solved(scene)
+    """The numbers of one strike, for a cue of segments: all that is computed before they are shown."""
+    cue_of(scene)
+    solved = Solved(scene)
     outcome = strike_modes(scene, solved.tip)
-    return Answers(
-        scene=scene,
-        end_masses={AT_ONCE: _end_mass(AT_ONCE, solved)},
-        strike=outcome_record(outcome, scene),
+    return Answers(scene, outcome_record(outcome, scene), solved, safety(outcome))
+
+
+def with_end_mass(found: Answers) -> Answers:
+    """The numbers with the stick end mass, the tones, and the static stiffness."""
+    scene, cue = found.scene, cue_of(found.scene)
+    return replace(
+        found,
+        end_masses={FIRST: _end_mass(FIRST, found.solved)},
         found=modes(cue, TONES, effects=scene.cue_effects),
         tip_stiffness=static_tip_stiffness(scene, Resolution(*mesh_for(cue, TONES), TONES)),
-        solved=solved,
-        safety=safety(outcome),
     )
 
 

@@ -10,6 +10,7 @@ from nicegui import events, ui
 
 from cuefem.designer.sliders import Choice, Slider
 from cuefem.designer.units import typed
+from cuefem.report.glossary import explained
 
 Turn = Callable[[float], str]
 
@@ -37,7 +38,7 @@ class NumberField:
         self.text = slider.text(value)
         with ui.element("div").classes("knob"):
             with ui.element("div").classes("line"):
-                ui.html(f"<span>{escape(slider.label)}</span>", sanitize=False)
+                ui.html(f"<span>{explained(escape(slider.label))}</span>", sanitize=False)
                 self.input = ui.input(value=self.text, on_change=self._typed)
                 self.input.props(
                     f'dense borderless hide-bottom-space debounce=200 suffix="{slider.unit}" inputmode=decimal '

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import asyncio
 import json
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from html import escape
@@ -14,8 +13,8 @@ from typing import Any
 
 from nicegui import background_tasks, ui
 
-from cuefem.designer.answers import answers, completed, coupled_points, density
-from cuefem.designer.computing import FAILURES, Memory, Results, computed
+from cuefem.designer.answering import Answering
+from cuefem.designer.computing import FAILURES, computed
 from cuefem.designer.controls import ChoiceField, NumberField, button
 from cuefem.designer.design import Design, History, Step
 from cuefem.designer.door import KINDS
@@ -37,13 +36,11 @@ from cuefem.designer.units import METRIC, SYSTEMS, System
 from cuefem.designer.words import MEASURED, head_markup
 from cuefem.games import GAMES
 from cuefem.io.toml import toml_text
+from cuefem.report.glossary import definitions, explained
 from cuefem.report.page import page as report_page
-from cuefem.report.templates import page_style
+from cuefem.report.templates import chart_script, page_style
 from cuefem.report.unusual import unusual
 from cuefem.scene import Scene
-
-IDLE = 0.12  # s without a move before the slower results are computed
-SHOWN_EVERY = 4  # points of a curve that is computed
 
 Read = Callable[[Path], tuple[Scene, list[str]]]
 
@@ -56,12 +53,8 @@ class Desk:
         self.history = History([Step(first)])
         self.wanted = first.knobs
         self.system: System = METRIC
-        self.memory = Memory()
-        self.mine: Results | None = None  # what is shown of the design in work
-        self.before: Results | None = None  # the last whole results, shown pale until there are new ones
         self.reference = 0  # which pinned design the others are compared with
-        self.moves = self.answered = 0
-        self.busy = False
+        self.answering = Answering(self)
         self.client = ui.context.client
         self._build()
         ui.timer(0.05, self._begin, once=True)
@@ -80,7 +73,8 @@ class Desk:
 
     def _build(self) -> None:
         ui.add_css(page_style() + STYLE)
-        ui.add_body_html(SCRIPT)
+        ui.add_body_html(definitions() + SCRIPT)
+        ui.add_body_html(f"<script>{chart_script()}</script>")
         with ui.element("header"):
             self.head = ui.html(sanitize=False)
             with ui.element("div").classes("actions"):
@@ -156,10 +150,10 @@ class Desk:
                     slide = lambda value, slider=slider: self._slid(slider, value)  # noqa: E731
                     self.fields.append(NumberField(slider, slider.shown(self.design.knobs), slide))
             for words in without(scene):
-                ui.html(f'<p class="hint">{escape(words)}</p>', sanitize=False)
+                ui.html(explained(f'<p class="hint">{escape(words)}</p>'), sanitize=False)
 
     def _show_head(self) -> None:
-        self.head.set_content(head_markup(self.design, self.system))
+        self.head.set_content(explained(head_markup(self.design, self.system)))
 
     # --- where it begins, and what is kept -------------------------------------------------------------------------
 
@@ -176,7 +170,7 @@ class Desk:
         self._show_design()
         if found.get("link"):
             self.open_link(str(found["link"]))
-        await self._moved()
+        await self.answering.moved()
 
     def _keep(self) -> None:
         text = text_of(self.history.steps, self.history.at)
@@ -256,13 +250,13 @@ class Desk:
         self.undo.set_enabled(self.history.can_undo)
         self.redo.set_enabled(self.history.can_redo)
         if move:
-            background_tasks.create(self._moved(), name="answer a move")
+            background_tasks.create(self.answering.moved(), name="answer a move")
 
     def _go(self, way: Callable[[], Step]) -> None:
         way()
         self._keep()
         self._show_design()
-        background_tasks.create(self._moved(), name="answer a move")
+        background_tasks.create(self.answering.moved(), name="answer a move")
 
     def open(self, design: Design) -> None:
         """Work on another design, beside those that are pinned."""
@@ -308,115 +302,53 @@ class Desk:
     def _compare_with(self, i: int) -> None:
         self.reference = i
         self.pins.show(self.pinned, i)
-        self._show_numbers()
+        self.show_numbers()
 
     def _columns(self) -> list[Column]:
-        known = [self.mine, *(self.memory.get(design.scene) for design in self.pinned)]
+        known = [self.answering.mine, *(self.answering.known(design.scene) for design in self.pinned)]
         designs = (self.design, *self.pinned)
         return [Column(design, one.found if one else None) for design, one in zip(designs, known, strict=True)]
 
     def _export(self) -> None:
-        if self.mine is not None:
+        if self.answering.mine is not None:
             text = csv_text(self._columns(), self.reference + 1 if self.pinned else 0, self.system)
             ui.download.content("\ufeff" + text, f"{Path(self.design.name).stem}.csv")  # Excel reads it as UTF-8
 
-    # --- what is computed ------------------------------------------------------------------------------------------
-
-    async def _moved(self) -> None:
-        """Answer the newest move; one that came while the last was computed is answered after it."""
-        self.moves += 1
-        self.side.props("aria-busy=true")
-        if self.busy:
-            return
-        self.busy = True
-        try:
-            while self.answered < self.moves:
-                self.answered = self.moves
-                good = await self._answer()
-        finally:
-            self.busy = False
-        move = self.moves
-        if good:
-            await self._refine(move)
-        if move == self.moves:
-            self.side.props("aria-busy=false")
-
-    async def _answer(self) -> bool:
-        design = self.design
-        found = self.memory.get(design.scene)
-        try:
-            if found is None:
-                found = self.memory.put(await computed(answers, design.scene), self._scenes())
-        except FAILURES as error:
-            self.say(f"{' '.join(str(error).split())}. The numbers are still those of the design before.")
-            return False
-        if self.mine is not None and self.mine.whole:
-            self.before = self.mine
-        self.mine = found
-        self.say("")
-        self._show_numbers()
-        await asyncio.sleep(0)  # they are on their way while the pictures are drawn
-        self._show_head()
-        self.results.show_cue(found, self.system)
-        self._show_curves()
-        return True
-
-    def _scenes(self) -> list[Scene]:
-        return [self.design.scene, *(design.scene for design in self.pinned)]
-
-    async def _refine(self, move: int) -> None:
-        """Compute the coupled curve, where end mass lives, and both of the pinned designs, unless a knob is moved."""
-        await asyncio.sleep(IDLE)
-        for scene in self._scenes():
-            with suppress(*FAILURES):  # a strike at another offset may have no answer: then there is no curve
-                async for _ in self._steps_of(scene, move):
-                    pass
-            if move != self.moves:
-                return
-
-    async def _steps_of(self, scene: Scene, move: int) -> Any:
-        """Compute all that is shown of a scene, step by step, and show it, as long as nothing is moved."""
-        one = self.memory.get(scene)
-        if one is None:
-            one = self.memory.put(await computed(answers, scene), self._scenes())
-            self._show_numbers()
-        if not one.found.complete:
-            one.found = await computed(completed, one.found)
-            if move != self.moves:
-                return
-            self._show_numbers()
-        if not one.whole:
-            work = _after(coupled_points(one.found), len(one.points))
-            while move == self.moves and (point := await computed(next, work, None)):
-                one.points = (*one.points, point)
-                if len(one.points) % SHOWN_EVERY == 1:
-                    self._show_curves()
-                yield point
-            if move != self.moves:
-                return
-            one.whole = True
-        self._show_curves()
-        if one.density is None:
-            one.density = await computed(density, scene)
-            if move == self.moves:
-                self._show_curves()
-
     # --- what is shown ---------------------------------------------------------------------------------------------
 
-    def _show_all(self) -> None:
-        if self.mine is not None:
-            self._show_numbers()
-            self.results.show_cue(self.mine, self.system)
-            self._show_curves()
+    def scenes(self) -> list[Scene]:
+        """The scene in work, and those that are pinned."""
+        return [self.design.scene, *(design.scene for design in self.pinned)]
 
-    def _show_numbers(self) -> None:
+    def show_busy(self, busy: bool) -> None:
+        """Whether more is being computed."""
+        self.side.props(f"aria-busy={str(busy).lower()}")
+
+    def show_answer(self) -> None:
+        """What belongs to a move: words, drawings, and the curves so far; its numbers are there already."""
+        self._show_head()
+        mine = self.answering.mine
+        if mine is not None:
+            self.results.show_cue(mine, self.system)
+        self.show_curves()
+
+    def show_numbers(self) -> None:
+        """The numbers that are known."""
         self.results.show_numbers(self._columns(), self.reference + 1 if self.pinned else 0, self.system)
 
-    def _show_curves(self) -> None:
-        if self.mine is not None:
-            pinned = [(design, self.memory.get(design.scene)) for design in self.pinned]
-            self.results.show_charts(self.mine, self.before, pinned, self.system)
-            self.results.show_density(self.mine, self.before, pinned, self.system)
+    def show_curves(self) -> None:
+        """The curves that are known."""
+        mine, before = self.answering.mine, self.answering.before
+        if mine is not None:
+            pinned = [(design, self.answering.known(design.scene)) for design in self.pinned]
+            self.results.show_charts(mine, before, pinned, self.system)
+            self.results.show_density(mine, before, pinned, self.system)
+
+    def _show_all(self) -> None:
+        if self.answering.mine is not None:
+            self.show_numbers()
+            self.results.show_cue(self.answering.mine, self.system)
+            self.show_curves()
 
     # --- files -----------------------------------------------------------------------------------------------------
 
@@ -461,8 +393,3 @@ class Desk:
             self.report.enable()
         self.say("")
         ui.download.content(text, f"{Path(design.name).stem}.html")
-
-
-def _after(points: Iterator[Any], count: int) -> Iterator[Any]:
-    """The points but for the first ``count``, which are known: a curve goes on where it was left."""
-    return points if count == 0 else (point for i, point in enumerate(points) if i >= count)

@@ -10,14 +10,17 @@ from collections.abc import Sequence
 from html import escape
 from typing import NamedTuple
 
-from cuefem.designer.answers import Answers, note
+from cuefem.designer.answers import TONES, Answers, note
 from cuefem.designer.design import Design
 from cuefem.designer.model import cue_of
 from cuefem.designer.sliders import choices, sliders
 from cuefem.designer.units import METRIC, System
 from cuefem.endmass.drives import DEFINITIONS
+from cuefem.report.glossary import subscripts
 from cuefem.report.quantities import NONE, QUANTITIES, Known, significant
 from cuefem.report.strike import MISCUE
+from cuefem.report.trust import trust_line, trust_lines
+from cuefem.scene import Scene
 
 WAITING = "…"
 
@@ -47,6 +50,8 @@ def rows(found: Answers) -> list[Row]:
     cue, strike, offset = cue_of(found.scene), found.strike, found.scene.stroke.offset
     labels = {one.name: f"end mass m_e, {one.label_at(offset)}" for one in DEFINITIONS.values()}
     pivot = strike["pivot_length"]
+    later = not found.has_end_mass
+    tones = [None] * TONES if later else found.frequencies.tolist()
 
     def row(name: str, quantity: str, value: float | None, label: str = "") -> Row:
         known = QUANTITIES[quantity]
@@ -64,8 +69,8 @@ def rows(found: Answers) -> list[Row]:
         row("shaft_mass", "shaft_mass", cue.shaft_mass),
         row("mass", "mass", cue.mass),
         row("balance", "balance_point", cue.balance_point),
-        row("stiffness", "tip_stiffness", found.tip_stiffness, STIFFNESS),
-        *(row(f"mode{i}", "frequencies", f, f"mode {i}") for i, f in enumerate(found.frequencies.tolist(), 1)),
+        row("stiffness", "tip_stiffness", found.tip_stiffness, STIFFNESS)._replace(waiting=later),
+        *(row(f"mode{i}", "frequencies", f, f"mode {i}")._replace(waiting=later) for i, f in enumerate(tones, 1)),
     ]
 
 
@@ -180,7 +185,7 @@ def _line(line: Line) -> str:
     )
     cells = "".join(f"<td>{cell}</td>" for cell in others)
     named = first.replace("<span>", f'<span data-number="{line.name}">', 1)
-    return f'<tr><th class="text" scope="row">{escape(line.label)}</th><td>{named}</td>{cells}</tr>'
+    return f'<tr><th class="text" scope="row">{subscripts(escape(line.label))}</th><td>{named}</td>{cells}</tr>'
 
 
 def csv_text(columns: Sequence[Column], reference: int, system: System = METRIC) -> str:
@@ -217,17 +222,26 @@ KEYS = {
 }
 
 
-def key_markup(found: Answers, other: Answers | None, system: System = METRIC) -> str:
-    """The numbers that matter most, each with its definition or its difference from the design compared with."""
-    mine, theirs = ({row.name: row for row in rows(one)} if one else {} for one in (found, other))
+def key_markup(found: Answers, other: Answers | None, system: System = METRIC, before: Answers | None = None) -> str:
+    """The numbers that matter most, each with its definition or its difference from the design compared with.
+
+    before: the last design with all of them; its own stand, pale, where a number is not computed yet.
+    """
+    mine, theirs, last = ({row.name: row for row in rows(one)} if one else {} for one in (found, other, before))
     parts = []
     for name, (label, remark) in KEYS.items():
-        said = difference(mine[name], theirs[name], system) if theirs else remark
-        value = escape(mine[name].text(system))
-        parts.append(
-            f'<div><dt>{label}</dt><dd><b data-key="{name}">{value}</b><small>{escape(said)}</small></dd></div>'
-        )
+        row = last.get(name, mine[name]) if mine[name].waiting else mine[name]
+        said = difference(row, theirs[name], system) if theirs and not theirs[name].waiting else remark
+        pale = ' class="stale"' if mine[name].waiting else ""
+        value = f'<b data-key="{name}"{pale}>{escape(row.text(system))}</b>'
+        parts.append(f"<div><dt>{label}</dt><dd>{value}<small>{escape(said)}</small></dd></div>")
     return f'<dl class="key">{"".join(parts)}</dl>{_warned(found.safety)}'
+
+
+def trust_markup(scene: Scene) -> str:
+    """How far the numbers can be trusted: a line, and what stands behind it folded away."""
+    lines = "".join(f"<p>{escape(line)}</p>" for line in trust_lines(scene))
+    return f"<details><summary>{escape(trust_line(scene))}</summary>{lines}</details>"
 
 
 LATE = "near a miscue: the tip slips through much of this blow, and squirt is larger for it"

@@ -137,5 +137,7 @@ def half_within(found: Density) -> float:
 
 
 def shapes_picture(found: Answers, system: System = METRIC) -> str:
-    """The bending modes."""
+    """The bending modes; nothing if they are not computed yet."""
+    if found.found is None:
+        return ""
     return shapes_markup(modes_drawing(found.found, cue_of(found.scene).length, units=system.units))

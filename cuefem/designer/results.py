@@ -7,21 +7,24 @@ from collections.abc import Sequence
 from nicegui import ui
 
 from cuefem.designer import numbers, pictures
-from cuefem.designer.answers import OFFSETS
+from cuefem.designer.answers import OFFSETS, Answers
 from cuefem.designer.computing import Results
 from cuefem.designer.design import Design
 from cuefem.designer.numbers import Column
 from cuefem.designer.pictures import Drawn
 from cuefem.designer.units import System
 from cuefem.designer.words import ABOUT
+from cuefem.report.glossary import explained
 
 
 class ResultsSide:
-    """The elements that show results."""
+    """The elements that show results. before: the last design with all of its key numbers."""
 
     def __init__(self) -> None:
+        self.before: Answers | None = None
         with ui.element("section").classes("key-strip"):
             self.keys = ui.html(sanitize=False)
+            self.trust = ui.html(sanitize=False).classes("trust")
         with ui.element("div").classes("rest") as self.rest:
             with ui.element("section"):
                 ui.html("<h2>The cue</h2>", sanitize=False)
@@ -38,7 +41,7 @@ class ResultsSide:
                 ui.html("<h2>All numbers</h2>", sanitize=False)
                 self.above_table = ui.element("div")
                 self.table = ui.html(sanitize=False)
-            ui.html(ABOUT, sanitize=False)
+            ui.html(explained(ABOUT), sanitize=False)
 
     def _section(self, title: str) -> ui.html:
         with ui.element("section"):
@@ -50,14 +53,21 @@ class ResultsSide:
         found, other = columns[0].found, columns[reference].found
         if found is None:
             return
-        self.keys.set_content(numbers.key_markup(found, other if reference else None, system))
+        keys = numbers.key_markup(found, other if reference else None, system, self.before)
+        self.keys.set_content(explained(keys))
+        if not found.has_end_mass:
+            self.rest.classes(add="waiting")
+            return
+        self.rest.classes(remove="waiting")
+        self.before = found
         self.tones.set_content(numbers.tones_markup(found.frequencies.tolist()))
-        self.table.set_content(numbers.table_markup(columns, reference, system))
+        self.shapes.set_content(pictures.shapes_picture(found, system))
+        self.table.set_content(explained(numbers.table_markup(columns, reference, system)))
 
     def show_cue(self, mine: Results, system: System) -> None:
-        """The cue and its mode shapes."""
+        """The cue."""
         self.cue.set_content(pictures.cue_pictures(mine.found.scene, system))
-        self.shapes.set_content(pictures.shapes_picture(mine.found, system))
+        self.trust.set_content(explained(numbers.trust_markup(mine.found.scene)))
 
     def show_charts(
         self, mine: Results, before: Results | None, pinned: Sequence[tuple[Design, Results | None]], system: System
@@ -73,7 +83,8 @@ class ResultsSide:
         if not mine.whole:
             words = [f"Computing the coupled curve: {len(mine.points)} of {len(OFFSETS)} offsets.", *words]
         lines = "".join(f"<p>{line}</p>" for line in words if line)
-        self.charts.set_content(markup + f'<div class="under" aria-live="off">{lines}</div>')
+        under = f'<div class="under" aria-live="off">{lines}</div>'
+        self.charts.set_content(explained(markup + under))
 
     def show_density(
         self, mine: Results, before: Results | None, pinned: Sequence[tuple[Design, Results | None]], system: System
@@ -83,5 +94,5 @@ class ResultsSide:
         shown = mine if current or before is None else before
         if shown.density is not None:
             drawn = [Drawn(d.name, None, one.density if one else None) for d, one in pinned]
-            self.lives.set_content(pictures.density_chart(shown.density, drawn, system))
+            self.lives.set_content(explained(pictures.density_chart(shown.density, drawn, system)))
         self.lives.classes(remove="stale") if current else self.lives.classes(add="stale")

@@ -51,7 +51,9 @@ h1, h2 { font-weight: 700; letter-spacing: 0; font-family: inherit; } h2 { line-
 .key-strip .key dd { font-size: 1.25rem; white-space: nowrap; } .key-strip .key small { white-space: normal; }
 .key b { font-weight: 650; }
 .miscue { color: var(--c2); }
-.stale { opacity: 0.4; }
+.stale { opacity: 0.4; } b.stale { opacity: 1; animation: pale 0.2s 0.35s forwards; }
+@keyframes pale { to { opacity: 0.4; } }
+.waiting table { opacity: 0.4; transition: opacity 0.2s 0.4s; }
 .tones { display: flex; flex-wrap: wrap; gap: 0.4rem; max-width: none; }
 .tone { font: inherit; font-size: 0.86rem; color: var(--ink); background: var(--paper); border: 1px solid var(--soft);
   border-radius: 6px; padding: 0.25rem 0.6rem; cursor: pointer; font-variant-numeric: tabular-nums; }
@@ -79,7 +81,19 @@ td small { color: var(--soft); }
 .miss { fill: var(--c2); opacity: 0.28; }
 .under p { margin: 0.2rem 0; }
 .q-btn.disabled { opacity: 0.55 !important; }
-@media (max-width: 860px) {
+.trust summary { font-size: 0.86rem; } .trust p { font-size: 0.86rem; } .trust details { margin-top: 0.5rem; }
+@media print {
+  .words, .actions, .knob .q-slider, .q-expansion-item--collapsed, .tones, .pins, .choice .q-field__append {
+    display: none !important; }
+  .q-layout, .q-page-container { display: block; } .desk { display: block; }
+  .knobs { max-height: none; overflow: visible; columns: 3; position: static; break-inside: auto; }
+  .knob .q-field, .knob .q-field:has([aria-label*="mrad"]) { width: 11rem; } .knobs h3 { break-after: avoid; }
+  .knobs h2 { column-span: all; } .knob, .choice { break-inside: avoid; margin: 0; } .knob .line { line-height: 1.1; }
+  .desk .grid2 { grid-template-columns: 1fr 1fr !important; } .desk section { margin: 0 0 0.6rem; }
+  .desk svg.chart text { font-size: 11px; } .desk .grid2 .wide svg text { font-size: 9px; }
+  .key-strip { position: static !important; }
+}
+@media screen and (max-width: 860px) {
   .desk { grid-template-columns: minmax(0, 1fr); }
   .knobs { position: static; max-height: none; order: 2; }
   .desk > .answers { display: contents; }

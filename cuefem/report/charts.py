@@ -1,6 +1,10 @@
 """The page's figures as geometry: where lines, ticks and labels stand in a drawing's own units.
 
 A drawing is WIDE units wide. The template draws it; texts are sized by the page, so that they stay readable on a phone.
+
+A chart must be there in print, in a mail that runs no script, and for a screen reader, so that it is drawn here. A
+charting library would draw each a second time (uPlot with 50 kB in every report, ECharts with 600 kB); what it would
+add is the values under the pointer, and `charts.js` reads these off the drawing.
 """
 
 from __future__ import annotations
@@ -120,6 +124,8 @@ class Chart:
     spans: tuple[tuple[float, float, str], ...]  # left, width, style
     marks: tuple[Tick, ...]
     labels: tuple[Tick, ...]  # of the marks, moved apart
+    across: Scale
+    up: Scale
 
 
 def chart(
@@ -152,6 +158,8 @@ def chart(
         tuple(_span(across, span, left=left, right=right) for span in spans),
         lines,
         tuple(Tick(at, line.label) for at, line in zip(apart([m.at for m in lines], left, right), lines, strict=True)),
+        across,
+        up,
     )
 
 

@@ -14,6 +14,7 @@ from cuefem.measured.kinds import AddedMass, Squirt
 from cuefem.measured.sampler import Sample
 from cuefem.report.charts import WIDE, Axis, Chart, Curve, Tick, chart
 from cuefem.report.drawings import cue_drawing, front_drawing
+from cuefem.report.glossary import with_words
 from cuefem.report.quantities import NONE, TRADE
 from cuefem.report.record import Record
 from cuefem.report.table import table_of, with_caption
@@ -159,7 +160,7 @@ def compare_page(cue: DocumentedCue, rows: Sequence[Row], record: Record, notes:
         charts=[*_squirt_charts(cue, rows), *_mass_charts(rows)],
         sourced=any(row["source"] for row in record["rows"]),
     )
-    return text + "\n"
+    return with_words(text) + "\n"
 
 
 def _style(pull: float) -> str:

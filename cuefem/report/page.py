@@ -31,11 +31,13 @@ from cuefem.report.drawings import (
 )
 from cuefem.report.effects import seconds_words
 from cuefem.report.end_mass import end_mass_record
+from cuefem.report.glossary import with_words
 from cuefem.report.quantities import GRIPS, QUANTITIES, degrees, grams, written
 from cuefem.report.record import Record
 from cuefem.report.squirt import PAPER_CUE_END_MASS, offset_charts, squirt_record
 from cuefem.report.strike import BRIEF, MISCUE, model_rows, strike_record
 from cuefem.report.templates import environment
+from cuefem.report.trust import off, trust_lines
 from cuefem.report.words import assumptions, effect_words, plain_cue_line
 from cuefem.scene import Outcome, Scene
 from cuefem.tip_modes import LEAST_STUCK, Solved
@@ -76,7 +78,7 @@ def page(
     template = environment().get_template("page.html.j2")
     asked = f"{100 * rtol:.3g} %"
     said = {"notes": list(notes), "remarks": list(remarks)}
-    return template.render(name=name, asked=asked, **said, **_context(scene, found)) + "\n"
+    return with_words(template.render(name=name, asked=asked, **said, **_context(scene, found))) + "\n"
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,6 +149,8 @@ def _context(scene: Scene, found: Record) -> Record:
         "strike": strike_drawing(scene, outcome.squirt),
         "squirt": degrees(outcome.squirt),
         "error": "" if outcome.error is None else f"{100.0 * outcome.error:.2g} %",
+        "off": off(scene),
+        "trust": trust_lines(scene),
         "warning": MISCUE if outcome.regime == "miscue" else "",
         "cue": _cue_part(scene) if scene.cue.segments else None,
         "modes": _modes_part(scene) if scene.cue.segments else None,

@@ -8,6 +8,7 @@ import numpy as np
 
 from cuefem.cue import Array
 from cuefem.report.charts import path
+from cuefem.report.glossary import with_words
 from cuefem.report.study import (
     DRIVES,
     TREND,
@@ -72,7 +73,7 @@ def study_page(name: str, table: Table, facts: list[str], *, scattered: Scattere
         fronts = (front_words(table), front_rows(table, FRONT), _front_panel(table))
     lines, coordinates, wide = _parallel(table)
     first = table.responses[table.judged[0]]
-    return template.render(
+    text = template.render(
         name=name,
         facts=facts,
         best=None if scattered else best_rows(table),
@@ -90,6 +91,7 @@ def study_page(name: str, table: Table, facts: list[str], *, scattered: Scattere
         shown_of=_picked(len(table.results), MOST_LINES).size,
         total=len(table.results),
     )
+    return with_words(text)
 
 
 def _picked(count: int, most: int) -> Array:

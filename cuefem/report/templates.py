@@ -28,6 +28,11 @@ def page_style() -> str:
     return environment().get_template("page.css").render()
 
 
+def chart_script() -> str:
+    """The script that reads values off charts."""
+    return environment().get_template("charts.js").render()
+
+
 def chart_markup(found: Chart, name: str) -> str:
     """A chart as a figure; name: its own on the page."""
     return str(_macros().chart(found, name))

@@ -1,0 +1,140 @@
+"""The order in which a tab's results are computed: the newest move's strike first, then what takes longer."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator, Iterator
+from contextlib import suppress
+from typing import Any, Protocol
+
+from cuefem.designer.answers import answers, completed, coupled_points, density, with_end_mass
+from cuefem.designer.computing import FAILURES, Memory, Results, computed
+from cuefem.scene import Scene
+
+IDLE = 0.12  # s without a move before the slower results are computed
+SHOWN_EVERY = 4  # points of a curve that is computed
+
+
+class Shows(Protocol):
+    """What shows results, and knows of which scenes: the one in work first, then those that are pinned."""
+
+    def scenes(self) -> list[Scene]:
+        """The scene in work, and those that are pinned."""
+
+    def say(self, words: str) -> None:
+        """Say what went wrong, or clear the message."""
+
+    def show_busy(self, busy: bool) -> None:
+        """Whether more is being computed."""
+
+    def show_answer(self) -> None:
+        """What belongs to a move beside its numbers."""
+
+    def show_numbers(self) -> None:
+        """The numbers that are known."""
+
+    def show_curves(self) -> None:
+        """The curves that are known."""
+
+
+class Answering:
+    """Computes one thing after the other, off the page's loop, and lets it be shown; a newer move is never waited for.
+
+    mine: what is known of the scene in work. before: the last whole results, shown pale until there are new ones.
+    """
+
+    def __init__(self, page: Shows) -> None:
+        self.page = page
+        self.memory = Memory()
+        self.mine: Results | None = None
+        self.before: Results | None = None
+        self.moves = self.answered = 0
+        self.busy = False
+
+    def known(self, scene: Scene) -> Results | None:
+        """What is known of a scene."""
+        return self.memory.get(scene)
+
+    async def moved(self) -> None:
+        """Answer the newest move; one that came while the last was computed is answered after it."""
+        self.moves += 1
+        self.page.show_busy(True)
+        if self.busy:
+            return
+        self.busy = True
+        try:
+            while self.answered < self.moves:
+                self.answered = self.moves
+                good = await self._answer()
+        finally:
+            self.busy = False
+        move = self.moves
+        if good:
+            await self._refine(move)
+        if move == self.moves:
+            self.page.show_busy(False)
+
+    async def _answer(self) -> bool:
+        """The strike at once; the end mass too, if no newer move waits."""
+        scene = self.page.scenes()[0]
+        one = self.memory.get(scene)
+        try:
+            one = one or await self._begun(scene)
+            if self.mine is not None and self.mine.whole:
+                self.before = self.mine
+            self.mine = one
+            self.page.say("")
+            self.page.show_numbers()
+            await asyncio.sleep(0)  # they are on their way while the pictures are drawn
+            waits = self.answered < self.moves or one.found.has_end_mass
+            more = None if waits else asyncio.create_task(computed(with_end_mass, one.found))
+            self.page.show_answer()
+            if more is not None:
+                one.found = await more
+                self.page.show_numbers()
+        except FAILURES as error:
+            self.page.say(f"{' '.join(str(error).split())}. The numbers are still those of the design before.")
+            return False
+        return True
+
+    async def _begun(self, scene: Scene) -> Results:
+        return self.memory.put(await computed(answers, scene), self.page.scenes())
+
+    async def _refine(self, move: int) -> None:
+        """Compute the coupled curve, where end mass lives, and both of the pinned designs, unless a knob is moved."""
+        await asyncio.sleep(IDLE)
+        for scene in self.page.scenes():
+            with suppress(*FAILURES):  # a strike at another offset may have no answer: then there is no curve
+                async for _ in self._steps_of(scene, move):
+                    if move != self.moves:
+                        return
+            if move != self.moves:
+                return
+
+    async def _steps_of(self, scene: Scene, move: int) -> AsyncIterator[None]:
+        """Compute and show all of a scene step by step; who asks for the steps stops when a knob is moved."""
+        one = self.memory.get(scene) or await self._begun(scene)
+        for more, done in ((with_end_mass, one.found.has_end_mass), (completed, one.found.complete)):
+            if not done:
+                yield
+                one.found = await computed(more, one.found)
+                self.page.show_numbers()
+        yield
+        if not one.whole:
+            work = _after(coupled_points(one.found), len(one.points))
+            while point := await computed(next, work, None):
+                one.points = (*one.points, point)
+                if len(one.points) % SHOWN_EVERY == 1:
+                    self.page.show_curves()
+                yield
+            one.whole = True
+        self.page.show_curves()
+        yield
+        if one.density is None:
+            one.density = await computed(density, scene)
+            self.page.show_curves()
+
+
+def _after(points: Iterator[Any], count: int) -> Iterator[Any]:
+    """The points but for the first ``count``, which are known: a curve goes on where it was left."""
+    return points if count == 0 else (point for i, point in enumerate(points) if i >= count)

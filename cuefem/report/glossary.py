@@ -1,0 +1,101 @@
+"""The handbook's glossary on a page: a word is a button where it stands, and says what it means when it is pressed."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from html import escape
+from typing import NamedTuple
+
+SKIPPED = ("head", "style", "script", "svg", "button", "h1", "h2", "h3", "summary", "a", "code", "label")
+PARTS = ("section", "header", "figure", "table")  # in each of them a word is explained once
+_TAG = re.compile(r"(<[^>]*>)")
+_NAME = re.compile(r"</?([a-zA-Z0-9]+)")
+_USED = re.compile(r'popovertarget="(w-[^"]*)"')
+
+
+class Entry(NamedTuple):
+    """Words that mean the same, and what they mean, as markdown."""
+
+    words: tuple[str, ...]
+    meaning: str
+
+    @property
+    def id(self) -> str:
+        """Its name on a page."""
+        return "w-" + re.sub(r"\W+", "-", self.words[0].lower())
+
+
+@cache
+def entries() -> tuple[Entry, ...]:
+    """The handbook's glossary."""
+    from importlib.resources import files
+
+    text = files("cuefem").joinpath("handbook/glossary.md").read_text(encoding="utf-8")
+    _, *rows = (line.strip("| ").split(" | ") for line in text.splitlines() if line.startswith("| "))
+    return tuple(Entry(tuple(words.split(", ")), meaning) for words, meaning in rows)
+
+
+@cache
+def _words() -> tuple[re.Pattern[str], dict[str, str]]:
+    """Any word of the glossary, the longest first, or its plural; and the names of their entries."""
+    known = {word.lower(): entry.id for entry in entries() for word in entry.words}
+    longest = sorted(known, key=len, reverse=True)
+    return re.compile(rf"(?<![\w/-])({'|'.join(map(re.escape, longest))})s?(?![\w/-])", re.IGNORECASE), known
+
+
+def explained(markup: str) -> str:
+    """Markup with the glossary's words as buttons that open their meanings: the first of each in a section."""
+    pattern, known = _words()
+    seen: set[str] = set()
+    inside: list[str] = []
+
+    def button(found: re.Match[str]) -> str:
+        name = known[found[1].lower()]
+        if name in seen:
+            return found[0]
+        seen.add(name)
+        return f'<button type="button" class="term" popovertarget="{name}">{found[0]}</button>'
+
+    pieces = _TAG.split(markup)
+    for i, piece in enumerate(pieces):
+        if i % 2 == 0:
+            pieces[i] = piece if inside else pattern.sub(button, piece)
+            continue
+        name = _NAME.match(piece)
+        tag = name[1].lower() if name else ""
+        if tag in PARTS:
+            seen.clear()
+        if tag in SKIPPED and not piece.endswith("/>"):
+            if piece.startswith("</"):
+                inside.pop()
+            else:
+                inside.append(tag)
+    return "".join(pieces)
+
+
+def definitions(used: set[str] | None = None) -> str:
+    """The meanings that the buttons open, of all words or of those used; in print they stand at the page's end."""
+    shown = (
+        f'<div popover id="{entry.id}" class="word"><b>{escape(", ".join(entry.words))}</b> '
+        f"{_with_code(entry.meaning)}</div>"
+        for entry in entries()
+        if used is None or entry.id in used
+    )
+    return f'<aside class="words" aria-label="Words"><h2>Words</h2>{"".join(shown)}</aside>'
+
+
+def _with_code(meaning: str) -> str:
+    return subscripts(re.sub(r"`([^`]*)`", r"<code>\1</code>", escape(meaning)))
+
+
+def subscripts(markup: str) -> str:
+    """Letters such as m_e as they are printed."""
+    return re.sub(r"(?<!\w)(\w)_(\w)(?!\w)", r"\1<sub>\2</sub>", markup)
+
+
+def with_words(page: str) -> str:
+    """A whole page with its words explained."""
+    text = explained(page)
+    used = set(_USED.findall(text))
+    return text.replace("<!-- words -->", definitions(used), 1) if used else text

@@ -1,0 +1,65 @@
+"""The glossary's words on a page: each is a button that opens its meaning, and says nothing else (properties)."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from cuefem.report.glossary import definitions, entries, explained, with_words
+
+WORDS = [word for entry in entries() for word in entry.words]
+TAGS = re.compile(r"<[^>]*>")
+
+
+def buttons(markup: str) -> list[tuple[str, str]]:
+    """What each button opens, and its words."""
+    return re.findall(r'<button type="button" class="term" popovertarget="([^"]*)">([^<]*)</button>', markup)
+
+
+def test_every_word_of_the_glossary_is_explained_by_its_entry() -> None:
+    for entry in entries():
+        for word in entry.words:
+            assert buttons(explained(f"<p>The {word} of it.</p>")) == [(entry.id, word)]
+            assert buttons(explained(f"<p>{word.capitalize()}s</p>")) == [(entry.id, f"{word.capitalize()}s")]
+        assert f'<div popover id="{entry.id}" class="word"><b>{", ".join(entry.words)}</b>' in definitions()
+    assert len({entry.id for entry in entries()}) == len(entries()) > 30
+
+
+def test_the_longest_word_is_meant() -> None:
+    assert [words for _, words in buttons(explained("natural pivot length and time in contact"))] == [
+        "natural pivot length",
+        "time in contact",
+    ]
+
+
+@pytest.mark.parametrize("text", ["offsets.toml", "--offset", "spinning", "nodeless", "tip/node", "--tip-dome"])
+def test_a_part_of_a_name_is_no_word(text: str) -> None:
+    assert not buttons(explained(f"<p>{text.replace('offsets.toml', 'my_offset')}</p>"))
+
+
+@pytest.mark.parametrize("tag", ["svg", "h1", "title", "button", "summary", "code", "label"])
+def test_names_and_controls_are_left_alone(tag: str) -> None:
+    markup = f"<{tag}>squirt <b>spin</b></{tag}>"
+    inside = f"<head>{markup}</head>" if tag == "title" else markup
+    assert explained(inside) == inside
+    assert len(buttons(explained(f"{inside}<p>squirt</p>"))) == 1
+
+
+def test_a_word_is_explained_once_in_a_section() -> None:
+    section = "<section><p>squirt, squirt</p><p>spin and squirt</p></section>"
+    assert [words for _, words in buttons(explained(2 * section))] == 2 * ["squirt", "spin"]
+
+
+@given(st.lists(st.sampled_from([*WORDS, "<p>", "</p>", "<b>", "</b>", " ", ", ", "the", "&amp;", "3 mm"])))
+def test_the_text_stays_as_it_was(parts: list[str]) -> None:
+    markup = "".join(parts)
+    assert TAGS.sub("", explained(markup)) == TAGS.sub("", markup)
+
+
+def test_a_page_has_the_meanings_of_its_own_words_alone() -> None:
+    page = with_words("<p>squirt and spins</p><!-- words -->")
+    assert re.findall(r'popover id="([^"]*)"', page) == ["w-spin", "w-squirt"]
+    assert with_words("<p>nothing</p><!-- words -->") == "<p>nothing</p><!-- words -->"
