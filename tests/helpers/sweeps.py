@@ -147,6 +147,14 @@ def written(folder: Path, study: str = STUDY, scene: str = SCENE, name: str = "s
     return folder / name
 
 
+def count_of(path: Path) -> int:
+    """How many designs are in a database."""
+    with sqlite3.connect(path) as file:
+        (count,) = file.execute("SELECT count(*) FROM designs").fetchone()
+    file.close()
+    return int(count)
+
+
 def rows_of(path: Path) -> list[tuple[Any, ...]]:
     """The whole table of a database, numbers as they are stored."""
     with sqlite3.connect(path) as file:

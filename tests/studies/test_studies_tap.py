@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import pytest
 
-from cuefem.validation import disagreements
 from studies import tap
 from studies.common import NAMES, STUDIES
+from tests.helpers.committed import drawn, not_committed
 
 COMMITTED = (STUDIES / "tap.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.heavy
-def test_tap_table() -> None:
-    assert disagreements(COMMITTED, tap.text()) == []
+def test_tap_table(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The text and the rows of two of the five cues, the whole cue not among them: it alone takes as long."""
+    monkeypatch.setattr(tap, "NAMES", drawn(NAMES[:-1], 2, seed=0))
+    derived = tap.text()
+    assert len(derived.splitlines()) == len(COMMITTED.splitlines()) - 3 * len(tap.NOISES)
+    assert not_committed(COMMITTED, derived) == []
 
 
 def test_modulus_within_a_per_cent_and_end_mass_within_a_thousandth_at_20_db() -> None:
