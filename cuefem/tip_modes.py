@@ -41,20 +41,28 @@ MOST_KEPT, MOST = 160, 400
 
 def default_resolution(scene: Scene, *, periods: float = PERIODS_KEPT, least: int = LEAST) -> Resolution:
     """The default resolution: modes up to the frequency ``periods`` / contact time, and at least ``least`` of them."""
-    cue = scene.shaft
+    count = default_modes(scene, periods=periods, least=least)
+    return Resolution(*mesh_for(scene.shaft, count), count)
+
+
+def default_modes(scene: Scene, *, periods: float = PERIODS_KEPT, least: int = LEAST) -> int:
+    """The number of modes of the default resolution."""
     if not CONTACT_TIME.holds(
         scene.contact_time
     ):  # one made by a stiffness; or by a whole tip; one given is bounded already
         got = f"{scene.stiffness:.6g} N/m, {scene.contact_time:.3g} s"
         raise ValueError(f"Tip.stiffness must make a head-on contact time in {CONTACT_TIME.bounds}; got {got}")
-    return resolution_for(cue, scene.contact_time, periods=periods, least=least)
+    return _count_for(scene.shaft, scene.contact_time, periods, least)
 
 
 def resolution_for(cue: Cue, time: float, *, periods: float = PERIODS_KEPT, least: int = LEAST) -> Resolution:
     """Modes up to the frequency ``periods`` / time, at least ``least`` of them, on the mesh that holds them."""
-    count = min(max(modes_below(cue, 2 * np.pi * periods / time), least), MOST_KEPT)
-    elements, order = mesh_for(cue, count)
-    return Resolution(elements, order, count)
+    count = _count_for(cue, time, periods, least)
+    return Resolution(*mesh_for(cue, count), count)
+
+
+def _count_for(cue: Cue, time: float, periods: float, least: int) -> int:
+    return min(max(modes_below(cue, 2 * np.pi * periods / time), least), MOST_KEPT)
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +75,7 @@ class Solved:
 
     scene: Scene
     at: Resolution | None = None
-    _kept: dict[tuple[Resolution, bool], Ended] = field(default_factory=dict, init=False, repr=False)
+    _kept: dict[Resolution | int, Ended] = field(default_factory=dict, init=False, repr=False)
 
     @property
     def modes(self) -> Modes:
@@ -90,7 +98,7 @@ class Solved:
         if self.at is not None or self.scene.lumped is not None:
             return self.tip
         plain = default_resolution(self.scene, periods=PLAIN_PERIODS)
-        return tip_modes_from(self._solved(plain, ended=False), self.scene)
+        return tip_modes_from(self._solved(plain), self.scene)
 
     def tip_modes(self, least: int) -> TipModes:
         """Tip modes of any cue, with the scene's effects: by default at least ``least`` bending modes."""
@@ -100,29 +108,34 @@ class Solved:
 
     def _modes(self, least: int) -> Ended:
         if self.at is not None:
-            return self._solved(self.at, ended=False)
-        return self._solved(default_resolution(self.scene, least=least), ended=True)
+            return self._solved(self.at)
+        return self._solved(default_modes(self.scene, least=least))
 
-    def _solved(self, at: Resolution, *, ended: bool) -> Ended:
-        """Bending modes at a resolution, plain or ended by a tail; each solved once."""
-        if (at, ended) not in self._kept:
+    def _solved(self, at: Resolution | int) -> Ended:
+        """Bending modes at a resolution, summed plainly; or a number of them, ended by a tail; each solved once."""
+        if at not in self._kept:
             from cuefem.beam.modes import solve
-            from cuefem.beam.spectrum import ended as ended_modes
+            from cuefem.beam.spectrum import ended
             from cuefem.beam.system import assemble
 
-            scene, cue, effects = self.scene, self.scene.shaft, self.scene.cue_effects
+            scene = self.scene
             elements: int | tuple[int, ...]
             order: int | tuple[int, ...]
-            elements, order = lean_mesh(scene, at.modes) if ended else (at.elements, at.order)
-            system = assemble(cue, elements=elements, order=order, effects=effects, count=at.modes)
+            if isinstance(at, Resolution):
+                elements, order, wanted = at.elements, at.order, at.modes
+            else:
+                elements, order = lean_mesh(scene, at)
+                wanted = at
+            system = assemble(scene.shaft, elements=elements, order=order, effects=scene.cue_effects, count=wanted)
             # a support makes rigid modes flexible; the number of modes in all stays the same, so that its limits
             # are continuous
-            count = at.modes + 2 - system.rigid.shape[1]
-            if ended:
-                self._kept[at, ended] = ended_modes(system, count, turning=turning(scene))(count)
-            else:
-                self._kept[at, ended] = solve(system, count)
-        return self._kept[at, ended]
+            count = wanted + 2 - system.rigid.shape[1]
+            self._kept[at] = (
+                solve(system, count)
+                if isinstance(at, Resolution)
+                else ended(system, count, turning=turning(scene))(count)
+            )
+        return self._kept[at]
 
 
 def tip_modes_of(scene: Scene, at: Resolution | None = None, *, least: int = LEAST) -> TipModes:

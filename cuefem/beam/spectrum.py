@@ -29,19 +29,18 @@ EVEN_ENOUGH = 1e-11
 
 @dataclass(frozen=True, eq=False)
 class Reduced:
-    """A dense beam with no unknown taken out, reduced to a tridiagonal matrix; y = Q z, q = scale * (back^-1 y).
+    """A dense beam with no unknown taken out, reduced to a tridiagonal matrix; y = Q z, upper q = y, both in reverse.
 
-    system: the beam. diagonal: (n,), off: (n - 1,), of the matrix. back: (n, n) lower triangle, back' back = K + shift
-    M, scaled. reflectors, tau: Q as LAPACK keeps it; Q leaves the first entry alone. scale: (n,) of the unknowns.
+    system: the beam. diagonal: (n,), off: (n - 1,), of the matrix. upper: (n, n) triangle, upper' upper = K + shift M
+    with the unknowns in reverse. reflectors: (n - 1, n - 1), tau: Q as LAPACK keeps it; Q leaves the first entry alone.
     """
 
     system: System
     diagonal: Array
     off: Array
-    back: Array
+    upper: Array
     reflectors: Array
     tau: Array
-    scale: Array
 
     @cached_property
     def eigen(self) -> tuple[Array, Array]:
@@ -58,46 +57,39 @@ class Reduced:
     @cached_property
     def felt(self) -> Array:
         """The tip's deflection, and its rotation times the length, in each z: (2, n)."""
-        z, back, scale = self.eigen[1], self.back, self.scale
-        deflection = z[0] / back[0, 0]
+        z, upper = self.eigen[1], self.upper
+        deflection = z[0] / upper[-1, -1]
         second = np.zeros((len(z) - 1, 1), order="F")
         second[0] = 1.0
-        rotation = (self._turned(second, "T")[:, 0] @ z[1:] - back[1, 0] * deflection) / back[1, 1]
-        return np.asarray([scale[0] * deflection, scale[1] * rotation])
+        rotation = (self._turned(second, "T")[:, 0] @ z[1:] - upper[-2, -1] * deflection) / upper[-2, -2]
+        return np.asarray([deflection, rotation])
 
     def shapes(self, mix: Array) -> Array:
         """Unknowns (n, k) of combinations ``mix``, (n modes, k), of the vectors z."""
-        y = np.asfortranarray(self.eigen[1] @ mix)
+        y = self.eigen[1] @ mix
         y[1:] = self._turned(y[1:], "N")
-        q, failed = lapack().dtrtrs(self.back, y, lower=1)
+        q, failed = lapack().dtrtrs(self.upper, y[::-1])
         _check(failed, "dtrtrs")
-        return np.asarray(q * self.scale[:, None])
+        return np.asarray(q[::-1])
 
     def _turned(self, y: Array, trans: str) -> Array:
         """Q or its transpose times y, both without their first row."""
-        lwork = max(64 * y.shape[1], 1)
-        turned, _, failed = lapack().dormqr("L", trans, self.reflectors[1:, :-1], self.tau, y, lwork)
+        turned, _, failed = lapack().dormqr("L", trans, self.reflectors, self.tau, y, 64 * y.shape[1])
         _check(failed, "dormqr")
         return np.asarray(turned)
 
 
 def reduced(system: System) -> Reduced:
     """The tridiagonal form of a dense beam none of whose unknowns are taken out."""
-    S = system.K + system.shift * system.M
-    scale = 1 / np.sqrt(S.diagonal())
-    S *= scale
-    S *= scale[:, None]
-    M = system.M * scale
-    M *= scale[:, None]
     # with the unknowns in reverse the tip is last, where LAPACK's upper triangles leave it alone
-    upper, failed = lapack().dpotrf(S[::-1, ::-1], lower=0)
+    upper, failed = lapack().dpotrf((system.K + system.shift * system.M)[::-1, ::-1], lower=0)
     _check(failed, "dpotrf")
-    standard, failed = lapack().dsygst(M[::-1, ::-1], upper, lower=0)
+    standard, failed = lapack().dsygst(system.M[::-1, ::-1], upper, lower=0)
     _check(failed, "dsygst")
-    work = 32 * len(S)
-    reflectors, diagonal, off, tau, failed = lapack().dsytrd(standard[::-1, ::-1], lower=1, lwork=work)
+    work = 32 * len(upper)
+    whole, diagonal, off, tau, failed = lapack().dsytrd(standard[::-1, ::-1], lower=1, lwork=work)
     _check(failed, "dsytrd")
-    return Reduced(system, diagonal, off, np.asfortranarray(upper[::-1, ::-1]), reflectors, tau, scale)
+    return Reduced(system, diagonal, off, upper, np.asfortranarray(whole[1:, :-1]), tau)
 
 
 def _check(failed: int, routine: str) -> None:

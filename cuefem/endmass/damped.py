@@ -1,6 +1,7 @@
-"""The drives of `cuefem.endmass.undamped` on modes that are damped or radiate, by matrix exponentials.
+"""The drives of `cuefem.endmass.undamped` on modes that are damped or radiate.
 
-Each smooth stretch of a drive takes one matrix exponential.
+Where each mode is damped by itself and the tail radiates, in closed form (`cuefem.endmass.poles`). Where dashpots
+couple the modes, each smooth stretch of a drive takes one matrix exponential:
 
 z = (omega q, q') of all modes; the tip's transverse velocity is row . z. A tip that must follow a velocity V(t)
 against the ball's inertia 1/c takes the force g with row . z + c J = V, J the integral of g.
@@ -9,12 +10,15 @@ against the ball's inertia 1/c takes the force g with row . z + c J = V, J the i
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from cuefem.beam.tip import TipModes
 from cuefem.cue import Array
 from cuefem.endmass import undamped
+from cuefem.endmass.poles import held, response
 from cuefem.endmass.undamped import StickLimit, loading
 
 # Coefficients of the diagonal Padé approximant of exp of degree 13, and the norm up to which it is exact to rounding.
@@ -80,13 +84,31 @@ def _half_sine_velocity(tip: TipModes, T: float) -> float:
 
 def smooth_start_impulse(tip: TipModes, T: float) -> float:
     """Impulse that makes the tip follow the velocity (1 - cos(pi t/T))/2 from 0 to T, N s per m/s."""
+    free = held(tip, 0.0)
+    if free is not None:
+        return float(free.impulse(1.0, undamped.smooth_start_swing(free.rates, T, response)))
     start = np.zeros(2 * len(tip.omega) + 3)
     start[-2] = np.pi / T / 2  # V' = (a/2) sin(a t)
     return float((expm(_following(tip, 0.0, np.pi / T) * T) @ start)[-1])
 
 
-def stick_impulse(tip: TipModes, limit: StickLimit) -> float:
-    """J of the limit b -> 0 of the coupled strike (`StickLimit`), kg: the tip follows V = K P(t) - 1."""
+def stick_impulse(tip: TipModes, limit: StickLimit) -> Any:
+    """J of the limit b -> 0 of the coupled strike (`StickLimit`), kg: the tip follows V = K P(t) - 1.
+
+    limit: its K and T may be arrays, for contacts at many offsets.
+    """
+    stuck = held(tip, limit.c)
+    if stuck is not None:
+        return stuck.impulse(limit.K - 1, limit.swing(stuck.rates, response))
+    if np.ndim(limit.K) or np.ndim(limit.T):
+        pairs = np.broadcast(limit.K, limit.T)
+        found = [stick_impulse_in_time(tip, replace(limit, K=float(K), T=float(T))) for K, T in pairs]
+        return np.reshape(found, pairs.shape)
+    return stick_impulse_in_time(tip, limit)
+
+
+def stick_impulse_in_time(tip: TipModes, limit: StickLimit) -> float:
+    """As `stick_impulse` for one contact, however the modes are damped, by two matrix exponentials."""
     _, row = _motion(tip)
     peak, a = loading(limit.e, limit.T)
     jump = -1 / (float(row @ row) + limit.c)  # at the first touch V goes from 0 to -1

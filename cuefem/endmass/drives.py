@@ -192,14 +192,12 @@ def stick_at_offset(tip: TipModes, scene: Scene) -> Any:
     lightness of the cue's end. With effects at the tip or axial waves it is the lumped end mass with the squirt of a
     coupled strike that never slips. The two ways differ in second order, by about 1 % at b/R 0.3. Both sides of the
     ball are alike, and head on it is `stick`. Offsets and speeds may be arrays; a bare cue's end mass does not depend
-    on the speed. ValueError if no end mass has that squirt. Cost: some milliseconds for each different offset (with a
-    tail or damping two matrix exponentials).
+    on the speed. ValueError if no end mass has that squirt. Cost: for a bare cue, one eigenproblem or the rates of the
+    held tip for all offsets (where dashpots act, two matrix exponentials for each); else a strike for each.
     """
     b, stroke = np.abs(scene.stroke.offset), scene.stroke
     if _couples(tip, scene):
         return _each(lambda x, U: _stuck_end_mass(tip, replace(scene, stroke=Stroke(U, x))), b, stroke.speed)
-    if tip.resistance is not None:
-        return _each(lambda x, _: _end_mass_at(tip, scene, x), b, 1.0)
     if np.ndim(b) == 0:
         return float(_end_mass_at(tip, scene, b))
     flat, places = np.unique(b, return_inverse=True)

@@ -7,7 +7,7 @@ phi^2. Source: handbook: Effective end mass.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -42,9 +42,35 @@ def smooth_start_impulse(omega: Array, phi: Array, rigid: Any, *, T: float) -> A
     return direct + (residues * smooth_start_swing(W, T)).sum(axis=-1)
 
 
-def smooth_start_swing(W: Array, T: float) -> Array:
-    """Integral of sin(W (T - s)) (1 - cos(pi s/T))/2 ds over 0..T."""
-    return (_response(W, T, (0.0, T)) - _response(W, T, (0.0, T), a=np.pi / T)) / 2
+def smooth_start_swing(W: Array, T: float, vibrate: Callable[..., Array] | None = None) -> Array:
+    """Integral of sin(W (T - s)) (1 - cos(pi s/T))/2 ds over 0..T; vibrate: as in `normal_impulse`."""
+    vibrate = vibrate or response
+    return (vibrate(W, T, (0.0, T)) - vibrate(W, T, (0.0, T), a=np.pi / T)) / 2
+
+
+def response(W: Array, T: Any, span: tuple[Any, Any], *, a: Any = 0.0, b: Any = 0.0) -> Array:
+    """Integral of sin(W (T - s)) cos(a s + b) ds over a span, free of 0/0 at W = a."""
+    first, last = span
+    middle, length = (first + last) / 2, last - first
+
+    def sine(phase: Array, rate: Array) -> Array:  # integral of sin(phase + rate s)
+        return length * np.sin(phase + rate * middle) * np.sinc(rate * length / (2 * np.pi))
+
+    return (sine(W * T + b, a - W) + sine(W * T - b, -a - W)) / 2
+
+
+def normal_impulse(W: Array, e: Any, T: Any, vibrate: Callable[..., Array] = response) -> Array:
+    """Integral of sin(W (T - s)) P(s) ds over 0..T, P the head-on impulse of the bilinear tip over its total.
+
+    Two quarter periods: (1 - cos)/(1 + e) while the tip is loaded, T/(1 + e) long, then (1 + e sin)/(1 + e). vibrate:
+    as `response`; that of damped vibrations in the place of sin(W (T - s)).
+    """
+    peak, a = loading(e, T)
+    total = vibrate(W, T, (0.0, T)) - vibrate(W, T, (0.0, peak), a=a)
+    if np.any(e > 0):
+        rate = a / np.where(e > 0, e, 1.0)  # where e = 0 the tip does not unload, and the span is empty
+        total = total + e * vibrate(W, T, (peak, T), a=rate, b=-peak * rate - np.pi / 2)
+    return total / (1 + e)
 
 
 @dataclass(frozen=True)
@@ -108,14 +134,15 @@ class StickLimit:
         J = direct * (self.K - 1) + residues @ self.swing(W)
         return float(np.sum((residues / W)[len(W) - tail :]) / J)
 
-    def swing(self, W: Array) -> Array:
-        """Integral of sin(W (T - s)) (K P(s) - 1) ds over 0..T."""
+    def swing(self, W: Array, vibrate: Callable[..., Array] = response) -> Array:
+        """Integral of sin(W (T - s)) (K P(s) - 1) ds over 0..T; vibrate: as in `normal_impulse`."""
         T = _beside(self.T)
-        return np.asarray(self.K)[..., None] * self.swing_per_K(W) - _response(W, T, (0.0, T))
+        P = normal_impulse(W, _beside(self.e), T, vibrate)
+        return np.asarray(self.K)[..., None] * P - vibrate(W, T, (0.0, T))
 
     def swing_per_K(self, W: Array) -> Array:
         """Integral of sin(W (T - s)) P(s) ds over 0..T."""
-        return _normal_impulse(W, _beside(self.e), _beside(self.T))
+        return normal_impulse(W, _beside(self.e), _beside(self.T))
 
     def impulse(self, slope: Any) -> Any:
         """J of a strike whose squirt is ``slope`` times phi, kg."""
@@ -197,27 +224,3 @@ def mobility(omega: Array, phi: Array, still: Any) -> tuple[Array, Array, Any]:
     W = np.sqrt(np.maximum(squares, 1e-12 * omega[..., :1] ** 2))
     weights = (np.einsum("...i,...ij->...j", v, vectors) / total) ** 2
     return W, np.divide(weights, W, out=np.zeros_like(W), where=W > 0), 1 / total[..., 0]
-
-
-def _response(W: Array, T: Any, span: tuple[Any, Any], *, a: Any = 0.0, b: Any = 0.0) -> Array:
-    """Integral of sin(W (T - s)) cos(a s + b) ds over a span, free of 0/0 at W = a."""
-    first, last = span
-    middle, length = (first + last) / 2, last - first
-
-    def sine(phase: Array, rate: Array) -> Array:  # integral of sin(phase + rate s)
-        return length * np.sin(phase + rate * middle) * np.sinc(rate * length / (2 * np.pi))
-
-    return (sine(W * T + b, a - W) + sine(W * T - b, -a - W)) / 2
-
-
-def _normal_impulse(W: Array, e: Any, T: Any) -> Array:
-    """Integral of sin(W (T - s)) P(s) ds over 0..T, P the head-on impulse of the bilinear tip over its total.
-
-    Two quarter periods: (1 - cos)/(1 + e) while the tip is loaded, T/(1 + e) long, then (1 + e sin)/(1 + e).
-    """
-    peak, a = loading(e, T)
-    total = _response(W, T, (0.0, T)) - _response(W, T, (0.0, peak), a=a)
-    if np.any(e > 0):
-        rate = a / np.where(e > 0, e, 1.0)  # where e = 0 the tip does not unload, and the span is empty
-        total = total + e * _response(W, T, (peak, T), a=rate, b=-peak * rate - np.pi / 2)
-    return total / (1 + e)

@@ -14,7 +14,7 @@ from scipy.integrate import quad, solve_ivp
 from cuefem import Cue, LumpedCue, Resolution, Scene, Support, end_mass, modes
 from cuefem.beam.tip import TipModes
 from cuefem.endmass.drives import end_mass_spread, flexible, force, stick, velocity
-from cuefem.endmass.undamped import _response, mobility, smooth_start_impulse
+from cuefem.endmass.undamped import mobility, response, smooth_start_impulse
 from cuefem.tip_modes import default_resolution, tip_modes_of
 from tests.helpers.cues import cone, kim, rod, scaled, scene
 from tests.helpers.orders import assert_order
@@ -132,7 +132,7 @@ def test_semi_infinite_euler_beam_after_a_velocity_step(long_rod: tuple[TipModes
     tip, found, unit = long_rod
     poles, residues, direct = mobility(*flexible(tip))
     T = found.contact_time
-    impulse = direct + residues @ _response(poles, T, (0.0, T))
+    impulse = direct + residues @ response(poles, T, (0.0, T))
     np.testing.assert_allclose(impulse / unit, math.sqrt(2 / math.pi), rtol=0.01)
 
 
