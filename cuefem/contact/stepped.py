@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import math
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -13,7 +14,7 @@ from scipy.integrate import solve_ivp
 from cuefem.beam.tip import TipModes
 from cuefem.contact.history import SteppedHistory
 from cuefem.contact.kernel import library
-from cuefem.contact.kernel.stepped import Numbers, Steps
+from cuefem.contact.kernel.stepped import Numbers, Steps, steps_of
 from cuefem.contact.patch import Patch, RigidPatch, SpringPatch, losses_of
 from cuefem.contact.phases import ROUNDING, Step, Stretch, endless, next_phase, pressed_together
 from cuefem.contact.ringing_tip import RINGING
@@ -90,6 +91,7 @@ class Stepped:
     """
 
     haste = 1.0
+    steps: Steps | None
     lost_in: tuple[str, ...] = ("rubbed", "damped", "gone")
 
     def __init__(
@@ -106,17 +108,22 @@ class Stepped:
         self.sizes[self.losses] = energy
         if "shear" in slots:
             self.sizes[slots["shear"]] = contact.scale
-        self.steps = self._compiled()
+        self.compile()
+
+    def compile(self) -> None:
+        """Let compiled code take the steps, where it can."""
+        found, law = library(), self.law
+        if found is None or not isinstance(law, TipLaw) or law.restitution <= RINGING:
+            self.steps = None
+        else:
+            self.steps = self.compiled(found, law, Numbers(ROUNDING, RELATIVE, ABSOLUTE * self.sizes, LONGEST_STEP))
         self.kernel = "python" if self.steps is None else "c"
 
-    def _compiled(self) -> Steps | None:
-        """The compiled steps: of a power law that gives something back, on domes alone."""
-        found, law, turning = library(), self.law, self.turning
-        if found is None or type(self) is not Stepped or not isinstance(law, TipLaw) or law.restitution <= RINGING:
-            return None
-        if turning is not None and (turning.terms.levers or turning.terms.tip is not None):
-            return None
-        return Steps(found, self, law, Numbers(ROUNDING, RELATIVE, ABSOLUTE * self.sizes, LONGEST_STEP))
+    def compiled(self, found: ctypes.CDLL, law: TipLaw, numbers: Numbers) -> Steps | None:
+        """The compiled steps of a power law: on domes alone."""
+        turning = self.turning
+        levers = turning is not None and (turning.terms.levers or turning.terms.tip is not None)
+        return None if type(self) is not Stepped or levers else steps_of(found, self, law, numbers)
 
     @classmethod
     def of(
