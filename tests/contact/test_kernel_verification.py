@@ -231,7 +231,14 @@ def test_motion_takes_what_the_kernel_leaves_of_steps(monkeypatch: pytest.Monkey
         assert np.abs(one - other).max() < 10 * AGREE * np.abs(one).max()
 
 
+RINGED = replace(LEATHER, partial_slip=True)
 WHOLE = {
+    "ring by ring": leather_scene(leather=RINGED),
+    "ring by ring, mirrored": leather_scene(-0.45, leather=RINGED),
+    "ring by ring, off": leather_scene(0.5, friction=0.2, leather=RINGED),
+    "ring by ring, endless friction": leather_scene(friction=inf, leather=RINGED),
+    "ring by ring, hit twice": leather_scene(0.375, SecondHit(0.02), leather=RINGED),
+    "ring by ring, lossless and damped": leather_scene(0.3, StructuralDamping(0.02), e=1.0, leather=RINGED),
     "stick": leather_scene(),
     "head on": leather_scene(0.0),
     "mirrored": leather_scene(-0.45),
