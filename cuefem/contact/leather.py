@@ -103,7 +103,7 @@ class Leather:
         # the forces on the rows, by Taylor's series at the end of the last step in units of its length; or by their
         # last values alone
         self.series, self.series_step = np.zeros((TAYLOR, 4)), 0.0
-        found = None if terms.levers or terms.tip.partial_slip else library()  # levers and rings are Python's
+        found = None if terms.levers else library()  # levers are functions, and Python's
         self.steps = None if found is None else compiled.Steps(found, self, RULES)
         self.kernel = "python" if self.steps is None else "c"
 

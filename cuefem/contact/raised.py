@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import math
 from dataclasses import dataclass, field
 
@@ -9,12 +10,13 @@ import numpy as np
 
 from cuefem.beam.tip import TipModes
 from cuefem.contact.history import SteppedHistory
+from cuefem.contact.kernel.stepped import Numbers, Steps, raised_steps_of
 from cuefem.contact.patch import RigidPatch
 from cuefem.contact.phases import ROUNDING, Step, next_phase
 from cuefem.contact.state import Contact, Grip, Laws, Press
 from cuefem.contact.stepped import PAST, SLOTS, End, Ends, Hold, OnTable, Stepped, Way
 from cuefem.cue import Array
-from cuefem.effects.law import NormalLaw
+from cuefem.effects.law import NormalLaw, TipLaw
 from cuefem.effects.terms import Table
 
 # Rows of the contact, in this order: the tip's velocities against the ball, and the ball's lowest point's.
@@ -76,6 +78,13 @@ class Raised(Stepped):
         self.sliding = tuple(self.rows[rows] for rows in SLIDING)
         self.gram = self.rows @ self.rows.T
         self._read_along_table()
+        self.compile()
+
+    def compiled(self, found: ctypes.CDLL, law: TipLaw, numbers: Numbers) -> Steps | None:
+        """The compiled steps; None as long as what they ask for is not there yet."""
+        if type(self) is not Raised or not hasattr(self, "gram"):
+            return None
+        return raised_steps_of(found, self, law, numbers, at_rest=REST * self.contact.laws.speed)
 
     def _read_along_table(self) -> None:
         """Impulses are read along the table, in (t, n) of the level stroke; the table's part is in them."""

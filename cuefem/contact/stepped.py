@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import math
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -12,13 +13,15 @@ from scipy.integrate import solve_ivp
 
 from cuefem.beam.tip import TipModes
 from cuefem.contact.history import SteppedHistory
+from cuefem.contact.kernel import library
+from cuefem.contact.kernel.stepped import Numbers, Steps, steps_of
 from cuefem.contact.patch import Patch, RigidPatch, SpringPatch, losses_of
 from cuefem.contact.phases import ROUNDING, Step, Stretch, endless, next_phase, pressed_together
 from cuefem.contact.ringing_tip import RINGING
 from cuefem.contact.state import APART, SIDE, Contact, Grip, Laws, Press
 from cuefem.contact.stretches import Solution, Stepping, free_course
 from cuefem.cue import Array
-from cuefem.effects.law import NormalLaw
+from cuefem.effects.law import NormalLaw, TipLaw
 from cuefem.effects.terms import ContactTerms
 
 OnTable = Literal["none", "slides", "held", "lifted"]
@@ -87,7 +90,8 @@ class Stepped:
     were asked for.
     """
 
-    haste, kernel = 1.0, "python"
+    haste = 1.0
+    steps: Steps | None
     lost_in: tuple[str, ...] = ("rubbed", "damped", "gone")
 
     def __init__(
@@ -104,6 +108,22 @@ class Stepped:
         self.sizes[self.losses] = energy
         if "shear" in slots:
             self.sizes[slots["shear"]] = contact.scale
+        self.compile()
+
+    def compile(self) -> None:
+        """Let compiled code take the steps, where it can."""
+        found, law = library(), self.law
+        if found is None or not isinstance(law, TipLaw) or law.restitution <= RINGING:
+            self.steps = None
+        else:
+            self.steps = self.compiled(found, law, Numbers(ROUNDING, RELATIVE, ABSOLUTE * self.sizes, LONGEST_STEP))
+        self.kernel = "python" if self.steps is None else "c"
+
+    def compiled(self, found: ctypes.CDLL, law: TipLaw, numbers: Numbers) -> Steps | None:
+        """The compiled steps of a power law: on domes alone."""
+        turning = self.turning
+        levers = turning is not None and (turning.terms.levers or turning.terms.tip is not None)
+        return None if type(self) is not Stepped or levers else steps_of(found, self, law, numbers)
 
     @classmethod
     def of(
@@ -241,7 +261,8 @@ class Stepped:
         contact, depth = self.contact, self.contact.slots["depth"]
         self.patch.let_go(contact)
         rest, size = self.law.rest(self.deepest), contact.laws.speed * self.clock
-        way = self._way(None, {"touch": lambda z: (rest - float(z[depth]) + near) / size}, until=until)
+        touch: Ends = {"touch": lambda z: (rest - float(z[depth]) + near) / size}
+        way = self._way(None, touch, until=until, near=near)
         if way is None:
             return False
         self._take(None, way)
@@ -277,11 +298,18 @@ class Stepped:
             ends |= {"slipped": within(1.0), "slipped back": within(-1.0)}
         return ends
 
-    def _way(self, hold: Hold | None, ends: Ends, *, until: float) -> Way | None:
-        """The way to the first end that falls through zero; None if none does by ``until``, s."""
+    def _way(self, hold: Hold | None, ends: Ends, *, until: float, near: float = 0.0) -> Way | None:
+        """The way to the first end that falls through zero; None if none does by ``until``, s.
+
+        near: by which ball and tip overlap where they touch, m.
+        """
         contact = self.contact
         contact.z = contact.z.copy()
         contact.z[self.losses] = 0.0
+        if self.steps is not None:
+            found = self.steps.way(hold, self.deepest, near, contact.time, until, contact.z)
+            if found is not None:  # else what stopped it is for scipy to say
+                return None if found.event < 0 else Way(list(ends)[found.event], *found[1:])
         solved = self._solved(hold, (contact.time, until), list(ends.values()), contact.z)
         name = next((name for name, times in zip(ends, solved.t_events, strict=True) if len(times)), None)
         if name is None:

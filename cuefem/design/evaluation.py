@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -35,10 +36,10 @@ def evaluate(
     """The responses of every scene.
 
     Bare cues with the same number of segments are computed as arrays, in blocks; scenes with effects, and lumped cues,
-    one by one. ``at`` is one resolution for all; by default it is `common_resolution`, which is coarser than the
-    default of `cuefem.end_mass`: stick end masses differ from that by up to 2 %. A scene without an answer gets a
-    reason and does not disturb the others; one without an end mass keeps its other responses. ValueError if no response
-    has one of the names.
+    one by one, where the modes of equal cues with equal effects are solved once. ``at`` is one resolution for all; by
+    default it is `common_resolution`, which is coarser than the default of `cuefem.end_mass`: stick end masses differ
+    from that by up to 2 %. A scene without an answer gets a reason and does not disturb the others; one without an end
+    mass keeps its other responses. ValueError if no response has one of the names.
     """
     asked = tuple(Response.of(one) if isinstance(one, str) else one for one in responses)
     at = at or common_resolution(scenes, asked)
@@ -58,11 +59,17 @@ def evaluate(
 
 
 def _blocks(scenes: Sequence[Scene]) -> list[list[int]]:
-    """Indices of scenes to compute together: bare cues in blocks by number of segments, others one by one."""
-    groups: dict[int, list[int]] = {}
+    """Indices of scenes to compute together, in blocks.
+
+    Bare cues go by their number of segments; with effects on them, those whose modes are the same; lumped ones alone.
+    """
+    groups: dict[Any, list[int]] = {}
     for i, scene in enumerate(scenes):
-        together = len(scene.cue.segments) if not scene.effects else 0
-        groups.setdefault(together or -i, []).append(i)
+        if scene.cue.segments:
+            together: Any = (scene.cue, scene.cue_effects) if scene.effects else len(scene.cue.segments)
+        else:
+            together = -i
+        groups.setdefault(together, []).append(i)
     return [rows[start : start + BLOCK] for rows in groups.values() for start in range(0, len(rows), BLOCK)]
 
 

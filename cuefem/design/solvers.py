@@ -88,7 +88,8 @@ class _Strikes:
     def strike(self, i: int, offset: float | None) -> Outcome:
         """The coupled strike of a design at an offset b/R, or at its scene's own; each is made once."""
         if (i, offset) not in self._outcomes:
-            self._outcomes[i, offset] = strike_modes(self._scene(i, offset), self.tip(i))
+            found = strike_modes(self._scene(i, offset), self.tip(i))
+            self._outcomes[i, offset] = replace(found, history=None)  # which would fill the memory
         return self._outcomes[i, offset]
 
 
@@ -158,7 +159,8 @@ class OneByOne(_Strikes):
     def __init__(self, scenes: Sequence[Scene], at: Resolution, frequencies: int) -> None:
         super().__init__()
         self.scenes, self.at, self._count = scenes, at, frequencies
-        self._tips: dict[int, TipModes] = {}
+        self._tips: dict[Any, TipModes] = {}
+        self._solved: dict[Any, Modes] = {}
 
     def _of_cues(self, name: str) -> Array:
         return np.array([getattr(scene.cue, name) for scene in self.scenes], dtype=float)
@@ -188,8 +190,13 @@ class OneByOne(_Strikes):
         return [self._solve(scene) for scene in self.scenes]
 
     def _solve(self, scene: Scene) -> Modes:
-        system = assemble(scene.shaft, elements=self.at.elements, order=self.at.order, effects=scene.cue_effects)
-        return solve(system, max(self.at.modes + 2 - system.rigid.shape[1], self._count))
+        """Modes of a scene's cue; those of equal cues with equal effects are solved once."""
+        cue, effects = scene.shaft, scene.cue_effects
+        if (cue, effects) not in self._solved:
+            system = assemble(cue, elements=self.at.elements, order=self.at.order, effects=effects)
+            count = max(self.at.modes + 2 - system.rigid.shape[1], self._count)
+            self._solved[cue, effects] = solve(system, count)
+        return self._solved[cue, effects]
 
     @property
     def frequencies(self) -> Array:
@@ -198,10 +205,13 @@ class OneByOne(_Strikes):
 
     def tip(self, i: int) -> TipModes:
         """Tip modes of a design, with its effects."""
-        if i not in self._tips:
-            scene = self.scenes[i]
-            self._tips[i] = tip_modes_from(self._kept(i), scene) if scene.cue.segments else tip_modes_of(scene)
-        return self._tips[i]
+        scene = self.scenes[i]
+        if not scene.cue.segments:
+            return tip_modes_of(scene)
+        alike = scene.cue, scene.cue_effects, float(scene.axial_mass)
+        if alike not in self._tips:
+            self._tips[alike] = tip_modes_from(self._kept(i), scene)
+        return self._tips[alike]
 
     def _kept(self, i: int) -> Modes:
         """The modes that a contact takes: with a support as many in all as without (`tip_modes_of`)."""

@@ -14,8 +14,11 @@ import pytest
 
 from cuefem import (
     AxialWaves,
+    Elevation,
     Outcome,
+    PowerLawTip,
     Resolution,
+    RollingContact,
     Scene,
     SecondHit,
     StructuralDamping,
@@ -156,7 +159,86 @@ def test_a_cell_is_as_long_as_the_motion_allows(both) -> None:
     assert python / 12 < c < python / 4
 
 
+STEPPED = {
+    "power law": (kim_scene(0.3), PowerLawTip(1.5)),
+    "on a spring": (kim_scene(-0.4), PowerLawTip(1.5), SHEAR),
+    "rolling": (kim_scene(0.4), DOME, RollingContact()),
+    "rolling off": (kim_scene(0.6, friction=0.3), DOME, RollingContact(), PowerLawTip(1.4), TipShear(0.5)),
+    "on a point, lively": (kim_scene(0.2, restitution=1.0), RollingContact()),
+    "hit twice": (kim_scene(0.3), PowerLawTip(1.5), SecondHit(0.01)),
+    "damped": (kim_scene(0.3), PowerLawTip(1.2), StructuralDamping(0.02)),
+    "endless friction": (kim_scene(0.3, friction=inf), PowerLawTip(1.5)),
+    "head on": (kim_scene(0.0), PowerLawTip(1.5)),
+    "raised": (kim_scene(0.3), Elevation(0.1)),
+    "raised, off": (kim_scene(-0.4, friction=0.3), Elevation(0.5, 0.3), PowerLawTip(1.5)),
+    "raised, damped": (kim_scene(0.5), Elevation(1.0), StructuralDamping(0.02)),
+    "raised, endless friction": (kim_scene(0.3, friction=inf), Elevation(0.2)),
+    "raised, on a smooth table": (kim_scene(0.2), Elevation(0.3, 0.0)),
+}
+
+
+@BUILT
+@pytest.mark.parametrize("name", STEPPED)
+def test_the_kernel_takes_the_steps_that_scipy_takes(name: str, both) -> None:
+    """Both choose each step by the same rule from the same tables, so that nothing but rounding tells them apart."""
+    scene, *effects = STEPPED[name]
+    scene = replace(scene, effects=tuple(effects))
+    tip = tip_modes_of(scene, Resolution(2, 10, 5))
+    agree(*both(lambda: strike_modes(scene, tip)))
+
+
+@BUILT
+@pytest.mark.parametrize("seed", range(4))
+def test_the_kernel_steps_as_scipy_does_over_a_random_family(seed: int, both) -> None:
+    rng = np.random.default_rng(seed)
+    omega, amplitude = np.sort(10 ** rng.uniform(2.5, 3.8, 4)), rng.uniform(0.5, 5.0, 4)
+    tip = hand_made(omega.tolist(), amplitude.tolist(), rigid=rng.uniform(2.0, 9.0))
+    scene = kim_scene(rng.uniform(0.1, 0.6), friction=rng.uniform(0.1, 1.0), restitution=rng.uniform(0.3, 1.0))
+    effects = [PowerLawTip(rng.uniform(1.0, 2.0))]
+    if seed % 2:
+        effects += [each for each in (SHEAR, RollingContact()) if rng.random() < 0.7]
+    else:
+        effects.append(Elevation(rng.uniform(0.02, 1.2), rng.uniform(0.1, 0.4)))
+    scene = replace(scene, effects=tuple(effects))
+    agree(*both(lambda: strike_modes(scene, tip)))
+
+
+@BUILT
+def test_what_the_kernel_does_not_step_is_left_to_scipy(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A nearly dead tip, and steps that get stuck, which end with scipy's words."""
+    monkeypatch.setenv(VARIABLE, "c")
+    tip = hand_made([1e3], [5.0])
+    power = PowerLawTip(1.5)
+    assert strike_modes(replace(kim_scene(0.3, restitution=0.0), effects=(power,)), tip).kernel == "python"
+    wild = replace(tip, approach=tip.approach * 1e200, amplitude=tip.amplitude * 1e110)
+    scene, said = replace(kim_scene(0.3), effects=(power,)), []
+    for name in ("python", "c"):
+        monkeypatch.setenv(VARIABLE, name)
+        with np.errstate(all="ignore"), pytest.raises((RuntimeError, ArithmeticError, ValueError)) as raised:
+            strike_modes(scene, wild)
+        said.append(str(raised.value))
+    assert said[0] == said[1]
+
+
+@BUILT
+def test_motion_takes_what_the_kernel_leaves_of_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene, found = replace(kim_scene(0.3), effects=(PowerLawTip(1.5), DOME, RollingContact())), []
+    for name in ("python", "c"):
+        monkeypatch.setenv(VARIABLE, name)
+        found.append(motion(scene, np.linspace(0, 3e-3, 7), Resolution(2, 10, 5)))
+    for part in ("fields", "along", "centre", "turned"):
+        one, other = (getattr(each, part) for each in found)
+        assert np.abs(one - other).max() < 10 * AGREE * np.abs(one).max()
+
+
+RINGED = replace(LEATHER, partial_slip=True)
 WHOLE = {
+    "ring by ring": leather_scene(leather=RINGED),
+    "ring by ring, mirrored": leather_scene(-0.45, leather=RINGED),
+    "ring by ring, off": leather_scene(0.5, friction=0.2, leather=RINGED),
+    "ring by ring, endless friction": leather_scene(friction=inf, leather=RINGED),
+    "ring by ring, hit twice": leather_scene(0.375, SecondHit(0.02), leather=RINGED),
+    "ring by ring, lossless and damped": leather_scene(0.3, StructuralDamping(0.02), e=1.0, leather=RINGED),
     "stick": leather_scene(),
     "head on": leather_scene(0.0),
     "mirrored": leather_scene(-0.45),

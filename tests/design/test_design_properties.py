@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cuefem import (
+    LeatherTip,
     LumpedCue,
     PointMass,
     Resolution,
@@ -24,6 +25,7 @@ from cuefem import (
     modes,
     strike,
 )
+from cuefem.beam.modes import solve
 from cuefem.beam.waves import even_mesh_for
 from cuefem.design import Levels, Response, Sample, Span, Study, Vary, evaluate, paths, replaced
 from cuefem.design.paths import spelt, value_at
@@ -338,6 +340,23 @@ def test_responses_are_those_of_single_calls(effects: tuple[object, ...]) -> Non
         for name, single in singly(scene).items():
             near = 1e-9 if name in ("squirt_slope", "pivot_length") else 1e-10
             np.testing.assert_allclose(by_name[name], single, rtol=near, err_msg=name)
+
+
+@pytest.mark.parametrize("effects", [EFFECTS["tip"], (LeatherTip(6e-3, 9.5e-3, E=140e6),)], ids=["tip", "leather"])
+def test_designs_of_one_cue_share_its_modes(effects, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where ball, tip and stroke alone differ; to the same bits as one by one."""
+    solved = []
+    monkeypatch.setattr("cuefem.design.solvers.solve", lambda *args: solved.append(args) or solve(*args))
+    tip = Tip(0.73) if effects is not EFFECTS["tip"] else BASE.tip
+    base = replace(BASE, cue=kim(), tip=tip, effects=effects)
+    scenes = [replace(base, stroke=Stroke(1.0 + b, b)) for b in (0.1, 0.2, 0.3, 0.4)]
+    asked = ["squirt", "ball_speed", "end_mass", "pivot_length(0.2)"]
+    together = evaluate(scenes, asked, at=Resolution(2, 10, 8))
+    assert len(solved) == 1
+    assert together.reasons == (None,) * 4
+    alone = np.concatenate([evaluate([scene], asked, at=Resolution(2, 10, 8)).values for scene in scenes])
+    assert len(solved) == 5
+    np.testing.assert_array_equal(together.values, alone)
 
 
 def test_a_failing_design_disturbs_no_other() -> None:

@@ -1,6 +1,6 @@
 /* Steps of the contact of a whole tip (cuefem.contact.leather, `_leg`) with the exact turns of all modes
    (cuefem.contact.response). Numbers that choose steps are handed over; equations stand in those modules. */
-#include "kernel.h"
+#include "rings.h"
 
 #include <string.h>
 
@@ -73,6 +73,8 @@ struct leg {
     double *coordinates; /* (2, modes): planes */
     double *losses;      /* worked, wasted, rubbed, and one a damper */
     double *room;
+    const struct rings *rings; /* or none: the patch holds or slides as a whole */
+    double *held_by;           /* what each of them holds */
 };
 
 /* ---- the law ---- */
@@ -128,6 +130,8 @@ static double scale_of(const struct leg *leg, const struct hold *hold)
 static double slides(const struct leg *leg, const struct hold *hold, double v_t, double v_n, double depth)
 {
     double virtual = virtual_of(leg, hold, depth);
+    if (leg->rings) /* the innermost ring does */
+        return v_t - hold->side * leg->contact->friction * leg->rings->first_gain * v_n / scale_of(leg, hold);
     struct forces at = law_at(leg->law, virtual), slope = law_slopes(leg->law, virtual);
     double part = at.k > 0 ? slope.F / at.k : 1 / leg->law->first_ratio;
     if (!hold->grows && virtual > 0 && at.k > 0)
@@ -360,6 +364,62 @@ static void guess(const struct leg *leg, const struct rule *rule, double step, d
 }
 
 /* (F_t, F_n) at the nodes, of v_t and the compression there. */
+/* The rings at a compression. */
+static void rings_of(const struct leg *leg, const struct hold *hold, double depth, struct ringed *found)
+{
+    double virtual = virtual_of(leg, hold, depth);
+    struct forces at = law_at(leg->law, virtual);
+    rings_at(leg->rings, virtual, at.F, at.k, found);
+}
+
+/* What the rings hold at a part of a step, from its start on; F_t at its nodes, as far as they are before it. sums: from
+   values at the nodes to their integral up to the part, over the step's time. */
+static double hold_on(const struct leg *leg, const struct hold *hold, const struct rule *rule, double step,
+                      double (*motion)[NODES], double part, const double *sums, double depth, double *held)
+{
+    struct ringed rings[2];
+    int now = 0;
+    double before = 0, moved, total = 0;
+    rings_of(leg, hold, motion[DEPTH][0], rings);
+    for (int i = 1; i < NODES && rule->times[i] < part * (1 - 1e-12); i++) {
+        now = 1 - now;
+        rings_of(leg, hold, motion[DEPTH][i], rings + now);
+        moved = step * dot(rule->integral + i * NODES, motion[V_T], NODES);
+        total = rings_hold(leg->rings, rings + 1 - now, rings + now, before - moved, held);
+        motion[F_T][i] = total;
+        before = moved;
+    }
+    rings_of(leg, hold, depth, rings + 1 - now);
+    return rings_hold(leg->rings, rings + now, rings + 1 - now, before - step * dot(sums, motion[V_T], NODES), held);
+}
+
+/* Take the rings to the end of a step; the force along the surface there. */
+static double rings_go(const struct leg *leg, const struct hold *hold, const struct rule *rule, double step,
+                       const struct solved *solved, double part, const double *sums, double depth)
+{
+    if (hold->side) {
+        struct ringed at;
+        rings_of(leg, hold, depth, &at);
+        return rings_slide(leg->rings, &at, hold->side, leg->held_by);
+    }
+    double motion[MOTIONS][NODES];
+    memcpy(motion, solved->motion, sizeof motion);
+    return hold_on(leg, hold, rule, step, motion, part, sums, depth, leg->held_by);
+}
+
+/* F_t at the nodes of a step in which some rings hold. */
+static void held_at(const struct leg *leg, const struct hold *hold, const struct rule *rule, double step,
+                    double (*motion)[NODES])
+{
+    double held[MOST_RINGS], first = 0;
+    memcpy(held, leg->held_by, sizeof(double) * leg->rings->count);
+    for (int r = 0; r < leg->rings->count; r++)
+        first += held[r];
+    motion[F_T][0] = first;
+    motion[F_T][NODES - 1] = hold_on(leg, hold, rule, step, motion, 1, rule->integral + (NODES - 1) * NODES,
+                                     motion[DEPTH][NODES - 1], held);
+}
+
 FAST static void forces_at(const struct leg *leg, const struct hold *hold, const double *integral, double step,
                       double (*motion)[NODES])
 {
@@ -444,6 +504,8 @@ FAST static int settle(const struct leg *leg, const struct hold *hold, const str
         }
         if (!hold->apart)
             forces_at(leg, hold, rule->integral, step, motion);
+        if (leg->rings && !hold->apart && !hold->side)
+            held_at(leg, hold, rule, step, motion);
     }
     return 0;
 }
@@ -609,7 +671,7 @@ FAST EXPORTED int cuefem_leather_leg(const struct leg *leg, const struct hold *h
     struct course *course = leg->course;
     int modes = leg->free->modes, dampers = leg->free->dampers, rows = ROWS + dampers;
     double *own = leg->room + 4 * (size_t)modes, *damped = own + (size_t)rows * NODES;
-    if (bounds->shortest >= HALVINGS)
+    if (bounds->shortest >= HALVINGS || (leg->rings && leg->rings->count > MOST_RINGS))
         return REFUSED;
     for (;;) {
         if (!(course->time < until))
@@ -685,6 +747,8 @@ FAST EXPORTED int cuefem_leather_leg(const struct leg *leg, const struct hold *h
             course->angle = dot(at, step.motion[ANGLE], NODES);
             course->shear = dot(at, step.motion[F_T], NODES);
             course->leaving = dot(at, step.motion[V_N], NODES);
+            if (leg->rings && !hold->apart)
+                course->shear = rings_go(leg, hold, rule, length, &step, part, sums, depth);
             if (hold->side)
                 course->shear = hold->side * leg->contact->friction * law_at(leg->law, virtual_of(leg, hold, depth)).F;
             course->series_step = 0;

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from cuefem.contact.kernel.structures import pointer, structure
+from cuefem.contact.ringed_patch import RingForces
 from cuefem.cue import Array
 
 if TYPE_CHECKING:
@@ -52,7 +53,12 @@ _Course = structure(
     (c_double * 16, "series"),
     (c_int, "halvings steps written event needed"),
 )
-_Leg = structure("_Leg", (c_void_p, "rules free responses law bounds contact course coordinates losses room"))
+_Rings = structure(
+    "_Rings", (c_int, "count"), (c_double, "friction first_gain"), (c_void_p, "edges force_to stiffness_to slope_to")
+)
+_Leg = structure(
+    "_Leg", (c_void_p, "rules free responses law bounds contact course coordinates losses room rings held_by")
+)
 
 
 class _Functions(NamedTuple):
@@ -157,7 +163,18 @@ class Steps:
             *(ctypes.addressof(part) for part in (self.rules, self.free, self.responses, self.law, self.bounds)),
             *(ctypes.addressof(part) for part in (self.contact, self.course)),
             *map(pointer, (self.coordinates, self.losses, self.room)),
+            *self._ringed(leather),
         )
+
+    def _ringed(self, leather: Leather) -> tuple[int, int]:
+        """Where the rings of the patch stand, and what they hold; nowhere if it holds as a whole."""
+        forces, self.held_by = leather.tip_forces, np.empty(0)
+        if not isinstance(forces, RingForces):
+            return 0, 0
+        self.held_by = np.zeros_like(forces.held_by)
+        parts = forces.edges, forces.force_to, forces.stiffness_to, forces.slope_to
+        self.rings = _Rings(len(self.held_by), forces.friction, forces.first_gain, *map(self._at, parts))
+        return ctypes.addressof(self.rings), pointer(self.held_by)
 
     def _at(self, array: Array | Complex) -> int:
         """Where an array's numbers stand; it is kept."""
@@ -200,16 +217,18 @@ class Steps:
         if status:
             raise RuntimeError("the compiled kernel was built for other nodes of a step; install again")
 
-    @staticmethod
-    def _enter(course: Any, leather: Leather) -> None:
+    def _enter(self, course: Any, leather: Leather) -> None:
         contact = leather.contact
         course.time, (course.depth, course.angle, course.shear) = contact.time, leather.kept
         course.leaving, course.deepest = leather.leaving, leather.tip_forces.deepest
         course.series_step, course.halvings, course.steps = leather.series_step, leather.halvings, len(leather.pieces)
+        if isinstance(leather.tip_forces, RingForces):
+            self.held_by[:] = leather.tip_forces.held_by
         ctypes.memmove(course.series, pointer(np.ascontiguousarray(leather.series)), ctypes.sizeof(course.series))
 
-    @staticmethod
-    def _leave(course: Any, leather: Leather) -> None:
+    def _leave(self, course: Any, leather: Leather) -> None:
+        if isinstance(leather.tip_forces, RingForces):
+            leather.tip_forces.held_by = self.held_by.copy()
         leather.contact.time, leather.leaving = course.time, course.leaving
         leather.contact.put(depth=course.depth, angle=course.angle, shear=course.shear)
         leather.series_step, leather.halvings = course.series_step, course.halvings
