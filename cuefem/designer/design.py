@@ -1,4 +1,4 @@
-"""A design: a scene with its knobs turned; and the steps of a desk, to go back and forth."""
+"""A design is a scene with its knobs turned. The history holds the designs before and after it, to undo and redo."""
 
 from __future__ import annotations
 
@@ -16,9 +16,10 @@ MOST_STEPS = 60
 
 @dataclass(frozen=True)
 class Design:
-    """A named scene with its knobs turned. notes: what was assumed because its file does not say it.
+    """A scene as it was opened, and where its knobs stand now.
 
-    ValueError by `scene` if no such cue can be made.
+    base: the scene as it was opened or last edited. notes: what was assumed because the file does not say it. A design
+    can be written down that no cue can have (a bore wider than the shaft); then `scene` raises ValueError.
     """
 
     name: str
@@ -42,14 +43,14 @@ class Design:
 
 
 class Step(NamedTuple):
-    """What is on a desk: the design in work, and those that it is compared with, each by its own name."""
+    """What one undo brings back: the design in work, and the designs that are pinned beside it to be compared."""
 
     design: Design
     pinned: tuple[Design, ...] = ()
 
 
 class History:
-    """The steps of a desk; one of them is where it stands."""
+    """All steps of a page in their order, and which of them is shown. Undo and redo move to a neighbour."""
 
     def __init__(self, steps: Sequence[Step], at: int = -1) -> None:
         self.steps = list(steps)
@@ -58,13 +59,14 @@ class History:
 
     @property
     def now(self) -> Step:
-        """Where the desk stands."""
+        """The step that is shown."""
         return self.steps[self.at]
 
     def put(self, step: Step, label: str = "", *, when: float = 0.0) -> None:
-        """Add a step, and forget those that were undone.
+        """Add a step behind the one that is shown; steps that were undone are forgotten.
 
-        label: what was moved. A step of the same label soon after the last, ``when`` in s, takes its place.
+        label: the knob that was moved. when: the time, s. Moves of one knob within `TOGETHER` of each other become one
+        step, so that one undo takes back a whole slide.
         """
         if step == self.now:
             return

@@ -1,18 +1,17 @@
 """The knobs of a cue, and a scene with its knobs turned.
 
-A scene stays as its file has it except for the knobs that were moved: a knob at the scene's own value changes nothing,
-and what has no knob (other segments, effects, the ball) is kept. What a knob means in any cue, told by its drawing
-alone:
+A knob that was not moved changes nothing: the scene stays as its file has it. What has no knob (other segments and
+effects, the ball) is kept as well. The parts that the knobs change are found in the drawing:
 
-- The leather is the soft segments at the tip; the ferrule is the segment behind it, where that is short and of another
-  material than the next; the shaft is what follows, as far as it is of one material.
-- Diameters: those at the tip, `TAPER_AT` behind it, and at the end of the drawing. A change at one of them fades out
-  evenly to the next; pieces stay conical.
-- The ferrule takes its length from the segment behind it and ends flush with that one's cone, so that the cue stays as
-  long as it is and the shaft keeps its line.
-- The bore is the empty one that begins behind the leather (or, through a ferrule on a tenon, behind that); its depth is
-  counted from its mouth. A filled bore has no knob.
-- The joint is the first `Joint` of the scene; it bends by its rotational compliance alone.
+- The leather is the soft material at the tip. The ferrule is the segment behind it, if that is short and of another
+  material than the segment that follows. The shaft is all that follows, up to the next change of material.
+- A diameter is set at three places: at the tip, `TAPER_AT` behind it, and at the end of the drawing. What is added at
+  one place becomes less and less towards the next, so that every piece stays a cone.
+- A longer ferrule takes its length from the wood behind it and ends flush with that wood. The cue stays as long as it
+  was, and the cone of the shaft stays where it was.
+- The bore is the empty one behind the leather, or behind the ferrule if the ferrule sits on a tenon. Its depth is
+  counted from where it begins. A bore that is filled has no knob.
+- The joint is the first `Joint` among the effects. Its knob sets how far it bends.
 """
 
 from __future__ import annotations
@@ -37,7 +36,7 @@ SAME = 1e-9  # relative to a length: places closer than this are the same
 
 @dataclass(frozen=True)
 class Knobs:
-    """What a person can turn; SI. None: the scene has no such part, or no knob can change it.
+    """The settings of all knobs, in SI units. None: the scene has no such part, or one that no knob can change.
 
     Diameters at the tip, `TAPER_AT` behind it and at the end, m; bore: depth from its mouth and width, m; joint:
     distance from the tip, m, and rotational compliance, rad/(N m); bridge: distance from the tip, m, and stiffness,
@@ -137,7 +136,8 @@ def knobs_of(scene: Scene) -> Knobs:
     cue = cue_of(scene)
     parts, pieces = Parts.of(cue), cue.segments
     ferrule = parts.ferrule
-    joint, bridge, leather = joint_of(scene), bridge_of(scene), leather_of(scene)
+    joint, bridge = joint_of(scene), bridge_of(scene)
+    leather = scene.leather if scene.contact_terms.tip is not None else None
     return Knobs(
         tip_diameter=pieces[0].tip_diameter,
         taper_diameter=outer_diameter(cue, taper_position(cue)),
@@ -161,11 +161,6 @@ def knobs_of(scene: Scene) -> Knobs:
         offset=float(scene.stroke.offset),
         body_mass=cue.body_mass,
     )
-
-
-def leather_of(scene: Scene) -> LeatherTip | None:
-    """The scene's leather tip, if it has one."""
-    return next((effect for effect in scene.effects if isinstance(effect, LeatherTip)), None)
 
 
 def bridge_of(scene: Scene) -> Support:

@@ -13,7 +13,10 @@ from cuefem.designer.kept import LONGEST_NAME
 
 
 class PinnedList:
-    """A row for every pinned design; what is done is told by its place in the list."""
+    """A row of buttons for every pinned design.
+
+    Each function that is given is called with the row's place in the list, from 0; `rename` with the new name too.
+    """
 
     def __init__(
         self,

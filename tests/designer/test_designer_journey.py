@@ -106,9 +106,8 @@ def test_a_cue_maker_goes_all_the_way(browser: Any, address: str, folder: Path, 
         turn(page, "bore_depth", "PageUp", 2)
         columns = page.locator("thead th").all_inner_texts()
         assert columns[:4] == ["number", "this design", "mine 1", "mine 2"]
-        row = (
-            page.locator("tr", has=page.locator('[data-number="end_mass_stick"]')).locator("td span").all_inner_texts()
-        )
+        felt = 'tr:has([data-number="end_mass_stick"]) td span'
+        row = page.locator(felt).all_inner_texts()
         bored, plain, thin = (float(cell.split()[0]) for cell in row)
         assert bored < thin < plain
 

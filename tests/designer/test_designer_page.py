@@ -345,21 +345,32 @@ def test_a_file_is_opened_changed_and_taken_back(browser: Any, address: str, tmp
         page.wait_for_function("was => document.querySelector('[data-number=squirt]').innerText === was", arg=was)
 
 
+# What has the focus: its role, its name (of a word that is explained, what it opens); of a slider, whether it shows.
+REACHED = """() => {
+  const e = document.activeElement, thumb = e.querySelector(".q-slider__thumb");
+  const name = e.getAttribute("popovertarget") || e.ariaLabel || e.innerText;
+  return [e.getAttribute("role") || "", name, thumb ? getComputedStyle(thumb).outlineStyle !== "none" : false];
+}"""
+
+
 def test_it_is_worked_by_keys_alone(browser: Any, address: str) -> None:
     with opened(browser, address) as page:
-        reached = []
-        for _ in range(80):
+        reached: list[tuple[str, str]] = []
+        for _ in range(300):
             page.keyboard.press("Tab")
-            reached.append(
-                page.evaluate("(e => [e.getAttribute('role'), e.ariaLabel || e.innerText])(document.activeElement)")
-            )
+            role, label, outlined = page.evaluate(REACHED)
+            if (role, label) in reached[:1]:
+                break  # once round
+            reached.append((role, label))
+            assert outlined or role != "slider"
         sliders = [label for role, label in reached if role == "slider"]
         assert sliders[0] == "Tip diameter, mm"
         assert len(set(sliders)) == page.locator("[data-knob] [role=slider]").count() == 18
-        assert (
-            page.evaluate("getComputedStyle(document.activeElement.querySelector('.q-slider__thumb')).outlineStyle")
-            != "none"
-        )
+        names = {label for _, label in reached}
+        buttons = page.locator("button:not(:disabled):not(.term):visible").all()
+        assert {one.get_attribute("aria-label") or one.inner_text() for one in buttons} <= names
+        assert sum(label.startswith("Squirt: ") for label in names) == 1  # a chart to read values from
+        assert {"w-squirt", "w-natural-pivot-length", "w-bore", "w-ferrule"} <= {label for _, label in reached}
         slider = page.get_by_role("slider", name="Offset b/R")
         slider.focus()
         assert slider.get_attribute("aria-valuenow") == "0.3"
