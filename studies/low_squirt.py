@@ -110,14 +110,21 @@ def shafts() -> Iterator[list[str | float]]:
         yield [words, *measures(cue(name)), *(number for pair in told for number in pair)]
 
 
-def optima() -> Iterator[list[str | float]]:
+def optima() -> list[list[str | float]]:
+    return [searched(), by_gradients()]
+
+
+def searched() -> list[str | float]:
     asked = wanted()
     points, squirt, within = search(asked, SEARCHED, seed=7)
     best = int(np.where(within, squirt, np.inf).argmin())
-    yield ["best of a quasi-random search", str(SEARCHED), *_checked(asked.scene(points[best]).cue, squirt[best]), ""]
-    found = optimum(asked)
+    return ["best of a quasi-random search", str(SEARCHED), *_checked(asked.scene(points[best]).cue, squirt[best]), ""]
+
+
+def by_gradients() -> list[str | float]:
+    found = optimum(wanted())
     held = ", ".join(found.active)
-    yield ["by exact gradients", str(found.evaluations), *_checked(found.scene.cue, found.value), held]
+    return ["by exact gradients", str(found.evaluations), *_checked(found.scene.cue, found.value), held]
 
 
 def _checked(made: Cue, squirt: float) -> list[float]:
