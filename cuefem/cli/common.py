@@ -179,6 +179,11 @@ def head_lines(file: Path, about: dict[str, Any], effects: Sequence[Any], notes:
     return lines
 
 
+def assumed_lines(notes: Sequence[str]) -> list[str]:
+    """What was assumed, in a line; none where nothing was."""
+    return [f"assumed: {'; '.join(notes)}"] if notes else []
+
+
 def print_json(record: Any) -> None:
     """Print a record for programs."""
     from cuefem.report.record import plain
