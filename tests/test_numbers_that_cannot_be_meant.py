@@ -57,6 +57,13 @@ def test_a_slip_of_units_is_remarked_where_it_stands(make: Callable[[], object],
     assert {Path(one.filename).name for one in told} == {Path(__file__).name}
 
 
+def test_a_contact_time_in_the_place_of_a_strikers_stiffness() -> None:
+    """Of a ball of 5 g, e = 0.8, 1 ms."""
+    with pytest.warns(cf.Unusual, match=r"contact time in s\? Write Striker\(..., contact_time=0.001\)") as told:
+        cf.Striker(0.005, 0.8, 1e-3)
+    assert {Path(one.filename).name for one in told} == {Path(__file__).name}
+
+
 def test_a_shaft_that_is_struck_without_the_rest_of_its_cue() -> None:
     """At the scene, where the mass counts, and not at the shaft, which may be tapped; a model to scale may be light."""
     with pytest.warns(

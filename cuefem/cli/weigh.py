@@ -141,7 +141,7 @@ def _test(given: dict[str, Any]) -> PendulumTest:
 
 
 def _bounces(given: dict[str, Any], held: str) -> Bounces:
-    """The readings off the free shaft, or off the one that is held."""
+    """The readings of the bounces off the free shaft; with held "held_", off the shaft that is held firm."""
     from cuefem.measured.pendulum import WAYS as KNOWN
     from cuefem.measured.pendulum import Bounces
 
