@@ -23,7 +23,7 @@ from cuefem.design import Response, Span, Vary
 from cuefem.design.optimum import Limit, Problem, front, optimum, search
 from cuefem.io.study import load_optimum
 from studies import pool
-from studies.common import STUDIES, cue, figure, predictions, scene, table
+from studies.common import CAROM, STUDIES, cue, figure, predictions, scene, table
 
 AT = Resolution(2, 14, 40)
 COARSE = Resolution(1, 6, 8)  # ranks designs; the front's points are computed again at AT
@@ -146,7 +146,8 @@ def text() -> str:
     third = table(["least squirt", *sought, "squirt at b/R 0.3, °", "held by (SI)"], optima())
     limits = ", ".join(f"{limit.response.name} >= {limit.low:g}" for limit in wanted().limits)
     return (
-        f"# Shafts of little squirt\n\nT = 1 ms, bare.\n\n{first}\n{second}\nLeast squirt of bore, depth, ferrule, tip "
+        f"# Shafts of little squirt\n\nT = 1 ms, bare. {CAROM}\n\n{first}\n{second}\n"
+        "Least squirt of bore, depth, ferrule, tip "
         f"and taper with {limits} (SI); squirt is over φ at small offsets.\n\n{third}"
     )
 
