@@ -34,7 +34,7 @@ class Game:
     offset
         Where the ball is hit, b/R: well off centre, and far from a miscue.
     source
-        Where the numbers are from; "usual" marks those that players and shops agree on without a single source.
+        Where each number comes from. A number marked "usual" has no single source: players and shops agree on it.
     """
 
     ball: Ball

@@ -209,7 +209,8 @@ def end_mass(scene: Scene, ax: Axes | None = None, *, at: Resolution | None = No
     Parameters
     ----------
     scene : Scene
-        With a cue of segments and without effects.
+        With a cue of segments and without effects but a `LeatherTip`, of which the contact time stays. The leather
+        itself is left out: all of its mass, which sits at the tip, is end mass.
     ax : matplotlib axes, optional
         Where to draw; by default on a new figure.
     at : Resolution, optional
@@ -220,12 +221,24 @@ def end_mass(scene: Scene, ax: Axes | None = None, *, at: Resolution | None = No
     matplotlib axes
         Grams a gram against mm from the tip. A tip of soft leather is left out: its own modes lie too near the limit
         of those kept.
+
+    Raises
+    ------
+    ValueError
+        If the scene has other effects.
     """
     check_kind("scene", scene, Scene)
-    found, axes = sensitivity(scene, at=at), _axes(ax)
+    if any(not effect.whole_tip for effect in scene.effects):
+        names = ", ".join(sorted({type(effect).__name__ for effect in scene.effects if not effect.whole_tip}))
+        raise ValueError(f"plot.end_mass takes a scene without effects, LeatherTip apart; got {names}")
+    bare, left_out = scene, ""
+    if scene.effects:
+        bare = replace(scene.bare, effects=())
+        left_out = f", without the {1e3 * (scene.axial_mass - bare.axial_mass):.2g} g of its leather"
+    found, axes = sensitivity(bare, at=at), _axes(ax)
     behind = found.x > scene.shaft.leather + _LOCAL
     axes.plot(1e3 * found.x[behind], (found.rhoA + found.axial_mass)[behind])
     axes.axhline(0, color="#888", linewidth=0.6)
     axes.set(xlabel="from the tip, mm", ylabel="end mass a gram adds, g", xlim=(0, 1e3 * scene.shaft.length))
-    axes.set_title(f"end mass {1e3 * found.end_mass:.3g} g", fontsize="medium")
+    axes.set_title(f"end mass {1e3 * found.end_mass:.3g} g{left_out}", fontsize="medium")
     return axes

@@ -16,6 +16,7 @@ from cuefem.effects.leather_law import LeatherLaw, TooDeep
 from cuefem.effects.terms import ContactTerms
 from cuefem.notebook import brief, said, table
 from cuefem.quantity import CONTACT_TIME, Number, Quantity, check_count, check_fields, check_kind, quantities, scalar
+from cuefem.slips import remark_light
 
 DEFAULT_CONTACT_TIME = 2e-3  # s, [Kim] sec. 4
 
@@ -182,6 +183,8 @@ class Scene:
             raise TypeError(f"Scene.effects must be a sequence of effects; got one, {self.effects!r}")
         object.__setattr__(self, "effects", tuple(self.effects))
         check_effects(self.cue, self.effects)
+        if isinstance(self.cue, Cue) and self.cue.segments and self.cue.body_mass == 0:
+            remark_light(self.cue.mass, self.cue.length)
         whole = self.contact_terms.tip is not None  # the terms refuse what may be given only once
         for name, unit in (("contact_time", "s"), ("stiffness", "N/m")):
             given = getattr(self.tip, name)

@@ -77,6 +77,9 @@ USUAL = {
     ("SecondHit", "window"): Usual(1e-3, 0.1, "s", (("ms", 1e-3),)),
 }
 FAR = 5.0  # times beyond the usual: nearer than this a number may be meant
+LIGHTEST = 0.25  # kg, of a whole cue: a child's
+WHOLE = (0.3, 1.2)  # m, of a drawing that is a shaft's and not a whole cue's: a model to scale is left alone
+SHORTEST, LONGEST = 1e-6, 0.1  # N/m or s: springs of such stiffness hold no striker, and contacts last so long
 _PACKAGE = str(Path(__file__).parent)
 
 
@@ -98,6 +101,20 @@ def remark(kind: str, name: str, value: float) -> None:
     said = slip(kind, name, value)
     if said:
         warnings.warn(said, Unusual, stacklevel=_outside())
+
+
+def remark_time_as_stiffness(kind: str, stiffness: float | None) -> None:
+    """Warn of a stiffness so small that it must be a contact time: the third number of a `Striker` is a stiffness."""
+    if stiffness is not None and SHORTEST <= stiffness <= LONGEST:
+        said = f"{kind}.stiffness is {stiffness:g} N/m, which nothing has: is it a contact time in s? "
+        warnings.warn(f"{said}Write {kind}(..., contact_time={stiffness:g})", Unusual, _outside())
+
+
+def remark_light(mass: float, length: float) -> None:
+    """Warn of a shaft, in its real size, that is about to be struck without the rest of its cue."""
+    if mass < LIGHTEST and WHOLE[0] <= length <= WHOLE[1]:
+        said = f"Cue.body_mass is 0 kg, so the whole cue weighs {mass:.3g} kg; 0.4 to 0.7 is usual: what is behind the "
+        warnings.warn(f"{said}shaft counts in a stroke (dataclasses.replace(cue, body_mass=0.43))", Unusual, _outside())
 
 
 def _outside() -> int:

@@ -43,6 +43,13 @@ def cue(name: str) -> Cue:
     return found
 
 
+# What pages say that strike before the ball of `scene`.
+CAROM = (
+    "Struck before a carom ball of 210 g, as Kim's shaft is; the commands take a pool ball of 170 g where a file names "
+    "none."
+)
+
+
 def scene(struck: Cue | LumpedCue, contact_time: float = 1e-3, offset: float = 0.0) -> Scene:
     """The cue before the default ball (210 g), e = 3/4, mu = 0.7."""
     return Scene(struck, tip=Tip(contact_time=contact_time), stroke=Stroke(offset=offset))

@@ -231,7 +231,7 @@ def conclusions() -> list[str]:
 
 def report() -> str:
     """The committed table."""
-    parts = ["# Squirt and the dome of the tip", *conclusions()]
+    parts = ["# Squirt and the dome of the tip", common.CAROM, *conclusions()]
     parts += ["## Against the radius, T = 1 ms", radius_table()]
     parts += ["## End mass of b -> 0 against the contact time, g", time_table()]
     parts += ["## Size of the effect", estimate_table()]

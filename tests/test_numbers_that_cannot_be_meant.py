@@ -57,6 +57,27 @@ def test_a_slip_of_units_is_remarked_where_it_stands(make: Callable[[], object],
     assert {Path(one.filename).name for one in told} == {Path(__file__).name}
 
 
+def test_a_contact_time_in_the_place_of_a_strikers_stiffness() -> None:
+    """Of a ball of 5 g, e = 0.8, 1 ms."""
+    with pytest.warns(cf.Unusual, match=r"contact time in s\? Write Striker\(..., contact_time=0.001\)") as told:
+        cf.Striker(0.005, 0.8, 1e-3)
+    assert {Path(one.filename).name for one in told} == {Path(__file__).name}
+
+
+def test_a_shaft_that_is_struck_without_the_rest_of_its_cue() -> None:
+    """At the scene, where the mass counts, and not at the shaft, which may be tapped; a model to scale may be light."""
+    with pytest.warns(
+        cf.Unusual, match=r"^Cue.body_mass is 0 kg, so the whole cue weighs 0.107 kg; 0.4 to 0.7"
+    ) as told:
+        cf.Scene(cf.Cue((SEGMENT,)))
+    assert {Path(one.filename).name for one in told} == {Path(__file__).name}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        cf.modes(cf.Cue((SEGMENT,)), 2)
+        cf.Scene(cf.Cue((SEGMENT,), 0.43))
+        cf.Scene(cf.Cue((dataclasses.replace(SEGMENT, length=0.07),)))
+
+
 @pytest.mark.parametrize("make", LIMITS)
 def test_limits_and_scales_pass_without_a_word(make: Callable[[], object]) -> None:
     with warnings.catch_warnings():

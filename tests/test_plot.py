@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -76,6 +77,18 @@ def test_where_end_mass_lives() -> None:
     found = sensitivity(SCENE, at=AT)
     assert x[0] > 6  # behind the leather
     assert y[-1] == pytest.approx(found.rhoA[-1] + found.axial_mass, rel=1e-12)
+
+
+def test_where_end_mass_lives_behind_a_leather_tip() -> None:
+    """As of the ferrule's end with the tip's contact time; the title says what is left out."""
+    scene = cf.usual_scene(SCENE.shaft)
+    axes = cf.plot.end_mass(scene, at=AT)
+    bare = cf.Scene(scene.cue, scene.ball, replace(scene.tip, contact_time=scene.contact_time), scene.stroke)
+    np.testing.assert_allclose(line(axes)[1], line(cf.plot.end_mass(bare, at=AT))[1], rtol=1e-12)
+    assert axes.get_title().endswith(" g of its leather")
+    assert "without" not in cf.plot.end_mass(bare, at=AT).get_title()
+    with pytest.raises(ValueError, match=r"takes a scene without effects, LeatherTip apart; got TipDome"):
+        cf.plot.end_mass(replace(SCENE, effects=(cf.TipDome(0.0095),)))
 
 
 def test_a_lumped_cue_has_no_shape() -> None:

@@ -6,7 +6,7 @@ import os
 import sys
 import warnings
 from contextlib import suppress
-from typing import Any
+from typing import Any, NoReturn
 
 import click
 
@@ -44,6 +44,12 @@ class _OneLine(click.Group):
                 click.echo(f"cuefem: {error.filename or 'cannot write'}: {error.strerror or error}", err=True)
             sys.exit(1)
 
+    def make_context(self, *arguments: Any, **options: Any) -> click.Context:
+        try:
+            return super().make_context(*arguments, **options)
+        except click.UsageError as error:
+            _refuse_usage(error)
+
     def invoke(self, ctx: click.Context) -> Any:
         import numpy as np  # not for --help
 
@@ -51,6 +57,8 @@ class _OneLine(click.Group):
             with np.errstate(over="raise", divide="raise", invalid="raise"), warnings.catch_warnings():
                 warnings.filterwarnings("ignore", category=Unusual)  # commands say it in their own words: `remark`
                 return super().invoke(ctx)
+        except click.UsageError as error:
+            _refuse_usage(error)
         except (ArithmeticError, MemoryError) as error:
             what = "sizes, masses or times are out of all proportion, so that numbers overflow"
             if isinstance(error, MemoryError):
@@ -62,6 +70,16 @@ class _OneLine(click.Group):
                 raise
             click.echo(f"cuefem: {' '.join(str(error).split())}", err=True)
             raise click.exceptions.Exit(2 if isinstance(error, ValueError) else 1) from None
+
+
+def _refuse_usage(error: click.UsageError) -> NoReturn:
+    """Say in one line what is wrong with a command line, and where its help is; help that was asked for passes."""
+    if type(error).__name__ == "NoArgsIsHelpError":
+        raise error
+    words = " ".join(error.format_message().split()).rstrip(".")
+    more = "" if error.ctx is None else f" (`{error.ctx.command_path} --help` lists the options)"
+    click.echo(f"cuefem: {words}{more}", err=True)
+    sys.exit(2)
 
 
 def _forget_output() -> None:

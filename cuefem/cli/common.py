@@ -121,18 +121,18 @@ def scene_of(
         try:
             scene = usual(found, file, given)
         except InputError:
-            remark(Scene(found))
+            remark(Scene(found), blow=False)
             raise
         notes += assumed_usual(found, given.get("game") or DEFAULT_GAME, said, offered=given, blow=blow)
-    remark(scene)
+    remark(scene, blow=blow)
     return scene, notes
 
 
-def remark(scene: Scene) -> None:
+def remark(scene: Scene, *, blow: bool = True) -> None:
     """Say on stderr which numbers are unusual; a wrong unit is the most common reason."""
     from cuefem.report.unusual import unusual
 
-    for line in unusual(scene):
+    for line in unusual(scene, blow=blow):
         click.echo(f"unusual: {line}", err=True)
 
 
@@ -159,7 +159,7 @@ def show(
         scene = scene if change is None else change(scene)
         about, found = scene_record(scene), results(scene)
     if given["as_json"]:
-        said = {"file": str(file), "assumed": notes, "unusual": unusual(scene)}
+        said = {"file": str(file), "assumed": notes, "unusual": unusual(scene, blow=blow)}
         struck = about if blow else {name: value for name, value in about.items() if name in ("cue", "effects")}
         print_json({**said, "scene": struck, **found, "units": UNITS})
         return
@@ -177,6 +177,11 @@ def head_lines(file: Path, about: dict[str, Any], effects: Sequence[Any], notes:
     if notes:
         lines.append(f"assumed: {'; '.join(notes)}")
     return lines
+
+
+def assumed_lines(notes: Sequence[str]) -> list[str]:
+    """What was assumed, in a line; none where nothing was."""
+    return [f"assumed: {'; '.join(notes)}"] if notes else []
 
 
 def print_json(record: Any) -> None:

@@ -16,6 +16,7 @@ from cuefem.cli.common import (
     blaming,
     file_options,
     followed,
+    head_lines,
     print_all,
     print_json,
     scene_of,
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
 @blow_options
 @offset_option
 @click.option(
-    "--for", "whom", type=click.Choice(["pooltool"]), default="pooltool", show_default=True, help="The simulator."
+    "--for", "whom", type=click.Choice(["pooltool"]), help="Print the JSON of this simulator, as --json does."
 )
 @click.option(
     "--drive", type=Definitions("A.31"), default="A.31", show_default=True, help="Which definition of the end mass."
@@ -45,16 +46,17 @@ if TYPE_CHECKING:
     help="Write to a file; with --json print it too.",
 )
 def handover(
-    file: Path, whom: str, drive: Any, length: str | None, output: Path | None, as_json: bool, **given: Any
+    file: Path, whom: str | None, drive: Any, length: str | None, output: Path | None, as_json: bool, **given: Any
 ) -> None:
-    """Print the end mass for a simulator as JSON: pooltool's CueSpecs, what the number means and how well it works.
+    """Show the end mass for a simulator, against the offset; as JSON for the simulator itself.
 
-    With -o it prints the end mass against the offset for people.
+    The JSON (--json, --for pooltool, or into a file with -o) has pooltool's CueSpecs, says what the number means and
+    how well it works.
     """
     from cuefem.io import InputError, write_whole
     from cuefem.quantity import LENGTH
-    from cuefem.report.handover import handover_table, pooltool_record
-    from cuefem.report.record import plain
+    from cuefem.report.handover import handover_table, handover_words, pooltool_record
+    from cuefem.report.record import plain, scene_record
     from cuefem.report.unusual import unusual
 
     if output is not None and output.suffix != ".json":
@@ -67,10 +69,16 @@ def handover(
     text = json.dumps(plain(found), indent=2, allow_nan=False, ensure_ascii=False)
     if output is not None:
         write_whole(output, lambda temporary: temporary.write_text(text + "\n", encoding="utf-8"))
-    if output is None or as_json:
+    if as_json or (output is None and whom is not None):
         click.echo(text)
-    else:
-        print_all([f"wrote {output}", "", handover_table(found)])
+        return
+    first = [f"wrote {output}"] if output else head_lines(file, scene_record(scene), scene.effects, notes)
+    more = (
+        []
+        if output
+        else ["", handover_words(found), "-o CUE.json writes the file that pooltool reads, --json prints it"]
+    )
+    print_all([*first, "", handover_table(found), *more])
 
 
 @click.command(short_help="Mode shapes and the moving cue for ParaView.")

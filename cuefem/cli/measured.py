@@ -33,7 +33,7 @@ def compare(folder: Path, template: bool, output: Path | None, as_json: bool) ->
 
     if template:
         write_template(folder)
-        click.echo(f"wrote {folder}")
+        click.echo(f"wrote {folder}: its numbers are examples; put yours, then `cuefem compare {folder}`")
         return
     if output is not None:
         if as_json:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from cuefem.cli.common import blaming, check_free, force_option, print_all, print_json, remark
+from cuefem.cli.common import assumed_lines, blaming, check_free, force_option, print_all, print_json, remark
 
 if TYPE_CHECKING:
     from cuefem.design.optimum import Problem
@@ -34,9 +34,10 @@ def optimize(study: Path, output: Path | None, iterations: int, seed: int, as_js
     """
     from cuefem.design.optimum import optimum
     from cuefem.io import save
-    from cuefem.io.study import load_optimum
+    from cuefem.io.study import assumed_base, load_optimum
 
     wanted = load_optimum(study)
+    notes = assumed_base(study, wanted.base)
     if output is not None:
         check_free(output, force=force)
     remark(wanted.base)
@@ -47,7 +48,12 @@ def optimize(study: Path, output: Path | None, iterations: int, seed: int, as_js
     aim = "maximize" if wanted.largest else "minimize"
     units = dict(zip(wanted.study.columns, wanted.study.units, strict=True))
     if as_json:
-        about = {"file": str(study), "written": output and str(output), "objective": {aim: wanted.objective.name}}
+        about = {
+            "file": str(study),
+            "assumed": notes,
+            "written": output and str(output),
+            "objective": {aim: wanted.objective.name},
+        }
         numbers = {"value": found.value, "numbers": found.numbers, "values": found.values, "active": found.active}
         search = {"evaluations": found.evaluations, "exact_gradients": found.exact, "unfinished": found.unfinished}
         print_json({**about, **numbers, **search, "resolution": vars(wanted.study.resolution), "units": units})
@@ -62,7 +68,7 @@ def optimize(study: Path, output: Path | None, iterations: int, seed: int, as_js
     lines += ["", f"held by: {', '.join(held_by) or 'nothing'}"]
     if found.unfinished:
         lines.append(f"not finished: {found.unfinished}; more --iterations may find a better design")
-    print_all([*lines, *([f"wrote {output}"] if output else [])])
+    print_all([*lines, *assumed_lines(notes), *([f"wrote {output}"] if output else [])])
 
 
 def _short(value: float, unit: str) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from cuefem.cli.common import blaming, print_all, print_json, remark
+from cuefem.cli.common import assumed_lines, blaming, print_all, print_json, remark
 from cuefem.cli.sweep import bar, check_page, opened
 
 
@@ -27,12 +27,13 @@ def scatter(study: Path, page: Path | None, as_json: bool, **where: Any) -> None
     """
     from cuefem.design.scatter import drivers
     from cuefem.io import save_page
-    from cuefem.io.study import load_scatter
+    from cuefem.io.study import assumed_base, load_scatter
     from cuefem.report.scatter import cause_rows, scatter_record, scatter_tables, scatter_words, spread_rows
     from cuefem.report.study import table_of_study
     from cuefem.report.study_page import Scattered, study_page
 
     wanted, sample = load_scatter(study)
+    notes = assumed_base(study, wanted.study.base)
     remark(wanted.study.base)
     check_page(page)
     total = (len(wanted.causes) + 2) * sample.count
@@ -51,7 +52,20 @@ def scatter(study: Path, page: Path | None, as_json: bool, **where: Any) -> None
         )
     if as_json:
         print_json(
-            {"file": str(study), "count": sample.count, "seed": sample.seed, "responses": scatter_record(wanted, found)}
+            {
+                "file": str(study),
+                "assumed": notes,
+                "count": sample.count,
+                "seed": sample.seed,
+                "responses": scatter_record(wanted, found),
+            }
         )
         return
-    print_all([*scatter_tables(wanted, found), *scatter_words(wanted, found), *([f"wrote {page}"] if page else [])])
+    print_all(
+        [
+            *assumed_lines(notes),
+            *scatter_tables(wanted, found),
+            *scatter_words(wanted, found),
+            *([f"wrote {page}"] if page else []),
+        ]
+    )

@@ -135,13 +135,13 @@ def cost(file: Path, most: int, output: Path | None, **given: Any) -> None:
 def report(file: Path, output: Path | None, **given: Any) -> None:
     """Show modes, end masses, squirt and pivot length against offset, as tables or as a page with figures."""
     from cuefem.report import end_mass_table, modes_table, pivot_table, report_record, squirt_table
-    from cuefem.report.strike import MISCUE
+    from cuefem.report.strike import MISCUE, MISSED
 
     def tables(found: Any, about: Any) -> list[Any]:
         shown = [modes_table(found["modes"])] if "modes" in found else []
         if "no_contact" in found:
             return [*shown, f"no end mass and no squirt: {found['no_contact']}"]
-        first: list[Any] = [MISCUE, "", *shown] if found["regime"] == "miscue" else shown
+        first: list[Any] = [MISCUE, "", *shown] if found["grip"] in MISSED else shown
         masses, squirt = found["end_masses"], found["squirt"]
         return [*first, end_mass_table(masses, about), squirt_table(squirt, about), pivot_table(squirt)]
 

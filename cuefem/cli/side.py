@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 # Of a file that has no [striker]: a light ball, and how long it touches a wall.
 MASS, RESTITUTION, CONTACT_TIME = 0.02, 0.8, 1e-3
+TIMES = "[1e-6, 0.5]"  # s; a slower one leans on the shaft and does not leave it
 
 
 @click.command(short_help="A strike from the side: rebound and effective mass.")
@@ -67,7 +68,6 @@ def _scene(file: Path, given: dict[str, Any]) -> tuple[SideStrike, list[str]]:
     from cuefem.cue import Cue
     from cuefem.io import InputError, load
     from cuefem.io.assumed import assumed
-    from cuefem.quantity import CONTACT_TIME as TIMES
     from cuefem.quantity import Quantity
     from cuefem.side.scene import SideStrike, Striker
 
@@ -87,7 +87,7 @@ def _scene(file: Path, given: dict[str, Any]) -> tuple[SideStrike, list[str]]:
     numbers = {
         "mass": Quantity("kg", "(0, inf)"),
         "restitution": Quantity("", "[0, 1]"),
-        "contact_time": TIMES,
+        "contact_time": Quantity("s", TIMES),
         "position": Quantity("m", "[0, inf)"),
         "speed": Quantity("m/s", "(0, inf)"),
     }

@@ -43,7 +43,12 @@ OF_STROKE = {
     "restitution": ("tip", "restitution", "E", "Coefficient of restitution of tip and ball, in [0, 1]."),
     "friction": ("tip", "friction", "MU", "Coefficient of friction of tip and ball."),
     "speed": ("stroke", "speed", "SPEED", 'Speed of the cue, e.g. "3 m/s".'),
-    "offset": ("stroke", "offset", "B/R", "How far off centre the tip hits, in ball radii, in (-1, 1)."),
+    "offset": (
+        "stroke",
+        "offset",
+        "B/R",
+        'How far off centre the tip hits: in ball radii, in (-1, 1), or a length, e.g. "8 mm".',
+    ),
 }
 
 
@@ -103,6 +108,28 @@ def measured(file: Path, name: str, given: str, wanted: Quantity) -> float:
         raise InputError(file, name, str(error)) from None
 
 
+def offset_of(file: Path, given: str, radius: float) -> float:
+    """The b/R that --offset gives: a bare number, or a length, over the radius of the ball, m."""
+    from cuefem.io import InputError
+    from cuefem.io.units import number
+    from cuefem.quantity import Quantity
+
+    try:
+        length = number(given, "m")
+    except ValueError:
+        try:
+            return measured(file, "--offset", given, Quantity("", "(-1, 1)"))
+        except InputError as error:
+            if "bare number" not in error.problem:
+                raise
+            problem = error.problem.replace("; got", ', b/R, or a length such as "8 mm"; got', 1)
+            raise InputError(file, "--offset", problem) from None
+    if not abs(length) < radius:
+        within = f"a length in (-{1e3 * radius:g}, {1e3 * radius:g}) mm, the radius of the ball"
+        raise InputError(file, "--offset", f"must be b/R in (-1, 1) or {within}; got {given!r}")
+    return length / radius
+
+
 def with_body(found: Cue | Scene | SideStrike, file: Path, given: str) -> Any:
     """The cue or scene of a file with the mass behind its segments that --body-mass says."""
     from cuefem.cue import Cue
@@ -158,7 +185,11 @@ def with_options(scene: Scene, file: Path, given: dict[str, Any], *, drawn: bool
         if given.get(name) is not None:
             held = getattr(scene, part)
             marks = {known: mark for known, mark, *_ in quantities(type(held))}  # type: ignore[arg-type]
-            value = measured(file, option(name), given[name], marks[field])
+            value = (
+                offset_of(file, given[name], float(scene.ball.radius))
+                if name == "offset"
+                else measured(file, option(name), given[name], marks[field])
+            )
             scene = replace(scene, **{part: replace(held, **{field: value})})
     whole = scene.contact_terms.tip is not None
     if given.get("contact_time") is not None:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from cuefem.cli.common import print_all, print_json, remark
+from cuefem.cli.common import assumed_lines, print_all, print_json, remark
 
 if TYPE_CHECKING:
     from cuefem.design import Pool, Row
@@ -38,10 +38,11 @@ def sweep(
     from cuefem.design import sweep as run
     from cuefem.io import check_place
     from cuefem.io.database import Database, export_path
-    from cuefem.io.study import load_study
+    from cuefem.io.study import assumed_base, load_study
     from cuefem.report.study import table_of_study
 
     wanted = load_study(study)
+    notes = assumed_base(study, wanted.base)
     goal = None if export is None else export_path(export)
     if goal is not None:
         check_place(goal)
@@ -62,7 +63,7 @@ def sweep(
             _export(database, goal)
         count = len(wanted.vary)
         rows = ((design, row[:count], row[count:-1]) for design, *row in database.rows())
-        _tell(database, before, goal, as_json, table_of_study(wanted, rows), page)
+        _tell(database, before, goal, as_json, table_of_study(wanted, rows), page, notes)
 
 
 def check_page(page: Path | None) -> None:
@@ -147,7 +148,13 @@ def _export(database: Database, goal: Path) -> None:
 
 
 def _tell(
-    database: Database, before: int, goal: Path | None, as_json: bool, table: Table | None, page: Path | None
+    database: Database,
+    before: int,
+    goal: Path | None,
+    as_json: bool,
+    table: Table | None,
+    page: Path | None,
+    notes: Sequence[str],
 ) -> None:
     from cuefem.io import InputError, save_page
     from cuefem.report.study import study_record, study_tables
@@ -165,7 +172,7 @@ def _tell(
         found: dict[str, Any] = {"database": str(database.path), "export": goal and str(goal), "designs": designs}
         found |= {"evaluated": designs - before, "failed": failed, "resolution": vars(database.study.resolution)}
         found |= {"first_failure": first and first[1], "summary": table and study_record(table)}
-        print_json(found | {"page": page and str(page)})
+        print_json(found | {"page": page and str(page), "assumed": notes})
         return
     words = [f"{designs} designs in {database.path}"]
     words += [f"{before} of them from before"] if before else []
@@ -174,5 +181,6 @@ def _tell(
     click.echo(", ".join(words))
     if first:
         click.echo(f"{failed} failed, the first of them design {first[0]}: {first[1]}")
+    print_all(assumed_lines(notes))
     if table is not None:
         print_all(["", *study_tables(table)])

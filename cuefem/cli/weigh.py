@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from cuefem.cli.common import blaming, print_all, print_json, scene_of, shape_options
-from cuefem.cli.strokes import Games, measured, offset_option
+from cuefem.cli.strokes import Games, measured, offset_of, offset_option
 
 if TYPE_CHECKING:
     from cuefem.measured.pendulum import Bounces, PendulumTest, Told, Weighed
@@ -141,7 +141,7 @@ def _test(given: dict[str, Any]) -> PendulumTest:
 
 
 def _bounces(given: dict[str, Any], held: str) -> Bounces:
-    """The readings off the free shaft, or off the one that is held."""
+    """The readings of the bounces off the free shaft; with held "held_", off the shaft that is held firm."""
     from cuefem.measured.pendulum import WAYS as KNOWN
     from cuefem.measured.pendulum import Bounces
 
@@ -164,12 +164,17 @@ def _squirt(
 ) -> tuple[Told | None, float | None, list[str]]:
     """What the end mass says about squirt: through the drawing, or as a lumped cue's; and what was assumed."""
     from cuefem.games import GAMES
+    from cuefem.io import InputError
     from cuefem.measured.pendulum import lumped_squirt, squirt_told
     from cuefem.scene import Stroke, Tip
 
     if file is None:
+        for name in ("material", "length_unit"):
+            if given[name] is not None:
+                option = f"--{name.replace('_', '-')}"
+                raise InputError(NAME, option, "must go with --scene, whose shape it is for; got no --scene")
         ball = GAMES[given["ball"] or "pool"].ball
-        offset = 0.3 if given["offset"] is None else _read("--offset", given["offset"], "", "(-1, 1)")
+        offset = 0.3 if given["offset"] is None else offset_of(NAME, given["offset"], float(ball.radius))  # type: ignore[arg-type]
         cue, kind = 0.54, given["ball"] or "pool"
         body = given["body_mass"]
         mass = cue if body is None else _read("--body-mass", body, "kg")
@@ -177,8 +182,6 @@ def _squirt(
         return None, lumped_squirt(weighed.end_mass, mass, ball, Tip(), Stroke(1.0, offset)), notes
     scene, notes = scene_of(file, {**given, "contact_time": None})
     if scene.lumped is not None:
-        from cuefem.io import InputError
-
         raise InputError(file, "", "must hold a cue of segments, which can be weighed; got a lumped cue")
     position = _read("--position", given["position"], "m", "[0, inf)")
     with blaming(file):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, NamedTuple
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Cue
-from cuefem.quantity import check_count, check_kind
+from cuefem.quantity import check_count, check_kind, shown
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import Solved, default_resolution, turning
 
@@ -41,6 +41,8 @@ def batch_strike(scenes: Sequence[Scene], at: Resolution | None = None, *, threa
 
     Raises
     ------
+    TypeError
+        If ``scenes`` is not a sequence of scenes.
     ValueError, RuntimeError
         As `cuefem.strike`, with the number of the scene in front, from 0 on.
 
@@ -59,6 +61,9 @@ def batch_strike(scenes: Sequence[Scene], at: Resolution | None = None, *, threa
     ((3,), True)
     """
     check_count("batch_strike threads", threads, 1)
+    if isinstance(scenes, Scene) or not isinstance(scenes, Iterable):
+        got = "one Scene: write [scene], or cuefem.strike(scene)" if isinstance(scenes, Scene) else shown(scenes)
+        raise TypeError(f"batch_strike scenes must be a sequence of Scene; got {got}")
     scenes = tuple(scenes)
     for scene in scenes:
         check_kind("batch_strike scenes", scene, Scene)

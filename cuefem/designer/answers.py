@@ -25,7 +25,7 @@ from cuefem.designer.model import cue_of
 from cuefem.endmass.drives import DEFINITIONS, formula_of
 from cuefem.report.record import Record
 from cuefem.report.squirt import two_part_curve
-from cuefem.report.strike import outcome_record
+from cuefem.report.strike import MISSED, grip_of, outcome_record
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import Solved, default_resolution
 
@@ -53,17 +53,10 @@ class Point(NamedTuple):
     safety: str  # "safe", "slips" or "miscue"
 
 
-SLIPPING = 0.25  # of the blow's impulse, passed on while the tip slips: from there on squirt grows fast
-
-
 def safety(outcome: Outcome) -> str:
     """How far a stroke is from its limit: "miscue"; "slips" through much of the blow, or at first; or "safe"."""
-    if outcome.regime == "miscue":
-        return "miscue"
-    pressed = [(phase.grip, abs(phase.impulse[1])) for phase in outcome.phases]
-    slipped = sum(impulse for grip, impulse in pressed if grip in ("slip", "slip back"))
-    late = outcome.regime != "stick" or slipped > SLIPPING * sum(impulse for _, impulse in pressed)
-    return "slips" if late else "safe"
+    grip = grip_of(outcome)
+    return "miscue" if grip in MISSED else "safe" if grip == "stick" else "slips"
 
 
 @dataclass(frozen=True)

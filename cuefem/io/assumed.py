@@ -30,6 +30,13 @@ def assumed(path: Path, given: Collection[str], *, offered: Collection[str] = ()
     return [*shaft, *(assumed_blow(found, given, offered=offered) if blow else [])]
 
 
+def assumed_drawing(path: Path) -> list[str]:
+    """What a drawing that other files stand beside cannot say: its material, and what is behind the shaft."""
+    if path.suffix.lower() not in SHAPES:
+        return []
+    return [*_profile(path, ("body_mass",)), "no mass behind the shaft (a cue.toml can have body_mass)"]
+
+
 def _profile(path: Path, given: Collection[str], choose: str = "") -> list[str]:
     """What a lathe profile or a surface cannot say: its unit, its material, and what is screwed to the shaft."""
     if path.suffix.lower() not in SHAPES:

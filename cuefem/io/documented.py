@@ -9,8 +9,9 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any, cast
 
+from cuefem.games import DEFAULT_GAME, GAMES, usual_scene
 from cuefem.io import InputError, load
-from cuefem.io.assumed import assumed_blow
+from cuefem.io.assumed import assumed_blow, assumed_drawing, assumed_usual
 from cuefem.io.errors import nearest, shown
 from cuefem.io.schema import build, joined, keys_of, unknown_key
 from cuefem.io.toml import read_tables, read_text, scene_of_tables
@@ -25,7 +26,7 @@ from cuefem.scene import Scene
 MEASURED = "measured.toml"
 DRAWINGS = ("cue.toml", "cue.csv")
 SCENE_KEYS = ("cue", "ball", "tip", "stroke", "effects")
-OWN_KEYS = ("name", "source", "unknowns")
+OWN_KEYS = ("name", "source", "game", "unknowns")
 TEMPLATE = ("README.md", "added_mass.csv", "cue.toml", MEASURED, "squirt.csv")
 
 _COLUMN = re.compile(r"\s*([a-z_]+)\s*(?:\[([^\]]+)\])?\s*")
@@ -41,7 +42,7 @@ def load_documented(folder: Path) -> tuple[DocumentedCue, list[str]]:
     for name, value in tables.items():
         if name not in known:
             raise unknown_key(name, value, known, file=str(path), key="")
-    scene = _scene(folder, path, tables)
+    scene, notes = _scene(folder, path, tables)
     found = tuple(_measurements(folder, path, tables))
     priors = tuple(_priors(path, tables.get("unknowns", [])))
     name, source = (_words(path, tables, key) for key in ("name", "source"))
@@ -49,7 +50,7 @@ def load_documented(folder: Path) -> tuple[DocumentedCue, list[str]]:
         made = DocumentedCue(name or folder.resolve().name, scene, found, priors, source)
     except ValueError as error:
         raise InputError(path, "", str(error)) from None
-    return made, assumed_blow(tables, ["offset"], offered=())
+    return made, [*notes, *_examples(folder)]
 
 
 def write_template(folder: Path) -> None:
@@ -59,8 +60,19 @@ def write_template(folder: Path) -> None:
     except OSError as error:
         raise InputError(folder, "", f"cannot be made: {error.strerror}") from None
     for name in TEMPLATE:
-        text = files(__package__).joinpath("documented_template", name).read_text(encoding="utf-8")
-        (folder / name).write_text(text, encoding="utf-8")
+        (folder / name).write_text(_example(name), encoding="utf-8")
+
+
+def _example(name: str) -> str:
+    """A file of the template."""
+    return files(__package__).joinpath("documented_template", name).read_text(encoding="utf-8")
+
+
+def _examples(folder: Path) -> list[str]:
+    """That files of the template still hold its made-up numbers."""
+    there = [name for name in TEMPLATE[1:] if (folder / name).is_file()]
+    left = [name for name in there if read_text(folder / name) == _example(name)]
+    return [f"{', '.join(left)} as in the template, whose numbers are examples: put yours there"] if left else []
 
 
 def _words(path: Path, tables: dict[str, Any], key: str) -> str:
@@ -70,17 +82,31 @@ def _words(path: Path, tables: dict[str, Any], key: str) -> str:
     return value
 
 
-def _scene(folder: Path, path: Path, tables: dict[str, Any]) -> Scene:
+def _scene(folder: Path, path: Path, tables: dict[str, Any]) -> tuple[Scene, list[str]]:
+    """The scene, and what its files leave to defaults: without ball, tip, stroke and effects a game's usual stroke."""
     parts = {key: tables[key] for key in SCENE_KEYS if key in tables}
     if "cue" not in parts:
         there = next((name for name in DRAWINGS if (folder / name).exists()), None)
         if there is None:
             raise InputError(folder, "", f"must hold the shaft's drawing, {' or '.join(DRAWINGS)}; got none")
         parts["cue"] = there
+    game = _words(path, tables, "game")
+    if game and game not in GAMES:
+        raise InputError(path, "game", f"must be one of {', '.join(GAMES)}; got {shown(game)}{nearest(game, GAMES)}")
+    told = [key for key in SCENE_KEYS[1:] if key in parts]
+    if told and game:
+        raise InputError(path, "game", f"must be left out beside {', '.join(told)}; got {shown(game)}")
     scene = scene_of_tables(parts, path, _drawing)
+    drawn = assumed_drawing(path.parent / parts["cue"]) if isinstance(parts["cue"], str) else []
     if scene.lumped is not None:
         raise InputError(path, "cue", "must be a cue of segments, which can be measured; got a lumped cue")
-    return scene
+    if told:
+        return scene, [*drawn, *assumed_blow(tables, ["offset"], offered=())]
+    game = game or DEFAULT_GAME
+    try:
+        return usual_scene(scene.shaft, game), [*drawn, *assumed_usual(scene.shaft, game, ["offset"], offered=())]
+    except ValueError as error:
+        raise InputError(path, "", str(error)) from None
 
 
 def _drawing(path: Path) -> Any:

@@ -9,6 +9,7 @@ from cuefem.design import METHODS, Levels, Normal, Response, Sample, Span, Study
 from cuefem.design.optimum import Limit, Problem
 from cuefem.design.paths import quantity_at, value_at
 from cuefem.design.scatter import Scatter
+from cuefem.games import GAMES, usual_scene
 from cuefem.io.errors import InputError, shown
 from cuefem.io.schema import build, joined, unknown_key
 from cuefem.io.toml import named_material, read_tables
@@ -16,9 +17,9 @@ from cuefem.io.units import quantity
 from cuefem.quantity import Quantity
 from cuefem.scene import Resolution, Scene, Stroke
 
-KEYS = ["scene", "responses", "vary", "sample", "resolution"]
+KEYS = ["scene", "game", "responses", "vary", "sample", "resolution"]
 SCATTER_KEYS = [*KEYS, "correlations", "groups"]
-OPTIMUM_KEYS = ["scene", "objective", "limit", "vary", "resolution"]
+OPTIMUM_KEYS = ["scene", "game", "objective", "limit", "vary", "resolution"]
 LIMIT_KEYS = ["response", "low", "high"]
 VARY_KEYS = [
     *("path", "name", "values", "low", "high", "count", "spacing", "middle", "sd", "factor", "shift", "taken_from"),
@@ -30,8 +31,9 @@ FACTOR = Quantity("", "(0, inf)")
 def load_study(path: str | Path, *, offset: float = 0.3) -> Study:
     """Load a design study from a TOML file; InputError in one line if it is not a valid study.
 
-    offset: b/R of the stroke if the base is a bare cue, which gets the default ball and tip. Values carry their units
-    as text.
+    A base that is a cue alone gets the usual stroke of the ``game`` that the file names; without one the default ball
+    and tip, as ever, so that a saved study gives what it gave, struck at b/R ``offset``. Values carry their units as
+    text.
     """
     path = Path(path)
     return _study(read_tables(path), path, offset, KEYS)
@@ -161,8 +163,32 @@ def _base(found: dict[str, Any], path: Path, offset: float) -> Scene:
     if not isinstance(name, str):
         got = shown(name) if "scene" in found else "nothing"
         raise InputError(path, "scene", f"must be the path of a scene or a cue, from this file's folder; got {got}")
-    base = load_stroke(path.parent / name)
-    return base if isinstance(base, Scene) else Scene(base, stroke=Stroke(offset=offset))
+    base, game = load_stroke(path.parent / name), found.get("game")
+    if game is None:
+        return base if isinstance(base, Scene) else Scene(base, stroke=Stroke(offset=offset))
+    if game not in GAMES:
+        raise InputError(path, "game", f"must be one of {', '.join(GAMES)}; got {shown(game)}")
+    if isinstance(base, Scene):
+        problem = f"must be left out: {name} is a scene, which has its own ball, tip and stroke"
+        raise InputError(path, "game", f"{problem}; got {shown(game)}")
+    try:
+        return usual_scene(base, game)
+    except ValueError as error:
+        raise InputError(path, "game", str(error)) from None
+
+
+def assumed_base(path: Path, base: Scene) -> list[str]:
+    """What the base of a study is struck with, where the file that it names holds a cue alone."""
+    from cuefem.io import load_stroke
+
+    found = read_tables(path)
+    if isinstance(load_stroke(path.parent / found["scene"]), Scene):
+        return []
+    if "game" in found:
+        return [f"a usual stroke of {found['game']} (game)"]
+    grams, ms = 1e3 * float(base.ball.mass), 1e3 * float(base.contact_time)
+    told = f"{found['scene']} is a cue alone, struck with a ball of {grams:g} g and a flat tip in contact for {ms:g} ms"
+    return [f'{told}, b/R {base.stroke.offset:g}; game = "pool" in the study takes the usual stroke of pool']
 
 
 def _response(text: Any, path: Path, key: str) -> Response:

@@ -87,6 +87,10 @@ def _known(unit: str) -> bool:
     return True
 
 
+COMMA = "; a decimal point, no comma"
+_COMMA = re.compile(r"\s*[-+]?[0-9]+,[0-9]")
+
+
 def number(text: str, unit: str) -> float:
     """The number of ``unit`` that ``text`` ("12 mm") says; ValueError if its unit is missing, wrong or unknown."""
     found = _TEXT.fullmatch(text) if len(text) <= LONGEST_TEXT else None
@@ -126,8 +130,8 @@ def _why(value: str) -> str:
     """What is wrong with a text that `number` refused; empty if it has no unit."""
     if len(value) > LONGEST_TEXT:
         return f", of {len(value)} letters"
-    if re.match(r"\s*[-+]?[0-9]+,[0-9]", value):
-        return "; a decimal point, no comma"
+    if _COMMA.match(value):
+        return COMMA
     found = _TEXT.fullmatch(value)
     if not found or not found[2]:
         return ""
@@ -136,7 +140,8 @@ def _why(value: str) -> str:
 
 def _bare(wanted: Quantity, value: Any) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ValueError(f"must be a bare number in {wanted.bounds}; got {shown(value)}")
+        comma = COMMA if isinstance(value, str) and _COMMA.match(value) else ""
+        raise ValueError(f"must be a bare number in {wanted.bounds}; got {shown(value)}{comma}")
     try:
         result = float(value)
     except OverflowError:

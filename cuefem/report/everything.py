@@ -8,12 +8,13 @@ from cuefem.report.end_mass import end_mass_record
 from cuefem.report.modes import modes_record
 from cuefem.report.record import Record
 from cuefem.report.squirt import squirt_record
+from cuefem.report.strike import grip_of
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved
 
 
 def report_record(scene: Scene, *, count: int = 6) -> Record:
-    """Modes, end masses, squirt and pivot length, and the regime of the scene's own stroke, from one solved scene.
+    """Modes, end masses, squirt and pivot length, and the grip of the scene's own stroke, from one solved scene.
 
     Where the stroke presses a leather tip further than its law is known, modes and the reason, "no_contact".
     """
@@ -24,4 +25,5 @@ def report_record(scene: Scene, *, count: int = 6) -> Record:
     except TooDeep as error:
         return found | {"no_contact": str(error)}
     found |= {"end_masses": end_mass_record(scene, solved=solved), "squirt": squirt_record(scene, solved=solved)}
-    return found | {"regime": strike_modes(scene, solved.tip).regime}
+    outcome = strike_modes(scene, solved.tip)
+    return found | {"regime": outcome.regime, "grip": grip_of(outcome)}

@@ -200,6 +200,13 @@ def _mass_of(scene: Scene, offset: float, squirt: float) -> float:
     return float(scene.ball.mass / alciatore_a31_mass_ratio(offset, squirt, inertia=POOLTOOL_INERTIA))
 
 
+def handover_words(record: Record) -> str:
+    """The number that is handed over, for people."""
+    at = record["end_mass"]
+    stroke = f"b/R {at['offset']:g}, {at['speed']:g} m/s, head-on contact {1e3 * at['contact_time']:.3g} ms"
+    return f"handed over: end mass {1e3 * record['CueSpecs']['end_mass']:.3f} g by {at['drive']}, at {stroke}"
+
+
 def handover_table(record: Record) -> Group:
     """The equivalent end mass against the offset, for people."""
     found = record["by_offset"]

@@ -35,7 +35,7 @@ from cuefem.report.glossary import with_words
 from cuefem.report.quantities import GRIPS, QUANTITIES, degrees, grams, written
 from cuefem.report.record import Record
 from cuefem.report.squirt import PAPER_CUE_END_MASS, offset_charts, squirt_record
-from cuefem.report.strike import BRIEF, MISCUE, model_rows, strike_record
+from cuefem.report.strike import BRIEF, MISCUE, MISSED, grip_of, model_rows, strike_record
 from cuefem.report.templates import environment
 from cuefem.report.trust import off, trust_lines
 from cuefem.report.words import assumptions, effect_words, plain_cue_line
@@ -45,7 +45,7 @@ from cuefem.tip_modes import LEAST_STUCK, Solved
 DEFAULT_RTOL = 1e-2
 OFFSETS = tuple(round(0.03 * i, 2) for i in range(1, 21))  # b/R of the curves
 MEASURED_END_MASS = (5.8e-3, 14e-3)  # kg, of real cues; handbook: Effective end mass
-LATE = ("late stick", "miscue")
+LATE = ("late stick", "slides", *MISSED)
 
 # A model's class on the page, by the beginning of its name.
 STYLES = {"coupled": "c1", "lumped": "c2", "two-part, this": "c3", "A.31": "c4", "two-part, 12": "c5"}
@@ -151,7 +151,7 @@ def _context(scene: Scene, found: Record) -> Record:
         "error": "" if outcome.error is None else f"{100.0 * outcome.error:.2g} %",
         "off": off(scene),
         "trust": trust_lines(scene),
-        "warning": MISCUE if outcome.regime == "miscue" else "",
+        "warning": MISCUE if grip_of(outcome) in MISSED else "",
         "cue": _cue_part(scene) if scene.cue.segments else None,
         "modes": _modes_part(scene) if scene.cue.segments else None,
         "contact": None if outcome.history is None else contact_part(outcome),
@@ -183,7 +183,7 @@ def _key_figures(record: Record, end_masses: Record, outcome: Outcome) -> list[t
         "end_mass": "effective, at the tip: a lumped cue with it squirts as much",
         "ball_speed": f"the cue goes on at {written('cue_speed', outcome.cue_speed, brief=True)}",
         "spin": f"{abs(outcome.spin) / (2 * math.pi):.1f} turns a second",
-        "duration": f"grip: {GRIPS[outcome.regime][1]}",
+        "duration": f"grip: {GRIPS[grip_of(outcome)][1]}",
     }
     values = coupled | {"end_mass": felt}
     return [
@@ -230,10 +230,10 @@ def _by_offset(record: Record, scene: Scene) -> tuple[Chart, Chart]:
 
 
 def _slipped(record: Record) -> list[Span]:
-    """Where the coupled stroke sticks late or miscues: halfway to the offsets before and after."""
-    offsets, regimes = np.array(record["offsets"]), record["models"]["coupled, this cue"]["regime"]
+    """Where the coupled stroke sticks late, lets go or miscues: halfway to the offsets before and after."""
+    offsets, grips = np.array(record["offsets"]), record["models"]["coupled, this cue"]["grip"]
     ends = np.r_[offsets[0], (offsets[1:] + offsets[:-1]) / 2, offsets[-1]]
-    spans = [(float(ends[i]), float(ends[i + 1])) for i, regime in enumerate(regimes) if regime in LATE]
+    spans = [(float(ends[i]), float(ends[i + 1])) for i, grip in enumerate(grips) if grip in LATE]
     return [Span(start, end, "slip") for start, end in spans]
 
 

@@ -107,6 +107,7 @@ QUANTITIES = {
     "contact_time": Known("head-on contact time", "s"),
     "duration": Known("time in contact", "s", 4),
     "regime": Known("grip"),
+    "grip": Known("grip"),
     "error": _Error("estimated error"),
     "energy": Known("energy", "J"),
     "impulse": Known("impulse", "N s"),
@@ -132,12 +133,14 @@ QUANTITIES = {
     "seconds": Known("seconds", "s"),
 }
 UNITS = {name: known.unit for name, known in QUANTITIES.items() if known.unit}
-# How the tip gripped the ball, by the regime of a strike: a word for tables, and the same in full.
+# How the tip gripped the ball, by what `cuefem.report.strike.grip_of` tells: a word for tables, and the same in full.
 GRIPS = {
     "stick": ("held", "the tip held the ball, at once or after a short slip"),
     "late stick": ("held late", "slipped first, then held late, near a miscue"),
     "slip reversal": ("slipped back", "slipped first, then slipped back"),
     "miscue": ("miscue", "slipped to the end, a miscue"),
+    "slides": ("let go", "held at first, then slid through more than a quarter of the push, near a miscue"),
+    "lets go": ("miscue", "held at first, then slid through more than half of the push, a miscue"),
 }
 
 
@@ -148,7 +151,7 @@ def units_of(*names: str) -> dict[str, str]:
 
 def written(name: str, value: Any, *, brief: bool = False) -> str:
     """A value of the quantity of that name, with its unit."""
-    return QUANTITIES[name].written(GRIPS[value][0] if name == "regime" and value else value, brief=brief)
+    return QUANTITIES[name].written(GRIPS[value][0] if name in ("regime", "grip") and value else value, brief=brief)
 
 
 def grams(mass: float | None) -> str:

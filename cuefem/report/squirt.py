@@ -25,7 +25,7 @@ from cuefem.report.models import (
 )
 from cuefem.report.quantities import NONE, TRADE, Units, grams, significant, written
 from cuefem.report.record import Record
-from cuefem.report.strike import PIVOT
+from cuefem.report.strike import MISSED, PIVOT, grip_of
 from cuefem.report.table import table_of, with_caption
 from cuefem.report.words import assumptions
 from cuefem.scene import Scene
@@ -78,6 +78,7 @@ def squirt_record(scene: Scene, offsets: Sequence[float] = OFFSETS, *, solved: S
     found["two-part, 12 g"] = _curve(scene, offsets, [papers] * len(offsets))
     found["A.31, this cue"] = _curve(scene, offsets, cues, a31_squirt)
     found["coupled, this cue"]["regime"] = [outcome.regime for outcome in struck]
+    found["coupled, this cue"]["grip"] = [grip_of(outcome) for outcome in struck]
     return {
         "offsets": list(offsets),
         "end_mass": [None if cue is None else cue.end_mass for cue in cues],
@@ -96,8 +97,9 @@ def _by_offset(title: str, record: Record, name: str) -> Table:
 
 
 def _missed(model: Record, i: int) -> str:
-    """A word beside the number of a stroke that miscues, if the model tells."""
-    return ", miscue" if "miscue" in model.get("regime", ())[i : i + 1] else ""
+    """A word beside the number of a stroke that miscues or nearly does, if the model tells."""
+    (grip,) = model.get("grip", ("",) * len(model["squirt"]))[i : i + 1]
+    return ", miscue" if grip in MISSED else ", lets go" if grip == "slides" else ""
 
 
 def squirt_table(record: Record, scene: Record) -> Group:

@@ -23,12 +23,28 @@ from cuefem.report.words import assumptions
 from cuefem.scene import Outcome, Scene
 from cuefem.tip_modes import Solved
 
+SLIDES, LETS_GO = 0.25, 0.5  # of the push, while the tip slides: from there on squirt grows fast; no valid shot
+MISSED = ("miscue", "lets go")
+
+
+def grip_of(outcome: Outcome) -> str:
+    """How the tip gripped the ball: the regime of the strike, or "slides" or "lets go" if it held only at first.
+
+    Soft leather takes up its load along the ball slowly, so that it grips at every offset and lets go only later.
+    """
+    if outcome.regime not in ("stick", "late stick") or outcome.history is None:  # of the impulse solver
+        return str(outcome.regime)
+    pushed = [(phase.grip, abs(phase.impulse[1])) for phase in outcome.phases]
+    slid = sum(impulse for grip, impulse in pushed if grip in ("slip", "slip back"))
+    share = slid / (sum(impulse for _, impulse in pushed) or 1.0)
+    return "lets go" if share > LETS_GO else "slides" if share > SLIDES else str(outcome.regime)
+
 
 def outcome_record(outcome: Outcome, scene: Scene) -> Record:
     """A strike's outcome with the natural pivot length of its squirt (None at offset 0)."""
     names = ("squirt", "ball_speed", "ball_velocity", "spin", "cue_speed", "impulse", "duration", "regime", "energy")
     found = {name: getattr(outcome, name) for name in (*names, "unknowns", "error")}
-    return found | {"pivot_length": pivot_length(scene, outcome.squirt)}
+    return found | {"grip": grip_of(outcome), "pivot_length": pivot_length(scene, outcome.squirt)}
 
 
 def strike_record(scene: Scene, outcome: Outcome | None = None, *, solved: Solved | None = None) -> Record:
@@ -59,10 +75,10 @@ def strike_record(scene: Scene, outcome: Outcome | None = None, *, solved: Solve
 
 
 # What is shown of a strike, in this order; a vector by its parts (along the tangent, along the normal).
-BRIEF = ("squirt", "pivot_length", "ball_speed", "spin", "cue_speed", "regime")
+BRIEF = ("squirt", "pivot_length", "ball_speed", "spin", "cue_speed", "grip")
 WHOLE = (
     *("squirt", "pivot_length", "ball_speed", ("ball_velocity", 1, "normal"), ("ball_velocity", 0, "tangent")),
-    *("spin", "cue_speed", "duration", "regime", "error"),
+    *("spin", "cue_speed", "duration", "grip", "error"),
 )
 
 
@@ -89,7 +105,7 @@ def strike_table(record: Record, scene: Record) -> Group:
     for label, texts in model_rows(record):
         table.add_row(label, *texts)
     felt = NONE if record["end_mass"] is None else grams(record["end_mass"])
-    missed = [MISCUE] if coupled["regime"] == "miscue" else []
+    missed = [MISCUE] if coupled["grip"] in MISSED else []
     exact = ", modes kept for 0.5 % of squirt" if "length" in scene["cue"] and coupled["error"] is None else ""
     pivots = any(model.get("pivot_length") is not None for model in record["models"].values())
     return with_caption(
@@ -98,7 +114,7 @@ def strike_table(record: Record, scene: Record) -> Group:
         assumptions(scene),
         f"coupled: vibrating shaft in time{exact}; two-part and A.31: end mass m_e {felt} (offset)",
         *([f"natural pivot length: {PIVOT}"] if pivots else []),
-        *(f"grip, {word}: {full}" for word, full in GRIPS.values() if word == GRIPS[coupled["regime"]][0]),
+        "grip, {}: {}".format(*GRIPS[coupled["grip"]]),
         *model_notes(scene, record, "/kg"),
     )
 

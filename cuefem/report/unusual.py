@@ -8,8 +8,15 @@ from typing import Any, NamedTuple
 
 from cuefem.cue import Segment
 from cuefem.scene import Scene
+from cuefem.slips import LIGHTEST
 
 JUMP = 1.5  # of the diameter between two segments
+LEAST_DRAWN = 0.02  # kg, of a shaft
+LONG, STIFF, LIGHT = (
+    0.3,
+    3e10,
+    2500.0,
+)  # m, Pa, kg/m^3: a long piece of a material stiffer than wood, lighter than metal
 
 
 class Usual(NamedTuple):
@@ -21,6 +28,7 @@ class Usual(NamedTuple):
     scale: float
     unit: str
     ask: str
+    blow: bool = True  # whether it matters to a blow alone, and not to how the cue rings
 
 
 def _segments(scene: Scene) -> tuple[Segment, ...]:
@@ -37,6 +45,24 @@ def _thin_tip(scene: Scene) -> Iterable[tuple[str, float]]:
     """The diameter at the tip, if it is no wrong unit's."""
     ends = [segment.tip_diameter for segment in _segments(scene)[:1]]
     return [("diameter at the tip", end) for end in ends if 0.005 <= end <= 0.06]
+
+
+def _solid_tubes(scene: Scene) -> Iterable[tuple[str, float]]:
+    """The mass of a shaft with a long piece that is solid, of a material that shafts have as a tube (carbon fibre)."""
+    solid = [
+        segment
+        for segment in _segments(scene)
+        if segment.length > LONG and segment.material.E > STIFF and segment.material.rho < LIGHT
+        if not max(segment.tip_bore, segment.butt_bore)
+    ]
+    return [("a solid rod as stiff as carbon fibre, drawn mass", scene.shaft.shaft_mass)] if solid else []
+
+
+def _light_cue(scene: Scene) -> Iterable[tuple[str, float]]:
+    """The mass of a whole cue, unless what is drawn is itself lighter than any shaft."""
+    if scene.cue.segments and scene.shaft.shaft_mass < LEAST_DRAWN:
+        return []
+    return [("mass of the whole cue", float(scene.cue.mass))]
 
 
 # Beyond every cue and every table, yet within a factor of ten: what a unit is wrong by.
@@ -56,21 +82,39 @@ USUAL = (
     ),
     Usual(
         lambda s: [("drawn length", s.shaft.length)] if s.cue.segments else [],
-        *(0.3, 3.0, 1e3, "mm", "check the unit of the lengths"),
+        *(0.3, 3.0, 1e3, "mm", "check the unit of the lengths", False),
     ),
-    Usual(_diameters, 0.005, 0.06, 1e3, "mm", "check the unit of the diameters"),
-    Usual(_thin_tip, 0.0075, 0.06, 1e3, "mm", "8.5 to 14 is usual: is that the radius?"),
+    Usual(_diameters, 0.005, 0.06, 1e3, "mm", "check the unit of the diameters", False),
+    Usual(_thin_tip, 0.0075, 0.06, 1e3, "mm", "8.5 to 14 is usual: is that the radius?", False),
     Usual(
         lambda s: [("drawn mass", s.shaft.shaft_mass)] if s.cue.segments else [],
-        *(0.02, float("inf"), 1e3, "g", "check the sizes and the densities"),
+        *(LEAST_DRAWN, float("inf"), 1e3, "g", "check the sizes and the densities", False),
+    ),
+    Usual(
+        _solid_tubes,
+        *(0, 0.0, 1e3, "g", "such shafts are tubes: a bore is drawn in a .toml (`cuefem guide files`)", False),
     ),
     Usual(lambda s: [("mass of the whole cue", float(s.cue.mass))], 0, 1.0, 1, "kg", "0.4 to 0.7 is usual"),
+    Usual(
+        _light_cue,
+        *(
+            LIGHTEST,
+            float("inf"),
+            1e3,
+            "g",
+            "400 to 700 is usual: is what is behind the shaft left out (--body-mass, or body_mass in a drawing)?",
+        ),
+    ),
 )
 
 
-def unusual(scene: Scene) -> list[str]:
-    """Numbers that no cue and no blow has, one line each; empty for ordinary scenes."""
-    return [*filter(None, map(lambda usual: _beyond(usual, scene), USUAL)), *_shape(_segments(scene))]
+def unusual(scene: Scene, *, blow: bool = True) -> list[str]:
+    """Numbers that no cue and no blow has, one line each; empty for ordinary scenes.
+
+    blow: whether ball, tip, stroke and the mass of the whole cue count.
+    """
+    asked = [usual for usual in USUAL if blow or not usual.blow]
+    return [*filter(None, map(lambda usual: _beyond(usual, scene), asked)), *_shape(_segments(scene))]
 
 
 def _beyond(usual: Usual, scene: Scene) -> str:

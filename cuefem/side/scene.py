@@ -14,6 +14,7 @@ from cuefem.effects.base import NEAR
 from cuefem.effects.law import TipLaw, loading_time
 from cuefem.effects.terms import ContactTerms
 from cuefem.quantity import CONTACT_TIME, Quantity, check_fields, check_kind
+from cuefem.slips import remark_time_as_stiffness
 
 # Hertz's force grows with this power of the compression: F = 4/3 E* sqrt(R) d^(3/2).
 HERTZ = 1.5
@@ -75,6 +76,7 @@ class Striker:
                 "Striker takes one law of contact: stiffness (N/m), contact_time (s), "
                 f"or modulus (Pa) with radius (m); got {got}"
             )
+        remark_time_as_stiffness("Striker", self.stiffness)
 
     @property
     def law(self) -> TipLaw:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+import cuefem as cf
 from cuefem.io.documented import TEMPLATE, load_documented
 from cuefem.measured.documented import compare
 from cuefem.measured.estimate import estimate
@@ -55,21 +56,52 @@ def test_series_and_file_are_read_alike(tmp_path: Path) -> None:
 def test_only_the_shaft_must_be_there(tmp_path: Path, drawing: str) -> None:
     place = folder(tmp_path / "cue")
     (place / "measured.toml").unlink()
+    rest = ""
     if drawing == "cue.csv":
+        rest = "unusual: mass of the whole cue 1"
         (place / "cue.toml").unlink()
         (place / "cue.csv").write_text("x [mm],diameter [mm]\n0,12.75\n730,21\n", encoding="utf-8")
     status, out, err = call("compare", place)
-    assert (status, err) == (0, "")
+    assert (status, err[: len(rest) or None]) == (0, rest)
+    assert ("material hard maple; no mass behind the shaft (a cue.toml can have" in " ".join(out.split())) == bool(rest)
     assert all(kind.words in out for kind in KINDS.values())
 
 
 def test_the_template_holds_every_kind(tmp_path: Path) -> None:
     place = tmp_path / "mine"
-    assert call("compare", place, "--template") == (0, f"wrote {place}\n", "")
+    said = f"wrote {place}: its numbers are examples; put yours, then `cuefem compare {place}`\n"
+    assert call("compare", place, "--template") == (0, said, "")
     assert sorted(path.name for path in place.iterdir()) == sorted(TEMPLATE)
     cue, notes = load_documented(place)
     assert {type(one) for one in cue.found} == set(KINDS.values())
-    assert (cue.lacking, notes) == ([], [])
+    assert cue.lacking == []
+    names = ", ".join(name for name in sorted(TEMPLATE) if name != "README.md")
+    assert notes == [f"{names} as in the template, whose numbers are examples: put yours there"]
+    (place / "squirt.csv").unlink()
+    (place / "cue.toml").write_text((place / "cue.toml").read_text().replace("467 g", "450 g"), encoding="utf-8")
+    assert load_documented(place)[1] == [
+        "added_mass.csv, measured.toml as in the template, whose numbers are examples: put yours there"
+    ]
+
+
+def test_without_a_scene_it_is_the_games_usual_stroke(tmp_path: Path) -> None:
+    """The one that every command gives to a drawing, of the game that measured.toml names."""
+    found = {}
+    for game in ("", "snooker"):
+        place = folder(tmp_path / f"cue {game}", '[[weight]]\nvalue = "100 g"\nerror = "1 g"\n')
+        if game:
+            (place / "measured.toml").write_text(f'game = "{game}"\n', encoding="utf-8")
+        cue, notes = load_documented(place)
+        drawing = cf.load(place / "cue.toml")
+        assert isinstance(drawing, cf.Cue)
+        assert cue.scene == cf.usual_scene(drawing, game or "pool")
+        assert notes[0] == f"a usual stroke of {game or 'pool'}"
+        found[game] = cue
+    assert found[""].scene.ball.mass == 0.170
+    place = folder(tmp_path / "both", 'game = "pool"\n[tip]\nfriction = 0.5\n')
+    command_refuses("measured.toml: game: must be left out beside tip; got 'pool'", "compare", place)
+    place = folder(tmp_path / "other", 'game = "chess"\n')
+    command_refuses("measured.toml: game: must be one of pool, carom, snooker; got 'chess'", "compare", place)
 
 
 def test_the_page_has_every_row(tmp_path: Path) -> None:

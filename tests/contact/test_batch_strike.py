@@ -62,6 +62,10 @@ def test_the_modes_of_a_cue_are_solved_once(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_errors_name_the_scene() -> None:
+    with pytest.raises(TypeError, match=r"must be a sequence of Scene; got one Scene: write \[scene\], or cuefem."):
+        cf.batch_strike(SCENES[0])  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="batch_strike scenes must be a sequence of Scene; got 3"):
+        cf.batch_strike(3)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="batch_strike takes one scene or more; got none"):
         cf.batch_strike([])
     with pytest.raises(TypeError, match="batch_strike scenes must be a Scene"):

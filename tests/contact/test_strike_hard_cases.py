@@ -361,7 +361,7 @@ def test_loud_cues_under_a_nearly_dead_tip(e):
 
 
 @pytest.mark.heavy
-@settings(max_examples=1500, deadline=None)
+@settings(max_examples=600, deadline=None)
 @given(loud_strikes())
 def test_many_loud_cues(drawn):
     outcome = strike_modes(*drawn)
@@ -462,7 +462,11 @@ def test_some_strikes_on_every_cue_of_meshes(path):
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("path", MESHES, ids=lambda path: path.stem)
-def test_three_hundred_strikes_on_every_cue_of_meshes(path):
-    """e, mu, offset and contact time at the ends of their ranges: none raises, and energy is kept to 1e-9."""
-    assert len(EVERY) == 300
-    print(f"{path.stem}: the slowest of {len(EVERY)} strikes took {strike_all(path, EVERY):.3f} s")
+def test_a_hundred_strikes_on_every_cue_of_meshes(path):
+    """e, mu, offset and contact time at the ends of their ranges: none raises, and energy is kept to 1e-9.
+
+    Every third of the 300 strokes on each cue, so that three cues have all of them.
+    """
+    some = EVERY[MESHES.index(path) % 3 :: 3]
+    assert len(EVERY) == 3 * len(some) == 300
+    print(f"{path.stem}: the slowest of {len(some)} strikes took {strike_all(path, some):.3f} s")

@@ -41,7 +41,7 @@ def test_energy_closes_and_nothing_is_made_of_nothing(drawn):
 
 
 @pytest.mark.heavy
-@settings(max_examples=1000, deadline=None)
+@settings(max_examples=400, deadline=None)
 @given(shaft_scenes())
 def test_energy_closes_over_many_shafts(drawn):
     scene, at = drawn

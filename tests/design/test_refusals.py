@@ -239,7 +239,12 @@ FILES = [
         "bore must have low and high, between which an optimum",
     ),
     (OPTIMIZE, '"cue.segments[0].tip_bore"', '"cue.segments[0].material"', "which have no low and high"),
-    (OPTIMIZE, "[resolution]", "[sample]", "sample: must be one of the keys scene, objective, limit, vary, resolution"),
+    (
+        OPTIMIZE,
+        "[resolution]",
+        "[sample]",
+        "sample: must be one of the keys scene, game, objective, limit, vary, ",
+    ),
     (OPTIMIZE, OPTIMUM[OPTIMUM.index("[[vary]]") :], "", "vary: must be [[vary]] tables, one at least; got nothing"),
     (OPTIMIZE, 'low = "300 N/m"', 'low = "3000 N/m"', "no design within tip_stiffness >= 3000 was found: "),
 ]

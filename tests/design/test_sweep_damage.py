@@ -99,7 +99,7 @@ def flip(study: Path, data: bytes, place: int, bit: int, table: str) -> bool:
         return len(str(error).splitlines()) == 1 and str(file) in str(error)
 
 
-@pytest.mark.parametrize("count", [60, pytest.param(1500, marks=pytest.mark.heavy)])
+@pytest.mark.parametrize("count", [60, pytest.param(600, marks=pytest.mark.heavy)])
 def test_any_flipped_byte_is_noticed_or_does_no_harm(study: Path, count: int) -> None:
     file, rng = study.with_suffix(".sqlite"), random.Random(count)
     data, table = file.read_bytes(), exported(study, file)

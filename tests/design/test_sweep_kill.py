@@ -20,7 +20,7 @@ from cuefem.design import Row, dask, processes, sweep
 from cuefem.io.database import Database
 from cuefem.io.study import load_study
 from tests.helpers.command_line import call
-from tests.helpers.sweeps import STRUCK, rows_of, written
+from tests.helpers.sweeps import STRUCK, count_of, rows_of, written
 
 pytestmark = pytest.mark.heavy
 
@@ -43,6 +43,21 @@ def whole(study: Path) -> list[tuple[Any, ...]]:
     return rows
 
 
+@pytest.fixture(scope="module")
+def small(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A study of few blocks, for what starts a cluster."""
+    return written(tmp_path_factory.mktemp("small"), STRUCK.replace("count = 150", "count = 500"))
+
+
+@pytest.fixture(scope="module")
+def whole_small(small: Path) -> list[tuple[Any, ...]]:
+    """The table of an uninterrupted sweep of it."""
+    call("sweep", small, "--output", small.with_name("whole.sqlite"))
+    rows = rows_of(small.with_name("whole.sqlite"))
+    assert len(rows) == 500
+    return rows
+
+
 def command(study: Path, output: Path, *more: str) -> list[str]:
     return [
         sys.executable,
@@ -61,16 +76,16 @@ def started(study: Path, output: Path, *more: str) -> subprocess.Popen[bytes]:
 
 
 def written_so_far(output: Path) -> int:
-    return len(rows_of(output)) if output.exists() and output.stat().st_size else 0
+    return count_of(output) if output.exists() and output.stat().st_size else 0
 
 
-@pytest.mark.parametrize("workers", [(), ("--workers", "2")], ids=["alone", "two workers"])
-def test_killed_ten_times_over(
-    study: Path, whole: list[tuple[Any, ...]], tmp_path: Path, workers: tuple[str, ...]
+@pytest.mark.parametrize(("workers", "times"), [((), 3), (("--workers", "2"), 10)], ids=["alone", "two workers"])
+def test_killed_over_and_over(
+    study: Path, whole: list[tuple[Any, ...]], tmp_path: Path, workers: tuple[str, ...], times: int
 ) -> None:
     """kill -9 at a random moment after a new block, ten times; then left to finish. No row is lost or repeated."""
     output, rng, kept = tmp_path / "out.sqlite", random.Random(len(workers)), [0]
-    while len(kept) <= 10:
+    while len(kept) <= times:
         run = started(study, output, *workers)
         began = time.monotonic()
         while run.poll() is None and written_so_far(output) == kept[-1] and time.monotonic() - began < 60:
@@ -87,8 +102,10 @@ def test_killed_ten_times_over(
         run.wait()
         _, alive = psutil.wait_procs(children, timeout=20)
         assert alive == []  # workers end with the process that started them
-        kept.append(written_so_far(output))
-        assert rows_of(output) == [row for row in whole if row[0] in {r[0] for r in rows_of(output)}]
+        rows = rows_of(output)
+        kept.append(len(rows))
+        there = {row[0] for row in rows}
+        assert rows == [row for row in whole if row[0] in there]
     assert kept == sorted(kept)
     assert kept[-1] > kept[1] > 0
     assert (
@@ -147,8 +164,8 @@ def spawned() -> list[int]:
     return [child.pid for child in children if any("spawn_main" in part for part in child.cmdline())]
 
 
-def test_a_worker_killed_in_mid_study(study: Path, whole: list[tuple[Any, ...]], tmp_path: Path) -> None:
-    assert swept(study, tmp_path / "out.sqlite", pool=processes(2), progress=killing(spawned, 5)) == whole
+def test_a_worker_killed_in_mid_study(small: Path, whole_small: list[tuple[Any, ...]], tmp_path: Path) -> None:
+    assert swept(small, tmp_path / "out.sqlite", pool=processes(2), progress=killing(spawned, 5)) == whole_small
 
 
 @contextmanager
@@ -162,30 +179,30 @@ def cluster(folder: Path) -> Iterator[Any]:
 
 
 @pytest.mark.parametrize("killed", [False, True], ids=["whole", "a worker killed"])
-def test_a_cluster_of_processes(study: Path, whole: list[tuple[Any, ...]], tmp_path: Path, killed: bool) -> None:
+def test_a_cluster_of_processes(small: Path, whole_small: list[tuple[Any, ...]], tmp_path: Path, killed: bool) -> None:
     with cluster(tmp_path) as found, dask(found.scheduler_address) as pool:
 
         def workers() -> list[int]:
             return [worker.pid for worker in found.workers.values()]
 
         progress = killing(workers, 5) if killed else (lambda rows: None)
-        assert swept(study, tmp_path / "out.sqlite", pool=pool, progress=progress) == whole
+        assert swept(small, tmp_path / "out.sqlite", pool=pool, progress=progress) == whole_small
 
 
-def test_the_command_on_a_cluster(study: Path, whole: list[tuple[Any, ...]], tmp_path: Path) -> None:
+def test_the_command_on_a_cluster(small: Path, whole_small: list[tuple[Any, ...]], tmp_path: Path) -> None:
     with cluster(tmp_path) as found:
         output = tmp_path / "out.sqlite"
         done = subprocess.run(
-            command(study, output, "--dask", found.scheduler_address), env=ENVIRONMENT, capture_output=True, check=True
+            command(small, output, "--dask", found.scheduler_address), env=ENVIRONMENT, capture_output=True, check=True
         )
     assert done.stderr == b""
-    assert rows_of(output) == whole
+    assert rows_of(output) == whole_small
 
 
-def test_a_scheduler_that_does_not_answer(study: Path, tmp_path: Path) -> None:
+def test_a_scheduler_that_does_not_answer(small: Path, tmp_path: Path) -> None:
     output = tmp_path / "out.sqlite"
     done = subprocess.run(
-        command(study, output, "--dask", "tcp://127.0.0.1:9"), env=ENVIRONMENT, capture_output=True, check=False
+        command(small, output, "--dask", "tcp://127.0.0.1:9"), env=ENVIRONMENT, capture_output=True, check=False
     )
     assert done.returncode == 2
     assert done.stdout == b""

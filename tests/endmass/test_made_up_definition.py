@@ -55,7 +55,7 @@ def test_every_command_tells_it(made_up: Definition, file: Path) -> None:
         drives = (found if key is None else found[key])["drives"]
         assert drives["rigid"]["end_mass"] == pytest.approx(felt, rel=1e-12)
         assert "rigid, at b/R 0.3" in call(command, file)[1]
-    handed = json.loads(call("handover", file, "--drive", "rigid")[1])
+    handed = json.loads(call("handover", file, "--drive", "rigid", "--json")[1])
     assert handed["end_mass"]["meaning"] == MEANING
     assert handed["CueSpecs"]["end_mass"] == pytest.approx(felt, rel=1e-6)
     assert "rigid" in pooltool_record("cue", kim_scene(0.3))["end_mass"]["others"]

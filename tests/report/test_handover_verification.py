@@ -40,7 +40,7 @@ def pooltool_squirt(mass: float, end_mass: float, a: float) -> float:
 
 
 def as_json(*arguments: object) -> Any:
-    status, out, err = call("handover", *arguments)
+    status, out, err = call("handover", *arguments, *(() if "--json" in arguments else ("--json",)))
     assert (status, err) == (0, "")
     return json.loads(out)
 
@@ -103,6 +103,17 @@ def test_the_json_of_the_command(scene: Path, tmp_path: Path) -> None:
     assert json.loads((tmp_path / "cue.json").read_text(encoding="utf-8")) == found
     assert as_json(scene, "-o", tmp_path / "again.json", "--json") == found
     assert (tmp_path / "again.json").read_bytes() == (tmp_path / "cue.json").read_bytes()
+
+
+def test_people_get_a_table_and_programs_json(scene: Path) -> None:
+    found = as_json(scene)
+    for_program = call("handover", scene, "--for", "pooltool")
+    assert (for_program[0], json.loads(for_program[1]), for_program[2]) == (0, found, "")
+    status, out, err = call("handover", scene)
+    assert (status, err) == (0, "")
+    assert f"handed over: end mass {1e3 * found['CueSpecs']['end_mass']:.3f} g by A.31, at b/R " in out
+    assert "Equivalent end mass for [A.31]" in out
+    assert "-o CUE.json writes the file that pooltool reads" in out
 
 
 @pytest.mark.parametrize("offset", [0.1, 0.3, 0.5])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -36,6 +37,8 @@ PROFILE = "x [mm],diameter [mm]\n0,12.5\n250,12.9\n737,21\n"
 
 def remarks(path: Path) -> list[str]:
     found = cf.load(path)
+    if isinstance(found, cf.Cue) and not found.body_mass and path.suffix != ".toml":  # a shape knows of no other mass
+        found = replace(found, body_mass=0.43)
     return unusual(found if isinstance(found, cf.Scene) else cf.Scene(found))
 
 
@@ -98,8 +101,8 @@ def test_a_slip_is_remarked(tmp_path: Path, old: str, new: str, line: str) -> No
             "x [mm],diameter [mm]\n0,6.4\n737,10.7\n",
             ["diameter at the tip 6.4 mm; 8.5 to 14 is usual: is that the rad"],
         ),
-        ("x [m],diameter [mm]\n0,12\n700,21\n", ["drawn length 700000 mm", "mass of the whole cue 108.2"]),
-        ("x [mm],diameter [cm]\n0,12\n700,21\n", ["segments[0].tip_diameter 120 mm", "mass of the whole cue 10.8"]),
+        ("x [m],diameter [mm]\n0,12\n700,21\n", ["drawn length 700000 mm", "mass of the whole cue 108."]),
+        ("x [mm],diameter [cm]\n0,12\n700,21\n", ["segments[0].tip_diameter 120 mm", "mass of the whole cue 11."]),
     ],
 )
 def test_profiles(tmp_path: Path, content: str, begins: list[str]) -> None:
@@ -107,6 +110,36 @@ def test_profiles(tmp_path: Path, content: str, begins: list[str]) -> None:
     found = remarks(tmp_path / "shaft.csv")
     assert len(found) == len(begins)
     assert all(line.startswith(begin) for line, begin in zip(found, begins, strict=True))
+
+
+LEFT_OUT = "; 400 to 700 is usual: is what is behind the shaft left out (--body-mass, or body_mass in a drawing)?"
+
+
+def test_a_shaft_without_the_rest_of_its_cue_is_remarked_where_it_is_struck(tmp_path: Path) -> None:
+    shaft = tmp_path / "shaft.csv"
+    shaft.write_text(PROFILE)
+    light = cf.load(shaft)
+    assert isinstance(light, cf.Cue)
+    (line,) = unusual(cf.Scene(light))
+    assert line == f"mass of the whole cue {1e3 * light.mass:.6g} g{LEFT_OUT}"
+    status, out, err = call("strike", shaft, "--json")
+    assert (status, err.splitlines()) == (0, [f"unusual: {json.loads(out)['unusual'][0]}"])
+    assert err.strip().endswith(LEFT_OUT)
+    assert call("strike", shaft, "--body-mass", "15 oz")[2] == ""
+    assert call("modes", shaft)[2] == ""  # how it rings does not depend on it
+
+
+def test_a_solid_rod_of_carbon_is_remarked(tmp_path: Path) -> None:
+    """A lathe profile has no bore: carbon in it is a rod of twice a shaft's mass."""
+    shaft = tmp_path / "shaft.csv"
+    shaft.write_text(PROFILE)
+    for command in (["modes"], ["strike", "--body-mass", "15 oz"]):
+        status, _, err = call(command[0], shaft, "--material", "carbon fibre", *command[1:])
+        assert status == 0
+        (line,) = err.splitlines()
+        assert line.startswith("unusual: a solid rod as stiff as carbon fibre, drawn mass 2")
+        assert line.endswith("g; such shafts are tubes: a bore is drawn in a .toml (`cuefem guide files`)")
+    assert call("modes", shaft, "--material", "steel")[2] == ""
 
 
 def test_a_lumped_cue(tmp_path: Path) -> None:

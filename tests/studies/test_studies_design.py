@@ -10,6 +10,7 @@ from cuefem import strike
 from cuefem.validation import disagreements
 from studies import low_squirt, sensitivity
 from studies.common import STUDIES, cue, scene
+from tests.helpers.committed import not_committed
 
 
 @pytest.mark.heavy
@@ -19,9 +20,13 @@ def test_sensitivity_table() -> None:
 
 
 @pytest.mark.heavy
-def test_low_squirt_table() -> None:
+def test_low_squirt_table(monkeypatch: pytest.MonkeyPatch) -> None:
+    """All but the row of the quasi-random search, which tests/design/test_optimum_verification.py makes too."""
     committed = (STUDIES / "low_squirt.md").read_text(encoding="utf-8").split("\n## LeatherTip")[0]
-    assert disagreements(committed, low_squirt.text()) == []
+    monkeypatch.setattr(low_squirt, "optima", lambda: [low_squirt.by_gradients()])
+    derived = low_squirt.text()
+    assert len(derived.splitlines()) == len(committed.splitlines()) - 1
+    assert not_committed(committed, derived) == []
 
 
 def test_hollow_front_against_solid() -> None:

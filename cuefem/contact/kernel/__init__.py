@@ -59,7 +59,7 @@ def digest() -> str:
 
 @cache
 def _loaded() -> tuple[ctypes.CDLL | None, str]:
-    """(the library, why there is none)."""
+    """The compiled library and ""; or None and the reason why there is no library."""
     if not BINARY.exists():
         return None, "the compiled kernel was not built; install again where there is a C compiler"
     try:

@@ -1,0 +1,80 @@
+"""A study on a cue alone gives what it always gave and says so; with a game it is struck as every command strikes it
+(properties)."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import cuefem as cf
+from cuefem.io.study import load_optimum, load_scatter, load_study
+from tests.helpers.command_line import call
+from tests.helpers.refusals import command_refuses
+from tests.helpers.sweeps import OPTIMUM, SCATTER, SCENE, STUDY, written
+
+CUE = SCENE.split("[tip]")[0].replace("[cue]\n", "").replace("cue.segments", "segments")
+FEW = """
+scene = "scene.toml"
+responses = ["squirt(0.3)"]
+[resolution]
+elements = 1
+order = 8
+modes = 4
+[[vary]]
+path = "cue.segments[0].tip_diameter"
+low = "11 mm"
+high = "13 mm"
+count = 3
+"""
+AS_EVER = "scene.toml is a cue alone, struck with a ball of 210 g and a flat tip in contact for 2 ms, b/R 0.3; game ="
+
+
+def test_without_a_game_it_is_as_ever_and_said(tmp_path: Path) -> None:
+    study = written(tmp_path, FEW, scene=CUE)
+    cue = cf.load(tmp_path / "scene.toml")
+    assert isinstance(cue, cf.Cue)
+    assert load_study(study).base == cf.Scene(cue, stroke=cf.Stroke(offset=0.3))
+    status, out, err = call("sweep", study)
+    assert (status, err) == (0, "")
+    assert f"assumed: {AS_EVER}" in " ".join(out.split())
+    assert json.loads(call("sweep", study, "--json")[1])["assumed"][0].startswith(AS_EVER)
+
+
+@pytest.mark.parametrize(("load", "text"), [(load_study, FEW), (load_scatter, SCATTER), (load_optimum, OPTIMUM)])
+def test_a_game_gives_its_usual_stroke(tmp_path: Path, load: object, text: str) -> None:
+    text = text.replace(
+        'path = "tip.contact_time"\nlow = "0.8 ms"\nhigh = "1.5 ms"',
+        'path = "stroke.speed"\nlow = "1 m/s"\nhigh = "3 m/s"',
+    )
+    study = written(tmp_path, f'game = "carom"\n{text}', scene=CUE)
+    cue = cf.load(tmp_path / "scene.toml")
+    assert isinstance(cue, cf.Cue)
+    found = load(study)  # type: ignore[operator]
+    base = found[0].study.base if isinstance(found, tuple) else found.base
+    assert base == cf.usual_scene(cue, "carom")
+
+
+def test_a_design_of_such_a_sweep_is_the_strike_of_the_command(tmp_path: Path) -> None:
+    study = written(tmp_path, f'game = "pool"\n{FEW}', scene=CUE)
+    status, out, _ = call("sweep", study, "--export", tmp_path / "out.csv")
+    assert status == 0
+    assert "assumed: a usual stroke of pool (game)" in out
+    last = (tmp_path / "out.csv").read_text(encoding="utf-8").splitlines()[2].split(",")
+    cue = cf.load(tmp_path / "scene.toml")
+    assert isinstance(cue, cf.Cue)
+    struck = cf.strike(
+        cf.usual_scene(replace(cue, segments=(replace(cue.segments[0], tip_diameter=0.012),))), cf.Resolution(1, 8, 4)
+    )
+    assert any(
+        float(cell) == pytest.approx(struck.squirt, rel=1e-9) for cell in last if cell.replace(".", "").isdigit()
+    )
+
+
+def test_a_game_is_for_a_cue_alone(tmp_path: Path) -> None:
+    study = written(tmp_path, f'game = "pool"\n{STUDY}')
+    command_refuses("study.toml: game: must be left out: scene.toml is a scene, which has", "sweep", study)
+    study = written(tmp_path, f'game = "chess"\n{FEW}', scene=CUE)
+    command_refuses("study.toml: game: must be one of pool, carom, snooker; got 'chess'", "sweep", study)

@@ -1,0 +1,51 @@
+"""A stroke that leather grips at first and then lets go is called a miscue, as a bare tip's is (properties)."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import cuefem as cf
+from cuefem.designer.answers import safety
+from cuefem.report.strike import MISSED, grip_of
+from tests.helpers.command_line import call
+
+MAPLE = cf.load(Path(__file__).parents[2] / "meshes" / "pool_maple.toml")
+assert isinstance(MAPLE, cf.Cue)
+LEATHER = cf.usual_scene(MAPLE)
+BARE = cf.Scene(MAPLE, LEATHER.ball, cf.Tip(0.73, 0.7, 1.1e-3), LEATHER.stroke)
+GRIPS = {0.0: "stick", 0.45: "stick", 0.575: "slides", 0.6: "lets go"}  # the cone of mu = 0.7 ends at b/R 0.573
+
+
+def struck(scene: cf.Scene, offset: float) -> cf.Outcome:
+    return cf.strike(replace(scene, stroke=cf.Stroke(2.0, offset)))
+
+
+@pytest.mark.parametrize("scene", [LEATHER, BARE], ids=["leather", "bare"])
+@pytest.mark.parametrize(("offset", "grip"), GRIPS.items())
+def test_the_tip_lets_go_where_friction_ends(scene: cf.Scene, offset: float, grip: str) -> None:
+    outcome = struck(scene, offset)
+    assert (outcome.regime, grip_of(outcome)) == ("stick", grip)
+    assert safety(outcome) == {"stick": "safe", "slides": "slips", "lets go": "miscue"}[grip]
+
+
+@pytest.mark.parametrize("offset", [0.7, 0.9])
+def test_far_out_both_miscue_and_the_ball_is_slow(offset: float) -> None:
+    for scene in (LEATHER, BARE):
+        outcome = struck(scene, offset)
+        assert grip_of(outcome) in MISSED
+        assert outcome.ball_speed < 0.3 * struck(scene, 0.45).ball_speed
+
+
+def test_the_commands_say_so() -> None:
+    path = Path(__file__).parents[2] / "meshes" / "pool_maple.toml"
+    for command in ("strike", "report"):
+        status, out, err = call(command, path, "--offset", "0.7")
+        assert (status, err) == (0, "")
+        assert "this stroke miscues: " in out
+    said = " ".join(call("strike", path, "--offset", "0.7")[1].split())
+    assert "grip, miscue: held at first, then slid through more than half of the push, a miscue" in said
+    assert json.loads(call("strike", path, "--offset", "0.7", "--json")[1])["models"]["coupled"]["grip"] == "lets go"
