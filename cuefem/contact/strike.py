@@ -48,7 +48,7 @@ def strike(scene: Scene, at: Resolution | None = None) -> Outcome:
     The cue's modes, the tip and the ball are one system. While the contact slips or sticks, and the tip is loaded or
     unloaded, its motion is linear: each such phase is followed exactly, and its end found as a root, so that the modes
     kept are the only approximation (handbook: The strike). A stiffening tip, a turning normal or a raised cue is
-    stepped in time, to about 1e-10. In the compiled kernel the cost goes with the modes, a millisecond or two for a
+    stepped in time, to about 1e-10. In the compiled kernel the cost goes with the modes, about a millisecond for a
     contact of 24; in Python, which takes several, with their cube.
 
     Examples

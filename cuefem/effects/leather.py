@@ -370,10 +370,23 @@ class LeatherTip(CueEffect):
 
     def _punch(self, diameter: float, offset: float) -> tuple[Array, Array]:
         """Radii over D from zero up, and E D times the two direct compliances of a patch that sticks beyond zero."""
+        self._place(diameter, offset)  # which says what is wrong with them
+        return RADII, _punched(self, diameter, offset)
+
+    def _direct(self, diameter: float, offset: float) -> Array:
+        """The two compliances of `_punch`, solved for."""
         at = RADII[1:]
         direct = np.diagonal(self._compliance(diameter, offset, at), axis1=1, axis2=2)
         below = self.height - self._drop(self._place(diameter, offset)[0] * diameter / 2)
-        return RADII, direct - punch_gain(below / diameter, self.nu, at)
+        return np.asarray(direct - punch_gain(below / diameter, self.nu, at))
+
+
+@lru_cache(maxsize=32)
+def _punched(tip: LeatherTip, diameter: float, offset: float) -> Array:
+    """Both stiffnesses of a patch ask for its compliances."""
+    found = tip._direct(diameter, offset)
+    found.flags.writeable = False
+    return found
 
 
 @dataclass(frozen=True)

