@@ -174,7 +174,7 @@ def _squirt(
                 option = f"--{name.replace('_', '-')}"
                 raise InputError(NAME, option, "must go with --scene, whose shape it is for; got no --scene")
         ball = GAMES[given["ball"] or "pool"].ball
-        offset = 0.3 if given["offset"] is None else offset_of(NAME, given["offset"], float(ball.radius))  # type: ignore[arg-type]
+        offset = 0.3 if given["offset"] is None else offset_of(NAME, given["offset"], float(ball.radius))
         cue, kind = 0.54, given["ball"] or "pool"
         body = given["body_mass"]
         mass = cue if body is None else _read("--body-mass", body, "kg")

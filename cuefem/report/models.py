@@ -18,6 +18,15 @@ from cuefem.report.words import tip_effect_notes
 from cuefem.scene import Scene
 from cuefem.squirt import alciatore_a31, natural_pivot_length
 
+# What the numbers beside the coupled strike's rest on, in words that stand without the handbook.
+PAPER = "H.-C. Kim's paper (arXiv:2104.11232)"
+ALCIATORE = "Alciatore's formula, technical proof A.31 (billiards.colostate.edu)"
+
+
+def offset_words(scene: Record) -> str:
+    """Which end mass the two-part cue has: `end-mass` counts effects at the tip, which a two-part cue cannot have."""
+    return "offset, without the effects at the tip" if scene["effects_at_tip"] else "offset"
+
 
 def two_part_cues(scene: Scene, offsets: Sequence[float], tip: TipModes) -> list[LumpedCue | None]:
     """The lumped cue that the impulse solver takes at each offset, with the end mass of a tip that sticks there.

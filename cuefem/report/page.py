@@ -32,6 +32,7 @@ from cuefem.report.drawings import (
 from cuefem.report.effects import seconds_words
 from cuefem.report.end_mass import end_mass_record
 from cuefem.report.glossary import with_words
+from cuefem.report.models import ALCIATORE, PAPER
 from cuefem.report.quantities import GRIPS, QUANTITIES, degrees, grams, written
 from cuefem.report.record import Record
 from cuefem.report.squirt import PAPER_CUE_END_MASS, offset_charts, squirt_record
@@ -45,6 +46,16 @@ from cuefem.tip_modes import LEAST_STUCK, Solved
 DEFAULT_RTOL = 1e-2
 OFFSETS = tuple(round(0.03 * i, 2) for i in range(1, 21))  # b/R of the curves
 MEASURED_END_MASS = (5.8e-3, 14e-3)  # kg, of real cues; handbook: Effective end mass
+# Where the numbers come from that the page shows beside the cue's own.
+SOURCES = (
+    ("the paper's 12 g", f"the cue end of the two-part cue in {PAPER}"),
+    (
+        "measured cues",
+        "5.8 to 14 g, the end masses with which A.31 gives the least and the most squirt that D. Alciatore's robot and "
+        "players measured (a Predator Z, 1.8° at b/R 0.453, and a Stinger, 2.4° at b/R 0.267, ball 170 g)",
+    ),
+    ("A.31", ALCIATORE),
+)
 LATE = ("late stick", "slides", *MISSED)
 
 # A model's class on the page, by the beginning of its name.
@@ -272,7 +283,7 @@ def _end_masses(record: Record, squirt: Record) -> Record:
         "ends": (left, right),
         "height": 26.0 * len(rows) + 44,
         "reasons": [values["reason"] for values in record["drives"].values() if values["end_mass"] is None],
-        "meanings": [(one.label_at(record["offset"]), one.meaning) for one in DEFINITIONS.values()],
+        "meanings": [*((one.label_at(record["offset"]), one.meaning) for one in DEFINITIONS.values()), *SOURCES],
         "coupling": squirt["coupling"],
         "counted": "; ".join(one.label for one in DEFINITIONS.values() if one.counts_tip),
     }

@@ -14,11 +14,14 @@ from cuefem.cue import LumpedCue
 from cuefem.endmass.lumped import impulse
 from cuefem.report.charts import Axis, Chart, Curve, Mark, Span, chart
 from cuefem.report.models import (
+    ALCIATORE,
+    PAPER,
     a31_squirt,
     at_offset,
     bare_scene,
     coupling_slope,
     model_notes,
+    offset_words,
     pivot_length,
     two_part_cues,
     with_coupling,
@@ -107,8 +110,8 @@ def squirt_table(record: Record, scene: Record) -> Group:
     known = [mass for mass in record["end_mass"] if mass is not None]
     felt = f"{significant(1e3 * known[0])} to {grams(known[-1])}" if known else NONE
     models = (
-        f"coupled: vibrating shaft in time; two-part: end mass m_e {felt} (offset); 12 g: the mass m_c of the paper's "
-        "cue end, m_e 3 g; A.31: Alciatore's formula"
+        f"coupled: vibrating shaft in time; two-part: end mass m_e {felt} ({offset_words(scene)}); 12 g: the mass "
+        f"m_c of the cue end, m_e 3 g, in {PAPER}; A.31: {ALCIATORE}"
     )
     table = _by_offset("Squirt", record, "squirt")
     return with_caption(table, assumptions(scene), models, *model_notes(scene, record, "b/R /kg"))

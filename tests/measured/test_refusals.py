@@ -67,7 +67,10 @@ FILES = {
     "name": ("name = 3\n", "name: must be text; got 3"),
     "unknown": ('[[unknowns]]\nname = "bor"\n', "unknowns[0].name: must be one of E, G, rho, bore"),
     "prior": ('[[unknowns]]\nname = "bore"\nlow = 6\nhigh = 7\n', "unknowns[0].low: must be in (0, inf) m, a length"),
-    "closed": ('[[unknowns]]\nname = "dome"\nspread = 0.1\n', "unknowns must be of this cue; got 'dome'"),
+    "closed": (
+        '[tip]\nfriction = 0.6\n[[unknowns]]\nname = "dome"\nspread = 0.1\n',
+        "unknowns must be of this cue; got 'dome'",
+    ),
     "lumped": (
         'cue = { mass = "0.5 kg", end_mass = "6 g" }\n',
         "cue: must be a cue of segments, which can be measured",

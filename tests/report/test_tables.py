@@ -173,6 +173,9 @@ def test_what_changes_little_is_told_without_colours(shown: Callable[[str], list
         ("end mass", "eps: m_c as a part of the ball's mass"),
         ("bare strike", "coupled: vibrating shaft in time, modes kept for 0.5 % of squirt; two-part"),
         ("strike", "/kg, the tip's speed across the cue by a unit of impulse along it"),
+        ("strike", "g (offset, without the effects at the tip)"),
+        ("report", "g (offset, without the effects at the tip); 12 g: the mass m_c of the cue end"),
+        ("end mass", "do not, nor does the offset end mass of the two-part cues in `strike` and `report`"),
     ],
 )
 def test_captions_explain_in_plain_words(name: str, said: str, shown: Callable[[str], list[Any]]) -> None:
