@@ -1,10 +1,11 @@
 """What do the public calls cost, compared with the bare linear algebra that they use?
 
 What: on [Kim]'s shaft (meshes/kim.toml; T = 1 ms, b/R 0.3, e = 3/4, mu = 0.7) warm calls of `modes`, `end_mass`,
-`strike` and `resolve`, and whole processes of the command, beside two calls of LAPACK's size: `scipy.linalg.eigh` of
-the matrices that `modes` assembles for five modes, and `scipy.linalg.expm` of a 50 x 50 matrix of norm 1. All take
-turns in one process with one BLAS thread, so that a busy machine slows all alike; medians of processor time and their
-ratios. Writes speed_seconds.md beside itself, of the machine named there; takes about 30 s.
+`strike` and `resolve`; on meshes/pool_maple.toml the usual pool stroke with a `LeatherTip`, alone and in a batch of
+strikes; and whole processes of the command. Beside them two calls of LAPACK's size: `scipy.linalg.eigh` of the matrices
+that `modes` assembles for five modes, and `scipy.linalg.expm` of a 50 x 50 matrix of norm 1. All take turns in one
+process with one BLAS thread, so that a busy machine slows all alike; medians of processor time and their ratios. Writes
+speed_seconds.md beside itself, of the machine named there; takes under a minute.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from statistics import median
@@ -22,7 +24,7 @@ from typing import Any
 import numpy as np
 import scipy.linalg as la
 
-from cuefem import Resolution, end_mass, modes, resolve, strike
+from cuefem import LeatherTip, Resolution, Stroke, batch_strike, end_mass, modes, resolve, strike, usual_scene
 from cuefem.beam.system import assemble
 from cuefem.beam.waves import mesh_for
 from cuefem.contact.strike import strike_modes
@@ -34,7 +36,8 @@ if str(HERE) not in sys.path:
 common, contact_cost = import_module("common"), import_module("contact_cost")
 
 COMMANDS = ("--help", "end-mass studies/scenes/kim.toml")
-ROUNDS, STARTS = 40, 7
+ROUNDS, STARTS = 20, 5
+BATCH = 20  # strikes of a batch, at so many offsets
 
 
 def calls() -> dict[str, tuple[Callable[[], Any], int]]:
@@ -51,12 +54,23 @@ def calls() -> dict[str, tuple[Callable[[], Any], int]]:
         "scipy.linalg.expm, 50 x 50": (lambda: la.expm(matrix), 20),
         f"scipy.linalg.eigh, {len(shifted)} x {len(shifted)}": (lambda: la.eigh(system.M, shifted), 10),
         "modes(kim, 5)": (lambda: modes(kim, 5), 10),
-        "end_mass, stick, 2 ms": (lambda: end_mass(longer), 2),
+        **{
+            f"end_mass, {drive}, 2 ms": (lambda drive=drive: end_mass(longer, drive), 1)
+            for drive in ("stick", "offset", "velocity", "force")
+        },
     }
     for count in (24, 50, 100, 200):
         tip = tip_modes_of(scene, Resolution(4 + count // 20, 24, count))
         found[f"contact of {count} modes"] = (lambda tip=tip: strike_modes(scene, tip), max(1, 100 // count))
     found["strike, default resolution"] = (lambda: strike(scene), 1)
+    leather = usual_scene(common.cue("pool_maple"))
+    assert any(isinstance(effect, LeatherTip) for effect in leather.effects)
+    leather = replace(leather, stroke=Stroke(2.0, 0.375))
+    found["strike with LeatherTip, default resolution"] = (lambda: strike(leather), 1)
+    offsets = np.linspace(0.02, 0.5, BATCH)
+    for name, each in (("Kim's shaft", scene), ("LeatherTip", leather)):
+        scenes = [replace(each, stroke=Stroke(2.0, float(b))) for b in offsets]
+        found[f"batch_strike of {BATCH}, {name}, a strike"] = (lambda scenes=scenes: batch_strike(scenes), 1)
     for rtol in (1e-3, 1e-4):
         found[f"resolve to {rtol:.0e}"] = (lambda rtol=rtol: resolve(scene, rtol), 1)
     return found
@@ -73,7 +87,7 @@ def medians(rounds: int) -> dict[str, float]:
                 work()
                 if turn:
                     times[name].append(process_time() - start)
-    return {name: median(each) for name, each in times.items()}
+    return {name: median(each) / (BATCH if "a strike" in name else 1) for name, each in times.items()}
 
 
 def starts(repeats: int) -> dict[str, float]:
