@@ -81,7 +81,7 @@ td small { color: var(--soft); }
 .miss { fill: var(--c2); opacity: 0.28; }
 .under p { margin: 0.2rem 0; }
 .q-btn.disabled { opacity: 0.55 !important; }
-.trust summary { font-size: 0.86rem; } .trust p { font-size: 0.86rem; } .trust details { margin-top: 0.5rem; }
+.trust details { margin: -0.3rem 0.4rem 1rem; font-size: 0.9rem; } .trust summary { display: list-item; }
 @media print {
   .words, .actions, .knob .q-slider, .q-expansion-item--collapsed, .tones, .pins, .choice .q-field__append {
     display: none !important; }
