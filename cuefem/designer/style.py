@@ -72,7 +72,7 @@ h1, h2 { font-weight: 700; letter-spacing: 0; font-family: inherit; } h2 { line-
 .q-field__native, .q-field__input { color: var(--ink); } .q-field__label { color: var(--soft); }
 .dialog { background: var(--card); color: var(--ink); border: 1px solid var(--rule); border-radius: 10px;
   padding: 1.1rem 1.4rem; width: min(42rem, calc(100vw - 2rem)); max-width: none !important; }
-.wide-field { width: 100%; } .dialog .q-btn { background: var(--card) !important; }
+.wide-field { width: 100%; } .dialog .q-btn .block { background: var(--card); }
 .pins { display: grid; gap: 0.4rem; margin: 0 0 0.6rem; }
 .pin { display: flex; flex-wrap: wrap; gap: 0.5rem; align-items: center; }
 .pin .q-field { width: 15rem; max-width: 100%; }
