@@ -8,7 +8,7 @@ from contextlib import suppress
 from typing import Any, Protocol
 
 from cuefem.designer.answers import answers, completed, coupled_points, density, with_end_mass
-from cuefem.designer.computing import FAILURES, Memory, Results, computed
+from cuefem.designer.computing import FAILURES, Memory, Results, computed, give_back
 from cuefem.scene import Scene
 
 IDLE = 0.12  # s without a move before the slower results are computed
@@ -71,6 +71,8 @@ class Answering:
         move = self.moves
         if good:
             await self._refine(move)
+        if move == self.moves:
+            await asyncio.to_thread(give_back)
         if move == self.moves:
             self.page.show_busy(False)
 

@@ -24,8 +24,8 @@ class ResultsSide:
         self.before: Answers | None = None
         with ui.element("section").classes("key-strip"):
             self.keys = ui.html(sanitize=False)
-            self.trust = ui.html(sanitize=False).classes("trust")
         with ui.element("div").classes("rest") as self.rest:
+            self.trust = ui.html(sanitize=False).classes("trust")
             with ui.element("section"):
                 ui.html("<h2>The cue</h2>", sanitize=False)
                 self.cue = ui.html(sanitize=False)

@@ -72,7 +72,7 @@ h1, h2 { font-weight: 700; letter-spacing: 0; font-family: inherit; } h2 { line-
 .q-field__native, .q-field__input { color: var(--ink); } .q-field__label { color: var(--soft); }
 .dialog { background: var(--card); color: var(--ink); border: 1px solid var(--rule); border-radius: 10px;
   padding: 1.1rem 1.4rem; width: min(42rem, calc(100vw - 2rem)); max-width: none !important; }
-.wide-field { width: 100%; }
+.wide-field { width: 100%; } .dialog .q-btn .block { background: var(--card); }
 .pins { display: grid; gap: 0.4rem; margin: 0 0 0.6rem; }
 .pin { display: flex; flex-wrap: wrap; gap: 0.5rem; align-items: center; }
 .pin .q-field { width: 15rem; max-width: 100%; }
@@ -81,7 +81,7 @@ td small { color: var(--soft); }
 .miss { fill: var(--c2); opacity: 0.28; }
 .under p { margin: 0.2rem 0; }
 .q-btn.disabled { opacity: 0.55 !important; }
-.trust summary { font-size: 0.86rem; } .trust p { font-size: 0.86rem; } .trust details { margin-top: 0.5rem; }
+.trust details { margin: -0.3rem 0.4rem 1rem; font-size: 0.9rem; } .trust summary { display: list-item; }
 @media print {
   .words, .actions, .knob .q-slider, .q-expansion-item--collapsed, .tones, .pins, .choice .q-field__append {
     display: none !important; }

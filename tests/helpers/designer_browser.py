@@ -15,7 +15,7 @@ from typing import Any
 
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 COMMAND = "import sys; from cuefem.cli import main; main()"
-PATIENCE = 30_000  # ms, on a busy machine
+PATIENCE = 90_000  # ms, on a busy machine
 
 
 @contextmanager
