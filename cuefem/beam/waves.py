@@ -8,7 +8,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cuefem.cue import Array, Cue, Section
+from cuefem.cue import Array, Cue
 
 # A sparse eigenproblem costs in proportion to the modes wanted, a dense one to the cube of the unknowns. They cost the
 # same when the number of modes is (unknowns/EVEN)^3. Measured: 6 modes of 270 unknowns, 30 of 450, 150 of 780.
@@ -25,16 +25,11 @@ def wave_phase(cue: Cue, omega: ArrayLike) -> Array:
     lengths = np.diff(cue.nodes)
     piece = np.arange(len(lengths))[:, None]
     s = cue.section_in(piece, lengths[:, None] * np.array([0.5 - 0.15**0.5, 0.5, 0.5 + 0.15**0.5]))
-    phase = waves_of(s, omega) @ (np.array([5, 8, 5]) / 18) * lengths
-    return np.moveaxis(phase, -1, 1)
-
-
-def waves_of(s: Section, omega: Array) -> Array:
-    """The two local wave numbers of Timoshenko's beam, rad/m: (2, ...), sections and frequencies broadcasting."""
     shear, rotary = s.rhoA / s.kGA, s.rhoI / s.EI
     split = np.sqrt((shear - rotary) ** 2 + 4 * s.rhoA / (s.EI * np.maximum(omega, 1e-9) ** 2))
     branches = np.array([shear + rotary + split, np.maximum(shear + rotary - split, 0)])
-    return np.asarray(omega * np.sqrt(branches / 2))
+    phase = omega * np.sqrt(branches / 2) @ (np.array([5, 8, 5]) / 18) * lengths
+    return np.moveaxis(phase, -1, 1)
 
 
 def modes_below(cue: Cue, omega: float) -> int:

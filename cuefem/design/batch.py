@@ -13,20 +13,16 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cuefem.beam.basis import table
 from cuefem.beam.system import element_matrices, weighted_strains
 from cuefem.beam.tail import ritz
-from cuefem.beam.waves import waves_of
 from cuefem.cue import Array, Cue, Section, SegmentRows, section_properties
 from cuefem.endmass.undamped import StickLimit, stick_reason
 from cuefem.scene import Resolution, Scene
 
 # Cues worked at a time: more of them, and their matrices no longer fit the cache (half as fast at 256).
 BLOCK = 64
-# Orders of a segment beyond half the phase of its waves; with fewer, steep cones in cues of several pieces lose digits.
-SPARE = 14
 # Gauss points a segment of the static deflection, x^2/EI of a cone: 1e-13 for cones up to 1 : 10.
 STATIC_POINTS = 48
 
@@ -264,8 +260,7 @@ def _joined(parts: Sequence[BatchModes]) -> BatchModes:
 class Beams:
     """Assembled beams of a block: K, M (cues, unknowns, unknowns), theta times the length; see `cuefem.beam.System`.
 
-    sizes: (cues, elements), m. length, shift: (cues,). section: arrays (cues, elements, q). held: which of the unknowns
-    of elements of equal order there are; short segments have fewer.
+    sizes: (cues, elements), m. length, shift: (cues,). section: arrays (cues, elements, q).
     """
 
     K: Array
@@ -275,34 +270,25 @@ class Beams:
     sizes: Array
     section: Section
     order: int
-    held: NDArray[np.intp]
-
-    @property
-    def _whole(self) -> int:
-        return (2 * self.order + 1) * self.sizes.shape[1] + 2
 
     @property
     def rigid(self) -> Array:
         """Translation, and rotation about the tip: (cues, unknowns, 2)."""
-        motions = np.zeros((len(self.K), self._whole, 2))
+        motions = np.zeros((*self.K.shape[:2], 2))
         nodes = (2 * self.order + 1) * np.arange(self.sizes.shape[1] + 1)
         motions[:, nodes, 0], motions[:, nodes + 1, 1] = 1.0, 1.0
         motions[:, nodes[1:], 1] = np.cumsum(self.sizes, axis=1) / self.length[:, None]
-        return motions[:, self.held]
+        return motions
 
     def strains(self, vectors: Array) -> Array:
         """Strains of ``vectors`` (cues, unknowns, k) times roots of stiffness: (cues, rows, k); K = S'S of all."""
         t, stride, elements = table(self.order), 2 * self.order + 1, self.sizes.shape[1]
-        if len(self.held) < self._whole:
-            whole = np.zeros((len(vectors), self._whole, vectors.shape[2]))
-            whole[:, self.held] = vectors
-            vectors = whole
         own = vectors[:, stride * np.arange(elements)[:, None] + np.arange(len(t.w))]  # (cues, elements, unknowns, k)
         both = weighted_strains(own, self.section, self.sizes, self.length[:, None, None, None], self.order)
         return np.concatenate([part.reshape(len(vectors), -1, vectors.shape[2]) for part in both], axis=1)
 
 
-def _beams(batch: CueBatch, at: Resolution, modes: int) -> Beams:
+def _beams(batch: CueBatch, at: Resolution) -> Beams:
     order, elements = at.order, at.elements if isinstance(at.elements, int) else max(at.elements)
     pieces = batch.rows.length.shape[1]
     sizes = np.repeat(batch.rows.length / elements, elements, axis=1)
@@ -319,39 +305,7 @@ def _beams(batch: CueBatch, at: Resolution, modes: int) -> Beams:
         K[:, here, here] += stiff[:, e]
         M[:, here, here] += heavy[:, e]
     stiffness, mass = (np.einsum("be,be->b", sizes, part.mean(axis=2)) for part in (section.EI, section.rhoA))
-    held = _held(np.repeat(_orders(batch, elements, order, modes), elements), order)
-    if len(held) < K.shape[1]:
-        K, M = (np.ascontiguousarray(part[:, held[:, None], held]) for part in (K, M))
-    return Beams(K, M, length, 500 * stiffness / mass / length**4, sizes, section, order, held)
-
-
-def _orders(batch: CueBatch, elements: int, order: int, count: int) -> NDArray[np.intp]:
-    """The order that the elements of each segment need for ``count`` modes of all cues, up to ``order``: (segments,).
-
-    Half the phase of the waves on them, as in `cuefem.beam.waves.mesh_for`, and `SPARE` more.
-    """
-    if batch.rows.length.shape[1] == 1:
-        return np.array([order])
-    points, weights = _gauss(3)
-    _, _, section = batch.sections(points, weights)
-    guesses = np.geomspace(1e3, 1e7, 60)
-    local = waves_of(section, guesses[:, None, None, None])  # (branches, guesses, cues, segments, points)
-    phases = local @ weights * batch.rows.length
-    logs = np.log(phases.sum(axis=(0, 3))).T  # of all waves on a cue: (cues, guesses)
-    wanted = np.log((count + 1) * np.pi)
-    at = [np.interp(wanted, row, np.arange(len(guesses))) for row in logs]
-    above = np.minimum(np.ceil(at), len(guesses) - 1).astype(int)
-    longest = phases[0, above, np.arange(len(batch))].max(axis=0)
-    return np.minimum(np.ceil(longest / (2 * elements)).astype(int) + SPARE, order)
-
-
-def _held(orders: NDArray[np.intp], order: int) -> NDArray[np.intp]:
-    """Of the unknowns of elements of one order, those that elements of ``orders`` have."""
-    parts = [
-        (2 * order + 1) * e + np.r_[0, 1, 2 : 2 + p, 2 + order : 1 + order + p] for e, p in enumerate(orders.tolist())
-    ]
-    last = (2 * order + 1) * len(orders)
-    return np.concatenate([*parts, [last, last + 1]])
+    return Beams(K, M, length, 500 * stiffness / mass / length**4, sizes, section, order)
 
 
 @cache
@@ -386,14 +340,14 @@ def _inverse(lower: Array) -> Array:
 
 
 def _block_frequencies(batch: CueBatch, count: int, at: Resolution) -> Array:
-    beams = _beams(batch, at, count)
+    beams = _beams(batch, at)
     C, _ = _standard(beams)
     mu = np.linalg.eigvalsh(C)[:, ::-1][:, 2 : 2 + count]  # the first two are the rigid motions
     return np.asarray(np.sqrt(1 / mu - beams.shift[:, None]) / (2 * np.pi))
 
 
 def _block_modes(batch: CueBatch, count: int, at: Resolution, ended: bool) -> BatchModes:
-    beams = _beams(batch, at, count)
+    beams = _beams(batch, at)
     C, back = _standard(beams)
     mu, y = np.linalg.eigh(C)
     chosen = slice(-3, -3 - count, -1)  # the last two are the rigid motions

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -181,20 +180,3 @@ def test_static_tip_stiffness_is_that_of_the_clamped_beam(cues: list[Cue]) -> No
     stiff = single > 1
     assert stiff.any()
     np.testing.assert_allclose(CueBatch.of(cues).tip_stiffness[stiff], single[stiff], rtol=1e-8)
-
-
-def test_short_segments_take_fewer_unknowns_and_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Leather and a ferrule before the shaft: their elements need no more orders than their waves ask for."""
-    stacks = sys.modules["cuefem.design.batch"]
-    wood, leather = Material(12e9, 0.9e9, 700.0), Material(0.1e9, 0.03e9, 950.0)
-    drawn = [
-        Cue((Segment(0.006, d, d, leather), Segment(0.02, d, d, wood), Segment(0.74, d, 0.021, wood)), 0.4)
-        for d in (0.0115, 0.0125, 0.0135)
-    ]
-    family, at = CueBatch.of(drawn), Resolution(1, 36, 20)
-    place = scene(drawn[0], 1.2e-3)
-    fewer, found = stacks._beams(family, at, 20).K.shape[1], batch_stick(family, place, at=at, ended=True)
-    monkeypatch.setattr(stacks, "SPARE", 100)
-    assert fewer < 0.75 * stacks._beams(family, at, 20).K.shape[1]
-    whole = batch_stick(family, place, at=at, ended=True)
-    np.testing.assert_allclose(found.end_mass, whole.end_mass, rtol=1e-10)
