@@ -12,7 +12,7 @@ from cuefem import Cue, Material, Resolution, Segment, Stroke, end_mass
 from cuefem.beam.modes import modes, solve
 from cuefem.beam.system import assemble
 from cuefem.beam.tail import tail
-from cuefem.beam.waves import even_mesh_for, mesh_for
+from cuefem.beam.waves import ended_mesh_for, even_mesh_for, mesh_for
 from cuefem.contact.strike import strike_modes
 from cuefem.endmass.drives import end_mass_spreads, formula_of
 from cuefem.tip_modes import LEAST, LEAST_STUCK, MOST_KEPT, Solved, default_resolution, lean_mesh, tip_modes_from
@@ -73,6 +73,30 @@ def test_the_coarser_mesh_under_a_tail_changes_no_digit_that_the_default_holds(n
     struck = replace(found, stroke=Stroke(1.0, draw.uniform(0.05, 0.5)))
     by_whole = strike_modes(struck, tip_modes_from(tail(solve(whole, at.modes)), struck))
     assert strike_modes(struck, tip).squirt == pytest.approx(by_whole.squirt, rel=3e-6)
+
+
+@pytest.mark.parametrize("length", [0.005, 0.05, 0.3])
+@pytest.mark.parametrize(("thin", "thick"), [(0.012, 0.03), (0.004, 0.03), (0.002, 0.012)])
+@pytest.mark.parametrize("bored", [0.0, 0.7])
+def test_a_short_steep_cone_has_the_orders_that_its_taper_asks_for(
+    length: float, thin: float, thick: float, bored: float
+) -> None:
+    """Their waves alone would ask for so few that the tip's amplitudes were up to a tenth off."""
+    cone = Segment(length, thin, thick, MAPLE, tip_bore=bored * thin)
+    turned = Segment(length, thick, thin, MAPLE, butt_bore=bored * thin)
+    wide, slim = Segment(1.1, thick, 0.03, MAPLE), Segment(1.1, thin, 0.03, MAPLE)
+    for cue in (
+        Cue((cone, wide), 0.3),
+        Cue((turned, slim), 0.3),
+        Cue((Segment(0.7, 0.012, thick, MAPLE), turned), 0.3),
+    ):
+        elements, orders = ended_mesh_for(cue, 45)
+        found = solve(assemble(cue, elements=elements, order=orders, count=45), 45)
+        elements, order = mesh_for(cue, 45)
+        finer = tuple(2 * number for number in elements)
+        exact = solve(assemble(cue, elements=finer, order=order + 4, count=45), 45)
+        np.testing.assert_allclose(found.frequencies[:5], exact.frequencies[:5], rtol=2e-9)
+        np.testing.assert_allclose(found.vectors[0, :20], exact.vectors[0, :20], rtol=2e-7)
 
 
 def test_a_short_segment_gets_the_elements_that_its_own_waves_ask_for() -> None:

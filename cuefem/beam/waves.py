@@ -41,9 +41,10 @@ def modes_below(cue: Cue, omega: float) -> int:
 SPARE, HIGHEST_ORDER = 8, 26
 
 # The same of `ended_mesh_for`: where a tail ends the modes, the highest need no more accuracy than the tail has,
-# and elements may be as long as their tables are cheap. With these, squirt changes by up to 1e-6 and
-# a stick end mass by 3e-5 (tests/test_default_verification.py).
-SPARE_ENDED, WIDEST = 4, 42
+# and elements may be as long as their tables are cheap. With these, squirt changes by up to 3e-6 and
+# a stick end mass by 3e-5 (tests/test_default_verification.py). TAPERED: what a cone's taper may
+# leave by itself in the tip's amplitudes; in frequencies it is their square.
+SPARE_ENDED, WIDEST, TAPERED = 4, 42, 1e-7
 
 _GUESSES = np.geomspace(1e0, 1e9, 100)  # angular frequencies between which `mesh_for` interpolates, rad/s
 
@@ -79,12 +80,27 @@ def ended_mesh_for(
 ) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """(elements, orders), one number a segment each, for the ``count`` lowest modes ended by a tail.
 
-    spare: orders beyond half the phase of the waves on an element. widest: the highest order.
+    spare: orders beyond half the phase of the waves on an element. widest: the highest order. A short steep cone has
+    little phase, but its shapes are no polynomials: it takes the orders of `_taper_orders`.
     """
     phases = _phases(cue, count)
     elements = np.ceil(phases / (2 * (widest - spare)))
-    orders = np.ceil(phases / (2 * elements)) + spare
+    orders = np.maximum(np.ceil(phases / (2 * elements)) + spare, np.minimum(_taper_orders(cue, elements), widest))
     return tuple(map(int, elements)), tuple(map(int, orders))
+
+
+def _taper_orders(cue: Cue, elements: Array) -> Array:
+    """The order by which the taper of a segment's elements leaves `TAPERED`, (segments,).
+
+    Where the wall of a cone, or the sum of its diameters, goes on to zero beyond its thin end, the shapes are singular.
+    For the ratio r of that wall at an element's two ends the singularity lies at (r + 1)/(r - 1) of its half length, and
+    polynomials of order p leave an error of rho^-p, with rho = (sqrt r + 1)/(sqrt r - 1).
+    """
+    outer = np.array([(s.tip_diameter, s.butt_diameter) for s in cue.segments])
+    bore = np.array([(s.tip_bore, s.butt_bore) for s in cue.segments])
+    thin, thick = np.sort([outer - bore, outer + bore]).transpose(2, 0, 1)
+    root = np.sqrt(1 + ((thick / thin).max(axis=0) - 1) / elements)  # of the element at the thin end
+    return np.ceil(-math.log(TAPERED) / np.log((root + 1) / np.maximum(root - 1, 1e-9)))
 
 
 def even_mesh_for(cue: Cue, count: int) -> tuple[int, int]:
