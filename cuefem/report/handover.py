@@ -15,6 +15,7 @@ import numpy as np
 from rich.console import Group
 
 from cuefem.beam.tip import TipModes
+from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.endmass.drives import DEFINITIONS, formula_of
 from cuefem.report.quantities import NONE, units_of, written
@@ -132,7 +133,7 @@ def _a31_end_mass(scene: Scene, tip: TipModes) -> float:
     if offset == 0:
         raise ValueError("[A.31] has no squirt head on; got the offset 0 (--offset takes another)")
     outcome = strike_modes(scene, tip)
-    if outcome.regime == "miscue":
+    if grip_of(outcome) in MISSED:
         raise ValueError(f"the stroke miscues at offset {offset}; got no end mass")
     return _mass_of(scene, float(offset), float(outcome.squirt))
 
@@ -146,6 +147,7 @@ def _worth(scene: Scene, tip: TipModes, end_mass: float | None) -> Record:
         "offsets": list(OFFSETS),
         "coupled": [outcome.squirt for outcome in struck],
         "regimes": [outcome.regime for outcome in struck],
+        "grips": [grip_of(outcome) for outcome in struck],
         "pooltool": theirs.tolist(),
     }
 
@@ -189,10 +191,10 @@ def _masses(scene: Scene, tip: TipModes, worth: Record | None = None) -> list[fl
     """The end masses of [A.31] for the squirt of the coupled strike at each of `OFFSETS`."""
     if worth is None:
         struck = [strike_modes(replace(scene, stroke=replace(scene.stroke, offset=b)), tip) for b in OFFSETS]
-        worth = {"coupled": [one.squirt for one in struck], "regimes": [one.regime for one in struck]}
+        worth = {"coupled": [one.squirt for one in struck], "grips": [grip_of(one) for one in struck]}
     return [
-        None if regime == "miscue" or squirt <= 0 else _mass_of(scene, offset, squirt)
-        for offset, squirt, regime in zip(OFFSETS, worth["coupled"], worth["regimes"], strict=True)
+        None if grip in MISSED or squirt <= 0 else _mass_of(scene, offset, squirt)
+        for offset, squirt, grip in zip(OFFSETS, worth["coupled"], worth["grips"], strict=True)
     ]
 
 
@@ -216,6 +218,6 @@ def handover_table(record: Record) -> Group:
     table = table_of("Equivalent end mass for [A.31]", ["offset b/R", *heads, "squirt"], text_columns=0)
     for i, offset in enumerate(found["offsets"]):
         masses = [NONE if row[i] is None else f"{1e3 * row[i]:.3f} g" for row in rows]
-        missed = record["squirt"]["regimes"][i] == "miscue"
+        missed = record["squirt"]["grips"][i] in MISSED
         table.add_row(f"{offset:g}", *masses, "miscue" if missed else written("squirt", record["squirt"]["coupled"][i]))
     return with_caption(table, found["words"])

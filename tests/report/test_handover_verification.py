@@ -147,6 +147,18 @@ def test_a_miscue_has_no_end_mass(scene: Path, tmp_path: Path) -> None:
     assert [mass is None for mass in found["by_offset"]["end_mass"]] == missed
 
 
+def test_leather_that_lets_go_has_no_end_mass() -> None:
+    """Beyond the cone of friction, b/R 0.37 at mu 0.4, leather holds at first only: the regime says "stick"."""
+    slippery = replace(SCENE, tip=cf.Tip(0.75, 0.4), effects=(cf.LeatherTip(0.006, 0.0095, 140e6),))
+    found = pooltool_record("kim", slippery)
+    assert found["squirt"]["regimes"] == ["stick"] * 5
+    assert found["squirt"]["grips"][:3] == ["stick"] * 3
+    assert found["squirt"]["grips"][4] == "lets go"
+    assert [mass is None for mass in found["by_offset"]["end_mass"]][::2] == [False, False, True]
+    with pytest.raises(ValueError, match=r"the stroke miscues at offset 0\.5; got no end mass"):
+        pooltool_record("kim", replace(slippery, stroke=cf.Stroke(2.0, 0.5)))
+
+
 def test_the_length_is_the_whole_cue_s(scene: Path) -> None:
     told = as_json(scene, "--length", "57 in")
     assert told["CueSpecs"]["length"] == pytest.approx(1.4478, rel=1e-12)
