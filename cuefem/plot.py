@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cuefem.beam.modes import modes as solved_modes
+from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike, strike_modes
 from cuefem.cue import Cue, Material
 from cuefem.design.sensitivity import sensitivity
@@ -145,7 +146,8 @@ def squirt(
     Returns
     -------
     matplotlib axes
-        Degrees against b/R; a cross on the line of no squirt marks the first offset at which a scene miscues.
+        Degrees against b/R; a cross on the line of no squirt marks the first offset at which a scene miscues:
+        where the tip slips to the end, or lets go through more than half of the push.
     """
     named = scenes if isinstance(scenes, Mapping) else {"": scenes}
     axes = _axes(ax)
@@ -155,7 +157,7 @@ def squirt(
         angles, missed = [], None
         for offset in offsets:
             outcome = strike_modes(replace(scene, stroke=replace(scene.stroke, offset=offset)), tip)
-            lost = outcome.regime == "miscue"
+            lost = grip_of(outcome) in MISSED
             missed = offset if lost and missed is None else missed
             angles.append(math.nan if lost else math.degrees(outcome.squirt))
         (line,) = axes.plot(offsets, angles, label=name or None)

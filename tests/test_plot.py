@@ -58,6 +58,15 @@ def test_squirt_is_that_of_strikes_and_ends_at_a_miscue() -> None:
     assert line(axes, 1)[0].tolist() == [0.8]
 
 
+def test_squirt_ends_where_leather_lets_go() -> None:
+    """It held at first, so that the regime is "stick"; it slides through more than half of the push."""
+    scene = cf.usual_scene(HOLLOW)
+    assert cf.strike(replace(scene, stroke=cf.Stroke(2.0, 0.6))).regime == "stick"
+    axes = cf.plot.squirt(scene, [0.45, 0.6])
+    assert np.isnan(line(axes)[1]).tolist() == [False, True]
+    assert line(axes, 1)[0].tolist() == [0.6]
+
+
 def test_forces_add_up_to_the_impulse() -> None:
     outcome = cf.strike(SCENE, AT)
     for axes in (cf.plot.forces(outcome), cf.plot.forces(SCENE, at=AT)):

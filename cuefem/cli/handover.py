@@ -74,9 +74,7 @@ def handover(
         return
     first = [f"wrote {output}"] if output else head_lines(file, scene_record(scene), scene.effects, notes)
     more = (
-        []
-        if output
-        else ["", handover_words(found), "-o CUE.json writes the file that pooltool reads, --json prints it"]
+        [] if output else [handover_words(found), "-o CUE.json writes the file that pooltool reads, --json prints it"]
     )
     print_all([*first, "", handover_table(found), *more])
 

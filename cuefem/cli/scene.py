@@ -134,8 +134,9 @@ def cost(file: Path, most: int, output: Path | None, **given: Any) -> None:
 )
 def report(file: Path, output: Path | None, **given: Any) -> None:
     """Show modes, end masses, squirt and pivot length against offset, as tables or as a page with figures."""
+    from cuefem.contact.outcome import MISSED
     from cuefem.report import end_mass_table, modes_table, pivot_table, report_record, squirt_table
-    from cuefem.report.strike import MISCUE, MISSED
+    from cuefem.report.strike import MISCUE
 
     def tables(found: Any, about: Any) -> list[Any]:
         shown = [modes_table(found["modes"])] if "modes" in found else []

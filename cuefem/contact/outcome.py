@@ -12,6 +12,23 @@ from cuefem.contact.state import APART, Contact, Phase
 from cuefem.quantity import scalar
 from cuefem.scene import Outcome, Scene
 
+SLIDES, LETS_GO = 0.25, 0.5  # of the push, while the tip slides: from there on squirt grows fast; no valid shot
+MISSED = ("miscue", "lets go")
+
+
+def grip_of(outcome: Outcome) -> str:
+    """How the tip gripped the ball: the regime of the strike, or "slides" or "lets go" if it held only at first.
+
+    Soft leather takes up its load along the ball slowly, so that it grips at every offset and lets go only later.
+    "slides": through more than a quarter of the push; "lets go": through more than half of it, which is a miscue.
+    """
+    if outcome.regime not in ("stick", "late stick") or outcome.history is None:  # of the impulse solver
+        return str(outcome.regime)
+    pushed = [(phase.grip, abs(phase.impulse[1])) for phase in outcome.phases]
+    slid = sum(impulse for grip, impulse in pushed if grip in ("slip", "slip back"))
+    share = slid / (sum(impulse for _, impulse in pushed) or 1.0)
+    return "lets go" if share > LETS_GO else "slides" if share > SLIDES else str(outcome.regime)
+
 
 def outcome_of(kind: Kind, scene: Scene, side: float) -> Outcome:
     """The outcome of a contact that is over; side: -1 for a stroke at a negative offset."""

@@ -17,6 +17,7 @@ import numpy as np
 from cuefem.beam.modes import Modes, modes
 from cuefem.beam.tip import TipModes
 from cuefem.beam.waves import mesh_for
+from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array
 from cuefem.design.sensitivity import sensitivity
@@ -25,7 +26,7 @@ from cuefem.designer.model import cue_of
 from cuefem.endmass.drives import DEFINITIONS, formula_of
 from cuefem.report.record import Record
 from cuefem.report.squirt import two_part_curve
-from cuefem.report.strike import MISSED, grip_of, outcome_record
+from cuefem.report.strike import outcome_record
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import Solved, default_resolution
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from cuefem.contact.outcome import grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.effects.leather_law import TooDeep
 from cuefem.report.end_mass import end_mass_record
 from cuefem.report.modes import modes_record
 from cuefem.report.record import Record
 from cuefem.report.squirt import squirt_record
-from cuefem.report.strike import grip_of
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved
 

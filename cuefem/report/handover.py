@@ -15,9 +15,10 @@ import numpy as np
 from rich.console import Group
 
 from cuefem.beam.tip import TipModes
+from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.endmass.drives import DEFINITIONS, formula_of
-from cuefem.report.quantities import NONE, units_of, written
+from cuefem.report.quantities import NONE, grams, units_of, written
 from cuefem.report.record import Record
 from cuefem.report.table import table_of, with_caption
 from cuefem.scene import Scene
@@ -35,6 +36,7 @@ NICKEL = 0.0106045  # m, the dome of pooltool's own cue
 A31_MEANING = (
     "the end mass whose [A.31] squirt is that of the coupled strike, at this offset, speed and head-on contact time"
 )
+A31_WORDS = "with this end mass Alciatore's formula [A.31], the simulator's, turns the ball as the coupled strike does"
 SIGNS = (
     "a is b/R of the contact, positive on the ball's left, and alpha positive to the left: "
     "alpha(a) = -squirt(offset = a); end_mass is m_e, felt at the tip, not the four times larger m_c of the cue's end"
@@ -132,7 +134,7 @@ def _a31_end_mass(scene: Scene, tip: TipModes) -> float:
     if offset == 0:
         raise ValueError("[A.31] has no squirt head on; got the offset 0 (--offset takes another)")
     outcome = strike_modes(scene, tip)
-    if outcome.regime == "miscue":
+    if grip_of(outcome) in MISSED:
         raise ValueError(f"the stroke miscues at offset {offset}; got no end mass")
     return _mass_of(scene, float(offset), float(outcome.squirt))
 
@@ -146,6 +148,7 @@ def _worth(scene: Scene, tip: TipModes, end_mass: float | None) -> Record:
         "offsets": list(OFFSETS),
         "coupled": [outcome.squirt for outcome in struck],
         "regimes": [outcome.regime for outcome in struck],
+        "grips": [grip_of(outcome) for outcome in struck],
         "pooltool": theirs.tolist(),
     }
 
@@ -164,8 +167,8 @@ def _by_offset(scene: Scene, tip: TipModes, worth: Record) -> Record:
     matters = max(apart, default=0.0) > SAME
     slow, fast = (f"{speed:g}" for speed in (speeds[0], speeds[-1]))
     words = (
-        f"the end mass depends on the speed, by up to {100 * max(apart):.2g} % from {slow} to {fast} m/s: "
-        "by_offset has it at three speeds"
+        f"the end mass depends on the speed, by up to {100 * max(apart):.2g} % from {slow} to {fast} m/s, "
+        "so that it is given at three speeds"
         if matters
         else "the speed drops out: end mass and squirt are the same at every speed, for the tip's law is linear"
     )
@@ -189,10 +192,10 @@ def _masses(scene: Scene, tip: TipModes, worth: Record | None = None) -> list[fl
     """The end masses of [A.31] for the squirt of the coupled strike at each of `OFFSETS`."""
     if worth is None:
         struck = [strike_modes(replace(scene, stroke=replace(scene.stroke, offset=b)), tip) for b in OFFSETS]
-        worth = {"coupled": [one.squirt for one in struck], "regimes": [one.regime for one in struck]}
+        worth = {"coupled": [one.squirt for one in struck], "grips": [grip_of(one) for one in struck]}
     return [
-        None if regime == "miscue" or squirt <= 0 else _mass_of(scene, offset, squirt)
-        for offset, squirt, regime in zip(OFFSETS, worth["coupled"], worth["regimes"], strict=True)
+        None if grip in MISSED or squirt <= 0 else _mass_of(scene, offset, squirt)
+        for offset, squirt, grip in zip(OFFSETS, worth["coupled"], worth["grips"], strict=True)
     ]
 
 
@@ -204,7 +207,12 @@ def handover_words(record: Record) -> str:
     """The number that is handed over, for people."""
     at = record["end_mass"]
     stroke = f"b/R {at['offset']:g}, {at['speed']:g} m/s, head-on contact {1e3 * at['contact_time']:.3g} ms"
-    return f"handed over: end mass {1e3 * record['CueSpecs']['end_mass']:.3f} g by {at['drive']}, at {stroke}"
+    specs = record["CueSpecs"]
+    whole = f"the whole cue: {grams(specs['M'])}"
+    if "length" in specs:
+        whole += f", {1e3 * specs['length']:.1f} mm long"
+        whole += "" if "shaft_radius_at_butt" in specs else " (the file draws the shaft alone: --length gives another)"
+    return f"handed over: end mass {1e3 * specs['end_mass']:.3f} g by {at['drive']}, at {stroke}; {whole}"
 
 
 def handover_table(record: Record) -> Group:
@@ -213,9 +221,10 @@ def handover_table(record: Record) -> Group:
     speeds = found["speeds"] if found["speed_matters"] else [found["speeds"][FASTER.index(1.0)]]
     rows = found["end_mass_at_speeds"] if found["speed_matters"] else [found["end_mass"]]
     heads = [f"end mass at {speed:g} m/s" for speed in speeds] if found["speed_matters"] else ["end mass"]
-    table = table_of("Equivalent end mass for [A.31]", ["offset b/R", *heads, "squirt"], text_columns=0)
+    squirt = f"squirt at {found['speeds'][FASTER.index(1.0)]:g} m/s" if found["speed_matters"] else "squirt"
+    table = table_of("Equivalent end mass for [A.31]", ["offset b/R", *heads, squirt], text_columns=0)
     for i, offset in enumerate(found["offsets"]):
         masses = [NONE if row[i] is None else f"{1e3 * row[i]:.3f} g" for row in rows]
-        missed = record["squirt"]["regimes"][i] == "miscue"
+        missed = record["squirt"]["grips"][i] in MISSED
         table.add_row(f"{offset:g}", *masses, "miscue" if missed else written("squirt", record["squirt"]["coupled"][i]))
-    return with_caption(table, found["words"])
+    return with_caption(table, A31_WORDS, found["words"])

@@ -14,6 +14,7 @@ import numpy as np
 from cuefem.accuracy import Rung, climb
 from cuefem.beam.modes import modes
 from cuefem.beam.tip import TipModes
+from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.endmass.drives import DEFINITIONS
 from cuefem.quantity import scalar
@@ -36,7 +37,7 @@ from cuefem.report.models import ALCIATORE, PAPER
 from cuefem.report.quantities import GRIPS, QUANTITIES, degrees, grams, written
 from cuefem.report.record import Record
 from cuefem.report.squirt import PAPER_CUE_END_MASS, offset_charts, squirt_record
-from cuefem.report.strike import BRIEF, MISCUE, MISSED, grip_of, model_rows, strike_record
+from cuefem.report.strike import BRIEF, MISCUE, model_rows, strike_record
 from cuefem.report.templates import environment
 from cuefem.report.trust import off, trust_lines
 from cuefem.report.words import assumptions, effect_words, plain_cue_line

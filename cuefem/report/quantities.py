@@ -133,7 +133,7 @@ QUANTITIES = {
     "seconds": Known("seconds", "s"),
 }
 UNITS = {name: known.unit for name, known in QUANTITIES.items() if known.unit}
-# How the tip gripped the ball, by what `cuefem.report.strike.grip_of` tells: a word for tables, and the same in full.
+# How the tip gripped the ball, by what `cuefem.contact.outcome.grip_of` tells: a word for tables, and the same in full.
 GRIPS = {
     "stick": ("held", "the tip held the ball, at once or after a short slip"),
     "late stick": ("held late", "slipped first, then held late, near a miscue"),

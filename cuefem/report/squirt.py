@@ -9,6 +9,7 @@ import numpy as np
 from rich.console import Group
 from rich.table import Table
 
+from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import LumpedCue
 from cuefem.endmass.lumped import impulse
@@ -28,7 +29,7 @@ from cuefem.report.models import (
 )
 from cuefem.report.quantities import NONE, TRADE, Units, grams, significant, written
 from cuefem.report.record import Record
-from cuefem.report.strike import MISSED, PIVOT, grip_of
+from cuefem.report.strike import PIVOT
 from cuefem.report.table import table_of, with_caption
 from cuefem.report.words import assumptions
 from cuefem.scene import Scene

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from rich.console import Group
 
+from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.endmass.lumped import impulse
 from cuefem.quantity import scalar
@@ -23,22 +24,6 @@ from cuefem.report.table import table_of, with_caption
 from cuefem.report.words import assumptions
 from cuefem.scene import Outcome, Scene
 from cuefem.tip_modes import Solved
-
-SLIDES, LETS_GO = 0.25, 0.5  # of the push, while the tip slides: from there on squirt grows fast; no valid shot
-MISSED = ("miscue", "lets go")
-
-
-def grip_of(outcome: Outcome) -> str:
-    """How the tip gripped the ball: the regime of the strike, or "slides" or "lets go" if it held only at first.
-
-    Soft leather takes up its load along the ball slowly, so that it grips at every offset and lets go only later.
-    """
-    if outcome.regime not in ("stick", "late stick") or outcome.history is None:  # of the impulse solver
-        return str(outcome.regime)
-    pushed = [(phase.grip, abs(phase.impulse[1])) for phase in outcome.phases]
-    slid = sum(impulse for grip, impulse in pushed if grip in ("slip", "slip back"))
-    share = slid / (sum(impulse for _, impulse in pushed) or 1.0)
-    return "lets go" if share > LETS_GO else "slides" if share > SLIDES else str(outcome.regime)
 
 
 def outcome_record(outcome: Outcome, scene: Scene) -> Record:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -29,6 +30,7 @@ SOBOL = (
     "The part of the variance that goes away if a cause is known, and "
     "in brackets the part that stays if all others are known. Neither is exact: the command prints their intervals."
 )
+LETTER = 7.6  # width of a letter beside an axis
 FRONT = 30  # designs of the front in its table
 
 
@@ -122,7 +124,8 @@ def _parallel(table: Table) -> tuple[list[tuple[str, int]], list[Coordinate], fl
     columns = [*table.values, *table.results.T]
     names = [*map(heading, table.names, table.units), *(heading(r.name, r.unit) for r in table.responses)]
     units = [*table.units, *(r.unit for r in table.responses)]
-    step = max(110.0, 7.0 * max(map(len, names)))
+    beside = [len(one) + len(other) for one, other in pairwise(names)]
+    step = max(110.0, LETTER * (max(beside) / 2 + 2))  # names of neighbours do not meet
     x = step / 2 + step * np.arange(len(columns))
     y = np.array([_scaled(_places(column), 200.0, 30.0) for column in columns])
     order = table.wanted[:, table.judged[0]].argsort().argsort()

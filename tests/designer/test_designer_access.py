@@ -11,6 +11,7 @@ import pytest
 import cuefem as cf
 from cuefem.report.page import page as report_page
 from tests.helpers.designer_browser import BROWSER, opened, served, turn
+from tests.helpers.study_page import study_of_ten_columns
 
 sync_api = pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
 axe = pytest.importorskip(
@@ -76,7 +77,7 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize(("scheme", "width"), KINDS)
-def test_the_report_has_no_serious_fault(browser: Any, report: Path, scheme: str, width: int) -> None:
+def test_report_and_study_have_no_serious_fault(browser: Any, report: Path, scheme: str, width: int) -> None:
     context = browser.new_context(viewport={"width": width, "height": 900}, color_scheme=scheme)
     page = context.new_page()
     page.goto(report.as_uri())
@@ -84,5 +85,8 @@ def test_the_report_has_no_serious_fault(browser: Any, report: Path, scheme: str
     page.locator("svg.read").first.focus()
     page.keyboard.press("ArrowRight")
     page.locator(".term").first.click()
+    assert faults(page) == []
+    page.set_content(study_of_ten_columns())
+    assert page.locator(".trade").is_visible()
     assert faults(page) == []
     context.close()

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
+from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.designer.answers import safety
-from cuefem.report.strike import MISSED, grip_of
 from tests.helpers.command_line import call
 
 MAPLE = cf.load(Path(__file__).parents[2] / "meshes" / "pool_maple.toml")

@@ -22,7 +22,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.endmass.drives import DEFINITIONS
-from cuefem.report.handover import NICKEL, pooltool_record
+from cuefem.report.handover import NICKEL, handover_table, pooltool_record
 from cuefem.squirt import alciatore_a31, alciatore_a31_mass_ratio
 from tests.helpers.command_line import call
 
@@ -114,6 +114,9 @@ def test_people_get_a_table_and_programs_json(scene: Path) -> None:
     assert f"handed over: end mass {1e3 * found['CueSpecs']['end_mass']:.3f} g by A.31, at b/R " in out
     assert "Equivalent end mass for [A.31]" in out
     assert "-o CUE.json writes the file that pooltool reads" in out
+    said = " ".join(out.split())
+    assert "with this end mass Alciatore's formula [A.31], the simulator's, turns the ball as the coupled" in said
+    assert "the whole cue: 540.0 g, 1473.2 mm long (the file draws the shaft alone: --length gives another)" in said
 
 
 @pytest.mark.parametrize("offset", [0.1, 0.3, 0.5])
@@ -134,6 +137,8 @@ def test_how_the_speed_matters_with_leather() -> None:
     assert found["speeds"] == [1.0, 2.0, 4.0]
     assert found["speed_matters"]
     assert found["words"] in record["notes"]
+    heads = [str(column.header) for column in handover_table(record).renderables[0].columns]
+    assert heads == ["offset b/R", *(f"end mass at {speed} m/s" for speed in (1, 2, 4)), "squirt at 2 m/s"]
     for speed, row in zip(found["speeds"], found["end_mass_at_speeds"], strict=True):
         struck = cf.strike(replace(leather, stroke=cf.Stroke(speed, 0.3)))
         assert -pooltool_squirt(0.17, row[2], a=0.3) == pytest.approx(struck.squirt, rel=1e-9)
@@ -145,6 +150,18 @@ def test_a_miscue_has_no_end_mass(scene: Path, tmp_path: Path) -> None:
     missed = [regime == "miscue" for regime in found["squirt"]["regimes"]]
     assert any(missed)
     assert [mass is None for mass in found["by_offset"]["end_mass"]] == missed
+
+
+def test_leather_that_lets_go_has_no_end_mass() -> None:
+    """Beyond the cone of friction, b/R 0.37 at mu 0.4, leather holds at first only: the regime says "stick"."""
+    slippery = replace(SCENE, tip=cf.Tip(0.75, 0.4), effects=(cf.LeatherTip(0.006, 0.0095, 140e6),))
+    found = pooltool_record("kim", slippery)
+    assert found["squirt"]["regimes"] == ["stick"] * 5
+    assert found["squirt"]["grips"][:3] == ["stick"] * 3
+    assert found["squirt"]["grips"][4] == "lets go"
+    assert [mass is None for mass in found["by_offset"]["end_mass"]][::2] == [False, False, True]
+    with pytest.raises(ValueError, match=r"the stroke miscues at offset 0\.5; got no end mass"):
+        pooltool_record("kim", replace(slippery, stroke=cf.Stroke(2.0, 0.5)))
 
 
 def test_the_length_is_the_whole_cue_s(scene: Path) -> None:

@@ -14,6 +14,7 @@ import pytest
 import cuefem as cf
 from cuefem.report.page import OFFSETS, page
 from cuefem.report.squirt import squirt_record
+from tests.helpers.study_page import study_of_ten_columns
 
 sync_api = pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
@@ -111,4 +112,17 @@ def test_it_prints_on_two_to_four_pages_with_its_tables_open(opened: Any, scheme
 def test_no_table_is_cut_at_1280(opened: Any) -> None:
     opened.evaluate("document.querySelectorAll('details').forEach(fold => fold.open = true)")
     cut = "[...document.querySelectorAll('.scroll')].filter(e => e.scrollWidth > e.clientWidth + 1).length"
+    assert opened.evaluate(cut) == 0
+
+
+def test_a_study_is_not_cut_at_1280_nor_in_print(opened: Any, tmp_path: Path) -> None:
+    (tmp_path / "study.html").write_text(study_of_ten_columns(), encoding="utf-8")
+    opened.goto((tmp_path / "study.html").as_uri())
+    cut = "[...document.querySelectorAll('.scroll')].filter(e => e.scrollWidth > e.clientWidth + 1).length"
+    assert opened.evaluate(cut) == 0
+    assert opened.evaluate("document.querySelectorAll('.trade tbody tr').length") > 1
+    small = "Math.min(...[...document.querySelectorAll('.parallel text')].map(e => e.getBoundingClientRect().height))"
+    assert opened.evaluate(small) > 10  # px, of letters of about 10
+    opened.emulate_media(media="print")
+    opened.set_viewport_size({"width": 703, "height": 1000})  # A4 within its margins
     assert opened.evaluate(cut) == 0
