@@ -1,8 +1,8 @@
-"""The cone that every peer computes, the shaft of meshes/kim.toml as numbers; numerics for peers that bring none."""
+"""The cones that every peer computes, as numbers, the shaft of meshes/kim.toml first; numerics for peers without."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +14,7 @@ import scipy.sparse.linalg as sla
 import cuefem as cf
 
 MODES = 5  # flexible modes asked for; f3 to f5 are compared
-CONTACT_TIME = 2e-3  # s, of the half-sine force pulse
+CONTACT_TIMES = np.linspace(0.5e-3, 3e-3, 24)  # s, of the half-sine force pulse
 DENSE = 200  # unknowns below which a dense eigenproblem is the faster one
 
 KIM = Path(__file__).parents[2] / "meshes" / "kim.toml"
@@ -57,7 +57,37 @@ def _read() -> Cone:
     return Cone(piece.length, *radii, wood.E, wood.G, wood.rho, piece.kappa)
 
 
-CONE = _read()
+# [Kim]'s shaft; a slim one of a pool cue; the rod of a whole snooker cue
+CONES = (
+    _read(),
+    Cone(0.74, 0.00575, 0.01075, 14e9, 0.95e9, 690.0, 0.9),
+    Cone(1.45, 0.0048, 0.0145, 15e9, 1.0e9, 720.0, 0.9),
+)
+CASES = tuple((i, float(T)) for i in range(len(CONES)) for T in CONTACT_TIMES)  # cone by number, contact time
+
+
+class Case:
+    """What the call that is timed computes: a cone's numbers, and the contact time.
+
+    Every call has a cone of its own, 1e-13 of its length longer than the last one's, so that no peer, cuefem among
+    them, can keep anything of an equal cone from call to call.
+    """
+
+    def __init__(self) -> None:
+        self.calls = 0
+        self.take()
+
+    def take(self, cone: int = 0, contact_time: float = 2e-3) -> None:
+        """Make it cone number ``cone`` and that contact time, s."""
+        self.calls += 1
+        self.cone, self.contact_time = CONES[cone], contact_time
+        self.cone = replace(self.cone, length=self.cone.length * (1 + 1e-13 * self.calls))
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.cone, name)
+
+
+CONE = Case()
 
 
 def lowest(K: Any, M: Any) -> np.ndarray:
@@ -79,7 +109,8 @@ def newmark_end_mass(K: Any, M: Any, tip: int, steps: int) -> float:
 
     Newmark's average acceleration, the matrix factored once.
     """
-    dt = CONTACT_TIME / steps
+    T = CONE.contact_time
+    dt = T / steps
     solve = sla.splu(sp.csc_matrix(M + dt**2 / 4 * K)).solve
     u, v, a, force = (np.zeros(K.shape[0]) for _ in range(4))
     for step in range(1, steps + 1):
@@ -87,4 +118,4 @@ def newmark_end_mass(K: Any, M: Any, tip: int, steps: int) -> float:
         ahead = u + dt * v + dt**2 / 4 * a
         new = solve(force - K @ ahead)
         u, v, a = ahead + dt**2 / 4 * new, v + dt / 2 * (a + new), new
-    return 2 * CONTACT_TIME / np.pi / v[tip]
+    return float(2 * T / np.pi / v[tip])

@@ -15,7 +15,7 @@ import scipy.sparse as sp
 from netgen.meshing import Element1D, MeshPoint, Pnt
 from netgen.meshing import Mesh as NetgenMesh
 
-from studies.peers.cone import CONE, CONTACT_TIME, MODES, lowest
+from studies.peers.cone import CONE, MODES, lowest
 
 VERSION = ng.__version__
 KRYLOV = 12  # vectors of Arnoldi's method
@@ -67,7 +67,7 @@ def modes_by_lapack(order: int, elements: int) -> np.ndarray:
 def end_mass(order: int, elements: int, steps: int) -> float:
     """Force end mass, kg, by Newmark steps (average acceleration)."""
     space, K, M = forms(order, elements)
-    dt = CONTACT_TIME / steps
+    dt = CONE.contact_time / steps
     effective = M.CreateMatrix()
     effective.AsVector().data = M.AsVector() + dt**2 / 4 * K.AsVector()
     inverse = effective.Inverse(space.FreeDofs(), inverse="sparsecholesky")
@@ -81,7 +81,7 @@ def end_mass(order: int, elements: int, steps: int) -> float:
         v.data += dt / 2 * (a + new)
         u.data = ahead + dt**2 / 4 * new
         a.data = new
-    return 2 * CONTACT_TIME / np.pi / v[0]
+    return 2 * CONE.contact_time / np.pi / v[0]
 
 
 CONTESTANTS = {

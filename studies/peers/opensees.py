@@ -5,9 +5,13 @@ from __future__ import annotations
 from functools import partial
 
 import numpy as np
-import openseespy.opensees as ops
 
-from studies.peers.cone import CONE, CONTACT_TIME, MODES
+from studies.peers.cone import CONE, MODES
+
+try:
+    import openseespy.opensees as ops
+except RuntimeError as why:
+    raise RuntimeError(f"{str(why).rstrip('.')}; it needs the system's libblas3 (apt-get install libblas3)") from why
 
 VERSION = ops.version()
 
@@ -36,7 +40,7 @@ def modes(elements: int) -> np.ndarray:
 def end_mass(elements: int, steps: int, *linear: str) -> float:
     """Force end mass, kg, by Newmark steps (average acceleration); ``linear``: options of the linear algorithm."""
     beam(elements)
-    ops.timeSeries("Trig", 1, 0.0, CONTACT_TIME, 2 * CONTACT_TIME)
+    ops.timeSeries("Trig", 1, 0.0, CONE.contact_time, 2 * CONE.contact_time)
     ops.pattern("Plain", 1, 1)
     ops.load(1, 0.0, 1.0, 0.0)
     ops.constraints("Plain")
@@ -45,9 +49,9 @@ def end_mass(elements: int, steps: int, *linear: str) -> float:
     ops.algorithm("Linear", *linear)
     ops.integrator("Newmark", 0.5, 0.25)
     ops.analysis("Transient")
-    if ops.analyze(steps, CONTACT_TIME / steps) != 0:
+    if ops.analyze(steps, CONE.contact_time / steps) != 0:
         raise ArithmeticError("OpenSees: a step failed")
-    return 2 * CONTACT_TIME / np.pi / ops.nodeVel(1, 2)
+    return 2 * CONE.contact_time / np.pi / ops.nodeVel(1, 2)
 
 
 CONTESTANTS = {

@@ -31,22 +31,42 @@ def committed(task: str) -> dict[str, str]:
 
 @pytest.mark.parametrize("label", scikit_fem.CONTESTANTS["modes"])
 def test_scikit_fem_modes(label):
-    found = contest.error("modes", scikit_fem.CONTESTANTS["modes"][label](), EXACT["modes"])
+    found, _ = contest.errors("modes", scikit_fem.CONTESTANTS["modes"][label](), EXACT["modes"])
     assert report.shown(found) == committed("modes")[label]
 
 
 def test_the_cone_is_the_shaft_of_meshes():
     kim = cf.load(cone.KIM)
-    np.testing.assert_allclose(cf.modes(kim, 5).frequencies, ours.modes(), rtol=1e-14)
+    np.testing.assert_allclose(cf.modes(kim, 5).frequencies, ours.modes(), rtol=1e-11)
+
+
+@pytest.mark.heavy
+def test_the_reference_is_settled(exact):
+    """Two thirds of its modes change the median end mass by less than 2e-6, and none by 5e-5."""
+    off = np.abs(ours.end_masses(200) / exact["end_mass"] - 1)
+    assert 0 < np.median(off) < 2e-6
+    assert off.max() < 5e-5
 
 
 @pytest.mark.heavy
 def test_end_masses(exact):
-    for label, call in scikit_fem.CONTESTANTS["end_mass"].items():
-        assert report.shown(contest.error("end_mass", call(), exact["end_mass"])) == committed("end_mass")[label]
-    for label, call in ours.CONTESTANTS["end_mass"].items():
-        found = contest.error("end_mass", call(), exact["end_mass"])
-        np.testing.assert_allclose(found, float(committed("end_mass")[label]), rtol=0.1, err_msg=label)
+    quick = [(scikit_fem, "scikit-fem P2 x 20, 200 steps"), *((ours, name) for name in ours.CONTESTANTS["end_mass"])]
+    for peer, label in quick:
+        _, answers = contest.answers(peer.__name__.rsplit(".", 1)[1], "end_mass", label)
+        median, high = contest.errors("end_mass", answers, exact["end_mass"])
+        found = re.search(rf"^\| {re.escape(label)} \| (\S+) \| (\S+) \|", COMMITTED, re.MULTILINE)
+        assert found is not None
+        np.testing.assert_allclose((median, high), [float(part) for part in found.groups()], rtol=0.1, err_msg=label)
+
+
+def test_no_call_has_the_cone_of_another():
+    cone.CONE.take(1, 1e-3)
+    first = cone.CONE.length, cone.CONE.contact_time
+    cone.CONE.take(1, 1e-3)
+    assert 0 < cone.CONE.length / first[0] - 1 < 1e-9
+    assert cone.CONE.length == pytest.approx(cone.CONES[1].length, rel=1e-9)
+    cone.CONE.take()
+    assert cone.CONE.contact_time == 2e-3
 
 
 def test_an_end_mass_of_scikit_fem():
@@ -69,11 +89,13 @@ def test_a_peer_that_is_missing_is_skipped_with_a_word(monkeypatch, tmp_path):
     monkeypatch.setattr(contest, "ROUNDS", 1)
     monkeypatch.setattr(contest, "TURN", 0.0)
     heard = []
-    held = contest.hold({**EXACT, "end_mass": 0.0173352}, ("ours", "no_such_peer"), heard.append)
+    held = contest.hold(
+        {**EXACT, "end_mass": np.full(len(cone.CASES), 0.0173352)}, ("ours", "no_such_peer"), heard.append
+    )
     assert heard[1] == "no_such_peer: skipped, not installed here: No module named 'studies.peers.no_such_peer'"
     page = report.text(held)
     assert "no_such_peer: not installed here: No module named" in page
-    assert "| modes | 1e-06 | OpenSeesPy x 1240 | at least 150 |  |  |" in page
+    assert "| modes | 1e-06 | OpenSeesPy x 1240 | at least 140 |  |  |" in page
     assert held.quickest("modes", "ours").error < 1e-6
     report.draw(held, tmp_path / "peers.png")
 
