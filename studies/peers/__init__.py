@@ -1,6 +1,6 @@
 """Side by side: cuefem and what one would use instead, on the same cone, with the error and the seconds of each.
 
-`python -m studies.peers` writes peers.md and peers.png here, in about two minutes, with the peers that this Python has:
+`python -m studies.peers` writes peers.md and peers.png here, in some ten minutes, with the peers that this Python has:
 scikit-fem always, and those of the following that are installed:
 
     pip install ngsolve openseespy sfepy ross-rotordynamics "plotly<6"

@@ -1,4 +1,4 @@
-"""The contest of all peers that are installed, about two minutes: writes peers.md and peers.png.
+"""The contest of all peers that are installed, some ten minutes: writes peers.md and peers.png.
 
 They are written beside this file if every peer took part; otherwise into the current folder, so that no committed row
 is lost.
