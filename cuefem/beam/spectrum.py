@@ -120,8 +120,13 @@ class TipSpectrum:
     @cached_property
     def modes(self) -> Modes:
         """The same modes with their shapes."""
-        found = Modes(self.omega / (2 * np.pi), self.shapes(), self.rigid, self.rigid_vectors, self.system)
+        found = Modes(self.frequencies, self.shapes(), self.rigid, self.rigid_vectors, self.system)
         return replace(found, radiation=self.radiation)
+
+    @property
+    def frequencies(self) -> Array:
+        """Hz, (n,)."""
+        return self.omega / (2 * np.pi)
 
     @property
     def vectors(self) -> Array:

@@ -93,7 +93,7 @@ def _taper_orders(cue: Cue, elements: Array) -> Array:
     """The order by which the taper of a segment's elements leaves `TAPERED`, (segments,).
 
     Where the wall of a cone, or the sum of its diameters, goes on to zero beyond its thin end, the shapes are singular.
-    For the ratio r of that wall at an element's two ends the singularity lies at (r + 1)/(r - 1) of its half length, and
+    For the ratio r of that wall at an element's two ends the singularity is at (r + 1)/(r - 1) of its half length, and
     polynomials of order p leave an error of rho^-p, with rho = (sqrt r + 1)/(sqrt r - 1).
     """
     outer = np.array([(s.tip_diameter, s.butt_diameter) for s in cue.segments])

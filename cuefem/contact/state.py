@@ -96,23 +96,13 @@ class Slots:
         return [self.places[name] for name in names]
 
 
-# What damps the strikes of one cue is the same: the last one, and what it was split into.
-_last: tuple[Array, tuple[Any, Array, float]] | None = None
-
-
 def _split(damping: Array) -> tuple[Any, Array, float]:
     """(the modes that a damping acts on, rows over them whose squares add up to its power, its greatest strength)."""
-    global _last  # of two threads each finds what it looks for, or makes it
-    known = _last
-    if known is not None and known[0] is damping:
-        return known[1]
     modes = np.flatnonzero(damping.any(axis=1))  # a tail's radiation is that of a few
     strengths, directions = np.linalg.eigh(damping[np.ix_(modes, modes)])
     acting = strengths > 1e-14 * strengths.max(initial=0.0)
     rows = (directions[:, acting] * np.sqrt(strengths[acting])).T
-    found = modes, rows, float(strengths.max(initial=0.0))
-    _last = damping, found
-    return found
+    return modes, rows, float(strengths.max(initial=0.0))
 
 
 @dataclass

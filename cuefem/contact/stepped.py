@@ -308,8 +308,9 @@ class Stepped:
         contact.z[self.losses] = 0.0
         if self.steps is not None:
             found = self.steps.way(hold, self.deepest, near, contact.time, until, contact.z)
-            if found is not None:  # else what stopped it is for scipy to say
+            if found is not None:
                 return None if found.event < 0 else Way(list(ends)[found.event], *found[1:])
+            self.kernel = "python"  # what stopped the kernel is for scipy to say
         solved = self._solved(hold, (contact.time, until), list(ends.values()), contact.z)
         name = next((name for name, times in zip(ends, solved.t_events, strict=True) if len(times)), None)
         if name is None:

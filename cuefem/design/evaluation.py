@@ -12,7 +12,7 @@ from cuefem.beam.waves import even_mesh_for, modes_below
 from cuefem.cue import Array
 from cuefem.design.batch import BLOCK
 from cuefem.design.responses import Response
-from cuefem.design.solvers import OneByOne, Solver, Together
+from cuefem.design.solvers import OneByOne, Solver, Together, key_of
 from cuefem.scene import Resolution, Scene
 from cuefem.tip_modes import PERIODS_KEPT
 
@@ -66,7 +66,7 @@ def _blocks(scenes: Sequence[Scene]) -> list[list[int]]:
     groups: dict[Any, list[int]] = {}
     for i, scene in enumerate(scenes):
         if scene.cue.segments:
-            together: Any = (scene.cue, scene.cue_effects) if scene.effects else len(scene.cue.segments)
+            together: Any = key_of(scene, scene.cue, scene.cue_effects) if scene.effects else len(scene.cue.segments)
         else:
             together = -i
         groups.setdefault(together, []).append(i)

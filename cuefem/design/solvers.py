@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import Any, Protocol
@@ -192,11 +192,12 @@ class OneByOne(_Strikes):
     def _solve(self, scene: Scene) -> Modes:
         """Modes of a scene's cue; those of equal cues with equal effects are solved once."""
         cue, effects = scene.shaft, scene.cue_effects
-        if (cue, effects) not in self._solved:
+        key = key_of(scene, cue, effects)
+        if key not in self._solved:
             system = assemble(cue, elements=self.at.elements, order=self.at.order, effects=effects)
             count = max(self.at.modes + 2 - system.rigid.shape[1], self._count)
-            self._solved[cue, effects] = solve(system, count)
-        return self._solved[cue, effects]
+            self._solved[key] = solve(system, count)
+        return self._solved[key]
 
     @property
     def frequencies(self) -> Array:
@@ -208,7 +209,7 @@ class OneByOne(_Strikes):
         scene = self.scenes[i]
         if not scene.cue.segments:
             return tip_modes_of(scene)
-        alike = scene.cue, scene.cue_effects, float(scene.axial_mass)
+        alike = key_of(scene, scene.cue, scene.cue_effects, float(scene.axial_mass))
         if alike not in self._tips:
             self._tips[alike] = tip_modes_from(self._kept(i), scene)
         return self._tips[alike]
@@ -235,6 +236,15 @@ class OneByOne(_Strikes):
             return np.nan if none else stick(tip, scene), slope
         J = limit.transverse_impulse(*flexible(tip))
         return limit.end_masses(J), float(limit.slope(J))
+
+
+def key_of(scene: Scene, *parts: Any) -> Hashable:
+    """What a scene's modes are kept by: ``parts`` of it, or the scene itself if an effect among them has no hash."""
+    try:
+        hash(parts)
+    except TypeError:
+        return id(scene)
+    return parts
 
 
 def static_tip_stiffness(scene: Scene, at: Resolution) -> float:

@@ -30,6 +30,7 @@ from cuefem.beam.waves import even_mesh_for
 from cuefem.design import Levels, Response, Sample, Span, Study, Vary, evaluate, paths, replaced
 from cuefem.design.paths import spelt, value_at
 from cuefem.design.responses import KINDS, kinds
+from cuefem.design.solvers import key_of
 from cuefem.endmass.drives import DEFINITIONS, small_offset_slope
 from cuefem.materials import material
 from cuefem.squirt import natural_pivot_length
@@ -384,3 +385,9 @@ def test_order_and_company_do_not_matter(order: list[int]) -> None:
     found = evaluate([scenes[i] for i in order], ["end_mass", "tip_stiffness"], at=at).values
     apart = np.concatenate([evaluate([scenes[i]], ["end_mass", "tip_stiffness"], at=at).values for i in order])
     np.testing.assert_allclose(found, apart, rtol=1e-11)
+
+
+def test_scenes_share_modes_by_what_can_be_compared() -> None:
+    one, equal = Scene(kim()), Scene(kim())
+    assert key_of(one, one.cue, (1.0,)) == key_of(equal, equal.cue, (1.0,))
+    assert key_of(one, one.cue, [1.0]) != key_of(equal, equal.cue, [1.0])  # a list of an effect has no hash

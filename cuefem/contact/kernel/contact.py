@@ -97,6 +97,8 @@ def contact(
     norm_t, norm_n = math.sqrt(contact.c_t @ contact.c_t), math.sqrt(contact.c_n @ contact.c_n)
     rate = contact.fastest + root / laws.restitution * (norm_n + min(laws.friction, 2.0) * norm_t)
     rate += norm_t / unit if compliance else 0.0
+    if not math.isfinite(rate):  # Python says what has no bounds
+        return None
     cells = int(
         min(100 + 100 * (laws.time * rate // (100 * limits.reach)), limits.most_cells)
     )  # few lengths of an array

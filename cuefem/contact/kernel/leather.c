@@ -363,7 +363,6 @@ static void guess(const struct leg *leg, const struct rule *rule, double step, d
     }
 }
 
-/* (F_t, F_n) at the nodes, of v_t and the compression there. */
 /* The rings at a compression. */
 static void rings_of(const struct leg *leg, const struct hold *hold, double depth, struct ringed *found)
 {
@@ -420,6 +419,7 @@ static void held_at(const struct leg *leg, const struct hold *hold, const struct
                                      motion[DEPTH][NODES - 1], held);
 }
 
+/* (F_t, F_n) at the nodes, of v_t and the compression there. */
 FAST static void forces_at(const struct leg *leg, const struct hold *hold, const double *integral, double step,
                       double (*motion)[NODES])
 {

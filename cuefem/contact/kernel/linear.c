@@ -298,7 +298,7 @@ EXPORTED int cuefem_march(const struct flow *flow, double *z, struct place *plac
             cut(flow->outputs, place->fraction, own);
             advance(work.wide, work.series, place->fraction, work.now);
             memcpy(z, work.now, sizeof(double) * flow->size);
-            return FOUND;
+            return all_finite(z, flow->size) ? FOUND : NOT_FINITE;
         }
         advance(work.wide, work.series, 1, work.now);
         if (!all_finite(work.now, flow->size))
@@ -352,7 +352,7 @@ int cuefem_stride(const struct flow *flow, double *z, struct place *place, doubl
             lengths[place->written] = place->fraction * length;
             place->written += lengths[place->written] > 0;
             place->start += place->fraction * length;
-            return FOUND;
+            return all_finite(z, flow->size) ? FOUND : NOT_FINITE;
         }
         advance(work.wide, work.series, by, work.now);
         if (!all_finite(work.now, flow->size))
