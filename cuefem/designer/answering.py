@@ -7,11 +7,12 @@ from collections.abc import AsyncIterator, Iterator
 from contextlib import suppress
 from typing import Any, Protocol
 
-from cuefem.designer.answers import answers, completed, coupled_points, density, with_end_mass
+from cuefem.designer.answers import answers, completing, coupled_points, density, with_end_mass
 from cuefem.designer.computing import FAILURES, Memory, Results, computed, give_back
 from cuefem.scene import Scene
 
 IDLE = 0.12  # s without a move before the slower results are computed
+SENT = 0.002  # s that the numbers are given to leave before the pictures are drawn
 SHOWN_EVERY = 4  # points of a curve that is computed
 
 
@@ -87,7 +88,7 @@ class Answering:
             self.mine = one
             self.page.say("")
             self.page.show_numbers()
-            await asyncio.sleep(0)  # they are on their way while the pictures are drawn
+            await asyncio.sleep(SENT)
             waits = self.answered < self.moves or one.found.has_end_mass
             more = None if waits else asyncio.create_task(computed(with_end_mass, one.found))
             self.page.show_answer()
@@ -116,12 +117,17 @@ class Answering:
     async def _steps_of(self, scene: Scene, move: int) -> AsyncIterator[None]:
         """Compute and show all of a scene step by step; who asks for the steps stops when a knob is moved."""
         one = self.memory.get(scene) or await self._begun(scene)
-        for more, done in ((with_end_mass, one.found.has_end_mass), (completed, one.found.complete)):
-            if not done:
-                yield
-                one.found = await computed(more, one.found)
-                self.page.show_numbers()
+        if not one.found.has_end_mass:
+            yield
+            one.found = await computed(with_end_mass, one.found)
+            self.page.show_numbers()
         yield
+        if not one.found.complete:
+            parts = completing(one.found)
+            while more := await computed(next, parts, None):
+                one.found = more
+                yield  # between two of them a newer move is heard
+            self.page.show_numbers()
         if not one.whole:
             work = _after(coupled_points(one.found), len(one.points))
             while point := await computed(next, work, None):

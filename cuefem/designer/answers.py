@@ -134,10 +134,19 @@ def with_end_mass(found: Answers) -> Answers:
     )
 
 
+def completing(found: Answers) -> Iterator[Answers]:
+    """The numbers with one more definition of the end mass each time, and at last with the lumped curve."""
+    for drive in DEFINITIONS:
+        if drive not in found.end_masses:
+            found = replace(found, end_masses={**found.end_masses, drive: _end_mass(drive, found.solved)})
+            yield found
+    yield replace(found, lumped=lumped_curve(found.solved))
+
+
 def completed(found: Answers) -> Answers:
-    """The numbers with all definitions of the end mass, and the lumped curve: with a leather tip they take a second."""
-    masses = {drive: _end_mass(drive, found.solved) for drive in DEFINITIONS}
-    return replace(found, end_masses=masses, lumped=lumped_curve(found.solved))
+    """The numbers with all definitions of the end mass, and the lumped curve."""
+    *_, whole = completing(found)
+    return whole
 
 
 def _end_mass(drive: str, solved: Solved) -> float | None:

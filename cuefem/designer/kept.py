@@ -74,9 +74,14 @@ def _table(scene: Scene) -> dict[str, Any]:
     return table(scene)
 
 
+@lru_cache(maxsize=64)
+def _own(scene: Scene) -> Knobs:
+    return knobs_of(scene)
+
+
 def _moved(design: Design) -> dict[str, Any]:
     """The knobs that do not stand where the scene has them."""
-    own = knobs_of(design.base)
+    own = _own(design.base)
     names = [f.name for f in fields(Knobs) if getattr(design.knobs, f.name) != getattr(own, f.name)]
     return {name: _entry(getattr(design.knobs, name)) for name in names}
 
