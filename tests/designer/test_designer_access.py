@@ -10,10 +10,10 @@ import pytest
 
 import cuefem as cf
 from cuefem.report.page import page as report_page
-from tests.helpers.designer_browser import BROWSER, opened, served, turn
+from tests.helpers.designer_browser import BROWSER, launched, opened, served, turn
 from tests.helpers.study_page import study_of_ten_columns
 
-sync_api = pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
+pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
 axe = pytest.importorskip(
     "axe_playwright_python.sync_playwright", reason="needs axe: pip install axe-playwright-python"
 )
@@ -28,10 +28,8 @@ KINDS = [("light", 1280), ("dark", 1280), ("light", 390), ("dark", 390)]
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
-    with sync_api.sync_playwright() as driver:
-        found = driver.chromium.launch(executable_path=BROWSER, args=["--no-sandbox", "--disable-gpu"])
+    with launched() as found:
         yield found
-        found.close()
 
 
 @pytest.fixture(scope="module")

@@ -18,9 +18,9 @@ from cuefem.designer.model import knobs_of
 from cuefem.designer.start import first_scene
 from cuefem.tap.matching import with_material
 from tests.helpers.command_line import call
-from tests.helpers.designer_browser import BROWSER, opened, served, settled, shown, turn
+from tests.helpers.designer_browser import BROWSER, launched, opened, served, settled, shown, turn
 
-sync_api = pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
+pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
 pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
 pytestmark = [
     pytest.mark.heavy,
@@ -32,10 +32,8 @@ MOVES = 20
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
-    with sync_api.sync_playwright() as driver:
-        found = driver.chromium.launch(executable_path=BROWSER, args=["--no-sandbox", "--disable-gpu"])
+    with launched() as found:
         yield found
-        found.close()
 
 
 @pytest.fixture(scope="module")

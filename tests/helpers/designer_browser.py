@@ -19,6 +19,17 @@ PATIENCE = 90_000  # ms, on a busy machine
 
 
 @contextmanager
+def launched() -> Iterator[Any]:
+    """The browser, without a window."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as driver:
+        found = driver.chromium.launch(executable_path=BROWSER, args=["--no-sandbox", "--disable-gpu"])
+        yield found
+        found.close()
+
+
+@contextmanager
 def served(folder: Path, *arguments: object, before: str = "") -> Iterator[str]:
     """The address of a designer that runs in a folder; it must say nothing on stderr and leave nothing there.
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -14,10 +13,10 @@ import pytest
 import cuefem as cf
 from cuefem.report.page import OFFSETS, page
 from cuefem.report.squirt import squirt_record
+from tests.helpers.designer_browser import BROWSER, launched
 from tests.helpers.study_page import study_of_ten_columns
 
-sync_api = pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
-BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
 pytestmark = [
     pytest.mark.heavy,
     pytest.mark.skipif(BROWSER is None, reason="needs Chromium: apt-get install chromium"),
@@ -34,10 +33,8 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
-    with sync_api.sync_playwright() as driver:
-        found = driver.chromium.launch(executable_path=BROWSER, args=["--no-sandbox", "--disable-gpu"])
+    with launched() as found:
         yield found
-        found.close()
 
 
 @pytest.fixture
