@@ -9,6 +9,9 @@ from __future__ import annotations
 import math
 import sys
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path
 from types import FrameType
 from typing import NamedTuple
@@ -81,6 +84,7 @@ LIGHTEST = 0.25  # kg, of a whole cue: a child's
 WHOLE = (0.3, 1.2)  # m, of a drawing that is a shaft's and not a whole cue's: a model to scale is left alone
 SHORTEST, LONGEST = 1e-6, 0.1  # N/m or s: springs of such stiffness hold no striker, and contacts last so long
 _PACKAGE = str(Path(__file__).parent)
+_trying = ContextVar("whether a search of this package tries numbers of its own", default=False)
 
 
 def slip(kind: str, name: str, value: float) -> str:
@@ -96,10 +100,20 @@ def slip(kind: str, name: str, value: float) -> str:
     return f"{kind}.{name} is {value:g} {usual.unit}, which no cue has: is it {units}? Write {written} ({usual.unit})"
 
 
+@contextmanager
+def trying() -> Iterator[None]:
+    """Remark nothing while a search tries numbers that nobody wrote."""
+    before = _trying.set(True)
+    try:
+        yield
+    finally:
+        _trying.reset(before)
+
+
 def remark(kind: str, name: str, value: float) -> None:
     """Warn of a number that cannot be meant, at the line that lies outside this package."""
     said = slip(kind, name, value)
-    if said:
+    if said and not _trying.get():
         warnings.warn(said, Unusual, stacklevel=_outside())
 
 

@@ -85,6 +85,15 @@ def test_limits_and_scales_pass_without_a_word(make: Callable[[], object]) -> No
         make()
 
 
+def test_what_a_search_tries_is_nobody_s_slip() -> None:
+    scene = cf.usual_scene(cf.load(ROOT / "meshes" / "pool_maple.toml"))  # its search comes by a lump of 1 kg
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert 0.006 < cf.end_mass(scene, "squirt") < 0.008
+    with pytest.warns(cf.Unusual, match="1 g"):
+        cf.LumpedCue(0.5, 1.0)
+
+
 FILES = sorted({*ROOT.glob("meshes/*.toml"), *ROOT.glob("studies/scenes/*.toml"), *ROOT.glob("meshes/*.vtu")})
 
 

@@ -25,6 +25,7 @@ from cuefem.endmass import undamped as transverse
 from cuefem.endmass.undamped import StickLimit
 from cuefem.quantity import check_kind, scalar
 from cuefem.scene import Outcome, Resolution, Scene, Stroke
+from cuefem.slips import trying
 from cuefem.tip_modes import Solved
 
 # An estimate of the error of the stick end mass takes this part of the swing that a tail could add if it rang without
@@ -324,11 +325,12 @@ def _with_squirt(squirt: float, scene: Scene, drive: str) -> float:
         return float(side * impact(replace(scene, cue=lumped, effects=())).squirt) - squirt
 
     low, high = math.log(1e-9), math.log(1e3)
-    if not excess(low) < 0 < excess(high):
-        raise ValueError(
-            f"end_mass drive {drive!r}: no lumped end mass in [1e-9, 1e3] kg has the squirt {squirt:.6g} rad"
-        )
-    return math.exp(zero(excess, low, high))
+    with trying():
+        if not excess(low) < 0 < excess(high):
+            raise ValueError(
+                f"end_mass drive {drive!r}: no lumped end mass in [1e-9, 1e3] kg has the squirt {squirt:.6g} rad"
+            )
+        return math.exp(zero(excess, low, high))
 
 
 class Definition(NamedTuple):
