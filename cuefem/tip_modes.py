@@ -106,6 +106,12 @@ class Solved:
             return lumped_tip_modes(self.scene.lumped)
         return tip_modes_from(self._modes(least), self.scene)
 
+    def without_spectra(self) -> Solved:
+        """The same, but of what it solved it holds the tip modes alone: the spectra with their matrices take 4 MB."""
+        small = Solved(self.scene, self.at)
+        vars(small).update({name: value for name, value in vars(self).items() if isinstance(value, TipModes)})
+        return small
+
     def _modes(self, least: int) -> Ended:
         if self.at is not None:
             return self._solved(self.at)

@@ -54,6 +54,17 @@ def test_the_modes_serve_every_stroke() -> None:
         assert strike_modes(struck, tip).squirt == cf.strike(struck).squirt
 
 
+def test_tip_modes_stay_without_their_spectra(solutions: list[int]) -> None:
+    solved = Solved(kim_scene(0.3))
+    tip, stuck = solved.tip, solved.tip_stuck
+    solutions.clear()
+    small = solved.without_spectra()
+    assert small.tip is tip
+    assert small.tip_stuck is stuck
+    assert not solutions
+    assert np.array_equal(small.modes.frequencies, solved.modes.frequencies)  # solved again, since asked for
+
+
 def test_a_lumped_cue_goes_the_same_way() -> None:
     tip = tip_modes_of(LUMPED)
     assert not tip.omega.any()

@@ -120,15 +120,17 @@ def answers(scene: Scene) -> Answers:
     cue_of(scene)
     solved = Solved(scene)
     outcome = strike_modes(scene, solved.tip)
-    return Answers(scene, outcome_record(outcome, scene), solved, safety(outcome))
+    return Answers(scene, outcome_record(outcome, scene), solved.without_spectra(), safety(outcome))
 
 
 def with_end_mass(found: Answers) -> Answers:
     """The numbers with the stick end mass, the tones, and the static stiffness."""
     scene, cue = found.scene, cue_of(found.scene)
+    first = _end_mass(FIRST, found.solved)
     return replace(
         found,
-        end_masses={FIRST: _end_mass(FIRST, found.solved)},
+        solved=found.solved.without_spectra(),
+        end_masses={FIRST: first},
         found=modes(cue, TONES, effects=scene.cue_effects),
         tip_stiffness=static_tip_stiffness(scene, Resolution(*mesh_for(cue, TONES), TONES)),
     )

@@ -38,6 +38,7 @@ def serve(first: Design, read: Read, *, port: int, show: bool, announce: Callabl
         language="en-US",
         reload=False,
         reconnect_timeout=30.0,  # s: a busy computer may be silent for longer than the default, 3 s
+        message_history_length=100,  # kept for that while: one with charts takes 0.1 MB
         tailwind=False,
         show_welcome_message=False,
     )
