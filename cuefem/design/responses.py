@@ -23,13 +23,15 @@ SMALL = 1e-6
 class Kind(NamedTuple):
     """A family of responses: its unit, what it is, what its argument is ("", "mode", "offset"), how it is found.
 
-    strikes: whether it needs the tip's modes up to the contact's cutoff. segments: whether it needs a cue of segments.
+    label: what tables and pages call it. strikes: whether it needs the tip's modes up to the contact's cutoff.
+    segments: whether it needs a cue of segments.
     limit: whether without an offset it is the limit of small offsets, instead of the value at the scene's own offset.
     reasons: for each design, why its response is nan, or None if it is a number. better: which a player wants, "lower"
     or "higher", by which a summary picks designs; "" if neither.
     """
 
     unit: str
+    label: str
     about: str
     values: Callable[[Solver, Any], Array]
     argument: str = ""
@@ -87,25 +89,44 @@ _STATIC = "static: force across the tip over its deflection, the butt end clampe
 _BALANCE = "centre of the segments' mass, from the tip"
 _WALL = "thinnest wall of the segments, at their ends; where solid, the radius"
 KINDS = {
-    "end_mass": Kind("kg", _END_MASS, _end_mass, "offset", strikes=True, limit=True, reasons=_stick_reasons),
+    "end_mass": Kind(
+        "kg", "end mass", _END_MASS, _end_mass, "offset", strikes=True, limit=True, reasons=_stick_reasons
+    ),
     "squirt_slope": Kind(
-        "", "squirt over phi in the limit of small offsets", lambda s, _: s.stick.squirt, strikes=True
+        "",
+        "squirt over offset's angle",
+        "squirt over phi in the limit of small offsets",
+        lambda s, _: s.stick.squirt,
+        strikes=True,
     ),
-    "pivot_length": Kind("m", _PIVOT, _pivot_length, "offset", strikes=True, limit=True, better="higher"),
-    "mass": Kind("kg", "mass of the cue", lambda s, _: s.mass, better=""),
-    "shaft_mass": Kind("kg", "mass of the segments", lambda s, _: s.shaft_mass, segments=True, better=""),
-    "balance_point": Kind("m", _BALANCE, lambda s, _: s.balance_point, segments=True, better=""),
-    "tip_stiffness": Kind("N/m", _STATIC, lambda s, _: s.tip_stiffness, segments=True, better="higher"),
+    "pivot_length": Kind(
+        "m", "natural pivot length", _PIVOT, _pivot_length, "offset", strikes=True, limit=True, better="higher"
+    ),
+    "mass": Kind("kg", "cue mass", "mass of the cue", lambda s, _: s.mass, better=""),
+    "shaft_mass": Kind("kg", "shaft mass", "mass of the segments", lambda s, _: s.shaft_mass, segments=True, better=""),
+    "balance_point": Kind("m", "balance point", _BALANCE, lambda s, _: s.balance_point, segments=True, better=""),
+    "tip_stiffness": Kind(
+        "N/m", "stiffness at the tip", _STATIC, lambda s, _: s.tip_stiffness, segments=True, better="higher"
+    ),
     "tip_diameter": Kind(
-        "m", "diameter of the tip", _drawn(lambda b: b.rows.tip_diameter[:, 0]), segments=True, better=""
+        "m",
+        "tip diameter",
+        "diameter of the tip",
+        _drawn(lambda b: b.rows.tip_diameter[:, 0]),
+        segments=True,
+        better="",
     ),
-    "wall": Kind("m", _WALL, _drawn(lambda b: b.walls.min(axis=1)), segments=True, better="higher"),
+    "wall": Kind("m", "thinnest wall", _WALL, _drawn(lambda b: b.walls.min(axis=1)), segments=True, better="higher"),
     "frequency": Kind(
-        "Hz", "of a bending mode", lambda s, n: s.frequencies[:, n - 1], "mode", segments=True, better=""
+        "Hz", "tone", "of a bending mode", lambda s, n: s.frequencies[:, n - 1], "mode", segments=True, better=""
     ),
-    "squirt": Kind("rad", "of the coupled strike", _SQUIRT, "offset", strikes=True),
-    "ball_speed": Kind("m/s", "after the coupled strike", _SPEED, "offset", strikes=True, better="higher"),
-    "vibration_energy": Kind("J", "left ringing in the cue by the coupled strike", _VIBRATION, "offset", strikes=True),
+    "squirt": Kind("rad", "squirt", "of the coupled strike", _SQUIRT, "offset", strikes=True),
+    "ball_speed": Kind(
+        "m/s", "ball speed", "after the coupled strike", _SPEED, "offset", strikes=True, better="higher"
+    ),
+    "vibration_energy": Kind(
+        "J", "energy of vibration", "left ringing in the cue by the coupled strike", _VIBRATION, "offset", strikes=True
+    ),
 }
 
 
@@ -119,7 +140,9 @@ def _defined(definition: Definition) -> Kind:
         return np.array([solver.end_mass(i, definition, offset) for i in range(len(solver.scenes))])
 
     about = f"end mass: {definition.meaning}"
-    return Kind("kg", about, values, "offset" if definition.at_offset else "", strikes=True)
+    return Kind(
+        "kg", f"end mass, {definition.label}", about, values, "offset" if definition.at_offset else "", strikes=True
+    )
 
 
 _NAME = re.compile(r"(\w+)(?:\(\s*([^()\s]+)\s*\))?")
@@ -150,6 +173,14 @@ class Response:
     def name(self) -> str:
         """The response as text that `of` reads back."""
         return self.kind if self.argument is None else f"{self.kind}({self.argument!r})"
+
+    @property
+    def label(self) -> str:
+        """What tables and pages call it: "squirt at b/R 0.3", "tone 2"."""
+        kind = kinds()[self.kind]
+        if self.argument is None:
+            return kind.label
+        return f"{kind.label} {self.argument}" if kind.argument == "mode" else f"{kind.label} at b/R {self.argument:g}"
 
     @property
     def unit(self) -> str:

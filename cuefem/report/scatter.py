@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from cuefem.design.scatter import Drivers, Scatter
 from cuefem.report.quantities import TRADE, significant
+from cuefem.report.study import heading
 from cuefem.report.table import table_of, with_caption
 
 SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)
+LEAST_NAMED = 0.01  # share of a cause that is named among the strongest
 
 DRIVERS = "What drives the spread: share of the variance, in per cent"
 
@@ -45,7 +49,7 @@ def scatter_tables(wanted: Scatter, found: Drivers) -> list[Any]:
         spreads.add_row(*row)
     shares = table_of(DRIVERS, ["response, cause", "alone", "in all"])
     for k, response in enumerate(wanted.study.responses):
-        shares.add_row(response.name, "", "", style="bold")
+        shares.add_row(response.label, "", "", style="bold")
         for i in found.total[:, k].argsort()[::-1]:
             both = ((found.first, found.first_interval), (found.total, found.total_interval))
             shares.add_row(f"  {found.causes[i]}", *(_share(value[i, k], ends[:, i, k]) for value, ends in both))
@@ -63,16 +67,15 @@ def spread_rows(wanted: Scatter, found: Drivers) -> tuple[list[str], list[list[s
     """The distribution of every response: a heading and a row each."""
     rows = []
     for k, response in enumerate(wanted.study.responses):
-        scale, unit = TRADE.get(response.unit, (1, response.unit))
+        scale, _ = TRADE.get(response.unit, (1, response.unit))
         numbers = [found.spread.mean[k], found.spread.sd[k], *found.spread.quantiles(SHARES)[:, k]]
-        name = f"{response.name}, {unit}" if unit else response.name
-        rows.append([name, *(significant(scale * value) for value in numbers)])
+        rows.append([heading(response.label, response.unit), *(significant(scale * value) for value in numbers)])
     return ["response", "mean", "sd", *(f"{100 * share:g} %" for share in SHARES)], rows
 
 
 def cause_rows(wanted: Scatter, found: Drivers) -> tuple[list[str], list[list[str]]]:
     """The shares of every cause in a row, the strongest first, a column a response: alone, and in brackets in all."""
-    names = [response.name for response in wanted.study.responses]
+    names = [response.label for response in wanted.study.responses]
     order = found.total.max(axis=1).argsort()[::-1]
     rows = [
         [
@@ -93,12 +96,11 @@ def scatter_words(wanted: Scatter, found: Drivers) -> list[str]:
     for k, response in enumerate(wanted.study.responses):
         scale, unit = TRADE.get(response.unit, (1, response.unit))
         low, high = (significant(scale * value) for value in found.spread.quantiles((0.05, 0.95))[:, k])
-        most = found.total[:, k].argsort()[::-1][:2]
-        named = " and ".join(f"{found.causes[i]} ({100 * found.total[i, k]:.0f} %)" for i in most)
-        lines.append(
-            f"{response.name}: nine in ten lie from {low} to {high} {unit}".rstrip()
-            + f"; the strongest causes are {named}"
-        )
+        total = np.clip(found.total[:, k], 0.0, 1.0)  # an estimate may lie beyond
+        most = [i for i in total.argsort()[::-1][:2] if total[i] >= LEAST_NAMED]
+        named = " and ".join(f"{found.causes[i]} ({100 * total[i]:.0f} %)" for i in most)
+        named = f"the strongest cause{'s are' if len(most) > 1 else ' is'} {named}" if most else "no cause stands out"
+        lines.append(f"{response.label}: nine in ten lie from {low} to {high} {unit}".rstrip() + f"; {named}")
     return lines
 
 

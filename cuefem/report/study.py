@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,6 +18,8 @@ from cuefem.report.table import table_of, with_caption
 MOST_LEVELS = 24  # values of a column that are groups of their own; of more, each group is a range
 RANGES = 12  # so many then
 CLEAR = 0.2  # rank correlation from which on a trend is told
+_FIELD = re.compile(r"[a-z]\w*(\[[\d*]+\])?(\.[A-Za-z]\w*(\[[\d*]+\])?)+")  # of a scene: "cue.segments[2].length"
+_ITEM = re.compile(r"(\w+)s\[(\d+|\*)\]")
 SHOWN = 7  # designs of a front in the terminal
 
 DRIVES = "What drives the results: the part of the spread between designs that goes with one column alone"
@@ -51,6 +54,11 @@ class Table:
         """The row of the best design for a response."""
         result = self.results[:, k]
         return int(result.argmax() if self.responses[k].better == "higher" else result.argmin())
+
+    @property
+    def labels(self) -> list[str]:
+        """The names of what varied, as people say them."""
+        return [*map(column_label, self.names)]
 
     @property
     def judged(self) -> list[int]:
@@ -139,6 +147,19 @@ def _trend(column: np.ndarray, result: Array) -> str:
     return "rises" if found > CLEAR else "falls" if found < -CLEAR else ""
 
 
+def column_label(name: str) -> str:
+    """A column's name as people say it; one that is a field of the scene is said in words: "segment 3 tip bore"."""
+    return ", ".join(_field_words(one) if _FIELD.fullmatch(one) else one for one in name.split(", "))
+
+
+def _field_words(path: str) -> str:
+    steps = path.removeprefix("cue.").split(".")
+    items = (
+        _ITEM.sub(lambda one: f"all {one[1]}s" if one[2] == "*" else f"{one[1]} {int(one[2]) + 1}", s) for s in steps
+    )
+    return " ".join(items).replace("_", " ")
+
+
 def heading(name: str, unit: str) -> str:
     """A column's name with the unit that people read it in."""
     shown = TRADE.get(unit, (1.0, unit))[1]
@@ -181,14 +202,14 @@ def study_record(table: Table) -> dict[str, Any]:
 
 def best_rows(table: Table) -> tuple[list[str], list[list[str]]]:
     """The best design for each response: a heading and a row each."""
-    head = ["best for", "value", "all designs", "design", *map(heading, table.names, table.units)]
+    head = ["best for", "value", "all designs", "design", *map(heading, table.labels, table.units)]
     rows = []
     for k in table.judged:
         response, i, result = table.responses[k], table.best(k), table.results[:, k]
         ends = " to ".join(shown(end, response.unit) for end in (result.min(), result.max()))
         at = [shown(column[i], unit) for column, unit in zip(table.values, table.units, strict=True)]
         which = f"{response.better} is better" if response.better else "the lowest"
-        name = f"{heading(response.name, response.unit)} ({which})"
+        name = f"{heading(response.label, response.unit)} ({which})"
         rows.append([name, shown(result[i], response.unit), ends, str(table.numbers[i]), *at])
     return head, rows
 
@@ -197,12 +218,12 @@ def drive_rows(table: Table) -> tuple[list[str], list[list[str]]]:
     """Which part of each response's spread goes with each column."""
     rows = [
         [
-            response.name,
+            response.label,
             *(f"{100 * table.shares[j, k]:.0f} % {table.trends[j][k]}".strip() for j in range(len(table.names))),
         ]
         for k, response in enumerate(table.responses)
     ]
-    return ["result", *table.names], rows
+    return ["result", *table.labels], rows
 
 
 def front_rows(table: Table, most: int) -> tuple[list[str], list[list[str]]]:
@@ -210,7 +231,7 @@ def front_rows(table: Table, most: int) -> tuple[list[str], list[list[str]]]:
     assert table.pair is not None
     picked = np.unique(np.linspace(0, len(table.front) - 1, min(most, len(table.front))).round().astype(int))
     two = [table.responses[k] for k in table.pair]
-    head = ["design", *(heading(one.name, one.unit) for one in two), *map(heading, table.names, table.units)]
+    head = ["design", *(heading(one.label, one.unit) for one in two), *map(heading, table.labels, table.units)]
     rows = []
     for i in (table.front[j] for j in picked):
         found = [shown(table.results[i, k], one.unit) for k, one in zip(table.pair, two, strict=True)]
@@ -225,8 +246,8 @@ def front_words(table: Table) -> str:
     one, other = (table.responses[k] for k in table.pair)
     count = len(table.front)
     if count == 1:
-        return f"{one.name} and {other.name}: one design is the best for both"
-    return f"{one.name} against {other.name}: {count} designs, of which none is beaten in both"
+        return f"{one.label} and {other.label}: one design is the best for both"
+    return f"{one.label} against {other.label}: {count} designs, of which none is beaten in both"
 
 
 def study_tables(table: Table) -> list[Any]:

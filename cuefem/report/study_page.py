@@ -86,9 +86,9 @@ def study_page(name: str, table: Table, facts: list[str], *, scattered: Scattere
         lines=lines,
         coordinates=coordinates,
         wide=wide,
-        shade=f"{first.name}, the {'highest' if first.better == 'higher' else 'lowest'} fifth",
+        shade=f"{first.label}, the {'highest' if first.better == 'higher' else 'lowest'} fifth",
         panels=[
-            (response.name, _panels(table, k, shares=scattered is None)) for k, response in enumerate(table.responses)
+            (response.label, _panels(table, k, shares=scattered is None)) for k, response in enumerate(table.responses)
         ],
         shown_of=_picked(len(table.results), MOST_LINES).size,
         total=len(table.results),
@@ -122,7 +122,7 @@ def _scaled(values: Array, low: float, high: float) -> Array:
 def _parallel(table: Table) -> tuple[list[tuple[str, int]], list[Coordinate], float]:
     """Lines of designs over what varied and the responses, best drawn last, with their shade; the axes; the width."""
     columns = [*table.values, *table.results.T]
-    names = [*map(heading, table.names, table.units), *(heading(r.name, r.unit) for r in table.responses)]
+    names = [*map(heading, table.labels, table.units), *(heading(r.label, r.unit) for r in table.responses)]
     units = [*table.units, *(r.unit for r in table.responses)]
     beside = [len(one) + len(other) for one, other in pairwise(names)]
     step = max(110.0, LETTER * (max(beside) / 2 + 2))  # names of neighbours do not meet
@@ -150,8 +150,8 @@ def _panels(table: Table, k: int, *, shares: bool) -> list[Panel]:
     strongest = sorted(range(len(table.names)), key=lambda j: -table.shares[j, k])[:MOST_COLUMNS]
     return [
         _panel(
-            f"{100 * table.shares[j, k]:.0f} % of the spread" if shares else heading(response.name, response.unit),
-            heading(table.names[j], table.units[j]),
+            f"{100 * table.shares[j, k]:.0f} % of the spread" if shares else heading(response.label, response.unit),
+            heading(table.labels[j], table.units[j]),
             table.values[j],
             table.results[:, k],
             (table.units[j], response.unit),
@@ -168,7 +168,7 @@ def _front_panel(table: Table) -> Panel:
     first, second = (table.results[:, k] for k in table.pair)
     every = _picked(len(first), MOST_POINTS)
     panel = _panel(
-        heading(other.name, other.unit), heading(one.name, one.unit), first, second, (one.unit, other.unit), every
+        heading(other.label, other.unit), heading(one.label, one.unit), first, second, (one.unit, other.unit), every
     )
     left, right, top, bottom = BOX
     across, up = _scaled(first, left, right), _scaled(second, bottom, top)

@@ -121,10 +121,11 @@ def test_the_command_says_what_the_function_gives(tmp_path: Path) -> None:
     assert stiffness["causes"]["time"]["total_interval"] == [0, 0]
     code, out, err = call("scatter", study)
     assert (code, err) == (0, "")
-    assert f"end_mass, g {1e3 * found.spread.mean[0]:.3f}" in " ".join(out.split())
+    assert f"end mass, g {1e3 * found.spread.mean[0]:.3f}" in " ".join(out.split())
     assert "128 designs" in out
     assert "wood: E, density" in out
-    assert "end_mass: nine in ten lie from " in out
+    assert "end mass: nine in ten lie from " in out
+    assert "the strongest cause is wood (100 %)" in out  # time changes no stiffness
     code, out, err = call("scatter", study, "-o", tmp_path / "page.html")
     assert (code, err) == (0, "")
     assert out.splitlines()[-1] == f"wrote {tmp_path / 'page.html'}"

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from cuefem.design import Response
-from cuefem.design.responses import KINDS
-from cuefem.report.study import Table
+from cuefem.design.responses import KINDS, kinds
+from cuefem.report.study import Table, column_label
 from tests.helpers.command_line import call
 from tests.helpers.sweeps import SCENE, STUDY
 
@@ -96,7 +96,12 @@ def test_the_command_ends_with_a_summary_and_a_page(tmp_path: Path) -> None:
     code, out, err = call("sweep", tmp_path / "study.toml", "-o", tmp_path / "page.html")
     assert (code, err) == (0, "")
     assert out.splitlines()[0] == f"64 designs in {tmp_path / 'study.sqlite'}, drawn on {tmp_path / 'page.html'}"
-    for words in ("end_mass, g (lower is better)", "tip_stiffness, N/m (higher is better)", "falls", "Trade-off"):
+    for words in (
+        "end mass, g (lower is better)",
+        "stiffness at the tip, N/m (higher is better)",
+        "falls",
+        "Trade-off",
+    ):
         assert words in " ".join(out.split())
     told = json.loads(call("sweep", tmp_path / "study.toml", "--json")[1])["summary"]
     best = told["best"]["end_mass"]
@@ -129,3 +134,28 @@ def test_no_design_has_no_summary(tmp_path: Path) -> None:
     code, out, _ = call("sweep", tmp_path / "study.toml")
     assert code == 0
     assert "Best designs" not in out
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("tip.contact_time", "tip contact time"),
+        ("cue.segments[2].tip_bore", "segment 3 tip bore"),
+        ("cue.segments[*].material.E", "all segments material E"),
+        ("cue.segments[0].length, ball.mass", "segment 1 length, ball mass"),
+        ("effects[0].dome_radius", "effect 1 dome radius"),
+        ("bore depth", "bore depth"),
+        ("E", "E"),
+        ("bore of 2.5, v1.5", "bore of 2.5, v1.5"),
+    ],
+)
+def test_columns_are_named_in_words(name: str, words: str) -> None:
+    assert column_label(name) == words
+
+
+def test_responses_are_named_in_words() -> None:
+    names = ("end_mass", "end_mass(0.3)", "squirt(-0.25)", "frequency(2)", "end_mass_force", "wall")
+    said = [Response.of(name).label for name in names]
+    assert said[:4] == ["end mass", "end mass at b/R 0.3", "squirt at b/R -0.25", "tone 2"]
+    assert said[4:] == ["end mass, force", "thinnest wall"]
+    assert not any("_" in Response(name).label for name in kinds())
