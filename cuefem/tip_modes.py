@@ -32,7 +32,8 @@ if TYPE_CHECKING:
 PERIODS_KEPT, PLAIN_PERIODS = 30, 60
 # But never fewer than LEAST, however long the contact. The end mass of a tip that sticks needs more: its velocity
 # begins with a step, whose front comes back from the butt at 2 L/c with frequencies of 10 to 80 kHz, whatever the
-# contact time. What these numbers hold: studies/default_accuracy.md.
+# contact time. A tip that is pushed or led from rest starts no such front, and its end mass takes a strike's modes.
+# What these numbers hold: studies/default_accuracy.md.
 LEAST, LEAST_STUCK = 40, 120
 # Never more than this by default, which a contact of a fraction of a millisecond would ask for: the tail does the rest,
 # and more would take over a second. MOST is the last rung of `resolve`.
@@ -89,8 +90,13 @@ class Solved:
 
     @cached_property
     def tip_stuck(self) -> TipModes:
-        """Tip modes for an end mass: as for a strike, but at least `LEAST_STUCK` of them by default."""
+        """Tip modes for an end mass whose drive begins with a step: at least `LEAST_STUCK` of them by default."""
         return self.tip_modes(LEAST_STUCK)
+
+    @property
+    def tip_smooth(self) -> TipModes:
+        """Tip modes for an end mass whose drive begins smoothly: those of a strike."""
+        return self.tip
 
     @cached_property
     def tip_plain(self) -> TipModes:

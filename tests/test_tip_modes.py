@@ -11,6 +11,7 @@ import cuefem as cf
 from cuefem.beam import modes as bending
 from cuefem.beam import spectrum
 from cuefem.contact.strike import strike_modes
+from cuefem.endmass.drives import DEFINITIONS, formula_of
 from cuefem.tip_modes import Solved, default_resolution, tip_modes_of
 from tests.helpers.strike_scenes import kim_scene
 
@@ -38,6 +39,19 @@ def test_a_solved_scene_solves_each_eigenproblem_once(solutions: list[int]) -> N
         assert solved.tip_plain.radiation is None
     wanted = [default_resolution(scene), default_resolution(scene, least=120), default_resolution(scene, periods=60)]
     assert sorted(solutions) == sorted({at.modes for at in wanted})
+
+
+@pytest.mark.parametrize("drive", ["force", "velocity"])
+def test_a_drive_that_begins_smoothly_takes_the_modes_of_a_strike(solutions: list[int], drive: str) -> None:
+    """A third of the modes of a tip that sticks; what they hold: tests/test_default_verification.py."""
+    scene = replace(kim_scene(0.3), tip=cf.Tip(contact_time=2e-3))
+    cf.end_mass(scene, "stick")
+    cf.end_mass(scene, drive)
+    assert solutions == [120, 40]
+    solved = Solved(scene)
+    assert cf.end_mass(scene, drive) == formula_of(drive)(solved.tip, scene)
+    assert DEFINITIONS[drive].tip_of(solved) is solved.tip
+    assert DEFINITIONS["squirt"].tip_of(solved) is solved.tip_stuck  # near the centre line it is the stick one
 
 
 def test_one_resolution_is_one_eigenproblem(solutions: list[int]) -> None:

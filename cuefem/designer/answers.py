@@ -23,7 +23,7 @@ from cuefem.cue import Array
 from cuefem.design.sensitivity import sensitivity
 from cuefem.design.solvers import static_tip_stiffness
 from cuefem.designer.model import cue_of
-from cuefem.endmass.drives import DEFINITIONS, formula_of
+from cuefem.endmass.drives import DEFINITIONS
 from cuefem.report.record import Record
 from cuefem.report.squirt import two_part_curve
 from cuefem.report.strike import outcome_record
@@ -152,9 +152,9 @@ def completed(found: Answers) -> Answers:
 
 
 def _end_mass(drive: str, solved: Solved) -> float | None:
-    scene = solved.scene
+    definition = DEFINITIONS[drive]
     try:
-        return float(formula_of(drive)(solved.tip_stuck, scene))
+        return float(definition.of(definition.tip_of(solved), solved.scene))
     except ValueError:
         return None
 

@@ -55,8 +55,9 @@ def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None) -
         - "squirt": the lumped end mass that has the squirt of the coupled strike.
     at
         How finely the cue is computed. By default modes are kept by frequency (`default_resolution`), at least 120 of
-        them. That is exact to 0.5 % except for rare cues (0.53 % at most) and metal tips; `cuefem.resolve_end_mass`
-        estimates the error.
+        them, or 40 for "velocity" and "force", whose drives begin smoothly. That is exact to 0.5 % except for rare cues
+        (0.53 % at most), metal tips that stick, and "force" through soft leather in less than 1 ms;
+        `cuefem.resolve_end_mass` estimates the error.
 
     Returns
     -------
@@ -86,7 +87,7 @@ def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None) -
     definition = definition_of(drive)
     if scene.lumped is not None:
         return scene.lumped.end_mass
-    return definition.of(Solved(scene, at).tip_stuck, scene)
+    return definition.of(definition.tip_of(Solved(scene, at)), scene)
 
 
 class Spread(NamedTuple):
@@ -125,7 +126,8 @@ def spreads_of(solved: Solved) -> Callable[[str], Spread]:
     scene = solved.scene
 
     def spread(drive: str) -> Spread:
-        definition, tip, plain = definition_of(drive), solved.tip_stuck, solved.tip_plain
+        definition, plain = definition_of(drive), solved.tip_plain
+        tip = definition.tip_of(solved)
         rigid, whole = int(np.sum(plain.omega == 0)), len(plain.omega)
         cutoffs = 5 if definition.strikes(tip, scene) else 13
         least = rigid + math.ceil((whole - rigid) / 4)
@@ -340,6 +342,7 @@ class Definition(NamedTuple):
     the end mass of a vibrating cue, kg, from its tip modes and its scene. at_offset: whether it is the end mass at the
     scene's own offset. strikes: whether it takes a coupled strike of these tip modes. error: its estimated relative
     error with these tip modes, None if there is no estimate. counts_tip: whether effects at the tip count in it.
+    smooth: whether the tip starts from rest, without a step of its velocity, so that a strike's modes are enough.
     """
 
     name: str
@@ -351,6 +354,11 @@ class Definition(NamedTuple):
     strikes: Callable[[TipModes, Scene], bool] = lambda tip, scene: False
     error: Callable[[TipModes, Scene], float | None] = lambda tip, scene: None
     counts_tip: bool = False
+    smooth: bool = False
+
+    def tip_of(self, solved: Solved) -> TipModes:
+        """The tip modes of a solved scene that this definition takes."""
+        return solved.tip_smooth if self.smooth else solved.tip_stuck
 
     def of(self, tip: TipModes, scene: Scene) -> Any:
         """The end mass of any cue by this definition, kg; a lumped cue has its own whatever the definition."""
@@ -391,6 +399,7 @@ DEFINITIONS: dict[str, Definition] = {
             "impulse over final velocity of a tip that is moved like (1 - cos(pi t/T))/2",
             "m_e = integral of F dt over 0..T, F the force that gives the tip that velocity",
             velocity,
+            smooth=True,
         ),
         Definition(
             "force",
@@ -398,6 +407,7 @@ DEFINITIONS: dict[str, Definition] = {
             "impulse over final velocity of a tip that is pushed by a half sine of length T",
             "m_e = (2 T/pi)/(integral of h(T - t) sin(pi t/T) dt over 0..T)",
             force,
+            smooth=True,
         ),
         Definition(
             "squirt",

@@ -17,7 +17,7 @@ from rich.console import Group
 from cuefem.beam.tip import TipModes
 from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
-from cuefem.endmass.drives import DEFINITIONS, formula_of
+from cuefem.endmass.drives import DEFINITIONS
 from cuefem.report.quantities import NONE, grams, units_of, written
 from cuefem.report.record import Record
 from cuefem.report.table import table_of, with_caption
@@ -126,7 +126,8 @@ def _end_masses(solved: Solved) -> tuple[dict[str, float | None], dict[str, str]
 def _end_mass(solved: Solved, drive: str) -> float:
     if drive == "A.31":
         return _a31_end_mass(solved.scene, solved.tip)
-    return float(formula_of(drive)(solved.tip_stuck, solved.scene))
+    definition = DEFINITIONS[drive]
+    return float(definition.of(definition.tip_of(solved), solved.scene))
 
 
 def _a31_end_mass(scene: Scene, tip: TipModes) -> float:

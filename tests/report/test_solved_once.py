@@ -61,10 +61,10 @@ def designer(folder: Path) -> None:
     [
         # a strike, an end mass (more modes), the range of the end masses (plain sums), and the frequencies shown
         (command("report"), 4),
-        # the strike of a page climbs to an accuracy, here on its first mesh
-        (command("report", "-o", "page.html"), 4),
+        # the strike of a page climbs to an accuracy, here on its first mesh, coarser than a strike's by default
+        (command("report", "-o", "page.html"), 5),
         (command("strike"), 2),  # the end mass of the two-part model takes more modes
-        (command("end-mass"), 2),
+        (command("end-mass"), 3),  # of a tip that sticks, of one that is pushed or led (a strike's modes), plain sums
         (command("modes"), 1),
         (command("handover"), 2),
         (designer, 3),

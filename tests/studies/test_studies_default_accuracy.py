@@ -11,7 +11,8 @@ sys.path.append(str(Path(__file__).parents[2] / "studies"))
 import default_accuracy as study
 
 COMMITTED = (Path(__file__).parents[2] / "studies" / "default_accuracy.md").read_text(encoding="utf-8")
-ROWS = [[cell.strip() for cell in line.split("|")[1:-1]] for line in COMMITTED.splitlines() if line.startswith("| s")]
+TABLE = [[cell.strip() for cell in line.split("|")[1:-1]] for line in COMMITTED.splitlines() if line.startswith("|")]
+ROWS = TABLE[2:]
 
 
 def committed(what: str, cue: str) -> list[str]:
@@ -32,17 +33,28 @@ def test_stick_end_masses_again(name: str) -> None:
 
 
 @pytest.mark.heavy
+@pytest.mark.parametrize("drive", ["force", "velocity"])
+@pytest.mark.parametrize("name", ["kim", "pool_maple"])
+def test_end_masses_of_smooth_drives_again(name: str, drive: str) -> None:
+    assert_printed(study.row(name, [name], f"{drive} end mass", study.driven(name, drive)))
+
+
+@pytest.mark.heavy
 def test_squirt_again() -> None:
     assert_printed(study.row("carbon", ["carbon"], "squirt", study.struck("carbon", study.STRIKES, False)))
 
 
 def test_half_a_percent_or_an_estimate_above_it() -> None:
-    """The default holds 0.5 %, but for brass and one random cue (0.53 %); the estimates tell about their errors."""
-    for what, _, _, count, _, most, largest, _, ratio in ROWS:
-        assert int(count) >= {"stick end mass": 200, "stick end mass, AxialWaves": 5}.get(what, 10)
+    """The default holds 0.5 %, but for brass, one random cue (0.53 %; the estimates tell) and force on soft leather."""
+    for what, cue, _, count, _, most, largest, _, ratio in ROWS:
+        least = {"stick end mass": 200, "force end mass": 200, "velocity end mass": 40}
+        assert int(count) >= least.get(what, 5 if "mass, AxialWaves" in what else 10)
         assert float(most) < 0.62
         if what == "stick end mass" and float(largest) > 0.5:
             assert float(ratio) < 1.3
         else:
-            assert float(largest) < (0.5 if "end mass" in what else 0.2)
-    assert sum(int(row[2]) for row in ROWS if row[0] == "stick end mass") == 45
+            soft_leather = what == "force end mass" and cue == "random, no brass"
+            limit = {"squirt": 0.2, "velocity": 0.01}.get(what.split()[0].rstrip(","), 0.5)
+            assert float(largest) < (1.0 if soft_leather else limit)
+    for drive in ("stick", "force", "velocity"):
+        assert sum(int(row[2]) for row in ROWS if row[0] == f"{drive} end mass") == 45
