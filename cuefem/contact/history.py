@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import chain
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from cuefem.contact.flow import ORDERS, Piece
+from cuefem.contact.marched import Marched
 from cuefem.contact.marched import Piece as Marching
 from cuefem.contact.stretches import Stepping
 from cuefem.cue import Array
@@ -66,10 +69,18 @@ class SteppedHistory:
 
 @dataclass(frozen=True)
 class MarchedHistory:
-    """What `History` gives, for a contact stepped with the exact turns of its modes; accurate to about 1e-9."""
+    """What `History` gives, for a contact stepped with the exact turns of its modes; accurate to about 1e-9.
 
-    pieces: tuple[Marching, ...]
+    marches: gives the phases and flights, whose steps nobody may ask for.
+    """
+
+    marches: Callable[[], Sequence[Marched]]
     mirror: float
+
+    @cached_property
+    def pieces(self) -> tuple[Marching, ...]:
+        """The steps."""
+        return tuple(chain.from_iterable(each.pieces for each in self.marches()))
 
     def __call__(self, time: ArrayLike) -> dict[str, Array]:
         """Evaluate the polynomials of the steps the times fall in."""

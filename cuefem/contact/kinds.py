@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from cuefem.beam.tip import TipModes
 from cuefem.contact.linear import Exact
 from cuefem.contact.phases import Kind
@@ -11,18 +13,23 @@ from cuefem.effects.terms import ContactTerms
 from cuefem.quantity import scalar
 from cuefem.scene import Scene
 
+if TYPE_CHECKING:
+    from cuefem.contact.turns import Turns
 
-def contact_of(scene: Scene, tip: TipModes, laws: Laws, terms: ContactTerms | None = None) -> Kind:
+
+def contact_of(
+    scene: Scene, tip: TipModes, laws: Laws, terms: ContactTerms | None = None, turns: Turns | None = None
+) -> Kind:
     """The cheapest contact that honours the terms of the scene's effects: exact linear phases where it can.
 
-    terms: the scene's, where they are known. ValueError for terms that no contact honours together: a raised cue turns
-    neither normal nor patch, and its tip gives something back.
+    terms: the scene's, where they are known. turns: what strikes with this cue share, if they do. ValueError for terms
+    that no contact honours together: a raised cue turns neither normal nor patch, and its tip gives something back.
     """
     terms = terms or scene.contact_terms
     if terms.tip is not None:
         from cuefem.contact.leather import whole_tip_contact  # loaded when used
 
-        return whole_tip_contact(scene, tip, laws)
+        return whole_tip_contact(scene, tip, laws, terms, turns)
     compliance, radius = terms.compliance / laws.stiffness, scalar("Ball.radius", scene.ball.radius)
     if terms.table is None and terms.law is None and not terms.turns:
         if compliance:

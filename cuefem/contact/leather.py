@@ -9,8 +9,10 @@ terms of its forces' series are below `TipForces.tolerance`, and ends where the 
 
 from __future__ import annotations
 
+import ctypes
 import math
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 
@@ -23,19 +25,21 @@ from cuefem.contact.marched import Marched, Motion, Piece
 from cuefem.contact.phases import ROUNDING, Step, Stretch, endless, next_phase
 from cuefem.contact.response import (
     EVEN,
+    FEW,
+    FEW_WEIGHTS,
     MANY,
     MANY_WEIGHTS,
     NODES,
     OPENING,
     TAYLOR,
     Complex,
-    FreeMotion,
     Response,
 )
 from cuefem.contact.ringed_patch import RingForces
-from cuefem.contact.state import APART, SIDE, Contact, Grip, Laws, Press
+from cuefem.contact.state import APART, SIDE, Grip, Laws, Press
 from cuefem.contact.stretches import free_course
 from cuefem.contact.tip_forces import Hold, TipForces
+from cuefem.contact.turns import Turns, mixing
 from cuefem.cue import Array
 from cuefem.effects.leather_law import LeatherLaw
 from cuefem.effects.terms import ContactTerms
@@ -58,20 +62,27 @@ LEAST_RESTITUTION = 0.1
 PAST = 1e-10
 # The patch has just opened where the compression is below this part of the law's greatest.
 OPENED = 1e-6
-RULES = compiled.Rules((EVEN, OPENING), (MANY, MANY_WEIGHTS))
+RULES = compiled.Rules((EVEN, OPENING), (MANY, MANY_WEIGHTS), (FEW, FEW_WEIGHTS))
 _LAST = np.eye(NODES)[-1]
 _ACROSS, _SPIN, _ROTATION = slice(0, 2 * NODES), slice(2 * NODES, 3 * NODES), slice(3 * NODES, 4 * NODES)
 
 
-def whole_tip_contact(scene: Scene, tip: TipModes, laws: Laws) -> Leather:
-    """The contact of a scene with a whole tip; ValueError for one that gives next to nothing back."""
+def whole_tip_contact(
+    scene: Scene, tip: TipModes, laws: Laws, terms: ContactTerms, turns: Turns | None = None
+) -> Leather:
+    """The contact of a scene with a whole tip; ValueError for one that gives next to nothing back.
+
+    turns: of the cue, whose modes ``tip`` are, at the place of the contact; if other strikes share them.
+    """
+    assert terms.tip is not None
     if laws.restitution < LEAST_RESTITUTION:
         raise ValueError(
             f"Tip.restitution must be in [{LEAST_RESTITUTION}, 1] beside LeatherTip; got {laws.restitution}: leather "
             "that gives back less rings on the ball while it is unloaded, which is not computed (cue tips: 0.7 to 0.85)"
         )
-    law = scene.tip_law(laws.restitution, scalar("Stroke.offset", scene.stroke.offset))
-    return Leather(tip, laws, law=law, radius=scalar("Ball.radius", scene.ball.radius), terms=scene.contact_terms)
+    radius = scalar("Ball.radius", scene.ball.radius)
+    law = terms.tip.law(radius, abs(scalar("Stroke.offset", scene.stroke.offset)), laws.restitution)
+    return Leather(tip, laws, law=law, radius=radius, terms=terms, turns=turns)
 
 
 class Leather:
@@ -83,20 +94,35 @@ class Leather:
 
     haste = 1.0
 
-    def __init__(self, tip: TipModes, laws: Laws, *, law: LeatherLaw, radius: float, terms: ContactTerms) -> None:
+    def __init__(
+        self,
+        tip: TipModes,
+        laws: Laws,
+        *,
+        law: LeatherLaw,
+        radius: float,
+        terms: ContactTerms,
+        turns: Turns | None = None,
+    ) -> None:
         assert terms.tip is not None
-        contact = self.contact = Contact(tip, laws, ("spin", "depth", "angle", "shear"))
+        # the tip modes are those of the place of the touch, which the lever takes off that of the modes that are shared
+        lever = (0.0, 0.0) if turns is None else terms.lever(laws.phi)
+        turns = turns or Turns(tip)
+        contact = self.contact = turns.contact(tip, laws, ("spin", "depth", "angle", "shear"))
         self.law = law
         self.tip_forces = (RingForces if terms.tip.partial_slip else TipForces)(law, laws.friction)
         self.terms, self.dome = terms, terms.tip.rolling_radius(laws.phi)
         self.reach = radius + self.dome if terms.turns else math.inf
         self.grows, self.sheared, self.longest = True, 0.0, contact.patience
-        self.free = FreeMotion.of(contact, self._rows())
-        self.damping = contact.dampers @ self.free.vectors
+        # steps have the lengths that those at other speeds have, whose contacts take longer or shorter
+        self.clock = 2.0 ** round(math.log2(laws.time))
+        self.free = turns.free(contact, self._rows())
+        self.mixing = mixing(laws.phi, lever)
         self.impulse = laws.speed * laws.ball_mass  # about that of the blow, N s,
         self.size = self.impulse / laws.time  # and its force, N
         self.pieces: list[Piece] = []
         self.marches: list[Marched] = []
+        self.records: list[tuple[float, Array]] = []  # of phases and flights: start, s, and steps
         self.responses: dict[tuple[int, bool], Response] = {}
         self.halvings = FIRST
         self.leaving = 0.0  # v_n at the end of the last step, m/s
@@ -104,8 +130,32 @@ class Leather:
         # last values alone
         self.series, self.series_step = np.zeros((TAYLOR, 4)), 0.0
         found = None if terms.levers else library()  # levers are functions, and Python's
-        self.steps = None if found is None else compiled.Steps(found, self, RULES)
+        self.steps = None if found is None else compiled.Steps(self._shared(found, turns), self, self._numbers)
         self.kernel = "python" if self.steps is None else "c"
+
+    def _shared(self, found: ctypes.CDLL, turns: Turns) -> compiled.Shared:
+        """What the compiled kernel keeps of the cue."""
+        if turns.compiled is None:
+            places = [self.free.place(slot) for slot in self.contact.slots.of("ball_t", "ball_n", "spin")]
+            turns.compiled = compiled.Shared(found, self.free, turns.ways(self.contact), self.damping, places, RULES)
+        return turns.compiled
+
+    @property
+    def _numbers(self) -> compiled.Numbers:
+        tolerance = self.tip_forces.tolerance
+        return compiled.Numbers(
+            tolerance, SETTLED, WILD, OPENED, PAST, ROUNDING, ROUNDS, LONGEST, SHORTEST, CROSSING, MOST_STEPS
+        )
+
+    @cached_property
+    def damping(self) -> Complex:
+        """What reads the dampers from the coordinates."""
+        return np.asarray(self.contact.dampers @ self.free.vectors)
+
+    @property
+    def taken(self) -> int:
+        """How many steps."""
+        return len(self.pieces) + sum(len(records) for _, records in self.records)
 
     def _rows(self) -> Array:
         """The velocities that forces act on: ball less tip along (t, n) of the first touch, spin, the tip's turning."""
@@ -188,7 +238,7 @@ class Leather:
 
     def _length(self, halvings: int) -> float:
         """Of a step, s."""
-        return self.contact.laws.time / 2**halvings
+        return self.clock / 2**halvings
 
     def _step(self, hold: Hold, coordinates: Complex) -> Piece:
         """The longest step that holds the tolerance."""
@@ -230,7 +280,7 @@ class Leather:
         if hold.apart or hold.press == "load" or hold.grows or self.leaving <= 0:
             return
         depth = float(self.contact.z[self.contact.slots["depth"]])
-        left = (depth - self.law.rest(self.tip_forces.deepest)) / self.leaving / self.contact.laws.time
+        left = (depth - self.law.rest(self.tip_forces.deepest)) / self.leaving / self.clock
         if left < 2.0**-LONGEST:
             least = CROSSING if left < 2.0**-CROSSING else math.ceil(-math.log2(0.85 * left))
             self.halvings = max(self.halvings, least)
@@ -246,7 +296,7 @@ class Leather:
     def _ends(self, hold: Hold, motion: Motion, near: float) -> dict[str, Array]:
         """What ends a leg, by name: values at the nodes, of the order of 1, that fall through zero there."""
         laws, deepest = self.contact.laws, self.tip_forces.deepest
-        mu, speed, depth, rest = laws.friction, laws.speed, laws.speed * laws.time, self.law.rest(deepest)
+        mu, speed, depth, rest = laws.friction, laws.speed, laws.speed * self.clock, self.law.rest(deepest)
         if hold.apart:
             return {"touch": (rest + near - motion.depth) / depth}
         ends: dict[str, Array] = {}
@@ -283,8 +333,6 @@ class Leather:
     def _leg(self, hold: Hold, coordinates: Complex, until: float, near: float = 0.0) -> tuple[str, Complex]:
         """Steps up to the first end of a leg, or to ``until``, s, and what was lost in them."""
         before = self._stored(hold)
-        if self.steps is not None:
-            return self._compiled_leg(self.steps, hold, coordinates, until, near, before)
         first, event = len(self.pieces), ""
         while not event and self.contact.time < until:
             if len(self.pieces) > MOST_STEPS:
@@ -297,39 +345,48 @@ class Leather:
             self._lose(hold, self._losses(hold, self.pieces[first:]), before)
         return event or "late", coordinates
 
-    def _compiled_leg(
-        self, steps: compiled.Steps, hold: Hold, coordinates: Complex, until: float, near: float, before: float
-    ) -> tuple[str, Complex]:
-        """The same in the compiled kernel; before: what the spring along the surface held at its start, J."""
-        tolerance = self.tip_forces.tolerance
-        numbers = compiled.Numbers(
-            tolerance, SETTLED, WILD, OPENED, PAST, ROUNDING, ROUNDS, LONGEST, SHORTEST, CROSSING, MOST_STEPS
-        )
-        status, event, found, losses, records = steps.leg(hold, coordinates, until, near, numbers)
+    def _compiled_blow(self, steps: compiled.Steps, grip: Grip, press: Press, most: float) -> None:
+        """All phases from a touch on in the compiled kernel, as `run` goes through them; most: so many."""
+        contact = self.contact
+        found = steps.blow(grip, press, self.free.onto @ contact.z, self.longest, most)
+        self._settle(found.coordinates)
+        contact.peak = found.peak or contact.peak
+        contact.friction_loss += found.rubbed
+        self.sheared += found.sheared
+        self._damp(found.damped)
+        first = 0
+        for phase, count in found.phases:
+            contact.phases.append(phase)
+            self.records.append((phase.start, found.steps[first : first + count]))
+            first += count
+        if first < len(found.steps):  # of a phase that did not end
+            self.records.append((contact.time, found.steps[first:]))
+        if found.status in (compiled.LATE, compiled.CROWDED):
+            raise endless(self, found.grip, found.press)
+        self._check(found.status, Hold(found.grip, found.press, self.grows))
+
+    def _check(self, status: int, hold: Hold) -> None:
         if status == compiled.TOO_DEEP:
             raise self.law.too_deep(self.kept[0])
-        for record in map(steps.read, records):
-            rule, key = OPENING if record.opens else EVEN, (record.halvings, record.opens)
-            moved, slots = Motion(*record.motion), self.contact.slots.of("depth", "angle")
-            self.pieces.append(
-                Piece(
-                    record.start,
-                    record.part,
-                    record.length,
-                    rule,
-                    key,
-                    self._response,
-                    record.coordinates,
-                    record.forces,
-                    moved,
-                    slots,
-                )
-            )
         if status not in (compiled.ENDED, compiled.LATE):
             raise self._stuck(hold)
-        if len(records):
-            self._lose(hold, losses, before)
-        return event or "late", found
+
+    def _piece(self, steps: compiled.Steps, numbers: Array) -> Piece:
+        """A step that the compiled kernel took."""
+        record, slots = steps.read(numbers), self.contact.slots.of("depth", "angle")
+        rule, key = OPENING if record.opens else EVEN, (record.halvings, record.opens)
+        moved = Motion(*record.motion)
+        start, part, length, coordinates, forces = (
+            record.start, record.part, record.length, record.coordinates, record.forces,
+        )  # fmt: skip
+        return Piece(start, part, length, rule, key, self._response, coordinates, forces, moved, slots)
+
+    def _marches(self) -> list[Marched]:
+        """The phases and flights so far."""
+        steps = self.steps
+        if steps is None:
+            return self.marches
+        return [Marched(start, tuple(self._piece(steps, one) for one in records)) for start, records in self.records]
 
     def _take(self, piece: Piece, hold: Hold) -> Complex:
         """Go to the end of a piece; the coordinates there."""
@@ -374,8 +431,7 @@ class Leather:
     def _lose(self, hold: Hold, losses: Array, before: float) -> None:
         """Note what was lost in a leg; before: what the spring along the surface held at its start, J."""
         contact, (worked, wasted, rubbed, *damped) = self.contact, losses.tolist()
-        contact.damping_loss += math.fsum(damped[: contact.lossy])
-        contact.radiated += math.fsum(damped[contact.lossy :])
+        self._damp(damped)
         if hold.apart:
             return
         missing = before - self._stored(hold) - worked
@@ -389,6 +445,12 @@ class Leather:
         self.sheared += wasted
         contact.friction_loss -= rubbed
 
+    def _damp(self, damped: list[float]) -> None:
+        """Note what each damper took, J."""
+        contact = self.contact
+        contact.damping_loss += math.fsum(damped[: contact.lossy])
+        contact.radiated += math.fsum(damped[contact.lossy :])
+
     def _stored(self, hold: Hold) -> float:
         """Energy that the spring along the surface holds now, J."""
         depth, held = self.contact.z[self.contact.slots.of("depth", "shear")].tolist()
@@ -396,7 +458,7 @@ class Leather:
 
     def _stuck(self, hold: Hold) -> RuntimeError:
         return RuntimeError(
-            f"the contact could not be stepped on from {self.contact.time:.6g} s, after {len(self.pieces)} steps, in "
+            f"the contact could not be stepped on from {self.contact.time:.6g} s, after {self.taken} steps, in "
             f"{hold.grip}, {hold.press}; keep fewer modes, or a Tip.restitution further from 0"
         )
 
@@ -417,8 +479,11 @@ class Leather:
         return "stick"
 
     def at_once(self, grip: Grip, press: Press, most: float) -> bool:
-        """Phases are stepped one by one."""
-        return False
+        """In the compiled kernel; in Python they are stepped one by one."""
+        if self.steps is None:
+            return False
+        self._compiled_blow(self.steps, grip, press, most)
+        return True
 
     def follow(self, grip: Grip, press: Press) -> str:
         """Step through one phase, leg by leg."""
@@ -486,25 +551,34 @@ class Leather:
         self.halvings, self.series, self.series_step = FIRST, np.zeros((TAYLOR, 4)), 0.0
         state, lost = contact.z, (contact.damping_loss, contact.radiated)
         flight = Hold("stick", "unload", grows=True, apart=True)
-        event, coordinates = self._leg(flight, self.free.onto @ state, until, near)
+        if self.steps is not None:
+            found = self.steps.flight(flight, self.free.onto @ state, until, near)
+            self._check(found.status, flight)
+            self._damp(found.damped)
+            event, coordinates, records = found.event, found.coordinates, found.steps
+        else:
+            event, coordinates = self._leg(flight, self.free.onto @ state, until, near)
         if event != "touch" or contact.time > until:
             contact.time, contact.z = start, state
             contact.damping_loss, contact.radiated = lost
             del self.pieces[first:]
             return False
         self._settle(coordinates)
-        self.marches.append(Marched(start, tuple(self.pieces[first:])))
+        if self.steps is not None:
+            self.records.append((start, records))
+        else:
+            self.marches.append(Marched(start, tuple(self.pieces[first:])))
         self.grows = True
         contact.end_phase(*APART, start, contact.impulse)
         return True
 
     def stretches(self) -> list[Stretch]:
         """The phases so far, and the free motion from now on."""
-        return [*self.marches, free_course(self.contact)]
+        return [*self._marches(), free_course(self.contact)]
 
     def history(self, mirror: float) -> MarchedHistory:
         """Forces and velocities so far; mirror: -1 for a stroke on the other side."""
-        return MarchedHistory(tuple(self.pieces), mirror)
+        return MarchedHistory(self._marches, mirror)
 
     def tip_loss(self) -> float:
         """Energy that the tip did not give back along the normal, J."""

@@ -34,6 +34,7 @@ DEFECTIVE, NUDGE = 1e7, 1e-9
 # Terms of the series with which the forces of a step are guessed from those of the one before.
 TAYLOR = 4
 MANY, MANY_WEIGHTS = np.polynomial.legendre.leggauss(3 * NODES)
+FEW, FEW_WEIGHTS = np.polynomial.legendre.leggauss(3 * NODES // 2)  # enough where modes turn slowly; the kernel's
 
 
 class Rule(NamedTuple):
@@ -170,6 +171,10 @@ class FreeMotion:
     def drives(self) -> Complex:
         """What a unit of each force does to the coordinates."""
         return np.asarray(self.onto @ self.rows.T)
+
+    def place(self, slot: int) -> int:
+        """Of the coordinate that is a slot of the state by itself."""
+        return int(np.argmax(np.abs(self.vectors[slot])))
 
     def state(self, xi: Complex) -> Array:
         """The state of coordinates."""

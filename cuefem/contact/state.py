@@ -96,6 +96,29 @@ class Slots:
         return [self.places[name] for name in names]
 
 
+class Resistance(NamedTuple):
+    """Of the modes against their motion: rows (dampers, size) whose squares add up to its power, the first ``lossy`` of
+    which damp while the others radiate; strength: the sum of the greatest of both, 1/s.
+    """
+
+    rows: Array
+    lossy: int
+    strength: float
+
+    @classmethod
+    def of(cls, tip: TipModes, slots: Slots) -> Resistance:
+        """Of tip modes, in states with these slots."""
+        rows, counts, strength = [np.zeros((0, slots.size))], [0, 0], 0.0
+        for i, damping in enumerate((tip.damping, tip.radiation)):
+            if damping is not None:
+                modes, ways, strongest = _split(damping)
+                wide = np.zeros((len(ways), slots.size))
+                wide[:, slots.velocities.start + modes] = ways
+                rows.append(wide)
+                counts[i], strength = len(ways), strength + strongest
+        return cls(np.concatenate(rows), counts[0], strength)
+
+
 def _split(damping: Array) -> tuple[Any, Array, float]:
     """(the modes that a damping acts on, rows over them whose squares add up to its power, its greatest strength)."""
     modes = np.flatnonzero(damping.any(axis=1))  # a tail's radiation is that of a few
@@ -110,7 +133,8 @@ class Contact:
     """Tip modes and laws of a contact; its state, what it has lost, J, and its phases so far.
 
     names: the slots of its kind, behind ball_n and ball_t. peak: the tip's force at the last greatest compression, N.
-    parted: whether the blow of endless friction alone threw ball and tip apart.
+    parted: whether the blow of endless friction alone threw ball and tip apart. resistance: of the modes, where it is
+    known from another contact of theirs.
     """
 
     tip: TipModes
@@ -123,6 +147,7 @@ class Contact:
     peak: float = 0.0
     parted: bool = False
     phases: list[Phase] = field(default_factory=list)
+    resistance: Resistance | None = None
 
     def __post_init__(self) -> None:
         tip, laws = self.tip, self.laws
@@ -140,13 +165,9 @@ class Contact:
             self.c_t[slots["ball_t"]], self.c_t[slots["spin"]] = mass**-0.5, (nu * mass) ** -0.5
         else:
             self.c_t[slots["ball_t"]] = (mass * nu / (1 + nu)) ** -0.5
-        self.fastest = float(omega.max(initial=0.0))
-        self.dampers = np.zeros((0, size))  # rows whose squares add up to the damped power
-        if tip.damping is not None:
-            self._damp(tip.damping)
-        self.lossy = len(self.dampers)  # those after them radiate
-        if tip.radiation is not None:
-            self._damp(tip.radiation)
+        self.resistance = self.resistance or Resistance.of(tip, slots)
+        self.dampers, self.lossy, strength = self.resistance
+        self.fastest = float(omega.max(initial=0.0)) + strength
         self.z = np.zeros(size)
         self.z[slots.velocities] = laws.speed * tip.approach
         self.z[slots["ball_n"]] = -laws.incoming * math.sqrt(mass)
@@ -163,13 +184,6 @@ class Contact:
             if damping is not None:
                 found[slots.velocities, slots.velocities] -= damping
         return found
-
-    def _damp(self, damping: Array) -> None:
-        modes, ways, strongest = _split(damping)
-        rows = np.zeros((len(ways), self.slots.size))
-        rows[:, self.slots.velocities.start + modes] = ways
-        self.dampers = np.concatenate([self.dampers, rows])
-        self.fastest += strongest
 
     @cached_property
     def readings(self) -> tuple[Array, Array]:

@@ -12,6 +12,7 @@ from cuefem.contact.kinds import contact_of
 from cuefem.contact.outcome import outcome_of
 from cuefem.contact.phases import Kind, run
 from cuefem.contact.state import Laws
+from cuefem.contact.turns import Turns
 from cuefem.quantity import check_kind, scalar
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import tip_modes_of
@@ -65,12 +66,16 @@ def strike(scene: Scene, at: Resolution | None = None) -> Outcome:
     return strike_modes(scene, tip_modes_of(scene, at))
 
 
-def strike_modes(scene: Scene, tip: TipModes) -> Outcome:
-    """The coupled strike of a cue that is given by its tip modes, as `strike`."""
-    return outcome_of(struck(scene, tip), scene, math.copysign(1.0, scalar("Stroke.offset", scene.stroke.offset)))
+def strike_modes(scene: Scene, tip: TipModes, turns: Turns | None = None) -> Outcome:
+    """The coupled strike of a cue that is given by its tip modes, as `strike`.
+
+    turns: of the same modes, if other strikes share them; they change no number.
+    """
+    side = math.copysign(1.0, scalar("Stroke.offset", scene.stroke.offset))
+    return outcome_of(struck(scene, tip, turns), scene, side)
 
 
-def struck(scene: Scene, tip: TipModes) -> Kind:
+def struck(scene: Scene, tip: TipModes, turns: Turns | None = None) -> Kind:
     """The contact of a strike when it is over, solved for an offset >= 0; a negative one is its mirror image."""
     offset = scalar("Stroke.offset", scene.stroke.offset)
     laws = Laws(
@@ -83,12 +88,15 @@ def struck(scene: Scene, tip: TipModes) -> Kind:
         time=scene.contact_time,
         speed=scalar("Stroke.speed", scene.stroke.speed),
     )
-    tip = tip if offset else tip.uncoupled
+    straight = tip if offset else tip.uncoupled
+    if turns is None or straight is not tip:
+        turns = Turns(straight)
+    tip = straight
     terms = scene.contact_terms
     lever = terms.lever(laws.phi)
     if any(lever):
         tip = replace(tip, amplitude=tip.amplitude + np.outer(tip.rotation, lever))
-    kind = contact_of(scene, tip, laws, terms)
+    kind = contact_of(scene, tip, laws, terms, turns)
     run(kind)
     if terms.window is not None:
         from cuefem.contact.second_hit import follow

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from cuefem.contact.strike import strike_modes
+from cuefem.contact.turns import Turns
 from cuefem.cue import Cue
 from cuefem.quantity import check_count, check_kind, shown
 from cuefem.scene import Outcome, Resolution, Scene
@@ -79,10 +81,19 @@ def batch_strike(scenes: Sequence[Scene], at: Resolution | None = None, *, threa
     return _together(found)
 
 
-class _Job(NamedTuple):
-    """Strikes with the same modes: the scenes by their numbers, and what knows their modes."""
+class _Shared(Solved):
+    """A cue that strikes share: its modes, and how they turn."""
 
-    solved: Solved
+    @cached_property
+    def turns(self) -> Turns:
+        """Of a strike's modes."""
+        return Turns(self.tip)
+
+
+class _Job(NamedTuple):
+    """Strikes with the same modes: the scenes by their numbers, and what they share."""
+
+    shared: _Shared
     scenes: tuple[tuple[int, Scene], ...]
 
 
@@ -93,9 +104,9 @@ def _jobs(scenes: tuple[Scene, ...], at: Resolution | None) -> Iterator[_Job]:
         with _Numbered(i):
             groups.setdefault(_modes_of(scene, at, resolutions), []).append(i)
     for rows in groups.values():
-        solved = Solved(scenes[rows[0]], at)
+        shared = _Shared(scenes[rows[0]], at)
         for start in range(0, len(rows), CHUNK):
-            yield _Job(solved, tuple((i, scenes[i]) for i in rows[start : start + CHUNK]))
+            yield _Job(shared, tuple((i, scenes[i]) for i in rows[start : start + CHUNK]))
 
 
 def _modes_of(scene: Scene, at: Resolution | None, resolutions: dict[tuple[Cue, float], Resolution]) -> tuple[Any, ...]:
@@ -129,7 +140,7 @@ def _struck(job: _Job) -> list[tuple[int, dict[str, Any]]]:
     found = []
     for i, scene in job.scenes:
         with _Numbered(i):
-            outcome = strike_modes(scene, job.solved.tip)
+            outcome = strike_modes(scene, job.shared.tip, job.shared.turns)
             numbers = {name: getattr(outcome, name) for name in (*NUMBERS, "energy", "unknowns", "kernel")}
         found.append((i, numbers))
     return found

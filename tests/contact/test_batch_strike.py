@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 import cuefem as cf
+from cuefem.contact.kernel import VARIABLE, library
+from cuefem.contact.kernel import leather as kernel
 from tests.helpers.leather_scenes import AT, leather_scene
 from tests.helpers.strike_scenes import kim_scene
 
@@ -42,6 +44,48 @@ def test_many_strikes_are_the_strikes_one_by_one(at) -> None:
             else:
                 np.testing.assert_allclose(value, wanted, rtol=1e-10, atol=1e-14)
     assert together.unknowns > 20
+
+
+LEATHER = [
+    *(leather_scene(offset, speed=speed) for offset, speed in ((0.0, 2.0), (0.3, 0.7), (-0.3, 2.0), (0.45, 6.0))),
+    replace(leather_scene(0.2), ball=cf.Ball(mass=0.17, radius=0.028575)),
+    leather_scene(0.45, cf.SecondHit(0.02)),
+    leather_scene(0.4, leather=replace(leather_scene().leather, partial_slip=True)),
+]
+
+
+@pytest.mark.parametrize("order", [1, -1])
+@pytest.mark.parametrize("kernel", ["c", "python"])
+def test_strikes_that_share_what_a_cue_does_are_the_strikes_one_by_one_to_the_bit(
+    kernel: str, order: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if kernel == "c" and library() is None:
+        pytest.skip("no compiled kernel")
+    monkeypatch.setenv(VARIABLE, kernel)
+    scenes = LEATHER[::order] if kernel == "c" else LEATHER[:3][::order]
+    together = cf.batch_strike(scenes, AT)
+    for i, scene in enumerate(scenes):
+        alone = cf.strike(scene, AT)
+        for name, value in numbers(together, i).items():
+            part = name.partition(" ")[2]
+            assert np.array_equal(value, alone.energy.get(part, 0.0) if part else getattr(alone, name)), (i, name)
+
+
+@pytest.mark.skipif(library() is None, reason="no compiled kernel")
+def test_a_cue_answers_a_length_of_step_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """However many strikes take steps of that length, at whatever speed and offset."""
+    respond, made = kernel.Shared.response, []
+
+    def noted(shared: kernel.Shared, halvings: int, opens: int) -> object:
+        made.append((id(shared), halvings, opens))
+        return respond(shared, halvings, opens)
+
+    monkeypatch.setattr(kernel.Shared, "response", noted)
+    scenes = [leather_scene(offset, speed=speed) for offset in (0.1, 0.3, 0.4) for speed in (1.0, 1.7, 2.0, 5.0)]
+    cf.batch_strike(scenes, AT)
+    assert len(made) == len(set(made))
+    assert len({shared for shared, *_ in made}) == 1
+    assert len(made) < 2 * len(scenes)
 
 
 @pytest.mark.parametrize("threads", [2, 5])

@@ -1,36 +1,51 @@
 /* Steps of the contact of a whole tip (cuefem.contact.leather, `_leg`) with the exact turns of all modes
-   (cuefem.contact.response). Numbers that choose steps are handed over; equations stand in those modules. */
+   (cuefem.contact.response). Numbers that choose steps are handed over; equations stand in those modules.
+
+   Forces at the contact reach the cue in three ways: they push its tip along and across the axis, and turn it. The
+   response of a step is that of those three to each other, which is the cue's alone; how a contact mixes them, and what
+   the ball does, is added (`struct touch`). So strikes of one cue share their responses. */
 #include "rings.h"
 
 #include <string.h>
 
-/* Nodes of a step; Gauss points between two of them; Gauss points of a part of a step; terms of the guess; rows on which
-   forces act: t and n of the first touch, the ball's spin, the tip's turning; dampers that are kept. */
-enum { NODES = 18, POINTS = 12, MANY = 54, TAYLOR = 4, ROWS = 4, ALL = ROWS * NODES };
+/* Nodes of a step; Gauss points between two of them; Gauss points of a part of a step, and of
+   one in which no mode turns by more than SLOW; terms of the guess; rows on which
+   forces act: t and n of the first touch, the ball's spin, the tip's turning; ways in which the tip moves. */
+enum { NODES = 18, POINTS = 12, MANY = 54, FEW = 27, TAYLOR = 4, ROWS = 4, ALL = ROWS * NODES, WAYS = 3, WIDE = WAYS * NODES };
+#define SLOW 20.0 /* rad: degree 2 FEW has then all of a turn's series beside that of a step's polynomials */
 enum { T, N, SPIN, ROTATION };
 enum { V_T, V_N, F_T, F_N, DEPTH, ANGLE, MOTIONS };
-enum { ENDED = 0, FULL = 1, LATE = 2, NEEDS = 3, STUCK = 4, TOO_DEEP = 5, REFUSED = 6 };
+enum { ENDED = 0, FULL = 1, LATE = 2, NEEDS = 3, STUCK = 4, TOO_DEEP = 5, REFUSED = 6, CROWDED = 7 };
+enum { PHASE, LEG, STEP }; /* what a blow goes on with */
 enum { TOUCH, COMPRESSED, APART, RELOADED, TURNED, GRIPPED, SLIPPED, SLIPPED_BACK, NO_EVENT };
 enum { HALVINGS = 40, TOGETHER = 4 }; /* of a table; loops side by side */
 
 /* `Rule`: between, weights (NODES - 1, POINTS); values (NODES - 1, POINTS, NODES); integral, waves (NODES, NODES); slopes
-   (TAYLOR, NODES); many, many_weights: Gauss points on (-1, 1). */
+   (TAYLOR, NODES); many, few: Gauss points on (-1, 1). */
 struct rule {
-    int power, nodes, points, many_points, terms;
-    const double *times, *integral, *waves, *between, *values, *weights, *slopes, *many, *many_weights;
+    int power, nodes, points, many_points, few_points, terms;
+    const double *times, *integral, *waves, *between, *values, *weights, *slopes, *many, *many_weights, *few, *few_weights;
 };
 
-/* `FreeMotion`: complex numbers as (real, imaginary). readings: (ROWS + dampers, modes); drives: (modes, ROWS). */
+/* `FreeMotion`: complex numbers as (real, imaginary). readings: (WAYS + dampers, modes); drives: (modes, WAYS).
+   fastest: the greatest size of a rate. */
 struct free_motion {
     int modes, dampers;
+    double fastest;
     const double *rates, *readings, *drives;
 };
 
-/* `Response`; planes of real and imaginary parts. own: (ROWS + dampers) NODES by 2 modes; answer: by ALL; last: (NODES, 2
-   modes), what forces make of the coordinates at the end; turned: (2 modes), their own turn. */
+/* `Response`; planes of real and imaginary parts. answer: (WAYS + dampers) NODES by WIDE; last: (NODES, 2 modes), what
+   forces make of the coordinates at the end; turned: (NODES, 2 modes), their own turns. */
 struct response {
     double step;
-    double *own, *answer, *last, *turned;
+    double *answer, *last, *turned;
+};
+
+/* How the rows read the tip's ways, (ROWS, WAYS), and what else they read: `ball` times the coordinate `at`. */
+struct touch {
+    double ways[ROWS * WAYS], ball[ROWS];
+    int at[ROWS];
 };
 
 /* `LeatherLaw`; steady: the constant stiffness along the surface, or zero. */
@@ -75,6 +90,21 @@ struct leg {
     double *room;
     const struct rings *rings; /* or none: the patch holds or slides as a whole */
     double *held_by;           /* what each of them holds */
+    const struct touch *touch;
+};
+
+/* A contact from a touch on: how it holds now, what to go on with, and phases that are written. before: energy that the
+   spring along the surface held at the start of the leg; start, first, impulse_t, impulse_n: of the phase. */
+struct blow {
+    struct hold hold;
+    int stage, phases, first;
+    double before, start, impulse_t, impulse_n, rubbed, sheared, peak;
+};
+
+/* A phase that was gone through: first of its steps and how many; impulse (t, n) on the ball in it, N s. */
+struct phase {
+    int side, loading, first, steps;
+    double start, end, impulse_t, impulse_n;
 };
 
 /* ---- the law ---- */
@@ -216,15 +246,17 @@ static double wave_at(const void *of, double part)
     return total;
 }
 
-/* Times and weights of many Gauss points up to a part of the step's time, and the Lagrange polynomials there, which the
+/* Times and weights of Gauss points up to a part of the step's time, and the Lagrange polynomials there, which the
    weights are multiplied into. */
-static void weighted(const struct rule *rule, double part, double *times, double (*values)[NODES])
+static void weighted(const struct rule *rule, double part, int count, double *times, double (*values)[NODES])
 {
     double half = place_of(rule, part) / 2;
-    for (int p = 0; p < MANY; p++) {
-        double place = half * (1 + rule->many[p]);
+    const double *points = count == FEW ? rule->few : rule->many;
+    const double *weights = count == FEW ? rule->few_weights : rule->many_weights;
+    for (int p = 0; p < count; p++) {
+        double place = half * (1 + points[p]);
         times[p] = rule->power == 1 ? place : place * place;
-        double weight = half * rule->many_weights[p] * (rule->power == 1 ? 1 : 2 * place);
+        double weight = half * weights[p] * (rule->power == 1 ? 1 : 2 * place);
         polynomials(rule, times[p], values[p]);
         for (int i = 0; i < NODES; i++)
             values[p][i] *= weight;
@@ -248,24 +280,23 @@ static void turns(const struct free_motion *free, double time, double *restrict 
 /* Doubles that `cuefem_leather_respond` keeps in a response, and needs to work in. */
 EXPORTED ptrdiff_t cuefem_leather_kept(int modes, int dampers)
 {
-    ptrdiff_t rows = (ROWS + dampers) * (ptrdiff_t)NODES;
-    return rows * 2 * modes + rows * ALL + (NODES + 1) * (ptrdiff_t)2 * modes;
+    ptrdiff_t rows = (WAYS + dampers) * (ptrdiff_t)NODES;
+    return rows * WIDE + 2 * NODES * (ptrdiff_t)2 * modes;
 }
 
 EXPORTED ptrdiff_t cuefem_leather_room(int modes, int dampers)
 {
-    ptrdiff_t respond = (POINTS * (NODES / 2 + 1) + NODES + 2) * (ptrdiff_t)2 * modes +
-                        (ROWS + dampers) * (ptrdiff_t)ROWS * 2 * modes;
-    ptrdiff_t leg = (ROWS + 2 * dampers) * (ptrdiff_t)NODES + 4 * (ptrdiff_t)modes;
+    ptrdiff_t respond = (POINTS * (NODES / 2 + 1) + NODES + 1) * (ptrdiff_t)2 * modes +
+                        (WAYS + dampers) * (ptrdiff_t)WAYS * 2 * modes;
+    ptrdiff_t leg = (WAYS + 2 * dampers) * (ptrdiff_t)NODES + (1 + WAYS) * (ptrdiff_t)2 * modes;
     return respond > leg ? respond : leg;
 }
 
 static void lay_out(struct response *response, int modes, int dampers, double *kept)
 {
-    ptrdiff_t rows = (ROWS + dampers) * (ptrdiff_t)NODES;
-    response->own = kept;
-    response->answer = kept + rows * 2 * modes;
-    response->last = response->answer + rows * ALL;
+    ptrdiff_t rows = (WAYS + dampers) * (ptrdiff_t)NODES;
+    response->answer = kept;
+    response->last = response->answer + rows * WIDE;
     response->turned = response->last + (ptrdiff_t)NODES * 2 * modes;
 }
 
@@ -273,24 +304,24 @@ static void lay_out(struct response *response, int modes, int dampers, double *k
 FAST EXPORTED int cuefem_leather_respond(const struct free_motion *free, const struct rule *rule, double step,
                                          struct response *response, double *kept, double *room)
 {
-    int modes = free->modes, dampers = free->dampers, wide = 2 * modes, rows = ROWS + dampers;
-    if (rule->nodes != NODES || rule->points != POINTS || rule->many_points != MANY || rule->terms != TAYLOR)
+    int modes = free->modes, dampers = free->dampers, wide = 2 * modes, rows = WAYS + dampers;
+    if (rule->nodes != NODES || rule->points != POINTS || rule->many_points != MANY || rule->few_points != FEW || rule->terms != TAYLOR)
         return REFUSED;
     lay_out(response, modes, dampers, kept);
     response->step = step;
     double *onward = room, *driven = onward + (size_t)POINTS * (NODES / 2 + 1) * wide;
-    double *hop = driven + (size_t)NODES * wide, *turned = hop + wide, *pairs = turned + wide;
+    double *hop = driven + (size_t)NODES * wide, *pairs = hop + wide;
     for (int r = 0; r < rows; r++)
-        for (int m = 0; m < ROWS; m++)
+        for (int m = 0; m < WAYS; m++)
             for (int k = 0; k < modes; k++) {
                 const double *read = free->readings + 2 * ((size_t)r * modes + k);
-                const double *drive = free->drives + 2 * ((size_t)k * ROWS + m);
-                double *pair = pairs + (size_t)(r * ROWS + m) * wide;
+                const double *drive = free->drives + 2 * ((size_t)k * WAYS + m);
+                double *pair = pairs + (size_t)(r * WAYS + m) * wide;
                 pair[k] = read[0] * drive[0] - read[1] * drive[1];
                 pair[modes + k] = -(read[0] * drive[1] + read[1] * drive[0]); /* so that a scalar product is the real part */
             }
     memset(driven, 0, sizeof(double) * NODES * wide);
-    memset(response->answer, 0, sizeof(double) * ALL * rows * NODES);
+    memset(response->answer, 0, sizeof(double) * WIDE * rows * NODES);
     for (int i = 0; i < NODES; i++) {
         if (i) {
             int gap = i - 1, mirrored = rule->power == 1 && gap > (NODES - 2) / 2; /* the nodes lie evenly */
@@ -317,35 +348,54 @@ FAST EXPORTED int cuefem_leather_respond(const struct free_motion *free, const s
                 }
             }
         }
-        turns(free, rule->times[i] * step, turned);
+        turns(free, rule->times[i] * step, response->turned + (size_t)i * wide);
         for (int r = 0; r < rows; r++) {
-            double *row = response->own + (size_t)(r * NODES + i) * wide;
-            for (int k = 0; k < modes; k++) {
-                const double *read = free->readings + 2 * ((size_t)r * modes + k);
-                row[k] = read[0] * turned[k] - read[1] * turned[modes + k];
-                row[modes + k] = -(read[0] * turned[modes + k] + read[1] * turned[k]);
-            }
-            double *answer = response->answer + (size_t)(r * NODES + i) * ALL;
+            double *answer = response->answer + (size_t)(r * NODES + i) * WIDE;
             for (int j = 0; j < NODES && i; j++)
-                products(pairs + (size_t)r * ROWS * wide, ROWS, wide, driven + (size_t)j * wide, answer + j, NODES);
+                products(pairs + (size_t)r * WAYS * wide, WAYS, wide, driven + (size_t)j * wide, answer + j, NODES);
         }
     }
     memcpy(response->last, driven, sizeof(double) * NODES * wide);
-    memcpy(response->turned, turned, sizeof(double) * wide);
     return ENDED;
 }
 
 /* ---- a step ---- */
 
-/* A step that was solved: loads on the rows at the nodes (ROWS, NODES), and what moves there. */
+/* A step that was solved: loads on the rows at the nodes (ROWS, NODES), and what moves there; pushes: what the loads are
+   along the tip's ways (WAYS, NODES). */
 struct solved {
-    double loads[ALL], motion[MOTIONS][NODES];
+    double loads[ALL], motion[MOTIONS][NODES], pushes[WIDE];
 };
+
+/* Loads on the rows, (ROWS, NODES), along the tip's ways. */
+INLINE void pushes_of(const struct touch *touch, const double *restrict loads, double *restrict found)
+{
+    for (int b = 0; b < WAYS; b++)
+        for (int i = 0; i < NODES; i++) {
+            double total = 0;
+            for (int r = 0; r < ROWS; r++)
+                total += touch->ways[r * WAYS + b] * loads[r * NODES + i];
+            found[b * NODES + i] = total;
+        }
+}
+
+/* What the rows read of the tip's ways at the nodes, beside what `plus` has. */
+INLINE void rows_of(const struct touch *touch, const double *restrict ways, const double *restrict plus,
+                    double *restrict found)
+{
+    for (int r = 0; r < ROWS; r++)
+        for (int i = 0; i < NODES; i++) {
+            double total = plus[r * NODES + i];
+            for (int b = 0; b < WAYS; b++)
+                total += touch->ways[r * WAYS + b] * ways[b * NODES + i];
+            found[r * NODES + i] = total;
+        }
+}
 
 FAST static void times_matrix(const double *restrict matrix, const double *restrict vector, int rows,
                               const double *restrict plus, double *restrict found)
 {
-    products(matrix, rows, ALL, vector, found, 1);
+    products(matrix, rows, WIDE, vector, found, 1);
     for (int r = 0; r < rows; r++)
         found[r] += plus[r];
 }
@@ -448,11 +498,16 @@ FAST static int settle(const struct leg *leg, const struct hold *hold, const str
 {
     const struct contact *contact = leg->contact;
     const struct bounds *bounds = leg->bounds;
-    double y[ALL], cosine[NODES], sine[NODES], lever_t[NODES], lever_n[NODES], before_t[NODES] = {0}, before_n[NODES] = {0};
+    const struct touch *touch = leg->touch;
+    double y[ALL], ways[WIDE], alone[ALL], zero[WIDE] = {0}, cosine[NODES], sine[NODES], lever_t[NODES], lever_n[NODES], before_t[NODES] = {0}, before_n[NODES] = {0};
     double step = response->step, *loads = found->loads, dome = contact->dome;
     double most = hold->apart ? bounds->settled * bounds->settled : pow(bounds->settled * contact->size, 2);
     double(*motion)[NODES] = found->motion;
     guess(leg, rule, step, loads);
+    for (int r = 0; r < ROWS; r++)
+        for (int i = 0; i < NODES; i++)
+            y[r * NODES + i] = touch->ball[r] * leg->coordinates[touch->at[r]];
+    rows_of(touch, own, y, alone);
     for (int i = 0; i < NODES; i++)
         motion[ANGLE][i] = leg->course->angle;
     for (int round = -1; round < bounds->rounds; round++) {
@@ -482,12 +537,20 @@ FAST static int settle(const struct leg *leg, const struct hold *hold, const str
             }
             if (off > bounds->wild * contact->size * contact->size)
                 return 0;
-            if (off <= most)
+            if (off <= most) {
+                pushes_of(touch, loads, found->pushes);
                 return 1;
+            }
             if (round == bounds->rounds - 1)
                 return 0;
         }
-        times_matrix(response->answer, loads, ALL, own, y);
+        pushes_of(touch, loads, found->pushes);
+        times_matrix(response->answer, found->pushes, WIDE, zero, ways);
+        rows_of(touch, ways, alone, y);
+        for (int r = 0; r < ROTATION; r++) /* the ball is only pushed */
+            for (int i = 1; i < NODES; i++)
+                y[r * NODES + i] += touch->ball[r] * touch->ball[r] * step *
+                                    dot(rule->integral + i * NODES, loads + r * NODES, NODES);
         double across[NODES];
         for (int i = 0; i < NODES; i++) { /* (t + i n) exp(-i angle) + lever turning */
             double turning = y[ROTATION * NODES + i];
@@ -617,42 +680,65 @@ static void lose(const struct leg *leg, const struct hold *hold, const struct so
     }
 }
 
-/* The coordinates after a part of a step. */
+/* The coordinates after a part of a step. sums: from values at the nodes to their integral up to there, over the step's
+   time. times, values: of Gauss points up to there, where it is not the whole. */
 FAST static void go_on(const struct leg *leg, const struct response *response, const struct solved *step, double part,
-                  const double *times, double (*values)[NODES])
+                       int points, const double *times, double (*values)[NODES], const double *sums)
 {
     const struct free_motion *free = leg->free;
-    int modes = free->modes;
-    double *xi = leg->coordinates, *turn = leg->room, *next = turn + 2 * modes;
-    int points = part == 1 ? NODES : MANY;
-    if (part == 1)
-        memcpy(turn, response->turned, sizeof(double) * 2 * modes);
+    const struct touch *touch = leg->touch;
+    int modes = free->modes, wide = 2 * modes, whole = part == 1;
+    double *xi = leg->coordinates, *turn = leg->room, *driven = turn + wide;
+    memset(driven, 0, sizeof(double) * WAYS * wide);
+    for (int p = 0; p < (whole ? NODES : points); p++) {
+        const double *restrict onward = whole ? response->last + (size_t)p * wide : turn;
+        double pushes[WAYS];
+        for (int b = 0; b < WAYS; b++)
+            pushes[b] = whole ? step->pushes[b * NODES + p]
+                              : response->step * dot(step->pushes + b * NODES, values[p], NODES);
+        if (!whole)
+            turns(free, response->step * (part - times[p]), turn);
+        for (int k = 0; k < wide; k++) {
+            driven[k] += pushes[0] * onward[k];
+            driven[wide + k] += pushes[1] * onward[k];
+            driven[2 * wide + k] += pushes[2] * onward[k];
+        }
+    }
+    if (whole)
+        memcpy(turn, response->turned + (size_t)(NODES - 1) * wide, sizeof(double) * wide);
     else
         turns(free, response->step * part, turn);
     for (int k = 0; k < modes; k++) {
-        next[k] = turn[k] * xi[k] - turn[modes + k] * xi[modes + k];
-        next[modes + k] = turn[k] * xi[modes + k] + turn[modes + k] * xi[k];
-    }
-    for (int p = 0; p < points; p++) {
-        double loads[ROWS], by = part == 1 ? 1 : response->step;
-        for (int m = 0; m < ROWS; m++)
-            loads[m] = by * (part == 1 ? step->loads[m * NODES + p] : dot(step->loads + m * NODES, values[p], NODES));
-        if (part == 1)
-            memcpy(turn, response->last + (size_t)p * 2 * modes, sizeof(double) * 2 * modes);
-        else
-            turns(free, response->step * (part - times[p]), turn);
-        for (int k = 0; k < modes; k++) {
-            const double *drive = free->drives + 2 * (size_t)k * ROWS;
-            double real = 0, imaginary = 0;
-            for (int m = 0; m < ROWS; m++) {
-                real += drive[2 * m] * loads[m];
-                imaginary += drive[2 * m + 1] * loads[m];
-            }
-            next[k] += turn[k] * real - turn[modes + k] * imaginary;
-            next[modes + k] += turn[k] * imaginary + turn[modes + k] * real;
+        const double *drive = free->drives + 2 * (size_t)k * WAYS;
+        double real = turn[k] * xi[k] - turn[modes + k] * xi[modes + k];
+        double imaginary = turn[k] * xi[modes + k] + turn[modes + k] * xi[k];
+        for (int b = 0; b < WAYS; b++) {
+            const double *by = driven + (size_t)b * wide;
+            real += drive[2 * b] * by[k] - drive[2 * b + 1] * by[modes + k];
+            imaginary += drive[2 * b] * by[modes + k] + drive[2 * b + 1] * by[k];
         }
+        xi[k] = real;
+        xi[modes + k] = imaginary;
     }
-    memcpy(xi, next, sizeof(double) * 2 * modes);
+    for (int r = 0; r < ROTATION; r++)
+        xi[touch->at[r]] += touch->ball[r] * response->step * dot(sums, step->loads + r * NODES, NODES);
+}
+
+/* What the tip's ways and the dampers read at the nodes without forces: (rows, NODES). */
+FAST static void unforced(const struct leg *leg, const struct response *response, double *found)
+{
+    const struct free_motion *free = leg->free;
+    int modes = free->modes;
+    const double *xi = leg->coordinates;
+    double *read = leg->room;
+    for (int r = 0; r < WAYS + free->dampers; r++) {
+        for (int k = 0; k < modes; k++) {
+            const double *by = free->readings + 2 * ((size_t)r * modes + k);
+            read[k] = by[0] * xi[k] - by[1] * xi[modes + k];
+            read[modes + k] = -(by[0] * xi[modes + k] + by[1] * xi[k]); /* so that a scalar product is the real part */
+        }
+        products(response->turned, NODES, 2 * modes, read, found + r * NODES, 1);
+    }
 }
 
 /* Doubles of the record of a step: start, part, length, halvings, rule; coordinates at its start; loads; motion. */
@@ -669,8 +755,9 @@ FAST EXPORTED int cuefem_leather_leg(const struct leg *leg, const struct hold *h
 {
     const struct bounds *bounds = leg->bounds;
     struct course *course = leg->course;
-    int modes = leg->free->modes, dampers = leg->free->dampers, rows = ROWS + dampers;
-    double *own = leg->room + 4 * (size_t)modes, *damped = own + (size_t)rows * NODES;
+    int modes = leg->free->modes, dampers = leg->free->dampers, rows = WAYS + dampers;
+    double *own = leg->room + (1 + WAYS) * (size_t)2 * modes, *damped = own + (size_t)rows * NODES;
+    double fastest = leg->free->fastest;
     if (bounds->shortest >= HALVINGS || (leg->rings && leg->rings->count > MOST_RINGS))
         return REFUSED;
     for (;;) {
@@ -693,7 +780,7 @@ FAST EXPORTED int cuefem_leather_leg(const struct leg *leg, const struct hold *h
                 course->needed = opens;
                 return NEEDS;
             }
-            products(response->own, rows * NODES, 2 * modes, leg->coordinates, own, 1);
+            unforced(leg, response, own);
             if (!settle(leg, hold, rule, response, own, &step)) {
                 course->halvings += 2;
                 continue;
@@ -715,13 +802,14 @@ FAST EXPORTED int cuefem_leather_leg(const struct leg *leg, const struct hold *h
         int event = crossing(leg, hold, rule, near, step.motion, &part);
         if (part > 0) {
             double times[MANY], values[MANY][NODES], at[NODES] = {0}, sums[NODES] = {0};
+            int points = rule->power * fastest * part * length <= SLOW ? FEW : MANY;
             if (part == 1) {
                 at[NODES - 1] = 1;
                 memcpy(sums, rule->integral + (NODES - 1) * NODES, sizeof sums);
             } else {
                 polynomials(rule, part, at);
-                weighted(rule, part, times, values);
-                for (int p = 0; p < MANY; p++)
+                weighted(rule, part, points, times, values);
+                for (int p = 0; p < points; p++)
                     for (int i = 0; i < NODES; i++)
                         sums[i] += values[p][i];
             }
@@ -739,9 +827,9 @@ FAST EXPORTED int cuefem_leather_leg(const struct leg *leg, const struct hold *h
             }
             memcpy(record + 5 + 2 * modes, step.loads, sizeof step.loads);
             memcpy(record + 5 + 2 * modes + ALL, step.motion, sizeof step.motion);
-            times_matrix(response->answer + (size_t)ALL * ALL, step.loads, dampers * NODES, own + ALL, damped);
+            times_matrix(response->answer + (size_t)WIDE * WIDE, step.pushes, dampers * NODES, own + WIDE, damped);
             lose(leg, hold, &step, length, sums, damped);
-            go_on(leg, response, &step, part, times, values);
+            go_on(leg, response, &step, part, points, times, values, sums);
             course->time += part * length;
             course->depth = depth;
             course->angle = dot(at, step.motion[ANGLE], NODES);
@@ -767,5 +855,123 @@ FAST EXPORTED int cuefem_leather_leg(const struct leg *leg, const struct hold *h
             course->event = event;
             return ENDED;
         }
+    }
+}
+
+/* ---- a whole contact ---- */
+
+/* Energy that the spring along the surface holds now. */
+static double stored(const struct leg *leg, const struct hold *hold)
+{
+    double depth = leg->course->depth, held = leg->course->shear, total = 0;
+    if (leg->rings) {
+        struct ringed at;
+        rings_of(leg, hold, depth, &at);
+        for (int r = 0; r < leg->rings->count; r++)
+            total += at.stiffness[r] > 0 ? leg->held_by[r] * leg->held_by[r] / (2 * at.stiffness[r]) : 0;
+        return total;
+    }
+    double k = law_at(leg->law, virtual_of(leg, hold, depth)).k;
+    return k != 0 ? held * held / (2 * k) : 0;
+}
+
+/* What a leg lost along the surface: `Leather._lose`. */
+static void account(const struct leg *leg, struct blow *blow)
+{
+    const struct hold *hold = &blow->hold;
+    double missing = blow->before - stored(leg, hold) - leg->losses[0];
+    if (leg->rings) { /* what is missing is all that was lost */
+        *(leg->contact->friction < HUGE_VAL ? &blow->rubbed : &blow->sheared) += missing;
+    } else if (!hold->side && !hold->grows) {
+        blow->sheared += missing;
+    } else {
+        blow->sheared += leg->losses[1];
+        blow->rubbed -= leg->losses[2];
+    }
+}
+
+static double impulse(const struct leg *leg, int row)
+{
+    return leg->coordinates[leg->touch->at[row]] / leg->touch->ball[row];
+}
+
+/* Begin a phase: `Leather.follow`. */
+static void begin(const struct leg *leg, struct blow *blow)
+{
+    struct course *course = leg->course;
+    struct hold *hold = &blow->hold;
+    hold->grows = hold->grows || hold->loading;
+    if (hold->side) { /* F_t on friction's bound, which the stick before went past by rounding */
+        double held = stored(leg, hold);
+        course->shear = hold->side * leg->contact->friction * law_at(leg->law, virtual_of(leg, hold, course->depth)).F;
+        blow->sheared += held - stored(leg, hold);
+    }
+    blow->start = course->time;
+    blow->first = course->steps;
+    blow->impulse_t = impulse(leg, T);
+    blow->impulse_n = impulse(leg, N);
+}
+
+/* What follows an event: `cuefem.contact.phases.next_phase`; whether anything does. */
+static int follows(const struct leg *leg, struct blow *blow)
+{
+    struct course *course = leg->course;
+    struct hold *hold = &blow->hold;
+    switch (course->event) {
+    case APART: return 0;
+    case COMPRESSED:
+        course->deepest = course->depth;
+        blow->peak = law_at(leg->law, course->depth).F;
+        hold->grows = hold->loading = 0;
+        break;
+    case RELOADED: hold->loading = 1; break;
+    case GRIPPED: hold->side = 0; break;
+    case SLIPPED: hold->side = 1; break;
+    default: hold->side = -1; break;
+    }
+    return 1;
+}
+
+/* Go through all phases of a contact: `cuefem.contact.phases.run`. phases: room for so many as `most_phases`. ENDED: the
+   ball has left. CROWDED: all phases are used. Anything else is what `cuefem_leather_leg` says. */
+EXPORTED int cuefem_leather_blow(const struct leg *leg, struct blow *blow, double until, int most, double *records,
+                                 int most_phases, struct phase *phases)
+{
+    struct course *course = leg->course;
+    for (;;) {
+        if (blow->stage == PHASE) {
+            if (blow->phases == most_phases)
+                return CROWDED;
+            begin(leg, blow);
+            blow->stage = LEG;
+        }
+        if (blow->stage == LEG) {
+            blow->before = stored(leg, &blow->hold);
+            memset(leg->losses, 0, 3 * sizeof(double));
+            blow->stage = STEP;
+        }
+        int status = cuefem_leather_leg(leg, &blow->hold, until, 0, most, records);
+        if (status != ENDED && status != LATE)
+            return status;
+        account(leg, blow);
+        if (status == LATE)
+            return LATE;
+        blow->stage = LEG;
+        if (course->event == TURNED) {
+            blow->hold.grows = !blow->hold.grows;
+            continue;
+        }
+        struct phase gone = {blow->hold.side,
+                             blow->hold.loading,
+                             blow->first,
+                             course->steps - blow->first,
+                             blow->start,
+                             course->time,
+                             impulse(leg, T) - blow->impulse_t,
+                             impulse(leg, N) - blow->impulse_n};
+        phases[blow->phases++] = gone;
+        blow->stage = PHASE;
+        if (!follows(leg, blow))
+            return ENDED;
     }
 }
