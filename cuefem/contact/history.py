@@ -45,8 +45,8 @@ class History:
             ends = piece.ends
             cell = np.minimum(np.searchsorted(ends, time[here], side="right"), len(ends) - 1)
             place = 1 + (time[here] - ends[cell]) / piece.lengths[cell]
-            powers = place ** ORDERS[:, None]
-            values[:, here] = (piece.coefficients[:4, :, cell] * powers).sum(axis=1)
+            own = piece.coefficients[:4].transpose(2, 0, 1)[cell]  # (times, outputs, terms)
+            values[:, here] = np.einsum("tok,tk->ot", own, np.vander(place, len(ORDERS), increasing=True))
         return _named(values, self.mirror)
 
 
