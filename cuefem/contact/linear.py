@@ -52,7 +52,8 @@ class Exact:
 
     def __init__(self, contact: Contact, patch: Patch, ringing: Ringing | None = None) -> None:
         self.contact, self.patch, self.ringing = contact, patch, ringing
-        self.longest, self.kernel = contact.patience, kernel.name()
+        self.longest, self.library = contact.patience, kernel.library()
+        self.kernel = "python" if self.library is None else "c"
         self.haste = patch.haste if 0 < contact.laws.restitution <= RINGING else 1.0
         self.flows: dict[tuple[Grip, Press], Flow] = {}
         self.pieces: list[Piece] = []
@@ -151,15 +152,15 @@ class Exact:
 
     def at_once(self, grip: Grip, press: Press, most: float) -> bool:
         """In the compiled kernel: a tip that gives something back, and whose swings are all followed."""
-        contact, found = self.contact, kernel.library()
-        if found is None or self.ringing is not None or contact.laws.restitution == 0:
+        contact = self.contact
+        if self.library is None or self.ringing is not None or contact.laws.restitution == 0:
             return False
         if (type(self).flow, type(self).follow) != (Exact.flow, Exact.follow):  # a kind that moves in another way
             return False
         cells, slack = MOST_CELLS * self.haste, ROUNDING * contact.scale
         limits = compiled.Limits(len(ORDERS), most, cells, self.longest, REACH, slack)
         compliance, unit = self.patch.spring
-        whole = compiled.contact(found, contact, grip, press, compliance=compliance, unit=unit, limits=limits)
+        whole = compiled.contact(self.library, contact, grip, press, compliance=compliance, unit=unit, limits=limits)
         if whole is None:
             return False
         contact.phases += whole.phases
