@@ -40,7 +40,7 @@ class History:
         """Evaluate the Taylor polynomials of the cells the times fall in."""
         time, which = _places(time, self.pieces)
         values = np.empty((4, *time.shape))
-        for i in np.unique(which):
+        for i in set(which.ravel().tolist()):
             here, piece = which == i, self.pieces[i]
             ends = piece.ends
             cell = np.minimum(np.searchsorted(ends, time[here], side="right"), len(ends) - 1)
@@ -75,7 +75,7 @@ class MarchedHistory:
         """Evaluate the polynomials of the steps the times fall in."""
         time, which = _places(time, self.pieces)
         values = np.empty((4, *time.shape))
-        for i in np.unique(which):
+        for i in set(which.ravel().tolist()):
             here = which == i
             values[:, here] = self.pieces[i].outputs(time[here])
         return _named(values, self.mirror)
