@@ -195,7 +195,7 @@ def print_all(things: Sequence[Any]) -> None:
     """Print lines and tables for people."""
     from rich.console import Console
 
-    console = Console(highlight=False)
+    console = Console(highlight=False, emoji=False)
     if not console.is_terminal:
         console.width = 120  # files and pipes have no width: do not cut tables
     for thing in things:

@@ -43,13 +43,13 @@ class History:
         """Evaluate the Taylor polynomials of the cells the times fall in."""
         time, which = _places(time, self.pieces)
         values = np.empty((4, *time.shape))
-        for i in np.unique(which):
+        for i in set(which.ravel().tolist()):
             here, piece = which == i, self.pieces[i]
             ends = piece.ends
             cell = np.minimum(np.searchsorted(ends, time[here], side="right"), len(ends) - 1)
             place = 1 + (time[here] - ends[cell]) / piece.lengths[cell]
-            powers = place ** ORDERS[:, None]
-            values[:, here] = (piece.coefficients[:4, :, cell] * powers).sum(axis=1)
+            own = piece.coefficients[:4].transpose(2, 0, 1)[cell]  # (times, outputs, terms)
+            values[:, here] = np.einsum("tok,tk->ot", own, np.vander(place, len(ORDERS), increasing=True))
         return _named(values, self.mirror)
 
 
@@ -86,7 +86,7 @@ class MarchedHistory:
         """Evaluate the polynomials of the steps the times fall in."""
         time, which = _places(time, self.pieces)
         values = np.empty((4, *time.shape))
-        for i in np.unique(which):
+        for i in set(which.ravel().tolist()):
             here = which == i
             values[:, here] = self.pieces[i].outputs(time[here])
         return _named(values, self.mirror)

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from functools import partial
-from typing import Self
+from typing import Self, cast
 
 import numpy as np
 
@@ -53,11 +52,12 @@ class Exact:
 
     def __init__(self, contact: Contact, patch: Patch, ringing: Ringing | None = None) -> None:
         self.contact, self.patch, self.ringing = contact, patch, ringing
-        self.longest, self.kernel = contact.patience, kernel.name()
+        self.longest, self.library = contact.patience, kernel.library()
+        self.kernel = "python" if self.library is None else "c"
         self.haste = patch.haste if 0 < contact.laws.restitution <= RINGING else 1.0
         self.flows: dict[tuple[Grip, Press], Flow] = {}
         self.pieces: list[Piece] = []
-        self.courses: list[Course] = []
+        self.states: list[Array] = []  # as each phase that takes time starts
 
     @classmethod
     def of(cls, tip: TipModes, laws: Laws, compliance: float = 0.0) -> Self:
@@ -152,21 +152,19 @@ class Exact:
 
     def at_once(self, grip: Grip, press: Press, most: float) -> bool:
         """In the compiled kernel: a tip that gives something back, and whose swings are all followed."""
-        contact, found = self.contact, kernel.library()
-        if found is None or self.ringing is not None or contact.laws.restitution == 0:
+        contact = self.contact
+        if self.library is None or self.ringing is not None or contact.laws.restitution == 0:
             return False
         if (type(self).flow, type(self).follow) != (Exact.flow, Exact.follow):  # a kind that moves in another way
             return False
         cells, slack = MOST_CELLS * self.haste, ROUNDING * contact.scale
         limits = compiled.Limits(len(ORDERS), most, cells, self.longest, REACH, slack)
         compliance, unit = self.patch.spring
-        whole = compiled.contact(found, contact, grip, press, compliance=compliance, unit=unit, limits=limits)
+        whole = compiled.contact(self.library, contact, grip, press, compliance=compliance, unit=unit, limits=limits)
         if whole is None:
             return False
-        for phase, state in zip(whole.phases, whole.starts, strict=True):
-            matrix = partial(self._matrix, phase.grip, phase.press)
-            self.courses.append(Course(phase.start, matrix, phase.rate, state))
-            contact.phases.append(Phase(phase.grip, phase.press, phase.start, phase.end, phase.impulse))
+        contact.phases += whole.phases
+        self.states += list(whole.starts)
         if len(whole.lengths):  # one piece for them all: each of its cells has its own length
             self.pieces.append(Piece(whole.phases[0].start, whole.lengths, whole.cells))
         contact.time, contact.z, contact.peak = whole.time, whole.state, whole.peak
@@ -175,16 +173,13 @@ class Exact:
         contact.radiated += sum(whole.damped[contact.lossy :])
         return True
 
-    def _matrix(self, grip: Grip, press: Press) -> Array:
-        return self.flow(grip, press).A
-
     def follow(self, grip: Grip, press: Press) -> str:
         """March through one phase, cell by cell."""
         contact = self.contact
         self.patch.begin(self, grip, press)
         names, guards = self.guards(grip, press)
         before, start, flow = contact.impulse, contact.time, self.flow(grip, press)
-        self.courses.append(Course(start, lambda: flow.A, flow.rate, contact.z))
+        self.states.append(contact.z)
         cells = sum(piece.coefficients.shape[2] for piece in self.pieces)
         limit = min(self.longest, start + (MOST_CELLS * self.haste - cells) * flow.step)
         arrival = march(flow, contact.z, guards, start=start, limit=limit)
@@ -260,7 +255,7 @@ class Exact:
         arrival = march(flow, np.append(contact.z, 0.0), Guards(weights, np.array([near])), start=start, limit=until)
         if arrival is None or arrival.time > until:
             return False
-        self.courses.append(Course(start, lambda: contact.free, flow.rate, contact.z))
+        self.states.append(contact.z)
         self.arrive(arrival.time, arrival.state[:-1], arrival.pieces)
         contact.z[contact.slots["spring"]] = 0.0
         contact.end_phase(*APART, start, contact.impulse)
@@ -280,8 +275,16 @@ class Exact:
         return Flow(A, rows, rate)
 
     def stretches(self) -> list[Stretch]:
-        """The courses so far, and the free one from now on."""
-        return [*self.courses, free_course(self.contact)]
+        """The courses of the phases so far, and the free one from now on."""
+        gone, now = [phase for phase in self.contact.phases if phase.grip != "blow"], free_course(self.contact)
+        return [*(self._course(*each, now) for each in zip(gone, self.states, strict=True)), now]
+
+    def _course(self, phase: Phase, state: Array, free: Course) -> Course:
+        """A phase as a course from its first state; free: the course apart."""
+        if phase[:2] == APART:
+            return free._replace(start=phase.start, state=state)
+        flow = self.flow(*cast("tuple[Grip, Press]", phase[:2]))
+        return Course(phase.start, lambda: flow.A, flow.rate, state)
 
     def history(self, mirror: float) -> History:
         """Forces and velocities so far; mirror: -1 for a stroke on the other side."""

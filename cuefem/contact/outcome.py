@@ -34,7 +34,7 @@ def outcome_of(kind: Kind, scene: Scene, side: float) -> Outcome:
     """The outcome of a contact that is over; side: -1 for a stroke at a negative offset."""
     contact, laws, tip = kind.contact, kind.contact.laws, kind.contact.tip
     M, nu = laws.ball_mass, laws.inertia
-    (p_t, p_n), twist = contact.impulse, contact.twist
+    p_t, p_n, twist, along = contact.impulses
     s, c = math.sin(laws.phi), math.cos(laws.phi)
     impulse = np.array([side * p_t, p_n])
     inertia = float(tip.approach @ tip.approach)  # of a cue that moves as one along its axis
@@ -43,7 +43,7 @@ def outcome_of(kind: Kind, scene: Scene, side: float) -> Outcome:
         ball_velocity=impulse / M,
         ball_speed=math.hypot(p_t, p_n) / M,
         spin=float(side * twist / (nu * M * scalar("Ball.radius", scene.ball.radius))),
-        cue_speed=float(laws.speed - contact.along / inertia),
+        cue_speed=float(laws.speed - along / inertia),
         impulse=impulse,
         duration=float(contact.time),
         regime=regime(contact),

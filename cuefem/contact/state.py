@@ -153,9 +153,8 @@ class Contact:
         tip, laws = self.tip, self.laws
         s, c = math.sin(laws.phi), math.cos(laws.phi)
         modal = tip.amplitude @ np.array([[s, c], [c, -s]])  # (u, w) to (t, n)
-        vibrating = tip.omega > 0
-        self.quiet = len(vibrating) - int(np.count_nonzero(vibrating))  # rigid modes come first
-        omega = self.omega = tip.omega[vibrating]
+        omega = self.omega = tip.omega[tip.omega > 0]
+        self.quiet = len(tip.omega) - len(omega)  # rigid modes come first
         slots = self.slots = Slots(self.quiet, len(omega), ("ball_n", "ball_t", *self.names))
         size, mass, nu = slots.size, laws.ball_mass, laws.inertia
         self.c_t, self.c_n = np.zeros(size), np.zeros(size)
@@ -191,15 +190,16 @@ class Contact:
 
         A division keeps the digits of small impulses that a product with its inverse would round away.
         """
-        rows, per, slots = np.zeros((4, len(self.z))), np.ones(4), self.slots
+        rows, laws, slots = np.zeros((4, len(self.z))), self.laws, self.slots
         t, n = slots.of("ball_t", "ball_n")
-        rows[0, t], rows[1, n], per[:2] = 1.0, 1.0, (self.c_t[t], self.c_n[n])
+        per_t, per_n = float(self.c_t[t]), float(self.c_n[n])
+        rows[0, t] = rows[1, n] = 1.0
         if "spin" in slots:  # of the tangential force, wherever its direction was
-            rows[2, slots["spin"]] = math.sqrt(self.laws.inertia * self.laws.ball_mass)
+            rows[2, slots["spin"]] = math.sqrt(laws.inertia * laws.ball_mass)
         else:
-            rows[2, t], per[2] = 1.0, per[0]
-        rows[3, t], rows[3, n] = math.sin(self.laws.phi) / per[0], math.cos(self.laws.phi) / per[1]
-        return rows, per
+            rows[2, t] = 1.0
+        rows[3, t], rows[3, n] = math.sin(laws.phi) / per_t, math.cos(laws.phi) / per_n
+        return rows, np.array([per_t, per_n, 1.0 if "spin" in slots else per_t, 1.0])
 
     @property
     def impulse(self) -> tuple[float, float]:
@@ -209,15 +209,11 @@ class Contact:
         return p_t, p_n
 
     @property
-    def twist(self) -> float:
-        """The part of the impulse that turned the ball, N s."""
+    def impulses(self) -> tuple[float, float, float, float]:
+        """Impulse (t, n) on the ball so far, the part that turned it, and the part along the cue, N s."""
         rows, per = self.readings
-        return float(rows[2] @ self.z / per[2])
-
-    @property
-    def along(self) -> float:
-        """The part of the impulse along the cue, N s."""
-        return self.along_before + float(self.readings[0][3] @ self.z)
+        p_t, p_n, twist, along = (rows @ self.z / per).tolist()
+        return p_t, p_n, twist, self.along_before + along
 
     @property
     def scale(self) -> float:

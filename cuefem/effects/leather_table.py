@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from functools import cache, lru_cache
-from importlib.resources import files
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -141,7 +141,7 @@ class Table(NamedTuple):
 @cache
 def table() -> Table:
     """The table that belongs to cuefem."""
-    with files("cuefem.effects").joinpath("leather_table.npz").open("rb") as file, np.load(file) as kept:
+    with np.load(Path(__file__).with_name("leather_table.npz")) as kept:
         return Table(*(kept[name].astype(float) for name in Table._fields))
 
 

@@ -34,6 +34,8 @@ HEARD = 0.6
 
 # Offsets whose end masses are worked at a time, so that the arrays of modes by offsets stay small.
 BLOCK = 1024
+# Lumped end masses of which squirts are known at once, at the cost of two, before one is sought between two of them.
+MASSES = 500
 
 
 def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None) -> Any:
@@ -131,8 +133,8 @@ def spreads_of(solved: Solved) -> Callable[[str], Spread]:
         rigid, whole = int(np.sum(plain.omega == 0)), len(plain.omega)
         cutoffs = 5 if definition.strikes(tip, scene) else 13
         least = rigid + math.ceil((whole - rigid) / 4)
-        kept = np.unique(np.linspace(least, whole, cutoffs).astype(int))
-        values = [float(definition.of(each, scene)) for each in (tip, *map(plain.lowest, kept.tolist()))]
+        kept = sorted(set(np.linspace(least, whole, cutoffs).astype(int).tolist()))
+        values = [float(definition.of(each, scene)) for each in (tip, *map(plain.lowest, kept))]
         error = definition.error(tip, scene)
         reach = [values[0] * (1 + side * (error or 0.0)) for side in (-1, 1)]
         return Spread(values[0], min(*values, *reach), max(*values, *reach), error)
@@ -322,17 +324,19 @@ def _with_squirt(squirt: float, scene: Scene, drive: str) -> float:
     """The lumped end mass, kg, whose impulse-solver squirt is ``squirt``, rad, away from the side struck."""
     side = np.sign(scene.stroke.offset)
 
-    def excess(log_mass: float) -> float:
-        lumped = LumpedCue(scene.axial_mass, math.exp(log_mass))
-        return float(side * impact(replace(scene, cue=lumped, effects=())).squirt) - squirt
+    def excess(log_mass: Any) -> Any:
+        lumped = LumpedCue(scene.axial_mass, np.exp(log_mass))
+        return side * impact(replace(scene, cue=lumped, effects=())).squirt - squirt
 
-    low, high = math.log(1e-9), math.log(1e3)
+    log_masses = np.linspace(math.log(1e-9), math.log(1e3), MASSES)
     with trying():
-        if not excess(low) < 0 < excess(high):
+        found = excess(log_masses)
+        if not found[0] < 0 < found[-1]:
             raise ValueError(
                 f"end_mass drive {drive!r}: no lumped end mass in [1e-9, 1e3] kg has the squirt {squirt:.6g} rad"
             )
-        return math.exp(zero(excess, low, high))
+        above = int(np.argmax(found >= 0))
+        return math.exp(zero(excess, *log_masses[above - 1 : above + 1].tolist()))
 
 
 class Definition(NamedTuple):

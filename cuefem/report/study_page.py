@@ -88,7 +88,8 @@ def study_page(name: str, table: Table, facts: list[str], *, scattered: Scattere
         wide=wide,
         shade=f"{first.label}, the {'highest' if first.better == 'higher' else 'lowest'} fifth",
         panels=[
-            (response.label, _panels(table, k, shares=scattered is None)) for k, response in enumerate(table.responses)
+            (heading(response.label, response.unit), _panels(table, k, shares=scattered is None))
+            for k, response in enumerate(table.responses)
         ],
         shown_of=_picked(len(table.results), MOST_LINES).size,
         total=len(table.results),

@@ -35,11 +35,6 @@ def library() -> ctypes.CDLL | None:
     return found
 
 
-def name() -> str:
-    """What runs a contact: "c" or "python"."""
-    return "python" if library() is None else "c"
-
-
 def described() -> str:
     """The same in words, for a person."""
     if library() is not None:

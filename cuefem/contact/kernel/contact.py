@@ -6,14 +6,12 @@ import ctypes
 import math
 from ctypes import byref, c_double, c_int, c_void_p
 from functools import cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from cuefem.contact.kernel.linear import FOUND
 from cuefem.contact.kernel.structures import Room, structure
+from cuefem.contact.state import Contact, Phase
 from cuefem.cue import Array
-
-if TYPE_CHECKING:
-    from cuefem.contact.state import Contact
 
 SIDES = {"slip": 1, "stick": 0, "slip back": -1}
 GRIPS = {side: grip for grip, side in SIDES.items()}
@@ -43,21 +41,6 @@ class Limits(NamedTuple):
     slack: float  # by which |F_t| may pass mu F_n, N
 
 
-class Gone(NamedTuple):
-    """A phase that was gone through: grip, press, start and end, s, the ball's impulse in it, N s.
-
-    rate: a bound on the motion, 1/s. cells: how many.
-    """
-
-    grip: Any
-    press: Any
-    start: float
-    end: float
-    impulse: tuple[float, float]
-    rate: float
-    cells: int
-
-
 class Whole(NamedTuple):
     """A contact that is over: time, s, state, peak, N, what friction rubbed off and each damper took, J; its phases.
 
@@ -70,7 +53,7 @@ class Whole(NamedTuple):
     peak: float
     rubbed: float
     damped: list[float]
-    phases: list[Gone]
+    phases: list[Phase]
     starts: Array
     lengths: Array
     cells: Array
@@ -137,9 +120,7 @@ def contact(
     if status != FOUND:
         return None
     gone = [
-        Gone(
-            GRIPS[one.side], PRESSES[one.press], one.start, one.end, (one.impulse_t, one.impulse_n), one.rate, one.cells
-        )
+        Phase(GRIPS[one.side], PRESSES[one.press], one.start, one.end, (one.impulse_t, one.impulse_n))
         for one in phases[: told.phases]
     ]
     starts, lengths = starts[: told.phases * size].copy().reshape(-1, size), lengths[: told.cells].copy()
