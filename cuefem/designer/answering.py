@@ -1,8 +1,13 @@
-"""The order in which a tab's results are computed: the newest move's strike first, then what takes longer."""
+"""The order in which a tab's results are computed and shown: the newest move's strike first, then what takes longer.
+
+The numbers that a person waits for go to the page alone. What it has to draw anew follows when they are seen there: the
+knobs at once, all pictures when nothing is moved any more, or now and then while it goes on.
+"""
 
 from __future__ import annotations
 
 import asyncio
+import time
 from collections.abc import AsyncIterator, Iterator
 from contextlib import suppress
 from typing import Any, Protocol
@@ -12,7 +17,9 @@ from cuefem.designer.computing import FAILURES, Memory, Results, computed, give_
 from cuefem.scene import Scene
 
 IDLE = 0.12  # s without a move before the slower results are computed
-SENT = 0.002  # s that the numbers are given to leave before the pictures are drawn
+SENT = 0.002  # s that the numbers are given to leave before anything else is computed
+SEEN = 0.015  # s that the page is given to draw them before it gets anything else
+DRAWN_EVERY = 0.6  # s between pictures while knobs are moved all the time
 SHOWN_EVERY = 4  # points of a curve that is computed
 
 
@@ -28,11 +35,17 @@ class Shows(Protocol):
     def show_busy(self, busy: bool) -> None:
         """Whether more is being computed."""
 
-    def show_answer(self) -> None:
-        """What belongs to a move beside its numbers."""
-
     def show_numbers(self) -> None:
-        """The numbers that are known."""
+        """The numbers that matter most, as far as they are known."""
+
+    def show_move(self) -> None:
+        """What belongs to a move beside its answer."""
+
+    def pictures(self) -> Iterator[None]:
+        """Show everything else of a design, step by step."""
+
+    def show_table(self) -> None:
+        """All numbers that are known."""
 
     def show_curves(self) -> None:
         """The curves that are known."""
@@ -51,6 +64,8 @@ class Answering:
         self.before: Results | None = None
         self.moves = self.answered = 0
         self.busy = False
+        self.drawn = 0  # the last move whose pictures are drawn
+        self.since = 0.0  # s: when they were, or the first move after them came
 
     def known(self, scene: Scene) -> Results | None:
         """What is known of a scene."""
@@ -58,6 +73,8 @@ class Answering:
 
     async def moved(self) -> None:
         """Answer the newest move; one that came while the last was computed is answered after it."""
+        if self.drawn == self.moves:
+            self.since = time.monotonic()
         self.moves += 1
         self.page.show_busy(True)
         if self.busy:
@@ -67,6 +84,8 @@ class Answering:
             while self.answered < self.moves:
                 self.answered = self.moves
                 good = await self._answer()
+                if good and time.monotonic() - self.since > DRAWN_EVERY:
+                    await self._draw(self.answered)
         finally:
             self.busy = False
         move = self.moves
@@ -89,16 +108,29 @@ class Answering:
             self.page.say("")
             self.page.show_numbers()
             await asyncio.sleep(SENT)
-            waits = self.answered < self.moves or one.found.has_end_mass
-            more = None if waits else asyncio.create_task(computed(with_end_mass, one.found))
-            self.page.show_answer()
+            more = None
+            if self.answered == self.moves:
+                if not one.found.has_end_mass:
+                    more = asyncio.create_task(computed(with_end_mass, one.found))
+                await asyncio.sleep(SEEN)
+            self.page.show_move()
             if more is not None:
                 one.found = await more
                 self.page.show_numbers()
         except FAILURES as error:
+            self.page.show_move()
             self.page.say(f"{' '.join(str(error).split())}. The numbers are still those of the design before.")
             return False
         return True
+
+    async def _draw(self, move: int) -> None:
+        """Draw the pictures one by one until a newer move comes."""
+        self.since = time.monotonic()
+        for _ in self.page.pictures():
+            await asyncio.sleep(0)
+            if move != self.moves:
+                return
+        self.drawn = move
 
     async def _begun(self, scene: Scene) -> Results:
         return self.memory.put(await computed(answers, scene), self.page.scenes())
@@ -106,6 +138,8 @@ class Answering:
     async def _refine(self, move: int) -> None:
         """Compute the coupled curve, where end mass lives, and both of the pinned designs, unless a knob is moved."""
         await asyncio.sleep(IDLE)
+        if self.drawn < move == self.moves:
+            await self._draw(move)
         for scene in self.page.scenes():
             with suppress(*FAILURES):  # a strike at another offset may have no answer: then there is no curve
                 async for _ in self._steps_of(scene, move):
@@ -121,6 +155,7 @@ class Answering:
             yield
             one.found = await computed(with_end_mass, one.found)
             self.page.show_numbers()
+            self.page.show_table()
         yield
         if not one.found.complete:
             parts = completing(one.found)
@@ -128,6 +163,7 @@ class Answering:
                 one.found = more
                 yield  # between two of them a newer move is heard
             self.page.show_numbers()
+            self.page.show_table()
         if not one.whole:
             work = _after(coupled_points(one.found), len(one.points))
             while point := await computed(next, work, None):

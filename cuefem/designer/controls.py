@@ -8,6 +8,7 @@ from typing import Any
 
 from nicegui import events, ui
 
+from cuefem.designer.markup import Markup
 from cuefem.designer.sliders import Choice, Slider
 from cuefem.designer.units import typed
 from cuefem.report.glossary import explained
@@ -19,32 +20,45 @@ class Beside:
     """The place beside a field where it says what is wrong."""
 
     def __init__(self) -> None:
-        self.html = ui.html(sanitize=False).classes("beside")
+        self.html = Markup().classes("beside")
 
     def say(self, words: str) -> None:
         """Say what is wrong, or that nothing is."""
         self.html.set_content(f'<p class="wrong" role="alert">{escape(words)}</p>' if words else "")
 
 
+class Bar(ui.slider):
+    """A slider that stands where the person moves it. The server's answer, which may be late, never moves it back."""
+
+    LOOPBACK = None  # what the person does is not sent back
+    # The page remembers the value, so that it sees a change when another one is sent, and draws nothing anew for it.
+    REMEMBER = "value => { Vue.toRaw(mounted_app.elements)[%d].props['model-value'] = value; }"
+
+    def __init__(self, slider: Slider, value: float, slid: Callable[..., None]) -> None:
+        super().__init__(min=slider.low, max=slider.high, step=slider.step, value=value, on_change=slid)
+        self.on("update:model-value", js_handler=self.REMEMBER % self.id)
+
+
 class NumberField:
     """A number to slide or to type. turn: takes a value in its unit, and returns what is wrong with it, or "".
 
-    A typed number is taken as it is typed, in bounds wider than the slider's; a wrong one changes nothing.
+    A typed number is taken as it is typed, in bounds wider than the slider's; a wrong one changes nothing. The bar
+    follows a typed number, and the text a slid one, when they are told to agree: after the answer to the move.
     """
 
     def __init__(self, slider: Slider, value: float, turn: Turn) -> None:
         self.slider, self.value, self.good, self.turn = slider, value, value, turn
         spoken = f"{slider.label}, {slider.unit}" if slider.unit else slider.label
-        self.text = slider.text(value)
+        self.text, self.slid = slider.text(value), False
         with ui.element("div").classes("knob"):
             with ui.element("div").classes("line"):
-                ui.html(f"<span>{explained(escape(slider.label))}</span>", sanitize=False)
+                Markup(f"<span>{explained(escape(slider.label))}</span>")
                 self.input = ui.input(value=self.text, on_change=self._typed)
                 self.input.props(
                     f'dense borderless hide-bottom-space debounce=200 suffix="{slider.unit}" inputmode=decimal '
                     f'autocomplete=off aria-label="{spoken}, as a number"'
                 )
-            self.bar = ui.slider(min=slider.low, max=slider.high, step=slider.step, value=value, on_change=self._slid)
+            self.bar = Bar(slider, value, self._slid)
             self.bar.props(f'role="none" aria-label="{spoken}" data-knob="{slider.knob}"')
             self.beside = Beside()
 
@@ -66,16 +80,21 @@ class NumberField:
         except ValueError as error:
             self._mark(f"{error}; the design keeps {self.slider.written(self.good)}")
             return
-        self.value = value
-        self._set_bar(value)
+        self.value, self.slid = value, False
         self._give()
 
     def _slid(self, event: events.ValueChangeEventArguments[Any]) -> None:
         value = float(event.value)
         if value != self.value:
-            self.value = value
-            self._set_text(value)
+            self.value, self.slid = value, True
             self._give()
+
+    def agree(self) -> None:
+        """Let the bar and the text stand at the value."""
+        if self.slid:
+            self._set_text(self.value)
+        else:
+            self._set_bar(self.value)
 
     def _give(self) -> None:
         words = self.turn(self.value)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import replace
 from html import escape
@@ -21,6 +21,7 @@ from cuefem.designer.door import KINDS
 from cuefem.designer.editing import game_of, with_game
 from cuefem.designer.kept import LONGEST_NAME, MOST_PINNED, key_of, steps_of, text_of
 from cuefem.designer.links import LinkDialog
+from cuefem.designer.markup import Markup
 from cuefem.designer.numbers import Column, csv_text
 from cuefem.designer.opening import PresetMenu, ShapeDialog, asked, reading
 from cuefem.designer.pinned import PinnedList
@@ -55,6 +56,7 @@ class Desk:
         self.system: System = METRIC
         self.reference = 0  # which pinned design the others are compared with
         self.answering = Answering(self)
+        self.busy = False
         self.client = ui.context.client
         self._build()
         ui.timer(0.05, self._begin, once=True)
@@ -76,7 +78,7 @@ class Desk:
         ui.add_body_html(definitions() + SCRIPT)
         ui.add_body_html(f"<script>{chart_script()}</script>")
         with ui.element("header"):
-            self.head = ui.html(sanitize=False)
+            self.head = Markup()
             with ui.element("div").classes("actions"):
                 button("Open a file", lambda: self.receiver.pick())
                 PresetMenu(self._ready)
@@ -89,7 +91,7 @@ class Desk:
                 button("Pin this design", self._pin)
                 self.units = ui.select(list(SYSTEMS), value=METRIC.name, label="Units", on_change=self._switch)
                 self.units.props("outlined dense options-dense").classes("units")
-            self.message = ui.html(sanitize=False).on("click", lambda: self.say(""))
+            self.message = Markup().on("click", lambda: self.say(""))
         with ui.element("div").classes("unseen"):
             self.receiver = Receiver(KINDS, self._received, self.say)
         self.links = LinkDialog(self.open_link)
@@ -118,13 +120,17 @@ class Desk:
         else:
             self.made = made
             self._make_knobs()
-        self.undo.set_enabled(self.history.can_undo)
-        self.redo.set_enabled(self.history.can_redo)
+        self._show_ways()
         self.reference = min(self.reference, max(0, len(self.pinned) - 1))
         self.pins.show(self.pinned, self.reference)
         self.sheet.show(self.design.scene, self.system)
         self.tap.show(self.system)
         self._show_head()
+
+    def _show_ways(self) -> None:
+        """Whether there is a step to undo or to redo."""
+        self.undo.set_enabled(self.history.can_undo)
+        self.redo.set_enabled(self.history.can_redo)
 
     def _make_knobs(self) -> None:
         scene = self.design.base
@@ -132,7 +138,7 @@ class Desk:
         self.fields: list[NumberField] = []
         self.choosers: list[ChoiceField] = []
         with self.panel:
-            ui.html("<h2>Knobs</h2>", sanitize=False)
+            Markup("<h2>Knobs</h2>")
             name = ui.input("Name of the design", value=self.design.name, on_change=lambda e: self._named(e.value))
             name.props(f"outlined dense debounce=300 maxlength={LONGEST_NAME}").classes("choice")
             for choice in choices(scene):
@@ -140,7 +146,7 @@ class Desk:
                 self.choosers.append(ChoiceField(choice, choice.name(self.design.knobs), turn))
             known = {slider.knob: slider for slider in sliders(scene, self.system)}
             for title, names in GROUPS.items():
-                ui.html(f"<h3>{title}</h3>", sanitize=False)
+                Markup(f"<h3>{title}</h3>")
                 if title == "Stroke":
                     self.game = ui.select(list(GAMES), value=game_of(scene), label="Usual ball, tip and stroke of")
                     self.game.on_value_change(lambda event: self._play(event.value))
@@ -150,7 +156,7 @@ class Desk:
                     slide = lambda value, slider=slider: self._slid(slider, value)  # noqa: E731
                     self.fields.append(NumberField(slider, slider.shown(self.design.knobs), slide))
             for words in without(scene):
-                ui.html(explained(f'<p class="hint">{escape(words)}</p>'), sanitize=False)
+                Markup(explained(f'<p class="hint">{escape(words)}</p>'))
 
     def _show_head(self) -> None:
         self.head.set_content(explained(head_markup(self.design, self.system)))
@@ -172,7 +178,7 @@ class Desk:
             self.open_link(str(found["link"]))
         await self.answering.moved()
 
-    def _keep(self) -> None:
+    async def _keep(self) -> None:
         text = text_of(self.history.steps, self.history.at)
         self.client.run_javascript(f"cuefem.keep({json.dumps(self.key)}, {json.dumps(text)})")
 
@@ -194,21 +200,21 @@ class Desk:
         self.message.set_content(f'<p class="said" role="alert">{said}</p>' if words else "")
 
     def _slid(self, slider: Any, value: float) -> str:
-        knobs = slider.turned(self.wanted, value)
-        return "" if knobs is self.wanted else self.turn(slider.knob, **{slider.knob: getattr(knobs, slider.knob)})
+        return self.turn(slider.knob, **{slider.knob: getattr(slider.turned(self.wanted, value), slider.knob)})
 
     def turn(self, label: str, **changed: Any) -> str:
         """Turn knobs; what is wrong if no such cue can be made: then the design stays as it is."""
         self.wanted = replace(self.wanted, **changed)
         if self.wanted == self.design.knobs:
+            self.show_move()
             return ""
         design = replace(self.design, knobs=self.wanted)
         try:
             design.scene  # noqa: B018
         except FAILURES as error:
+            self.show_move()
             return self.system.said(" ".join(str(error).split()))
         self._put(Step(design, self.pinned), label)
-        self.sheet.show(design.scene, self.system)
         return ""
 
     def _play(self, game: str | None) -> None:
@@ -246,17 +252,21 @@ class Desk:
     def _put(self, step: Step, label: str = "", *, move: bool = True) -> None:
         """Go on to a step: keep it, and compute it."""
         self.history.put(step, label, when=time.monotonic())
-        self._keep()
-        self.undo.set_enabled(self.history.can_undo)
-        self.redo.set_enabled(self.history.can_redo)
+        self._moved(move)
+
+    def _moved(self, move: bool = True) -> None:
+        """Answer the present step if it is a move, and keep it while that is computed."""
         if move:
+            self.show_busy(True)
             background_tasks.create(self.answering.moved(), name="answer a move")
+        else:
+            self._show_ways()
+        background_tasks.create(self._keep(), name="keep a step")
 
     def _go(self, way: Callable[[], Step]) -> None:
         way()
-        self._keep()
+        self._moved()
         self._show_design()
-        background_tasks.create(self.answering.moved(), name="answer a move")
 
     def open(self, design: Design) -> None:
         """Work on another design, beside those that are pinned."""
@@ -303,6 +313,7 @@ class Desk:
         self.reference = i
         self.pins.show(self.pinned, i)
         self.show_numbers()
+        self.show_table()
 
     def _columns(self) -> list[Column]:
         known = [self.answering.mine, *(self.answering.known(design.scene) for design in self.pinned)]
@@ -311,10 +322,15 @@ class Desk:
 
     def _export(self) -> None:
         if self.answering.mine is not None:
-            text = csv_text(self._columns(), self.reference + 1 if self.pinned else 0, self.system)
+            text = csv_text(self._columns(), self._compared_with, self.system)
             ui.download.content("\ufeff" + text, f"{Path(self.design.name).stem}.csv")  # Excel reads it as UTF-8
 
     # --- what is shown ---------------------------------------------------------------------------------------------
+
+    @property
+    def _compared_with(self) -> int:
+        """Which of the columns the others are compared with."""
+        return self.reference + 1 if self.pinned else 0
 
     def scenes(self) -> list[Scene]:
         """The scene in work, and those that are pinned."""
@@ -322,19 +338,35 @@ class Desk:
 
     def show_busy(self, busy: bool) -> None:
         """Whether more is being computed."""
-        self.side.props(f"aria-busy={str(busy).lower()}")
-
-    def show_answer(self) -> None:
-        """What belongs to a move: words, drawings, and the curves so far; its numbers are there already."""
-        self._show_head()
-        mine = self.answering.mine
-        if mine is not None:
-            self.results.show_cue(mine, self.system)
-        self.show_curves()
+        if busy != self.busy:
+            self.busy = busy
+            self.client.run_javascript(f"cuefem.busy({json.dumps(busy)})")
 
     def show_numbers(self) -> None:
-        """The numbers that are known."""
-        self.results.show_numbers(self._columns(), self.reference + 1 if self.pinned else 0, self.system)
+        """The numbers that matter most, as far as they are known: all that a person waits for."""
+        self.results.show_numbers(self._columns(), self._compared_with, self.system)
+
+    def show_move(self) -> None:
+        """What belongs to a move beside its answer: the knob's text, and the fields of everything."""
+        for field in self.fields:
+            field.agree()
+        self._show_ways()
+        self.sheet.show(self.design.scene, self.system)
+
+    def pictures(self) -> Iterator[None]:
+        """Show words, drawings, all numbers and the curves so far, one a step."""
+        mine = self.answering.mine
+        self._show_head()
+        if mine is not None:
+            self.results.show_cue(mine, self.system)
+            yield
+            self.show_table()
+            yield
+            self.show_curves()
+
+    def show_table(self) -> None:
+        """All numbers that are known."""
+        self.results.show_table(self._columns(), self._compared_with, self.system)
 
     def show_curves(self) -> None:
         """The curves that are known."""
@@ -345,10 +377,9 @@ class Desk:
             self.results.show_density(mine, before, pinned, self.system)
 
     def _show_all(self) -> None:
-        if self.answering.mine is not None:
-            self.show_numbers()
-            self.results.show_cue(self.answering.mine, self.system)
-            self.show_curves()
+        self.show_numbers()
+        for _ in self.pictures():
+            pass
 
     # --- files -----------------------------------------------------------------------------------------------------
 

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from nicegui import ui
 
 from cuefem.designer.controls import button
+from cuefem.designer.markup import Markup
 
 MARK = "#d="  # after it stands what `kept.text_of` writes; a browser sends it to no server
 
@@ -18,11 +19,10 @@ class LinkDialog:
         self.opened = opened
         self.client = ui.context.client
         with ui.dialog().props('aria-label="Links"') as self.dialog, ui.element("div").classes("dialog"):
-            ui.html("<h2>A link that holds all of this</h2>", sanitize=False)
-            ui.html(
+            Markup("<h2>A link that holds all of this</h2>")
+            Markup(
                 "<p>It holds this design and the pinned ones, and opens them in the designer on any computer. "
-                "Nothing of it is sent to a server.</p>",
-                sanitize=False,
+                "Nothing of it is sent to a server.</p>"
             )
             self.link = ui.input("Link").props("readonly outlined dense data-link").classes("wide-field")
             with ui.element("div").classes("actions"):

@@ -16,6 +16,7 @@ from nicegui import ui
 from cuefem.cue import Cue
 from cuefem.designer.computing import FAILURES
 from cuefem.designer.controls import Beside, button
+from cuefem.designer.markup import Markup
 from cuefem.designer.presets import PRESETS, Preset, ready_cue
 from cuefem.designer.units import System, typed
 from cuefem.games import DEFAULT_GAME, GAMES, usual_scene
@@ -66,7 +67,7 @@ class PresetMenu:
             for preset in PRESETS:
                 with ui.menu_item(on_click=partial(chosen, preset)).classes("menu-item"):
                     measured = escape(f"measured on such cues: {preset.measured}")
-                    ui.html(f"<span>{escape(preset.name)}</span><small>{measured}</small>", sanitize=False)
+                    Markup(f"<span>{escape(preset.name)}</span><small>{measured}</small>")
 
 
 class ShapeDialog:
@@ -78,8 +79,8 @@ class ShapeDialog:
         self.cue: Cue | None = None
         self.dialog = ui.dialog().props('aria-label="What the file does not say"')
         with self.dialog, ui.element("div").classes("dialog"):
-            ui.html("<h2>What the file does not say</h2>", sanitize=False)
-            self.facts = ui.html(sanitize=False)
+            Markup("<h2>What the file does not say</h2>")
+            self.facts = ui.html(sanitize=False)  # in a dialog, which may be closed
             self.weight = ui.input("Weight", value="").props("outlined dense inputmode=decimal autocomplete=off")
             self.which = ui.radio({"rest": "of the rest of the cue", "whole": "of the whole cue"}, value="whole")
             self.which.props("inline dense")

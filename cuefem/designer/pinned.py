@@ -10,6 +10,7 @@ from nicegui import ui
 from cuefem.designer.controls import button
 from cuefem.designer.design import Design
 from cuefem.designer.kept import LONGEST_NAME
+from cuefem.designer.markup import Markup
 
 
 class PinnedList:
@@ -41,7 +42,7 @@ class PinnedList:
         with self.rows:
             if not pinned:
                 hint = "Pin designs to see them as columns here and as curves above."
-                ui.html(f'<p class="hint">{hint}</p>', sanitize=False)
+                Markup(f'<p class="hint">{hint}</p>')
             for i, design in enumerate(pinned):
                 self._row(i, design, reference)
 
@@ -51,7 +52,7 @@ class PinnedList:
             name.props(f"dense outlined debounce=300 maxlength={LONGEST_NAME}")
             name.props(f'aria-label="name of pinned design {i + 1}"')
             if i == reference:
-                ui.html('<span class="hint">differences are from this one</span>', sanitize=False)
+                Markup('<span class="hint">differences are from this one</span>')
             else:
                 button("Differences from this", partial(self.compare_with, i))
             button("Work on it", partial(self.work_on, i))

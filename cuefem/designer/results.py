@@ -10,6 +10,7 @@ from cuefem.designer import numbers, pictures
 from cuefem.designer.answers import OFFSETS, Answers
 from cuefem.designer.computing import Results
 from cuefem.designer.design import Design
+from cuefem.designer.markup import Markup
 from cuefem.designer.numbers import Column
 from cuefem.designer.pictures import Drawn
 from cuefem.designer.units import System
@@ -18,51 +19,56 @@ from cuefem.report.glossary import explained
 
 
 class ResultsSide:
-    """The elements that show results. before: the last design with all of its key numbers."""
+    """The parts that show results. before: the last design with all of its key numbers."""
 
     def __init__(self) -> None:
         self.before: Answers | None = None
         with ui.element("section").classes("key-strip"):
-            self.keys = ui.html(sanitize=False)
-        with ui.element("div").classes("rest") as self.rest:
-            self.trust = ui.html(sanitize=False).classes("trust")
+            self.keys = Markup()
+        with ui.element("div").classes("rest"):
+            self.trust = Markup().classes("trust")
             with ui.element("section"):
-                ui.html("<h2>The cue</h2>", sanitize=False)
-                self.cue = ui.html(sanitize=False)
+                Markup("<h2>The cue</h2>")
+                self.cue = Markup()
                 self.below_cue = ui.element("div")
             self.charts = self._section("Squirt and pivot length against the offset")
             with ui.element("div").classes("grid2"):
                 self.lives = self._section("Where end mass lives")
                 with ui.element("section"):
-                    ui.html("<h2>How it rings</h2>", sanitize=False)
-                    self.shapes = ui.html(sanitize=False)
-                    self.tones = ui.html(sanitize=False)
+                    Markup("<h2>How it rings</h2>")
+                    self.shapes = Markup()
+                    self.tones = Markup()
             with ui.element("section"):
-                ui.html("<h2>All numbers</h2>", sanitize=False)
+                Markup("<h2>All numbers</h2>")
                 self.above_table = ui.element("div")
-                self.table = ui.html(sanitize=False)
-            ui.html(explained(ABOUT), sanitize=False)
+                self.table = Markup()
+            Markup(explained(ABOUT))
 
-    def _section(self, title: str) -> ui.html:
+    def _section(self, title: str) -> Markup:
         with ui.element("section"):
-            ui.html(f"<h2>{title}</h2>", sanitize=False)
-            return ui.html(sanitize=False)
+            Markup(f"<h2>{title}</h2>")
+            return Markup()
 
     def show_numbers(self, columns: Sequence[Column], reference: int, system: System) -> None:
-        """The numbers of the first design beside the others'."""
+        """The numbers of the first design that matter most, beside the one compared with."""
         found, other = columns[0].found, columns[reference].found
         if found is None:
             return
         keys = numbers.key_markup(found, other if reference else None, system, self.before)
         self.keys.set_content(explained(keys))
-        if not found.has_end_mass:
-            self.rest.classes(add="waiting")
+        self.table.set_stale(True)
+        if found.has_end_mass:
+            self.before = found
+
+    def show_table(self, columns: Sequence[Column], reference: int, system: System) -> None:
+        """All numbers of the first design beside the others', and how it rings."""
+        found = columns[0].found
+        if found is None or not found.has_end_mass:
             return
-        self.rest.classes(remove="waiting")
-        self.before = found
         self.tones.set_content(numbers.tones_markup(found.frequencies.tolist()))
         self.shapes.set_content(pictures.shapes_picture(found, system))
         self.table.set_content(explained(numbers.table_markup(columns, reference, system)))
+        self.table.set_stale(False)
 
     def show_cue(self, mine: Results, system: System) -> None:
         """The cue."""
@@ -95,4 +101,4 @@ class ResultsSide:
         if shown.density is not None:
             drawn = [Drawn(d.name, None, one.density if one else None) for d, one in pinned]
             self.lives.set_content(explained(pictures.density_chart(shown.density, drawn, system)))
-        self.lives.classes(remove="stale") if current else self.lives.classes(add="stale")
+        self.lives.set_stale(not current)

@@ -13,6 +13,7 @@ from cuefem.cue import Material
 from cuefem.designer import editing
 from cuefem.designer.controls import Beside, button
 from cuefem.designer.editing import Field, Path
+from cuefem.designer.markup import Markup
 from cuefem.designer.model import cue_of
 from cuefem.designer.units import METRIC, System, typed
 from cuefem.effects import Effect, effect_kinds
@@ -99,7 +100,7 @@ class Sheet:
     def _card(self, title: str) -> ui.element:
         made = ui.element("div").classes("card").props(f'role="group" aria-label="{escape(title)}"')
         with made:
-            ui.html(f"<h3>{escape(title)}</h3>", sanitize=False)
+            Markup(f"<h3>{escape(title)}</h3>")
         return made
 
     def _numbers(self, thing: Any, path: Path) -> None:

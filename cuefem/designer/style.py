@@ -5,7 +5,7 @@ STYLE = """
 body { max-width: 1440px; --q-primary: var(--c1) !important; }
 .desk svg.chart text { font-size: 13px; } .desk .grid2 .wide svg text { font-size: 11px; }
 .nicegui-content, .q-page { display: block; padding: 0; min-height: 0 !important; }
-.nicegui-html { min-width: 0; width: 100%; }
+.nicegui-html, .markup { min-width: 0; width: 100%; }
 .q-layout { min-height: 0 !important; }
 .desk { display: grid; grid-template-columns: minmax(280px, 320px) minmax(0, 1fr); gap: 1.1rem; align-items: start; }
 .desk > * { min-width: 0; }
@@ -26,7 +26,7 @@ h1, h2 { font-weight: 700; letter-spacing: 0; font-family: inherit; } h2 { line-
 .sheet .q-field__label { font-size: 0.95rem; }
 .sheet .card { border: 1px solid var(--rule); border-radius: 8px; padding: 0.5rem 0.7rem; margin: 0 0 0.5rem; }
 .sheet h3 { margin: 0 0 0.3rem; font-size: 0.9rem; font-weight: 650; line-height: 1.3; }
-.sheet .nicegui-html { width: auto; } .menu-item { color: var(--ink); max-width: 34rem; }
+.sheet .markup { width: auto; } .menu-item { color: var(--ink); max-width: 34rem; }
 .menu-item small { display: block; color: var(--soft); white-space: normal; }
 .hint { font-size: 0.8rem; line-height: 1.3; }
 .knob .q-field { width: 6.2rem; flex: none; } .knob .q-field:has([aria-label*="mrad"]) { width: 9rem; }
@@ -34,6 +34,7 @@ h1, h2 { font-weight: 700; letter-spacing: 0; font-family: inherit; } h2 { line-
 .knob .q-field__native { padding: 0; text-align: right; font-variant-numeric: tabular-nums; color: var(--ink); }
 .knob .q-field__suffix, .knob .q-field__append { padding: 0 0 0 0.3rem; color: var(--soft); line-height: 1.7rem; }
 .knob .q-slider { height: 24px; padding: 0 8px; }
+.q-slider * { transition: none !important; }  /* else all is laid out anew in every frame after a move */
 .q-slider, .q-btn.q-btn--outline { color: var(--c1) !important; }
 .q-slider__track { background: var(--rule); }
 .choice { width: 100%; margin-bottom: 0.5rem; }
@@ -53,7 +54,7 @@ h1, h2 { font-weight: 700; letter-spacing: 0; font-family: inherit; } h2 { line-
 .miscue { color: var(--c2); }
 .stale { opacity: 0.4; } b.stale { opacity: 1; animation: pale 0.2s 0.35s forwards; }
 @keyframes pale { to { opacity: 0.4; } }
-.waiting table { opacity: 0.4; transition: opacity 0.2s 0.4s; }
+.markup.stale { transition: opacity 0.2s 0.4s; }
 .tones { display: flex; flex-wrap: wrap; gap: 0.4rem; max-width: none; }
 .tone { font: inherit; font-size: 0.86rem; color: var(--ink); background: var(--paper); border: 1px solid var(--soft);
   border-radius: 6px; padding: 0.25rem 0.6rem; cursor: pointer; font-variant-numeric: tabular-nums; }
@@ -76,7 +77,7 @@ h1, h2 { font-weight: 700; letter-spacing: 0; font-family: inherit; } h2 { line-
 .pins { display: grid; gap: 0.4rem; margin: 0 0 0.6rem; }
 .pin { display: flex; flex-wrap: wrap; gap: 0.5rem; align-items: center; }
 .pin .q-field { width: 15rem; max-width: 100%; }
-.pin .nicegui-html { width: auto; } .pin .q-field__control { height: 2.1rem !important; }
+.pin .markup { width: auto; } .pin .q-field__control { height: 2.1rem !important; }
 td small { color: var(--soft); }
 .miss { fill: var(--c2); opacity: 0.28; }
 .under p { margin: 0.2rem 0; }
@@ -120,6 +121,11 @@ window.cuefem = {
   keep(key, text) {
     for (const store of [() => sessionStorage, () => localStorage]) try { store().setItem(key, text); } catch {}
   },
+  // What the page shows, without an update of its elements.
+  part(id) { return document.getElementById("c" + id); },
+  put(id, markup) { const part = this.part(id); if (part) part.innerHTML = markup; },
+  pale(id, stale) { this.part(id)?.classList.toggle("stale", stale); },
+  busy(busy) { document.querySelector(".answers").ariaBusy = busy; },
   remember(units) { try { localStorage.setItem("cuefem-units", units); } catch {} },
 };
 // Recordings: from the microphone, a chosen or a dropped file of any kind that the browser plays, sent as .wav.

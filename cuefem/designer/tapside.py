@@ -10,6 +10,7 @@ from nicegui import ui
 
 from cuefem.designer.computing import FAILURES, LONGEST_WORK
 from cuefem.designer.controls import Beside, button
+from cuefem.designer.markup import Markup
 from cuefem.designer.tapping import Tapped, tapped, tapped_markup, with_wood
 from cuefem.designer.units import METRIC, System, typed
 from cuefem.scene import Scene
@@ -31,14 +32,14 @@ class TapSide:
         self.client = ui.context.client
         self.one: Tapped | None = None
         with ui.expansion("Tap test: what wood is it?").classes("tap"):
-            ui.html(HOW, sanitize=False)
+            Markup(HOW)
             self.weight = ui.input("Weight of the shaft as it hangs, g")
             self.weight.props("outlined dense inputmode=decimal autocomplete=off").classes("choice")
             with ui.element("div").classes("actions"):
                 button(f"Record {SECONDS} seconds", self._record)
                 button("Choose a recording", lambda: self.client.run_javascript("cuefem.pick()"))
             self.beside = Beside()
-            self.shown = ui.html(sanitize=False)
+            self.shown = Markup()
             self.take = button("Take this wood into the design", self._take)
             self.take.set_visibility(False)
             self.client.on_connect(lambda: self.client.run_javascript(f"cuefem.sends({json.dumps(address)})"))

@@ -455,6 +455,46 @@ def test_the_report_is_exported(browser: Any, address: str, tmp_path: Path) -> N
         assert squirt == pytest.approx(float(shown(page, "squirt").rstrip("°")), rel=5e-3)  # of its own accuracy
 
 
+MOST_BEFORE = 8_000  # bytes that come before the squirt of a move
+
+
+def test_a_move_sends_its_numbers_before_anything_that_is_drawn_anew(browser: Any, address: str) -> None:
+    """What a page gets until its squirt is there, in the order in which it comes."""
+    with opened(browser, address) as page:
+        session = page.context.new_cdp_session(page)
+        session.send("Network.enable")
+        came: list[str] = []
+        session.on("Network.webSocketFrameReceived", lambda event: came.append(event["response"]["payloadData"]))
+        turn(page, "tip_diameter")
+        came.clear()
+        turn(page, "tip_diameter")
+        messages = [message for message in came if message.startswith("42")]
+        numbers = next(i for i, message in enumerate(messages) if "data-key" in message)
+        before = messages[: numbers + 1]
+        assert sum(map(len, before)) < MOST_BEFORE
+        assert not any(message.startswith('42["update"') for message in before)
+        updates = [message for message in messages if message.startswith('42["update"')]
+        assert 1 <= len(updates) <= 2  # the knob's text
+        assert not any("q-slider" in message or "<svg" in message for message in updates)
+
+
+def test_presses_that_come_faster_than_answers_all_count(browser: Any, address: str) -> None:
+    """A late answer does not move the slider back; an undone move does, also to where the page last heard it stand."""
+    with opened(browser, address) as page:
+        field = page.get_by_label("Tip diameter, mm, as a number")
+        slider = page.get_by_role("slider", name="Tip diameter, mm", exact=True)
+        slider.focus()
+        for _ in range(12):
+            page.keyboard.press("ArrowRight")
+            page.wait_for_timeout(20)
+        settled(page)
+        assert (slider.get_attribute("aria-valuenow"), field.input_value()) == ("13.35", "13.35")
+        page.get_by_role("button", name="Undo").click()
+        page.wait_for_function("document.querySelector('[data-knob=tip_diameter] [role=slider]').ariaValueNow < 13")
+        settled(page)
+        assert (slider.get_attribute("aria-valuenow"), field.input_value()) == ("12.75", "12.75")
+
+
 WATCH = """() => {
   window.trips = { squirt: [], end_mass_stick: [] };
   const number = key => document.querySelector(`[data-key=${key}]:not(.stale)`)?.innerText;

@@ -1,0 +1,106 @@
+"""The order in which the designer answers: numbers first and alone, pictures last, and not for every move of many."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterator
+from dataclasses import replace
+
+import pytest
+
+from cuefem.designer.answering import Answering
+from cuefem.designer.start import first_scene
+from cuefem.scene import Scene
+
+
+class Page:
+    """A page that writes down what it is told to show."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+        self.told: list[str] = []
+        self.drawn = asyncio.Event()
+
+    def scenes(self) -> list[Scene]:
+        return [self.scene]
+
+    def say(self, words: str) -> None:
+        if words:
+            self.told.append(words)
+
+    def show_busy(self, busy: bool) -> None:
+        self.told.append("busy" if busy else "ready")
+
+    def show_numbers(self) -> None:
+        self.told.append("numbers")
+
+    def show_move(self) -> None:
+        self.told.append("move")
+
+    def pictures(self) -> Iterator[None]:
+        self.told.append("pictures")
+        yield
+        self.told.append("more pictures")
+        self.drawn.set()
+
+    def show_table(self) -> None:
+        self.told.append("table")
+
+    def show_curves(self) -> None:
+        self.told.append("curves")
+
+
+def at_offset(offset: float) -> Scene:
+    scene = first_scene()
+    return replace(scene, stroke=replace(scene.stroke, offset=offset))
+
+
+@pytest.mark.parametrize("moves", [1, 4])
+def test_numbers_come_before_all_else_and_pictures_once_at_the_end(moves: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("cuefem.designer.answering.DRAWN_EVERY", float("inf"))
+
+    async def answered() -> Page:
+        page = Page(at_offset(0.3))
+        answering = Answering(page)
+        tasks = []
+        for i in range(moves):
+            page.scene = at_offset(0.3 + 0.01 * i)
+            tasks.append(asyncio.create_task(answering.moved()))
+            await asyncio.sleep(0.005)
+        await page.drawn.wait()
+        assert answering.mine is not None
+        assert answering.mine.found.scene == page.scene  # the newest
+        assert answering.mine.found.has_end_mass
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+        return page
+
+    told = asyncio.run(answered()).told
+    said = [what for what in told if what != "busy"]
+    assert told[0] == "busy"
+    assert said[:2] == ["numbers", "move"]
+    assert said[-4:] == ["move", "numbers", "pictures", "more pictures"]  # the strike's, then the end mass's
+    assert said.count("pictures") == 1
+    assert said.count("numbers") <= 1 + said.count("move")  # the end mass is not computed while a newer move waits
+
+
+def test_pictures_follow_while_knobs_are_moved_all_the_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("cuefem.designer.answering.DRAWN_EVERY", 0.0)
+
+    async def answered() -> Page:
+        page = Page(at_offset(0.3))
+        answering = Answering(page)
+        moving = asyncio.create_task(answering.moved())
+        while "pictures" not in page.told:
+            await asyncio.sleep(0.001)
+        page.scene = at_offset(0.31)
+        other = asyncio.create_task(answering.moved())
+        await page.drawn.wait()
+        for task in (moving, other):
+            task.cancel()
+        await asyncio.gather(moving, other, return_exceptions=True)
+        return page
+
+    told = asyncio.run(answered()).told
+    assert told[: told.index("pictures") + 1] == ["busy", "numbers", "move", "numbers", "pictures"]
