@@ -20,7 +20,7 @@ from cuefem.cli.strokes import blow_options, measured, offset_option, with_body
 
 if TYPE_CHECKING:
     from cuefem.cue import Cue
-    from cuefem.scene import Scene
+    from cuefem.scene import Outcome, Scene
     from cuefem.tap.fit import TapFit
     from cuefem.tap.ringing import Ringing
     from cuefem.tap.wood import Predicted
@@ -130,14 +130,14 @@ def _heard(recording: Path, file: Path, scene: Scene, given: dict[str, Any]) -> 
         raise RuntimeError(f"{recording}: {error}") from None
 
 
-def _predicted(file: Path, scene: Scene, found: TapFit) -> tuple[dict[str, Predicted], str]:
-    """The scene's numbers with the fitted wood, and the regime of its stroke."""
+def _predicted(file: Path, scene: Scene, found: TapFit) -> tuple[dict[str, Predicted], Outcome]:
+    """The scene's numbers and its stroke with the fitted wood."""
     from cuefem.contact.strike import strike
     from cuefem.tap.wood import predicted
 
     with blaming(file):
         cue = _struck(scene, found)
-        return predicted(scene, replace(found, cue=cue)), strike(replace(scene, cue=cue)).regime
+        return predicted(scene, replace(found, cue=cue)), strike(replace(scene, cue=cue))
 
 
 def _updated(file: Path, scene: Scene, found: TapFit, given: dict[str, Any]) -> Any:

@@ -10,10 +10,12 @@ from typing import Any
 import numpy as np
 from rich.table import Table
 
+from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.report.quantities import NONE, grams, units_of, written
 from cuefem.report.record import Record
 from cuefem.report.strike import MISCUE
 from cuefem.report.table import table_of, with_caption
+from cuefem.scene import Outcome
 from cuefem.tap.chance import LEVEL
 from cuefem.tap.fit import TapFit
 from cuefem.tap.ringing import Ringing
@@ -32,8 +34,11 @@ KINDS = {
 }
 
 
-def tap_record(found: TapFit, heard: Ringing, numbers: Mapping[str, Predicted], regime: str) -> Record:
-    """The wood, the tones and their modes, what the scene's numbers become; errors are standard deviations."""
+def tap_record(found: TapFit, heard: Ringing, numbers: Mapping[str, Predicted], struck: Outcome) -> Record:
+    """The wood, the tones and their modes, what the scene's numbers become; errors are standard deviations.
+
+    struck: the scene's stroke with the fitted wood.
+    """
     wood = {
         name: {"value": getattr(found.wood, name), "error": error, "before": getattr(found.before, name)}
         for name, error in zip(("E", "G", "rho"), found.errors, strict=True)
@@ -50,7 +55,8 @@ def tap_record(found: TapFit, heard: Ringing, numbers: Mapping[str, Predicted], 
         "tones": [asdict(m.tone) | {"mode": m.mode, "model_frequency": m.frequency} for m in found.matched],
         "shaft_mass": found.cue.shaft_mass,
         "predicted": {name: asdict(number) for name, number in numbers.items()},
-        "regime": regime,
+        "regime": struck.regime,
+        "grip": grip_of(struck),
         "taps": heard.taps,
         "clipped": heard.clipped,
         "hum": None if heard.hum is None else asdict(heard.hum),
@@ -124,7 +130,7 @@ def _numbers(record: Record, about: Record) -> Any:
     made.add_row("end mass (stick)", *(grams(felt[key]) for key in ("value", "error", "before")))
     angles = (f"{np.degrees(squirt[key]):.4f}°" for key in ("value", "error", "before"))
     made.add_row(f"squirt at b/R {about['stroke']['offset']:g}", *angles)
-    missed = [MISCUE] if record["regime"] == "miscue" else []
+    missed = [MISCUE] if record["grip"] in MISSED else []
     return with_caption(
         made,
         *missed,

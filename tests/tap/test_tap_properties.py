@@ -242,6 +242,10 @@ def test_a_stroke_that_miscues_is_said_to(tmp_path: Path, sound: np.ndarray) -> 
     assert "this stroke miscues" in out
     assert json.loads(call("tap", recording, "--scene", KIM, *spring, "--json")[1])["regime"] == "miscue"
     assert "miscue" not in call("tap", recording, "--scene", KIM)[1]
+    late = ("--offset", "0.75")  # with a usual tip it holds at first
+    assert "this stroke miscues" in call("tap", recording, "--scene", KIM, *late)[1]
+    told = json.loads(call("tap", recording, "--scene", KIM, *late, "--json")[1])
+    assert (told["regime"], told["grip"]) == ("stick", "lets go")
 
 
 @pytest.mark.heavy
