@@ -938,6 +938,8 @@ EXPORTED int cuefem_leather_blow(const struct leg *leg, struct blow *blow, doubl
                                  int most_phases, struct phase *phases)
 {
     struct course *course = leg->course;
+    if (leg->rings && leg->rings->count > MOST_RINGS)
+        return REFUSED;
     for (;;) {
         if (blow->stage == PHASE) {
             if (blow->phases == most_phases)
