@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import chain
 from typing import Annotated, Any
 
@@ -316,7 +316,13 @@ class Scene:
     def _loading_time(self) -> Any:
         """Time that a head-on blow takes a whole tip to its greatest compression, s."""
         mass, speed = scalar("Ball.mass", self.head_on_mass), scalar("Stroke.speed", self.stroke.speed)
-        return self.tip_law().blow(mass, speed)[1]
+        return _loading(self.tip_law(), mass, speed)
+
+
+@lru_cache(maxsize=256)
+def _loading(law: LeatherLaw, mass: float, speed: float) -> float:
+    """Time to the greatest compression, s: the strokes of a sweep at one speed ask for it again and again."""
+    return float(law.blow(mass, speed)[1])
 
 
 @dataclass(frozen=True)

@@ -195,10 +195,15 @@ def _polished(system: System, squares: Array, flexible: Array, rigid: Array) -> 
     strains, heavy = system.strains(flexible), system.M @ flexible
     mass = np.einsum("ij,ij->j", flexible, heavy)
     quotients = np.einsum("ij,ij->j", strains, strains) / mass
-    if np.abs(squares / quotients - 1).max(initial=0.0) < EVENLY:
+    # the squares are those of the shifted form, less the shift
+    if np.abs((squares - quotients) / (quotients + system.shift)).max(initial=0.0) < EVENLY:
         return np.sqrt(quotients), flexible / np.sqrt(mass)
-    inverse, mix = _all_of(flexible.T @ heavy, strains.T @ strains)
-    return 1 / np.sqrt(inverse[::-1]), flexible @ (mix / np.sqrt(inverse))[:, ::-1]
+    # shifted, since all frequencies are wanted to their last digits, those on the softest support too
+    masses = flexible.T @ heavy
+    inverse, mix = _all_of(masses, strains.T @ strains + system.shift * masses)
+    mix = (mix / np.sqrt(inverse))[:, ::-1]
+    energies = strains @ mix
+    return np.sqrt(np.einsum("ij,ij->j", energies, energies)), flexible @ mix
 
 
 def _held(system: System) -> int:

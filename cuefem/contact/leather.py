@@ -129,7 +129,9 @@ class Leather:
         # the forces on the rows, by Taylor's series at the end of the last step in units of its length; or by their
         # last values alone
         self.series, self.series_step = np.zeros((TAYLOR, 4)), 0.0
-        found = None if terms.levers else library()  # levers are functions, and Python's
+        # levers are functions, and Python's; so are more rings than the kernel has room for
+        rings = len(self.tip_forces.held_by) if isinstance(self.tip_forces, RingForces) else 0
+        found = None if terms.levers or rings > compiled.MOST_RINGS else library()
         self.steps = None if found is None else compiled.Steps(self._shared(found, turns), self, self._numbers)
         self.kernel = "python" if self.steps is None else "c"
 

@@ -419,10 +419,19 @@ class OnCue:
         return _law(self, ball_radius, offset, restitution)
 
 
+@lru_cache(maxsize=64)
+def _pressed(on: OnCue, ball_radius: float) -> tuple[Array, Array, Array]:
+    """Patch, depth and force of a head-on blow, without zero, which the laws of all offsets ask for."""
+    patch, depth, force = on.tip.head_on(on.diameter, ball_radius)
+    for part in (patch, depth, force):
+        part.flags.writeable = False
+    return patch[1:], depth[1:], force[1:]
+
+
 @lru_cache(maxsize=256)
 def _law(on: OnCue, ball_radius: float, offset: float, restitution: float) -> LeatherLaw:
     """The law of a tip; scenes ask for it again and again."""
-    patch, depth, force = (part[1:] for part in on.tip.head_on(on.diameter, ball_radius))
+    patch, depth, force = _pressed(on, ball_radius)
     radius, shear = on.tip.shear_stiffness(on.diameter, offset)
     of_patch = patch * np.interp(patch, radius[1:], shear[1:] / radius[1:])  # nearly straight, other than the stiffness
     return LeatherLaw.fitted(Curves(depth, force, of_patch), restitution, on.tip.shear)

@@ -231,14 +231,14 @@ def punch_gain(height: float, nu: float, radius: Array) -> Array:
     h = weights(height_coordinate(height, 0.0), *heights(0.0), kept.shape[0])
     u = weights(poisson_coordinate(nu), *NU, kept.shape[1])
     a = weights(np.log(np.maximum(radius, RADIUS[0])), *radii("rim", 0.0, 0.0), kept.shape[2])
-    return np.asarray(half_space(nu, radius) / 6 * np.einsum("h,u,huac,ra->rc", h, u, kept, a))
+    return np.asarray(half_space(nu, radius) / 6 * (a @ np.tensordot(u, np.tensordot(h, kept, 1), 1)))
 
 
 def head_on(tip: TipTable, radius: Array, ball: float) -> Array:
     """Force over E D^2 and depth over D of the contact with a ball of radius ``ball``, at the radii; (radii, 2)."""
     at = np.maximum(radius, HEAD_ON_RADIUS[0])
     count = tip.head_on.shape[0]
-    ratio = np.einsum("agc,ra->rgc", tip.head_on, weights(np.log(at), *LOG_HEAD_ON, count))
+    ratio = np.tensordot(weights(np.log(at), *LOG_HEAD_ON, count), tip.head_on, 1)
     ratio = ratio * (radius / at)[:, None, None]  # it goes to zero with the radius
     gaps = np.array([tip.curvature, 1 / ball, 1 / ball**3])
     return np.asarray((half_space_head_on(tip.nu, radius) * np.exp(ratio)) @ gaps)

@@ -473,12 +473,22 @@ static void held_at(const struct leg *leg, const struct hold *hold, const struct
 FAST static void forces_at(const struct leg *leg, const struct hold *hold, const double *integral, double step,
                       double (*motion)[NODES])
 {
-    double k[NODES], shifted[NODES];
+    const struct law *law = leg->law;
+    double k[NODES], shifted[NODES], root[NODES], force[NODES] = {0}, give[NODES] = {0};
+    for (int i = 0; i < NODES; i++) { /* `law_at`, side by side */
+        double virtual = virtual_of(leg, hold, motion[DEPTH][i]);
+        root[i] = sqrt(virtual > 0 ? virtual : 0);
+    }
+    for (int j = law->force_terms - 1; j >= 0; j--)
+        for (int i = 0; i < NODES; i++)
+            force[i] = force[i] * root[i] + law->force[j];
+    for (int j = law->give_terms - 1; j >= 0; j--)
+        for (int i = 0; i < NODES; i++)
+            give[i] = give[i] * root[i] + law->give[j];
     for (int i = 0; i < NODES; i++) {
-        struct forces at = law_at(leg->law, virtual_of(leg, hold, motion[DEPTH][i]));
-        motion[F_N][i] = at.F;
-        k[i] = at.k;
-        shifted[i] = hold->grows ? at.k * motion[V_T][i] : motion[V_T][i];
+        motion[F_N][i] = force[i] * root[i] * root[i] * root[i];
+        k[i] = law->steady > 0 ? law->steady : root[i] / give[i];
+        shifted[i] = hold->grows ? k[i] * motion[V_T][i] : motion[V_T][i];
     }
     double held = leg->course->shear;
     for (int i = 0; i < NODES; i++) {
@@ -938,6 +948,8 @@ EXPORTED int cuefem_leather_blow(const struct leg *leg, struct blow *blow, doubl
                                  int most_phases, struct phase *phases)
 {
     struct course *course = leg->course;
+    if (leg->rings && leg->rings->count > MOST_RINGS)
+        return REFUSED;
     for (;;) {
         if (blow->stage == PHASE) {
             if (blow->phases == most_phases)

@@ -26,6 +26,8 @@ EVENTS = ("touch", "compressed", "apart", "reloaded", "turned", "gripped", "slip
 SIDES: dict[Grip, int] = {"slip": 1, "slip back": -1, "stick": 0}
 GRIPS: dict[int, Grip] = {side: grip for grip, side in SIDES.items()}
 HALVINGS, ROWS, WAYS, TAYLOR, MOTIONS, HEAD = 40, 4, 3, 4, 6, 5
+# Rings that the kernel has room for (rings.h).
+MOST_RINGS = 256
 # Steps whose records share an array, and phases.
 STEPS, PHASES = 32, 64
 
