@@ -2,8 +2,17 @@
 
 import os
 import pkgutil
+import sys
 from contextlib import suppress
 from importlib import import_module
+from pathlib import Path
+
+# Where Python may not keep what it compiles, every worker and every process that a test starts would compile the tests
+# and the package anew, half a second or more each: they keep it beside the tests' root instead, in a folder that git
+# ignores.
+if os.environ.pop("PYTHONDONTWRITEBYTECODE", ""):
+    os.environ["PYTHONPYCACHEPREFIX"] = sys.pycache_prefix = str(Path(__file__).parents[1] / "__pycache__")
+    sys.dont_write_bytecode = False
 
 # Before NumPy is loaded: the package's small dense matrices gain nothing from BLAS threads, and two of them on a busy
 # machine can be a hundred times slower than one.

@@ -13,6 +13,7 @@ from typing import Any
 import pytest
 
 import cuefem as cf
+from cuefem.cli.common import print_all
 from cuefem.report.words import effect_words
 from cuefem.squirt import alciatore_a31, natural_pivot_length
 from tests.helpers.command_line import call
@@ -302,3 +303,8 @@ def test_materials() -> None:
     shown = run("materials")
     assert "hard maple" in shown
     assert "hard leather of a LeatherTip: E 360 MPa; 0.8 ms head on" in shown
+
+
+def test_colons_in_a_name_are_no_emoji(capsys: pytest.CaptureFixture[str]) -> None:
+    print_all([":smile: cue"])
+    assert capsys.readouterr().out == ":smile: cue\n"
