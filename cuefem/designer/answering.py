@@ -133,12 +133,16 @@ class Answering:
         self.drawn = move
 
     async def _begun(self, scene: Scene) -> Results:
-        return self.memory.put(await computed(answers, scene), self.page.scenes())
+        """The first results of a scene; those that stand there already if it was begun twice at a time."""
+        found = await computed(answers, scene)
+        return self.memory.get(scene) or self.memory.put(found, self.page.scenes())
 
     async def _refine(self, move: int) -> None:
         """Compute the coupled curve, where end mass lives, and both of the pinned designs, unless a knob is moved."""
         await asyncio.sleep(IDLE)
-        if self.drawn < move == self.moves:
+        if move != self.moves:
+            return
+        if self.drawn < move:
             await self._draw(move)
         for scene in self.page.scenes():
             with suppress(*FAILURES):  # a strike at another offset may have no answer: then there is no curve
