@@ -35,6 +35,7 @@ def optimize(study: Path, output: Path | None, iterations: int, seed: int, as_js
     from cuefem.design.optimum import optimum
     from cuefem.io import save
     from cuefem.io.study import assumed_base, load_optimum
+    from cuefem.report.study import column_label
 
     wanted = load_optimum(study)
     notes = assumed_base(study, wanted.base)
@@ -59,12 +60,14 @@ def optimize(study: Path, output: Path | None, iterations: int, seed: int, as_js
         print_json({**about, **numbers, **search, "resolution": vars(wanted.study.resolution), "units": units})
         return
     way = "by exact gradients" if found.exact else "by differential evolution"
-    lines = [f"{aim} {wanted.objective.name}: {found.evaluations} evaluations {way}", ""]
+    labels = {one.name: one.label for one in wanted.study.responses}
+    lines = [f"{aim} {wanted.objective.label}: {found.evaluations} evaluations {way}", ""]
     both = {**found.numbers, **found.values}
-    width = max(map(len, both))
-    lines += [f"{name:{width}}  {_short(value, units[name])}" for name, value in both.items()]
-    held = (words.rsplit(" ", 2) for words in found.active)
-    held_by = [f"{name} {sign} {_short(float(bound), units[name])}" for name, sign, bound in held]
+    words = {name: labels.get(name) or column_label(name) for name in both}
+    width = max(map(len, words.values()))
+    lines += [f"{words[name]:{width}}  {_short(value, units[name])}" for name, value in both.items()]
+    held = (limit.rsplit(" ", 2) for limit in found.active)
+    held_by = [f"{words[name]} {sign} {_short(float(bound), units[name])}" for name, sign, bound in held]
     lines += ["", f"held by: {', '.join(held_by) or 'nothing'}"]
     if found.unfinished:
         lines.append(f"not finished: {found.unfinished}; more --iterations may find a better design")

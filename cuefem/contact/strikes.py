@@ -105,6 +105,9 @@ def _jobs(scenes: tuple[Scene, ...], at: Resolution | None) -> Iterator[_Job]:
             groups.setdefault(_modes_of(scene, at, resolutions), []).append(i)
     for rows in groups.values():
         shared = _Shared(scenes[rows[0]], at)
+        if len(rows) > CHUNK:
+            with _Numbered(rows[0]):
+                shared.turns  # noqa: B018  # solved here: threads would all begin to
         for start in range(0, len(rows), CHUNK):
             yield _Job(shared, tuple((i, scenes[i]) for i in rows[start : start + CHUNK]))
 

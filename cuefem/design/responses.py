@@ -94,7 +94,7 @@ KINDS = {
     ),
     "squirt_slope": Kind(
         "",
-        "squirt over offset's angle",
+        "squirt slope",
         "squirt over phi in the limit of small offsets",
         lambda s, _: s.stick.squirt,
         strikes=True,
@@ -179,8 +179,8 @@ class Response:
         """What tables and pages call it: "squirt at b/R 0.3", "tone 2"."""
         kind = kinds()[self.kind]
         if self.argument is None:
-            return kind.label
-        return f"{kind.label} {self.argument}" if kind.argument == "mode" else f"{kind.label} at b/R {self.argument:g}"
+            return f"{kind.label} at the stroke's offset" if self.in_time else kind.label
+        return f"{kind.label} {'' if kind.argument == 'mode' else 'at b/R '}{self.argument}"
 
     @property
     def unit(self) -> str:

@@ -17,10 +17,10 @@ Turn = Callable[[float], str]
 
 
 class Beside:
-    """The place beside a field where it says what is wrong."""
+    """The place beside a field where it says what is wrong; html: an element for it, if that is in a dialog."""
 
-    def __init__(self) -> None:
-        self.html = Markup().classes("beside")
+    def __init__(self, html: ui.html | None = None) -> None:
+        self.html = (html or Markup()).classes("beside")
 
     def say(self, words: str) -> None:
         """Say what is wrong, or that nothing is."""

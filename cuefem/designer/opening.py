@@ -88,7 +88,7 @@ class ShapeDialog:
             self.material.props("outlined dense").classes("wide-field")
             self.game = ui.select(list(GAMES), value=DEFAULT_GAME, label="Game").classes("wide-field")
             self.game.props("outlined dense")
-            self.beside = Beside()
+            self.beside = Beside(ui.html(sanitize=False))
             with ui.element("div").classes("actions"):
                 button("Open it", self._open)
                 button("Cancel", self.dialog.close)

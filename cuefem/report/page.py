@@ -42,7 +42,7 @@ from cuefem.report.templates import environment
 from cuefem.report.trust import off, trust_lines
 from cuefem.report.words import assumptions, effect_words, plain_cue_line
 from cuefem.scene import Outcome, Scene
-from cuefem.tip_modes import LEAST, LEAST_STUCK, Solved
+from cuefem.tip_modes import LEAST_STUCK, Solved
 
 DEFAULT_RTOL = 1e-2
 OFFSETS = tuple(round(0.03 * i, 2) for i in range(1, 21))  # b/R of the curves
@@ -113,7 +113,7 @@ class _ToAccuracy(Solved):
     @cached_property
     def tip_smooth(self) -> TipModes:
         """Likewise, so that a coarse rung changes no end mass."""
-        return self._as_fine(LEAST)
+        return self._as_fine(self.least_smooth)
 
     def _as_fine(self, least: int) -> TipModes:
         assert self.rung is not None

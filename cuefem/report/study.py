@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any
 
@@ -14,11 +14,12 @@ from cuefem.cue import Array
 from cuefem.design import Response, Study
 from cuefem.report.quantities import TRADE, significant
 from cuefem.report.table import table_of, with_caption
+from cuefem.scene import Scene
 
 MOST_LEVELS = 24  # values of a column that are groups of their own; of more, each group is a range
 RANGES = 12  # so many then
 CLEAR = 0.2  # rank correlation from which on a trend is told
-_FIELD = re.compile(r"[a-z]\w*(\[[\d*]+\])?(\.[A-Za-z]\w*(\[[\d*]+\])?)+")  # of a scene: "cue.segments[2].length"
+_FIELD = re.compile(rf"({'|'.join(field.name for field in fields(Scene))})(\[[\d*]+\])?(\.\w+(\[[\d*]+\])?)+")
 _ITEM = re.compile(r"(\w+)s\[(\d+|\*)\]")
 SHOWN = 7  # designs of a front in the terminal
 
@@ -148,7 +149,7 @@ def _trend(column: np.ndarray, result: Array) -> str:
 
 
 def column_label(name: str) -> str:
-    """A column's name as people say it; one that is a field of the scene is said in words: "segment 3 tip bore"."""
+    """A column's name as people say it; fields of the scene are said in words: "segment 3 tip bore"."""
     return ", ".join(_field_words(one) if _FIELD.fullmatch(one) else one for one in name.split(", "))
 
 

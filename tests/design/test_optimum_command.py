@@ -45,10 +45,10 @@ def test_what_a_person_reads(tmp_path: Path) -> None:
     code, out, err = call("optimize", written(tmp_path, OPTIMUM))
     assert (code, err) == (0, "")
     lines = out.splitlines()
-    assert lines[0].startswith("minimize squirt_slope: ")
+    assert lines[0].startswith("minimize squirt slope: ")
     assert lines[0].endswith("evaluations by exact gradients")
     assert [line.split(maxsplit=1)[1] for line in lines[2:4]] == ["9 mm", "10 mm"]
-    assert re.fullmatch(r"tip_stiffness  \d{3}\.\d{1,3} N/m", lines[5])
+    assert re.fullmatch(r"stiffness at the tip +\d{3}\.\d{1,3} N/m", lines[5])
     assert lines[-1] == "held by: bore <= 9 mm, tip >= 10 mm"
 
 

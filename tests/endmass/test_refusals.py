@@ -8,7 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import cuefem as cf
 from cuefem import Ball, end_mass
+from cuefem.endmass.drives import equivalent_end_mass
 from tests.helpers.cues import kim, scene
 from tests.helpers.refusals import refuses
 
@@ -26,3 +28,15 @@ CALLS: list[tuple[Callable[[], object], str]] = [
 @pytest.mark.parametrize(("ask", "message"), CALLS, ids=[message for _, message in CALLS])
 def test_calls(ask: Callable[[], object], message: str) -> None:
     refuses(ask, message)
+
+
+@pytest.mark.parametrize("mass", [1e-4, 1e-3, 0.01, 0.05])
+def test_a_squirt_that_no_single_lump_has_gives_no_end_mass(mass: float) -> None:
+    """While the tip slides squirt does not depend on the end mass: rounding must not choose one."""
+    tip, stroke = cf.Tip(0.73, 0.2, contact_time=1e-3), cf.Stroke(2.0, 0.37)
+    scene = cf.Scene(cf.LumpedCue(0.54, mass), cf.Ball(0.17, 0.028575), tip, stroke)
+    slid = replace(cf.impulse(scene), regime="late stick")  # as of a vibrating cue that squirts so and holds at last
+    with pytest.raises(ValueError, match="no single lumped end mass"):
+        equivalent_end_mass(slid, scene)
+    held = replace(scene, cue=cf.LumpedCue(0.54, 0.15))
+    assert equivalent_end_mass(cf.impulse(held), held) == pytest.approx(0.15, rel=1e-9)

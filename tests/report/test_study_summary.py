@@ -147,6 +147,8 @@ def test_no_design_has_no_summary(tmp_path: Path) -> None:
         ("bore depth", "bore depth"),
         ("E", "E"),
         ("bore of 2.5, v1.5", "bore of 2.5, v1.5"),
+        ("bore.depth", "bore.depth"),
+        ("classes[2].mass", "classes[2].mass"),
     ],
 )
 def test_columns_are_named_in_words(name: str, words: str) -> None:
@@ -158,4 +160,11 @@ def test_responses_are_named_in_words() -> None:
     said = [Response.of(name).label for name in names]
     assert said[:4] == ["end mass", "end mass at b/R 0.3", "squirt at b/R -0.25", "tone 2"]
     assert said[4:] == ["end mass, force", "thinnest wall"]
-    assert not any("_" in Response(name).label for name in kinds())
+    every = [
+        Response(name, x).label
+        for name in kinds()
+        for x in (None, 0.3, 0.3000001, 2)
+        if x is None or kinds()[name].argument
+    ]
+    assert len({*every}) == len(every)
+    assert not any("_" in label for label in every)
