@@ -245,8 +245,8 @@ def report() -> str:
         " 100 to 250 kHz,\nabove the modes kept: its stick end mass is off by more than half a percent, and the spread"
         " of `cuefem end-mass` shows it.\nThe modes of the reference end at 150 kHz, where brass still rings: the true"
         " error is larger. The last column takes the\nerrors above 0.1 %, each over the estimate that comes with its"
-        " own number. The force end mass through soft\nleather (62 MPa) is off by more than half a percent at less than"
-        " 0.7 ms, where the leather rings above the modes kept.\n\n" + common.table(columns, rows())
+        " own number. The largest error of the force end mass is that\nof soft leather (62 MPa) at less than 0.7 ms,"
+        " which rings above the modes kept.\n\n" + common.table(columns, rows())
     )
 
 

@@ -45,7 +45,7 @@ def test_squirt_again() -> None:
 
 
 def test_half_a_percent_or_an_estimate_above_it() -> None:
-    """The default holds 0.5 %, but for brass, one random cue (0.53 %; the estimates tell) and force on soft leather."""
+    """The default holds 0.5 %, but for brass, one random cue (0.53 %; the estimates tell) and force on soft leather (0.51 %)."""
     for what, cue, _, count, _, most, largest, _, ratio in ROWS:
         least = {"stick end mass": 200, "force end mass": 200, "velocity end mass": 40}
         assert int(count) >= least.get(what, 5 if "mass, AxialWaves" in what else 10)
@@ -55,6 +55,6 @@ def test_half_a_percent_or_an_estimate_above_it() -> None:
         else:
             soft_leather = what == "force end mass" and cue == "random, no brass"
             limit = {"squirt": 0.2, "velocity": 0.01}.get(what.split()[0].rstrip(","), 0.5)
-            assert float(largest) < (1.0 if soft_leather else limit)
+            assert float(largest) < (0.52 if soft_leather else limit)
     for drive in ("stick", "force", "velocity"):
         assert sum(int(row[2]) for row in ROWS if row[0] == f"{drive} end mass") == 45
