@@ -49,7 +49,7 @@ def effect_words(effect: Effect) -> str:
     """An effect in a few words, without what is at its default: "PointMass (position 100 mm, mass 5 g)"."""
     usual = {field.name: field.default for field in fields(effect)}
     given = {name: value for name, value in file_table(effect).items() if getattr(effect, name) != usual[name]}
-    entries = [f"{name} {_short(value)}" for name, value in given.items()]
+    entries = [f"{name.replace('_', ' ')} {_short(value)}" for name, value in given.items()]
     return type(effect).__name__ + (f" ({', '.join(entries)})" if entries else "")
 
 
@@ -58,7 +58,10 @@ def _short(value: Any) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     number_text, _, unit = str(value).partition(" ")
-    return f"{float(number_text):.6g} {unit}".rstrip()
+    number = float(number_text)
+    if unit == "GPa" and abs(number) < 1:  # leather's, as people say it
+        number, unit = 1e3 * number, "MPa"
+    return f"{number:.6g} {unit}".rstrip()
 
 
 def listed(names: Sequence[str]) -> str:

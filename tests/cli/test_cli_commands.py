@@ -146,6 +146,8 @@ def test_an_effect_in_words() -> None:
     assert effect_words(cf.TipShear(0.75)) == "TipShear (ratio 0.75)"
     assert effect_words(cf.Support(0.2, math.inf)) == "Support (position 200 mm, stiffness inf N/m)"
     assert effect_words(cf.AxialWaves()) == "AxialWaves"
+    leather = cf.LeatherTip(6e-3, 9.5e-3, 0.14e9)
+    assert effect_words(leather) == "LeatherTip (height 6 mm, dome radius 9.5 mm, E 140 MPa)"
 
 
 def test_options_replace_what_a_scene_says(scene: str) -> None:
