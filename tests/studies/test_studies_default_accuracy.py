@@ -45,7 +45,7 @@ def test_squirt_again() -> None:
 
 
 def test_half_a_percent_or_an_estimate_above_it() -> None:
-    """The default holds 0.5 %, but for brass, one random cue (0.53 %; the estimates tell) and force on soft leather (0.51 %)."""
+    """The default holds 0.5 %, but for brass, one random cue (0.53 %; the estimates tell) and one force (0.51 %)."""
     for what, cue, _, count, _, most, largest, _, ratio in ROWS:
         least = {"stick end mass": 200, "force end mass": 200, "velocity end mass": 40}
         assert int(count) >= least.get(what, 5 if "mass, AxialWaves" in what else 10)
