@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from textwrap import wrap
 from typing import NamedTuple
 
 import numpy as np
@@ -30,7 +31,7 @@ SOBOL = (
     "The part of the variance that goes away if a cause is known, and "
     "in brackets the part that stays if all others are known. Neither is exact: the command prints their intervals."
 )
-LETTER = 7.6  # width of a letter beside an axis
+LETTER, LINE, NAME = 7.6, 16, 14  # width and height of a letter over an axis; letters in a line of its name
 FRONT = 30  # designs of the front in its table
 
 
@@ -46,10 +47,10 @@ class Panel(NamedTuple):
 
 
 class Coordinate(NamedTuple):
-    """An axis of the parallel coordinates: where it stands, its name, and what stands at its ends."""
+    """An axis of the parallel coordinates: where it stands, its name in lines, and what stands at its ends."""
 
     x: float
-    name: str
+    name: list[str]
     low: str
     high: str
 
@@ -86,6 +87,8 @@ def study_page(name: str, table: Table, facts: list[str], *, scattered: Scattere
         lines=lines,
         coordinates=coordinates,
         wide=wide,
+        line=LINE,
+        above=8 + LINE * max(len(axis.name) - 1 for axis in coordinates),
         shade=f"{first.label}, the {'highest' if first.better == 'higher' else 'lowest'} fifth",
         panels=[
             (heading(response.label, response.unit), _panels(table, k, shares=scattered is None))
@@ -123,9 +126,11 @@ def _scaled(values: Array, low: float, high: float) -> Array:
 def _parallel(table: Table) -> tuple[list[tuple[str, int]], list[Coordinate], float]:
     """Lines of designs over what varied and the responses, best drawn last, with their shade; the axes; the width."""
     columns = [*table.values, *table.results.T]
-    names = [*map(heading, table.labels, table.units), *(heading(r.label, r.unit) for r in table.responses)]
+    headings = [*map(heading, table.labels, table.units), *(heading(r.label, r.unit) for r in table.responses)]
+    names = [wrap(one, NAME) for one in headings]
     units = [*table.units, *(r.unit for r in table.responses)]
-    beside = [len(one) + len(other) for one, other in pairwise(names)]
+    widths = [max(map(len, lines)) for lines in names]
+    beside = [one + other for one, other in pairwise(widths)]
     step = max(110.0, LETTER * (max(beside) / 2 + 2))  # names of neighbours do not meet
     x = step / 2 + step * np.arange(len(columns))
     y = np.array([_scaled(_places(column), 200.0, 30.0) for column in columns])
