@@ -96,6 +96,12 @@ def metal(cue: Cue) -> bool:
     return cue.segments[0].material == BRASS
 
 
+def solved(name: str) -> Modes:
+    """A cue's modes up to `HIGHEST`, or `MOST` of them."""
+    cue = cues()[name]
+    return modes(cue, min(modes_below(cue, 2 * np.pi * HIGHEST), MOST))
+
+
 def kept(found: Modes, count: int) -> Modes:
     """The lowest of the modes, ended by a tail."""
     return tail(replace(found, frequencies=found.frequencies[:count], vectors=found.vectors[:, :count]))
@@ -145,7 +151,7 @@ def stuck(name: str) -> Stuck:
     cue, times = cues()[name], contact_times(name)
     scene = common.scene(cue)
     limit = StickLimit.of(scene)
-    found = modes(cue, min(modes_below(cue, 2 * np.pi * HIGHEST), MOST))
+    found = solved(name)
     few, many = (tip_modes_from(kept(found, count), scene) for count in (LEAST_STUCK, len(found.frequencies)))
     coarse, fine = (1 / ((limit.K - 1) / stick_impulses(tip, limit, times) - limit.c) for tip in (few, many))
     return Stuck(np.abs(coarse / fine - 1), np.array([ringing(few, replace(limit, T=T)) for T in times]))
@@ -154,9 +160,8 @@ def stuck(name: str) -> Stuck:
 @cache
 def stuck_with_waves(name: str, count: int) -> np.ndarray:
     """Relative errors of the stick end mass with AxialWaves, at the first ``count`` contact times."""
-    cue = cues()[name]
-    found = modes(cue, min(modes_below(cue, 2 * np.pi * HIGHEST), MOST))
-    scene = replace(common.scene(cue), effects=(AxialWaves(),))
+    found = solved(name)
+    scene = replace(common.scene(cues()[name]), effects=(AxialWaves(),))
     few, many = (tip_modes_from(kept(found, modes), scene) for modes in (LEAST_STUCK, len(found.frequencies)))
     scenes = [replace(scene, tip=replace(scene.tip, contact_time=T)) for T in contact_times(name)[:count]]
     return np.array([abs(stick(few, each) / stick(many, each) - 1) for each in scenes])
@@ -167,7 +172,8 @@ def driven(name: str, drive: str) -> np.ndarray:
     """Relative errors of the default's "force" or "velocity" end mass, against many modes."""
     cue, times = cues()[name], contact_times(name)[: LED if drive == "velocity" else TIMES]
     scenes = [common.scene(cue, T) for T in times]
-    tip = tip_modes_from(many(name), scenes[0])
+    found = solved(name)
+    tip = tip_modes_from(kept(found, len(found.frequencies)), scenes[0])
     if drive == "force":
         exact = [force(tip, scene) for scene in scenes]
     else:
@@ -175,13 +181,6 @@ def driven(name: str, drive: str) -> np.ndarray:
         assert free is not None
         exact = [free.impulse(1.0, smooth_start_swing(free.rates, T, response)) for T in times]
     return np.array([abs(end_mass(scene, drive) / m - 1) for scene, m in zip(scenes, exact, strict=True)])
-
-
-def many(name: str) -> Modes:
-    """A cue's modes up to `HIGHEST`, or `MOST` of them, ended by a tail."""
-    cue = cues()[name]
-    count = min(modes_below(cue, 2 * np.pi * HIGHEST), MOST)
-    return kept(modes(cue, count), count)
 
 
 @cache

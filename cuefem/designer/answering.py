@@ -133,7 +133,7 @@ class Answering:
         self.drawn = move
 
     async def _begun(self, scene: Scene) -> Results:
-        """The first results of a scene; those that stand there already if it was begun twice at a time."""
+        """The first results of a scene. Two moves that ask for them at the same time get the same ones."""
         found = await computed(answers, scene)
         return self.memory.get(scene) or self.memory.put(found, self.page.scenes())
 

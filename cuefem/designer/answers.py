@@ -153,9 +153,8 @@ def completed(found: Answers) -> Answers:
 
 
 def _end_mass(drive: str, solved: Solved) -> float | None:
-    definition = DEFINITIONS[drive]
     try:
-        return float(definition.of(definition.tip_of(solved), solved.scene))
+        return float(DEFINITIONS[drive].of_solved(solved))
     except ValueError:
         return None
 

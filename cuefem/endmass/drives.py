@@ -90,7 +90,7 @@ def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None) -
     definition = definition_of(drive)
     if scene.lumped is not None:
         return scene.lumped.end_mass
-    return definition.of(definition.tip_of(Solved(scene, at)), scene)
+    return definition.of_solved(Solved(scene, at))
 
 
 class Spread(NamedTuple):
@@ -368,6 +368,10 @@ class Definition(NamedTuple):
     def tip_of(self, solved: Solved) -> TipModes:
         """The tip modes of a solved scene that this definition takes."""
         return solved.tip_smooth if self.smooth else solved.tip_stuck
+
+    def of_solved(self, solved: Solved) -> Any:
+        """The end mass of a solved scene, kg, from the tip modes that this definition takes."""
+        return self.of(self.tip_of(solved), solved.scene)
 
     def of(self, tip: TipModes, scene: Scene) -> Any:
         """The end mass of any cue by this definition, kg; a lumped cue has its own whatever the definition."""

@@ -126,8 +126,7 @@ def _end_masses(solved: Solved) -> tuple[dict[str, float | None], dict[str, str]
 def _end_mass(solved: Solved, drive: str) -> float:
     if drive == "A.31":
         return _a31_end_mass(solved.scene, solved.tip)
-    definition = DEFINITIONS[drive]
-    return float(definition.of(definition.tip_of(solved), solved.scene))
+    return float(DEFINITIONS[drive].of_solved(solved))
 
 
 def _a31_end_mass(scene: Scene, tip: TipModes) -> float:

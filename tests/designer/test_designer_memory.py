@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
-from tests.helpers.designer_browser import BROWSER, opened, served, settled
+from tests.helpers.designer_browser import BROWSER, launched, opened, served, settled
 
-sync_api = pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
+pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
 psutil = pytest.importorskip("psutil", reason="needs psutil: pip install psutil")
 pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
 pytestmark = [
@@ -46,32 +46,30 @@ def test_five_hundred_moves_leave_memory_as_it_was(
 ) -> None:
     with (
         served(tmp_path_factory.mktemp("designer")) as address,
-        sync_api.sync_playwright() as driver,
+        launched() as browser,
+        opened(browser, address) as page,
     ):
-        browser = driver.chromium.launch(executable_path=BROWSER, args=["--no-sandbox", "--disable-gpu"])
-        with opened(browser, address) as page:
-            session = page.context.new_cdp_session(page)
-            session.send("Performance.enable")
+        session = page.context.new_cdp_session(page)
+        session.send("Performance.enable")
 
-            def memory() -> dict[str, float]:
-                settled(page)
-                session.send("HeapProfiler.collectGarbage")
-                told = {one["name"]: one["value"] for one in session.send("Performance.getMetrics")["metrics"]}
-                found = {name: told[name] for name in ("JSHeapUsedSize", "Nodes", "JSEventListeners")}
-                return found | {"server": server_memory()}
+        def memory() -> dict[str, float]:
+            settled(page)
+            session.send("HeapProfiler.collectGarbage")
+            told = {one["name"]: one["value"] for one in session.send("Performance.getMetrics")["metrics"]}
+            found = {name: told[name] for name in ("JSHeapUsedSize", "Nodes", "JSEventListeners")}
+            return found | {"server": server_memory()}
 
-            def after(first: int, count: int) -> dict[str, float]:
-                """What memory is near the end of moves."""
-                page.evaluate(MOVE, [first, count - STOPS * BETWEEN])
-                found = []
-                for stop in range(STOPS):
-                    page.evaluate(MOVE, [first + count - (STOPS - stop) * BETWEEN, BETWEEN])
-                    found.append(memory())
-                return {name: median(one[name] for one in found) for name in found[0]}
+        def after(first: int, count: int) -> dict[str, float]:
+            """What memory is near the end of moves."""
+            page.evaluate(MOVE, [first, count - STOPS * BETWEEN])
+            found = []
+            for stop in range(STOPS):
+                page.evaluate(MOVE, [first + count - (STOPS - stop) * BETWEEN, BETWEEN])
+                found.append(memory())
+            return {name: median(one[name] for one in found) for name in found[0]}
 
-            before = after(0, WARM)
-            grown = {name: value - before[name] for name, value in after(WARM, MOVES).items()}
-        browser.close()
+        before = after(0, WARM)
+        grown = {name: value - before[name] for name, value in after(WARM, MOVES).items()}
     record_property("growth in 500 moves", grown)
     with capsys.disabled():
         print(f"\ngrowth in {MOVES} moves: {grown}")
