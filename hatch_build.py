@@ -1,8 +1,8 @@
-"""Builds the compiled kernel of the contact into the package, where there is a C compiler; goes on without it if not.
+"""Compiles the contact's kernel into the package, whenever a wheel or an editable install of it is made.
 
-Hatchling calls it for wheels and for editable installs. `python hatch_build.py` builds the kernel in place.
-The C compiler is `cc`, or what the environment variable CC names, with CFLAGS behind its flags; CUEFEM_KERNEL=python
-leaves the kernel out.
+The compiler is `cc`, or what the environment variable CC names, with CFLAGS behind its flags. Where there is none that
+works, the build asks for the wheel `ziglang`, which holds one for every system. `python hatch_build.py` compiles the
+kernel in place.
 """
 
 from __future__ import annotations
@@ -14,11 +14,14 @@ import shutil
 import subprocess
 import sys
 import sysconfig
+import tempfile
+from functools import cache
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 ROOT = Path(__file__).parent
+ZIG = "ziglang>=0.13.0"
 # Sums may be taken in any order, as vector instructions do; nothing else of -ffast-math, which at the link would switch
 # the whole process to flush denormal numbers to zero.
 FLAGS = ["-O3", "-fno-math-errno", "-fno-trapping-math", "-fno-signed-zeros", "-fassociative-math"]
@@ -29,40 +32,50 @@ def kernel() -> ModuleType:
     spec = importlib.util.spec_from_file_location("kernel", ROOT / "cuefem" / "contact" / "kernel" / "__init__.py")
     assert spec is not None
     assert spec.loader is not None
-    found = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(found)
-    return found
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
-def build() -> Path | None:
-    """Compile the kernel beside its sources; None, and a word, where that cannot be."""
-    found = kernel()
-    binary: Path = found.BINARY
-    compiler = shlex.split(os.environ.get("CC", "cc"))
-    if os.environ.get(found.VARIABLE) == "python":
-        return left_out(binary, f"{found.VARIABLE}=python, so the compiled kernel is left out")
-    if not compiler or not shutil.which(compiler[0]):
-        return left_out(binary, "no C compiler (cc), so the contact will run in Python")
-    sources = [str(path) for path in sorted(found.HERE.glob("*.c"))]
-    about = f'-DCUEFEM_SOURCES="{found.digest()}"'
-    made = binary.with_suffix(f".{os.getpid()}")  # another process may load the kernel meanwhile
-    said = ""
+@cache
+def compiler() -> tuple[str, ...] | None:
+    """The C compiler's command, if it can compile and link against the mathematics library; None if there is none."""
+    command = tuple(shlex.split(os.environ.get("CC", "cc")))
+    if not command or not shutil.which(command[0]):
+        return None
+    with tempfile.TemporaryDirectory() as folder:
+        source = Path(folder) / "works.c"
+        source.write_text("#include <math.h>\ndouble root(double x) { return sqrt(x); }\n")
+        made = [*command, "-shared", "-fPIC", "-o", str(source.with_suffix(".so")), str(source), "-lm"]
+        return command if subprocess.run(made, capture_output=True, check=False).returncode == 0 else None
+
+
+def zig() -> tuple[str, ...] | None:
+    """The compiler of the wheel `ziglang`, for any processor of this kind; None where the wheel is not installed."""
+    if importlib.util.find_spec("ziglang") is None:
+        return None
+    return sys.executable, "-m", "ziglang", "cc", "-mcpu=baseline"
+
+
+def build() -> Path:
+    """Compile the kernel beside its sources; SystemExit with the reason where that cannot be."""
+    module = kernel()
+    binary: Path = module.BINARY
+    command = compiler() or zig()
+    if command is None:
+        raise SystemExit(f"cuefem: no C compiler; install one (cc), or `python -m pip install '{ZIG}'`")
+    sources = [str(path) for path in sorted(module.HERE.glob("*.c"))]
+    made = binary.with_suffix(f".{os.getpid()}{binary.suffix}")  # another process may load the kernel meanwhile
     own = shlex.split(os.environ.get("CFLAGS", ""))
-    for flags in (FLAGS, ["-O2"]):
-        command = [*compiler, "-std=gnu11", "-fPIC", "-shared", *flags, *own, about, "-o", str(made), *sources, "-lm"]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        if done.returncode == 0:
-            made.replace(binary)
-            return binary
-        said = said or done.stderr.strip()
-    made.unlink(missing_ok=True)
-    return left_out(binary, f"the kernel does not compile, so the contact will run in Python:\n{said}")
-
-
-def left_out(binary: Path, why: str) -> None:
-    """Say why there is no kernel, and leave none of an earlier time behind."""
-    binary.unlink(missing_ok=True)
-    print(f"cuefem: {why}", file=sys.stderr)
+    line = [*command, "-std=gnu11", "-fPIC", "-fvisibility=hidden", "-shared", *FLAGS, *own, "-o", str(made), *sources, "-lm"]
+    done = subprocess.run(line, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise SystemExit(f"cuefem: the contact's kernel does not compile with {command[0]}:\n{done.stderr.strip()}")
+    made.replace(binary)
+    for leftover in made.parent.glob(f"{made.stem}.*"):  # a linker for Windows leaves more than the library
+        leftover.unlink()
+    module.seal()
+    return binary
 
 
 def platform_tag() -> str:
@@ -71,19 +84,23 @@ def platform_tag() -> str:
 
 
 if __name__ == "__main__":
-    print(build() or "nothing built")
+    print(build())
 else:
     from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
     class KernelHook(BuildHookInterface):  # type: ignore[type-arg]
         """Hatchling's hook (``[tool.hatch.build.hooks.custom]``)."""
 
+        def dependencies(self) -> list[str]:
+            """What the build needs: a compiler by name of its wheel, where this machine has none."""
+            return [] if compiler() else [ZIG]
+
         def initialize(self, version: str, build_data: dict[str, Any]) -> None:
             """Build the kernel before a wheel, or an editable install, is made."""
             if self.target_name != "wheel":
                 return
-            made = build()
-            if made is not None:
+            binary = build()
+            for made in (binary, kernel().DIGESTS):
                 build_data["artifacts"].append(str(made.relative_to(ROOT)))
-                build_data["pure_python"] = False
-                build_data["tag"] = platform_tag()
+            build_data["pure_python"] = False
+            build_data["tag"] = platform_tag()

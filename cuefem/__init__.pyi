@@ -4,8 +4,7 @@ from .beam.modes import modes as modes
 from .contact.calibrated import leather_modulus as leather_modulus
 from .contact.motion import motion as motion
 from .contact.place import Placed as Placed, place as place
-from .contact.strike import strike as strike
-from .contact.strikes import batch_strike as batch_strike
+from .contact.strike import batch_strike as batch_strike, strike as strike
 from .cue import Cue as Cue, LumpedCue as LumpedCue, Material as Material, Segment as Segment
 from .design.batch import CueBatch as CueBatch, batch_stick as batch_stick
 from .effects import (

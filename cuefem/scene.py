@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property, lru_cache
 from itertools import chain
 from typing import Annotated, Any
@@ -362,7 +362,15 @@ class Resolution:
             check_count("Resolution.elements", count, 1)
 
 
-@dataclass(frozen=True)
+def equal_fields(one: Any, other: Any) -> bool:
+    """Whether two dataclasses of one class hold equal fields, arrays among them: their ``__eq__``."""
+    if type(one) is not type(other):
+        return NotImplemented
+    pairs = ((getattr(one, field.name), getattr(other, field.name)) for field in fields(one))
+    return all(np.array_equal(a, b) if isinstance(a, np.ndarray) else bool(np.all(a == b)) for a, b in pairs)
+
+
+@dataclass(frozen=True, eq=False)
 class Outcome:
     """What a strike leaves behind.
 
@@ -401,10 +409,8 @@ class Outcome:
     error : float or None
         Estimated relative error; None if nothing estimated it.
     history : History or None
-        Forces and velocities during the contact, at any time (`cuefem.contact.history.History`); None from the impulse
+        Forces and velocities during the contact, at any time (`cuefem.contact.outcome.History`); None from the impulse
         solver.
-    kernel : str or None
-        What ran the contact: "c", the compiled kernel, or "python"; None from the impulse solver.
     """
 
     squirt: Any
@@ -421,7 +427,9 @@ class Outcome:
     unknowns: int = 0
     error: float | None = None
     history: Any = None
-    kernel: str | None = None
+
+    __eq__ = equal_fields
+    __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
         return said("Outcome", self._shown())

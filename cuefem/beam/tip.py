@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from cuefem.beam.spectrum import Ended
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class TipModes:
     """All that an impact sees of a cue: B(t) = sum of a_k a_k' cos(omega_k t), the inverse mass at the contact.
 

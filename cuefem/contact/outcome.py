@@ -1,19 +1,139 @@
-"""The outcome of a contact that is over: energies, regime, jam."""
+"""What a contact leaves behind: its phases, the forces at any time of it, and how the tip gripped."""
 
 from __future__ import annotations
 
-import math
+from dataclasses import dataclass
 from itertools import takewhile
+from typing import NamedTuple
 
 import numpy as np
+from numpy.polynomial import legendre
+from numpy.typing import ArrayLike
 
-from cuefem.contact.phases import Kind
-from cuefem.contact.state import APART, Contact, Phase
-from cuefem.quantity import scalar
-from cuefem.scene import Outcome, Scene
+from cuefem.contact.rule import WAVES
+from cuefem.cue import Array
+
+from cuefem.scene import Outcome, equal_fields
 
 SLIDES, LETS_GO = 0.25, 0.5  # of the push, while the tip slides: from there on squirt grows fast; no valid shot
 MISSED = ("miscue", "lets go")
+# The grip of a blow, and grip and press of a flight, in which ball and tip are apart before they touch again.
+BLOW, FLIGHT = "blow", ("apart", "free")
+
+
+class Phase(NamedTuple):
+    """One phase of a contact.
+
+    Attributes
+    ----------
+    grip : str
+        "slip", "stick" or "slip back"; "blow" for the blow of endless friction, "apart" between two hits. A patch of
+        rings (`LeatherTip`) slips where all of them slide.
+    press : str
+        How the tip is pressed: "load", "unload", "rigid" (a dead tip past its peak), "free" between two hits.
+    start, end : float
+        Times from first touch, s.
+    impulse : tuple of float
+        Impulse (t, n) on the ball in this phase, N s.
+    """
+
+    grip: str
+    press: str
+    start: float
+    end: float
+    impulse: tuple[float, float]
+
+
+class Hit(NamedTuple):
+    """One contact of tip and ball: its start and end, s, and the impulse (t, n) on the ball in it, N s."""
+
+    start: float
+    end: float
+    impulse: tuple[float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class History:
+    """Forces and velocities at any time of a contact.
+
+    Call it with times, s, in [0, duration]. It returns a dict of arrays of their shape: "force_t" and "force_n" on the
+    ball, N; "velocity_t" and "velocity_n" of the ball against the tip, m/s. ValueError for other times.
+
+    Attributes
+    ----------
+    start, step : (n,) array
+        When each step of the contact begins, and how long it is, s.
+    duration : float
+        When the last contact ends, s.
+    values : (n, 4, nodes + 1) array
+        The two forces and the two velocities at the start and the nodes of each step.
+    velocity, spin : (3,) array or None
+        Of the ball after a raised stroke (`Elevation`): x right, y forward, z up, in m/s and rad/s.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> outcome = cf.strike(cf.Scene(cf.LumpedCue(0.54, 0.01), stroke=cf.Stroke(offset=0.3)))
+    >>> sorted(outcome.history(outcome.duration / 2))
+    ['force_n', 'force_t', 'velocity_n', 'velocity_t']
+    """
+
+    start: Array
+    step: Array
+    duration: float
+    values: Array
+    velocity: Array | None = None
+    spin: Array | None = None
+
+    __eq__ = equal_fields
+    __hash__ = None  # type: ignore[assignment]
+
+    def __call__(self, time: ArrayLike) -> dict[str, Array]:
+        """Evaluate the polynomials of the steps that the times fall in."""
+        time = np.asarray(time, float)
+        if not len(self.start):
+            raise ValueError("History takes times in [0, duration] s; this contact is a blow, without any")
+        if not np.all((time >= 0) & (time <= self.duration * (1 + 1e-12))):
+            raise ValueError(f"History takes times in [0, {self.duration}] s, the contact's; got {time}")
+        which = np.maximum(np.searchsorted(self.start, time, side="right") - 1, 0)
+        part = (time - self.start[which]) / self.step[which]
+        waves = np.moveaxis(self.values[which] @ WAVES.T, (-2, -1), (1, 0)) if time.ndim else None
+        if waves is None:
+            waves = (self.values[which] @ WAVES.T).T
+        found = legendre.legval(2 * part - 1, waves, tensor=False)
+        return dict(zip(("force_t", "force_n", "velocity_t", "velocity_n"), np.asarray(found), strict=True))
+
+
+def hits(outcome: Outcome) -> tuple[Hit, ...]:
+    """List the contacts of a strike, the first one first.
+
+    Parameters
+    ----------
+    outcome : Outcome
+        Of a coupled strike; more than one contact needs the effect `SecondHit`.
+
+    Returns
+    -------
+    tuple of Hit
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> from cuefem.contact.outcome import hits
+    >>> len(hits(cf.strike(cf.Scene(cf.LumpedCue(0.54, 0.01)))))
+    1
+    """
+    parts: list[list[Phase]] = [[]]
+    for phase in outcome.phases:
+        if phase[:2] == FLIGHT:
+            parts.append([])
+        else:
+            parts[-1].append(phase)
+    listed = []
+    for part in parts:
+        p_t, p_n = np.sum([phase.impulse for phase in part], axis=0)
+        listed.append(Hit(part[0].start, part[-1].end, (float(p_t), float(p_n))))
+    return tuple(listed)
 
 
 def grip_of(outcome: Outcome) -> str:
@@ -30,71 +150,13 @@ def grip_of(outcome: Outcome) -> str:
     return "lets go" if share > LETS_GO else "slides" if share > SLIDES else str(outcome.regime)
 
 
-def outcome_of(kind: Kind, scene: Scene, side: float) -> Outcome:
-    """The outcome of a contact that is over; side: -1 for a stroke at a negative offset."""
-    contact, laws, tip = kind.contact, kind.contact.laws, kind.contact.tip
-    M, nu = laws.ball_mass, laws.inertia
-    p_t, p_n, twist, along = contact.impulses
-    s, c = math.sin(laws.phi), math.cos(laws.phi)
-    impulse = np.array([side * p_t, p_n])
-    inertia = float(tip.approach @ tip.approach)  # of a cue that moves as one along its axis
-    return Outcome(
-        squirt=side * math.atan2(s * p_n - c * p_t, s * p_t + c * p_n) + 0.0,
-        ball_velocity=impulse / M,
-        ball_speed=math.hypot(p_t, p_n) / M,
-        spin=float(side * twist / (nu * M * scalar("Ball.radius", scene.ball.radius))),
-        cue_speed=float(laws.speed - along / inertia),
-        impulse=impulse,
-        duration=float(contact.time),
-        regime=regime(contact),
-        jam=jams(contact),
-        phases=tuple(contact.phases),
-        energy=_energy(kind, inertia, p_t, p_n, twist),
-        unknowns=len(contact.z),
-        history=kind.history(side),
-        kernel=kind.kernel,
-    )
-
-
-def _energy(kind: Kind, inertia: float, p_t: float, p_n: float, twist: float) -> dict[str, float]:
-    """J by name; inertia, kg, of the cue along its axis; the ball's impulse, and the part that turned it, N s."""
-    contact = kind.contact
-    laws, z, slots = contact.laws, contact.z, contact.slots
-    rigid, swings, speeds = z[slots.rigid], z[slots.vibration], z[slots.swinging]
-    account = {
-        "initial": inertia * laws.speed**2 / 2,
-        "ball translation": (p_t**2 + p_n**2) / (2 * laws.ball_mass),
-        "ball rotation": twist**2 / (2 * laws.inertia * laws.ball_mass),
-        "cue": float(rigid @ rigid) / 2,
-        "cue vibration": float(swings @ swings + speeds @ speeds) / 2 + contact.radiated,
-        "tip loss": kind.tip_loss(),
-        "friction loss": contact.friction_loss,
-        **kind.other_losses(),
-    }
-    return {name: float(joules) for name, joules in account.items()}
-
-
-def first_contact(contact: Contact) -> list[Phase]:
-    """The phases up to the first separation."""
-    return list(takewhile(lambda phase: phase[:2] != APART, contact.phases))
-
-
-def regime(contact: Contact) -> str:
-    """How the first slip ended, in the words of the impulse solver (see Outcome)."""
-    if contact.parted:  # thrown apart by the first blow, which stopped the slip at last or did not
-        return "late stick" if abs(contact.c_t @ contact.z) <= 1e-12 * contact.laws.speed else "miscue"
-    phases = first_contact(contact)
-    grips = [phase.grip for phase in phases]
+def regime_of(phases: tuple[Phase, ...]) -> str:
+    """How the first slip ended, in the words of the impulse solver (see Outcome), of a contact with phases."""
+    first_touch = list(takewhile(lambda phase: phase[:2] != FLIGHT, phases))
+    grips = [phase.grip for phase in first_touch]
     first = next((i for i, grip in enumerate(grips) if grip != "slip"), None)
     if first is None:
         return "miscue"
     if grips[first] == "slip back":
         return "slip reversal"
-    return "stick" if all(phase.press == "load" for phase in phases[: first + 1]) else "late stick"
-
-
-def jams(contact: Contact) -> bool:
-    """Whether the first slip drove the contact's normal velocity further in."""
-    if contact.phases[0].grip != "slip":
-        return False
-    return float(contact.c_n @ (contact.c_n + contact.laws.friction * contact.c_t)) < 0
+    return "stick" if all(phase.press == "load" for phase in first_touch[: first + 1]) else "late stick"

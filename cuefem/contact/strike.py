@@ -1,21 +1,26 @@
-"""The coupled strike: the vibrating shaft meets the ball in time (handbook: The strike)."""
+"""The coupled strike: the vibrating shaft meets the ball in time (handbook: The strike); one, or many at once."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from cuefem.beam.tip import TipModes
-from cuefem.contact.kinds import contact_of
-from cuefem.contact.outcome import outcome_of
-from cuefem.contact.phases import Kind, run
-from cuefem.contact.state import Laws
-from cuefem.contact.turns import Turns
-from cuefem.quantity import check_kind, scalar
+from cuefem.contact.laws import RIGID_PATCH, model_of, table_axes
+from cuefem.contact.outcome import regime_of
+from cuefem.contact.solve import SolvedContact, solve_contact
+from cuefem.cue import Cue
+from cuefem.quantity import check_count, check_kind, scalar, shown
 from cuefem.scene import Outcome, Resolution, Scene
-from cuefem.tip_modes import tip_modes_of
+from cuefem.tip_modes import Solved, default_resolution, tip_modes_of, turning
+
+# Strikes of one cue that a thread takes at a time.
+CHUNK = 16
+NUMBERS = ("squirt", "ball_velocity", "ball_speed", "spin", "cue_speed", "impulse", "duration", "regime", "jam")
 
 
 def strike(scene: Scene, at: Resolution | None = None) -> Outcome:
@@ -33,24 +38,24 @@ def strike(scene: Scene, at: Resolution | None = None) -> Outcome:
     Returns
     -------
     Outcome
-        Its ``phases`` are `cuefem.contact.state.Phase`; its ``history`` gives forces and velocities at any time. Its
+        Its ``phases`` are `cuefem.contact.outcome.Phase`; its ``history`` gives forces and velocities at any time. Its
         ``energy`` names "ball translation", "ball rotation", "cue" (rigid motion), "cue vibration", "tip loss" and
         "friction loss", and what effects add.
 
     Raises
     ------
     ValueError
-        For a scene of arrays, or effects that no contact honours together.
+        For a scene of arrays, effects that no contact honours together, or a tip that gives back next to nothing: a
+        restitution above 0 and below 1e-4.
     RuntimeError
         If the ball does not leave the cue.
 
     Notes
     -----
-    The cue's modes, the tip and the ball are one system. While the contact slips or sticks, and the tip is loaded or
-    unloaded, its motion is linear: each such phase is followed exactly, and its end found as a root, so that the modes
-    kept are the only approximation (handbook: The strike). A stiffening tip, a turning normal or a raised cue is
-    stepped in time, to about 1e-10. In the compiled kernel the cost goes with the modes, about a millisecond for a
-    contact of 24; in Python, which takes several, with their cube.
+    The cue's modes, the tip and the ball are one system. Between the forces of the contact the modes turn exactly;
+    over a step the forces are polynomials, found by Newton's method, so that the modes kept are the only approximation
+    that counts: the steps add about 1e-12 for a linear tip, 1e-10 for others, and 1e-6 for a patch that slips ring by
+    ring (handbook: The contact's one method).
 
     Examples
     --------
@@ -66,40 +71,222 @@ def strike(scene: Scene, at: Resolution | None = None) -> Outcome:
     return strike_modes(scene, tip_modes_of(scene, at))
 
 
-def strike_modes(scene: Scene, tip: TipModes, turns: Turns | None = None) -> Outcome:
+def strike_modes(scene: Scene, tip: TipModes, *, recorded: bool = True) -> Outcome:
     """The coupled strike of a cue that is given by its tip modes, as `strike`.
 
-    turns: of the same modes, if other strikes share them; they change no number.
+    recorded: whether the outcome has a history. Strikes with the same tip modes share what belongs to the cue.
     """
-    side = math.copysign(1.0, scalar("Stroke.offset", scene.stroke.offset))
-    return outcome_of(struck(scene, tip, turns), scene, side)
+    return outcome_of(solve_contact(model_of(scene, tip), recorded=recorded), scene)
 
 
-def struck(scene: Scene, tip: TipModes, turns: Turns | None = None) -> Kind:
-    """The contact of a strike when it is over, solved for an offset >= 0; a negative one is its mirror image."""
-    offset = scalar("Stroke.offset", scene.stroke.offset)
-    laws = Laws(
-        phi=math.asin(abs(offset)),
-        ball_mass=scalar("Ball.mass", scene.ball.mass),
-        inertia=scalar("Ball.inertia", scene.ball.inertia),
-        restitution=scalar("Tip.restitution", scene.tip.restitution),
-        stiffness=scene.stiffness,
-        friction=scalar("Tip.friction", scene.tip.friction),
-        time=scene.contact_time,
-        speed=scalar("Stroke.speed", scene.stroke.speed),
+def outcome_of(solved: SolvedContact, scene: Scene) -> Outcome:
+    """The outcome of a strike's contact that is over."""
+    model, side = solved.model, math.copysign(1.0, scene.stroke.offset)
+    M, nu, s, c = model.ball_mass, model.inertia, math.sin(model.phi), math.cos(model.phi)
+    (p_t, p_n), approach = solved.impulse, model.propagator.approach
+    inertia = float(approach @ approach)  # of a cue that moves as one along its axis
+    if model.table is None:
+        turning, along = float(solved.ball[2]), s * p_t + c * p_n
+    else:
+        up = table_axes(model.phi, model.table.angle)[2]
+        turning = float(up @ solved.ball[3:])  # what turned the ball about the vertical, and what the cue gave
+        moving = (model.propagator.velocities @ solved.xi).real
+        along = model.speed * inertia - float(approach @ moving)
+    impulse = np.array([side * p_t, p_n])
+    return Outcome(
+        squirt=side * math.atan2(s * p_n - c * p_t, s * p_t + c * p_n) + 0.0,
+        ball_velocity=impulse / M,
+        ball_speed=math.hypot(p_t, p_n) / M,
+        spin=side * turning / scalar("Ball.radius", scene.ball.radius),
+        cue_speed=model.speed - along / inertia,
+        impulse=impulse,
+        duration=solved.time,
+        regime=_regime(solved),
+        jam=_jams(solved),
+        phases=solved.phases,
+        energy=_energy(solved, inertia, (p_t**2 + p_n**2) / (2 * M), nu * M * turning**2 / 2),
+        unknowns=model.unknowns,
+        history=None if solved.course is None else solved.history(side),
     )
-    straight = tip if offset else tip.uncoupled
-    if turns is None or straight is not tip:
-        turns = Turns(straight)
-    tip = straight
-    terms = scene.contact_terms
-    lever = terms.lever(laws.phi)
-    if any(lever):
-        tip = replace(tip, amplitude=tip.amplitude + np.outer(tip.rotation, lever))
-    kind = contact_of(scene, tip, laws, terms, turns)
-    run(kind)
-    if terms.window is not None:
-        from cuefem.contact.second_hit import follow
 
-        follow(kind, terms.window)
-    return kind
+
+def _regime(solved: SolvedContact) -> str:
+    if solved.parted:  # thrown apart by the first blow, which stopped the slip at last or did not
+        return "late stick" if abs(solved.velocity[0]) <= 1e-12 * solved.model.speed else "miscue"
+    return regime_of(solved.phases)
+
+
+def _jams(solved: SolvedContact) -> bool:
+    """Whether the first slip drove the contact's normal velocity further in."""
+    if not solved.phases or solved.phases[0].grip != "slip":
+        return False
+    B = solved.model.inverse_mass
+    return bool(B[1, 1] + solved.model.friction * B[0, 1] < 0)
+
+
+def _energy(solved: SolvedContact, inertia: float, moving: float, turning: float) -> dict[str, float]:
+    """J by name; inertia, kg, of the cue along its axis; the ball's energy in its motion and its spin."""
+    model, losses, (rigid, vibrating) = solved.model, solved.losses, solved.cue_energy
+    account = {
+        "initial": inertia * model.speed**2 / 2,
+        "ball translation": moving,
+        "ball rotation": turning,
+        "cue": rigid,
+        "cue vibration": vibrating + losses["radiated"],
+        "tip loss": tip_loss(solved),
+        "friction loss": losses["friction"],
+    }
+    if model.propagator.lossy:
+        account["damping loss"] = losses["damping"]
+    if model.patch != RIGID_PATCH:
+        account["tip shear"] = losses["shear"]
+    if model.table is not None:
+        right, forward, up = table_axes(model.phi, model.table.angle)
+        speeds, spins = solved.ball[:3], solved.ball[3:]
+        level = (right @ spins) ** 2 + (forward @ spins) ** 2
+        account["ball roll"] = model.inertia * model.ball_mass * level / 2
+        account["ball hop"] = model.ball_mass * (up @ speeds) ** 2 / 2
+        account["table loss"] = losses["table"]
+    return {name: float(joules) for name, joules in account.items()}
+
+
+def tip_loss(solved: SolvedContact) -> float:
+    """Energy that the tip did not give back along the normal, J."""
+    model = solved.model
+    if model.leather is not None:
+        return model.leather.loss(solved.deepest)
+    exponent = model.terms["exponent"]
+    work = model.terms["stiffness"] * solved.deepest ** (exponent + 1) / (exponent + 1)
+    return (1 - model.restitution**2) * work
+
+
+def batch_strike(scenes: Sequence[Scene], at: Resolution | None = None, *, threads: int = 1) -> Outcome:
+    """Strike many balls with vibrating cues: the numbers of `cuefem.strike`, as arrays.
+
+    Parameters
+    ----------
+    scenes
+        One scene a strike, of any cues and effects. The modes of scenes that differ in ball, tip and stroke alone are
+        solved once, as long as the same resolution is meant for them.
+    at
+        As in `cuefem.strike`, for all; by default each scene's own.
+    threads
+        How many threads strike, beside each other. The numbers do not depend on it.
+
+    Returns
+    -------
+    Outcome
+        Every field an array with one entry a scene, vectors (scenes, 2). ``energy`` has every name that a scene has,
+        zero where another one has none. ``phases`` and ``history`` are left out, ``unknowns`` is the largest.
+
+    Raises
+    ------
+    TypeError
+        If ``scenes`` is not a sequence of scenes.
+    ValueError, RuntimeError
+        As `cuefem.strike`, with the number of the scene in front, from 0 on.
+
+    Notes
+    -----
+    What a strike costs beside its modes is in studies/speed_seconds.md.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> cue = cf.Cue((cf.Segment(0.7, 0.012, 0.021, wood),), body_mass=0.43)
+    >>> scenes = [cf.Scene(cue, stroke=cf.Stroke(2.0, offset)) for offset in (0.1, 0.2, 0.3)]
+    >>> outcome = cf.batch_strike(scenes, cf.Resolution(2, 10, 10), threads=2)
+    >>> outcome.squirt.shape, bool(outcome.squirt[2] > outcome.squirt[1])
+    ((3,), True)
+    """
+    check_count("batch_strike threads", threads, 1)
+    if isinstance(scenes, Scene) or not isinstance(scenes, Iterable):
+        got = "one Scene: write [scene], or cuefem.strike(scene)" if isinstance(scenes, Scene) else shown(scenes)
+        raise TypeError(f"batch_strike scenes must be a sequence of Scene; got {got}")
+    scenes = tuple(scenes)
+    for scene in scenes:
+        check_kind("batch_strike scenes", scene, Scene)
+    if not scenes:
+        raise ValueError("batch_strike takes one scene or more; got none")
+    found: list[dict[str, Any]] = [{}] * len(scenes)
+    jobs = _jobs(scenes, at)
+    if threads == 1:
+        _put(found, map(_struck, jobs))
+    else:
+        with ThreadPoolExecutor(threads) as executor:
+            _put(found, executor.map(_struck, jobs))
+    return _together(found)
+
+
+class _Job(NamedTuple):
+    """Strikes with the same modes: the scenes by their numbers, and the solved modes."""
+
+    shared: Solved
+    scenes: tuple[tuple[int, Scene], ...]
+
+
+def _jobs(scenes: tuple[Scene, ...], at: Resolution | None) -> Iterator[_Job]:
+    groups: dict[Any, list[int]] = {}
+    resolutions: dict[tuple[Cue, float], Resolution] = {}
+    for i, scene in enumerate(scenes):
+        with _Numbered(i):
+            groups.setdefault(_modes_of(scene, at, resolutions), []).append(i)
+    for rows in groups.values():
+        shared = Solved(scenes[rows[0]], at)
+        if len(rows) > CHUNK:
+            with _Numbered(rows[0]):
+                shared.tip  # noqa: B018  # solved here: threads would all begin to
+        for start in range(0, len(rows), CHUNK):
+            yield _Job(shared, tuple((i, scenes[i]) for i in rows[start : start + CHUNK]))
+
+
+def _modes_of(scene: Scene, at: Resolution | None, resolutions: dict[tuple[Cue, float], Resolution]) -> tuple[Any, ...]:
+    """What the tip modes of a scene depend on; resolutions: the default ones known so far."""
+    if scene.lumped is not None:
+        return (scene.lumped,)
+    resolution = at
+    if resolution is None:
+        timed = scene.shaft, float(scene.contact_time)
+        resolution = resolutions.get(timed) or resolutions.setdefault(timed, default_resolution(scene))
+    return scene.cue, scene.cue_effects, float(scene.axial_mass), turning(scene), resolution
+
+
+class _Numbered:
+    """Errors of a scene, with its number in front."""
+
+    def __init__(self, number: int) -> None:
+        self.number = number
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, kind: Any, error: BaseException | None, trace: Any) -> None:
+        if isinstance(error, ValueError | RuntimeError):
+            raised = ValueError if isinstance(error, ValueError) else RuntimeError
+            raise raised(f"scene {self.number}: {error}") from error
+
+
+def _struck(job: _Job) -> list[tuple[int, dict[str, Any]]]:
+    """The numbers of each strike."""
+    found = []
+    for i, scene in job.scenes:
+        with _Numbered(i):
+            outcome = strike_modes(scene, job.shared.tip, recorded=False)
+            numbers = {name: getattr(outcome, name) for name in (*NUMBERS, "energy", "unknowns")}
+        found.append((i, numbers))
+    return found
+
+
+def _put(found: list[dict[str, Any]], done: Iterator[list[tuple[int, dict[str, Any]]]]) -> None:
+    for part in done:
+        for i, numbers in part:
+            found[i] = numbers
+
+
+def _together(found: list[dict[str, Any]]) -> Outcome:
+    names = dict.fromkeys(name for numbers in found for name in numbers["energy"])
+    energy = {name: np.array([numbers["energy"].get(name, 0.0) for numbers in found]) for name in names}
+    columns = {name: np.array([numbers[name] for numbers in found]) for name in NUMBERS}
+    unknowns = max(numbers["unknowns"] for numbers in found)
+    return Outcome(**columns, phases=(), energy=energy, unknowns=unknowns)  # type: ignore[arg-type]

@@ -1,68 +1,44 @@
-"""The compiled kernel of the contact: the same steps as in Python, in C, where a compiler was there to build it.
+"""The compiled kernel of the contact: where it lies, and whether it is whole.
 
-It is never required. `library` is None without it, and then everything runs in Python, which is the oracle the kernel
-is tested against. The environment variable CUEFEM_KERNEL chooses: "python" switches the kernel off, "c" makes it an
-error that it is not there. hatch_build.py, at the root of the sources, builds it.
+hatch_build.py, at the root of the sources, compiles it when the package is installed. A kernel that is missing, cut
+short or built from other sources is refused in one line before it is loaded.
 """
 
 from __future__ import annotations
 
-import ctypes
-import os
 import sys
-from functools import cache
 from hashlib import sha256
 from pathlib import Path
 
-VARIABLE = "CUEFEM_KERNEL"
 HERE = Path(__file__).parent
 BINARY = HERE / ("_kernel.dll" if sys.platform == "win32" else "_kernel.so")
+# Beside it: the digest of the sources that it was built from, and its own.
+DIGESTS = HERE / "_kernel.sha256"
+BUILD = "build it with `python hatch_build.py` in a clone, or install cuefem again"
 
 
-def library() -> ctypes.CDLL | None:
-    """The compiled kernel; None where it is switched off or not there.
-
-    RuntimeError if the environment asks for it and it is not there; ValueError if it asks for another one.
-    """
-    asked = os.environ.get(VARIABLE, "")
-    if asked == "python":
-        return None
-    if asked not in ("", "c"):
-        raise ValueError(f'{VARIABLE} must be "c", "python" or empty; got {asked!r}')
-    found, why = _loaded()
-    if asked and found is None:
-        raise RuntimeError(f"{VARIABLE} asks for the compiled kernel, but {why}")
-    return found
+class KernelError(RuntimeError):
+    """The compiled kernel cannot be used; the message says why, and how to build it."""
 
 
-def described() -> str:
-    """The same in words, for a person."""
-    if library() is not None:
-        return "compiled (C)"
-    if os.environ.get(VARIABLE):
-        return f"Python, as {VARIABLE} says"
-    return f"Python: {_loaded()[1]}"
-
-
-def digest() -> str:
-    """Of the sources beside this file; "" where they are not installed."""
+def sources_digest() -> str:
+    """Of the sources beside this file, the line ends of every system alike; "" where they are not installed."""
     sources = sorted([*HERE.glob("*.c"), *HERE.glob("*.h")])
-    return (
-        sha256(b"".join(path.read_bytes().replace(b"\r\n", b"\n") for path in sources)).hexdigest() if sources else ""
-    )
+    together = b"".join(path.read_bytes().replace(b"\r\n", b"\n") for path in sources)
+    return sha256(together).hexdigest() if sources else ""
 
 
-@cache
-def _loaded() -> tuple[ctypes.CDLL | None, str]:
-    """The compiled library and ""; or None and the reason why there is no library."""
-    if not BINARY.exists():
-        return None, "the compiled kernel was not built; install again where there is a C compiler"
-    try:
-        found = ctypes.CDLL(str(BINARY))
-        found.cuefem_sources.restype = ctypes.c_char_p
-        built = found.cuefem_sources().decode()
-    except (OSError, AttributeError) as error:
-        return None, f"the compiled kernel does not load: {' '.join(str(error).split())}"
-    if digest() not in ("", built):
-        return None, "the compiled kernel was built from other sources; install again"
-    return found, ""
+def seal() -> None:
+    """Write the digests of a kernel that was just built."""
+    DIGESTS.write_text(f"{sources_digest()}\n{sha256(BINARY.read_bytes()).hexdigest()}\n")
+
+
+def check() -> None:
+    """KernelError unless the kernel is there, whole, and built from the sources beside it."""
+    if not BINARY.exists() or not DIGESTS.exists():
+        raise KernelError(f"the contact's compiled kernel is missing; {BUILD}")
+    sources, binary = DIGESTS.read_text().split() if DIGESTS.stat().st_size == 130 else ("", "")
+    if sha256(BINARY.read_bytes()).hexdigest() != binary:
+        raise KernelError(f"the contact's compiled kernel is damaged: it is not the one that was built; {BUILD}")
+    if sources_digest() not in ("", sources):
+        raise KernelError(f"the contact's compiled kernel was built from other sources; {BUILD}")

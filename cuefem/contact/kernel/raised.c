@@ -1,213 +1,233 @@
-/* A contact of a raised cue over a table (cuefem.contact.raised): the equations of cuefem.contact.elevation. */
-#include "dop853.h"
+/* The contact of a cue raised over a table (handbook: The raised cue): six velocities and six forces.
 
-#include <string.h>
+   T, N and P stand for the tip's: along the surface in the plane of the cue and the ball's centre, along the normal, and
+   across that plane; UP, ASIDE and AHEAD for those of the ball's lowest point on the table. The friction of either
+   point has a direction in its plane, against the velocity; the table holds the ball, lets it slide, or has let it go. */
+#include "contact.h"
 
-/* Rows: the tip's velocities against the ball, and the ball's lowest point's. */
-enum { T, N, P, UP, ASIDE, AHEAD, ROWS };
-enum { NONE, LIFTED, SLIDES, HELD };
+enum { T, N, P, UP, ASIDE, AHEAD };
+static const int PLANES[2][3] = {{T, P, N}, {ASIDE, AHEAD, UP}}; /* two directions of friction, and what presses */
+/* A point that slides more slowly than this part of the stroke's speed keeps its direction. */
+static const double REST = 1e-8;
 
-/* Where the parts of a state stand, and the numbers of `Raised`. rows: (ROWS, size); gram: (ROWS, ROWS), their products.
-   ways: of the directions in which tip and ball slide. at_rest: a speed, m/s, below which a direction is kept. */
-struct raised {
-    int size, turning, at, depth, rubbed, damped, gone, height, scraped, tip_way, ball_way, dampers, lossy;
-    double friction, table_friction, clock, speed, at_rest, force, rounding, relative, longest_step;
-    struct power_law law;
-    const double *omega, *rows, *gram, *damping, *absolute;
-};
-
-/* table: how it holds the ball. deepest: at the last peak, m. */
-struct raised_hold {
-    int slips, loading, table;
-    double deepest;
-};
-
-struct work {
-    const struct raised *raised;
-    const struct raised_hold *hold;
-    double *free;
-};
-
-/* Velocities of the rows, and the forces on them; falling: how these change without forces. */
-struct seen {
-    double velocities[ROWS], falling[ROWS], forces[ROWS];
-};
-
-INLINE double dot(const double *one, const double *other, int count)
+static double friction_of(const Contact *c, int i)
 {
-    double total = 0;
-    for (int i = 0; i < count; i++)
-        total += one[i] * other[i];
-    return total;
+    return i ? c->table_friction : c->friction;
 }
 
-/* Solve a small system in its place: elimination with the greatest pivot of each column. */
-static void solve(double (*matrix)[ROWS], double *right, int count)
+static int slips(const Work *w, int i)
 {
-    for (int c = 0; c < count; c++) {
-        int best = c;
-        for (int r = c + 1; r < count; r++)
-            if (fabs(matrix[r][c]) > fabs(matrix[best][c]))
-                best = r;
-        for (int k = 0; k < count; k++) {
-            double kept = matrix[c][k];
-            matrix[c][k] = matrix[best][k], matrix[best][k] = kept;
-        }
-        double kept = right[c];
-        right[c] = right[best], right[best] = kept;
-        for (int r = c + 1; r < count; r++) {
-            double by = matrix[r][c] / matrix[c][c];
-            for (int k = c; k < count; k++)
-                matrix[r][k] -= by * matrix[c][k];
-            right[r] -= by * right[c];
-        }
-    }
-    for (int r = count - 1; r >= 0; r--) {
-        for (int k = r + 1; k < count; k++)
-            right[r] -= matrix[r][k] * right[k];
-        right[r] /= matrix[r][r];
-    }
+    return i ? w->hold.table == SLIDES : w->hold.grip != STICK;
 }
 
-/* The rate of a state without forces at the contact, and what is seen there. */
-FAST static void look(const struct work *work, const double *z, struct seen *seen)
+/* The velocities that the hold keeps at zero. */
+static int held_by(Hold hold, int *to)
 {
-    const struct raised *s = work->raised;
-    const struct raised_hold *hold = work->hold;
-    double *restrict free = work->free;
-    int size = s->size, keep[ROWS], count = 0;
-    memset(free, 0, sizeof(double) * size);
-    for (int i = 0; i < s->turning; i++)
-        free[i] = s->omega[i] * z[s->at + i];
-    for (int i = 0; i < s->turning; i++)
-        free[s->at + i] = -s->omega[i] * z[i];
-    for (int d = 0; d < s->dampers; d++) {
-        const double *damper = s->damping + (size_t)d * size;
-        double strength = dot(damper, z, size);
-        for (int i = 0; i < size; i++)
-            free[i] -= strength * damper[i];
-    }
-    for (int r = 0; r < ROWS; r++) {
-        seen->velocities[r] = dot(s->rows + (size_t)r * size, z, size);
-        seen->falling[r] = dot(s->rows + (size_t)r * size, free, size);
-        seen->forces[r] = 0;
-    }
-    double *forces = seen->forces, F_n = law_force(&s->law, hold->loading, hold->deepest, z[s->depth]);
-    forces[N] = F_n;
-    if (hold->slips) {
-        forces[T] = -s->friction * F_n * cos(z[s->tip_way]);
-        forces[P] = -s->friction * F_n * sin(z[s->tip_way]);
-    } else
-        keep[count++] = T, keep[count++] = P;
-    if (hold->table == SLIDES || hold->table == HELD)
-        keep[count++] = UP;
-    if (hold->table == HELD)
-        keep[count++] = ASIDE, keep[count++] = AHEAD;
-    if (!count)
-        return;
-    double push[ROWS][ROWS] = {{0}}, matrix[ROWS][ROWS], right[ROWS]; /* push: of each force kept */
-    for (int k = 0; k < count; k++)
-        push[k][keep[k]] = 1;
-    if (hold->table == SLIDES) { /* the table's push upwards brings friction */
-        push[count - 1][ASIDE] = -s->table_friction * cos(z[s->ball_way]);
-        push[count - 1][AHEAD] = -s->table_friction * sin(z[s->ball_way]);
-    }
-    for (int i = 0; i < count; i++) {
-        const double *row = s->gram + keep[i] * ROWS;
-        right[i] = seen->falling[keep[i]] + dot(row, forces, ROWS);
-        for (int k = 0; k < count; k++)
-            matrix[i][k] = dot(row, push[k], ROWS);
-    }
-    solve(matrix, right, count);
-    for (int k = 0; k < count; k++)
-        for (int r = 0; r < ROWS; r++)
-            forces[r] -= push[k][r] * right[k];
-}
-
-/* Rate at which the direction of a point that slides turns. */
-static double turns(const struct raised *s, const double *velocities, const double *rates, double way, int a, int b)
-{
-    double x = cos(way), y = sin(way), aside = x * rates[b] - y * rates[a], speed = x * velocities[a] + y * velocities[b];
-    return aside * speed / (speed * speed + s->at_rest * s->at_rest);
-}
-
-/* The rate of change of a state, per clock. */
-FAST static void change(const void *of, const double *z, double *restrict rate)
-{
-    const struct work *work = of;
-    const struct raised *s = work->raised;
-    struct seen seen;
-    look(work, z, &seen);
-    memcpy(rate, work->free, sizeof(double) * s->size);
-    double powers[ROWS], rates[ROWS];
-    for (int r = 0; r < ROWS; r++) {
-        const double *row = s->rows + (size_t)r * s->size;
-        for (int i = 0; i < s->size; i++)
-            rate[i] += seen.forces[r] * row[i];
-        powers[r] = -seen.forces[r] * seen.velocities[r];
-        rates[r] = seen.falling[r] + dot(s->gram + r * ROWS, seen.forces, ROWS);
-    }
-    rate[s->depth] = -seen.velocities[N];
-    rate[s->height] = seen.velocities[UP];
-    rate[s->rubbed] = powers[T] + powers[P];
-    rate[s->scraped] = powers[UP] + powers[ASIDE] + powers[AHEAD];
-    if (work->hold->slips)
-        rate[s->tip_way] = turns(s, seen.velocities, rates, z[s->tip_way], T, P);
-    if (work->hold->table == SLIDES)
-        rate[s->ball_way] = turns(s, seen.velocities, rates, z[s->ball_way], ASIDE, AHEAD);
-    for (int d = 0; d < s->dampers; d++) {
-        double speed = dot(s->damping + (size_t)d * s->size, z, s->size);
-        rate[d < s->lossy ? s->damped : s->gone] += speed * speed;
-    }
-    for (int i = 0; i < s->size; i++)
-        rate[i] *= s->clock;
-}
-
-/* What ends the phase, in the order of `Raised._ends`; how many there are. */
-static int ends_of(const void *of, const double *z, double *ends)
-{
-    const struct work *work = of;
-    const struct raised *s = work->raised;
-    const struct raised_hold *hold = work->hold;
-    struct seen seen;
-    look(work, z, &seen);
-    const double *v = seen.velocities, *forces = seen.forces;
-    double depth = s->speed * s->clock;
     int count = 0;
-    if (hold->loading)
-        ends[count++] = -v[N] / s->speed;
-    else {
-        ends[count++] = (z[s->depth] - law_rest(&s->law, hold->deepest)) / depth;
-        ends[count++] = (hold->deepest - z[s->depth]) / depth;
-    }
-    if (hold->slips)
-        ends[count++] = (cos(z[s->tip_way]) * v[T] + sin(z[s->tip_way]) * v[P]) / s->speed;
-    else if (s->friction < HUGE_VAL)
-        ends[count++] = (s->friction * forces[N] - hypot(forces[T], forces[P])) / s->force + s->rounding;
-    if (hold->table == LIFTED) {
-        ends[count++] = z[s->height] / depth;
-        return count;
-    }
-    ends[count++] = forces[UP] / s->force + s->rounding;
-    if (hold->table == SLIDES)
-        ends[count++] = (cos(z[s->ball_way]) * v[ASIDE] + sin(z[s->ball_way]) * v[AHEAD]) / s->speed;
-    else
-        ends[count++] = (s->table_friction * forces[UP] - hypot(forces[ASIDE], forces[AHEAD])) / s->force + s->rounding;
+    if (hold.grip == STICK) to[count++] = T, to[count++] = P;
+    if (hold.table != LIFTED) to[count++] = UP;
+    if (hold.table == HELD) to[count++] = ASIDE, to[count++] = AHEAD;
     return count;
 }
 
-/* Doubles that `cuefem_raised` works in. */
-EXPORTED ptrdiff_t cuefem_raised_room(int size)
+static void point(double *way, double x, double y)
 {
-    return size + dop853_room(size);
+    double size = hypot(x, y);
+    if (size > 0) way[0] = x / size, way[1] = y / size;
 }
 
-/* Step through a phase: see `dop853`. */
-EXPORTED int cuefem_raised(const struct raised *s, const struct raised_hold *hold, const struct tables *tables, double until,
-                           int ends, double *z, struct way *way, int most, double *times, double *olds, double *terms,
-                           double *room)
+static void residual(Work *w, const Step *s, Residual *r)
 {
-    struct work work = {s, hold, room};
-    struct motion motion = {s->size, s->relative, s->longest_step, s->absolute, &work, change, ends_of};
-    return dop853(&motion, tables, until, ends, z, way, most, times, olds, terms, room + s->size);
+    const Contact *c = w->c;
+    int press = w->hold.press;
+    memset(r, 0, sizeof *r);
+    for (int i = 0; i < Q; i++) {
+        double F, slope;
+        curve_at(c, virtual_depth(c, press, s->depth[i + 1]), &F, &slope, NULL, NULL);
+        r->g[N][i] = s->F[N][i + 1] - F, r->on_F[N][N][i] = 1, r->on_x[N][N][i] = slope / give_of(c, press);
+        if (w->hold.table == LIFTED)
+            for (int f = UP; f <= AHEAD; f++) r->g[f][i] = s->F[f][i + 1], r->on_F[f][f][i] = 1;
+        else r->g[UP][i] = s->v[UP][i + 1], r->on_v[UP][UP][i] = 1;
+        for (int k = 0; k < 2; k++) {
+            int a = PLANES[k][0], b = PLANES[k][1], n = PLANES[k][2];
+            double mu = friction_of(c, k);
+            if (k && w->hold.table == LIFTED) continue;
+            if (!slips(w, k)) {
+                r->g[a][i] = s->v[a][i + 1], r->g[b][i] = s->v[b][i + 1];
+                r->on_v[a][a][i] = r->on_v[b][b][i] = 1;
+                continue;
+            }
+            r->on_F[a][a][i] = r->on_F[b][b][i] = 1;
+            r->g[a][i] = s->F[a][i + 1], r->g[b][i] = s->F[b][i + 1];
+            if (mu == 0) continue;
+            /* against the velocity; past a stop, where it turns back, along it, so that all is smooth there */
+            const double *way = w->way[k];
+            double x = s->v[a][i + 1] - REST * c->speed * way[0], y = s->v[b][i + 1] - REST * c->speed * way[1];
+            double speed = hypot(x, y) + 1e-30, side = (x * way[0] + y * way[1] > 0 ? -1 : 1) * mu / speed;
+            double per = s->F[n][i + 1] * side;
+            r->g[a][i] += per * x, r->g[b][i] += per * y;
+            r->on_F[a][n][i] = side * x, r->on_F[b][n][i] = side * y;
+            x /= speed, y /= speed;
+            r->on_v[a][a][i] = per * y * y, r->on_v[b][b][i] = per * x * x;
+            r->on_v[a][b][i] = r->on_v[b][a][i] = -per * x * y;
+        }
+    }
 }
+
+/* The speed at which a point slides against its friction. */
+static void along(const Work *w, const Step *s, int k, double *to)
+{
+    int a = PLANES[k][0], b = PLANES[k][1], n = PLANES[k][2];
+    for (int i = 0; i < WITH; i++) {
+        double way[2] = {w->way[k][0], w->way[k][1]}, sign = s->F[n][i] < 0 ? -1 : 1;
+        if (i) way[0] = way[1] = 0, point(way, sign * s->F[a][i], sign * s->F[b][i]);
+        to[i] = -(s->v[a][i] * way[0] + s->v[b][i] * way[1]);
+    }
+}
+
+static int guards(Work *w, const Step *s, Guard *to)
+{
+    const Contact *c = w->c;
+    int count = 0;
+    double size = c->impulse / c->clock, speed = c->speed, way = speed * c->clock, values[WITH];
+    double tiny = 1e-12 * size, near = 1e-11, rest = (1 - c->restitution * c->restitution) * c->deepest;
+    if (w->hold.press == LOAD) GUARD(COMPRESSED, near * speed, -s->v[N][i]);
+    else {
+        GUARD(APART, near * way, s->depth[i] - rest);
+        GUARD(RELOADED, near * way, c->deepest - s->depth[i]);
+    }
+    if (slips(w, 0)) {
+        along(w, s, 0, values);
+        if (c->friction > 0) GUARD(GRIPPED, near * speed, values[i]);
+    } else if (isfinite(c->friction))
+        GUARD(SLIPPED, near * size, c->friction * s->F[N][i] - hypot(s->F[T][i], s->F[P][i]) + tiny);
+    if (w->hold.table == LIFTED) {
+        GUARD(LANDED, near * way, c->height + s->x[UP][i]);
+        return count;
+    }
+    GUARD(LIFTED_OFF, near * size, s->F[UP][i] + tiny);
+    if (w->hold.table == SLIDES) {
+        along(w, s, 1, values);
+        if (c->table_friction > 0) GUARD(STOPPED, near * speed, values[i]);
+    } else GUARD(SLID, near * size, c->table_friction * s->F[UP][i] - hypot(s->F[ASIDE][i], s->F[AHEAD][i]) + tiny);
+    return count;
+}
+
+/* The forces of a hold now; at the first touch, where there are none yet, those of a slight compression. */
+static int forces_now(Work *w, Hold hold, double *F)
+{
+    return forces_held(w, hold, F, Q);
+}
+
+/* How the table holds the ball, whose lowest point is at rest: held, sliding away, or not at all. */
+static void rest_on_table(Work *w)
+{
+    const Contact *c = w->c;
+    double F[FORCES];
+    w->hold.table = HELD;
+    if (!forces_now(w, w->hold, F)) return;
+    double slack = 1e-9 * fabs(F[N]);
+    if (hypot(F[ASIDE], F[AHEAD]) > c->table_friction * F[UP] + slack) {
+        w->hold.table = SLIDES;
+        point(w->way[1], F[ASIDE], F[AHEAD]);
+        if (!forces_now(w, w->hold, F)) return;
+    }
+    if (F[UP] < -slack) w->hold.table = LIFTED;
+}
+
+static double settle(Work *w, Hold hold)
+{
+    int held[FORCES], count = held_by(hold, held);
+    return blow(w, held, count);
+}
+
+/* Stick where friction can hold the tip, else the way it starts to slip. */
+static int grip_at_rest(Work *w, int press)
+{
+    Contact *c = w->c;
+    Hold hold = {STICK, press, w->hold.table};
+    double F[FORCES];
+    c->friction_loss += settle(w, hold);
+    if (!forces_now(w, hold, F)) return STICK;
+    if (hypot(F[T], F[P]) <= c->friction * F[N] + 1e-12 * c->impulse / c->clock) return STICK;
+    point(w->way[0], F[T], F[P]);
+    return SLIP;
+}
+
+static int first_grip(Work *w, int press)
+{
+    Contact *c = w->c;
+    double v[FORCES];
+    velocities_now(w, v);
+    w->hold = (Hold){SLIP, press, HELD};
+    if (hypot(v[T], v[P]) == 0) w->hold.grip = grip_at_rest(w, press);
+    else if (isfinite(c->friction)) point(w->way[0], -v[T], -v[P]);
+    else {
+        const int held[3] = {T, P, UP};
+        c->friction_loss += blow(w, held, 3);
+        w->hold.grip = STICK;
+    }
+    rest_on_table(w);
+    c->grip = w->hold.grip;
+    return 1;
+}
+
+static void begin(Work *w)
+{
+    w->c->friction_loss += settle(w, w->hold);
+}
+
+static void taken(Work *w, const Step *s, double part)
+{
+    Contact *c = w->c;
+    double work[FORCES];
+    for (int f = 0; f < FORCES; f++) {
+        double force[WITH], velocity[WITH];
+        to_waves(s->F[f], force), to_waves(s->v[f], velocity);
+        work[f] = 0;
+        for (int q = 0; q < POINTS; q++) {
+            double at = part * rule.gauss[q];
+            work[f] += s->step * part * rule.weights[q] * legendre(force, WITH, at) * legendre(velocity, WITH, at);
+        }
+    }
+    c->friction_loss -= work[T] + work[P], c->table_loss -= work[UP] + work[ASIDE] + work[AHEAD];
+    if (w->hold.table == LIFTED) c->height += value_at(s->x[UP], part);
+    for (int k = 0; k < 2; k++) {
+        int a = PLANES[k][0], b = PLANES[k][1], n = PLANES[k][2];
+        double sign = value_at(s->F[n], part) < 0 ? -1 : 1;
+        if (slips(w, k)) point(w->way[k], sign * value_at(s->F[a], part), sign * value_at(s->F[b], part));
+    }
+    c->depth = value_at(s->depth, part);
+}
+
+static int next(Work *w, int event)
+{
+    Contact *c = w->c;
+    double F[FORCES], v[FORCES];
+    if (event == APART) return 0;
+    if (event == COMPRESSED) {
+        c->deepest = c->depth, w->hold.press = UNLOAD;
+        curve_at(c, c->depth, &c->peak, F, NULL, NULL);
+    } else if (event == RELOADED) w->hold.press = LOAD;
+    else if (event == GRIPPED) w->hold.grip = grip_at_rest(w, w->hold.press);
+    else if (event == SLIPPED) {
+        if (forces_now(w, w->hold, F)) point(w->way[0], F[T], F[P]);
+        w->hold.grip = SLIP;
+    } else if (event == LIFTED_OFF) w->hold.table = LIFTED;
+    else if (event == SLID) {
+        if (forces_now(w, w->hold, F)) point(w->way[1], F[ASIDE], F[AHEAD]);
+        w->hold.table = SLIDES;
+    } else if (event == LANDED) {
+        w->hold.table = SLIDES, c->height = 0;
+        c->table_loss += settle(w, w->hold);
+        velocities_now(w, v);
+        point(w->way[1], -v[ASIDE], -v[AHEAD]);
+    } else {
+        w->hold.table = HELD;
+        c->table_loss += settle(w, w->hold);
+        rest_on_table(w);
+    }
+    return 1;
+}
+
+const Law raised = {first_grip, begin, residual, guards, taken, next};

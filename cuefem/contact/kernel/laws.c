@@ -1,0 +1,306 @@
+/* The contact in the plane of the cue and the ball's centre: forces 0 along the surface (t) and 1 along the normal (n).
+
+   The tip's force F_n follows a curve over its compression d = - integral of v_n; on the way back from the deepest point
+   D that curve's compression is scaled by e^2, from the rest (1 - e^2) D on (the virtual compression). For e = 0 the tip
+   is rigid there: v_n = 0. Along the surface the contact slips, F_t = side mu F_n, or it sticks: v_t = 0; or the patch
+   hangs on a spring, F_t = -integral of v_t / c; or on leather, whose stiffness k grows and shrinks with the patch:
+
+       F_t' = -k v_t while it grows,    (F_t/k)' = -v_t while it shrinks;
+
+   or on rings (rings.c), each of which holds or slides. */
+#include "contact.h"
+
+/* Force and slope at a virtual compression; along the surface stiffness and its slope, where they are asked for. */
+void curve_at(const Contact *c, double depth, double *F, double *slope, double *k, double *dk)
+{
+    if (c->curve == POWER_CURVE) {
+        if (c->exponent == 1) {
+            *F = c->stiffness * depth, *slope = c->stiffness;
+            return;
+        }
+        double size = fabs(depth) + 1e-300, power = pow(size, c->exponent - 1);
+        *F = copysign(c->stiffness * power * size, depth), *slope = c->stiffness * c->exponent * power;
+        return;
+    }
+    /* F = y^3 (f_0 + f_1 y + ...), y/k = g_0 + g_1 y + ..., y the root of the compression */
+    double y = sqrt(fmax(depth, 0)), f = 0, df = 0, g = 0, dg = 0;
+    for (int i = c->terms - 1; i >= 0; i--) {
+        f = f * y + c->force_terms[i], df = df * y + (i + 3) * c->force_terms[i];
+        g = g * y + c->give_terms[i], dg = dg * y + (i + 1) * c->give_terms[i];
+    }
+    *F = y * y * y * f, *slope = y * df / 2;
+    if (!k) return;
+    if (c->steady > 0) {
+        *k = c->steady, *dk = 0;
+        return;
+    }
+    *k = y / g;
+    *dk = y > 0 ? *k * (2 - *k * dg / y) / (2 * depth) : 0;
+}
+
+/* By how much less the compression changes than the virtual one. */
+double give_of(const Contact *c, int press)
+{
+    return press == LOAD ? 1 : c->restitution * c->restitution;
+}
+
+double virtual_depth(const Contact *c, int press, double depth)
+{
+    double e2 = c->restitution * c->restitution;
+    return press == LOAD ? depth : (depth - (1 - e2) * c->deepest) / e2;
+}
+
+static double rest_of(const Contact *c)
+{
+    return (1 - c->restitution * c->restitution) * c->deepest;
+}
+
+static double pressing(const Contact *c, int press, double depth)
+{
+    double F, slope;
+    curve_at(c, virtual_depth(c, press, depth), &F, &slope, NULL, NULL);
+    return F;
+}
+
+static void residual(Work *w, const Step *s, Residual *r)
+{
+    const Contact *c = w->c;
+    int press = w->hold.press;
+    double give = give_of(c, press), mu = c->friction, k[WITH], dk[WITH];
+    memset(r, 0, sizeof *r);
+    for (int i = 0; i < WITH; i++) {
+        double F, slope;
+        if (press != RIGID) curve_at(c, virtual_depth(c, press, s->depth[i]), &F, &slope, &k[i], &dk[i]);
+        if (!i) continue;
+        if (press == RIGID) r->g[1][i - 1] = s->v[1][i], r->on_v[1][1][i - 1] = 1;
+        else {
+            r->g[1][i - 1] = s->F[1][i] - F;
+            r->on_F[1][1][i - 1] = 1, r->on_x[1][1][i - 1] = slope / give;
+        }
+    }
+    if (c->patch == RINGED_PATCH) {
+        rings_at_nodes(w, s, r);
+        return;
+    }
+    double sum[Q], start = c->shear == 0 ? 0 : c->patch == LEATHER_PATCH ? c->shear / k[0] : 0;
+    if (c->patch == LEATHER_PATCH && w->grows)
+        for (int i = 0; i < Q; i++) {
+            sum[i] = 0;
+            for (int j = 0; j < WITH; j++) sum[i] += s->step * rule.sums[i][j] * k[j] * s->v[0][j];
+        }
+    for (int i = 0; i < Q; i++) {
+        double F = s->F[0][i + 1], x = s->x[0][i + 1];
+        if (w->hold.grip != STICK) {
+            r->g[0][i] = F - w->hold.grip * mu * s->F[1][i + 1];
+            r->on_F[0][0][i] = 1, r->on_F[0][1][i] = -w->hold.grip * mu;
+        } else if (c->patch == RIGID_PATCH) r->g[0][i] = s->v[0][i + 1], r->on_v[0][0][i] = 1;
+        else if (c->patch == SPRING_PATCH) {
+            r->g[0][i] = F - c->shear + x / c->compliance;
+            r->on_F[0][0][i] = 1, r->on_x[0][0][i] = 1 / c->compliance;
+        } else {
+            r->on_F[0][0][i] = 1, r->on_x[0][0][i] = k[i + 1];
+            if (w->grows) r->g[0][i] = F - c->shear + sum[i];
+            else {
+                r->g[0][i] = F - k[i + 1] * (start - x);
+                r->on_x[0][1][i] = dk[i + 1] * (start - x) / give;
+            }
+        }
+    }
+}
+
+/* The velocity at which a patch slides on the ball in slip, at the start of a step and its nodes. */
+static void sliding(const Work *w, const Step *s, double *to)
+{
+    const Contact *c = w->c;
+    int press = w->hold.press;
+    double side = w->hold.grip * c->friction;
+    for (int i = 0; i < WITH; i++) {
+        to[i] = s->v[0][i];
+        if (c->patch == RIGID_PATCH) continue;
+        if (press == RIGID) { /* F_n follows the motion */
+            double rate = 0;
+            for (int j = 0; j < Q; j++) rate += rule.slopes[i][j] * s->F[0][j + 1];
+            to[i] += c->compliance * rate / s->step;
+            continue;
+        }
+        double F, slope, k, dk, depth = virtual_depth(c, press, s->depth[i]), per = 0;
+        curve_at(c, depth, &F, &slope, &k, &dk);
+        if (c->patch == SPRING_PATCH) per = c->compliance * slope;
+        else {
+            per = k > 0 ? slope / k : 1 / c->first_ratio;
+            if (!w->grows && depth > 0 && k > 0) per -= F * dk / (k * k);
+        }
+        to[i] -= side * per * s->v[1][i] / give_of(c, press);
+    }
+}
+
+/* Energy that the patch holds. */
+static double stored(const Contact *c, int press)
+{
+    if (c->patch == SPRING_PATCH) return c->compliance * c->shear * c->shear / 2;
+    if (c->patch == RINGED_PATCH) return rings_store(c, press, c->depth);
+    if (c->patch != LEATHER_PATCH || c->shear == 0) return 0;
+    double F, slope, k, dk;
+    curve_at(c, virtual_depth(c, press, c->depth), &F, &slope, &k, &dk);
+    return k > 0 ? c->shear * c->shear / (2 * k) : 0;
+}
+
+static int guards(Work *w, const Step *s, Guard *to)
+{
+    const Contact *c = w->c;
+    int count = 0, press = w->hold.press, grip = w->hold.grip;
+    double size = c->impulse / c->clock, speed = c->speed, near = w->linear ? 0 : 1e-10, slides[WITH];
+    double way = near * speed * c->clock;
+    if (press == FREE) {
+        GUARD(TOUCHED, 0, rest_of(c) + 1e-10 * speed * c->clock - s->depth[i]);
+        return count;
+    }
+    if (press == LOAD) GUARD(COMPRESSED, near * speed, -s->v[1][i]);
+    else if (press == RIGID) {
+        GUARD(APART, near * size, s->F[1][i]);
+        GUARD(RELOADED, near * size, c->peak - s->F[1][i]);
+    } else {
+        GUARD(APART, way, s->depth[i] - rest_of(c));
+        GUARD(RELOADED, way, c->deepest - s->depth[i]);
+        if (c->patch == LEATHER_PATCH) GUARD(TURNED, near * speed, w->grows ? -s->v[1][i] : s->v[1][i]);
+    }
+    if (c->patch == RINGED_PATCH) return count;
+    if (grip != STICK) {
+        sliding(w, s, slides);
+        GUARD(GRIPPED, near * speed, -grip * slides[i]);
+    } else if (isfinite(c->friction)) {
+        GUARD(SLIPPED, near * size, c->friction * s->F[1][i] - s->F[0][i] + 1e-12 * size);
+        GUARD(SLIPPED_BACK, near * size, c->friction * s->F[1][i] + s->F[0][i] + 1e-12 * size);
+    }
+    return count;
+}
+
+/* The patch grips from a touch on if its spring's force grows more slowly than friction's bound. A rigid one slips,
+   unless friction is endless, which begins with a blow, or nothing moves along the surface. */
+static int first_grip(Work *w, int press)
+{
+    Contact *c = w->c;
+    double v[FORCES], ratio = c->first_ratio * give_of(c, press);
+    velocities_now(w, v);
+    c->parted = 0, c->grip = STICK;
+    if (v[0] == 0 || c->patch == RINGED_PATCH) return 1;
+    int side = v[0] < 0 ? SLIP : SLIP_BACK;
+    if (c->patch != RIGID_PATCH) {
+        if (isfinite(c->friction) && fabs(ratio * v[0]) > -c->friction * v[1]) c->grip = side;
+        return 1;
+    }
+    if (isfinite(c->friction)) {
+        c->grip = side;
+        return 1;
+    }
+    double before[SPEEDS], B[FORCES][FORCES], P = 0, after[FORCES];
+    memcpy(before, c->ball, c->speeds * sizeof *before);
+    contact_gives(w, B);
+    P = -v[0] / B[0][0];
+    if (v[1] + B[1][0] * P > 0) { /* the limit of great friction: the blow alone throws the two apart */
+        P = copysign(fmin(fabs(P), (1 + c->restitution) * fabs(v[1] / B[1][0])), P);
+        c->parted = 1;
+    }
+    push(w, (double[FORCES]){P});
+    velocities_now(w, after);
+    c->friction_loss -= P * (v[0] + after[0]) / 2;
+    end_phase(w, (Hold){BLOW, LOAD, 0}, c->time, before);
+    return !c->parted;
+}
+
+/* A patch that begins to slide has friction's force, wherever its spring was before. */
+static void begin(Work *w)
+{
+    Contact *c = w->c;
+    int giving = c->patch == SPRING_PATCH || c->patch == LEATHER_PATCH;
+    if (w->hold.press == LOAD) w->grows = 1;
+    if (w->hold.press == FREE || w->hold.grip == STICK || !giving) return;
+    double before = stored(c, w->hold.press), F[FORCES];
+    if (w->hold.press == RIGID) {
+        if (!forces_held(w, w->hold, F, 0)) return;
+    } else F[1] = pressing(c, w->hold.press, c->depth);
+    c->shear = w->hold.grip * c->friction * F[1];
+    *(c->patch == SPRING_PATCH ? &c->friction_loss : &c->shear_loss) += before - stored(c, w->hold.press);
+}
+
+static double work_of(const double *force, const double *velocity, double span, double part)
+{
+    double of_force[WITH], of_velocity[WITH], sum = 0;
+    to_waves(force, of_force), to_waves(velocity, of_velocity);
+    for (int q = 0; q < POINTS; q++) {
+        double at = part * rule.gauss[q];
+        sum += rule.weights[q] * legendre(of_force, WITH, at) * legendre(of_velocity, WITH, at);
+    }
+    return sum * span * part;
+}
+
+/* Go to a part of the step: the compression, the spring's force, and what was lost along the surface. */
+static void taken(Work *w, const Step *s, double part)
+{
+    Contact *c = w->c;
+    int press = w->hold.press, grip = w->hold.grip;
+    if (press == FREE) {
+        c->depth = value_at(s->depth, part);
+        return;
+    }
+    double before = stored(c, press), work = work_of(s->F[0], s->v[0], s->step, part), slides[WITH], rubbed = 0;
+    if (c->patch == LEATHER_PATCH && grip != STICK) {
+        sliding(w, s, slides);
+        rubbed = -work_of(s->F[0], slides, s->step, part);
+    }
+    if (c->patch == RINGED_PATCH) rings_take(w, s, part);
+    else c->shear = value_at(s->F[0], part);
+    c->depth = value_at(s->depth, part);
+    double missing = before - work - stored(c, press);
+    if (c->patch == LEATHER_PATCH) c->friction_loss += rubbed, c->shear_loss += missing - rubbed;
+    else if (c->patch == RINGED_PATCH && !isfinite(c->friction)) c->shear_loss += missing;
+    else if (grip != STICK || c->patch == RINGED_PATCH) c->friction_loss += missing;
+}
+
+/* Whether a growing tip force drives ball and tip apart, which a rigid tip needs. */
+static int pressed_together(Work *w, int grip)
+{
+    double B[FORCES][FORCES];
+    contact_gives(w, B);
+    return grip == STICK || B[1][1] + grip * w->c->friction * B[1][0] > 0;
+}
+
+/* Stick where friction can hold the contact, else the way it starts to slip. */
+static int grip_at_rest(Work *w, int press)
+{
+    const Contact *c = w->c;
+    double F[FORCES];
+    if (c->patch != RIGID_PATCH || !isfinite(c->friction)) return STICK;
+    if (!forces_held(w, (Hold){STICK, press, 0}, F, 0)) return STICK;
+    if (fabs(F[0]) <= c->friction * F[1] + 1e-12 * c->impulse / c->clock) return STICK;
+    return F[0] > 0 ? SLIP : SLIP_BACK;
+}
+
+static int next(Work *w, int event)
+{
+    Contact *c = w->c;
+    int grip = w->hold.grip, press = w->hold.press;
+    double F[FORCES];
+    if (event == APART) return 0;
+    if (event == COMPRESSED) {
+        c->deepest = c->depth, w->grows = 0;
+        c->peak = pressing(c, LOAD, c->depth);
+        if (c->restitution > 0) w->hold.press = UNLOAD;
+        else { /* past the peak a tip of e = 0 pushes on only as far as the cue presses against the ball */
+            w->hold.press = RIGID;
+            if (!pressed_together(w, grip) || !forces_held(w, w->hold, F, 0)) return 0;
+            return F[1] > 0;
+        }
+        return 1;
+    }
+    if (event == RELOADED) {
+        w->hold.press = LOAD;
+        return 1;
+    }
+    w->hold.grip = event == GRIPPED ? grip_at_rest(w, press) : event == SLIPPED ? SLIP : SLIP_BACK;
+    /* Slip against a rigid tip in a jam has no stable force: as slip sets in, the tip's force is below what would keep
+       v_n at zero, so it falls, ever faster, to nothing: the ball leaves. */
+    return press != RIGID || pressed_together(w, w->hold.grip);
+}
+
+const Law planar = {first_grip, begin, residual, guards, taken, next};

@@ -1,0 +1,229 @@
+/* The modes of a cue: how they turn by themselves, and what loads at its tip make of them.
+
+   With y = rate step/2 and Legendre's polynomials P_t over the step, the moments of a mode
+
+       m_t = integral over [0, 1] of exp(2 y (1 - s)) P_t(2 s - 1) ds
+
+   are modified spherical Bessel functions of y, with the recurrence m_(t-1) - m_(t+1) = (2 t + 1) m_t / y. A load with
+   the coefficients f_t moves the mode by step drive sum of m_t f_t. */
+#include "contact.h"
+
+/* exp(r + i m). */
+static void turn_of(double r, double m, double *re, double *im)
+{
+    double size = r == 0 ? 1 : exp(r);
+    *re = size * cos(m), *im = size * sin(m);
+}
+
+/* The first n moments at y = yr + i yi. */
+static void moments_of(double yr, double yi, int n, double *re, double *im)
+{
+    double size = hypot(yr, yi);
+    memset(re, 0, n * sizeof *re), memset(im, 0, n * sizeof *im);
+    if (size < 1e-9) {
+        re[0] = 1 + yr, im[0] = yi;
+        if (n > 1) re[1] = -yr / 3, im[1] = -yi / 3;
+        return;
+    }
+    double br = yr / (size * size), bi = -yi / (size * size); /* 1/y */
+    if (size > 200 && size > n + 4) { /* upwards from the first two, which is stable for a large y */
+        double er, ei;
+        turn_of(2 * yr, 2 * yi, &er, &ei);
+        double ar = (br * (er - 1) - bi * ei) / 2, ai = (bi * (er - 1) + br * ei) / 2;
+        double gr = -(br * (er + 1) - bi * ei) / 2 + ar * br - ai * bi;
+        double gi = -(bi * (er + 1) + br * ei) / 2 + ar * bi + ai * br;
+        re[0] = ar, im[0] = ai;
+        for (int t = 1; t < n; t++) {
+            re[t] = gr, im[t] = gi;
+            double w = 2 * t + 1, nr = ar + w * (br * gr - bi * gi), ni = ai + w * (br * gi + bi * gr);
+            ar = gr, ai = gi, gr = nr, gi = ni;
+        }
+        return;
+    }
+    /* downwards from where they are nothing, and scaled by the sum of (2 t + 1) m_t, which is 1 */
+    int top = size < 0.5 ? 6 + (int)(18 / -log10(size)) : (int)fmax(n + 14, size + 20 + 9 * cbrt(size));
+    double gr = size < 0.5 ? 1e-120 : 1e-150, gi = 0, ar = 0, ai = 0, sr = 0, si = 0;
+    for (int t = top; t >= 0; t--) {
+        double w = 2 * t + 1;
+        if (t < n) re[t] = gr, im[t] = gi;
+        sr += w * gr, si += w * gi;
+        double nr = ar - w * (br * gr - bi * gi), ni = ai - w * (br * gi + bi * gr);
+        ar = gr, ai = gi, gr = nr, gi = ni;
+    }
+    double by = 1 / (sr * sr + si * si);
+    sr *= by, si *= -by;
+    for (int t = 0; t < n && t <= top; t++) {
+        double r = re[t] * sr - im[t] * si;
+        im[t] = re[t] * si + im[t] * sr, re[t] = r;
+    }
+}
+
+static void free_response(Response *r)
+{
+    if (r) free(r->turns), free(r->moments), free(r->answer), free(r);
+}
+
+/* The part of the answer of modes that turn slowly: terms of their moments, summed over the modes, times one table. */
+FAST static void add_series(const Cue *cue, const double *kappa, int count, Response *r)
+{
+    int ports = cue->ports;
+    for (int a = 0; a < cue->reads; a++)
+        for (int b = 0; b < ports; b++)
+            for (int t = 0; t < count; t++) {
+                double f = r->step * (2 * t + 1) * (t % 2 ? -1 : 1) * kappa[(a * ports + b) * count + t];
+                if (f == 0) continue;
+                for (int i = 0; i < Q; i++) {
+                    double *to = r->answer + ((a * Q + i) * ports + b) * Q;
+                    const double *from = rule.convolved[t][i];
+                    for (int j = 0; j < Q; j++) to[j] += f * from[j];
+                }
+            }
+}
+
+/* The part of one mode that turns too fast for that: its moments up to each node. */
+static void add_fast(const Cue *cue, int k, Response *r)
+{
+    double h = r->step, re[Q], im[Q];
+    for (int i = 0; i < Q; i++) {
+        double c = rule.nodes[i], row_r[Q] = {0}, row_i[Q] = {0};
+        moments_of(cue->rates[2 * k] * h * c / 2, cue->rates[2 * k + 1] * h * c / 2, Q, re, im);
+        for (int t = 0; t < Q; t++)
+            for (int j = 0; j < Q; j++) {
+                row_r[j] += re[t] * c * rule.shortened[i][t][j];
+                row_i[j] += im[t] * c * rule.shortened[i][t][j];
+            }
+        for (int a = 0; a < cue->reads; a++)
+            for (int b = 0; b < cue->ports; b++) {
+                const double *y = cue->readings + 2 * (a * cue->modes + k), *d = cue->drives + 2 * (b * cue->modes + k);
+                double pr = h * (y[0] * d[0] - y[1] * d[1]), pi = h * (y[0] * d[1] + y[1] * d[0]);
+                if (pr == 0 && pi == 0) continue;
+                double *to = r->answer + ((a * Q + i) * cue->ports + b) * Q;
+                for (int j = 0; j < Q; j++) to[j] += pr * row_r[j] - pi * row_i[j];
+            }
+    }
+}
+
+FAST static Response *make_response(const Cue *cue, int level)
+{
+    int K = cue->modes, ports = cue->ports;
+    Response *r = calloc(1, sizeof *r);
+    if (!r) return NULL;
+    double h = r->step = ldexp(1, LONGEST_POWER - level), fastest = 0;
+    for (int k = 0; k < K; k++) fastest = fmax(fastest, hypot(cue->rates[2 * k], cue->rates[2 * k + 1]) * h / 2);
+    int count = (int)fmin(TERMS, fmax(fastest + 14 + 6 * cbrt(fastest), Q + 4));
+    double bound = count < TERMS ? HUGE_VAL : TERMS - 42;
+    r->turns = malloc(sizeof(double) * 2 * Q * K), r->moments = malloc(sizeof(double) * 2 * Q * K);
+    r->answer = calloc((size_t)cue->reads * Q * ports * Q, sizeof(double));
+    double *kappa = calloc((size_t)cue->reads * ports * count, sizeof(double));
+    if (!r->turns || !r->moments || !r->answer || !kappa) {
+        free(kappa), free_response(r);
+        return NULL;
+    }
+    for (int k = 0; k < K; k++) {
+        double yr = cue->rates[2 * k] * h / 2, yi = cue->rates[2 * k + 1] * h / 2, re[TERMS], im[TERMS];
+        int slow = hypot(yr, yi) < bound;
+        moments_of(yr, yi, slow ? count : Q, re, im);
+        for (int t = 0; t < Q; t++) r->moments[2 * (t * K + k)] = re[t], r->moments[2 * (t * K + k) + 1] = im[t];
+        for (int i = 0; i < Q; i++) {
+            double *to = r->turns + 2 * (i * K + k);
+            turn_of(2 * yr * rule.nodes[i], 2 * yi * rule.nodes[i], to, to + 1);
+        }
+        if (!slow) {
+            add_fast(cue, k, r);
+            continue;
+        }
+        for (int a = 0; a < cue->reads; a++)
+            for (int b = 0; b < ports; b++) {
+                const double *y = cue->readings + 2 * (a * K + k), *d = cue->drives + 2 * (b * K + k);
+                double pr = y[0] * d[0] - y[1] * d[1], pi = y[0] * d[1] + y[1] * d[0];
+                double *to = kappa + (a * ports + b) * count;
+                if (pi != 0)
+                    for (int t = 0; t < count; t++) to[t] += pr * re[t] - pi * im[t];
+                else if (pr != 0)
+                    for (int t = 0; t < count; t++) to[t] += pr * re[t];
+            }
+    }
+    add_series(cue, kappa, count, r);
+    free(kappa);
+    return r;
+}
+
+/* The response over a step of 2^(LONGEST_POWER - level) s; threads may share a cue. */
+Response *response_of(Cue *cue, int level)
+{
+    Response *known = __atomic_load_n(&cue->responses[level], __ATOMIC_ACQUIRE), *none = NULL;
+    if (known) return known;
+    Response *made = make_response(cue, level);
+    if (!made) return NULL;
+    if (__atomic_compare_exchange_n(&cue->responses[level], &none, made, 0, __ATOMIC_ACQ_REL, __ATOMIC_ACQUIRE))
+        return made;
+    free_response(made);
+    return none;
+}
+
+/* Move the coordinates on by a time whose loads have these coefficients; whole: the response, if it is its whole step. */
+FAST void advance_modes(const Cue *cue, double *xi, const Response *whole, double time, const double (*waves)[Q])
+{
+    int K = cue->modes;
+    for (int k = 0; k < K; k++) {
+        double re[Q], im[Q], tr, ti, sr = 0, si = 0, xr = xi[2 * k], xm = xi[2 * k + 1];
+        if (whole) {
+            const double *turn = whole->turns + 2 * ((Q - 1) * K + k);
+            tr = turn[0], ti = turn[1];
+            for (int t = 0; t < Q; t++) {
+                re[t] = whole->moments[2 * (t * K + k)], im[t] = whole->moments[2 * (t * K + k) + 1];
+            }
+        } else {
+            double yr = cue->rates[2 * k] * time / 2, yi = cue->rates[2 * k + 1] * time / 2;
+            turn_of(2 * yr, 2 * yi, &tr, &ti);
+            moments_of(yr, yi, Q, re, im);
+        }
+        for (int b = 0; waves && b < cue->ports; b++) {
+            double dr = cue->drives[2 * (b * K + k)], di = cue->drives[2 * (b * K + k) + 1], fr = 0, fi = 0;
+            if (dr == 0 && di == 0) continue;
+            for (int t = 0; t < Q; t++) fr += re[t] * waves[b][t], fi += im[t] * waves[b][t];
+            sr += dr * fr - di * fi, si += dr * fi + di * fr;
+        }
+        xi[2 * k] = tr * xr - ti * xm + time * sr, xi[2 * k + 1] = tr * xm + ti * xr + time * si;
+    }
+}
+
+/* The coordinates at times from now on, (count, modes) complex, if nothing loads the cue but these coefficients. */
+EXPORTED void cue_follow(const Cue *cue, const double *xi, const double (*waves)[Q], const double *times, int count,
+                         double *to)
+{
+    for (int i = 0; i < count; i++) {
+        memcpy(to + 2 * i * cue->modes, xi, 2 * cue->modes * sizeof(double));
+        advance_modes(cue, to + 2 * i * cue->modes, NULL, times[i], waves ? waves + i * cue->ports : NULL);
+    }
+}
+
+EXPORTED void cue_free(Cue *cue)
+{
+    if (!cue) return;
+    for (int i = 0; i < LEVELS; i++) free_response(cue->responses[i]);
+    free(cue->rates), free(cue->readings), free(cue->drives), free(cue);
+}
+
+/* A copy of what is given, all complex: rates (modes,), readings (reads, modes), drives (ports, modes). */
+EXPORTED Cue *cue_new(int modes, int ports, int reads, const double *rates, const double *readings, const double *drives)
+{
+    Cue *cue = calloc(1, sizeof *cue);
+    if (!cue) return NULL;
+    size_t row = 2 * (size_t)modes * sizeof(double);
+    cue->modes = modes, cue->ports = ports, cue->reads = reads;
+    cue->rates = malloc(row), cue->readings = malloc(reads * row), cue->drives = malloc(ports * row);
+    if (!cue->rates || !cue->readings || !cue->drives) {
+        cue_free(cue);
+        return NULL;
+    }
+    memcpy(cue->rates, rates, row), memcpy(cue->readings, readings, reads * row);
+    memcpy(cue->drives, drives, ports * row);
+    for (int a = 0; a < ports; a++)
+        for (int b = 0; b < ports; b++)
+            for (int k = 0; k < modes; k++) {
+                const double *y = readings + 2 * (a * modes + k), *d = drives + 2 * (b * modes + k);
+                cue->inverse_mass[a][b] += y[0] * d[0] - y[1] * d[1];
+            }
+    return cue;
+}

@@ -1,0 +1,102 @@
+/* Polynomials over a step: their values, and where a guard first falls through zero. */
+#include "contact.h"
+
+EXPORTED Rule rule;
+EXPORTED const size_t contact_size = sizeof(Contact);
+EXPORTED const size_t rule_size = sizeof(Rule);
+
+/* The sum of Legendre's polynomials over [0, 1] with these coefficients, at a part of the step. */
+double legendre(const double *waves, int count, double part)
+{
+    double x = 2 * part - 1, before = 1, here = x, sum = waves[0];
+    for (int t = 1; t < count; t++) {
+        sum += waves[t] * here;
+        double next = ((2 * t + 1) * x * here - t * before) / (t + 1);
+        before = here, here = next;
+    }
+    return sum;
+}
+
+void to_waves(const double *values, double *waves)
+{
+    for (int t = 0; t < WITH; t++) {
+        double sum = 0;
+        for (int j = 0; j < WITH; j++) sum += rule.waves[t][j] * values[j];
+        waves[t] = sum;
+    }
+}
+
+double value_at(const double *values, double part)
+{
+    double waves[WITH];
+    to_waves(values, waves);
+    return legendre(waves, WITH, part);
+}
+
+/* The zero between a and b, where the polynomial has opposite signs: Illinois' method with bisections between. */
+static double zero_of(const double *waves, double a, double b)
+{
+    double f_a = legendre(waves, WITH, a), f_b = legendre(waves, WITH, b);
+    double best = fabs(f_a) < fabs(f_b) ? a : b, least = fmin(fabs(f_a), fabs(f_b));
+    int side = 0;
+    for (int i = 0; i < 90 && b - a > 4e-16 && least > 0; i++) {
+        double x = i % 8 == 7 ? (a + b) / 2 : b - f_b * (b - a) / (f_b - f_a);
+        if (!(x > a && x < b)) x = (a + b) / 2;
+        double f = legendre(waves, WITH, x);
+        if (fabs(f) < least) least = fabs(f), best = x;
+        else if (i > 12 && b - a < 1e-13) break;
+        if ((f > 0) == (f_a > 0)) {
+            a = x, f_a = f;
+            if (side == -1) f_b /= 2;
+            side = -1;
+        } else {
+            b = x, f_b = f;
+            if (side == 1) f_a /= 2;
+            side = 1;
+        }
+    }
+    return best;
+}
+
+/* Where a dip between two looks is lowest, by thirds. */
+static double lowest(const double *waves, double a, double b)
+{
+    for (int i = 0; i < 60; i++) {
+        double third = (b - a) / 3;
+        if (legendre(waves, WITH, a + third) < legendre(waves, WITH, b - third)) b -= third;
+        else a += third;
+    }
+    return a;
+}
+
+/* The part of the step where the values at its start and nodes first fall through zero and below -past; 2 if nowhere. */
+double first_fall(const double *values, double past)
+{
+    double low = values[0], high = values[0], y[LOOKS], waves[WITH];
+    for (int i = 1; i < WITH; i++) low = fmin(low, values[i]), high = fmax(high, values[i]);
+    if (low > 0.3 * high) return 2;
+    double size = fmax(fabs(low), fabs(high)) + 1e-300;
+    int first = LOOKS;
+    for (int i = 0; i < LOOKS; i++) {
+        y[i] = 0;
+        for (int j = 0; j < WITH; j++) y[i] += rule.look[i][j] * values[j];
+        if (i && y[i] < -past) {
+            first = i;
+            break;
+        }
+    }
+    to_waves(values, waves);
+    for (int i = 1; i + 1 < LOOKS && i < first; i++) {
+        if (!(y[i] > 0 && y[i] < y[i - 1] && (i + 1 == first || y[i] < y[i + 1]) && y[i] < 0.05 * size)) continue;
+        double at = lowest(waves, rule.looks[i - 1], rule.looks[i + 1]);
+        if (legendre(waves, WITH, at) < -fmax(1e-13 * size, past)) return zero_of(waves, rule.looks[i - 1], at);
+    }
+    if (first == LOOKS) return 2;
+    if (first > 1 || y[0] > 1e-9 * size) return zero_of(waves, rule.looks[first - 1], rule.looks[first]);
+    double x = rule.looks[1]; /* zero at the start by its nature: it may rise before it falls */
+    for (int k = 1; k < 30; k++) {
+        x /= 2;
+        if (legendre(waves, WITH, x) > 1e-13 * size) return zero_of(waves, x, rule.looks[1]);
+    }
+    return 0;
+}

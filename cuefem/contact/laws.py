@@ -1,0 +1,267 @@
+"""Which law a contact follows: the numbers that a scene's terms ask the kernel for, and what a contact refuses."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from cuefem.beam.tip import TipModes
+from cuefem.contact.propagator import ModalPropagator, planar_propagator, raised_propagator
+from cuefem.cue import Array
+from cuefem.effects.leather_law import LeatherLaw
+from cuefem.effects.terms import ContactTerms, HeadOn, Lever, Table
+from cuefem.quantity import scalar
+from cuefem.scene import Scene
+
+# A contact that lasts this many head-on contact times (and a period and a half of the slowest vibration, on which a
+# rigid tip may ride) does not end.
+LONGEST = 200
+# A tip that gives back less than this part of the speed, but not nothing, rings 1/e times faster than the contact, and
+# following every swing takes longer than anybody waits. Leather's law along the surface is given up earlier.
+LEAST_RESTITUTION, LEAST_OF_LEATHER = 1e-4, 0.1
+# What the last terms of a step may add, as a part of the blow's impulse; rings make forces with many small kinks.
+TOLERANCE, LEATHER_TOLERANCE, RINGED_TOLERANCE = 1e-11, 1e-10, 1e-7
+RINGS = 160  # even in the root of the compression, up to the law's greatest
+RIGID_PATCH, SPRING_PATCH, LEATHER_PATCH, RINGED_PATCH = range(4)
+# Levers that are functions are sampled over this range of the contact's angle, rad, by so many Chebyshev terms.
+LEVER_REACH, LEVER_TERMS, LEVER_FIT = 0.5, 24, 1e-11
+_NOTHING = np.zeros(1)
+
+
+@dataclass(frozen=True, eq=False)
+class ContactModel:
+    """A contact as the kernel takes it.
+
+    propagator: the cue's modes and ports. facing: (forces, ports + ball), from the velocities of the ports to those of
+    the contact at the first touch. ball_gives: (n,), the inverse masses of the ball's velocities; ball: these at the
+    first touch, m/s. terms: what `kernel/contact.h` names, by name. leather: the law of a whole tip. refused: what a
+    contact of this model says if it cannot be stepped on.
+    """
+
+    propagator: ModalPropagator
+    facing: Array
+    ball_gives: Array
+    ball: Array
+    phi: float
+    ball_mass: float
+    inertia: float
+    restitution: float
+    friction: float
+    speed: float
+    time: float
+    patch: int = RIGID_PATCH
+    terms: dict[str, float] = field(default_factory=dict)
+    arrays: dict[str, Array] = field(default_factory=dict)
+    leather: LeatherLaw | None = None
+    table: Table | None = None
+    window: float | None = None
+
+    @property
+    def inverse_mass(self) -> Array:
+        """Rates of the contact's velocities per force at the first touch, (forces, forces), 1/kg."""
+        ports = len(self.propagator.rows)
+        of_cue, of_ball = self.facing[:, :ports], self.facing[:, ports:]
+        across = of_cue @ self.propagator.rows
+        return np.asarray(across @ across.T + (of_ball * self.ball_gives) @ of_ball.T)
+
+    @property
+    def longest(self) -> float:
+        """How long the contact may last at most, s.
+
+        A dead tip may stay on a slow mode, slower still with the ball on it, by no more than the second term.
+        """
+        longest, omega = LONGEST * self.time, self.propagator.omega
+        if np.any(omega > 0):
+            ports = len(self.propagator.rows)
+            row = self.facing[1, :ports] @ self.propagator.rows
+            ball = float(self.facing[1, ports:] ** 2 @ self.ball_gives)
+            still = float(row[omega == 0] @ row[omega == 0]) + ball
+            longest += 10 / float(omega[omega > 0].min()) * math.sqrt((float(row @ row) + ball) / still)
+        return longest
+
+    @property
+    def unknowns(self) -> int:
+        """Of the model: the modes' displacements and velocities, the ball's, and the states of the tip."""
+        omega = self.propagator.omega
+        forces = len(self.facing)
+        turns, gives = bool(self.terms.get("turns")), self.patch != RIGID_PATCH
+        of_tip = {2: 3 + 2 * turns + gives, 6: 8}[forces]
+        return len(omega) + int(np.count_nonzero(omega)) + of_tip
+
+
+def model_of(scene: Scene, tip: TipModes) -> ContactModel:
+    """The contact of a scene at an offset >= 0, a negative one being its mirror image.
+
+    ValueError for what no contact honours together, and for a tip that gives back next to nothing.
+    """
+    offset = abs(scalar("Stroke.offset", scene.stroke.offset))
+    terms, phi = scene.contact_terms, math.asin(offset)
+    tip = tip if offset else tip.uncoupled
+    mass, nu = scalar("Ball.mass", scene.ball.mass), scalar("Ball.inertia", scene.ball.inertia)
+    common: dict[str, Any] = {
+        "phi": phi,
+        "ball_mass": mass,
+        "inertia": nu,
+        "restitution": scalar("Tip.restitution", scene.tip.restitution),
+        "friction": scalar("Tip.friction", scene.tip.friction),
+        "speed": scalar("Stroke.speed", scene.stroke.speed),
+        "time": scene.contact_time,
+        "window": terms.window,
+    }
+    _check_restitution(common["restitution"], terms)
+    if terms.table is not None:
+        return _raised(scene, tip, terms, common)
+    return _planar(scene, tip, terms, common, offset)
+
+
+def _check_restitution(e: float, terms: ContactTerms) -> None:
+    if terms.tip is not None and e < LEAST_OF_LEATHER:
+        raise ValueError(
+            f"Tip.restitution must be in [{LEAST_OF_LEATHER}, 1] beside LeatherTip; got {e}: leather "
+            "that gives back less rings on the ball while it is unloaded, which is not computed (cue tips: 0.7 to 0.85)"
+        )
+    if terms.window is not None and e < LEAST_RESTITUTION:
+        raise ValueError(f"SecondHit takes a Tip.restitution in [{LEAST_RESTITUTION:g}, 1]; got {e}")
+    if terms.table is not None and e == 0:
+        raise ValueError("Elevation takes a Tip.restitution in (0, 1]; got 0.0")
+    check_lively("Tip.restitution", e)
+
+
+def check_lively(name: str, restitution: float) -> None:
+    """ValueError for a tip that gives back next to nothing, but not nothing."""
+    if 0 < restitution < LEAST_RESTITUTION:
+        raise ValueError(
+            f"{name} must be 0, or in [{LEAST_RESTITUTION:g}, 1], where a contact is followed in time; got "
+            f"{restitution:g}: such a tip rings too fast past its peak (0 is a dead tip)"
+        )
+
+
+def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, Any], offset: float) -> ContactModel:
+    phi, mass, nu, e = (common[name] for name in ("phi", "ball_mass", "inertia", "restitution"))
+    radius, (u, w) = scalar("Ball.radius", scene.ball.radius), terms.lever(phi)
+    s, c = math.sin(phi), math.cos(phi)
+    law, numbers, arrays = None, {"tolerance": TOLERANCE}, {}
+    if terms.tip is not None:
+        law = terms.tip.law(radius, offset, e)
+        patch = RINGED_PATCH if terms.tip.partial_slip else LEATHER_PATCH
+        dome, turns = terms.tip.rolling_radius(phi), terms.turns
+        numbers |= {"curve": 1, "steady": law.steady or 0.0, "most": law.most, "first_ratio": law.first_ratio}
+        numbers |= {"terms": len(law.force_terms), "tolerance": LEATHER_TOLERANCE}
+        arrays |= {"force_terms": np.array(law.force_terms), "give_terms": np.array(law.give_terms)}
+        if patch == RINGED_PATCH:
+            numbers |= {"rings": RINGS, "tolerance": RINGED_TOLERANCE}
+            arrays |= _rings(law)
+    else:
+        of_tip, time = normal_law(scene, common)
+        compliance = terms.compliance / scene.stiffness
+        patch, dome, turns = SPRING_PATCH if compliance else RIGID_PATCH, terms.dome_radius, terms.turns
+        numbers |= of_tip | {"compliance": compliance}
+        if compliance:
+            stiffness = numbers["stiffness"] if numbers["exponent"] == 1 else 0.0
+            numbers["first_ratio"] = 1 / (compliance * stiffness) if stiffness else math.inf
+        common |= {"time": time}
+    lever_t, lever_n = s * u + c * w, c * u - s * w
+    if turns:
+        numbers |= {"turns": 1, "phi": phi, "dome": dome, "reach": radius + dome, "lever_t": lever_t, "lever_n": lever_n}
+        if terms.levers:
+            numbers |= {"levers": LEVER_TERMS, "lever_reach": LEVER_REACH}
+            arrays["lever_terms"] = _sampled(terms.levers, phi)
+    turning = bool(u or w or (turns and (dome or terms.levers)))
+    facing = np.array([[-s, -c, -lever_t, 1.0, 0.0, 1.0], [-c, s, -lever_n, 0.0, 1.0, 0.0]])
+    return ContactModel(
+        planar_propagator(tip, turning=turning),
+        facing if turning else np.delete(facing, 2, axis=1),
+        np.array([1 / mass, 1 / mass, 1 / (nu * mass)]),
+        np.zeros(3),
+        patch=patch,
+        terms=numbers,
+        arrays=arrays,
+        leather=law,
+        **common,
+    )
+
+
+def normal_law(scene: Scene, common: dict[str, Any]) -> tuple[dict[str, float], float]:
+    """(stiffness and exponent of the force along the normal, about how long a contact takes, s)."""
+    make = scene.contact_terms.law
+    if make is None:
+        return {"stiffness": float(scene.stiffness), "exponent": 1.0}, float(scene.contact_time)
+    blow = HeadOn(scene.head_on_mass, common["restitution"], scene.contact_time, common["speed"])
+    law, time = make(blow)
+    return {"stiffness": float(law.stiffness), "exponent": float(law.exponent)}, float(time)
+
+
+def _rings(law: LeatherLaw) -> dict[str, Array]:
+    edges = law.most * np.linspace(0.0, 1.0, RINGS + 1) ** 2
+    force, stiffness = law.at(edges)
+    return {
+        "ring_edges": edges,
+        "ring_forces": force,
+        "ring_stiffness": stiffness,
+        "ring_slopes": law.slopes(edges)[0],
+        "ring_shear": np.zeros(RINGS),
+    }
+
+
+def _sampled(levers: Sequence[Lever], phi: float) -> Array:
+    """Chebyshev terms of how far levers move the contact (u, w) as it turns on from phi; ValueError if they are rough."""
+    def moved(angle: Array) -> Array:
+        at = np.array([np.sum([lever(phi + each) for lever in levers], axis=0) for each in angle])
+        return np.asarray(at - np.sum([lever(phi) for lever in levers], axis=0))
+
+    chebyshev = np.polynomial.chebyshev
+    places = chebyshev.chebpts1(LEVER_TERMS)
+    terms = np.linalg.solve(chebyshev.chebvander(places, LEVER_TERMS - 1), moved(LEVER_REACH * places))
+    between = np.cos(np.arange(1, LEVER_TERMS) * math.pi / LEVER_TERMS)
+    off = np.abs(chebyshev.chebvander(between, LEVER_TERMS - 1) @ terms - moved(LEVER_REACH * between)).max()
+    if not off <= LEVER_FIT:
+        raise ValueError(
+            f"a lever of the contact must be smooth over {LEVER_REACH} rad about its angle, to {LEVER_FIT} m; "
+            f"got one that a polynomial misses by {off:.3g} m"
+        )
+    return np.ascontiguousarray(terms.T)
+
+
+def _raised(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, Any]) -> ContactModel:
+    """A cue that points down by an angle, over a table (handbook: The raised cue).
+
+    In (t, n, p), p = t x n: the velocities of the contact are those of the tip's place along all three, and of the
+    ball's lowest point upwards, aside and ahead; the ball's are its velocity and R times its spin.
+    """
+    if terms.compliance or terms.turns or terms.window is not None or terms.tip is not None:
+        raise ValueError("a raised cue (Elevation) takes a tip without give sideways, a fixed normal and a single hit")
+    assert terms.table is not None
+    of_tip, time = normal_law(scene, common)
+    (u, w), phi, mass, nu = terms.lever(common["phi"]), common["phi"], common["ball_mass"], common["inertia"]
+    s, c = math.sin(phi), math.cos(phi)
+    right, forward, up = table_axes(phi, terms.table.angle)
+    lever = (u, w)
+    if any(lever):
+        tip = TipModes(
+            tip.omega, tip.amplitude + np.outer(tip.rotation, lever), tip.approach, tip.rotation, tip.damping, tip.radiation
+        )
+    facing = np.zeros((6, 9))
+    facing[0, [0, 1]], facing[1, [0, 1]], facing[2, 2] = (-s, -c), (-c, s), -1.0
+    facing[[0, 1, 2], [3, 4, 5]] = 1.0
+    facing[0, 8], facing[2, 6] = 1.0, -1.0
+    facing[3:, 3:6] = up, right, forward
+    facing[4, 6:], facing[5, 6:] = -np.cross(up, right), -np.cross(up, forward)
+    return ContactModel(
+        raised_propagator(tip),
+        facing,
+        np.repeat([1 / mass, 1 / (nu * mass)], 3),
+        np.zeros(6),
+        terms={"tolerance": TOLERANCE, "table_friction": terms.table.friction} | of_tip,
+        table=terms.table,
+        **(common | {"time": time}),
+    )
+
+
+def table_axes(phi: float, angle: float) -> tuple[Array, Array, Array]:
+    """Right, forward and up in (t, n, p), under a cue that points down by ``angle``, rad."""
+    s, c, sin_a, cos_a = math.sin(phi), math.cos(phi), math.sin(angle), math.cos(angle)
+    return np.array([c, -s, 0]), np.array([cos_a * s, cos_a * c, sin_a]), np.array([-sin_a * s, -sin_a * c, cos_a])

@@ -1,0 +1,179 @@
+"""The modes of a cue as the contact moves them: each turns by itself, and a load at the tip drives them.
+
+An undamped mode of angular frequency omega is one complex coordinate xi = v + i omega q, with xi' = i omega xi + drive.
+Modes that a damper couples are replaced by the eigenvectors of their group. What the contact feels is read off them,
+y = Re(readings xi), and all of it belongs to the cue alone: strikes at other speeds and offsets share it.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import threading
+import weakref
+from collections.abc import Iterator
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cuefem.beam.tip import TipModes
+from cuefem.contact.compiled import library
+from cuefem.cue import Array
+
+Complex = NDArray[np.complex128]
+# Groups of modes whose eigenvectors have a larger condition number lose digits; by how much they are then changed.
+DEFECTIVE, NUDGE = 1e7, 1e-9
+
+
+class ModalPropagator:
+    """Tip modes with their ports, which the compiled kernel keeps the responses of.
+
+    rows: (ports, modes), what each port reads of the modes' velocities, and pushes. omega, approach: of the modes. rates: (coordinates,) 1/s.
+    displacements, velocities: (modes, coordinates), which give omega q and the velocities of the modes. onto:
+    (coordinates, modes), from the modes' velocities. lossy: how many of the dampers' rows lose energy; the others
+    radiate it.
+    """
+
+    def __init__(self, tip: TipModes, rows: Array) -> None:
+        self.rows, self.omega, self.approach = rows, tip.omega, tip.approach
+        omega, count = tip.omega, len(tip.omega)
+        resistance = np.zeros((count, count)) if tip.resistance is None else tip.resistance
+        coupled = resistance != 0
+        alone = np.flatnonzero(~coupled.any(axis=1))
+        groups = list(_coupled_groups(coupled))
+        parts = [_Group.undamped(omega, alone), *(_Group.damped(omega, resistance, group) for group in groups)]
+        self.rates = np.concatenate([part.rates for part in parts])
+        self.displacements, self.velocities = (np.zeros((count, len(self.rates)), complex) for _ in range(2))
+        self.onto = np.zeros((len(self.rates), count), complex)
+        first = 0
+        for part in parts:
+            here = slice(first, first + len(part.rates))
+            self.displacements[part.modes, here], self.velocities[part.modes, here] = part.displacements, part.velocities
+            self.onto[here, part.modes] = part.onto
+            first = here.stop
+        dampers = [_rows_of_power(damping) for damping in (tip.damping, tip.radiation) if damping is not None]
+        self.lossy = len(dampers[0]) if tip.damping is not None else 0
+        self.dampers = np.concatenate([np.zeros((0, count)), *dampers])
+
+    @cached_property
+    def cue(self) -> ctypes.c_void_p:
+        """What the kernel keeps of it: made when a contact first asks, and freed with this object."""
+        kernel = library()
+        readings = np.ascontiguousarray(np.concatenate([self.rows, self.dampers]) @ self.velocities)
+        drives = np.ascontiguousarray((self.onto @ self.rows.T).T)
+        pointers = [part.ctypes.data for part in (self.rates, readings, drives)]
+        handle = kernel.cue_new(len(self.rates), len(self.rows), len(readings), *pointers)
+        if not handle:
+            raise MemoryError("no memory for the modes of a contact")
+        weakref.finalize(self, kernel.cue_free, handle)
+        return ctypes.c_void_p(handle)
+
+    def follow(self, xi: Complex, times: Array, waves: Array | None = None) -> Complex:
+        """The coordinates at times from now on, (times, coordinates).
+
+        waves: (times, ports, nodes), Legendre coefficients of the loads over each time; None without loads.
+        """
+        xi, times = np.ascontiguousarray(xi), np.ascontiguousarray(times, float)
+        found = np.empty((len(times), len(xi)), complex)
+        loads = None if waves is None else np.ascontiguousarray(waves, float)
+        pointer = None if loads is None else loads.ctypes.data
+        library().cue_follow(self.cue, xi.ctypes.data, pointer, times.ctypes.data, len(times), found.ctypes.data)
+        return found
+
+
+class _Group:
+    """Modes by themselves, or coupled by dampers, as coordinates that turn by themselves."""
+
+    def __init__(self, modes: Array, rates: Complex, displacements: Complex, velocities: Complex, onto: Complex):
+        self.modes, self.rates, self.onto = modes, rates, onto
+        self.displacements, self.velocities = displacements, velocities
+
+    @classmethod
+    def undamped(cls, omega: Array, modes: Array) -> _Group:
+        """Each mode a coordinate v + i omega q; a rigid one is its velocity."""
+        own = np.eye(len(modes), dtype=complex)
+        return cls(modes, 1j * omega[modes], -1j * own * (omega[modes] > 0), own, own)
+
+    @classmethod
+    def damped(cls, omega: Array, resistance: Array, modes: Array) -> _Group:
+        """The eigenvectors of (omega q, v)' = (omega v, -omega^2 q/omega - C v); of a pair of conjugates one, twice."""
+        turning = np.diag(omega[modes])
+        vibrating = omega[modes] > 0  # a rigid mode has no displacement among the states
+        whole = np.block([[0 * turning, turning], [-turning, -resistance[np.ix_(modes, modes)]]])
+        there = np.concatenate([vibrating, np.ones(len(modes), bool)])
+        states = whole[np.ix_(there, there)]
+        rates, right = np.linalg.eig(states)
+        if np.linalg.cond(right) > DEFECTIVE:  # two rates are one, as of a critically damped mode: take them apart
+            nudge = NUDGE * np.linalg.norm(states) * np.diag(np.linspace(-1.0, 0.0, len(states)))
+            rates, right = np.linalg.eig(states + nudge)
+        left = np.linalg.inv(right)
+        kept = np.flatnonzero(rates.imag >= 0)
+        right = right[:, kept] * np.where(rates[kept].imag > 0, 2.0, 1.0)
+        count = int(vibrating.sum())
+        displacements = np.zeros((len(modes), len(kept)), complex)
+        displacements[vibrating] = right[:count]
+        return cls(modes, rates[kept].astype(complex), displacements, right[count:], left[kept][:, count:])
+
+
+def _coupled_groups(coupled: Array) -> Iterator[Array]:
+    """The groups of modes that damping couples with each other."""
+    left = np.flatnonzero(coupled.any(axis=1)).tolist()
+    while left:
+        group, fresh = {left[0]}, [left[0]]
+        while fresh:
+            reached = set(np.flatnonzero(coupled[fresh].any(axis=0)).tolist()) - group
+            group, fresh = group | reached, sorted(reached)
+        yield np.array(sorted(group))
+        left = [mode for mode in left if mode not in group]
+
+
+def _rows_of_power(damping: Array) -> Array:
+    """Rows over the modes whose squares add up to a damping's power."""
+    modes = np.flatnonzero(damping.any(axis=1))
+    strengths, directions = np.linalg.eigh(damping[np.ix_(modes, modes)])
+    acting = strengths > 1e-14 * strengths.max(initial=0.0)
+    rows = np.zeros((int(acting.sum()), len(damping)))
+    rows[:, modes] = (directions[:, acting] * np.sqrt(strengths[acting])).T
+    return rows
+
+
+_known: weakref.WeakKeyDictionary[TipModes, dict[str, ModalPropagator]] = weakref.WeakKeyDictionary()
+_lock = threading.Lock()
+
+
+def planar_propagator(tip: TipModes, *, turning: bool) -> ModalPropagator:
+    """The propagator of tip modes with the ports (u, w), and the turning of the tip's section where that is asked for.
+
+    Strikes with the same tip modes share it.
+    """
+    rows = np.concatenate([tip.amplitude.T, tip.rotation[None]]) if turning else tip.amplitude.T
+    return _shared(tip, "turning" if turning else "straight", tip, rows)
+
+
+def raised_propagator(tip: TipModes) -> ModalPropagator:
+    """The propagator with the ports (u, w, p): each bending mode stands again in the plane across, where it moves p."""
+    again = np.flatnonzero(tip.amplitude[:, 1] != 0)
+    count, more = len(tip.omega), len(again)
+    omega = np.concatenate([tip.omega, tip.omega[again]])
+
+    def both(matrix: Array | None) -> Array | None:
+        if matrix is None:
+            return None
+        whole = np.zeros((count + more, count + more))
+        whole[:count, :count], whole[count:, count:] = matrix, matrix[np.ix_(again, again)]
+        return whole
+
+    amplitude, nothing = np.pad(tip.amplitude, ((0, more), (0, 0))), np.zeros(more)
+    rotation, approach = np.append(tip.rotation, nothing), np.append(tip.approach, nothing)
+    modes = TipModes(omega, amplitude, approach, rotation, both(tip.damping), both(tip.radiation))
+    rows = np.concatenate([amplitude.T, np.append(np.zeros(count), tip.amplitude[again, 1])[None]])
+    return _shared(tip, "raised", modes, rows)
+
+
+def _shared(tip: TipModes, ports: str, modes: TipModes, rows: Array) -> ModalPropagator:
+    with _lock:
+        of_tip = _known.setdefault(tip, {})
+        if ports not in of_tip:
+            of_tip[ports] = ModalPropagator(modes, rows)
+            of_tip[ports].cue  # noqa: B018  # made here: threads would all begin to
+        return of_tip[ports]

@@ -1,0 +1,212 @@
+"""A contact solved: the kernel runs the model, and its numbers come back as phases, losses and the course of it all."""
+
+from __future__ import annotations
+
+import ctypes
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from cuefem.contact.compiled import KernelContact, library
+from cuefem.contact.laws import ContactModel, table_axes
+from cuefem.contact.outcome import BLOW, FLIGHT, History, Phase
+from cuefem.contact.propagator import Complex
+from cuefem.contact.rule import NODES
+from cuefem.cue import Array
+
+GRIPS = {0: "stick", 1: "slip", -1: "slip back", 2: BLOW, 3: FLIGHT[0]}
+PRESSES = ("load", "unload", "rigid", "free")
+# A contact that changes phase this often, or takes so many steps, does not end.
+MOST_PHASES, MOST_STEPS = 5_000, 200_000
+_ENDED, _LATE, _CROWDED, _STUCK, _TOO_DEEP, _TURNED_TOO_FAR, _NO_MEMORY = range(7)
+_WITH = NODES + 1
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """The steps of a contact, one row each: what cue and ball do at any time follows from them.
+
+    start, step, part: the time at which a step began, s, its length, s, and the part of it that was taken. pressed:
+    whether ball and tip touched in it. force, velocity: (steps, forces, nodes + 1), of the contact, N and m/s; depth,
+    angle: (steps, nodes + 1), m and rad; loads: (steps, ports, nodes), on the cue's ports and the ball's velocities, N;
+    blows: (steps, ports), on them before the step, N s.
+    """
+
+    start: Array
+    step: Array
+    part: Array
+    pressed: Array
+    force: Array
+    velocity: Array
+    depth: Array
+    angle: Array
+    loads: Array
+    blows: Array
+
+    @classmethod
+    def of(cls, records: Array, forces: int, ports: int, speeds: int) -> Course:
+        """From the kernel's records, whose rows hold room for three ports of the cue."""
+        count, wide = len(records), 3 + speeds
+        shapes = [(forces, _WITH), (forces, _WITH), (_WITH,), (_WITH,), (wide, NODES), (wide,)]
+        ends = 5 + np.cumsum([math.prod(shape) for shape in shapes])
+        parts = [
+            part.reshape(count, *shape)
+            for part, shape in zip(np.split(records[:, 5:], ends[:-1] - 5, axis=1), shapes, strict=True)
+        ]
+        there = np.r_[:ports, 3:wide]
+        start, step, part, _, press = records[:, :5].T
+        return cls(start, step, part, press != PRESSES.index("free"), *parts[:4], parts[4][:, there], parts[5][:, there])
+
+
+@dataclass(frozen=True, eq=False)
+class SolvedContact:
+    """A contact that is over.
+
+    xi_before, xi: the coordinates of the cue's modes before and after it (`ModalPropagator`). ball: the ball's
+    velocities after it, m/s (raised: and its spins times R). losses: J by name. peak, deepest: the tip's greatest force, N,
+    and compression, m. course: None where it was not recorded.
+    """
+
+    model: ContactModel
+    phases: tuple[Phase, ...]
+    time: float
+    xi_before: Complex
+    xi: Complex
+    ball: Array
+    parted: bool
+    deepest: float
+    peak: float
+    losses: dict[str, float]
+    course: Course | None
+
+    @property
+    def impulse(self) -> tuple[float, float]:
+        """On the ball, (t, n), N s; of one that came in, its momentum."""
+        return impulse_on(self.model, self.ball)
+
+    @property
+    def velocity(self) -> tuple[float, float]:
+        """Of ball against tip (t, n), m/s, in the directions of the first touch."""
+        ports = (self.model.propagator.rows @ (self.model.propagator.velocities @ self.xi)).real
+        v = self.model.facing @ np.concatenate([ports, self.ball])
+        return float(v[0]), float(v[1])
+
+    @property
+    def cue_energy(self) -> tuple[float, float]:
+        """Of the cue's rigid motions and of its vibration, J."""
+        propagator = self.model.propagator
+        stretched, moving = (propagator.displacements @ self.xi).real, (propagator.velocities @ self.xi).real
+        rigid = propagator.omega == 0
+        vibrating = stretched @ stretched + moving[~rigid] @ moving[~rigid]
+        return float(moving[rigid] @ moving[rigid]) / 2, float(vibrating) / 2
+
+    def history(self, mirror: float) -> History:
+        """Forces and velocities; mirror: -1 for a stroke on the other side."""
+        assert self.course is not None
+        course, side = self.course, np.array([mirror, 1.0])[:, None]
+        values = np.concatenate([course.force[:, :2] * side, course.velocity[:, :2] * side], axis=1)
+        if self.model.table is None:
+            return History(course.start, course.step, self.time, values)
+        axes, flip = np.array(table_axes(self.model.phi, self.model.table.angle)), np.array([mirror, 1.0, 1.0])
+        velocity, turning = axes @ self.ball[:3] * flip, axes @ self.ball[3:] * flip * mirror
+        return History(course.start, course.step, self.time, values, velocity, turning)
+
+
+def impulse_on(model: ContactModel, ball: Array) -> tuple[float, float]:
+    """The impulse (t, n) that gave a ball at rest these velocities, N s; of a raised stroke that along the table."""
+    if model.table is None:
+        return float(model.ball_mass * ball[0]), float(model.ball_mass * ball[1])
+    s, c = math.sin(model.phi), math.cos(model.phi)
+    right, forward, _ = table_axes(model.phi, model.table.angle)
+    p_t, p_n = (s * forward + c * right) @ ball[:3], (c * forward - s * right) @ ball[:3]
+    return float(model.ball_mass * p_t), float(model.ball_mass * p_n)
+
+
+def solve_contact(model: ContactModel, *, recorded: bool = True) -> SolvedContact:
+    """Follow a contact from touch to parting, and what comes after it within its window.
+
+    RuntimeError if the ball does not leave the cue, or the contact cannot be stepped on.
+    """
+    kernel, propagator, c = library(), model.propagator, KernelContact()
+    before = propagator.onto @ propagator.approach * model.speed + 0j
+    held = {
+        "facing": np.ascontiguousarray(model.facing),
+        "ball_gives": np.ascontiguousarray(model.ball_gives),
+        "xi": before.copy(),
+        "ball": np.append(model.ball, np.zeros(6 - len(model.ball))),  # the kernel has room for six
+        **{name: np.array(values, float) for name, values in model.arrays.items()},
+    }
+    for name, array in held.items():
+        setattr(c, name, array.ctypes.data)
+    numbers = {
+        "exponent": 1.0,
+        "restitution": model.restitution,
+        "friction": model.friction,
+        "speed": model.speed,
+        "clock": model.time,
+        "impulse": model.speed * model.ball_mass,
+        "longest": model.longest,
+        "window": model.window or 0.0,
+        "most_phases": MOST_PHASES,
+        "most_steps": MOST_STEPS,
+        "forces": len(model.facing),
+        "speeds": len(model.ball_gives),
+        "patch": model.patch,
+        "lossy": propagator.lossy,
+        "recording": int(recorded),
+    }
+    for name, value in (numbers | model.terms).items():
+        setattr(c, name, value)
+    c.cue = propagator.cue
+    kernel.contact_run(ctypes.byref(c))
+    phases = _phases(model, _rows(c.phases, c.phase_count, 4 + 2 * c.speeds), c.speeds)
+    held["ball"] = held["ball"][: c.speeds]
+    records = _rows(c.records, c.record_count, c.row)
+    kernel.contact_free(ctypes.byref(c))
+    if c.status != _ENDED:
+        raise _failure(model, c, phases, held)
+    course = Course.of(records, c.forces, len(propagator.rows), c.speeds) if recorded else None
+    losses = {"friction": c.friction_loss, "shear": c.shear_loss, "table": c.table_loss}
+    losses |= {"damping": c.damping_loss, "radiated": c.radiated}
+    return SolvedContact(
+        model, phases, c.time, before, held["xi"], held["ball"], bool(c.parted), c.deepest, c.peak, losses, course
+    )
+
+
+def _rows(pointer: ctypes._Pointer[ctypes.c_double], count: int, wide: int) -> Array:
+    if not count:
+        return np.zeros((0, max(wide, 5)))
+    return np.ctypeslib.as_array(pointer, (count, wide)).copy()
+
+
+def _phases(model: ContactModel, rows: Array, speeds: int) -> tuple[Phase, ...]:
+    phases = []
+    for grip, press, start, end, *ball in rows.tolist():
+        p_t, p_n = np.subtract(impulse_on(model, np.array(ball[speeds:])), impulse_on(model, np.array(ball[:speeds])))
+        phases.append(Phase(GRIPS[int(grip)], PRESSES[int(press)], start, end, (float(p_t), float(p_n))))
+    return tuple(phases)
+
+
+def _failure(model: ContactModel, c: KernelContact, phases: tuple[Phase, ...], held: dict[str, Array]) -> Exception:
+    """What a contact that did not end says."""
+    if c.status == _NO_MEMORY:
+        return MemoryError("no memory for the steps of a contact")
+    if c.status == _TOO_DEEP and model.leather is not None:
+        return model.leather.too_deep(c.depth)
+    where = f"{GRIPS[c.grip]}, {PRESSES[c.press]}"
+    if c.status == _TURNED_TOO_FAR:
+        return RuntimeError(f"the contact has rolled by {c.angle:.3g} rad, further than its levers are known")
+    if c.status == _STUCK:
+        return RuntimeError(
+            f"the contact could not be stepped on from {c.time:.6g} s, after {c.steps} steps, in {where}; "
+            "keep fewer modes, or a Tip.restitution further from 0"
+        )
+    ports = (model.propagator.rows @ (model.propagator.velocities @ held["xi"])).real
+    v = model.facing @ np.concatenate([ports, held["ball"]])
+    return RuntimeError(
+        f"the ball does not leave the cue: after {c.time:.6g} s and {len(phases)} phases "
+        f"(head-on contact time {model.time:.6g} s) the contact is in {where}, with v_t = {v[0]:.3g} m/s, "
+        f"v_n = {v[1]:.3g} m/s and the tip pressed by {c.depth:.3g} m; "
+        "check restitution, contact time and the masses, or keep fewer modes"
+    )
