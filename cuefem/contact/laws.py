@@ -29,6 +29,8 @@ RINGS = 160  # even in the root of the compression, up to the law's greatest
 RIGID_PATCH, SPRING_PATCH, LEATHER_PATCH, RINGED_PATCH = range(4)
 # Levers that are functions are sampled over this range of the contact's angle, rad, by so many Chebyshev terms.
 LEVER_REACH, LEVER_TERMS, LEVER_FIT = 0.5, 24, 1e-11
+# A law that stiffens from nothing grips a patch on a spring at once if it does so from this part of a blow's depth on.
+TOUCHED = 1e-11
 _NOTHING = np.zeros(1)
 
 
@@ -161,8 +163,8 @@ def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
         patch, dome, turns = SPRING_PATCH if compliance else RIGID_PATCH, terms.dome_radius, terms.turns
         numbers |= of_tip | {"compliance": compliance}
         if compliance:
-            stiffness = numbers["stiffness"] if numbers["exponent"] == 1 else 0.0
-            numbers["first_ratio"] = 1 / (compliance * stiffness) if stiffness else math.inf
+            n, touched = numbers["exponent"], TOUCHED * common["speed"] * time
+            numbers["first_ratio"] = 1 / (compliance * numbers["stiffness"] * n * touched ** (n - 1))
         common |= {"time": time}
     lever_t, lever_n = s * u + c * w, c * u - s * w
     if turns:

@@ -101,15 +101,15 @@ class SolvedContact:
         vibrating = stretched @ stretched + moving[~rigid] @ moving[~rigid]
         return float(moving[rigid] @ moving[rigid]) / 2, float(vibrating) / 2
 
-    def history(self, mirror: float) -> History:
-        """Forces and velocities; mirror: -1 for a stroke on the other side."""
+    def history(self, mirror: float, radius: float = 1.0) -> History:
+        """Forces and velocities; mirror: -1 for a stroke on the other side; radius: of the ball, m."""
         assert self.course is not None
         course, side = self.course, np.array([mirror, 1.0])[:, None]
         values = np.concatenate([course.force[:, :2] * side, course.velocity[:, :2] * side], axis=1)
         if self.model.table is None:
             return History(course.start, course.step, self.time, values)
         axes, flip = np.array(table_axes(self.model.phi, self.model.table.angle)), np.array([mirror, 1.0, 1.0])
-        velocity, turning = axes @ self.ball[:3] * flip, axes @ self.ball[3:] * flip * mirror
+        velocity, turning = axes @ self.ball[:3] * flip, axes @ self.ball[3:] / radius * flip * mirror
         return History(course.start, course.step, self.time, values, velocity, turning)
 
 

@@ -150,15 +150,15 @@ static int guards(Work *w, const Step *s, Guard *to)
     const Contact *c = w->c;
     int count = 0, press = w->hold.press, grip = w->hold.grip;
     double size = c->impulse / c->clock, speed = c->speed, near = w->linear ? 0 : 1e-10, slides[WITH];
-    double way = near * speed * c->clock;
+    double way = near * speed * c->clock, force = 10 * near * size;
     if (press == FREE) {
         GUARD(TOUCHED, 0, rest_of(c) + 1e-10 * speed * c->clock - s->depth[i]);
         return count;
     }
     if (press == LOAD) GUARD(COMPRESSED, near * speed, -s->v[1][i]);
     else if (press == RIGID) {
-        GUARD(APART, near * size, s->F[1][i]);
-        GUARD(RELOADED, near * size, c->peak - s->F[1][i]);
+        GUARD(APART, force, s->F[1][i]);
+        GUARD(RELOADED, force, c->peak - s->F[1][i]);
     } else {
         GUARD(APART, way, s->depth[i] - rest_of(c));
         GUARD(RELOADED, way, c->deepest - s->depth[i]);
@@ -169,8 +169,8 @@ static int guards(Work *w, const Step *s, Guard *to)
         sliding(w, s, slides);
         GUARD(GRIPPED, near * speed, -grip * slides[i]);
     } else if (isfinite(c->friction)) {
-        GUARD(SLIPPED, near * size, c->friction * s->F[1][i] - s->F[0][i] + 1e-12 * size);
-        GUARD(SLIPPED_BACK, near * size, c->friction * s->F[1][i] + s->F[0][i] + 1e-12 * size);
+        GUARD(SLIPPED, force, c->friction * s->F[1][i] - s->F[0][i] + 1e-12 * size);
+        GUARD(SLIPPED_BACK, force, c->friction * s->F[1][i] + s->F[0][i] + 1e-12 * size);
     }
     return count;
 }
@@ -208,13 +208,28 @@ static int first_grip(Work *w, int press)
     return !c->parted;
 }
 
-/* A patch that begins to slide has friction's force, wherever its spring was before. */
+/* Take away what rounding left of the velocities that a hold keeps at zero, or the march sticks. */
+static void settle(Work *w, Hold hold)
+{
+    int held[2], count = 0;
+    if (hold.grip == STICK && w->c->patch == RIGID_PATCH) held[count++] = 0;
+    if (hold.press == RIGID) held[count++] = 1;
+    blow(w, held, count);
+}
+
+/* A patch that begins to slide has friction's force, wherever its spring was before; one that is let go has none. */
 static void begin(Work *w)
 {
     Contact *c = w->c;
     int giving = c->patch == SPRING_PATCH || c->patch == LEATHER_PATCH;
     if (w->hold.press == LOAD) w->grows = 1;
-    if (w->hold.press == FREE || w->hold.grip == STICK || !giving) return;
+    if (w->hold.press == FREE) {
+        c->shear_loss += stored(c, UNLOAD), c->shear = 0;
+        if (c->rings) memset(c->ring_shear, 0, c->rings * sizeof *c->ring_shear);
+        return;
+    }
+    settle(w, w->hold);
+    if (w->hold.grip == STICK || !giving) return;
     double before = stored(c, w->hold.press), F[FORCES];
     if (w->hold.press == RIGID) {
         if (!forces_held(w, w->hold, F, 0)) return;
@@ -271,6 +286,7 @@ static int grip_at_rest(Work *w, int press)
     const Contact *c = w->c;
     double F[FORCES];
     if (c->patch != RIGID_PATCH || !isfinite(c->friction)) return STICK;
+    settle(w, (Hold){STICK, press, 0});
     if (!forces_held(w, (Hold){STICK, press, 0}, F, 0)) return STICK;
     if (fabs(F[0]) <= c->friction * F[1] + 1e-12 * c->impulse / c->clock) return STICK;
     return F[0] > 0 ? SLIP : SLIP_BACK;
@@ -288,8 +304,9 @@ static int next(Work *w, int event)
         if (c->restitution > 0) w->hold.press = UNLOAD;
         else { /* past the peak a tip of e = 0 pushes on only as far as the cue presses against the ball */
             w->hold.press = RIGID;
+            settle(w, w->hold);
             if (!pressed_together(w, grip) || !forces_held(w, w->hold, F, 0)) return 0;
-            return F[1] > 0;
+            return F[1] > 1e-8 * c->impulse / c->clock;
         }
         return 1;
     }

@@ -394,7 +394,7 @@ int solve_step(Work *w, int level, Step *s)
             for (int i = 0; i < Q; i++) F[f][i] -= g[f * Q + i], off = fmax(off, fabs(g[f * Q + i]));
         off /= size;
         if (!(off < 1e9)) break;
-        before = off < 1e-9 && off > 0.5 * before ? 0 : off;
+        before = (off < 1e-9 || off * r->step < 1e-13 * c->clock) && off > 0.5 * before ? 0 : off; /* rounding is left */
     }
     free(own_V);
     if (settled && dampers)
@@ -406,7 +406,7 @@ int solve_step(Work *w, int level, Step *s)
 /* The forces that a hold would ask for now: those at a node of a very short step. */
 int forces_held(Work *w, Hold hold, double *F, int node)
 {
-    static const int SHORT = 16;
+    static const int SHORT = 12;
     Hold here = w->hold;
     int level = LONGEST_POWER + SHORT - (int)floor(log2(w->c->clock)), known = w->known;
     w->hold = hold;
@@ -572,14 +572,9 @@ static int follow(Work *w, double until)
 {
     Contact *c = w->c;
     double start = c->time, before[SPEEDS];
-    int held[FORCES], count = 0, fresh = 1;
+    int fresh = 1;
     Guard ends[8];
     w->law->begin(w);
-    if (c->forces == 2 && w->hold.press != FREE) { /* take the rounding of what is held away, or the march sticks */
-        if (w->hold.grip == STICK && c->patch == RIGID_PATCH) held[count++] = 0;
-        if (w->hold.press == RIGID) held[count++] = 1;
-        blow(w, held, count);
-    }
     memcpy(before, c->ball, sizeof before);
     for (;;) {
         if (w->hold.press == FREE ? c->time >= until : c->time > until) return w->hold.press == FREE ? LATE_FLIGHT : -LATE;
@@ -640,6 +635,14 @@ static int touch(Work *w, int press, double until)
     return 1;
 }
 
+/* The first step: where a force grows from nothing with a root of the compression, a very short one. */
+static int first_level(const Contact *c)
+{
+    int smooth = c->curve == POWER_CURVE && c->exponent == 1;
+    int halvings = smooth ? 2 : c->patch == SPRING_PATCH ? 30 : 12;
+    return LONGEST_POWER - (int)floor(log2(c->clock)) + halvings;
+}
+
 /* Ball and tip apart: whether they touch again by a time. What the patch held is lost. */
 static int fly(Work *w, double until)
 {
@@ -649,7 +652,6 @@ static int fly(Work *w, double until)
     double *xi = malloc(modes + 1), ball[SPEEDS];
     if (!xi) return 0;
     memcpy(xi, c->xi, modes), memcpy(ball, c->ball, sizeof ball);
-    if (c->rings) memset(c->ring_shear, 0, c->rings * sizeof *c->ring_shear);
     w->hold = (Hold){APART_GRIP, FREE, HELD}, w->known = 0;
     w->level = 1 + LONGEST_POWER - (int)floor(log2(c->clock));
     int event = follow(w, until);
@@ -662,7 +664,7 @@ static int fly(Work *w, double until)
         if (event < 0) c->status = -event;
     } else {
         c->depth = (1 - c->restitution * c->restitution) * c->deepest;
-        w->level = (c->curve == LEATHER_CURVE || c->exponent != 1 ? 12 : 1) + LONGEST_POWER - (int)floor(log2(c->clock));
+        w->level = first_level(c);
         w->grows = 1, w->known = 0;
     }
     free(xi);
@@ -686,8 +688,7 @@ EXPORTED void contact_run(Contact *c)
     w->c = c, w->law = c->forces == 2 ? &planar : &raised;
     w->linear = !c->turns && c->curve == POWER_CURVE && c->exponent == 1 && c->forces == 2;
     w->grows = 1;
-    w->level = LONGEST_POWER - (int)floor(log2(c->clock)) +
-               (c->curve == LEATHER_CURVE || c->exponent != 1 ? 12 : c->forces == 2 ? 2 : 3);
+    w->level = first_level(c);
     for (int f = 0; f < FORCES; f++) w->ratio[f] = f == 1;
     int dampers = c->cue->reads - c->cue->ports;
     w->step.damped = malloc((dampers + 1) * WITH * sizeof(double));
@@ -697,10 +698,11 @@ EXPORTED void contact_run(Contact *c)
     int parted = !c->status && touch(w, LOAD, longest);
     double until = c->time + c->window;
     while (parted && c->window > 0 && c->time < until && fly(w, until)) {
-        if (c->patch == SPRING_PATCH) c->shear_loss += 0;
         longest += c->time - start, start = c->time;
         parted = touch(w, UNLOAD, longest);
     }
+    w->hold.press = FREE;
+    if (!c->status && c->forces == 2) w->law->begin(w); /* what the patch still holds is lost */
     for (int i = 0; i < LEVELS; i++) {
         free(w->V[i]);
         for (int j = 0; j < 16; j++) free(w->factors[i][j]);

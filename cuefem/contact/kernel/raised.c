@@ -90,7 +90,7 @@ static int guards(Work *w, const Step *s, Guard *to)
     const Contact *c = w->c;
     int count = 0;
     double size = c->impulse / c->clock, speed = c->speed, way = speed * c->clock, values[WITH];
-    double tiny = 1e-12 * size, near = 1e-11, rest = (1 - c->restitution * c->restitution) * c->deepest;
+    double tiny = 1e-12 * size, near = 1e-11, force = 1e-9 * size, rest = (1 - c->restitution * c->restitution) * c->deepest;
     if (w->hold.press == LOAD) GUARD(COMPRESSED, near * speed, -s->v[N][i]);
     else {
         GUARD(APART, near * way, s->depth[i] - rest);
@@ -100,16 +100,16 @@ static int guards(Work *w, const Step *s, Guard *to)
         along(w, s, 0, values);
         if (c->friction > 0) GUARD(GRIPPED, near * speed, values[i]);
     } else if (isfinite(c->friction))
-        GUARD(SLIPPED, near * size, c->friction * s->F[N][i] - hypot(s->F[T][i], s->F[P][i]) + tiny);
+        GUARD(SLIPPED, force, c->friction * s->F[N][i] - hypot(s->F[T][i], s->F[P][i]) + tiny);
     if (w->hold.table == LIFTED) {
         GUARD(LANDED, near * way, c->height + s->x[UP][i]);
         return count;
     }
-    GUARD(LIFTED_OFF, near * size, s->F[UP][i] + tiny);
+    GUARD(LIFTED_OFF, force, s->F[UP][i] + tiny);
     if (w->hold.table == SLIDES) {
         along(w, s, 1, values);
         if (c->table_friction > 0) GUARD(STOPPED, near * speed, values[i]);
-    } else GUARD(SLID, near * size, c->table_friction * s->F[UP][i] - hypot(s->F[ASIDE][i], s->F[AHEAD][i]) + tiny);
+    } else GUARD(SLID, force, c->table_friction * s->F[UP][i] - hypot(s->F[ASIDE][i], s->F[AHEAD][i]) + tiny);
     return count;
 }
 
