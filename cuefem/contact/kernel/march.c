@@ -581,11 +581,16 @@ static int follow(Work *w, double until)
         if (c->steps > c->most_steps) return -CROWDED;
         int status = longest_step(w), event = NONE;
         if (status) return -status;
-        double first = 1;
+        double first = 1, apart = 2;
         int guards = w->law->guards(w, &w->step, ends);
         for (int i = 0; i < guards; i++) {
             double at = first_fall(ends[i].values, ends[i].past);
             if (at < first || (at == first && !event)) first = at, event = ends[i].event;
+            if (ends[i].event == APART) apart = at;
+        }
+        if (event && apart <= 1 && w->hold.press == UNLOAD) { /* where all forces vanish the other ends mean nothing */
+            double left = value_at(w->step.depth, first) - (1 - c->restitution * c->restitution) * c->deepest;
+            if (left < (w->linear ? 1e-11 : 1e-7) * c->deepest) first = apart, event = APART;
         }
         if (first > 0) {
             double here = c->time, ball[SPEEDS];
@@ -622,8 +627,8 @@ static int touch(Work *w, int press, double until)
     Contact *c = w->c;
     int goes_on = w->law->first_grip(w, press);
     w->hold.grip = c->grip, w->hold.press = press;
-    while (goes_on) {
-        if (c->phase_count + 1 >= c->most_phases) c->status = CROWDED;
+    for (int events = 0; goes_on; events++) {
+        if (c->phase_count + 1 >= c->most_phases || events >= c->most_phases) c->status = CROWDED;
         else {
             int event = follow(w, until);
             if (event < 0) c->status = -event;

@@ -9,6 +9,8 @@ enum { T, N, P, UP, ASIDE, AHEAD };
 static const int PLANES[2][3] = {{T, P, N}, {ASIDE, AHEAD, UP}}; /* two directions of friction, and what presses */
 /* A point that slides more slowly than this part of the stroke's speed keeps its direction. */
 static const double REST = 1e-8;
+/* By this part of the contact's force friction's bound may be passed: as ball and tip part, all forces end in rounding. */
+static const double ROUNDING = 1e-9;
 
 static double friction_of(const Contact *c, int i)
 {
@@ -90,7 +92,7 @@ static int guards(Work *w, const Step *s, Guard *to)
     const Contact *c = w->c;
     int count = 0;
     double size = c->impulse / c->clock, speed = c->speed, way = speed * c->clock, values[WITH];
-    double tiny = 1e-12 * size, near = 1e-11, force = 1e-9 * size, rest = (1 - c->restitution * c->restitution) * c->deepest;
+    double tiny = ROUNDING * size, near = 1e-11, rest = (1 - c->restitution * c->restitution) * c->deepest;
     if (w->hold.press == LOAD) GUARD(COMPRESSED, near * speed, -s->v[N][i]);
     else {
         GUARD(APART, near * way, s->depth[i] - rest);
@@ -100,23 +102,23 @@ static int guards(Work *w, const Step *s, Guard *to)
         along(w, s, 0, values);
         if (c->friction > 0) GUARD(GRIPPED, near * speed, values[i]);
     } else if (isfinite(c->friction))
-        GUARD(SLIPPED, force, c->friction * s->F[N][i] - hypot(s->F[T][i], s->F[P][i]) + tiny);
+        GUARD(SLIPPED, 0, c->friction * s->F[N][i] - hypot(s->F[T][i], s->F[P][i]) + tiny);
     if (w->hold.table == LIFTED) {
         GUARD(LANDED, near * way, c->height + s->x[UP][i]);
         return count;
     }
-    GUARD(LIFTED_OFF, force, s->F[UP][i] + tiny);
+    GUARD(LIFTED_OFF, 0, s->F[UP][i] + tiny);
     if (w->hold.table == SLIDES) {
         along(w, s, 1, values);
         if (c->table_friction > 0) GUARD(STOPPED, near * speed, values[i]);
-    } else GUARD(SLID, force, c->table_friction * s->F[UP][i] - hypot(s->F[ASIDE][i], s->F[AHEAD][i]) + tiny);
+    } else GUARD(SLID, 0, c->table_friction * s->F[UP][i] - hypot(s->F[ASIDE][i], s->F[AHEAD][i]) + tiny);
     return count;
 }
 
 /* The forces of a hold now; at the first touch, where there are none yet, those of a slight compression. */
 static int forces_now(Work *w, Hold hold, double *F)
 {
-    return forces_held(w, hold, F, Q);
+    return forces_held(w, hold, F, w->c->depth > 0 ? 0 : Q);
 }
 
 /* How the table holds the ball, whose lowest point is at rest: held, sliding away, or not at all. */
@@ -126,7 +128,7 @@ static void rest_on_table(Work *w)
     double F[FORCES];
     w->hold.table = HELD;
     if (!forces_now(w, w->hold, F)) return;
-    double slack = 1e-9 * fabs(F[N]);
+    double slack = ROUNDING * c->impulse / c->clock;
     if (hypot(F[ASIDE], F[AHEAD]) > c->table_friction * F[UP] + slack) {
         w->hold.table = SLIDES;
         point(w->way[1], F[ASIDE], F[AHEAD]);
@@ -149,7 +151,7 @@ static int grip_at_rest(Work *w, int press)
     double F[FORCES];
     c->friction_loss += settle(w, hold);
     if (!forces_now(w, hold, F)) return STICK;
-    if (hypot(F[T], F[P]) <= c->friction * F[N] + 1e-12 * c->impulse / c->clock) return STICK;
+    if (hypot(F[T], F[P]) <= c->friction * F[N] + ROUNDING * c->impulse / c->clock) return STICK;
     point(w->way[0], F[T], F[P]);
     return SLIP;
 }
