@@ -17,8 +17,8 @@ from cuefem.beam.spectrum import Ended, ended
 from cuefem.beam.system import assemble
 from cuefem.beam.tip import TipModes
 from cuefem.beam.waves import SPARE, modes_below, wave_phase
-from cuefem.contact.ringing_tip import RINGING
-from cuefem.contact.state import APART
+from cuefem.contact.laws import LEAST_RESTITUTION
+from cuefem.contact.outcome import FLIGHT
 from cuefem.contact.strike import strike, strike_modes
 from cuefem.cue import Array, Cue
 from cuefem.effects import SecondHit
@@ -312,10 +312,10 @@ def _caught_up(outcome: Outcome, scene: Scene, tip: TipModes) -> float:
         return 0.0
     restitution, end = float(scene.tip.restitution), float(outcome.duration)
     head_on = restitution * float(scene.stroke.speed) * math.cos(scene.stroke.angle)
-    if restitution <= RINGING or outcome.history(end)["velocity_n"] > SLOWLY * head_on:
+    if restitution < LEAST_RESTITUTION or outcome.history(end)["velocity_n"] > SLOWLY * head_on:
         return 0.0
     again = strike_modes(replace(scene, effects=(*scene.effects, SecondHit(end / 2))), tip)
-    flight = next((phase for phase in again.phases if phase[:2] == APART), None)
+    flight = next((phase for phase in again.phases if phase[:2] == FLIGHT), None)
     if flight is None:
         return 0.0
     time = np.linspace(flight.start, flight.end, LOOKS)

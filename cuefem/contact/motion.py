@@ -1,8 +1,7 @@
 """Where cue and ball are at any time of a strike and after it.
 
-Every kind of contact gives its motion as stretches of time (`cuefem.contact.stretches`): linear courses, whose states
-are exponentials, or phases that were stepped, which are read off the solver's interpolants. Positions of rigid motions
-and of the ball are no part of the state: they are integrals of velocities, carried along.
+The modes turn exactly between the contact's forces, so the motion follows from the loads of the steps that were taken.
+Positions of rigid motions and of the ball are integrals of velocities, carried along.
 Coordinates: u along the cue in the direction of the stroke and w across it, on the side that is struck at a positive
 offset; their origin is the tip's centre at first touch.
 """
@@ -10,7 +9,6 @@ offset; their origin is the tip's centre at first touch.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -19,9 +17,10 @@ from numpy.typing import ArrayLike
 
 from cuefem.beam.modes import Modes
 from cuefem.beam.tip import TipModes
-from cuefem.contact.phases import Kind
-from cuefem.contact.state import Contact
-from cuefem.contact.strike import struck
+from cuefem.contact.laws import model_of
+from cuefem.contact.propagator import Complex
+from cuefem.contact.rule import FORCE_WAVES, GAUSS, WEIGHTS, sums_to, values_at, waves_over
+from cuefem.contact.solve import SolvedContact, solve_contact
 from cuefem.cue import Array
 from cuefem.quantity import check_kind, scalar
 from cuefem.scene import Resolution, Scene
@@ -106,8 +105,8 @@ def motion(scene: Scene, times: ArrayLike, at: Resolution | None = None) -> Moti
     Notes
     -----
     u points along the cue in the direction of the stroke and w across it, to the side that is struck at a positive
-    offset; the origin is the tip's centre at first touch. Between phases the state follows z' = A z, so that exp(A t)
-    gives it without stepping error. Beside the strike, each time costs a matrix exponential.
+    offset; the origin is the tip's centre at first touch. Between the contact's forces the modes turn exactly, so that
+    the motion is as accurate as the strike at every time.
 
     Examples
     --------
@@ -126,7 +125,7 @@ def motion(scene: Scene, times: ArrayLike, at: Resolution | None = None) -> Moti
         raise ValueError("motion takes strokes in the plane of cue and ball; got Elevation")
     solved = Solved(scene, at)
     found, tip = solved.modes, solved.tip
-    return _read(scene, found, tip, kind=struck(scene, tip), times=times)
+    return _read(scene, found, tip, solved=solve_contact(model_of(scene, tip)), times=times)
 
 
 def last_contact(scene: Scene, at: Resolution | None = None) -> float:
@@ -142,24 +141,24 @@ def ascending(times: ArrayLike) -> Array:
     return times
 
 
-def _read(scene: Scene, found: Modes, tip: TipModes, *, kind: Kind, times: Array) -> Motion:
-    phi, side = kind.contact.laws.phi, math.copysign(1.0, scalar("Stroke.offset", scene.stroke.offset))
+def _read(scene: Scene, found: Modes, tip: TipModes, *, solved: SolvedContact, times: Array) -> Motion:
+    phi, side = solved.model.phi, math.copysign(1.0, scalar("Stroke.offset", scene.stroke.offset))
     tangent, normal = np.array([math.sin(phi), math.cos(phi)]), np.array([math.cos(phi), -math.sin(phi)])
-    q, ball = positions_of(kind, times)
+    path = Path.of(solved, times)
     vectors, across = _bending(found, tip)
     R = scalar("Ball.radius", scene.ball.radius)
     aside, back = scene.contact_terms.lever(phi)  # where on the cue's end the contact lies
-    centre = R * normal + [-back, aside] + ball.gone @ np.array([tangent, normal])
-    s, c = np.sin(phi + ball.contact), np.cos(phi + ball.contact)
-    F_t, F_n = forces_of(kind, times).T
+    centre = R * normal + [-back, aside] + path.ball[:, :2] @ np.array([tangent, normal])
+    s, c = np.sin(phi + path.angle), np.cos(phi + path.angle)
+    F_t, F_n = path.force.T
     return Motion(
         times,
-        kind.contact.time,
+        solved.time,
         found,
-        fields=side * vectors @ q[across],
-        along=tip.amplitude[:, 0] @ q,
+        fields=side * vectors @ path.modes[across],
+        along=tip.amplitude[:, 0] @ path.modes,
         centre=centre * [1.0, side],
-        turned=-side * ball.rolled / R,
+        turned=-side * path.ball[:, 2] / R,
         force=np.column_stack([s * F_t + c * F_n, side * (c * F_t - s * F_n)]),
     )
 
@@ -172,55 +171,102 @@ def _bending(found: Modes, tip: TipModes) -> tuple[Array, Any]:
     return vectors[:, columns], across[np.argsort(tip.omega[across], kind="stable")]
 
 
-class _Ball(NamedTuple):
-    """Of a ball: its way (t, n), (n, 2), and that of its surface by its spin, (n,), m; the contact's angle on it."""
+class Path(NamedTuple):
+    """Where the modes of a cue and the ball are at given times of a contact and after it.
 
-    gone: Array
-    rolled: Array
-    contact: Array
+    modes: (modes, times), the modes' displacements. ball: (times, speeds), the way of the ball along each of its
+    velocities, m. angle: (times,), by which the contact has turned, rad. force: (times, 2), on the ball (t, n), N.
+    """
+
+    modes: Array
+    ball: Array
+    angle: Array
+    force: Array
+
+    @classmethod
+    def of(cls, solved: SolvedContact, times: Array) -> Path:
+        """Follow the steps of a contact once more, from load to load; times: ascending, s."""
+        course, propagator = solved.course, solved.model.propagator
+        assert course is not None
+        speeds, walk = len(solved.ball), _Walk(solved)
+        modes, ball = np.zeros((len(propagator.omega), len(times))), np.zeros((len(times), speeds))
+        angle, force = np.zeros(len(times)), np.zeros((len(times), 2))
+        ends = np.append(course.start[1:], solved.time)
+        bounds = np.append(np.searchsorted(times, course.start), np.searchsorted(times, solved.time, side="right"))
+        for i in range(len(course.start)):
+            walk.blow(course.blows[i])
+            first, last = bounds[i], bounds[i + 1]
+            here, span = np.append(times[first:last], ends[i]) - course.start[i], course.step[i]
+            parts = np.minimum(here / span, course.part[i])
+            xi, gone, way = walk.follow(here, parts, course.loads[i], span)
+            if last > first:
+                modes[:, first:last] = walk.displacements(xi[:-1], gone[:-1]).T
+                ball[first:last] = way[:-1]
+                values = values_at(parts[:-1])
+                angle[first:last] = values @ course.angle[i]
+                if course.pressed[i]:
+                    force[first:last] = values @ course.force[i, :2].T
+            walk.go_on(xi[-1], gone[-1], way[-1], course.loads[i], parts[-1], span)
+        late = np.flatnonzero(times > solved.time) if len(course.start) else np.arange(len(times))
+        if len(late):
+            if not len(course.start):  # a blow that threw the two apart
+                walk.end(solved)
+            xi, gone, way = walk.fly(times[late] - solved.time)
+            modes[:, late], ball[late] = walk.displacements(xi, gone).T, way
+            angle[late] = course.angle[-1] @ values_at(course.part[-1]) if len(course.start) else 0.0
+        return cls(modes, ball, angle, force)
 
 
-def positions_of(kind: Kind, times: Array) -> tuple[Array, _Ball]:
-    """Coordinates of all tip modes (modes, n), and the ball's."""
-    contact = kind.contact
-    slots, quiet, size = contact.slots, contact.quiet, len(contact.z)
-    states = np.array(list(_states(kind, _unstated(contact), times))).T
-    vibrating = states[slots.vibration] / contact.omega[:, None]
-    t, n_, rolled = states[-3:]
-    angle = states[slots["angle"]] if "angle" in slots else np.zeros(len(times))
-    return np.concatenate([states[size : size + quiet], vibrating]), _Ball(np.column_stack([t, n_]), rolled, angle)
+class _Walk:
+    """The state of cue and ball on the way through the steps: coordinates, ways of the rigid modes and of the ball."""
 
+    def __init__(self, solved: SolvedContact) -> None:
+        self.propagator, self.gives = solved.model.propagator, solved.model.ball_gives
+        self.xi, self.rigid = solved.xi_before.copy(), self.propagator.omega == 0
+        self.ball, self.way = np.array(solved.model.ball, float), np.zeros(len(solved.ball))
+        self.gone = np.zeros(int(self.rigid.sum()))
+        self.ports = len(self.propagator.rows)
+        self.drives = self.propagator.onto @ self.propagator.rows.T
 
-def _unstated(contact: Contact) -> Array:
-    """Rows that read velocities whose positions are no state: rigid modes, the ball's (t, n), its surface's; m/s."""
-    quiet, M, nu = contact.quiet, contact.laws.ball_mass, contact.laws.inertia
-    rows, (read, per) = np.zeros((quiet + 3, len(contact.z))), contact.readings
-    rows[range(quiet), contact.slots.velocities.start + np.arange(quiet)] = 1.0
-    rows[quiet:] = read[:3] / per[:3, None] / np.array([[M], [M], [nu * M]])
-    return rows
+    def blow(self, impulses: Array) -> None:
+        """What blows on the ports do at once."""
+        if impulses.any():
+            self.xi = self.xi + self.drives @ impulses[: self.ports]
+            self.ball = self.ball + self.gives * impulses[self.ports :]
 
+    def displacements(self, xi: Complex, gone: Array) -> Array:
+        """Of all modes, (times, modes), from the coordinates and the ways of the rigid ones."""
+        omega = self.propagator.omega
+        found = (xi @ self.propagator.displacements.T).real / np.where(self.rigid, 1.0, omega)
+        found[:, self.rigid] = gone
+        return np.asarray(found)
 
-def _states(kind: Kind, rows: Array, times: Array) -> Iterator[Array]:
-    """States at ``times``, and below them the integrals over time of ``rows`` of them."""
-    parts = kind.stretches()
-    gone, size = np.zeros(len(rows)), len(kind.contact.z)
-    for part, end in zip(parts, [*(later.start for later in parts[1:]), math.inf], strict=True):
-        own = times[(times >= part.start) & (times < end)]
-        last = [end] if end < math.inf else []
-        for state in part.states(rows, np.append(own, last) - part.start):
-            state[size:] += gone
-            if len(own):
-                own = own[1:]
-                yield state
-            else:
-                gone = state[size:]
+    def follow(self, here: Array, parts: Array, loads: Array, span: float) -> tuple[Complex, Array, Array]:
+        """Coordinates, ways of the rigid modes and of the ball at times from the start of a step under its loads."""
+        inner = parts[:, None] * GAUSS  # of each time, the points of an integral up to it
+        every = np.concatenate([inner.ravel(), parts])
+        waves = np.array([loads[: self.ports] @ waves_over(part).T for part in every])
+        xi = self.propagator.follow(self.xi, span * every, waves)
+        between, at = xi[: inner.size].reshape(*inner.shape, -1), xi[inner.size :]
+        speeds = (between @ self.propagator.velocities[self.rigid].T).real
+        gone = self.gone + span * parts[:, None] * np.einsum("q,tqr->tr", WEIGHTS, speeds)
+        pushed = np.array([sums_to(part, FORCE_WAVES) for part in inner.ravel()]) @ loads[self.ports :].T
+        moving = self.ball + span * self.gives * pushed.reshape(*inner.shape, -1)
+        return at, gone, self.way + span * parts[:, None] * np.einsum("q,tqb->tb", WEIGHTS, moving)
 
+    def go_on(self, xi: Complex, gone: Array, way: Array, loads: Array, part: float, span: float) -> None:
+        """To the end of a step."""
+        self.xi, self.gone, self.way = xi, gone, way
+        self.ball = self.ball + span * self.gives * (loads[self.ports :] @ sums_to(part, FORCE_WAVES))
 
-def forces_of(kind: Kind, times: Array) -> Array:
-    """Force on the ball (t, n), where these have turned to, N, (n, 2): none after the contact, or in a blow alone."""
-    force = np.zeros((len(times), 2))
-    pressed = times <= kind.contact.time
-    if pressed.any() and len(kind.stretches()) > 1:
-        known = kind.history(1.0)(times[pressed])
-        force[pressed] = np.column_stack([known["force_t"], known["force_n"]])
-    return force
+    def end(self, solved: SolvedContact) -> None:
+        """To the end of a contact without steps."""
+        self.xi, self.ball = solved.xi, solved.ball
+
+    def fly(self, here: Array) -> tuple[Complex, Array, Array]:
+        """The same without loads, at any time: a coordinate's integral is known in closed form."""
+        xi, rates = self.propagator.follow(self.xi, here), self.propagator.rates
+        turning = np.abs(rates) > 0
+        summed = np.where(turning, (xi - self.xi) / np.where(turning, rates, 1.0), here[:, None] * self.xi)
+        gone = self.gone + (summed @ self.propagator.velocities[self.rigid].T).real
+        return xi, gone, self.way + here[:, None] * self.ball

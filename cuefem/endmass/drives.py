@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cuefem.beam.tip import TipModes
-from cuefem.contact.flow import zero
+from cuefem.endmass.root import zero
 from cuefem.contact.impulse_space import impact
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array, LumpedCue

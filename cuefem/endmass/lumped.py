@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from cuefem.beam.tip import TipModes
-from cuefem.contact.flow import zero
+from cuefem.endmass.root import zero
 from cuefem.contact.impulse_space import impact
 from cuefem.cue import LumpedCue
 from cuefem.endmass.drives import _gripping, end_mass, stick_at_offset, sticking_squirt

@@ -25,7 +25,7 @@ from cuefem.beam.waves import mesh_for
 from cuefem.cue import Array
 from cuefem.quantity import check_kind
 from cuefem.side.scene import SideStrike
-from cuefem.side.strike import SideOutcome, acting, checked_time, outcome_of, place_modes, struck
+from cuefem.side.strike import SideOutcome, acting, checked_time, outcome_of, place_modes, solved_side
 
 
 def resolve_side_strike(scene: SideStrike, rtol: float) -> SideOutcome:
@@ -85,7 +85,7 @@ def side_ladder(scene: SideStrike) -> Iterator[SideOutcome]:
         for n in group:
             kept = replace(whole, frequencies=whole.frequencies[:n], vectors=whole.vectors[:, :n])
             place = place_modes(tail(kept, deflect=deflect, position=scene.position), scene)
-            outcome = outcome_of(struck(scene, place), scene)
+            outcome = outcome_of(solved_side(scene, place), scene)
             counts, outcomes = [*counts[-WINDOW:], n], [*outcomes[-WINDOW:], outcome]
             if len(counts) > JUDGED:
                 values = np.array([[each.apparent_restitution, np.log(each.impulse)] for each in outcomes])
