@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import functools
 import math
+import re
 import typing
 from typing import Annotated, Any
 
@@ -12,25 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cuefem.slips import remark
-
-# What a unit measures, with an example from a file: for messages, the JSON schema, and the units that `save` writes.
-EXAMPLES = {
-    "m": ("a length", "12 mm"),
-    "kg": ("a mass", "150 g"),
-    "s": ("a time", "1.2 ms"),
-    "m/s": ("a speed", "2 m/s"),
-    "Pa": ("a stress", "12.6 GPa"),
-    "kg/m^3": ("a density", "700 kg/m^3"),
-    "N/m": ("a stiffness", "5000 N/m"),
-    "N m/rad": ("a rotational stiffness", "20 N m/rad"),
-    "rad/(N m)": ("a rotational compliance", "2e-4 rad/(N m)"),
-    "m/N": ("a compliance", "1e-8 m/N"),
-    "N m": ("a torque", "20 N m"),
-    "N s/m": ("a dashpot", "3 N s/m"),
-    "kg m^2": ("a rotary inertia", "40 g mm^2"),
-    "rad": ("an angle", "3 deg"),
-    "Hz": ("a frequency", "250 Hz"),
-}
+from cuefem.units import EXAMPLES, LONGEST_TEXT, OtherKind, number, parted, text
 
 # Fields that `impulse` broadcasts may hold an array; all others hold one number.
 Number = float | NDArray[np.float64]
@@ -79,25 +62,41 @@ class Quantity:
         """Whether infinity is a value, which needs no unit."""
         return self.interval.endswith("inf]")
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
-        """Pydantic's hook: the function "read" of the validation context turns a file's text into a number."""
-        from pydantic_core import core_schema
+    def read(self, value: Any) -> float:
+        """What stands in a file as a checked SI number; ValueError names bound, unit and the value got."""
+        if self.unit == "":
+            return self._bare(value)
+        known = dict(self.words) | ({"inf": math.inf} if self.endless else {})
+        word = str(value).strip().lower() if isinstance(value, str | float) else ""
+        if word in known:
+            return known[word]
+        refused = f"must be in {self.bounds}, {self.example}; got {shown(value)}"
+        if not isinstance(value, str):
+            raise ValueError(refused)
+        try:
+            result = number(value, self.unit)
+        except ValueError as error:
+            raise ValueError(f"{refused}{_why(value, error)}") from None
+        beyond = math.isinf(result) and "inf" not in value.lower()
+        if beyond or not self.holds(result):
+            raise ValueError(f"must be in {self.bounds}; got {shown(value)}")
+        return result
 
-        def read(value: Any, info: Any) -> Any:
-            return info.context["read"](self, value)
+    def _bare(self, value: Any) -> float:
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            comma = COMMA if isinstance(value, str) and _COMMA.match(value) else ""
+            raise ValueError(f"must be a bare number in {self.bounds}; got {shown(value)}{comma}")
+        try:
+            result = float(value)
+        except OverflowError:
+            result = math.nan
+        if not self.holds(result):
+            raise ValueError(f"must be in {self.bounds}; got {shown(value)}")
+        return result
 
-        return core_schema.with_info_plain_validator_function(read)
-
-    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
-        """Pydantic's hook: text with a unit, or a bare number within its bounds."""
-        if self.unit:
-            kinds = ["string", "number"] if self.endless else "string"  # inf alone is a number without a unit
-            return {"type": kinds, "description": f"{self.example}; in {self.bounds}"}
-        low, high = self.ends
-        bounds = {"minimum" if self.interval[0] == "[" else "exclusiveMinimum": low}
-        bounds["maximum" if self.interval[-1] == "]" else "exclusiveMaximum"] = high
-        finite = {key: end for key, end in bounds.items() if math.isfinite(end)}
-        return {"type": "number", **finite, "description": f"a number in {self.interval}"}
+    def written(self, value: float) -> str | float:
+        """A number as it stands in a file: text with a unit, or a bare number if it has no dimension."""
+        return text(value, self.unit) if self.unit else value
 
     def check(self, name: str, value: Any) -> Any:
         """``value`` as a float or a read-only float array; the errors name field, bound, unit and value."""
@@ -128,11 +127,21 @@ class Quantity:
 class Flag:
     """Marks a field that is true or false: no other word of a file is read as either."""
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
-        """Pydantic's hook: true or false as they are."""
-        from pydantic_core import core_schema
 
-        return core_schema.bool_schema(strict=True)
+COMMA = "; a decimal point, no comma"
+_COMMA = re.compile(r"\s*[-+]?[0-9]+,[0-9]")
+
+
+def _why(value: str, error: ValueError) -> str:
+    """What is wrong with a text that `number` refused; empty if it has no unit."""
+    if len(value) > LONGEST_TEXT:
+        return f", of {len(value)} letters"
+    if _COMMA.match(value):
+        return COMMA
+    _, unit = parted(value)
+    if isinstance(error, OtherKind):
+        return f", of another kind ({shown(unit)})"
+    return f", an unknown unit ({shown(unit)})" if unit else ""
 
 
 # Bounds of a cue and a blow, so that a wrong unit is refused before it costs hours. Each bound is far from anything

@@ -76,7 +76,7 @@ def optimize(study: Path, output: Path | None, iterations: int, seed: int, as_js
 
 def _short(value: float, unit: str) -> str:
     """A number to six digits, in the unit in which scene files are written: "204.493 mm"."""
-    from cuefem.io.units import text
+    from cuefem.units import text
 
     return text(float(f"{value:.6g}"), unit) if unit else f"{value:.6g}"
 

@@ -41,8 +41,8 @@ def modes(file: Path, near: str | None, count: int, **given: Any) -> None:
 def _hertz(file: Path, near: str) -> float:
     """The frequency that --near gives: a number of hertz, or a number with its unit."""
     from cuefem.io import InputError
-    from cuefem.io.units import number
     from cuefem.quantity import Quantity
+    from cuefem.units import number
 
     wanted = Quantity("Hz", "[0, inf)")
     for text in (near, f"{near} Hz"):

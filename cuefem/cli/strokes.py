@@ -97,13 +97,12 @@ def offset_option(command: Command) -> Command:
 def measured(file: Path, name: str, given: str, wanted: Quantity) -> float:
     """An option's text as a checked SI number."""
     from cuefem.io import InputError
-    from cuefem.io.units import quantity
 
     value: Any = given
     with suppress(ValueError):
         value = float(given) if wanted.unit == "" else value
     try:
-        return quantity(wanted, value)
+        return wanted.read(value)
     except ValueError as error:
         raise InputError(file, name, str(error)) from None
 
@@ -111,8 +110,8 @@ def measured(file: Path, name: str, given: str, wanted: Quantity) -> float:
 def offset_of(file: Path, given: str, radius: float) -> float:
     """The b/R that --offset gives: a bare number, or a length, over the radius of the ball, m."""
     from cuefem.io import InputError
-    from cuefem.io.units import number
     from cuefem.quantity import Quantity
+    from cuefem.units import number
 
     try:
         length = number(given, "m")

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from cuefem.io.units import number
 from cuefem.report.quantities import IMPERIAL, TRADE, Units, significant
+from cuefem.units import number
 
 MM_PER_INCH, GRAMS_PER_OUNCE = 25.4, 28.349523125
 

@@ -13,9 +13,9 @@ from cuefem.cue import Cue
 from cuefem.io.errors import InputError, reason, shown
 from cuefem.io.profile import DEFAULT_MATERIAL, SHAPES, SURFACES, TABLES, load_profile
 from cuefem.io.toml import load_accuracy, load_cue, load_toml, named_material, read_text, toml_text
-from cuefem.io.units import number
 from cuefem.scene import Scene
 from cuefem.side.scene import SideStrike
+from cuefem.units import number
 
 __all__ = [
     "DEFAULT_MATERIAL",

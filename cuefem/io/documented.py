@@ -15,7 +15,6 @@ from cuefem.io.assumed import assumed_blow, assumed_drawing, assumed_usual
 from cuefem.io.errors import nearest, shown
 from cuefem.io.schema import build, joined, keys_of, unknown_key
 from cuefem.io.toml import read_tables, read_text, scene_of_tables
-from cuefem.io.units import quantity
 from cuefem.measured.documented import DocumentedCue
 from cuefem.measured.kinds import KINDS, Measurement
 from cuefem.measured.unknowns import KINDS as UNKNOWNS
@@ -198,7 +197,7 @@ def _priors(path: Path, rows: Any) -> Iterator[Prior]:
         for each, mark in marks.items():
             if each in row:
                 try:
-                    values[each] = quantity(mark, row[each])
+                    values[each] = mark.read(row[each])
                 except ValueError as error:
                     raise InputError(path, joined(key, each), str(error)) from None
         try:

@@ -14,7 +14,7 @@ from cuefem.io.errors import InputError, reason, shown
 from cuefem.io.mesh import DAMAGED, quiet
 from cuefem.io.profile import DEFAULT_UNIT
 from cuefem.io.slices import Index, Sliced, sliced, surface
-from cuefem.io.units import number
+from cuefem.units import number
 
 _VERTEX = re.compile(rb"^[ \t]*vertex[ \t]+(\S+)[ \t]+(\S+)[ \t]+(\S+)", re.IGNORECASE | re.MULTILINE)
 _FORMATS = {".stl": meshio.stl, ".ply": meshio.ply}

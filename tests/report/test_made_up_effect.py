@@ -53,7 +53,7 @@ def collar() -> Iterator[type[cf.Effect]]:
             terms.add(self.position, "mass", self.mass, 0.0)
 
     yield Collar
-    schema.adapter.cache_clear()
+    schema.types_of.cache_clear()
     del Collar
     gc.collect()
 
