@@ -236,7 +236,7 @@ def test_more_memory_than_there_is(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     def full(*_: object, **__: object) -> None:
         raise MemoryError
 
-    monkeypatch.setattr("cuefem.report.modes_record", full)
+    monkeypatch.setattr("cuefem.cli.tones.modes_record", full)
     path = tmp_path / "cue.toml"
     path.write_text(GOOD, encoding="utf-8")
     said = (

@@ -16,7 +16,7 @@ from rich.console import Console
 from scipy.io import wavfile
 
 import cuefem as cf
-from cuefem.cli import main
+from cuefem.cli import COMMANDS as TABLE
 from cuefem.materials import MATERIALS
 from cuefem.report.table import table_of
 from studies import tap
@@ -191,6 +191,6 @@ def test_no_command_s_summary_is_cut(width: int, monkeypatch: pytest.MonkeyPatch
     listed = out.split("Commands:\n")[1].splitlines()
     assert status == 0
     assert "…" not in out
-    assert [line.split()[0] for line in listed] == sorted(main.commands)  # a line each
+    assert [line.split()[0] for line in listed] == sorted(TABLE)  # a line each
     assert all(re.search(r"[^.]\.$", line) for line in listed)
     assert max(map(len, out.splitlines())) <= width
