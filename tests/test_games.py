@@ -22,7 +22,7 @@ def leather(length: float) -> cf.Segment:
 
 @pytest.mark.parametrize("name", LEATHERS)
 def test_a_leather_touches_the_ball_as_long_as_it_says(name: str) -> None:
-    scene = cf.load(ROOT / "studies/leather_tip.toml")
+    scene = cf.load(ROOT / "studies/measured/leather_tip.toml")
     assert isinstance(scene, cf.Scene)
     known = LEATHERS[name]
     tip = replace(scene.leather, E=known.E, nu=known.nu, rho=known.rho)

@@ -39,10 +39,11 @@ def _claims(folder: Path) -> list[tuple[str, Claim]]:
     if not files:
         raise InputError(folder, "", f"must hold studies (.py) that define claims(), got none; {clone}")
     if (above := str(folder.resolve().parent)) not in sys.path:
-        sys.path.insert(0, above)  # studies import one another as studies.NAME
+        sys.path.insert(0, above)  # studies import one another as studies.SUBJECT.NAME
     found = []
     for file in files:
-        spec = importlib.util.spec_from_file_location(f"{folder.resolve().name}.{file.stem}", file)
+        name = ".".join((folder.resolve().name, *file.relative_to(folder).with_suffix("").parts))
+        spec = importlib.util.spec_from_file_location(name, file)
         assert spec is not None and spec.loader is not None  # noqa: PT018
         study = importlib.util.module_from_spec(spec)
         sys.modules[spec.name] = study  # dataclasses look their module up

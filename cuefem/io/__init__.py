@@ -190,10 +190,10 @@ def check_place(path: Path) -> None:
 
 
 def studies_with(folder: Path, function: str) -> list[Path]:
-    """The .py files of a folder that define ``function`` at their top, in the order of their names."""
+    """The .py files of a folder and its folders that define ``function`` at their top, in the order of their names."""
     if not folder.is_dir():
         raise InputError(folder, "", "cannot be read: no such folder")
-    return [path for path in sorted(folder.glob("*.py")) if _defines(path, function)]
+    return [path for path in sorted([*folder.glob("*.py"), *folder.glob("*/*.py")]) if _defines(path, function)]
 
 
 def _defines(path: Path, function: str) -> bool:

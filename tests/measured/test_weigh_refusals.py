@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from cuefem.measured.pendulum import Bounces, PendulumTest
-from studies.common import MESHES
+from studies.strokes import MESHES
 from tests.helpers.refusals import command_refuses, refuses
 
 FREE = Bounces("speed", (1.0,), (-0.1,), error=0.01)

@@ -12,8 +12,8 @@ from cuefem import PointMass
 from cuefem.tap.ringing import ringing
 from cuefem.tap.tones import Tone, tones
 from cuefem.tap.wood import TapTest
-from studies import tap
-from studies.common import MESHES, cue
+from studies.measured import tap
+from studies.strokes import MESHES, cue
 from tests.helpers.command_line import call
 
 KIM = MESHES / "kim.toml"

@@ -19,8 +19,8 @@ from cuefem.tap.matching import MODES, main_material
 from cuefem.tap.ringing import Ringing, ringing
 from cuefem.tap.tones import Tone, tones
 from cuefem.tap.wood import TapTest
-from studies import tap, tap_refusals, tap_sounds
-from studies.common import MESHES, NAMES, cue
+from studies.measured import tap, tap_refusals, tap_sounds
+from studies.strokes import MESHES, NAMES, cue
 from tests.helpers.command_line import call
 
 KIM = MESHES / "kim.toml"

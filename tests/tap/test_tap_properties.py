@@ -18,8 +18,8 @@ from cuefem.tap.matching import MODES, main_material
 from cuefem.tap.ringing import ringing
 from cuefem.tap.tones import Tone, tones
 from cuefem.tap.wood import KEPT, TapTest
-from studies import tap
-from studies.common import MESHES, NAMES, cue
+from studies.measured import tap
+from studies.strokes import MESHES, NAMES, cue
 from tests.helpers.command_line import call
 from tests.helpers.surfaces import outline_of, revolved, written
 

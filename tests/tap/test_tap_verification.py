@@ -16,8 +16,8 @@ from cuefem.tap.matching import MODES, main_material
 from cuefem.tap.ringing import Ringing, ringing
 from cuefem.tap.tones import Tone, tones
 from cuefem.tap.wood import KEPT, SCALE, TapTest, predicted
-from studies import tap
-from studies.common import NAMES, cue, scene
+from studies.measured import tap
+from studies.strokes import NAMES, cue, scene
 
 RATE = 48000.0
 
