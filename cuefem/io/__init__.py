@@ -99,8 +99,8 @@ def _load_cue(path: Path, material: str | None = None, length_unit: str | None =
         from cuefem.io.surface import load_surface
 
         return load_surface(path, named_material(material or DEFAULT_MATERIAL, path, "material"), length_unit)
-    if path.is_dir():
-        raise InputError(path, "", "cannot be read: it is a folder")
+    if os.path.isdir(path):  # unlike Path.is_dir, of names too long as well
+        raise InputError(path, "", "must be a file; got a folder")
     hint = "; save the table as .csv" if path.suffix.lower() in TABLES else ""
     raise InputError(path, "", f"must end in .toml, .csv, .vtk, .vtu, .stl, .ply or .obj; got {path.suffix!r}{hint}")
 

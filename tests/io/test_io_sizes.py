@@ -4,10 +4,16 @@ from __future__ import annotations
 
 import base64
 import lzma
+import os
 import re
+import resource
+import shutil
+import signal
+import socket
 import struct
 import time
 import zlib
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -202,3 +208,87 @@ def test_a_profile_of_many_points_on_a_line_is_read_soon(tmp_path: Path) -> None
     assert time.monotonic() - begun < SOON
     assert len(cue.segments) == 1
     assert cue.length == pytest.approx(0.2, rel=1e-12)
+
+
+KINDS = ["toml", "csv", "stl", "ply", "obj", "vtk", "vtu", "wav"]
+LIMITS = {"toml": 1, "csv": 1, "stl": 100, "ply": 100, "obj": 100, "vtk": 20, "vtu": 20, "wav": 100}  # MB
+
+
+@pytest.fixture
+def soon() -> Iterator[None]:
+    """Ends a test that waits: who opens a pipe does so for ever."""
+
+    def late(*_: object) -> None:
+        raise TimeoutError("it waits")
+
+    before = signal.signal(signal.SIGALRM, late)
+    signal.alarm(int(SOON))
+    yield
+    signal.alarm(0)
+    signal.signal(signal.SIGALRM, before)
+
+
+def commands_on(name: str) -> list[list[str]]:
+    """Command lines that read a file of this name, by itself or because another file names it."""
+    if name.endswith("wav"):
+        Path("whole.toml").write_text(f'body_mass = "420 g"\n{GOOD}')
+        return [["tap", name, "--scene", "whole.toml"]]
+    Path("names.toml").write_text(f'cue = "{name}"\n')
+    Path("study.toml").write_text(STUDY.format(name, "0.7 m"))
+    return [["modes", name], ["modes", "names.toml"], ["sweep", "study.toml"], ["convert", name, "made.toml"]]
+
+
+def made_of_no_file(name: str, kind: str) -> None:
+    path = Path(name)
+    if kind == "a folder":
+        path.mkdir()
+    elif kind == "a pipe":
+        os.mkfifo(path)
+    elif kind == "a device":
+        path.symlink_to("/dev/zero")
+    else:
+        with socket.socket(socket.AF_UNIX) as listening:
+            listening.bind(name)
+
+
+@pytest.mark.parametrize("kind", ["a folder", "a pipe", "a device", "a socket"])
+@pytest.mark.parametrize("suffix", KINDS)
+def test_what_is_no_file_is_never_opened(folder: Path, soon: None, suffix: str, kind: str) -> None:
+    name = f"cue.{suffix}"
+    made_of_no_file(name, kind)
+    for command in commands_on(name):
+        assert refused(*command).endswith(f"{name}: must be a file; got {kind}\n")
+    assert not Path("made.toml").exists()
+
+
+@pytest.mark.parametrize("kind", ["a folder", "a pipe", "a device", "a socket"])
+def test_nor_in_a_folder_of_measurements(folder: Path, soon: None, kind: str) -> None:
+    for name in ("cue.toml", "measured.toml", "squirt.csv"):
+        Path("cue").mkdir()
+        Path("cue/cue.toml").write_text(GOOD)
+        Path("cue", name).unlink(missing_ok=True)
+        os.chdir("cue")
+        made_of_no_file(name, kind)
+        os.chdir("..")
+        assert f"must be a file; got {kind}" in refused("compare", "cue")
+        shutil.rmtree("cue")
+
+
+@pytest.mark.parametrize("suffix", KINDS)
+def test_a_file_that_is_too_large_is_not_read(folder: Path, suffix: str) -> None:
+    name = f"cue.{suffix}"
+    with open(name, "wb") as file:
+        file.truncate(1_500_000_000)
+    begun, before = time.monotonic(), resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    for command in commands_on(name):
+        line = f"{name}: must be a file of at most {LIMITS[suffix]} MB; got 1500"
+        assert refused(*command).endswith(f"{line}\n")
+    assert time.monotonic() - begun < SOON / 4
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 100_000  # kB: none of it was read
+
+
+def test_names_that_no_system_takes(folder: Path) -> None:
+    for name in ("x" * 300, "x" * 300 + ".toml", "a/" * 3000 + "cue.stl"):
+        Path("names.toml").write_text(f'cue = "{name}"\n')
+        assert refused("modes", "names.toml").startswith("names.toml: cue: ")
+        assert refused("modes", name).count("\n") == 1

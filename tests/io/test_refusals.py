@@ -167,8 +167,8 @@ def test_no_file_at_all(tmp_path: Path) -> None:
     (tmp_path / "folder.toml").mkdir()
     assert refused(tmp_path / "none.toml") == "cannot be read: No such file or directory"
     assert refused(tmp_path / "none.vtu") == "cannot be read: No such file or directory"
-    assert refused(tmp_path / "folder.toml") == "cannot be read: Is a directory"
-    assert refused(tmp_path) == "cannot be read: it is a folder"
+    assert refused(tmp_path / "folder.toml") == "must be a file; got a folder"
+    assert refused(tmp_path) == "must be a file; got a folder"
     assert refused(tmp_path / "cue.msh") == "must end in .toml, .csv, .vtk, .vtu, .stl, .ply or .obj; got '.msh'"
 
 
@@ -263,7 +263,7 @@ def test_no_shaft(tmp_path: Path, name: str) -> None:
 def test_no_surface_file(tmp_path: Path) -> None:
     assert refused(tmp_path / "none.stl") == "cannot be read: No such file or directory"
     (tmp_path / "folder.stl").mkdir()
-    assert refused(tmp_path / "folder.stl") == "cannot be read: Is a directory"
+    assert refused(tmp_path / "folder.stl") == "must be a file; got a folder"
 
 
 @pytest.mark.parametrize("unit", ["kg", "furlnog", "", "mm mm"])
