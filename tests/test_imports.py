@@ -28,6 +28,8 @@ ORDER = [
     "effects",
     "scene",
     "games",
+    "parts",
+    "vary",
     "tip_modes",
     "contact",
     "endmass",

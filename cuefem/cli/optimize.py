@@ -13,12 +13,12 @@ from rich.console import Console
 from cuefem.cli.common import blaming, check_free, force_option, remark
 from cuefem.cli.printing import assumed_lines, json_option, print_all, print_json
 from cuefem.design.optimum import Problem, optimum
-from cuefem.design.paths import replaced, value_at
 from cuefem.io import save
 from cuefem.io.study import assumed_base, load_optimum
 from cuefem.report.study import column_label
 from cuefem.scene import Scene
 from cuefem.units import text
+from cuefem.vary import replaced, value_at
 
 
 @click.command()

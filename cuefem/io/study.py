@@ -5,9 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from cuefem.design import METHODS, Levels, Normal, Response, Sample, Span, Study, Vary, paths
+from cuefem.design import METHODS, Levels, Normal, Response, Sample, Span, Study, Vary
 from cuefem.design.optimum import Limit, Problem
-from cuefem.design.paths import quantity_at, value_at
 from cuefem.design.scatter import Scatter
 from cuefem.games import GAMES, usual_scene
 from cuefem.io.errors import InputError, shown
@@ -15,6 +14,7 @@ from cuefem.io.schema import build, joined, unknown_key
 from cuefem.io.toml import named_material, read_tables
 from cuefem.quantity import Quantity
 from cuefem.scene import Resolution, Scene, Stroke
+from cuefem.vary import paths, quantity_at, value_at
 
 KEYS = ["scene", "game", "responses", "vary", "sample", "resolution"]
 SCATTER_KEYS = [*KEYS, "correlations", "groups"]

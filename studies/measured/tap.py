@@ -21,9 +21,9 @@ from scipy.io import wavfile
 
 from cuefem import Cue, end_mass, modes
 from cuefem.effects.loss import section_loss
+from cuefem.parts import main_material, with_material
 from cuefem.report.tap import draw_spectrum
 from cuefem.tap.fit import TapFit
-from cuefem.tap.matching import main_material, with_material
 from cuefem.tap.ringing import ringing
 from cuefem.tap.tones import tones
 from cuefem.tap.wood import TapTest

@@ -20,9 +20,9 @@ from scipy.stats import beta
 
 from cuefem import Cue, Material, Segment
 from cuefem.materials import MATERIALS, WOODS, material
+from cuefem.parts import main_material, with_material
 from cuefem.tap.chance import LEVEL, by_chance
 from cuefem.tap.fit import TapFit
-from cuefem.tap.matching import main_material, with_material
 from cuefem.tap.ringing import ringing
 from cuefem.tap.tones import tones
 from cuefem.tap.wood import TapTest

@@ -14,9 +14,9 @@ import pytest
 from scipy.io import wavfile
 
 import cuefem as cf
-from cuefem.designer.model import knobs_of
 from cuefem.designer.start import first_scene
-from cuefem.tap.matching import with_material
+from cuefem.parts import with_material
+from cuefem.vary import knobs_of
 from tests.helpers.command_line import call
 from tests.helpers.designer_browser import BROWSER, launched, opened, served, settled, shown, turn
 
@@ -92,7 +92,7 @@ def test_moved_sliders_give_the_numbers_of_the_command_line(browser: Any, addres
         assert made.cue.segments[0].tip_diameter == pytest.approx(12.55e-3)
         assert made.stroke.offset == pytest.approx(0.32)
         assert made.effects[0] == replace(first_scene().effects[0], E=150e6)
-        assert made.effects[-1] == cf.Joint(knobs_of(first_scene()).joint_position, 3e-4)
+        assert made.effects[-1] == cf.Joint(knobs_of(first_scene())["joint_position"], 3e-4)
         assert_as_commanded(page, path)
 
 

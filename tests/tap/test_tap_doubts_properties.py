@@ -12,10 +12,11 @@ from scipy.io import wavfile
 
 from cuefem import modes
 from cuefem.materials import WOODS, material
+from cuefem.parts import main_material
 from cuefem.tap.chance import LEVEL, SETS, by_chance, random_sets
 from cuefem.tap.doubts import unlike
 from cuefem.tap.hum import without_hum
-from cuefem.tap.matching import MODES, main_material
+from cuefem.tap.matching import MODES
 from cuefem.tap.ringing import Ringing, ringing
 from cuefem.tap.tones import Tone, tones
 from cuefem.tap.wood import TapTest

@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 from cuefem import end_mass, modes
+from cuefem.parts import main_material
 from cuefem.tap.fit import TapFit
-from cuefem.tap.matching import MODES, main_material
+from cuefem.tap.matching import MODES
 from cuefem.tap.ringing import Ringing, ringing
 from cuefem.tap.tones import Tone, tones
 from cuefem.tap.wood import KEPT, SCALE, TapTest, predicted
