@@ -540,6 +540,8 @@ PLACES: dict[str, Place] = {
             *("body mass", "Mass behind what is drawn", "cue.body_mass"),
             group=_BEHIND,
             range=Range("g", 1e3, 0, 700, 5, 0, 5000),
+            option="MASS",
+            help='Mass of the cue behind FILE\'s segments, e.g. "420 g".',
         ),
     )
 }

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import json
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -29,6 +32,7 @@ CUE = cf.Cue(
     ),
     0.42,
 )
+ROOT = Path(__file__).parents[1]
 STUDY = """scene = "cue.toml"
 responses = ["shaft_mass", "tip_diameter"]
 
@@ -111,6 +115,37 @@ def test_it_is_a_slider_and_stands_in_links(scene: cf.Scene) -> None:
     longer = replace(design, knobs=slider.turned(design.knobs, 20))
     assert longer.scene.cue.segments[1].length == 0.02
     assert steps_of(text_of([Step(longer)]))[0][0].design == longer
+
+
+COMMANDS = """import sys
+from tests import test_made_up_place as made_up
+from cuefem.vary import PLACES
+
+PLACES[made_up.COLLAR.key] = made_up.COLLAR
+from tests.helpers.command_line import call
+
+file, plain = sys.argv[1:]
+print(call("strike", "--help")[1])
+print(call("strike", file, "--collar-length", "20 mm", "--json")[1])
+print(call("strike", plain, "--collar-length", "20 mm")[2])
+"""
+
+
+def test_it_is_an_option_of_commands(tmp_path: Path) -> None:
+    """In a process of its own: a command's options are those of the table when the command is loaded."""
+    plain = cf.Cue((cf.Segment(0.7, 0.0125, 0.021, WOOD),), 0.42)
+    cf.save(plain, tmp_path / "plain.toml")
+    files = (tmp_path / "cue.toml", tmp_path / "plain.toml")
+    done = subprocess.run(
+        [sys.executable, "-c", COMMANDS, *map(str, files)], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    told, _, rest = done.stdout.partition("\n{\n")
+    struck, _, refused = rest.rpartition("\n}\n")
+    assert "--collar-length LENGTH" in told
+    assert "Length of the collar." in told
+    mass = varied(cf.usual_scene(CUE), {"collar length": 0.02}).cue.shaft_mass
+    assert json.loads("{" + struck + "}")["scene"]["cue"]["shaft_mass"] == pytest.approx(mass, rel=1e-12)
+    assert "--collar-length: must be left out: there is no length of the collar" in refused
 
 
 def test_a_cue_without_it_has_none_of_these() -> None:

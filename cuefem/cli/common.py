@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 from cuefem.cli.printing import assumed_lines, json_option, print_all, print_json
-from cuefem.cli.strokes import refuse_game, usual, with_options
+from cuefem.cli.strokes import place_options, refuse_game, usual, with_options
 from cuefem.effects.leather_law import TooDeep
 from cuefem.games import DEFAULT_GAME
 from cuefem.io import InputError, check_place, load_stroke
@@ -35,7 +35,7 @@ def cue_options(command: Callable[..., Any]) -> Callable[..., Any]:
 def shape_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """The options for what a file that holds only a shape leaves out: mass, material and unit."""
     for option in (
-        click.option("--body-mass", metavar="MASS", help='Mass of the cue behind FILE\'s segments, e.g. "420 g".'),
+        place_options("body_mass"),
         click.option(
             "--material", metavar="NAME", help="Material of a .csv or a CAD surface (see `cuefem materials`)."
         ),

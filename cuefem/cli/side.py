@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +12,7 @@ import numpy as np
 from cuefem.cli.common import blaming, cue_options, head_lines
 from cuefem.cli.printing import print_all, print_json
 from cuefem.cli.progress import followed
-from cuefem.cli.strokes import measured, with_body
+from cuefem.cli.strokes import measured, option, with_body
 from cuefem.cue import Cue
 from cuefem.io import InputError, load, load_accuracy
 from cuefem.io.assumed import assumed
@@ -25,10 +24,18 @@ from cuefem.side.accuracy import resolve_side_strike
 from cuefem.side.motion import side_motion
 from cuefem.side.scene import SideStrike, Striker
 from cuefem.side.strike import side_strike
+from cuefem.vary import Path as Steps
+from cuefem.vary import with_fields
 
 # Of a file that has no [striker]: a light ball, and how long it touches a wall.
 MASS, RESTITUTION, CONTACT_TIME = 0.02, 0.8, 1e-3
-TIMES = "[1e-6, 0.5]"  # s; a slower one leans on the shaft and does not leave it
+OPTIONS: dict[Steps, Quantity] = {
+    ("striker", "mass"): Quantity("kg", "(0, inf)"),
+    ("striker", "restitution"): Quantity("", "[0, 1]"),
+    ("striker", "contact_time"): Quantity("s", "[1e-6, 0.5]"),  # a slower one leans on the shaft and does not leave it
+    ("position",): Quantity("m", "[0, inf)"),
+    ("speed",): Quantity("m/s", "(0, inf)"),
+}
 
 
 @click.command()
@@ -79,22 +86,13 @@ def _scene(file: Path, given: dict[str, Any]) -> tuple[SideStrike, list[str]]:
         with blaming(file):  # of a whole tip its mass stays
             effects = () if isinstance(found, Cue) else found.bare.cue_effects
             found = SideStrike(cue, Striker(MASS, RESTITUTION, contact_time=CONTACT_TIME), effects=effects)
-    numbers = {
-        "mass": Quantity("kg", "(0, inf)"),
-        "restitution": Quantity("", "[0, 1]"),
-        "contact_time": Quantity("s", TIMES),
-        "position": Quantity("m", "[0, inf)"),
-        "speed": Quantity("m/s", "(0, inf)"),
+    changes = {
+        path: measured(file, option(str(path[-1])), given[str(path[-1])], quantity)
+        for path, quantity in OPTIONS.items()
+        if given[str(path[-1])] is not None
     }
-    options = {name: f"--{name.replace('_', '-')}" for name in numbers}
-    read: dict[str, Any] = {
-        n: measured(file, options[n], given[n], numbers[n]) for n in numbers if given[n] is not None
-    }
-    striker: dict[str, Any] = {name: read.pop(name) for name in ("mass", "restitution", "contact_time") if name in read}
-    if "contact_time" in striker:
-        striker |= {"stiffness": None, "modulus": None, "radius": None}
     with blaming(file):
-        return replace(found, striker=replace(found.striker, **striker), **read), notes
+        return with_fields(found, changes) if changes else found, notes
 
 
 def _assumed(said: set[str]) -> list[str]:

@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from cuefem.cli.common import file_options, show
-from cuefem.cli.strokes import measured, stroke_options, tip_options
+from cuefem.cli.strokes import measured, place_options, tip_options
 from cuefem.contact.calibrated import leather_modulus, with_modulus
 from cuefem.io import InputError
 from cuefem.quantity import CONTACT_TIME
@@ -19,7 +19,7 @@ from cuefem.scene import Scene
 @click.command()
 @file_options
 @tip_options
-@stroke_options("restitution", "speed")
+@place_options("restitution", "speed")
 @click.option(
     "--contact-time",
     "wanted",

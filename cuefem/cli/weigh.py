@@ -9,7 +9,7 @@ import click
 
 from cuefem.cli.common import blaming, scene_of, shape_options
 from cuefem.cli.printing import assumed_lines, json_option, print_all, print_json
-from cuefem.cli.strokes import Games, measured, offset_of, offset_option
+from cuefem.cli.strokes import game_option, measured, offset_of, offset_option
 from cuefem.games import GAMES
 from cuefem.io import InputError
 from cuefem.measured.pendulum import WAYS as KNOWN
@@ -65,7 +65,7 @@ WAYS = ("swing", "height", "speed", "frames")
     "--position", metavar="LENGTH", default="10 mm", show_default=True, help="Of the blow, from the tip's end."
 )
 @json_option
-@click.option("--ball", type=Games(), help="The cue ball, for squirt; by default the scene's.")
+@game_option("--ball", "The cue ball, for squirt; by default the scene's.")
 @shape_options
 @offset_option
 def weigh(plan: bool, end_mass: str | None, file: Path | None, as_json: bool, **given: Any) -> None:
