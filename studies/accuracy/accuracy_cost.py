@@ -46,11 +46,11 @@ from cuefem.beam.system import assemble
 from cuefem.beam.tail import tail
 from cuefem.beam.tip import tip_modes
 from cuefem.beam.waves import mesh_for
-from cuefem.contact.linear import Exact
 from cuefem.endmass.drives import velocity
 from cuefem.tip_modes import tip_modes_from, turning
 from studies import pages, strokes
 from studies.accuracy import contact_cost
+from studies.accuracy.linear_phases import Follow, by_newmark, by_solver, exactly
 from studies.strokes import strike_modes
 
 STROKES = ((0.7e-3, 0.4), (1e-3, 0.3), (2e-3, 0.1))  # contact time, s, and offset
@@ -172,57 +172,19 @@ def _fresh(count: int, *, by_tail: bool) -> Outcome:
 # (c) the contact
 
 
-class Newmark(Exact):
-    """The same phases by Newmark's constant-average-acceleration steps, their ends by a shortened last step.
-
-    In first-order form that rule is the trapezoidal one: z' = A z, (1 - A h/2) z(t + h) = (1 + A h/2) z(t).
-    """
-
-    steps: int = 1000
-
-    def follow(self, grip: Any, press: Any) -> str:
-        """One phase."""
-        contact = self.contact
-        flow, (names, guards) = self.flow(grip, press), self.guards(grip, press)
-        rows, h = guards.weights @ flow.rows, contact.laws.time / self.steps
-        advance, z, before, start = _trapezoid(flow.A, h), contact.z, contact.impulse, contact.time
-        values = rows @ z + guards.constants
-        while True:
-            following = advance @ z
-            after = rows @ following + guards.constants
-            fallen = np.flatnonzero((after < 0) & ((values > 0) | (after < values)))
-            if len(fallen):
-                break
-            z, values, contact.time = following, after, contact.time + h
-        fractions = np.maximum(values[fallen], 0) / (np.maximum(values[fallen], 0) - after[fallen])
-        guard, fraction = int(fallen[np.argmin(fractions)]), float(fractions.min())
-        state = _trapezoid(flow.A, fraction * h) @ z
-        self.arrive(contact.time + fraction * h, state, [])
-        self.patch.end(self, grip, press)
-        contact.end_phase(grip, press, start, before)
-        return names[guard]
-
-
-def _trapezoid(A: np.ndarray, h: float) -> np.ndarray:
-    one = np.eye(len(A))
-    return np.linalg.solve(one - h / 2 * A, one + h / 2 * A)
-
-
 def contact_points(kind: str) -> list[Point]:
     """Kim's four strokes of contact_cost by one solver, at rising accuracy."""
     if kind == "exact":
-        return [_contact_point("exact phases", Exact, contact_cost.worst(contact_cost.Fine))]
+        return [_contact_point("exact phases", exactly(), contact_cost.worst(exactly(3)))]
     if kind == "Newmark":
-        return [_contact_point(f"{n} steps", Newmark, steps=n) for n in STEPS]
-    return [
-        _contact_point(f"rtol {rtol:.0e}", contact_cost.Stepped, method=kind, rtol=rtol) for rtol in (1e-4, 1e-6, 1e-8)
-    ]
+        return [_contact_point(f"{n} steps", by_newmark(n)) for n in STEPS]
+    return [_contact_point(f"rtol {rtol:.0e}", by_solver(kind, rtol)) for rtol in (1e-4, 1e-6, 1e-8)]
 
 
-def _contact_point(name: str, kind: type[Exact], error: float | None = None, **options: Any) -> Point:
-    worst = contact_cost.worst(kind, **options) if error is None else error
-    unknowns = len(contact_cost.struck(0.3).z)
-    return Point(name, worst, unknowns, lambda: contact_cost.struck(0.3, kind, **options))
+def _contact_point(name: str, follow: Follow, error: float | None = None) -> Point:
+    worst = contact_cost.worst(follow) if error is None else error
+    stroke = contact_cost.stroke(0.3)
+    return Point(name, worst, stroke.run(follow).unknowns, lambda: stroke.run(follow))
 
 
 # (d) the ladder of models

@@ -106,9 +106,8 @@ def summary(climbs: list[Climb], drawn: int) -> list[str]:
     """How well the estimates hold over all rungs, and the accuracies asked for over all scenes of one family."""
     ratios = np.array([ratio for climb in climbs for ratio in climb.ratios])
     lines = [
-        f"- {len(climbs)} of {drawn} scenes, {len(ratios)} rungs: true/estimate {np.median(ratios):.2f} at the "
-        f"median, above 1 in {100 * np.mean(ratios > 1):.1f} %, above 3 in {np.sum(ratios > 3)}, at most "
-        f"{ratios.max():.1f}"
+        f"- {len(climbs)} of {drawn} scenes, {len(ratios)} rungs: true/estimate {np.median(ratios):.2f} at the median, "
+        f"above 1 in {100 * np.mean(ratios > 1):.1f} %, above 3 in {np.sum(ratios > 3)}, at most {ratios.max():.1f}"
     ]
     for rtol in ASKED:
         found = [(climb, i) for climb in climbs if (i := climb.picked(rtol)) is not None]

@@ -278,7 +278,7 @@ PREDICTED = {
 
 @cache
 def leather(name: str, radius: float, E: float = pool.LEATHER.E) -> float:
-    """Squirt, deg, at OFFSET and 2 m/s with LeatherTip, its dome of a radius, m; inf: flat."""
+    """Squirt, deg, at THERE and 2 m/s with LeatherTip, its dome of a radius, m; inf: flat."""
     return float(np.degrees(cf.strike(_with_leather(name, radius, E)).squirt))
 
 
@@ -357,8 +357,8 @@ def leather_conclusions() -> str:
         "say that: without its dome the force acts on the axis. With a dome the two differ by "
         f"{100 * min(apart):+.0f} to {100 * max(apart):+.0f} %. That squirt does not depend on the hardness of the "
         "tip is a matter of the dome: with 9.5 mm it changes by a factor of "
-        f"{', '.join(f'{hard(n, 9.5e-3):.2f} ({n})' for n in NAMES)} from 40 to 400 MPa, with a flat tip by "
-        f"{', '.join(f'{hard(n, np.inf):.2f}' for n in NAMES)} from 100 to 400 MPa."
+        f"{', '.join(f'{hard(n, 9.5e-3):.2f} ({n})' for n in LEATHERED)} from 40 to 400 MPa, with a flat tip by "
+        f"{', '.join(f'{hard(n, np.inf):.2f}' for n in LEATHERED)} from 100 to 400 MPa."
     )
 
 
@@ -391,7 +391,6 @@ STUDY = pages.Study(
     __file__,
     lambda: pages.paragraphs(report(), leather_report()),
     {"dome.svg": pages.Figure(draw, (1, 3), (14, 4.2))},
-    again={"bare tips": pages.Again(report, until=pages.LEATHER)},
     predicted=PREDICTED,
 )
 

@@ -198,8 +198,7 @@ def leather_report() -> str:
         "Its modulus is the one that makes the scene's contact time; a scene without a dome gets one of 9.5 mm. Squirt "
         f"is then {min(ratios):.2f} to {max(ratios):.2f} of what the scene has as it is listed. Of the effects that "
         "are not listed only waves along the cue change it by more than half a per cent. The break is left out: its "
-        "tip is "
-        "phenolic."
+        "tip is phenolic."
     )
     parts = ["## LeatherTip in the scenes: squirt, and what the other effects change of it, per cent", told]
     parts += [leather_table(), "## LeatherTip: what was predicted and found", "Predicted before it was run here."]
@@ -225,7 +224,6 @@ STUDY = pages.Study(
     __file__,
     lambda: pages.paragraphs(report(), leather_report()),
     {"effects.svg": pages.Figure(draw, size=(8, 4.8))},
-    again={"the ready scenes": pages.Again(report, until=pages.LEATHER)},
     drawn=True,
     predicted=PREDICTED,
 )

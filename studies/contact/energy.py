@@ -84,20 +84,17 @@ def conclusions() -> list[str]:
         slipping, _ = largest(name, "friction loss")
         ball = head_on["ball translation"]
         said.append(
-            f"{name}: in a head-on stroke the ball takes {100 * ball:.1f} %, the cue keeps "
-            f"{100 * head_on['cue']:.1f} % and the tip loses {100 * head_on['tip loss']:.1f} %. Below the offset of "
-            "the "
-            f"first miscue (b/R {miscues(name)[0]:.2f}) spin takes at most {100 * spin:.1f} % (at b/R {at:.2f}), "
-            "vibration "
-            f"of the shaft {100 * vibration:.1f} % (at b/R {there:.2f}), and friction {100 * slipping:.1f} %."
+            f"{name}: in a head-on stroke the ball takes {100 * ball:.1f} %, the cue keeps {100 * head_on['cue']:.1f} "
+            f"% and the tip loses {100 * head_on['tip loss']:.1f} %. Below the offset of the first miscue (b/R "
+            f"{miscues(name)[0]:.2f}) spin takes at most {100 * spin:.1f} % (at b/R {at:.2f}), vibration of the shaft "
+            f"{100 * vibration:.1f} % (at b/R {there:.2f}), and friction {100 * slipping:.1f} %."
         )
         if again := gripping_again(name):
             lasting = [duration(name, b) for b in again]
             said[-1] += (
                 f" The miscue has no sharp edge: at b/R {again[0]:.2f} to {again[-1]:.2f} the tip slips first and "
                 f"grips late, in contacts of {1e3 * min(lasting):.1f} to {1e3 * max(lasting):.1f} ms (at the first "
-                "miscue "
-                f"{1e3 * duration(name, miscues(name)[0]):.1f} ms)."
+                f"miscue {1e3 * duration(name, miscues(name)[0]):.1f} ms)."
             )
     return said
 

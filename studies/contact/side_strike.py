@@ -111,11 +111,7 @@ ALUMINIUM = cf.Material(70e9, 26e9, 2700.0)
 ROD = cf.Cue((cf.Segment(0.6, 0.015, 0.015, ALUMINIUM),))  # ours, no source's
 WOOD = cf.Material(13e9, 1e9, 650.0)
 BAT = cf.Cue(  # ours, of the size of a bat; the tip end is the barrel's
-    (
-        cf.Segment(0.25, 0.064, 0.064, WOOD),
-        cf.Segment(0.30, 0.064, 0.025, WOOD),
-        cf.Segment(0.29, 0.025, 0.025, WOOD),
-    )
+    (cf.Segment(0.25, 0.064, 0.064, WOOD), cf.Segment(0.30, 0.064, 0.025, WOOD), cf.Segment(0.29, 0.025, 0.025, WOOD))
 )
 CASES = {
     "rod": (ROD, cf.Striker(0.045, 0.85, contact_time=2e-3), (0.0, 0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3), 0.0),

@@ -37,11 +37,7 @@ TIP = (TipDome(9.5e-3), TipShear(0.75))
 WALLS = (0.001, 0.002, 0.003)
 SQUIRT, STIFFNESS, MASS, WALL = map(Response, ("squirt_slope", "tip_stiffness", "shaft_mass", "wall"))
 # What LeatherTip should say, from leather_tip.md, written down before it was run here. Not to be changed.
-PREDICTED = {
-    "hollow front to solid at b/R 0.3": "0.78",
-    "carbon tube to solid": "0.80",
-    "optimum to solid": "0.60",
-}
+PREDICTED = {"hollow front to solid at b/R 0.3": "0.78", "carbon tube to solid": "0.80", "optimum to solid": "0.60"}
 
 
 @cache

@@ -81,10 +81,7 @@ def draw(axes: Any) -> None:
             x, weight = gram(name, contact_time)
             mass = 1e3 * found(name, contact_time).end_mass
             axis.plot(
-                x[x > LEATHER] / INCH,
-                weight[x > LEATHER],
-                colour,
-                label=f"T = {1e3 * contact_time:g} ms: {mass:.1f} g",
+                x[x > LEATHER] / INCH, weight[x > LEATHER], colour, label=f"T = {1e3 * contact_time:g} ms: {mass:.1f} g"
             )
         axis.axhline(0, color="black", lw=0.8)
         axis.set(xlim=(0, 20), ylim=(-0.25, 1.3))

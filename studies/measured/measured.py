@@ -18,7 +18,7 @@ The bore of the hollow shaft follows from its measured static stiffness (data/st
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 from typing import Any
@@ -127,11 +127,11 @@ def everything(*names: str) -> float:
     return pool.squirt(replace(found, stroke=Stroke(middle, pool.OFFSET)))
 
 
-def level_table(rows_of: Sequence[Any] = ()) -> str:
+def level_table() -> str:
     """Measured squirt beside the models."""
     columns = ["cue", "b/R", "measured", *(x for model in MODELS for x in (model, "its band"))]
     rows = []
-    for row in rows_of or shafts.measurements():
+    for row in shafts.measurements():
         cells = []
         for model in MODELS:
             low, high = band(row, model)
@@ -164,12 +164,8 @@ def time_table() -> str:
 
 def speed_table() -> str:
     """Change of squirt over the robot's speeds."""
-    return pages.table(["model", *LAWS], map(speed_row, MODELS))
-
-
-def speed_row(model: str) -> list[str]:
-    """The row of a model."""
-    return [model, *(f"{100 * speed_change(model, law):+.1f} %" for law in LAWS)]
+    rows = [[model, *(f"{100 * speed_change(model, law):+.1f} %" for law in LAWS)] for model in MODELS]
+    return pages.table(["model", *LAWS], rows)
 
 
 def claims_table() -> str:
@@ -454,13 +450,7 @@ def leather_level_table() -> str:
         cells = (f"{usual(row, model):.2f}" for model in ("bare", BOTH, MODERN))
         rows.append([row.cue, f"{row.offset:.3f}", f"{row.squirt:.2f}", *cells, f"{low:.2f} to {high:.2f}"])
     rows.append(
-        [
-            "rms of the relative differences",
-            "",
-            "",
-            *(f"{100 * miss(m):.0f} %" for m in ("bare", BOTH, MODERN)),
-            "",
-        ]
+        ["rms of the relative differences", "", "", *(f"{100 * miss(m):.0f} %" for m in ("bare", BOTH, MODERN)), ""]
     )
     return pages.table(["cue", "b/R", "measured", "bare", "patchwork", MODERN, "its band"], rows)
 
@@ -507,15 +497,14 @@ def leather_right() -> str:
     speeds = same_within([at_mph(mph) for mph in LEATHER_SPEEDS])
     return (
         f"What LeatherTip gets right, with nothing fitted. At b/R 0.375 it gives {robot:.2f}° (measured 2.30 and "
-        f"2.43). Squirt there is the same {times} for contacts of 0.8 to 2 ms, which "
-        f"the leather makes, and {speeds} over the robot's speeds: that hardness "
-        "and speed do not matter, as players say, follows from the geometry. The patchwork says nearly the same, but "
-        "must be told the contact time. Its numbers are 2 to 3 % below those of leather_tip.md: here the modes are "
-        "solved once for all models and ended by a tail that knows no dome, there for each stroke with its dome (and "
-        "for the leather's contact of 1.14 ms, not 1.1: 0.1 % of the patchwork's squirt, 1.3 % of the bare tip's). "
-        "With bores of 7.4 to 10.2 mm, which the stiffness of its last 8 in asks for "
-        f"(the table has 7.1 to 10.8, by the wood and the depth), the low-deflection shaft has {ratios[0]:.2f} to "
-        f"{ratios[-1]:.2f} of the regular shaft's squirt, measured 0.72; with the bore of 6 mm that "
+        f"2.43). Squirt there is the same {times} for contacts of 0.8 to 2 ms, which the leather makes, and {speeds} "
+        "over the robot's speeds: that hardness and speed do not matter, as players say, follows from the geometry. "
+        "The patchwork says nearly the same, but must be told the contact time. Its numbers are 2 to 3 % below those "
+        "of leather_tip.md: here the modes are solved once for all models and ended by a tail that knows no dome, "
+        "there for each stroke with its dome (and for the leather's contact of 1.14 ms, not 1.1: 0.1 % of the "
+        "patchwork's squirt, 1.3 % of the bare tip's). With bores of 7.4 to 10.2 mm, which the stiffness of its last 8 "
+        "in asks for (the table has 7.1 to 10.8, by the wood and the depth), the low-deflection shaft has "
+        f"{ratios[0]:.2f} to {ratios[-1]:.2f} of the regular shaft's squirt, measured 0.72; with the bore of 6 mm that "
         f"meshes/pool_hollow.toml guesses it is {ratio(MODERN, 6e-3):.2f}. The whole shaft's 388 N/m ask for stiffer "
         "wood, or a stouter taper behind the front, than we drew, so the bore is known no better than that."
     )
@@ -532,15 +521,14 @@ def leather_wrong() -> str:
         f"mean square; patchwork {100 * series_miss(BOTH, 0):.0f} %), and with too little growth. If the contacts of "
         "that series lay 1.8 mm nearer the middle than told, the differences would be "
         f"{100 * series_miss(MODERN, ZERO):.0f} and {100 * series_miss(BOTH, ZERO):.0f} %; the zero that fits best, in "
-        f"mm, is: {zeros}. Even then squirt grows by "
-        f"{grown(MODERN):.2f} (patchwork {grown(BOTH):.2f}) between the last two offsets, where 1.75 was measured: an "
-        "error "
-        "of the zero explains a part of the slope. Nothing but this fit shows that there was one. "
-        f"The low-deflection shaft's own squirt is {usual(hollow, MODERN):.2f}° (1.8), the break cue's "
-        f"{usual(stinger, MODERN):.2f}° (2.4). Over all seven values LeatherTip is off by {100 * miss(MODERN):.0f} %, "
-        f"the patchwork by {100 * miss(BOTH):.0f} %, the bare beam by {100 * miss('bare'):.0f} %: these values do not "
-        "favour it. Most predictions below were read off the numbers of leather_tip.md, so that they came true says "
-        "little; of those that were not, the ratio with a bore of 10.2 mm was wrong."
+        f"mm, is: {zeros}. Even then squirt grows by {grown(MODERN):.2f} (patchwork {grown(BOTH):.2f}) between the "
+        "last two offsets, where 1.75 was measured: an error of the zero explains a part of the slope. Nothing but "
+        f"this fit shows that there was one. The low-deflection shaft's own squirt is {usual(hollow, MODERN):.2f}° "
+        f"(1.8), the break cue's {usual(stinger, MODERN):.2f}° (2.4). Over all seven values LeatherTip is off by "
+        f"{100 * miss(MODERN):.0f} %, the patchwork by {100 * miss(BOTH):.0f} %, the bare beam by "
+        f"{100 * miss('bare'):.0f} %: these values do not favour it. Most predictions below were read off the numbers "
+        "of leather_tip.md, so that they came true says little; of those that were not, the ratio with a bore of 10.2 "
+        "mm was wrong."
     )
 
 
@@ -567,15 +555,7 @@ STUDY = pages.Study(
     lambda: pages.paragraphs(report(), leather_report()),
     {"measured.svg": pages.Figure(draw, (1, 2), (11.5, 4.6))},
     again={
-        "what the unknowns are worth": pages.Again(worth_table, left_out=None),
-        "contact time": pages.Again(time_table, left_out=None),
-        "claims of an earlier prototype": pages.Again(claims_table, left_out=None),
-        "shear counted twice": pages.Again(double_count, left_out=None),
-        "a row of bands": pages.Again(lambda: level_table([shafts.robot()]).splitlines()[-1], left_out=None),
-        "a row of speeds": pages.Again(
-            lambda: pages.row(speed_row(BOTH)), since="## Change of squirt from", left_out=None
-        ),
-        "the series of 2007 and its zero": pages.Again(series_table, left_out=None),
+        "page": pages.Again(lambda: pages.paragraphs(report(), leather_report())),
         "the bore that the stiffness asks for": pages.Again(bore_table, left_out=None, heavy=False),
     },
     predicted=PREDICTED,

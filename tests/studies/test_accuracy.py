@@ -8,8 +8,10 @@ import re
 import numpy as np
 import pytest
 
+from cuefem import strike
 from studies import pages
-from studies.accuracy import accuracy_cost, batch, batch_wood, default_accuracy, resolve_errors, speed
+from studies.accuracy import accuracy_cost, batch, batch_wood, contact_cost, default_accuracy, resolve_errors, speed
+from studies.accuracy.linear_phases import exactly
 from tests.helpers.study_tables import rows
 
 # accuracy and its cost
@@ -52,6 +54,16 @@ def test_omissions_and_the_machine_are_named():
     assert all(name in accuracy_cost.__doc__ for name in ("AxialWaves", "SecondHit"))
     seconds = accuracy_cost.STUDY.path.with_name("accuracy_cost_seconds.md").read_text(encoding="utf-8")
     assert "cores, one BLAS thread" in seconds
+
+
+@pytest.mark.parametrize("offset", contact_cost.OFFSETS)
+def test_the_phases_of_the_studys_own_are_those_of_cuefem(offset: float) -> None:
+    """Matrices, phases and roots of its own: to rounding."""
+    stroke = contact_cost.stroke(offset)
+    own, struck = stroke.run(exactly()), strike(stroke.scene, contact_cost.AT)
+    assert own.squirt == pytest.approx(struck.squirt, rel=1e-12)
+    assert own.speed == pytest.approx(struck.ball_speed / stroke.scene.stroke.speed, rel=1e-12)
+    assert own.phases == tuple(f"{phase.grip} {phase.press}" for phase in struck.phases)
 
 
 # the default
