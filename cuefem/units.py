@@ -27,6 +27,15 @@ EXAMPLES = {
     "Hz": ("a frequency", "250 Hz"),
 }
 
+# Where two are shown: in the units of both systems.
+BOTH = {
+    "m": ("0.5 in", "12.7 mm"),
+    "kg": ("15 oz", "425 g"),
+    "m/s": ("4.5 mph", "2 m/s"),
+    "Pa": ("1.8 Msi", "12.4 GPa"),
+    "kg/m^3": ("0.025 lb/in^3", "700 kg/m^3"),
+}
+
 Powers = tuple[int, int, int, int]  # of m, kg, s and rad
 
 
@@ -86,10 +95,6 @@ class UnknownUnit(ValueError):
         super().__init__(f"an unknown unit, {name!r}")
 
 
-class OtherKind(ValueError):
-    """A known unit of another kind than the one that is wanted."""
-
-
 @functools.lru_cache(maxsize=1024)
 def unit_of(text: str) -> Unit:
     """The unit that a text such as "g/cm^3" names; UnknownUnit if the table does not have it."""
@@ -124,8 +129,25 @@ def scale(unit: str, wanted: str) -> Decimal:
     """
     own, other = unit_of(unit), unit_of(wanted)
     if own.powers != other.powers and (own.powers != (*other.powers[:3], 0) or not any(own.powers)):
-        raise OtherKind(f"a unit of another kind, {unit!r}")
+        raise ValueError(f"a unit of another kind, {unit!r}")
     return own.scale / other.scale
+
+
+def example_of(unit: str) -> tuple[str, str]:
+    """What an SI unit measures, and an example in a unit that reads well."""
+    return EXAMPLES.get(unit, ("a quantity", f"3 {unit}"))
+
+
+def kind_of(unit: str) -> str:
+    """What a unit measures: "a mass"."""
+    powers = unit_of(unit).powers
+    return next((what for si, (what, _) in EXAMPLES.items() if unit_of(si).powers == powers), "something else")
+
+
+def units_like(unit: str) -> list[str]:
+    """The units of the table that measure the same as one, each by its first name, or that of an example."""
+    names = {UNITS[name]: name for name in reversed(UNITS) if UNITS[name].powers == unit_of(unit).powers}
+    return [*reversed(names.values())] or [example_of(unit)[1].split(" ", 1)[1]]
 
 
 def parted(text: str) -> tuple[str, str]:
@@ -150,8 +172,7 @@ def text(value: float, unit: str) -> str:
 
     Where those are more than in SI (0.1 rad), it is written in SI.
     """
-    _, example = EXAMPLES.get(unit, ("", f"1 {unit}"))
-    friendly = example.split(" ", 1)[1]
+    friendly = example_of(unit)[1].split(" ", 1)[1]
     if math.isfinite(value):
         exact, per = Decimal(repr(value)), scale(friendly, unit)
         for digits in range(len(exact.normalize().as_tuple().digits)):

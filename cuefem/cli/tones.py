@@ -42,4 +42,4 @@ def _hertz(file: Path, near: str) -> float:
         with suppress(ValueError):
             if wanted.holds(hertz := number(text, "Hz")):
                 return hertz
-    raise InputError(file, "--near", f'must be in {wanted.bounds}, such as 250 or "0.25 kHz"; got {near!r}')
+    raise InputError(file, "--near", f'must be {wanted.bounds_in("Hz")}, such as 250 or "0.25 kHz"; got {near!r}')

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 import os
 import stat
-from collections.abc import Iterable
 from os import PathLike
 from pathlib import Path
 
-from cuefem.quantity import shown
+from cuefem.quantity import nearest, shown
 
 _KINDS = {
     stat.S_IFDIR: "a folder",
@@ -33,13 +31,6 @@ class InputError(ValueError):
         self.file, self.key, self.problem = str(file), key, problem
         parts = [part for part in (self.file, key, problem) if part]
         super().__init__(" ".join(": ".join(parts).split()))
-
-
-def nearest(name: str, names: Iterable[str]) -> str:
-    """A hint at the valid name that was probably meant, or nothing."""
-    known = {known.casefold(): known for known in names}
-    close = difflib.get_close_matches(name.casefold(), known, n=1, cutoff=0.5)
-    return f"; did you mean {known[close[0]]!r}?" if close else ""
 
 
 def state_of(path: Path) -> os.stat_result:

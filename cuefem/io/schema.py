@@ -14,7 +14,7 @@ from cuefem.cue import Material
 from cuefem.effects import Effect
 from cuefem.io.errors import InputError, nearest, shown
 from cuefem.materials import MATERIALS
-from cuefem.quantity import Quantity
+from cuefem.quantity import OutOfBounds, Quantity
 
 Kind = TypeVar("Kind")
 
@@ -75,7 +75,7 @@ def _made(kind: type, table: dict[str, Any], file: str, key: str) -> Any:
     try:
         return kind(**values)
     except (TypeError, ValueError) as error:
-        raise InputError(file, *_own_words(str(error), key)) from None
+        raise InputError(file, *_own_words(error, key)) from None
 
 
 @functools.cache
@@ -125,8 +125,11 @@ def unknown_key(name: str, value: Any, names: list[str], *, file: str, key: str)
     return InputError(file, joined(key, name), f"{wanted}; got {name} = {shown(value)}{hint}")
 
 
-def _own_words(message: str, path: str) -> tuple[str, str]:
+def _own_words(error: TypeError | ValueError, path: str) -> tuple[str, str]:
     """The core's "Segment.tip_bore must be ..." as key path and problem."""
+    if isinstance(error, OutOfBounds):
+        return joined(path, error.name.partition(".")[2]), error.in_words
+    message = str(error)
     parts = re.fullmatch(r"[A-Z]\w*\.(\S+) (.*)", message, re.DOTALL)
     return (joined(path, parts[1]), parts[2]) if parts else (path, message)
 
@@ -135,7 +138,7 @@ def _wanted(hint: Any) -> str:
     """What a key takes, in words."""
     mark, first = mark_of(hint), choices(hint)[0]
     if mark is not None:
-        return f"in {mark.bounds}, {mark.example}" if mark.unit else f"a bare number in {mark.bounds}"
+        return mark.wanted
     if is_dataclass(first):
         named = " or a name from `cuefem materials`" if first is Material else ""
         return f"a table with the keys {', '.join(keys_of(cast(type, first)))}{named}"

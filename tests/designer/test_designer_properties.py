@@ -175,7 +175,7 @@ def test_the_files_own_materials_are_offered() -> None:
         ({"ferrule_length": 0.4}, "the ferrule must be in (0, 324.2) mm long, as its neighbours allow; got 400 mm"),
         ({"butt_diameter": -0.001}, "the cue must be thicker than nothing; got -1 mm"),
         ({"joint_compliance": 1e-3, "joint_position": 0.8}, "must be in (0, 0.7306) m"),
-        ({"tip_height": 0.1}, "LeatherTip.height must be in"),
+        ({"tip_height": 0.1}, "LeatherTip.height must be 1.7 to 19.1 mm high"),
         ({"restitution": 1.1}, "Tip.restitution must be in [0, 1]; got 1.1"),
     ],
 )
