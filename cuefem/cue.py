@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cuefem.notebook import outline, table
-from cuefem.quantity import DIAMETER, LENGTH, MOST_SEGMENTS, Number, Quantity, check_fields, check_kind
+from cuefem.quantity import DIAMETER, LENGTH, MOST_SEGMENTS, Number, OutOfBounds, Quantity, check_fields, check_kind
 
 Array = NDArray[np.float64]
 
@@ -62,8 +62,8 @@ class Material:
     def __post_init__(self) -> None:
         check_fields(self)
         if 2 * self.nu * self.G >= self.E:
-            bound = f"(0, {self.E / (2 * self.nu)}) Pa, E/(2 nu) of E = {self.E} Pa, nu = {self.nu}"
-            raise ValueError(f"Material.G must be in {bound}; got {self.G}")
+            why = f", E/(2 nu) of E = {self.E} Pa, nu = {self.nu}"
+            raise OutOfBounds("Material.G", Quantity("Pa", f"(0, {self.E / (2 * self.nu)})"), self.G, why)
 
     @property
     def effective_poisson_ratio(self) -> float:
@@ -150,7 +150,7 @@ class Segment:
         for end in ("tip", "butt"):
             bore, outer = getattr(self, f"{end}_bore"), getattr(self, f"{end}_diameter")
             if bore >= outer:
-                raise ValueError(f"Segment.{end}_bore must be in [0, {outer}) m, its outer diameter; got {bore}")
+                raise OutOfBounds(f"Segment.{end}_bore", Quantity("m", f"[0, {outer})"), bore, ", its outer diameter")
 
     @property
     def mass(self) -> float:

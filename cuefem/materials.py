@@ -185,7 +185,8 @@ WOODS: tuple[str, ...] = tuple(_WOODS)
 
 # The leathers of tips by their hardness. No source gives an E that was measured on the leather of a tip, so each is
 # that with which a head-on blow at 2 m/s lasts as long as is published: a maple pool shaft and a pool ball (a cue of
-# 566 g; 170 g, 57.15 mm), a tip 12.75 mm wide and 6 mm high, its dome of 9.5 mm, e = 0.73 (studies/leather_tip.toml).
+# 566 g; 170 g, 57.15 mm), a tip 12.75 mm wide and 6 mm high, its dome of 9.5 mm, e = 0.73
+# (studies/measured/leather_tip.toml).
 _INFERRED = "E is inferred from that time and not measured. nu and density: textbook values of compressed sole leather"
 LEATHERS: Mapping[str, Leather] = MappingProxyType(
     {

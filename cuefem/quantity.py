@@ -3,34 +3,31 @@
 from __future__ import annotations
 
 import dataclasses
+import difflib
 import functools
 import math
+import re
 import typing
+from collections.abc import Iterable
 from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cuefem.slips import remark
-
-# What a unit measures, with an example from a file: for messages, the JSON schema, and the units that `save` writes.
-EXAMPLES = {
-    "m": ("a length", "12 mm"),
-    "kg": ("a mass", "150 g"),
-    "s": ("a time", "1.2 ms"),
-    "m/s": ("a speed", "2 m/s"),
-    "Pa": ("a stress", "12.6 GPa"),
-    "kg/m^3": ("a density", "700 kg/m^3"),
-    "N/m": ("a stiffness", "5000 N/m"),
-    "N m/rad": ("a rotational stiffness", "20 N m/rad"),
-    "rad/(N m)": ("a rotational compliance", "2e-4 rad/(N m)"),
-    "m/N": ("a compliance", "1e-8 m/N"),
-    "N m": ("a torque", "20 N m"),
-    "N s/m": ("a dashpot", "3 N s/m"),
-    "kg m^2": ("a rotary inertia", "40 g mm^2"),
-    "rad": ("an angle", "3 deg"),
-    "Hz": ("a frequency", "250 Hz"),
-}
+from cuefem.units import (
+    BOTH,
+    LONGEST_TEXT,
+    UNITS,
+    UnknownUnit,
+    example_of,
+    kind_of,
+    number,
+    parted,
+    scale,
+    text,
+    units_like,
+)
 
 # Fields that `impulse` broadcasts may hold an array; all others hold one number.
 Number = float | NDArray[np.float64]
@@ -70,34 +67,93 @@ class Quantity:
     @property
     def example(self) -> str:
         """What the unit measures, with an example: 'a length with its unit, such as "12 mm"'."""
-        what, example = EXAMPLES.get(self.unit, ("a quantity", f"3 {self.unit}"))
-        named = ", or " + ", ".join(f'"{word}"' for word, _ in self.words) if self.words else ""
-        return f'{what} with its unit, such as "{example}"{named}'
+        what, example = example_of(self.unit)
+        return f'{what} with its unit, such as "{example}"{self._named}'
+
+    @property
+    def _named(self) -> str:
+        return ", or " + ", ".join(f'"{word}"' for word, _ in self.words) if self.words else ""
 
     @property
     def endless(self) -> bool:
         """Whether infinity is a value, which needs no unit."""
         return self.interval.endswith("inf]")
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
-        """Pydantic's hook: the function "read" of the validation context turns a file's text into a number."""
-        from pydantic_core import core_schema
+    @property
+    def wanted(self) -> str:
+        """What a file or an option must say: a number with its unit, or a bare one within its bounds."""
+        return self.example if self.unit else f"a bare number, {self.bounds_in('')}"
 
-        def read(value: Any, info: Any) -> Any:
-            return info.context["read"](self, value)
+    def bounds_in(self, unit: str) -> str:
+        """The bounds in words and in a unit of their kind, or in SI if they are out of proportion in it."""
+        per = float(scale(unit, self.unit)) if self.unit else 1.0
+        if any(end and math.isfinite(end) and not 1e-4 <= abs(end) / per < 1e6 for end in self.ends):
+            unit, per = self.unit, 1.0
+        low, high = (f"{end / per:.6g}".replace("e-0", "e-") for end in self.ends)
+        unit = f" {unit}" if unit else ""
+        if high == "inf":
+            if low == "-inf":
+                return f"a finite number{unit and ' of'}{unit}"
+            return f"more than {low}{unit}" if self.interval[0] == "(" else f"{low}{unit} or more"
+        return _WORDS[self.interval[0] + self.interval[-1]].format(low, high) + unit
 
-        return core_schema.with_info_plain_validator_function(read)
+    def read(self, value: Any) -> float:
+        """What stands in a file as a checked SI number; ValueError says what is wrong in the words of who wrote it."""
+        if self.unit == "":
+            return self._bare(value)
+        known = dict(self.words) | ({"inf": math.inf} if self.endless else {})
+        word = str(value).strip().lower() if isinstance(value, str | float) else ""
+        if word in known:
+            return known[word]
+        plain = isinstance(value, str | int | float) and not isinstance(value, bool)
+        digits, unit = parted(str(value)) if plain else ("", "")
+        if not digits or not unit:
+            raise ValueError(self._no_unit(value, digits))
+        try:
+            result = number(str(value), self.unit)
+        except ValueError as error:
+            why = self._why(error, str(value), unit)
+            raise ValueError(f"must be {self.example}; got {shown(value)}{why}") from None
+        if not math.isfinite(result) and digits[-3:].lower() not in ("inf", "nan"):
+            raise ValueError(f"must be a number that is not so large; got {digits} {unit}")
+        if not self.holds(result):
+            raise ValueError(f"must be {self.bounds_in(unit)}; got {digits} {unit}")
+        return result
 
-    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
-        """Pydantic's hook: text with a unit, or a bare number within its bounds."""
-        if self.unit:
-            kinds = ["string", "number"] if self.endless else "string"  # inf alone is a number without a unit
-            return {"type": kinds, "description": f"{self.example}; in {self.bounds}"}
-        low, high = self.ends
-        bounds = {"minimum" if self.interval[0] == "[" else "exclusiveMinimum": low}
-        bounds["maximum" if self.interval[-1] == "]" else "exclusiveMaximum"] = high
-        finite = {key: end for key, end in bounds.items() if math.isfinite(end)}
-        return {"type": "number", **finite, "description": f"a number in {self.interval}"}
+    def _no_unit(self, value: Any, digits: str) -> str:
+        """What is said of a value that is no number with a unit."""
+        if digits and math.isfinite(float(digits)):
+            named = " or ".join(f'"{text}"' for text in BOTH.get(self.unit, example_of(self.unit)[1:]))
+            return f"needs a unit: {named}{self._named}; got {shown(value)}"
+        if digits:
+            return f"must be {self.bounds_in(self.unit)}; got {value}"
+        long = f", of {len(value)} letters" if isinstance(value, str) and len(value) > LONGEST_TEXT else ""
+        return f"must be {self.example}; got {shown(value)}{long}{_comma(value)}"
+
+    def _why(self, error: ValueError, value: str, unit: str) -> str:
+        """What is wrong with the unit of a text."""
+        if _comma(value):
+            return _comma(value)
+        if not isinstance(error, UnknownUnit):
+            return f", which is {kind_of(unit)}"
+        like = units_like(self.unit)
+        near = nearest(error.name, like) or nearest(error.name, UNITS) or f"; there are {', '.join(like)}"
+        return f": no unit is called {shown(error.name)}{near}"
+
+    def _bare(self, value: Any) -> float:
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise ValueError(f"must be {self.wanted}; got {shown(value)}{_comma(value)}")
+        try:
+            result = float(value)
+        except OverflowError:
+            result = math.nan
+        if not self.holds(result):
+            raise ValueError(f"must be {self.bounds_in('')}; got {shown(value)}")
+        return result
+
+    def written(self, value: float) -> str | float:
+        """A number as it stands in a file: text with a unit, or a bare number if it has no dimension."""
+        return text(value, self.unit) if self.unit else value
 
     def check(self, name: str, value: Any) -> Any:
         """``value`` as a float or a read-only float array; the errors name field, bound, unit and value."""
@@ -128,11 +184,33 @@ class Quantity:
 class Flag:
     """Marks a field that is true or false: no other word of a file is read as either."""
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
-        """Pydantic's hook: true or false as they are."""
-        from pydantic_core import core_schema
 
-        return core_schema.bool_schema(strict=True)
+_WORDS = {
+    "()": "between {} and {}",
+    "[]": "{} to {}",
+    "(]": "more than {} and at most {}",
+    "[)": "at least {} and less than {}",
+}
+_COMMA = re.compile(r"\s*[-+]?[0-9]+,[0-9]")
+
+
+def _comma(value: Any) -> str:
+    """A hint for a number with a decimal comma."""
+    return "; a decimal point, no comma" if isinstance(value, str) and _COMMA.match(value) else ""
+
+
+class OutOfBounds(ValueError):
+    """A number outside bounds that hang on other fields: in SI units for Python, `in_words` for who wrote a file."""
+
+    def __init__(self, name: str, bounds: Quantity, value: float, why: str = "") -> None:
+        self.name, self.bounds, self.value, self.why = name, bounds, value, why
+        super().__init__(f"{name} must be in {bounds.bounds}{why}; got {value}")
+
+    @property
+    def in_words(self) -> str:
+        """The same without the name, in the unit that files are written in."""
+        got = str(self.bounds.written(self.value))
+        return f"must be {self.bounds.bounds_in(got.partition(' ')[2])}{self.why}; got {got}"
 
 
 # Bounds of a cue and a blow, so that a wrong unit is refused before it costs hours. Each bound is far from anything
@@ -206,6 +284,13 @@ def shown(value: Any) -> str:
     """A value for a message: text in quotes, and cut if it is long."""
     text = repr(value)
     return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def nearest(name: str, names: Iterable[str]) -> str:
+    """A hint at the valid name that was probably meant, or nothing."""
+    known = {known.casefold(): known for known in names}
+    close = difflib.get_close_matches(name.casefold(), known, n=1, cutoff=0.5)
+    return f"; did you mean {known[close[0]]!r}?" if close else ""
 
 
 def check_count(name: str, value: Any, least: int) -> None:

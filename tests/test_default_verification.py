@@ -1,8 +1,6 @@
 """Verification of the default: its stick end mass where the front of the shear wave is back, and its size of mesh."""
 
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
@@ -20,8 +18,7 @@ from cuefem.tip_modes import LEAST, LEAST_STUCK, MOST_KEPT, Solved, default_reso
 from tests.helpers.cues import LEATHER, MAPLE, kim, scene
 
 mpl.use("Agg")
-sys.path.append(str(Path(__file__).parents[1] / "studies"))
-from default_accuracy import random_cue
+from studies.accuracy import random_cue
 
 BRASS = Material(1e11, 3.7e10, 8500.0)
 MANY = 200  # modes of a reference

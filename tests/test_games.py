@@ -22,7 +22,7 @@ def leather(length: float) -> cf.Segment:
 
 @pytest.mark.parametrize("name", LEATHERS)
 def test_a_leather_touches_the_ball_as_long_as_it_says(name: str) -> None:
-    scene = cf.load(ROOT / "studies/leather_tip.toml")
+    scene = cf.load(ROOT / "studies/measured/leather_tip.toml")
     assert isinstance(scene, cf.Scene)
     known = LEATHERS[name]
     tip = replace(scene.leather, E=known.E, nu=known.nu, rho=known.rho)
@@ -65,4 +65,4 @@ def test_refusals() -> None:
     refuses(
         lambda: cf.usual_scene(cf.LumpedCue(0.5, 0.01)), "TypeError: usual_scene cue must be a Cue; got a LumpedCue"
     )
-    refuses(lambda: cf.usual_scene(cf.Cue((leather(1e-3), WOOD))), "LeatherTip.height must be in")
+    refuses(lambda: cf.usual_scene(cf.Cue((leather(1e-3), WOOD))), "LeatherTip.height must be more than 2.4")

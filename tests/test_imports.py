@@ -16,6 +16,7 @@ PACKAGE = Path(cuefem.__file__).parent
 
 # Every part of cuefem; a part imports only what stands above it. A folder is one part.
 ORDER = [
+    "units",
     "slips",
     "notebook",
     "quantity",
@@ -27,6 +28,8 @@ ORDER = [
     "effects",
     "scene",
     "games",
+    "parts",
+    "vary",
     "tip_modes",
     "contact",
     "endmass",
@@ -50,9 +53,9 @@ HOMES = {
     "matplotlib": {"report", "plot"},
     "pandas": {"frames"},
     "xarray": {"frames"},
-    "pint": {"io"},
-    "pydantic": {"io"},
-    "pydantic_core": {"quantity"},
+    "pint": set(),
+    "pydantic": set(),
+    "pydantic_core": set(),
     "tomlkit": {"io"},
     "click": {"cli"},
     "rich": {"report", "cli"},
@@ -152,6 +155,8 @@ COMMAND = "from tests.helpers.command_line import call; call("
         ("import cuefem; cuefem.end_mass(cuefem.Scene(cuefem.LumpedCue(0.5, 0.006)))", HEAVY),
         (f"{COMMAND}'end-mass', 'meshes/kim.toml')", WORKED_ON),
         (f"{COMMAND}'modes', 'meshes/kim.toml')", WORKED_ON),
+        (f"{COMMAND}'modes', 'meshes/kim.toml', '--body-mass', '15 onces')", ["skfem", "pint", "pydantic"]),
+        (f"{COMMAND}'schema')", ["skfem", "pint", "pydantic"]),
         ("import cuefem.cli", [name for name in ["numpy", *HEAVY] if name != "click"]),
     ],
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -12,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cuefem.cue import Cue, Material, Segment
-from cuefem.quantity import Number, Quantity, check_count, check_fields, check_kind, quantities, scalar
+from cuefem.quantity import Number, OutOfBounds, Quantity, check_count, check_fields, check_kind, quantities, scalar
 from cuefem.scene import Scene
 
 SCENE = Scene(Cue((Segment(0.7, 0.012, 0.021, Material(12.6e9, 0.84e9, 782.0)),)))
@@ -135,3 +136,48 @@ def test_kinds_and_counts() -> None:
             check_count("n", wrong, 1)
     with pytest.raises(ValueError, match="n must be a whole number >= 2; got 1"):
         check_count("n", 1, 2)
+
+
+MASS, SIZE = Quantity("kg", "[0, inf)"), Quantity("m", "(0, 10]")
+# What stands in a file or an option, and what is said of it.
+READ = [
+    (MASS, "15", 'needs a unit: "15 oz" or "425 g"; got \'15\''),
+    (MASS, 15, 'needs a unit: "15 oz" or "425 g"; got 15'),
+    (MASS, "-1 oz", "must be 0 oz or more; got -1 oz"),
+    (MASS, "15 onces", "got '15 onces': no unit is called 'onces'; did you mean 'ounces'?"),
+    (MASS, "15 mm", "must be a mass with its unit, such as \"150 g\"; got '15 mm', which is a length"),
+    (MASS, "15,5 oz", "got '15,5 oz'; a decimal point, no comma"),
+    (MASS, "1e400 g", "must be a number that is not so large; got 1e400 g"),
+    (MASS, "nan g", "must be 0 g or more; got nan g"),
+    (MASS, True, 'must be a mass with its unit, such as "150 g"; got True'),
+    (SIZE, "28 xyz", "no unit is called 'xyz'; there are mm, m, cm, in, ft, thou, um, yd, km, mile"),
+    (SIZE, "0 in", "must be more than 0 and at most 393.701 in; got 0 in"),
+    (SIZE, "2e9 um", "must be more than 0 and at most 10 m; got 2e9 um"),
+    (Quantity("s", "[1e-6, 10]"), "-2 ms", "must be 0.001 to 10000 ms; got -2 ms"),
+    (Quantity("rad", "[0, 1.5707963267948966)"), "95°", "must be at least 0 and less than 90 °; got 95 °"),
+    (Quantity("", "(-1, 1)"), 1.5, "must be between -1 and 1; got 1.5"),
+    (Quantity("", "(-1, 1)"), "0.3", "must be a bare number, between -1 and 1; got '0.3'"),
+    (Quantity("1/kg"), "nan 1/g", "must be a finite number of 1/g; got nan 1/g"),
+    (
+        Quantity("m", "(0, inf]", (("dime", 0.009),)),
+        "9.5",
+        'needs a unit: "0.5 in" or "12.7 mm", or "dime"; got \'9.5\'',
+    ),
+]
+
+
+@pytest.mark.parametrize(("wanted", "value", "words"), READ)
+def test_what_is_wrong_is_said_in_the_words_of_who_wrote_it(wanted: Quantity, value: object, words: str) -> None:
+    with pytest.raises(ValueError, match=f"{re.escape(words)}$"):
+        wanted.read(value)
+
+
+@pytest.mark.parametrize(
+    ("bore", "words"), [(0.013, "must be at least 0 and less than 12 mm, its outer diameter; got 13 mm")]
+)
+def test_bounds_that_hang_on_another_field_are_told_in_both_ways(bore: float, words: str) -> None:
+    with pytest.raises(
+        OutOfBounds, match=r"^Segment.tip_bore must be in \[0, 0.012\) m, its outer diameter; got 0.013"
+    ) as error:
+        Segment(0.7, 0.012, 0.021, Material(12.6e9, 0.84e9, 782.0), tip_bore=bore)
+    assert error.value.in_words == words

@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 import cuefem
-from cuefem.cli import main
+from cuefem.cli import COMMANDS as TABLE
 from cuefem.io.paraview import shaft_surface
 from tests.helpers.command_line import call
 
@@ -96,7 +96,7 @@ def test_a_new_user_gets_a_report_from_nothing(tmp_path: Path) -> None:
 
 def timed(block: str) -> object:
     """A block of commands under its first words; the study of tap tests is long."""
-    marks = [pytest.mark.heavy] if "studies.tap" in block else []
+    marks = [pytest.mark.heavy] if "studies.measured.tap" in block else []
     return pytest.param(block, marks=marks, id=" ".join(block.split()[:3]))
 
 
@@ -150,7 +150,7 @@ def test_drawings_and_scenes_load(tmp_path: Path) -> None:
 
 def test_commands_exist() -> None:
     named = set(re.findall(r"`cuefem ([a-z][a-z-]*)", TEXT))
-    assert named <= set(main.commands)
+    assert named <= set(TABLE)
     assert {"report", "modes", "end-mass", "strike", "handover", "animate"} <= named
 
 
@@ -163,7 +163,7 @@ def test_paths_are_there() -> None:
 
 def test_the_verdicts_are_counted_as_the_study_counts_them() -> None:
     counted = re.search(
-        r"(\d+) claims; agrees: (\d+), rounding: (\d+), slip: (\d+)", (ROOT / "studies/kim.md").read_text()
+        r"(\d+) claims; agrees: (\d+), rounding: (\d+), slip: (\d+)", (ROOT / "studies/paper/kim.md").read_text()
     )
     assert counted is not None
     claims, agree, rounded, slips = counted.groups()

@@ -114,12 +114,12 @@ BAD = {
     "unknown effect": ("[[effects]]\ntype = 'TipDom'\n", "effects[0].type: ", "got 'TipDom'; did you mean 'TipDome'?"),
     "wrong unit": (
         "[[effects]]\ntype = 'TipDome'\nradius = '9.5 g'\n",
-        "effects[0].radius: must be in [0, inf) m, ",
-        "got '9.5 g', of another kind ('g')",
+        "effects[0].radius: must be a length with its unit",
+        "got '9.5 g', which is a mass",
     ),
     "missing unit": (
         "[[effects]]\ntype = 'Support'\nposition = '8 in'\nstiffness = 5000\n",
-        "effects[0].stiffness: must be in [0, inf] N/m, ",
+        "effects[0].stiffness: needs a unit: ",
         "got 5000",
     ),
     "misspelt key": (
@@ -139,7 +139,7 @@ BAD = {
         "effects[1].stiffness: must be in [0, inf) N/m at 0.7 m, where effects[0] is a clamp already; ",
         "got inf",
     ),
-    "accuracy out of bounds": ("[accuracy]\nrtol = 1.5\n", "accuracy.rtol: must be in (0, 1); ", "got 1.5"),
+    "accuracy out of bounds": ("[accuracy]\nrtol = 1.5\n", "accuracy.rtol: must be between 0 and 1; ", "got 1.5"),
 }
 
 

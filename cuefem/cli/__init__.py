@@ -1,4 +1,4 @@
-"""The commands: from a cue's file to its modes, end mass and squirt."""
+"""The commands: one table of them, each loaded when it is called, and one-line errors."""
 
 from __future__ import annotations
 
@@ -6,24 +6,13 @@ import os
 import sys
 import warnings
 from contextlib import suppress
+from importlib import import_module
+from importlib.metadata import version
 from typing import Any, NoReturn
 
 import click
+from click.shell_completion import CompletionItem
 
-from cuefem.cli.designer import designer
-from cuefem.cli.files import convert, materials, schema
-from cuefem.cli.guide import guide
-from cuefem.cli.handover import animate, handover
-from cuefem.cli.measured import compare, estimate
-from cuefem.cli.optimize import optimize
-from cuefem.cli.scatter import scatter
-from cuefem.cli.scene import cost, effects, end_mass, modes, report, strike
-from cuefem.cli.side import side
-from cuefem.cli.sweep import sweep
-from cuefem.cli.tap import tap
-from cuefem.cli.tip import tip
-from cuefem.cli.validate import validate
-from cuefem.cli.weigh import weigh
 from cuefem.slips import Unusual
 
 # Before NumPy is loaded: small dense matrices gain nothing from BLAS threads, and two of them on a busy machine can be
@@ -31,8 +20,65 @@ from cuefem.slips import Unusual
 for _threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(_threads, "1")
 
+# Every command by its name: the file and function that it is, and what `cuefem --help` says of it.
+COMMANDS = {
+    "animate": ("cuefem.cli.animation:animate", "Mode shapes and the moving cue for ParaView."),
+    "compare": ("cuefem.cli.measured:compare", "A documented cue: measured and computed, side by side."),
+    "convert": ("cuefem.cli.files:convert", "Convert FILE to .toml, .vtk or .vtu."),
+    "cost": ("cuefem.cli.how_sure:cost", "What accuracy costs, and which resolution to take."),
+    "designer": ("cuefem.cli.designer:designer", "Change a cue with sliders on a page and see the effect."),
+    "effects": ("cuefem.cli.how_sure:effects", "What each effect changes, left out or added."),
+    "end-mass": ("cuefem.cli.cues:end_mass", "The effective end mass, by every definition."),
+    "estimate": ("cuefem.cli.measured:estimate", "Wood, bore and tip from everything measured on a cue together."),
+    "guide": ("cuefem.cli.guide:guide", "Open the handbook: physics, glossary, and every effect."),
+    "handover": ("cuefem.cli.handover:handover", "The end mass for a simulator: pooltool's CueSpecs."),
+    "materials": (
+        "cuefem.cli.known_materials:materials",
+        "List the materials that a file can name, with their sources.",
+    ),
+    "modes": ("cuefem.cli.tones:modes", "How the cue rings: its bending frequencies."),
+    "optimize": ("cuefem.cli.optimize:optimize", "Find the best design of a STUDY (.toml) within its limits."),
+    "report": ("cuefem.cli.reporting:report", "Everything about a cue, as tables or as a page."),
+    "scatter": ("cuefem.cli.scatter:scatter", "How much a design's numbers scatter, and why."),
+    "schema": ("cuefem.cli.files:schema", "Print the JSON schema of cue and scene files, for editors."),
+    "side": ("cuefem.cli.side:side", "A strike from the side: rebound and effective mass."),
+    "strike": ("cuefem.cli.cues:strike", "One stroke: squirt, speed, spin and pivot length."),
+    "sweep": ("cuefem.cli.sweep:sweep", "Compute every design of a STUDY (.toml)."),
+    "tap": ("cuefem.cli.tap:tap", "The shaft's wood by ear: E, G, density from a tapped sound."),
+    "tip": ("cuefem.cli.tip:tip", "The leather tip by itself: force, contact time, shear ratio."),
+    "validate": ("cuefem.cli.validate:validate", "Check every claim of the sources."),
+    "weigh": ("cuefem.cli.weigh:weigh", "The effective end mass, weighed by a ball on a thread."),
+}
 
-class _OneLine(click.Group):
+
+class _Commands(click.Group):
+    """The commands of `COMMANDS`: a command's file is loaded when the command is called, not for a list of them."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """All names, in the order of the alphabet."""
+        return sorted(COMMANDS)
+
+    def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
+        """The command of that name, its file loaded; None if there is none."""
+        if name not in COMMANDS:
+            return None
+        module, _, attribute = COMMANDS[name][0].partition(":")
+        command: click.Command = getattr(import_module(module), attribute)
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the table."""
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, COMMANDS[name][1]) for name in self.list_commands(ctx)])
+
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
+        """The commands that begin so, and then as for every command."""
+        names = [name for name in self.list_commands(ctx) if name.startswith(incomplete)]
+        options = click.Command.shell_complete(self, ctx, incomplete)
+        return [*(CompletionItem(name, help=COMMANDS[name][1]) for name in names), *options]
+
+
+class _OneLine(_Commands):
     """Bad input ends in one line on stderr and status 2, a numerical failure in one and status 1; no tracebacks."""
 
     def main(self, *arguments: Any, **options: Any) -> Any:
@@ -92,8 +138,6 @@ def _forget_output() -> None:
 def _version(ctx: click.Context, _: click.Parameter, asked: bool) -> None:
     if not asked or ctx.resilient_parsing:
         return
-    from importlib.metadata import version
-
     from cuefem.contact.kernel import described
 
     click.echo(f"cuefem, version {version('cuefem')}\ncontact: {described()}")
@@ -107,31 +151,3 @@ def main() -> None:
 
     FILE is a cue or a scene (.toml), a lathe profile (.csv), a mesh (.vtk, .vtu) or a CAD surface (.stl, .ply, .obj).
     """
-
-
-for _command in (
-    modes,
-    end_mass,
-    strike,
-    side,
-    effects,
-    cost,
-    report,
-    handover,
-    animate,
-    convert,
-    schema,
-    validate,
-    materials,
-    sweep,
-    scatter,
-    optimize,
-    designer,
-    tap,
-    tip,
-    compare,
-    estimate,
-    weigh,
-    guide,
-):
-    main.add_command(_command)

@@ -1,19 +1,25 @@
-"""What commands share: a file and its options to a scene; tables for people, --json for programs."""
+"""What commands share: a file and its options to a scene, and what they make of it."""
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
-from cuefem.cli.strokes import refuse_game, usual, with_options
-
-if TYPE_CHECKING:
-    from cuefem.scene import Scene
+from cuefem.cli.printing import assumed_lines, json_option, print_all, print_json
+from cuefem.cli.strokes import place_options, refuse_game, usual, with_options
+from cuefem.effects.leather_law import TooDeep
+from cuefem.games import DEFAULT_GAME
+from cuefem.io import InputError, check_place, load_stroke
+from cuefem.io.assumed import assumed, assumed_usual
+from cuefem.report.quantities import UNITS
+from cuefem.report.record import plain, scene_record
+from cuefem.report.unusual import unusual
+from cuefem.report.words import cue_line, effect_words
+from cuefem.scene import Scene
 
 
 def file_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -23,13 +29,13 @@ def file_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 def cue_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """The options for what a cue's file may leave out, and --json."""
-    return click.option("--json", "as_json", is_flag=True, help="SI numbers as JSON.")(shape_options(command))
+    return json_option(shape_options(command))
 
 
 def shape_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """The options for what a file that holds only a shape leaves out: mass, material and unit."""
     for option in (
-        click.option("--body-mass", metavar="MASS", help='Mass of the cue behind FILE\'s segments, e.g. "420 g".'),
+        place_options("body_mass"),
         click.option(
             "--material", metavar="NAME", help="Material of a .csv or a CAD surface (see `cuefem materials`)."
         ),
@@ -41,6 +47,12 @@ def shape_options(command: Callable[..., Any]) -> Callable[..., Any]:
     return command
 
 
+# The option of the commands that can write a page in the place of tables.
+page_option = click.option(
+    "-o", "--output", type=click.Path(path_type=Path), metavar="PAGE.html", help="Write a page with figures instead."
+)
+
+
 def force_option(command: Callable[..., Any]) -> Callable[..., Any]:
     """The option of every command that writes a drawing."""
     return click.option("--force", is_flag=True, help="Replace a drawing that exists already.")(command)
@@ -48,8 +60,6 @@ def force_option(command: Callable[..., Any]) -> Callable[..., Any]:
 
 def check_free(drawing: Path, *, force: bool) -> None:
     """Refuse to replace a drawing without --force, for it is somebody's work; pages and figures can be made again."""
-    from cuefem.io import InputError, check_place
-
     if drawing.exists() and not drawing.is_dir() and not force:
         raise InputError(drawing, "", "is there already: --force replaces it")
     check_place(drawing)
@@ -61,9 +71,6 @@ def blaming(file: Path, given: Collection[str] = ()) -> Iterator[None]:
 
     given: the options that the command has, to be named where they help.
     """
-    from cuefem.effects.leather_law import TooDeep
-    from cuefem.io import InputError
-
     try:
         yield
     except InputError:  # which names a file already
@@ -71,31 +78,6 @@ def blaming(file: Path, given: Collection[str] = ()) -> Iterator[None]:
     except ValueError as error:
         help_words = " (--tip-height, --leather, --speed)" if isinstance(error, TooDeep) and "leather" in given else ""
         raise InputError(file, "", f"{error}{help_words}") from None
-
-
-class Definitions(click.Choice[str]):
-    """The names of the end-mass definitions, and ``more``; loaded only when a command needs them, for it is slow."""
-
-    def __init__(self, *more: str) -> None:
-        self.more, self.case_sensitive = more, True
-
-    @property
-    def choices(self) -> tuple[str, ...]:  # type: ignore[override]
-        """All names."""
-        from cuefem.endmass.drives import DEFINITIONS
-
-        return (*self.more, *DEFINITIONS)
-
-
-class WithDefinitions(click.Command):
-    """A command whose help ends with the definitions of the end mass."""
-
-    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write name and meaning of every definition."""
-        from cuefem.endmass.drives import DEFINITIONS
-
-        with formatter.section("Definitions of the end mass"):
-            formatter.write_dl([(one.name, one.meaning) for one in DEFINITIONS.values()])
 
 
 def scene_of(
@@ -106,11 +88,6 @@ def scene_of(
     A cue alone gets a game's usual stroke (`cuefem.games`). blow: whether ball, tip and stroke matter to the command,
     so that what is assumed of them is told too. settled: options that have no say, for the command finds their value.
     """
-    from cuefem.games import DEFAULT_GAME
-    from cuefem.io import InputError, load_stroke
-    from cuefem.io.assumed import assumed, assumed_usual
-    from cuefem.scene import Scene
-
     found = load_stroke(file, material=given["material"], length_unit=given.get("length_unit"))
     said = {name for name, value in given.items() if value is not None} | {*settled}
     notes = assumed(file, said, offered=given, blow=blow)
@@ -130,8 +107,6 @@ def scene_of(
 
 def remark(scene: Scene, *, blow: bool = True) -> None:
     """Say on stderr which numbers are unusual; a wrong unit is the most common reason."""
-    from cuefem.report.unusual import unusual
-
     for line in unusual(scene, blow=blow):
         click.echo(f"unusual: {line}", err=True)
 
@@ -150,10 +125,6 @@ def show(
 
     blow, settled: see `scene_of`. change: what the command's own options make of the scene.
     """
-    from cuefem.report.quantities import UNITS
-    from cuefem.report.record import scene_record
-    from cuefem.report.unusual import unusual
-
     scene, notes = scene_of(file, given, blow=blow, settled=settled)
     with blaming(file, given):
         scene = scene if change is None else change(scene)
@@ -168,44 +139,7 @@ def show(
 
 def head_lines(file: Path, about: dict[str, Any], effects: Sequence[Any], notes: Sequence[str]) -> list[str]:
     """What stands above a command's tables: the file and its cue, the effects, and what was assumed."""
-    from cuefem.report.record import plain
-    from cuefem.report.words import cue_line, effect_words
-
     lines = [f"{file.name}: {cue_line(plain(about['cue']))}"]
     if effects:
         lines.append(f"effects: {', '.join(map(effect_words, effects))}")
-    if notes:
-        lines.append(f"assumed: {'; '.join(notes)}")
-    return lines
-
-
-def assumed_lines(notes: Sequence[str]) -> list[str]:
-    """What was assumed, in a line; none where nothing was."""
-    return [f"assumed: {'; '.join(notes)}"] if notes else []
-
-
-def print_json(record: Any) -> None:
-    """Print a record for programs."""
-    from cuefem.report.record import plain
-
-    click.echo(json.dumps(plain(record), indent=2, allow_nan=False, ensure_ascii=False))
-
-
-def print_all(things: Sequence[Any]) -> None:
-    """Print lines and tables for people."""
-    from rich.console import Console
-
-    console = Console(highlight=False, emoji=False)
-    if not console.is_terminal:
-        console.width = 120  # files and pipes have no width: do not cut tables
-    for thing in things:
-        console.print(thing, markup=False) if isinstance(thing, str) else console.print(thing, crop=False)
-
-
-def followed(work: Sequence[Any]) -> Iterable[Any]:
-    """The work, with a progress bar if stderr is a terminal."""
-    from rich.console import Console
-    from rich.progress import track
-
-    console = Console(stderr=True)
-    return track(work, "computing", console=console, transient=True) if console.is_terminal else work
+    return [*lines, *assumed_lines(notes)]

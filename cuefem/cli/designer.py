@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import socket
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -9,9 +10,11 @@ from typing import Any
 import click
 
 from cuefem.cli.common import blaming, scene_of
+from cuefem.designer.design import Design
+from cuefem.designer.start import NAME, first_scene
 
 
-@click.command(short_help="Change a cue with sliders on a page and see the effect.")
+@click.command()
 @click.argument("scene", type=click.Path(path_type=Path), required=False)
 @click.option(
     "--port",
@@ -33,8 +36,6 @@ def designer(scene: Path | None, port: int, show: bool) -> None:
         if error.name is None or error.name.startswith("cuefem"):
             raise
         raise ValueError(f"the designer needs {error.name}: pip install '.[designer]' in the clone") from None
-    from cuefem.designer.design import Design
-    from cuefem.designer.start import NAME, first_scene
 
     def read(path: Path) -> Any:
         return scene_of(path, {"material": None, "body_mass": None})
@@ -51,8 +52,6 @@ def designer(scene: Path | None, port: int, show: bool) -> None:
 
 def _free(port: int) -> int:
     """The port, if it is free; any free one for 0."""
-    import socket  # loaded when used, as all that one command needs
-
     with socket.socket() as tried:
         tried.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:

@@ -1,4 +1,4 @@
-"""Commands about files: convert, schema, materials."""
+"""Commands about files: convert, schema."""
 
 from __future__ import annotations
 
@@ -7,21 +7,22 @@ from pathlib import Path
 
 import click
 
-from cuefem.cli.common import check_free, force_option, print_all, print_json, shape_options
+from cuefem.cli.common import check_free, force_option, shape_options
+from cuefem.cli.printing import assumed_lines
 from cuefem.cli.strokes import with_body
+from cuefem.io import load, save
+from cuefem.io.assumed import assumed
+from cuefem.io.export import json_schema
+from cuefem.io.profile import SHAPES
 
 
-@click.command(short_help="Convert FILE to .toml, .vtk or .vtu.")
+@click.command()
 @click.argument("file", type=click.Path(path_type=Path))
 @click.argument("output", type=click.Path(path_type=Path))
 @shape_options
 @force_option
 def convert(file: Path, output: Path, body_mass: str | None, force: bool, **given: str | None) -> None:
     """Convert FILE to another kind of file: OUTPUT ends in .toml, .vtk or .vtu."""
-    from cuefem.io import load, save
-    from cuefem.io.assumed import assumed
-    from cuefem.io.profile import SHAPES
-
     check_free(output, force=force)
     found = load(file, **given)
     if body_mass is not None:
@@ -29,8 +30,8 @@ def convert(file: Path, output: Path, body_mass: str | None, force: bool, **give
     save(found, output)
     said = {name for name, value in (given | {"body_mass": body_mass}).items() if value is not None}
     notes = assumed(file, said) if file.suffix.lower() in SHAPES else []
-    if notes:
-        click.echo(f"assumed: {'; '.join(notes)}")
+    for line in assumed_lines(notes):
+        click.echo(line)
     click.echo(f"wrote {output}")
 
 
@@ -38,19 +39,4 @@ def convert(file: Path, output: Path, body_mass: str | None, force: bool, **give
 @click.option("--json", "as_json", is_flag=True, help="Changes nothing: the schema is JSON.")
 def schema(as_json: bool) -> None:
     """Print the JSON schema of cue and scene files, for editors."""
-    from cuefem.io.export import json_schema
-
     click.echo(json.dumps(json_schema(), indent=2, allow_nan=False, ensure_ascii=False))
-
-
-@click.command()
-@click.option("--json", "as_json", is_flag=True, help="As JSON.")
-def materials(as_json: bool) -> None:
-    """List the materials that a file can name, with their sources."""
-    from cuefem.report import materials_record, materials_table
-
-    found = materials_record()
-    if as_json:
-        print_json(found)
-    else:
-        print_all([materials_table(found)])

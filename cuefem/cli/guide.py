@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
+import tempfile
+import webbrowser
 from pathlib import Path
 
 import click
+from rich.console import Console
+from rich.markdown import Markdown
 
-from cuefem.handbook import CHAPTERS
+from cuefem.handbook import CHAPTERS, chapters
+from cuefem.handbook.page import page
+from cuefem.io import InputError, save_page
+from cuefem.io.errors import nearest
 
 
 def _known(context: click.Context, parameter: click.Parameter, chapter: str | None) -> str | None:
     if chapter is None or chapter in CHAPTERS:
         return chapter
-    from cuefem.io.errors import nearest
-
     raise ValueError(f"CHAPTER must be one of {', '.join(CHAPTERS)}; got {chapter!r}{nearest(chapter, CHAPTERS)}")
 
 
-@click.command(short_help="Open the handbook: physics, glossary, and every effect.")
+@click.command()
 @click.argument("chapter", callback=_known, required=False, metavar="[CHAPTER]")
 @click.option(
     "-o", "--output", type=click.Path(path_type=Path), metavar="PAGE.html", help="Write the page here instead."
@@ -29,22 +34,16 @@ def guide(chapter: str | None, output: Path | None, in_terminal: bool) -> None:
     CHAPTER opens (or prints) one chapter: start, files, working, frame, inverse_mass, impulse_solver, beam, strike,
     dead_tip, end_mass, side, effects, measured, measuring, accuracy, paper, glossary or sources.
     """
-    from cuefem.handbook import chapters
-    from cuefem.io import InputError, save_page
-
     if in_terminal:
         if output is not None:
             raise InputError(output, "--output", "must be left out with --print, which writes no page")
         _print([found.text for found in chapters() if chapter in (None, found.name)])
         return
-    from cuefem.handbook.page import page
 
     if output is not None:
         save_page(page(), output)
         click.echo(f"wrote {output}")
         return
-    import tempfile
-    import webbrowser
 
     with tempfile.NamedTemporaryFile(prefix="cuefem-guide-", suffix=".html", delete=False) as made:
         path = Path(made.name)
@@ -54,9 +53,6 @@ def guide(chapter: str | None, output: Path | None, in_terminal: bool) -> None:
 
 
 def _print(texts: list[str]) -> None:
-    from rich.console import Console
-    from rich.markdown import Markdown
-
     console = Console()
     if not console.is_terminal:
         console.width = 100

@@ -7,30 +7,39 @@ from typing import Any
 
 import click
 
-from cuefem.cli.common import blaming, followed, print_all, print_json, remark
+from cuefem.cli.common import blaming, page_option, remark
+from cuefem.cli.printing import assumed_lines, json_option, print_all, print_json
+from cuefem.cli.progress import followed
+from cuefem.io import InputError, check_place, save_page
+from cuefem.io.documented import load_documented, write_template
+from cuefem.measured.documented import compare as compared
+from cuefem.measured.documented import zeros
+from cuefem.measured.estimate import estimate as estimated
+from cuefem.measured.estimate import squirt_of
+from cuefem.report.documented import (
+    compare_page,
+    compare_record,
+    compare_tables,
+    estimate_record,
+    estimate_tables,
+    sampled_record,
+    sampled_table,
+)
+from cuefem.report.record import scene_record
+from cuefem.report.unusual import unusual
 
 
-@click.command(short_help="A documented cue: measured and computed, side by side.")
+@click.command()
 @click.argument("folder", metavar="CUE_FOLDER", type=click.Path(path_type=Path))
 @click.option("--template", is_flag=True, help="Make CUE_FOLDER with files to fill in, instead.")
-@click.option(
-    "-o", "--output", type=click.Path(path_type=Path), metavar="PAGE.html", help="Write a page with figures instead."
-)
-@click.option("--json", "as_json", is_flag=True, help="SI numbers as JSON.")
+@page_option
+@json_option
 def compare(folder: Path, template: bool, output: Path | None, as_json: bool) -> None:
     """Compute everything that was measured on the cue in CUE_FOLDER, and show both with errors and residuals.
 
     The folder holds the shaft's drawing, cue.toml or cue.csv; measured.toml, with what was measured; and long series as
     a CSV each, squirt.csv and added_mass.csv for two. Only the drawing must be there. Nothing is fitted.
     """
-    from cuefem.io import InputError, check_place, save_page
-    from cuefem.io.documented import load_documented, write_template
-    from cuefem.measured.documented import compare as compared
-    from cuefem.measured.documented import zeros
-    from cuefem.report.documented import compare_page, compare_record, compare_tables
-    from cuefem.report.record import scene_record
-    from cuefem.report.unusual import unusual
-
     if template:
         write_template(folder)
         click.echo(f"wrote {folder}: its numbers are examples; put yours, then `cuefem compare {folder}`")
@@ -52,31 +61,23 @@ def compare(folder: Path, template: bool, output: Path | None, as_json: bool) ->
         said = {"file": str(folder), "assumed": notes, "unusual": unusual(cue.scene)}
         print_json({**said, "scene": scene_record(cue.scene), **record, "units": UNITS})
         return
-    assumed = [f"assumed: {'; '.join(notes)}"] if notes else []
-    print_all([cue.name, *assumed, "", *compare_tables(cue, record)])
+    print_all([cue.name, *assumed_lines(notes), "", *compare_tables(cue, record)])
 
 
 UNITS = {"residual": "", "pull": "", "zero": "m", "squirt": "rad", "squirt_error": "rad"}
 
 
-@click.command(short_help="Wood, bore and tip from everything measured on a cue together.")
+@click.command()
 @click.argument("folder", metavar="CUE_FOLDER", type=click.Path(path_type=Path))
 @click.option("--sample", type=click.IntRange(min=500), metavar="N", help="Check by N draws of a sampler (an extra).")
 @click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of the sampler.")
-@click.option("--json", "as_json", is_flag=True, help="SI numbers as JSON.")
+@json_option
 def estimate(folder: Path, sample: int | None, seed: int, as_json: bool) -> None:
     """Find the wood, the bore and the tip that all measurements in CUE_FOLDER together make most likely.
 
     The folder is that of `cuefem compare`. The priors are those of the table of materials and of the folder's
     [[unknowns]]. Then: which measurement would tell most.
     """
-    from cuefem.io import InputError
-    from cuefem.io.documented import load_documented
-    from cuefem.measured.estimate import estimate as estimated
-    from cuefem.measured.estimate import squirt_of
-    from cuefem.report.documented import estimate_record, estimate_tables, sampled_record, sampled_table
-    from cuefem.report.record import scene_record
-
     cue, notes = load_documented(folder)
     remark(cue.scene)
     with blaming(folder):
@@ -94,6 +95,5 @@ def estimate(folder: Path, sample: int | None, seed: int, as_json: bool) -> None
         said = {"file": str(folder), "assumed": notes}
         print_json({**said, "scene": scene_record(cue.scene), **record, "units": UNITS})
         return
-    assumed = [f"assumed: {'; '.join(notes)}"] if notes else []
     more = [sampled_table(record["sampled"])] if sample is not None else []
-    print_all([cue.name, *assumed, "", *estimate_tables(record), *more])
+    print_all([cue.name, *assumed_lines(notes), "", *estimate_tables(record), *more])

@@ -6,25 +6,29 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
+from rich.console import Console
 
-from cuefem.cli.common import assumed_lines, blaming, check_free, force_option, print_all, print_json, remark
+from cuefem.cli.common import blaming, check_free, force_option, remark
+from cuefem.cli.printing import assumed_lines, json_option, print_all, print_json
+from cuefem.design.optimum import Problem, optimum
+from cuefem.io import save
+from cuefem.io.study import assumed_base, load_optimum
+from cuefem.report.study import column_label
+from cuefem.scene import Scene
+from cuefem.units import text
+from cuefem.vary import replaced, value_at
 
-if TYPE_CHECKING:
-    from cuefem.design.optimum import Problem
-    from cuefem.scene import Scene
 
-
-@click.command(short_help="Find the best design of a STUDY (.toml) within its limits.")
+@click.command()
 @click.argument("study", type=click.Path(path_type=Path))
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Write the best design as a scene (.toml).")
 @click.option(
     "--iterations", type=click.IntRange(min=1), default=60, show_default=True, help="Largest number of steps."
 )
 @click.option("--seed", type=click.IntRange(min=0), default=0, help="Random seed, used only without exact gradients.")
-@click.option("--json", "as_json", is_flag=True, help="SI numbers as JSON.")
+@json_option
 @force_option
 def optimize(study: Path, output: Path | None, iterations: int, seed: int, as_json: bool, force: bool) -> None:
     """Find the design of STUDY (.toml) with the smallest or largest objective within its ranges and limits.
@@ -32,11 +36,6 @@ def optimize(study: Path, output: Path | None, iterations: int, seed: int, as_js
     STUDY has the [[vary]] tables of a sweep, an [objective] and [[limit]] tables. Where exact gradients exist (a bare
     cue, its dimensions and materials) it takes tens of evaluations, otherwise thousands.
     """
-    from cuefem.design.optimum import optimum
-    from cuefem.io import save
-    from cuefem.io.study import assumed_base, load_optimum
-    from cuefem.report.study import column_label
-
     wanted = load_optimum(study)
     notes = assumed_base(study, wanted.base)
     if output is not None:
@@ -76,15 +75,11 @@ def optimize(study: Path, output: Path | None, iterations: int, seed: int, as_js
 
 def _short(value: float, unit: str) -> str:
     """A number to six digits, in the unit in which scene files are written: "204.493 mm"."""
-    from cuefem.io.units import text
-
     return text(float(f"{value:.6g}"), unit) if unit else f"{value:.6g}"
 
 
 def _rounded(scene: Scene, wanted: Problem) -> Scene:
     """The scene with the numbers that varied to nine digits, far within the tolerance of the limits."""
-    from cuefem.design.paths import replaced, value_at
-
     moved = {path for vary in wanted.vary for path in (*vary.fields(scene), *vary.givers(scene))}
     return replaced(scene, {path: float(f"{value_at(scene, path):.9g}") for path in moved})
 
@@ -92,8 +87,6 @@ def _rounded(scene: Scene, wanted: Problem) -> Scene:
 @contextmanager
 def _counter() -> Iterator[Callable[[int, float], object]]:
     """The number of evaluations and the best value on stderr, if a person looks on."""
-    from rich.console import Console
-
     console = Console(stderr=True)
     if not console.is_terminal:
         yield lambda count, best: None

@@ -8,30 +8,31 @@ from typing import Any
 
 import click
 
-from cuefem.cli.common import assumed_lines, blaming, print_all, print_json, remark
-from cuefem.cli.sweep import bar, check_page, opened
+from cuefem.cli.common import blaming, remark
+from cuefem.cli.printing import assumed_lines, json_option, print_all, print_json
+from cuefem.cli.progress import bar
+from cuefem.cli.sweep import check_page, opened
+from cuefem.design.scatter import drivers
+from cuefem.io import save_page
+from cuefem.io.study import assumed_base, load_scatter
+from cuefem.report.scatter import cause_rows, scatter_record, scatter_tables, scatter_words, spread_rows
+from cuefem.report.study import table_of_study
+from cuefem.report.study_page import Scattered, study_page
 
 
-@click.command(short_help="How much a design's numbers scatter, and why.")
+@click.command()
 @click.argument("study", type=click.Path(path_type=Path))
 @click.option("--workers", type=click.IntRange(min=1), help="Number of worker processes; by default none is started.")
 @click.option("--dask", metavar="ADDRESS", help='A Dask scheduler to work on, e.g. "tcp://host:8786".')
 @click.option(
     "-o", "--page", type=click.Path(path_type=Path), metavar="PAGE.html", help="Also draw the designs on a page."
 )
-@click.option("--json", "as_json", is_flag=True, help="SI numbers as JSON.")
+@json_option
 def scatter(study: Path, page: Path | None, as_json: bool, **where: Any) -> None:
     """Show how much the responses of STUDY (.toml) scatter with wood, turning and stroke, and which cause matters most.
 
     STUDY is the study of a sweep with [sample]; it may have correlations and groups. Shares are Sobol indices.
     """
-    from cuefem.design.scatter import drivers
-    from cuefem.io import save_page
-    from cuefem.io.study import assumed_base, load_scatter
-    from cuefem.report.scatter import cause_rows, scatter_record, scatter_tables, scatter_words, spread_rows
-    from cuefem.report.study import table_of_study
-    from cuefem.report.study_page import Scattered, study_page
-
     wanted, sample = load_scatter(study)
     notes = assumed_base(study, wanted.study.base)
     remark(wanted.study.base)

@@ -3,24 +3,42 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
+import numpy as np
 
-from cuefem.cli.common import blaming, cue_options, followed, head_lines, print_all, print_json
-from cuefem.cli.strokes import measured, with_body
-
-if TYPE_CHECKING:
-    from cuefem.side.scene import SideStrike
+from cuefem.cli.common import blaming, cue_options, head_lines
+from cuefem.cli.printing import print_all, print_json
+from cuefem.cli.progress import followed
+from cuefem.cli.strokes import measured, option, with_body
+from cuefem.cue import Cue
+from cuefem.io import InputError, load, load_accuracy
+from cuefem.io.assumed import assumed
+from cuefem.io.paraview import check_new, save_side_strike, write_whole_folder
+from cuefem.quantity import Quantity
+from cuefem.report.quantities import UNITS
+from cuefem.report.side import side_record, side_scene_record, side_tables
+from cuefem.side.accuracy import resolve_side_strike
+from cuefem.side.motion import side_motion
+from cuefem.side.scene import SideStrike, Striker
+from cuefem.side.strike import side_strike
+from cuefem.vary import Path as Steps
+from cuefem.vary import with_fields
 
 # Of a file that has no [striker]: a light ball, and how long it touches a wall.
 MASS, RESTITUTION, CONTACT_TIME = 0.02, 0.8, 1e-3
-TIMES = "[1e-6, 0.5]"  # s; a slower one leans on the shaft and does not leave it
+OPTIONS: dict[Steps, Quantity] = {
+    ("striker", "mass"): Quantity("kg", "(0, inf)"),
+    ("striker", "restitution"): Quantity("", "[0, 1]"),
+    ("striker", "contact_time"): Quantity("s", "[1e-6, 0.5]"),  # a slower one leans on the shaft and does not leave it
+    ("position",): Quantity("m", "[0, inf)"),
+    ("speed",): Quantity("m/s", "(0, inf)"),
+}
 
 
-@click.command(short_help="A strike from the side: rebound and effective mass.")
+@click.command()
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--position", metavar="LENGTH", help='Where the shaft is struck, from the tip, e.g. "20 mm".')
 @click.option("--mass", metavar="MASS", help='Of the striker, e.g. "20 g".')
@@ -36,15 +54,7 @@ def side(file: Path, places: int, output: Path | None, frames: int, as_json: boo
 
     FILE is a cue or a scene; with a [striker] in it nothing else is needed.
     """
-    from cuefem.io import load_accuracy
-    from cuefem.report.quantities import UNITS
-    from cuefem.report.side import side_record, side_scene_record, side_tables
-    from cuefem.side.accuracy import resolve_side_strike
-    from cuefem.side.strike import side_strike
-
     if output is not None:
-        from cuefem.io.paraview import check_new
-
         check_new(output)
     scene, notes = _scene(file, given)
     rtol = load_accuracy(file)
@@ -53,8 +63,6 @@ def side(file: Path, places: int, output: Path | None, frames: int, as_json: boo
         about, found = side_scene_record(scene), side_record(scene, outcome, places=places)
         put = None if output is None else _animation(scene, outcome.duration, frames)
     if output is not None and put is not None:
-        from cuefem.io.paraview import write_whole_folder
-
         write_whole_folder(output, put)
     if as_json:
         print_json({"file": str(file), "assumed": notes, "scene": about, **found, "units": UNITS})
@@ -65,12 +73,6 @@ def side(file: Path, places: int, output: Path | None, frames: int, as_json: boo
 
 def _scene(file: Path, given: dict[str, Any]) -> tuple[SideStrike, list[str]]:
     """The scene of a file and its options, and what was assumed."""
-    from cuefem.cue import Cue
-    from cuefem.io import InputError, load
-    from cuefem.io.assumed import assumed
-    from cuefem.quantity import Quantity
-    from cuefem.side.scene import SideStrike, Striker
-
     found = load(file, material=given["material"], length_unit=given["length_unit"])
     said = {name for name, value in given.items() if value is not None}
     notes = assumed(file, said, offered=given, blow=False)
@@ -84,22 +86,13 @@ def _scene(file: Path, given: dict[str, Any]) -> tuple[SideStrike, list[str]]:
         with blaming(file):  # of a whole tip its mass stays
             effects = () if isinstance(found, Cue) else found.bare.cue_effects
             found = SideStrike(cue, Striker(MASS, RESTITUTION, contact_time=CONTACT_TIME), effects=effects)
-    numbers = {
-        "mass": Quantity("kg", "(0, inf)"),
-        "restitution": Quantity("", "[0, 1]"),
-        "contact_time": Quantity("s", TIMES),
-        "position": Quantity("m", "[0, inf)"),
-        "speed": Quantity("m/s", "(0, inf)"),
+    changes = {
+        path: measured(file, option(str(path[-1])), given[str(path[-1])], quantity)
+        for path, quantity in OPTIONS.items()
+        if given[str(path[-1])] is not None
     }
-    options = {name: f"--{name.replace('_', '-')}" for name in numbers}
-    read: dict[str, Any] = {
-        n: measured(file, options[n], given[n], numbers[n]) for n in numbers if given[n] is not None
-    }
-    striker: dict[str, Any] = {name: read.pop(name) for name in ("mass", "restitution", "contact_time") if name in read}
-    if "contact_time" in striker:
-        striker |= {"stiffness": None, "modulus": None, "radius": None}
     with blaming(file):
-        return replace(found, striker=replace(found.striker, **striker), **read), notes
+        return with_fields(found, changes) if changes else found, notes
 
 
 def _assumed(said: set[str]) -> list[str]:
@@ -115,10 +108,5 @@ def _assumed(said: set[str]) -> list[str]:
 
 def _animation(scene: SideStrike, duration: float, frames: int) -> Callable[[Path], None]:
     """Compute the motion, and return what writes it into a folder."""
-    import numpy as np
-
-    from cuefem.io.paraview import save_side_strike
-    from cuefem.side.motion import side_motion
-
     moving = side_motion(scene, np.linspace(0, 3 * duration, frames))
     return lambda folder: save_side_strike(folder, scene, moving, track=followed)

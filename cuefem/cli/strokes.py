@@ -1,55 +1,34 @@
-"""Ball, tip and stroke on the command line: the options, and the scene that they make of a file's cue or scene."""
+"""The places of a scene as options, and the scene that they make of a file's cue or scene."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from types import SimpleNamespace
+from typing import Any
 
 import click
 
-if TYPE_CHECKING:
-    from cuefem.cue import Cue
-    from cuefem.quantity import Quantity
-    from cuefem.scene import Scene
-    from cuefem.side.scene import SideStrike
+from cuefem.cue import Cue
+from cuefem.games import DEFAULT_GAME, GAMES, usual_scene, usual_tip
+from cuefem.io import InputError
+from cuefem.quantity import Quantity
+from cuefem.scene import Scene, Stroke, Tip
+from cuefem.side.scene import SideStrike
+from cuefem.units import number
+from cuefem.vary import PLACES, Place, replaced, with_fields
+from cuefem.vary import Path as Steps
 
 Command = Callable[..., Any]
 
-
-class Games(click.Choice[str]):
-    """The names of the games; loaded only when a command needs them, for it is slow."""
-
-    def __init__(self) -> None:
-        self.case_sensitive = True
-
-    @property
-    def choices(self) -> tuple[str, ...]:  # type: ignore[override]
-        """All names."""
-        from cuefem.games import GAMES
-
-        return (*GAMES,)
-
-
-# The options of the leather tip and of the stroke: the field that each replaces, and its help.
-OF_LEATHER = {
-    "tip_height": ("height", "LENGTH", 'Height of the leather tip, e.g. "6 mm".'),
-    "dome": ("dome_radius", "RADIUS", 'Radius of its dome: nickel, dime, flat or a length, e.g. "9.5 mm".'),
-    "leather": ("E", "LEATHER", 'Its leather: soft, medium, hard, or its E, e.g. "140 MPa".'),
-}
-OF_STROKE = {
-    "restitution": ("tip", "restitution", "E", "Coefficient of restitution of tip and ball, in [0, 1]."),
-    "friction": ("tip", "friction", "MU", "Coefficient of friction of tip and ball."),
-    "speed": ("stroke", "speed", "SPEED", 'Speed of the cue, e.g. "3 m/s".'),
-    "offset": (
-        "stroke",
-        "offset",
-        "B/R",
-        'How far off centre the tip hits: in ball radii, in (-1, 1), or a length, e.g. "8 mm".',
-    ),
-}
+OF_BLOW = ("restitution", "friction", "speed", "contact_time")  # and, for commands with one stroke, the offset
+NO_SHAFT = "must be left out: a lumped cue is whole"
+NO_SPRING = (
+    "must be left out beside LeatherTip, from which it follows (--leather changes it, and "
+    "`cuefem tip --contact-time` finds the leather that has it)"
+)
 
 
 def option(name: str) -> str:
@@ -57,63 +36,54 @@ def option(name: str) -> str:
     return f"--{name.replace('_', '-')}"
 
 
-def stroke_options(*names: str) -> Callable[[Command], Command]:
-    """Options of the stroke, by name."""
+def place_options(*keys: str) -> Callable[[Command], Command]:
+    """The options of places, by their keys."""
 
     def decorated(command: Command) -> Command:
-        for name in reversed(names):
-            *_, what, words = OF_STROKE[name]
-            command = click.option(option(name), metavar=what, help=words)(command)
+        for known in (PLACES[key] for key in reversed(keys)):
+            help_words = known.help or f"{known.title}."
+            command = click.option(option(known.key), metavar=known.option, help=help_words)(command)
         return command
 
     return decorated
 
 
+def game_option(name: str, help_words: str) -> Callable[[Command], Command]:
+    """An option that takes the name of a game."""
+    return click.option(name, type=click.Choice([*GAMES]), help=help_words)
+
+
 def tip_options(command: Command) -> Command:
-    """The game, and the options of the leather tip."""
-    for name, (_, what, words) in reversed(OF_LEATHER.items()):
-        command = click.option(option(name), metavar=what, help=words)(command)
-    return click.option(
-        "--game", type=Games(), help="Whose usual ball, tip and stroke a cue without a scene gets; pool by default."
-    )(command)
+    """The game, and the options of the leather tip and of whatever else on the cue is an option."""
+    own = (key for key, known in PLACES.items() if known.option and key not in (*OF_BLOW, "offset", "body_mass"))
+    said = "Whose usual ball, tip and stroke a cue without a scene gets; pool by default."
+    return game_option("--game", said)(place_options(*own)(command))
 
 
 def blow_options(command: Command) -> Command:
     """The options that replace ball, tip and speed."""
-    timed = click.option(
-        "--contact-time",
-        metavar="TIME",
-        help='A spring as tip, without dome and shear, that touches the ball so long head on, e.g. "1 ms".',
-    )
-    ball = click.option("--ball", type=Games(), help="The ball; by default the scene's or the game's.")
-    return tip_options(ball(stroke_options("restitution", "friction", "speed")(timed(command))))
+    ball = game_option("--ball", "The ball; by default the scene's or the game's.")
+    return tip_options(ball(place_options(*OF_BLOW)(command)))
 
 
 def offset_option(command: Command) -> Command:
     """The option that replaces the stroke's offset."""
-    return stroke_options("offset")(command)
+    return place_options("offset")(command)
 
 
-def measured(file: Path, name: str, given: str, wanted: Quantity) -> float:
+def measured(file: Path, name: str, text: str, wanted: Quantity) -> float:
     """An option's text as a checked SI number."""
-    from cuefem.io import InputError
-    from cuefem.io.units import quantity
-
-    value: Any = given
+    value: Any = text
     with suppress(ValueError):
-        value = float(given) if wanted.unit == "" else value
+        value = float(text) if wanted.unit == "" else value
     try:
-        return quantity(wanted, value)
+        return wanted.read(value)
     except ValueError as error:
         raise InputError(file, name, str(error)) from None
 
 
 def offset_of(file: Path, given: str, radius: float) -> float:
     """The b/R that --offset gives: a bare number, or a length, over the radius of the ball, m."""
-    from cuefem.io import InputError
-    from cuefem.io.units import number
-    from cuefem.quantity import Quantity
-
     try:
         length = number(given, "m")
     except ValueError:
@@ -130,122 +100,91 @@ def offset_of(file: Path, given: str, radius: float) -> float:
     return length / radius
 
 
-def with_body(found: Cue | Scene | SideStrike, file: Path, given: str) -> Any:
+def with_body(found: Cue | Scene | SideStrike, file: Path, text: str) -> Any:
     """The cue or scene of a file with the mass behind its segments that --body-mass says."""
-    from cuefem.cue import Cue
-    from cuefem.io import InputError
-    from cuefem.quantity import Quantity
-
-    mass = measured(file, "--body-mass", given, Quantity("kg", "[0, inf)"))
+    mass = measured(file, "--body-mass", text, Quantity("kg", "[0, inf)"))
     if isinstance(found, Cue):
         return replace(found, body_mass=mass)
     if not isinstance(found.cue, Cue):
-        raise InputError(file, "--body-mass", "must be left out: a lumped cue is whole")
+        raise InputError(file, "--body-mass", NO_SHAFT)
     return replace(found, cue=replace(found.cue, body_mass=mass))
 
 
 def usual(cue: Cue, file: Path, given: dict[str, Any]) -> Scene:
     """The scene of a cue alone: the game's usual stroke, with a spring as tip where a contact time is given."""
-    from cuefem.games import DEFAULT_GAME, GAMES, usual_scene, usual_tip
-    from cuefem.io import InputError
-    from cuefem.scene import Scene, Stroke, Tip
-
     game = given.get("game") or DEFAULT_GAME
-    changed = _leather(file, given)
+    leather = usual_tip(cue, game)
+    changes = _changes(SimpleNamespace(effects=(leather,)), file, given, _is_leather)
     if given.get("contact_time") is not None:
-        for name in OF_LEATHER:
-            if given.get(name) is not None:
-                raise InputError(
-                    file, option(name), "must be left out beside --contact-time, which takes a spring as tip"
-                )
-        known = GAMES[game]
-        tip = Tip(known.restitution, known.friction)
-        return with_options(Scene(cue, known.ball, tip, Stroke(known.speed, known.offset)), file, given)
+        for known in _options(given, _is_leather):
+            raise InputError(
+                file, option(known.key), "must be left out beside --contact-time, which takes a spring as tip"
+            )
+        played = GAMES[game]
+        tip, stroke = Tip(played.restitution, played.friction), Stroke(played.speed, played.offset)
+        return with_options(Scene(cue, played.ball, tip, stroke), file, given)
     try:
-        found = usual_scene(cue, game, tip=replace(usual_tip(cue, game), **changed))
+        leather = with_fields(leather, {path[1:]: value for path, value in changes.items()})
+        scene = usual_scene(cue, game, tip=leather)
     except ValueError as error:
         offered = [name for name in map(option, ("tip_height", "dome", "contact_time")) if name in map(option, given)]
         help_words = f" ({', '.join(offered)} {'change' if len(offered) > 1 else 'changes'} it)" if offered else ""
         raise InputError(file, "", f"{error}{help_words}") from None
-    return with_options(found, file, given, drawn=False)
+    return with_options(scene, file, given, lambda known: not _is_leather(known))
 
 
-def with_options(scene: Scene, file: Path, given: dict[str, Any], *, drawn: bool = True) -> Scene:
-    """The scene with the values that the command's options give.
-
-    drawn: whether the scene is a file's own, so that a game is refused and the options of its leather tip count.
-    """
-    from cuefem.games import GAMES
-    from cuefem.io import InputError
-    from cuefem.quantity import CONTACT_TIME, quantities
-
+def with_options(
+    scene: Scene, file: Path, given: dict[str, Any], which: Callable[[Place], bool] = lambda known: True
+) -> Scene:
+    """The scene with the values that the command's options give, of those places that ``which`` tells."""
     if given.get("ball") is not None:
         scene = replace(scene, ball=GAMES[given["ball"]].ball)
-    for name, (part, field, *_) in OF_STROKE.items():
-        if given.get(name) is not None:
-            held = getattr(scene, part)
-            marks = {known: mark for known, mark, *_ in quantities(type(held))}  # type: ignore[arg-type]
-            value = (
-                offset_of(file, given[name], float(scene.ball.radius))
-                if name == "offset"
-                else measured(file, option(name), given[name], marks[field])
-            )
-            scene = replace(scene, **{part: replace(held, **{field: value})})
-    whole = scene.contact_terms.tip is not None
-    if given.get("contact_time") is not None:
-        time = measured(file, "--contact-time", given["contact_time"], CONTACT_TIME)
-        if whole:
-            raise InputError(
-                file,
-                "--contact-time",
-                "must be left out beside LeatherTip, from which it follows (--leather changes it, and "
-                "`cuefem tip --contact-time` finds the leather that has it)",
-            )
-        scene = replace(scene, tip=replace(scene.tip, contact_time=time, stiffness=None))
-    if drawn:
-        scene = _with_leather(scene, file, given, whole=whole)
-    if given.get("body_mass") is not None:
-        scene = with_body(scene, file, given["body_mass"])
-    return scene
-
-
-def _with_leather(scene: Scene, file: Path, given: dict[str, Any], *, whole: bool) -> Scene:
-    from cuefem.io import InputError
-
-    changed = _leather(file, given)
-    if not changed:
-        return scene
-    if not whole:
-        name = next(name for name in OF_LEATHER if given.get(name) is not None)
-        raise InputError(file, option(name), "must be left out: the scene has no LeatherTip among its effects")
-    leather = scene.leather
-    effects = tuple(replace(leather, **changed) if each is leather else each for each in scene.effects)
+    changes = _changes(scene, file, given, which)
     try:
-        return replace(scene, effects=effects)
+        return replaced(scene, changes) if changes else scene
     except ValueError as error:
         raise InputError(file, "", str(error)) from None
 
 
+def _is_leather(known: Place) -> bool:
+    return known.path.startswith("leather.")
+
+
+def _options(given: dict[str, Any], which: Callable[[Place], bool]) -> Iterator[Place]:
+    """The places of which options give a value."""
+    return (known for known in PLACES.values() if known.option and given.get(known.key) is not None and which(known))
+
+
+def _changes(scene: Any, file: Path, given: dict[str, Any], which: Callable[[Place], bool]) -> dict[Steps, Any]:
+    """The values that options give, by the paths of their places."""
+    changes = dict[Steps, Any]()
+    for known in _options(given, which):
+        text, path = given[known.key], known.steps()
+        try:
+            wanted = known.quantity(scene)
+        except ValueError:
+            raise InputError(file, option(known.key), _absent(scene, known)) from None
+        beside = (known.sets or {}).get(text.strip().lower(), {})
+        changes |= {(*path[:-1], field): value for field, value in beside.items()}
+        changes[path] = (
+            offset_of(file, text, float(scene.ball.radius))
+            if known.key == "offset"
+            else measured(file, option(known.key), text, wanted)
+        )
+    return changes
+
+
+def _absent(scene: Scene, known: Place) -> str:
+    """Why a scene has no such place."""
+    if _is_leather(known):
+        return "must be left out: the scene has no LeatherTip among its effects"
+    if known.key == "contact_time":
+        return NO_SPRING
+    return NO_SHAFT if scene.lumped else f"must be left out: {known.absent or f'there is no {known.words}'}"
+
+
 def refuse_game(file: Path, given: dict[str, Any]) -> None:
     """A game is for a cue alone: a scene has ball, tip and stroke of its own."""
-    from cuefem.io import InputError
-
     if given.get("game") is not None:
         problem = "must be left out: FILE is a scene, which has its own ball, tip and stroke"
         raise InputError(file, "--game", f"{problem} (--ball replaces the ball)")
-
-
-def _leather(file: Path, given: dict[str, Any]) -> dict[str, Any]:
-    """The fields of the leather tip that options give."""
-    from cuefem.effects import LeatherTip
-    from cuefem.materials import LEATHERS
-    from cuefem.quantity import quantities
-
-    marks = {name: mark for name, mark, *_ in quantities(LeatherTip)}
-    marks["E"] = replace(marks["E"], words=tuple((name, leather.E) for name, leather in LEATHERS.items()))
-    found: dict[str, Any] = {}
-    for name, (field, *_) in OF_LEATHER.items():
-        if given.get(name) is not None:
-            found[field] = measured(file, option(name), given[name], marks[field])
-    known = LEATHERS.get((given.get("leather") or "").strip().lower())
-    return found | ({"nu": known.nu, "rho": known.rho} if known else {})

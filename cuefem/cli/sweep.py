@@ -5,19 +5,24 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
-from cuefem.cli.common import assumed_lines, print_all, print_json, remark
+from cuefem.cli.common import remark
+from cuefem.cli.printing import assumed_lines, print_all, print_json
+from cuefem.cli.progress import bar
+from cuefem.design import Pool, processes
+from cuefem.design import dask as cluster
+from cuefem.design import sweep as run
+from cuefem.io import InputError, check_place, save_page, write_whole
+from cuefem.io.database import Database, export_path, write_csv, write_parquet
+from cuefem.io.study import assumed_base, load_study
+from cuefem.report.study import Table, study_record, study_tables, table_of_study
+from cuefem.report.study_page import study_page
 
-if TYPE_CHECKING:
-    from cuefem.design import Pool, Row
-    from cuefem.io.database import Database
-    from cuefem.report.study import Table
 
-
-@click.command(short_help="Compute every design of a STUDY (.toml).")
+@click.command()
 @click.argument("study", type=click.Path(path_type=Path))
 @click.option("--output", type=click.Path(path_type=Path), help="The database; by default STUDY.sqlite.")
 @click.option("--workers", type=click.IntRange(min=1), help="Number of worker processes; by default none is started.")
@@ -35,12 +40,6 @@ def sweep(
     The summary names the best designs, what drives each result, and where two results trade off. If it is
     interrupted, even by kill -9, the same command goes on where it stopped. Numbers are SI.
     """
-    from cuefem.design import sweep as run
-    from cuefem.io import check_place
-    from cuefem.io.database import Database, export_path
-    from cuefem.io.study import assumed_base, load_study
-    from cuefem.report.study import table_of_study
-
     wanted = load_study(study)
     notes = assumed_base(study, wanted.base)
     goal = None if export is None else export_path(export)
@@ -68,8 +67,6 @@ def sweep(
 
 def check_page(page: Path | None) -> None:
     """Refuse, before anything is computed, a page that cannot be written."""
-    from cuefem.io import InputError, check_place
-
     if page is not None:
         if page.suffix != ".html":
             raise InputError(page, "--page", f"must end in .html; got {page.suffix!r}")
@@ -79,9 +76,6 @@ def check_page(page: Path | None) -> None:
 @contextmanager
 def opened(workers: int | None, dask: str | None) -> Iterator[Pool | None]:
     """The processes or the cluster to work on; None for this process."""
-    from cuefem.design import dask as cluster
-    from cuefem.design import processes
-
     if workers and dask:
         raise click.UsageError("--workers is for this machine, --dask for a cluster: give one")
     if dask:
@@ -91,58 +85,7 @@ def opened(workers: int | None, dask: str | None) -> Iterator[Pool | None]:
         yield processes(workers) if workers else None
 
 
-class Progress:
-    """Takes the rows of finished blocks; shown as a bar with rate and times from the first second on."""
-
-    def __init__(self, bar: Any, total: int) -> None:
-        self.bar, self.total = bar, total
-        self.task = bar.add_task("choosing modes", total=None, rate="") if bar else None
-
-    def begin(self, done: int) -> None:
-        """From here on designs are computed, of which so many are done."""
-        if self.bar:
-            self.bar.update(self.task, description="designs", total=self.total, completed=done)
-
-    def __call__(self, rows: list[Row]) -> None:
-        """Count the rows of a block."""
-        if self.bar:
-            speed = self.bar.tasks[0].speed
-            self.bar.update(self.task, advance=len(rows), rate=f"{speed:.3g} designs/s" if speed else "")
-
-    def end(self) -> None:
-        """Take the bar away."""
-        if self.bar:
-            self.bar.stop()
-
-
-@contextmanager
-def bar(total: int) -> Iterator[Progress]:
-    """A progress bar, if stderr is a terminal."""
-    from rich.console import Console
-    from rich.progress import (
-        BarColumn,
-        MofNCompleteColumn,
-        SpinnerColumn,
-        TextColumn,
-        TimeElapsedColumn,
-        TimeRemainingColumn,
-    )
-    from rich.progress import Progress as Bar
-
-    console = Console(stderr=True)
-    if not console.is_terminal:
-        yield Progress(None, total)
-        return
-    texts = TextColumn("{task.description}"), TextColumn("{task.fields[rate]}")
-    columns = (SpinnerColumn(), texts[0], BarColumn(), MofNCompleteColumn(), texts[1], TimeElapsedColumn())
-    with Bar(*columns, TimeRemainingColumn(), console=console, transient=True) as found:
-        yield Progress(found, total)
-
-
 def _export(database: Database, goal: Path) -> None:
-    from cuefem.io import write_whole
-    from cuefem.io.database import write_csv, write_parquet
-
     write = write_csv if goal.suffix == ".csv" else write_parquet
     write_whole(goal, lambda temporary: write(database, temporary))
 
@@ -156,15 +99,11 @@ def _tell(
     page: Path | None,
     notes: Sequence[str],
 ) -> None:
-    from cuefem.io import InputError, save_page
-    from cuefem.report.study import study_record, study_tables
-
     designs, failed = database.count()
     first = database.first_failure()
     if page is not None:
         if table is None:
             raise InputError(page, "--page", "needs at least two designs with an answer; got fewer")
-        from cuefem.report.study_page import study_page
 
         facts = [f"{designs} designs of {database.path.name}" + (f", {failed} without an answer" if failed else "")]
         save_page(study_page(database.path.stem, table, facts), page)

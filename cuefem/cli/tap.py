@@ -4,29 +4,31 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
-from cuefem.cli.common import (
-    blaming,
-    check_free,
-    cue_options,
-    print_all,
-    print_json,
-    scene_of,
-)
+from cuefem.cli.common import blaming, check_free, cue_options, scene_of
+from cuefem.cli.printing import assumed_lines, print_all, print_json
 from cuefem.cli.strokes import blow_options, measured, offset_option, with_body
+from cuefem.contact.strike import strike
+from cuefem.cue import Cue
+from cuefem.games import without_leather
+from cuefem.io import FIGURES, InputError, check_place, load_stroke, save, save_figure
+from cuefem.io.sound import load_recording
+from cuefem.parts import with_material
+from cuefem.quantity import Quantity
+from cuefem.report.record import scene_record
+from cuefem.report.tap import UNITS, tap_figure, tap_record, tap_tables
+from cuefem.report.unusual import unusual
+from cuefem.scene import Outcome, Scene
+from cuefem.tap.fit import TapFit
+from cuefem.tap.ringing import Ringing, ringing
+from cuefem.tap.tones import tones
+from cuefem.tap.wood import Predicted, TapTest, predicted
 
-if TYPE_CHECKING:
-    from cuefem.cue import Cue
-    from cuefem.scene import Outcome, Scene
-    from cuefem.tap.fit import TapFit
-    from cuefem.tap.ringing import Ringing
-    from cuefem.tap.wood import Predicted
 
-
-@click.command(short_help="The shaft's wood by ear: E, G, density from a tapped sound.")
+@click.command()
 @click.argument("recording", type=click.Path(path_type=Path))
 @click.option(
     "--scene", "file", type=click.Path(path_type=Path), metavar="FILE", required=True, help="The cue or scene."
@@ -57,11 +59,6 @@ def tap(
     drawn there; ball and tip matter to the squirt that follows alone. If the tones do not fit this shaft, or no such
     wood exists, nothing is shown or written without --doubted (status 1).
     """
-    from cuefem.io import FIGURES, InputError, check_place, save, save_figure
-    from cuefem.report.record import scene_record
-    from cuefem.report.tap import UNITS, tap_figure, tap_record, tap_tables
-    from cuefem.report.unusual import unusual
-
     if figure is not None and figure.suffix not in FIGURES:
         raise InputError(figure, "--figure", f"must end in .png or .svg; got {figure.suffix!r}")
     if output is not None and output.suffix != ".toml":
@@ -84,16 +81,12 @@ def tap(
         said = {"file": str(file), "recording": str(recording), "assumed": notes, "unusual": unusual(scene)}
         print_json({**said, "scene": about, **record, "units": UNITS})
         return
-    assumed = [f"assumed: {'; '.join(notes)}"] if notes else []
     written = [f"wrote {path}" for path in (output, figure) if path is not None]
-    print_all([f"{recording.name}, {file.name}", *assumed, "", *tap_tables(record, about), *written])
+    print_all([f"{recording.name}, {file.name}", *assumed_lines(notes), "", *tap_tables(record, about), *written])
 
 
 def _as_drawn(scene: Scene, file: Path, given: dict[str, Any]) -> Scene:
     """The scene of FILE; of a cue alone the scene with the cue as it is drawn, its leather included."""
-    from cuefem.io import load_stroke
-    from cuefem.scene import Scene
-
     held = load_stroke(file, material=given["material"], length_unit=given["length_unit"])
     if isinstance(held, Scene):
         return scene
@@ -102,19 +95,10 @@ def _as_drawn(scene: Scene, file: Path, given: dict[str, Any]) -> Scene:
 
 def _struck(scene: Scene, found: TapFit) -> Cue:
     """The fitted cue as the scene has it: a scene with a whole tip has no drawn leather."""
-    from cuefem.games import without_leather
-
     return found.cue if scene.contact_terms.tip is None else without_leather(found.cue)
 
 
 def _heard(recording: Path, file: Path, scene: Scene, given: dict[str, Any]) -> tuple[Ringing, TapFit]:
-    from cuefem.io import InputError
-    from cuefem.io.sound import load_recording
-    from cuefem.quantity import Quantity
-    from cuefem.tap.ringing import ringing
-    from cuefem.tap.tones import tones
-    from cuefem.tap.wood import TapTest
-
     if not scene.cue.segments:
         raise InputError(file, "", "must hold a cue of segments: a lumped cue has no tones")
     mass = given["mass"]
@@ -132,9 +116,6 @@ def _heard(recording: Path, file: Path, scene: Scene, given: dict[str, Any]) -> 
 
 def _predicted(file: Path, scene: Scene, found: TapFit) -> tuple[dict[str, Predicted], Outcome]:
     """The scene's numbers and its stroke with the fitted wood."""
-    from cuefem.contact.strike import strike
-    from cuefem.tap.wood import predicted
-
     with blaming(file):
         cue = _struck(scene, found)
         return predicted(scene, replace(found, cue=cue)), strike(replace(scene, cue=cue))
@@ -142,10 +123,6 @@ def _predicted(file: Path, scene: Scene, found: TapFit) -> tuple[dict[str, Predi
 
 def _updated(file: Path, scene: Scene, found: TapFit, given: dict[str, Any]) -> Any:
     """The cue or scene of FILE with the fitted wood, to six digits."""
-    from cuefem.io import load_stroke
-    from cuefem.scene import Scene
-    from cuefem.tap.matching import with_material
-
     short = {name: float(f"{getattr(found.wood, name):.6g}") for name in ("E", "G", "rho", "loss", "nu")}
     cue = with_material(found.cue, found.wood, replace(found.wood, **short))
     held = load_stroke(file, material=given["material"], length_unit=given["length_unit"])

@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from cuefem.cli.common import file_options, show
-from cuefem.cli.strokes import measured, stroke_options, tip_options
+from cuefem.cli.strokes import measured, place_options, tip_options
+from cuefem.contact.calibrated import leather_modulus, with_modulus
+from cuefem.io import InputError
+from cuefem.quantity import CONTACT_TIME
+from cuefem.report.tip import tip_record, tip_tables
+from cuefem.scene import Scene
 
-if TYPE_CHECKING:
-    from cuefem.scene import Scene
 
-
-@click.command(short_help="The leather tip by itself: force, contact time, shear ratio.")
+@click.command()
 @file_options
 @tip_options
-@stroke_options("restitution", "speed")
+@place_options("restitution", "speed")
 @click.option(
     "--contact-time",
     "wanted",
@@ -30,11 +32,6 @@ def tip(file: Path, wanted: str | None, **given: Any) -> None:
     FILE is a cue, or a scene with a LeatherTip among its effects. What is shown holds for a head-on blow of the
     scene's cue and ball; --contact-time finds the E of the leather from a measured contact time.
     """
-    from cuefem.contact.calibrated import leather_modulus, with_modulus
-    from cuefem.io import InputError
-    from cuefem.quantity import CONTACT_TIME
-    from cuefem.report.tip import tip_record, tip_tables
-
     if given["leather"] is not None and wanted is not None:
         raise InputError(file, "--leather", "must be left out with --contact-time, which finds it")
     time = None if wanted is None else measured(file, "--contact-time", wanted, CONTACT_TIME)

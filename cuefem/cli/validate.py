@@ -6,24 +6,21 @@ import importlib.util
 import sys
 from collections import Counter
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
-from cuefem.cli.common import print_all, print_json
+from cuefem.cli.printing import json_option, print_all, print_json
+from cuefem.io import InputError, studies_with
+from cuefem.report import claims_record, claims_table
+from cuefem.report.claims import VERDICT_WORDS
+from cuefem.validation import Claim
 
-if TYPE_CHECKING:
-    from cuefem.validation import Claim
 
-
-@click.command(short_help="Check every claim of the sources.")
+@click.command()
 @click.option("--studies", type=click.Path(path_type=Path), default=Path("studies"), show_default=True)
-@click.option("--json", "as_json", is_flag=True, help="As JSON.")
+@json_option
 def validate(studies: Path, as_json: bool) -> None:
     """Check every claim of the sources against what follows from their equations; needs a clone of the repository."""
-    from cuefem.report import claims_record, claims_table
-    from cuefem.report.claims import VERDICT_WORDS
-
     found = claims_record(_claims(studies))
     if as_json:
         print_json({"claims": found})
@@ -35,8 +32,6 @@ def validate(studies: Path, as_json: bool) -> None:
 
 def _claims(folder: Path) -> list[tuple[str, Claim]]:
     """The claims of every study in a folder that defines claims(), with the study's name."""
-    from cuefem.io import InputError, studies_with
-
     clone = "they are in a clone of cuefem's repository: run there, or name their folder with --studies"
     if not folder.is_dir():
         raise InputError(folder, "", f"cannot be read: no such folder of studies; {clone}")
@@ -44,10 +39,11 @@ def _claims(folder: Path) -> list[tuple[str, Claim]]:
     if not files:
         raise InputError(folder, "", f"must hold studies (.py) that define claims(), got none; {clone}")
     if (above := str(folder.resolve().parent)) not in sys.path:
-        sys.path.insert(0, above)  # studies import one another as studies.NAME
+        sys.path.insert(0, above)  # studies import one another as studies.SUBJECT.NAME
     found = []
     for file in files:
-        spec = importlib.util.spec_from_file_location(f"{folder.resolve().name}.{file.stem}", file)
+        name = ".".join((folder.resolve().name, *file.relative_to(folder).with_suffix("").parts))
+        spec = importlib.util.spec_from_file_location(name, file)
         assert spec is not None and spec.loader is not None  # noqa: PT018
         study = importlib.util.module_from_spec(spec)
         sys.modules[spec.name] = study  # dataclasses look their module up

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
-from cuefem.cli.common import blaming, print_all, print_json, scene_of, shape_options
-from cuefem.cli.strokes import Games, measured, offset_of, offset_option
-
-if TYPE_CHECKING:
-    from cuefem.measured.pendulum import Bounces, PendulumTest, Told, Weighed
+from cuefem.cli.common import blaming, scene_of, shape_options
+from cuefem.cli.printing import assumed_lines, json_option, print_all, print_json
+from cuefem.cli.strokes import game_option, measured, offset_of, offset_option
+from cuefem.games import GAMES
+from cuefem.io import InputError
+from cuefem.measured.pendulum import WAYS as KNOWN
+from cuefem.measured.pendulum import Bounces, PendulumTest, Told, Weighed, lumped_squirt, pressed_time, squirt_told
+from cuefem.quantity import Quantity
+from cuefem.report.pendulum import plan_record, plan_tables, weigh_record, weigh_tables
+from cuefem.scene import Stroke, Tip
 
 NAME = Path("weigh")  # what error messages name in the place of a file
 UNITS = {
@@ -37,7 +42,7 @@ UNITS = {
 WAYS = ("swing", "height", "speed", "frames")
 
 
-@click.command(short_help="The effective end mass, weighed by a ball on a thread.")
+@click.command()
 @click.option("--plan", is_flag=True, help="Show how to choose ball and thread, instead.")
 @click.option("--end-mass", metavar="MASS", help='The end mass to --plan for; "7 g" by default.')
 @click.option("--ball-mass", metavar="MASS", help='Of the light ball, e.g. "8.0 g".')
@@ -59,8 +64,8 @@ WAYS = ("swing", "height", "speed", "frames")
 @click.option(
     "--position", metavar="LENGTH", default="10 mm", show_default=True, help="Of the blow, from the tip's end."
 )
-@click.option("--json", "as_json", is_flag=True, help="SI numbers as JSON.")
-@click.option("--ball", type=Games(), help="The cue ball, for squirt; by default the scene's.")
+@json_option
+@game_option("--ball", "The cue ball, for squirt; by default the scene's.")
 @shape_options
 @offset_option
 def weigh(plan: bool, end_mass: str | None, file: Path | None, as_json: bool, **given: Any) -> None:
@@ -70,8 +75,6 @@ def weigh(plan: bool, end_mass: str | None, file: Path | None, as_json: bool, **
     distance), off the free shaft and off the shaft held firm. --plan says which ball and thread to take; the drawing
     with all the steps stands in the handbook, Measuring a cue (`cuefem guide measuring`).
     """
-    from cuefem.report.pendulum import plan_record, plan_tables, weigh_record, weigh_tables
-
     if plan:
         found = plan_record() if end_mass is None else plan_record(_read("--end-mass", end_mass, "kg"))
         if as_json:
@@ -87,21 +90,15 @@ def weigh(plan: bool, end_mass: str | None, file: Path | None, as_json: bool, **
     if as_json:
         print_json({"assumed": notes, **record, "units": UNITS})
         return
-    assumed = [f"assumed: {'; '.join(notes)}"] if notes else []
-    print_all([*assumed, *weigh_tables(record)])
+    print_all([*assumed_lines(notes), *weigh_tables(record)])
 
 
 def _read(option: str, text: str, unit: str, bounds: str = "(0, inf)") -> float:
-    from cuefem.quantity import Quantity
-
     return measured(NAME, option, text, Quantity(unit, bounds))
 
 
 def _test(given: dict[str, Any]) -> PendulumTest:
     """The test that the options tell of."""
-    from cuefem.io import InputError
-    from cuefem.measured.pendulum import PendulumTest, pressed_time
-
     for name in ("ball_mass", "before", "after"):
         if not given[name]:
             raise InputError(NAME, f"--{name.replace('_', '-')}", "must be given (or --plan); got nothing")
@@ -142,9 +139,6 @@ def _test(given: dict[str, Any]) -> PendulumTest:
 
 def _bounces(given: dict[str, Any], held: str) -> Bounces:
     """The readings of the bounces off the free shaft; with held "held_", off the shaft that is held firm."""
-    from cuefem.measured.pendulum import WAYS as KNOWN
-    from cuefem.measured.pendulum import Bounces
-
     way = given["read"]
     unit = KNOWN[way].unit
     names = f"{held}before", f"{held}after"
@@ -163,11 +157,6 @@ def _squirt(
     test: PendulumTest, weighed: Weighed, file: Path | None, given: dict[str, Any]
 ) -> tuple[Told | None, float | None, list[str]]:
     """What the end mass says about squirt: through the drawing, or as a lumped cue's; and what was assumed."""
-    from cuefem.games import GAMES
-    from cuefem.io import InputError
-    from cuefem.measured.pendulum import lumped_squirt, squirt_told
-    from cuefem.scene import Stroke, Tip
-
     if file is None:
         for name in ("material", "length_unit"):
             if given[name] is not None:

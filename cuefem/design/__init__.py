@@ -1,7 +1,6 @@
 """Design studies: many scenes at once, what varies in them, and sweeps that nothing can lose."""
 
 from cuefem.design.evaluation import Evaluation, common_resolution, evaluate
-from cuefem.design.paths import paths, replaced
 from cuefem.design.ranges import METHODS, Levels, Normal, Sample, Span
 from cuefem.design.responses import KINDS, Response
 from cuefem.design.study import Study, Vary
@@ -25,8 +24,6 @@ __all__ = [
     "common_resolution",
     "dask",
     "evaluate",
-    "paths",
     "processes",
-    "replaced",
     "sweep",
 ]

@@ -210,8 +210,9 @@ def batch_stick(
 
     Notes
     -----
-    Accuracy on 210 random wooden cues at 101 contact times from 0.5 to 3 ms (studies/batch_wood.md), ``ended``: median,
-    95 % and largest error of the end mass in 1e-3, of the worst of bare shafts, with ferrule, and with leather too:
+    Accuracy on 210 random wooden cues at 101 contact times from 0.5 to 3 ms (studies/accuracy/batch_wood.md),
+    ``ended``: median, 95 % and largest error of the end mass in 1e-3, of the worst of bare shafts, with ferrule, and
+    with leather too:
 
     - ``Resolution(1, 20, 12)``: 1.9, 15.2, 48.0
     - ``Resolution(1, 30, 18)``: 1.1, 8.6, 31.6

@@ -17,12 +17,12 @@ from cuefem.cue import Array, SegmentRows
 from cuefem.design.batch import CueBatch
 from cuefem.design.evaluation import evaluate
 from cuefem.design.gradient import STEP, densities_to, drawing, gradient
-from cuefem.design.paths import Path, value_at
 from cuefem.design.ranges import Span
 from cuefem.design.responses import Response
 from cuefem.design.sensitivity import frequency_sensitivity
 from cuefem.design.study import Study, Vary
 from cuefem.scene import Resolution, Scene
+from cuefem.vary import Path, value_at
 
 TOLERANCE = 1e-6  # relative to a limit's own size (1 if it is 0): a value nearer than this makes the limit active
 EXCLUDED = 1e9  # score of a design that breaks a limit: worse than any within the limits

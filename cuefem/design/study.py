@@ -14,12 +14,12 @@ from typing import Any
 import numpy as np
 
 from cuefem.design.evaluation import common_resolution
-from cuefem.design.paths import Path, paths, quantity_at, replaced, spelt, value_at
 from cuefem.design.ranges import Levels, Normal, Sample, Span, Value
 from cuefem.design.responses import Response
 from cuefem.materials import material
 from cuefem.notebook import spelt_out
 from cuefem.scene import Resolution, Scene
+from cuefem.vary import Path, paths, quantity_at, replaced, spelt, value_at
 
 # Designs evaluated, and written, at a time; fewer if each takes a strike in time.
 BLOCK, STRUCK_BLOCK = 256, 16

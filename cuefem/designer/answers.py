@@ -23,7 +23,6 @@ from cuefem.contact.turns import Turns
 from cuefem.cue import Array
 from cuefem.design.sensitivity import sensitivity
 from cuefem.design.solvers import static_tip_stiffness
-from cuefem.designer.model import cue_of
 from cuefem.endmass.drives import DEFINITIONS
 from cuefem.report.record import Record
 from cuefem.report.squirt import two_part_curve
@@ -118,7 +117,7 @@ class Answers:
 
 def answers(scene: Scene) -> Answers:
     """The numbers of one strike, for a cue of segments: all that is computed before they are shown."""
-    cue_of(scene)
+    _ = scene.shaft  # ValueError for a lumped cue
     solved = Solved(scene)
     outcome = strike_modes(scene, solved.tip)
     return Answers(scene, outcome_record(outcome, scene), solved.without_spectra(), safety(outcome))
@@ -126,7 +125,7 @@ def answers(scene: Scene) -> Answers:
 
 def with_end_mass(found: Answers) -> Answers:
     """The numbers with the stick end mass, the tones, and the static stiffness."""
-    scene, cue = found.scene, cue_of(found.scene)
+    scene, cue = found.scene, found.scene.shaft
     first = _end_mass(FIRST, found.solved)
     return replace(
         found,
@@ -191,9 +190,9 @@ def density(scene: Scene) -> Density:
     bare = replace(scene, effects=())
     at = default_resolution(bare)
     if at.modes > MOST_DENSITY_MODES:
-        at = Resolution(*mesh_for(cue_of(bare), MOST_DENSITY_MODES), MOST_DENSITY_MODES)
+        at = Resolution(*mesh_for(bare.shaft, MOST_DENSITY_MODES), MOST_DENSITY_MODES)
     found = sensitivity(bare, "stick", at)
-    section = cue_of(bare).section(found.x)
+    section = bare.shaft.section(found.x)
     return Density(
         x=found.x,
         from_mass=found.rhoA * section.rhoA + found.rhoI * section.rhoI,

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from cuefem.designer.model import Knobs, knobs_of, turned
 from cuefem.scene import Scene
+from cuefem.vary import knobs_of, turned
 
 TOGETHER = 1.5  # s: moves of one knob that follow each other within it are one step
 MOST_STEPS = 60
@@ -24,7 +24,7 @@ class Design:
 
     name: str
     base: Scene
-    knobs: Knobs
+    knobs: Mapping[str, Any] = field(hash=False)
     notes: tuple[str, ...] = ()
 
     @classmethod

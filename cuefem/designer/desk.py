@@ -30,7 +30,7 @@ from cuefem.designer.presets import opened as preset_opened
 from cuefem.designer.receiving import Receiver
 from cuefem.designer.results import ResultsSide
 from cuefem.designer.sheet import Sheet
-from cuefem.designer.sliders import GROUPS, choices, sliders, without
+from cuefem.designer.sliders import choices, groups, sliders, without
 from cuefem.designer.style import SCRIPT, STYLE
 from cuefem.designer.tapside import TapSide
 from cuefem.designer.units import METRIC, SYSTEMS, System
@@ -145,7 +145,7 @@ class Desk:
                 turn = lambda material, knob=choice.knob: self.turn(knob, **{knob: material})  # noqa: E731
                 self.choosers.append(ChoiceField(choice, choice.name(self.design.knobs), turn))
             known = {slider.knob: slider for slider in sliders(scene, self.system)}
-            for title, names in GROUPS.items():
+            for title, names in groups().items():
                 Markup(f"<h3>{title}</h3>")
                 if title == "Stroke":
                     self.game = ui.select(list(GAMES), value=game_of(scene), label="Usual ball, tip and stroke of")
@@ -200,11 +200,11 @@ class Desk:
         self.message.set_content(f'<p class="said" role="alert">{said}</p>' if words else "")
 
     def _slid(self, slider: Any, value: float) -> str:
-        return self.turn(slider.knob, **{slider.knob: getattr(slider.turned(self.wanted, value), slider.knob)})
+        return self.turn(slider.knob, **{slider.knob: slider.turned(self.wanted, value)[slider.knob]})
 
     def turn(self, label: str, **changed: Any) -> str:
         """Turn knobs; what is wrong if no such cue can be made: then the design stays as it is."""
-        self.wanted = replace(self.wanted, **changed)
+        self.wanted = {**self.wanted, **changed}
         if self.wanted == self.design.knobs:
             self.show_move()
             return ""

@@ -12,19 +12,18 @@ import json
 import math
 import zlib
 from collections.abc import Sequence
-from dataclasses import fields, replace
 from functools import lru_cache
 from hashlib import sha256
 from typing import Any
 
 from cuefem.cue import Material
 from cuefem.designer.design import MOST_STEPS, Design, Step
-from cuefem.designer.model import Knobs, knobs_of
 from cuefem.io.errors import shown
 from cuefem.io.schema import NAMES, build, table
 from cuefem.io.toml import scene_of_table
 from cuefem.materials import material
 from cuefem.scene import Scene
+from cuefem.vary import knobs_of, place
 
 VERSION = 1
 LONGEST = 1_000_000  # letters of a text
@@ -75,15 +74,14 @@ def _table(scene: Scene) -> dict[str, Any]:
 
 
 @lru_cache(maxsize=64)
-def _own(scene: Scene) -> Knobs:
+def _own(scene: Scene) -> dict[str, Any]:
     return knobs_of(scene)
 
 
 def _moved(design: Design) -> dict[str, Any]:
     """The knobs that do not stand where the scene has them."""
     own = _own(design.base)
-    names = [f.name for f in fields(Knobs) if getattr(design.knobs, f.name) != getattr(own, f.name)]
-    return {name: _entry(getattr(design.knobs, name)) for name in names}
+    return {key: _entry(value) for key, value in design.knobs.items() if value != own[key]}
 
 
 def _entry(value: Any) -> Any:
@@ -123,8 +121,12 @@ def _design(entry: Any, scenes: Sequence[Scene]) -> Design:
     name, number, moved, notes = entry
     base = scenes[number]
     own = knobs_of(base)
-    changed = {key: _knob(key, value, getattr(own, key, None)) for key, value in moved.items()}
-    found = Design(str(name)[:LONGEST_NAME], base, replace(own, **changed), tuple(str(note)[:500] for note in notes))
+    knobs = dict(own)
+    for written, value in moved.items():
+        known = place(written)
+        key = known.key if known else written
+        knobs[key] = _knob(written, value, own.get(key))
+    found = Design(str(name)[:LONGEST_NAME], base, knobs, tuple(str(note)[:500] for note in notes))
     found.scene  # noqa: B018  # no such cue: ValueError
     return found
 

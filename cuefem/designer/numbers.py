@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 from cuefem.designer.answers import TONES, Answers, note
 from cuefem.designer.design import Design
-from cuefem.designer.model import cue_of
 from cuefem.designer.sliders import choices, sliders
 from cuefem.designer.units import METRIC, System
 from cuefem.endmass.drives import DEFINITIONS
@@ -47,7 +46,7 @@ class Row(NamedTuple):
 
 def rows(found: Answers) -> list[Row]:
     """All numbers of a design, each with its definition."""
-    cue, strike, offset = cue_of(found.scene), found.strike, found.scene.stroke.offset
+    cue, strike, offset = found.scene.shaft, found.strike, found.scene.stroke.offset
     labels = {one.name: f"end mass m_e, {one.label_at(offset)}" for one in DEFINITIONS.values()}
     pivot = strike["pivot_length"]
     later = not found.has_end_mass
@@ -158,7 +157,7 @@ def _settings(designs: Sequence[Design], reference: int, system: System) -> list
         beside = list(zip(turned, designs, strict=True))
         numbers = [one[knob].text(one[knob].shown(d.knobs)) if knob in one else NONE for one, d in beside]
         if len(set(numbers)) > 1:
-            values = [getattr(design.knobs, knob) for design in designs]
+            values = [design.knobs.get(knob) for design in designs]
             lines.append(Line(knob, known.label.partition(", from")[0], known.unit, numbers, _parts(values, reference)))
     for knob, label in {knob: one[knob].label for one in chosen for knob in one}.items():
         names = [one[knob].name(d.knobs) if knob in one else NONE for one, d in zip(chosen, designs, strict=True)]

@@ -11,7 +11,6 @@ from scipy.interpolate import PchipInterpolator
 
 from cuefem.cue import Array
 from cuefem.designer.answers import OFFSETS, Answers, Curve, Density, Point
-from cuefem.designer.model import cue_of
 from cuefem.designer.units import METRIC, System
 from cuefem.report import charts as figures
 from cuefem.report.charts import Axis, Span, chart
@@ -30,7 +29,7 @@ def cue_pictures(scene: Scene, system: System = METRIC) -> str:
     units = system.units
     whole, wide = (cue_drawing(scene, across=across, units=units) for across in (1.0, 8.0))
     front = front_drawing(scene, units=units)
-    cue = cue_of(scene)
+    cue = scene.shaft
     hollow = any((s.tip_bore or s.butt_bore) and s.core is None for s in cue.segments)
     named = [(name, style_of(name)) for name in materials_of(seen(scene))] + ([("bore", "hollow")] if hollow else [])
     legend = "".join(f'<span><i class="swatch {style}"></i>{name}</span> ' for name, style in named)
@@ -140,4 +139,4 @@ def shapes_picture(found: Answers, system: System = METRIC) -> str:
     """The bending modes; nothing if they are not computed yet."""
     if found.found is None:
         return ""
-    return shapes_markup(modes_drawing(found.found, cue_of(found.scene).length, units=system.units))
+    return shapes_markup(modes_drawing(found.found, found.scene.shaft.length, units=system.units))

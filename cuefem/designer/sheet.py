@@ -12,14 +12,15 @@ from nicegui import ui
 from cuefem.cue import Material
 from cuefem.designer import editing
 from cuefem.designer.controls import Beside, button
-from cuefem.designer.editing import Field, Path
+from cuefem.designer.editing import Field
 from cuefem.designer.markup import Markup
-from cuefem.designer.model import cue_of
 from cuefem.designer.units import METRIC, System, typed
 from cuefem.effects import Effect, effect_kinds
 from cuefem.materials import MATERIALS
+from cuefem.parts import materials_in
 from cuefem.report.drawings import material_name
 from cuefem.scene import Scene
+from cuefem.vary import Path, replaced, value_at
 
 Edit = Callable[[Callable[[Scene], Scene], str], str]
 EMPTY = "empty"
@@ -47,8 +48,8 @@ class Sheet:
         scene = self.scene
         if scene is None or not self.fold.value:
             return
-        cue = cue_of(scene)
-        materials = editing.materials_in(cue)
+        cue = scene.shaft
+        materials = materials_in(cue)
         places = [(materials.index(s.material), s.core and materials.index(s.core)) for s in cue.segments]
         names = tuple(map(material_name, materials))
         shape = (self.system, tuple(places), names, tuple(type(effect) for effect in scene.effects))
@@ -57,7 +58,7 @@ class Sheet:
             self._make(scene, materials)
             return
         for path, (cell, field) in self.cells.items():
-            value = editing.got(scene, path)
+            value = value_at(scene, path)
             if value != field.value:
                 self.cells[path] = (cell, field._replace(value=value))
                 cell.set_value(self._text(value, field.unit))
@@ -67,12 +68,12 @@ class Sheet:
         self.cells = {}
         with self.fold:
             self.beside = Beside()
-            for i, segment in enumerate(cue_of(scene).segments):
+            for i, segment in enumerate(scene.shaft.segments):
                 with self._card(f"Segment {i + 1}"):
                     with ui.element("div").classes("cells"):
-                        self._numbers(segment, ("segments", i))
-                        self._material(("segments", i, "material"), "material", segment.material)
-                        self._material(("segments", i, "core"), "core in the bore", segment.core)
+                        self._numbers(segment, ("cue", "segments", i))
+                        self._material(("cue", "segments", i, "material"), "material", segment.material)
+                        self._material(("cue", "segments", i, "core"), "core in the bore", segment.core)
                     with ui.element("div").classes("row"):
                         button("Split", partial(self._on_segment, editing.split, i))
                         button("Add one behind", partial(self._on_segment, editing.added, i))
@@ -84,7 +85,7 @@ class Sheet:
                 with self._card(title), ui.element("div").classes("cells"):
                     self._numbers(getattr(scene, name), (name,))
             with self._card("Behind what is drawn"), ui.element("div").classes("cells"):
-                self._number(Field(("cue", "body_mass"), "mass", "kg", cue_of(scene).body_mass))
+                self._number(Field(("cue", "body_mass"), "mass", "kg", scene.shaft.body_mass))
             for i, effect in enumerate(scene.effects):
                 with self._card(type(effect).__name__):
                     with ui.element("div").classes("cells"):
@@ -136,7 +137,7 @@ class Sheet:
             return
         value = value if value is None else float(f"{value:.15g}")
         self.cells[path] = (cell, field._replace(value=value))
-        words = self.edit(lambda scene: editing.put(scene, path, value), f"{path}")
+        words = self.edit(lambda scene: replaced(scene, {path: value}), f"{path}")
         if words:
             self.cells[path] = (cell, field)
         self._say(words, cell)
@@ -160,7 +161,7 @@ class Sheet:
         options = [EMPTY, *names] if label != "material" else list(names)
         with ui.element("div").classes("cell broad"):
             chosen = ui.select(options, value=own, label=label).props("outlined dense options-dense")
-            chosen.on_value_change(lambda event: self._do(lambda s: editing.put(s, path, names.get(event.value))))
+            chosen.on_value_change(lambda event: self._do(lambda s: replaced(s, {path: names.get(event.value)})))
 
     def _switch_off(self, i: int, effect: Effect, event: Any) -> None:
         self.off[type(effect).__name__] = effect

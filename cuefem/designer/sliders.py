@@ -3,25 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from cuefem.cue import Cue, Material
-from cuefem.designer.model import Knobs, bore_mouth, cue_of, deepest_bore, knobs_of, taper_position
+from cuefem.cue import Material
 from cuefem.designer.units import METRIC, System
-from cuefem.materials import MATERIALS, WOODS
+from cuefem.materials import MATERIALS
 from cuefem.report.drawings import material_name
 from cuefem.scene import Scene
+from cuefem.vary import PLACES, Place, knobs_of
 
-SHAFTS = (*WOODS, "carbon fibre")
-FERRULES = tuple(name for name in MATERIALS if name not in (*SHAFTS, "foam", "leather"))
+Knobs = Mapping[str, Any]
 DECIMALS = 9  # shown at most: beyond them a slider's own rounding begins
 
 
 @dataclass(frozen=True)
 class Slider:
-    """A number to turn: its field of `Knobs`, its label, its range in ``unit``; one SI unit is ``scale`` of them."""
+    """A number to turn: its key among the knobs, its label, its range in ``unit``; one SI unit is ``scale`` of them."""
 
     knob: str
     label: str
@@ -35,14 +34,13 @@ class Slider:
 
     def shown(self, knobs: Knobs) -> float:
         """Its value in its unit."""
-        return round(getattr(knobs, self.knob) * self.scale, DECIMALS)
+        return round(knobs[self.knob] * self.scale, DECIMALS)
 
     def turned(self, knobs: Knobs, shown: float) -> Knobs:
         """The knobs with this one set to a value in its unit; the same object if it has that value."""
         if abs(shown - self.shown(knobs)) < 10.0**-DECIMALS:
             return knobs
-        changed: dict[str, Any] = {self.knob: float(f"{shown / self.scale:.15g}")}  # 0.5 in is 0.0127 m
-        return replace(knobs, **changed)
+        return {**knobs, self.knob: float(f"{shown / self.scale:.15g}")}  # 0.5 in is 0.0127 m
 
     def written(self, shown: float) -> str:
         """A value with its unit."""
@@ -70,7 +68,7 @@ class Slider:
 
 @dataclass(frozen=True)
 class Choice:
-    """A material to choose: its field of `Knobs`, its label, and the materials by name, the scene's own included."""
+    """A material to choose: its key among the knobs, its label, and the materials by name, the scene's own included."""
 
     knob: str
     label: str
@@ -78,14 +76,22 @@ class Choice:
 
     def name(self, knobs: Knobs) -> str:
         """The name of the chosen material."""
-        return next(name for name, known in self.materials.items() if known == getattr(knobs, self.knob))
+        return next(name for name, known in self.materials.items() if known == knobs[self.knob])
 
 
 def sliders(scene: Scene, system: System = METRIC) -> tuple[Slider, ...]:
     """The sliders that a scene has, in a system of units; each range includes the scene's own value."""
-    cue, knobs = cue_of(scene), knobs_of(scene)
-    wanted = [make(cue, system) for name, make in _SLIDERS.items() if getattr(knobs, name) is not None]
-    return tuple(found.reaching(found.shown(knobs)) for found in (_in_system(slider, system) for slider in wanted))
+    knobs = knobs_of(scene)
+    made = (_slider(PLACES[key], scene, system) for key in knobs if PLACES[key].range)
+    return tuple(slider.reaching(slider.shown(knobs)) for slider in made)
+
+
+def _slider(place: Place, scene: Scene, system: System) -> Slider:
+    cue = scene.shaft
+    x = place.at(cue) if place.at else 0.0
+    label = place.title.format(rounded=system.length(x, 3), exact=system.length(x))
+    unit, scale, *reach = place.reach(cue)  # type: ignore[misc]
+    return _in_system(Slider(place.key, label, unit, scale, *reach), system)
 
 
 STEPS_IN_INCHES = {0.05: 0.002, 0.1: 0.005, 0.5: 0.02, 1: 0.05, 5: 0.2}  # of a step in mm, in; of one in g, oz
@@ -107,72 +113,18 @@ def _in_system(slider: Slider, system: System) -> Slider:
     return replace(slider, unit=unit, scale=scale, step=step, **ends)
 
 
-def _bore(cue: Cue, system: System) -> Slider:
-    label = f"Bore depth, from {system.length(bore_mouth(cue))} on"
-    deepest = 1e3 * deepest_bore(cue)
-    return Slider("bore_depth", label, "mm", 1e3, 0, round(min(300.0, deepest), 1), 1, 0, deepest)
-
-
-def _taper(cue: Cue, system: System) -> Slider:
-    label = f"Taper, at {system.length(taper_position(cue), 3)}"
-    return Slider("taper_diameter", label, "mm", 1e3, 8, 20, 0.05, 4, 60)
-
-
-def _joint(cue: Cue, system: System) -> Slider:
-    far = round(1e3 * cue.length - 10)
-    return Slider("joint_position", "Joint at", "mm", 1e3, 20, far, 1, 1, far)
-
-
-_SLIDERS: dict[str, Callable[[Cue, System], Slider]] = {
-    "tip_diameter": lambda *_: Slider("tip_diameter", "Tip diameter", "mm", 1e3, 8, 15, 0.05, 4, 30),
-    "taper_diameter": _taper,
-    "butt_diameter": lambda *_: Slider("butt_diameter", "Taper, at the end", "mm", 1e3, 12, 34, 0.1, 4, 60),
-    "bore_depth": _bore,
-    "bore_width": lambda *_: Slider("bore_width", "Bore width", "mm", 1e3, 1, 11, 0.1, 0.1, 30),
-    "ferrule_length": lambda *_: Slider("ferrule_length", "Ferrule length", "mm", 1e3, 2, 40, 0.5, 0.5, 60),
-    "joint_compliance": lambda *_: Slider("joint_compliance", "Joint bends", "mrad/(N m)", 1e3, 0, 5, 0.05, 0, 100),
-    "joint_position": _joint,
-    "contact_time": lambda *_: Slider("contact_time", "Contact time (hard–soft tip)", "ms", 1e3, 0.6, 3, 0.01, 0.2, 20),
-    "tip_height": lambda *_: Slider("tip_height", "Height of the leather", "mm", 1e3, 2, 12, 0.1, 0.5, 40),
-    "tip_dome": lambda *_: Slider("tip_dome", "Radius of the dome", "mm", 1e3, 6, 20, 0.1, 3, 500),
-    "leather": lambda *_: Slider(
-        "leather", "Leather, E (30 soft, 140 medium, 360 hard)", "MPa", 1e-6, 20, 500, 5, 1, 20_000
-    ),
-    "restitution": lambda *_: Slider("restitution", "Bounce of the tip, e", "", 1.0, 0.5, 0.95, 0.01, 0, 1),
-    "friction": lambda *_: Slider("friction", "Friction of tip and ball", "", 1.0, 0.2, 1.2, 0.01, 0.01, 10),
-    "bridge_stiffness": lambda *_: Slider("bridge_stiffness", "Bridge hand holds", "N/mm", 1e-3, 0, 30, 0.5, 0, 1000),
-    "bridge_position": lambda cue, _: Slider(
-        "bridge_position", "Bridge at", "mm", 1e3, 20, round(1e3 * cue.length - 10), 1, 1, round(1e3 * cue.length - 1)
-    ),
-    "speed": lambda *_: Slider("speed", "Speed of the cue", "m/s", 1.0, 0.3, 12, 0.1, 0.01, 40),
-    "body_mass": lambda *_: Slider("body_mass", "Mass behind what is drawn", "g", 1e3, 0, 700, 5, 0, 5000),
-    "offset": lambda *_: Slider("offset", "Offset b/R", "", 1.0, 0, 0.9, 0.01, -0.95, 0.95),
-}
-
-
-# The knobs under headings; those that a scene does not have are left out.
-GROUPS = {
-    "Shaft": ("tip_diameter", "taper_diameter", "butt_diameter", "bore_depth", "bore_width", "ferrule_length"),
-    "Tip": ("tip_height", "tip_dome", "leather", "contact_time", "restitution", "friction"),
-    "Stroke": ("speed", "offset"),
-    "Joint, bridge and butt": (
-        *("joint_compliance", "joint_position", "bridge_stiffness", "bridge_position", "body_mass"),
-    ),
-}
+def groups() -> dict[str, tuple[str, ...]]:
+    """The keys of the sliders under their headings."""
+    places = [place for place in PLACES.values() if place.group and place.range]
+    titles = dict.fromkeys(place.group for place in places)
+    return {title: tuple(place.key for place in places if place.group == title) for title in titles}
 
 
 def choices(scene: Scene) -> tuple[Choice, ...]:
     """The materials that can be chosen in a scene."""
-    knobs = knobs_of(scene)
-    found = (
-        ("ferrule_material", "Ferrule material", FERRULES),
-        ("shaft_material", "Shaft material", SHAFTS),
-    )
-    return tuple(
-        Choice(knob, label, _offered(names, getattr(knobs, knob)))
-        for knob, label, names in found
-        if getattr(knobs, knob) is not None
-    )
+    own = knobs_of(scene)
+    offered = ((key, PLACES[key]) for key in own if PLACES[key].materials)
+    return tuple(Choice(key, place.words, _offered(place.materials, own[key])) for key, place in offered)
 
 
 def _offered(names: tuple[str, ...], own: Material) -> dict[str, Material]:
@@ -182,12 +134,5 @@ def _offered(names: tuple[str, ...], own: Material) -> dict[str, Material]:
 
 def without(scene: Scene) -> list[str]:
     """Sentences about the parts of this scene that have no knob."""
-    knobs = knobs_of(scene)
-    reasons = []
-    if knobs.ferrule_length is None:
-        reasons.append("no ferrule is drawn behind the tip, so there is no knob for it")
-    if knobs.bore_depth is None:
-        reasons.append("the bore behind the tip is filled, so it stays as it is")
-    if knobs.contact_time is None:
-        reasons.append("the contact time follows from the leather tip, so there is no knob for it")
-    return reasons
+    own = knobs_of(scene)
+    return [place.absent for place in PLACES.values() if place.absent and place.key not in own]

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from cuefem.io.units import number
 from cuefem.report.quantities import IMPERIAL, TRADE, Units, significant
+from cuefem.units import UnknownUnit, kind_of, number
 
 MM_PER_INCH, GRAMS_PER_OUNCE = 25.4, 28.349523125
 
@@ -52,7 +52,6 @@ _FRACTION = r"(?:(?P<whole>[0-9]+)[ -]+)?(?P<top>[0-9]+)\s*/\s*(?P<bottom>[0-9]+
 _UNIT = r"[^\d\s.,+/-].*?"
 _TYPED = re.compile(rf"\s*(?P<sign>[-+−]?)\s*(?:{_FRACTION}|(?P<number>{_NUMBER}))\s*(?P<unit>{_UNIT})?\s*")
 LONGEST = 40
-_SAME = {'"': "in", "″": "in", "inch": "in", "inches": "in", "''": "in"}
 
 
 def typed(text: str, unit: str) -> float:
@@ -72,10 +71,14 @@ def typed(text: str, unit: str) -> float:
     else:
         value = int(found["whole"] or 0) + int(found["top"]) / int(found["bottom"])
     value = -value if found["sign"] in ("-", "−") else value
-    own = _SAME.get((found["unit"] or unit).lower(), found["unit"] or unit)
+    own = found["unit"] or unit
     if own == unit:
         return value
+    if not unit:
+        raise ValueError("must be a bare number, without a unit")
     try:
         return number(f"{value!r} {own}", unit)
+    except UnknownUnit as error:
+        raise ValueError(f"must be a number, such as 11.8 or 11,8: no unit is called {error.name!r}") from None
     except ValueError:
-        raise ValueError(f"must be in {unit}" if unit else "must be a bare number, without a unit") from None
+        raise ValueError(f"must be {kind_of(unit)}, in {unit} or a unit of its own; got {kind_of(own)}") from None

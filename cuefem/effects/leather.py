@@ -185,20 +185,20 @@ class LeatherTip(CueEffect):
         scalar("diameter", DIAMETER.check("diameter", diameter))
         if self.dome_radius < diameter / 2:
             raise ValueError(
-                f"LeatherTip.dome_radius must be in [{diameter / 2:.6g}, inf] m, half of the tip's diameter or more; "
-                f"got {self.dome_radius}"
+                f"LeatherTip.dome_radius must be {500 * diameter:.4g} mm or more, half of the tip's diameter; "
+                f"got {1e3 * self.dome_radius:.4g} mm"
             )
         deep = self._drop(diameter / 2)
         if self.height <= deep:
             raise ValueError(
-                f"LeatherTip.height must be in ({deep:.6g}, inf) m, above the dome's depth on a tip of {diameter} m; "
-                f"got {self.height}"
+                f"LeatherTip.height must be more than {1e3 * deep:.4g} mm, the dome's depth on a tip of "
+                f"{1e3 * diameter:.4g} mm; got {1e3 * self.height:.4g} mm"
             )
         low, high = (part * diameter for part in HEIGHT)
         if not low * (1 - 1e-9) <= self.height <= high * (1 + 1e-9):
             raise ValueError(
-                f"LeatherTip.height must be in [{low:.6g}, {high:.6g}] m on a tip of {diameter} m, "
-                f"where the table of its elasticity ends; got {self.height}"
+                f"LeatherTip.height must be {1e3 * low:.3g} to {1e3 * high:.3g} mm high on a tip of "
+                f"{1e3 * diameter:.4g} mm; got {1e3 * self.height:.4g} mm"
             )
 
     def mass(self, diameter: float) -> float:

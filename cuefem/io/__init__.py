@@ -13,9 +13,9 @@ from cuefem.cue import Cue
 from cuefem.io.errors import InputError, reason, shown
 from cuefem.io.profile import DEFAULT_MATERIAL, SHAPES, SURFACES, TABLES, load_profile
 from cuefem.io.toml import load_accuracy, load_cue, load_toml, named_material, read_text, toml_text
-from cuefem.io.units import number
 from cuefem.scene import Scene
 from cuefem.side.scene import SideStrike
+from cuefem.units import number
 
 __all__ = [
     "DEFAULT_MATERIAL",
@@ -99,8 +99,8 @@ def _load_cue(path: Path, material: str | None = None, length_unit: str | None =
         from cuefem.io.surface import load_surface
 
         return load_surface(path, named_material(material or DEFAULT_MATERIAL, path, "material"), length_unit)
-    if path.is_dir():
-        raise InputError(path, "", "cannot be read: it is a folder")
+    if os.path.isdir(path):  # unlike Path.is_dir, of names too long as well
+        raise InputError(path, "", "must be a file; got a folder")
     hint = "; save the table as .csv" if path.suffix.lower() in TABLES else ""
     raise InputError(path, "", f"must end in .toml, .csv, .vtk, .vtu, .stl, .ply or .obj; got {path.suffix!r}{hint}")
 
@@ -190,10 +190,10 @@ def check_place(path: Path) -> None:
 
 
 def studies_with(folder: Path, function: str) -> list[Path]:
-    """The .py files of a folder that define ``function`` at their top, in the order of their names."""
+    """The .py files of a folder and its folders that define ``function`` at their top, in the order of their names."""
     if not folder.is_dir():
         raise InputError(folder, "", "cannot be read: no such folder")
-    return [path for path in sorted(folder.glob("*.py")) if _defines(path, function)]
+    return [path for path in sorted([*folder.glob("*.py"), *folder.glob("*/*.py")]) if _defines(path, function)]
 
 
 def _defines(path: Path, function: str) -> bool:

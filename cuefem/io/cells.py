@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from decimal import Decimal
 from pathlib import Path
 
-from cuefem.io.errors import InputError, read_bytes, reason, shown
+from cuefem.io.errors import InputError, read_bytes, shown
 from cuefem.io.toml import LARGEST_TEXT
 
 LONGEST_LINE = 10_000  # letters of a line
@@ -61,10 +61,7 @@ def _cells(line: str, separator: str) -> list[str]:
 
 def _text(path: Path) -> str:
     """The text of a file in UTF-8, UTF-16 or Windows' letters; InputError if it is empty or no text."""
-    try:
-        content = read_bytes(path, LARGEST_TEXT)
-    except OSError as error:
-        raise InputError(path, "", f"cannot be read: {reason(error)}") from None
+    content = read_bytes(path, LARGEST_TEXT)
     if content.startswith(_SPREADSHEETS):
         raise InputError(path, "", "is a spreadsheet, not a .csv: in its program, save it as CSV")
     try:

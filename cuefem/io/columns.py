@@ -10,7 +10,7 @@ from pathlib import Path
 
 from cuefem.io.cells import Row, is_number
 from cuefem.io.errors import InputError, shown
-from cuefem.io.units import number
+from cuefem.units import number
 
 EXAMPLE = '"x [mm],diameter [mm]"'
 TITLES = 20  # lines that may stand above the header
@@ -65,7 +65,7 @@ class Header:
 
 
 def unit_of(text: str) -> str:
-    """The unit of length that a text names, as `cuefem.io.units` knows it; "" if it names none."""
+    """The unit of length that a text names, as `cuefem.units` knows it; "" if it names none."""
     word = text.strip().strip(".[](){}<>").strip()
     known = _UNIT_OF.get(word.casefold(), "")
     if known or not word:

@@ -15,13 +15,12 @@ from cuefem.io.assumed import assumed_blow, assumed_drawing, assumed_usual
 from cuefem.io.errors import nearest, shown
 from cuefem.io.schema import build, joined, keys_of, unknown_key
 from cuefem.io.toml import read_tables, read_text, scene_of_tables
-from cuefem.io.units import quantity
 from cuefem.measured.documented import DocumentedCue
 from cuefem.measured.kinds import KINDS, Measurement
-from cuefem.measured.unknowns import KINDS as UNKNOWNS
-from cuefem.measured.unknowns import NAMES, Prior
+from cuefem.measured.unknowns import Prior, names
 from cuefem.quantity import Quantity, quantities
 from cuefem.scene import Scene
+from cuefem.vary import place
 
 MEASURED = "measured.toml"
 DRAWINGS = ("cue.toml", "cue.csv")
@@ -44,7 +43,7 @@ def load_documented(folder: Path) -> tuple[DocumentedCue, list[str]]:
             raise unknown_key(name, value, known, file=str(path), key="")
     scene, notes = _scene(folder, path, tables)
     found = tuple(_measurements(folder, path, tables))
-    priors = tuple(_priors(path, tables.get("unknowns", [])))
+    priors = tuple(_priors(path, tables.get("unknowns", []), scene))
     name, source = (_words(path, tables, key) for key in ("name", "source"))
     try:
         made = DocumentedCue(name or folder.resolve().name, scene, found, priors, source)
@@ -176,29 +175,28 @@ def _cell(path: Path, line: int, name: str, cell: str, unit: str, mark: Quantity
         raise InputError(path, f"line {line}, {name}", f"must be a number; got {shown(cell)}") from None
 
 
-def _priors(path: Path, rows: Any) -> Iterator[Prior]:
+def _priors(path: Path, rows: Any, scene: Scene) -> Iterator[Prior]:
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
         raise InputError(path, "unknowns", f"must be tables, [[unknowns]]; got {shown(rows)}")
     for i, row in enumerate(rows):
         key = joined("unknowns", i)
         name = row.get("name")
-        if name not in NAMES:
-            hint = nearest(str(name), NAMES)
-            raise InputError(path, joined(key, "name"), f"must be one of {', '.join(NAMES)}; got {shown(name)}{hint}")
+        if name not in names():
+            hint = nearest(str(name), names())
+            raise InputError(path, joined(key, "name"), f"must be one of {', '.join(names())}; got {shown(name)}{hint}")
         for other in row:
             if other not in keys_of(Prior):
                 raise unknown_key(other, row[other], keys_of(Prior), file=str(path), key=key)
-        unit = UNKNOWNS[name].unit if name in UNKNOWNS else ""
-        marks = {
-            "spread": Quantity("", "[0, 3]"),
-            "low": Quantity(unit, "(0, inf)"),
-            "high": Quantity(unit, "(0, inf)"),
-        }
+        known = place(name)
+        if known and known.value(scene) is None:
+            raise InputError(path, "", f"unknowns must be of this cue; got {name!r}, which it does not have")
+        ends = Quantity(known.quantity(scene).unit if known else "", "(0, inf)")
+        marks = {"spread": Quantity("", "[0, 3]"), "low": ends, "high": ends}
         values = {}
         for each, mark in marks.items():
             if each in row:
                 try:
-                    values[each] = quantity(mark, row[each])
+                    values[each] = mark.read(row[each])
                 except ValueError as error:
                     raise InputError(path, joined(key, each), str(error)) from None
         try:

@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
-import difflib
-from collections.abc import Iterable
+import os
+import stat
 from os import PathLike
 from pathlib import Path
 
-from cuefem.quantity import shown
+from cuefem.quantity import nearest, shown
 
-__all__ = ["InputError", "nearest", "read_bytes", "reason", "shown"]
+_KINDS = {
+    stat.S_IFDIR: "a folder",
+    stat.S_IFIFO: "a pipe",
+    stat.S_IFSOCK: "a socket",
+    stat.S_IFCHR: "a device",
+    stat.S_IFBLK: "a device",
+}
+
+__all__ = ["InputError", "nearest", "read_bytes", "reason", "shown", "state_of"]
 
 
 class InputError(ValueError):
@@ -25,20 +33,28 @@ class InputError(ValueError):
         super().__init__(" ".join(": ".join(parts).split()))
 
 
-def nearest(name: str, names: Iterable[str]) -> str:
-    """A hint at the valid name that was probably meant, or nothing."""
-    known = {known.casefold(): known for known in names}
-    close = difflib.get_close_matches(name.casefold(), known, n=1, cutoff=0.5)
-    return f"; did you mean {known[close[0]]!r}?" if close else ""
+def state_of(path: Path) -> os.stat_result:
+    """Size and time of a file; InputError if it is none, before it is opened: a pipe would wait for whoever writes."""
+    try:
+        state = path.stat()
+    except OSError as error:
+        raise InputError(path, "", f"cannot be read: {reason(error)}") from None
+    if not stat.S_ISREG(state.st_mode):
+        kind = _KINDS.get(stat.S_IFMT(state.st_mode), "something else")
+        raise InputError(path, "", f"must be a file; got {kind}")
+    return state
 
 
 def read_bytes(path: Path, most: int) -> bytes:
-    """The bytes of a file; OSError if it cannot be read, InputError if it holds more than ``most``."""
-    with path.open("rb") as file:
-        content = file.read(most + 1)
-    if len(content) > most:
-        size = path.stat().st_size
-        got = f"{size / 1e6:.3g}" if size > most else "more"
+    """The bytes of a file; InputError if it cannot be read, or holds more than ``most``, which is looked at first."""
+    size = state_of(path).st_size
+    try:
+        with path.open("rb") as file:
+            content = b"" if size > most else file.read(most + 1)
+    except OSError as error:
+        raise InputError(path, "", f"cannot be read: {reason(error)}") from None
+    if max(size, len(content)) > most:
+        got = f"{size / 1e6:.9g}" if size > most else "more"
         raise InputError(path, "", f"must be a file of at most {most / 1e6:g} MB; got {got}")
     return content
 

@@ -2,94 +2,96 @@
 
 from __future__ import annotations
 
+import inspect
 import math
 import typing
-from collections.abc import Iterator
-from dataclasses import MISSING, fields, is_dataclass
+from dataclasses import fields, is_dataclass
 from typing import Any, cast
-
-from pydantic.json_schema import GenerateJsonSchema
 
 from cuefem.cue import Cue, LumpedCue
 from cuefem.effects import effect_kinds
-from cuefem.io.schema import adapter, file_value
+from cuefem.io.schema import choices, mark_of, needed, types_of
 from cuefem.io.toml import Accuracy
-from cuefem.quantity import quantities
+from cuefem.quantity import Quantity
 from cuefem.scene import Scene
 from cuefem.side.scene import SideStrike
 
-
-class _Generator(GenerateJsonSchema):
-    def field_title_should_be_set(self, schema: Any) -> bool:
-        return False
-
-    def default_schema(self, schema: Any) -> dict[str, Any]:
-        return dict(self.generate_inner(schema["schema"]))  # defaults are written below, with units
-
-    def nullable_schema(self, schema: Any) -> dict[str, Any]:
-        return dict(self.generate_inner(schema["schema"]))  # a file leaves out what is None
-
-    def is_instance_schema(self, schema: Any) -> dict[str, Any]:
-        return {}  # the effects, which stand apart below
-
-
-def _definitions(kind: type) -> dict[str, Any]:
-    """JSON schemas of ``kind`` and all that it holds, by name."""
-    made = adapter(kind).json_schema(schema_generator=_Generator)
-    closed = {"additionalProperties": False}  # which older pydantics leave out for plain dataclasses
-    return {name: definition | closed for name, definition in made["$defs"].items()}
-
-
-def _with_defaults(kind: type, definition: dict[str, Any]) -> None:
-    marked = {name: mark for name, mark, *_ in quantities(kind)}
-    for field in fields(kind):
-        if field.name in marked and field.default is not MISSING and field.default is not None:
-            default = file_value(field.default, marked[field.name])
-            if default != math.inf:  # which TOML can say and JSON cannot
-                definition["properties"][field.name]["default"] = default
-
-
-def _held(hint: Any) -> Iterator[type]:
-    """A dataclass and every dataclass that its fields hold."""
-    if is_dataclass(hint):
-        yield cast(type, hint)
-        for inner in typing.get_type_hints(hint).values():
-            yield from _held(inner)
-    for inner in typing.get_args(hint):
-        yield from _held(inner)
+_PLAIN = {bool: "boolean", int: "integer", str: "string"}
 
 
 def json_schema() -> dict[str, Any]:
     """JSON schema of a file: a scene, a strike from the side, or a cue alone."""
     effects = effect_kinds()
-    kinds: tuple[type, ...] = (Scene, SideStrike, Accuracy, *effects.values())
-    found: dict[str, Any] = {}
-    for kind in kinds:
-        found |= _definitions(kind)
-    for held in {inner for kind in kinds for inner in _held(kind)}:
-        _with_defaults(held, found[held.__name__])
-    for name in effects:
-        found[name]["properties"] = {"type": {"const": name}, **found[name]["properties"]}
-        found[name]["required"] = ["type", *found[name].get("required", [])]
-        for word, names in effects[name].named.items():
-            found[name]["properties"][word] = {"enum": [*names]}
-            meant = {key for values in names.values() for key in values}
-            found[name]["required"] = [key for key in found[name]["required"] if key not in meant]
+    definitions: dict[str, Any] = {}
+    for kind in (Scene, SideStrike, Accuracy, *effects.values()):
+        _define(kind, definitions)
+    for name, kind in effects.items():
+        words = {word: {"enum": [*names]} for word, names in kind.named.items()}
+        meant = {key for names in kind.named.values() for values in names.values() for key in values}
+        definitions[name]["properties"] = {"type": {"const": name}, **definitions[name]["properties"], **words}
+        definitions[name]["required"] = ["type", *(key for key in needed(kind) if key not in meant)]
     named = {"type": "string", "description": "a name from `cuefem materials`"}
-    found["Material"] = {"anyOf": [named, found["Material"]]}
+    definitions["Material"] = {"anyOf": [named, definitions["Material"]]}
     path = {"type": "string", "description": "path of a cue file, relative to this one"}
     for kind, cues in ((Scene, (Cue, LumpedCue)), (SideStrike, (Cue,))):
-        scene = found[kind.__name__]["properties"]
-        scene["cue"] = {"anyOf": [path, *(_ref(cue.__name__) for cue in cues)]}
-        scene["effects"]["items"] = {"anyOf": [_ref(name) for name in effects]} if effects else False
-        scene["accuracy"] = _ref(Accuracy.__name__)
+        scene = definitions[kind.__name__]["properties"]
+        scene["cue"] = {"anyOf": [path, *(_ref(cue) for cue in cues)]}
+        scene["effects"]["items"] = {"anyOf": [_ref(effect) for effect in effects.values()]} if effects else False
+        scene["accuracy"] = _ref(Accuracy)
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "A cuefem file: a scene, a strike from the side, or a cue alone",
-        "anyOf": [_ref(kind.__name__) for kind in (Scene, SideStrike, Cue)],
-        "$defs": dict(sorted(found.items())),
+        "anyOf": [_ref(kind) for kind in (Scene, SideStrike, Cue)],
+        "$defs": dict(sorted(definitions.items())),
     }
 
 
-def _ref(name: str) -> dict[str, str]:
-    return {"$ref": f"#/$defs/{name}"}
+def _ref(kind: type) -> dict[str, str]:
+    return {"$ref": f"#/$defs/{kind.__name__}"}
+
+
+def _define(kind: type, definitions: dict[str, Any]) -> None:
+    """Put the JSON schema of a dataclass, and of all that it holds, into ``definitions``."""
+    made = {"description": inspect.cleandoc(kind.__doc__ or ""), "title": kind.__name__, "type": "object"}
+    definitions[kind.__name__] = made | {
+        "properties": {
+            field.name: _field(field, types_of(kind)[field.name], definitions) for field in fields(cast(Any, kind))
+        },
+        "additionalProperties": False,
+    }
+    if needed(kind):
+        definitions[kind.__name__]["required"] = needed(kind)
+
+
+def _field(field: Any, hint: Any, definitions: dict[str, Any]) -> dict[str, Any]:
+    """A field with its default as it stands in a file."""
+    mark = mark_of(hint)
+    if mark is None:
+        return _contents(hint, definitions)
+    default = mark.written(field.default) if isinstance(field.default, float) else math.inf
+    return _number(mark) | ({} if default == math.inf else {"default": default})  # TOML can say inf, JSON cannot
+
+
+def _number(mark: Quantity) -> dict[str, Any]:
+    """Text with a unit, or a bare number within its bounds."""
+    if mark.unit:
+        kinds = ["string", "number"] if mark.endless else "string"  # inf alone is a number without a unit
+        return {"type": kinds, "description": f"{mark.example}; in {mark.bounds}"}
+    low, high = mark.ends
+    bounds = {"minimum" if mark.interval[0] == "[" else "exclusiveMinimum": low}
+    bounds["maximum" if mark.interval[-1] == "]" else "exclusiveMaximum"] = high
+    finite = {key: end for key, end in bounds.items() if math.isfinite(end)}
+    return {"type": "number", **finite, "description": f"a number in {mark.interval}"}
+
+
+def _contents(hint: Any, definitions: dict[str, Any]) -> dict[str, Any]:
+    """What a field holds that is no number with bounds: tables, lists of them, words."""
+    kinds = choices(hint)
+    if typing.get_origin(kinds[0]) is tuple:
+        return {"type": "array", "items": _contents(typing.get_args(kinds[0])[0], definitions)}
+    tables = [cast(type, kind) for kind in kinds if is_dataclass(kind)]
+    for kind in tables:
+        if kind.__name__ not in definitions:
+            _define(kind, definitions)
+    made = [_ref(kind) if kind in tables else {"type": _PLAIN[kind]} for kind in kinds]
+    return made[0] if len(made) == 1 else {"anyOf": made}

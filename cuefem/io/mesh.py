@@ -18,7 +18,7 @@ import numpy as np
 from meshio.vtu import _vtu
 
 from cuefem.cue import Cue, Material, Segment
-from cuefem.io.errors import InputError, read_bytes, reason, shown
+from cuefem.io.errors import InputError, read_bytes, shown
 from cuefem.quantity import MOST_SEGMENTS, quantities
 
 # What a damaged mesh file makes meshio raise: it checks little itself.
@@ -155,8 +155,6 @@ def load_mesh(path: Path) -> Cue:
         data = {name: np.concatenate(blocks).astype(float) for name, blocks in mesh.cell_data.items()}
         kinds, x = {block.type for block in mesh.cells}, np.asarray(mesh.points, float)[:, 0]
         cells = np.concatenate([block.data for block in mesh.cells])
-    except OSError as error:
-        raise InputError(path, "", f"cannot be read: {reason(error)}") from None
     except InputError:
         raise
     except DAMAGED as error:

@@ -13,9 +13,9 @@ from cuefem.cue import Cue, Material, Segment
 from cuefem.io.cells import Row, decimal_mark, parted, plain, read_rows
 from cuefem.io.columns import DIAMETER, EXAMPLE, PLACE, RADIUS, Column, Header, from_butt, read_header, unit_of
 from cuefem.io.errors import InputError, shown
-from cuefem.io.units import number, quantity
 from cuefem.quantity import DIAMETER as WIDTH
 from cuefem.quantity import Quantity
+from cuefem.units import number
 
 DEFAULT_MATERIAL = "hard maple"
 DEFAULT_UNIT = "mm"  # of a surface's coordinates
@@ -192,7 +192,7 @@ def _number(path: Path, row: Row, column: Column, mark: str) -> float:
     if not text or not unit:
         raise InputError(path, where, f"must be a number; got {shown(cell) if cell else 'nothing'}")
     try:
-        value = quantity(_POSITION if kind == PLACE else WIDTH, f"{plain(text, mark)} {unit}")
+        value = (_POSITION if kind == PLACE else WIDTH).read(f"{plain(text, mark)} {unit}")
     except ValueError as error:
         raise InputError(path, where, str(error)) from None
     return 2 * value if kind == RADIUS else value

@@ -1,23 +1,20 @@
-"""The dataclasses as the schema of the files: tables are validated into them and made of them."""
+"""The dataclasses as the schema of the files: tables are read into them and made of them."""
 
 from __future__ import annotations
 
 import functools
 import re
+import types
 import typing
-from contextlib import suppress
+from collections.abc import Iterator
 from dataclasses import MISSING, fields, is_dataclass
-from typing import TYPE_CHECKING, Annotated, Any, TypeVar, cast
+from typing import Any, TypeVar, cast
 
 from cuefem.cue import Material
 from cuefem.effects import Effect
 from cuefem.io.errors import InputError, nearest, shown
-from cuefem.io.units import quantity, text
 from cuefem.materials import MATERIALS
-from cuefem.quantity import Quantity
-
-if TYPE_CHECKING:
-    from pydantic import TypeAdapter, ValidationError
+from cuefem.quantity import OutOfBounds, Quantity
 
 Kind = TypeVar("Kind")
 
@@ -25,77 +22,86 @@ NAMES = {known.material: name for name, known in MATERIALS.items()}
 ABSENT = ("tip_bore", "butt_bore")  # not written if 0, their default: a bore that is not there
 
 
-@functools.cache
-def adapter(kind: Any) -> TypeAdapter[Any]:
-    """Pydantic's validator of lists of ``kind``: it takes a configuration for plain dataclasses only from a holder."""
-    from pydantic import ConfigDict, TypeAdapter
-
-    return TypeAdapter(list[kind], config=ConfigDict(extra="forbid", arbitrary_types_allowed=True))
-
-
 def build(kind: type[Kind], table: Any, *, file: str, key: str) -> Kind:
     """A ``kind`` from a file's table of keys and values; InputError names file, key path, bound, unit and value."""
-    with suppress(_Unclear):
-        return cast(Kind, _plainly(kind, table))
-    return build_by_pydantic(kind, table, file=file, key=key)
+    for name, value, names, owner in _misspelt(kind, table, key):  # first: a missing key is usually one misspelt
+        raise unknown_key(name, value, names, file=file, key=owner)
+    return cast(Kind, _read(kind, table, file, key))
 
 
-class _Unclear(Exception):
-    """A table that is wrong, or written in a way that only pydantic knows to read."""
+def _misspelt(hint: Any, value: Any, key: str) -> Iterator[tuple[str, Any, list[str], str]]:
+    """The keys that no field has: name, value, the names there are, and the path of their table."""
+    inner = choices(hint)[0]
+    if isinstance(value, list) and typing.get_origin(inner) is tuple:
+        for i, item in enumerate(value):
+            yield from _misspelt(typing.get_args(inner)[0], item, joined(key, i))
+    elif isinstance(value, dict) and is_dataclass(inner):
+        known = types_of(cast(type, inner))
+        for name in [name for name in known if name in value]:
+            yield from _misspelt(known[name], value[name], joined(key, name))
+        for name in value:
+            if name not in known:
+                yield name, value[name], keys_of(cast(type, inner)), key
 
 
-def _plainly(hint: Any, value: Any) -> Any:
-    """What a faultless table says, without pydantic, which takes longer to load than a beam to solve; else _Unclear.
+def _read(hint: Any, value: Any, file: str, key: str) -> Any:
+    """What a file's value says for a field of this type."""
+    mark = mark_of(hint)
+    if mark is not None:
+        try:
+            return mark.read(value)
+        except ValueError as error:
+            raise InputError(file, key, str(error)) from None
+    for choice in choices(hint):
+        if typing.get_origin(choice) is tuple:
+            if isinstance(value, list):
+                inner, *_ = typing.get_args(choice)
+                return tuple(_read(inner, item, file, joined(key, i)) for i, item in enumerate(value))
+        elif isinstance(value, choice) and isinstance(value, bool) == (choice is bool):
+            return value
+        elif isinstance(value, dict) and is_dataclass(choice):
+            return _made(cast(type, choice), value, file, key)
+    raise InputError(file, key, f"must be {_wanted(hint)}; got {shown(value)}")
 
-    hint: a dataclass, the `Annotated` type of one of its fields, or a tuple or a choice of these.
-    """
-    if typing.get_origin(hint) is Annotated:
-        marks = [mark for mark in hint.__metadata__ if isinstance(mark, Quantity)]
-        if len(marks) == 1:
-            return _cleared(quantity, marks[0], value)
-        raise _Unclear
-    if hint is bool and isinstance(value, bool):
-        return value
-    if typing.get_origin(hint) is tuple and isinstance(value, list):
-        inner, *_ = typing.get_args(hint)
-        return tuple(_plainly(inner, item) for item in value)
-    choices = [member for member in typing.get_args(hint) or (hint,) if is_dataclass(member)]
-    if any(isinstance(value, cast(type, choice)) for choice in choices):
-        return value
-    if len(choices) != 1 or not isinstance(value, dict):
-        raise _Unclear
-    kind = cast(Any, choices[0])
-    hints, needed = _expected(kind)
-    if not needed <= value.keys() <= hints.keys():
-        raise _Unclear
-    return _cleared(kind, **{name: _plainly(hints[name], item) for name, item in value.items()})
+
+def _made(kind: type, table: dict[str, Any], file: str, key: str) -> Any:
+    """A dataclass of a table whose keys are all known."""
+    values = {}
+    for name, hint in types_of(kind).items():
+        if name in table:
+            values[name] = _read(hint, table[name], file, joined(key, name))
+        elif name in needed(kind):
+            raise InputError(file, joined(key, name), f"must be given, {_wanted(hint)}; got nothing")
+    try:
+        return kind(**values)
+    except (TypeError, ValueError) as error:
+        raise InputError(file, *_own_words(error, key)) from None
 
 
 @functools.cache
-def _expected(kind: type) -> tuple[dict[str, Any], set[str]]:
-    """The types of a dataclass's fields, and the names of those that have no default."""
+def types_of(kind: type) -> dict[str, Any]:
+    """The types of a dataclass's fields, with their marks."""
     hints = typing.get_type_hints(kind, include_extras=True)
-    needed = {field.name for field in fields(kind) if field.default is MISSING and field.default_factory is MISSING}
-    return {field.name: hints[field.name] for field in fields(kind)}, needed
+    return {field.name: hints[field.name] for field in fields(cast(Any, kind))}
 
 
-def _cleared(make: Any, *arguments: Any, **named: Any) -> Any:
-    """What ``make`` makes of the arguments; _Unclear if it refuses them."""
-    try:
-        return make(*arguments, **named)
-    except (TypeError, ValueError):
-        raise _Unclear from None
+def needed(kind: type) -> list[str]:
+    """The fields of a dataclass without a default."""
+    return [f.name for f in fields(cast(Any, kind)) if f.default is MISSING and f.default_factory is MISSING]
 
 
-def build_by_pydantic(kind: type[Kind], table: Any, *, file: str, key: str) -> Kind:
-    """As `build`, by pydantic's validator, which says exactly what is wrong with a table."""
-    from pydantic import ValidationError
+def mark_of(hint: Any) -> Quantity | None:
+    """The unit and the bounds of a field's type, if it is a number with these."""
+    return next((mark for mark in getattr(hint, "__metadata__", ()) if isinstance(mark, Quantity)), None)
 
-    try:
-        made = adapter(cast(Any, kind)).validate_python([table], context={"read": quantity})
-    except ValidationError as error:
-        raise _input_error(error, kind, file=file, key=key) from None
-    return cast(Kind, made[0])
+
+def choices(hint: Any) -> tuple[Any, ...]:
+    """The types that a field may have, without its marks and None: Cue and LumpedCue of ``Cue | LumpedCue``."""
+    if typing.get_origin(hint) is typing.Annotated:
+        hint = hint.__origin__
+    if not isinstance(hint, types.UnionType):
+        return (hint,)
+    return tuple(member for member in typing.get_args(hint) if member is not type(None))
 
 
 def joined(key: str, part: str | int) -> str:
@@ -119,85 +125,44 @@ def unknown_key(name: str, value: Any, names: list[str], *, file: str, key: str)
     return InputError(file, joined(key, name), f"{wanted}; got {name} = {shown(value)}{hint}")
 
 
-def _input_error(error: ValidationError, kind: type, *, file: str, key: str) -> InputError:
-    """The first fault as one line: misspelt keys before missing ones, since one usually causes the other."""
-    faults = sorted(error.errors(include_url=False), key=lambda fault: fault["type"] != "unexpected_keyword_argument")
-    fault = faults[0]
-    parts, value = fault["loc"][1:], fault["input"]
-    path = functools.reduce(joined, parts, key)
-    if fault["type"] == "unexpected_keyword_argument":
-        *above, name = parts
-        owner = functools.reduce(joined, above, key)
-        return unknown_key(str(name), value, keys_of(_hint_at(kind, above)), file=file, key=owner)
-    if fault["type"] == "missing":
-        return InputError(file, path, f"must be given, {_wanted(_hint_at(kind, parts))}; got nothing")
-    if fault["type"] == "value_error":
-        return InputError(file, *_own_words(str(fault["ctx"]["error"]), path))
-    return InputError(file, path, f"must be {_wanted(_hint_at(kind, parts))}; got {shown(value)}")
-
-
-def _own_words(message: str, path: str) -> tuple[str, str]:
+def _own_words(error: TypeError | ValueError, path: str) -> tuple[str, str]:
     """The core's "Segment.tip_bore must be ..." as key path and problem."""
-    found = re.fullmatch(r"[A-Z]\w*\.(\S+) (.*)", message, re.DOTALL)
-    return (joined(path, found[1]), found[2]) if found else (path, message)
-
-
-def _hint_at(kind: Any, parts: typing.Sequence[str | int]) -> Any:
-    """The type declared at a key path below ``kind``."""
-    for part in parts:
-        kind = _bare_type(kind)
-        if isinstance(part, int):
-            kind = typing.get_args(kind)[0] if typing.get_args(kind) else object
-        else:
-            kind = typing.get_type_hints(kind, include_extras=True).get(part, object) if is_dataclass(kind) else object
-    return _bare_type(kind)
-
-
-def _bare_type(hint: Any) -> Any:
-    """``Material`` of ``Material | None``; quantities keep their mark."""
-    if typing.get_origin(hint) is Annotated:
-        return hint
-    members = [member for member in typing.get_args(hint) if is_dataclass(member)]
-    return members[0] if members and typing.get_origin(hint) is not tuple else hint
+    if isinstance(error, OutOfBounds):
+        return joined(path, error.name.partition(".")[2]), error.in_words
+    message = str(error)
+    parts = re.fullmatch(r"[A-Z]\w*\.(\S+) (.*)", message, re.DOTALL)
+    return (joined(path, parts[1]), parts[2]) if parts else (path, message)
 
 
 def _wanted(hint: Any) -> str:
     """What a key takes, in words."""
-    for mark in getattr(hint, "__metadata__", ()):
-        if isinstance(mark, Quantity):
-            return f"in {mark.bounds}, {mark.example}" if mark.unit else f"a bare number in {mark.bounds}"
-    if is_dataclass(hint):
-        named = " or a name from `cuefem materials`" if hint is Material else ""
-        return f"a table with the keys {', '.join(keys_of(cast(type, hint)))}{named}"
-    if typing.get_origin(hint) is tuple:
-        return "an array of tables" if is_dataclass(typing.get_args(hint)[0]) else "an array"
-    if hint is bool or bool in typing.get_args(hint):
-        return "true or false"
-    return f"a {getattr(hint, '__name__', hint)}"
-
-
-def file_value(value: float, mark: Quantity) -> str | float:
-    """A number as it stands in a file: text with a unit, or a bare number if it has no dimension."""
-    return text(value, mark.unit) if mark.unit else value
+    mark, first = mark_of(hint), choices(hint)[0]
+    if mark is not None:
+        return mark.wanted
+    if is_dataclass(first):
+        named = " or a name from `cuefem materials`" if first is Material else ""
+        return f"a table with the keys {', '.join(keys_of(cast(type, first)))}{named}"
+    if typing.get_origin(first) is tuple:
+        return "an array of tables" if is_dataclass(typing.get_args(first)[0]) else "an array"
+    return {bool: "true or false", int: "a whole number", str: "text"}.get(first, f"a {first}")
 
 
 def table(instance: Any) -> dict[str, Any]:
     """A dataclass as the table that `build` reads back exactly: texts with units, numbers, tables, lists."""
-    hints = typing.get_type_hints(type(instance), include_extras=True)
-    found = {field.name: getattr(instance, field.name) for field in fields(instance)}
+    entries = {name: (getattr(instance, name), hint) for name, hint in types_of(cast(Any, type(instance))).items()}
     return {
-        name: _entry(f"{type(instance).__name__}.{name}", value, hints[name])
-        for name, value in found.items()
+        name: _entry(f"{type(instance).__name__}.{name}", value, hint)
+        for name, (value, hint) in entries.items()
         if value is not None and not (isinstance(value, tuple) and not value) and not (name in ABSENT and value == 0)
     }
 
 
 def _entry(name: str, value: Any, hint: Any) -> Any:
-    marks = [mark for mark in getattr(hint, "__metadata__", ()) if isinstance(mark, Quantity)]
-    if marks:
+    mark = mark_of(hint)
+    if mark is not None:
         if not isinstance(value, float):
             raise ValueError(f"{name} must be one number to stand in a file; got an array of {len(value)}")
-        return file_value(value, marks[0])
+        return mark.written(value)
     if isinstance(value, Effect):
         return {"type": type(value).__name__, **table(value)}
     if isinstance(value, Material) and value in NAMES:

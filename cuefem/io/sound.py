@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import struct
 import warnings
 from dataclasses import dataclass
@@ -11,9 +12,10 @@ import numpy as np
 from scipy.io import wavfile
 
 from cuefem.cue import Array
-from cuefem.io.errors import InputError, reason
+from cuefem.io.errors import InputError, read_bytes
 
 LONGEST = 120.0  # s: a few taps, no concert
+LARGEST_SOUND = 100_000_000  # bytes: as long, of two channels at 96 kHz in 32 bit
 
 
 @dataclass(frozen=True)
@@ -29,12 +31,11 @@ def load_recording(path: str | Path) -> Recording:
     path = Path(path)
     if path.suffix.lower() != ".wav":
         raise InputError(path, "", f"must end in .wav; got {path.suffix!r} (ffmpeg -i tap.m4a tap.wav converts)")
+    content = read_bytes(path, LARGEST_SOUND)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", wavfile.WavFileWarning)  # what phones write beside the sound
-            rate, found = wavfile.read(path)
-    except OSError as error:
-        raise InputError(path, "", f"cannot be read: {reason(error)}") from None
+            rate, found = wavfile.read(io.BytesIO(content))
     except (ValueError, TypeError, ArithmeticError, MemoryError, struct.error, UnboundLocalError) as error:
         detail = "" if isinstance(error, UnboundLocalError) else f" ({error})"  # no data in it
         raise InputError(path, "", f"must be a .wav file of sound{detail}") from None

@@ -5,17 +5,16 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from cuefem.design import METHODS, Levels, Normal, Response, Sample, Span, Study, Vary, paths
+from cuefem.design import METHODS, Levels, Normal, Response, Sample, Span, Study, Vary
 from cuefem.design.optimum import Limit, Problem
-from cuefem.design.paths import quantity_at, value_at
 from cuefem.design.scatter import Scatter
 from cuefem.games import GAMES, usual_scene
 from cuefem.io.errors import InputError, shown
 from cuefem.io.schema import build, joined, unknown_key
 from cuefem.io.toml import named_material, read_tables
-from cuefem.io.units import quantity
 from cuefem.quantity import Quantity
 from cuefem.scene import Resolution, Scene, Stroke
+from cuefem.vary import paths, quantity_at, value_at
 
 KEYS = ["scene", "game", "responses", "vary", "sample", "resolution"]
 SCATTER_KEYS = [*KEYS, "correlations", "groups"]
@@ -266,7 +265,7 @@ def _range(
 def _value(value: Any, wanted: Quantity | None, path: Path, key: str) -> float | str:
     try:
         if wanted is not None:
-            return quantity(wanted, value)
+            return wanted.read(value)
         if not isinstance(value, str):
             raise ValueError(f"must be the name of a material (see `cuefem materials`); got {shown(value)}")
         named_material(value, path, key)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import io
 import re
 from pathlib import Path
 
@@ -10,14 +11,15 @@ import meshio
 import numpy as np
 
 from cuefem.cue import Array, Cue, Material, Segment
-from cuefem.io.errors import InputError, reason, shown
+from cuefem.io.errors import InputError, read_bytes, shown, state_of
 from cuefem.io.mesh import DAMAGED, quiet
 from cuefem.io.profile import DEFAULT_UNIT
 from cuefem.io.slices import Index, Sliced, sliced, surface
-from cuefem.io.units import number
+from cuefem.units import number
 
 _VERTEX = re.compile(rb"^[ \t]*vertex[ \t]+(\S+)[ \t]+(\S+)[ \t]+(\S+)", re.IGNORECASE | re.MULTILINE)
-_FORMATS = {".stl": meshio.stl, ".ply": meshio.ply}
+_FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+LARGEST_SURFACE = 100_000_000  # bytes: two million triangles
 # What a surface may hold beside faces: corners and edges that a program wrote too.
 _PASSED_OVER = ("vertex", "line")
 _POLYGONS = ("triangle", "quad", "polygon")
@@ -44,10 +46,7 @@ def load_surface(path: Path, material: Material, length_unit: str | None = None)
 
 def read_surface(path: Path) -> Sliced:
     """The slices of a file, in its own unit; read once as long as the file stays the same."""
-    try:
-        state = path.stat()
-    except OSError as error:
-        raise InputError(path, "", f"cannot be read: {reason(error)}") from None
+    state = state_of(path)
     return _read(path, state.st_mtime_ns, state.st_size)
 
 
@@ -60,26 +59,30 @@ def _read(path: Path, changed: int, size: int) -> Sliced:
         raise InputError(path, "", str(error)) from None
 
 
-def _read_ascii_stl(path: Path) -> meshio.Mesh | None:
-    """The triangles of an ASCII .stl, in capitals or not, whatever its lines end with; None of another file."""
-    if path.suffix.lower() != ".stl":
-        return None
-    content = path.read_bytes()
+def _read_stl(content: bytes) -> meshio.Mesh:
+    """The triangles of an .stl, binary (be its head "solid" or not) or ASCII, in capitals or not."""
     count = int.from_bytes(content[80:84], "little")
-    if len(content) == 84 + 50 * count:  # binary, be its head "solid" or not
-        return None
-    rows = _VERTEX.findall(content)
-    if not rows or len(rows) % 3:
-        return None
-    points, where = np.unique(np.array(rows, dtype=float), axis=0, return_inverse=True)
+    if len(content) == 84 + 50 * count:
+        rows = np.frombuffer(content, _FACET, count, offset=84)["corners"].reshape(-1, 3)
+    else:
+        rows = np.array(_VERTEX.findall(content), dtype=float).reshape(-1, 3)
+    if not len(rows) or len(rows) % 3:
+        raise meshio.ReadError("it has no triangles, or half of one")
+    points, where = np.unique(rows, axis=0, return_inverse=True)
     return meshio.Mesh(points, [("triangle", where.reshape(-1, 3))])
 
 
-def _read_obj(path: Path) -> meshio.Mesh:
+def _read_ply(content: bytes) -> meshio.Mesh:
+    if b"end_header" not in content:
+        raise meshio.ReadError("its header does not end")  # meshio would read on for ever
+    return meshio.ply.read(io.BytesIO(content))
+
+
+def _read_obj(content: bytes) -> meshio.Mesh:
     """Corners and faces of an .obj; meshio wants a normal for every corner, which few programs write."""
     points: list[list[float]] = []
     faces: dict[int, list[list[int]]] = {}
-    for line in path.read_bytes().decode("latin-1").replace("\\\n", " ").splitlines():
+    for line in content.decode("latin-1").replace("\\\n", " ").splitlines():
         kind, *words = line.split() or [""]
         if kind == "v":
             points.append([float(word) for word in words[:3]])
@@ -93,18 +96,17 @@ def _read_obj(path: Path) -> meshio.Mesh:
     return meshio.Mesh(np.array(points).reshape(-1, 3), cells)
 
 
+_READERS = {".stl": _read_stl, ".ply": _read_ply, ".obj": _read_obj}
+
+
 def _faces(path: Path) -> tuple[Array, Index]:
     """Corners and triangles of a surface file; faces of more corners as fans."""
+    content = read_bytes(path, LARGEST_SURFACE)
     try:
-        if path.suffix.lower() == ".ply" and b"end_header" not in path.read_bytes():
-            raise meshio.ReadError("its header does not end")  # meshio would read on for ever
         with quiet():  # a signalling nan in 32 bits is refused below
-            own = _read_obj(path) if path.suffix.lower() == ".obj" else _read_ascii_stl(path)
-            mesh = own or _FORMATS[path.suffix.lower()].read(str(path))
+            mesh = _READERS[path.suffix.lower()](content)
             points = np.asarray(mesh.points, float)
         blocks = [(block.type, np.asarray(block.data, dtype=np.intp)) for block in mesh.cells]
-    except OSError as error:
-        raise InputError(path, "", f"cannot be read: {reason(error)}") from None
     except DAMAGED as error:
         said = f"{type(error).__name__} {error}".strip()
         problem = f"must be a {path.suffix} surface; got a file that meshio cannot read: {said}"

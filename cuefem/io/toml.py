@@ -14,8 +14,8 @@ from typing import Annotated, Any
 
 from cuefem.cue import Cue, LumpedCue, Material
 from cuefem.effects import Effect, effect_kinds
-from cuefem.io.errors import InputError, nearest, read_bytes, reason, shown
-from cuefem.io.schema import build, file_value, joined, keys_of, table, unknown_key
+from cuefem.io.errors import InputError, nearest, read_bytes, shown
+from cuefem.io.schema import build, joined, keys_of, table, unknown_key
 from cuefem.materials import material
 from cuefem.quantity import MOST_SEGMENTS, Quantity, check_fields, quantities
 from cuefem.scene import Scene
@@ -43,8 +43,6 @@ def read_text(path: Path) -> str:
     """A file's text; InputError if it cannot be read, is too long, is not UTF-8, or is empty."""
     try:
         content = read_bytes(path, LARGEST_TEXT).decode("utf-8-sig")
-    except OSError as error:
-        raise InputError(path, "", f"cannot be read: {reason(error)}") from None
     except UnicodeDecodeError as error:
         raise InputError(path, "", f"must be UTF-8 text; got byte {error.object[error.start]:#04x}") from None
     if not content.strip():
@@ -238,7 +236,7 @@ def _spelt_out(kind: type[Effect], found: dict[str, Any], path: Path, key: str) 
         if twice := [name for name in meant if name in found]:
             raise InputError(path, joined(key, twice[0]), f"must be left out beside {word}, which gives it")
         rest = {name: value for name, value in found.items() if name != word}
-        found = rest | {name: file_value(value, marks[name]) for name, value in names[given].items()}
+        found = rest | {name: marks[name].written(value) for name, value in names[given].items()}
     return found
 
 

@@ -16,6 +16,7 @@ from cuefem.quantity import check_kind
 from cuefem.scene import Scene
 
 STEP = 0.1  # of differences, in standard deviations of a prior
+NEARER = 8  # of that step, towards the limit of what can be
 
 Track = Callable[[Sequence[Any]], Iterable[Any]]
 
@@ -83,10 +84,29 @@ class DocumentedCue:
         """
         columns = []
         for move in track(list(STEP * np.eye(len(z)))):
-            above = self.computed(z + move, also)
-            rise = above - at if at is not None else (above - self.computed(z - move, also)) / 2
-            columns.append(rise / STEP)
+            columns.append(self._slope(z, move, also, at) / STEP)
         return np.array(columns).T.reshape(-1, len(z))
+
+    def _slope(self, z: Array, move: Array, also: Sequence[Measurement], at: Array | None) -> Array:
+        """Change of the values over ``move``, from a smaller move or one side only where no cue can be farther out."""
+        for part in 0.5 ** np.arange(NEARER):
+            above = self.possible(z + part * move, also)
+            if above is not None and at is not None:
+                return (above - at) / part
+            below = self.possible(z - part * move, also)
+            if above is not None and below is not None:
+                return (above - below) / (2 * part)
+        here = self.computed(z, also) if at is None else at
+        if below is not None:
+            return (here - below) / part
+        return (self.computed(z + part * move, also) - here) / part
+
+    def possible(self, z: Array, also: Sequence[Measurement] = ()) -> Array | None:
+        """What `computed` gives; None where no cue can be, such as one with a bore wider than itself."""
+        try:
+            return self.computed(z, also)
+        except ValueError:
+            return None
 
     @property
     def lacking(self) -> list[str]:

@@ -184,7 +184,7 @@ def _lowest(
     best = None
     for halving in range(HALVINGS):
         there = z + step / 2**halving
-        found = _computed(cue, there)
+        found = cue.possible(there)
         after = np.inf if found is None else _cost(there, (measured - found) / sd)
         if found is not None and after < (cost if best is None else best[2]):
             best = there, found, after
@@ -195,11 +195,3 @@ def _lowest(
 
 def _cost(z: Array, r: Array) -> float:
     return float(r @ r + z @ z)
-
-
-def _computed(cue: DocumentedCue, z: Array) -> Array | None:
-    """The values; None for a cue that cannot be, such as one with a bore wider than itself."""
-    try:
-        return cue.computed(z)
-    except ValueError:
-        return None

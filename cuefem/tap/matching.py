@@ -18,6 +18,7 @@ from scipy.interpolate import RectBivariateSpline
 
 from cuefem.beam.modes import modes
 from cuefem.cue import Array, Cue, Material
+from cuefem.parts import with_material
 from cuefem.tap.tones import HIGH, LOW, Tone
 
 MODES = 24
@@ -30,28 +31,6 @@ TWICE = 6.0  # ln of the odds against two tones on one mode: one of them is wron
 SPREADS = (0.5, 0.5)  # of ln E and ln G/E about the file's, standard deviations before anything is heard
 REFINED = 20  # hypotheses
 SAME = 0.02  # relative: hypotheses whose E is closer are one
-
-
-def main_material(cue: Cue, segment: int | None = None) -> Material:
-    """The material that fills most of the cue's length, or that of a segment, 0 at the tip. ValueError beyond."""
-    if segment is not None:
-        if not 0 <= segment < len(cue.segments):
-            raise ValueError(f"segment must be in [0, {len(cue.segments) - 1}], 0 at the tip; got {segment}")
-        return cue.segments[segment].material
-    lengths: dict[Material, float] = {}
-    for s in cue.segments:
-        lengths[s.material] = lengths.get(s.material, 0.0) + s.length
-    return max(lengths, key=lambda material: lengths[material])
-
-
-def with_material(cue: Cue, old: Material, new: Material) -> Cue:
-    """The cue with a material replaced wherever it stands, cores included."""
-
-    def swapped(found: Any) -> Any:
-        return new if found == old else found
-
-    segments = (replace(s, material=swapped(s.material), core=swapped(s.core)) for s in cue.segments)
-    return replace(cue, segments=tuple(segments))
 
 
 @dataclass(frozen=True)

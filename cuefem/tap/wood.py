@@ -17,12 +17,13 @@ from cuefem.contact.strike import strike
 from cuefem.cue import Array, Cue, Material
 from cuefem.effects import Effect
 from cuefem.endmass.drives import end_mass
+from cuefem.parts import main_material, with_material
 from cuefem.quantity import Quantity, check_kind
 from cuefem.scene import Scene
 from cuefem.tap.chance import by_chance
 from cuefem.tap.doubts import DENSITY, KEPT, refusals, remarks, shear_coefficients
 from cuefem.tap.fit import Matched, TapFit
-from cuefem.tap.matching import FACTOR, ModeTable, Shaft, assigned, main_material, with_material
+from cuefem.tap.matching import FACTOR, ModeTable, Shaft, assigned
 from cuefem.tap.tones import Tone
 
 MODEL = 2e-3  # relative, of a mode's frequency: diameters to 0.1 %, uneven grain, the beam

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
@@ -19,8 +17,7 @@ from cuefem.effects import acting_on_cue
 from tests.helpers.cues import kim, pool, soft_tip, stiff_ferrule
 
 mpl.use("Agg")
-sys.path.append(str(Path(__file__).parents[2] / "studies"))
-from default_accuracy import random_cue
+from studies.accuracy import random_cue
 
 COUNT = 30
 

@@ -25,13 +25,25 @@ material = { E = "12.6 GPa", G = "840 MPa", rho = "782 kg/m^3" }
 CSV = "x [mm],diameter [mm]\n"
 
 BAD_FILES = {
-    "negative size": (GOOD.replace("700 mm", "-700 mm"), "segments[0].length: must be in (0, 1000] m; got '-700 mm'"),
-    "zero size": (GOOD.replace("21 mm", "0 mm"), "segments[0].butt_diameter: must be in (0, 10] m; got '0 mm'"),
-    "nan size": (GOOD.replace("12 mm", "nan mm"), "segments[0].tip_diameter: must be in (0, 10] m; got 'nan mm'"),
-    "infinite size": (GOOD.replace("700 mm", "inf m"), "segments[0].length: must be in (0, 1000] m; got 'inf m'"),
+    "negative size": (
+        GOOD.replace("700 mm", "-700 mm"),
+        "segments[0].length: must be more than 0 and at most 1000 m; got -700 mm",
+    ),
+    "zero size": (
+        GOOD.replace("21 mm", "0 mm"),
+        "segments[0].butt_diameter: must be more than 0 and at most 10000 mm; got 0 mm",
+    ),
+    "nan size": (
+        GOOD.replace("12 mm", "nan mm"),
+        "segments[0].tip_diameter: must be more than 0 and at most 10000 mm; got nan mm",
+    ),
+    "infinite size": (
+        GOOD.replace("700 mm", "inf m"),
+        "segments[0].length: must be more than 0 and at most 1000 m; got inf m",
+    ),
     "wide bore": (
         GOOD.replace("3 mm", "13 mm"),
-        "segments[0].tip_bore: must be in [0, 0.012) m, its outer diameter; got 0.013",
+        "segments[0].tip_bore: must be at least 0 and less than 12 mm, its outer diameter; got 13 mm",
     ),
     "unknown key": (
         GOOD.replace("length", "lenght"),
@@ -40,7 +52,7 @@ BAD_FILES = {
     ),
     "missing unit": (
         GOOD.replace('"700 mm"', "700"),
-        'segments[0].length: must be in (0, 1000] m, a length with its unit, such as "12 mm"; got 700',
+        'segments[0].length: needs a unit: "0.5 in" or "12.7 mm"; got 700',
     ),
     "empty file": ("", "must hold a cue or a scene; got an empty file"),
     "no file": (None, "cannot be read: No such file or directory"),
@@ -60,9 +72,9 @@ BAD_FILES = {
     ),
     "unitless effect": (
         "cue = 'good.toml'\n[[effects]]\ntype = 'PointMass'\nposition = 0.1\nmass = '5 g'",
-        'effects[0].position: must be in [0, inf) m, a length with its unit, such as "12 mm"; got 0.1',
+        'effects[0].position: needs a unit: "0.5 in" or "12.7 mm"; got 0.1',
     ),
-    "offset": ("cue = 'good.toml'\n[stroke]\noffset = 1.0\n", "stroke.offset: must be in (-1, 1); got 1.0"),
+    "offset": ("cue = 'good.toml'\n[stroke]\noffset = 1.0\n", "stroke.offset: must be between -1 and 1; got 1.0"),
 }
 
 
@@ -118,36 +130,36 @@ FILES = {
     "empty.csv": "",
     **{f"kept.{suffix}": "somebody's work" for suffix in ("toml", "vtk", "vtu")},
 }
-HERTZ = 'good.toml: --near: must be in [0, inf) Hz, such as 250 or "0.25 kHz"; got '
+HERTZ = 'good.toml: --near: must be 0 Hz or more, such as 250 or "0.25 kHz"; got '
 LENGTH = 'a length with its unit, such as "12 mm"; got '
 # Commands on these files, each with a part of the one line that says why they are refused.
 COMMANDS = [
-    ("strike good.toml --offset 1", "good.toml: --offset: must be in (-1, 1); got 1.0"),
-    ("strike good.toml --offset -1.5", "good.toml: --offset: must be in (-1, 1); got -1.5"),
-    ("strike good.toml --offset nan", "good.toml: --offset: must be in (-1, 1); got nan"),
+    ("strike good.toml --offset 1", "good.toml: --offset: must be between -1 and 1; got 1.0"),
+    ("strike good.toml --offset -1.5", "good.toml: --offset: must be between -1 and 1; got -1.5"),
+    ("strike good.toml --offset nan", "good.toml: --offset: must be between -1 and 1; got nan"),
     (
         "strike good.toml --offset half",
-        "good.toml: --offset: must be a bare number in (-1, 1), b/R, or a length such as \"8 mm\"; got 'half'",
+        "good.toml: --offset: must be a bare number, between -1 and 1, b/R, or a length such as \"8 mm\"; got 'half'",
     ),
-    ("end-mass good.toml --contact-time 2", "--contact-time: must be in [1e-6, 10] s, a time with its unit, such as"),
-    ("end-mass good.toml --contact-time '-2 ms'", "good.toml: --contact-time: must be in [1e-6, 10] s; got '-2 ms'"),
-    ("report good.toml --contact-time '2 mm'", "--contact-time: must be in [1e-6, 10] s, a time with its unit, such"),
-    ("report good.toml --body-mass '-1 oz'", "good.toml: --body-mass: must be in [0, inf) kg; got '-1 oz'"),
+    ("end-mass good.toml --contact-time 2", "--contact-time: needs a unit: \"1.2 ms\"; got '2'"),
+    ("end-mass good.toml --contact-time '-2 ms'", "good.toml: --contact-time: must be 0.001 to 10000 ms; got -2 ms"),
+    ("report good.toml --contact-time '2 mm'", "--contact-time: must be a time with its unit, such"),
+    ("report good.toml --body-mass '-1 oz'", "good.toml: --body-mass: must be 0 oz or more; got -1 oz"),
     ("modes good.toml --near -250", f"{HERTZ}'-250'"),
     ("modes good.toml --near abc", f"{HERTZ}'abc'"),
     ("modes good.toml --near '3 mm'", f"{HERTZ}'3 mm'"),
     ("modes good.toml --material ash", "names its materials itself: material is for .csv, .stl, "),
     ("modes back.csv", "back.csv: line 4, x: must be beyond 700 mm, the x of the line before"),
-    ("modes thin.csv", "thin.csv: line 3, diameter: must be in (0, 10] m; got '-21 mm'"),
+    ("modes thin.csv", "thin.csv: line 3, diameter: must be more than 0 and at most 10000 mm; got -21 mm"),
     ("modes headless.csv", 'headless.csv: line 1: must name the columns, such as "x [mm],diameter [mm]"'),
     ("modes empty.csv", "empty.csv: must hold a cue or a scene; got an empty file"),
     ("modes shaft.csv --material 'hard mapel'", "hard maple"),
     ("modes shaft.csv --material 'hard mapel'", "see `cuefem materials`"),
     ("strike of_none.toml", "of_none.toml: cue: none.toml: cannot be read: No such file or directory"),
-    ("strike of_bad.toml", "cuefem: bad.toml: segments[0].length: must be in"),
-    ("modes inn.toml", f"{LENGTH}'28 inn', an unknown unit ('inn')"),
-    ("modes kg.toml", f"{LENGTH}'28 kg', of another kind ('kg')"),
-    ("modes bare.toml", f"{LENGTH}'28'"),
+    ("strike of_bad.toml", "cuefem: bad.toml: segments[0].length: must be more than 0"),
+    ("modes inn.toml", f"{LENGTH}'28 inn': no unit is called 'inn'; did you mean 'in'?"),
+    ("modes kg.toml", f"{LENGTH}'28 kg', which is a mass"),
+    ("modes bare.toml", 'length: needs a unit: "0.5 in" or "12.7 mm"; got \'28\''),
     ("modes lumped.toml", "lumped.toml: Scene.cue must be a Cue of segments: its modes or its shape are needed; got"),
     ("modes lumped.toml --body-mass '1 kg'", "lumped.toml: --body-mass: must be left out: a lumped cue is whole"),
     ("convert lumped.toml out.toml --body-mass '1 kg'", "--body-mass: must be left out: a lumped cue is whole"),
@@ -202,7 +214,7 @@ def test_a_whole_process_says_one_line(tmp_path: Path) -> None:
         [sys.executable, "-c", program, "modes", str(bad)], capture_output=True, text=True, env=environment
     )
     assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr == f"cuefem: {bad}: segments[0].length: must be in (0, 1000] m; got '-700 mm'\n"
+    assert done.stderr == f"cuefem: {bad}: segments[0].length: must be more than 0 and at most 1000 m; got -700 mm\n"
 
 
 @pytest.mark.parametrize(("was", "size"), [("700 mm", "1e-300 m"), ("782 kg/m^3", "1e308 kg/m^3")])
@@ -224,7 +236,9 @@ def test_a_tip_as_thin_as_a_hair(tmp_path: Path, command: str) -> None:
     status, out, err = call(command, path)
     assert (status, out) == (2, "")
     assert err.splitlines()[0].startswith("unusual: segments[0].tip_diameter 0.012 mm; check the unit")
-    assert err.splitlines()[-1].startswith(f"cuefem: {path}: LeatherTip.height must be in ")
+    assert err.splitlines()[-1].startswith(
+        f"cuefem: {path}: LeatherTip.height must be 0.0016 to 0.018 mm high on a tip of 0.012 mm; got 6 mm"
+    )
     status, out, err = call(command, path, "--contact-time", "2 ms", "--ball", "carom")
     assert (status, out) == (2, "")
     assert err.splitlines()[0].startswith("unusual: segments[0].tip_diameter 0.012 mm; check the unit")
@@ -236,7 +250,7 @@ def test_more_memory_than_there_is(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     def full(*_: object, **__: object) -> None:
         raise MemoryError
 
-    monkeypatch.setattr("cuefem.report.modes_record", full)
+    monkeypatch.setattr("cuefem.cli.tones.modes_record", full)
     path = tmp_path / "cue.toml"
     path.write_text(GOOD, encoding="utf-8")
     said = (

@@ -34,15 +34,15 @@ def test_the_offset_of_a_weighed_end_is_one_too() -> None:
 
 LENGTH = 'b/R, or a length such as "8 mm"'
 REFUSED = [
-    (["strike", KIM, "--offset", "0,3"], f"(-1, 1), {LENGTH}; got '0,3'; a decimal point, no comma"),
-    (["strike", KIM, "--offset", "8"], "--offset: must be in (-1, 1); got 8.0"),
+    (["strike", KIM, "--offset", "0,3"], f"between -1 and 1, {LENGTH}; got '0,3'; a decimal point, no comma"),
+    (["strike", KIM, "--offset", "8"], "--offset: must be between -1 and 1; got 8.0"),
     (["strike", KIM, "--offset", "8 kg"], LENGTH + "; got '8 kg'"),
     (["strike", KIM, "--offset", "40 mm"], "or a length in (-28.575, 28.575) mm, the radius of the ball; got '40 mm'"),
-    (["strike", KIM, "--friction", "0,6"], "bare number in [0, inf]; got '0,6'; a decimal point, no comma"),
+    (["strike", KIM, "--friction", "0,6"], "bare number, 0 or more; got '0,6'; a decimal point, no comma"),
     (["report", KIM, "--ball", "chess"], "'chess' is not one of 'pool', 'carom', 'snooker' (`"),
     (["strike", KIM, "--offset"], "Option '--offset' requires an argument"),
     (["--frog"], "--frog"),
-    (["side", KIM, "--contact-time", "10 s"], "--contact-time: must be in [1e-6, 0.5] s; got '10 s'"),
+    (["side", KIM, "--contact-time", "10 s"], "--contact-time: must be 1e-6 to 0.5 s; got 10 s"),
     ([*WEIGH, "--material", "ash"], "--material: must go with --scene, whose shape it is for; got no --scene"),
     ([*WEIGH, "--length-unit", "in"], "--length-unit: must go with --scene, whose shape it is for; got no --scene"),
 ]

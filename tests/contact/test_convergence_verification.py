@@ -1,7 +1,4 @@
-"""The rates at which the finite-element cue reaches the lumped one (studies/convergence.py), and why they are these."""
-
-import sys
-from pathlib import Path
+"""The rates at which the finite-element cue reaches the lumped one (studies/paper/convergence.py), and why."""
 
 import matplotlib as mpl
 import numpy as np
@@ -13,15 +10,14 @@ from cuefem.beam.system import assemble
 from cuefem.contact.strike import strike_modes
 from cuefem.endmass.drives import stick_at_offset
 from cuefem.tip_modes import tip_modes_of
+from studies import pages, strokes
 from tests.helpers.orders import assert_order, observed_orders
 
 mpl.use("Agg")
-sys.path.append(str(Path(__file__).parents[2] / "studies"))
-import common
-import convergence as study
-import convergence_roads as roads
+from studies.paper import convergence as study
+from studies.paper import convergence_roads as roads
 
-KIM = common.scene(common.cue("kim"), 1e-3, 0.3)
+KIM = strokes.scene(strokes.cue("kim"), 1e-3, 0.3)
 
 
 @pytest.fixture(scope="module")
@@ -31,12 +27,12 @@ def kim_tip():
 
 def test_a_fitted_exponent_is_that_of_the_power_law():
     x = np.geomspace(1, 100, 7)
-    assert common.slope(x, 3 * x**-1.5) == pytest.approx(-1.5, rel=1e-12)
-    assert common.slope(x, 3 * x**-1.5 * np.exp(0.1 * x)) > 0
+    assert pages.slope(x, 3 * x**-1.5) == pytest.approx(-1.5, rel=1e-12)
+    assert pages.slope(x, 3 * x**-1.5 * np.exp(0.1 * x)) > 0
 
 
 def test_crests_are_the_largest_of_each_run():
-    assert np.array_equal(common.crests([1, -3, 2, 0.5, -0.25, 0], 3), [3, 0.5])
+    assert np.array_equal(pages.crests([1, -3, 2, 0.5, -0.25, 0], 3), [3, 0.5])
 
 
 # (a), (b)
@@ -44,7 +40,7 @@ def test_crests_are_the_largest_of_each_run():
 
 def test_the_stub_has_the_exact_rigid_end_mass_of_its_frustum():
     """m_c nu_c/(1 + nu_c) is what its two rigid modes give; nu_c with rotary inertia, 0.309 (without: 0.307)."""
-    tip = tip_modes_of(common.scene(roads.stub()), Resolution(1, 6, 1))
+    tip = tip_modes_of(strokes.scene(roads.stub()), Resolution(1, 6, 1))
     assert roads.stub_end_mass() == pytest.approx(roads.rigid_end_mass(tip), rel=1e-12)
     assert roads.stub_end_mass() == pytest.approx(2.84587e-3, rel=1e-5)
 
@@ -53,8 +49,8 @@ def test_stiffness_scales_every_frequency_by_its_root():
     """What road (a) rests on: one eigenproblem serves all stiffnesses."""
     soft = roads.stub()
     (end,) = soft.segments
-    wood = common.replace(end.material, E=9 * end.material.E, G=9 * end.material.G)
-    stiff = common.replace(soft, segments=(common.replace(end, material=wood),))
+    wood = strokes.replace(end.material, E=9 * end.material.E, G=9 * end.material.G)
+    stiff = strokes.replace(soft, segments=(strokes.replace(end, material=wood),))
     assert modes(stiff, 4).frequencies == pytest.approx(3 * modes(soft, 4).frequencies, rel=1e-9)
     assert np.array_equal(assemble(stiff, elements=1, order=4).M, assemble(soft, elements=1, order=4).M)
 
@@ -83,7 +79,7 @@ def test_kims_shaft_at_its_rigid_limit():
     """handbook: Effective end mass: mass/m_e = 5.494268; squirt 4.093 degrees at b/R 0.3."""
     tip = tip_modes_of(KIM, Resolution(4, 20, 12))
     assert 0.12 / roads.rigid_end_mass(tip) == pytest.approx(5.494268, rel=1e-7)
-    assert np.degrees(common.lumped_squirt(KIM, roads.rigid_end_mass(tip))) == pytest.approx(4.093, abs=5e-4)
+    assert np.degrees(strokes.lumped_squirt(KIM, roads.rigid_end_mass(tip))) == pytest.approx(4.093, abs=5e-4)
 
 
 # (c)
@@ -102,36 +98,36 @@ def test_lighter_tip_modes_are_those_of_a_lighter_cue(kim_tip):
     cue = KIM.cue
     (cone,) = cue.segments
     wood = cone.material
-    wood = common.replace(wood, E=wood.E / 10, G=wood.G / 10, rho=wood.rho / 10)
-    light = common.replace(cue, segments=(common.replace(cone, material=wood),), body_mass=cue.mass - 0.012)
-    meant = tip_modes_of(common.replace(KIM, cue=light), Resolution(8, 20, 22))
+    wood = strokes.replace(wood, E=wood.E / 10, G=wood.G / 10, rho=wood.rho / 10)
+    light = strokes.replace(cue, segments=(strokes.replace(cone, material=wood),), body_mass=cue.mass - 0.012)
+    meant = tip_modes_of(strokes.replace(KIM, cue=light), Resolution(8, 20, 22))
     scaled = roads.lighter(kim_tip, 0.1)
     assert scaled.omega == pytest.approx(meant.omega, rel=1e-9)
     assert scaled.amplitude == pytest.approx(meant.amplitude, rel=1e-8)
 
 
 def test_the_end_mass_at_no_offset_is_the_stick_end_mass(kim_tip):
-    struck = common.at_offset(KIM, 0.0)
+    struck = strokes.at_offset(KIM, 0.0)
     assert stick_at_offset(kim_tip, struck) == pytest.approx(roads.stick(kim_tip, struck), rel=1e-13)
 
 
 # (d)
 
 
-@pytest.mark.parametrize("name", common.NAMES)
+@pytest.mark.parametrize("name", strokes.NAMES)
 def test_the_lumped_cue_is_reached_like_the_root_of_the_offset(name):
     road = study.road("small_offset", name)
     errors = np.abs(road.errors["stick"][:5])
     assert_order(0.5, road.along[:5][::-1], errors[::-1], within=0.02)
 
 
-@pytest.mark.parametrize("name", common.NAMES)
+@pytest.mark.parametrize("name", strokes.NAMES)
 def test_the_coefficient_of_the_root_is_slip_times_ringing(name):
-    struck = common.scene(common.cue(name))
+    struck = strokes.scene(strokes.cue(name))
     tip = roads.plain_tip(struck)
     offsets = np.array([1e-7, 1e-8])
-    there = [common.at_offset(struck, b) for b in offsets]
-    lumped = [common.lumped_squirt(scene, roads.stick(tip, struck)) for scene in there]
+    there = [strokes.at_offset(struck, b) for b in offsets]
+    lumped = [strokes.lumped_squirt(scene, roads.stick(tip, struck)) for scene in there]
     found = [roads.squirt_of(tip, scene) / psi - 1 for scene, psi in zip(there, lumped, strict=True)]
     law = roads.root_law(tip, struck)
     misses = np.abs(found / np.sqrt(offsets) / law - 1)
@@ -142,7 +138,7 @@ def test_the_coefficient_of_the_root_is_slip_times_ringing(name):
 @pytest.mark.parametrize("count", [8, 22])
 def test_the_first_slip_lasts_as_derived_and_shortens_with_the_modes(kim_tip, count):
     tip = kim_tip.lowest(count)
-    outcome = strike_modes(common.at_offset(KIM, 1e-8), tip)
+    outcome = strike_modes(strokes.at_offset(KIM, 1e-8), tip)
     first = outcome.phases[0]
     assert first.grip == "slip"
     assert first.end / 1e-4 == pytest.approx(roads.first_slip(tip, KIM), rel=1e-3)
@@ -170,7 +166,7 @@ def test_the_tail_of_the_modes_follows_the_compliance_left_out():
     """As a power of it the tail is the first; their ratio wanders by some per cent and does not settle."""
     road = study.road("more_modes")
     far = road.along >= 28
-    assert common.slope(road.errors["compliance"][far], road.errors["squirt"][far]) == pytest.approx(1, abs=0.03)
+    assert pages.slope(road.errors["compliance"][far], road.errors["squirt"][far]) == pytest.approx(1, abs=0.03)
     ratios = study.tail_ratios()
     assert 1.03 < ratios.max() / ratios.min() < 1.1
     assert study.modes_rate() == pytest.approx(-1.4, abs=0.1)

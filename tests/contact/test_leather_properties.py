@@ -27,7 +27,7 @@ from cuefem import (
 )
 from cuefem.contact.second_hit import hits
 from cuefem.contact.strike import strike_modes
-from studies.common import cue
+from studies.strokes import cue
 from tests.helpers.leather_scenes import AT, LEATHER, leather_scene
 from tests.helpers.strike_scenes import hand_made, imbalance
 

@@ -1,8 +1,8 @@
-"""How many shafts a second: the study that measures it (studies/batch_seconds.py), on few shafts (benchmark).
+"""How many shafts a second: the study that measures it (studies/accuracy/batch.py), on few shafts (benchmark).
 
 Here only that every number is there and is of the right answers; no test asserts a time. The numbers are printed by
 
-    python -m studies.batch_seconds
+    python -m studies.accuracy.batch
 """
 
 from __future__ import annotations
@@ -12,20 +12,20 @@ import pytest
 
 from cuefem import Resolution
 from cuefem.design.batch import batch_frequencies, batch_stick
-from studies import batch, batch_seconds
-from studies.batch_seconds import Counted, Size
-from studies.common import cue, scene
+from studies.accuracy import batch
+from studies.accuracy.batch import Counted, Size
+from studies.strokes import cue, scene
 
 
 def test_five_frequencies() -> None:
-    shafts = batch_seconds.shafts(64)
+    shafts = batch.shafts(64)
     fine = batch_frequencies(shafts, 5, at=Resolution(2, 18, 5))
     np.testing.assert_allclose(batch_frequencies(shafts, 5, at=batch.FREQUENCIES_AT), fine, rtol=3e-6)
 
 
 def test_stick_end_mass() -> None:
     """To 1e-3 of every mode below the shear cut-off."""
-    shafts, struck = batch_seconds.shafts(12), scene(cue("kim"), 0.7e-3)
+    shafts, struck = batch.shafts(12), scene(cue("kim"), 0.7e-3)
     fine, _ = batch_stick(shafts, struck, at=Resolution(5, 22, 70), ended=True)
     np.testing.assert_allclose(batch_stick(shafts, struck, at=batch.CHOSEN, ended=True)[0], fine, rtol=1e-3)
 
@@ -33,8 +33,8 @@ def test_stick_end_mass() -> None:
 @pytest.mark.heavy
 def test_every_number_is_told() -> None:
     told: list[str] = []
-    found = batch_seconds.text(Size(shafts=8, rounds=1, swept=256, streamed=2**10), told.append)
-    names = list(batch_seconds.works(Size(shafts=1)))
+    found = batch.seconds(Size(shafts=8, rounds=1, swept=256, streamed=2**10), told.append)
+    names = list(batch.works(Size(shafts=1)))
     assert [line.split(":")[0] for line in told[: len(names)]] == [name.split(":")[0] for name in names]
     assert all(f"| {name} | " in found for name in names)
     assert "in two" in told[-2]
@@ -45,7 +45,7 @@ def test_every_number_is_told() -> None:
 def test_memory_stays_flat_over_forty_thousand_designs() -> None:
     """Over 100,000, by way of a database: tests/design/test_sweep_kill.py."""
     store = Counted(40_000)
-    batch_seconds.sweep(batch_seconds.study(store.size, ("frequency(1)", "mass"), Resolution(1, 5, 1)), store)
+    batch.sweep(batch.study(store.size, ("frequency(1)", "mass"), Resolution(1, 5, 1)), store)
     assert store.designs == store.size
     assert len(store.memory) == 10
     assert max(store.memory) < min(store.memory) + 4  # MiB: 100 bytes a design

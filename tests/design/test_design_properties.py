@@ -27,14 +27,14 @@ from cuefem import (
 )
 from cuefem.beam.modes import solve
 from cuefem.beam.waves import even_mesh_for
-from cuefem.design import Levels, Response, Sample, Span, Study, Vary, evaluate, paths, replaced
-from cuefem.design.paths import spelt, value_at
+from cuefem.design import Levels, Response, Sample, Span, Study, Vary, evaluate
 from cuefem.design.responses import KINDS, kinds
 from cuefem.design.solvers import key_of
 from cuefem.endmass.drives import DEFINITIONS, small_offset_slope
 from cuefem.materials import material
 from cuefem.squirt import natural_pivot_length
 from cuefem.tip_modes import default_resolution, tip_modes_of
+from cuefem.vary import paths, replaced, spelt, value_at
 from tests.helpers.cues import MAPLE, kim, low_deflection, pool
 
 AT = Resolution(1, 14, 7)

@@ -14,15 +14,15 @@ from cuefem.cli.optimize import _progress
 from cuefem.design.evaluation import evaluate
 from cuefem.design.optimum import optimum
 from cuefem.io.study import load_optimum
-from studies.common import STUDIES
+from studies.pages import STUDIES
 from tests.helpers.command_line import call
 from tests.helpers.sweeps import OPTIMUM, written
 
-STUDY = STUDIES / "optimum.toml"
+STUDY = STUDIES / "design" / "optimum.toml"
 
 
 def test_the_committed_study(tmp_path: Path) -> None:
-    """The number of studies/low_squirt.md; the scene that is written is as stiff as was asked."""
+    """The number of studies/design/low_squirt.md; the scene that is written is as stiff as was asked."""
     goal = tmp_path / "best.toml"
     code, out, err = call("optimize", STUDY, "--json", "-o", goal)
     assert (code, err) == (0, "")

@@ -12,7 +12,7 @@ import pytest
 from scipy.io import wavfile
 
 import cuefem as cf
-from cuefem.tap.matching import with_material
+from cuefem.parts import with_material
 from tests.helpers.designer_browser import BROWSER, opened, served, settled, shown, turn
 
 sync_api = pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")

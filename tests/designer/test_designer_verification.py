@@ -24,7 +24,6 @@ from cuefem.designer.answers import (
     with_end_mass,
 )
 from cuefem.designer.design import Design
-from cuefem.designer.model import knobs_of, turned
 from cuefem.designer.numbers import Column, Row, compared, csv_text, difference, key_markup, rows, table_markup
 from cuefem.designer.pictures import limits_of, offset_charts
 from cuefem.designer.start import first_scene
@@ -34,6 +33,7 @@ from cuefem.report.modes import modes_record
 from cuefem.report.quantities import QUANTITIES
 from cuefem.report.squirt import squirt_record
 from cuefem.report.strike import strike_record
+from cuefem.vary import knobs_of, turned
 from tests.helpers.command_line import call
 
 SCENES = Path(__file__).parents[2] / "studies" / "scenes"
@@ -47,7 +47,7 @@ def loaded(name: str) -> cf.Scene:
 
 def designs() -> dict[str, cf.Scene]:
     first = first_scene()
-    knobs = replace(knobs_of(first), bore_depth=0.12, tip_diameter=0.012, joint_compliance=5e-4, leather=3e8)
+    knobs = knobs_of(first) | dict(bore_depth=0.12, tip_diameter=0.012, joint_compliance=5e-4, leather=3e8)
     return {
         "first": first,
         "turned": turned(first, knobs),
@@ -103,7 +103,7 @@ def test_the_static_stiffness_is_that_of_a_clamped_cue() -> None:
     scene = replace(first_scene(), effects=())
     exact = float(CueBatch.of([scene.cue]).tip_stiffness[0])
     assert weighed(scene).tip_stiffness == pytest.approx(exact, rel=1e-7)
-    soft = turned(scene, replace(knobs_of(scene), joint_position=0.6, joint_compliance=1e-3))
+    soft = turned(scene, knobs_of(scene) | dict(joint_position=0.6, joint_compliance=1e-3))
     added = 1e-3 * 0.6**2  # a hinge's: the load's moment there, turned through its lever
     assert 1 / weighed(soft).tip_stiffness - 1 / exact == pytest.approx(added, rel=1e-6)
 
@@ -185,7 +185,7 @@ def test_every_number_of_a_design_is_written() -> None:
 def test_designs_stand_side_by_side_like_with_like() -> None:
     scene = replace(loaded("kim"), effects=())
     own = Design.of("kim", scene)
-    thin = replace(own, name='=1+"thin, new"', knobs=replace(own.knobs, tip_diameter=own.knobs.tip_diameter - 5e-4))
+    thin = replace(own, name='=1+"thin, new"', knobs={**own.knobs, "tip_diameter": own.knobs["tip_diameter"] - 5e-4})
     columns = [Column(own, weighed(scene)), Column(replace(own, name="b"), weighed(scene)), Column(thin, None)]
     columns.append(Column(thin, weighed(thin.scene)))
     lines = {line.name: line for line in compared(columns, 1, INCHES)}

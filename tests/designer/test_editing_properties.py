@@ -9,11 +9,12 @@ import pytest
 
 import cuefem as cf
 from cuefem.designer import editing
-from cuefem.designer.model import knobs_of, turned
 from cuefem.designer.presets import PRESETS, opened
 from cuefem.designer.start import first_scene
 from cuefem.effects import effect_kinds
 from cuefem.games import GAMES
+from cuefem.parts import materials_in
+from cuefem.vary import knobs_of, replaced, turned, value_at
 
 NAMES = [preset.name for preset in PRESETS]
 ROOT = Path(__file__).parents[2]
@@ -34,16 +35,16 @@ def test_all_ready_cues_and_scenes_are_on_offer() -> None:
 def test_every_number_is_edited_where_it_is(scenes: dict[str, cf.Scene], name: str) -> None:
     scene = scenes[name]
     things = {("ball",): scene.ball, ("tip",): scene.tip, ("stroke",): scene.stroke}
-    things |= {("segments", i): s for i, s in enumerate(scene.cue.segments)}
+    things |= {("cue", "segments", i): s for i, s in enumerate(scene.cue.segments)}
     things |= {("effects", i): e for i, e in enumerate(scene.effects)}
     for at, thing in things.items():
         for field in editing.fields_of(thing, at):
-            assert editing.got(scene, field.path) == field.value
+            assert value_at(scene, field.path) == field.value
             if field.value is None or field.value in (0.0, float("inf")):
                 continue
-            made = editing.put(scene, field.path, field.value * (1 + 1e-4))
-            assert editing.got(made, field.path) == field.value * (1 + 1e-4)
-            assert editing.put(made, field.path, field.value) == scene
+            made = replaced(scene, {field.path: field.value * (1 + 1e-4)})
+            assert value_at(made, field.path) == field.value * (1 + 1e-4)
+            assert replaced(made, {field.path: field.value}) == scene
 
 
 def test_segments_are_split_added_and_removed() -> None:
@@ -61,10 +62,8 @@ def test_segments_are_split_added_and_removed() -> None:
 
 def test_a_material_of_ones_own_is_everywhere() -> None:
     scene = first_scene()
-    i = [m.E for m in editing.materials_in(scene.cue)].index(
-        cf.load(ROOT / "meshes/pool_maple.toml").segments[2].material.E
-    )
-    made = editing.put(scene, ("materials", i, "E"), 15e9)
+    i = [m.E for m in materials_in(scene.cue)].index(cf.load(ROOT / "meshes/pool_maple.toml").segments[2].material.E)
+    made = replaced(scene, {("materials", i, "E"): 15e9})
     assert made.cue.segments[0].core == made.cue.segments[1].material == made.cue.segments[-1].material
     assert made.cue.segments[1].material.E == 15e9
 
@@ -80,9 +79,9 @@ def test_every_effect_is_switched_on_and_off(kind: str) -> None:
 @pytest.mark.parametrize("game", GAMES)
 def test_a_game_is_chosen(game: str) -> None:
     maple = cf.load(ROOT / "meshes/pool_maple.toml")
-    scene = turned(first_scene(), replace(knobs_of(first_scene()), bridge_stiffness=5e3))
+    scene = turned(first_scene(), {**knobs_of(first_scene()), "bridge_stiffness": 5e3})
     if game == "snooker":  # its dome is too round for a tip so wide
-        scene = turned(scene, replace(knobs_of(scene), tip_diameter=0.0095, tip_height=0.004))
+        scene = turned(scene, {**knobs_of(scene), "tip_diameter": 0.0095, "tip_height": 0.004})
     made = editing.with_game(scene, game)
     assert editing.game_of(made) == game
     assert made.stroke.speed == GAMES[game].speed

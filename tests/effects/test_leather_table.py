@@ -7,8 +7,8 @@ from importlib.resources import files
 import numpy as np
 
 from cuefem.effects import leather_table as lt
-from studies.leather_body import Shape, loads
-from studies.leather_elasticity import COUNTS, OFF, SHEETS, curvatures, geometry, patches, shape_at
+from studies.beam.leather_body import Shape, loads
+from studies.beam.leather_elasticity import COUNTS, OFF, SHEETS, curvatures, geometry, patches, shape_at
 
 
 def test_one_geometry() -> None:

@@ -9,8 +9,8 @@ import pytest
 
 from cuefem import LeatherTip
 from cuefem.effects import leather_table as lt
-from studies.leather_body import Patch, Shape, Solid, compliance, fitted, head_on, loads, surfaces, usual
-from studies.leather_elasticity import solved
+from studies.beam.leather_body import Patch, Shape, Solid, compliance, fitted, head_on, loads, surfaces, usual
+from studies.beam.leather_elasticity import solved
 
 TIP, DIAMETER = LeatherTip(6e-3, 9.5e-3, 100e6), 12.75e-3
 SHAPE = Shape(6 / 12.75, 12.75 / 9.5)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
@@ -18,8 +16,7 @@ from cuefem.tip_modes import Solved
 from tests.helpers.cues import kim, scene
 
 mpl.use("Agg")
-sys.path.append(str(Path(__file__).parents[2] / "studies"))
-from default_accuracy import random_cue
+from studies.accuracy import random_cue
 
 DRAW = np.random.default_rng(3)
 SKEW = DRAW.normal(size=(40, 40))

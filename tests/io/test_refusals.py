@@ -39,35 +39,60 @@ LENGTH = r'a length with its unit, such as "12 mm"'
 
 # What is replaced in a good file, by what, and the line that says so.
 CHANGES = [
-    (CUE, '"700 mm"', '"-700 mm"', "segments[0].length: must be in (0, 1000] m; got '-700 mm'"),
-    (CUE, '"700 mm"', '"0 mm"', "segments[0].length: must be in (0, 1000] m; got '0 mm'"),
-    (CUE, '"700 mm"', '"nan mm"', "segments[0].length: must be in (0, 1000] m; got 'nan mm'"),
-    (CUE, '"700 mm"', '"inf mm"', "segments[0].length: must be in (0, 1000] m; got 'inf mm'"),
-    (CUE, '"700 mm"', '"1e999 mm"', "segments[0].length: must be in (0, 1000] m; got '1e999 mm'"),
-    (CUE, '"700 mm"', '"1e-999 mm"', "segments[0].length: must be in (0, 1000] m; got '1e-999 mm'"),
-    (CUE, '"700 mm"', "700", f"segments[0].length: must be in (0, 1000] m, {LENGTH}; got 700"),
-    (CUE, '"700 mm"', '"700"', f"segments[0].length: must be in (0, 1000] m, {LENGTH}; got '700'"),
-    (CUE, '"700 mm"', '"mm"', f"segments[0].length: must be in (0, 1000] m, {LENGTH}; got 'mm'"),
-    (CUE, '"700 mm"', '"700 g"', f"segments[0].length: must be in (0, 1000] m, {LENGTH}; got '700 g'"),
-    (CUE, '"700 mm"', '"700 mmm"', f"segments[0].length: must be in (0, 1000] m, {LENGTH}; got '700 mmm'"),
-    (CUE, '"700 mm"', '"700 m^9^9^9^9"', f"segments[0].length: must be in (0, 1000] m, {LENGTH}; got '700 m^9^9^9^9'"),
-    (CUE, '"700 mm"', "true", f"segments[0].length: must be in (0, 1000] m, {LENGTH}; got True"),
-    (CUE, '"700 mm"', "[]", f"segments[0].length: must be in (0, 1000] m, {LENGTH}; got []"),
-    (CUE, 'length = "700 mm"\n', "", f"segments[0].length: must be given, in (0, 1000] m, {LENGTH}; got nothing"),
-    (CUE, '"12 mm"', '"-12 mm"', "segments[0].tip_diameter: must be in (0, 10] m; got '-12 mm'"),
-    (CUE, '"21 mm"', '"0 in"', "segments[0].butt_diameter: must be in (0, 10] m; got '0 in'"),
-    (CUE, '"3 mm"', '"13 mm"', "segments[0].tip_bore: must be in [0, 0.012) m, its outer diameter; got 0.013"),
-    (CUE, "kappa = 0.9", "kappa = 1.5", "segments[0].kappa: must be in (0, 1]; got 1.5"),
-    (CUE, "kappa = 0.9", "kappa = nan", "segments[0].kappa: must be in (0, 1]; got nan"),
-    (CUE, "kappa = 0.9", 'kappa = "0.9"', "segments[0].kappa: must be a bare number in (0, 1]; got '0.9'"),
-    (CUE, "kappa = 0.9", f"kappa = {'9' * 400}", f"segments[0].kappa: must be in (0, 1]; got {'9' * 57}..."),
-    (CUE, '"420 g"', '"-1 g"', "body_mass: must be in [0, inf) kg; got '-1 g'"),
-    (CUE, '"12.6 GPa"', '"0 GPa"', "segments[0].material.E: must be in (0, inf) Pa; got '0 GPa'"),
+    (CUE, '"700 mm"', '"-700 mm"', "segments[0].length: must be more than 0 and at most 1000 m; got -700 mm"),
+    (CUE, '"700 mm"', '"0 mm"', "segments[0].length: must be more than 0 and at most 1000 m; got 0 mm"),
+    (CUE, '"700 mm"', '"nan mm"', "segments[0].length: must be more than 0 and at most 1000 m; got nan mm"),
+    (CUE, '"700 mm"', '"inf mm"', "segments[0].length: must be more than 0 and at most 1000 m; got inf mm"),
+    (CUE, '"700 mm"', '"1e999 mm"', "segments[0].length: must be a number that is not so large; got 1e999 mm"),
+    (CUE, '"700 mm"', '"1e-999 mm"', "segments[0].length: must be more than 0 and at most 1000 m; got 1e-999 mm"),
+    (CUE, '"700 mm"', "700", 'segments[0].length: needs a unit: "0.5 in" or "12.7 mm"; got 700'),
+    (CUE, '"700 mm"', '"700"', 'segments[0].length: needs a unit: "0.5 in" or "12.7 mm"; got \'700\''),
+    (CUE, '"700 mm"', '"mm"', f"segments[0].length: must be {LENGTH}; got 'mm'"),
+    (CUE, '"700 mm"', '"700 g"', f"segments[0].length: must be {LENGTH}; got '700 g', which is a mass"),
+    (
+        CUE,
+        '"700 mm"',
+        '"700 mmm"',
+        f"segments[0].length: must be {LENGTH}; got '700 mmm': no unit is called",
+    ),
+    (
+        CUE,
+        '"700 mm"',
+        '"700 m^9^9^9^9"',
+        f"segments[0].length: must be {LENGTH}; got '700 m^9^9^9^9'",
+    ),
+    (CUE, '"700 mm"', "true", f"segments[0].length: must be {LENGTH}; got True"),
+    (CUE, '"700 mm"', "[]", f"segments[0].length: must be {LENGTH}; got []"),
+    (CUE, 'length = "700 mm"\n', "", f"segments[0].length: must be given, {LENGTH}; got nothing"),
+    (CUE, '"12 mm"', '"-12 mm"', "segments[0].tip_diameter: must be more than 0 and at most 10000 mm; got -12 mm"),
+    (CUE, '"21 mm"', '"0 in"', "segments[0].butt_diameter: must be more than 0 and at most 393.701 in; got 0 in"),
+    (
+        CUE,
+        '"3 mm"',
+        '"13 mm"',
+        "segments[0].tip_bore: must be at least 0 and less than 12 mm, its outer diameter; got 13 mm",
+    ),
+    (CUE, "kappa = 0.9", "kappa = 1.5", "segments[0].kappa: must be more than 0 and at most 1; got 1.5"),
+    (CUE, "kappa = 0.9", "kappa = nan", "segments[0].kappa: must be more than 0 and at most 1; got nan"),
+    (
+        CUE,
+        "kappa = 0.9",
+        'kappa = "0.9"',
+        "segments[0].kappa: must be a bare number, more than 0 and at most 1; got",
+    ),
+    (
+        CUE,
+        "kappa = 0.9",
+        f"kappa = {'9' * 400}",
+        f"segments[0].kappa: must be more than 0 and at most 1; got {'9' * 57}",
+    ),
+    (CUE, '"420 g"', '"-1 g"', "body_mass: must be 0 g or more; got -1 g"),
+    (CUE, '"12.6 GPa"', '"0 GPa"', "segments[0].material.E: must be more than 0 GPa; got 0 GPa"),
     (
         CUE,
         '"840 MPa"',
         '"84 GPa"',
-        "segments[0].material.G: must be in (0, 21000000000.0) Pa, E/(2 nu) of E = 12600000000.0 Pa, nu = 0.3; got",
+        "segments[0].material.G: must be between 0 and 21 GPa, E/(2 nu) of E = 12600000000.0 Pa, nu = 0.3; got",
     ),
     (
         CUE,
@@ -99,16 +124,16 @@ CHANGES = [
     (CUE, "[[segments]]", "[segments]", "segments: must be an array of tables; got {'length': '700 mm'"),
     (CUE, '{ E = "12.6 GPa"', '"hard mapel" #', "segments[0].material: "),
     (CUE, "kappa = 0.9", "core = 3", "segments[0].core: must be a table with the keys E, G, rho, loss, nu"),
-    (SCENE, "0.3", "1.5", "stroke.offset: must be in (-1, 1); got 1.5"),
-    (SCENE, "0.3", "-1", "stroke.offset: must be in (-1, 1); got -1"),
-    (SCENE, "0.3", "nan", "stroke.offset: must be in (-1, 1); got nan"),
-    (SCENE, '"1 ms"', '"1 mm"', 'tip.contact_time: must be in [1e-6, 10] s, a time with its unit, such as "1.2 ms"'),
+    (SCENE, "0.3", "1.5", "stroke.offset: must be between -1 and 1; got 1.5"),
+    (SCENE, "0.3", "-1", "stroke.offset: must be between -1 and 1; got -1"),
+    (SCENE, "0.3", "nan", "stroke.offset: must be between -1 and 1; got nan"),
+    (SCENE, '"1 ms"', '"1 mm"', 'tip.contact_time: must be a time with its unit, such as "1.2 ms"'),
     (SCENE, '"1 ms"', '"1 ms"\nstiffness = "1e5 N/m"', "tip: Tip takes contact_time (s) or stiffness (N/m)"),
     (SCENE, "[ball]", "[bal]", "bal: must be one of the keys segments, cue, ball, tip, stroke, effects, accuracy; got"),
-    (SCENE, "[ball]", "[accuracy]\nrtol=2\n[ball]", "accuracy.rtol: must be in (0, 1); got 2"),
+    (SCENE, "[ball]", "[accuracy]\nrtol=2\n[ball]", "accuracy.rtol: must be between 0 and 1; got 2"),
     (SCENE, "[ball]", "[accuracy]\nrtl=2\n[ball]", "accuracy.rtl: must be one of the keys rtol; got rtl = 2"),
     (SCENE, "[cue]", "[cue]\ncoupling = '99 1/kg'", "cue.coupling: must be in ("),
-    (SCENE, 'mass = "540 g"\n', "", "cue.mass: must be given, in (0, inf) kg, a mass with its unit"),
+    (SCENE, 'mass = "540 g"\n', "", "cue.mass: must be given, a mass with its unit"),
     (SCENE, "[cue]", "effects = 3\n[cue]", "effects: must be an array"),
     (SCENE, "[cue]", "effects = [{}]\n[cue]", "effects[0].type: must be one of "),
     (SCENE, "[cue]", "effects = [{type = 'PontMass'}]\n[cue]", "effects[0].type: must be one of "),
@@ -116,14 +141,14 @@ CHANGES = [
         SCENE,
         "[cue]",
         "effects = [{type = 'Support', position = '8 in', stiffness = '1e999 N/m'}]\n[cue]",
-        "effects[0].stiffness: must be in [0, inf] N/m; got '1e999 N/m'",
+        "effects[0].stiffness: must be a number that is not so large; got 1e999 N/m",
     ),
     (SCENE, "[cue]", "cue = 3\n[cew]", "cew: must be one of the keys"),
     (
         CUE,
         '"12 mm"',
         '"20,5 mm"',
-        f"segments[0].tip_diameter: must be in (0, 10] m, {LENGTH}; got '20,5 mm'; a decimal",
+        f"segments[0].tip_diameter: must be {LENGTH}; got '20,5 mm'; a decimal",
     ),
     (
         *(CUE, 'length = "700 mm"', "length = 700 mm"),
@@ -167,8 +192,8 @@ def test_no_file_at_all(tmp_path: Path) -> None:
     (tmp_path / "folder.toml").mkdir()
     assert refused(tmp_path / "none.toml") == "cannot be read: No such file or directory"
     assert refused(tmp_path / "none.vtu") == "cannot be read: No such file or directory"
-    assert refused(tmp_path / "folder.toml") == "cannot be read: Is a directory"
-    assert refused(tmp_path) == "cannot be read: it is a folder"
+    assert refused(tmp_path / "folder.toml") == "must be a file; got a folder"
+    assert refused(tmp_path) == "must be a file; got a folder"
     assert refused(tmp_path / "cue.msh") == "must end in .toml, .csv, .vtk, .vtu, .stl, .ply or .obj; got '.msh'"
 
 
@@ -263,7 +288,7 @@ def test_no_shaft(tmp_path: Path, name: str) -> None:
 def test_no_surface_file(tmp_path: Path) -> None:
     assert refused(tmp_path / "none.stl") == "cannot be read: No such file or directory"
     (tmp_path / "folder.stl").mkdir()
-    assert refused(tmp_path / "folder.stl") == "cannot be read: Is a directory"
+    assert refused(tmp_path / "folder.stl") == "must be a file; got a folder"
 
 
 @pytest.mark.parametrize("unit", ["kg", "furlnog", "", "mm mm"])
@@ -310,9 +335,9 @@ PROFILES: list[tuple[str, str]] = [
     (HEADER + "0,12\n", "must hold at least 2 points; got 1"),
     (HEADER + "0,12\n350\n", "line 3, diameter: must be a number; got nothing"),
     (HEADER + "0,12\n700,wide\n", "line 3, diameter: must be a number; got 'wide'"),
-    (HEADER + "0,12\n\n700,-21\n", "line 4, diameter: must be in (0, 10] m; got '-21 mm'"),
-    (HEADER + "0,12\n700,0\n", "line 3, diameter: must be in (0, 10] m; got '0 mm'"),
-    (HEADER + "nan,12\n700,0\n", "line 2, x: must be in (-inf, inf) m; got 'nan mm'"),
+    (HEADER + "0,12\n\n700,-21\n", "line 4, diameter: must be more than 0 and at most 10000 mm; got -21 mm"),
+    (HEADER + "0,12\n700,0\n", "line 3, diameter: must be more than 0 and at most 10000 mm; got 0 mm"),
+    (HEADER + "nan,12\n700,0\n", "line 2, x: must be a finite number of mm; got nan mm"),
     (
         HEADER + "0,12\n700,21\n350,16\n",
         "line 4, x: must be beyond 700 mm, the x of the line before (points run from tip to butt); got '350 mm'",

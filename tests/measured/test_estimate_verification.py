@@ -81,14 +81,15 @@ def test_a_closed_unknown_is_held_and_an_open_one_opened() -> None:
 def test_every_unknown_is_put_where_it_belongs(name: str) -> None:
     """A changed unknown reads back, and at its usual value nothing changes."""
     from cuefem.measured.kinds import Setup
-    from cuefem.measured.unknowns import KINDS as UNKNOWNS
+    from cuefem.vary import PLACES
 
     cue = documented(priors=(Prior("taper", 0.1),))
     (unknown,) = (one for one in cue.unknowns if one.name == name)
     moved = unknown.setup(Setup(SCENE), 0.5).scene
-    assert UNKNOWNS[name].of(moved) == pytest.approx(unknown.value(0.5), rel=1e-12)
+    known = PLACES[name.replace(" ", "_")]
+    assert known.value(moved) == pytest.approx(unknown.value(0.5), rel=1e-12)
     back = replace(unknown, usual=unknown.usual).put(Setup(moved), unknown.usual).scene
-    assert UNKNOWNS[name].of(back) == pytest.approx(unknown.usual, rel=1e-12)
+    assert known.value(back) == pytest.approx(unknown.usual, rel=1e-12)
 
 
 def pulls_of(count: int) -> np.ndarray:

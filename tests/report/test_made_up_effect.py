@@ -19,12 +19,12 @@ from cuefem.design import Levels, Response, Study, Vary
 from cuefem.design.worth import variants
 from cuefem.designer.answers import answers
 from cuefem.designer.design import Design
-from cuefem.designer.model import knobs_of, turned
 from cuefem.designer.words import head_markup
 from cuefem.effects import CueEffect, Usual, effect_kinds
 from cuefem.io import schema
 from cuefem.quantity import Quantity
 from cuefem.report.page import page
+from cuefem.vary import knobs_of, turned
 from tests.helpers.command_line import call
 
 CUE = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 782.3284453057836), kappa=0.9),), 0.42)
@@ -53,7 +53,7 @@ def collar() -> Iterator[type[cf.Effect]]:
             terms.add(self.position, "mass", self.mass, 0.0)
 
     yield Collar
-    schema.adapter.cache_clear()
+    schema.types_of.cache_clear()
     del Collar
     gc.collect()
 
@@ -86,7 +86,7 @@ def test_commands_and_pages_name_it(scene: cf.Scene, tmp_path: Path) -> None:
 
 
 def test_the_designer_keeps_it(scene: cf.Scene) -> None:
-    knobs = replace(knobs_of(scene), offset=0.2)
+    knobs = {**knobs_of(scene), "offset": 0.2}
     assert turned(scene, knobs).effects == scene.effects
     assert WORDS in head_markup(Design.of("scene.toml", scene))
     found = answers(scene)

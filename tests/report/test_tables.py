@@ -16,10 +16,10 @@ from rich.console import Console
 from scipy.io import wavfile
 
 import cuefem as cf
-from cuefem.cli import main
+from cuefem.cli import COMMANDS as TABLE
 from cuefem.materials import MATERIALS
 from cuefem.report.table import table_of
-from studies import tap
+from studies.measured import tap
 from tests.helpers.command_line import call
 
 ROOT = Path(__file__).parents[2]
@@ -68,8 +68,8 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     sound = tap.recording(tap.ringing_shaft(tap.true("kim"), 44100)[:, :1], 25.0, 3)
     wavfile.write(folder / "tap.wav", 44100, (sound * 32767).astype(np.int16))
     cf.save(cf.Scene(cf.LumpedCue(0.54, 0.006), stroke=cf.Stroke(offset=0.3)), folder / "lumped.toml")
-    study = (ROOT / "studies/scatter_maple.toml").read_text(encoding="utf-8").replace("count = 256", "count = 8")
-    study = study.replace("scatter_scene.toml", str(ROOT / "studies/scatter_scene.toml"))
+    study = (ROOT / "studies/design/scatter_maple.toml").read_text(encoding="utf-8").replace("count = 256", "count = 8")
+    study = study.replace("scatter_scene.toml", str(ROOT / "studies/design/scatter_scene.toml"))
     (folder / "scatter.toml").write_text(study, encoding="utf-8")
     made = {"lumped": "lumped.toml", "studies": "studies", "recording": "tap.wav"}
     return {name: str(folder / path) for name, path in made.items()} | {"scatter": str(folder / "scatter.toml")}
@@ -191,6 +191,6 @@ def test_no_command_s_summary_is_cut(width: int, monkeypatch: pytest.MonkeyPatch
     listed = out.split("Commands:\n")[1].splitlines()
     assert status == 0
     assert "…" not in out
-    assert [line.split()[0] for line in listed] == sorted(main.commands)  # a line each
+    assert [line.split()[0] for line in listed] == sorted(TABLE)  # a line each
     assert all(re.search(r"[^.]\.$", line) for line in listed)
     assert max(map(len, out.splitlines())) <= width

@@ -12,17 +12,17 @@ import pytest
 from cuefem.io.documented import load_documented
 from cuefem.measured.kinds import AddedMass, Measurement, Squirt
 from cuefem.report.documented import text_of
-from studies.common import STUDIES
+from studies.pages import STUDIES
 from tests.helpers.command_line import call
 
 HOME = STUDIES / "measured"
-FOLDERS = sorted(path for path in HOME.iterdir() if path.is_dir())
+FOLDERS = sorted(path for path in HOME.iterdir() if (path / "measured.toml").exists())
 PLAYERS = HOME / "players_maple"
 CUES = {"Players": "players_maple", "Predator": "predator_z", "Stinger": "stinger"}
 
 
 def rows(name: str) -> list[dict[str, str]]:
-    lines = (STUDIES / "data" / f"{name}.csv").read_text(encoding="utf-8").splitlines()
+    lines = (HOME / "data" / f"{name}.csv").read_text(encoding="utf-8").splitlines()
     return list(csv.DictReader(line for line in lines if not line.startswith("#")))
 
 

@@ -12,15 +12,16 @@ from scipy.io import wavfile
 
 from cuefem import modes
 from cuefem.materials import WOODS, material
+from cuefem.parts import main_material
 from cuefem.tap.chance import LEVEL, SETS, by_chance, random_sets
 from cuefem.tap.doubts import unlike
 from cuefem.tap.hum import without_hum
-from cuefem.tap.matching import MODES, main_material
+from cuefem.tap.matching import MODES
 from cuefem.tap.ringing import Ringing, ringing
 from cuefem.tap.tones import Tone, tones
 from cuefem.tap.wood import TapTest
-from studies import tap, tap_refusals, tap_sounds
-from studies.common import MESHES, NAMES, cue
+from studies.measured import tap, tap_refusals, tap_sounds
+from studies.strokes import MESHES, NAMES, cue
 from tests.helpers.command_line import call
 
 KIM = MESHES / "kim.toml"

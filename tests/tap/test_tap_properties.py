@@ -14,12 +14,13 @@ from scipy.io import wavfile
 import cuefem
 from cuefem import Cue, Scene, modes
 from cuefem.io.sound import load_recording
-from cuefem.tap.matching import MODES, main_material
+from cuefem.parts import main_material
+from cuefem.tap.matching import MODES
 from cuefem.tap.ringing import ringing
 from cuefem.tap.tones import Tone, tones
 from cuefem.tap.wood import KEPT, TapTest
-from studies import tap
-from studies.common import MESHES, NAMES, cue
+from studies.measured import tap
+from studies.strokes import MESHES, NAMES, cue
 from tests.helpers.command_line import call
 from tests.helpers.surfaces import outline_of, revolved, written
 

@@ -11,13 +11,14 @@ import numpy as np
 import pytest
 
 from cuefem import end_mass, modes
+from cuefem.parts import main_material
 from cuefem.tap.fit import TapFit
-from cuefem.tap.matching import MODES, main_material
+from cuefem.tap.matching import MODES
 from cuefem.tap.ringing import Ringing, ringing
 from cuefem.tap.tones import Tone, tones
 from cuefem.tap.wood import KEPT, SCALE, TapTest, predicted
-from studies import tap
-from studies.common import NAMES, cue, scene
+from studies.measured import tap
+from studies.strokes import NAMES, cue, scene
 
 RATE = 48000.0
 

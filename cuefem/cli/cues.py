@@ -1,0 +1,43 @@
+"""Commands on a blow of a cue: end-mass, strike."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from cuefem.accuracy import resolve
+from cuefem.cli.common import file_options, show
+from cuefem.cli.definitions import WithDefinitions
+from cuefem.cli.strokes import blow_options, offset_option
+from cuefem.io import load_accuracy
+from cuefem.report import (
+    end_mass_record,
+    end_mass_table,
+    strike_record,
+    strike_table,
+)
+from cuefem.scene import Scene
+
+
+@click.command("end-mass", cls=WithDefinitions)
+@file_options
+@blow_options
+def end_mass(file: Path, **given: Any) -> None:
+    """Show the effective end mass: how much mass the ball has to push aside at the tip."""
+    show(file, given, end_mass_record, lambda found, about: [end_mass_table(found, about)])
+
+
+@click.command()
+@file_options
+@blow_options
+@offset_option
+def strike(file: Path, **given: Any) -> None:
+    """Compute one stroke: squirt, speed, spin and pivot length; to the rtol of the file's [accuracy], if it has one."""
+
+    def results(scene: Scene) -> Any:
+        rtol = load_accuracy(file)
+        return strike_record(scene, None if rtol is None else resolve(scene, rtol))
+
+    show(file, given, results, lambda found, about: [strike_table(found, about)])

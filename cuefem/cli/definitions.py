@@ -1,0 +1,16 @@
+"""The definitions of the end mass on the command line: a choice of them, and a help that explains them."""
+
+from __future__ import annotations
+
+import click
+
+from cuefem.endmass.drives import DEFINITIONS
+
+
+class WithDefinitions(click.Command):
+    """A command whose help ends with the definitions of the end mass."""
+
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write name and meaning of every definition."""
+        with formatter.section("Definitions of the end mass"):
+            formatter.write_dl([(one.name, one.meaning) for one in DEFINITIONS.values()])

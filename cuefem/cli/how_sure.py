@@ -1,0 +1,57 @@
+"""Commands that say what a result hangs on: effects, cost."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from cuefem.cli.common import file_options, show
+from cuefem.cli.progress import followed
+from cuefem.cli.strokes import blow_options, offset_option
+from cuefem.io import FIGURES, InputError, load_accuracy, save_figure
+from cuefem.report import DEFAULT_RTOL, effects_record, effects_table
+from cuefem.report.cost import cost_figure, cost_record, cost_tables
+from cuefem.scene import Scene
+
+
+@click.command()
+@file_options
+@blow_options
+@offset_option
+def effects(file: Path, **given: Any) -> None:
+    """Show what each effect changes: every effect of FILE is left out, every other one added, one at a time.
+
+    An effect matters if it changes more than the rtol of the file's [accuracy], by default 1e-2.
+    """
+
+    def results(scene: Scene) -> Any:
+        rtol = load_accuracy(file)
+        return effects_record(scene, rtol=DEFAULT_RTOL if rtol is None else rtol, track=followed)
+
+    show(file, given, results, lambda found, about: [effects_table(found, about)])
+
+
+@click.command()
+@file_options
+@blow_options
+@offset_option
+@click.option(
+    "--most", type=click.IntRange(min=24), default=150, show_default=True, help="The largest number of modes."
+)
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), metavar="FIGURE", help="Also draw a figure: .png or .svg."
+)
+def cost(file: Path, most: int, output: Path | None, **given: Any) -> None:
+    """Show what accuracy costs for this scene: error against time and unknowns, and which resolution to take."""
+    if output is not None and output.suffix not in FIGURES:
+        raise InputError(output, "--output", f"must end in .png or .svg; got {output.suffix!r}")
+
+    def results(scene: Scene) -> Any:
+        found = cost_record(scene, most=most, track=followed)
+        if output is not None:
+            save_figure(cost_figure(found, f"{file.name}: what accuracy costs", output.suffix[1:]), output)
+        return found
+
+    show(file, given, results, lambda found, about: cost_tables(found))

@@ -1,0 +1,62 @@
+"""Progress bars on stderr, where a person looks on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    SpinnerColumn,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+    track,
+)
+from rich.progress import Progress as Bar
+
+
+def followed(work: Sequence[Any]) -> Iterable[Any]:
+    """The work, with a progress bar if stderr is a terminal."""
+    console = Console(stderr=True)
+    return track(work, "computing", console=console, transient=True) if console.is_terminal else work
+
+
+class Progress:
+    """Takes the rows of finished blocks; shown as a bar with rate and times from the first second on."""
+
+    def __init__(self, bar: Any, total: int) -> None:
+        self.bar, self.total = bar, total
+        self.task = bar.add_task("choosing modes", total=None, rate="") if bar else None
+
+    def begin(self, done: int) -> None:
+        """From here on designs are computed, of which so many are done."""
+        if self.bar:
+            self.bar.update(self.task, description="designs", total=self.total, completed=done)
+
+    def __call__(self, rows: Sequence[Any]) -> None:
+        """Count the rows of a block."""
+        if self.bar:
+            speed = self.bar.tasks[0].speed
+            self.bar.update(self.task, advance=len(rows), rate=f"{speed:.3g} designs/s" if speed else "")
+
+    def end(self) -> None:
+        """Take the bar away."""
+        if self.bar:
+            self.bar.stop()
+
+
+@contextmanager
+def bar(total: int) -> Iterator[Progress]:
+    """A progress bar, if stderr is a terminal."""
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield Progress(None, total)
+        return
+    texts = TextColumn("{task.description}"), TextColumn("{task.fields[rate]}")
+    columns = (SpinnerColumn(), texts[0], BarColumn(), MofNCompleteColumn(), texts[1], TimeElapsedColumn())
+    with Bar(*columns, TimeRemainingColumn(), console=console, transient=True) as found:
+        yield Progress(found, total)

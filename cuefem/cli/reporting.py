@@ -1,0 +1,57 @@
+"""`cuefem report`: everything about a cue, as tables or as a page."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from cuefem.cli.common import blaming, file_options, page_option, scene_of, show
+from cuefem.cli.progress import followed
+from cuefem.cli.strokes import blow_options, offset_option
+from cuefem.contact.outcome import MISSED
+from cuefem.io import InputError, load_accuracy, save_page
+from cuefem.report import (
+    end_mass_table,
+    modes_table,
+    pivot_table,
+    report_record,
+    squirt_table,
+)
+from cuefem.report.strike import MISCUE
+from cuefem.report.unusual import unusual
+
+
+@click.command()
+@file_options
+@blow_options
+@offset_option
+@page_option
+def report(file: Path, output: Path | None, **given: Any) -> None:
+    """Show modes, end masses, squirt and pivot length against offset, as tables or as a page with figures."""
+
+    def tables(found: Any, about: Any) -> list[Any]:
+        shown = [modes_table(found["modes"])] if "modes" in found else []
+        if "no_contact" in found:
+            return [*shown, f"no end mass and no squirt: {found['no_contact']}"]
+        first: list[Any] = [MISCUE, "", *shown] if found["grip"] in MISSED else shown
+        masses, squirt = found["end_masses"], found["squirt"]
+        return [*first, end_mass_table(masses, about), squirt_table(squirt, about), pivot_table(squirt)]
+
+    if output is None:
+        show(file, given, report_record, tables)
+    else:
+        _write_page(file, output, given)
+
+
+def _write_page(file: Path, output: Path, given: dict[str, Any]) -> None:
+    from cuefem.report.page import page  # templates and charts take 0.1 s, which tables need not pay
+
+    if given["as_json"]:
+        raise InputError(output, "--output", "must be left out with --json: a page is no JSON")
+    scene, notes = scene_of(file, given)
+    with blaming(file, given):
+        text = page(file.name, scene, rtol=load_accuracy(file), notes=notes, remarks=unusual(scene), track=followed)
+    save_page(text, output)
+    click.echo(f"wrote {output}")

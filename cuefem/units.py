@@ -1,0 +1,187 @@
+"""The one table of units, and text with a unit as a number and back, exactly: "29 in" is 0.7366 m, to the last bit."""
+
+from __future__ import annotations
+
+import functools
+import math
+import re
+from decimal import Decimal, DecimalException
+from typing import NamedTuple
+
+# What an SI unit of this package measures, and the unit that files are written in.
+EXAMPLES = {
+    "m": ("a length", "12 mm"),
+    "kg": ("a mass", "150 g"),
+    "s": ("a time", "1.2 ms"),
+    "m/s": ("a speed", "2 m/s"),
+    "Pa": ("a stress", "12.6 GPa"),
+    "kg/m^3": ("a density", "700 kg/m^3"),
+    "N/m": ("a stiffness", "5000 N/m"),
+    "N m/rad": ("a rotational stiffness", "20 N m/rad"),
+    "rad/(N m)": ("a rotational compliance", "2e-4 rad/(N m)"),
+    "m/N": ("a compliance", "1e-8 m/N"),
+    "N m": ("a torque", "20 N m"),
+    "N s/m": ("a dashpot", "3 N s/m"),
+    "kg m^2": ("a rotary inertia", "40 g mm^2"),
+    "rad": ("an angle", "3 deg"),
+    "Hz": ("a frequency", "250 Hz"),
+}
+
+# Where two are shown: in the units of both systems.
+BOTH = {
+    "m": ("0.5 in", "12.7 mm"),
+    "kg": ("15 oz", "425 g"),
+    "m/s": ("4.5 mph", "2 m/s"),
+    "Pa": ("1.8 Msi", "12.4 GPa"),
+    "kg/m^3": ("0.025 lb/in^3", "700 kg/m^3"),
+}
+
+Powers = tuple[int, int, int, int]  # of m, kg, s and rad
+
+
+class Unit(NamedTuple):
+    """A unit that is read: how many SI units it is, and what it measures as powers of m, kg, s and rad."""
+
+    scale: Decimal
+    powers: Powers
+
+
+# All units that stand alone, by what they measure: how many SI units one is, and its names, that for messages first.
+# Products, powers and quotients of them ("lb/in^3", "N mm/rad") need no entry.
+_TABLE: dict[Powers, str] = {
+    (1, 0, 0, 0): """0.001 mm millimetre millimetres millimeter millimeters; 1 m metre metres meter meters;
+        0.01 cm centimetre centimetres centimeter centimeters; 0.0254 in inch inches " ″ ” ''; 0.3048 ft foot feet;
+        0.0000254 thou mil mils; 0.000001 um µm μm micron microns micrometre micrometres micrometer micrometers;
+        0.9144 yd yard yards; 1000 km; 1609.344 mile miles mi""",
+    (0, 1, 0, 0): """0.001 g gram grams gramme grammes; 1 kg kilogram kilograms kilo kilos; 1000 t tonne tonnes;
+        0.028349523125 oz ounce ounces; 0.45359237 lb lbs pound pounds; 0.000001 mg milligram milligrams;
+        0.00006479891 grain grains""",
+    (0, 0, 1, 0): """0.001 ms msec millisecond milliseconds; 1 s sec second seconds; 60 min minute minutes;
+        0.000001 us µs μs usec microsecond microseconds; 3600 h hr hour hours""",
+    (0, 0, 0, 1): """0.01745329251994329576923690768 deg degree degrees °; 1 rad radian radians;
+        0.001 mrad milliradian milliradians; 0.0002908882086657215961539484614 arcmin arcminute arcminutes;
+        0.000004848136811095359935899141023 arcsec arcsecond arcseconds""",
+    (1, 0, -1, 0): """0.44704 mph; 0.2777777777777777777777777778 kph kmh; 0.3048 fps;
+        0.5144444444444444444444444444 knot knots kt kts""",
+    (1, 1, -2, 0): """1 N newton newtons; 1000 kN; 4.4482216152605 lbf; 9.80665 kgf kp; 0.00980665 gf;
+        0.27801385095378125 ozf""",
+    (-1, 1, -2, 0): """1E+9 GPa gigapascal gigapascals; 1E+6 MPa megapascal megapascals; 1 Pa pascal pascals;
+        1000 kPa kilopascal kilopascals; 6894.757293168361336722673445 psi; 6894757.293168361336722673445 ksi;
+        6894757293.168361336722673445 Msi; 100000 bar""",
+    (0, 0, -1, 0): "1 Hz hz hertz; 1000 kHz kilohertz; 1E+6 MHz megahertz",
+    (3, 0, 0, 0): "0.000001 cc ml mL; 0.001 l L litre litres liter liters",
+}
+UNITS = {
+    name: Unit(Decimal(scale), powers)
+    for powers, units in _TABLE.items()
+    for scale, *names in map(str.split, units.split(";"))
+    for name in names
+}
+
+_TEXT = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[+-]?[0-9]+)?|[+-]?inf|nan)\s*(.*?)\s*", re.IGNORECASE)
+LONGEST_TEXT = 200  # letters of a number and its unit: beyond it matching takes the square of them
+_SIGNS = re.compile(r"\s*([*/·])\s*|\s+")
+_FACTOR = re.compile(r"([^\W\d_]+|[°\"″”']+)(?:\^(-?[0-9])|([23]))?")
+_BELOW = re.compile(r"(.*?)(?:/\s*\(([^/()]*)\))?", re.DOTALL)  # what stands in brackets behind a stroke: rad/(N m)
+_NO_UNIT = Unit(Decimal(1), (0, 0, 0, 0))
+_POWERS = str.maketrans({"²": "^2", "³": "^3"})
+
+
+class UnknownUnit(ValueError):
+    """A unit with a name in it that the table does not have; ``name`` is that name."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        super().__init__(f"an unknown unit, {name!r}")
+
+
+@functools.lru_cache(maxsize=1024)
+def unit_of(text: str) -> Unit:
+    """The unit that a text such as "g/cm^3" names; UnknownUnit if the table does not have it."""
+    above, below = _BELOW.fullmatch(text.strip().translate(_POWERS).replace("**", "^")).groups()  # type: ignore[union-attr]
+    scale, powers = _NO_UNIT
+    for part, turned in ((above, 1), (below, -1)):
+        parts = _SIGNS.split(part.strip()) if part is not None else []
+        for sign, factor in zip(["*", *parts[1::2]], parts[::2], strict=False):
+            size, its = _factor(factor)
+            power = -turned if sign == "/" else turned
+            scale = scale * size if power > 0 else scale / size
+            powers = tuple(p + power * q for p, q in zip(powers, its, strict=True))  # type: ignore[assignment]
+    return Unit(scale, powers)
+
+
+def _factor(text: str) -> Unit:
+    """One name with its power; a name in capitals is the one in small letters, where there is no other."""
+    if text == "1":
+        return _NO_UNIT
+    parts = _FACTOR.fullmatch(text)
+    known = parts and (UNITS.get(parts[1]) or UNITS.get(parts[1].lower()))
+    if not parts or not known:
+        raise UnknownUnit(parts[1] if parts else text)
+    power = int(parts[2] or parts[3] or 1)
+    return Unit(known.scale**power, tuple(power * p for p in known.powers))  # type: ignore[arg-type]
+
+
+def scale(unit: str, wanted: str) -> Decimal:
+    """How many ``wanted`` one ``unit`` is; ValueError if it is unknown or of another kind.
+
+    An angle may be left out where one is wanted (N m for N m/rad), and is never put in: 1 rad/s is not 1 Hz.
+    """
+    own, other = unit_of(unit), unit_of(wanted)
+    if own.powers != other.powers and (own.powers != (*other.powers[:3], 0) or not any(own.powers)):
+        raise ValueError(f"a unit of another kind, {unit!r}")
+    return own.scale / other.scale
+
+
+def example_of(unit: str) -> tuple[str, str]:
+    """What an SI unit measures, and an example in a unit that reads well."""
+    return EXAMPLES.get(unit, ("a quantity", f"3 {unit}"))
+
+
+def kind_of(unit: str) -> str:
+    """What a unit measures: "a mass"."""
+    powers = unit_of(unit).powers
+    return next((what for si, (what, _) in EXAMPLES.items() if unit_of(si).powers == powers), "something else")
+
+
+def units_like(unit: str) -> list[str]:
+    """The units of the table that measure the same as one, each by its first name, or that of an example."""
+    names = {UNITS[name]: name for name in reversed(UNITS) if UNITS[name].powers == unit_of(unit).powers}
+    return [*reversed(names.values())] or [example_of(unit)[1].split(" ", 1)[1]]
+
+
+def parted(text: str) -> tuple[str, str]:
+    """The number and the unit of a text, each "" if it has none."""
+    parts = _TEXT.fullmatch(text) if len(text) <= LONGEST_TEXT else None
+    return (parts[1], parts[2]) if parts else ("", "")
+
+
+def number(text: str, unit: str) -> float:
+    """The number of ``unit`` that ``text`` ("12 mm") says; ValueError if its unit is missing, wrong or unknown."""
+    digits, own = parted(text)
+    if not own:
+        raise ValueError("a number and a unit")
+    try:
+        return float(Decimal(digits) * scale(own, unit))
+    except (DecimalException, OverflowError):
+        return math.nan  # beyond every decimal: in no interval
+
+
+def text(value: float, unit: str) -> str:
+    """A number in a unit that reads well ("12 mm"), with the fewest digits that `number` takes for the same float.
+
+    Where those are more than in SI (0.1 rad), it is written in SI.
+    """
+    friendly = example_of(unit)[1].split(" ", 1)[1]
+    if math.isfinite(value):
+        exact, per = Decimal(repr(value)), scale(friendly, unit)
+        for digits in range(len(exact.normalize().as_tuple().digits)):
+            written = f"{_plain(Decimal(f'{exact / per:.{digits}e}'))} {friendly}"
+            if number(written, unit) == value:
+                return written
+    return f"{value!r} {unit}"
+
+
+def _plain(value: Decimal) -> str:
+    value = value.normalize()
+    return format(value, "f") if value == 0 or -5 <= value.adjusted() < 12 else str(value)

@@ -1,0 +1,121 @@
+"""What do the public calls cost, compared with the bare linear algebra that they use?
+
+What: on [Kim]'s shaft (meshes/kim.toml; T = 1 ms, b/R 0.3, e = 3/4, mu = 0.7) warm calls of `modes`, `end_mass`,
+`strike` and `resolve`; on meshes/pool_maple.toml the usual pool stroke with a `LeatherTip`, alone and in a batch of
+strikes; and whole processes of the command. Beside them two calls of LAPACK's size: `scipy.linalg.eigh` of the matrices
+that `modes` assembles for five modes, and `scipy.linalg.expm` of a 50 x 50 matrix of norm 1. All take turns in one
+process with one BLAS thread, so that a busy machine slows all alike; medians of processor time and their ratios. Writes
+speed_seconds.md beside itself, of the machine named there; takes under a minute.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from statistics import median
+from time import perf_counter, process_time
+from typing import Any
+
+import numpy as np
+import scipy.linalg as la
+
+from cuefem import LeatherTip, Resolution, Stroke, batch_strike, end_mass, modes, resolve, strike, usual_scene
+from cuefem.beam.system import assemble
+from cuefem.beam.waves import mesh_for
+from cuefem.tip_modes import tip_modes_of
+from studies import pages, strokes
+from studies.strokes import strike_modes
+
+COMMANDS = ("--help", "end-mass studies/scenes/kim.toml")
+ROUNDS, STARTS = 20, 5
+BATCH = 20  # strikes of a batch, at so many offsets
+
+
+def calls() -> dict[str, tuple[Callable[[], Any], int]]:
+    """What is called, by name, and how often a round."""
+    kim = strokes.cue("kim")
+    scene = strokes.scene(kim, offset=0.3)
+    longer = strokes.scene(kim, contact_time=2e-3)
+    elements, order = mesh_for(kim, 5)
+    system = assemble(kim, elements=elements, order=order)
+    shifted = system.K + system.shift * system.M
+    found: dict[str, tuple[Callable[[], Any], int]] = {
+        "scipy.linalg.expm, 50 x 50": (pages.expm_50(), 20),
+        f"scipy.linalg.eigh, {len(shifted)} x {len(shifted)}": (lambda: la.eigh(system.M, shifted), 10),
+        "modes(kim, 5)": (lambda: modes(kim, 5), 10),
+        **{
+            f"end_mass, {drive}, 2 ms": (lambda drive=drive: end_mass(longer, drive), 1)
+            for drive in ("stick", "offset", "velocity", "force")
+        },
+    }
+    for count in (24, 50, 100, 200):
+        tip = tip_modes_of(scene, Resolution(4 + count // 20, 24, count))
+        found[f"contact of {count} modes"] = (lambda tip=tip: strike_modes(scene, tip), max(1, 100 // count))
+    found["strike, default resolution"] = (lambda: strike(scene), 1)
+    leather = usual_scene(strokes.cue("pool_maple"))
+    assert any(isinstance(effect, LeatherTip) for effect in leather.effects)
+    leather = replace(leather, stroke=Stroke(2.0, 0.375))
+    found["strike with LeatherTip, default resolution"] = (lambda: strike(leather), 1)
+    offsets = np.linspace(0.02, 0.5, BATCH)
+    for name, each in (("Kim's shaft", scene), ("LeatherTip", leather)):
+        scenes = [replace(each, stroke=Stroke(2.0, float(b))) for b in offsets]
+        found[f"batch_strike of {BATCH}, {name}, a strike"] = (lambda scenes=scenes: batch_strike(scenes), 1)
+    for rtol in (1e-3, 1e-4):
+        found[f"resolve to {rtol:.0e}"] = (lambda rtol=rtol: resolve(scene, rtol), 1)
+    return found
+
+
+def medians(rounds: int) -> dict[str, float]:
+    """Median processor seconds of every call; they take turns."""
+    jobs = calls()
+    times: dict[str, list[float]] = {name: [] for name in jobs}
+    for turn in range(rounds + 1):  # the first warms up
+        for name, (work, repeats) in jobs.items():
+            for _ in range(repeats if turn else 1):
+                start = process_time()
+                work()
+                if turn:
+                    times[name].append(process_time() - start)
+    return {name: median(each) / (BATCH if "a strike" in name else 1) for name, each in times.items()}
+
+
+def starts(repeats: int) -> dict[str, float]:
+    """Median seconds of whole processes of the command."""
+    times: dict[str, list[float]] = {command: [] for command in COMMANDS}
+    for _ in range(repeats):
+        for command, each in times.items():
+            start = perf_counter()
+            program = [sys.executable, "-c", "from cuefem.cli import main; main()", *command.split()]
+            subprocess.run(program, cwd=pages.STUDIES.parent, check=True, capture_output=True)
+            each.append(perf_counter() - start)
+    return {f"cuefem {command}": median(each) for command, each in times.items()}
+
+
+def report(rounds: int = ROUNDS, repeats: int = STARTS) -> str:
+    """The table of this machine."""
+    found = medians(rounds)
+    expm, eigh = list(found.values())[:2]
+    lines = [
+        "# Seconds of the public calls",
+        "",
+        pages.machine(),
+        "Processor time of warm calls that take turns: medians, milliseconds, and their ratios to the two bare calls.",
+        "",
+        "| call | ms | of one expm | of one eigh |",
+        "|---|---|---|---|",
+        *(f"| {name} | {1e3 * t:.2f} | {t / expm:.1f} | {t / eigh:.1f} |" for name, t in found.items()),
+        "",
+        "| whole process | s |",
+        "|---|---|",
+        *(f"| `{name}` | {t:.2f} |" for name, t in starts(repeats).items()),
+    ]
+    return "\n".join(lines) + "\n"
+
+
+STUDY = pages.Study(__file__, seconds=report)
+
+
+if __name__ == "__main__":
+    STUDY.write()

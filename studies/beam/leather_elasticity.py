@@ -1,0 +1,240 @@
+"""How much does a leather tip give, from its geometry? The table that cuefem's LeatherTip reads, and how good it is.
+
+A tip is a domed cylinder of linear, isotropic leather on a rigid ferrule, solved by leather_body.py. Two things
+are tabulated, over height, dome, Poisson's ratio and the patch's radius: the compliance along the normal and along the
+surface of a patch with Hertz's pressure anywhere on the dome, and force and depth of a ball that is pressed on it head
+on. `cuefem.effects.leather_table` holds the coordinates and reads the table. The page compares the solid with exact
+solutions, and the table with the solid at random tips. python -m studies.beam.leather_elasticity computes the table in
+twenty minutes and the page in four; with the word page only the page.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Sequence
+from itertools import chain
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from cuefem.effects import leather_table as lt
+from studies import pages
+from studies.beam.leather_body import (
+    Array,
+    Fineness,
+    Patch,
+    Shape,
+    Solid,
+    compliance,
+    fitted,
+    head_on,
+    loads,
+    punch,
+    surfaces,
+    usual,
+)
+from studies.pages import table
+
+KEPT = Path(lt.__file__).with_suffix(".npz")
+OFF = usual(5, 6, 5, 36)
+# Nodes of the table, per panel for the curvature: (places, radii) of the three sheets.
+COUNTS = {"curvature": 5, "height": 7, "nu": 4, "head_on": 8, "punch": 10}
+SHEETS = {"whole": (8, 9), "cut": (8, 8), "rim": (5, 9)}
+
+
+def shape_at(curvature: float, coordinate: float) -> Shape:
+    return Shape(np.exp(coordinate) - lt.SOFTENED + lt.sag(curvature), curvature)
+
+
+def patches(sheet: str, curvature: float) -> list[list[Patch]]:
+    """Places and radii of the nodes of a sheet."""
+    count, each = SHEETS[sheet]
+    limit = lt.inner(curvature)
+    places = lt.nodes(*((limit, 1.0) if sheet == "rim" else (lt.AXIS, limit)), count)
+    return [[Patch(s, a) for a in np.exp(lt.nodes(*lt.radii(sheet, curvature, s), each))] for s in places]
+
+
+def curvatures(panel: int, count: int) -> Array:
+    return 2 * np.sin(lt.nodes(*(lt.steepness(end) for end in lt.PANELS[panel : panel + 2]), count))
+
+
+def geometry(shape: Shape, where: Sequence[Patch], load: Array, nus: Array, n: dict[str, int]) -> tuple[Array, Array]:
+    """Rows of the table for one shape: the patches (nu, patch, 3) and head_on (nu, radius, 2, 3)."""
+    off = Solid(shape, OFF)
+    places, radii = np.array(where).T
+    straight = np.exp(lt.nodes(*lt.LOG_HEAD_ON, n["head_on"]))
+    patch = []
+    for nu in nus:
+        C = np.zeros((len(where), 2, 2))
+        for m, surface in enumerate(surfaces(off, nu)):
+            C += (load[:, m] @ surface) @ load[:, m].transpose(0, 2, 1)
+        direct = np.stack([C[:, 0, 0], C[:, 1, 1]], -1)
+        across = C[:, 0, 1] / places / np.sqrt(direct.prod(axis=-1))
+        patch.append(np.concatenate([np.log(direct / lt.half_space(nu, radii)), across[:, None]], -1))
+    head = np.zeros((len(nus), n["head_on"], 2, 3))
+    for i, a in enumerate(straight):
+        how = fitted(shape.height, a)
+        on = Solid(shape, how)
+        for k, nu in enumerate(nus):
+            found = head_on(shape, on.surface(nu, 0), a, how)
+            head[k, i] = np.log(found / lt.half_space_head_on(nu, a))
+    return np.array(patch), head
+
+
+def build(n: dict[str, int] = COUNTS) -> lt.Table:
+    """The whole table."""
+    nus = (1 - np.exp(-lt.nodes(*lt.NU, n["nu"]))) / 2
+    panels = len(lt.PANELS) - 1
+    first = (n["curvature"], n["height"], n["nu"])
+    found = {name: np.zeros((panels - (name == "rim"), *first, *size, 3)) for name, size in SHEETS.items()}
+    head = np.zeros((panels, *first, n["head_on"], 2, 3))
+    for panel in range(panels):
+        sheets = [name for name in SHEETS if panel < len(found[name])]
+        for i, k in enumerate(curvatures(panel, n["curvature"])):
+            if panel and i == 0:  # where panels meet
+                head[panel, 0] = head[panel - 1, -1]
+                for name in sheets:
+                    found[name][panel, 0] = found[name][panel - 1, -1]
+                continue
+            where = {name: list(chain(*patches(name, k))) for name in sheets}
+            every = list(chain(*where.values()))
+            load = np.array([loads(Shape(1.0, k), patch, OFF) for patch in every])
+            ends = np.cumsum([len(some) for some in where.values()])[:-1]
+            for j, v in enumerate(lt.nodes(*lt.heights(k), n["height"])):
+                rows, head[panel, i, j] = geometry(shape_at(k, v), every, load, nus, n)
+                for name, part in zip(sheets, np.split(rows, ends, axis=1), strict=True):
+                    found[name][panel, i, j] = part.reshape(n["nu"], *SHEETS[name], 3)
+            print(f"curvature {k:.3f} done", file=sys.stderr, flush=True)
+    return lt.Table(**found, head_on=head, punch=gains(nus, n))
+
+
+def gains(nus: Array, n: dict[str, int]) -> Array:
+    """Of flat tips: what a patch that sticks gives less than a Hertz-weighted one, over that on a half-space."""
+    how = OFF._replace(harmonics=1)
+    radii = np.exp(lt.nodes(*lt.radii("rim", 0.0, 0.0), n["punch"]))
+    found = np.zeros((n["height"], n["nu"], n["punch"], 2))
+    for j, v in enumerate(lt.nodes(*lt.heights(0.0), n["height"])):
+        shape = shape_at(0.0, v)
+        solid, load = Solid(shape, how), [loads(shape, Patch(0.0, a), how, (0.5, -0.5)) for a in radii]
+        for k, nu in enumerate(nus):
+            surfaces = [solid.surface(nu, m) for m in (0, 1)]
+            both = [compliance(surfaces, f) for f in load]
+            found[j, k] = [np.diagonal(C[:2, :2] - punch(C)) for C in both] / (lt.half_space(nu, radii) / 6)
+    return found
+
+
+# The page
+
+
+def solved(shape: Shape, nu: float, patch: Patch, how: Fineness = OFF) -> Array:
+    """E D times the compliance of one Hertz-weighted patch, by the solid itself."""
+    return compliance(surfaces(Solid(shape, how), nu), loads(shape, patch, how))
+
+
+def exact() -> Iterator[list[str | float]]:
+    """The solid over exact solutions, less 1."""
+    how = usual(4, 4, 6, 1)
+    short, long, slender = (solved(Shape(h, 0.0), 0.3, Patch(0.0, 0.45), how) for h in (4.0, 6.0, 30.0))
+    yield ["rod, EA/h, from the difference of two lengths", (long - short)[0, 0] * np.pi / 8 - 1]
+    yield [
+        "cantilever 30 diameters long, 3EI/h^3 (shear and the patch's own give: 0.001)",
+        slender[1, 1] * np.pi / 64 / 9e3 - 1,
+    ]
+    for part in (16, 32, 64):
+        radius = 0.5 / part
+        found = solved(Shape(0.5, 0.0), 0.4, Patch(0.0, radius), fitted(0.5, radius)._replace(harmonics=1))
+        n, t = np.diagonal(found) / lt.half_space(0.4, np.array(radius)) - 1
+        yield [f"half-space, patch of 1/{part} of the height, along n", n]
+        yield [f"half-space, patch of 1/{part} of the height, along t", t]
+
+
+MESHES = (usual(4, 5, 4, 24), usual(4, 6, 5, 36), OFF, usual(6, 8, 6, 48))
+
+
+def refined() -> Iterator[list[str | float]]:
+    """The compliance of one tip, h 6, D 12.75, r 9.5 mm, nu 0.4, E 100 MPa, b/R 0.375, a 2 mm, um/N."""
+    shape, patch = Shape(6 / 12.75, 12.75 / 9.5), Patch(2 * 0.375 * 9.5 / 12.75, 2 / 12.75)
+    for how in MESHES:
+        C = solved(shape, 0.4, patch, how) * 1e6 / (100e6 * 12.75e-3)
+        mesh = f"{len(how.across) - 1} x {len(how.up) - 1} of order {how.order}, {how.harmonics} harmonics"
+        yield [mesh + (", the table's" if how is OFF else ""), C[0, 0], C[1, 1], C[0, 1]]
+
+
+class Errors(NamedTuple):
+    """Relative errors of the table: nn, tt and nt (over the root of C_nn C_tt) of patches within the rim, and of those
+    that it cuts; force and depth head on, at a radius."""
+
+    within: Array
+    cut: Array
+    head_on: Array
+
+
+def errors(tips: int = 20, seed: int = 1) -> Errors:
+    """The table against the solid, on a finer mesh, over random tips within the table's bounds."""
+    rng, found = np.random.default_rng(seed), Errors(*(np.zeros((0, n)) for n in (3, 3, 2)))
+    while len(found.head_on) < tips:
+        h, D, r, nu = rng.uniform((2.0, 8.0, 6.0, 0.2), (12.0, 15.0, 15.0, 0.45))
+        k = D / r if rng.random() < 0.9 else 0.0
+        shape, a = Shape(h / D, k), rng.uniform(0.05, 0.44)
+        if k > 2 or shape.height < max(shape.sag, lt.HEIGHT[0]):
+            continue
+        tip, how = lt.of_tip(shape.height, k, nu), usual(6, 7, 6, 44)
+        solution = surfaces(Solid(shape, how), nu)
+        for _ in range(20):
+            place = min(1.2 * rng.random() / k, 1.0) if k else 0.0
+            rim = lt.edge(k, place)
+            whole = rim > 0.06 and rng.random() < 0.7
+            radius = rng.uniform(0.04, min(rim, 0.5) if whole else 0.5)
+            direct = compliance(solution, loads(shape, Patch(place, radius), how))
+            read = lt.compliance(tip, min(place, lt.farthest(k)), np.array([radius]))[0]
+            scale = np.sqrt(np.outer(np.diagonal(direct), np.diagonal(direct)))
+            off = ((read - direct) / scale)[[0, 1, 0], [0, 1, 1]]
+            part = "within" if radius <= rim else "cut"
+            found = found._replace(**{part: np.vstack([getattr(found, part), off])})
+        how = fitted(shape.height, a, 6)
+        gaps, ball = np.array([k, D / 28.575, (D / 28.575) ** 3]), 28.575 / D
+        direct = head_on(shape, Solid(shape, how).surface(nu, 0), a, how) @ gaps
+        off = lt.head_on(tip, np.array([a]), ball)[0] / direct - 1
+        found = found._replace(head_on=np.vstack([found.head_on, off]))
+    return found
+
+
+def measured(found: Errors) -> Iterator[list[str | float]]:
+    for words, part, names in (
+        ("patches within the rim", found.within, ("C_nn", "C_tt", "C_nt")),
+        ("patches that the rim cuts", found.cut, ("C_nn", "C_tt", "C_nt")),
+        ("head on", found.head_on, ("force", "depth")),
+    ):
+        for name, column in zip(names, 100 * np.abs(part).T, strict=True):
+            yield [words, name, str(len(column)), *(f"{q:.2f}" for q in np.quantile(column, (0.5, 0.95, 1.0)))]
+
+
+def solid_text() -> str:
+    return f"""# The give of a leather tip
+
+The solid against exact solutions, relative difference:
+
+{table(["case", "solid over exact, less 1"], exact(), 2)}
+One tip (h 6, D 12.75, r 9.5 mm, nu 0.4, E 100 MPa, b/R 0.375, Hertz-weighted patch of 2 mm), um/N. An earlier solution
+with quadratic elements, 16 x 10, and 14 harmonics had 1.938, 4.597 and -0.129:
+
+{table(["mesh", "C_nn", "C_tt", "C_nt"], refined(), 5)}"""
+
+
+def text() -> str:
+    return f"""{solid_text()}
+The table against the solid on a finer mesh, at random tips (h 2 to 12, D 8 to 15, r 6 to 15 mm or flat, nu 0.2 to
+0.45, b/R 0 to 0.6, patches of 0.04 to 0.5 diameters), per cent; C_nt over the root of C_nn C_tt:
+
+{table(["what", "of", "points", "median", "95 of 100 below", "largest"], measured(errors()))}"""
+
+
+STUDY = pages.Study(__file__, text, again={"the solid": pages.Again(solid_text, until="The table against")})
+
+
+if __name__ == "__main__":
+    if sys.argv[1:] != ["page"]:
+        np.savez_compressed(KEPT, **{name: part.astype(np.float32) for name, part in build()._asdict().items()})
+        lt.table.cache_clear()
+    STUDY.write()

@@ -1,0 +1,136 @@
+"""How far off centre can a ball be struck before the tip slips to the end (a miscue)?
+
+What: the largest offset b/R before a miscue against friction, for [Kim]'s rigid cue (Q0 = 3, nu_c = 0.136) and two-part
+cue (Q0 = 18/7, epsilon = 2/35), for the [A.31]-like limit (the same end mass, e = 0) and for a cue end without mass,
+the paper's own condition mu = tan(phi). And the offset beyond which slip no longer ends during compression, so that
+[Kim]'s closed form is not valid: where the paper's mu = 0.6 stops working. Equations: a miscue is slip that still goes
+on when e^2 of the normal work is regained, tan(phi) (B_nn + mu B_tn) = (1 + e) (mu B_tt + B_tn), a cubic in tan(phi)
+(cuefem.squirt.miscue_offset); the table's last column finds the same edge by bisection on the regime of the general
+solver (cuefem.impulse). Takes a second.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+
+from cuefem import Ball, LumpedCue, Scene, Stroke, Tip, impulse, squirt
+from studies import pages
+
+E, NU, NU_C = 0.75, 0.4, 0.136
+FRICTIONS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 1.0, 1.2)
+
+
+class Cue(NamedTuple):
+    """A lumped cue, masses over the ball's, and the tip's restitution."""
+
+    name: str
+    mass: float
+    end_mass: float
+    restitution: float
+
+
+def rigid(ratio: float) -> Cue:
+    """[Kim]'s rigid cue of mass ``ratio`` balls."""
+    return Cue(f"rigid, Q0 = {ratio:g}", ratio, ratio * NU_C / (1 + NU_C), E)
+
+
+TWO_PART = Cue("two-part, epsilon = 2/35", 18 / 7, 2 / 35 / 4, E)
+CUES = (rigid(3.0), TWO_PART, TWO_PART._replace(name="[A.31]: two-part, e = 0", restitution=0.0))
+
+
+def miscue(cue: Cue, friction: float | np.ndarray) -> np.ndarray:
+    """Largest b/R before a miscue."""
+    return squirt.miscue_offset(
+        friction, cue_mass_ratio=cue.mass, end_mass_ratio=cue.end_mass, restitution=cue.restitution
+    )
+
+
+def compression_limit(cue: Cue, friction: float | np.ndarray) -> np.ndarray:
+    """Largest b/R with slip ending in compression, where the closed form is valid."""
+    tangent = friction * (1 + 1 / NU + 1 / cue.end_mass) / (1 + 1 / cue.end_mass)
+    return tangent / np.sqrt(1 + tangent**2)
+
+
+def by_regime(cue: Cue, friction: float) -> float:
+    """Largest b/R before a miscue, by bisection on what the general solver says."""
+    tip = Tip(restitution=cue.restitution, friction=friction)
+
+    def slips(offset: float) -> bool:
+        scene = Scene(LumpedCue(cue.mass, cue.end_mass), Ball(mass=1.0), tip, Stroke(offset=offset))
+        return bool(impulse(scene).regime == "miscue")
+
+    return edge(slips, 1e-6, 1 - 1e-6)
+
+
+def edge(happens: Callable[[float], bool], low: float, high: float) -> float:
+    """Where a condition that is false at ``low`` and true at ``high`` turns, to 1e-13."""
+    while high - low > 1e-13:
+        middle = (low + high) / 2
+        low, high = (low, middle) if happens(middle) else (middle, high)
+    return (low + high) / 2
+
+
+def turning_ratio(phi: float, friction: float = 0.6) -> float:
+    """Q0 of the rigid cue whose slip ends with compression at ``phi``, rad: [Kim]'s map holds above it."""
+    return brentq(lambda q: float(compression_limit(rigid(q), friction)) - math.sin(phi), 1e-9, 100.0)
+
+
+def table() -> str:
+    """Offsets at the edge of a miscue, and where mu = 0.6 stops working."""
+    lines = ["# Largest offset b/R before a miscue", ""]
+    names = [cue.name for cue in CUES]
+    lines.append("| " + " | ".join(["friction", "tan phi = mu", *names, "two-part, slip ends in compression",
+                                    "two-part, by the general solver"]) + " |")  # fmt: skip
+    lines.append("|---" * (4 + len(CUES)) + "|")
+    for mu in FRICTIONS:
+        values = [math.sin(math.atan(mu)), *(miscue(cue, mu) for cue in CUES), compression_limit(TWO_PART, mu)]
+        cells = [f"{mu:g}", *(f"{float(v):.6f}" for v in (*values, by_regime(TWO_PART, mu)))]
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join([*lines, "", "## Where [Kim]'s mu = 0.6 stops working", "", *six_tenths()]) + "\n"
+
+
+def six_tenths() -> list[str]:
+    """For mu = 0.6: the edge of the closed form and of a miscue, each cue."""
+    lines = [
+        "| cue | closed form valid to b/R | to phi, deg | miscue from b/R | from phi, deg |",
+        "|---|---|---|---|---|",
+    ]
+    for cue in (*(rigid(q) for q in (0.3, 1.0, 18 / 7, 3.0, 5.0)), *CUES[1:]):
+        cells = [cue.name]
+        for value in (compression_limit(cue, 0.6), miscue(cue, 0.6)):
+            cells += [f"{float(value):.5f}", f"{math.degrees(math.asin(float(value))):.3f}"]
+        lines.append("| " + " | ".join(cells) + " |")
+    whole = turning_ratio(math.radians(45))
+    lines += ["", f"The map of the rigid cue to 45 degrees needs a Q0 of at least {whole:.5f} at mu = 0.6."]
+    needed = float(squirt.compression_stick_friction(0.7, end_mass_ratio=TWO_PART.end_mass))
+    lines.append(f"The two-part cue at the paper's limit b/R = 0.7 needs a mu of at least {needed:.5f}.")
+    return lines
+
+
+def draw(axes: Any) -> None:
+    """The miscue map."""
+    mu = np.linspace(0, 1.5, 301)
+    axes.plot(mu, np.sin(np.arctan(mu)), "k", lw=1, label="no end mass: tan φ = μ")
+    for cue, colour in zip(CUES, ("C0", "C3", "C2"), strict=True):
+        axes.plot(mu, miscue(cue, mu), color=colour, label=f"miscue: {cue.name}")
+        if cue.restitution:
+            axes.plot(mu, compression_limit(cue, mu), color=colour, ls="--", lw=1,
+                      label=f"slip ends in compression: {cue.name}")  # fmt: skip
+    axes.axvline(0.6, color="0.5", lw=0.8)
+    axes.text(0.61, 0.93, "the paper's μ = 0.6", fontsize=8, color="0.3")
+    axes.axhline(0.7, color="0.5", lw=0.8)
+    axes.text(0.02, 0.71, "Coriolis' limit b/R = 0.7", fontsize=8, color="0.3")
+    axes.set(xlabel="friction μ", ylabel="largest offset b/R before a miscue", xlim=(0, 1.5), ylim=(0, 1))
+    axes.legend(fontsize=8, loc="lower right")
+
+
+STUDY = pages.Study(__file__, table, {"miscue.svg": pages.Figure(draw, size=(6.4, 4.6))}, heavy=False, drawn=True)
+
+
+if __name__ == "__main__":
+    STUDY.write()

@@ -1,0 +1,67 @@
+"""One table names all commands: a command is one file and one line of it (properties)."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from importlib import import_module
+from pathlib import Path
+from types import ModuleType
+
+import click
+import pytest
+from click.shell_completion import ShellComplete
+
+from cuefem.cli import COMMANDS, main
+from tests.helpers.command_line import call
+
+FOLDER = Path(import_module("cuefem.cli").__file__).parent  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_command_of_the_table_answers(name: str) -> None:
+    status, out, err = call(name, "--help")
+    assert (status, err) == (0, "")
+    assert out.startswith("Usage: ")
+    assert f" {name} " in out.splitlines()[0] + " "
+
+
+def test_a_made_up_command_is_a_file_and_a_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is listed, completed and called; and it is loaded when it is called, not before."""
+    monkeypatch.setitem(COMMANDS, "sweet-spot", ("made_up_command:sweet_spot", "Where a hit stings least."))
+    assert "sweet-spot  Where a hit stings least." in call("--help")[1]
+    with pytest.raises(ModuleNotFoundError):  # its file is not there yet
+        main(["sweet-spot"])
+    module = ModuleType("made_up_command")
+
+    @click.command()
+    def sweet_spot() -> None:
+        """Say where."""
+        click.echo("at 12 mm")
+
+    module.sweet_spot = sweet_spot  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "made_up_command", module)
+    assert call("sweet-spot") == (0, "at 12 mm\n", "")
+    completed = ShellComplete(main, {}, "cuefem", "_CUEFEM_COMPLETE").get_completions([], "sw")
+    assert [(one.value, one.help) for one in completed] == [(n, COMMANDS[n][1]) for n in ("sweep", "sweet-spot")]
+
+
+def test_a_list_of_the_commands_loads_none_of_them() -> None:
+    program = "import sys; from cuefem.cli import main; main(['--help'], standalone_mode=False); print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    loaded = {name for name in done.stdout.splitlines()[-1].split() if name.startswith("cuefem.cli.")}
+    assert loaded == set()
+
+
+def test_imports_stand_at_the_top_of_the_commands_files() -> None:
+    """All but what is heavy and needed by one option of a command alone."""
+    inside = [
+        f"{path.name}: {ast.unparse(statement)}"
+        for path in sorted(FOLDER.glob("*.py"))
+        for function in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(function, ast.FunctionDef)
+        for statement in ast.walk(function)
+        if isinstance(statement, ast.Import | ast.ImportFrom) and path.name != "strokes.py"
+    ]
+    assert len(inside) <= 5, inside

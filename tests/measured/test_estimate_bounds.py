@@ -1,0 +1,91 @@
+"""Estimates near the limits of what a cue can be: slopes are taken inside, so nothing is refused (properties)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from studies.common import STUDIES
+
+from cuefem.io.documented import load_documented
+from cuefem.measured.documented import DocumentedCue, compare
+from cuefem.measured.estimate import estimate
+from cuefem.measured.kinds import Stiffness, Tone, Weight
+from cuefem.measured.unknowns import Prior
+from tests.helpers.documented import SCENE
+from tests.helpers.leather_scenes import leather_scene
+
+CHEAP = (
+    Weight(value=0.1, error=5e-4),
+    Tone(mode=1, value=95.0, error=0.2),
+    Stiffness(free_length=0.2, value=4600.0, error=90.0),
+)
+FARTHEST = 12.0  # standard deviations of a prior: what has no limit within is not limited
+
+
+def weighed(mass: float, error: float) -> DocumentedCue:
+    """The published Predator Z-2, weighed too."""
+    cue = load_documented(STUDIES / "measured" / "predator_z2")[0]
+    return replace(cue, found=(*cue.found, Weight(value=mass, error=error)))
+
+
+@pytest.mark.parametrize(("mass", "error"), [(0.1025, 1e-4), (0.1025, 3e-4), (0.100, 1e-4), (0.105, 1e-4)])
+def test_a_bore_that_comes_near_the_outside(mass: float, error: float) -> None:
+    """On its way the search meets bores within a tenth of a standard deviation of the outer diameter."""
+    cue = weighed(mass, error)
+    found = estimate(cue)
+    bore = next(value for value in found.values if value.name == "bore")
+    assert found.converged
+    assert bore.value < cue.scene.shaft.segments[0].tip_diameter
+    assert found.rows[-1].computed == pytest.approx(mass, rel=0.02)
+    assert np.isfinite(found.predicted(CHEAP[1])).all()
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("error", [5e-5, 1e-4, 2e-4, 5e-4, 2e-3])
+def test_no_weight_stops_an_estimate(error: float) -> None:
+    for mass in np.arange(0.0805, 0.140, 0.0035):
+        assert np.isfinite(estimate(weighed(float(mass), error)).covariance).all()
+
+
+def limits(cue: DocumentedCue, i: int) -> list[float]:
+    """Where the cue stops being possible along an unknown, in standard deviations of its prior."""
+    ends = []
+    for side in (-1.0, 1.0):
+        inside, outside = 0.0, side * FARTHEST
+        unit = np.eye(len(cue.unknowns))[i]
+        if setup_of(cue, outside * unit):
+            continue
+        while abs(outside - inside) > 1e-9:
+            middle = (inside + outside) / 2
+            inside, outside = (middle, outside) if setup_of(cue, middle * unit) else (inside, middle)
+        ends.append(inside)
+    return ends
+
+
+def setup_of(cue: DocumentedCue, z: np.ndarray) -> bool:
+    """Whether there can be such a cue."""
+    try:
+        return bool(cue.setup(z))
+    except ValueError:
+        return False
+
+
+@pytest.mark.parametrize("scene", [SCENE, leather_scene()], ids=["plain tip", "leather tip"])
+def test_every_unknown_at_its_limits(scene: object) -> None:
+    """Drawings at the limit of what can be, or a little inside, are compared and estimated like others."""
+    cue = DocumentedCue("a cue", scene, CHEAP, (Prior("taper", 0.1),))  # type: ignore[arg-type]
+    met = 0
+    for i, unknown in enumerate(cue.unknowns):
+        for end in limits(cue, i):
+            for inside in (0.0, 0.03, 0.3):
+                there = end - np.sign(end) * inside
+                near = replace(cue, scene=unknown.setup(cue.setup(), float(there)).scene)
+                rows = compare(near)
+                assert np.isfinite([row.spread for row in rows]).all()
+                slopes = near.slopes(np.zeros(len(near.unknowns)))
+                assert np.isfinite(slopes).all()
+                met += 1
+            assert np.isfinite(estimate(near).covariance).all()
+    assert met >= 3

@@ -1,0 +1,244 @@
+"""What the studies of the contact claim: energy.py, dome.py, bridge.py, effects.py, leather_release.py and
+side_strike.py."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from cuefem import AxialWaves, Effect, Resolution, StickLimit, Tip, TipDome, strike
+from cuefem.endmass.drives import small_offset_slope
+from cuefem.tip_modes import tip_modes_of
+from studies import pages, strokes
+from studies.contact import bridge, dome, effects, energy, leather_release, side_strike
+from studies.measured import pool
+from tests.helpers.half_order import spring_exact
+from tests.helpers.study_tables import after, row
+
+# energy
+
+
+@pytest.mark.parametrize("name", energy.CUES)
+def test_shares_add_up_and_say_what_the_text_says(name):
+    for offset in energy.OFFSETS:
+        assert sum(energy.shares(name, float(offset))[0].values()) == pytest.approx(1, abs=1e-9)
+    head_on, _ = energy.shares(name, 0.0)
+    assert head_on["ball rotation"] == head_on["cue vibration"] == head_on["friction loss"] == 0
+    spin, at = energy.largest(name, "ball rotation")
+    assert 0.15 < spin < 0.18
+    assert 0.5 < at < 0.6
+    vibration, _ = energy.largest(name, "cue vibration")
+    assert 0.015 < vibration < 0.03
+
+
+def test_head_on_shares_are_those_of_two_masses():
+    """Momentum and e^2 alone: the ball takes (1 + e)^2 q/(1 + q)^2, q = M/M_c, the tip (1 - e^2)/(1 + 1/q)."""
+    q = 0.21 / 0.54
+    head_on, _ = energy.shares("kim", 0.0)
+    assert head_on["ball translation"] == pytest.approx(1.75**2 * q / (1 + q) ** 2, rel=1e-9)
+    assert head_on["tip loss"] == pytest.approx((1 - 0.75**2) * q / (1 + q), rel=1e-9)
+
+
+def test_the_edge_of_kims_miscue_is_not_sharp():
+    assert energy.miscues("kim")[0] == 0.62
+    assert energy.gripping_again("kim") == [0.63, 0.64, 0.65]
+    assert energy.gripping_again("pool_maple") == []
+    assert energy.duration("kim", 0.64) > 2 * energy.duration("kim", 0.62)
+
+
+# dome
+
+
+def test_dome_on_kims_shaft():
+    """0.0713 bare, about 0.10 at 6 mm, 0.117 at 9 mm; linear in the radius."""
+    bare, six, nine = (dome.case("kim", r).slope for r in (0.0, 6e-3, 9e-3))
+    assert bare == pytest.approx(0.0713, rel=2e-3)
+    assert six == pytest.approx(0.1013, rel=2e-3)
+    assert nine == pytest.approx(0.1163, rel=2e-3)
+    assert (nine - bare) / (six - bare) == pytest.approx(1.5, rel=1e-4)
+
+
+@pytest.mark.heavy
+def test_a_dome_makes_the_end_mass_hardly_depend_on_the_contact_time():
+    assert dome.growth("kim", 0.0) == pytest.approx(0.58, abs=0.02)
+    assert dome.growth("kim", dome.USUAL) == pytest.approx(0.15, abs=0.02)
+    assert dome.growth(dome.WOODEN, dome.USUAL) == pytest.approx(0.13, abs=0.02)
+
+
+@pytest.mark.heavy
+def test_end_masses_move_into_the_lower_half_of_the_measured():
+    low, high = (1e-3 * m for m in dome.span(dome.USUAL))
+    assert dome.span(0.0)[0] < 1e3 * dome.MEASURED[0]
+    assert low == pytest.approx(5.5e-3, rel=0.02)
+    assert dome.MEASURED[0] < high < sum(dome.MEASURED) / 2 + 1e-4
+
+
+@pytest.mark.heavy
+def test_the_dome_of_a_semi_infinite_beam():
+    """A long, thin, shear-stiff rod before any wave returns: the couple moves its end at couple/sqrt(EI rhoA)."""
+    cone = strokes.cue("kim").segments[0]
+    wood = replace(cone.material, G=100 * cone.material.E / 2.6, nu=0.0)
+    segment = replace(cone, length=6.0, butt_diameter=1e-3, tip_diameter=1e-3, material=wood)
+    struck, radius = strokes.scene(strokes.Cue((segment,), 0.54), 4e-3), 1e-5
+    section = struck.cue.section(0.0)
+    law = radius * dome.beam_gain(float(section.EI), float(section.rhoA), StickLimit.of(struck))
+    missed = []
+    for modes in (120, 240):
+        tip = tip_modes_of(struck, Resolution(40, 20, modes))
+        domed = small_offset_slope(tip, replace(struck, effects=(TipDome(radius),)))
+        missed.append(domed / small_offset_slope(tip, struck) - 1 - law)
+    assert 0 < missed[1] < missed[0] / 2
+    assert missed[1] < 0.04 * law
+
+
+@pytest.mark.heavy
+def test_a_wooden_tip_needs_no_more_modes_than_the_default():
+    for sheared in (False, True):
+        assert abs(dome.shortfall(dome.WOODEN, sheared=sheared)) < 2e-3
+        assert -0.03 < dome.shortfall("pool_maple", sheared=sheared) < -0.005
+
+
+def test_dome_with_leather_tip() -> None:
+    page = after(dome.STUDY.committed, pages.LEATHER)
+    for tip, model in (("patchwork", dome.patchwork), (pool.MODERN, dome.leather)):
+        cells = row(page, "pool_maple", tip)
+        assert (cells[3], cells[6]) == (f"{model('pool_maple', 9.5e-3):.2f}", f"{model('pool_maple', np.inf):.2f}")
+
+
+# bridge
+
+
+@pytest.mark.heavy
+def test_a_hand_on_kims_shaft():
+    """At most 1e4 N/m 8 in or more behind the tip changes squirt by less than 1 %, b/R 0.3, 0.7 to 2 ms."""
+    assert max(abs(bridge.worst("kim", T)[1]) for T in bridge.TIMES) == pytest.approx(0.0073, abs=2e-4)
+    assert bridge.stiffness_of("kim", 2e-3) == pytest.approx(1.4e4, rel=0.03)
+
+
+@pytest.mark.heavy
+def test_a_hand_on_the_other_shafts():
+    """It holds up to 1.4 ms; at 2 ms the others are a little beyond it."""
+    worst = {(name, T): abs(bridge.worst(name, T)[1]) for name in bridge.NAMES for T in bridge.TIMES}
+    assert max(found for (_, T), found in worst.items() if T < 2e-3) < bridge.LIMIT
+    assert bridge.LIMIT < max(worst.values()) < 0.013
+    for name, T in worst:
+        inches, k = bridge.worst(name, T)[0], bridge.stiffness_of(name, T)
+        assert abs(bridge.change(name, T, inches, k)) == pytest.approx(bridge.LIMIT, rel=0.02)
+
+
+# effects
+
+
+@pytest.mark.heavy
+def test_what_the_two_sentences_say():
+    for name in effects.SLOW:
+        sizes = {effect: abs(found.squirt) for effect, found in effects.worth(name).items()}
+        assert max(sizes, key=sizes.get) == "TipDome"
+    hard = {effect: abs(found.squirt) for effect, found in effects.worth("break_cue").items()}
+    assert max(hard, key=hard.get) == "RollingContact"
+    for name in effects.SCENES:
+        assert all(abs(effects.worth(name)[small].squirt) < 5e-3 for small in effects.SMALL)
+        assert effects.worth(name)["TipDome"].squirt > (0.15 if name == "break_cue" else 0.3)
+        assert -0.25 < effects.worth(name)["TipShear"].squirt < -0.05
+
+
+@pytest.mark.heavy
+def test_worth_is_with_over_without_whether_listed_or_not():
+    found = effects.worth("carom")
+    dropped = replace(effects.scene("carom"), effects=effects.scene("carom").effects[1:])
+    without = effects.strike(dropped)
+    assert found["TipDome"].listed
+    assert found["TipDome"].squirt == pytest.approx(effects.base("carom").squirt / without.squirt - 1, rel=1e-12)
+    assert not found["AxialWaves"].listed
+
+
+@pytest.mark.heavy
+def test_a_scene_with_the_leather_that_makes_its_contact_time() -> None:
+    struck = effects.leather_scene("carom")
+    cells = row(after(effects.STUDY.committed, pages.LEATHER), "carom")
+    assert cells[1] == f"{struck.leather.E / 1e6:.0f}"
+    assert cells[3] == f"{np.degrees(strike(struck).squirt):.2f}"
+    assert cells[4] == f"{100 * effects.leather_worth('carom')['AxialWaves']:+.1f}"
+
+
+# how a patch lets go
+
+
+@pytest.mark.parametrize(
+    ("offset", "partial", "more"),
+    [(0.2, False, ()), (-0.2, False, ()), (0.45, False, ()), (0.2, True, ()), (-0.45, True, (AxialWaves(),))],
+)
+def test_what_cuefem_computes_is_stepped_alike(offset: float, partial: bool, more: tuple[Effect, ...]) -> None:
+    scene = leather_release.struck_scene(
+        offset, leather=replace(leather_release.LEATHER, partial_slip=partial), more=more
+    )
+    ours, theirs = strike(scene), leather_release.stepped(scene, "rings that slip" if partial else "scaled", 2e-6)
+    first = ours.energy["initial"]
+    assert theirs.squirt == pytest.approx(math.degrees(ours.squirt), rel=2e-3)
+    assert theirs.time == pytest.approx(1e3 * ours.duration, abs=4e-3)  # it ends with a step
+    assert theirs.lost == pytest.approx(ours.energy["tip shear"] / first, rel=6e-3, abs=1e-5)
+    assert theirs.slid == pytest.approx(ours.energy["friction loss"] / first, rel=0.02, abs=1e-4)
+
+
+@pytest.mark.parametrize("rule", leather_release.RULES)
+def test_the_account_closes_with_the_square_of_the_step(rule: str) -> None:
+    scene = leather_release.struck_scene(0.375, tip=Tip(1.0, 0.7))
+    coarse, fine = (leather_release.stepped(scene, rule, step) for step in (4e-6, 2e-6))
+    assert coarse.missing / fine.missing == pytest.approx(4, rel=0.15)
+    assert min(fine.lost, fine.slid) >= 0
+
+
+def test_the_rings_without_slip_depend_on_their_number_only_a_little() -> None:
+    few, many = (leather_release.stepped(leather_release.struck_scene(), "rings", 2e-6, count) for count in (100, 400))
+    assert few.squirt == pytest.approx(many.squirt, rel=2e-4)
+
+
+# a ball on the side of a beam
+
+
+def test_the_exact_curve_is_that_of_the_tests():
+    for parameter in side_strike.PARAMETERS[:-1]:
+        assert side_strike.exact(parameter) == pytest.approx(spring_exact(parameter)[0], abs=1e-12)
+
+
+def test_above_its_limit_nothing_leaves():
+    assert -0.7 < side_strike.exact(3.58) < -0.6
+    with pytest.raises(StopIteration):
+        side_strike.exact(3.6)
+
+
+@pytest.mark.parametrize("name", side_strike.CASES)
+def test_a_far_clamp_changes_nothing_near_the_end(name):
+    """What [Cross 1999] and [Nathan 2000] say of the hand."""
+    rigid, free, held = side_strike.bounces(name, side_strike.CASES[name][2][1])
+    assert abs(held - free) < 1e-3
+    assert rigid - free > 0.1
+
+
+def test_a_bat_is_rigid_only_over_a_part_of_its_barrel():
+    values = np.array([side_strike.bounces("bat", x)[:2] for x in (0.03, 0.16, 0.3)])
+    assert list(np.abs(values[:, 0] - values[:, 1]) < 0.02) == [False, True, False]
+
+
+def test_a_rectangular_beam_as_a_round_one():
+    """EI, rhoA, rhoI and kappa G A of 60 x 27.8 mm of steel."""
+    section = side_strike.rectangular(0.06, 0.0278, 0.78, side_strike.STEEL).section(0.1)
+    area, inertia = 0.06 * 0.0278, 0.06 * 0.0278**3 / 12
+    wanted = (206e9 * inertia, 7850 * area, 7850 * inertia, 5 / 6 * 79.4e9 * area)
+    np.testing.assert_allclose([section.EI, section.rhoA, section.rhoI, section.kGA], wanted, rtol=1e-12)
+
+
+@pytest.mark.heavy
+def test_the_sphere_touches_several_times():
+    touches, (first, free, wall) = side_strike.fall()
+    assert len(touches) > 2
+    assert free < first < wall
+    assert all(1e-5 < duration < 2e-3 for _, duration in touches)
+
+
+def test_the_sources_are_named_with_what_is_missing():
+    for name in ("Cross", "Nathan", "Lindsey", "Goldsmith", "could not be had"):
+        assert name in side_strike.STUDY.committed
