@@ -24,6 +24,7 @@ ROOT = Path(__file__).parent
 ZIG = "ziglang>=0.13.0"
 # Sums may be taken in any order, as vector instructions do; nothing else of -ffast-math, which at the link would switch
 # the whole process to flush denormal numbers to zero.
+SHARED = ["-std=gnu11", "-fPIC", "-fvisibility=hidden", "-shared"]
 FLAGS = ["-O3", "-fno-math-errno", "-fno-trapping-math", "-fno-signed-zeros", "-fassociative-math"]
 
 
@@ -67,7 +68,19 @@ def build() -> Path:
     sources = [str(path) for path in sorted(module.HERE.glob("*.c"))]
     made = binary.with_suffix(f".{os.getpid()}{binary.suffix}")  # another process may load the kernel meanwhile
     own = shlex.split(os.environ.get("CFLAGS", ""))
-    line = [*command, "-std=gnu11", "-fPIC", "-fvisibility=hidden", "-shared", *FLAGS, *own, "-o", str(made), *sources, "-lm"]
+    line = [
+        *command,
+        "-std=gnu11",
+        "-fPIC",
+        "-fvisibility=hidden",
+        "-shared",
+        *FLAGS,
+        *own,
+        "-o",
+        str(made),
+        *sources,
+        "-lm",
+    ]
     done = subprocess.run(line, capture_output=True, text=True, check=False)
     if done.returncode:
         raise SystemExit(f"cuefem: the contact's kernel does not compile with {command[0]}:\n{done.stderr.strip()}")

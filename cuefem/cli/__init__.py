@@ -138,9 +138,7 @@ def _forget_output() -> None:
 def _version(ctx: click.Context, _: click.Parameter, asked: bool) -> None:
     if not asked or ctx.resilient_parsing:
         return
-    from cuefem.contact.kernel import described
-
-    click.echo(f"cuefem, version {version('cuefem')}\ncontact: {described()}")
+    click.echo(f"cuefem, version {version('cuefem')}")
     ctx.exit()
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -12,6 +12,7 @@ import numpy as np
 from cuefem.beam.tip import TipModes
 from cuefem.contact.propagator import ModalPropagator, planar_propagator, raised_propagator
 from cuefem.cue import Array
+from cuefem.effects.law import TipLaw
 from cuefem.effects.leather_law import LeatherLaw
 from cuefem.effects.terms import ContactTerms, HeadOn, Lever, Table
 from cuefem.quantity import scalar
@@ -40,8 +41,7 @@ class ContactModel:
 
     propagator: the cue's modes and ports. facing: (forces, ports + ball), from the velocities of the ports to those of
     the contact at the first touch. ball_gives: (n,), the inverse masses of the ball's velocities; ball: these at the
-    first touch, m/s. terms: what `kernel/contact.h` names, by name. leather: the law of a whole tip. refused: what a
-    contact of this model says if it cannot be stepped on.
+    first touch, m/s. law: the force along the normal. terms, arrays: what `kernel/contact.h` names, by name.
     """
 
     propagator: ModalPropagator
@@ -55,10 +55,10 @@ class ContactModel:
     friction: float
     speed: float
     time: float
+    law: TipLaw | LeatherLaw
     patch: int = RIGID_PATCH
     terms: dict[str, float] = field(default_factory=dict)
     arrays: dict[str, Array] = field(default_factory=dict)
-    leather: LeatherLaw | None = None
     table: Table | None = None
     window: float | None = None
 
@@ -146,7 +146,10 @@ def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
     phi, mass, nu, e = (common[name] for name in ("phi", "ball_mass", "inertia", "restitution"))
     radius, (u, w) = scalar("Ball.radius", scene.ball.radius), terms.lever(phi)
     s, c = math.sin(phi), math.cos(phi)
-    law, numbers, arrays = None, {"tolerance": TOLERANCE}, {}
+    law: TipLaw | LeatherLaw
+    numbers: dict[str, float]
+    arrays: dict[str, Array] = {}
+    numbers = {"tolerance": TOLERANCE}
     if terms.tip is not None:
         law = terms.tip.law(radius, offset, e)
         patch = RINGED_PATCH if terms.tip.partial_slip else LEATHER_PATCH
@@ -158,17 +161,24 @@ def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
             numbers |= {"rings": RINGS, "tolerance": RINGED_TOLERANCE}
             arrays |= _rings(law)
     else:
-        of_tip, time = normal_law(scene, common)
+        law, time = normal_law(scene, common)
         compliance = terms.compliance / scene.stiffness
         patch, dome, turns = SPRING_PATCH if compliance else RIGID_PATCH, terms.dome_radius, terms.turns
-        numbers |= of_tip | {"compliance": compliance}
+        numbers |= power_law(law) | {"compliance": compliance}
         if compliance:
-            n, touched = numbers["exponent"], TOUCHED * common["speed"] * time
-            numbers["first_ratio"] = 1 / (compliance * numbers["stiffness"] * n * touched ** (n - 1))
+            n, touched = law.exponent, TOUCHED * common["speed"] * time
+            numbers["first_ratio"] = 1 / (compliance * law.stiffness * n * touched ** (n - 1))
         common |= {"time": time}
     lever_t, lever_n = s * u + c * w, c * u - s * w
     if turns:
-        numbers |= {"turns": 1, "phi": phi, "dome": dome, "reach": radius + dome, "lever_t": lever_t, "lever_n": lever_n}
+        numbers |= {
+            "turns": 1,
+            "phi": phi,
+            "dome": dome,
+            "reach": radius + dome,
+            "lever_t": lever_t,
+            "lever_n": lever_n,
+        }
         if terms.levers:
             numbers |= {"levers": LEVER_TERMS, "lever_reach": LEVER_REACH}
             arrays["lever_terms"] = _sampled(terms.levers, phi)
@@ -182,19 +192,22 @@ def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
         patch=patch,
         terms=numbers,
         arrays=arrays,
-        leather=law,
+        law=law,
         **common,
     )
 
 
-def normal_law(scene: Scene, common: dict[str, Any]) -> tuple[dict[str, float], float]:
-    """(stiffness and exponent of the force along the normal, about how long a contact takes, s)."""
+def normal_law(scene: Scene, common: dict[str, Any]) -> tuple[TipLaw, float]:
+    """The law along the normal, the scene's own or the linear one, and about how long a contact takes, s."""
     make = scene.contact_terms.law
     if make is None:
-        return {"stiffness": float(scene.stiffness), "exponent": 1.0}, float(scene.contact_time)
-    blow = HeadOn(scene.head_on_mass, common["restitution"], scene.contact_time, common["speed"])
-    law, time = make(blow)
-    return {"stiffness": float(law.stiffness), "exponent": float(law.exponent)}, float(time)
+        return TipLaw(float(scene.stiffness), 1.0, common["restitution"]), float(scene.contact_time)
+    return make(HeadOn(scene.head_on_mass, common["restitution"], scene.contact_time, common["speed"]))
+
+
+def power_law(law: TipLaw) -> dict[str, float]:
+    """A power law as the kernel takes it."""
+    return {"stiffness": float(law.stiffness), "exponent": float(law.exponent)}
 
 
 def _rings(law: LeatherLaw) -> dict[str, Array]:
@@ -210,7 +223,8 @@ def _rings(law: LeatherLaw) -> dict[str, Array]:
 
 
 def _sampled(levers: Sequence[Lever], phi: float) -> Array:
-    """Chebyshev terms of how far levers move the contact (u, w) as it turns on from phi; ValueError if they are rough."""
+    """Chebyshev terms of how levers move the contact (u, w) as it turns on from phi; ValueError if they are rough."""
+
     def moved(angle: Array) -> Array:
         at = np.array([np.sum([lever(phi + each) for lever in levers], axis=0) for each in angle])
         return np.asarray(at - np.sum([lever(phi) for lever in levers], axis=0))
@@ -237,14 +251,19 @@ def _raised(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
     if terms.compliance or terms.turns or terms.window is not None or terms.tip is not None:
         raise ValueError("a raised cue (Elevation) takes a tip without give sideways, a fixed normal and a single hit")
     assert terms.table is not None
-    of_tip, time = normal_law(scene, common)
+    law, time = normal_law(scene, common)
     (u, w), phi, mass, nu = terms.lever(common["phi"]), common["phi"], common["ball_mass"], common["inertia"]
     s, c = math.sin(phi), math.cos(phi)
     right, forward, up = table_axes(phi, terms.table.angle)
     lever = (u, w)
     if any(lever):
         tip = TipModes(
-            tip.omega, tip.amplitude + np.outer(tip.rotation, lever), tip.approach, tip.rotation, tip.damping, tip.radiation
+            tip.omega,
+            tip.amplitude + np.outer(tip.rotation, lever),
+            tip.approach,
+            tip.rotation,
+            tip.damping,
+            tip.radiation,
         )
     facing = np.zeros((6, 9))
     facing[0, [0, 1]], facing[1, [0, 1]], facing[2, 2] = (-s, -c), (-c, s), -1.0
@@ -257,7 +276,8 @@ def _raised(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
         facing,
         np.repeat([1 / mass, 1 / (nu * mass)], 3),
         np.zeros(6),
-        terms={"tolerance": TOLERANCE, "table_friction": terms.table.friction} | of_tip,
+        terms={"tolerance": TOLERANCE, "table_friction": terms.table.friction} | power_law(law),
+        law=law,
         table=terms.table,
         **(common | {"time": time}),
     )

@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike
 
 from cuefem.contact.rule import WAVES
 from cuefem.cue import Array
-
 from cuefem.scene import Outcome, equal_fields
 
 SLIDES, LETS_GO = 0.25, 0.5  # of the push, while the tip slides: from there on squirt grows fast; no valid shot

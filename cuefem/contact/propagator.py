@@ -12,6 +12,7 @@ import threading
 import weakref
 from collections.abc import Iterator
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,7 @@ from cuefem.contact.compiled import library
 from cuefem.cue import Array
 
 Complex = NDArray[np.complex128]
+Index = NDArray[np.intp]
 # Groups of modes whose eigenvectors have a larger condition number lose digits; by how much they are then changed.
 DEFECTIVE, NUDGE = 1e7, 1e-9
 
@@ -28,7 +30,8 @@ DEFECTIVE, NUDGE = 1e7, 1e-9
 class ModalPropagator:
     """Tip modes with their ports, which the compiled kernel keeps the responses of.
 
-    rows: (ports, modes), what each port reads of the modes' velocities, and pushes. omega, approach: of the modes. rates: (coordinates,) 1/s.
+    rows: (ports, modes), what each port reads of the modes' velocities, and pushes. omega, approach: of the modes.
+    rates: (coordinates,) 1/s.
     displacements, velocities: (modes, coordinates), which give omega q and the velocities of the modes. onto:
     (coordinates, modes), from the modes' velocities. lossy: how many of the dampers' rows lose energy; the others
     radiate it.
@@ -48,7 +51,10 @@ class ModalPropagator:
         first = 0
         for part in parts:
             here = slice(first, first + len(part.rates))
-            self.displacements[part.modes, here], self.velocities[part.modes, here] = part.displacements, part.velocities
+            self.displacements[part.modes, here], self.velocities[part.modes, here] = (
+                part.displacements,
+                part.velocities,
+            )
             self.onto[here, part.modes] = part.onto
             first = here.stop
         dampers = [_rows_of_power(damping) for damping in (tip.damping, tip.radiation) if damping is not None]
@@ -84,18 +90,18 @@ class ModalPropagator:
 class _Group:
     """Modes by themselves, or coupled by dampers, as coordinates that turn by themselves."""
 
-    def __init__(self, modes: Array, rates: Complex, displacements: Complex, velocities: Complex, onto: Complex):
+    def __init__(self, modes: Index, rates: Complex, displacements: Complex, velocities: Complex, onto: Complex):
         self.modes, self.rates, self.onto = modes, rates, onto
         self.displacements, self.velocities = displacements, velocities
 
     @classmethod
-    def undamped(cls, omega: Array, modes: Array) -> _Group:
+    def undamped(cls, omega: Array, modes: Index) -> _Group:
         """Each mode a coordinate v + i omega q; a rigid one is its velocity."""
         own = np.eye(len(modes), dtype=complex)
         return cls(modes, 1j * omega[modes], -1j * own * (omega[modes] > 0), own, own)
 
     @classmethod
-    def damped(cls, omega: Array, resistance: Array, modes: Array) -> _Group:
+    def damped(cls, omega: Array, resistance: Array, modes: Index) -> _Group:
         """The eigenvectors of (omega q, v)' = (omega v, -omega^2 q/omega - C v); of a pair of conjugates one, twice."""
         turning = np.diag(omega[modes])
         vibrating = omega[modes] > 0  # a rigid mode has no displacement among the states
@@ -115,7 +121,7 @@ class _Group:
         return cls(modes, rates[kept].astype(complex), displacements, right[count:], left[kept][:, count:])
 
 
-def _coupled_groups(coupled: Array) -> Iterator[Array]:
+def _coupled_groups(coupled: Any) -> Iterator[Index]:
     """The groups of modes that damping couples with each other."""
     left = np.flatnonzero(coupled.any(axis=1)).tolist()
     while left:

@@ -14,6 +14,7 @@ from cuefem.contact.outcome import BLOW, FLIGHT, History, Phase
 from cuefem.contact.propagator import Complex
 from cuefem.contact.rule import NODES
 from cuefem.cue import Array
+from cuefem.effects.leather_law import LeatherLaw
 
 GRIPS = {0: "stick", 1: "slip", -1: "slip back", 2: BLOW, 3: FLIGHT[0]}
 PRESSES = ("load", "unload", "rigid", "free")
@@ -56,7 +57,9 @@ class Course:
         ]
         there = np.r_[:ports, 3:wide]
         start, step, part, _, press = records[:, :5].T
-        return cls(start, step, part, press != PRESSES.index("free"), *parts[:4], parts[4][:, there], parts[5][:, there])
+        force, velocity, depth, angle, loads, blows = parts
+        pressed = press != PRESSES.index("free")
+        return cls(start, step, part, pressed, force, velocity, depth, angle, loads[:, there], blows[:, there])
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,8 +67,8 @@ class SolvedContact:
     """A contact that is over.
 
     xi_before, xi: the coordinates of the cue's modes before and after it (`ModalPropagator`). ball: the ball's
-    velocities after it, m/s (raised: and its spins times R). losses: J by name. peak, deepest: the tip's greatest force, N,
-    and compression, m. course: None where it was not recorded.
+    velocities after it, m/s (raised: and its spins times R). losses: J by name. peak, deepest: the tip's greatest
+    force, N, and compression, m. course: None where it was not recorded.
     """
 
     model: ContactModel
@@ -129,7 +132,7 @@ def solve_contact(model: ContactModel, *, recorded: bool = True) -> SolvedContac
     RuntimeError if the ball does not leave the cue, or the contact cannot be stepped on.
     """
     kernel, propagator, c = library(), model.propagator, KernelContact()
-    before = propagator.onto @ propagator.approach * model.speed + 0j
+    before = (propagator.onto @ propagator.approach * model.speed).astype(complex)
     held = {
         "facing": np.ascontiguousarray(model.facing),
         "ball_gives": np.ascontiguousarray(model.ball_gives),
@@ -192,8 +195,8 @@ def _failure(model: ContactModel, c: KernelContact, phases: tuple[Phase, ...], h
     """What a contact that did not end says."""
     if c.status == _NO_MEMORY:
         return MemoryError("no memory for the steps of a contact")
-    if c.status == _TOO_DEEP and model.leather is not None:
-        return model.leather.too_deep(c.depth)
+    if c.status == _TOO_DEEP and isinstance(model.law, LeatherLaw):
+        return model.law.too_deep(c.depth)
     where = f"{GRIPS[c.grip]}, {PRESSES[c.press]}"
     if c.status == _TURNED_TOO_FAR:
         return RuntimeError(f"the contact has rolled by {c.angle:.3g} rad, further than its levers are known")

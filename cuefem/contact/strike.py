@@ -106,7 +106,7 @@ def outcome_of(solved: SolvedContact, scene: Scene) -> Outcome:
         phases=solved.phases,
         energy=_energy(solved, inertia, (p_t**2 + p_n**2) / (2 * M), nu * M * turning**2 / 2),
         unknowns=model.unknowns,
-        history=None if solved.course is None else solved.history(side, scene.ball.radius),
+        history=None if solved.course is None else solved.history(side, scalar("Ball.radius", scene.ball.radius)),
     )
 
 
@@ -142,22 +142,16 @@ def _energy(solved: SolvedContact, inertia: float, moving: float, turning: float
         account["tip shear"] = losses["shear"]
     if model.table is not None:
         right, forward, up = table_axes(model.phi, model.table.angle)
-        speeds, spins = solved.ball[:3], solved.ball[3:]
-        level = (right @ spins) ** 2 + (forward @ spins) ** 2
-        account["ball roll"] = model.inertia * model.ball_mass * level / 2
-        account["ball hop"] = model.ball_mass * (up @ speeds) ** 2 / 2
+        level, hop = np.array([right, forward]) @ solved.ball[3:], float(up @ solved.ball[:3])
+        account["ball roll"] = model.inertia * model.ball_mass * float(level @ level) / 2
+        account["ball hop"] = model.ball_mass * hop**2 / 2
         account["table loss"] = losses["table"]
     return {name: float(joules) for name, joules in account.items()}
 
 
 def tip_loss(solved: SolvedContact) -> float:
     """Energy that the tip did not give back along the normal, J."""
-    model = solved.model
-    if model.leather is not None:
-        return model.leather.loss(solved.deepest)
-    exponent = model.terms["exponent"]
-    work = model.terms["stiffness"] * solved.deepest ** (exponent + 1) / (exponent + 1)
-    return (1 - model.restitution**2) * work
+    return float(solved.model.law.loss(solved.deepest))
 
 
 def batch_strike(scenes: Sequence[Scene], at: Resolution | None = None, *, threads: int = 1) -> Outcome:

@@ -13,7 +13,6 @@ from cuefem.beam.modes import Modes, solve
 from cuefem.beam.system import assemble
 from cuefem.beam.tip import TipModes
 from cuefem.contact.strike import strike_modes
-from cuefem.contact.turns import Turns
 from cuefem.cue import Array
 from cuefem.design.batch import BatchModes, CueBatch, Stick, batch_frequencies, batch_modes, stick_of
 from cuefem.effects import Support
@@ -74,10 +73,6 @@ class _Strikes:
         """Tip modes of a design."""
         raise AssertionError(f"{type(self).__name__} has no tip modes of its own")
 
-    def turns(self, i: int) -> Turns:
-        """What the strikes of a design share."""
-        return Turns(self.tip(i))
-
     def stick_at(self, offset: float) -> Array:
         """End mass of a tip that sticks at an offset b/R, kg, (designs,)."""
         return np.array([self.end_mass(i, DEFINITIONS["offset"], offset) for i in range(len(self.scenes))])
@@ -93,9 +88,7 @@ class _Strikes:
     def strike(self, i: int, offset: float | None) -> Outcome:
         """The coupled strike of a design at an offset b/R, or at its scene's own; each is made once."""
         if (i, offset) not in self._outcomes:
-            turns = self.turns(i)
-            found = strike_modes(self._scene(i, offset), turns.tip, turns)
-            self._outcomes[i, offset] = replace(found, history=None)  # which would fill the memory
+            self._outcomes[i, offset] = strike_modes(self._scene(i, offset), self.tip(i), recorded=False)
         return self._outcomes[i, offset]
 
 
@@ -165,7 +158,7 @@ class OneByOne(_Strikes):
     def __init__(self, scenes: Sequence[Scene], at: Resolution, frequencies: int) -> None:
         super().__init__()
         self.scenes, self.at, self._count = scenes, at, frequencies
-        self._turns: dict[Any, Turns] = {}
+        self._tips: dict[Any, TipModes] = {}
         self._solved: dict[Any, Modes] = {}
 
     def _of_cues(self, name: str) -> Array:
@@ -211,18 +204,14 @@ class OneByOne(_Strikes):
         return np.array([found.frequencies[: self._count] for found in self._modes])
 
     def tip(self, i: int) -> TipModes:
-        """Tip modes of a design, with its effects."""
-        return self.turns(i).tip
-
-    def turns(self, i: int) -> Turns:
-        """What the strikes of a design share, with those of designs whose tip modes are the same."""
+        """Tip modes of a design, with its effects; those of designs that have the same are one object."""
         scene = self.scenes[i]
         if not scene.cue.segments:
-            return Turns(tip_modes_of(scene))
+            return tip_modes_of(scene)
         alike = key_of(scene, scene.cue, scene.cue_effects, float(scene.axial_mass))
-        if alike not in self._turns:
-            self._turns[alike] = Turns(tip_modes_from(self._kept(i), scene))
-        return self._turns[alike]
+        if alike not in self._tips:
+            self._tips[alike] = tip_modes_from(self._kept(i), scene)
+        return self._tips[alike]
 
     def _kept(self, i: int) -> Modes:
         """The modes that a contact takes: with a support as many in all as without (`tip_modes_of`)."""

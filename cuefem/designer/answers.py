@@ -19,7 +19,6 @@ from cuefem.beam.tip import TipModes
 from cuefem.beam.waves import mesh_for
 from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
-from cuefem.contact.turns import Turns
 from cuefem.cue import Array
 from cuefem.design.sensitivity import sensitivity
 from cuefem.design.solvers import static_tip_stiffness
@@ -166,10 +165,10 @@ def lumped_curve(solved: Solved) -> Curve:
 
 def coupled_points(found: Answers) -> Iterator[Point]:
     """The coupled strike offset by offset, each computed when it is asked for; it ends well beyond the miscue."""
-    missed, turns = 0, Turns(found.tip)
+    missed = 0
     for offset in OFFSETS:
         scene = replace(found.scene, stroke=replace(found.scene.stroke, offset=offset))
-        outcome = strike_modes(scene, turns.tip, turns)
+        outcome = strike_modes(scene, found.tip)
         record = outcome_record(outcome, scene)
         yield Point(offset, record["squirt"], float(record["pivot_length"]), safety(outcome))
         missed = missed + 1 if outcome.regime == "miscue" else 0

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterable
 from typing import NamedTuple, Protocol
 
-from cuefem.effects.law import NormalLaw
+from cuefem.effects.law import TipLaw
 from cuefem.effects.leather_law import LeatherLaw
 
 # Displacement (u, w) of the contact per unit rotation of the tip's end section, m, over the contact's angle, rad.
@@ -44,7 +44,7 @@ class WholeTip(Protocol):
 
 
 # Makes a tip's law along the normal from its head-on blow, and tells about how long the contact takes, s.
-MakeLaw = Callable[[HeadOn], tuple[NormalLaw, float]]
+MakeLaw = Callable[[HeadOn], tuple[TipLaw, float]]
 
 
 class Table(NamedTuple):
@@ -64,8 +64,8 @@ class ActsAtContact(Protocol):
 class ContactTerms:
     """Terms of the contact; each effect of a scene adds its own (`Effect.add_to_contact`), in any order.
 
-    What may be given only once (law, turning normal, table, window) is refused the second time. `cuefem.contact.kinds`
-    reads the terms and picks the cheapest contact that can honour them. tip_diameter: of the cue's end, m; None for a
+    What may be given only once (law, turning normal, table, window) is refused the second time. `cuefem.contact.laws`
+    makes of them the law that the contact follows. tip_diameter: of the cue's end, m; None for a
     lumped cue, which has none.
     """
 

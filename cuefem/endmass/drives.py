@@ -16,12 +16,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cuefem.beam.tip import TipModes
-from cuefem.endmass.root import zero
 from cuefem.contact.impulse_space import impact
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array, LumpedCue
 from cuefem.endmass import damped
 from cuefem.endmass import undamped as transverse
+from cuefem.endmass.root import zero
 from cuefem.endmass.undamped import StickLimit
 from cuefem.quantity import check_kind, scalar
 from cuefem.scene import Outcome, Resolution, Scene, Stroke

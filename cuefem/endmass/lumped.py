@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 from cuefem.beam.tip import TipModes
-from cuefem.endmass.root import zero
 from cuefem.contact.impulse_space import impact
 from cuefem.cue import LumpedCue
 from cuefem.endmass.drives import _gripping, end_mass, stick_at_offset, sticking_squirt
+from cuefem.endmass.root import zero
 from cuefem.quantity import check_kind, scalar
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import Solved

@@ -32,7 +32,3 @@ def zero(function: Callable[[float], float], low: float, high: float) -> float:
             part = at_a / (at_b - at_a) * at_c / (at_b - at_c)
             part += (c - a) / (b - a) * at_a / (at_c - at_a) * at_b / (at_c - at_b)
         part = min(1 - least, max(least, part))
-
-
-def integral_of_product(piece: Piece, first: int, second: int) -> float:
-    """Integral over a stretch of the product of two outputs, exact."""

@@ -1,7 +1,7 @@
 """The strike from the side: the striker meets the vibrating beam in time (handbook: The side strike).
 
 It is the head-on contact of `cuefem.contact` with the beam's motion at the place that is struck in place of the cue's
-along its axis. A linear law is followed exactly, phase by phase; Hertz's is stepped in time, to about 1e-10.
+along its axis.
 """
 
 from __future__ import annotations
@@ -9,14 +9,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from cuefem.beam.mesh import ActsOnCue, Place
 from cuefem.beam.tip import TipModes, side_modes
-from cuefem.contact.laws import LEAST_RESTITUTION, TOLERANCE, ContactModel, check_lively
-from cuefem.contact.outcome import History, Phase
+from cuefem.contact.laws import LEAST_RESTITUTION, TOLERANCE, ContactModel, check_lively, power_law
+from cuefem.contact.outcome import Phase
 from cuefem.contact.propagator import planar_propagator
 from cuefem.contact.solve import SolvedContact, solve_contact
 from cuefem.contact.strike import tip_loss
@@ -73,7 +73,7 @@ class SideOutcome:
     energy: dict[str, float]
     unknowns: int = 0
     error: float | None = None
-    history: History | None = None
+    history: Any = None
 
     __eq__ = equal_fields
     __hash__ = None  # type: ignore[assignment]
@@ -104,8 +104,8 @@ def side_strike(scene: SideStrike, at: Resolution | None = None) -> SideOutcome:
 
     Notes
     -----
-    Striker, contact and the beam's modes are one system, and the modes turn exactly between the contact's forces, so that
-    the modes kept are the only approximation that counts: the steps add about 1e-12, 1e-10 with Hertz's law.
+    Striker, contact and the beam's modes are one system, and the modes turn exactly between the contact's forces, so
+    that the modes kept are the only approximation that counts: the steps add about 1e-12, 1e-10 with Hertz's law.
     The energies add up to 1e-10. Handbook: The side strike.
 
     Examples
@@ -198,7 +198,8 @@ def solved_side(scene: SideStrike, place: TipModes, *, recorded: bool = True) ->
         friction=math.inf,
         speed=scene.speed,
         time=time,
-        terms={"stiffness": law.stiffness, "exponent": law.exponent, "tolerance": TOLERANCE},
+        law=law,
+        terms=power_law(law) | {"tolerance": TOLERANCE},
         window=scene.window,
     )
     return solve_contact(model, recorded=recorded)
