@@ -68,19 +68,7 @@ def build() -> Path:
     sources = [str(path) for path in sorted(module.HERE.glob("*.c"))]
     made = binary.with_suffix(f".{os.getpid()}{binary.suffix}")  # another process may load the kernel meanwhile
     own = shlex.split(os.environ.get("CFLAGS", ""))
-    line = [
-        *command,
-        "-std=gnu11",
-        "-fPIC",
-        "-fvisibility=hidden",
-        "-shared",
-        *FLAGS,
-        *own,
-        "-o",
-        str(made),
-        *sources,
-        "-lm",
-    ]
+    line = [*command, *SHARED, *FLAGS, *own, "-o", str(made), *sources, "-lm"]
     done = subprocess.run(line, capture_output=True, text=True, check=False)
     if done.returncode:
         raise SystemExit(f"cuefem: the contact's kernel does not compile with {command[0]}:\n{done.stderr.strip()}")

@@ -266,7 +266,9 @@ class _Walk:
     def fly(self, here: Array) -> tuple[Complex, Array, Array]:
         """The same without loads, at any time: a coordinate's integral is known in closed form."""
         xi, rates = self.propagator.follow(self.xi, here), self.propagator.rates
-        turning = np.abs(rates) > 0
-        summed = np.where(turning, (xi - self.xi) / np.where(turning, rates, 1.0), here[:, None] * self.xi)
+        turned = np.multiply.outer(here, rates)
+        still = turned == 0
+        mean = np.where(still, 1.0, np.expm1(turned) / np.where(still, 1.0, turned))
+        summed = self.xi * here[:, None] * mean
         gone = self.gone + (summed @ self.propagator.velocities[self.rigid].T).real
         return xi, gone, self.way + here[:, None] * self.ball

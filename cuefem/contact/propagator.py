@@ -109,16 +109,18 @@ class _Group:
         there = np.concatenate([vibrating, np.ones(len(modes), bool)])
         states = whole[np.ix_(there, there)]
         rates, right = np.linalg.eig(states)
+        rates, right = np.linalg.eig(states)
         if np.linalg.cond(right) > DEFECTIVE:  # two rates are one, as of a critically damped mode: take them apart
             nudge = NUDGE * np.linalg.norm(states) * np.diag(np.linspace(-1.0, 0.0, len(states)))
             rates, right = np.linalg.eig(states + nudge)
-        left = np.linalg.inv(right)
+        left = np.linalg.inv(right).astype(complex)
         kept = np.flatnonzero(rates.imag >= 0)
-        right = right[:, kept] * np.where(rates[kept].imag > 0, 2.0, 1.0)
+        right = (right[:, kept] * np.where(rates[kept].imag > 0, 2.0, 1.0)).astype(complex)
         count = int(vibrating.sum())
         displacements = np.zeros((len(modes), len(kept)), complex)
         displacements[vibrating] = right[:count]
-        return cls(modes, rates[kept].astype(complex), displacements, right[count:], left[kept][:, count:])
+        velocities: Complex = np.asarray(right[count:], complex)
+        return cls(modes, rates[kept].astype(complex), displacements, velocities, left[kept][:, count:])
 
 
 def _coupled_groups(coupled: Any) -> Iterator[Index]:

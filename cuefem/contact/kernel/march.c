@@ -397,6 +397,8 @@ int solve_step(Work *w, int level, Step *s)
         before = (off < 1e-9 || off * r->step < 1e-13 * c->clock) && off > 0.5 * before ? 0 : off; /* rounding is left */
     }
     free(own_V);
+    if (c->depth == 0 && c->time == 0) /* the first touch has no force yet */
+        for (int f = 0; f < n; f++) s->F[f][0] = 0;
     if (settled && dampers)
         loaded(c->cue, r, (const double(*)[WITH])own, (const double(*)[Q])s->loads, c->cue->ports, c->cue->reads,
                (double(*)[WITH])s->damped);
