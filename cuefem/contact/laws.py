@@ -28,6 +28,8 @@ LEAST_RESTITUTION, LEAST_OF_LEATHER = 1e-4, 0.1
 TOLERANCE, LEATHER_TOLERANCE, RINGED_TOLERANCE = 1e-11, 1e-10, 1e-7
 RINGS = 160  # even in the root of the compression, up to the law's greatest
 RIGID_PATCH, SPRING_PATCH, LEATHER_PATCH, RINGED_PATCH = range(4)
+# What happens along the surface is computed relative to itself, down to this part of the rest.
+LEAST_ACROSS = 1e-9
 # Levers that are functions are sampled over this range of the contact's angle, rad, by so many Chebyshev terms.
 LEVER_REACH, LEVER_TERMS, LEVER_FIT = 0.5, 24, 1e-11
 # A law that stiffens from nothing grips a patch on a spring at once if it does so from this part of a blow's depth on.
@@ -41,7 +43,8 @@ class ContactModel:
 
     propagator: the cue's modes and ports. facing: (forces, ports + ball), from the velocities of the ports to those of
     the contact at the first touch. ball_gives: (n,), the inverse masses of the ball's velocities; ball: these at the
-    first touch, m/s. law: the force along the normal. terms, arrays: what `kernel/contact.h` names, by name.
+    first touch, m/s. law: the force along the normal. across: the part of the
+    speed along the surface, by which its errors are measured. terms, arrays: what `kernel/contact.h` names, by name.
     """
 
     propagator: ModalPropagator
@@ -56,6 +59,7 @@ class ContactModel:
     speed: float
     time: float
     law: TipLaw | LeatherLaw
+    across: float = 1.0
     patch: int = RIGID_PATCH
     terms: dict[str, float] = field(default_factory=dict)
     arrays: dict[str, Array] = field(default_factory=dict)
@@ -189,6 +193,7 @@ def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
         facing if turning else np.delete(facing, 2, axis=1),
         np.array([1 / mass, 1 / mass, 1 / (nu * mass)]),
         np.zeros(3),
+        across=max(s, LEAST_ACROSS),
         patch=patch,
         terms=numbers,
         arrays=arrays,

@@ -96,10 +96,10 @@ class History:
             raise ValueError(f"History takes times in [0, {self.duration}] s, the contact's; got {time}")
         which = np.maximum(np.searchsorted(self.start, time, side="right") - 1, 0)
         part = (time - self.start[which]) / self.step[which]
-        waves = np.moveaxis(self.values[which] @ WAVES.T, (-2, -1), (1, 0)) if time.ndim else None
-        if waves is None:
-            waves = (self.values[which] @ WAVES.T).T
-        found = legendre.legval(2 * part - 1, waves, tensor=False)
+        values = np.moveaxis(self.values[which], (-2, -1), (1, 0))
+        waves = np.tensordot(WAVES, values, axes=1)
+        at = legendre.legval(2 * part - 1, waves, tensor=False)
+        found = np.where(part == 0, values[0], at)
         return dict(zip(("force_t", "force_n", "velocity_t", "velocity_n"), np.asarray(found), strict=True))
 
 

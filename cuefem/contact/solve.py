@@ -147,6 +147,7 @@ def solve_contact(model: ContactModel, *, recorded: bool = True) -> SolvedContac
         "restitution": model.restitution,
         "friction": model.friction,
         "speed": model.speed,
+        "across": model.across,
         "clock": model.time,
         "impulse": model.speed * model.ball_mass,
         "longest": model.longest,

@@ -114,7 +114,8 @@ typedef struct {
     int forces, speeds, turns, curve, patch, lossy, terms, levers, rings, recording;
     double restitution, friction, table_friction, stiffness, exponent, steady, most, compliance, first_ratio;
     double phi, dome, reach, lever_t, lever_n, lever_reach;
-    double speed, clock, impulse, tolerance, longest, window, most_phases, most_steps;
+    double speed, across, clock, impulse, tolerance, longest, window, most_phases, most_steps; /* across: part of the speed
+                                                                                                   along the surface */
     /* what it gets */
     double time, depth, angle, shear, deepest, peak, height;
     double friction_loss, shear_loss, table_loss, damping_loss, radiated;

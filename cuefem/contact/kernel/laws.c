@@ -167,7 +167,7 @@ static int guards(Work *w, const Step *s, Guard *to)
     if (c->patch == RINGED_PATCH) return count;
     if (grip != STICK) {
         sliding(w, s, slides);
-        GUARD(GRIPPED, near * speed, -grip * slides[i]);
+        GUARD(GRIPPED, near * speed * c->across, -grip * slides[i]);
     } else if (isfinite(c->friction)) {
         GUARD(SLIPPED, force, c->friction * s->F[1][i] - s->F[0][i] + 1e-12 * size);
         GUARD(SLIPPED_BACK, force, c->friction * s->F[1][i] + s->F[0][i] + 1e-12 * size);

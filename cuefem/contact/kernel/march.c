@@ -423,19 +423,21 @@ static double error_of(const Work *w, const Step *s)
 {
     const Contact *c = w->c;
     double of_load = 0, of_speed = 0;
+    static const int ALONG[ALL_PORTS] = {1, 0, 0, 0, 1, 0, 0, 0, 0}; /* ports that feel the blow itself */
     for (int p = 0; p < PORTS + c->speeds; p++) {
         if (p >= c->cue->ports && p < PORTS) continue;
+        double scale = c->forces == 2 && !ALONG[p] ? c->across : 1;
         for (int t = Q - 2; t < Q; t++) {
             double sum = 0;
             for (int j = 0; j < Q; j++) sum += rule.force_waves[t][j] * s->loads[p][j];
-            of_load = fmax(of_load, fabs(sum));
+            of_load = fmax(of_load, fabs(sum) / scale);
         }
     }
     for (int f = 0; f < c->forces; f++)
         for (int t = Q - 1; t <= Q; t++) {
             double sum = 0;
             for (int j = 0; j < WITH; j++) sum += rule.waves[t][j] * s->v[f][j];
-            of_speed = fmax(of_speed, fabs(sum));
+            of_speed = fmax(of_speed, fabs(sum) / (c->forces == 2 && !f ? c->across : 1));
         }
     return fmax(of_load * s->step / c->impulse, of_speed / (10 * c->speed)) / c->tolerance;
 }
