@@ -87,6 +87,12 @@ static void along(const Work *w, const Step *s, int k, double *to)
     }
 }
 
+/* What is left to friction's bound; where friction is great, in units of what presses, whose rounding it would magnify. */
+static double margin(double mu, double pressing, double x, double y)
+{
+    return mu > 1 ? pressing - hypot(x, y) / mu : mu * pressing - hypot(x, y);
+}
+
 static int guards(Work *w, const Step *s, Guard *to)
 {
     const Contact *c = w->c;
@@ -102,7 +108,7 @@ static int guards(Work *w, const Step *s, Guard *to)
         along(w, s, 0, values);
         if (c->friction > 0) GUARD(GRIPPED, near * speed, values[i]);
     } else if (isfinite(c->friction))
-        GUARD(SLIPPED, 0, c->friction * s->F[N][i] - hypot(s->F[T][i], s->F[P][i]) + tiny);
+        GUARD(SLIPPED, 0, margin(c->friction, s->F[N][i], s->F[T][i], s->F[P][i]) + tiny);
     if (w->hold.table == LIFTED) {
         GUARD(LANDED, near * way, c->height + s->x[UP][i]);
         return count;
@@ -111,7 +117,7 @@ static int guards(Work *w, const Step *s, Guard *to)
     if (w->hold.table == SLIDES) {
         along(w, s, 1, values);
         if (c->table_friction > 0) GUARD(STOPPED, near * speed, values[i]);
-    } else GUARD(SLID, 0, c->table_friction * s->F[UP][i] - hypot(s->F[ASIDE][i], s->F[AHEAD][i]) + tiny);
+    } else GUARD(SLID, 0, margin(c->table_friction, s->F[UP][i], s->F[ASIDE][i], s->F[AHEAD][i]) + tiny);
     return count;
 }
 
@@ -129,7 +135,7 @@ static void rest_on_table(Work *w)
     w->hold.table = HELD;
     if (!forces_now(w, w->hold, F)) return;
     double slack = ROUNDING * c->impulse / c->clock;
-    if (hypot(F[ASIDE], F[AHEAD]) > c->table_friction * F[UP] + slack) {
+    if (margin(c->table_friction, F[UP], F[ASIDE], F[AHEAD]) < -slack) {
         w->hold.table = SLIDES;
         point(w->way[1], F[ASIDE], F[AHEAD]);
         if (!forces_now(w, w->hold, F)) return;
@@ -151,7 +157,7 @@ static int grip_at_rest(Work *w, int press)
     double F[FORCES];
     c->friction_loss += settle(w, hold);
     if (!forces_now(w, hold, F)) return STICK;
-    if (hypot(F[T], F[P]) <= c->friction * F[N] + ROUNDING * c->impulse / c->clock) return STICK;
+    if (margin(c->friction, F[N], F[T], F[P]) >= -ROUNDING * c->impulse / c->clock) return STICK;
     point(w->way[0], F[T], F[P]);
     return SLIP;
 }
