@@ -28,8 +28,9 @@ LEAST_RESTITUTION, LEAST_OF_LEATHER = 1e-4, 0.1
 TOLERANCE, LEATHER_TOLERANCE, RINGED_TOLERANCE = 1e-11, 1e-10, 1e-7
 RINGS = 160  # even in the root of the compression, up to the law's greatest
 RIGID_PATCH, SPRING_PATCH, LEATHER_PATCH, RINGED_PATCH = range(4)
-# What happens along the surface is computed relative to itself, down to this part of the rest.
-LEAST_ACROSS = 1e-9
+# What happens along the surface is computed relative to itself, down to this part of the rest: where the normal does
+# not turn nothing of the rest comes in, so that rounding is relative to itself too.
+LEAST_ACROSS, LEAST_ACROSS_TURNING = 1e-9, 1e-3
 # Levers that are functions are sampled over this range of the contact's angle, rad, by so many Chebyshev terms.
 LEVER_REACH, LEVER_TERMS, LEVER_FIT = 0.5, 24, 1e-11
 # A law that stiffens from nothing grips a patch on a spring at once if it does so from this part of a blow's depth on.
@@ -193,7 +194,7 @@ def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
         facing if turning else np.delete(facing, 2, axis=1),
         np.array([1 / mass, 1 / mass, 1 / (nu * mass)]),
         np.zeros(3),
-        across=max(s, LEAST_ACROSS),
+        across=max(s, LEAST_ACROSS_TURNING if turns else LEAST_ACROSS),
         patch=patch,
         terms=numbers,
         arrays=arrays,

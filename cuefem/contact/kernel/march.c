@@ -594,7 +594,7 @@ static int follow(Work *w, double until)
         }
         if (event && apart <= 1 && w->hold.press == UNLOAD) { /* where all forces vanish the other ends mean nothing */
             double left = value_at(w->step.depth, first) - (1 - c->restitution * c->restitution) * c->deepest;
-            if (left < (w->linear ? 1e-11 : 1e-7) * c->deepest) first = apart, event = APART;
+            if (left < (w->linear ? 1e-11 : c->forces == 2 ? 1e-7 : 1e-5) * c->deepest) first = apart, event = APART;
         }
         if (first > 0) {
             double here = c->time, ball[SPEEDS];

@@ -98,7 +98,8 @@ static int guards(Work *w, const Step *s, Guard *to)
     const Contact *c = w->c;
     int count = 0;
     double size = c->impulse / c->clock, speed = c->speed, way = speed * c->clock, values[WITH];
-    double tiny = ROUNDING * size, near = 1e-11, rest = (1 - c->restitution * c->restitution) * c->deepest;
+    /* forces are known to what a step may leave out of them */
+    double tiny = fmax(ROUNDING * size, 20 * c->tolerance * c->impulse / s->step), near = 1e-11, rest = (1 - c->restitution * c->restitution) * c->deepest;
     if (w->hold.press == LOAD) GUARD(COMPRESSED, near * speed, -s->v[N][i]);
     else {
         GUARD(APART, near * way, s->depth[i] - rest);
