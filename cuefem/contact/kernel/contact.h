@@ -145,6 +145,7 @@ typedef struct {
 typedef struct {
     int (*first_grip)(Work *, int press);
     void (*begin)(Work *);
+    void (*settle)(Work *); /* take away what rounding left of the velocities that the hold keeps at zero */
     void (*residual)(Work *, const Step *, Residual *);
     int (*guards)(Work *, const Step *, Guard *);
     void (*taken)(Work *, const Step *, double part);

@@ -320,4 +320,9 @@ static int next(Work *w, int event)
     return press != RIGID || pressed_together(w, w->hold.grip);
 }
 
-const Law planar = {first_grip, begin, residual, guards, taken, next};
+static void settle_now(Work *w)
+{
+    settle(w, w->hold);
+}
+
+const Law planar = {first_grip, begin, settle_now, residual, guards, taken, next};

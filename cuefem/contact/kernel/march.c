@@ -442,6 +442,9 @@ static double error_of(const Work *w, const Step *s)
     return fmax(of_load * s->step / c->impulse, of_speed / (10 * c->speed)) / c->tolerance;
 }
 
+/* Steps that are shorter by so many halvings feel what rounding left of a velocity that is held. */
+enum { SETTLES = 8 };
+
 /* The longest step that holds the tolerance; ENDED, or why there is none. */
 static int longest_step(Work *w)
 {
@@ -449,6 +452,7 @@ static int longest_step(Work *w)
     int longest = LONGEST_POWER - (int)floor(log2(c->clock)), rough = c->patch == RINGED_PATCH;
     while (w->level < LEVELS) {
         c->tried++;
+        if (w->level > longest + SETTLES && w->hold.press != FREE) w->law->settle(w);
         int found = solve_step(w, w->level, &w->step);
         double error = found ? error_of(w, &w->step) : HUGE_VAL;
         if (error <= 1 || (found && rough && w->level >= longest + 11)) {

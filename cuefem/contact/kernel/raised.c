@@ -239,4 +239,4 @@ static int next(Work *w, int event)
     return 1;
 }
 
-const Law raised = {first_grip, begin, residual, guards, taken, next};
+const Law raised = {first_grip, begin, begin, residual, guards, taken, next};
