@@ -42,6 +42,15 @@ def pool() -> str:
     return page("pool.toml", scene("pool_low_deflection"))
 
 
+def test_a_cue_of_as_many_segments_as_there_may_be_is_drawn_with_its_leather() -> None:
+    piece = cf.Segment(0.36e-3, 0.012, 0.012, cf.Material(12.6e9, 0.84e9, 700.0))
+    longest = cf.usual_scene(cf.Cue((piece,) * 2000, body_mass=0.45))
+    drawn = cue_drawing(longest, across=8.0)
+    assert len(drawn.pieces) == 2001
+    assert drawn.pieces[0].material == "m-leather"
+    assert strike_drawing(longest, 0.03).pieces[0][1] == "m-leather"
+
+
 class Reader(HTMLParser):
     """Tags, attributes and text of a page; refuses tags that do not close in order."""
 
