@@ -12,7 +12,8 @@ from cuefem.beam.waves import even_mesh_for, modes_below
 from cuefem.cue import Array
 from cuefem.design.batch import BLOCK
 from cuefem.design.responses import Response
-from cuefem.design.solvers import OneByOne, Solver, Together, key_of
+from cuefem.design.solvers import OneByOne, Together, key_of
+from cuefem.results.designs import Designs
 from cuefem.scene import Resolution, Scene
 from cuefem.tip_modes import PERIODS_KEPT
 
@@ -83,7 +84,7 @@ def _values(scenes: Sequence[Scene], responses: Sequence[Response], at: Resoluti
     if lacking:
         raise ValueError(f"{lacking[0]} needs a cue of segments; got a lumped cue")
     count = max([0, *(one.modes for one in responses)])
-    solver: Solver = (Together if bare else OneByOne)(scenes, at, count)
+    solver: Designs = (Together if bare else OneByOne)(scenes, at, count)
     found = np.column_stack([one.values(solver) for one in responses])
     why: list[str | None] = [None] * len(scenes)
     for i, j in np.argwhere(np.isnan(found)):

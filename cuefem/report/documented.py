@@ -15,11 +15,11 @@ from cuefem.measured.sampler import Sample
 from cuefem.report.charts import WIDE, Axis, Chart, Curve, Tick, chart
 from cuefem.report.drawings import cue_drawing, front_drawing
 from cuefem.report.glossary import with_words
-from cuefem.report.quantities import NONE, TRADE
 from cuefem.report.record import Record
 from cuefem.report.table import table_of, with_caption
 from cuefem.report.templates import environment
 from cuefem.report.words import effect_words, plain_cue_line
+from cuefem.results.quantities import NONE, TRADE
 
 OFFSETS = tuple(round(0.05 * i, 2) for i in range(1, 11))  # b/R of the computed curve
 EDGE = 5.0  # residuals beyond this are drawn at the edge

@@ -15,7 +15,7 @@ from cuefem.cue import Material, Segment
 from cuefem.materials import MATERIALS
 from cuefem.quantity import scalar
 from cuefem.report.charts import WIDE, Axis, Tick, path
-from cuefem.report.quantities import TRADE, Units
+from cuefem.results.quantities import TRADE, Units
 from cuefem.scene import Scene
 
 FRONT = 0.09  # m of the tip end that is drawn enlarged
