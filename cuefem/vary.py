@@ -80,9 +80,8 @@ class Place:
     also
         Other names.
     group, label, at, absent
-        The heading over its knob ("" for no knob) and the knob's label if that is not ``words``; "{exact}" and
-        "{rounded}" in it stand for ``at``, a position on the cue, m from the tip; what is said where a cue
-        has no such place.
+        The heading over its knob ("" for no knob) and the knob's label if that is not ``words``; "{exact}" in
+        it stands for ``at``, a position on the cue, m from the tip; what is said where a cue has no such place.
     range
         Of the slider; it may depend on the cue.
     materials
@@ -453,7 +452,7 @@ PLACES: dict[str, Place] = {
             range=_mm(8, 15, 0.05, 4, 30),
         ),
         Place(
-            *("taper diameter", "Taper, at {rounded}", "diameters.taper"),
+            *("taper diameter", "Taper, at {exact}", "diameters.taper"),
             group="Shaft",
             at=taper_position,
             range=_mm(8, 20, 0.05, 4, 60),

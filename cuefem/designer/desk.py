@@ -121,6 +121,7 @@ class Desk:
         else:
             self.made = made
             self._make_knobs()
+        self._name_knobs()
         self._show_ways()
         self.reference = min(self.reference, max(0, len(self.pinned) - 1))
         self.pins.show(self.pinned, self.reference)
@@ -158,6 +159,12 @@ class Desk:
                     self.fields.append(NumberField(slider, slider.shown(self.design.knobs), slide))
             for words in without(scene):
                 Markup(explained(f'<p class="hint">{escape(words)}</p>'))
+
+    def _name_knobs(self) -> None:
+        """Label the knobs as the cue now is: where its bore begins changes with its ferrule."""
+        labels = {slider.knob: slider.label for slider in sliders(self.design.scene, self.system)}
+        for field in self.fields:
+            field.name(labels.get(field.slider.knob, field.named))
 
     def _show_head(self) -> None:
         self.head.set_content(explained(head_markup(self.design, self.system)))
@@ -354,6 +361,7 @@ class Desk:
 
     def show_move(self) -> None:
         """What belongs to a move beside its answer: the knob's text, and the fields of everything."""
+        self._name_knobs()
         for field in self.fields:
             field.agree()
         self._show_ways()

@@ -72,7 +72,7 @@ def remarks(found: TapFit) -> list[str]:
         lines.append(f"{why} G from E: the file's G/E is kept, and assumed known to {100 * KEPT:.0f} %")
     if not found.weighed:
         lines.append(
-            f"not weighed (--mass): the file's density is kept as it is, and assumed known to {100 * DENSITY:.0f} %"
+            f"the shaft was not weighed: its density is kept as it is, and assumed known to {100 * DENSITY:.0f} %"
         )
     if MOST <= explained(found) < NEARLY_ALL:
         lines.append("some loud tones are not this shaft's: check that it is the one drawn, and that it hung free")
