@@ -19,10 +19,10 @@ from typing import Any
 from unittest.mock import patch
 
 import numpy as np
+from cuefem.contact.tip_forces import TipForces
 
 from cuefem import AxialWaves, Cue, Effect, LeatherTip, PointMass, Resolution, Scene, Stroke, Tip, strike
 from cuefem.contact import leather as contact
-from cuefem.contact.tip_forces import TipForces
 from studies import pages, strokes
 from studies.measured import measured_shafts as shafts
 from studies.measured import pool

@@ -7,6 +7,7 @@ from math import inf
 
 import numpy as np
 import pytest
+from cuefem.contact.patch import SpringPatch
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
@@ -25,7 +26,6 @@ from cuefem import (
     TipShear,
     strike,
 )
-from cuefem.contact.patch import SpringPatch
 from cuefem.effects import CueEffect, Effect, TipEffect
 from tests.helpers.strike_scenes import FRICTION, KIM, OFFSET, RESTITUTION, SIGN, imbalance, kim_scene, numbers, sound
 
