@@ -53,6 +53,11 @@ enum { NONE, COMPRESSED, APART, RELOADED, TURNED, GRIPPED, SLIPPED, SLIPPED_BACK
        LIFTED_OFF, LANDED, STOPPED, SLID };
 enum { ENDED, LATE, CROWDED, STUCK, TOO_DEEP, TURNED_TOO_FAR, NO_MEMORY };
 
+static inline double larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
 /* The tables of a step's rule, as `cuefem.contact.rule` makes them. Polynomials of forces go through the nodes, those of
    velocities through the start too. */
 typedef struct {

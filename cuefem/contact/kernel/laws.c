@@ -23,7 +23,7 @@ void curve_at(const Contact *c, double depth, double *F, double *slope, double *
         return;
     }
     /* F = y^3 (f_0 + f_1 y + ...), y/k = g_0 + g_1 y + ..., y the root of the compression */
-    double y = sqrt(fmax(depth, 0)), f = 0, df = 0, g = 0, dg = 0;
+    double y = sqrt(larger(depth, 0)), f = 0, df = 0, g = 0, dg = 0;
     for (int i = c->terms - 1; i >= 0; i--) {
         f = f * y + c->force_terms[i], df = df * y + (i + 3) * c->force_terms[i];
         g = g * y + c->give_terms[i], dg = dg * y + (i + 1) * c->give_terms[i];
@@ -150,7 +150,7 @@ static int guards(Work *w, const Step *s, Guard *to)
     const Contact *c = w->c;
     int count = 0, press = w->hold.press, grip = w->hold.grip;
     double size = c->impulse / c->clock, speed = c->speed, near = w->linear ? 0 : 1e-10, slides[WITH];
-    double way = near * speed * c->clock, force = w->linear ? 0 : fmax(10 * near * size, 20 * c->tolerance * c->impulse / s->step);
+    double way = near * speed * c->clock, force = w->linear ? 0 : larger(10 * near * size, 20 * c->tolerance * c->impulse / s->step);
     if (press == FREE) {
         GUARD(TOUCHED, 0, rest_of(c) + 1e-10 * speed * c->clock - s->depth[i]);
         return count;
@@ -258,7 +258,9 @@ static void taken(Work *w, const Step *s, double part)
         c->depth = value_at(s->depth, part);
         return;
     }
-    double before = stored(c, press), work = work_of(s->F[0], s->v[0], s->step, part), slides[WITH], rubbed = 0;
+    int holds = grip == STICK && c->patch == RIGID_PATCH; /* nothing moves along the surface */
+    double work = holds ? 0 : work_of(s->F[0], s->v[0], s->step, part);
+    double before = stored(c, press), slides[WITH], rubbed = 0;
     if (c->patch == LEATHER_PATCH && grip != STICK) {
         sliding(w, s, slides);
         rubbed = -work_of(s->F[0], slides, s->step, part);
