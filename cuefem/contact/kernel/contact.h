@@ -198,6 +198,7 @@ extern const Law raised;
 /* march.c */
 void facing_at(const Contact *c, double angle, double C[FORCES][ALL_PORTS]);
 void velocities_now(Work *w, double *v);
+void accelerations_now(Work *w, double *a);
 void contact_gives(const Work *w, double B[FORCES][FORCES]);
 void push(Work *w, const double *impulses);
 double blow(Work *w, const int *held, int count);

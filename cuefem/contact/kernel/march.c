@@ -73,6 +73,30 @@ void velocities_now(Work *w, double *v)
     }
 }
 
+/* How fast the contact's velocities change if it has no forces: dn/d angle = -t, and the line of centres turns. */
+void accelerations_now(Work *w, double *a)
+{
+    const Contact *c = w->c;
+    const Cue *cue = c->cue;
+    double v[FORCES], y[ALL_PORTS] = {0}, rate[PORTS] = {0};
+    velocities_now(w, v);
+    ports_now(c, y);
+    for (int p = 0; p < cue->ports; p++)
+        for (int k = 0; k < cue->modes; k++) {
+            const double *row = cue->readings + 2 * (p * cue->modes + k), *by = cue->rates + 2 * k, *x = c->xi + 2 * k;
+            double re = by[0] * x[0] - by[1] * x[1], im = by[0] * x[1] + by[1] * x[0];
+            rate[p] += row[0] * re - row[1] * im;
+        }
+    for (int f = 0; f < c->forces; f++) {
+        a[f] = 0;
+        for (int p = 0; p < cue->ports; p++) a[f] += w->C[0][f][p] * rate[p];
+    }
+    if (!c->turns) return;
+    double dome = rolls_on(c, c->angle), reach = c->radius + dome;
+    double turning = -(v[0] - y[PORTS + 2] - (cue->ports > 2 ? dome * y[2] : 0)) / reach;
+    a[0] += turning * v[1], a[1] += turning * turning * reach;
+}
+
 /* The contact's velocities per unit of impulse, where it faces now. */
 void contact_gives(const Work *w, double B[FORCES][FORCES])
 {
