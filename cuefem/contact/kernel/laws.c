@@ -151,6 +151,8 @@ static int guards(Work *w, const Step *s, Guard *to)
     int count = 0, press = w->hold.press, grip = w->hold.grip;
     double size = c->impulse / c->clock, speed = c->speed, near = w->linear ? 0 : 1e-10, slides[WITH];
     double way = near * speed * c->clock, force = near * size;
+    if (c->curve == POWER_CURVE && !w->linear) /* forces are known to what a step may leave out of them */
+        force = larger(10 * force, 20 * c->tolerance * c->impulse / s->step);
     if (press == FREE) {
         GUARD(TOUCHED, 0, rest_of(c) + 1e-10 * speed * c->clock - s->depth[i]);
         return count;
