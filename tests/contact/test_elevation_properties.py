@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-import cuefem.contact.elevation
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -58,13 +57,6 @@ def test_order_of_the_list_does_not_matter():
     assert np.array_equal(numbers(first), numbers(second))
     sound(first)
     assert first.energy["damping loss"] > 0
-
-
-def test_what_is_not_listed_is_not_entered(monkeypatch):
-    calls = []
-    monkeypatch.setattr(cuefem.contact.elevation, "raised_contact", lambda *args: calls.append(args))
-    strike_modes(replace(kim_scene(0.3), effects=(RollingContact(),)), VIBRATING)
-    assert calls == []
 
 
 @pytest.mark.parametrize("other", [TipShear(0.75), RollingContact(), SecondHit()])

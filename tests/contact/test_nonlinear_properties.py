@@ -1,18 +1,13 @@
 """What holds for every nonlinear effect: energy, mirror, scale, order of the list, what is not listed, refusals."""
 
-import subprocess
-import sys
 from dataclasses import FrozenInstanceError, replace
 from pathlib import Path
 
-import cuefem.contact.second_hit
 import numpy as np
 import pytest
-from cuefem.contact.stepped import Stepped
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-import cuefem.contact.strike
 from cuefem import (
     LumpedCue,
     PowerLawTip,
@@ -119,37 +114,6 @@ def test_order_of_the_list_does_not_matter():
     ]
     assert all(np.array_equal(numbers(outcomes[0]), numbers(other)) for other in outcomes[1:])
     assert all(outcomes[0].phases == other.phases for other in outcomes[1:])
-
-
-def test_what_is_not_listed_is_not_entered(monkeypatch):
-    scene = kim_scene(0.3)
-    bare = strike_modes(scene, bent())
-    calls = []
-
-    def counted(kind, name):
-        own = getattr(kind, name)
-        monkeypatch.setattr(kind, name, lambda *args, **names: calls.append(name) or own(*args, **names))
-
-    counted(Stepped, "__init__")
-    counted(cuefem.contact.second_hit, "follow")
-    assert np.array_equal(numbers(strike_modes(scene, bent())), numbers(bare))
-    assert strike_modes(replace(scene, effects=(TipShear(0.75),)), bent()).unknowns == bare.unknowns + 1
-    assert calls == []
-    strike_modes(replace(scene, effects=(RollingContact(),)), bent())
-    assert calls == ["__init__"]
-    strike_modes(replace(scene, effects=(SecondHit(),)), bent())
-    assert calls == ["__init__", "follow"]
-
-
-def test_the_solver_is_loaded_only_for_what_needs_it():
-    code = (
-        "import sys, cuefem as cf\n"
-        "cf.strike(cf.Scene(cf.LumpedCue(0.5, 0.005), stroke=cf.Stroke(offset=0.3)))\n"
-        "inner = {'nonlinear', 'second_hit', 'elevation'}\n"
-        "print(sorted(name for name in inner if f'cuefem.contact.{name}' in sys.modules))\n"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"
 
 
 @pytest.mark.parametrize("effect", [PowerLawTip(), RollingContact(), SecondHit()])

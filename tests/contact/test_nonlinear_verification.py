@@ -5,9 +5,6 @@ from math import asin, cos, inf, sin
 
 import numpy as np
 import pytest
-from cuefem.contact.kinds import contact_of
-from cuefem.contact.second_hit import hits
-from cuefem.contact.state import Laws
 from scipy.integrate import quad, solve_ivp
 
 from cuefem import (
@@ -25,6 +22,7 @@ from cuefem import (
     strike,
 )
 from cuefem.beam.tip import TipModes, lumped_tip_modes
+from cuefem.contact.outcome import hits
 from cuefem.contact.strike import strike_modes
 from cuefem.effects.law import TipLaw, loading_time
 from tests.helpers.orders import assert_order
@@ -286,26 +284,6 @@ def test_dome_lengthens_the_line_of_centres():
     domed = replace(kim_scene(), tip=scene.tip, stroke=scene.stroke, effects=effects)
     outcome = strike_modes(domed, lumped_tip_modes(cue))  # the end section of a lumped cue does not turn
     assert abs(outcome.squirt + Plane(scene, true=False, dome=0.012).squirt()) < 1e-8
-
-
-def test_directions_turn_as_the_module_says():
-    """dc_t/da = c_n and dc_n/da = c_n', by central differences, dome, spin and all."""
-    scene = replace(kim_scene(0.4), effects=(TipDome(0.011), RollingContact()))
-    laws = Laws(asin(0.4), 0.2, 0.4, stiffness=1e6, restitution=0.7, friction=0.5, time=1e-3, speed=1.0)
-    tip, lever = bent(), scene.contact_terms.lever(laws.phi)
-    tip = replace(tip, amplitude=tip.amplitude + np.outer(tip.rotation, lever))
-    kind = contact_of(scene, tip, laws)
-    slots = kind.contact.slots
-    z, h = kind.contact.z.copy(), 1e-5
-
-    def turned(angle):
-        z[slots["angle"]] = angle
-        return kind.directions(z)
-
-    (low_t, low_n, _), (_, c_n, passing), (high_t, high_n, _) = (turned(0.2 + step) for step in (-h, 0, h))
-    assert np.abs((high_t - low_t) / (2 * h) - c_n).max() < 1e-9
-    assert np.abs((high_n - low_n) / (2 * h) - passing).max() < 1e-9
-    assert abs(passing[slots.velocities][1] - 9.0 * cos(asin(0.4) + 0.2) + 50.0 * 0.011 * cos(asin(0.4) + 0.2)) < 1e-12
 
 
 @pytest.mark.parametrize(
