@@ -158,7 +158,7 @@ def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
     if terms.tip is not None:
         law = terms.tip.law(radius, offset, e)
         patch = RINGED_PATCH if terms.tip.partial_slip else LEATHER_PATCH
-        dome, turns = terms.tip.rolling_radius(phi), terms.turns
+        dome, rim, turns = terms.tip.dome_radius, terms.tip.rim, terms.turns
         numbers |= {"curve": 1, "steady": law.steady or 0.0, "most": law.most, "first_ratio": law.first_ratio}
         numbers |= {"terms": len(law.force_terms), "tolerance": LEATHER_TOLERANCE}
         arrays |= {"force_terms": np.array(law.force_terms), "give_terms": np.array(law.give_terms)}
@@ -168,7 +168,8 @@ def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
     else:
         law, time = normal_law(scene, common)
         compliance = terms.compliance / scene.stiffness
-        patch, dome, turns = SPRING_PATCH if compliance else RIGID_PATCH, terms.dome_radius, terms.turns
+        patch = SPRING_PATCH if compliance else RIGID_PATCH
+        dome, rim, turns = terms.dome_radius, math.inf, terms.turns
         numbers |= power_law(law) | {"compliance": compliance}
         if compliance:
             n, touched = law.exponent, TOUCHED * common["speed"] * time
@@ -180,7 +181,8 @@ def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
             "turns": 1,
             "phi": phi,
             "dome": dome,
-            "reach": radius + dome,
+            "rim": rim,
+            "radius": radius,
             "lever_t": lever_t,
             "lever_n": lever_n,
         }
@@ -249,7 +251,7 @@ def _sampled(levers: Sequence[Lever], phi: float) -> Array:
 
 
 def _raised(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, Any]) -> ContactModel:
-    """A cue that points down by an angle, over a table (handbook: The raised cue).
+    """A cue that points down by an angle, over a table (handbook: Effects).
 
     In (t, n, p), p = t x n: the velocities of the contact are those of the tip's place along all three, and of the
     ball's lowest point upwards, aside and ahead; the ball's are its velocity and R times its spin.

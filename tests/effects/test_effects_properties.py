@@ -7,7 +7,6 @@ from math import inf
 
 import numpy as np
 import pytest
-from cuefem.contact.patch import SpringPatch
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
@@ -133,9 +132,6 @@ def forbid(monkeypatch: pytest.MonkeyPatch, *, listed: set[type]) -> None:
     for kind in set(leaves(Effect)) - listed:
         for name in own_code(kind):
             monkeypatch.setattr(kind, name, property(entered))
-    if TipShear not in listed:
-        for name in own_code(SpringPatch):
-            monkeypatch.setattr(SpringPatch, name, property(entered))
     if AxialWaves not in listed:
         monkeypatch.setattr(cuefem.effects.axial, "rod_modes", entered)
     if StructuralDamping not in listed:

@@ -1,4 +1,4 @@
-/* The contact of a cue raised over a table (handbook: The raised cue): six velocities and six forces.
+/* The contact of a cue raised over a table (handbook: Effects): six velocities and six forces.
 
    T, N and P stand for the tip's: along the surface in the plane of the cue and the ball's centre, along the normal, and
    across that plane; UP, ASIDE and AHEAD for those of the ball's lowest point on the table. The friction of either
