@@ -123,7 +123,7 @@ def test_each_acts_once(effect):
 
 
 def test_a_dead_tip_strikes_no_second_time():
-    with pytest.raises(ValueError, match=r"SecondHit takes a Tip\.restitution in \(0\.0001, 1\]; got 0\.0"):
+    with pytest.raises(ValueError, match=r"SecondHit takes a Tip\.restitution in \[0\.0001, 1\]; got 0\.0"):
         strike_modes(replace(kim_scene(restitution=0.0), effects=(SecondHit(),)), bent())
 
 
