@@ -24,7 +24,7 @@ from cuefem import (
 from cuefem.beam.tip import TipModes, lumped_tip_modes
 from cuefem.contact.outcome import hits
 from cuefem.contact.strike import strike_modes
-from cuefem.effects.law import TipLaw, loading_time
+from cuefem.effects.law import loading_time
 from tests.helpers.orders import assert_order
 from tests.helpers.strike_scenes import KIM_AT, hand_made, imbalance, kim_scene, numbers
 

@@ -217,7 +217,7 @@ def test_small_restitution_that_rings(e, offset):
 )
 def test_a_tip_that_gives_back_next_to_nothing_is_refused_at_once(e, effects):
     scene = replace(kim_scene(-0.4, restitution=e, friction=1e-6), effects=effects)
-    with pytest.raises(ValueError, match=rf"Tip\.restitution .*\[0\.0001, 1\].*; got "):
+    with pytest.raises(ValueError, match=r"Tip\.restitution .*\[0\.0001, 1\].*; got "):
         strike(scene, FEW)
 
 
