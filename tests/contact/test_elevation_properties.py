@@ -31,7 +31,6 @@ ANGLE = st.one_of(st.sampled_from([0.0, 1e-6, 0.03]), st.floats(0.001, 1.4))
 TABLE = st.one_of(st.sampled_from([0.0, 0.2]), st.floats(0.01, 3.0))
 
 
-@pytest.mark.heavy
 @settings(max_examples=20)
 @given(ANGLE, TABLE, OFFSET, st.floats(0.1, 1.0), FRICTION)
 def test_energy_closes_and_the_other_side_mirrors(angle, table, offset, e, friction):
@@ -50,7 +49,6 @@ def test_energy_closes_and_the_other_side_mirrors(angle, table, offset, e, frict
     assert np.array_equal(outcome.history.spin, other.history.spin * [1, -1, -1])
 
 
-@pytest.mark.heavy
 def test_order_of_the_list_does_not_matter():
     listed = (Elevation(0.2), PowerLawTip(1.5), TipDome(0.009), StructuralDamping(0.02))
     first, second = (strike(replace(kim_scene(0.4), effects=effects)) for effects in (listed, listed[::-1]))

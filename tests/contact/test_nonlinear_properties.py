@@ -54,7 +54,6 @@ EFFECTS = st.sets(
 ).map(lambda chosen: tuple(sorted(chosen, key=repr)))
 
 
-@pytest.mark.heavy
 @FEW
 @given(EFFECTS, RESTITUTION, FRICTION, OFFSET, SIGN, st.sampled_from([0.0, 0.02]))
 def test_energy_closes_and_the_other_side_mirrors(effects, e, friction, offset, side, damping):
@@ -71,7 +70,6 @@ def test_energy_closes_and_the_other_side_mirrors(effects, e, friction, offset, 
     assert np.array_equal(numbers(outcome), mirrored)
 
 
-@pytest.mark.heavy
 @FEW
 @given(st.floats(1.0, 3.0), st.floats(0.2, 8.0), st.floats(0.2, 8.0), OFFSET)
 def test_a_power_law_knows_no_speed_of_its_own(exponent, speed, reference, offset):
@@ -84,7 +82,6 @@ def test_a_power_law_knows_no_speed_of_its_own(exponent, speed, reference, offse
     assert np.allclose(numbers(first), numbers(second), rtol=1e-9, atol=1e-9 * speed**2)
 
 
-@pytest.mark.heavy
 @settings(max_examples=5)
 @given(st.floats(0.1, 10.0), OFFSET)
 def test_speed_scales_out_of_a_linear_law(speed, offset):
@@ -94,7 +91,6 @@ def test_speed_scales_out_of_a_linear_law(speed, offset):
     assert abs(fast.ball_speed / slow.ball_speed / speed - 1) < 1e-9
 
 
-@pytest.mark.heavy
 def test_faster_strokes_squirt_less_on_a_stiffening_tip_and_more_on_a_turning_contact():
     speeds = [0.5, 1.0, 2.0, 4.0]
     hertz, turning = (
@@ -105,7 +101,6 @@ def test_faster_strokes_squirt_less_on_a_stiffening_tip_and_more_on_a_turning_co
     assert np.all(np.diff(turning) > 0)
 
 
-@pytest.mark.heavy
 def test_order_of_the_list_does_not_matter():
     listed = (PowerLawTip(1.5), RollingContact(), SecondHit(), TipDome(0.009))
     outcomes = [
@@ -156,7 +151,6 @@ def test_effects_stand_in_files(tmp_path: Path):
     assert 'window = "4 ms"' in text
 
 
-@pytest.mark.heavy
 def test_they_go_with_the_effects_on_the_cue():
     scene = replace(
         kim_scene(0.4),

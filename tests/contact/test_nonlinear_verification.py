@@ -81,7 +81,6 @@ def test_exponent_one_is_the_bilinear_law(e, offset, friction):
     assert imbalance(stepped) < 1e-11
 
 
-@pytest.mark.heavy
 @pytest.mark.parametrize("e", [1.0, 0.3, 0.0])
 @pytest.mark.parametrize(("offset", "friction"), [(0.3, 0.7), (0.6, 0.3), (0.2, inf)])
 def test_exponent_one_is_the_bilinear_law_with_a_tangential_spring(e, offset, friction):
@@ -200,7 +199,6 @@ def test_sliding_strike_of_a_vibrating_cue(exponent, offset, friction):
 # ------------------------------------------------------------------------------------------------------- RollingContact
 
 
-@pytest.mark.heavy
 @pytest.mark.parametrize("effects", [(), (TipDome(0.0095),), (PowerLawTip(1.5),)])
 def test_turning_of_the_contact_vanishes_with_its_time(effects):
     errors, spins, times = [], [], 1e-3 * 2.0 ** -np.arange(5, 10)
@@ -400,7 +398,6 @@ def test_second_hit_of_a_springy_cue(frequency, part, e):
     assert imbalance(outcome) < 1e-11
 
 
-@pytest.mark.heavy
 @pytest.mark.parametrize(
     ("scene", "effects"),
     [
@@ -421,7 +418,6 @@ def test_second_hit_stepped_is_the_exact_one(scene, effects):
     assert np.all(force["velocity_n"] > 0)
 
 
-@pytest.mark.heavy
 def test_without_a_second_hit_nothing_is_added():
     for effects in ((), (PowerLawTip(),), (RollingContact(),)):
         scene = replace(kim_scene(0.3), effects=effects)
