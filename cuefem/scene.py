@@ -367,7 +367,13 @@ def equal_fields(one: Any, other: Any) -> bool:
     if type(one) is not type(other):
         return NotImplemented
     pairs = ((getattr(one, field.name), getattr(other, field.name)) for field in fields(one))
-    return all(np.array_equal(a, b) if isinstance(a, np.ndarray) else bool(np.all(a == b)) for a, b in pairs)
+    return all(_equal(a, b) for a, b in pairs)
+
+
+def _equal(one: Any, other: Any) -> bool:
+    if isinstance(one, dict) and isinstance(other, dict):
+        return one.keys() == other.keys() and all(_equal(one[name], other[name]) for name in one)
+    return np.array_equal(one, other) if isinstance(one, np.ndarray) else bool(np.all(one == other))
 
 
 @dataclass(frozen=True, eq=False)

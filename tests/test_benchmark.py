@@ -16,11 +16,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from cuefem.contact.linear import Exact
-from cuefem.contact.phases import run
-from cuefem.contact.state import Contact, Laws
 
-from cuefem import Cue, Resolution, end_mass, modes, resolve, strike
+from cuefem import Cue, Outcome, Resolution, end_mass, modes, resolve, strike
 from cuefem.beam.modes import solve
 from cuefem.beam.system import assemble
 from cuefem.beam.tip import tip_modes
@@ -80,27 +77,14 @@ def test_an_accuracy_asked_for(benchmark: Any, rtol: float) -> None:
 def test_a_bare_scene_costs_what_the_strike_costs(request: pytest.FixtureRequest) -> None:
     """`strike` of a scene that lists no effect, beside its parts called by hand: beam, modes and contact, no effects.
 
-    The excess, a few per cent, is checks and the Outcome; with -s and --benchmark-enable it is printed.
+    The excess, a few per cent, is checks and the resolution; with -s and --benchmark-enable it is printed.
     """
     scene = kim_scene()
-    tip, speed = scene.tip, 1.0
 
-    def alone() -> Contact:
+    def alone() -> Outcome:
         cue = scene.cue
         found = solve(assemble(cue, elements=KIM_AT.elements, order=KIM_AT.order), KIM_AT.modes)
-        laws = Laws(
-            phi=np.arcsin(scene.stroke.offset),
-            ball_mass=scene.ball.mass,
-            inertia=scene.ball.inertia,
-            stiffness=scene.stiffness,
-            restitution=tip.restitution,
-            friction=tip.friction,
-            time=scene.contact_time,
-            speed=speed,
-        )
-        kind = Exact.of(tip_modes(found, cue.mass), laws)
-        run(kind)
-        return kind.contact
+        return strike_modes(scene, tip_modes(found, cue.mass))
 
     def seconds(work: Callable[[], Any]) -> float:
         start = process_time()

@@ -13,6 +13,7 @@ from typing import Any, NoReturn
 import click
 from click.shell_completion import CompletionItem
 
+from cuefem.contact.kernel import KernelError
 from cuefem.slips import Unusual
 
 # Before NumPy is loaded: small dense matrices gain nothing from BLAS threads, and two of them on a busy machine can be
@@ -115,7 +116,7 @@ class _OneLine(_Commands):
             if isinstance(error, click.exceptions.Exit | click.exceptions.Abort):
                 raise
             click.echo(f"cuefem: {' '.join(str(error).split())}", err=True)
-            raise click.exceptions.Exit(2 if isinstance(error, ValueError) else 1) from None
+            raise click.exceptions.Exit(2 if isinstance(error, ValueError | KernelError) else 1) from None
 
 
 def _refuse_usage(error: click.UsageError) -> NoReturn:

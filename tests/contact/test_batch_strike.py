@@ -8,8 +8,6 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.contact.kernel import VARIABLE, library
-from cuefem.contact.kernel import leather as kernel
 from tests.helpers.leather_scenes import AT, leather_scene
 from tests.helpers.strike_scenes import kim_scene
 
@@ -25,7 +23,7 @@ SCENES = [
 def numbers(outcome: cf.Outcome, i: int) -> dict[str, object]:
     """One strike's entries in the arrays."""
     found = {field.name: getattr(outcome, field.name) for field in fields(outcome)}
-    left_out = ("phases", "history", "unknowns", "error", "kernel", "energy")
+    left_out = ("phases", "history", "unknowns", "error", "energy")
     one = {name: value[i] for name, value in found.items() if name not in left_out}
     return one | {f"energy {name}": joules[i] for name, joules in outcome.energy.items()}
 
@@ -55,37 +53,14 @@ LEATHER = [
 
 
 @pytest.mark.parametrize("order", [1, -1])
-@pytest.mark.parametrize("kernel", ["c", "python"])
-def test_strikes_that_share_what_a_cue_does_are_the_strikes_one_by_one_to_the_bit(
-    kernel: str, order: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    if kernel == "c" and library() is None:
-        pytest.skip("no compiled kernel")
-    monkeypatch.setenv(VARIABLE, kernel)
-    scenes = LEATHER[::order] if kernel == "c" else LEATHER[:3][::order]
+def test_strikes_that_share_what_a_cue_does_are_the_strikes_one_by_one_to_the_bit(order: int) -> None:
+    scenes = LEATHER[::order]
     together = cf.batch_strike(scenes, AT)
     for i, scene in enumerate(scenes):
         alone = cf.strike(scene, AT)
         for name, value in numbers(together, i).items():
             part = name.partition(" ")[2]
             assert np.array_equal(value, alone.energy.get(part, 0.0) if part else getattr(alone, name)), (i, name)
-
-
-@pytest.mark.skipif(library() is None, reason="no compiled kernel")
-def test_a_cue_answers_a_length_of_step_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """However many strikes take steps of that length, at whatever speed and offset."""
-    respond, made = kernel.Shared.response, []
-
-    def noted(shared: kernel.Shared, halvings: int, opens: int) -> object:
-        made.append((id(shared), halvings, opens))
-        return respond(shared, halvings, opens)
-
-    monkeypatch.setattr(kernel.Shared, "response", noted)
-    scenes = [leather_scene(offset, speed=speed) for offset in (0.1, 0.3, 0.4) for speed in (1.0, 1.7, 2.0, 5.0)]
-    cf.batch_strike(scenes, AT)
-    assert len(made) == len(set(made))
-    assert len({shared for shared, *_ in made}) == 1
-    assert len(made) < 2 * len(scenes)
 
 
 @pytest.mark.parametrize("threads", [2, 5])

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-import cuefem.contact.elevation
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -32,7 +31,6 @@ ANGLE = st.one_of(st.sampled_from([0.0, 1e-6, 0.03]), st.floats(0.001, 1.4))
 TABLE = st.one_of(st.sampled_from([0.0, 0.2]), st.floats(0.01, 3.0))
 
 
-@pytest.mark.heavy
 @settings(max_examples=20)
 @given(ANGLE, TABLE, OFFSET, st.floats(0.1, 1.0), FRICTION)
 def test_energy_closes_and_the_other_side_mirrors(angle, table, offset, e, friction):
@@ -51,20 +49,12 @@ def test_energy_closes_and_the_other_side_mirrors(angle, table, offset, e, frict
     assert np.array_equal(outcome.history.spin, other.history.spin * [1, -1, -1])
 
 
-@pytest.mark.heavy
 def test_order_of_the_list_does_not_matter():
     listed = (Elevation(0.2), PowerLawTip(1.5), TipDome(0.009), StructuralDamping(0.02))
     first, second = (strike(replace(kim_scene(0.4), effects=effects)) for effects in (listed, listed[::-1]))
     assert np.array_equal(numbers(first), numbers(second))
     sound(first)
     assert first.energy["damping loss"] > 0
-
-
-def test_what_is_not_listed_is_not_entered(monkeypatch):
-    calls = []
-    monkeypatch.setattr(cuefem.contact.elevation, "raised_contact", lambda *args: calls.append(args))
-    strike_modes(replace(kim_scene(0.3), effects=(RollingContact(),)), VIBRATING)
-    assert calls == []
 
 
 @pytest.mark.parametrize("other", [TipShear(0.75), RollingContact(), SecondHit()])

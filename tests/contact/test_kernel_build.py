@@ -1,4 +1,4 @@
-"""Properties of the kernel's build: it needs no compiler, says so in a line, and leaves no older binary behind."""
+"""Properties of the compiled kernel: one that is not the one of these sources ends in a line, and a build mends it."""
 
 from __future__ import annotations
 
@@ -9,54 +9,94 @@ import sys
 from pathlib import Path
 
 import pytest
-from tests.helpers.kernels import BUILT
 
-from cuefem.contact.kernel import BINARY, VARIABLE
+from cuefem.contact.kernel import BINARY, BUILD
 
 ROOT = Path(__file__).parents[2]
+STRIKE = """
+import cuefem as cf
+from cuefem.contact.kernel import KernelError
+try:
+    cf.strike(cf.Scene(cf.LumpedCue(0.54, 0.01), stroke=cf.Stroke(offset=0.3)))
+except KernelError as error:
+    print(error)
+"""
+SCENE = """
+cue = { mass = "540 g", end_mass = "10 g" }
+stroke = { speed = "2 m/s", offset = 0.3 }
+"""
 
 
 @pytest.fixture
-def sources(tmp_path: Path) -> Path:
-    """What the build reads, somewhere else, with a binary of an earlier time."""
-    kernel = ROOT / "cuefem" / "contact" / "kernel"
-    shutil.copytree(
-        kernel, tmp_path / kernel.relative_to(ROOT), ignore=shutil.ignore_patterns("_kernel.*", "__pycache__")
-    )
+def folder(tmp_path: Path) -> Path:
+    """The package and its build somewhere else."""
+    shutil.copytree(ROOT / "cuefem", tmp_path / "cuefem", ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copy(ROOT / "hatch_build.py", tmp_path)
-    (tmp_path / BINARY.relative_to(ROOT)).write_text("older")
     return tmp_path
 
 
-def build(sources: Path, **environment: str) -> tuple[str, str, bool]:
-    """(what is printed, what is said on stderr, whether a binary is there)."""
-    kept = {name: value for name, value in os.environ.items() if name not in (VARIABLE, "CC", "CFLAGS")}
+def run(folder: Path, *arguments: str, **environment: str) -> tuple[int, str, str]:
+    """(exit status, what is printed, what is said on stderr) of Python in a folder."""
+    kept = {name: value for name, value in os.environ.items() if name not in ("CC", "CFLAGS")}
+    kept |= {"PYTHONPATH": str(folder)} | environment
     done = subprocess.run(
-        [sys.executable, "hatch_build.py"],
-        cwd=sources,
-        env=kept | environment,
-        capture_output=True,
-        text=True,
-        check=True,
+        [sys.executable, *arguments], cwd=folder, env=kept, capture_output=True, text=True, check=False
     )
-    return done.stdout.strip(), done.stderr.strip(), (sources / BINARY.relative_to(ROOT)).exists()
+    return done.returncode, done.stdout.strip(), done.stderr.strip()
 
 
-@pytest.mark.parametrize(
-    ("environment", "words"),
+def cut_short(kernel: Path) -> None:
+    whole = (kernel / BINARY.name).read_bytes()
+    (kernel / BINARY.name).write_bytes(whole[: len(whole) // 2])
+
+
+def change_a_source(kernel: Path) -> None:
+    (kernel / "march.c").write_text((kernel / "march.c").read_text() + "/* of another version */\n")
+
+
+BROKEN = pytest.mark.parametrize(
+    ("spoil", "words"),
     [
-        ({"CC": "no-such-compiler"}, "no C compiler (cc), so the contact will run in Python"),
-        ({"PATH": ""}, "no C compiler (cc), so the contact will run in Python"),
-        ({"CC": "false"}, "the kernel does not compile, so the contact will run in Python:"),
-        ({VARIABLE: "python"}, "CUEFEM_KERNEL=python, so the compiled kernel is left out"),
+        (lambda kernel: (kernel / BINARY.name).unlink(), "is missing"),
+        (lambda kernel: (kernel / "_kernel.sha256").unlink(), "is missing"),
+        (cut_short, "is damaged: it is not the one that was built"),
+        (lambda kernel: (kernel / "_kernel.sha256").write_text("half"), "is damaged: it is not the one that was built"),
+        (change_a_source, "was built from other sources"),
     ],
+    ids=["missing", "without digest", "cut short", "half a digest", "other sources"],
 )
-def test_without_a_compiler_it_goes_on_with_a_word(sources: Path, environment: dict[str, str], words: str) -> None:
-    assert build(sources, **environment) == ("nothing built", f"cuefem: {words}", False)
 
 
-@BUILT
-def test_with_one_it_replaces_the_binary(sources: Path) -> None:
-    printed, said, there = build(sources, CFLAGS="-O0")
-    assert (Path(printed).name, said, there) == (BINARY.name, "", True)
-    assert (sources / BINARY.relative_to(ROOT)).read_bytes()[:4] != b"olde"
+@BROKEN
+def test_a_kernel_that_is_not_of_these_sources_ends_in_a_line(folder: Path, spoil, words: str) -> None:
+    spoil(folder / "cuefem" / "contact" / "kernel")
+    line = f"the contact's compiled kernel {words}; {BUILD}"
+    assert run(folder, "-c", STRIKE) == (0, line, "")
+    (folder / "scene.toml").write_text(SCENE)
+    status, printed, said = run(folder, "-m", "cuefem", "strike", "scene.toml")
+    assert (status, printed) == (2, "")
+    assert said.endswith(line)
+    assert len(said.splitlines()) == 1
+
+
+def test_a_build_mends_it(folder: Path) -> None:
+    change_a_source(folder / "cuefem" / "contact" / "kernel")
+    binary = folder / BINARY.relative_to(ROOT)
+    assert run(folder, "hatch_build.py", CFLAGS="-O0") == (0, str(binary), "")
+    assert run(folder, "-c", STRIKE) == (0, "", "")
+    assert sorted(path.name for path in binary.parent.glob("_kernel*")) == ["_kernel.sha256", BINARY.name]
+
+
+WITHOUT_ZIG = "import sys; sys.modules['ziglang'] = None\n"
+BUILDING = "import runpy; runpy.run_path('hatch_build.py', run_name='__main__')"
+
+
+@pytest.mark.parametrize("environment", [{"CC": "no-such-compiler"}, {"PATH": ""}, {"CC": "false"}])
+def test_without_a_compiler_it_takes_zig_or_names_both(folder: Path, environment: dict[str, str]) -> None:
+    names_both = "cuefem: no C compiler; install one (cc), or `python -m pip install 'ziglang>=0.13.0'`"
+    assert run(folder, "-c", WITHOUT_ZIG + BUILDING, **environment) == (1, "", names_both)
+    (folder / "ziglang.py").write_text("raise SystemExit('a zig that does not compile')")
+    status, printed, said = run(folder, "-c", BUILDING, **environment)
+    assert (status, printed) == (1, "")
+    assert said.startswith("cuefem: the contact's kernel does not compile with ")
+    assert said.endswith("a zig that does not compile")

@@ -8,7 +8,6 @@ from math import inf
 
 import numpy as np
 import pytest
-from cuefem.contact.second_hit import hits
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -26,6 +25,7 @@ from cuefem import (
     motion,
     strike,
 )
+from cuefem.contact.outcome import hits
 from cuefem.contact.strike import strike_modes
 from studies.strokes import cue
 from tests.helpers.leather_scenes import AT, LEATHER, leather_scene

@@ -5,9 +5,6 @@ from math import asin, cos, inf, sin
 
 import numpy as np
 import pytest
-from cuefem.contact.kinds import contact_of
-from cuefem.contact.second_hit import hits
-from cuefem.contact.state import Laws
 from scipy.integrate import quad, solve_ivp
 
 from cuefem import (
@@ -25,8 +22,9 @@ from cuefem import (
     strike,
 )
 from cuefem.beam.tip import TipModes, lumped_tip_modes
+from cuefem.contact.outcome import hits
 from cuefem.contact.strike import strike_modes
-from cuefem.effects.law import TipLaw, loading_time
+from cuefem.effects.law import loading_time
 from tests.helpers.orders import assert_order
 from tests.helpers.strike_scenes import KIM_AT, hand_made, imbalance, kim_scene, numbers
 
@@ -57,12 +55,18 @@ def test_loading_time_is_its_integral(exponent):
 @pytest.mark.parametrize("exponent", [1.0, 1.5, 3.0])
 @pytest.mark.parametrize("e", [0.2, 0.75, 1.0])
 def test_tip_gives_back_the_square_of_its_restitution(exponent, e):
-    law, deepest = TipLaw(2e7, exponent, e), 3e-4
-    spent = quad(law.load, 0, deepest, epsabs=0, epsrel=1e-12)[0]
-    back = quad(lambda d: law.unload(d, deepest), law.rest(deepest), deepest, epsabs=0, epsrel=1e-12)[0]
-    assert abs(back / spent - e**2) < 1e-12
-    assert abs(law.loss(deepest) / (spent - back) - 1) < 1e-12 if e < 1 else law.loss(deepest) == 0
-    assert abs(law.unload(deepest, deepest) / law.load(deepest) - 1) < 1e-14
+    outcome = strike_modes(replace(kim_scene(0.0, restitution=e), effects=(PowerLawTip(exponent),)), bent())
+    nodes, weights = np.polynomial.legendre.leggauss(20)
+    history = outcome.history
+    ends = np.append(history.start[1:], outcome.duration)
+    length, middle = (ends - history.start) / 2, (ends + history.start) / 2
+    now = history(middle[:, None] + np.outer(length, nodes))
+    work = length * (now["force_n"] * -now["velocity_n"] @ weights)  # of each step, on the tip
+    loads = history.start < outcome.phases[0].end
+    assert [phase.press for phase in outcome.phases] == ["load", "unload"]
+    spent, back = work[loads].sum(), -work[~loads].sum()
+    assert abs(back / spent - e**2) < 1e-10
+    assert abs(outcome.energy["tip loss"] - (1 - e**2) * spent) < 1e-10 * spent
 
 
 @pytest.mark.parametrize("e", [1.0, 0.75, 0.3, 0.0])
@@ -77,7 +81,6 @@ def test_exponent_one_is_the_bilinear_law(e, offset, friction):
     assert imbalance(stepped) < 1e-11
 
 
-@pytest.mark.heavy
 @pytest.mark.parametrize("e", [1.0, 0.3, 0.0])
 @pytest.mark.parametrize(("offset", "friction"), [(0.3, 0.7), (0.6, 0.3), (0.2, inf)])
 def test_exponent_one_is_the_bilinear_law_with_a_tangential_spring(e, offset, friction):
@@ -196,7 +199,6 @@ def test_sliding_strike_of_a_vibrating_cue(exponent, offset, friction):
 # ------------------------------------------------------------------------------------------------------- RollingContact
 
 
-@pytest.mark.heavy
 @pytest.mark.parametrize("effects", [(), (TipDome(0.0095),), (PowerLawTip(1.5),)])
 def test_turning_of_the_contact_vanishes_with_its_time(effects):
     errors, spins, times = [], [], 1e-3 * 2.0 ** -np.arange(5, 10)
@@ -286,26 +288,6 @@ def test_dome_lengthens_the_line_of_centres():
     domed = replace(kim_scene(), tip=scene.tip, stroke=scene.stroke, effects=effects)
     outcome = strike_modes(domed, lumped_tip_modes(cue))  # the end section of a lumped cue does not turn
     assert abs(outcome.squirt + Plane(scene, true=False, dome=0.012).squirt()) < 1e-8
-
-
-def test_directions_turn_as_the_module_says():
-    """dc_t/da = c_n and dc_n/da = c_n', by central differences, dome, spin and all."""
-    scene = replace(kim_scene(0.4), effects=(TipDome(0.011), RollingContact()))
-    laws = Laws(asin(0.4), 0.2, 0.4, stiffness=1e6, restitution=0.7, friction=0.5, time=1e-3, speed=1.0)
-    tip, lever = bent(), scene.contact_terms.lever(laws.phi)
-    tip = replace(tip, amplitude=tip.amplitude + np.outer(tip.rotation, lever))
-    kind = contact_of(scene, tip, laws)
-    slots = kind.contact.slots
-    z, h = kind.contact.z.copy(), 1e-5
-
-    def turned(angle):
-        z[slots["angle"]] = angle
-        return kind.directions(z)
-
-    (low_t, low_n, _), (_, c_n, passing), (high_t, high_n, _) = (turned(0.2 + step) for step in (-h, 0, h))
-    assert np.abs((high_t - low_t) / (2 * h) - c_n).max() < 1e-9
-    assert np.abs((high_n - low_n) / (2 * h) - passing).max() < 1e-9
-    assert abs(passing[slots.velocities][1] - 9.0 * cos(asin(0.4) + 0.2) + 50.0 * 0.011 * cos(asin(0.4) + 0.2)) < 1e-12
 
 
 @pytest.mark.parametrize(
@@ -416,7 +398,6 @@ def test_second_hit_of_a_springy_cue(frequency, part, e):
     assert imbalance(outcome) < 1e-11
 
 
-@pytest.mark.heavy
 @pytest.mark.parametrize(
     ("scene", "effects"),
     [
@@ -437,7 +418,6 @@ def test_second_hit_stepped_is_the_exact_one(scene, effects):
     assert np.all(force["velocity_n"] > 0)
 
 
-@pytest.mark.heavy
 def test_without_a_second_hit_nothing_is_added():
     for effects in ((), (PowerLawTip(),), (RollingContact(),)):
         scene = replace(kim_scene(0.3), effects=effects)

@@ -12,15 +12,13 @@ from time import perf_counter
 
 import numpy as np
 import pytest
-from cuefem.contact.linear import Exact
-from cuefem.contact.phases import run
-from cuefem.contact.state import Laws
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cuefem import (
     Ball,
     Cue,
+    Elevation,
     LumpedCue,
     Outcome,
     PowerLawTip,
@@ -191,89 +189,62 @@ def test_reload_cycles():
     assert np.all(np.diff(peaks) > 0)
 
 
-@pytest.mark.parametrize("e", [1e-2, 1e-3, 1e-6])
+LEAST = 1e-4  # the smallest restitution but 0 that is followed in time
+
+
+@pytest.mark.parametrize("e", [1e-2, 1e-3])
 def test_small_restitution(e):
     """The unloading spring k/e^2 rings 1/e times faster than the contact, but here the ball leaves at the peak.
 
     Towards e -> 0 the answer tends to a limit, linearly. It is not that of e = 0, which goes on pressing past the peak.
     """
-    outcome, limit = hit(kim_scene(0.3, restitution=e)), hit(kim_scene(0.3, restitution=1e-8))
+    outcome, limit = hit(kim_scene(0.3, restitution=e)), hit(kim_scene(0.3, restitution=LEAST))
     assert abs(outcome.squirt - limit.squirt) < 0.1 * e
 
 
-def test_small_restitution_that_rings():
-    """A miscue presses the ringing tip on: dozens of reloads, and 1/e cells."""
-    outcome = hit(kim_scene(0.999, restitution=1e-3))
-    assert sum(phase.press == "load" for phase in outcome.phases) > 10
+@pytest.mark.parametrize(("e", "offset"), [(1e-3, 0.999), (1e-3, 0.9), (LEAST, 0.999)])
+def test_small_restitution_that_rings(e, offset):
+    """A miscue presses the ringing tip on: dozens of reloads, and 1/e swings."""
+    outcome = hit(kim_scene(offset, restitution=e), FEW)
+    assert offset == 0.9 or sum(phase.press == "load" for phase in outcome.phases) > 10
 
 
-@pytest.mark.parametrize("e", [1e-4, 1e-6, 1e-8, 1e-12, 5e-324])
-@pytest.mark.parametrize("offset", [0.9, 0.999])
-def test_smaller_restitution_that_rings(e, offset):
-    """Thousands of reloads, if they were followed: the tip's ringing is averaged, and the answer tends to a limit.
-
-    The reference is itself off that limit by its own e of 1e-8, so below it the difference stays.
-    """
-    reference = 1e-8
-    outcome, limit = hit(kim_scene(offset, restitution=e), FEW), hit(kim_scene(offset, restitution=reference), FEW)
-    assert abs(outcome.squirt - limit.squirt) < 0.1 * e + 1e-12
-    assert abs(outcome.ball_speed / limit.ball_speed - 1) < 2 * max(e, reference)
-    assert len(outcome.phases) < 20
-
-
+@pytest.mark.parametrize("e", [9e-5, 1e-6, 1e-12, 5e-324])
 @pytest.mark.parametrize(
-    ("effect", "message"),
-    [
-        (TipShear(0.75), "does not leave the cue: .*check restitution"),
-        (RollingContact(), "restitution 1e-06 rings too fast to be stepped .*above 0.0001"),
-        (PowerLawTip(1.5), "restitution 1e-06 rings too fast to be stepped .*above 0.0001"),
-        (SecondHit(5e-3), r"SecondHit takes a Tip.restitution in \(0.0001, 1\]; got 1e-06"),
-    ],
+    "effects",
+    [(), (TipShear(0.75),), (RollingContact(),), (PowerLawTip(1.5),), (SecondHit(5e-3),), (Elevation(0.1),)],
     ids=repr,
 )
-def test_effects_under_which_ringing_is_not_averaged_say_so_soon(effect, message):
-    scene = replace(kim_scene(-0.4, restitution=1e-6, friction=1e-6), effects=(effect,))
-    with pytest.raises((RuntimeError, ValueError), match=message):
+def test_a_tip_that_gives_back_next_to_nothing_is_refused_at_once(e, effects):
+    scene = replace(kim_scene(-0.4, restitution=e, friction=1e-6), effects=effects)
+    with pytest.raises(ValueError, match=r"Tip\.restitution .*\[0\.0001, 1\].*; got "):
         strike(scene, FEW)
 
 
-def jamming(seed: int) -> Exact:
-    """The contact of a dead tip with a cue of random modes that move its tip along and across, run to its end."""
+def jamming(seed: int) -> Outcome:
+    """A strike with a dead tip of a cue of random modes that move its tip along and across."""
     rng = np.random.default_rng(seed)
     tip = hand_made(list(np.sort(10 ** rng.uniform(2.5, 4.5, 4))), list(rng.normal(size=4) * 10))
     tip.amplitude[2:, 0] = rng.normal(size=4)
-    scene = Scene(LumpedCue(0.54, 0.01), Ball(), Tip(0.0, 0.7, contact_time=5e-3), Stroke(offset=0.1))
-    ball, law = scene.ball, scene.tip
-    laws = Laws(np.arcsin(0.1), ball.mass, ball.inertia, scene.stiffness, 0.0, law.friction, scene.contact_time, 1.0)
-    found = Exact.of(tip, laws)
-    run(found)
-    assert len(found.contact.phases) < 200
-    return found
+    outcome = strike_modes(
+        Scene(LumpedCue(0.54, 0.01), Ball(), Tip(0.0, 0.7, contact_time=5e-3), Stroke(1.0, 0.1)), tip
+    )
+    sound(outcome)
+    assert len(outcome.phases) < 200
+    return outcome
 
 
 def test_a_dead_tip_in_a_jam_lets_go_instead_of_chattering():
-    """e = 0: it sticks to a rigid tip until friction is used up, where slip in a jam has no stable force (Painleve).
-
-    The same state with a very stiff tip instead of a rigid one shows what happens: the tip slips, and is off at once.
-    """
-    let_go = []
+    """e = 0: it sticks to a rigid tip until friction is used up, where slip in a jam has no stable force (Painleve)."""
+    let_go = 0
     for seed in range(200):
-        dead = jamming(seed)
-        end = dead.contact
-        last, force = end.phases[-1], dead.force("stick", "rigid")[1]
-        if (last.grip, last.press) != ("stick", "rigid") or force < 1e-2 * end.peak:
-            continue
-        kind = Exact.of(end.tip, replace(end.laws, restitution=1e-4))
-        stiff = kind.contact
-        stiff.z, stiff.peak = end.z, end.peak
-        stiff.put(spring=force / kind.root_stiffness("unload"))
-        step = ("touch", "stick", "unload")
-        while step is not None:
-            step = kind.next(kind.follow(*step[1:]), *step[1:])
-        assert (stiff.phases[-1].grip, stiff.phases[-1].press) == ("slip", "unload")
-        let_go.append(stiff.time / end.laws.time)
-    assert len(let_go) >= 3
-    assert max(let_go) < 0.01
+        outcome = jamming(seed)
+        last, now = outcome.phases[-1], outcome.history(outcome.duration * (1 - 1e-12))
+        peak = max(outcome.history(phase.end)["force_n"] for phase in outcome.phases if phase.press == "load")
+        if (last.grip, last.press) == ("stick", "rigid") and now["force_n"] > 1e-2 * peak:
+            assert abs(now["force_t"]) == pytest.approx(0.7 * now["force_n"], rel=1e-6)
+            let_go += 1
+    assert let_go >= 3
 
 
 def test_a_slow_mode_under_a_dead_tip():
@@ -343,10 +314,7 @@ def test_loud_cues(drawn):
     assert sum(phase.start == phase.end for phase in outcome.phases) < 10
 
 
-SMALL = [1e-4, 1e-5, 1e-7, 1e-9]
-
-
-@pytest.mark.parametrize("e", SMALL)
+@pytest.mark.parametrize("e", [1e-2, 1e-3])
 def test_loud_cues_under_a_nearly_dead_tip(e):
     """Twenty cues that press, slip and stick in every order on a ringing tip: none raises or loses energy."""
     rng = np.random.default_rng(11)
@@ -421,12 +389,12 @@ def test_fields_of_arrays_are_refused_by_name(field, part, cue):
         strike(replace(Scene(cue, stroke=Stroke(offset=0.3)), **part))
 
 
-@pytest.mark.parametrize("limit", [("state.LONGEST", 0.3), ("phases.MOST_PHASES", 0), ("linear.MOST_CELLS", 1)])
+@pytest.mark.parametrize("limit", [("laws.LONGEST", 0.3), ("solve.MOST_PHASES", 0), ("solve.MOST_STEPS", 1)])
 def test_a_strike_that_does_not_separate_says_so_with_its_state(monkeypatch, limit):
     name, most = limit
     monkeypatch.setattr(f"cuefem.contact.{name}", most)
     scene = Scene(LumpedCue(0.54, 0.003), stroke=Stroke(offset=0.3))
-    message = r"does not leave the cue: after .* s and \d+ phases .*v_t = .*v_n = .*F_n = .*F_t = .*check restitution"
+    message = r"does not leave the cue: after .* s and \d+ phases .*v_t = .*v_n = .*pressed by .* m; check restitution"
     with pytest.raises(RuntimeError, match=message):
         strike(scene)
 
@@ -440,7 +408,7 @@ def test_a_segment_may_be_short_and_thin():
 
 MESHES = sorted((ROOT / "meshes").glob("*.toml"))
 EVERY = list(
-    product((0.0, 1e-6, 0.5, 1.0), (0.0, 1e-6, 0.3, 5.0, inf), (0.0, 0.1, -0.4, 0.7, 0.999), (5e-5, 1e-3, 5e-2))
+    product((0.0, 1e-3, 0.5, 1.0), (0.0, 1e-6, 0.3, 5.0, inf), (0.0, 0.1, -0.4, 0.7, 0.999), (5e-5, 1e-3, 5e-2))
 )
 
 

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from cuefem import Stroke
-from cuefem.contact.kernel import leather as kernel
-from cuefem.contact.kernel import library
+from cuefem.contact.propagator import ModalPropagator
 from cuefem.design.evaluation import evaluate
 from cuefem.designer.answers import OFFSETS, answers, coupled_points
 from tests.helpers.leather_scenes import AT, leather_scene
@@ -38,13 +37,11 @@ def test_designs_of_one_cue_are_to_the_bit_what_each_is_alone(order: int) -> Non
 
 @pytest.fixture
 def made(monkeypatch: pytest.MonkeyPatch) -> list[object]:
-    """The cues whose answers to the steps of a contact the compiled kernel works out anew."""
-    if library() is None:
-        pytest.skip("no compiled kernel")
-    found: list[object] = []
-    work = kernel.Shared.__init__
-    monkeypatch.setattr(kernel.Shared, "__init__", lambda self, *args: found.append(self) or work(self, *args))
-    return found
+    """The cues whose modes are made ready for the compiled kernel."""
+    cues: list[object] = []
+    work = ModalPropagator.__init__
+    monkeypatch.setattr(ModalPropagator, "__init__", lambda self, *args: cues.append(self) or work(self, *args))
+    return cues
 
 
 def test_what_a_cue_does_is_worked_out_once_for_all_its_designs(made: list[object]) -> None:
@@ -55,7 +52,7 @@ def test_what_a_cue_does_is_worked_out_once_for_all_its_designs(made: list[objec
 
 def test_the_curve_of_the_designer_works_it_out_once(made: list[object]) -> None:
     found = answers(replace(leather_scene(), stroke=Stroke(2.0, 0.3)))
-    del made[:]
+    assert len(made) == 1
     points = list(coupled_points(found))
     assert 10 < len(points) <= len(OFFSETS)
     assert len(made) == 1
