@@ -334,6 +334,16 @@ class Contact:
         """Its velocities, m/s."""
         return self.xi[-self.speeds :].real
 
+    @property
+    def impulse_on_ball(self) -> tuple[float, float]:
+        """(t, n), N s, of a ball at rest."""
+        return tuple(self.model.ball_mass * self.ball[:2])
+
+    @property
+    def twist(self) -> float:
+        """The ball's spin about the vertical times its radius, m/s."""
+        return float(self.ball[2])
+
     # The force along the normal, over the compression
 
     @property

@@ -1,0 +1,6 @@
+"""placeholder"""
+from tests.oracle.contact import Contact
+
+
+class Raised(Contact):
+    pass
