@@ -182,11 +182,12 @@ class Contact:
         F, angle = unknown[..., : self.forces, :], np.zeros((*unknown.shape[:-2], Q + 1), unknown.dtype) + self.angle
         if self.turns:
             angle[..., 1:] = unknown[..., -1, :]
-        C, (own, answer) = self.facing(angle), self.response(length)
-        loads = np.einsum("...ifp,...fi->...pi", C[..., 1:, :, :], F)
-        y = (own @ self.xi).real + np.einsum("aibj,...bj->...ai", answer, loads)
-        wide = self.ports + self.speeds
-        v = np.einsum("...ifp,...pi->...fi", C, y[..., :wide, :])
+        C, (own, answer), wide = self.facing(angle), self.response(length), self.ports + self.speeds
+        loads = np.einsum("...ifp,...fi->...pi", C[..., 1:, :, :], F) if self.turns else self.model.facing.T @ F
+        flat = loads.reshape(*loads.shape[:-2], -1) @ answer.reshape(-1, wide * Q).T
+        y = (own @ self.xi).real + flat.reshape(*flat.shape[:-1], *answer.shape[:2])
+        on = y[..., :wide, :]
+        v = np.einsum("...ifp,...pi->...fi", C, on) if self.turns else self.model.facing @ on
         x = length * v @ SUMS.T
         step = Step(length, forces_at(WITH_START, F), v, x, self.depth - x[..., 1, :], angle, loads, y[..., wide:, :])
         if not self.turns:
