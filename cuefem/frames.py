@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike
 
 from cuefem.design.batch import CueBatch
 from cuefem.design.scatter import Drivers, Scatter
-from cuefem.io.database import Stored, read_stored
+from cuefem.io.store import Table, read_table
 from cuefem.quantity import check_kind
 
 if TYPE_CHECKING:
@@ -39,24 +39,31 @@ def _library(name: str) -> Any:
         raise RuntimeError(f"this needs the library {name}: pip install '.[pandas]' in the clone") from None
 
 
-def of_sweep(path: str | PathLike[str]) -> pd.DataFrame:
-    """Read the database of a sweep.
+def of_sweep(path: str | PathLike[str], study: str | None = None) -> pd.DataFrame:
+    """Read the store of a sweep.
 
     Parameters
     ----------
     path : str or path
         What `cuefem sweep` wrote, ``STUDY.sqlite``; it may still be at work on it.
+    study : str, optional
+        The name of a study's file, without its ending, in a store of several; by default the one swept last.
 
     Returns
     -------
     pandas.DataFrame
         A row a design, by its number: what varied, the responses in SI (nan where one is missing), and ``failure``,
         why it is missing. ``attrs``: "units", "varied", "responses".
+
+    Raises
+    ------
+    ValueError
+        If the file is no store, or a row in it is not as it was written.
     """
-    return _frame(read_stored(path))
+    return _frame(read_table(path, study))
 
 
-def _frame(found: Stored) -> Any:
+def _frame(found: Table) -> Any:
     pandas = _library("pandas")
     names = ["design", *found.names, "failure"]
     frame = pandas.DataFrame.from_records(found.rows, columns=names).set_index("design")
@@ -66,13 +73,15 @@ def _frame(found: Stored) -> Any:
     return frame
 
 
-def sweep_grid(path: str | PathLike[str]) -> xr.Dataset:
-    """Read the database of a sweep over a grid as arrays with named axes.
+def sweep_grid(path: str | PathLike[str], study: str | None = None) -> xr.Dataset:
+    """Read the store of a sweep over a grid as arrays with named axes.
 
     Parameters
     ----------
     path : str or path
         What `cuefem sweep` wrote for a study without [sample].
+    study : str, optional
+        The name of a study's file, as in `of_sweep`.
 
     Returns
     -------
@@ -82,10 +91,10 @@ def sweep_grid(path: str | PathLike[str]) -> xr.Dataset:
     Raises
     ------
     ValueError
-        If the designs are no grid.
+        If the designs are no grid, the file is no store, or a row in it is not as it was written.
     """
     xarray = _library("xarray")
-    found = read_stored(path)
+    found = read_table(path, study)
     if found.sampled:
         raise ValueError(f"{path}: holds a sample and no grid: of_sweep reads it")
     frame = _frame(found)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterable, Sequence
+from functools import cache
 from html import escape
 from typing import Any
 
@@ -28,11 +29,20 @@ def said(kind: str, fields: Iterable[tuple[str, Any]]) -> str:
     return f"{kind}({', '.join(f'{name}={brief(value)}' for name, value in fields)})"
 
 
+@cache
+def _shown_fields(kind: type) -> tuple[str, ...]:
+    """The names of a dataclass's fields that it shows."""
+    return tuple(field.name for field in dataclasses.fields(kind) if field.repr)
+
+
 def spelt_out(thing: Any) -> str:
     """All that an object holds, as dataclasses write themselves: what tells two of them apart."""
+    if type(thing) is float:
+        return repr(thing)
+    if isinstance(thing, np.ndarray):
+        return f"array({thing.tolist()!r}, {thing.dtype})"
     if dataclasses.is_dataclass(thing) and not isinstance(thing, type):
-        fields = (f for f in dataclasses.fields(thing) if f.repr)
-        inner = ", ".join(f"{field.name}={spelt_out(getattr(thing, field.name))}" for field in fields)
+        inner = ", ".join(f"{name}={spelt_out(getattr(thing, name))}" for name in _shown_fields(type(thing)))
         return f"{type(thing).__qualname__}({inner})"
     if type(thing) is tuple:
         return f"({', '.join(map(spelt_out, thing))}{',' if len(thing) == 1 else ''})"

@@ -370,10 +370,12 @@ def _bridge(scene: Any) -> Support:
 
 def _joint(scene: Any) -> Joint:
     """The scene's first joint; without one, a stiff one at the back end of the shaft's material or inside the cue."""
+    own = next((effect for effect in scene.effects if isinstance(effect, Joint)), None)
+    if own is not None:
+        return own
     cue: Cue = scene.shaft
     back = float(cue.nodes[Layout.of(cue).shaft.stop])
-    stiff = Joint(back if back < 0.99 * cue.length else 0.9 * cue.length)
-    return next((effect for effect in scene.effects if isinstance(effect, Joint)), stiff)
+    return Joint(back if back < 0.99 * cue.length else 0.9 * cue.length)
 
 
 def _leather(scene: Any) -> LeatherTip | None:

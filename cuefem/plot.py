@@ -22,10 +22,11 @@ import numpy as np
 
 from cuefem.beam.modes import modes as solved_modes
 from cuefem.contact.outcome import MISSED, grip_of
-from cuefem.contact.strike import strike, strike_modes
+from cuefem.contact.strike import strike
 from cuefem.cue import Cue, Material
 from cuefem.design.sensitivity import sensitivity
 from cuefem.quantity import check_count, check_kind
+from cuefem.results.designs import strikes_at
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import Solved
 
@@ -155,8 +156,7 @@ def squirt(
         check_kind(f"scenes[{name!r}]" if name else "scenes", scene, Scene)
         tip = Solved(scene, at).tip
         angles, missed = [], None
-        for offset in offsets:
-            outcome = strike_modes(replace(scene, stroke=replace(scene.stroke, offset=offset)), tip)
+        for offset, outcome in zip(offsets, strikes_at(scene, offsets, tip), strict=True):
             lost = grip_of(outcome) in MISSED
             missed = offset if lost and missed is None else missed
             angles.append(math.nan if lost else math.degrees(outcome.squirt))

@@ -16,6 +16,8 @@ from pathlib import Path
 from types import FrameType
 from typing import NamedTuple
 
+from cuefem.units import scale
+
 
 class Unusual(UserWarning):
     """A number that looks like one in another unit: everything in Python is in SI units.
@@ -40,44 +42,42 @@ class Usual(NamedTuple):
     least: float
     most: float
     unit: str
-    others: tuple[tuple[str, float], ...]
+    others: tuple[str, ...]
 
 
-_MM, _IN = ("mm", 1e-3), ("in", 25.4e-3)
-_G, _OZ = ("g", 1e-3), ("oz", 28.349523125e-3)
-_PLACE = Usual(0.01, 1.6, "m", (_MM, _IN))
-_DIAMETER = Usual(0.0075, 0.04, "m", (_MM, _IN))
-_BORE = Usual(0.001, 0.03, "m", (_MM, _IN))
-_DOME = Usual(0.005, 0.02, "m", (_MM, _IN))
-_STIFF = Usual(5e6, 6e11, "Pa", (("GPa", 1e9), ("MPa", 1e6)))
-_DENSITY = Usual(40.0, 2e4, "kg/m^3", (("g/cm^3", 1e3),))
-_TIME = Usual(2e-4, 0.01, "s", (("ms", 1e-3), ("us", 1e-6)))
+_PLACE = Usual(0.01, 1.6, "m", ("mm", "in"))
+_DIAMETER = Usual(0.0075, 0.04, "m", ("mm", "in"))
+_BORE = Usual(0.001, 0.03, "m", ("mm", "in"))
+_DOME = Usual(0.005, 0.02, "m", ("mm", "in"))
+_STIFF = Usual(5e6, 6e11, "Pa", ("GPa", "MPa"))
+_DENSITY = Usual(40.0, 2e4, "kg/m^3", ("g/cm^3",))
+_TIME = Usual(2e-4, 0.01, "s", ("ms", "us"))
 
 USUAL = {
     ("Material", "E"): _STIFF,
     ("Material", "G"): _STIFF,
     ("Material", "rho"): _DENSITY,
-    ("Segment", "length"): Usual(0.002, 1.6, "m", (_MM, _IN)),
+    ("Segment", "length"): Usual(0.002, 1.6, "m", ("mm", "in")),
     ("Segment", "tip_diameter"): _DIAMETER,
     ("Segment", "butt_diameter"): _DIAMETER,
     ("Segment", "tip_bore"): _BORE,
     ("Segment", "butt_bore"): _BORE,
-    ("Cue", "body_mass"): Usual(0.05, 0.8, "kg", (_G, _OZ)),
-    ("LumpedCue", "mass"): Usual(0.1, 1.0, "kg", (_G, _OZ)),
-    ("LumpedCue", "end_mass"): Usual(1e-3, 0.1, "kg", (_G,)),
-    ("Ball", "mass"): Usual(0.08, 0.4, "kg", (_G, _OZ)),
-    ("Ball", "radius"): Usual(0.02, 0.07, "m", (_MM, _IN)),
+    ("Cue", "body_mass"): Usual(0.05, 0.8, "kg", ("g", "oz")),
+    ("LumpedCue", "mass"): Usual(0.1, 1.0, "kg", ("g", "oz")),
+    ("LumpedCue", "end_mass"): Usual(1e-3, 0.1, "kg", ("g",)),
+    ("Ball", "mass"): Usual(0.08, 0.4, "kg", ("g", "oz")),
+    ("Ball", "radius"): Usual(0.02, 0.07, "m", ("mm", "in")),
     ("Tip", "contact_time"): _TIME,
     ("TipDome", "radius"): _DOME,
-    ("LeatherTip", "height"): Usual(0.001, 0.015, "m", (_MM, _IN)),
+    ("LeatherTip", "height"): Usual(0.001, 0.015, "m", ("mm", "in")),
     ("LeatherTip", "dome_radius"): _DOME,
-    ("LeatherTip", "E"): Usual(5e6, 1e9, "Pa", (("GPa", 1e9), ("MPa", 1e6))),
+    ("LeatherTip", "E"): Usual(5e6, 1e9, "Pa", ("GPa", "MPa")),
     ("LeatherTip", "rho"): _DENSITY,
     ("PointMass", "position"): _PLACE,
-    ("PointMass", "mass"): Usual(5e-4, 0.1, "kg", (_G, _OZ)),
+    ("PointMass", "mass"): Usual(5e-4, 0.1, "kg", ("g", "oz")),
     ("Support", "position"): _PLACE,
     ("Joint", "position"): _PLACE,
-    ("SecondHit", "window"): Usual(1e-3, 0.1, "s", (("ms", 1e-3),)),
+    ("SecondHit", "window"): Usual(1e-3, 0.1, "s", ("ms",)),
 }
 FAR = 5.0  # times beyond the usual: nearer than this a number may be meant
 LIGHTEST = 0.25  # kg, of a whole cue: a child's
@@ -92,11 +92,12 @@ def slip(kind: str, name: str, value: float) -> str:
     usual = USUAL.get((kind, name))
     if usual is None or usual.least / FAR <= value <= FAR * usual.most or not math.isfinite(value):
         return ""
-    meant = [(unit, scale) for unit, scale in usual.others if usual.least <= value * scale <= usual.most]
+    scales = [(unit, float(scale(unit, usual.unit))) for unit in usual.others]
+    meant = [(unit, per) for unit, per in scales if usual.least <= value * per <= usual.most]
     if not meant:
         return ""
     units = " or ".join(f"{value:g} {unit}" for unit, _ in meant)
-    written = " or ".join(f"{value * scale:.4g}" for _, scale in meant)
+    written = " or ".join(f"{value * per:.4g}" for _, per in meant)
     return f"{kind}.{name} is {value:g} {usual.unit}, which no cue has: is it {units}? Write {written} ({usual.unit})"
 
 

@@ -50,7 +50,7 @@ class Unit(NamedTuple):
 # Products, powers and quotients of them ("lb/in^3", "N mm/rad") need no entry.
 _TABLE: dict[Powers, str] = {
     (1, 0, 0, 0): """0.001 mm millimetre millimetres millimeter millimeters; 1 m metre metres meter meters;
-        0.01 cm centimetre centimetres centimeter centimeters; 0.0254 in inch inches " ″ ” ''; 0.3048 ft foot feet;
+        0.01 cm centimetre centimetres centimeter centimeters; 0.0254 in inch inches zoll " ″ ” ''; 0.3048 ft foot feet;
         0.0000254 thou mil mils; 0.000001 um µm μm micron microns micrometre micrometres micrometer micrometers;
         0.9144 yd yard yards; 1000 km; 1609.344 mile miles mi""",
     (0, 1, 0, 0): """0.001 g gram grams gramme grammes; 1 kg kilogram kilograms kilo kilos; 1000 t tonne tonnes;
@@ -142,6 +142,11 @@ def kind_of(unit: str) -> str:
     """What a unit measures: "a mass"."""
     powers = unit_of(unit).powers
     return next((what for si, (what, _) in EXAMPLES.items() if unit_of(si).powers == powers), "something else")
+
+
+def first_name(unit: str) -> str:
+    """The first of the names that the table has for a unit; the unit itself if it is not in the table."""
+    return next((name for name in UNITS if UNITS[name] == unit_of(unit)), unit)
 
 
 def units_like(unit: str) -> list[str]:

@@ -80,9 +80,8 @@ class Place:
     also
         Other names.
     group, label, at, absent
-        The heading over its knob ("" for no knob) and the knob's label if that is not ``words``; "{exact}" and
-        "{rounded}" in it stand for ``at``, a position on the cue, m from the tip; what is said where a cue
-        has no such place.
+        The heading over its knob ("" for no knob) and the knob's label if that is not ``words``; "{exact}" in
+        it stands for ``at``, a position on the cue, m from the tip; what is said where a cue has no such place.
     range
         Of the slider; it may depend on the cue.
     materials
@@ -122,8 +121,7 @@ class Place:
 
     def value(self, scene: Scene) -> Any:
         """What a scene has there; None if it has no such place, or an infinite number there."""
-        value = value_at(scene, self.steps())
-        return None if isinstance(value, float) and not math.isfinite(value) else value
+        return _finite(value_at(scene, self.steps()))
 
     def quantity(self, scene: Scene) -> Quantity:
         """Unit and bounds of its number, and the names that stand for numbers."""
@@ -132,6 +130,10 @@ class Place:
             raise ValueError(f"{self.name} must be a number of this scene; it has none there")
         field = str(self.steps()[-1])
         return replace(known, words=tuple((n, v[field]) for n, v in self.sets.items())) if self.sets else known
+
+    def meant(self, name: str) -> dict[Path, float]:
+        """What a name of its value sets, by paths; nothing if it is no such name."""
+        return {(*self.steps()[:-1], field): v for field, v in (self.sets or {}).get(name.strip().lower(), {}).items()}
 
     @property
     def title(self) -> str:
@@ -150,9 +152,13 @@ def place(text: str) -> Place | None:
     """The named place that a text names; None if it is a path."""
     taper = _TAPER.fullmatch(text.strip())
     if taper:
-        return Place(text.strip(), f"diameter {taper[1]} from the tip", part=taper_at(number(taper[1], "m")))
+        try:
+            position = number(taper[1], "m")
+        except ValueError:
+            raise ValueError(f'must name a position such as "taper at 330 mm"; got {text!r}') from None
+        return Place(text.strip(), f"diameter {taper[1]} from the tip", part=taper_at(position))
     key = re.sub(r"[\s._]+", "_", text.strip())
-    return next((known for known in PLACES.values() if key in (known.key, *known.also)), None)
+    return PLACES.get(key) or next((known for known in PLACES.values() if key in known.also), None)
 
 
 def _part(step: Step) -> Part | None:
@@ -170,10 +176,12 @@ def _steps(text: str) -> Path:
     while start < len(text) or not text:
         step = _STEP.match(text, start)
         if not step:
-            raise ValueError(f"must be a path such as cue.segments[0].tip_bore; got {text!r}")
+            close = difflib.get_close_matches(text, [known.name for known in PLACES.values()], n=3)
+            hint = f"; did you mean {' or '.join(close)}?" if close else ""
+            raise ValueError(f"must be a path such as cue.segments[0].tip_bore; got {text!r}{hint}")
         steps.append(step[1] or (step[2] if step[2] == "*" else int(step[2])))
         start = step.end()
-    return tuple(steps)
+    return ("cue", *steps) if steps[0] == "segments" else tuple(steps)
 
 
 def paths(scene: Scene, text: str) -> tuple[Path, ...]:
@@ -239,9 +247,14 @@ def spelt(path: Path) -> str:
 
 def value_at(scene: Any, path: Path) -> Any:
     """What stands at a path; None where a scene has no such part."""
-    part, value = _part(path[0]) if path else None, scene
-    if part is not None:
-        value, path = part.read(scene), path[1:]
+    if not path:
+        return scene
+    part = _part(path[0])
+    return _inside(part.read(scene), path[1:]) if part else _inside(scene, path)
+
+
+def _inside(value: Any, path: Path) -> Any:
+    """What stands at a path of fields and indices inside a value; None in what is None."""
     for step in path:
         value = None if value is None else value[step] if isinstance(step, int) else getattr(value, step)
     return value
@@ -275,6 +288,11 @@ def _kinds(kind: type) -> dict[str, tuple[Any, ...]]:
 # --- changes -------------------------------------------------------------------------------------
 
 
+def _finite(value: Any) -> Any:
+    """The value; None for infinity."""
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
 @dataclass(frozen=True)
 class _Draft:
     """A scene in the making, which is checked only when all of its parts are in place."""
@@ -299,7 +317,7 @@ def varied(scene: Scene, changes: Mapping[str, Any]) -> Scene:
     scene : Scene
         The scene as it is; it stays.
     changes : mapping
-        SI numbers, materials or names of materials by the name or path of their places.
+        SI numbers, materials, or names of materials and leathers, by the name or path of their places.
 
     Returns
     -------
@@ -321,10 +339,14 @@ def varied(scene: Scene, changes: Mapping[str, Any]) -> Scene:
     >>> [segment.length for segment in made.cue.segments], made.cue.segments[0].tip_bore, made.stroke.speed
     ([0.1, 0.6], 0.006, 3.0)
     """
-    materials = {path: v for text, v in changes.items() for path in paths(scene, text) if is_material(scene, path)}
-    named = {path: named_material(v) if isinstance(v, str) else v for path, v in materials.items()}
-    numbers = {path: v for text, v in changes.items() for path in paths(scene, text) if path not in named}
-    return replaced(scene, named | numbers)
+    values = dict[Path, Any]()
+    for text, value in changes.items():
+        known = place(text)
+        beside: dict[Path, Any] = known.meant(value) if known and isinstance(value, str) else {}
+        for path in paths(scene, text):
+            whole = is_material(scene, path) and isinstance(value, str)
+            values |= beside if beside else {path: named_material(value) if whole else value}
+    return replaced(scene, values)
 
 
 def replaced(scene: Scene, changes: Mapping[Path, Any]) -> Scene:
@@ -372,7 +394,9 @@ def with_fields(thing: Any, changes: Mapping[Path, Any]) -> Any:
 def knobs_of(scene: Scene) -> dict[str, Any]:
     """The values of all places that have a knob, by their keys; ValueError for a lumped cue, which has no shape."""
     _ = scene.shaft
-    values = {known.key: known.value(scene) for known in PLACES.values() if known.group}
+    knobs = {known.key: known.steps() for known in PLACES.values() if known.group}
+    tops = {head: value_at(scene, (head,)) for head in dict.fromkeys(path[0] for path in knobs.values())}  # each once
+    values = {key: _finite(_inside(tops[head], tuple(rest))) for key, (head, *rest) in knobs.items()}
     return {key: value for key, value in values.items() if value is not None}
 
 
@@ -428,7 +452,7 @@ PLACES: dict[str, Place] = {
             range=_mm(8, 15, 0.05, 4, 30),
         ),
         Place(
-            *("taper diameter", "Taper, at {rounded}", "diameters.taper"),
+            *("taper diameter", "Taper, at {exact}", "diameters.taper"),
             group="Shaft",
             at=taper_position,
             range=_mm(8, 20, 0.05, 4, 60),

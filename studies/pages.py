@@ -143,10 +143,14 @@ def paragraphs(*parts: str) -> str:
     return "\n\n".join(part.rstrip("\n") for part in parts) + "\n"
 
 
-def predictions(predicted: Mapping[str, str], *more: tuple[str, Mapping[str, str]]) -> str:
-    """Numbers by name: what was predicted, and (column, its values) of what was found and measured."""
-    rows = [[name, said, *(values.get(name, "") for _, values in more)] for name, said in predicted.items()]
-    return table(["number", "predicted", *(column for column, _ in more)], rows)
+def predictions(
+    predicted: Mapping[str, str], found: Mapping[str, str], measured: Mapping[str, str] | None = None
+) -> str:
+    """The end of a page: numbers by name as predicted, as found, and, where given, as measured."""
+    values = {"found": found, **({} if measured is None else {"measured": measured})}
+    words = "predicted and found" if measured is None else "predicted, found and measured"
+    rows = [[name, said, *(each.get(name, "") for each in values.values())] for name, said in predicted.items()]
+    return paragraphs(f"{LEATHER}: what was {words}", BEFORE, table(["number", "predicted", *values], rows))
 
 
 @contextmanager

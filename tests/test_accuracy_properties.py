@@ -79,7 +79,7 @@ def test_endless_friction_resolves() -> None:
     sound(resolve(endless_friction(), 1e-2))
 
 
-@pytest.mark.parametrize(("restitution", "rtol"), [(0.0, 0.3), (1e-8, 1e-2), (1e-5, 1e-2), (1e-4, 1e-2)])
+@pytest.mark.parametrize(("restitution", "rtol"), [(0.0, 0.3), (1e-3, 1e-2)])
 def test_a_dead_or_nearly_dead_tip_resolves(restitution: float, rtol: float) -> None:
     found = resolve(replace(KIM, tip=replace(KIM.tip, restitution=restitution)), rtol)
     sound(found)

@@ -16,14 +16,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cuefem.contact.linear import Exact
+from cuefem.contact.phases import run
+from cuefem.contact.state import Contact, Laws
 
 from cuefem import Cue, Resolution, end_mass, modes, resolve, strike
 from cuefem.beam.modes import solve
 from cuefem.beam.system import assemble
 from cuefem.beam.tip import tip_modes
-from cuefem.contact.linear import Exact
-from cuefem.contact.phases import run
-from cuefem.contact.state import Contact, Laws
 from cuefem.contact.strike import strike_modes
 from cuefem.endmass.drives import stick
 from cuefem.tip_modes import Solved, tip_modes_of

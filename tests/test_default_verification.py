@@ -18,7 +18,7 @@ from cuefem.tip_modes import LEAST, LEAST_STUCK, MOST_KEPT, Solved, default_reso
 from tests.helpers.cues import LEATHER, MAPLE, kim, scene
 
 mpl.use("Agg")
-from studies.accuracy import random_cue
+from studies.accuracy.default_accuracy import random_cue
 
 BRASS = Material(1e11, 3.7e10, 8500.0)
 MANY = 200  # modes of a reference

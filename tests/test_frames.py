@@ -119,5 +119,5 @@ def test_what_is_no_sweep(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no such file"):
         cf.frames.of_sweep(tmp_path / "none.sqlite")
     (tmp_path / "text.sqlite").write_text("x" * 200)
-    with pytest.raises(InputError, match="cannot be read as a database"):
+    with pytest.raises(InputError, match="cannot be read or written as a database"):
         cf.frames.of_sweep(tmp_path / "text.sqlite")

@@ -35,6 +35,7 @@ ORDER = [
     "endmass",
     "accuracy",
     "side",
+    "results",
     "design",
     "plot",
     "tap",

@@ -14,8 +14,8 @@ import pytest
 import cuefem as cf
 from cuefem.design.optimum import optimum
 from cuefem.design.scatter import Scatter, spread
-from cuefem.designer.design import Design, Step
-from cuefem.designer.kept import steps_of, text_of
+from cuefem.designer.design import Design, State, Step
+from cuefem.designer.kept import step_of, text_of
 from cuefem.designer.sliders import groups, sliders
 from cuefem.io.study import load_optimum, load_scatter, load_study
 from cuefem.measured.unknowns import Prior, unknowns_of
@@ -114,7 +114,7 @@ def test_it_is_a_slider_and_stands_in_links(scene: cf.Scene) -> None:
     design = Design.of("cue", scene)
     longer = replace(design, knobs=slider.turned(design.knobs, 20))
     assert longer.scene.cue.segments[1].length == 0.02
-    assert steps_of(text_of([Step(longer)]))[0][0].design == longer
+    assert step_of(text_of(State((Step(longer),)))).design == longer
 
 
 COMMANDS = """import sys

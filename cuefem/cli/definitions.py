@@ -7,6 +7,18 @@ import click
 from cuefem.endmass.drives import DEFINITIONS
 
 
+class Definitions(click.Choice[str]):
+    """The names of the table's definitions as they are when a command is called, and ``more``."""
+
+    def __init__(self, *more: str) -> None:
+        self.more, self.case_sensitive = more, True
+
+    @property
+    def choices(self) -> tuple[str, ...]:  # type: ignore[override]
+        """All names."""
+        return (*self.more, *DEFINITIONS)
+
+
 class WithDefinitions(click.Command):
     """A command whose help ends with the definitions of the end mass."""
 

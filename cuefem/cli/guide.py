@@ -32,7 +32,7 @@ def guide(chapter: str | None, output: Path | None, in_terminal: bool) -> None:
     """Open the handbook in the browser: the physics, a glossary, and what each effect does.
 
     CHAPTER opens (or prints) one chapter: start, files, working, frame, inverse_mass, impulse_solver, beam, strike,
-    dead_tip, end_mass, side, effects, measured, measuring, accuracy, paper, glossary or sources.
+    contact, end_mass, side, effects, measured, measuring, accuracy, paper, glossary or sources.
     """
     if in_terminal:
         if output is not None:

@@ -8,10 +8,9 @@ from typing import Any
 import click
 
 from cuefem.cli.common import blaming, file_options, head_lines, scene_of
-from cuefem.cli.definitions import WithDefinitions
+from cuefem.cli.definitions import Definitions, WithDefinitions
 from cuefem.cli.printing import json_text, print_all
 from cuefem.cli.strokes import blow_options, measured, offset_option
-from cuefem.endmass.drives import DEFINITIONS
 from cuefem.io import InputError, write_whole
 from cuefem.quantity import LENGTH
 from cuefem.report.handover import handover_table, handover_words, pooltool_record
@@ -28,7 +27,7 @@ from cuefem.report.unusual import unusual
 )
 @click.option(
     "--drive",
-    type=click.Choice(["A.31", *DEFINITIONS]),
+    type=Definitions("A.31"),
     default="A.31",
     show_default=True,
     help="Which definition of the end mass.",

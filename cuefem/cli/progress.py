@@ -39,9 +39,13 @@ class Progress:
 
     def __call__(self, rows: Sequence[Any]) -> None:
         """Count the rows of a block."""
+        self.to(len(rows) + self.bar.tasks[0].completed if self.bar else 0)
+
+    def to(self, done: int) -> None:
+        """Say how many designs are done."""
         if self.bar:
             speed = self.bar.tasks[0].speed
-            self.bar.update(self.task, advance=len(rows), rate=f"{speed:.3g} designs/s" if speed else "")
+            self.bar.update(self.task, completed=done, rate=f"{speed:.3g} designs/s" if speed else "")
 
     def end(self) -> None:
         """Take the bar away."""

@@ -15,6 +15,7 @@ from cuefem.io import InputError, load_accuracy, save_page
 from cuefem.report import (
     end_mass_table,
     modes_table,
+    numbers_table,
     pivot_table,
     report_record,
     squirt_table,
@@ -37,7 +38,8 @@ def report(file: Path, output: Path | None, **given: Any) -> None:
             return [*shown, f"no end mass and no squirt: {found['no_contact']}"]
         first: list[Any] = [MISCUE, "", *shown] if found["grip"] in MISSED else shown
         masses, squirt = found["end_masses"], found["squirt"]
-        return [*first, end_mass_table(masses, about), squirt_table(squirt, about), pivot_table(squirt)]
+        curves = squirt_table(squirt, about), pivot_table(squirt)
+        return [*first, end_mass_table(masses, about), *curves, numbers_table(found["numbers"], about)]
 
     if output is None:
         show(file, given, report_record, tables)

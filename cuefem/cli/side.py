@@ -18,8 +18,8 @@ from cuefem.io import InputError, load, load_accuracy
 from cuefem.io.assumed import assumed
 from cuefem.io.paraview import check_new, save_side_strike, write_whole_folder
 from cuefem.quantity import Quantity
-from cuefem.report.quantities import UNITS
 from cuefem.report.side import side_record, side_scene_record, side_tables
+from cuefem.results.quantities import UNITS
 from cuefem.side.accuracy import resolve_side_strike
 from cuefem.side.motion import side_motion
 from cuefem.side.scene import SideStrike, Striker

@@ -11,7 +11,7 @@ from typing import Any
 
 import click
 
-from cuefem.cue import Cue
+from cuefem.cue import Cue, LumpedCue
 from cuefem.games import DEFAULT_GAME, GAMES, usual_scene, usual_tip
 from cuefem.io import InputError
 from cuefem.quantity import Quantity
@@ -82,13 +82,13 @@ def measured(file: Path, name: str, text: str, wanted: Quantity) -> float:
         raise InputError(file, name, str(error)) from None
 
 
-def offset_of(file: Path, given: str, radius: float) -> float:
+def offset_of(file: Path, text: str, radius: float) -> float:
     """The b/R that --offset gives: a bare number, or a length, over the radius of the ball, m."""
     try:
-        length = number(given, "m")
+        length = number(text, "m")
     except ValueError:
         try:
-            return measured(file, "--offset", given, Quantity("", "(-1, 1)"))
+            return measured(file, "--offset", text, Quantity("", "(-1, 1)"))
         except InputError as error:
             if "bare number" not in error.problem:
                 raise
@@ -96,18 +96,16 @@ def offset_of(file: Path, given: str, radius: float) -> float:
             raise InputError(file, "--offset", problem) from None
     if not abs(length) < radius:
         within = f"a length in (-{1e3 * radius:g}, {1e3 * radius:g}) mm, the radius of the ball"
-        raise InputError(file, "--offset", f"must be b/R in (-1, 1) or {within}; got {given!r}")
+        raise InputError(file, "--offset", f"must be b/R in (-1, 1) or {within}; got {text!r}")
     return length / radius
 
 
-def with_body(found: Cue | Scene | SideStrike, file: Path, text: str) -> Any:
+def with_body(thing: Cue | Scene | SideStrike, file: Path, text: str) -> Any:
     """The cue or scene of a file with the mass behind its segments that --body-mass says."""
     mass = measured(file, "--body-mass", text, Quantity("kg", "[0, inf)"))
-    if isinstance(found, Cue):
-        return replace(found, body_mass=mass)
-    if not isinstance(found.cue, Cue):
+    if not isinstance(thing, Cue) and isinstance(thing.cue, LumpedCue):
         raise InputError(file, "--body-mass", NO_SHAFT)
-    return replace(found, cue=replace(found.cue, body_mass=mass))
+    return with_fields(thing, {("body_mass",) if isinstance(thing, Cue) else ("cue", "body_mass"): mass})
 
 
 def usual(cue: Cue, file: Path, given: dict[str, Any]) -> Scene:
@@ -164,8 +162,7 @@ def _changes(scene: Any, file: Path, given: dict[str, Any], which: Callable[[Pla
             wanted = known.quantity(scene)
         except ValueError:
             raise InputError(file, option(known.key), _absent(scene, known)) from None
-        beside = (known.sets or {}).get(text.strip().lower(), {})
-        changes |= {(*path[:-1], field): value for field, value in beside.items()}
+        changes |= known.meant(text)
         changes[path] = (
             offset_of(file, text, float(scene.ball.radius))
             if known.key == "offset"

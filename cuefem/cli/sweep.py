@@ -16,7 +16,7 @@ from cuefem.design import Pool, processes
 from cuefem.design import dask as cluster
 from cuefem.design import sweep as run
 from cuefem.io import InputError, check_place, save_page, write_whole
-from cuefem.io.database import Database, export_path, write_csv, write_parquet
+from cuefem.io.store import Store, export_path, write_table
 from cuefem.io.study import assumed_base, load_study
 from cuefem.report.study import Table, study_record, study_tables, table_of_study
 from cuefem.report.study_page import study_page
@@ -24,7 +24,9 @@ from cuefem.report.study_page import study_page
 
 @click.command()
 @click.argument("study", type=click.Path(path_type=Path))
-@click.option("--output", type=click.Path(path_type=Path), help="The database; by default STUDY.sqlite.")
+@click.option(
+    "--store", "--output", type=click.Path(path_type=Path), help="Where designs are kept; by default STUDY.sqlite."
+)
 @click.option("--workers", type=click.IntRange(min=1), help="Number of worker processes; by default none is started.")
 @click.option("--dask", metavar="ADDRESS", help='A Dask scheduler to work on, e.g. "tcp://host:8786".')
 @click.option("--export", type=click.Path(path_type=Path), help="Also write the table as .csv or .parquet.")
@@ -32,13 +34,12 @@ from cuefem.report.study_page import study_page
     "-o", "--page", type=click.Path(path_type=Path), metavar="PAGE.html", help="Also draw the designs on a page."
 )
 @click.option("--json", "as_json", is_flag=True, help="Say as JSON what was done, with the summary.")
-def sweep(
-    study: Path, output: Path | None, export: Path | None, page: Path | None, as_json: bool, **where: Any
-) -> None:
-    """Compute every design of STUDY (.toml), store the results in an SQLite database, and sum them up.
+def sweep(study: Path, store: Path | None, export: Path | None, page: Path | None, as_json: bool, **where: Any) -> None:
+    """Compute every design of STUDY (.toml), keep the results in a file (SQLite), and sum them up.
 
     The summary names the best designs, what drives each result, and where two results trade off. If it is
-    interrupted, even by kill -9, the same command goes on where it stopped. Numbers are SI.
+    interrupted, even by kill -9, the same command goes on where it stopped; if the study was changed, it computes only
+    what is new. Several sweeps may share a file and its work. Numbers are SI.
     """
     wanted = load_study(study)
     notes = assumed_base(study, wanted.base)
@@ -50,19 +51,34 @@ def sweep(
     with ExitStack() as open_things:
         progress = open_things.enter_context(bar(wanted.size))
         pool = open_things.enter_context(opened(**where))
-        database = open_things.enter_context(Database(output or study.with_suffix(".sqlite"), wanted))
-        before = database.held()
-        progress.begin(before)
-        for first, what in database.damaged.items():
-            again = f"{first} to {min(first + wanted.block, wanted.size) - 1}"
-            click.echo(f"damaged: {database.path}: {what}; designs {again} are computed again", err=True)
-        run(wanted, database, pool=pool, progress=progress)
+        designs = open_things.enter_context(Store(store or study.with_suffix(".sqlite"), wanted, study.stem))
+        for line in designs.changes:
+            click.echo(f"{designs.path}: {line}", err=True)
+        progress.begin(0)
+        try:
+            run(wanted, designs, pool=pool, progress=lambda rows: progress.to(designs.done))
+        except (KeyboardInterrupt, RuntimeError) as error:
+            progress.end()
+            kept = f"{designs.count()} of {wanted.size} designs are kept in {designs.path}: the same command goes on"
+            if isinstance(error, RuntimeError):
+                raise RuntimeError(f"{error}; {kept}") from None
+            click.echo(f"cuefem: interrupted; {kept}", err=True)
+            raise click.exceptions.Exit(130) from None
         progress.end()
+        for line in designs.damaged:
+            click.echo(f"damaged: {designs.path}: {line}", err=True)
         if goal is not None:
-            _export(database, goal)
-        count = len(wanted.vary)
-        rows = ((design, row[:count], row[count:-1]) for design, *row in database.rows())
-        _tell(database, before, goal, as_json, table_of_study(wanted, rows), page, notes)
+            write_whole(goal, lambda temporary: write_table(designs, temporary))
+        count, failures = len(wanted.vary), list[tuple[int, str]]()
+
+        def rows() -> Iterator[tuple[int, Any, Any]]:
+            for design, *row, failure in designs.rows():
+                if failure:
+                    failures.append((design, failure))
+                yield design, row[:count], row[count:]
+
+        table = table_of_study(wanted, rows())
+        _tell(designs, failures, goal, as_json, table, page, notes)
 
 
 def check_page(page: Path | None) -> None:
@@ -85,36 +101,30 @@ def opened(workers: int | None, dask: str | None) -> Iterator[Pool | None]:
         yield processes(workers) if workers else None
 
 
-def _export(database: Database, goal: Path) -> None:
-    write = write_csv if goal.suffix == ".csv" else write_parquet
-    write_whole(goal, lambda temporary: write(database, temporary))
-
-
 def _tell(
-    database: Database,
-    before: int,
+    store: Store,
+    failures: Sequence[tuple[int, str]],
     goal: Path | None,
     as_json: bool,
     table: Table | None,
     page: Path | None,
     notes: Sequence[str],
 ) -> None:
-    designs, failed = database.count()
-    first = database.first_failure()
+    designs, failed, first = store.count(), len(failures), failures[0] if failures else None
     if page is not None:
         if table is None:
             raise InputError(page, "--page", "needs at least two designs with an answer; got fewer")
 
-        facts = [f"{designs} designs of {database.path.name}" + (f", {failed} without an answer" if failed else "")]
-        save_page(study_page(database.path.stem, table, facts), page)
+        facts = [f"{designs} designs of {store.path.name}" + (f", {failed} without an answer" if failed else "")]
+        save_page(study_page(store.path.stem, table, facts), page)
     if as_json:
-        found: dict[str, Any] = {"database": str(database.path), "export": goal and str(goal), "designs": designs}
-        found |= {"evaluated": designs - before, "failed": failed, "resolution": vars(database.study.resolution)}
+        found: dict[str, Any] = {"database": str(store.path), "export": goal and str(goal), "designs": designs}
+        found |= {"evaluated": store.computed, "failed": failed, "resolution": vars(store.study.resolution)}
         found |= {"first_failure": first and first[1], "summary": table and study_record(table)}
         print_json(found | {"page": page and str(page), "assumed": notes})
         return
-    words = [f"{designs} designs in {database.path}"]
-    words += [f"{before} of them from before"] if before else []
+    words = [f"{designs} designs in {store.path}"]
+    words += [f"{designs - store.computed} of them from before"] if designs > store.computed else []
     words += [f"exported to {goal}"] if goal else []
     words += [f"drawn on {page}"] if page else []
     click.echo(", ".join(words))

@@ -28,8 +28,9 @@ LEAST_RESTITUTION, LEAST_OF_LEATHER = 1e-4, 0.1
 TOLERANCE, LEATHER_TOLERANCE, RINGED_TOLERANCE = 1e-11, 1e-10, 1e-7
 RINGS = 160  # even in the root of the compression, up to the law's greatest
 RIGID_PATCH, SPRING_PATCH, LEATHER_PATCH, RINGED_PATCH = range(4)
-# What happens along the surface is computed relative to itself, down to this part of the rest.
-LEAST_ACROSS = 1e-9
+# What happens along the surface is computed relative to itself, down to this part of the rest: where the normal does
+# not turn nothing of the rest comes in, so that rounding is relative to itself too.
+LEAST_ACROSS, LEAST_ACROSS_TURNING = 1e-9, 1e-3
 # Levers that are functions are sampled over this range of the contact's angle, rad, by so many Chebyshev terms.
 LEVER_REACH, LEVER_TERMS, LEVER_FIT = 0.5, 24, 1e-11
 # A law that stiffens from nothing grips a patch on a spring at once if it does so from this part of a blow's depth on.
@@ -157,7 +158,7 @@ def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
     if terms.tip is not None:
         law = terms.tip.law(radius, offset, e)
         patch = RINGED_PATCH if terms.tip.partial_slip else LEATHER_PATCH
-        dome, turns = terms.tip.rolling_radius(phi), terms.turns
+        dome, rim, turns = terms.tip.dome_radius, terms.tip.rim, terms.turns
         numbers |= {"curve": 1, "steady": law.steady or 0.0, "most": law.most, "first_ratio": law.first_ratio}
         numbers |= {"terms": len(law.force_terms), "tolerance": LEATHER_TOLERANCE}
         arrays |= {"force_terms": np.array(law.force_terms), "give_terms": np.array(law.give_terms)}
@@ -167,7 +168,8 @@ def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
     else:
         law, time = normal_law(scene, common)
         compliance = terms.compliance / scene.stiffness
-        patch, dome, turns = SPRING_PATCH if compliance else RIGID_PATCH, terms.dome_radius, terms.turns
+        patch = SPRING_PATCH if compliance else RIGID_PATCH
+        dome, rim, turns = terms.dome_radius, math.inf, terms.turns
         numbers |= power_law(law) | {"compliance": compliance}
         if compliance:
             n, touched = law.exponent, TOUCHED * common["speed"] * time
@@ -179,7 +181,8 @@ def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
             "turns": 1,
             "phi": phi,
             "dome": dome,
-            "reach": radius + dome,
+            "rim": rim,
+            "radius": radius,
             "lever_t": lever_t,
             "lever_n": lever_n,
         }
@@ -193,7 +196,7 @@ def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
         facing if turning else np.delete(facing, 2, axis=1),
         np.array([1 / mass, 1 / mass, 1 / (nu * mass)]),
         np.zeros(3),
-        across=max(s, LEAST_ACROSS),
+        across=max(s, LEAST_ACROSS_TURNING if turns else LEAST_ACROSS),
         patch=patch,
         terms=numbers,
         arrays=arrays,
@@ -248,7 +251,7 @@ def _sampled(levers: Sequence[Lever], phi: float) -> Array:
 
 
 def _raised(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, Any]) -> ContactModel:
-    """A cue that points down by an angle, over a table (handbook: The raised cue).
+    """A cue that points down by an angle, over a table (handbook: Effects).
 
     In (t, n, p), p = t x n: the velocities of the contact are those of the tip's place along all three, and of the
     ball's lowest point upwards, aside and ahead; the ball's are its velocity and R times its spin.

@@ -98,7 +98,8 @@ class _Group:
     def undamped(cls, omega: Array, modes: Index) -> _Group:
         """Each mode a coordinate v + i omega q; a rigid one is its velocity."""
         own = np.eye(len(modes), dtype=complex)
-        return cls(modes, 1j * omega[modes], -1j * own * (omega[modes] > 0), own, own)
+        rates, resting = np.asarray(1j * omega[modes], complex), np.asarray(-1j * own * (omega[modes] > 0), complex)
+        return cls(modes, rates, resting, own, own)
 
     @classmethod
     def damped(cls, omega: Array, resistance: Array, modes: Index) -> _Group:
@@ -119,8 +120,8 @@ class _Group:
         count = int(vibrating.sum())
         displacements = np.zeros((len(modes), len(kept)), complex)
         displacements[vibrating] = right[:count]
-        velocities: Complex = np.asarray(right[count:], complex)
-        return cls(modes, rates[kept].astype(complex), displacements, velocities, left[kept][:, count:])
+        velocities, onto = np.asarray(right[count:], complex), np.asarray(left[kept][:, count:], complex)
+        return cls(modes, rates[kept].astype(complex), displacements, velocities, onto)
 
 
 def _coupled_groups(coupled: Any) -> Iterator[Index]:

@@ -55,7 +55,7 @@ def strike(scene: Scene, at: Resolution | None = None) -> Outcome:
     The cue's modes, the tip and the ball are one system. Between the forces of the contact the modes turn exactly;
     over a step the forces are polynomials, found by Newton's method, so that the modes kept are the only approximation
     that counts: the steps add about 1e-12 for a linear tip, 1e-10 for others, and 1e-6 for a patch that slips ring by
-    ring (handbook: The contact's one method).
+    ring (handbook: The contact).
 
     Examples
     --------

@@ -2,13 +2,11 @@
 
 from cuefem.design.evaluation import Evaluation, common_resolution, evaluate
 from cuefem.design.ranges import METHODS, Levels, Normal, Sample, Span
-from cuefem.design.responses import KINDS, Response
+from cuefem.design.responses import Response
 from cuefem.design.study import Study, Vary
-from cuefem.design.sweep import Row, Store, sweep
-from cuefem.design.workers import Pool, dask, processes
+from cuefem.design.sweep import Pool, Row, Store, Task, dask, processes, sweep
 
 __all__ = [
-    "KINDS",
     "METHODS",
     "Evaluation",
     "Levels",
@@ -20,6 +18,7 @@ __all__ = [
     "Span",
     "Store",
     "Study",
+    "Task",
     "Vary",
     "common_resolution",
     "dask",

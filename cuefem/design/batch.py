@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import NamedTuple
 
 import numpy as np
 
@@ -18,7 +17,8 @@ from cuefem.beam.basis import table
 from cuefem.beam.system import element_matrices, weighted_strains
 from cuefem.beam.tail import ritz
 from cuefem.cue import Array, Cue, Section, SegmentRows, section_properties
-from cuefem.endmass.undamped import StickLimit, stick_reason
+from cuefem.endmass.undamped import StickLimit
+from cuefem.results.designs import Stick
 from cuefem.scene import Resolution, Scene
 
 # Cues worked at a time: more of them, and their matrices no longer fit the cache (half as fast at 256).
@@ -136,25 +136,6 @@ class BatchModes:
     tip: Array
     rigid: Array
     top: Array | None = None
-
-
-class Stick(NamedTuple):
-    """Stick end masses, kg, and small-offset squirts over phi, of cues: two arrays (cues,), and `reasons`.
-
-    A cue whose squirt no end mass has (a light shaft alone, at a long contact time, runs ahead of the ball and has a
-    negative one) has an end mass of nan and a reason. Its squirt is a number.
-    """
-
-    end_mass: Array
-    squirt: Array
-
-    @property
-    def reasons(self) -> tuple[str | None, ...]:
-        """Why a cue has no end mass; None if it has one."""
-        return tuple(
-            stick_reason(slope) if np.isnan(mass) else None
-            for mass, slope in zip(self.end_mass.tolist(), self.squirt.tolist(), strict=True)
-        )
 
 
 def batch_frequencies(batch: CueBatch, count: int, *, at: Resolution) -> Array:

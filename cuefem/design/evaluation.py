@@ -12,7 +12,8 @@ from cuefem.beam.waves import even_mesh_for, modes_below
 from cuefem.cue import Array
 from cuefem.design.batch import BLOCK
 from cuefem.design.responses import Response
-from cuefem.design.solvers import OneByOne, Solver, Together, key_of
+from cuefem.design.solvers import OneByOne, Together, key_of
+from cuefem.results.designs import Designs
 from cuefem.scene import Resolution, Scene
 from cuefem.tip_modes import PERIODS_KEPT
 
@@ -38,8 +39,8 @@ def evaluate(
     Bare cues with the same number of segments are computed as arrays, in blocks; scenes with effects, and lumped cues,
     one by one, where the modes of equal cues with equal effects are solved once. ``at`` is one resolution for all; by
     default it is `common_resolution`, which is coarser than the default of `cuefem.end_mass`: stick end masses differ
-    from that by up to 2 %. A scene without an answer gets a reason and does not disturb the others; one without an end
-    mass keeps its other responses. ValueError if no response has one of the names.
+    from that by up to 2 %. A response that a scene has not gets a reason and disturbs neither the scene's other
+    responses nor other scenes. ValueError if no response has one of the names.
     """
     asked = tuple(Response.of(one) if isinstance(one, str) else one for one in responses)
     at = at or common_resolution(scenes, asked)
@@ -76,22 +77,32 @@ def _blocks(scenes: Sequence[Scene]) -> list[list[int]]:
 def _values(scenes: Sequence[Scene], responses: Sequence[Response], at: Resolution) -> tuple[Array, list[str | None]]:
     """(responses (designs, responses) of scenes that can be computed together; for each design why one is missing).
 
-    ValueError if a response is not a number and gives no reason.
+    Of a single scene a response that fails leaves the others their values; of several it fails for all.
     """
     bare = scenes[0].cue.segments and not scenes[0].effects
-    lacking = [one.name for one in responses if one.segments and not scenes[0].cue.segments]
-    if lacking:
-        raise ValueError(f"{lacking[0]} needs a cue of segments; got a lumped cue")
     count = max([0, *(one.modes for one in responses)])
-    solver: Solver = (Together if bare else OneByOne)(scenes, at, count)
-    found = np.column_stack([one.values(solver) for one in responses])
-    why: list[str | None] = [None] * len(scenes)
-    for i, j in np.argwhere(np.isnan(found)):
-        reason = responses[j].reason(solver, i)
-        if reason is None:
-            raise ValueError(f"{responses[j].name} is not a number")
-        why[i] = why[i] or f"{responses[j].name}: {reason}"
-    return found, why
+    solver: Designs = (Together if bare else OneByOne)(scenes, at, count)
+    values, why = np.full((len(scenes), len(responses)), np.nan), list[str | None]([None] * len(scenes))
+    for j, response in enumerate(responses):
+        try:
+            values[:, j], reasons = _column(solver, response)
+        except Failed as error:
+            if len(scenes) > 1:
+                raise
+            reasons = [" ".join(str(error).split())]
+        why = [before or reason for before, reason in zip(why, reasons, strict=True)]
+    return values, why
+
+
+def _column(solver: Designs, response: Response) -> tuple[Array, list[str | None]]:
+    """(A response of the solver's designs; for each why it is missing); ValueError if one is missing for no reason."""
+    if response.segments and not solver.scenes[0].cue.segments:
+        raise ValueError(f"{response.name} needs a cue of segments; got a lumped cue")
+    values = response.values(solver)
+    reasons = [response.reason(solver, i) if x != x else None for i, x in enumerate(values)]
+    if any(x != x and reason is None for x, reason in zip(values, reasons, strict=True)):
+        raise ValueError(f"{response.name} is not a number")
+    return values, [None if reason is None else f"{response.name}: {reason}" for reason in reasons]
 
 
 def common_resolution(scenes: Sequence[Scene], responses: Sequence[Response]) -> Resolution:

@@ -12,15 +12,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from cuefem.cue import Array
-from cuefem.design import Levels, Pool, Row, Study
+from cuefem.design import Levels, Pool, Row, Study, Task
 from cuefem.design.ranges import Value
-from cuefem.design.sweep import evaluated
+from cuefem.design.sweep import computed, in_parallel, scenes_of, tasks_of
 from cuefem.quantity import check_count
 
 CONFIDENCE, RESAMPLES = 0.95, 400  # of the bootstrapped intervals
@@ -257,25 +257,18 @@ def indices(values: Array, *, seed: int) -> tuple[Array, Array, Array, Array]:
 
 
 def _rows(scatter: Scatter, points: Array, pool: Pool | None, progress: Progress) -> list[Row]:
-    """The designs of these scores, evaluated in blocks."""
-    designs, size, found = scatter.designs(points), scatter.study.block, list[Row]()
-    starts = range(0, len(designs), size)
-    blocks = [designs[start : start + size] for start in starts]
-    for rows in _evaluated(scatter.study, starts, blocks, pool):
-        progress(rows)
-        found += rows
-    return found
+    """The designs of these scores, computed in blocks."""
+    study, designs, rows = scatter.study, dict(enumerate(scatter.designs(points))), list[Row]()
 
+    def tasks() -> Iterator[Task]:
+        for start in range(0, len(designs), study.block):
+            block = {i: designs[i] for i in range(start, min(start + study.block, len(designs)))}
+            yield from tasks_of(study, block, *scenes_of(study, block))
 
-def _evaluated(
-    study: Study, starts: range, blocks: list[list[tuple[Value, ...]]], pool: Pool | None
-) -> Iterator[list[Row]]:
-    work = partial(evaluated, study)
-    if pool is None:
-        yield from map(work, starts, blocks)
-        return
-    with pool.open() as executor:
-        yield from executor.map(work, starts, blocks)
+    for done in in_parallel(computed, tasks(), pool):
+        progress(done)
+        rows += done
+    return sorted(rows, key=lambda row: row.design)
 
 
 def _spread(rows: list[Row]) -> Spread:

@@ -5,99 +5,26 @@ from __future__ import annotations
 from collections.abc import Hashable, Sequence
 from dataclasses import replace
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
 from cuefem.beam.modes import Modes, solve
 from cuefem.beam.system import assemble
 from cuefem.beam.tip import TipModes
-from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array
-from cuefem.design.batch import BatchModes, CueBatch, Stick, batch_frequencies, batch_modes, stick_of
-from cuefem.effects import Support
-from cuefem.endmass.drives import DEFINITIONS, Definition, flexible, small_offset_slope, stick
-from cuefem.endmass.undamped import StickLimit
-from cuefem.scene import Outcome, Resolution, Scene
+from cuefem.design.batch import BatchModes, CueBatch, batch_frequencies, batch_modes, stick_of
+from cuefem.results.designs import Designs, Stick, static_tip_stiffness
+from cuefem.scene import Resolution, Scene
 from cuefem.tip_modes import tip_modes_from, tip_modes_of
 
 
-class Solver(Protocol):
-    """What responses ask of a number of designs: arrays (designs, ...) in SI. Computed when asked."""
-
-    scenes: Sequence[Scene]
-
-    @property
-    def mass(self) -> Array:
-        """Mass of the cue, kg."""
-
-    @property
-    def shaft_mass(self) -> Array:
-        """Mass of the segments, kg."""
-
-    @property
-    def balance_point(self) -> Array:
-        """Centre of the segments' mass, m from the tip."""
-
-    @property
-    def tip_stiffness(self) -> Array:
-        """Static tip stiffness, N/m: see `CueBatch`."""
-
-    @property
-    def frequencies(self) -> Array:
-        """The lowest bending frequencies, Hz, (designs, n)."""
-
-    @property
-    def stick(self) -> Stick:
-        """Stick end mass, kg, nan if a design has none, and small-offset squirt over phi."""
-
-    def stick_at(self, offset: float) -> Array:
-        """End mass of a tip that sticks at an offset b/R, kg, (designs,)."""
-
-    def end_mass(self, i: int, definition: Definition, offset: float | None) -> float:
-        """End mass of a design by a definition, kg, at an offset b/R or at its scene's own."""
-
-    def strike(self, i: int, offset: float | None) -> Outcome:
-        """The coupled strike of a design at an offset b/R, or at its scene's own."""
-
-
-class _Strikes:
-    """Coupled strikes of designs by their tip modes, each made once."""
-
-    scenes: Sequence[Scene]
-
-    def __init__(self) -> None:
-        self._outcomes: dict[tuple[int, float | None], Outcome] = {}
-
-    def tip(self, i: int) -> TipModes:
-        """Tip modes of a design."""
-        raise AssertionError(f"{type(self).__name__} has no tip modes of its own")
-
-    def stick_at(self, offset: float) -> Array:
-        """End mass of a tip that sticks at an offset b/R, kg, (designs,)."""
-        return np.array([self.end_mass(i, DEFINITIONS["offset"], offset) for i in range(len(self.scenes))])
-
-    def end_mass(self, i: int, definition: Definition, offset: float | None) -> float:
-        """End mass of a design by a definition, kg, at an offset b/R or at its scene's own."""
-        return float(definition.of(self.tip(i), self._scene(i, offset)))
-
-    def _scene(self, i: int, offset: float | None) -> Scene:
-        scene = self.scenes[i]
-        return scene if offset is None else replace(scene, stroke=replace(scene.stroke, offset=offset))
-
-    def strike(self, i: int, offset: float | None) -> Outcome:
-        """The coupled strike of a design at an offset b/R, or at its scene's own; each is made once."""
-        if (i, offset) not in self._outcomes:
-            self._outcomes[i, offset] = strike_modes(self._scene(i, offset), self.tip(i), recorded=False)
-        return self._outcomes[i, offset]
-
-
-class Together(_Strikes):
+class Together(Designs):
     """Bare cues of one topology, as arrays (`CueBatch`); at most some hundred, whose matrices lie in memory."""
 
     def __init__(self, scenes: Sequence[Scene], at: Resolution, frequencies: int) -> None:
-        super().__init__()
-        self.scenes, self.at, self._count = scenes, at, frequencies
+        super().__init__(scenes)
+        self.at, self._count = at, frequencies
         self.batch = CueBatch.of([scene.shaft for scene in scenes])
 
     @property
@@ -152,32 +79,14 @@ class Together(_Strikes):
         return TipModes(omega, amplitude, approach, np.zeros(len(omega)))  # the rotation is for effects at the tip
 
 
-class OneByOne(_Strikes):
+class OneByOne(Designs):
     """Any scenes, with effects or lumped cues, by the calls for a single one."""
 
     def __init__(self, scenes: Sequence[Scene], at: Resolution, frequencies: int) -> None:
-        super().__init__()
-        self.scenes, self.at, self._count = scenes, at, frequencies
+        super().__init__(scenes)
+        self.at, self._count = at, frequencies
         self._tips: dict[Any, TipModes] = {}
         self._solved: dict[Any, Modes] = {}
-
-    def _of_cues(self, name: str) -> Array:
-        return np.array([getattr(scene.cue, name) for scene in self.scenes], dtype=float)
-
-    @property
-    def mass(self) -> Array:
-        """Mass of the cue, kg."""
-        return self._of_cues("mass")
-
-    @property
-    def shaft_mass(self) -> Array:
-        """Mass of the segments, kg."""
-        return self._of_cues("shaft_mass")
-
-    @property
-    def balance_point(self) -> Array:
-        """Centre of the segments' mass, m from the tip."""
-        return self._of_cues("balance_point")
 
     @property
     def tip_stiffness(self) -> Array:
@@ -219,23 +128,6 @@ class OneByOne(_Strikes):
         count = self.at.modes + 2 - found.rigid
         return replace(found, frequencies=found.frequencies[:count], vectors=found.vectors[:, :count])
 
-    @cached_property
-    def stick(self) -> Stick:
-        """Stick end mass, kg, nan if a design has none, and small-offset squirt over phi."""
-        both = np.array([self._stick(i) for i in range(len(self.scenes))])
-        return Stick(both[:, 0], both[:, 1])
-
-    def _stick(self, i: int) -> tuple[Any, float]:
-        scene, tip, limit = self.scenes[i], self.tip(i), StickLimit.of(self.scenes[i])
-        if scene.lumped is not None:
-            return scene.lumped.end_mass, small_offset_slope(tip, scene)
-        if scene.effects:
-            slope = small_offset_slope(tip, scene)
-            none = np.isnan(limit.end_masses(limit.impulse(slope)))
-            return np.nan if none else stick(tip, scene), slope
-        J = limit.transverse_impulse(*flexible(tip))
-        return limit.end_masses(J), float(limit.slope(J))
-
 
 def key_of(scene: Scene, *parts: Any) -> Hashable:
     """What a scene's modes are kept by: ``parts`` of it, or the scene itself if an effect among them has no hash."""
@@ -244,20 +136,3 @@ def key_of(scene: Scene, *parts: Any) -> Hashable:
     except TypeError:
         return id(scene)
     return parts
-
-
-def static_tip_stiffness(scene: Scene, at: Resolution) -> float:
-    """Static tip stiffness, N/m, of a cue with its effects, its butt end clamped: one linear solve of the beam.
-
-    Good to 1e-8; without effects `CueBatch.tip_stiffness` is exact.
-    """
-    clamp = Support(scene.shaft.length, np.inf, np.inf)
-    system = assemble(scene.shaft, elements=at.elements, order=at.order, effects=(*scene.cue_effects, clamp))
-    free = system.free
-    assert free is not None
-    force = free.T @ np.eye(system.mesh.unknowns, 1)[:, 0]
-    K = free.T @ system.K @ free
-    K = K if isinstance(K, np.ndarray) else K.toarray()
-    bent = np.linalg.solve(K, force)
-    # the work of the force less the strain energy, twice: the rounding of K enters it squared
-    return float(1 / (2 * force @ bent - np.sum(system.strains((free @ bent)[:, None]) ** 2)))

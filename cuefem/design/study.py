@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -277,10 +275,4 @@ class Study:
             "responses": [one.name for one in self.responses],
             "sample": repr(self.sample),
             "resolution": repr(self.resolution),
-            "block": self.block,
         }
-
-    @property
-    def fingerprint(self) -> str:
-        """A hash of the record: equal if, and only if, two studies ask for the same table."""
-        return hashlib.sha256(json.dumps(self.record, sort_keys=True).encode()).hexdigest()

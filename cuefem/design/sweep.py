@@ -1,21 +1,35 @@
-"""A study's table, block by block: evaluated anywhere, written by one, so that nothing is lost or done twice."""
+"""A study's designs, computed a block at a time, here, in processes or on a Dask cluster, and handed to a store."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterator
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Future, wait
-from typing import Any, NamedTuple, Protocol
+import logging
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, ProcessPoolExecutor
+from concurrent.futures import wait as wait_for
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass
+from itertools import chain, count, islice
+from multiprocessing import get_context, parent_process
+from typing import NamedTuple, Protocol, TypeVar
+
+import numpy as np
 
 from cuefem.design.evaluation import Failed, evaluate
 from cuefem.design.ranges import Value
+from cuefem.design.responses import Response
 from cuefem.design.study import Study
-from cuefem.design.workers import Pool
+from cuefem.scene import Resolution, Scene
 
 # A pool that breaks is opened again; this often in a row without a block done is too often.
 ATTEMPTS = 3
+# A Dask scheduler that does not answer for so long is not there; how often one is asked while nothing comes, s.
+PATIENCE, GLANCE = 10.0, 1.0
 
-Block = tuple[int, list[tuple[Value, ...]]]
+T = TypeVar("T")
+R = TypeVar("R")
 
 
 class Row(NamedTuple):
@@ -27,104 +41,228 @@ class Row(NamedTuple):
     failure: str | None
 
 
-class Store(Protocol):
-    """Where a sweep's rows go: ``write`` keeps the whole of a block, for good, or nothing of it."""
+class Task(NamedTuple):
+    """Designs to compute: number and what varied of each, its scene, the question, and the answers known already.
 
-    def holds(self, first: int) -> bool:
-        """Whether the block that begins with design number ``first`` is there."""
+    known: a dict from a response's name to its number for each design; what it lacks is computed. failed: rows of
+    designs that cannot be made.
+    """
+
+    designs: Sequence[tuple[int, tuple[Value, ...]]]
+    scenes: Sequence[Scene]
+    responses: tuple[Response, ...]
+    at: Resolution
+    known: Sequence[dict[str, float]]
+    failed: Sequence[Row] = ()
+
+
+class Store(Protocol):
+    """Where a sweep's rows go, and what is known already."""
+
+    def take(self, designs: dict[int, tuple[Value, ...]], *, from_others: bool) -> list[Task] | None:
+        """What is to be computed of a block: designs by number.
+
+        None if another sweep is at work on the block, unless ``from_others`` says to compute it all the same.
+        """
 
     def write(self, rows: list[Row]) -> None:
-        """Add a block."""
+        """Keep the rows of a task, all or none of them."""
 
 
-def evaluated(study: Study, first: int, designs: list[tuple[Value, ...]]) -> list[Row]:
-    """The rows of a block of designs, the first of them number ``first``. The same block gives the same bits."""
-    scenes, reasons = {}, dict[int, str | None]()
-    for i, values in enumerate(designs):
+def scenes_of(study: Study, designs: dict[int, tuple[Value, ...]]) -> tuple[dict[int, Scene], list[Row]]:
+    """The scenes of designs by number, and the rows of those designs that cannot be made."""
+    scenes, failed = dict[int, Scene](), list[Row]()
+    for design, values in designs.items():
         try:
-            scenes[i] = study.scene(values)
+            scenes[design] = study.scene(values)
         except Failed as error:
-            reasons[i] = " ".join(str(error).split())
-    found = evaluate(list(scenes.values()), study.responses, at=study.resolution)
-    numbers = dict(zip(scenes, found.values.tolist(), strict=True))
-    reasons |= dict(zip(scenes, found.reasons, strict=True))
-    nothing = [math.nan] * len(study.responses)
-    return [
-        Row(first + i, values, tuple(None if x != x else x for x in numbers.get(i, nothing)), reasons[i])
-        for i, values in enumerate(designs)
+            nothing = (None,) * len(study.responses)
+            failed.append(Row(design, values, nothing, " ".join(str(error).split())))
+    return scenes, failed
+
+
+def tasks_of(
+    study: Study,
+    designs: dict[int, tuple[Value, ...]],
+    scenes: dict[int, Scene],
+    failed: list[Row],
+    known: dict[int, dict[str, float]] | None = None,
+) -> list[Task]:
+    """Tasks for the designs that have scenes, one for each set of responses that is to be computed."""
+    groups = dict[frozenset[str], list[int]]()
+    for design in scenes:
+        groups.setdefault(frozenset((known or {}).get(design, {})), []).append(design)
+    tasks = [
+        Task(
+            [(design, designs[design]) for design in group],
+            [scenes[design] for design in group],
+            study.responses,
+            study.resolution,
+            [(known or {}).get(design, {}) for design in group],
+        )
+        for group in groups.values()
     ]
+    if failed:
+        first = tasks.pop(0) if tasks else Task([], [], study.responses, study.resolution, [])
+        tasks.insert(0, first._replace(failed=failed))
+    return tasks
+
+
+def computed(task: Task) -> list[Row]:
+    """The rows of a task. The same scenes give the same bits, whatever else is in the task."""
+    if not task.designs:
+        return [*task.failed]
+    asked = [i for i, response in enumerate(task.responses) if response.name not in task.known[0]]
+    answers = np.array([[known.get(response.name, np.nan) for response in task.responses] for known in task.known])
+    found = evaluate(task.scenes, [task.responses[i] for i in asked], at=task.at)
+    answers[:, asked] = found.values
+    rows = (
+        Row(design, values, tuple(None if x != x else x for x in numbers), reason)
+        for (design, values), numbers, reason in zip(task.designs, answers.tolist(), found.reasons, strict=True)
+    )
+    return sorted([*task.failed, *rows], key=lambda row: row.design)
 
 
 def sweep(
     study: Study, store: Store, *, pool: Pool | None = None, progress: Callable[[list[Row]], object] = lambda rows: None
 ) -> None:
-    """Evaluate the designs of a study that the store does not hold yet, and write them, a block at a time.
+    """Compute the designs of a study that the store does not hold yet, and write them, a block at a time.
+
+    Blocks on which another sweep is at work come last, the one that it began last first.
 
     Parameters
     ----------
     study : Study
-        What to evaluate.
+        What to compute.
     store : Store
-        Where the rows go. Only this process writes, and blocks may come in any order.
+        Where the rows go. Blocks may come in any order.
     pool : Pool, optional
-        Executors that evaluate the blocks; by default this process does.
+        Executors that compute the blocks; by default this process does.
     progress : callable, optional
         Called with the rows of every block once they are written.
 
     Raises
     ------
     RuntimeError
-        If the pool breaks time after time.
+        If the pool breaks time after time, or its scheduler is gone. What was written stays.
     """
+    for rows in in_parallel(computed, _tasks(study, store), pool):
+        store.write(rows)
+        progress(rows)
+
+
+def _tasks(study: Study, store: Store) -> Iterator[Task]:
+    """What there is to compute."""
+    blocks, others, first = study.blocks(), list[dict[int, tuple[Value, ...]]](), 0
+    for values in blocks:
+        block = dict(enumerate(values, start=first))
+        first += len(values)
+        tasks = store.take(block, from_others=False)
+        if tasks is None:
+            others.append(block)
+        else:
+            yield from tasks
+    for block in reversed(others):
+        yield from store.take(block, from_others=True) or []
+
+
+@dataclass(frozen=True)
+class Pool:
+    """How to open an executor, and reopen it if it breaks, and how many tasks to hand out ahead.
+
+    check: called about every `GLANCE` seconds while no task ends; raises an exception if none ever will.
+    """
+
+    open: Callable[[], AbstractContextManager[Executor]]
+    ahead: int
+    check: Callable[[], object] = lambda: None
+
+
+def in_parallel(work: Callable[[T], R], tasks: Iterable[T], pool: Pool | None) -> Iterator[R]:
+    """The results of tasks as they end: never more than a few tasks ahead, so that memory does not grow with them."""
     if pool is None:
-        for first, designs in _missing(study, store):
-            _keep(evaluated(study, first, designs), store, progress)
+        yield from map(work, tasks)
         return
-    failures = 0
+    queue, numbers, failures = iter(tasks), count(), 0
     while failures < ATTEMPTS:
-        written = 0
-
-        def told(rows: list[Row]) -> None:
-            nonlocal written
-            written += 1
-            progress(rows)
-
+        pending, running = dict[int, T](), dict[Future[R], int]()
         try:
-            return _share(study, store, pool, told)
+            with pool.open() as executor:
+                try:
+                    while True:
+                        for number, task in zip(numbers, islice(queue, pool.ahead - len(running)), strict=False):
+                            pending[number] = task
+                            running[executor.submit(work, task)] = number
+                        if not running:
+                            return
+                        done, _ = wait_for(running, timeout=GLANCE, return_when=FIRST_COMPLETED)
+                        if not done:
+                            pool.check()
+                        for future in done:
+                            result = future.result()
+                            del pending[running.pop(future)]
+                            failures = 0
+                            yield result
+                finally:
+                    for future in running:
+                        future.cancel()
         except (BrokenExecutor, CancelledError):
-            failures = 1 if written else failures + 1
+            queue, failures = chain(pending.values(), queue), failures + 1
     raise RuntimeError(f"worker processes died {ATTEMPTS} times without a block done: out of memory, or killed")
 
 
-def _missing(study: Study, store: Store) -> Iterator[Block]:
-    """Number of the first design, and designs, of the blocks that the store has not."""
-    first = 0
-    for designs in study.blocks():
-        if not store.holds(first):
-            yield first, designs
-        first += len(designs)
+def processes(number: int) -> Pool:
+    """That many worker processes of this machine. They end when the process that opened them does, killed or not."""
+
+    def start() -> Executor:
+        # spawned: a fork would copy locks that threads of this process hold
+        return ProcessPoolExecutor(number, mp_context=get_context("spawn"), initializer=_follow)
+
+    return Pool(start, 2 * number + 1)
 
 
-def _keep(rows: list[Row], store: Store, progress: Callable[[list[Row]], object]) -> None:
-    store.write(rows)
-    progress(rows)
+def _follow() -> None:
+    """End this worker when its parent has, and at once on Ctrl-C: a killed parent cannot tell it to."""
+    parent = parent_process()
+    assert parent is not None
+
+    def until_it_ends() -> None:
+        parent.join()
+        os._exit(1)
+
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    threading.Thread(target=until_it_ends, daemon=True).start()
 
 
-def _share(study: Study, store: Store, pool: Pool, progress: Callable[[list[Row]], object]) -> None:
-    """Keep the pool's workers busy, never more than a few blocks ahead: memory does not grow with the study."""
-    missing, waiting = _missing(study, store), set[Future[Any]]()
-    with pool.open() as executor:
-        try:
-            while True:
-                for first, designs in missing:
-                    waiting.add(executor.submit(evaluated, study, first, designs))
-                    if len(waiting) >= pool.ahead:
-                        break
-                if not waiting:
-                    return
-                done, waiting = wait(waiting, return_when=FIRST_COMPLETED)
-                for future in done:
-                    _keep(future.result(), store, progress)
-        finally:
-            for future in waiting:
-                future.cancel()
+@contextmanager
+def dask(address: str) -> Iterator[Pool]:
+    """The workers of the Dask scheduler at an address; ValueError if the library or the scheduler is missing."""
+    try:
+        from distributed import Client
+    except ImportError:
+        raise ValueError(
+            "a Dask cluster needs the library distributed: pip install '.[distributed]' in the clone"
+        ) from None
+    try:
+        client = Client(address, timeout=PATIENCE, set_as_default=False)
+    except (OSError, ValueError, TypeError) as error:
+        raise ValueError(f"no Dask scheduler answers at {address!r}: {error}") from None
+    lost = 0.0
+
+    def check() -> None:
+        """RuntimeError if the scheduler has not been there for `PATIENCE` seconds."""
+        nonlocal lost
+        lost = 0.0 if client.status == "running" else lost + GLANCE
+        if lost >= PATIENCE:
+            raise RuntimeError(f"the Dask scheduler at {address!r} answers no more")
+
+    levels = {log: log.level for log in map(logging.getLogger, ("distributed", "distributed.client"))}
+    for log in levels:
+        log.setLevel(logging.CRITICAL)  # a scheduler that is gone is told in one line: `check`
+    try:
+        workers = sum(client.nthreads().values())
+        yield Pool(lambda: client.get_executor(pure=False), 2 * max(workers, 1) + 1, check)
+    finally:
+        client.close(timeout=GLANCE)
+        for log, level in levels.items():
+            log.setLevel(level)

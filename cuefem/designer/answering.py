@@ -64,6 +64,7 @@ class Answering:
         self.before: Results | None = None
         self.moves = self.answered = 0
         self.busy = False
+        self.failed = False  # whether the last move has no answer
         self.drawn = 0  # the last move whose pictures are drawn
         self.since = 0.0  # s: when they were, or the first move after them came
 
@@ -105,7 +106,9 @@ class Answering:
             if self.mine is not None and self.mine.whole:
                 self.before = self.mine
             self.mine = one
-            self.page.say("")
+            if self.failed:
+                self.failed = False
+                self.page.say("")
             self.page.show_numbers()
             await asyncio.sleep(SENT)
             more = None
@@ -118,6 +121,7 @@ class Answering:
                 one.found = await more
                 self.page.show_numbers()
         except FAILURES as error:
+            self.failed = True
             self.page.show_move()
             self.page.say(f"{' '.join(str(error).split())}. The numbers are still those of the design before.")
             return False

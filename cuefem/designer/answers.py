@@ -21,16 +21,17 @@ from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array
 from cuefem.design.sensitivity import sensitivity
-from cuefem.design.solvers import static_tip_stiffness
 from cuefem.endmass.drives import DEFINITIONS
 from cuefem.report.record import Record
 from cuefem.report.squirt import two_part_curve
 from cuefem.report.strike import outcome_record
+from cuefem.results.asking import listed
+from cuefem.results.designs import TONES, OneDesign, at_offset, strikes_at
+from cuefem.results.quantities import pivot_length
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import Solved, default_resolution
 
 FIRST = "stick"  # the definition of the end mass that is computed before the others
-TONES = 5  # bending modes that are shown
 OFFSETS = tuple(round(0.04 * i, 2) for i in range(1, 21))  # b/R of both curves
 MISCUES = 3  # of the coupled curve's points that miscue, one after the other: nothing new comes after them
 MOST_DENSITY_MODES = 45  # where end mass lives takes all modes of the mesh: cubic
@@ -78,19 +79,20 @@ class Density:
 class Answers:
     """The numbers of a design, SI; those that are not computed yet are missing or None.
 
-    strike: as `outcome_record`, of the coupled strike at the scene's own offset. safety: see `safety`. solved: for what
-    is computed later. end_masses: by definition, None where one has no answer. found: the lowest bending modes.
-    tip_stiffness: of a static load across the cue at its tip, the butt end clamped. lumped: the impulse solver's curve,
-    with the end mass of a tip that sticks at each offset and without effects at the tip.
+    strike: as `outcome_record`, of the coupled strike at the scene's own offset. safety: see `safety`. solved, outcome:
+    for what is computed later. end_masses: by definition, None where one has no answer. found: the lowest bending
+    modes. numbers: every listed result, by name. lumped: the impulse solver's curve, with the end mass of a tip that
+    sticks at each offset and without effects at the tip.
     """
 
     scene: Scene
     strike: Record
     solved: Solved
     safety: str
+    outcome: Outcome
     end_masses: Mapping[str, float | None] = field(default_factory=dict)
     found: Modes | None = None
-    tip_stiffness: float | None = None
+    numbers: Mapping[str, float | None] = field(default_factory=dict)
     lumped: Curve | None = None
 
     @property
@@ -119,11 +121,13 @@ def answers(scene: Scene) -> Answers:
     _ = scene.shaft  # ValueError for a lumped cue
     solved = Solved(scene)
     outcome = strike_modes(scene, solved.tip)
-    return Answers(scene, outcome_record(outcome, scene), solved.without_spectra(), safety(outcome))
+    record, small = outcome_record(outcome, scene), replace(outcome, history=None)
+    numbers = listed(OneDesign(solved, small), at_once=True)
+    return Answers(scene, record, solved.without_spectra(), safety(outcome), small, numbers=numbers)
 
 
 def with_end_mass(found: Answers) -> Answers:
-    """The numbers with the stick end mass, the tones, and the static stiffness."""
+    """The numbers with the stick end mass, the tones, and every listed result."""
     scene, cue = found.scene, found.scene.shaft
     first = _end_mass(FIRST, found.solved)
     return replace(
@@ -131,7 +135,7 @@ def with_end_mass(found: Answers) -> Answers:
         solved=found.solved.without_spectra(),
         end_masses={FIRST: first},
         found=modes(cue, TONES, effects=scene.cue_effects),
-        tip_stiffness=static_tip_stiffness(scene, Resolution(*mesh_for(cue, TONES), TONES)),
+        numbers=listed(OneDesign(found.solved, found.outcome)),
     )
 
 
@@ -166,11 +170,9 @@ def lumped_curve(solved: Solved) -> Curve:
 def coupled_points(found: Answers) -> Iterator[Point]:
     """The coupled strike offset by offset, each computed when it is asked for; it ends well beyond the miscue."""
     missed = 0
-    for offset in OFFSETS:
-        scene = replace(found.scene, stroke=replace(found.scene.stroke, offset=offset))
-        outcome = strike_modes(scene, found.tip)
-        record = outcome_record(outcome, scene)
-        yield Point(offset, record["squirt"], float(record["pivot_length"]), safety(outcome))
+    for offset, outcome in zip(OFFSETS, strikes_at(found.scene, OFFSETS, found.tip), strict=True):
+        pivot = pivot_length(at_offset(found.scene, offset), outcome.squirt)
+        yield Point(offset, outcome.squirt, float(pivot), safety(outcome))
         missed = missed + 1 if outcome.regime == "miscue" else 0
         if missed == MISCUES:
             return

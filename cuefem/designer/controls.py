@@ -48,19 +48,29 @@ class NumberField:
 
     def __init__(self, slider: Slider, value: float, turn: Turn) -> None:
         self.slider, self.value, self.good, self.turn = slider, value, value, turn
-        spoken = f"{slider.label}, {slider.unit}" if slider.unit else slider.label
         self.text, self.slid = slider.text(value), False
         with ui.element("div").classes("knob"):
             with ui.element("div").classes("line"):
-                Markup(f"<span>{explained(escape(slider.label))}</span>")
+                self.label = Markup()
                 self.input = ui.input(value=self.text, on_change=self._typed)
                 self.input.props(
                     f'dense borderless hide-bottom-space debounce=200 suffix="{slider.unit}" inputmode=decimal '
-                    f'autocomplete=off aria-label="{spoken}, as a number"'
+                    "autocomplete=off"
                 )
             self.bar = Bar(slider, value, self._slid)
-            self.bar.props(f'role="none" aria-label="{spoken}" data-knob="{slider.knob}"')
+            self.bar.props(f'role="none" data-knob="{slider.knob}"')
             self.beside = Beside()
+        self.named = ""
+        self.name(slider.label)
+
+    def name(self, label: str) -> None:
+        """Have this label: a knob's may tell where on the cue it is."""
+        if label != self.named:
+            self.named = label
+            self.label.set_content(f"<span>{explained(escape(label))}</span>")
+            spoken = f"{label}, {self.slider.unit}" if self.slider.unit else label
+            self.input.props(f'aria-label="{spoken}, as a number"')
+            self.bar.props(f'aria-label="{spoken}"')
 
     def show(self, value: float) -> None:
         """Stand at a value, silently."""

@@ -1,4 +1,4 @@
-"""A design is a scene with its knobs turned. The history holds the designs before and after it, to undo and redo."""
+"""A design is a scene with its knobs turned. A page's state holds the designs before and after it, to undo and redo."""
 
 from __future__ import annotations
 
@@ -12,6 +12,16 @@ from cuefem.vary import knobs_of, turned
 
 TOGETHER = 1.5  # s: moves of one knob that follow each other within it are one step
 MOST_STEPS = 60
+MOST_SEGMENTS = 300  # of a design: the tones and the stiffness of as many take 15 s and 0.6 GB
+
+
+def check_segments(count: int) -> None:
+    """ValueError in words if a cue has more segments than the designer answers for while one waits."""
+    if count > MOST_SEGMENTS:
+        raise ValueError(
+            f"the designer takes a cue of at most {MOST_SEGMENTS} segments; got {count}: draw it with fewer, or use "
+            "cuefem report"
+        )
 
 
 @dataclass(frozen=True)
@@ -27,9 +37,12 @@ class Design:
     knobs: Mapping[str, Any] = field(hash=False)
     notes: tuple[str, ...] = ()
 
+    def __post_init__(self) -> None:
+        check_segments(len(self.base.shaft.segments))
+
     @classmethod
     def of(cls, name: str, scene: Scene, notes: Sequence[str] = ()) -> Design:
-        """A scene as it is; ValueError for a lumped cue."""
+        """A scene as it is; ValueError for a lumped cue, or for one of too many segments."""
         return cls(name, scene, knobs_of(scene), tuple(notes))
 
     @cached_property
@@ -49,31 +62,34 @@ class Step(NamedTuple):
     pinned: tuple[Design, ...] = ()
 
 
-class History:
-    """All steps of a page in their order, and which of them is shown. Undo and redo move to a neighbour."""
+@dataclass(frozen=True)
+class State:
+    """All steps of a page in their order, and which of them is shown: a value, from which a change makes the next.
 
-    def __init__(self, steps: Sequence[Step], at: int = -1) -> None:
-        self.steps = list(steps)
-        self.at = at % len(self.steps)
-        self._label, self._when = "", 0.0
+    label, when: the knob that was moved last, and the time, s, so that a slide becomes one step.
+    """
+
+    steps: tuple[Step, ...]
+    at: int = 0
+    label: str = field(default="", compare=False)
+    when: float = field(default=0.0, compare=False)
 
     @property
     def now(self) -> Step:
         """The step that is shown."""
         return self.steps[self.at]
 
-    def put(self, step: Step, label: str = "", *, when: float = 0.0) -> None:
-        """Add a step behind the one that is shown; steps that were undone are forgotten.
+    def put(self, step: Step, label: str = "", *, when: float = 0.0) -> State:
+        """The state with a step behind the one that is shown; steps that were undone are forgotten.
 
         label: the knob that was moved. when: the time, s. Moves of one knob within `TOGETHER` of each other become one
         step, so that one undo takes back a whole slide.
         """
         if step == self.now:
-            return
-        joined = bool(label) and label == self._label and when - self._when < TOGETHER and self.at > 0
-        self.steps = [*self.steps[: self.at + (0 if joined else 1)], step][-MOST_STEPS:]
-        self.at = len(self.steps) - 1
-        self._label, self._when = label, when
+            return self
+        joined = bool(label) and label == self.label and when - self.when < TOGETHER and self.at > 0
+        steps = (*self.steps[: self.at + (0 if joined else 1)], step)[-MOST_STEPS:]
+        return State(steps, len(steps) - 1, label, when)
 
     @property
     def can_undo(self) -> bool:
@@ -85,15 +101,10 @@ class History:
         """Whether there is a step after."""
         return self.at < len(self.steps) - 1
 
-    def undo(self) -> Step:
-        """Go back a step, if there is one."""
-        return self._go(-1)
+    def undo(self) -> State:
+        """The step before is shown, if there is one."""
+        return State(self.steps, max(self.at - 1, 0))
 
-    def redo(self) -> Step:
-        """Go forth a step, if there is one."""
-        return self._go(1)
-
-    def _go(self, by: int) -> Step:
-        self.at = min(max(self.at + by, 0), len(self.steps) - 1)
-        self._label = ""
-        return self.now
+    def redo(self) -> State:
+        """The step after is shown, if there is one."""
+        return State(self.steps, min(self.at + 1, len(self.steps) - 1))

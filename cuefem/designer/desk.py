@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import time
 from collections.abc import Callable, Iterator
@@ -16,10 +17,10 @@ from nicegui import background_tasks, ui
 from cuefem.designer.answering import Answering
 from cuefem.designer.computing import FAILURES, computed
 from cuefem.designer.controls import ChoiceField, NumberField, button
-from cuefem.designer.design import Design, History, Step
+from cuefem.designer.design import Design, State, Step
 from cuefem.designer.door import KINDS
 from cuefem.designer.editing import game_of, with_game
-from cuefem.designer.kept import LONGEST_NAME, MOST_PINNED, key_of, steps_of, text_of
+from cuefem.designer.kept import LONGEST_NAME, MOST_PINNED, key_of, state_of, step_of, text_of
 from cuefem.designer.links import LinkDialog
 from cuefem.designer.markup import Markup
 from cuefem.designer.numbers import Column, csv_text
@@ -51,7 +52,7 @@ class Desk:
 
     def __init__(self, first: Design, read: Read) -> None:
         self.read, self.opened, self.key = read, first, key_of(first)
-        self.history = History([Step(first)])
+        self.state = State((Step(first),))
         self.wanted = first.knobs
         self.system: System = METRIC
         self.reference = 0  # which pinned design the others are compared with
@@ -64,12 +65,12 @@ class Desk:
     @property
     def design(self) -> Design:
         """The design in work."""
-        return self.history.now.design
+        return self.state.now.design
 
     @property
     def pinned(self) -> tuple[Design, ...]:
         """The designs beside it."""
-        return self.history.now.pinned
+        return self.state.now.pinned
 
     # --- what is there ---------------------------------------------------------------------------------------------
 
@@ -84,17 +85,17 @@ class Desk:
                 PresetMenu(self._ready)
                 button("Save as .toml", self._save)
                 self.report = button("Write the report", self._report)
-                self.undo = button("Undo", lambda: self._go(self.history.undo)).props("data-undo")
-                self.redo = button("Redo", lambda: self._go(self.history.redo)).props("data-redo")
+                self.undo = button("Undo", lambda: self._go(self.state.undo())).props("data-undo")
+                self.redo = button("Redo", lambda: self._go(self.state.redo())).props("data-redo")
                 button("Back to the file", lambda: self.open(self.opened))
-                button("Link", lambda: self.links.show(text_of([self.history.now])))
+                button("Link", lambda: self.links.show(text_of(State((self.state.now,)))))
                 button("Pin this design", self._pin)
                 self.units = ui.select(list(SYSTEMS), value=METRIC.name, label="Units", on_change=self._switch)
                 self.units.props("outlined dense options-dense").classes("units")
             self.message = Markup().on("click", lambda: self.say(""))
         with ui.element("div").classes("unseen"):
             self.receiver = Receiver(KINDS, self._received, self.say)
-        self.links = LinkDialog(self.open_link)
+        self.links = LinkDialog(self._open_link)
         self.shape = ShapeDialog(self._opened)
         with ui.element("div").classes("desk"):
             self.panel = ui.element("section").classes("knobs").props('aria-label="knobs"')
@@ -120,6 +121,7 @@ class Desk:
         else:
             self.made = made
             self._make_knobs()
+        self._name_knobs()
         self._show_ways()
         self.reference = min(self.reference, max(0, len(self.pinned) - 1))
         self.pins.show(self.pinned, self.reference)
@@ -129,8 +131,8 @@ class Desk:
 
     def _show_ways(self) -> None:
         """Whether there is a step to undo or to redo."""
-        self.undo.set_enabled(self.history.can_undo)
-        self.redo.set_enabled(self.history.can_redo)
+        self.undo.set_enabled(self.state.can_undo)
+        self.redo.set_enabled(self.state.can_redo)
 
     def _make_knobs(self) -> None:
         scene = self.design.base
@@ -158,6 +160,12 @@ class Desk:
             for words in without(scene):
                 Markup(explained(f'<p class="hint">{escape(words)}</p>'))
 
+    def _name_knobs(self) -> None:
+        """Label the knobs as the cue now is: where its bore begins changes with its ferrule."""
+        labels = {slider.knob: slider.label for slider in sliders(self.design.scene, self.system)}
+        for field in self.fields:
+            field.name(labels.get(field.slider.knob, field.named))
+
     def _show_head(self) -> None:
         self.head.set_content(explained(head_markup(self.design, self.system)))
 
@@ -172,25 +180,29 @@ class Desk:
         self.units.set_value(self.system.name)
         with suppress(*FAILURES):  # what an older version kept
             if found.get("kept"):
-                self.history = History(*steps_of(str(found["kept"])))
+                self.state = await computed(state_of, str(found["kept"]))
         self._show_design()
         if found.get("link"):
-            self.open_link(str(found["link"]))
+            words = await self._open_link(str(found["link"]))
+            if words:
+                self.say(f"the link in the address was not opened: {words}")
         await self.answering.moved()
 
     async def _keep(self) -> None:
-        text = text_of(self.history.steps, self.history.at)
-        self.client.run_javascript(f"cuefem.keep({json.dumps(self.key)}, {json.dumps(text)})")
+        state = self.state
+        text = await asyncio.to_thread(text_of, state)
+        if state is self.state:
+            self.client.run_javascript(f"cuefem.keep({json.dumps(self.key)}, {json.dumps(text)})")
 
-    def open_link(self, text: str) -> None:
-        """Go on from the designs of a link; what was there before can be had by undoing."""
+    async def _open_link(self, text: str) -> str:
+        """Go on from the designs of a link, which undoing takes back; what is wrong with it, or ""."""
         try:
-            steps, at = steps_of(text)
+            step = await computed(step_of, text)
         except FAILURES as error:
-            self.say(f"not opened: {' '.join(str(error).split())}")
-        else:
-            self._put(steps[at])
-            self._show_design()
+            return " ".join(str(error).split())
+        self._put(step)
+        self._show_design()
+        return ""
 
     # --- what a person does ----------------------------------------------------------------------------------------
 
@@ -251,20 +263,21 @@ class Desk:
 
     def _put(self, step: Step, label: str = "", *, move: bool = True) -> None:
         """Go on to a step: keep it, and compute it."""
-        self.history.put(step, label, when=time.monotonic())
+        self.state = self.state.put(step, label, when=time.monotonic())
         self._moved(move)
 
     def _moved(self, move: bool = True) -> None:
         """Answer the present step if it is a move, and keep it while that is computed."""
         if move:
+            self.say("")
             self.show_busy(True)
             background_tasks.create(self.answering.moved(), name="answer a move")
         else:
             self._show_ways()
         background_tasks.create(self._keep(), name="keep a step")
 
-    def _go(self, way: Callable[[], Step]) -> None:
-        way()
+    def _go(self, state: State) -> None:
+        self.state = state
         self._moved()
         self._show_design()
 
@@ -348,6 +361,7 @@ class Desk:
 
     def show_move(self) -> None:
         """What belongs to a move beside its answer: the knob's text, and the fields of everything."""
+        self._name_knobs()
         for field in self.fields:
             field.agree()
         self._show_ways()

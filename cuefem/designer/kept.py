@@ -1,4 +1,4 @@
-"""The steps of a desk as one short text, for the browser's memory and for links.
+"""The state of a page as one short text, for the browser's memory and for links.
 
 It is JSON, compressed, in letters that an address may hold. Scenes stand in it as in files, with units; a scene that
 many steps share stands there once.
@@ -9,7 +9,6 @@ from __future__ import annotations
 import base64
 import binascii
 import json
-import math
 import zlib
 from collections.abc import Sequence
 from functools import lru_cache
@@ -17,11 +16,11 @@ from hashlib import sha256
 from typing import Any
 
 from cuefem.cue import Material
-from cuefem.designer.design import MOST_STEPS, Design, Step
+from cuefem.designer.design import MOST_STEPS, Design, State, Step, check_segments
+from cuefem.designer.sliders import choices
 from cuefem.io.errors import shown
-from cuefem.io.schema import NAMES, build, table
+from cuefem.io.schema import NAMES, table
 from cuefem.io.toml import scene_of_table
-from cuefem.materials import material
 from cuefem.scene import Scene
 from cuefem.vary import knobs_of, place
 
@@ -29,12 +28,18 @@ VERSION = 1
 LONGEST = 1_000_000  # letters of a text
 LARGEST = 4_000_000  # bytes that it unpacks to
 LONGEST_NAME = 80  # letters of a design's name
+LONGEST_NOTE = 500
 MOST_PINNED = 12
+MOST_NUMBER = 1e300  # that a knob may stand at; its own bounds are narrower
 _WHAT = "this link"
 
 
-def text_of(steps: Sequence[Step], at: int = 0) -> str:
-    """The steps, and which of them is the present one, as text."""
+class TooMuch(ValueError):
+    """A text unpacks to more than is read."""
+
+
+def text_of(state: State) -> str:
+    """All steps of a state, and which of them is shown, as text."""
     scenes: dict[Scene, int] = {}
     designs: dict[Design, int] = {}
 
@@ -42,24 +47,29 @@ def text_of(steps: Sequence[Step], at: int = 0) -> str:
         scenes.setdefault(design.base, len(scenes))
         return designs.setdefault(design, len(designs))
 
-    rows = [[number(step.design), *map(number, step.pinned)] for step in steps]
+    rows = [[number(step.design), *map(number, step.pinned)] for step in state.steps]
     record = {
         "version": VERSION,
         "scenes": [_table(scene) for scene in scenes],
         "designs": [[d.name, scenes[d.base], _moved(d), list(d.notes)] for d in designs],
         "steps": rows,
-        "at": at,
+        "at": state.at,
     }
     packed = zlib.compress(json.dumps(record, ensure_ascii=False, separators=(",", ":")).encode(), 6)
     return base64.urlsafe_b64encode(packed).decode().rstrip("=")
 
 
-def steps_of(text: str) -> tuple[list[Step], int]:
-    """The steps of a text and which is the present one; ValueError if it is not one of `text_of`."""
+def state_of(text: str, most_steps: int = MOST_STEPS) -> State:
+    """The state of a text; ValueError in a line if it is not one of `text_of`, or holds more steps."""
     try:
-        return _read(_unpacked(text))
-    except (KeyError, IndexError, TypeError, RecursionError):
+        return _read(_unpacked(text), most_steps)
+    except (KeyError, IndexError, TypeError, AttributeError, RecursionError):
         raise ValueError(f"{_WHAT} is damaged: its parts do not fit together") from None
+
+
+def step_of(link: str) -> Step:
+    """The one step that a link holds; ValueError in a line if it holds none."""
+    return state_of(link, 1).now
 
 
 def key_of(design: Design) -> str:
@@ -81,13 +91,8 @@ def _own(scene: Scene) -> dict[str, Any]:
 def _moved(design: Design) -> dict[str, Any]:
     """The knobs that do not stand where the scene has them."""
     own = _own(design.base)
-    return {key: _entry(value) for key, value in design.knobs.items() if value != own[key]}
-
-
-def _entry(value: Any) -> Any:
-    if isinstance(value, Material):
-        return NAMES.get(value) or table(value)
-    return value
+    values = {key: value for key, value in design.knobs.items() if value != own[key]}
+    return {key: NAMES[value] if isinstance(value, Material) else value for key, value in values.items()}
 
 
 def _unpacked(text: str) -> dict[str, Any]:
@@ -97,9 +102,13 @@ def _unpacked(text: str) -> dict[str, Any]:
         packed = base64.urlsafe_b64decode(text + "=" * (-len(text) % 4))
         unpacking = zlib.decompressobj()
         content = unpacking.decompress(packed, LARGEST)
-        if unpacking.unconsumed_tail or not unpacking.eof:
+        if unpacking.unconsumed_tail:
+            raise TooMuch(f"{_WHAT} must hold at most {LARGEST // 10**6} MB of designs")
+        if not unpacking.eof:
             raise ValueError("cut off")
         found = json.loads(content)
+    except TooMuch:
+        raise
     except (ValueError, binascii.Error, zlib.error, RecursionError):
         raise ValueError(f"{_WHAT} is not whole: copy all of it; got {shown(text[:20])}") from None
     if not isinstance(found, dict) or found.get("version") != VERSION:
@@ -107,36 +116,64 @@ def _unpacked(text: str) -> dict[str, Any]:
     return found
 
 
-def _read(found: dict[str, Any]) -> tuple[list[Step], int]:
+def _read(found: dict[str, Any], most_steps: int) -> State:
     rows, at = found["steps"], found["at"]
-    if not 0 < len(rows) <= MOST_STEPS or not isinstance(at, int) or not 0 <= at < len(rows):
-        raise ValueError(f"{_WHAT} must hold 1 to {MOST_STEPS} steps; got {shown(len(rows))}")
-    scenes = [scene_of_table(entry, _WHAT) for entry in found["scenes"][: MOST_STEPS * (1 + MOST_PINNED)]]
-    designs = [_design(entry, scenes) for entry in found["designs"][: MOST_STEPS * (1 + MOST_PINNED)]]
-    steps = [Step(designs[row[0]], tuple(designs[i] for i in row[1 : 1 + MOST_PINNED])) for row in rows]
-    return steps, at
+    if not 0 < len(rows) <= most_steps or type(at) is not int or not 0 <= at < len(rows):
+        wanted = f"1 to {most_steps} steps" if most_steps > 1 else "1 step"
+        raise ValueError(f"{_WHAT} must hold {wanted}; got {len(rows)}")
+    most = most_steps * (1 + MOST_PINNED)
+    for entries in (found["scenes"], found["designs"]):
+        if len(entries) > most:
+            raise ValueError(f"{_WHAT} must hold at most {most} designs; got {len(entries)}")
+    for entry in found["scenes"]:  # all of them, before any is made
+        check_segments(len(entry["cue"]["segments"]) if "segments" in entry["cue"] else 0)
+    scenes = [scene_of_table(entry, _WHAT) for entry in found["scenes"]]
+    designs = [_design(entry, scenes) for entry in found["designs"]]
+    if any(len(row) > 1 + MOST_PINNED for row in rows):
+        raise ValueError(f"{_WHAT} must hold at most {MOST_PINNED} pinned designs a step")
+    steps = (Step(_at(designs, row[0]), tuple(_at(designs, number) for number in row[1:])) for row in rows)
+    return State(tuple(steps), at)
+
+
+def _at(entries: Sequence[Any], number: Any) -> Any:
+    """The entry of this number, counted from 0 on."""
+    if type(number) is not int or number < 0:
+        raise IndexError(number)
+    return entries[number]
 
 
 def _design(entry: Any, scenes: Sequence[Scene]) -> Design:
-    name, number, moved, notes = entry
-    base = scenes[number]
-    own = knobs_of(base)
+    name, base, moved, notes = entry[0], _at(scenes, entry[1]), entry[2], entry[3]
+    own, offered = knobs_of(base), {choice.knob: choice.materials for choice in choices(base)}
     knobs = dict(own)
     for written, value in moved.items():
         known = place(written)
         key = known.key if known else written
-        knobs[key] = _knob(written, value, own.get(key))
-    found = Design(str(name)[:LONGEST_NAME], base, knobs, tuple(str(note)[:500] for note in notes))
+        knobs[key] = _material(key, value, offered[key]) if key in offered else _number(key, value, own.get(key))
+    said = tuple(_words(note, LONGEST_NOTE) for note in notes)
+    found = Design(_words(name, LONGEST_NAME), base, knobs, said)
     found.scene  # noqa: B018  # no such cue: ValueError
     return found
 
 
-def _knob(name: str, value: Any, own: Any) -> Any:
-    """A knob's value as it was read, of the kind that the scene has there."""
+def _words(text: Any, longest: int) -> str:
+    """A name or a note, in letters that a page can show."""
+    if not isinstance(text, str):
+        raise TypeError(text)
+    return text[:longest].encode(errors="replace").decode()
+
+
+def _material(knob: str, name: Any, offered: dict[str, Material]) -> Material:
+    """A material by its name, of those that the knob offers."""
+    if not isinstance(name, str) or name not in offered:
+        raise ValueError(f"{_WHAT}: {knob} must be one of {', '.join(offered)}; got {shown(name)}")
+    return offered[name]
+
+
+def _number(knob: str, value: Any, own: Any) -> float:
+    """Where a knob stands, if the scene has it."""
     if own is None:
-        raise ValueError(f"{_WHAT}: {shown(name)} must be a knob of its cue")
-    if isinstance(own, Material):
-        return material(value) if isinstance(value, str) else build(Material, value, file=_WHAT, key=name)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise ValueError(f"{_WHAT}: {name} must be a number; got {shown(value)}")
+        raise ValueError(f"{_WHAT}: {shown(knob)} must be a knob of its cue")
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= MOST_NUMBER:
+        raise ValueError(f"{_WHAT}: {knob} must be a number; got {shown(value)}")
     return float(value)

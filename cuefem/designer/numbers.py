@@ -16,9 +16,9 @@ from cuefem.designer.sliders import choices, sliders
 from cuefem.designer.units import METRIC, System
 from cuefem.endmass.drives import DEFINITIONS
 from cuefem.report.glossary import subscripts
-from cuefem.report.quantities import NONE, QUANTITIES, Known, significant
 from cuefem.report.strike import MISCUE
 from cuefem.report.trust import trust_line, trust_lines
+from cuefem.results.quantities import NONE, RESULTS, Result, significant
 from cuefem.scene import Scene
 
 WAITING = "…"
@@ -30,7 +30,7 @@ class Row(NamedTuple):
     name: str
     label: str
     value: float | None
-    known: Known
+    known: Result
     waiting: bool = False  # it is not computed yet
 
     def text(self, system: System = METRIC) -> str:
@@ -46,15 +46,15 @@ class Row(NamedTuple):
 
 def rows(found: Answers) -> list[Row]:
     """All numbers of a design, each with its definition."""
-    cue, strike, offset = found.scene.shaft, found.strike, found.scene.stroke.offset
+    strike, offset = found.strike, found.scene.stroke.offset
     labels = {one.name: f"end mass m_e, {one.label_at(offset)}" for one in DEFINITIONS.values()}
     pivot = strike["pivot_length"]
     later = not found.has_end_mass
     tones = [None] * TONES if later else found.frequencies.tolist()
 
     def row(name: str, quantity: str, value: float | None, label: str = "") -> Row:
-        known = QUANTITIES[quantity]
-        return Row(name, label or known.label, value, known)
+        known = RESULTS[quantity]
+        return Row(name, label or known.words, value, known)
 
     return [
         row("squirt", "squirt", strike["squirt"], f"squirt, coupled, at b/R {offset:g}"),
@@ -65,15 +65,17 @@ def rows(found: Answers) -> list[Row]:
             )
             for drive in DEFINITIONS
         ),
-        row("shaft_mass", "shaft_mass", cue.shaft_mass),
-        row("mass", "mass", cue.mass),
-        row("balance", "balance_point", cue.balance_point),
-        row("stiffness", "tip_stiffness", found.tip_stiffness, STIFFNESS)._replace(waiting=later),
+        *(
+            row(SHORT.get(name, name), name, found.numbers.get(name))._replace(waiting=name not in found.numbers)
+            for name, result in RESULTS.items()
+            if result.of is not None and result.listed and name != "squirt"
+        ),
         *(row(f"mode{i}", "frequencies", f, f"mode {i}")._replace(waiting=later) for i, f in enumerate(tones, 1)),
     ]
 
 
-STIFFNESS = f"{QUANTITIES['tip_stiffness'].label}, static, butt clamped"
+# What the page calls some results, in its links and for its script.
+SHORT = {"balance_point": "balance", "tip_stiffness": "stiffness"}
 
 
 def percent(value: float | None, other: float | None) -> str:

@@ -121,7 +121,11 @@ class Sheet:
         return self.system.units.get(unit, (1.0, unit))
 
     def _text(self, value: float | None, unit: str) -> str:
-        return "" if value is None else f"{value * self._unit(unit)[0]:.6g}"
+        if value is None:
+            return ""
+        scale, name = self._unit(unit)
+        finest = 4 if name in ("in", "oz") else 300  # decimals: 0.0001 in is 2.5 um
+        return f"{round(value * scale, finest):.6g}"
 
     def _typed(self, path: Path, text: str) -> None:
         cell, field = self.cells[path]

@@ -47,9 +47,10 @@ class Slider:
         return f"{self.text(shown)} {self.unit}".rstrip()
 
     def text(self, shown: float) -> str:
-        """A value as it stands in its field."""
+        """A value as it stands in its field; one between two steps has a digit more."""
         whole = f"{shown:.{self.decimals}f}"
-        return whole if abs(float(whole) - shown) < 10.0**-DECIMALS else f"{shown:.6g}"
+        finer = f"{shown:.{self.decimals + 1}f}"
+        return whole if abs(float(whole) - shown) < 10.0**-DECIMALS else finer.rstrip("0").rstrip(".")
 
     def check(self, shown: float) -> None:
         """ValueError in words if a typed value is out of range."""
@@ -89,7 +90,7 @@ def sliders(scene: Scene, system: System = METRIC) -> tuple[Slider, ...]:
 def _slider(place: Place, scene: Scene, system: System) -> Slider:
     cue = scene.shaft
     x = place.at(cue) if place.at else 0.0
-    label = place.title.format(rounded=system.length(x, 3), exact=system.length(x))
+    label = place.title.format(exact=system.length(x))
     unit, scale, *reach = place.reach(cue)  # type: ignore[misc]
     return _in_system(Slider(place.key, label, unit, scale, *reach), system)
 

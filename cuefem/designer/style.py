@@ -10,7 +10,13 @@ body { max-width: 1440px; --q-primary: var(--c1) !important; }
 .desk { display: grid; grid-template-columns: minmax(280px, 320px) minmax(0, 1fr); gap: 1.1rem; align-items: start; }
 .desk > * { min-width: 0; }
 .desk section { margin: 0 0 1.1rem; }
-.knobs { position: sticky; top: 0.6rem; max-height: calc(100vh - 1.2rem); overflow-y: auto; }
+.knobs { position: sticky; top: 0.6rem; max-height: calc(100vh - 1.2rem); overflow-y: auto; --more: rgb(0 0 0 / 0.22);
+  background:  /* shadows at the ends that have more beyond them: the covers of the first line move with the knobs */
+    linear-gradient(var(--card), var(--card)) 0 0 / 100% 1.6rem local no-repeat,
+    linear-gradient(var(--card), var(--card)) 0 100% / 100% 1.6rem local no-repeat,
+    linear-gradient(var(--more), transparent) 0 0 / 100% 1.2rem no-repeat,
+    linear-gradient(transparent, var(--more)) 0 100% / 100% 1.2rem no-repeat, var(--card); }
+@media (prefers-color-scheme: dark) { .knobs { --more: rgb(255 255 255 / 0.2); } }
 sub { line-height: 0; }
 h1, h2 { font-weight: 700; letter-spacing: 0; font-family: inherit; } h2 { line-height: 1.3; }
 .desk .grid2 { grid-template-columns: repeat(auto-fit, minmax(min(100%, 340px), 1fr)); }
@@ -235,6 +241,6 @@ new MutationObserver(changes => {
     if (type === "attributes") { if (target.matches(".q-slider")) speak(target); continue; }
     for (const node of addedNodes) if (node.querySelectorAll) node.querySelectorAll(".q-slider").forEach(speak);
   }
-}).observe(document.body, { subtree: true, childList: true, attributeFilter: ["aria-valuenow"] });
+}).observe(document.body, { subtree: true, childList: true, attributeFilter: ["aria-valuenow", "aria-label"] });
 </script>
 """

@@ -13,9 +13,9 @@ from cuefem.designer.units import System
 from cuefem.io.sound import load_recording
 from cuefem.parts import with_material
 from cuefem.report.charts import Axis, Curve, Mark, chart
-from cuefem.report.quantities import written
 from cuefem.report.tap import KINDS
 from cuefem.report.templates import chart_markup
+from cuefem.results.quantities import written
 from cuefem.scene import Scene
 from cuefem.tap.fit import TapFit
 from cuefem.tap.ringing import Ringing, ringing

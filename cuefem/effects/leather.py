@@ -410,9 +410,12 @@ class OnCue:
         """Displacement (u, w) of the contact per unit rotation of the ferrule's end section, m."""
         return self.tip.lever(phi, self.diameter)
 
-    def rolling_radius(self, phi: float) -> float:
-        """Radius of the dome, m, or 0 where the contact is on the rim."""
-        return self.dome_radius if self.tip.dome_radius * math.sin(phi) < self.diameter / 2 else 0.0
+    @property
+    def rim(self) -> float:
+        """Angle of the contact at which the dome ends, rad; behind it the ball rolls on an edge."""
+        if self.tip.dome_radius <= self.diameter / 2:
+            return math.pi / 2
+        return math.asin(self.diameter / 2 / self.tip.dome_radius)
 
     def law(self, ball_radius: float, offset: float, restitution: float) -> LeatherLaw:
         """The forces on a ball of that radius, m, that is struck at b/R = offset."""

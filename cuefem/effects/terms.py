@@ -36,8 +36,9 @@ class WholeTip(Protocol):
     def lever(self, phi: float) -> tuple[float, float]:
         """Displacement (u, w) of the contact per unit rotation of the cue's end section, m; phi >= 0, rad."""
 
-    def rolling_radius(self, phi: float) -> float:
-        """Radius of what the ball rolls on at that angle, m; 0 for an edge."""
+    @property
+    def rim(self) -> float:
+        """Angle of the contact at which the dome ends, rad; behind it the ball rolls on an edge."""
 
     def law(self, ball_radius: float, offset: float, restitution: float) -> LeatherLaw:
         """Its forces on a ball of that radius, m, that is struck at b/R = offset >= 0."""

@@ -17,7 +17,7 @@ CHAPTERS = (
     "impulse_solver",
     "beam",
     "strike",
-    "dead_tip",
+    "contact",
     "end_mass",
     "side",
     "effects",

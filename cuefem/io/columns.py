@@ -10,7 +10,7 @@ from pathlib import Path
 
 from cuefem.io.cells import Row, is_number
 from cuefem.io.errors import InputError, shown
-from cuefem.units import number
+from cuefem.units import first_name, scale
 
 EXAMPLE = '"x [mm],diameter [mm]"'
 TITLES = 20  # lines that may stand above the header
@@ -29,14 +29,6 @@ _WORDS = {
         *("abstand", "länge", "distancia", "posición", "posizione", "distanza"),
     },
 }
-_UNITS = {
-    "mm": ("mm", "millimeter", "millimeters", "millimetre", "millimetres"),
-    "cm": ("cm", "centimeter", "centimeters", "centimetre", "centimetres"),
-    "m": ("m", "meter", "meters", "metre", "metres"),
-    "in": ("in", "inch", "inches", '"', "''", "″", "”", "zoll"),
-    "ft": ("ft", "foot", "feet"),
-}
-_UNIT_OF = {word: unit for unit, words in _UNITS.items() for word in words}
 _OTHERS = ("kg", "g", "oz", "lb", "s", "ms", "n", "deg", "°", "%")  # units of no length
 _BRACKETS = re.compile(r"[\[({<]([^])}>]*)[\])}>]")
 _TOKENS = re.compile(r"[^\W\d_]+")
@@ -65,16 +57,13 @@ class Header:
 
 
 def unit_of(text: str) -> str:
-    """The unit of length that a text names, as `cuefem.units` knows it; "" if it names none."""
+    """The unit of length that a text names, by its first name in the table of units; "" if it names none."""
     word = text.strip().strip(".[](){}<>").strip()
-    known = _UNIT_OF.get(word.casefold(), "")
-    if known or not word:
-        return known
     try:
-        number(f"1 {word}", "m")
+        scale(word, "m")
     except ValueError:
         return ""
-    return word
+    return first_name(word)
 
 
 def read_header(path: Path, rows: Sequence[Row]) -> Header:
@@ -116,8 +105,8 @@ def _column(path: Path, line: int, index: int, cell: str) -> Column:
     inside = _BRACKETS.findall(text)
     unit = next(filter(None, map(unit_of, inside)), "")
     words = _TOKENS.findall(_BRACKETS.sub(" ", text) if unit else text)
-    if not unit and len(words) > 1 and words[-1] in _UNIT_OF:
-        unit = _UNIT_OF[words.pop()]
+    if not unit and len(words) > 1 and (unit := unit_of(words[-1])):
+        words.pop()
     if not unit and text.rstrip().endswith(('"', "″", "”")):
         unit = "in"
     kind = _kind(words)

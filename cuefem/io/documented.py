@@ -12,7 +12,7 @@ from typing import Any, cast
 from cuefem.games import DEFAULT_GAME, GAMES, usual_scene
 from cuefem.io import InputError, load
 from cuefem.io.assumed import assumed_blow, assumed_drawing, assumed_usual
-from cuefem.io.errors import nearest, shown
+from cuefem.io.errors import faults_of, nearest, shown
 from cuefem.io.schema import build, joined, keys_of, unknown_key
 from cuefem.io.toml import read_tables, read_text, scene_of_tables
 from cuefem.measured.documented import DocumentedCue
@@ -45,10 +45,8 @@ def load_documented(folder: Path) -> tuple[DocumentedCue, list[str]]:
     found = tuple(_measurements(folder, path, tables))
     priors = tuple(_priors(path, tables.get("unknowns", []), scene))
     name, source = (_words(path, tables, key) for key in ("name", "source"))
-    try:
+    with faults_of(path, ""):
         made = DocumentedCue(name or folder.resolve().name, scene, found, priors, source)
-    except ValueError as error:
-        raise InputError(path, "", str(error)) from None
     return made, [*notes, *_examples(folder)]
 
 
@@ -102,10 +100,8 @@ def _scene(folder: Path, path: Path, tables: dict[str, Any]) -> tuple[Scene, lis
     if told:
         return scene, [*drawn, *assumed_blow(tables, ["offset"], offered=())]
     game = game or DEFAULT_GAME
-    try:
+    with faults_of(path, ""):
         return usual_scene(scene.shaft, game), [*drawn, *assumed_usual(scene.shaft, game, ["offset"], offered=())]
-    except ValueError as error:
-        raise InputError(path, "", str(error)) from None
 
 
 def _drawing(path: Path) -> Any:
@@ -195,11 +191,7 @@ def _priors(path: Path, rows: Any, scene: Scene) -> Iterator[Prior]:
         values = {}
         for each, mark in marks.items():
             if each in row:
-                try:
+                with faults_of(path, joined(key, each)):
                     values[each] = mark.read(row[each])
-                except ValueError as error:
-                    raise InputError(path, joined(key, each), str(error)) from None
-        try:
+        with faults_of(path, key):
             yield Prior(name, **values)
-        except ValueError as error:
-            raise InputError(path, key, str(error)) from None

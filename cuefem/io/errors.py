@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
 
@@ -17,7 +19,7 @@ _KINDS = {
     stat.S_IFBLK: "a device",
 }
 
-__all__ = ["InputError", "nearest", "read_bytes", "reason", "shown", "state_of"]
+__all__ = ["InputError", "faults_of", "nearest", "read_bytes", "reason", "shown", "state_of"]
 
 
 class InputError(ValueError):
@@ -31,6 +33,17 @@ class InputError(ValueError):
         self.file, self.key, self.problem = str(file), key, problem
         parts = [part for part in (self.file, key, problem) if part]
         super().__init__(" ".join(": ".join(parts).split()))
+
+
+@contextmanager
+def faults_of(path: str | PathLike[str], key: str) -> Iterator[None]:
+    """Say of what file and key a bad value is, unless that was said where it was noticed."""
+    try:
+        yield
+    except InputError:
+        raise
+    except (TypeError, ValueError) as error:
+        raise InputError(path, key, str(error)) from None
 
 
 def state_of(path: Path) -> os.stat_result:

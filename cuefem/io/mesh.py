@@ -18,7 +18,7 @@ import numpy as np
 from meshio.vtu import _vtu
 
 from cuefem.cue import Cue, Material, Segment
-from cuefem.io.errors import InputError, read_bytes, shown
+from cuefem.io.errors import InputError, faults_of, read_bytes, shown
 from cuefem.quantity import MOST_SEGMENTS, quantities
 
 # What a damaged mesh file makes meshio raise: it checks little itself.
@@ -183,16 +183,12 @@ def _cue(path: Path, data: dict[str, Any], lengths: Any) -> Cue:
     rows = [{name: float(values[i]) for name, values in data.items()} for i in range(len(lengths))]
     segments = []
     for i, row in enumerate(rows):
-        try:
+        with faults_of(path, f"cell {i}"):
             segments.append(_segment(row))
-        except (ValueError, TypeError) as error:
-            raise InputError(path, f"cell {i}", str(error)) from None
     if len(set(data["body_mass"])) != 1:
         raise InputError(path, "cell data body_mass", f"must be one number; got {shown(data['body_mass'].tolist())}")
-    try:
+    with faults_of(path, "cell data body_mass"):
         return Cue(tuple(segments), rows[0]["body_mass"])
-    except ValueError as error:
-        raise InputError(path, "cell data body_mass", str(error)) from None
 
 
 def _segment(row: dict[str, float]) -> Segment:

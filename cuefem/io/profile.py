@@ -12,7 +12,7 @@ from pathlib import Path
 from cuefem.cue import Cue, Material, Segment
 from cuefem.io.cells import Row, decimal_mark, parted, plain, read_rows
 from cuefem.io.columns import DIAMETER, EXAMPLE, PLACE, RADIUS, Column, Header, from_butt, read_header, unit_of
-from cuefem.io.errors import InputError, shown
+from cuefem.io.errors import InputError, faults_of, shown
 from cuefem.quantity import DIAMETER as WIDTH
 from cuefem.quantity import Quantity
 from cuefem.units import number
@@ -52,10 +52,8 @@ def load_profile(path: Path, material: Material, length_unit: str | None = None)
     if len(points) < 2:
         raise InputError(path, "", f"must hold at least 2 points; got {len(points)}")
     pairs = itertools.pairwise(_corners(points))
-    try:
+    with faults_of(path, ""):
         return Cue(tuple(Segment(_apart(x0, x1), d0, d1, material) for (x0, d0), (x1, d1) in pairs))
-    except ValueError as error:
-        raise InputError(path, "", str(error)) from None
 
 
 def profile_notes(path: Path) -> tuple[str, ...]:
@@ -191,10 +189,8 @@ def _number(path: Path, row: Row, column: Column, mark: str) -> float:
     unit = (unit_of(rest) if rest else column.unit) or ""
     if not text or not unit:
         raise InputError(path, where, f"must be a number; got {shown(cell) if cell else 'nothing'}")
-    try:
+    with faults_of(path, where):
         value = (_POSITION if kind == PLACE else WIDTH).read(f"{plain(text, mark)} {unit}")
-    except ValueError as error:
-        raise InputError(path, where, str(error)) from None
     return 2 * value if kind == RADIUS else value
 
 

@@ -12,7 +12,7 @@ from typing import Any, TypeVar, cast
 
 from cuefem.cue import Material
 from cuefem.effects import Effect
-from cuefem.io.errors import InputError, nearest, shown
+from cuefem.io.errors import InputError, faults_of, nearest, shown
 from cuefem.materials import MATERIALS
 from cuefem.quantity import OutOfBounds, Quantity
 
@@ -48,10 +48,8 @@ def _read(hint: Any, value: Any, file: str, key: str) -> Any:
     """What a file's value says for a field of this type."""
     mark = mark_of(hint)
     if mark is not None:
-        try:
+        with faults_of(file, key):
             return mark.read(value)
-        except ValueError as error:
-            raise InputError(file, key, str(error)) from None
     for choice in choices(hint):
         if typing.get_origin(choice) is tuple:
             if isinstance(value, list):

@@ -9,7 +9,7 @@ from cuefem.design import METHODS, Levels, Normal, Response, Sample, Span, Study
 from cuefem.design.optimum import Limit, Problem
 from cuefem.design.scatter import Scatter
 from cuefem.games import GAMES, usual_scene
-from cuefem.io.errors import InputError, shown
+from cuefem.io.errors import InputError, faults_of, shown
 from cuefem.io.schema import build, joined, unknown_key
 from cuefem.io.toml import named_material, read_tables
 from cuefem.quantity import Quantity
@@ -50,10 +50,8 @@ def load_scatter(path: str | Path, *, offset: float = 0.3) -> tuple[Scatter, Sam
     if study.sample is None or study.sample.method != "sobol":
         got = study.sample.method if study.sample else "nothing"
         raise InputError(path, "sample", f'must be given, its method "sobol"; got {got}')
-    try:
+    with faults_of(path, ""):
         return Scatter(study, _correlations(found.get("correlations", []), path), _groups(found, path)), study.sample
-    except ValueError as error:
-        raise error if isinstance(error, InputError) else InputError(path, "", str(error)) from None
 
 
 def load_optimum(path: str | Path, *, offset: float = 0.3) -> Problem:
@@ -72,7 +70,7 @@ def load_optimum(path: str | Path, *, offset: float = 0.3) -> Problem:
         raise InputError(path, "objective", f'must be a table such as minimize = "squirt_slope"; got {got}')
     ((aim, asked),) = objective.items()
     limits = _list(found, "limit", path) if "limit" in found else []
-    try:
+    with faults_of(path, ""):
         return Problem(
             base,
             tuple(_vary(table, base, path, i, sample=True) for i, table in enumerate(_list(found, "vary", path))),
@@ -81,8 +79,6 @@ def load_optimum(path: str | Path, *, offset: float = 0.3) -> Problem:
             _resolution(found, path),
             largest=aim == "maximize",
         )
-    except ValueError as error:
-        raise error if isinstance(error, InputError) else InputError(path, "", str(error)) from None
 
 
 def _limit(table: Any, path: Path, key: str) -> Limit:
@@ -90,10 +86,8 @@ def _limit(table: Any, path: Path, key: str) -> Limit:
     response = _response(table.get("response"), path, joined(key, "response"))
     unit = Quantity(response.unit)
     sides = {side: _value(table[side], unit, path, joined(key, side)) for side in ("low", "high") if side in table}
-    try:
+    with faults_of(path, key):
         return Limit(response, **sides)  # type: ignore[arg-type]
-    except ValueError as error:
-        raise InputError(path, key, str(error)) from None
 
 
 def _correlations(given: Any, path: Path) -> dict[tuple[str, str], float]:
@@ -127,10 +121,8 @@ def _study(found: dict[str, Any], path: Path, offset: float, known: list[str]) -
     responses = tuple(_response(text, path, joined("responses", i)) for i, text in asked)
     vary = tuple(_vary(table, base, path, i, found.get("sample")) for i, table in enumerate(_list(found, "vary", path)))
     sample = _sample(found["sample"], path) if "sample" in found else None
-    try:
+    with faults_of(path, ""):
         return Study(base, vary, responses, sample, _resolution(found, path))
-    except ValueError as error:
-        raise error if isinstance(error, InputError) else InputError(path, "", str(error)) from None
 
 
 def _resolution(found: dict[str, Any], path: Path) -> Resolution | None:
@@ -170,10 +162,8 @@ def _base(found: dict[str, Any], path: Path, offset: float) -> Scene:
     if isinstance(base, Scene):
         problem = f"must be left out: {name} is a scene, which has its own ball, tip and stroke"
         raise InputError(path, "game", f"{problem}; got {shown(game)}")
-    try:
+    with faults_of(path, "game"):
         return usual_scene(base, game)
-    except ValueError as error:
-        raise InputError(path, "game", str(error)) from None
 
 
 def assumed_base(path: Path, base: Scene) -> list[str]:
@@ -191,10 +181,8 @@ def assumed_base(path: Path, base: Scene) -> list[str]:
 
 
 def _response(text: Any, path: Path, key: str) -> Response:
-    try:
+    with faults_of(path, key):
         return Response.of(text if isinstance(text, str) else repr(text))
-    except ValueError as error:
-        raise InputError(path, key, str(error)) from None
 
 
 def _vary(table: Any, base: Scene, path: Path, i: int, sample: Any) -> Vary:
@@ -215,24 +203,18 @@ def _vary(table: Any, base: Scene, path: Path, i: int, sample: Any) -> Vary:
     givers = [giver] if isinstance(giver, str) else giver
     if not isinstance(givers, list) or not all(isinstance(text, str) for text in givers):
         raise InputError(path, joined(key, "taken_from"), f"must be a field, or a list of them; got {shown(giver)}")
-    try:
+    with faults_of(path, key):
         made = Vary(tuple(texts), drawn, table.get("name", ""), taken_from=tuple(givers), **how)
-    except ValueError as error:
-        raise InputError(path, key, str(error)) from None
     for name, check in (("path", made.unit), ("taken_from", made.givers)):
-        try:
+        with faults_of(path, joined(key, name)):
             check(base)
-        except ValueError as error:
-            raise InputError(path, joined(key, name), str(error)) from None
     return made
 
 
 def _wanted(texts: list[str], base: Scene, how: dict[str, bool], path: Path, key: str) -> Quantity | None:
     """Unit and bounds of the values; None for names of materials."""
-    try:
+    with faults_of(path, key):
         field = next(one for text in texts for one in paths(base, text))
-    except ValueError as error:
-        raise InputError(path, key, str(error)) from None
     held = quantity_at(base, field)
     if not any(how.values()):
         return held
@@ -263,17 +245,13 @@ def _range(
 
 
 def _value(value: Any, wanted: Quantity | None, path: Path, key: str) -> float | str:
-    try:
+    with faults_of(path, key):
         if wanted is not None:
             return wanted.read(value)
         if not isinstance(value, str):
             raise ValueError(f"must be the name of a material (see `cuefem materials`); got {shown(value)}")
         named_material(value, path, key)
         return value
-    except InputError:
-        raise
-    except ValueError as error:
-        raise InputError(path, key, str(error)) from None
 
 
 def _span(table: dict[str, Any], wanted: Quantity | None, path: Path, key: str, sampled: bool) -> Span:
@@ -289,10 +267,8 @@ def _span(table: dict[str, Any], wanted: Quantity | None, path: Path, key: str, 
     if not low < high:
         got = f"low = {shown(table['low'])}, high = {shown(table['high'])}"
         raise InputError(path, key, f"low must be below high; got {got}, an empty range")
-    try:
+    with faults_of(path, key):
         return Span(low, high, table.get("count", 1), logarithmic)
-    except (ValueError, TypeError) as error:
-        raise InputError(path, key, str(error)) from None
 
 
 def _normal(table: dict[str, Any], wanted: Quantity | None, path: Path, key: str, sampled: bool) -> Normal:
@@ -307,10 +283,8 @@ def _normal(table: dict[str, Any], wanted: Quantity | None, path: Path, key: str
     middle, sd = (_value(table[name], unit, path, joined(key, name)) for name, unit in each.items())
     assert isinstance(middle, float)
     assert isinstance(sd, float)
-    try:
+    with faults_of(path, key):
         return Normal(middle, sd, logarithmic)
-    except ValueError as error:
-        raise InputError(path, key, str(error)) from None
 
 
 def _spacing(table: dict[str, Any], path: Path, key: str) -> bool:
@@ -327,7 +301,5 @@ def _sample(found: Any, path: Path) -> Sample:
         if name not in found:
             what = f"one of {', '.join(METHODS)}" if name == "method" else "a whole number"
             raise InputError(path, joined("sample", name), f"must be given, {what}; got nothing")
-    try:
+    with faults_of(path, "sample"):
         return Sample(found["method"], found["count"], found["seed"])
-    except (ValueError, TypeError) as error:
-        raise InputError(path, "sample", str(error)) from None

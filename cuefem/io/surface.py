@@ -11,7 +11,7 @@ import meshio
 import numpy as np
 
 from cuefem.cue import Array, Cue, Material, Segment
-from cuefem.io.errors import InputError, read_bytes, shown, state_of
+from cuefem.io.errors import InputError, faults_of, read_bytes, shown, state_of
 from cuefem.io.mesh import DAMAGED, quiet
 from cuefem.io.profile import DEFAULT_UNIT
 from cuefem.io.slices import Index, Sliced, sliced, surface
@@ -38,10 +38,8 @@ def load_surface(path: Path, material: Material, length_unit: str | None = None)
     except ValueError:
         raise InputError(path, "length unit", f"must be a unit of length, such as mm; got {shown(unit)}") from None
     rows = [(scale * length, *np.multiply(scale, [*outer, *bore])) for length, outer, bore in read_surface(path).pieces]
-    try:
+    with faults_of(path, ""):
         return Cue(tuple(Segment(row[0], row[1], row[2], material, row[3], row[4]) for row in rows))
-    except ValueError as error:
-        raise InputError(path, "", str(error)) from None
 
 
 def read_surface(path: Path) -> Sliced:
@@ -53,10 +51,8 @@ def read_surface(path: Path) -> Sliced:
 @functools.lru_cache(maxsize=4)
 def _read(path: Path, changed: int, size: int) -> Sliced:
     points, triangles = _faces(path)
-    try:
+    with faults_of(path, ""):
         return sliced(surface(points, triangles))
-    except ValueError as error:
-        raise InputError(path, "", str(error)) from None
 
 
 def _read_stl(content: bytes) -> meshio.Mesh:

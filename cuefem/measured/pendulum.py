@@ -19,14 +19,13 @@ from cuefem.endmass.lumped import impulse
 from cuefem.measured.documented import DocumentedCue
 from cuefem.measured.estimate import Estimate, estimate, squirt_of
 from cuefem.measured.kinds import EndMass
+from cuefem.measured.outliers import middle_of
 from cuefem.measured.unknowns import MODEL_OF_SQUIRT
 from cuefem.quantity import CONTACT_TIME, Quantity, check_fields, check_kind
 from cuefem.scene import Ball, Scene, Stroke, Tip
 from cuefem.side.scene import Striker
 
 GRAVITY = 9.81  # m/s2
-ODD = 2.0  # repeated bounces that scatter this much more than their readings have another error
-WIDE = 1.959964  # standard deviations either way that hold 95 %
 TIMES = (0.5e-3, 2e-3)  # contact times that say something of a stroke, s
 USUAL = 7e-3  # kg, an end mass to plan for
 
@@ -107,10 +106,10 @@ class Bounces:
 
     @property
     def ratio(self) -> tuple[float, float, float]:
-        """The mean of speed after over speed before; its error from readings before, and from those after.
+        """Speed after over speed before, of all bounces; its error from readings before, and from those after.
 
-        Where repeated bounces scatter more than `ODD` times what their readings make, the scatter counts as error of
-        the readings after.
+        A bounce that contradicts the others counts little (`middle_of`); what the error grows by where they disagree
+        counts as error of the readings after.
         """
         v0, d0 = self._speeds(self.before)
         v1, d1 = self._speeds(self.after)
@@ -118,14 +117,10 @@ class Bounces:
         n = len(ratios)
         each_before, each_after = np.abs(ratios) * d0 / v0, d1 / v0
         alone = len(v0) == 1  # one reading for all: its error does not average out
+        middle, error = middle_of(ratios, each_after if alone else np.hypot(each_before, each_after))
         by_before = float(np.mean(each_before) if alone else np.sqrt(np.sum(each_before**2)) / n)
         by_after = float(np.sqrt(np.sum(each_after**2))) / n
-        if n >= 3:
-            own = each_after if alone else np.hypot(each_before, each_after)
-            scatter = float(np.std(ratios, ddof=1))
-            if scatter > ODD * float(np.sqrt(np.mean(own**2))):
-                by_after = scatter / math.sqrt(n)
-        return float(np.mean(ratios)), by_before, by_after
+        return middle, by_before, error if alone else max(math.sqrt(max(error**2 - by_before**2, 0.0)), by_after)
 
     @property
     def impact_speed(self) -> float | None:
@@ -256,7 +251,7 @@ class Weighed:
         return math.sqrt(math.fsum(x**2 for x in self.budget.values()))
 
     def interval(self, wide: float = 1.0) -> tuple[float, float]:
-        """The end mass ``wide`` standard deviations of its logarithm either way, kg: 1 holds 68 %, `WIDE` 95 %."""
+        """The end mass ``wide`` standard deviations of its logarithm either way, kg: 1 holds 68 %, `HOLDS_95` 95 %."""
         f = math.exp(wide * self.relative_error)
         return self.end_mass / f, self.end_mass * f
 
@@ -295,7 +290,7 @@ def squirt_told(test: PendulumTest, weighed: Weighed, scene: Scene, position: fl
         one = EndMass(**{**_fields(one), "error": math.hypot(one.error, more)})
     cue = DocumentedCue("pendulum", scene, (one,))
     target = squirt_of(cue)
-    free = Estimate(cue, zero, np.eye(len(zero)), np.array([drawn]), np.zeros((1, len(zero))), 0.0, True)
+    free = Estimate(cue, zero, np.eye(len(zero)), np.array([drawn]), np.zeros((1, len(zero))), 0.0, True, np.zeros(1))
     found = estimate(cue)
     before, after = free.predicted(target), found.predicted(target)
     return Told(drawn, one.value, _with_model(before), _with_model(after), target.offset, found)

@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 
 from cuefem.cue import Array
-from cuefem.measured.documented import Track
+from cuefem.measured.documented import NEARER, Track
 from cuefem.measured.estimate import Estimate, Value
+from cuefem.measured.outliers import MISTAKEN, log_density
 from cuefem.quantity import check_count
 
 WALKERS, BURNED = 4, 0.3  # walkers for each unknown; part of the steps that is thrown away
@@ -77,8 +78,8 @@ def sampled(found: Estimate, count: int = 20_000, *, seed: int = 1, track: Track
     measured, sd = np.array([[one.measured, one.sd] for one in found.cue.found]).T
 
     def log_posterior(z: Array) -> Array:
-        r = (measured - expansion.values(z)) / sd
-        return np.asarray(-0.5 * (np.sum(r**2, axis=-1) + np.sum(z**2, axis=-1)))
+        fit = log_density((measured - expansion.values(z)) / sd, MISTAKEN)
+        return np.asarray(np.sum(fit, axis=-1) - 0.5 * np.sum(z**2, axis=-1))
 
     n = len(found.z)
     walkers = max(WALKERS * n, 8) // 2 * 2
@@ -115,10 +116,22 @@ class Expansion:
 
     @classmethod
     def about(cls, found: Estimate, *, track: Track = iter) -> Expansion:
-        """By differences of one standard deviation along each axis, and along the sum of each pair."""
+        """By differences of one standard deviation along each axis, and along the sum of each pair.
+
+        The differences are halved while they lead to a cue that cannot be.
+        """
+        for step in STEP * 0.5 ** np.arange(NEARER):
+            try:
+                return cls._over(found, float(step), track)
+            except ValueError:  # what is possible ends there
+                continue
+        return cls._over(found, float(STEP * 0.5**NEARER), track)
+
+    @classmethod
+    def _over(cls, found: Estimate, step: float, track: Track) -> Expansion:
         axes = np.asarray(np.linalg.cholesky(found.covariance), float)
         n, at = len(found.z), found.computed
-        unit = STEP * np.eye(n)
+        unit = step * np.eye(n)
 
         def value(u: Array) -> Array:
             return found.cue.computed(found.z + axes @ u)
@@ -129,12 +142,12 @@ class Expansion:
         for i, j in track(moves):
             if i == j:
                 above[i], below = value(unit[i]), value(-unit[i])
-                J[:, i] = (above[i] - below) / (2 * STEP)
-                H[:, i, i] = (above[i] - 2 * at + below) / STEP**2
+                J[:, i] = (above[i] - below) / (2 * step)
+                H[:, i, i] = (above[i] - 2 * at + below) / step**2
         for i, j in track(moves):
             if i != j:
                 mixed = value(unit[i] + unit[j]) - above[i] - above[j] + at
-                H[:, i, j] = H[:, j, i] = mixed / STEP**2
+                H[:, i, j] = H[:, j, i] = mixed / step**2
         return cls(found.z, axes, at, J, H)
 
     def values(self, z: Array) -> Array:

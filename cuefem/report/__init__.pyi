@@ -3,7 +3,7 @@
 from .claims import claims_record, claims_table
 from .effects import DEFAULT_RTOL, effects_record, effects_table
 from .end_mass import end_mass_record, end_mass_table
-from .everything import report_record
+from .everything import numbers_table, report_record
 from .materials import materials_record, materials_table
 from .modes import modes_record, modes_table
 from .record import cue_record
@@ -23,6 +23,7 @@ __all__ = [
     "materials_table",
     "modes_record",
     "modes_table",
+    "numbers_table",
     "pivot_table",
     "report_record",
     "squirt_record",

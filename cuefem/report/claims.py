@@ -7,9 +7,9 @@ from dataclasses import asdict
 
 from rich.table import Table
 
-from cuefem.report.quantities import NONE
 from cuefem.report.record import Record
 from cuefem.report.table import table_of
+from cuefem.results.quantities import NONE
 from cuefem.validation import NOISE, Claim, number
 
 

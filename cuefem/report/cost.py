@@ -12,9 +12,9 @@ from rich.table import Table
 
 from cuefem.accuracy import FIRST, JUDGED, MOST, RATIO, Rung, ladder, relative_error
 from cuefem.contact.strike import strike
-from cuefem.report.quantities import NONE, significant, written
 from cuefem.report.record import Record
 from cuefem.report.table import table_of, with_caption
+from cuefem.results.quantities import NONE, significant, written
 from cuefem.scene import Scene
 
 WANTED = (1e-2, 1e-3, 1e-4, 1e-6)

@@ -15,15 +15,16 @@ from cuefem.measured.sampler import Sample
 from cuefem.report.charts import WIDE, Axis, Chart, Curve, Tick, chart
 from cuefem.report.drawings import cue_drawing, front_drawing
 from cuefem.report.glossary import with_words
-from cuefem.report.quantities import NONE, TRADE
 from cuefem.report.record import Record
 from cuefem.report.table import table_of, with_caption
 from cuefem.report.templates import environment
 from cuefem.report.words import effect_words, plain_cue_line
+from cuefem.results.quantities import NONE, TRADE
 
 OFFSETS = tuple(round(0.05 * i, 2) for i in range(1, 11))  # b/R of the computed curve
 EDGE = 5.0  # residuals beyond this are drawn at the edge
 FAR = 3.0  # residuals that deserve a word
+DOUBTED = 0.2  # chance of a measurement to be wrong that deserves one
 
 
 def text_of(value: float, error: float | None, unit: str) -> str:
@@ -247,6 +248,7 @@ def estimate_record(found: Estimate, worths: Sequence[Worth], squirt: tuple[floa
         "rows": [row_record(row) for row in found.rows],
         "misfit": found.misfit,
         "measurements": len(found.cue.found),
+        "wrong": found.wrong.tolist(),
         "converged": found.converged,
         "squirt": squirt[0],
         "squirt_error": squirt[1],
@@ -271,11 +273,16 @@ def estimate_tables(record: Record) -> list[Any]:
     misfit, count = record["misfit"], record["measurements"]
     notes = [f"Misfit {misfit:.1f} of {count} measurements and the priors: about {count} is what errors alone make."]
     if misfit > count + 3 * math.sqrt(2 * count):
-        notes.append(
-            "It is too large: a measurement, an error or the model is wrong, and the intervals are too narrow."
-        )
+        notes.append("It is too large: a measurement, an error or the model is wrong.")
+    for row, chance in zip(record["rows"], record["wrong"], strict=True):
+        if chance > DOUBTED:
+            notes.append(
+                f"{row['what']} contradicts the others and hardly counts (chance of being wrong {100 * chance:.0f} %)."
+            )
     if not record["converged"]:
-        notes.append("The search did not settle: the measurements contradict each other.")
+        notes.append(
+            "The search did not settle: the measurements contradict each other, and the intervals are too narrow."
+        )
     notes.append("Error left: the width of the interval over that before any measurement.")
     fit = table_of("Measured and computed with the estimate", ["what", "measured", "computed", "residual"])
     for row in record["rows"]:

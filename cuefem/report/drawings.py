@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import accumulate
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from cuefem.beam.modes import Modes
-from cuefem.cue import Cue, Material, Segment
+from cuefem.cue import Material, Segment
 from cuefem.materials import MATERIALS
 from cuefem.quantity import scalar
 from cuefem.report.charts import WIDE, Axis, Tick, path
-from cuefem.report.quantities import TRADE, Units
+from cuefem.results.quantities import TRADE, Units
 from cuefem.scene import Scene
 
 FRONT = 0.09  # m of the tip end that is drawn enlarged
@@ -57,20 +57,36 @@ def material_name(material: Material) -> str:
     return next(known, f"E {material.E / 1e9:.4g} GPa")
 
 
-def materials_of(cue: Cue) -> tuple[str, ...]:
+@dataclass(frozen=True)
+class SeenCue:
+    """The segments of a cue as one sees it, which may be one more than a cue itself may have."""
+
+    segments: tuple[Segment, ...]
+
+    @property
+    def nodes(self) -> tuple[float, ...]:
+        """Positions of the ends of the segments, m from the tip."""
+        return tuple(accumulate((segment.length for segment in self.segments), initial=0.0))
+
+    @property
+    def length(self) -> float:
+        """Its length, m."""
+        return self.nodes[-1]
+
+
+def materials_of(cue: SeenCue) -> tuple[str, ...]:
     """Names of a cue's materials, from tip to butt, each once."""
     found = [m for segment in cue.segments for m in (segment.material, segment.core) if m is not None]
     return tuple(dict.fromkeys(map(material_name, found)))
 
 
-def seen(scene: Scene) -> Cue:
+def seen(scene: Scene) -> SeenCue:
     """The cue as one sees it: with the leather of a tip that is given as a whole, in front of its segments."""
-    cue = scene.shaft
+    segments = scene.shaft.segments
     if scene.contact_terms.tip is None:
-        return cue
-    across = cue.segments[0].tip_diameter
-    tip = Segment(scene.leather.height, across, across, MATERIALS["leather"].material)
-    return replace(cue, segments=(tip, *cue.segments))
+        return SeenCue(segments)
+    across = segments[0].tip_diameter
+    return SeenCue((Segment(scene.leather.height, across, across, MATERIALS["leather"].material), *segments))
 
 
 def style_of(name: str) -> str:

@@ -15,10 +15,10 @@ from cuefem.contact.strike import strike, strike_modes
 from cuefem.design.worth import Change, Variant, change, variants
 from cuefem.effects import effect_kinds
 from cuefem.endmass.drives import equivalent_end_mass
-from cuefem.report.quantities import NONE, degrees, grams
 from cuefem.report.record import Record
 from cuefem.report.table import table_of, with_caption
 from cuefem.report.words import assumptions, effect_words
+from cuefem.results.quantities import NONE, degrees, grams
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import tip_modes_from, turning
 

@@ -7,10 +7,10 @@ from collections.abc import Callable
 from rich.console import Group
 
 from cuefem.endmass.drives import DEFINITIONS, Spread, spreads_of
-from cuefem.report.quantities import NONE, grams, significant
 from cuefem.report.record import Record
 from cuefem.report.table import table_of, with_caption
 from cuefem.report.words import assumptions, listed, tip_effect_notes
+from cuefem.results.quantities import NONE, grams, significant
 from cuefem.scene import Scene
 from cuefem.squirt import cue_end_mass
 from cuefem.tip_modes import Solved

@@ -18,9 +18,10 @@ from cuefem.beam.tip import TipModes
 from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.endmass.drives import DEFINITIONS
-from cuefem.report.quantities import NONE, grams, units_of, written
 from cuefem.report.record import Record
 from cuefem.report.table import table_of, with_caption
+from cuefem.results.designs import strikes_at
+from cuefem.results.quantities import NONE, grams, units_of, written
 from cuefem.scene import Scene
 from cuefem.squirt import alciatore_a31, alciatore_a31_mass_ratio
 from cuefem.tip_modes import Solved
@@ -142,7 +143,7 @@ def _a31_end_mass(scene: Scene, tip: TipModes) -> float:
 def _worth(scene: Scene, tip: TipModes, end_mass: float | None) -> Record:
     """Squirt against the offset, rad: of the coupled strike, and of pooltool with the number handed over."""
     assert end_mass is not None
-    struck = [strike_modes(replace(scene, stroke=replace(scene.stroke, offset=b)), tip) for b in OFFSETS]
+    struck = list(strikes_at(scene, OFFSETS, tip))
     theirs = alciatore_a31(np.array(OFFSETS), mass_ratio=scene.ball.mass / end_mass, inertia=POOLTOOL_INERTIA)
     return {
         "offsets": list(OFFSETS),
@@ -191,7 +192,7 @@ def _masses_at(scene: Scene, tip: TipModes, factor: float) -> list[float | None]
 def _masses(scene: Scene, tip: TipModes, worth: Record | None = None) -> list[float | None]:
     """The end masses of [A.31] for the squirt of the coupled strike at each of `OFFSETS`."""
     if worth is None:
-        struck = [strike_modes(replace(scene, stroke=replace(scene.stroke, offset=b)), tip) for b in OFFSETS]
+        struck = list(strikes_at(scene, OFFSETS, tip))
         worth = {"coupled": [one.squirt for one in struck], "grips": [grip_of(one) for one in struck]}
     return [
         None if grip in MISSED or squirt <= 0 else _mass_of(scene, offset, squirt)

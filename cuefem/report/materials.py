@@ -7,9 +7,9 @@ from dataclasses import asdict
 from rich.console import Group
 
 from cuefem.materials import LEATHERS, MATERIALS
-from cuefem.report.quantities import QUANTITIES, units_of
 from cuefem.report.record import Record
 from cuefem.report.table import table_of, with_caption
+from cuefem.results.quantities import RESULTS, units_of
 
 
 def materials_record() -> Record:
@@ -31,7 +31,7 @@ def materials_record() -> Record:
 
 def materials_table(record: Record) -> Group:
     """Materials: modulus, shear modulus and density with their ranges, loss factor; sources."""
-    columns = [f"{name}, {QUANTITIES[name].shown_unit}" for name in ("E", "G", "rho")]
+    columns = [f"{name}, {RESULTS[name].shown_unit}" for name in ("E", "G", "rho")]
     table = table_of("Materials", ["name", *columns, "loss"])
     for name, values in record["materials"].items():
         cells = (_with_range(values, name) for name in ("E", "G", "rho"))
@@ -46,5 +46,5 @@ def materials_table(record: Record) -> Group:
 
 
 def _with_range(values: Record, name: str) -> str:
-    middle, low, high = (QUANTITIES[name].scale * value for value in (values[name], *values["ranges"][name]))
+    middle, low, high = (RESULTS[name].scale * value for value in (values[name], *values["ranges"][name]))
     return f"{middle:.4g} ({low:.4g}–{high:.4g})"

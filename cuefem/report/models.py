@@ -15,8 +15,9 @@ from cuefem.endmass.lumped import lump_modes
 from cuefem.quantity import scalar
 from cuefem.report.record import Record
 from cuefem.report.words import tip_effect_notes
+from cuefem.results.designs import at_offset
 from cuefem.scene import Scene
-from cuefem.squirt import alciatore_a31, natural_pivot_length
+from cuefem.squirt import alciatore_a31
 
 # What the numbers beside the coupled strike's rest on, in words that stand without the handbook.
 PAPER = "H.-C. Kim's paper (arXiv:2104.11232)"
@@ -66,22 +67,9 @@ def with_coupling(cue: LumpedCue | None, coupling: float) -> LumpedCue | None:
         return None
 
 
-def at_offset(scene: Scene, offset: Any) -> Scene:
-    """The same stroke at another offset, or at an array of them."""
-    return replace(scene, stroke=replace(scene.stroke, offset=offset))
-
-
 def bare_scene(scene: Scene, cue: LumpedCue) -> Scene:
     """The scene with a lumped cue in its cue's place, and without effects."""
     return replace(scene, cue=cue, effects=())
-
-
-def pivot_length(scene: Scene, squirt: Any) -> Any:
-    """The natural pivot length of a squirt, m; None for a head-on stroke, which has none."""
-    if not np.all(scene.stroke.offset):
-        return None
-    radii = {"radius": scene.ball.radius, "dome_radius": scene.dome_radius}
-    return natural_pivot_length(scene.stroke.offset, squirt, **radii)
 
 
 def a31_squirt(scene: Scene, cue: LumpedCue) -> Any:

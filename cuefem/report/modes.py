@@ -5,9 +5,9 @@ from __future__ import annotations
 from rich.console import Group
 
 from cuefem.beam.modes import modes
-from cuefem.report.quantities import written
 from cuefem.report.record import Record
 from cuefem.report.table import table_of, with_caption
+from cuefem.results.quantities import written
 from cuefem.scene import Scene
 
 

@@ -32,15 +32,18 @@ from cuefem.report.drawings import (
 )
 from cuefem.report.effects import seconds_words
 from cuefem.report.end_mass import end_mass_record
+from cuefem.report.everything import number_rows
 from cuefem.report.glossary import with_words
 from cuefem.report.models import ALCIATORE, PAPER
-from cuefem.report.quantities import GRIPS, QUANTITIES, degrees, grams, written
 from cuefem.report.record import Record
 from cuefem.report.squirt import PAPER_CUE_END_MASS, offset_charts, squirt_record
 from cuefem.report.strike import BRIEF, MISCUE, model_rows, strike_record
 from cuefem.report.templates import environment
 from cuefem.report.trust import off, trust_lines
 from cuefem.report.words import assumptions, effect_words, plain_cue_line
+from cuefem.results.asking import listed
+from cuefem.results.designs import OneDesign
+from cuefem.results.quantities import GRIPS, RESULTS, degrees, grams, written
 from cuefem.scene import Outcome, Scene
 from cuefem.tip_modes import LEAST_STUCK, Solved
 
@@ -138,6 +141,7 @@ def _stages(scene: Scene, rtol: float) -> list[Stage]:
         Stage("end_masses", lambda: end_mass_record(scene, solved=solved())),
         Stage("squirt", lambda: squirt_record(scene, OFFSETS, solved=solved())),
         Stage("strike", lambda: strike_record(scene, outcome(), solved=solved())),
+        Stage("numbers", lambda: listed(OneDesign(solved(), outcome()))),
     ]
 
 
@@ -181,6 +185,7 @@ def _context(scene: Scene, found: Record) -> Record:
         "energy": _energy(outcome),
         "models": {"names": list(record["models"]), "rows": model_rows(record, BRIEF)},
         "coupling": record["coupling"],
+        "numbers": number_rows(found["numbers"]),
         "steps": found.get("steps"),
     }
 
@@ -207,7 +212,7 @@ def _key_figures(record: Record, end_masses: Record, outcome: Outcome) -> list[t
     }
     values = coupled | {"end_mass": felt}
     return [
-        (QUANTITIES[name].label, written(name, values[name], brief=True), remark)
+        (RESULTS[name].words, written(name, values[name], brief=True), remark)
         for name, remark in remarks.items()
         if name != "duration" or outcome.duration is not None
     ]

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
+from cuefem.measured.outliers import HOLDS_95
 from cuefem.measured.pendulum import (
     GRAVITY,
     PRESSED,
     TIMES,
     USUAL,
-    WIDE,
     Told,
     Weighed,
     choices,
@@ -30,7 +30,7 @@ def weigh_record(weighed: Weighed, told: Told | None, lumped: float | None) -> R
         "end_mass": weighed.end_mass,
         "error": weighed.relative_error * weighed.end_mass,
         "interval_68": list(weighed.interval()),
-        "interval_95": list(weighed.interval(WIDE)),
+        "interval_95": list(weighed.interval(HOLDS_95)),
         "contact_time": test.contact_time,
         "ball_mass": test.ball_mass,
         "bounce": weighed.bounce,

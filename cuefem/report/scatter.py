@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from cuefem.design.scatter import Drivers, Scatter
-from cuefem.report.quantities import TRADE, significant
 from cuefem.report.study import heading
 from cuefem.report.table import table_of, with_caption
+from cuefem.results.quantities import TRADE, significant
 
 SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)
 LEAST_NAMED = 0.01  # share of a cause that is named among the strongest

@@ -8,9 +8,9 @@ from dataclasses import asdict, replace
 import numpy as np
 from rich.console import Group
 
-from cuefem.report.quantities import NONE, QUANTITIES, written
 from cuefem.report.record import Record, cue_record
 from cuefem.report.table import table_of, with_caption
+from cuefem.results.quantities import NONE, RESULTS, written
 from cuefem.side.scene import SideStrike
 from cuefem.side.strike import SideOutcome, side_strike
 
@@ -55,12 +55,12 @@ def side_tables(record: Record, scene: Record) -> list[Group]:
     one = table_of(f"Strike from the side, {written('position', scene['position'])} from the tip", ["", "value"])
     for name in (*NAMES, "rigid_mass", "error"):
         if record[name] is not None:
-            one.add_row(QUANTITIES[name].label, written(name, record[name]))
+            one.add_row(RESULTS[name].words, written(name, record[name]))
     columns = ("position", "apparent_restitution", "effective_mass", "rigid_mass", "duration")
-    headings = [f"{QUANTITIES[name].label}, {QUANTITIES[name].shown_unit}".rstrip(", ") for name in columns]
+    headings = [f"{RESULTS[name].words}, {RESULTS[name].shown_unit}".rstrip(", ") for name in columns]
     along = table_of("The same strike along the beam", headings, text_columns=0)
     for row in record["along"]:
-        along.add_row(*(QUANTITIES[name].number(row[name]) if math.isfinite(row[name]) else NONE for name in columns))
+        along.add_row(*(RESULTS[name].number(row[name]) if math.isfinite(row[name]) else NONE for name in columns))
     striker = scene["striker"]
     return [
         with_caption(one, *_assumptions(scene)),
@@ -75,7 +75,7 @@ def side_tables(record: Record, scene: Record) -> list[Group]:
 
 def _assumptions(scene: Record) -> list[str]:
     striker = scene["striker"]
-    wall = QUANTITIES["contact_time"].written(striker["wall_time"])
+    wall = RESULTS["contact_time"].written(striker["wall_time"])
     law = "Hertz's law" if "modulus" in striker else "a spring"
     return [
         f"striker {written('mass', striker['mass'])} at {scene['speed']:g} m/s, {law}, e {striker['restitution']:g}, "

@@ -10,7 +10,6 @@ from rich.console import Group
 from rich.table import Table
 
 from cuefem.contact.outcome import MISSED, grip_of
-from cuefem.contact.strike import strike_modes
 from cuefem.cue import LumpedCue
 from cuefem.endmass.lumped import impulse
 from cuefem.report.charts import Axis, Chart, Curve, Mark, Span, chart
@@ -18,20 +17,19 @@ from cuefem.report.models import (
     ALCIATORE,
     PAPER,
     a31_squirt,
-    at_offset,
     bare_scene,
     coupling_slope,
     model_notes,
     offset_words,
-    pivot_length,
     two_part_cues,
     with_coupling,
 )
-from cuefem.report.quantities import NONE, TRADE, Units, grams, significant, written
 from cuefem.report.record import Record
 from cuefem.report.strike import PIVOT
 from cuefem.report.table import table_of, with_caption
 from cuefem.report.words import assumptions
+from cuefem.results.designs import at_offset, strikes_at
+from cuefem.results.quantities import NONE, TRADE, Units, grams, pivot_length, significant, written
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved
 
@@ -70,7 +68,7 @@ def squirt_record(scene: Scene, offsets: Sequence[float] = OFFSETS, *, solved: S
     """
     solved = solved or Solved(scene)
     cues, slope = two_part_cues(scene, offsets, solved.tip_stuck), coupling_slope(scene, solved.tip_stuck)
-    struck = [strike_modes(at_offset(scene, offset), solved.tip) for offset in offsets]
+    struck = list(strikes_at(scene, offsets, solved.tip))
     coupled = np.array([outcome.squirt for outcome in struck])
     pivots = pivot_length(at_offset(scene, np.array(offsets)), coupled)
     found: Record = {"coupled, this cue": {"squirt": coupled, "pivot_length": pivots}}

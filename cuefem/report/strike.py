@@ -14,14 +14,13 @@ from cuefem.report.models import (
     coupling_slope,
     model_notes,
     offset_words,
-    pivot_length,
     two_part_cues,
     with_coupling,
 )
-from cuefem.report.quantities import GRIPS, NONE, QUANTITIES, grams, written
 from cuefem.report.record import Record
 from cuefem.report.table import table_of, with_caption
 from cuefem.report.words import assumptions
+from cuefem.results.quantities import GRIPS, NONE, RESULTS, grams, pivot_length, written
 from cuefem.scene import Outcome, Scene
 from cuefem.tip_modes import Solved
 
@@ -75,7 +74,7 @@ def model_rows(record: Record, shown: tuple[str | tuple[str, int, str], ...] = W
         name, part, words = row if isinstance(row, tuple) else (row, None, "")
         values = [model.get(name) for model in record["models"].values()]
         if any(value is not None for value in values):
-            label = f"{QUANTITIES[name].label}, {words}" if words else QUANTITIES[name].label
+            label = f"{RESULTS[name].words}, {words}" if words else RESULTS[name].words
             parts = [value if value is None or part is None else value[part] for value in values]
             rows.append((label, [written(name, value, brief=shown is BRIEF) for value in parts]))
     return rows

@@ -12,8 +12,8 @@ import numpy as np
 
 from cuefem.cue import Array
 from cuefem.design import Response, Study
-from cuefem.report.quantities import TRADE, significant
 from cuefem.report.table import table_of, with_caption
+from cuefem.results.quantities import TRADE, significant
 from cuefem.scene import Scene
 
 MOST_LEVELS = 24  # values of a column that are groups of their own; of more, each group is a range

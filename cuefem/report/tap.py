@@ -11,10 +11,10 @@ import numpy as np
 from rich.table import Table
 
 from cuefem.contact.outcome import MISSED, grip_of
-from cuefem.report.quantities import NONE, grams, units_of, written
 from cuefem.report.record import Record
 from cuefem.report.strike import MISCUE
 from cuefem.report.table import table_of, with_caption
+from cuefem.results.quantities import NONE, grams, units_of, written
 from cuefem.scene import Outcome
 from cuefem.tap.chance import LEVEL
 from cuefem.tap.fit import TapFit

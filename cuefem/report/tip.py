@@ -7,9 +7,9 @@ from rich.console import Group
 
 from cuefem.effects import LeatherTip
 from cuefem.effects.leather_law import LeatherLaw
-from cuefem.report.quantities import NONE, QUANTITIES, grams, significant
 from cuefem.report.record import Record
 from cuefem.report.table import table_of, with_caption
+from cuefem.results.quantities import NONE, RESULTS, grams, significant
 from cuefem.scene import Scene
 
 SPEEDS = (0.5, 1.0, 2.0, 3.0, 5.0, 8.0)  # m/s
@@ -72,10 +72,10 @@ def _shear_ratio(leather: LeatherTip, diameter: float, patch: float, slope: floa
 def tip_tables(record: Record, scene: Record, wanted: float | None) -> list[Group | str]:
     """A tip's blows head on, its shear ratio, and the leather that has the contact time asked for."""
     kinds = ("contact_time", "force", "depth", "patch")
-    columns = ["ball or cue at", *(QUANTITIES[kind].label for kind in kinds)]
+    columns = ["ball or cue at", *(RESULTS[kind].words for kind in kinds)]
     blows = table_of("Head on", columns, text_columns=0)
     for blow in record["blows"]:
-        cells = (NONE if blow[kind] is None else QUANTITIES[kind].written(blow[kind]) for kind in kinds)
+        cells = (NONE if blow[kind] is None else RESULTS[kind].written(blow[kind]) for kind in kinds)
         blows.add_row(f"{blow['speed']:g} m/s", *cells)
     shear = table_of("Sideways", ["b/R", "shear ratio"], text_columns=0)
     for at in record["shear_ratios"]:

@@ -9,8 +9,8 @@ from typing import Any
 from cuefem.cue import Cue, LumpedCue
 from cuefem.effects import Effect
 from cuefem.io.schema import table as file_table
-from cuefem.report.quantities import grams
 from cuefem.report.record import Record, cue_record
+from cuefem.results.quantities import grams
 
 
 def assumptions(scene: Record) -> str:

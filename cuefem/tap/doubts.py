@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from cuefem.cue import Cue, Material, shear_coefficient
@@ -19,6 +21,12 @@ MOST, NEARLY_ALL = 0.5, 0.8
 POOR = 5e-3  # misfit that a good drawing of an even shaft does not have
 KEPT = 0.25  # error of the file's ln G/E, if the tones do not determine it
 DENSITY = 0.1  # relative error of the file's density, if the shaft was not weighed (Wood Handbook, spread of a wood)
+WRONG_RATES = {
+    44.1 / 48: "44.1 kHz for 48",
+    48 / 44.1: "48 kHz for 44.1",
+    0.5: "half of what it says",
+    2.0: "twice what it says",
+}
 UNITS = {"E": (1e9, "GPa"), "G": (1e9, "GPa"), "rho": (1.0, "kg/m³")}
 
 
@@ -60,7 +68,23 @@ def refusals(found: TapFit, *, edge: bool = False) -> list[str]:
         lines.append(f"E is at the end of the search, a factor {FACTOR:g} from the file's")
     if edge:
         lines.append(f"G/E is at the end of what shafts have, {RATIOS[0]:.3g} to {RATIOS[1]:.3g}")
-    return lines + unlike(found.wood, found.before)
+    return lines + unlike(found.wood, found.before) + wrong_rate(found)
+
+
+def wrong_rate(found: TapFit) -> list[str]:
+    """What the lowest tone and E would be at another sampling rate, if only that makes the wood one that exists.
+
+    All tones of a shaft rise with the root of E and G together, so a wrong rate is heard as other wood.
+    """
+    lowest = min(match.tone.frequency for match in found.matched if match.mode is not None)
+    for factor, words in WRONG_RATES.items():
+        wood = replace(found.wood, E=factor**2 * found.wood.E, G=factor**2 * found.wood.G)
+        if unlike(found.wood, found.before) and not unlike(wood, found.before):
+            return [
+                f"if the file's sampling rate is wrong, {words}, the lowest tone is {factor * lowest:.4g} Hz, not "
+                f"{lowest:.4g} Hz and E is {wood.E / 1e9:.3g} GPa"
+            ]
+    return []
 
 
 def remarks(found: TapFit) -> list[str]:
@@ -72,7 +96,7 @@ def remarks(found: TapFit) -> list[str]:
         lines.append(f"{why} G from E: the file's G/E is kept, and assumed known to {100 * KEPT:.0f} %")
     if not found.weighed:
         lines.append(
-            f"not weighed (--mass): the file's density is kept as it is, and assumed known to {100 * DENSITY:.0f} %"
+            f"the shaft was not weighed: its density is kept as it is, and assumed known to {100 * DENSITY:.0f} %"
         )
     if MOST <= explained(found) < NEARLY_ALL:
         lines.append("some loud tones are not this shaft's: check that it is the one drawn, and that it hung free")

@@ -33,8 +33,10 @@ from cuefem.beam.system import assemble
 from cuefem.beam.tail import flexibility, tail
 from cuefem.beam.waves import mesh_for
 from cuefem.cue import SegmentRows
-from cuefem.design import Levels, Pool, Response, Row, Sample, Span, Study, Vary, processes, sweep
+from cuefem.design import Levels, Pool, Response, Row, Sample, Span, Study, Task, Vary, processes, sweep
 from cuefem.design.batch import batch_frequencies
+from cuefem.design.ranges import Value
+from cuefem.design.sweep import scenes_of, tasks_of
 from cuefem.endmass.drives import flexible, stick
 from cuefem.tip_modes import tip_modes_from
 from studies import pages
@@ -294,20 +296,20 @@ def study(count: int, responses: tuple[str, ...], at: Resolution) -> Study:
 class Counted:
     """A store that keeps nothing but sums: the designs there were, and the memory at each tenth, MiB."""
 
-    size: int
+    study: Study
     designs: int = 0
     memory: list[float] = field(default_factory=list)
 
-    def holds(self, first: int) -> bool:
-        """Nothing."""
-        return False
+    def take(self, designs: dict[int, tuple[Value, ...]], *, from_others: bool) -> list[Task] | None:
+        """Everything."""
+        return tasks_of(self.study, designs, *scenes_of(self.study, designs))
 
     def write(self, rows: list[Row]) -> None:
         """Count them; ValueError where one failed."""
         if any(row.failure for row in rows):
             raise ValueError(f"a design failed: {next(row.failure for row in rows if row.failure)}")
         before, self.designs = self.designs, self.designs + len(rows)
-        if before * 10 // self.size != self.designs * 10 // self.size:
+        if before * 10 // self.study.size != self.designs * 10 // self.study.size:
             self.memory.append(psutil.Process(os.getpid()).memory_info().rss / 2**20)
 
 
@@ -332,8 +334,9 @@ def shared(count: int, rounds: int) -> tuple[list[Shared], list[Shared]]:
 
 
 def _timed(count: int, pool: Pool) -> Shared:
-    store, began, own, theirs = Counted(count), time.perf_counter(), time.process_time(), _children()
-    sweep(study(count, ("end_mass",), SWEPT_AT), store, pool=pool)
+    store = Counted(study(count, ("end_mass",), SWEPT_AT))
+    began, own, theirs = time.perf_counter(), time.process_time(), _children()
+    sweep(store.study, store, pool=pool)
     seconds = time.perf_counter() - began
     if store.designs != count:
         raise RuntimeError(f"{store.designs} designs of {count}")
@@ -356,14 +359,15 @@ def _warm(workers: int) -> Iterator[Pool]:
             yield executor
 
         pool = Pool(opened, 2 * workers + 1)
-        sweep(study(512 * workers, ("end_mass",), SWEPT_AT), Counted(512 * workers), pool=pool)
+        warm = study(512 * workers, ("end_mass",), SWEPT_AT)
+        sweep(warm, Counted(warm), pool=pool)
         yield pool
 
 
 def streamed(count: int) -> tuple[float, list[float]]:
     """Designs a second of this process's own time in a long sweep of light ones, and the memory at each tenth, MiB."""
-    store, began = Counted(count), time.process_time()
-    sweep(study(count, ("frequency(1)", "mass"), Resolution(1, 5, 1)), store)
+    store, began = Counted(study(count, ("frequency(1)", "mass"), Resolution(1, 5, 1))), time.process_time()
+    sweep(store.study, store)
     return store.designs / (time.process_time() - began), store.memory
 
 

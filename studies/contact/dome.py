@@ -322,8 +322,8 @@ def hardness_table() -> str:
 
 
 def _by_hardness(name: str, radius: float) -> list[str]:
-    leather_found = [f"{leather(name, radius, E):.2f}" for E in _hardnesses(radius)]
-    return ["too soft"] * (len(HARDNESSES) - len(leather_found)) + leather_found
+    squirts = [f"{leather(name, radius, E):.2f}" for E in _hardnesses(radius)]
+    return ["too soft"] * (len(HARDNESSES) - len(squirts)) + squirts
 
 
 def _hardnesses(radius: float) -> tuple[float, ...]:
@@ -369,8 +369,7 @@ def leather_report() -> str:
         leather_conclusions(),
     ]
     parts += [leather_radius_table(), "## LeatherTip: squirt against the leather's modulus, degrees", hardness_table()]
-    parts += ["## LeatherTip: what was predicted and found", "Predicted before it was run here."]
-    parts += [pages.predictions(PREDICTED, ("found", leather_found()))]
+    parts += [pages.predictions(PREDICTED, leather_found())]
     return pages.paragraphs(*parts)
 
 
@@ -378,9 +377,9 @@ def leather_draw(axes: Any) -> None:
     """Squirt against the dome."""
     for i, name in enumerate(LEATHERED):
         for model, style in ((leather, "o-"), (patchwork, "s:")):
-            leather_found = [model(name, r) for r in DOMES]
+            squirts = [model(name, r) for r in DOMES]
             label = f"{name}, {pool.MODERN if model is leather else 'patchwork'}"
-            axes.plot(range(len(leather_found)), leather_found, style, color=f"C{i}", label=label)
+            axes.plot(range(len(squirts)), squirts, style, color=f"C{i}", label=label)
     axes.set_xticks(range(len(DOMES)), [_radius(r) for r in DOMES])
     axes.set(xlabel="dome", ylabel="squirt at b/R 0.3, degrees", ylim=(0, None))
     axes.set(title=f"{pool.MODERN} beside the patchwork")

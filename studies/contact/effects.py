@@ -201,8 +201,7 @@ def leather_report() -> str:
         "tip is phenolic."
     )
     parts = ["## LeatherTip in the scenes: squirt, and what the other effects change of it, per cent", told]
-    parts += [leather_table(), "## LeatherTip: what was predicted and found", "Predicted before it was run here."]
-    parts += [pages.predictions(PREDICTED, ("found", leather_found()))]
+    parts += [leather_table(), pages.predictions(PREDICTED, leather_found())]
     return pages.paragraphs(*parts)
 
 

@@ -15,6 +15,8 @@ does (a symmetric splitting of second order: half a kick by the forces, the exac
   the partial slip of Cattaneo, Mindlin and Deresiewicz wherever k is in proportion to S, as it is in half-spaces
   (Jaeger's superposition).
 
+The ball rolls over the dome, and from there on over the rim, an edge, wherever the contact has come to.
+
 x stands for a patch by the compression (unloading: the virtual one) that it belongs to. In every rule |F_t| stays
 within mu F_n. Not known for leather: how the part that loses energy along the normal behaves along the surface.
 Takes about half a minute.
@@ -146,14 +148,20 @@ def stepped(scene: Scene, rule: str, step: float = STEP, rings: int = RINGS) -> 
     velocity, spin, inertia = np.zeros(2), 0.0, ball.inertia * ball.mass
     start = float(z[2 * n :] @ z[2 * n :]) / 2
     diameter = scene.shaft.segments[0].tip_diameter
-    rolling = ball.radius + leather.dome_radius
-    centre = modes.amplitude + np.outer(modes.rotation, [0.0, leather.dome_radius - leather.height])
+    dome_centre = modes.amplitude + np.outer(modes.rotation, [0.0, leather.dome_radius - leather.height])
     phi, depth, peak, loading, F_t, F_n, time, radiated = math.asin(at.offset), 0.0, 0.0, True, 0.0, 0.0, 0.0, 0.0
 
     def directions() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         t, normal = np.array([math.sin(phi), math.cos(phi)]), np.array([math.cos(phi), -math.sin(phi)])
         reach = modes.amplitude + np.outer(modes.rotation, leather.lever(phi, diameter))
         return t, normal, reach
+
+    def turned(moved: np.ndarray, by_ball: np.ndarray) -> float:
+        """Angle that the contact turns by: the ball rolls over the dome or, from there on, over its rim, an edge."""
+        t, _, reach = directions()
+        on_rim = leather.dome_radius * abs(math.sin(phi)) >= diameter / 2
+        centre, rolling = (reach, ball.radius) if on_rim else (dome_centre, ball.radius + leather.dome_radius)
+        return float(moved @ centre @ t - by_ball @ t) / rolling
 
     while True:
         t, normal, reach = directions()
@@ -164,11 +172,11 @@ def stepped(scene: Scene, rule: str, step: float = STEP, rings: int = RINGS) -> 
         z = turn @ z
         radiated += float(old[n:] @ old[n:] - z[n:] @ z[n:]) / 2
         moved = z[:n] - old[:n]
-        phi += float(moved @ centre @ t - velocity @ t * step) / rolling / 2
+        phi += turned(moved, velocity * step) / 2
         t, normal, reach = directions()  # about the middle of the step
         near = velocity * step - moved @ reach
         depth -= float(near @ normal)
-        phi += float(moved @ centre @ t - velocity @ t * step) / rolling / 2
+        phi += turned(moved, velocity * step) / 2
         time += step
         loading, peak = loading and depth >= peak, max(peak, depth)
         eta = float(law.virtual(depth, None if loading else peak))

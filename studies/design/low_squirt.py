@@ -185,9 +185,7 @@ def leather_text() -> str:
     return (
         "## LeatherTip beside the patchwork\n\nSquirt at b/R 0.3. What a hollow or light end gains is smaller with any "
         "real tip than bare: the couple of the dome is the same on every shaft, and it is a larger part of a small "
-        f"squirt.\n\n{table(columns, leather_rows())}\n"
-        "## LeatherTip: what was predicted and found\n\nPredicted before it was run here.\n\n"
-        + predictions(PREDICTED, ("found", leather_found()))
+        f"squirt.\n\n{table(columns, leather_rows())}\n" + predictions(PREDICTED, leather_found())
     )
 
 

@@ -161,8 +161,7 @@ def leather_text() -> str:
         "fewer than above, so the intervals are wider.\n\n"
         f"{table(columns, [['squirt, °, LeatherTip', *leather_spread()]])}\n"
         f"{table(['cause', 'squirt: alone', 'squirt: in all'], leather_shares())}\n"
-        "## LeatherTip: what was predicted and found\n\nPredicted before it was run here.\n\n"
-        + predictions(PREDICTED, ("found", leather_found()))
+        + predictions(PREDICTED, leather_found())
     )
 
 

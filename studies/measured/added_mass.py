@@ -15,7 +15,7 @@ to 2 ms, beside the patchwork of dome and shear that is told the same contact ti
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache
 from typing import Any, NamedTuple
@@ -83,12 +83,16 @@ def miss(model: str, time: float) -> float:
     return float(np.sqrt(np.mean([(ratio(setup, 11e-3, x) - r) ** 2 for x, r in measured(11e-3).items()])))
 
 
-def dip(setup: Setup) -> tuple[float, float]:
-    """Inches and ratio of the lowest ratio of 11 g from 5 in on, a parabola through the three lowest points of FINE."""
-    found = np.array([ratio(setup, 11e-3, x) for x in FINE])
-    i = int(np.clip(np.argmin(found), 1, len(FINE) - 2))
-    a, b, c = np.polyfit(FINE[i - 1 : i + 2], found[i - 1 : i + 2], 2)
+def lowest(places: Sequence[float], ratios: Sequence[float]) -> tuple[float, float]:
+    """Place and value of the lowest ratio, of a parabola through the three lowest points."""
+    i = int(np.clip(np.argmin(ratios), 1, len(places) - 2))
+    a, b, c = np.polyfit(places[i - 1 : i + 2], ratios[i - 1 : i + 2], 2)
     return float(-b / (2 * a)), float(c - b**2 / (4 * a))
+
+
+def dip(setup: Setup) -> tuple[float, float]:
+    """Inches and ratio of the lowest ratio of 11 g from 5 in on."""
+    return lowest(FINE, [ratio(setup, 11e-3, x) for x in FINE])
 
 
 def reach(setup: Setup) -> float:
@@ -325,22 +329,19 @@ def leather_miss(model: str, E: float) -> float:
 
 
 def leather_dip(model: str, E: float) -> tuple[float, float]:
-    """Inches and ratio of the lowest ratio, of a parabola through the three lowest points of AROUND."""
-    leather_found = np.array([leather_ratio(model, E, x) for x in AROUND])
-    i = int(np.clip(np.argmin(leather_found), 1, len(AROUND) - 2))
-    a, b, c = np.polyfit(AROUND[i - 1 : i + 2], leather_found[i - 1 : i + 2], 2)
-    return float(-b / (2 * a)), float(c - b**2 / (4 * a))
+    """Inches and ratio of the lowest ratio."""
+    return lowest(AROUND, [leather_ratio(model, E, x) for x in AROUND])
 
 
 @cache
 def leather_shares() -> dict[float, tuple[float, float]]:
     """By inches: what 3 g add over what 11 g add, measured and with LeatherTip."""
-    E, leather_found = pool.LEATHER.E, {}
+    E, shares_by_inches = pool.LEATHER.E, {}
     for x, r in pool.added_masses(3e-3).items():
         if 2 <= x <= 4.7:
             share = (leather_ratio(MODERN, E, x, 3e-3) - 1) / (leather_ratio(MODERN, E, x) - 1)
-            leather_found[x] = (r - 1) / (pool.added_mass(x) - 1), share
-    return leather_found
+            shares_by_inches[x] = (r - 1) / (pool.added_mass(x) - 1), share
+    return shares_by_inches
 
 
 @cache
@@ -426,8 +427,7 @@ def leather_report() -> str:
     """The end of the page."""
     parts = ["## LeatherTip beside the patchwork: 11 g", leather_conclusions(), leather_curve_table()]
     parts += ["## LeatherTip: squirt that 3 g add, over that added by 11 g", leather_share_table()]
-    parts += ["## LeatherTip: what was predicted, found and measured", "Predicted before it was run here."]
-    parts += [pages.predictions(PREDICTED, ("found", leather_found()), ("measured", leather_told()))]
+    parts += [pages.predictions(PREDICTED, leather_found(), leather_told())]
     return pages.paragraphs(*parts)
 
 

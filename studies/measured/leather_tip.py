@@ -21,8 +21,7 @@ from unittest.mock import patch
 import numpy as np
 
 from cuefem import AxialWaves, Cue, Effect, LeatherTip, PointMass, Resolution, Scene, Stroke, Tip, strike
-from cuefem.contact import leather as contact
-from cuefem.contact.tip_forces import TipForces
+from cuefem.contact import laws
 from studies import pages, strokes
 from studies.measured import measured_shafts as shafts
 from studies.measured import pool
@@ -181,8 +180,8 @@ def with_modes(modes: int) -> float:
 
 @cache
 def with_tolerance(tolerance: float) -> float:
-    """Squirt at b/R 0.375 with another tolerance of the steps, deg, and no longest one but that of the contact."""
-    with patch.object(TipForces, "tolerance", tolerance), patch.multiple(contact, LONGEST=0, FIRST=0):
+    """Squirt at b/R 0.375 with another tolerance of the steps, deg."""
+    with patch.object(laws, "LEATHER_TOLERANCE", tolerance):
         return math.degrees(strike(pool.leather_scene(maple())).squirt)
 
 

@@ -358,10 +358,8 @@ DEPTHS = (0.127, 8 * pool.INCH - 0.019)  # m: 5 in, and to the end of the 8 in b
 def curve(model: str) -> Callable[[float], float]:
     """Squirt of the maple shaft against offset, deg; odd, through OFFSETS."""
     first = shafts.series()[0]
-    leather_found = [usual(first._replace(offset=b), model) for b in OFFSETS]
-    return CubicSpline(
-        [-b for b in OFFSETS[::-1]] + [0.0, *OFFSETS], [-s for s in leather_found[::-1]] + [0.0, *leather_found]
-    )
+    squirts = [usual(first._replace(offset=b), model) for b in OFFSETS]
+    return CubicSpline([-b for b in OFFSETS[::-1]] + [0.0, *OFFSETS], [-s for s in squirts[::-1]] + [0.0, *squirts])
 
 
 def series_miss(model: str, zero: float) -> float:
@@ -545,8 +543,7 @@ def leather_report() -> str:
     parts += ["## The bore that 3480 N/m over the last 8 in ask for (388 N/m the whole)", bore_table()]
     parts += ["## Hollow over maple at b/R 0.453, measured 0.72", ratio_table()]
     parts += ["## LeatherTip: squirt, deg, by head-on contact time", leather_time_table()]
-    parts += ["## LeatherTip: what was predicted, found and measured", "Predicted before it was run here."]
-    parts += [pages.predictions(PREDICTED, ("found", leather_found()), ("measured", leather_told()))]
+    parts += [pages.predictions(PREDICTED, leather_found(), leather_told())]
     return pages.paragraphs(*parts)
 
 

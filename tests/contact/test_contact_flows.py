@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy.linalg as la
-
-from cuefem import AxialWaves, PointMass, StructuralDamping, Support, TipDome, TipShear
 from cuefem.contact.kinds import contact_of
 from cuefem.contact.linear import Exact
 from cuefem.contact.state import Laws
+
+from cuefem import AxialWaves, PointMass, StructuralDamping, Support, TipDome, TipShear
 from cuefem.tip_modes import tip_modes_of
 from tests.helpers.strike_scenes import kim_scene
 

@@ -2,12 +2,12 @@
 
 from dataclasses import replace
 
+import cuefem.contact.elevation
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import cuefem.contact.elevation
 from cuefem import (
     Elevation,
     LumpedCue,

@@ -9,9 +9,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from tests.helpers.kernels import BUILT
 
 from cuefem.contact.kernel import BINARY, VARIABLE
-from tests.helpers.kernels import BUILT
 
 ROOT = Path(__file__).parents[2]
 

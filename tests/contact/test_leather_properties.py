@@ -8,6 +8,7 @@ from math import inf
 
 import numpy as np
 import pytest
+from cuefem.contact.second_hit import hits
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -25,7 +26,6 @@ from cuefem import (
     motion,
     strike,
 )
-from cuefem.contact.second_hit import hits
 from cuefem.contact.strike import strike_modes
 from studies.strokes import cue
 from tests.helpers.leather_scenes import AT, LEATHER, leather_scene

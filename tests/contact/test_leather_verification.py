@@ -7,15 +7,15 @@ from math import asin, atan2, inf
 
 import numpy as np
 import pytest
+from cuefem.contact.response import EVEN
+from cuefem.contact.state import Grip, Press
+from cuefem.contact.tip_forces import Hold, TipForces
 from scipy.integrate import quad, solve_ivp
 
 from cuefem import PointMass, Resolution, Scene, Tip, TipDome, resolve, strike
 from cuefem.beam.tip import TipModes
 from cuefem.contact import leather
-from cuefem.contact.response import EVEN
-from cuefem.contact.state import Grip, Press
 from cuefem.contact.strike import strike_modes
-from cuefem.contact.tip_forces import Hold, TipForces
 from cuefem.effects.terms import ContactTerms
 from tests.helpers.leather_scenes import AT, LEATHER, POOL, SHAFT, leather_scene
 from tests.helpers.orders import assert_order

@@ -5,12 +5,13 @@ import sys
 from dataclasses import FrozenInstanceError, replace
 from pathlib import Path
 
+import cuefem.contact.second_hit
 import numpy as np
 import pytest
+from cuefem.contact.stepped import Stepped
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-import cuefem.contact.second_hit
 import cuefem.contact.strike
 from cuefem import (
     LumpedCue,
@@ -29,7 +30,6 @@ from cuefem import (
     strike,
 )
 from cuefem.beam.tip import TipModes
-from cuefem.contact.stepped import Stepped
 from cuefem.contact.strike import strike_modes
 from tests.helpers.strike_scenes import (
     FRICTION,

@@ -5,6 +5,9 @@ from math import asin, cos, inf, sin
 
 import numpy as np
 import pytest
+from cuefem.contact.kinds import contact_of
+from cuefem.contact.second_hit import hits
+from cuefem.contact.state import Laws
 from scipy.integrate import quad, solve_ivp
 
 from cuefem import (
@@ -22,9 +25,6 @@ from cuefem import (
     strike,
 )
 from cuefem.beam.tip import TipModes, lumped_tip_modes
-from cuefem.contact.kinds import contact_of
-from cuefem.contact.second_hit import hits
-from cuefem.contact.state import Laws
 from cuefem.contact.strike import strike_modes
 from cuefem.effects.law import TipLaw, loading_time
 from tests.helpers.orders import assert_order

@@ -12,6 +12,9 @@ from time import perf_counter
 
 import numpy as np
 import pytest
+from cuefem.contact.linear import Exact
+from cuefem.contact.phases import run
+from cuefem.contact.state import Laws
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -35,9 +38,6 @@ from cuefem import (
 )
 from cuefem.beam.tip import TipModes
 from cuefem.contact.impulse_space import inverse_mass
-from cuefem.contact.linear import Exact
-from cuefem.contact.phases import run
-from cuefem.contact.state import Laws
 from cuefem.contact.strike import strike_modes
 from tests.helpers.strike_scenes import (
     KIM,

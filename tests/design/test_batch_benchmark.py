@@ -44,8 +44,8 @@ def test_every_number_is_told() -> None:
 @pytest.mark.heavy
 def test_memory_stays_flat_over_forty_thousand_designs() -> None:
     """Over 100,000, by way of a database: tests/design/test_sweep_kill.py."""
-    store = Counted(40_000)
-    batch.sweep(batch.study(store.size, ("frequency(1)", "mass"), Resolution(1, 5, 1)), store)
-    assert store.designs == store.size
+    store = Counted(batch.study(40_000, ("frequency(1)", "mass"), Resolution(1, 5, 1)))
+    batch.sweep(store.study, store)
+    assert store.designs == 40_000
     assert len(store.memory) == 10
     assert max(store.memory) < min(store.memory) + 4  # MiB: 100 bytes a design

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from cuefem import Ball, Cue, Material, Resolution, Scene, Segment, StructuralDamping, Tip, end_mass
-from cuefem.design import Levels, Normal, Response, Sample, Study, Vary, evaluate
+from cuefem.design import Levels, Normal, Response, Sample, Study, Vary, evaluate, sweep
 from cuefem.design.batch import BLOCK, CueBatch, batch_stick
 from cuefem.design.scatter import Scatter, spread
-from cuefem.design.sweep import evaluated
+from cuefem.io.store import Store
 from tests.helpers.cues import MAPLE
 
 AT = Resolution(1, 24, 12)
@@ -62,16 +64,19 @@ def light(effects: tuple[StructuralDamping, ...] = ()) -> Study:
 
 
 @pytest.mark.parametrize("effects", [(), (StructuralDamping(),)], ids=["together", "one by one"])
-def test_a_sweep_says_which_design_has_none_and_keeps_its_squirt(effects: tuple[StructuralDamping, ...]) -> None:
+def test_a_sweep_says_which_design_has_none_and_keeps_its_squirt(
+    effects: tuple[StructuralDamping, ...], tmp_path: Path
+) -> None:
     study = light(effects)
-    heavy, alone, none = evaluated(study, 0, next(study.blocks()))
-    assert heavy.failure is None
-    assert none.responses == (None, None, None)
-    assert alone.responses[0] is None
-    assert alone.responses[1] is not None
-    assert alone.responses[1] < 0
-    assert alone.responses[2] == pytest.approx(0.021)
-    assert str(alone.failure).startswith("end_mass: the squirt is -")
+    with Store(tmp_path / "light.sqlite", study) as store:
+        sweep(study, store)
+        heavy, alone, none = store.rows()
+    assert heavy[-1] is None
+    assert none[2:-1] == (None, None, None)
+    assert alone[2] is None
+    assert alone[3] < 0
+    assert alone[4] == pytest.approx(0.021)
+    assert alone[-1].startswith("end_mass: the squirt is -")
 
 
 def test_who_asks_for_squirt_alone_has_it() -> None:

@@ -14,9 +14,9 @@ from cuefem.beam.system import assemble
 from cuefem.beam.tail import tail
 from cuefem.cue import Material
 from cuefem.design.batch import BLOCK, CueBatch, batch_frequencies, batch_modes, batch_stick
-from cuefem.design.solvers import static_tip_stiffness
 from cuefem.endmass.drives import flexible
 from cuefem.endmass.undamped import FADED, StickLimit, fade
+from cuefem.results.designs import static_tip_stiffness
 from cuefem.tip_modes import tip_modes_from, tip_modes_of
 from tests.helpers.cues import ABS, CARBON, FAMILY, FOAM, LEATHER, MAPLE, kim, rod, scene, soft_tip, stiff_ferrule
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sqlite3
 import sys
 from collections.abc import Callable
 from dataclasses import replace
@@ -18,7 +17,7 @@ from cuefem.design.scatter import Scatter, drivers, spread
 from tests.helpers.command_line import call
 from tests.helpers.cues import kim, low_deflection, pool, scene
 from tests.helpers.refusals import command_refuses, refuses, untouched
-from tests.helpers.sweeps import OPTIMUM, SCATTER, SCENE, STRUCK, STUDY, written
+from tests.helpers.sweeps import OPTIMUM, SCATTER, STRUCK, STUDY, changed, written
 
 AT = Resolution(1, 8, 3)
 THREE = CueBatch.of([kim()] * 3)
@@ -268,24 +267,12 @@ def test_a_front_without_its_library(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def altered(*statements: str) -> Callable[[Path], object]:
-    """Change the database of a study that has run."""
+    """Change the store of a study that has run."""
 
     def change(folder: Path) -> None:
         call("sweep", folder / "study.toml")
-        with sqlite3.connect(folder / "study.sqlite") as file:
-            for statement in statements:
-                file.execute(statement)
-        file.close()
-
-    return change
-
-
-def rewritten(study: tuple[str, str] = ("", ""), base: tuple[str, str] = ("", "")) -> Callable[[Path], object]:
-    """Change a study, or its scene, after it has run."""
-
-    def change(folder: Path) -> None:
-        call("sweep", folder / "study.toml")
-        written(folder, STUDY.replace(*study), SCENE.replace(*base))
+        for statement in statements:
+            changed(folder / "study.sqlite", statement)
 
     return change
 
@@ -299,24 +286,32 @@ def no_database(folder: Path) -> None:
     (folder / "study.sqlite").write_bytes(b"design,end_mass\n" * 100)
 
 
-ANOTHER = "study.sqlite: must hold this study; got another one, with another "
+def linked(folder: Path) -> None:
+    call("sweep", folder / "study.toml")
+    (folder / "out.sqlite").hardlink_to(folder / "study.sqlite")
+
+
 # What happened to the folder of a study, the options of the next sweep, and a part of the line that says what is wrong.
 FOLDERS: list[tuple[Callable[[Path], object], list[str], str]] = [
-    (altered("PRAGMA user_version = 99"), [], "must be of schema 2 or older; got 99"),
+    (altered("PRAGMA user_version = 99"), [], "must be of schema 3 or older; got 99"),
     (altered("PRAGMA application_id = 7"), [], "must be a database of `cuefem sweep`"),
-    (altered("DELETE FROM study"), [], "got a database without one"),
+    (altered("PRAGMA user_version = 2"), [], "an older cuefem, which can be read (`cuefem.frames.of_sweep`) but not"),
+    (
+        altered("UPDATE studies SET about = 'x'"),
+        [],
+        "is damaged: what it says of a study is not as it was written",
+    ),
     (no_database, [], "file is not a database"),
     (torn, [], "cannot be read or written as a database"),
-    (rewritten(('"1.2 ms"]', '"1.3 ms"]')), [], f"{ANOTHER}vary"),
-    (rewritten(('"tip_stiffness"', '"mass"')), [], f"{ANOTHER}responses"),
-    (rewritten(base=("420 g", "421 g")), [], f"{ANOTHER}scene"),
-    (rewritten(("modes = 6", "modes = 7")), [], f"{ANOTHER}resolution"),
+    (linked, [], "study.sqlite: must have one name; got a file with hard links: make a copy of it instead"),
+    (linked, ["--store", "out.sqlite"], "out.sqlite: must have one name; got a file with hard links"),
     (written, ["--output", "none/out.sqlite"], "unable to open database file"),
     (written, ["--export", "out.xlsx"], "must end in .csv or .parquet"),
     (written, ["--export", "out.sqlite"], "must end in .csv or .parquet"),
     (written, ["--export", "nowhere/out.csv"], "No such file or directory"),
     (written, ["--export", "out.parquet"], "pip install '.[parquet]' in the clone"),
     (written, ["--dask", "tcp://localhost:1"], "pip install '.[distributed]' in the clone"),
+    (written, ["--workers", "2", "--dask", "tcp://localhost:1"], "give one"),
 ]
 
 

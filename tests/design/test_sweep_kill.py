@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import os
 import random
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -16,11 +18,9 @@ from typing import Any
 import psutil
 import pytest
 
-from cuefem.design import Row, dask, processes, sweep
-from cuefem.io.database import Database
-from cuefem.io.study import load_study
+from cuefem.design import Row, dask, processes
 from tests.helpers.command_line import call
-from tests.helpers.sweeps import STRUCK, count_of, rows_of, written
+from tests.helpers.sweeps import STRUCK, rows_of, swept, written
 
 pytestmark = pytest.mark.heavy
 
@@ -70,13 +70,25 @@ def command(study: Path, output: Path, *more: str) -> list[str]:
     ]
 
 
-def started(study: Path, output: Path, *more: str) -> subprocess.Popen[bytes]:
-    quiet = subprocess.DEVNULL
-    return subprocess.Popen(command(study, output, *more), env=ENVIRONMENT, stdout=quiet, stderr=quiet)
+def started(
+    study: Path, output: Path, *more: str, out: int = subprocess.DEVNULL, **options: Any
+) -> subprocess.Popen[bytes]:
+    return subprocess.Popen(command(study, output, *more), env=ENVIRONMENT, stdout=out, stderr=out, **options)
 
 
 def written_so_far(output: Path) -> int:
-    return count_of(output) if output.exists() and output.stat().st_size else 0
+    """How many designs can be read while a sweep is at work."""
+    try:
+        return len(rows_of(output))
+    except ValueError:  # not begun yet
+        return 0
+
+
+def waited_for(output: Path, run: subprocess.Popen[bytes], rows: int) -> None:
+    """Wait until so many rows are there, or the sweep has ended."""
+    began = time.monotonic()
+    while run.poll() is None and written_so_far(output) < rows and time.monotonic() - began < 60:
+        time.sleep(0.02)
 
 
 @pytest.mark.parametrize(("workers", "times"), [((), 3), (("--workers", "2"), 10)], ids=["alone", "two workers"])
@@ -87,9 +99,7 @@ def test_killed_over_and_over(
     output, rng, kept = tmp_path / "out.sqlite", random.Random(len(workers)), [0]
     while len(kept) <= times:
         run = started(study, output, *workers)
-        began = time.monotonic()
-        while run.poll() is None and written_so_far(output) == kept[-1] and time.monotonic() - began < 60:
-            time.sleep(0.02)
+        waited_for(output, run, kept[-1] + 1)
         time.sleep(rng.uniform(0, 0.15))
         if run.poll() is not None:  # a machine so quick that the study ended first: it must be whole; then afresh
             assert rows_of(output) == whole
@@ -114,36 +124,44 @@ def test_killed_over_and_over(
     assert rows_of(output) == whole
 
 
-def test_a_second_sweep_is_refused_and_a_killed_one_lets_go(
-    study: Path, whole: list[tuple[Any, ...]], tmp_path: Path
-) -> None:
-    """Two processes on one file: the second ends at once, in one line; once the first is killed it goes on."""
-    output = tmp_path / "out.sqlite"
-    first = started(study, output, "--workers", "1")
-    began = time.monotonic()
-    while written_so_far(output) == 0 and time.monotonic() - began < 60:
-        time.sleep(0.02)
-    second = subprocess.run(command(study, output), env=ENVIRONMENT, capture_output=True, check=False)
-    assert first.poll() is None
-    assert second.returncode == 2
-    assert second.stdout == b""
-    (line,) = second.stderr.decode().splitlines()
-    assert (
-        line
-        == f"cuefem: {output}: another sweep (process {first.pid}) is at work on it: let it end, or name another file"
-    )
-    children = psutil.Process(first.pid).children(recursive=True)
-    first.send_signal(signal.SIGKILL)
-    first.wait()
-    psutil.wait_procs(children, timeout=20)
-    subprocess.run(command(study, output), env=ENVIRONMENT, capture_output=True, check=True)
+def test_two_fresh_sweeps_at_once_share_the_work(study: Path, whole: list[tuple[Any, ...]], tmp_path: Path) -> None:
+    """Two commands on one file, and a third while one of them is killed: the table is whole, little is done twice."""
+    output, evaluated = tmp_path / "out.sqlite", 0
+    runs = [started(study, output, "--json", out=subprocess.PIPE) for _ in range(2)]
+    for run in runs:
+        out, err = run.communicate()
+        assert (run.returncode, err) == (0, b"")
+        evaluated += json.loads(out)["evaluated"]
+    assert 3000 <= evaluated <= 3000 + 10 * 16
+    assert rows_of(output) == whole
+    output.unlink()
+    killed, other = started(study, output), started(study, output)
+    waited_for(output, killed, 200)
+    killed.send_signal(signal.SIGKILL)
+    killed.wait()
+    assert other.wait() == 0
     assert rows_of(output) == whole
 
 
-def swept(study: Path, output: Path, **more: Any) -> list[tuple[Any, ...]]:
-    with Database(output, load_study(study)) as database:
-        sweep(database.study, database, **more)
-    return rows_of(output)
+@pytest.mark.parametrize("workers", [(), ("--workers", "2")], ids=["alone", "two workers"])
+def test_an_interrupt_says_what_is_there_and_how_to_go_on(
+    study: Path, whole: list[tuple[Any, ...]], tmp_path: Path, workers: tuple[str, ...]
+) -> None:
+    """Ctrl-C, which a terminal sends to all processes of a command: one line, soon; the same command ends the work."""
+    output = tmp_path / "out.sqlite"
+    run = started(study, output, *workers, out=subprocess.PIPE, start_new_session=True)
+    waited_for(output, run, 100)
+    os.killpg(run.pid, signal.SIGINT)
+    out, err = run.communicate(timeout=20)
+    (line,) = err.decode().splitlines()
+    count = len(rows_of(output))
+    assert (run.returncode, out) == (130, b"")
+    assert line == f"cuefem: interrupted; {count} of 3000 designs are kept in {output}: the same command goes on"
+    assert 100 <= count < 3000
+    assert psutil.pids().count(run.pid) == 0
+    done = subprocess.run(command(study, output, "--json"), env=ENVIRONMENT, capture_output=True, check=True)
+    assert json.loads(done.stdout)["evaluated"] == 3000 - count
+    assert rows_of(output) == whole
 
 
 def killing(victims: Callable[[], list[int]], after: int) -> Callable[[list[Row]], None]:
@@ -199,6 +217,40 @@ def test_the_command_on_a_cluster(small: Path, whole_small: list[tuple[Any, ...]
     assert rows_of(output) == whole_small
 
 
+def test_a_scheduler_killed_in_mid_sweep(tmp_path: Path) -> None:
+    """The command ends within 30 s, in one line that says what is there; without the cluster it goes on."""
+    study, output = written(tmp_path, STUDY), tmp_path / "out.sqlite"
+    quiet, address = subprocess.DEVNULL, f"tcp://127.0.0.1:{free_port()}"
+    dask = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--no-dashboard", "--port", address.split(":")[-1]]
+    work = [sys.executable, "-m", "distributed.cli.dask_worker", address, "--nthreads", "1", "--no-dashboard"]
+    scheduler = subprocess.Popen([*dask, "--host", "127.0.0.1"], cwd=tmp_path, stdout=quiet, stderr=quiet)
+    worker = subprocess.Popen(work, cwd=tmp_path, env=ENVIRONMENT, stdout=quiet, stderr=quiet)
+    try:
+        run = started(study, output, "--dask", address, out=subprocess.PIPE)
+        waited_for(output, run, 100)
+        scheduler.kill()
+        out, err = run.communicate(timeout=30)
+    finally:
+        for process in (scheduler, worker):
+            process.kill()
+            process.wait()
+    count = len(rows_of(output))
+    assert (run.returncode, out) == (1, b"")
+    assert err.decode().splitlines() == [
+        f"cuefem: the Dask scheduler at {address!r} answers no more; {count} of 3000 designs are kept in {output}: "
+        "the same command goes on"
+    ]
+    assert count >= 100
+    done = subprocess.run(command(study, output, "--json"), env=ENVIRONMENT, capture_output=True, check=True)
+    assert json.loads(done.stdout)["evaluated"] == 3000 - count
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
 def test_a_scheduler_that_does_not_answer(small: Path, tmp_path: Path) -> None:
     output = tmp_path / "out.sqlite"
     done = subprocess.run(
@@ -223,9 +275,6 @@ def test_memory_stays_flat_over_a_hundred_thousand_designs(tmp_path: Path) -> No
         if seen[0] % 10240 == 0:
             sizes.append(psutil.Process().memory_info().rss)
 
-    study = load_study(written(tmp_path, text))
-    with Database(tmp_path / "out.sqlite", study) as database:
-        sweep(study, database, progress=watch)
-        assert database.count()[0] == 100000
+    assert len(swept(written(tmp_path, text), tmp_path / "out.sqlite", progress=watch)) == 100000
     assert len(sizes) == 9
     assert 0.8 < max(sizes[1:]) / sizes[0] < 1.1

@@ -30,9 +30,9 @@ from cuefem.designer.start import first_scene
 from cuefem.designer.units import INCHES
 from cuefem.report.end_mass import end_mass_record
 from cuefem.report.modes import modes_record
-from cuefem.report.quantities import QUANTITIES
 from cuefem.report.squirt import squirt_record
 from cuefem.report.strike import strike_record
+from cuefem.results.quantities import RESULTS
 from cuefem.vary import knobs_of, turned
 from tests.helpers.command_line import call
 
@@ -102,10 +102,10 @@ def test_without_effects_at_the_tip_both_curves_begin_alike() -> None:
 def test_the_static_stiffness_is_that_of_a_clamped_cue() -> None:
     scene = replace(first_scene(), effects=())
     exact = float(CueBatch.of([scene.cue]).tip_stiffness[0])
-    assert weighed(scene).tip_stiffness == pytest.approx(exact, rel=1e-7)
+    assert weighed(scene).numbers["tip_stiffness"] == pytest.approx(exact, rel=1e-7)
     soft = turned(scene, knobs_of(scene) | dict(joint_position=0.6, joint_compliance=1e-3))
     added = 1e-3 * 0.6**2  # a hinge's: the load's moment there, turned through its lever
-    assert 1 / weighed(soft).tip_stiffness - 1 / exact == pytest.approx(added, rel=1e-6)
+    assert 1 / weighed(soft).numbers["tip_stiffness"] - 1 / exact == pytest.approx(added, rel=1e-6)
 
 
 @pytest.mark.heavy
@@ -164,7 +164,7 @@ def test_a_saved_design_gives_its_numbers_on_the_command_line(tmp_path: Path) ->
     ],
 )
 def test_differences_are_those_of_the_numbers(mine: float | None, pinned: float | None, words: str) -> None:
-    row = Row("end_mass_stick", "end mass", mine, QUANTITIES["end_mass"])
+    row = Row("end_mass_stick", "end mass", mine, RESULTS["end_mass"])
     assert difference(row, row._replace(value=pinned)) == words
 
 
@@ -178,7 +178,7 @@ def test_every_number_of_a_design_is_written() -> None:
     mine = Design.of("mine", designs()["head on"])
     text = table_markup([Column(mine, found)], 0) + key_markup(found, found)
     assert "nan" not in text
-    assert text.count("data-number") == len(written) == 16
+    assert text.count("data-number") == len(written) == 20
     assert "the same" in text
 
 
@@ -215,6 +215,7 @@ def test_a_number_that_is_not_computed_yet_stands_pale_as_it_was() -> None:
     waiting = {row.name for row in rows(found) if row.waiting}
     assert waiting == {row.name for row in rows(before)} - {
         *("squirt", "pivot", "shaft_mass", "mass", "balance"),
+        *("ball_speed", "vibration_energy", "tip_diameter", "wall"),
     }
 
 

@@ -23,12 +23,19 @@ def test_without_the_library_it_says_how_to_get_it(monkeypatch: pytest.MonkeyPat
 @pytest.mark.parametrize(
     ("file", "message"),
     [
+        (
+            "many.toml",
+            "many.toml: the designer takes a cue of at most 300 segments; got 2000: draw it with fewer, or use cuefem "
+            "report",
+        ),
         ("lumped.toml", "lumped.toml: Scene.cue must be a Cue of segments: its modes or its shape are needed"),
         ("missing.toml", "missing.toml: cannot be read: No such file or directory"),
     ],
 )
 def test_files(tmp_path: Path, file: str, message: str) -> None:
     pytest.importorskip("nicegui", reason=NICEGUI)
+    piece = cf.Segment(0.36e-3, 0.012, 0.012, cf.Material(12.6e9, 0.84e9, 700.0))
+    cf.save(cf.Cue((piece,) * 2000, body_mass=0.45), tmp_path / "many.toml")
     cf.save(cf.Scene(cf.LumpedCue(0.5, 0.006)), tmp_path / "lumped.toml")
     command_refuses(message, "designer", "--no-open", tmp_path / file)
 

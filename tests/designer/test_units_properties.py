@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cuefem.designer.units import INCHES, METRIC, typed
-from cuefem.report.quantities import QUANTITIES
+from cuefem.results.quantities import RESULTS
 
 TYPED = {
     ("11,8", "mm"): 11.8,
@@ -73,7 +73,7 @@ def test_point_and_comma_are_one(value: float, point: str) -> None:
 @given(st.floats(0.001, 2))
 def test_both_systems_write_the_same_length_and_mass(value: float) -> None:
     for name, unit, most in (("length", "m", 0.5e-3), ("radius", "m", 0.005e-3), ("mass", "kg", 1e-3 * value)):
-        known = QUANTITIES[name]
+        known = RESULTS[name]
         for system in (METRIC, INCHES):
             scale, _ = system.units[unit]
             number, shown_unit = known.written(value, units=system.units).split(" ")

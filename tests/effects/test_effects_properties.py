@@ -25,7 +25,6 @@ from cuefem import (
     TipShear,
     strike,
 )
-from cuefem.contact.patch import SpringPatch
 from cuefem.effects import CueEffect, Effect, TipEffect
 from tests.helpers.strike_scenes import FRICTION, KIM, OFFSET, RESTITUTION, SIGN, imbalance, kim_scene, numbers, sound
 
@@ -133,9 +132,6 @@ def forbid(monkeypatch: pytest.MonkeyPatch, *, listed: set[type]) -> None:
     for kind in set(leaves(Effect)) - listed:
         for name in own_code(kind):
             monkeypatch.setattr(kind, name, property(entered))
-    if TipShear not in listed:
-        for name in own_code(SpringPatch):
-            monkeypatch.setattr(SpringPatch, name, property(entered))
     if AxialWaves not in listed:
         monkeypatch.setattr(cuefem.effects.axial, "rod_modes", entered)
     if StructuralDamping not in listed:

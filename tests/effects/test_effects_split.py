@@ -62,7 +62,7 @@ def moved(struck: cf.Scene) -> Any:
 def designed(struck: cf.Scene) -> Any:
     found = completed(answers(struck))
     curve = [found.lumped.squirt, found.lumped.pivot_length, *islice(coupled_points(found), 2)]
-    return [found.end_masses, found.strike, found.tip_stiffness, curve]
+    return [found.end_masses, found.strike, dict(found.numbers), curve]
 
 
 def swept(struck: cf.Scene) -> Any:

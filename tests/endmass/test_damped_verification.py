@@ -16,7 +16,7 @@ from cuefem.tip_modes import Solved
 from tests.helpers.cues import kim, scene
 
 mpl.use("Agg")
-from studies.accuracy import random_cue
+from studies.accuracy.default_accuracy import random_cue
 
 DRAW = np.random.default_rng(3)
 SKEW = DRAW.normal(size=(40, 40))

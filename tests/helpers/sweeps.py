@@ -6,6 +6,10 @@ import sqlite3
 from pathlib import Path
 from typing import Any
 
+from cuefem.design import sweep
+from cuefem.io.store import Store, read_table
+from cuefem.io.study import load_study
+
 SCENE = """
 [cue]
 body_mass = "420 g"
@@ -147,17 +151,20 @@ def written(folder: Path, study: str = STUDY, scene: str = SCENE, name: str = "s
     return folder / name
 
 
-def count_of(path: Path) -> int:
-    """How many designs are in a database."""
-    with sqlite3.connect(path) as file:
-        (count,) = file.execute("SELECT count(*) FROM designs").fetchone()
-    file.close()
-    return int(count)
+def swept(study: Path, output: Path, **more: Any) -> list[tuple[Any, ...]]:
+    """The table of a study, computed into a store by `cuefem.design.sweep` with its options."""
+    with Store(output, load_study(study), study.stem) as store:
+        sweep(store.study, store, **more)
+    return rows_of(output)
 
 
-def rows_of(path: Path) -> list[tuple[Any, ...]]:
-    """The whole table of a database, numbers as they are stored."""
+def rows_of(path: Path, name: str | None = None) -> list[tuple[Any, ...]]:
+    """The whole table of a study in a store, numbers as they are kept."""
+    return read_table(path, name).rows
+
+
+def changed(path: Path, command: str, *values: object) -> None:
+    """Change a store behind cuefem's back."""
     with sqlite3.connect(path) as file:
-        found = file.execute("SELECT * FROM designs ORDER BY design").fetchall()
+        file.execute(command, values)
     file.close()
-    return found

@@ -229,7 +229,8 @@ def test_no_unit_is_guessed(text: str, unit: str) -> None:
 def test_no_text_is_more_than_refused(given_text: str) -> None:
     wanted = Quantity("m", "(0, inf)")
     value, refusal = outcome(lambda: wanted.read(given_text))
-    assert refusal.startswith("must be in (0, inf) m") if refusal else 0 < value < math.inf
+    told = ("must be a length", "must be more than 0", "must be a number that is not so large", "needs a unit: ")
+    assert refusal.startswith(told) if refusal else 0 < value < math.inf
 
 
 @given(st.binary(max_size=80), st.sampled_from([".toml", ".csv", ".vtk", ".vtu"]))

@@ -6,13 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from studies.common import STUDIES
 
 from cuefem.io.documented import load_documented
 from cuefem.measured.documented import DocumentedCue, compare
 from cuefem.measured.estimate import estimate
 from cuefem.measured.kinds import Stiffness, Tone, Weight
 from cuefem.measured.unknowns import Prior
+from studies.pages import STUDIES
 from tests.helpers.documented import SCENE
 from tests.helpers.leather_scenes import leather_scene
 

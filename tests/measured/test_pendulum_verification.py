@@ -10,9 +10,9 @@ import pytest
 
 import cuefem as cf
 from cuefem.measured.kinds import EndMass, Setup
+from cuefem.measured.outliers import HOLDS_95, middle_of
 from cuefem.measured.pendulum import (
     GRAVITY,
-    WIDE,
     Bounces,
     PendulumTest,
     choices,
@@ -86,14 +86,36 @@ def test_the_budget_is_the_derivative() -> None:
 
 
 def test_repeated_bounces_average_out_but_for_one_release() -> None:
+    """To a twentieth, which the chance of a wrong reading adds."""
     one = Bounces("speed", (1.0,), (0.5,), error=0.01)
     four = replace(one, after=(0.5,) * 4)
     apart = replace(one, before=(1.0,) * 4, after=(0.5,) * 4)
     (_, before, after), (_, same, quarter), (_, fewer, _) = (each.ratio for each in (one, four, apart))
-    assert (same, quarter) == pytest.approx((before, after / 2))
+    assert (same, quarter) == (pytest.approx(before), pytest.approx(after / 2, rel=0.05))
     assert fewer == pytest.approx(before / 2)
     wild = replace(one, after=(0.4, 0.5, 0.6))
-    assert wild.ratio[2] == pytest.approx(0.1 / math.sqrt(3))
+    assert wild.ratio[2] > 0.1 / math.sqrt(3)
+
+
+def test_a_wrong_bounce_hardly_counts_and_the_course_has_no_jump() -> None:
+    """A fourth bounce moves from the others' place to a hundred errors away: the result goes along and comes back."""
+    places = 0.5 + 0.01 * np.linspace(0, 100, 2001)
+    bounces = [Bounces("speed", (1.0,), (0.49, 0.50, 0.51, float(v)), error=0.01) for v in places]
+    found = np.array([each.ratio for each in bounces])[:, [0, 2]]
+    assert np.abs(np.diff(found, axis=0)).max() < 2e-3
+    assert found[-1, 0] == pytest.approx(0.5, abs=5e-4)
+    assert found[-1, 1] == pytest.approx(0.01 / math.sqrt(3), rel=0.1)
+    assert 0.503 < found[:, 0].max() < 0.51
+    assert found[:, 1].max() > 1.3 * found[0, 1]
+
+
+def test_the_order_and_the_scale_of_readings_do_not_matter() -> None:
+    generator = np.random.default_rng(4)
+    for count in (2, 3, 7, 40):
+        values, errors = generator.normal(size=count), generator.uniform(0.1, 1.0, count)
+        middle, error = middle_of(values, errors)
+        turned = middle_of(-3 * values[::-1], 3 * errors[::-1])
+        assert turned == pytest.approx((-3 * middle, 3 * error), rel=1e-9)
 
 
 def made_up(generator: np.random.Generator) -> tuple[float, float, float, float]:
@@ -113,32 +135,38 @@ def made_up(generator: np.random.Generator) -> tuple[float, float, float, float]
     return struck.apparent_restitution, e, m, struck.effective_mass
 
 
+Shaft = tuple[float, float, float, float]
+
+
 @pytest.fixture(scope="module")
-def shafts() -> list[tuple[float, float, float, float]]:
+def shafts() -> list[Shaft]:
     """A hundred made-up shafts."""
     generator = np.random.default_rng(16)
     return [made_up(generator) for _ in range(100)]
 
 
-def covered(shafts: list[tuple[float, float, float, float]], way: str, seed: int) -> np.ndarray:
-    """Whether the 68 and the 95 % interval hold the end mass of each shaft, from readings with noise: (shafts, 2)."""
+def covered(shafts: list[Shaft], way: str, seed: int, *, times: int = 4, wrong: bool = False) -> np.ndarray:
+    """Whether the 68 and the 95 % interval hold the end mass of each shaft, from readings with noise: (shafts, 2).
+
+    wrong: one reading of each shaft is off by 4 to 30 errors.
+    """
     generator = np.random.default_rng(seed)
     U, error = 0.63, {"swing": 1.5e-3, "height": 0.4e-3, "speed": 6e-3, "frames": 0.15}[way]
     found = []
     for a, e, m, true in shafts:
-
-        def noisy(speed: float, times: int) -> tuple[float, ...]:
-            return tuple(readings(way, speed) + error * generator.normal(size=times))
-
-        free = Bounces(way, noisy(U, 4), noisy(a * U, 4), error=error, thread=1.0)
-        wall = Bounces(way, noisy(U, 4), noisy(e * U, 4), error=error, thread=1.0)
+        right = np.repeat([readings(way, speed) for speed in (U, a * U, U, e * U)], times)
+        off = generator.normal(size=len(right))
+        if wrong:
+            off[generator.integers(len(off))] += generator.choice([-1, 1]) * generator.uniform(4, 30)
+        noisy = (right + error * off).reshape(4, times).tolist()
+        free, wall = (Bounces(way, tuple(b), tuple(c), error=error, thread=1.0) for b, c in (noisy[:2], noisy[2:]))
         weighed = m + 5e-5 * generator.normal()
         result = PendulumTest(weighed, 5e-5, free, 1e-3, wall=wall).weighed()
-        found.append([low < true < high for low, high in (result.interval(), result.interval(WIDE))])
+        found.append([low < true < high for low, high in (result.interval(), result.interval(HOLDS_95))])
     return np.array(found)
 
 
-def test_intervals_cover_the_end_masses_of_a_hundred_shafts(shafts: list[tuple[float, float, float, float]]) -> None:
+def test_intervals_cover_the_end_masses_of_a_hundred_shafts(shafts: list[Shaft]) -> None:
     assert np.ptp([true for *_, true in shafts]) > 3e-3
     narrow, wide = covered(shafts, "swing", 1).mean(axis=0)
     assert 0.60 <= narrow <= 0.76
@@ -146,12 +174,23 @@ def test_intervals_cover_the_end_masses_of_a_hundred_shafts(shafts: list[tuple[f
 
 
 @pytest.mark.parametrize("way", ["swing", "speed", "frames"])
-def test_intervals_cover_in_a_thousand_tests(shafts: list[tuple[float, float, float, float]], way: str) -> None:
+def test_intervals_cover_in_a_thousand_tests(shafts: list[Shaft], way: str) -> None:
     """The same with ten draws of the noise for each shaft: 4.4 % and 2.1 % are three standard deviations."""
     some = [shaft for shaft in shafts if way != "frames" or abs(shaft[0]) > 0.1]  # a ball that stops has no count
     narrow, wide = np.mean([covered(some, way, seed).mean(axis=0) for seed in range(2, 12)], axis=0)
     assert narrow == pytest.approx(0.683, abs=0.044)
     assert wide == pytest.approx(0.95, abs=0.021)
+
+
+@pytest.mark.parametrize(("times", "least"), [(2, 0.58), (3, 0.639), (4, 0.639), (8, 0.639)])
+def test_intervals_cover_on_a_thousand_shafts_with_one_wrong_reading(times: int, least: float) -> None:
+    """Clean readings, and one wrong one; of two bounces nobody can tell which is wrong: the interval holds both."""
+    generator = np.random.default_rng(26)
+    many = [made_up(generator) for _ in range(1000)]
+    for wrong in (False, True):
+        narrow, wide = covered(many, "swing", 27, times=times, wrong=wrong).mean(axis=0)
+        assert least < narrow < 0.683 + 0.06
+        assert 0.95 - 0.021 < wide < 0.985
 
 
 def test_the_plan_is_the_optimum() -> None:
@@ -208,7 +247,7 @@ def test_squirt_intervals_cover_on_made_up_shafts() -> None:
         told = squirt_told(test, test.weighed(), scene, 0.01)
         true = float(cf.strike(setup.scene).squirt) * np.exp(0.1 * generator.normal(size=10))
         pulls = np.abs(true - told.after[0]) / told.after[1]
-        found.append([np.mean(pulls < 1), np.mean(pulls < WIDE)])
+        found.append([np.mean(pulls < 1), np.mean(pulls < HOLDS_95)])
     spread = np.std(found, axis=0, ddof=1) / math.sqrt(len(found))
     assert np.all(spread < (0.04, 0.02))
     assert np.all(np.abs(np.mean(found, axis=0) - (0.683, 0.95)) < 3 * spread)

@@ -1,1 +1,1 @@
-"""The contact's one method in plain NumPy: a readable specification, and what the compiled kernel is compared with."""
+"""Other methods than the package's, which check it: a beam of its own, small steps, the contact in NumPy; no tests."""

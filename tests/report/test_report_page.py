@@ -42,6 +42,15 @@ def pool() -> str:
     return page("pool.toml", scene("pool_low_deflection"))
 
 
+def test_a_cue_of_as_many_segments_as_there_may_be_is_drawn_with_its_leather() -> None:
+    piece = cf.Segment(0.36e-3, 0.012, 0.012, cf.Material(12.6e9, 0.84e9, 700.0))
+    longest = cf.usual_scene(cf.Cue((piece,) * 2000, body_mass=0.45))
+    drawn = cue_drawing(longest, across=8.0)
+    assert len(drawn.pieces) == 2001
+    assert drawn.pieces[0].material == "m-leather"
+    assert strike_drawing(longest, 0.03).pieces[0][1] == "m-leather"
+
+
 class Reader(HTMLParser):
     """Tags, attributes and text of a page; refuses tags that do not close in order."""
 
@@ -167,7 +176,7 @@ def test_names_are_text_and_no_markup() -> None:
 def test_the_work_is_followed_stage_by_stage() -> None:
     stages: list[str] = []
     page("a", LUMPED, track=lambda work: (stages.append(stage.name) or stage for stage in work))
-    assert stages == ["outcome", "end_masses", "squirt", "strike"]
+    assert stages == ["outcome", "end_masses", "squirt", "strike", "numbers"]
 
 
 def test_the_command_writes_a_page(tmp_path: Path) -> None:

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from cuefem.design import Response
-from cuefem.design.responses import KINDS, kinds
 from cuefem.report.study import Table, column_label
+from cuefem.results.asking import asked
 from tests.helpers.command_line import call
 from tests.helpers.sweeps import SCENE, STUDY
 
@@ -74,7 +74,7 @@ def test_the_pair_is_the_strongest_trade_off() -> None:
 
 
 def test_every_kind_says_which_way_is_better() -> None:
-    assert {kind.better for kind in KINDS.values()} == {"lower", "higher", ""}
+    assert {kind.better for kind in asked().values()} == {"lower", "higher", ""}
     assert Response.of("end_mass_force").better == "lower"
 
 
@@ -162,9 +162,9 @@ def test_responses_are_named_in_words() -> None:
     assert said[4:] == ["end mass, force", "thinnest wall"]
     every = [
         Response(name, x).label
-        for name in kinds()
+        for name in asked()
         for x in (None, 0.3, 0.3000001, 2)
-        if x is None or kinds()[name].argument
+        if x is None or asked()[name].argument
     ]
     assert len({*every}) == len(every)
     assert not any("_" in label for label in every)

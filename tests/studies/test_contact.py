@@ -183,6 +183,27 @@ def test_what_cuefem_computes_is_stepped_alike(offset: float, partial: bool, mor
     assert theirs.slid == pytest.approx(ours.energy["friction loss"] / first, rel=0.02, abs=1e-4)
 
 
+@pytest.mark.parametrize(
+    ("offset", "friction", "partial"),
+    [(0.68, 0.7, False), (-0.7, 0.7, False), (0.69, 1.5, False), (0.7, 1.5, True), (-0.68, 1.5, True)],
+)
+def test_a_contact_on_the_rim_rolls_on_an_edge(offset: float, friction: float, partial: bool) -> None:
+    """From b/R 0.671 on the dome ends before the contact: the study rolled on it all the same, and was 4 % off."""
+    leather = replace(leather_release.LEATHER, partial_slip=partial)
+    scene = leather_release.struck_scene(offset, leather=leather, tip=Tip(0.73, friction))
+    theirs = leather_release.stepped(scene, "rings that slip" if partial else "scaled", 2e-6)
+    assert theirs.squirt == pytest.approx(math.degrees(strike(scene).squirt), rel=2e-3)
+
+
+def test_stepped_squirt_does_not_jump_where_the_rim_begins() -> None:
+    """A contact that begins on the dome ends on the rim just before."""
+    rim = 12.75e-3 / 2 / leather_release.LEATHER.dome_radius
+    offsets = [rim + shift for shift in (-3e-3, -1e-3, 1e-3, 3e-3)]
+    squirts = [leather_release.stepped(leather_release.struck_scene(b), "scaled", 2e-6).squirt for b in offsets]
+    slopes = np.diff(squirts) / np.diff(offsets)
+    assert abs(slopes[1]) < 1.5 * max(abs(slopes[0]), abs(slopes[2]))
+
+
 @pytest.mark.parametrize("rule", leather_release.RULES)
 def test_the_account_closes_with_the_square_of_the_step(rule: str) -> None:
     scene = leather_release.struck_scene(0.375, tip=Tip(1.0, 0.7))

@@ -84,6 +84,19 @@ def test_missing_modes_are_refused(kim_test: TapTest, true_tones: np.ndarray) ->
     assert not kim_test.fit([told(f) for f in true_tones[:5]]).refusals
 
 
+def test_a_wrong_sampling_rate_is_told_with_the_tone_it_would_mean(kim_test: TapTest, true_tones: np.ndarray) -> None:
+    """Tones that ask for stiffer wood than there is, and for a usual one at 44.1 kHz in the place of 48."""
+    true = main_material(tap.true("kim"))
+    stiffer = ((f, replace(true, E=f**2 * true.E, G=f**2 * true.G)) for f in np.linspace(1.0, 1.7, 71))
+    factor = 1.02 * next(f for f, wood in stiffer if unlike(wood, main_material(cue("kim"))))
+    found = kim_test.fit([told(factor * f) for f in true_tones[:6]])
+    (line,) = (line for line in found.refusals if "sampling rate" in line)
+    share = 44.1 / 48
+    assert f"44.1 kHz for 48, the lowest tone is {share * factor * true_tones[0]:.4g} Hz, not" in line
+    assert f"E is {share**2 * found.wood.E / 1e9:.3g} GPa" in line
+    assert not any("sampling rate" in line for line in kim_test.fit([told(f) for f in true_tones[:6]]).refusals)
+
+
 @pytest.mark.parametrize("name", WOODS)
 def test_every_wood_of_the_table_is_like_wood(name: str) -> None:
     assert unlike(material(name), material("hard maple")) == []

@@ -1,4 +1,4 @@
-/* One contact of ball and tip (handbook: The contact's one method).
+/* One contact of ball and tip (handbook: The contact).
 
    Between the forces of the contact, cue and ball move linearly. Over a step the forces are polynomials through Q nodes,
    and the answer of the cue's modes to them is known exactly. What is left are the forces at the nodes, which a law
@@ -113,7 +113,7 @@ typedef struct {
     double *ring_shear;       /* (rings,): the force along the surface that each ring bears */
     int forces, speeds, turns, curve, patch, lossy, terms, levers, rings, recording;
     double restitution, friction, table_friction, stiffness, exponent, steady, most, compliance, first_ratio;
-    double phi, dome, reach, lever_t, lever_n, lever_reach;
+    double phi, dome, rim, radius, lever_t, lever_n, lever_reach;
     double speed, across, clock, impulse, tolerance, longest, window, most_phases, most_steps; /* across: part of the speed
                                                                                                    along the surface */
     /* what it gets */
@@ -145,6 +145,7 @@ typedef struct {
 typedef struct {
     int (*first_grip)(Work *, int press);
     void (*begin)(Work *);
+    void (*settle)(Work *); /* take away what rounding left of the velocities that the hold keeps at zero */
     void (*residual)(Work *, const Step *, Residual *);
     int (*guards)(Work *, const Step *, Guard *);
     void (*taken)(Work *, const Step *, double part);

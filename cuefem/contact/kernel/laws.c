@@ -150,7 +150,7 @@ static int guards(Work *w, const Step *s, Guard *to)
     const Contact *c = w->c;
     int count = 0, press = w->hold.press, grip = w->hold.grip;
     double size = c->impulse / c->clock, speed = c->speed, near = w->linear ? 0 : 1e-10, slides[WITH];
-    double way = near * speed * c->clock, force = 10 * near * size;
+    double way = near * speed * c->clock, force = w->linear ? 0 : fmax(10 * near * size, 20 * c->tolerance * c->impulse / s->step);
     if (press == FREE) {
         GUARD(TOUCHED, 0, rest_of(c) + 1e-10 * speed * c->clock - s->depth[i]);
         return count;
@@ -320,4 +320,9 @@ static int next(Work *w, int event)
     return press != RIGID || pressed_together(w, w->hold.grip);
 }
 
-const Law planar = {first_grip, begin, residual, guards, taken, next};
+static void settle_now(Work *w)
+{
+    settle(w, w->hold);
+}
+
+const Law planar = {first_grip, begin, settle_now, residual, guards, taken, next};

@@ -6,8 +6,20 @@ struct Factor {
     int pivots[FORCES * Q];
 };
 
-/* The matrix C where the contact has rolled through an angle: it sees the first touch's directions turned back by it.
-   On a dome of radius r, whose centre is tied to the cue's end, the contact moves by r (exp(-i angle) - 1). */
+/* How far the contact has moved on a dome that is tied to the cue's end, (u, w); it goes no further than the rim. */
+static void on_dome(const Contact *c, double angle, double *u, double *w)
+{
+    double from = fmin(c->phi, c->rim), to = fmax(-c->rim, fmin(c->phi + angle, c->rim));
+    *u += c->dome * (sin(from) - sin(to)), *w += c->dome * (cos(from) - cos(to));
+}
+
+/* The radius of what the ball rolls on: of the dome, or of nothing on its rim. */
+static double rolls_on(const Contact *c, double angle)
+{
+    return fabs(c->phi + angle) < c->rim ? c->dome : 0;
+}
+
+/* The matrix C where the contact has rolled through an angle: it sees the first touch's directions turned back by it. */
 void facing_at(const Contact *c, double angle, double C[FORCES][ALL_PORTS])
 {
     memset(C, 0, sizeof(double[FORCES][ALL_PORTS]));
@@ -27,10 +39,11 @@ void facing_at(const Contact *c, double angle, double C[FORCES][ALL_PORTS])
         }
         du = x / 2 * u1 - u2 + c->lever_terms[0], dw = x / 2 * w1 - w2 + c->lever_terms[c->levers];
     }
+    on_dome(c, angle, &du, &dw);
     C[0][0] = -s, C[0][1] = -k, C[1][0] = -k, C[1][1] = s;
     if (c->cue->ports > 2) {
-        C[0][2] = -(ca * c->lever_t + sa * c->lever_n + c->dome * (ca - 1) + s * du + k * dw);
-        C[1][2] = -(ca * c->lever_n - sa * c->lever_t - c->dome * sa + k * du - s * dw);
+        C[0][2] = -(ca * c->lever_t + sa * c->lever_n + s * du + k * dw);
+        C[1][2] = -(ca * c->lever_n - sa * c->lever_t + k * du - s * dw);
     }
     C[0][PORTS] = ca, C[0][PORTS + 1] = sa, C[0][PORTS + 2] = 1;
     C[1][PORTS] = -sa, C[1][PORTS + 1] = ca;
@@ -319,8 +332,10 @@ FAST static double move(Work *w, const Response *r, const double (*own)[WITH], c
     for (int i = 0; i < WITH; i++) s->depth[i] = c->depth - s->x[1][i];
     if (!c->turns) return 0;
     double rate[WITH];
-    for (int i = 0; i < WITH; i++)
-        rate[i] = -(s->v[0][i] - y[PORTS + 2][i] - (ports > 2 ? c->dome * y[2][i] : 0)) / c->reach;
+    for (int i = 0; i < WITH; i++) {
+        double dome = rolls_on(c, s->angle[i]);
+        rate[i] = -(s->v[0][i] - y[PORTS + 2][i] - (ports > 2 ? dome * y[2][i] : 0)) / (c->radius + dome);
+    }
     for (int i = 0; i < Q; i++) {
         double sum = 0;
         for (int j = 0; j < WITH; j++) sum += rule.sums[i][j] * rate[j];
@@ -442,6 +457,9 @@ static double error_of(const Work *w, const Step *s)
     return fmax(of_load * s->step / c->impulse, of_speed / (10 * c->speed)) / c->tolerance;
 }
 
+/* Steps that are shorter by so many halvings feel what rounding left of a velocity that is held. */
+enum { SETTLES = 8 };
+
 /* The longest step that holds the tolerance; ENDED, or why there is none. */
 static int longest_step(Work *w)
 {
@@ -449,6 +467,7 @@ static int longest_step(Work *w)
     int longest = LONGEST_POWER - (int)floor(log2(c->clock)), rough = c->patch == RINGED_PATCH;
     while (w->level < LEVELS) {
         c->tried++;
+        if (w->level > longest + SETTLES && w->hold.press != FREE) w->law->settle(w);
         int found = solve_step(w, w->level, &w->step);
         double error = found ? error_of(w, &w->step) : HUGE_VAL;
         if (error <= 1 || (found && rough && w->level >= longest + 11)) {
@@ -594,7 +613,7 @@ static int follow(Work *w, double until)
         }
         if (event && apart <= 1 && w->hold.press == UNLOAD) { /* where all forces vanish the other ends mean nothing */
             double left = value_at(w->step.depth, first) - (1 - c->restitution * c->restitution) * c->deepest;
-            if (left < (w->linear ? 1e-11 : 1e-7) * c->deepest) first = apart, event = APART;
+            if (left < (w->linear ? 1e-11 : c->forces == 2 ? 1e-7 : 1e-5) * c->deepest) first = apart, event = APART;
         }
         if (first > 0) {
             double here = c->time, ball[SPEEDS];

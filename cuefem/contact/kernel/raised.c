@@ -1,4 +1,4 @@
-/* The contact of a cue raised over a table (handbook: The raised cue): six velocities and six forces.
+/* The contact of a cue raised over a table (handbook: Effects): six velocities and six forces.
 
    T, N and P stand for the tip's: along the surface in the plane of the cue and the ball's centre, along the normal, and
    across that plane; UP, ASIDE and AHEAD for those of the ball's lowest point on the table. The friction of either
@@ -98,7 +98,8 @@ static int guards(Work *w, const Step *s, Guard *to)
     const Contact *c = w->c;
     int count = 0;
     double size = c->impulse / c->clock, speed = c->speed, way = speed * c->clock, values[WITH];
-    double tiny = ROUNDING * size, near = 1e-11, rest = (1 - c->restitution * c->restitution) * c->deepest;
+    /* forces are known to what a step may leave out of them */
+    double tiny = fmax(ROUNDING * size, 20 * c->tolerance * c->impulse / s->step), near = 1e-11, rest = (1 - c->restitution * c->restitution) * c->deepest;
     if (w->hold.press == LOAD) GUARD(COMPRESSED, near * speed, -s->v[N][i]);
     else {
         GUARD(APART, near * way, s->depth[i] - rest);
@@ -238,4 +239,4 @@ static int next(Work *w, int event)
     return 1;
 }
 
-const Law raised = {first_grip, begin, residual, guards, taken, next};
+const Law raised = {first_grip, begin, begin, residual, guards, taken, next};

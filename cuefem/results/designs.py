@@ -1,0 +1,189 @@
+"""Solved designs: what the numbers of a scene are computed from, for one scene as for many."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from cuefem.beam.modes import modes
+from cuefem.beam.system import assemble
+from cuefem.beam.tip import TipModes
+from cuefem.beam.waves import mesh_for
+from cuefem.contact.strike import strike_modes
+from cuefem.cue import Array
+from cuefem.effects import Support
+from cuefem.endmass.drives import DEFINITIONS, Definition, flexible, small_offset_slope, stick
+from cuefem.endmass.undamped import StickLimit, stick_reason
+from cuefem.scene import Outcome, Resolution, Scene
+from cuefem.tip_modes import Solved
+
+TONES = 5  # bending modes that are told of one scene
+
+
+def at_offset(scene: Scene, offset: Any) -> Scene:
+    """The same stroke at another offset, or at an array of them."""
+    return replace(scene, stroke=replace(scene.stroke, offset=offset))
+
+
+def strikes_at(scene: Scene, offsets: Iterable[float], tip: TipModes) -> Iterator[Outcome]:
+    """The coupled strike at one offset after the other, each computed when it is asked for; tip: the cue's modes.
+
+    This is the one place where squirt against the offset comes from.
+    """
+    return (strike_modes(at_offset(scene, offset), tip) for offset in offsets)
+
+
+class Stick(NamedTuple):
+    """Stick end masses, kg, and small-offset squirts over phi, of cues: two arrays (cues,), and `reasons`.
+
+    A cue whose squirt no end mass has (a light shaft alone, at a long contact time, runs ahead of the ball and has a
+    negative one) has an end mass of nan and a reason. Its squirt is a number.
+    """
+
+    end_mass: Array
+    squirt: Array
+
+    @property
+    def reasons(self) -> tuple[str | None, ...]:
+        """Why a cue has no end mass; None if it has one."""
+        return tuple(
+            stick_reason(slope) if np.isnan(mass) else None
+            for mass, slope in zip(self.end_mass.tolist(), self.squirt.tolist(), strict=True)
+        )
+
+
+class Designs:
+    """Scenes that are solved: arrays (designs, ...) in SI, each computed when it is first asked for.
+
+    Here every design is computed by itself, by its tip modes, which a kind of designs makes in its own way.
+    """
+
+    def __init__(self, scenes: Sequence[Scene]) -> None:
+        self.scenes = scenes
+        self._outcomes: dict[tuple[int, float | None], Outcome] = {}
+
+    def tip(self, i: int) -> TipModes:
+        """Tip modes of a design that a strike takes."""
+        raise AssertionError(f"{type(self).__name__} has no tip modes of its own")
+
+    def _of_cues(self, name: str) -> Array:
+        return np.array([getattr(scene.cue, name) for scene in self.scenes], dtype=float)
+
+    @property
+    def mass(self) -> Array:
+        """Mass of the cue, kg."""
+        return self._of_cues("mass")
+
+    @property
+    def shaft_mass(self) -> Array:
+        """Mass of the segments, kg."""
+        return self._of_cues("shaft_mass")
+
+    @property
+    def balance_point(self) -> Array:
+        """Centre of the segments' mass, m from the tip."""
+        return self._of_cues("balance_point")
+
+    @property
+    def tip_stiffness(self) -> Array:
+        """Static tip stiffness, N/m: see `static_tip_stiffness`."""
+        raise AssertionError(f"{type(self).__name__} has no stiffness of its own")
+
+    @property
+    def frequencies(self) -> Array:
+        """The lowest bending frequencies, Hz, (designs, n)."""
+        raise AssertionError(f"{type(self).__name__} has no frequencies of its own")
+
+    @cached_property
+    def stick(self) -> Stick:
+        """Stick end mass, kg, nan if a design has none, and small-offset squirt over phi."""
+        both = np.array([self._stick(i) for i in range(len(self.scenes))])
+        return Stick(both[:, 0], both[:, 1])
+
+    def _stick(self, i: int) -> tuple[Any, float]:
+        scene, tip = self.scenes[i], self.tip(i)
+        limit = StickLimit.of(scene)
+        if scene.lumped is not None:
+            return scene.lumped.end_mass, small_offset_slope(tip, scene)
+        if scene.effects:
+            slope = small_offset_slope(tip, scene)
+            none = np.isnan(limit.end_masses(limit.impulse(slope)))
+            return np.nan if none else stick(tip, scene), slope
+        J = limit.transverse_impulse(*flexible(tip))
+        return limit.end_masses(J), float(limit.slope(J))
+
+    def stick_at(self, offset: float) -> Array:
+        """End mass of a tip that sticks at an offset b/R, kg, (designs,)."""
+        return np.array([self.end_mass(i, DEFINITIONS["offset"], offset) for i in range(len(self.scenes))])
+
+    def end_mass(self, i: int, definition: Definition, offset: float | None) -> float:
+        """End mass of a design by a definition, kg, at an offset b/R or at its scene's own."""
+        return float(definition.of(self.tip(i), self._scene(i, offset)))
+
+    def _scene(self, i: int, offset: float | None) -> Scene:
+        return self.scenes[i] if offset is None else at_offset(self.scenes[i], offset)
+
+    def strike(self, i: int, offset: float | None) -> Outcome:
+        """The coupled strike of a design at an offset b/R, or at its scene's own; each is made once."""
+        if (i, offset) not in self._outcomes:
+            self._outcomes[i, offset] = strike_modes(self._scene(i, offset), self.tip(i), recorded=False)
+        return self._outcomes[i, offset]
+
+
+class OneDesign(Designs):
+    """One scene at the accuracy of single questions, from what is solved of it already.
+
+    outcome: of its own strike, if it is known.
+    """
+
+    def __init__(self, solved: Solved, outcome: Outcome | None = None) -> None:
+        super().__init__([solved.scene])
+        self.solved = solved
+        if outcome is not None:
+            self._outcomes[0, None] = outcome
+
+    def tip(self, i: int) -> TipModes:
+        """Tip modes that a strike takes."""
+        return self.solved.tip
+
+    @property
+    def tip_stiffness(self) -> Array:
+        """Static tip stiffness, N/m, on the mesh of the lowest tones."""
+        scene = self.scenes[0]
+        return np.array([static_tip_stiffness(scene, Resolution(*mesh_for(scene.shaft, TONES), TONES))])
+
+    @cached_property
+    def frequencies(self) -> Array:
+        """The lowest bending frequencies, Hz, (1, TONES)."""
+        scene = self.scenes[0]
+        return modes(scene.shaft, TONES, effects=scene.cue_effects).frequencies[None]
+
+    def end_mass(self, i: int, definition: Definition, offset: float | None) -> float:
+        """End mass by a definition, kg, from the tip modes that the definition takes."""
+        return float(definition.of(definition.tip_of(self.solved), self._scene(0, offset)))
+
+
+def static_tip_stiffness(scene: Scene, at: Resolution) -> float:
+    """Static tip stiffness, N/m, of a cue with its effects, its butt end clamped: one linear solve of the beam.
+
+    Good to 1e-8; without effects `CueBatch.tip_stiffness` is exact.
+    """
+    clamp = Support(scene.shaft.length, np.inf, np.inf)
+    system = assemble(scene.shaft, elements=at.elements, order=at.order, effects=(*scene.cue_effects, clamp))
+    force = np.eye(system.mesh.unknowns, 1)[:, 0]
+    K = system.K if isinstance(system.K, np.ndarray) else system.K.toarray()
+    if len(system.tied):
+        free = system.free
+        assert free is not None
+        bent = free @ np.linalg.solve(free.T @ (free.T @ K).T, free.T @ force)
+    else:  # no sparse matrix is needed, whose library takes 0.1 s to load
+        left = np.ones(system.mesh.unknowns, dtype=bool)
+        left[system.fixed] = False
+        bent = np.zeros(len(force))
+        bent[left] = np.linalg.solve(K[np.ix_(left, left)], force[left])
+    # the work of the force less the strain energy, twice: the rounding of K enters it squared
+    return float(1 / (2 * force @ bent - np.sum(system.strains(bent[:, None]) ** 2)))

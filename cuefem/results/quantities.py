@@ -1,0 +1,332 @@
+"""The results: every number that can be told of a scene, declared once.
+
+One entry of `RESULTS` is all that a new number takes: it is then in `report` and its JSON, in the designer's numbers, a
+response of sweeps, scatters and optimizations, and with these in their tables, pages and pandas frames.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import KW_ONLY, dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from cuefem.cue import Array
+from cuefem.scene import Outcome, Scene
+from cuefem.squirt import natural_pivot_length
+
+if TYPE_CHECKING:  # at work every command that writes a number would pay for it
+    from cuefem.results.designs import Designs
+
+NONE = "–"
+# The units in which a cue maker reads what a record holds in SI: how many of them one SI unit is, and their name.
+TRADE = {
+    "kg": (1e3, "g"),
+    "m": (1e3, "mm"),
+    "s": (1e3, "ms"),
+    "rad": (math.degrees(1), "°"),
+    "Pa": (1e-9, "GPa"),
+    "kg/m^3": (1.0, "kg/m³"),
+    "1/sqrt(kg)": (1.0, "/√kg"),
+}
+# The same for who measures in inches and ounces, and the decimals that each of these units takes more.
+IMPERIAL = TRADE | {"kg": (1e3 / 28.349523125, "oz"), "m": (1e3 / 25.4, "in")}
+_FINER = {"in": 2, "oz": 0}
+Units = Mapping[str, tuple[float, str]]
+
+
+@dataclass(frozen=True)
+class Result:
+    """A number of a scene: what it is called, its SI unit ("" for a pure number or a word), and how it is computed.
+
+    words: its name for people, in full. decimals: in the unit that people read; None for four digits in all. heading:
+    its name over a column, by default the words. about: what it is, in a line. of: its values of solved designs, at an
+    argument (None: at the scene's own offset); without it, it is told in records alone, which compute it. argument:
+    what it takes in brackets, "", "mode" or "offset". strikes: whether it needs the tip's modes up to the contact's
+    cutoff. segments: whether it needs a cue of segments. limit: whether without an offset it is the limit of small
+    offsets. reasons: for each design why it is nan, or None. better: which a player wants, "lower" or "higher", by
+    which a summary picks designs. solves: whether it takes a linear solve of its own. listed: whether a report and the
+    designer list it; what has a table of its own is not.
+    """
+
+    words: str
+    unit: str = ""
+    decimals: int | None = None
+    _: KW_ONLY
+    heading: str = ""
+    about: str = ""
+    of: Callable[[Designs, Any], Array] | None = None
+    argument: str = ""
+    strikes: bool = False
+    segments: bool = False
+    limit: bool = False
+    reasons: Callable[[Designs], Sequence[str | None]] | None = None
+    better: str = ""
+    solves: bool = False
+    listed: bool = True
+
+    @property
+    def in_short(self) -> str:
+        """Its name over a column."""
+        return self.heading or self.words
+
+    @property
+    def shown_unit(self) -> str:
+        """The unit that people read it in."""
+        return self.shown_in()[1]
+
+    @property
+    def scale(self) -> float:
+        """How many of the units that people read one SI unit is."""
+        return self.shown_in()[0]
+
+    def shown_in(self, units: Units = TRADE) -> tuple[float, str]:
+        """How many of the units that people read one SI unit is, and the name of that unit."""
+        return units.get(self.unit, (1.0, self.unit))
+
+    def number(self, value: float, *, brief: bool = False, units: Units = TRADE) -> str:
+        """A value in the unit that people read, without it; brief: three decimals at most."""
+        scale, unit = self.shown_in(units)
+        if self.decimals is None:
+            return significant(scale * value)
+        decimals = self.decimals + _FINER.get(unit, 0)
+        return f"{scale * value:.{min(decimals, 3) if brief else decimals}f}"
+
+    def written(self, value: Any, *, brief: bool = False, units: Units = TRADE) -> str:
+        """A value with its unit; a dash if there is no value; words unchanged."""
+        if isinstance(value, str):
+            return value
+        if value is None or not math.isfinite(value):
+            return NONE
+        unit = self.shown_in(units)[1]
+        space = "" if unit in ("°", "") else " "
+        return f"{self.number(float(value), brief=brief, units=units)}{space}{unit}"
+
+
+class _Error(Result):
+    """A relative error, of which only the size means anything."""
+
+    def number(self, value: float, *, brief: bool = False, units: Units = TRADE) -> str:
+        """Two digits and a power of ten."""
+        return f"{value:.1e}"
+
+
+def significant(value: float, digits: int = 4) -> str:
+    """A number to so many digits where they are decimals."""
+    if value == 0 or not math.isfinite(value):
+        return f"{value:.0f}"
+    decimals = max(0, digits - 1 - math.floor(math.log10(abs(value))))
+    return f"{value:.{decimals}f}"
+
+
+# The offset that stands for the limit b -> 0 in formulas; they leave an error of its square.
+SMALL = 1e-6
+
+
+def pivot_length(scene: Scene, squirt: Any) -> Any:
+    """The natural pivot length of a squirt, m; None for a head-on stroke, which has none."""
+    if not np.all(scene.stroke.offset):
+        return None
+    return _pivot(scene, scene.stroke.offset, squirt)
+
+
+def _pivot(scene: Scene, offset: Any, squirt: Any) -> Any:
+    return natural_pivot_length(offset, squirt, radius=scene.ball.radius, dome_radius=scene.dome_radius)
+
+
+def _pivot_lengths(designs: Designs, offset: float | None) -> Array:
+    if offset is None:
+        slopes = zip(designs.scenes, designs.stick.squirt, strict=True)
+        return np.array([_pivot(scene, SMALL, slope * np.arcsin(SMALL)) for scene, slope in slopes])
+    strikes = enumerate(designs.scenes)
+    return np.array([_pivot(scene, offset, designs.strike(i, offset).squirt) for i, scene in strikes], float)
+
+
+def of_strike(value: Callable[[Outcome], float]) -> Callable[[Designs, Any], Array]:
+    """A number of one coupled strike of each design, at the given offset; by default at the scene's own."""
+    return lambda designs, offset: np.array([value(designs.strike(i, offset)) for i in range(len(designs.scenes))])
+
+
+def of_drawing(value: Callable[[Scene], float]) -> Callable[[Designs, Any], Array]:
+    """A number that follows from the drawing of each design."""
+    return lambda designs, _: np.array([value(scene) for scene in designs.scenes])
+
+
+def _thinnest_wall(scene: Scene) -> float:
+    ends = ((s.tip_diameter - s.tip_bore, s.butt_diameter - s.butt_bore) for s in scene.shaft.segments)
+    return min(map(min, ends)) / 2
+
+
+RESULTS = {
+    "shaft_mass": Result(
+        *("mass of the drawn part", "kg"),
+        heading="shaft mass",
+        about="mass of the segments",
+        of=lambda designs, _: designs.shaft_mass,
+        segments=True,
+    ),
+    "mass": Result("mass of the cue", "kg", heading="cue mass", of=lambda designs, _: designs.mass),
+    "body_mass": Result("mass behind the drawn part", "kg"),
+    "end_mass": Result(
+        *("end mass", "kg"),
+        about="stick end mass, of small offsets; of a tip that sticks at an offset",
+        of=lambda designs, offset: designs.stick.end_mass if offset is None else designs.stick_at(offset),
+        argument="offset",
+        strikes=True,
+        limit=True,
+        reasons=lambda designs: designs.stick.reasons,
+        better="lower",
+        listed=False,
+    ),
+    "cue_end_mass": Result("mass of the cue's end", "kg"),
+    "lowest": Result("lowest", "kg"),
+    "highest": Result("highest", "kg"),
+    "length": Result("length", "m", 0),
+    "balance_point": Result(
+        *("balance point of the drawn part, from the tip", "m", 1),
+        heading="balance point",
+        about="centre of the segments' mass, from the tip",
+        of=lambda designs, _: designs.balance_point,
+        segments=True,
+    ),
+    "radius": Result("radius", "m", 2),
+    "squirt": Result(
+        *("squirt", "rad", 3),
+        about="of the coupled strike",
+        of=of_strike(lambda outcome: outcome.squirt),
+        argument="offset",
+        strikes=True,
+        better="lower",
+    ),
+    "squirt_slope": Result(
+        "squirt slope",
+        about="squirt over phi in the limit of small offsets",
+        of=lambda designs, _: designs.stick.squirt,
+        strikes=True,
+        better="lower",
+        listed=False,
+    ),
+    "pivot_length": Result(
+        *("natural pivot length", "m", 0),
+        about="of small offsets, or of the coupled strike at an offset",
+        of=_pivot_lengths,
+        argument="offset",
+        strikes=True,
+        limit=True,
+        better="higher",
+        listed=False,
+    ),
+    "speed": Result("speed", "m/s", 4),
+    "ball_speed": Result(
+        *("ball speed", "m/s", 4),
+        about="after the coupled strike",
+        of=of_strike(lambda outcome: outcome.ball_speed),
+        argument="offset",
+        strikes=True,
+        better="higher",
+    ),
+    "ball_velocity": Result("ball velocity", "m/s", 4),
+    "spin": Result("spin", "rad/s", 3),
+    "cue_speed": Result("cue speed after", "m/s", 4),
+    "contact_time": Result("head-on contact time", "s"),
+    "duration": Result("time in contact", "s", 4),
+    "regime": Result("grip"),
+    "grip": Result("grip"),
+    "error": _Error("estimated error"),
+    "energy": Result("energy", "J"),
+    "vibration_energy": Result(
+        *("energy of vibration", "J"),
+        about="left ringing in the cue by the coupled strike",
+        of=of_strike(lambda outcome: outcome.energy["cue vibration"]),
+        argument="offset",
+        strikes=True,
+        better="lower",
+    ),
+    "impulse": Result("impulse", "N s"),
+    "coupling": Result("coupling", "1/kg"),
+    "position": Result("distance from the tip", "m", 1),
+    "rebound_speed": Result("rebound speed", "m/s", 4),
+    "apparent_restitution": Result("apparent restitution e_A", "", 4),
+    "effective_mass": Result("effective mass", "kg"),
+    "rigid_mass": Result("effective mass of a rigid beam", "kg"),
+    "place_speed": Result("speed of the place at the end", "m/s", 4),
+    "tip_stiffness": Result(
+        *("shaft stiffness at the tip, static, butt clamped", "N/m"),
+        heading="stiffness at the tip",
+        about="static: force across the tip over its deflection, the butt end clamped",
+        of=lambda designs, _: designs.tip_stiffness,
+        segments=True,
+        solves=True,
+        better="higher",
+    ),
+    "tip_diameter": Result(
+        *("diameter of the tip", "m"),
+        heading="tip diameter",
+        of=of_drawing(lambda scene: scene.shaft.segments[0].tip_diameter),
+        segments=True,
+    ),
+    "wall": Result(
+        *("thinnest wall", "m"),
+        about="of the segments, at their ends; where solid, the radius",
+        of=of_drawing(_thinnest_wall),
+        segments=True,
+        better="higher",
+    ),
+    "frequency": Result(
+        *("tone", "Hz", 2),
+        about="of a bending mode",
+        of=lambda designs, mode: designs.frequencies[:, mode - 1],
+        argument="mode",
+        segments=True,
+        listed=False,
+    ),
+    "frequencies": Result("frequency", "Hz", 2),
+    "near": Result("frequency asked for", "Hz"),
+    "nearest": Result("nearest frequency", "Hz", 2),
+    "tip_amplitudes": Result("tip amplitude", "1/sqrt(kg)", 3),
+    "force": Result("force", "N"),
+    "depth": Result("depth", "m", 2),
+    "patch": Result("diameter of the patch", "m", 1),
+    "tip_mass": Result("mass of the leather", "kg"),
+    "E": Result("E", "Pa"),
+    "G": Result("G", "Pa"),
+    "rho": Result("rho", "kg/m^3"),
+    "seconds": Result("seconds", "s"),
+}
+UNITS = {name: result.unit for name, result in RESULTS.items() if result.unit}
+# How the tip gripped the ball, by what `cuefem.contact.outcome.grip_of` tells: a word for tables, and the same in full.
+GRIPS = {
+    "stick": ("held", "the tip held the ball, at once or after a short slip"),
+    "late stick": ("held late", "slipped first, then held late, near a miscue"),
+    "slip reversal": ("slipped back", "slipped first, then slipped back"),
+    "miscue": ("miscue", "slipped to the end, a miscue"),
+    "slides": ("let go", "held at first, then slid through more than a quarter of the push, near a miscue"),
+    "lets go": ("miscue", "held at first, then slid through more than half of the push, a miscue"),
+}
+
+
+def units_of(*names: str) -> dict[str, str]:
+    """The SI units of some quantities."""
+    return {name: UNITS[name] for name in names}
+
+
+def written(name: str, value: Any, *, brief: bool = False) -> str:
+    """A value of the quantity of that name, with its unit."""
+    return RESULTS[name].written(GRIPS[value][0] if name in ("regime", "grip") and value else value, brief=brief)
+
+
+def grams(mass: float | None) -> str:
+    """A mass in grams, to four digits where they are decimals."""
+    return RESULTS["mass"].written(mass)
+
+
+def degrees(angle: float | None) -> str:
+    """An angle in degrees, to a thousandth."""
+    return RESULTS["squirt"].written(angle)
+
+
+def millimetres(length: float | None) -> str:
+    """A length in whole millimetres."""
+    return RESULTS["length"].written(length)

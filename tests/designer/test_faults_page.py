@@ -1,0 +1,119 @@
+"""What people stumbled over on the page, and no longer do: labels, digits, and where there is more (regression)."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import cuefem as cf
+from cuefem.designer.sliders import sliders
+from cuefem.designer.start import first_scene
+from cuefem.designer.units import INCHES
+from cuefem.report.page import page as report_page
+from cuefem.vary import knobs_of
+from tests.helpers.designer_browser import BROWSER, launched, opened, served, settled
+
+pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
+pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
+browsed = [
+    pytest.mark.heavy,
+    pytest.mark.skipif(BROWSER is None, reason="needs Chromium: apt-get install chromium"),
+]
+MESHES = Path(__file__).parents[2] / "meshes"
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    with launched() as made:
+        yield made
+
+
+@pytest.fixture(scope="module")
+def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    with served(tmp_path_factory.mktemp("designer")) as made:
+        yield made
+
+
+def test_a_place_is_labelled_as_it_is() -> None:
+    labels = [slider.label for slider in sliders(first_scene())]
+    assert "Taper, at 330.2 mm" in labels
+    assert "Taper, at 13 in" in [slider.label for slider in sliders(first_scene(), INCHES)]
+
+
+def test_inches_have_no_more_digits_than_a_maker_reads() -> None:
+    knobs = knobs_of(first_scene())
+    texts = {slider.knob: slider.text(slider.shown(knobs)) for slider in sliders(first_scene(), INCHES)}
+    assert texts["tip_diameter"] == "0.502"
+    assert max(len(text.partition(".")[2]) for text in texts.values()) <= 4
+
+
+class TestOnThePage:
+    pytestmark = browsed
+
+    def test_the_bores_label_follows_the_ferrule(self, browser: Any, address: str) -> None:
+        with opened(browser, address) as page:
+            page.get_by_label("Bore depth, from 25 mm on, mm, as a number").wait_for()
+            page.get_by_label("Ferrule length, mm, as a number").fill("20")
+            page.get_by_label("Bore depth, from 20 mm on, mm, as a number").wait_for()
+            page.get_by_role("slider", name="Bore depth, from 20 mm on, mm").wait_for()
+            settled(page)
+            assert page.locator(".knob").filter(has_text="from 20 mm on").count() == 1
+            page.get_by_role("button", name="Undo").click()
+            page.get_by_label("Bore depth, from 25 mm on, mm, as a number").wait_for()
+
+    def test_all_fields_are_short_in_inches(self, browser: Any, address: str) -> None:
+        with opened(browser, address) as page:
+            page.get_by_text("Everything in this design").click()
+            page.get_by_role("checkbox", name="AxialWaves").wait_for()
+            page.get_by_role("combobox", name="Units").click()
+            page.get_by_role("option", name="in, oz").click()
+            page.get_by_label("Tip diameter, in, as a number").wait_for()
+            settled(page)
+            values = [field.input_value() for field in page.locator('input[inputmode="decimal"]').all()]
+            assert max(len(value.partition(".")[2]) for value in values) <= 5
+            labelled = page.locator("label").filter(has_text=re.compile("length, in")).locator("input").all()
+            assert all(re.fullmatch(r"[0-9]+(\.[0-9]{1,4})?", field.input_value()) for field in labelled)
+
+    @pytest.mark.parametrize("scheme", ["light", "dark"])
+    def test_the_knobs_show_that_there_are_more(self, browser: Any, address: str, scheme: str) -> None:
+        """A shadow stands at the end of the panel until one has scrolled to the last knob."""
+        with opened(browser, address, scheme=scheme) as page:
+            box = page.locator(".knobs").bounding_box()
+            strip = {"x": box["x"] + 2, "y": box["y"] + min(box["height"], 900 - box["y"]) - 4, "width": 8, "height": 3}
+            page.evaluate("document.querySelector('.knobs').scrollTop = 0; scrollTo(0, 0)")
+            page.evaluate("document.querySelector('.knobs').style.maxHeight = (innerHeight - 230) + 'px'")
+            box = page.locator(".knobs").bounding_box()
+            strip["y"] = box["y"] + box["height"] - 5
+            more = page.screenshot(clip=strip)
+            page.evaluate("document.querySelector('.knobs').scrollTop = 1e6")
+            page.wait_for_timeout(200)
+            assert page.screenshot(clip=strip) != more
+
+    def test_a_legends_words_stay_together_on_a_phone(self, browser: Any) -> None:
+        context = browser.new_context(viewport={"width": 390, "height": 844})
+        page = context.new_page()
+        page.set_content(report_page("hollow", cf.usual_scene(cf.load(MESHES / "pool_hollow.toml"))))
+        shapes = page.evaluate(
+            "[...document.querySelectorAll('.legend > span')].map(e => [e.innerText.length,"
+            " e.getBoundingClientRect().height, e.scrollWidth, e.parentElement.clientWidth])"
+        )
+        context.close()
+        assert len(shapes) > 3
+        for letters, height, wide, room in shapes:
+            assert height < 26 * (1 + letters // 30)  # as many lines as its letters take
+            assert wide <= room
+
+    def test_the_printed_glossary_shows_every_letter(self, browser: Any) -> None:
+        page = browser.new_page()
+        page.set_content(report_page("hollow", cf.usual_scene(cf.load(MESHES / "pool_hollow.toml"))))
+        page.emulate_media(media="print")
+        hidden = page.evaluate(
+            "[...document.querySelectorAll('.word')].filter(e => getComputedStyle(e).overflowX !== 'visible').length"
+        )
+        assert page.locator(".word").count() > 10
+        page.close()
+        assert hidden == 0

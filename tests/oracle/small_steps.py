@@ -1,0 +1,257 @@
+"""A contact of its own for what checks the package: small steps of equal length, without phases and without events.
+
+Cue, ball and table move in three dimensions in the table's frame (x right, y forward, z up). A step is half of the
+free motion (exact), a blow of the contact's forces, and the other half. The tip's force along the normal follows from
+the positions; friction, at the tip and on the table, is what leaves the sliding point at rest at the end of the step,
+or its bound against the sliding. Whoever slips, sticks, lifts off or touches again comes out of that.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.linalg as la
+from numpy.typing import NDArray
+
+from cuefem import (
+    Cue,
+    Elevation,
+    Joint,
+    PointMass,
+    Scene,
+    SecondHit,
+    StructuralDamping,
+    Support,
+    TipDome,
+    TipShear,
+)
+from tests.oracle.spectral_beam import Bending, bending
+
+Array = NDArray[np.float64]
+SWEEPS, SETTLED = 200, 1e-13  # of the friction of a raised cue, and when it has settled
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What small steps say of a strike, in the words of `cuefem.Outcome`.
+
+    touches: when each contact of tip and ball began, s. vibration, lost: energy of the cue's vibrations, and what its
+    dampers took, over the energy at the start.
+    """
+
+    squirt: float
+    ball_speed: float
+    spin: float
+    cue_speed: float
+    duration: float
+    touches: tuple[float, ...]
+    vibration: float
+    lost: float
+
+
+def struck(scene: Scene, modes: int, steps: int) -> Seen:
+    """A strike with so many flexible modes of the free cue, in so many steps for a head-on contact time."""
+    return Steps(scene, modes, steps).run()
+
+
+class Steps:
+    """The strike of one scene; see `struck`."""
+
+    def __init__(self, scene: Scene, modes: int, steps: int) -> None:
+        known = (Elevation, SecondHit, Support, Joint, StructuralDamping, PointMass, TipDome, TipShear)
+        assert all(isinstance(effect, known) for effect in scene.effects), scene.effects
+        self.scene = scene
+        self.raised = self._effect(Elevation)
+        self.ball, self.tip, self.stroke = scene.ball, scene.tip, scene.stroke
+        self.bent = self._bent(modes)
+        added = math.fsum(effect.mass for effect in scene.effects if isinstance(effect, PointMass))
+        self.mass = scene.cue.mass + added
+        felt = 1 / (1 / self.ball.mass + 1 / self.mass)
+        self.time = self.tip.contact_time
+        self.stiffness = felt * (math.pi / 2 * (1 + self.tip.restitution) / self.time) ** 2
+        self.step = self.time / steps
+        self.planes = 2 if self.raised else 1
+        self.many = len(self.bent.omega)
+        self.body = 1 + self.planes * self.many  # where the ball's coordinates begin: x, y, z and R times its turning
+        self.size = self.body + 6
+        self._frame()
+        self._half_step()
+
+    def _effect(self, kind: type[Any]) -> Any:
+        return next((effect for effect in self.scene.effects if isinstance(effect, kind)), None)
+
+    def _bent(self, modes: int) -> Bending:
+        cue = self.scene.cue
+        if not isinstance(cue, Cue):  # a mass along the axis and one across it
+            assert cue.coupling == 0
+            one = np.array([cue.end_mass**-0.5])
+            return Bending(np.zeros(1), one, np.zeros(1), np.zeros((1, 1)))
+        on_cue = tuple(e for e in self.scene.effects if isinstance(e, (Support, Joint, StructuralDamping, PointMass)))
+        return bending(cue, on_cue, modes + 2)
+
+    def _frame(self) -> None:
+        """Rows that read the relative velocity, ball less tip, along each direction of the contact and of the table."""
+        a = self.raised.angle if self.raised else 0.0
+        s = self.stroke.offset
+        c = math.sqrt(1 - s * s)
+        right, up = np.eye(3)[0], np.eye(3)[2]
+        axis, rise = np.array([0, math.cos(a), -math.sin(a)]), np.array([0, math.sin(a), math.cos(a)])
+        n, t = c * axis - s * right, s * axis + c * right
+        r = math.fsum(effect.radius for effect in self.scene.effects if isinstance(effect, TipDome))
+        bent, many = self.bent, self.many
+        tip = np.zeros((3, self.size))  # velocity of the tip's contact point in the table's frame
+        tip += np.outer(axis, np.eye(self.size)[0]) / math.sqrt(self.mass)
+        for plane, way in zip(range(self.planes), (right, rise), strict=False):
+            modes = slice(1 + plane * many, 1 + (plane + 1) * many)
+            tip[:, modes] += np.outer(way, bent.across + r * (1 - c) * bent.turning)
+            if plane == 0:  # the contact lies r s left of the axis, so that a turning end moves it along the axis
+                tip[:, modes] += np.outer(axis, -r * s * bent.turning)
+
+        def row(way: Array, arm: Array, *, of_tip: bool) -> Array:
+            found = np.zeros(self.size)
+            found[self.body : self.body + 3], found[self.body + 3 :] = way, np.cross(arm, way)
+            return found - way @ tip if of_tip else found
+
+        self.masses = np.ones(self.size)
+        self.masses[self.body : self.body + 3] = self.ball.mass
+        self.masses[self.body + 3 :] = self.ball.inertia * self.ball.mass
+        self.row_n = row(n, -n, of_tip=True)
+        rows = [row(t, -n, of_tip=True)]
+        if self.raised:
+            rows.append(row(np.cross(t, n), -n, of_tip=True))
+            rows += [row(up, -up, of_tip=False), row(right, -up, of_tip=False)]
+            rows.append(row(np.array([0.0, 1.0, 0.0]), -up, of_tip=False))
+        self.rows = np.array(rows)
+
+    def _half_step(self) -> None:
+        """The free motion over half a step, and what a blow at its middle does to the velocities at its end."""
+        n, many = self.size, self.many
+        A = np.zeros((2 * n, 2 * n))
+        A[:n, n:] = np.eye(n)
+        for plane in range(self.planes):
+            modes = np.arange(1 + plane * many, 1 + (plane + 1) * many)
+            A[n + modes, modes] = -(self.bent.omega**2)
+            A[np.ix_(n + modes, n + modes)] = -self.bent.damping
+        self.half = la.expm(A * self.step / 2)
+        self.reading = np.concatenate([np.zeros_like(self.rows), self.rows], axis=1) @ self.half
+        wide = np.concatenate([self.row_n[None], self.rows]) / self.masses
+        self.blows = np.concatenate([np.zeros_like(wide), wide], axis=1)  # of unit impulses: normal, then the rows
+        self.gram = self.reading @ self.blows.T
+
+    def run(self) -> Seen:
+        """The strike from touch to the last separation."""
+        n, h, e, k = self.size, self.step, self.tip.restitution, self.stiffness
+        shear = self._effect(TipShear)
+        window = self._effect(SecondHit)
+        z = np.zeros(2 * n)
+        z[n] = self.stroke.speed * math.sqrt(self.mass)
+        first = z[n] ** 2 / 2
+        deepest = F_t = before = time = left = force = lost = 0.0
+        until: float | None = None  # the first separation, from which the window of a second hit counts
+        touching, touches, tangent = False, list[float](), np.zeros(len(self.rows))
+        while True:
+            z = self.half @ z
+            time += h / 2
+            depth = -float(self.row_n @ z[:n])
+            deepest = max(deepest, depth)
+            last = force
+            force = k * depth if depth == deepest else k / e**2 * (depth - (1 - e**2) * deepest)
+            if force > 0 and not touching:
+                touching = True
+                touches.append(time)
+            elif force <= 0 and touching:  # where the line through the last two passes zero
+                left = time - h * force / (force - last)
+                touching, until = False, left if until is None else until
+            if not touching and until is not None and (window is None or time > until + window.window):
+                break
+            impulse = h * max(force, 0.0)
+            if shear is not None:
+                shift = float(self.rows[0] @ z[:n])
+                bound = self.tip.friction * impulse / h if impulse else 0.0
+                F_t = min(max(F_t - shear.ratio * k * (shift - before), -bound), bound)
+                before, tangent = shift, np.array([h * F_t])
+            elif impulse:
+                tangent = self._rubbed(self.reading @ z + self.gram[:, 0] * impulse, impulse, tangent)
+            else:
+                tangent = np.zeros(len(self.rows))
+                if self.raised:
+                    tangent = self._rubbed(self.reading @ z, 0.0, tangent)
+            z = z + self.blows[0] * impulse + tangent @ self.blows[1:]
+            lost += self._damped(z)
+            z = self.half @ z
+            time += h / 2
+            assert time < 300 * self.time, "the small steps do not end"
+        return self._seen(z, left, touches, lost, first)
+
+    def _damped(self, z: Array) -> float:
+        """What dampers take in a step, J."""
+        if not self.bent.damping.any():
+            return 0.0
+        v = z[self.size + 1 : self.size + 1 + self.many]
+        return float(v @ self.bent.damping @ v) * self.step
+
+    def _rubbed(self, sliding: Array, pressed: float, guess: Array) -> Array:
+        """Impulses along the rows: the tip's friction, and of a raised cue the table's push and friction.
+
+        sliding: velocities at the end of the step without them.
+        """
+        mu = self.tip.friction
+        G = self.gram[:, 1:]
+        if not self.raised:
+            wanted = -sliding[0] / G[0, 0]
+            bound = mu * pressed if math.isfinite(mu) else math.inf
+            return np.array([min(max(wanted, -bound), bound)])
+        P = guess.copy()
+        scale = abs(pressed) + 1e-30
+        for _ in range(SWEEPS):
+            old = P.copy()
+            P[:2] = in_disk(P[:2], sliding[:2] + G[:2] @ P, G[:2, :2], mu * pressed if pressed else 0.0)
+            P[2] = max(0.0, P[2] - (sliding[2] + G[2] @ P) / G[2, 2])
+            P[3:] = in_disk(P[3:], sliding[3:] + G[3:] @ P, G[3:, 3:], self.raised.friction * P[2])
+            if np.abs(P - old).max() < SETTLED * scale:
+                break
+        return P
+
+    def _seen(self, z: Array, left: float, touches: list[float], lost: float, first: float) -> Seen:
+        n, body, many = self.size, self.body, self.many
+        v = z[n:]
+        V, turning = v[body : body + 3], v[body + 3 :] / self.ball.radius
+        vibration = 0.0
+        for plane in range(self.planes):
+            modes = slice(1 + plane * many, 1 + (plane + 1) * many)
+            moving = self.bent.omega > 0
+            vibration += float(np.sum((self.bent.omega * z[:n][modes])[moving] ** 2 + v[modes][moving] ** 2)) / 2
+        return Seen(
+            squirt=math.atan2(-V[0], V[1]),
+            ball_speed=math.hypot(V[0], V[1]),
+            spin=float(turning[2]),
+            cue_speed=float(v[0]) / math.sqrt(self.mass),
+            duration=left,
+            touches=tuple(touches),
+            vibration=vibration / first,
+            lost=lost / first,
+        )
+
+
+def in_disk(P: Array, sliding: Array, G: Array, bound: float) -> Array:
+    """The friction impulse, within its bound, that stops a sliding in two directions or goes against it.
+
+    P: the one that led to the sliding velocity.
+    """
+    free = P - np.linalg.solve(G, sliding)
+    if math.isinf(bound) or free @ free <= bound**2:
+        return free
+    if bound == 0:
+        return np.zeros(2)
+    for _ in range(50):  # the fixed point of P -> projection of P - sliding/g
+        moved = P - sliding / (G[0, 0] + G[1, 1])
+        new = moved * (bound / math.hypot(*moved))
+        sliding = sliding + G @ (new - P)
+        done = np.abs(new - P).max() <= 1e-14 * bound
+        P = new
+        if done:
+            break
+    return P

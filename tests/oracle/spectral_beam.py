@@ -1,0 +1,164 @@
+"""A beam of its own for what checks the package: Timoshenko's, in spectral elements with lumped masses.
+
+The nodes of an element are its Gauss-Lobatto points, which are its quadrature points too, so that the mass matrix is
+diagonal. Nothing of it is the package's: not its basis, not its quadrature, not its sections, not its effects.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cache
+from itertools import pairwise
+
+import numpy as np
+import scipy.linalg as la
+from numpy.polynomial import legendre
+from numpy.typing import NDArray
+
+from cuefem import Cue, Effect, Joint, Material, PointMass, Segment, StructuralDamping, Support
+
+Array = NDArray[np.float64]
+DEGREE, LONGEST = 8, 0.06  # of an element; m
+
+
+@cache
+def lobatto(degree: int) -> tuple[Array, Array, Array]:
+    """Nodes in [0, 1], weights, and the derivative matrix of the polynomials through the nodes."""
+    top = np.zeros(degree + 1)
+    top[-1] = 1.0
+    x = np.concatenate([[-1.0], np.sort(legendre.legroots(legendre.legder(top)).real), [1.0]])
+    at = legendre.legval(x, top)
+    weights = 2 / (degree * (degree + 1) * at**2)
+    apart = x[:, None] - x + np.eye(degree + 1)
+    slopes = (at[:, None] / at) / apart * (1 - np.eye(degree + 1))
+    slopes -= np.diag(slopes.sum(axis=1))  # a constant has no slope
+    return (x + 1) / 2, weights / 2, 2 * slopes
+
+
+@dataclass(frozen=True)
+class Bending:
+    """Modes of a beam: angular frequency, rad/s, deflection and rotation of the tip, and a matrix of damping, 1/s."""
+
+    omega: Array
+    across: Array
+    turning: Array
+    damping: Array
+
+
+def section(segment: Segment, s: Array) -> list[tuple[Material, Array, Array]]:
+    """(material, area, second moment of area) of the shell and of the core, at distances s from the tip's end."""
+    outer = segment.tip_diameter + (segment.butt_diameter - segment.tip_diameter) * s / segment.length
+    bore = segment.tip_bore + (segment.butt_bore - segment.tip_bore) * s / segment.length
+    parts = [(segment.material, math.pi / 4 * (outer**2 - bore**2), math.pi / 64 * (outer**4 - bore**4))]
+    if segment.core is not None:
+        parts.append((segment.core, math.pi / 4 * bore**2, math.pi / 64 * bore**4))
+    return parts
+
+
+class Assembly:
+    """Stiffness, the same with every modulus times its loss factor, dashpots, and the diagonal of masses.
+
+    Unknowns stand in the order of the nodes: deflection, rotation.
+    """
+
+    def __init__(self, cue: Cue, effects: tuple[Effect, ...]) -> None:
+        self.effects = effects
+        places = [effect.position for effect in effects if hasattr(effect, "position")]
+        ends = np.cumsum([0.0, *(segment.length for segment in cue.segments)])
+        joints = {effect.position for effect in effects if isinstance(effect, Joint)}
+        self.blocks: list[tuple[Array, float, Segment, float]] = []  # nodes, length, segment, start in the segment
+        self.node: dict[float, int] = {0.0: 0}
+        self.before: dict[float, int] = {}  # the node of a joint's other side
+        last, count = 0, 1
+        for (start, end), segment in zip(pairwise(ends), cue.segments, strict=True):
+            cuts = [start, *sorted({x for x in places if start + 1e-9 < x < end - 1e-9}), end]
+            for a, b in pairwise(cuts):
+                many = math.ceil((b - a) / LONGEST)
+                for i in range(many):
+                    nodes = np.concatenate([[last], np.arange(count, count + DEGREE)])
+                    self.blocks.append((nodes, (b - a) / many, segment, a - start + i * (b - a) / many))
+                    last, count = int(nodes[-1]), count + DEGREE
+                where = next((x for x in places if abs(x - b) < 1e-9), b)
+                if where in joints:
+                    self.before[where] = last
+                    last, count = count, count + 1
+                self.node[where] = last
+        self.count = count
+
+    def matrices(self) -> tuple[Array, Array, Array, Array]:
+        """(K, K with losses, C, diagonal of M) of all unknowns."""
+        size = 2 * self.count
+        K, lossy, C, M = np.zeros((size, size)), np.zeros((size, size)), np.zeros((size, size)), np.zeros(size)
+        x, weights, slopes = lobatto(DEGREE)
+        loss = next((effect.loss for effect in self.effects if isinstance(effect, StructuralDamping)), None)
+        for nodes, length, segment, start in self.blocks:
+            w, theta, n = 2 * nodes, 2 * nodes + 1, len(nodes)
+            slope = slopes / length
+            bend, shear = np.zeros((n, 2 * n)), np.zeros((n, 2 * n))
+            bend[:, n:], shear[:, :n], shear[:, n:] = slope, slope, -np.eye(n)
+            both = np.concatenate([w, theta])
+            for material, area, moment in section(segment, start + x * length):
+                assert segment.kappa is not None
+                stiff = bend.T @ np.diag(weights * length * material.E * moment) @ bend
+                stiff += shear.T @ np.diag(weights * length * segment.kappa * material.G * area) @ shear
+                K[np.ix_(both, both)] += stiff
+                lossy[np.ix_(both, both)] += stiff * (material.loss if loss is None else loss)
+                M[w] += weights * length * material.rho * area
+                M[theta] += weights * length * material.rho * moment
+        for effect in self.effects:
+            if isinstance(effect, PointMass):
+                at = 2 * self.node[effect.position]
+                M[at : at + 2] += effect.mass, effect.rotary_inertia
+            elif isinstance(effect, Support):
+                at = 2 * self.node[effect.position]
+                for i, spring in enumerate((effect.stiffness, effect.rotational_stiffness)):
+                    if math.isfinite(spring):
+                        K[at + i, at + i] += spring
+                C[at, at] += effect.dashpot
+        return K, lossy, C, M
+
+    def reduced(self) -> tuple[Array, Array, Array, Array]:
+        """The matrices with the joints' springs, without what is clamped, and with what a joint leaves whole tied."""
+        K, lossy, C, M = self.matrices()
+        into = np.arange(2 * self.count)
+        for effect in self.effects:
+            if isinstance(effect, Joint):
+                ahead, behind = 2 * self.before[effect.position], 2 * self.node[effect.position]
+                for i, give in enumerate((effect.shear_compliance, effect.rotational_compliance)):
+                    if give:
+                        pair = [ahead + i, behind + i]
+                        K[np.ix_(pair, pair)] += np.array([[1, -1], [-1, 1]]) / give
+                    else:
+                        into[ahead + i] = into[behind + i]
+        clamped = {
+            2 * self.node[effect.position] + i
+            for effect in self.effects
+            if isinstance(effect, Support)
+            for i, spring in enumerate((effect.stiffness, effect.rotational_stiffness))
+            if math.isinf(spring)
+        }
+        kept = sorted(set(into.tolist()) - clamped)
+        T = np.zeros((len(into), len(kept)))
+        for i, unknown in enumerate(into.tolist()):
+            if unknown in kept:
+                T[i, kept.index(unknown)] = 1.0
+        return T.T @ K @ T, T.T @ lossy @ T, T.T @ C @ T, T.T @ np.diag(M) @ T
+
+
+def bending(cue: Cue, effects: tuple[Effect, ...], count: int) -> Bending:
+    """The lowest ``count`` modes, rigid ones included, with the effects on the cue."""
+    K, lossy, C, M = Assembly(cue, effects).reduced()
+    shift = 4e4
+    size = len(K)
+    inverse, vectors = la.eigh(M, K + shift * M, subset_by_index=[size - count, size - 1])
+    squared = 1 / inverse[::-1] - shift
+    shapes = vectors[:, ::-1] / np.sqrt(np.einsum("in,ij,jn->n", vectors, M, vectors))[::-1]
+    omega = np.where(squared > 1e-5 * shift, np.sqrt(np.abs(squared)), 0.0)
+    damping = shapes.T @ C @ shapes
+    if any(isinstance(effect, StructuralDamping) for effect in effects):
+        moving = omega > 0
+        lost = np.einsum("in,ij,jn->n", shapes, lossy, shapes)
+        strain = np.einsum("in,ij,jn->n", shapes, K, shapes)
+        damping = damping + np.diag(np.where(moving, lost / np.where(moving, strain, 1.0) * omega, 0.0))
+    return Bending(omega, shapes[0], shapes[1], damping)

@@ -1,0 +1,110 @@
+"""Every named place of every ready cue is set and reads back, alone and with others, in any order (properties)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import cuefem as cf
+from cuefem.designer.presets import PRESETS, opened
+from cuefem.materials import LEATHERS, material
+from cuefem.parts import outer_diameter, taper_position
+from cuefem.vary import PLACES, knobs_of, paths, turned, varied
+
+SCENES = {preset.name: opened(preset)[0] for preset in PRESETS}
+FIRST = SCENES[PRESETS[0].name]
+# A joint or a bridge that does not act has no position; what has no depth has no width.
+IDLE = {"joint_position", "bridge_position", "bore_width"}
+
+
+def numbers(scene: cf.Scene) -> dict[str, float]:
+    """The values of all places that hold a number above 0."""
+    values = {key: known.value(scene) for key, known in PLACES.items() if not known.materials}
+    return {key: value for key, value in values.items() if value}
+
+
+@pytest.mark.parametrize("name", SCENES)
+@given(permille=st.integers(-10, 10))
+def test_every_place_is_set_and_reads_back(name: str, permille: int) -> None:
+    scene = SCENES[name]
+    for key, value in numbers(scene).items():
+        made = varied(scene, {PLACES[key].name: value * (1 + permille / 1000)})
+        if key not in IDLE:
+            assert PLACES[key].value(made) == pytest.approx(value * (1 + permille / 1000), rel=1e-9), key
+        assert made.ball == scene.ball
+        assert made.cue.length == pytest.approx(scene.cue.length, rel=1e-12), key
+
+
+@pytest.mark.parametrize("name", SCENES)
+@given(data=st.data())
+def test_the_order_of_changes_does_not_matter(name: str, data: Any) -> None:
+    scene = SCENES[name]
+    keys = data.draw(st.lists(st.sampled_from(sorted(numbers(scene))), min_size=2, max_size=5, unique=True))
+    changes = {key: numbers(scene)[key] * 1.01 for key in keys}
+    assert varied(scene, changes) == varied(scene, dict(reversed(changes.items())))
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_place_is_named_in_many_ways(name: str) -> None:
+    scene = SCENES[name]
+    for text in ("butt diameter", "butt_diameter", "diameters.butt"):
+        made = varied(scene, {text: 0.03})
+        assert made == turned(scene, {**knobs_of(scene), "butt_diameter": 0.03})
+    assert varied(scene, {"speed": 3.0}) == varied(scene, {"stroke.speed": 3.0})
+    assert paths(scene, "segments[0].length") == paths(scene, "cue.segments[0].length")
+
+
+def test_another_name_of_the_dome() -> None:
+    assert varied(FIRST, {"tip dome": 9e-3}) == varied(FIRST, {"dome": 9e-3})
+    assert varied(FIRST, {"tip.height": 5e-3}).leather.height == 5e-3
+
+
+@given(x=st.floats(0.05, 0.7), more=st.floats(1e-8, 5e-4).flatmap(lambda size: st.sampled_from((size, -size))))
+def test_the_taper_at_a_position_moves_between_the_ends_alone(x: float, more: float) -> None:
+    name = f"taper at {1e3 * x!r} mm"
+    there = outer_diameter(FIRST.cue, x)
+    made = varied(FIRST, {name: there + more}).cue
+    for at in np.linspace(0, made.length, 15):
+        hat = np.interp(at, [0, x, made.length], [0, more, 0])
+        assert outer_diameter(made, at) == pytest.approx(outer_diameter(FIRST.cue, at) + hat, rel=1e-9)
+
+
+def test_the_taper_of_the_knob_is_that_at_its_position() -> None:
+    position = f"taper at {taper_position(FIRST.cue)!r} m"
+    assert varied(FIRST, {position: 0.014}) == varied(FIRST, {"taper diameter": 0.014})
+
+
+def test_names_stand_for_materials_and_leathers() -> None:
+    made = varied(FIRST, {"wood": "ash", "wood.E": 13e9, "leather": "soft", "ferrule material": "nylon"})
+    assert {s.material.rho for s in made.cue.segments} >= {material("ash").rho, material("nylon").rho}
+    assert all(s.material.E == 13e9 for s in made.cue.segments if s.material.rho == material("ash").rho)
+    soft = LEATHERS["soft"]
+    assert (made.leather.E, made.leather.nu, made.leather.rho) == (soft.E, soft.nu, soft.rho)
+
+
+def test_a_spring_has_a_contact_time_or_a_stiffness() -> None:
+    spring = cf.Scene(FIRST.cue, tip=cf.Tip(stiffness=1e6))
+    assert varied(spring, {"contact time": 1e-3}).tip == cf.Tip(contact_time=1e-3)
+    assert varied(spring, {"tip.contact_time": 1e-3}).tip == cf.Tip(contact_time=1e-3)
+
+
+REFUSED = {
+    "unknown": ("ferule length", "did you mean ferrule length"),
+    "absent": ("contact time", "got 'contact time', which this scene does not have"),
+    "beyond": ("taper at 5 m", "got 'taper at 5 m', which this scene does not have"),
+    "unit": ("taper at 5 kg", "must name a position such as \"taper at 330 mm\"; got 'taper at 5 kg'"),
+    "blank": ("x y", "must be a path such as"),
+    "whole": ("ferrule", "must name one number or a material; got 'ferrule', which holds length"),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_what_is_no_place_is_refused_in_words(case: str) -> None:
+    text, words = REFUSED[case]
+    with pytest.raises(ValueError, match="got") as refused:
+        varied(FIRST, {text: 1.0})
+    assert words in str(refused.value)
