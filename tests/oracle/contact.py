@@ -184,8 +184,7 @@ class Contact:
             angle[..., 1:] = unknown[..., -1, :]
         C, (own, answer), wide = self.facing(angle), self.response(length), self.ports + self.speeds
         loads = np.einsum("...ifp,...fi->...pi", C[..., 1:, :, :], F) if self.turns else self.model.facing.T @ F
-        flat = loads.reshape(*loads.shape[:-2], -1) @ answer.reshape(-1, wide * Q).T
-        y = (own @ self.xi).real + flat.reshape(*flat.shape[:-1], *answer.shape[:2])
+        y = (own @ self.xi).real + np.tensordot(loads, answer, ([-2, -1], [2, 3]))
         on = y[..., :wide, :]
         v = np.einsum("...ifp,...pi->...fi", C, on) if self.turns else self.model.facing @ on
         x = length * v @ SUMS.T

@@ -26,6 +26,11 @@ def margin(mu: float, pressing: Any, x: Any, y: Any) -> Any:
     return pressing - np.hypot(x, y) / mu if mu > 1 else mu * pressing - np.hypot(x, y)
 
 
+def held_back(mu: float, tiny: float, pressing: Any, x: Any, y: Any) -> Any:
+    """The margin as a guard: in squares, which are smooth where all three forces vanish, as they do at parting."""
+    return (mu * pressing + tiny) ** 2 - x**2 - y**2
+
+
 class Raised(Contact):
     ways: tuple[Any, Any] = (np.zeros(2), np.zeros(2))
 
@@ -79,13 +84,14 @@ class Raised(Contact):
         if self.grip == "slip":
             guards += [("gripped", self.against(s, 0), speed)] if self.mu > 0 else []
         elif math.isfinite(self.mu):
-            guards.append(("slipped", margin(self.mu, s.F[N], s.F[T], s.F[P]) + tiny, 0.0))
+            guards.append(("slipped", held_back(self.mu, max(1, self.mu) * tiny, s.F[N], s.F[T], s.F[P]), 0.0))
         if self.table == "lifted":
             return [*guards, ("landed", self.height + s.x[UP], way)]
         guards.append(("lifted", s.F[UP] + tiny, 0.0))
         of_table = self.frictions[1]
         if self.table == "held":
-            return [*guards, ("slid", margin(of_table, s.F[UP], s.F[ASIDE], s.F[AHEAD]) + tiny, 0.0)]
+            bound = max(1, of_table) * tiny
+            return [*guards, ("slid", held_back(of_table, bound, s.F[UP], s.F[ASIDE], s.F[AHEAD]), 0.0)]
         return [*guards, ("stopped", self.against(s, 1), speed)] if of_table > 0 else guards
 
     def forces_now(self, **hold: str) -> Any:
