@@ -146,13 +146,20 @@ class Contact:
         of_ball = np.stack([np.stack([ca, sa, 1 + nothing], -1), np.stack([-sa, ca, nothing], -1)], -2)
         ports = [np.stack([-s, -c], -1), np.stack([-c, s], -1)]
         if self.ports > 2:
-            du = dw = nothing
+            du, dw = self.on_dome(nothing) - self.on_dome(angle)
             if t.get("levers"):
-                du, dw = np.polynomial.chebyshev.chebval(angle / t["lever_reach"], self.model.arrays["lever_terms"].T)
-            along = ca * t["lever_t"] + sa * t["lever_n"] + t["dome"] * (ca - 1) + s * du + c * dw
-            normal = ca * t["lever_n"] - sa * t["lever_t"] - t["dome"] * sa + c * du - s * dw
+                moved = np.polynomial.chebyshev.chebval(angle / t["lever_reach"], self.model.arrays["lever_terms"].T)
+                du, dw = du + moved[0], dw + moved[1]
+            along = ca * t["lever_t"] + sa * t["lever_n"] + s * du + c * dw
+            normal = ca * t["lever_n"] - sa * t["lever_t"] + c * du - s * dw
             ports = [np.concatenate([ports[0], -along[..., None]], -1), np.concatenate([ports[1], -normal[..., None]], -1)]
         return np.concatenate([np.stack(ports, -2), of_ball], -1)
+
+    def on_dome(self, angle: Any) -> Any:
+        """The contact's place on a dome, towards (-u, -w), as it has rolled through an angle; no further than the rim."""
+        to, rim = self.terms["phi"] + angle, self.terms["rim"]
+        to = np.where(abs(np.real(to)) < rim, to, np.copysign(min(rim, 9.0), np.real(to)))
+        return self.terms["dome"] * np.array([np.sin(to), np.cos(to)])
 
     def velocities(self) -> Any:
         return self.facing(np.array(self.angle)) @ (self.readings @ self.xi).real[: self.ports + self.speeds]
@@ -191,10 +198,9 @@ class Contact:
         step = Step(length, forces_at(WITH_START, F), v, x, self.depth - x[..., 1, :], angle, loads, y[..., wide:, :])
         if not self.turns:
             return step, None
-        rate = v[..., 0, :] - y[..., self.ports + 2, :]
-        if self.ports > 2:
-            rate = rate - self.terms["dome"] * y[..., 2, :]
-        return step, (angle - self.angle + length / self.terms["reach"] * rate @ SUMS.T)[..., None, 1:]
+        rolls_on = self.terms["dome"] * (abs(self.terms["phi"] + angle.real) < self.terms["rim"])
+        rate = v[..., 0, :] - y[..., self.ports + 2, :] - (rolls_on * y[..., 2, :] if self.ports > 2 else 0.0)
+        return step, (angle - self.angle + length * (rate / (self.terms["radius"] + rolls_on)) @ SUMS.T)[..., None, 1:]
 
     def solve(self, length: float) -> Step | None:
         """A step in the hold that there is, by Newton's method; None where it does not settle."""
