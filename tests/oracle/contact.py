@@ -48,7 +48,9 @@ def forces_at(parts: Any, forces: Any) -> Any:
     return at(parts, forces, FORCE_WAVES)
 
 
-SUMS = np.array([at(place * GAUSS, np.eye(Q + 1)) @ WEIGHTS * place for place in WITH_START])  # integrals from the start
+SUMS = np.array(
+    [at(place * GAUSS, np.eye(Q + 1)) @ WEIGHTS * place for place in WITH_START]
+)  # integrals from the start
 
 
 def waves_over(part: float, forces: Any) -> Any:
@@ -114,7 +116,9 @@ class Contact:
         self.e, self.mu, self.speed, self.clock = model.restitution, model.friction, model.speed, model.time
         self.impulse, self.size = model.speed * model.ball_mass, model.speed * model.ball_mass / model.time
         self.turns = bool(self.terms.get("turns"))
-        self.linear = not self.turns and self.forces == 2 and not self.terms.get("curve") and self.terms["exponent"] == 1
+        self.linear = (
+            not self.turns and self.forces == 2 and not self.terms.get("curve") and self.terms["exponent"] == 1
+        )
         self.tolerance = self.terms["tolerance"] / (1 if self.terms.get("rings") else 10)
         self.time = self.depth = self.angle = self.shear = self.deepest = self.height = 0.0
         self.peak, self.parted, self.grows, self.last = 0.0, False, True, None
@@ -152,7 +156,10 @@ class Contact:
                 du, dw = du + moved[0], dw + moved[1]
             along = ca * t["lever_t"] + sa * t["lever_n"] + s * du + c * dw
             normal = ca * t["lever_n"] - sa * t["lever_t"] + c * du - s * dw
-            ports = [np.concatenate([ports[0], -along[..., None]], -1), np.concatenate([ports[1], -normal[..., None]], -1)]
+            ports = [
+                np.concatenate([ports[0], -along[..., None]], -1),
+                np.concatenate([ports[1], -normal[..., None]], -1),
+            ]
         return np.concatenate([np.stack(ports, -2), of_ball], -1)
 
     def on_dome(self, angle: Any) -> Any:
@@ -208,7 +215,9 @@ class Contact:
         unknown[self.forces :] = self.angle
         if self.last and not self.linear:
             part, old, forces = self.last
-            unknown[: self.forces] = forces_at(np.minimum(part + NODES * length / old, 1.0 if part < 1 else 1.2), forces)
+            unknown[: self.forces] = forces_at(
+                np.minimum(part + NODES * length / old, 1.0 if part < 1 else 1.2), forces
+            )
         count, before = unknown.size, math.inf
         scale = np.repeat([self.size] * self.forces + [1.0] * self.turns, Q)
         for _ in range(30):
@@ -226,7 +235,7 @@ class Contact:
             if not off < 1e9:
                 return None
             unknown = unknown + (scale * change).reshape(unknown.shape)
-            if off < 1e-14 or (off < 1e-9 or off * length < 1e-13 * self.clock) and off > 0.3 * before:
+            if off < 1e-14 or ((off < 1e-9 or off * length < 1e-13 * self.clock) and off > 0.3 * before):
                 step = self.moved(length, unknown)[0]
                 if self.depth == 0 and self.time == 0:
                     step.F[:, 0] = 0.0
@@ -274,7 +283,9 @@ class Contact:
         self.taken(step, part)
         span = part * step.length
         given = self.drives.T @ waves_over(part, step.loads)
-        self.xi = np.exp(self.rates * span) * self.xi + span * np.einsum("tk,kt->k", moments(self.rates * span / 2), given)
+        self.xi = np.exp(self.rates * span) * self.xi + span * np.einsum(
+            "tk,kt->k", moments(self.rates * span / 2), given
+        )
         self.angle, self.time, self.steps = float(at(part, step.angle)), self.time + span, self.steps + 1
         self.last = part, step.length, step.F[:, 1:]
 
@@ -316,7 +327,9 @@ class Contact:
 
     def fly(self, until: float) -> bool:
         """Whether ball and tip, apart, touch again by a time; else all is as it was when they parted."""
-        before = copy.deepcopy({name: value for name, value in vars(self).items() if name not in ("model", "responses")})
+        before = copy.deepcopy(
+            {name: value for name, value in vars(self).items() if name not in ("model", "responses")}
+        )
         self.grip, self.press, self.last, self.level = "apart", "free", None, 2
         if self.follow(until) == "touched" and self.time <= until:
             self.depth, self.grows, self.last = self.rest, True, None

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from tests.oracle.contact import NODES, Step, at, slope
+from tests.oracle.contact import NODES, Step, at
 from tests.oracle.planar import Planar
 
 
@@ -56,7 +56,7 @@ class Ringed(Planar):
 
     def shear_after(self, s: Step, part: float) -> float:
         """Take the rings to a part of the step; the phase of a grip that is no more ends where the step began."""
-        there = np.append(NODES[NODES < part * (1 - 1e-12)], part)
+        there = np.append(NODES[part * (1 - 1e-12) > NODES], part)
         path = [at(np.append(0.0, there), values) for values in (s.depth, s.x[0])]
         *_, self.ring_shear = self.walk(*path)
         shear, normal = float(self.ring_shear.sum()), float(at(part, s.F[1]))
