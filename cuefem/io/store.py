@@ -275,8 +275,10 @@ def opened(path: Path, *, reading: bool = False) -> sqlite3.Connection:
 
 def schema_of(path: Path, file: sqlite3.Connection) -> int:
     """The version of a file's tables, 0 if it is empty; InputError if it is another file, too new, or damaged."""
+    # Tables and mark are made in one transaction: looked for first, tables never stand without the mark.
+    empty = file.execute("SELECT count(*) FROM sqlite_master").fetchone() == (0,)
     mark, schema = (int(file.execute(f"PRAGMA {name}").fetchone()[0]) for name in ("application_id", "user_version"))
-    if not mark and file.execute("SELECT count(*) FROM sqlite_master").fetchone() == (0,):
+    if not mark and empty:
         return 0
     if mark != APPLICATION:
         raise InputError(path, "", "must be a database of `cuefem sweep`; got another one")

@@ -117,7 +117,8 @@ def significant(value: float, digits: int = 4) -> str:
     """A number to so many digits where they are decimals."""
     if value == 0 or not math.isfinite(value):
         return f"{value:.0f}"
-    decimals = max(0, digits - 1 - math.floor(math.log10(abs(value))))
+    rounded = float(f"{abs(value):.{digits - 1}e}")  # 0.99999 has the digits of 1
+    decimals = max(0, digits - 1 - math.floor(math.log10(rounded)))
     return f"{value:.{decimals}f}"
 
 
