@@ -191,12 +191,18 @@ def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
             arrays["lever_terms"] = _sampled(terms.levers, phi)
     turning = bool(u or w or (turns and (dome or terms.levers)))
     facing = np.array([[-s, -c, -lever_t, 1.0, 0.0, 1.0], [-c, s, -lever_n, 0.0, 1.0, 0.0]])
+    propagator = planar_propagator(tip, turning=turning)
+    facing = facing if turning else np.delete(facing, 2, axis=1)
+    tn, nn = (facing[:, : len(propagator.rows)] @ propagator.rows) @ (
+        facing[1, : len(propagator.rows)] @ propagator.rows
+    )
+    pushed = min(1.0, abs(float(tn)) / (float(nn) + 1 / mass))  # by what moves the tip along and across at once
     return ContactModel(
-        planar_propagator(tip, turning=turning),
-        facing if turning else np.delete(facing, 2, axis=1),
+        propagator,
+        facing,
         np.array([1 / mass, 1 / mass, 1 / (nu * mass)]),
         np.zeros(3),
-        across=max(s, LEAST_ACROSS_TURNING if turns else LEAST_ACROSS),
+        across=max(s, pushed, LEAST_ACROSS_TURNING if turns else LEAST_ACROSS),
         patch=patch,
         terms=numbers,
         arrays=arrays,

@@ -1,1 +1,1 @@
-"""Other methods than the package's, which check it: a beam of its own and small steps of the contact; no tests."""
+"""Other methods than the package's, which check it: a beam of its own, small steps, the contact in NumPy; no tests."""

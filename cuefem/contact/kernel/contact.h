@@ -53,6 +53,11 @@ enum { NONE, COMPRESSED, APART, RELOADED, TURNED, GRIPPED, SLIPPED, SLIPPED_BACK
        LIFTED_OFF, LANDED, STOPPED, SLID };
 enum { ENDED, LATE, CROWDED, STUCK, TOO_DEEP, TURNED_TOO_FAR, NO_MEMORY };
 
+static inline double larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
 /* The tables of a step's rule, as `cuefem.contact.rule` makes them. Polynomials of forces go through the nodes, those of
    velocities through the start too. */
 typedef struct {
@@ -193,6 +198,7 @@ extern const Law raised;
 /* march.c */
 void facing_at(const Contact *c, double angle, double C[FORCES][ALL_PORTS]);
 void velocities_now(Work *w, double *v);
+void accelerations_now(Work *w, double *a);
 void contact_gives(const Work *w, double B[FORCES][FORCES]);
 void push(Work *w, const double *impulses);
 double blow(Work *w, const int *held, int count);

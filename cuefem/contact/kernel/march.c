@@ -9,7 +9,7 @@ struct Factor {
 /* How far the contact has moved on a dome that is tied to the cue's end, (u, w); it goes no further than the rim. */
 static void on_dome(const Contact *c, double angle, double *u, double *w)
 {
-    double from = fmin(c->phi, c->rim), to = fmax(-c->rim, fmin(c->phi + angle, c->rim));
+    double from = fmin(c->phi, c->rim), to = larger(-c->rim, fmin(c->phi + angle, c->rim));
     *u += c->dome * (sin(from) - sin(to)), *w += c->dome * (cos(from) - cos(to));
 }
 
@@ -73,6 +73,30 @@ void velocities_now(Work *w, double *v)
     }
 }
 
+/* How fast the contact's velocities change if it has no forces: dn/d angle = -t, and the line of centres turns. */
+void accelerations_now(Work *w, double *a)
+{
+    const Contact *c = w->c;
+    const Cue *cue = c->cue;
+    double v[FORCES], y[ALL_PORTS] = {0}, rate[PORTS] = {0};
+    velocities_now(w, v);
+    ports_now(c, y);
+    for (int p = 0; p < cue->ports; p++)
+        for (int k = 0; k < cue->modes; k++) {
+            const double *row = cue->readings + 2 * (p * cue->modes + k), *by = cue->rates + 2 * k, *x = c->xi + 2 * k;
+            double re = by[0] * x[0] - by[1] * x[1], im = by[0] * x[1] + by[1] * x[0];
+            rate[p] += row[0] * re - row[1] * im;
+        }
+    for (int f = 0; f < c->forces; f++) {
+        a[f] = 0;
+        for (int p = 0; p < cue->ports; p++) a[f] += w->C[0][f][p] * rate[p];
+    }
+    if (!c->turns) return;
+    double dome = rolls_on(c, c->angle), reach = c->radius + dome;
+    double turning = -(v[0] - y[PORTS + 2] - (cue->ports > 2 ? dome * y[2] : 0)) / reach;
+    a[0] += turning * v[1], a[1] += turning * turning * reach;
+}
+
 /* The contact's velocities per unit of impulse, where it faces now. */
 void contact_gives(const Work *w, double B[FORCES][FORCES])
 {
@@ -110,7 +134,7 @@ FAST static int factor(int n, struct Factor *to)
     double *A = to->matrix;
     for (int i = 0; i < n; i++) {
         double big = 1e-300;
-        for (int j = 0; j < n; j++) big = fmax(big, fabs(A[i * n + j]));
+        for (int j = 0; j < n; j++) big = larger(big, fabs(A[i * n + j]));
         to->scale[i] = 1 / big;
         for (int j = 0; j < n; j++) A[i * n + j] *= to->scale[i];
     }
@@ -340,7 +364,7 @@ FAST static double move(Work *w, const Response *r, const double (*own)[WITH], c
         double sum = 0;
         for (int j = 0; j < WITH; j++) sum += rule.sums[i][j] * rate[j];
         sum = c->angle + r->step * sum;
-        changed = fmax(changed, fabs(sum - s->angle[i + 1]));
+        changed = larger(changed, fabs(sum - s->angle[i + 1]));
         s->angle[i + 1] = sum;
     }
     for (int i = 1; i < WITH; i++) facing_at(c, s->angle[i], w->C[i]);
@@ -364,7 +388,8 @@ int solve_step(Work *w, int level, Step *s)
         for (int i = 1; i < WITH; i++) memcpy(w->C[i], w->C[0], sizeof w->C[0]);
     guess(w, r->step, F);
     double *own_V = NULL;
-    int settled = 0;
+    int settled = 0, slow = 0;
+    double last = HUGE_VAL;
     for (int round = 0; round < 30; round++) {
         c->rounds++;
         double turned = move(w, r, (const double(*)[WITH])own, (const double(*)[Q])F, s);
@@ -376,13 +401,13 @@ int solve_step(Work *w, int level, Step *s)
                     for (int j = 0; j < Q; j++) sum += rule.extend[0][j] * F[f][j];
                 s->F[f][i] = sum;
             }
-        settled = w->hold.press == FREE ? turned < 1e-14 : round && (w->linear || before < 1e-13);
+        settled = w->hold.press == FREE ? turned < 1e-14 : round && (w->linear || before < 0.1 * c->tolerance);
         if (settled) break;
         if (w->hold.press == FREE) continue;
         w->law->residual(w, s, &w->residual);
         int known = w->linear && w->factors[level][w->hold.grip + 1 + 3 * w->hold.press] != NULL;
         if (known) by = w->factors[level][w->hold.grip + 1 + 3 * w->hold.press];
-        else if (round == 0 || round == 2 || round == 5 || round == 9 || round == 14 || round == 20) {
+        else if (round == 0 || slow) { /* the matrix of a round before does as long as it brings the forces nearer */
             if (!V) {
                 V = w->V[level];
                 if (c->turns || !V) {
@@ -406,9 +431,11 @@ int solve_step(Work *w, int level, Step *s)
         memcpy(g, w->residual.g, wide * sizeof *g);
         solve_factored(wide, by, g);
         for (int f = 0; f < n; f++)
-            for (int i = 0; i < Q; i++) F[f][i] -= g[f * Q + i], off = fmax(off, fabs(g[f * Q + i]));
+            for (int i = 0; i < Q; i++) F[f][i] -= g[f * Q + i], off = larger(off, fabs(g[f * Q + i]));
         off /= size;
         if (!(off < 1e9)) break;
+        slow = round && off > 0.1 * last;
+        last = off;
         before = (off < 1e-9 || off * r->step < 1e-13 * c->clock) && off > 0.5 * before ? 0 : off; /* rounding is left */
     }
     free(own_V);
@@ -445,16 +472,16 @@ static double error_of(const Work *w, const Step *s)
         for (int t = Q - 2; t < Q; t++) {
             double sum = 0;
             for (int j = 0; j < Q; j++) sum += rule.force_waves[t][j] * s->loads[p][j];
-            of_load = fmax(of_load, fabs(sum) / scale);
+            of_load = larger(of_load, fabs(sum) / scale);
         }
     }
     for (int f = 0; f < c->forces; f++)
         for (int t = Q - 1; t <= Q; t++) {
             double sum = 0;
             for (int j = 0; j < WITH; j++) sum += rule.waves[t][j] * s->v[f][j];
-            of_speed = fmax(of_speed, fabs(sum) / (c->forces == 2 && !f ? c->across : 1));
+            of_speed = larger(of_speed, fabs(sum) / (c->forces == 2 && !f ? c->across : 1));
         }
-    return fmax(of_load * s->step / c->impulse, of_speed / (10 * c->speed)) / c->tolerance;
+    return larger(of_load * s->step / c->impulse, of_speed / (10 * c->speed)) / c->tolerance;
 }
 
 /* Steps that are shorter by so many halvings feel what rounding left of a velocity that is held. */
@@ -582,12 +609,15 @@ void end_phase(Work *w, Hold hold, double start, const double *ball_before)
 }
 
 /* How a ringed patch goes on: sliding as a whole, one way or the other, or not. */
-static int ringed_grip(const Work *w, const Step *s, double part)
+static int ringed_grip(const Work *w, const Step *s)
 {
-    double F_n = value_at(s->F[1], part), bound = w->c->friction * F_n;
-    if (w->c->friction == 0) return s->v[0][Q] == 0 ? STICK : s->v[0][Q] < 0 ? SLIP : SLIP_BACK;
-    if (fabs(w->c->shear) < bound * (1 - 1e-9) || !(F_n > 0)) return STICK;
-    return w->c->shear > 0 ? SLIP : SLIP_BACK;
+    const Contact *c = w->c;
+    double F_n, slope;
+    curve_at(c, virtual_depth(c, w->hold.press, c->depth), &F_n, &slope, NULL, NULL);
+    if (c->friction == 0) return s->v[0][Q] == 0 ? STICK : s->v[0][Q] < 0 ? SLIP : SLIP_BACK;
+    if (F_n < 1e-6 * c->impulse / c->clock) return w->hold.grip; /* as ball and tip part nothing tells */
+    if (fabs(c->shear) < c->friction * F_n * (1 - 1e-9)) return STICK;
+    return c->shear > 0 ? SLIP : SLIP_BACK;
 }
 
 /* March through one phase, up to a time at most; the event that ended it, or minus a status. */
@@ -611,16 +641,23 @@ static int follow(Work *w, double until)
             if (at < first || (at == first && !event)) first = at, event = ends[i].event;
             if (ends[i].event == APART) apart = at;
         }
-        if (event && apart <= 1 && w->hold.press == UNLOAD) { /* where all forces vanish the other ends mean nothing */
+        int nearer = LONGEST_POWER + 14 - (int)floor(log2(c->clock));
+        if (c->forces > 2 && event && event != APART && apart <= 1 && w->step.level < nearer) {
+            w->level = w->step.level + 1; /* past the parting friction's bound is no polynomial: come nearer first */
+            continue;
+        }
+        if (event && event != APART && w->hold.press == UNLOAD) { /* where all forces vanish the other ends mean nothing */
             double left = value_at(w->step.depth, first) - (1 - c->restitution * c->restitution) * c->deepest;
-            if (left < (w->linear ? 1e-11 : c->forces == 2 ? 1e-7 : 1e-5) * c->deepest) first = apart, event = APART;
+            int leaves = value_at(w->step.v[1], first) > 0;
+            if (leaves && left < (w->linear ? 1e-11 : c->forces == 2 ? 1e-7 : 1e-5) * c->deepest)
+                first = apart <= 1 ? apart : first, event = APART;
         }
         if (first > 0) {
             double here = c->time, ball[SPEEDS];
             memcpy(ball, c->ball, sizeof ball);
             status = take(w, &w->step, first);
             if (c->patch == RINGED_PATCH && w->hold.press != FREE) {
-                int grip = ringed_grip(w, &w->step, first);
+                int grip = ringed_grip(w, &w->step);
                 if (fresh) w->hold.grip = grip;
                 else if (grip != w->hold.grip) { /* the phase of the other grip ended where this step began */
                     double now = c->time, gone[SPEEDS];

@@ -41,7 +41,7 @@ static void moments_of(double yr, double yi, int n, double *re, double *im)
         return;
     }
     /* downwards from where they are nothing, and scaled by the sum of (2 t + 1) m_t, which is 1 */
-    int top = size < 0.5 ? 6 + (int)(18 / -log10(size)) : (int)fmax(n + 14, size + 20 + 9 * cbrt(size));
+    int top = size < 0.5 ? 6 + (int)(18 / -log10(size)) : (int)larger(n + 14, size + 20 + 9 * cbrt(size));
     double gr = size < 0.5 ? 1e-120 : 1e-150, gi = 0, ar = 0, ai = 0, sr = 0, si = 0;
     for (int t = top; t >= 0; t--) {
         double w = 2 * t + 1;
@@ -109,8 +109,8 @@ FAST static Response *make_response(const Cue *cue, int level)
     Response *r = calloc(1, sizeof *r);
     if (!r) return NULL;
     double h = r->step = ldexp(1, LONGEST_POWER - level), fastest = 0;
-    for (int k = 0; k < K; k++) fastest = fmax(fastest, hypot(cue->rates[2 * k], cue->rates[2 * k + 1]) * h / 2);
-    int count = (int)fmin(TERMS, fmax(fastest + 14 + 6 * cbrt(fastest), Q + 4));
+    for (int k = 0; k < K; k++) fastest = larger(fastest, hypot(cue->rates[2 * k], cue->rates[2 * k + 1]) * h / 2);
+    int count = (int)fmin(TERMS, larger(fastest + 14 + 6 * cbrt(fastest), Q + 4));
     double bound = count < TERMS ? HUGE_VAL : TERMS - 42;
     r->turns = malloc(sizeof(double) * 2 * Q * K), r->moments = malloc(sizeof(double) * 2 * Q * K);
     r->answer = calloc((size_t)cue->reads * Q * ports * Q, sizeof(double));

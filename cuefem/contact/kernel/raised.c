@@ -38,6 +38,12 @@ static void point(double *way, double x, double y)
     if (size > 0) way[0] = x / size, way[1] = y / size;
 }
 
+/* What is left to friction's bound; where friction is great, in units of what presses, whose rounding it would magnify. */
+static double margin(double mu, double pressing, double x, double y)
+{
+    return mu > 1 ? pressing - hypot(x, y) / mu : mu * pressing - hypot(x, y);
+}
+
 static void residual(Work *w, const Step *s, Residual *r)
 {
     const Contact *c = w->c;
@@ -87,19 +93,12 @@ static void along(const Work *w, const Step *s, int k, double *to)
     }
 }
 
-/* What is left to friction's bound; where friction is great, in units of what presses, whose rounding it would magnify. */
-static double margin(double mu, double pressing, double x, double y)
-{
-    return mu > 1 ? pressing - hypot(x, y) / mu : mu * pressing - hypot(x, y);
-}
-
 static int guards(Work *w, const Step *s, Guard *to)
 {
     const Contact *c = w->c;
     int count = 0;
     double size = c->impulse / c->clock, speed = c->speed, way = speed * c->clock, values[WITH];
-    /* forces are known to what a step may leave out of them */
-    double tiny = fmax(ROUNDING * size, 20 * c->tolerance * c->impulse / s->step), near = 1e-11, rest = (1 - c->restitution * c->restitution) * c->deepest;
+    double tiny = ROUNDING * size, near = 1e-11, rest = (1 - c->restitution * c->restitution) * c->deepest;
     if (w->hold.press == LOAD) GUARD(COMPRESSED, near * speed, -s->v[N][i]);
     else {
         GUARD(APART, near * way, s->depth[i] - rest);

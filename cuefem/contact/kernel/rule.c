@@ -5,13 +5,16 @@ EXPORTED Rule rule;
 EXPORTED const size_t contact_size = sizeof(Contact);
 EXPORTED const size_t rule_size = sizeof(Rule);
 
-/* The sum of Legendre's polynomials over [0, 1] with these coefficients, at a part of the step. */
+/* The sum of Legendre's polynomials over [0, 1] with these coefficients, at a part of the step; by (t + 1) P_(t+1) =
+   (2 t + 1) x P_t - t P_(t-1). */
 double legendre(const double *waves, int count, double part)
 {
+    static const double BY[WITH + 1] = {1, 1, 1. / 2, 1. / 3, 1. / 4, 1. / 5, 1. / 6, 1. / 7, 1. / 8,
+                                        1. / 9, 1. / 10, 1. / 11, 1. / 12, 1. / 13, 1. / 14, 1. / 15};
     double x = 2 * part - 1, before = 1, here = x, sum = waves[0];
     for (int t = 1; t < count; t++) {
         sum += waves[t] * here;
-        double next = ((2 * t + 1) * x * here - t * before) / (t + 1);
+        double next = ((2 * t + 1) * x * here - t * before) * BY[t + 1];
         before = here, here = next;
     }
     return sum;
@@ -73,9 +76,9 @@ static double lowest(const double *waves, double a, double b)
 double first_fall(const double *values, double past)
 {
     double low = values[0], high = values[0], y[LOOKS], waves[WITH];
-    for (int i = 1; i < WITH; i++) low = fmin(low, values[i]), high = fmax(high, values[i]);
+    for (int i = 1; i < WITH; i++) low = fmin(low, values[i]), high = larger(high, values[i]);
     if (low > 0.3 * high) return 2;
-    double size = fmax(fabs(low), fabs(high)) + 1e-300;
+    double size = larger(fabs(low), fabs(high)) + 1e-300;
     int first = LOOKS;
     for (int i = 0; i < LOOKS; i++) {
         y[i] = 0;
@@ -89,7 +92,7 @@ double first_fall(const double *values, double past)
     for (int i = 1; i + 1 < LOOKS && i < first; i++) {
         if (!(y[i] > 0 && y[i] < y[i - 1] && (i + 1 == first || y[i] < y[i + 1]) && y[i] < 0.05 * size)) continue;
         double at = lowest(waves, rule.looks[i - 1], rule.looks[i + 1]);
-        if (legendre(waves, WITH, at) < -fmax(1e-13 * size, past)) return zero_of(waves, rule.looks[i - 1], at);
+        if (legendre(waves, WITH, at) < -larger(1e-13 * size, past)) return zero_of(waves, rule.looks[i - 1], at);
     }
     if (first == LOOKS) return 2;
     if (first > 1 || y[0] > 1e-9 * size) return zero_of(waves, rule.looks[first - 1], rule.looks[first]);

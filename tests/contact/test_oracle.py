@@ -1,0 +1,181 @@
+"""Strikes of every kind, drawn at random, against the contact's one method in plain NumPy (tests/oracle)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import groupby
+from typing import Any
+
+import numpy as np
+import pytest
+
+import cuefem as cf
+from cuefem.contact.laws import model_of
+from cuefem.effects.base import TipEffect
+from cuefem.effects.terms import ContactTerms
+from cuefem.side.strike import SideSolved, solved_side
+from cuefem.tip_modes import tip_modes_of
+from tests.helpers.leather_scenes import LEATHER, SHAFT
+from tests.helpers.strike_scenes import hollow_cue, kim_cue, pool_cue
+from tests.oracle.contact import Contact
+from tests.oracle.laws import oracle
+
+AT = cf.Resolution(2, 10, 9)
+CUES = [kim_cue(), pool_cue(), hollow_cue(), SHAFT]
+# Phases may differ where they last no longer than this part of the contact: what rounding makes of a zero.
+SHORT = 1e-6
+
+
+def bent(shift: float) -> cf.Effect:
+    """A lever that changes with the contact's angle."""
+
+    class Bent(TipEffect):
+        def add_to_contact(self, terms: ContactTerms) -> None:
+            terms.add_lever(lambda phi: (shift * math.cos(phi), -shift * math.sin(2 * phi)))
+
+    return Bent()
+
+
+def effects_of(kind: str, rng: Any) -> tuple[cf.Effect, ...]:
+    dome, soft = cf.TipDome(float(rng.uniform(5e-3, 12e-3))), cf.PowerLawTip(float(rng.choice([1.25, 1.5, 2.0])))
+    shear = cf.TipShear(float(np.exp(rng.uniform(-1.5, 1.5))))
+    leather = replace(LEATHER, E=float(rng.uniform(1.2e8, 3e8)), dome_radius=float(rng.uniform(8e-3, 14e-3)))
+    raised = cf.Elevation(float(rng.uniform(0, 0.9)), float(rng.choice([0.0, 0.1, 0.2, 0.5])))
+    return {
+        "linear": (),
+        "lumped": (),
+        "dome": (dome,),
+        "dead": (dome,),
+        "endless": (dome,),
+        "damped": (cf.AxialWaves(), cf.StructuralDamping(float(rng.uniform(0.005, 0.03))), dome),
+        "shear": (shear, dome),
+        "dead shear": (shear,),
+        "second hit": (cf.SecondHit(5e-3), dome),
+        "power": (soft,),
+        "power shear": (soft, shear),
+        "second power hit": (cf.SecondHit(5e-3), soft),
+        "rolling": (cf.RollingContact(), dome),
+        "rolling power": (cf.RollingContact(), soft, dome, cf.StructuralDamping(0.02)),
+        "levers": (cf.RollingContact(), bent(float(rng.uniform(-3e-3, 3e-3)))),
+        "leather": (replace(leather, rolls=bool(rng.random() < 0.5)),),
+        "leather twice": (leather, cf.SecondHit(5e-3)),
+        "rings": (replace(leather, partial_slip=True),),
+        "raised": (raised, dome),
+        "raised power": (raised, soft),
+    }[kind]
+
+
+# What a kind may differ by, in units of what it is compared with. A nonlinear law is stepped to 1e-11 of the blow at each
+# step, leather to 1e-10; the rings' law is a path over the nodes of a step, so that its error is that of the path.
+WITHIN = {
+    **dict.fromkeys(("linear", "lumped", "dome", "dead", "endless", "damped", "shear", "second hit"), 1e-12),
+    **dict.fromkeys(("dead shear", "power", "power shear", "second power hit"), 1e-10),
+    **dict.fromkeys(("rolling", "rolling power", "levers"), 1e-10),
+    **dict.fromkeys(("leather", "leather twice", "raised", "raised power"), 1e-9),
+    "rings": 1e-6,
+}
+
+
+def random_scene(kind: str, seed: int) -> cf.Scene:
+    rng = np.random.default_rng([seed, *kind.encode()])
+    leather = kind.startswith(("leather", "rings"))
+    tip: dict[str, float] = {
+        "restitution": 0.0 if kind.startswith("dead") else float(rng.uniform(0.5 if leather else 0.3, 1.0)),
+        "friction": math.inf if kind == "endless" else float(rng.choice([0.1, 0.3, 0.6, 0.8, 1.5])),
+    }
+    if not leather:
+        tip["contact_time"] = float(np.exp(rng.uniform(np.log(3e-4), np.log(3e-3))))
+    speed = float(np.exp(rng.uniform(np.log(0.5), np.log(3.0 if leather else 10.0))))
+    stroke = cf.Stroke(speed, float(rng.choice([-1, 1]) * rng.uniform(0.01, 0.65 if leather else 0.8)))
+    cue: Any = CUES[rng.integers(len(CUES))]
+    if leather:
+        cue = SHAFT
+    if kind == "lumped":
+        cue = cf.LumpedCue(0.54, float(np.exp(rng.uniform(np.log(1e-3), np.log(0.1)))))
+    ball = cf.Ball(float(rng.uniform(0.12, 0.24)), 0.028575)
+    return cf.Scene(cue, ball, cf.Tip(**tip), stroke, effects_of(kind, rng))
+
+
+def differences(scene: cf.Scene) -> tuple[dict[str, float], Any, Contact]:
+    at = None if scene.lumped is not None else AT
+    outcome = cf.strike(scene, at)
+    model = model_of(scene, tip_modes_of(scene, at))
+    mine = oracle(model)
+    side, speed, R = math.copysign(1.0, scene.stroke.offset), scene.stroke.speed, scene.ball.radius
+    initial, losses = outcome.energy["initial"], mine.losses
+    names = {"friction loss": "friction", "tip shear": "shear", "table loss": "table", "damping loss": "damping"}
+    off = {
+        "duration": (outcome.duration - mine.time) / model.time,
+        "tip loss": (outcome.energy["tip loss"] - model.law.loss(mine.deepest)) / initial,
+    }
+    off |= {name: (outcome.energy[name] - losses[of]) / initial for name, of in names.items() if name in outcome.energy}
+    impulse = np.array(mine.impulse_on_ball) * (side, 1.0)
+    off["ball"] = abs(outcome.impulse - impulse).max() / (scene.ball.mass * speed)
+    off["spin"] = (outcome.spin - side * mine.twist / R) * R / speed
+    return {name: abs(float(value)) for name, value in off.items()}, outcome, mine
+
+
+def course(phases: Any, duration: float, *, pressed: bool) -> list[tuple[str, ...]]:
+    """The phases that last, by name; pressed: of how the tip is pressed alone."""
+    names = [p[1:2] if pressed else tuple(p[:2]) for p in phases if p[0] == "blow" or p[3] - p[2] > SHORT * duration]
+    return [name for name, _ in groupby(names)]
+
+
+def agree(kind: str, seed: int) -> None:
+    off, outcome, mine = differences(random_scene(kind, seed))
+    assert max(off.values()) < WITHIN[kind], (seed, off)
+    found, expected = (course(phases, mine.time, pressed=kind == "rings") for phases in (outcome.phases, mine.phases))
+    assert found == expected, seed
+
+
+@pytest.mark.parametrize("kind", WITHIN)
+def test_a_strike_is_what_the_plain_method_says(kind: str) -> None:
+    for seed in range(2):
+        agree(kind, seed)
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("kind", WITHIN)
+def test_many_strikes_are_what_the_plain_method_says(kind: str) -> None:
+    for seed in range(2, 42):
+        agree(kind, seed)
+
+
+STRIKERS: list[Callable[[Any], cf.Striker]] = [
+    lambda rng: cf.Striker(float(rng.uniform(0.005, 0.1)), float(rng.uniform(0.3, 1.0)), contact_time=1e-3),
+    lambda rng: cf.Striker(float(rng.uniform(0.005, 0.1)), 0.0, stiffness=float(rng.uniform(5e4, 1e6))),
+    lambda rng: cf.Striker(0.028, float(rng.uniform(0.5, 1.0)), modulus=float(rng.uniform(1e9, 12e9)), radius=9.5e-3),
+]
+
+
+def agrees_from_the_side(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    cue, striker = CUES[rng.integers(len(CUES))], STRIKERS[seed % 3](rng)
+    effects: tuple[cf.Effect, ...] = (cf.StructuralDamping(0.01),) if seed % 2 else ()
+    if striker.restitution:
+        effects = (*effects, cf.SecondHit(3e-3))
+    scene = cf.SideStrike(cue, striker, float(rng.uniform(0, cue.length)), float(rng.uniform(0.5, 5)), effects)
+    outcome = cf.side_strike(scene, AT)
+    model = solved_side(scene, SideSolved(scene, AT).place).model
+    mine = oracle(model)
+    off = {
+        "rebound": outcome.rebound_speed / scene.speed - mine.ball[1] / scene.speed,
+        "duration": (outcome.duration - mine.time) / model.time,
+        "loss": (outcome.energy["contact loss"] - model.law.loss(mine.deepest)) / outcome.energy["initial"],
+        "damping": (outcome.energy.get("damping loss", 0.0) - mine.losses["damping"]) / outcome.energy["initial"],
+    }
+    assert max(map(abs, off.values())) < (1e-10 if striker.modulus else 1e-12), (seed, off)
+    assert course(outcome.phases, mine.time, pressed=True) == course(mine.phases, mine.time, pressed=True), seed
+
+
+def test_a_strike_from_the_side_is_what_the_plain_method_says() -> None:
+    for seed in range(3):
+        agrees_from_the_side(seed)
+
+
+@pytest.mark.heavy
+def test_many_strikes_from_the_side_are_what_the_plain_method_says() -> None:
+    for seed in range(3, 43):
+        agrees_from_the_side(seed)
