@@ -71,9 +71,8 @@ def test_outcomes_of_many_strikes_are_values() -> None:
     outcome = cf.batch_strike(scenes, AT)
     assert deepcopy(outcome) == pickle.loads(pickle.dumps(outcome)) == outcome == cf.batch_strike(scenes, AT)
     assert outcome != cf.batch_strike(scenes[:2], AT)
-    side = cf.side_strike(
-        cf.SideStrike(kim_scene().cue, cf.Striker(mass=0.02, contact_time=1e-3), effects=(cf.SecondHit(),))
-    )
+    striker = cf.Striker(mass=0.02, restitution=0.8, contact_time=1e-3)
+    side = cf.side_strike(cf.SideStrike(kim_scene().cue, striker, effects=(cf.SecondHit(),)))
     assert deepcopy(side) == pickle.loads(pickle.dumps(side)) == side
 
 
@@ -85,24 +84,20 @@ def test_outcomes_come_back_from_other_processes() -> None:
 
 def grown(strikes: int) -> int:
     """By how many bytes the greatest memory of this process grows over so many strikes, recorded or not."""
-    scenes = [
-        kim_scene(0.3),
-        leather_scene(0.3, cf.SecondHit(5e-3)),
-        replace(kim_scene(0.3), effects=(cf.Elevation(0.1),)),
-    ]
-    few = cf.Resolution(2, 8, 4)
+    bare, few = kim_scene(0.3), cf.Resolution(2, 8, 4)
+    scenes = [bare, leather_scene(0.3, cf.SecondHit(5e-3)), replace(bare, effects=(cf.TipShear(0.75),))]
     cues = [(scene, tip_modes_of(scene, few)) for scene in scenes]
 
     def strike(times: int) -> None:
         for i in range(times):
             for scene, tip in cues:
                 strike_modes(scene, tip, recorded=i % 2 == 0)
+            if i % 50 == 0:  # new cues, too
+                cf.strike(replace(bare, effects=(cf.Elevation(0.1),)), few)
 
-    strike(50)
+    strike(100)
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     strike(strikes // len(scenes))
-    for _ in range(strikes // 200):  # new cues, too
-        cf.strike(replace(bare, effects=(cf.Elevation(0.1),)), few)
     return (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) * (1 if sys.platform == "darwin" else 1024)
 
 
