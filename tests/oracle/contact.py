@@ -5,8 +5,10 @@ Cue and ball are coordinates xi that turn by themselves and are driven by loads 
     xi' = rates xi + drives' load,    y = Re(readings xi),    v = C(angle) y,    load = C(angle)' F.
 
 Over a step the forces F are polynomials through Radau's nodes, and the answer of xi to them is exact: moments of exp
-with Legendre polynomials. A law ties the forces at the nodes to the velocities v, their integrals x and the compression:
-g = 0, by Newton's method, whose derivatives are complex steps. A phase ends where one of its guards falls through zero.
+with Legendre polynomials. A law ties the forces at the nodes to the velocities v, their integrals x and the
+compression: g = 0, by Newton's method, whose derivatives are complex steps. A phase ends where one of its guards falls
+through zero.
+
 Nothing here is shared with the kernel but the scene's `ContactModel` and the modes of its cue.
 """
 

@@ -2,8 +2,8 @@
 
 F_n follows a curve over the compression; on the way back from the deepest point D that curve is scaled by e^2, from the
 rest (1 - e^2) D on. For e = 0 the tip is rigid there, v_n = 0. Along the surface the contact slips, F_t = side mu F_n,
-or it holds: v_t = 0, or by a spring, F_t = -integral of v_t/c, or by leather whose stiffness k grows and shrinks with the
-patch: F_t' = -k v_t while it grows, (F_t/k)' = -v_t while it shrinks.
+or it holds: v_t = 0, or by a spring, F_t = -integral of v_t/c, or by leather whose stiffness k grows and shrinks with
+the patch: F_t' = -k v_t while it grows, (F_t/k)' = -v_t while it shrinks.
 """
 
 from __future__ import annotations
