@@ -4,9 +4,11 @@ Cue and ball are coordinates xi that turn by themselves and are driven by loads 
 
     xi' = rates xi + drives' load,    y = Re(readings xi),    v = C(angle) y,    load = C(angle)' F.
 
-Over a step the forces F are polynomials through Radau's nodes, and the answer of xi to them is exact: moments of exp with
-Legendre polynomials. A law ties the forces at the nodes to the velocities v, their integrals x and the compression:
-g = 0, by Newton's method, whose derivatives are complex steps. A phase ends where one of its guards falls through zero.
+Over a step the forces F are polynomials through Radau's nodes, and the answer of xi to them is exact: moments of exp
+with Legendre polynomials. A law ties the forces at the nodes to the velocities v, their integrals x and the
+compression: g = 0, by Newton's method, whose derivatives are complex steps. A phase ends where one of its guards falls
+through zero.
+
 Nothing here is shared with the kernel but the scene's `ContactModel` and the modes of its cue.
 """
 
@@ -48,9 +50,14 @@ def forces_at(parts: Any, forces: Any) -> Any:
     return at(parts, forces, FORCE_WAVES)
 
 
+<<<<<<< HEAD
 SUMS = np.array(
     [at(place * GAUSS, np.eye(Q + 1)) @ WEIGHTS * place for place in WITH_START]
 )  # integrals from the start
+=======
+# From values to their integrals from the start.
+SUMS = np.array([at(place * GAUSS, np.eye(Q + 1)) @ WEIGHTS * place for place in WITH_START])
+>>>>>>> oracle
 
 
 def waves_over(part: float, forces: Any) -> Any:
@@ -88,7 +95,7 @@ def first_fall(values: Any, past: float) -> float:
 
 @dataclass
 class Step:
-    """Forces, velocities, their integrals (..., forces, nodes + 1), compression, angle (..., nodes + 1), loads, dampers."""
+    """Forces, velocities, their integrals (..., forces, nodes + 1), compression, angle, loads, what dampers read."""
 
     length: float
     F: Any
@@ -116,9 +123,14 @@ class Contact:
         self.e, self.mu, self.speed, self.clock = model.restitution, model.friction, model.speed, model.time
         self.impulse, self.size = model.speed * model.ball_mass, model.speed * model.ball_mass / model.time
         self.turns = bool(self.terms.get("turns"))
+<<<<<<< HEAD
         self.linear = (
             not self.turns and self.forces == 2 and not self.terms.get("curve") and self.terms["exponent"] == 1
         )
+=======
+        smooth = self.terms["exponent"] == 1 and not self.terms.get("curve")
+        self.linear = smooth and not self.turns and self.forces == 2
+>>>>>>> oracle
         self.tolerance = self.terms["tolerance"] / (1 if self.terms.get("rings") else 10)
         self.time = self.depth = self.angle = self.shear = self.deepest = self.height = 0.0
         self.peak, self.parted, self.grows, self.last = 0.0, False, True, None
@@ -156,14 +168,18 @@ class Contact:
                 du, dw = du + moved[0], dw + moved[1]
             along = ca * t["lever_t"] + sa * t["lever_n"] + s * du + c * dw
             normal = ca * t["lever_n"] - sa * t["lever_t"] + c * du - s * dw
+<<<<<<< HEAD
             ports = [
                 np.concatenate([ports[0], -along[..., None]], -1),
                 np.concatenate([ports[1], -normal[..., None]], -1),
             ]
+=======
+            ports = [np.append(row, -turn[..., None], -1) for row, turn in zip(ports, (along, normal), strict=True)]
+>>>>>>> oracle
         return np.concatenate([np.stack(ports, -2), of_ball], -1)
 
     def on_dome(self, angle: Any) -> Any:
-        """The contact's place on a dome, towards (-u, -w), as it has rolled through an angle; no further than the rim."""
+        """The contact's place on a dome, towards (-u, -w), as it has rolled through an angle; up to the rim."""
         to, rim = self.terms["phi"] + angle, self.terms["rim"]
         to = np.where(abs(np.real(to)) < rim, to, np.copysign(min(rim, 9.0), np.real(to)))
         return self.terms["dome"] * np.array([np.sin(to), np.cos(to)])
@@ -183,7 +199,7 @@ class Contact:
         return -float(impulses @ (before + self.velocities())) / 2
 
     def stop(self, names: list[int]) -> float:
-        """Take away velocities that a hold keeps at zero, which rounding or a landing left; the energy that this takes."""
+        """Take away what is left of velocities that a hold keeps at zero; the energy that this takes."""
         impulses = np.zeros(self.forces)
         if names:
             impulses[names] = -np.linalg.solve(self.inverse_mass()[np.ix_(names, names)], self.velocities()[names])
@@ -192,7 +208,7 @@ class Contact:
     # A step
 
     def moved(self, length: float, unknown: Any) -> tuple[Step, Any]:
-        """What moves under forces at the nodes and through angles there, (..., forces (+ 1), nodes); what the angle misses."""
+        """What moves under forces at the nodes and through angles there, one row each; by what the angles are off."""
         F, angle = unknown[..., : self.forces, :], np.zeros((*unknown.shape[:-2], Q + 1), unknown.dtype) + self.angle
         if self.turns:
             angle[..., 1:] = unknown[..., -1, :]
@@ -215,9 +231,14 @@ class Contact:
         unknown[self.forces :] = self.angle
         if self.last and not self.linear:
             part, old, forces = self.last
+<<<<<<< HEAD
             unknown[: self.forces] = forces_at(
                 np.minimum(part + NODES * length / old, 1.0 if part < 1 else 1.2), forces
             )
+=======
+            places = np.minimum(part + NODES * length / old, 1.0 if part < 1 else 1.2)
+            unknown[: self.forces] = forces_at(places, forces)
+>>>>>>> oracle
         count, before = unknown.size, math.inf
         scale = np.repeat([self.size] * self.forces + [1.0] * self.turns, Q)
         for _ in range(30):
@@ -235,7 +256,12 @@ class Contact:
             if not off < 1e9:
                 return None
             unknown = unknown + (scale * change).reshape(unknown.shape)
+<<<<<<< HEAD
             if off < 1e-14 or ((off < 1e-9 or off * length < 1e-13 * self.clock) and off > 0.3 * before):
+=======
+            rounding = off > 0.3 * before and (off < 1e-9 or off * length < 1e-13 * self.clock)
+            if rounding or off < (1e-10 if self.terms.get("rings") else 1e-14):
+>>>>>>> oracle
                 step = self.moved(length, unknown)[0]
                 if self.depth == 0 and self.time == 0:
                     step.F[:, 0] = 0.0
@@ -282,10 +308,15 @@ class Contact:
             self.losses[name] += float(integral(step, part, read, read))
         self.taken(step, part)
         span = part * step.length
+<<<<<<< HEAD
         given = self.drives.T @ waves_over(part, step.loads)
         self.xi = np.exp(self.rates * span) * self.xi + span * np.einsum(
             "tk,kt->k", moments(self.rates * span / 2), given
         )
+=======
+        driven = moments(self.rates * span / 2).T * (self.drives.T @ waves_over(part, step.loads))
+        self.xi = np.exp(self.rates * span) * self.xi + span * driven.sum(axis=1)
+>>>>>>> oracle
         self.angle, self.time, self.steps = float(at(part, step.angle)), self.time + span, self.steps + 1
         self.last = part, step.length, step.F[:, 1:]
 
@@ -302,9 +333,10 @@ class Contact:
                 if fall < first or (fall == first and not event):
                     first, event = fall, name
                 apart = fall if name == "apart" else apart
-            if event and apart <= 1 and self.press == "unload":  # where all forces vanish the other ends mean nothing
-                if at(first, step.depth) - self.rest < (1e-11 if self.linear else 1e-7) * self.deepest:
-                    first, event = apart, "apart"
+            # where all forces vanish the other ends mean nothing
+            near = (1e-11 if self.linear else 1e-7 if self.forces == 2 else 1e-5) * self.deepest
+            if event and apart <= 1 and self.press == "unload" and at(first, step.depth) - self.rest < near:
+                first, event = apart, "apart"
             if first > 0:
                 self.take(step, first)
             if event == "turned":
@@ -327,9 +359,14 @@ class Contact:
 
     def fly(self, until: float) -> bool:
         """Whether ball and tip, apart, touch again by a time; else all is as it was when they parted."""
+<<<<<<< HEAD
         before = copy.deepcopy(
             {name: value for name, value in vars(self).items() if name not in ("model", "responses")}
         )
+=======
+        shared = ("model", "responses")
+        before = copy.deepcopy({name: value for name, value in vars(self).items() if name not in shared})
+>>>>>>> oracle
         self.grip, self.press, self.last, self.level = "apart", "free", None, 2
         if self.follow(until) == "touched" and self.time <= until:
             self.depth, self.grows, self.last = self.rest, True, None

@@ -1,9 +1,9 @@
 """The contact in the plane of the cue and the ball's centre: forces 0 along the surface (t) and 1 along the normal (n).
 
 F_n follows a curve over the compression; on the way back from the deepest point D that curve is scaled by e^2, from the
-rest (1 - e^2) D on. For e = 0 the tip is rigid there, v_n = 0. Along the surface the contact slips, F_t = side mu F_n, or
-it holds: v_t = 0, or by a spring, F_t = -integral of v_t/c, or by leather whose stiffness k grows and shrinks with the
-patch: F_t' = -k v_t while it grows, (F_t/k)' = -v_t while it shrinks.
+rest (1 - e^2) D on. For e = 0 the tip is rigid there, v_n = 0. Along the surface the contact slips, F_t = side mu F_n,
+or it holds: v_t = 0, or by a spring, F_t = -integral of v_t/c, or by leather whose stiffness k grows and shrinks with
+the patch: F_t' = -k v_t while it grows, (F_t/k)' = -v_t while it shrinks.
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ class Planar(Contact):
         return guards
 
     def first_grip(self, press: str) -> bool:
-        """A patch grips from a touch on if its spring's force grows more slowly than friction's bound; a rigid one slips.
+        """A patch grips at once if its spring's force grows more slowly than friction's bound; a rigid one slips.
 
         Endless friction begins with a blow, which may throw the two apart.
         """
@@ -140,10 +140,8 @@ class Planar(Contact):
         if self.grip not in SIDE or self.patch not in (SPRING_PATCH, LEATHER_PATCH):
             return
         before = self.stored()
-        if self.press == "rigid":
-            normal = self.forces_held()[1]
-        else:
-            normal = self.normal(self.virtual(self.depth))
+        rigid = self.press == "rigid"
+        normal = self.forces_held()[1] if rigid else self.normal(self.virtual(self.depth))
         self.shear = SIDE[self.grip] * self.mu * float(normal)
         self.losses["friction" if self.patch == SPRING_PATCH else "shear"] += before - self.stored()
 

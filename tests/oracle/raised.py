@@ -1,8 +1,8 @@
 """The contact of a cue raised over a table: six forces, of which two pairs are frictions in a plane.
 
 T, N, P stand for the tip's: along the surface in the plane of the cue and the ball's centre, along the normal, across
-that plane; UP, ASIDE, AHEAD for the lowest point of the ball on the table. Friction is against the velocity in its plane.
-The table holds the ball, lets it slide, or has let it go ("lifted").
+that plane; UP, ASIDE, AHEAD for the lowest point of the ball on the table. Friction is against the velocity in its
+plane. The table holds the ball, lets it slide, or has let it go ("lifted").
 """
 
 from __future__ import annotations

@@ -15,13 +15,15 @@ from tests.oracle.planar import Planar
 
 
 class Ringed(Planar):
+    ring_shear: Any = 0.0
+
     def rings(self, depth: Any) -> tuple[Any, Any]:
         """Stiffness and normal force of each ring, (..., rings), at virtual compressions."""
         depth = np.asarray(depth)[..., None]
         edges, arrays = self.model.arrays["ring_edges"], self.model.arrays
         there = np.concatenate([depth.real > edges[:-1], np.zeros_like(depth, bool)], -1)  # past an edge
         whole = self.stiffness(depth), self.normal(depth)
-        # at an edge: the stiffness there, and the normal force that the patch of that size would bear if it grew no more
+        # at an edge: the stiffness, and the normal force of a patch that grows no further
         k = np.where(there, arrays["ring_stiffness"], whole[0])
         N = np.where(there, arrays["ring_forces"] + arrays["ring_slopes"] * (depth - edges), whole[1])
         return k[..., 1:] - k[..., :-1], N[..., 1:] - N[..., :-1]
@@ -36,10 +38,8 @@ class Ringed(Planar):
             f = f * left + (now + was) / 2 * (x[..., i - 1] - x[..., i])[..., None]
             bound = self.mu * N[..., i, :] if np.isfinite(self.mu) else np.full_like(now, 1e300)
             f = np.where(f.real > bound.real, bound, np.where(f.real < -bound.real, -bound, f))
-            yield np.where(now == 0, 0.0, f)
             f = np.where(now == 0, 0.0, f)
-
-    ring_shear: Any = 0.0
+            yield f
 
     def along(self, s: Step) -> Any:
         borne = [f.sum(axis=-1) for f in self.walk(s.depth, s.x[..., 0, :])]
@@ -56,7 +56,11 @@ class Ringed(Planar):
 
     def shear_after(self, s: Step, part: float) -> float:
         """Take the rings to a part of the step; the phase of a grip that is no more ends where the step began."""
+<<<<<<< HEAD
         there = np.append(NODES[part * (1 - 1e-12) > NODES], part)
+=======
+        there = np.append([node for node in NODES if node < part * (1 - 1e-12)], part)
+>>>>>>> oracle
         path = [at(np.append(0.0, there), values) for values in (s.depth, s.x[0])]
         *_, self.ring_shear = self.walk(*path)
         shear, normal = float(self.ring_shear.sum()), float(at(part, s.F[1]))

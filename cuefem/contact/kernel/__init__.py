@@ -17,7 +17,7 @@ DIGESTS = HERE / "_kernel.sha256"
 BUILD = "build it with `python hatch_build.py` in a clone, or install cuefem again"
 
 
-class KernelError(RuntimeError):
+class KernelError(ImportError):
     """The compiled kernel cannot be used; the message says why, and how to build it."""
 
 
