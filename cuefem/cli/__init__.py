@@ -112,7 +112,7 @@ class _OneLine(_Commands):
                 what = "this needs more memory than there is: ask for less, or check sizes, masses and times"
             click.echo(f"cuefem: {what} ({type(error).__name__})", err=True)
             raise click.exceptions.Exit(2) from None
-        except (ValueError, RuntimeError) as error:
+        except (ValueError, RuntimeError, KernelError) as error:
             if isinstance(error, click.exceptions.Exit | click.exceptions.Abort):
                 raise
             click.echo(f"cuefem: {' '.join(str(error).split())}", err=True)

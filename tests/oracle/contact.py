@@ -50,14 +50,8 @@ def forces_at(parts: Any, forces: Any) -> Any:
     return at(parts, forces, FORCE_WAVES)
 
 
-<<<<<<< HEAD
-SUMS = np.array(
-    [at(place * GAUSS, np.eye(Q + 1)) @ WEIGHTS * place for place in WITH_START]
-)  # integrals from the start
-=======
 # From values to their integrals from the start.
 SUMS = np.array([at(place * GAUSS, np.eye(Q + 1)) @ WEIGHTS * place for place in WITH_START])
->>>>>>> oracle
 
 
 def waves_over(part: float, forces: Any) -> Any:
@@ -123,14 +117,8 @@ class Contact:
         self.e, self.mu, self.speed, self.clock = model.restitution, model.friction, model.speed, model.time
         self.impulse, self.size = model.speed * model.ball_mass, model.speed * model.ball_mass / model.time
         self.turns = bool(self.terms.get("turns"))
-<<<<<<< HEAD
-        self.linear = (
-            not self.turns and self.forces == 2 and not self.terms.get("curve") and self.terms["exponent"] == 1
-        )
-=======
         smooth = self.terms["exponent"] == 1 and not self.terms.get("curve")
         self.linear = smooth and not self.turns and self.forces == 2
->>>>>>> oracle
         self.tolerance = self.terms["tolerance"] / (1 if self.terms.get("rings") else 10)
         self.time = self.depth = self.angle = self.shear = self.deepest = self.height = 0.0
         self.peak, self.parted, self.grows, self.last = 0.0, False, True, None
@@ -168,14 +156,7 @@ class Contact:
                 du, dw = du + moved[0], dw + moved[1]
             along = ca * t["lever_t"] + sa * t["lever_n"] + s * du + c * dw
             normal = ca * t["lever_n"] - sa * t["lever_t"] + c * du - s * dw
-<<<<<<< HEAD
-            ports = [
-                np.concatenate([ports[0], -along[..., None]], -1),
-                np.concatenate([ports[1], -normal[..., None]], -1),
-            ]
-=======
             ports = [np.append(row, -turn[..., None], -1) for row, turn in zip(ports, (along, normal), strict=True)]
->>>>>>> oracle
         return np.concatenate([np.stack(ports, -2), of_ball], -1)
 
     def on_dome(self, angle: Any) -> Any:
@@ -231,14 +212,8 @@ class Contact:
         unknown[self.forces :] = self.angle
         if self.last and not self.linear:
             part, old, forces = self.last
-<<<<<<< HEAD
-            unknown[: self.forces] = forces_at(
-                np.minimum(part + NODES * length / old, 1.0 if part < 1 else 1.2), forces
-            )
-=======
             places = np.minimum(part + NODES * length / old, 1.0 if part < 1 else 1.2)
             unknown[: self.forces] = forces_at(places, forces)
->>>>>>> oracle
         count, before = unknown.size, math.inf
         scale = np.repeat([self.size] * self.forces + [1.0] * self.turns, Q)
         for _ in range(30):
@@ -256,12 +231,8 @@ class Contact:
             if not off < 1e9:
                 return None
             unknown = unknown + (scale * change).reshape(unknown.shape)
-<<<<<<< HEAD
-            if off < 1e-14 or ((off < 1e-9 or off * length < 1e-13 * self.clock) and off > 0.3 * before):
-=======
             rounding = off > 0.3 * before and (off < 1e-9 or off * length < 1e-13 * self.clock)
             if rounding or off < (1e-10 if self.terms.get("rings") else 1e-14):
->>>>>>> oracle
                 step = self.moved(length, unknown)[0]
                 if self.depth == 0 and self.time == 0:
                     step.F[:, 0] = 0.0
@@ -308,15 +279,8 @@ class Contact:
             self.losses[name] += float(integral(step, part, read, read))
         self.taken(step, part)
         span = part * step.length
-<<<<<<< HEAD
-        given = self.drives.T @ waves_over(part, step.loads)
-        self.xi = np.exp(self.rates * span) * self.xi + span * np.einsum(
-            "tk,kt->k", moments(self.rates * span / 2), given
-        )
-=======
         driven = moments(self.rates * span / 2).T * (self.drives.T @ waves_over(part, step.loads))
         self.xi = np.exp(self.rates * span) * self.xi + span * driven.sum(axis=1)
->>>>>>> oracle
         self.angle, self.time, self.steps = float(at(part, step.angle)), self.time + span, self.steps + 1
         self.last = part, step.length, step.F[:, 1:]
 
@@ -359,14 +323,8 @@ class Contact:
 
     def fly(self, until: float) -> bool:
         """Whether ball and tip, apart, touch again by a time; else all is as it was when they parted."""
-<<<<<<< HEAD
-        before = copy.deepcopy(
-            {name: value for name, value in vars(self).items() if name not in ("model", "responses")}
-        )
-=======
         shared = ("model", "responses")
         before = copy.deepcopy({name: value for name, value in vars(self).items() if name not in shared})
->>>>>>> oracle
         self.grip, self.press, self.last, self.level = "apart", "free", None, 2
         if self.follow(until) == "touched" and self.time <= until:
             self.depth, self.grows, self.last = self.rest, True, None

@@ -56,11 +56,7 @@ class Ringed(Planar):
 
     def shear_after(self, s: Step, part: float) -> float:
         """Take the rings to a part of the step; the phase of a grip that is no more ends where the step began."""
-<<<<<<< HEAD
-        there = np.append(NODES[part * (1 - 1e-12) > NODES], part)
-=======
         there = np.append([node for node in NODES if node < part * (1 - 1e-12)], part)
->>>>>>> oracle
         path = [at(np.append(0.0, there), values) for values in (s.depth, s.x[0])]
         *_, self.ring_shear = self.walk(*path)
         shear, normal = float(self.ring_shear.sum()), float(at(part, s.F[1]))
