@@ -88,7 +88,8 @@ static void along(const Work *w, const Step *s, int k, double *to)
     int a = PLANES[k][0], b = PLANES[k][1], n = PLANES[k][2];
     for (int i = 0; i < WITH; i++) {
         double way[2] = {w->way[k][0], w->way[k][1]}, sign = s->F[n][i] < 0 ? -1 : 1;
-        if (i) way[0] = way[1] = 0, point(way, sign * s->F[a][i], sign * s->F[b][i]);
+        int tells = hypot(s->F[a][i], s->F[b][i]) > 1e-9 * w->c->impulse / w->c->clock; /* less is rounding */
+        if (i && tells) point(way, sign * s->F[a][i], sign * s->F[b][i]);
         to[i] = -(s->v[a][i] * way[0] + s->v[b][i] * way[1]);
     }
 }
@@ -127,14 +128,20 @@ static int forces_now(Work *w, Hold hold, double *F)
     return forces_held(w, hold, F, w->c->depth > 0 ? 0 : Q);
 }
 
-/* How the table holds the ball, whose lowest point is at rest: held, sliding away, or not at all. */
+/* How the table holds the ball: it slides on if its lowest point moves and nothing jams; else it is held, slides away, or
+   is let go. */
 static void rest_on_table(Work *w)
 {
     const Contact *c = w->c;
-    double F[FORCES];
+    double F[FORCES], v[FORCES], slack = ROUNDING * c->impulse / c->clock;
+    velocities_now(w, v);
+    if (hypot(v[ASIDE], v[AHEAD]) > 1e-6 * c->speed) {
+        w->hold.table = SLIDES;
+        point(w->way[1], -v[ASIDE], -v[AHEAD]);
+        if (forces_now(w, w->hold, F) && F[UP] >= -slack) return;
+    }
     w->hold.table = HELD;
     if (!forces_now(w, w->hold, F)) return;
-    double slack = ROUNDING * c->impulse / c->clock;
     if (margin(c->table_friction, F[UP], F[ASIDE], F[AHEAD]) < -slack) {
         w->hold.table = SLIDES;
         point(w->way[1], F[ASIDE], F[AHEAD]);
@@ -168,6 +175,11 @@ static int first_grip(Work *w, int press)
     double v[FORCES];
     velocities_now(w, v);
     w->hold = (Hold){SLIP, press, HELD};
+    if (hypot(v[T], v[P]) == 0 && c->friction == 0) { /* nothing pulls at the tip, so the table is asked first */
+        rest_on_table(w);
+        c->grip = w->hold.grip = grip_at_rest(w, press);
+        return 1;
+    }
     if (hypot(v[T], v[P]) == 0) w->hold.grip = grip_at_rest(w, press);
     else if (isfinite(c->friction)) point(w->way[0], -v[T], -v[P]);
     else {
@@ -203,7 +215,8 @@ static void taken(Work *w, const Step *s, double part)
     for (int k = 0; k < 2; k++) {
         int a = PLANES[k][0], b = PLANES[k][1], n = PLANES[k][2];
         double sign = value_at(s->F[n], part) < 0 ? -1 : 1;
-        if (slips(w, k)) point(w->way[k], sign * value_at(s->F[a], part), sign * value_at(s->F[b], part));
+        double x = value_at(s->F[a], part), y = value_at(s->F[b], part);
+        if (slips(w, k) && hypot(x, y) > 1e-9 * c->impulse / c->clock) point(w->way[k], sign * x, sign * y);
     }
     c->depth = value_at(s->depth, part);
 }
