@@ -143,13 +143,18 @@ def test_two_fresh_sweeps_at_once_share_the_work(study: Path, whole: list[tuple[
     assert rows_of(output) == whole
 
 
+def heard() -> None:
+    """Ctrl-C reaches the command, although what runs in the background of a shell is made deaf to it."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 @pytest.mark.parametrize("workers", [(), ("--workers", "2")], ids=["alone", "two workers"])
 def test_an_interrupt_says_what_is_there_and_how_to_go_on(
     study: Path, whole: list[tuple[Any, ...]], tmp_path: Path, workers: tuple[str, ...]
 ) -> None:
     """Ctrl-C, which a terminal sends to all processes of a command: one line, soon; the same command ends the work."""
     output = tmp_path / "out.sqlite"
-    run = started(study, output, *workers, out=subprocess.PIPE, start_new_session=True)
+    run = started(study, output, *workers, out=subprocess.PIPE, start_new_session=True, preexec_fn=heard)
     waited_for(output, run, 100)
     os.killpg(run.pid, signal.SIGINT)
     out, err = run.communicate(timeout=20)
