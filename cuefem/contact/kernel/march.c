@@ -378,7 +378,7 @@ int solve_step(Work *w, int level, Step *s)
     Response *r = response_of(c->cue, level);
     int n = c->forces, wide = n * Q, dampers = c->cue->reads - c->cue->ports;
     if (!r) return 0;
-    double size = c->impulse / c->clock, F[FORCES][Q], before = HUGE_VAL, own[c->cue->reads][WITH], *V = NULL;
+    double size = c->impulse / c->clock, F[FORCES][Q], before = HUGE_VAL, own[c->cue->reads][WITH];
     struct Factor mine, *by = &mine;
     s->level = level, s->step = r->step;
     own_motion(c, r, own);
@@ -387,7 +387,6 @@ int solve_step(Work *w, int level, Step *s)
     if (c->turns)
         for (int i = 1; i < WITH; i++) memcpy(w->C[i], w->C[0], sizeof w->C[0]);
     guess(w, r->step, F);
-    double *own_V = NULL;
     int settled = 0, slow = 0;
     double last = HUGE_VAL;
     for (int round = 0; round < 30; round++) {
@@ -408,16 +407,11 @@ int solve_step(Work *w, int level, Step *s)
         int known = w->linear && w->factors[level][w->hold.grip + 1 + 3 * w->hold.press] != NULL;
         if (known) by = w->factors[level][w->hold.grip + 1 + 3 * w->hold.press];
         else if (round == 0 || slow) { /* the matrix of a round before does as long as it brings the forces nearer */
-            if (!V) {
-                V = w->V[level];
-                if (c->turns || !V) {
-                    V = malloc(2 * n * n * Q * Q * sizeof *V);
-                    if (!V) break;
-                    answer_of(w, r, V);
-                    if (c->turns) own_V = V;
-                    else w->V[level] = V;
-                }
+            if (!w->V[level]) { /* where the contact first used this step: turned on a little it still leads there */
+                if (!(w->V[level] = malloc(2 * n * n * Q * Q * sizeof(double)))) break;
+                answer_of(w, r, w->V[level]);
             }
+            const double *V = w->V[level];
             if (w->linear) {
                 by = malloc(sizeof *by);
                 if (!by) break;
@@ -438,7 +432,6 @@ int solve_step(Work *w, int level, Step *s)
         last = off;
         before = (off < 1e-9 || off * r->step < 1e-13 * c->clock) && off > 0.5 * before ? 0 : off; /* rounding is left */
     }
-    free(own_V);
     if (c->depth == 0 && c->time == 0) /* the first touch has no force yet */
         for (int f = 0; f < n; f++) s->F[f][0] = 0;
     if (settled && dampers)
