@@ -491,7 +491,8 @@ static int longest_step(Work *w)
         int found = solve_step(w, w->level, &w->step);
         double error = found ? error_of(w, &w->step) : HUGE_VAL;
         if (error <= 1 || (found && rough && w->level >= longest + 11)) {
-            if (error < 1e-5 && w->level > longest) w->level--;
+            /* of a very short step rounding is most of the error */
+            if ((error < 1e-5 || (error < 0.1 && w->level > longest + 12)) && w->level > longest) w->level--;
             return ENDED;
         }
         w->level += error > 1e5 ? 2 : 1;

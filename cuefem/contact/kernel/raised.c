@@ -225,6 +225,8 @@ static int next(Work *w, int event)
 {
     Contact *c = w->c;
     double F[FORCES], v[FORCES];
+    if (event == SLIPPED || event == SLID || event == LANDED) /* friction turns at once: a long step would not see it */
+        w->level = LONGEST_POWER - (int)floor(log2(c->clock)) + 20;
     if (event == APART) return 0;
     if (event == COMPRESSED) {
         c->deepest = c->depth, w->hold.press = UNLOAD;
