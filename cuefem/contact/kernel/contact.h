@@ -169,7 +169,7 @@ struct Work {
     struct Factor *factors[LEVELS][16];
     Step step;
     Residual residual;
-    double way[2][2], v_n, ratio[FORCES]; /* of a raised cue */
+    double way[2][2]; /* of a raised cue: the directions of its two frictions */
 };
 
 /* rule.c */
@@ -186,6 +186,8 @@ extern const Law planar;
 void curve_at(const Contact *c, double depth, double *F, double *slope, double *k, double *dk);
 double virtual_depth(const Contact *c, int press, double depth);
 double give_of(const Contact *c, int press);
+double rest_of(const Contact *c);
+double work_of(const double *force, const double *velocity, double span, double part);
 
 /* rings.c */
 void rings_at_nodes(Work *w, const Step *s, Residual *r);
@@ -196,6 +198,7 @@ double rings_store(const Contact *c, int press, double depth);
 extern const Law raised;
 
 /* march.c */
+int clock_level(const Contact *c);
 void facing_at(const Contact *c, double angle, double C[FORCES][ALL_PORTS]);
 void velocities_now(Work *w, double *v);
 void accelerations_now(Work *w, double *a);

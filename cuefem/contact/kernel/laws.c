@@ -50,7 +50,8 @@ double virtual_depth(const Contact *c, int press, double depth)
     return press == LOAD ? depth : (depth - (1 - e2) * c->deepest) / e2;
 }
 
-static double rest_of(const Contact *c)
+/* The compression at which a tip that was pressed to the deepest point has lost its force. */
+double rest_of(const Contact *c)
 {
     return (1 - c->restitution * c->restitution) * c->deepest;
 }
@@ -240,7 +241,8 @@ static void begin(Work *w)
     *(c->patch == SPRING_PATCH ? &c->friction_loss : &c->shear_loss) += before - stored(c, w->hold.press);
 }
 
-static double work_of(const double *force, const double *velocity, double span, double part)
+/* The work of a force over a part of a step. */
+double work_of(const double *force, const double *velocity, double span, double part)
 {
     double of_force[WITH], of_velocity[WITH], sum = 0;
     to_waves(force, of_force), to_waves(velocity, of_velocity);

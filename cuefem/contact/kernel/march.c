@@ -19,6 +19,12 @@ static double rolls_on(const Contact *c, double angle)
     return fabs(c->phi + angle) < c->rim ? c->dome : 0;
 }
 
+/* The level of a step that is about as long as the contact's clock. */
+int clock_level(const Contact *c)
+{
+    return LONGEST_POWER - (int)floor(log2(c->clock));
+}
+
 /* The matrix C where the contact has rolled through an angle: it sees the first touch's directions turned back by it. */
 void facing_at(const Contact *c, double angle, double C[FORCES][ALL_PORTS])
 {
@@ -445,7 +451,7 @@ int forces_held(Work *w, Hold hold, double *F, int node)
 {
     static const int SHORT = 12;
     Hold here = w->hold;
-    int level = LONGEST_POWER + SHORT - (int)floor(log2(w->c->clock)), known = w->known;
+    int level = clock_level(w->c) + SHORT, known = w->known;
     w->hold = hold;
     int settled = solve_step(w, level < LEVELS ? level : LEVELS - 1, &w->step);
     w->hold = here, w->known = known;
@@ -484,7 +490,7 @@ enum { SETTLES = 8 };
 static int longest_step(Work *w)
 {
     Contact *c = w->c;
-    int longest = LONGEST_POWER - (int)floor(log2(c->clock)), rough = c->patch == RINGED_PATCH;
+    int longest = clock_level(c), rough = c->patch == RINGED_PATCH;
     while (w->level < LEVELS) {
         c->tried++;
         if (w->level > longest + SETTLES && w->hold.press != FREE) w->law->settle(w);
@@ -635,13 +641,13 @@ static int follow(Work *w, double until)
             if (at < first || (at == first && !event)) first = at, event = ends[i].event;
             if (ends[i].event == APART) apart = at;
         }
-        int nearer = LONGEST_POWER + 14 - (int)floor(log2(c->clock));
+        int nearer = clock_level(c) + 14;
         if (c->forces > 2 && event && event != APART && apart <= 1 && w->step.level < nearer) {
             w->level = w->step.level + 1; /* past the parting friction's bound is no polynomial: come nearer first */
             continue;
         }
         if (event && event != APART && w->hold.press == UNLOAD) { /* where all forces vanish the other ends mean nothing */
-            double left = value_at(w->step.depth, first) - (1 - c->restitution * c->restitution) * c->deepest;
+            double left = value_at(w->step.depth, first) - rest_of(c);
             int leaves = value_at(w->step.v[1], first) > 0;
             if (leaves && left < (w->linear ? 1e-11 : c->forces == 2 ? 1e-7 : 1e-5) * c->deepest)
                 first = apart <= 1 ? apart : first, event = APART;
@@ -699,7 +705,7 @@ static int first_level(const Contact *c)
 {
     int smooth = c->curve == POWER_CURVE && c->exponent == 1;
     int halvings = smooth ? 2 : c->patch == SPRING_PATCH ? 30 : 12;
-    return LONGEST_POWER - (int)floor(log2(c->clock)) + halvings;
+    return clock_level(c) + halvings;
 }
 
 /* Ball and tip apart: whether they touch again by a time. What the patch held is lost. */
@@ -712,7 +718,7 @@ static int fly(Work *w, double until)
     if (!xi) return 0;
     memcpy(xi, c->xi, modes), memcpy(ball, c->ball, sizeof ball);
     w->hold = (Hold){APART_GRIP, FREE, HELD}, w->known = 0;
-    w->level = 1 + LONGEST_POWER - (int)floor(log2(c->clock));
+    w->level = 1 + clock_level(c);
     int event = follow(w, until);
     int touched = event == TOUCHED && c->time <= until;
     if (!touched) { /* the flight is not part of the contact */
@@ -722,7 +728,7 @@ static int fly(Work *w, double until)
         memcpy(c->xi, xi, modes), memcpy(c->ball, ball, sizeof ball);
         if (event < 0) c->status = -event;
     } else {
-        c->depth = (1 - c->restitution * c->restitution) * c->deepest;
+        c->depth = rest_of(c);
         w->level = first_level(c);
         w->grows = 1, w->known = 0;
     }
@@ -748,7 +754,6 @@ EXPORTED void contact_run(Contact *c)
     w->linear = !c->turns && c->curve == POWER_CURVE && c->exponent == 1 && c->forces == 2;
     w->grows = 1;
     w->level = first_level(c);
-    for (int f = 0; f < FORCES; f++) w->ratio[f] = f == 1;
     int dampers = c->cue->reads - c->cue->ports;
     w->step.damped = malloc((dampers + 1) * WITH * sizeof(double));
     double start = c->time, longest = c->longest;

@@ -99,10 +99,10 @@ static int guards(Work *w, const Step *s, Guard *to)
     const Contact *c = w->c;
     int count = 0;
     double size = c->impulse / c->clock, speed = c->speed, way = speed * c->clock, values[WITH];
-    double tiny = ROUNDING * size, near = 1e-11, rest = (1 - c->restitution * c->restitution) * c->deepest;
+    double tiny = ROUNDING * size, near = 1e-11;
     if (w->hold.press == LOAD) GUARD(COMPRESSED, near * speed, -s->v[N][i]);
     else {
-        GUARD(APART, near * way, s->depth[i] - rest);
+        GUARD(APART, near * way, s->depth[i] - rest_of(c));
         GUARD(RELOADED, near * way, c->deepest - s->depth[i]);
     }
     if (slips(w, 0)) {
@@ -201,15 +201,7 @@ static void taken(Work *w, const Step *s, double part)
 {
     Contact *c = w->c;
     double work[FORCES];
-    for (int f = 0; f < FORCES; f++) {
-        double force[WITH], velocity[WITH];
-        to_waves(s->F[f], force), to_waves(s->v[f], velocity);
-        work[f] = 0;
-        for (int q = 0; q < POINTS; q++) {
-            double at = part * rule.gauss[q];
-            work[f] += s->step * part * rule.weights[q] * legendre(force, WITH, at) * legendre(velocity, WITH, at);
-        }
-    }
+    for (int f = 0; f < FORCES; f++) work[f] = work_of(s->F[f], s->v[f], s->step, part);
     c->friction_loss -= work[T] + work[P], c->table_loss -= work[UP] + work[ASIDE] + work[AHEAD];
     if (w->hold.table == LIFTED) c->height += value_at(s->x[UP], part);
     for (int k = 0; k < 2; k++) {
@@ -226,7 +218,7 @@ static int next(Work *w, int event)
     Contact *c = w->c;
     double F[FORCES], v[FORCES];
     if (event == SLIPPED || event == SLID || event == LANDED) /* friction turns at once: a long step would not see it */
-        w->level = LONGEST_POWER - (int)floor(log2(c->clock)) + 20;
+        w->level = clock_level(c) + 20;
     if (event == APART) return 0;
     if (event == COMPRESSED) {
         c->deepest = c->depth, w->hold.press = UNLOAD;
