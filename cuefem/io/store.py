@@ -13,6 +13,7 @@ import hashlib
 import importlib
 import json
 import os
+import random
 import sqlite3
 from collections.abc import Iterator, Mapping
 from contextlib import closing, contextmanager, suppress
@@ -21,6 +22,7 @@ from importlib.metadata import version
 from itertools import islice
 from os import PathLike
 from pathlib import Path
+from time import sleep
 from typing import Any, NamedTuple, Self
 
 from cuefem.design import Row, Study, Task
@@ -159,8 +161,14 @@ class Store:
         with closing(self._file), suppress(sqlite3.Error):
             if self._file.execute("PRAGMA journal_mode").fetchone() == ("wal",):
                 self._file.execute("DELETE FROM claims WHERE sweep = ?", (self._sweep,))
-                self._file.execute("PRAGMA busy_timeout = 0")
-                self._file.execute("PRAGMA journal_mode = DELETE")
+        log = self.path.with_name(f"{self.path.name}-wal")
+        for attempt in range(8):  # two that end at the same moment stand in each other's way, so each tries again
+            if not log.exists():
+                break
+            sleep(random.uniform(0.0, 1e-3 * 2**attempt))
+            with suppress(sqlite3.Error, InputError), closing(opened(self.path, mode="rw")) as alone:
+                alone.execute("PRAGMA busy_timeout = 0")
+                alone.execute("PRAGMA journal_mode = DELETE")
 
     @contextmanager
     def _transaction(self) -> Iterator[None]:
@@ -263,13 +271,16 @@ def refusing(path: Path) -> Iterator[None]:
         raise InputError(path, "", f"cannot be read or written as a database: {error}") from None
 
 
-def opened(path: Path, *, reading: bool = False) -> sqlite3.Connection:
-    """A connection in which transactions are begun by hand; InputError for a file of several names."""
+def opened(path: Path, *, mode: str = "rwc") -> sqlite3.Connection:
+    """A connection in which transactions are begun by hand; InputError for a file of several names.
+
+    mode: what SQLite may do with the file: "ro" reads, "rw" writes too, "rwc" makes it where it is missing.
+    """
     with suppress(OSError):
         if os.stat(path).st_nlink > 1:
             raise InputError(path, "", "must have one name; got a file with hard links: make a copy of it instead")
-    where = f"{path.resolve().as_uri()}?mode=ro" if reading else path
-    return sqlite3.connect(where, timeout=PATIENCE, isolation_level=None, uri=reading)
+    where = f"{path.resolve().as_uri()}?mode={mode}"
+    return sqlite3.connect(where, timeout=PATIENCE, isolation_level=None, uri=True)
 
 
 def schema_of(path: Path, file: sqlite3.Connection) -> int:
@@ -329,7 +340,7 @@ def read_table(path: str | PathLike[str], name: str | None = None) -> Table:
     path = Path(path)
     if not path.is_file():
         raise InputError(path, "", "cannot be read: no such file")
-    with refusing(path), closing(opened(path, reading=True)) as file:
+    with refusing(path), closing(opened(path, mode="ro")) as file:
         if schema_of(path, file) < SCHEMA:
             return _older_table(path, file)
         studies = studies_in(path, file)
