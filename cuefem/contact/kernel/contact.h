@@ -126,7 +126,7 @@ typedef struct {
     double friction_loss, shear_loss, table_loss, damping_loss, radiated;
     int status, parted, grip, press, steps, tried, rounds, phase_count, record_count, row;
     double *phases;  /* (phase_count, 4 + 2 speeds): grip, press, start, end, the ball's velocities then */
-    double *records; /* (record_count, row): see record() in march.c */
+    double *records; /* (record_count, row): see records.c */
 } Contact;
 
 /* What goes on in a contact: the step in hand, the matrix C, and what is known of a hold. */
@@ -145,6 +145,11 @@ typedef struct {
         for (int i = 0; i < WITH; i++) to[count].values[i] = expression; \
         count++;                                                         \
     } while (0)
+
+typedef struct { /* of a matrix with scaled rows: its triangles and the order of its rows */
+    double matrix[FORCES * Q * FORCES * Q], scale[FORCES * Q];
+    int pivots[FORCES * Q];
+} Factor;
 
 /* A law of the contact: which forces it asks for, what ends a phase, and what follows. */
 typedef struct {
@@ -166,48 +171,64 @@ struct Work {
     double last_part, last_step, last_F[FORCES][Q];
     double blows[ALL_PORTS]; /* impulses on the ports since the last record */
     double *V[LEVELS];       /* answers of the contact to its forces, where C stays as it is */
-    struct Factor *factors[LEVELS][16];
+    Factor *factors[LEVELS][16];
     Step step;
     Residual residual;
     double way[2][2]; /* of a raised cue: the directions of its two frictions */
 };
 
+/* Each file below calls those above it alone. */
+
 /* rule.c */
 double legendre(const double *waves, int count, double part);
 void to_waves(const double *values, double *waves);
+double value_at(const double *values, double part);
 double first_fall(const double *values, double past);
+double work_of(const double *force, const double *velocity, double span, double part);
+
+/* matrix.c */
+int factor(int n, Factor *to);
+void solve_factored(int n, const Factor *by, double *b);
 
 /* modes.c */
 Response *response_of(Cue *cue, int level);
 void advance_modes(const Cue *cue, double *xi, const Response *whole, double time, const double (*waves)[Q]);
 
-/* laws.c */
-extern const Law planar;
+/* normal.c */
 void curve_at(const Contact *c, double depth, double *F, double *slope, double *k, double *dk);
 double virtual_depth(const Contact *c, int press, double depth);
 double give_of(const Contact *c, int press);
 double rest_of(const Contact *c);
-double work_of(const double *force, const double *velocity, double span, double part);
+double pressing(const Contact *c, int press, double depth);
+
+/* ports.c */
+void facing_at(const Contact *c, double angle, double C[FORCES][ALL_PORTS]);
+double rolls_on(const Contact *c, double angle);
+void velocities_now(Work *w, double *v);
+void accelerations_now(Work *w, double *a);
+void contact_gives(const Work *w, double B[FORCES][FORCES]);
+void push(Work *w, const double *impulses);
+double blow(Work *w, const int *held, int count);
+
+/* step.c */
+int clock_level(const Contact *c);
+int solve_step(Work *w, int level, Step *s);
+int forces_held(Work *w, Hold hold, double *F, int node);
+int longest_step(Work *w);
+
+/* records.c */
+int record(Work *w, const Step *s, double part);
+void end_phase(Work *w, Hold hold, double start, const double *ball_before);
 
 /* rings.c */
 void rings_at_nodes(Work *w, const Step *s, Residual *r);
 void rings_take(Work *w, const Step *s, double part);
 double rings_store(const Contact *c, int press, double depth);
 
+/* laws.c */
+extern const Law planar;
+
 /* raised.c */
 extern const Law raised;
-
-/* march.c */
-int clock_level(const Contact *c);
-void facing_at(const Contact *c, double angle, double C[FORCES][ALL_PORTS]);
-void velocities_now(Work *w, double *v);
-void accelerations_now(Work *w, double *a);
-void contact_gives(const Work *w, double B[FORCES][FORCES]);
-void push(Work *w, const double *impulses);
-double blow(Work *w, const int *held, int count);
-int solve_step(Work *w, int level, Step *s);
-int forces_held(Work *w, Hold hold, double *F, int node);
-void end_phase(Work *w, Hold hold, double start, const double *ball_before);
-double value_at(const double *values, double part);
 
 #endif

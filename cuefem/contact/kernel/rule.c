@@ -103,3 +103,15 @@ double first_fall(const double *values, double past)
     }
     return 0;
 }
+
+/* The work of a force over a part of a step. */
+double work_of(const double *force, const double *velocity, double span, double part)
+{
+    double of_force[WITH], of_velocity[WITH], sum = 0;
+    to_waves(force, of_force), to_waves(velocity, of_velocity);
+    for (int q = 0; q < POINTS; q++) {
+        double at = part * rule.gauss[q];
+        sum += rule.weights[q] * legendre(of_force, WITH, at) * legendre(of_velocity, WITH, at);
+    }
+    return sum * span * part;
+}

@@ -1,0 +1,145 @@
+/* The matrix C and what goes through it: what the contact's velocities are now, and what impulses of its forces do. */
+#include "contact.h"
+
+/* How far the contact has moved on a dome that is tied to the cue's end, (u, w); it goes no further than the rim. */
+static void on_dome(const Contact *c, double angle, double *u, double *w)
+{
+    double from = fmin(c->phi, c->rim), to = larger(-c->rim, fmin(c->phi + angle, c->rim));
+    *u += c->dome * (sin(from) - sin(to)), *w += c->dome * (cos(from) - cos(to));
+}
+
+/* The radius of what the ball rolls on: of the dome, or of nothing on its rim. */
+double rolls_on(const Contact *c, double angle)
+{
+    return fabs(c->phi + angle) < c->rim ? c->dome : 0;
+}
+
+/* The matrix C where the contact has rolled through an angle: it sees the first touch's directions turned back by it. */
+void facing_at(const Contact *c, double angle, double C[FORCES][ALL_PORTS])
+{
+    memset(C, 0, sizeof(double[FORCES][ALL_PORTS]));
+    if (!c->turns) {
+        int wide = c->cue->ports + c->speeds;
+        for (int f = 0; f < c->forces; f++)
+            for (int p = 0; p < wide; p++)
+                C[f][p < c->cue->ports ? p : p - c->cue->ports + PORTS] = c->facing[f * wide + p];
+        return;
+    }
+    double s = sin(c->phi + angle), k = cos(c->phi + angle), sa = sin(angle), ca = cos(angle), du = 0, dw = 0;
+    if (c->levers) { /* Clenshaw's sum of Chebyshev's polynomials */
+        double x = 2 * angle / c->lever_reach, u1 = 0, u2 = 0, w1 = 0, w2 = 0;
+        for (int t = c->levers - 1; t > 0; t--) {
+            double u = x * u1 - u2 + c->lever_terms[t], w = x * w1 - w2 + c->lever_terms[c->levers + t];
+            u2 = u1, u1 = u, w2 = w1, w1 = w;
+        }
+        du = x / 2 * u1 - u2 + c->lever_terms[0], dw = x / 2 * w1 - w2 + c->lever_terms[c->levers];
+    }
+    on_dome(c, angle, &du, &dw);
+    C[0][0] = -s, C[0][1] = -k, C[1][0] = -k, C[1][1] = s;
+    if (c->cue->ports > 2) {
+        C[0][2] = -(ca * c->lever_t + sa * c->lever_n + s * du + k * dw);
+        C[1][2] = -(ca * c->lever_n - sa * c->lever_t + k * du - s * dw);
+    }
+    C[0][PORTS] = ca, C[0][PORTS + 1] = sa, C[0][PORTS + 2] = 1;
+    C[1][PORTS] = -sa, C[1][PORTS + 1] = ca;
+}
+
+/* What the ports read now. */
+static void ports_now(const Contact *c, double *y)
+{
+    const Cue *cue = c->cue;
+    for (int p = 0; p < cue->ports; p++) {
+        const double *row = cue->readings + 2 * p * cue->modes;
+        double sum = 0;
+        for (int k = 0; k < cue->modes; k++) sum += row[2 * k] * c->xi[2 * k] - row[2 * k + 1] * c->xi[2 * k + 1];
+        y[p] = sum;
+    }
+    for (int b = 0; b < c->speeds; b++) y[PORTS + b] = c->ball[b];
+}
+
+void velocities_now(Work *w, double *v)
+{
+    double y[ALL_PORTS] = {0};
+    ports_now(w->c, y);
+    facing_at(w->c, w->c->angle, w->C[0]);
+    for (int f = 0; f < w->c->forces; f++) {
+        v[f] = 0;
+        for (int p = 0; p < ALL_PORTS; p++) v[f] += w->C[0][f][p] * y[p];
+    }
+}
+
+/* How fast the contact's velocities change if it has no forces: dn/d angle = -t, and the line of centres turns. */
+void accelerations_now(Work *w, double *a)
+{
+    const Contact *c = w->c;
+    const Cue *cue = c->cue;
+    double v[FORCES], y[ALL_PORTS] = {0}, rate[PORTS] = {0};
+    velocities_now(w, v);
+    ports_now(c, y);
+    for (int p = 0; p < cue->ports; p++)
+        for (int k = 0; k < cue->modes; k++) {
+            const double *row = cue->readings + 2 * (p * cue->modes + k), *by = cue->rates + 2 * k, *x = c->xi + 2 * k;
+            double re = by[0] * x[0] - by[1] * x[1], im = by[0] * x[1] + by[1] * x[0];
+            rate[p] += row[0] * re - row[1] * im;
+        }
+    for (int f = 0; f < c->forces; f++) {
+        a[f] = 0;
+        for (int p = 0; p < cue->ports; p++) a[f] += w->C[0][f][p] * rate[p];
+    }
+    if (!c->turns) return;
+    double dome = rolls_on(c, c->angle), reach = c->radius + dome;
+    double turning = -(v[0] - y[PORTS + 2] - (cue->ports > 2 ? dome * y[2] : 0)) / reach;
+    a[0] += turning * v[1], a[1] += turning * turning * reach;
+}
+
+/* The contact's velocities per unit of impulse, where it faces now. */
+void contact_gives(const Work *w, double B[FORCES][FORCES])
+{
+    const Contact *c = w->c;
+    for (int f = 0; f < c->forces; f++)
+        for (int g = 0; g < c->forces; g++) {
+            double sum = 0;
+            for (int a = 0; a < c->cue->ports; a++)
+                for (int b = 0; b < c->cue->ports; b++)
+                    sum += w->C[0][f][a] * c->cue->inverse_mass[a][b] * w->C[0][g][b];
+            for (int b = 0; b < c->speeds; b++) sum += w->C[0][f][PORTS + b] * c->ball_gives[b] * w->C[0][g][PORTS + b];
+            B[f][g] = sum;
+        }
+}
+
+/* Impulses of the contact's forces, all at once. */
+void push(Work *w, const double *impulses)
+{
+    Contact *c = w->c;
+    const Cue *cue = c->cue;
+    for (int p = 0; p < ALL_PORTS; p++) {
+        double load = 0;
+        for (int f = 0; f < c->forces; f++) load += w->C[0][f][p] * impulses[f];
+        w->blows[p] += load;
+        if (p >= PORTS) {
+            if (p - PORTS < c->speeds) c->ball[p - PORTS] += c->ball_gives[p - PORTS] * load;
+        } else if (p < cue->ports)
+            for (int k = 0; k < 2 * cue->modes; k++) c->xi[k] += cue->drives[2 * p * cue->modes + k] * load;
+    }
+}
+
+/* Take away what is left of the velocities that a hold keeps at zero; the energy that this takes. */
+double blow(Work *w, const int *held, int count)
+{
+    if (!count) return 0;
+    double v[FORCES], after[FORCES], B[FORCES][FORCES], P[FORCES] = {0}, x[FORCES], energy = 0;
+    Factor few;
+    velocities_now(w, v);
+    contact_gives(w, B);
+    for (int i = 0; i < count; i++) {
+        x[i] = -v[held[i]];
+        for (int j = 0; j < count; j++) few.matrix[i * count + j] = B[held[i]][held[j]];
+    }
+    if (!factor(count, &few)) return 0;
+    solve_factored(count, &few, x);
+    for (int i = 0; i < count; i++) P[held[i]] = x[i];
+    push(w, P);
+    velocities_now(w, after);
+    for (int i = 0; i < count; i++) energy -= x[i] * (v[held[i]] + after[held[i]]) / 2;
+    return energy;
+}
