@@ -39,7 +39,6 @@ ORDER = [
     "results",
     "design",
     "plot",
-    "tap",
     "measured",
     "io",
     "frames",

@@ -16,16 +16,16 @@ from cuefem.cue import Cue
 from cuefem.games import without_leather
 from cuefem.io import FIGURES, InputError, check_place, load_stroke, save, save_figure
 from cuefem.io.sound import load_recording
+from cuefem.measured.fit import TapFit
+from cuefem.measured.ringing import Ringing, ringing
+from cuefem.measured.tones import tones
+from cuefem.measured.wood import Predicted, TapTest, predicted
 from cuefem.parts import with_material
 from cuefem.quantity import Quantity
 from cuefem.report.record import scene_record
 from cuefem.report.tap import UNITS, tap_figure, tap_record, tap_tables
 from cuefem.report.unusual import unusual
 from cuefem.scene import Outcome, Scene
-from cuefem.tap.fit import TapFit
-from cuefem.tap.ringing import Ringing, ringing
-from cuefem.tap.tones import tones
-from cuefem.tap.wood import Predicted, TapTest, predicted
 
 
 @click.command()

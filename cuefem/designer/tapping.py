@@ -11,16 +11,16 @@ import numpy as np
 
 from cuefem.designer.units import System
 from cuefem.io.sound import load_recording
+from cuefem.measured.fit import TapFit
+from cuefem.measured.ringing import Ringing, ringing
+from cuefem.measured.tones import HIGH, LOW, tones
+from cuefem.measured.wood import TapTest
 from cuefem.parts import with_material
 from cuefem.report.charts import Axis, Curve, Mark, chart
 from cuefem.report.tap import KINDS
 from cuefem.report.templates import chart_markup
 from cuefem.results.quantities import written
 from cuefem.scene import Scene
-from cuefem.tap.fit import TapFit
-from cuefem.tap.ringing import Ringing, ringing
-from cuefem.tap.tones import HIGH, LOW, tones
-from cuefem.tap.wood import TapTest
 
 DRAWN = 600  # points of the spectrum
 DEEPEST = -90.0  # dB, of the spectrum

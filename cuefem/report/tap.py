@@ -11,16 +11,16 @@ import numpy as np
 from rich.table import Table
 
 from cuefem.contact.outcome import MISSED, grip_of
+from cuefem.measured.chance import LEVEL
+from cuefem.measured.fit import TapFit
+from cuefem.measured.ringing import Ringing
+from cuefem.measured.tones import HIGH, LOW
+from cuefem.measured.wood import Predicted
 from cuefem.report.record import Record
 from cuefem.report.strike import MISCUE
 from cuefem.report.table import table_of, with_caption
 from cuefem.results.quantities import NONE, grams, units_of, written
 from cuefem.scene import Outcome
-from cuefem.tap.chance import LEVEL
-from cuefem.tap.fit import TapFit
-from cuefem.tap.ringing import Ringing
-from cuefem.tap.tones import HIGH, LOW
-from cuefem.tap.wood import Predicted
 
 UNITS = units_of("E", "G", "rho", "end_mass", "squirt", "shaft_mass") | {
     **{"frequency": "Hz", "error": "as its number", "decay": "1/s", "clipped": "s", "mains": "Hz", "level": "dB"},

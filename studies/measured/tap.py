@@ -2,7 +2,8 @@
 
 Each cue of meshes/ is given other wood (`TRUE` times its file's E, G and density), hung free and tapped at its butt end
 by a half-sine of 0.3 ms; two microphones near the tip hear the sum of its damped modes, sampled at 48 kHz with 16 bits,
-in white noise. `cuefem.tap.wood` has the file, the weighed mass and the recording; errors are medians over `SEEDS`.
+in white noise. `cuefem.measured.wood` has the file, the weighed mass and the recording; errors are medians over
+`SEEDS`.
 
 `python -m studies.measured.tap example.wav` writes such a recording of pool_maple to try `cuefem tap` on. About 100 s.
 """
@@ -21,12 +22,12 @@ from scipy.io import wavfile
 
 from cuefem import Cue, end_mass, modes
 from cuefem.effects.loss import section_loss
+from cuefem.measured.fit import TapFit
+from cuefem.measured.ringing import ringing
+from cuefem.measured.tones import tones
+from cuefem.measured.wood import TapTest
 from cuefem.parts import main_material, with_material
 from cuefem.report.tap import draw_spectrum
-from cuefem.tap.fit import TapFit
-from cuefem.tap.ringing import ringing
-from cuefem.tap.tones import tones
-from cuefem.tap.wood import TapTest
 from studies import pages
 from studies.pages import table
 from studies.strokes import NAMES, cue, scene

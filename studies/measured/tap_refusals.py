@@ -20,12 +20,12 @@ from scipy.stats import beta
 
 from cuefem import Cue, Material, Segment
 from cuefem.materials import MATERIALS, WOODS, material
+from cuefem.measured.chance import LEVEL, by_chance
+from cuefem.measured.fit import TapFit
+from cuefem.measured.ringing import ringing
+from cuefem.measured.tones import tones
+from cuefem.measured.wood import TapTest
 from cuefem.parts import main_material, with_material
-from cuefem.tap.chance import LEVEL, by_chance
-from cuefem.tap.fit import TapFit
-from cuefem.tap.ringing import ringing
-from cuefem.tap.tones import tones
-from cuefem.tap.wood import TapTest
 from studies import pages
 from studies.measured import tap, tap_sounds
 from studies.pages import table

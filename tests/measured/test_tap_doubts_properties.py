@@ -12,14 +12,14 @@ from scipy.io import wavfile
 
 from cuefem import modes
 from cuefem.materials import WOODS, material
+from cuefem.measured.chance import LEVEL, SETS, by_chance, random_sets
+from cuefem.measured.doubts import unlike
+from cuefem.measured.hum import without_hum
+from cuefem.measured.matching import MODES
+from cuefem.measured.ringing import Ringing, ringing
+from cuefem.measured.tones import Tone, tones
+from cuefem.measured.wood import TapTest
 from cuefem.parts import main_material
-from cuefem.tap.chance import LEVEL, SETS, by_chance, random_sets
-from cuefem.tap.doubts import unlike
-from cuefem.tap.hum import without_hum
-from cuefem.tap.matching import MODES
-from cuefem.tap.ringing import Ringing, ringing
-from cuefem.tap.tones import Tone, tones
-from cuefem.tap.wood import TapTest
 from studies.measured import tap, tap_refusals, tap_sounds
 from studies.strokes import MESHES, NAMES, cue
 from tests.helpers.command_line import call

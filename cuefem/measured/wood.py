@@ -1,8 +1,8 @@
 """The tap test: E, G and density of a shaft's wood from the tones that it rings with, hung free.
 
-The tones fix E/rho and G/rho; the weighed mass fixes rho. Its error comes from the tones (`cuefem.tap.tones`), from the
-beam and the drawing (`MODEL`), from the scale, and from G/E, if the tones do not tell G from E and the file's ratio is
-kept.
+The tones fix E/rho and G/rho; the weighed mass fixes rho. Its error comes from the tones (`cuefem.measured.tones`),
+from the beam and the drawing (`MODEL`), from the scale, and from G/E, if the tones do not tell G from E and the file's
+ratio is kept.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from cuefem.contact.strike import strike
 from cuefem.cue import Array, Cue, Material
 from cuefem.effects import Effect
 from cuefem.endmass.drives import end_mass
+from cuefem.measured.chance import by_chance
+from cuefem.measured.doubts import DENSITY, KEPT, refusals, remarks, shear_coefficients
+from cuefem.measured.fit import Matched, TapFit
+from cuefem.measured.matching import FACTOR, ModeTable, Shaft, assigned
+from cuefem.measured.tones import Tone
 from cuefem.parts import main_material, with_material
 from cuefem.quantity import Quantity, check_kind
 from cuefem.scene import Scene
-from cuefem.tap.chance import by_chance
-from cuefem.tap.doubts import DENSITY, KEPT, refusals, remarks, shear_coefficients
-from cuefem.tap.fit import Matched, TapFit
-from cuefem.tap.matching import FACTOR, ModeTable, Shaft, assigned
-from cuefem.tap.tones import Tone
 
 MODEL = 2e-3  # relative, of a mode's frequency: diameters to 0.1 %, uneven grain, the beam
 SCALE = 0.5e-3  # kg, error of a kitchen scale

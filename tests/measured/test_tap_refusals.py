@@ -9,9 +9,9 @@ import pytest
 from scipy.io import wavfile
 
 from cuefem import PointMass
-from cuefem.tap.ringing import ringing
-from cuefem.tap.tones import Tone, tones
-from cuefem.tap.wood import TapTest
+from cuefem.measured.ringing import ringing
+from cuefem.measured.tones import Tone, tones
+from cuefem.measured.wood import TapTest
 from studies.measured import tap
 from studies.strokes import MESHES, cue
 from tests.helpers.command_line import call

@@ -18,8 +18,8 @@ from scipy.interpolate import RectBivariateSpline
 
 from cuefem.beam.modes import modes
 from cuefem.cue import Array, Cue, Material
+from cuefem.measured.tones import HIGH, LOW, Tone
 from cuefem.parts import with_material
-from cuefem.tap.tones import HIGH, LOW, Tone
 
 MODES = 24
 FACTOR = 3.0  # E of the wood lies within this factor of the file's

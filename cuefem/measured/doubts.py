@@ -8,10 +8,10 @@ import numpy as np
 
 from cuefem.cue import Cue, Material, shear_coefficient
 from cuefem.materials import MATERIALS, WOODS, Range
-from cuefem.tap.chance import LEVEL
-from cuefem.tap.fit import TapFit
-from cuefem.tap.matching import FACTOR, RATIOS
-from cuefem.tap.tones import LOW
+from cuefem.measured.chance import LEVEL
+from cuefem.measured.fit import TapFit
+from cuefem.measured.matching import FACTOR, RATIOS
+from cuefem.measured.tones import LOW
 
 FAR = 0.97  # of ln `FACTOR`: an E this far from the file's is at the end of the search
 WIDEST = 1.5  # a range is widened by its own width at both ends, at most by this factor

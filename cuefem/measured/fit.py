@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cuefem.cue import Array, Cue, Material
-from cuefem.tap.tones import Tone
+from cuefem.measured.tones import Tone
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class TapFit:
     nearly as well: (E in Pa, odds against it). loss: median loss factor of the tones matched, an upper bound of the
     wood's. misfit: root mean square of the tones' relative distances from their modes, sharp tones counting more.
     notes: what a person should know, one line each. chance: p-value of tones that are not the shaft's
-    (`cuefem.tap.chance`). shear_coefficients: smallest and largest kappa along the wood; the value of G belongs to
+    (`cuefem.measured.chance`). shear_coefficients: smallest and largest kappa along the wood; the value of G belongs to
     them. refusals: reasons not to trust the result, one line each; empty for a sound one.
     """
 

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cuefem.cue import Array
+from cuefem.measured.hum import Hum, without_hum
 from cuefem.quantity import Quantity
-from cuefem.tap.hum import Hum, without_hum
 
 HOP = 0.02  # s, of the envelope: two periods of the lowest tone that a phone hears
 RISE = 4.0  # of the power from one hop to the next: a tap, where beating tones never rise so fast

@@ -18,7 +18,7 @@ from scipy.signal import find_peaks
 from scipy.special import gammainccinv
 
 from cuefem.cue import Array
-from cuefem.tap.ringing import Ringing
+from cuefem.measured.ringing import Ringing
 
 Complex = NDArray[np.complex128]
 

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cuefem.cue import Array
-from cuefem.tap.matching import SPREADS, TWICE, UNHEARD, WRONG, ModeTable
-from cuefem.tap.tones import HIGH, LOW, Tone
+from cuefem.measured.matching import SPREADS, TWICE, UNHEARD, WRONG, ModeTable
+from cuefem.measured.tones import HIGH, LOW, Tone
 
 LEVEL = 0.01
 SETS = 199

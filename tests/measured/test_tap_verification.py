@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 from cuefem import end_mass, modes
+from cuefem.measured.fit import TapFit
+from cuefem.measured.matching import MODES
+from cuefem.measured.ringing import Ringing, ringing
+from cuefem.measured.tones import Tone, tones
+from cuefem.measured.wood import KEPT, SCALE, TapTest, predicted
 from cuefem.parts import main_material
-from cuefem.tap.fit import TapFit
-from cuefem.tap.matching import MODES
-from cuefem.tap.ringing import Ringing, ringing
-from cuefem.tap.tones import Tone, tones
-from cuefem.tap.wood import KEPT, SCALE, TapTest, predicted
 from studies.measured import tap
 from studies.strokes import NAMES, cue, scene
 

@@ -14,11 +14,11 @@ from scipy.io import wavfile
 import cuefem
 from cuefem import Cue, Scene, modes
 from cuefem.io.sound import load_recording
+from cuefem.measured.matching import MODES
+from cuefem.measured.ringing import ringing
+from cuefem.measured.tones import Tone, tones
+from cuefem.measured.wood import KEPT, TapTest
 from cuefem.parts import main_material
-from cuefem.tap.matching import MODES
-from cuefem.tap.ringing import ringing
-from cuefem.tap.tones import Tone, tones
-from cuefem.tap.wood import KEPT, TapTest
 from studies.measured import tap
 from studies.strokes import MESHES, NAMES, cue
 from tests.helpers.command_line import call

@@ -1,1 +1,0 @@
-"""The tap test: tones in a recording, and the wood that has them."""
