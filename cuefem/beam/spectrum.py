@@ -45,8 +45,9 @@ class Reduced:
     @cached_property
     def eigen(self) -> tuple[Array, Array]:
         """(mu, z) of all modes, descending in mu, ascending in frequency: (n,), (n, n)."""
-        mu, z, failed = lapack().dstevd(self.diagonal, self.off)
-        _check(failed, "dstevd")
+        # by relatively robust representations, eight times as fast as dstevd; range 0: all of them
+        _, mu, z, failed = lapack().dstemr(self.diagonal, np.append(self.off, 0.0), 0, 0.0, 0.0, 1, len(self.diagonal))
+        _check(failed, "dstemr")
         return mu[::-1], z[:, ::-1]
 
     @property
@@ -86,7 +87,7 @@ def reduced(system: System) -> Reduced:
     _check(failed, "dpotrf")
     standard, failed = lapack().dsygst(system.M[::-1, ::-1], upper, lower=0)
     _check(failed, "dsygst")
-    work = 32 * len(upper)
+    work = 10 * len(upper)  # wider blocks take longer for so few unknowns
     whole, diagonal, off, tau, failed = lapack().dsytrd(standard[::-1, ::-1], lower=1, lwork=work)
     _check(failed, "dsytrd")
     return Reduced(system, diagonal, off, upper, np.asfortranarray(whole[1:, :-1]), tau)
