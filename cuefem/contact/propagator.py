@@ -110,7 +110,6 @@ class _Group:
         there = np.concatenate([vibrating, np.ones(len(modes), bool)])
         states = whole[np.ix_(there, there)]
         rates, right = np.linalg.eig(states)
-        rates, right = np.linalg.eig(states)
         if np.linalg.cond(right) > DEFECTIVE:  # two rates are one, as of a critically damped mode: take them apart
             nudge = NUDGE * np.linalg.norm(states) * np.diag(np.linspace(-1.0, 0.0, len(states)))
             rates, right = np.linalg.eig(states + nudge)

@@ -40,7 +40,7 @@ def waves_over(part: float) -> Array:
 
 
 def tables() -> Array:
-    """All that kernel/contact.h calls a Rule, one table after the other."""
+    """All that kernel/contact.h calls a Rule, one table after the other, matrices by columns."""
     sums = np.array([sums_to(place) for place in PLACES])
     force_sums = np.array([sums_to(place, FORCE_WAVES) for place in PLACES])
     extend = values_at(WITH_START, FORCE_WAVES)
@@ -50,8 +50,8 @@ def tables() -> Array:
     for i, place in enumerate(PLACES):
         s = place * (1 + x) / 2
         modes = legendre.legvander(2 * (place - s) - 1, TERMS - 1).T * (weights * place / 2)
-        convolved[:, i] = modes @ values_at(s, FORCE_WAVES)
+        convolved[:, :, i] = modes @ values_at(s, FORCE_WAVES)
     shortened = np.array([waves_over(place) for place in PLACES])
     looks = np.sort(np.concatenate([np.linspace(0, 1, 3 * NODES + 1), PLACES[-3:-1]]))
-    parts = [PLACES, sums, force_sums, WAVES, FORCE_WAVES, extend, slopes, convolved, shortened, looks]
-    return np.concatenate([part.ravel() for part in (*parts, values_at(looks), GAUSS, WEIGHTS)])
+    parts = [PLACES, sums.T, force_sums.T, WAVES.T, FORCE_WAVES.T, extend[0], slopes.T, convolved, shortened]
+    return np.concatenate([part.ravel() for part in (*parts, looks, values_at(looks).T, GAUSS, WEIGHTS)])

@@ -58,19 +58,28 @@ static inline double larger(double a, double b)
     return a > b ? a : b;
 }
 
+/* Add to Q numbers a matrix of Q rows times a vector, times a number. */
+static inline void add_product(int columns, const double *matrix, const double *vector, double by, double *to)
+{
+    double sum[Q] = {0};
+    for (int j = 0; j < columns; j++)
+        for (int i = 0; i < Q; i++) sum[i] += matrix[j * Q + i] * vector[j];
+    for (int i = 0; i < Q; i++) to[i] += by * sum[i];
+}
+
 /* The tables of a step's rule, as `cuefem.contact.rule` makes them. Polynomials of forces go through the nodes, those of
-   velocities through the start too. */
+   velocities through the start too. Matrices stand by columns, here and everywhere: [j][i] leads from j to i. */
 typedef struct {
     double nodes[Q];
-    double sums[Q][WITH];       /* velocities -> their integrals up to each node */
+    double sums[WITH][Q];       /* velocities -> their integrals up to each node */
     double force_sums[Q][Q];    /* forces -> likewise */
     double waves[WITH][WITH];   /* velocities -> Legendre's coefficients */
     double force_waves[Q][Q];   /* forces -> likewise */
-    double extend[WITH][Q];     /* forces -> those at the start and the nodes */
-    double slopes[WITH][Q];     /* forces -> their rates there, per step */
+    double first[Q];            /* forces -> that at the start */
+    double slopes[Q][WITH];     /* forces -> their rates at the start and the nodes, per step */
     double convolved[TERMS][Q][Q]; /* integral over [0, c_i] of P_t(2 (c_i - s) - 1) l_j(s) ds */
     double shortened[Q][Q][Q];  /* forces -> Legendre's coefficients over [0, c_i] */
-    double looks[LOOKS], look[LOOKS][WITH];
+    double looks[LOOKS], look[WITH][LOOKS];
     double gauss[POINTS], weights[POINTS];
 } Rule;
 
@@ -79,9 +88,9 @@ extern EXPORTED Rule rule;
 /* What forces over a step of one length make of the modes. */
 typedef struct {
     double step;
-    double *turns;   /* (Q, modes) complex: exp(rate c_i step) */
-    double *moments; /* (Q, modes) complex: integrals over the step of exp(rate (step - s)) P_t, over the step */
-    double *answer;  /* (reads, Q, ports, Q): from loads at the nodes to readings there */
+    double *turns;   /* (modes, 2, Q), real and imaginary: exp(rate c_i step) */
+    double *moments; /* (modes, 2, Q): integrals over the step of exp(rate (step - s)) P_t, over the step */
+    double *answer;  /* (reads, ports, Q, Q): from loads at the nodes to readings there */
 } Response;
 
 /* The modes of a cue; rates, readings and drives are complex: xi' = rates xi + drives' load, y = Re(readings xi). */
@@ -185,6 +194,7 @@ void to_waves(const double *values, double *waves);
 double value_at(const double *values, double part);
 double first_fall(const double *values, double past);
 double work_of(const double *force, const double *velocity, double span, double part);
+void waves_over(const double *forces, double part, double *waves);
 
 /* matrix.c */
 int factor(int n, Factor *to);

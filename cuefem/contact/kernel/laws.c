@@ -34,7 +34,7 @@ static void residual(Work *w, const Step *s, Residual *r)
     if (c->patch == LEATHER_PATCH && w->grows)
         for (int i = 0; i < Q; i++) {
             sum[i] = 0;
-            for (int j = 0; j < WITH; j++) sum[i] += s->step * rule.sums[i][j] * k[j] * s->v[0][j];
+            for (int j = 0; j < WITH; j++) sum[i] += s->step * rule.sums[j][i] * k[j] * s->v[0][j];
         }
     for (int i = 0; i < Q; i++) {
         double F = s->F[0][i + 1], x = s->x[0][i + 1];
@@ -67,7 +67,7 @@ static void sliding(const Work *w, const Step *s, double *to)
         if (c->patch == RIGID_PATCH) continue;
         if (press == RIGID) { /* F_n follows the motion */
             double rate = 0;
-            for (int j = 0; j < Q; j++) rate += rule.slopes[i][j] * s->F[0][j + 1];
+            for (int j = 0; j < Q; j++) rate += rule.slopes[j][i] * s->F[0][j + 1];
             to[i] += c->compliance * rate / s->step;
             continue;
         }

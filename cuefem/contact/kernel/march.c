@@ -1,30 +1,6 @@
 /* A contact from touch to parting: the phases that its steps make up, and what is taken with each. */
 #include "contact.h"
 
-/* Legendre's coefficients over a part of the step of the loads at its nodes. */
-static void loads_over(const Step *s, int port, double part, double *waves)
-{
-    double whole[Q];
-    for (int t = 0; t < Q; t++) {
-        whole[t] = 0;
-        for (int j = 0; j < Q; j++) whole[t] += rule.force_waves[t][j] * s->loads[port][j];
-    }
-    if (part == 1) {
-        memcpy(waves, whole, sizeof whole);
-        return;
-    }
-    memset(waves, 0, sizeof whole);
-    for (int q = 0; q < POINTS; q++) {
-        double value = legendre(whole, Q, part * rule.gauss[q]) * rule.weights[q];
-        double x = 2 * rule.gauss[q] - 1, before = 0, here = 1;
-        for (int t = 0; t < Q; t++) {
-            waves[t] += (2 * t + 1) * value * here;
-            double later = ((2 * t + 1) * x * here - t * before) / (t + 1);
-            before = here, here = later;
-        }
-    }
-}
-
 /* Go to a part of a step. */
 static int take(Work *w, const Step *s, double part)
 {
@@ -33,22 +9,17 @@ static int take(Work *w, const Step *s, double part)
     double span = part * s->step, waves[PORTS][Q];
     if (!record(w, s, part)) return NO_MEMORY;
     for (int d = 0; d < cue->reads - cue->ports; d++) {
-        double of[WITH], sum = 0;
-        to_waves(s->damped + d * WITH, of);
-        for (int q = 0; q < POINTS; q++) {
-            double speed = legendre(of, WITH, part * rule.gauss[q]);
-            sum += rule.weights[q] * speed * speed;
-        }
-        *(d < c->lossy ? &c->damping_loss : &c->radiated) += span * sum;
+        const double *speed = s->damped + d * WITH;
+        *(d < c->lossy ? &c->damping_loss : &c->radiated) += work_of(speed, speed, s->step, part);
     }
     w->law->taken(w, s, part);
     if (c->turns) c->angle = value_at(s->angle, part);
     for (int b = 0; b < c->speeds; b++) {
         double of_ball[Q];
-        loads_over(s, PORTS + b, part, of_ball);
+        waves_over(s->loads[PORTS + b], part, of_ball);
         c->ball[b] += span * c->ball_gives[b] * of_ball[0]; /* the first coefficient is the mean */
     }
-    for (int p = 0; p < cue->ports; p++) loads_over(s, p, part, waves[p]);
+    for (int p = 0; p < cue->ports; p++) waves_over(s->loads[p], part, waves[p]);
     advance_modes(cue, c->xi, part == 1 ? response_of(cue, s->level) : NULL, span, waves);
     for (int f = 0; f < c->forces; f++)
         for (int i = 0; i < Q; i++) w->last_F[f][i] = s->F[f][i + 1];

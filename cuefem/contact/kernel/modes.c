@@ -66,18 +66,14 @@ static void free_response(Response *r)
 /* The part of the answer of modes that turn slowly: terms of their moments, summed over the modes, times one table. */
 FAST static void add_series(const Cue *cue, const double *kappa, int count, Response *r)
 {
-    int ports = cue->ports;
-    for (int a = 0; a < cue->reads; a++)
-        for (int b = 0; b < ports; b++)
-            for (int t = 0; t < count; t++) {
-                double f = r->step * (2 * t + 1) * (t % 2 ? -1 : 1) * kappa[(a * ports + b) * count + t];
-                if (f == 0) continue;
-                for (int i = 0; i < Q; i++) {
-                    double *to = r->answer + ((a * Q + i) * ports + b) * Q;
-                    const double *from = rule.convolved[t][i];
-                    for (int j = 0; j < Q; j++) to[j] += f * from[j];
-                }
-            }
+    for (int t = 0; t < count; t++)
+        for (int pair = 0; pair < cue->reads * cue->ports; pair++) {
+            double f = r->step * (2 * t + 1) * (t % 2 ? -1 : 1) * kappa[pair * count + t];
+            double *to = r->answer + pair * Q * Q;
+            const double *from = rule.convolved[t][0];
+            if (f == 0) continue;
+            for (int i = 0; i < Q * Q; i++) to[i] += f * from[i];
+        }
 }
 
 /* The part of one mode that turns too fast for that: its moments up to each node. */
@@ -97,8 +93,8 @@ static void add_fast(const Cue *cue, int k, Response *r)
                 const double *y = cue->readings + 2 * (a * cue->modes + k), *d = cue->drives + 2 * (b * cue->modes + k);
                 double pr = h * (y[0] * d[0] - y[1] * d[1]), pi = h * (y[0] * d[1] + y[1] * d[0]);
                 if (pr == 0 && pi == 0) continue;
-                double *to = r->answer + ((a * Q + i) * cue->ports + b) * Q;
-                for (int j = 0; j < Q; j++) to[j] += pr * row_r[j] - pi * row_i[j];
+                double *to = r->answer + (a * cue->ports + b) * Q * Q;
+                for (int j = 0; j < Q; j++) to[j * Q + i] += pr * row_r[j] - pi * row_i[j];
             }
     }
 }
@@ -123,11 +119,9 @@ FAST static Response *make_response(const Cue *cue, int level)
         double yr = cue->rates[2 * k] * h / 2, yi = cue->rates[2 * k + 1] * h / 2, re[TERMS], im[TERMS];
         int slow = hypot(yr, yi) < bound;
         moments_of(yr, yi, slow ? count : Q, re, im);
-        for (int t = 0; t < Q; t++) r->moments[2 * (t * K + k)] = re[t], r->moments[2 * (t * K + k) + 1] = im[t];
-        for (int i = 0; i < Q; i++) {
-            double *to = r->turns + 2 * (i * K + k);
-            turn_of(2 * yr * rule.nodes[i], 2 * yi * rule.nodes[i], to, to + 1);
-        }
+        double *moments = r->moments + 2 * Q * k, *turns = r->turns + 2 * Q * k;
+        memcpy(moments, re, Q * sizeof *re), memcpy(moments + Q, im, Q * sizeof *im);
+        for (int i = 0; i < Q; i++) turn_of(2 * yr * rule.nodes[i], 2 * yi * rule.nodes[i], turns + i, turns + Q + i);
         if (!slow) {
             add_fast(cue, k, r);
             continue;
@@ -166,17 +160,16 @@ FAST void advance_modes(const Cue *cue, double *xi, const Response *whole, doubl
 {
     int K = cue->modes;
     for (int k = 0; k < K; k++) {
-        double re[Q], im[Q], tr, ti, sr = 0, si = 0, xr = xi[2 * k], xm = xi[2 * k + 1];
+        double own[2 * Q], tr, ti, sr = 0, si = 0, xr = xi[2 * k], xm = xi[2 * k + 1];
+        const double *re = own, *im = own + Q;
         if (whole) {
-            const double *turn = whole->turns + 2 * ((Q - 1) * K + k);
-            tr = turn[0], ti = turn[1];
-            for (int t = 0; t < Q; t++) {
-                re[t] = whole->moments[2 * (t * K + k)], im[t] = whole->moments[2 * (t * K + k) + 1];
-            }
+            const double *turns = whole->turns + 2 * Q * k;
+            tr = turns[Q - 1], ti = turns[2 * Q - 1];
+            re = whole->moments + 2 * Q * k, im = re + Q;
         } else {
             double yr = cue->rates[2 * k] * time / 2, yi = cue->rates[2 * k + 1] * time / 2;
             turn_of(2 * yr, 2 * yi, &tr, &ti);
-            moments_of(yr, yi, Q, re, im);
+            moments_of(yr, yi, Q, own, own + Q);
         }
         for (int b = 0; waves && b < cue->ports; b++) {
             double dr = cue->drives[2 * (b * K + k)], di = cue->drives[2 * (b * K + k) + 1], fr = 0, fi = 0;

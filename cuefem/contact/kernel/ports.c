@@ -133,7 +133,7 @@ double blow(Work *w, const int *held, int count)
     contact_gives(w, B);
     for (int i = 0; i < count; i++) {
         x[i] = -v[held[i]];
-        for (int j = 0; j < count; j++) few.matrix[i * count + j] = B[held[i]][held[j]];
+        for (int j = 0; j < count; j++) few.matrix[j * count + i] = B[held[i]][held[j]];
     }
     if (!factor(count, &few)) return 0;
     solve_factored(count, &few, x);

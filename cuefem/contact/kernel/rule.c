@@ -20,18 +20,18 @@ double legendre(const double *waves, int count, double part)
     return sum;
 }
 
-void to_waves(const double *values, double *waves)
+FAST void to_waves(const double *values, double *waves)
 {
-    for (int t = 0; t < WITH; t++) {
-        double sum = 0;
-        for (int j = 0; j < WITH; j++) sum += rule.waves[t][j] * values[j];
-        waves[t] = sum;
-    }
+    double sum[WITH] = {0};
+    for (int j = 0; j < WITH; j++)
+        for (int t = 0; t < WITH; t++) sum[t] += rule.waves[j][t] * values[j];
+    memcpy(waves, sum, sizeof sum);
 }
 
 double value_at(const double *values, double part)
 {
     double waves[WITH];
+    if (part == 1) return values[Q];
     to_waves(values, waves);
     return legendre(waves, WITH, part);
 }
@@ -73,21 +73,16 @@ static double lowest(const double *waves, double a, double b)
 }
 
 /* The part of the step where the values at its start and nodes first fall through zero and below -past; 2 if nowhere. */
-double first_fall(const double *values, double past)
+FAST double first_fall(const double *values, double past)
 {
-    double low = values[0], high = values[0], y[LOOKS], waves[WITH];
+    double low = values[0], high = values[0], y[LOOKS] = {0}, waves[WITH];
     for (int i = 1; i < WITH; i++) low = fmin(low, values[i]), high = larger(high, values[i]);
     if (low > 0.3 * high) return 2;
     double size = larger(fabs(low), fabs(high)) + 1e-300;
-    int first = LOOKS;
-    for (int i = 0; i < LOOKS; i++) {
-        y[i] = 0;
-        for (int j = 0; j < WITH; j++) y[i] += rule.look[i][j] * values[j];
-        if (i && y[i] < -past) {
-            first = i;
-            break;
-        }
-    }
+    int first = 1;
+    for (int j = 0; j < WITH; j++)
+        for (int i = 0; i < LOOKS; i++) y[i] += rule.look[j][i] * values[j];
+    while (first < LOOKS && y[first] >= -past) first++;
     to_waves(values, waves);
     for (int i = 1; i + 1 < LOOKS && i < first; i++) {
         if (!(y[i] > 0 && y[i] < y[i - 1] && (i + 1 == first || y[i] < y[i + 1]) && y[i] < 0.05 * size)) continue;
@@ -104,14 +99,42 @@ double first_fall(const double *values, double past)
     return 0;
 }
 
-/* The work of a force over a part of a step. */
-double work_of(const double *force, const double *velocity, double span, double part)
+/* Legendre's polynomials at the Gauss points of a part of the step. */
+static void polynomials_over(double part, double P[WITH][POINTS])
 {
-    double of_force[WITH], of_velocity[WITH], sum = 0;
+    for (int q = 0; q < POINTS; q++) P[0][q] = 1, P[1][q] = 2 * part * rule.gauss[q] - 1;
+    for (int t = 1; t < Q; t++)
+        for (int q = 0; q < POINTS; q++)
+            P[t + 1][q] = ((2 * t + 1) * P[1][q] * P[t][q] - t * P[t - 1][q]) / (t + 1);
+}
+
+/* The work of a force over a part of a step. */
+FAST double work_of(const double *force, const double *velocity, double span, double part)
+{
+    double of_force[WITH], of_velocity[WITH], P[WITH][POINTS], F[POINTS] = {0}, v[POINTS] = {0}, sum = 0;
     to_waves(force, of_force), to_waves(velocity, of_velocity);
-    for (int q = 0; q < POINTS; q++) {
-        double at = part * rule.gauss[q];
-        sum += rule.weights[q] * legendre(of_force, WITH, at) * legendre(of_velocity, WITH, at);
-    }
+    polynomials_over(part, P);
+    for (int t = 0; t < WITH; t++)
+        for (int q = 0; q < POINTS; q++) F[q] += of_force[t] * P[t][q], v[q] += of_velocity[t] * P[t][q];
+    for (int q = 0; q < POINTS; q++) sum += rule.weights[q] * F[q] * v[q];
     return sum * span * part;
+}
+
+/* Legendre's coefficients over a part of the step of forces at its nodes. */
+FAST void waves_over(const double *forces, double part, double *waves)
+{
+    double whole[Q] = {0}, P[WITH][POINTS], values[POINTS] = {0};
+    add_product(Q, rule.force_waves[0], forces, 1, whole);
+    if (part == 1) {
+        memcpy(waves, whole, sizeof whole);
+        return;
+    }
+    polynomials_over(part, P);
+    for (int t = 0; t < Q; t++)
+        for (int q = 0; q < POINTS; q++) values[q] += whole[t] * P[t][q];
+    polynomials_over(1, P);
+    for (int t = 0; t < Q; t++) {
+        waves[t] = 0;
+        for (int q = 0; q < POINTS; q++) waves[t] += (2 * t + 1) * P[t][q] * rule.weights[q] * values[q];
+    }
 }

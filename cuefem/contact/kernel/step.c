@@ -7,44 +7,30 @@ int clock_level(const Contact *c)
     return LONGEST_POWER - (int)floor(log2(c->clock));
 }
 
-/* What the cue's rows read at the nodes if nothing loads it: its own motion. */
+/* What the cue's rows read at the start and the nodes if nothing loads it: its own motion. */
 FAST static void own_motion(const Contact *c, const Response *r, double (*own)[WITH])
 {
     const Cue *cue = c->cue;
-    int K = cue->modes;
-    double *turned = malloc(2 * K * sizeof *turned);
-    if (!turned) return;
-    for (int i = 0; i < WITH; i++) {
-        const double *turn = r->turns + 2 * (i - 1) * K, *x = c->xi;
-        for (int k = 0; k < K; k++) {
-            double tr = i ? turn[2 * k] : 1, ti = i ? turn[2 * k + 1] : 0;
-            turned[2 * k] = tr * x[2 * k] - ti * x[2 * k + 1];
-            turned[2 * k + 1] = -(tr * x[2 * k + 1] + ti * x[2 * k]);
+    for (int a = 0; a < cue->reads; a++) {
+        const double *row = cue->readings + 2 * a * cue->modes, *x = c->xi;
+        double now = 0, later[Q] = {0};
+        for (int k = 0; k < cue->modes; k++, row += 2, x += 2) {
+            const double *turn = r->turns + 2 * Q * k;
+            double re = row[0] * x[0] - row[1] * x[1], im = row[0] * x[1] + row[1] * x[0];
+            now += re;
+            for (int i = 0; i < Q; i++) later[i] += turn[i] * re - turn[Q + i] * im;
         }
-        for (int a = 0; a < cue->reads; a++) {
-            const double *row = cue->readings + 2 * a * K;
-            double sum = 0;
-            for (int k = 0; k < 2 * K; k++) sum += row[k] * turned[k];
-            own[a][i] = sum;
-        }
+        own[a][0] = now, memcpy(own[a] + 1, later, sizeof later);
     }
-    free(turned);
 }
 
-/* What the cue's rows read once loads act. */
+/* What the cue's rows from the first to the last read once loads act. */
 FAST static void loaded(const Cue *cue, const Response *r, const double (*own)[WITH], const double (*loads)[Q],
                         int first, int last, double (*y)[WITH])
 {
-    int wide = cue->ports * Q;
-    const double *load = (const double *)loads;
     for (int a = first; a < last; a++) {
-        y[a - first][0] = own[a][0];
-        for (int i = 0; i < Q; i++) {
-            const double *row = r->answer + (a * Q + i) * wide;
-            double sum = own[a][i + 1];
-            for (int j = 0; j < wide; j++) sum += row[j] * load[j];
-            y[a - first][i + 1] = sum;
-        }
+        memcpy(y[a - first], own[a], sizeof own[a]);
+        add_product(cue->ports * Q, r->answer + a * cue->ports * Q * Q, loads[0], 1, y[a - first] + 1);
     }
 }
 
@@ -53,29 +39,20 @@ FAST static void answer_of(const Work *w, const Response *r, double *V)
 {
     const Contact *c = w->c;
     int n = c->forces, ports = c->cue->ports;
-    double *sums = V + n * n * Q * Q;
     memset(V, 0, 2 * n * n * Q * Q * sizeof *V);
     for (int f = 0; f < n; f++)
         for (int g = 0; g < n; g++) {
-            double *to = V + (f * n + g) * Q * Q, *sum = sums + (f * n + g) * Q * Q, ball = 0;
+            double *to = V + (f * n + g) * Q * Q, *sum = to + n * n * Q * Q, ball = 0;
             for (int a = 0; a < ports; a++)
                 for (int b = 0; b < ports; b++) {
+                    const double *from = r->answer + (a * ports + b) * Q * Q;
                     double by = w->C[0][f][a] * w->C[0][g][b];
-                    if (by == 0) continue;
-                    for (int i = 0; i < Q; i++) {
-                        const double *from = r->answer + ((a * Q + i) * ports + b) * Q;
-                        for (int j = 0; j < Q; j++) to[i * Q + j] += by * from[j];
-                    }
+                    for (int i = 0; by != 0 && i < Q * Q; i++) to[i] += by * from[i];
                 }
             for (int b = 0; b < c->speeds; b++)
                 ball += w->C[0][f][PORTS + b] * c->ball_gives[b] * w->C[0][g][PORTS + b];
-            for (int i = 0; i < Q; i++)
-                for (int j = 0; j < Q; j++) to[i * Q + j] += ball * r->step * rule.force_sums[i][j];
-            for (int i = 0; i < Q; i++)
-                for (int l = 0; l < Q; l++) {
-                    double by = r->step * rule.sums[i][l + 1];
-                    for (int j = 0; j < Q; j++) sum[i * Q + j] += by * to[l * Q + j];
-                }
+            for (int i = 0; i < Q * Q; i++) to[i] += ball * r->step * rule.force_sums[0][i];
+            for (int j = 0; j < Q; j++) add_product(Q, rule.sums[1], to + j * Q, r->step, sum + j * Q);
         }
 }
 
@@ -86,17 +63,16 @@ FAST static void jacobian(int n, const Residual *r, const double *V, double *J)
     const double *sums = V + n * n * Q * Q;
     memset(J, 0, wide * wide * sizeof *J);
     for (int f = 0; f < n; f++)
-        for (int i = 0; i < Q; i++) {
-            double *row = J + (f * Q + i) * wide;
-            for (int g = 0; g < n; g++) {
-                double by_v = r->on_v[f][g][i], by_x = r->on_x[f][g][i];
-                row[g * Q + i] += r->on_F[f][g][i];
-                if (by_v == 0 && by_x == 0) continue;
-                for (int b = 0; b < n; b++) {
-                    const double *from = V + ((g * n + b) * Q + i) * Q, *sum = sums + ((g * n + b) * Q + i) * Q;
-                    for (int j = 0; j < Q; j++) row[b * Q + j] += by_v * from[j] + by_x * sum[j];
+        for (int g = 0; g < n; g++) {
+            const double *by_F = r->on_F[f][g], *by_v = r->on_v[f][g], *by_x = r->on_x[f][g];
+            int moves = 0;
+            for (int i = 0; i < Q; i++) J[(g * Q + i) * wide + f * Q + i] += by_F[i], moves |= by_v[i] != 0 || by_x[i] != 0;
+            for (int b = 0; moves && b < n; b++)
+                for (int j = 0; j < Q; j++) {
+                    double *to = J + (b * Q + j) * wide + f * Q;
+                    const double *v = V + ((g * n + b) * Q + j) * Q, *x = sums + ((g * n + b) * Q + j) * Q;
+                    for (int i = 0; i < Q; i++) to[i] += by_v[i] * v[i] + by_x[i] * x[i];
                 }
-            }
         }
 }
 
@@ -106,15 +82,13 @@ static void guess(const Work *w, double step, double F[FORCES][Q])
     int n = w->c->forces;
     memset(F, 0, sizeof(double[FORCES][Q]));
     if (!w->known || w->linear) return;
-    double waves[FORCES][Q];
-    for (int f = 0; f < n; f++)
-        for (int t = 0; t < Q; t++) {
-            waves[f][t] = 0;
-            for (int j = 0; j < Q; j++) waves[f][t] += rule.force_waves[t][j] * w->last_F[f][j];
+    for (int f = 0; f < n; f++) {
+        double waves[Q] = {0};
+        add_product(Q, rule.force_waves[0], w->last_F[f], 1, waves);
+        for (int i = 0; i < Q; i++) {
+            double at = fmin(w->last_part + rule.nodes[i] * step / w->last_step, w->last_part < 1 ? 1 : 1.2);
+            F[f][i] = legendre(waves, Q, at);
         }
-    for (int i = 0; i < Q; i++) {
-        double at = fmin(w->last_part + rule.nodes[i] * step / w->last_step, w->last_part < 1 ? 1 : 1.2);
-        for (int f = 0; f < n; f++) F[f][i] = legendre(waves[f], Q, at);
     }
 }
 
@@ -123,58 +97,38 @@ static void guess(const Work *w, double step, double F[FORCES][Q])
 FAST static double move(Work *w, const Response *r, const double (*own)[WITH], const double F[FORCES][Q], Step *s)
 {
     const Contact *c = w->c;
-    int n = c->forces, ports = c->cue->ports;
+    int n = c->forces, ports = c->cue->ports, all = PORTS + c->speeds, turns = c->turns;
     double y[ALL_PORTS][WITH], changed = 0;
-    for (int p = 0; p < ports; p++)
-        for (int i = 0; i < Q; i++) {
-            s->loads[p][i] = 0;
-            for (int f = 0; f < n; f++) s->loads[p][i] += w->C[c->turns ? i + 1 : 0][f][p] * F[f][i];
-        }
-    for (int b = 0; b < c->speeds; b++)
-        for (int i = 0; i < Q; i++) {
-            s->loads[PORTS + b][i] = 0;
-            for (int f = 0; f < n; f++) s->loads[PORTS + b][i] += w->C[c->turns ? i + 1 : 0][f][PORTS + b] * F[f][i];
-        }
+    for (int p = 0; p < all; p = p == ports - 1 ? PORTS : p + 1) {
+        memset(s->loads[p], 0, sizeof s->loads[p]);
+        for (int f = 0; f < n; f++)
+            for (int i = 0; i < Q; i++) s->loads[p][i] += w->C[turns ? i + 1 : 0][f][p] * F[f][i];
+    }
     loaded(c->cue, r, own, (const double(*)[Q])s->loads, 0, ports, y);
     for (int b = 0; b < c->speeds; b++) {
-        double *speed = y[PORTS + b], by = r->step * c->ball_gives[b];
-        speed[0] = c->ball[b];
-        for (int i = 0; i < Q; i++) {
-            double sum = 0;
-            for (int j = 0; j < Q; j++) sum += rule.force_sums[i][j] * s->loads[PORTS + b][j];
-            speed[i + 1] = c->ball[b] + by * sum;
-        }
+        for (int i = 0; i < WITH; i++) y[PORTS + b][i] = c->ball[b];
+        add_product(Q, rule.force_sums[0], s->loads[PORTS + b], r->step * c->ball_gives[b], y[PORTS + b] + 1);
     }
     for (int f = 0; f < n; f++) {
-        for (int i = 0; i < WITH; i++) {
-            const double *row = w->C[c->turns ? i : 0][f];
-            double sum = 0;
-            for (int p = 0; p < ports; p++) sum += row[p] * y[p][i];
-            for (int b = 0; b < c->speeds; b++) sum += row[PORTS + b] * y[PORTS + b][i];
-            s->v[f][i] = sum;
-        }
-        s->x[f][0] = 0;
-        for (int i = 0; i < Q; i++) {
-            double sum = 0;
-            for (int j = 0; j < WITH; j++) sum += rule.sums[i][j] * s->v[f][j];
-            s->x[f][i + 1] = r->step * sum;
-        }
+        memset(s->v[f], 0, sizeof s->v[f]), memset(s->x[f], 0, sizeof s->x[f]);
+        for (int p = 0; p < all; p = p == ports - 1 ? PORTS : p + 1)
+            for (int i = 0; i < WITH; i++) s->v[f][i] += w->C[turns ? i : 0][f][p] * y[p][i];
+        add_product(WITH, rule.sums[0], s->v[f], r->step, s->x[f] + 1);
     }
     for (int i = 0; i < WITH; i++) s->depth[i] = c->depth - s->x[1][i];
-    if (!c->turns) return 0;
-    double rate[WITH];
+    if (!turns) return 0;
+    double rate[WITH], angle[WITH];
     for (int i = 0; i < WITH; i++) {
         double dome = rolls_on(c, s->angle[i]);
         rate[i] = -(s->v[0][i] - y[PORTS + 2][i] - (ports > 2 ? dome * y[2][i] : 0)) / (c->radius + dome);
+        angle[i] = c->angle;
     }
-    for (int i = 0; i < Q; i++) {
-        double sum = 0;
-        for (int j = 0; j < WITH; j++) sum += rule.sums[i][j] * rate[j];
-        sum = c->angle + r->step * sum;
-        changed = larger(changed, fabs(sum - s->angle[i + 1]));
-        s->angle[i + 1] = sum;
+    add_product(WITH, rule.sums[0], rate, r->step, angle + 1);
+    for (int i = 1; i < WITH; i++) {
+        changed = larger(changed, fabs(angle[i] - s->angle[i]));
+        s->angle[i] = angle[i];
+        facing_at(c, s->angle[i], w->C[i]);
     }
-    for (int i = 1; i < WITH; i++) facing_at(c, s->angle[i], w->C[i]);
     return changed;
 }
 
@@ -199,14 +153,10 @@ int solve_step(Work *w, int level, Step *s)
     for (int round = 0; round < 30; round++) {
         c->rounds++;
         double turned = move(w, r, (const double(*)[WITH])own, (const double(*)[Q])F, s);
-        for (int f = 0; f < n; f++)
-            for (int i = 0; i < WITH; i++) {
-                double sum = 0;
-                if (i) sum = F[f][i - 1];
-                else
-                    for (int j = 0; j < Q; j++) sum += rule.extend[0][j] * F[f][j];
-                s->F[f][i] = sum;
-            }
+        for (int f = 0; f < n; f++) {
+            memcpy(s->F[f] + 1, F[f], sizeof F[f]), s->F[f][0] = 0;
+            for (int j = 0; j < Q; j++) s->F[f][0] += rule.first[j] * F[f][j];
+        }
         settled = w->hold.press == FREE ? turned < 1e-14 : round && (w->linear || before < 0.1 * c->tolerance);
         if (settled) break;
         if (w->hold.press == FREE) continue;
@@ -271,14 +221,14 @@ static double error_of(const Work *w, const Step *s)
         double scale = c->forces == 2 && !ALONG[p] ? c->across : 1;
         for (int t = Q - 2; t < Q; t++) {
             double sum = 0;
-            for (int j = 0; j < Q; j++) sum += rule.force_waves[t][j] * s->loads[p][j];
+            for (int j = 0; j < Q; j++) sum += rule.force_waves[j][t] * s->loads[p][j];
             of_load = larger(of_load, fabs(sum) / scale);
         }
     }
     for (int f = 0; f < c->forces; f++)
         for (int t = Q - 1; t <= Q; t++) {
             double sum = 0;
-            for (int j = 0; j < WITH; j++) sum += rule.waves[t][j] * s->v[f][j];
+            for (int j = 0; j < WITH; j++) sum += rule.waves[j][t] * s->v[f][j];
             of_speed = larger(of_speed, fabs(sum) / (c->forces == 2 && !f ? c->across : 1));
         }
     return larger(of_load * s->step / c->impulse, of_speed / (10 * c->speed)) / c->tolerance;
