@@ -72,8 +72,7 @@ class ContactModel:
         """Rates of the contact's velocities per force at the first touch, (forces, forces), 1/kg."""
         ports = len(self.propagator.rows)
         of_cue, of_ball = self.facing[:, :ports], self.facing[:, ports:]
-        across = of_cue @ self.propagator.rows
-        return np.asarray(across @ across.T + (of_ball * self.ball_gives) @ of_ball.T)
+        return np.asarray(of_cue @ self.propagator.mobility[0] @ of_cue.T + (of_ball * self.ball_gives) @ of_ball.T)
 
     @property
     def longest(self) -> float:
@@ -81,14 +80,10 @@ class ContactModel:
 
         A dead tip may stay on a slow mode, slower still with the ball on it, by no more than the second term.
         """
-        longest, omega = LONGEST * self.time, self.propagator.omega
-        if np.any(omega > 0):
-            ports = len(self.propagator.rows)
-            row = self.facing[1, :ports] @ self.propagator.rows
-            ball = float(self.facing[1, ports:] ** 2 @ self.ball_gives)
-            still = float(row[omega == 0] @ row[omega == 0]) + ball
-            longest += 10 / float(omega[omega > 0].min()) * math.sqrt((float(row @ row) + ball) / still)
-        return longest
+        ports = len(self.propagator.rows)
+        along, of_ball = self.facing[1, :ports], float(self.facing[1, ports:] ** 2 @ self.ball_gives)
+        whole, rigid = (float(along @ part @ along) + of_ball for part in self.propagator.mobility)
+        return LONGEST * self.time + 10 / self.propagator.slowest * math.sqrt(whole / rigid)
 
     @property
     def unknowns(self) -> int:
@@ -190,13 +185,11 @@ def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
             numbers |= {"levers": LEVER_TERMS, "lever_reach": LEVER_REACH}
             arrays["lever_terms"] = _sampled(terms.levers, phi)
     turning = bool(u or w or (turns and (dome or terms.levers)))
-    facing = np.array([[-s, -c, -lever_t, 1.0, 0.0, 1.0], [-c, s, -lever_n, 0.0, 1.0, 0.0]])
     propagator = planar_propagator(tip, turning=turning)
-    facing = facing if turning else np.delete(facing, 2, axis=1)
-    tn, nn = (facing[:, : len(propagator.rows)] @ propagator.rows) @ (
-        facing[1, : len(propagator.rows)] @ propagator.rows
-    )
-    pushed = min(1.0, abs(float(tn)) / (float(nn) + 1 / mass))  # by what moves the tip along and across at once
+    of_cue = np.array([[-s, -c, -lever_t], [-c, s, -lever_n]])[:, : len(propagator.rows)]
+    facing = np.concatenate([of_cue, [[1.0, 0.0, 1.0], [0.0, 1.0, 0.0]]], axis=1)
+    tn, nn = (of_cue @ propagator.mobility[0] @ of_cue[1]).tolist()
+    pushed = min(1.0, abs(tn) / (nn + 1 / mass))  # by what moves the tip along and across at once
     return ContactModel(
         propagator,
         facing,

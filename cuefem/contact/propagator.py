@@ -8,6 +8,7 @@ y = Re(readings xi), and all of it belongs to the cue alone: strikes at other sp
 from __future__ import annotations
 
 import ctypes
+import math
 import threading
 import weakref
 from collections.abc import Iterator
@@ -60,6 +61,22 @@ class ModalPropagator:
         dampers = [_rows_of_power(damping) for damping in (tip.damping, tip.radiation) if damping is not None]
         self.lossy = len(dampers[0]) if tip.damping is not None else 0
         self.dampers = np.concatenate([np.zeros((0, count)), *dampers])
+
+    @cached_property
+    def approaching(self) -> Complex:
+        """The coordinates of a cue that moves along its axis at 1 m/s."""
+        return np.asarray(self.onto @ self.approach, complex)
+
+    @cached_property
+    def mobility(self) -> tuple[Array, Array]:
+        """Rates of the ports' velocities per load, (ports, ports), 1/kg: of all modes, and of the rigid ones alone."""
+        rigid = self.rows[:, self.omega == 0]
+        return self.rows @ self.rows.T, rigid @ rigid.T
+
+    @cached_property
+    def slowest(self) -> float:
+        """The lowest angular frequency of a vibration, rad/s; endless without any."""
+        return float(self.omega[self.omega > 0].min(initial=math.inf))
 
     @cached_property
     def cue(self) -> ctypes.c_void_p:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -68,7 +69,7 @@ class SolvedContact:
 
     xi_before, xi: the coordinates of the cue's modes before and after it (`ModalPropagator`). ball: the ball's
     velocities after it, m/s (raised: and its spins times R). losses: J by name. peak, deepest: the tip's greatest
-    force, N, and compression, m. course: None where it was not recorded.
+    force, N, and compression, m. records: the kernel's rows, one a step; None where they were not asked for.
     """
 
     model: ContactModel
@@ -81,12 +82,20 @@ class SolvedContact:
     deepest: float
     peak: float
     losses: dict[str, float]
-    course: Course | None
+    records: Array | None
+
+    @cached_property
+    def course(self) -> Course:
+        """Its steps, of a contact that was recorded."""
+        assert self.records is not None
+        model = self.model
+        return Course.of(self.records, len(model.facing), len(model.propagator.rows), len(model.ball_gives))
 
     @property
     def impulse(self) -> tuple[float, float]:
         """On the ball, (t, n), N s; of one that came in, its momentum."""
-        return impulse_on(self.model, self.ball)
+        p_t, p_n = impulse_on(self.model, self.ball).tolist()
+        return p_t, p_n
 
     @property
     def velocity(self) -> tuple[float, float]:
@@ -106,24 +115,26 @@ class SolvedContact:
 
     def history(self, mirror: float, radius: float = 1.0) -> History:
         """Forces and velocities; mirror: -1 for a stroke on the other side; radius: of the ball, m."""
-        assert self.course is not None
-        course, side = self.course, np.array([mirror, 1.0])[:, None]
-        values = np.concatenate([course.force[:, :2] * side, course.velocity[:, :2] * side], axis=1)
+        assert self.records is not None
+        count, forces = len(self.records), len(self.model.facing)
+        start, step = self.records[:, :2].T.copy()
+        both = self.records[:, 5 : 5 + 2 * forces * _WITH].reshape(count, 2, forces, _WITH)[:, :, :2]
+        values = (both * np.array([[mirror], [1.0]])).reshape(count, 4, _WITH)
         if self.model.table is None:
-            return History(course.start, course.step, self.time, values)
+            return History(start, step, self.time, values)
         axes, flip = np.array(table_axes(self.model.phi, self.model.table.angle)), np.array([mirror, 1.0, 1.0])
         velocity, turning = axes @ self.ball[:3] * flip, axes @ self.ball[3:] / radius * flip * mirror
-        return History(course.start, course.step, self.time, values, velocity, turning)
+        return History(start, step, self.time, values, velocity, turning)
 
 
-def impulse_on(model: ContactModel, ball: Array) -> tuple[float, float]:
-    """The impulse (t, n) that gave a ball at rest these velocities, N s; of a raised stroke that along the table."""
+def impulse_on(model: ContactModel, ball: Array) -> Array:
+    """The impulses (t, n) that gave balls at rest these velocities, (..., speeds), N s; of raised strokes along the table."""
     if model.table is None:
-        return float(model.ball_mass * ball[0]), float(model.ball_mass * ball[1])
+        return np.asarray(model.ball_mass * ball[..., :2])
     s, c = math.sin(model.phi), math.cos(model.phi)
     right, forward, _ = table_axes(model.phi, model.table.angle)
-    p_t, p_n = (s * forward + c * right) @ ball[:3], (c * forward - s * right) @ ball[:3]
-    return float(model.ball_mass * p_t), float(model.ball_mass * p_n)
+    along = np.array([s * forward + c * right, c * forward - s * right])
+    return np.asarray(model.ball_mass * (ball[..., :3] @ along.T))
 
 
 def solve_contact(model: ContactModel, *, recorded: bool = True) -> SolvedContact:
@@ -131,8 +142,8 @@ def solve_contact(model: ContactModel, *, recorded: bool = True) -> SolvedContac
 
     RuntimeError if the ball does not leave the cue, or the contact cannot be stepped on.
     """
-    kernel, propagator, c = library(), model.propagator, KernelContact()
-    before = (propagator.onto @ propagator.approach * model.speed).astype(complex)
+    kernel, propagator = library(), model.propagator
+    before = propagator.approaching * model.speed
     held = {
         "facing": np.ascontiguousarray(model.facing),
         "ball_gives": np.ascontiguousarray(model.ball_gives),
@@ -140,8 +151,6 @@ def solve_contact(model: ContactModel, *, recorded: bool = True) -> SolvedContac
         "ball": np.append(model.ball, np.zeros(6 - len(model.ball))),  # the kernel has room for six
         **{name: np.array(values, float) for name, values in model.arrays.items()},
     }
-    for name, array in held.items():
-        setattr(c, name, array.ctypes.data)
     numbers = {
         "exponent": 1.0,
         "restitution": model.restitution,
@@ -160,36 +169,34 @@ def solve_contact(model: ContactModel, *, recorded: bool = True) -> SolvedContac
         "lossy": propagator.lossy,
         "recording": int(recorded),
     }
-    for name, value in (numbers | model.terms).items():
-        setattr(c, name, value)
+    c = KernelContact(**numbers | model.terms | {name: array.ctypes.data for name, array in held.items()})
     c.cue = propagator.cue
     kernel.contact_run(ctypes.byref(c))
     phases = _phases(model, _rows(c.phases, c.phase_count, 4 + 2 * c.speeds), c.speeds)
     held["ball"] = held["ball"][: c.speeds]
-    records = _rows(c.records, c.record_count, c.row)
+    records = _rows(c.records, c.record_count, c.row) if recorded else None
     kernel.contact_free(ctypes.byref(c))
     if c.status != _ENDED:
         raise _failure(model, c, phases, held)
-    course = Course.of(records, c.forces, len(propagator.rows), c.speeds) if recorded else None
     losses = {"friction": c.friction_loss, "shear": c.shear_loss, "table": c.table_loss}
     losses |= {"damping": c.damping_loss, "radiated": c.radiated}
     return SolvedContact(
-        model, phases, c.time, before, held["xi"], held["ball"], bool(c.parted), c.deepest, c.peak, losses, course
+        model, phases, c.time, before, held["xi"], held["ball"], bool(c.parted), c.deepest, c.peak, losses, records
     )
 
 
 def _rows(pointer: ctypes._Pointer[ctypes.c_double], count: int, wide: int) -> Array:
-    if not count:
-        return np.zeros((0, max(wide, 5)))
-    return np.ctypeslib.as_array(pointer, (count, wide)).copy()
+    """A copy of the kernel's rows."""
+    return np.frombuffer(ctypes.string_at(pointer, 8 * count * wide) if count else b"").reshape(count, max(wide, 5))
 
 
 def _phases(model: ContactModel, rows: Array, speeds: int) -> tuple[Phase, ...]:
-    phases = []
-    for grip, press, start, end, *ball in rows.tolist():
-        p_t, p_n = np.subtract(impulse_on(model, np.array(ball[speeds:])), impulse_on(model, np.array(ball[:speeds])))
-        phases.append(Phase(GRIPS[int(grip)], PRESSES[int(press)], start, end, (float(p_t), float(p_n))))
-    return tuple(phases)
+    before, after = rows[:, 4 : 4 + speeds], rows[:, 4 + speeds :]
+    impulses = impulse_on(model, after) - impulse_on(model, before)
+    return tuple(
+        Phase(GRIPS[int(grip)], PRESSES[int(press)], start, end, (p_t, p_n))
+        for (grip, press, start, end), (p_t, p_n) in zip(rows[:, :4].tolist(), impulses.tolist(), strict=True)
+    )
 
 
 def _failure(model: ContactModel, c: KernelContact, phases: tuple[Phase, ...], held: dict[str, Array]) -> Exception:

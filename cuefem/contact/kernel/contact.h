@@ -148,6 +148,13 @@ typedef struct {
     double values[WITH], past;
 } Guard;
 
+/* Of the first forces alone: most contacts have few. */
+static inline void clear(Residual *r, int forces)
+{
+    memset(r->g, 0, forces * sizeof r->g[0]), memset(r->on_F, 0, forces * sizeof r->on_F[0]);
+    memset(r->on_v, 0, forces * sizeof r->on_v[0]), memset(r->on_x, 0, forces * sizeof r->on_x[0]);
+}
+
 #define GUARD(name, slack, expression)                                   \
     do {                                                                 \
         to[count].event = name, to[count].past = slack;                  \
@@ -177,7 +184,7 @@ struct Work {
     Hold hold;
     double C[WITH][FORCES][ALL_PORTS];
     int level, linear, grows, known; /* known: whether a step was taken, whose forces the next one may begin with */
-    double last_part, last_step, last_F[FORCES][Q];
+    double last_part, last_step, last_F[FORCES][Q], last_angle[Q];
     double blows[ALL_PORTS]; /* impulses on the ports since the last record */
     double *V[LEVELS];       /* answers of the contact to its forces, where C stays as it is */
     Factor *factors[LEVELS][16];

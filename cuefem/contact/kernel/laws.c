@@ -15,7 +15,7 @@ static void residual(Work *w, const Step *s, Residual *r)
     const Contact *c = w->c;
     int press = w->hold.press;
     double give = give_of(c, press), mu = c->friction, k[WITH], dk[WITH];
-    memset(r, 0, sizeof *r);
+    clear(r, 2);
     for (int i = 0; i < WITH; i++) {
         double F, slope;
         if (press != RIGID) curve_at(c, virtual_depth(c, press, s->depth[i]), &F, &slope, &k[i], &dk[i]);

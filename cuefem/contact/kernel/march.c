@@ -22,7 +22,8 @@ static int take(Work *w, const Step *s, double part)
     for (int p = 0; p < cue->ports; p++) waves_over(s->loads[p], part, waves[p]);
     advance_modes(cue, c->xi, part == 1 ? response_of(cue, s->level) : NULL, span, waves);
     for (int f = 0; f < c->forces; f++)
-        for (int i = 0; i < Q; i++) w->last_F[f][i] = s->F[f][i + 1];
+        memcpy(w->last_F[f], s->F[f] + 1, sizeof w->last_F[f]);
+    memcpy(w->last_angle, s->angle + 1, sizeof w->last_angle);
     c->time += span, c->steps++;
     w->known = 1, w->last_part = part, w->last_step = s->step;
     if (c->curve == LEATHER_CURVE && c->depth > c->most) return TOO_DEEP;

@@ -1,11 +1,21 @@
 /* The matrix C and what goes through it: what the contact's velocities are now, and what impulses of its forces do. */
 #include "contact.h"
 
-/* How far the contact has moved on a dome that is tied to the cue's end, (u, w); it goes no further than the rim. */
-static void on_dome(const Contact *c, double angle, double *u, double *w)
+/* Sine and cosine of phi + angle; those of phi are C's at the first touch. */
+static void sine_of(const Contact *c, double angle, double *s, double *k)
 {
-    double from = fmin(c->phi, c->rim), to = larger(-c->rim, fmin(c->phi + angle, c->rim));
-    *u += c->dome * (sin(from) - sin(to)), *w += c->dome * (cos(from) - cos(to));
+    double sa = sin(angle), ca = cos(angle);
+    *s = -c->facing[0] * ca - c->facing[1] * sa, *k = -c->facing[1] * ca + c->facing[0] * sa;
+}
+
+/* How far the contact has moved on a dome that is tied to the cue's end, (u, w), from the first touch to where the angle's
+   sine and cosine are s and k; it goes no further than the rim. */
+static void on_dome(const Contact *c, double angle, double s, double k, double *u, double *w)
+{
+    double from_s = -c->facing[0], from_k = -c->facing[1], at = c->phi + angle;
+    if (c->phi > c->rim) sine_of(c, c->rim - c->phi, &from_s, &from_k);
+    if (fabs(at) > c->rim) sine_of(c, copysign(c->rim, at) - c->phi, &s, &k);
+    *u += c->dome * (from_s - s), *w += c->dome * (from_k - k);
 }
 
 /* The radius of what the ball rolls on: of the dome, or of nothing on its rim. */
@@ -14,10 +24,10 @@ double rolls_on(const Contact *c, double angle)
     return fabs(c->phi + angle) < c->rim ? c->dome : 0;
 }
 
-/* The matrix C where the contact has rolled through an angle: it sees the first touch's directions turned back by it. */
+/* The matrix C where the contact has rolled through an angle: it sees the first touch's directions turned back by it. What
+   is not set here is zero from the beginning. */
 void facing_at(const Contact *c, double angle, double C[FORCES][ALL_PORTS])
 {
-    memset(C, 0, sizeof(double[FORCES][ALL_PORTS]));
     if (!c->turns) {
         int wide = c->cue->ports + c->speeds;
         for (int f = 0; f < c->forces; f++)
@@ -25,7 +35,8 @@ void facing_at(const Contact *c, double angle, double C[FORCES][ALL_PORTS])
                 C[f][p < c->cue->ports ? p : p - c->cue->ports + PORTS] = c->facing[f * wide + p];
         return;
     }
-    double s = sin(c->phi + angle), k = cos(c->phi + angle), sa = sin(angle), ca = cos(angle), du = 0, dw = 0;
+    double s, k, sa = sin(angle), ca = cos(angle), du = 0, dw = 0;
+    sine_of(c, angle, &s, &k);
     if (c->levers) { /* Clenshaw's sum of Chebyshev's polynomials */
         double x = 2 * angle / c->lever_reach, u1 = 0, u2 = 0, w1 = 0, w2 = 0;
         for (int t = c->levers - 1; t > 0; t--) {
@@ -34,7 +45,7 @@ void facing_at(const Contact *c, double angle, double C[FORCES][ALL_PORTS])
         }
         du = x / 2 * u1 - u2 + c->lever_terms[0], dw = x / 2 * w1 - w2 + c->lever_terms[c->levers];
     }
-    on_dome(c, angle, &du, &dw);
+    on_dome(c, angle, s, k, &du, &dw);
     C[0][0] = -s, C[0][1] = -k, C[1][0] = -k, C[1][1] = s;
     if (c->cue->ports > 2) {
         C[0][2] = -(ca * c->lever_t + sa * c->lever_n + s * du + k * dw);

@@ -48,7 +48,7 @@ static void residual(Work *w, const Step *s, Residual *r)
 {
     const Contact *c = w->c;
     int press = w->hold.press;
-    memset(r, 0, sizeof *r);
+    clear(r, FORCES);
     for (int i = 0; i < Q; i++) {
         double F, slope;
         curve_at(c, virtual_depth(c, press, s->depth[i + 1]), &F, &slope, NULL, NULL);

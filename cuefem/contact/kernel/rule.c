@@ -61,14 +61,14 @@ static double zero_of(const double *waves, double a, double b)
     return best;
 }
 
-/* Where a dip between two looks is lowest, by thirds. */
+/* Where a dip between two looks is lowest, by golden sections. */
 static double lowest(const double *waves, double a, double b)
 {
-    for (int i = 0; i < 60; i++) {
-        double third = (b - a) / 3;
-        if (legendre(waves, WITH, a + third) < legendre(waves, WITH, b - third)) b -= third;
-        else a += third;
-    }
+    static const double GOLDEN = 0.6180339887498949;
+    double x = b - GOLDEN * (b - a), y = a + GOLDEN * (b - a), f = legendre(waves, WITH, x), g = legendre(waves, WITH, y);
+    while (b - a > 1e-10)
+        if (f < g) b = y, y = x, g = f, x = b - GOLDEN * (b - a), f = legendre(waves, WITH, x);
+        else a = x, x = y, f = g, y = a + GOLDEN * (b - a), g = legendre(waves, WITH, y);
     return a;
 }
 

@@ -24,13 +24,13 @@ FAST static void own_motion(const Contact *c, const Response *r, double (*own)[W
     }
 }
 
-/* What the cue's rows from the first to the last read once loads act. */
+/* What the cue's rows from the first to the last read once loads act; without any, loads is NULL. */
 FAST static void loaded(const Cue *cue, const Response *r, const double (*own)[WITH], const double (*loads)[Q],
                         int first, int last, double (*y)[WITH])
 {
     for (int a = first; a < last; a++) {
         memcpy(y[a - first], own[a], sizeof own[a]);
-        add_product(cue->ports * Q, r->answer + a * cue->ports * Q * Q, loads[0], 1, y[a - first] + 1);
+        if (loads) add_product(cue->ports * Q, r->answer + a * cue->ports * Q * Q, *loads, 1, y[a - first] + 1);
     }
 }
 
@@ -76,38 +76,35 @@ FAST static void jacobian(int n, const Residual *r, const double *V, double *J)
         }
 }
 
-/* The forces of the step before, gone on with: what Newton's method begins with. */
-static void guess(const Work *w, double step, double F[FORCES][Q])
+/* What was known at the nodes of the step before, gone on with at the nodes of one of another length: past its end with
+   its first terms alone, which do not run away. */
+static void go_on(const Work *w, const double *nodes, double step, double *to)
 {
-    int n = w->c->forces;
-    memset(F, 0, sizeof(double[FORCES][Q]));
-    if (!w->known || w->linear) return;
-    for (int f = 0; f < n; f++) {
-        double waves[Q] = {0};
-        add_product(Q, rule.force_waves[0], w->last_F[f], 1, waves);
-        for (int i = 0; i < Q; i++) {
-            double at = fmin(w->last_part + rule.nodes[i] * step / w->last_step, w->last_part < 1 ? 1 : 1.2);
-            F[f][i] = legendre(waves, Q, at);
-        }
+    double waves[Q] = {0};
+    int inside = w->last_part < 1;
+    add_product(Q, rule.force_waves[0], nodes, 1, waves);
+    for (int i = 0; i < Q; i++) {
+        double at = w->last_part + rule.nodes[i] * step / w->last_step;
+        to[i] = legendre(waves, inside ? Q : 5, fmin(at, inside ? 1 : 3));
     }
 }
 
 /* What moves in a step with these forces: loads, velocities, their integrals, the compression and the angle; by how
-   much the angle changed. */
-FAST static double move(Work *w, const Response *r, const double (*own)[WITH], const double F[FORCES][Q], Step *s)
+   much the angle changed. Without forces F is NULL. */
+FAST static double move(Work *w, const Response *r, const double (*own)[WITH], const double (*F)[Q], Step *s)
 {
     const Contact *c = w->c;
     int n = c->forces, ports = c->cue->ports, all = PORTS + c->speeds, turns = c->turns;
     double y[ALL_PORTS][WITH], changed = 0;
     for (int p = 0; p < all; p = p == ports - 1 ? PORTS : p + 1) {
         memset(s->loads[p], 0, sizeof s->loads[p]);
-        for (int f = 0; f < n; f++)
+        for (int f = 0; f < n && F; f++)
             for (int i = 0; i < Q; i++) s->loads[p][i] += w->C[turns ? i + 1 : 0][f][p] * F[f][i];
     }
-    loaded(c->cue, r, own, (const double(*)[Q])s->loads, 0, ports, y);
+    loaded(c->cue, r, own, F ? (const double(*)[Q])s->loads : NULL, 0, ports, y);
     for (int b = 0; b < c->speeds; b++) {
         for (int i = 0; i < WITH; i++) y[PORTS + b][i] = c->ball[b];
-        add_product(Q, rule.force_sums[0], s->loads[PORTS + b], r->step * c->ball_gives[b], y[PORTS + b] + 1);
+        if (F) add_product(Q, rule.force_sums[0], s->loads[PORTS + b], r->step * c->ball_gives[b], y[PORTS + b] + 1);
     }
     for (int f = 0; f < n; f++) {
         memset(s->v[f], 0, sizeof s->v[f]), memset(s->x[f], 0, sizeof s->x[f]);
@@ -143,16 +140,18 @@ int solve_step(Work *w, int level, Step *s)
     Factor mine, *by = &mine;
     s->level = level, s->step = r->step;
     own_motion(c, r, own);
+    memset(F, 0, sizeof F);
+    for (int f = 0; f < n && w->known && !w->linear; f++) go_on(w, w->last_F[f], r->step, F[f]);
     for (int i = 0; i < WITH; i++) s->angle[i] = c->angle;
+    if (c->turns && w->known) go_on(w, w->last_angle, r->step, s->angle + 1);
     facing_at(c, c->angle, w->C[0]);
-    if (c->turns)
-        for (int i = 1; i < WITH; i++) memcpy(w->C[i], w->C[0], sizeof w->C[0]);
-    guess(w, r->step, F);
+    for (int i = 1; i < WITH && c->turns; i++) facing_at(c, s->angle[i], w->C[i]);
     int settled = 0, slow = 0;
     double last = HUGE_VAL;
     for (int round = 0; round < 30; round++) {
         c->rounds++;
-        double turned = move(w, r, (const double(*)[WITH])own, (const double(*)[Q])F, s);
+        int pushed = round || !w->linear; /* what is linear begins without forces */
+        double turned = move(w, r, (const double(*)[WITH])own, pushed ? (const double(*)[Q])F : NULL, s);
         for (int f = 0; f < n; f++) {
             memcpy(s->F[f] + 1, F[f], sizeof F[f]), s->F[f][0] = 0;
             for (int j = 0; j < Q; j++) s->F[f][0] += rule.first[j] * F[f][j];
