@@ -15,10 +15,11 @@ from cuefem.effects.leather_law import TooDeep
 from cuefem.games import DEFAULT_GAME
 from cuefem.io import InputError, check_place, load_stroke
 from cuefem.io.assumed import assumed, assumed_usual
-from cuefem.report.record import plain, scene_record
+from cuefem.report.record import scene_record
 from cuefem.report.unusual import unusual
 from cuefem.report.words import cue_line, effect_words
 from cuefem.results.quantities import UNITS
+from cuefem.results.records import plain
 from cuefem.scene import Scene
 
 

@@ -14,9 +14,9 @@ from cuefem.cli.strokes import blow_options, offset_option
 from cuefem.io import load_accuracy
 from cuefem.report import (
     end_mass_record,
-    end_mass_table,
+    end_mass_sheet,
     strike_record,
-    strike_table,
+    strike_sheet,
 )
 from cuefem.scene import Scene
 
@@ -26,7 +26,7 @@ from cuefem.scene import Scene
 @blow_options
 def end_mass(file: Path, **given: Any) -> None:
     """Show the effective end mass: how much mass the ball has to push aside at the tip."""
-    show(file, given, end_mass_record, lambda found, about: [end_mass_table(found, about)])
+    show(file, given, end_mass_record, lambda found, about: [end_mass_sheet(found, about)])
 
 
 @click.command()
@@ -40,4 +40,4 @@ def strike(file: Path, **given: Any) -> None:
         rtol = load_accuracy(file)
         return strike_record(scene, None if rtol is None else resolve(scene, rtol))
 
-    show(file, given, results, lambda found, about: [strike_table(found, about)])
+    show(file, given, results, lambda found, about: [strike_sheet(found, about)])

@@ -9,12 +9,13 @@ import click
 
 from cuefem.cli.common import blaming, file_options, head_lines, scene_of
 from cuefem.cli.definitions import Definitions, WithDefinitions
-from cuefem.cli.printing import json_text, print_all
+from cuefem.cli.printing import print_all
 from cuefem.cli.strokes import blow_options, measured, offset_option
 from cuefem.io import InputError, write_whole
 from cuefem.quantity import LENGTH
-from cuefem.report.handover import handover_table, handover_words, pooltool_record
+from cuefem.report.handover import handover_sheet, handover_words, pooltool_record
 from cuefem.report.record import scene_record
+from cuefem.report.table import json_text
 from cuefem.report.unusual import unusual
 
 
@@ -65,4 +66,4 @@ def handover(
     more = (
         [] if output else [handover_words(found), "-o CUE.json writes the file that pooltool reads, --json prints it"]
     )
-    print_all([*first, "", handover_table(found), *more])
+    print_all([*first, "", handover_sheet(found), *more])

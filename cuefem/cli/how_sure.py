@@ -11,8 +11,8 @@ from cuefem.cli.common import file_options, show
 from cuefem.cli.progress import followed
 from cuefem.cli.strokes import blow_options, offset_option
 from cuefem.io import FIGURES, InputError, load_accuracy, save_figure
-from cuefem.report import DEFAULT_RTOL, effects_record, effects_table
-from cuefem.report.cost import cost_figure, cost_record, cost_tables
+from cuefem.report import DEFAULT_RTOL, effects_record, effects_sheet
+from cuefem.report.cost import cost_figure, cost_record, cost_sheets
 from cuefem.scene import Scene
 
 
@@ -30,7 +30,7 @@ def effects(file: Path, **given: Any) -> None:
         rtol = load_accuracy(file)
         return effects_record(scene, rtol=DEFAULT_RTOL if rtol is None else rtol, track=followed)
 
-    show(file, given, results, lambda found, about: [effects_table(found, about)])
+    show(file, given, results, lambda found, about: [effects_sheet(found, about)])
 
 
 @click.command()
@@ -54,4 +54,4 @@ def cost(file: Path, most: int, output: Path | None, **given: Any) -> None:
             save_figure(cost_figure(found, f"{file.name}: what accuracy costs", output.suffix[1:]), output)
         return found
 
-    show(file, given, results, lambda found, about: cost_tables(found))
+    show(file, given, results, lambda found, about: cost_sheets(found))

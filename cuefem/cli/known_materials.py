@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from cuefem.cli.printing import json_option, print_all, print_json
-from cuefem.report import materials_record, materials_table
+from cuefem.report import materials_record, materials_sheet
 
 
 @click.command()
@@ -16,4 +16,4 @@ def materials(as_json: bool) -> None:
     if as_json:
         print_json(found)
     else:
-        print_all([materials_table(found)])
+        print_all([materials_sheet(found)])

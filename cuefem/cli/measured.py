@@ -19,11 +19,11 @@ from cuefem.measured.estimate import squirt_of
 from cuefem.report.documented import (
     compare_page,
     compare_record,
-    compare_tables,
+    compare_sheets,
     estimate_record,
-    estimate_tables,
+    estimate_sheets,
     sampled_record,
-    sampled_table,
+    sampled_sheet,
 )
 from cuefem.report.record import scene_record
 from cuefem.report.unusual import unusual
@@ -61,7 +61,7 @@ def compare(folder: Path, template: bool, output: Path | None, as_json: bool) ->
         said = {"file": str(folder), "assumed": notes, "unusual": unusual(cue.scene)}
         print_json({**said, "scene": scene_record(cue.scene), **record, "units": UNITS})
         return
-    print_all([cue.name, *assumed_lines(notes), "", *compare_tables(cue, record)])
+    print_all([cue.name, *assumed_lines(notes), "", *compare_sheets(record)])
 
 
 UNITS = {"residual": "", "pull": "", "zero": "m", "squirt": "rad", "squirt_error": "rad"}
@@ -95,5 +95,5 @@ def estimate(folder: Path, sample: int | None, seed: int, as_json: bool) -> None
         said = {"file": str(folder), "assumed": notes}
         print_json({**said, "scene": scene_record(cue.scene), **record, "units": UNITS})
         return
-    more = [sampled_table(record["sampled"])] if sample is not None else []
-    print_all([cue.name, *assumed_lines(notes), "", *estimate_tables(record), *more])
+    more = [sampled_sheet(record["sampled"])] if sample is not None else []
+    print_all([cue.name, *assumed_lines(notes), "", *estimate_sheets(record), *more])

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from typing import Any
 
 import click
 from rich.console import Console
 
-from cuefem.report.record import plain
+from cuefem.report.table import json_text, terminal
+from cuefem.results.records import Sheet
 
 # The option of every command that has numbers for programs.
 json_option = click.option("--json", "as_json", is_flag=True, help="SI numbers as JSON.")
@@ -20,20 +20,15 @@ def assumed_lines(notes: Sequence[str]) -> list[str]:
     return [f"assumed: {'; '.join(notes)}"] if notes else []
 
 
-def json_text(record: Any) -> str:
-    """A record for programs, as text."""
-    return json.dumps(plain(record), indent=2, allow_nan=False, ensure_ascii=False)
-
-
 def print_json(record: Any) -> None:
     """Print a record for programs."""
     click.echo(json_text(record))
 
 
-def print_all(things: Sequence[Any]) -> None:
-    """Print lines and tables for people."""
+def print_all(things: Sequence[Sheet | str]) -> None:
+    """Print lines and sheets for people."""
     console = Console(highlight=False, emoji=False)
     if not console.is_terminal:
         console.width = 120  # files and pipes have no width: do not cut tables
     for thing in things:
-        console.print(thing, markup=False) if isinstance(thing, str) else console.print(thing, crop=False)
+        console.print(thing, markup=False) if isinstance(thing, str) else console.print(terminal(thing), crop=False)

@@ -10,17 +10,8 @@ import click
 from cuefem.cli.common import blaming, file_options, page_option, scene_of, show
 from cuefem.cli.progress import followed
 from cuefem.cli.strokes import blow_options, offset_option
-from cuefem.contact.outcome import MISSED
 from cuefem.io import InputError, load_accuracy, save_page
-from cuefem.report import (
-    end_mass_table,
-    modes_table,
-    numbers_table,
-    pivot_table,
-    report_record,
-    squirt_table,
-)
-from cuefem.report.strike import MISCUE
+from cuefem.report import report_record, report_sheets
 from cuefem.report.unusual import unusual
 
 
@@ -32,17 +23,8 @@ from cuefem.report.unusual import unusual
 def report(file: Path, output: Path | None, **given: Any) -> None:
     """Show modes, end masses, squirt and pivot length against offset, as tables or as a page with figures."""
 
-    def tables(found: Any, about: Any) -> list[Any]:
-        shown = [modes_table(found["modes"])] if "modes" in found else []
-        if "no_contact" in found:
-            return [*shown, f"no end mass and no squirt: {found['no_contact']}"]
-        first: list[Any] = [MISCUE, "", *shown] if found["grip"] in MISSED else shown
-        masses, squirt = found["end_masses"], found["squirt"]
-        curves = squirt_table(squirt, about), pivot_table(squirt)
-        return [*first, end_mass_table(masses, about), *curves, numbers_table(found["numbers"], about)]
-
     if output is None:
-        show(file, given, report_record, tables)
+        show(file, given, report_record, report_sheets)
     else:
         _write_page(file, output, given)
 

@@ -15,7 +15,7 @@ from cuefem.cli.sweep import check_page, opened
 from cuefem.design.scatter import drivers
 from cuefem.io import save_page
 from cuefem.io.study import assumed_base, load_scatter
-from cuefem.report.scatter import cause_rows, scatter_record, scatter_tables, scatter_words, spread_rows
+from cuefem.report.scatter import cause_sheet, scatter_record, scatter_sheets, scatter_words, spread_sheet
 from cuefem.report.study import table_of_study
 from cuefem.report.study_page import Scattered, study_page
 
@@ -47,7 +47,7 @@ def scatter(study: Path, page: Path | None, as_json: bool, **where: Any) -> None
         facts = [f"{len(found.spread.values)} designs, as wood, turning and strokes scatter"]
         save_page(
             study_page(
-                study.stem, table, facts, scattered=Scattered(spread_rows(wanted, found), cause_rows(wanted, found))
+                study.stem, table, facts, scattered=Scattered(spread_sheet(wanted, found), cause_sheet(wanted, found))
             ),
             page,
         )
@@ -65,7 +65,7 @@ def scatter(study: Path, page: Path | None, as_json: bool, **where: Any) -> None
     print_all(
         [
             *assumed_lines(notes),
-            *scatter_tables(wanted, found),
+            *scatter_sheets(wanted, found),
             *scatter_words(wanted, found),
             *([f"wrote {page}"] if page else []),
         ]

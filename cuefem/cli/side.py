@@ -18,7 +18,7 @@ from cuefem.io import InputError, load, load_accuracy
 from cuefem.io.assumed import assumed
 from cuefem.io.paraview import check_new, save_side_strike, write_whole_folder
 from cuefem.quantity import Quantity
-from cuefem.report.side import side_record, side_scene_record, side_tables
+from cuefem.report.side import side_record, side_scene_record, side_sheets
 from cuefem.results.quantities import UNITS
 from cuefem.side.accuracy import resolve_side_strike
 from cuefem.side.motion import side_motion
@@ -68,7 +68,7 @@ def side(file: Path, places: int, output: Path | None, frames: int, as_json: boo
         print_json({"file": str(file), "assumed": notes, "scene": about, **found, "units": UNITS})
         return
     written = [] if output is None else [f"wrote {output}: strike.pvd and {frames} frames"]
-    print_all([*head_lines(file, about, scene.effects, notes), "", *side_tables(found, about), *written])
+    print_all([*head_lines(file, about, scene.effects, notes), "", *side_sheets(found, about), *written])
 
 
 def _scene(file: Path, given: dict[str, Any]) -> tuple[SideStrike, list[str]]:

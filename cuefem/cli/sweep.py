@@ -18,7 +18,7 @@ from cuefem.design import sweep as run
 from cuefem.io import InputError, check_place, save_page, write_whole
 from cuefem.io.store import Store, export_path, write_table
 from cuefem.io.study import assumed_base, load_study
-from cuefem.report.study import Table, study_record, study_tables, table_of_study
+from cuefem.report.study import Table, study_record, study_sheets, table_of_study
 from cuefem.report.study_page import study_page
 
 
@@ -132,4 +132,4 @@ def _tell(
         click.echo(f"{failed} failed, the first of them design {first[0]}: {first[1]}")
     print_all(assumed_lines(notes))
     if table is not None:
-        print_all(["", *study_tables(table)])
+        print_all(["", *study_sheets(table)])

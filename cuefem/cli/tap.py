@@ -23,7 +23,7 @@ from cuefem.measured.wood import Predicted, TapTest, predicted
 from cuefem.parts import with_material
 from cuefem.quantity import Quantity
 from cuefem.report.record import scene_record
-from cuefem.report.tap import UNITS, tap_figure, tap_record, tap_tables
+from cuefem.report.tap import UNITS, tap_figure, tap_record, tap_sheets
 from cuefem.report.unusual import unusual
 from cuefem.scene import Outcome, Scene
 
@@ -82,7 +82,7 @@ def tap(
         print_json({**said, "scene": about, **record, "units": UNITS})
         return
     written = [f"wrote {path}" for path in (output, figure) if path is not None]
-    print_all([f"{recording.name}, {file.name}", *assumed_lines(notes), "", *tap_tables(record, about), *written])
+    print_all([f"{recording.name}, {file.name}", *assumed_lines(notes), "", *tap_sheets(record, about), *written])
 
 
 def _as_drawn(scene: Scene, file: Path, given: dict[str, Any]) -> Scene:

@@ -12,7 +12,7 @@ from cuefem.cli.strokes import measured, place_options, tip_options
 from cuefem.contact.calibrated import leather_modulus, with_modulus
 from cuefem.io import InputError
 from cuefem.quantity import CONTACT_TIME
-from cuefem.report.tip import tip_record, tip_tables
+from cuefem.report.tip import tip_record, tip_sheets
 from cuefem.scene import Scene
 
 
@@ -40,4 +40,4 @@ def tip(file: Path, wanted: str | None, **given: Any) -> None:
         return scene if time is None else with_modulus(scene, leather_modulus(scene, time))
 
     settled = ("friction", "offset", *(() if time is None else ("leather",)))
-    show(file, given, tip_record, lambda found, about: tip_tables(found, about, time), change=asked, settled=settled)
+    show(file, given, tip_record, lambda found, about: tip_sheets(found, about, time), change=asked, settled=settled)

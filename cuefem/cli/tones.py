@@ -14,7 +14,7 @@ from cuefem.io import InputError
 from cuefem.quantity import Quantity
 from cuefem.report import (
     modes_record,
-    modes_table,
+    modes_sheet,
 )
 from cuefem.scene import Scene
 from cuefem.units import number
@@ -32,7 +32,7 @@ def modes(file: Path, near: str | None, count: int, **given: Any) -> None:
         return modes_record(scene, count=count, near=hertz)
 
     hertz = None if near is None else _hertz(file, near)
-    show(file, given, results, lambda found, about: [modes_table(found)], blow=False)
+    show(file, given, results, lambda found, about: [modes_sheet(found)], blow=False)
 
 
 def _hertz(file: Path, near: str) -> float:

@@ -11,7 +11,7 @@ import click
 
 from cuefem.cli.printing import json_option, print_all, print_json
 from cuefem.io import InputError, studies_with
-from cuefem.report import claims_record, claims_table
+from cuefem.report import claims_record, claims_sheet
 from cuefem.report.claims import VERDICT_WORDS
 from cuefem.validation import Claim
 
@@ -27,7 +27,7 @@ def validate(studies: Path, as_json: bool) -> None:
         return
     counts = Counter(claim["verdict"] for claim in found)
     totals = ", ".join(f"{count} {verdict}" for verdict, count in sorted(counts.items()))
-    print_all([claims_table(found), totals, VERDICT_WORDS])
+    print_all([claims_sheet(found), totals, VERDICT_WORDS])
 
 
 def _claims(folder: Path) -> list[tuple[str, Claim]]:

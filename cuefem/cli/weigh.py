@@ -15,7 +15,7 @@ from cuefem.io import InputError
 from cuefem.measured.pendulum import WAYS as KNOWN
 from cuefem.measured.pendulum import Bounces, PendulumTest, Told, Weighed, lumped_squirt, pressed_time, squirt_told
 from cuefem.quantity import Quantity
-from cuefem.report.pendulum import plan_record, plan_tables, weigh_record, weigh_tables
+from cuefem.report.pendulum import plan_record, plan_sheets, weigh_record, weigh_sheets
 from cuefem.scene import Stroke, Tip
 
 NAME = Path("weigh")  # what error messages name in the place of a file
@@ -80,7 +80,7 @@ def weigh(plan: bool, end_mass: str | None, file: Path | None, as_json: bool, **
         if as_json:
             print_json({**found, "units": UNITS})
         else:
-            print_all(plan_tables(found))
+            print_all(plan_sheets(found))
         return
     test = _test(given)
     with blaming(NAME):
@@ -90,7 +90,7 @@ def weigh(plan: bool, end_mass: str | None, file: Path | None, as_json: bool, **
     if as_json:
         print_json({"assumed": notes, **record, "units": UNITS})
         return
-    print_all([*assumed_lines(notes), *weigh_tables(record)])
+    print_all([*assumed_lines(notes), *weigh_sheets(record)])
 
 
 def _read(option: str, text: str, unit: str, bounds: str = "(0, inf)") -> float:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from cuefem.cue import Array
 from cuefem.results.asking import asked
 from cuefem.results.designs import Designs
-from cuefem.results.quantities import Result
+from cuefem.results.quantities import Result, with_heading
 
 _NAME = re.compile(r"(\w+)(?:\(\s*([^()\s]+)\s*\))?")
 
@@ -57,6 +57,11 @@ class Response:
     def unit(self) -> str:
         """SI unit, "" for a pure number."""
         return self.result.unit
+
+    @property
+    def heading(self) -> str:
+        """The same with the unit that people read it in."""
+        return with_heading(self.label, self.unit)
 
     @property
     def better(self) -> str:

@@ -22,12 +22,12 @@ from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array
 from cuefem.design.sensitivity import sensitivity
 from cuefem.endmass.drives import DEFINITIONS
-from cuefem.report.record import Record
 from cuefem.report.squirt import two_part_curve
 from cuefem.report.strike import outcome_record
 from cuefem.results.asking import listed
 from cuefem.results.designs import TONES, OneDesign, at_offset, strikes_at
 from cuefem.results.quantities import pivot_length
+from cuefem.results.records import Record
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import Solved, default_resolution
 

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
-import re
 from collections.abc import Sequence
 from html import escape
 from typing import NamedTuple
@@ -15,6 +12,7 @@ from cuefem.designer.design import Design
 from cuefem.designer.sliders import choices, sliders
 from cuefem.designer.units import METRIC, System
 from cuefem.endmass.drives import DEFINITIONS
+from cuefem.report import table
 from cuefem.report.glossary import subscripts
 from cuefem.report.strike import MISCUE
 from cuefem.report.trust import trust_line, trust_lines
@@ -196,21 +194,14 @@ def csv_text(columns: Sequence[Column], reference: int, system: System = METRIC)
     head = ["", "unit"]
     for name, differs in zip(names, differing, strict=True):
         head += [name, f"{name}, % from {names[reference]}"] if differs else [name]
-    file = io.StringIO()
-    writer = csv.writer(file)
-    writer.writerow(map(_plain, head))
+    rows = []
     for line in compared(columns, reference, system):
         cells = [line.label, line.unit]
         for number, part, differs in zip(line.numbers, line.parts, differing, strict=True):
             said = part.removesuffix("\u00a0%").replace("−", "-").replace("the same", "0")
             cells += [number, said] if differs else [number]
-        writer.writerow(map(_plain, cells))
-    return file.getvalue()
-
-
-def _plain(cell: str) -> str:
-    """A cell that no spreadsheet takes for a formula."""
-    return f"'{cell}" if re.match(r"[=@\t\r]|[-+](?![0-9])", cell) else cell
+        rows.append(cells)
+    return table.csv_text(head, rows)
 
 
 KEYS = {

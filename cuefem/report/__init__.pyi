@@ -1,33 +1,32 @@
-"""What the commands show: records of plain SI numbers for programs, and readable tables made of them for people."""
+"""What the commands show: records of plain SI numbers for programs, and sheets made of them for people."""
 
-from .claims import claims_record, claims_table
-from .effects import DEFAULT_RTOL, effects_record, effects_table
-from .end_mass import end_mass_record, end_mass_table
-from .everything import numbers_table, report_record
-from .materials import materials_record, materials_table
-from .modes import modes_record, modes_table
+from .claims import claims_record, claims_sheet
+from .effects import DEFAULT_RTOL, effects_record, effects_sheet
+from .end_mass import end_mass_record, end_mass_sheet
+from .everything import report_record, report_sheets
+from .materials import materials_record, materials_sheet
+from .modes import modes_record, modes_sheet
 from .record import cue_record
-from .squirt import pivot_table, squirt_record, squirt_table
-from .strike import strike_record, strike_table
+from .squirt import squirt_record, squirt_sheets
+from .strike import strike_record, strike_sheet
 
 __all__ = [
     "DEFAULT_RTOL",
     "claims_record",
-    "claims_table",
+    "claims_sheet",
     "cue_record",
     "effects_record",
-    "effects_table",
+    "effects_sheet",
     "end_mass_record",
-    "end_mass_table",
+    "end_mass_sheet",
     "materials_record",
-    "materials_table",
+    "materials_sheet",
     "modes_record",
-    "modes_table",
-    "numbers_table",
-    "pivot_table",
+    "modes_sheet",
     "report_record",
+    "report_sheets",
     "squirt_record",
-    "squirt_table",
+    "squirt_sheets",
     "strike_record",
-    "strike_table",
+    "strike_sheet",
 ]

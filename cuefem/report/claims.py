@@ -1,15 +1,13 @@
-"""Claims of the sources: record and table."""
+"""Claims of the sources: record and sheet."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
+from typing import Any
 
-from rich.table import Table
-
-from cuefem.report.record import Record
-from cuefem.report.table import table_of
 from cuefem.results.quantities import NONE
+from cuefem.results.records import Entry, Record, Sheet, sheet
 from cuefem.validation import NOISE, Claim, number
 
 
@@ -26,14 +24,21 @@ VERDICT_WORDS = (
 )
 
 
-def claims_table(record: Sequence[Record]) -> Table:
+def claims_sheet(record: Sequence[Record]) -> Sheet:
     """Claims of sources beside what follows from their equations."""
-    columns = ["source: what, unit", "verdict", "printed", "ours", "difference"]
-    table = table_of("Claims of the sources, checked", columns, text_columns=2)
-    for claim in record:
-        gap = claim["difference"]
-        shown = NONE if gap is None else f"< {NOISE:g}" if abs(gap) < NOISE else f"{gap:.2g}"
-        unit = f", {claim['unit']}" if claim["unit"] else ""
-        numbers = (number(claim["printed"], 6), number(claim["derived"], 6), shown)
-        table.add_row(f"{claim['source']}: {claim['what']}{unit}", claim["verdict"], *numbers)
-    return table
+    columns: dict[str, Entry] = {
+        "source: what, unit": lambda claim: f"{claim['source']}: {', '.join(filter(None, _what(claim)))}",
+        "verdict": "{verdict}",
+        "printed": lambda claim: number(claim["printed"], 6),
+        "ours": lambda claim: number(claim["derived"], 6),
+        "difference": lambda claim: _gap(claim["difference"]),
+    }
+    return sheet("Claims of the sources, checked", columns, record, texts=(0, 1))
+
+
+def _what(claim: Mapping[str, Any]) -> tuple[str, str]:
+    return claim["what"], claim["unit"]
+
+
+def _gap(gap: float | None) -> str:
+    return NONE if gap is None else f"< {NOISE:g}" if abs(gap) < NOISE else f"{gap:.2g}"

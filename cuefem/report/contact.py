@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from cuefem.report.charts import Axis, Chart, Curve, Mark, Span, chart
-from cuefem.report.record import Record
+from cuefem.results.records import Record
 from cuefem.scene import Outcome
 
 MOST_EVENTS = 12

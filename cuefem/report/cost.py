@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from io import BytesIO
 from time import perf_counter
 from typing import Any
 
 import numpy as np
-from rich.table import Table
 
 from cuefem.accuracy import FIRST, JUDGED, MOST, RATIO, Rung, ladder, relative_error
 from cuefem.contact.strike import strike
-from cuefem.report.record import Record
-from cuefem.report.table import table_of, with_caption
-from cuefem.results.quantities import NONE, significant, written
+from cuefem.results.quantities import NONE, TRADE, significant
+from cuefem.results.records import Entry, Record, Sheet, sheet
 from cuefem.scene import Scene
 
 WANTED = (1e-2, 1e-3, 1e-4, 1e-6)
@@ -88,46 +86,47 @@ def _recommended(rtol: float, rungs: Sequence[Record]) -> Record:
     return {"rtol": rtol, "reached": found is not None, **{name: (found or last)[name] for name in names}}
 
 
-def cost_tables(record: Record) -> list[Any]:
+def cost_sheets(record: Record) -> list[Sheet]:
     """The ladder, and what to take."""
-    return [_ladder_table(record["rungs"]), _wanted_table(record["wanted"])]
+    sizes: dict[str, Entry] = {"modes": "{modes}", "elements x order": _mesh, "unknowns": "{unknowns}"}
+    errors = {"estimate": "{estimate:error}", "difference": "{difference:error}"}
+    times: dict[str, Entry] = {
+        "ms, climb": lambda row: _milliseconds(row["seconds"]),
+        "plain sum": "{plain[difference]:error}",
+        "ms, plain": lambda row: _milliseconds((row["plain"] or {}).get("seconds")),
+    }
+    last: dict[str, Entry] = {"estimate": "{estimate:error}", "ms": times["ms, climb"]}
+    return [
+        sheet(
+            "Error against cost",
+            sizes | errors | times,
+            record["rungs"],
+            "Largest relative error of squirt, ball speed and spin: as estimated, and as the difference from the last "
+            "row.",
+            "ms, climb: time of all rows down to this one, as `resolve` takes it. Plain sum: the same modes without "
+            "what the modes left out add (the tail).",
+            "elements: number for all segments together; order: degree of their polynomials.",
+        ),
+        sheet(
+            "What to take",
+            {"accuracy": _asked} | sizes | last,
+            record["wanted"],
+            "With the tail, as `resolve(scene, rtol)` and a file's [accuracy] rtol compute.",
+        ),
+    ]
 
 
-def _ladder_table(rungs: Sequence[Record]) -> Any:
-    columns = ("modes", "elements x order", "unknowns", "estimate", "difference", "ms, climb", "plain sum", "ms, plain")
-    made: Table = table_of("Error against cost", columns)
-    for rung in rungs:
-        plain = rung["plain"] or {"difference": None, "seconds": None}
-        made.add_row(
-            *(str(rung["modes"]), _mesh(rung), str(rung["unknowns"])),
-            *(written("error", rung["estimate"]), written("error", rung["difference"]), _milliseconds(rung["seconds"])),
-            *(written("error", plain["difference"]), _milliseconds(plain["seconds"])),
-        )
-    return with_caption(
-        made,
-        "Largest relative error of squirt, ball speed and spin: as estimated, and as the difference from the last row.",
-        "ms, climb: time of all rows down to this one, as `resolve` takes it. Plain sum: the same modes without "
-        "what the modes left out add (the tail).",
-        "elements: number for all segments together; order: degree of their polynomials.",
-    )
+def _asked(row: Mapping[str, Any]) -> str:
+    return f"{row['rtol']:.0e}" + ("" if row["reached"] else ", not reached: the best is")
 
 
-def _wanted_table(wanted: Sequence[Record]) -> Any:
-    made: Table = table_of("What to take", ("accuracy", "modes", "elements x order", "unknowns", "estimate", "ms"))
-    for row in wanted:
-        asked = f"{row['rtol']:.0e}" + ("" if row["reached"] else ", not reached: the best is")
-        sizes = (str(row["modes"]), _mesh(row), str(row["unknowns"]))
-        made.add_row(asked, *sizes, written("error", row["estimate"]), _milliseconds(row["seconds"]))
-    return with_caption(made, "With the tail, as `resolve(scene, rtol)` and a file's [accuracy] rtol compute.")
-
-
-def _mesh(row: Record) -> str:
+def _mesh(row: Mapping[str, Any]) -> str:
     elements = row["elements"]
     return f"{sum(elements) if isinstance(elements, list) else elements} x {row['order']}"
 
 
 def _milliseconds(value: float | None) -> str:
-    return NONE if value is None else significant(1e3 * value, 3)
+    return NONE if value is None else significant(TRADE["s"][0] * value, 3)
 
 
 def cost_figure(record: Record, title: str, kind: str) -> bytes:

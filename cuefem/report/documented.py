@@ -15,26 +15,15 @@ from cuefem.measured.sampler import Sample
 from cuefem.report.charts import WIDE, Axis, Chart, Curve, Tick, chart
 from cuefem.report.drawings import cue_drawing, front_drawing
 from cuefem.report.glossary import with_words
-from cuefem.report.record import Record
-from cuefem.report.table import table_of, with_caption
 from cuefem.report.templates import environment
 from cuefem.report.words import effect_words, plain_cue_line
-from cuefem.results.quantities import NONE, TRADE
+from cuefem.results.quantities import NONE, with_unit
+from cuefem.results.records import Entry, Record, Sheet, sheet
 
 OFFSETS = tuple(round(0.05 * i, 2) for i in range(1, 11))  # b/R of the computed curve
 EDGE = 5.0  # residuals beyond this are drawn at the edge
 FAR = 3.0  # residuals that deserve a word
 DOUBTED = 0.2  # chance of a measurement to be wrong that deserves one
-
-
-def text_of(value: float, error: float | None, unit: str) -> str:
-    """A value and its error in the units that people read, the error to two digits."""
-    scale, name = TRADE.get(unit, (1.0, unit))
-    tail = "" if not name else name if name == "°" else f" {name}"
-    if error is None or not math.isfinite(error) or error <= 0:
-        return f"{scale * value:.4g}{tail}"
-    decimals = max(0, 1 - math.floor(math.log10(scale * error)))
-    return f"{scale * value:.{decimals}f} ± {scale * error:.{decimals}f}{tail}"
 
 
 def row_record(row: Row) -> Record:
@@ -67,21 +56,29 @@ def _signed(value: float) -> str:
     return f"{value:+.1f}"
 
 
-def compare_tables(cue: DocumentedCue, record: Record) -> list[Any]:
+def compare_sheets(record: Record) -> list[Sheet | str]:
     """For people: the table, the zeros, what is missing."""
-    made: list[Any] = []
-    if record["rows"]:
-        table = table_of("Measured and computed", ["what", "measured", "computed", "residual", "of both"])
-        for row in record["rows"]:
-            texts = (text_of(row[value], row[error], row["unit"]) for value, error in PAIRS)
-            table.add_row(row["what"], *texts, _signed(row["residual"]), _signed(row["pull"]))
-        made.append(with_caption(table, *captions(record)))
-    made += [f"{words}" for words in zero_lines(record)]
+    made: list[Sheet | str] = [_fit_sheet("Measured and computed", record, "of both")] if record["rows"] else []
+    made += zero_lines(record)
     if record["lacking"]:
         made += ["not measured, and what that costs:", *(f"  {words}" for words in record["lacking"])]
     return made
 
 
+def _fit_sheet(title: str, record: Record, *more: str) -> Sheet:
+    """What was measured beside what is computed; more: "of both", "source"."""
+    columns: dict[str, Entry] = {"what": "{what}", **{value: _with_error(value, error) for value, error in PAIRS}}
+    columns["residual"] = "{residual:+.1f}"
+    columns |= {heading: entry for heading, entry in MORE.items() if heading in more}
+    return sheet(title, columns, record["rows"], *(captions(record) if more else ()), texts=(0, 5))
+
+
+def _with_error(value: str, error: str) -> Entry:
+    return lambda row: with_unit(row[value], row["unit"], error=row[error])
+
+
+MORE = {"of both": "{pull:+.1f}", "source": "{source}"}
+MORE = {"of both": "{pull:+.1f}", "source": "{source}"}
 PAIRS = (("measured", "error"), ("computed", "spread"))
 
 
@@ -101,7 +98,7 @@ def zero_lines(record: Record) -> list[str]:
         return []
     weights = np.array([1 / zero["error"] ** 2 for zero in record["zeros"]])
     mean = float(weights @ [zero["zero"] for zero in record["zeros"]] / weights.sum())
-    told, side = text_of(abs(mean), float(weights.sum() ** -0.5), "m"), "left" if mean > 0 else "right"
+    told, side = with_unit(abs(mean), "m", error=float(weights.sum() ** -0.5)), "left" if mean > 0 else "right"
     return [f"The strokes hit {told} to the {side} of their aim; the mean of left and right is free of it"]
 
 
@@ -129,16 +126,7 @@ def compare_page(cue: DocumentedCue, rows: Sequence[Row], record: Record, notes:
         for row in rows
     ]
     drawings = [cue_drawing(scene, across=1.0), cue_drawing(scene, across=8.0), front_drawing(scene)]
-    table = [
-        (
-            row["what"],
-            *(text_of(row[value], row[error], row["unit"]) for value, error in PAIRS),
-            _signed(row["residual"]),
-            _signed(row["pull"]),
-            row["source"],
-        )
-        for row in record["rows"]
-    ]
+    sourced = ["source"] if any(row["source"] for row in record["rows"]) else []
     template = environment().get_template("documented.html.j2")
     facts = [plain_cue_line(scene.cue), *(f"with {effect_words(effect)}" for effect in scene.effects)]
     facts += [cue.source] if cue.source else []
@@ -153,13 +141,11 @@ def compare_page(cue: DocumentedCue, rows: Sequence[Row], record: Record, notes:
         ends=(left, right),
         band=(place(-2), place(2)),
         height=22.0 * len(bars) + 44,
-        table=table,
-        captions=captions(record) if rows else [],
+        table=_fit_sheet("Measured and computed", record, "of both", *sourced) if rows else None,
         zeros=zero_lines(record),
         lacking=record["lacking"],
         drawings=drawings,
         charts=[*_squirt_charts(cue, rows), *_mass_charts(rows)],
-        sourced=any(row["source"] for row in record["rows"]),
     )
     return with_words(text) + "\n"
 
@@ -220,7 +206,7 @@ def _mass_charts(rows: Sequence[Row]) -> list[Chart]:
             np.array([getattr(row, name) for row in own]) for name in ("measured", "error", "computed")
         )
         curves = [Curve("measured", *_crosses(x, y, error, 2.0), "c1"), Curve("computed", x, computed, "c2")]
-        title = f"Squirt with {1e3 * mass:.3g} g on the shaft, over that without"
+        title = f"Squirt with {with_unit(mass, 'kg', 3)} on the shaft, over that without"
         low = 0.1 * math.floor(10 * min((y - error).min(), computed.min()))
         ends = Axis("distance from the end of the tip, mm", 0.0), Axis("ratio", low)
         made.append(chart(title, curves, x=ends[0], y=ends[1]))
@@ -262,14 +248,46 @@ def _correlations(found: Estimate) -> list[list[float]]:
     return (found.covariance / np.outer(sd, sd)).tolist()
 
 
-def estimate_tables(record: Record) -> list[Any]:
+def estimate_sheets(record: Record) -> list[Sheet | str]:
     """For people: the unknowns, how the measurements fit then, and what to measure next."""
-    unknowns = table_of("What the measurements tell", ["unknown", "drawing", "estimate", "68 %", "error left"])
-    for value in record["values"]:
-        unit, ends = value["unit"], (value["low"], value["high"])
-        low, high = (text_of(end, None, unit) for end in ends)
-        cells = text_of(value["before"], None, unit), text_of(value["value"], None, unit), f"{low} to {high}"
-        unknowns.add_row(value["words"], *cells, f"{100 * value['narrowed']:.0f} %")
+    squirt = with_unit(record["squirt"], "rad", error=record["squirt_error"])
+    return [
+        sheet(
+            "What the measurements tell",
+            {"unknown": "{words}", "drawing": _value("before"), "estimate": _value("value")} | _INTERVAL,
+            record["values"],
+            *_estimate_notes(record),
+        ),
+        _fit_sheet("Measured and computed with the estimate", record),
+        "",
+        f"squirt at b/R {record['offset']:g} by the model with these unknowns: {squirt}",
+        "",
+        sheet(
+            "What to measure next",
+            {
+                "measurement": "{what}",
+                "with an error of": lambda worth: with_unit(worth["error"], worth["unit"]) if worth["unit"] else NONE,
+                "narrows most": "{narrows}",
+                "to": "{left:.0 %}",
+                "squirt then": "± {squirt_left:.1 %}",
+            },
+            record["next"],
+            "The most telling about squirt first; squirt then: the relative error of the squirt above that is left.",
+        ),
+    ]
+
+
+def _value(name: str) -> Entry:
+    return lambda value: with_unit(value[name], value["unit"])
+
+
+_INTERVAL: dict[str, Entry] = {
+    "68 %": lambda value: " to ".join(with_unit(value[end], value["unit"]) for end in ("low", "high")),
+    "error left": "{narrowed:.0 %}",
+}
+
+
+def _estimate_notes(record: Record) -> list[str]:
     misfit, count = record["misfit"], record["measurements"]
     notes = [f"Misfit {misfit:.1f} of {count} measurements and the priors: about {count} is what errors alone make."]
     if misfit > count + 3 * math.sqrt(2 * count):
@@ -283,21 +301,7 @@ def estimate_tables(record: Record) -> list[Any]:
         notes.append(
             "The search did not settle: the measurements contradict each other, and the intervals are too narrow."
         )
-    notes.append("Error left: the width of the interval over that before any measurement.")
-    fit = table_of("Measured and computed with the estimate", ["what", "measured", "computed", "residual"])
-    for row in record["rows"]:
-        texts = (text_of(row[value], row[error], row["unit"]) for value, error in PAIRS)
-        fit.add_row(row["what"], *texts, _signed(row["residual"]))
-    squirt = text_of(record["squirt"], record["squirt_error"], "rad")
-    line = f"squirt at b/R {record['offset']:g} by the model with these unknowns: {squirt}"
-    coming = table_of("What to measure next", ["measurement", "with an error of", "narrows most", "to", "squirt then"])
-    coming_rows = record["next"]
-    for worth in coming_rows:
-        error = text_of(worth["error"], None, worth["unit"]) if worth["unit"] else NONE
-        left = f"{100 * worth['left']:.0f} %"
-        coming.add_row(worth["what"], error, worth["narrows"], left, f"± {100 * worth['squirt_left']:.1f} %")
-    caption = "The most telling about squirt first; squirt then: the relative error of the squirt above that is left."
-    return [with_caption(unknowns, *notes), with_caption(fit), line, "", with_caption(coming, caption)]
+    return [*notes, "Error left: the width of the interval over that before any measurement."]
 
 
 def sampled_record(found: Estimate, sample: Sample) -> Record:
@@ -307,12 +311,8 @@ def sampled_record(found: Estimate, sample: Sample) -> Record:
     return record | {"draws": len(sample.z), "values": [value_record(value) for value in sample.values]}
 
 
-def sampled_table(record: Record) -> Any:
+def sampled_sheet(record: Record) -> Sheet:
     """For people."""
-    table = table_of("By the sampler", ["unknown", "median", "68 %", "error left"])
-    for value in record["values"]:
-        middle, low, high = (text_of(value[name], None, value["unit"]) for name in ("value", "low", "high"))
-        table.add_row(value["words"], middle, f"{low} to {high}", f"{100 * value['narrowed']:.0f} %")
     times = record["steps"] / record["correlation"]
     lines = [
         f"{record['draws']} draws, {times:.0f} autocorrelation times for each walker, "
@@ -322,4 +322,5 @@ def sampled_table(record: Record) -> Any:
     ]
     if not record["missed"] < 0.5 or times < 20:
         lines.append("That is too much, or these are too few draws: do not rely on this table.")
-    return with_caption(table, *lines)
+    columns = {"unknown": "{words}", "median": _value("value")} | _INTERVAL
+    return sheet("By the sampler", columns, record["values"], *lines)

@@ -1,12 +1,10 @@
-"""What each effect of a scene is worth, as a record and as a table, with what it costs."""
+"""What each effect of a scene is worth, as a record and as a sheet, with what it costs."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict
-
-from rich.console import Group
 
 from cuefem.accuracy import climb
 from cuefem.beam.modes import modes
@@ -15,10 +13,9 @@ from cuefem.contact.strike import strike, strike_modes
 from cuefem.design.worth import Change, Variant, change, variants
 from cuefem.effects import effect_kinds
 from cuefem.endmass.drives import equivalent_end_mass
-from cuefem.report.record import Record
-from cuefem.report.table import table_of, with_caption
 from cuefem.report.words import assumptions, effect_words
-from cuefem.results.quantities import NONE, degrees, grams
+from cuefem.results.quantities import NONE, degrees, grams, with_unit
+from cuefem.results.records import Record, Sheet
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import tip_modes_from, turning
 
@@ -136,39 +133,34 @@ def worth(rows: Sequence[Record]) -> Record:
     return {"keep": chosen(True, True), "drop": chosen(True, False), "add": chosen(False, True)}
 
 
-def effects_table(record: Record, scene: Record) -> Group:
+def effects_sheet(record: Record, scene: Record) -> Sheet:
     """The effects, what matters most first, and what to make of it."""
-    columns = ["", "squirt", "end mass", "ball speed, m/s", "spin, rad/s", "unknowns", "CPU time"]
-    offset = scene["stroke"]["offset"]
-    table = table_of(f"What each effect is worth at offset b/R = {offset:g}", columns)
-    base = record["base"]
-    table.add_row(
-        "the scene as it is",
-        degrees(base["squirt"]),
-        grams(base["end_mass"]),
-        f"{base['ball_speed']:.4f}",
-        f"{base['spin']:.2f}",
-        str(base["unknowns"]),
-        seconds_words(base["seconds"]),
-        style="bold",
-    )
     percent = f"{100 * record['rtol']:.3g} %"
-    tried = [row for row in record["effects"] if not row["refused"]]
-    for row in (row for row in tried if row["matters"]):
-        table.add_row(*_cells(row))
-    if any(not row["matters"] for row in tried):  # a row and no style alone says so, also where colours are not
-        table.add_row(f"changes less than {percent}:", style="dim")
-    for row in (row for row in tried if not row["matters"]):
-        table.add_row(*_cells(row), style="dim")
-    return with_caption(
-        table,
-        "without: the scene with this effect left out; with: one it does not list added, at a usual value; "
-        "per cent: change from the first row",
-        f"end mass: of the lumped cue with the same squirt; {percent}: the tolerance of squirt, ball speed and spin",
-        *_not_tried(record["effects"]),
-        assumptions(scene),
-        "",
-        *advice(record, percent),
+    base, tried = record["base"], [row for row in record["effects"] if not row["refused"]]
+    small = [row for row in tried if not row["matters"]]
+    first = ("the scene as it is", degrees(base["squirt"]), grams(base["end_mass"]), f"{base['ball_speed']:.4f}")
+    rows: list[tuple[str, ...]] = [
+        (*first, f"{base['spin']:.2f}", str(base["unknowns"]), seconds_words(base["seconds"]))
+    ]
+    rows += [_cells(row) for row in tried if row["matters"]]
+    dim = range(len(rows), len(rows) + len(small) + 1)
+    if small:  # a row and no style alone says so, also where colours are not
+        rows += [(f"changes less than {percent}:", *[""] * 6), *map(_cells, small)]
+    return Sheet(
+        f"What each effect is worth at offset b/R = {scene['stroke']['offset']:g}",
+        ("", "squirt", "end mass", "ball speed, m/s", "spin, rad/s", "unknowns", "CPU time"),
+        tuple(rows),
+        (
+            "without: the scene with this effect left out; with: one it does not list added, at a usual value; "
+            "per cent: change from the first row",
+            f"end mass: of the lumped cue with the same squirt; {percent}: the tolerance of squirt, ball speed and "
+            "spin",
+            *_not_tried(record["effects"]),
+            assumptions(scene),
+            "",
+            *advice(record, percent),
+        ),
+        styles={0: "bold"} | dict.fromkeys(dim, "dim"),
     )
 
 
@@ -196,7 +188,7 @@ def _percent(part: float | None) -> str:
 
 def seconds_words(seconds: float) -> str:
     """A duration of a computation."""
-    return f"{1e3 * seconds:.3g} ms" if seconds < 1 else f"{seconds:.2f} s"
+    return with_unit(seconds, "s", 3) if seconds < 1 else f"{seconds:.2f} s"
 
 
 def advice(record: Record, percent: str) -> list[str]:

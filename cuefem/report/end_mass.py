@@ -1,16 +1,14 @@
-"""The end masses of a scene: record and table."""
+"""The end masses of a scene: record and sheet."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
-from rich.console import Group
+from collections.abc import Callable, Mapping
+from typing import Any
 
 from cuefem.endmass.drives import DEFINITIONS, Spread, spreads_of
-from cuefem.report.record import Record
-from cuefem.report.table import table_of, with_caption
 from cuefem.report.words import assumptions, listed, tip_effect_notes
-from cuefem.results.quantities import NONE, grams, significant
+from cuefem.results.quantities import NONE, RESULTS, grams, with_unit
+from cuefem.results.records import Record, Sheet, sheet
 from cuefem.scene import Scene
 from cuefem.squirt import cue_end_mass
 from cuefem.tip_modes import Solved
@@ -37,9 +35,10 @@ def _end_mass(scene: Scene, spread: Callable[[str], Spread], drive: str) -> Reco
         names = ("end_mass", "lowest", "highest", "cue_end_mass", "eps")
         return {**dict.fromkeys(names), "reason": str(error)}
     if not felt > 0:
+        time = with_unit(float(scene.contact_time), "s")
         raise ValueError(
-            f"the end mass comes out as {1e3 * felt:.4g} g ({drive}), which no cue has: its tip is far too weak for a "
-            f"contact of {1e3 * float(scene.contact_time):.4g} ms; check sizes, E and the contact time"
+            f"the end mass comes out as {with_unit(float(felt), 'kg')} ({drive}), which no cue has: its tip is far "
+            f"too weak for a contact of {time}; check sizes, E and the contact time"
         )
     whole = float(cue_end_mass(felt))
     return {
@@ -51,29 +50,31 @@ def _end_mass(scene: Scene, spread: Callable[[str], Spread], drive: str) -> Reco
     }
 
 
-def end_mass_table(record: Record, scene: Record) -> Group:
+def end_mass_sheet(record: Record, scene: Record) -> Sheet:
     """The end masses by definition."""
-    columns = ["definition", "m_e", "spread", "m_c", "eps"]
-    table = table_of("Effective end mass", columns)
-    refused = []
-    for drive, values in record["drives"].items():
-        name = f"{drive}, at b/R {record['offset']:g}" if DEFINITIONS[drive].at_offset else drive
-        if values["end_mass"] is None:
-            table.add_row(name, *[NONE] * 4)
-            refused.append(f"{drive}: {values['reason']}")
-            continue
-        spread = f"{significant(1e3 * values['lowest'])}–{grams(values['highest'])}"
-        row = (grams(values["end_mass"]), spread, grams(values["cue_end_mass"]), f"{values['eps']:.4f}")
-        table.add_row(name, *row)
-    return with_caption(
-        table,
+    at = f", at b/R {record['offset']:g}"
+    rows = [{"name": drive, **values} for drive, values in record["drives"].items()]
+    return sheet(
+        "Effective end mass",
+        {
+            "definition": lambda row: row["name"] + (at if DEFINITIONS[row["name"]].at_offset else ""),
+            "m_e": "end_mass",
+            "spread": _spread,
+            "m_c": "cue_end_mass",
+            "eps": "{eps:.4f}",
+        },
+        rows,
         assumptions(scene),
-        *refused,
+        *(f"{row['name']}: {row['reason']}" for row in rows if row["end_mass"] is None),
         "m_e: effective end mass, the inertia felt by the ball across the cue at its tip (lumped models take offset)",
         "spread: range while keeping 25 to 100 % of the modes",
         "m_c = 4 m_e: cue end of the paper's two-part cue (nu_c 1/3); eps: m_c as a part of the ball's mass",
         *tip_effect_notes(scene, _counted()),
     )
+
+
+def _spread(row: Mapping[str, Any]) -> str:
+    return NONE if row["end_mass"] is None else f"{RESULTS['mass'].number(row['lowest'])}–{grams(row['highest'])}"
 
 
 def _counted() -> str:

@@ -1,21 +1,18 @@
-"""The record of the whole report, and the table of all numbers that have none of their own."""
+"""The whole report of a cue: its record, and its sheets."""
 
 from __future__ import annotations
 
-from rich.console import Group
-
-from cuefem.contact.outcome import grip_of
+from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.effects.leather_law import TooDeep
-from cuefem.report.end_mass import end_mass_record
-from cuefem.report.modes import modes_record
-from cuefem.report.record import Record
-from cuefem.report.squirt import squirt_record
-from cuefem.report.table import table_of, with_caption
+from cuefem.report.end_mass import end_mass_record, end_mass_sheet
+from cuefem.report.modes import modes_record, modes_sheet
+from cuefem.report.squirt import squirt_record, squirt_sheets
+from cuefem.report.strike import MISCUE
 from cuefem.report.words import assumptions
 from cuefem.results.asking import listed
 from cuefem.results.designs import OneDesign
-from cuefem.results.quantities import RESULTS, written
+from cuefem.results.records import Record, Sheet, value_rows, values_sheet
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved
 
@@ -37,14 +34,18 @@ def report_record(scene: Scene, *, count: int = 6) -> Record:
     return found | {"numbers": numbers, "regime": outcome.regime, "grip": grip_of(outcome)}
 
 
-def numbers_table(numbers: Record, scene: Record) -> Group:
-    """Every listed result by its name."""
-    table = table_of(f"The cue, and its stroke at offset b/R = {scene['stroke']['offset']:g}", ["", "value"])
-    for row in number_rows(numbers):
-        table.add_row(*row)
-    return with_caption(table, assumptions(scene))
-
-
-def number_rows(numbers: Record) -> list[tuple[str, str]]:
-    """Each result's name in full, and its value with the unit."""
-    return [(RESULTS[name].words, written(name, value)) for name, value in numbers.items()]
+def report_sheets(record: Record, scene: Record) -> list[Sheet | str]:
+    """All of it, in the order in which one asks."""
+    shown: list[Sheet | str] = [modes_sheet(record["modes"])] if "modes" in record else []
+    if "no_contact" in record:
+        return [*shown, f"no end mass and no squirt: {record['no_contact']}"]
+    first = [MISCUE, ""] if record["grip"] in MISSED else []
+    title = f"The cue, and its stroke at offset b/R = {scene['stroke']['offset']:g}"
+    numbers = values_sheet(title, value_rows(record["numbers"]), assumptions(scene))
+    return [
+        *first,
+        *shown,
+        end_mass_sheet(record["end_masses"], scene),
+        *squirt_sheets(record["squirt"], scene),
+        numbers,
+    ]

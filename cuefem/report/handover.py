@@ -12,16 +12,14 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from rich.console import Group
 
 from cuefem.beam.tip import TipModes
 from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.endmass.drives import DEFINITIONS
-from cuefem.report.record import Record
-from cuefem.report.table import table_of, with_caption
 from cuefem.results.designs import strikes_at
-from cuefem.results.quantities import NONE, grams, units_of, written
+from cuefem.results.quantities import NONE, RESULTS, degrees, grams, units_of, with_unit, written
+from cuefem.results.records import Record, Sheet
 from cuefem.scene import Scene
 from cuefem.squirt import alciatore_a31, alciatore_a31_mass_ratio
 from cuefem.tip_modes import Solved
@@ -207,25 +205,37 @@ def _mass_of(scene: Scene, offset: float, squirt: float) -> float:
 def handover_words(record: Record) -> str:
     """The number that is handed over, for people."""
     at = record["end_mass"]
-    stroke = f"b/R {at['offset']:g}, {at['speed']:g} m/s, head-on contact {1e3 * at['contact_time']:.3g} ms"
+    stroke = f"b/R {at['offset']:g}, {at['speed']:g} m/s, head-on contact {with_unit(at['contact_time'], 's', 3)}"
     specs = record["CueSpecs"]
     whole = f"the whole cue: {grams(specs['M'])}"
     if "length" in specs:
-        whole += f", {1e3 * specs['length']:.1f} mm long"
+        whole += f", {written('position', specs['length'])} long"
         whole += "" if "shaft_radius_at_butt" in specs else " (the file draws the shaft alone: --length gives another)"
-    return f"handed over: end mass {1e3 * specs['end_mass']:.3f} g by {at['drive']}, at {stroke}; {whole}"
+    return f"handed over: end mass {_exact(specs['end_mass'])} by {at['drive']}, at {stroke}; {whole}"
 
 
-def handover_table(record: Record) -> Group:
+def handover_sheet(record: Record) -> Sheet:
     """The equivalent end mass against the offset, for people."""
-    found = record["by_offset"]
-    speeds = found["speeds"] if found["speed_matters"] else [found["speeds"][FASTER.index(1.0)]]
-    rows = found["end_mass_at_speeds"] if found["speed_matters"] else [found["end_mass"]]
-    heads = [f"end mass at {speed:g} m/s" for speed in speeds] if found["speed_matters"] else ["end mass"]
-    squirt = f"squirt at {found['speeds'][FASTER.index(1.0)]:g} m/s" if found["speed_matters"] else "squirt"
-    table = table_of("Equivalent end mass for [A.31]", ["offset b/R", *heads, squirt], text_columns=0)
-    for i, offset in enumerate(found["offsets"]):
-        masses = [NONE if row[i] is None else f"{1e3 * row[i]:.3f} g" for row in rows]
-        missed = record["squirt"]["grips"][i] in MISSED
-        table.add_row(f"{offset:g}", *masses, "miscue" if missed else written("squirt", record["squirt"]["coupled"][i]))
-    return with_caption(table, A31_WORDS, found["words"])
+    by_offset, own = record["by_offset"], FASTER.index(1.0)
+    matters = by_offset["speed_matters"]
+    at = [f" at {speed:g} m/s" if matters else "" for speed in by_offset["speeds"]]
+    shown = range(len(FASTER)) if matters else [own]
+    rows = zip(by_offset["offsets"], zip(*by_offset["end_mass_at_speeds"], strict=True), _told(record), strict=True)
+    return Sheet(
+        "Equivalent end mass for [A.31]",
+        ("offset b/R", *(f"end mass{at[i]}" for i in shown), f"squirt{at[own]}"),
+        tuple((f"{offset:g}", *(_exact(masses[i]) for i in shown), squirt) for offset, masses, squirt in rows),
+        (A31_WORDS, by_offset["words"]),
+        texts=(),
+    )
+
+
+def _told(record: Record) -> list[str]:
+    """The coupled squirt at each offset, or that the stroke miscues."""
+    both = zip(record["squirt"]["coupled"], record["squirt"]["grips"], strict=True)
+    return ["miscue" if grip in MISSED else degrees(squirt) for squirt, grip in both]
+
+
+def _exact(mass: float | None) -> str:
+    """An end mass to a milligram, since a simulator takes it as it is."""
+    return NONE if mass is None else f"{RESULTS['mass'].scale * mass:.3f} g"

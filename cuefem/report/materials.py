@@ -1,15 +1,14 @@
-"""The materials: record and table."""
+"""The materials: record and sheet."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict
-
-from rich.console import Group
+from typing import Any
 
 from cuefem.materials import LEATHERS, MATERIALS
-from cuefem.report.record import Record
-from cuefem.report.table import table_of, with_caption
-from cuefem.results.quantities import RESULTS, units_of
+from cuefem.results.quantities import RESULTS, units_of, with_heading
+from cuefem.results.records import Entry, Record, Sheet, sheet
 
 
 def materials_record() -> Record:
@@ -29,22 +28,29 @@ def materials_record() -> Record:
     }
 
 
-def materials_table(record: Record) -> Group:
+def materials_sheet(record: Record) -> Sheet:
     """Materials: modulus, shear modulus and density with their ranges, loss factor; sources."""
-    columns = [f"{name}, {RESULTS[name].shown_unit}" for name in ("E", "G", "rho")]
-    table = table_of("Materials", ["name", *columns, "loss"])
-    for name, values in record["materials"].items():
-        cells = (_with_range(values, name) for name in ("E", "G", "rho"))
-        table.add_row(name, *cells, f"{values['loss']:g}")
-    sources = (f"{name}: {values['source']}" for name, values in record["materials"].items())
-    leathers = (
-        f"{name} leather of a LeatherTip: E {1e-6 * values['E']:g} MPa; {values['source']}"
-        for name, values in record["leathers"].items()
+    known = record["materials"].items()
+    return sheet(
+        "Materials",
+        {
+            "name": "{name}",
+            **{with_heading(name, RESULTS[name].unit): _with_range(name) for name in ("E", "G", "rho")},
+            "loss": "{loss:g}",
+        },
+        [{"name": name, **values} for name, values in known],
+        "in brackets the range of real pieces; loss: loss factor; `cuefem materials --json` has more",
+        *(f"{name}: {values['source']}" for name, values in known),
+        *(
+            f"{name} leather of a LeatherTip: E {1e-6 * values['E']:g} MPa; {values['source']}"
+            for name, values in record["leathers"].items()
+        ),
     )
-    said = "in brackets the range of real pieces; loss: loss factor; `cuefem materials --json` has more"
-    return with_caption(table, said, *sources, *leathers)
 
 
-def _with_range(values: Record, name: str) -> str:
-    middle, low, high = (RESULTS[name].scale * value for value in (values[name], *values["ranges"][name]))
-    return f"{middle:.4g} ({low:.4g}–{high:.4g})"
+def _with_range(name: str) -> Entry:
+    def text(row: Mapping[str, Any]) -> str:
+        middle, low, high = (RESULTS[name].scale * value for value in (row[name], *row["ranges"][name]))
+        return f"{middle:.4g} ({low:.4g}–{high:.4g})"
+
+    return text

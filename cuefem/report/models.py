@@ -13,9 +13,9 @@ from cuefem.cue import LumpedCue
 from cuefem.endmass.drives import stick_at_offset
 from cuefem.endmass.lumped import lump_modes
 from cuefem.quantity import scalar
-from cuefem.report.record import Record
 from cuefem.report.words import tip_effect_notes
 from cuefem.results.designs import at_offset
+from cuefem.results.records import Record
 from cuefem.scene import Scene
 from cuefem.squirt import alciatore_a31
 

@@ -1,13 +1,9 @@
-"""The modes of a cue: record and table."""
+"""The modes of a cue: record and sheet."""
 
 from __future__ import annotations
 
-from rich.console import Group
-
 from cuefem.beam.modes import modes
-from cuefem.report.record import Record
-from cuefem.report.table import table_of, with_caption
-from cuefem.results.quantities import written
+from cuefem.results.records import Entry, Record, Sheet, sheet
 from cuefem.scene import Scene
 
 
@@ -28,16 +24,21 @@ def modes_record(scene: Scene, *, count: int, near: float | None) -> Record:
     }
 
 
-def modes_table(record: Record) -> Group:
+def modes_sheet(record: Record) -> Sheet:
     """The modes of a free cue, or of a cue held by the scene's effects."""
-    near = record["near"]
-    title = "Bending modes" if near is None else f"Bending modes nearest {near:g} Hz"
-    marked = [] if near is None else [""]
-    table = table_of(title, ["frequency", "period", "tip amplitude", *marked], text_columns=0)
-    for frequency, amplitude in zip(record["frequencies"], record["tip_amplitudes"], strict=True):
-        period = f"{1e3 / frequency:.4g} ms"
-        mark = ["nearest" if frequency == record["nearest"] else "" for _ in marked]
-        table.add_row(written("frequencies", frequency), period, written("tip_amplitudes", amplitude), *mark)
+    near, nearest = record["near"], record["nearest"]
+    rows = [
+        {"frequency": frequency, "period": 1 / frequency, "at_tip": amplitude}
+        for frequency, amplitude in zip(record["frequencies"], record["tip_amplitudes"], strict=True)
+    ]
+    columns: dict[str, Entry] = {
+        "frequency": "{frequency:frequencies}",
+        "period": "{period:s}",
+        "tip amplitude": "{at_tip:tip_amplitudes}",
+    }
+    if near is not None:
+        columns[""] = lambda row: "nearest" if row["frequency"] == nearest else ""
     motions = "1 rigid motion" if record["rigid"] == 1 else f"{record['rigid']} rigid motions"
-    caption = f"{motions} at 0 Hz not listed; tip amplitude: how far the tip moves in the mode, mass-normalised"
-    return with_caption(table, caption)
+    note = f"{motions} at 0 Hz not listed; tip amplitude: how far the tip moves in the mode, mass-normalised"
+    title = "Bending modes" if near is None else f"Bending modes nearest {near:g} Hz"
+    return sheet(title, columns, rows, note, texts=())

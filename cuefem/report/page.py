@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import cache, cached_property
 from typing import Any, NamedTuple
 
@@ -32,18 +32,17 @@ from cuefem.report.drawings import (
 )
 from cuefem.report.effects import seconds_words
 from cuefem.report.end_mass import end_mass_record
-from cuefem.report.everything import number_rows
 from cuefem.report.glossary import with_words
 from cuefem.report.models import ALCIATORE, PAPER
-from cuefem.report.record import Record
 from cuefem.report.squirt import PAPER_CUE_END_MASS, offset_charts, squirt_record
-from cuefem.report.strike import BRIEF, MISCUE, model_rows, strike_record
+from cuefem.report.strike import BRIEF, MISCUE, models_sheet, strike_record
 from cuefem.report.templates import environment
 from cuefem.report.trust import off, trust_lines
 from cuefem.report.words import assumptions, effect_words, plain_cue_line
 from cuefem.results.asking import listed
 from cuefem.results.designs import OneDesign
-from cuefem.results.quantities import GRIPS, RESULTS, degrees, grams, written
+from cuefem.results.quantities import GRIPS, NONE, RESULTS, degrees, grams, written
+from cuefem.results.records import Record, Sheet, value_rows, values_sheet
 from cuefem.scene import Outcome, Scene
 from cuefem.tip_modes import LEAST_STUCK, Solved
 
@@ -127,10 +126,10 @@ def _stages(scene: Scene, rtol: float) -> list[Stage]:
     rungs: list[tuple[Rung, float]] = []
     solved = cache(lambda: _ToAccuracy(scene, rung=rungs[-1][0]) if rungs else Solved(scene))
 
-    def climbed() -> list[Step]:
+    def climbed() -> Sheet:
         begun = time.perf_counter()
         rungs.extend((rung, time.perf_counter() - begun) for rung in climb(scene, rtol))
-        return [_step(rung, seconds, rtol) for rung, seconds in rungs]
+        return _steps(rungs, rtol)
 
     def outcome() -> Outcome:
         return rungs[-1][0].outcome if rungs else strike_modes(scene, solved().tip)
@@ -145,22 +144,17 @@ def _stages(scene: Scene, rtol: float) -> list[Stage]:
     ]
 
 
-class Step(NamedTuple):
-    """A step of the ladder of resolutions: modes and unknowns, squirt, its estimated error, and seconds so far."""
-
-    modes: int
-    unknowns: int
-    squirt: str
-    error: str
-    seconds: str
-    reached: bool
-
-
-def _step(rung: Rung, seconds: float, rtol: float) -> Step:
-    outcome = rung.outcome
-    reached = outcome.error is not None and outcome.error <= rtol
-    sizes = rung.at.modes, outcome.unknowns
-    return Step(*sizes, degrees(outcome.squirt), written("error", outcome.error), seconds_words(seconds), reached)
+def _steps(rungs: Sequence[tuple[Rung, float]], rtol: float) -> Sheet:
+    """The ladder of resolutions: modes and unknowns, squirt, its estimated error, and seconds so far."""
+    outcomes = [(rung.at.modes, rung.outcome, seconds) for rung, seconds in rungs]
+    rows = [
+        (str(count), str(it.unknowns), degrees(it.squirt), written("error", it.error), seconds_words(seconds))
+        for count, it, seconds in outcomes
+    ]
+    reached = [i for i, (_, it, _) in enumerate(outcomes) if it.error is not None and it.error <= rtol]
+    head = ("modes", "unknowns", "squirt", "error", "time so far")
+    title = "How exact the numbers are"
+    return Sheet(title, head, tuple(rows), texts=(), styles=dict.fromkeys(reached, "reached"))
 
 
 def _context(scene: Scene, found: Record) -> Record:
@@ -183,9 +177,9 @@ def _context(scene: Scene, found: Record) -> Record:
         "slipped": bool(_slipped(found["squirt"])),
         "end_masses": _end_masses(found["end_masses"], found["squirt"]),
         "energy": _energy(outcome),
-        "models": {"names": list(record["models"]), "rows": model_rows(record, BRIEF)},
+        "models": replace(models_sheet(record, BRIEF), title="The same stroke by every model"),
         "coupling": record["coupling"],
-        "numbers": number_rows(found["numbers"]),
+        "numbers": values_sheet("The cue and this stroke in numbers", value_rows(found["numbers"])),
         "steps": found.get("steps"),
     }
 
@@ -222,25 +216,29 @@ def _modes_part(scene: Scene) -> Any:
     return modes_drawing(modes(scene.shaft, effects=scene.cue_effects), scene.shaft.length)
 
 
+SEGMENT_COLUMNS = ("at, mm", "length, mm", "diameter, mm", "bore, mm", "mass", "material")
+
+
 def _cue_part(scene: Scene) -> Record:
     cue = scene.shaft
-    rows = [
-        {
-            "at": f"{1e3 * x:.1f}",
-            "length": f"{1e3 * s.length:.1f}",
-            "outer": f"{1e3 * s.tip_diameter:.2f} – {1e3 * s.butt_diameter:.2f}",
-            "bore": f"{1e3 * s.tip_bore:.2f} – {1e3 * s.butt_bore:.2f}" if s.tip_bore or s.butt_bore else "–",
-            "material": material_name(s.material) + (f", core {material_name(s.core)}" if s.core else ""),
-            "mass": grams(s.mass),
-        }
+    place, across = RESULTS["position"].number, RESULTS["radius"].number
+    rows = (
+        (
+            place(x),
+            place(s.length),
+            f"{across(s.tip_diameter)} – {across(s.butt_diameter)}",
+            f"{across(s.tip_bore)} – {across(s.butt_bore)}" if s.tip_bore or s.butt_bore else NONE,
+            grams(s.mass),
+            material_name(s.material) + (f", core {material_name(s.core)}" if s.core else ""),
+        )
         for x, s in zip(cue.nodes[:-1], cue.segments, strict=True)
-    ]
+    )
     names = materials_of(seen(scene))
     hollow = any((s.tip_bore or s.butt_bore) and s.core is None for s in cue.segments)
     return {
         "drawings": [cue_drawing(scene, across=1.0), cue_drawing(scene, across=8.0), front_drawing(scene)],
         "materials": [(name, style_of(name)) for name in names] + ([("bore", "hollow")] if hollow else []),
-        "rows": rows,
+        "segments": Sheet("Segments, from tip to butt", SEGMENT_COLUMNS, tuple(rows), texts=(5,)),
     }
 
 

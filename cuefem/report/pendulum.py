@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from cuefem.measured.outliers import HOLDS_95
 from cuefem.measured.pendulum import (
     GRAVITY,
@@ -15,9 +13,9 @@ from cuefem.measured.pendulum import (
     choices,
     softness,
 )
-from cuefem.report.documented import text_of, value_record
-from cuefem.report.record import Record
-from cuefem.report.table import table_of, with_caption
+from cuefem.report.documented import value_record
+from cuefem.results.quantities import with_unit
+from cuefem.results.records import Record, Sheet, sheet
 
 THREAD, SWINGS = 1.0, (0.1, 0.2, 0.3)  # m, of the plan
 PLAN_ERROR = 0.01  # of a ratio of speeds: 1 mm in a swing of 0.2 m, both ways, three times
@@ -63,38 +61,42 @@ def remarks(weighed: Weighed) -> list[str]:
     if not TIMES[0] <= test.contact_time <= TIMES[1]:
         soft = "softer" if test.contact_time < TIMES[0] else "harder"
         said.append(
-            f"the contact of {1e3 * test.contact_time:.3g} ms is no stroke's, 0.5 to 2 ms: take a {soft} ball, since "
-            "the end mass depends on it"
+            f"the contact of {with_unit(test.contact_time, 's', 3)} is no stroke's, 0.5 to 2 ms: take a {soft} ball, "
+            "since the end mass depends on it"
         )
     ratio = test.ball_mass / weighed.end_mass
     if not 1 / 3 < ratio < 3:
-        said.append(f"a ball near {1e3 * weighed.end_mass:.2g} g, as heavy as the end mass, would tell more")
+        said.append(f"a ball near {with_unit(weighed.end_mass, 'kg', 2)}, as heavy as the end mass, would tell more")
     if weighed.relative_error > 0.1:
         said.append("errors over a tenth: repeat the bounces, or swing wider")
     return said
 
 
-def weigh_tables(record: Record) -> list[Any]:
+def weigh_sheets(record: Record) -> list[Sheet | str]:
     """For people."""
-    low, high = (text_of(end, None, "kg") for end in record["interval_95"])
-    first = [
-        f"end mass {text_of(record['end_mass'], record['error'], 'kg')} for a contact of "
-        f"{1e3 * record['contact_time']:.3g} ms (95 %: {low} to {high})",
-        f"the ball of {text_of(record['ball_mass'], None, 'kg')} came back with {record['bounce']:+.3f} of its speed, "
+    low, high = (with_unit(end, "kg") for end in record["interval_95"])
+    errors = sorted(record["budget"].items(), key=lambda item: -item[1])
+    whole = sum(error**2 for _, error in errors) or 1.0
+    budget = Sheet(
+        "Where the error comes from",
+        ("reading", "error of the end mass", "share"),
+        tuple((name, f"{100 * error:.2f} %", f"{100 * error**2 / whole:.0f} %") for name, error in errors),
+    )
+    made: list[Sheet | str] = [
+        f"end mass {with_unit(record['end_mass'], 'kg', error=record['error'])} for a contact of "
+        f"{with_unit(record['contact_time'], 's', 3)} (95 %: {low} to {high})",
+        f"the ball of {with_unit(record['ball_mass'], 'kg')} came back with {record['bounce']:+.3f} of its speed, "
         f"from the shaft held firm with {record['restitution']:.3f}",
+        "",
+        budget,
+        *record["remarks"],
     ]
-    budget = table_of("Where the error comes from", ["reading", "error of the end mass", "share"])
-    whole = sum(x**2 for x in record["budget"].values()) or 1.0
-    for name, error in sorted(record["budget"].items(), key=lambda item: -item[1]):
-        budget.add_row(name, f"{100 * error:.2f} %", f"{100 * error**2 / whole:.0f} %")
-    made: list[Any] = [*first, "", budget, *record["remarks"]]
     squirt = record["squirt"]
     if squirt is not None:
-        drawn = text_of(squirt["drawn_end_mass"], None, "kg")
-        before, after = (text_of(squirt[key], squirt[f"{key}_error"], "rad") for key in ("before", "after"))
+        before, after = (with_unit(squirt[key], "rad", error=squirt[f"{key}_error"]) for key in ("before", "after"))
         made += [
             "",
-            f"the drawing has {drawn} in this test",
+            f"the drawing has {with_unit(squirt['drawn_end_mass'], 'kg')} in this test",
             f"squirt at b/R {squirt['offset']:g}: by the drawing alone {before}, with this end mass {after}",
             "(of the coupled strike with its own contact time, dome and tip; what stays open, and a tenth for the "
             "model, count as error)",
@@ -102,7 +104,7 @@ def weigh_tables(record: Record) -> list[Any]:
     elif record["lumped_squirt"] is not None:
         made += [
             "",
-            f"a lumped cue with this end mass and a flat tip squirts {text_of(record['lumped_squirt'], None, 'rad')}; "
+            f"a lumped cue with this end mass and a flat tip squirts {with_unit(record['lumped_squirt'], 'rad')}; "
             "a domed tip adds to that: with --scene the drawing's tip counts",
         ]
     return made
@@ -122,33 +124,32 @@ def plan_record(end_mass: float = USUAL, restitution: float = 0.8) -> Record:
     }
 
 
-def plan_tables(record: Record) -> list[Any]:
+def plan_sheets(record: Record) -> list[Sheet]:
     """For people."""
-    balls = table_of("The ball", ["mass", "comes back with", "error of the end mass"], text_columns=0)
-    for one in record["balls"]:
-        balls.add_row(text_of(one["ball_mass"], None, "kg"), f"{one['bounce']:+.2f}", f"{100 * one['error']:.1f} %")
-    about = text_of(record["end_mass"], None, "kg")
-    soft = table_of("How soft", ["contact time", "pressed 0.5 mm into the ferrule by"], text_columns=0)
-    for one in record["softness"]:
-        soft.add_row(text_of(one["contact_time"], None, "s"), f"{one['force']:.0f} N ({one['force'] / 9.81:.1f} kg)")
-    swings = table_of("The thread", ["swing aside", "speed of the blow"], text_columns=0)
-    for one in record["swings"]:
-        swings.add_row(text_of(one["swing"], None, "m"), f"{one['speed']:.2f} m/s")
     return [
-        with_caption(
-            balls,
-            f"For an end mass of {about}, a restitution of {record['restitution']:g} and ratios of speeds good to "
-            f"{100 * PLAN_ERROR:g} %.",
+        sheet(
+            "The ball",
+            {"mass": "{ball_mass:kg}", "comes back with": "{bounce:+.2f}", "error of the end mass": "{error:.1 %}"},
+            record["balls"],
+            f"For an end mass of {with_unit(record['end_mass'], 'kg')}, a restitution of {record['restitution']:g} and "
+            f"ratios of speeds good to {100 * PLAN_ERROR:g} %.",
             "A ball as heavy as the end mass tells most; a lighter one comes back (+), a heavier one goes on (-).",
+            texts=(),
         ),
-        with_caption(
-            soft,
+        sheet(
+            "How soft",
+            {"contact time": "{contact_time:s}", "pressed 0.5 mm into the ferrule by": "{force:.0f} N ({load:.1f} kg)"},
+            [{**one, "load": one["force"] / 9.81} for one in record["softness"]],
             "By Hertz's law, for a ball as heavy as the end mass and a swing of 0.2 m. A stroke lasts 0.5 to 2 ms.",
             "Press the ball on the ferrule, on a kitchen scale, and give --press and --press-depth.",
+            texts=(),
         ),
-        with_caption(
-            swings,
+        sheet(
+            "The thread",
+            {"swing aside": "{swing:m}", "speed of the blow": "{speed:.2f} m/s"},
+            record["swings"],
             f"A thread of {record['thread']:g} m. Read how far aside the ball swings, not how high: "
             "of a swing of 200 mm, 1 mm is 0.5 % of the speed; of its height of 20 mm, 2.5 %.",
+            texts=(),
         ),
     ]

@@ -1,30 +1,12 @@
-"""Records: results as dictionaries of SI numbers, texts and lists that JSON can hold (no NaN, no infinity)."""
+"""Records of what a result is for: the cue and the scene."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import asdict
-from typing import Any
-
-import numpy as np
 
 from cuefem.cue import Cue, LumpedCue
+from cuefem.results.records import Record
 from cuefem.scene import Scene
-
-Record = dict[str, Any]
-
-
-def plain(value: Any) -> Any:
-    """A value as JSON can hold it: arrays become lists, infinite and undefined numbers become null."""
-    if isinstance(value, dict):
-        return {str(key): plain(inner) for key, inner in value.items()}
-    if isinstance(value, np.ndarray | np.generic):
-        return plain(value.tolist())
-    if isinstance(value, list | tuple):
-        return [plain(inner) for inner in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value
 
 
 def cue_record(cue: Cue | LumpedCue) -> Record:

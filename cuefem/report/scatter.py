@@ -1,15 +1,16 @@
-"""How much a design's numbers scatter and what drives them: a record for programs, tables for people."""
+"""How much a design's numbers scatter and what drives them: a record for programs, sheets for people."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from cuefem.design.scatter import Drivers, Scatter
-from cuefem.report.study import heading
-from cuefem.report.table import table_of, with_caption
-from cuefem.results.quantities import TRADE, significant
+from cuefem.report.study import shown
+from cuefem.results.quantities import TRADE
+from cuefem.results.records import Sheet
 
 SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)
 LEAST_NAMED = 0.01  # share of a cause that is named among the strongest
@@ -40,62 +41,62 @@ def scatter_record(wanted: Scatter, found: Drivers) -> dict[str, Any]:
     }
 
 
-def scatter_tables(wanted: Scatter, found: Drivers) -> list[Any]:
+def scatter_sheets(wanted: Scatter, found: Drivers) -> list[Sheet]:
     """The spread of every response, and what drives it."""
-    count = len(found.spread.values)
-    head, rows = spread_rows(wanted, found)
-    spreads = table_of("Spread", head)
-    for row in rows:
-        spreads.add_row(*row)
-    shares = table_of(DRIVERS, ["response, cause", "alone", "in all"])
+    rows, bold = list[tuple[str, ...]](), dict[int, str]()
     for k, response in enumerate(wanted.study.responses):
-        shares.add_row(response.label, "", "", style="bold")
+        bold[len(rows)] = "bold"
+        rows.append((response.label, "", ""))
         for i in found.total[:, k].argsort()[::-1]:
             both = ((found.first, found.first_interval), (found.total, found.total_interval))
-            shares.add_row(f"  {found.causes[i]}", *(_share(value[i, k], ends[:, i, k]) for value, ends in both))
-    drawn = f"{count} designs; a column headed 5 %: 5 % of them lie below its value; sd: standard deviation"
-    words = (
+            rows.append((f"  {found.causes[i]}", *(_share(value[i, k], ends[:, i, k]) for value, ends in both)))
+    notes = (
         "alone: the part of the variance that goes away if this cause is known; in all: the part that stays if all "
         "other causes are known",
+        "in brackets 95 % intervals, bootstrapped",
+        *(f"{cause}: {', '.join(names)}" for cause, names in wanted.groups.items()),
     )
-    grouped = [f"{c}: {', '.join(n)}" for c, n in wanted.groups.items()]
-    intervals = "in brackets 95 % intervals, bootstrapped"
-    return [with_caption(spreads, drawn), with_caption(shares, *words, intervals, *grouped)]
+    drawn = (
+        f"{len(found.spread.values)} designs; a column headed 5 %: 5 % of them lie below its value; sd: standard "
+        "deviation"
+    )
+    return [
+        replace(spread_sheet(wanted, found), notes=(drawn,)),
+        Sheet(DRIVERS, ("response, cause", "alone", "in all"), tuple(rows), notes, styles=bold),
+    ]
 
 
-def spread_rows(wanted: Scatter, found: Drivers) -> tuple[list[str], list[list[str]]]:
-    """The distribution of every response: a heading and a row each."""
+def spread_sheet(wanted: Scatter, found: Drivers) -> Sheet:
+    """The distribution of every response."""
     rows = []
     for k, response in enumerate(wanted.study.responses):
-        scale, _ = TRADE.get(response.unit, (1, response.unit))
         numbers = [found.spread.mean[k], found.spread.sd[k], *found.spread.quantiles(SHARES)[:, k]]
-        rows.append([heading(response.label, response.unit), *(significant(scale * value) for value in numbers)])
-    return ["response", "mean", "sd", *(f"{100 * share:g} %" for share in SHARES)], rows
+        rows.append((response.heading, *(shown(value, response.unit) for value in numbers)))
+    return Sheet("Spread", ("response", "mean", "sd", *(f"{100 * share:g} %" for share in SHARES)), tuple(rows))
 
 
-def cause_rows(wanted: Scatter, found: Drivers) -> tuple[list[str], list[list[str]]]:
+def cause_sheet(wanted: Scatter, found: Drivers) -> Sheet:
     """The shares of every cause in a row, the strongest first, a column a response: alone, and in brackets in all."""
     names = [response.label for response in wanted.study.responses]
-    order = found.total.max(axis=1).argsort()[::-1]
-    rows = [
-        [
+    rows = (
+        (
             found.causes[i],
             *(
                 f"{100 * max(found.first[i, k], 0.0):.0f} % ({100 * found.total[i, k]:.0f} %)"
                 for k in range(len(names))
             ),
-        ]
-        for i in order
-    ]
-    return ["cause", *names], rows
+        )
+        for i in found.total.max(axis=1).argsort()[::-1]
+    )
+    return Sheet("What drives the results", ("cause", *names), tuple(rows))
 
 
 def scatter_words(wanted: Scatter, found: Drivers) -> list[str]:
     """The result in a sentence for each response."""
     lines = []
     for k, response in enumerate(wanted.study.responses):
-        scale, unit = TRADE.get(response.unit, (1, response.unit))
-        low, high = (significant(scale * value) for value in found.spread.quantiles((0.05, 0.95))[:, k])
+        unit = TRADE.get(response.unit, (1, response.unit))[1]
+        low, high = (shown(value, response.unit) for value in found.spread.quantiles((0.05, 0.95))[:, k])
         total = np.clip(found.total[:, k], 0.0, 1.0)  # an estimate may lie beyond
         most = [i for i in total.argsort()[::-1][:2] if total[i] >= LEAST_NAMED]
         named = " and ".join(f"{found.causes[i]} ({100 * total[i]:.0f} %)" for i in most)

@@ -1,4 +1,4 @@
-"""A strike from the side: record and tables."""
+"""A strike from the side: record and sheets."""
 
 from __future__ import annotations
 
@@ -6,11 +6,10 @@ import math
 from dataclasses import asdict, replace
 
 import numpy as np
-from rich.console import Group
 
-from cuefem.report.record import Record, cue_record
-from cuefem.report.table import table_of, with_caption
-from cuefem.results.quantities import NONE, RESULTS, written
+from cuefem.report.record import cue_record
+from cuefem.results.quantities import NONE, RESULTS, with_heading, written
+from cuefem.results.records import Entry, Record, Sheet, sheet, value_rows, values_sheet
 from cuefem.side.scene import SideStrike
 from cuefem.side.strike import SideOutcome, side_strike
 
@@ -50,32 +49,34 @@ def _numbers(scene: SideStrike, outcome: SideOutcome) -> Record:
     return {name: getattr(outcome, name) for name in NAMES} | {"rigid_mass": scene.rigid_mass}
 
 
-def side_tables(record: Record, scene: Record) -> list[Group]:
+def side_sheets(record: Record, scene: Record) -> list[Sheet]:
     """One strike, and e_A and the effective mass along the beam."""
-    one = table_of(f"Strike from the side, {written('position', scene['position'])} from the tip", ["", "value"])
-    for name in (*NAMES, "rigid_mass", "error"):
-        if record[name] is not None:
-            one.add_row(RESULTS[name].words, written(name, record[name]))
     columns = ("position", "apparent_restitution", "effective_mass", "rigid_mass", "duration")
-    headings = [f"{RESULTS[name].words}, {RESULTS[name].shown_unit}".rstrip(", ") for name in columns]
-    along = table_of("The same strike along the beam", headings, text_columns=0)
-    for row in record["along"]:
-        along.add_row(*(RESULTS[name].number(row[name]) if math.isfinite(row[name]) else NONE for name in columns))
-    striker = scene["striker"]
     return [
-        with_caption(one, *_assumptions(scene)),
-        with_caption(
-            along,
+        values_sheet(
+            f"Strike from the side, {written('position', scene['position'])} from the tip",
+            value_rows(record, (*NAMES, "rigid_mass", "error")),
+            *_assumptions(scene),
+        ),
+        sheet(
+            "The same strike along the beam",
+            {with_heading(RESULTS[name].words, RESULTS[name].unit): _number(name) for name in columns},
+            record["along"],
             "effective mass: of a free body off which the striker would bounce in the same way, m (1 + e_A)/(e - e_A),",
-            f"with the striker's own e {striker['restitution']:g}; negative where the beam throws it back faster than "
-            "a wall would",
+            f"with the striker's own e {scene['striker']['restitution']:g}; negative where the beam throws it back "
+            "faster than a wall would",
+            texts=(),
         ),
     ]
 
 
+def _number(name: str) -> Entry:
+    return lambda row: RESULTS[name].number(row[name]) if math.isfinite(row[name]) else NONE
+
+
 def _assumptions(scene: Record) -> list[str]:
     striker = scene["striker"]
-    wall = RESULTS["contact_time"].written(striker["wall_time"])
+    wall = written("contact_time", striker["wall_time"])
     law = "Hertz's law" if "modulus" in striker else "a spring"
     return [
         f"striker {written('mass', striker['mass'])} at {scene['speed']:g} m/s, {law}, e {striker['restitution']:g}, "

@@ -1,4 +1,4 @@
-"""Squirt and pivot length against the offset: record, tables and charts."""
+"""Squirt and pivot length against the offset: record, sheets and charts."""
 
 from __future__ import annotations
 
@@ -6,8 +6,6 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
-from rich.console import Group
-from rich.table import Table
 
 from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.cue import LumpedCue
@@ -24,12 +22,11 @@ from cuefem.report.models import (
     two_part_cues,
     with_coupling,
 )
-from cuefem.report.record import Record
 from cuefem.report.strike import PIVOT
-from cuefem.report.table import table_of, with_caption
 from cuefem.report.words import assumptions
 from cuefem.results.designs import at_offset, strikes_at
-from cuefem.results.quantities import NONE, TRADE, Units, grams, pivot_length, significant, written
+from cuefem.results.quantities import NONE, RESULTS, TRADE, Units, grams, pivot_length, written
+from cuefem.results.records import Record, Sheet
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved
 
@@ -89,36 +86,35 @@ def squirt_record(scene: Scene, offsets: Sequence[float] = OFFSETS, *, solved: S
     }
 
 
-def _by_offset(title: str, record: Record, name: str) -> Table:
+def squirt_sheets(record: Record, scene: Record) -> list[Sheet]:
+    """Squirt and natural pivot length against the offset."""
+    known = [mass for mass in record["end_mass"] if mass is not None]
+    felt = f"{RESULTS['mass'].number(known[0])} to {grams(known[-1])}" if known else NONE
+    models = (
+        f"coupled: vibrating shaft in time; two-part: end mass m_e {felt} ({offset_words(scene)}); 12 g: the mass "
+        f"m_c of the cue end, m_e 3 g, in {PAPER}; A.31: {ALCIATORE}"
+    )
+    squirt_notes = (assumptions(scene), models, *model_notes(scene, record, "b/R /kg"))
+    return [
+        _by_offset("Squirt", record, "squirt", *squirt_notes),
+        _by_offset("Natural pivot length", record, "pivot_length", PIVOT),
+    ]
+
+
+def _by_offset(title: str, record: Record, name: str, *notes: str) -> Sheet:
+    """A quantity against the offset, a column for each model."""
     models = record["models"]
-    table = table_of(title, ["b/R", *models], text_columns=0)
-    for i, offset in enumerate(record["offsets"]):
-        cells = (written(name, model[name][i]) + _missed(model, i) for model in models.values())
-        table.add_row(f"{offset:g}", *cells)
-    return table
+    rows = [
+        (f"{offset:g}", *(written(name, model[name][i]) + _missed(model, i) for model in models.values()))
+        for i, offset in enumerate(record["offsets"])
+    ]
+    return Sheet(title, ("b/R", *models), tuple(rows), notes, texts=())
 
 
 def _missed(model: Record, i: int) -> str:
     """A word beside the number of a stroke that miscues or nearly does, if the model tells."""
     (grip,) = model.get("grip", ("",) * len(model["squirt"]))[i : i + 1]
     return ", miscue" if grip in MISSED else ", lets go" if grip == "slides" else ""
-
-
-def squirt_table(record: Record, scene: Record) -> Group:
-    """Squirt against the offset."""
-    known = [mass for mass in record["end_mass"] if mass is not None]
-    felt = f"{significant(1e3 * known[0])} to {grams(known[-1])}" if known else NONE
-    models = (
-        f"coupled: vibrating shaft in time; two-part: end mass m_e {felt} ({offset_words(scene)}); 12 g: the mass "
-        f"m_c of the cue end, m_e 3 g, in {PAPER}; A.31: {ALCIATORE}"
-    )
-    table = _by_offset("Squirt", record, "squirt")
-    return with_caption(table, assumptions(scene), models, *model_notes(scene, record, "b/R /kg"))
-
-
-def pivot_table(record: Record) -> Group:
-    """Natural pivot length against the offset."""
-    return with_caption(_by_offset("Natural pivot length", record, "pivot_length"), PIVOT)
 
 
 LONGEST_PIVOT = 1.5  # m; beyond it a pivot is behind the cue

@@ -1,8 +1,8 @@
-"""One strike by every model: record and table."""
+"""One strike by every model: record and sheet."""
 
 from __future__ import annotations
 
-from rich.console import Group
+from dataclasses import replace
 
 from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
@@ -17,10 +17,9 @@ from cuefem.report.models import (
     two_part_cues,
     with_coupling,
 )
-from cuefem.report.record import Record
-from cuefem.report.table import table_of, with_caption
 from cuefem.report.words import assumptions
 from cuefem.results.quantities import GRIPS, NONE, RESULTS, grams, pivot_length, written
+from cuefem.results.records import Record, Sheet
 from cuefem.scene import Outcome, Scene
 from cuefem.tip_modes import Solved
 
@@ -67,8 +66,8 @@ WHOLE = (
 )
 
 
-def model_rows(record: Record, shown: tuple[str | tuple[str, int, str], ...] = WHOLE) -> list[tuple[str, list[str]]]:
-    """A label and a text for each model, for every quantity that any of the models has."""
+def models_sheet(record: Record, shown: tuple[str | tuple[str, int, str], ...] = WHOLE) -> Sheet:
+    """A column for each model, and a row for every quantity that any of the models has."""
     rows = []
     for row in shown:
         name, part, words = row if isinstance(row, tuple) else (row, None, "")
@@ -76,31 +75,31 @@ def model_rows(record: Record, shown: tuple[str | tuple[str, int, str], ...] = W
         if any(value is not None for value in values):
             label = f"{RESULTS[name].words}, {words}" if words else RESULTS[name].words
             parts = [value if value is None or part is None else value[part] for value in values]
-            rows.append((label, [written(name, value, brief=shown is BRIEF) for value in parts]))
-    return rows
+            rows.append((label, *(written(name, value, brief=shown is BRIEF) for value in parts)))
+    return Sheet("", ("", *record["models"]), tuple(rows))
 
 
 MISCUE = "this stroke miscues: the tip slips on the ball to the end; not a valid shot: ignore squirt and pivot length"
 
 
-def strike_table(record: Record, scene: Record) -> Group:
+def strike_sheet(record: Record, scene: Record) -> Sheet:
     """One strike, a column for each model."""
     coupled = record["models"]["coupled"]
-    table = table_of(f"Strike at offset b/R = {scene['stroke']['offset']:g}", ["", *record["models"]])
-    for label, texts in model_rows(record):
-        table.add_row(label, *texts)
     felt = NONE if record["end_mass"] is None else grams(record["end_mass"])
     missed = [MISCUE] if coupled["grip"] in MISSED else []
     exact = ", modes kept for 0.5 % of squirt" if "length" in scene["cue"] and coupled["error"] is None else ""
     pivots = any(model.get("pivot_length") is not None for model in record["models"].values())
-    return with_caption(
-        table,
-        *missed,
-        assumptions(scene),
-        f"coupled: vibrating shaft in time{exact}; two-part and A.31: end mass m_e {felt} ({offset_words(scene)})",
-        *([f"natural pivot length: {PIVOT}"] if pivots else []),
-        "grip, {}: {}".format(*GRIPS[coupled["grip"]]),
-        *model_notes(scene, record, "/kg"),
+    return replace(
+        models_sheet(record),
+        title=f"Strike at offset b/R = {scene['stroke']['offset']:g}",
+        notes=(
+            *missed,
+            assumptions(scene),
+            f"coupled: vibrating shaft in time{exact}; two-part and A.31: end mass m_e {felt} ({offset_words(scene)})",
+            *([f"natural pivot length: {PIVOT}"] if pivots else []),
+            "grip, {}: {}".format(*GRIPS[coupled["grip"]]),
+            *model_notes(scene, record, "/kg"),
+        ),
     )
 
 

@@ -12,8 +12,8 @@ import numpy as np
 
 from cuefem.cue import Array
 from cuefem.design import Response, Study
-from cuefem.report.table import table_of, with_caption
-from cuefem.results.quantities import TRADE, significant
+from cuefem.results.quantities import TRADE, significant, with_heading
+from cuefem.results.records import Sheet
 from cuefem.scene import Scene
 
 MOST_LEVELS = 24  # values of a column that are groups of their own; of more, each group is a range
@@ -60,6 +60,10 @@ class Table:
     def labels(self) -> list[str]:
         """The names of what varied, as people say them."""
         return [*map(column_label, self.names)]
+
+    def at(self, i: int) -> list[str]:
+        """What varied in a design, for people."""
+        return [shown(column[i], unit) for column, unit in zip(self.values, self.units, strict=True)]
 
     @property
     def judged(self) -> list[int]:
@@ -161,12 +165,6 @@ def _field_words(path: str) -> str:
     return " ".join(items).replace("_", " ")
 
 
-def heading(name: str, unit: str) -> str:
-    """A column's name with the unit that people read it in."""
-    shown = TRADE.get(unit, (1.0, unit))[1]
-    return f"{name}, {shown}" if shown else name
-
-
 def shown(value: Any, unit: str) -> str:
     """A value of a column in that unit, without it; names as they are."""
     if isinstance(value, str):
@@ -201,44 +199,42 @@ def study_record(table: Table) -> dict[str, Any]:
     return record
 
 
-def best_rows(table: Table) -> tuple[list[str], list[list[str]]]:
-    """The best design for each response: a heading and a row each."""
-    head = ["best for", "value", "all designs", "design", *map(heading, table.labels, table.units)]
+def best_sheet(table: Table) -> Sheet:
+    """The best design for each response."""
+    head = ("best for", "value", "all designs", "design", *map(with_heading, table.labels, table.units))
     rows = []
     for k in table.judged:
         response, i, result = table.responses[k], table.best(k), table.results[:, k]
         ends = " to ".join(shown(end, response.unit) for end in (result.min(), result.max()))
-        at = [shown(column[i], unit) for column, unit in zip(table.values, table.units, strict=True)]
         which = f"{response.better} is better" if response.better else "the lowest"
-        name = f"{heading(response.label, response.unit)} ({which})"
-        rows.append([name, shown(result[i], response.unit), ends, str(table.numbers[i]), *at])
-    return head, rows
+        name = f"{response.heading} ({which})"
+        rows.append((name, shown(result[i], response.unit), ends, str(table.numbers[i]), *table.at(i)))
+    return Sheet("Best designs", head, tuple(rows))
 
 
-def drive_rows(table: Table) -> tuple[list[str], list[list[str]]]:
+def drive_sheet(table: Table) -> Sheet:
     """Which part of each response's spread goes with each column."""
     rows = [
-        [
+        (
             response.label,
             *(f"{100 * table.shares[j, k]:.0f} % {table.trends[j][k]}".strip() for j in range(len(table.names))),
-        ]
+        )
         for k, response in enumerate(table.responses)
     ]
-    return ["result", *table.labels], rows
+    return Sheet(DRIVES, ("result", *table.labels), tuple(rows), (TREND,))
 
 
-def front_rows(table: Table, most: int) -> tuple[list[str], list[list[str]]]:
+def front_sheet(table: Table, most: int) -> Sheet:
     """Designs along the front, evenly picked."""
     assert table.pair is not None
     picked = np.unique(np.linspace(0, len(table.front) - 1, min(most, len(table.front))).round().astype(int))
     two = [table.responses[k] for k in table.pair]
-    head = ["design", *(heading(one.label, one.unit) for one in two), *map(heading, table.labels, table.units)]
+    names = (*(one.heading for one in two), *map(with_heading, table.labels, table.units))
     rows = []
     for i in (table.front[j] for j in picked):
-        found = [shown(table.results[i, k], one.unit) for k, one in zip(table.pair, two, strict=True)]
-        at = [shown(column[i], unit) for column, unit in zip(table.values, table.units, strict=True)]
-        rows.append([str(table.numbers[i]), *found, *at])
-    return head, rows
+        results = (shown(table.results[i, k], one.unit) for k, one in zip(table.pair, two, strict=True))
+        rows.append((str(table.numbers[i]), *results, *table.at(i)))
+    return Sheet(f"Trade-off, {front_words(table)}", ("design", *names), tuple(rows))
 
 
 def front_words(table: Table) -> str:
@@ -251,21 +247,7 @@ def front_words(table: Table) -> str:
     return f"{one.label} against {other.label}: {count} designs, of which none is beaten in both"
 
 
-def study_tables(table: Table) -> list[Any]:
+def study_sheets(table: Table) -> list[Sheet | str]:
     """The summary for people."""
-    made = list[Any]()
-    for title, (head, rows), words in (
-        ("Best designs", best_rows(table), ()),
-        (DRIVES, drive_rows(table), (TREND,)),
-    ):
-        found = table_of(title, head)
-        for row in rows:
-            found.add_row(*row)
-        made.append(with_caption(found, *words))
-    if table.pair is not None:
-        head, rows = front_rows(table, SHOWN)
-        found = table_of(f"Trade-off, {front_words(table)}", head)
-        for row in rows:
-            found.add_row(*row)
-        made.append(found)
-    return made
+    front = [] if table.pair is None else [front_sheet(table, SHOWN)]
+    return [best_sheet(table), "", drive_sheet(table), *front]

@@ -15,14 +15,15 @@ from cuefem.report.study import (
     DRIVES,
     TREND,
     Table,
-    best_rows,
-    drive_rows,
-    front_rows,
+    best_sheet,
+    drive_sheet,
+    front_sheet,
     front_words,
-    heading,
     shown,
 )
 from cuefem.report.templates import environment
+from cuefem.results.quantities import with_heading
+from cuefem.results.records import Sheet
 
 MOST_LINES, MOST_POINTS = 300, 500  # drawn of many designs, evenly picked by their number
 MOST_COLUMNS = 6  # small charts of a response: for its strongest drivers
@@ -58,14 +59,11 @@ class Coordinate(NamedTuple):
 BOX = (42.0, 196.0, 10.0, 112.0)  # left, right, top, bottom of a panel's plot
 
 
-Rows = tuple[list[str], list[list[str]]]
-
-
 class Scattered(NamedTuple):
     """What a scatter's page has in the place of best designs: its distribution, and the shares of its causes."""
 
-    spread: Rows
-    drives: Rows
+    spread: Sheet
+    drives: Sheet
 
 
 def study_page(name: str, table: Table, facts: list[str], *, scattered: Scattered | None = None) -> str:
@@ -73,15 +71,15 @@ def study_page(name: str, table: Table, facts: list[str], *, scattered: Scattere
     template = environment().get_template("study.html.j2")
     fronts = None
     if table.pair is not None:
-        fronts = (front_words(table), front_rows(table, FRONT), _front_panel(table))
+        fronts = (front_words(table), front_sheet(table, FRONT), _front_panel(table))
     lines, coordinates, wide = _parallel(table)
     first = table.responses[table.judged[0]]
     text = template.render(
         name=name,
         facts=facts,
-        best=None if scattered else best_rows(table),
+        best=None if scattered else best_sheet(table),
         spread=scattered and scattered.spread,
-        drives=scattered.drives if scattered else drive_rows(table),
+        drives=scattered.drives if scattered else drive_sheet(table),
         drives_words=SOBOL if scattered else f"{DRIVES.partition(': ')[2].capitalize()}. {TREND.capitalize()}.",
         front=None if scattered else fronts,
         lines=lines,
@@ -91,7 +89,7 @@ def study_page(name: str, table: Table, facts: list[str], *, scattered: Scattere
         above=8 + LINE * max(len(axis.name) - 1 for axis in coordinates),
         shade=f"{first.label}, the {'highest' if first.better == 'higher' else 'lowest'} fifth",
         panels=[
-            (heading(response.label, response.unit), _panels(table, k, shares=scattered is None))
+            (response.heading, _panels(table, k, shares=scattered is None))
             for k, response in enumerate(table.responses)
         ],
         shown_of=_picked(len(table.results), MOST_LINES).size,
@@ -126,7 +124,10 @@ def _scaled(values: Array, low: float, high: float) -> Array:
 def _parallel(table: Table) -> tuple[list[tuple[str, int]], list[Coordinate], float]:
     """Lines of designs over what varied and the responses, best drawn last, with their shade; the axes; the width."""
     columns = [*table.values, *table.results.T]
-    headings = [*map(heading, table.labels, table.units), *(heading(r.label, r.unit) for r in table.responses)]
+    headings = [
+        *map(with_heading, table.labels, table.units),
+        *(r.heading for r in table.responses),
+    ]
     names = [wrap(one, NAME) for one in headings]
     units = [*table.units, *(r.unit for r in table.responses)]
     widths = [max(map(len, lines)) for lines in names]
@@ -156,8 +157,8 @@ def _panels(table: Table, k: int, *, shares: bool) -> list[Panel]:
     strongest = sorted(range(len(table.names)), key=lambda j: -table.shares[j, k])[:MOST_COLUMNS]
     return [
         _panel(
-            f"{100 * table.shares[j, k]:.0f} % of the spread" if shares else heading(response.label, response.unit),
-            heading(table.labels[j], table.units[j]),
+            f"{100 * table.shares[j, k]:.0f} % of the spread" if shares else response.heading,
+            with_heading(table.labels[j], table.units[j]),
             table.values[j],
             table.results[:, k],
             (table.units[j], response.unit),
@@ -174,7 +175,12 @@ def _front_panel(table: Table) -> Panel:
     first, second = (table.results[:, k] for k in table.pair)
     every = _picked(len(first), MOST_POINTS)
     panel = _panel(
-        heading(other.label, other.unit), heading(one.label, one.unit), first, second, (one.unit, other.unit), every
+        other.heading,
+        one.heading,
+        first,
+        second,
+        (one.unit, other.unit),
+        every,
     )
     left, right, top, bottom = BOX
     across, up = _scaled(first, left, right), _scaled(second, bottom, top)

@@ -1,8 +1,12 @@
-"""Tables that show every cell whole in a terminal of any width."""
+"""The renderers of records and sheets, one a medium: terminal, JSON and CSV; a page's stands in drawings.html.j2."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import csv
+import io
+import json
+import re
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import Any
 
 from rich import box
@@ -11,6 +15,8 @@ from rich.measure import Measurement
 from rich.padding import Padding
 from rich.table import Column, Table
 from rich.text import Text
+
+from cuefem.results.records import Sheet, plain
 
 # Spaces between columns: in a wide terminal, with one more at either edge; and in a narrow one, without edges.
 ROOMY, TIGHT = 3, 2
@@ -23,15 +29,15 @@ class WholeTable(Table):
     leaves it to the terminal to wrap its lines (print it with ``crop=False``).
     """
 
-    def __init__(self, title: str, columns: Sequence[str], *, text_columns: int = 1) -> None:
+    def __init__(self, title: str, columns: Sequence[str], *, texts: Collection[int] = (0,)) -> None:
         super().__init__(title=title, box=box.SIMPLE_HEAD, title_justify="left", title_style="bold")
         for i, column in enumerate(columns):
-            self.add_column(Text(column), justify="left" if i < text_columns else "right")
-        self.text_columns = text_columns
+            self.add_column(Text(column), justify="left" if i in texts else "right")
+        self.texts = texts
 
     def add_row(self, *cells: str, **options: Any) -> None:  # type: ignore[override]
         """A row of plain strings; brackets in them are not taken for markup."""
-        found = (Text(cell, no_wrap=i >= self.text_columns) for i, cell in enumerate(cells))
+        found = (Text(cell, no_wrap=i not in self.texts) for i, cell in enumerate(cells))
         super().add_row(*found, **options)
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> Iterator[Any]:
@@ -41,7 +47,7 @@ class WholeTable(Table):
         spare = options.max_width - TIGHT * gaps
         roomy = sum(natural) + ROOMY * gaps + 4 <= options.max_width
         fits = roomy or sum(least for least, _ in ranges) <= spare
-        numbers = range(self.text_columns, len(ranges))
+        numbers = [i for i in range(len(ranges)) if i not in self.texts]
         widths = natural if roomy or not fits else shared(ranges, spare, first=numbers)
         for column, width in zip(self.columns, widths, strict=True):
             column.width = width
@@ -56,7 +62,7 @@ class WholeTable(Table):
         """The least and the natural width of a column."""
         free = options.update(width=10_000)
         heading, *cells = (Measurement.get(console, free, cell) for cell in (column.header, *column.cells))
-        wraps = self.columns.index(column) < self.text_columns
+        wraps = self.columns.index(column) in self.texts
         least = max([heading.minimum, *(cell.minimum if wraps else cell.maximum for cell in cells)])
         return least, max([heading.maximum, *(cell.maximum for cell in cells)])
 
@@ -74,11 +80,28 @@ def shared(ranges: Sequence[tuple[int, int]], spare: int, *, first: Sequence[int
     return widths
 
 
-def table_of(title: str, columns: Sequence[str], *, text_columns: int = 1) -> Table:
-    """An empty table: text to the left, numbers to the right; no cell is ever cut."""
-    return WholeTable(title, columns, text_columns=text_columns)
+def terminal(sheet: Sheet) -> Group:
+    """A sheet for the terminal: text to the left, numbers to the right, no cell cut; its notes below it."""
+    table = WholeTable(sheet.title, sheet.head, texts=sheet.texts)
+    for i, row in enumerate(sheet.rows):
+        table.add_row(*row, style=(sheet.styles or {}).get(i, ""))
+    if not sheet.notes:
+        return Group(table)
+    return Group(table, *(Padding(Text(note, style="dim"), (0, 0, 0, 2), expand=False) for note in sheet.notes), "")
 
 
-def with_caption(table: Table, *lines: str) -> Group:
-    """The table, then caption lines that state its assumptions."""
-    return Group(table, *(Padding(Text(line, style="dim"), (0, 0, 0, 2), expand=False) for line in lines), "")
+def json_text(record: Any) -> str:
+    """A record for programs."""
+    return json.dumps(plain(record), indent=2, allow_nan=False, ensure_ascii=False)
+
+
+def csv_text(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Head and rows for a spreadsheet, none of whose cells it takes for a formula."""
+    file = io.StringIO()
+    writer = csv.writer(file)
+    writer.writerows([_no_formula(cell) for cell in cells] for cells in (head, *rows))
+    return file.getvalue()
+
+
+def _no_formula(cell: str) -> str:
+    return f"'{cell}" if re.match(r"[=@\t\r]|[-+](?![0-9])", cell) else cell

@@ -1,14 +1,13 @@
-"""A tap test's results: record, tables, and the spectrum with its tones."""
+"""A tap test's results: record, sheets, and the spectrum with its tones."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from io import BytesIO
 from typing import Any
 
 import numpy as np
-from rich.table import Table
 
 from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.measured.chance import LEVEL
@@ -16,10 +15,9 @@ from cuefem.measured.fit import TapFit
 from cuefem.measured.ringing import Ringing
 from cuefem.measured.tones import HIGH, LOW
 from cuefem.measured.wood import Predicted
-from cuefem.report.record import Record
 from cuefem.report.strike import MISCUE
-from cuefem.report.table import table_of, with_caption
-from cuefem.results.quantities import NONE, grams, units_of, written
+from cuefem.results.quantities import RESULTS, grams, units_of, written
+from cuefem.results.records import Entry, Record, Sheet, sheet
 from cuefem.scene import Outcome
 
 UNITS = units_of("E", "G", "rho", "end_mass", "squirt", "shaft_mass") | {
@@ -78,41 +76,45 @@ def _clipping(heard: Ringing) -> list[str]:
     return [f"clipped: the first {1e3 * heard.clipped:.0f} ms after the tap are left out; record with less gain"]
 
 
-def tap_tables(record: Record, about: Record) -> list[Any]:
+def tap_sheets(record: Record, about: Record) -> list[Sheet]:
     """The tones, the wood, and what it means."""
-    return [_tones(record), _wood(record), _numbers(record, about)]
+    return [_tones(record["tones"], record["taps"]), _wood(record), _numbers(record, about)]
 
 
-def _tones(record: Record) -> Any:
-    table = table_of(
-        "Tones", ["tone", "±", "loss factor", "strength", "mode", "of the fitted shaft", "apart"], text_columns=0
-    )
-    strongest = max(tone["level"] for tone in record["tones"])
-    for tone in record["tones"]:
-        f, model = tone["frequency"], tone["model_frequency"]
-        level = f"{20 * np.log10(tone['level'] / strongest):.0f} dB"
-        loss = f"{tone['decay'] / (np.pi * f):.4f}"
-        mode = KINDS.get(tone["kind"], "not of this shaft") if model is None else str(tone["mode"])
-        fitted = (NONE, NONE) if model is None else (f"{model:.2f} Hz", f"{100 * (f / model - 1):+.2f} %")
-        table.add_row(f"{f:.2f} Hz", f"{tone['error']:.2g} Hz", loss, level, mode, *fitted)
-    taps = f"{record['taps']} tap" + ("s" if record["taps"] > 1 else "")
-    return with_caption(table, f"{taps}; ±: one standard deviation of the tone as heard")
+def _tones(tones: Sequence[Record], taps: int) -> Sheet:
+    strongest = max(tone["level"] for tone in tones)
+    columns: dict[str, Entry] = {
+        "tone": "{frequency:frequencies}",
+        "±": "{error:.2g} Hz",
+        "loss factor": lambda tone: f"{tone['decay'] / (np.pi * tone['frequency']):.4f}",
+        "strength": lambda tone: f"{20 * np.log10(tone['level'] / strongest):.0f} dB",
+        "mode": lambda tone: str(tone["mode"] or KINDS.get(tone["kind"], "not of this shaft")),
+        "of the fitted shaft": "{model_frequency:frequencies}",
+        "apart": "{apart:+.2 %}",
+    }
+    rows = [
+        tone | {"apart": None if model is None else tone["frequency"] / model - 1}
+        for tone, model in ((tone, tone["model_frequency"]) for tone in tones)
+    ]
+    said = f"{taps} tap" + ("s" if taps > 1 else "")
+    return sheet("Tones", columns, rows, f"{said}; ±: one standard deviation of the tone as heard", texts=())
 
 
-def _wood(record: Record) -> Any:
-    made: Table = table_of("The wood", ["", "fitted", "±", "", "in the file"])
+def _wood(record: Record) -> Sheet:
+    wood = record["wood"]
+    rows = []
     for name in ("E", "G", "rho"):
-        own = record["wood"][name]
-        value, error, before = (written(name, own[key]) for key in ("value", "error", "before"))
-        made.add_row(name, value, error, f"{100 * own['error'] / own['value']:.2g} %", before)
-    return with_caption(
-        made,
+        value, error, before = (wood[name][key] for key in ("value", "error", "before"))
+        part = f"{100 * error / value:.2g} %"
+        rows.append((name, written(name, value), written(name, error), part, written(name, before)))
+    notes = (
         f"the tones tell G times the shear coefficient; here {_shear(record['shear_coefficients'])}",
-        f"loss factor {record['wood']['loss']:.4f}, the median of the tones: the wood's own is at most that",
+        f"loss factor {wood['loss']:.4f}, the median of the tones: the wood's own is at most that",
         f"{_share(record['chance'])} of random sets of tones fit this shaft as well",
         *(f"doubt: {doubt}" for doubt in record["refusals"]),
         *(f"note: {note}" for note in record["notes"]),
     )
+    return Sheet("The wood", ("", "fitted", "±", "", "in the file"), tuple(rows), notes)
 
 
 def _shear(found: tuple[float, float]) -> str:
@@ -124,18 +126,16 @@ def _share(chance: float) -> str:
     return f"{100 * chance:.1f} % or less" if chance <= LEVEL else f"{100 * chance:.2g} %"
 
 
-def _numbers(record: Record, about: Record) -> Any:
-    made: Table = table_of("What follows", ["", "fitted", "±", "with the file's wood"])
-    felt, squirt = (record["predicted"][name] for name in ("end_mass", "squirt"))
-    made.add_row("end mass (stick)", *(grams(felt[key]) for key in ("value", "error", "before")))
-    angles = (f"{np.degrees(squirt[key]):.4f}°" for key in ("value", "error", "before"))
-    made.add_row(f"squirt at b/R {about['stroke']['offset']:g}", *angles)
-    missed = [MISCUE] if record["grip"] in MISSED else []
-    return with_caption(
-        made,
-        *missed,
-        "±: one standard deviation that comes from the wood; the error of the stroke's model is not in it",
+def _numbers(record: Record, about: Record) -> Sheet:
+    words = {"end_mass": "end mass (stick)", "squirt": f"squirt at b/R {about['stroke']['offset']:g}"}
+    entry = {"end_mass": grams, "squirt": lambda angle: f"{RESULTS['squirt'].scale * angle:.4f}°"}
+    rows = (
+        (words[name], *(entry[name](record["predicted"][name][key]) for key in ("value", "error", "before")))
+        for name in words
     )
+    missed = [MISCUE] if record["grip"] in MISSED else []
+    note = "±: one standard deviation that comes from the wood; the error of the stroke's model is not in it"
+    return Sheet("What follows", ("", "fitted", "±", "with the file's wood"), tuple(rows), (*missed, note))
 
 
 def tap_figure(found: TapFit, heard: Ringing, title: str, kind: str) -> bytes:

@@ -1,15 +1,13 @@
-"""The leather tip of a scene by itself: record and table."""
+"""The leather tip of a scene by itself: record and sheets."""
 
 from __future__ import annotations
 
 import numpy as np
-from rich.console import Group
 
 from cuefem.effects import LeatherTip
 from cuefem.effects.leather_law import LeatherLaw
-from cuefem.report.record import Record
-from cuefem.report.table import table_of, with_caption
-from cuefem.results.quantities import NONE, RESULTS, grams, significant
+from cuefem.results.quantities import NONE, grams, significant, with_unit, written
+from cuefem.results.records import Record, Sheet, by_words, sheet
 from cuefem.scene import Scene
 
 SPEEDS = (0.5, 1.0, 2.0, 3.0, 5.0, 8.0)  # m/s
@@ -69,33 +67,30 @@ def _shear_ratio(leather: LeatherTip, diameter: float, patch: float, slope: floa
     return float(np.interp(patch, *leather.shear_stiffness(diameter, offset))) / normal
 
 
-def tip_tables(record: Record, scene: Record, wanted: float | None) -> list[Group | str]:
+def tip_sheets(record: Record, scene: Record, wanted: float | None) -> list[Sheet | str]:
     """A tip's blows head on, its shear ratio, and the leather that has the contact time asked for."""
-    kinds = ("contact_time", "force", "depth", "patch")
-    columns = ["ball or cue at", *(RESULTS[kind].words for kind in kinds)]
-    blows = table_of("Head on", columns, text_columns=0)
-    for blow in record["blows"]:
-        cells = (NONE if blow[kind] is None else RESULTS[kind].written(blow[kind]) for kind in kinds)
-        blows.add_row(f"{blow['speed']:g} m/s", *cells)
-    shear = table_of("Sideways", ["b/R", "shear ratio"], text_columns=0)
-    for at in record["shear_ratios"]:
-        shear.add_row(f"{at['offset']:g}", f"{at['ratio']:.3f}")
-    tip = scene["tip"]
+    tip, speed = scene["tip"], f"{scene['stroke']['speed']:g} m/s"
     lines = [f"mass of the leather {grams(record['tip_mass'])}; E {significant(record['E'] / 1e6)} MPa"]
     if wanted is not None:
-        lines.append(f"E is what makes a head-on blow at {scene['stroke']['speed']:g} m/s last {1e3 * wanted:g} ms")
+        lines.append(f"E is what makes a head-on blow at {speed} last {with_unit(wanted, 's', 6)}")
     return [
         *lines,
         "",
-        with_caption(
-            blows,
+        sheet(
+            "Head on",
+            {"ball or cue at": "{speed:g} m/s"} | by_words("contact_time", "force", "depth", "patch"),
+            record["blows"],
             f"restitution {tip['restitution']:g}; the cue is rigid along its axis (AxialWaves lengthen a blow)",
             *([f"{NONE}: the leather would be pressed further than its law is known"] if _unknown(record) else []),
+            texts=(),
         ),
-        with_caption(
-            shear,
+        sheet(
+            "Sideways",
+            {"b/R": "{offset:g}", "shear ratio": "{ratio:.3f}"},
+            record["shear_ratios"],
             "stiffness along the surface over that along the normal, of a patch that sticks "
-            f"({1e3 * record['patch']:.1f} mm wide, the largest head on at {scene['stroke']['speed']:g} m/s)",
+            f"({written('patch', record['patch'])} wide, the largest head on at {speed})",
+            texts=(),
         ),
     ]
 

@@ -9,8 +9,9 @@ from typing import Any
 from cuefem.cue import Cue, LumpedCue
 from cuefem.effects import Effect
 from cuefem.io.schema import table as file_table
-from cuefem.report.record import Record, cue_record
-from cuefem.results.quantities import grams
+from cuefem.report.record import cue_record
+from cuefem.results.quantities import grams, with_unit
+from cuefem.results.records import Record
 
 
 def assumptions(scene: Record) -> str:
@@ -18,7 +19,7 @@ def assumptions(scene: Record) -> str:
     ball, tip, stroke = scene["ball"], scene["tip"], scene["stroke"]
     return ", ".join(
         [
-            f"ball {grams(ball['mass'])}, {2e3 * ball['radius']:.4g} mm",
+            f"ball {grams(ball['mass'])}, {with_unit(2 * ball['radius'], 'm')}",
             f"head-on contact time {_milliseconds(tip['contact_time'])}",
             f"e {tip['restitution']:g}",
             f"mu {tip['friction']:g}".replace("inf", "∞"),
@@ -28,7 +29,7 @@ def assumptions(scene: Record) -> str:
 
 
 def _milliseconds(time: float | None) -> str:
-    return "unknown" if time is None else f"{1e3 * time:.4g} ms"
+    return "unknown" if time is None else with_unit(time, "s")
 
 
 def cue_line(cue: Record) -> str:
@@ -37,7 +38,7 @@ def cue_line(cue: Record) -> str:
         return f"lumped cue, {grams(cue['mass'])}, end mass {grams(cue['end_mass'])}"
     pieces = f"{cue['segments']} segment" + ("s" if cue["segments"] > 1 else "")
     masses = f"segments {grams(cue['shaft_mass'])} + body {grams(cue['body_mass'])}"
-    return f"{1e3 * cue['length']:.4g} mm modelled in {pieces}, cue {grams(cue['mass'])} ({masses})"
+    return f"{with_unit(cue['length'], 'm')} modelled in {pieces}, cue {grams(cue['mass'])} ({masses})"
 
 
 def plain_cue_line(cue: Cue | LumpedCue) -> str:

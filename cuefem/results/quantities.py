@@ -308,6 +308,22 @@ GRIPS = {
 }
 
 
+def with_unit(value: float, unit: str, digits: int = 4, *, error: float | None = None) -> str:
+    """A number of that SI unit as people read it, to so many digits; with an error, to the error's second digit."""
+    scale, name = TRADE.get(unit, (1.0, unit))
+    tail = f" {name}" if name not in ("", "°") else name
+    if error is None or not math.isfinite(error) or error <= 0:
+        return f"{scale * value:.{digits}g}{tail}"
+    decimals = max(0, 1 - math.floor(math.log10(scale * error)))
+    return f"{scale * value:.{decimals}f} ± {scale * error:.{decimals}f}{tail}"
+
+
+def with_heading(words: str, unit: str) -> str:
+    """The name of a column with the unit that people read it in."""
+    name = TRADE.get(unit, (1.0, unit))[1]
+    return f"{words}, {name}" if name else words
+
+
 def units_of(*names: str) -> dict[str, str]:
     """The SI units of some quantities."""
     return {name: UNITS[name] for name in names}

@@ -22,7 +22,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.endmass.drives import DEFINITIONS
-from cuefem.report.handover import NICKEL, handover_table, pooltool_record
+from cuefem.report.handover import NICKEL, handover_sheet, pooltool_record
 from cuefem.squirt import alciatore_a31, alciatore_a31_mass_ratio
 from tests.helpers.command_line import call
 
@@ -137,7 +137,7 @@ def test_how_the_speed_matters_with_leather() -> None:
     assert found["speeds"] == [1.0, 2.0, 4.0]
     assert found["speed_matters"]
     assert found["words"] in record["notes"]
-    heads = [str(column.header) for column in handover_table(record).renderables[0].columns]
+    heads = list(handover_sheet(record).head)
     assert heads == ["offset b/R", *(f"end mass at {speed} m/s" for speed in (1, 2, 4)), "squirt at 2 m/s"]
     for speed, row in zip(found["speeds"], found["end_mass_at_speeds"], strict=True):
         struck = cf.strike(replace(leather, stroke=cf.Stroke(speed, 0.3)))

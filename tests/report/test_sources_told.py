@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 
 import pytest
-from rich.console import Console
 
 from cuefem.report.page import MEASURED_END_MASS, SOURCES
 from cuefem.report.record import scene_record
-from cuefem.report.squirt import squirt_record, squirt_table
+from cuefem.report.squirt import squirt_record, squirt_sheets
 from cuefem.squirt import alciatore_a31_mass_ratio
 from tests.helpers.leather_scenes import leather_scene
 
@@ -23,10 +22,8 @@ def test_measured_end_masses_are_those_of_a31(end: int, offset: float, degrees: 
 
 def test_the_paper_and_the_proof_are_named_where_their_numbers_stand() -> None:
     scene = leather_scene()
-    table = squirt_table(squirt_record(scene, (0.1, 0.3)), scene_record(scene))
-    console = Console(width=400)
-    with console.capture() as heard:
-        console.print(table)
-    assert "in H.-C. Kim's paper (arXiv:2104.11232)" in heard.get()
-    assert "technical proof A.31 (billiards.colostate.edu)" in heard.get()
+    table, _ = squirt_sheets(squirt_record(scene, (0.1, 0.3)), scene_record(scene))
+    said = " ".join(table.notes)
+    assert "in H.-C. Kim's paper (arXiv:2104.11232)" in said
+    assert "technical proof A.31 (billiards.colostate.edu)" in said
     assert {name for name, _ in SOURCES} == {"the paper's 12 g", "measured cues", "A.31"}

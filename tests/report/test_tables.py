@@ -18,7 +18,8 @@ from scipy.io import wavfile
 import cuefem as cf
 from cuefem.cli import COMMANDS as TABLE
 from cuefem.materials import MATERIALS
-from cuefem.report.table import table_of
+from cuefem.report.table import terminal
+from cuefem.results.records import Sheet
 from studies.measured import tap
 from tests.helpers.command_line import call
 
@@ -111,8 +112,9 @@ def test_nothing_of_a_commands_tables_is_lost(name: str, width: int, shown: Call
 
 
 def test_headings_wrap_before_texts_and_numbers_never() -> None:
-    table = table_of("A title", ["what", "a long heading", "another one"])
-    table.add_row("some words of text", "-1.2345 m/s", "3.4e-12")
+    table = terminal(
+        Sheet("A title", ("what", "a long heading", "another one"), (("some words of text", "-1.2345 m/s", "3.4e-12"),))
+    )
 
     def lines(width: int) -> list[str]:
         return [line.strip() for line in rendered([table], width).splitlines()[1:] if line.strip()]
@@ -129,8 +131,7 @@ def test_headings_wrap_before_texts_and_numbers_never() -> None:
 
 
 def test_brackets_are_no_markup() -> None:
-    table = table_of("A title", ["what", "number"])
-    table.add_row("[kim] eq. [a]", "[1]")
+    table = terminal(Sheet("A title", ("what", "number"), (("[kim] eq. [a]", "[1]"),)))
     assert "[kim] eq. [a]" in rendered([table], 80)
     assert "[1]" in rendered([table], 80)
 

@@ -11,7 +11,7 @@ import pytest
 
 from cuefem.io.documented import load_documented
 from cuefem.measured.kinds import AddedMass, Measurement, Squirt
-from cuefem.report.documented import text_of
+from cuefem.results.quantities import with_unit
 from studies.pages import STUDIES
 from tests.helpers.command_line import call
 
@@ -56,8 +56,8 @@ def test_the_page_says_what_is_computed() -> None:
         cue, _ = load_documented(path)
         for one in cue.found:
             if not isinstance(one, AddedMass):
-                computed = text_of(one.computed(cue.setup()), None, one.unit)
-                told = text_of(one.measured, one.sd, one.unit)
+                computed = with_unit(one.computed(cue.setup()), one.unit)
+                told = with_unit(one.measured, one.unit, error=one.sd)
                 assert f"| {cue.name} | {one.label} | {told} | {computed} |" in text
 
 

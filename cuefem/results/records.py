@@ -1,0 +1,114 @@
+"""Records, which are SI numbers by the names of their quantities, and the sheets of rows that people read of them.
+
+A record is what a program reads. A sheet declares which of its numbers stand in which column; heading, unit and digits
+of a column are those of its quantity. A terminal, a page and a CSV file show the same sheet (`cuefem.report.table`).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from string import Formatter
+from typing import Any
+
+import numpy as np
+
+from cuefem.results.quantities import NONE, RESULTS, TRADE, with_unit, written
+
+Record = dict[str, Any]
+# What stands in a column of a row: the quantity of that name, a template such as "{swing:m}", or a text of the row.
+Entry = str | Callable[[Mapping[str, Any]], str]
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A table for people: its title, the head of its columns, rows of texts, and lines that state its assumptions.
+
+    texts: numbers of the columns that hold words; the others hold numbers. styles: of rows that stand out, "bold" or
+    "dim", by the row's number.
+    """
+
+    title: str
+    head: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    notes: tuple[str, ...] = ()
+    texts: tuple[int, ...] = (0,)
+    styles: Mapping[int, str] | None = None
+
+
+def sheet(
+    title: str,
+    columns: Mapping[str, Entry],
+    rows: Iterable[Mapping[str, Any]],
+    *notes: str,
+    texts: tuple[int, ...] = (0,),
+) -> Sheet:
+    """A sheet of rows that are records. columns: what stands below each heading."""
+    cells = tuple(tuple(_cell(entry, row) for entry in columns.values()) for row in rows)
+    return Sheet(title, tuple(columns), cells, notes, texts)
+
+
+def by_words(*names: str) -> dict[str, Entry]:
+    """Columns of quantities, each under its name in full."""
+    return {RESULTS[name].words: name for name in names}
+
+
+def _cell(entry: Entry, row: Mapping[str, Any]) -> str:
+    if callable(entry):
+        return entry(row)
+    return _TEMPLATES.vformat(entry, (), row) if "{" in entry else written(entry, row[entry])
+
+
+class _Templates(Formatter):
+    """Templates whose numbers say after the colon how they are written; what is missing is a dash.
+
+    {felt:end_mass}: as that quantity; {swing:m}: in the unit that people read for an SI unit; {share:.1 %}: in per
+    cent; otherwise as in Python.
+    """
+
+    def get_field(self, name: str, args: Any, kwargs: Any) -> tuple[Any, str]:
+        """The value of a row's entry, also of an entry of an entry that is missing."""
+        first, _, inner = name.rstrip("]").partition("[")
+        value = kwargs[first]
+        return (value[inner] if inner and value is not None else value), first
+
+    def format_field(self, value: Any, spec: str) -> str:
+        """The value as the template asks for it."""
+        if value is None:
+            return NONE
+        if spec in RESULTS:
+            return written(spec, value)
+        if spec in TRADE:
+            return with_unit(value, spec)
+        if spec.endswith(" %"):
+            return f"{100 * value:{spec[:-2]}f} %"
+        return format(value, spec)
+
+
+_TEMPLATES = _Templates()
+
+
+def values_sheet(title: str, rows: Iterable[tuple[str, str]], *notes: str) -> Sheet:
+    """A sheet of one record: a name and a value in each row."""
+    return Sheet(title, ("", "value"), tuple(rows), notes)
+
+
+def value_rows(record: Mapping[str, Any], names: Iterable[str] | None = None) -> list[tuple[str, str]]:
+    """Name in full and value with its unit of a record's quantities, or of those of the names that have a value."""
+    if names is not None:
+        record = {name: record[name] for name in names if record[name] is not None}
+    return [(RESULTS[name].words, written(name, value)) for name, value in record.items()]
+
+
+def plain(value: Any) -> Any:
+    """A value as JSON can hold it: arrays become lists, infinite and undefined numbers become null."""
+    if isinstance(value, dict):
+        return {str(key): plain(inner) for key, inner in value.items()}
+    if isinstance(value, np.ndarray | np.generic):
+        return plain(value.tolist())
+    if isinstance(value, list | tuple):
+        return [plain(inner) for inner in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
