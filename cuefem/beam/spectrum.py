@@ -21,6 +21,10 @@ from cuefem.beam.system import System
 from cuefem.beam.tail import DASHPOT, STEPS, flexibility, tail
 from cuefem.cue import Array, Section
 
+# The lowest modes live in the leading part of the tridiagonal form, which the tip's load reaches first: for LEADING times
+# as many modes as are kept, and SPARE, what the rest of the form adds to them is below ROUNDING of each.
+LEADING, SPARE, ROUNDING = 2.2, 12, 1e-16
+
 # K carries a rounding error of eps times its largest entry, which shows in the lowest mode where stiffness is uneven (a
 # stiff ferrule beside soft leather). Where the lowest omega^2 is off its strain energy by more than this, the modes
 # take their Rayleigh-Ritz step (`cuefem.beam.modes`).
@@ -33,6 +37,7 @@ class Reduced:
 
     system: the beam. diagonal: (n,), off: (n - 1,), of the matrix. upper: (n, n) triangle, upper' upper = K + shift M
     with the unknowns in reverse. reflectors: (n - 1, n - 1), tau: Q as LAPACK keeps it; Q leaves the first entry alone.
+    kept: how many of the lowest modes are asked for.
     """
 
     system: System
@@ -41,33 +46,46 @@ class Reduced:
     upper: Array
     reflectors: Array
     tau: Array
+    kept: int
 
     @cached_property
     def eigen(self) -> tuple[Array, Array]:
-        """(mu, z) of all modes, descending in mu, ascending in frequency: (n,), (n, n)."""
-        # by relatively robust representations, eight times as fast as dstevd; range 0: all of them
-        _, mu, z, failed = lapack().dstemr(self.diagonal, np.append(self.off, 0.0), 0, 0.0, 0.0, 1, len(self.diagonal))
-        _check(failed, "dstemr")
+        """(mu, z) descending in mu, ascending in frequency, of all modes or of the form's leading part: (m,), (m, m).
+
+        The modes asked for are the beam's; to a load on the deflection of the tip the others are as good as its others,
+        whose first moments in mu they have.
+        """
+        size = len(self.diagonal)
+        part = min(size, int(LEADING * self.kept) + SPARE)
+        mu, z = self._leading(part)
+        if part < size and np.any(abs(self.off[part - 1] * z[-1, : self.kept]) > ROUNDING * mu[: self.kept]):
+            mu, z = self._leading(size)
+        return mu, z
+
+    def _leading(self, size: int) -> tuple[Array, Array]:
+        mu, z, failed = lapack().dstevd(self.diagonal[:size], self.off[: size - 1])
+        _check(failed, "dstevd")
         return mu[::-1], z[:, ::-1]
 
     @property
     def squares(self) -> Array:
-        """omega^2 of all modes, the rigid ones' near zero, (n,)."""
+        """omega^2 of these modes, the rigid ones' near zero, (m,)."""
         return np.asarray(1 / self.eigen[0] - self.system.shift)
 
     @cached_property
     def felt(self) -> Array:
-        """The tip's deflection, and its rotation times the length, in each z: (2, n)."""
+        """The tip's deflection, and its rotation times the length, in each z: (2, m)."""
         z, upper = self.eigen[1], self.upper
         deflection = z[0] / upper[-1, -1]
-        second = np.zeros((len(z) - 1, 1), order="F")
+        second = np.zeros((len(upper) - 1, 1), order="F")
         second[0] = 1.0
-        rotation = (self._turned(second, "T")[:, 0] @ z[1:] - upper[-2, -1] * deflection) / upper[-2, -2]
+        rotation = (self._turned(second, "T")[: len(z) - 1, 0] @ z[1:] - upper[-2, -1] * deflection) / upper[-2, -2]
         return np.asarray([deflection, rotation])
 
     def shapes(self, mix: Array) -> Array:
-        """Unknowns (n, k) of combinations ``mix``, (n modes, k), of the vectors z."""
-        y = self.eigen[1] @ mix
+        """Unknowns (n, k) of combinations ``mix``, (m, k), of the vectors z."""
+        y = np.zeros((len(self.upper), mix.shape[1]))
+        y[: len(mix)] = self.eigen[1] @ mix
         y[1:] = self._turned(y[1:], "N")
         q, failed = lapack().dtrtrs(self.upper, y[::-1])
         _check(failed, "dtrtrs")
@@ -80,8 +98,11 @@ class Reduced:
         return np.asarray(turned)
 
 
-def reduced(system: System) -> Reduced:
-    """The tridiagonal form of a dense beam none of whose unknowns are taken out."""
+def reduced(system: System, kept: int | None = None) -> Reduced:
+    """The tridiagonal form of a dense beam none of whose unknowns are taken out.
+
+    kept: how many modes are asked for, whose tail takes loads on the tip's deflection alone; None for all.
+    """
     # with the unknowns in reverse the tip is last, where LAPACK's upper triangles leave it alone
     upper, failed = lapack().dpotrf((system.K + system.shift * system.M)[::-1, ::-1], lower=0)
     _check(failed, "dpotrf")
@@ -90,7 +111,7 @@ def reduced(system: System) -> Reduced:
     work = 10 * len(upper)  # wider blocks take longer for so few unknowns
     whole, diagonal, off, tau, failed = lapack().dsytrd(standard[::-1, ::-1], lower=1, lwork=work)
     _check(failed, "dsytrd")
-    return Reduced(system, diagonal, off, upper, np.asfortranarray(whole[1:, :-1]), tau)
+    return Reduced(system, diagonal, off, upper, np.asfortranarray(whole[1:, :-1]), tau, kept or len(upper))
 
 
 def _check(failed: int, routine: str) -> None:
@@ -149,7 +170,7 @@ def ended(system: System, most: int, *, turning: bool) -> Callable[[int], Ended]
     with clamps, stiff joints or uneven stiffness, or a sparse one, is solved for the shapes of ``most`` modes.
     """
     if isinstance(system.K, np.ndarray) and system.free is None:
-        form, rigid = reduced(system), normalised(system)
+        form, rigid = reduced(system, None if turning else most + 2), normalised(system)
         if _even(form, rigid.shape[1]):
             return lambda count: _ended(form, rigid, count, loads=2 if turning else 1)
     whole, deflect = solve(system, most), flexibility(system)
@@ -163,7 +184,7 @@ def ended(system: System, most: int, *, turning: bool) -> Callable[[int], Ended]
 
 def _even(form: Reduced, rigid: int) -> bool:
     """Whether the lowest frequency agrees with the strains of its mode, so that the rounding of K does not show."""
-    mix = np.zeros((len(form.diagonal), 1))
+    mix = np.zeros((len(form.eigen[0]), 1))
     mix[rigid] = 1.0
     lowest = form.shapes(mix)
     energy = np.sum(form.system.strains(lowest) ** 2)
@@ -171,7 +192,7 @@ def _even(form: Reduced, rigid: int) -> bool:
 
 
 def _ended(form: Reduced, rigid_vectors: Array, count: int, *, loads: int) -> TipSpectrum:
-    """The ``count`` lowest flexible modes, and a tail made of all others that the mesh has (`cuefem.beam.tail.ritz`).
+    """The ``count`` lowest flexible modes, and a tail made of all others that the form has (`cuefem.beam.tail.ritz`).
 
     In the modes left out, of weights mu, the steps of Lanczos are the loads and mu times the loads.
     """

@@ -33,9 +33,9 @@ def solved(monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, str]]:
         note(K)
         return lowest(K, M, **options)
 
-    def noted_form(system: System) -> Any:
+    def noted_form(system: System, *kept: Any) -> Any:
         note(system.K)
-        return reduced(system)
+        return reduced(system, *kept)
 
     monkeypatch.setattr(modes, "lowest", noted)
     monkeypatch.setattr(spectrum, "reduced", noted_form)
