@@ -121,19 +121,18 @@ class _Group:
     @classmethod
     def damped(cls, omega: Array, resistance: Array, modes: Index) -> _Group:
         """The eigenvectors of (omega q, v)' = (omega v, -omega^2 q/omega - C v); of a pair of conjugates one, twice."""
-        turning = np.diag(omega[modes])
-        vibrating = omega[modes] > 0  # a rigid mode has no displacement among the states
-        whole = np.block([[0 * turning, turning], [-turning, -resistance[np.ix_(modes, modes)]]])
-        there = np.concatenate([vibrating, np.ones(len(modes), bool)])
-        states = whole[np.ix_(there, there)]
+        vibrating = np.flatnonzero(omega[modes])  # a rigid mode has no displacement among the states
+        count, turning = len(vibrating), omega[modes[vibrating]]
+        states = np.zeros((count + len(modes), count + len(modes)))
+        states[count:, count:] = -resistance[modes[:, None], modes]
+        states[np.arange(count), count + vibrating], states[count + vibrating, np.arange(count)] = turning, -turning
         rates, right = np.linalg.eig(states)
-        if np.linalg.cond(right) > DEFECTIVE:  # two rates are one, as of a critically damped mode: take them apart
+        if np.linalg.cond(right, "fro") > DEFECTIVE:  # two rates are one, as of a critically damped mode: take them apart
             nudge = NUDGE * np.linalg.norm(states) * np.diag(np.linspace(-1.0, 0.0, len(states)))
             rates, right = np.linalg.eig(states + nudge)
         left = np.linalg.inv(right).astype(complex)
         kept = np.flatnonzero(rates.imag >= 0)
         right = (right[:, kept] * np.where(rates[kept].imag > 0, 2.0, 1.0)).astype(complex)
-        count = int(vibrating.sum())
         displacements = np.zeros((len(modes), len(kept)), complex)
         displacements[vibrating] = right[:count]
         velocities, onto = np.asarray(right[count:], complex), np.asarray(left[kept][:, count:], complex)
@@ -142,14 +141,13 @@ class _Group:
 
 def _coupled_groups(coupled: Any) -> Iterator[Index]:
     """The groups of modes that damping couples with each other."""
-    left = np.flatnonzero(coupled.any(axis=1)).tolist()
-    while left:
-        group, fresh = {left[0]}, [left[0]]
-        while fresh:
-            reached = set(np.flatnonzero(coupled[fresh].any(axis=0)).tolist()) - group
-            group, fresh = group | reached, sorted(reached)
-        yield np.array(sorted(group))
-        left = [mode for mode in left if mode not in group]
+    left = coupled.any(axis=1)
+    while left.any():
+        group = coupled[np.argmax(left)]
+        while (wider := coupled[group].any(axis=0) | group).sum() > group.sum():
+            group = wider
+        yield np.flatnonzero(group)
+        left &= ~group
 
 
 def _rows_of_power(damping: Array) -> Array:
