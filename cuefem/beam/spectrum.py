@@ -21,8 +21,8 @@ from cuefem.beam.system import System
 from cuefem.beam.tail import DASHPOT, STEPS, flexibility, tail
 from cuefem.cue import Array, Section
 
-# The lowest modes live in the leading part of the tridiagonal form, which the tip's load reaches first: for LEADING times
-# as many modes as are kept, and SPARE, what the rest of the form adds to them is below ROUNDING of each.
+# The lowest modes live in the leading part of the tridiagonal form, which the tip's load reaches first: for LEADING
+# times as many modes as are kept, and SPARE, what the rest of the form adds to them is below ROUNDING of each.
 LEADING, SPARE, ROUNDING = 2.2, 12, 1e-16
 
 # K carries a rounding error of eps times its largest entry, which shows in the lowest mode where stiffness is uneven (a

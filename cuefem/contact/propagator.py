@@ -127,7 +127,7 @@ class _Group:
         states[count:, count:] = -resistance[modes[:, None], modes]
         states[np.arange(count), count + vibrating], states[count + vibrating, np.arange(count)] = turning, -turning
         rates, right = np.linalg.eig(states)
-        if np.linalg.cond(right, "fro") > DEFECTIVE:  # two rates are one, as of a critically damped mode: take them apart
+        if np.linalg.cond(right, "fro") > DEFECTIVE:  # two rates are one, as of a critically damped mode: part them
             nudge = NUDGE * np.linalg.norm(states) * np.diag(np.linspace(-1.0, 0.0, len(states)))
             rates, right = np.linalg.eig(states + nudge)
         left = np.linalg.inv(right).astype(complex)

@@ -128,7 +128,7 @@ class SolvedContact:
 
 
 def impulse_on(model: ContactModel, ball: Array) -> Array:
-    """The impulses (t, n) that gave balls at rest these velocities, (..., speeds), N s; of raised strokes along the table."""
+    """The impulses (t, n), N s, that gave balls at rest velocities (..., speeds); above a table, along it."""
     if model.table is None:
         return np.asarray(model.ball_mass * ball[..., :2])
     s, c = math.sin(model.phi), math.cos(model.phi)

@@ -186,7 +186,7 @@ struct Work {
     int level, linear, grows, known; /* known: whether a step was taken, whose forces the next one may begin with */
     double last_part, last_step, last_F[FORCES][Q], last_angle[Q];
     double blows[ALL_PORTS]; /* impulses on the ports since the last record */
-    double *V[LEVELS];       /* answers of the contact to its forces, where C stays as it is */
+    double *V[LEVELS], V_angle[LEVELS]; /* answers of the contact to its forces, as it faced at an angle */
     Factor *factors[LEVELS][16];
     Step step;
     Residual residual;

@@ -163,10 +163,10 @@ int solve_step(Work *w, int level, Step *s)
         int known = w->linear && w->factors[level][w->hold.grip + 1 + 3 * w->hold.press] != NULL;
         if (known) by = w->factors[level][w->hold.grip + 1 + 3 * w->hold.press];
         else if (round == 0 || slow) { /* the matrix of a round before does as long as it brings the forces nearer */
-            if (!w->V[level]) { /* where the contact first used this step: turned on a little it still leads there */
-                if (!(w->V[level] = malloc(2 * n * n * Q * Q * sizeof(double)))) break;
-                answer_of(w, r, w->V[level]);
-            }
+            /* V from where the contact used this step before: turned on a little it still leads there */
+            int stale = !w->V[level] || (c->turns && (slow || fabs(c->angle - w->V_angle[level]) > 0.02));
+            if (!w->V[level] && !(w->V[level] = malloc(2 * n * n * Q * Q * sizeof(double)))) break;
+            if (stale) answer_of(w, r, w->V[level]), w->V_angle[level] = c->angle;
             const double *V = w->V[level];
             if (w->linear) {
                 by = malloc(sizeof *by);
@@ -247,8 +247,8 @@ int longest_step(Work *w)
         int found = solve_step(w, w->level, &w->step);
         double error = found ? error_of(w, &w->step) : HUGE_VAL;
         if (error <= 1 || (found && rough && w->level >= longest + 11)) {
-            /* of a very short step rounding is most of the error */
-            if ((error < 1e-5 || (error < 0.1 && w->level > longest + 12)) && w->level > longest) w->level--;
+            /* twice the step makes 16,000 times the error; of a very short step rounding is most of it */
+            if ((error < (rough ? 1e-5 : 5e-5) || (error < 0.1 && w->level > longest + 12)) && w->level > longest) w->level--;
             return ENDED;
         }
         w->level += error > 1e5 ? 2 : 1;
