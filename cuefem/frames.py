@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike
 
 from cuefem.design.batch import CueBatch
 from cuefem.design.scatter import Drivers, Scatter
-from cuefem.io.store import Table, read_table
+from cuefem.io.store import StoredTable, read_table
 from cuefem.quantity import check_kind
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ def of_sweep(path: str | PathLike[str], study: str | None = None) -> pd.DataFram
     return _frame(read_table(path, study))
 
 
-def _frame(found: Table) -> Any:
+def _frame(found: StoredTable) -> Any:
     pandas = _library("pandas")
     names = ["design", *found.names, "failure"]
     frame = pandas.DataFrame.from_records(found.rows, columns=names).set_index("design")

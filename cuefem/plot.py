@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 __all__ = ["end_mass", "forces", "modes", "shaft", "squirt"]
 
-OFFSETS = tuple(np.round(np.arange(0.0, 0.525, 0.025), 3).tolist())
+PLOT_OFFSETS = tuple(np.round(np.arange(0.0, 0.525, 0.025), 3).tolist())
 _SOFT, _WOODY, _METAL = 1e9, (300.0, 1250.0), 2500.0  # Pa: leather and foam; kg/m3: woods, metals
 _LOCAL = 5e-4  # m: where end mass lives is drawn from behind the leather, and beyond this
 
@@ -126,7 +126,7 @@ def modes(cue: Cue | Scene, count: int = 4, ax: Axes | None = None, *, at: Resol
 
 def squirt(
     scenes: Scene | Mapping[str, Scene],
-    offsets: Sequence[float] = OFFSETS,
+    offsets: Sequence[float] = PLOT_OFFSETS,
     ax: Axes | None = None,
     *,
     at: Resolution | None = None,

@@ -36,7 +36,7 @@ class Unusual(UserWarning):
     """
 
 
-class Usual(NamedTuple):
+class RealRange(NamedTuple):
     """Between which numbers (SI) a field of real cues lies, its unit, and other units that people think in."""
 
     least: float
@@ -45,39 +45,39 @@ class Usual(NamedTuple):
     others: tuple[str, ...]
 
 
-_PLACE = Usual(0.01, 1.6, "m", ("mm", "in"))
-_DIAMETER = Usual(0.0075, 0.04, "m", ("mm", "in"))
-_BORE = Usual(0.001, 0.03, "m", ("mm", "in"))
-_DOME = Usual(0.005, 0.02, "m", ("mm", "in"))
-_STIFF = Usual(5e6, 6e11, "Pa", ("GPa", "MPa"))
-_DENSITY = Usual(40.0, 2e4, "kg/m^3", ("g/cm^3",))
-_TIME = Usual(2e-4, 0.01, "s", ("ms", "us"))
+_PLACE = RealRange(0.01, 1.6, "m", ("mm", "in"))
+_DIAMETER = RealRange(0.0075, 0.04, "m", ("mm", "in"))
+_BORE = RealRange(0.001, 0.03, "m", ("mm", "in"))
+_DOME = RealRange(0.005, 0.02, "m", ("mm", "in"))
+_STIFF = RealRange(5e6, 6e11, "Pa", ("GPa", "MPa"))
+_DENSITY = RealRange(40.0, 2e4, "kg/m^3", ("g/cm^3",))
+_TIME = RealRange(2e-4, 0.01, "s", ("ms", "us"))
 
 USUAL = {
     ("Material", "E"): _STIFF,
     ("Material", "G"): _STIFF,
     ("Material", "rho"): _DENSITY,
-    ("Segment", "length"): Usual(0.002, 1.6, "m", ("mm", "in")),
+    ("Segment", "length"): RealRange(0.002, 1.6, "m", ("mm", "in")),
     ("Segment", "tip_diameter"): _DIAMETER,
     ("Segment", "butt_diameter"): _DIAMETER,
     ("Segment", "tip_bore"): _BORE,
     ("Segment", "butt_bore"): _BORE,
-    ("Cue", "body_mass"): Usual(0.05, 0.8, "kg", ("g", "oz")),
-    ("LumpedCue", "mass"): Usual(0.1, 1.0, "kg", ("g", "oz")),
-    ("LumpedCue", "end_mass"): Usual(1e-3, 0.1, "kg", ("g",)),
-    ("Ball", "mass"): Usual(0.08, 0.4, "kg", ("g", "oz")),
-    ("Ball", "radius"): Usual(0.02, 0.07, "m", ("mm", "in")),
+    ("Cue", "body_mass"): RealRange(0.05, 0.8, "kg", ("g", "oz")),
+    ("LumpedCue", "mass"): RealRange(0.1, 1.0, "kg", ("g", "oz")),
+    ("LumpedCue", "end_mass"): RealRange(1e-3, 0.1, "kg", ("g",)),
+    ("Ball", "mass"): RealRange(0.08, 0.4, "kg", ("g", "oz")),
+    ("Ball", "radius"): RealRange(0.02, 0.07, "m", ("mm", "in")),
     ("Tip", "contact_time"): _TIME,
     ("TipDome", "radius"): _DOME,
-    ("LeatherTip", "height"): Usual(0.001, 0.015, "m", ("mm", "in")),
+    ("LeatherTip", "height"): RealRange(0.001, 0.015, "m", ("mm", "in")),
     ("LeatherTip", "dome_radius"): _DOME,
-    ("LeatherTip", "E"): Usual(5e6, 1e9, "Pa", ("GPa", "MPa")),
+    ("LeatherTip", "E"): RealRange(5e6, 1e9, "Pa", ("GPa", "MPa")),
     ("LeatherTip", "rho"): _DENSITY,
     ("PointMass", "position"): _PLACE,
-    ("PointMass", "mass"): Usual(5e-4, 0.1, "kg", ("g", "oz")),
+    ("PointMass", "mass"): RealRange(5e-4, 0.1, "kg", ("g", "oz")),
     ("Support", "position"): _PLACE,
     ("Joint", "position"): _PLACE,
-    ("SecondHit", "window"): Usual(1e-3, 0.1, "s", ("ms",)),
+    ("SecondHit", "window"): RealRange(1e-3, 0.1, "s", ("ms",)),
 }
 FAR = 5.0  # times beyond the usual: nearer than this a number may be meant
 LIGHTEST = 0.25  # kg, of a whole cue: a child's

@@ -84,6 +84,8 @@ def imported(tree: ast.Module) -> Iterator[str]:
             assert node.level == 0, "imports are absolute"
             names = [alias.name for alias in node.names] if node.module == "cuefem" else []
             yield from [f"cuefem.{name}" for name in names] or [node.module or ""]
+        elif isinstance(node, ast.Call) and ast.unparse(node.func) == "lazy_loader.load":
+            yield ast.literal_eval(node.args[0])
 
 
 def walk(node: ast.AST) -> Iterator[ast.AST]:
@@ -104,6 +106,12 @@ def out_of_order(part: str, source: str) -> list[str]:
         if part not in HOMES.get(top, {part}):
             wrong.append(name)
     return wrong
+
+
+def within_functions(source: str) -> int:
+    """How many imports stand inside functions."""
+    functions = (node for node in walk(ast.parse(source)) if isinstance(node, ast.FunctionDef))
+    return len({id(one) for node in functions for one in walk(node) if isinstance(one, ast.Import | ast.ImportFrom)})
 
 
 SOURCES = sorted(path for path in PACKAGE.rglob("*.py") if path != PACKAGE / "__init__.py")
@@ -186,3 +194,8 @@ def test_the_kernel_has_no_circle() -> None:
         asked = {other: sorted(gives[other] & words) for other in later}
         assert not any(asked.values()), (name, asked)
         assert gives.get(name, set()) <= words, name
+
+
+def test_few_imports_stand_inside_functions() -> None:
+    assert within_functions("def f():\n    import os\n    def g():\n        from os import path\n") == 2
+    assert sum(within_functions(path.read_text(encoding="utf-8")) for path in SOURCES) <= 45

@@ -14,7 +14,7 @@ from numpy.polynomial.legendre import leggauss
 from cuefem.cue import Array
 
 
-class Table(NamedTuple):
+class BasisTable(NamedTuple):
     """scikit-fem's hierarchical line basis on the reference element [0, 1], tabulated at Gauss points.
 
     Local unknowns: w and theta of the left node, the bubbles of w, the bubbles of theta, w and theta of the right node.
@@ -60,11 +60,11 @@ def local_basis(order: int, points: Array) -> tuple[Array, Array, Array, Array]:
 
 
 @functools.cache
-def table(order: int) -> Table:
+def table(order: int) -> BasisTable:
     """The tabulated basis of one polynomial order, made once; Gauss points exact for cones (degree 2 order + 4)."""
     points, weights = leggauss(order + 4)
     points, weights = (points + 1) / 2, weights / 2
-    return Table(points, weights, *local_basis(order, points))
+    return BasisTable(points, weights, *local_basis(order, points))
 
 
 @functools.cache

@@ -36,7 +36,7 @@ class ActsOnCue(Protocol):
 
 
 @dataclass(frozen=True)
-class Place:
+class ForcedNode:
     """A place on the cue, m from the tip, that must be a node of the mesh, because a force acts there."""
 
     position: float

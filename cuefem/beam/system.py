@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import lazy_loader
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,8 +16,9 @@ from cuefem.beam.waves import EVEN
 from cuefem.cue import Array, Cue, Section
 
 if TYPE_CHECKING:
-    import scipy.sparse as sp  # loaded when used: few cues need it
+    import scipy.sparse as sp
 
+scipy = lazy_loader.load("scipy")  # loaded when used: few cues need sparse matrices
 # Below this many unknowns a dense eigenproblem is faster than a sparse one, however many modes are wanted.
 DENSE_LIMIT = 220
 
@@ -53,13 +55,11 @@ class System:
         """Matrix from the free unknowns to all of them, (unknowns, free); None if no clamp or tie takes any out."""
         if len(self.fixed) + len(self.tied) == 0:
             return None
-        import scipy.sparse as sp
-
         source = np.arange(self.mesh.unknowns)
         source[self.tied[:, 0]] = self.tied[:, 1]
         rows = np.flatnonzero(~np.isin(source, self.fixed))
         kept, columns = np.unique(source[rows], return_inverse=True)
-        return sp.csc_matrix((np.ones(len(rows)), (rows, columns)), shape=(self.mesh.unknowns, len(kept)))
+        return scipy.sparse.csc_matrix((np.ones(len(rows)), (rows, columns)), shape=(self.mesh.unknowns, len(kept)))
 
     def strains(self, vectors: Array) -> Array:
         """Strains of unknowns ``vectors`` (unknowns, k), times roots of stiffness, (rows, k): K = strains' strains.
@@ -219,20 +219,18 @@ def gather(
             here = slice(start, start + len(block))
             whole[here, here] += block
         return whole if links is None or not len(links.stiffness) else whole + _linked(links, unknowns).toarray()
-    import scipy.sparse as sp
-
     places = [start + np.indices(block.shape).reshape(2, -1) for start, block in zip(first, blocks, strict=True)]
     values = np.concatenate([block.ravel() for block in blocks])
-    whole = sp.coo_matrix((values, np.concatenate(places, axis=1)), shape=(unknowns,) * 2) + sp.diags(point)
-    return sp.csc_matrix(whole if links is None else whole + _linked(links, unknowns))
+    whole = scipy.sparse.coo_matrix(
+        (values, np.concatenate(places, axis=1)), shape=(unknowns,) * 2
+    ) + scipy.sparse.diags(point)
+    return scipy.sparse.csc_matrix(whole if links is None else whole + _linked(links, unknowns))
 
 
 def _linked(links: Links, unknowns: int) -> sp.csc_matrix:
-    import scipy.sparse as sp
-
     before, after, k = links
     rows, columns = np.r_[before, after, before, after], np.r_[before, after, after, before]
-    return sp.csc_matrix((np.r_[k, k, -k, -k], (rows, columns)), shape=(unknowns, unknowns))
+    return scipy.sparse.csc_matrix((np.r_[k, k, -k, -k], (rows, columns)), shape=(unknowns, unknowns))
 
 
 def _rigid_motions(mesh: Mesh, length: float, springs: Array, fixed: NDArray[np.intp]) -> Array:

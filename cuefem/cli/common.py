@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from cuefem.cli.printing import assumed_lines, json_option, print_all, print_json
+from cuefem.cli.printing import assumed_lines, json_option, tell
 from cuefem.cli.strokes import place_options, refuse_game, usual, with_options
 from cuefem.effects.leather_law import TooDeep
 from cuefem.games import DEFAULT_GAME
@@ -19,7 +19,7 @@ from cuefem.report.record import scene_record
 from cuefem.report.unusual import unusual
 from cuefem.report.words import cue_line, effect_words
 from cuefem.results.quantities import UNITS
-from cuefem.results.records import plain
+from cuefem.results.records import Record, plain
 from cuefem.scene import Scene
 
 
@@ -116,7 +116,7 @@ def show(
     file: Path,
     given: dict[str, Any],
     results: Callable[[Scene], Any],
-    tables: Callable[..., Any],
+    sheets: Callable[..., Any],
     *,
     blow: bool = True,
     change: Callable[[Scene], Scene] | None = None,
@@ -130,12 +130,17 @@ def show(
     with blaming(file, given):
         scene = scene if change is None else change(scene)
         about, found = scene_record(scene), results(scene)
-    if given["as_json"]:
-        said = {"file": str(file), "assumed": notes, "unusual": unusual(scene, blow=blow)}
-        struck = about if blow else {name: value for name, value in about.items() if name in ("cue", "effects")}
-        print_json({**said, "scene": struck, **found, "units": UNITS})
-        return
-    print_all([*head_lines(file, about, scene.effects, notes), "", *tables(found, about)])
+    struck = about if blow else {name: value for name, value in about.items() if name in ("cue", "effects")}
+    record = whole_record(file, notes, scene, found, blow=blow, scene=struck)
+    tell(given["as_json"], record, [*head_lines(file, about, scene.effects, notes), "", *sheets(found, about)])
+
+
+def whole_record(
+    file: Path, notes: Sequence[str], solved: Scene, found: Record, *, blow: bool = True, **more: Any
+) -> Record:
+    """What a program is told: the file, what was assumed and is unusual, the scene, the result, the units."""
+    said = {"file": str(file), "assumed": notes, "unusual": unusual(solved, blow=blow), "scene": scene_record(solved)}
+    return said | more | found | {"units": UNITS | found.get("units", {})}
 
 
 def head_lines(file: Path, about: dict[str, Any], effects: Sequence[Any], notes: Sequence[str]) -> list[str]:

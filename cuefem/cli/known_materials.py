@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from cuefem.cli.printing import json_option, print_all, print_json
+from cuefem.cli.printing import json_option, tell
 from cuefem.report import materials_record, materials_sheet
 
 
@@ -13,7 +13,4 @@ from cuefem.report import materials_record, materials_sheet
 def materials(as_json: bool) -> None:
     """List the materials that a file can name, with their sources."""
     found = materials_record()
-    if as_json:
-        print_json(found)
-    else:
-        print_all([materials_sheet(found)])
+    tell(as_json, found, [materials_sheet(found)])

@@ -7,8 +7,8 @@ from typing import Any
 
 import click
 
-from cuefem.cli.common import blaming, page_option, remark
-from cuefem.cli.printing import assumed_lines, json_option, print_all, print_json
+from cuefem.cli.common import blaming, page_option, remark, whole_record
+from cuefem.cli.printing import assumed_lines, json_option, tell
 from cuefem.cli.progress import followed
 from cuefem.io import InputError, check_place, save_page
 from cuefem.io.documented import load_documented, write_template
@@ -25,8 +25,6 @@ from cuefem.report.documented import (
     sampled_record,
     sampled_sheet,
 )
-from cuefem.report.record import scene_record
-from cuefem.report.unusual import unusual
 
 
 @click.command()
@@ -57,14 +55,8 @@ def compare(folder: Path, template: bool, output: Path | None, as_json: bool) ->
         save_page(compare_page(cue, rows, record, notes), output)
         click.echo(f"wrote {output}")
         return
-    if as_json:
-        said = {"file": str(folder), "assumed": notes, "unusual": unusual(cue.scene)}
-        print_json({**said, "scene": scene_record(cue.scene), **record, "units": UNITS})
-        return
-    print_all([cue.name, *assumed_lines(notes), "", *compare_sheets(record)])
-
-
-UNITS = {"residual": "", "pull": "", "zero": "m", "squirt": "rad", "squirt_error": "rad"}
+    whole = whole_record(folder, notes, cue.scene, record)
+    tell(as_json, whole, [cue.name, *assumed_lines(notes), "", *compare_sheets(record)])
 
 
 @click.command()
@@ -91,9 +83,6 @@ def estimate(folder: Path, sample: int | None, seed: int, as_json: bool) -> None
                 record |= {"sampled": sampled_record(found, sampled(found, sample, seed=seed, track=followed))}
             except ModuleNotFoundError as error:
                 raise InputError(folder, "--sample", str(error)) from None
-    if as_json:
-        said = {"file": str(folder), "assumed": notes}
-        print_json({**said, "scene": scene_record(cue.scene), **record, "units": UNITS})
-        return
     more = [sampled_sheet(record["sampled"])] if sample is not None else []
-    print_all([cue.name, *assumed_lines(notes), "", *estimate_sheets(record), *more])
+    whole = whole_record(folder, notes, cue.scene, record)
+    tell(as_json, whole, [cue.name, *assumed_lines(notes), "", *estimate_sheets(record), *more])

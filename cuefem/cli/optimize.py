@@ -11,7 +11,7 @@ import click
 from rich.console import Console
 
 from cuefem.cli.common import blaming, check_free, force_option, remark
-from cuefem.cli.printing import assumed_lines, json_option, print_all, print_json
+from cuefem.cli.printing import assumed_lines, json_option, tell
 from cuefem.design.optimum import Problem, optimum
 from cuefem.io import save
 from cuefem.io.study import assumed_base, load_optimum
@@ -47,17 +47,6 @@ def optimize(study: Path, output: Path | None, iterations: int, seed: int, as_js
         save(_rounded(found.scene, wanted), output)
     aim = "maximize" if wanted.largest else "minimize"
     units = dict(zip(wanted.study.columns, wanted.study.units, strict=True))
-    if as_json:
-        about = {
-            "file": str(study),
-            "assumed": notes,
-            "written": output and str(output),
-            "objective": {aim: wanted.objective.name},
-        }
-        numbers = {"value": found.value, "numbers": found.numbers, "values": found.values, "active": found.active}
-        search = {"evaluations": found.evaluations, "exact_gradients": found.exact, "unfinished": found.unfinished}
-        print_json({**about, **numbers, **search, "resolution": vars(wanted.study.resolution), "units": units})
-        return
     way = "by exact gradients" if found.exact else "by differential evolution"
     labels = {one.name: one.label for one in wanted.study.responses}
     lines = [f"{aim} {wanted.objective.label}: {found.evaluations} evaluations {way}", ""]
@@ -70,7 +59,12 @@ def optimize(study: Path, output: Path | None, iterations: int, seed: int, as_js
     lines += ["", f"held by: {', '.join(held_by) or 'nothing'}"]
     if found.unfinished:
         lines.append(f"not finished: {found.unfinished}; more --iterations may find a better design")
-    print_all([*lines, *assumed_lines(notes), *([f"wrote {output}"] if output else [])])
+    about = {"file": str(study), "assumed": notes, "written": output and str(output)}
+    numbers = {"value": found.value, "numbers": found.numbers, "values": found.values, "active": found.active}
+    search = {"evaluations": found.evaluations, "exact_gradients": found.exact, "unfinished": found.unfinished}
+    record = about | {"objective": {aim: wanted.objective.name}} | numbers | search
+    said = [*lines, *assumed_lines(notes), *([f"wrote {output}"] if output else [])]
+    tell(as_json, record | {"resolution": vars(wanted.study.resolution), "units": units}, said)
 
 
 def _short(value: float, unit: str) -> str:

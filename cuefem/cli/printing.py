@@ -9,7 +9,6 @@ import click
 from rich.console import Console
 
 from cuefem.report.table import json_text, terminal
-from cuefem.results.records import Sheet
 
 # The option of every command that has numbers for programs.
 json_option = click.option("--json", "as_json", is_flag=True, help="SI numbers as JSON.")
@@ -25,7 +24,15 @@ def print_json(record: Any) -> None:
     click.echo(json_text(record))
 
 
-def print_all(things: Sequence[Sheet | str]) -> None:
+def tell(as_json: bool, record: Any, things: Sequence[Any]) -> None:
+    """Print a record for programs, or lines and sheets for people."""
+    if as_json:
+        print_json(record)
+    else:
+        print_all(things)
+
+
+def print_all(things: Sequence[Any]) -> None:
     """Print lines and sheets for people."""
     console = Console(highlight=False, emoji=False)
     if not console.is_terminal:

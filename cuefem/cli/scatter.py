@@ -9,9 +9,9 @@ from typing import Any
 import click
 
 from cuefem.cli.common import blaming, remark
-from cuefem.cli.printing import assumed_lines, json_option, print_all, print_json
+from cuefem.cli.printing import assumed_lines, json_option, tell
 from cuefem.cli.progress import bar
-from cuefem.cli.sweep import check_page, opened
+from cuefem.cli.sweep import check_page, designs_option, opened, pool_options
 from cuefem.design.scatter import drivers
 from cuefem.io import save_page
 from cuefem.io.study import assumed_base, load_scatter
@@ -22,11 +22,8 @@ from cuefem.report.study_page import Scattered, study_page
 
 @click.command()
 @click.argument("study", type=click.Path(path_type=Path))
-@click.option("--workers", type=click.IntRange(min=1), help="Number of worker processes; by default none is started.")
-@click.option("--dask", metavar="ADDRESS", help='A Dask scheduler to work on, e.g. "tcp://host:8786".')
-@click.option(
-    "-o", "--page", type=click.Path(path_type=Path), metavar="PAGE.html", help="Also draw the designs on a page."
-)
+@pool_options
+@designs_option
 @json_option
 def scatter(study: Path, page: Path | None, as_json: bool, **where: Any) -> None:
     """Show how much the responses of STUDY (.toml) scatter with wood, turning and stroke, and which cause matters most.
@@ -45,28 +42,9 @@ def scatter(study: Path, page: Path | None, as_json: bool, **where: Any) -> None
         table = table_of_study(wanted.study, zip(count(), found.spread.values, found.spread.responses, strict=False))
         assert table is not None
         facts = [f"{len(found.spread.values)} designs, as wood, turning and strokes scatter"]
-        save_page(
-            study_page(
-                study.stem, table, facts, scattered=Scattered(spread_sheet(wanted, found), cause_sheet(wanted, found))
-            ),
-            page,
-        )
-    if as_json:
-        print_json(
-            {
-                "file": str(study),
-                "assumed": notes,
-                "count": sample.count,
-                "seed": sample.seed,
-                "responses": scatter_record(wanted, found),
-            }
-        )
-        return
-    print_all(
-        [
-            *assumed_lines(notes),
-            *scatter_sheets(wanted, found),
-            *scatter_words(wanted, found),
-            *([f"wrote {page}"] if page else []),
-        ]
-    )
+        scattered = Scattered(spread_sheet(wanted, found), cause_sheet(wanted, found))
+        save_page(study_page(study.stem, table, facts, scattered=scattered), page)
+    about = {"file": str(study), "assumed": notes, "count": sample.count, "seed": sample.seed}
+    written = [f"wrote {page}"] if page else []
+    lines = [*assumed_lines(notes), *scatter_sheets(wanted, found), *scatter_words(wanted, found), *written]
+    tell(as_json, about | {"responses": scatter_record(wanted, found)}, lines)

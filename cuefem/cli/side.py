@@ -10,7 +10,7 @@ import click
 import numpy as np
 
 from cuefem.cli.common import blaming, cue_options, head_lines
-from cuefem.cli.printing import print_all, print_json
+from cuefem.cli.printing import tell
 from cuefem.cli.progress import followed
 from cuefem.cli.strokes import measured, option, with_body
 from cuefem.cue import Cue
@@ -64,11 +64,9 @@ def side(file: Path, places: int, output: Path | None, frames: int, as_json: boo
         put = None if output is None else _animation(scene, outcome.duration, frames)
     if output is not None and put is not None:
         write_whole_folder(output, put)
-    if as_json:
-        print_json({"file": str(file), "assumed": notes, "scene": about, **found, "units": UNITS})
-        return
     written = [] if output is None else [f"wrote {output}: strike.pvd and {frames} frames"]
-    print_all([*head_lines(file, about, scene.effects, notes), "", *side_sheets(found, about), *written])
+    lines = [*head_lines(file, about, scene.effects, notes), "", *side_sheets(found, about), *written]
+    tell(as_json, {"file": str(file), "assumed": notes, "scene": about, **found, "units": UNITS}, lines)
 
 
 def _scene(file: Path, given: dict[str, Any]) -> tuple[SideStrike, list[str]]:

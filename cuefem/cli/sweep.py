@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
@@ -18,8 +18,20 @@ from cuefem.design import sweep as run
 from cuefem.io import InputError, check_place, save_page, write_whole
 from cuefem.io.store import Store, export_path, write_table
 from cuefem.io.study import assumed_base, load_study
-from cuefem.report.study import Table, study_record, study_sheets, table_of_study
+from cuefem.report.study import StudyTable, study_record, study_sheets, table_of_study
 from cuefem.report.study_page import study_page
+
+# Of every study: where its designs are computed, and the page that shows them.
+designs_option = click.option(
+    "-o", "--page", type=click.Path(path_type=Path), metavar="PAGE.html", help="Also draw the designs on a page."
+)
+
+
+def pool_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Processes or a cluster to work on."""
+    workers = "Number of worker processes; by default none is started."
+    dask = click.option("--dask", metavar="ADDRESS", help='A Dask scheduler to work on, e.g. "tcp://host:8786".')
+    return click.option("--workers", type=click.IntRange(min=1), help=workers)(dask(command))
 
 
 @click.command()
@@ -27,12 +39,9 @@ from cuefem.report.study_page import study_page
 @click.option(
     "--store", "--output", type=click.Path(path_type=Path), help="Where designs are kept; by default STUDY.sqlite."
 )
-@click.option("--workers", type=click.IntRange(min=1), help="Number of worker processes; by default none is started.")
-@click.option("--dask", metavar="ADDRESS", help='A Dask scheduler to work on, e.g. "tcp://host:8786".')
+@pool_options
 @click.option("--export", type=click.Path(path_type=Path), help="Also write the table as .csv or .parquet.")
-@click.option(
-    "-o", "--page", type=click.Path(path_type=Path), metavar="PAGE.html", help="Also draw the designs on a page."
-)
+@designs_option
 @click.option("--json", "as_json", is_flag=True, help="Say as JSON what was done, with the summary.")
 def sweep(study: Path, store: Path | None, export: Path | None, page: Path | None, as_json: bool, **where: Any) -> None:
     """Compute every design of STUDY (.toml), keep the results in a file (SQLite), and sum them up.
@@ -106,7 +115,7 @@ def _tell(
     failures: Sequence[tuple[int, str]],
     goal: Path | None,
     as_json: bool,
-    table: Table | None,
+    table: StudyTable | None,
     page: Path | None,
     notes: Sequence[str],
 ) -> None:

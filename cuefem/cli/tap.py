@@ -8,8 +8,8 @@ from typing import Any
 
 import click
 
-from cuefem.cli.common import blaming, check_free, cue_options, scene_of
-from cuefem.cli.printing import assumed_lines, print_all, print_json
+from cuefem.cli.common import blaming, check_free, cue_options, scene_of, whole_record
+from cuefem.cli.printing import assumed_lines, tell
 from cuefem.cli.strokes import blow_options, measured, offset_option, with_body
 from cuefem.contact.strike import strike
 from cuefem.cue import Cue
@@ -23,8 +23,7 @@ from cuefem.measured.wood import Predicted, TapTest, predicted
 from cuefem.parts import with_material
 from cuefem.quantity import Quantity
 from cuefem.report.record import scene_record
-from cuefem.report.tap import UNITS, tap_figure, tap_record, tap_sheets
-from cuefem.report.unusual import unusual
+from cuefem.report.tap import tap_figure, tap_record, tap_sheets
 from cuefem.scene import Outcome, Scene
 
 
@@ -77,12 +76,10 @@ def tap(
         save(_updated(file, scene, found, given), output)
     if figure is not None:
         save_figure(tap_figure(found, heard, f"{recording.name}: {file.name}", figure.suffix[1:]), figure)
-    if given["as_json"]:
-        said = {"file": str(file), "recording": str(recording), "assumed": notes, "unusual": unusual(scene)}
-        print_json({**said, "scene": about, **record, "units": UNITS})
-        return
     written = [f"wrote {path}" for path in (output, figure) if path is not None]
-    print_all([f"{recording.name}, {file.name}", *assumed_lines(notes), "", *tap_sheets(record, about), *written])
+    whole = whole_record(file, notes, scene, record, scene=about, recording=str(recording))
+    lines = [f"{recording.name}, {file.name}", *assumed_lines(notes), "", *tap_sheets(record, about), *written]
+    tell(given["as_json"], whole, lines)
 
 
 def _as_drawn(scene: Scene, file: Path, given: dict[str, Any]) -> Scene:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-from cuefem.cli.printing import json_option, print_all, print_json
+from cuefem.cli.printing import json_option, tell
 from cuefem.io import InputError, studies_with
 from cuefem.report import claims_record, claims_sheet
 from cuefem.report.claims import VERDICT_WORDS
@@ -22,12 +22,9 @@ from cuefem.validation import Claim
 def validate(studies: Path, as_json: bool) -> None:
     """Check every claim of the sources against what follows from their equations; needs a clone of the repository."""
     found = claims_record(_claims(studies))
-    if as_json:
-        print_json({"claims": found})
-        return
     counts = Counter(claim["verdict"] for claim in found)
     totals = ", ".join(f"{count} {verdict}" for verdict, count in sorted(counts.items()))
-    print_all([claims_sheet(found), totals, VERDICT_WORDS])
+    tell(as_json, {"claims": found}, [claims_sheet(found), totals, VERDICT_WORDS])
 
 
 def _claims(folder: Path) -> list[tuple[str, Claim]]:

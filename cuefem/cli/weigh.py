@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from cuefem.cli.common import blaming, scene_of, shape_options
-from cuefem.cli.printing import assumed_lines, json_option, print_all, print_json
+from cuefem.cli.printing import assumed_lines, json_option, tell
 from cuefem.cli.strokes import game_option, measured, offset_of, offset_option
 from cuefem.games import GAMES
 from cuefem.io import InputError
@@ -16,29 +16,14 @@ from cuefem.measured.pendulum import WAYS as KNOWN
 from cuefem.measured.pendulum import Bounces, PendulumTest, Told, Weighed, lumped_squirt, pressed_time, squirt_told
 from cuefem.quantity import Quantity
 from cuefem.report.pendulum import plan_record, plan_sheets, weigh_record, weigh_sheets
+from cuefem.results.quantities import UNITS as QUANTITIES
 from cuefem.scene import Stroke, Tip
 
 NAME = Path("weigh")  # what error messages name in the place of a file
-UNITS = {
-    "end_mass": "kg",
-    "error": "kg",
-    "interval_68": "kg",
-    "interval_95": "kg",
-    "contact_time": "s",
-    "ball_mass": "kg",
-    "impact_speed": "m/s",
-    "lumped_squirt": "rad",
-    "drawn_end_mass": "kg",
-    "before": "rad",
-    "before_error": "rad",
-    "after": "rad",
-    "after_error": "rad",
-    "swing": "m",
-    "speed": "m/s",
-    "thread": "m",
-    "force": "N",
-    "pressed": "m",
-}
+MASSES = ("error", "interval_68", "interval_95", "drawn_end_mass")
+ANGLES = ("lumped_squirt", "before", "before_error", "after", "after_error")
+UNITS = QUANTITIES | dict.fromkeys(MASSES, "kg") | dict.fromkeys(ANGLES, "rad") | {"impact_speed": "m/s"}
+UNITS |= dict.fromkeys(("swing", "thread", "pressed"), "m") | {"ball_mass": "kg"}
 WAYS = ("swing", "height", "speed", "frames")
 
 
@@ -77,20 +62,15 @@ def weigh(plan: bool, end_mass: str | None, file: Path | None, as_json: bool, **
     """
     if plan:
         found = plan_record() if end_mass is None else plan_record(_read("--end-mass", end_mass, "kg"))
-        if as_json:
-            print_json({**found, "units": UNITS})
-        else:
-            print_all(plan_sheets(found))
+        tell(as_json, found | {"units": UNITS}, plan_sheets(found))
         return
     test = _test(given)
     with blaming(NAME):
         weighed = test.weighed()
     told, lumped, notes = _squirt(test, weighed, file, given)
     record = weigh_record(weighed, told, lumped)
-    if as_json:
-        print_json({"assumed": notes, **record, "units": UNITS})
-        return
-    print_all([*assumed_lines(notes), *weigh_sheets(record)])
+    whole = {"assumed": notes, **record, "units": UNITS}
+    tell(as_json, whole, [*assumed_lines(notes), *weigh_sheets(record)])
 
 
 def _read(option: str, text: str, unit: str, bounds: str = "(0, inf)") -> float:

@@ -139,7 +139,7 @@ class Scatter:
 
 
 @dataclass(frozen=True)
-class Spread:
+class ResponseSpread:
     """Distribution of responses over designs.
 
     values: of what varies, a tuple a design. responses: (designs, responses), SI. Of designs that answered; failures:
@@ -178,12 +178,12 @@ class Drivers:
     total: Array
     first_interval: Array
     total_interval: Array
-    spread: Spread
+    spread: ResponseSpread
 
 
 def spread(
     scatter: Scatter, count: int, *, seed: int, pool: Pool | None = None, progress: Progress = lambda rows: None
-) -> Spread:
+) -> ResponseSpread:
     """The distribution of a study's responses over ``count`` designs, a power of two: a scrambled Sobol sequence.
 
     pool, progress: as in `sweep`. ValueError if no design has an answer.
@@ -271,9 +271,9 @@ def _rows(scatter: Scatter, points: Array, pool: Pool | None, progress: Progress
     return sorted(rows, key=lambda row: row.design)
 
 
-def _spread(rows: list[Row]) -> Spread:
+def _spread(rows: list[Row]) -> ResponseSpread:
     good = [row for row in rows if not row.failure]
     failures = tuple(row.failure for row in rows if row.failure)
     if not good:
         raise ValueError(f"no design has an answer: {failures[0]}")
-    return Spread(tuple(row.values for row in good), np.array([row.responses for row in good], float), failures)
+    return ResponseSpread(tuple(row.values for row in good), np.array([row.responses for row in good], float), failures)

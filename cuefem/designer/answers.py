@@ -32,14 +32,14 @@ from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import Solved, default_resolution
 
 FIRST = "stick"  # the definition of the end mass that is computed before the others
-OFFSETS = tuple(round(0.04 * i, 2) for i in range(1, 21))  # b/R of both curves
+CURVE_OFFSETS = tuple(round(0.04 * i, 2) for i in range(1, 21))  # b/R of both curves
 MISCUES = 3  # of the coupled curve's points that miscue, one after the other: nothing new comes after them
 MOST_DENSITY_MODES = 45  # where end mass lives takes all modes of the mesh: cubic
 
 
 @dataclass(frozen=True)
-class Curve:
-    """Squirt, rad, and natural pivot length, m, against `OFFSETS`; nan where it is not known, or not yet."""
+class SquirtCurve:
+    """Squirt, rad, and natural pivot length, m, against `CURVE_OFFSETS`; nan where it is not known, or not yet."""
 
     squirt: Array
     pivot_length: Array
@@ -93,7 +93,7 @@ class Answers:
     end_masses: Mapping[str, float | None] = field(default_factory=dict)
     found: Modes | None = None
     numbers: Mapping[str, float | None] = field(default_factory=dict)
-    lumped: Curve | None = None
+    lumped: SquirtCurve | None = None
 
     @property
     def tip(self) -> TipModes:
@@ -161,16 +161,16 @@ def _end_mass(drive: str, solved: Solved) -> float | None:
         return None
 
 
-def lumped_curve(solved: Solved) -> Curve:
+def lumped_curve(solved: Solved) -> SquirtCurve:
     """The impulse solver's curve, with the cue lumped at each offset; nan if no lumped cue has that squirt."""
-    found = two_part_curve(solved, OFFSETS)
-    return Curve(found["squirt"], found["pivot_length"])
+    found = two_part_curve(solved, CURVE_OFFSETS)
+    return SquirtCurve(found["squirt"], found["pivot_length"])
 
 
 def coupled_points(found: Answers) -> Iterator[Point]:
     """The coupled strike offset by offset, each computed when it is asked for; it ends well beyond the miscue."""
     missed = 0
-    for offset, outcome in zip(OFFSETS, strikes_at(found.scene, OFFSETS, found.tip), strict=True):
+    for offset, outcome in zip(CURVE_OFFSETS, strikes_at(found.scene, CURVE_OFFSETS, found.tip), strict=True):
         pivot = pivot_length(at_offset(found.scene, offset), outcome.squirt)
         yield Point(offset, outcome.squirt, float(pivot), safety(outcome))
         missed = missed + 1 if outcome.regime == "miscue" else 0
@@ -178,12 +178,12 @@ def coupled_points(found: Answers) -> Iterator[Point]:
             return
 
 
-def curve_of(points: Sequence[Point]) -> Curve:
-    """The curve through points at the first of `OFFSETS`."""
-    squirt, pivot = np.full(len(OFFSETS), np.nan), np.full(len(OFFSETS), np.nan)
+def curve_of(points: Sequence[Point]) -> SquirtCurve:
+    """The curve through points at the first of `CURVE_OFFSETS`."""
+    squirt, pivot = np.full(len(CURVE_OFFSETS), np.nan), np.full(len(CURVE_OFFSETS), np.nan)
     squirt[: len(points)] = [point.squirt for point in points]
     pivot[: len(points)] = [point.pivot_length for point in points]
-    return Curve(squirt, pivot)
+    return SquirtCurve(squirt, pivot)
 
 
 def density(scene: Scene) -> Density:

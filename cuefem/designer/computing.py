@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from cuefem.designer.answers import Answers, Curve, Density, Point, curve_of
+from cuefem.designer.answers import Answers, Density, Point, SquirtCurve, curve_of
 from cuefem.scene import Scene
 
 LONGEST_WORK = 60.0  # s that an answer may take: no cue that people play with needs a tenth of it
@@ -50,7 +50,7 @@ class Results:
     density: Density | None = None
 
     @property
-    def coupled(self) -> Curve | None:
+    def coupled(self) -> SquirtCurve | None:
         """The coupled curve, as far as it is known."""
         return curve_of(self.points) if self.points else None
 

@@ -30,14 +30,14 @@ from cuefem.designer.presets import Preset
 from cuefem.designer.presets import opened as preset_opened
 from cuefem.designer.receiving import Receiver
 from cuefem.designer.results import ResultsSide
-from cuefem.designer.sheet import Sheet
+from cuefem.designer.sheet import DrawingSheet
 from cuefem.designer.sliders import choices, groups, sliders, without
 from cuefem.designer.style import SCRIPT, STYLE
 from cuefem.designer.tapside import TapSide
-from cuefem.designer.units import METRIC, SYSTEMS, System
+from cuefem.designer.units import METRIC, SYSTEMS, UnitSystem
 from cuefem.designer.words import MEASURED, head_markup
 from cuefem.games import GAMES
-from cuefem.io.toml import toml_text
+from cuefem.io.toml_text import toml_text
 from cuefem.report.glossary import definitions, explained
 from cuefem.report.page import page as report_page
 from cuefem.report.templates import chart_script, page_style
@@ -54,7 +54,7 @@ class Desk:
         self.read, self.opened, self.key = read, first, key_of(first)
         self.state = State((Step(first),))
         self.wanted = first.knobs
-        self.system: System = METRIC
+        self.system: UnitSystem = METRIC
         self.reference = 0  # which pinned design the others are compared with
         self.answering = Answering(self)
         self.busy = False
@@ -105,7 +105,7 @@ class Desk:
         with self.results.above_table:
             self.pins = PinnedList(self._rename, self._work_on, self._compare_with, self._unpin, self._export)
         with self.results.below_cue:
-            self.sheet = Sheet(self.edit)
+            self.sheet = DrawingSheet(self.edit)
             self.tap = TapSide(self.receiver.address, lambda: self.design.scene, self.edit)
         self._show_design()
 

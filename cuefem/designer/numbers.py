@@ -10,7 +10,7 @@ from typing import NamedTuple
 from cuefem.designer.answers import TONES, Answers, note
 from cuefem.designer.design import Design
 from cuefem.designer.sliders import choices, sliders
-from cuefem.designer.units import METRIC, System
+from cuefem.designer.units import METRIC, UnitSystem
 from cuefem.endmass.drives import DEFINITIONS
 from cuefem.report import table
 from cuefem.report.glossary import subscripts
@@ -22,7 +22,7 @@ from cuefem.scene import Scene
 WAITING = "…"
 
 
-class Row(NamedTuple):
+class NumberRow(NamedTuple):
     """A number: its name on the page, what it is in full, its value in SI (None if it has none), and its quantity."""
 
     name: str
@@ -31,18 +31,18 @@ class Row(NamedTuple):
     known: Result
     waiting: bool = False  # it is not computed yet
 
-    def text(self, system: System = METRIC) -> str:
+    def text(self, system: UnitSystem = METRIC) -> str:
         """The value with its unit."""
         return WAITING if self.waiting else self.known.written(self.value, units=system.units)
 
-    def number(self, system: System = METRIC) -> str:
+    def number(self, system: UnitSystem = METRIC) -> str:
         """The value without its unit; a dash if there is none."""
         if self.value is None or not math.isfinite(self.value):
             return WAITING if self.waiting else NONE
         return self.known.number(self.value, units=system.units)
 
 
-def rows(found: Answers) -> list[Row]:
+def rows(found: Answers) -> list[NumberRow]:
     """All numbers of a design, each with its definition."""
     strike, offset = found.strike, found.scene.stroke.offset
     labels = {one.name: f"end mass m_e, {one.label_at(offset)}" for one in DEFINITIONS.values()}
@@ -50,9 +50,9 @@ def rows(found: Answers) -> list[Row]:
     later = not found.has_end_mass
     tones = [None] * TONES if later else found.frequencies.tolist()
 
-    def row(name: str, quantity: str, value: float | None, label: str = "") -> Row:
+    def row(name: str, quantity: str, value: float | None, label: str = "") -> NumberRow:
         known = RESULTS[quantity]
-        return Row(name, label or known.words, value, known)
+        return NumberRow(name, label or known.words, value, known)
 
     return [
         row("squirt", "squirt", strike["squirt"], f"squirt, coupled, at b/R {offset:g}"),
@@ -85,7 +85,7 @@ def percent(value: float | None, other: float | None) -> str:
     return f"{100 * (value - other) / abs(other):+.1f}\u00a0%".replace("-", "−") if other else NONE
 
 
-def difference(row: Row, other: Row, system: System = METRIC) -> str:
+def difference(row: NumberRow, other: NumberRow, system: UnitSystem = METRIC) -> str:
     """How much more a number is than another: in its unit and in percent."""
     part = percent(row.value, other.value)
     if row.value is None or other.value is None or part == "the same":
@@ -122,7 +122,7 @@ class Line(NamedTuple):
         return number if number in (WAITING, NONE) else f"{number}{space}{self.unit}"
 
 
-def compared(columns: Sequence[Column], reference: int, system: System) -> list[Line]:
+def compared(columns: Sequence[Column], reference: int, system: UnitSystem) -> list[Line]:
     """All numbers of all designs, then the settings in which they differ. reference: the one compared with."""
     found = [rows(column.found) if column.found else None for column in columns]
     lines = []
@@ -148,7 +148,7 @@ def _parts(values: Sequence[float | None], reference: int) -> list[str]:
     return ["" if i == reference else percent(value, values[reference]) for i, value in enumerate(values)]
 
 
-def _settings(designs: Sequence[Design], reference: int, system: System) -> list[Line]:
+def _settings(designs: Sequence[Design], reference: int, system: UnitSystem) -> list[Line]:
     """The knobs that do not stand alike in all designs."""
     turned = [{slider.knob: slider for slider in sliders(design.scene, system)} for design in designs]
     chosen = [{choice.knob: choice for choice in choices(design.scene)} for design in designs]
@@ -169,7 +169,7 @@ def _settings(designs: Sequence[Design], reference: int, system: System) -> list
 THIS = "this design"
 
 
-def table_markup(columns: Sequence[Column], reference: int, system: System = METRIC) -> str:
+def table_markup(columns: Sequence[Column], reference: int, system: UnitSystem = METRIC) -> str:
     """All numbers as a table, a column for every design; the first is the one in work."""
     names = [THIS, *(column.design.name for column in columns[1:])]
     head = "".join(f'<th scope="col">{escape(name)}</th>' for name in ["number", *names])
@@ -187,7 +187,7 @@ def _line(line: Line) -> str:
     return f'<tr><th class="text" scope="row">{subscripts(escape(line.label))}</th><td>{named}</td>{cells}</tr>'
 
 
-def csv_text(columns: Sequence[Column], reference: int, system: System = METRIC) -> str:
+def csv_text(columns: Sequence[Column], reference: int, system: UnitSystem = METRIC) -> str:
     """The table as CSV: for every design its numbers and, beside others, how much they differ, in percent."""
     names = [THIS, *(column.design.name for column in columns[1:])]
     differing = [len(columns) > 1 and i != reference for i in range(len(columns))]
@@ -214,7 +214,9 @@ KEYS = {
 }
 
 
-def key_markup(found: Answers, other: Answers | None, system: System = METRIC, before: Answers | None = None) -> str:
+def key_markup(
+    found: Answers, other: Answers | None, system: UnitSystem = METRIC, before: Answers | None = None
+) -> str:
     """The numbers that matter most, each with its definition or its difference from the design compared with.
 
     before: the last design with all of them; its own stand, pale, where a number is not computed yet.

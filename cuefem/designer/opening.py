@@ -18,7 +18,7 @@ from cuefem.designer.computing import FAILURES
 from cuefem.designer.controls import Beside, button
 from cuefem.designer.markup import Markup
 from cuefem.designer.presets import PRESETS, Preset, ready_cue
-from cuefem.designer.units import System, typed
+from cuefem.designer.units import UnitSystem, typed
 from cuefem.games import DEFAULT_GAME, GAMES, usual_scene
 from cuefem.io import load
 from cuefem.io.profile import DEFAULT_MATERIAL, SHAPES
@@ -93,7 +93,7 @@ class ShapeDialog:
                 button("Open it", self._open)
                 button("Cancel", self.dialog.close)
 
-    def ask(self, name: str, cue: Cue, system: System) -> None:
+    def ask(self, name: str, cue: Cue, system: UnitSystem) -> None:
         """Ask about a shape."""
         self.name, self.cue, self.unit = name, cue, system.units["kg"][1]
         sizes = (system.length(size) for size in (cue.length, cue.segments[0].tip_diameter))

@@ -10,10 +10,10 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from cuefem.cue import Array
-from cuefem.designer.answers import OFFSETS, Answers, Curve, Density, Point
-from cuefem.designer.units import METRIC, System
+from cuefem.designer.answers import CURVE_OFFSETS, Answers, Density, Point, SquirtCurve
+from cuefem.designer.units import METRIC, UnitSystem
 from cuefem.report import charts as figures
-from cuefem.report.charts import Axis, Span, chart
+from cuefem.report.charts import Axis, Shade, chart
 from cuefem.report.drawings import cue_drawing, front_drawing, materials_of, modes_drawing, seen, style_of
 from cuefem.report.squirt import offset_charts as report_charts
 from cuefem.report.templates import chart_markup, cue_markup, shapes_markup
@@ -24,7 +24,7 @@ STYLES = ("c2", "c4", "c3", "c5")  # of pinned designs, in turn
 LIMITS = {"slips": ("slip", "slips through much of the blow"), "miscue": ("miss", "slips off the ball (a miscue)")}
 
 
-def cue_pictures(scene: Scene, system: System = METRIC) -> str:
+def cue_pictures(scene: Scene, system: UnitSystem = METRIC) -> str:
     """The cue to scale, enlarged across, its tip end; and which colour is which material."""
     units = system.units
     whole, wide = (cue_drawing(scene, across=across, units=units) for across in (1.0, 8.0))
@@ -41,24 +41,24 @@ class Drawn(NamedTuple):
     """A pinned design's curves by its name; None while they are computed."""
 
     name: str
-    coupled: Curve | None
+    coupled: SquirtCurve | None
     density: Density | None
 
 
 def offset_charts(
     found: Answers,
-    coupled: Curve | None,
+    coupled: SquirtCurve | None,
     pinned: Sequence[Drawn],
     *,
     current: bool,
-    limits: Sequence[Span] = (),
-    system: System = METRIC,
+    limits: Sequence[Shade] = (),
+    system: UnitSystem = METRIC,
 ) -> str:
     """Squirt and pivot length against the offset, the coupled curves of all designs: like with like.
 
     current: whether the coupled curve is of this design already. limits: where this design's strokes are not safe.
     """
-    lines: list[tuple[str, str, Curve]] = []
+    lines: list[tuple[str, str, SquirtCurve]] = []
     if coupled is not None:
         lines.append(("coupled, in time", "c1", coupled) if current else ("coupled, before", "c1 stale", coupled))
     lines += [(one.name, style, one.coupled) for one, style in zip(pinned, cycle(STYLES), strict=False) if one.coupled]
@@ -77,33 +77,33 @@ def offset_charts(
     return f'<div class="grid2">{"".join(chart_markup(c, f"offset{i}") for i, c in enumerate(charts))}</div>'
 
 
-FINE = np.linspace(OFFSETS[0], OFFSETS[-1], 10 * (len(OFFSETS) - 1) + 1)
+FINE = np.linspace(CURVE_OFFSETS[0], CURVE_OFFSETS[-1], 10 * (len(CURVE_OFFSETS) - 1) + 1)
 
 
 def _smooth(values: Array) -> Array:
-    """A curve at `FINE` offsets through its values at `OFFSETS`, without overshoot; nan where those are."""
+    """A curve at `FINE` offsets through its values at `CURVE_OFFSETS`, without overshoot; nan where those are."""
     known = np.flatnonzero(np.isfinite(values))
     if len(known) < 2:
         return np.full(len(FINE), np.nan)
-    return np.asarray(PchipInterpolator(np.array(OFFSETS)[known], values[known], extrapolate=False)(FINE))
+    return np.asarray(PchipInterpolator(np.array(CURVE_OFFSETS)[known], values[known], extrapolate=False)(FINE))
 
 
-def limits_of(points: Sequence[Point]) -> tuple[list[Span], str]:
+def limits_of(points: Sequence[Point]) -> tuple[list[Shade], str]:
     """Where strokes are not safe, as parts to shade; and from which offsets on, in a sentence."""
-    spans: list[Span] = []
+    spans: list[Shade] = []
     starts: dict[str, float] = {}
-    half = 0.5 * (OFFSETS[1] - OFFSETS[0])
+    half = 0.5 * (CURVE_OFFSETS[1] - CURVE_OFFSETS[0])
     for i, point in enumerate(points):
         if point.safety != "safe":
             last = i == len(points) - 1 and point.safety == "miscue"
-            end = OFFSETS[-1] if last else point.offset + half
-            spans.append(Span(point.offset - half, min(end, OFFSETS[-1]), LIMITS[point.safety][0]))
+            end = CURVE_OFFSETS[-1] if last else point.offset + half
+            spans.append(Shade(point.offset - half, min(end, CURVE_OFFSETS[-1]), LIMITS[point.safety][0]))
             starts.setdefault(point.safety, point.offset - half)
     said = [f"{LIMITS[name][1]} from b/R {start:.2f} on" for name, start in starts.items()]
     return spans, f"Shaded: the tip {', and '.join(said)}." if said else ""
 
 
-def density_chart(found: Density, pinned: Sequence[Drawn], system: System = METRIC) -> str:
+def density_chart(found: Density, pinned: Sequence[Drawn], system: UnitSystem = METRIC) -> str:
     """Where end mass lives along the cue, and how near to the tip half of it does."""
     (per_metre, length), (per_kilogram, mass) = system.units["m"], system.units["kg"]
     per, scale = ("cm", 0.01 * per_kilogram) if length == "mm" else (length, per_kilogram / per_metre)
@@ -135,7 +135,7 @@ def half_within(found: Density) -> float:
     return float(found.x[int(np.argmax(sums >= sums[-1] / 2))])
 
 
-def shapes_picture(found: Answers, system: System = METRIC) -> str:
+def shapes_picture(found: Answers, system: UnitSystem = METRIC) -> str:
     """The bending modes; nothing if they are not computed yet."""
     if found.found is None:
         return ""

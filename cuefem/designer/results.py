@@ -7,13 +7,13 @@ from collections.abc import Sequence
 from nicegui import ui
 
 from cuefem.designer import numbers, pictures
-from cuefem.designer.answers import OFFSETS, Answers
+from cuefem.designer.answers import CURVE_OFFSETS, Answers
 from cuefem.designer.computing import Results
 from cuefem.designer.design import Design
 from cuefem.designer.markup import Markup
 from cuefem.designer.numbers import Column
 from cuefem.designer.pictures import Drawn
-from cuefem.designer.units import System
+from cuefem.designer.units import UnitSystem
 from cuefem.designer.words import ABOUT
 from cuefem.report.glossary import explained
 
@@ -49,7 +49,7 @@ class ResultsSide:
             Markup(f"<h2>{title}</h2>")
             return Markup()
 
-    def show_numbers(self, columns: Sequence[Column], reference: int, system: System) -> None:
+    def show_numbers(self, columns: Sequence[Column], reference: int, system: UnitSystem) -> None:
         """The numbers of the first design that matter most, beside the one compared with."""
         found, other = columns[0].found, columns[reference].found
         if found is None:
@@ -60,7 +60,7 @@ class ResultsSide:
         if found.has_end_mass:
             self.before = found
 
-    def show_table(self, columns: Sequence[Column], reference: int, system: System) -> None:
+    def show_table(self, columns: Sequence[Column], reference: int, system: UnitSystem) -> None:
         """All numbers of the first design beside the others', and how it rings."""
         found = columns[0].found
         if found is None or not found.has_end_mass:
@@ -70,13 +70,13 @@ class ResultsSide:
         self.table.set_content(explained(numbers.table_markup(columns, reference, system)))
         self.table.set_stale(False)
 
-    def show_cue(self, mine: Results, system: System) -> None:
+    def show_cue(self, mine: Results, system: UnitSystem) -> None:
         """The cue."""
         self.cue.set_content(pictures.cue_pictures(mine.found.scene, system))
         self.trust.set_content(explained(numbers.trust_markup(mine.found.scene)))
 
     def show_charts(
-        self, mine: Results, before: Results | None, pinned: Sequence[tuple[Design, Results | None]], system: System
+        self, mine: Results, before: Results | None, pinned: Sequence[tuple[Design, Results | None]], system: UnitSystem
     ) -> None:
         """The curves against the offset. before: of the design before, until the first point of this one is known."""
         current = bool(mine.points)
@@ -87,13 +87,13 @@ class ResultsSide:
         waiting = sum(one is None or not one.whole for _, one in pinned)
         words = [said, f"Still computing {waiting} of the pinned designs." if waiting else ""]
         if not mine.whole:
-            words = [f"Computing the coupled curve: {len(mine.points)} of {len(OFFSETS)} offsets.", *words]
+            words = [f"Computing the coupled curve: {len(mine.points)} of {len(CURVE_OFFSETS)} offsets.", *words]
         lines = "".join(f"<p>{line}</p>" for line in words if line)
         under = f'<div class="under" aria-live="off">{lines}</div>'
         self.charts.set_content(explained(markup + under))
 
     def show_density(
-        self, mine: Results, before: Results | None, pinned: Sequence[tuple[Design, Results | None]], system: System
+        self, mine: Results, before: Results | None, pinned: Sequence[tuple[Design, Results | None]], system: UnitSystem
     ) -> None:
         """Where end mass lives."""
         current = mine.density is not None

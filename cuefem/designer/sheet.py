@@ -14,7 +14,7 @@ from cuefem.designer import editing
 from cuefem.designer.controls import Beside, button
 from cuefem.designer.editing import Field
 from cuefem.designer.markup import Markup
-from cuefem.designer.units import METRIC, System, typed
+from cuefem.designer.units import METRIC, UnitSystem, typed
 from cuefem.effects import Effect, effect_kinds
 from cuefem.materials import MATERIALS
 from cuefem.parts import materials_in
@@ -26,20 +26,20 @@ Edit = Callable[[Callable[[Scene], Scene], str], str]
 EMPTY = "empty"
 
 
-class Sheet:
+class DrawingSheet:
     """The fields of a scene, made when they are first opened. edit: changes the scene, and returns what is wrong."""
 
     def __init__(self, edit: Edit) -> None:
         self.edit = edit
         self.scene: Scene | None = None
-        self.system: System = METRIC
+        self.system: UnitSystem = METRIC
         self.off: dict[str, Effect] = {}  # effects that were switched off, by name, to be switched on as they were
         self.cells: dict[Path, tuple[Any, Field]] = {}
         self.shape: Any = None
         self.fold = ui.expansion("Everything in this design: segments, materials, ball, effects").classes("sheet")
         self.fold.on_value_change(lambda event: self._refresh())
 
-    def show(self, scene: Scene, system: System) -> None:
+    def show(self, scene: Scene, system: UnitSystem) -> None:
         """Show this scene."""
         self.scene, self.system = scene, system
         self._refresh()

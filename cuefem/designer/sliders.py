@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from cuefem.cue import Material
-from cuefem.designer.units import METRIC, System
+from cuefem.designer.units import METRIC, UnitSystem
 from cuefem.materials import MATERIALS
 from cuefem.report.drawings import material_name
 from cuefem.scene import Scene
@@ -80,14 +80,14 @@ class Choice:
         return next(name for name, known in self.materials.items() if known == knobs[self.knob])
 
 
-def sliders(scene: Scene, system: System = METRIC) -> tuple[Slider, ...]:
+def sliders(scene: Scene, system: UnitSystem = METRIC) -> tuple[Slider, ...]:
     """The sliders that a scene has, in a system of units; each range includes the scene's own value."""
     knobs = knobs_of(scene)
     made = (_slider(PLACES[key], scene, system) for key in knobs if PLACES[key].range)
     return tuple(slider.reaching(slider.shown(knobs)) for slider in made)
 
 
-def _slider(place: Place, scene: Scene, system: System) -> Slider:
+def _slider(place: Place, scene: Scene, system: UnitSystem) -> Slider:
     cue = scene.shaft
     x = place.at(cue) if place.at else 0.0
     label = place.title.format(exact=system.length(x))
@@ -98,7 +98,7 @@ def _slider(place: Place, scene: Scene, system: System) -> Slider:
 STEPS_IN_INCHES = {0.05: 0.002, 0.1: 0.005, 0.5: 0.02, 1: 0.05, 5: 0.2}  # of a step in mm, in; of one in g, oz
 
 
-def _in_system(slider: Slider, system: System) -> Slider:
+def _in_system(slider: Slider, system: UnitSystem) -> Slider:
     """A slider whose unit is mm or g in the units of a system, its ends rounded outwards to whole steps."""
     scale, unit = system.units.get({"mm": "m", "g": "kg"}.get(slider.unit, ""), (slider.scale, slider.unit))
     if unit == slider.unit:

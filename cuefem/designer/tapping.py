@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from cuefem.designer.units import System
+from cuefem.designer.units import UnitSystem
 from cuefem.io.sound import load_recording
 from cuefem.measured.fit import TapFit
 from cuefem.measured.ringing import Ringing, ringing
@@ -56,7 +56,7 @@ def with_wood(scene: Scene, found: TapFit) -> Scene:
     return replace(scene, cue=with_material(scene.shaft, found.before, found.wood))
 
 
-def tapped_markup(one: Tapped, system: System) -> str:
+def tapped_markup(one: Tapped, system: UnitSystem) -> str:
     """The wood with its doubts, the spectrum, and the tones."""
     found, heard = one.found, one.heard
     doubts = "".join(f'<p class="wrong" role="alert">Doubt: {escape(line)}</p>' for line in found.refusals)

@@ -12,7 +12,7 @@ from cuefem.designer.computing import FAILURES, LONGEST_WORK
 from cuefem.designer.controls import Beside, button
 from cuefem.designer.markup import Markup
 from cuefem.designer.tapping import Tapped, tapped, tapped_markup, with_wood
-from cuefem.designer.units import METRIC, System, typed
+from cuefem.designer.units import METRIC, UnitSystem, typed
 from cuefem.scene import Scene
 
 SECONDS = 6  # that are recorded
@@ -44,7 +44,7 @@ class TapSide:
             self.take.set_visibility(False)
             self.client.on_connect(lambda: self.client.run_javascript(f"cuefem.sends({json.dumps(address)})"))
 
-    def show(self, system: System) -> None:
+    def show(self, system: UnitSystem) -> None:
         """Show numbers in these units."""
         self.system = system
         self.weight.props(f'label="Weight of the shaft as it hangs, {system.units["kg"][1]}"')

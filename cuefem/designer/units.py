@@ -11,7 +11,7 @@ from cuefem.units import UnknownUnit, kind_of, number
 MM_PER_INCH, GRAMS_PER_OUNCE = 25.4, 28.349523125
 
 
-class System(NamedTuple):
+class UnitSystem(NamedTuple):
     """A system of units: the word on its switch, and its units by those of SI."""
 
     name: str
@@ -34,8 +34,8 @@ class System(NamedTuple):
         return _METRIC.sub(_in_inches, sentence) if self.units is IMPERIAL else sentence
 
 
-METRIC = System("mm, g", TRADE)
-INCHES = System("in, oz", IMPERIAL)
+METRIC = UnitSystem("mm, g", TRADE)
+INCHES = UnitSystem("in, oz", IMPERIAL)
 SYSTEMS = {system.name: system for system in (METRIC, INCHES)}
 
 _METRIC = re.compile(r"(?<![\w.])([0-9]+(?:\.[0-9]+)?)( to ([0-9]+(?:\.[0-9]+)?))? (mm|g)(?![\w/])")

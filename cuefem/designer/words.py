@@ -5,7 +5,7 @@ from __future__ import annotations
 from html import escape
 
 from cuefem.designer.design import Design
-from cuefem.designer.units import METRIC, System
+from cuefem.designer.units import METRIC, UnitSystem
 from cuefem.report.record import scene_record
 from cuefem.report.unusual import unusual
 from cuefem.report.words import assumptions, effect_words, plain_cue_line
@@ -13,7 +13,7 @@ from cuefem.report.words import assumptions, effect_words, plain_cue_line
 MEASURED = "measured on such cues: "  # with it a note begins that is no assumption
 
 
-def head_markup(design: Design, system: System = METRIC) -> str:
+def head_markup(design: Design, system: UnitSystem = METRIC) -> str:
     """The head of the page: the design's name, and the cue, the stroke and the effects in words."""
     scene = design.scene
     facts = [plain_cue_line(scene.cue), assumptions(scene_record(scene))]

@@ -12,7 +12,7 @@ from pathlib import Path
 from cuefem.cue import Cue
 from cuefem.io.errors import InputError, reason, shown
 from cuefem.io.profile import DEFAULT_MATERIAL, SHAPES, SURFACES, TABLES, load_profile
-from cuefem.io.toml import load_accuracy, load_cue, load_toml, named_material, read_text, toml_text
+from cuefem.io.toml import load_accuracy, load_cue, load_toml, named_material, read_text
 from cuefem.scene import Scene
 from cuefem.side.scene import SideStrike
 from cuefem.units import number
@@ -140,6 +140,8 @@ def save(obj: Cue | Scene | SideStrike, path: str | os.PathLike[str]) -> None:
         raise TypeError(f"save writes a Cue, a Scene or a SideStrike; got {shown(obj)}")
     path = Path(path)
     if path.suffix.lower() == ".toml":
+        from cuefem.io.toml_text import toml_text
+
         content = toml_text(obj)
         write_whole(path, lambda temporary: temporary.write_text(content, encoding="utf-8"))
     elif path.suffix.lower() in _MESHES and isinstance(obj, Cue):

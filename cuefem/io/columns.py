@@ -36,7 +36,7 @@ _BUTT = {"butt", "joint"}  # where x is measured from, if "from" stands before i
 
 
 @dataclass(frozen=True)
-class Column:
+class ProfileColumn:
     """A column that is used: what it holds, where it stands, its name in the file, and its unit ("" if it has none)."""
 
     kind: str
@@ -50,7 +50,7 @@ class Header:
     """The columns of a profile that say a place and a diameter, those that do not, and the lines below."""
 
     line: int
-    used: tuple[Column, ...]
+    used: tuple[ProfileColumn, ...]
     unused: tuple[str, ...]
     width: int
     rows: tuple[Row, ...]
@@ -94,12 +94,12 @@ def _got(cells: Sequence[str]) -> str:
     return shown(",".join(cells))
 
 
-def _with_unit(column: Column, units: Sequence[str]) -> Column:
+def _with_unit(column: ProfileColumn, units: Sequence[str]) -> ProfileColumn:
     unit = units[column.index] if column.index < len(units) else ""
-    return Column(column.kind, column.index, column.name, column.unit or unit)
+    return ProfileColumn(column.kind, column.index, column.name, column.unit or unit)
 
 
-def _column(path: Path, line: int, index: int, cell: str) -> Column:
+def _column(path: Path, line: int, index: int, cell: str) -> ProfileColumn:
     """What a cell of a header says; its kind is "" if it is neither a place nor a width."""
     text = cell.replace("⌀", "ø").replace("Ø", "ø").casefold()
     inside = _BRACKETS.findall(text)
@@ -115,7 +115,7 @@ def _column(path: Path, line: int, index: int, cell: str) -> Column:
     if kind and inside and not unit and inside[0].strip() in _OTHERS:
         problem = f"must be in a unit of length, such as mm; got {shown(inside[0])}"
         raise InputError(path, f"line {line}, {kind}", problem)
-    return Column(kind, index, cell, unit)
+    return ProfileColumn(kind, index, cell, unit)
 
 
 def _kind(words: Sequence[str]) -> str:
@@ -128,14 +128,14 @@ def _kind(words: Sequence[str]) -> str:
     return next((long[found[0]] for found in close if found), "")
 
 
-def _refuse_bore(path: Path, line: int, used: Sequence[Column]) -> None:
+def _refuse_bore(path: Path, line: int, used: Sequence[ProfileColumn]) -> None:
     bore = next((column for column in used if column.kind == BORE), None)
     if bore is not None:
         problem = "is a bore, which a .csv cannot draw: draw a hollow shaft as a .toml"
         raise InputError(path, f"line {line}", f"the column {shown(bore.name)} {problem}")
 
 
-def from_butt(column: Column) -> bool:
+def from_butt(column: ProfileColumn) -> bool:
     """Whether a column of places says that it counts from the butt."""
     words = _TOKENS.findall(column.name.casefold())
     return "from" in words and bool(_BUTT & set(words[words.index("from") :])) and "tip" not in words

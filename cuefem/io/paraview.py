@@ -30,7 +30,7 @@ LONGEST = 0.01  # m between rings, at most
 Track = Callable[[Sequence[Any]], Iterable[Any]]
 
 
-class Surface(NamedTuple):
+class ShaftSurface(NamedTuple):
     """Points (n, 3), m, and cells of a surface; x: of a shaft's points, the distance from the tip, m."""
 
     points: Array
@@ -38,7 +38,7 @@ class Surface(NamedTuple):
     x: Array
 
 
-def shaft_surface(cue: Cue) -> Surface:
+def shaft_surface(cue: Cue) -> ShaftSurface:
     """The outer surface of a cue: rings along every segment, both sides of a jump, and a lid at each end."""
     stations, radii = [], []
     for start, segment in zip(cue.nodes[:-1], cue.segments, strict=True):
@@ -58,10 +58,10 @@ def shaft_surface(cue: Cue) -> Surface:
         for end, (ring, turn) in enumerate([(i[0], -1), (i[-1], 1)])
     ]
     cells = [("quad", quads), ("triangle", np.concatenate(lids))]
-    return Surface(np.concatenate([points, ends]), cells, np.concatenate([np.repeat(x, AROUND), x[[0, -1]]]))
+    return ShaftSurface(np.concatenate([points, ends]), cells, np.concatenate([np.repeat(x, AROUND), x[[0, -1]]]))
 
 
-def ball_surface(radius: float) -> Surface:
+def ball_surface(radius: float) -> ShaftSurface:
     """A ball about the origin, of quads that meet at the poles of Z."""
     polar, round_ = np.linspace(0, np.pi, 19), 2 * np.pi * np.arange(36) / 36
     ring = np.stack([np.cos(round_), np.sin(round_)], axis=-1)
@@ -71,15 +71,15 @@ def ball_surface(radius: float) -> Surface:
     i = np.arange(19 * 36).reshape(19, 36)
     after = np.roll(i, -1, axis=1)
     quads = np.stack([i[:-1], i[1:], after[1:], after[:-1]], axis=-1).reshape(-1, 4)
-    return Surface(radius * points.reshape(-1, 3), [("quad", quads)], np.zeros(19 * 36))
+    return ShaftSurface(radius * points.reshape(-1, 3), [("quad", quads)], np.zeros(19 * 36))
 
 
-def vectors(surface: Surface, w: Array, theta: Array, *, along: float = 0.0) -> Array:
+def vectors(surface: ShaftSurface, w: Array, theta: Array, *, along: float = 0.0) -> Array:
     """Displacement of a shaft's points, (n, 3): along + theta y, w and nothing."""
     return np.column_stack([along + theta * surface.points[:, 1], w, np.zeros_like(w)])
 
 
-def save_vtu(path: Path, surface: Surface, data: Mapping[str, Array], fields: Mapping[str, Array]) -> None:
+def save_vtu(path: Path, surface: ShaftSurface, data: Mapping[str, Array], fields: Mapping[str, Array]) -> None:
     """Write a surface with point data, and field data, which meshio reads and does not write."""
     mesh = meshio.Mesh(surface.points, surface.cells, point_data=dict(data))
     meshio.vtu.write(str(path), mesh, binary=True)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from cuefem.cue import Cue, Material, Segment
 from cuefem.io.cells import Row, decimal_mark, parted, plain, read_rows
-from cuefem.io.columns import DIAMETER, EXAMPLE, PLACE, RADIUS, Column, Header, from_butt, read_header, unit_of
+from cuefem.io.columns import DIAMETER, EXAMPLE, PLACE, RADIUS, Header, ProfileColumn, from_butt, read_header, unit_of
 from cuefem.io.errors import InputError, faults_of, shown
 from cuefem.quantity import DIAMETER as WIDTH
 from cuefem.quantity import Quantity
@@ -83,7 +83,7 @@ def read_profile(path: Path, length_unit: str | None = None, *, checked: bool = 
 
 
 def _notes(
-    header: Header, place: Column, width: Column, spare: Sequence[str], points: Sequence[Point]
+    header: Header, place: ProfileColumn, width: ProfileColumn, spare: Sequence[str], points: Sequence[Point]
 ) -> tuple[str, ...]:
     names = [*header.unused, *spare]
     butt, first = from_butt(place), points[0][0] if points else 0.0
@@ -98,17 +98,17 @@ def _notes(
     return tuple(note for note, holds in notes.items() if holds)
 
 
-def _cells(rows: Sequence[Row], column: Column) -> list[str]:
+def _cells(rows: Sequence[Row], column: ProfileColumn) -> list[str]:
     return [cells[column.index] if column.index < len(cells) else "" for _, cells in rows]
 
 
-def _with_units(path: Path, header: Header, given: str | None, mark: str, checked: bool) -> list[Column]:
+def _with_units(path: Path, header: Header, given: str | None, mark: str, checked: bool) -> list[ProfileColumn]:
     """The columns with the units that header, cells or ``given`` say; InputError if there are none."""
     columns = []
     for column in header.used:
         beside = {unit_of(rest) for _, rest in map(parted, _cells(header.rows, column)) if rest}
         unit = column.unit or ("".join(beside) if len(beside) == 1 else "")
-        columns.append(Column(column.kind, column.index, column.name, unit))
+        columns.append(ProfileColumn(column.kind, column.index, column.name, unit))
     bare = [column for column in columns if not column.unit]
     if given is not None and checked:
         if not bare:
@@ -119,10 +119,10 @@ def _with_units(path: Path, header: Header, given: str | None, mark: str, checke
     if bare and given is None:
         raise InputError(path, f"line {header.line}", _no_unit(header, columns, bare, mark))
     unit = unit_of(given) if given is not None else ""
-    return [Column(c.kind, c.index, c.name, c.unit or unit) for c in columns]
+    return [ProfileColumn(c.kind, c.index, c.name, c.unit or unit) for c in columns]
 
 
-def _no_unit(header: Header, columns: Sequence[Column], bare: Sequence[Column], mark: str) -> str:
+def _no_unit(header: Header, columns: Sequence[ProfileColumn], bare: Sequence[ProfileColumn], mark: str) -> str:
     """What is said of columns without a unit, with the one that their numbers look like."""
     option = "or give --length-unit"
     if len(bare) < len(columns):
@@ -134,7 +134,7 @@ def _no_unit(header: Header, columns: Sequence[Column], bare: Sequence[Column], 
     return f"the columns have no unit: write {chr(34)}{written}{chr(34)}, if these are {unit or 'mm'}, {option}"
 
 
-def _guess(header: Header, columns: Sequence[Column], mark: str) -> str:
+def _guess(header: Header, columns: Sequence[ProfileColumn], mark: str) -> str:
     """The one unit with which a table has the size of a shaft; "" if none or several have it."""
     try:
         x, d = (
@@ -157,11 +157,13 @@ def _only(found: Sequence[str]) -> str:
     return found[0] if len(found) == 1 else ""
 
 
-def _first(columns: Sequence[Column], *kinds: str) -> Column:
+def _first(columns: Sequence[ProfileColumn], *kinds: str) -> ProfileColumn:
     return next(column for kind in kinds for column in columns if column.kind == kind)
 
 
-def _chosen(path: Path, header: Header, columns: Sequence[Column], mark: str) -> tuple[Column, Column, list[str]]:
+def _chosen(
+    path: Path, header: Header, columns: Sequence[ProfileColumn], mark: str
+) -> tuple[ProfileColumn, ProfileColumn, list[str]]:
     """The column of places, that of diameters, and the names of others that say the same."""
     place, width = _first(columns, PLACE), _first(columns, DIAMETER, RADIUS)
     spare = []
@@ -180,7 +182,7 @@ def _chosen(path: Path, header: Header, columns: Sequence[Column], mark: str) ->
     return place, width, spare
 
 
-def _number(path: Path, row: Row, column: Column, mark: str) -> float:
+def _number(path: Path, row: Row, column: ProfileColumn, mark: str) -> float:
     """A cell as an SI number, a radius doubled."""
     line, cells = row
     cell = cells[column.index] if column.index < len(cells) else ""
@@ -194,7 +196,7 @@ def _number(path: Path, row: Row, column: Column, mark: str) -> float:
     return 2 * value if kind == RADIUS else value
 
 
-def _ordered(path: Path, header: Header, place: Column, points: list[Point]) -> tuple[Point, ...]:
+def _ordered(path: Path, header: Header, place: ProfileColumn, points: list[Point]) -> tuple[Point, ...]:
     """The points from tip to butt; InputError if their order goes both ways."""
     if from_butt(place):
         most = max((x for x, _ in points), default=0.0)

@@ -30,7 +30,7 @@ TOLERANCE = 5e-5  # of the widest diameter: how near the straight pieces keep to
 SLICES, LEVELS = 50, 1000  # at least so many slices; so many levels of corners are cut each at its place
 
 
-class Piece(NamedTuple):
+class ConicalPiece(NamedTuple):
     """A conical piece: its length, outer diameters and bores at its two ends, tip side first."""
 
     length: float
@@ -44,7 +44,7 @@ class Sliced:
     from those of the slices. facets: how far corners of slices lie outside the round outline: half a true diameter lies
     between the round one and that."""
 
-    pieces: tuple[Piece, ...]
+    pieces: tuple[ConicalPiece, ...]
     fit: float
     facets: float
 
@@ -249,7 +249,7 @@ def sliced(body: Surface, tolerance: float = TOLERANCE) -> Sliced:
     Slices lie at every level of corners, between the levels, and at least `SLICES` in all; jumps at the faces across
     the axis are kept. ValueError if a section is not one round piece about the axis.
     """
-    pieces: list[Piece] = []
+    pieces: list[ConicalPiece] = []
     fit = facets = 0.0
     widest = 2 * float(np.sqrt((body.points[:, 1:] ** 2).sum(axis=1)).max())
     for start, stop in itertools.pairwise(body.flats):
@@ -262,7 +262,7 @@ def sliced(body: Surface, tolerance: float = TOLERANCE) -> Sliced:
         kept = _corners(x[::2], found[::2], tolerance * widest)
         for i, j in itertools.pairwise(2 * kept):
             (outer0, bore0), (outer1, bore1) = found[i].tolist(), found[j].tolist()
-            pieces.append(Piece(float(x[j] - x[i]), (outer0, outer1), (bore0, bore1)))
+            pieces.append(ConicalPiece(float(x[j] - x[i]), (outer0, outer1), (bore0, bore1)))
         fit = max(fit, _deviation(x, found, 2 * kept))
         facets = max(facets, *(float(cut.reach - d / 2) for cut, d in zip(cuts, found[:, 0], strict=True)))
     return Sliced(tuple(pieces), fit, facets)

@@ -74,7 +74,7 @@ def what_it_is(scene: Scene, at: str) -> bytes:
     return digest(physics(), text, at, os.urandom(16) if " at 0x" in text else b"")
 
 
-class Table(NamedTuple):
+class StoredTable(NamedTuple):
     """A study's table: its columns in their order, their units, and its rows: number, what varied, responses, failure.
 
     named: columns of names of materials. sampled: whether the designs are a sample and no grid.
@@ -332,7 +332,7 @@ def plain_rows(path: Path, file: sqlite3.Connection, study: bytes) -> Iterator[t
         yield design, *answer["values"], *answer["responses"].values(), answer["failure"]
 
 
-def read_table(path: str | PathLike[str], name: str | None = None) -> Table:
+def read_table(path: str | PathLike[str], name: str | None = None) -> StoredTable:
     """The table of the study of a name in a store, or of the one swept last; read only, also while sweeps write on.
 
     InputError if the file is none, has no such study, or a row of it was altered.
@@ -348,12 +348,12 @@ def read_table(path: str | PathLike[str], name: str | None = None) -> Table:
             if name in (None, called):
                 varied, responses, named = (tuple(about[role]) for role in ("varied", "responses", "named"))
                 rows = list(plain_rows(path, file, study))
-                return Table(varied, responses, about["units"], named, about["sampled"], rows)
+                return StoredTable(varied, responses, about["units"], named, about["sampled"], rows)
     names = ", ".join(dict.fromkeys(called for _, called, _ in studies))
     raise InputError(path, "", f"must hold a study {name or ''}; got {names or 'none'}")
 
 
-def _older_table(path: Path, file: sqlite3.Connection) -> Table:
+def _older_table(path: Path, file: sqlite3.Connection) -> StoredTable:
     """The table of a file from before designs were kept by what they are: one study, a row a design."""
     about = {name: (unit, role) for name, unit, role in file.execute("SELECT name, unit, role FROM columns")}
     kinds = {name: kind for _, name, kind, *_ in file.execute("PRAGMA table_info(designs)") if name in about}
@@ -368,7 +368,7 @@ def _older_table(path: Path, file: sqlite3.Connection) -> Table:
     varied, responses = (tuple(name for name in kinds if about[name][1] == role) for role in ("varied", "response"))
     units = {name: unit for name, (unit, _) in about.items()}
     named = tuple(name for name, kind in kinds.items() if kind == "TEXT")
-    return Table(varied, responses, units, named, record["sample"] != "None", rows)
+    return StoredTable(varied, responses, units, named, record["sample"] != "None", rows)
 
 
 def export_path(path: str | Path) -> Path:

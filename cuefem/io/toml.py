@@ -15,7 +15,7 @@ from typing import Annotated, Any
 from cuefem.cue import Cue, LumpedCue, Material
 from cuefem.effects import Effect, effect_kinds
 from cuefem.io.errors import InputError, nearest, read_bytes, shown
-from cuefem.io.schema import build, joined, keys_of, table, unknown_key
+from cuefem.io.schema import build, joined, keys_of, unknown_key
 from cuefem.materials import material
 from cuefem.quantity import MOST_SEGMENTS, Quantity, check_fields, quantities
 from cuefem.scene import Scene
@@ -238,43 +238,3 @@ def _spelt_out(kind: type[Effect], found: dict[str, Any], path: Path, key: str) 
         rest = {name: value for name, value in found.items() if name != word}
         found = rest | {name: marks[name].written(value) for name, value in names[given].items()}
     return found
-
-
-def toml_text(thing: Cue | Scene | SideStrike) -> str:
-    """A cue or scene as TOML that `load_toml` reads back exactly."""
-    import tomlkit  # loaded when used, as for all that writes
-
-    document = tomlkit.document()
-    for name, value in table(thing).items():
-        document.add(name, _item(value))
-    return re.sub(r"(?<!\n)\n\[", "\n\n[", tomlkit.dumps(document)).rstrip("\n") + "\n"  # a blank line before a table
-
-
-def _item(value: Any) -> Any:
-    """Segments and effects as [[tables]], what lies inside them in one line."""
-    import tomlkit
-
-    if isinstance(value, dict):
-        made = tomlkit.table()
-        for name, inner in value.items():
-            made.add(name, _item(inner))
-        return made
-    if isinstance(value, list) and value and isinstance(value[0], dict):
-        tables = tomlkit.aot()
-        for inner in value:
-            tables.append(_row(inner))
-        return tables
-    return value
-
-
-def _row(found: dict[str, Any]) -> Any:
-    import tomlkit
-
-    made = tomlkit.table()
-    for name, inner in found.items():
-        if isinstance(inner, dict):
-            inline = tomlkit.inline_table()
-            inline.update(inner)
-            inner = inline
-        made.add(name, inner)
-    return made

@@ -310,7 +310,7 @@ def lumped_squirt(end_mass: float, mass: float, ball: Ball, tip: Tip, stroke: St
     return float(impulse(Scene(LumpedCue(mass, end_mass), ball, tip, stroke)).squirt)
 
 
-class Choice(NamedTuple):
+class BallChoice(NamedTuple):
     """A ball to take: its mass, kg; how it would bounce off the free shaft; the error of the end mass that a ratio of
     speeds good to a hundredth leaves."""
 
@@ -319,13 +319,13 @@ class Choice(NamedTuple):
     error: float
 
 
-def choices(end_mass: float = USUAL, restitution: float = 0.8, error: float = 0.01) -> tuple[Choice, ...]:
+def choices(end_mass: float = USUAL, restitution: float = 0.8, error: float = 0.01) -> tuple[BallChoice, ...]:
     """Balls of a quarter to four times the end mass: the best is as heavy as it. error: of both ratios of speeds."""
     made = []
     for factor in (0.25, 0.5, 1.0, 2.0, 4.0):
         m, e = factor * end_mass, restitution
         a = (e * end_mass - m) / (end_mass + m)
-        made.append(Choice(m, a, error * math.hypot((1 + e) / ((1 + a) * (e - a)), 1 / (e - a))))
+        made.append(BallChoice(m, a, error * math.hypot((1 + e) / ((1 + a) * (e - a)), 1 / (e - a))))
     return tuple(made)
 
 

@@ -36,7 +36,7 @@ class Curve(NamedTuple):
     style: str
 
 
-class Span(NamedTuple):
+class Shade(NamedTuple):
     """A part of the x axis that is shaded, from ``start`` to ``end`` in its units; style: its class on the page."""
 
     start: float
@@ -134,7 +134,7 @@ def chart(
     *,
     x: Axis,
     y: Axis,
-    spans: Sequence[Span] = (),
+    spans: Sequence[Shade] = (),
     marks: Sequence[Mark] = (),
     height: float = 260.0,
 ) -> Chart:
@@ -178,6 +178,6 @@ def _within(scale: Scale, values: ArrayLike, *, bottom: float, top: float) -> An
     return np.clip(scale.place(values, bottom, top), 2 * top - 1.5 * bottom, 2 * bottom)
 
 
-def _span(scale: Scale, span: Span, *, left: float, right: float) -> tuple[float, float, str]:
+def _span(scale: Scale, span: Shade, *, left: float, right: float) -> tuple[float, float, str]:
     start, end = (float(scale.place(t, left, right)) for t in (span.start, span.end))
     return start, end - start, span.style

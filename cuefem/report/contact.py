@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from cuefem.report.charts import Axis, Chart, Curve, Mark, Span, chart
+from cuefem.report.charts import Axis, Chart, Curve, Mark, Shade, chart
 from cuefem.results.records import Record
 from cuefem.scene import Outcome
 
@@ -22,7 +22,7 @@ def contact_part(outcome: Outcome) -> Record:
     history = outcome.history(t)
     ms = 1e3 * t
     slipping = [phase for phase in outcome.phases if phase.grip.startswith("slip")]
-    spans = [Span(1e3 * phase.start, 1e3 * phase.end, "slip") for phase in slipping]
+    spans = [Shade(1e3 * phase.start, 1e3 * phase.end, "slip") for phase in slipping]
     marks = [Mark(1e3 * at, str(i + 1)) for i, (at, _) in enumerate(events)]
 
     def drawn(title: str, label: str, curves: list[Curve]) -> Chart:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from io import BytesIO
 from time import perf_counter
 from typing import Any
 
@@ -11,6 +10,7 @@ import numpy as np
 
 from cuefem.accuracy import FIRST, JUDGED, MOST, RATIO, Rung, ladder, relative_error
 from cuefem.contact.strike import strike
+from cuefem.report.figures import figure_content
 from cuefem.results.quantities import NONE, TRADE, significant
 from cuefem.results.records import Entry, Record, Sheet, sheet
 from cuefem.scene import Scene
@@ -131,13 +131,8 @@ def _milliseconds(value: float | None) -> str:
 
 def cost_figure(record: Record, title: str, kind: str) -> bytes:
     """Error against seconds and against unknowns, both axes logarithmic, as a file's content; kind: "png", "svg"."""
-    import matplotlib
 
-    matplotlib.use("agg")
-    import matplotlib.pyplot as plt
-
-    with plt.rc_context({"svg.hashsalt": "cuefem", "axes.grid": True, "grid.alpha": 0.3, "font.size": 10}):
-        canvas, panels = plt.subplots(1, 2, figsize=(9, 4.2), layout="constrained", sharey=True)
+    def draw(canvas: Any, panels: Any) -> None:
         for axes, name in zip(panels, ("seconds", "unknowns"), strict=True):
             _draw(axes, record["rungs"], name)
         panels[0].set(xlabel="seconds (tail: the whole climb)", ylabel="largest relative error")
@@ -148,10 +143,8 @@ def cost_figure(record: Record, title: str, kind: str) -> bytes:
         panels[1].set_xticks(ticks, [str(tick) for tick in ticks])
         panels[1].minorticks_off()
         canvas.suptitle(title)
-        content = BytesIO()
-        canvas.savefig(content, format=kind, dpi=150, metadata={"Date": None} if kind == "svg" else None)
-        plt.close(canvas)
-    return content.getvalue()
+
+    return figure_content(kind, draw, ncols=2, figsize=(9, 4.2), sharey=True)
 
 
 def _draw(axes: Any, rungs: Sequence[Record], name: str) -> None:

@@ -20,9 +20,10 @@ from cuefem.report.words import effect_words, plain_cue_line
 from cuefem.results.quantities import NONE, with_unit
 from cuefem.results.records import Entry, Record, Sheet, sheet
 
-OFFSETS = tuple(round(0.05 * i, 2) for i in range(1, 11))  # b/R of the computed curve
+COMPARED_OFFSETS = tuple(round(0.05 * i, 2) for i in range(1, 11))  # b/R of the computed curve
 EDGE = 5.0  # residuals beyond this are drawn at the edge
 FAR = 3.0  # residuals that deserve a word
+UNITS = {"residual": "", "pull": "", "zero": "m", "squirt_error": "rad"}
 DOUBTED = 0.2  # chance of a measurement to be wrong that deserves one
 
 
@@ -45,6 +46,7 @@ def compare_record(cue: DocumentedCue, rows: Sequence[Row], zeros: Sequence[Zero
         "zeros": [{"what": zero.measurement.label, "zero": zero.zero, "error": zero.error} for zero in zeros],
         "open": [unknown.words for unknown in cue.unknowns],
         "lacking": cue.lacking,
+        "units": UNITS,
     }
 
 
@@ -102,7 +104,7 @@ def zero_lines(record: Record) -> list[str]:
     return [f"The strokes hit {told} to the {side} of their aim; the mean of left and right is free of it"]
 
 
-class Bar(NamedTuple):
+class ResidualBar(NamedTuple):
     """A residual on the page: its words, its places for both errors together and for the measurement's alone."""
 
     what: str
@@ -122,7 +124,7 @@ def compare_page(cue: DocumentedCue, rows: Sequence[Row], record: Record, notes:
         return float(across.place(min(max(value, -EDGE), EDGE), left, right))
 
     bars = [
-        Bar(row.measurement.label, place(row.pull), place(row.residual), _signed(row.pull), _style(row.pull))
+        ResidualBar(row.measurement.label, place(row.pull), place(row.residual), _signed(row.pull), _style(row.pull))
         for row in rows
     ]
     drawings = [cue_drawing(scene, across=1.0), cue_drawing(scene, across=8.0), front_drawing(scene)]
@@ -183,8 +185,8 @@ def _squirt_charts(cue: DocumentedCue, rows: Sequence[Row]) -> list[Chart]:
     setup = cue.setup()
     x = np.array([one.offset for _, one in found])
     y, error = (np.degrees([getattr(row, name) for row, _ in found]) for name in ("measured", "error"))
-    top = max([*OFFSETS[:1], *(each for each in OFFSETS if each <= x.max() + 0.05)])
-    offsets = [each for each in OFFSETS if each <= top]
+    top = max([*COMPARED_OFFSETS[:1], *(each for each in COMPARED_OFFSETS if each <= x.max() + 0.05)])
+    offsets = [each for each in COMPARED_OFFSETS if each <= top]
     curve = np.degrees([setup.numbers.squirt(each) for each in offsets])
     speed = f"{float(cue.scene.stroke.speed):.3g} m/s"
     curves = [
@@ -240,6 +242,7 @@ def estimate_record(found: Estimate, worths: Sequence[Worth], squirt: tuple[floa
         "squirt_error": squirt[1],
         "offset": offset,
         "next": [worth_record(worth) for worth in worths],
+        "units": UNITS,
     }
 
 

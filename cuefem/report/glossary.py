@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from functools import cache
 from html import escape
+from importlib.resources import files
 from typing import NamedTuple
 
 SKIPPED = ("head", "style", "script", "svg", "button", "h1", "h2", "h3", "summary", "a", "code", "label")
@@ -29,8 +30,6 @@ class Entry(NamedTuple):
 @cache
 def entries() -> tuple[Entry, ...]:
     """The handbook's glossary."""
-    from importlib.resources import files
-
     text = files("cuefem").joinpath("handbook/glossary.md").read_text(encoding="utf-8")
     _, *rows = (line.strip("| ").split(" | ") for line in text.splitlines() if line.startswith("| "))
     return tuple(Entry(tuple(words.split(", ")), meaning) for words, meaning in rows)

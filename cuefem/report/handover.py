@@ -17,14 +17,13 @@ from cuefem.beam.tip import TipModes
 from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.endmass.drives import DEFINITIONS
-from cuefem.results.designs import strikes_at
+from cuefem.results.designs import OFFSETS, strikes_at
 from cuefem.results.quantities import NONE, RESULTS, degrees, grams, units_of, with_unit, written
 from cuefem.results.records import Record, Sheet
 from cuefem.scene import Scene
 from cuefem.squirt import alciatore_a31, alciatore_a31_mass_ratio
 from cuefem.tip_modes import Solved
 
-OFFSETS = (0.1, 0.2, 0.3, 0.4, 0.5)
 FASTER = (0.5, 1.0, 2.0)  # times the stroke's speed: at which the end mass is given too
 SAME = 1e-6  # relative: end masses that are one
 WHOLE_CUE = 1.4732  # m, 58 in: pool cues, and pooltool's own

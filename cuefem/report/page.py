@@ -18,7 +18,7 @@ from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.endmass.drives import DEFINITIONS
 from cuefem.quantity import scalar
-from cuefem.report.charts import Axis, Chart, Span
+from cuefem.report.charts import Axis, Chart, Shade
 from cuefem.report.contact import contact_part
 from cuefem.report.drawings import (
     cue_drawing,
@@ -47,7 +47,7 @@ from cuefem.scene import Outcome, Scene
 from cuefem.tip_modes import LEAST_STUCK, Solved
 
 DEFAULT_RTOL = 1e-2
-OFFSETS = tuple(round(0.03 * i, 2) for i in range(1, 21))  # b/R of the curves
+PAGE_OFFSETS = tuple(round(0.03 * i, 2) for i in range(1, 21))  # b/R of the curves
 MEASURED_END_MASS = (5.8e-3, 14e-3)  # kg, of real cues; handbook: Effective end mass
 # Where the numbers come from that the page shows beside the cue's own.
 SOURCES = (
@@ -138,7 +138,7 @@ def _stages(scene: Scene, rtol: float) -> list[Stage]:
         *([Stage("steps", climbed)] if scene.lumped is None else []),
         Stage("outcome", outcome),
         Stage("end_masses", lambda: end_mass_record(scene, solved=solved())),
-        Stage("squirt", lambda: squirt_record(scene, OFFSETS, solved=solved())),
+        Stage("squirt", lambda: squirt_record(scene, PAGE_OFFSETS, solved=solved())),
         Stage("strike", lambda: strike_record(scene, outcome(), solved=solved())),
         Stage("numbers", lambda: listed(OneDesign(solved(), outcome()))),
     ]
@@ -252,12 +252,12 @@ def _by_offset(record: Record, scene: Scene) -> tuple[Chart, Chart]:
     return offset_charts(lines, record["offsets"], own, height=300, spans=_slipped(record))
 
 
-def _slipped(record: Record) -> list[Span]:
+def _slipped(record: Record) -> list[Shade]:
     """Where the coupled stroke sticks late, lets go or miscues: halfway to the offsets before and after."""
     offsets, grips = np.array(record["offsets"]), record["models"]["coupled, this cue"]["grip"]
     ends = np.r_[offsets[0], (offsets[1:] + offsets[:-1]) / 2, offsets[-1]]
     spans = [(float(ends[i]), float(ends[i + 1])) for i, grip in enumerate(grips) if grip in LATE]
-    return [Span(start, end, "slip") for start, end in spans]
+    return [Shade(start, end, "slip") for start, end in spans]
 
 
 class MassRow(NamedTuple):

@@ -10,7 +10,7 @@ import numpy as np
 from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.cue import LumpedCue
 from cuefem.endmass.lumped import impulse
-from cuefem.report.charts import Axis, Chart, Curve, Mark, Span, chart
+from cuefem.report.charts import Axis, Chart, Curve, Mark, Shade, chart
 from cuefem.report.models import (
     ALCIATORE,
     PAPER,
@@ -24,13 +24,11 @@ from cuefem.report.models import (
 )
 from cuefem.report.strike import PIVOT
 from cuefem.report.words import assumptions
-from cuefem.results.designs import at_offset, strikes_at
+from cuefem.results.designs import OFFSETS, at_offset, strikes_at
 from cuefem.results.quantities import NONE, RESULTS, TRADE, Units, grams, pivot_length, written
 from cuefem.results.records import Record, Sheet
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved
-
-OFFSETS = (0.1, 0.2, 0.3, 0.4, 0.5)
 
 PAPER_CUE_END_MASS = 0.012  # kg, [Kim]'s m_c of a real cue; the tip feels a quarter of it
 
@@ -126,7 +124,7 @@ def offset_charts(
     own: float,
     *,
     height: float,
-    spans: Sequence[Span] = (),
+    spans: Sequence[Shade] = (),
     units: Units = TRADE,
 ) -> tuple[Chart, Chart]:
     """Charts of squirt and of pivot length against the offset.

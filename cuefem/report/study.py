@@ -28,7 +28,7 @@ TREND = "rises, falls: how the result goes as the column grows; parts that only 
 
 
 @dataclass(frozen=True)
-class Table:
+class StudyTable:
     """Designs that have an answer, as columns.
 
     values: what varied, numbers or names. results: (designs, responses).
@@ -99,7 +99,7 @@ class Table:
         return rows
 
 
-def table_of_study(study: Study, rows: Iterable[tuple[int, Sequence[Any], Sequence[Any]]]) -> Table | None:
+def table_of_study(study: Study, rows: Iterable[tuple[int, Sequence[Any], Sequence[Any]]]) -> StudyTable | None:
     """The designs that have all answers; None if there are fewer than two. rows: number, what varied, responses."""
     good = [row for row in rows if None not in row[2] and not any(value != value for value in row[2])]
     if len(good) < 2:
@@ -107,7 +107,7 @@ def table_of_study(study: Study, rows: Iterable[tuple[int, Sequence[Any], Sequen
     columns = tuple(np.array(column) for column in zip(*(row[1] for row in good), strict=True))
     results = np.array([row[2] for row in good], float)
     numbers = np.array([row[0] for row in good])
-    return Table(
+    return StudyTable(
         study.columns[: len(study.vary)], study.units[: len(study.vary)], study.responses, numbers, columns, results
     )
 
@@ -172,7 +172,7 @@ def shown(value: Any, unit: str) -> str:
     return significant(TRADE.get(unit, (1.0, unit))[0] * float(value))
 
 
-def study_record(table: Table) -> dict[str, Any]:
+def study_record(table: StudyTable) -> dict[str, Any]:
     """The summary for programs, SI."""
 
     def design(i: int) -> dict[str, Any]:
@@ -199,7 +199,7 @@ def study_record(table: Table) -> dict[str, Any]:
     return record
 
 
-def best_sheet(table: Table) -> Sheet:
+def best_sheet(table: StudyTable) -> Sheet:
     """The best design for each response."""
     head = ("best for", "value", "all designs", "design", *map(with_heading, table.labels, table.units))
     rows = []
@@ -212,7 +212,7 @@ def best_sheet(table: Table) -> Sheet:
     return Sheet("Best designs", head, tuple(rows))
 
 
-def drive_sheet(table: Table) -> Sheet:
+def drive_sheet(table: StudyTable) -> Sheet:
     """Which part of each response's spread goes with each column."""
     rows = [
         (
@@ -224,7 +224,7 @@ def drive_sheet(table: Table) -> Sheet:
     return Sheet(DRIVES, ("result", *table.labels), tuple(rows), (TREND,))
 
 
-def front_sheet(table: Table, most: int) -> Sheet:
+def front_sheet(table: StudyTable, most: int) -> Sheet:
     """Designs along the front, evenly picked."""
     assert table.pair is not None
     picked = np.unique(np.linspace(0, len(table.front) - 1, min(most, len(table.front))).round().astype(int))
@@ -237,7 +237,7 @@ def front_sheet(table: Table, most: int) -> Sheet:
     return Sheet(f"Trade-off, {front_words(table)}", ("design", *names), tuple(rows))
 
 
-def front_words(table: Table) -> str:
+def front_words(table: StudyTable) -> str:
     """What the front is."""
     assert table.pair is not None
     one, other = (table.responses[k] for k in table.pair)
@@ -247,7 +247,7 @@ def front_words(table: Table) -> str:
     return f"{one.label} against {other.label}: {count} designs, of which none is beaten in both"
 
 
-def study_sheets(table: Table) -> list[Sheet | str]:
+def study_sheets(table: StudyTable) -> list[Sheet | str]:
     """The summary for people."""
     front = [] if table.pair is None else [front_sheet(table, SHOWN)]
     return [best_sheet(table), "", drive_sheet(table), *front]

@@ -14,7 +14,7 @@ from cuefem.report.glossary import with_words
 from cuefem.report.study import (
     DRIVES,
     TREND,
-    Table,
+    StudyTable,
     best_sheet,
     drive_sheet,
     front_sheet,
@@ -66,7 +66,7 @@ class Scattered(NamedTuple):
     drives: Sheet
 
 
-def study_page(name: str, table: Table, facts: list[str], *, scattered: Scattered | None = None) -> str:
+def study_page(name: str, table: StudyTable, facts: list[str], *, scattered: Scattered | None = None) -> str:
     """The page. facts: lines below its title. scattered: of a study that scatters, not one to choose a design from."""
     template = environment().get_template("study.html.j2")
     fronts = None
@@ -121,7 +121,7 @@ def _scaled(values: Array, low: float, high: float) -> Array:
     return low + (values - values.min()) / span * (high - low) if span > 0 else np.full(len(values), (low + high) / 2)
 
 
-def _parallel(table: Table) -> tuple[list[tuple[str, int]], list[Coordinate], float]:
+def _parallel(table: StudyTable) -> tuple[list[tuple[str, int]], list[Coordinate], float]:
     """Lines of designs over what varied and the responses, best drawn last, with their shade; the axes; the width."""
     columns = [*table.values, *table.results.T]
     headings = [
@@ -151,7 +151,7 @@ def _panel(title: str, x_label: str, x: np.ndarray, y: np.ndarray, units: tuple[
     return Panel(title, x_label, points, _ends(x, units[0]), _ends(y, units[1]))
 
 
-def _panels(table: Table, k: int, *, shares: bool) -> list[Panel]:
+def _panels(table: StudyTable, k: int, *, shares: bool) -> list[Panel]:
     """A response over each of its strongest drivers."""
     response, rows = table.responses[k], _picked(len(table.results), MOST_POINTS)
     strongest = sorted(range(len(table.names)), key=lambda j: -table.shares[j, k])[:MOST_COLUMNS]
@@ -168,7 +168,7 @@ def _panels(table: Table, k: int, *, shares: bool) -> list[Panel]:
     ]
 
 
-def _front_panel(table: Table) -> Panel:
+def _front_panel(table: StudyTable) -> Panel:
     """The pair of responses, all designs as points and the front as a line."""
     assert table.pair is not None
     one, other = (table.responses[k] for k in table.pair)

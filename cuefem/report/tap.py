@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
-from io import BytesIO
 from typing import Any
 
 import numpy as np
@@ -15,12 +14,13 @@ from cuefem.measured.fit import TapFit
 from cuefem.measured.ringing import Ringing
 from cuefem.measured.tones import HIGH, LOW
 from cuefem.measured.wood import Predicted
+from cuefem.report.figures import figure_content
 from cuefem.report.strike import MISCUE
-from cuefem.results.quantities import RESULTS, grams, units_of, written
+from cuefem.results.quantities import RESULTS, grams, written
 from cuefem.results.records import Entry, Record, Sheet, sheet
 from cuefem.scene import Outcome
 
-UNITS = units_of("E", "G", "rho", "end_mass", "squirt", "shaft_mass") | {
+UNITS = {
     **{"frequency": "Hz", "error": "as its number", "decay": "1/s", "clipped": "s", "mains": "Hz", "level": "dB"},
     "covariance": "of ln E, ln G/E, ln rho",
 }
@@ -53,6 +53,7 @@ def tap_record(found: TapFit, heard: Ringing, numbers: Mapping[str, Predicted], 
         "tones": [asdict(m.tone) | {"mode": m.mode, "model_frequency": m.frequency} for m in found.matched],
         "shaft_mass": found.cue.shaft_mass,
         "predicted": {name: asdict(number) for name, number in numbers.items()},
+        "units": UNITS,
         "regime": struck.regime,
         "grip": grip_of(struck),
         "taps": heard.taps,
@@ -140,19 +141,12 @@ def _numbers(record: Record, about: Record) -> Sheet:
 
 def tap_figure(found: TapFit, heard: Ringing, title: str, kind: str) -> bytes:
     """The spectrum with its tones and the fitted shaft's modes, as a file's content; kind: "png", "svg"."""
-    import matplotlib
 
-    matplotlib.use("agg")
-    import matplotlib.pyplot as plt
-
-    with plt.rc_context({"svg.hashsalt": "cuefem", "axes.grid": True, "grid.alpha": 0.3, "font.size": 10}):
-        canvas, axes = plt.subplots(figsize=(9, 4.4), layout="constrained")
+    def draw(_: Any, axes: Any) -> None:
         draw_spectrum(axes, found, heard)
         axes.set_title(title)
-        content = BytesIO()
-        canvas.savefig(content, format=kind, dpi=150, metadata={"Date": None} if kind == "svg" else None)
-        plt.close(canvas)
-    return content.getvalue()
+
+    return figure_content(kind, draw, figsize=(9, 4.4))
 
 
 def draw_spectrum(axes: Any, found: TapFit, heard: Ringing) -> None:

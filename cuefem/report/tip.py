@@ -11,7 +11,7 @@ from cuefem.results.records import Record, Sheet, by_words, sheet
 from cuefem.scene import Scene
 
 SPEEDS = (0.5, 1.0, 2.0, 3.0, 5.0, 8.0)  # m/s
-OFFSETS = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5)  # b/R
+SHEAR_OFFSETS = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5)  # b/R
 CURVE = 41  # points of the force over the depth
 
 
@@ -37,7 +37,8 @@ def tip_record(scene: Scene) -> Record:
         "E": leather.E,
         "blows": [_blow(scene, law, speed, patches, depths) for speed in speeds],
         "shear_ratios": [
-            {"offset": offset, "ratio": _shear_ratio(leather, diameter, patch, slope, offset)} for offset in OFFSETS
+            {"offset": offset, "ratio": _shear_ratio(leather, diameter, patch, slope, offset)}
+            for offset in SHEAR_OFFSETS
         ],
         "patch": 2 * patch,
         "curve": {"depth": along, "force": law.at(along)[0]},

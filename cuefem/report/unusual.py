@@ -19,7 +19,7 @@ LONG, STIFF, LIGHT = (
 )  # m, Pa, kg/m^3: a long piece of a material stiffer than wood, lighter than metal
 
 
-class Usual(NamedTuple):
+class UsualNumbers(NamedTuple):
     """Numbers of a scene (by name, SI), between which two they lie, the unit that shows them, and what else to ask."""
 
     of: Callable[[Scene], Iterable[tuple[str, Any]]]
@@ -67,35 +67,35 @@ def _light_cue(scene: Scene) -> Iterable[tuple[str, float]]:
 
 # Beyond every cue and every table, yet within a factor of ten: what a unit is wrong by.
 USUAL = (
-    Usual(
+    UsualNumbers(
         lambda s: [] if s.known_contact_time is None else [("head-on contact time", s.known_contact_time)],
         *(1e-5, 0.05, 1, "s", "leather's is 0.001 to 0.002 s"),
     ),
-    Usual(
+    UsualNumbers(
         lambda s: [("ball radius", s.ball.radius)], 0.02, 0.04, 1e3, "mm", "26 to 31 is usual: is that the diameter?"
     ),
-    Usual(lambda s: [("ball mass", s.ball.mass)], 0.08, 0.4, 1e3, "g", "140 to 210 is usual"),
-    Usual(lambda s: [("stroke speed", s.stroke.speed)], 0.01, 30.0, 1, "m/s", "0.5 to 12 is usual"),
-    Usual(
+    UsualNumbers(lambda s: [("ball mass", s.ball.mass)], 0.08, 0.4, 1e3, "g", "140 to 210 is usual"),
+    UsualNumbers(lambda s: [("stroke speed", s.stroke.speed)], 0.01, 30.0, 1, "m/s", "0.5 to 12 is usual"),
+    UsualNumbers(
         lambda s: [("dome radius", s.dome_radius)] if s.dome_radius else [],
         *(0.005, 0.02, 1e3, "mm", "9 to 10.6 is usual, a dime's or a nickel's"),
     ),
-    Usual(
+    UsualNumbers(
         lambda s: [("drawn length", s.shaft.length)] if s.cue.segments else [],
         *(0.3, 3.0, 1e3, "mm", "check the unit of the lengths", False),
     ),
-    Usual(_diameters, 0.005, 0.06, 1e3, "mm", "check the unit of the diameters", False),
-    Usual(_thin_tip, 0.0075, 0.06, 1e3, "mm", "8.5 to 14 is usual: is that the radius?", False),
-    Usual(
+    UsualNumbers(_diameters, 0.005, 0.06, 1e3, "mm", "check the unit of the diameters", False),
+    UsualNumbers(_thin_tip, 0.0075, 0.06, 1e3, "mm", "8.5 to 14 is usual: is that the radius?", False),
+    UsualNumbers(
         lambda s: [("drawn mass", s.shaft.shaft_mass)] if s.cue.segments else [],
         *(LEAST_DRAWN, float("inf"), 1e3, "g", "check the sizes and the densities", False),
     ),
-    Usual(
+    UsualNumbers(
         _solid_tubes,
         *(0, 0.0, 1e3, "g", "such shafts are tubes: a bore is drawn in a .toml (`cuefem guide files`)", False),
     ),
-    Usual(lambda s: [("mass of the whole cue", float(s.cue.mass))], 0, 1.0, 1, "kg", "0.4 to 0.7 is usual"),
-    Usual(
+    UsualNumbers(lambda s: [("mass of the whole cue", float(s.cue.mass))], 0, 1.0, 1, "kg", "0.4 to 0.7 is usual"),
+    UsualNumbers(
         _light_cue,
         *(
             LIGHTEST,
@@ -117,7 +117,7 @@ def unusual(scene: Scene, *, blow: bool = True) -> list[str]:
     return [*filter(None, map(lambda usual: _beyond(usual, scene), asked)), *_shape(_segments(scene))]
 
 
-def _beyond(usual: Usual, scene: Scene) -> str:
+def _beyond(usual: UsualNumbers, scene: Scene) -> str:
     """The first number that is out of bounds, in a line."""
     for name, value in usual.of(scene):
         if not usual.least <= value <= usual.most:

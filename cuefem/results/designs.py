@@ -22,6 +22,7 @@ from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import Solved
 
 TONES = 5  # bending modes that are told of one scene
+OFFSETS = (0.1, 0.2, 0.3, 0.4, 0.5)  # b/R at which its squirt is told
 
 
 def at_offset(scene: Scene, offset: Any) -> Scene:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cuefem.beam.mesh import ActsOnCue, Place
+from cuefem.beam.mesh import ActsOnCue, ForcedNode
 from cuefem.beam.tip import TipModes, side_modes
 from cuefem.contact.laws import LEAST_RESTITUTION, TOLERANCE, ContactModel, check_lively, power_law
 from cuefem.contact.outcome import Phase
@@ -156,7 +156,7 @@ class SideSolved:
 
 def acting(scene: SideStrike) -> tuple[ActsOnCue, ...]:
     """What acts on the beam: its effects, and a node where it is struck."""
-    return *scene.cue_effects, Place(scene.position)
+    return *scene.cue_effects, ForcedNode(scene.position)
 
 
 def default_side_resolution(scene: SideStrike) -> Resolution:

@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 import cuefem as cf
-from cuefem.cli.common import print_all
+from cuefem.cli.printing import print_all
 from cuefem.report.words import effect_words
 from cuefem.squirt import alciatore_a31, natural_pivot_length
 from tests.helpers.command_line import call

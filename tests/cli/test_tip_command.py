@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.report.tip import OFFSETS, SPEEDS
+from cuefem.report.tip import SHEAR_OFFSETS, SPEEDS
 from tests.helpers.command_line import call
 from tests.helpers.leather_scenes import LEATHER, SHAFT, leather_scene
 
@@ -31,7 +31,7 @@ def test_numbers(file: Path) -> None:
     assert times == sorted(times, reverse=True)
     assert found["contact_time"] == pytest.approx(times[SPEEDS.index(3.0)], rel=1e-12)
     assert found["tip_mass"] == LEATHER.mass(SHAFT.segments[0].tip_diameter)
-    assert [at["offset"] for at in found["shear_ratios"]] == list(OFFSETS)
+    assert [at["offset"] for at in found["shear_ratios"]] == list(SHEAR_OFFSETS)
     assert all(0.25 < at["ratio"] < 0.5 for at in found["shear_ratios"])
 
 

@@ -10,7 +10,7 @@ import pytest
 from cuefem import Stroke
 from cuefem.contact.propagator import ModalPropagator
 from cuefem.design.evaluation import evaluate
-from cuefem.designer.answers import OFFSETS, answers, coupled_points
+from cuefem.designer.answers import CURVE_OFFSETS, answers, coupled_points
 from tests.helpers.leather_scenes import AT, leather_scene
 
 ASKED = ("squirt(0.3)", "squirt", "ball_speed", "vibration_energy(-0.2)")
@@ -54,7 +54,7 @@ def test_the_curve_of_the_designer_works_it_out_once(made: list[object]) -> None
     found = answers(replace(leather_scene(), stroke=Stroke(2.0, 0.3)))
     assert len(made) == 1
     points = list(coupled_points(found))
-    assert 10 < len(points) <= len(OFFSETS)
+    assert 10 < len(points) <= len(CURVE_OFFSETS)
     assert len(made) == 1
     (again,) = [point for point in points if point.offset == pytest.approx(0.3)] or [points[0]]
     alone = answers(replace(found.scene, stroke=Stroke(2.0, again.offset)))

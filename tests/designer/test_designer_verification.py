@@ -13,7 +13,7 @@ import pytest
 import cuefem as cf
 from cuefem.design.batch import CueBatch
 from cuefem.designer.answers import (
-    OFFSETS,
+    CURVE_OFFSETS,
     Answers,
     answers,
     completed,
@@ -24,7 +24,7 @@ from cuefem.designer.answers import (
     with_end_mass,
 )
 from cuefem.designer.design import Design
-from cuefem.designer.numbers import Column, Row, compared, csv_text, difference, key_markup, rows, table_markup
+from cuefem.designer.numbers import Column, NumberRow, compared, csv_text, difference, key_markup, rows, table_markup
 from cuefem.designer.pictures import limits_of, offset_charts
 from cuefem.designer.start import first_scene
 from cuefem.designer.units import INCHES
@@ -81,9 +81,9 @@ def test_the_curves_are_those_of_the_report(name: str) -> None:
     found = completed(weighed(scene))
     points = list(coupled_points(found))
     known = len(points)
-    record = squirt_record(scene, OFFSETS)["models"]
-    assert [point.offset for point in points] == list(OFFSETS[:known])
-    assert known == len(OFFSETS) or [point.safety for point in points[-3:]] == ["miscue"] * 3
+    record = squirt_record(scene, CURVE_OFFSETS)["models"]
+    assert [point.offset for point in points] == list(CURVE_OFFSETS[:known])
+    assert known == len(CURVE_OFFSETS) or [point.safety for point in points[-3:]] == ["miscue"] * 3
     coupled, curve = record["coupled, this cue"], curve_of(points)
     assert curve.squirt[:known] == pytest.approx(coupled["squirt"][:known], rel=1e-12)
     assert curve.pivot_length[:known] == pytest.approx(coupled["pivot_length"][:known], rel=1e-12)
@@ -164,7 +164,7 @@ def test_a_saved_design_gives_its_numbers_on_the_command_line(tmp_path: Path) ->
     ],
 )
 def test_differences_are_those_of_the_numbers(mine: float | None, pinned: float | None, words: str) -> None:
-    row = Row("end_mass_stick", "end mass", mine, RESULTS["end_mass"])
+    row = NumberRow("end_mass_stick", "end mass", mine, RESULTS["end_mass"])
     assert difference(row, row._replace(value=pinned)) == words
 
 
@@ -231,7 +231,7 @@ def test_limits_are_shaded_and_said() -> None:
     spans, said = limits_of(list(coupled_points(found)))
     assert "slips off the ball (a miscue) from b/R" in said
     assert spans[-1].style == "miss"
-    assert spans[-1].end == OFFSETS[-1]
+    assert spans[-1].end == CURVE_OFFSETS[-1]
     start = min(span.start for span in spans)
     safe = answers(replace(found.scene, stroke=replace(found.scene.stroke, offset=start - 0.03)))
     assert (safe.safety, "miscue" in key_markup(safe, None)) == ("safe", False)

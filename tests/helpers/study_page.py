@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from cuefem.design import Response
-from cuefem.report.study import Table
+from cuefem.report.study import StudyTable
 from cuefem.report.study_page import study_page
 
 
@@ -17,4 +17,4 @@ def study_of_ten_columns() -> str:
     results = np.stack([time - 0.1 * bore, -bore, bore, -bore, -bore, bore, bore], axis=1)
     names, units = ("bore", "bore depth", "tip.contact_time"), ("m", "m", "s")
     values = (1e-3 * bore, 1e-3 * deep, 1e-3 * time)
-    return study_page("bore", Table(names, units, responses, np.arange(12), values, results), ["12 designs"])
+    return study_page("bore", StudyTable(names, units, responses, np.arange(12), values, results), ["12 designs"])

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 import cuefem as cf
-from cuefem.report.page import OFFSETS, page
+from cuefem.report.page import PAGE_OFFSETS, page
 from cuefem.report.squirt import squirt_record
 from tests.helpers.designer_browser import BROWSER, launched
 from tests.helpers.study_page import study_of_ten_columns
@@ -52,7 +52,7 @@ def opened(browser: Any, file: Path) -> Iterator[Any]:
 
 def test_values_are_read_off_a_chart(opened: Any) -> None:
     chart = opened.locator("svg.read").nth(2)
-    known = squirt_record(SCENE, OFFSETS)["models"]
+    known = squirt_record(SCENE, PAGE_OFFSETS)["models"]
     chart.focus()
     for _ in range(2):
         opened.keyboard.press("Home")
@@ -61,7 +61,7 @@ def test_values_are_read_off_a_chart(opened: Any) -> None:
         at, *values = opened.locator("p.spoken").inner_text().split("; ")
         assert at == "offset b/R: 0.300"
         read = {name: float(value) for name, value in (line.rsplit(" ", 1) for line in values)}
-        i = OFFSETS.index(0.3)
+        i = PAGE_OFFSETS.index(0.3)
         assert read == {name: pytest.approx(math.degrees(one["squirt"][i]), abs=0.01) for name, one in known.items()}
         opened.keyboard.press("Escape")
         assert opened.locator("div.reading").count() == 0

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from cuefem.design import Response
-from cuefem.report.study import Table, column_label
+from cuefem.report.study import StudyTable, column_label
 from cuefem.results.asking import asked
 from tests.helpers.command_line import call
 from tests.helpers.sweeps import SCENE, STUDY
@@ -19,9 +19,9 @@ from tests.helpers.sweeps import SCENE, STUDY
 PAIR = (Response.of("end_mass"), Response.of("tip_stiffness"))
 
 
-def table(columns: dict[str, np.ndarray], results: np.ndarray, responses: tuple[Response, ...] = PAIR) -> Table:
+def table(columns: dict[str, np.ndarray], results: np.ndarray, responses: tuple[Response, ...] = PAIR) -> StudyTable:
     units = ("",) * len(columns)
-    return Table(tuple(columns), units, responses, np.arange(len(results)), tuple(columns.values()), results)
+    return StudyTable(tuple(columns), units, responses, np.arange(len(results)), tuple(columns.values()), results)
 
 
 def test_shares_of_a_grid_are_those_of_its_formula() -> None:

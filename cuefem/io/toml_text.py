@@ -1,0 +1,47 @@
+"""A cue or scene as the text of a TOML file; loaded when one is written, for reading takes another library."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import tomlkit
+
+from cuefem.cue import Cue
+from cuefem.io.schema import table
+from cuefem.scene import Scene
+from cuefem.side.scene import SideStrike
+
+
+def toml_text(thing: Cue | Scene | SideStrike) -> str:
+    """A cue or scene as TOML that `load_toml` reads back exactly."""
+    document = tomlkit.document()
+    for name, value in table(thing).items():
+        document.add(name, _item(value))
+    return re.sub(r"(?<!\n)\n\[", "\n\n[", tomlkit.dumps(document)).rstrip("\n") + "\n"  # a blank line before a table
+
+
+def _item(value: Any) -> Any:
+    """Segments and effects as [[tables]], what lies inside them in one line."""
+    if isinstance(value, dict):
+        made = tomlkit.table()
+        for name, inner in value.items():
+            made.add(name, _item(inner))
+        return made
+    if isinstance(value, list) and value and isinstance(value[0], dict):
+        tables = tomlkit.aot()
+        for inner in value:
+            tables.append(_row(inner))
+        return tables
+    return value
+
+
+def _row(found: dict[str, Any]) -> Any:
+    made = tomlkit.table()
+    for name, inner in found.items():
+        if isinstance(inner, dict):
+            inline = tomlkit.inline_table()
+            inline.update(inner)
+            inner = inline
+        made.add(name, inner)
+    return made
