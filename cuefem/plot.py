@@ -13,7 +13,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -21,12 +20,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cuefem.beam.modes import modes as solved_modes
-from cuefem.contact.outcome import MISSED, grip_of
+from cuefem.contact.outcome import MISSED
 from cuefem.contact.strike import strike
 from cuefem.cue import Cue, Material
 from cuefem.design.sensitivity import sensitivity
 from cuefem.quantity import check_count, check_kind
-from cuefem.results.designs import strikes_at
+from cuefem.results.designs import coupled_curve, course
+from cuefem.results.quantities import scaled, with_heading, with_unit
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import Solved
 
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 __all__ = ["end_mass", "forces", "modes", "shaft", "squirt"]
 
 PLOT_OFFSETS = tuple(np.round(np.arange(0.0, 0.525, 0.025), 3).tolist())
+FROM_TIP, TIME = with_heading("from the tip", "m"), with_heading("time", "s")
 _SOFT, _WOODY, _METAL = 1e9, (300.0, 1250.0), 2500.0  # Pa: leather and foam; kg/m3: woods, metals
 _LOCAL = 5e-4  # m: where end mass lives is drawn from behind the leather, and beyond this
 
@@ -82,14 +83,14 @@ def shaft(cue: Cue | Scene, ax: Axes | None = None) -> Axes:
     """
     drawn, axes = _cue_of(cue), _axes(ax)
     for segment, x in zip(drawn.segments, drawn.nodes, strict=False):
-        ends = np.array([x, x + segment.length]) * 1e3
-        outer = np.array([segment.tip_diameter, segment.butt_diameter]) * 5e2
-        bore = np.array([segment.tip_bore, segment.butt_bore]) * 5e2
+        ends = scaled([x, x + segment.length], "m")
+        outer = scaled([segment.tip_diameter / 2, segment.butt_diameter / 2], "m")
+        bore = scaled([segment.tip_bore / 2, segment.butt_bore / 2], "m")
         axes.fill_between(ends, -outer, outer, facecolor=_colour(segment.material), edgecolor="#555", linewidth=0.6)
         if bore.any():
             inside = "white" if segment.core is None else _colour(segment.core)
             axes.fill_between(ends, -bore, bore, facecolor=inside, edgecolor="#555", linewidth=0.4)
-    axes.set(xlabel="from the tip, mm", ylabel="radius, mm", xlim=(0, 1e3 * drawn.length))
+    axes.set(xlabel=FROM_TIP, ylabel=with_heading("radius", "m"), xlim=(0, scaled(drawn.length, "m")))
     return axes
 
 
@@ -117,9 +118,9 @@ def modes(cue: Cue | Scene, count: int = 4, ax: Axes | None = None, *, at: Resol
     found = solved_modes(drawn, count, effects=cue.cue_effects if isinstance(cue, Scene) else (), at=at)
     x = np.linspace(0, drawn.length, 400)
     for frequency, deflection in zip(found.frequencies, found.shape(x)[0], strict=True):
-        axes.plot(1e3 * x, deflection / np.abs(deflection).max(), label=f"{frequency:.0f} Hz")
+        axes.plot(scaled(x, "m"), deflection / np.abs(deflection).max(), label=f"{frequency:.0f} Hz")
     axes.axhline(0, color="#888", linewidth=0.6)
-    axes.set(xlabel="from the tip, mm", ylabel="deflection", xlim=(0, 1e3 * drawn.length))
+    axes.set(xlabel=FROM_TIP, ylabel="deflection", xlim=(0, scaled(drawn.length, "m")))
     axes.legend(ncols=2)
     return axes
 
@@ -155,14 +156,11 @@ def squirt(
     for name, scene in named.items():
         check_kind(f"scenes[{name!r}]" if name else "scenes", scene, Scene)
         tip = Solved(scene, at).tip
-        angles, missed = [], None
-        for offset, outcome in zip(offsets, strikes_at(scene, offsets, tip), strict=True):
-            lost = grip_of(outcome) in MISSED
-            missed = offset if lost and missed is None else missed
-            angles.append(math.nan if lost else math.degrees(outcome.squirt))
-        (line,) = axes.plot(offsets, angles, label=name or None)
-        if missed is not None:
-            axes.plot([missed], [0], "x", color=line.get_color(), clip_on=False)
+        curve = coupled_curve(scene, offsets, tip)
+        lost = np.isin(curve["grip"], MISSED)
+        (line,) = axes.plot(offsets, np.where(lost, np.nan, scaled(curve["squirt"], "rad")), label=name or None)
+        if lost.any():
+            axes.plot(np.asarray(offsets)[lost][:1], [0], "x", color=line.get_color(), clip_on=False)
     axes.set(xlabel="offset b/R", ylabel="squirt, degrees")
     if any(named):
         axes.legend()
@@ -196,11 +194,10 @@ def forces(stroke: Scene | Outcome, ax: Axes | None = None, *, at: Resolution | 
     if outcome.history is None:
         raise ValueError("forces needs an outcome of strike; got one without a course in time")
     axes, times = _axes(ax), np.linspace(0, outcome.duration, 400)
-    found = outcome.history(times)
-    for name, label in (("force_n", "along the normal"), ("force_t", "along the tangent")):
-        axes.plot(1e3 * times, found[name], label=label)
+    for label, force in course(outcome, "force", times).items():
+        axes.plot(scaled(times, "s"), force, label=label)
     axes.axhline(0, color="#888", linewidth=0.6)
-    axes.set(xlabel="time, ms", ylabel="force on the ball, N", xlim=(0, 1e3 * outcome.duration))
+    axes.set(xlabel=TIME, ylabel=with_heading("force on the ball", "N"), xlim=(0, scaled(outcome.duration, "s")))
     axes.legend()
     return axes
 
@@ -236,11 +233,13 @@ def end_mass(scene: Scene, ax: Axes | None = None, *, at: Resolution | None = No
     bare, left_out = scene, ""
     if scene.effects:
         bare = replace(scene.bare, effects=())
-        left_out = f", without the {1e3 * (scene.axial_mass - bare.axial_mass):.2g} g of its leather"
+        left_out = f", without the {with_unit(scene.axial_mass - bare.axial_mass, 'kg', 2)} of its leather"
     found, axes = sensitivity(bare, at=at), _axes(ax)
     behind = found.x > scene.shaft.leather + _LOCAL
-    axes.plot(1e3 * found.x[behind], (found.rhoA + found.axial_mass)[behind])
+    axes.plot(scaled(found.x[behind], "m"), (found.rhoA + found.axial_mass)[behind])
     axes.axhline(0, color="#888", linewidth=0.6)
-    axes.set(xlabel="from the tip, mm", ylabel="end mass a gram adds, g", xlim=(0, 1e3 * scene.shaft.length))
-    axes.set_title(f"end mass {1e3 * found.end_mass:.3g} g{left_out}", fontsize="medium")
+    axes.set(
+        xlabel=FROM_TIP, ylabel=with_heading("end mass a gram adds", "kg"), xlim=(0, scaled(scene.shaft.length, "m"))
+    )
+    axes.set_title(f"end mass {with_unit(found.end_mass, 'kg', 3)}{left_out}", fontsize="medium")
     return axes

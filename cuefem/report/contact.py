@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 
 from cuefem.report.charts import Axis, Chart, Curve, Mark, Shade, chart
+from cuefem.results.designs import course
+from cuefem.results.quantities import scaled, with_heading
 from cuefem.results.records import Record
 from cuefem.scene import Outcome
 
@@ -19,35 +21,22 @@ def contact_part(outcome: Outcome) -> Record:
     """Charts over time, the numbered moments on them in words, and whether the tip slips."""
     events = list(_events(outcome))
     t = np.linspace(0, outcome.duration, 401)
-    history = outcome.history(t)
-    ms = 1e3 * t
-    slipping = [phase for phase in outcome.phases if phase.grip.startswith("slip")]
-    spans = [Shade(1e3 * phase.start, 1e3 * phase.end, "slip") for phase in slipping]
-    marks = [Mark(1e3 * at, str(i + 1)) for i, (at, _) in enumerate(events)]
+    ends = [scaled([phase.start, phase.end], "s").tolist() for phase in outcome.phases if phase.grip.startswith("slip")]
+    spans = [Shade(start, end, "slip") for start, end in ends]
+    marks = [Mark(float(scaled(at, "s")), str(i + 1)) for i, (at, _) in enumerate(events)]
+    time = Axis(with_heading("time", "s"), 0.0, float(scaled(outcome.duration, "s")))
 
-    def drawn(title: str, label: str, curves: list[Curve]) -> Chart:
-        return chart(title, curves, x=Axis("time, ms", 0.0, float(ms[-1])), y=Axis(label), spans=spans, marks=marks)
+    def drawn(title: str, name: str, unit: str) -> Chart:
+        lines = zip(course(outcome, name, t).items(), ("c1", "c2"), strict=True)
+        curves = [Curve(label, scaled(t, "s"), values, style) for (label, values), style in lines]
+        return chart(title, curves, x=time, y=Axis(with_heading(name, unit)), spans=spans, marks=marks)
 
     return {
         "charts": [
-            drawn(
-                "Force of the tip on the ball",
-                "force, N",
-                [
-                    Curve("along the normal", ms, history["force_n"], "c1"),
-                    Curve("along the tangent", ms, history["force_t"], "c2"),
-                ],
-            ),
-            drawn(
-                "Velocity of the ball against the tip",
-                "velocity, m/s",
-                [
-                    Curve("along the normal", ms, history["velocity_n"], "c1"),
-                    Curve("along the tangent", ms, history["velocity_t"], "c2"),
-                ],
-            ),
+            drawn("Force of the tip on the ball", "force", "N"),
+            drawn("Velocity of the ball against the tip", "velocity", "m/s"),
         ],
-        "events": [(str(i + 1), f"{1e3 * at:.4f} ms", words) for i, (at, words) in enumerate(events)],
+        "events": [(str(i + 1), f"{scaled(at, 's'):.4f} ms", words) for i, (at, words) in enumerate(events)],
         "slips": bool(spans),
     }
 

@@ -17,7 +17,7 @@ from cuefem.report.drawings import cue_drawing, front_drawing
 from cuefem.report.glossary import with_words
 from cuefem.report.templates import environment
 from cuefem.report.words import effect_words, plain_cue_line
-from cuefem.results.quantities import NONE, with_unit
+from cuefem.results.quantities import NONE, scaled, with_unit
 from cuefem.results.records import Entry, Record, Sheet, sheet
 
 COMPARED_OFFSETS = tuple(round(0.05 * i, 2) for i in range(1, 11))  # b/R of the computed curve
@@ -203,7 +203,7 @@ def _mass_charts(rows: Sequence[Row]) -> list[Chart]:
     for mass in masses:
         own = [row for row in rows if isinstance(row.measurement, AddedMass) and row.measurement.mass == mass]
         own.sort(key=lambda row: row.measurement.position)  # type: ignore[attr-defined]
-        x = np.array([1e3 * row.measurement.position for row in own])  # type: ignore[attr-defined]
+        x = scaled([row.measurement.position for row in own], "m")  # type: ignore[attr-defined]
         y, error, computed = (
             np.array([getattr(row, name) for row in own]) for name in ("measured", "error", "computed")
         )

@@ -9,6 +9,7 @@ drive "A.31", it is right at one offset.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -17,7 +18,7 @@ from cuefem.beam.tip import TipModes
 from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.endmass.drives import DEFINITIONS
-from cuefem.results.designs import OFFSETS, strikes_at
+from cuefem.results.designs import OFFSETS, coupled_curve
 from cuefem.results.quantities import NONE, RESULTS, degrees, grams, units_of, with_unit, written
 from cuefem.results.records import Record, Sheet
 from cuefem.scene import Scene
@@ -140,13 +141,13 @@ def _a31_end_mass(scene: Scene, tip: TipModes) -> float:
 def _worth(scene: Scene, tip: TipModes, end_mass: float | None) -> Record:
     """Squirt against the offset, rad: of the coupled strike, and of pooltool with the number handed over."""
     assert end_mass is not None
-    struck = list(strikes_at(scene, OFFSETS, tip))
+    curve = coupled_curve(scene, OFFSETS, tip)
     theirs = alciatore_a31(np.array(OFFSETS), mass_ratio=scene.ball.mass / end_mass, inertia=POOLTOOL_INERTIA)
     return {
         "offsets": list(OFFSETS),
-        "coupled": [outcome.squirt for outcome in struck],
-        "regimes": [outcome.regime for outcome in struck],
-        "grips": [grip_of(outcome) for outcome in struck],
+        "coupled": curve["squirt"].tolist(),
+        "regimes": curve["regime"],
+        "grips": curve["grip"],
         "pooltool": theirs.tolist(),
     }
 
@@ -154,7 +155,8 @@ def _worth(scene: Scene, tip: TipModes, end_mass: float | None) -> Record:
 def _by_offset(scene: Scene, tip: TipModes, worth: Record) -> Record:
     """The end mass that [A.31] takes at each offset, kg, None in a miscue, at several speeds."""
     speeds = [factor * float(scene.stroke.speed) for factor in FASTER]
-    masses = [_masses(scene, tip, worth) if factor == 1 else _masses_at(scene, tip, factor) for factor in FASTER]
+    own_curve = worth["coupled"], worth["grips"]
+    masses = [_masses(scene, *own_curve) if factor == 1 else _masses_at(scene, tip, factor) for factor in FASTER]
     own = masses[FASTER.index(1.0)]
     apart = [
         abs(other / mass - 1)
@@ -183,17 +185,15 @@ def _by_offset(scene: Scene, tip: TipModes, worth: Record) -> Record:
 def _masses_at(scene: Scene, tip: TipModes, factor: float) -> list[float | None]:
     """As `_masses` at another speed; a tip whose contact time changes with it is solved anew."""
     other = replace(scene, stroke=replace(scene.stroke, speed=factor * scene.stroke.speed))
-    return _masses(other, Solved(other).tip if scene.contact_terms.tip is not None else tip)
+    curve = coupled_curve(other, OFFSETS, Solved(other).tip if scene.contact_terms.tip is not None else tip)
+    return _masses(other, curve["squirt"].tolist(), curve["grip"])
 
 
-def _masses(scene: Scene, tip: TipModes, worth: Record | None = None) -> list[float | None]:
+def _masses(scene: Scene, squirts: Sequence[float], grips: Sequence[str]) -> list[float | None]:
     """The end masses of [A.31] for the squirt of the coupled strike at each of `OFFSETS`."""
-    if worth is None:
-        struck = list(strikes_at(scene, OFFSETS, tip))
-        worth = {"coupled": [one.squirt for one in struck], "grips": [grip_of(one) for one in struck]}
     return [
         None if grip in MISSED or squirt <= 0 else _mass_of(scene, offset, squirt)
-        for offset, squirt, grip in zip(OFFSETS, worth["coupled"], worth["grips"], strict=True)
+        for offset, squirt, grip in zip(OFFSETS, squirts, grips, strict=True)
     ]
 
 

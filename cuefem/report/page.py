@@ -41,7 +41,7 @@ from cuefem.report.trust import off, trust_lines
 from cuefem.report.words import assumptions, effect_words, plain_cue_line
 from cuefem.results.asking import listed
 from cuefem.results.designs import OneDesign
-from cuefem.results.quantities import GRIPS, NONE, RESULTS, degrees, grams, written
+from cuefem.results.quantities import GRIPS, NONE, RESULTS, degrees, grams, scaled, written
 from cuefem.results.records import Record, Sheet, value_rows, values_sheet
 from cuefem.scene import Outcome, Scene
 from cuefem.tip_modes import LEAST_STUCK, Solved
@@ -274,11 +274,11 @@ def _end_masses(record: Record, squirt: Record) -> Record:
     drives = [(name, values) for name, values in record["drives"].items() if values["end_mass"] is not None]
     paper = PAPER_CUE_END_MASS / 4
     largest = max([MEASURED_END_MASS[1], *(values["highest"] for _, values in drives)])
-    across = Axis("m_e, g", 0.0).over([np.array([1e3 * largest])])
+    across = Axis("m_e, g", 0.0).over([scaled(largest, "kg")])
     left, right = 212.0, 372.0
 
     def place(mass: float) -> float:
-        return float(across.place(1e3 * mass, left, right))
+        return float(across.place(scaled(mass, "kg"), left, right))
 
     def row(name: str, felt: float, spread: tuple[float, float]) -> MassRow:
         return MassRow(name, place(felt), place(spread[0]), place(spread[1]), grams(felt))

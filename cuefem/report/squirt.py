@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from cuefem.contact.outcome import MISSED, grip_of
+from cuefem.contact.outcome import MISSED
 from cuefem.cue import LumpedCue
 from cuefem.endmass.lumped import impulse
 from cuefem.report.charts import Axis, Chart, Curve, Mark, Shade, chart
@@ -24,7 +24,7 @@ from cuefem.report.models import (
 )
 from cuefem.report.strike import PIVOT
 from cuefem.report.words import assumptions
-from cuefem.results.designs import OFFSETS, at_offset, strikes_at
+from cuefem.results.designs import OFFSETS, at_offset, coupled_curve
 from cuefem.results.quantities import NONE, RESULTS, TRADE, Units, grams, pivot_length, written
 from cuefem.results.records import Record, Sheet
 from cuefem.scene import Scene
@@ -63,10 +63,7 @@ def squirt_record(scene: Scene, offsets: Sequence[float] = OFFSETS, *, solved: S
     """
     solved = solved or Solved(scene)
     cues, slope = two_part_cues(scene, offsets, solved.tip_stuck), coupling_slope(scene, solved.tip_stuck)
-    struck = list(strikes_at(scene, offsets, solved.tip))
-    coupled = np.array([outcome.squirt for outcome in struck])
-    pivots = pivot_length(at_offset(scene, np.array(offsets)), coupled)
-    found: Record = {"coupled, this cue": {"squirt": coupled, "pivot_length": pivots}}
+    found: Record = {"coupled, this cue": coupled_curve(scene, offsets, solved.tip)}
     if slope:
         lumped = [with_coupling(cue, slope * abs(b)) for cue, b in zip(cues, offsets, strict=True)]
         found["lumped, this cue"] = _curve(scene, offsets, lumped)
@@ -74,8 +71,6 @@ def squirt_record(scene: Scene, offsets: Sequence[float] = OFFSETS, *, solved: S
     found["two-part, this cue"] = _curve(scene, offsets, cues)
     found["two-part, 12 g"] = _curve(scene, offsets, [papers] * len(offsets))
     found["A.31, this cue"] = _curve(scene, offsets, cues, a31_squirt)
-    found["coupled, this cue"]["regime"] = [outcome.regime for outcome in struck]
-    found["coupled, this cue"]["grip"] = [grip_of(outcome) for outcome in struck]
     return {
         "offsets": list(offsets),
         "end_mass": [None if cue is None else cue.end_mass for cue in cues],

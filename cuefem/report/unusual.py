@@ -7,6 +7,7 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 from cuefem.cue import Segment
+from cuefem.results.quantities import scaled
 from cuefem.scene import Scene
 from cuefem.slips import LIGHTEST
 
@@ -131,11 +132,11 @@ def _shape(segments: tuple[Segment, ...]) -> list[str]:
     for i, (one, other) in enumerate(pairwise(segments)):
         ends = one.butt_diameter, other.tip_diameter
         if max(ends) > JUMP * min(ends):
-            sizes = " to ".join(f"{1e3 * end:.4g}" for end in ends)
+            sizes = " to ".join(f"{scaled(end, 'm'):.4g}" for end in ends)
             lines.append(f"the diameter jumps from {sizes} mm between segments[{i}] and segments[{i + 1}]")
     if segments and segments[0].tip_diameter > segments[-1].butt_diameter:
         ends = segments[0].tip_diameter, segments[-1].butt_diameter
-        sizes = " and ".join(f"{1e3 * end:.4g}" for end in ends)
+        sizes = " and ".join(f"{scaled(end, 'm'):.4g}" for end in ends)
         lines.append(f"the tip is thicker than the butt, {sizes} mm; is the profile butt first?")
     for i, segment in enumerate(segments):
         for end, here, there in (

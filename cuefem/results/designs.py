@@ -13,11 +13,13 @@ from cuefem.beam.modes import modes
 from cuefem.beam.system import assemble
 from cuefem.beam.tip import TipModes
 from cuefem.beam.waves import mesh_for
+from cuefem.contact.outcome import grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array
 from cuefem.effects import Support
 from cuefem.endmass.drives import DEFINITIONS, Definition, flexible, small_offset_slope, stick
 from cuefem.endmass.undamped import StickLimit, stick_reason
+from cuefem.results.quantities import pivot_length
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import Solved
 
@@ -36,6 +38,25 @@ def strikes_at(scene: Scene, offsets: Iterable[float], tip: TipModes) -> Iterato
     This is the one place where squirt against the offset comes from.
     """
     return (strike_modes(at_offset(scene, offset), tip) for offset in offsets)
+
+
+def coupled_curve(scene: Scene, offsets: Sequence[float], tip: TipModes) -> dict[str, Any]:
+    """Squirt, natural pivot length, regime and grip of the coupled strike against the offset: every curve of a page."""
+    struck = list(strikes_at(scene, offsets, tip))
+    squirt = np.array([outcome.squirt for outcome in struck])
+    return {
+        "squirt": squirt,
+        "pivot_length": pivot_length(at_offset(scene, np.array(offsets)), squirt),
+        "regime": [outcome.regime for outcome in struck],
+        "grip": [grip_of(outcome) for outcome in struck],
+    }
+
+
+def course(outcome: Outcome, name: str, times: Array) -> dict[str, Array]:
+    """The "force" or the "velocity" between tip and ball at times of a strike, s, by its direction."""
+    assert outcome.history is not None
+    history = outcome.history(times)
+    return {"along the normal": history[f"{name}_n"], "along the tangent": history[f"{name}_t"]}
 
 
 class Stick(NamedTuple):

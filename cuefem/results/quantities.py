@@ -318,6 +318,11 @@ def with_unit(value: float, unit: str, digits: int = 4, *, error: float | None =
     return f"{scale * value:.{decimals}f} ± {scale * error:.{decimals}f}{tail}"
 
 
+def scaled(values: Any, unit: str) -> Array:
+    """Numbers of that SI unit in the unit that people read."""
+    return np.asarray(values) * TRADE.get(unit, (1.0, unit))[0]
+
+
 def with_heading(words: str, unit: str) -> str:
     """The name of a column with the unit that people read it in."""
     name = TRADE.get(unit, (1.0, unit))[1]
