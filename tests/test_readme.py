@@ -151,7 +151,7 @@ def test_drawings_and_scenes_load(tmp_path: Path) -> None:
 def test_commands_exist() -> None:
     named = set(re.findall(r"`cuefem ([a-z][a-z-]*)", TEXT))
     assert named <= set(TABLE)
-    assert {"report", "modes", "end-mass", "strike", "handover", "animate"} <= named
+    assert {"report", "modes", "end-mass", "strike", "animate"} <= named
 
 
 def test_paths_are_there() -> None:

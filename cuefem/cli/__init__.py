@@ -32,7 +32,6 @@ COMMANDS = {
     "end-mass": ("cuefem.cli.cues:end_mass", "The effective end mass, by every definition."),
     "estimate": ("cuefem.cli.measured:estimate", "Wood, bore and tip from everything measured on a cue together."),
     "guide": ("cuefem.cli.guide:guide", "Open the handbook: physics, glossary, and every effect."),
-    "handover": ("cuefem.cli.handover:handover", "The end mass for a simulator: pooltool's CueSpecs."),
     "materials": (
         "cuefem.cli.known_materials:materials",
         "List the materials that a file can name, with their sources.",
@@ -52,6 +51,10 @@ COMMANDS = {
 }
 
 
+# Names of the last version, which answer for this one more, by what they are now.
+FORMER = {"handover": ("strike", "--for", "pooltool")}
+
+
 class _Commands(click.Group):
     """The commands of `COMMANDS`: a command's file is loaded when the command is called, not for a list of them."""
 
@@ -66,6 +69,17 @@ class _Commands(click.Group):
         module, _, attribute = COMMANDS[name][0].partition(":")
         command: click.Command = getattr(import_module(module), attribute)
         return command
+
+    def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
+        """The command that is asked for; a former name is said to be one."""
+        now = FORMER.get(args[0])
+        if now is not None:
+            click.echo(
+                f"cuefem: {args[0]} is now `cuefem {' '.join(now)}`; the old name ends with this version", err=True
+            )
+            program = ["--json"] if "--for" in args and not {"-o", "--output"} & {*args} else []
+            args = [now[0], *args[1:], *now[1:], *program]
+        return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the table."""

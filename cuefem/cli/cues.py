@@ -10,8 +10,9 @@ import click
 from cuefem.accuracy import resolve
 from cuefem.cli.common import file_options, show
 from cuefem.cli.definitions import WithDefinitions
+from cuefem.cli.handover import ONLY, hand_over, simulator_options
 from cuefem.cli.strokes import blow_options, offset_option
-from cuefem.io import load_accuracy
+from cuefem.io import InputError, load_accuracy
 from cuefem.report import (
     end_mass_record,
     end_mass_sheet,
@@ -29,12 +30,19 @@ def end_mass(file: Path, **given: Any) -> None:
     show(file, given, end_mass_record, lambda found, about: [end_mass_sheet(found, about)])
 
 
-@click.command()
+@click.command(cls=WithDefinitions)
 @file_options
 @blow_options
 @offset_option
-def strike(file: Path, **given: Any) -> None:
+@simulator_options
+def strike(file: Path, whom: str | None, drive: Any, length: str | None, output: Path | None, **given: Any) -> None:
     """Compute one stroke: squirt, speed, spin and pivot length; to the rtol of the file's [accuracy], if it has one."""
+    if whom is not None:
+        hand_over(file, given, drive=drive, length=length, output=output)
+        return
+    for option, value in (("--drive", drive), ("--length", length), ("--output", output)):
+        if value is not None:
+            raise InputError(file, option, ONLY)
 
     def results(scene: Scene) -> Any:
         rtol = load_accuracy(file)

@@ -47,6 +47,17 @@ def test_a_made_up_command_is_a_file_and_a_line(monkeypatch: pytest.MonkeyPatch)
     assert [(one.value, one.help) for one in completed] == [(n, COMMANDS[n][1]) for n in ("sweep", "sweet-spot")]
 
 
+def test_a_former_name_answers_with_a_remark() -> None:
+    scene = Path(__file__).parents[2] / "studies/scenes/kim.toml"
+    for given in ([], ["--json"]):
+        now = call("strike", scene, "--for", "pooltool", *given)
+        status, out, err = call("handover", scene, *given)
+        assert (status, out) == (0, now[1])
+        assert err == "cuefem: handover is now `cuefem strike --for pooltool`; the old name ends with this version\n"
+    assert call("handover", scene, "--for", "pooltool")[1] == now[1]
+    assert "handover" not in call("--help")[1]
+
+
 def test_a_list_of_the_commands_loads_none_of_them() -> None:
     program = "import sys; from cuefem.cli import main; main(['--help'], standalone_mode=False); print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)

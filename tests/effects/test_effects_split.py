@@ -154,12 +154,14 @@ def test_a_raised_cue_with_two_domes() -> None:
     assert_alike(outcome_numbers(cf.strike(two, few)), outcome_numbers(cf.strike(one, few)))
 
 
-@pytest.mark.parametrize("command", ["handover", pytest.param("report", marks=pytest.mark.heavy)])
+@pytest.mark.parametrize("command", ["strike", pytest.param("report", marks=pytest.mark.heavy)])
 def test_the_commands_say_the_same_of_split_domes(command: str, tmp_path: Path) -> None:
     told = []
     for effects in (WHOLE, PARTS["dome 4 + 5 mm"]):
         cf.save(scene(effects), tmp_path / "scene.toml")
-        status, out, err = call(command, tmp_path / "scene.toml", "--json")
+        status, out, err = call(
+            command, tmp_path / "scene.toml", *(["--for", "pooltool"] if command == "strike" else []), "--json"
+        )
         assert (status, err) == (0, "")
         told.append(json.loads(out))
         listing = told[-1].get("scene", {})

@@ -56,7 +56,7 @@ def test_every_command_tells_it(made_up: Definition, file: Path) -> None:
         drives = (found if key is None else found[key])["drives"]
         assert drives["rigid"]["end_mass"] == pytest.approx(felt, rel=1e-12)
         assert "rigid, at b/R 0.3" in call(command, file)[1]
-    handed = json.loads(call("handover", file, "--drive", "rigid", "--json")[1])
+    handed = json.loads(call("strike", file, "--for", "pooltool", "--drive", "rigid", "--json")[1])
     assert handed["end_mass"]["meaning"] == MEANING
     assert handed["CueSpecs"]["end_mass"] == pytest.approx(felt, rel=1e-6)
     assert "rigid" in pooltool_record("cue", kim_scene(0.3))["end_mass"]["others"]
@@ -74,7 +74,7 @@ def test_the_table_says_whether_the_tip_counts_in_it(
     assert f"stick, offset, squirt and rigid {counts} velocity and force do not" in told
 
 
-@pytest.mark.parametrize("command", ["end-mass", "handover"])
+@pytest.mark.parametrize("command", ["end-mass", "strike"])
 def test_help_explains_it(made_up: Definition, command: str) -> None:
     told = " ".join(call(command, "--help")[1].split())
     assert MEANING in told

@@ -40,7 +40,7 @@ def pooltool_squirt(mass: float, end_mass: float, a: float) -> float:
 
 
 def as_json(*arguments: object) -> Any:
-    status, out, err = call("handover", *arguments, *(() if "--json" in arguments else ("--json",)))
+    status, out, err = call("strike", *arguments, "--for", "pooltool", *(() if "--json" in arguments else ("--json",)))
     assert (status, err) == (0, "")
     return json.loads(out)
 
@@ -97,7 +97,7 @@ def test_the_json_of_the_command(scene: Path, tmp_path: Path) -> None:
     assert found["end_mass"]["contact_time"] == 1e-3
     assert (found["units"]["end_mass"], found["units"]["length"]) == ("kg", "m")
     assert "alpha(a) = -squirt" in found["signs"]
-    status, out, err = call("handover", scene, "--for", "pooltool", "-o", tmp_path / "cue.json")
+    status, out, err = call("strike", scene, "--for", "pooltool", "-o", tmp_path / "cue.json")
     assert (status, out.splitlines()[0], err) == (0, f"wrote {tmp_path / 'cue.json'}", "")
     assert "the speed drops out" in out
     assert json.loads((tmp_path / "cue.json").read_text(encoding="utf-8")) == found
@@ -107,9 +107,9 @@ def test_the_json_of_the_command(scene: Path, tmp_path: Path) -> None:
 
 def test_people_get_a_table_and_programs_json(scene: Path) -> None:
     found = as_json(scene)
-    for_program = call("handover", scene, "--for", "pooltool")
+    for_program = call("strike", scene, "--for", "pooltool", "--json")
     assert (for_program[0], json.loads(for_program[1]), for_program[2]) == (0, found, "")
-    status, out, err = call("handover", scene)
+    status, out, err = call("strike", scene, "--for", "pooltool")
     assert (status, err) == (0, "")
     assert f"handed over: end mass {1e3 * found['CueSpecs']['end_mass']:.3f} g by A.31, at b/R " in out
     assert "Equivalent end mass for [A.31]" in out

@@ -35,15 +35,19 @@ CALLS: list[tuple[Callable[[], object], str]] = [
 ]
 UNTIL = "scene.toml: --until: needs a unit: \"1.2 ms\"; got '3'"
 COMMANDS = [
-    ("handover scene.toml -o cue.json --offset 0", "scene.toml: end mass 'A.31' does not exist here: [A.31] has no"),
     (
-        "handover scene.toml -o cue.json --offset 0.9",
+        "strike scene.toml --for pooltool -o cue.json --offset 0",
+        "scene.toml: end mass 'A.31' does not exist here: [A.31] has no",
+    ),
+    (
+        "strike scene.toml --for pooltool -o cue.json --offset 0.9",
         "the stroke miscues at offset 0.9; got no end mass",
     ),
-    ("handover scene.toml -o cue.json --offset 1.5", "scene.toml: --offset: must be between -1 and 1"),
-    ("handover scene.toml -o cue.toml", "cue.toml: --output: must end in .json; got '.toml'"),
-    ("handover scene.toml -o none/cue.json", "none/cue.json: cannot be written: "),
-    ("handover scene.toml -o dir.json", "dir.json: cannot be written: "),
+    ("strike scene.toml --for pooltool -o cue.json --offset 1.5", "scene.toml: --offset: must be between -1 and 1"),
+    ("strike scene.toml --for pooltool -o cue.toml", "cue.toml: --output: must end in .json; got '.toml'"),
+    ("strike scene.toml --for pooltool -o none/cue.json", "none/cue.json: cannot be written: "),
+    ("strike scene.toml --for pooltool -o dir.json", "dir.json: cannot be written: "),
+    ("strike scene.toml -o cue.json", "--output: must go with --for pooltool, for which it is; got no --for"),
     ("animate scene.toml -o seen --until 3", UNTIL),
     ("animate scene.toml -o seen --until '-1 ms'", "--until: must be more than 0 ms; got -1 ms"),
     ("animate scene.toml -o seen --scale nan", "--scale: must be finite; got nan"),
@@ -81,7 +85,7 @@ def test_an_animation_of_too_few_or_too_many(folder: Path, options: tuple[str, .
 
 
 def test_a_head_on_stroke_has_its_stick_end_mass(folder: Path) -> None:
-    assert call("handover", "scene.toml", "--offset", "0", "--drive", "stick")[0] == 0
+    assert call("strike", "scene.toml", "--for", "pooltool", "--offset", "0", "--drive", "stick")[0] == 0
 
 
 def test_an_animation_that_stops_half_way(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

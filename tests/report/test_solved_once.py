@@ -66,7 +66,7 @@ def designer(folder: Path) -> None:
         (command("strike"), 2),  # the end mass of the two-part model takes more modes
         (command("end-mass"), 3),  # of a tip that sticks, of one that is pushed or led (a strike's modes), plain sums
         (command("modes"), 1),
-        (command("handover"), 2),
+        (command("strike", "--for", "pooltool"), 2),
         (designer, 3),
     ],
     ids=["report", "page", "strike", "end mass", "modes", "handover", "designer"],
