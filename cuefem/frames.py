@@ -24,6 +24,7 @@ from cuefem.design.batch import CueBatch
 from cuefem.design.scatter import Drivers, Scatter
 from cuefem.io.store import StoredTable, read_table
 from cuefem.quantity import check_kind
+from cuefem.results.quantities import RESULTS
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -170,7 +171,7 @@ def of_batch(batch: CueBatch, **results: ArrayLike) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        A row a cue, SI.
+        A row a cue, SI; ``attrs["units"]``: those of the cues' own columns.
 
     Raises
     ------
@@ -194,4 +195,6 @@ def of_batch(batch: CueBatch, **results: ArrayLike) -> pd.DataFrame:
             raise ValueError(
                 f"{name} must have one number a cue, shape ({len(batch.body_mass)},); got {columns[name].shape}"
             )
-    return pandas.DataFrame(columns)
+    frame = pandas.DataFrame(columns)
+    frame.attrs = {"units": {name: RESULTS[name].unit for name in columns if name not in results}}
+    return frame

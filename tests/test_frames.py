@@ -111,6 +111,10 @@ def test_a_batch() -> None:
     frame = cf.frames.of_batch(batch, end_mass=[0.005, 0.006])
     assert frame["tip_diameter"].tolist() == [0.0115, 0.0135]
     assert frame["mass"].tolist() == batch.mass.tolist()
+    assert frame.attrs["units"] == {
+        **dict.fromkeys(("length", "tip_diameter", "butt_diameter"), "m"),
+        **dict.fromkeys(("shaft_mass", "mass", "body_mass"), "kg"),
+    }
     with pytest.raises(ValueError, match=r"end_mass must have one number a cue, shape \(2,\); got \(3,\)"):
         cf.frames.of_batch(batch, end_mass=[1, 2, 3])
 

@@ -9,7 +9,6 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from cuefem.report.charts import Chart
 from cuefem.report.drawings import CueDrawing, ModesDrawing
-from cuefem.results.records import Sheet
 
 
 @cache
@@ -47,11 +46,6 @@ def cue_markup(found: CueDrawing) -> str:
 def shapes_markup(found: ModesDrawing) -> str:
     """Mode shapes as a drawing."""
     return str(_macros().shapes(found))
-
-
-def sheet_markup(found: Sheet) -> str:
-    """A sheet as a table."""
-    return str(_macros().sheet(found))
 
 
 @cache

@@ -73,11 +73,6 @@ class Result:
         return self.heading or self.words
 
     @property
-    def shown_unit(self) -> str:
-        """The unit that people read it in."""
-        return self.shown_in()[1]
-
-    @property
     def scale(self) -> float:
         """How many of the units that people read one SI unit is."""
         return self.shown_in()[0]
@@ -268,6 +263,7 @@ RESULTS = {
         of=of_drawing(lambda scene: scene.shaft.segments[0].tip_diameter),
         segments=True,
     ),
+    "butt_diameter": Result("diameter of the butt", "m"),
     "wall": Result(
         *("thinnest wall", "m"),
         about="of the segments, at their ends; where solid, the radius",

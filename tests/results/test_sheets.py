@@ -16,7 +16,7 @@ from rich.console import Console
 import cuefem
 from cuefem.report import everything
 from cuefem.report.table import csv_text, json_text, terminal
-from cuefem.report.templates import sheet_markup
+from cuefem.report.templates import environment
 from cuefem.results.quantities import NONE, RESULTS, Result
 from cuefem.results.records import Sheet, by_words, sheet, value_rows
 from tests.helpers.command_line import call
@@ -31,7 +31,8 @@ def cells(made: Sheet) -> dict[str, list[list[str]]]:
     with console.capture() as said:
         console.print(terminal(made))
     lines = [line for line in said.get().splitlines()[1:] if line.strip() and "─" not in line]
-    page = [re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row) for row in re.findall(r"<tr.*?</tr>", sheet_markup(made))]
+    markup = str(environment().get_template("drawings.html.j2").module.sheet(made))  # type: ignore[attr-defined]
+    page = [re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row) for row in re.findall(r"<tr.*?</tr>", markup)]
     return {
         "terminal": [re.split(r"\s{2,}", line.strip()) for line in lines],
         "page": [[unescape(cell) for cell in row] for row in page],
