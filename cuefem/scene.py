@@ -277,7 +277,7 @@ class Scene:
         choice of modes, in reports.
         """
         if self.contact_terms.tip is not None:
-            return (1 + scalar("Tip.restitution", self.tip.restitution)) * self._loading_time
+            return (1 + scalar("Tip.restitution", self.tip.restitution)) * self._pressed[1]
         if self.tip.stiffness is None:
             return DEFAULT_CONTACT_TIME if self.tip.contact_time is None else self.tip.contact_time
         return math.pi / 2 * (1 + self.tip.restitution) * np.sqrt(self.head_on_mass / self.tip.stiffness)
@@ -313,16 +313,22 @@ class Scene:
         return whole.law(scalar("Ball.radius", self.ball.radius), abs(offset), restitution)
 
     @property
-    def _loading_time(self) -> Any:
-        """Time that a head-on blow takes a whole tip to its greatest compression, s."""
+    def deepest(self) -> float:
+        """The greatest compression of a whole tip (`LeatherTip`) by a head-on blow, m; ValueError without one."""
+        return self._pressed[0]
+
+    @property
+    def _pressed(self) -> tuple[float, float]:
+        """Greatest compression, m, of a whole tip by a head-on blow, and the time to it, s."""
         mass, speed = scalar("Ball.mass", self.head_on_mass), scalar("Stroke.speed", self.stroke.speed)
-        return _loading(self.tip_law(), mass, speed)
+        return _pressed(self.tip_law(), mass, speed)
 
 
 @lru_cache(maxsize=256)
-def _loading(law: LeatherLaw, mass: float, speed: float) -> float:
-    """Time to the greatest compression, s: the strokes of a sweep at one speed ask for it again and again."""
-    return float(law.blow(mass, speed)[1])
+def _pressed(law: LeatherLaw, mass: float, speed: float) -> tuple[float, float]:
+    """The blow of a law: the strokes of a sweep at one speed ask for it again and again."""
+    deepest, time = law.blow(mass, speed)
+    return float(deepest), float(time)
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ LONGEST = 200
 LEAST_RESTITUTION, LEAST_OF_LEATHER = 1e-4, 0.1
 # What the last terms of a step may add, as a part of the blow's impulse; rings make forces with many small kinks.
 TOLERANCE, LEATHER_TOLERANCE, RINGED_TOLERANCE = 1e-11, 1e-10, 1e-7
-RINGS = 160  # even in the root of the compression, up to the law's greatest
+RINGS, DEEPER = 120, 1.05  # even in the root of the compression, up to so many times a head-on blow's greatest
 RIGID_PATCH, SPRING_PATCH, LEATHER_PATCH, RINGED_PATCH = range(4)
 # What happens along the surface is computed relative to itself, down to this part of the rest: where the normal does
 # not turn nothing of the rest comes in, so that rounding is relative to itself too.
@@ -159,7 +159,7 @@ def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
         arrays |= {"force_terms": np.array(law.force_terms), "give_terms": np.array(law.give_terms)}
         if patch == RINGED_PATCH:
             numbers |= {"rings": RINGS, "tolerance": RINGED_TOLERANCE}
-            arrays |= _rings(law)
+            arrays |= _rings(law, min(law.most, DEEPER * scene.deepest))
     else:
         law, time = normal_law(scene, common)
         compliance = terms.compliance / scene.stiffness
@@ -217,8 +217,9 @@ def power_law(law: TipLaw) -> dict[str, float]:
     return {"stiffness": float(law.stiffness), "exponent": float(law.exponent)}
 
 
-def _rings(law: LeatherLaw) -> dict[str, Array]:
-    edges = law.most * np.linspace(0.0, 1.0, RINGS + 1) ** 2
+def _rings(law: LeatherLaw, deepest: float) -> dict[str, Array]:
+    """Rings of patches up to that of a compression; the last has what lies beyond."""
+    edges = deepest * np.linspace(0.0, 1.0, RINGS + 1) ** 2
     force, stiffness = law.at(edges)
     return {
         "ring_edges": edges,

@@ -61,7 +61,7 @@ class LeatherTip(CueEffect):
         Whether the normal turns as the contact rolls over ball and dome; False for comparison.
     partial_slip : bool, default False
         Whether the patch holds, slides and lets go ring by ring, in the manner of Mindlin and Deresiewicz, and not as
-        a whole. Five times slower, and exact to some 1e-4.
+        a whole. Two to three times slower; squirt to 1e-4.
 
     Raises
     ------

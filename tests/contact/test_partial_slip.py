@@ -60,8 +60,10 @@ def test_other_effects_go_with_it(effect) -> None:
     assert found.squirt < strike(leather_scene(0.375, effect), AT).squirt
 
 
-def test_more_rings_change_little(monkeypatch: pytest.MonkeyPatch) -> None:
-    scene = leather_scene(0.3, leather=RINGS)
+@pytest.mark.parametrize(("offset", "speed"), [(0.1, 0.8), (0.3, 2.0), (0.375, 7.0), (0.6, 4.0)])
+def test_more_rings_change_squirt_by_less_than_is_said(offset, speed, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A ten-thousandth, however hard the blow (handbook: The contact)."""
+    scene = leather_scene(offset, speed=speed, leather=replace(RINGS, E=2e8))
     usual = strike(scene, AT)
-    monkeypatch.setattr("cuefem.contact.laws.RINGS", 320)
-    assert strike(scene, AT).squirt == pytest.approx(usual.squirt, rel=1e-3)
+    monkeypatch.setattr("cuefem.contact.laws.RINGS", 640)
+    assert strike(scene, AT).squirt == pytest.approx(usual.squirt, rel=1e-4)

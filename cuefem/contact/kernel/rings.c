@@ -26,7 +26,7 @@ static Patch patch_at(const Contact *c, int press, double depth)
         if (c->ring_edges[middle] < p.depth) low = middle + 1;
         else high = middle;
     }
-    p.count = low;
+    p.count = low < c->rings ? low : c->rings; /* the last ring has all that lies beyond */
     return p;
 }
 
@@ -41,24 +41,40 @@ static void ring_of(const Contact *c, const Patch *p, int r, double *k, double *
     } else *k = p->k - K[r], *slope = p->slope - S[r], *N = p->F - inner;
 }
 
-/* Take the rings from one state of the patch to the next; what they bear then, and how it changes. */
-static double walk(const Contact *c, const Patch *from, const Patch *to, double shift, double *f, double *stuck,
-                   double *slid)
+/* What a ring bears after a shift. */
+static inline double borne(double f, double k, double shift, double bound)
 {
-    double sum = 0, k, N, slope, k_before, unused;
-    *stuck = *slid = 0;
-    for (int r = 0; r < to->count; r++) {
-        ring_of(c, to, r, &k, &N, &slope);
-        if (r < from->count) ring_of(c, from, r, &k_before, &unused, &unused);
-        else k_before = 0;
-        double left = k_before > k ? k / k_before : 1, bound = c->friction * N;
-        double bears = f[r] * left + (k + k_before) / 2 * shift;
-        if (bears > bound) bears = bound, *slid += c->friction * slope;
-        else if (bears < -bound) bears = -bound, *slid -= c->friction * slope;
-        else *stuck += k;
+    double bears = f + k * shift;
+    bears = bears > bound ? bound : bears;
+    return bears < -bound ? -bound : bears;
+}
+
+/* Take the rings from one state of the patch to the next; what they bear then, and how it changes. */
+static double walk(const Contact *c, const Patch *from, const Patch *to, double shift, double *restrict f,
+                        double *stuck, double *slid)
+{
+    const double *restrict F = c->ring_forces, *restrict S = c->ring_slopes, *restrict K = c->ring_stiffness;
+    const double *restrict edge = c->ring_edges;
+    int whole = (to->count < from->count ? to->count : from->count) - 1, r = 0; /* rings that touch in full all the way */
+    double mu = c->friction, depth = to->depth, sum = 0, stiff = 0, slides = 0;
+    for (; r < whole; r++) {
+        double k = K[r + 1] - K[r], slope = S[r + 1] - S[r];
+        double bound = mu * (F[r + 1] - F[r] + S[r + 1] * (depth - edge[r + 1]) - S[r] * (depth - edge[r]));
+        double bears = borne(f[r], k, shift, bound);
+        stiff += fabs(bears) < bound ? k : 0, slides += bears >= bound ? slope : 0, slides -= bears <= -bound ? slope : 0;
         f[r] = bears, sum += bears;
     }
-    for (int r = to->count; r < from->count; r++) f[r] = 0;
+    for (; r < to->count; r++) {
+        double k, N, slope, k_before = 0, unused;
+        ring_of(c, to, r, &k, &N, &slope);
+        if (r < from->count) ring_of(c, from, r, &k_before, &unused, &unused);
+        double bound = mu * N, left = k_before > k ? k / k_before : 1;
+        double bears = borne(f[r] * left, (k + k_before) / 2, shift, bound);
+        stiff += fabs(bears) < bound ? k : 0, slides += fabs(bears) < bound ? 0 : copysign(slope, bears);
+        f[r] = bears, sum += bears;
+    }
+    for (; r < from->count; r++) f[r] = 0;
+    *stuck = stiff, *slid = slides == 0 ? 0 : mu * slides;
     return sum;
 }
 
