@@ -76,7 +76,7 @@ WITHIN = {
     **dict.fromkeys(("dead shear", "power", "power shear"), 1e-10),
     "second power hit": 3e-10,
     **dict.fromkeys(("rolling", "rolling power", "levers"), 1e-10),
-    **dict.fromkeys(("raised", "raised power"), 1e-6),  # as it parts, friction's cone is read off nodes past its apex
+    **dict.fromkeys(("raised", "raised power"), 2e-9),
     "leather": 3e-9,
     "leather twice": 1e-8,  # the flight between the touches makes more of a difference
     "rings": 3e-5,

@@ -39,6 +39,7 @@ FAST static void answer_of(const Work *w, const Response *r, double *V)
 {
     const Contact *c = w->c;
     int n = c->forces, ports = c->cue->ports;
+    const double *sums_of_ball = rule.force_sums[0];
     memset(V, 0, 2 * n * n * Q * Q * sizeof *V);
     for (int f = 0; f < n; f++)
         for (int g = 0; g < n; g++) {
@@ -51,7 +52,7 @@ FAST static void answer_of(const Work *w, const Response *r, double *V)
                 }
             for (int b = 0; b < c->speeds; b++)
                 ball += w->C[0][f][PORTS + b] * c->ball_gives[b] * w->C[0][g][PORTS + b];
-            for (int i = 0; i < Q * Q; i++) to[i] += ball * r->step * rule.force_sums[0][i];
+            for (int i = 0; i < Q * Q; i++) to[i] += ball * r->step * sums_of_ball[i];
             for (int j = 0; j < Q; j++) add_product(Q, rule.sums[1], to + j * Q, r->step, sum + j * Q);
         }
 }
