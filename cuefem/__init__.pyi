@@ -11,6 +11,7 @@ from .effects import (
     AxialWaves as AxialWaves,
     Effect as Effect,
     Elevation as Elevation,
+    GeometricStiffness as GeometricStiffness,
     Joint as Joint,
     LeatherTip as LeatherTip,
     PointMass as PointMass,

@@ -9,7 +9,7 @@ The beam's solver is loaded when a finite-element cue is solved, not before.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import chain
 from typing import TYPE_CHECKING
@@ -184,6 +184,11 @@ def tip_modes_from(found: Ended, scene: Scene) -> TipModes:
     """Tip modes of the scene's finite-element cue from its bending modes, with what its effects add to them."""
     cue, effects = scene.shaft, scene.cue_effects
     tip = tip_modes(found, scene.axial_mass)
+    bent = [
+        part for part in (effect.geometric_stiffness(found, cue, effects) for effect in effects) if part is not None
+    ]
+    if bent:  # the first of the tip modes moves along the axis
+        tip = replace(tip, geometric=np.pad(sum(bent[1:], bent[0]), (1, 0)))
     along = tuple(chain.from_iterable(effect.vibrations(found, cue, effects) for effect in effects))
     for family in along:
         tip = tip.beside(family.omega, family.along, family.radiation)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import lazy_loader
@@ -80,6 +81,32 @@ class System:
     def tip_displacement(self, vectors: Array) -> tuple[Array, Array]:
         """Deflection w and rotation theta of unknowns ``vectors`` (unknowns, k) at the tip: two arrays (k,)."""
         return vectors[0], vectors[1] / self.length
+
+    def geometric_stiffness(self, vectors: Array, masses: Sequence[tuple[float, float]]) -> Array:
+        """What a newton of thrust at the tip does to unknowns ``vectors`` (unknowns, k): integral p w_i' w_j' dx, (k, k).
+
+        The cue shortens by half the integral of w'^2 as it bends. Seen from its centre of mass, the tip goes back by
+        half the integral of p w'^2, p(x) being the share of the mass behind x, and p is also the share of the thrust
+        that the cue bears there, which accelerates what is behind. The slope is w' and not the section's rotation, as
+        in Engesser's column. masses: (position m, mass kg) of each lump.
+        """
+        mesh = self.mesh
+        _, slope, _ = slopes(mesh.own(vectors), mesh.sizes[:, None, None], self.length, mesh.order)
+        root = np.sqrt(self.share_behind(masses) * table(mesh.order).weights * mesh.sizes[:, None])
+        rows = (root[:, :, None] * slope).reshape(-1, vectors.shape[1])
+        return np.asarray(rows.T @ rows)
+
+    def share_behind(self, masses: Sequence[tuple[float, float]]) -> Array:
+        """Share of the cue's mass behind each Gauss point, (elements, q)."""
+        mesh, t = self.mesh, table(self.mesh.order)
+        rho, sizes = self.section.rhoA, mesh.sizes[:, None]
+        each = (sizes * rho * t.weights).sum(axis=1)
+        ahead = np.concatenate([[0.0], np.cumsum(each)[:-1]])[:, None] + sizes * (rho @ _integrals(mesh.order).T)
+        x = mesh.nodes[:-1, None] + sizes * t.points
+        total = each.sum() + sum(mass for _, mass in masses)
+        for position, mass in masses:
+            ahead = ahead + mass * (x > position)
+        return np.asarray(1 - ahead / total)
 
     def interpolate(self, vectors: Array, x: Array) -> tuple[Array, Array]:
         """(w, theta) of unknowns ``vectors`` (unknowns, k) at positions ``x``: two arrays (k, *x.shape)."""
@@ -244,3 +271,13 @@ def _rigid_motions(mesh: Mesh, length: float, springs: Array, fixed: NDArray[np.
     _, strength, directions = np.linalg.svd(motions[np.union1d(fixed, np.flatnonzero(springs))])
     rank = int(np.sum(strength > 1e-12 * strength[0]))
     return motions @ directions[rank:].T
+
+
+@cache
+def _integrals(order: int) -> Array:
+    """From values at the Gauss points of an element to their integral from its tip end to each of these, (q, q)."""
+    z = 2 * table(order).points - 1
+    waves = np.polynomial.legendre.legvander(z, len(z))
+    count = 2 * np.arange(len(z)) + 1
+    before = np.column_stack([-np.ones(len(z)), waves[:, :-2]])  # the integral of P_n is (P_(n+1) - P_(n-1))/(2 n + 1)
+    return np.asarray((waves[:, 1:] - before) / count / 2 @ np.linalg.inv(waves[:, :-1]))

@@ -34,6 +34,7 @@ class TipModes:
     rotation: Array
     damping: Array | None = None
     radiation: Array | None = None
+    geometric: Array | None = None
 
     @property
     def resistance(self) -> Array | None:
@@ -47,10 +48,11 @@ class TipModes:
 
     def those(self, index: NDArray[np.intp]) -> TipModes:
         """Some of the modes alone, in the order of their numbers ``index``."""
-        parts = (None if part is None else part[np.ix_(index, index)] for part in (self.damping, self.radiation))
-        damping, radiation = (part if part is not None and part.any() else None for part in parts)
+        pairs = (self.damping, self.radiation, self.geometric)
+        parts = (None if part is None else part[np.ix_(index, index)] for part in pairs)
+        damping, radiation, geometric = (part if part is not None and part.any() else None for part in parts)
         omega, amplitude, approach, rotation = self.omega, self.amplitude, self.approach, self.rotation
-        return TipModes(omega[index], amplitude[index], approach[index], rotation[index], damping, radiation)
+        return TipModes(omega[index], amplitude[index], approach[index], rotation[index], damping, radiation, geometric)
 
     def beside(self, omega: Array, along: Array, radiation: Array | None = None) -> TipModes:
         """These modes followed by n vibrating ones that move the tip by ``along``, (n,), along the cue, undamped.
@@ -69,6 +71,7 @@ class TipModes:
             np.concatenate([self.rotation, np.zeros(n)]),
             None if self.damping is None else np.pad(self.damping, (0, n)),
             own,
+            None if self.geometric is None else np.pad(self.geometric, (0, n)),
         )
 
     def ascending(self) -> TipModes:

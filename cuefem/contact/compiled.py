@@ -8,16 +8,17 @@ from functools import cache
 from cuefem.contact.kernel import BINARY, BUILD, KernelError, check
 from cuefem.contact.rule import tables
 
-_INTEGERS = "forces speeds turns curve patch lossy terms levers rings recording"
+_INTEGERS = "forces speeds turns curve patch lossy terms levers rings recording plane"
 _POINTERS = (
     "cue facing ball_gives force_terms give_terms lever_terms ring_edges ring_forces ring_slopes ring_stiffness "
-    "xi ball ring_shear"
+    "xi ball ring_shear slope_weights slopes"
 )
 _NUMBERS = (
     "restitution friction table_friction stiffness exponent steady most compliance first_ratio phi dome rim radius "
     "lever_t lever_n lever_reach speed across clock impulse tolerance longest window most_phases most_steps"
 )
 _RESULTS = "time depth angle shear deepest peak height friction_loss shear_loss table_loss damping_loss radiated"
+_BENDING = "thrust steepest"
 _COUNTS = "status parted grip press steps tried rounds phase_count record_count row"
 
 
@@ -27,7 +28,7 @@ class KernelContact(ctypes.Structure):
     _fields_ = (
         *((name, ctypes.c_void_p) for name in _POINTERS.split()),
         *((name, ctypes.c_int) for name in _INTEGERS.split()),
-        *((name, ctypes.c_double) for name in f"{_NUMBERS} {_RESULTS}".split()),
+        *((name, ctypes.c_double) for name in f"{_NUMBERS} {_RESULTS} {_BENDING}".split()),
         *((name, ctypes.c_int) for name in _COUNTS.split()),
         ("phases", ctypes.POINTER(ctypes.c_double)),
         ("records", ctypes.POINTER(ctypes.c_double)),
@@ -49,7 +50,7 @@ def library() -> ctypes.CDLL:
         raise KernelError(f"the contact's compiled kernel has other structures; {BUILD}")
     ctypes.memmove(ctypes.addressof(ctypes.c_char.in_dll(kernel, "rule")), rule.ctypes.data, rule.nbytes)
     pointer, count = ctypes.c_void_p, ctypes.c_int
-    kernel.cue_new.restype, kernel.cue_new.argtypes = pointer, [count, count, count, pointer, pointer, pointer]
+    kernel.cue_new.restype, kernel.cue_new.argtypes = pointer, [count] * 4 + [pointer] * 3
     kernel.cue_free.restype, kernel.cue_free.argtypes = None, [pointer]
     kernel.cue_follow.restype = None
     kernel.cue_follow.argtypes = [pointer, pointer, pointer, pointer, count, pointer]

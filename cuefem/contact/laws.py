@@ -185,7 +185,9 @@ def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
             numbers |= {"levers": LEVER_TERMS, "lever_reach": LEVER_REACH}
             arrays["lever_terms"] = _sampled(terms.levers, phi)
     turning = bool(u or w or (turns and (dome or terms.levers)))
-    propagator = planar_propagator(tip, turning=turning)
+    propagator = planar_propagator(tip, turning=turning, time=common["time"], window=common["window"] or 0.0)
+    rolling = dome if phi < rim else 0.0
+    arrays |= _thrust(propagator, -w - rolling * c)
     of_cue = np.array([[-s, -c, -lever_t], [-c, s, -lever_n]])[:, : len(propagator.rows)]
     facing = np.concatenate([of_cue, [[1.0, 0.0, 1.0], [0.0, 1.0, 0.0]]], axis=1)
     tn, nn = (of_cue @ propagator.mobility[0] @ of_cue[1]).tolist()
@@ -202,6 +204,15 @@ def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
         law=law,
         **common,
     )
+
+
+def _thrust(propagator: ModalPropagator, ahead: float, planes: int = 1) -> dict[str, Array]:
+    """The weights of a bent cue's slopes; ahead: how far the centre of the tip's dome lies before the cue's end, m."""
+    count = len(propagator.slopes)
+    if not count:
+        return {}
+    weights = np.append(np.ones(count // planes - 1), ahead)
+    return {"slope_weights": np.tile(weights, planes), "slopes": np.zeros(count)}
 
 
 def normal_law(scene: Scene, common: dict[str, Any]) -> tuple[TipLaw, float]:
@@ -272,6 +283,7 @@ def _raised(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
             tip.rotation,
             tip.damping,
             tip.radiation,
+            tip.geometric,
         )
     facing = np.zeros((6, 9))
     facing[0, [0, 1]], facing[1, [0, 1]], facing[2, 2] = (-s, -c), (-c, s), -1.0
@@ -279,12 +291,14 @@ def _raised(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
     facing[0, 8], facing[2, 6] = 1.0, -1.0
     facing[3:, 3:6] = up, right, forward
     facing[4, 6:], facing[5, 6:] = -np.cross(up, right), -np.cross(up, forward)
+    propagator = raised_propagator(tip, time)
     return ContactModel(
-        raised_propagator(tip),
+        propagator,
         facing,
         np.repeat([1 / mass, 1 / (nu * mass)], 3),
         np.zeros(6),
         terms={"tolerance": TOLERANCE, "table_friction": terms.table.friction} | power_law(law),
+        arrays=_thrust(propagator, -w - terms.dome_radius * c, planes=2),
         law=law,
         table=terms.table,
         **(common | {"time": time}),

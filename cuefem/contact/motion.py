@@ -225,8 +225,8 @@ class _Walk:
         self.xi, self.rigid = solved.xi_before.copy(), self.propagator.omega == 0
         self.ball, self.way = np.array(solved.model.ball, float), np.zeros(len(solved.ball))
         self.gone = np.zeros(int(self.rigid.sum()))
-        self.ports = len(self.propagator.rows)
-        self.drives = self.propagator.onto @ self.propagator.rows.T
+        self.ports = len(self.propagator.pushed)
+        self.drives = self.propagator.onto @ self.propagator.pushed.T
 
     def blow(self, impulses: Array) -> None:
         """What blows on the ports do at once."""

@@ -11,7 +11,7 @@ import ctypes
 import math
 import threading
 import weakref
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import cached_property
 from typing import Any
 
@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cuefem.beam.tip import TipModes
+from cuefem.contact.bent import half_octave, slope_rows
 from cuefem.contact.compiled import library
 from cuefem.cue import Array
 
@@ -31,15 +32,16 @@ DEFECTIVE, NUDGE = 1e7, 1e-9
 class ModalPropagator:
     """Tip modes with their ports, which the compiled kernel keeps the responses of.
 
-    rows: (ports, modes), what each port reads of the modes' velocities, and pushes. omega, approach: of the modes.
+    rows: (ports, modes), what each port reads of the modes' velocities, and pushes. slopes: (slopes, modes), likewise,
+    of the bent cue (`cuefem.contact.bent`); none without thrust. omega, approach: of the modes.
     rates: (coordinates,) 1/s.
     displacements, velocities: (modes, coordinates), which give omega q and the velocities of the modes. onto:
     (coordinates, modes), from the modes' velocities. lossy: how many of the dampers' rows lose energy; the others
     radiate it.
     """
 
-    def __init__(self, tip: TipModes, rows: Array) -> None:
-        self.rows, self.omega, self.approach = rows, tip.omega, tip.approach
+    def __init__(self, tip: TipModes, rows: Array, slopes: Array) -> None:
+        self.rows, self.slopes, self.omega, self.approach = rows, slopes, tip.omega, tip.approach
         omega, count = tip.omega, len(tip.omega)
         resistance = np.zeros((count, count)) if tip.resistance is None else tip.resistance
         coupled = resistance != 0
@@ -62,6 +64,18 @@ class ModalPropagator:
         self.lossy = len(dampers[0]) if tip.damping is not None else 0
         self.dampers = np.concatenate([np.zeros((0, count)), *dampers])
 
+    @property
+    def pushed(self) -> Array:
+        """All rows that forces push: those of the ports, then the slopes, (ports + slopes, modes)."""
+        return np.concatenate([self.rows, self.slopes])
+
+    @property
+    def buckling(self) -> float:
+        """The thrust that buckles the cue if it lasts, N: the least P with omega^2 - P slopes' slopes singular."""
+        flexible = self.omega > 0
+        strained = self.slopes[:, flexible] / self.omega[flexible]
+        return float(1 / np.linalg.eigvalsh(strained @ strained.T)[-1])
+
     @cached_property
     def approaching(self) -> Complex:
         """The coordinates of a cue that moves along its axis at 1 m/s."""
@@ -82,10 +96,10 @@ class ModalPropagator:
     def cue(self) -> ctypes.c_void_p:
         """What the kernel keeps of it: made when a contact first asks, and freed with this object."""
         kernel = library()
-        readings = np.ascontiguousarray(np.concatenate([self.rows, self.dampers]) @ self.velocities)
-        drives = np.ascontiguousarray((self.onto @ self.rows.T).T)
+        readings = np.ascontiguousarray(np.concatenate([self.pushed, self.dampers]) @ self.velocities)
+        drives = np.ascontiguousarray((self.onto @ self.pushed.T).T)
         pointers = [part.ctypes.data for part in (self.rates, readings, drives)]
-        handle = kernel.cue_new(len(self.rates), len(self.rows), len(readings), *pointers)
+        handle = kernel.cue_new(len(self.rates), len(self.rows), len(self.slopes), len(readings), *pointers)
         if not handle:
             raise MemoryError("no memory for the modes of a contact")
         weakref.finalize(self, kernel.cue_free, handle)
@@ -94,7 +108,7 @@ class ModalPropagator:
     def follow(self, xi: Complex, times: Array, waves: Array | None = None) -> Complex:
         """The coordinates at times from now on, (times, coordinates).
 
-        waves: (times, ports, nodes), Legendre coefficients of the loads over each time; None without loads.
+        waves: (times, ports + slopes, nodes), Legendre coefficients of the loads over each time; None without loads.
         """
         xi, times = np.ascontiguousarray(xi), np.ascontiguousarray(times, float)
         found = np.empty((len(times), len(xi)), complex)
@@ -160,24 +174,26 @@ def _rows_of_power(damping: Array) -> Array:
     return rows
 
 
-_known: weakref.WeakKeyDictionary[TipModes, dict[str, ModalPropagator]] = weakref.WeakKeyDictionary()
+_known: weakref.WeakKeyDictionary[TipModes, dict[tuple[str, float, float], ModalPropagator]] = (
+    weakref.WeakKeyDictionary()
+)
 _lock = threading.Lock()
 
 
-def planar_propagator(tip: TipModes, *, turning: bool) -> ModalPropagator:
+def planar_propagator(tip: TipModes, *, turning: bool, time: float, window: float = 0.0) -> ModalPropagator:
     """The propagator of tip modes with the ports (u, w), and the turning of the tip's section where that is asked for.
 
-    Strikes with the same tip modes share it.
+    time, window: how long the contact lasts, and is followed after that, s, which the slopes of a bent cue depend on
+    (`slope_rows`). Strikes with the same tip modes share it.
     """
     rows = np.concatenate([tip.amplitude.T, tip.rotation[None]]) if turning else tip.amplitude.T
-    return _shared(tip, "turning" if turning else "straight", tip, rows)
+    return _shared(tip, "turning" if turning else "straight", time, window, lambda slopes: (tip, rows, slopes))
 
 
-def raised_propagator(tip: TipModes) -> ModalPropagator:
+def raised_propagator(tip: TipModes, time: float) -> ModalPropagator:
     """The propagator with the ports (u, w, p): each bending mode stands again in the plane across, where it moves p."""
     again = np.flatnonzero(tip.amplitude[:, 1] != 0)
     count, more = len(tip.omega), len(again)
-    omega = np.concatenate([tip.omega, tip.omega[again]])
 
     def both(matrix: Array | None) -> Array | None:
         if matrix is None:
@@ -186,17 +202,32 @@ def raised_propagator(tip: TipModes) -> ModalPropagator:
         whole[:count, :count], whole[count:, count:] = matrix, matrix[np.ix_(again, again)]
         return whole
 
-    amplitude, nothing = np.pad(tip.amplitude, ((0, more), (0, 0))), np.zeros(more)
-    rotation, approach = np.append(tip.rotation, nothing), np.append(tip.approach, nothing)
-    modes = TipModes(omega, amplitude, approach, rotation, both(tip.damping), both(tip.radiation))
-    rows = np.concatenate([amplitude.T, np.append(np.zeros(count), tip.amplitude[again, 1])[None]])
-    return _shared(tip, "raised", modes, rows)
+    def doubled(slopes: Array) -> tuple[TipModes, Array, Array]:
+        amplitude, nothing = np.pad(tip.amplitude, ((0, more), (0, 0))), np.zeros(more)
+        modes = TipModes(
+            np.concatenate([tip.omega, tip.omega[again]]),
+            amplitude,
+            np.append(tip.approach, nothing),
+            np.append(tip.rotation, nothing),
+            both(tip.damping),
+            both(tip.radiation),
+        )
+        rows = np.concatenate([amplitude.T, np.append(np.zeros(count), tip.amplitude[again, 1])[None]])
+        across = np.pad(slopes[:, again], ((0, 0), (count, 0)))
+        return modes, rows, np.concatenate([np.pad(slopes, ((0, 0), (0, more))), across])
+
+    return _shared(tip, "raised", time, 0.0, doubled)
 
 
-def _shared(tip: TipModes, ports: str, modes: TipModes, rows: Array) -> ModalPropagator:
+def _shared(
+    tip: TipModes, ports: str, time: float, window: float, parts: Callable[[Array], tuple[TipModes, Array, Array]]
+) -> ModalPropagator:
+    """The propagator of tip modes with some ports; parts: makes of the slopes its modes, rows of ports, and slopes."""
+    lasting = half_octave(time) if tip.geometric is not None else 0.0
+    key = ports, lasting, window
     with _lock:
         of_tip = _known.setdefault(tip, {})
-        if ports not in of_tip:
-            of_tip[ports] = ModalPropagator(modes, rows)
-            of_tip[ports].cue  # noqa: B018  # made here: threads would all begin to
-        return of_tip[ports]
+        if key not in of_tip:
+            of_tip[key] = ModalPropagator(*parts(slope_rows(tip, lasting, lasting + window)))
+            of_tip[key].cue  # noqa: B018  # made here: threads would all begin to
+        return of_tip[key]

@@ -12,7 +12,7 @@ import numpy as np
 from cuefem.contact.compiled import KernelContact, library
 from cuefem.contact.laws import ContactModel, table_axes
 from cuefem.contact.outcome import BLOW, FLIGHT, History, Phase
-from cuefem.contact.propagator import Complex
+from cuefem.contact.propagator import Complex, ModalPropagator
 from cuefem.contact.rule import NODES
 from cuefem.cue import Array
 from cuefem.effects.leather_law import LeatherLaw
@@ -21,8 +21,9 @@ GRIPS = {0: "stick", 1: "slip", -1: "slip back", 2: BLOW, 3: FLIGHT[0]}
 PRESSES = ("load", "unload", "rigid", "free")
 # A contact that changes phase this often, or takes so many steps, does not end.
 MOST_PHASES, MOST_STEPS = 5_000, 200_000
-_ENDED, _LATE, _CROWDED, _STUCK, _TOO_DEEP, _TURNED_TOO_FAR, _NO_MEMORY = range(7)
+_ENDED, _LATE, _CROWDED, _STUCK, _TOO_DEEP, _TURNED_TOO_FAR, _BENT_TOO_FAR, _NO_MEMORY = range(8)
 _WITH = NODES + 1
+_NOTHING = np.zeros(0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,8 +32,8 @@ class Course:
 
     start, step, part: the time at which a step began, s, its length, s, and the part of it that was taken. pressed:
     whether ball and tip touched in it. force, velocity: (steps, forces, nodes + 1), of the contact, N and m/s; depth,
-    angle: (steps, nodes + 1), m and rad; loads: (steps, ports, nodes), on the cue's ports and the ball's velocities, N;
-    blows: (steps, ports), on them before the step, N s.
+    angle: (steps, nodes + 1), m and rad; loads: (steps, rows, nodes), on the cue's ports, its slopes and the ball's
+    velocities, N; blows: (steps, rows), on them before the step, N s.
     """
 
     start: Array
@@ -47,16 +48,17 @@ class Course:
     blows: Array
 
     @classmethod
-    def of(cls, records: Array, forces: int, ports: int, speeds: int) -> Course:
-        """From the kernel's records, whose rows hold room for three ports of the cue."""
-        count, wide = len(records), 3 + speeds
+    def of(cls, records: Array, forces: int, propagator: ModalPropagator, speeds: int) -> Course:
+        """From the kernel's records, whose rows hold room for three ports of the cue, and its slopes at the end."""
+        ports, slopes = len(propagator.rows), len(propagator.slopes)
+        count, wide = len(records), 3 + speeds + slopes
         shapes = [(forces, _WITH), (forces, _WITH), (_WITH,), (_WITH,), (wide, NODES), (wide,)]
         ends = 5 + np.cumsum([math.prod(shape) for shape in shapes])
         parts = [
             part.reshape(count, *shape)
             for part, shape in zip(np.split(records[:, 5:], ends[:-1] - 5, axis=1), shapes, strict=True)
         ]
-        there = np.r_[:ports, 3:wide]
+        there = np.r_[:ports, 3 + speeds : wide, 3 : 3 + speeds]
         start, step, part, _, press = records[:, :5].T
         force, velocity, depth, angle, loads, blows = parts
         pressed = press != PRESSES.index("free")
@@ -83,13 +85,14 @@ class SolvedContact:
     peak: float
     losses: dict[str, float]
     records: Array | None
+    slopes: Array
 
     @cached_property
     def course(self) -> Course:
         """Its steps, of a contact that was recorded."""
         assert self.records is not None
         model = self.model
-        return Course.of(self.records, len(model.facing), len(model.propagator.rows), len(model.ball_gives))
+        return Course.of(self.records, len(model.facing), model.propagator, len(model.ball_gives))
 
     @property
     def impulse(self) -> tuple[float, float]:
@@ -100,8 +103,7 @@ class SolvedContact:
     @property
     def velocity(self) -> tuple[float, float]:
         """Of ball against tip (t, n), m/s, in the directions of the first touch."""
-        ports = (self.model.propagator.rows @ (self.model.propagator.velocities @ self.xi)).real
-        v = self.model.facing @ np.concatenate([ports, self.ball])
+        v = _velocities(self.model, self.xi, self.ball, self.slopes)
         return float(v[0]), float(v[1])
 
     @property
@@ -125,6 +127,16 @@ class SolvedContact:
         axes, flip = np.array(table_axes(self.model.phi, self.model.table.angle)), np.array([mirror, 1.0, 1.0])
         velocity, turning = axes @ self.ball[:3] * flip, axes @ self.ball[3:] / radius * flip * mirror
         return History(start, step, self.time, values, velocity, turning)
+
+
+def _velocities(model: ContactModel, xi: Complex, ball: Array, slopes: Array) -> Array:
+    """Of the contact, m/s, in the directions of the first touch; a bent cue takes its tip back as it bends further."""
+    propagator = model.propagator
+    modes = (propagator.velocities @ xi).real
+    ports = propagator.rows @ modes
+    if len(slopes):
+        ports[0] -= (model.arrays["slope_weights"] * slopes) @ (propagator.slopes @ modes)
+    return np.asarray(model.facing @ np.concatenate([ports, ball]))
 
 
 def impulse_on(model: ContactModel, ball: Array) -> Array:
@@ -168,6 +180,7 @@ def solve_contact(model: ContactModel, *, recorded: bool = True) -> SolvedContac
         "patch": model.patch,
         "lossy": propagator.lossy,
         "recording": int(recorded),
+        "plane": len(propagator.slopes) // (1 if model.table is None else 2),
     }
     c = KernelContact(**numbers | model.terms | {name: array.ctypes.data for name, array in held.items()})
     c.cue = propagator.cue
@@ -181,7 +194,18 @@ def solve_contact(model: ContactModel, *, recorded: bool = True) -> SolvedContac
     losses = {"friction": c.friction_loss, "shear": c.shear_loss, "table": c.table_loss}
     losses |= {"damping": c.damping_loss, "radiated": c.radiated}
     return SolvedContact(
-        model, phases, c.time, before, held["xi"], held["ball"], bool(c.parted), c.deepest, c.peak, losses, records
+        model=model,
+        phases=phases,
+        time=c.time,
+        xi_before=before,
+        xi=held["xi"],
+        ball=held["ball"],
+        parted=bool(c.parted),
+        deepest=c.deepest,
+        peak=c.peak,
+        losses=losses,
+        records=records,
+        slopes=held.get("slopes", _NOTHING),
     )
 
 
@@ -208,13 +232,17 @@ def _failure(model: ContactModel, c: KernelContact, phases: tuple[Phase, ...], h
     where = f"{GRIPS[c.grip]}, {PRESSES[c.press]}"
     if c.status == _TURNED_TOO_FAR:
         return RuntimeError(f"the contact has rolled by {c.angle:.3g} rad, further than its levers are known")
+    if c.status == _BENT_TOO_FAR:
+        return ValueError(
+            f"the thrust of {c.thrust:.4g} N bends the shaft by {c.steepest:.3g} rad at its tip, further than "
+            f"GeometricStiffness holds; thrust that lasts buckles it from {model.propagator.buckling:.4g} N on"
+        )
     if c.status == _STUCK:
         return RuntimeError(
             f"the contact could not be stepped on from {c.time:.6g} s, after {c.steps} steps, in {where}; "
             "keep fewer modes, or a Tip.restitution further from 0"
         )
-    ports = (model.propagator.rows @ (model.propagator.velocities @ held["xi"])).real
-    v = model.facing @ np.concatenate([ports, held["ball"]])
+    v = _velocities(model, np.asarray(held["xi"], complex), held["ball"], held.get("slopes", _NOTHING))
     return RuntimeError(
         f"the ball does not leave the cue: after {c.time:.6g} s and {len(phases)} phases "
         f"(head-on contact time {model.time:.6g} s) the contact is in {where}, with v_t = {v[0]:.3g} m/s, "

@@ -16,7 +16,7 @@ from cuefem.effects.base import (
     effect_kinds,
 )
 from cuefem.effects.leather import LeatherTip
-from cuefem.effects.on_cue import AxialWaves, Joint, PointMass, StructuralDamping, Support
+from cuefem.effects.on_cue import AxialWaves, GeometricStiffness, Joint, PointMass, StructuralDamping, Support
 from cuefem.effects.stroke import Elevation, SecondHit
 
 __all__ = [
@@ -24,6 +24,7 @@ __all__ = [
     "CueEffect",
     "Effect",
     "Elevation",
+    "GeometricStiffness",
     "Joint",
     "LeatherTip",
     "PointMass",

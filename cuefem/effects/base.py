@@ -129,6 +129,10 @@ class CueEffect(Effect):
         """Families of modes beside the bending modes ``found``; effects: all that act on the cue."""
         return ()
 
+    def geometric_stiffness(self, found: Ended, cue: Cue, effects: Sequence[CueEffect]) -> Array | None:
+        """What thrust at the tip does to the bending modes ``found``, rigid ones first (`TipModes.geometric`)."""
+        return None
+
     def damp(self, tip: TipModes, cue: Cue, families: Sequence[Vibrations]) -> TipModes:
         """The tip modes with the effect's damping; their vibrating modes are the families', one after the other."""
         return tip

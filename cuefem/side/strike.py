@@ -187,7 +187,7 @@ def solved_side(scene: SideStrike, place: TipModes, *, recorded: bool = True) ->
     if scene.window is not None and striker.restitution == 0:
         raise ValueError(f"SecondHit takes a Striker.restitution in [{LEAST_RESTITUTION:g}, 1]; got 0.0")
     model = ContactModel(
-        planar_propagator(place, turning=False),
+        planar_propagator(place, turning=False, time=time),
         facing=np.array([[0.0, -1.0, 1.0, 0.0, 1.0], [-1.0, 0.0, 0.0, 1.0, 0.0]]),
         ball_gives=np.full(3, 1 / striker.mass),
         ball=np.array([0.0, -scene.speed, 0.0]),

@@ -65,6 +65,17 @@ def effects_of(kind: str, rng: Any) -> tuple[cf.Effect, ...]:
         "rings": (replace(leather, partial_slip=True),),
         "raised": (raised, dome),
         "raised power": (raised, soft),
+        "thrust": (cf.GeometricStiffness(), dome),
+        "thrust with all": (
+            cf.GeometricStiffness(),
+            cf.AxialWaves(),
+            cf.StructuralDamping(0.01),
+            cf.RollingContact(),
+            shear,
+        ),
+        "thrust on leather": (cf.GeometricStiffness(), leather),
+        "thrust twice": (cf.GeometricStiffness(), cf.SecondHit(5e-3), dome),
+        "thrust raised": (cf.GeometricStiffness(), raised, dome),
     }[kind]
 
 
@@ -80,12 +91,15 @@ WITHIN = {
     "leather": 3e-9,
     "leather twice": 1e-8,  # the flight between the touches makes more of a difference
     "rings": 3e-5,
+    **dict.fromkeys(("thrust", "thrust with all", "thrust twice"), 1e-10),
+    "thrust on leather": 3e-9,
+    "thrust raised": 1e-6,
 }
 
 
 def random_scene(kind: str, seed: int) -> cf.Scene:
     rng = np.random.default_rng([seed, *kind.encode()])
-    leather = kind.startswith(("leather", "rings"))
+    leather = kind.endswith(("leather", "leather twice", "rings"))
     tip: dict[str, float] = {
         "restitution": 0.0 if kind.startswith("dead") else float(rng.uniform(0.5 if leather else 0.3, 1.0)),
         "friction": math.inf if kind == "endless" else float(rng.choice([0.1, 0.3, 0.6, 0.8, 1.5])),
@@ -131,7 +145,7 @@ def course(phases: Any, shortest: float, *, pressed: bool) -> list[tuple[str, ..
 def agree(kind: str, seed: int) -> None:
     off, outcome, mine = differences(random_scene(kind, seed))
     assert max(off.values()) < WITHIN[kind], (seed, off)
-    shortest = mine.time * (SHORT_ON_LEATHER if kind.startswith("leather") else SHORT)
+    shortest = mine.time * (SHORT_ON_LEATHER if "leather" in kind else SHORT)
     found, expected = (course(phases, shortest, pressed=kind == "rings") for phases in (outcome.phases, mine.phases))
     assert found == expected, seed
 

@@ -89,14 +89,17 @@ def first_fall(values: Any, past: float) -> float:
 
 @dataclass
 class Step:
-    """Forces, velocities, their integrals (..., forces, nodes + 1), compression, angle, loads, what dampers read."""
+    """Forces, velocities, their integrals (..., forces, nodes + 1), compression, pose, loads, what dampers read.
+
+    pose: the angle, and the slopes of a bent cue (..., nodes + 1, slopes).
+    """
 
     length: float
     F: Any
     v: Any
     x: Any
     depth: Any
-    angle: Any
+    pose: Any
     loads: Any
     damped: Any
 
@@ -108,17 +111,22 @@ class Contact:
         p, self.model, self.terms = model.propagator, model, {"exponent": 1.0} | model.terms
         self.ports, self.speeds, self.forces = len(p.rows), len(model.ball), len(model.facing)
         ball = np.eye(self.speeds)
-        rows = block_diag(p.rows @ p.velocities, ball)
-        dampers = np.pad(p.dampers @ p.velocities, ((0, 0), (0, self.speeds)))
+        aside = ((0, 0), (0, self.speeds))
+        slopes, dampers = np.pad(p.slopes @ p.velocities, aside), np.pad(p.dampers @ p.velocities, aside)
+        rows = np.concatenate([block_diag(p.rows @ p.velocities, ball), slopes])
         self.rates = np.append(p.rates, np.zeros(self.speeds))
         self.readings = np.concatenate([rows, dampers])
-        self.drives = block_diag((p.onto @ p.rows.T).T, ball * model.ball_gives)
+        of_slopes = np.pad((p.onto @ p.slopes.T).T, aside)
+        self.drives = np.concatenate([block_diag((p.onto @ p.rows.T).T, ball * model.ball_gives), of_slopes])
+        self.weights, self.slopes = model.arrays.get("slope_weights", np.zeros(0)), np.zeros(len(p.slopes))
+        self.wide = len(rows)
         self.xi = np.append(p.onto @ p.approach * model.speed, model.ball).astype(complex)
         self.e, self.mu, self.speed, self.clock = model.restitution, model.friction, model.speed, model.time
         self.impulse, self.size = model.speed * model.ball_mass, model.speed * model.ball_mass / model.time
         self.turns = bool(self.terms.get("turns"))
         smooth = self.terms["exponent"] == 1 and not self.terms.get("curve")
-        self.linear = smooth and not self.turns and self.forces == 2
+        self.poses = int(self.turns) + len(self.slopes)  # what C depends on
+        self.linear = smooth and not self.poses and self.forces == 2
         self.tolerance = self.terms["tolerance"] / (1 if self.terms.get("rings") else 10)
         self.time = self.depth = self.angle = self.shear = self.deepest = self.height = 0.0
         self.peak, self.parted, self.grows, self.last = 0.0, False, True, None
@@ -140,8 +148,13 @@ class Contact:
             self.responses[length] = self.readings[:, None] * np.exp(np.outer(WITH_START * length, self.rates)), answer
         return self.responses[length]
 
-    def facing(self, angle: Any) -> Any:
-        """The matrix C at angles, (..., forces, ports): on a dome the contact moves as it rolls, and levers move it."""
+    def facing(self, angle: Any, slopes: Any) -> Any:
+        """The matrix C at angles, (..., forces, ports): the tip of a bent cue goes back at slopes times their rates."""
+        C = self.straight(angle)
+        return np.concatenate([C, -C[..., :1] * (self.weights * slopes)[..., None, :]], -1)
+
+    def straight(self, angle: Any) -> Any:
+        """C of a straight cue: on a dome the contact moves as it rolls, and levers move it."""
         if not self.turns:
             return np.broadcast_to(self.model.facing, (*angle.shape, *self.model.facing.shape))
         t = self.terms
@@ -166,17 +179,17 @@ class Contact:
         return self.terms["dome"] * np.array([np.sin(to), np.cos(to)])
 
     def velocities(self) -> Any:
-        return self.facing(np.array(self.angle)) @ (self.readings @ self.xi).real[: self.ports + self.speeds]
+        return self.facing(np.array(self.angle), self.slopes) @ (self.readings @ self.xi).real[: self.wide]
 
     def inverse_mass(self) -> Any:
         """The contact's velocities per impulse, where it faces now."""
-        C, wide = self.facing(np.array(self.angle)), self.ports + self.speeds
-        return C @ (self.readings[:wide] @ self.drives.T).real @ C.T
+        C = self.facing(np.array(self.angle), self.slopes)
+        return C @ (self.readings[: self.wide] @ self.drives.T).real @ C.T
 
     def push(self, impulses: Any) -> float:
         """Impulses at once; the energy that they take."""
         before = self.velocities()
-        self.xi = self.xi + self.drives.T @ (self.facing(np.array(self.angle)).T @ impulses)
+        self.xi = self.xi + self.drives.T @ (self.facing(np.array(self.angle), self.slopes).T @ impulses)
         return -float(impulses @ (before + self.velocities())) / 2
 
     def stop(self, names: list[int]) -> float:
@@ -190,32 +203,40 @@ class Contact:
 
     def moved(self, length: float, unknown: Any) -> tuple[Step, Any]:
         """What moves under forces at the nodes and through angles there, one row each; by what the angles are off."""
-        F, angle = unknown[..., : self.forces, :], np.zeros((*unknown.shape[:-2], Q + 1), unknown.dtype) + self.angle
+        F, nothing = unknown[..., : self.forces, :], np.zeros((*unknown.shape[:-2], Q + 1), unknown.dtype)
+        angle, slopes = nothing + self.angle, nothing[..., None] + self.slopes
         if self.turns:
-            angle[..., 1:] = unknown[..., -1, :]
-        C, (own, answer), wide = self.facing(angle), self.response(length), self.ports + self.speeds
-        loads = np.einsum("...ifp,...fi->...pi", C[..., 1:, :, :], F) if self.turns else self.model.facing.T @ F
+            angle[..., 1:] = unknown[..., self.forces, :]
+        slopes[..., 1:, :] = np.moveaxis(unknown[..., self.forces + self.turns :, :], -2, -1)
+        C, (own, answer) = self.facing(angle, slopes), self.response(length)
+        fixed = C[(0,) * (C.ndim - 2)]
+        loads = np.einsum("...ifp,...fi->...pi", C[..., 1:, :, :], F) if self.poses else fixed.T @ F
         y = (own @ self.xi).real + np.tensordot(loads, answer, ([-2, -1], [2, 3]))
-        on = y[..., :wide, :]
-        v = np.einsum("...ifp,...pi->...fi", C, on) if self.turns else self.model.facing @ on
-        x = length * v @ SUMS.T
-        step = Step(length, forces_at(WITH_START, F), v, x, self.depth - x[..., 1, :], angle, loads, y[..., wide:, :])
-        if not self.turns:
-            return step, None
-        rolls_on = self.terms["dome"] * (abs(self.terms["phi"] + angle.real) < self.terms["rim"])
-        rate = v[..., 0, :] - y[..., self.ports + 2, :] - (rolls_on * y[..., 2, :] if self.ports > 2 else 0.0)
-        return step, (angle - self.angle + length * (rate / (self.terms["radius"] + rolls_on)) @ SUMS.T)[..., None, 1:]
+        on = y[..., : self.wide, :]
+        v = np.einsum("...ifp,...pi->...fi", C, on) if self.poses else fixed @ on
+        x, bent = length * v @ SUMS.T, y[..., self.ports + self.speeds : self.wide, :]
+        pose = (angle, slopes)
+        step = Step(
+            length, forces_at(WITH_START, F), v, x, self.depth - x[..., 1, :], pose, loads, y[..., self.wide :, :]
+        )
+        missed = np.moveaxis(slopes - self.slopes, -1, -2) - length * bent @ SUMS.T
+        if self.turns:
+            rolls_on = self.terms["dome"] * (abs(self.terms["phi"] + angle.real) < self.terms["rim"])
+            rate = v[..., 0, :] - y[..., self.ports + 2, :] - (rolls_on * y[..., 2, :] if self.ports > 2 else 0.0)
+            off = angle - self.angle + length * (rate / (self.terms["radius"] + rolls_on)) @ SUMS.T
+            missed = np.concatenate([off[..., None, :], missed], -2)
+        return step, missed[..., 1:] if self.poses else None
 
     def solve(self, length: float) -> Step | None:
         """A step in the hold that there is, by Newton's method; None where it does not settle."""
-        unknown = np.zeros((self.forces + self.turns, Q))
-        unknown[self.forces :] = self.angle
+        unknown = np.zeros((self.forces + self.poses, Q))
+        unknown[self.forces :] = [[self.angle]] * self.turns + [[slope] for slope in self.slopes] or 0.0
         if self.last and not self.linear:
             part, old, forces = self.last
             places = np.minimum(part + NODES * length / old, 1.0 if part < 1 else 1.2)
             unknown[: self.forces] = forces_at(places, forces)
         count, before = unknown.size, math.inf
-        scale = np.repeat([self.size] * self.forces + [1.0] * self.turns, Q)
+        scale = np.repeat([self.size] * self.forces + [1.0] * self.poses, Q)
         for _ in range(30):
             tried = unknown + 1j * TINY * (scale[:, None] * np.eye(count)).reshape(count, *unknown.shape)
             step, missed = self.moved(length, tried)
@@ -254,7 +275,7 @@ class Contact:
         ports = np.full(self.ports + self.speeds, along)
         ports[[0, self.ports + 1]] = 1.0
         forces = np.append(along, np.ones(self.forces - 1))
-        of_load = abs(step.loads @ FORCE_WAVES[-2:].T).max(axis=1) / ports * step.length / self.impulse
+        of_load = abs(step.loads[: len(ports)] @ FORCE_WAVES[-2:].T).max(axis=1) / ports * step.length / self.impulse
         of_speed = abs(step.v @ WAVES[-2:].T).max(axis=1) / forces / (10 * self.speed)
         of_start = 0.0  # the force through the nodes misses the law where that has a bend between the start and a node
         if self.press in ("load", "unload") and self.time > 0:
@@ -281,7 +302,9 @@ class Contact:
         span = part * step.length
         driven = moments(self.rates * span / 2).T * (self.drives.T @ waves_over(part, step.loads))
         self.xi = np.exp(self.rates * span) * self.xi + span * driven.sum(axis=1)
-        self.angle, self.time, self.steps = float(at(part, step.angle)), self.time + span, self.steps + 1
+        angle, slopes = step.pose
+        self.angle, self.slopes = float(at(part, angle)), np.asarray(at(part, slopes.T))
+        self.time, self.steps = self.time + span, self.steps + 1
         self.last = part, step.length, step.F[:, 1:]
 
     # Phases

@@ -8,6 +8,10 @@
    velocities are ports too. A matrix C turns the ports' velocities y into those of the contact, v = C y, and the
    contact's forces into loads on the ports, C' F, so that no energy is made on the way. C changes as the contact rolls.
 
+   The blow's thrust along the cue bends it further where it is bent: the geometric stiffness. With slopes s_a, of rows
+   over the modes with the weights c_a, the tip goes back along the cue by sum of c_a s_a^2/2, so that its port along the
+   cue reads sum of c_a s_a s_a' less, and a load L on that port loads each row by -c_a s_a L.
+
    Python fills a Contact and reads it when the contact is over; it keeps a Cue for all strikes with it. */
 #ifndef CUEFEM_CONTACT_H
 #define CUEFEM_CONTACT_H
@@ -42,7 +46,8 @@ enum {
     PORTS = 3, /* of the cue, at most */
     SPEEDS = 6,        /* of the ball, at most */
     ALL_PORTS = PORTS + SPEEDS,
-    FORCES = 6 /* of a contact, at most */
+    FORCES = 6, /* of a contact, at most */
+    SLOPES = 32 /* of a bent cue, at most */
 };
 enum { STICK = 0, SLIP = 1, SLIP_BACK = -1, BLOW = 2, APART_GRIP = 3 };
 enum { LOAD, UNLOAD, RIGID, FREE };
@@ -51,7 +56,7 @@ enum { POWER_CURVE, LEATHER_CURVE };
 enum { HELD, SLIDES, LIFTED };
 enum { NONE, COMPRESSED, APART, RELOADED, TURNED, GRIPPED, SLIPPED, SLIPPED_BACK, TOUCHED, LATE_FLIGHT,
        LIFTED_OFF, LANDED, STOPPED, SLID };
-enum { ENDED, LATE, CROWDED, STUCK, TOO_DEEP, TURNED_TOO_FAR, NO_MEMORY };
+enum { ENDED, LATE, CROWDED, STUCK, TOO_DEEP, TURNED_TOO_FAR, BENT_TOO_FAR, NO_MEMORY };
 
 static inline double larger(double a, double b)
 {
@@ -91,13 +96,18 @@ typedef struct {
     double *turns;   /* (modes, 2, Q), real and imaginary: exp(rate c_i step) */
     double *moments; /* (modes, 2, Q): integrals over the step of exp(rate (step - s)) P_t, over the step */
     double *answer;  /* (reads, ports, Q, Q): from loads at the nodes to readings there */
+    double *bending; /* (Q, Q, channels): by columns, what unit loads at the nodes make of each channel of the slopes */
 } Response;
 
 /* The modes of a cue; rates, readings and drives are complex: xi' = rates xi + drives' load, y = Re(readings xi). */
 typedef struct {
-    int modes, ports, reads; /* the rows of readings: ports, then those whose squares are the power of the dampers */
-    double *rates, *readings, *drives;
-    double inverse_mass[PORTS][PORTS];
+    int modes, ports, slopes, reads; /* rows of readings: ports, slopes, those whose squares are the power of dampers */
+    double *rates, *readings, *drives; /* (modes,), (reads, modes), (ports + slopes, modes) */
+    /* Loads on the slopes reach the readings through real channels, one of a coordinate that nothing damps, else four:
+       with the reading r and the drive d, Re(r m d) = r' d' m' - r" d" m' - r' d" m" - r" d' m". */
+    int channels, *channel_of; /* twice the coordinate, and one more where it is the imaginary part m" that counts */
+    double *channel_drives, *channel_readings; /* (slopes, channels), (reads, channels) */
+    double inverse_mass[PORTS + SLOPES][PORTS + SLOPES];
     Response *responses[LEVELS];
 } Cue;
 
@@ -110,7 +120,7 @@ typedef struct {
     int level;
     double step;
     double F[FORCES][WITH], v[FORCES][WITH], x[FORCES][WITH], depth[WITH], angle[WITH];
-    double loads[ALL_PORTS][Q];
+    double loads[ALL_PORTS][Q], slope_loads[SLOPES][Q], slopes[SLOPES][WITH];
     double *damped; /* (dampers, WITH): what reads them */
 } Step;
 
@@ -125,7 +135,10 @@ typedef struct {
     double *xi;               /* (modes,) complex */
     double *ball;             /* (ball,): its velocities */
     double *ring_shear;       /* (rings,): the force along the surface that each ring bears */
+    const double *slope_weights; /* (slopes,): c_a of a bent cue */
+    double *slopes;              /* (slopes,): s_a */
     int forces, speeds, turns, curve, patch, lossy, terms, levers, rings, recording;
+    int plane; /* slopes in a plane of bending; the last of them is the rotation of the tip */
     double restitution, friction, table_friction, stiffness, exponent, steady, most, compliance, first_ratio;
     double phi, dome, rim, radius, lever_t, lever_n, lever_reach;
     double speed, across, clock, impulse, tolerance, longest, window, most_phases, most_steps; /* across: part of the speed
@@ -133,6 +146,7 @@ typedef struct {
     /* what it gets */
     double time, depth, angle, shear, deepest, peak, height;
     double friction_loss, shear_loss, table_loss, damping_loss, radiated;
+    double thrust, steepest; /* where the tip has turned furthest, N and rad */
     int status, parted, grip, press, steps, tried, rounds, phase_count, record_count, row;
     double *phases;  /* (phase_count, 4 + 2 speeds): grip, press, start, end, the ball's velocities then */
     double *records; /* (record_count, row): see records.c */
@@ -185,7 +199,7 @@ struct Work {
     double C[WITH][FORCES][ALL_PORTS];
     int level, linear, grows, known; /* known: whether a step was taken, whose forces the next one may begin with */
     double last_part, last_step, last_F[FORCES][Q], last_angle[Q];
-    double blows[ALL_PORTS]; /* impulses on the ports since the last record */
+    double blows[ALL_PORTS + SLOPES]; /* impulses on ports and slopes since the last record */
     double *V[LEVELS], V_angle[LEVELS]; /* answers of the contact to its forces, as it faced at an angle */
     Factor *factors[LEVELS][16];
     Step step;
@@ -210,6 +224,16 @@ void solve_factored(int n, const Factor *by, double *b);
 /* modes.c */
 Response *response_of(Cue *cue, int level);
 void advance_modes(const Cue *cue, double *xi, const Response *whole, double time, const double (*waves)[Q]);
+
+/* bent.c */
+int dampers_of(const Cue *cue);
+void shorten_now(const Contact *c, double *y, double *rate);
+void load_slopes(const Contact *c, double along, double *to);
+void gives_now(const Contact *c, double gives[PORTS][PORTS]);
+void add_bending(const Contact *c, const Response *r, const Step *s, int first, int last, double (*y)[WITH]);
+double bend_step(const Contact *c, const Response *r, Step *s, double (*y)[WITH]);
+void begin_slopes(const Contact *c, Step *s);
+int take_slopes(Contact *c, const Step *s, double part);
 
 /* normal.c */
 void curve_at(const Contact *c, double depth, double *F, double *slope, double *k, double *dk);

@@ -6,9 +6,9 @@ static int take(Work *w, const Step *s, double part)
 {
     Contact *c = w->c;
     Cue *cue = c->cue;
-    double span = part * s->step, waves[PORTS][Q];
+    double span = part * s->step, waves[PORTS + SLOPES][Q];
     if (!record(w, s, part)) return NO_MEMORY;
-    for (int d = 0; d < cue->reads - cue->ports; d++) {
+    for (int d = 0; d < dampers_of(cue); d++) {
         const double *speed = s->damped + d * WITH;
         *(d < c->lossy ? &c->damping_loss : &c->radiated) += work_of(speed, speed, s->step, part);
     }
@@ -20,6 +20,7 @@ static int take(Work *w, const Step *s, double part)
         c->ball[b] += span * c->ball_gives[b] * of_ball[0]; /* the first coefficient is the mean */
     }
     for (int p = 0; p < cue->ports; p++) waves_over(s->loads[p], part, waves[p]);
+    for (int a = 0; a < cue->slopes; a++) waves_over(s->slope_loads[a], part, waves[cue->ports + a]);
     advance_modes(cue, c->xi, part == 1 ? response_of(cue, s->level) : NULL, span, waves);
     for (int f = 0; f < c->forces; f++)
         memcpy(w->last_F[f], s->F[f] + 1, sizeof w->last_F[f]);
@@ -28,6 +29,7 @@ static int take(Work *w, const Step *s, double part)
     w->known = 1, w->last_part = part, w->last_step = s->step;
     if (c->curve == LEATHER_CURVE && c->depth > c->most) return TOO_DEEP;
     if (c->levers && fabs(c->angle) > c->lever_reach) return TURNED_TOO_FAR;
+    if (take_slopes(c, s, part)) return BENT_TOO_FAR;
     return ENDED;
 }
 
@@ -137,9 +139,10 @@ static int fly(Work *w, double until)
     Contact *c = w->c;
     Contact before = *c;
     size_t modes = 2 * c->cue->modes * sizeof *c->xi;
-    double *xi = malloc(modes + 1), ball[SPEEDS];
+    double *xi = malloc(modes + 1), ball[SPEEDS], slopes[SLOPES];
     if (!xi) return 0;
     memcpy(xi, c->xi, modes), memcpy(ball, c->ball, sizeof ball);
+    if (c->cue->slopes) memcpy(slopes, c->slopes, c->cue->slopes * sizeof *slopes);
     w->hold = (Hold){APART_GRIP, FREE, HELD}, w->known = 0;
     w->level = 1 + clock_level(c);
     int event = follow(w, until);
@@ -149,6 +152,7 @@ static int fly(Work *w, double until)
         c->damping_loss = before.damping_loss, c->radiated = before.radiated;
         c->record_count = before.record_count, c->phase_count = before.phase_count;
         memcpy(c->xi, xi, modes), memcpy(c->ball, ball, sizeof ball);
+        if (c->cue->slopes) memcpy(c->slopes, slopes, c->cue->slopes * sizeof *slopes);
         if (event < 0) c->status = -event;
     } else {
         c->depth = rest_of(c);
@@ -174,10 +178,10 @@ EXPORTED void contact_run(Contact *c)
         return;
     }
     w->c = c, w->law = c->forces == 2 ? &planar : &raised;
-    w->linear = !c->turns && c->curve == POWER_CURVE && c->exponent == 1 && c->forces == 2;
+    w->linear = !c->turns && !c->cue->slopes && c->curve == POWER_CURVE && c->exponent == 1 && c->forces == 2;
     w->grows = 1;
     w->level = first_level(c);
-    int dampers = c->cue->reads - c->cue->ports;
+    int dampers = dampers_of(c->cue);
     w->step.damped = malloc((dampers + 1) * WITH * sizeof(double));
     double start = c->time, longest = c->longest;
     facing_at(c, c->angle, w->C[0]);

@@ -60,7 +60,7 @@ static void moments_of(double yr, double yi, int n, double *re, double *im)
 
 static void free_response(Response *r)
 {
-    if (r) free(r->turns), free(r->moments), free(r->answer), free(r);
+    if (r) free(r->turns), free(r->moments), free(r->answer), free(r->bending), free(r);
 }
 
 /* The part of the answer of modes that turn slowly: terms of their moments, summed over the modes, times one table. */
@@ -97,6 +97,43 @@ static void add_fast(const Cue *cue, int k, Response *r)
                 for (int j = 0; j < Q; j++) to[j * Q + i] += pr * row_r[j] - pi * row_i[j];
             }
     }
+}
+
+/* What loads at the nodes make of each channel of the slopes, at the nodes. */
+FAST static int add_channels(const Cue *cue, Response *r)
+{
+    int n = cue->channels, before = -1;
+    double h = r->step, to[2][Q * Q];
+    if (!n) return 1;
+    if (!(r->bending = malloc(Q * Q * n * sizeof(double)))) return 0;
+    for (int b = 0; b < n; b++) {
+        int k = cue->channel_of[b] / 2;
+        double yr = cue->rates[2 * k] * h / 2, yi = cue->rates[2 * k + 1] * h / 2, size = hypot(yr, yi);
+        double re[TERMS], im[TERMS];
+        if (k != before) memset(to, 0, sizeof to);
+        if (k == before) {
+        } else if (size < TERMS - 42) {
+            int count = (int)larger(size + 14 + 6 * cbrt(size), Q + 4);
+            moments_of(yr, yi, count, re, im);
+            for (int t = 0; t < count; t++) {
+                double f = h * (2 * t + 1) * (t % 2 ? -1 : 1), fr = f * re[t], fi = f * im[t];
+                const double *from = rule.convolved[t][0];
+                for (int j = 0; j < Q * Q; j++) to[0][j] += fr * from[j], to[1][j] += fi * from[j];
+            }
+        } else
+            for (int i = 0; i < Q; i++) {
+                double c = rule.nodes[i];
+                moments_of(yr * c, yi * c, Q, re, im);
+                for (int t = 0; t < Q; t++)
+                    for (int j = 0; j < Q; j++) {
+                        to[0][j * Q + i] += h * c * re[t] * rule.shortened[i][t][j];
+                        to[1][j * Q + i] += h * c * im[t] * rule.shortened[i][t][j];
+                    }
+            }
+        before = k;
+        for (int j = 0; j < Q * Q; j++) r->bending[j * n + b] = to[cue->channel_of[b] % 2][j];
+    }
+    return 1;
 }
 
 FAST static Response *make_response(const Cue *cue, int level)
@@ -139,6 +176,10 @@ FAST static Response *make_response(const Cue *cue, int level)
     }
     add_series(cue, kappa, count, r);
     free(kappa);
+    if (!add_channels(cue, r)) {
+        free_response(r);
+        return NULL;
+    }
     return r;
 }
 
@@ -171,7 +212,7 @@ FAST void advance_modes(const Cue *cue, double *xi, const Response *whole, doubl
             turn_of(2 * yr, 2 * yi, &tr, &ti);
             moments_of(yr, yi, Q, own, own + Q);
         }
-        for (int b = 0; waves && b < cue->ports; b++) {
+        for (int b = 0; waves && b < cue->ports + cue->slopes; b++) {
             double dr = cue->drives[2 * (b * K + k)], di = cue->drives[2 * (b * K + k) + 1], fr = 0, fi = 0;
             if (dr == 0 && di == 0) continue;
             for (int t = 0; t < Q; t++) fr += re[t] * waves[b][t], fi += im[t] * waves[b][t];
@@ -187,7 +228,7 @@ EXPORTED void cue_follow(const Cue *cue, const double *xi, const double (*waves)
 {
     for (int i = 0; i < count; i++) {
         memcpy(to + 2 * i * cue->modes, xi, 2 * cue->modes * sizeof(double));
-        advance_modes(cue, to + 2 * i * cue->modes, NULL, times[i], waves ? waves + i * cue->ports : NULL);
+        advance_modes(cue, to + 2 * i * cue->modes, NULL, times[i], waves ? waves + i * (cue->ports + cue->slopes) : NULL);
     }
 }
 
@@ -195,25 +236,67 @@ EXPORTED void cue_free(Cue *cue)
 {
     if (!cue) return;
     for (int i = 0; i < LEVELS; i++) free_response(cue->responses[i]);
-    free(cue->rates), free(cue->readings), free(cue->drives), free(cue);
+    free(cue->rates), free(cue->readings), free(cue->drives);
+    free(cue->channel_of), free(cue->channel_drives), free(cue->channel_readings), free(cue);
 }
 
-/* A copy of what is given, all complex: rates (modes,), readings (reads, modes), drives (ports, modes). */
-EXPORTED Cue *cue_new(int modes, int ports, int reads, const double *rates, const double *readings, const double *drives)
+/* The channels from the slopes to the readings; 0 if there is no memory. */
+static int open_channels(Cue *cue)
+{
+    static const int DRIVE[4] = {0, 1, 1, 0}, READ[4] = {0, 1, 0, 1}, MOTION[4] = {0, 0, 1, 1}; /* re or im */
+    const int K = cue->modes, slopes = cue->slopes;
+    if (!slopes) return 1;
+    cue->channel_of = malloc(4 * K * sizeof(int));
+    int *quarter = malloc(4 * K * sizeof(int));
+    if (!cue->channel_of || !quarter) {
+        free(quarter);
+        return 0;
+    }
+    for (int k = 0; k < K; k++) {
+        double of_real = 0, of_imaginary = 0;
+        for (int a = 0; a < slopes; a++) {
+            const double *y = cue->readings + 2 * ((cue->ports + a) * K + k), *d = cue->drives + (y - cue->readings);
+            of_real = larger(of_real, fabs(y[0])), of_imaginary = larger(of_imaginary, larger(fabs(y[1]), fabs(d[1])));
+        }
+        for (int q = 0; q < (of_imaginary > 0 ? 4 : of_real > 0); q++)
+            quarter[cue->channels] = q, cue->channel_of[cue->channels++] = 2 * k + MOTION[q];
+    }
+    const int n = cue->channels;
+    cue->channel_drives = malloc((slopes * n + 1) * sizeof(double));
+    cue->channel_readings = malloc((cue->reads * n + 1) * sizeof(double));
+    for (int b = 0; cue->channel_drives && cue->channel_readings && b < n; b++) {
+        const int k = cue->channel_of[b] / 2, q = quarter[b];
+        for (int a = 0; a < slopes; a++)
+            cue->channel_drives[a * n + b] = cue->drives[2 * ((cue->ports + a) * K + k) + DRIVE[q]];
+        for (int a = 0; a < cue->reads; a++)
+            cue->channel_readings[a * n + b] = (q ? -1 : 1) * cue->readings[2 * (a * K + k) + READ[q]];
+    }
+    free(quarter);
+    return cue->channel_drives && cue->channel_readings;
+}
+
+/* A copy of what is given, all complex: rates (modes,), readings (reads, modes), drives (ports + slopes, modes). */
+EXPORTED Cue *cue_new(int modes, int ports, int slopes, int reads, const double *rates, const double *readings,
+                      const double *drives)
 {
     Cue *cue = calloc(1, sizeof *cue);
     if (!cue) return NULL;
     size_t row = 2 * (size_t)modes * sizeof(double);
-    cue->modes = modes, cue->ports = ports, cue->reads = reads;
-    cue->rates = malloc(row), cue->readings = malloc(reads * row), cue->drives = malloc(ports * row);
+    int pushed = ports + slopes;
+    cue->modes = modes, cue->ports = ports, cue->slopes = slopes, cue->reads = reads;
+    cue->rates = malloc(row), cue->readings = malloc(reads * row), cue->drives = malloc(pushed * row);
     if (!cue->rates || !cue->readings || !cue->drives) {
         cue_free(cue);
         return NULL;
     }
     memcpy(cue->rates, rates, row), memcpy(cue->readings, readings, reads * row);
-    memcpy(cue->drives, drives, ports * row);
-    for (int a = 0; a < ports; a++)
-        for (int b = 0; b < ports; b++)
+    memcpy(cue->drives, drives, pushed * row);
+    if (!open_channels(cue)) {
+        cue_free(cue);
+        return NULL;
+    }
+    for (int a = 0; a < pushed; a++)
+        for (int b = 0; b < pushed; b++)
             for (int k = 0; k < modes; k++) {
                 const double *y = readings + 2 * (a * modes + k), *d = drives + 2 * (b * modes + k);
                 cue->inverse_mass[a][b] += y[0] * d[0] - y[1] * d[1];

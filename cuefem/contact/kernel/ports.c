@@ -55,23 +55,31 @@ void facing_at(const Contact *c, double angle, double C[FORCES][ALL_PORTS])
     C[1][PORTS] = -sa, C[1][PORTS + 1] = ca;
 }
 
-/* What the ports read now. */
-static void ports_now(const Contact *c, double *y)
+/* What the ports read now, and how fast that changes if nothing loads the cue. */
+static void ports_now(const Contact *c, double *y, double *rate)
 {
     const Cue *cue = c->cue;
-    for (int p = 0; p < cue->ports; p++) {
+    double of_cue[PORTS + SLOPES], its_rate[PORTS + SLOPES];
+    for (int p = 0; p < cue->ports + cue->slopes; p++) {
         const double *row = cue->readings + 2 * p * cue->modes;
-        double sum = 0;
-        for (int k = 0; k < cue->modes; k++) sum += row[2 * k] * c->xi[2 * k] - row[2 * k + 1] * c->xi[2 * k + 1];
-        y[p] = sum;
+        double sum = 0, change = 0;
+        for (int k = 0; k < cue->modes; k++) {
+            const double *by = cue->rates + 2 * k, *x = c->xi + 2 * k, *of = row + 2 * k;
+            sum += of[0] * x[0] - of[1] * x[1];
+            if (rate) change += of[0] * (by[0] * x[0] - by[1] * x[1]) - of[1] * (by[0] * x[1] + by[1] * x[0]);
+        }
+        of_cue[p] = sum, its_rate[p] = change;
     }
+    shorten_now(c, of_cue, rate ? its_rate : NULL);
+    memcpy(y, of_cue, cue->ports * sizeof *y);
+    if (rate) memcpy(rate, its_rate, cue->ports * sizeof *rate);
     for (int b = 0; b < c->speeds; b++) y[PORTS + b] = c->ball[b];
 }
 
 void velocities_now(Work *w, double *v)
 {
     double y[ALL_PORTS] = {0};
-    ports_now(w->c, y);
+    ports_now(w->c, y, NULL);
     facing_at(w->c, w->c->angle, w->C[0]);
     for (int f = 0; f < w->c->forces; f++) {
         v[f] = 0;
@@ -86,13 +94,7 @@ void accelerations_now(Work *w, double *a)
     const Cue *cue = c->cue;
     double v[FORCES], y[ALL_PORTS] = {0}, rate[PORTS] = {0};
     velocities_now(w, v);
-    ports_now(c, y);
-    for (int p = 0; p < cue->ports; p++)
-        for (int k = 0; k < cue->modes; k++) {
-            const double *row = cue->readings + 2 * (p * cue->modes + k), *by = cue->rates + 2 * k, *x = c->xi + 2 * k;
-            double re = by[0] * x[0] - by[1] * x[1], im = by[0] * x[1] + by[1] * x[0];
-            rate[p] += row[0] * re - row[1] * im;
-        }
+    ports_now(c, y, rate);
     for (int f = 0; f < c->forces; f++) {
         a[f] = 0;
         for (int p = 0; p < cue->ports; p++) a[f] += w->C[0][f][p] * rate[p];
@@ -107,12 +109,13 @@ void accelerations_now(Work *w, double *a)
 void contact_gives(const Work *w, double B[FORCES][FORCES])
 {
     const Contact *c = w->c;
+    double gives[PORTS][PORTS];
+    gives_now(c, gives);
     for (int f = 0; f < c->forces; f++)
         for (int g = 0; g < c->forces; g++) {
             double sum = 0;
             for (int a = 0; a < c->cue->ports; a++)
-                for (int b = 0; b < c->cue->ports; b++)
-                    sum += w->C[0][f][a] * c->cue->inverse_mass[a][b] * w->C[0][g][b];
+                for (int b = 0; b < c->cue->ports; b++) sum += w->C[0][f][a] * gives[a][b] * w->C[0][g][b];
             for (int b = 0; b < c->speeds; b++) sum += w->C[0][f][PORTS + b] * c->ball_gives[b] * w->C[0][g][PORTS + b];
             B[f][g] = sum;
         }
@@ -123,14 +126,17 @@ void push(Work *w, const double *impulses)
 {
     Contact *c = w->c;
     const Cue *cue = c->cue;
+    double loads[ALL_PORTS + SLOPES];
     for (int p = 0; p < ALL_PORTS; p++) {
-        double load = 0;
-        for (int f = 0; f < c->forces; f++) load += w->C[0][f][p] * impulses[f];
-        w->blows[p] += load;
-        if (p >= PORTS) {
-            if (p - PORTS < c->speeds) c->ball[p - PORTS] += c->ball_gives[p - PORTS] * load;
-        } else if (p < cue->ports)
-            for (int k = 0; k < 2 * cue->modes; k++) c->xi[k] += cue->drives[2 * p * cue->modes + k] * load;
+        loads[p] = 0;
+        for (int f = 0; f < c->forces; f++) loads[p] += w->C[0][f][p] * impulses[f];
+    }
+    load_slopes(c, loads[0], loads + ALL_PORTS);
+    for (int p = 0; p < ALL_PORTS + cue->slopes; p++) w->blows[p] += loads[p];
+    for (int b = 0; b < c->speeds; b++) c->ball[b] += c->ball_gives[b] * loads[PORTS + b];
+    for (int p = 0; p < cue->ports + cue->slopes; p++) {
+        double load = loads[p < cue->ports ? p : ALL_PORTS + p - cue->ports];
+        for (int k = 0; k < 2 * cue->modes; k++) c->xi[k] += cue->drives[2 * p * cue->modes + k] * load;
     }
 }
 

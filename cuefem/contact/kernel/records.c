@@ -2,13 +2,13 @@
 #include "contact.h"
 
 /* A row of the records: time, step, part, grip, press; F and v at the start and the nodes, compression and angle; loads on all
-   ports at the nodes; and the blows on the ports before the step. */
+   ports and slopes at the nodes; and the blows on these before the step. */
 int record(Work *w, const Step *s, double part)
 {
     Contact *c = w->c;
     if (!c->recording) return 1;
-    int ports = PORTS + c->speeds;
-    c->row = 5 + 2 * c->forces * WITH + 2 * WITH + ports * Q + ports;
+    int ports = PORTS + c->speeds, slopes = c->cue->slopes;
+    c->row = 5 + 2 * c->forces * WITH + 2 * WITH + (ports + slopes) * (Q + 1);
     if ((c->record_count & (c->record_count - 1)) == 0) { /* room for twice as many at every power of two */
         size_t room = c->record_count ? 2 * (size_t)c->record_count : 64;
         if (c->record_count == 0 || c->record_count >= 64) {
@@ -24,7 +24,9 @@ int record(Work *w, const Step *s, double part)
     memcpy(to, s->depth, sizeof s->depth), to += WITH;
     memcpy(to, s->angle, sizeof s->angle), to += WITH;
     memcpy(to, s->loads, ports * sizeof s->loads[0]), to += ports * Q;
-    memcpy(to, w->blows, ports * sizeof *to);
+    memcpy(to, s->slope_loads, slopes * sizeof s->slope_loads[0]), to += slopes * Q;
+    memcpy(to, w->blows, ports * sizeof *to), to += ports;
+    memcpy(to, w->blows + ALL_PORTS, slopes * sizeof *to);
     memset(w->blows, 0, sizeof w->blows);
     return 1;
 }

@@ -96,13 +96,16 @@ FAST static double move(Work *w, const Response *r, const double (*own)[WITH], c
 {
     const Contact *c = w->c;
     int n = c->forces, ports = c->cue->ports, all = PORTS + c->speeds, turns = c->turns;
-    double y[ALL_PORTS][WITH], changed = 0;
+    int slopes = c->cue->slopes;
+    double of_cue[PORTS + SLOPES][WITH], y[ALL_PORTS][WITH], changed = 0;
     for (int p = 0; p < all; p = p == ports - 1 ? PORTS : p + 1) {
         memset(s->loads[p], 0, sizeof s->loads[p]);
         for (int f = 0; f < n && F; f++)
             for (int i = 0; i < Q; i++) s->loads[p][i] += w->C[turns ? i + 1 : 0][f][p] * F[f][i];
     }
-    loaded(c->cue, r, own, F ? (const double(*)[Q])s->loads : NULL, 0, ports, y);
+    loaded(c->cue, r, own, F ? (const double(*)[Q])s->loads : NULL, 0, ports + slopes, of_cue);
+    if (slopes) changed = bend_step(c, r, s, of_cue);
+    memcpy(y, of_cue, ports * sizeof *y);
     for (int b = 0; b < c->speeds; b++) {
         for (int i = 0; i < WITH; i++) y[PORTS + b][i] = c->ball[b];
         if (F) add_product(Q, rule.force_sums[0], s->loads[PORTS + b], r->step * c->ball_gives[b], y[PORTS + b] + 1);
@@ -114,7 +117,7 @@ FAST static double move(Work *w, const Response *r, const double (*own)[WITH], c
         add_product(WITH, rule.sums[0], s->v[f], r->step, s->x[f] + 1);
     }
     for (int i = 0; i < WITH; i++) s->depth[i] = c->depth - s->x[1][i];
-    if (!turns) return 0;
+    if (!turns) return changed;
     double rate[WITH], angle[WITH];
     for (int i = 0; i < WITH; i++) {
         double dome = rolls_on(c, s->angle[i]);
@@ -135,7 +138,7 @@ int solve_step(Work *w, int level, Step *s)
 {
     Contact *c = w->c;
     Response *r = response_of(c->cue, level);
-    int n = c->forces, wide = n * Q, dampers = c->cue->reads - c->cue->ports;
+    int n = c->forces, wide = n * Q, dampers = dampers_of(c->cue);
     if (!r) return 0;
     double size = c->impulse / c->clock, F[FORCES][Q], before = HUGE_VAL, own[c->cue->reads][WITH];
     Factor mine, *by = &mine;
@@ -145,6 +148,7 @@ int solve_step(Work *w, int level, Step *s)
     for (int f = 0; f < n && w->known && !w->linear; f++) go_on(w, w->last_F[f], r->step, F[f]);
     for (int i = 0; i < WITH; i++) s->angle[i] = c->angle;
     if (c->turns && w->known) go_on(w, w->last_angle, r->step, s->angle + 1);
+    begin_slopes(c, s);
     facing_at(c, c->angle, w->C[0]);
     for (int i = 1; i < WITH && c->turns; i++) facing_at(c, s->angle[i], w->C[i]);
     int settled = 0, slow = 0;
@@ -191,9 +195,12 @@ int solve_step(Work *w, int level, Step *s)
     }
     if (c->depth == 0 && c->time == 0) /* the first touch has no force yet */
         for (int f = 0; f < n; f++) s->F[f][0] = 0;
-    if (settled && dampers)
-        loaded(c->cue, r, (const double(*)[WITH])own, (const double(*)[Q])s->loads, c->cue->ports, c->cue->reads,
-               (double(*)[WITH])s->damped);
+    if (settled && dampers) {
+        int first = c->cue->reads - dampers;
+        double(*damped)[WITH] = (double(*)[WITH])s->damped;
+        loaded(c->cue, r, (const double(*)[WITH])own, (const double(*)[Q])s->loads, first, c->cue->reads, damped);
+        if (c->cue->slopes) add_bending(c, r, s, first, c->cue->reads, damped);
+    }
     return settled;
 }
 
