@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+from importlib.resources import files
 from typing import NamedTuple
 
 __all__ = ["CHAPTERS", "LINES", "Chapter", "chapters", "effect_lines"]
@@ -46,8 +47,6 @@ def chapters() -> tuple[Chapter, ...]:
 
 
 def _chapter(name: str) -> Chapter:
-    from importlib.resources import files
-
     text = files(__package__).joinpath(f"{name}.md").read_text(encoding="utf-8")
     title = text.partition("\n")[0].removeprefix("# ")
     return Chapter(name, title, text + _every_effect() if name == "effects" else text)

@@ -9,10 +9,12 @@ from cuefem.design import METHODS, Levels, Normal, Response, Sample, Span, Study
 from cuefem.design.optimum import Limit, Problem
 from cuefem.design.scatter import Scatter
 from cuefem.games import GAMES, usual_scene
+from cuefem.io import load_stroke
 from cuefem.io.errors import InputError, faults_of, shown
 from cuefem.io.schema import build, joined, unknown_key
 from cuefem.io.toml import named_material, read_tables
 from cuefem.quantity import Quantity
+from cuefem.results.quantities import with_unit
 from cuefem.scene import Resolution, Scene, Stroke
 from cuefem.vary import paths, quantity_at, value_at
 
@@ -148,8 +150,6 @@ def _list(found: dict[str, Any], key: str, path: Path) -> list[Any]:
 
 
 def _base(found: dict[str, Any], path: Path, offset: float) -> Scene:
-    from cuefem.io import load_stroke
-
     name = found.get("scene")
     if not isinstance(name, str):
         got = shown(name) if "scene" in found else "nothing"
@@ -168,15 +168,13 @@ def _base(found: dict[str, Any], path: Path, offset: float) -> Scene:
 
 def assumed_base(path: Path, base: Scene) -> list[str]:
     """What the base of a study is struck with, where the file that it names holds a cue alone."""
-    from cuefem.io import load_stroke
-
     found = read_tables(path)
     if isinstance(load_stroke(path.parent / found["scene"]), Scene):
         return []
     if "game" in found:
         return [f"a usual stroke of {found['game']} (game)"]
-    grams, ms = 1e3 * float(base.ball.mass), 1e3 * float(base.contact_time)
-    told = f"{found['scene']} is a cue alone, struck with a ball of {grams:g} g and a flat tip in contact for {ms:g} ms"
+    ball, time = with_unit(float(base.ball.mass), "kg", 6), with_unit(float(base.contact_time), "s", 6)
+    told = f"{found['scene']} is a cue alone, struck with a ball of {ball} and a flat tip in contact for {time}"
     return [f'{told}, b/R {base.stroke.offset:g}; game = "pool" in the study takes the usual stroke of pool']
 
 
