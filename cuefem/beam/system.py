@@ -83,7 +83,7 @@ class System:
         return vectors[0], vectors[1] / self.length
 
     def geometric_stiffness(self, vectors: Array, masses: Sequence[tuple[float, float]]) -> Array:
-        """What a newton of thrust at the tip does to unknowns ``vectors`` (unknowns, k): integral p w_i' w_j' dx, (k, k).
+        """What a newton of thrust at the tip does to ``vectors`` (unknowns, k): integral p w_i' w_j' dx, (k, k).
 
         The cue shortens by half the integral of w'^2 as it bends. Seen from its centre of mass, the tip goes back by
         half the integral of p w'^2, p(x) being the share of the mass behind x, and p is also the share of the thrust
