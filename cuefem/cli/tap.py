@@ -106,7 +106,7 @@ def _heard(recording: Path, file: Path, scene: Scene, given: dict[str, Any]) -> 
     with blaming(recording):
         heard = ringing(sound.samples, sound.rate)
     try:
-        return heard, test.fit(tones(heard))
+        return heard, test.fit(tones(heard), heard.rate)
     except RuntimeError as error:
         raise RuntimeError(f"{recording}: {error}") from None
 

@@ -48,7 +48,7 @@ def tapped(scene: Scene, content: bytes, mass: float | None) -> Tapped:
         except ValueError as error:
             raise ValueError(str(error).replace(f"{folder}/", "")) from None
     heard = ringing(sound.samples, sound.rate)
-    return Tapped(test.fit(tones(heard)), heard)
+    return Tapped(test.fit(tones(heard), heard.rate), heard)
 
 
 def with_wood(scene: Scene, found: TapFit) -> Scene:

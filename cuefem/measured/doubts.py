@@ -21,9 +21,8 @@ MOST, NEARLY_ALL = 0.5, 0.8
 POOR = 5e-3  # misfit that a good drawing of an even shaft does not have
 KEPT = 0.25  # error of the file's ln G/E, if the tones do not determine it
 DENSITY = 0.1  # relative error of the file's density, if the shaft was not weighed (Wood Handbook, spread of a wood)
-WRONG_RATES = {
-    44.1 / 48: "44.1 kHz for 48",
-    48 / 44.1: "48 kHz for 44.1",
+RATES = (8000.0, 16000.0, 22050.0, 32000.0, 44100.0, 48000.0, 88200.0, 96000.0)  # usual ones, samples a second
+WRONG_RATES = {44.1 / 48: "44.1 kHz for 48", 48 / 44.1: "48 kHz for 44.1"} | {
     0.5: "half of what it says",
     2.0: "twice what it says",
 }
@@ -57,6 +56,12 @@ def refusals(found: TapFit, *, edge: bool = False) -> list[str]:
         sets = f"random sets of {clear} tones" if clear > 1 else "random single tones"
         share = f"{100 * found.chance:.2g} % of {sets} fit as well, above {100 * LEVEL:g} %"
         lines.append(f"the tones fit this shaft no better than by chance ({share})")
+    if found.note:
+        of = sum(match.tone.kind in ("tone", "harmonic") for match in found.matched)
+        lines.append(
+            f"a string, a pipe or a voice explains the tones better: {found.note.partials} of {of} are partials of a "
+            f"note of {found.note.frequency:.4g} Hz"
+        )
     if len(missed := missing(found)) > len(heard):
         lines.append(f"{len(missed)} of the {len(missed) + len(heard)} modes that should be heard are missing")
     if explained(found) < MOST:
@@ -72,23 +77,40 @@ def refusals(found: TapFit, *, edge: bool = False) -> list[str]:
 
 
 def wrong_rate(found: TapFit) -> list[str]:
-    """What the lowest tone and E would be at another sampling rate, if only that makes the wood one that exists.
+    """What the lowest tone and E would be at another sampling rate, if only that makes the wood one that exists."""
+    for factor, words in WRONG_RATES.items():
+        wood = replace(found.wood, E=factor**2 * found.wood.E, G=factor**2 * found.wood.G)
+        if unlike(found.wood, found.before) and not unlike(wood, found.before):
+            return [f"if the file's sampling rate is wrong, {words}, {at_rate(found, factor)}"]
+    return []
+
+
+def other_rate(found: TapFit, rate: float) -> str:
+    """What the tap would tell at the usual sampling rate that is nearest to the one its file says."""
+    usual = min((each for each in RATES if abs(each - rate) > 1.0), key=lambda each: abs(np.log(each / rate)))
+    return (
+        f"the file says {rate:g} samples a second, which is believed; if it was recorded at {usual:g}, "
+        f"{at_rate(found, usual / rate)}"
+    )
+
+
+def at_rate(found: TapFit, factor: float) -> str:
+    """The lowest tone and E at a sampling rate ``factor`` times that of the file.
 
     All tones of a shaft rise with the root of E and G together, so a wrong rate is heard as other wood.
     """
     lowest = min(match.tone.frequency for match in found.matched if match.mode is not None)
-    for factor, words in WRONG_RATES.items():
-        wood = replace(found.wood, E=factor**2 * found.wood.E, G=factor**2 * found.wood.G)
-        if unlike(found.wood, found.before) and not unlike(wood, found.before):
-            return [
-                f"if the file's sampling rate is wrong, {words}, the lowest tone is {factor * lowest:.4g} Hz, not "
-                f"{lowest:.4g} Hz and E is {wood.E / 1e9:.3g} GPa"
-            ]
-    return []
+    return (
+        f"the lowest tone is {factor * lowest:.4g} Hz, not {lowest:.4g} Hz, and "
+        f"E is {factor**2 * found.wood.E / 1e9:.3g} GPa, not {found.wood.E / 1e9:.3g} GPa"
+    )
 
 
-def remarks(found: TapFit) -> list[str]:
-    """What else is worth knowing about a result, one line each, without repeating `refusals`."""
+def remarks(found: TapFit, rate: float | None = None) -> list[str]:
+    """What else is worth knowing about a result, one line each, without repeating `refusals`.
+
+    rate: of the recording, by its file, samples a second.
+    """
     heard = [match.mode for match in found.matched if match.mode is not None]
     lines = []
     if not found.told:
@@ -108,6 +130,8 @@ def remarks(found: TapFit) -> list[str]:
         lines.append(f"not heard: mode{'s' if len(missed) > 1 else ''} {', '.join(map(str, missed))}")
     if any(match.tone.kind == "twin" for match in found.matched):
         lines.append("some tones are double: the shaft bends differently in two planes; their means are used")
+    if rate is not None and not wrong_rate(found):
+        lines.append(other_rate(found, rate))
     return lines
 
 

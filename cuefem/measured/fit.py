@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cuefem.cue import Array, Cue, Material
+from cuefem.measured.strings import Note
 from cuefem.measured.tones import Tone
 
 
@@ -30,7 +31,8 @@ class TapFit:
     wood's. misfit: root mean square of the tones' relative distances from their modes, sharp tones counting more.
     notes: what a person should know, one line each. chance: p-value of tones that are not the shaft's
     (`cuefem.measured.chance`). shear_coefficients: smallest and largest kappa along the wood; the value of G belongs to
-    them. refusals: reasons not to trust the result, one line each; empty for a sound one.
+    them. note: of a string or a voice that explains the tones better than this shaft, if one does
+    (`cuefem.measured.strings`). refusals: reasons not to trust the result, one line each; empty for a sound one.
     """
 
     cue: Cue
@@ -47,6 +49,7 @@ class TapFit:
     notes: tuple[str, ...]
     chance: float = 1.0
     shear_coefficients: tuple[float, float] = (0.0, 0.0)
+    note: Note | None = None
     refusals: tuple[str, ...] = ()
 
     @property

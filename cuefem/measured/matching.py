@@ -30,6 +30,7 @@ UNHEARD = 0.3  # chance that the recording misses a mode
 TWICE = 6.0  # ln of the odds against two tones on one mode: one of them is wrong
 SPREADS = (0.5, 0.5)  # of ln E and ln G/E about the file's, standard deviations before anything is heard
 REFINED = 20  # hypotheses
+RIVAL = np.log(20)  # a hypothesis whose odds are better than 1 : 20 is not ruled out
 SAME = 0.02  # relative: hypotheses whose E is closer are one
 
 
@@ -92,7 +93,7 @@ class ModeTable:
     def hypotheses(self, tones: Sequence[Tone]) -> list[Hypothesis]:
         """Hypotheses that explain a tone or more, the best first, no two of the same E."""
         heard = np.log([tone.frequency for tone in tones])
-        wrong = np.array([DOUBTFUL if tone.kind == "harmonic" else WRONG for tone in tones])
+        wrong = chances_of_no_mode(tones)
         ratios = np.linspace(*self.shaft.ratios, 41)
         proposed = np.concatenate([self._proposed(heard, r) for r in ratios])
         scores = self._scores(proposed, heard, wrong, 3 * TOLERANCE)
@@ -127,24 +128,8 @@ class ModeTable:
 
     def _scores(self, theta: Array, heard: Array, wrong: Array, tolerance: float) -> Array:
         """ln of the weight of every hypothesis (n, 2): tones explained, modes unheard, what is known of wood."""
-        f = self.log_frequencies(*theta.T)
-        gaps = np.abs(heard[:, None] - f[:, None, :])  # (n, tones, modes)
-        nearest, gap = gaps.argmin(axis=2), gaps.min(axis=2)
-        audible = ((f > np.log(LOW)) & (f < np.log(HIGH))).sum(axis=1)
-        density = (
-            -((gap / tolerance) ** 2) / 2 - np.log(tolerance * np.sqrt(2 * np.pi) * np.maximum(audible, 1))[:, None]
-        )
-        own, none = density + np.log1p(-wrong), np.log(wrong / np.log(HIGH / LOW))
-        explained = own > none
-        taken = np.zeros(f.shape, bool)
-        rows = np.arange(len(f))[:, None]
-        taken[np.broadcast_to(rows, nearest.shape)[explained], nearest[explained]] = True
-        top = np.where(taken, f, -np.inf).max(axis=1)
-        unheard = ((f > np.log(LOW)) & (f < top[:, None]) & ~taken).sum(axis=1)
-        twice = explained.sum(axis=1) - taken.sum(axis=1)
         known = ((theta - self.shaft.start[:2]) / SPREADS) ** 2
-        score = np.maximum(own, none).sum(axis=1) + unheard * np.log(UNHEARD) - TWICE * twice
-        return np.asarray(score - known.sum(axis=1) / 2)
+        return weighed(self.log_frequencies(*theta.T), heard, wrong, tolerance) - known.sum(axis=1) / 2
 
     def _refined(self, theta: Array, heard: Array, wrong: Array) -> Hypothesis:
         """The hypothesis where its own tones fit best, and which tones those are."""
@@ -172,3 +157,25 @@ def assigned(heard: Array, f: Array, width: float | Array) -> Array:
         if gaps[i, mode] <= width[i] and mode not in own:
             own[i] = mode
     return own
+
+
+def chances_of_no_mode(tones: Sequence[Tone]) -> Array:
+    """The chance of each tone to belong to no mode."""
+    return np.array([DOUBTFUL if tone.kind == "harmonic" else WRONG for tone in tones])
+
+
+def weighed(f: Array, heard: Array, wrong: Array, tolerance: float) -> Array:
+    """ln of the weight of every body (n,) with tones f, ln Hz, (n, modes): tones explained, and modes unheard."""
+    gaps = np.abs(heard[:, None] - f[:, None, :])  # (n, tones, modes)
+    nearest, gap = gaps.argmin(axis=2), gaps.min(axis=2)
+    audible = ((f > np.log(LOW)) & (f < np.log(HIGH))).sum(axis=1)
+    density = -((gap / tolerance) ** 2) / 2 - np.log(tolerance * np.sqrt(2 * np.pi) * np.maximum(audible, 1))[:, None]
+    own, none = density + np.log1p(-wrong), np.log(wrong / np.log(HIGH / LOW))
+    explained = own > none
+    taken = np.zeros(f.shape, bool)
+    rows = np.arange(len(f))[:, None]
+    taken[np.broadcast_to(rows, nearest.shape)[explained], nearest[explained]] = True
+    top = np.where(taken, f, -np.inf).max(axis=1)
+    unheard = ((f > np.log(LOW)) & (f < top[:, None]) & ~taken).sum(axis=1)
+    twice = explained.sum(axis=1) - taken.sum(axis=1)
+    return np.asarray(np.maximum(own, none).sum(axis=1) + unheard * np.log(UNHEARD) - TWICE * twice)

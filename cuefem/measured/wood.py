@@ -20,7 +20,8 @@ from cuefem.endmass.drives import end_mass
 from cuefem.measured.chance import by_chance
 from cuefem.measured.doubts import DENSITY, KEPT, refusals, remarks, shear_coefficients
 from cuefem.measured.fit import Matched, TapFit
-from cuefem.measured.matching import FACTOR, ModeTable, Shaft, assigned
+from cuefem.measured.matching import FACTOR, RIVAL, ModeTable, Shaft, assigned
+from cuefem.measured.strings import Note, better_note
 from cuefem.measured.tones import Tone
 from cuefem.parts import main_material, with_material
 from cuefem.quantity import Quantity, check_kind
@@ -30,7 +31,6 @@ MODEL = 2e-3  # relative, of a mode's frequency: diameters to 0.1 %, uneven grai
 SCALE = 0.5e-3  # kg, error of a kitchen scale
 TOLD = 0.15  # ln G/E: the tones determine it if they leave it uncertain by less than this
 ODD = 0.15  # relative change of density by the weighed mass that is worth a word
-RIVAL = np.log(20)  # a hypothesis whose odds are better than 1 : 20 is not ruled out
 STEP = 0.02  # of differences in the logarithms, for the numbers that follow from the wood
 OUTLIER = 4.5  # standard deviations
 STEPS, SETTLED = 8, 1e-9  # steps of the least squares; change of the logarithms at which they have converged
@@ -93,8 +93,11 @@ class TapTest:
             )
         return rho, SCALE / (mass - others)
 
-    def fit(self, tones: Sequence[Tone]) -> TapFit:
-        """The wood that explains the tones best. RuntimeError if they are not the bending tones of any such shaft."""
+    def fit(self, tones: Sequence[Tone], rate: float | None = None) -> TapFit:
+        """The wood that explains the tones best; rate: of the recording, by its file, samples a second.
+
+        RuntimeError if they are not the bending tones of any such shaft.
+        """
         used = [tone for tone in tones if tone.kind in ("tone", "harmonic")]
         found = self.table.hypotheses(used) if used else []
         clear = sum(tone.kind == "tone" for tone in used)
@@ -124,13 +127,21 @@ class TapTest:
             for tone in tones
         )
         rivals = [(h, found[0].score - h.score) for h in found[1:]]
-        chance = by_chance(self.table, tones)
-        return self._told(
-            np.exp(f), matched, theta, covariance, told, [(h, odds) for h, odds in rivals if odds < RIVAL], chance
-        )
+        rivals = [(h, odds) for h, odds in rivals if odds < RIVAL]
+        told_by = by_chance(self.table, tones), better_note(used, found[0].score), rate
+        return self._told(np.exp(f), matched, theta, covariance, told, rivals, *told_by)
 
     def _told(
-        self, frequencies: Array, matched: Any, theta: Array, covariance: Array, told: bool, rivals: Any, chance: float
+        self,
+        frequencies: Array,
+        matched: Any,
+        theta: Array,
+        covariance: Array,
+        told: bool,
+        rivals: Any,
+        chance: float,
+        note: Note | None,
+        rate: float | None,
     ) -> TapFit:
         E, ratio, rho = map(float, np.exp(theta))
         wood = replace(self.shaft.wood, E=E, G=ratio * E, rho=rho)
@@ -151,10 +162,11 @@ class TapTest:
             misfit=float(np.sqrt(np.average(gaps**2, weights=1 / trust))),
             notes=(),
             chance=chance,
+            note=note,
         )
         edge = bool(told and not self.shaft.ratios[0] < theta[1] < self.shaft.ratios[1])
         doubts, kappa = tuple(refusals(found, edge=edge)), shear_coefficients(found.cue, wood)
-        notes = (*self.notes, *remarks(found))
+        notes = (*self.notes, *remarks(found, rate))
         return replace(found, notes=notes, shear_coefficients=kappa, refusals=doubts)
 
     def _solved(self, theta: Array, heard: Array, own: Array, sd: Array) -> tuple[Array, Array, bool, Array]:
