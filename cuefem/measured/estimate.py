@@ -17,7 +17,7 @@ import numpy as np
 from cuefem.cue import Array
 from cuefem.measured.documented import DocumentedCue, Row, Track, rows_of
 from cuefem.measured.kinds import KINDS, Measurement, Squirt
-from cuefem.measured.outliers import solved
+from cuefem.measured.outliers import NOTICED, WIDER, solved
 
 STEPS, SETTLED = 12, 0.05  # steps at most; length of a step, in standard deviations of the result, that ends them
 AGAIN = 6  # steps at most of the search that counts contradictions less
@@ -56,6 +56,16 @@ class Worth(NamedTuple):
     squirt_left: float
 
 
+class Unchecked(NamedTuple):
+    """A measurement that nothing else checks: a mistake of ten of its errors would go unnoticed, and nothing covers it.
+
+    value: the unknown that rests on it most, as it is without this measurement.
+    """
+
+    measurement: Measurement
+    value: Value
+
+
 @dataclass(frozen=True, eq=False)
 class Estimate:
     """The unknowns of a cue after its measurements.
@@ -78,11 +88,32 @@ class Estimate:
     @property
     def values(self) -> tuple[Value, ...]:
         """The unknowns in their units."""
+        return self._values(self.z, self.covariance)
+
+    def _values(self, mean: Array, covariance: Array) -> tuple[Value, ...]:
         made = []
-        for unknown, z, sd in zip(self.cue.unknowns, self.z, np.sqrt(np.diag(self.covariance)), strict=True):
+        for unknown, z, sd in zip(self.cue.unknowns, mean, np.sqrt(np.diag(covariance)), strict=True):
             names = (unknown.name, unknown.words, unknown.unit, unknown.usual)
             at, low, high = (unknown.value(float(each)) for each in (z, z - sd, z + sd))
             made.append(Value(*names, at, low, high, float(sd)))
+        return tuple(made)
+
+    @property
+    def unchecked(self) -> tuple[Unchecked, ...]:
+        """The measurements that nothing else checks.
+
+        The others predict a measurement with some error. A mistake of `WIDER` of its own errors is noticed if that is
+        `NOTICED` errors of the prediction and the measurement together (the reliability of W. Baarda, 1968).
+        """
+        J, residuals = _scaled(self.cue, self.z, self.computed, self.slopes)
+        made = []
+        for i, one in enumerate(self.cue.found):
+            others = np.arange(len(J)) != i
+            foreseen = J[i] @ np.linalg.solve(J[others].T @ J[others] + np.eye(len(self.z)), J[i])
+            if NOTICED**2 * (1 + foreseen) > WIDER**2:
+                mean, covariance, _ = solved(J[others], residuals[others])
+                rests = int(np.argmax(np.diag(covariance) / np.diag(self.covariance)))
+                made.append(Unchecked(one, self._values(mean, covariance)[rests]))
         return tuple(made)
 
     @property
@@ -103,21 +134,21 @@ class Estimate:
         return at, bare.slopes(self.z, others)
 
     def next(self) -> tuple[Worth, ...]:
-        """What each further measurement would tell, the most telling about squirt first."""
+        """What each further measurement would tell, the most telling about squirt first.
+
+        Each as if it came out as the estimate predicts it; it may also check those that were made.
+        """
         target = squirt_of(self.cue)
         others = [one for kind in KINDS.values() for one in kind.next(self.cue.scene)]
         at, slopes = self._also((target, *others))
-        to_squirt, variance = slopes[0], float(slopes[0] @ self.covariance @ slopes[0])
+        J, residuals = _scaled(self.cue, self.z, self.computed, self.slopes)
         made = []
-        for one, slope in zip(others, slopes[1:], strict=True):
-            along = self.covariance @ slope
-            whole = float(slope @ along) + one.sd**2
-            after = self.covariance - np.outer(along, along) / whole
+        for one, slope in zip(others, slopes[1:] / [[one.sd] for one in others], strict=True):
+            after = solved(np.vstack([J, slope]), np.append(residuals, slope @ self.z)).covariance
             left = np.sqrt(np.diag(after) / np.diag(self.covariance))
             i = int(np.argmin(left))
-            squirt = variance - float(to_squirt @ along) ** 2 / whole
-            bits = 0.5 * np.log2(whole / one.sd**2)
-            relative = float(np.sqrt(max(squirt, 0.0))) / abs(float(at[0]))
+            bits = 0.5 / np.log(2) * (np.linalg.slogdet(self.covariance)[1] - np.linalg.slogdet(after)[1])
+            relative = float(np.sqrt(slopes[0] @ after @ slopes[0])) / abs(float(at[0]))
             made.append(Worth(one, float(bits), self.cue.unknowns[i].words, float(left[i]), relative))
         return tuple(sorted(made, key=lambda worth: worth.squirt_left))
 
@@ -179,11 +210,9 @@ def estimate(cue: DocumentedCue, *, track: Track = iter) -> Estimate:
 
 def _counted(cue: DocumentedCue, z: Array, at: Array, misfit: float) -> Estimate:
     """The estimate about a start, in which a measurement that contradicts the others counts less."""
-    measured, sd = np.array([[one.measured, one.sd] for one in cue.found]).T
     for last in range(1, AGAIN + 1):
         slopes = cue.slopes(z)
-        J = slopes / sd[:, None]
-        mean, covariance, wrong = solved(J, (measured - at) / sd + J @ z)
+        mean, covariance, wrong = solved(*_scaled(cue, z, at, slopes))
         step = mean - z
         converged = float(np.sqrt(step @ np.linalg.solve(covariance, step))) < SETTLED
         if converged or last == AGAIN:
@@ -192,6 +221,13 @@ def _counted(cue: DocumentedCue, z: Array, at: Array, misfit: float) -> Estimate
         possible = ((there, computed) for there in ways if (computed := cue.possible(there)) is not None)
         z, at = next(possible, (z, at))
     return Estimate(cue, z, covariance, at, slopes, misfit, converged, wrong)
+
+
+def _scaled(cue: DocumentedCue, z: Array, at: Array, slopes: Array) -> tuple[Array, Array]:
+    """The linear problem about z: slopes and residuals (of z = 0) in the measurements' errors."""
+    measured, sd = np.array([[one.measured, one.sd] for one in cue.found]).T
+    J = slopes / sd[:, None]
+    return J, (measured - at) / sd + J @ z
 
 
 def _limited(step: Array) -> Array:

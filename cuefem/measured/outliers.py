@@ -17,7 +17,8 @@ from cuefem.cue import Array
 
 WIDER = 10.0  # times the stated error: that of a wrong number
 MISREAD = 0.1  # share of readings by eye that are wrong
-MISTAKEN = 1e-4  # share of measurements that are wrong: contradictions of 5 errors and more outweigh it
+MISTAKEN = 1e-3  # share of measurements that are wrong: contradictions of `NOTICED` errors outweigh it
+NOTICED = float(np.sqrt(2 * np.log(WIDER / MISTAKEN)))
 TOGETHER = 2  # measurements that are wrong at once, at most
 HOLDS_95 = 1.959964  # standard deviations either way that hold 95 %
 FINE = 20  # points a standard deviation

@@ -237,6 +237,9 @@ def estimate_record(found: Estimate, worths: Sequence[Worth], squirt: tuple[floa
         "misfit": found.misfit,
         "measurements": len(found.cue.found),
         "wrong": found.wrong.tolist(),
+        "unchecked": [
+            {"what": each.measurement.label, "without": value_record(each.value)} for each in found.unchecked
+        ],
         "converged": found.converged,
         "squirt": squirt[0],
         "squirt_error": squirt[1],
@@ -300,6 +303,13 @@ def _estimate_notes(record: Record) -> list[str]:
             notes.append(
                 f"{row['what']} contradicts the others and hardly counts (chance of being wrong {100 * chance:.0f} %)."
             )
+    for each in record["unchecked"]:
+        without = each["without"]
+        low, high = (with_unit(without[end], without["unit"]) for end in ("low", "high"))
+        notes.append(
+            f"Nothing here checks {each['what']}, and the intervals hold no mistake in it: without it, "
+            f"{without['words']} is {low} to {high} (68 %)."
+        )
     if not record["converged"]:
         notes.append(
             "The search did not settle: the measurements contradict each other, and the intervals are too narrow."

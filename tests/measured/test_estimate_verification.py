@@ -10,7 +10,7 @@ import pytest
 from cuefem.measured.documented import DocumentedCue
 from cuefem.measured.estimate import Estimate, estimate
 from cuefem.measured.kinds import KINDS, Measurement, Stiffness, Tone, Weight
-from cuefem.measured.outliers import HOLDS_95, MISTAKEN, log_density
+from cuefem.measured.outliers import HOLDS_95, MISTAKEN, log_density, solved
 from cuefem.measured.sampler import Expansion, sampled
 from cuefem.measured.unknowns import Prior
 from tests.helpers.documented import SCENE, blank, documented
@@ -93,12 +93,9 @@ def test_every_unknown_is_put_where_it_belongs(name: str) -> None:
 
 
 def contradictory(cue: DocumentedCue, seed: int) -> tuple[DocumentedCue, int]:
-    """The cue with one measurement off by 6 to 20 of its errors, and which.
-
-    Not the weight: nothing else tells the density to a few of its errors, so that a wrong one contradicts nothing.
-    """
+    """The cue with one measurement off by 6 to 20 of its errors, and which."""
     generator = np.random.default_rng([seed, 5])
-    wrong = int(generator.integers(1, len(cue.found)))
+    wrong = int(generator.integers(len(cue.found)))
     values = np.array([one.measured for one in cue.found])
     values[wrong] += generator.choice([-1, 1]) * generator.uniform(6, 20) * cue.found[wrong].sd
     return measured_as(cue, values), wrong
@@ -139,6 +136,64 @@ def test_intervals_cover_the_unknowns_of_made_up_cues(wrong: bool) -> None:
 
 
 @pytest.fixture(scope="module")
+def linear() -> tuple[DocumentedCue, np.ndarray]:
+    """A cue measured as its drawing computes, and the slopes of its values."""
+    cue = made_up(0, size=0.0)[0]
+    zero = np.zeros(len(cue.unknowns))
+    return measured_as(cue, cue.computed(zero)), cue.slopes(zero)
+
+
+def linear_estimate(cue: DocumentedCue, slopes: np.ndarray, values: np.ndarray) -> Estimate:
+    """What `estimate` is where the values are linear in the unknowns, measured beside the drawing's by ``values``."""
+    sd = np.array([one.sd for one in cue.found])
+    mean, covariance, wrong = solved(slopes / sd[:, None], values / sd)
+    there = np.array([one.measured for one in cue.found])
+    off = measured_as(cue, there + values)
+    return Estimate(off, mean, covariance, there + slopes @ mean, slopes, 0.0, True, wrong)
+
+
+@pytest.mark.parametrize("wrong", [None, *range(7)])
+def test_intervals_cover_whichever_measurement_is_wrong(
+    wrong: int | None, linear: tuple[DocumentedCue, np.ndarray]
+) -> None:
+    """A reading that is 6 to 20 errors off: the intervals hold the truth, or the estimate says that nothing checks it.
+
+    Without that reading, as the estimate tells it, the unknown that rests on it lies in its interval as often as said.
+    """
+    cue, slopes = linear
+    generator, sd = np.random.default_rng(26), np.array([one.sd for one in cue.found])
+    pulls, without, named = [], [], []
+    for _ in range(300):
+        z = generator.normal(size=slopes.shape[1])
+        noise = generator.normal(size=len(sd))
+        if wrong is not None:
+            noise[wrong] += generator.choice([-1, 1]) * generator.uniform(6, 20)
+        found = linear_estimate(cue, slopes, slopes @ z + sd * noise)
+        pulls.append(np.abs(found.z - z) / np.sqrt(np.diag(found.covariance)))
+        unchecked = {each.measurement.label: each.value for each in found.unchecked}
+        label = None if wrong is None else cue.found[wrong].label
+        named.append(label in unchecked)
+        if label in unchecked:
+            value = unchecked[label]
+            i = [unknown.name for unknown in cue.unknowns].index(value.name)
+            truth = np.log(cue.unknowns[i].value(float(z[i])))
+            low, high = np.log([value.low, value.high])
+            without.append(abs(truth - (low + high) / 2) / ((high - low) / 2))
+    covered, wide = (np.mean(np.array(pulls) < each) for each in (1.0, HOLDS_95))
+    if wrong is None:
+        assert covered == pytest.approx(0.683, abs=0.04)
+        assert wide == pytest.approx(0.95, abs=0.02)
+        return
+    if wrong == 0:  # the weight alone tells the density
+        assert all(named)
+        assert np.mean(np.array(without) < 1.0) == pytest.approx(0.683, abs=0.08)
+        assert np.mean(np.array(without) < HOLDS_95) == pytest.approx(0.95, abs=0.04)
+    elif wrong > 1:
+        assert np.mean(named) < 0.5
+    assert wide > {0: 0.6, 1: 0.8}.get(wrong, 0.86)
+
+
+@pytest.fixture(scope="module")
 def found() -> Estimate:
     return estimate(made_up(5, size=0.7)[0])
 
@@ -166,12 +221,15 @@ def test_the_sampler_is_exact_on_its_own_target(found: Estimate) -> None:
     )
     small = estimate(cue)
     expansion = Expansion.about(small)
-    axis = [np.linalg.norm(small.covariance[i, i] ** 0.5) * np.linspace(-6, 6, 161) + small.z[i] for i in range(2)]
+    # fine at the top, and out to where the priors end, which is where a wrong measurement leaves the unknowns
+    finest = np.sinh(np.linspace(-6, 6, 321)) / np.sinh(6)
+    axis = [small.z[i] + 6 * finest for i in range(2)]
+    cell = np.multiply.outer(*(np.gradient(each) for each in axis)).ravel()
     grid = np.stack(np.meshgrid(*axis, indexing="ij"), axis=-1)
     measured, sd = np.array([[one.measured, one.sd] for one in cue.found]).T
     residuals = (measured - expansion.values(grid.reshape(-1, 2))) / sd
     level = log_density(residuals, MISTAKEN).sum(axis=-1) - np.sum(grid.reshape(-1, 2) ** 2, axis=-1) / 2
-    weight = np.exp(level - level.max())
+    weight = cell * np.exp(level - level.max())
     mean = weight @ grid.reshape(-1, 2) / weight.sum()
     spread = np.sqrt(weight @ (grid.reshape(-1, 2) - mean) ** 2 / weight.sum())
     sample = sampled(small, 40_000, seed=3)
