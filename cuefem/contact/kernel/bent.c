@@ -59,32 +59,20 @@ void gives_now(const Contact *c, double gives[PORTS][PORTS])
 FAST void add_bending(const Contact *c, const Response *r, const Step *s, int first, int last, double (*y)[WITH])
 {
     const Cue *cue = c->cue;
-    const int n = cue->channels;
-    double driven[Q][n], moved[Q][n];
-    memset(driven, 0, sizeof driven), memset(moved, 0, sizeof moved);
-    for (int a = 0; a < cue->slopes; a++) {
-        const double *drive = cue->channel_drives + a * n;
-        for (int j = 0; j < Q; j++)
-            for (int k = 0; k < n; k++) driven[j][k] += drive[k] * s->slope_loads[a][j];
+    double moved[cue->channels][Q];
+    memset(moved, 0, sizeof moved);
+    for (int k = 0; k < cue->channels; k++) {
+        double driven[Q] = {0};
+        add_product(cue->slopes, s->slope_loads[0], cue->channel_drives + k * cue->slopes, 1, driven);
+        add_product(Q, r->bending + k * Q * Q, driven, 1, moved[k]);
     }
-    for (int j = 0; j < Q; j++)
-        for (int i = 0; i < Q; i++) {
-            const double *by = r->bending + (j * Q + i) * n;
-            for (int k = 0; k < n; k++) moved[i][k] += by[k] * driven[j][k];
-        }
-    for (int a = first; a < last; a++) {
-        const double *row = cue->channel_readings + a * n;
-        for (int i = 0; i < Q; i++) {
-            double sum = 0;
-            for (int k = 0; k < n; k++) sum += row[k] * moved[i][k];
-            y[a - first][i + 1] += sum;
-        }
-    }
+    for (int a = first; a < last; a++)
+        add_product(cue->channels, moved[0], cue->channel_readings + a * cue->channels, 1, y[a - first] + 1);
 }
 
 /* A step whose slopes are those of before: the loads on them, from those on the ports; the readings y of ports and slopes
    with them; and the slopes that follow. By how much these change the tip's velocity, in units of the stroke's speed. */
-double bend_step(const Contact *c, const Response *r, Step *s, double (*y)[WITH])
+FAST double bend_step(const Contact *c, const Response *r, Step *s, double (*y)[WITH])
 {
     const Cue *cue = c->cue;
     const int ports = cue->ports;

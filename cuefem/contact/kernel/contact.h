@@ -96,7 +96,7 @@ typedef struct {
     double *turns;   /* (modes, 2, Q), real and imaginary: exp(rate c_i step) */
     double *moments; /* (modes, 2, Q): integrals over the step of exp(rate (step - s)) P_t, over the step */
     double *answer;  /* (reads, ports, Q, Q): from loads at the nodes to readings there */
-    double *bending; /* (Q, Q, channels): by columns, what unit loads at the nodes make of each channel of the slopes */
+    double *bending; /* (channels, Q, Q): what loads at the nodes make of each channel of the slopes */
 } Response;
 
 /* The modes of a cue; rates, readings and drives are complex: xi' = rates xi + drives' load, y = Re(readings xi). */
@@ -106,7 +106,7 @@ typedef struct {
     /* Loads on the slopes reach the readings through real channels, one of a coordinate that nothing damps, else four:
        with the reading r and the drive d, Re(r m d) = r' d' m' - r" d" m' - r' d" m" - r" d' m". */
     int channels, *channel_of; /* twice the coordinate, and one more where it is the imaginary part m" that counts */
-    double *channel_drives, *channel_readings; /* (slopes, channels), (reads, channels) */
+    double *channel_drives, *channel_readings; /* (channels, slopes), (reads, channels) */
     double inverse_mass[PORTS + SLOPES][PORTS + SLOPES];
     Response *responses[LEVELS];
 } Cue;

@@ -131,7 +131,7 @@ FAST static int add_channels(const Cue *cue, Response *r)
                     }
             }
         before = k;
-        for (int j = 0; j < Q * Q; j++) r->bending[j * n + b] = to[cue->channel_of[b] % 2][j];
+        memcpy(r->bending + b * Q * Q, to[cue->channel_of[b] % 2], sizeof to[0]);
     }
     return 1;
 }
@@ -267,7 +267,7 @@ static int open_channels(Cue *cue)
     for (int b = 0; cue->channel_drives && cue->channel_readings && b < n; b++) {
         const int k = cue->channel_of[b] / 2, q = quarter[b];
         for (int a = 0; a < slopes; a++)
-            cue->channel_drives[a * n + b] = cue->drives[2 * ((cue->ports + a) * K + k) + DRIVE[q]];
+            cue->channel_drives[b * slopes + a] = cue->drives[2 * ((cue->ports + a) * K + k) + DRIVE[q]];
         for (int a = 0; a < cue->reads; a++)
             cue->channel_readings[a * n + b] = (q ? -1 : 1) * cue->readings[2 * (a * K + k) + READ[q]];
     }
