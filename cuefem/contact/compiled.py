@@ -14,8 +14,9 @@ _POINTERS = (
     "xi ball ring_shear slope_weights slopes"
 )
 _NUMBERS = (
-    "restitution friction table_friction stiffness exponent steady most compliance first_ratio phi dome rim radius "
-    "lever_t lever_n lever_reach speed across clock impulse tolerance longest window most_phases most_steps"
+    "restitution friction table_friction stiffness exponent steady most compliance first_ratio surface_restitution phi "
+    "dome rim radius lever_t lever_n lever_reach speed across clock impulse tolerance longest window most_phases "
+    "most_steps"
 )
 _RESULTS = "time depth angle shear deepest peak height friction_loss shear_loss table_loss damping_loss radiated"
 _BENDING = "thrust steepest"

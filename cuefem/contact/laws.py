@@ -159,6 +159,7 @@ def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
         arrays |= {"force_terms": np.array(law.force_terms), "give_terms": np.array(law.give_terms)}
         if patch == RINGED_PATCH:
             numbers |= {"rings": RINGS, "tolerance": RINGED_TOLERANCE}
+            numbers["surface_restitution"] = terms.tip.surface_restitution
             arrays |= _rings(law, min(law.most, DEEPER * scene.deepest))
     else:
         law, time = normal_law(scene, common)

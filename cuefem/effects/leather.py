@@ -63,6 +63,10 @@ class LeatherTip(CueEffect):
         Whether the patch holds, slides and lets go ring by ring, in the manner of Mindlin and Deresiewicz, and not as
         a whole. Two to three times slower; squirt to 1e-4.
 
+    surface_restitution : float, default 1.0
+        The root of the part of the work that the leather gives back along its surface, in [0.1, 1]: what the tip's
+        restitution is along the normal. Below 1 it takes ``partial_slip``.
+
     Raises
     ------
     ValueError
@@ -87,6 +91,8 @@ class LeatherTip(CueEffect):
     where the pressure is cut off. As the patch shrinks, all of it lets go in proportion; with ``partial_slip`` every
     ring lets go of its own strain alone, which is the least at the edge: squirt at 2 m/s is 4 to 12 % lower up to b/R
     0.45, and up to 7 % higher where the tip is about to slide.
+
+    With ``surface_restitution`` below 1 the leather keeps a part of what strains its surface, likewise in "tip shear".
 
     Limit: The give vanishes in proportion to 1/E; with a stiff leather the dome's lever is what is left.
 
@@ -123,6 +129,7 @@ class LeatherTip(CueEffect):
     shear: Annotated[float | None, Quantity("N/m", "(0, inf)")] = None
     rolls: Annotated[bool, Flag()] = True
     partial_slip: Annotated[bool, Flag()] = False
+    surface_restitution: Annotated[float, Quantity("", "[0.1, 1]")] = 1.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -135,6 +142,11 @@ class LeatherTip(CueEffect):
             )
         if self.partial_slip and self.shear is not None:
             raise ValueError(f"LeatherTip.shear must be left out beside partial_slip = True; got {self.shear}")
+        if self.surface_restitution < 1 and not self.partial_slip:
+            raise ValueError(
+                "LeatherTip.surface_restitution must be 1 where partial_slip is False: the patch that lets go as a "
+                f"whole has no such loss; got {self.surface_restitution}"
+            )
 
     @property
     def positions(self) -> tuple[float, ...]:
@@ -405,6 +417,11 @@ class OnCue:
     def partial_slip(self) -> bool:
         """Whether the patch slips ring by ring."""
         return self.tip.partial_slip
+
+    @property
+    def surface_restitution(self) -> float:
+        """The root of what the leather gives back along the surface."""
+        return self.tip.surface_restitution
 
     def lever(self, phi: float) -> tuple[float, float]:
         """Displacement (u, w) of the contact per unit rotation of the ferrule's end section, m."""

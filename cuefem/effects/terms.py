@@ -33,6 +33,10 @@ class WholeTip(Protocol):
     def partial_slip(self) -> bool:
         """Whether its patch slips ring by ring."""
 
+    @property
+    def surface_restitution(self) -> float:
+        """The root of what its leather gives back of the work that strains it along the surface."""
+
     def lever(self, phi: float) -> tuple[float, float]:
         """Displacement (u, w) of the contact per unit rotation of the cue's end section, m; phi >= 0, rad."""
 

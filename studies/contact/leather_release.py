@@ -69,6 +69,7 @@ class Patch:
     rule: str
     most: float
     rings: int = RINGS
+    restitution: float = 1.0  # along the surface, of the rings that slip
     lost: float = 0.0
     slid: float = 0.0
     force: float = 0.0
@@ -94,14 +95,18 @@ class Patch:
             self.before = k
         else:
             open_now = self.middle <= eta
-            self.lost += float(self.stiff[~open_now] @ self.strain[~open_now] ** 2) / 2
+            self.lost += self.restitution**2 * float(self.stiff[~open_now] @ self.strain[~open_now] ** 2) / 2
             self.strain[~open_now] = 0.0
-            self.strain[open_now] += by
+            before, e2 = self.strain.copy(), self.restitution**2
+            falls = np.where(abs(by) < e2 * np.abs(before), before + by / e2, by + e2 * before)
+            self.strain[open_now] = np.where(before * by < 0, falls, before + by)[open_now]
             if self.rule == "rings that slip":
                 bound = self.friction * self.normal * np.maximum(eta - self.middle, 0.0)
                 kept = np.clip(self.strain, -bound / self.stiff, bound / self.stiff)
                 self.slid += float(self.stiff @ (kept * (self.strain - kept)))
                 self.strain = kept
+                grown = kept**2 - np.where(kept * before > 0, before**2, 0.0)
+                self.lost += (1 - e2) / 2 * float(self.stiff @ np.maximum(grown, 0.0))
             wanted = float(self.stiff @ self.strain)
         most = self.friction * F_n
         self.force = min(max(wanted, -most), most)
@@ -115,7 +120,7 @@ class Patch:
         """Energy held along the surface, J."""
         if self.rule == "scaled":
             return self.force**2 / (2 * k) if k else 0.0
-        return float(self.stiff @ self.strain**2) / 2
+        return self.restitution**2 * float(self.stiff @ self.strain**2) / 2
 
 
 class Found(NamedTuple):
@@ -136,7 +141,8 @@ def stepped(scene: Scene, rule: str, step: float = STEP, rings: int = RINGS) -> 
     law = scene.tip_law(tip.restitution, at.offset)
     modes = tip_modes_of(scene)
     deepest = float(law.blow(scene.head_on_mass, at.speed)[0])
-    patch = Patch(law, tip.friction, rule, min(law.most, 1.3 * deepest), rings)
+    most, gives = min(law.most, 1.3 * deepest), leather.surface_restitution
+    patch = Patch(law, tip.friction, rule, most, rings, gives)
     n, omega = len(modes.omega), modes.omega
     turn = np.zeros((3 * n, 3 * n))  # of q, omega q and q'
     turn[:n, 2 * n :] = np.eye(n)

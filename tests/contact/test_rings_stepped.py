@@ -40,6 +40,12 @@ def test_sliding_as_a_whole_is_what_comes_out(friction: float, offset: float) ->
     assert abs(off(scene, 2e-6)) < WITHIN
 
 
+@pytest.mark.parametrize(("restitution", "offset"), [(0.95, 0.375), (0.7, 0.2), (0.5, 0.5)])
+def test_leather_that_loses_along_its_surface_is_what_comes_out(restitution: float, offset: float) -> None:
+    leather = replace(RINGS, surface_restitution=restitution)
+    assert abs(off(leather_release.struck_scene(offset, leather=leather), 2e-6)) < WITHIN
+
+
 @pytest.mark.heavy
 def test_a_hundred_random_strikes() -> None:
     found = np.array([off(drawn(seed)) for seed in range(100)])

@@ -81,6 +81,14 @@ CALLS: list[tuple[Callable[[], object], str]] = [
         lambda: LeatherTip(6e-3, 9.5e-3, 1e8, shear=1e6, partial_slip=True),
         "LeatherTip.shear must be left out beside partial_slip = True; got 1000000.0",
     ),
+    (
+        lambda: LeatherTip(6e-3, 9.5e-3, 1e8, partial_slip=True, surface_restitution=0.0),
+        "LeatherTip.surface_restitution must be in [0.1, 1]; got 0.0",
+    ),
+    (
+        lambda: LeatherTip(6e-3, 9.5e-3, 1e8, surface_restitution=0.9),
+        "LeatherTip.surface_restitution must be 1 where partial_slip is False",
+    ),
     (lambda: LeatherTip(6e-3, 9.5e-3, 1e8, rho=0.0), "LeatherTip.rho must be in (0, inf) kg/m^3; got 0.0"),
     (lambda: LeatherTip(6e-3, 6e-3, 1e8).mass(0.013), "LeatherTip.dome_radius must be 6.5 mm or more, half of"),
     (lambda: LeatherTip(2e-3, 9.5e-3, 1e8).mass(0.01275), "LeatherTip.height must be more than 2.457 mm, the"),

@@ -20,6 +20,8 @@ SIDE = {"slip": 1.0, "slip back": -1.0}
 
 
 class Planar(Contact):
+    kept: float = 0.0
+
     @property
     def patch(self) -> int:
         return self.model.patch
@@ -160,7 +162,10 @@ class Planar(Contact):
             self.losses["shear"] += missing - rubbed
         elif self.patch == RINGED_PATCH and not math.isfinite(self.mu):
             self.losses["shear"] += missing
-        elif slips or self.patch == RINGED_PATCH:
+        elif self.patch == RINGED_PATCH:
+            self.losses["friction"] += missing - self.kept
+            self.losses["shear"] += self.kept
+        elif slips:
             self.losses["friction"] += missing
 
     def shear_after(self, s: Step, part: float) -> float:

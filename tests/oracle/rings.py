@@ -16,6 +16,7 @@ from tests.oracle.planar import Planar
 
 class Ringed(Planar):
     ring_shear: Any = 0.0
+    kept: float = 0.0  # by the leather, of the work of the last walk, J
 
     def rings(self, depth: Any) -> tuple[Any, Any]:
         """Stiffness and normal force of each ring, (..., rings), at virtual compressions."""
@@ -31,14 +32,20 @@ class Ringed(Planar):
     def walk(self, depth: Any, x: Any) -> Any:
         """What each ring bears after a path of compressions and shifts -x, both (..., places)."""
         k, N = self.rings(self.virtual(depth))
-        f = self.ring_shear
+        f, e2, self.kept = self.ring_shear, self.terms["surface_restitution"] ** 2, 0.0
         for i in range(1, k.shape[-2]):
             was, now = k[..., i - 1, :], k[..., i, :]
             left = np.where(was.real > now.real, now / np.where(was == 0, 1.0, was), 1.0)
-            f = f * left + (now + was) / 2 * (x[..., i - 1] - x[..., i])[..., None]
+            f, k_mean = f * left, (now + was) / 2
+            start, by = f, k_mean * (x[..., i - 1] - x[..., i])[..., None]
+            falls = np.where(np.abs(by.real) < e2 * np.abs(np.real(f)), f + by / e2, by + e2 * f)
+            f = np.where((np.real(f) * by.real) < 0, falls, f + by)
             bound = self.mu * N[..., i, :] if np.isfinite(self.mu) else np.full_like(now, 1e300)
             f = np.where(f.real > bound.real, bound, np.where(f.real < -bound.real, -bound, f))
             f = np.where(now == 0, 0.0, f)
+            grown = np.real(f) ** 2 - np.where(np.real(f * start) > 0, np.real(start) ** 2, 0.0)
+            rate = np.where(k_mean.real > 0, (1 - e2) / (2 * np.where(k_mean.real > 0, k_mean.real, 1.0)), 0.0)
+            self.kept += np.sum(np.maximum(grown, 0.0) * rate)
             yield f
 
     def along(self, s: Step) -> Any:
@@ -47,7 +54,8 @@ class Ringed(Planar):
 
     def stored(self) -> float:
         k = self.rings(self.virtual(self.depth))[0]
-        return float(np.sum(self.ring_shear**2 * (k > 0) / (2 * np.where(k > 0, k, 1.0))))
+        e2 = self.terms["surface_restitution"] ** 2
+        return e2 * float(np.sum(self.ring_shear**2 * (k > 0) / (2 * np.where(k > 0, k, 1.0))))
 
     def begin(self) -> None:
         super().begin()

@@ -139,7 +139,8 @@ typedef struct {
     double *slopes;              /* (slopes,): s_a */
     int forces, speeds, turns, curve, patch, lossy, terms, levers, rings, recording;
     int plane; /* slopes in a plane of bending; the last of them is the rotation of the tip */
-    double restitution, friction, table_friction, stiffness, exponent, steady, most, compliance, first_ratio;
+    double restitution, friction, table_friction, stiffness, exponent, steady, most, compliance, first_ratio,
+        surface_restitution;
     double phi, dome, rim, radius, lever_t, lever_n, lever_reach;
     double speed, across, clock, impulse, tolerance, longest, window, most_phases, most_steps; /* across: part of the speed
                                                                                                    along the surface */
@@ -263,7 +264,7 @@ void end_phase(Work *w, Hold hold, double start, const double *ball_before);
 
 /* rings.c */
 void rings_at_nodes(Work *w, const Step *s, Residual *r);
-void rings_take(Work *w, const Step *s, double part);
+double rings_take(Work *w, const Step *s, double part);
 double rings_store(const Contact *c, int press, double depth);
 
 /* laws.c */

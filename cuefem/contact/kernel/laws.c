@@ -204,13 +204,14 @@ static void taken(Work *w, const Step *s, double part)
         sliding(w, s, slides);
         rubbed = -work_of(s->F[0], slides, s->step, part);
     }
-    if (c->patch == RINGED_PATCH) rings_take(w, s, part);
+    double lost = 0; /* to the leather */
+    if (c->patch == RINGED_PATCH) lost = rings_take(w, s, part);
     else c->shear = value_at(s->F[0], part);
     c->depth = value_at(s->depth, part);
     double missing = before - work - stored(c, press);
     if (c->patch == LEATHER_PATCH) c->friction_loss += rubbed, c->shear_loss += missing - rubbed;
     else if (c->patch == RINGED_PATCH && !isfinite(c->friction)) c->shear_loss += missing;
-    else if (grip != STICK || c->patch == RINGED_PATCH) c->friction_loss += missing;
+    else if (grip != STICK || c->patch == RINGED_PATCH) c->friction_loss += missing - lost, c->shear_loss += lost;
 }
 
 /* Whether a growing tip force drives ball and tip apart, which a rigid tip needs. */

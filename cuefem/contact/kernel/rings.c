@@ -7,6 +7,9 @@
 
        f -> clip(f min(k after/k before, 1) + k d(delta), +-mu N).
 
+   Leather that keeps a part of the work has the slope k/e^2 while |f| falls, e the restitution along the surface: of the
+   work f d(delta) that strains a ring it stores e^2, f^2 e^2/2k in all, and keeps the rest.
+
    The contact slides as a whole where all rings do; nothing else tells that it does. */
 #include "contact.h"
 
@@ -41,72 +44,98 @@ static void ring_of(const Contact *c, const Patch *p, int r, double *k, double *
     } else *k = p->k - K[r], *slope = p->slope - S[r], *N = p->F - inner;
 }
 
-/* What a ring bears after a shift. */
-static inline double borne(double f, double k, double shift, double bound)
+typedef struct {
+    double sum, stuck, slid, lost; /* force, how it changes with the shift and the depth, and what the leather keeps, J */
+} Borne;
+
+/* Shift a ring that bears f: its slope is k while |f| grows and k/e^2 while it falls. */
+static inline double shifted(double f, double by, double e2)
 {
-    double bears = f + k * shift;
-    bears = bears > bound ? bound : bears;
-    return bears < -bound ? -bound : bears;
+    if (e2 == 1) return f + by;
+    double falls = fabs(by) < e2 * fabs(f) ? f + by / e2 : by + e2 * f;
+    return f * by < 0 ? falls : f + by;
 }
 
-/* Take the rings from one state of the patch to the next; what they bear then, and how it changes. */
-static double walk(const Contact *c, const Patch *from, const Patch *to, double shift, double *restrict f,
-                        double *stuck, double *slid)
+static inline double bounded(double f, double bound)
+{
+    f = f > bound ? bound : f;
+    return f < -bound ? -bound : f;
+}
+
+/* What a ring bears after the shift, and what it adds to the rest; written out so that it becomes vector instructions. */
+#define ADD_RING                                                                             \
+    double bears = bounded(shifted(was, k * shift, e2), bound), stays = was * bears > 0;     \
+    double steep = e2 < 1 && stays * was * shift < 0 ? k / e2 : k;                   \
+    double grown = bears * bears - stays * was * was;                                        \
+    sum += bears, stuck += fabs(bears) < bound ? steep : 0;                                  \
+    slid += bears >= bound ? slope : 0, slid -= bears <= -bound ? slope : 0;                 \
+    if (e2 < 1) lost += (grown > 0 ? grown : 0) * (1 - e2) / (2 * (k > 0 ? k : HUGE_VAL));   \
+    f[r] = bears;
+
+/* Take the rings from one state of the patch to the next. */
+static inline Borne walk_with(double e2, const Contact *c, const Patch *from, const Patch *to, double shift,
+                              double *restrict f)
 {
     const double *restrict F = c->ring_forces, *restrict S = c->ring_slopes, *restrict K = c->ring_stiffness;
     const double *restrict edge = c->ring_edges;
     int whole = (to->count < from->count ? to->count : from->count) - 1, r = 0; /* rings that touch in full all the way */
-    double mu = c->friction, depth = to->depth, sum = 0, stiff = 0, slides = 0;
+    double mu = c->friction, depth = to->depth;
+    double sum = 0, stuck = 0, slid = 0, lost = 0;
     for (; r < whole; r++) {
-        double k = K[r + 1] - K[r], slope = S[r + 1] - S[r];
+        double k = K[r + 1] - K[r], slope = S[r + 1] - S[r], was = f[r];
         double bound = mu * (F[r + 1] - F[r] + S[r + 1] * (depth - edge[r + 1]) - S[r] * (depth - edge[r]));
-        double bears = borne(f[r], k, shift, bound);
-        stiff += fabs(bears) < bound ? k : 0, slides += bears >= bound ? slope : 0, slides -= bears <= -bound ? slope : 0;
-        f[r] = bears, sum += bears;
+        ADD_RING
     }
     for (; r < to->count; r++) {
-        double k, N, slope, k_before = 0, unused;
-        ring_of(c, to, r, &k, &N, &slope);
+        double k_now, N, slope, k_before = 0, unused;
+        ring_of(c, to, r, &k_now, &N, &slope);
         if (r < from->count) ring_of(c, from, r, &k_before, &unused, &unused);
-        double bound = mu * N, left = k_before > k ? k / k_before : 1;
-        double bears = borne(f[r] * left, (k + k_before) / 2, shift, bound);
-        stiff += fabs(bears) < bound ? k : 0, slides += fabs(bears) < bound ? 0 : copysign(slope, bears);
-        f[r] = bears, sum += bears;
+        double was = f[r] * (k_before > k_now ? k_now / k_before : 1), k = (k_now + k_before) / 2, bound = mu * N;
+        ADD_RING
     }
     for (; r < from->count; r++) f[r] = 0;
-    *stuck = stiff, *slid = slides == 0 ? 0 : mu * slides;
-    return sum;
+    return (Borne){sum, stuck, slid == 0 ? 0 : mu * slid, lost};
+}
+#undef ADD_RING
+
+/* Leather that gives back all needs no more than a sum and its bounds. */
+static Borne walk(const Contact *c, const Patch *from, const Patch *to, double shift, double *f)
+{
+    double e = c->surface_restitution;
+    return e == 1 ? walk_with(1, c, from, to, shift, f) : walk_with(e * e, c, from, to, shift, f);
 }
 
 void rings_at_nodes(Work *w, const Step *s, Residual *r)
 {
     const Contact *c = w->c;
     int press = w->hold.press;
-    double f[c->rings], before = 0, stuck, slid, give = give_of(c, press);
+    double f[c->rings], before = 0, give = give_of(c, press);
     memcpy(f, c->ring_shear, c->rings * sizeof *f);
     Patch from = patch_at(c, press, s->depth[0]);
     for (int i = 1; i < WITH; i++) {
         Patch to = patch_at(c, press, s->depth[i]);
-        r->g[0][i - 1] = s->F[0][i] - walk(c, &from, &to, before - s->x[0][i], f, &stuck, &slid);
-        r->on_F[0][0][i - 1] = 1, r->on_x[0][0][i - 1] = stuck, r->on_x[0][1][i - 1] = slid / give;
+        Borne all = walk(c, &from, &to, before - s->x[0][i], f);
+        r->g[0][i - 1] = s->F[0][i] - all.sum;
+        r->on_F[0][0][i - 1] = 1, r->on_x[0][0][i - 1] = all.stuck, r->on_x[0][1][i - 1] = all.slid / give;
         before = s->x[0][i], from = to;
     }
 }
 
-void rings_take(Work *w, const Step *s, double part)
+double rings_take(Work *w, const Step *s, double part)
 {
     Contact *c = w->c;
     int press = w->hold.press;
-    double before = 0, stuck, slid, sum = 0;
+    double before = 0, lost = 0;
     Patch from = patch_at(c, press, s->depth[0]);
     for (int i = 1; i < WITH && rule.nodes[i - 1] < part * (1 - 1e-12); i++) {
         Patch to = patch_at(c, press, s->depth[i]);
-        sum = walk(c, &from, &to, before - s->x[0][i], c->ring_shear, &stuck, &slid);
+        lost += walk(c, &from, &to, before - s->x[0][i], c->ring_shear).lost;
         before = s->x[0][i], from = to;
     }
     Patch to = patch_at(c, press, value_at(s->depth, part));
-    sum = walk(c, &from, &to, before - value_at(s->x[0], part), c->ring_shear, &stuck, &slid);
-    c->shear = sum;
+    Borne all = walk(c, &from, &to, before - value_at(s->x[0], part), c->ring_shear);
+    c->shear = all.sum;
+    return lost + all.lost;
 }
 
 double rings_store(const Contact *c, int press, double depth)
@@ -117,5 +146,5 @@ double rings_store(const Contact *c, int press, double depth)
         ring_of(c, &p, r, &k, &N, &slope);
         if (k > 0) sum += c->ring_shear[r] * c->ring_shear[r] / (2 * k);
     }
-    return sum;
+    return c->surface_restitution * c->surface_restitution * sum;
 }
