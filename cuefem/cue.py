@@ -36,12 +36,19 @@ class Material:
     loss
         Loss factor of bending. It counts only in scenes with `StructuralDamping`.
     nu
-        Poisson's ratio of a pull along the axis. Only the shear coefficient uses it.
+        Poisson's ratio of a pull along the axis. Of a beam only the shear coefficient uses it.
+    across_ratio
+        Young's modulus across the axis over E, for a material that is the same in all directions across it: wood as a
+        mean over its rings, or a wound tube. Only a cue that is computed as a solid uses it; by default 1.
+    nu_across
+        Poisson's ratio of a pull across the axis, for the strain across pull and axis. Only a solid uses it; by default
+        nu.
 
     Raises
     ------
     ValueError
-        If a number is out of bounds, or if 2 nu G/E is not below 1.
+        If a number is out of bounds, if 2 nu G/E is not below 1, or if nu_across is not below 1 - 2 nu^2 across_ratio,
+        without which the material would give off energy.
 
     Examples
     --------
@@ -58,12 +65,30 @@ class Material:
     rho: Annotated[float, Quantity("kg/m^3", "(0, inf)")]
     loss: Annotated[float, Quantity("", "[0, 1)")] = 0.0
     nu: Annotated[float, Quantity("", "[0, 0.5]")] = 0.3
+    across_ratio: Annotated[float | None, Quantity("", "(0, inf)")] = None
+    nu_across: Annotated[float | None, Quantity("", "(0, 1)")] = None
 
     def __post_init__(self) -> None:
         check_fields(self)
         if 2 * self.nu * self.G >= self.E:
             why = f", E/(2 nu) of E = {self.E} Pa, nu = {self.nu}"
             raise OutOfBounds("Material.G", Quantity("Pa", f"(0, {self.E / (2 * self.nu)})"), self.G, why)
+        if self.across_ratio is None and self.nu_across is None:
+            return
+        limit = 1 - 2 * self.nu**2 * self.E_across / self.E
+        if not self.nu_in_plane < limit:
+            why = f", 1 - 2 nu^2 across_ratio of nu = {self.nu}, across_ratio = {self.E_across / self.E}"
+            raise OutOfBounds("Material.nu_across", Quantity("", f"(0, {limit})"), self.nu_in_plane, why)
+
+    @property
+    def E_across(self) -> float:
+        """Young's modulus across the axis, Pa."""
+        return self.E * (1.0 if self.across_ratio is None else self.across_ratio)
+
+    @property
+    def nu_in_plane(self) -> float:
+        """Poisson's ratio within the plane across the axis."""
+        return self.nu if self.nu_across is None else self.nu_across
 
     @property
     def effective_poisson_ratio(self) -> float:

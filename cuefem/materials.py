@@ -14,6 +14,7 @@ Jpn. J. Appl. Phys. 22 (1983) 611: tan delta = 10^-1.23 (E/rho)^-0.68, E/rho in 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -56,11 +57,32 @@ AIR_DRY = 1120.0  # kg/m3 for each unit of [FPL]'s specific gravity (oven-dry ma
 
 
 def _wood(
-    *, bending_modulus: float, G_LR: float, G_LT: float, rho: float, loss: float, nu_LR: float, nu_LT: float
+    *,
+    bending_modulus: float,
+    G_LR: float,
+    G_LT: float,
+    rho: float,
+    loss: float,
+    nu_LR: float,
+    nu_LT: float,
+    across: tuple[float, float, float, float] | None = None,
 ) -> Material:
-    """A wood along its grain from [FPL]'s columns: modulus of a bending test, Pa; G_LR, G_LT as fractions of E_L."""
+    """A wood along its grain from [FPL]'s columns: modulus of a bending test, Pa; G_LR, G_LT as fractions of E_L.
+
+    across: E_R and E_T as fractions of E_L, nu_RT and nu_TR. A turned shaft shows both planes: the mean of the two
+    moduli, and the geometric mean of the two Poisson's ratios, which one plane of equal moduli would have.
+    """
+    E_R, E_T, nu_RT, nu_TR = across or (None, None, None, None)
     E = BENDING_TO_LONGITUDINAL * bending_modulus
-    return Material(E=E, G=E * (G_LR + G_LT) / 2, rho=rho, loss=loss, nu=(nu_LR + nu_LT) / 2)
+    return Material(
+        E=E,
+        G=E * (G_LR + G_LT) / 2,
+        rho=rho,
+        loss=loss,
+        nu=(nu_LR + nu_LT) / 2,
+        across_ratio=None if E_R is None or E_T is None else (E_R + E_T) / 2,
+        nu_across=None if nu_RT is None or nu_TR is None else round(math.sqrt(nu_RT * nu_TR), 2),
+    )
 
 
 def _ranges(*, E: Range, G: Range, rho: Range, loss: Range, nu: Range) -> Mapping[str, Range]:
@@ -69,7 +91,16 @@ def _ranges(*, E: Range, G: Range, rho: Range, loss: Range, nu: Range) -> Mappin
 
 _WOODS = {
     "hard maple": Documented(
-        _wood(bending_modulus=12.6e9, G_LR=0.111, G_LT=0.063, rho=0.63 * AIR_DRY, loss=0.012, nu_LR=0.424, nu_LT=0.476),
+        _wood(
+            bending_modulus=12.6e9,
+            G_LR=0.111,
+            G_LT=0.063,
+            rho=0.63 * AIR_DRY,
+            loss=0.012,
+            nu_LR=0.424,
+            nu_LT=0.476,
+            across=(0.132, 0.065, 0.774, 0.349),
+        ),
         _ranges(E=(10.8e9, 16.9e9), G=(0.85e9, 1.55e9), rho=(630, 780), loss=(0.007, 0.016), nu=(0.42, 0.48)),
         "[FPL] sugar maple: table 5-3a (12 %), elastic ratios table 5-1, Poisson's ratios table 5-2. "
         "Loss: Haines, Catgut Acoust. Soc. Newsl. 31 (1979) 23, maple along the grain",
@@ -77,13 +108,31 @@ _WOODS = {
         "all G_LR. [Ono] gives a loss of 0.008, the low end.",
     ),
     "ash": Documented(
-        _wood(bending_modulus=12.0e9, G_LR=0.109, G_LT=0.077, rho=0.60 * AIR_DRY, loss=0.010, nu_LR=0.371, nu_LT=0.440),
+        _wood(
+            bending_modulus=12.0e9,
+            G_LR=0.109,
+            G_LT=0.077,
+            rho=0.60 * AIR_DRY,
+            loss=0.010,
+            nu_LR=0.371,
+            nu_LT=0.440,
+            across=(0.125, 0.080, 0.684, 0.360),
+        ),
         _ranges(E=(10.3e9, 16.1e9), G=(1.0e9, 1.45e9), rho=(600, 740), loss=(0.007, 0.016), nu=(0.37, 0.44)),
         "[FPL] white ash: table 5-3a (12 %), tables 5-1 and 5-2. Loss: estimate between [Ono] (0.008) and maple",
         "White ash of North America; snooker cues are often of European ash, which is close to it.",
     ),
     "yellow birch": Documented(
-        _wood(bending_modulus=13.9e9, G_LR=0.074, G_LT=0.068, rho=0.62 * AIR_DRY, loss=0.010, nu_LR=0.426, nu_LT=0.451),
+        _wood(
+            bending_modulus=13.9e9,
+            G_LR=0.074,
+            G_LT=0.068,
+            rho=0.62 * AIR_DRY,
+            loss=0.010,
+            nu_LR=0.426,
+            nu_LT=0.451,
+            across=(0.078, 0.050, 0.697, 0.426),
+        ),
         _ranges(E=(11.9e9, 18.7e9), G=(0.95e9, 1.25e9), rho=(620, 770), loss=(0.006, 0.016), nu=(0.42, 0.46)),
         "[FPL] yellow birch: table 5-3a (12 %), tables 5-1 and 5-2. Loss: estimate between [Ono] (0.007) and maple",
     ),
@@ -104,14 +153,14 @@ _WOODS = {
 
 _COMPOSITES_AND_PLASTICS = {
     "carbon fibre": Documented(
-        Material(E=79.7e9, G=14.0e9, rho=1580.0, loss=0.005, nu=0.27),
+        Material(E=79.7e9, G=14.0e9, rho=1580.0, loss=0.005, nu=0.27, across_ratio=0.545, nu_across=0.3),
         _ranges(E=(29.6e9, 135e9), G=(5e9, 35e9), rho=(1500, 1650), loss=(0.002, 0.015), nu=(0.2, 0.5)),
         "Lamination theory with a textbook ply of standard-modulus carbon and epoxy, 60 % fibre: E1 135, E2 10, "
         "G12 5 GPa, nu12 0.3. Density: [Call] table B.1, fibre 1780 and epoxy 1250. Loss: textbook value, Gibson, "
         "Principles of Composite Material Mechanics",
         "Layup of a roll-wrapped tube, along its axis: 50 % of the plies at 0, 30 % at +-45, 20 % at 90 degrees (an "
         "assumption: makers do not tell). The lower E is the least that US patent 6,110,051 claims for a cue shaft "
-        "(4.3e6 psi), the upper the bare ply at 0 degrees.",
+        "(4.3e6 psi), the upper the bare ply at 0 degrees. Across the axis: the hoop modulus of that layup, 43.4 GPa.",
     ),
     "foam": Documented(
         Material(E=30e6, G=11e6, rho=96.0, loss=0.03, nu=0.33),

@@ -21,7 +21,7 @@ from cuefem.beam.waves import HIGHEST_ORDER, SPARE_ENDED, WIDEST, ended_mesh_for
 from cuefem.cue import Cue
 from cuefem.effects.base import CueEffect
 from cuefem.quantity import CONTACT_TIME
-from cuefem.scene import Resolution, Scene
+from cuefem.scene import Resolution, Scene, Solid
 
 if TYPE_CHECKING:
     from cuefem.beam.modes import Modes
@@ -76,7 +76,7 @@ class Solved:
     """
 
     scene: Scene
-    at: Resolution | None = None
+    at: Resolution | Solid | None = None
     _kept: dict[Resolution | int, Ended] = field(default_factory=dict, init=False, repr=False)
 
     @property
@@ -121,6 +121,10 @@ class Solved:
         """Tip modes of any cue, with the scene's effects: by default at least ``least`` bending modes."""
         if self.scene.lumped is not None:
             return lumped_tip_modes(self.scene.lumped)
+        if isinstance(self.at, Solid):
+            from cuefem.solid.shaft import solid_tip_modes
+
+            return solid_tip_modes(self.scene, self.at)
         return tip_modes_from(self._modes(least), self.scene)
 
     def without_spectra(self) -> Solved:
@@ -130,6 +134,8 @@ class Solved:
         return small
 
     def _modes(self, least: int) -> Ended:
+        if isinstance(self.at, Solid):
+            raise ValueError("at must be a Resolution, for this asks for the shapes of a beam; got a Solid")
         if self.at is not None:
             return self._solved(self.at)
         return self._solved(default_modes(self.scene, least=least))
@@ -137,9 +143,7 @@ class Solved:
     def _solved(self, at: Resolution | int) -> Ended:
         """Bending modes at a resolution, summed plainly; or a number of them, ended by a tail; each solved once."""
         if at not in self._kept:
-            from cuefem.beam.modes import solve
-            from cuefem.beam.spectrum import ended
-            from cuefem.beam.system import assemble
+            from cuefem.beam import modes, spectrum, system
 
             scene = self.scene
             elements: int | tuple[int, ...]
@@ -149,19 +153,19 @@ class Solved:
             else:
                 elements, order = lean_mesh(scene, at)
                 wanted = at
-            system = assemble(scene.shaft, elements=elements, order=order, effects=scene.cue_effects, count=wanted)
+            beam = system.assemble(scene.shaft, elements=elements, order=order, effects=scene.cue_effects, count=wanted)
             # a support makes rigid modes flexible; the number of modes in all stays the same, so that its limits
             # are continuous
-            count = wanted + 2 - system.rigid.shape[1]
+            count = wanted + 2 - beam.rigid.shape[1]
             self._kept[at] = (
-                solve(system, count)
+                modes.solve(beam, count)
                 if isinstance(at, Resolution)
-                else ended(system, count, turning=turning(scene))(count)
+                else spectrum.ended(beam, count, turning=turning(scene))(count)
             )
         return self._kept[at]
 
 
-def tip_modes_of(scene: Scene, at: Resolution | None = None, *, least: int = LEAST) -> TipModes:
+def tip_modes_of(scene: Scene, at: Resolution | Solid | None = None, *, least: int = LEAST) -> TipModes:
     """Tip modes of any scene's cue, with its effects; ended by a tail if no resolution is given."""
     return Solved(scene, at).tip_modes(least)
 

@@ -31,6 +31,7 @@ ORDER = [
     "games",
     "parts",
     "vary",
+    "solid",
     "tip_modes",
     "contact",
     "endmass",
@@ -49,7 +50,7 @@ ORDER = [
     "__main__",
 ]
 HOMES = {
-    "skfem": {"beam", "effects"},
+    "skfem": {"solid"},
     "meshio": {"io"},
     "matplotlib": {"report", "plot"},
     "pandas": {"frames"},
@@ -165,6 +166,7 @@ COMMAND = "from tests.helpers.command_line import call; call("
         (f"{COMMAND}'end-mass', 'meshes/kim.toml')", WORKED_ON),
         (f"{COMMAND}'modes', 'meshes/kim.toml')", WORKED_ON),
         (f"{COMMAND}'modes', 'meshes/kim.toml', '--body-mass', '15 onces')", ["skfem", "pint", "pydantic"]),
+        (f"{COMMAND}'strike', 'meshes/kim.toml')", ["skfem", "pint", "pydantic"]),
         (f"{COMMAND}'schema')", ["skfem", "pint", "pydantic"]),
         ("import cuefem.cli", [name for name in ["numpy", *HEAVY] if name != "click"]),
     ],

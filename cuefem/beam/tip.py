@@ -106,14 +106,18 @@ def lumped_tip_modes(cue: LumpedCue) -> TipModes:
 
 def tip_modes(found: Ended, axial_mass: float) -> TipModes:
     """Tip modes of a beam's bending modes beside a rigid axial motion of ``axial_mass`` kg (the first mode)."""
-    across, turning = found.at_tip
+    omega = np.concatenate([np.zeros(found.rigid), found.omega])
+    damping, radiation = _resistances(found, 1 + len(omega))
+    return replace(free_tip_modes(omega, *found.at_tip, axial_mass), damping=damping, radiation=radiation)
+
+
+def free_tip_modes(omega: Array, across: Array, turning: Array, axial_mass: float) -> TipModes:
+    """Tip modes of bending modes, the rigid ones among them, beside a rigid axial motion of ``axial_mass`` kg."""
     amplitude = np.zeros((1 + len(across), 2))
     amplitude[0, 0], amplitude[1:, 1] = axial_mass**-0.5, across
     approach = np.zeros(len(amplitude))
     approach[0] = axial_mass**0.5
-    omega = np.concatenate([np.zeros(1 + found.rigid), found.omega])
-    damping, radiation = _resistances(found, len(omega))
-    return TipModes(omega, amplitude, approach, np.concatenate([[0.0], turning]), damping, radiation)
+    return TipModes(np.append(0.0, omega), amplitude, approach, np.append(0.0, turning))
 
 
 def side_modes(found: Modes, position: float) -> TipModes:

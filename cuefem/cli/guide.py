@@ -31,8 +31,8 @@ def _known(context: click.Context, parameter: click.Parameter, chapter: str | No
 def guide(chapter: str | None, output: Path | None, in_terminal: bool) -> None:
     """Open the handbook in the browser: the physics, a glossary, and what each effect does.
 
-    CHAPTER opens (or prints) one chapter: start, files, working, frame, inverse_mass, impulse_solver, beam, strike,
-    contact, end_mass, side, effects, measured, measuring, accuracy, paper, glossary or sources.
+    CHAPTER opens (or prints) one chapter: start, files, working, frame, inverse_mass, impulse_solver, beam, solid,
+    strike, contact, end_mass, side, effects, measured, measuring, accuracy, paper, glossary or sources.
     """
     if in_terminal:
         if output is not None:

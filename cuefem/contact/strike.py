@@ -15,7 +15,7 @@ from cuefem.contact.outcome import regime_of
 from cuefem.contact.solve import SolvedContact, solve_contact
 from cuefem.cue import Cue
 from cuefem.quantity import check_count, check_kind, scalar, shown
-from cuefem.scene import Outcome, Resolution, Scene
+from cuefem.scene import Outcome, Resolution, Scene, Solid
 from cuefem.tip_modes import Solved, default_resolution, tip_modes_of, turning
 
 # Strikes of one cue that a thread takes at a time.
@@ -23,17 +23,17 @@ CHUNK = 16
 NUMBERS = ("squirt", "ball_velocity", "ball_speed", "spin", "cue_speed", "impulse", "duration", "regime", "jam")
 
 
-def strike(scene: Scene, at: Resolution | None = None) -> Outcome:
+def strike(scene: Scene, at: Resolution | Solid | None = None) -> Outcome:
     """Strike a ball with a vibrating cue, and follow the contact in time.
 
     Parameters
     ----------
     scene : Scene
         What is there and which physics acts; every field is a single number.
-    at : Resolution, optional
-        How finely the cue is computed: the plain sum over the modes asked for. By default modes are kept by frequency
-        and completed, so that squirt is within 0.5 % (what was measured: studies/default_accuracy.md). A lumped cue
-        needs none.
+    at : Resolution or Solid, optional
+        How finely the cue is computed: the plain sum over the modes asked for, of a beam or of a solid. By default
+        modes of a beam are kept by frequency and completed, so that squirt is within 0.5 % (what was measured:
+        studies/default_accuracy.md). A lumped cue needs none.
 
     Returns
     -------

@@ -125,6 +125,10 @@ class CueEffect(Effect):
     def add_to(self, terms: Terms) -> None:
         """Add the effect's point terms to the beam's."""
 
+    def mass_on_face(self, cue: Cue) -> float | None:
+        """Mass that the effect puts on the tip's face, kg, if that is all it does; None if it does anything else."""
+        return None
+
     def vibrations(self, found: Ended, cue: Cue, effects: Sequence[CueEffect]) -> tuple[AxialVibrations, ...]:
         """Families of modes beside the bending modes ``found``; effects: all that act on the cue."""
         return ()

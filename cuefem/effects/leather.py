@@ -170,6 +170,10 @@ class LeatherTip(CueEffect):
         """Mass of the leather on this cue, kg."""
         return self.mass(cue.segments[0].tip_diameter)
 
+    def mass_on_face(self, cue: Cue) -> float | None:
+        """The mass of the leather."""
+        return self.mass_on(cue)
+
     def left_on(self, cue: Cue) -> tuple[Effect, ...]:
         """The mass of the leather stays on a cue whose tip is bare."""
         return (PointMass(0.0, self.mass_on(cue)),)

@@ -74,6 +74,10 @@ class PointMass(CueEffect):
         """Add the mass and the rotary inertia."""
         terms.add(self.position, "mass", self.mass, self.rotary_inertia)
 
+    def mass_on_face(self, cue: Cue) -> float | None:
+        """The mass, if it sits at the tip and does not turn."""
+        return self.mass if self.position == 0 and self.rotary_inertia == 0 else None
+
 
 @dataclass(frozen=True)
 class Support(CueEffect):

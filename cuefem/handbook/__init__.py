@@ -17,6 +17,7 @@ CHAPTERS = (
     "inverse_mass",
     "impulse_solver",
     "beam",
+    "solid",
     "strike",
     "contact",
     "end_mass",

@@ -19,6 +19,7 @@ from meshio.vtu import _vtu
 
 from cuefem.cue import Cue, Material, Segment
 from cuefem.io.errors import InputError, faults_of, read_bytes, shown
+from cuefem.io.schema import NAMES
 from cuefem.quantity import MOST_SEGMENTS, quantities
 
 # What a damaged mesh file makes meshio raise: it checks little itself.
@@ -35,12 +36,29 @@ def _columns(kind: type, prefix: str = "") -> list[str]:
     return [prefix + name for name, *_ in quantities(kind)]
 
 
+def _across(prefix: str = "") -> list[str]:
+    """The columns of a material that a file may leave out: those that only a solid asks for."""
+    return [prefix + name for name, _, may_be_none, _ in quantities(Material) if may_be_none]
+
+
+def _completed(data: dict[str, Any], prefix: str) -> dict[str, Any]:
+    """The columns of `_across` that an older file lacks: those of the material that has all its other constants."""
+    across, others = _across(), [name for name in _columns(Material) if name not in _across()]
+    lacking = [name for name in across if prefix + name not in data]
+    if not lacking or not all(prefix + name in data for name in others):
+        return {}
+    known = {tuple(getattr(m, name) for name in others): m for m in NAMES}
+    cells = zip(*(data[prefix + name].tolist() for name in others), strict=True)
+    materials = [known.get(constants) for constants in cells]
+    return {prefix + name: np.array([getattr(m, name, None) or 0.0 for m in materials]) for name in lacking}
+
+
 def _row(segment: Segment) -> dict[str, float]:
     """A segment as numbers; 0, which no such field can have, stands for a field that is not given."""
     row = {name: getattr(segment, name) or 0.0 for name in _columns(Segment)}
-    row |= {name: getattr(segment.material, name) for name in _columns(Material)}
+    row |= {name: getattr(segment.material, name) or 0.0 for name in _columns(Material)}
     core = segment.core
-    return row | {f"core_{name}": getattr(core, name) if core else 0.0 for name in _columns(Material)}
+    return row | {f"core_{name}": (getattr(core, name) if core else None) or 0.0 for name in _columns(Material)}
 
 
 def save_mesh(cue: Cue, path: Path) -> None:
@@ -165,6 +183,8 @@ def load_mesh(path: Path) -> Cue:
     if kinds != {"line"}:
         raise InputError(path, "cells", f"must be lines alone; got {shown(sorted(kinds))}")
     wanted = [*_columns(Segment), *_columns(Material), *_columns(Material, "core_"), "body_mass"]
+    for prefix in ("", "core_"):
+        data |= _completed(data, prefix)
     for name in wanted:
         if name not in data:
             raise InputError(path, f"cell data {name}", f"must be given, a number a cell; got {shown(sorted(data))}")
@@ -191,10 +211,15 @@ def _cue(path: Path, data: dict[str, Any], lengths: Any) -> Cue:
         return Cue(tuple(segments), rows[0]["body_mass"])
 
 
+def _material(row: dict[str, float], prefix: str) -> Material | None:
+    """The material of a cell, or None where it has no core; 0 stands for a constant that is not given."""
+    if not row[f"{prefix}E"]:
+        return None
+    values = {name: row[prefix + name] for name in _columns(Material)}
+    return Material(**{name: value for name, value in values.items() if value or name not in _across()})
+
+
 def _segment(row: dict[str, float]) -> Segment:
-    shell, core = (
-        Material(**{name: row[prefix + name] for name in _columns(Material)}) if row[f"{prefix}E"] else None
-        for prefix in ("", "core_")
-    )
     geometry = {name: row[name] for name in _columns(Segment) if name != "kappa"}
+    shell, core = (_material(row, prefix) for prefix in ("", "core_"))
     return Segment(**geometry, material=shell, core=core, kappa=row["kappa"] or None)  # type: ignore[arg-type]

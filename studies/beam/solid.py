@@ -1,6 +1,6 @@
 """How close is the beam to the solid cue, and which shear coefficient is right?
 
-The same cue by 3-D elasticity (solid_body.py: harmonic m = 1, quadrilaterals of order 6) and by the beam of
+The same cue by 3-D elasticity (cuefem.solid: harmonic m = 1, quadrilaterals of order 6) and by the beam of
 cuefem, both converged below the figures shown. First the shear coefficient: of a rod with its ends held in the plane
 (U = V = 0, free to warp) the lowest mode is a wave of k = pi/L, exactly; Timoshenko's dispersion, solved for kappa G A,
 gives the right coefficient as k -> 0. Then free cues: six frequencies, the tip's amplitude, the end masses (from as
@@ -20,11 +20,12 @@ import numpy as np
 from cuefem import Cue, Material, Segment, modes
 from cuefem.beam.tip import tip_modes
 from cuefem.beam.waves import modes_below
-from cuefem.cue import shear_coefficient
+from cuefem.cue import Array, shear_coefficient
 from cuefem.endmass.drives import formula_of
 from cuefem.materials import material
+from cuefem.solid.half_section import Fineness
+from cuefem.solid.shaft import Body, SolidModes
 from studies import pages
-from studies.beam.solid_body import MAPLE, Array, Body, Fineness, SolidModes, Transverse
 from studies.pages import table
 from studies.strokes import cue, scene
 
@@ -33,15 +34,15 @@ HIGHEST = 20e3  # Hz: below the first thickness modes of every shaft here
 FINE, ROUGH = Fineness(8, 0.2, 0.03), Fineness(6, 0.4, 0.04)
 WOOD, CARBON, FOAM = material("hard maple"), material("carbon fibre"), material("foam")
 MELAMINE, LEATHER = material("melamine"), material("leather")
-KIM_WOOD = cue("kim").segments[0].material
-KIM_ISOTROPIC = replace(KIM_WOOD, G=KIM_WOOD.E / 2.6)
-LAYUP = Transverse(0.545, 0.3)  # the hoop modulus of materials.py's layup by lamination theory, 43.4 GPa for 79.7
-ACROSS = {WOOD: MAPLE, KIM_WOOD: MAPLE, CARBON: LAYUP}
+ACROSS = {"across_ratio": WOOD.across_ratio, "nu_across": WOOD.nu_across}
+KIM_CONE = cue("kim").segments[0]
+KIM_WOOD = replace(KIM_CONE.material, **ACROSS)
+KIM_ISOTROPIC = replace(KIM_CONE.material, G=KIM_WOOD.E / 2.6)
 
 
 def kim(wood: Material, kappa: float | None = None) -> Cue:
     """Kim's cone of another material; kappa left out: Hutchinson's."""
-    return Cue((replace(cue("kim").segments[0], material=wood, kappa=kappa),), body_mass=0.42)
+    return Cue((replace(KIM_CONE, material=wood, kappa=kappa),), body_mass=0.42)
 
 
 def rod(wood: Material = WOOD, *, length: float = 0.7, diameter: float = 0.0128, bore: float = 0.0) -> Cue:
@@ -51,20 +52,20 @@ def rod(wood: Material = WOOD, *, length: float = 0.7, diameter: float = 0.0128,
 # The long wave: which shear coefficient?
 
 
-def wave(whole: Cue, slenderness: float, across: dict[Material, Transverse]) -> tuple[float, float]:
+def wave(whole: Cue, slenderness: float) -> tuple[float, float]:
     """(k, omega) of the lowest mode of a uniform cue's section at a length of ``slenderness`` radii."""
     section = whole.segments[0]
     length = slenderness * section.tip_diameter / 2
-    body = Body(Cue((replace(section, length=length),)), across, Fineness(8, slenderness / 8, length / 6, 1.5, 1))
+    body = Body(Cue((replace(section, length=length),)), Fineness(8, slenderness / 8, length / 6, 1.5, 1))
     return math.pi / length, float(body.modes(1, supported=True).omega[0])
 
 
-def long_wave(whole: Cue, across: dict[Material, Transverse] | None = None) -> tuple[float, float]:
+def long_wave(whole: Cue) -> tuple[float, float]:
     """(bending stiffness over E I, kappa G A in N) that the solid has in the limit k -> 0, from four wave lengths.
 
     A section of one material has E I exactly; materials of unlike nu stiffen each other.
     """
-    found = np.array([wave(whole, s, ACROSS if across is None else across) for s in (48.0, 68.0, 96.0, 136.0)])
+    found = np.array([wave(whole, s) for s in (48.0, 68.0, 96.0, 136.0)])
     k2, omega2 = found.T**2
     s = whole.section(0.0)
     ratio = 1.0
@@ -89,13 +90,12 @@ SECTIONS = {"solid, nu 0.3": (KIM_ISOTROPIC, 0.0), "solid, maple": (WOOD, 0.0), 
 
 
 @cache
-def kappa(name: str, E_ratio: float | None = None) -> float:
-    """The solid's shear coefficient of a section of SECTIONS; E_ratio: another E_T/E across the grain."""
+def kappa(name: str) -> float:
+    """The solid's shear coefficient of a section of SECTIONS."""
     wood, ratio = SECTIONS[name]
     whole = rod(wood, bore=ratio * 0.0128)
-    across = ACROSS if E_ratio is None else {wood: Transverse(E_ratio, MAPLE.nu)}
     area = float(whole.section(0.0).kGA) / float(shear_coefficient(wood.effective_poisson_ratio, ratio))
-    return long_wave(whole, across)[1] / area
+    return long_wave(whole)[1] / area
 
 
 def coefficients() -> Iterator[list[str | float]]:
@@ -137,7 +137,7 @@ def solid_modes(struck: Cue, count: int, how: Fineness = FINE) -> SolidModes:
 
 @cache
 def _solid_modes(struck: Cue, count: int, how: Fineness) -> SolidModes:
-    return Body(struck, ACROSS, how).modes(count + 2)
+    return Body(struck, how).modes(count + 2)
 
 
 def own_error(struck: Cue) -> float:
@@ -154,21 +154,21 @@ def compared(struck: Cue) -> tuple[Array, Array, dict[str, float]]:
     in_beam = tip_modes(beam, struck.mass)
     in_solid = replace(in_beam, omega=in_beam.omega.copy(), amplitude=in_beam.amplitude.copy())
     in_solid.omega[3:] = solid.omega[2:]
-    in_solid.amplitude[1:, 1] = np.abs(solid.tip)
+    in_solid.amplitude[1:, 1] = solid.tip
     masses = {}
     for T in (1e-3, 2e-3):
         at = scene(struck, T)
         for drive in ("stick", "velocity", "force"):
             ours, theirs = (formula_of(drive)(tip, at) for tip in (in_beam, in_solid))
             masses[f"{drive} {1e3 * T:g} ms"] = ours / theirs - 1
-    tips = in_beam.amplitude[3:, 1] / np.abs(solid.tip[2:]) - 1
+    tips = in_beam.amplitude[3:, 1] / solid.tip[2:] - 1
     return (beam.frequencies / solid.frequencies - 1)[:COUNT], tips[:COUNT], masses
 
 
 CUES = {"isotropic, Hutchinson": kim(KIM_ISOTROPIC), "isotropic, Cowper": kim(KIM_ISOTROPIC, cowper(0.3))} | {
     "wood, Hutchinson": kim(KIM_WOOD),
     "wood, Cowper": kim(KIM_WOOD, cowper(KIM_WOOD.nu)),
-    "wood, 0.9 as in kim.toml": cue("kim"),
+    "wood, 0.9 as in kim.toml": kim(KIM_WOOD, KIM_CONE.kappa),
     "pool_maple": cue("pool_maple"),
     "pool_hollow": cue("pool_hollow"),
     "carbon": cue("carbon"),
@@ -283,9 +283,10 @@ def across_grain() -> Iterator[list[str | float]]:
     """Kim's wooden cone with other constants across the grain."""
     struck = kim(KIM_WOOD)
     beam = modes(struck, COUNT).frequencies
-    for across in (MAPLE, *(Transverse(E, nu) for E, nu in ((0.05, 0.5), (0.2, 0.4), (1.0, 0.3)))):
-        solid = Body(struck, {KIM_WOOD: across}, FINE).modes(COUNT + 2)
-        yield [f"{across.E_ratio:g}", f"{across.nu:g}", *signed(beam / solid.frequencies - 1)]
+    for ratio, nu in ((WOOD.across_ratio, WOOD.nu_across), (0.05, 0.5), (0.2, 0.4), (1.0, 0.3)):
+        wood = replace(KIM_WOOD, across_ratio=ratio, nu_across=nu)
+        solid = Body(kim(wood), FINE).modes(COUNT + 2)
+        yield [f"{ratio:g}", f"{nu:g}", *signed(beam / solid.frequencies - 1)]
 
 
 def slopes() -> Iterator[list[str | float]]:

@@ -105,8 +105,8 @@ CHANGES = [
         CUE,
         "rho",
         "Rho",
-        "segments[0].material.Rho: must be one of the keys E, G, rho, loss, nu; got Rho = '782 kg/m^3'; "
-        "did you mean 'rho'?",
+        "segments[0].material.Rho: must be one of the keys E, G, rho, loss, nu, across_ratio, nu_across; "
+        "got Rho = '782 kg/m^3'; did you mean 'rho'?",
     ),
     (
         CUE,

@@ -34,6 +34,7 @@ COMMANDS = {
     "bare strike": (["strike", "meshes/kim.toml"], "ball velocity, normal"),
     "effects": (["effects", POOL], "RollingContact"),
     "cost": (["cost", POOL, "--most", "24"], "elements x order"),
+    "check": (["check", "meshes/kim.toml"], "give of the tip, cue free"),
     "report": (["report", POOL], "two-part, this cue"),
     "lumped report": (["report", "{lumped}"], "two-part, this cue"),
     "materials": (["materials"], "yellow birch"),

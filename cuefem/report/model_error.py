@@ -1,0 +1,130 @@
+"""Beam theory beside the solid, for one's own shaft: record and sheet of `cuefem check`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from cuefem.beam.modes import modes
+from cuefem.beam.tip import TipModes, tip_modes
+from cuefem.contact.strike import strike_modes
+from cuefem.cue import Cue
+from cuefem.effects.base import CueEffect
+from cuefem.endmass.drives import formula_of
+from cuefem.results.records import Record, Sheet, sheet
+from cuefem.scene import Scene
+from cuefem.solid.half_section import Fineness, blocks, check_size
+from cuefem.solid.shaft import AXIAL, Body, mass_on_face
+
+# Flexible modes on both sides; tones that are told.
+MODES, TONES = 40, 6
+ORDER, LARGE_ORDER, LARGE = 6, 4, 150  # a drawing of more elements than LARGE is computed with LARGE_ORDER
+DRIVES = {"stick": "end mass, stick", "force": "end mass, force"}
+Follow = Callable[[Sequence[Any]], Iterable[Any]]
+
+
+def fineness(cue: Cue) -> Fineness:
+    """The finer of the two meshes on which a cue is checked; the coarser has an order less."""
+    mesh = Fineness(ORDER, 0.8, 0.05)
+    cells = sum(len(block.along) - 1 for block in blocks(cue, mesh))
+    return mesh if cells <= LARGE else mesh._replace(order=LARGE_ORDER)
+
+
+def checked_scene(scene: Scene) -> tuple[Scene, list[str]]:
+    """The scene with the effects that a solid can have alone, and the names of those that are left out."""
+    out = [e for e in scene.effects if isinstance(e, CueEffect) and e.mass_on_face(scene.shaft) is None]
+    rest = tuple(effect for effect in scene.effects if effect not in out)
+    return (replace(scene, effects=rest) if out else scene), [type(effect).__name__ for effect in out]
+
+
+def model_error_record(scene: Scene, follow: Follow = iter) -> Record:
+    """The scene's numbers by beam and solid: tones, static gives, end masses and squirt, with the mesh's own error.
+
+    "left_out": effects that no solid can have, left out on both sides. follow: shows how far the work is.
+    """
+    scene, left_out = checked_scene(scene)
+    mesh = fineness(scene.shaft)
+    check_size(scene.shaft, mesh)
+    work = (lambda: _by_beam(scene), lambda: _by_solid(scene, mesh))
+    coarser = mesh._replace(order=mesh.order - 1)
+    beam, solid, coarse = (one() for one in follow([*work, lambda: _by_solid(scene, coarser)]))
+    rows = [
+        {
+            "quantity": words,
+            "unit": unit,
+            "beam": beam[words, unit],
+            "solid": value,
+            "difference": beam[words, unit] / value - 1,
+            "mesh_error": abs(coarse[words, unit] / value - 1),
+        }
+        for (words, unit), value in solid.items()
+        if value
+    ]
+    return {"rows": rows, "modes": MODES, "order": mesh.order, "left_out": left_out, "sentence": _sentence(rows)}
+
+
+Numbers = dict[tuple[str, str], float]
+
+
+def _by_beam(scene: Scene) -> Numbers:
+    cue = scene.shaft
+    tip = tip_modes(modes(cue, MODES, effects=scene.cue_effects), scene.axial_mass)
+    # one newton across the tip bends the cue by its distance from there, and shears it all along
+    x, weights = np.polynomial.legendre.leggauss(40)
+    pieces = [(s.section((x + 1) / 2 * s.length), weights * s.length / 2) for s in cue.segments]
+    along = sum(float(w @ (1 / section.EA)) for section, w in pieces)
+    across = sum(
+        float(w @ ((at + (x + 1) / 2 * s.length) ** 2 / section.EI + 1 / section.kGA))
+        for (section, w), s, at in zip(pieces, cue.segments, cue.nodes, strict=False)
+    )
+    return _numbers(scene, tip, across, along)
+
+
+def _by_solid(scene: Scene, mesh: Fineness) -> Numbers:
+    body = Body(scene.shaft, mesh)
+    tip = body.modes(MODES + 2, mass=mass_on_face(scene)).tip_modes(scene.axial_mass)
+    return _numbers(scene, tip, body.give, Body(scene.shaft, mesh, AXIAL).give)
+
+
+def _numbers(scene: Scene, tip: TipModes, across: float, along: float) -> Numbers:
+    """What is compared, by its words and its unit, from a cue's tip modes and its gives with the butt held, m/N."""
+    omega, amplitude = tip.omega[3:], tip.amplitude[3:, 1]
+    found = {(f"tone {k}", "Hz"): float(w) / (2 * np.pi) for k, w in enumerate(omega[:TONES], 1)}
+    found["stiffness at the tip, butt held", "N/m"] = 1 / across
+    found["stiffness along the axis, butt held", "N/m"] = 1 / along
+    found["give of the tip, cue free", "m/N"] = float(np.sum((amplitude / omega) ** 2))
+    for drive, words in DRIVES.items():
+        found[words, "kg"] = float(formula_of(drive)(tip, scene))
+    found["squirt", "rad"] = float(strike_modes(scene, tip, recorded=False).squirt)
+    return found
+
+
+def _sentence(rows: Sequence[Record]) -> str:
+    """How far beam theory is off, in a sentence."""
+    row = next((row for row in rows if row["quantity"] == "squirt"), None) or rows[-1]
+    off, own = abs(row["difference"]), row["mesh_error"]
+    size = f"{100 * max(off, own):.{2 if own < 0.05 * off else 1}g} %"
+    words = f"less than {size}" if off < own else size
+    return f"For this shaft beam theory is off by {words} in {row['quantity']}."
+
+
+def model_error_sheet(record: Record) -> Sheet:
+    """Beam and solid side by side."""
+    columns: Any = {
+        "": lambda row: row["quantity"],
+        "unit": lambda row: row["unit"],
+        "beam": lambda row: f"{row['beam']:.6g}",
+        "solid": lambda row: f"{row['solid']:.6g}",
+        "beam is off by": lambda row: f"{100 * row['difference']:+.2g} %",
+        "the mesh's own error": lambda row: f"{100 * row['mesh_error']:.1g} %",
+    }
+    notes = [
+        f"both from {record['modes']} bending modes, summed plainly; the mesh's own error is the change from elements "
+        f"of order {record['order'] - 1} to {record['order']}"
+    ]
+    if record["left_out"]:
+        notes.append(f"left out on both sides, because no solid can have it: {', '.join(record['left_out'])}")
+    return sheet("Beam beside solid", columns, record["rows"], *notes, texts=(0, 1))

@@ -1,0 +1,1 @@
+"""Shafts as solids of revolution, on scikit-fem (handbook: The solid)."""

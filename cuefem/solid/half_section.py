@@ -1,0 +1,146 @@
+"""The half-section of a cue, (z, r), as a mesh: rows of conical quadrilaterals, graded towards every end."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from graphlib import CycleError, TopologicalSorter
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from skfem import MeshQuad
+
+from cuefem.cue import Array, Cue, Material
+
+SAME = 1e-9  # m: radii closer than this are one line of the mesh
+THINNEST = 1e-6  # m: no wall of a cue is thinner, and elements across one would be too flat to compute with
+MOST_MEMORY = 2**31  # bytes
+# Bytes for each entry of the cells' matrices: the triplets, the sparse matrices and their factors.
+BYTES_EACH = 120
+
+
+class Fineness(NamedTuple):
+    """order: of the polynomials. finest: length of the elements at the ends of a piece, in radii there; they grow
+    by ``growth`` each to ``longest`` m. layers: elements across a layer of material."""
+
+    order: int = 6
+    finest: float = 0.4
+    longest: float = 0.04
+    growth: float = 2.0
+    layers: int = 1
+
+
+def lines(cue: Cue) -> tuple[Array, NDArray[np.intp], NDArray[np.intp]]:
+    """The lines of the mesh along a cue, each from tip to butt and straight within a piece.
+
+    radii: (lines, stations) m, rising with the line; bore, outer: (pieces,) the line that bounds a piece inside (-1: it
+    is solid) and outside. Lines run on through pieces that they do not bound. ValueError if no order of the lines is
+    the same at both ends of every piece.
+    """
+    pieces = cue.segments
+    ends = [[(s.tip_bore / 2, s.butt_bore / 2), (s.tip_diameter / 2, s.butt_diameter / 2)] for s in pieces]
+    name: dict[tuple[int, int], int] = {}
+    known: list[dict[int, float]] = [{} for _ in range(len(pieces) + 1)]
+    for i, both in enumerate(ends):
+        for kind, (first, last) in enumerate(both):
+            if kind == 0 and first == last == 0:
+                continue
+            line = next((k for k, r in known[i].items() if abs(r - first) < SAME), len(set(name.values())))
+            name[i, kind] = line
+            known[i][line], known[i + 1][line] = first, last
+    order = TopologicalSorter[int]()
+    for there in known:
+        ranked = sorted(there, key=there.__getitem__)
+        for below, above in pairwise(ranked):
+            order.add(above, below)
+        order.add(ranked[0])
+    try:
+        ranks = {line: k for k, line in enumerate(order.static_order())}
+    except CycleError:
+        raise ValueError("Cue.segments must be a drawing whose lines do not cross; got bores that cross") from None
+    radii = np.full((len(ranks) + 1, len(known)), np.nan)
+    radii[0] = 0.0
+    for station, there in enumerate(known):
+        rows = [0, *(1 + ranks[line] for line in there)]
+        radii[rows, station] = [0.0, *there.values()]
+        drawn = np.sort(rows)
+        radii[:, station] = np.interp(np.arange(len(radii)), drawn, radii[drawn, station])
+        beyond = np.arange(len(radii)) - drawn[-1]
+        radii[:, station] *= 1 + 0.1 * np.maximum(beyond, 0)
+    bore = np.array([1 + ranks[name[i, 0]] if (i, 0) in name else 0 for i in range(len(pieces))])
+    return radii, bore, np.array([1 + ranks[name[i, 1]] for i in range(len(pieces))])
+
+
+def steps(length: float, near: tuple[float, float], how: Fineness) -> Array:
+    """Positions in [0, 1] of the ends of elements along a piece of ``length``, radii ``near`` its two ends."""
+    grown = [how.finest * r * how.growth ** np.arange(40) for r in near]
+    left, right = (np.cumsum(g[g < how.longest]) for g in grown)
+    left, right = left[left < 0.5 * length], length - right[right < 0.5 * length][::-1]
+    first, last = [0.0, *left], [*right, length]
+    if len(first) > 1 and last[0] - first[-1] < 0.5 * (first[-1] - first[-2]):
+        first.pop()  # two rows that all but meet in the middle
+    count = max(1, int(np.ceil((last[0] - first[-1]) / how.longest - SAME)))
+    return np.concatenate([first, np.linspace(first[-1], last[0], count + 1)[1:-1], last]) / length
+
+
+class Block(NamedTuple):
+    """One layer of one piece, between two lines of the mesh: ``along``, the ends of its elements in [0, 1]."""
+
+    piece: int
+    layer: int
+    material: Material
+    along: Array
+
+
+def blocks(cue: Cue, how: Fineness) -> Iterator[Block]:
+    """Every layer of material of every piece."""
+    radii, bore, outer = lines(cue)
+    for i, piece in enumerate(cue.segments):
+        along = steps(piece.length, (radii[outer[i], i], radii[outer[i], i + 1]), how)
+        for layer in range(outer[i]):
+            material = piece.core if layer < bore[i] else piece.material
+            if material is not None:
+                yield Block(i, layer, material, along)
+
+
+def check_size(cue: Cue, how: Fineness) -> None:
+    """ValueError if a wall is too thin to be meshed, or if the solid would need over 2 GiB."""
+    for i, piece in enumerate(cue.segments):
+        for end in ("tip", "butt"):
+            bore, outer = getattr(piece, f"{end}_bore"), getattr(piece, f"{end}_diameter")
+            if outer - bore < 2 * THINNEST:
+                raise ValueError(
+                    f"Segment.{end}_bore of segments[{i}] must leave a wall of {1e6 * THINNEST:g} um or more for a "
+                    f"solid; got {1e6 * (outer - bore) / 2:.3g} um"
+                )
+    cells = how.layers * sum(len(block.along) - 1 for block in blocks(cue, how))
+    needed = BYTES_EACH * cells * (3 * (how.order + 1) ** 2) ** 2
+    if needed > MOST_MEMORY:
+        raise ValueError(
+            f"Solid.order must be lower for this drawing, whose solid of {cells} elements of order {how.order} needs "
+            f"more than 2 GiB; got {needed / 2**30:.1f} GiB"
+        )
+
+
+def half_section(cue: Cue, how: Fineness) -> tuple[MeshQuad, list[Material]]:
+    """Quadrilaterals in (z, r), and their materials."""
+    radii, _, _ = lines(cue)
+    points: list[tuple[float, float]] = []
+    cells: list[NDArray[np.intp]] = []
+    materials: list[Material] = []
+    sub = np.arange(how.layers + 1) / how.layers
+    for i, layer, material, at in blocks(cue, how):
+        r = radii[:, i, None] * (1 - at) + radii[:, i + 1, None] * at
+        z = cue.nodes[i] * (1 - at) + cue.nodes[i + 1] * at
+        rows = r[layer] + (r[layer + 1] - r[layer]) * sub[:, None]
+        for j in range(how.layers):
+            for k in range(len(at) - 1):
+                points += [(z[k], rows[j, k]), (z[k + 1], rows[j, k + 1])]
+                points += [(z[k + 1], rows[j + 1, k + 1]), (z[k], rows[j + 1, k])]
+                cells.append(len(points) - 4 + np.arange(4))
+                materials.append(material)
+    where = np.array(points)
+    rounded = np.round(where / SAME).astype(np.int64)
+    _, first, same = np.unique(rounded, axis=0, return_index=True, return_inverse=True)
+    return MeshQuad(where[first].T, same.ravel()[np.array(cells)].T), materials

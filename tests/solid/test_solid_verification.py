@@ -1,0 +1,167 @@
+"""The solid shaft against exact elasticity, its convergence, and its weak forms against scikit-fem's own assembly
+(verification)."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+from scipy.special import iv, ivp
+from skfem import Basis, BilinearForm, ElementQuadP, asm
+
+from cuefem import Cue, Material, Segment
+from cuefem.materials import material
+from cuefem.solid.half_section import Fineness
+from cuefem.solid.shaft import (
+    AXIAL,
+    BENDING,
+    Body,
+    Field,
+    Motion,
+    axial_strains,
+    bending_displacements,
+    bending_strains,
+    stiffness,
+)
+from tests.helpers.orders import assert_order
+
+STEEL = Material(200e9, 200e9 / 2.6, 7850.0)
+MAPLE = material("hard maple")
+RADIUS, LENGTH = 0.01, 0.06
+CYLINDER = Cue((Segment(LENGTH, 2 * RADIUS, 2 * RADIUS, STEEL),))
+
+
+def traction(omega: float, k: float, motion: Motion) -> float:
+    """The determinant of the surface traction of three potentials (two along the axis), zero for a free wave.
+
+    phi = a I_n(pr) cos nt sin kz, psi = b I_n(qr) sin nt sin kz, chi = c I_n(qr) cos nt cos kz, n 1 or 0, with
+    u = grad phi + curl(psi e_z) + curl curl(chi e_z); p^2 = k^2 - (omega/c_L)^2, q^2 = k^2 - (omega/c_T)^2.
+    """
+    n, r, mu = (1 if motion is BENDING else 0), RADIUS, STEEL.G
+    lam = STEEL.E * STEEL.nu / ((1 + STEEL.nu) * (1 - 2 * STEEL.nu))
+    p2, q2 = k**2 - omega**2 * STEEL.rho / (lam + 2 * mu), k**2 - omega**2 * STEEL.rho / mu
+    p, q = np.sqrt([p2 + 0j, q2 + 0j])
+    (P, P1, P2), (Q, Q1, Q2) = ((iv(n, s * r), s * ivp(n, s * r), s**2 * ivp(n, s * r, 2)) for s in (p, q))
+    U, dU = np.array([P1, n * Q / r, -k * Q1]), np.array([P2, n * (Q1 / r - Q / r**2), -k * Q2])
+    V, dV = np.array([-P / r, -Q1, k * Q / r]), np.array([-P1 / r + P / r**2, -Q2, k * Q1 / r - k * Q / r**2])
+    dW = np.array([k * P1, 0.0, -q2 * Q1])
+    spread = np.array([(p2 - k**2) * P, 0.0, 0.0])
+    rows = np.array([lam * spread + 2 * mu * dU, mu * (dV - (U + V) / r), mu * (k * U + dW)])
+    if motion is AXIAL:
+        rows = rows[np.ix_([0, 2], [0, 2])]
+    return float(np.linalg.det(rows / np.abs(rows).max(axis=0)).real)
+
+
+def beam_wave(k: float) -> float:
+    """omega of Timoshenko's flexural wave."""
+    s = CYLINDER.section(0.0)
+    a, b = s.rhoI * s.rhoA / s.kGA, s.rhoA + k**2 * (s.rhoI + s.EI * s.rhoA / s.kGA)
+    return math.sqrt(float((b - np.sqrt(b**2 - 4 * a * s.EI * k**4)) / (2 * a)))
+
+
+def love_wave(k: float) -> float:
+    """omega of a rod's wave with the inertia of its swelling (Love)."""
+    return k * math.sqrt(STEEL.E / STEEL.rho / (1 + (STEEL.nu * k * RADIUS) ** 2 / 2))
+
+
+def exact_wave(halves: int, motion: Motion) -> float:
+    k = halves * math.pi / LENGTH
+    guess = beam_wave(k) if motion is BENDING else love_wave(k)
+    return float(brentq(traction, 0.95 * guess, 1.05 * guess, (k, motion), xtol=1e-9, rtol=1e-14))
+
+
+def standing_wave(halves: int, motion: Motion, how: Fineness) -> float:
+    """The mode with so many half waves between faces that do not move within their planes."""
+    omega = Body(CYLINDER, how, motion).modes(5, supported=True).omega
+    return float(omega[halves - (motion is BENDING)])
+
+
+@pytest.mark.parametrize("halves", [1, 2, 3])
+@pytest.mark.parametrize("motion", [BENDING, AXIAL], ids=["bending", "axial"])
+def test_a_cylinder_carries_the_waves_of_pochhammer_and_chree(motion: Motion, halves: int) -> None:
+    measured = standing_wave(halves, motion, Fineness(8, 1.0, 0.01))
+    assert measured == pytest.approx(exact_wave(halves, motion), rel=1e-9)
+
+
+@pytest.mark.parametrize("order", [2, 3])
+@pytest.mark.parametrize("motion", [BENDING, AXIAL], ids=["bending", "axial"])
+def test_frequencies_converge_with_twice_the_order(motion: Motion, order: int) -> None:
+    elements = np.array([2, 4, 8])
+    waves = [standing_wave(1, motion, Fineness(order, 1e3, LENGTH / n, layers=n // 2)) for n in elements]
+    errors = np.array(waves) / exact_wave(1, motion) - 1
+    assert np.all(errors > 0)  # from above: the elements are conforming
+    assert_order(2 * order, 1 / elements, errors, within=0.3)
+
+
+@pytest.mark.parametrize("wood", [STEEL, MAPLE], ids=["steel", "maple"])
+def test_bending_by_couples_is_exact(wood: Material) -> None:
+    """u_x = (z^2 + nu (x^2 - y^2))/2, u_y = nu x y, u_z = -x z: no stress but E x along the grain."""
+    rod = Cue((Segment(LENGTH, 2 * RADIUS, 2 * RADIUS, wood),))
+    body = Body(rod, Fineness(2, 1.0, 0.01, layers=2))
+    fields = (lambda x: (x[0] ** 2 + wood.nu * x[1] ** 2) / 2, lambda x: wood.nu * x[1] ** 2, lambda x: -x[1] * x[0])
+    bent = np.concatenate([body.basis.project(field) for field in fields])
+    K, _ = body.matrices
+    assert bent @ K @ bent == pytest.approx(float(rod.section(0.0).EI) * LENGTH, rel=1e-10)
+
+
+@pytest.mark.parametrize("wood", [STEEL, MAPLE], ids=["steel", "maple"])
+def test_a_pulled_rod_is_as_stiff_as_its_section(wood: Material) -> None:
+    rod = Cue((Segment(LENGTH, 2 * RADIUS, 2 * RADIUS, wood, RADIUS, RADIUS),))
+    give = LENGTH / float(rod.section(0.0).EA)
+    assert Body(rod, Fineness(4, 1.0, 0.01), AXIAL).give == pytest.approx(give, rel=1e-10)
+
+
+def test_a_slender_cantilever_bends_as_a_beam() -> None:
+    """L^3/(3 EI) + L/(kappa G A), and what is left is the ends' own give, which does not grow with the length."""
+    off = []
+    for long in (20, 40):
+        rod = Cue((Segment(2 * RADIUS * long, 2 * RADIUS, 2 * RADIUS, STEEL),))
+        s = rod.section(0.0)
+        beam = rod.length**3 / 3 / float(s.EI) + rod.length / float(s.kGA)
+        off.append(Body(rod, Fineness(5, 0.6, 0.1)).give / beam - 1)
+    assert abs(off[0]) < 2e-4
+    assert off[1] / off[0] == pytest.approx(1 / 8, rel=0.02)
+
+
+def fields_of(function: object, own: int, count: int) -> list[Field]:
+    """One of ``count`` fields is scikit-fem's function, the others vanish."""
+    field = Field(function, function.grad[0], function.grad[1])  # type: ignore[attr-defined]
+    return [field if k == own else Field(*(0 * part for part in field)) for k in range(count)]
+
+
+@pytest.mark.parametrize(("motion", "strains"), [(BENDING, bending_strains), (AXIAL, axial_strains)])
+def test_the_matrices_are_those_of_scikit_fems_own_assembly(motion: Motion, strains: object) -> None:
+    body = Body(Cue((Segment(LENGTH, 2 * RADIUS, 3 * RADIUS, MAPLE, RADIUS, RADIUS),)), Fineness(2, 1.0, 0.02), motion)
+    basis = Basis(body.cells[0], ElementQuadP(2), intorder=6)
+    C, N = stiffness(MAPLE), basis.N
+
+    def block(i: int, j: int, forms: object) -> NDArray[np.float64]:
+        @BilinearForm
+        def energy(u, v, w):  # type: ignore[no-untyped-def]
+            first, second = (fields_of(f, k, motion.fields) for f, k in ((u, j), (v, i)))
+            if forms is None:
+                first, second = (motion.displacements(*fields) for fields in (first, second))
+                product = MAPLE.rho * sum(a * b for a, b in zip(first, second, strict=True))
+            else:
+                first, second = (np.array(strains(*fields, w.x[1])) for fields in (first, second))  # type: ignore[operator]
+                product = np.einsum("i...,ij,j...->...", second, C, first)
+            return motion.round * w.x[1] * product
+
+        return np.asarray(asm(energy, basis).toarray())
+
+    K, M = (matrix.toarray() for matrix in body.matrices)
+    for i in range(motion.fields):
+        for j in range(motion.fields):
+            part = np.ix_(i * N + np.arange(N), j * N + np.arange(N))
+            np.testing.assert_allclose(K[part], block(i, j, strains), rtol=1e-9, atol=1e-11 * abs(K).max())
+            np.testing.assert_allclose(M[part], block(i, j, None), rtol=1e-9, atol=1e-11 * abs(M).max())
+
+
+def test_the_displacements_of_bending_add_to_a_shift() -> None:
+    """U = 1, S = W = 0 is the body's shift across: u_r = cos t, u_t = -sin t."""
+    one, none = Field(1.0, 0.0, 0.0), Field(0.0, 0.0, 0.0)
+    assert bending_displacements(one, none, none) == [1.0, -1.0, 0.0]
+    assert bending_strains(one, none, none, 0.5) == [0.0] * 6
