@@ -32,7 +32,7 @@ from cuefem.solid.half_section import SAME, Fineness, check_size, half_section
 SHIFT = (2 * np.pi * 30.0) ** 2
 
 
-class Field(NamedTuple):
+class Displacement(NamedTuple):
     """An unknown field's value and slopes, at some points."""
 
     value: Any
@@ -40,7 +40,7 @@ class Field(NamedTuple):
     dr: Any
 
 
-def bending_strains(U: Field, S: Field, W: Field, r: Any) -> list[Any]:
+def bending_strains(U: Displacement, S: Displacement, W: Displacement, r: Any) -> list[Any]:
     """Strains (rr, tt, zz, 2 rz, 2 rt, 2 tz) of bending, without their cos t or sin t."""
     return [
         U.dr,
@@ -52,23 +52,23 @@ def bending_strains(U: Field, S: Field, W: Field, r: Any) -> list[Any]:
     ]
 
 
-def bending_displacements(U: Field, S: Field, W: Field) -> list[Any]:
+def bending_displacements(U: Displacement, S: Displacement, W: Displacement) -> list[Any]:
     """Displacements (u_r, u_t, u_z) of bending, without their cos t or sin t."""
     return [U.value, S.value - U.value, W.value]
 
 
-def axial_strains(U: Field, W: Field, r: Any) -> list[Any]:
+def axial_strains(U: Displacement, W: Displacement, r: Any) -> list[Any]:
     """Strains (rr, tt, zz, 2 rz, 2 rt, 2 tz) of the motion along the axis."""
     none = 0 * U.value
     return [U.dr, U.value / r, W.dz, U.dz + W.dr, none, none]
 
 
-def axial_displacements(U: Field, W: Field) -> list[Any]:
+def axial_displacements(U: Displacement, W: Displacement) -> list[Any]:
     """Displacements (u_r, u_t, u_z) of the motion along the axis."""
     return [U.value, 0 * U.value, W.value]
 
 
-class Motion(NamedTuple):
+class Harmonic(NamedTuple):
     """A Fourier harmonic: number of fields, weak forms, the integral over the angle, and the number of rigid motions.
 
     on_axis: which fields vanish on the axis.
@@ -82,8 +82,8 @@ class Motion(NamedTuple):
     on_axis: tuple[int, ...]
 
 
-BENDING = Motion(3, bending_strains, bending_displacements, np.pi, 2, (1, 2))
-AXIAL = Motion(2, axial_strains, axial_displacements, 2 * np.pi, 1, (0,))
+BENDING = Harmonic(3, bending_strains, bending_displacements, np.pi, 2, (1, 2))
+AXIAL = Harmonic(2, axial_strains, axial_displacements, 2 * np.pi, 1, (0,))
 
 
 def stiffness(material: Material) -> Array:
@@ -107,7 +107,7 @@ class Body:
 
     cue: Cue
     how: Fineness
-    motion: Motion = BENDING
+    motion: Harmonic = BENDING
 
     def __post_init__(self) -> None:
         check_size(self.cue, self.how)
@@ -139,9 +139,9 @@ class Body:
         roots = {m: np.linalg.cholesky(stiffness(m)).T for m in set(materials)}
         radius = np.asarray(basis.global_coordinates())[1]
         zero = np.zeros(value.shape[::2])  # (functions, points)
-        none = Field(zero, zero, zero)
+        none = Displacement(zero, zero, zero)
         for cell, material in enumerate(materials):
-            function = Field(value[:, cell], dz[:, cell], dr[:, cell])
+            function = Displacement(value[:, cell], dz[:, cell], dr[:, cell])
             alone = [[none] * k + [function] + [none] * (motion.fields - 1 - k) for k in range(motion.fields)]
             strain = np.array([motion.strains(*fields, radius[cell]) for fields in alone])
             move = np.array([motion.displacements(*fields) for fields in alone])

@@ -19,8 +19,8 @@ from cuefem.solid.shaft import (
     AXIAL,
     BENDING,
     Body,
-    Field,
-    Motion,
+    Displacement,
+    Harmonic,
     axial_strains,
     bending_displacements,
     bending_strains,
@@ -34,7 +34,7 @@ RADIUS, LENGTH = 0.01, 0.06
 CYLINDER = Cue((Segment(LENGTH, 2 * RADIUS, 2 * RADIUS, STEEL),))
 
 
-def traction(omega: float, k: float, motion: Motion) -> float:
+def traction(omega: float, k: float, motion: Harmonic) -> float:
     """The determinant of the surface traction of three potentials (two along the axis), zero for a free wave.
 
     phi = a I_n(pr) cos nt sin kz, psi = b I_n(qr) sin nt sin kz, chi = c I_n(qr) cos nt cos kz, n 1 or 0, with
@@ -67,13 +67,13 @@ def love_wave(k: float) -> float:
     return k * math.sqrt(STEEL.E / STEEL.rho / (1 + (STEEL.nu * k * RADIUS) ** 2 / 2))
 
 
-def exact_wave(halves: int, motion: Motion) -> float:
+def exact_wave(halves: int, motion: Harmonic) -> float:
     k = halves * math.pi / LENGTH
     guess = beam_wave(k) if motion is BENDING else love_wave(k)
     return float(brentq(traction, 0.95 * guess, 1.05 * guess, (k, motion), xtol=1e-9, rtol=1e-14))
 
 
-def standing_wave(halves: int, motion: Motion, how: Fineness) -> float:
+def standing_wave(halves: int, motion: Harmonic, how: Fineness) -> float:
     """The mode with so many half waves between faces that do not move within their planes."""
     omega = Body(CYLINDER, how, motion).modes(5, supported=True).omega
     return float(omega[halves - (motion is BENDING)])
@@ -81,14 +81,14 @@ def standing_wave(halves: int, motion: Motion, how: Fineness) -> float:
 
 @pytest.mark.parametrize("halves", [1, 2, 3])
 @pytest.mark.parametrize("motion", [BENDING, AXIAL], ids=["bending", "axial"])
-def test_a_cylinder_carries_the_waves_of_pochhammer_and_chree(motion: Motion, halves: int) -> None:
+def test_a_cylinder_carries_the_waves_of_pochhammer_and_chree(motion: Harmonic, halves: int) -> None:
     measured = standing_wave(halves, motion, Fineness(8, 1.0, 0.01))
     assert measured == pytest.approx(exact_wave(halves, motion), rel=1e-9)
 
 
 @pytest.mark.parametrize("order", [2, 3])
 @pytest.mark.parametrize("motion", [BENDING, AXIAL], ids=["bending", "axial"])
-def test_frequencies_converge_with_twice_the_order(motion: Motion, order: int) -> None:
+def test_frequencies_converge_with_twice_the_order(motion: Harmonic, order: int) -> None:
     elements = np.array([2, 4, 8])
     waves = [standing_wave(1, motion, Fineness(order, 1e3, LENGTH / n, layers=n // 2)) for n in elements]
     errors = np.array(waves) / exact_wave(1, motion) - 1
@@ -126,14 +126,14 @@ def test_a_slender_cantilever_bends_as_a_beam() -> None:
     assert off[1] / off[0] == pytest.approx(1 / 8, rel=0.02)
 
 
-def fields_of(function: object, own: int, count: int) -> list[Field]:
+def fields_of(function: object, own: int, count: int) -> list[Displacement]:
     """One of ``count`` fields is scikit-fem's function, the others vanish."""
-    field = Field(function, function.grad[0], function.grad[1])  # type: ignore[attr-defined]
-    return [field if k == own else Field(*(0 * part for part in field)) for k in range(count)]
+    field = Displacement(function, function.grad[0], function.grad[1])  # type: ignore[attr-defined]
+    return [field if k == own else Displacement(*(0 * part for part in field)) for k in range(count)]
 
 
 @pytest.mark.parametrize(("motion", "strains"), [(BENDING, bending_strains), (AXIAL, axial_strains)])
-def test_the_matrices_are_those_of_scikit_fems_own_assembly(motion: Motion, strains: object) -> None:
+def test_the_matrices_are_those_of_scikit_fems_own_assembly(motion: Harmonic, strains: object) -> None:
     body = Body(Cue((Segment(LENGTH, 2 * RADIUS, 3 * RADIUS, MAPLE, RADIUS, RADIUS),)), Fineness(2, 1.0, 0.02), motion)
     basis = Basis(body.cells[0], ElementQuadP(2), intorder=6)
     C, N = stiffness(MAPLE), basis.N
@@ -162,6 +162,6 @@ def test_the_matrices_are_those_of_scikit_fems_own_assembly(motion: Motion, stra
 
 def test_the_displacements_of_bending_add_to_a_shift() -> None:
     """U = 1, S = W = 0 is the body's shift across: u_r = cos t, u_t = -sin t."""
-    one, none = Field(1.0, 0.0, 0.0), Field(0.0, 0.0, 0.0)
+    one, none = Displacement(1.0, 0.0, 0.0), Displacement(0.0, 0.0, 0.0)
     assert bending_displacements(one, none, none) == [1.0, -1.0, 0.0]
     assert bending_strains(one, none, none, 0.5) == [0.0] * 6
