@@ -10,7 +10,8 @@ from cuefem.design.optimum import Limit, Problem
 from cuefem.design.scatter import Scatter
 from cuefem.games import GAMES, usual_scene
 from cuefem.io import load_stroke
-from cuefem.io.errors import InputError, faults_of, shown
+from cuefem.io.errors import InputError, faults_of, shown, state_of
+from cuefem.io.profile import SHAPES
 from cuefem.io.schema import build, joined, unknown_key
 from cuefem.io.toml import named_material, read_tables
 from cuefem.quantity import Quantity
@@ -37,7 +38,7 @@ def load_study(path: str | Path, *, offset: float = 0.3) -> Study:
     text.
     """
     path = Path(path)
-    return _study(read_tables(path), path, offset, KEYS)
+    return _study(_study_tables(path), path, offset, KEYS)
 
 
 def load_scatter(path: str | Path, *, offset: float = 0.3) -> tuple[Scatter, Sample]:
@@ -47,7 +48,7 @@ def load_scatter(path: str | Path, *, offset: float = 0.3) -> tuple[Scatter, Sam
     line if it is not valid.
     """
     path = Path(path)
-    found = read_tables(path)
+    found = _study_tables(path)
     study = _study(found, path, offset, SCATTER_KEYS)
     if study.sample is None or study.sample.method != "sobol":
         got = study.sample.method if study.sample else "nothing"
@@ -63,7 +64,7 @@ def load_optimum(path: str | Path, *, offset: float = 0.3) -> Problem:
     [[limit]] tables of a response with low or high.
     """
     path = Path(path)
-    found = read_tables(path)
+    found = _study_tables(path)
     _check_keys(found, OPTIMUM_KEYS, path, "")
     base = _base(found, path, offset)
     objective = found.get("objective")
@@ -131,6 +132,18 @@ def _resolution(found: dict[str, Any], path: Path) -> Resolution | None:
     if "resolution" not in found:
         return None
     return build(Resolution, found["resolution"], file=str(path), key="resolution")
+
+
+def _study_tables(path: Path) -> dict[str, Any]:
+    """The tables of a study's file; a drawing or a scene that stands in the place of a study is refused as one."""
+    state_of(path)
+    shape = path.suffix.lower() in SHAPES
+    tables = {} if shape else read_tables(path)
+    if shape or (not {"scene", "vary"} & set(tables) and {"segments", "cue"} & set(tables)):
+        what = "a drawing of a shaft" if shape or "segments" in tables else "a scene"
+        wanted = f'must be a study, with scene = "{path.name}" and [[vary]] tables, as studies/sweeps/bore.toml is'
+        raise InputError(path, "", f"{wanted}; got {what}")
+    return tables
 
 
 def _check_keys(found: Any, known: list[str], path: Path, key: str) -> None:

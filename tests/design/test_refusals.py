@@ -17,7 +17,7 @@ from cuefem.design.scatter import Scatter, drivers, spread
 from tests.helpers.command_line import call
 from tests.helpers.cues import kim, low_deflection, pool, scene
 from tests.helpers.refusals import command_refuses, refuses, untouched
-from tests.helpers.sweeps import OPTIMUM, SCATTER, STRUCK, STUDY, changed, written
+from tests.helpers.sweeps import OPTIMUM, SCATTER, SCENE, STRUCK, STUDY, changed, written
 
 AT = Resolution(1, 8, 3)
 THREE = CueBatch.of([kim()] * 3)
@@ -256,6 +256,23 @@ def test_files(tmp_path: Path, good: tuple[str, str], old: str, new: str, messag
     study = written(tmp_path, text.replace(old, new, 1))
     command_refuses(message, command, study)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["scene.toml", "study.toml"]
+
+
+@pytest.mark.parametrize("command", ["sweep", "scatter", "optimize"])
+@pytest.mark.parametrize(
+    ("name", "text", "what"),
+    [
+        ("cue.toml", '[[segments]]\nlength = "700 mm"\n', "a drawing of a shaft"),
+        ("cue.csv", "x [mm],diameter [mm]\n0,12\n700,21\n", "a drawing of a shaft"),
+        ("scene.toml", SCENE, "a scene"),
+    ],
+)
+def test_a_drawing_or_a_scene_in_the_place_of_a_study(
+    tmp_path: Path, command: str, name: str, text: str, what: str
+) -> None:
+    (tmp_path / name).write_text(text)
+    wanted = f'{name}: must be a study, with scene = "{name}" and [[vary]] tables, as studies/sweeps/bore.toml is; got '
+    untouched(tmp_path, wanted + what, command, tmp_path / name)
 
 
 def test_a_front_without_its_library(monkeypatch: pytest.MonkeyPatch) -> None:
