@@ -24,7 +24,10 @@ _ITEM = re.compile(r"(\w+)s\[(\d+|\*)\]")
 SHOWN = 7  # designs of a front in the terminal
 
 DRIVES = "What drives the results: the part of the spread between designs that goes with one column alone"
-TREND = "rises, falls: how the result goes as the column grows; parts that only act together are in no column"
+TREND = (
+    "falls: a larger number in the column gives a smaller result (a larger bore, less squirt); rises: a larger one; "
+    "parts that only act together are in no column"
+)
 
 
 @dataclass(frozen=True)
@@ -234,17 +237,18 @@ def front_sheet(table: StudyTable, most: int) -> Sheet:
     for i in (table.front[j] for j in picked):
         results = (shown(table.results[i, k], one.unit) for k, one in zip(table.pair, two, strict=True))
         rows.append((str(table.numbers[i]), *results, *table.at(i)))
-    return Sheet(f"Trade-off, {front_words(table)}", ("design", *names), tuple(rows))
+    return Sheet(f"Trade-off, {front_words(table, most)}", ("design", *names), tuple(rows))
 
 
-def front_words(table: StudyTable) -> str:
-    """What the front is."""
+def front_words(table: StudyTable, most: int) -> str:
+    """What the front is, and how many of its designs are listed where there is room for ``most``."""
     assert table.pair is not None
     one, other = (table.responses[k] for k in table.pair)
     count = len(table.front)
+    few = f"; {most} of them are listed, evenly picked" if most < count else ""
     if count == 1:
         return f"{one.label} and {other.label}: one design is the best for both"
-    return f"{one.label} against {other.label}: {count} designs, of which none is beaten in both"
+    return f"{one.label} against {other.label}: {count} designs, of which none is beaten in both{few}"
 
 
 def study_sheets(table: StudyTable) -> list[Sheet | str]:

@@ -71,7 +71,7 @@ def study_page(name: str, table: StudyTable, facts: list[str], *, scattered: Sca
     template = environment().get_template("study.html.j2")
     fronts = None
     if table.pair is not None:
-        fronts = (front_words(table), front_sheet(table, FRONT), _front_panel(table))
+        fronts = (front_words(table, FRONT), front_sheet(table, FRONT), _front_panel(table))
     lines, coordinates, wide = _parallel(table)
     first = table.responses[table.judged[0]]
     text = template.render(

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from cuefem.design import Response
-from cuefem.report.study import StudyTable, column_label
+from cuefem.report.study import StudyTable, column_label, front_sheet
 from cuefem.results.asking import asked
 from tests.helpers.command_line import call
 from tests.helpers.sweeps import SCENE, STUDY
@@ -61,6 +61,17 @@ def test_the_front_is_what_none_beats(seed: int) -> None:
     assert all(not beaten[i] for i in found.front)
     assert found.best(0) in np.flatnonzero(results[:, 0] == results[:, 0].min())
     assert found.best(1) in np.flatnonzero(results[:, 1] == results[:, 1].max())
+
+
+@pytest.mark.parametrize(
+    ("most", "words"), [(7, "20 designs, of which none is beaten in both; 7 of them are listed"), (30, "both")]
+)
+def test_a_front_says_how_many_of_its_designs_are_listed(most: int, words: str) -> None:
+    x = np.linspace(0, 1, 20)
+    sheet = front_sheet(table({"x": x}, np.stack([x, x], axis=1)), most)
+    assert len(sheet.rows) == min(most, 20)
+    assert words in sheet.title
+    assert ("listed" in sheet.title) == (most < 20)
 
 
 def test_the_pair_is_the_strongest_trade_off() -> None:
