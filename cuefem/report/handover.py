@@ -35,7 +35,7 @@ NICKEL = 0.0106045  # m, the dome of pooltool's own cue
 A31_MEANING = (
     "the end mass whose [A.31] squirt is that of the coupled strike, at this offset, speed and head-on contact time"
 )
-A31_WORDS = "with this end mass Alciatore's formula [A.31], the simulator's, turns the ball as the coupled strike does"
+A31_WORDS = "put this number into pooltool: with its formula [A.31] it then gives the squirt computed here"
 SIGNS = (
     "a is b/R of the contact, positive on the ball's left, and alpha positive to the left: "
     "alpha(a) = -squirt(offset = a); end_mass is m_e, felt at the tip, not the four times larger m_c of the cue's end"

@@ -199,10 +199,10 @@ def _key_figures(record: Record, end_masses: Record, outcome: Outcome) -> list[t
     remarks = {
         "squirt": f"{math.tan(abs(outcome.squirt)) * 1e3:.0f} mm aside in a metre",
         "pivot_length": "pivot the cue about this point and squirt cancels",
-        "end_mass": "effective, at the tip: a lumped cue with it squirts as much",
+        "end_mass": "the mass at the tip that would make this much squirt",
         "ball_speed": f"the cue goes on at {written('cue_speed', outcome.cue_speed, brief=True)}",
         "spin": f"{abs(outcome.spin) / (2 * math.pi):.1f} turns a second",
-        "duration": f"grip: {GRIPS[grip_of(outcome)][1]}",
+        "duration": GRIPS[grip_of(outcome)][1],
     }
     values = coupled | {"end_mass": felt}
     return [

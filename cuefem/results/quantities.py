@@ -295,12 +295,12 @@ RESULTS = {
 UNITS = {name: result.unit for name, result in RESULTS.items() if result.unit}
 # How the tip gripped the ball, by what `cuefem.contact.outcome.grip_of` tells: a word for tables, and the same in full.
 GRIPS = {
-    "stick": ("held", "the tip held the ball, at once or after a short slip"),
-    "late stick": ("held late", "slipped first, then held late, near a miscue"),
-    "slip reversal": ("slipped back", "slipped first, then slipped back"),
-    "miscue": ("miscue", "slipped to the end, a miscue"),
-    "slides": ("let go", "held at first, then slid through more than a quarter of the push, near a miscue"),
-    "lets go": ("miscue", "held at first, then slid through more than half of the push, a miscue"),
+    "stick": ("held", "no miscue: the tip held the ball"),
+    "late stick": ("held late", "the tip slipped first, then held late, near a miscue"),
+    "slip reversal": ("slipped back", "the tip slipped first, then slipped back"),
+    "miscue": ("miscue", "the tip slipped to the end, a miscue"),
+    "slides": ("let go", "the tip held at first, then slid through more than a quarter of the push, near a miscue"),
+    "lets go": ("miscue", "the tip held at first, then slid through more than half of the push, a miscue"),
 }
 
 

@@ -115,7 +115,7 @@ def test_people_get_a_table_and_programs_json(scene: Path) -> None:
     assert "Equivalent end mass for [A.31]" in out
     assert "-o CUE.json writes the file that pooltool reads" in out
     said = " ".join(out.split())
-    assert "with this end mass Alciatore's formula [A.31], the simulator's, turns the ball as the coupled" in said
+    assert "put this number into pooltool: with its formula [A.31] it then gives the squirt computed here" in said
     assert "the whole cue: 540.0 g, 1473.2 mm long (the file draws the shaft alone: --length gives another)" in said
 
 
