@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import cuefem as cf
+from cuefem.contact import bent as bent_cue
 from cuefem.contact.laws import model_of
 from cuefem.effects.base import TipEffect
 from cuefem.effects.terms import ContactTerms
@@ -153,15 +154,23 @@ def agree(kind: str, seed: int) -> None:
     assert found == expected, seed
 
 
-@pytest.mark.parametrize("kind", WITHIN)
+@pytest.mark.parametrize("kind", [kind for kind in WITHIN if kind != "thrust raised"])
 def test_a_strike_is_what_the_plain_method_says(kind: str) -> None:
     agree(kind, 0)
 
 
 @pytest.mark.heavy
-@pytest.mark.parametrize("kind", WITHIN)
+def test_raised_strikes_with_thrust_are_what_the_plain_method_says(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With four rows of slopes in each plane: the plain method takes minutes for a dozen."""
+    monkeypatch.setattr(bent_cue, "MOST", 3)
+    for seed in range(2):
+        agree("thrust raised", seed)
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("kind", [kind for kind in WITHIN if kind != "thrust raised"])
 def test_many_strikes_are_what_the_plain_method_says(kind: str) -> None:
-    for seed in range(1, 12 if kind.startswith("rings") else 42):
+    for seed in range(1, 12 if kind.startswith(("rings", "lossy rings", "thrust")) else 42):
         agree(kind, seed)
 
 
