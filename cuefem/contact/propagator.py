@@ -69,13 +69,6 @@ class ModalPropagator:
         """All rows that forces push: those of the ports, then the slopes, (ports + slopes, modes)."""
         return np.concatenate([self.rows, self.slopes])
 
-    @property
-    def buckling(self) -> float:
-        """The thrust that buckles the cue if it lasts, N: the least P with omega^2 - P slopes' slopes singular."""
-        flexible = self.omega > 0
-        strained = self.slopes[:, flexible] / self.omega[flexible]
-        return float(1 / np.linalg.eigvalsh(strained @ strained.T)[-1])
-
     @cached_property
     def approaching(self) -> Complex:
         """The coordinates of a cue that moves along its axis at 1 m/s."""
@@ -223,11 +216,12 @@ def _shared(
     tip: TipModes, ports: str, time: float, window: float, parts: Callable[[Array], tuple[TipModes, Array, Array]]
 ) -> ModalPropagator:
     """The propagator of tip modes with some ports; parts: makes of the slopes its modes, rows of ports, and slopes."""
-    lasting = half_octave(time) if tip.geometric is not None else 0.0
-    key = ports, lasting, window
+    bends = tip.geometric is not None
+    lasting, until = (half_octave(time), half_octave(time) + window) if bends else (0.0, 0.0)
+    key = ports, lasting, until
     with _lock:
         of_tip = _known.setdefault(tip, {})
         if key not in of_tip:
-            of_tip[key] = ModalPropagator(*parts(slope_rows(tip, lasting, lasting + window)))
+            of_tip[key] = ModalPropagator(*parts(slope_rows(tip, lasting, until)))
             of_tip[key].cue  # noqa: B018  # made here: threads would all begin to
         return of_tip[key]

@@ -139,6 +139,14 @@ def _velocities(model: ContactModel, xi: Complex, ball: Array, slopes: Array) ->
     return np.asarray(model.facing @ np.concatenate([ports, ball]))
 
 
+def buckling_thrust(model: ContactModel) -> float:
+    """The thrust that buckles a cue if it lasts, N: the least P for which omega^2 - P G is singular."""
+    propagator, flexible = model.propagator, model.propagator.omega > 0
+    strained = propagator.slopes[:, flexible] / propagator.omega[flexible]
+    geometric = (strained.T * model.arrays["slope_weights"]) @ strained
+    return float(1 / np.linalg.eigvalsh(geometric)[-1])
+
+
 def impulse_on(model: ContactModel, ball: Array) -> Array:
     """The impulses (t, n), N s, that gave balls at rest velocities (..., speeds); above a table, along it."""
     if model.table is None:
@@ -235,7 +243,7 @@ def _failure(model: ContactModel, c: KernelContact, phases: tuple[Phase, ...], h
     if c.status == _BENT_TOO_FAR:
         return ValueError(
             f"the thrust of {c.thrust:.4g} N bends the shaft by {c.steepest:.3g} rad at its tip, further than "
-            f"GeometricStiffness holds; thrust that lasts buckles it from {model.propagator.buckling:.4g} N on"
+            f"GeometricStiffness holds; thrust that lasts buckles it from {buckling_thrust(model):.4g} N on"
         )
     if c.status == _STUCK:
         return RuntimeError(

@@ -26,7 +26,7 @@ from cuefem.report.squirt import two_part_curve
 from cuefem.report.strike import outcome_record
 from cuefem.results.asking import listed
 from cuefem.results.designs import TONES, OneDesign, at_offset, strikes_at
-from cuefem.results.quantities import pivot_length
+from cuefem.results.pivot import pivot_length
 from cuefem.results.records import Record
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import Solved, default_resolution

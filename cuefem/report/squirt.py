@@ -25,7 +25,8 @@ from cuefem.report.models import (
 from cuefem.report.strike import PIVOT
 from cuefem.report.words import assumptions
 from cuefem.results.designs import OFFSETS, at_offset, coupled_curve
-from cuefem.results.quantities import NONE, RESULTS, TRADE, Units, grams, pivot_length, written
+from cuefem.results.pivot import pivot_length
+from cuefem.results.quantities import NONE, RESULTS, TRADE, Units, grams, written
 from cuefem.results.records import Record, Sheet
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved

@@ -18,7 +18,8 @@ from cuefem.report.models import (
     with_coupling,
 )
 from cuefem.report.words import assumptions
-from cuefem.results.quantities import GRIPS, NONE, RESULTS, grams, pivot_length, written
+from cuefem.results.pivot import pivot_length
+from cuefem.results.quantities import GRIPS, NONE, RESULTS, grams, written
 from cuefem.results.records import Record, Sheet
 from cuefem.scene import Outcome, Scene
 from cuefem.tip_modes import Solved

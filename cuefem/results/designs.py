@@ -19,7 +19,7 @@ from cuefem.cue import Array
 from cuefem.effects import Support
 from cuefem.endmass.drives import DEFINITIONS, Definition, flexible, small_offset_slope, stick
 from cuefem.endmass.undamped import StickLimit, stick_reason
-from cuefem.results.quantities import pivot_length
+from cuefem.results.pivot import pivot_length
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import Solved
 

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cuefem.cue import Array
+from cuefem.results.pivot import pivot_at
 from cuefem.scene import Outcome, Scene
-from cuefem.squirt import natural_pivot_length
 
 if TYPE_CHECKING:  # at work every command that writes a number would pay for it
     from cuefem.results.designs import Designs
@@ -121,23 +121,12 @@ def significant(value: float, digits: int = 4) -> str:
 SMALL = 1e-6
 
 
-def pivot_length(scene: Scene, squirt: Any) -> Any:
-    """The natural pivot length of a squirt, m; None for a head-on stroke, which has none."""
-    if not np.all(scene.stroke.offset):
-        return None
-    return _pivot(scene, scene.stroke.offset, squirt)
-
-
-def _pivot(scene: Scene, offset: Any, squirt: Any) -> Any:
-    return natural_pivot_length(offset, squirt, radius=scene.ball.radius, dome_radius=scene.dome_radius)
-
-
 def _pivot_lengths(designs: Designs, offset: float | None) -> Array:
     if offset is None:
         slopes = zip(designs.scenes, designs.stick.squirt, strict=True)
-        return np.array([_pivot(scene, SMALL, slope * np.arcsin(SMALL)) for scene, slope in slopes])
+        return np.array([pivot_at(scene, SMALL, slope * np.arcsin(SMALL)) for scene, slope in slopes])
     strikes = enumerate(designs.scenes)
-    return np.array([_pivot(scene, offset, designs.strike(i, offset).squirt) for i, scene in strikes], float)
+    return np.array([pivot_at(scene, offset, designs.strike(i, offset).squirt) for i, scene in strikes], float)
 
 
 def of_strike(value: Callable[[Outcome], float]) -> Callable[[Designs, Any], Array]:

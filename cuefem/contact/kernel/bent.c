@@ -10,13 +10,13 @@ int dampers_of(const Cue *cue)
     return cue->reads - cue->ports - cue->slopes;
 }
 
-/* Legs of the load along the cue on each slope. */
+/* How far the tip goes back along the cue for each unit by which a slope changes. */
 static double leg(const Contact *c, int a, double slope)
 {
     return c->slope_weights[a] * slope;
 }
 
-/* Readings of the ports, once those of the slopes are known: the tip goes back as the cue bends. */
+/* Take from a velocity along the cue what the bending takes, at slopes that change at these rates. */
 static void shorten(const Contact *c, const double *slopes, const double *rates, double *along)
 {
     for (int a = 0; a < c->cue->slopes; a++) *along -= leg(c, a, slopes[a]) * rates[a];
