@@ -12,8 +12,8 @@ from concurrent.futures import wait as wait_for
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from itertools import chain, count, islice
-from multiprocessing import get_context, parent_process
-from typing import NamedTuple, Protocol, TypeVar
+from multiprocessing import get_context, parent_process, resource_tracker
+from typing import NamedTuple, ParamSpec, Protocol, TypeVar
 
 import numpy as np
 
@@ -30,6 +30,7 @@ PATIENCE, GLANCE = 10.0, 1.0
 
 T = TypeVar("T")
 R = TypeVar("R")
+P = ParamSpec("P")
 
 
 class Row(NamedTuple):
@@ -170,6 +171,7 @@ def _tasks(study: Study, store: Store) -> Iterator[Task]:
 class Pool:
     """How to open an executor, and reopen it if it breaks, and how many tasks to hand out ahead.
 
+    open: what it gives cancels, when it closes, the tasks that have not begun.
     check: called about every `GLANCE` seconds while no task ends; raises an exception if none ever will.
     """
 
@@ -188,24 +190,20 @@ def in_parallel(work: Callable[[T], R], tasks: Iterable[T], pool: Pool | None) -
         pending, running = dict[int, T](), dict[Future[R], int]()
         try:
             with pool.open() as executor:
-                try:
-                    while True:
-                        for number, task in zip(numbers, islice(queue, pool.ahead - len(running)), strict=False):
-                            pending[number] = task
-                            running[executor.submit(work, task)] = number
-                        if not running:
-                            return
-                        done, _ = wait_for(running, timeout=GLANCE, return_when=FIRST_COMPLETED)
-                        if not done:
-                            pool.check()
-                        for future in done:
-                            result = future.result()
-                            del pending[running.pop(future)]
-                            failures = 0
-                            yield result
-                finally:
-                    for future in running:
-                        future.cancel()
+                while True:
+                    for number, task in zip(numbers, islice(queue, pool.ahead - len(running)), strict=False):
+                        pending[number] = task
+                        running[executor.submit(work, task)] = number
+                    if not running:
+                        return
+                    done, _ = wait_for(running, timeout=GLANCE, return_when=FIRST_COMPLETED)
+                    if not done:
+                        pool.check()
+                    for future in done:
+                        result = future.result()
+                        del pending[running.pop(future)]
+                        failures = 0
+                        yield result
         except (BrokenExecutor, CancelledError):
             queue, failures = chain(pending.values(), queue), failures + 1
     raise RuntimeError(f"worker processes died {ATTEMPTS} times without a block done: out of memory, or killed")
@@ -214,11 +212,37 @@ def in_parallel(work: Callable[[T], R], tasks: Iterable[T], pool: Pool | None) -
 def processes(number: int) -> Pool:
     """That many worker processes of this machine. They end when the process that opened them does, killed or not."""
 
-    def start() -> Executor:
-        # spawned: a fork would copy locks that threads of this process hold
-        return ProcessPoolExecutor(number, mp_context=get_context("spawn"), initializer=_follow)
+    return Pool(lambda: _Processes(number), 2 * number + 1)
 
-    return Pool(start, 2 * number + 1)
+
+class _Processes(ProcessPoolExecutor):
+    """Worker processes; spawned, since a fork would copy locks that threads of this process hold."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(number, mp_context=get_context("spawn"), initializer=_follow)
+        resource_tracker.ensure_running()  # whoever starts it lets Ctrl-C through again: not in the midst of `submit`
+
+    def submit(self, fn: Callable[P, R], /, *args: P.args, **kwargs: P.kwargs) -> Future[R]:
+        """As its parent does; a process that this starts hears Ctrl-C in `_follow` first, and ends without a word."""
+        with _interrupts_wait():
+            return super().submit(fn, *args, **kwargs)
+
+    def __exit__(self, *error: object) -> None:
+        # the pool's own thread cancels: a future cancelled here while a worker dies would break that thread
+        self.shutdown(wait=True, cancel_futures=True)
+
+
+@contextmanager
+def _interrupts_wait() -> Iterator[None]:
+    """Ctrl-C waits until this is left; processes begun meanwhile are deaf to it. Windows has no such mask."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _follow() -> None:
@@ -231,6 +255,8 @@ def _follow() -> None:
         os._exit(1)
 
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     threading.Thread(target=until_it_ends, daemon=True).start()
 
 
@@ -256,12 +282,20 @@ def dask(address: str) -> Iterator[Pool]:
         if lost >= PATIENCE:
             raise RuntimeError(f"the Dask scheduler at {address!r} answers no more")
 
+    @contextmanager
+    def opened() -> Iterator[Executor]:
+        executor = client.get_executor(pure=False)
+        try:
+            yield executor
+        finally:
+            executor.shutdown(wait=False)  # which cancels
+
     levels = {log: log.level for log in map(logging.getLogger, ("distributed", "distributed.client"))}
     for log in levels:
         log.setLevel(logging.CRITICAL)  # a scheduler that is gone is told in one line: `check`
     try:
         workers = sum(client.nthreads().values())
-        yield Pool(lambda: client.get_executor(pure=False), 2 * max(workers, 1) + 1, check)
+        yield Pool(opened, 2 * max(workers, 1) + 1, check)
     finally:
         client.close(timeout=GLANCE)
         for log, level in levels.items():

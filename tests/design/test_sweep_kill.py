@@ -169,6 +169,21 @@ def test_an_interrupt_says_what_is_there_and_how_to_go_on(
     assert rows_of(output) == whole
 
 
+@pytest.mark.parametrize("delay", [0.0, 0.1, 0.3, 0.5, 0.8])
+def test_an_interrupt_while_workers_start_is_one_line_too(study: Path, tmp_path: Path, delay: float) -> None:
+    """Workers that are still importing say nothing of their end, nor does the thread that minds them."""
+    output = tmp_path / "out.sqlite"
+    run = started(study, output, "--workers", "2", out=subprocess.PIPE, start_new_session=True, preexec_fn=heard)
+    while run.poll() is None and not spawned(run.pid):
+        time.sleep(0.01)
+    time.sleep(delay)
+    os.killpg(run.pid, signal.SIGINT)
+    _, err = run.communicate(timeout=20)
+    (line,) = err.decode().splitlines()
+    assert run.returncode == 130
+    assert line.startswith("cuefem: interrupted; ")
+
+
 def killing(victims: Callable[[], list[int]], after: int) -> Callable[[list[Row]], None]:
     """Kill one process once ``after`` blocks are written."""
     seen = [0]
@@ -181,9 +196,9 @@ def killing(victims: Callable[[], list[int]], after: int) -> Callable[[list[Row]
     return progress
 
 
-def spawned() -> list[int]:
-    """Worker processes of this one."""
-    children = psutil.Process().children(recursive=True)
+def spawned(parent: int | None = None) -> list[int]:
+    """Worker processes of a process, this one by default."""
+    children = psutil.Process(parent).children(recursive=True)
     return [child.pid for child in children if any("spawn_main" in part for part in child.cmdline())]
 
 
