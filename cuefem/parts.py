@@ -193,7 +193,7 @@ def _with_ferrule(scene: Any, new: Ferrule) -> Any:
     if not -ferrule.length < more < behind.length:
         least, most = (1e3 * (old.length + by) for by in (-ferrule.length, behind.length))
         raise ValueError(
-            f"the ferrule must be in ({least:.6g}, {most:.6g}) mm long, as its neighbours allow; "
+            f"the ferrule must be more than {least:.6g} and less than {most:.6g} mm long, as its neighbours allow; "
             f"got {1e3 * new.length:.6g} mm"
         )
     onward = -more / behind.length  # of the cone behind the ferrule, which keeps its line

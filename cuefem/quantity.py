@@ -125,8 +125,10 @@ class Quantity:
         if digits and math.isfinite(float(digits)):
             named = " or ".join(f'"{text}"' for text in BOTH.get(self.unit, example_of(self.unit)[1:]))
             return f"needs a unit: {named}{self._named}; got {shown(value)}"
-        if digits:
+        if digits[-3:].lower() in ("inf", "nan"):
             return f"must be {self.bounds_in(self.unit)}; got {value}"
+        if digits:
+            return f"must be a number that is not so large, with its unit; got {value}"
         long = f", of {len(value)} letters" if isinstance(value, str) and len(value) > LONGEST_TEXT else ""
         return f"must be {self.example}; got {shown(value)}{long}{_comma(value)}"
 

@@ -65,4 +65,4 @@ def test_refusals() -> None:
     refuses(
         lambda: cf.usual_scene(cf.LumpedCue(0.5, 0.01)), "TypeError: usual_scene cue must be a Cue; got a LumpedCue"
     )
-    refuses(lambda: cf.usual_scene(cf.Cue((leather(1e-3), WOOD))), "LeatherTip.height must be more than 2.054 mm, ")
+    refuses(lambda: cf.usual_scene(cf.Cue((leather(1e-3), WOOD))), "higher than 2.054 mm, the depth of its dome")

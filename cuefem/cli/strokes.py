@@ -95,8 +95,8 @@ def offset_of(file: Path, text: str, radius: float) -> float:
             problem = error.problem.replace("; got", ', b/R, or a length such as "8 mm"; got', 1)
             raise InputError(file, "--offset", problem) from None
     if not abs(length) < radius:
-        within = f"a length in (-{1e3 * radius:g}, {1e3 * radius:g}) mm, the radius of the ball"
-        raise InputError(file, "--offset", f"must be b/R in (-1, 1) or {within}; got {text!r}")
+        within = f"a length of less than {1e3 * radius:g} mm, the radius of the ball"
+        raise InputError(file, "--offset", f"must be b/R between -1 and 1, or {within}; got {text!r}")
     return length / radius
 
 

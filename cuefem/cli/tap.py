@@ -78,7 +78,7 @@ def tap(
         save_figure(tap_figure(found, heard, f"{recording.name}: {file.name}", figure.suffix[1:]), figure)
     written = [f"wrote {path}" for path in (output, figure) if path is not None]
     whole = whole_record(file, notes, scene, record, scene=about, recording=str(recording))
-    lines = [f"{recording.name}, {file.name}", *assumed_lines(notes), "", *tap_sheets(record, about), *written]
+    lines = [f"{recording.name}, {file.name}", "", *tap_sheets(record, about), *assumed_lines(notes), *written]
     tell(given["as_json"], whole, lines)
 
 

@@ -20,6 +20,7 @@ from cuefem.results.quantities import NONE, RESULTS, Result, significant
 from cuefem.scene import Scene
 
 WAITING = "…"
+DIGITS = 4  # of a number that are shown: a difference has no finer ones
 
 
 class NumberRow(NamedTuple):
@@ -82,7 +83,10 @@ def percent(value: float | None, other: float | None) -> str:
         return NONE
     if abs(value - other) <= 1e-12 * abs(other):
         return "the same"
-    return f"{100 * (value - other) / abs(other):+.1f}\u00a0%".replace("-", "−") if other else NONE
+    if not other:
+        return NONE
+    part = f"{100 * (value - other) / abs(other):+.1f}"
+    return f"{part[1:] if float(part) == 0 else part.replace('-', '−')}\u00a0%"
 
 
 def difference(row: NumberRow, other: NumberRow, system: UnitSystem = METRIC) -> str:
@@ -94,8 +98,12 @@ def difference(row: NumberRow, other: NumberRow, system: UnitSystem = METRIC) ->
     if not math.isfinite(more):
         return NONE
     space = "" if unit == "°" else " "
+    powers = (math.floor(math.log10(size)) for size in (abs(more), max(abs(row.value), abs(other.value))))
+    digits = min(3, DIGITS + next(powers) - next(powers))
+    if digits < 1:
+        return "the same to four digits"
     sign = "+" if more > 0 else "−"
-    said = f"{sign}{significant(abs(more) * scale, 3)}{space}{unit}"
+    said = f"{sign}{significant(abs(more) * scale, digits)}{space}{unit}"
     return said if part == NONE else f"{said} ({part})"
 
 

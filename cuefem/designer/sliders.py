@@ -55,7 +55,7 @@ class Slider:
     def check(self, shown: float) -> None:
         """ValueError in words if a typed value is out of range."""
         if not self.least <= shown <= self.most:
-            raise ValueError(f"must be from {self.least:.6g} to {self.written(self.most)}")
+            raise ValueError(f"must be from {self.least:.4g} to {self.written(self.most)}")
 
     def reaching(self, shown: float) -> Slider:
         """The slider with a range that includes a value."""

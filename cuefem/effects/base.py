@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
 
 from cuefem.cue import Array, Cue, LumpedCue, Section
-from cuefem.quantity import check_fields, check_kind
+from cuefem.quantity import OutOfBounds, Quantity, check_fields, check_kind
 
 if TYPE_CHECKING:
     from cuefem.beam.mesh import Terms
@@ -100,7 +100,7 @@ class Effect:
         """ValueError, in the words of ``name``, unless the effect's positions lie on the cue."""
         for x in self.positions:
             if not 0 <= x <= cue.length * (1 + NEAR):
-                raise ValueError(f"{name}.position must be in [0, {cue.length}] m, on the cue; got {x}")
+                raise OutOfBounds(f"{name}.position", Quantity("m", f"[0, {cue.length}]"), x, ", on the cue")
 
     def add_to_contact(self, terms: ContactTerms) -> None:
         """Add the effect's terms to the contact's."""

@@ -201,20 +201,20 @@ class LeatherTip(CueEffect):
         scalar("diameter", DIAMETER.check("diameter", diameter))
         if self.dome_radius < diameter / 2:
             raise ValueError(
-                f"LeatherTip.dome_radius must be {500 * diameter:.4g} mm or more, half of the tip's diameter; "
-                f"got {1e3 * self.dome_radius:.4g} mm"
+                f"the dome of a leather tip on {1e3 * diameter:.4g} mm must have a radius of {500 * diameter:.4g} mm "
+                f"or more, half of that; got {1e3 * self.dome_radius:.4g} mm"
             )
         deep = self._drop(diameter / 2)
         if self.height <= deep:
             raise ValueError(
-                f"LeatherTip.height must be more than {1e3 * deep:.4g} mm, the dome's depth on a tip of "
-                f"{1e3 * diameter:.4g} mm; got {1e3 * self.height:.4g} mm"
+                f"a leather tip on {1e3 * diameter:.4g} mm must be higher than {1e3 * deep:.4g} mm, the depth of its "
+                f"dome; got {1e3 * self.height:.4g} mm"
             )
         low, high = (part * diameter for part in HEIGHT)
         if not low * (1 - 1e-9) <= self.height <= high * (1 + 1e-9):
             raise ValueError(
-                f"LeatherTip.height must be {1e3 * low:.3g} to {1e3 * high:.3g} mm high on a tip of "
-                f"{1e3 * diameter:.4g} mm; got {1e3 * self.height:.4g} mm"
+                f"a leather tip on {1e3 * diameter:.4g} mm must be {1e3 * low:.3g} to {1e3 * high:.3g} mm high; "
+                f"got {1e3 * self.height:.4g} mm"
             )
 
     def mass(self, diameter: float) -> float:

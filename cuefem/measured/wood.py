@@ -82,9 +82,9 @@ class TapTest:
         low, high = others + own / FACTOR, others + own * FACTOR
         if not low <= mass <= high:
             bound = (
-                f"[{1e3 * low:.4g}, {1e3 * high:.4g}] g, the wood's density within a factor {FACTOR:g} of the file's"
+                f"{1e3 * low:.4g} to {1e3 * high:.4g} g, the wood's density within a factor {FACTOR:g} of the file's"
             )
-            raise ValueError(f"mass must be in {bound}; got {1e3 * mass:.4g} g")
+            raise ValueError(f"mass of the shaft must be {bound}; got {1e3 * mass:.4g} g")
         rho = wood.rho * (mass - others) / own
         if abs(rho / wood.rho - 1) > ODD:
             self.notes.append(

@@ -18,9 +18,8 @@ def claims_record(claims: Sequence[tuple[str, Claim]]) -> list[Record]:
 
 VERDICT_WORDS = (
     "agrees: ours rounds to the printed digits (formulas: the same to 1e-8; a statement without a number, printed –, "
-    "holds; a number that depends on something the source leaves open lies in the possible range, see its cause); "
-    "rounding: the source's own digits or stated approximation explain the difference; slip: a slip in the paper; "
-    "not derivable: the source gives too little to derive it"
+    "holds); rounding: the source's own digits or stated approximation explain the difference; slip: a slip in the "
+    "paper; not derivable: the source gives too little to derive it, as the 250 Hz of a shaft whose E it does not say"
 )
 
 

@@ -59,7 +59,7 @@ BAD_FILES = {
     "syntax": ("[[segments]\n", "must be TOML; got a syntax error: "),
     "effect off the cue": (
         "cue = 'good.toml'\n[[effects]]\ntype = 'PointMass'\nposition = '29 in'\nmass = '5 g'\n",
-        "effects[0].position: must be in [0, 0.7] m, on the cue; got 0.7366",
+        "effects[0].position: must be 0 to 700 mm, on the cue; got 736.6 mm",
     ),
     "unknown effect": (
         "cue = 'good.toml'\n[[effects]]\ntype = 'PointMas'\n",
@@ -237,7 +237,7 @@ def test_a_tip_as_thin_as_a_hair(tmp_path: Path, command: str) -> None:
     assert (status, out) == (2, "")
     assert err.splitlines()[0].startswith("unusual: segments[0].tip_diameter 0.012 mm; check the unit")
     assert err.splitlines()[-1].startswith(
-        f"cuefem: {path}: LeatherTip.height must be 0.0016 to 0.018 mm high on a tip of 0.012 mm; got 6 mm"
+        f"cuefem: {path}: a leather tip on 0.012 mm must be 0.0016 to 0.018 mm high; got 6 mm"
     )
     status, out, err = call(command, path, "--contact-time", "2 ms", "--ball", "carom")
     assert (status, out) == (2, "")

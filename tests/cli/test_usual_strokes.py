@@ -167,7 +167,7 @@ def test_a_file_that_was_saved_says_all_of_it(folder: Path) -> None:
         ("tip shaft.toml --speed fast", "cuefem: shaft.toml: --speed: must be a speed with its unit, such as"),
         ("strike shaft.toml --tip-height 40mm", "got 40 mm (--tip-height, --dome, --contact-time change it)"),
         ("modes shaft.toml --tip-height 40mm", "got 40 mm (--tip-height, --dome change it)"),
-        ("strike leather.toml --tip-height 40mm", "leather.toml: LeatherTip.height must be "),
+        ("strike leather.toml --tip-height 40mm", " mm high; got 40 mm"),
         ("strike shaft.toml --leather 1MPa", "further than its law is known"),
         ("strike shaft.toml --leather 1MPa", "(--tip-height, --leather, --speed)"),
     ],

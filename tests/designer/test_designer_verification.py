@@ -159,6 +159,8 @@ def test_a_saved_design_gives_its_numbers_on_the_command_line(tmp_path: Path) ->
         (5.0e-3, 5.2e-3, "−0.200 g (−3.8\u00a0%)"),
         (5.0e-3, 5.0e-3, "the same"),
         (1e-3, 0.0, "+1.00 g"),
+        (5.001e-3, 5.0e-3, "+0.001 g (0.0\u00a0%)"),
+        (5.0e-3 + 1.3e-9, 5.0e-3, "the same to four digits"),
         (None, 5.0e-3, "–"),
         (5.0e-3, np.inf, "–"),
     ],

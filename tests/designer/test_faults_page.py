@@ -51,6 +51,25 @@ def test_inches_have_no_more_digits_than_a_maker_reads() -> None:
     assert max(len(text.partition(".")[2]) for text in texts.values()) <= 4
 
 
+# Cells with one word that takes two lines.
+BROKEN = """[...document.querySelectorAll("table td, table th")].filter(cell => {
+  const inside = document.createRange();
+  inside.selectNodeContents(cell);
+  return /^\\S+$/.test(cell.innerText) && inside.getBoundingClientRect().height > 32;
+}).map(cell => cell.innerText)"""
+WHISKER = re.compile(r'class="whisker" d="M([0-9.]+) [0-9.]+H([0-9.]+)"')
+
+
+@pytest.mark.parametrize("tip", [None, cf.Tip(contact_time=4e-5), cf.Tip(contact_time=2e-3)])
+def test_a_line_through_a_dot_is_told_only_where_one_is(tip: cf.Tip | None) -> None:
+    """The range of an end mass while fewer modes are kept is told only where it is longer than its dot."""
+    usual = first_scene()
+    text = report_page("a scene", usual if tip is None else cf.Scene(usual.cue, usual.ball, tip, usual.stroke))
+    drawn = [float(high) - float(low) for low, high in WHISKER.findall(text)]
+    assert len(drawn) > 3
+    assert ("The line through a dot" in text) is any(length > 9 for length in drawn)
+
+
 class TestOnThePage:
     pytestmark = browsed
 
@@ -106,6 +125,19 @@ class TestOnThePage:
         for letters, height, wide, room in shapes:
             assert height < 26 * (1 + letters // 30)  # as many lines as its letters take
             assert wide <= room
+
+    @pytest.mark.parametrize("name", ["pool_hollow", "whole_cue"])
+    def test_no_table_of_a_report_is_cut_on_a_phone(self, browser: Any, name: str) -> None:
+        """A table wraps its words between letters of no number: nothing of it is beyond the edge."""
+        page = browser.new_page(viewport={"width": 390, "height": 844})
+        page.set_content(report_page(name, cf.usual_scene(cf.load(MESHES / f"{name}.toml"))))
+        page.evaluate("document.querySelectorAll('details').forEach(fold => fold.open = true)")
+        shapes = page.evaluate("[...document.querySelectorAll('.scroll')].map(e => [e.scrollWidth, e.clientWidth])")
+        broken = page.evaluate(BROKEN)
+        page.close()
+        assert len(shapes) >= 5
+        assert all(wide <= room + 1 for wide, room in shapes), shapes
+        assert broken == []
 
     def test_the_printed_glossary_shows_every_letter(self, browser: Any) -> None:
         page = browser.new_page()

@@ -90,10 +90,16 @@ CALLS: list[tuple[Callable[[], object], str]] = [
         "LeatherTip.surface_restitution must be 1 where partial_slip is False",
     ),
     (lambda: LeatherTip(6e-3, 9.5e-3, 1e8, rho=0.0), "LeatherTip.rho must be in (0, inf) kg/m^3; got 0.0"),
-    (lambda: LeatherTip(6e-3, 6e-3, 1e8).mass(0.013), "LeatherTip.dome_radius must be 6.5 mm or more, half of"),
-    (lambda: LeatherTip(2e-3, 9.5e-3, 1e8).mass(0.01275), "LeatherTip.height must be more than 2.457 mm, the"),
-    (lambda: LeatherTip(1e-3, inf, 1e8).mass(0.01275), "LeatherTip.height must be 1.7 to 19.1 mm high on a tip"),
-    (lambda: LeatherTip(0.02, inf, 1e8).mass(0.01275), "LeatherTip.height must be 1.7 to 19.1 mm high on a tip"),
+    (
+        lambda: LeatherTip(6e-3, 6e-3, 1e8).mass(0.013),
+        "must have a radius of 6.5 mm or more, half of",
+    ),
+    (
+        lambda: LeatherTip(2e-3, 9.5e-3, 1e8).mass(0.01275),
+        "must be higher than 2.457 mm, the depth",
+    ),
+    (lambda: LeatherTip(1e-3, inf, 1e8).mass(0.01275), "a leather tip on 12.75 mm must be 1.7 to 19.1 mm high; got "),
+    (lambda: LeatherTip(0.02, inf, 1e8).mass(0.01275), "a leather tip on 12.75 mm must be 1.7 to 19.1 mm high; got "),
     (lambda: LeatherTip(6e-3, inf, 1e8).mass(-1.0), "diameter must be in (0, 10] m; got -1.0"),
     (lambda: LeatherTip(6e-3, inf, 1e8).compliance(0.012, 0.1, 7e-3), "patch must be in (0, 0.006] m; got 0.007"),
     (lambda: LeatherTip(6e-3, inf, 1e8).compliance(0.012, 1.0, 1e-3), "offset must be in (-1, 1); got 1.0"),
@@ -149,7 +155,7 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: modes(pool_cue(), effects=(LEATHER,)), "LeatherTip must be the only leather: draw the cue without its"),
     (
         lambda: replace(kim_scene(), tip=Tip(), effects=(replace(LEATHER, dome_radius=5e-3),)),
-        "LeatherTip.dome_radius must be 6 mm or more, half of the tip's diameter; got 5 mm",
+        "the dome of a leather tip on 12 mm must have a radius of 6 mm or more, half of that; got 5 mm",
     ),
     (lambda: replace(LEATHER, shear=0.0), "LeatherTip.shear must be in (0, inf) N/m; got 0.0"),
     (lambda: replace(LEATHER, rolls="no"), "TypeError: LeatherTip.rolls must be a bool; got 'no'"),
@@ -186,7 +192,7 @@ material = {{ E = "12.6 GPa", G = "0.84 GPa", rho = "700 kg/m^3" }}
 
 FILES = [
     ('type = "Joint"\nposition = "0.71 m"', "effects[1].position: must be in (0, 0.7) m, between"),
-    ('type = "PointMass"\nposition = "71 cm"\nmass = "5 g"', "effects[1].position: must be in [0, 0.7] m, on"),
+    ('type = "PointMass"\nposition = "71 cm"\nmass = "5 g"', "effects[1].position: must be 0 to 700 mm, on"),
     ('type = "Joint"\nposition = 0.3', "effects[1].position: needs a unit"),
     ('type = "AxialWaves"', "effects[1]: must be another effect, AxialWaves acts once"),
 ]
