@@ -45,16 +45,16 @@ DECAY, WINDOW = 0.75, 3
 FLOOR, ROUNDING = 1e-8, 1e-12
 # Squirt is judged against no less than this part of sin(phi), rad: where it vanishes a relative error means nothing.
 LEAST_SQUIRT = 0.01
-# A contact whose normal force falls to this part of its peak and rises again may as well have parted there, as far as
-# any number of modes can tell; so may one that falls no lower than what its rungs differ by there. Rungs whose contacts
-# last longer or shorter by more than COURSE took different courses.
+# Tip and ball nearly part where their normal force falls to this part of its peak and rises again. More modes may let
+# them part there, so the error is that of parting; so it is where the force falls to no more than the rungs differ by.
+# Rungs whose contact times differ by more than COURSE took different courses: one parted and another did not.
 NEARLY_APART, COURSE, LOOKS = 5e-3, 0.05, 1001
 # Dips are a little earlier or later in other rungs: by this part of the contact at most.
 SHIFT = 0.01
-# A tip that leaves the ball with less than this part of its normal speed in a head-on blow may catch up with it at once
-# (the force that then is nearly missed goes with the square of the speed): that is looked at.
+# A tip that leaves the ball slowly, with less than this part of the normal speed of a head-on blow, may catch up with
+# it at once: `ladder` looks whether it nearly did.
 SLOWLY = 0.3
-# It was nearly missed where the tip, had it stuck to the ball, would have pulled with this part of the peak force.
+# It nearly did where a tip that stuck to the ball would have pulled on it with no more than this part of the peak.
 GRAZED = 0.03
 # Of the dips of the normal force the lowest few are looked at.
 FEW_DIPS = 3

@@ -96,7 +96,7 @@ class Solved:
 
     @property
     def least_smooth(self) -> int:
-        """Modes for an end mass whose drive begins smoothly: a strike's; as many as `tip_stuck` on leather drawn in.
+        """How many modes the end mass of a smooth drive takes: a strike's, or `tip_stuck`'s on a leather segment.
 
         Soft leather between ball and wood rings so high that a push of a millisecond still hears its missing modes:
         with a strike's alone the end mass by force was 0.9 % off, with a brass ferrule behind the leather.

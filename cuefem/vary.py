@@ -79,9 +79,10 @@ class Place:
         how its value is read and written, and its quantity.
     also
         Other names.
-    group, label, at, absent
+    group, label, at, absent, hint
         The heading over its knob ("" for no knob) and the knob's label if that is not ``words``; "{exact}" in
-        it stands for ``at``, a position on the cue, m from the tip; what is said where a cue has no such place.
+        it stands for ``at``, a position on the cue, m from the tip; what is said where a cue has no such place; what
+        its knob says of itself where one points at it.
     range
         Of the slider; it may depend on the cue.
     materials
@@ -103,6 +104,7 @@ class Place:
     label: str = ""
     at: Callable[[Cue], float] | None = None
     absent: str = ""
+    hint: str = ""
     range: Range | Callable[[Cue], Range] | None = None
     materials: tuple[str, ...] = ()
     spread: float | Callable[[Scene], float] | None = None
@@ -454,6 +456,7 @@ PLACES: dict[str, Place] = {
         Place(
             *("taper diameter", "Taper, at {exact}", "diameters.taper"),
             group="Shaft",
+            hint="From here the diameter changes evenly to the tip and to the end",
             at=taper_position,
             range=_mm(8, 20, 0.05, 4, 60),
         ),
@@ -473,6 +476,7 @@ PLACES: dict[str, Place] = {
         Place(
             *("ferrule length", "Ferrule length", "ferrule.length"),
             group="Shaft",
+            hint="A longer ferrule takes its length from the wood behind it: the cue stays as long",
             absent="no ferrule is drawn behind the tip, so there is no knob for it",
             range=_mm(2, 40, 0.5, 0.5, 60),
         ),
@@ -551,6 +555,7 @@ PLACES: dict[str, Place] = {
         Place(
             *("joint compliance", "Joint bends", "joint.rotational_compliance"),
             group=_BEHIND,
+            hint="How far the joint gives under a torque: at 0 it is stiff",
             range=Range("mrad/(N m)", 1e3, 0, 5, 0.05, 0, 100),
         ),
         Place("joint position", "Joint at", "joint.position", group=_BEHIND, range=_positions(10)),

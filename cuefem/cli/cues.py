@@ -25,9 +25,10 @@ from cuefem.scene import Scene
 @click.command("end-mass", cls=WithDefinitions)
 @file_options
 @blow_options
-def end_mass(file: Path, **given: Any) -> None:
+@click.option("--paper", is_flag=True, help="Also show what Kim's paper calls end mass, m_c, and its eps.")
+def end_mass(file: Path, paper: bool, **given: Any) -> None:
     """Show the effective end mass: how much mass the ball has to push aside at the tip."""
-    show(file, given, end_mass_record, lambda found, about: [end_mass_sheet(found, about)])
+    show(file, given, end_mass_record, lambda found, about: [end_mass_sheet(found, about, paper=paper)])
 
 
 @click.command(cls=WithDefinitions)

@@ -67,7 +67,8 @@ class NumberField:
         """Have this label: a knob's may tell where on the cue it is."""
         if label != self.named:
             self.named = label
-            self.label.set_content(f"<span>{explained(escape(label))}</span>")
+            hint = f' title="{escape(self.slider.hint)}"' if self.slider.hint else ""
+            self.label.set_content(f"<span{hint}>{explained(escape(label))}</span>")
             spoken = f"{label}, {self.slider.unit}" if self.slider.unit else label
             self.input.props(f'aria-label="{spoken}, as a number"')
             self.bar.props(f'aria-label="{spoken}"')

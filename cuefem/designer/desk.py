@@ -35,7 +35,7 @@ from cuefem.designer.sliders import choices, groups, sliders, without
 from cuefem.designer.style import SCRIPT, STYLE
 from cuefem.designer.tapside import TapSide
 from cuefem.designer.units import METRIC, SYSTEMS, UnitSystem
-from cuefem.designer.words import MEASURED, head_markup
+from cuefem.designer.words import head_markup
 from cuefem.games import GAMES
 from cuefem.io.toml_text import toml_text
 from cuefem.report.glossary import definitions, explained
@@ -252,7 +252,7 @@ class Desk:
         except FAILURES as error:
             self.say(f"not opened: {' '.join(str(error).split())}")
             return
-        design = Design.of(Path(preset.file).name, scene, [*notes, f"{MEASURED}{preset.measured}"])
+        design = Design.of(Path(preset.file).name, scene, [*notes, preset.told])
         self.opened = design
         self.open(design)
 

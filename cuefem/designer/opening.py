@@ -66,7 +66,7 @@ class PresetMenu:
         with button("Ready cues", lambda: None), ui.menu().props('aria-label="ready cues"'):
             for preset in PRESETS:
                 with ui.menu_item(on_click=partial(chosen, preset)).classes("menu-item"):
-                    measured = escape(f"measured on such cues: {preset.measured}")
+                    measured = escape(preset.told)
                     Markup(f"<span>{escape(preset.name)}</span><small>{measured}</small>")
 
 

@@ -11,7 +11,7 @@ from cuefem.games import usual_scene
 from cuefem.io import load
 from cuefem.scene import Scene
 
-_NOT = "nothing that is known"
+_NOT = "no measurement known"
 _PLAIN = "2.30 and 2.43° at b/R 0.375, 2.5° at b/R 0.453 (Players, 12.75 mm; Billiards Digest 2007, 2008)"
 _LOW = "1.8° at b/R 0.453 (Predator Z, 11.85 mm; Billiards Digest 2007)"
 _BREAK = "2.4° at b/R 0.267 (Stinger, 13.5 mm; Alciatore, TP B.1)"
@@ -26,6 +26,11 @@ class Preset(NamedTuple):
     name: str
     game: str
     measured: str
+
+    @property
+    def told(self) -> str:
+        """What was measured, as a sentence that says of what."""
+        return self.measured if self.measured == _NOT else f"measured on such cues: {self.measured}"
 
 
 PRESETS = (

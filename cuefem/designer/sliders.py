@@ -31,6 +31,7 @@ class Slider:
     step: float
     least: float  # what may be typed, beyond what can be slid to
     most: float
+    hint: str = ""  # what is said where one points at the label
 
     def shown(self, knobs: Knobs) -> float:
         """Its value in its unit."""
@@ -92,7 +93,7 @@ def _slider(place: Place, scene: Scene, system: UnitSystem) -> Slider:
     x = place.at(cue) if place.at else 0.0
     label = place.title.format(exact=system.length(x))
     unit, scale, *reach = place.reach(cue)  # type: ignore[misc]
-    return _in_system(Slider(place.key, label, unit, scale, *reach), system)
+    return _in_system(replace(Slider(place.key, label, unit, scale, *reach), hint=place.hint), system)
 
 
 STEPS_IN_INCHES = {0.05: 0.002, 0.1: 0.005, 0.5: 0.02, 1: 0.05, 5: 0.2}  # of a step in mm, in; of one in g, oz

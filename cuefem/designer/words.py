@@ -10,7 +10,7 @@ from cuefem.report.record import scene_record
 from cuefem.report.unusual import unusual
 from cuefem.report.words import assumptions, effect_words, plain_cue_line
 
-MEASURED = "measured on such cues: "  # with it a note begins that is no assumption
+MEASURED = ("measured on such cues: ", "no measurement known")  # so notes begin that are no assumptions
 
 
 def head_markup(design: Design, system: UnitSystem = METRIC) -> str:
@@ -29,7 +29,4 @@ def head_markup(design: Design, system: UnitSystem = METRIC) -> str:
 ABOUT = """<p>The numbers are the same as those of <code>cuefem strike</code>, <code>end-mass</code> and
 <code>modes</code> for the saved file. An [accuracy] table of the opened file is not saved. End mass m<sub>e</sub>
 is how much mass the ball has to push aside at the tip; less of it means less squirt. &#8220;Stick&#8221; means that
-the tip does not slip on the ball. The m<sub>c</sub> of the paper is four times m<sub>e</sub>. A knob that you do
-not move changes nothing. A diameter changes evenly up to the next of its three places. A joint that bends by 0 is
-stiff. A longer ferrule takes its length from the wood behind it. Everything without a knob stays as it is in the
-file.</p>"""
+the tip does not slip on the ball.</p>"""

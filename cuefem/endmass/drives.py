@@ -28,8 +28,9 @@ from cuefem.scene import Outcome, Resolution, Scene, Stroke
 from cuefem.slips import trying
 from cuefem.tip_modes import Solved
 
-# An estimate of the error of the stick end mass takes this part of the swing that a tail could add if it rang without
-# loss. Measured: it covers all errors above 0.2 % (studies/default_accuracy.md).
+# The tail stands for the modes that are left out. The error of the stick end mass is estimated as this part of what
+# those modes could add at most, if they lost no energy. Measured: the estimate covers all errors above 0.2 %
+# (studies/accuracy/default_accuracy.md).
 HEARD = 0.6
 
 # Offsets whose end masses are worked at a time, so that the arrays of modes by offsets stay small.

@@ -50,9 +50,11 @@ def _end_mass(scene: Scene, spread: Callable[[str], Spread], drive: str) -> Reco
     }
 
 
-def end_mass_sheet(record: Record, scene: Record) -> Sheet:
-    """The end masses by definition."""
+def end_mass_sheet(record: Record, scene: Record, *, paper: bool = False) -> Sheet:
+    """The end masses by definition. paper: with [Kim]'s m_c and eps of each."""
     at = f", at b/R {record['offset']:g}"
+    papers = {"m_c": "cue_end_mass", "eps": "{eps:.4f}"} if paper else {}
+    their = "m_c = 4 m_e: cue end of the paper's two-part cue (nu_c 1/3); eps: m_c as a part of the ball's mass"
     rows = [{"name": drive, **values} for drive, values in record["drives"].items()]
     return sheet(
         "Effective end mass",
@@ -60,15 +62,14 @@ def end_mass_sheet(record: Record, scene: Record) -> Sheet:
             "definition": lambda row: row["name"] + (at if DEFINITIONS[row["name"]].at_offset else ""),
             "m_e": "end_mass",
             "spread": _spread,
-            "m_c": "cue_end_mass",
-            "eps": "{eps:.4f}",
+            **papers,
         },
         rows,
         assumptions(scene),
         *(f"{row['name']}: {row['reason']}" for row in rows if row["end_mass"] is None),
         "m_e: effective end mass, the inertia felt by the ball across the cue at its tip (lumped models take offset)",
         "spread: range while keeping 25 to 100 % of the modes",
-        "m_c = 4 m_e: cue end of the paper's two-part cue (nu_c 1/3); eps: m_c as a part of the ball's mass",
+        *([their] if paper else []),
         *tip_effect_notes(scene, _counted()),
     )
 

@@ -32,6 +32,14 @@ def test_the_offset_of_a_weighed_end_is_one_too() -> None:
     assert told[0]["lumped_squirt"] == pytest.approx(told[1]["lumped_squirt"], rel=1e-12)
 
 
+def test_the_papers_own_end_mass_is_shown_where_it_is_asked_for() -> None:
+    plain, paper = (" ".join(call("end-mass", KIM, *more)[1].split()) for more in ((), ("--paper",)))
+    assert "m_c" not in plain
+    assert "eps" not in plain
+    assert "m_c = 4 m_e: cue end of the paper's two-part cue" in paper
+    assert "eps: m_c as a part of the ball's mass" in paper
+
+
 LENGTH = 'b/R, or a length such as "8 mm"'
 REFUSED = [
     (["strike", KIM, "--offset", "0,3"], f"between -1 and 1, {LENGTH}; got '0,3'; a decimal point, no comma"),

@@ -10,11 +10,13 @@ from typing import Any
 import pytest
 
 import cuefem as cf
+from cuefem.designer.presets import PRESETS
 from cuefem.designer.sliders import sliders
 from cuefem.designer.start import first_scene
 from cuefem.designer.units import INCHES
+from cuefem.designer.words import MEASURED
 from cuefem.report.page import page as report_page
-from cuefem.vary import knobs_of
+from cuefem.vary import PLACES, knobs_of
 from tests.helpers.designer_browser import BROWSER, launched, opened, served, settled
 
 pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
@@ -68,6 +70,13 @@ def test_a_line_through_a_dot_is_told_only_where_one_is(tip: cf.Tip | None) -> N
     drawn = [float(high) - float(low) for low, high in WHISKER.findall(text)]
     assert len(drawn) > 3
     assert ("The line through a dot" in text) is any(length > 9 for length in drawn)
+
+
+def test_what_was_measured_on_a_ready_cue_is_told_in_a_sentence() -> None:
+    told = [preset.told for preset in PRESETS]
+    assert "no measurement known" in told
+    assert all(words == "no measurement known" or words.startswith("measured on such cues: ") for words in told)
+    assert all(words.startswith(MEASURED) for words in told)
 
 
 class TestOnThePage:
@@ -125,6 +134,15 @@ class TestOnThePage:
         for letters, height, wide, room in shapes:
             assert height < 26 * (1 + letters // 30)  # as many lines as its letters take
             assert wide <= room
+
+    def test_knobs_say_what_else_they_move(self, browser: Any, address: str) -> None:
+        with opened(browser, address) as page:
+            hints = page.locator(".knob [title]").evaluate_all(
+                "parts => parts.map(part => [part.innerText, part.title])"
+            )
+        known = {place.title: place.hint for place in PLACES.values() if place.hint}
+        assert {label: hint for label, hint in hints if label in known}.items() <= known.items()
+        assert dict(hints)["Ferrule length"] == known["Ferrule length"]
 
     @pytest.mark.parametrize("name", ["pool_hollow", "whole_cue"])
     def test_no_table_of_a_report_is_cut_on_a_phone(self, browser: Any, name: str) -> None:

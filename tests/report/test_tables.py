@@ -172,7 +172,6 @@ def test_what_changes_little_is_told_without_colours(shown: Callable[[str], list
     ("name", "said"),
     [
         ("effects", "not tried: Elevation (angle 5 deg): does not go with TipShear"),
-        ("end mass", "eps: m_c as a part of the ball's mass"),
         ("bare strike", "coupled: vibrating shaft in time, modes kept for 0.5 % of squirt; two-part"),
         ("strike", "/kg, the tip's speed across the cue by a unit of impulse along it"),
         ("strike", "g (offset, without the effects at the tip)"),
