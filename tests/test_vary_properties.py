@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import cuefem as cf
-from cuefem.designer.presets import PRESETS, opened
+from cuefem.io.ready import PRESETS, opened
 from cuefem.materials import LEATHERS, material
 from cuefem.parts import outer_diameter, taper_position
 from cuefem.vary import PLACES, knobs_of, paths, turned, varied

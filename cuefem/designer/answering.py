@@ -169,6 +169,7 @@ class Answering:
             parts = completing(one.found)
             while more := await computed(next, parts, None):
                 one.found = more
+                self.page.show_numbers()
                 yield  # between two of them a newer move is heard
             self.page.show_numbers()
             self.page.show_table()

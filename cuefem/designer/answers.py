@@ -22,12 +22,14 @@ from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array
 from cuefem.design.sensitivity import sensitivity
 from cuefem.endmass.drives import DEFINITIONS
+from cuefem.io.ready import ready_cues
 from cuefem.report.squirt import two_part_curve
 from cuefem.report.strike import outcome_record
 from cuefem.results.asking import listed
 from cuefem.results.designs import TONES, OneDesign, at_offset, strikes_at
 from cuefem.results.pivot import pivot_length
 from cuefem.results.records import Record
+from cuefem.results.verdict import verdict_record
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import Solved, default_resolution
 
@@ -82,7 +84,7 @@ class Answers:
     strike: as `outcome_record`, of the coupled strike at the scene's own offset. safety: see `safety`. solved, outcome:
     for what is computed later. end_masses: by definition, None where one has no answer. found: the lowest bending
     modes. numbers: every listed result, by name. lumped: the impulse solver's curve, with the end mass of a tip that
-    sticks at each offset and without effects at the tip.
+    sticks at each offset and without effects at the tip. verdict: see `verdict_record`; empty until it is computed.
     """
 
     scene: Scene
@@ -94,6 +96,7 @@ class Answers:
     found: Modes | None = None
     numbers: Mapping[str, float | None] = field(default_factory=dict)
     lumped: SquirtCurve | None = None
+    verdict: Record = field(default_factory=dict)
 
     @property
     def tip(self) -> TipModes:
@@ -140,7 +143,10 @@ def with_end_mass(found: Answers) -> Answers:
 
 
 def completing(found: Answers) -> Iterator[Answers]:
-    """The numbers with one more definition of the end mass each time, and at last with the lumped curve."""
+    """The numbers with the verdict, one more definition of the end mass each time, and at last the lumped curve."""
+    if not found.verdict:
+        found = replace(found, verdict=verdict_record(found.scene, found.outcome, ready_cues(), solved=found.solved))
+        yield found
     for drive in DEFINITIONS:
         if drive not in found.end_masses:
             found = replace(found, end_masses={**found.end_masses, drive: _end_mass(drive, found.solved)})

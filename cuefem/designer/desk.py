@@ -26,8 +26,6 @@ from cuefem.designer.markup import Markup
 from cuefem.designer.numbers import Column, csv_text
 from cuefem.designer.opening import PresetMenu, ShapeDialog, asked, reading
 from cuefem.designer.pinned import PinnedList
-from cuefem.designer.presets import Preset
-from cuefem.designer.presets import opened as preset_opened
 from cuefem.designer.receiving import Receiver
 from cuefem.designer.results import ResultsSide
 from cuefem.designer.sheet import DrawingSheet
@@ -37,6 +35,8 @@ from cuefem.designer.tapside import TapSide
 from cuefem.designer.units import METRIC, SYSTEMS, UnitSystem
 from cuefem.designer.words import head_markup
 from cuefem.games import GAMES
+from cuefem.io.ready import Preset
+from cuefem.io.ready import opened as preset_opened
 from cuefem.io.toml_text import toml_text
 from cuefem.report.glossary import definitions, explained
 from cuefem.report.page import page as report_page

@@ -15,7 +15,9 @@ from cuefem.endmass.drives import DEFINITIONS
 from cuefem.report import table
 from cuefem.report.glossary import subscripts
 from cuefem.report.strike import MISCUE
-from cuefem.report.trust import trust_line, trust_lines
+from cuefem.report.templates import verdict_markup as as_verdict
+from cuefem.report.trust import trust_lines
+from cuefem.report.verdict import squirt_words, verdict_part
 from cuefem.results.quantities import NONE, RESULTS, Result, significant
 from cuefem.scene import Scene
 
@@ -234,16 +236,23 @@ def key_markup(
     for name, (label, remark) in KEYS.items():
         row = last.get(name, mine[name]) if mine[name].waiting else mine[name]
         said = difference(row, theirs[name], system) if theirs and not theirs[name].waiting else remark
+        if name == "squirt" and not theirs and found.verdict and not found.verdict["head_on"]:
+            said = f"give or take {squirt_words(found.verdict)[1]}, at this offset"
         pale = ' class="stale"' if mine[name].waiting else ""
         value = f'<b data-key="{name}"{pale}>{escape(row.text(system))}</b>'
         parts.append(f"<div><dt>{label}</dt><dd>{value}<small>{escape(said)}</small></dd></div>")
     return f'<dl class="key">{"".join(parts)}</dl>{_warned(found.safety)}'
 
 
+def verdict_markup(found: Answers) -> str:
+    """The squirt with its band, and where it stands among the ready cues; nothing until that is computed."""
+    return as_verdict(verdict_part(found.verdict)) if found.verdict else ""
+
+
 def trust_markup(scene: Scene) -> str:
-    """How far the numbers can be trusted: a line, and what stands behind it folded away."""
+    """How far the numbers can be trusted, folded away."""
     lines = "".join(f"<p>{escape(line)}</p>" for line in trust_lines(scene))
-    return f"<details><summary>{escape(trust_line(scene))}</summary>{lines}</details>"
+    return f"<details><summary>How far to trust it</summary>{lines}</details>"
 
 
 LATE = "near a miscue: the tip slips through much of this blow, and squirt is larger for it"

@@ -17,11 +17,11 @@ from cuefem.cue import Cue
 from cuefem.designer.computing import FAILURES
 from cuefem.designer.controls import Beside, button
 from cuefem.designer.markup import Markup
-from cuefem.designer.presets import PRESETS, Preset, ready_cue
 from cuefem.designer.units import UnitSystem, typed
 from cuefem.games import DEFAULT_GAME, GAMES, usual_scene
 from cuefem.io import load
 from cuefem.io.profile import DEFAULT_MATERIAL, SHAPES
+from cuefem.io.ready import PRESETS, Preset, ready_cue
 from cuefem.materials import MATERIALS, material
 from cuefem.scene import Scene
 

@@ -26,6 +26,8 @@ class ResultsSide:
         with ui.element("section").classes("key-strip"):
             self.keys = Markup()
         with ui.element("div").classes("rest"):
+            with ui.element("section"):
+                self.verdict = Markup()
             self.trust = Markup().classes("trust")
             with ui.element("section"):
                 Markup("<h2>The cue</h2>")
@@ -56,6 +58,9 @@ class ResultsSide:
             return
         keys = numbers.key_markup(found, other if reference else None, system, self.before)
         self.keys.set_content(explained(keys))
+        if found.verdict:
+            self.verdict.set_content(explained(numbers.verdict_markup(found)))
+        self.verdict.set_stale(not found.verdict)
         self.table.set_stale(True)
         if found.has_end_mass:
             self.before = found

@@ -5,20 +5,23 @@ from __future__ import annotations
 from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.effects.leather_law import TooDeep
+from cuefem.io.ready import ready_cues
 from cuefem.report.end_mass import end_mass_record, end_mass_sheet
 from cuefem.report.modes import modes_record, modes_sheet
 from cuefem.report.squirt import squirt_record, squirt_sheets
 from cuefem.report.strike import MISCUE
+from cuefem.report.verdict import verdict_things
 from cuefem.report.words import assumptions
 from cuefem.results.asking import listed
 from cuefem.results.designs import OneDesign
 from cuefem.results.records import Record, Sheet, value_rows, values_sheet
+from cuefem.results.verdict import verdict_record
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved
 
 
 def report_record(scene: Scene, *, count: int = 6) -> Record:
-    """Modes, end masses, squirt and pivot length, all listed results and the grip of the scene's own stroke.
+    """The verdict, modes, end masses, squirt and pivot length, all listed results and the grip of the own stroke.
 
     Where the stroke presses a leather tip further than its law is known, modes and the reason, "no_contact".
     """
@@ -31,7 +34,8 @@ def report_record(scene: Scene, *, count: int = 6) -> Record:
     found |= {"end_masses": end_mass_record(scene, solved=solved), "squirt": squirt_record(scene, solved=solved)}
     outcome = strike_modes(scene, solved.tip)
     numbers = listed(OneDesign(solved, outcome))
-    return found | {"numbers": numbers, "regime": outcome.regime, "grip": grip_of(outcome)}
+    verdict = verdict_record(scene, outcome, ready_cues(), solved=solved)
+    return found | {"verdict": verdict, "numbers": numbers, "regime": outcome.regime, "grip": grip_of(outcome)}
 
 
 def report_sheets(record: Record, scene: Record) -> list[Sheet | str]:
@@ -39,7 +43,8 @@ def report_sheets(record: Record, scene: Record) -> list[Sheet | str]:
     shown: list[Sheet | str] = [modes_sheet(record["modes"])] if "modes" in record else []
     if "no_contact" in record:
         return [*shown, f"no end mass and no squirt: {record['no_contact']}"]
-    first = [MISCUE, ""] if record["grip"] in MISSED else []
+    first: list[Sheet | str] = [MISCUE, ""] if record["grip"] in MISSED else []
+    first += verdict_things(record["verdict"])
     title = f"The cue, and its stroke at offset b/R = {scene['stroke']['offset']:g}"
     numbers = values_sheet(title, value_rows(record["numbers"]), assumptions(scene))
     return [

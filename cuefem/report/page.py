@@ -17,6 +17,7 @@ from cuefem.beam.tip import TipModes
 from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.endmass.drives import DEFINITIONS
+from cuefem.io.ready import ready_cues
 from cuefem.quantity import scalar
 from cuefem.report.charts import Axis, Chart, Shade
 from cuefem.report.contact import contact_part
@@ -37,24 +38,29 @@ from cuefem.report.models import ALCIATORE, PAPER
 from cuefem.report.squirt import PAPER_CUE_END_MASS, offset_charts, squirt_record
 from cuefem.report.strike import BRIEF, MISCUE, models_sheet, strike_record
 from cuefem.report.templates import environment
-from cuefem.report.trust import off, trust_lines
+from cuefem.report.trust import trust_lines
+from cuefem.report.verdict import verdict_part
 from cuefem.report.words import assumptions, effect_words, plain_cue_line
 from cuefem.results.asking import listed
 from cuefem.results.designs import OneDesign
 from cuefem.results.quantities import GRIPS, NONE, RESULTS, degrees, grams, scaled, written
 from cuefem.results.records import Record, Sheet, value_rows, values_sheet
+from cuefem.results.verdict import verdict_record
 from cuefem.scene import Outcome, Scene
-from cuefem.tip_modes import LEAST_STUCK, Solved
+from cuefem.squirt import alciatore_a31_mass_ratio
+from cuefem.tip_modes import LEAST, LEAST_STUCK, Solved
 
 DEFAULT_RTOL = 1e-2
 PAGE_OFFSETS = tuple(round(0.03 * i, 2) for i in range(1, 21))  # b/R of the curves
-MEASURED_END_MASS = (5.8e-3, 14e-3)  # kg, of real cues; handbook: Effective end mass
+MEASURED_A31 = (5.8e-3, 14e-3)  # kg, of real cues by A.31, and by no other definition; handbook: Effective end mass
 # Where the numbers come from that the page shows beside the cue's own.
+A31_NAME = "by A.31, like measured cues"
 SOURCES = (
     ("the paper's 12 g", f"the cue end of the two-part cue in {PAPER}"),
     (
-        "measured cues",
-        "5.8 to 14 g, the end masses with which A.31 gives the least and the most squirt that D. Alciatore's robot and "
+        A31_NAME,
+        "the end mass with which A.31 gives the squirt of this stroke; measured cues have 5.8 to 14 g by this "
+        "definition alone, those with which A.31 gives the least and the most squirt that D. Alciatore's robot and "
         "players measured (a Predator Z, 1.8° at b/R 0.453, and a Stinger, 2.4° at b/R 0.267, ball 170 g)",
     ),
     ("A.31", ALCIATORE),
@@ -117,6 +123,12 @@ class _ToAccuracy(Solved):
         """Likewise, so that a coarse rung changes no end mass."""
         return self._as_fine(self.least_smooth)
 
+    def by_default(self) -> Solved:
+        """The same with the modes that a strike takes by default, to be compared with other cues that take these."""
+        usual = Solved(self.scene)
+        vars(usual)["tip"] = self.tip_modes(LEAST)
+        return usual
+
     def _as_fine(self, least: int) -> TipModes:
         assert self.rung is not None
         return self.tip if self.rung.at.modes >= LEAST_STUCK else self.tip_modes(least)
@@ -131,12 +143,17 @@ def _stages(scene: Scene, rtol: float) -> list[Stage]:
         rungs.extend((rung, time.perf_counter() - begun) for rung in climb(scene, rtol))
         return _steps(rungs, rtol)
 
+    def usual() -> Solved:
+        found = solved()
+        return found.by_default() if isinstance(found, _ToAccuracy) else found
+
     def outcome() -> Outcome:
         return rungs[-1][0].outcome if rungs else strike_modes(scene, solved().tip)
 
     return [
         *([Stage("steps", climbed)] if scene.lumped is None else []),
         Stage("outcome", outcome),
+        Stage("verdict", lambda: verdict_record(scene, outcome(), ready_cues(), solved=usual())),
         Stage("end_masses", lambda: end_mass_record(scene, solved=solved())),
         Stage("squirt", lambda: squirt_record(scene, PAGE_OFFSETS, solved=solved())),
         Stage("strike", lambda: strike_record(scene, outcome(), solved=solved())),
@@ -167,7 +184,7 @@ def _context(scene: Scene, found: Record) -> Record:
         "strike": strike_drawing(scene, outcome.squirt),
         "squirt": degrees(outcome.squirt),
         "error": "" if outcome.error is None else f"{100.0 * outcome.error:.2g} %",
-        "off": off(scene),
+        "verdict": verdict_part(found["verdict"]),
         "trust": trust_lines(scene),
         "warning": MISCUE if grip_of(outcome) in MISSED else "",
         "cue": _cue_part(scene) if scene.cue.segments else None,
@@ -175,7 +192,7 @@ def _context(scene: Scene, found: Record) -> Record:
         "contact": None if outcome.history is None else contact_part(outcome),
         "by_offset": _by_offset(found["squirt"], scene),
         "slipped": bool(_slipped(found["squirt"])),
-        "end_masses": _end_masses(found["end_masses"], found["squirt"]),
+        "end_masses": _end_masses(found["end_masses"], found["squirt"], scene, outcome),
         "energy": _energy(outcome),
         "models": replace(models_sheet(record, BRIEF), title="The same stroke by every model"),
         "coupling": record["coupling"],
@@ -270,10 +287,11 @@ class MassRow(NamedTuple):
     text: str
 
 
-def _end_masses(record: Record, squirt: Record) -> Record:
+def _end_masses(record: Record, squirt: Record, scene: Scene, outcome: Outcome) -> Record:
     drives = [(name, values) for name, values in record["drives"].items() if values["end_mass"] is not None]
     paper = PAPER_CUE_END_MASS / 4
-    largest = max([MEASURED_END_MASS[1], *(values["highest"] for _, values in drives)])
+    by_a31 = _a31_mass(scene, outcome)
+    largest = max([MEASURED_A31[1], by_a31 or 0.0, *(values["highest"] for _, values in drives)])
     across = Axis("m_e, g", 0.0).over([scaled(largest, "kg")])
     left, right = 212.0, 372.0
 
@@ -288,10 +306,12 @@ def _end_masses(record: Record, squirt: Record) -> Record:
         for n, values in drives
     ]
     rows.append(row("the paper's 12 g", paper, (paper, paper)))
+    if by_a31 is not None:
+        rows.append(row(A31_NAME, by_a31, (by_a31, by_a31)))
     return {
         "rows": rows,
         "ticks": across.ticks(left, right),
-        "band": (place(MEASURED_END_MASS[0]), place(MEASURED_END_MASS[1])),
+        "band": None if by_a31 is None else (place(MEASURED_A31[0]), place(MEASURED_A31[1])),
         "ends": (left, right),
         "height": 26.0 * len(rows) + 44,
         "reasons": [values["reason"] for values in record["drives"].values() if values["end_mass"] is None],
@@ -299,6 +319,16 @@ def _end_masses(record: Record, squirt: Record) -> Record:
         "coupling": squirt["coupling"],
         "counted": "; ".join(one.label for one in DEFINITIONS.values() if one.counts_tip),
     }
+
+
+def _a31_mass(scene: Scene, outcome: Outcome) -> float | None:
+    """The end mass with which A.31 gives this squirt, as that of measured cues is told; None if there is none."""
+    offset = float(scene.stroke.offset)
+    try:
+        mass = float(scene.ball.mass / alciatore_a31_mass_ratio(offset, outcome.squirt, inertia=scene.ball.inertia))
+    except ValueError:
+        return None
+    return mass if 0 < mass < math.inf else None
 
 
 def _energy(outcome: Outcome) -> list[tuple[str, str, float, str]]:

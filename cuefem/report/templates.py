@@ -43,6 +43,11 @@ def cue_markup(found: CueDrawing) -> str:
     return str(_macros().drawing(found))
 
 
+def verdict_markup(part: dict[str, Any]) -> str:
+    """A verdict, as `cuefem.report.verdict.verdict_part` tells it."""
+    return str(_macros().verdict_section(part))
+
+
 def shapes_markup(found: ModesDrawing) -> str:
     """Mode shapes as a drawing."""
     return str(_macros().shapes(found))

@@ -9,10 +9,10 @@ import pytest
 
 import cuefem as cf
 from cuefem.designer import editing
-from cuefem.designer.presets import PRESETS, opened
 from cuefem.designer.start import first_scene
 from cuefem.effects import effect_kinds
 from cuefem.games import GAMES
+from cuefem.io.ready import PRESETS, opened
 from cuefem.parts import materials_in
 from cuefem.vary import knobs_of, replaced, turned, value_at
 

@@ -176,7 +176,7 @@ def test_names_are_text_and_no_markup() -> None:
 def test_the_work_is_followed_stage_by_stage() -> None:
     stages: list[str] = []
     page("a", LUMPED, track=lambda work: (stages.append(stage.name) or stage for stage in work))
-    assert stages == ["outcome", "end_masses", "squirt", "strike", "numbers"]
+    assert stages == ["outcome", "verdict", "end_masses", "squirt", "strike", "numbers"]
 
 
 def test_the_command_writes_a_page(tmp_path: Path) -> None:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import html
+import re
 from dataclasses import replace
 from pathlib import Path
 
 import cuefem as cf
 from cuefem.designer.numbers import trust_markup
 from cuefem.report.page import page
-from cuefem.report.trust import LEATHER_OFF, SPRING_OFF, trust_line, trust_lines
+from cuefem.report.trust import trust_lines
 
 ROOT = Path(__file__).parents[2]
 SCENE = cf.usual_scene(cf.load(ROOT / "meshes" / "pool_maple.toml"))
@@ -22,25 +24,18 @@ def handbook(name: str) -> str:
 
 def test_the_errors_are_those_of_the_handbook() -> None:
     told = handbook("measured")
-    low, high = SPRING_OFF.removesuffix(" %").split(" to ")
-    assert (
-        f"Over all seven strokes LeatherTip is off by {LEATHER_OFF} (root mean square), the patchwork by {low} %, "
-        f"the bare shaft by {high} %." in told
-    )
     assert "the low-deflection shaft has 0.74 to 0.67 of the maple shaft's squirt" in told
     assert "0.72 of the maple shaft's" in told
     assert "good to 0.5 % in 95 of 100 points and to 2.5 % at worst" in handbook("accuracy") + handbook("effects")
 
 
 def test_each_tip_has_its_own_error() -> None:
-    assert LEATHER_OFF in trust_line(SCENE)
-    assert SPRING_OFF in trust_line(SPRING)
     assert trust_lines(SCENE)[0].startswith("The tip is taken as elastic leather")
     assert trust_lines(SPRING)[0].startswith("The tip is taken as a spring")
-    assert trust_line(LUMPED) == trust_line(SPRING)
+    assert trust_lines(LUMPED) == trust_lines(SPRING)
 
 
 def test_report_and_designer_say_it() -> None:
-    said = "the model itself was off by 20 to 25 % from seven strokes"
-    assert said in page("lumped.toml", LUMPED)
-    assert said in trust_markup(SPRING)
+    for line in trust_lines(SPRING):
+        assert line.partition(".")[0] in html.unescape(re.sub("<[^>]+>", "", page("lumped.toml", LUMPED)))
+        assert line in html.unescape(trust_markup(SPRING))

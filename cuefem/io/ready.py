@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from importlib.resources import files
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -52,6 +53,13 @@ PRESETS = (
     ),
 )
 
+# By what they are called in a sentence: the first is what the others, and a person's own cue, are compared with.
+SCALE = {
+    "plain maple": "meshes/pool_maple.toml",
+    "low deflection": "meshes/pool_hollow.toml",
+    "carbon": "meshes/carbon.toml",
+}
+
 
 def folder() -> Path:
     """Where the ready files lie: in the package as it is installed, or in the clone."""
@@ -65,6 +73,13 @@ def opened(preset: Preset) -> tuple[Scene, list[str]]:
     if isinstance(found, Cue):
         return usual_scene(found, preset.game), [f"a usual stroke of {preset.game}"]
     return found, []
+
+
+@cache
+def ready_cues() -> dict[str, Cue]:
+    """The ready cues among which a verdict places a cue, from the most squirt to less."""
+    found: dict[str, Any] = {name: load(folder() / file) for name, file in SCALE.items()}
+    return found
 
 
 def ready_cue(name: str) -> bytes | None:

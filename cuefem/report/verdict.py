@@ -1,0 +1,142 @@
+"""The verdict for people: a line with the squirt and its band, sentences, and rows of a scale."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from cuefem.report.words import listed
+from cuefem.results.band import OF_DIFFERENCE
+from cuefem.results.records import Record, Sheet
+
+SAME = 0.005  # a difference that is none
+
+
+def squirt_words(record: Record) -> tuple[str, str]:
+    """The squirt to the digits that are sure, and what it may be off: "1.8°" and "0.3°"."""
+    squirt, error = (math.degrees(abs(record[name])) for name in ("squirt", "squirt_error"))
+    decimals = min(3, max(0, -math.floor(math.log10(error)))) if error else 1
+    return f"{squirt:.{decimals}f}°", f"{error:.{decimals}f}°"
+
+
+def headline(record: Record) -> str:
+    """The squirt with its band in a line."""
+    squirt, error = squirt_words(record)
+    aside = 1e3 * math.tan(abs(record["squirt"]))
+    where = f"at b/R {record['offset']:g}" + (", for the stroke itself is head on" if record["head_on"] else "")
+    return f"squirt {squirt}, give or take {error} ({where}): the ball goes {aside:.0f} mm aside in a metre"
+
+
+def than_words(difference: float) -> str:
+    """A relative difference in words: "17 % less"."""
+    if abs(difference) < SAME:
+        return "as much"
+    return f"{100 * abs(difference):.0f} % {'less' if difference < 0 else 'more'}"
+
+
+def standing(record: Record) -> list[str]:
+    """Where the squirt stands among the ready cues, in sentences; none without one to compare with."""
+    among = record["among"]
+    if not among:
+        return []
+    first, *others = among
+    own = among[first]
+    sure = f"give or take {100 * own['difference_error']:.0f} %"
+    if abs(own["difference"]) < SAME:
+        said = f"As much squirt as a {first} shaft, {sure}."
+    else:
+        said = f"{than_words(own['difference'])} squirt than a {first} shaft, {sure}."
+    ratios = {name: among[name]["squirt"] / among[first]["squirt"] - 1 for name in others}
+    rest = [f"the {name} one has {than_words(ratio)}" for name, ratio in ratios.items()]
+    return [said, f"Of the ready cues (meshes/), struck the same way, {listed(rest)} than {first}."] if rest else [said]
+
+
+def band_line(record: Record) -> str:
+    """What the band is made of, in a line."""
+    parts = {name: _percent(record["band"][name]) for name in ("model", "inputs", "computation")}
+    return (
+        f"Give or take: what the model missed on measured cues ({parts['model']}), wood and tip that nobody measured "
+        f"({parts['inputs']}), and the computation ({parts['computation']}), together "
+        f"{_percent(record['band']['whole'])}. Comparing two shafts is surer: a difference between them was right to "
+        f"{_percent(OF_DIFFERENCE)} of itself (10 % less may be {10 - 10 * OF_DIFFERENCE:.0f} to "
+        f"{10 + 10 * OF_DIFFERENCE:.0f} %), beside what the wood of the two may be off."
+    )
+
+
+def _percent(share: float) -> str:
+    percent = 100 * share
+    return "under 0.1 %" if percent < 0.1 else f"{percent:.1f} %" if percent < 1 else f"{percent:.0f} %"
+
+
+class ScaleRow(NamedTuple):
+    """A cue on the scale: name, squirt, whether it is one's own, and where it stands in per cent of the scale."""
+
+    name: str
+    text: str
+    beside: str
+    own: bool
+    at: float
+    low: float
+    high: float
+
+
+def scale(record: Record) -> list[ScaleRow]:
+    """The cues by their squirt, the least first, with the band of one's own."""
+    mine, error = abs(record["squirt"]), record["squirt_error"]
+    others = {name: abs(beside["squirt"]) for name, beside in record["among"].items()}
+    most = 1.05 * max([mine + error, *others.values()]) or 1.0
+    text, off = squirt_words(record)
+
+    def row(name: str, squirt: float, band: float, words: str, beside: str) -> ScaleRow:
+        places = (100 * each / most for each in (squirt, max(0.0, squirt - band), squirt + band))
+        return ScaleRow(name, words, beside, bool(band), *places)
+
+    rows = [
+        row(name, squirt, 0.0, _rounded(squirt, text), f"yours has {than_words(record['among'][name]['difference'])}")
+        for name, squirt in others.items()
+    ]
+    return sorted([*rows, row("yours", mine, error, text, f"give or take {off}")], key=lambda each: each.at)
+
+
+def _rounded(squirt: float, like: str) -> str:
+    """A squirt with a decimal more than one's own, since ratios are surer than levels."""
+    decimals = len(like.rstrip("°").partition(".")[2]) + 1
+    return f"{math.degrees(squirt):.{decimals}f}°"
+
+
+def verdict_part(record: Record) -> Record:
+    """What a page shows of a verdict."""
+    squirt, error = squirt_words(record)
+    *_, aside = headline(record).partition(": ")
+    return {
+        "squirt": squirt,
+        "error": error,
+        "offset": f"{record['offset']:g}",
+        "head_on": record["head_on"],
+        "aside": aside,
+        "standing": standing(record),
+        "scale": scale(record),
+        "band": band_line(record),
+    }
+
+
+def verdict_things(record: Record) -> list[Sheet | str]:
+    """The verdict in the terminal."""
+    found = scale(record)
+    rows = tuple((row.name, row.text, _bar(row), row.beside) for row in found)
+    own = {i: "bold" for i, row in enumerate(found) if row.own}
+    head = ("cue", "squirt", "less to more squirt", "")
+    table = Sheet("Among ready cues, by the same stroke", head, rows, (band_line(record),), (0, 2, 3), own)
+    return [headline(record), *standing(record), "", table]
+
+
+BAR = 32  # characters of the scale in a terminal
+
+
+def _bar(row: ScaleRow) -> str:
+    at, low, high = (round(BAR * each / 100) for each in (row.at, row.low, row.high))
+    line = ["·"] * (BAR + 1)
+    if row.own:
+        line[low : high + 1] = ["━"] * len(line[low : high + 1])
+    line[min(at, BAR)] = "●"
+    return "".join(line)

@@ -1,0 +1,73 @@
+"""A verdict on a cue: its squirt with its band, and where that stands among other cues with the same stroke."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from cuefem.contact.strike import strike_modes
+from cuefem.cue import Cue
+from cuefem.effects import Joint, PointMass, Support
+from cuefem.games import GAMES, without_leather
+from cuefem.results.band import band, of_difference, of_inputs, of_shaft, squirt_of
+from cuefem.results.designs import at_offset
+from cuefem.results.records import Record
+from cuefem.scene import Outcome, Scene
+from cuefem.tip_modes import Solved
+
+USUAL_OFFSET = GAMES["pool"].offset
+
+
+def verdict_record(scene: Scene, outcome: Outcome, ready: Mapping[str, Cue], *, solved: Solved | None = None) -> Record:
+    """Squirt at the stroke's offset, its band, and the squirt of each ready cue by the same stroke.
+
+    A stroke head on, which has no squirt, is taken at the usual offset instead. "inputs": by how much each changes
+    squirt. "among": squirt, own squirt over it less 1, and the error of that. ready: the first is what is compared with
+    in words. solved: the scene's modes by default, if they are known already.
+    """
+    offset = float(scene.stroke.offset)
+    struck = scene if offset else at_offset(scene, USUAL_OFFSET)
+    solved = Solved(struck) if solved is None or not offset else solved
+    # as fine as what it is compared with, where the outcome may be finer
+    own = float(outcome.squirt if offset and outcome.error is None else strike_modes(struck, solved.tip).squirt)
+    squirt = float(outcome.squirt) if offset else own
+    inputs = of_inputs(solved, own)
+    found = band(struck, inputs, outcome.error)
+    among = {name: _beside(struck, own, cue, of_shaft(inputs)) for name, cue in ready.items()}
+    return {
+        "offset": float(struck.stroke.offset),
+        "head_on": not offset,
+        "squirt": squirt,
+        "band": found._asdict() | {"whole": found.whole},
+        "inputs": inputs,
+        "squirt_error": found.whole * abs(squirt),
+        "among": {name: beside for name, beside in among.items() if beside},
+    }
+
+
+def _beside(scene: Scene, squirt: float, cue: Cue, inputs: float) -> Record | None:
+    """Another cue with the same stroke; None if this stroke cannot be made with it, or one of the two has no squirt.
+
+    inputs: relative error of squirt by what is not known of the scene's shaft.
+    """
+    try:
+        other = squirt_of(same_stroke(scene, cue))
+    except (ValueError, RuntimeError):
+        return None
+    if not squirt * other > 0:
+        return None
+    error = of_difference(squirt, other, inputs)
+    return {"squirt": other, "difference": squirt / other - 1, "difference_error": error}
+
+
+def same_stroke(scene: Scene, cue: Cue) -> Scene:
+    """The scene's ball, tip, stroke and effects with another cue.
+
+    What is fixed to the scene's own cue (a mass, a joint, a clamp beyond the other's end) stays with it. The other cue
+    has its drawn leather only where the scene's own cue has.
+    """
+    own = scene.lumped is None and scene.shaft.leather
+    other = cue if own else without_leather(cue)
+    effects = (e for e in scene.effects if not isinstance(e, PointMass | Joint))
+    reached = (e for e in effects if not isinstance(e, Support) or e.position < other.length)
+    return replace(scene, cue=other, effects=tuple(reached))
