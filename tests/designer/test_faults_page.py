@@ -10,11 +10,11 @@ from typing import Any
 import pytest
 
 import cuefem as cf
-from cuefem.designer.presets import PRESETS
 from cuefem.designer.sliders import sliders
 from cuefem.designer.start import first_scene
 from cuefem.designer.units import INCHES
 from cuefem.designer.words import MEASURED
+from cuefem.io.ready import PRESETS
 from cuefem.report.page import page as report_page
 from cuefem.vary import PLACES, knobs_of
 from tests.helpers.designer_browser import BROWSER, launched, opened, served, settled
