@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import warnings
+from collections.abc import Callable
 from contextlib import suppress
 from importlib import import_module
 from importlib.metadata import version
@@ -14,7 +15,7 @@ import click
 from click.shell_completion import CompletionItem
 
 from cuefem.contact.kernel import KernelError
-from cuefem.slips import Unusual
+from cuefem.slips import FormerFile, Unusual
 
 # Before NumPy is loaded: small dense matrices gain nothing from BLAS threads, and two of them on a busy machine can be
 # a hundred times slower than one.
@@ -118,6 +119,8 @@ class _OneLine(_Commands):
         try:
             with np.errstate(over="raise", divide="raise", invalid="raise"), warnings.catch_warnings():
                 warnings.filterwarnings("ignore", category=Unusual)  # commands say it in their own words: `remark`
+                warnings.filterwarnings("always", category=FormerFile)
+                warnings.showwarning = _show_warning(warnings.showwarning)
                 return super().invoke(ctx)
         except click.UsageError as error:
             _refuse_usage(error)
@@ -132,6 +135,18 @@ class _OneLine(_Commands):
                 raise
             click.echo(f"cuefem: {' '.join(str(error).split())}", err=True)
             raise click.exceptions.Exit(2 if isinstance(error, ValueError | KernelError) else 1) from None
+
+
+def _show_warning(otherwise: Callable[..., None]) -> Callable[..., None]:
+    """What an earlier version's file says is told in a line; other warnings as Python does."""
+
+    def show(message: Warning | str, category: type[Warning], *more: Any, **options: Any) -> None:
+        if issubclass(category, FormerFile):
+            click.echo(f"cuefem: {message}", err=True)
+        else:
+            otherwise(message, category, *more, **options)
+
+    return show
 
 
 def _refuse_usage(error: click.UsageError) -> NoReturn:

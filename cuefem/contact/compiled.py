@@ -14,7 +14,7 @@ _POINTERS = (
     "xi ball ring_shear slope_weights slopes"
 )
 _NUMBERS = (
-    "restitution friction table_friction stiffness exponent steady most compliance first_ratio surface_restitution phi "
+    "restitution friction table_friction stiffness exponent most compliance first_ratio surface_restitution phi "
     "dome rim radius lever_t lever_n lever_reach speed across clock impulse tolerance longest window most_phases "
     "most_steps"
 )

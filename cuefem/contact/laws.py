@@ -27,7 +27,7 @@ LEAST_RESTITUTION, LEAST_OF_LEATHER = 1e-4, 0.1
 # What the last terms of a step may add, as a part of the blow's impulse; rings make forces with many small kinks.
 TOLERANCE, LEATHER_TOLERANCE, RINGED_TOLERANCE = 1e-11, 1e-10, 1e-7
 RINGS, DEEPER = 120, 1.05  # even in the root of the compression, up to so many times a head-on blow's greatest
-RIGID_PATCH, SPRING_PATCH, LEATHER_PATCH, RINGED_PATCH = range(4)
+RIGID_PATCH, SPRING_PATCH, RINGED_PATCH = range(3)
 # What happens along the surface is computed relative to itself, down to this part of the rest: where the normal does
 # not turn nothing of the rest comes in, so that rounding is relative to itself too.
 LEAST_ACROSS, LEAST_ACROSS_TURNING = 1e-9, 1e-3
@@ -152,15 +152,17 @@ def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
     numbers = {"tolerance": TOLERANCE}
     if terms.tip is not None:
         law = terms.tip.law(radius, offset, e)
-        patch = RINGED_PATCH if terms.tip.partial_slip else LEATHER_PATCH
+        shear = terms.tip.shear
+        patch = RINGED_PATCH if shear is None else SPRING_PATCH
         dome, rim, turns = terms.tip.dome_radius, terms.tip.rim, terms.turns
-        numbers |= {"curve": 1, "steady": law.steady or 0.0, "most": law.most, "first_ratio": law.first_ratio}
-        numbers |= {"terms": len(law.force_terms), "tolerance": LEATHER_TOLERANCE}
+        numbers |= {"curve": 1, "most": law.most, "terms": len(law.force_terms)}
         arrays |= {"force_terms": np.array(law.force_terms), "give_terms": np.array(law.give_terms)}
-        if patch == RINGED_PATCH:
+        if shear is None:
             numbers |= {"rings": RINGS, "tolerance": RINGED_TOLERANCE}
             numbers["surface_restitution"] = terms.tip.surface_restitution
             arrays |= _rings(law, min(law.most, DEEPER * scene.deepest))
+        else:
+            numbers |= {"tolerance": LEATHER_TOLERANCE, "compliance": 1 / shear, "first_ratio": math.inf}
     else:
         law, time = normal_law(scene, common)
         compliance = terms.compliance / scene.stiffness
@@ -237,7 +239,7 @@ def _rings(law: LeatherLaw, deepest: float) -> dict[str, Array]:
         "ring_edges": edges,
         "ring_forces": force,
         "ring_stiffness": stiffness,
-        "ring_slopes": law.slopes(edges)[0],
+        "ring_slopes": law.slope(edges),
         "ring_shear": np.zeros(RINGS),
     }
 

@@ -44,22 +44,20 @@ class LeatherLaw:
     """A tip's law: the series of F and k_t in the root of the compression, the restitution e, and how deep they hold.
 
     Unloading follows the loading curve with its compression scaled by e^2, so that the work given back is e^2 of that
-    spent. The compression that the loading curve has at the same force is called the virtual one. steady: a constant
-    stiffness along the surface, N/m, in the place of the series.
+    spent. The compression that the loading curve has at the same force is called the virtual one.
     """
 
     force_terms: tuple[float, ...]
     give_terms: tuple[float, ...]
     restitution: float
     most: float
-    steady: float | None = None
 
     @classmethod
-    def fitted(cls, curves: Curves, restitution: float, steady: float | None = None) -> LeatherLaw:
+    def fitted(cls, curves: Curves, restitution: float) -> LeatherLaw:
         """The law through the curves, by least squares of relative differences."""
         root = np.sqrt(curves.depth)
         force, give = _series(root, curves.force, lowest=3), _series(root, root / curves.shear, lowest=0)
-        return cls(force, give, restitution, float(curves.depth[-1]), steady)
+        return cls(force, give, restitution, float(curves.depth[-1]))
 
     @cached_property
     def _terms(self) -> Array:
@@ -78,25 +76,14 @@ class LeatherLaw:
         """(F, k_t), N and N/m, at virtual compressions, m, (n,): zero where these are negative."""
         powers = self._powers(depth)
         force, give = self._terms @ powers
-        if self.steady is not None:
-            return force, np.full_like(force, self.steady)
         return force, powers[1] / (give + TINY)
 
-    def slopes(self, depth: Array) -> tuple[Array, Array]:
-        """(dF, dk_t 2 y^2) over the virtual compression y^2, (n,): k_t itself has no slope at the first touch."""
+    def slope(self, depth: Array) -> Array:
+        """Slope of F over the virtual compression, N/m, (n,)."""
         powers = self._powers(depth)
-        force, give = self._terms * np.arange(1, len(powers) + 1) @ powers  # y times what they are over y
+        force = self._terms[0] * np.arange(1, len(powers) + 1) @ powers  # y times what it is over y
         by = 2 * powers[1]
-        of_force = np.divide(force, by, out=np.zeros_like(force), where=by > 0)
-        if self.steady is not None:
-            return of_force, np.zeros_like(force)
-        _, k = self.at(depth)
-        return of_force, 2 * k - np.divide(k**2 * give, powers[1], out=np.zeros_like(k), where=by > 0)
-
-    @property
-    def first_ratio(self) -> float:
-        """k_t over the slope of F at the first touch; infinite for a constant k_t."""
-        return 1 / (1.5 * self.force_terms[0] * self.give_terms[0]) if self.steady is None else math.inf
+        return np.divide(force, by, out=np.zeros_like(force), where=by > 0)
 
     def work(self, depth: Any) -> Any:
         """Work that loading to a compression takes, J."""

@@ -30,8 +30,8 @@ class WholeTip(Protocol):
         """Radius of its dome, m; 0 for a flat tip."""
 
     @property
-    def partial_slip(self) -> bool:
-        """Whether its patch slips ring by ring."""
+    def shear(self) -> float | None:
+        """A constant stiffness along the surface, N/m, in the place of its patch's; None: the patch's."""
 
     @property
     def surface_restitution(self) -> float:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 import tomllib
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,6 +21,10 @@ from cuefem.materials import material
 from cuefem.quantity import MOST_SEGMENTS, Quantity, check_fields, quantities
 from cuefem.scene import Scene
 from cuefem.side.scene import SideStrike
+from cuefem.slips import FormerFile
+
+# Fields that effects had in earlier versions, and why they have them no more.
+FORMER = {"LeatherTip": {"partial_slip": "the patch always holds, slides and lets go ring by ring"}}
 
 
 @dataclass(frozen=True)
@@ -216,6 +221,9 @@ def _effect(found: Any, path: Path, key: str) -> Effect:
         problem = f"must be one of {names}; got {shown(name)}{nearest(str(name), kinds)}"
         raise InputError(path, joined(key, "type"), problem)
     rest = {field: value for field, value in found.items() if field != "type"}
+    for field, why in FORMER.get(name, {}).items():
+        if rest.pop(field, None) is not None:
+            warnings.warn(f"{path}: {joined(key, field)} says nothing any more: {why}", FormerFile, stacklevel=2)
     return build(kinds[name], _spelt_out(kinds[name], rest, path, key), file=str(path), key=key)
 
 

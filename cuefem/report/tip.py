@@ -29,7 +29,7 @@ def tip_record(scene: Scene) -> Record:
     speeds = sorted({*SPEEDS, float(scene.stroke.speed)})
     deepest, _ = law.blow(scene.head_on_mass, scene.stroke.speed)
     patch = float(np.interp(deepest, depths, patches))
-    slope = float(law.slopes(np.array([deepest]))[0][0])
+    slope = float(law.slope(np.array([deepest]))[0])
     along = np.linspace(0.0, law.most, CURVE)
     return {
         "tip_mass": leather.mass(diameter),

@@ -80,7 +80,7 @@ class Patch:
         edges = self.most * np.linspace(0.0, 1.0, self.rings + 1) ** 2
         self.middle = (edges[1:] + edges[:-1]) / 2
         self.stiff = np.diff(self.law.at(edges)[1])
-        self.normal = np.diff(self.law.slopes(edges)[0])
+        self.normal = np.diff(self.law.slope(edges))
         self.strain = np.zeros(self.rings)
 
     def shift(self, by: float, eta: float, F_n: float, k: float) -> float:

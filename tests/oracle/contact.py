@@ -129,7 +129,7 @@ class Contact:
         self.linear = smooth and not self.poses and self.forces == 2
         self.tolerance = self.terms["tolerance"] / (1 if self.terms.get("rings") else 10)
         self.time = self.depth = self.angle = self.shear = self.deepest = self.height = 0.0
-        self.peak, self.parted, self.grows, self.last = 0.0, False, True, None
+        self.peak, self.parted, self.last = 0.0, False, None
         self.grip, self.press, self.table, self.start = "stick", "load", "held", 0.0
         self.losses = dict.fromkeys(("friction", "shear", "table", "damping", "radiated"), 0.0)
         self.phases: list[tuple[str, str, float, float]] = []
@@ -326,9 +326,7 @@ class Contact:
                 first, event = apart, "apart"
             if first > 0:
                 self.take(step, first)
-            if event == "turned":
-                self.grows = not self.grows
-            elif event:
+            if event:
                 self.end_phase()
                 return event
         if self.press != "free":
@@ -350,7 +348,7 @@ class Contact:
         before = copy.deepcopy({name: value for name, value in vars(self).items() if name not in shared})
         self.grip, self.press, self.last, self.level = "apart", "free", None, 2
         if self.follow(until) == "touched" and self.time <= until:
-            self.depth, self.grows, self.last = self.rest, True, None
+            self.depth, self.last = self.rest, None
             return True
         vars(self).update(before)
         return False

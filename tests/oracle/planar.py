@@ -2,8 +2,7 @@
 
 F_n follows a curve over the compression; on the way back from the deepest point D that curve is scaled by e^2, from the
 rest (1 - e^2) D on. For e = 0 the tip is rigid there, v_n = 0. Along the surface the contact slips, F_t = side mu F_n,
-or it holds: v_t = 0, or by a spring, F_t = -integral of v_t/c, or by leather whose stiffness k grows and shrinks with
-the patch: F_t' = -k v_t while it grows, (F_t/k)' = -v_t while it shrinks.
+or it holds: v_t = 0, or by a spring, F_t = -integral of v_t/c.
 """
 
 from __future__ import annotations
@@ -13,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from cuefem.contact.laws import LEATHER_PATCH, RIGID_PATCH, RINGED_PATCH, SPRING_PATCH
-from tests.oracle.contact import SUMS, WAVES, WITH_START, Contact, Step, at, integral, slope
+from cuefem.contact.laws import RIGID_PATCH, RINGED_PATCH, SPRING_PATCH
+from tests.oracle.contact import WAVES, WITH_START, Contact, Step, at, integral, slope
 
 SIDE = {"slip": 1.0, "slip back": -1.0}
 
@@ -29,8 +28,6 @@ class Planar(Contact):
     def stiffness(self, depth: Any) -> Any:
         """Of leather's patch along the surface, at a virtual compression."""
         root = np.sqrt(np.where(np.real(depth) > 0, depth, 0.0))
-        if self.terms["steady"]:
-            return self.terms["steady"] + 0 * root
         return root / np.polynomial.polynomial.polyval(root, self.model.arrays["give_terms"])
 
     def residual(self, s: Step) -> Any:
@@ -45,12 +42,7 @@ class Planar(Contact):
             return F - SIDE[self.grip] * self.mu * s.F[..., 1, 1:]
         if self.patch == RIGID_PATCH:
             return v[..., 1:]
-        if self.patch == SPRING_PATCH:
-            return F - self.shear + x / self.terms["compliance"]
-        k = self.stiffness(self.virtual(s.depth))
-        if self.grows:
-            return F - self.shear + s.length * (k * v) @ SUMS[1:].T
-        return F - k[..., 1:] * ((self.shear / k[..., :1] if self.shear else 0.0) - x)
+        return F - self.shear + x / self.terms["compliance"]
 
     def sliding(self, s: Step) -> Any:
         """The velocity at which a slipping patch slides on the ball: v_t, and what its spring's force changes by."""
@@ -61,24 +53,14 @@ class Planar(Contact):
             waves = np.polynomial.Legendre(WAVES @ s.F[0], [0, 1])
             return s.v[0] + self.terms["compliance"] * waves.deriv()(WITH_START) / s.length
         depth = self.virtual(s.depth)
-        if self.patch == SPRING_PATCH:
-            per = self.terms["compliance"] * slope(self.normal, depth)
-        else:
-            k, there = self.stiffness(depth), depth > 0
-            k[~there] = 1.0
-            shrinks = slope(lambda d: self.normal(d) / self.stiffness(d), np.where(there, depth, 1.0))
-            per = slope(self.normal, depth) / k if self.grows else shrinks
-            per = np.where(there, per, 1 / self.terms["first_ratio"])
+        per = self.terms["compliance"] * slope(self.normal, depth)
         return s.v[0] - side * per * s.v[1] / self.give
 
     def stored(self) -> float:
         """Energy that the patch holds."""
         if self.patch == SPRING_PATCH:
             return self.terms["compliance"] * self.shear**2 / 2
-        if self.patch != LEATHER_PATCH or self.shear == 0:
-            return 0.0
-        k = float(self.stiffness(self.virtual(self.depth)))
-        return self.shear**2 / (2 * k) if k > 0 else 0.0
+        return 0.0
 
     def guards(self, s: Step) -> list[tuple[str, Any, float]]:
         near = 0.0 if self.linear else 1e-10
@@ -92,11 +74,11 @@ class Planar(Contact):
             guards = [("apart", s.F[1], force), ("reloaded", self.peak - s.F[1], force)]
         else:
             guards = [("apart", s.depth - self.rest, way), ("reloaded", self.deepest - s.depth, way)]
-            if self.patch == LEATHER_PATCH:
-                guards.append(("turned", -s.v[1] if self.grows else s.v[1], speed))
+        if self.patch == RINGED_PATCH:
+            return guards
         if self.grip in SIDE:
             guards.append(("gripped", -SIDE[self.grip] * self.sliding(s), speed * self.model.across))
-        elif math.isfinite(self.mu) and self.patch != RINGED_PATCH:
+        elif math.isfinite(self.mu):
             bound = self.mu * s.F[1] + 1e-12 * self.size
             guards += [("slip", bound - s.F[0], force), ("slip back", bound + s.F[0], force)]
         return guards
@@ -132,20 +114,19 @@ class Planar(Contact):
 
     def begin(self) -> None:
         """A patch that begins to slide has friction's force, wherever its spring was; one that is let go has none."""
-        self.grows = self.grows or self.press == "load"
         if self.press == "free":
             self.press = "unload"
             self.losses["shear"] += self.stored()
             self.press, self.shear = "free", 0.0
             return
         self.settle()
-        if self.grip not in SIDE or self.patch not in (SPRING_PATCH, LEATHER_PATCH):
+        if self.grip not in SIDE or self.patch != SPRING_PATCH:
             return
         before = self.stored()
         rigid = self.press == "rigid"
         normal = self.forces_held()[1] if rigid else self.normal(self.virtual(self.depth))
         self.shear = SIDE[self.grip] * self.mu * float(normal)
-        self.losses["friction" if self.patch == SPRING_PATCH else "shear"] += before - self.stored()
+        self.losses["friction"] += before - self.stored()
 
     def taken(self, s: Step, part: float) -> None:
         """The compression, the spring's force, and what was lost along the surface."""
@@ -154,13 +135,9 @@ class Planar(Contact):
             return
         missing = self.stored() - integral(s, part, s.F[0], s.v[0])
         slips = self.grip in SIDE
-        rubbed = -integral(s, part, s.F[0], self.sliding(s)) if self.patch == LEATHER_PATCH and slips else 0.0
         self.shear, self.depth = self.shear_after(s, part), float(at(part, s.depth))
         missing -= self.stored()
-        if self.patch == LEATHER_PATCH:
-            self.losses["friction"] += rubbed
-            self.losses["shear"] += missing - rubbed
-        elif self.patch == RINGED_PATCH and not math.isfinite(self.mu):
+        if self.patch == RINGED_PATCH and not math.isfinite(self.mu):
             self.losses["shear"] += missing
         elif self.patch == RINGED_PATCH:
             self.losses["friction"] += missing - self.kept
@@ -192,7 +169,7 @@ class Planar(Contact):
         if event == "apart":
             return False
         if event == "compressed":
-            self.deepest, self.grows, self.peak = self.depth, False, float(self.normal(self.depth))
+            self.deepest, self.peak = self.depth, float(self.normal(self.depth))
             self.press = "unload" if self.e > 0 else "rigid"
             if self.e > 0:
                 return True

@@ -51,10 +51,10 @@ enum {
 };
 enum { STICK = 0, SLIP = 1, SLIP_BACK = -1, BLOW = 2, APART_GRIP = 3 };
 enum { LOAD, UNLOAD, RIGID, FREE };
-enum { RIGID_PATCH, SPRING_PATCH, LEATHER_PATCH, RINGED_PATCH };
+enum { RIGID_PATCH, SPRING_PATCH, RINGED_PATCH };
 enum { POWER_CURVE, LEATHER_CURVE };
 enum { HELD, SLIDES, LIFTED };
-enum { NONE, COMPRESSED, APART, RELOADED, TURNED, GRIPPED, SLIPPED, SLIPPED_BACK, TOUCHED, LATE_FLIGHT,
+enum { NONE, COMPRESSED, APART, RELOADED, GRIPPED, SLIPPED, SLIPPED_BACK, TOUCHED, LATE_FLIGHT,
        LIFTED_OFF, LANDED, STOPPED, SLID };
 enum { ENDED, LATE, CROWDED, STUCK, TOO_DEEP, TURNED_TOO_FAR, BENT_TOO_FAR, NO_MEMORY };
 
@@ -139,7 +139,7 @@ typedef struct {
     double *slopes;              /* (slopes,): s_a */
     int forces, speeds, turns, curve, patch, lossy, terms, levers, rings, recording;
     int plane; /* slopes in a plane of bending; the last of them is the rotation of the tip */
-    double restitution, friction, table_friction, stiffness, exponent, steady, most, compliance, first_ratio,
+    double restitution, friction, table_friction, stiffness, exponent, most, compliance, first_ratio,
         surface_restitution;
     double phi, dome, rim, radius, lever_t, lever_n, lever_reach;
     double speed, across, clock, impulse, tolerance, longest, window, most_phases, most_steps; /* across: part of the speed
@@ -198,7 +198,7 @@ struct Work {
     const Law *law;
     Hold hold;
     double C[WITH][FORCES][ALL_PORTS];
-    int level, linear, grows, known; /* known: whether a step was taken, whose forces the next one may begin with */
+    int level, linear, known; /* known: whether a step was taken, whose forces the next one may begin with */
     double last_part, last_step, last_F[FORCES][Q], last_angle[Q];
     double blows[ALL_PORTS + SLOPES]; /* impulses on ports and slopes since the last record */
     double *V[LEVELS], V_angle[LEVELS]; /* answers of the contact to its forces, as it faced at an angle */
@@ -237,7 +237,7 @@ void begin_slopes(const Contact *c, Step *s);
 int take_slopes(Contact *c, const Step *s, double part);
 
 /* normal.c */
-void curve_at(const Contact *c, double depth, double *F, double *slope, double *k, double *dk);
+void curve_at(const Contact *c, double depth, double *F, double *slope, double *k);
 double virtual_depth(const Contact *c, int press, double depth);
 double give_of(const Contact *c, int press);
 double rest_of(const Contact *c);

@@ -3,23 +3,18 @@
    The tip's force F_n follows a curve over its compression d = - integral of v_n; on the way back from the deepest point
    D that curve's compression is scaled by e^2, from the rest (1 - e^2) D on (the virtual compression). For e = 0 the tip
    is rigid there: v_n = 0. Along the surface the contact slips, F_t = side mu F_n, or it sticks: v_t = 0; or the patch
-   hangs on a spring, F_t = -integral of v_t / c; or on leather, whose stiffness k grows and shrinks with the patch:
-
-       F_t' = -k v_t while it grows,    (F_t/k)' = -v_t while it shrinks;
-
-   or on rings (rings.c), each of which holds or slides. */
+   hangs on a spring, F_t = -integral of v_t / c; or on rings (rings.c), each of which holds or slides. */
 #include "contact.h"
 
 static void residual(Work *w, const Step *s, Residual *r)
 {
     const Contact *c = w->c;
     int press = w->hold.press;
-    double give = give_of(c, press), mu = c->friction, k[WITH], dk[WITH];
+    double give = give_of(c, press), mu = c->friction;
     clear(r, 2);
-    for (int i = 0; i < WITH; i++) {
+    for (int i = 1; i < WITH; i++) {
         double F, slope;
-        if (press != RIGID) curve_at(c, virtual_depth(c, press, s->depth[i]), &F, &slope, &k[i], &dk[i]);
-        if (!i) continue;
+        if (press != RIGID) curve_at(c, virtual_depth(c, press, s->depth[i]), &F, &slope, NULL);
         if (press == RIGID) r->g[1][i - 1] = s->v[1][i], r->on_v[1][1][i - 1] = 1;
         else {
             r->g[1][i - 1] = s->F[1][i] - F;
@@ -30,28 +25,15 @@ static void residual(Work *w, const Step *s, Residual *r)
         rings_at_nodes(w, s, r);
         return;
     }
-    double sum[Q], start = c->shear == 0 ? 0 : c->patch == LEATHER_PATCH ? c->shear / k[0] : 0;
-    if (c->patch == LEATHER_PATCH && w->grows)
-        for (int i = 0; i < Q; i++) {
-            sum[i] = 0;
-            for (int j = 0; j < WITH; j++) sum[i] += s->step * rule.sums[j][i] * k[j] * s->v[0][j];
-        }
     for (int i = 0; i < Q; i++) {
         double F = s->F[0][i + 1], x = s->x[0][i + 1];
         if (w->hold.grip != STICK) {
             r->g[0][i] = F - w->hold.grip * mu * s->F[1][i + 1];
             r->on_F[0][0][i] = 1, r->on_F[0][1][i] = -w->hold.grip * mu;
         } else if (c->patch == RIGID_PATCH) r->g[0][i] = s->v[0][i + 1], r->on_v[0][0][i] = 1;
-        else if (c->patch == SPRING_PATCH) {
+        else {
             r->g[0][i] = F - c->shear + x / c->compliance;
             r->on_F[0][0][i] = 1, r->on_x[0][0][i] = 1 / c->compliance;
-        } else {
-            r->on_F[0][0][i] = 1, r->on_x[0][0][i] = k[i + 1];
-            if (w->grows) r->g[0][i] = F - c->shear + sum[i];
-            else {
-                r->g[0][i] = F - k[i + 1] * (start - x);
-                r->on_x[0][1][i] = dk[i + 1] * (start - x) / give;
-            }
         }
     }
 }
@@ -71,14 +53,9 @@ static void sliding(const Work *w, const Step *s, double *to)
             to[i] += c->compliance * rate / s->step;
             continue;
         }
-        double F, slope, k, dk, depth = virtual_depth(c, press, s->depth[i]), per = 0;
-        curve_at(c, depth, &F, &slope, &k, &dk);
-        if (c->patch == SPRING_PATCH) per = c->compliance * slope;
-        else {
-            per = k > 0 ? slope / k : 1 / c->first_ratio;
-            if (!w->grows && depth > 0 && k > 0) per -= F * dk / (k * k);
-        }
-        to[i] -= side * per * s->v[1][i] / give_of(c, press);
+        double F, slope;
+        curve_at(c, virtual_depth(c, press, s->depth[i]), &F, &slope, NULL);
+        to[i] -= side * c->compliance * slope * s->v[1][i] / give_of(c, press);
     }
 }
 
@@ -87,10 +64,7 @@ static double stored(const Contact *c, int press)
 {
     if (c->patch == SPRING_PATCH) return c->compliance * c->shear * c->shear / 2;
     if (c->patch == RINGED_PATCH) return rings_store(c, press, c->depth);
-    if (c->patch != LEATHER_PATCH || c->shear == 0) return 0;
-    double F, slope, k, dk;
-    curve_at(c, virtual_depth(c, press, c->depth), &F, &slope, &k, &dk);
-    return k > 0 ? c->shear * c->shear / (2 * k) : 0;
+    return 0;
 }
 
 static int guards(Work *w, const Step *s, Guard *to)
@@ -112,7 +86,6 @@ static int guards(Work *w, const Step *s, Guard *to)
     } else {
         GUARD(APART, way, s->depth[i] - rest_of(c));
         GUARD(RELOADED, way, c->deepest - s->depth[i]);
-        if (c->patch == LEATHER_PATCH) GUARD(TURNED, near * speed, w->grows ? -s->v[1][i] : s->v[1][i]);
     }
     if (c->patch == RINGED_PATCH) return count;
     if (grip != STICK) {
@@ -171,21 +144,19 @@ static void settle(Work *w, Hold hold)
 static void begin(Work *w)
 {
     Contact *c = w->c;
-    int giving = c->patch == SPRING_PATCH || c->patch == LEATHER_PATCH;
-    if (w->hold.press == LOAD) w->grows = 1;
     if (w->hold.press == FREE) {
         c->shear_loss += stored(c, UNLOAD), c->shear = 0;
         if (c->rings) memset(c->ring_shear, 0, c->rings * sizeof *c->ring_shear);
         return;
     }
     settle(w, w->hold);
-    if (w->hold.grip == STICK || !giving) return;
+    if (w->hold.grip == STICK || c->patch != SPRING_PATCH) return;
     double before = stored(c, w->hold.press), F[FORCES];
     if (w->hold.press == RIGID) {
         if (!forces_held(w, w->hold, F, 0)) return;
     } else F[1] = pressing(c, w->hold.press, c->depth);
     c->shear = w->hold.grip * c->friction * F[1];
-    *(c->patch == SPRING_PATCH ? &c->friction_loss : &c->shear_loss) += before - stored(c, w->hold.press);
+    c->friction_loss += before - stored(c, w->hold.press);
 }
 
 /* Go to a part of the step: the compression, the spring's force, and what was lost along the surface. */
@@ -199,18 +170,13 @@ static void taken(Work *w, const Step *s, double part)
     }
     int holds = grip == STICK && c->patch == RIGID_PATCH; /* nothing moves along the surface */
     double work = holds ? 0 : work_of(s->F[0], s->v[0], s->step, part);
-    double before = stored(c, press), slides[WITH], rubbed = 0;
-    if (c->patch == LEATHER_PATCH && grip != STICK) {
-        sliding(w, s, slides);
-        rubbed = -work_of(s->F[0], slides, s->step, part);
-    }
+    double before = stored(c, press);
     double lost = 0; /* to the leather */
     if (c->patch == RINGED_PATCH) lost = rings_take(w, s, part);
     else c->shear = value_at(s->F[0], part);
     c->depth = value_at(s->depth, part);
     double missing = before - work - stored(c, press);
-    if (c->patch == LEATHER_PATCH) c->friction_loss += rubbed, c->shear_loss += missing - rubbed;
-    else if (c->patch == RINGED_PATCH && !isfinite(c->friction)) c->shear_loss += missing;
+    if (c->patch == RINGED_PATCH && !isfinite(c->friction)) c->shear_loss += missing;
     else if (grip != STICK || c->patch == RINGED_PATCH) c->friction_loss += missing - lost, c->shear_loss += lost;
 }
 
@@ -252,7 +218,7 @@ static int next(Work *w, int event)
     int grip = w->hold.grip, press = w->hold.press;
     if (event == APART) return 0;
     if (event == COMPRESSED) {
-        c->deepest = c->depth, w->grows = 0;
+        c->deepest = c->depth;
         c->peak = pressing(c, LOAD, c->depth);
         if (c->restitution > 0) w->hold.press = UNLOAD;
         else { /* past the peak a tip of e = 0 pushes on only as far as the cue presses against the ball */

@@ -38,7 +38,7 @@ static int ringed_grip(const Work *w, const Step *s)
 {
     const Contact *c = w->c;
     double F_n, slope;
-    curve_at(c, virtual_depth(c, w->hold.press, c->depth), &F_n, &slope, NULL, NULL);
+    curve_at(c, virtual_depth(c, w->hold.press, c->depth), &F_n, &slope, NULL);
     if (c->friction == 0) return s->v[0][Q] == 0 ? STICK : s->v[0][Q] < 0 ? SLIP : SLIP_BACK;
     if (F_n < 1e-6 * c->impulse / c->clock) return w->hold.grip; /* as ball and tip part nothing tells */
     if (fabs(c->shear) < c->friction * F_n * (1 - 1e-9)) return STICK;
@@ -95,10 +95,6 @@ static int follow(Work *w, double until)
             }
         }
         if (status) return -status;
-        if (event == TURNED) {
-            w->grows = !w->grows;
-            continue;
-        }
         if (event) {
             if (c->time > start) end_phase(w, w->hold, start, before);
             return event;
@@ -157,7 +153,7 @@ static int fly(Work *w, double until)
     } else {
         c->depth = rest_of(c);
         w->level = first_level(c);
-        w->grows = 1, w->known = 0;
+        w->known = 0;
     }
     free(xi);
     return touched;
@@ -179,7 +175,6 @@ EXPORTED void contact_run(Contact *c)
     }
     w->c = c, w->law = c->forces == 2 ? &planar : &raised;
     w->linear = !c->turns && !c->cue->slopes && c->curve == POWER_CURVE && c->exponent == 1 && c->forces == 2;
-    w->grows = 1;
     w->level = first_level(c);
     int dampers = dampers_of(c->cue);
     w->step.damped = malloc((dampers + 1) * WITH * sizeof(double));

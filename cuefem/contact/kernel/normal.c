@@ -1,8 +1,8 @@
 /* The force along the normal: the tip's curve, and the way back along it (laws.c). */
 #include "contact.h"
 
-/* Force and slope at a virtual compression; along the surface stiffness and its slope, where they are asked for. */
-void curve_at(const Contact *c, double depth, double *F, double *slope, double *k, double *dk)
+/* Force and slope at a virtual compression, and the stiffness along the surface where it is asked for. */
+void curve_at(const Contact *c, double depth, double *F, double *slope, double *k)
 {
     if (c->curve == POWER_CURVE) {
         if (c->exponent == 1) {
@@ -14,19 +14,13 @@ void curve_at(const Contact *c, double depth, double *F, double *slope, double *
         return;
     }
     /* F = y^3 (f_0 + f_1 y + ...), y/k = g_0 + g_1 y + ..., y the root of the compression */
-    double y = sqrt(larger(depth, 0)), f = 0, df = 0, g = 0, dg = 0;
+    double y = sqrt(larger(depth, 0)), f = 0, df = 0, g = 0;
     for (int i = c->terms - 1; i >= 0; i--) {
         f = f * y + c->force_terms[i], df = df * y + (i + 3) * c->force_terms[i];
-        g = g * y + c->give_terms[i], dg = dg * y + (i + 1) * c->give_terms[i];
+        g = g * y + c->give_terms[i];
     }
     *F = y * y * y * f, *slope = y * df / 2;
-    if (!k) return;
-    if (c->steady > 0) {
-        *k = c->steady, *dk = 0;
-        return;
-    }
-    *k = y / g;
-    *dk = y > 0 ? *k * (2 - *k * dg / y) / (2 * depth) : 0;
+    if (k) *k = y / g;
 }
 
 /* By how much less the compression changes than the virtual one. */
@@ -51,6 +45,6 @@ double rest_of(const Contact *c)
 double pressing(const Contact *c, int press, double depth)
 {
     double F, slope;
-    curve_at(c, virtual_depth(c, press, depth), &F, &slope, NULL, NULL);
+    curve_at(c, virtual_depth(c, press, depth), &F, &slope, NULL);
     return F;
 }

@@ -51,7 +51,7 @@ static void residual(Work *w, const Step *s, Residual *r)
     clear(r, FORCES);
     for (int i = 0; i < Q; i++) {
         double F, slope;
-        curve_at(c, virtual_depth(c, press, s->depth[i + 1]), &F, &slope, NULL, NULL);
+        curve_at(c, virtual_depth(c, press, s->depth[i + 1]), &F, &slope, NULL);
         r->g[N][i] = s->F[N][i + 1] - F, r->on_F[N][N][i] = 1, r->on_x[N][N][i] = slope / give_of(c, press);
         if (w->hold.table == LIFTED)
             for (int f = UP; f <= AHEAD; f++) r->g[f][i] = s->F[f][i + 1], r->on_F[f][f][i] = 1;
@@ -222,7 +222,7 @@ static int next(Work *w, int event)
     if (event == APART) return 0;
     if (event == COMPRESSED) {
         c->deepest = c->depth, w->hold.press = UNLOAD;
-        curve_at(c, c->depth, &c->peak, F, NULL, NULL);
+        curve_at(c, c->depth, &c->peak, F, NULL);
     } else if (event == RELOADED) w->hold.press = LOAD;
     else if (event == GRIPPED) w->hold.grip = grip_at_rest(w, w->hold.press);
     else if (event == SLIPPED) {

@@ -21,8 +21,7 @@ typedef struct {
 static Patch patch_at(const Contact *c, int press, double depth)
 {
     Patch p = {0, 0, 0, 0, virtual_depth(c, press, depth)};
-    double dk;
-    curve_at(c, p.depth, &p.F, &p.slope, &p.k, &dk);
+    curve_at(c, p.depth, &p.F, &p.slope, &p.k);
     int low = 0, high = c->rings; /* the first edge that is not below the compression */
     while (low < high) {
         int middle = (low + high) / 2;
