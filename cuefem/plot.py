@@ -149,7 +149,7 @@ def squirt(
     -------
     matplotlib axes
         Degrees against b/R; a cross on the line of no squirt marks the first offset at which a scene miscues:
-        where the tip slips to the end, or lets go through more than half of the push.
+        where the tip slips to the end, or lets go of the ball (`Outcome.regime`).
     """
     named = scenes if isinstance(scenes, Mapping) else {"": scenes}
     axes = _axes(ax)

@@ -14,7 +14,8 @@ from cuefem.contact.rule import WAVES
 from cuefem.cue import Array
 from cuefem.scene import Outcome, equal_fields
 
-SLIDES, LETS_GO = 0.25, 0.5  # of the push, while the tip slides: from there on squirt grows fast; no valid shot
+# Of the push, while the tip slides, in all or up to the end: from there on squirt grows fast; no valid shot.
+SLIDES, LETS_GO, SLIDES_AWAY = 0.25, 0.5, 1 / 3
 MISSED = ("miscue", "lets go")
 # The grip of a blow, and grip and press of a flight, in which ball and tip are apart before they touch again.
 BLOW, FLIGHT = "blow", ("apart", "free")
@@ -139,14 +140,19 @@ def grip_of(outcome: Outcome) -> str:
     """How the tip gripped the ball: the regime of the strike, or "slides" or "lets go" if it held only at first.
 
     Soft leather takes up its load along the ball slowly, so that it grips at every offset and lets go only later.
-    "slides": through more than a quarter of the push; "lets go": through more than half of it, which is a miscue.
+    "slides": through more than a quarter of the push; "lets go": through more than half of it, or through its last
+    third, which is a miscue.
     """
     if outcome.regime not in ("stick", "late stick") or outcome.history is None:  # of the impulse solver
         return str(outcome.regime)
     pushed = [(phase.grip, abs(phase.impulse[1])) for phase in outcome.phases]
     slid = sum(impulse for grip, impulse in pushed if grip in ("slip", "slip back"))
-    share = slid / (sum(impulse for _, impulse in pushed) or 1.0)
-    return "lets go" if share > LETS_GO else "slides" if share > SLIDES else str(outcome.regime)
+    push = sum(impulse for _, impulse in pushed) or 1.0
+    last = takewhile(lambda each: each[0] != "stick" or each[1] < 1e-3 * push, reversed(pushed))
+    away = sum(impulse for _, impulse in last)
+    if slid > LETS_GO * push or away > SLIDES_AWAY * push:
+        return "lets go"
+    return "slides" if slid > SLIDES * push else str(outcome.regime)
 
 
 def regime_of(phases: tuple[Phase, ...]) -> str:

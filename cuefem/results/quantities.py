@@ -289,7 +289,7 @@ GRIPS = {
     "slip reversal": ("slipped back", "the tip slipped first, then slipped back"),
     "miscue": ("miscue", "the tip slipped to the end, a miscue"),
     "slides": ("let go", "the tip held at first, then slid through more than a quarter of the push, near a miscue"),
-    "lets go": ("miscue", "the tip held at first, then slid through more than half of the push, a miscue"),
+    "lets go": ("miscue", "the tip held at first, then slid through most of the push or away at its end, a miscue"),
 }
 
 
