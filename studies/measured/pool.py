@@ -11,7 +11,20 @@ from typing import Any
 
 import numpy as np
 
-from cuefem import Ball, Cue, LeatherTip, PointMass, Scene, Stroke, Tip, TipDome, TipShear, strike
+from cuefem import (
+    AxialWaves,
+    Ball,
+    Cue,
+    GeometricStiffness,
+    LeatherTip,
+    PointMass,
+    Scene,
+    Stroke,
+    Tip,
+    TipDome,
+    TipShear,
+    strike,
+)
 from cuefem.beam.tip import TipModes
 from cuefem.materials import material
 from cuefem.tip_modes import tip_modes_of
@@ -23,7 +36,9 @@ BALL = Ball(mass=0.170, radius=0.028575)
 RESTITUTION, FRICTION, TIME, OFFSET = 0.73, 0.7, 1.1e-3, 0.375
 DOME, SHEAR = TipDome(9.5e-3), TipShear(0.75)
 MODELS = {"bare": (), "dome": (DOME,), "shear": (SHEAR,), "dome + shear": (DOME, SHEAR)}
-LEATHER, SPEED, MODERN = LeatherTip(height=6e-3, dome_radius=9.5e-3, E=140e6), 2.0, "LeatherTip"
+LEATHER, SPEED, MODERN = LeatherTip(height=6e-3, dome_radius=9.5e-3, E=140e6), 2.0, "whole stroke"
+# What acts in the whole stroke beside the tip, whose own restitution gives the cue's 0.73 head on with these waves.
+WHOLE, TIP_RESTITUTION = (AxialWaves(), GeometricStiffness()), 0.6315
 # Bores of the hollow shaft, m, that the measured static stiffness of such a shaft asks for: least, middle, most.
 BORES = (7.4e-3, 8.5e-3, 10.2e-3)
 INCH = 0.0254
@@ -86,11 +101,12 @@ def leather_scene(
     speed: float = SPEED,
     leather: LeatherTip = LEATHER,
     effects: Sequence[Any] = (),
+    whole: Sequence[Any] = WHOLE,
 ) -> Scene:
     """A cue that is drawn with its leather, with LeatherTip in its place; masses are placed from the end of the tip."""
     moved = (replace(e, position=e.position - leather.height) if isinstance(e, PointMass) else e for e in effects)
-    tip = Tip(restitution=RESTITUTION, friction=FRICTION)
-    return Scene(without_leather(cue), BALL, tip, Stroke(speed, offset), (leather, *moved))
+    tip = Tip(restitution=TIP_RESTITUTION if whole else RESTITUTION, friction=FRICTION)
+    return Scene(without_leather(cue), BALL, tip, Stroke(speed, offset), (leather, *whole, *moved))
 
 
 @cache
