@@ -1,7 +1,11 @@
 from . import frames as frames, plot as plot
 from .accuracy import resolve as resolve, resolve_end_mass as resolve_end_mass
 from .beam.modes import modes as modes
-from .contact.calibrated import leather_modulus as leather_modulus
+from .contact.calibrated import (
+    leather_modulus as leather_modulus,
+    rebound as rebound,
+    tip_restitution as tip_restitution,
+)
 from .contact.motion import motion as motion
 from .contact.place import Placed as Placed, place as place
 from .contact.strike import batch_strike as batch_strike, strike as strike

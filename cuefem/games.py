@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 from cuefem.cue import SOFT, Cue
-from cuefem.effects import LeatherTip
+from cuefem.effects import AxialWaves, Effect, GeometricStiffness, LeatherTip
 from cuefem.materials import LEATHERS
 from cuefem.quantity import check_kind
 from cuefem.scene import Ball, Scene, Stroke, Tip
@@ -27,7 +27,14 @@ class Game:
         Radius of the dome, m.
     leather
         Name of the leather in `cuefem.materials.LEATHERS`.
-    restitution, friction
+    tip_restitution
+        Of the tip by itself: with it a head-on blow of ``cue``, with waves along it, rebounds with ``restitution``
+        (`cuefem.tip_restitution` derives it, and a test again).
+    cue
+        The ready cue or scene that ``tip_restitution`` was derived with, by its path from the folder of `meshes`.
+    restitution
+        Of the whole cue head on, as it is measured.
+    friction
         Of tip and ball.
     speed
         Speed of the cue, m/s.
@@ -41,6 +48,8 @@ class Game:
     height: float
     dome_radius: float
     speed: float
+    tip_restitution: float
+    cue: str
     source: str
     leather: str = "medium"
     restitution: float = 0.73
@@ -53,24 +62,39 @@ class Game:
         leather = LEATHERS[self.leather]
         return LeatherTip(self.height, self.dome_radius, leather.E, leather.nu, leather.rho)
 
+    @property
+    def bounce(self) -> str:
+        """Both restitutions in words."""
+        tip = f"{self.tip_restitution:.2f} of its tip, raised by waves along the cue"
+        return f"{self.restitution:g} of the whole cue head on: {tip}"
+
+    @property
+    def effects(self) -> tuple[Effect, ...]:
+        """What acts in a usual stroke beside the tip: waves along the cue, and thrust on the bent shaft."""
+        return AxialWaves(), GeometricStiffness()
+
 
 _ALL = (
-    "Restitution: playing cues 0.71 to 0.75 (billiards.colostate.edu, FAQ, cue tip efficiency; TP A.30). Friction: "
+    "Restitution: playing cues 0.71 to 0.75 (billiards.colostate.edu, FAQ, cue tip efficiency; TP A.30), of the whole "
+    "cue; the tip's own follows from it. Friction: "
     "chalked leather, 0.6 to 0.7 (usual). Leather: see `cuefem materials`"
 )
 GAMES: Mapping[str, Game] = MappingProxyType(
     {
         "pool": Game(
             *(Ball(mass=0.170, radius=0.028575), 6e-3, 9.5e-3, 2.0),
+            *(0.6315, "meshes/pool_maple.toml"),
             "Ball: WPA 57.15 mm, 156 to 170 g. Height: usual, 4 to 8 mm. Dome: usual, between a dime's (8.96 mm) and a "
             f"nickel's (10.6 mm) radius. Speed: a medium stroke (usual). {_ALL}",
         ),
         "carom": Game(
             *(Ball(mass=0.210, radius=0.03075), 4e-3, 9.5e-3, 3.0),
+            *(0.5873, "meshes/kim.toml"),
             f"Ball: UMB 61 to 61.5 mm, 205 to 220 g. Height, dome and speed: assumed. {_ALL}",
         ),
         "snooker": Game(
             *(Ball(mass=0.142, radius=0.02625), 4e-3, 7e-3, 3.0),
+            *(0.5862, "studies/scenes/snooker.toml"),
             "Ball: WPBSA 52.5 mm; sets are sold at 140 to 143 g. Height, dome (flatter than half-round, on a tip of "
             f"9.5 mm) and speed: assumed. {_ALL}",
         ),
@@ -134,7 +158,8 @@ def usual_scene(cue: Cue, game: str = DEFAULT_GAME, *, tip: LeatherTip | None = 
     Returns
     -------
     Scene
-        The cue with the game's ball, tip, speed and offset.
+        The cue with the game's ball, tip, speed and offset, with waves along the cue and thrust on the bent shaft.
+        The restitution of its tip is less than the one that is measured of a whole cue, which those waves raise.
 
     Raises
     ------
@@ -155,9 +180,9 @@ def usual_scene(cue: Cue, game: str = DEFAULT_GAME, *, tip: LeatherTip | None = 
     return Scene(
         without_leather(cue),
         known.ball,
-        Tip(known.restitution, known.friction),
+        Tip(known.tip_restitution, known.friction),
         Stroke(known.speed, known.offset),
-        (usual_tip(cue, game) if tip is None else tip,),
+        (usual_tip(cue, game) if tip is None else tip, *known.effects),
     )
 
 

@@ -208,7 +208,8 @@ def end_mass(scene: Scene, ax: Axes | None = None, *, at: Resolution | None = No
     Parameters
     ----------
     scene : Scene
-        With a cue of segments and without effects but a `LeatherTip`, of which the contact time stays. The leather
+        With a cue of segments and without effects but a `LeatherTip`, of which the contact time stays, and those that
+        leave the cue alone across its axis (waves along it, and thrust, which is not counted). The leather
         itself is left out: all of its mass, which sits at the tip, is end mass.
     ax : matplotlib axes, optional
         Where to draw; by default on a new figure.
@@ -227,8 +228,8 @@ def end_mass(scene: Scene, ax: Axes | None = None, *, at: Resolution | None = No
         If the scene has other effects.
     """
     check_kind("scene", scene, Scene)
-    if any(not effect.whole_tip for effect in scene.effects):
-        names = ", ".join(sorted({type(effect).__name__ for effect in scene.effects if not effect.whole_tip}))
+    if others := [effect for effect in scene.effects if effect.across and not effect.whole_tip]:
+        names = ", ".join(sorted({type(effect).__name__ for effect in others}))
         raise ValueError(f"plot.end_mass takes a scene without effects, LeatherTip apart; got {names}")
     bare, left_out = scene, ""
     if scene.effects:

@@ -128,9 +128,12 @@ class Solved:
         return tip_modes_from(self._modes(least), self.scene)
 
     def without_spectra(self) -> Solved:
-        """The same, but of what it solved it holds the tip modes alone: the spectra with their matrices take 4 MB."""
+        """The same, but of what it solved it holds the tip modes alone: the spectra with their matrices take 4 MB.
+
+        They are copies, so that what strikes made of them and share, another MB and a half, is let go as well.
+        """
         small = Solved(self.scene, self.at)
-        vars(small).update({name: value for name, value in vars(self).items() if isinstance(value, TipModes)})
+        vars(small).update({name: replace(value) for name, value in vars(self).items() if isinstance(value, TipModes)})
         return small
 
     def _modes(self, least: int) -> Ended:

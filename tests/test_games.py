@@ -35,9 +35,9 @@ def test_a_cue_without_leather_gets_the_game_s_tip_on_what_is_drawn(game: str) -
     cue = cf.Cue((WOOD,), 0.4)
     scene, known = cf.usual_scene(cue, game), GAMES[game]
     assert scene.cue == cue
-    assert scene.effects == (known.tip,)
+    assert set(scene.effects) == {known.tip, cf.AxialWaves(), cf.GeometricStiffness()}
     assert (scene.ball, scene.stroke) == (known.ball, cf.Stroke(known.speed, known.offset))
-    assert scene.tip == cf.Tip(known.restitution, known.friction)
+    assert scene.tip == cf.Tip(known.tip_restitution, known.friction)
     assert known.tip.E == LEATHERS["medium"].E
     assert 2e-4 < scene.contact_time < 3e-3
     assert len(known.source) > 40
@@ -50,6 +50,31 @@ def test_the_drawn_leather_is_the_tip_s_height() -> None:
     assert scene.leather == replace(GAMES["pool"].tip, height=5e-3)
     assert usual_tip(drawn, "snooker").height == 5e-3
     assert cf.usual_scene(drawn, tip=replace(scene.leather, height=7e-3)).leather.height == 7e-3
+
+
+@pytest.mark.parametrize("game", GAMES)
+def test_the_usual_cue_of_a_game_rebounds_as_measured(game: str) -> None:
+    """The measured restitution is the whole cue's: the tip's own is derived from it, here again to its four digits."""
+    known = GAMES[game]
+    drawn = cf.load(ROOT / known.cue)
+    scene = cf.usual_scene(drawn if isinstance(drawn, cf.Cue) else drawn.shaft, game)
+    assert scene.tip.restitution == pytest.approx(cf.tip_restitution(scene, known.restitution), abs=5.1e-5)
+    assert cf.rebound(scene) == pytest.approx(known.restitution, abs=1e-4)
+    assert cf.rebound(replace(scene, effects=(scene.leather,))) == pytest.approx(scene.tip.restitution, rel=1e-6)
+
+
+def test_a_rebound_that_no_tip_gives_is_refused() -> None:
+    scene = cf.usual_scene(cf.Cue((WOOD,), 0.4))
+    refuses(lambda: cf.tip_restitution(scene, 0.15), "tip_restitution measured must be in [0.")
+    refuses(lambda: cf.tip_restitution(scene, 1.2), "tip_restitution measured must be in [0.1, 1]; got 1.2")
+
+
+@pytest.mark.parametrize("game", GAMES)
+def test_a_cue_whose_tip_is_drawn_is_struck_with_all_that_a_usual_stroke_has(game: str) -> None:
+    bare = cf.usual_scene(cf.Cue((WOOD,), 0.4), game)
+    drawn = cf.usual_scene(cf.Cue((leather(bare.leather.height), WOOD), 0.4), game)
+    assert drawn == bare
+    assert cf.strike(drawn).squirt == cf.strike(bare).squirt
 
 
 def test_a_cue_as_soft_as_leather_has_no_leather() -> None:

@@ -73,8 +73,8 @@ def test_tip_modes_stay_without_their_spectra(solutions: list[int]) -> None:
     tip, stuck = solved.tip, solved.tip_stuck
     solutions.clear()
     small = solved.without_spectra()
-    assert small.tip is tip
-    assert small.tip_stuck is stuck
+    assert small.tip.amplitude is tip.amplitude
+    assert small.tip_stuck.amplitude is stuck.amplitude
     assert not solutions
     assert np.array_equal(small.modes.frequencies, solved.modes.frequencies)  # solved again, since asked for
 

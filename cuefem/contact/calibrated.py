@@ -1,4 +1,4 @@
-"""The leather's modulus from how long it touches the ball: a head-on blow, solved for E."""
+"""A tip from how a head-on blow comes out: the leather's E from its time, the tip's restitution from the rebound."""
 
 from __future__ import annotations
 
@@ -6,13 +6,15 @@ import math
 from dataclasses import replace
 
 from cuefem.contact.strike import strike
-from cuefem.quantity import CONTACT_TIME, scalar
+from cuefem.quantity import CONTACT_TIME, Quantity, scalar
 from cuefem.scene import Scene
 
 CLOSE = 1e-9  # of the contact time
 # The search starts from leather that is stiffer than any, which is not pressed too deep, and goes on along the slope of
 # ln T over ln E, about.
 STIFF, FIRST_SLOPE = 1e9, -0.4
+REBOUND_LEAST = 0.1  # a tip of leather takes no less
+REBOUND = Quantity("", "[0.1, 1]")
 
 
 def leather_modulus(scene: Scene, contact_time: float) -> float:
@@ -69,3 +71,74 @@ def with_modulus(scene: Scene, E: float) -> Scene:
     """The scene with another E of its leather, Pa."""
     leather = scene.leather
     return replace(scene, effects=tuple(replace(leather, E=E) if each is leather else each for each in scene.effects))
+
+
+def rebound(scene: Scene) -> float:
+    """How fast ball and cue part after a head-on blow, over the stroke's speed: the restitution of the whole cue.
+
+    Parameters
+    ----------
+    scene
+        Of which the offset does not matter. With `AxialWaves` the cue gives back a part of what it takes as waves, so
+        that it parts from the ball faster than its tip alone would.
+
+    Returns
+    -------
+    float
+        (ball's speed - cue's speed)/stroke's speed.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> cue = cf.Cue((cf.Segment(0.7, 0.01275, 0.021, wood),), body_mass=0.43)
+    >>> scene = cf.Scene(cue, tip=cf.Tip(0.73, contact_time=1e-3), effects=(cf.AxialWaves(),))
+    >>> cf.rebound(scene) > 0.73
+    True
+    """
+    outcome = strike(replace(scene, stroke=replace(scene.stroke, offset=0.0)))
+    return float((outcome.ball_speed - outcome.cue_speed) / scene.stroke.speed)
+
+
+def tip_restitution(scene: Scene, measured: float) -> float:
+    """The tip's own restitution with which the whole cue has a measured one head on.
+
+    Parameters
+    ----------
+    scene
+        Of which the tip's restitution and the offset do not matter.
+    measured
+        Of the whole cue, in [0.1, 1]: what `rebound` of the scene with the answer is.
+
+    Returns
+    -------
+    float
+        For `Tip.restitution`.
+
+    Raises
+    ------
+    ValueError
+        If no tip of a restitution in [0.1, 1] makes this cue rebound so.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> cue = cf.Cue((cf.Segment(0.7, 0.01275, 0.021, wood),), body_mass=0.43)
+    >>> round(cf.tip_restitution(cf.usual_scene(cue), 0.73), 1)
+    0.6
+    """
+    from scipy.optimize import brentq
+
+    measured = scalar("tip_restitution measured", REBOUND.check("tip_restitution measured", measured))
+
+    def too_fast(e: float) -> float:
+        return rebound(replace(scene, tip=replace(scene.tip, restitution=e))) - measured
+
+    least, most = too_fast(REBOUND_LEAST), too_fast(1.0)
+    if least > 0 or most < 0:
+        raise ValueError(
+            f"tip_restitution measured must be in [{least + measured:.3g}, {most + measured:.3g}], what this cue's "
+            f"head-on blow can have with a tip of {REBOUND_LEAST:g} to 1; got {measured:g}"
+        )
+    return float(brentq(too_fast, REBOUND_LEAST, 1.0, xtol=CLOSE))

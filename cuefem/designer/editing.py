@@ -92,7 +92,8 @@ def with_game(scene: Scene, game: str) -> Scene:
     """The scene with a game's ball, tip and stroke; what acts on the cue stays."""
     cue = scene.shaft
     usual = usual_scene(cue, game)
-    kept = tuple(effect for effect in scene.effects if not effect.at_tip)
+    brought = {type(effect) for effect in usual.effects}
+    kept = tuple(effect for effect in scene.effects if not effect.at_tip and type(effect) not in brought)
     return replace(usual, cue=without_leather(cue), effects=(*usual.effects, *kept))
 
 

@@ -70,6 +70,8 @@ class Effect:
     # Whether it acts at the tip (the cue without it is `Scene.bare`), and whether it is part of a cue that lies free.
     at_tip: ClassVar[bool] = False
     part_of_cue: ClassVar[bool] = False
+    # Whether the cue moves otherwise across its axis for it, when nothing presses along the axis.
+    across: ClassVar[bool] = True
     # Whether it gives the whole tip, so that the `Tip` has no contact time of its own.
     whole_tip: ClassVar[bool] = False
     # Keys of a file that stand for several fields: by key and by the name that it holds, the fields, SI.

@@ -291,6 +291,7 @@ class AxialWaves(CueEffect):
     """
 
     once: ClassVar[bool] = True
+    across: ClassVar[bool] = False
     usual: ClassVar[Usual | None] = Usual({}, "the cue's own EA and mass")
 
     def vibrations(self, found: Ended, cue: Cue, effects: Sequence[CueEffect]) -> tuple[AxialVibrations, ...]:
@@ -338,6 +339,7 @@ class GeometricStiffness(CueEffect):
     """
 
     once: ClassVar[bool] = True
+    across: ClassVar[bool] = False
     usual: ClassVar[Usual | None] = Usual({}, "the cue's own shape and mass")
 
     def geometric_stiffness(self, found: Ended, cue: Cue, effects: Sequence[CueEffect]) -> Array | None:

@@ -80,6 +80,7 @@ def assumed_usual(
     if cue.leather and "tip_height" in given:
         height = f"the drawn leather, {drawn}, left out: the leather tip stands in its place"
     sizes = f"{1e3 * ball.mass:g} g, {2e3 * ball.radius:g} mm"
+    bounce = f"{known.restitution:g}" if timed else known.bounce
     said = (
         (False, f"a usual stroke of {game}{_option('game', offered)}"),
         (
@@ -92,7 +93,7 @@ def assumed_usual(
             timed or "leather" in given,
             f"its leather {known.leather}, E {1e-6 * tip.E:g} MPa{_option('leather', offered)}",
         ),
-        (not blow or "restitution" in given, f"e {known.restitution:g}{_option('restitution', offered)}"),
+        (not blow or "restitution" in given, f"e {bounce}{_option('restitution', offered)}"),
         (not blow or "friction" in given, f"mu {known.friction:g}{_option('friction', offered)}"),
         (not blow or "speed" in given, f"stroke {known.speed:g} m/s{_option('speed', offered)}"),
         (not blow or "offset" in given, f"offset b/R {known.offset:g}{_option('offset', offered)}"),

@@ -45,8 +45,9 @@ def test_a_cue_alone_is_struck_as_in_pool_and_says_so(folder: Path) -> None:
     assert found["assumed"] == [
         *("a usual stroke of pool (--game)", "ball 170 g, 57.15 mm (--ball)"),
         *("a leather tip 6 mm high, put on what is drawn (--tip-height)", "its dome 9.5 mm (--dome)"),
-        *("its leather medium, E 140 MPa (--leather)", "e 0.73 (--restitution)", "mu 0.7 (--friction)"),
-        *("stroke 2 m/s (--speed)", "offset b/R 0.3 (--offset)"),
+        "its leather medium, E 140 MPa (--leather)",
+        "e 0.73 of the whole cue head on: 0.63 of its tip, raised by waves along the cue (--restitution)",
+        *("mu 0.7 (--friction)", "stroke 2 m/s (--speed)", "offset b/R 0.3 (--offset)"),
     ]
     squirt = found["models"]["coupled"]["squirt"]
     assert squirt == pytest.approx(cf.strike(cf.usual_scene(SHAFT)).squirt, rel=1e-12)
