@@ -26,6 +26,7 @@ from cuefem import (
     strike,
 )
 from cuefem.beam.tip import TipModes
+from cuefem.games import GAMES
 from cuefem.materials import material
 from cuefem.tip_modes import tip_modes_of
 from studies import strokes
@@ -38,7 +39,7 @@ DOME, SHEAR = TipDome(9.5e-3), TipShear(0.75)
 MODELS = {"bare": (), "dome": (DOME,), "shear": (SHEAR,), "dome + shear": (DOME, SHEAR)}
 LEATHER, SPEED, MODERN = LeatherTip(height=6e-3, dome_radius=9.5e-3, E=140e6), 2.0, "whole stroke"
 # What acts in the whole stroke beside the tip, whose own restitution gives the cue's 0.73 head on with these waves.
-WHOLE, TIP_RESTITUTION = (AxialWaves(), GeometricStiffness()), 0.6315
+WHOLE, TIP_RESTITUTION = (AxialWaves(), GeometricStiffness()), GAMES["pool"].tip_restitution
 # Bores of the hollow shaft, m, that the measured static stiffness of such a shaft asks for: least, middle, most.
 BORES = (7.4e-3, 8.5e-3, 10.2e-3)
 INCH = 0.0254
