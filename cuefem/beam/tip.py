@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -41,6 +42,11 @@ class TipModes:
         """Damping and radiation together, (n, n), 1/s; None without either."""
         parts = [part for part in (self.damping, self.radiation) if part is not None]
         return sum(parts[1:], parts[0]) if parts else None
+
+    @cached_property
+    def straight(self) -> TipModes:
+        """These modes of a cue that no thrust bends; the same where none does."""
+        return self if self.geometric is None else replace(self, geometric=None)
 
     def lowest(self, count: int) -> TipModes:
         """The first ``count`` modes alone."""

@@ -20,6 +20,10 @@ PUSHES, LOOKS, UNTIL = (0.5, 1.0), 16, 1.5
 LEAST_PART, MOST = 1e-12, 12
 
 
+class BentTooFar(ValueError):
+    """The thrust bends the shaft further than its second-order theory holds."""
+
+
 def half_octave(time: float) -> float:
     """The nearest power of the root of two: strokes of about the same length share their rows."""
     return float(2.0 ** (round(2 * math.log2(time)) / 2))

@@ -9,6 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
+from cuefem.contact.bent import BentTooFar
 from cuefem.contact.compiled import KernelContact, library
 from cuefem.contact.laws import ContactModel, table_axes
 from cuefem.contact.outcome import BLOW, FLIGHT, History, Phase
@@ -241,7 +242,7 @@ def _failure(model: ContactModel, c: KernelContact, phases: tuple[Phase, ...], h
     if c.status == _TURNED_TOO_FAR:
         return RuntimeError(f"the contact has rolled by {c.angle:.3g} rad, further than its levers are known")
     if c.status == _BENT_TOO_FAR:
-        return ValueError(
+        return BentTooFar(
             f"the thrust of {c.thrust:.4g} N bends the shaft by {c.steepest:.3g} rad at its tip, further than "
             f"GeometricStiffness holds; thrust that lasts buckles it from {buckling_thrust(model):.4g} N on"
         )

@@ -294,8 +294,11 @@ def small_offset_slope(tip: TipModes, scene: Scene) -> float:
 
 
 def sticking_squirt(tip: TipModes, scene: Scene) -> float:
-    """Squirt, rad, away from the side struck, of a coupled strike with endless friction, while tip and ball press."""
-    outcome = strike_modes(_gripping(scene), tip)
+    """Squirt, rad, away from the side struck, of a coupled strike with endless friction, while tip and ball press.
+
+    The cue is the straight one, as for all end masses: thrust on the bent shaft would make them fall with the speed.
+    """
+    outcome = strike_modes(_gripping(scene), tip.straight)
     # past the peak of a tip without restitution nothing presses, but endless friction would go on pulling
     p_t, p_n = np.sum([phase.impulse for phase in outcome.phases if phase.press != "rigid"], axis=0)
     return float(abs(scene.stroke.angle) - math.atan2(p_t, p_n))

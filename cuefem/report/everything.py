@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from cuefem.contact.bent import BentTooFar
 from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.effects.leather_law import TooDeep
@@ -23,16 +24,18 @@ from cuefem.tip_modes import Solved
 def report_record(scene: Scene, *, count: int = 6) -> Record:
     """The verdict, modes, end masses, squirt and pivot length, all listed results and the grip of the own stroke.
 
-    Where the stroke presses a leather tip further than its law is known, modes and the reason, "no_contact".
+    Where a stroke presses a leather tip or bends the shaft further than their laws are known, modes and the reason,
+    "no_contact".
     """
     solved = Solved(scene)
     found: Record = {"modes": modes_record(scene, count=count, near=None)} if scene.cue.segments else {}
     try:
         scene.contact_time  # noqa: B018
-    except TooDeep as error:
+        squirts = {"end_masses": end_mass_record(scene, solved=solved), "squirt": squirt_record(scene, solved=solved)}
+        outcome = strike_modes(scene, solved.tip)
+    except (TooDeep, BentTooFar) as error:
         return found | {"no_contact": str(error)}
-    found |= {"end_masses": end_mass_record(scene, solved=solved), "squirt": squirt_record(scene, solved=solved)}
-    outcome = strike_modes(scene, solved.tip)
+    found |= squirts
     numbers = listed(OneDesign(solved, outcome))
     verdict = verdict_record(scene, outcome, ready_cues(), solved=solved)
     return found | {"verdict": verdict, "numbers": numbers, "regime": outcome.regime, "grip": grip_of(outcome)}

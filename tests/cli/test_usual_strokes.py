@@ -189,6 +189,31 @@ def test_leather_too_soft_for_the_stroke_stops_what_needs_the_contact_alone(fold
     assert "no end mass and no squirt: the tip's leather is compressed by" in out
 
 
+def test_a_shaft_that_thrust_would_buckle_is_refused_in_words_everywhere(folder: Path) -> None:
+    wood = material("hard maple")
+    front, thin = cf.Segment(0.03, 8.5e-3, 8.5e-3, wood), cf.Segment(0.95, 4.5e-3, 4.5e-3, wood)
+    cf.save(cf.Cue((front, thin), 0.4), folder / "thin.toml")
+    scene = cf.usual_scene(cf.Cue((front, thin), 0.4))
+    leather = replace(scene.leather, E=LEATHERS["hard"].E)
+    cf.save(replace(scene, effects=(leather, *scene.effects[1:])), folder / "struck.toml")
+    bends = "bends the shaft by 0."
+    for command in ("strike", "effects", "cost"):
+        status, out, err = call(command, "thin.toml", "--leather", "hard", "--speed", "8 m/s", "--offset", "0.5")
+        assert (status, out) == (2, "")
+        assert bends in err.splitlines()[-1]
+    reported = ("report", "thin.toml", "--leather", "hard", "--speed", "8 m/s")
+    status, out, _ = call(*reported)
+    assert status == 0
+    assert "Bending modes" in out
+    assert "no end mass and no squirt: the thrust of" in out
+    assert bends in json.loads(call(*reported, "--json")[1])["no_contact"]
+    study = "scene = 'struck.toml'\nresponses = ['squirt(0.5)', 'frequency(1)']\n"
+    (folder / "study.toml").write_text(f"{study}[[vary]]\npath = 'stroke.speed'\nvalues = ['0.5 m/s', '8 m/s']\n")
+    done = json.loads(call("sweep", "study.toml", "--json")[1])
+    assert (done["designs"], done["failed"]) == (2, 1)
+    assert bends in done["first_failure"]
+
+
 def test_one_leather_that_is_too_soft_does_not_stop_a_sweep(folder: Path) -> None:
     scene = cf.usual_scene(SHAFT)
     cf.save(replace(scene, effects=(replace(scene.leather, E=1e6),)), folder / "soft.toml")

@@ -225,6 +225,10 @@ def test_tones_end_masses_and_blows_from_the_side_do_not_know_it() -> None:
     scene = cf.Scene(SHAFT, stroke=cf.Stroke(4.0, 0.3))
     bends = replace(scene, effects=(THRUST,))
     assert cf.end_mass(scene, "force") == cf.end_mass(bends, "force")
+    for tip in ((LEATHER,), (LEATHER, cf.AxialWaves()), (cf.TipDome(9e-3),)):
+        one, other = (replace(each, effects=(*tip, *each.effects)) for each in (scene, bends))
+        for drive in ("stick", "offset", "velocity", "force"):
+            assert cf.end_mass(one, drive) == cf.end_mass(other, drive), (tip, drive)
     assert np.array_equal(cf.modes(SHAFT).frequencies, cf.modes(SHAFT, effects=(THRUST,)).frequencies)
     side = cf.SideStrike(SHAFT, cf.Striker(0.02, 0.7, contact_time=1e-3), 0.3, 1.0)
     assert cf.side_strike(side).rebound_speed == cf.side_strike(replace(side, effects=(THRUST,))).rebound_speed
