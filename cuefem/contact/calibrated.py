@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from cuefem.contact.strike import strike
 from cuefem.quantity import CONTACT_TIME, Quantity, scalar
-from cuefem.scene import Scene
+from cuefem.scene import Outcome, Scene
 
 CLOSE = 1e-9  # of the contact time
 # The search starts from leather that is stiffer than any, which is not pressed too deep, and goes on along the slope of
@@ -54,10 +54,9 @@ def leather_modulus(scene: Scene, contact_time: float) -> float:
 
     name = "leather_modulus contact_time"
     contact_time = scalar(name, CONTACT_TIME.check(name, contact_time))
-    head_on = replace(scene, stroke=replace(scene.stroke, offset=0.0))
 
     def too_long(logarithm: float) -> float:
-        return math.log(strike(with_modulus(head_on, math.exp(logarithm))).duration / contact_time)
+        return math.log(head_on(with_modulus(scene, math.exp(logarithm))).duration / contact_time)
 
     first = math.log(STIFF)
     guess = first - too_long(first) / FIRST_SLOPE
@@ -96,7 +95,16 @@ def rebound(scene: Scene) -> float:
     >>> cf.rebound(scene) > 0.73
     True
     """
-    outcome = strike(replace(scene, stroke=replace(scene.stroke, offset=0.0)))
+    return rebound_of(head_on(scene), scene)
+
+
+def head_on(scene: Scene) -> Outcome:
+    """The scene's blow without offset."""
+    return strike(replace(scene, stroke=replace(scene.stroke, offset=0.0)))
+
+
+def rebound_of(outcome: Outcome, scene: Scene) -> float:
+    """How fast ball and cue part after a head-on blow, over the stroke's speed."""
     return float((outcome.ball_speed - outcome.cue_speed) / scene.stroke.speed)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from cuefem.contact.calibrated import head_on, rebound_of
 from cuefem.effects import LeatherTip
 from cuefem.effects.leather_law import LeatherLaw
 from cuefem.results.quantities import NONE, grams, significant, with_unit, written
@@ -31,10 +32,12 @@ def tip_record(scene: Scene) -> Record:
     patch = float(np.interp(deepest, depths, patches))
     slope = float(law.slope(np.array([deepest]))[0])
     along = np.linspace(0.0, law.most, CURVE)
+    struck = head_on(scene)
     return {
         "tip_mass": leather.mass(diameter),
         "contact_time": scene.contact_time,
         "E": leather.E,
+        "struck": {"contact_time": struck.duration, "rebound": rebound_of(struck, scene)},
         "blows": [_blow(scene, law, speed, patches, depths) for speed in speeds],
         "shear_ratios": [
             {"offset": offset, "ratio": _shear_ratio(leather, diameter, patch, slope, offset)}
@@ -70,7 +73,7 @@ def _shear_ratio(leather: LeatherTip, diameter: float, patch: float, slope: floa
 
 def tip_sheets(record: Record, scene: Record, wanted: float | None) -> list[Sheet | str]:
     """A tip's blows head on, its shear ratio, and the leather that has the contact time asked for."""
-    tip, speed = scene["tip"], f"{scene['stroke']['speed']:g} m/s"
+    struck, tip, speed = record["struck"], scene["tip"], f"{scene['stroke']['speed']:g} m/s"
     lines = [f"mass of the leather {grams(record['tip_mass'])}; E {significant(record['E'] / 1e6)} MPa"]
     if wanted is not None:
         lines.append(f"E is what makes a head-on blow at {speed} last {with_unit(wanted, 's', 6)}")
@@ -81,7 +84,9 @@ def tip_sheets(record: Record, scene: Record, wanted: float | None) -> list[Shee
             "Head on",
             {"ball or cue at": "{speed:g} m/s"} | by_words("contact_time", "force", "depth", "patch"),
             record["blows"],
-            f"restitution {tip['restitution']:g}; the cue is rigid along its axis (AxialWaves lengthen a blow)",
+            f"restitution {tip['restitution']:g}; the cue is rigid along its axis",
+            f"the scene's own blow at {speed}, with waves along the cue if it lists them: it lasts "
+            f"{with_unit(struck['contact_time'], 's')}, and the whole cue rebounds with {struck['rebound']:.3f}",
             *([f"{NONE}: the leather would be pressed further than its law is known"] if _unknown(record) else []),
             texts=(),
         ),

@@ -53,6 +53,16 @@ def test_a_cue_alone_is_struck_as_in_pool_and_says_so(folder: Path) -> None:
     assert squirt == pytest.approx(cf.strike(cf.usual_scene(SHAFT)).squirt, rel=1e-12)
 
 
+def test_the_tip_tells_how_the_whole_cue_rebounds() -> None:
+    drawing = Path(__file__).parents[2] / GAMES["pool"].cue
+    struck = as_json("tip", str(drawing))["struck"]
+    assert struck["rebound"] == pytest.approx(GAMES["pool"].restitution, abs=1e-4)
+    out = " ".join(call("tip", str(drawing))[1].split())
+    assert "the whole cue rebounds with 0.730" in out
+    timed = as_json("tip", str(drawing), "--contact-time", "1.2 ms")["struck"]
+    assert timed["contact_time"] == pytest.approx(1.2e-3, rel=1e-6)
+
+
 @pytest.mark.parametrize("game", GAMES)
 def test_a_game_has_its_own_ball_and_tip(folder: Path, game: str) -> None:
     found, known = as_json("tip", "shaft.toml", "--game", game)["scene"], GAMES[game]
