@@ -23,7 +23,7 @@ PROGRAMS = sorted(path for path in STUDIES.rglob("*.py") if re.search(r"^STUDY =
 STUDY = {path.stem: import_module(".".join(path.relative_to(STUDIES.parent).with_suffix("").parts)).STUDY
          for path in PROGRAMS}  # fmt: skip
 INDEX = (STUDIES / "README.md").read_text(encoding="utf-8")
-SUBJECTS = {"paper", "beam", "contact", "end_mass", "design", "measured", "accuracy"}
+SUBJECTS = {"article", "paper", "beam", "contact", "end_mass", "design", "measured", "accuracy"}
 
 
 def parts() -> Iterator[object]:
