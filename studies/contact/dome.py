@@ -13,7 +13,7 @@ heavy ball, the dome raises the end mass by the part
 
 x = t/T, P the normal impulse so far over its total. The end mass itself grows like sqrt(T), this part like 1/T.
 
-Last squirt at b/R 0.3 and 2 m/s of three shafts against the dome of LeatherTip (6 mm high, nu 0.4, E 140 MPa), 7 mm to
+Last squirt at b/R 0.3 and 2 m/s of three shafts against the dome of LeatherTip (6 mm high, nu 0.4, E 140 MPa, the whole stroke), 7 mm to
 flat, beside the patchwork of dome and shear that is told the contact time that LeatherTip has head on; and LeatherTip
 of other moduli. Takes about 60 s.
 """
@@ -265,7 +265,7 @@ def draw(panels: Any) -> None:
 LEATHERED, DOMES = ("pool_maple", "pool_hollow", "carbon"), (7e-3, 9.5e-3, 12e-3, 15e-3, np.inf)
 HARDNESSES = (40e6, 100e6, 140e6, 400e6)  # Pa; a flat tip of the softest is pressed further than its law is known
 THERE = 0.3
-# What LeatherTip should say, from leather_tip.md, written down before it was run here. Not to be changed.
+# What LeatherTip alone should say, from leather_tip.md of then, written down before it was run here. Not to be changed.
 PREDICTED = {
     "pool_maple, b/R 0.3, dome 7 mm over 9.5 mm": "0.89",
     "pool_maple, b/R 0.3, dome 12 mm over 9.5 mm": "1.08",
@@ -278,7 +278,7 @@ PREDICTED = {
 
 @cache
 def leather(name: str, radius: float, E: float = pool.LEATHER.E) -> float:
-    """Squirt, deg, at THERE and 2 m/s with LeatherTip, its dome of a radius, m; inf: flat."""
+    """Squirt, deg, at THERE and 2 m/s of the whole stroke, its dome of a radius, m; inf: flat."""
     return float(np.degrees(cf.strike(_with_leather(name, radius, E)).squirt))
 
 
@@ -302,7 +302,7 @@ def _radius(radius: float) -> str:
 
 
 def leather_radius_table() -> str:
-    """Squirt of the patchwork and of LeatherTip against the radius."""
+    """Squirt of the patchwork and of the whole stroke against the radius."""
     rows = [
         [name, model.__name__.replace("leather", pool.MODERN), *(f"{model(name, r):.2f}" for r in DOMES)]
         for name in LEATHERED
@@ -352,10 +352,11 @@ def leather_conclusions() -> str:
     flat = [leather(n, np.inf) / leather(n, pool.LEATHER.dome_radius) - 1 for n in LEATHERED]
     apart = [leather(n, r) / patchwork(n, r) - 1 for n in LEATHERED for r in DOMES[:-1]]
     return (
-        f"With LeatherTip a rounder tip squirts less, too. A flat tip, which the ball meets on its rim, squirts "
+        f"The whole stroke is LeatherTip with waves along the cue and thrust on the bent shaft. In it a rounder tip "
+        f"squirts less, too. A flat tip, which the ball meets on its rim, squirts "
         f"{100 * min(flat):.0f} to {100 * max(flat):.0f} % more than one with a dome of 9.5 mm. The patchwork cannot "
         "say that: without its dome the force acts on the axis. With a dome the two differ by "
-        f"{100 * min(apart):+.0f} to {100 * max(apart):+.0f} %. That squirt does not depend on the hardness of the "
+        f"{100 * min(apart):+.0f} to {100 * max(apart):+.0f} %. How little squirt depends on the hardness of the "
         "tip is a matter of the dome: with 9.5 mm it changes by a factor of "
         f"{', '.join(f'{hard(n, 9.5e-3):.2f} ({n})' for n in LEATHERED)} from 40 to 400 MPa, with a flat tip by "
         f"{', '.join(f'{hard(n, np.inf):.2f}' for n in LEATHERED)} from 100 to 400 MPa."

@@ -169,7 +169,7 @@ def draw(axes: Any) -> None:
     for k, (axis, (words, scale)) in enumerate(zip(axes[0], SCALES.values(), strict=False)):
         samples = {model: scale * found(model).spread.responses[:, k] for model in MODELS}
         if k:
-            samples[pool.MODERN] = scale * leather().spread.responses[:, 0]
+            samples["LeatherTip"] = scale * leather().spread.responses[:, 0]
         _histograms(axis, samples)
         axis.set(xlabel=words.replace(",", " at b/R 0.3,") if k else words, ylabel="part of the shafts and strokes")
     handles, labels = axes[0, 1].get_legend_handles_labels()
@@ -177,7 +177,7 @@ def draw(axes: Any) -> None:
     axes[0, 2].set_axis_off()
     for axis, model, colour in zip(axes[1], MODELS, COLOURS, strict=False):
         _bars(axis, found(model), 1, model, colour)
-    _bars(axes[1, 2], leather(), 0, pool.MODERN, COLOURS[2])
+    _bars(axes[1, 2], leather(), 0, "LeatherTip", COLOURS[2])
 
 
 def _histograms(axis: Any, samples: dict[str, np.ndarray]) -> None:
