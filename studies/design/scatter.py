@@ -19,7 +19,6 @@ from cuefem.design import Response
 from cuefem.design.scatter import Drivers, Scatter, drivers, spread
 from cuefem.io.study import load_scatter
 from studies import pages
-from studies.measured import pool
 from studies.pages import STUDIES, predictions, table
 
 MODELS = ("bare", "dome and tip shear")
