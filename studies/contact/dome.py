@@ -13,8 +13,8 @@ heavy ball, the dome raises the end mass by the part
 
 x = t/T, P the normal impulse so far over its total. The end mass itself grows like sqrt(T), this part like 1/T.
 
-Last squirt at b/R 0.3 and 2 m/s of three shafts in the whole stroke against the dome of LeatherTip (6 mm high, nu 0.4, E
-140 MPa), 7 mm to flat, beside the patchwork of dome and shear that is told the contact time that LeatherTip has head
+Last squirt at b/R 0.3 and 2 m/s of three shafts in the whole stroke against the dome of LeatherTip (6 mm high, nu 0.4,
+E 140 MPa), 7 mm to flat, beside the patchwork of dome and shear that is told the contact time that LeatherTip has head
 on; and leather of other moduli. Takes about 60 s.
 """
 
