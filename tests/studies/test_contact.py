@@ -190,7 +190,9 @@ def test_stepped_squirt_does_not_jump_where_the_rim_begins() -> None:
     """A contact that begins on the dome ends on the rim just before."""
     rim = 12.75e-3 / 2 / leather_release.LEATHER.dome_radius
     offsets = [rim + shift for shift in (-3e-3, -1e-3, 1e-3, 3e-3)]
-    squirts = [leather_release.stepped(leather_release.struck_scene(b), "rings that slip", 2e-6).squirt for b in offsets]
+    squirts = [
+        leather_release.stepped(leather_release.struck_scene(b), "rings that slip", 2e-6).squirt for b in offsets
+    ]
     slopes = np.diff(squirts) / np.diff(offsets)
     assert abs(slopes[1]) < 1.5 * max(abs(slopes[0]), abs(slopes[2]))
 

@@ -3,6 +3,7 @@ tap_refusals.py."""
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import replace
 from itertools import pairwise
@@ -10,6 +11,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+import cuefem as cf
+from cuefem.games import GAMES
 from studies import pages, strokes
 from studies.measured import added_mass, leather_tip, measured, measured_shafts, pool, tap, tap_refusals, tap_sounds
 from tests.helpers.study_tables import after, row, rows
@@ -244,14 +247,18 @@ def test_where_it_fails() -> None:
     assert float(hard[5]) < 0.9 * float(hard[2])
 
 
-def test_the_readmes_opening_says_what_the_page_found() -> None:
+def test_the_readmes_opening_says_what_is_computed() -> None:
+    """Squirt of the usual maple shaft over the speed, with its tip's own restitution and with the whole cue's."""
     opening = " ".join((pages.STUDIES.parent / "README.md").read_text(encoding="utf-8").split("## ")[0].split())
-    found = [cells[1:4] for cells in rows(LEATHER_TIP) if cells[0] == "largest over smallest"]
-    (bare_speed, _, speed), (bare_leather, _, leather) = ([cell.split()[0] for cell in cells] for cells in found)
-    robot = next(cells[5] for cells in rows(LEATHER_TIP) if cells[0].startswith("Players (robot"))
-    assert f"({robot}°; measured 2.30 and 2.43°)" in opening
-    assert f"by {speed} % from 0.8 to 7 m/s and by {leather} % from soft to hard leather" in opening
-    assert f"changes by {bare_speed} and {bare_leather} %" in opening
+    usual = cf.usual_scene(cf.load(pages.STUDIES.parent / "meshes" / "pool_maple.toml"))
+    assert "at b/R 0.375 and 0.8, 2, 4, 7 m/s; measured were 2.30 and 2.43°" in opening
+    for e in (usual.tip.restitution, GAMES["pool"].restitution):
+        scenes = [
+            replace(usual, tip=replace(usual.tip, restitution=e), stroke=cf.Stroke(speed, 0.375))
+            for speed in (0.8, 2.0, 4.0, 7.0)
+        ]
+        told = ", ".join(f"{math.degrees(cf.strike(scene).squirt):.2f}" for scene in scenes)
+        assert f"{told}°" in opening
 
 
 # taps
