@@ -9,8 +9,9 @@ stroke. The modes are those of the shaft with its mass, at the default resolutio
 Equations: handbook: The strike, Effects, Measured squirt. A mass throws bending waves back; what returns within the
 contact with the wrong sign takes squirt away, at a distance that grows like sqrt(T).
 
-Last the same at 2 m/s with LeatherTip (6 mm high, dome 9.5 mm, nu 0.4) of 400, 140 and 40 MPa, whose contacts take 0.8
-to 2 ms, beside the patchwork of dome and shear that is told the same contact time. Takes about 90 s.
+Last the same at 2 m/s of the whole stroke (LeatherTip 6 mm high, dome 9.5 mm, nu 0.4, of 400, 140 and 40 MPa, whose
+contacts take 0.8 to 2 ms; waves along the cue, thrust on the bent shaft), beside the patchwork of dome and shear that
+is told the same contact time. Takes about 90 s.
 """
 
 from __future__ import annotations
@@ -335,7 +336,7 @@ def leather_dip(model: str, E: float) -> tuple[float, float]:
 
 @cache
 def leather_shares() -> dict[float, tuple[float, float]]:
-    """By inches: what 3 g add over what 11 g add, measured and with LeatherTip."""
+    """By inches: what 3 g add over what 11 g add, measured and in the whole stroke."""
     E, shares_by_inches = pool.LEATHER.E, {}
     for x, r in pool.added_masses(3e-3).items():
         if 2 <= x <= 4.7:
@@ -401,10 +402,10 @@ def leather_conclusions() -> str:
     near, old_near = (leather_ratio(model, E, 2) for model in (MODERN, PATCHWORK))
     ends = [100 * (leather_ratio(MODERN, E, x) - 1) for E in MODULI for x in (9, 10)]
     return (
-        f"LeatherTip moves the curve towards the measured one. 11 g at 2 in raise squirt by {near:.2f} (patchwork "
+        f"The whole stroke beside the patchwork. 11 g at 2 in raise squirt by {near:.2f} (patchwork "
         f"{old_near:.2f}, measured 1.70), and the dip lies at {place:.1f} in (patchwork {old_place:.1f}, measured 6.5 "
-        f"to 7). The root mean square difference from the 16 points, patchwork and LeatherTip, is {misses}. Where it "
-        f"fails: the rise at 2 in is too small with every leather, the dip is too deep ({depth:.2f}, patchwork "
+        f"to 7). The root mean square difference from the 16 points, patchwork and whole stroke, is {misses}. Where it "
+        f"fails: the rise at 2 in is too small with every leather, the dip is deep ({depth:.2f}, patchwork "
         f"{old_depth:.2f}, measured 0.94), and at 9 and 10 in squirt still changes by {min(ends):+.0f} to "
         f"{max(ends):+.0f} % (measured +1 to +3 %). The 3 g that add more than half of what 11 g add remain "
         f"unexplained. A clip's length and rotary inertia change the ratio at 2 in by {of_clip():+.2f}, away from the "
@@ -413,14 +414,14 @@ def leather_conclusions() -> str:
 
 
 def leather_draw(axes: Any) -> None:
-    """11 g with LeatherTip and the patchwork."""
+    """11 g in the whole stroke and the patchwork."""
     for i, E in enumerate(MODULI):
         label = f"{1e3 * leather_time(E):.1f} ms"
         axes.plot(GRID, [leather_ratio(MODERN, E, x) for x in GRID], color=f"C{i}", lw=2.2, label=f"{MODERN}, {label}")
         axes.plot(
             GRID, [leather_ratio(PATCHWORK, E, x) for x in GRID], "--", color=f"C{i}", label=f"patchwork, {label}"
         )
-    axes.set(title="11 g, LeatherTip beside the patchwork")
+    axes.set(title="11 g, the whole stroke beside the patchwork")
 
 
 def leather_report() -> str:

@@ -10,7 +10,8 @@ of an earlier prototype, each checked. Equations: handbook: The strike, Effects;
 spring) and RollingContact for the speed. Contact times (0.8 ms phenolic and fast, 1 to 2 ms most, 2 to 3 ms soft and
 slow) and "no practical effect" of hardness: billiards.colostate.edu, FAQ, cue tip.
 
-Last LeatherTip (6 mm high, dome 9.5 mm, nu 0.4, E 140 MPa) at 2 m/s on the same shafts beside the patchwork of dome and
+Last the whole stroke (LeatherTip 6 mm high, dome 9.5 mm, nu 0.4, E 140 MPa, with waves along the cue and thrust on the
+bent shaft; the tip's own restitution) at 2 m/s on the same shafts beside the patchwork of dome and
 shear at 1.1 ms. Its band is over 24 of the 48 draws: moduli of the leather stand in the place of contact times (45 to
 210 MPa), Poisson's ratio in that of the shear ratio. The break cue's tip has the E that makes its contact 0.9 ms long.
 The bore of the hollow shaft follows from its measured static stiffness (data/static_stiffness.csv). Takes about 100 s.
@@ -55,7 +56,7 @@ def _squirt(struck: pool.Scene, model: str) -> float:
 
 
 def band(row: shafts.Measurement, model: str) -> tuple[float, float]:
-    """Range of 90 % of the draws, deg; with LeatherTip of fewer of them."""
+    """Range of 90 % of the draws, deg; of the whole stroke over fewer of them."""
     return _band(row._replace(cue="", squirt=0.0), model)
 
 
@@ -261,7 +262,7 @@ def failure() -> str:
         f"0.453; dome and shear give {', '.join(told(row, both) for row in series)}: too much everywhere, most near "
         f"the middle. From b/R 0.320 to 0.453 measured squirt grows by {first.squirt / series[1].squirt:.2f}, more "
         f"than the offset (1.42); the model's by {grown[both]:.2f} (bare {grown['bare']:.2f}). An error of 1.8 mm in "
-        "the zero of that series would explain most of it (LeatherTip, below). The low-deflection shaft, bored as its "
+        "the zero of that series would explain most of it (below). The low-deflection shaft, bored as its "
         f"stiffness asks for, gives {told(predator, both)}, measured {predator.squirt:.1f}°; its ratio to the regular "
         f"shaft is {ratio(both, pool.BORES[1]):.2f} (bare {ratio('bare', pool.BORES[1]):.2f}), measured "
         f"{predator.squirt / first.squirt:.2f}. The break cue gives {told(stinger, both)} at b/R 0.267, measured "
@@ -391,7 +392,7 @@ def lasting(time: float, offset: float = pool.OFFSET) -> float:
     """Squirt of the maple shaft, deg, with the leather whose head-on contact takes ``time``, s."""
     struck = pool.leather_scene(strokes.cue("pool_maple"), offset)
     E = leather_modulus(struck, time)
-    return pool.leather_strike(replace(struck, effects=(replace(pool.LEATHER, E=E),)))[0]
+    return pool.leather_strike(replace(struck, effects=(replace(pool.LEATHER, E=E), *pool.WHOLE)))[0]
 
 
 @cache
@@ -489,15 +490,16 @@ def leather_time_table() -> str:
 
 
 def leather_right() -> str:
-    """What LeatherTip gets right."""
+    """What the whole stroke gets right."""
     robot, ratios = usual(shafts.robot(), MODERN), [ratio(MODERN, bore) for bore in pool.BORES]
     times = same_within([lasting(T) for T in LEATHER_TIMES])
     speeds = same_within([at_mph(mph) for mph in LEATHER_SPEEDS])
     return (
-        f"What LeatherTip gets right, with nothing fitted. At b/R 0.375 it gives {robot:.2f}° (measured 2.30 and "
-        f"2.43). Squirt there is the same {times} for contacts of 0.8 to 2 ms, which the leather makes, and {speeds} "
-        "over the robot's speeds: that hardness and speed do not matter, as players say, follows from the geometry. "
-        "The patchwork says nearly the same, but must be told the contact time. Its numbers are 2 to 3 % below those "
+        "What the whole stroke (LeatherTip, waves along the cue, thrust on the bent shaft) gets right, with nothing "
+        f"fitted. At b/R 0.375 it gives {robot:.2f}° (measured 2.30 and 2.43), and it is the same {speeds} over the "
+        "robot's speeds. Over contacts of 0.8 to 2 ms, which the leather makes, it is the same only "
+        f"{times}, more than players say. The patchwork changes as little over the speed because it is told a contact "
+        "time. Its numbers are 2 to 3 % below those "
         "of leather_tip.md: here the modes are solved once for all models and ended by a tail that knows no dome, "
         "there for each stroke with its dome (and for the leather's contact of 1.14 ms, not 1.1: 0.1 % of the "
         "patchwork's squirt, 1.3 % of the bare tip's). With bores of 7.4 to 10.2 mm, which the stiffness of its last 8 "
@@ -509,7 +511,7 @@ def leather_right() -> str:
 
 
 def leather_wrong() -> str:
-    """Where LeatherTip fails."""
+    """Where the whole stroke fails."""
     first, hollow, stinger = shafts.series()[2], shafts.far()[1], shafts.measurements()[-1]
     zeros = ", ".join(f"{name} {1e3 * best_zero(m):.1f}" for name, m in (("patchwork", BOTH), (MODERN, MODERN)))
     return (
@@ -522,11 +524,10 @@ def leather_wrong() -> str:
         f"mm, is: {zeros}. Even then squirt grows by {grown(MODERN):.2f} (patchwork {grown(BOTH):.2f}) between the "
         "last two offsets, where 1.75 was measured: an error of the zero explains a part of the slope. Nothing but "
         f"this fit shows that there was one. The low-deflection shaft's own squirt is {usual(hollow, MODERN):.2f}° "
-        f"(1.8), the break cue's {usual(stinger, MODERN):.2f}° (2.4). Over all seven values LeatherTip is off by "
+        f"(1.8), the break cue's {usual(stinger, MODERN):.2f}° (2.4). Over all seven values it is off by "
         f"{100 * miss(MODERN):.0f} %, the patchwork by {100 * miss(BOTH):.0f} %, the bare beam by "
-        f"{100 * miss('bare'):.0f} %: these values do not favour it. Most predictions below were read off the numbers "
-        "of leather_tip.md, so that they came true says little; of those that were not, the ratio with a bore of 10.2 "
-        "mm was wrong."
+        f"{100 * miss('bare'):.0f} %: these values hardly favour a model. Most predictions below were read off "
+        "the numbers of the article, so that they came true says little."
     )
 
 

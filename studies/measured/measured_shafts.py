@@ -163,7 +163,7 @@ def struck(row: Measurement, model: str, values: Mapping[str, float]) -> Scene:
 
 
 def leather(row: Measurement, values: Mapping[str, float]) -> Scene:
-    """The scene with LeatherTip; nu is that of the shear ratio, and E takes the place of the contact time."""
+    """The scene of the whole stroke; nu is that of the shear ratio, and E takes the place of the contact time."""
     hard, cue, ratio = row.shaft == "break", shaft_of(row.shaft, values), values["shear ratio"]
     factor = UNKNOWN["leather's moduli, factor"]
     tip = replace(
@@ -176,7 +176,7 @@ def leather(row: Measurement, values: Mapping[str, float]) -> Scene:
     if hard:
         tip = replace(tip, E=tip.E * phenolic() / pool.LEATHER.E, nu=PHENOLIC_NU, rho=material("phenolic").rho)
     found = pool.leather_scene(cue, row.offset, leather=tip)
-    e = values["e"] + (0.12 if hard else 0.0)
+    e = values["e"] + (0.12 if hard else 0.0) + pool.TIP_RESTITUTION - pool.RESTITUTION
     return replace(found, tip=replace(found.tip, restitution=e, friction=values["mu"]))
 
 
@@ -185,7 +185,9 @@ def phenolic() -> float:
     """E with which the break cue's tip touches the ball for 0.9 ms, Pa: it stands for the tip and for the waves."""
     tip = replace(pool.LEATHER, nu=PHENOLIC_NU, rho=material("phenolic").rho)
     found = pool.leather_scene(plain("break"), leather=tip)
-    return leather_modulus(replace(found, tip=replace(found.tip, restitution=USUAL["e"] + 0.12)), USUAL["T, s"] - 2e-4)
+    return leather_modulus(
+        replace(found, tip=replace(found.tip, restitution=found.tip.restitution + 0.12)), USUAL["T, s"] - 2e-4
+    )
 
 
 def end_of(cue: Cue, length: float) -> Cue:
