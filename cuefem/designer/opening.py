@@ -111,7 +111,7 @@ class ShapeDialog:
             return
         self.dialog.close()
         game = self.game.value
-        self.opened(self.name, scene, [f"a usual stroke of {game}"])
+        self.opened(self.name, scene, [f"a usual stroke of {game}", f"e {GAMES[game].bounce}"])
 
     def _scene(self) -> Scene:
         assert self.cue is not None

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from cuefem.cue import Cue
-from cuefem.games import usual_scene
+from cuefem.games import GAMES, usual_scene
 from cuefem.io import load
 from cuefem.scene import Scene
 
@@ -71,7 +71,8 @@ def opened(preset: Preset) -> tuple[Scene, list[str]]:
     """The scene of a ready file, and what was assumed for it."""
     found: Any = load(folder() / preset.file)
     if isinstance(found, Cue):
-        return usual_scene(found, preset.game), [f"a usual stroke of {preset.game}"]
+        bounce = f"e {GAMES[preset.game].bounce}"
+        return usual_scene(found, preset.game), [f"a usual stroke of {preset.game}", bounce]
     return found, []
 
 

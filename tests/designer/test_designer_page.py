@@ -336,6 +336,7 @@ def test_a_file_is_opened_changed_and_taken_back(browser: Any, address: str, tmp
         assert page.get_by_text("no ferrule is drawn behind the tip").count() == 1
         assert page.locator('[data-knob="ferrule_length"]').count() == 0
         assert page.get_by_text("assumed: a usual stroke of pool").count() == 1
+        assert page.get_by_text("e 0.73 of the whole cue head on: 0.63 of its tip").count() == 1
         path = saved(page, tmp_path)
         assert cf.load(path) == cf.usual_scene(cf.load(ROOT / "meshes" / "kim.toml"))
         assert_as_commanded(page, path)
