@@ -3,7 +3,8 @@
 The causes and their sources are in scatter_maple.toml: wood (E, G and density, correlated), turning by +-0.05 mm,
 ferrule, leather from new to worn, ball, contact time, and with them the dome and the shear of the tip. Monte Carlo over
 scrambled Sobol points; Sobol indices by Saltelli's estimators (`cuefem.design.scatter`), correlated wood as one cause.
-The coupled strike at b/R = 0.3, bare, with dome and tip shear, and with LeatherTip (scatter_leather.toml). About 90 s.
+The coupled strike at b/R = 0.3, bare, with dome and tip shear, and the whole stroke: LeatherTip, waves along the
+cue, thrust on the bent shaft (scatter_leather.toml). About 90 s.
 """
 
 from __future__ import annotations
@@ -11,14 +12,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
+from itertools import product
 from typing import Any
 
 import numpy as np
 
-from cuefem.design import Response
+from cuefem.design import Response, evaluate
 from cuefem.design.scatter import Drivers, Scatter, drivers, spread
 from cuefem.io.study import load_scatter
 from studies import pages
+from studies.measured import pool
 from studies.pages import STUDIES, predictions, table
 
 MODELS = ("bare", "dome and tip shear")
@@ -118,12 +121,12 @@ def text() -> str:
 
 @cache
 def leather() -> Drivers:
-    """Spread and causes with LeatherTip."""
+    """Spread and causes in the whole stroke."""
     return drivers(LEATHER, LEATHER_SAMPLE.count, seed=LEATHER_SAMPLE.seed)
 
 
 def leather_spread() -> list[float]:
-    """Mean, standard deviation and quantiles of squirt with LeatherTip, deg."""
+    """Mean, standard deviation and quantiles of squirt in the whole stroke, deg."""
     sample = leather().spread
     return [float(np.degrees(x)) for x in (sample.mean[0], sample.sd[0], *sample.quantiles(SHARES)[:, 0])]
 
@@ -151,15 +154,29 @@ def leather_found() -> dict[str, str]:
     return dict(zip(PREDICTED, numbers, strict=True))
 
 
+def leather_ends() -> dict[tuple[float, float], float]:
+    """Squirt of the middle shaft, deg, by the leather's modulus, Pa, and the speed, m/s, at the ends of both."""
+    study = LEATHER.study
+    middle = [vary.range.quantile(0.5) for vary in study.vary]
+    i, j = ([vary.name for vary in study.vary].index(name) for name in ("leather's E", "speed"))
+    ends = list(product(*(map(study.vary[k].range.quantile, (0.0, 1.0)) for k in (i, j))))
+    scenes = [study.scene((*middle[:i], E, *middle[i + 1 : j], U, *middle[j + 1 :])) for E, U in ends]
+    squirts = evaluate(scenes, study.responses, at=study.resolution).values[:, 0]
+    return {end: float(np.degrees(squirt)) for end, squirt in zip(ends, squirts, strict=True)}
+
+
 def leather_text() -> str:
-    """The end of the page: LeatherTip."""
+    """The end of the page: the whole stroke."""
     columns = ["of the designs lie below", "mean", "sd", *(f"{100 * share:g} %" for share in SHARES)]
     runs = len(leather().causes) + 2
+    said = [f"{squirt:.2f}° at {E / 1e6:.0f} MPa and {U:g} m/s" for (E, U), squirt in leather_ends().items()]
     return (
-        "## LeatherTip\n\nThe causes of scatter_leather.toml: the leather's modulus and the speed of the stroke in the "
+        "## LeatherTip\n\nThe whole stroke: LeatherTip, waves along the cue and the thrust on the bent shaft. Its "
+        "causes are those of scatter_leather.toml: the leather's modulus and the speed of the stroke in the "
         f"place of the contact time, Poisson's ratio in that of the shear. {runs * LEATHER_SAMPLE.count} strikes, "
-        "fewer than above, so the intervals are wider.\n\n"
-        f"{table(columns, [['squirt, °, LeatherTip', *leather_spread()]])}\n"
+        "fewer than above, so the intervals are wider. Of hardness and speed it is the hardness that counts. The "
+        f"middle shaft squirts {', '.join(said)}.\n\n"
+        f"{table(columns, [[f'squirt, °, {pool.MODERN}', *leather_spread()]])}\n"
         f"{table(['cause', 'squirt: alone', 'squirt: in all'], leather_shares())}\n"
         + predictions(PREDICTED, leather_found())
     )
@@ -169,7 +186,7 @@ def draw(axes: Any) -> None:
     for k, (axis, (words, scale)) in enumerate(zip(axes[0], SCALES.values(), strict=False)):
         samples = {model: scale * found(model).spread.responses[:, k] for model in MODELS}
         if k:
-            samples["LeatherTip"] = scale * leather().spread.responses[:, 0]
+            samples[pool.MODERN] = scale * leather().spread.responses[:, 0]
         _histograms(axis, samples)
         axis.set(xlabel=words.replace(",", " at b/R 0.3,") if k else words, ylabel="part of the shafts and strokes")
     handles, labels = axes[0, 1].get_legend_handles_labels()
@@ -177,7 +194,7 @@ def draw(axes: Any) -> None:
     axes[0, 2].set_axis_off()
     for axis, model, colour in zip(axes[1], MODELS, COLOURS, strict=False):
         _bars(axis, found(model), 1, model, colour)
-    _bars(axes[1, 2], leather(), 0, "LeatherTip", COLOURS[2])
+    _bars(axes[1, 2], leather(), 0, pool.MODERN, COLOURS[2])
 
 
 def _histograms(axis: Any, samples: dict[str, np.ndarray]) -> None:

@@ -12,6 +12,7 @@ from cuefem.design import evaluate
 from cuefem.materials import MATERIALS
 from studies import pages
 from studies.design import low_squirt, scatter
+from studies.measured import pool
 from studies.strokes import cue, scene
 from tests.helpers.study_tables import after, row
 
@@ -65,5 +66,7 @@ def test_the_middle_shaft_of_the_scatter() -> None:
     study = scatter.LEATHER.study
     middle = study.scene(tuple(vary.range.quantile(0.5) for vary in study.vary))
     (found,) = evaluate([middle], study.responses, at=study.resolution).values
-    cells = [float(cell) for cell in row(after(scatter.STUDY.committed, pages.LEATHER), "squirt, °, LeatherTip")[1:]]
+    cells = [
+        float(cell) for cell in row(after(scatter.STUDY.committed, pages.LEATHER), f"squirt, °, {pool.MODERN}")[1:]
+    ]
     assert cells[3] < np.degrees(found[0]) < cells[5]
