@@ -44,14 +44,15 @@ def test_the_contact_adds_nothing():
 @pytest.mark.heavy
 def test_no_refinement_makes_up_for_the_model():
     off = {name: np.median(np.abs(accuracy_cost.model_errors(name))) for name in accuracy_cost.NAMED}
-    assert 0.5 < off["paper's closed form, 12 g"] < 0.65
-    assert off["paper's closed form, 12 g"] > 2 * off["lumped, stick end mass"]
-    assert 0.1 < off["coupled"] < 0.25
-    assert off["... and tip shear"] < off["coupled"] / 3
+    paper, stick, bare, dome, shear = (off[name] for name in accuracy_cost.NAMED)
+    assert 0.45 < paper < 0.55
+    assert paper > 2 * stick
+    assert 0.1 < bare < 0.25
+    assert dome > bare > shear > 0.05  # one more effect may lead away
 
 
 def test_omissions_and_the_machine_are_named():
-    assert all(name in accuracy_cost.__doc__ for name in ("AxialWaves", "SecondHit"))
+    assert "SecondHit" in accuracy_cost.__doc__
     seconds = accuracy_cost.STUDY.path.with_name("accuracy_cost_seconds.md").read_text(encoding="utf-8")
     assert "cores, one BLAS thread" in seconds
 
