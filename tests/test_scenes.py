@@ -130,8 +130,8 @@ BAD = {
     "misspelt table": ("[accurcy]\nrtol = 0.01\n", "accurcy: must be one of the keys ", "did you mean 'accuracy'?"),
     "off the cue": (
         "[[effects]]\ntype = 'PointMass'\nposition = '701 mm'\nmass = '11 g'\n",
-        "effects[0].position: must be in [0, 0.7] m, on the cue; ",
-        "got 0.701",
+        "effects[0].position: must be 0 to 700 mm, on the cue; ",
+        "got 701 mm",
     ),
     "two clamps": (
         "[[effects]]\ntype = 'Support'\nposition = '0.7 m'\nstiffness = 'inf N/m'\n"
