@@ -33,6 +33,7 @@ COMMANDS = {
     "end-mass": ("cuefem.cli.cues:end_mass", "The effective end mass, by every definition."),
     "estimate": ("cuefem.cli.measured:estimate", "Wood, bore and tip from everything measured on a cue together."),
     "guide": ("cuefem.cli.guide:guide", "Open the handbook: physics, glossary, and every effect."),
+    "improve": ("cuefem.cli.improve:improve", "What to change: squirt, stiffness and weight of each change."),
     "materials": (
         "cuefem.cli.known_materials:materials",
         "List the materials that a file can name, with their sources.",
