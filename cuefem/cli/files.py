@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from cuefem.cli.common import check_free, force_option, shape_options
-from cuefem.cli.printing import assumed_lines, json_option, tell
+from cuefem.cli.printing import assumed_lines, json_option, print_json
 from cuefem.cli.strokes import with_body
 from cuefem.io import load, save
 from cuefem.io.assumed import assumed
@@ -31,7 +31,11 @@ def convert(file: Path, output: Path, body_mass: str | None, force: bool, as_jso
     save(found, output)
     said = {name for name, value in (given | {"body_mass": body_mass}).items() if value is not None}
     notes = assumed(file, said) if file.suffix.lower() in SHAPES else []
-    tell(as_json, {"written": str(output), "assumed": notes}, [*assumed_lines(notes), f"wrote {output}"])
+    if as_json:
+        print_json({"written": str(output), "assumed": notes})
+        return
+    for line in (*assumed_lines(notes), f"wrote {output}"):
+        click.echo(line)
 
 
 @click.command()
