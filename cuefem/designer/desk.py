@@ -252,10 +252,11 @@ class Desk:
     def _ready(self, preset: Preset) -> None:
         try:
             scene, notes = preset_opened(preset)
+            measured = preset.beside(scene)
         except FAILURES as error:
             self.say(f"not opened: {' '.join(str(error).split())}")
             return
-        design = Design.of(Path(preset.file).name, scene, [*notes, preset.told])
+        design = Design.of(Path(preset.file).name, scene, [*notes, measured])
         self.opened = design
         self.open(design)
 
