@@ -3,6 +3,7 @@
 Their commands run, their files load, their Python runs, their paths are there.
 """
 
+import itertools
 import os
 import re
 import shlex
@@ -119,8 +120,8 @@ def test_commands_run(block: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatc
         assert program == "cuefem"
         status, _, err = call(*words)
         assert (status, err) == (0, "")
-        for option in {"-o", "--figure"} & set(words):
-            assert (tmp_path / words[words.index(option) + 1]).exists()
+        for option, path in itertools.pairwise(words):
+            assert option != "-o" or (tmp_path / path).exists()
 
 
 @pytest.mark.parametrize("code", blocks("python"))

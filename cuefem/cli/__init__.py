@@ -34,6 +34,7 @@ COMMANDS = {
     "end-mass": ("cuefem.cli.cues:end_mass", "The effective end mass, by every definition."),
     "estimate": ("cuefem.cli.measured:estimate", "Wood, bore and tip from everything measured on a cue together."),
     "guide": ("cuefem.cli.guide:guide", "Open the handbook: physics, glossary, and every effect."),
+    "improve": ("cuefem.cli.improve:improve", "What to change: squirt, stiffness and weight of each change."),
     "materials": (
         "cuefem.cli.known_materials:materials",
         "List the materials that a file can name, with their sources.",
@@ -55,6 +56,8 @@ COMMANDS = {
 
 # Names of the last version, which answer for this one more, by what they are now.
 FORMER = {"handover": ("strike", "--for", "pooltool")}
+# Former options of a command, which are now --output.
+FORMER_OPTIONS = {("sweep", "--page"), ("scatter", "--page"), ("tap", "--figure")}
 
 
 class _Commands(click.Group):
@@ -81,6 +84,11 @@ class _Commands(click.Group):
             )
             program = ["--json"] if "--for" in args and not {"-o", "--output"} & {*args} else []
             args = [now[0], *args[1:], *now[1:], *program]
+        for i, word in enumerate(args[1:], 1):
+            was, sign, value = word.partition("=")
+            if (args[0], was) in FORMER_OPTIONS:
+                click.echo(f"cuefem: {args[0]} {was} is now --output; the old name ends with this version", err=True)
+                args = [*args[:i], f"--output{sign}{value}", *args[i + 1 :]]
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 
 from cuefem.beam.modes import modes
 from cuefem.cli.common import blaming, file_options, scene_of
-from cuefem.cli.printing import assumed_lines, print_json
+from cuefem.cli.printing import assumed_lines, output_option, print_json
 from cuefem.cli.progress import followed
 from cuefem.cli.strokes import blow_options, measured, offset_option
 from cuefem.contact.motion import last_contact, motion
@@ -32,7 +32,7 @@ from cuefem.scene import Scene
 )
 @click.option("--until", metavar="TIME", help="Time of the last frame; by default three contact times.")
 @click.option("--scale", type=float, default=1.0, show_default=True, help="Bending is drawn this many times enlarged.")
-@click.option("-o", "--output", type=click.Path(path_type=Path), required=True, metavar="FOLDER", help="A new folder.")
+@output_option("", required=True)
 def animate(file: Path, output: Path, as_json: bool, **given: Any) -> None:
     """Write mode shapes and the cue's motion in a strike for ParaView: FOLDER/modes.vtu, FOLDER/strike.pvd, frames."""
     drawn = {name: given.pop(name) for name in ("count", "frames", "until", "scale")}

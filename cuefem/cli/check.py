@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 from cuefem.cli.common import file_options, show
+from cuefem.cli.printing import page_option
 from cuefem.cli.progress import followed
 from cuefem.cli.strokes import blow_options, offset_option
 from cuefem.report.model_error import model_error_record, model_error_sheet
@@ -18,6 +19,7 @@ from cuefem.scene import Scene
 @file_options
 @blow_options
 @offset_option
+@page_option
 def check(file: Path, **given: Any) -> None:
     """Show how far beam theory is off for a shaft: its numbers by the beam, and by 3-D elasticity of the solid.
 

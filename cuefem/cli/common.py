@@ -48,12 +48,6 @@ def shape_options(command: Callable[..., Any]) -> Callable[..., Any]:
     return command
 
 
-# The option of the commands that can write a page in the place of tables.
-page_option = click.option(
-    "-o", "--output", type=click.Path(path_type=Path), metavar="PAGE.html", help="Write a page with figures instead."
-)
-
-
 def force_option(command: Callable[..., Any]) -> Callable[..., Any]:
     """The option of every command that writes a drawing."""
     return click.option("--force", is_flag=True, help="Replace a drawing that exists already.")(command)
@@ -122,17 +116,19 @@ def show(
     change: Callable[[Scene], Scene] | None = None,
     settled: Collection[str] = (),
 ) -> None:
-    """Compute all of it first, then print it all: as JSON, or as a heading and tables.
+    """Compute all of it first, then print it all: as JSON, or as a heading and tables; or write these as a page.
 
     blow, settled: see `scene_of`. change: what the command's own options make of the scene.
     """
+    page = given.pop("output", None)
     scene, notes = scene_of(file, given, blow=blow, settled=settled)
     with blaming(file, given):
         scene = scene if change is None else change(scene)
         about, found = scene_record(scene), results(scene)
     struck = about if blow else {name: value for name, value in about.items() if name in ("cue", "effects")}
     record = whole_record(file, notes, scene, found, blow=blow, scene=struck)
-    tell(given["as_json"], record, [*head_lines(file, about, scene.effects, notes), "", *sheets(found, about)])
+    lines = [*head_lines(file, about, scene.effects, notes), "", *sheets(found, about)]
+    tell(given["as_json"], record, lines, page)
 
 
 def whole_record(

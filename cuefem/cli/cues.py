@@ -11,6 +11,7 @@ from cuefem.accuracy import resolve
 from cuefem.cli.common import file_options, show
 from cuefem.cli.definitions import WithDefinitions
 from cuefem.cli.handover import ONLY, hand_over, simulator_options
+from cuefem.cli.printing import page_option
 from cuefem.cli.strokes import blow_options, offset_option
 from cuefem.io import InputError, load_accuracy
 from cuefem.report import (
@@ -25,6 +26,7 @@ from cuefem.scene import Scene
 @click.command("end-mass", cls=WithDefinitions)
 @file_options
 @blow_options
+@page_option
 @click.option("--paper", is_flag=True, help="Also show what Kim's paper calls end mass, m_c, and its eps.")
 def end_mass(file: Path, paper: bool, **given: Any) -> None:
     """Show the effective end mass: how much mass the ball has to push aside at the tip."""
@@ -41,7 +43,8 @@ def strike(file: Path, whom: str | None, drive: Any, length: str | None, output:
     if whom is not None:
         hand_over(file, given, drive=drive, length=length, output=output)
         return
-    for option, value in (("--drive", drive), ("--length", length), ("--output", output)):
+    simulators = output if output is not None and output.suffix == ".json" else None
+    for option, value in (("--drive", drive), ("--length", length), ("--output", simulators)):
         if value is not None:
             raise InputError(file, option, ONLY)
 
@@ -49,4 +52,4 @@ def strike(file: Path, whom: str | None, drive: Any, length: str | None, output:
         rtol = load_accuracy(file)
         return strike_record(scene, None if rtol is None else resolve(scene, rtol))
 
-    show(file, given, results, lambda found, about: [strike_sheet(found, about)])
+    show(file, {**given, "output": output}, results, lambda found, about: [strike_sheet(found, about)])

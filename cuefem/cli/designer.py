@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import socket
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,7 @@ from typing import Any
 import click
 
 from cuefem.cli.common import blaming, scene_of
+from cuefem.cli.printing import json_option, print_json
 from cuefem.designer.design import Design
 from cuefem.designer.start import NAME, first_scene
 
@@ -24,7 +26,8 @@ from cuefem.designer.start import NAME, first_scene
     help="Port of the page; 0 takes any free one.",
 )
 @click.option("--open/--no-open", "show", default=True, help="Open the page in the browser.", show_default=True)
-def designer(scene: Path | None, port: int, show: bool) -> None:
+@json_option
+def designer(scene: Path | None, port: int, show: bool, as_json: bool) -> None:
     """Open a page on this computer: change a cue with sliders and see its end mass and squirt at once.
 
     SCENE is a cue or scene file, as FILE is for other commands; by default a maple pool shaft. A cue alone gets a usual
@@ -46,8 +49,9 @@ def designer(scene: Path | None, port: int, show: bool) -> None:
         found = read(scene)
         with blaming(scene):
             first = Design.of(scene.name, *found)
+    said: Callable[[str], None] = (lambda address: print_json({"address": address})) if as_json else click.echo
     with suppress(KeyboardInterrupt):  # Ctrl-C is how one ends it
-        serve(first, read, port=_free(port), show=show, announce=click.echo)
+        serve(first, read, port=_free(port), show=show, announce=said)
 
 
 def _free(port: int) -> int:

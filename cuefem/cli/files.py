@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from cuefem.cli.common import check_free, force_option, shape_options
-from cuefem.cli.printing import assumed_lines
+from cuefem.cli.printing import assumed_lines, json_option, print_json
 from cuefem.cli.strokes import with_body
 from cuefem.io import load, save
 from cuefem.io.assumed import assumed
@@ -20,8 +20,9 @@ from cuefem.io.profile import SHAPES
 @click.argument("file", type=click.Path(path_type=Path))
 @click.argument("output", type=click.Path(path_type=Path))
 @shape_options
+@json_option
 @force_option
-def convert(file: Path, output: Path, body_mass: str | None, force: bool, **given: str | None) -> None:
+def convert(file: Path, output: Path, body_mass: str | None, force: bool, as_json: bool, **given: str | None) -> None:
     """Convert FILE to another kind of file: OUTPUT ends in .toml, .vtk or .vtu."""
     check_free(output, force=force)
     found = load(file, **given)
@@ -30,13 +31,15 @@ def convert(file: Path, output: Path, body_mass: str | None, force: bool, **give
     save(found, output)
     said = {name for name, value in (given | {"body_mass": body_mass}).items() if value is not None}
     notes = assumed(file, said) if file.suffix.lower() in SHAPES else []
-    for line in assumed_lines(notes):
+    if as_json:
+        print_json({"written": str(output), "assumed": notes})
+        return
+    for line in (*assumed_lines(notes), f"wrote {output}"):
         click.echo(line)
-    click.echo(f"wrote {output}")
 
 
 @click.command()
-@click.option("--json", "as_json", is_flag=True, help="Changes nothing: the schema is JSON.")
+@json_option
 def schema(as_json: bool) -> None:
-    """Print the JSON schema of cue and scene files, for editors."""
+    """Print the JSON schema of cue and scene files, for editors; it is JSON with --json and without."""
     click.echo(json.dumps(json_schema(), indent=2, allow_nan=False, ensure_ascii=False))

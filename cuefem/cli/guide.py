@@ -10,6 +10,7 @@ import click
 from rich.console import Console
 from rich.markdown import Markdown
 
+from cuefem.cli.printing import json_option, page_option, print_json
 from cuefem.handbook import CHAPTERS, chapters
 from cuefem.handbook.page import page
 from cuefem.io import InputError, save_page
@@ -24,20 +25,23 @@ def _known(context: click.Context, parameter: click.Parameter, chapter: str | No
 
 @click.command()
 @click.argument("chapter", callback=_known, required=False, metavar="[CHAPTER]")
-@click.option(
-    "-o", "--output", type=click.Path(path_type=Path), metavar="PAGE.html", help="Write the page here instead."
-)
+@page_option
+@json_option
 @click.option("--print", "in_terminal", is_flag=True, help="Print the text in the terminal instead.")
-def guide(chapter: str | None, output: Path | None, in_terminal: bool) -> None:
+def guide(chapter: str | None, output: Path | None, in_terminal: bool, as_json: bool) -> None:
     """Open the handbook in the browser: the physics, a glossary, and what each effect does.
 
     CHAPTER opens (or prints) one chapter: start, files, working, frame, inverse_mass, impulse_solver, beam, solid,
     strike, contact, end_mass, side, effects, measured, measuring, accuracy, paper, glossary or sources.
     """
+    asked = [part for part in chapters() if chapter in (None, part.name)]
+    if as_json:
+        print_json({part.name: part.text for part in asked})
+        return
     if in_terminal:
         if output is not None:
             raise InputError(output, "--output", "must be left out with --print, which writes no page")
-        _print([found.text for found in chapters() if chapter in (None, found.name)])
+        _print([part.text for part in asked])
         return
 
     if output is not None:

@@ -10,9 +10,9 @@ import click
 
 from cuefem.cli.common import blaming, head_lines, scene_of
 from cuefem.cli.definitions import Definitions
-from cuefem.cli.printing import print_all
+from cuefem.cli.printing import output_option, print_all, tell
 from cuefem.cli.strokes import measured
-from cuefem.io import InputError, write_whole
+from cuefem.io import write_whole
 from cuefem.quantity import LENGTH
 from cuefem.report.handover import handover_sheet, handover_words, pooltool_record
 from cuefem.report.record import scene_record
@@ -26,7 +26,7 @@ ONLY = "must go with --for pooltool, for which it is; got no --for"
 def simulator_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """The options of a stroke that is for a simulator."""
     for option in (
-        click.option("-o", "--output", type=click.Path(path_type=Path), metavar="CUE.json", help="Write it to a file."),
+        output_option(".html", ".json"),
         click.option("--length", metavar="LENGTH", help="Of the whole cue, --for; by default the drawing's, or 58 in."),
         click.option(
             "--drive", type=Definitions(DRIVE), help=f"Which definition of the end mass, --for; by default {DRIVE}."
@@ -44,21 +44,23 @@ def simulator_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 def hand_over(file: Path, given: dict[str, Any], *, drive: str | None, length: str | None, output: Path | None) -> None:
     """Show the end mass for a simulator; the JSON has pooltool's CueSpecs, what the number means, how well it works."""
-    if output is not None and output.suffix != ".json":
-        raise InputError(output, "--output", f"must end in .json; got {output.suffix!r}")
     scene, notes = scene_of(file, given)
     with blaming(file, given):
         whole = None if length is None else measured(file, "--length", length, LENGTH)
         record = pooltool_record(file.stem, scene, drive=drive or DRIVE, length=whole)
     record["notes"] += [f"assumed: {note}" for note in notes] + [f"unusual: {remark}" for remark in unusual(scene)]
     text = json_text(record)
+    first = head_lines(file, scene_record(scene), scene.effects, notes)
+    sheets = [handover_sheet(record), handover_words(record)]
+    if output is not None and output.suffix == ".html":
+        tell(given["as_json"], record, [*first, *sheets], output)
+        return
     if output is not None:
         write_whole(output, lambda temporary: temporary.write_text(text + "\n", encoding="utf-8"))
     if given["as_json"]:
         click.echo(text)
     elif output is not None:
-        print_all([f"wrote {output}", "", handover_sheet(record)])
+        print_all([f"wrote {output}", "", sheets[0]])
     else:
         more = "-o CUE.json writes the file that pooltool reads, --json prints it"
-        first = head_lines(file, scene_record(scene), scene.effects, notes)
-        print_all([*first, "", handover_sheet(record), handover_words(record), more])
+        print_all([*first, "", *sheets, more])

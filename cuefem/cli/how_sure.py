@@ -8,9 +8,10 @@ from typing import Any
 import click
 
 from cuefem.cli.common import file_options, show
+from cuefem.cli.printing import output_option, page_option
 from cuefem.cli.progress import followed
 from cuefem.cli.strokes import blow_options, offset_option
-from cuefem.io import FIGURES, InputError, load_accuracy, save_figure
+from cuefem.io import FIGURES, load_accuracy, save_figure
 from cuefem.report import DEFAULT_RTOL, effects_record, effects_sheet
 from cuefem.report.cost import cost_figure, cost_record, cost_sheets
 from cuefem.scene import Scene
@@ -20,6 +21,7 @@ from cuefem.scene import Scene
 @file_options
 @blow_options
 @offset_option
+@page_option
 def effects(file: Path, **given: Any) -> None:
     """Show what each effect changes: every effect of FILE is left out, every other one added, one at a time.
 
@@ -40,18 +42,15 @@ def effects(file: Path, **given: Any) -> None:
 @click.option(
     "--most", type=click.IntRange(min=24), default=150, show_default=True, help="The largest number of modes."
 )
-@click.option(
-    "-o", "--output", type=click.Path(path_type=Path), metavar="FIGURE", help="Also draw a figure: .png or .svg."
-)
+@output_option(".html", *FIGURES)
 def cost(file: Path, most: int, output: Path | None, **given: Any) -> None:
     """Show what accuracy costs for this scene: error against time and unknowns, and which resolution to take."""
-    if output is not None and output.suffix not in FIGURES:
-        raise InputError(output, "--output", f"must end in .png or .svg; got {output.suffix!r}")
 
     def results(scene: Scene) -> Any:
         found = cost_record(scene, most=most, track=followed)
-        if output is not None:
+        if output is not None and output.suffix in FIGURES:
             save_figure(cost_figure(found, f"{file.name}: what accuracy costs", output.suffix[1:]), output)
         return found
 
-    show(file, given, results, lambda found, about: cost_sheets(found))
+    page = output if output is not None and output.suffix not in FIGURES else None
+    show(file, {**given, "output": page}, results, lambda found, about: cost_sheets(found))

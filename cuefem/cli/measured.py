@@ -7,10 +7,10 @@ from typing import Any
 
 import click
 
-from cuefem.cli.common import blaming, page_option, remark, whole_record
-from cuefem.cli.printing import assumed_lines, json_option, tell
+from cuefem.cli.common import blaming, remark, whole_record
+from cuefem.cli.printing import assumed_lines, json_option, page_option, tell
 from cuefem.cli.progress import followed
-from cuefem.io import InputError, check_place, save_page
+from cuefem.io import InputError, save_page
 from cuefem.io.documented import load_documented, write_template
 from cuefem.measured.documented import compare as compared
 from cuefem.measured.documented import zeros
@@ -42,10 +42,8 @@ def compare(folder: Path, template: bool, output: Path | None, as_json: bool) ->
         write_template(folder)
         click.echo(f"wrote {folder}: its numbers are examples; put yours, then `cuefem compare {folder}`")
         return
-    if output is not None:
-        if as_json:
-            raise InputError(output, "--output", "must be left out with --json: a page is no JSON")
-        check_place(output)
+    if output is not None and as_json:
+        raise InputError(output, "--output", "must be left out with --json: a page is no JSON")
     cue, notes = load_documented(folder)
     remark(cue.scene)
     with blaming(folder):
@@ -63,8 +61,9 @@ def compare(folder: Path, template: bool, output: Path | None, as_json: bool) ->
 @click.argument("folder", metavar="CUE_FOLDER", type=click.Path(path_type=Path))
 @click.option("--sample", type=click.IntRange(min=500), metavar="N", help="Check by N draws of a sampler (an extra).")
 @click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of the sampler.")
+@page_option
 @json_option
-def estimate(folder: Path, sample: int | None, seed: int, as_json: bool) -> None:
+def estimate(folder: Path, sample: int | None, seed: int, output: Path | None, as_json: bool) -> None:
     """Find the wood, the bore and the tip that all measurements in CUE_FOLDER together make most likely.
 
     The folder is that of `cuefem compare`. The priors are those of the table of materials and of the folder's
@@ -85,4 +84,4 @@ def estimate(folder: Path, sample: int | None, seed: int, as_json: bool) -> None
                 raise InputError(folder, "--sample", str(error)) from None
     more = [sampled_sheet(record["sampled"])] if sample is not None else []
     whole = whole_record(folder, notes, cue.scene, record)
-    tell(as_json, whole, [cue.name, *assumed_lines(notes), "", *estimate_sheets(record), *more])
+    tell(as_json, whole, [cue.name, *assumed_lines(notes), "", *estimate_sheets(record), *more], output)

@@ -11,7 +11,7 @@ import click
 from rich.console import Console
 
 from cuefem.cli.common import blaming, check_free, force_option, remark
-from cuefem.cli.printing import assumed_lines, json_option, tell
+from cuefem.cli.printing import assumed_lines, json_option, output_option, tell
 from cuefem.design.optimum import Problem, optimum
 from cuefem.io import save
 from cuefem.io.study import assumed_base, load_optimum
@@ -23,14 +23,14 @@ from cuefem.vary import replaced, value_at
 
 @click.command()
 @click.argument("study", type=click.Path(path_type=Path))
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="Write the best design as a scene (.toml).")
+@output_option(".html", ".toml", many=True)
 @click.option(
     "--iterations", type=click.IntRange(min=1), default=60, show_default=True, help="Largest number of steps."
 )
 @click.option("--seed", type=click.IntRange(min=0), default=0, help="Random seed, used only without exact gradients.")
 @json_option
 @force_option
-def optimize(study: Path, output: Path | None, iterations: int, seed: int, as_json: bool, force: bool) -> None:
+def optimize(study: Path, output: tuple[Path, ...], iterations: int, seed: int, as_json: bool, force: bool) -> None:
     """Find the design of STUDY (.toml) with the smallest or largest objective within its ranges and limits.
 
     STUDY has the [[vary]] tables of a sweep, an [objective] and [[limit]] tables. Where exact gradients exist (a bare
@@ -38,13 +38,14 @@ def optimize(study: Path, output: Path | None, iterations: int, seed: int, as_js
     """
     wanted = load_optimum(study)
     notes = assumed_base(study, wanted.base)
-    if output is not None:
-        check_free(output, force=force)
+    drawing, page = (next((path for path in output if path.suffix == kind), None) for kind in (".toml", ".html"))
+    if drawing is not None:
+        check_free(drawing, force=force)
     remark(wanted.base)
     with blaming(study), _counter() as progress:
         found = optimum(wanted, iterations=iterations, seed=seed, progress=progress)
-    if output is not None:
-        save(_rounded(found.scene, wanted), output)
+    if drawing is not None:
+        save(_rounded(found.scene, wanted), drawing)
     aim = "maximize" if wanted.largest else "minimize"
     units = dict(zip(wanted.study.columns, wanted.study.units, strict=True))
     way = "by exact gradients" if found.exact else "by differential evolution"
@@ -59,12 +60,12 @@ def optimize(study: Path, output: Path | None, iterations: int, seed: int, as_js
     lines += ["", f"held by: {', '.join(held_by) or 'nothing'}"]
     if found.unfinished:
         lines.append(f"not finished: {found.unfinished}; more --iterations may find a better design")
-    about = {"file": str(study), "assumed": notes, "written": output and str(output)}
+    about = {"file": str(study), "assumed": notes, "written": drawing and str(drawing)}
     numbers = {"value": found.value, "numbers": found.numbers, "values": found.values, "active": found.active}
     search = {"evaluations": found.evaluations, "exact_gradients": found.exact, "unfinished": found.unfinished}
     record = about | {"objective": {aim: wanted.objective.name}} | numbers | search
-    said = [*lines, *assumed_lines(notes), *([f"wrote {output}"] if output else [])]
-    tell(as_json, record | {"resolution": vars(wanted.study.resolution), "units": units}, said)
+    said = [*lines, *assumed_lines(notes), *([f"wrote {drawing}"] if drawing else [])]
+    tell(as_json, record | {"resolution": vars(wanted.study.resolution), "units": units}, said, page)
 
 
 def _short(value: float, unit: str) -> str:

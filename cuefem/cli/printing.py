@@ -2,16 +2,67 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import os
+from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
 
 import click
 from rich.console import Console
 
+from cuefem.io import InputError, check_place, save_page
 from cuefem.report.table import json_text, terminal
 
-# The option of every command that has numbers for programs.
-json_option = click.option("--json", "as_json", is_flag=True, help="SI numbers as JSON.")
+# The option of every command, for programs.
+json_option = click.option("--json", "as_json", is_flag=True, help="Say it as JSON, for programs; numbers in SI.")
+
+# What a file of each ending is that commands write; "" is a folder.
+WRITTEN = {
+    ".html": "a page",
+    ".png": "a picture",
+    ".svg": "a picture",
+    ".toml": "a drawing or scene",
+    ".json": "a simulator's file",
+    "": "a folder for ParaView",
+}
+
+
+class Output(click.Path):
+    """A file to write: its ending says what it will be. ValueError before anything is computed if none can be there."""
+
+    def __init__(self, endings: Sequence[str]) -> None:
+        super().__init__(path_type=Path)
+        self.endings = endings
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The path, whose ending is one that the command writes."""
+        path = Path(os.fsdecode(super().convert(value, param, ctx)))
+        if path.suffix not in self.endings and self.endings != ("",):
+            wanted = " or ".join(ending for ending in self.endings if ending)
+            more = "; --store names the file that keeps designs" if path.suffix == ".sqlite" else ""
+            raise InputError(path, "--output", f"must end in {wanted}; got {path.suffix!r}{more}")
+        if path.suffix in self.endings and path.suffix not in (
+            "",
+            ".toml",
+        ):  # of a folder and a drawing the command itself looks
+            check_place(path)
+        return path
+
+
+def output_option(*endings: str, required: bool = False, many: bool = False) -> Callable[..., Any]:
+    """The option -o of every command, with what it writes, told by the ending; many: it may stand several times."""
+    kinds = dict.fromkeys(WRITTEN[ending] for ending in endings)
+    said = "; ".join(
+        f"{kind} ({', '.join(e for e in endings if e and WRITTEN[e] == kind)})".removesuffix(" ()") for kind in kinds
+    )
+    said = f"Write {said}, as its ending says{'; may be repeated' if many else ''}."
+    return click.option(
+        *("-o", "--output"), type=Output(endings), metavar="FILE", help=said, required=required, multiple=many
+    )
+
+
+# Of commands whose page is their tables.
+page_option = output_option(".html")
 
 
 def assumed_lines(notes: Sequence[str]) -> list[str]:
@@ -24,12 +75,16 @@ def print_json(record: Any) -> None:
     click.echo(json_text(record))
 
 
-def tell(as_json: bool, record: Any, things: Sequence[Any]) -> None:
-    """Print a record for programs, or lines and sheets for people."""
+def tell(as_json: bool, record: Any, things: Sequence[Any], page: Path | None = None) -> None:
+    """Print a record for programs, or lines and sheets for people; page: where these are to stand instead."""
+    if page is not None:
+        from cuefem.report.plain_page import plain_page  # templates take 0.1 s, which tables need not pay
+
+        save_page(plain_page(page.stem, things), page)
     if as_json:
         print_json(record)
     else:
-        print_all(things)
+        print_all(things if page is None else [f"wrote {page}"])
 
 
 def print_all(things: Sequence[Any]) -> None:

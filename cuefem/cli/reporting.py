@@ -7,7 +7,8 @@ from typing import Any
 
 import click
 
-from cuefem.cli.common import blaming, file_options, page_option, scene_of, show
+from cuefem.cli.common import blaming, file_options, scene_of, show
+from cuefem.cli.printing import page_option
 from cuefem.cli.progress import followed
 from cuefem.cli.strokes import blow_options, offset_option
 from cuefem.io import InputError, load_accuracy, save_page

@@ -10,7 +10,7 @@ import click
 import numpy as np
 
 from cuefem.cli.common import blaming, cue_options, head_lines
-from cuefem.cli.printing import tell
+from cuefem.cli.printing import output_option, tell
 from cuefem.cli.progress import followed
 from cuefem.cli.strokes import measured, option, with_body
 from cuefem.cue import Cue
@@ -46,7 +46,7 @@ OPTIONS: dict[Steps, Quantity] = {
 @click.option("--contact-time", metavar="TIME", help='How long it touches a wall, e.g. "1 ms".')
 @click.option("--speed", metavar="SPEED", help='Of the striker, e.g. "1 m/s".')
 @click.option("--places", type=click.IntRange(2, 200), default=9, show_default=True, help="Places along the shaft.")
-@click.option("-o", "--output", type=click.Path(path_type=Path), metavar="FOLDER", help="Also the motion for ParaView.")
+@output_option(".html", "")
 @click.option("--frames", type=click.IntRange(2, 10_000), default=61, show_default=True, help="How many frames of it.")
 @cue_options
 def side(file: Path, places: int, output: Path | None, frames: int, as_json: bool, **given: Any) -> None:
@@ -54,19 +54,20 @@ def side(file: Path, places: int, output: Path | None, frames: int, as_json: boo
 
     FILE is a cue or a scene; with a [striker] in it nothing else is needed.
     """
-    if output is not None:
-        check_new(output)
+    folder, page = (output if output is not None and (output.suffix == "") is new else None for new in (True, False))
+    if folder is not None:
+        check_new(folder)
     scene, notes = _scene(file, given)
     rtol = load_accuracy(file)
     with blaming(file):
         outcome = side_strike(scene) if rtol is None else resolve_side_strike(scene, rtol)
         about, found = side_scene_record(scene), side_record(scene, outcome, places=places)
-        put = None if output is None else _animation(scene, outcome.duration, frames)
-    if output is not None and put is not None:
-        write_whole_folder(output, put)
-    written = [] if output is None else [f"wrote {output}: strike.pvd and {frames} frames"]
+        put = None if folder is None else _animation(scene, outcome.duration, frames)
+    if folder is not None and put is not None:
+        write_whole_folder(folder, put)
+    written = [] if folder is None else [f"wrote {folder}: strike.pvd and {frames} frames"]
     lines = [*head_lines(file, about, scene.effects, notes), "", *side_sheets(found, about), *written]
-    tell(as_json, {"file": str(file), "assumed": notes, "scene": about, **found, "units": UNITS}, lines)
+    tell(as_json, {"file": str(file), "assumed": notes, "scene": about, **found, "units": UNITS}, lines, page)
 
 
 def _scene(file: Path, given: dict[str, Any]) -> tuple[SideStrike, list[str]]:

@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 from cuefem.cli.common import remark
-from cuefem.cli.printing import assumed_lines, print_all, print_json
+from cuefem.cli.printing import assumed_lines, json_option, page_option, print_all, print_json
 from cuefem.cli.progress import bar
 from cuefem.design import Pool, processes
 from cuefem.design import dask as cluster
@@ -20,11 +20,6 @@ from cuefem.io.store import Store, export_path, write_table
 from cuefem.io.study import assumed_base, load_study
 from cuefem.report.study import StudyTable, study_record, study_sheets, table_of_study
 from cuefem.report.study_page import study_page
-
-# Of every study: where its designs are computed, and the page that shows them.
-designs_option = click.option(
-    "-o", "--page", type=click.Path(path_type=Path), metavar="PAGE.html", help="Also draw the designs on a page."
-)
 
 
 def pool_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -37,13 +32,15 @@ def pool_options(command: Callable[..., Any]) -> Callable[..., Any]:
 @click.command()
 @click.argument("study", type=click.Path(path_type=Path))
 @click.option(
-    "--store", "--output", type=click.Path(path_type=Path), help="Where designs are kept; by default STUDY.sqlite."
+    "--store", type=click.Path(path_type=Path), metavar="FILE", help="Where designs are kept; by default STUDY.sqlite."
 )
 @pool_options
 @click.option("--export", type=click.Path(path_type=Path), help="Also write the table as .csv or .parquet.")
-@designs_option
-@click.option("--json", "as_json", is_flag=True, help="Say as JSON what was done, with the summary.")
-def sweep(study: Path, store: Path | None, export: Path | None, page: Path | None, as_json: bool, **where: Any) -> None:
+@page_option
+@json_option
+def sweep(
+    study: Path, store: Path | None, export: Path | None, output: Path | None, as_json: bool, **where: Any
+) -> None:
     """Compute every design of STUDY (.toml), keep the results in a file (SQLite), and sum them up.
 
     The summary names the best designs, what drives each result, and where two results trade off. If it is
@@ -55,7 +52,6 @@ def sweep(study: Path, store: Path | None, export: Path | None, page: Path | Non
     goal = None if export is None else export_path(export)
     if goal is not None:
         check_place(goal)
-    check_page(page)
     remark(wanted.base)
     with ExitStack() as open_things:
         progress = open_things.enter_context(bar(wanted.size))
@@ -87,15 +83,7 @@ def sweep(study: Path, store: Path | None, export: Path | None, page: Path | Non
                 yield design, row[:count], row[count:]
 
         table = table_of_study(wanted, rows())
-        _tell(designs, failures, goal, as_json, table, page, notes)
-
-
-def check_page(page: Path | None) -> None:
-    """Refuse, before anything is computed, a page that cannot be written."""
-    if page is not None:
-        if page.suffix != ".html":
-            raise InputError(page, "--page", f"must end in .html; got {page.suffix!r}")
-        check_place(page)
+        _tell(designs, failures, goal, as_json, table, output, notes)
 
 
 @contextmanager
@@ -116,26 +104,26 @@ def _tell(
     goal: Path | None,
     as_json: bool,
     table: StudyTable | None,
-    page: Path | None,
+    output: Path | None,
     notes: Sequence[str],
 ) -> None:
     designs, failed, first = store.count(), len(failures), failures[0] if failures else None
-    if page is not None:
+    if output is not None:
         if table is None:
-            raise InputError(page, "--page", "needs at least two designs with an answer; got fewer")
+            raise InputError(output, "--output", "needs at least two designs with an answer; got fewer")
 
         facts = [f"{designs} designs of {store.path.name}" + (f", {failed} without an answer" if failed else "")]
-        save_page(study_page(store.path.stem, table, facts), page)
+        save_page(study_page(store.path.stem, table, facts), output)
     if as_json:
         found: dict[str, Any] = {"database": str(store.path), "export": goal and str(goal), "designs": designs}
         found |= {"evaluated": store.computed, "failed": failed, "resolution": vars(store.study.resolution)}
         found |= {"first_failure": first and first[1], "summary": table and study_record(table)}
-        print_json(found | {"page": page and str(page), "assumed": notes})
+        print_json(found | {"page": output and str(output), "assumed": notes})
         return
     words = [f"{designs} designs in {store.path}"]
     words += [f"{designs - store.computed} of them from before"] if designs > store.computed else []
     words += [f"exported to {goal}"] if goal else []
-    words += [f"drawn on {page}"] if page else []
+    words += [f"drawn on {output}"] if output else []
     click.echo(", ".join(words))
     if first:
         click.echo(f"{failed} failed, the first of them design {first[0]}: {first[1]}")

@@ -9,12 +9,12 @@ from typing import Any
 import click
 
 from cuefem.cli.common import blaming, check_free, cue_options, scene_of, whole_record
-from cuefem.cli.printing import assumed_lines, tell
+from cuefem.cli.printing import assumed_lines, output_option, tell
 from cuefem.cli.strokes import blow_options, measured, offset_option, with_body
 from cuefem.contact.strike import strike
 from cuefem.cue import Cue
 from cuefem.games import without_leather
-from cuefem.io import FIGURES, InputError, check_place, load_stroke, save, save_figure
+from cuefem.io import FIGURES, InputError, load_stroke, save, save_figure
 from cuefem.io.sound import load_recording
 from cuefem.measured.fit import TapFit
 from cuefem.measured.ringing import Ringing, ringing
@@ -38,48 +38,39 @@ from cuefem.scene import Outcome, Scene
 @click.option(
     "--material-of", "segment", type=click.IntRange(min=0), metavar="N", help="Fit segment N's material, 0 at the tip."
 )
-@click.option(
-    "-o", "--output", type=click.Path(path_type=Path), metavar="NEW.toml", help="Write FILE with the fitted wood."
-)
-@click.option(
-    "--figure", type=click.Path(path_type=Path), metavar="FIGURE", help="Also draw the spectrum: .png or .svg."
-)
+@output_option(".html", ".toml", *FIGURES, many=True)
 @click.option("--doubted", is_flag=True, help="Show and write the result even if it is doubted.")
 @click.option("--force", is_flag=True, help="Replace an existing drawing; also does what --doubted does.")
 @cue_options
 @blow_options
 @offset_option
-def tap(
-    recording: Path, file: Path, output: Path | None, figure: Path | None, force: bool, doubted: bool, **given: Any
-) -> None:
+def tap(recording: Path, file: Path, output: tuple[Path, ...], force: bool, doubted: bool, **given: Any) -> None:
     """Find the shaft's wood by ear: E, G and density from a recording of the shaft, hung free and tapped.
 
-    RECORDING is a .wav of one or more taps. Its tones are matched to the bending modes of the shaft in FILE, as it is
-    drawn there; ball and tip matter to the squirt that follows alone. If the tones do not fit this shaft, or no such
-    wood exists, nothing is shown or written without --doubted (status 1).
+    RECORDING is a .wav of one or more taps; -o NEW.toml writes FILE with the fitted wood, -o FIGURE.png the spectrum.
+    Its tones are matched to the bending modes of the shaft in FILE, as it is drawn there; ball and tip matter to the
+    squirt that follows alone. If the tones do not fit this shaft, or no such wood exists, nothing is shown or written
+    without --doubted (status 1).
     """
-    if figure is not None and figure.suffix not in FIGURES:
-        raise InputError(figure, "--figure", f"must end in .png or .svg; got {figure.suffix!r}")
-    if output is not None and output.suffix != ".toml":
-        raise InputError(output, "--output", f"must end in .toml; got {output.suffix!r}")
-    if output is not None:
-        check_free(output, force=force)
-    if figure is not None:
-        check_place(figure)
+    drawing, page, figure = (
+        next((path for path in output if path.suffix in kinds), None) for kinds in ((".toml",), (".html",), FIGURES)
+    )
+    if drawing is not None:
+        check_free(drawing, force=force)
     scene, notes = scene_of(file, given)
     heard, found = _heard(recording, file, _as_drawn(scene, file, given), given)
     if found.refusals and not (doubted or force):
         raise RuntimeError(f"{recording}: refused, --doubted goes on: {'; '.join(found.refusals)}")
     record = tap_record(found, heard, *_predicted(file, scene, found))
     about = scene_record(replace(scene, cue=_struck(scene, found)))
-    if output is not None:
-        save(_updated(file, scene, found, given), output)
+    if drawing is not None:
+        save(_updated(file, scene, found, given), drawing)
     if figure is not None:
         save_figure(tap_figure(found, heard, f"{recording.name}: {file.name}", figure.suffix[1:]), figure)
-    written = [f"wrote {path}" for path in (output, figure) if path is not None]
+    written = [f"wrote {path}" for path in (drawing, figure) if path is not None]
     whole = whole_record(file, notes, scene, record, scene=about, recording=str(recording))
     lines = [f"{recording.name}, {file.name}", "", *tap_sheets(record, about), *assumed_lines(notes), *written]
-    tell(given["as_json"], whole, lines)
+    tell(given["as_json"], whole, lines, page)
 
 
 def _as_drawn(scene: Scene, file: Path, given: dict[str, Any]) -> Scene:

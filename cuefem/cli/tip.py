@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 from cuefem.cli.common import file_options, show
+from cuefem.cli.printing import page_option
 from cuefem.cli.strokes import measured, place_options, tip_options
 from cuefem.contact.calibrated import leather_modulus, with_modulus
 from cuefem.io import InputError
@@ -19,6 +20,7 @@ from cuefem.scene import Scene
 @click.command()
 @file_options
 @tip_options
+@page_option
 @place_options("restitution", "speed")
 @click.option(
     "--contact-time",

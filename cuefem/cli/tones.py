@@ -9,6 +9,7 @@ from typing import Any
 import click
 
 from cuefem.cli.common import file_options, show
+from cuefem.cli.printing import page_option
 from cuefem.cli.strokes import tip_options
 from cuefem.io import InputError
 from cuefem.quantity import Quantity
@@ -23,6 +24,7 @@ from cuefem.units import number
 @click.command()
 @file_options
 @tip_options
+@page_option
 @click.option("--near", metavar="HERTZ", help="Show the modes nearest this frequency, not the lowest.")
 @click.option("--count", type=click.IntRange(min=1), default=6, show_default=True, help="How many modes.")
 def modes(file: Path, near: str | None, count: int, **given: Any) -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-from cuefem.cli.printing import json_option, tell
+from cuefem.cli.printing import json_option, page_option, tell
 from cuefem.io import InputError, studies_with
 from cuefem.report import claims_record, claims_sheet
 from cuefem.report.claims import VERDICT_WORDS
@@ -18,13 +18,14 @@ from cuefem.validation import Claim
 
 @click.command()
 @click.option("--studies", type=click.Path(path_type=Path), default=Path("studies"), show_default=True)
+@page_option
 @json_option
-def validate(studies: Path, as_json: bool) -> None:
+def validate(studies: Path, as_json: bool, output: Path | None) -> None:
     """Check every claim of the sources against what follows from their equations; needs a clone of the repository."""
     found = claims_record(_claims(studies))
     counts = Counter(claim["verdict"] for claim in found)
     totals = ", ".join(f"{count} {verdict}" for verdict, count in sorted(counts.items()))
-    tell(as_json, {"claims": found}, [claims_sheet(found), totals, VERDICT_WORDS])
+    tell(as_json, {"claims": found}, [claims_sheet(found), totals, VERDICT_WORDS], output)
 
 
 def _claims(folder: Path) -> list[tuple[str, Claim]]:

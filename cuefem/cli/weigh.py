@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from cuefem.cli.common import blaming, scene_of, shape_options
-from cuefem.cli.printing import assumed_lines, json_option, tell
+from cuefem.cli.printing import assumed_lines, json_option, page_option, tell
 from cuefem.cli.strokes import game_option, measured, offset_of, offset_option
 from cuefem.games import GAMES
 from cuefem.io import InputError
@@ -49,11 +49,14 @@ WAYS = ("swing", "height", "speed", "frames")
 @click.option(
     "--position", metavar="LENGTH", default="10 mm", show_default=True, help="Of the blow, from the tip's end."
 )
+@page_option
 @json_option
 @game_option("--ball", "The cue ball, for squirt; by default the scene's.")
 @shape_options
 @offset_option
-def weigh(plan: bool, end_mass: str | None, file: Path | None, as_json: bool, **given: Any) -> None:
+def weigh(
+    plan: bool, end_mass: str | None, file: Path | None, as_json: bool, output: Path | None, **given: Any
+) -> None:
     """Weigh a shaft's end: a light ball on a thread hits the side of the tip end of the shaft, which hangs free.
 
     Give how far the ball swings before and after the blow (or its height, its speed, or the frames of a film over one
@@ -62,7 +65,7 @@ def weigh(plan: bool, end_mass: str | None, file: Path | None, as_json: bool, **
     """
     if plan:
         found = plan_record() if end_mass is None else plan_record(_read("--end-mass", end_mass, "kg"))
-        tell(as_json, found | {"units": UNITS}, plan_sheets(found))
+        tell(as_json, found | {"units": UNITS}, plan_sheets(found), output)
         return
     test = _test(given)
     with blaming(NAME):
@@ -70,7 +73,7 @@ def weigh(plan: bool, end_mass: str | None, file: Path | None, as_json: bool, **
     told, lumped, notes = _squirt(test, weighed, file, given)
     record = weigh_record(weighed, told, lumped)
     whole = {"assumed": notes, **record, "units": UNITS}
-    tell(as_json, whole, [*assumed_lines(notes), *weigh_sheets(record)])
+    tell(as_json, whole, [*assumed_lines(notes), *weigh_sheets(record)], output)
 
 
 def _read(option: str, text: str, unit: str, bounds: str = "(0, inf)") -> float:

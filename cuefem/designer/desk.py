@@ -14,6 +14,7 @@ from typing import Any
 
 from nicegui import background_tasks, ui
 
+from cuefem.designer.advising import AdviceSide
 from cuefem.designer.answering import Answering
 from cuefem.designer.computing import FAILURES, computed
 from cuefem.designer.controls import ChoiceField, NumberField, button
@@ -104,6 +105,8 @@ class Desk:
                 self.results = ResultsSide()
         with self.results.above_table:
             self.pins = PinnedList(self._rename, self._work_on, self._compare_with, self._unpin, self._export)
+        with self.results.below_verdict:
+            self.advice = AdviceSide(lambda: self.design.scene, self.edit)
         with self.results.below_cue:
             self.sheet = DrawingSheet(self.edit)
             self.tap = TapSide(self.receiver.address, lambda: self.design.scene, self.edit)
@@ -249,10 +252,11 @@ class Desk:
     def _ready(self, preset: Preset) -> None:
         try:
             scene, notes = preset_opened(preset)
+            measured = preset.beside(scene)
         except FAILURES as error:
             self.say(f"not opened: {' '.join(str(error).split())}")
             return
-        design = Design.of(Path(preset.file).name, scene, [*notes, preset.told])
+        design = Design.of(Path(preset.file).name, scene, [*notes, measured])
         self.opened = design
         self.open(design)
 
@@ -366,6 +370,7 @@ class Desk:
             field.agree()
         self._show_ways()
         self.sheet.show(self.design.scene, self.system)
+        self.advice.show()
 
     def pictures(self) -> Iterator[None]:
         """Show words, drawings, all numbers and the curves so far, one a step."""

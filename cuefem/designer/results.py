@@ -29,6 +29,7 @@ class ResultsSide:
             with ui.element("section"):
                 self.verdict = Markup()
             self.trust = Markup().classes("trust")
+            self.below_verdict = ui.element("div")
             with ui.element("section"):
                 Markup("<h2>The cue</h2>")
                 self.cue = Markup()

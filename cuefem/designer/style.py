@@ -54,6 +54,8 @@ h1, h2 { font-weight: 700; letter-spacing: 0; font-family: inherit; } h2 { line-
   border: 1px solid var(--c2); border-left-width: 5px;
   border-radius: 6px; color: var(--ink); background: var(--card); box-shadow: 0 4px 18px rgb(0 0 0 / 0.25); }
 .key-strip { background: var(--card); }
+.advice td { vertical-align: middle; } .advice td:first-child { width: 1px; }
+.advice td:nth-child(2) { white-space: normal; min-width: 8rem; }
 .key-strip .key { grid-template-columns: repeat(auto-fit, minmax(118px, 1fr)); }
 .key-strip .key dd { font-size: 1.25rem; white-space: nowrap; } .key-strip .key small { white-space: normal; }
 .key b { font-weight: 650; }

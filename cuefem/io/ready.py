@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -10,7 +11,9 @@ from typing import Any, NamedTuple
 from cuefem.cue import Cue
 from cuefem.games import GAMES, usual_scene
 from cuefem.io import load
+from cuefem.results.designs import strikes_at
 from cuefem.scene import Scene
+from cuefem.tip_modes import Solved
 
 _NOT = "no measurement known"
 _PLAIN = "2.30 and 2.43° at b/R 0.375, 2.5° at b/R 0.453 (Players, 12.75 mm; Billiards Digest 2007, 2008)"
@@ -20,6 +23,14 @@ _KIM = "a tone near 250 Hz and 120 g (Kim 2022); no squirt"
 _CLAY = "squirt with masses on a Players shaft (Billiards Digest 2008)"
 
 
+# The squirt of these, in degrees by offset; a mean where it was measured twice.
+STROKES = {_PLAIN: {0.375: 2.365, 0.453: 2.5}, _LOW: {0.453: 1.8}, _BREAK: {0.267: 2.4}}
+
+
+def _more(difference: float) -> str:
+    return f"{abs(difference):.2f}° {'more' if difference > 0 else 'less'}"
+
+
 class Preset(NamedTuple):
     """A ready file: its path from the folder of `meshes`, its name, its game, and what was measured on such cues."""
 
@@ -27,6 +38,18 @@ class Preset(NamedTuple):
     name: str
     game: str
     measured: str
+
+    def beside(self, scene: Scene) -> str:
+        """What was measured, and what this scene gives at the same offsets, with the difference."""
+        strokes = STROKES.get(self.measured, {})
+        if not strokes:
+            return self.told
+        struck = strikes_at(scene, strokes, Solved(scene).tip)
+        found = (
+            f"{math.degrees(one.squirt):.2f}° at b/R {offset:g}, {_more(math.degrees(one.squirt) - measured)}"
+            for (offset, measured), one in zip(strokes.items(), struck, strict=True)
+        )
+        return f"{self.told}; computed for this cue: {'; '.join(found)}"
 
     @property
     def told(self) -> str:

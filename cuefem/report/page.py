@@ -16,9 +16,11 @@ from cuefem.beam.modes import modes
 from cuefem.beam.tip import TipModes
 from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
+from cuefem.design.advice import advice_record
 from cuefem.endmass.drives import DEFINITIONS
 from cuefem.io.ready import ready_cues
 from cuefem.quantity import scalar
+from cuefem.report.advice import advice_sheet
 from cuefem.report.charts import Axis, Chart, Shade
 from cuefem.report.contact import contact_part
 from cuefem.report.drawings import (
@@ -154,6 +156,7 @@ def _stages(scene: Scene, rtol: float) -> list[Stage]:
         *([Stage("steps", climbed)] if scene.lumped is None else []),
         Stage("outcome", outcome),
         Stage("verdict", lambda: verdict_record(scene, outcome(), ready_cues(), solved=usual())),
+        *([Stage("advice", lambda: advice_record(scene, solved=usual()))] if scene.lumped is None else []),
         Stage("end_masses", lambda: end_mass_record(scene, solved=solved())),
         Stage("squirt", lambda: squirt_record(scene, PAGE_OFFSETS, solved=solved())),
         Stage("strike", lambda: strike_record(scene, outcome(), solved=solved())),
@@ -185,6 +188,7 @@ def _context(scene: Scene, found: Record) -> Record:
         "squirt": degrees(outcome.squirt),
         "error": "" if outcome.error is None else f"{100.0 * outcome.error:.2g} %",
         "verdict": verdict_part(found["verdict"]),
+        "advice": advice_sheet(found["advice"]) if "advice" in found else None,
         "trust": trust_lines(scene),
         "warning": MISCUE if grip_of(outcome) in MISSED else "",
         "cue": _cue_part(scene) if scene.cue.segments else None,

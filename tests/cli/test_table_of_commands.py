@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import json
 import subprocess
 import sys
 from importlib import import_module
@@ -14,6 +15,7 @@ import pytest
 from click.shell_completion import ShellComplete
 
 from cuefem.cli import COMMANDS, main
+from cuefem.cli.printing import Output
 from tests.helpers.command_line import call
 
 FOLDER = Path(import_module("cuefem.cli").__file__).parent  # type: ignore[arg-type]
@@ -56,6 +58,52 @@ def test_a_former_name_answers_with_a_remark() -> None:
         assert err == "cuefem: handover is now `cuefem strike --for pooltool`; the old name ends with this version\n"
     assert call("handover", scene, "--for", "pooltool")[1] == now[1]
     assert "handover" not in call("--help")[1]
+
+
+def option_of(command: click.Command, name: str) -> click.Parameter | None:
+    return next((one for one in command.params if name in one.opts), None)
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_command_takes_the_same_options(name: str) -> None:
+    """--json is everywhere, and -o, which writes what the ending says; `convert` has a file of its own for that."""
+    command = main.get_command(click.Context(main), name)
+    assert command is not None
+    program = option_of(command, "--json")
+    assert program is not None
+    assert (program.name, program.is_flag) == ("as_json", True)  # type: ignore[attr-defined]
+    written = option_of(command, "-o")
+    assert written is option_of(command, "--output")
+    assert (written is None) is (name in ("convert", "designer", "schema"))
+    assert [one.opts for one in command.params if isinstance(one.type, Output)] == (
+        [] if written is None else [["-o", "--output"]]
+    )
+    assert written is None or ".html" in written.type.endings or name == "animate"  # type: ignore[attr-defined]
+
+
+def test_a_command_without_a_page_of_its_own_writes_what_it_prints(tmp_path: Path) -> None:
+    page = tmp_path / "modes.html"
+    shaft = Path(__file__).parents[2] / "meshes/kim.toml"
+    assert call("modes", shaft, "-o", page) == (0, f"wrote {page}\n", "")
+    text, told = page.read_text(encoding="utf-8"), json.loads(call("modes", shaft, "--json")[1])
+    assert all(f"{hertz:.2f} Hz" in text for hertz in told["frequencies"])
+    assert "<h2>Bending modes" in text
+    refused = call("modes", shaft, "-o", tmp_path / "none" / "modes.html")
+    assert refused == (
+        2,
+        "",
+        f"cuefem: {tmp_path / 'none' / 'modes.html'}: cannot be written: No such file or directory\n",
+    )
+
+
+def test_former_options_answer_with_a_remark(tmp_path: Path) -> None:
+    for option in ("--page", f"--page={tmp_path / 'page.pdf'}"):
+        status, out, err = call("sweep", "none.toml", option, *([] if "=" in option else [tmp_path / "page.pdf"]))
+        said, why = err.splitlines()
+        assert (status, out) == (2, "")
+        assert said == "cuefem: sweep --page is now --output; the old name ends with this version"
+        assert why.endswith("page.pdf: --output: must end in .html; got '.pdf'")
+    assert "--store names the file that keeps designs" in call("sweep", "none.toml", "-o", "x.sqlite")[2]
 
 
 def test_a_list_of_the_commands_loads_none_of_them() -> None:

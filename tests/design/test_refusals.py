@@ -322,7 +322,7 @@ FOLDERS: list[tuple[Callable[[Path], object], list[str], str]] = [
     (torn, [], "cannot be read or written as a database"),
     (linked, [], "study.sqlite: must have one name; got a file with hard links: make a copy of it instead"),
     (linked, ["--store", "out.sqlite"], "out.sqlite: must have one name; got a file with hard links"),
-    (written, ["--output", "none/out.sqlite"], "unable to open database file"),
+    (written, ["--store", "none/out.sqlite"], "unable to open database file"),
     (written, ["--export", "out.xlsx"], "must end in .csv or .parquet"),
     (written, ["--export", "out.sqlite"], "must end in .csv or .parquet"),
     (written, ["--export", "nowhere/out.csv"], "No such file or directory"),

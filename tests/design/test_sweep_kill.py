@@ -37,7 +37,7 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def whole(study: Path) -> list[tuple[Any, ...]]:
     """The table of an uninterrupted sweep."""
-    call("sweep", study, "--output", study.with_name("whole.sqlite"))
+    call("sweep", study, "--store", study.with_name("whole.sqlite"))
     rows = rows_of(study.with_name("whole.sqlite"))
     assert len(rows) == 3000
     return rows
@@ -52,7 +52,7 @@ def small(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def whole_small(small: Path) -> list[tuple[Any, ...]]:
     """The table of an uninterrupted sweep of it."""
-    call("sweep", small, "--output", small.with_name("whole.sqlite"))
+    call("sweep", small, "--store", small.with_name("whole.sqlite"))
     rows = rows_of(small.with_name("whole.sqlite"))
     assert len(rows) == 500
     return rows
@@ -64,7 +64,7 @@ def command(study: Path, output: Path, *more: str) -> list[str]:
         str(Path(__file__).parents[1] / "helpers" / "sweep_run.py"),
         "sweep",
         str(study),
-        "--output",
+        "--store",
         str(output),
         *more,
     ]

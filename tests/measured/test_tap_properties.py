@@ -255,7 +255,7 @@ def test_the_command(tmp_path: Path, sound: np.ndarray) -> None:
     wavfile.write(recording, RATE, (sound * 32767).astype(np.int16))
     cuefem.save(Scene(cue("kim"), stroke=cuefem.Stroke(offset=0.2)), scene)
     mass = f"{1e3 * tap.true('kim').shaft_mass} g"
-    status, out, err = call("tap", recording, "--scene", scene, "--mass", mass, "-o", new, "--figure", figure)
+    status, out, err = call("tap", recording, "--scene", scene, "--mass", mass, "-o", new, "-o", figure)
     assert (status, err) == (0, "")
     assert "The wood" in out
     assert figure.read_text(encoding="utf-8").lstrip().startswith("<?xml")

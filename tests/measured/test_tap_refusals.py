@@ -53,7 +53,7 @@ def test_recordings(samples: np.ndarray, line: str, tmp_path: Path) -> None:
     path = tmp_path / "tap.wav"
     wavfile.write(path, RATE, samples.astype(np.float32))
     status = 1 if "tone" in line else 2  # a sound file in which nothing, or no shaft, rings
-    new = ("-o", tmp_path / "new.toml", "--figure", tmp_path / "new.png")
+    new = ("-o", tmp_path / "new.toml", "-o", tmp_path / "new.png")
     said = refused(path, "--scene", KIM, *new, status=status)
     assert said.startswith(f"{path}: ")
     assert line in said
@@ -84,8 +84,7 @@ def test_files_that_are_no_recording(tmp_path: Path, name: str, content: bytes |
         (["--mass", "118"], f'{KIM}: --mass: needs a unit: "15 oz" or "425 g"; got'),
         (["--mass", "-118 g"], f"{KIM}: --mass: must be more than 0 g; got -118 g"),
         (["--material-of", "1"], f"{KIM}: segment must be in [0, 0], 0 at the tip; got 1"),
-        (["--figure", "spectrum.pdf"], "spectrum.pdf: --figure: must end in .png or .svg; got '.pdf'"),
-        (["-o", "new.vtk"], "new.vtk: --output: must end in .toml; got '.vtk'"),
+        (["-o", "spectrum.pdf"], "spectrum.pdf: --output: must end in .html or .toml or .png or .svg; got '.pdf'"),
         (["--offset", "1"], f"{KIM}: --offset: must be between -1 and 1; got 1.0"),
     ],
 )
@@ -93,9 +92,7 @@ def test_options(options: list[str], line: str, tmp_path: Path) -> None:
     assert refused(tmp_path / "none.wav", "--scene", KIM, *options).startswith(line)
 
 
-@pytest.mark.parametrize(
-    "options", [("-o", "new.toml", "--figure", "none/f.svg"), ("-o", "dir.toml", "--figure", "f.svg")]
-)
+@pytest.mark.parametrize("options", [("-o", "new.toml", "-o", "none/f.svg"), ("-o", "dir.toml", "-o", "f.svg")])
 def test_places_where_nothing_can_be_written(options: tuple[str, ...], tmp_path: Path) -> None:
     """Said before the recording is heard: neither of the two files is there without the other."""
     (tmp_path / "dir.toml").mkdir()

@@ -70,7 +70,7 @@ def test_the_command_speaks_json() -> None:
 def test_a_figure_of_another_kind_is_refused_before_the_work(tmp_path: Path) -> None:
     status, out, err = call("cost", KIM, "--output", tmp_path / "cost.pdf")
     assert (status, out) == (2, "")
-    assert "must end in .png or .svg" in err
+    assert "must end in .html or .png or .svg; got '.pdf'" in err
 
 
 def test_a_lumped_cue_has_no_cost(tmp_path: Path) -> None:

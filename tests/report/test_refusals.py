@@ -44,7 +44,7 @@ COMMANDS = [
         "the stroke miscues at offset 0.9; got no end mass",
     ),
     ("strike scene.toml --for pooltool -o cue.json --offset 1.5", "scene.toml: --offset: must be between -1 and 1"),
-    ("strike scene.toml --for pooltool -o cue.toml", "cue.toml: --output: must end in .json; got '.toml'"),
+    ("strike scene.toml --for pooltool -o cue.toml", "cue.toml: --output: must end in .html or .json; got '.toml'"),
     ("strike scene.toml --for pooltool -o none/cue.json", "none/cue.json: cannot be written: "),
     ("strike scene.toml --for pooltool -o dir.json", "dir.json: cannot be written: "),
     ("strike scene.toml -o cue.json", "--output: must go with --for pooltool, for which it is; got no --for"),

@@ -191,7 +191,7 @@ def test_the_command_writes_a_page(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "line"),
     [
-        (["-o", "page.pdf"], "page.pdf: must end in .html; got '.pdf'"),
+        (["-o", "page.pdf"], "page.pdf: --output: must end in .html; got '.pdf'"),
         (["-o", "page.html", "--json"], "page.html: --output: must be left out with --json"),
         (["-o", "missing/page.html"], "missing/page.html: cannot be written: No such file or directory"),
         (["-o", "page.html", "--offset", "1"], "lumped.toml: --offset: must be between -1 and 1; got 1.0"),

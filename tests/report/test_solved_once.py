@@ -64,8 +64,9 @@ def designer(folder: Path) -> None:
         # a strike, an end mass (more modes), the range of the end masses (plain sums), and the frequencies shown; for
         # the verdict three other woods and three ready cues
         (command("report"), 4 + 6),
+        # nine changes, each with a strike and a tone, and the own tone;
         # the strike of a page climbs to an accuracy, here on its first mesh, coarser than a strike's by default
-        (command("report", "-o", "page.html"), 5 + 6),
+        (command("report", "-o", "page.html"), 5 + 6 + 19),
         (command("strike"), 2),  # the end mass of the two-part model takes more modes
         (command("end-mass"), 3),  # of a tip that sticks, of one that is pushed or led (a strike's modes), plain sums
         (command("modes"), 1),

@@ -134,7 +134,7 @@ def test_a_page_is_refused_before_anything_is_computed(tmp_path: Path) -> None:
     (tmp_path / "scene.toml").write_text(SCENE)
     (tmp_path / "study.toml").write_text(STUDY)
     code, _, err = call("sweep", tmp_path / "study.toml", "-o", tmp_path / "page.pdf")
-    assert (code, err) == (2, f"cuefem: {tmp_path / 'page.pdf'}: --page: must end in .html; got '.pdf'\n")
+    assert (code, err) == (2, f"cuefem: {tmp_path / 'page.pdf'}: --output: must end in .html; got '.pdf'\n")
     assert not (tmp_path / "study.sqlite").exists()
 
 

@@ -14,7 +14,7 @@ import cuefem as cf
 from cuefem.designer.answers import answers, completed
 from cuefem.designer.numbers import key_markup, verdict_markup
 from cuefem.games import without_leather
-from cuefem.io.ready import SCALE, ready_cues
+from cuefem.io.ready import PRESETS, SCALE, STROKES, Preset, opened, ready_cues
 from cuefem.report.page import page
 from cuefem.report.verdict import headline, scale, squirt_words, standing
 from cuefem.results.band import LEVEL, LEVEL_OF_SPRING, OF_DIFFERENCE
@@ -135,3 +135,14 @@ def test_measured_end_masses_stand_beside_their_own_definition_alone() -> None:
     assert mass is not None
     given = alciatore_a31(0.3, mass_ratio=SCENE.ball.mass / (1e-3 * float(mass[1])), inertia=SCENE.ball.inertia)
     assert float(given) == pytest.approx(cf.strike(SCENE).squirt, rel=2e-3)
+
+
+@pytest.mark.parametrize("preset", [preset for preset in PRESETS if preset.measured in STROKES], ids=lambda p: p.file)
+def test_measured_squirt_stands_beside_the_same_offset(preset: Preset) -> None:
+    scene, _ = opened(preset)
+    said = preset.beside(scene)
+    for offset, measured in STROKES[preset.measured].items():
+        assert f"at b/R {offset:g}" in preset.measured
+        ours = math.degrees(cf.strike(replace(scene, stroke=replace(scene.stroke, offset=offset))).squirt)
+        more = "more" if ours > measured else "less"
+        assert f"{ours:.2f}° at b/R {offset:g}, {abs(ours - measured):.2f}° {more}" in said

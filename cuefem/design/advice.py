@@ -1,0 +1,183 @@
+"""What a maker can change on a cue, and what each change alone is worth by the coupled strike."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from cuefem.cue import Cue
+from cuefem.effects.leather import DOMES
+from cuefem.materials import MATERIALS, WOODS
+from cuefem.parts import Layout
+from cuefem.results.band import OF_DIFFERENCE
+from cuefem.results.designs import OneDesign, at_offset
+from cuefem.results.quantities import RESULTS
+from cuefem.results.records import Record
+from cuefem.results.verdict import USUAL_OFFSET
+from cuefem.scene import Scene
+from cuefem.tip_modes import Solved
+from cuefem.vary import PLACES, varied
+
+MM = 1e-3
+WIDER, DEEPER, SHORTER, LOWER, THINNER = 1 * MM, 25 * MM, 5 * MM, 1 * MM, 0.5 * MM
+NEW_BORE, NEW_DEPTH = 6 * MM, 127 * MM  # of meshes/pool_hollow.toml, 5 in deep
+LEAST_WALL = 0.8 * MM  # a thinner wall splits: of carbon tubes, the thinnest (meshes/README.md)
+LEAST_FERRULE, LEAST_TIP = 5 * MM, 2 * MM  # after the change
+CARBON_WALL = 1.5 * MM  # the middle of meshes/carbon.toml
+PRO_GAIN = 0.5 * MM  # from the tip to the taper's position, as in meshes/pool_maple.toml
+FERRULES = ("abs", "melamine", "phenolic")  # that are sold for cues; brass and steel only where they stand already
+PAYS, COSTS = 0.01, 0.05  # less squirt that is worth the work; less stiffness that one feels
+NUMBERS = ("squirt", "tip_stiffness", "shaft_mass", "frequency")
+Follow = Callable[[Sequence[Any]], Iterable[Any]]
+
+
+class Advice(NamedTuple):
+    """A change: what it is in words, and the values that it sets, SI or names of materials, by their places."""
+
+    words: str
+    places: dict[str, Any]
+
+
+def changes_of(scene: Scene) -> list[Advice]:
+    """The changes that this cue lets a maker try; those that its shape refuses drop out when they are computed."""
+    own = {key: known.value(scene) for key, known in PLACES.items()}
+    return [
+        *_bores(own),
+        *_fronts(own),
+        *_tips(own),
+        *(_woods_and_tapers(scene.shaft, own)),
+    ]
+
+
+def _bores(own: Record) -> Iterator[Advice]:
+    depth, width = own["bore_depth"], own["bore_width"]
+    if depth is None:
+        return
+    if depth <= 0:
+        new = {"bore depth": NEW_DEPTH, "bore width": NEW_BORE}
+        yield Advice(f"a bore, {_mm(NEW_BORE)} mm wide and {_mm(NEW_DEPTH)} mm deep", new)
+        return
+    yield Advice(f"bore wider, {_mm(width)} → {_mm(width + WIDER)} mm", {"bore width": width + WIDER})
+    yield Advice(f"bore deeper, {_mm(depth)} → {_mm(depth + DEEPER)} mm", {"bore depth": depth + DEEPER})
+
+
+def _fronts(own: Record) -> Iterator[Advice]:
+    length, material = own["ferrule_length"], own["ferrule_material"]
+    if length is None:
+        return
+    if length - SHORTER >= LEAST_FERRULE:
+        yield Advice(
+            f"ferrule shorter, {_mm(length)} → {_mm(length - SHORTER)} mm", {"ferrule length": length - SHORTER}
+        )
+    for name in FERRULES:
+        if MATERIALS[name].material != material:
+            yield Advice(f"ferrule of {name}", {"ferrule material": name})
+
+
+def _tips(own: Record) -> Iterator[Advice]:
+    height, dome = own["tip_height"], own["dome"]
+    if height is not None and height - LOWER >= LEAST_TIP:
+        yield Advice(f"leather lower, {_mm(height)} → {_mm(height - LOWER)} mm", {"tip height": height - LOWER})
+    for name in ("dime", "nickel"):
+        if dome is not None and abs(DOMES[name] - dome) > 0.1 * MM:
+            yield Advice(f"dome of a {name}", {"dome": DOMES[name]})
+
+
+def _woods_and_tapers(cue: Cue, own: Record) -> Iterator[Advice]:
+    """Of a wooden shaft: a tube is made on a mandrel, and is neither turned nor exchanged for solid wood."""
+    if own["shaft_material"] != MATERIALS["carbon fibre"].material:
+        yield from _tapers(cue, own)
+        yield from _woods(cue)
+
+
+def _tapers(cue: Cue, own: Record) -> Iterator[Advice]:
+    tip, taper, end = (own[f"{name}_diameter"] for name in ("tip", "taper", "butt"))
+    at = PLACES["taper_diameter"].at
+    assert at is not None
+    x = at(cue)
+    thinner = {"tip diameter": tip - THINNER, "taper diameter": taper - THINNER}
+    yield Advice(f"{_mm(THINNER)} mm thinner from the tip to {_mm(x)} mm", thinner)
+    cone, pro = tip + (end - tip) * x / cue.length, tip + PRO_GAIN
+    for name, wanted in (("straight taper, a cone", cone), ("pro taper", pro)):
+        if abs(wanted - taper) > 0.2 * MM:
+            yield Advice(f"{name}, {_mm(wanted)} mm at {_mm(x)} mm", {"taper diameter": wanted})
+
+
+def _woods(cue: Cue) -> Iterator[Advice]:
+    shaft = Layout.of(cue).shaft
+    own = cue.segments[shaft.start].material
+    for name in WOODS:
+        if MATERIALS[name].material != own:
+            yield Advice(f"shaft of {name}", {"shaft material": name})
+    tube: dict[str, Any] = {}
+    for i in shaft:
+        segment = cue.segments[i]
+        tube |= {
+            f"cue.segments[{i}].material": "carbon fibre",
+            f"cue.segments[{i}].core": "foam",
+            f"cue.segments[{i}].tip_bore": segment.tip_diameter - 2 * CARBON_WALL,
+            f"cue.segments[{i}].butt_bore": segment.butt_diameter - 2 * CARBON_WALL,
+        }
+    yield Advice(f"shaft a carbon tube, wall {_mm(CARBON_WALL)} mm, foam inside", tube)
+
+
+def _mm(length: float) -> str:
+    return f"{1e3 * length:.4g}"
+
+
+def advice_record(scene: Scene, *, solved: Solved | None = None, follow: Follow = list) -> Record:
+    """The cue's own numbers, and those of each change alone: the least squirt first.
+
+    "set": what the change sets, by its places; changes of squirt and stiffness are relative, others SI;
+    "verdict": whether it pays. A stroke head on is taken at the usual offset. solved: the scene's modes, if they are
+    known. follow: shows how far the work is.
+    """
+    if not scene.stroke.offset:
+        scene, solved = at_offset(scene, USUAL_OFFSET), None
+    own = _numbers(solved or Solved(scene))
+    rows = []
+    for change in follow(changes_of(scene)):
+        try:
+            made = varied(scene, change.places)
+            if _wall(made) < min(LEAST_WALL, _wall(scene)):
+                continue
+            rows.append(_row(change, own, _numbers(Solved(made))))
+        except (ValueError, RuntimeError):
+            continue
+    rows.sort(key=lambda row: row["squirt_change"])
+    return {"offset": float(scene.stroke.offset), "own": own, "changes": rows}
+
+
+def _numbers(solved: Solved) -> Record:
+    design = OneDesign(solved)
+    return {name: float(_of(name)(design, 1 if name == "frequency" else None)[0]) for name in NUMBERS}
+
+
+def _of(name: str) -> Callable[..., Any]:
+    of = RESULTS[name].of
+    assert of is not None
+    return of
+
+
+def _wall(scene: Scene) -> float:
+    """The thinnest wall of what is bored and empty, m."""
+    empty = [s for s in scene.shaft.segments if s.core is None and max(s.tip_bore, s.butt_bore) > 0]
+    return min((min(s.tip_diameter - s.tip_bore, s.butt_diameter - s.butt_bore) / 2 for s in empty), default=np.inf)
+
+
+def _row(change: Advice, own: Record, made: Record) -> Record:
+    relative = {name: made[name] / own[name] - 1 for name in ("squirt", "tip_stiffness")}
+    absolute = {name: made[name] - own[name] for name in ("shaft_mass", "frequency")}
+    changes = {f"{name}_change": value for name, value in (relative | absolute).items()}
+    error = {"squirt_change_error": OF_DIFFERENCE * abs(relative["squirt"])}
+    return {"change": change.words, "set": change.places} | made | changes | error | {"verdict": _verdict(relative)}
+
+
+def _verdict(relative: Record) -> str:
+    if relative["squirt"] > PAYS:
+        return "more squirt"
+    if relative["squirt"] > -PAYS:
+        return "hardly matters"
+    return "pays, costs stiffness" if relative["tip_stiffness"] < -COSTS else "pays"

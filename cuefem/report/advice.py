@@ -1,0 +1,51 @@
+"""What a maker can change, for people."""
+
+from __future__ import annotations
+
+from cuefem.results.band import OF_DIFFERENCE
+from cuefem.results.quantities import degrees
+from cuefem.results.records import Record, Sheet, sheet
+
+STYLES = {"pays": "bold", "more squirt": "dim"}
+
+
+def advice_sheet(record: Record) -> Sheet:
+    """A row for each change, the least squirt first."""
+    rows = record["changes"]
+    made = sheet(
+        "What would change it",
+        {
+            "change": "{change}",
+            "squirt": lambda row: _percent(row["squirt_change"]),
+            "stiffness": lambda row: _percent(row["tip_stiffness_change"]),
+            "weight": lambda row: _signed(1e3 * row["shaft_mass_change"], 1, "g"),
+            "first tone": lambda row: _signed(row["frequency_change"], 1, "Hz"),
+            "": "{verdict}",
+        },
+        rows,
+        *advice_notes(record),
+        texts=(0, 5),
+    )
+    styles = {i: STYLES[row["verdict"]] for i, row in enumerate(rows) if row["verdict"] in STYLES}
+    return Sheet(made.title, made.head, made.rows, made.notes, made.texts, styles)
+
+
+def advice_notes(record: Record) -> list[str]:
+    """What the table is."""
+    return [
+        f"Each change alone, by the whole stroke at b/R {record['offset']:g}, where this cue has "
+        f"{degrees(record['own']['squirt'])}; a change of squirt was right to {100 * OF_DIFFERENCE:.0f} % of itself on "
+        "measured cues.",
+        "Stiffness: static, at the tip, the butt end clamped. Pays: a hundredth less squirt or more; costs stiffness: "
+        "a twentieth of it or more.",
+    ]
+
+
+def _percent(share: float) -> str:
+    return _signed(100 * share, 1 if abs(share) < 0.095 else 0, "%")
+
+
+def _signed(value: float, decimals: int, unit: str) -> str:
+    """A change with its sign; nothing that rounds to zero has one."""
+    text = f"{value:+.{decimals}f}"
+    return f"{text if float(text) else text[1:]}\u00a0{unit}".replace("-", "−")
