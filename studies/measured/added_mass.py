@@ -409,7 +409,8 @@ def leather_conclusions() -> str:
         f"{old_depth:.2f}, measured 0.94), and at 9 and 10 in squirt still changes by {min(ends):+.0f} to "
         f"{max(ends):+.0f} % (measured +1 to +3 %). The 3 g that add more than half of what 11 g add remain "
         f"unexplained. A clip's length and rotary inertia change the ratio at 2 in by {of_clip():+.2f}, away from the "
-        "measured value."
+        "measured value. A clip that grips softly was not tried: 11 g on a lateral spring of 1e5 N/m would swing at "
+        "480 Hz, but effects of cuefem add masses that move with the shaft, not masses on springs."
     )
 
 
