@@ -65,7 +65,7 @@ def test_ones_own_shaft_takes_three_commands(tmp_path: Path) -> None:
     install, profile, report = OWN_SHAFT.splitlines()
     assert install.endswith("pip install --quiet .")
     subprocess.run(["bash", "-c", profile], cwd=tmp_path, check=True)
-    (csv,) = blocks("csv")
+    csv, _ = blocks("csv")
     assert (tmp_path / "my_shaft.csv").read_text() == csv
     words = shlex.split(report)
     assert words[0] == ".venv/bin/cuefem"
@@ -146,7 +146,7 @@ def test_drawings_and_scenes_load(tmp_path: Path) -> None:
             loaded = cuefem.load(path)
             assert type(loaded) is (cuefem.Scene if named else cuefem.Cue)
             kinds.append((kind, type(loaded).__name__))
-    assert sorted(kinds) == [("csv", "Cue"), ("toml", "Cue"), ("toml", "Scene")]
+    assert sorted(kinds) == [("csv", "Cue"), ("csv", "Cue"), ("toml", "Cue"), ("toml", "Scene")]
 
 
 def test_commands_exist() -> None:

@@ -23,6 +23,7 @@ from cuefem.io import load
 from cuefem.io.profile import DEFAULT_MATERIAL, SHAPES
 from cuefem.io.ready import PRESETS, Preset, ready_cue
 from cuefem.materials import MATERIALS, material
+from cuefem.parts import with_material
 from cuefem.scene import Scene
 
 _CUE = re.compile(r"""^\s*cue\s*=\s*["']([^"'\n]+)["']""", re.MULTILINE)
@@ -121,7 +122,7 @@ class ShapeDialog:
             raise ValueError(f"the weight {error}") from None
         kilograms = weight * {"g": 1e-3, "oz": 28.349523125e-3}[self.unit]
         wood = material(self.material.value)
-        cue = replace(self.cue, segments=tuple(replace(s, material=wood) for s in self.cue.segments))
+        cue = with_material(self.cue, material(DEFAULT_MATERIAL), wood)
         rest = kilograms - (cue.shaft_mass if self.which.value == "whole" else 0.0)
         if rest < 0:
             drawn = cue.shaft_mass / kilograms * weight

@@ -9,10 +9,11 @@ from typing import Any
 from cuefem.cue import Cue
 from cuefem.effects import effect_kinds
 from cuefem.games import GAMES, usual_tip
-from cuefem.io.profile import DEFAULT_MATERIAL, DEFAULT_UNIT, SHAPES, SURFACES, profile_notes
+from cuefem.io.profile import DEFAULT_MATERIAL, DEFAULT_UNIT, SHAPES, SURFACES, read_profile
 from cuefem.io.toml import read_tables
 from cuefem.scene import DEFAULT_CONTACT_TIME, Ball, Stroke, Tip
 
+SOLID = "no ferrule, no bore (columns material and bore add them)"
 SHORTER = "; about 1 ms is usual"  # a pool ball's, measured; 2 ms is [Kim]'s
 
 
@@ -42,12 +43,18 @@ def _profile(path: Path, given: Collection[str], choose: str = "") -> list[str]:
     if path.suffix.lower() not in SHAPES:
         return []
     lengths = path.suffix.lower() in SURFACES and "length_unit" not in given
+    found = None if path.suffix.lower() in SURFACES else read_profile(path, DEFAULT_UNIT, checked=False)
     unit = f"lengths in {DEFAULT_UNIT}{choose and ' (--length-unit gives another)'}"
     return [
         *([unit] if lengths else []),
-        *(_fit(path) if path.suffix.lower() in SURFACES else profile_notes(path)),
-        *([] if "material" in given else [f"material {DEFAULT_MATERIAL}{choose}"]),
+        *(_fit(path) if found is None else found.notes),
+        *(
+            []
+            if "material" in given or (found is not None and found.named)
+            else [f"material {DEFAULT_MATERIAL}{choose}"]
+        ),
         *([] if "body_mass" in given else ["no mass behind the shaft (--body-mass gives it)"]),
+        *([SOLID] if found is not None and found.solid else []),
     ]
 
 

@@ -15,9 +15,12 @@ from cuefem.units import first_name, scale
 EXAMPLE = '"x [mm],diameter [mm]"'
 TITLES = 20  # lines that may stand above the header
 
-PLACE, DIAMETER, RADIUS, BORE = "x", "diameter", "radius", "bore"
+PLACE, DIAMETER, RADIUS, BORE, MATERIAL, CORE = "x", "diameter", "radius", "bore", "material", "core"
+NAMES = (MATERIAL, CORE)  # columns of names, which have no unit
 # The words by which a column is known, most telling first: "bore diameter" is a bore, "diameter at x" a diameter.
 _WORDS = {
+    CORE: {"core", "kern"},
+    MATERIAL: {"material", "materials", "wood"},
     BORE: {"bore", "bored", "inner", "inside", "id", "hole", "hollow", "bohrung"},
     RADIUS: {"radius", "radii", "rad", "r", "halbmesser"},
     DIAMETER: {
@@ -47,10 +50,11 @@ class ProfileColumn:
 
 @dataclass(frozen=True)
 class Header:
-    """The columns of a profile that say a place and a diameter, those that do not, and the lines below."""
+    """The columns of a profile that say a length, a material, and nothing that is used; and the lines below."""
 
     line: int
     used: tuple[ProfileColumn, ...]
+    names: tuple[ProfileColumn, ...]
     unused: tuple[str, ...]
     width: int
     rows: tuple[Row, ...]
@@ -70,17 +74,17 @@ def read_header(path: Path, rows: Sequence[Row]) -> Header:
     """The header of a profile's rows; InputError if no row names a place and a diameter."""
     for i, (line, cells) in enumerate(rows[:TITLES]):
         columns = [_column(path, line, j, cell) for j, cell in enumerate(cells)]
-        used = tuple(column for column in columns if column.kind)
+        used = tuple(column for column in columns if column.kind and column.kind not in NAMES)
+        names = tuple(column for column in columns if column.kind in NAMES)
         kinds = {column.kind for column in used}
         if PLACE in kinds and kinds & {DIAMETER, RADIUS}:
-            _refuse_bore(path, line, used)
             below = rows[i + 1 :]
             units = [unit_of(cell) for cell in below[0][1]] if below else []
             if units and all(unit or not cell for unit, cell in zip(units, below[0][1], strict=True)):
                 used = tuple(_with_unit(column, units) for column in used)
                 below = below[1:]
             unused = tuple(column.name for column in columns if column.name and not column.kind)
-            return Header(line, used, unused, len(cells), tuple(below))
+            return Header(line, used, names, unused, len(cells), tuple(below))
         if len(cells) > 1 and all(map(is_number, cells)):
             break
     line, cells = rows[0]
@@ -123,16 +127,9 @@ def _kind(words: Sequence[str]) -> str:
     for kind, known in _WORDS.items():
         if known & set(words):
             return kind
-    long = {word: kind for kind, known in _WORDS.items() for word in known if len(word) > 4}
+    long = {word: kind for kind, known in _WORDS.items() if kind not in NAMES for word in known if len(word) > 4}
     close = [difflib.get_close_matches(word, long, n=1, cutoff=0.8) for word in words if len(word) > 4]
     return next((long[found[0]] for found in close if found), "")
-
-
-def _refuse_bore(path: Path, line: int, used: Sequence[ProfileColumn]) -> None:
-    bore = next((column for column in used if column.kind == BORE), None)
-    if bore is not None:
-        problem = "is a bore, which a .csv cannot draw: draw a hollow shaft as a .toml"
-        raise InputError(path, f"line {line}", f"the column {shown(bore.name)} {problem}")
 
 
 def from_butt(column: ProfileColumn) -> bool:

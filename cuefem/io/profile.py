@@ -5,14 +5,28 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from decimal import Decimal
 from pathlib import Path
 
 from cuefem.cue import Cue, Material, Segment
 from cuefem.io.cells import Row, decimal_mark, parted, plain, read_rows
-from cuefem.io.columns import DIAMETER, EXAMPLE, PLACE, RADIUS, Header, ProfileColumn, from_butt, read_header, unit_of
+from cuefem.io.columns import (
+    BORE,
+    CORE,
+    DIAMETER,
+    EXAMPLE,
+    MATERIAL,
+    PLACE,
+    RADIUS,
+    Header,
+    ProfileColumn,
+    from_butt,
+    read_header,
+    unit_of,
+)
 from cuefem.io.errors import InputError, faults_of, shown
+from cuefem.io.toml import named_material
 from cuefem.quantity import DIAMETER as WIDTH
 from cuefem.quantity import Quantity
 from cuefem.units import number
@@ -26,7 +40,7 @@ TABLES = (".xlsx", ".xls", ".ods", ".numbers", ".txt", ".tsv", ".dat")  # files 
 _STRAIGHT = 1e-9
 _SAME = 0.005  # relative: two columns that say one thing in two units
 
-_POSITION = Quantity("m")
+_POSITION, _HOLE = Quantity("m"), Quantity("m", "[0, 10]")
 _USUAL = {"mm": 1e-3, "in": 25.4e-3, "cm": 1e-2, "m": 1.0}  # units of a column that names none
 _LENGTHS, _WIDTHS = (0.3, 1.6), (0.0075, 0.04)  # m: of shafts and cues, by which such a unit is guessed
 
@@ -34,31 +48,64 @@ Point = tuple[float, float]  # position, diameter, m
 
 
 @dataclass(frozen=True)
+class Inside:
+    """What a row says of the shaft from its place on: bore, m, and the names of materials; None if there are none."""
+
+    bore: float = 0.0
+    material: Material | None = None
+    core: Material | None = None
+
+
+@dataclass(frozen=True)
 class Profile:
-    """The points of a shaft from tip to butt, and what its reader should know of how they were read."""
+    """The points of a shaft from tip to butt, what lies inside behind each, and what its reader should know of it."""
 
     points: tuple[Point, ...]
+    inside: tuple[Inside, ...]
     notes: tuple[str, ...]
+
+    @property
+    def named(self) -> bool:
+        """Whether the file names the material of all of the shaft."""
+        return all(inside.material for inside in self.inside[:-1])
+
+    @property
+    def solid(self) -> bool:
+        """Whether the file says nothing of a bore or a material, as a ferrule's would be."""
+        return not any(inside.bore or inside.material for inside in self.inside)
+
+    def bores(self, i: int) -> tuple[float, float]:
+        """The bore between a point and the next: it tapers to the next row's, and where that has none it ends there."""
+        first, last = self.inside[i].bore, self.inside[i + 1].bore
+        return (first, last) if first and last else (first, first)
 
 
 def load_profile(path: Path, material: Material, length_unit: str | None = None) -> Cue:
     """The shaft of a CSV that names a column x and a column diameter (or radius), with their units of length.
 
     Separator, decimal mark, encoding, order and names of the columns may be any usual ones. The first x may have any
-    value: the shaft begins there. One segment an interval; straight tapers become one. length_unit: of columns that
-    name none.
+    value: the shaft begins there. One segment an interval; straight tapers become one. Columns bore, material and core
+    hold from a row on; material: where the file names none. length_unit: of columns that name none.
     """
-    points = read_profile(path, length_unit).points
+    found = read_profile(path, length_unit)
+    points, inside = found.points, found.inside
     if len(points) < 2:
         raise InputError(path, "", f"must hold at least 2 points; got {len(points)}")
-    pairs = itertools.pairwise(_corners(points))
+
+    def alike(i: int) -> tuple[object, ...]:
+        """What two intervals share that may be one segment; an interval with a tapered bore is one by itself."""
+        bores = found.bores(i)
+        return (bores, inside[i].material, inside[i].core, i if bores[0] != bores[1] else None)
+
+    segments = list[Segment]()
     with faults_of(path, ""):
-        return Cue(tuple(Segment(_apart(x0, x1), d0, d1, material) for (x0, d0), (x1, d1) in pairs))
-
-
-def profile_notes(path: Path) -> tuple[str, ...]:
-    """What the reader of a profile's results should know of how it was read; the units do not matter."""
-    return read_profile(path, DEFAULT_UNIT, checked=False).notes
+        for _, run in itertools.groupby(range(len(points) - 1), key=alike):
+            first, *others = run
+            here, bores = inside[first], found.bores(first)
+            corners = _corners(points[first : first + len(others) + 2])
+            rest = (here.material or material, *bores, here.core if bores[0] else None)
+            segments += [Segment(_apart(x0, x1), d0, d1, *rest) for (x0, d0), (x1, d1) in itertools.pairwise(corners)]
+        return Cue(tuple(segments))
 
 
 def read_profile(path: Path, length_unit: str | None = None, *, checked: bool = True) -> Profile:
@@ -79,7 +126,45 @@ def read_profile(path: Path, length_unit: str | None = None, *, checked: bool = 
     x = [_number(path, header.rows[i], place, mark) for i in range(len(header.rows))]
     d = [_number(path, header.rows[i], width, mark) for i in range(len(header.rows))]
     points = _ordered(path, header, place, list(zip(x, d, strict=True)))
-    return Profile(points, _notes(header, place, width, spare, points))
+    inside = _inside(path, header, columns, mark, d)
+    if any(one != Inside() for one in inside) and (from_butt(place) or points[0][0] != x[0]):
+        problem = "must run from tip to butt where a bore or a material stands beside it: each holds from its row on"
+        raise InputError(path, f"line {header.line}, x", problem)
+    behind = dict(zip(x, inside, strict=True))
+    told = Profile(points, tuple(behind.get(at, Inside()) for at, _ in points), ())
+    return replace(told, notes=(*_notes(header, place, width, spare, points), *_bored(told, place.unit)))
+
+
+def _inside(
+    path: Path, header: Header, columns: Sequence[ProfileColumn], mark: str, diameters: Sequence[float]
+) -> list[Inside]:
+    """What every row says of bore, material and core; an empty cell of a material means the one above."""
+    bore = next((column for column in columns if column.kind == BORE), None)
+    named = {column.kind: column for column in header.names}
+    found, before = list[Inside](), dict[str, Material]()
+    for row, outer in zip(header.rows, diameters, strict=True):
+        line, cells = row
+        for kind, column in named.items():
+            cell = cells[column.index].strip() if column.index < len(cells) else ""
+            if cell:
+                before[kind] = named_material(cell.casefold(), path, f"line {line}, {kind}")
+        empty = bore is None or bore.index >= len(cells) or not cells[bore.index].strip(" -–")
+        width = 0.0 if empty or bore is None else _number(path, row, bore, mark)
+        if width >= outer:
+            across = f"{1e3 * outer:.6g} mm, the diameter there; got {1e3 * width:.6g} mm"
+            raise InputError(path, f"line {line}, bore", f"must be less than {across}")
+        found.append(Inside(width, before.get(MATERIAL), before.get(CORE)))
+    return found
+
+
+def _bored(found: Profile, unit: str) -> list[str]:
+    """Where the shaft is bored, so that who wrote the file sees how it was read."""
+    per = number(f"1 {unit}", "m")
+    return [
+        f"bored {found.inside[i].bore / per:.6g} {unit} from {x / per:.6g} to {found.points[i + 1][0] / per:.6g} {unit}"
+        for i, (x, _) in enumerate(found.points[:-1])
+        if found.inside[i].bore
+    ]
 
 
 def _notes(
@@ -168,7 +253,7 @@ def _chosen(
     place, width = _first(columns, PLACE), _first(columns, DIAMETER, RADIUS)
     spare = []
     for column in columns:
-        if column in (place, width):
+        if column in (place, width) or column.kind == BORE:
             continue
         used = place if column.kind == PLACE else width
         pairs = [(_number(path, row, used, mark), _number(path, row, column, mark)) for row in header.rows]
@@ -192,7 +277,7 @@ def _number(path: Path, row: Row, column: ProfileColumn, mark: str) -> float:
     if not text or not unit:
         raise InputError(path, where, f"must be a number; got {shown(cell) if cell else 'nothing'}")
     with faults_of(path, where):
-        value = (_POSITION if kind == PLACE else WIDTH).read(f"{plain(text, mark)} {unit}")
+        value = (_POSITION if kind == PLACE else _HOLE if kind == BORE else WIDTH).read(f"{plain(text, mark)} {unit}")
     return 2 * value if kind == RADIUS else value
 
 

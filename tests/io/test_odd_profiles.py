@@ -35,6 +35,7 @@ def in_inches(points: tuple[tuple[float, float], ...]) -> tuple[tuple[float, flo
 PLAIN = "x [mm],diameter [mm]\n0,12.75\n330,13.2\n736.6,21.5\n"
 GERMAN = "x [mm];Durchmesser [mm]\n0,0;12,75\n330,0;13,2\n736,6;21,5\n"
 TABS = PLAIN.replace(",", "\t")
+SOLID = "no ferrule, no bore (columns material and bore add them)"
 READ = {
     "plain": Odd(PLAIN),
     "semicolons and decimal commas": Odd(GERMAN),
@@ -113,9 +114,29 @@ REFUSED = {
         "write decimal points, or part the columns by semicolons",
     ),
     "a spreadsheet": (b"PK\x03\x04" + bytes(60), "is a spreadsheet, not a .csv: in its program, save it as CSV"),
-    "a bore": (
-        "x [mm],diameter [mm],bore [mm]\n0,12.75,6\n736.6,21.5,6\n",
-        "line 1: the column 'bore [mm]' is a bore, which a .csv cannot draw: draw a hollow shaft as a .toml",
+    "a bore from the butt": (
+        "distance from butt [mm],diameter [mm],bore [mm]\n0,21.5,\n736.6,12.75,6\n",
+        "line 1, x: must run from tip to butt where a bore or a material stands beside it: each holds from its row on",
+    ),
+    "a bore, butt first": (
+        "x [mm],diameter [mm],bore [mm]\n736.6,21.5,\n0,12.75,6\n",
+        "line 1, x: must run from tip to butt where a bore or a material stands beside it",
+    ),
+    "a bore without a unit": (
+        "x [mm],diameter [mm],bore\n0,12.75,6\n736.6,21.5,\n",
+        "line 1: the column 'bore' has no unit: write one in brackets",
+    ),
+    "a bore as wide as the shaft": (
+        "x [mm],diameter [mm],bore [mm]\n0,12.75,12.75\n736.6,21.5,\n",
+        "line 2, bore: must be less than 12.75 mm, the diameter there; got 12.75 mm",
+    ),
+    "a bore below nothing": (
+        "x [mm],diameter [mm],bore [mm]\n0,12.75,-6\n736.6,21.5,\n",
+        "line 2, bore: must be 0 to 10000 mm; got -6 mm",
+    ),
+    "an unknown material": (
+        "x [mm],diameter [mm],material\n0,12.75,hard mapel\n736.6,21.5,\n",
+        "line 2, material: no material is called 'hard mapel'; nearest: hard maple",
     ),
     "two diameters": (
         "x [mm],diameter 1 [mm],diameter 2 [mm]\n0,12.75,12.9\n736.6,21.5,21.4\n",
@@ -162,6 +183,50 @@ def written(folder: Path, content: str | bytes) -> Path:
     return path
 
 
+FERRULED = """x [mm],Diameter [mm],Bore [mm],Material,Core
+0,12.75,,leather,
+6,12.75,8,Melamine,hard maple
+31,12.8,6,hard maple,foam
+150,13,5,,foam
+200,13.1,,,
+330,13.2
+430,14.7,-
+736.6,21.5
+"""
+
+
+def test_bore_ferrule_and_core_stand_in_columns(tmp_path: Path) -> None:
+    """Each holds from its row on; a bore tapers to the next one, and ends where a row has none."""
+    path = written(tmp_path, FERRULED)
+    leather, melamine, foam = map(material, ("leather", "melamine", "foam"))
+    sizes = [
+        (0, 12.75, 6, 12.75, leather, 0, 0, None),
+        (6, 12.75, 31, 12.8, melamine, 8, 6, MAPLE),
+        (31, 12.8, 150, 13, MAPLE, 6, 5, foam),
+        (150, 13, 200, 13.1, MAPLE, 5, 5, foam),
+        (200, 13.1, 330, 13.2, MAPLE, 0, 0, None),
+        (330, 13.2, 430, 14.7, MAPLE, 0, 0, None),
+        (430, 14.7, 736.6, 21.5, MAPLE, 0, 0, None),
+    ]
+    found = cf.load(path)
+    assert isinstance(found, cf.Cue)
+    for segment, (x0, d0, x1, d1, wood, b0, b1, core) in zip(found.segments, sizes, strict=True):
+        numbers = segment.length, segment.tip_diameter, segment.butt_diameter, segment.tip_bore, segment.butt_bore
+        meant = [value / 1e3 for value in (x1 - x0, d0, d1, b0, b1)]
+        assert numbers == pytest.approx(meant, rel=1e-12, abs=1e-15)
+        assert (segment.material, segment.core) == (wood, core)
+    told = assumed(path, {"body_mass"})
+    assert told == ["bored 8 mm from 6 to 31 mm", "bored 6 mm from 31 to 150 mm", "bored 5 mm from 150 to 200 mm"]
+    cf.save(found, tmp_path / "cue.toml")
+    assert cf.load(tmp_path / "cue.toml") == found
+
+
+def test_a_plain_profile_is_as_without_the_columns(tmp_path: Path) -> None:
+    plain = cf.load(written(tmp_path, PLAIN), material="ash")
+    text = PLAIN.replace("[mm]\n", "[mm],bore [mm],material\n", 1)
+    assert cf.load(written(tmp_path, text), material="ash") == plain
+
+
 def test_there_are_enough_of_them() -> None:
     assert len(READ) + len(REFUSED) >= 20
 
@@ -175,7 +240,7 @@ def test_read_as_meant(name: str, tmp_path: Path) -> None:
         sizes = segment.length, segment.tip_diameter, segment.butt_diameter
         assert sizes == pytest.approx((meant.length, meant.tip_diameter, meant.butt_diameter), rel=1e-12, abs=0)
     told = assumed(tmp_path / "shaft.csv", {"material", "body_mass"})
-    assert tuple(told) == odd.said
+    assert tuple(told) == (*odd.said, SOLID)
 
 
 @pytest.mark.parametrize("name", REFUSED)
