@@ -1,6 +1,6 @@
 """How much does a leather tip give, from its geometry? The table that cuefem's LeatherTip reads, and how good it is.
 
-A tip is a domed cylinder of linear, isotropic leather on a rigid ferrule, solved by leather_body.py. Two things
+A tip is a domed cylinder of linear, isotropic leather on a rigid ferrule, solved by cuefem/solid/tip.py. Two things
 are tabulated, over height, dome, Poisson's ratio and the patch's radius: the compliance along the normal and along the
 surface of a patch with Hertz's pressure anywhere on the dome, and force and depth of a ball that is pressed on it head
 on. `cuefem.effects.leather_table` holds the coordinates and reads the table. The page compares the solid with exact
@@ -19,13 +19,12 @@ from typing import NamedTuple
 import numpy as np
 
 from cuefem.effects import leather_table as lt
-from studies import pages
-from studies.beam.leather_body import (
+from cuefem.solid.tip import (
     Array,
-    Fineness,
     Patch,
     Shape,
-    Solid,
+    TipFineness,
+    TipSolid,
     compliance,
     fitted,
     head_on,
@@ -34,6 +33,7 @@ from studies.beam.leather_body import (
     surfaces,
     usual,
 )
+from studies import pages
 from studies.pages import table
 
 KEPT = Path(lt.__file__).with_suffix(".npz")
@@ -61,7 +61,7 @@ def curvatures(panel: int, count: int) -> Array:
 
 def geometry(shape: Shape, where: Sequence[Patch], load: Array, nus: Array, n: dict[str, int]) -> tuple[Array, Array]:
     """Rows of the table for one shape: the patches (nu, patch, 3) and head_on (nu, radius, 2, 3)."""
-    off = Solid(shape, OFF)
+    off = TipSolid(shape, OFF)
     places, radii = np.array(where).T
     straight = np.exp(lt.nodes(*lt.LOG_HEAD_ON, n["head_on"]))
     patch = []
@@ -75,7 +75,7 @@ def geometry(shape: Shape, where: Sequence[Patch], load: Array, nus: Array, n: d
     head = np.zeros((len(nus), n["head_on"], 2, 3))
     for i, a in enumerate(straight):
         how = fitted(shape.height, a)
-        on = Solid(shape, how)
+        on = TipSolid(shape, how)
         for k, nu in enumerate(nus):
             found = head_on(shape, on.surface(nu, 0), a, how)
             head[k, i] = np.log(found / lt.half_space_head_on(nu, a))
@@ -116,7 +116,7 @@ def gains(nus: Array, n: dict[str, int]) -> Array:
     found = np.zeros((n["height"], n["nu"], n["punch"], 2))
     for j, v in enumerate(lt.nodes(*lt.heights(0.0), n["height"])):
         shape = shape_at(0.0, v)
-        solid, load = Solid(shape, how), [loads(shape, Patch(0.0, a), how, (0.5, -0.5)) for a in radii]
+        solid, load = TipSolid(shape, how), [loads(shape, Patch(0.0, a), how, (0.5, -0.5)) for a in radii]
         for k, nu in enumerate(nus):
             surfaces = [solid.surface(nu, m) for m in (0, 1)]
             both = [compliance(surfaces, f) for f in load]
@@ -127,9 +127,9 @@ def gains(nus: Array, n: dict[str, int]) -> Array:
 # The page
 
 
-def solved(shape: Shape, nu: float, patch: Patch, how: Fineness = OFF) -> Array:
+def solved(shape: Shape, nu: float, patch: Patch, how: TipFineness = OFF) -> Array:
     """E D times the compliance of one Hertz-weighted patch, by the solid itself."""
-    return compliance(surfaces(Solid(shape, how), nu), loads(shape, patch, how))
+    return compliance(surfaces(TipSolid(shape, how), nu), loads(shape, patch, how))
 
 
 def exact() -> Iterator[list[str | float]]:
@@ -180,7 +180,7 @@ def errors(tips: int = 20, seed: int = 1) -> Errors:
         if k > 2 or shape.height < max(shape.sag, lt.HEIGHT[0]):
             continue
         tip, how = lt.of_tip(shape.height, k, nu), usual(6, 7, 6, 44)
-        solution = surfaces(Solid(shape, how), nu)
+        solution = surfaces(TipSolid(shape, how), nu)
         for _ in range(20):
             place = min(1.2 * rng.random() / k, 1.0) if k else 0.0
             rim = lt.edge(k, place)
@@ -194,7 +194,7 @@ def errors(tips: int = 20, seed: int = 1) -> Errors:
             found = found._replace(**{part: np.vstack([getattr(found, part), off])})
         how = fitted(shape.height, a, 6)
         gaps, ball = np.array([k, D / 28.575, (D / 28.575) ** 3]), 28.575 / D
-        direct = head_on(shape, Solid(shape, how).surface(nu, 0), a, how) @ gaps
+        direct = head_on(shape, TipSolid(shape, how).surface(nu, 0), a, how) @ gaps
         off = lt.head_on(tip, np.array([a]), ball)[0] / direct - 1
         found = found._replace(head_on=np.vstack([found.head_on, off]))
     return found

@@ -7,7 +7,7 @@ from importlib.resources import files
 import numpy as np
 
 from cuefem.effects import leather_table as lt
-from studies.beam.leather_body import Shape, loads
+from cuefem.solid.tip import Shape, loads
 from studies.beam.leather_elasticity import COUNTS, OFF, SHEETS, curvatures, geometry, patches, shape_at
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from cuefem import LeatherTip
 from cuefem.effects import leather_table as lt
-from studies.beam.leather_body import Patch, Shape, Solid, compliance, fitted, head_on, loads, surfaces, usual
+from cuefem.solid.tip import Patch, Shape, TipSolid, compliance, fitted, head_on, loads, surfaces, usual
 from studies.beam.leather_elasticity import solved
 
 TIP, DIAMETER = LeatherTip(6e-3, 9.5e-3, 100e6), 12.75e-3
@@ -44,7 +44,7 @@ def test_a_small_patch_has_a_half_space_below_it() -> None:
 def test_hertz() -> None:
     """A small contact is Hertz's, force and depth alike, for gaps of second and of fourth order."""
     shape, how = Shape(1.0, 0.0), fitted(1.0, 0.01)
-    found = head_on(shape, Solid(shape, how).surface(0.3, 0), 0.01, how)
+    found = head_on(shape, TipSolid(shape, how).surface(0.3, 0), 0.01, how)
     np.testing.assert_allclose(found / lt.half_space_head_on(0.3, np.array(0.01)), 1, rtol=5e-3)
 
 
@@ -59,7 +59,7 @@ def test_refinement() -> None:
 
 def test_harmonics_that_are_interpolated() -> None:
     """They take less than a thousandth from a patch near the rim, where the most of them count."""
-    solid, patch = Solid(SHAPE, usual(4, 6, 5, 36)), Patch(0.8, 0.08)
+    solid, patch = TipSolid(SHAPE, usual(4, 6, 5, 36)), Patch(0.8, 0.08)
     load = loads(SHAPE, patch, solid.how)
     some, every = (compliance(surfaces(solid, 0.4, every=all_of_them), load) for all_of_them in (False, True))
     np.testing.assert_allclose(some, every, rtol=1e-3)
@@ -113,7 +113,7 @@ def test_the_head_on_table_is_the_solution(
     )
     how = fitted(shape.height, patch / diameter)
     gaps = np.array([shape.curvature, diameter / ball, (diameter / ball) ** 3])
-    force, depth = head_on(shape, Solid(shape, how).surface(nu, 0), patch / diameter, how) @ gaps
+    force, depth = head_on(shape, TipSolid(shape, how).surface(nu, 0), patch / diameter, how) @ gaps
     radii, depths, forces = tip.head_on(1e-3 * diameter, 1e-3 * ball)
     assert abs(np.interp(1e-3 * patch, radii, depths) / (depth * 1e-3 * diameter) - 1) < 5e-3
     assert abs(np.interp(1e-3 * patch, radii, forces) / (force * (1e-3 * diameter) ** 2) - 1) < 5e-3

@@ -1,11 +1,12 @@
-"""A leather tip as a solid: 3-D elasticity of a domed cylinder by Fourier harmonics on an (r, z) mesh. Not a study.
+"""A leather tip as a solid: 3-D elasticity of a domed cylinder by Fourier harmonics on an (r, z) mesh.
 
 With t the angle about the axis, u_r = U(r, z) cos mt, u_t = V(r, z) sin mt, u_z = W(r, z) cos mt, and every strain is a
-function of (r, z) times cos mt or sin mt (`Solid._parts`). z runs from the base, which is held, to the apex. The unit
-square (x, y) is mapped exactly onto the section, r = sin(pi x/2) D/2 and z = y H(r), so that one scikit-fem basis
-serves every tip. Rows of elements are eliminated from the base upwards; what is left is the compliance of the top
-surface alone (`Solid.surface`), on which each patch of load is a quadratic form. The unit of length is the diameter,
-that of stress is Young's modulus.
+function of (r, z) times cos mt or sin mt (`TipSolid._parts`). z runs from the base, which is held, to the apex. The
+unit square (x, y) is mapped exactly onto the section, r = sin(pi x/2) D/2 and z = y H(r), so that one scikit-fem basis
+serves every tip; flat layers under the leather keep z = y H(0), and the leather is mapped from there on. Rows of
+elements are eliminated from the base upwards; what is left is the compliance of the top surface alone
+(`TipSolid.surface`), on which each patch of load is a quadratic form. The unit of length is the diameter, that of
+stress is Young's modulus of the leather on top.
 """
 
 from __future__ import annotations
@@ -15,19 +16,21 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 import scipy.linalg as la
 from numpy.typing import NDArray
 from skfem import Basis, ElementQuadP, MeshQuad
 
+from cuefem.quantity import Quantity, check_fields
+
 Array = NDArray[np.float64]
 SOLVED = (10, 12, 15, 18, 22, 26, 31)  # harmonics above 8 that are computed; the others are interpolated
 POINTS = 48  # Gauss points along a ray of a patch, and over each part of the half circle of rays
 
 
-class Fineness(NamedTuple):
+class TipFineness(NamedTuple):
     """order: of the polynomials; across, up: where elements end along the radius and the axis, from 0 to 1; harmonics:
     the highest m."""
 
@@ -37,14 +40,14 @@ class Fineness(NamedTuple):
     harmonics: int
 
 
-def usual(order: int = 4, radial: int = 6, up: int = 5, harmonics: int = 30) -> Fineness:
+def usual(order: int = 4, radial: int = 6, up: int = 5, harmonics: int = 30) -> TipFineness:
     """Elements that shrink towards the rim, and towards base and top."""
     x, y = np.linspace(0, 1, radial + 1), np.linspace(0, 1, up + 1)
-    ends = x, 0.5 * y + 0.25 * (1 - np.cos(np.pi * y))
-    return Fineness(order, *(tuple(e.tolist()) for e in ends), harmonics)
+    y = 0.5 * y + 0.25 * (1 - np.cos(np.pi * y))
+    return TipFineness(order, tuple(x.tolist()), tuple(y.tolist()), harmonics)
 
 
-def fitted(height: float, radius: float, order: int = 5) -> Fineness:
+def fitted(height: float, radius: float, order: int = 5) -> TipFineness:
     """For the axisymmetric contact of a radius over D: elements end at its edge, shrink towards it and to the top."""
     edge = 2 * radius
     out = [edge]
@@ -57,22 +60,58 @@ def fitted(height: float, radius: float, order: int = 5) -> Fineness:
     while depth[-1] + 1.6 * step < height:
         depth.append(depth[-1] + step)
         step *= 2
-    return Fineness(
+    return TipFineness(
         order, tuple(across(np.array(ends) / 2).tolist()), tuple(1 - d / height for d in (height, *depth[::-1])), 0
     )
 
 
 @dataclass(frozen=True)
+class Layer:
+    """A flat layer under the leather, a pad or a ferrule that gives: height over D, Young's modulus over that of the
+    leather, Poisson's ratio."""
+
+    height: Annotated[float, Quantity("", "(0, inf)")]
+    modulus: Annotated[float, Quantity("", "(0, inf)")]
+    nu: Annotated[float, Quantity("", "(-1, 0.5)")]
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+
+
+@dataclass(frozen=True)
 class Shape:
-    """A domed cylinder of unit diameter: its height, and the dome's curvature D/r in [0, 2]."""
+    """A domed cylinder of unit diameter: its whole height, the dome's curvature D/r in [0, 2], and the layers under the
+    leather, from the base up."""
 
     height: float
     curvature: float
+    layers: tuple[Layer, ...] = ()
+
+    def __post_init__(self) -> None:
+        side, below = self.height - self.sag, sum(layer.height for layer in self.layers)
+        if self.layers and below >= side:
+            raise ValueError(
+                f"Shape.layers must end below the dome, together less than {side:.4g} diameters high; got {below:.4g}"
+            )
+
+    @property
+    def ends(self) -> Array:
+        """Upper ends of the layers, over the whole height."""
+        return np.cumsum([layer.height for layer in self.layers]) / self.height
 
     @property
     def sag(self) -> float:
         """Depth of the dome, over D."""
         return float(drop(0.5, self.curvature))
+
+
+def layered(how: TipFineness, shape: Shape) -> TipFineness:
+    """Rows for a tip with layers: those of ``how`` within the leather, and three within every layer."""
+    rows, start = [0.0], 0.0
+    for end in shape.ends:
+        rows += [start + part * (end - start) for part in (0.25, 0.75, 1.0)]
+        start = float(end)
+    return how._replace(up=(*rows, *(start + y * (1 - start) for y in how.up[1:])))
 
 
 def drop(radius: Array | float, curvature: float) -> Array | float:
@@ -100,7 +139,7 @@ class Grid(NamedTuple):
 
 
 @lru_cache(maxsize=4)
-def grid(how: Fineness) -> Grid:
+def grid(how: TipFineness) -> Grid:
     """The reference square's mesh and basis."""
     ends = np.array(how.across)
     mesh = MeshQuad.init_tensor(ends, np.array(how.up))
@@ -124,7 +163,7 @@ def lobatto(order: int) -> Array:
     return np.asarray(0.5 - 0.5 * np.cos(np.pi * np.arange(order + 1) / order))
 
 
-def lagrange(radius: Array, how: Fineness) -> Array:
+def lagrange(radius: Array, how: TipFineness) -> Array:
     """Values at ``radius``, over D, of the functions that are 1 at one node and 0 at the others, (points, nodes)."""
     x = across(radius)
     ends, local = np.array(how.across), lobatto(how.order)
@@ -141,10 +180,15 @@ def lagrange(radius: Array, how: Fineness) -> Array:
 # The body
 
 
-class Solid:
-    """The stiffness of a domed cylinder, for every Poisson's ratio and harmonic."""
+class TipSolid:
+    """The stiffness of a domed cylinder, for every Poisson's ratio of the leather and harmonic.
 
-    def __init__(self, shape: Shape, how: Fineness) -> None:
+    ``how.up`` must have the ends of the shape's layers (`layered`).
+    """
+
+    def __init__(self, shape: Shape, how: TipFineness) -> None:
+        if any(min(abs(end - y) for y in how.up) > 1e-9 for end in shape.ends):
+            raise ValueError(f"TipFineness.up must have the ends of all layers, {shape.ends}; got {how.up}")
         self.shape, self.how, self.grid = shape, how, grid(how)
 
     def _parts(self) -> tuple[Array, Array, Array, Array]:
@@ -152,11 +196,14 @@ class Solid:
         without m and the part in proportion to m; (cells, strains x points, 3 functions)."""
         g, shape = self.grid, self.shape
         r, stretch = np.sin(np.pi / 2 * g.x) / 2, np.pi / 4 * np.cos(np.pi / 2 * g.x)
-        height = shape.height - drop(r, shape.curvature)
+        start = float(shape.ends[-1]) if shape.layers else 0.0  # the leather's base
+        within = np.maximum(g.y - start, 0.0) / (1 - start)
+        below = g.y < start
+        rise = np.where(below, shape.height, shape.height - drop(r, shape.curvature) / (1 - start))
         slope = -shape.curvature * r / np.sqrt(1 - np.square(shape.curvature * r))
-        f, fz = g.value, g.slope_y / height
-        fr = g.slope_x / stretch - g.slope_y * (g.y * slope / height)
-        root = np.sqrt(r * g.weight * height * stretch)
+        f, fz = g.value, g.slope_y / rise
+        fr = g.slope_x / stretch - g.slope_y * (within * slope / rise)
+        root = np.sqrt(r * g.weight * rise * stretch)
         none, fa = np.zeros_like(f), f / r
         two = math.sqrt(2)
         plain = [
@@ -215,9 +262,11 @@ class Solid:
     def surface(self, nu: float, m: int) -> Array:
         """Displacements (U, V, W) of the surface's nodes per unit load on them, E = 1, (3 nodes, 3 nodes)."""
         N, nodes = self.grid.basis.N, len(self.grid.nodes)
-        lam, G = nu / ((1 + nu) * (1 - 2 * nu)), 1 / (2 * (1 + nu))
+        bodies = [*((layer.modulus, layer.nu) for layer in self.shape.layers), (1.0, nu)]
+        middles = (np.array(self.how.up[1:]) + self.how.up[:-1]) / 2
+        of_row = np.searchsorted(self.shape.ends, middles)
         powers = [1.0, m, m * m] if self.how.harmonics > 0 else [1.0]
-        weights = np.outer([lam, G], powers).ravel() * np.pi * (2 if m == 0 else 1)
+        turn = np.pi * (2 if m == 0 else 1)
         axis, base, top = self._sides
         held = [base, N + base, 2 * N + base]
         if m == 0:
@@ -230,7 +279,9 @@ class Solid:
         stopped[np.concatenate(held)] = True
         carried, passed = np.zeros((0, 0)), np.zeros(0, dtype=np.intp)
         for i, (unknowns, parts) in enumerate(self.rows):
-            K = np.tensordot(weights, parts, 1)
+            E, ratio = bodies[of_row[i]]
+            moduli = E * ratio / ((1 + ratio) * (1 - 2 * ratio)), E / (2 * (1 + ratio))
+            K = np.tensordot(np.outer(moduli, powers).ravel() * turn, parts, 1)
             if m == 1:  # the axis moves as one point: U = -V
                 u = np.flatnonzero(np.isin(unknowns, axis))
                 v = np.searchsorted(unknowns, unknowns[u] + N)
@@ -254,8 +305,8 @@ class Solid:
         return np.asarray(values @ la.cho_solve(la.cho_factor(carried), values.T))
 
 
-def surfaces(solid: Solid, nu: float, *, every: bool = False) -> list[Array]:
-    """`Solid.surface` for all harmonics; every: computed for each of them, not for some of the higher ones.
+def surfaces(solid: TipSolid, nu: float, *, every: bool = False) -> list[Array]:
+    """`TipSolid.surface` for all harmonics; every: computed for each of them, not for some of the higher ones.
 
     m times it hardly changes from one high m to the next, so it is interpolated; patches get little from those.
     """
@@ -283,7 +334,7 @@ class Patch(NamedTuple):
     radius: float
 
 
-def loads(shape: Shape, patch: Patch, how: Fineness, powers: Sequence[float] = (0.5,)) -> Array:
+def loads(shape: Shape, patch: Patch, how: TipFineness, powers: Sequence[float] = (0.5,)) -> Array:
     """Loads of one newton on the surface's nodes along n and along t, of every harmonic; (m, 2 per power, 3 nodes).
 
     The traction falls over the patch as (1 - q^2/a^2)^power, q the distance from its centre in the tangent plane there:
@@ -350,7 +401,7 @@ def punch(pair: Array) -> Array:
 # Head on
 
 
-def head_on(shape: Shape, surface: Array, radius: float, how: Fineness, terms: int = 5) -> Array:
+def head_on(shape: Shape, surface: Array, radius: float, how: TipFineness, terms: int = 5) -> Array:
     """Of the contact of radius ``radius``, over D, with a rigid ball: forces and depths, (2, 3), for unit gaps.
 
     The gaps between undeformed ball and tip are, at the distance p from the axis: the depth of the dome over its
