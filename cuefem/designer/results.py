@@ -60,7 +60,7 @@ class ResultsSide:
         keys = numbers.key_markup(found, other if reference else None, system, self.before)
         self.keys.set_content(explained(keys))
         if found.verdict:
-            self.verdict.set_content(explained(numbers.verdict_markup(found)))
+            self.verdict.set_content(explained(system.said(numbers.verdict_markup(found))))
         self.verdict.set_stale(not found.verdict)
         self.table.set_stale(True)
         if found.has_end_mass:

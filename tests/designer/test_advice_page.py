@@ -38,6 +38,7 @@ def test_three_changes_are_tried_and_the_best_is_saved(page: Any, tmp_path: Path
     page.get_by_role("button", name="Compute the changes").click()
     for row in (rows[2], rows[1], rows[0]):
         page.get_by_role("button", name=f"try: {row['change']}").click()
+        page.locator('[data-key="squirt"]', has_text=degrees(row["squirt"])).wait_for()
         settled(page)
         assert shown(page, "squirt") == degrees(row["squirt"])
     with page.expect_download() as waiting:
