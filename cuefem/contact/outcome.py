@@ -137,7 +137,7 @@ def hits(outcome: Outcome) -> tuple[Hit, ...]:
 
 
 def grip_of(outcome: Outcome) -> str:
-    """How the tip gripped the ball: the regime of the strike, or "slides" or "lets go" if it held only at first.
+    """How the tip gripped the ball: the regime of the strike, or "slides" or "lets go" if it slid through much of it.
 
     Soft leather takes up its load along the ball slowly, so that it grips at every offset and lets go only later.
     "slides": through more than a quarter of the push; "lets go": through more than half of it, or through its last

@@ -78,8 +78,9 @@ class LeatherTip(CueEffect):
     its normal force with the depth scaled by e^2, which gives back e^2 of the work. Along the surface the patch holds,
     slides and lets go ring by ring, in the manner of Mindlin and Deresiewicz: each ring is strained by what the
     surfaces have shifted since it touched, and bears mu times its part of F_n at most. The normal turns as the contact
-    rolls over ball and dome. `Outcome.energy` has "friction", what the rings that slide lose. Where
-    ``surface_restitution`` is below 1 the leather keeps a part of what strains its surface, "tip shear".
+    rolls over ball and dome. `Outcome.energy` has "friction loss", what the rings that slide lose, and
+    "tip shear", what the leather keeps of the work along its surface where ``surface_restitution`` is below 1 (with
+    endless friction what the rings lose as the patch shrinks).
 
     Matters when: Always. The whole tip gives sideways two to three times as much as along the normal, where the patch
     alone gives 4/3 times as much, and the contact grows stiffer and shorter with the speed of the stroke.

@@ -20,7 +20,7 @@ def advice_sheet(record: Record) -> Sheet:
             "stiffness": lambda row: _percent(row["tip_stiffness_change"]),
             "weight": lambda row: _signed(1e3 * row["shaft_mass_change"], 1, "g"),
             "first tone": lambda row: _signed(row["frequency_change"], 1, "Hz"),
-            "": "{verdict}",
+            "worth it?": "{verdict}",
         },
         rows,
         *advice_notes(record),

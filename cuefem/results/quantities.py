@@ -288,8 +288,8 @@ GRIPS = {
     "late stick": ("held late", "the tip slipped first, then held late, near a miscue"),
     "slip reversal": ("slipped back", "the tip slipped first, then slipped back"),
     "miscue": ("miscue", "the tip slipped to the end, a miscue"),
-    "slides": ("let go", "the tip held at first, then slid through more than a quarter of the push, near a miscue"),
-    "lets go": ("miscue", "the tip held at first, then slid through most of the push or away at its end, a miscue"),
+    "slides": ("let go", "the tip slid through more than a quarter of the push, near a miscue"),
+    "lets go": ("miscue", "the tip slid through most of the push, or away at its end, a miscue"),
 }
 
 

@@ -229,7 +229,9 @@ def test_three_designs_are_compared_and_exported(browser: Any, address: str, tmp
         values = [float(cell.split(" g")[0]) for cell in cells]
         parts = [float(found[1].replace("−", "-")) for cell in cells if (found := re.search(r"([−+][0-9.]+)\s%", cell))]
         assert parts == pytest.approx([100 * (values[i] / values[1] - 1) for i in (0, 2)], abs=0.06)
-        assert page.locator(".legend", has_text="coupled, in time").filter(has_text="thin").count() == 2
+        legends = page.locator(".legend", has_text="coupled, in time").filter(has_text="thin")
+        legends.nth(1).wait_for()  # curves come after the numbers
+        assert legends.count() == 2
         with page.expect_download() as waiting:
             page.get_by_role("button", name="Save the table as .csv").click()
         waiting.value.save_as(tmp_path / "table.csv")

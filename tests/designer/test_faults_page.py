@@ -113,7 +113,10 @@ class TestOnThePage:
             box = page.locator(".knobs").bounding_box()
             strip = {"x": box["x"] + 2, "y": box["y"] + min(box["height"], 900 - box["y"]) - 4, "width": 8, "height": 3}
             page.evaluate("document.querySelector('.knobs').scrollTop = 0; scrollTo(0, 0)")
-            page.evaluate("document.querySelector('.knobs').style.maxHeight = (innerHeight - 230) + 'px'")
+            page.evaluate(
+                "(e => e.style.maxHeight = (innerHeight - e.getBoundingClientRect().top - 9) + 'px')"
+                "(document.querySelector('.knobs'))"
+            )
             box = page.locator(".knobs").bounding_box()
             strip["y"] = box["y"] + box["height"] - 5
             more = page.screenshot(clip=strip)
