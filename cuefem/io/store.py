@@ -15,15 +15,15 @@ import json
 import os
 import random
 import sqlite3
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import closing, contextmanager, suppress
 from functools import cache
 from importlib.metadata import version
 from itertools import islice
 from os import PathLike
 from pathlib import Path
-from time import sleep
-from typing import Any, NamedTuple, Self
+from time import monotonic, sleep
+from typing import Any, NamedTuple, Self, TypeVar
 
 from cuefem.design import Row, Study, Task
 from cuefem.design.ranges import Value
@@ -36,6 +36,7 @@ from cuefem.scene import Scene
 APPLICATION, SCHEMA = 0x43754665, 3
 # How long a sweep waits for its turn to write, s.
 PATIENCE = 60.0
+T = TypeVar("T")
 # studies: `turn` counts which was swept last. claims: blocks on which a sweep is, or was until it was killed, at work.
 TABLES = (
     f"PRAGMA application_id = {APPLICATION}",
@@ -173,7 +174,7 @@ class Store:
     @contextmanager
     def _transaction(self) -> Iterator[None]:
         # write-ahead: a block costs no waiting for the disk, and those who read need not wait; a kill loses nothing
-        self._file.execute("PRAGMA journal_mode = WAL")
+        unlocked(lambda: self._file.execute("PRAGMA journal_mode = WAL"))
         self._file.execute("PRAGMA synchronous = NORMAL")
         self._file.execute("BEGIN IMMEDIATE")
         try:
@@ -260,6 +261,18 @@ class Store:
         """The rows of the study in the order of the designs, streamed; InputError at one that was altered."""
         with refusing(self.path):
             yield from plain_rows(self.path, self._file, self._id)
+
+
+def unlocked(ask: Callable[[], T]) -> T:
+    """What is asked of SQLite, again until no other sweep is in the way: some of its locks it does not wait for."""
+    late = monotonic() + PATIENCE
+    while True:
+        try:
+            return ask()
+        except sqlite3.OperationalError as error:
+            if error.sqlite_errorcode & 0xFF != sqlite3.SQLITE_BUSY or monotonic() > late:
+                raise
+        sleep(random.uniform(1e-3, 1e-2))
 
 
 @contextmanager

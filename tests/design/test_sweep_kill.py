@@ -11,7 +11,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -198,8 +198,12 @@ def killing(victims: Callable[[], list[int]], after: int) -> Callable[[list[Row]
 
 def spawned(parent: int | None = None) -> list[int]:
     """Worker processes of a process, this one by default."""
-    children = psutil.Process(parent).children(recursive=True)
-    return [child.pid for child in children if any("spawn_main" in part for part in child.cmdline())]
+    found = []
+    for child in psutil.Process(parent).children(recursive=True):
+        with suppress(psutil.NoSuchProcess):  # it has ended, or is a zombie
+            if any("spawn_main" in part for part in child.cmdline()):
+                found.append(child.pid)
+    return found
 
 
 def test_a_worker_killed_in_mid_study(small: Path, whole_small: list[tuple[Any, ...]], tmp_path: Path) -> None:

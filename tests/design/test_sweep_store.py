@@ -8,6 +8,7 @@ import sqlite3
 import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -16,7 +17,7 @@ import pytest
 import cuefem as cf
 from cuefem.design import Pool, Task, sweep
 from cuefem.io import InputError
-from cuefem.io.store import Store
+from cuefem.io.store import Store, opened, unlocked
 from cuefem.io.study import load_study
 from tests.helpers.command_line import call
 from tests.helpers.refusals import command_refuses, untouched
@@ -320,3 +321,24 @@ def test_a_table_that_is_there_is_read_without_a_change(study: Path) -> None:
     assert study.with_suffix(".sqlite").read_bytes() == before
     assert len(study.with_suffix(".csv").read_text(encoding="utf-8").splitlines()) == 41
     assert sorted(path.suffix for path in study.parent.glob("study.*")) == [".csv", ".sqlite", ".toml"]
+
+
+def test_what_sqlite_refuses_at_once_is_asked_again(tmp_path: Path) -> None:
+    """It waits for no lock where two turn a new file to write-ahead: 17 of 1,200 sweeps begun together failed so."""
+    path = tmp_path / "locked.sqlite"
+    with closing(opened(path)) as first, closing(opened(path)) as second:
+        second.execute("PRAGMA busy_timeout = 0")
+        first.execute("BEGIN EXCLUSIVE")
+        asked = [0]
+
+        def ask() -> None:
+            asked[0] += 1
+            if asked[0] == 3:
+                first.execute("COMMIT")
+            second.execute("PRAGMA journal_mode = WAL")
+
+        unlocked(ask)
+        assert asked == [3]
+        assert second.execute("PRAGMA journal_mode").fetchone() == ("wal",)
+        with pytest.raises(sqlite3.OperationalError, match="syntax"):
+            unlocked(lambda: second.execute("no SQL"))
