@@ -35,7 +35,6 @@ LEAST_ACROSS, LEAST_ACROSS_TURNING = 1e-9, 1e-3
 LEVER_REACH, LEVER_TERMS, LEVER_FIT = 0.5, 24, 1e-11
 # A law that stiffens from nothing grips a patch on a spring at once if it does so from this part of a blow's depth on.
 TOUCHED = 1e-11
-_NOTHING = np.zeros(1)
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,7 @@ from cuefem.contact.rule import WAVES
 from cuefem.cue import Array
 from cuefem.scene import Outcome, equal_fields
 
-# Of the push, while the tip slides, in all or up to the end: from there on squirt grows fast; no valid shot.
+# Of the push, while the tip slides: a warning; and, in all or up to the end, from where on squirt grows fast: no shot.
 SLIDES, LETS_GO, SLIDES_AWAY = 0.25, 0.5, 1 / 3
 MISSED = ("miscue", "lets go")
 # The grip of a blow, and grip and press of a flight, in which ball and tip are apart before they touch again.

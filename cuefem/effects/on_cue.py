@@ -319,8 +319,8 @@ class GeometricStiffness(CueEffect):
     leather tip at b/R 0.375 about 2 % less squirt at 0.8 m/s, 5 % at 2 m/s and 16 % at 7 m/s.
 
     Wrong when: The shaft bends by more than a quarter of a radian, which is refused. The share p is that of a cue that
-    moves as one along its axis: with `AxialWaves` squirt changes by another 0.1 to 0.4 % of itself. End masses, tones
-    and blows from the side have no thrust. A joint that gives sideways is taken as thin.
+    moves as one along its axis: with `AxialWaves` squirt changes by another 0.1 to 0.4 % of itself. Tones,
+    blows from the side and end masses but "squirt" have no thrust. A joint that gives sideways is taken as thin.
 
     Limit: The effect vanishes in proportion to the thrust, so to the speed of the stroke.
 

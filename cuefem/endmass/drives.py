@@ -52,7 +52,8 @@ def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None) -
     drive
         Which definition, by its name in `cuefem.endmass.drives.DEFINITIONS`:
 
-        - "stick": the tip sticks to the ball as in the coupled strike, in the limit of small offsets. Recommended.
+        - "stick": the tip sticks to the ball as in the coupled strike of a straight cue, in the limit of small offsets.
+          Recommended.
         - "offset": the same at the scene's own offset; this is what the impulse solver takes.
         - "velocity": the tip's velocity rises like (1 - cos(pi t/T))/2.
         - "force": the tip is pushed by a half-sine force.
@@ -296,7 +297,7 @@ def small_offset_slope(tip: TipModes, scene: Scene) -> float:
 def sticking_squirt(tip: TipModes, scene: Scene) -> float:
     """Squirt, rad, away from the side struck, of a coupled strike with endless friction, while tip and ball press.
 
-    The cue is the straight one, as for all end masses: thrust on the bent shaft would make them fall with the speed.
+    The cue is the straight one, as for all end masses but "squirt": thrust would make them fall with the speed.
     """
     outcome = strike_modes(_gripping(scene), tip.straight)
     # past the peak of a tip without restitution nothing presses, but endless friction would go on pulling
@@ -310,7 +311,9 @@ def _gripping(scene: Scene) -> Scene:
 
 
 def squirt_equivalent(tip: TipModes, scene: Scene) -> float:
-    """The lumped end mass whose impulse-solver squirt is that of the coupled strike, kg; head on, its limit `stick`.
+    """The lumped end mass whose impulse-solver squirt is that of the coupled strike, kg; head on `stick`.
+
+    Off centre the strike has the thrust that the scene asks for; `stick` is of the straight cue.
 
     ValueError if there is none: see `equivalent_end_mass`.
     """
