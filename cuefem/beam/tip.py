@@ -26,8 +26,8 @@ class TipModes:
     along and across the cue (u, w), 1/sqrt(kg). approach: (n,), the modal velocities of a cue that moves at unit speed
     along its axis, sqrt(kg). rotation: (n,) of the tip's section, 1/(m sqrt(kg)). damping: (n, n) viscous, 1/s, of the
     modal equations q'' + damping q' + omega^2 q = f, or None. radiation: (n, n), likewise, but its energy is not lost:
-    it stands for waves that leave the tip in the modes left out. geometric: (n, n), 1/(m kg), what a thrust of 1 N takes
-    of the modal stiffness where the shaft bends, or None. In a lumped cue all omega are 0.
+    it stands for waves that leave the tip in the modes left out. geometric: (n, n), 1/(m kg), what a thrust of 1 N
+    takes of the modal stiffness where the shaft bends, or None. In a lumped cue all omega are 0.
     """
 
     omega: Array
