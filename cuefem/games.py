@@ -159,7 +159,7 @@ def usual_scene(cue: Cue, game: str = DEFAULT_GAME, *, tip: LeatherTip | None = 
     -------
     Scene
         The cue with the game's ball, tip, speed and offset, with waves along the cue and thrust on the bent shaft.
-        The restitution of its tip is less than the one that is measured of a whole cue, which those waves raise.
+        Its tip has a restitution of its own: waves along the cue raise it to the one that is measured of whole cues.
 
     Raises
     ------

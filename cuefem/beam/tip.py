@@ -46,7 +46,7 @@ class TipModes:
 
     @cached_property
     def straight(self) -> TipModes:
-        """These modes of a cue that no thrust bends; the same where none does."""
+        """These modes without the thrust on the bent shaft."""
         return self if self.geometric is None else replace(self, geometric=None)
 
     def lowest(self, count: int) -> TipModes:

@@ -41,7 +41,7 @@ class Advice(NamedTuple):
 
 
 def changes_of(scene: Scene) -> list[Advice]:
-    """The changes that this cue lets a maker try; those that its shape refuses drop out when they are computed."""
+    """The changes to try on this cue; `advice_record` drops those that its shape does not allow."""
     own = {key: known.value(scene) for key, known in PLACES.items()}
     return [
         *_bores(own),

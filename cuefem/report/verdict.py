@@ -9,7 +9,7 @@ from cuefem.report.words import listed
 from cuefem.results.band import OF_DIFFERENCE
 from cuefem.results.records import Record, Sheet
 
-SAME = 0.005  # a difference that is none
+SAME = 0.005  # differences below this are told as "as much"
 
 
 def squirt_words(record: Record) -> tuple[str, str]:
