@@ -17,7 +17,7 @@ import numpy as np
 from cuefem.beam.spectrum import Ended, ended
 from cuefem.beam.system import assemble
 from cuefem.beam.tip import TipModes
-from cuefem.beam.waves import SPARE, modes_below, wave_phase
+from cuefem.beam.waves import SPARE, ended_mesh_for, modes_below, wave_phase
 from cuefem.contact.laws import LEAST_RESTITUTION
 from cuefem.contact.outcome import FLIGHT
 from cuefem.contact.strike import strike, strike_modes
@@ -26,7 +26,7 @@ from cuefem.effects import SecondHit
 from cuefem.endmass.drives import end_mass, formula_of
 from cuefem.quantity import Quantity, check_kind, scalar
 from cuefem.scene import Outcome, Resolution, Scene
-from cuefem.tip_modes import MOST, lean_mesh, tip_modes_from, turning
+from cuefem.tip_modes import MOST, tip_modes_from, turning
 
 # Rungs of the ladder: the first number of modes, the ratio of one rung to the next. Errors are first
 # estimated at rung `JUDGED`, an octave above the first.
@@ -351,7 +351,7 @@ def _tips(scene: Scene) -> Iterator[_Tips]:
     """Rungs of the ladder: each group of them on one mesh, with one eigenproblem."""
     end_rings = _end_rings(scene.shaft)
     for group in rung_counts(scene.shaft, scene.contact_time):
-        elements, orders = lean_mesh(scene, group[-1], spare=SPARE)
+        elements, orders = ended_mesh_for(scene.shaft, group[-1], spare=SPARE)
         system = assemble(scene.shaft, elements=elements, order=orders, effects=scene.cue_effects, count=group[-1])
         family = ended(system, group[-1], turning=turning(scene))
         for count in group:

@@ -17,9 +17,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cuefem.beam.tip import TipModes, lumped_tip_modes, tip_modes
-from cuefem.beam.waves import HIGHEST_ORDER, SPARE_ENDED, WIDEST, ended_mesh_for, mesh_for, modes_below
+from cuefem.beam.waves import ended_mesh_for, mesh_for, modes_below
 from cuefem.cue import Cue
-from cuefem.effects.base import CueEffect
 from cuefem.quantity import CONTACT_TIME
 from cuefem.scene import Resolution, Scene, Solid
 
@@ -154,7 +153,7 @@ class Solved:
             if isinstance(at, Resolution):
                 elements, order, wanted = at.elements, at.order, at.modes
             else:
-                elements, order = lean_mesh(scene, at)
+                elements, order = ended_mesh_for(scene.shaft, at)
                 wanted = at
             beam = system.assemble(scene.shaft, elements=elements, order=order, effects=scene.cue_effects, count=wanted)
             # a support makes rigid modes flexible; the number of modes in all stays the same, so that its limits
@@ -171,15 +170,6 @@ class Solved:
 def tip_modes_of(scene: Scene, at: Resolution | Solid | None = None, *, least: int = LEAST) -> TipModes:
     """Tip modes of any scene's cue, with its effects; ended by a tail if no resolution is given."""
     return Solved(scene, at).tip_modes(least)
-
-
-def lean_mesh(scene: Scene, count: int, *, spare: int = SPARE_ENDED) -> tuple[tuple[int, ...], tuple[int, ...]]:
-    """(elements, orders) for ``count`` modes of the scene's cue, ended by a tail: see `ended_mesh_for`.
-
-    Other modes than those of bending have the elements' highest order everywhere, so elements stay shorter for them.
-    """
-    vibrate = any(type(effect).vibrations is not CueEffect.vibrations for effect in scene.cue_effects)
-    return ended_mesh_for(scene.shaft, count, spare=spare, widest=HIGHEST_ORDER if vibrate else WIDEST)
 
 
 def turning(scene: Scene) -> bool:

@@ -14,7 +14,7 @@ from cuefem.beam.tail import tail
 from cuefem.beam.waves import ended_mesh_for, even_mesh_for, mesh_for
 from cuefem.contact.strike import strike_modes
 from cuefem.endmass.drives import end_mass_spreads, formula_of
-from cuefem.tip_modes import LEAST, LEAST_STUCK, MOST_KEPT, Solved, default_resolution, lean_mesh, tip_modes_from
+from cuefem.tip_modes import LEAST, LEAST_STUCK, MOST_KEPT, Solved, default_resolution, tip_modes_from
 from tests.helpers.cues import LEATHER, MAPLE, kim, scene
 
 mpl.use("Agg")
@@ -66,7 +66,7 @@ def test_the_coarser_mesh_under_a_tail_changes_no_digit_that_the_default_holds(n
         exact = formula_of("stick")(tip_modes_from(tail(solve(whole, at.modes)), found), found)
         tip = Solved(found).tip_modes(least)
         assert formula_of("stick")(tip, found) == pytest.approx(exact, rel=1.5e-5)
-        elements, orders = lean_mesh(found, at.modes)
+        elements, orders = ended_mesh_for(found.shaft, at.modes)
         fewer = assemble(found.shaft, elements=elements, order=orders, count=at.modes)
         assert at.modes < fewer.mesh.unknowns < 0.82 * whole.mesh.unknowns
     struck = replace(found, stroke=Stroke(1.0, draw.uniform(0.05, 0.5)))
@@ -82,7 +82,7 @@ def test_the_modes_of_a_strike_hold_the_end_masses_of_smooth_drives(number: int)
     E = cue.segments[0].material.E
     leather = E < 1e9
     found = scene(cue, 1e-3)
-    elements, orders = lean_mesh(found, MANY, spare=8)
+    elements, orders = ended_mesh_for(found.shaft, MANY, spare=8)
     family = ended(assemble(cue, elements=elements, order=orders, count=MANY), MANY, turning=False)
     exact = tip_modes_from(family(MANY), found)
     shortest = 1e-3 if E < 150e6 else 0.5e-3
@@ -108,7 +108,7 @@ def test_leather_on_a_heavy_head_has_its_end_mass_by_force(E: float, height: flo
     cue = Cue((leather, *brass, Segment(0.7, 0.0125, 0.021, MAPLE)), 0.4)
     effects = (PointMass(0.02, mass),) if mass else ()
     found = replace(scene(cue, 1e-3), effects=effects)
-    elements, orders = lean_mesh(found, MANY, spare=8)
+    elements, orders = ended_mesh_for(found.shaft, MANY, spare=8)
     whole = assemble(cue, elements=elements, order=orders, effects=effects, count=MANY)
     exact = tip_modes_from(ended(whole, MANY, turning=False)(MANY), found)
     for T in (1e-3, 1.2e-3, 1.5e-3, 3e-3):

@@ -75,21 +75,19 @@ def mesh_for(cue: Cue, count: int) -> tuple[int | tuple[int, ...], int]:
     return found if len(found) > 1 else found[0], int(orders[best])
 
 
-def ended_mesh_for(
-    cue: Cue, count: int, *, spare: int = SPARE_ENDED, widest: int = WIDEST
-) -> tuple[tuple[int, ...], tuple[int, ...]]:
+def ended_mesh_for(cue: Cue, count: int, *, spare: int = SPARE_ENDED) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """(elements, orders), one number a segment each, for the ``count`` lowest modes ended by a tail.
 
-    spare: orders beyond half the phase of the waves on an element. widest: the highest order. A short steep cone has
-    little phase, but its shapes are no polynomials: it takes the orders of `_taper_orders`.
+    spare: orders beyond half the phase of the waves on an element. A short steep cone has little phase, but its shapes
+    are no polynomials: it takes the orders of `taper_orders`.
     """
     phases = _phases(cue, count)
-    elements = np.ceil(phases / (2 * (widest - spare)))
-    orders = np.maximum(np.ceil(phases / (2 * elements)) + spare, np.minimum(_taper_orders(cue, elements), widest))
+    elements = np.ceil(phases / (2 * (WIDEST - spare)))
+    orders = np.maximum(np.ceil(phases / (2 * elements)) + spare, np.minimum(taper_orders(cue, elements), WIDEST))
     return tuple(map(int, elements)), tuple(map(int, orders))
 
 
-def _taper_orders(cue: Cue, elements: Array) -> Array:
+def taper_orders(cue: Cue, elements: ArrayLike) -> Array:
     """The order by which the taper of a segment's elements leaves `TAPERED`, (segments,).
 
     Where the wall of a cone, or the sum of its diameters, goes on to zero beyond its thin end, the shapes are singular.
@@ -99,7 +97,7 @@ def _taper_orders(cue: Cue, elements: Array) -> Array:
     outer = np.array([(s.tip_diameter, s.butt_diameter) for s in cue.segments])
     bore = np.array([(s.tip_bore, s.butt_bore) for s in cue.segments])
     thin, thick = np.sort([outer - bore, outer + bore]).transpose(2, 0, 1)
-    root = np.sqrt(1 + ((thick / thin).max(axis=0) - 1) / elements)  # of the element at the thin end
+    root = np.sqrt(1 + ((thick / thin).max(axis=0) - 1) / np.asarray(elements))  # of the element at the thin end
     return np.ceil(-math.log(TAPERED) / np.log((root + 1) / np.maximum(root - 1, 1e-9)))
 
 

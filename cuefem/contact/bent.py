@@ -40,9 +40,7 @@ def slope_rows(tip: TipModes, time: float, until: float) -> Array:
     times = np.linspace(0.0, max(UNTIL * time, until), LOOKS + 1)[1:]
     moved = [_pushed(tip.omega, part * time, times) for part in PUSHES]
     shapes = [load[:, None] * each for load in (tip.amplitude[:, 1], tip.rotation) for each in moved]
-    shapes = [
-        shape / math.sqrt(np.einsum("it,ij,jt->", shape, tip.geometric, shape)) for shape in shapes if shape.any()
-    ]
+    shapes = [shape / math.sqrt(np.sum(shape * (tip.geometric @ shape))) for shape in shapes if shape.any()]
     together = np.concatenate(shapes, axis=1)
     onto = tip.geometric @ together
     parts, ways = np.linalg.eigh(together.T @ onto)

@@ -25,7 +25,7 @@ LONGEST = 200
 # following every swing takes longer than anybody waits. Leather's law along the surface is given up earlier.
 LEAST_RESTITUTION, LEAST_OF_LEATHER = 1e-4, 0.1
 # What the last terms of a step may add, as a part of the blow's impulse; rings make forces with many small kinks.
-TOLERANCE, LEATHER_TOLERANCE, RINGED_TOLERANCE = 1e-11, 1e-10, 1e-7
+TOLERANCE, LEATHER_TOLERANCE, RINGED_TOLERANCE = 1e-11, 1e-10, 3e-7
 RINGS, DEEPER = 120, 1.05  # even in the root of the compression, up to so many times a head-on blow's greatest
 RIGID_PATCH, SPRING_PATCH, RINGED_PATCH = range(3)
 # What happens along the surface is computed relative to itself, down to this part of the rest: where the normal does

@@ -299,9 +299,7 @@ class AxialWaves(CueEffect):
         from cuefem.effects.axial import rod_modes  # loaded when used: it solves the beam
 
         tailed = found.radiation is not None
-        return (
-            rod_modes(found.system, lumps_on(cue, effects), below=found.highest, leather=cue.leather, tailed=tailed),
-        )
+        return (rod_modes(found.system, cue, lumps_on(cue, effects), below=found.highest, tailed=tailed),)
 
 
 @dataclass(frozen=True)

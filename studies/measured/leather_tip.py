@@ -36,7 +36,7 @@ MODULI = (40e6, 70e6, 100e6, 140e6, 200e6, 400e6)  # Pa
 HEIGHTS = (3e-3, 4e-3, 5e-3, 6e-3, 7e-3, 8e-3)  # m
 BORES = (6e-3, *pool.BORES)  # m: the guess of meshes/, and what the measured stiffness asks for
 MODES = (15, 30, 45, 90, 180)
-TOLERANCES = (1e-5, 1e-6, 1e-9)  # of the steps, 1e-7 if not said
+TOLERANCES = (1e-5, 1e-6, 1e-9)  # of the steps, 3e-7 if not said
 INCHES = (2, 3, 4, 5, 6, 6.5, 7, 8, 10)
 MASS = 11e-3  # kg
 # Of the whole stroke, from the article, before this program was run with it. Not to be changed.

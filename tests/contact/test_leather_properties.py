@@ -38,7 +38,7 @@ def pool_cue_without_leather() -> Cue:
     return replace(whole, segments=whole.segments[1:])
 
 
-CLOSES = 1e-8  # of the energy; a step of rings leaves out 1e-7 of the blow's impulse
+CLOSES = 1e-8  # of the energy; a step of rings leaves out 3e-7 of the blow's impulse
 
 EVERY = (
     AxialWaves(),

@@ -244,7 +244,7 @@ SPEED = (MAPLE.E / MAPLE.rho) ** 0.5
 
 def rods(cue: Cue, *masses: tuple[float, float]) -> np.ndarray:
     system = assemble(cue, elements=4, order=16, effects=tuple(PointMass(x, 0.0) for x, _ in masses))
-    return rod_modes(system, masses, below=2 * pi * 3e4).omega
+    return rod_modes(system, cue, masses, below=2 * pi * 3e4).omega
 
 
 def test_a_free_rod_sounds_at_whole_multiples():

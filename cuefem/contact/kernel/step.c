@@ -140,7 +140,7 @@ int solve_step(Work *w, int level, Step *s)
     Response *r = response_of(c->cue, level);
     int n = c->forces, wide = n * Q, dampers = dampers_of(c->cue);
     if (!r) return 0;
-    double size = c->impulse / c->clock, F[FORCES][Q], before = HUGE_VAL, own[c->cue->reads][WITH];
+    double size = c->impulse / c->clock, F[FORCES][Q], left = HUGE_VAL, own[c->cue->reads][WITH];
     Factor mine, *by = &mine;
     s->level = level, s->step = r->step;
     own_motion(c, r, own);
@@ -161,7 +161,7 @@ int solve_step(Work *w, int level, Step *s)
             memcpy(s->F[f] + 1, F[f], sizeof F[f]), s->F[f][0] = 0;
             for (int j = 0; j < Q; j++) s->F[f][0] += rule.first[j] * F[f][j];
         }
-        settled = w->hold.press == FREE ? turned < 1e-14 : round && (w->linear || before < 0.1 * c->tolerance);
+        settled = w->hold.press == FREE ? turned < 1e-14 : round && (w->linear || left < 0.1 * c->tolerance);
         if (settled) break;
         if (w->hold.press == FREE) continue;
         w->law->residual(w, s, &w->residual);
@@ -189,9 +189,11 @@ int solve_step(Work *w, int level, Step *s)
             for (int i = 0; i < Q; i++) F[f][i] -= g[f * Q + i], off = larger(off, fabs(g[f * Q + i]));
         off /= size;
         if (!(off < 1e9)) break;
-        slow = round && off > 0.1 * last;
-        last = off;
-        before = (off < 1e-9 || off * r->step < 1e-13 * c->clock) && off > 0.5 * before ? 0 : off; /* rounding is left */
+        double rate = round ? off / last : 1;
+        slow = rate > 0.1 && round, last = off;
+        left = (off < 1e-9 || off * r->step < 1e-13 * c->clock) && off > 0.5 * left ? 0 : off; /* rounding is left */
+        /* with one matrix each round leaves about this part of the one before; kinks make more of a step's error */
+        if (c->patch == RINGED_PATCH && rate < 0.5) left *= 2 * rate;
     }
     if (c->depth == 0 && c->time == 0) /* the first touch has no force yet */
         for (int f = 0; f < n; f++) s->F[f][0] = 0;

@@ -12,8 +12,9 @@ import scipy.linalg as la
 import cuefem as cf
 from cuefem.beam.spectrum import ended
 from cuefem.beam.system import assemble
+from cuefem.beam.waves import ended_mesh_for
 from cuefem.endmass.drives import force
-from cuefem.tip_modes import lean_mesh, tip_modes_from
+from cuefem.tip_modes import tip_modes_from
 from studies.accuracy.peers.cone import CASES, CONE, CONES, MODES
 
 MANY = 300  # modes of the reference
@@ -93,7 +94,7 @@ def end_masses(count: int) -> np.ndarray:
     for number in range(len(CONES)):
         CONE.take(number)
         scene = _scene()
-        elements, orders = lean_mesh(scene, count, spare=8)
+        elements, orders = ended_mesh_for(scene.shaft, count, spare=8)
         family = ended(assemble(scene.shaft, elements=elements, order=orders, count=count), count, turning=False)
         found[number] = tip_modes_from(family(count), scene)
     values = []
