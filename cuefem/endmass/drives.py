@@ -17,6 +17,7 @@ import numpy as np
 
 from cuefem.beam.tip import TipModes
 from cuefem.contact.impulse_space import impact
+from cuefem.contact.outcome import slides_away
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array, LumpedCue
 from cuefem.endmass import damped
@@ -37,6 +38,7 @@ HEARD = 0.6
 BLOCK = 1024
 # Lumped end masses of which squirts are known at once, at the cost of two, before one is sought between two of them.
 MASSES = 500
+NEAR = 1e-5  # b/R that stands for the limit of small offsets
 FLAT = 1e-12  # rad: squirts that differ by less are the same
 
 
@@ -290,8 +292,13 @@ def small_offset_slope(tip: TipModes, scene: Scene) -> float:
 
     The first slip vanishes in the limit, like sqrt(b); endless friction takes it out, and leaves an error of b^2.
     """
-    small = replace(scene, stroke=Stroke(scalar("Stroke.speed", scene.stroke.speed), 1e-5))
+    small = _aside(scene)
     return sticking_squirt(tip, small) / float(small.stroke.angle)
+
+
+def _aside(scene: Scene) -> Scene:
+    """The scene's stroke so near to the centre that squirt is in proportion to the offset."""
+    return replace(scene, stroke=Stroke(scalar("Stroke.speed", scene.stroke.speed), NEAR))
 
 
 def sticking_squirt(tip: TipModes, scene: Scene) -> float:
@@ -311,21 +318,20 @@ def _gripping(scene: Scene) -> Scene:
 
 
 def squirt_equivalent(tip: TipModes, scene: Scene) -> float:
-    """The lumped end mass whose impulse-solver squirt is that of the coupled strike, kg; head on `stick`.
-
-    Off centre the strike has the thrust that the scene asks for; `stick` is of the straight cue.
+    """The lumped end mass whose impulse-solver squirt is that of the coupled strike, kg; head on that at b/R = 1e-5.
 
     ValueError if there is none: see `equivalent_end_mass`.
     """
-    return stick(tip, scene) if scene.stroke.offset == 0 else equivalent_end_mass(strike_modes(scene, tip), scene)
+    struck = scene if scene.stroke.offset else _aside(scene)
+    return equivalent_end_mass(strike_modes(struck, tip, recorded=False), struck)
 
 
 def equivalent_end_mass(outcome: Outcome, scene: Scene) -> float:
     """The lumped end mass, kg, whose impulse-solver squirt is that of a scene's outcome, off centre.
 
-    ValueError if the strike miscued, since the squirt of a sliding tip does not depend on the end mass.
+    ValueError if the tip slid up to the end, since the squirt of a sliding tip does not depend on the end mass.
     """
-    if outcome.regime == "miscue":
+    if slides_away(outcome):
         raise ValueError(
             f"end_mass drive 'squirt': the stroke miscues at offset {scene.stroke.offset}; got no end mass"
         )

@@ -10,10 +10,11 @@ import pytest
 
 import cuefem as cf
 from cuefem.design import evaluate
-from cuefem.endmass.drives import stick, stick_at_offset
+from cuefem.endmass.drives import squirt_equivalent, stick, stick_at_offset
 from cuefem.endmass.lumped import lump
 from cuefem.report.squirt import squirt_record
 from cuefem.report.strike import strike_record
+from cuefem.tip_modes import tip_modes_of
 from tests.helpers.strike_scenes import KIM_AT, hand_made, kim_scene
 
 EFFECTS = {
@@ -116,3 +117,16 @@ def test_a_sweep_asks_for_it_at_an_offset(effects: tuple[object, ...]) -> None:
     found = evaluate([scene], ["end_mass", "end_mass(0.4)", "end_mass(0)"], at=KIM_AT).values[0]
     here = offset_mass(at(scene, 0.4))
     assert found == pytest.approx([cf.end_mass(scene, "stick", KIM_AT), here, found[0]], rel=1e-8)
+
+
+@pytest.mark.parametrize("effects", [(), (cf.GeometricStiffness(),), (cf.Elevation(0.2), cf.GeometricStiffness())])
+def test_squirt_s_end_mass_has_no_jump_at_the_centre(effects: tuple[cf.Effect, ...]) -> None:
+    """Head on it is the limit of the same strikes: thrust (7 % of it) and the table's push (40 %) count there too."""
+    cue = cf.Cue((cf.Segment(0.74, 0.0125, 0.0215, cf.Material(12.6e9, 0.84e9, 700.0)),), body_mass=0.42)
+    scene = cf.Scene(cue, tip=cf.Tip(0.73, 0.6), stroke=cf.Stroke(2.0, 0.0), effects=effects)
+    tip = tip_modes_of(scene)
+    head_on, near, far = (
+        squirt_equivalent(tip, replace(scene, stroke=cf.Stroke(2.0, offset))) for offset in (0.0, 1e-4, 1e-3)
+    )
+    assert head_on == pytest.approx(near, rel=5e-4)
+    assert near == pytest.approx(far, rel=2e-3)

@@ -10,7 +10,9 @@ import pytest
 
 import cuefem as cf
 from cuefem.contact.outcome import MISSED, grip_of
+from cuefem.contact.strike import strike_modes
 from cuefem.designer.answers import safety
+from cuefem.tip_modes import tip_modes_of
 from tests.helpers.command_line import call
 
 MAPLE = cf.load(Path(__file__).parents[2] / "meshes" / "pool_maple.toml")
@@ -42,6 +44,34 @@ def test_far_out_both_miscue_and_the_ball_is_slow(offset: float) -> None:
         outcome = struck(scene, offset)
         assert grip_of(outcome) in MISSED
         assert outcome.ball_speed < 0.3 * struck(scene, 0.45).ball_speed
+
+
+def test_what_a_grip_is_called_does_not_depend_on_what_is_recorded() -> None:
+    for scene in (LEATHER, BARE):
+        tip = tip_modes_of(scene)
+        for offset in (0.45, 0.575, 0.6, 0.63, 0.7):
+            aside = replace(scene, stroke=cf.Stroke(2.0, offset))
+            known, bare = (strike_modes(aside, tip, recorded=recorded) for recorded in (True, False))
+            assert grip_of(known) == grip_of(bare)
+
+
+def test_a_tip_that_slides_away_has_no_end_mass() -> None:
+    """Its squirt hardly depends on the cue: an end mass of it would be 18.7 g at 0.63, and 7 g where it grips."""
+    lets_go = replace(LEATHER, stroke=cf.Stroke(2.0, 0.63))
+    assert grip_of(cf.strike(lets_go)) == "lets go"
+    with pytest.raises(ValueError, match=r"the stroke miscues at offset 0\.63; got no end mass"):
+        cf.end_mass(lets_go, "squirt")
+
+
+def test_a_tip_that_grips_at_last_has_the_end_mass_of_its_cue() -> None:
+    """Through most of the push it slid, so that it is warned of; but its squirt is the impulse solver's."""
+    lumped = cf.Scene(cf.LumpedCue(0.54, 0.007), tip=cf.Tip(0.73, 0.6), stroke=cf.Stroke(2.0, 0.5))
+    grips = {}
+    for offset in (0.5, 0.52, 0.54, 0.55):
+        late = replace(lumped, stroke=cf.Stroke(2.0, offset))
+        grips[offset] = grip_of(cf.strike(late))
+        assert cf.end_mass(late, "squirt") == pytest.approx(0.007, rel=1e-6)
+    assert "lets go" in grips.values(), grips
 
 
 def test_the_commands_say_so() -> None:
