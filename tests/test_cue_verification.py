@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from cuefem import Cue, LumpedCue, Material, Segment
+from cuefem import Cue, LumpedCue, Material, Segment, Tip
 from cuefem.cue import shear_coefficient
 from tests.helpers.cues import CARBON, FAMILY, FOAM, KIM_DENSITY, LEATHER, MAPLE, kim, soft_tip
+from tests.helpers.refusals import refuses
 
 POINTS, WEIGHTS = (part / 2 for part in np.polynomial.legendre.leggauss(8))
 
@@ -109,81 +111,54 @@ def test_lumped_cues_of_the_paper() -> None:
     np.testing.assert_allclose(LumpedCue.rigid(0.54).end_mass, 0.54 * 0.136 / 1.136, rtol=1e-15)
 
 
-def refusal(call: object, kind: type[Exception]) -> str:
-    with pytest.raises(kind) as caught:
-        call()  # type: ignore[operator]
-    return str(caught.value)
-
-
 PIECE = Segment(0.7, 0.012, 0.021, MAPLE)
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"length": 0.0}, "Segment.length must be in (0, 1000] m; got 0.0"),
-        ({"length": -0.1}, "Segment.length must be in (0, 1000] m; got -0.1"),
-        ({"length": float("nan")}, "Segment.length must be in (0, 1000] m; got nan"),
-        ({"tip_diameter": float("inf")}, "Segment.tip_diameter must be in (0, 10] m; got inf"),
-        ({"butt_bore": -1e-3}, "Segment.butt_bore must be in [0, inf) m; got -0.001"),
-        ({"tip_bore": 0.013}, "Segment.tip_bore must be in [0, 0.012) m, its outer diameter; got 0.013"),
-        ({"butt_bore": 0.021}, "Segment.butt_bore must be in [0, 0.021) m, its outer diameter; got 0.021"),
-        ({"kappa": 1.5}, "Segment.kappa must be in (0, 1]; got 1.5"),
+CALLS: list[tuple[Callable[[], object], str]] = [
+    *[
+        (lambda change=change: replace(PIECE, **change), f"Segment.{words}")
+        for change, words in (
+            ({"length": 0.0}, "length must be in (0, 1000] m; got 0.0"),
+            ({"length": -0.1}, "length must be in (0, 1000] m; got -0.1"),
+            ({"length": float("nan")}, "length must be in (0, 1000] m; got nan"),
+            ({"tip_diameter": float("inf")}, "tip_diameter must be in (0, 10] m; got inf"),
+            ({"butt_bore": -1e-3}, "butt_bore must be in [0, inf) m; got -0.001"),
+            ({"tip_bore": 0.013}, "tip_bore must be in [0, 0.012) m, its outer diameter; got 0.013"),
+            ({"butt_bore": 0.021}, "butt_bore must be in [0, 0.021) m, its outer diameter; got 0.021"),
+            ({"kappa": 1.5}, "kappa must be in (0, 1]; got 1.5"),
+        )
     ],
-)
-def test_segment_refuses(change: dict[str, float], message: str) -> None:
-    assert refusal(lambda: replace(PIECE, **change), ValueError) == message
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"E": 0.0}, "Material.E must be in (0, inf) Pa; got 0.0"),
-        ({"rho": float("inf")}, "Material.rho must be in (0, inf) kg/m^3; got inf"),
-        ({"loss": 1.0}, "Material.loss must be in [0, 1); got 1.0"),
-        ({"nu": 0.6}, "Material.nu must be in [0, 0.5]; got 0.6"),
-        (
-            {"E": 6e9, "G": 10e9},
-            "Material.G must be in (0, 10000000000.0) Pa, E/(2 nu) of E = 6000000000.0 Pa, nu = 0.3; got 10000000000.0",
-        ),
+    *[
+        (lambda change=change: replace(PIECE, **change), f"TypeError: Segment.{words}")
+        for change, words in (
+            ({"length": "12 mm"}, "length must be a number in (0, 1000] m; got '12 mm'"),
+            ({"length": True}, "length must be a number in (0, 1000] m; got True"),
+            ({"material": "maple"}, "material must be a Material; got 'maple'"),
+            ({"core": 3}, "core must be a Material or NoneType; got 3"),
+        )
     ],
-)
-def test_material_refuses(change: dict[str, float], message: str) -> None:
-    assert refusal(lambda: replace(MAPLE, **change), ValueError) == message
+    *[
+        (lambda change=change: replace(MAPLE, **change), f"Material.{words}")
+        for change, words in (
+            ({"E": 0.0}, "E must be in (0, inf) Pa; got 0.0"),
+            ({"rho": float("inf")}, "rho must be in (0, inf) kg/m^3; got inf"),
+            ({"loss": 1.0}, "loss must be in [0, 1); got 1.0"),
+            ({"nu": 0.6}, "nu must be in [0, 0.5]; got 0.6"),
+            ({"E": 6e9, "G": 10e9}, "G must be in (0, 10000000000.0) Pa, E/(2 nu) of E = 6000000000.0 Pa, nu = 0.3; "),
+        )
+    ],
+    (lambda: Cue(PIECE), "TypeError: Cue.segments must be a sequence of Segment; got one Segment"),
+    (lambda: Cue((PIECE, 7)), "TypeError: Cue.segments[1] must be a Segment; got 7"),
+    (lambda: Cue(()), "Cue.segments must hold at least one Segment; got none, a cue without mass"),
+    (lambda: Cue((PIECE,), body_mass=-0.1), "Cue.body_mass must be in [0, inf) kg; got -0.1"),
+    *[(lambda x=x: kim().section(x), "Cue.section takes positions in [0, 0.7] m") for x in (-1e-9, 0.7000001, np.nan)],
+    (lambda: LumpedCue(0.5, 0.005, 20.0), "LumpedCue.coupling must be in (-20.0, 20.0) 1/kg; got 20.0"),
+    (lambda: LumpedCue.two_part(0.5, 0.012, 0.0), "nu_c"),
+    (lambda: Tip(contact_time=1e-3, stiffness=1e5), "Tip takes contact_time (s) or stiffness (N/m)"),
+]
 
 
-def test_wrong_kinds() -> None:
-    assert refusal(lambda: replace(PIECE, length="12 mm"), TypeError).startswith(
-        "Segment.length must be a number in (0, 1000] m; got '12 mm'"
-    )
-    assert "Segment.length must be a number in (0, 1000] m; got True" in refusal(
-        lambda: replace(PIECE, length=True), TypeError
-    )
-    assert "Segment.material must be a Material; got 'maple'" in refusal(
-        lambda: replace(PIECE, material="maple"), TypeError
-    )
-    assert "Segment.core must be a Material or NoneType; got 3" in refusal(lambda: replace(PIECE, core=3), TypeError)
-    assert "Cue.segments must be a sequence of Segment; got one Segment" in refusal(lambda: Cue(PIECE), TypeError)
-    assert "Cue.segments[1] must be a Segment; got 7" in refusal(lambda: Cue((PIECE, 7)), TypeError)
-
-
-def test_cue_refuses() -> None:
-    assert "Cue.segments must hold at least one Segment; got none" in refusal(lambda: Cue(()), ValueError)
-    message = refusal(lambda: Cue((PIECE,), body_mass=-0.1), ValueError)
-    assert message == "Cue.body_mass must be in [0, inf) kg; got -0.1"
-    for x in (-1e-9, 0.7000001, float("nan")):
-        assert "Cue.section takes positions in [0, 0.7] m" in refusal(lambda x=x: kim().section(x), ValueError)
-
-
-def test_lumped_cue_refuses() -> None:
-    assert refusal(lambda: LumpedCue(0.5, 0.0), ValueError) == "LumpedCue.end_mass must be in (0, inf) kg; got 0.0"
-    assert "LumpedCue.coupling must be in (-20.0, 20.0) 1/kg; got 20.0" in refusal(
-        lambda: LumpedCue(0.5, 0.005, 20.0), ValueError
-    )
-    assert refusal(lambda: LumpedCue(0.5, np.array([0.01, -1.0])), ValueError) == (
-        "LumpedCue.end_mass must be in (0, inf) kg; got -1.0 at index 1"
-    )
-    assert "nu_c" in refusal(lambda: LumpedCue.two_part(0.5, 0.012, 0.0), ValueError)
+@pytest.mark.parametrize(("ask", "message"), CALLS, ids=[message for _, message in CALLS])
+def test_calls(ask: Callable[[], object], message: str) -> None:
+    refuses(ask, message)
 
 
 def test_kim_density_is_exact() -> None:

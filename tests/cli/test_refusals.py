@@ -29,34 +29,8 @@ BAD_FILES = {
         GOOD.replace("700 mm", "-700 mm"),
         "segments[0].length: must be more than 0 and at most 1000 m; got -700 mm",
     ),
-    "zero size": (
-        GOOD.replace("21 mm", "0 mm"),
-        "segments[0].butt_diameter: must be more than 0 and at most 10000 mm; got 0 mm",
-    ),
-    "nan size": (
-        GOOD.replace("12 mm", "nan mm"),
-        "segments[0].tip_diameter: must be more than 0 and at most 10000 mm; got nan mm",
-    ),
-    "infinite size": (
-        GOOD.replace("700 mm", "inf m"),
-        "segments[0].length: must be more than 0 and at most 1000 m; got inf m",
-    ),
-    "wide bore": (
-        GOOD.replace("3 mm", "13 mm"),
-        "segments[0].tip_bore: must be at least 0 and less than 12 mm, its outer diameter; got 13 mm",
-    ),
-    "unknown key": (
-        GOOD.replace("length", "lenght"),
-        "segments[0].lenght: must be one of the keys length, tip_diameter, butt_diameter, material, tip_bore, "
-        "butt_bore, core, kappa; got lenght = '700 mm'; did you mean 'length'?",
-    ),
-    "missing unit": (
-        GOOD.replace('"700 mm"', "700"),
-        'segments[0].length: needs a unit: "0.5 in" or "12.7 mm"; got 700',
-    ),
     "empty file": ("", "must hold a cue or a scene; got an empty file"),
     "no file": (None, "cannot be read: No such file or directory"),
-    "syntax": ("[[segments]\n", "must be TOML; got a syntax error: "),
     "effect off the cue": (
         "cue = 'good.toml'\n[[effects]]\ntype = 'PointMass'\nposition = '29 in'\nmass = '5 g'\n",
         "effects[0].position: must be 0 to 700 mm, on the cue; got 736.6 mm",
@@ -74,7 +48,6 @@ BAD_FILES = {
         "cue = 'good.toml'\n[[effects]]\ntype = 'PointMass'\nposition = 0.1\nmass = '5 g'",
         'effects[0].position: needs a unit: "0.5 in" or "12.7 mm"; got 0.1',
     ),
-    "offset": ("cue = 'good.toml'\n[stroke]\noffset = 1.0\n", "stroke.offset: must be between -1 and 1; got 1.0"),
 }
 
 
@@ -118,16 +91,12 @@ FILES = {
     "good.toml": GOOD,
     "bad.toml": GOOD.replace("700 mm", "-700 mm"),
     "inn.toml": GOOD.replace("700 mm", "28 inn"),
-    "kg.toml": GOOD.replace("700 mm", "28 kg"),
-    "bare.toml": GOOD.replace("700 mm", "28"),
     "lumped.toml": "[cue]\nmass = '540 g'\nend_mass = '6 g'\n",
     "of_none.toml": "cue = 'none.toml'\n",
     "of_bad.toml": "cue = 'bad.toml'\n",
     "shaft.csv": CSV + "0,12\n700,21\n",
     "back.csv": CSV + "0,12\n700,21\n350,16\n",
-    "thin.csv": CSV + "0,12\n700,-21\n",
     "headless.csv": "0,12\n700,21\n",
-    "empty.csv": "",
     **{f"kept.{suffix}": "somebody's work" for suffix in ("toml", "vtk", "vtu")},
 }
 HERTZ = 'good.toml: --near: must be 0 Hz or more, such as 250 or "0.25 kHz"; got '
@@ -150,16 +119,12 @@ COMMANDS = [
     ("modes good.toml --near '3 mm'", f"{HERTZ}'3 mm'"),
     ("modes good.toml --material ash", "names its materials itself: material is for .csv, .stl, "),
     ("modes back.csv", "back.csv: line 4, x: must be beyond 700 mm, the x of the line before"),
-    ("modes thin.csv", "thin.csv: line 3, diameter: must be more than 0 and at most 10000 mm; got -21 mm"),
     ("modes headless.csv", 'headless.csv: line 1: must name the columns, such as "x [mm],diameter [mm]"'),
-    ("modes empty.csv", "empty.csv: must hold a cue or a scene; got an empty file"),
     ("modes shaft.csv --material 'hard mapel'", "hard maple"),
     ("modes shaft.csv --material 'hard mapel'", "see `cuefem materials`"),
     ("strike of_none.toml", "of_none.toml: cue: none.toml: cannot be read: No such file or directory"),
     ("strike of_bad.toml", "cuefem: bad.toml: segments[0].length: must be more than 0"),
     ("modes inn.toml", f"{LENGTH}'28 inn': no unit is called 'inn'; did you mean 'in'?"),
-    ("modes kg.toml", f"{LENGTH}'28 kg', which is a mass"),
-    ("modes bare.toml", 'length: needs a unit: "0.5 in" or "12.7 mm"; got \'28\''),
     ("modes lumped.toml", "lumped.toml: Scene.cue must be a Cue of segments: its modes or its shape are needed; got"),
     ("modes lumped.toml --body-mass '1 kg'", "lumped.toml: --body-mass: must be left out: a lumped cue is whole"),
     ("convert lumped.toml out.toml --body-mass '1 kg'", "--body-mass: must be left out: a lumped cue is whole"),

@@ -3,24 +3,15 @@
 from dataclasses import replace
 
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cuefem import (
     Elevation,
-    LumpedCue,
     PowerLawTip,
-    RollingContact,
-    Scene,
-    SecondHit,
     Stroke,
     StructuralDamping,
-    Tip,
     TipDome,
-    TipShear,
-    load,
-    save,
     strike,
 )
 from cuefem.contact.strike import strike_modes
@@ -55,37 +46,3 @@ def test_order_of_the_list_does_not_matter():
     assert np.array_equal(numbers(first), numbers(second))
     sound(first)
     assert first.energy["damping loss"] > 0
-
-
-@pytest.mark.parametrize("other", [TipShear(0.75), RollingContact(), SecondHit()])
-@pytest.mark.parametrize("after", [True, False])
-def test_what_does_not_go_together_is_refused(other, after):
-    raised = Elevation(0.1)
-    effects, mine = ((other, raised), 1) if after else ((raised, other), 0)
-    words = rf"Scene\.effects\[{mine}\] must be an effect that goes with effects\[{1 - mine}\], {type(other).__name__};"
-    with pytest.raises(ValueError, match=f"{words} got Elevation, which does not"):
-        replace(kim_scene(), effects=effects)
-
-
-@pytest.mark.parametrize(
-    ("make", "message"),
-    [
-        (lambda: Elevation(1.6), r"Elevation.angle must be in \[0, 1.57\d*\) rad; got 1.6"),
-        (lambda: Elevation(-0.1), r"Elevation.angle must be in \[0, 1.57\d*\) rad; got -0.1"),
-        (lambda: Elevation(0.1, -1.0), r"Elevation.friction must be in \[0, inf\); got -1.0"),
-        (lambda: replace(kim_scene(), effects=(Elevation(0.1), Elevation(0.2))), "Elevation acts once"),
-        (
-            lambda: strike_modes(replace(kim_scene(restitution=0.0), effects=(Elevation(0.1),)), VIBRATING),
-            r"Elevation takes a Tip.restitution in \(0, 1\]; got 0.0",
-        ),
-    ],
-)
-def test_wrong_values_are_refused(make, message):
-    with pytest.raises(ValueError, match=message):
-        make()
-
-
-def test_elevation_stands_in_files(tmp_path):
-    scene = Scene(LumpedCue(0.54, 0.006), tip=Tip(0.7, 0.6, 1e-3), effects=(Elevation(0.1, 0.25),))
-    save(scene, tmp_path / "raised.toml")
-    assert load(tmp_path / "raised.toml") == scene

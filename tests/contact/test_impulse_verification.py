@@ -1,4 +1,4 @@
-"""The impulse solver against exact solutions, two oracles that share no formula with it, and at regime boundaries."""
+"""The impulse solver against exact solutions, an oracle that shares no formula with it, and at regime boundaries."""
 
 from collections import Counter
 from math import asin, inf, radians, tan
@@ -9,7 +9,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from cuefem import Ball, LumpedCue, Outcome, Scene, Stroke, Tip, impulse, squirt
-from tests.helpers.impulse_oracle import exact, march, regime_of
+from tests.helpers.impulse_oracle import exact, regime_of
 
 MANY = settings(max_examples=400, deadline=None)
 POOL = Ball(0.21, 0.03075, 0.4)
@@ -83,12 +83,6 @@ def test_where_the_closed_form_holds_the_solver_is_it_on_a_hundred_thousand_stro
     assert not np.any(np.isin(impulse(whole).regime, "stick") & ~holds)
 
 
-@pytest.mark.parametrize(("b", "degrees"), [(0.1, 0.24141137371), (0.3, 0.72794033346)])
-def test_squirt_of_the_realistic_cue(b, degrees):
-    out = impulse(scene_of(b, eps=2 / 35, Q0=18 / 7, e=0.75, mu=0.7))
-    assert abs(np.degrees(out.squirt) - degrees) < 1e-10
-
-
 @MANY
 @given(
     st.floats(-0.99, 0.99).map(rounded),
@@ -107,15 +101,6 @@ def test_without_restitution_a_tip_that_grips_in_compression_obeys_a31(b, eps, Q
     assert out.regime == "stick"
     expected = squirt.alciatore_a31(b, mass_ratio=1 / ends, inertia=nu)
     assert out.squirt == pytest.approx(expected, rel=1e-13, abs=0)
-
-
-def test_a_vanishing_cue_end_squirts_at_the_first_order_slope():
-    slopes = [impulse(scene_of(0.5, eps=eps, Q0=18 / 7, mu=1.0)).squirt / eps for eps in (1e-2, 1e-3, 1e-11)]
-    assert abs(slopes[2] - 0.3952100057) < 1e-10
-    assert (slopes[0] - slopes[2]) / (slopes[1] - slopes[2]) == pytest.approx(10, rel=0.1)
-    everywhere = np.linspace(-0.9, 0.9, 19)
-    small = impulse(scene_of(everywhere, eps=1e-13, Q0=18 / 7, mu=inf)).squirt / 1e-13
-    np.testing.assert_allclose(small, squirt.squirt_slope(everywhere, cue_mass_ratio=18 / 7), rtol=1e-10, atol=0)
 
 
 def draw(rng: np.random.Generator, kind: str) -> Scene:
@@ -148,25 +133,18 @@ def close(out: Outcome, told, scene: Scene, tolerance: float) -> None:
     assert abs(float(told.friction_loss) - out.energy["friction loss"]) < tolerance * initial
 
 
-@pytest.mark.heavy
-def test_two_oracles_agree_in_every_regime():
+def test_an_oracle_agrees_in_every_regime():
     rng = np.random.default_rng(8)
     seen: Counter[str] = Counter()
     for kind in REGIMES:
         for _ in range(100):
             scene = draw(rng, kind)
-            out, marched = impulse(scene), march(scene)
-            assert out.regime == regime_of(marched)
+            out, told = impulse(scene), exact(scene)
+            assert out.regime == regime_of(told)
             seen.update([out.regime, "jam"] if out.jam else [out.regime])
-            assert abs(out.squirt - marched.squirt) < 1e-9
-            close(out, marched, scene, 1e-9)
-            if np.isfinite(scene.tip.friction):
-                told = exact(scene)
-                assert out.regime == regime_of(told)
-                # angles as tangents, which decimals have; a slip's end within its rounding of the miscue
-                assert abs(tan(out.squirt) - float(told.tangent)) < 1e-12 * (1 + float(told.tangent) ** 2)
-                close(out, told, scene, 1e-12)
-    print(dict(seen))
+            # angles as tangents, which decimals have; a slip's end within its rounding of the miscue
+            assert abs(tan(out.squirt) - float(told.tangent)) < 1e-12 * (1 + float(told.tangent) ** 2)
+            close(out, told, scene, 1e-12)
     for regime in REGIMES:
         assert seen[regime] >= 30, (regime, seen)
 
@@ -262,15 +240,6 @@ def test_continuous_where_the_offset_the_restitution_or_the_friction_ends():
         assert abs(limit.energy["friction loss"] - near.energy["friction loss"]) < 1e-11
 
 
-def test_head_on_whatever_the_friction():
-    for mu in (0.0, 0.3, inf):
-        out = impulse(scene_of(0.0, eps=2 / 35, Q0=18 / 7, mu=mu, speed=2.0))
-        assert (out.squirt, out.spin, out.regime, out.jam) == (0, 0, "stick", False)
-        assert out.ball_speed == pytest.approx(2 * 1.75 * 18 / 25, rel=1e-14)
-        assert out.cue_speed == pytest.approx(2 * 0.51, rel=1e-14)
-        assert out.energy["friction loss"] == 0
-
-
 def test_a_tip_without_friction_pushes_along_the_normal():
     for b in (1e-9, 0.3, 0.95):
         out = impulse(scene_of(b, eps=2 / 35, Q0=18 / 7, mu=0.0))
@@ -295,11 +264,7 @@ def test_the_edge_of_the_ball():
         for mu in (0.0, 0.7, 1e3, inf):
             for ends in (1e-6, 0.02, 1.0, 50.0):
                 scene = Scene(LumpedCue(2.5, ends), Ball(1.0, 0.03), Tip(0.75, mu), Stroke(1.0, b))
-                out = impulse(scene)
-                marched = march(scene)
-                assert abs(out.squirt - marched.squirt) < 1e-7  # the oracle's arcsine
-                if mu < inf:
-                    assert out.squirt == pytest.approx(np.arctan(float(exact(scene).tangent)), rel=1e-12, abs=0)
+                assert impulse(scene).squirt == pytest.approx(np.arctan(float(exact(scene).tangent)), rel=1e-12, abs=0)
 
 
 def test_a_blow_that_separates_while_it_still_grips():

@@ -59,9 +59,11 @@ EVERY = (
     E=st.floats(6e7, 4e8),
     shear=st.one_of(st.none(), st.floats(1e5, 1e6)),
     rolls=st.booleans(),
+    surface=st.one_of(st.just(1.0), st.floats(0.3, 1.0)),
 )
-def test_the_energy_account_closes_and_nothing_is_gained(offset, speed, e, friction, E, shear, rolls) -> None:
-    tip = replace(LEATHER, E=E * (1 + speed / 3), shear=shear, rolls=rolls)
+def test_the_energy_account_closes_and_nothing_is_gained(offset, speed, e, friction, E, shear, rolls, surface) -> None:
+    surface = surface if shear is None else 1.0  # a constant shear is a spring without loss
+    tip = replace(LEATHER, E=E * (1 + speed / 3), shear=shear, rolls=rolls, surface_restitution=surface)
     found = strike(leather_scene(offset, speed=speed, e=e, friction=friction, leather=tip), AT)
     assert imbalance(found) < CLOSES
     slack = CLOSES * found.energy["initial"]

@@ -1,27 +1,20 @@
 """What holds for every nonlinear effect: energy, mirror, scale, order of the list, what is not listed, refusals."""
 
-from dataclasses import FrozenInstanceError, replace
-from pathlib import Path
+from dataclasses import replace
 
 import numpy as np
-import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from cuefem import (
-    LumpedCue,
     PowerLawTip,
     RollingContact,
-    Scene,
     SecondHit,
     Stroke,
     StructuralDamping,
-    Tip,
     TipDome,
     TipShear,
     end_mass,
-    load,
-    save,
     strike,
 )
 from cuefem.beam.tip import TipModes
@@ -109,46 +102,6 @@ def test_order_of_the_list_does_not_matter():
     ]
     assert all(np.array_equal(numbers(outcomes[0]), numbers(other)) for other in outcomes[1:])
     assert all(outcomes[0].phases == other.phases for other in outcomes[1:])
-
-
-@pytest.mark.parametrize("effect", [PowerLawTip(), RollingContact(), SecondHit()])
-def test_each_acts_once(effect):
-    with pytest.raises(ValueError, match=f"{type(effect).__name__} acts once"):
-        replace(kim_scene(), effects=(effect, effect))
-
-
-def test_a_dead_tip_strikes_no_second_time():
-    with pytest.raises(ValueError, match=r"SecondHit takes a Tip\.restitution in \[0\.0001, 1\]; got 0\.0"):
-        strike_modes(replace(kim_scene(restitution=0.0), effects=(SecondHit(),)), bent())
-
-
-@pytest.mark.parametrize(
-    ("make", "message"),
-    [
-        (lambda: PowerLawTip(0.99), r"PowerLawTip.exponent must be in \[1, inf\); got 0.99"),
-        (lambda: PowerLawTip(1.5, 0.0), r"PowerLawTip.speed must be in \(0, inf\) m/s; got 0.0"),
-        (lambda: SecondHit(0.0), r"SecondHit.window must be in \(0, inf\) s; got 0.0"),
-        (lambda: SecondHit(float("inf")), r"SecondHit.window must be in \(0, inf\) s; got inf"),
-    ],
-)
-def test_fields_are_checked(make, message):
-    with pytest.raises(ValueError, match=message):
-        make()
-
-
-def test_effects_are_frozen():
-    with pytest.raises(FrozenInstanceError):
-        PowerLawTip().exponent = 2.0
-
-
-def test_effects_stand_in_files(tmp_path: Path):
-    listed = (PowerLawTip(1.5, 2.0), RollingContact(), SecondHit(4e-3))
-    scene = Scene(LumpedCue(0.54, 0.006), tip=Tip(0.7, 0.6, 1e-3), stroke=Stroke(2.0, 0.3), effects=listed)
-    save(scene, tmp_path / "scene.toml")
-    assert load(tmp_path / "scene.toml") == scene
-    text = (tmp_path / "scene.toml").read_text(encoding="utf-8")
-    assert 'type = "PowerLawTip"' in text
-    assert 'window = "4 ms"' in text
 
 
 def test_they_go_with_the_effects_on_the_cue():

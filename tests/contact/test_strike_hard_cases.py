@@ -348,20 +348,6 @@ def test_a_dead_tip_leaves_a_slow_loud_mode_at_last(amplitude):
     assert outcome.duration * 100.0 == pytest.approx(1.33 * amplitude, rel=0.05)
 
 
-def test_a_cue_without_mass_is_refused():
-    with pytest.raises(ValueError, match="a cue without mass"):
-        Cue(())
-    with pytest.raises(ValueError, match=r"LumpedCue.mass"):
-        LumpedCue(0.0, 0.003)
-    with pytest.raises(ValueError, match=r"LumpedCue.end_mass"):
-        LumpedCue(0.5, 0.0)
-
-
-def test_contact_time_and_stiffness_together_are_refused():
-    with pytest.raises(ValueError, match=r"contact_time \(s\) or stiffness \(N/m\).*got both"):
-        Tip(contact_time=1e-3, stiffness=1e5)
-
-
 def test_zero_modes_and_more_than_the_mesh_holds_are_refused():
     with pytest.raises(ValueError, match=r"Resolution.modes.*0"):
         Resolution(4, 8, 0)

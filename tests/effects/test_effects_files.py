@@ -1,10 +1,25 @@
 """Effects in a scene file (regression)."""
 
+from dataclasses import replace
 from math import inf
 
-from cuefem import AxialWaves, Joint, LeatherTip, StructuralDamping, load, save
+import pytest
+
+from cuefem import (
+    AxialWaves,
+    Elevation,
+    Joint,
+    LeatherTip,
+    PowerLawTip,
+    RollingContact,
+    SecondHit,
+    StructuralDamping,
+    load,
+    save,
+)
 from cuefem.io.assumed import assumed
 from tests.effects.test_refusals import SCENE
+from tests.helpers.strike_scenes import kim_scene
 
 
 def test_a_scene_file_holds_every_linear_effect(tmp_path):
@@ -36,3 +51,17 @@ def test_a_scene_file_holds_a_whole_tip(tmp_path):
         assert "contact time" not in " ".join(assumed(path, ()))  # it follows from the tip
         save(scene, path)
         assert load(path) == scene
+
+
+@pytest.mark.parametrize(
+    ("effects", "words"),
+    [
+        ((PowerLawTip(1.5, 2.0), RollingContact(), SecondHit(4e-3)), 'window = "4 ms"'),
+        ((Elevation(0.1, 0.25),), 'type = "Elevation"'),
+    ],
+)
+def test_what_acts_in_the_contact_reads_back(effects, words, tmp_path):
+    scene = replace(kim_scene(), effects=effects)
+    save(scene, tmp_path / "scene.toml")
+    assert load(tmp_path / "scene.toml") == scene
+    assert words in (tmp_path / "scene.toml").read_text(encoding="utf-8")

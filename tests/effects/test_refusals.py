@@ -28,6 +28,7 @@ from cuefem import (
     TipShear,
     load,
     modes,
+    strike,
 )
 from tests.helpers.refusals import refuses
 from tests.helpers.strike_scenes import KIM, kim_scene, pool_cue
@@ -72,6 +73,26 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: TipDome(-0.01), "TipDome.radius must be in [0, inf) m; got -0.01"),
     (lambda: TipShear(0.0), "TipShear.ratio must be in (0, inf); got 0.0"),
     (lambda: TipShear(inf), "TipShear.ratio must be in (0, inf); got inf"),
+    (lambda: PowerLawTip(0.99), "PowerLawTip.exponent must be in [1, inf); got 0.99"),
+    (lambda: PowerLawTip(1.5, 0.0), "PowerLawTip.speed must be in (0, inf) m/s; got 0.0"),
+    (lambda: SecondHit(0.0), "SecondHit.window must be in (0, inf) s; got 0.0"),
+    (lambda: SecondHit(inf), "SecondHit.window must be in (0, inf) s; got inf"),
+    (lambda: Elevation(1.6), "Elevation.angle must be in [0, 1.57"),
+    (lambda: Elevation(-0.1), " rad; got -0.1"),
+    (lambda: Elevation(0.1, -1.0), "Elevation.friction must be in [0, inf); got -1.0"),
+    (listed(Elevation(0.1), Elevation(0.2)), "Elevation acts once"),
+    *[
+        (listed(*pair), f"{type(other).__name__}; got Elevation, which does not")
+        for other in (TipShear(0.75), RollingContact(), SecondHit())
+        for pair in ((other, Elevation(0.1)), (Elevation(0.1), other))
+    ],
+    *[
+        (lambda e=e: strike(replace(kim_scene(restitution=0.0), effects=(e,))), words)
+        for e, words in (
+            (SecondHit(), "SecondHit takes a Tip.restitution in [0.0001, 1]; got 0.0"),
+            (Elevation(0.1), "Elevation takes a Tip.restitution in (0, 1]; got 0.0"),
+        )
+    ],
     (lambda: LeatherTip(0.0, 9.5e-3, 1e8), "LeatherTip.height must be in (0, inf) m; got 0.0"),
     (lambda: LeatherTip(6e-3, 0.0, 1e8), "LeatherTip.dome_radius must be in (0, inf] m; got 0.0"),
     (lambda: LeatherTip(6e-3, nan, 1e8), "LeatherTip.dome_radius must be in (0, inf] m; got nan"),

@@ -191,6 +191,9 @@ def test_a_scene_is_no_cue_of_a_scene(tmp_path: Path) -> None:
 def test_no_file_at_all(tmp_path: Path) -> None:
     (tmp_path / "folder.toml").mkdir()
     assert refused(tmp_path / "none.toml") == "cannot be read: No such file or directory"
+    (tmp_path / "folder.stl").mkdir()
+    assert refused(tmp_path / "folder.stl") == "must be a file; got a folder"
+    assert refused(tmp_path / "none.stl") == "cannot be read: No such file or directory"
     assert refused(tmp_path / "none.vtu") == "cannot be read: No such file or directory"
     assert refused(tmp_path / "folder.toml") == "must be a file; got a folder"
     assert refused(tmp_path) == "must be a file; got a folder"
@@ -233,7 +236,6 @@ def test_meshes(tmp_path: Path, old: str, new: str, line: str) -> None:
 
 
 POINTS, FACES = revolved([(0, 0), (0, 0.006), (0.7, 0.0105), (0.7, 0)], 16)
-BUTT = len(POINTS) - 1
 
 
 def moved(*, across: float = 1.0, bend: float = 0.0) -> np.ndarray:
@@ -283,12 +285,6 @@ def test_no_shaft(tmp_path: Path, name: str) -> None:
     status, out, err = call("modes", path)
     assert (status, out) == (2, "")
     assert err.startswith(f"cuefem: {path}: {line}")
-
-
-def test_no_surface_file(tmp_path: Path) -> None:
-    assert refused(tmp_path / "none.stl") == "cannot be read: No such file or directory"
-    (tmp_path / "folder.stl").mkdir()
-    assert refused(tmp_path / "folder.stl") == "must be a file; got a folder"
 
 
 @pytest.mark.parametrize("unit", ["kg", "furlnog", "", "mm mm"])

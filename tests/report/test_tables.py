@@ -187,7 +187,7 @@ def test_captions_explain_in_plain_words(name: str, said: str, shown: Callable[[
 
 @pytest.mark.parametrize("width", [80, 78])
 def test_no_command_s_summary_is_cut(width: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("shutil.get_terminal_size", lambda *_: os.terminal_size((width, 24)))
+    monkeypatch.setattr("shutil.get_terminal_size", lambda *_, **__: os.terminal_size((width, 24)))
     status, out, _ = call("--help")
     listed = out.split("Commands:\n")[1].splitlines()
     assert status == 0
