@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.helpers.orders import assert_order, observed_orders
+from tests.helpers.orders import assert_order
 
 STEPS = 1 / np.array([2.0, 4, 8, 16])
 
@@ -13,22 +13,10 @@ def test_accepts_the_order(order: int) -> None:
     assert_order(order, STEPS, 3 * STEPS**order, within=1e-9)
 
 
-def test_levels_need_not_halve() -> None:
-    steps = np.array([1.0, 0.3, 0.05])
-    np.testing.assert_allclose(observed_orders(steps, 0.1 * steps**2), [2, 2], rtol=1e-12)
-
-
 @pytest.mark.parametrize("order", [1.8, 2.2])
 def test_fails_on_too_low_and_on_too_high(order: float) -> None:
     with pytest.raises(AssertionError, match="order 2 wanted"):
         assert_order(2, STEPS, STEPS**order, within=0.1)
-
-
-def test_fails_on_one_bad_level_among_good_ones() -> None:
-    errors = STEPS**2
-    errors[-1] *= 1.3
-    with pytest.raises(AssertionError):
-        assert_order(2, STEPS, errors, within=0.1)
 
 
 def test_fails_on_errors_that_grow_or_stand_still() -> None:
@@ -63,8 +51,3 @@ def test_a_bound_for_each_level() -> None:
 def test_refuses_what_has_no_order(steps: list[float], errors: list[float]) -> None:
     with pytest.raises(ValueError, match=r"must|needs"):
         assert_order(2, steps, errors, within=0.1)
-
-
-def test_refuses_errors_at_rounding() -> None:
-    with pytest.raises(ValueError, match="rounding"):
-        assert_order(2, STEPS, 1e-11 * STEPS**2, within=0.1)

@@ -54,20 +54,6 @@ def test_a_drive_that_begins_smoothly_takes_the_modes_of_a_strike(solutions: lis
     assert DEFINITIONS["squirt"].tip_of(solved) is solved.tip_stuck  # near the centre line it is the stick one
 
 
-def test_one_resolution_is_one_eigenproblem(solutions: list[int]) -> None:
-    solved = Solved(kim_scene(0.3), cf.Resolution(3, 8, 12))
-    for tip in (solved.tip, solved.tip_stuck, solved.tip_plain):
-        assert np.array_equal(tip.omega, solved.tip.omega)
-    assert solutions == [12]
-
-
-def test_the_modes_serve_every_stroke() -> None:
-    scene = kim_scene(0.3)
-    tip = Solved(scene).tip
-    for struck in (replace(scene, stroke=cf.Stroke(2.0, -0.4)), replace(scene, stroke=cf.Stroke(0.5, 0.0))):
-        assert strike_modes(struck, tip).squirt == cf.strike(struck).squirt
-
-
 def test_tip_modes_stay_without_their_spectra(solutions: list[int]) -> None:
     solved = Solved(kim_scene(0.3))
     tip, stuck = solved.tip, solved.tip_stuck
@@ -85,13 +71,6 @@ def test_a_lumped_cue_goes_the_same_way() -> None:
     assert strike_modes(LUMPED, tip).squirt == cf.strike(LUMPED).squirt
     inverse = tip.amplitude.T @ tip.amplitude
     assert inverse == pytest.approx(np.array([[1 / 0.54, 3.0], [3.0, 1 / 0.006]]), rel=1e-12)
-
-
-def test_head_on_a_lumped_cue_has_no_coupling() -> None:
-    head_on = replace(LUMPED, stroke=cf.Stroke())
-    plain = replace(head_on, cue=cf.LumpedCue(0.54, 0.006))
-    assert cf.strike(head_on).squirt == 0
-    assert cf.strike(head_on).ball_speed == pytest.approx(cf.strike(plain).ball_speed, rel=1e-12)
 
 
 def test_what_needs_segments_says_so() -> None:

@@ -15,13 +15,11 @@ from tests.helpers.cues import (
     CARBON,
     FAMILY,
     FOAM,
-    MAPLE,
     isotropic_kim,
     kim,
     pool,
     rod,
     scaled,
-    soft_tip,
     stiff_ferrule,
 )
 
@@ -43,16 +41,6 @@ def stations(cue: Cue, nodes: np.ndarray | None = None) -> tuple[np.ndarray, np.
     ends = cue.nodes if nodes is None else nodes
     lengths = np.diff(ends)
     return (ends[:-1, None] + lengths[:, None] * (points + 1) / 2).ravel(), np.outer(lengths, weights / 2).ravel()
-
-
-@pytest.mark.parametrize("name", SHAFTS)
-def test_two_rigid_modes_and_none_among_the_flexible(name: str) -> None:
-    found = modes(SHAFTS[name], 6)
-    assert found.rigid == 2
-    assert isinstance(found.rigid, int)
-    assert found.frequencies.shape == (6,)
-    assert found.frequencies[0] > 20
-    assert np.all(np.diff(found.frequencies) > 0)
 
 
 @pytest.mark.parametrize("name", SHAFTS)
@@ -80,14 +68,6 @@ def test_rigid_vectors_are_orthonormal_and_span_the_rigid_motions(name: str) -> 
     np.testing.assert_allclose(theta, theta[:, :1] * np.ones(9), rtol=1e-10, atol=1e-12 * np.abs(theta).max())
 
 
-@pytest.mark.parametrize("name", SHAFTS)
-def test_strain_energy_gives_the_frequency(name: str) -> None:
-    found = modes(SHAFTS[name], 6)
-    strains = found.system.strains(found.vectors)
-    scale = np.outer(found.omega, found.omega)
-    np.testing.assert_allclose(strains.T @ strains / scale, np.eye(6), atol=1e-12)
-
-
 def test_shape_at_nodes_and_between() -> None:
     """At a mesh node the shape is the unknown itself; in a rod theta tends to w' where the rod is slender."""
     cue = pool()
@@ -111,38 +91,6 @@ def test_shape_keeps_the_shape_asked_for() -> None:
     for x in (-1e-9, 0.7000001, math.nan):
         with pytest.raises(ValueError, match=r"Modes.shape takes positions in \[0, 0.7\] m"):
             found.shape(x)
-
-
-@pytest.mark.parametrize("name", SHAFTS)
-def test_the_tip_moves_up(name: str) -> None:
-    found = modes(SHAFTS[name], 12)
-    assert np.all(found.shape(0.0)[0] > 0)
-    assert np.all(found.shape(0.0)[1][:3] < 0)  # the tip turns towards the cue's axis
-
-
-def test_free_ends() -> None:
-    """No moment and no shear force at either end, against the largest along the cue."""
-    cue = kim()
-    found = modes(cue, 4, at=Resolution(1, 24, 4))
-    x = (1 - np.cos(np.linspace(0, np.pi, 60))) / 2 * cue.length
-    for k in range(4):
-        w, theta = (np.polynomial.Chebyshev.fit(x, part[k], 28, domain=[0, cue.length]) for part in found.shape(x))
-        s = cue.section(x)
-        for stress in (s.EI * theta.deriv()(x), s.kGA * (w.deriv()(x) - theta(x))):
-            np.testing.assert_allclose(stress[[0, -1]], 0, atol=1e-6 * np.abs(stress).max())
-
-
-def test_mode_k_crosses_zero_k_plus_one_times() -> None:
-    found = modes(kim(), 6)
-    w, _ = found.shape(np.linspace(0, 0.7, 2001))
-    assert [int(np.sum(np.diff(np.sign(row)) != 0)) for row in w] == [2, 3, 4, 5, 6, 7]
-
-
-def test_near_gives_the_nearest() -> None:
-    lowest = modes(kim(), 12).frequencies
-    for near, chosen in ((250.0, [0, 1, 2]), (0.0, [0, 1, 2]), (600.0, [1, 2, 3]), (2000.0, [4, 5, 6])):
-        assert sorted(np.argsort(np.abs(lowest - near))[:3]) == chosen
-        np.testing.assert_allclose(modes(kim(), 3, near=near).frequencies, lowest[chosen], rtol=1e-7)
 
 
 @pytest.mark.parametrize("mode", [0, 1, 2])
@@ -175,25 +123,6 @@ def test_a_piece_cut_in_two_is_the_same_piece() -> None:
     x = np.linspace(0, 0.7, 40)
     for first, second in zip(one.shape(x), two.shape(x), strict=True):
         np.testing.assert_allclose(second, first, rtol=0, atol=1e-8 * np.abs(first).max())
-
-
-def test_a_core_of_the_same_material_is_solid() -> None:
-    """Where kappa is given; left out, the shell's and the core's coefficients differ from the solid's."""
-    solid = Segment(0.7, 0.012, 0.021, MAPLE, kappa=0.9)
-    cored = replace(solid, tip_bore=0.006, butt_bore=0.009, core=MAPLE)
-    np.testing.assert_allclose(modes(Cue((cored,)), 5).frequencies, modes(Cue((solid,)), 5).frequencies, rtol=1e-12)
-
-
-def test_a_cue_turned_round_has_the_same_frequencies() -> None:
-    cue = soft_tip()
-    turned = Cue(
-        tuple(replace(s, tip_diameter=s.butt_diameter, butt_diameter=s.tip_diameter) for s in cue.segments[::-1])
-    )
-    np.testing.assert_allclose(modes(turned, 5).frequencies, modes(cue, 5).frequencies, rtol=1e-10)
-
-
-def test_body_mass_is_not_felt_across() -> None:
-    np.testing.assert_array_equal(modes(kim(), 4).frequencies, modes(replace(kim(), body_mass=0.0), 4).frequencies)
 
 
 @pytest.mark.parametrize("name", [*SHAFTS, "isotropic"])

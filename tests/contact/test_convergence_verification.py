@@ -7,8 +7,6 @@ import pytest
 from cuefem import Resolution
 from cuefem.beam.modes import modes
 from cuefem.beam.system import assemble
-from cuefem.contact.strike import strike_modes
-from cuefem.endmass.drives import stick_at_offset
 from cuefem.tip_modes import tip_modes_of
 from studies import pages, strokes
 from tests.helpers.orders import assert_order, observed_orders
@@ -18,21 +16,6 @@ from studies.paper import convergence as study
 from studies.paper import convergence_roads as roads
 
 KIM = strokes.scene(strokes.cue("kim"), 1e-3, 0.3)
-
-
-@pytest.fixture(scope="module")
-def kim_tip():
-    return tip_modes_of(KIM, Resolution(8, 20, 22))
-
-
-def test_a_fitted_exponent_is_that_of_the_power_law():
-    x = np.geomspace(1, 100, 7)
-    assert pages.slope(x, 3 * x**-1.5) == pytest.approx(-1.5, rel=1e-12)
-    assert pages.slope(x, 3 * x**-1.5 * np.exp(0.1 * x)) > 0
-
-
-def test_crests_are_the_largest_of_each_run():
-    assert np.array_equal(pages.crests([1, -3, 2, 0.5, -0.25, 0], 3), [3, 0.5])
 
 
 # (a), (b)
@@ -85,77 +68,7 @@ def test_kims_shaft_at_its_rigid_limit():
 # (c)
 
 
-def test_a_light_cue_reaches_first_order_with_the_end_mass_of_its_offset():
-    for offset, road in study.road("light").items():
-        own, small = road.errors["stick at the offset"], road.errors["stick"]
-        assert abs(own[-1]) < 1.2e-4
-        assert small[-1] == pytest.approx({0.1: -0.0119, 0.3: -0.1014, 0.5: -0.2613}[offset], rel=1e-2)
-    own = np.abs(study.road("light")[0.5].errors["stick at the offset"][-5:])
-    assert_order(0.5, study.road("light")[0.5].along[-5:], own, within=0.04)
-
-
-def test_lighter_tip_modes_are_those_of_a_lighter_cue(kim_tip):
-    cue = KIM.cue
-    (cone,) = cue.segments
-    wood = cone.material
-    wood = strokes.replace(wood, E=wood.E / 10, G=wood.G / 10, rho=wood.rho / 10)
-    light = strokes.replace(cue, segments=(strokes.replace(cone, material=wood),), body_mass=cue.mass - 0.012)
-    meant = tip_modes_of(strokes.replace(KIM, cue=light), Resolution(8, 20, 22))
-    scaled = roads.lighter(kim_tip, 0.1)
-    assert scaled.omega == pytest.approx(meant.omega, rel=1e-9)
-    assert scaled.amplitude == pytest.approx(meant.amplitude, rel=1e-8)
-
-
-def test_the_end_mass_at_no_offset_is_the_stick_end_mass(kim_tip):
-    struck = strokes.at_offset(KIM, 0.0)
-    assert stick_at_offset(kim_tip, struck) == pytest.approx(roads.stick(kim_tip, struck), rel=1e-13)
-
-
 # (d)
-
-
-@pytest.mark.parametrize("name", strokes.NAMES)
-def test_the_lumped_cue_is_reached_like_the_root_of_the_offset(name):
-    road = study.road("small_offset", name)
-    errors = np.abs(road.errors["stick"][:5])
-    assert_order(0.5, road.along[:5][::-1], errors[::-1], within=0.02)
-
-
-@pytest.mark.parametrize("name", strokes.NAMES)
-def test_the_coefficient_of_the_root_is_slip_times_ringing(name):
-    struck = strokes.scene(strokes.cue(name))
-    tip = roads.plain_tip(struck)
-    offsets = np.array([1e-7, 1e-8])
-    there = [strokes.at_offset(struck, b) for b in offsets]
-    lumped = [strokes.lumped_squirt(scene, roads.stick(tip, struck)) for scene in there]
-    found = [roads.squirt_of(tip, scene) / psi - 1 for scene, psi in zip(there, lumped, strict=True)]
-    law = roads.root_law(tip, struck)
-    misses = np.abs(found / np.sqrt(offsets) / law - 1)
-    assert misses[0] < 8e-3
-    assert misses[1] < 5e-3
-
-
-@pytest.mark.parametrize("count", [8, 22])
-def test_the_first_slip_lasts_as_derived_and_shortens_with_the_modes(kim_tip, count):
-    tip = kim_tip.lowest(count)
-    outcome = strike_modes(strokes.at_offset(KIM, 1e-8), tip)
-    first = outcome.phases[0]
-    assert first.grip == "slip"
-    assert first.end / 1e-4 == pytest.approx(roads.first_slip(tip, KIM), rel=1e-3)
-
-
-@pytest.mark.heavy
-def test_the_root_belongs_to_the_modes_kept():
-    """The slip shortens with the modes; the ringing force, the law's other factor, grows by a tenth meanwhile."""
-    few, many = (study.road("small_offset", "kim", n).errors["stick"][0] for n in (22, 160))
-    left = study.truncation()
-    assert many / few == pytest.approx(left["fall"], rel=5e-3)
-    tips = [tip_modes_of(KIM, Resolution(12, 26, n)) for n in (22, 160)]
-    ringing = np.divide(*(roads.ringing(tip, KIM) for tip in tips[::-1]))
-    impulses = np.divide(*(roads.StickLimit.of(KIM).transverse_impulse(*roads.flexible(tip)) for tip in tips))
-    assert left["fall"] == pytest.approx(left["slip"] * ringing * impulses, rel=1e-12)
-    assert left["slip"] == pytest.approx(0.539, abs=1e-3)
-    assert ringing == pytest.approx(1.111, abs=1e-3)
 
 
 # modes, elements, order

@@ -133,14 +133,3 @@ def test_table_friction_of_a_head_on_slide():
     assert abs(outcome.history.spin[0] / -follow - 1) < STEPPED  # forward roll turns about -x
     slide = impulse * along / M - follow * scene.ball.radius  # of the lowest point, at the end; in proportion before
     assert abs(outcome.energy["table loss"] / (mu * sin(angle) * impulse * slide / 2) - 1) < STEPPED
-
-
-@pytest.mark.heavy
-def test_a_raised_cue_draws_the_more_the_steeper_it_is():
-    rolls = []
-    for angle in (0.0, 0.2, 0.5, 0.9):
-        outcome = strike(replace(kim_scene(0.0), effects=(Elevation(angle, 0.0),)), KIM_AT)
-        rolls.append(outcome.history.spin[0])
-        assert abs(outcome.squirt) + abs(outcome.spin) < 1e-9
-    assert rolls[0] == 0
-    assert np.all(np.diff(rolls) > 0)  # draw turns about +x (cuefem.place)

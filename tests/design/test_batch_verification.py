@@ -12,7 +12,6 @@ from cuefem import Ball, Cue, Resolution, Scene, Segment, Tip, end_mass, modes
 from cuefem.beam.modes import solve
 from cuefem.beam.system import assemble
 from cuefem.beam.tail import tail
-from cuefem.cue import Material
 from cuefem.design.batch import BLOCK, CueBatch, batch_frequencies, batch_modes, batch_stick
 from cuefem.endmass.drives import flexible
 from cuefem.endmass.undamped import FADED, StickLimit, fade
@@ -121,12 +120,6 @@ def test_a_tip_of_given_stiffness_has_the_contact_time_of_each_cue() -> None:
     np.testing.assert_allclose(mass, [end_mass(one, at=AT) for one in scenes], rtol=1e-10)
 
 
-def test_one_scene_stands_for_all() -> None:
-    cues = random_cues(2, 8)
-    one, each = (batch_stick(CueBatch.of(cues), s, at=AT) for s in (scene(kim(), 1e-3), [scene(c, 1e-3) for c in cues]))
-    np.testing.assert_array_equal(one, each)
-
-
 def test_masses_and_balance_points(cues: list[Cue]) -> None:
     batch = CueBatch.of(cues)
     for name in ("mass", "shaft_mass", "balance_point"):
@@ -142,24 +135,6 @@ def test_blocks_do_not_show() -> None:
     for i in (0, BLOCK - 1, BLOCK, BLOCK + 2):
         np.testing.assert_allclose(whole[i], modes(cues[i], 2, at=at).frequencies, rtol=1e-11)
         np.testing.assert_allclose(mass[i], end_mass(scene(cues[i], 1e-3), at=at), rtol=1e-11)
-
-
-def test_static_tip_stiffness_of_a_rod_is_in_the_books() -> None:
-    """3 EI/L^3, and kGA/L in series with it."""
-    length, d = 0.7, 0.013
-    bent = 3 * MAPLE.E * np.pi * d**4 / 64 / length**3
-    sheared = 0.9 * MAPLE.G * np.pi * d**2 / 4 / length
-    batch = CueBatch.of([Cue((Segment(length, d, d, MAPLE, kappa=0.9),))])
-    np.testing.assert_allclose(batch.tip_stiffness, [1 / (1 / bent + 1 / sheared)], rtol=1e-13)
-
-
-def test_static_tip_stiffness_of_a_cone_is_in_the_books() -> None:
-    """Without shear 3 E I(tip) (D/d)/L^3, for a solid cone from d to D."""
-    length, d, D = 0.7, 0.012, 0.021
-    hard = Material(12e9, 1e22, 700.0, nu=0.0)
-    batch = CueBatch.of([Cue((Segment(length, d, D, hard, kappa=1.0),))])
-    bent = 3 * hard.E * np.pi * d**4 / 64 * (D / d) ** 3 / length**3
-    np.testing.assert_allclose(batch.tip_stiffness, [bent], rtol=1e-10)
 
 
 @pytest.mark.parametrize("ratio", [1.5, 3.0, 10.0])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +9,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.report.page import page as report_page
-from tests.helpers.designer_browser import BROWSER, launched, opened, served, turn
+from tests.helpers.designer_browser import BROWSER, opened, turn
 from tests.helpers.study_page import study_of_ten_columns
 
 pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
@@ -24,18 +23,6 @@ pytestmark = [
 ]
 ROOT = Path(__file__).parents[2]
 KINDS = [("light", 1280), ("dark", 1280), ("light", 390), ("dark", 390)]
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    with launched() as found:
-        yield found
-
-
-@pytest.fixture(scope="module")
-def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    with served(tmp_path_factory.mktemp("designer")) as found:
-        yield found
 
 
 def faults(page: Any, part: str = "body") -> list[tuple[str, list[str]]]:

@@ -144,4 +144,6 @@ def test_a_cue_maker_goes_all_the_way(browser: Any, address: str, folder: Path, 
         assert cf.strike(made).squirt == pytest.approx(np.radians(float(shown(page, "squirt").rstrip("°"))), abs=2e-5)
         report = downloaded(page, "Write the report", tmp_path).read_text(encoding="utf-8")
         assert "<h1>mine 1</h1>" in report
+        squirt = float(re.search(r"<title>mine 1: squirt ([0-9.]+)°", report)[1])  # type: ignore[index]
+        assert squirt == pytest.approx(float(shown(page, "squirt").rstrip("°")), rel=5e-3)  # of its own accuracy
         assert report.count('<svg class="chart read"') == 4

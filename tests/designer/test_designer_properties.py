@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -117,14 +116,6 @@ def test_knobs_come_back_from_the_scene_they_made(name: str, wanted: dict[str, A
     assert close(found, wanted)
     assert turned(made, found) == made
     assert made.cue.length == pytest.approx(SCENES[name].cue.length, rel=1e-12)
-
-
-@given(wanted=knobs())
-def test_a_saved_design_loads_as_it_was(wanted: dict[str, Any]) -> None:
-    made = turned(first_scene(), of(first_scene(), wanted))
-    with TemporaryDirectory() as folder:
-        cf.save(made, Path(folder) / "design.toml")
-        assert cf.load(Path(folder) / "design.toml") == made
 
 
 @pytest.mark.parametrize("name", SCENES)

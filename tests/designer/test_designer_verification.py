@@ -34,7 +34,6 @@ from cuefem.report.squirt import squirt_record
 from cuefem.report.strike import strike_record
 from cuefem.results.quantities import RESULTS
 from cuefem.vary import knobs_of, turned
-from tests.helpers.command_line import call
 
 SCENES = Path(__file__).parents[2] / "studies" / "scenes"
 
@@ -138,18 +137,6 @@ def test_the_density_of_a_scene_is_that_of_its_bare_cue() -> None:
 )
 def test_notes_are_those_of_the_piano(frequency: float, words: str) -> None:
     assert note(frequency) == words
-
-
-@pytest.mark.heavy
-def test_a_saved_design_gives_its_numbers_on_the_command_line(tmp_path: Path) -> None:
-    scene = designs()["turned"]
-    cf.save(scene, tmp_path / "design.toml")
-    found = weighed(scene)
-    status, out, _ = call("strike", tmp_path / "design.toml")
-    assert status == 0
-    assert f"{np.degrees(found.strike['squirt']):.3f}°" in out
-    status, out, _ = call("end-mass", tmp_path / "design.toml")
-    assert f"{1e3 * found.end_masses['stick']:.3f} g" in out
 
 
 @pytest.mark.parametrize(

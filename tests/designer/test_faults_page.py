@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +16,7 @@ from cuefem.designer.words import MEASURED
 from cuefem.io.ready import PRESETS
 from cuefem.report.page import page as report_page
 from cuefem.vary import PLACES, knobs_of
-from tests.helpers.designer_browser import BROWSER, launched, opened, served, settled
+from tests.helpers.designer_browser import BROWSER, opened, settled
 
 pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
 pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
@@ -26,18 +25,6 @@ browsed = [
     pytest.mark.skipif(BROWSER is None, reason="needs Chromium: apt-get install chromium"),
 ]
 MESHES = Path(__file__).parents[2] / "meshes"
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    with launched() as made:
-        yield made
-
-
-@pytest.fixture(scope="module")
-def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    with served(tmp_path_factory.mktemp("designer")) as made:
-        yield made
 
 
 def test_a_place_is_labelled_as_it_is() -> None:

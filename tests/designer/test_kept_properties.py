@@ -142,6 +142,15 @@ WRONG = {
     "a path": (spoilt(scenes=[{"cue": "/etc/passwd"}]), "cue: must be a table of its own; got the path of a file"),
     "a lumped cue": (spoilt(scenes=[{"cue": {"mass": "1 kg", "end_mass": "6 g"}}]), "must be a Cue of segments"),
     "a made-up knob": (spoilt(designs=[["a", 0, {"x": 1.0}, []]]), "'x' must be a knob of its cue"),
+    **{
+        f"knobs {knobs!r}": (spoilt(designs=[["a", 0, knobs, []]]), "is damaged: its parts do not fit together")
+        for knobs in (0, "x", None, True, 1.5, [], [5], "offset", ["offset"])
+    },
+    **{
+        f"offset {value!r}"[:30]: (spoilt(designs=[["a", 0, {"offset": value}, []]]), "offset must be a number; got ")
+        for value in (None, True, [], {}, float("inf"), "0.3", -1e301)
+    },
+    **{f"steps {steps!r}"[:30]: (spoilt(steps=steps), "this link ") for steps in (None, [[1]], [["0"]], {"0": [0]})},
     "no number": (spoilt(designs=[["a", 0, {"offset": "1"}, []]]), "offset must be a number; got '1'"),
     "nan": (spoilt(designs=[["a", 0, {"offset": float("nan")}, []]]), "offset must be a number; got nan"),
     "no table of knobs": (spoilt(designs=[["a", 0, 5, []]]), "is damaged: its parts do not fit together"),

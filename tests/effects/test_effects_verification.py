@@ -36,7 +36,7 @@ from cuefem.effects.axial import rod_modes
 from cuefem.tip_modes import tip_modes_of
 from tests.helpers.cues import MAPLE, isotropic_kim, kim
 from tests.helpers.orders import assert_order
-from tests.helpers.strike_scenes import KIM, KIM_AT, hollow_cue, imbalance, kim_scene, pool_cue
+from tests.helpers.strike_scenes import KIM, KIM_AT, imbalance, kim_scene
 
 HERE = 0.213  # m, between the nodes of every mesh used here
 
@@ -92,10 +92,6 @@ def test_stiff_tip_shear_becomes_the_bare_strike_like_one_over_its_ratio():
         assert 5e-3 / ratio < abs(squirt(TipShear(ratio)) - bare) < 5e-2 / ratio
 
 
-def test_tip_shear_of_one_lowers_squirt_by_a_fifth():
-    assert abs(squirt(TipShear(1.0)) / squirt() - 0.8006) < 1e-4
-
-
 # --- supports ---------------------------------------------------------------------------------------------------------
 
 CLAMPED = [30.0962060889, 135.9070113953]  # Hz, Kim's isotropic cone clamped at the butt
@@ -116,21 +112,6 @@ def test_a_clamp_takes_its_unknowns_out():
         system = assemble(KIM, **at, effects=(clamp,))
         assert system.free.shape == (free.mesh.unknowns, free.mesh.unknowns - taken)
         assert solve(system, 3).rigid == 2 - taken
-
-
-def test_a_support_of_stiffness_zero_leaves_the_free_frequencies():
-    at = Resolution(2, 20, 6)
-    found = modes(kim(), 6, effects=(Support(HERE, 0.0, 0.0),), at=at)
-    np.testing.assert_allclose(found.frequencies, modes(kim(), 6, at=at).frequencies, rtol=1e-12)
-    assert found.rigid == 2
-
-
-def test_a_stiff_cue_on_a_soft_spring_swings_as_a_body():
-    """A spring k at the centre of mass moves the whole mass: omega^2 = k/m up to k over the beam's own stiffness."""
-    cue = kim()
-    found = modes(cue, 1, effects=(Support(cue.balance_point, 0.1),))
-    assert abs(found.omega[0] ** 2 * cue.shaft_mass / 0.1 - 1) < 1e-5
-    assert found.rigid == 1
 
 
 # --- point masses -----------------------------------------------------------------------------------------------------
@@ -209,12 +190,6 @@ def test_a_joint_that_gives_everywhere_leaves_two_pieces():
     assert_order(1.0, steps, errors, within=0.02)
 
 
-def test_joints_at_one_place_add_their_compliances():
-    one = modes(KIM, 5, effects=(Joint(HERE, *SOFT),)).frequencies
-    two = modes(KIM, 5, effects=(Joint(HERE, SOFT[0]), Joint(HERE, 0.0, SOFT[1]))).frequencies
-    np.testing.assert_allclose(one, two, rtol=1e-13)
-
-
 def test_the_sparse_path_knows_joints_ties_and_clamps():
     effects = (Joint(HERE, SOFT[0]), Joint(0.5, *SOFT), Support(0.7, inf), PointMass(0.1, 0.01))
     dense, sparse = (
@@ -225,15 +200,6 @@ def test_the_sparse_path_knows_joints_ties_and_clamps():
     np.testing.assert_allclose(sparse.frequencies, dense.frequencies, rtol=1e-8)
     for (w, _), (w2, _) in [(dense.shape([HERE, 0.6]), sparse.shape([HERE, 0.6]))]:
         np.testing.assert_allclose(w, w2, rtol=1e-5, atol=1e-5)
-
-
-def test_deflection_jumps_over_a_joint_and_is_read_on_its_butt_side():
-    found = modes(KIM, 3, effects=(Joint(HERE, *SOFT),))
-    (before, turned), (at, turned_at), (after, turned_after) = (found.shape(HERE + dx) for dx in (-1e-9, 0.0, 1e-9))
-    np.testing.assert_allclose(at, after, rtol=1e-6)
-    np.testing.assert_allclose(turned_at, turned_after, rtol=1e-6)
-    assert np.all(np.abs(turned_after - turned) > 1e-3 * np.abs(turned))
-    assert np.all(np.abs(after - before) > 1e-6 * np.abs(before).max())
 
 
 # --- axial waves ------------------------------------------------------------------------------------------------------
@@ -314,14 +280,6 @@ def test_rod_modes_are_kept_up_to_the_highest_bending_mode():
     assert len(along) > 5
     few = Resolution(2, 12, 2)  # its highest mode, 325 Hz, is below the first rod mode
     assert len(tip_modes_of(scene, few).omega) == len(tip_modes_of(kim_scene(), few).omega)
-
-
-def test_the_rigid_part_of_axial_waves_keeps_the_mass():
-    lump = PointMass(0.5, 0.04)
-    scene = replace(kim_scene(), effects=(AxialWaves(), lump))
-    tip = tip_modes_of(scene, KIM_AT)
-    assert abs(tip.approach @ tip.approach / 0.58 - 1) < 1e-14
-    assert scene.stiffness == replace(scene, effects=(lump,)).stiffness
 
 
 # --- structural damping -----------------------------------------------------------------------------------------------
@@ -423,14 +381,6 @@ def test_a_rigid_body_with_a_dome_is_a_lumped_cue_with_coupling(offset, restitut
     assert abs(expected.squirt - flat.squirt) > 1e-4 or friction == 0.2
 
 
-@pytest.mark.parametrize("cue", [KIM, pool_cue(), hollow_cue()], ids=["kim", "pool", "hollow"])
-def test_a_dome_raises_squirt(cue):
-    for offset in (-0.3, 0.1, 0.3):
-        scene = replace(kim_scene(offset), cue=cue)
-        bare, domed = strike(scene), strike(replace(scene, effects=(TipDome(0.009),)))
-        assert 1.15 < domed.squirt / bare.squirt < 2.2
-
-
 # --- a hand -----------------------------------------------------------------------------------------------------------
 
 EIGHT_INCHES = 0.2032
@@ -450,15 +400,3 @@ def test_a_hand_eight_inches_behind_the_tip_changes_squirt_by_less_than_a_percen
         assert abs(strike(hand).squirt / strike(pool).squirt - 1) < 0.01
     nearer = strike(replace(scene, effects=(Support(EIGHT_INCHES / 2, 1e4),))).squirt
     assert abs(nearer / bare - 1) > 1e-3
-
-
-def test_a_hand_on_a_pool_shaft_reaches_a_percent_in_a_contact_of_two_milliseconds():
-    """1.01 % at 1e4 N/m, at every resolution: here the bound of a percent holds up to 9.9e3 N/m; Kim's up to 1.4e4."""
-    changes = []
-    for cue, stiffness in ((load(POOL), 1e4), (load(POOL), 9.8e3), (KIM, 1.35e4), (KIM, 1.45e4)):
-        scene = replace(kim_scene(0.3, contact_time=2e-3), cue=cue)
-        hand = replace(scene, effects=(Support(EIGHT_INCHES, stiffness),))
-        changes.append(strike(hand).squirt / strike(scene).squirt - 1)
-    assert 0.0100 < changes[0] < 0.0102
-    assert 0.0095 < changes[1] < 0.0100
-    assert changes[2] < 0.0100 < changes[3] < 0.0110

@@ -18,23 +18,6 @@ from tests.helpers.cues import kim, scene
 mpl.use("Agg")
 from studies.accuracy.default_accuracy import random_cue
 
-DRAW = np.random.default_rng(3)
-SKEW = DRAW.normal(size=(40, 40))
-
-
-@pytest.mark.parametrize("size", [0.0, 1e-9, 0.3, 4.0, 900.0])
-def test_exponential_of_a_rotation_is_scipys(size: float) -> None:
-    turning = size * (SKEW - SKEW.T) / np.linalg.norm(SKEW - SKEW.T, 2)
-    found = damped.expm(turning)
-    np.testing.assert_allclose(found, la.expm(turning), rtol=0, atol=1e-15 * (10 + size))
-    np.testing.assert_allclose(found @ found.T, np.eye(40), rtol=0, atol=1e-15 * (10 + size))
-
-
-def test_exponential_of_a_nilpotent_matrix_is_its_polynomial() -> None:
-    shift = np.diag(np.full(5, 7.0), 1)
-    exact = sum(np.linalg.matrix_power(shift, k) / float(np.prod(range(1, k + 1))) for k in range(6))
-    np.testing.assert_allclose(damped.expm(shift), exact, rtol=1e-13)
-
 
 @pytest.mark.parametrize("T", [0.5e-3, 2e-3])
 @pytest.mark.parametrize("effects", [(), (cf.StructuralDamping(0.02),), (cf.Support(0.5, 1e4, 0.0, 5.0),)])

@@ -15,7 +15,6 @@ from cuefem.effects import Effect
 from cuefem.io import InputError, load_accuracy
 from cuefem.io.export import json_schema
 from cuefem.quantity import Quantity
-from cuefem.units import number
 from cuefem.units import text as text_of
 
 MAPLE = cf.Material(12.6e9, 0.84e9, 782.3284453057836)
@@ -62,11 +61,6 @@ class Sticker(Effect):
     label: str = "A"
 
 
-def test_cue_file(tmp_path: Path) -> None:
-    (tmp_path / "kim.toml").write_text(KIM_TOML)
-    assert cf.load(tmp_path / "kim.toml") == KIM
-
-
 def test_scene_file_finds_its_cue_beside_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "cues").mkdir()
     (tmp_path / "cues" / "kim.toml").write_text(KIM_TOML)
@@ -87,30 +81,6 @@ def test_scene_file_finds_its_cue_beside_it(tmp_path: Path, monkeypatch: pytest.
 def test_scene_of_a_lumped_cue(tmp_path: Path) -> None:
     (tmp_path / "lumped.toml").write_text('[cue]\nmass = "19 oz"\nend_mass = "6 g"\ncoupling = "-3.5 1/kg"\n')
     assert cf.load(tmp_path / "lumped.toml") == cf.Scene(cf.LumpedCue(0.538640939375, 0.006, -3.5))
-
-
-@pytest.mark.parametrize(
-    ("text", "unit", "expected"),
-    [
-        ("29 in", "m", 0.7366),
-        ("12.75 mm", "m", 0.01275),
-        ("19 oz", "kg", 0.538640939375),
-        ("782.3 kg/m^3", "kg/m^3", 782.3),
-        ("0.7823 g/cm**3", "kg/m^3", 782.3),
-        ("0.7823 g/cm3", "kg/m^3", 782.3),
-        ("782.3 kg/m3", "kg/m^3", 782.3),
-        ("40 g mm2", "kg m^2", 4e-8),
-        ("12.6 GPa", "Pa", 12.6e9),
-        ("1.2 ms", "s", 0.0012),
-        ("30 deg", "rad", 0.5235987755982989),
-        ("1e4 N/m", "N/m", 1e4),
-        ("inf N/m", "N/m", math.inf),
-        ("20 N m/rad", "N*m/rad", 20.0),
-        (" .5in ", "m", 0.0127),
-    ],
-)
-def test_units_are_exact(text: str, unit: str, expected: float) -> None:
-    assert number(text, unit) == expected
 
 
 PROFILE = "# a shaft\nx [mm],diameter [in]\n10,0.5\n110,0.5\n210,0.5\n\n310,0.6\n410,0.7\n710,0.8\n"

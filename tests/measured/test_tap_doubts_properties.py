@@ -73,17 +73,6 @@ def test_p_values_of_random_tones_are_even(kim_test: TapTest) -> None:
     assert np.sum(p <= LEVEL) <= 2
 
 
-def test_random_sets_are_as_dense_as_what_was_heard() -> None:
-    heard = np.array([100.0, 200.0, 400.0, 410.0])
-    sets = random_sets(heard, 500)
-    assert sets.shape == (500, 4)
-    middles = np.log(heard[1:] * heard[:-1]) / 2
-    assert (np.diff(sets, axis=1) >= 0).all()
-    assert (sets[:, 0] <= middles[0]).all()
-    assert (sets[:, 3] >= middles[2]).all()
-    assert np.mean(sets[:, 1]) == pytest.approx(np.mean(middles[:2]), abs=0.02)
-
-
 def test_missing_modes_are_refused(kim_test: TapTest, true_tones: np.ndarray) -> None:
     found = kim_test.fit([told(true_tones[k]) for k in (0, 7, 8, 9)])
     assert any(line == "6 of the 10 modes that should be heard are missing" for line in found.refusals)
@@ -264,15 +253,6 @@ def test_a_faint_tone_says_nothing_for_a_mode_or_against_it(kim_test: TapTest, t
     fourth = replace(told(true_tones[3] + 5, "faint"), error=30.0)
     found = kim_test.fit([*others, fourth])
     assert (found.notes, found.matched[-1].mode) == ((), None)
-
-
-@pytest.mark.heavy
-def test_the_demonstration_has_no_tone_too_many(tmp_path: Path) -> None:
-    tap.write_example(tmp_path / "tap.wav")
-    rate, samples = wavfile.read(tmp_path / "tap.wav")
-    found = tap.hung("pool_maple").fit(tones(ringing(samples / 32768, rate)))
-    assert not found.refusals
-    assert not any("no bending tone" in note for note in found.notes)
 
 
 @pytest.mark.heavy

@@ -12,10 +12,10 @@ import pytest
 
 import cuefem as cf
 from cuefem.accuracy import resolve
-from cuefem.design.worth import change, variants
+from cuefem.design.worth import variants
 from cuefem.effects import effect_kinds
 from cuefem.report import effects_record
-from cuefem.report.effects import MARGIN, advice, struck
+from cuefem.report.effects import MARGIN, advice
 from tests.helpers.command_line import call
 
 CUE = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 782.3284453057836), kappa=0.9),), 0.42)
@@ -119,34 +119,6 @@ def test_head_on_only_the_speed_counts() -> None:
     assert dome["change"]["squirt"] == {"by": 0.0, "relative": None}
     assert dome["weight"] == abs(dome["change"]["ball_speed"]["relative"]) < 1e-9
     assert rows(found)["AxialWaves"]["matters"]
-
-
-def test_the_order_of_the_list_does_not_matter() -> None:
-    at = cf.Resolution(3, 20, 16)
-    turned = {v.name: v for v in variants(replace(SCENE, effects=SCENE.effects[::-1]))}
-    for variant in variants(SCENE):
-        if variant.listed or variant.name in ("TipShear", "AxialWaves"):
-            assert variant.scene is not None
-            other = turned[variant.name].scene
-            assert other is not None
-            assert struck(other, at).squirt == pytest.approx(struck(variant.scene, at).squirt, rel=1e-9)
-
-
-def test_changes_of_the_other_side_are_mirrored() -> None:
-    def gap(offset: float) -> Any:
-        blow = replace(SCENE, effects=(), stroke=cf.Stroke(offset=offset))
-        return change(cf.strike(replace(blow, effects=(CLAY,))), cf.strike(blow), offset=offset)
-
-    right, left = gap(0.3), gap(-0.3)
-    assert left.squirt == pytest.approx(-right.squirt, rel=1e-9)
-    assert left.weight == pytest.approx(right.weight, rel=1e-9)
-
-
-def test_the_work_can_be_followed() -> None:
-    followed: list[str] = []
-    lumped = cf.Scene(cf.LumpedCue(0.54, 0.006), stroke=cf.Stroke(offset=0.3))
-    effects_record(lumped, track=lambda work: (followed.append(v.name) or v for v in work))
-    assert sorted(followed) == sorted(effect_kinds())
 
 
 def test_the_command(tmp_path: Path) -> None:

@@ -17,9 +17,8 @@ import pytest
 
 import cuefem as cf
 from cuefem.accuracy import resolve
-from cuefem.materials import material
-from cuefem.report.charts import WIDE, Axis, Curve, Mark, apart, chart, path, round_step
-from cuefem.report.drawings import cue_drawing, front_drawing, modes_drawing, strike_drawing
+from cuefem.report.charts import WIDE, Axis, Curve, Mark, chart, round_step
+from cuefem.report.drawings import cue_drawing, front_drawing, strike_drawing
 from cuefem.report.page import page
 from tests.helpers.command_line import call
 
@@ -216,16 +215,6 @@ def test_ticks_are_round_numbers() -> None:
     assert (flat.low, flat.high) == (0.0, 1.0)
 
 
-def test_labels_stand_apart() -> None:
-    assert apart([10.0, 30.0], 0, 50) == [10.0, 30.0]
-    assert apart([10.0, 12.0, 13.0], 0, 50) == [10.0, 24.0, 38.0]
-    assert apart([48.0, 49.0, 50.0], 0, 50) == [22.0, 36.0, 50.0]
-
-
-def test_a_curve_breaks_where_there_is_no_number() -> None:
-    assert path([0, 1, 2, 3], [0, 1, math.nan, 3]) == "M0.00 0.00L1.00 1.00M3.00 3.00"
-
-
 def test_a_chart_keeps_its_curves_near() -> None:
     made = chart("t", [Curve("far", [0, 1], [0, 1e9], "c1")], x=Axis("x"), y=Axis("y", 0, 1), marks=[Mark(1, "m")])
     left, top, right, bottom = made.box
@@ -278,12 +267,6 @@ def test_the_blow_is_drawn_true() -> None:
     assert fall == pytest.approx(math.tan(0.03), rel=1e-9)
 
 
-def test_every_mode_has_its_nodes() -> None:
-    cue = scene("kim").cue
-    made = modes_drawing(cf.modes(cue, 5), cue.length)
-    assert [len(row.nodes) for row in made.rows] == [2, 3, 4, 5, 6]
-
-
 SCRIPT = """<script>
 const parts = [...document.querySelectorAll("section, figure, header")].map(e => e.getBoundingClientRect());
 const texts = [...document.querySelectorAll("svg text")].map(e => e.getBoundingClientRect());
@@ -328,15 +311,6 @@ def test_a_browser_shows_it_without_scrolling_or_complaint(tmp_path: Path, name:
     assert found["smallest"] > 6.5  # px, of a text's line: still to be read on a phone
 
 
-@pytest.mark.heavy
-def test_a_miscue_is_said_above_all_numbers(pool: str) -> None:
-    shot = scene("kim")
-    missed = page("kim.toml", replace(shot, stroke=replace(shot.stroke, offset=0.7)))
-    missed = re.sub("</?button[^>]*>", "", missed)  # around words that are explained
-    assert 0 < missed.index("this stroke miscues: ") < missed.index("<section")
-    assert "miscues" not in pool
-
-
 def test_offsets_that_slip_long_are_shaded(pool: str) -> None:
     shot = scene("kim")
     slippery = replace(shot, tip=replace(shot.tip, friction=0.4))
@@ -355,28 +329,3 @@ def test_the_page_says_how_exact_its_numbers_are(pool: str) -> None:
         "1 % was asked for." in words
     )
     assert "estimated error" not in page("lumped.toml", LUMPED)
-
-
-@pytest.mark.heavy
-def test_the_blow_is_in_the_materials_of_the_cue() -> None:
-    def styles(blow: cf.Scene) -> list[str]:
-        return [style for _, style in strike_drawing(blow, 0.03).pieces]
-
-    shot = scene("pool_low_deflection")
-    drawn = [piece.material for piece in front_drawing(shot).pieces]
-    assert styles(shot) == drawn[: len(styles(shot))]
-    assert styles(shot)[0] == "m-leather"
-    assert len(styles(shot)) > 1
-    maple = replace(shot, cue=cf.Cue((cf.Segment(0.7, 0.012, 0.021, material("hard maple")),), 0.42))
-    assert styles(maple) == ["m-hard-maple"]
-    assert 'class="piece m-leather"' not in page("maple.toml", maple)
-    assert styles(LUMPED) == ["m-other"]
-
-
-def test_the_struck_end_is_as_long_as_its_segments() -> None:
-    shot = scene("pool_low_deflection")
-    made = strike_drawing(shot, 0.03)
-    scale = made.ball[2] / shot.ball.radius
-    ends = [max(float(n) for n in re.findall(r"(-?[0-9.]+) -?[0-9.]+", outline)) for outline, _ in made.pieces]
-    assert ends == pytest.approx([min(300 + scale * x, WIDE) for x in shot.cue.nodes[1 : len(ends) + 1]], abs=0.01)
-    assert ends[-1] == pytest.approx(WIDE, abs=0.01)

@@ -14,7 +14,6 @@ from cuefem.endmass.drives import small_offset_slope
 from cuefem.tip_modes import tip_modes_of
 from studies import pages, strokes
 from studies.contact import bridge, dome, effects, energy, leather_release, side_strike
-from studies.measured import pool
 from tests.helpers.half_order import spring_exact
 from tests.helpers.study_tables import after, row
 
@@ -50,15 +49,6 @@ def test_the_edge_of_kims_miscue_is_not_sharp():
 
 
 # dome
-
-
-def test_dome_on_kims_shaft():
-    """0.0713 bare, about 0.10 at 6 mm, 0.117 at 9 mm; linear in the radius."""
-    bare, six, nine = (dome.case("kim", r).slope for r in (0.0, 6e-3, 9e-3))
-    assert bare == pytest.approx(0.0713, rel=2e-3)
-    assert six == pytest.approx(0.1013, rel=2e-3)
-    assert nine == pytest.approx(0.1163, rel=2e-3)
-    assert (nine - bare) / (six - bare) == pytest.approx(1.5, rel=1e-4)
 
 
 @pytest.mark.heavy
@@ -99,13 +89,6 @@ def test_a_wooden_tip_needs_no_more_modes_than_the_default():
     for sheared in (False, True):
         assert abs(dome.shortfall(dome.WOODEN, sheared=sheared)) < 2e-3
         assert -0.03 < dome.shortfall("pool_maple", sheared=sheared) < -0.005
-
-
-def test_dome_with_leather_tip() -> None:
-    page = after(dome.STUDY.committed, pages.LEATHER)
-    for tip, model in (("patchwork", dome.patchwork), (pool.MODERN, dome.leather)):
-        cells = row(page, "pool_maple", tip)
-        assert (cells[3], cells[6]) == (f"{model('pool_maple', 9.5e-3):.2f}", f"{model('pool_maple', np.inf):.2f}")
 
 
 # bridge
@@ -207,11 +190,6 @@ def test_the_account_closes_with_the_square_of_the_step(rule: str) -> None:
     coarse, fine = (leather_release.stepped(scene, rule, step) for step in (4e-6, 2e-6))
     assert coarse.missing / fine.missing == pytest.approx(4, rel=0.15)
     assert min(fine.lost, fine.slid) >= 0
-
-
-def test_the_rings_without_slip_depend_on_their_number_only_a_little() -> None:
-    few, many = (leather_release.stepped(leather_release.struck_scene(), "rings", 2e-6, count) for count in (100, 400))
-    assert few.squirt == pytest.approx(many.squirt, rel=2e-4)
 
 
 # a ball on the side of a beam

@@ -15,10 +15,9 @@ import cuefem as cf
 from cuefem.games import GAMES
 from studies import pages, strokes
 from studies.measured import added_mass, leather_tip, measured, measured_shafts, pool, tap, tap_refusals, tap_sounds
-from tests.helpers.study_tables import after, row, rows
+from tests.helpers.study_tables import rows
 
 BOTH, MODERN = "dome + shear", pool.MODERN
-WITH_LEATHER = {study: after(study.STUDY.committed, pages.LEATHER) for study in (measured, added_mass)}
 
 # measured
 
@@ -112,22 +111,6 @@ def test_speed():
     assert ours == pytest.approx(theirs, abs=0.01)
 
 
-@pytest.mark.parametrize("place", [1, 5])  # the middle of the series of 2007, and the low-deflection shaft
-def test_measured_levels(place: int) -> None:
-    level = measured_shafts.measurements()[place]
-    cells = row(WITH_LEATHER[measured], level.cue)
-    assert cells[5] == f"{measured.usual(level, MODERN):.2f}"
-    assert cells[4] == f"{measured.usual(level, BOTH):.2f}"
-
-
-@pytest.mark.heavy
-def test_a_band_and_a_zero() -> None:
-    robot = measured_shafts.robot()
-    low, high = measured.band(robot, MODERN)
-    assert row(WITH_LEATHER[measured], robot.cue)[6] == f"{low:.2f} to {high:.2f}"
-    assert f"{MODERN} {1e3 * measured.best_zero(MODERN):.1f}." in WITH_LEATHER[measured]
-
-
 def test_the_bore_that_the_stiffness_asks_for() -> None:
     """The last 8 in are as stiff as was measured; the answers bracket the bores that the studies use."""
     E = measured_shafts.USUAL["maple's E, Pa"]
@@ -139,19 +122,6 @@ def test_the_bore_that_the_stiffness_asks_for() -> None:
 
 
 # added mass
-
-
-def test_the_data_are_what_was_digitised():
-    assert len(added_mass.measured(11e-3)) == 16
-    assert len(added_mass.measured(3e-3)) == 15
-    assert added_mass.told(2) == pytest.approx(1.70, abs=0.005)
-    assert min(added_mass.measured(11e-3), key=added_mass.measured(11e-3).get) == 7.0
-
-
-def test_a_clip_weighs_what_it_should():
-    lumps = added_mass.clip(11e-3, 2)
-    assert sum(lump.mass for lump in lumps) == pytest.approx(11e-3, rel=1e-12)
-    assert np.mean([lump.position for lump in lumps]) == pytest.approx(2 * 0.0254, rel=1e-12)
 
 
 @pytest.mark.heavy
@@ -180,13 +150,6 @@ def test_what_the_curve_does_not_give():
     assert all(added_mass.share(x, 3e-3) < found - 0.15 for x, found in shares.items())
 
 
-def test_added_mass_with_leather_tip() -> None:
-    E = pool.LEATHER.E
-    cells = row(WITH_LEATHER[added_mass], MODERN, f"{E / 1e6:g}")
-    assert cells[3] == f"{added_mass.leather_ratio(MODERN, E, 2):.2f}"
-    assert cells[9] == f"{added_mass.leather_ratio(MODERN, E, 7):.2f}"
-
-
 # the leather tip
 
 LEATHER_TIP = leather_tip.STUDY.committed
@@ -207,14 +170,6 @@ def test_speed_hardly_matters_but_for_a_bare_tip() -> None:
     assert changes[leather_tip.ALONE] > 1.1
     times = column(SPEED, "contact time, ms")
     assert times == sorted(times, reverse=True)
-
-
-def test_a_row_again() -> None:
-    squirt, time = leather_tip.struck(MODERN, leather_tip.maple(), speed=5.0)
-    assert (f"{squirt:.2f}", f"{time:.2f}") == (
-        f"{column(SPEED, MODERN)[4]:.2f}",
-        f"{column(SPEED, 'contact time, ms')[4]:.2f}",
-    )
 
 
 @pytest.mark.parametrize("name", ["squirt at b/R 0.375, deg", "contact time there, ms"])
