@@ -48,36 +48,6 @@ def test_it_is_the_modes_and_their_tail(name: str, turning: bool) -> None:
         np.testing.assert_allclose(abs(own), abs(their), rtol=0, atol=1e-8 * abs(their).max())
 
 
-@pytest.mark.parametrize("name", ["kim", "pool", "random 3"])
-def test_its_shapes_are_those_of_the_modes(name: str) -> None:
-    system = beam(CUES[name]())
-    found = ended(system, COUNT, turning=True)(COUNT)
-    assert isinstance(found, TipSpectrum)
-    modes = found.modes
-    every = np.concatenate([modes.rigid_vectors, modes.vectors], axis=1)
-    np.testing.assert_allclose(every.T @ (system.M @ every), np.eye(every.shape[1]), atol=1e-9)
-    np.testing.assert_allclose(modes.at_tip, found.at_tip, atol=1e-9 * np.abs(found.at_tip).max())
-    plain = solve(system, COUNT)
-    assert np.all(plain.vectors[0] > 0)
-    np.testing.assert_allclose(modes.vectors[:, :COUNT], plain.vectors, atol=1e-8 * np.abs(plain.vectors).max())
-
-
-@pytest.mark.parametrize("name", ["kim", "pool", "random 3"])
-def test_the_leading_part_of_the_form_has_the_modes_of_the_whole(name: str) -> None:
-    """What stands for the modes left out is the small rest of a sum, which rounding changes by some 1e-12."""
-    system = beam(CUES[name]())
-    whole = ended(system, COUNT, turning=True)
-    assert len(reduced(system, COUNT + 2).eigen[0]) < len(reduced(system).eigen[0])
-    form = reduced(system, COUNT + 2)
-    np.testing.assert_allclose(form.squares[2 : COUNT + 2], reduced(system).squares[2 : COUNT + 2], rtol=1e-12)
-    for count in (8, 17, COUNT):
-        family, alone = (ended(system, most, turning=False)(count) for most in (COUNT, count))
-        np.testing.assert_allclose(family.omega[:count], whole(count).omega[:count], rtol=1e-13)
-        np.testing.assert_allclose(family.at_tip[0][: count + 2], whole(count).at_tip[0][: count + 2], rtol=1e-10)
-        np.testing.assert_allclose(family.omega[:count], alone.omega[:count], rtol=1e-13)
-        np.testing.assert_allclose(family.omega, alone.omega, rtol=2e-11)
-
-
 def test_effects_that_stay_on_the_beam_are_in_it() -> None:
     effects = (PointMass(0.3, 0.005, 1e-6), Support(0.2, 2e4, dashpot=3.0))
     system = beam(kim(), effects)

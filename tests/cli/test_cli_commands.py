@@ -89,19 +89,6 @@ def test_end_mass(kim: str) -> None:
     assert "head-on contact time 1 ms, e 0.75, mu 0.7" in shown
 
 
-@pytest.mark.heavy
-@pytest.mark.parametrize(
-    ("name", "mass", "radius"), [("pool", 0.17, 0.028575), ("carom", 0.21, 0.03075), ("snooker", 0.142, 0.02625)]
-)
-def test_a_ball_by_its_name(kim: str, scene: str, name: str, mass: float, radius: float) -> None:
-    found = as_json("strike", kim, "--ball", name)
-    assert found["scene"]["ball"] == {"mass": mass, "radius": radius, "inertia": 0.4}
-    assert not [words for words in found["assumed"] if "ball" in words]
-    blow = cf.Scene(KIM, cf.Ball(mass, radius), stroke=BLOW)
-    assert found["models"]["coupled"]["squirt"] == pytest.approx(cf.strike(blow).squirt, rel=1e-12)
-    assert as_json("end-mass", scene, "--ball", name)["scene"]["ball"]["mass"] == mass
-
-
 def test_strike(kim: str) -> None:
     found = as_json("strike", kim, "--offset", "0.3")["models"]
     blow = cf.Scene(KIM, stroke=BLOW)
@@ -242,12 +229,6 @@ def test_a_scene_announces_what_it_leaves_out(cue: str, tmp_path: Path) -> None:
         "material hard maple",
         "no mass behind the shaft (--body-mass gives it)",
     ]
-
-
-@pytest.mark.heavy
-def test_unusual_numbers_are_remarked(kim: str) -> None:
-    err = call("end-mass", kim, "--contact-time", "2 s")[2]
-    assert err.splitlines()[0] == "unusual: head-on contact time 2 s; leather's is 0.001 to 0.002 s"
 
 
 def test_convert(cue: str, tmp_path: Path) -> None:

@@ -86,53 +86,6 @@ def test_another_solver_gives_the_same(e: float, offset: float, rolls: bool) -> 
     assert found.duration == pytest.approx(duration, rel=1e-6)
 
 
-def by_kicks(scene: Scene, tip: TipModes, dt: float) -> tuple[float, float]:
-    """(squirt, duration) by plain kicks and turns of the modes, with friction's bound on F_t; of low order in dt."""
-    law, leather_tip = scene.tip_law(scene.tip.restitution, scene.stroke.offset), scene.effects[0]
-    M, nu, R, r, mu = POOL.mass, POOL.inertia, POOL.radius, leather_tip.dome_radius, scene.tip.friction
-    grid = np.linspace(0, law.most, 50_001)
-    F_of, _ = law.at(grid)
-    omega = tip.omega
-    c, s = np.cos(omega * dt), np.where(omega > 0, np.sin(omega * dt) / np.where(omega > 0, omega, 1), dt)
-    q, v, ball = np.zeros(len(omega)), scene.stroke.speed * tip.approach, np.zeros(2)
-    phi, spin, depth, deepest, F_t, F_n, time = asin(scene.stroke.offset), *np.zeros(6)
-    centre = tip.amplitude + np.outer(tip.rotation, (0.0, r - leather_tip.height))
-    while True:
-        t, n = np.array([np.sin(phi), np.cos(phi)]), np.array([np.cos(phi), -np.sin(phi)])
-        moves = tip.amplitude + np.outer(tip.rotation, leather_tip.lever(phi, D))
-        for half in (0, 1):
-            push = F_t * t + F_n * n
-            v, ball, spin = v - moves @ push * dt / 2, ball + push * dt / 2 / M, spin + F_t * dt / 2 / (nu * M)
-            if half:
-                break
-            before = q
-            q, v = c * q + s * v, c * v - omega**2 * s * q
-            mean = (q - before) / dt
-            gap = ball - mean @ moves
-            phi += dt * ((mean @ centre - ball) @ t) / (R + r)
-            depth, time = depth - gap @ n * dt, time + dt
-            deepest = max(deepest, depth)
-            virtual = law.virtual(depth, None if depth == deepest else deepest)
-            if virtual <= 0:
-                return atan2(-ball[1], ball[0]), time
-            F_n, k = np.interp(virtual, grid, F_of), leather_tip.shear
-            F_t = float(np.clip(F_t - k * (gap @ t + spin) * dt, -mu * F_n, mu * F_n))
-
-
-@pytest.mark.parametrize(("offset", "friction"), [(0.3, 0.7), (0.45, 0.45), (0.5, 0.2)])
-def test_plain_kicks_with_friction_come_ever_nearer(offset: float, friction: float) -> None:
-    scene = leather_scene(offset, friction=friction, leather=replace(LEATHER, shear=8e5))
-    told = strike_modes(scene, bent())
-    assert {phase.grip for phase in told.phases} != {"stick"}
-    errors = []
-    for dt in (4e-6, 1e-6):
-        squirt, duration = by_kicks(scene, bent(), dt)
-        errors.append(abs(squirt / told.squirt - 1))
-        assert duration == pytest.approx(told.duration, abs=4 * dt)
-    assert errors[1] < 1e-3
-    assert errors[1] < 0.6 * errors[0]
-
-
 @pytest.mark.parametrize("speed", [1.0, 2.0, 5.0])
 def test_head_on_the_contact_time_is_that_of_the_law_by_quadrature(speed: float) -> None:
     scene = leather_scene(0.0, speed=speed)

@@ -125,20 +125,6 @@ def test_the_side_of_a_level_stroke_turns_about_its_axis(offset, clock):
     np.testing.assert_allclose(turned.spin, matrix @ right.spin, rtol=0, atol=1e-10)
 
 
-def test_an_outcome_of_the_mirrored_stroke_is_placed_alike():
-    for point in ((0.3 * R, R), (-0.2 * R, 1.3 * R)):
-        offset = offset_of(point, NORTH, ball=BALL)
-        one, other = (cf.place(stroke(sign * offset), point, NORTH, ball=BALL) for sign in (1, -1))
-        np.testing.assert_array_equal(one.velocity, other.velocity)
-        np.testing.assert_array_equal(one.spin, other.spin)
-
-
-def test_a_heavy_cue_end_can_squirt_to_the_struck_side():
-    outcome, placed = struck((0.3 * R, R), end_mass=50.0)
-    across = sin(outcome.squirt) * outcome.ball_speed
-    assert placed.velocity[0] == pytest.approx(-across, rel=1e-12)
-
-
 def test_an_elevated_cue_through_the_centre_drives_straight_down():
     down = np.array([0.0, cos(0.5), -sin(0.5)])
     outcome, placed = struck((0.0, R * (1 + sin(0.5))), down)

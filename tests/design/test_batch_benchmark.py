@@ -13,7 +13,7 @@ import pytest
 from cuefem import Resolution
 from cuefem.design.batch import batch_frequencies, batch_stick
 from studies.accuracy import batch
-from studies.accuracy.batch import Counted, Size
+from studies.accuracy.batch import Size
 from studies.strokes import cue, scene
 
 
@@ -39,13 +39,3 @@ def test_every_number_is_told() -> None:
     assert all(f"| {name} | " in found for name in names)
     assert "in two" in told[-2]
     assert "MiB" in told[-1]
-
-
-@pytest.mark.heavy
-def test_memory_stays_flat_over_forty_thousand_designs() -> None:
-    """Over 100,000, by way of a database: tests/design/test_sweep_kill.py."""
-    store = Counted(batch.study(40_000, ("frequency(1)", "mass"), Resolution(1, 5, 1)))
-    batch.sweep(store.study, store)
-    assert store.designs == 40_000
-    assert len(store.memory) == 10
-    assert max(store.memory) < min(store.memory) + 4  # MiB: 100 bytes a design

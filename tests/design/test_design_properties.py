@@ -183,14 +183,6 @@ def test_a_grid_runs_through_all_levels_the_last_fastest() -> None:
     assert found.size == 6
 
 
-@pytest.mark.parametrize("count", [1, 255, 256, 257, 700])
-def test_blocks_hold_every_design_once(count: int) -> None:
-    found = study(Vary(("ball.mass",), Span(0.16, 0.2, count)))
-    blocks = list(found.blocks())
-    assert [len(block) for block in blocks[:-1]] == [found.block] * (len(blocks) - 1)
-    assert sum(map(len, blocks)) == found.size == count
-
-
 def test_a_scene_of_values_factors_and_materials() -> None:
     found = study(
         varied("cue.segments[3].material", "ash"),

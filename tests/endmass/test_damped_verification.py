@@ -7,7 +7,6 @@ from dataclasses import replace
 import matplotlib as mpl
 import numpy as np
 import pytest
-import scipy.linalg as la
 
 import cuefem as cf
 from cuefem.endmass import damped, poles
@@ -17,19 +16,6 @@ from tests.helpers.cues import kim, scene
 
 mpl.use("Agg")
 from studies.accuracy.default_accuracy import random_cue
-
-
-@pytest.mark.parametrize("T", [0.5e-3, 2e-3])
-@pytest.mark.parametrize("effects", [(), (cf.StructuralDamping(0.02),), (cf.Support(0.5, 1e4, 0.0, 5.0),)])
-def test_modes_that_nothing_damps_are_taken_in_closed_form(T: float, effects: tuple[cf.Effect, ...]) -> None:
-    tip = Solved(replace(scene(kim(), T), effects=effects)).tip
-    A, row = damped._motion(tip)
-    size, a = len(A), np.pi / T
-    whole = np.zeros((size + 2, size + 2))
-    whole[:size, :size], whole[:size, size] = A, row
-    whole[size, size + 1], whole[size + 1, size] = a, -a
-    exact = float(row @ la.expm(whole * T)[:size, size + 1])
-    assert damped.half_sine_velocity(tip, T) == pytest.approx(exact, rel=2e-13)
 
 
 def test_nothing_touched_is_the_closed_form() -> None:
@@ -86,13 +72,3 @@ def test_dashpots_and_rates_that_are_real_are_left_to_the_exponential() -> None:
     tip = Solved(found).tip
     overdamped = replace(tip, radiation=None, damping=np.diag(np.where(tip.omega > 0, 2.5 * tip.omega[-1], 0.0)))
     assert poles.held(overdamped, 10.0) is None
-
-
-@pytest.mark.parametrize("z", [2000j, -3.0 + 2000j, -5e5 + 1e6j, 0.2 + 1j * np.pi / 1e-3])
-def test_a_decaying_vibrations_response_is_its_integral(z: complex) -> None:
-    T, a, b = 1e-3, np.pi / 1e-3, 0.4
-    x, w = np.polynomial.legendre.leggauss(4000)
-    s = T * (1 + x) / 2
-    exact = np.sum(w * np.exp(z * (T - s)) * np.cos(a * s + b)) * T / 2
-    found = poles.response(np.array([z]), T, (0.0, T), a=a, b=b)[0]
-    assert abs(found - exact) < 1e-12 * T

@@ -22,7 +22,7 @@ import cuefem as cf
 from cuefem.io import InputError
 from tests.helpers.command_line import call
 
-SOON = 20.0  # s, where a quiet machine takes less than 1
+SOON = 20.0  # s of the processor, where less than 1 is needed: a busy machine changes nothing
 PIECE = '[[segments]]\nlength = "{}"\ntip_diameter = "{}"\nbutt_diameter = "21 mm"\nmaterial = "hard maple"\n'
 GOOD = PIECE.format("700 mm", "12 mm")
 TIP = 'cue = "good.toml"\n[stroke]\noffset = 0.3\n[tip]\n'
@@ -65,9 +65,9 @@ values = ["{}"]
 
 def refused(*arguments: object) -> str:
     """The one line on stderr of a command that refuses in time."""
-    begun = time.monotonic()
+    begun = time.process_time()
     status, out, err = call(*arguments)
-    assert time.monotonic() - begun < SOON
+    assert time.process_time() - begun < SOON
     assert (status, out, err.count("\n")) == (2, "", 1), err[-300:]
     return err.removeprefix("cuefem: ")
 
@@ -182,10 +182,10 @@ def test_what_unpacks_without_end_is_refused_while_it_is_unpacked(tmp_path: Path
     path.write_bytes(make())
     tracemalloc.start()
     try:
-        begun = time.monotonic()
+        begun = time.process_time()
         with pytest.raises(InputError) as caught:
             cf.load(path)
-        assert time.monotonic() - begun < SOON
+        assert time.process_time() - begun < SOON
         assert tracemalloc.get_traced_memory()[1] < 2e8  # bytes
     finally:
         tracemalloc.stop()
@@ -205,9 +205,9 @@ def test_a_profile_of_many_points_on_a_line_is_read_soon(tmp_path: Path) -> None
     path = tmp_path / "shaft.csv"
     rows = "".join(f"{i * 0.01:.2f},{12 + i * 0.00015:.5f}\n" for i in range(20_001))
     path.write_text("x [mm],diameter [mm]\n" + rows)
-    begun = time.monotonic()
+    begun = time.process_time()
     cue = cf.load(path)
-    assert time.monotonic() - begun < SOON
+    assert time.process_time() - begun < SOON
     assert len(cue.segments) == 1
     assert cue.length == pytest.approx(0.2, rel=1e-12)
 
@@ -281,11 +281,11 @@ def test_a_file_that_is_too_large_is_not_read(folder: Path, suffix: str) -> None
     name = f"cue.{suffix}"
     with open(name, "wb") as file:
         file.truncate(1_500_000_000)
-    begun, before = time.monotonic(), resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    begun, before = time.process_time(), resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     for command in commands_on(name):
         line = f"{name}: must be a file of at most {LIMITS[suffix]} MB; got 1500"
         assert refused(*command).endswith(f"{line}\n")
-    assert time.monotonic() - begun < SOON / 4
+    assert time.process_time() - begun < SOON / 4
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 100_000  # kB: none of it was read
 
 

@@ -166,13 +166,6 @@ def covered(shafts: list[Shaft], way: str, seed: int, *, times: int = 4, wrong: 
     return np.array(found)
 
 
-def test_intervals_cover_the_end_masses_of_a_hundred_shafts(shafts: list[Shaft]) -> None:
-    assert np.ptp([true for *_, true in shafts]) > 3e-3
-    narrow, wide = covered(shafts, "swing", 1).mean(axis=0)
-    assert 0.60 <= narrow <= 0.76
-    assert 0.90 <= wide <= 0.99
-
-
 @pytest.mark.parametrize("way", ["swing", "speed", "frames"])
 def test_intervals_cover_in_a_thousand_tests(shafts: list[Shaft], way: str) -> None:
     """The same with ten draws of the noise for each shaft: 4.4 % and 2.1 % are three standard deviations."""

@@ -10,7 +10,7 @@ from scipy.io import wavfile
 
 from cuefem import PointMass
 from cuefem.measured.ringing import ringing
-from cuefem.measured.tones import Tone, tones
+from cuefem.measured.tones import Tone
 from cuefem.measured.wood import TapTest
 from studies.measured import tap
 from studies.strokes import MESHES, cue
@@ -174,8 +174,3 @@ def one_tone(frequency: float) -> np.ndarray:
 def test_rates(rate: float) -> None:
     with pytest.raises(ValueError, match=r"ringing rate must be in \[8000, 384000\] Hz"):
         ringing(np.zeros(48000), rate)
-
-
-def test_no_tone() -> None:
-    with pytest.raises(RuntimeError, match="must hold a decaying tone"):
-        tones(ringing(NOISE, RATE))

@@ -106,6 +106,31 @@ def test_it_prints_on_two_to_five_pages_with_its_tables_open(opened: Any, scheme
     assert opened.evaluate(cut) == 0
 
 
+LAID_OUT = """() => {
+  const parts = [...document.querySelectorAll("section, figure, header")].map(e => e.getBoundingClientRect());
+  const texts = [...document.querySelectorAll("svg text")].map(e => e.getBoundingClientRect());
+  return {
+    scroll: document.documentElement.scrollWidth,
+    wide: parts.filter(r => r.right > innerWidth + 1).length,
+    outside: texts.filter(r => r.right > innerWidth || r.left < 0).length,
+    smallest: Math.min(...texts.map(r => r.height)),
+  };
+}"""
+
+
+@pytest.mark.parametrize("name", ["pool_low_deflection", "break_cue", "clay_on_shaft"])
+def test_it_is_shown_without_scrolling_or_complaint(opened: Any, tmp_path: Path, name: str) -> None:
+    scene = cf.load(Path(__file__).parents[2] / "studies" / "scenes" / f"{name}.toml")
+    (tmp_path / "page.html").write_text(page(f"{name}.toml", scene), encoding="utf-8")
+    for width in (1280, 390):
+        opened.set_viewport_size({"width": width, "height": 900})
+        opened.goto((tmp_path / "page.html").as_uri())
+        found = opened.evaluate(LAID_OUT)
+        assert found["scroll"] <= width
+        assert (found["wide"], found["outside"]) == (0, 0)
+        assert found["smallest"] > 6.5  # px, of a text's line: still to be read on a phone
+
+
 def test_no_table_is_cut_at_1280(opened: Any) -> None:
     opened.evaluate("document.querySelectorAll('details').forEach(fold => fold.open = true)")
     cut = "[...document.querySelectorAll('.scroll')].filter(e => e.scrollWidth > e.clientWidth + 1).length"

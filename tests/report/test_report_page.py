@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import json
 import math
 import re
-import shutil
-import subprocess
 from collections import Counter
 from dataclasses import replace
 from html.parser import HTMLParser
@@ -24,7 +21,6 @@ from tests.helpers.command_line import call
 
 MESHES = Path(__file__).parents[2] / "meshes"
 SCENES = MESHES.parent / "studies" / "scenes"
-BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 VOID = {"meta", "link", "br"}
 
 LUMPED = cf.Scene(cf.LumpedCue(0.54, 0.006), stroke=cf.Stroke(offset=0.3))
@@ -265,50 +261,6 @@ def test_the_blow_is_drawn_true() -> None:
     assert (y - made.contact[1]) / radius == pytest.approx(0.375, rel=1e-9)  # b/R above its centre
     fall = (made.path_end[1] - y) / (x - made.path_end[0])
     assert fall == pytest.approx(math.tan(0.03), rel=1e-9)
-
-
-SCRIPT = """<script>
-const parts = [...document.querySelectorAll("section, figure, header")].map(e => e.getBoundingClientRect());
-const texts = [...document.querySelectorAll("svg text")].map(e => e.getBoundingClientRect());
-parent.postMessage(JSON.stringify({
-  inner: innerWidth,
-  scroll: document.documentElement.scrollWidth,
-  wide: parts.filter(r => r.right > innerWidth + 1).length,
-  outside: texts.filter(r => r.right > innerWidth || r.left < 0).length,
-  smallest: Math.min(...texts.map(r => r.height)),
-}), "*");
-</script></body>"""
-# A frame is as narrow as it is told to be; a browser's window is not.
-FRAME = """<!DOCTYPE html><script>onmessage = e => document.title = e.data;</script>
-<iframe src="page.html" width="WIDTH" height="900" style="border: 0"></iframe>"""
-
-
-@pytest.mark.heavy
-@pytest.mark.skipif(BROWSER is None, reason="needs Chromium: apt-get install chromium")
-@pytest.mark.parametrize("width", [1280, 390])
-@pytest.mark.parametrize("name", ["pool_low_deflection", "break_cue", "clay_on_shaft"])
-def test_a_browser_shows_it_without_scrolling_or_complaint(tmp_path: Path, name: str, width: int) -> None:
-    assert BROWSER is not None
-    (tmp_path / "page.html").write_text(page(f"{name}.toml", scene(name)).replace("</body>", SCRIPT), encoding="utf-8")
-    frame = tmp_path / "frame.html"
-    frame.write_text(FRAME.replace("WIDTH", str(width)), encoding="utf-8")
-    options = ["--headless", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr", "--virtual-time-budget=3000"]
-    options.append(f"--user-data-dir={tmp_path / 'profile'}")
-    done = subprocess.run(
-        [BROWSER, *options, "--window-size=1400,1000", "--dump-dom", frame.as_uri()],
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=True,
-    )
-    assert "CONSOLE" not in done.stderr
-    said = re.search(r"<title>(\{.*?\})</title>", done.stdout)
-    assert said is not None
-    found = json.loads(said[1])
-    assert found["inner"] == width
-    assert found["scroll"] <= width
-    assert (found["wide"], found["outside"]) == (0, 0)
-    assert found["smallest"] > 6.5  # px, of a text's line: still to be read on a phone
 
 
 def test_offsets_that_slip_long_are_shaded(pool: str) -> None:

@@ -28,18 +28,6 @@ def test_every_word_of_the_glossary_is_explained_by_its_entry() -> None:
     assert len({entry.id for entry in entries()}) == len(entries()) > 30
 
 
-def test_the_longest_word_is_meant() -> None:
-    assert [words for _, words in buttons(explained("natural pivot length and time in contact"))] == [
-        "natural pivot length",
-        "time in contact",
-    ]
-
-
-@pytest.mark.parametrize("text", ["offsets.toml", "--offset", "spinning", "nodeless", "tip/node", "--tip-dome"])
-def test_a_part_of_a_name_is_no_word(text: str) -> None:
-    assert not buttons(explained(f"<p>{text.replace('offsets.toml', 'my_offset')}</p>"))
-
-
 @pytest.mark.parametrize("tag", ["svg", "h1", "title", "button", "summary", "code", "label"])
 def test_names_and_controls_are_left_alone(tag: str) -> None:
     markup = f"<{tag}>squirt <b>spin</b></{tag}>"

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from cuefem import strike
-from cuefem.design import evaluate
 from cuefem.materials import MATERIALS
 from studies import pages
 from studies.design import low_squirt, scatter
-from studies.measured import pool
 from studies.strokes import cue, scene
 from tests.helpers.study_tables import after, row
 
@@ -39,11 +36,6 @@ def test_low_squirt() -> None:
     assert float(cells[6]) > 0.65
 
 
-def test_the_causes_are_those_told() -> None:
-    assert scatter.FULL.causes == ("wood", "turning", "ferrule", "leather", "ball", "contact time", "dome", "tip shear")
-    assert scatter.bare().causes == scatter.FULL.causes[:-2]
-
-
 def test_the_wood_is_that_of_the_materials_table() -> None:
     """Two standard deviations of G, one of E and of density, are the ranges that materials.py gives for hard maple."""
     maple = MATERIALS["hard maple"]
@@ -52,21 +44,3 @@ def test_the_wood_is_that_of_the_materials_table() -> None:
         middle = getattr(maple.material, name)
         assert middle * vary.range.quantile(0.5 - (0.3413, 0.4772)[width - 1]) == pytest.approx(low, rel=0.1)
         assert middle * vary.range.quantile(0.5 + (0.3413, 0.4772)[width - 1]) == pytest.approx(high, rel=0.1)
-
-
-def test_the_middle_design_is_the_drawing() -> None:
-    """All causes at their middles: squirt within the table's quartiles."""
-    study = scatter.FULL.study
-    middle = study.scene(tuple(vary.range.quantile(0.5) for vary in study.vary))
-    (row,) = evaluate([middle], study.responses, at=study.resolution).values
-    assert 1.488 < row[1] * scatter.SCALES["squirt"][1] < 1.759
-
-
-def test_the_middle_shaft_of_the_scatter() -> None:
-    study = scatter.LEATHER.study
-    middle = study.scene(tuple(vary.range.quantile(0.5) for vary in study.vary))
-    (found,) = evaluate([middle], study.responses, at=study.resolution).values
-    cells = [
-        float(cell) for cell in row(after(scatter.STUDY.committed, pages.LEATHER), f"squirt, °, {pool.MODERN}")[1:]
-    ]
-    assert cells[3] < np.degrees(found[0]) < cells[5]

@@ -6,46 +6,18 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import replace
-from itertools import pairwise
 
-import numpy as np
 import pytest
 
 import cuefem as cf
 from cuefem.games import GAMES
 from studies import pages, strokes
-from studies.measured import added_mass, leather_tip, measured, measured_shafts, pool, tap, tap_refusals, tap_sounds
+from studies.measured import leather_tip, measured, measured_shafts, pool, tap, tap_refusals, tap_sounds
 from tests.helpers.study_tables import rows
 
 BOTH, MODERN = "dome + shear", pool.MODERN
 
 # measured
-
-
-def test_draws_lie_within_the_ranges_and_around_the_usual_values():
-    draws = measured_shafts.draws()
-    assert len(draws) == measured_shafts.DRAWS
-    for name, (low, usual, high) in measured_shafts.UNKNOWN.items():
-        values = np.array([draw[name] for draw in draws])
-        assert low <= values.min() < usual < values.max() <= high
-        assert 0.3 < np.mean(values < usual) < 0.7
-
-
-def test_the_usual_shafts_are_those_of_the_meshes():
-    for name, drawn in (("pool_maple", strokes.cue("pool_maple")), ("pool_hollow", pool.hollow(pool.BORES[1]))):
-        made = measured_shafts.shaft_of(name, measured_shafts.USUAL)
-        for ours, theirs in zip(made.segments, drawn.segments, strict=True):
-            assert ours.length == pytest.approx(theirs.length, rel=1e-12)
-            assert replace(ours, length=theirs.length) == theirs
-
-
-@pytest.mark.heavy
-def test_contact_time_decides_between_the_models():
-    """0.7 to 2 ms: squirt grows by half bare and with shear, a third with a dome, less than a tenth with both."""
-    assert 0.45 < measured.spread("bare") < 0.55
-    assert 0.4 < measured.spread("shear") < 0.5
-    assert 0.2 < measured.spread("dome") < 0.35
-    assert measured.spread(BOTH) < 0.1
 
 
 @pytest.mark.heavy
@@ -61,14 +33,6 @@ def test_level_at_the_robots_offset():
             there = measured.at_time(model, pool.TIME, round(pool.OFFSET + sign * off, 3))
             reached[sign] = there / measured.at_time(model, pool.TIME)
         assert (low * reached[-1] < values[0] and values[1] < high * reached[1]) == (model != "shear")
-
-
-def test_the_two_series_do_not_agree():
-    """The same cue: the robot of 2008 measured 23 to 30 % more than the series of 2007 has at that offset."""
-    between = measured_shafts.series_at(pool.OFFSET)
-    assert measured_shafts.baseline().squirt / between == pytest.approx(1.23, abs=0.01)
-    assert measured_shafts.robot().squirt / between == pytest.approx(1.30, abs=0.01)
-    assert [row.offset for row in measured_shafts.series()] == [0.187, 0.32, 0.453]
 
 
 def test_where_the_model_fails():
@@ -87,67 +51,7 @@ def test_where_the_model_fails():
     assert ratio == pytest.approx(predator.squirt / series[2].squirt, abs=0.03)  # 0.72, with a bore of 8.5 mm
 
 
-@pytest.mark.heavy
-def test_the_other_effects_lift_the_level_above_the_measured():
-    alone = measured.at_time(BOTH, pool.TIME)
-    turning, waves, whole = (
-        measured.everything(*names) for names in (["turning"], ["axial waves"], ["turning", "axial waves", "power law"])
-    )
-    assert measured.everything() == pytest.approx(alone, rel=1e-9)
-    assert 1.05 < turning / alone < 1.15
-    assert 1.03 < waves / alone < 1.07
-    assert max(turning, waves) < whole
-    assert whole - measured.SERIES[1] == pytest.approx(0.10, abs=0.02)
-
-
-@pytest.mark.heavy
-def test_speed():
-    hertz, power, turning, net = (measured.speed_change(BOTH, law) for law in measured.LAWS)
-    assert -0.02 < hertz < 0
-    assert power < -0.05 < 0.05 < turning
-    assert abs(net) < 0.03
-    # the contact time's power law is the nonlinear contact's
-    ours, theirs = (measured.speed_change("bare", law) for law in (measured.HERTZ, "power law"))
-    assert ours == pytest.approx(theirs, abs=0.01)
-
-
-def test_the_bore_that_the_stiffness_asks_for() -> None:
-    """The last 8 in are as stiff as was measured; the answers bracket the bores that the studies use."""
-    E = measured_shafts.USUAL["maple's E, Pa"]
-    bore = measured_shafts.asked_bore(E, measured.DEPTHS[0])
-    end = measured_shafts.end_of(measured_shafts.bored(bore, E, measured.DEPTHS[0]), measured_shafts.END)
-    assert end.length == pytest.approx(0.2032, rel=1e-9)
-    assert measured_shafts.stiffness(end) == pytest.approx(3480, rel=1e-9)
-    assert bore == pytest.approx(pool.BORES[-1], abs=0.05e-3)
-
-
 # added mass
-
-
-@pytest.mark.heavy
-def test_shape_of_the_curve():
-    """Dome and shear: a monotone fall to beyond 6 in, a dip, and back; bare it is not so."""
-    setup = added_mass.usual(time=1e-3)
-    fall = [added_mass.ratio(setup, 11e-3, x) for x in (2, 3, 4, 5, 6)]
-    assert all(a > b > 1 for a, b in pairwise(fall))
-    assert added_mass.reach(setup) == pytest.approx(6.2, abs=0.3)
-    place, depth = added_mass.dip(setup)
-    assert 7 < place < 8
-    assert 0.85 < depth < 0.94
-    assert 0.2 < added_mass.dip_growth() < 0.5
-    assert added_mass.ratio(added_mass.usual("bare", 1e-3), 11e-3, 3.5) < 0.9
-
-
-@pytest.mark.heavy
-def test_what_the_curve_does_not_give():
-    at_two = {name: added_mass.ratio(setup, 11e-3, 2) for name, setup in added_mass.variants().items()}
-    assert at_two["usual"] == pytest.approx(1.47, abs=0.02)
-    short = {name for name, found in at_two.items() if found < added_mass.told(2) - 0.05}
-    assert set(at_two) - short == {"shear ratio 0.3"}
-    best = min(((m, T) for m in added_mass.MODELS for T in added_mass.TIMES), key=lambda key: added_mass.miss(*key))
-    assert best == ("shear", 2e-3)
-    shares = added_mass.shares()
-    assert all(added_mass.share(x, 3e-3) < found - 0.15 for x, found in shares.items())
 
 
 # the leather tip
