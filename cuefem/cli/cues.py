@@ -10,7 +10,7 @@ import click
 from cuefem.accuracy import resolve
 from cuefem.cli.common import file_options, show
 from cuefem.cli.definitions import WithDefinitions
-from cuefem.cli.handover import ONLY, hand_over, simulator_options
+from cuefem.cli.handover import ONLY, ONLY_TABLE, hand_over, simulator_options, table_for
 from cuefem.cli.printing import page_option
 from cuefem.cli.strokes import blow_options, offset_option
 from cuefem.io import InputError, load_accuracy
@@ -38,13 +38,32 @@ def end_mass(file: Path, paper: bool, **given: Any) -> None:
 @blow_options
 @offset_option
 @simulator_options
-def strike(file: Path, whom: str | None, drive: Any, length: str | None, output: Path | None, **given: Any) -> None:
+def strike(
+    file: Path,
+    whom: str | None,
+    drive: Any,
+    length: str | None,
+    offsets: str | None,
+    speeds: str | None,
+    output: Path | None,
+    **given: Any,
+) -> None:
     """Compute one stroke: squirt, speed, spin and pivot length; to the rtol of the file's [accuracy], if it has one."""
+    of_table = (("--offsets", offsets), ("--speeds", speeds))
+    of_pooltool = (("--drive", drive), ("--length", length))
+    for option, value in of_table if whom != "table" else of_pooltool:
+        if value is not None:
+            raise InputError(file, option, ONLY_TABLE if whom != "table" else ONLY)
+    if whom == "table":
+        table_for(file, given, offsets=offsets, speeds=speeds, output=output)
+        return
     if whom is not None:
+        if output is not None and output.suffix == ".csv":
+            raise InputError(output, "--output", "must end in .html or .json; got '.csv', which --for table writes")
         hand_over(file, given, drive=drive, length=length, output=output)
         return
-    simulators = output if output is not None and output.suffix == ".json" else None
-    for option, value in (("--drive", drive), ("--length", length), ("--output", simulators)):
+    simulators = output if output is not None and output.suffix != ".html" else None
+    for option, value in (*of_pooltool, ("--output", simulators)):
         if value is not None:
             raise InputError(file, option, ONLY)
 

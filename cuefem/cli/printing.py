@@ -23,6 +23,7 @@ WRITTEN = {
     ".svg": "a picture",
     ".toml": "a drawing or scene",
     ".json": "a simulator's file",
+    ".csv": "a simulator's file",
     "": "a folder for ParaView",
 }
 

@@ -4,7 +4,7 @@ pooltool turns the ball by [A.31] with nu = 2/5, whatever the ball: alpha = -ata
 + (5/2)(1 - a^2))), its own words in `pooltool.physics.resolve.stick_ball.squirt`; a is b/R of the contact, positive on
 the ball's left, alpha positive to the left. [A.31] knows neither restitution nor the tip's dome: with the stick end
 mass it gives 11 to 42 % less squirt than the coupled strike of the ready scenes. With an end mass made for it, the
-drive "A.31", it is right at one offset.
+drive "A.31", it is right at one offset. `table_record` has that end mass for every offset and speed.
 """
 
 from __future__ import annotations
@@ -30,12 +30,20 @@ SAME = 1e-6  # relative: end masses that are one
 WHOLE_CUE = 1.4732  # m, 58 in: pool cues, and pooltool's own
 SHORTEST_CUE = 1.2  # m: a drawing that is shorter is a shaft's
 POOLTOOL_INERTIA = 0.4  # its 5/2
+POOLTOOL = "0.6.0"  # the release whose CueSpecs these are; .ci/pooltool installs it
+POOLTOOL_LINE = 'CueSpecs(**json.load(open("cue.json"))["CueSpecs"])'
 NICKEL = 0.0106045  # m, the dome of pooltool's own cue
 
 A31_MEANING = (
     "the end mass whose [A.31] squirt is that of the coupled strike, at this offset, speed and head-on contact time"
 )
 A31_WORDS = "put this number into pooltool: with its formula [A.31] it then gives the squirt computed here"
+TABLE_MEANING = (
+    "end_mass: the mass m_e with which tan(squirt) = (5/2) a sqrt(1 - a^2)/(1 + m/m_e + (5/2)(1 - a^2)), Alciatore's "
+    "[A.31], gives the squirt of the coupled strike at that offset and speed; a is the offset b/R, m the ball's mass; "
+    "none head on and in a miscue"
+)
+TABLE_SIGNS = "squirt turns the ball away from the side on which it is struck, and has the sign of the offset"
 SIGNS = (
     "a is b/R of the contact, positive on the ball's left, and alpha positive to the left: "
     "alpha(a) = -squirt(offset = a); end_mass is m_e, felt at the tip, not the four times larger m_c of the cue's end"
@@ -57,6 +65,8 @@ def pooltool_record(name: str, scene: Scene, *, drive: str = "A.31", length: flo
     by_offset = _by_offset(scene, solved.tip, worth)
     return {
         "for": "pooltool",
+        "version": POOLTOOL,
+        "line": POOLTOOL_LINE,
         "CueSpecs": _cue_specs(name, scene, length) | {"end_mass": masses[drive]},
         "BallParams": {"m": scene.ball.mass, "R": scene.ball.radius},
         "end_mass": {
@@ -183,18 +193,73 @@ def _by_offset(scene: Scene, tip: TipModes, worth: Record) -> Record:
 
 
 def _masses_at(scene: Scene, tip: TipModes, factor: float) -> list[float | None]:
-    """As `_masses` at another speed; a tip whose contact time changes with it is solved anew."""
-    other = replace(scene, stroke=replace(scene.stroke, speed=factor * scene.stroke.speed))
-    curve = coupled_curve(other, OFFSETS, Solved(other).tip if scene.contact_terms.tip is not None else tip)
-    return _masses(other, curve["squirt"].tolist(), curve["grip"])
+    """As `_masses` at another speed."""
+    curve = _curve_at(scene, tip, OFFSETS, factor * float(scene.stroke.speed))
+    return _masses(scene, curve["squirt"].tolist(), curve["grip"])
 
 
-def _masses(scene: Scene, squirts: Sequence[float], grips: Sequence[str]) -> list[float | None]:
-    """The end masses of [A.31] for the squirt of the coupled strike at each of `OFFSETS`."""
+def _curve_at(scene: Scene, tip: TipModes, offsets: Sequence[float], speed: float) -> Record:
+    """The coupled strikes at a speed, m/s; a tip whose contact time changes with it is solved anew."""
+    other = replace(scene, stroke=replace(scene.stroke, speed=speed))
+    return coupled_curve(other, offsets, Solved(other).tip if scene.contact_terms.tip is not None else tip)
+
+
+def _masses(
+    scene: Scene, squirts: Sequence[float], grips: Sequence[str], offsets: Sequence[float] = OFFSETS
+) -> list[float | None]:
+    """The end masses of [A.31] for the squirt of the coupled strike at each offset; None in a miscue and head on."""
     return [
-        None if grip in MISSED or squirt <= 0 else _mass_of(scene, offset, squirt)
-        for offset, squirt, grip in zip(OFFSETS, squirts, grips, strict=True)
+        None if grip in MISSED or squirt * offset <= 0 else _mass_of(scene, offset, squirt)
+        for offset, squirt, grip in zip(offsets, squirts, grips, strict=True)
     ]
+
+
+def table_record(scene: Scene, offsets: Sequence[float], speeds: Sequence[float]) -> Record:
+    """The end mass of [A.31] and squirt of the coupled strike at every speed, m/s, and offset b/R: a row a stroke."""
+    tip, rows = Solved(scene).tip, list[Record]()
+    for speed in speeds:
+        curve = _curve_at(scene, tip, offsets, speed)
+        squirts, grips = curve["squirt"].tolist(), curve["grip"]
+        both = zip(offsets, _masses(scene, squirts, grips, offsets), squirts, grips, strict=True)
+        rows += [
+            {"speed": speed, "offset": offset, "end_mass": mass, "squirt": squirt, "miscue": grip in MISSED}
+            for offset, mass, squirt, grip in both
+        ]
+    return {
+        "for": "table",
+        "definition": TABLE_MEANING,
+        "signs": TABLE_SIGNS,
+        "ball_mass": scene.ball.mass,
+        "rows": rows,
+        "units": {"speed": "m/s", "offset": "", "ball_mass": "kg"} | units_of("end_mass", "squirt"),
+    }
+
+
+def table_csv(record: Record) -> str:
+    """The rows of a `table_record` as CSV with units in its header, below lines with # that say what they mean."""
+    units = {name: record["units"][name] for name in ("speed", "offset", "end_mass", "squirt")}
+    first = [f"# {record['definition']}", f"# {record['signs']}", f"# ball: {record['ball_mass']!r} kg"]
+    head = ",".join([*(f"{name} [{unit or '1'}]" for name, unit in units.items()), "miscue"])
+    rows = (
+        ",".join([*("" if row[name] is None else repr(row[name]) for name in units), str(int(row["miscue"]))])
+        for row in record["rows"]
+    )
+    return "\n".join([*first, head, *rows, ""])
+
+
+def table_sheet(record: Record) -> Sheet:
+    """The rows of a `table_record`, for people."""
+    rows = tuple(
+        (
+            f"{row['speed']:g} m/s",
+            f"{row['offset']:.4g}",
+            _exact(row["end_mass"]),
+            "miscue" if row["miscue"] else degrees(row["squirt"]),
+        )
+        for row in record["rows"]
+    )
+    notes = (record["definition"], record["signs"])
+    return Sheet("End mass and squirt", ("speed", "offset b/R", "end mass", "squirt"), rows, notes, texts=())
 
 
 def _mass_of(scene: Scene, offset: float, squirt: float) -> float:

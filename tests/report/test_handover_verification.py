@@ -1,9 +1,7 @@
 """What is handed to pooltool: its own squirt from our number, and the JSON's words (verification).
 
-pooltool pins a development build of its graphics; for the test that wants it (0.6.0), in an environment of its own
-whose Python POOLTOOL_PYTHON names: pip install --no-deps pooltool-billiards, and then what it imports: numpy scipy
-attrs rich numba numpy-quaternion panda3d panda3d-gltf panda3d-simplepbr pillow cattrs msgpack msgpack-numpy pyyaml
-h5py h11.
+pooltool 0.6.0 pins a development build of its graphics that PyPI has not, so that pip takes 0.3.3, which knows no end
+mass: no extra `cuefem[pooltool]` can be. .ci/pooltool makes an environment that has it, and POOLTOOL_PYTHON names it.
 """
 
 from __future__ import annotations
@@ -22,7 +20,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.endmass.drives import DEFINITIONS
-from cuefem.report.handover import NICKEL, handover_sheet, pooltool_record
+from cuefem.report.handover import NICKEL, POOLTOOL, POOLTOOL_LINE, handover_sheet, pooltool_record
 from cuefem.squirt import alciatore_a31, alciatore_a31_mass_ratio
 from tests.helpers.command_line import call
 
@@ -93,6 +91,7 @@ def test_the_json_of_the_command(scene: Path, tmp_path: Path) -> None:
     expected = {"M": KIM.mass, "length": 1.4732, "tip_radius": 0.0095, "shaft_radius_at_tip": 0.006}
     assert {name: specs[name] for name in expected} == expected
     assert specs["brand"] == "scene"
+    assert (found["version"], found["line"]) == (POOLTOOL, POOLTOOL_LINE)
     assert found["end_mass"]["drive"] == "A.31"
     assert found["end_mass"]["contact_time"] == 1e-3
     assert (found["units"]["end_mass"], found["units"]["length"]) == ("kg", "m")
@@ -113,8 +112,8 @@ def test_people_get_a_table_and_programs_json(scene: Path) -> None:
     assert (status, err) == (0, "")
     assert f"handed over: end mass {1e3 * found['CueSpecs']['end_mass']:.3f} g by A.31, at b/R " in out
     assert "Equivalent end mass for [A.31]" in out
-    assert "-o CUE.json writes the file that pooltool reads" in out
     said = " ".join(out.split())
+    assert f"-o cue.json writes the file that pooltool {POOLTOOL} reads with {POOLTOOL_LINE}; --json prints" in said
     assert "put this number into pooltool: with its formula [A.31] it then gives the squirt computed here" in said
     assert "the whole cue: 540.0 g, 1473.2 mm long (the file draws the shaft alone: --length gives another)" in said
 
@@ -179,6 +178,34 @@ def test_what_a_lumped_cue_leaves_out() -> None:
     assert found["CueSpecs"] == {"brand": "two parts", "M": 0.54, "tip_radius": NICKEL, "end_mass": 0.005}
 
 
+def test_a_table_for_any_other_simulator(scene: Path, tmp_path: Path) -> None:
+    """Every row turns the ball by its own definition as `cf.strike` does; CSV and JSON hold the same numbers."""
+    leather = replace(SCENE, tip=cf.Tip(0.75, 0.4), effects=(cf.LeatherTip(0.006, 0.0095, 140e6),))
+    cf.save(leather, tmp_path / "leather.toml")
+    ranges = ("--offsets", "-0.3 to 0.5 in 9", "--speeds", "1 m/s, 4 m/s")
+    for name in ("table.csv", "table.json"):
+        status, out, err = call("strike", tmp_path / "leather.toml", "--for", "table", *ranges, "-o", tmp_path / name)
+        assert (status, out, err) == (0, f"wrote {tmp_path / name}\n", "")
+    record = json.loads((tmp_path / "table.json").read_text(encoding="utf-8"))
+    assert record["units"] == {"speed": "m/s", "offset": "", "ball_mass": "kg", "end_mass": "kg", "squirt": "rad"}
+    lines = (tmp_path / "table.csv").read_text(encoding="utf-8").splitlines()
+    assert lines[:2] == [f"# {record['definition']}", f"# {record['signs']}"]
+    assert lines[3] == "speed [m/s],offset [1],end_mass [kg],squirt [rad],miscue"
+    names = ("speed", "offset", "end_mass", "squirt")
+    assert [line.split(",") for line in lines[4:]] == [
+        ["" if row[name] is None else repr(row[name]) for name in names] + [str(int(row["miscue"]))]
+        for row in record["rows"]
+    ]
+    assert {row["miscue"] for row in record["rows"]} == {False, True}
+    for row in record["rows"]:
+        struck = cf.strike(replace(leather, stroke=cf.Stroke(row["speed"], row["offset"])))
+        assert row["squirt"] == pytest.approx(struck.squirt, rel=1e-9, abs=1e-15)
+        assert (row["end_mass"] is None) == (row["miscue"] or abs(row["offset"]) < 1e-12)
+        if row["end_mass"] is not None:
+            alpha = pooltool_squirt(record["ball_mass"], row["end_mass"], row["offset"])
+            assert -alpha == pytest.approx(struck.squirt, rel=1e-9)
+
+
 IN_POOLTOOL = """
 import json, sys
 import pooltool as pt
@@ -193,14 +220,15 @@ for offset, found in json.load(sys.stdin):
     alpha = get_squirt_angle(ball.params.m, specs.end_mass, offset, 1.0)
     _, after = InstantaneousPoint().resolve(cue, ball)
     answers.append((alpha, after.state.rvw[1].tolist(), specs.length))
-print(json.dumps(answers))
+print(json.dumps([pt.__version__, answers]))
 """
 
 
 def pooltool_python() -> str:
     """A Python that has pooltool: this one, or that of its own environment, whose pins are not ours."""
+    has_it = "from importlib.util import find_spec; raise SystemExit(find_spec('pooltool') is None)"
     for python in (sys.executable, os.environ.get("POOLTOOL_PYTHON", "")):
-        if python and subprocess.run([python, "-c", "import pooltool"], capture_output=True).returncode == 0:
+        if python and subprocess.run([python, "-c", has_it], capture_output=True).returncode == 0:
             return python
     pytest.skip("no pooltool here: POOLTOOL_PYTHON names the Python of an environment that has it")
 
@@ -212,7 +240,9 @@ def test_a_ball_that_pooltool_strikes(scene: Path) -> None:
     sent = json.dumps([(offset, as_json(scene, f"--offset={offset}")) for offset in offsets])
     done = subprocess.run([python, "-c", IN_POOLTOOL], input=sent, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    for offset, (alpha, (x, y, _), length) in zip(offsets, json.loads(done.stdout), strict=True):
+    version, answers = json.loads(done.stdout)
+    assert version == POOLTOOL
+    for offset, (alpha, (x, y, _), length) in zip(offsets, answers, strict=True):
         ours = cf.strike(replace(SCENE, stroke=replace(SCENE.stroke, offset=offset))).squirt
         assert -alpha == pytest.approx(ours, rel=1e-12)
         assert math.atan2(x, y) == pytest.approx(ours, rel=1e-9)  # aimed along y, struck on the left
