@@ -10,6 +10,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from cuefem import LeatherTip
+from cuefem.effects.leather import OnCue
 
 DIAMETERS = st.floats(8e-3, 15e-3)
 TIPS = st.builds(
@@ -81,3 +82,16 @@ def test_lever(tip: LeatherTip, diameter: float, phi: float) -> None:
             np.testing.assert_allclose(-across, tip.height - drop, rtol=1e-9)
     whole = tip.rho * math.pi / 4 * diameter**2 * tip.height
     assert whole / 3 < tip.mass(diameter) <= whole * (1 + 1e-12)
+
+
+@given(TIPS, DIAMETERS, OFFSETS)
+def test_every_ring_presses_and_holds(tip: LeatherTip, diameter: float, offset: float) -> None:
+    """The force stiffens, so that a ring's share of it is not negative; with the whole tip in touch it may level off.
+
+    Near the rim the patch's stiffness levels off too: it falls by less than a thousandth of its greatest.
+    """
+    law = OnCue(possible(tip, diameter), diameter).law(0.028575, offset, 0.7)
+    depth = law.most * np.linspace(0.0, 1.0, 1000) ** 2
+    slope, stiffness = law.slope(depth), law.at(depth)[1]
+    assert np.all(np.diff(slope)[depth[1:] < 0.8 * law.most] > 0)
+    assert np.all(stiffness > (1 - 2e-3) * np.maximum.accumulate(stiffness) - 1e-9)

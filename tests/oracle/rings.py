@@ -27,7 +27,8 @@ class Ringed(Planar):
         # at an edge: the stiffness, and the normal force of a patch that grows no further
         k = np.where(there, arrays["ring_stiffness"], whole[0])
         N = np.where(there, arrays["ring_forces"] + arrays["ring_slopes"] * (depth - edges), whole[1])
-        return k[..., 1:] - k[..., :-1], N[..., 1:] - N[..., :-1]
+        k, N = k[..., 1:] - k[..., :-1], N[..., 1:] - N[..., :-1]
+        return np.where(k.real > 0, k, 0.0), np.where(N.real > 0, N, 0.0)  # just past an edge, of rounding
 
     def walk(self, depth: Any, x: Any) -> Any:
         """What each ring bears after a path of compressions and shifts -x, both (..., places)."""

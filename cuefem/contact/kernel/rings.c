@@ -40,7 +40,8 @@ static void ring_of(const Contact *c, const Patch *p, int r, double *k, double *
     if (r + 1 < p->count) {
         *k = K[r + 1] - K[r], *slope = S[r + 1] - S[r];
         *N = F[r + 1] + S[r + 1] * (p->depth - edge[r + 1]) - inner;
-    } else *k = p->k - K[r], *slope = p->slope - S[r], *N = p->F - inner;
+    } else *k = larger(p->k - K[r], 0), *slope = p->slope - S[r], *N = p->F - inner;
+    *N = larger(*N, 0); /* less just past an edge, of rounding, and where a tip in touch as a whole no longer stiffens */
 }
 
 typedef struct {
@@ -82,7 +83,7 @@ static inline Borne walk_with(double e2, const Contact *c, const Patch *from, co
     double sum = 0, stuck = 0, slid = 0, lost = 0;
     for (; r < whole; r++) {
         double k = K[r + 1] - K[r], slope = S[r + 1] - S[r], was = f[r];
-        double bound = mu * (F[r + 1] - F[r] + S[r + 1] * (depth - edge[r + 1]) - S[r] * (depth - edge[r]));
+        double bound = mu * larger(F[r + 1] - F[r] + S[r + 1] * (depth - edge[r + 1]) - S[r] * (depth - edge[r]), 0);
         ADD_RING
     }
     for (; r < to->count; r++) {
