@@ -18,6 +18,8 @@ from cuefem.cue import Array
 PUSHES, LOOKS, UNTIL = (0.5, 1.0), 16, 1.5
 # Rows are kept down to this part of the greatest in q'Gq, but no more than MOST.
 LEAST_PART, MOST = 1e-12, 12
+# A rigid motion that turns the cue by less than this part of what is in G does not turn it.
+BALANCED = 1e-12
 
 
 class BentTooFar(ValueError):
@@ -46,6 +48,23 @@ def slope_rows(tip: TipModes, time: float, until: float) -> Array:
     parts, ways = np.linalg.eigh(together.T @ onto)
     kept = np.flatnonzero(parts > LEAST_PART * parts[-1])[-MOST:]
     return np.concatenate([(onto @ (ways[:, kept] / np.sqrt(parts[kept]))).T[::-1], tip.rotation[None]])
+
+
+def buckling_thrust(tip: TipModes, ahead: float = 0.0) -> float:
+    """The thrust along a fixed line that buckles a cue if it lasts, N; ahead: how far before its end that acts, m.
+
+    It is the least P > 0 for which omega^2 - P G is singular. A cue that nothing holds turns under any thrust; what
+    bends it is a shape whose turning is balanced, so that rigid motions take part as they like:
+    G - G_fr G_rr^-1 G_rf over the flexible modes.
+    """
+    assert tip.geometric is not None
+    stiffness = tip.geometric + ahead * np.outer(tip.rotation, tip.rotation)
+    bends = tip.omega > 0
+    turns = ~bends & (np.diag(tip.geometric) > BALANCED * np.diag(tip.geometric).max())
+    of_both = stiffness[np.ix_(bends, turns)]
+    balanced = stiffness[np.ix_(bends, bends)] - of_both @ np.linalg.solve(stiffness[np.ix_(turns, turns)], of_both.T)
+    greatest = np.linalg.eigvalsh(balanced / np.outer(tip.omega[bends], tip.omega[bends]))[-1]
+    return float(1 / greatest) if greatest > 0 else math.inf
 
 
 def _pushed(omega: Array, span: float, times: Array) -> Array:

@@ -45,6 +45,7 @@ class ContactModel:
     the contact at the first touch. ball_gives: (n,), the inverse masses of the ball's velocities; ball: these at the
     first touch, m/s. law: the force along the normal. across: the part of the
     speed along the surface, by which its errors are measured. terms, arrays: what `kernel/contact.h` names, by name.
+    tip: the cue's modes, where they are known.
     """
 
     propagator: ModalPropagator
@@ -65,6 +66,7 @@ class ContactModel:
     arrays: dict[str, Array] = field(default_factory=dict)
     table: Table | None = None
     window: float | None = None
+    tip: TipModes | None = None
 
     @property
     def inverse_mass(self) -> Array:
@@ -204,6 +206,7 @@ def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
         terms=numbers,
         arrays=arrays,
         law=law,
+        tip=tip,
         **common,
     )
 
@@ -303,6 +306,7 @@ def _raised(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
         arrays=_thrust(propagator, -w - terms.dome_radius * c, planes=2),
         law=law,
         table=terms.table,
+        tip=tip,
         **(common | {"time": time}),
     )
 

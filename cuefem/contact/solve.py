@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from cuefem.contact.bent import BentTooFar
+from cuefem.contact.bent import BentTooFar, buckling_thrust
 from cuefem.contact.compiled import KernelContact, library
 from cuefem.contact.laws import ContactModel, table_axes
 from cuefem.contact.outcome import BLOW, FLIGHT, History, Phase
@@ -140,14 +140,6 @@ def _velocities(model: ContactModel, xi: Complex, ball: Array, slopes: Array) ->
     return np.asarray(model.facing @ np.concatenate([ports, ball]))
 
 
-def buckling_thrust(model: ContactModel) -> float:
-    """The thrust that buckles a cue if it lasts, N: the least P for which omega^2 - P G is singular."""
-    propagator, flexible = model.propagator, model.propagator.omega > 0
-    strained = propagator.slopes[:, flexible] / propagator.omega[flexible]
-    geometric = (strained.T * model.arrays["slope_weights"]) @ strained
-    return float(1 / np.linalg.eigvalsh(geometric)[-1])
-
-
 def impulse_on(model: ContactModel, ball: Array) -> Array:
     """The impulses (t, n), N s, that gave balls at rest velocities (..., speeds); above a table, along it."""
     if model.table is None:
@@ -232,6 +224,11 @@ def _phases(model: ContactModel, rows: Array, speeds: int) -> tuple[Phase, ...]:
     )
 
 
+def _buckling(model: ContactModel) -> float:
+    assert model.tip is not None
+    return buckling_thrust(model.tip, float(model.arrays["slope_weights"][-1]))
+
+
 def _failure(model: ContactModel, c: KernelContact, phases: tuple[Phase, ...], held: dict[str, Array]) -> Exception:
     """What a contact that did not end says."""
     if c.status == _NO_MEMORY:
@@ -244,7 +241,7 @@ def _failure(model: ContactModel, c: KernelContact, phases: tuple[Phase, ...], h
     if c.status == _BENT_TOO_FAR:
         return BentTooFar(
             f"the thrust of {c.thrust:.4g} N bends the shaft by {c.steepest:.3g} rad at its tip, further than "
-            f"GeometricStiffness holds; thrust that lasts buckles it from {buckling_thrust(model):.4g} N on"
+            f"GeometricStiffness holds; thrust that lasts buckles it from {_buckling(model):.4g} N on"
         )
     if c.status == _STUCK:
         return RuntimeError(

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 import scipy.linalg
+from scipy.optimize import brentq
+from scipy.special import jv
 
 import cuefem as cf
 from cuefem.beam.tip import TipModes
@@ -59,6 +61,29 @@ def test_a_cantilever_gives_as_the_tangent_says(G: float) -> None:
         off.append(abs(across @ np.linalg.solve(matrix, across) / exact - 1))
     assert off[0] > off[1] > off[2]
     assert off[2] < (1e-5 if G > 1e10 else 3e-3)  # shear under a point load: like 1/count
+
+
+CLAMP = cf.Support(LENGTH, math.inf, rotational_stiffness=math.inf)
+# Loads over EI/L^2. Free: the slope v over s, from the butt on, has v'' + k v = 0, or v'' + k s v = 0 where the thrust
+# falls to nothing there, with v' = 0 at both ends; the latter has v' = s J_2/3(2 sqrt(k) s^1.5/3).
+COLUMNS = {
+    "free, a great mass behind it": (1e9, (), math.pi**2),
+    "clamped, a great mass behind it": (1e9, (CLAMP,), math.pi**2 / 4),
+    "free, the thrust falls to nothing": (0.43e-9, (), (1.5 * brentq(lambda z: float(jv(2 / 3, z)), 2.5, 4.5)) ** 2),
+}
+
+
+@pytest.mark.parametrize(("behind", "supports", "factor"), COLUMNS.values(), ids=COLUMNS)
+def test_a_thrust_that_lasts_buckles_a_column_at_its_exact_load(behind: float, supports: Any, factor: float) -> None:
+    """A cue that nothing holds buckles while it turns as it likes: holding that gives 430 for 639 N of the last."""
+    material = cf.Material(E=E, G=60e9, rho=700.0, nu=0.05)
+    cue = cf.Cue((cf.Segment(LENGTH, DIAMETER, DIAMETER, material),), body_mass=behind)
+    for count in (30, 60):
+        scene = cf.Scene(cue, effects=(THRUST, *supports))
+        tip = tip_modes_of(scene, cf.Resolution(6, 18, count))
+        euler = factor * EI / LENGTH**2
+        engesser = euler / (1 + euler / float(cf.modes(cue).system.section.kGA[0, 0]))
+        assert bent.buckling_thrust(tip) == pytest.approx(engesser, rel=1e-3 * (30 / count) ** 3)
 
 
 STIFFNESS, SHEAR = 6e5, 2e5  # of the tip, N/m
