@@ -9,7 +9,6 @@ from cuefem import Cue, Material, Scene, Segment, Tip
 KIM_DENSITY = 782.3284453057836  # kg/m3: [Kim]'s cone, 120 g
 MAPLE = Material(12.6e9, 12.6e9 / 15, 700.0)
 LEATHER = Material(0.1e9, 0.1e9 / 3, 950.0)
-PHENOLIC = Material(9e9, 9e9 / 2.8, 1380.0)
 ABS = Material(2.3e9, 0.85e9, 1050.0)
 STEEL = Material(200e9, 200e9 / 2.6, 7850.0)
 CARBON = Material(60e9, 6e9, 1550.0)

@@ -34,7 +34,6 @@ class Weight(Effect):
         check_fields(self)
 
 
-MESHES = Path(__file__).parents[2] / "meshes"
 POSITIVE = st.floats(0, math.inf, exclude_min=True, exclude_max=True)
 SIZES = st.floats(1e-6, 10)
 FINITE = st.floats(allow_nan=False, allow_infinity=False)

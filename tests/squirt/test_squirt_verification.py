@@ -1,4 +1,4 @@
-"""The closed forms against exact identities, limits and an independent walk through the impulse equations."""
+"""The closed forms against exact identities and limits (against the solver: contact/test_impulse_verification.py)."""
 
 import numpy as np
 import pytest
@@ -7,23 +7,6 @@ from cuefem import squirt
 
 OFFSETS = np.array([0.01, 0.1, 0.3, 0.5, 0.55])
 KIM = {"cue_mass_ratio": 18 / 7, "cue_end_ratio": 2 / 35}
-
-
-def walk(offset, *, m_a, m_e, nu, mu, e):
-    """(p_t, p_s, p_c, p_f) over M U of one stroke, from B alone: slip until v_t = 0, stick, stop at the energy e^2."""
-    u = np.array([offset, np.sqrt(1 - offset**2)])
-    w = np.array([u[1], -u[0]])
-    B = np.diag([1 + 1 / nu, 1.0]) + np.outer(u, u) / m_a + np.outer(w, w) / m_e
-    v = -u
-    slip = B @ [mu, 1.0]
-    p_s = -v[0] / slip[0]
-    v_s = v + slip * p_s
-    stick = np.array([-B[0, 1] / B[0, 0], 1.0])
-    rate = (B @ stick)[1]
-    p_c = p_s - v_s[1] / rate
-    work = (v[1] + v_s[1]) / 2 * p_s + v_s[1] / 2 * (p_c - p_s)
-    p_f = p_c + np.sqrt(-2 * e**2 * work / rate)
-    return mu * p_s + stick[0] * (p_f - p_s), p_s, p_c, p_f
 
 
 def test_betas_are_the_papers_expressions():
