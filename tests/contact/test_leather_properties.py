@@ -14,7 +14,6 @@ from hypothesis import strategies as st
 from cuefem import (
     AxialWaves,
     Cue,
-    GeometricStiffness,
     Joint,
     PointMass,
     SecondHit,
@@ -170,13 +169,6 @@ def test_a_second_hit_is_followed() -> None:
     assert alone.impulse == pytest.approx(first.impulse, rel=1e-9)
     apart = found.history(np.linspace(first.end, second.start, 7)[1:-1])
     assert np.all(apart["force_n"] == 0)
-
-
-def test_a_faster_stroke_is_a_shorter_contact_with_the_same_squirt() -> None:
-    whole = (AxialWaves(), GeometricStiffness())
-    slow, fast = (strike(leather_scene(0.375, *whole, speed=speed)) for speed in (1.0, 4.0))
-    assert fast.duration < 0.8 * slow.duration
-    assert fast.squirt == pytest.approx(slow.squirt, rel=0.03)
 
 
 def test_what_takes_a_linear_tip_has_one_of_its_contact_time() -> None:

@@ -21,7 +21,6 @@ from cuefem.beam.tip import TipModes
 from cuefem.contact.strike import strike_modes
 from tests.helpers.strike_scenes import (
     FRICTION,
-    KIM_AT,
     OFFSET,
     RESTITUTION,
     SIGN,
@@ -73,25 +72,6 @@ def test_a_power_law_knows_no_speed_of_its_own(exponent, speed, reference, offse
     first = strike_modes(replace(scene, effects=(PowerLawTip(exponent, reference),)), bent())
     second = strike_modes(replace(scene, tip=other, effects=(PowerLawTip(exponent, speed),)), bent())
     assert np.allclose(numbers(first), numbers(second), rtol=1e-9, atol=1e-9 * speed**2)
-
-
-@settings(max_examples=5)
-@given(st.floats(0.1, 10.0), OFFSET)
-def test_speed_scales_out_of_a_linear_law(speed, offset):
-    scene = replace(kim_scene(offset), effects=(PowerLawTip(1.0), SecondHit()))
-    slow, fast = (strike_modes(replace(scene, stroke=Stroke(U, offset)), bent()) for U in (1.0, speed))
-    assert abs(fast.squirt - slow.squirt) < 1e-9
-    assert abs(fast.ball_speed / slow.ball_speed / speed - 1) < 1e-9
-
-
-def test_faster_strokes_squirt_less_on_a_stiffening_tip_and_more_on_a_turning_contact():
-    speeds = [0.5, 1.0, 2.0, 4.0]
-    hertz, turning = (
-        [strike(replace(kim_scene(0.3), stroke=Stroke(U, 0.3), effects=(effect,)), KIM_AT).squirt for U in speeds]
-        for effect in (PowerLawTip(1.5), RollingContact())
-    )
-    assert np.all(np.diff(hertz) < 0)
-    assert np.all(np.diff(turning) > 0)
 
 
 def test_order_of_the_list_does_not_matter():

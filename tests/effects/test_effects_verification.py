@@ -104,16 +104,6 @@ def test_a_clamp_at_the_butt(stiffness, within):
     assert found.rigid == 0
 
 
-def test_a_clamp_takes_its_unknowns_out():
-    at = {"elements": 4, "order": 12}
-    free = assemble(KIM, **at, effects=(Support(0.7, 1e12, 1e12),))
-    assert free.free is None
-    for clamp, taken in ((Support(0.7, inf, inf), 2), (Support(0.7, inf), 1), (Support(0.7, 0.0, inf), 1)):
-        system = assemble(KIM, **at, effects=(clamp,))
-        assert system.free.shape == (free.mesh.unknowns, free.mesh.unknowns - taken)
-        assert solve(system, 3).rigid == 2 - taken
-
-
 # --- point masses -----------------------------------------------------------------------------------------------------
 
 
@@ -128,17 +118,6 @@ def test_a_mass_between_nodes_is_exact():
     near = end_mass(replace(kim_scene(), effects=(PointMass(0.1, 0.005),)), at=Resolution(8, 12, 40))
     snapped = end_mass(replace(kim_scene(), effects=(PointMass(0.7 / 8, 0.005),)), at=Resolution(8, 12, 40))
     assert abs(snapped / near - 1) > 0.02
-
-
-def test_a_lump_joins_the_mass_of_the_body():
-    lump = PointMass(HERE, 0.05, 1e-5)
-    system = assemble(KIM, elements=3, order=8, effects=(lump,))
-    bare = assemble(KIM, elements=3, order=8)
-    added = system.rigid.T @ system.M @ system.rigid - bare.rigid.T @ bare.M @ bare.rigid
-    x = HERE / KIM.length
-    expected = [[0.05, 0.05 * x], [0.05 * x, 0.05 * x**2 + 1e-5 / KIM.length**2]]
-    np.testing.assert_allclose(added, expected, rtol=1e-10)
-    assert replace(kim_scene(), effects=(lump, lump)).axial_mass == pytest.approx(0.64, rel=1e-14)
 
 
 # --- joints -----------------------------------------------------------------------------------------------------------

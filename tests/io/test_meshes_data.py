@@ -6,12 +6,10 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.materials import MATERIALS
 
 FOLDER = Path(__file__).parents[2] / "meshes"
 INCH, OUNCE = 0.0254, 0.028349523125
 CUES = ["kim", "pool_maple", "pool_hollow", "carbon", "whole_cue"]
-SHAFTS = ["pool_maple", "pool_hollow", "carbon"]
 
 
 def load(name: str) -> cf.Cue:
@@ -71,19 +69,3 @@ def test_whole_cue_has_the_maple_shaft() -> None:
     share = cut.length / last.length
     there = last.tip_diameter + share * (last.butt_diameter - last.tip_diameter)
     assert cut.butt_diameter == pytest.approx(there, abs=1e-5)
-
-
-@pytest.mark.parametrize(("name", "diameter"), [("pool_maple", 12.75), ("pool_hollow", 11.85), ("carbon", 12.4)])
-def test_tips(name: str, diameter: float) -> None:
-    tip = load(name).segments[0]
-    assert tip.tip_diameter == tip.butt_diameter == pytest.approx(diameter * 1e-3, rel=1e-12)
-    assert tip.length == pytest.approx(6e-3, rel=1e-12)
-    assert tip.material == MATERIALS["leather"].material
-
-
-def test_pro_taper() -> None:
-    """A pro taper grows by half a millimetre to one millimetre a foot over the stroking length of 12 to 15 in."""
-    for name in SHAFTS:
-        cue = load(name)
-        ends = {round(x / INCH, 2): s.butt_diameter for s, x in zip(cue.segments, cue.nodes[1:], strict=True)}
-        assert 0 < ends[13.0] - cue.segments[0].tip_diameter <= 1.1e-3, name

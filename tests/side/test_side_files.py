@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import tomllib
 import xml.etree.ElementTree as ET
 from collections.abc import Callable
 from dataclasses import replace
@@ -15,7 +14,6 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.io.export import json_schema
 from tests.helpers.command_line import call
 from tests.helpers.cues import kim, pool
 from tests.helpers.refusals import command_refuses, refuses
@@ -37,15 +35,6 @@ def test_a_file_may_name_its_cue(tmp_path: Path) -> None:
     text = 'cue = "pool.toml"\n\n[striker]\nmass = "20 g"\nrestitution = 0.8\ncontact_time = "1 ms"\n'
     (tmp_path / "side.toml").write_text(text, encoding="utf-8")
     assert cf.load(tmp_path / "side.toml") == cf.SideStrike(pool(), BALL)
-
-
-def test_the_schema_knows_it(tmp_path: Path) -> None:
-    schema = json_schema()
-    assert {"$ref": "#/$defs/SideStrike"} in schema["anyOf"]
-    cf.save(SCENE, tmp_path / "side.toml")
-    found = tomllib.loads((tmp_path / "side.toml").read_text(encoding="utf-8"))
-    assert set(found) <= set(schema["$defs"]["SideStrike"]["properties"])
-    assert set(found["striker"]) <= set(schema["$defs"]["Striker"]["properties"])
 
 
 def test_the_command_says_what_the_library_says(tmp_path: Path) -> None:
