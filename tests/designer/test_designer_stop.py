@@ -6,10 +6,11 @@ import os
 import signal
 import subprocess
 import sys
-import time
 import urllib.request
 
 import pytest
+
+from tests.helpers.designer_browser import await_listening
 
 pytest.importorskip("nicegui")
 
@@ -22,11 +23,11 @@ def test_ctrl_c_ends_it_quietly() -> None:
     try:
         assert running.stdout is not None
         address = running.stdout.readline().strip()
-        time.sleep(0.5)
-        with urllib.request.urlopen(address, timeout=30) as answer:
+        await_listening(int(address.rstrip("/").rsplit(":", 1)[1]))
+        with urllib.request.urlopen(address, timeout=90) as answer:
             assert answer.status == 200
         running.send_signal(signal.SIGINT)
-        out, err = running.communicate(timeout=30)
+        out, err = running.communicate(timeout=90)
     finally:
         running.kill()
         running.communicate()

@@ -50,7 +50,7 @@ def served(folder: Path, *arguments: object, before: str = "") -> Iterator[str]:
             assert process.stdout is not None
             address = process.stdout.readline().strip()
             assert address.startswith("http://127.0.0.1:"), complaints.read_text()
-            _await_listening(int(address.rstrip("/").rsplit(":", 1)[1]))
+            await_listening(int(address.rstrip("/").rsplit(":", 1)[1]))
             yield address
         finally:
             process.terminate()
@@ -60,7 +60,7 @@ def served(folder: Path, *arguments: object, before: str = "") -> Iterator[str]:
     assert [path.name for path in folder.iterdir()] == ["stderr"]
 
 
-def _await_listening(port: int) -> None:
+def await_listening(port: int) -> None:
     """Return when the server listens, which it does a moment after it says its address."""
     for _ in range(PATIENCE // 50):
         with suppress(OSError), socket.create_connection(("127.0.0.1", port), timeout=1):
