@@ -101,10 +101,7 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: strike(leather_scene(speed=TWO)), "Stroke.speed must be one number; got an array of shape (2,)"),
     (lambda: strike(leather_scene(e=TWO / 4)), "Tip.restitution must be one number; got an array of shape (2,)"),
     (lambda: leather_modulus(leather_scene(), TWO), "leather_modulus contact_time must be one number; got an array"),
-    (
-        lambda: strike(leather_scene(e=0.05)),
-        "LeatherTip; got 0.05: leather that gives back less rings on",
-    ),
+    (lambda: strike(leather_scene(e=0.05)), "LeatherTip; got 0.05: leather that gives back less rings on"),
     (lambda: strike(leather_scene(speed=60.0)), "mm): give LeatherTip a larger height or E, or Stroke a lower speed"),
 ]
 

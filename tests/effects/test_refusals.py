@@ -107,14 +107,8 @@ CALLS: list[tuple[Callable[[], object], str]] = [
         "LeatherTip.surface_restitution must be 1 beside a constant shear, which is a spring without loss; got 0.9",
     ),
     (lambda: LeatherTip(6e-3, 9.5e-3, 1e8, rho=0.0), "LeatherTip.rho must be in (0, inf) kg/m^3; got 0.0"),
-    (
-        lambda: LeatherTip(6e-3, 6e-3, 1e8).mass(0.013),
-        "must have a radius of 6.5 mm or more, half of",
-    ),
-    (
-        lambda: LeatherTip(2e-3, 9.5e-3, 1e8).mass(0.01275),
-        "must be higher than 2.457 mm, the depth",
-    ),
+    (lambda: LeatherTip(6e-3, 6e-3, 1e8).mass(0.013), "must have a radius of 6.5 mm or more, half of"),
+    (lambda: LeatherTip(2e-3, 9.5e-3, 1e8).mass(0.01275), "must be higher than 2.457 mm, the depth"),
     (lambda: LeatherTip(1e-3, inf, 1e8).mass(0.01275), "a leather tip on 12.75 mm must be 1.7 to 19.1 mm high; got "),
     (lambda: LeatherTip(0.02, inf, 1e8).mass(0.01275), "a leather tip on 12.75 mm must be 1.7 to 19.1 mm high; got "),
     (lambda: LeatherTip(6e-3, inf, 1e8).mass(-1.0), "diameter must be in (0, 10] m; got -1.0"),

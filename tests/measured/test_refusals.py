@@ -53,10 +53,7 @@ def test_refusals(ask: Callable[[], object], message: str) -> None:
 
 FILES = {
     "key": ('[[weigth]]\nvalue = "1 g"\n', "measured.toml: weigth: must be one of the keys name, source"),
-    "unit": (
-        '[[weight]]\nvalue = 100\nerror = "1 g"\n',
-        'weight[0].value: needs a unit: "15 oz" or "425 g"; got 100',
-    ),
+    "unit": ('[[weight]]\nvalue = 100\nerror = "1 g"\n', 'weight[0].value: needs a unit: "15 oz" or "425 g"; got 100'),
     "missing": ('[[weight]]\nvalue = "100 g"\n', "weight[0].error: must be given, a mass with its unit"),
     "extra": (
         '[[tone]]\nvalue = "1 Hz"\nerror = "1 Hz"\nmode = 1\nloud = 1\n',

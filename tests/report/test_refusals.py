@@ -39,10 +39,7 @@ COMMANDS = [
         "strike scene.toml --for pooltool -o cue.json --offset 0",
         "scene.toml: end mass 'A.31' does not exist here: [A.31] has no",
     ),
-    (
-        "strike scene.toml --for pooltool -o cue.json --offset 0.9",
-        "the stroke miscues at offset 0.9; got no end mass",
-    ),
+    ("strike scene.toml --for pooltool -o cue.json --offset 0.9", "the stroke miscues at offset 0.9; got no end mass"),
     ("strike scene.toml --for pooltool -o cue.json --offset 1.5", "scene.toml: --offset: must be between -1 and 1"),
     (
         "strike scene.toml --for pooltool -o cue.toml",
