@@ -242,7 +242,7 @@ def _grown(scene: Any, positions: Sequence[float], more: Sequence[float]) -> Any
     """The scene with diameters that are larger by ``more`` at the cue's ends and one position between them."""
     cue, (_, middle, end) = scene.shaft, positions
     if abs(more[1] - np.interp(middle, [0, end], [more[0], more[2]])) > SAME * end:
-        cue = _split_at(cue, middle)
+        cue = split_at(cue, middle)
 
     def grown(segment: Segment, start: float) -> Segment:
         first, last = np.interp([start, start + segment.length], positions, more)
@@ -323,11 +323,11 @@ def _with_bore(scene: Any, new: Bore) -> Any:
                 )
         return replace(segment, tip_bore=ends[0], butt_bore=ends[1])
 
-    cue = _split_at(cue, end)
+    cue = split_at(cue, end)
     return with_segments(scene, [bored(piece, float(x)) for piece, x in zip(cue.segments, cue.nodes, strict=False)])
 
 
-def _split_at(cue: Cue, x: float) -> Cue:
+def split_at(cue: Cue, x: float) -> Cue:
     """The same cue with a segment's end at x m from the tip."""
     if np.abs(cue.nodes - x).min() <= SAME * cue.length or not 0 < x < cue.length:
         return cue

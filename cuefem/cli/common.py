@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -10,11 +10,12 @@ from typing import Any
 import click
 
 from cuefem.cli.printing import assumed_lines, json_option, tell
-from cuefem.cli.strokes import place_options, refuse_game, usual, with_options
+from cuefem.cli.strokes import option, place_options, refuse_game, usual, with_options
 from cuefem.effects.leather_law import TooDeep
 from cuefem.games import DEFAULT_GAME
 from cuefem.io import InputError, check_place, load_stroke
 from cuefem.io.assumed import assumed, assumed_usual
+from cuefem.io.fittings import FITTINGS
 from cuefem.report.record import scene_record
 from cuefem.report.unusual import unusual
 from cuefem.report.words import cue_line, effect_words
@@ -34,18 +35,15 @@ def cue_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def shape_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The options for what a file that holds only a shape leaves out: mass, material and unit."""
-    for option in (
-        place_options("body_mass"),
-        click.option(
-            "--material", metavar="NAME", help="Material of a .csv or a CAD surface (see `cuefem materials`)."
-        ),
-        click.option(
-            "--length-unit", metavar="UNIT", help="Unit of a CAD surface, by default mm, or of a .csv that names none."
-        ),
-    ):
-        command = option(command)
-    return command
+    """The options for what a drawing leaves out or has otherwise: the mass behind it, and `FITTINGS`."""
+    for name, known in reversed(FITTINGS.items()):
+        command = click.option(option(name), metavar=known.metavar, help=known.help)(command)
+    return place_options("body_mass")(command)
+
+
+def fittings_of(given: Mapping[str, Any]) -> dict[str, str | None]:
+    """What the options tell `load` of a drawing."""
+    return {name: given.get(name) for name in FITTINGS}
 
 
 def force_option(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -83,7 +81,7 @@ def scene_of(
     A cue alone gets a game's usual stroke (`cuefem.games`). blow: whether ball, tip and stroke matter to the command,
     so that what is assumed of them is told too. settled: options that have no say, for the command finds their value.
     """
-    found = load_stroke(file, material=given["material"], length_unit=given.get("length_unit"))
+    found = load_stroke(file, **fittings_of(given))
     said = {name for name, value in given.items() if value is not None} | {*settled}
     notes = assumed(file, said, offered=given, blow=blow)
     if isinstance(found, Scene):

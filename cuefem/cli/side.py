@@ -9,7 +9,7 @@ from typing import Any
 import click
 import numpy as np
 
-from cuefem.cli.common import blaming, cue_options, head_lines
+from cuefem.cli.common import blaming, cue_options, fittings_of, head_lines
 from cuefem.cli.printing import output_option, tell
 from cuefem.cli.progress import followed
 from cuefem.cli.strokes import measured, option, with_body
@@ -72,7 +72,7 @@ def side(file: Path, places: int, output: Path | None, frames: int, as_json: boo
 
 def _scene(file: Path, given: dict[str, Any]) -> tuple[SideStrike, list[str]]:
     """The scene of a file and its options, and what was assumed."""
-    found = load(file, material=given["material"], length_unit=given["length_unit"])
+    found = load(file, **fittings_of(given))
     said = {name for name, value in given.items() if value is not None}
     notes = assumed(file, said, offered=given, blow=False)
     if given["body_mass"] is not None:

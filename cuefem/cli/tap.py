@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from cuefem.cli.common import blaming, check_free, cue_options, scene_of, whole_record
+from cuefem.cli.common import blaming, check_free, cue_options, fittings_of, scene_of, whole_record
 from cuefem.cli.printing import assumed_lines, output_option, tell
 from cuefem.cli.strokes import blow_options, measured, offset_option, with_body
 from cuefem.contact.strike import strike
@@ -75,7 +75,7 @@ def tap(recording: Path, file: Path, output: tuple[Path, ...], force: bool, doub
 
 def _as_drawn(scene: Scene, file: Path, given: dict[str, Any]) -> Scene:
     """The scene of FILE; of a cue alone the scene with the cue as it is drawn, its leather included."""
-    held = load_stroke(file, material=given["material"], length_unit=given["length_unit"])
+    held = load_stroke(file, **fittings_of(given))
     if isinstance(held, Scene):
         return scene
     return Scene(held if given["body_mass"] is None else with_body(held, file, given["body_mass"]))
@@ -113,5 +113,5 @@ def _updated(file: Path, scene: Scene, found: TapFit, given: dict[str, Any]) -> 
     """The cue or scene of FILE with the fitted wood, to six digits."""
     short = {name: float(f"{getattr(found.wood, name):.6g}") for name in ("E", "G", "rho", "loss", "nu")}
     cue = with_material(found.cue, found.wood, replace(found.wood, **short))
-    held = load_stroke(file, material=given["material"], length_unit=given["length_unit"])
+    held = load_stroke(file, **fittings_of(given))
     return replace(held, cue=cue) if isinstance(held, Scene) else cue

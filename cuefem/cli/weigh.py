@@ -12,6 +12,7 @@ from cuefem.cli.printing import assumed_lines, json_option, page_option, tell
 from cuefem.cli.strokes import game_option, measured, offset_of, offset_option
 from cuefem.games import GAMES
 from cuefem.io import InputError
+from cuefem.io.fittings import FITTINGS
 from cuefem.measured.pendulum import WAYS as KNOWN
 from cuefem.measured.pendulum import Bounces, PendulumTest, Told, Weighed, lumped_squirt, pressed_time, squirt_told
 from cuefem.quantity import Quantity
@@ -141,7 +142,7 @@ def _squirt(
 ) -> tuple[Told | None, float | None, list[str]]:
     """What the end mass says about squirt: through the drawing, or as a lumped cue's; and what was assumed."""
     if file is None:
-        for name in ("material", "length_unit"):
+        for name in FITTINGS:
             if given[name] is not None:
                 option = f"--{name.replace('_', '-')}"
                 raise InputError(NAME, option, "must go with --scene, whose shape it is for; got no --scene")

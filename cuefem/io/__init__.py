@@ -10,7 +10,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 from cuefem.cue import Cue
-from cuefem.io.errors import InputError, reason, shown
+from cuefem.io.errors import InputError, faults_of, reason, shown
+from cuefem.io.fittings import fitted, with_shaft_of
 from cuefem.io.profile import DEFAULT_MATERIAL, SHAPES, SURFACES, TABLES, load_profile
 from cuefem.io.toml import load_accuracy, load_cue, load_toml, named_material, read_text
 from cuefem.scene import Scene
@@ -36,7 +37,13 @@ _MESHES = (".vtk", ".vtu")
 
 
 def load(
-    path: str | os.PathLike[str], *, material: str | None = None, length_unit: str | None = None
+    path: str | os.PathLike[str],
+    *,
+    material: str | None = None,
+    length_unit: str | None = None,
+    begins: str | None = None,
+    ferrule: str | None = None,
+    bore: str | None = None,
 ) -> Cue | Scene | SideStrike:
     """Load a cue or a scene from a file.
 
@@ -46,10 +53,16 @@ def load(
         A drawing or a scene (.toml), a lathe profile (.csv), a line mesh (.vtk, .vtu), or a closed CAD surface (.stl,
         .ply, .obj).
     material : str, optional
-        Name of the material of a lathe profile or a surface; the default is "hard maple". Other files name their
-        materials themselves.
+        Name of the material of the shaft. A lathe profile or a surface names none, and has "hard maple" by default.
     length_unit : str, optional
         Unit of a surface's coordinates, "mm" by default, or of a lathe profile whose columns name none.
+    begins : str, optional
+        Where a lathe profile or a surface begins: "ferrule", the default, or "leather 6 mm", its front being leather.
+    ferrule : str, optional
+        A ferrule on the front of the shaft, such as "25 mm melamine". It sits on a tenon of the shaft's wood, 0.62
+        of its width; "25 mm melamine, tenon 8 mm" and "25 mm melamine, no tenon" are others.
+    bore : str, optional
+        A bore, such as "6 mm wide, 127 mm deep": from the end of the ferrule's tenon on, or else from the front.
 
     Returns
     -------
@@ -74,16 +87,25 @@ def load(
     True
     """
     path = Path(path)
-    if material is not None and path.suffix.lower() not in SHAPES:
-        files = f"{', '.join(SHAPES[:-1])} and {SHAPES[-1]}"
-        raise InputError(path, "", f"names its materials itself: material is for {files} files alone; got {material!r}")
-    if length_unit is not None and path.suffix.lower() not in SHAPES:
-        files = f"{', '.join(SHAPES[:-1])} and {SHAPES[-1]}"
-        problem = f"has its own units of length: length_unit is for {files} files alone; got {length_unit!r}"
-        raise InputError(path, "", problem)
+    shape = path.suffix.lower() in SHAPES
+    for name, value, whose in (("length_unit", length_unit, "units of length"), ("begins", begins, "leather")):
+        if value is not None and not shape:
+            files = f"{', '.join(SHAPES[:-1])} and {SHAPES[-1]}"
+            raise InputError(path, "", f"has its own {whose}: {name} is for {files} files alone; got {value!r}")
     if path.suffix.lower() == ".toml":
-        return load_toml(path, _load_cue)
-    return _load_cue(path, material, length_unit)
+        loaded = load_toml(path, _load_cue)
+    else:
+        loaded = _load_cue(path, material if shape else None, length_unit)
+    told = {"begins": begins, "ferrule": ferrule, "bore": bore}
+    if (material is None or shape) and not any(told.values()):
+        return loaded
+    if isinstance(loaded, Scene) and loaded.lumped:
+        raise InputError(path, "cue", "is a lumped cue, which has no material, ferrule or bore")
+    with faults_of(path, ""):
+        if material is not None and not shape:
+            named_material(material, path, "material")
+            loaded = with_shaft_of(loaded, material)
+        return fitted(loaded, **told)
 
 
 def _load_cue(path: Path, material: str | None = None, length_unit: str | None = None) -> Cue:
@@ -105,9 +127,9 @@ def _load_cue(path: Path, material: str | None = None, length_unit: str | None =
     raise InputError(path, "", f"must end in .toml, .csv, .vtk, .vtu, .stl, .ply or .obj; got {path.suffix!r}{hint}")
 
 
-def load_stroke(path: Path, *, material: str | None = None, length_unit: str | None = None) -> Cue | Scene:
-    """A cue or the scene of a stroke along it; InputError for a strike from the side."""
-    found = load(path, material=material, length_unit=length_unit)
+def load_stroke(path: Path, **told: str | None) -> Cue | Scene:
+    """A cue or the scene of a stroke along it, told: as for `load`; InputError for a strike from the side."""
+    found = load(path, **told)
     if isinstance(found, SideStrike):
         raise InputError(path, "striker", "must be absent here: `cuefem side` takes a strike from the side")
     return found

@@ -9,11 +9,13 @@ from typing import Any
 from cuefem.cue import Cue
 from cuefem.effects import effect_kinds
 from cuefem.games import GAMES, usual_tip
-from cuefem.io.profile import DEFAULT_MATERIAL, DEFAULT_UNIT, SHAPES, SURFACES, read_profile
+from cuefem.io.fittings import BORE, FERRULE, LEATHER, TENON
+from cuefem.io.profile import DEFAULT_MATERIAL, DEFAULT_UNIT, SHAPES, SURFACES, Profile, read_profile
 from cuefem.io.toml import read_tables
 from cuefem.scene import DEFAULT_CONTACT_TIME, Ball, Stroke, Tip
 
-SOLID = "no ferrule, no bore (columns material and bore add them)"
+BEGINS = f'the drawing begins at the ferrule, and the tip is put in front (--begins "{LEATHER}" if it has the leather)'
+ON_TENON = f"the ferrule sits on a tenon of the shaft's wood, {TENON:g} of its width"
 SHORTER = "; about 1 ms is usual"  # a pool ball's, measured; 2 ms is [Kim]'s
 
 
@@ -54,7 +56,25 @@ def _profile(path: Path, given: Collection[str], choose: str = "") -> list[str]:
             else [f"material {DEFAULT_MATERIAL}{choose}"]
         ),
         *([] if "body_mass" in given else ["no mass behind the shaft (--body-mass gives it)"]),
-        *([SOLID] if found is not None and found.solid else []),
+        *_parts(found, given, choose),
+    ]
+
+
+def _parts(found: Profile | None, given: Collection[str], choose: str) -> list[str]:
+    """What a shape has neither drawn nor told: ferrule and bore, the ferrule's tenon, the leather at its front."""
+    words = {"ferrule": f'--ferrule "{FERRULE}"', "bore": f'--bore "{BORE}"'}
+    lacking = [name for name in (("ferrule", "bore") if found is None else found.lacking) if name not in given]
+    add = " and ".join(words[name] for name in lacking)
+    names = " or a column of that name" if len(lacking) == 1 else " or columns of those names"
+    columns = "" if found is None else names
+    pronoun = "them" if len(lacking) > 1 else "it"
+    told = f"{', '.join(f'no {name}' for name in lacking)}: add {pronoun} with {add}{columns}"
+    tenon = "ferrule" in given or (found is not None and found.on_tenon)
+    leather = found is not None and found.leather
+    return [
+        *([told if choose else told.partition(":")[0]] if lacking else []),
+        *([ON_TENON] if tenon else []),
+        *([BEGINS] if choose and not leather and "begins" not in given else []),
     ]
 
 

@@ -16,7 +16,8 @@ EXAMPLE = '"x [mm],diameter [mm]"'
 TITLES = 20  # lines that may stand above the header
 
 PLACE, DIAMETER, RADIUS, BORE, MATERIAL, CORE = "x", "diameter", "radius", "bore", "material", "core"
-NAMES = (MATERIAL, CORE)  # columns of names, which have no unit
+FERRULE = "ferrule"
+NAMES = (MATERIAL, CORE, FERRULE)  # columns of names, which have no unit
 # The words by which a column is known, most telling first: "bore diameter" is a bore, "diameter at x" a diameter.
 _WORDS = {
     CORE: {"core", "kern"},
@@ -124,6 +125,8 @@ def _column(path: Path, line: int, index: int, cell: str) -> ProfileColumn:
 
 def _kind(words: Sequence[str]) -> str:
     """The kind of column that words mean; a long word may be misspelt."""
+    if FERRULE in words and {*words} <= {FERRULE, MATERIAL}:  # "distance from ferrule" is a place
+        return FERRULE
     for kind, known in _WORDS.items():
         if known & set(words):
             return kind

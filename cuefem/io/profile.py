@@ -9,13 +9,14 @@ from dataclasses import dataclass, replace
 from decimal import Decimal
 from pathlib import Path
 
-from cuefem.cue import Cue, Material, Segment
+from cuefem.cue import SOFT, Cue, Material, Segment
 from cuefem.io.cells import Row, decimal_mark, parted, plain, read_rows
 from cuefem.io.columns import (
     BORE,
     CORE,
     DIAMETER,
     EXAMPLE,
+    FERRULE,
     MATERIAL,
     PLACE,
     RADIUS,
@@ -26,6 +27,7 @@ from cuefem.io.columns import (
     unit_of,
 )
 from cuefem.io.errors import InputError, faults_of, shown
+from cuefem.io.fittings import on_tenon
 from cuefem.io.toml import named_material
 from cuefem.quantity import DIAMETER as WIDTH
 from cuefem.quantity import Quantity
@@ -54,6 +56,7 @@ class Inside:
     bore: float = 0.0
     material: Material | None = None
     core: Material | None = None
+    ferrule: Material | None = None
 
 
 @dataclass(frozen=True)
@@ -70,9 +73,24 @@ class Profile:
         return all(inside.material for inside in self.inside[:-1])
 
     @property
-    def solid(self) -> bool:
-        """Whether the file says nothing of a bore or a material, as a ferrule's would be."""
-        return not any(inside.bore or inside.material for inside in self.inside)
+    def lacking(self) -> tuple[str, ...]:
+        """Which of ferrule and bore the file has not; a material of its own may be a ferrule's."""
+        own = {
+            "ferrule": any(inside.ferrule or inside.material for inside in self.inside),
+            "bore": any(inside.bore for inside in self.inside),
+        }
+        return tuple(name for name, drawn in own.items() if not drawn)
+
+    @property
+    def on_tenon(self) -> bool:
+        """Whether a ferrule has a tenon that the file does not draw."""
+        return any(inside.ferrule and not inside.bore for inside in self.inside)
+
+    @property
+    def leather(self) -> bool:
+        """Whether the file begins with leather."""
+        first = self.inside[0].material if self.inside else None
+        return first is not None and first.E < SOFT
 
     def bores(self, i: int) -> tuple[float, float]:
         """The bore between a point and the next: it tapers to the next row's, and where that has none it ends there."""
@@ -84,8 +102,8 @@ def load_profile(path: Path, material: Material, length_unit: str | None = None)
     """The shaft of a CSV that names a column x and a column diameter (or radius), with their units of length.
 
     Separator, decimal mark, encoding, order and names of the columns may be any usual ones. The first x may have any
-    value: the shaft begins there. One segment an interval; straight tapers become one. Columns bore, material and core
-    hold from a row on; material: where the file names none. length_unit: of columns that name none.
+    value: the shaft begins there. One segment an interval; straight tapers become one. Columns bore, material, core
+    and ferrule hold from a row on; material: where the file names none. length_unit: of columns that name none.
     """
     found = read_profile(path, length_unit)
     points, inside = found.points, found.inside
@@ -95,7 +113,8 @@ def load_profile(path: Path, material: Material, length_unit: str | None = None)
     def alike(i: int) -> tuple[object, ...]:
         """What two intervals share that may be one segment; an interval with a tapered bore is one by itself."""
         bores = found.bores(i)
-        return (bores, inside[i].material, inside[i].core, i if bores[0] != bores[1] else None)
+        here = inside[i]
+        return (bores, here.material, here.core, here.ferrule, i if bores[0] != bores[1] else None)
 
     segments = list[Segment]()
     with faults_of(path, ""):
@@ -104,7 +123,9 @@ def load_profile(path: Path, material: Material, length_unit: str | None = None)
             here, bores = inside[first], found.bores(first)
             corners = _corners(points[first : first + len(others) + 2])
             rest = (here.material or material, *bores, here.core if bores[0] else None)
-            segments += [Segment(_apart(x0, x1), d0, d1, *rest) for (x0, d0), (x1, d1) in itertools.pairwise(corners)]
+            drawn = [Segment(_apart(x0, x1), d0, d1, *rest) for (x0, d0), (x1, d1) in itertools.pairwise(corners)]
+            stuff = here.ferrule
+            segments += drawn if stuff is None else [on_tenon(s, stuff, here.material or material) for s in drawn]
         return Cue(tuple(segments))
 
 
@@ -138,7 +159,7 @@ def read_profile(path: Path, length_unit: str | None = None, *, checked: bool = 
 def _inside(
     path: Path, header: Header, columns: Sequence[ProfileColumn], mark: str, diameters: Sequence[float]
 ) -> list[Inside]:
-    """What every row says of bore, material and core; an empty cell of a material means the one above."""
+    """What every row says of bore, material and core; an empty cell means the material above, and no ferrule."""
     bore = next((column for column in columns if column.kind == BORE), None)
     named = {column.kind: column for column in header.names}
     found, before = list[Inside](), dict[str, Material]()
@@ -146,6 +167,8 @@ def _inside(
         line, cells = row
         for kind, column in named.items():
             cell = cells[column.index].strip() if column.index < len(cells) else ""
+            if kind == FERRULE:
+                before.pop(kind, None)
             if cell:
                 before[kind] = named_material(cell.casefold(), path, f"line {line}, {kind}")
         empty = bore is None or bore.index >= len(cells) or not cells[bore.index].strip(" -–")
@@ -153,7 +176,7 @@ def _inside(
         if width >= outer:
             across = f"{1e3 * outer:.6g} mm, the diameter there; got {1e3 * width:.6g} mm"
             raise InputError(path, f"line {line}, bore", f"must be less than {across}")
-        found.append(Inside(width, before.get(MATERIAL), before.get(CORE)))
+        found.append(Inside(width, before.get(MATERIAL), before.get(CORE), before.get(FERRULE)))
     return found
 
 

@@ -239,16 +239,23 @@ def test_convert(cue: str, tmp_path: Path) -> None:
     assert cf.load(goal) == replace(KIM, body_mass=0.425242846875)
 
 
+SOLID = (
+    'no ferrule, no bore: add them with --ferrule "25 mm melamine" and --bore "6 mm wide, 127 mm deep" or columns '
+    'of those names; the drawing begins at the ferrule, and the tip is put in front (--begins "leather 6 mm" if it has '
+    "the leather)"
+)
+
+
 def test_convert_says_what_it_assumed(scene: str, tmp_path: Path) -> None:
     (tmp_path / "shaft.csv").write_text("x [mm],diameter [mm]\n0,12\n700,21\n")
     shaft, goal = str(tmp_path / "shaft.csv"), str(tmp_path / "shaft.toml")
     assert run("convert", shaft, goal).splitlines() == [
         "assumed: material hard maple (choose with --material); no mass behind the shaft (--body-mass gives it); "
-        "no ferrule, no bore (columns material and bore add them)",
+        f"{SOLID}",
         f"wrote {goal}",
     ]
     told = run("convert", shaft, goal, "--body-mass", "420 g", "--material", "ash", "--force")
-    assert told == f"assumed: no ferrule, no bore (columns material and bore add them)\nwrote {goal}\n"
+    assert told == f"assumed: {SOLID}\nwrote {goal}\n"
     assert cf.load(goal).body_mass == 0.42
     run("convert", scene, goal, "--body-mass", "0.4 kg", "--force")
     assert cf.load(goal) == replace(SCENE, cue=replace(KIM, body_mass=0.4))

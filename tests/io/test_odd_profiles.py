@@ -35,7 +35,11 @@ def in_inches(points: tuple[tuple[float, float], ...]) -> tuple[tuple[float, flo
 PLAIN = "x [mm],diameter [mm]\n0,12.75\n330,13.2\n736.6,21.5\n"
 GERMAN = "x [mm];Durchmesser [mm]\n0,0;12,75\n330,0;13,2\n736,6;21,5\n"
 TABS = PLAIN.replace(",", "\t")
-SOLID = "no ferrule, no bore (columns material and bore add them)"
+SOLID = (
+    'no ferrule, no bore: add them with --ferrule "25 mm melamine" and --bore "6 mm wide, 127 mm deep" or columns '
+    "of those names",
+    'the drawing begins at the ferrule, and the tip is put in front (--begins "leather 6 mm" if it has the leather)',
+)
 READ = {
     "plain": Odd(PLAIN),
     "semicolons and decimal commas": Odd(GERMAN),
@@ -235,7 +239,7 @@ def test_read_as_meant(name: str, tmp_path: Path) -> None:
         sizes = segment.length, segment.tip_diameter, segment.butt_diameter
         assert sizes == pytest.approx((meant.length, meant.tip_diameter, meant.butt_diameter), rel=1e-12, abs=0)
     told = assumed(tmp_path / "shaft.csv", {"material", "body_mass"})
-    assert tuple(told) == (*odd.said, SOLID)
+    assert tuple(told) == (*odd.said, *SOLID)
 
 
 @pytest.mark.parametrize("name", REFUSED)

@@ -1,0 +1,113 @@
+"""What is told beside a drawing (material, ferrule, bore, where it begins) draws what the same columns draw."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import cuefem as cf
+from cuefem.cli import COMMANDS, main
+from cuefem.io.fittings import FITTINGS, TENON, fitted
+from cuefem.materials import MATERIALS, material
+from tests.helpers.command_line import call
+
+BARE = "x [mm],diameter [mm]\n0,12\n700,21\n"
+COLUMN = "x [mm],diameter [mm],ferrule\n0,12,Melamine\n28,12.36,\n700,21,\n"
+MAPLE, ASH, ABS = map(material, ("hard maple", "ash", "abs"))
+CONE = cf.Cue((cf.Segment(0.7, 0.012, 0.021, MAPLE),))
+
+
+def shaft(folder: Path, text: str = BARE) -> Path:
+    path = folder / "shaft.csv"
+    path.write_text(text)
+    return path
+
+
+def test_a_ferrule_told_is_the_one_of_the_column(tmp_path: Path) -> None:
+    column = cf.load(shaft(tmp_path, COLUMN))
+    told = cf.load(shaft(tmp_path), ferrule="28 mm melamine")
+    assert isinstance(told, cf.Cue)
+    assert isinstance(column, cf.Cue)
+    for one, other in zip(told.segments, column.segments, strict=True):
+        assert (one.material, one.core) == (other.material, other.core)
+        sizes = ("length", "tip_diameter", "butt_diameter", "tip_bore", "butt_bore")
+        assert [getattr(one, name) for name in sizes] == pytest.approx(
+            [getattr(other, name) for name in sizes], rel=1e-12
+        )
+    assert (told.segments[0].material, told.segments[0].core) == (material("melamine"), MAPLE)
+    assert told.segments[0].tip_bore == TENON * 0.012
+    words = call("modes", shaft(tmp_path, COLUMN))[1]
+    assert "no bore: add it with --bore" in " ".join(words.split())
+    assert "no ferrule" not in words
+
+
+@given(st.floats(2, 59), st.sampled_from(["abs", "Melamine", "carbon fibre", "brass"]), st.booleans())
+def test_a_ferrule_is_where_it_is_told(length: float, name: str, backwards: bool) -> None:
+    text = f"{name} ferrule {length!r} mm" if backwards else f"{length!r} mm {name}"
+    cue = fitted(CONE, ferrule=f"{text}, tenon 8 mm")
+    front, behind = cue.segments
+    assert (front.length, front.tip_bore, front.butt_bore) == pytest.approx((length / 1e3, 0.008, 0.008), rel=1e-9)
+    assert (front.material, front.core, behind.material) == (material(name), MAPLE, MAPLE)
+    assert cue.length == pytest.approx(0.7, rel=1e-12)
+    other = [segment.length for segment in fitted(cue, ferrule="20 mm nylon").segments if segment.core]
+    assert sum(other) == pytest.approx(0.02, rel=1e-9)  # the first is off
+    assert fitted(CONE, ferrule=f"{text}, no tenon").segments[0].core is None
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["6.35 mm wide, 127 mm deep", "127 mm deep, 6.35 mm wide", "1/4 in x 5 in", "5 in by 1/4 in", "6.35 mm × 127 mm"],
+)
+def test_a_bore_as_people_say_it(text: str) -> None:
+    front, behind = fitted(CONE, bore=text).segments
+    assert (front.length, front.tip_bore, front.butt_bore) == pytest.approx((0.127, 0.00635, 0.00635), rel=1e-9)
+    assert behind.tip_bore == 0
+
+
+def test_a_bore_begins_behind_the_tenon_of_a_ferrule() -> None:
+    leather, ferrule, bored, rest = fitted(
+        CONE, begins="leather 6 mm", ferrule="1 in melamine", bore="6 mm wide, 100 mm deep"
+    ).segments
+    assert (leather.material, ferrule.material, bored.material) == (material("leather"), material("melamine"), MAPLE)
+    lengths = [segment.length for segment in (leather, ferrule, bored)]
+    assert lengths == pytest.approx([0.006, 0.0254, 0.1], rel=1e-9)
+    assert (bored.tip_bore, bored.core, rest.tip_bore) == (0.006, None, 0)
+
+
+def test_the_same_words_change_a_drawing_and_a_scene(tmp_path: Path) -> None:
+    drawing = Path("meshes/pool_maple.toml")
+    told = {"material": "ash", "ferrule": "13 mm abs", "bore": "6 mm wide, 100 mm deep"}
+    cue = cf.load(drawing, **told)
+    assert isinstance(cue, cf.Cue)
+    assert [segment.material for segment in cue.segments[:3]] == [material("leather"), ABS, ASH]
+    assert (cue.segments[1].core, cue.segments[2].tip_bore) == (ASH, 0.006)
+    scene = tmp_path / "scene.toml"
+    cf.save(cf.Scene(cf.load(drawing)), scene)  # type: ignore[arg-type]
+    changed = cf.load(scene, **told)
+    assert isinstance(changed, cf.Scene)
+    assert changed.cue == cue
+
+
+def test_every_command_on_a_drawing_takes_them_all() -> None:
+    """One declaration: a command that takes --body-mass takes each of `FITTINGS`."""
+    wearing = 0
+    for name in COMMANDS:
+        command = main.get_command(None, name)  # type: ignore[arg-type]
+        options = {option.name for option in command.params}  # type: ignore[union-attr]
+        if "body_mass" in options:
+            assert {*FITTINGS} <= options, name
+            wearing += 1
+    assert wearing >= 14
+    assert {"abs", "melamine"} <= {*MATERIALS}
+
+
+def test_strikes_follow_what_is_told(tmp_path: Path) -> None:
+    squirts = []
+    for more in ((), ("--ferrule", "13 mm abs"), ("--ferrule", "13 mm abs", "--bore", "6 mm wide, 127 mm deep")):
+        status, out, _ = call("end-mass", shaft(tmp_path), "--body-mass", "15 oz", *more)
+        assert status == 0
+        squirts.append(out)
+    assert len({*squirts}) == 3
