@@ -42,8 +42,8 @@ class Motion:
     fields : (unknowns, n) array
         The beam's motion, in the unknowns of ``modes``; `deflection` reads it anywhere.
     along : (n,) array
-        Way of the tip along the cue, m. Waves in the shaft's length (`AxialWaves`) are in it; their shape along the
-        shaft is not given.
+        Way of the tip along the cue, m. Waves in the shaft's length (`AxialWaves`) are in it, and what a bent shaft is
+        shorter by (`GeometricStiffness`); their shape along the shaft is not given.
     centre : (n, 2) array
         The ball's centre (u, w), m.
     turned : (n,) array
@@ -156,11 +156,16 @@ def _read(scene: Scene, found: Modes, tip: TipModes, *, solved: SolvedContact, t
         solved.time,
         found,
         fields=side * vectors @ path.modes[across],
-        along=tip.amplitude[:, 0] @ path.modes,
+        along=tip.amplitude[:, 0] @ path.modes - _shortened(tip, path.modes),
         centre=centre * [1.0, side],
         turned=-side * path.ball[:, 2] / R,
         force=np.column_stack([s * F_t + c * F_n, side * (c * F_t - s * F_n)]),
     )
+
+
+def _shortened(tip: TipModes, modes: Array) -> Array | float:
+    """By how much a bent cue is shorter, m, at each time (`GeometricStiffness`)."""
+    return 0.0 if tip.geometric is None else np.einsum("it,ij,jt->t", modes, tip.geometric, modes) / 2
 
 
 def _bending(found: Modes, tip: TipModes) -> tuple[Array, Any]:

@@ -22,6 +22,7 @@ EFFECTS: dict[str, tuple[Any, ...]] = {
     "support": (cf.Support(0.25, stiffness=1e4, dashpot=5.0),),
     "damping": (cf.StructuralDamping(),),
     "second hit": (cf.SecondHit(4e-3),),
+    "thrust": (cf.GeometricStiffness(),),
     "power law": (cf.PowerLawTip(1.5),),
     "power law, second hit": (cf.PowerLawTip(1.5, 2.0), cf.SecondHit(4e-3)),
     "turning": (cf.RollingContact(), cf.TipDome(0.0095)),
