@@ -89,6 +89,8 @@ class Place:
         Those on offer, if it holds a material.
     spread
         As an unknown of an estimate: the standard deviation of its logarithm; None if only a file makes it one.
+    below
+        Of a number that is usually at its upper bound: by what part of it less it may be, in a verdict's band.
     option, help
         The word for its value in a command's help, "" if it is no option; and what the help says.
     sets
@@ -108,6 +110,7 @@ class Place:
     range: Range | Callable[[Cue], Range] | None = None
     materials: tuple[str, ...] = ()
     spread: float | Callable[[Scene], float] | None = None
+    below: float | None = None
     option: str = ""
     help: str = ""
     sets: Mapping[str, Mapping[str, float]] | None = None
@@ -510,6 +513,10 @@ PLACES: dict[str, Place] = {
             spread=0.1,  # a dime's 8.95 to a nickel's 10.6 mm
             option="RADIUS",
             help='Radius of its dome: nickel, dime, flat or a length, e.g. "9.5 mm".',
+        ),
+        Place(
+            *("surface restitution", "restitution along the leather's surface", "leather.surface_restitution"),
+            below=0.05,  # nobody measured it; 0.9 is worth 7 % of squirt, and a robot's has it nearer to 1
         ),
         Place(
             *("contact time", "contact time"),

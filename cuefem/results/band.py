@@ -10,7 +10,7 @@ from typing import NamedTuple
 from cuefem.contact.strike import strike_modes
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved
-from cuefem.vary import PLACES, replaced
+from cuefem.vary import PLACES, Place, replaced
 
 # Of the model, from the folders of studies/measured with nothing fitted (tests/results/test_band.py makes them again).
 # Level: measured over computed squirt, less 1, root mean square of seven strokes of three cues, for a tip of leather
@@ -47,7 +47,11 @@ def band(scene: Scene, inputs: Mapping[str, float], error: float | None = None) 
 
 def of_shaft(inputs: Mapping[str, float]) -> float:
     """What the inputs of the shaft alone may be off: what is left where two shafts are struck with one tip."""
-    return math.hypot(*(share for key, share in inputs.items() if PLACES[key].group != "Tip"))
+    return math.hypot(*(share for key, share in inputs.items() if not _of_tip(PLACES[key])))
+
+
+def _of_tip(known: Place) -> bool:
+    return known.group == "Tip" or known.path.startswith("leather.")
 
 
 def of_inputs(solved: Solved, own: float) -> dict[str, float]:
@@ -60,12 +64,12 @@ def of_inputs(solved: Solved, own: float) -> dict[str, float]:
         return {}
     changes: dict[str, float] = {}
     for key, known in PLACES.items():
-        value = known.value(scene) if known.spread is not None else None
+        spread = known.spread(scene) if callable(known.spread) else known.spread
+        ways = (spread, -spread) if spread is not None else (math.log1p(-known.below),) if known.below else ()
+        value = known.value(scene) if ways else None
         if not value:
             continue
-        assert known.spread is not None
-        spread = known.spread(scene) if callable(known.spread) else known.spread
-        for off in (spread, -spread):  # the other way where no cue can be farther out
+        for off in ways:  # the other way where no cue can be farther out
             try:
                 made = replaced(scene, {known.steps(): value * math.exp(off)})
                 changes[key] = abs(_squirt_beside(solved, made) / own - 1)
