@@ -10,10 +10,12 @@ from collections.abc import Callable
 
 from nicegui import app, ui
 from starlette.middleware.trustedhost import TrustedHostMiddleware
+from starlette.responses import HTMLResponse
 
 from cuefem.designer.design import Design
 from cuefem.designer.desk import Desk, Read
 from cuefem.designer.door import Door
+from cuefem.handbook.page import page
 
 HOST = "127.0.0.1"
 
@@ -25,6 +27,7 @@ def serve(first: Design, read: Read, *, port: int, show: bool, announce: Callabl
     def desk() -> None:
         Desk(first, read)
 
+    app.add_api_route("/guide", page, response_class=HTMLResponse)
     app.add_middleware(TrustedHostMiddleware, allowed_hosts=[HOST, "localhost"])
     app.add_middleware(Door, origins=(f"http://{HOST}:{port}", f"http://localhost:{port}"))
     app.on_startup(lambda: announce(f"http://{HOST}:{port}/"))

@@ -91,6 +91,7 @@ class Desk:
                 button("Back to the file", lambda: self.open(self.opened))
                 button("Link", lambda: self.links.show(text_of(State((self.state.now,)))))
                 button("Pin this design", self._pin)
+                ui.link("Guide", "/guide", new_tab=True).style("color: inherit")
                 self.units = ui.select(list(SYSTEMS), value=METRIC.name, label="Units", on_change=self._switch)
                 self.units.props("outlined dense options-dense").classes("units")
             self.message = Markup().on("click", lambda: self.say(""))

@@ -6,10 +6,19 @@ import inspect
 from importlib.resources import files
 from typing import NamedTuple
 
-__all__ = ["CHAPTERS", "LINES", "Chapter", "chapters", "effect_lines"]
+__all__ = ["CHAPTERS", "LINES", "MAKERS", "Chapter", "chapters", "effect_lines"]
 
-# The chapters' files in the order of reading.
+# The chapters' files in the order of reading, first those for makers (tests/helpers/maker_pictures.py draws for them).
+MAKERS = (
+    "what_squirt_is",
+    "measure_your_shaft",
+    "read_the_report",
+    "change_it",
+    "weigh_and_tap",
+    "what_not_to_believe",
+)
 CHAPTERS = (
+    *MAKERS,
     "start",
     "files",
     "working",

@@ -14,7 +14,7 @@ from markdown_it import MarkdownIt
 from markdown_it.renderer import RendererHTML
 from markdown_it.token import Token
 
-from cuefem.handbook import chapters
+from cuefem.handbook import MAKERS, chapters
 
 SUBSCRIPT = re.compile(r"\b([A-Za-zα-ωΩ]{1,2})_([A-Za-z∥⊥0]{1,4})(?![A-Za-z0-9_])")
 PAGE = Template("""<!DOCTYPE html>
@@ -34,12 +34,23 @@ $style</style>
 <p class="name">Handbook</p>
 </header>
 <nav aria-label="Contents">
-<h2>Contents</h2>
+<label for="search">Search</label>
+<input id="search" type="search" autocomplete="off" placeholder="a word, such as bore" aria-controls="hits">
+<p id="count" role="status"></p>
+<ul id="hits"></ul>
+<div id="contents">
+<h2>For makers</h2>
 <ol>
-$contents</ol>
+$makers</ol>
+<h2>For engineers</h2>
+<ol>
+$engineers</ol>
+</div>
 </nav>
 <main>
 $body</main>
+<script>
+$script</script>
 </body>
 </html>
 """)
@@ -56,8 +67,11 @@ def page() -> str:
         html = _MARKDOWN.renderer.render(tokens, _MARKDOWN.options, {})
         html = html.replace("<table>", '<div class="scroll"><table>').replace("</table>", "</table></div>")
         bodies.append(f"<section>\n{html}</section>\n")
-    style = files(__package__).joinpath("page.css").read_text(encoding="utf-8")
-    return PAGE.substitute(style=style, contents="".join(entries), body="".join(bodies))
+    style, script = (
+        files(__package__).joinpath(name).read_text(encoding="utf-8") for name in ("page.css", "search.js")
+    )
+    makers, engineers = "".join(entries[: len(MAKERS)]), "".join(entries[len(MAKERS) :])
+    return PAGE.substitute(style=style, script=script, makers=makers, engineers=engineers, body="".join(bodies))
 
 
 def _text(_: object, tokens: Sequence[Token], index: int, *__: object) -> str:

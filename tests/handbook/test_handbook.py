@@ -90,7 +90,7 @@ class Links(HTMLParser):
         given = dict(attrs)
         self.anchors += [given["id"] or ""] if "id" in given else []
         self.links += [given[name] or "" for name in ("href", "src") if name in given]
-        self.open += [tag] if tag not in ("meta", "link", "br", "hr") else []
+        self.open += [tag] if tag not in ("meta", "link", "br", "hr", "input") else []
 
     def handle_endtag(self, tag: str) -> None:
         assert self.open.pop() == tag
