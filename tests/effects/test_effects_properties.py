@@ -95,7 +95,7 @@ def test_what_a_dashpot_and_damping_take_is_a_loss_by_name():
         assert damped.energy["cue vibration"] < bare.energy["cue vibration"]
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(st.permutations(EXAMPLES))
 def test_the_order_of_the_list_does_not_change_a_bit(effects):
     reference, shuffled = (strike(replace(kim_scene(), effects=tuple(e)), AT) for e in (EXAMPLES, effects))

@@ -72,7 +72,10 @@ def setup_of(cue: DocumentedCue, z: np.ndarray) -> bool:
         return False
 
 
-@pytest.mark.parametrize("scene", [SCENE, leather_scene()], ids=["plain tip", "leather tip"])
+@pytest.mark.parametrize(
+    "scene",
+    [pytest.param(SCENE, id="plain tip"), pytest.param(leather_scene(), id="leather tip", marks=pytest.mark.heavy)],
+)
 def test_every_unknown_at_its_limits(scene: object) -> None:
     """Drawings at the limit of what can be, or a little inside, are compared and estimated like others."""
     cue = DocumentedCue("a cue", scene, CHEAP, (Prior("taper", 0.1),))  # type: ignore[arg-type]

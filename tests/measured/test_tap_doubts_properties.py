@@ -91,7 +91,16 @@ STRINGS: dict[str, tuple[str, Callable[[], np.ndarray]]] = {
 }
 
 
-@pytest.mark.parametrize(("name", "sound"), STRINGS.values(), ids=STRINGS.keys())
+DAILY = {"a string in a loop, every second partial a mode", "a stiff string", "a sung ah"}
+
+
+@pytest.mark.parametrize(
+    ("name", "sound"),
+    [
+        pytest.param(*made, id=words, marks=[pytest.mark.heavy] * (words not in DAILY))
+        for words, made in STRINGS.items()
+    ],
+)
 def test_strings_and_voices_are_refused_as_such(name: str, sound: Callable[[], np.ndarray]) -> None:
     heard = tones(ringing(sound(), strings.RATE))
     with_tones = [tone for tone in heard if tone.kind in ("tone", "harmonic")]
@@ -124,7 +133,9 @@ def test_the_note_of_any_string_is_found(note: float, stiffness: float, count: i
     assert better_note(heard, wood[0].score if wood else -np.inf) == found
 
 
-@pytest.mark.parametrize("name", NAMES[:-1])
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.heavy] * (name not in ("kim", "carbon"))) for name in NAMES[:-1]]
+)
 def test_no_shaft_sounds_like_a_string(name: str) -> None:
     """Woods of half to twice the file's E, from three tones to all of them, also with multiples that clipping adds.
 

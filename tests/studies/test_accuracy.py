@@ -17,6 +17,7 @@ from tests.helpers.study_tables import rows
 # accuracy and its cost
 
 
+@pytest.mark.heavy
 def test_order_pays_more_than_elements():
     for many, few in (((8, 4), (4, 8)), ((8, 8), (4, 16))):
         rough, fine = accuracy_cost.point(*many), accuracy_cost.point(*few)
