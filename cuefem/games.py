@@ -101,6 +101,8 @@ GAMES: Mapping[str, Game] = MappingProxyType(
     }
 )
 DEFAULT_GAME = "pool"
+KIM = "kim"  # no game, but the stroke of [Kim]: his ball, a spring as tip, head on, and no effects
+STROKES = (*GAMES, KIM)
 
 
 def without_leather(cue: Cue) -> Cue:
@@ -151,9 +153,10 @@ def usual_scene(cue: Cue, game: str = DEFAULT_GAME, *, tip: LeatherTip | None = 
         A drawing. Leather that is drawn at its tip is taken off, and the tip stands in its place; a drawing without
         leather ends at the ferrule, and the tip is put on it.
     game
-        "pool", "carom" or "snooker": `GAMES` has their numbers and where these are from.
+        "pool", "carom" or "snooker": `GAMES` has their numbers and where these are from. "kim" is ``Scene(cue)``, the
+        cue as it is drawn with the ball, tip and stroke of Kim's paper and without effects.
     tip
-        In the place of `usual_tip`.
+        In the place of `usual_tip`; not with "kim".
 
     Returns
     -------
@@ -176,6 +179,8 @@ def usual_scene(cue: Cue, game: str = DEFAULT_GAME, *, tip: LeatherTip | None = 
     (0.17, 2.0, 0.0095)
     """
     check_kind("usual_scene cue", cue, Cue)
+    if game == KIM and tip is None:
+        return Scene(cue)
     known = _game(game)
     return Scene(
         without_leather(cue),

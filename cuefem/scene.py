@@ -147,7 +147,8 @@ class Scene:
     cue
         A `Cue` of segments, which vibrates, or a `LumpedCue`.
     ball, tip, stroke
-        By default a carom ball, a leather tip with a contact time of 2 ms, and a head-on blow at 1 m/s.
+        By default those of Kim's paper: a carom ball, a tip with a contact time of 2 ms, and a head-on blow at 1 m/s.
+        `cuefem.usual_scene` has those of a game.
     effects
         Effects such as `TipDome` or `PointMass`, in any order. What is not listed costs nothing.
 

@@ -108,7 +108,7 @@ def test_a_file_s_slip_is_told_to_the_one_who_loads_it(tmp_path: Path) -> None:
     shutil.copy(ROOT / "meshes" / "pool_maple.toml", tmp_path / "cue.toml")
     path = tmp_path / "scene.toml"
     ball = '[stroke]\noffset = 0.3\n[ball]\nmass = "170 g"\nradius = "28.575 mm"\n'
-    path.write_text(f'cue = "cue.toml"\n{ball}[[effects]]\ntype = "TipDome"\nradius = "9.5 m"\n')
+    path.write_text(f'game = "kim"\ncue = "cue.toml"\n{ball}[[effects]]\ntype = "TipDome"\nradius = "9.5 m"\n')
     with pytest.warns(cf.Unusual, match="is it 9.5 mm") as told:
         cf.load(path)
     assert Path(told[0].filename).name == Path(__file__).name

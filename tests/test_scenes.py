@@ -51,7 +51,7 @@ def test_a_ready_scene_says_what_it_rests_on(name: str) -> None:
     assert text.startswith("# ")
     assert load_accuracy(SCENES / f"{name}.toml") == 1e-2
     assert list(tomllib.loads(text)) == [
-        key for key in ("cue", "ball", "tip", "stroke", "effects", "accuracy") if key in tomllib.loads(text)
+        key for key in ("game", "cue", "ball", "tip", "stroke", "effects", "accuracy") if key in tomllib.loads(text)
     ]
 
 

@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import Any
 
 from cuefem.cue import Cue
-from cuefem.effects import effect_kinds
-from cuefem.games import GAMES, usual_tip
+from cuefem.effects import AxialWaves, effect_kinds
+from cuefem.games import DEFAULT_GAME, GAMES, KIM, usual_tip
 from cuefem.io.fittings import BORE, FERRULE, LEATHER, TENON
 from cuefem.io.profile import DEFAULT_MATERIAL, DEFAULT_UNIT, SHAPES, SURFACES, Profile, read_profile
-from cuefem.io.toml import read_tables
+from cuefem.io.toml import left_out, read_tables
 from cuefem.scene import DEFAULT_CONTACT_TIME, Ball, Stroke, Tip
 
 BEGINS = f'the drawing begins at the ferrule, and the tip is put in front (--begins "{LEATHER}" if it has the leather)'
@@ -129,26 +129,38 @@ def assumed_usual(
 
 
 def assumed_blow(found: dict[str, Any], given: Collection[str], *, offered: Collection[str]) -> list[str]:
-    """What a scene's tables leave out of ball, tip and stroke."""
-    ball, tip, stroke = (found.get(name, {}) for name in ("ball", "tip", "stroke"))
-    grams, across = f"{1e3 * Ball().mass:g} g", f"{2e3 * Ball().radius:g} mm"
-    neither = not {"mass", "radius"} & {*ball}
-    effects = (effect_kinds().get(str(effect.get("type"))) for effect in found.get("effects", ()))
-    timed = {"contact_time", "stiffness"} & {*tip, *given} or any(kind and kind.whole_tip for kind in effects)
-    option = "--offset or " if "offset" in offered else ""
-    head_on = f" (head on: {option}[stroke] offset gives another)"
+    """What a scene's tables leave out of ball, tip, stroke and effects, and its game supplies."""
+    game = str(found.get("game", DEFAULT_GAME))
+    missing = {key for key in left_out(found) if key.rpartition(".")[2] not in given}
+    missing -= {"ball.mass", "ball.radius"} if "ball" in given else set()
+    missing -= {"effects"} if game == KIM else set()
+    cue, tip = found["cue"], found.get("tip", {})
+    timed = bool({"contact_time", "stiffness"} & {*tip, *given})
+    kinds = [effect_kinds().get(str(effect.get("type"))) for effect in found.get("effects", ())]
+    usual = "effects" in missing and game != KIM and not (isinstance(cue, dict) and "end_mass" in cue)
+    whole = (usual and not timed) or any(kind and kind.whole_tip for kind in kinds)
+    ball, tip_of, stroke, bounce = Ball(), Tip(), Stroke(), f"{Tip().restitution:g}"
+    if game != KIM:
+        known = GAMES[game]
+        ball, tip_of, stroke = known.ball, Tip(friction=known.friction), Stroke(known.speed, known.offset)
+        bounce = known.bounce if usual or AxialWaves in kinds else f"{known.restitution:g}"
+    sizes = {"ball.mass": f"{1e3 * ball.mass:g} g", "ball.radius": f"{2e3 * ball.radius:g} mm"}
+    said = [words for key, words in sizes.items() if key in missing]
+    leather = "a leather tip as high as it is drawn, or as is usual" if whole else ""
+    effects = " and ".join(filter(None, [leather, "waves along the cue and thrust on the bent shaft"]))
     time = f"{1e3 * DEFAULT_CONTACT_TIME:g} ms{_option('contact_time', offered, SHORTER)}"
-    known = (
-        ("ball" in given or not neither, f"carom ball {grams}, {across}{_option('ball', offered)}"),
-        ("ball" in given or neither or "mass" in ball, f"ball {grams}"),
-        ("ball" in given or neither or "radius" in ball, f"ball diameter {across}"),
-        (bool(timed), f"head-on contact time {time}"),
-        ("restitution" in {*tip, *given}, f"e {Tip().restitution:g}{_option('restitution', offered)}"),
-        ("friction" in {*tip, *given}, f"mu {Tip().friction:g}{_option('friction', offered)}"),
-        ("speed" in {*stroke, *given}, f"stroke {Stroke().speed:g} m/s{_option('speed', offered)}"),
-        ("offset" in {*stroke, *given}, f"offset b/R {Stroke().offset:g}{head_on}"),
+    stroke_of = "Kim's stroke" if game == KIM else f"a usual stroke of {game}"
+    told = (
+        (bool(missing), stroke_of if len(found) <= 1 + ("game" in found) else f"what is left out as in {stroke_of}"),
+        (bool(said), f"ball {', '.join(said)}{_option('ball', offered)}"),
+        ("effects" in missing and usual, f"{effects} (effects = [] is without)"),
+        (not (timed or whole), f"head-on contact time {time}"),
+        ("tip.restitution" in missing, f"e {bounce}{_option('restitution', offered)}"),
+        ("tip.friction" in missing, f"mu {tip_of.friction:g}{_option('friction', offered)}"),
+        ("stroke.speed" in missing, f"stroke {stroke.speed:g} m/s{_option('speed', offered)}"),
+        ("stroke.offset" in missing, f"offset b/R {stroke.offset:g}{_option('offset', offered)}"),
     )
-    return [words for said, words in known if not said]
+    return [words for wanted, words in told if wanted]
 
 
 def _option(name: str, offered: Collection[str], more: str = "") -> str:

@@ -9,12 +9,11 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any, cast
 
-from cuefem.games import DEFAULT_GAME, GAMES, usual_scene
 from cuefem.io import InputError, load
-from cuefem.io.assumed import assumed_blow, assumed_drawing, assumed_usual
+from cuefem.io.assumed import assumed_blow, assumed_drawing
 from cuefem.io.errors import faults_of, nearest, shown
 from cuefem.io.schema import build, joined, keys_of, unknown_key
-from cuefem.io.toml import read_tables, read_text, scene_of_tables
+from cuefem.io.toml import OF_GAME, game_of, left_out, read_tables, read_text, scene_of_tables
 from cuefem.measured.documented import DocumentedCue
 from cuefem.measured.kinds import KINDS, Measurement
 from cuefem.measured.unknowns import Prior, names
@@ -24,8 +23,8 @@ from cuefem.vary import place
 
 MEASURED = "measured.toml"
 DRAWINGS = ("cue.toml", "cue.csv")
-SCENE_KEYS = ("cue", "ball", "tip", "stroke", "effects")
-OWN_KEYS = ("name", "source", "game", "unknowns")
+SCENE_KEYS = ("cue", "game", "ball", "tip", "stroke", "effects")
+OWN_KEYS = ("name", "source", "unknowns")
 TEMPLATE = ("README.md", "added_mass.csv", "cue.toml", MEASURED, "squirt.csv")
 
 _COLUMN = re.compile(r"\s*([a-z_]+)\s*(?:\[([^\]]+)\])?\s*")
@@ -80,28 +79,22 @@ def _words(path: Path, tables: dict[str, Any], key: str) -> str:
 
 
 def _scene(folder: Path, path: Path, tables: dict[str, Any]) -> tuple[Scene, list[str]]:
-    """The scene, and what its files leave to defaults: without ball, tip, stroke and effects a game's usual stroke."""
+    """The scene, and what its files leave to defaults: what they do not say of ball, tip, stroke and effects is that of
+    the game, pool where none is named."""
     parts = {key: tables[key] for key in SCENE_KEYS if key in tables}
     if "cue" not in parts:
         there = next((name for name in DRAWINGS if (folder / name).exists()), None)
         if there is None:
             raise InputError(folder, "", f"must hold the shaft's drawing, {' or '.join(DRAWINGS)}; got none")
         parts["cue"] = there
-    game = _words(path, tables, "game")
-    if game and game not in GAMES:
-        raise InputError(path, "game", f"must be one of {', '.join(GAMES)}; got {shown(game)}{nearest(game, GAMES)}")
-    told = [key for key in SCENE_KEYS[1:] if key in parts]
-    if told and game:
-        raise InputError(path, "game", f"must be left out beside {', '.join(told)}; got {shown(game)}")
+    told = {*OF_GAME, "effects"} & {*parts}
+    if not told or left_out(parts) == ["stroke.offset"]:  # every measurement has its own offset
+        parts["game"] = game_of(parts, path)
     scene = scene_of_tables(parts, path, _drawing)
     drawn = assumed_drawing(path.parent / parts["cue"]) if isinstance(parts["cue"], str) else []
     if scene.lumped is not None:
         raise InputError(path, "cue", "must be a cue of segments, which can be measured; got a lumped cue")
-    if told:
-        return scene, [*drawn, *assumed_blow(tables, ["offset"], offered=())]
-    game = game or DEFAULT_GAME
-    with faults_of(path, ""):
-        return usual_scene(scene.shaft, game), [*drawn, *assumed_usual(scene.shaft, game, ["offset"], offered=())]
+    return scene, [*drawn, *assumed_blow(parts, ["offset"], offered=())]
 
 
 def _drawing(path: Path) -> Any:

@@ -10,6 +10,7 @@ from typing import Any, cast
 
 from cuefem.cue import Cue, LumpedCue
 from cuefem.effects import effect_kinds
+from cuefem.games import STROKES
 from cuefem.io.schema import choices, mark_of, needed, types_of
 from cuefem.io.toml import Accuracy
 from cuefem.quantity import Quantity
@@ -38,6 +39,7 @@ def json_schema() -> dict[str, Any]:
         scene["cue"] = {"anyOf": [path, *(_ref(cue) for cue in cues)]}
         scene["effects"]["items"] = {"anyOf": [_ref(effect) for effect in effects.values()]} if effects else False
         scene["accuracy"] = _ref(Accuracy)
+    definitions["Scene"]["properties"]["game"] = {"enum": [*STROKES], "description": "whose what is left out is"}
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "A cuefem file: a scene, a strike from the side, or a cue alone",

@@ -8,12 +8,12 @@ from typing import Any
 from cuefem.design import METHODS, Levels, Normal, Response, Sample, Span, Study, Vary
 from cuefem.design.optimum import Limit, Problem
 from cuefem.design.scatter import Scatter
-from cuefem.games import GAMES, usual_scene
+from cuefem.games import KIM, usual_scene
 from cuefem.io import load_stroke
 from cuefem.io.errors import InputError, faults_of, shown, state_of
 from cuefem.io.profile import SHAPES
 from cuefem.io.schema import build, joined, unknown_key
-from cuefem.io.toml import named_material, read_tables
+from cuefem.io.toml import game_of, named_material, read_tables
 from cuefem.quantity import Quantity
 from cuefem.results.quantities import with_unit
 from cuefem.scene import Resolution, Scene, Stroke
@@ -167,16 +167,14 @@ def _base(found: dict[str, Any], path: Path, offset: float) -> Scene:
     if not isinstance(name, str):
         got = shown(name) if "scene" in found else "nothing"
         raise InputError(path, "scene", f"must be the path of a scene or a cue, from this file's folder; got {got}")
-    base, game = load_stroke(path.parent / name), found.get("game")
-    if game is None:
-        return base if isinstance(base, Scene) else Scene(base, stroke=Stroke(offset=offset))
-    if game not in GAMES:
-        raise InputError(path, "game", f"must be one of {', '.join(GAMES)}; got {shown(game)}")
-    if isinstance(base, Scene):
+    base, game = load_stroke(path.parent / name), game_of(found, path)
+    if not isinstance(base, Scene):
+        with faults_of(path, "game"):
+            return Scene(base, stroke=Stroke(offset=offset)) if game == KIM else usual_scene(base, game)
+    if "game" in found:
         problem = f"must be left out: {name} is a scene, which has its own ball, tip and stroke"
         raise InputError(path, "game", f"{problem}; got {shown(game)}")
-    with faults_of(path, "game"):
-        return usual_scene(base, game)
+    return base
 
 
 def assumed_base(path: Path, base: Scene) -> list[str]:
@@ -184,11 +182,13 @@ def assumed_base(path: Path, base: Scene) -> list[str]:
     found = read_tables(path)
     if isinstance(load_stroke(path.parent / found["scene"]), Scene):
         return []
-    if "game" in found:
-        return [f"a usual stroke of {found['game']} (game)"]
+    game = game_of(found, path)
+    if game != KIM:
+        before = "" if "game" in found else '; before version 0.2.0 it was Kim\'s: game = "kim"'
+        return [f"{found['scene']} is a cue alone, struck with a usual stroke of {game} (game){before}"]
     ball, time = with_unit(float(base.ball.mass), "kg", 6), with_unit(float(base.contact_time), "s", 6)
     told = f"{found['scene']} is a cue alone, struck with a ball of {ball} and a flat tip in contact for {time}"
-    return [f'{told}, b/R {base.stroke.offset:g}; game = "pool" in the study takes the usual stroke of pool']
+    return [f"{told}, b/R {base.stroke.offset:g} (game)"]
 
 
 def _response(text: Any, path: Path, key: str) -> Response:

@@ -1,5 +1,6 @@
 """Cues and scenes as TOML: `[[segments]]` at the top is a cue, `[cue]` (a table, or the path of a cue file) a scene.
 
+What a scene leaves out of ball, tip, stroke and effects is that of its `game`, which is pool where none is named.
 A scene with a `[striker]` is a strike from the side (`SideStrike`).
 """
 
@@ -14,17 +15,21 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from cuefem.cue import Cue, LumpedCue, Material
-from cuefem.effects import Effect, effect_kinds
-from cuefem.io.errors import InputError, nearest, read_bytes, shown
-from cuefem.io.schema import build, joined, keys_of, unknown_key
+from cuefem.effects import AxialWaves, Effect, effect_kinds
+from cuefem.games import DEFAULT_GAME, GAMES, KIM, STROKES, usual_scene
+from cuefem.io.errors import InputError, faults_of, nearest, read_bytes, shown
+from cuefem.io.schema import build, joined, keys_of, table, unknown_key
 from cuefem.materials import material
 from cuefem.quantity import MOST_SEGMENTS, Quantity, check_fields, quantities
-from cuefem.scene import Scene
+from cuefem.scene import Scene, Stroke, Tip
 from cuefem.side.scene import SideStrike
 from cuefem.slips import FormerFile
 
 # Fields that effects had in earlier versions, and why they have them no more.
 FORMER = {"LeatherTip": {"partial_slip": "the patch always holds, slides and lets go ring by ring"}}
+
+# What a scene's tables leave to its game.
+OF_GAME = {"ball": ("mass", "radius"), "tip": ("restitution", "friction"), "stroke": ("speed", "offset")}
 
 
 @dataclass(frozen=True)
@@ -98,14 +103,17 @@ def load_cue(path: Path) -> Cue:
 
 
 def scene_of_table(found: Any, name: str) -> Scene:
-    """The scene of nested tables as `schema.table` makes them; it holds its cue itself. name: for messages."""
+    """The scene of nested tables as `schema.table` makes them; it holds its cue itself. name: for messages.
+
+    These leave out what is empty, and nothing else.
+    """
 
     def no_file(path: Path) -> Cue:
         raise InputError(name, "cue", "must be a table of its own; got the path of a file")
 
     if not isinstance(found, dict):
         raise InputError(name, "", f"must be a table; got {shown(found)}")
-    return scene_of_tables(found, Path(name), no_file)
+    return scene_of_tables({"game": KIM} | found, Path(name), no_file)
 
 
 def load_accuracy(path: str | Path) -> float | None:
@@ -148,12 +156,62 @@ def named_material(name: str, path: Path, key: str) -> Material:
 
 def scene_of_tables(found: dict[str, Any], path: Path, cue_file: Callable[[Path], Cue]) -> Scene:
     """A scene from a file's tables; ``cue_file`` loads the cue file that it names."""
-    _check_keys(found, [*keys_of(Scene), "accuracy"], path)
+    _check_keys(found, [*keys_of(Scene), "game", "accuracy"], path)
     if "cue" not in found:
         raise InputError(path, "cue", "must be given: [[segments]] make a cue, [cue] a scene; got neither")
-    scene = build(Scene, _parts(found, path, cue_file), file=str(path), key="")
+    game = game_of(found, path)
+    parts = _parts({name: value for name, value in found.items() if name != "game"}, path, cue_file)
+    scene = build(Scene, parts if game == KIM else _completed(parts, game, path), file=str(path), key="")
     _check_effects(scene, path)
+    if "game" not in found and (missing := left_out(found)):
+        since = "which is pool's here, and before version 0.2.0 was Kim's"
+        problem = f'leaves out {", ".join(missing)}, {since}: game = "pool" or game = "kim" says which'
+        warnings.warn(f"{path}: {problem}", FormerFile, stacklevel=2)
     return scene
+
+
+def game_of(found: dict[str, Any], path: Path) -> str:
+    """The game that a file's tables name, or pool."""
+    game = found.get("game", DEFAULT_GAME)
+    if game not in STROKES:
+        hint = nearest(game, STROKES) if isinstance(game, str) else ""
+        raise InputError(path, "game", f"must be one of {', '.join(STROKES)}; got {shown(game)}{hint}")
+    return str(game)
+
+
+def left_out(found: dict[str, Any]) -> list[str]:
+    """The keys that a scene's tables leave to its game."""
+    missing = [
+        f"{part}.{name}"
+        for part, names in OF_GAME.items()
+        for name in names
+        if not isinstance(found.get(part, {}), dict) or name not in found.get(part, {})
+    ]
+    return missing + ["effects"] * ("effects" not in found)
+
+
+def _completed(parts: dict[str, Any], game: str, path: Path) -> dict[str, Any]:
+    """The fields of a scene with what they leave out filled in from a game.
+
+    A tip that is told as a spring, and a lumped cue, take no leather.
+    """
+    known, cue, tip = GAMES[game], parts["cue"], parts.get("tip", {})
+    if "effects" not in parts and isinstance(cue, LumpedCue):
+        parts = parts | {"effects": []}
+    elif "effects" not in parts and isinstance(tip, dict) and {"contact_time", "stiffness"} & {*tip}:
+        parts = parts | {"effects": [*known.effects]}
+    elif "effects" not in parts:
+        with faults_of(path, ""):
+            usual = usual_scene(cue, game)
+        parts = parts | {"cue": usual.cue, "effects": [*usual.effects]}
+    waves = any(isinstance(effect, AxialWaves) for effect in parts["effects"])
+    bounce = known.tip_restitution if waves else known.restitution
+    of_game = known.ball, Tip(bounce, known.friction), Stroke(known.speed, known.offset)
+    for name, usual_part in zip(OF_GAME, of_game, strict=True):
+        told = parts.get(name, {})
+        if isinstance(told, dict):
+            parts = parts | {name: table(usual_part) | told}
+    return parts
 
 
 def _check_keys(found: dict[str, Any], names: list[str], path: Path) -> None:

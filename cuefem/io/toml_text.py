@@ -16,6 +16,8 @@ from cuefem.side.scene import SideStrike
 def toml_text(thing: Cue | Scene | SideStrike) -> str:
     """A cue or scene as TOML that `load_toml` reads back exactly."""
     document = tomlkit.document()
+    if isinstance(thing, Scene) and not thing.effects:  # left out, they would be those of pool
+        document.add("effects", tomlkit.array())
     for name, value in table(thing).items():
         document.add(name, _item(value))
     return re.sub(r"(?<!\n)\n\[", "\n\n[", tomlkit.dumps(document)).rstrip("\n") + "\n"  # a blank line before a table

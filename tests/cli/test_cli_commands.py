@@ -211,19 +211,15 @@ def test_a_profile_announces_that_nothing_is_behind_it(tmp_path: Path) -> None:
 
 def test_a_scene_announces_what_it_leaves_out(cue: str, tmp_path: Path) -> None:
     scene = tmp_path / "short.toml"
-    scene.write_text("cue = 'cue.toml'\n[ball]\nmass = '170 g'\n[tip]\nfriction = 0.6\n")
-    left = ["ball diameter 61.5 mm", "head-on contact time 2 ms (--contact-time; about 1 ms is usual)"]
-    left += [
-        "e 0.75 (--restitution)",
-        "stroke 1 m/s (--speed)",
-        "offset b/R 0 (head on: [stroke] offset gives another)",
-    ]
-    assert as_json("end-mass", str(scene))["assumed"] == left
+    scene.write_text("game = 'kim'\ncue = 'cue.toml'\n[ball]\nmass = '170 g'\n[tip]\nfriction = 0.6\n")
+    left = ["what is left out as in Kim's stroke", "ball 61.5 mm (--ball)"]
+    left += ["head-on contact time 2 ms (--contact-time; about 1 ms is usual)", "e 0.75 (--restitution)"]
+    left += ["stroke 1 m/s (--speed)"]
+    assert as_json("end-mass", str(scene))["assumed"] == [*left, "offset b/R 0"]
     told = as_json("strike", str(scene), "--offset", "0.2", "--contact-time", "1 ms")["assumed"]
-    assert told == ["ball diameter 61.5 mm", "e 0.75 (--restitution)", "stroke 1 m/s (--speed)"]
-    words = as_json("strike", str(scene))["assumed"][-1]
-    assert words == "offset b/R 0 (head on: --offset or [stroke] offset gives another)"
-    scene.write_text("cue = 'shaft.csv'\n[stroke]\noffset = 0.1\n")
+    assert told == [*left[:2], *left[3:]]
+    assert as_json("strike", str(scene))["assumed"][-1] == "offset b/R 0 (--offset)"
+    scene.write_text("game = 'kim'\ncue = 'shaft.csv'\n[stroke]\noffset = 0.1\n")
     (tmp_path / "shaft.csv").write_text("x [mm],diameter [mm]\n0,12\n700,21\n")
     assert as_json("modes", str(scene))["assumed"][:2] == [
         "material hard maple",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -30,7 +31,7 @@ def test_numbers(tmp_path: Path) -> None:
         assert told["what"] == row.measurement.label
         assert [told[name] for name in ("computed", "spread", "pull")] == [row.computed, row.spread, row.pull]
     assert found["name"] == "a cue"
-    assert "carom ball 210 g" in found["assumed"][0]
+    assert "ball 210 g" in found["assumed"][1]
     assert found["lacking"] == cue.lacking != []
 
 
@@ -98,10 +99,10 @@ def test_without_a_scene_it_is_the_games_usual_stroke(tmp_path: Path) -> None:
         assert notes[0] == f"a usual stroke of {game or 'pool'}"
         found[game] = cue
     assert found[""].scene.ball.mass == 0.170
-    place = folder(tmp_path / "both", 'game = "pool"\n[tip]\nfriction = 0.5\n')
-    command_refuses("measured.toml: game: must be left out beside tip; got 'pool'", "compare", place)
+    both, _ = load_documented(folder(tmp_path / "both", 'game = "pool"\n[tip]\nfriction = 0.5\n'))
+    assert both.scene == replace(found[""].scene, tip=replace(found[""].scene.tip, friction=0.5))
     place = folder(tmp_path / "other", 'game = "chess"\n')
-    command_refuses("measured.toml: game: must be one of pool, carom, snooker; got 'chess'", "compare", place)
+    command_refuses("measured.toml: game: must be one of pool, carom, snooker, kim; got 'chess'", "compare", place)
 
 
 def test_the_page_has_every_row(tmp_path: Path) -> None:

@@ -91,7 +91,7 @@ FILES = {
     "good.toml": GOOD,
     "bad.toml": GOOD.replace("700 mm", "-700 mm"),
     "inn.toml": GOOD.replace("700 mm", "28 inn"),
-    "lumped.toml": "[cue]\nmass = '540 g'\nend_mass = '6 g'\n",
+    "lumped.toml": "game = 'kim'\n[cue]\nmass = '540 g'\nend_mass = '6 g'\n",
     "of_none.toml": "cue = 'none.toml'\n",
     "of_bad.toml": "cue = 'bad.toml'\n",
     "shaft.csv": CSV + "0,12\n700,21\n",

@@ -22,6 +22,7 @@ except KernelError as error:
     print(error)
 """
 SCENE = """
+game = "kim"
 cue = { mass = "540 g", end_mass = "10 g" }
 stroke = { speed = "2 m/s", offset = 0.3 }
 """

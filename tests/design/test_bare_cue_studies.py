@@ -15,7 +15,7 @@ from tests.helpers.command_line import call
 from tests.helpers.refusals import command_refuses
 from tests.helpers.sweeps import OPTIMUM, SCATTER, SCENE, STUDY, written
 
-CUE = SCENE.split("[tip]")[0].replace("[cue]\n", "").replace("cue.segments", "segments")
+CUE = SCENE.split("[tip]")[0].replace('game = "kim"\n[cue]\n', "").replace("cue.segments", "segments")
 FEW = """
 scene = "scene.toml"
 responses = ["squirt(0.3)"]
@@ -29,18 +29,22 @@ low = "11 mm"
 high = "13 mm"
 count = 3
 """
-AS_EVER = "scene.toml is a cue alone, struck with a ball of 210 g and a flat tip in contact for 2 ms, b/R 0.3; game ="
+BARE = "scene.toml is a cue alone, struck with a ball of 210 g and a flat tip in contact for 2 ms, b/R 0.3 (game)"
+USUAL = "scene.toml is a cue alone, struck with a usual stroke of pool (game)"
 
 
-def test_without_a_game_it_is_as_ever_and_said(tmp_path: Path) -> None:
-    study = written(tmp_path, FEW, scene=CUE)
+def test_of_kim_it_is_his_bare_stroke_and_without_a_game_that_of_pool(tmp_path: Path) -> None:
+    study = written(tmp_path, f'game = "kim"\n{FEW}', scene=CUE)
     cue = cf.load(tmp_path / "scene.toml")
     assert isinstance(cue, cf.Cue)
     assert load_study(study).base == cf.Scene(cue, stroke=cf.Stroke(offset=0.3))
     status, out, err = call("sweep", study)
     assert (status, err) == (0, "")
-    assert f"assumed: {AS_EVER}" in " ".join(out.split())
-    assert json.loads(call("sweep", study, "--json")[1])["assumed"][0].startswith(AS_EVER)
+    assert f"assumed: {BARE}" in " ".join(out.split())
+    assert json.loads(call("sweep", study, "--json")[1])["assumed"][0].startswith(BARE)
+    study = written(tmp_path, FEW, scene=CUE)
+    assert load_study(study).base == cf.usual_scene(cue)
+    assert f'{USUAL}; before version 0.2.0 it was Kim\'s: game = "kim"' in " ".join(call("sweep", study)[1].split())
 
 
 @pytest.mark.parametrize(("load", "text"), [(load_study, FEW), (load_scatter, SCATTER), (load_optimum, OPTIMUM)])
@@ -61,7 +65,7 @@ def test_a_design_of_such_a_sweep_is_the_strike_of_the_command(tmp_path: Path) -
     study = written(tmp_path, f'game = "pool"\n{FEW}', scene=CUE)
     status, out, _ = call("sweep", study, "--export", tmp_path / "out.csv")
     assert status == 0
-    assert "assumed: a usual stroke of pool (game)" in out
+    assert f"assumed: {USUAL}" in " ".join(out.split())
     last = (tmp_path / "out.csv").read_text(encoding="utf-8").splitlines()[2].split(",")
     cue = cf.load(tmp_path / "scene.toml")
     assert isinstance(cue, cf.Cue)
@@ -77,4 +81,4 @@ def test_a_game_is_for_a_cue_alone(tmp_path: Path) -> None:
     study = written(tmp_path, f'game = "pool"\n{STUDY}')
     command_refuses("study.toml: game: must be left out: scene.toml is a scene, which has", "sweep", study)
     study = written(tmp_path, f'game = "chess"\n{FEW}', scene=CUE)
-    command_refuses("study.toml: game: must be one of pool, carom, snooker; got 'chess'", "sweep", study)
+    command_refuses("study.toml: game: must be one of pool, carom, snooker, kim; got 'chess'", "sweep", study)

@@ -211,6 +211,6 @@ def test_the_ready_studies_have_answers(path: Path) -> None:
 
 
 def test_a_bare_cue_is_struck_at_the_default_offset(tmp_path: Path) -> None:
-    cue = SCENE.replace("cue.segments", "segments").replace("[cue]\n", "").partition("[tip]")[0]
-    found = load_study(written(tmp_path, STUDY, cue))
+    cue = SCENE.replace("cue.segments", "segments").replace('game = "kim"\n[cue]\n', "").partition("[tip]")[0]
+    found = load_study(written(tmp_path, f'game = "kim"\n{STUDY}', cue))
     assert found.base.stroke.offset == 0.3

@@ -27,7 +27,7 @@ def file(tmp_path: Path) -> Path:
 def put(file: Path, **entries: str | None) -> Path:
     """A scene with a leather tip of these entries; None leaves one out."""
     rows = [f"{name} = {value}" for name, value in (GIVEN | entries).items() if value is not None]
-    file.write_text("\n".join(["cue = 'shaft.toml'", "[[effects]]", "type = 'LeatherTip'", *rows]))
+    file.write_text("\n".join(["cue = 'shaft.toml'", "game = 'kim'", "[[effects]]", "type = 'LeatherTip'", *rows]))
     return file
 
 

@@ -187,6 +187,7 @@ def test_what_is_just_allowed() -> None:
 
 
 SCENE = """
+game = "kim"
 [[effects]]
 type = "AxialWaves"
 [[effects]]

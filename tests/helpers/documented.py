@@ -29,6 +29,7 @@ butt_diameter = "21 mm"
 material = "hard maple"
 """
 SOME = """name = "a cue"
+game = "kim"
 
 [tip]
 contact_time = "1.1 ms"

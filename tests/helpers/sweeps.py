@@ -11,6 +11,7 @@ from cuefem.io.store import Store, read_table
 from cuefem.io.study import load_study
 
 SCENE = """
+game = "kim"
 [cue]
 body_mass = "420 g"
 [[cue.segments]]

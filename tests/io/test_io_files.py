@@ -37,6 +37,7 @@ mass = "6 oz"
 radius = "1.125 in"
 
 [tip]
+restitution = 0.75
 friction = inf
 contact_time = "1.2 ms"
 
@@ -79,7 +80,9 @@ def test_scene_file_finds_its_cue_beside_it(tmp_path: Path, monkeypatch: pytest.
 
 
 def test_scene_of_a_lumped_cue(tmp_path: Path) -> None:
-    (tmp_path / "lumped.toml").write_text('[cue]\nmass = "19 oz"\nend_mass = "6 g"\ncoupling = "-3.5 1/kg"\n')
+    (tmp_path / "lumped.toml").write_text(
+        'game = "kim"\n[cue]\nmass = "19 oz"\nend_mass = "6 g"\ncoupling = "-3.5 1/kg"\n'
+    )
     assert cf.load(tmp_path / "lumped.toml") == cf.Scene(cf.LumpedCue(0.538640939375, 0.006, -3.5))
 
 

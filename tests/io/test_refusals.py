@@ -25,6 +25,7 @@ kappa = 0.9
 material = { E = "12.6 GPa", G = "840 MPa", rho = "782 kg/m^3" }
 """
 SCENE = """
+game = "kim"
 [cue]
 mass = "540 g"
 end_mass = "6 g"
@@ -103,7 +104,7 @@ CHANGES = [
         CUE,
         "[[segments]]",
         "[[segment]]",
-        "segment: must be one of the keys segments, cue, ball, tip, stroke, effects, accuracy; got segment = "
+        "segment: must be one of the keys segments, cue, ball, tip, stroke, effects, game, accuracy; got segment = "
         "[{'length': '700 mm', 'tip_diameter': '12 mm', 'butt_diam...; did you mean 'segments'?",
     ),
     (CUE, "[[segments]]", "[segments]", "segments: must be an array of tables; got {'length': '700 mm'"),
@@ -114,7 +115,12 @@ CHANGES = [
     (SCENE, "0.3", "nan", "stroke.offset: must be between -1 and 1; got nan"),
     (SCENE, '"1 ms"', '"1 mm"', 'tip.contact_time: must be a time with its unit, such as "1.2 ms"'),
     (SCENE, '"1 ms"', '"1 ms"\nstiffness = "1e5 N/m"', "tip: Tip takes contact_time (s) or stiffness (N/m)"),
-    (SCENE, "[ball]", "[bal]", "bal: must be one of the keys segments, cue, ball, tip, stroke, effects, accuracy; got"),
+    (
+        SCENE,
+        "[ball]",
+        "[bal]",
+        "bal: must be one of the keys segments, cue, ball, tip, stroke, effects, game, accuracy; got",
+    ),
     (SCENE, "[ball]", "[accuracy]\nrtol=2\n[ball]", "accuracy.rtol: must be between 0 and 1; got 2"),
     (SCENE, "[ball]", "[accuracy]\nrtl=2\n[ball]", "accuracy.rtl: must be one of the keys rtol; got rtl = 2"),
     (SCENE, "[cue]", "[cue]\ncoupling = '99 1/kg'", "cue.coupling: must be in ("),

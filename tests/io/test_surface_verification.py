@@ -166,7 +166,7 @@ def test_endings_in_capitals(tmp_path: Path, name: str) -> None:
     small = written(tmp_path / f"shaft{Path(name.lower()).suffix}", *revolved(outline_of(KIM), 16))
     loaded, path = cf.load(small), small.rename(tmp_path / name)
     assert cf.load(path, length_unit="mm") == loaded
-    (tmp_path / "SCENE.TOML").write_text(f"cue = '{name}'\n")
+    (tmp_path / "SCENE.TOML").write_text(f"game = 'kim'\ncue = '{name}'\n")
     assert cf.load(tmp_path / "SCENE.TOML").cue == loaded
     assert "material hard maple" in call("convert", path, tmp_path / "CUE.VTU")[1]
     assert cf.load(tmp_path / "CUE.VTU") == loaded
@@ -202,7 +202,7 @@ def test_the_reference_surface_is_its_drawing() -> None:
 
 def test_a_scene_names_a_surface(tmp_path: Path) -> None:
     written(tmp_path / "shaft.stl", *revolved(outline_of(KIM), 16))
-    (tmp_path / "scene.toml").write_text('cue = "shaft.stl"\n')
+    (tmp_path / "scene.toml").write_text('game = "kim"\ncue = "shaft.stl"\n')
     assert cf.load(tmp_path / "scene.toml").cue == cf.load(tmp_path / "shaft.stl")
 
 

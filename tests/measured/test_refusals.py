@@ -65,7 +65,7 @@ FILES = {
     "unknown": ('[[unknowns]]\nname = "bor"\n', "unknowns[0].name: must be one of E, G, rho, bore"),
     "prior": ('[[unknowns]]\nname = "bore"\nlow = 6\nhigh = 7\n', "unknowns[0].low: needs a unit"),
     "closed": (
-        '[tip]\nfriction = 0.6\n[[unknowns]]\nname = "dome"\nspread = 0.1\n',
+        'game = "kim"\n[tip]\nfriction = 0.6\n[[unknowns]]\nname = "dome"\nspread = 0.1\n',
         "unknowns must be of this cue; got 'dome'",
     ),
     "lumped": (
@@ -108,7 +108,9 @@ def test_folders(tmp_path: Path) -> None:
     empty.mkdir()
     command_refuses("must hold the shaft's drawing, cue.toml or cue.csv; got none", "compare", empty)
     untouched(tmp_path, "cannot be made: File exists", "compare", empty, "--template")
-    scene = folder(tmp_path / "scene", SOME, f"[cue]\n{DRAWING.replace('[[segments]]', '[[cue.segments]]')}")
+    scene = folder(
+        tmp_path / "scene", SOME, f"game = 'kim'\n[cue]\n{DRAWING.replace('[[segments]]', '[[cue.segments]]')}"
+    )
     command_refuses("this file is the drawing; ball and tip stand in measured.toml", "compare", scene)
     place = folder(tmp_path / "cue")
     untouched(tmp_path, "must be left out with --json", "compare", place, "--json", "-o", tmp_path / "page.html")

@@ -131,7 +131,7 @@ def test_a_weighed_mass_holds_the_clay() -> None:
 
 def test_a_lumped_cue_has_no_tones(tmp_path: Path) -> None:
     lumped = tmp_path / "lumped.toml"
-    lumped.write_text("[cue]\nmass = '540 g'\nend_mass = '6 g'\n")
+    lumped.write_text("game = 'kim'\n[cue]\nmass = '540 g'\nend_mass = '6 g'\n")
     said = refused(tmp_path / "tap.wav", "--scene", lumped)
     assert said == f"{lumped}: must hold a cue of segments: a lumped cue has no tones"
 

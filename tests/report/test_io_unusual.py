@@ -15,6 +15,7 @@ from tests.helpers.command_line import call
 ROOT = Path(__file__).parents[2]
 FILES = sorted([*ROOT.glob("meshes/*.*"), *ROOT.glob("studies/scenes/*.toml")])
 SCENE = """
+game = "kim"
 cue = "cue.toml"
 [ball]
 radius = "28.575 mm"
@@ -143,7 +144,7 @@ def test_a_solid_rod_of_carbon_is_remarked(tmp_path: Path) -> None:
 
 
 def test_a_lumped_cue(tmp_path: Path) -> None:
-    (tmp_path / "lumped.toml").write_text('[cue]\nmass = "540 kg"\nend_mass = "6 g"\n')
+    (tmp_path / "lumped.toml").write_text('game = "kim"\n[cue]\nmass = "540 kg"\nend_mass = "6 g"\n')
     assert remarks(tmp_path / "lumped.toml") == ["mass of the whole cue 540 kg; 0.4 to 0.7 is usual"]
 
 

@@ -149,7 +149,7 @@ def test_other_commands_refuse_its_file_in_words(tmp_path: Path) -> None:
     command_refuses("striker: must be absent here: `cuefem side` takes", "strike", tmp_path / "side.toml")
     command_refuses("--position: must be 0 mm or more; got", "side", tmp_path / "side.toml", "--position", "-1 mm")
     command_refuses("SideStrike.position must be in", "side", tmp_path / "side.toml", "--position", "2 m")
-    (tmp_path / "lumped.toml").write_text('[cue]\nmass = "540 g"\nend_mass = "4 g"\n', encoding="utf-8")
+    (tmp_path / "lumped.toml").write_text('game = "kim"\n[cue]\nmass = "540 g"\nend_mass = "4 g"\n', encoding="utf-8")
     command_refuses("a lumped cue has no side", "side", tmp_path / "lumped.toml")
 
 

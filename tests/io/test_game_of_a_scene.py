@@ -1,0 +1,127 @@
+"""What a scene file leaves out is that of its game, pool's where none is named; files of before are told so."""
+
+from __future__ import annotations
+
+import json
+import re
+import warnings
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import cuefem as cf
+from cuefem.games import GAMES
+from tests.helpers.command_line import call
+from tests.helpers.refusals import command_refuses
+
+CUE = """
+body_mass = "430 g"
+segments = [
+  { length = "5 mm", tip_diameter = "12.7 mm", butt_diameter = "12.7 mm", material = "leather" },
+  { length = "700 mm", tip_diameter = "12.7 mm", butt_diameter = "21 mm", material = "hard maple" },
+]
+"""
+WHOLE = {
+    "ball": {"mass": '"165 g"', "radius": '"28 mm"'},
+    "tip": {"restitution": "0.8", "friction": "0.55"},
+    "stroke": {"speed": '"2.5 m/s"', "offset": "0.21"},
+}
+KEYS = [(part, name) for part, names in WHOLE.items() for name in names]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("scenes")
+    (place / "cue.toml").write_text(CUE, encoding="utf-8")
+    return place
+
+
+def cue_of(folder: Path) -> cf.Cue:
+    found = cf.load(folder / "cue.toml")
+    assert isinstance(found, cf.Cue)
+    return found
+
+
+def loaded(folder: Path, text: str) -> cf.Scene:
+    (folder / "scene.toml").write_text(f"{text.strip()}\n", encoding="utf-8")
+    found = cf.load(folder / "scene.toml")
+    assert isinstance(found, cf.Scene)
+    return found
+
+
+@pytest.mark.parametrize("game", GAMES)
+def test_a_cue_alone_is_struck_as_in_its_game(folder: Path, game: str) -> None:
+    assert loaded(folder, f'game = "{game}"\ncue = "cue.toml"') == cf.usual_scene(cue_of(folder), game)
+
+
+def test_of_kim_it_is_the_bare_scene(folder: Path) -> None:
+    assert loaded(folder, 'game = "kim"\ncue = "cue.toml"') == cf.Scene(cue_of(folder))
+    assert cf.usual_scene(cue_of(folder), "kim") == cf.Scene(cue_of(folder))
+
+
+@given(told=st.sets(st.sampled_from(KEYS)), effects=st.booleans(), game=st.sampled_from([*GAMES]))
+def test_what_is_told_stays_and_the_rest_is_the_games(folder: Path, told, effects, game) -> None:
+    rows = [f'game = "{game}"', 'cue = "cue.toml"', *(["effects = []"] if effects else [])]
+    for part in WHOLE:
+        inside = [f"{name} = {WHOLE[part][name]}" for other, name in sorted(told) if other == part]
+        rows += [f"[{part}]", *inside] if inside else []
+    found, usual = loaded(folder, "\n".join(rows)), cf.usual_scene(cue_of(folder), game)
+    if effects:  # without waves along the cue the tip has the whole cue's restitution
+        bounce = replace(usual.tip, restitution=GAMES[game].restitution)
+        usual = replace(usual, cue=cue_of(folder), tip=bounce, effects=())
+    values = {"mass": 0.165, "radius": 0.028, "restitution": 0.8, "friction": 0.55, "speed": 2.5, "offset": 0.21}
+    for part in WHOLE:
+        changes = {name: values[name] for other, name in told if other == part}
+        usual = replace(usual, **{part: replace(getattr(usual, part), **changes)})
+    assert found == usual
+    cf.save(found, folder / "again.toml")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert cf.load(folder / "again.toml") == found
+
+
+def test_a_tip_that_is_told_as_a_spring_takes_no_leather(folder: Path) -> None:
+    found = loaded(folder, 'game = "pool"\ncue = "cue.toml"\n[tip]\ncontact_time = "1.1 ms"')
+    assert [type(effect).__name__ for effect in found.effects] == ["AxialWaves", "GeometricStiffness"]
+    assert found.cue == cue_of(folder)
+    lumped = loaded(folder, 'game = "pool"\n[cue]\nmass = "540 g"\nend_mass = "6 g"')
+    assert lumped == cf.Scene(lumped.cue, GAMES["pool"].ball, cf.Tip(0.73, 0.7), cf.Stroke(2.0, 0.3))
+
+
+def test_who_leaves_something_out_without_a_game_is_told_what_changed(folder: Path) -> None:
+    text = 'cue = "cue.toml"\n[ball]\nmass = "165 g"\n[stroke]\nspeed = "2 m/s"\noffset = 0.2'
+    left = (
+        "leaves out ball.radius, tip.restitution, tip.friction, effects, which is pool's here, and before version 0.2.0"
+    )
+    with pytest.warns(UserWarning, match=re.escape(left)):
+        found = loaded(folder, text)
+    assert found == loaded(folder, f'game = "pool"\n{text}')
+    status, out, err = call("strike", folder / "scene.toml", "--json")
+    assert (status, err) == (0, "")
+    (folder / "before.toml").write_text(text, encoding="utf-8")
+    again = call("strike", folder / "before.toml", "--json")
+    assert (again[0], again[2].count("\n")) == (0, 1)
+    assert left in again[2]
+    assert json.loads(again[1])["models"] == json.loads(out)["models"]
+
+
+def test_the_command_says_the_same_of_a_scene_and_of_its_drawing(folder: Path) -> None:
+    loaded(folder, 'game = "pool"\ncue = "cue.toml"')
+    scene, drawing = (json.loads(call("strike", folder / name, "--json")[1]) for name in ("scene.toml", "cue.toml"))
+    assert scene["models"] == drawing["models"]
+    assert scene["assumed"][0] == "a usual stroke of pool"
+    assert "a leather tip as high as it is drawn" in scene["assumed"][2]
+
+
+def test_refusals(folder: Path) -> None:
+    for text, message in (
+        ('game = "chess"', "game: must be one of pool, carom, snooker, kim; got 'chess'"),
+        ('game = "snoker"', "did you mean 'snooker'?"),
+        ("game = 3", "game: must be one of pool, carom, snooker, kim; got 3"),
+        ("ball = 3", "ball: must be a table"),
+    ):
+        (folder / "bad.toml").write_text(f'{text}\ncue = "cue.toml"\n', encoding="utf-8")
+        command_refuses(message, "strike", folder / "bad.toml")
