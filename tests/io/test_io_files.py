@@ -112,10 +112,11 @@ def test_lathe_profile_keeps_a_bend_of_a_micrometre(tmp_path: Path) -> None:
     assert [s.butt_diameter for s in cf.load(tmp_path / "shaft.csv").segments] == [0.016501, 0.021]
 
 
-def test_material_is_for_profiles_alone(tmp_path: Path) -> None:
+def test_a_material_is_for_all_that_a_drawing_leaves_to_it(tmp_path: Path) -> None:
     (tmp_path / "kim.toml").write_text(KIM_TOML)
-    with pytest.raises(InputError, match=r"material is for \.csv, \.stl, \.ply and \.obj files alone; got 'ash'"):
-        cf.load(tmp_path / "kim.toml", material="ash")
+    found = cf.load(tmp_path / "kim.toml", material="ash")
+    assert isinstance(found, cf.Cue)
+    assert found.segments[0].material.rho == cf.material("ash").rho
 
 
 @pytest.mark.parametrize("suffix", ["vtk", "vtu"])
