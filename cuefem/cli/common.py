@@ -74,12 +74,13 @@ def blaming(file: Path, given: Collection[str] = ()) -> Iterator[None]:
 
 
 def scene_of(
-    file: Path, given: dict[str, Any], *, blow: bool = True, settled: Collection[str] = ()
+    file: Path, given: dict[str, Any], *, blow: bool = True, settled: Collection[str] = (), remarked: bool = True
 ) -> tuple[Scene, list[str]]:
     """The scene that a command computes, and what was assumed because neither file nor options say it.
 
     A cue alone gets a game's usual stroke (`cuefem.games`). blow: whether ball, tip and stroke matter to the command,
     so that what is assumed of them is told too. settled: options that have no say, for the command finds their value.
+    remarked: whether unusual numbers are told.
     """
     found = load_stroke(file, **fittings_of(given))
     said = {name for name, value in given.items() if value is not None} | {*settled}
@@ -94,7 +95,8 @@ def scene_of(
             remark(Scene(found), blow=False)
             raise
         notes += assumed_usual(found, given.get("game") or DEFAULT_GAME, said, offered=given, blow=blow)
-    remark(scene, blow=blow)
+    if remarked:
+        remark(scene, blow=blow)
     return scene, notes
 
 

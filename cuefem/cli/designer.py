@@ -10,10 +10,12 @@ from typing import Any
 
 import click
 
-from cuefem.cli.common import blaming, scene_of
-from cuefem.cli.printing import json_option, print_json
+from cuefem.cli.common import blaming, cue_options, scene_of
+from cuefem.cli.printing import print_json
+from cuefem.cli.strokes import blow_options, offset_option, option
 from cuefem.designer.design import Design
 from cuefem.designer.start import NAME, first_scene
+from cuefem.io.profile import SHAPES
 
 
 @click.command()
@@ -26,12 +28,14 @@ from cuefem.designer.start import NAME, first_scene
     help="Port of the page; 0 takes any free one.",
 )
 @click.option("--open/--no-open", "show", default=True, help="Open the page in the browser.", show_default=True)
-@json_option
-def designer(scene: Path | None, port: int, show: bool, as_json: bool) -> None:
+@cue_options
+@blow_options
+@offset_option
+def designer(scene: Path | None, port: int, show: bool, as_json: bool, **given: Any) -> None:
     """Open a page on this computer: change a cue with sliders and see its end mass and squirt at once.
 
-    SCENE is a cue or scene file, as FILE is for other commands; by default a maple pool shaft. A cue alone gets a usual
-    stroke of pool.
+    SCENE is a cue or scene file, as FILE is for other commands; by default a maple pool shaft. A cue alone gets the
+    game's usual stroke. The page asks for the weight of the rest of a profile's cue, unless --body-mass gives it.
     """
     try:
         from cuefem.designer.app import serve
@@ -43,15 +47,20 @@ def designer(scene: Path | None, port: int, show: bool, as_json: bool) -> None:
     def read(path: Path) -> Any:
         return scene_of(path, {"material": None, "body_mass": None})
 
+    weigh = False
     if scene is None:
+        for name, value in given.items():
+            if value is not None:
+                raise ValueError(f"{option(name)} must go with a SCENE, whose cue or stroke it changes; got no SCENE")
         first = Design.of(NAME, first_scene())
     else:
-        found = read(scene)
+        weigh = scene.suffix.lower() in SHAPES and given["body_mass"] is None
+        found = scene_of(scene, given, remarked=not weigh)
         with blaming(scene):
             first = Design.of(scene.name, *found)
     said: Callable[[str], None] = (lambda address: print_json({"address": address})) if as_json else click.echo
     with suppress(KeyboardInterrupt):  # Ctrl-C is how one ends it
-        serve(first, read, port=_free(port), show=show, announce=said)
+        serve(first, read, weigh=weigh, port=_free(port), show=show, announce=said)
 
 
 def _free(port: int) -> int:

@@ -20,12 +20,15 @@ from cuefem.handbook.page import page
 HOST = "127.0.0.1"
 
 
-def serve(first: Design, read: Read, *, port: int, show: bool, announce: Callable[[str], None]) -> None:
-    """Serve the page on this computer alone until it is stopped. show: open it in the browser."""
+def serve(first: Design, read: Read, *, weigh: bool, port: int, show: bool, announce: Callable[[str], None]) -> None:
+    """Serve the page on this computer alone until it is stopped. show: open it in the browser.
+
+    weigh: the page asks for the weight of the first design's cue.
+    """
 
     @ui.page("/")
     def desk() -> None:
-        Desk(first, read)
+        Desk(first, read, weigh=weigh)
 
     app.add_api_route("/guide", page, response_class=HTMLResponse)
     app.add_middleware(TrustedHostMiddleware, allowed_hosts=[HOST, "localhost"])

@@ -51,8 +51,10 @@ Read = Callable[[Path], tuple[Scene, list[str]]]
 class Desk:
     """The state of the page, its history, and what its buttons do."""
 
-    def __init__(self, first: Design, read: Read) -> None:
+    def __init__(self, first: Design, read: Read, *, weigh: bool = False) -> None:
+        """weigh: whether the page asks for the weight of the first design's cue, of which nobody has told it."""
         self.read, self.opened, self.key = read, first, key_of(first)
+        self.weigh = weigh
         self.state = State((Step(first),))
         self.wanted = first.knobs
         self.system: UnitSystem = METRIC
@@ -190,6 +192,8 @@ class Desk:
             words = await self._open_link(str(found["link"]))
             if words:
                 self.say(f"the link in the address was not opened: {words}")
+        if self.weigh and not found.get("kept") and not found.get("link"):
+            self.shape.weigh(self.design.name, self.design.scene, list(self.design.notes), self.system)
         await self.answering.moved()
 
     async def _keep(self) -> None:

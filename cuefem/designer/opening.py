@@ -20,12 +20,14 @@ from cuefem.designer.markup import Markup
 from cuefem.designer.units import UnitSystem, typed
 from cuefem.games import DEFAULT_GAME, GAMES, usual_scene
 from cuefem.io import load
+from cuefem.io.fittings import FITTINGS, fitted
 from cuefem.io.profile import DEFAULT_MATERIAL, SHAPES
 from cuefem.io.ready import PRESETS, Preset, ready_cue
 from cuefem.materials import MATERIALS, material
 from cuefem.parts import with_material
 from cuefem.scene import Scene
 
+TOLD = ("begins", "ferrule", "bore")  # of `FITTINGS`, what the page asks of a shape
 _CUE = re.compile(r"""^\s*cue\s*=\s*["']([^"'\n]+)["']""", re.MULTILINE)
 
 
@@ -78,6 +80,8 @@ class ShapeDialog:
         self.opened = opened
         self.name, self.unit = "", "g"
         self.cue: Cue | None = None
+        self.scene: Scene | None = None  # whose cue is weighed; None for a shape that is opened
+        self.notes: list[str] = []
         self.dialog = ui.dialog().props('aria-label="What the file does not say"')
         with self.dialog, ui.element("div").classes("dialog"):
             Markup("<h2>What the file does not say</h2>")
@@ -87,6 +91,10 @@ class ShapeDialog:
             self.which.props("inline dense")
             self.material = ui.select(list(MATERIALS), value=DEFAULT_MATERIAL, label="Material of the shaft")
             self.material.props("outlined dense").classes("wide-field")
+            self.told = {name: ui.input(FITTINGS[name].title).classes("wide-field") for name in TOLD}
+            for name, field in self.told.items():
+                field.props(f'outlined dense autocomplete=off placeholder="{FITTINGS[name].example}"')
+                field.tooltip(FITTINGS[name].help)
             self.game = ui.select(list(GAMES), value=DEFAULT_GAME, label="Game").classes("wide-field")
             self.game.props("outlined dense")
             self.beside = Beside(ui.html(sanitize=False))
@@ -96,7 +104,18 @@ class ShapeDialog:
 
     def ask(self, name: str, cue: Cue, system: UnitSystem) -> None:
         """Ask about a shape."""
+        self.scene = None
+        self._show(name, cue, system)
+
+    def weigh(self, name: str, scene: Scene, notes: list[str], system: UnitSystem) -> None:
+        """Ask for nothing but the weight of a scene's cue."""
+        self.scene, self.notes = scene, notes
+        self._show(name, scene.shaft, system)
+
+    def _show(self, name: str, cue: Cue, system: UnitSystem) -> None:
         self.name, self.cue, self.unit = name, cue, system.units["kg"][1]
+        for field in (self.material, self.game, *self.told.values()):
+            field.set_visibility(self.scene is None)
         sizes = (system.length(size) for size in (cue.length, cue.segments[0].tip_diameter))
         self.facts.set_content(f"<p>{escape(name)}: {' long, tip '.join(sizes)} wide. How heavy is the cue?</p>")
         self.weight.props(f'label="Weight, {self.unit}"')
@@ -111,6 +130,9 @@ class ShapeDialog:
             self.beside.say(" ".join(str(error).split()))
             return
         self.dialog.close()
+        if self.scene is not None:
+            self.opened(self.name, scene, [note for note in self.notes if "--body-mass" not in note])
+            return
         game = self.game.value
         self.opened(self.name, scene, [f"a usual stroke of {game}", f"e {GAMES[game].bounce}"])
 
@@ -121,12 +143,17 @@ class ShapeDialog:
         except ValueError as error:
             raise ValueError(f"the weight {error}") from None
         kilograms = weight * {"g": 1e-3, "oz": 28.349523125e-3}[self.unit]
-        wood = material(self.material.value)
-        cue = with_material(self.cue, material(DEFAULT_MATERIAL), wood)
+        if self.scene is not None:
+            cue = self.cue
+        else:
+            told = {name: field.value.strip() or None for name, field in self.told.items()}
+            wood = material(self.material.value)
+            cue = fitted(with_material(self.cue, material(DEFAULT_MATERIAL), wood), **told)
         rest = kilograms - (cue.shaft_mass if self.which.value == "whole" else 0.0)
         if rest < 0:
             drawn = cue.shaft_mass / kilograms * weight
             raise ValueError(
                 f"the whole cue must weigh more than what is drawn, {drawn:.4g} {self.unit}; got {weight:g}"
             )
-        return usual_scene(replace(cue, body_mass=float(f"{rest:.12g}")), self.game.value)
+        whole = replace(cue, body_mass=float(f"{rest:.12g}"))
+        return usual_scene(whole, self.game.value) if self.scene is None else replace(self.scene, cue=whole)

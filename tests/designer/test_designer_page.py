@@ -14,7 +14,7 @@ import cuefem as cf
 from cuefem.designer.start import first_scene
 from cuefem.vary import knobs_of
 from tests.helpers.command_line import call
-from tests.helpers.designer_browser import BROWSER, opened, settled, shown, turn
+from tests.helpers.designer_browser import BROWSER, opened, served, settled, shown, turn
 
 pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
 pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
@@ -225,12 +225,17 @@ def test_a_person_starts_from_nothing(browser: Any, address: str, tmp_path: Path
         page.get_by_role("button", name="Open it", exact=True).last.click()
         page.get_by_text("the whole cue must weigh more than what is drawn").wait_for()
         page.get_by_label("Weight, g").fill("19 oz")
+        page.get_by_label("Ferrule", exact=True).fill("25 mm cheese")
+        page.get_by_role("button", name="Open it", exact=True).last.click()
+        page.get_by_text("no material is called 'cheese'").wait_for()
+        page.get_by_label("Ferrule", exact=True).fill("25 mm melamine")
+        page.get_by_label("Bore", exact=True).fill("1/4 in wide, 5 in deep")
         page.get_by_role("button", name="Open it", exact=True).last.click()
         page.get_by_role("heading", level=1, name="mine.csv").wait_for()
         settled(page)
         made = cf.load(saved(page, tmp_path))
         assert made.cue.mass == pytest.approx(19 * 28.349523125e-3, rel=1e-9)
-        bare = cf.load(tmp_path / "mine.csv")
+        bare = cf.load(tmp_path / "mine.csv", ferrule="25 mm melamine", bore="1/4 in wide, 5 in deep")
         assert made == cf.usual_scene(replace(bare, body_mass=made.cue.body_mass))
         page.get_by_text("Everything in this design").click()
         page.get_by_role("group", name="Segment 1", exact=True).get_by_role("button", name="Split").click()
@@ -245,6 +250,25 @@ def test_a_person_starts_from_nothing(browser: Any, address: str, tmp_path: Path
         ready = cf.load(ROOT / "studies" / "scenes" / "pool_low_deflection.toml")
         kept = tuple(effect for effect in ready.effects if not isinstance(effect, cf.Support))
         assert cf.load(saved(page, tmp_path)) == replace(ready, effects=kept)
+
+
+def test_the_page_asks_for_the_weight_of_a_profile(browser: Any, tmp_path: Path) -> None:
+    """`cuefem designer my.csv` takes the options of `cuefem report`, and the page asks for the one that is missing."""
+    file = tmp_path / "mine.csv"
+    file.write_text("x [mm],diameter [mm]\n0,12.75\n330,13.2\n736.6,21.5\n")
+    told = ("--ferrule", "25 mm melamine", "--speed", "3 m/s", "--material", "ash")
+    (tmp_path / "desk").mkdir()
+    with served(tmp_path / "desk", file, *told) as address, opened(browser, address) as page:
+        page.get_by_label("Weight, g").fill("19 oz")
+        assert not page.get_by_label("Ferrule", exact=True).is_visible()  # that is told already
+        page.get_by_role("button", name="Open it", exact=True).last.click()
+        page.get_by_label("Weight, g").wait_for(state="hidden")
+        settled(page)
+        made = cf.load(saved(page, tmp_path))
+        assert made.cue.mass == pytest.approx(19 * 28.349523125e-3, rel=1e-9)
+        assert made.stroke.speed == 3
+        bare = cf.load(file, ferrule="25 mm melamine", material="ash")
+        assert made.cue == replace(bare, body_mass=made.cue.body_mass)
 
 
 SENT = """async ([url, name, text]) => {
