@@ -534,7 +534,6 @@ PLACES: dict[str, Place] = {
         Place(
             *("restitution", "Bounce of the tip, e", "tip.restitution"),
             group="Tip",
-            label="Bounce of the tip, e (0.63 is a cue's 0.73)",
             range=Range("", 1.0, 0.5, 0.95, 0.01, 0, 1),
             option="E",
             help="Coefficient of restitution of the tip alone, in [0, 1]; a cue's 0.73 is about 0.6 of its tip's.",

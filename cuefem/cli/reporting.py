@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from cuefem.cli.strokes import blow_options, offset_option
 from cuefem.io import InputError, load_accuracy, save_page
 from cuefem.report import report_record, report_sheets
 from cuefem.report.unusual import unusual
+from cuefem.results.records import Record, Sheet
 
 
 @click.command()
@@ -25,9 +27,19 @@ def report(file: Path, output: Path | None, **given: Any) -> None:
     """Show modes, end masses, squirt and pivot length against offset, as tables or as a page with figures."""
 
     if output is None:
-        show(file, given, report_record, report_sheets)
+        show(file, given, report_record, partial(_sheets, file))
     else:
         _write_page(file, output, given)
+
+
+def _sheets(file: Path, record: Record, about: Record) -> list[Sheet | str]:
+    """The tables, and at their end what one asks next."""
+    sheets = report_sheets(record, about)
+    return (
+        [*sheets, "", f"What would change it: cuefem improve {file}, with the same options"]
+        if "verdict" in record
+        else sheets
+    )
 
 
 def _write_page(file: Path, output: Path, given: dict[str, Any]) -> None:

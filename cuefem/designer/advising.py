@@ -12,6 +12,7 @@ from cuefem.design.advice import advice_record
 from cuefem.designer.computing import FAILURES, computed
 from cuefem.designer.controls import Beside, button
 from cuefem.designer.markup import Markup
+from cuefem.designer.units import UnitSystem
 from cuefem.report.advice import advice_sheet
 from cuefem.results.records import Record
 from cuefem.scene import Scene
@@ -21,10 +22,14 @@ Edit = Callable[[Callable[[Scene], Scene], str], str]
 
 
 class AdviceSide:
-    """The changes a maker can make. scene: tells the scene in work. edit: changes it, and returns what is wrong."""
+    """The changes a maker can make.
 
-    def __init__(self, scene: Callable[[], Scene], edit: Edit) -> None:
-        self.scene, self.edit = scene, edit
+    scene: tells the scene in work. units: those in use. edit: changes the scene, and returns what is wrong.
+    """
+
+    def __init__(self, scene: Callable[[], Scene], units: Callable[[], UnitSystem], edit: Edit) -> None:
+        self.scene, self.units, self.edit = scene, units, edit
+        self.record: Record | None = None
         self.of: Scene | None = None
         with ui.element("section").classes("advice"):
             Markup("<h2>What would change it</h2>")
@@ -52,10 +57,15 @@ class AdviceSide:
             self.ask.enable()
         self.beside.say("")
         self.of = scene
-        self._fill(record)
+        self.record = record
+        self.fill()
         self.show()
 
-    def _fill(self, record: Record) -> None:
+    def fill(self) -> None:
+        """The table in the units in use, if there is one."""
+        record = self.record
+        if record is None:
+            return
         found = advice_sheet(record)
         self.said.set_content("".join(f"<p>{escape(note)}</p>" for note in found.notes))
         self.rows.clear()
@@ -70,7 +80,7 @@ class AdviceSide:
                             made = button("Try", partial(self._take, row))
                             made.props(f'aria-label="try: {escape(row["change"])}"')
                         for i, text in enumerate(cells):
-                            self._cell("td", text, left=i in found.texts)
+                            self._cell("td", self.units().said(text), left=i in found.texts)
 
     def _cell(self, tag: str, text: str, *, left: bool) -> None:
         with ui.element(tag).classes("text" if left else ""):

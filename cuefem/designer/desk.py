@@ -109,7 +109,7 @@ class Desk:
         with self.results.above_table:
             self.pins = PinnedList(self._rename, self._work_on, self._compare_with, self._unpin, self._export)
         with self.results.below_verdict:
-            self.advice = AdviceSide(lambda: self.design.scene, self.edit)
+            self.advice = AdviceSide(lambda: self.design.scene, lambda: self.system, self.edit)
         with self.results.below_cue:
             self.sheet = DrawingSheet(self.edit)
             self.tap = TapSide(self.receiver.address, lambda: self.design.scene, self.edit)
@@ -301,6 +301,7 @@ class Desk:
             self.client.run_javascript(f"cuefem.remember({json.dumps(event.value)})")
             self._show_design()
             self._show_all()
+            self.advice.fill()
 
     # --- designs to compare with -----------------------------------------------------------------------------------
 

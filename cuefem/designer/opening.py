@@ -93,7 +93,7 @@ class ShapeDialog:
             self.material.props("outlined dense").classes("wide-field")
             self.told = {name: ui.input(FITTINGS[name].title).classes("wide-field") for name in TOLD}
             for name, field in self.told.items():
-                field.props(f'outlined dense autocomplete=off placeholder="{FITTINGS[name].example}"')
+                field.props(f'outlined dense stack-label autocomplete=off placeholder="{FITTINGS[name].example}"')
                 field.tooltip(FITTINGS[name].help)
             self.game = ui.select(list(GAMES), value=DEFAULT_GAME, label="Game").classes("wide-field")
             self.game.props("outlined dense")

@@ -9,6 +9,7 @@ from typing import Any
 
 from cuefem.cue import Material
 from cuefem.designer.units import METRIC, UnitSystem
+from cuefem.games import GAMES
 from cuefem.materials import MATERIALS
 from cuefem.report.drawings import material_name
 from cuefem.scene import Scene
@@ -91,9 +92,17 @@ def sliders(scene: Scene, system: UnitSystem = METRIC) -> tuple[Slider, ...]:
 def _slider(place: Place, scene: Scene, system: UnitSystem) -> Slider:
     cue = scene.shaft
     x = place.at(cue) if place.at else 0.0
-    label = place.title.format(exact=system.length(x))
+    label = place.title.format(exact=system.length(x)) + (_raised(scene) if place.key == "restitution" else "")
     unit, scale, *reach = place.reach(cue)  # type: ignore[misc]
     return _in_system(replace(Slider(place.key, label, unit, scale, *reach), hint=place.hint), system)
+
+
+def _raised(scene: Scene) -> str:
+    """What the tip's bounce of the game whose ball this is makes of a whole cue's; "" where nothing raises it."""
+    game = next((game for game in GAMES.values() if game.ball == scene.ball), None)
+    if game is None or not {*game.effects} <= {*scene.effects}:
+        return ""
+    return f" ({game.tip_restitution:.2f} is a cue's {game.restitution:g})"
 
 
 STEPS_IN_INCHES = {0.05: 0.002, 0.1: 0.005, 0.5: 0.02, 1: 0.05, 5: 0.2}  # of a step in mm, in; of one in g, oz

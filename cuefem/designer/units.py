@@ -38,13 +38,14 @@ METRIC = UnitSystem("mm, g", TRADE)
 INCHES = UnitSystem("in, oz", IMPERIAL)
 SYSTEMS = {system.name: system for system in (METRIC, INCHES)}
 
-_METRIC = re.compile(r"(?<![\w.])([0-9]+(?:\.[0-9]+)?)( to ([0-9]+(?:\.[0-9]+)?))? (mm|g)(?![\w/])")
+_METRIC = re.compile(r"(?<![\w.])([0-9]+(?:\.[0-9]+)?)(?:( to | → )([0-9]+(?:\.[0-9]+)?))?([ \u00a0])(mm|g)(?![\w/])")
 
 
 def _in_inches(found: re.Match[str]) -> str:
-    per, unit = {"mm": (MM_PER_INCH, "in"), "g": (GRAMS_PER_OUNCE, "oz")}[found[4]]
-    values = [significant(float(text) / per) for text in (found[1], found[3]) if text]
-    return f"{' to '.join(values)} {unit}"
+    first, between, last, space, metric = found.groups()
+    per, unit = {"mm": (MM_PER_INCH, "in"), "g": (GRAMS_PER_OUNCE, "oz")}[metric]
+    values = [significant(float(text) / per) for text in (first, last) if text]
+    return f"{(between or '').join(values)}{space}{unit}"
 
 
 _NUMBER = r"[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+"

@@ -54,9 +54,11 @@ FITTINGS = {
         "FERRULE",
         "Ferrule",
         f'Put on the front of the shaft: "{FERRULE}", with a wooden tenon; add "tenon 8 mm" or "no tenon" for another.',
-        FERRULE,
+        f"none; or such as {FERRULE}",
     ),
-    "bore": Fitting("BORE", "Bore", f'Drilled behind the ferrule\'s tenon, or from the front: "{BORE}".', BORE),
+    "bore": Fitting(
+        "BORE", "Bore", f'Drilled behind the ferrule\'s tenon, or from the front: "{BORE}".', f"none; or such as {BORE}"
+    ),
 }
 
 

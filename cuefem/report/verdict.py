@@ -34,6 +34,12 @@ def than_words(difference: float) -> str:
     return f"{100 * abs(difference):.0f} % {'less' if difference < 0 else 'more'}"
 
 
+def beside_words(difference: float, other: str) -> str:
+    """A relative difference and of what it is: "17 % less than plain maple"."""
+    words = than_words(difference)
+    return f"{words} {'as' if abs(difference) < SAME else 'than'} {other}"
+
+
 def standing(record: Record) -> list[str]:
     """Where the squirt stands among the ready cues, in sentences; none without one to compare with."""
     among = record["among"]
@@ -48,7 +54,11 @@ def standing(record: Record) -> list[str]:
         said = f"{than_words(own['difference'])} squirt than a {first} shaft, {sure}."
     ratios = {name: among[name]["squirt"] / among[first]["squirt"] - 1 for name in others}
     rest = [f"the {name} one has {than_words(ratio)}" for name, ratio in ratios.items()]
-    return [said, f"Of the ready cues (meshes/), struck the same way, {listed(rest)} than {first}."] if rest else [said]
+    return (
+        [said, f"Of the ready pool cues (meshes/), struck the same way, {listed(rest)} than {first}."]
+        if rest
+        else [said]
+    )
 
 
 def band_line(record: Record) -> str:
@@ -81,7 +91,7 @@ class ScaleRow(NamedTuple):
 
 
 def scale(record: Record) -> list[ScaleRow]:
-    """The cues by their squirt, the least first, with the band of one's own."""
+    """The cues by their squirt, the least first, with the band of one's own; per cent are of the first ready cue's."""
     mine, error = abs(record["squirt"]), record["squirt_error"]
     others = {name: abs(beside["squirt"]) for name, beside in record["among"].items()}
     most = 1.05 * max([mine + error, *others.values()]) or 1.0
@@ -91,8 +101,15 @@ def scale(record: Record) -> list[ScaleRow]:
         places = (100 * each / most for each in (squirt, max(0.0, squirt - band), squirt + band))
         return ScaleRow(name, words, beside, bool(band), *places)
 
+    first = next(iter(others), "")
     rows = [
-        row(name, squirt, 0.0, _rounded(squirt, text), f"yours has {than_words(record['among'][name]['difference'])}")
+        row(
+            name,
+            squirt,
+            0.0,
+            _rounded(squirt, text),
+            "" if name == first else beside_words(squirt / others[first] - 1, first),
+        )
         for name, squirt in others.items()
     ]
     return sorted([*rows, row("yours", mine, error, text, f"give or take {off}")], key=lambda each: each.at)
@@ -126,7 +143,7 @@ def verdict_things(record: Record) -> list[Sheet | str]:
     rows = tuple((row.name, row.text, _bar(row), row.beside) for row in found)
     own = {i: "bold" for i, row in enumerate(found) if row.own}
     head = ("cue", "squirt", "less to more squirt", "")
-    table = Sheet("Among ready cues, by the same stroke", head, rows, (band_line(record),), (0, 2, 3), own)
+    table = Sheet("Among ready pool cues, by the same stroke", head, rows, (band_line(record),), (0, 2, 3), own)
     return [headline(record), *standing(record), "", table]
 
 

@@ -15,6 +15,7 @@ import cuefem as cf
 from cuefem.cli.common import scene_of
 from cuefem.designer.sliders import choices, sliders, without
 from cuefem.designer.start import first_cue, first_scene
+from cuefem.games import GAMES
 from cuefem.materials import MATERIALS
 from cuefem.parts import outer_diameter, taper_position
 from cuefem.vary import FERRULES, SHAFTS, knobs_of, turned
@@ -218,3 +219,14 @@ def test_half_an_inch_is_saved_as_such() -> None:
 
     tip = sliders(first_scene(), INCHES)[0]
     assert tip.turned(knobs_of(first_scene()), 0.5)["tip_diameter"] == 0.0127
+
+
+@pytest.mark.parametrize("game", GAMES)
+def test_the_bounce_is_labelled_with_its_own_game(game: str) -> None:
+    """What a tip by itself needs for a cue's 0.73 is another number in each game; without waves none stands."""
+    scene = cf.usual_scene(first_cue(), game)
+    (label,) = (slider.label for slider in sliders(scene) if slider.knob == "restitution")
+    assert label == f"Bounce of the tip, e ({GAMES[game].tip_restitution:.2f} is a cue's 0.73)"
+    still = replace(scene, effects=tuple(effect for effect in scene.effects if not isinstance(effect, cf.AxialWaves)))
+    (label,) = (slider.label for slider in sliders(still) if slider.knob == "restitution")
+    assert label == "Bounce of the tip, e"

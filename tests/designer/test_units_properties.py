@@ -88,3 +88,18 @@ def test_sentences_are_said_in_inches() -> None:
     )
     assert INCHES.said(said) == expected
     assert METRIC.said(said) is said
+
+
+@pytest.mark.parametrize(
+    ("metric", "imperial"),
+    [
+        ("bore wider, 6.35 → 12.7 mm", "bore wider, 0.2500 → 0.5000 in"),
+        ("a bore, 6.35 mm wide and 127 mm deep", "a bore, 0.2500 in wide and 5.000 in deep"),
+        ("−2.835\u00a0g", "−0.1000\u00a0oz"),
+        ("5.8 to 14 g", "0.2046 to 0.4938 oz"),
+        ("squirt 1.8°, 12.9 Hz", "squirt 1.8°, 12.9 Hz"),
+    ],
+)
+def test_changes_are_told_in_the_units_in_use(metric: str, imperial: str) -> None:
+    assert INCHES.said(metric) == imperial
+    assert METRIC.said(metric) == metric

@@ -95,6 +95,17 @@ def test_the_scale_is_in_order_and_within_its_ends() -> None:
     assert [row.name for row in rows if row.own] == ["yours"]
 
 
+def test_all_per_cent_are_of_one_cue() -> None:
+    """The scale and the sentences compare every cue with plain maple, and say that the cues are pool's."""
+    among = RECORD["among"]
+    for row in scale(RECORD):
+        if row.name in ("low deflection", "carbon"):
+            less = 1 - among[row.name]["squirt"] / among["plain maple"]["squirt"]
+            assert row.beside == f"{100 * less:.0f} % less than plain maple"
+    assert [row.beside for row in scale(RECORD) if row.name == "plain maple"] == [""]
+    assert "ready pool cues" in standing(RECORD)[1]
+
+
 @pytest.mark.parametrize(
     ("squirt", "error", "words"), [(1.847, 0.31, "1.8°"), (0.4, 0.042, "0.40°"), (12.3, 2.2, "12°")]
 )
@@ -111,13 +122,15 @@ def test_terminal_json_page_and_designer_say_the_same() -> None:
     assert headline(RECORD) in said
     assert all(line in said for line in standing(RECORD))
     assert out.index("give or take") < out.index("Bending modes")
+    assert said.endswith(f"What would change it: cuefem improve {path}, with the same options")
     found = json.loads(call("report", path, "--json")[1])["verdict"]
     assert found["squirt"] == pytest.approx(RECORD["squirt"], rel=1e-12)
     assert found["band"] == pytest.approx(RECORD["band"], rel=1e-9)
     squirt, error = squirt_words(RECORD)
     done = completed(answers(SCENE))
     for markup in (page("x", SCENE), verdict_markup(done)):
-        assert f"<b>{squirt}</b> <i>give or take {error}</i>" in markup
+        plain = re.sub(r"</?button[^>]*>", "", markup)  # a word of the glossary
+        assert f"<b>{squirt}</b> <i>give or take {error}</i>" in plain
         assert len(re.findall('class="spot"', markup)) == len(SCALE) + 1
     assert f"give or take {error}" in key_markup(done, None)
 
