@@ -1,5 +1,5 @@
-"""What the studies of the contact claim: energy.py, dome.py, bridge.py, effects.py, leather_release.py and
-side_strike.py."""
+"""What the studies of the contact claim: energy.py, dome.py, bridge.py, effects.py, leather_release.py,
+left_out.py and side_strike.py."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from cuefem import AxialWaves, Effect, Resolution, StickLimit, Tip, TipDome, reb
 from cuefem.endmass.drives import small_offset_slope
 from cuefem.tip_modes import tip_modes_of
 from studies import pages, strokes
-from studies.contact import bridge, dome, effects, energy, leather_release, side_strike
+from studies.contact import bridge, dome, effects, energy, leather_release, left_out, side_strike
 from tests.helpers.half_order import spring_exact
 from tests.helpers.study_tables import after, row
 
@@ -211,3 +211,16 @@ def test_the_sphere_touches_several_times():
     assert len(touches) > 2
     assert free < first < wall
     assert all(1e-5 < duration < 2e-3 for _, duration in touches)
+
+
+def test_what_the_tip_leaves_out_is_worth_a_few_per_cent() -> None:
+    """Small rows of left_out.md, made again; the account of energies closes with the coupling."""
+    psi, change, left = left_out.coupled(0.375, 3e-3)
+    assert f"{psi:.3f}: {100 * change:+.1f}" in left_out.STUDY.committed
+    assert 0.0 < change < 0.02
+    assert left < 1e-8
+    assert left_out.block(0.15) == pytest.approx(1.19, abs=0.005)
+    assert f"{100 * left_out.stiffened(2.0, 0.187):+.1f}" in left_out.STUDY.committed
+    offset, step = left_out.rim_step(2.0)
+    rim = after(left_out.STUDY.committed, "## The rim")
+    assert row(rim, "2") == ["2", f"{offset:.3f}", f"{100 * step:+.1f}"]
