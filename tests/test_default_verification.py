@@ -42,6 +42,7 @@ def test_a_brass_tip_says_what_it_rings_by() -> None:
     assert 0.01 < spread.error < 0.1
     assert spread.lowest <= spread.end_mass * (1 - spread.error)
     assert spread.highest >= spread.end_mass * (1 + spread.error)
+    assert 0.8 * spread.end_mass < spread.lowest < spread.highest < 1.2 * spread.end_mass
     wood = end_mass_spreads(scene(kim(), 1.3e-3))("stick")
     assert wood.error is not None
     assert wood.error < 5e-3
