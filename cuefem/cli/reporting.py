@@ -8,6 +8,7 @@ from typing import Any
 
 import click
 
+import cuefem.report
 from cuefem.cli.common import blaming, file_options, scene_of, show
 from cuefem.cli.printing import page_option
 from cuefem.cli.progress import followed
@@ -16,6 +17,7 @@ from cuefem.io import InputError, load_accuracy, save_page
 from cuefem.report import report_record, report_sheets
 from cuefem.report.unusual import unusual
 from cuefem.results.records import Record, Sheet
+from cuefem.scene import Scene
 
 
 @click.command()
@@ -23,13 +25,23 @@ from cuefem.results.records import Record, Sheet
 @blow_options
 @offset_option
 @page_option
-def report(file: Path, output: Path | None, **given: Any) -> None:
+@click.option(
+    "--check",
+    is_flag=True,
+    help="Say also how far beam theory is off for this shaft, which takes some seconds (see `cuefem check`).",
+)
+def report(file: Path, output: Path | None, check: bool, **given: Any) -> None:
     """Show modes, end masses, squirt and pivot length against offset, as tables or as a page with figures."""
 
+    def results(scene: Scene) -> Record:
+        found = report_record(scene)
+        checked = check and "no_contact" not in found
+        return found | ({"model_error": _model_error(scene)} if checked else {})
+
     if output is None:
-        show(file, given, report_record, partial(_sheets, file))
+        show(file, given, results, partial(_sheets, file))
     else:
-        _write_page(file, output, given)
+        _write_page(file, output, given, check=check)
 
 
 def _sheets(file: Path, record: Record, about: Record) -> list[Sheet | str]:
@@ -42,13 +54,19 @@ def _sheets(file: Path, record: Record, about: Record) -> list[Sheet | str]:
     )
 
 
-def _write_page(file: Path, output: Path, given: dict[str, Any]) -> None:
+def _model_error(scene: Scene) -> Record:
+    return cuefem.report.model_error_record(scene, followed)  # loads scikit-fem, which other reports need not
+
+
+def _write_page(file: Path, output: Path, given: dict[str, Any], *, check: bool) -> None:
     from cuefem.report.page import page  # templates and charts take 0.1 s, which tables need not pay
 
     if given["as_json"]:
         raise InputError(output, "--output", "must be left out with --json: a page is no JSON")
     scene, notes = scene_of(file, given)
     with blaming(file, given):
-        text = page(file.name, scene, rtol=load_accuracy(file), notes=notes, remarks=unusual(scene), track=followed)
+        trust = (_model_error(scene)["sentence"],) if check else ()
+        asked: dict[str, Any] = {"rtol": load_accuracy(file), "notes": notes, "remarks": unusual(scene), "trust": trust}
+        text = page(file.name, scene, track=followed, **asked)
     save_page(text, output)
     click.echo(f"wrote {output}")

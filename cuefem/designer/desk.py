@@ -16,6 +16,7 @@ from nicegui import background_tasks, ui
 
 from cuefem.designer.advising import AdviceSide
 from cuefem.designer.answering import Answering
+from cuefem.designer.checking import CheckSide
 from cuefem.designer.computing import FAILURES, computed
 from cuefem.designer.controls import ChoiceField, NumberField, button
 from cuefem.designer.design import Design, State, Step
@@ -109,6 +110,7 @@ class Desk:
         with self.results.above_table:
             self.pins = PinnedList(self._rename, self._work_on, self._compare_with, self._unpin, self._export)
         with self.results.below_verdict:
+            self.check = CheckSide(lambda: self.design.scene)
             self.advice = AdviceSide(lambda: self.design.scene, lambda: self.system, self.edit)
         with self.results.below_cue:
             self.sheet = DrawingSheet(self.edit)
@@ -376,6 +378,7 @@ class Desk:
             field.agree()
         self._show_ways()
         self.sheet.show(self.design.scene, self.system)
+        self.check.show()
         self.advice.show()
 
     def pictures(self) -> Iterator[None]:

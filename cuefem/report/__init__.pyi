@@ -5,6 +5,7 @@ from .effects import DEFAULT_RTOL, effects_record, effects_sheet
 from .end_mass import end_mass_record, end_mass_sheet
 from .everything import report_record, report_sheets
 from .materials import materials_record, materials_sheet
+from .model_error import model_error_record
 from .modes import modes_record, modes_sheet
 from .record import cue_record
 from .squirt import squirt_record, squirt_sheets
@@ -21,6 +22,7 @@ __all__ = [
     "end_mass_sheet",
     "materials_record",
     "materials_sheet",
+    "model_error_record",
     "modes_record",
     "modes_sheet",
     "report_record",

@@ -48,6 +48,7 @@ def report_sheets(record: Record, scene: Record) -> list[Sheet | str]:
         return [*shown, f"no end mass and no squirt: {record['no_contact']}"]
     first: list[Sheet | str] = [MISCUE, ""] if record["grip"] in MISSED else []
     first += verdict_things(record["verdict"])
+    first += [record["model_error"]["sentence"], ""] if "model_error" in record else []
     title = f"The cue, and its stroke at offset b/R = {scene['stroke']['offset']:g}"
     numbers = values_sheet(title, value_rows(record["numbers"]), assumptions(scene))
     return [

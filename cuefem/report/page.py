@@ -87,11 +87,13 @@ def page(
     rtol: float | None = None,
     notes: Sequence[str] = (),
     remarks: Sequence[str] = (),
+    trust: Sequence[str] = (),
     track: Any = iter,
 ) -> str:
     """The report of a scene as HTML.
 
-    rtol: what is asked of the accuracy; notes: what was assumed; remarks: what is unusual; track: follows the stages.
+    rtol: what is asked of the accuracy; notes: what was assumed; remarks: what is unusual; trust: what was
+    computed on how far to trust it; track: follows the stages.
     """
     found: Record = {}
     rtol = DEFAULT_RTOL if rtol is None else rtol
@@ -99,7 +101,7 @@ def page(
         found[stage.name] = stage.work()
     template = environment().get_template("page.html.j2")
     asked = f"{100 * rtol:.3g} %"
-    said = {"notes": list(notes), "remarks": list(remarks)}
+    said = {"notes": list(notes), "remarks": list(remarks), "checked": list(trust)}
     return with_words(template.render(name=name, asked=asked, **said, **_context(scene, found))) + "\n"
 
 

@@ -113,3 +113,11 @@ def test_the_handbook_is_a_click_away(page: Any) -> None:
         page.get_by_role("link", name="Guide").click()
     waiting.value.get_by_role("heading", level=1, name="What squirt is").wait_for()
     waiting.value.close()
+
+
+def test_beam_theory_is_checked_on_request_as_by_the_command(page: Any, tmp_path: Path) -> None:
+    path = saved(page, "Save as .toml", tmp_path)
+    page.get_by_role("button", name="Check beam theory").click()
+    page.locator(".check", has_text="Computing: step").wait_for()
+    page.locator(".check", has_text=json.loads(call("check", path, "--json")[1])["sentence"]).wait_for()
+    assert "the design before" not in page.locator(".check").inner_text()

@@ -132,6 +132,18 @@ def test_check_says_how_far_beam_theory_is_off() -> None:
     assert answer["sentence"] == f"For this shaft beam theory is off by {100 * off:.1g} % in squirt."
 
 
+def test_the_report_says_on_request_what_check_says(tmp_path: Path) -> None:
+    asked = ("report", MESHES / "kim.toml")
+    checked, told = (json.loads(call(*words, "--json")[1]) for words in (("check", asked[1]), (*asked, "--check")))
+    assert told["model_error"] == {name: checked[name] for name in told["model_error"]}
+    assert {"rows", "sentence"} < set(told["model_error"])
+    assert checked["sentence"] in " ".join(call(*asked, "--check")[1].split())
+    for words, count in (((), 0), (("--check",), 1)):
+        assert call(*asked, *words, "-o", tmp_path / "page.html")[0] == 0
+        assert (tmp_path / "page.html").read_text(encoding="utf-8").count(f"<p>{checked['sentence']}</p>") == count
+    assert "model_error" not in json.loads(call(*asked, "--json")[1])
+
+
 def test_check_leaves_out_what_no_solid_can_have(tmp_path: Path) -> None:
     scene = replace(SCENE, effects=(cf.AxialWaves(), cf.PointMass(0.0, 1e-3)))
     cf.save(scene, tmp_path / "scene.toml")
