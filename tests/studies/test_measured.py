@@ -12,7 +12,7 @@ import pytest
 import cuefem as cf
 from cuefem.games import GAMES
 from studies import pages, strokes
-from studies.measured import leather_tip, measured, measured_shafts, pool, tap, tap_refusals, tap_sounds
+from studies.measured import added_mass, leather_tip, measured, measured_shafts, pool, tap, tap_refusals, tap_sounds
 from tests.helpers.study_tables import rows
 
 BOTH, MODERN = "dome + shear", pool.MODERN
@@ -145,3 +145,15 @@ def test_honest_taps_are_believed() -> None:
     refused = dict(re.findall(r"^\| (honest|hummed) \| (\d+) of", page, flags=re.MULTILINE))
     assert int(refused["honest"]) <= 0.05 * tap_refusals.HONEST
     assert int(refused["hummed"]) <= 0.2 * tap_refusals.HUMMED
+
+
+# added_mass
+
+
+def test_a_mass_on_a_stiff_spring_is_one_that_moves_with_the_shaft() -> None:
+    """And the closer the stiffer the spring: what is left of the modes falls like 1/k."""
+    rigid = added_mass.sprung_ratio(math.inf, 3)
+    misses = [abs(added_mass.sprung_ratio(k, 3) / rigid - 1) for k in (1e6, 1e8, 1e12)]
+    assert misses[0] > misses[1] > misses[2]
+    assert misses[2] < 1e-3
+    assert added_mass.sprung_ratio(1.0, 3) == pytest.approx(1.0, abs=0.03)  # a mass along the axis alone
