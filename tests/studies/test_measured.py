@@ -151,9 +151,9 @@ def test_honest_taps_are_believed() -> None:
 
 
 def test_a_mass_on_a_stiff_spring_is_one_that_moves_with_the_shaft() -> None:
-    """And the closer the stiffer the spring: what is left of the modes falls like 1/k."""
+    """To the thousandth that 100 modes leave out; a soft spring leaves what the mass does along the axis."""
     rigid = added_mass.sprung_ratio(math.inf, 3)
-    misses = [abs(added_mass.sprung_ratio(k, 3) / rigid - 1) for k in (1e6, 1e8, 1e12)]
-    assert misses[0] > misses[1] > misses[2]
-    assert misses[2] < 1e-3
+    soft, *misses = (abs(added_mass.sprung_ratio(k, 3) / rigid - 1) for k in (1e6, 1e8, 1e12))
+    assert soft > 1e-2
+    assert max(misses) < 1e-3
     assert added_mass.sprung_ratio(1.0, 3) == pytest.approx(1.0, abs=0.03)  # a mass along the axis alone
