@@ -253,6 +253,32 @@ LEATHERS: Mapping[str, Leather] = MappingProxyType(
     }
 )
 
+_ASSUMED = "Its E was not measured and is assumed: that of {} leather"
+_KAMUI = "Kamui: layers of leather, sold as super soft, soft, medium and hard (mcbillard.de, cue tip guide). "
+# Tips that are sold, as the leather that stands for them.
+TIPS: Mapping[str, tuple[str, str]] = MappingProxyType(
+    {
+        **{f"kamui {grade}": (grade, _KAMUI + _ASSUMED.format(grade)) for grade in ("soft", "medium", "hard")},
+        "moori soft": (
+            "soft",
+            f"Moori: layers of leather, sold by hardness (mooribrand.com). {_ASSUMED.format('soft')}",
+        ),
+        "moori medium": ("medium", f"As Moori soft, harder. {_ASSUMED.format('medium')}"),
+        "elk master": ("soft", f"Tweeten's Elk Master: one layer, told to be soft. {_ASSUMED.format('soft')}"),
+        "le professional": (
+            "medium",
+            f"Tweeten's Le Professional: one layer, told to be medium to hard. {_ASSUMED.format('medium')}",
+        ),
+    }
+)
+# What names a leather in a file, an option and the designer: E, nu and rho by the leather's or the tip's name.
+LEATHER_NAMES: Mapping[str, Mapping[str, float]] = MappingProxyType(
+    {
+        name: {"E": LEATHERS[leather].E, "nu": LEATHERS[leather].nu, "rho": LEATHERS[leather].rho}
+        for name, leather in [*((name, name) for name in LEATHERS), *((name, tip[0]) for name, tip in TIPS.items())]
+    }
+)
+
 
 def material(name: str) -> Material:
     """The material of this name in `MATERIALS`, in any case; ValueError, suggesting others, if there is none."""

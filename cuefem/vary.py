@@ -17,7 +17,7 @@ from functools import cache
 from typing import Any, NamedTuple, get_args, get_type_hints
 
 from cuefem.cue import Cue, LumpedCue, Material
-from cuefem.materials import LEATHERS, MATERIALS, WOODS
+from cuefem.materials import LEATHER_NAMES, MATERIALS, WOODS
 from cuefem.materials import material as named_material
 from cuefem.parts import (
     BORED_WIDTH,
@@ -439,7 +439,6 @@ def _positions(least_end: float) -> Callable[[Cue], Range]:
 
 SHAFTS = (*WOODS, "carbon fibre")
 FERRULES = tuple(name for name in MATERIALS if name not in (*SHAFTS, "foam", "leather"))
-_OF_LEATHER = {name: {"E": leather.E, "nu": leather.nu, "rho": leather.rho} for name, leather in LEATHERS.items()}
 _LEATHER_LOW, _LEATHER_HIGH = MATERIALS["leather"].ranges["E"]
 _BEHIND = "Joint, bridge and butt"
 
@@ -492,8 +491,8 @@ PLACES: dict[str, Place] = {
             range=Range("MPa", 1e-6, 20, 500, 5, 1, 20_000),
             spread=math.log(_LEATHER_HIGH / _LEATHER_LOW) / 2,
             option="LEATHER",
-            help='Its leather: soft, medium, hard, or its E, e.g. "140 MPa".',
-            sets=_OF_LEATHER,
+            help='Its leather: soft, medium, hard, a tip of `cuefem parts`, or its E, e.g. "140 MPa".',
+            sets=LEATHER_NAMES,
         ),
         Place(
             *("tip height", "height of the tip", "leather.height"),

@@ -146,7 +146,14 @@ def test_drawings_and_scenes_load(tmp_path: Path) -> None:
             loaded = cuefem.load(path)
             assert type(loaded) is (cuefem.Scene if named else cuefem.Cue)
             kinds.append((kind, type(loaded).__name__))
-    assert sorted(kinds) == [("csv", "Cue"), ("csv", "Cue"), ("toml", "Cue"), ("toml", "Scene"), ("toml", "Scene")]
+    assert sorted(kinds) == [
+        ("csv", "Cue"),
+        ("csv", "Cue"),
+        ("toml", "Cue"),
+        ("toml", "Cue"),
+        ("toml", "Scene"),
+        ("toml", "Scene"),
+    ]
 
 
 def test_commands_exist() -> None:

@@ -41,6 +41,7 @@ COMMANDS = {
     ),
     "modes": ("cuefem.cli.tones:modes", "How the cue rings: its bending frequencies."),
     "optimize": ("cuefem.cli.optimize:optimize", "Find the best design of a STUDY (.toml) within its limits."),
+    "parts": ("cuefem.cli.known_materials:parts", "Shafts, woods, ferrules and tips by name."),
     "report": ("cuefem.cli.reporting:report", "Everything about a cue, as tables or as a page."),
     "scatter": ("cuefem.cli.scatter:scatter", "How much a design's numbers scatter, and why."),
     "schema": ("cuefem.cli.files:schema", "Print the JSON schema of cue and scene files, for editors."),

@@ -26,7 +26,7 @@ from cuefem.effects.leather_table import (
 )
 from cuefem.effects.on_cue import PointMass
 from cuefem.effects.terms import ContactTerms
-from cuefem.materials import LEATHERS
+from cuefem.materials import LEATHER_NAMES
 from cuefem.quantity import DIAMETER, Flag, Number, Quantity, check_kind, scalar
 
 if TYPE_CHECKING:
@@ -112,9 +112,7 @@ class LeatherTip(CueEffect):
     part_of_cue: ClassVar[bool] = True
     whole_tip: ClassVar[bool] = True
     excludes: ClassVar[tuple[str, ...]] = ("TipDome", "TipShear", "PowerLawTip", "RollingContact", "Elevation")
-    named: ClassVar[Mapping[str, Mapping[str, Mapping[str, float]]]] = {
-        "leather": {name: {"E": one.E, "nu": one.nu, "rho": one.rho} for name, one in LEATHERS.items()}
-    }
+    named: ClassVar[Mapping[str, Mapping[str, Mapping[str, float]]]] = {"leather": LEATHER_NAMES}
 
     height: Annotated[float, Quantity("m", "(0, inf)")]
     dome_radius: Annotated[float, Quantity("m", "(0, inf]", tuple(DOMES.items()))]

@@ -8,8 +8,7 @@ from collections.abc import Iterable, Sequence
 from decimal import Decimal
 from pathlib import Path
 
-from cuefem.io.errors import InputError, read_bytes, shown
-from cuefem.io.toml import LARGEST_TEXT
+from cuefem.io.errors import LARGEST_TEXT, InputError, read_bytes, shown
 
 LONGEST_LINE = 10_000  # letters of a line
 

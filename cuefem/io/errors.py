@@ -22,6 +22,9 @@ _KINDS = {
 __all__ = ["InputError", "faults_of", "nearest", "read_bytes", "reason", "shown", "state_of"]
 
 
+LARGEST_TEXT = 1_000_000  # bytes: five times what as many segments as there may be take
+
+
 class InputError(ValueError):
     """Input from outside that cannot be used, said in one line: ``FILE: KEY.PATH: must be in BOUND UNIT; got VALUE``.
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from functools import cache
-from importlib.resources import files
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from cuefem.cue import Cue
 from cuefem.games import GAMES, usual_scene
 from cuefem.io import load
+from cuefem.io.shelf import folder
 from cuefem.results.designs import strikes_at
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved
@@ -82,12 +82,6 @@ SCALE = {
     "low deflection": "meshes/pool_hollow.toml",
     "carbon": "meshes/carbon.toml",
 }
-
-
-def folder() -> Path:
-    """Where the ready files lie: in the package as it is installed, or in the clone."""
-    inside = Path(str(files("cuefem"))) / "ready"
-    return inside if inside.is_dir() else inside.parents[1]
 
 
 def opened(preset: Preset) -> tuple[Scene, list[str]]:

@@ -17,13 +17,19 @@ from typing import Annotated, Any
 from cuefem.cue import Cue, LumpedCue, Material
 from cuefem.effects import AxialWaves, Effect, effect_kinds
 from cuefem.games import DEFAULT_GAME, GAMES, KIM, STROKES, usual_scene
-from cuefem.io.errors import InputError, faults_of, nearest, read_bytes, shown
+from cuefem.io.errors import LARGEST_TEXT, InputError, faults_of, nearest, read_bytes, shown
+from cuefem.io.fittings import BORE, FERRULE
 from cuefem.io.schema import build, joined, keys_of, table, unknown_key
+from cuefem.io.shelf import assembled
 from cuefem.materials import material
 from cuefem.quantity import MOST_SEGMENTS, Quantity, check_fields, quantities
 from cuefem.scene import Scene, Stroke, Tip
 from cuefem.side.scene import SideStrike
 from cuefem.slips import FormerFile
+
+# The parts of which a cue is put together in the place of [[segments]], each with an example.
+EXAMPLES = {"shaft": '"conical taper"', "material": '"ash"', "ferrule": f'"{FERRULE}"', "bore": f'"{BORE}"'}
+OF_SHAFT = tuple(EXAMPLES)
 
 # Fields that effects had in earlier versions, and why they have them no more.
 FORMER = {"LeatherTip": {"partial_slip": "the patch always holds, slides and lets go ring by ring"}}
@@ -42,7 +48,6 @@ class Accuracy:
         check_fields(self)
 
 
-LARGEST_TEXT = 1_000_000  # bytes: five times what as many segments as there may be take
 DEEPEST = 20  # parts of a dotted key: the deepest that means anything, segments.material.E, has three
 _PART = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')"""
 # More parts than that in a key, for which tomllib takes the square of their number.
@@ -85,7 +90,7 @@ def _unquoted(text: str, error: str) -> str:
 def load_toml(path: Path, cue_file: Callable[[Path], Cue]) -> Cue | Scene | SideStrike:
     """The cue or scene of a TOML file; ``cue_file`` loads the cue file that a scene names."""
     found = read_tables(path)
-    if "segments" in found and "cue" not in found:
+    if {"segments", "shaft"} & {*found} and "cue" not in found:
         return _cue(found, path, "")
     if "striker" in found:
         return _side_strike(found, path, cue_file)
@@ -128,6 +133,8 @@ def _accuracy(found: Any, path: Path) -> float | None:
 
 
 def _cue(found: dict[str, Any], path: Path, key: str) -> Cue:
+    if "shaft" in found:
+        found = _of_parts(found, path, key)
     segments = found.get("segments")
     if isinstance(segments, list):
         if len(segments) > MOST_SEGMENTS:
@@ -136,6 +143,21 @@ def _cue(found: dict[str, Any], path: Path, key: str) -> Cue:
         within = joined(key, "segments")
         found = {**found, "segments": [_segment(s, path, joined(within, i)) for i, s in enumerate(segments)]}
     return build(Cue, found, file=str(path), key=key)
+
+
+def _of_parts(found: dict[str, Any], path: Path, key: str) -> dict[str, Any]:
+    """A cue's table whose shaft is one of the shelf, with its segments in the place of the parts that it names."""
+    parts = {name: found.get(name) for name in OF_SHAFT}
+    for name, value in parts.items():
+        if not isinstance(value, str | None):
+            raise InputError(path, joined(key, name), f"must be a text, such as {EXAMPLES[name]}; got {shown(value)}")
+    if "segments" in found:
+        raise InputError(path, joined(key, "segments"), "must be left out beside shaft, which draws them")
+    shaft = str(parts.pop("shaft"))
+    with faults_of(path, joined(key, "shaft")):
+        cue = assembled(shaft, load_cue, **parts)
+    rest = {name: value for name, value in found.items() if name not in OF_SHAFT}
+    return rest | {"segments": [table(segment) for segment in cue.segments]}
 
 
 def _segment(found: Any, path: Path, key: str) -> Any:
@@ -264,7 +286,7 @@ def _scene_cue(found: Any, path: Path, cue_file: Callable[[Path], Cue]) -> Cue |
             raise InputError(path, "cue", str(error)) from None
     if not isinstance(found, dict):
         raise InputError(path, "cue", f"must be a table or the path of a cue file; got {shown(found)}")
-    lumped = {"mass", "end_mass"} & set(found) and "segments" not in found
+    lumped = {"mass", "end_mass"} & set(found) and not {"segments", "shaft"} & set(found)
     return build(LumpedCue, found, file=str(path), key="cue") if lumped else _cue(found, path, "cue")
 
 
@@ -296,7 +318,7 @@ def _spelt_out(kind: type[Effect], found: dict[str, Any], path: Path, key: str) 
             if first not in found and set(found) <= {*keys_of(kind)}:  # a misspelt key is told first
                 raise InputError(path, here, f"{wanted}, or {first} be given in its place; got nothing")
             continue
-        given = found[word]
+        given = found[word].casefold() if isinstance(found[word], str) else found[word]
         if not isinstance(given, str) or given not in names:
             raise InputError(path, here, f"{wanted}; got {shown(given)}{nearest(str(given), names)}")
         if twice := [name for name in meant if name in found]:

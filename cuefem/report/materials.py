@@ -6,9 +6,11 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
-from cuefem.materials import LEATHERS, MATERIALS
+from cuefem.io.shelf import SHAFTS
+from cuefem.materials import LEATHERS, MATERIALS, TIPS, WOODS
 from cuefem.results.quantities import RESULTS, units_of, with_heading
 from cuefem.results.records import Entry, Record, Sheet, sheet
+from cuefem.vary import FERRULES
 
 
 def materials_record() -> Record:
@@ -46,6 +48,40 @@ def materials_sheet(record: Record) -> Sheet:
             for name, values in record["leathers"].items()
         ),
     )
+
+
+def parts_record() -> Record:
+    """The parts of which a cue is put together, each with its source, and how a file and an option name them."""
+    sources = {name: known.source for name, known in MATERIALS.items()}
+    return {
+        "shafts": {name: known.source for name, known in SHAFTS.items()},
+        "woods": {name: sources[name] for name in WOODS},
+        "ferrules": {name: sources[name] for name in FERRULES},
+        "tips": {name: known.source for name, known in LEATHERS.items()} | {name: tip[1] for name, tip in TIPS.items()},
+        "named": PART_NAMES,
+    }
+
+
+PART_NAMES = {
+    "shafts": 'shaft = "conical taper" at the top of a .toml',
+    "woods": 'material = "ash" beside it, a column material, --material "ash"',
+    "ferrules": 'ferrule = "25 mm melamine" beside it, a column ferrule, --ferrule "25 mm melamine"',
+    "tips": 'leather = "kamui soft" of a LeatherTip, --leather "kamui soft"',
+}
+
+
+def parts_sheets(record: Record) -> list[Sheet]:
+    """A table of parts and their sources for each kind of part."""
+    return [
+        sheet(
+            kind.capitalize(),
+            {"name": "{name}", "source": "{source}"},
+            [{"name": name, "source": source} for name, source in record[kind].items()],
+            how,
+            texts=(0, 1),
+        )
+        for kind, how in record["named"].items()
+    ]
 
 
 def _with_range(name: str) -> Entry:

@@ -11,10 +11,11 @@ import pytest
 import cuefem as cf
 from cuefem.effects.leather import DOMES
 from cuefem.io.export import json_schema
-from cuefem.materials import LEATHERS
+from cuefem.materials import LEATHER_NAMES, LEATHERS
 from tests.helpers.leather_scenes import SHAFT
 from tests.helpers.refusals import refuses
 
+NAMES = ", ".join(LEATHER_NAMES)
 GIVEN = {"height": '"6 mm"', "dome_radius": '"9.5 mm"', "leather": '"medium"'}
 
 
@@ -59,12 +60,12 @@ def test_a_dome_by_a_coin_a_length_or_flat(file: Path, text: str, radius: float)
 @pytest.mark.parametrize(
     ("entries", "message"),
     [
-        ({"leather": None}, "effects[0].leather: must be one of soft, medium, hard, or E be given in its place; got"),
+        ({"leather": None}, f"effects[0].leather: must be one of {NAMES}, or E be given in its place; got"),
         (
             {"leather": "'sofd'"},
-            "leather: must be one of soft, medium, hard; got 'sofd'; did you mean 'soft'?",
+            f"leather: must be one of {NAMES}; got 'sofd'; did you mean 'soft'?",
         ),
-        ({"leather": "3"}, "effects[0].leather: must be one of soft, medium, hard; got 3"),
+        ({"leather": "3"}, f"effects[0].leather: must be one of {NAMES}; got 3"),
         ({"E": "'1 MPa'"}, "effects[0].E: must be left out beside leather, which gives it"),
         ({"nu": "0.3"}, "effects[0].nu: must be left out beside leather, which gives it"),
         ({"leather": None, "lether": "'soft'"}, "got lether = 'soft'; did you mean 'leather'?"),
@@ -88,7 +89,7 @@ def test_rolls_is_read_as_it_stands(file: Path) -> None:
 
 def test_the_schema_knows_the_words() -> None:
     found = json_schema()["$defs"]["LeatherTip"]
-    assert found["properties"]["leather"] == {"enum": [*LEATHERS]}
+    assert found["properties"]["leather"] == {"enum": [*LEATHER_NAMES]}
     assert found["required"] == ["type", "height", "dome_radius"]
     assert all(f'"{word}"' in found["properties"]["dome_radius"]["description"] for word in DOMES)
     json.dumps(found, allow_nan=False)

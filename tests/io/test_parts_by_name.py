@@ -1,0 +1,100 @@
+"""Cues that are put together from parts by name: the shapes, the words in every place, and what is refused."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+import cuefem as cf
+from cuefem.io.shelf import SHAFTS
+from cuefem.materials import LEATHERS, MATERIALS, TIPS
+from tests.helpers.command_line import call
+from tests.helpers.refusals import command_refuses
+
+ROOT = Path(__file__).parents[2]
+CONE = 'shaft = "conical taper"\nbody_mass = "15 oz"\n'
+
+
+def written(tmp_path: Path, text: str) -> Path:
+    path = tmp_path / "parts.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_a_cue_from_parts_is_the_csv_with_the_same_options(tmp_path: Path) -> None:
+    own = written(
+        tmp_path, f'{CONE}material = "ash"\nferrule = "melamine ferrule 25 mm"\nbore = "6 mm wide, 127 mm deep"'
+    )
+    (tmp_path / "same.csv").write_text("x [mm],diameter [mm]\n0,12.75\n730.6,21.5\n", encoding="utf-8")
+    told = {"material": "ash", "ferrule": "25 mm melamine", "bore": "6 mm wide, 127 mm deep"}
+    parts, table = cf.load(own), cf.load(tmp_path / "same.csv", **told)
+    assert parts.segments == table.segments
+    assert parts.body_mass == pytest.approx(0.42524, rel=1e-4)
+    assert parts.segments[0].core == MATERIALS["ash"].material
+
+
+@pytest.mark.parametrize("name", SHAFTS)
+def test_every_shaft_is_struck_and_names_what_is_assumed(name: str, tmp_path: Path) -> None:
+    own = written(tmp_path, f'shaft = "{name}"\nbody_mass = "15 oz"')
+    assert call("strike", own)[::2] == (0, "")
+    assert 0.01 < cf.strike(cf.usual_scene(cf.load(own))).squirt < 0.05
+    assert "assumed" in SHAFTS[name].source or "usual" in SHAFTS[name].source
+
+
+def test_a_ready_shaft_is_the_drawing_without_its_leather(tmp_path: Path) -> None:
+    ready = cf.load(ROOT / "meshes" / "pool_hollow.toml")
+    assert cf.load(written(tmp_path, 'shaft = "Low Deflection"')).segments == ready.segments[1:]
+
+
+def test_a_tip_by_its_name_in_option_and_file(tmp_path: Path) -> None:
+    own = written(tmp_path, CONE)
+    said = [call("strike", own, "--leather", tip) for tip in ("kamui soft", "Kamui Soft", "soft", "medium")]
+    assert [status for status, *_ in said] == [0] * 4
+    squirts = [re.findall(r"squirt .*", out) for _, out, _ in said]
+    assert squirts[0] == squirts[1] == squirts[2] != squirts[3]
+    scene = tmp_path / "scene.toml"
+    scene.write_text(
+        'game = "pool"\ncue = "parts.toml"\n[[effects]]\ntype = "LeatherTip"\nheight = "6 mm"\n'
+        'dome_radius = "dime"\nleather = "Kamui hard"\n',
+        encoding="utf-8",
+    )
+    assert cf.load(scene).effects[0].E == LEATHERS["hard"].E
+
+
+def test_the_list_has_every_part_with_its_source() -> None:
+    record = json.loads(call("parts", "--json")[1])
+    assert {*record["shafts"]} == {*SHAFTS}
+    assert {*record["tips"]} == {*LEATHERS, *TIPS}
+    out = " ".join(call("parts")[1].split())
+    for kind in ("shafts", "woods", "ferrules", "tips"):
+        for name, source in record[kind].items():
+            assert len(source) > 20
+            assert name in out
+    assert all("assumed" in record["tips"][name] for name in TIPS)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ('shaft = "conical tapr"', "got 'conical tapr'; did you mean 'conical taper'?"),
+        ('shaft = 3\nferrule = "25 mm melamine"', 'shaft: must be a text, such as "conical taper"; got 3'),
+        (f'{CONE}ferrule = "25 mm melamin"', "no material is called 'melamin'; nearest: melamine"),
+        (f'{CONE}material = "hard mapel"', "no material is called 'hard mapel'; nearest: hard maple"),
+        (f'{CONE}bore = "wide"', "bore must be a width and a depth"),
+        (f"{CONE}segments = []", "segments: must be left out beside shaft, which draws them"),
+        (f'{CONE}tip = "soft"', "parts.toml: tip: "),
+    ],
+)
+def test_what_is_refused(text: str, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    written(tmp_path, text)
+    monkeypatch.chdir(tmp_path)
+    command_refuses(said, "modes", "parts.toml")
+
+
+def test_an_unknown_tip_is_one_line_with_the_nearest(tmp_path: Path) -> None:
+    status, out, err = call("strike", written(tmp_path, CONE), "--leather", "kamui sofd")
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert "kamui soft" in err
