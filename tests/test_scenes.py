@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -67,6 +68,18 @@ def test_balls_are_those_of_the_game(name: str) -> None:
 )
 def test_cues_weigh_what_their_comments_say(name: str, ounces: float) -> None:
     assert scene(name).cue.mass == pytest.approx(ounces * 0.028349523125, rel=2e-3)
+
+
+def test_the_readme_of_the_drawings_has_their_squirts() -> None:
+    text = (SCENES.parents[1] / "meshes" / "README.md").read_text(encoding="utf-8")
+    told = re.findall(
+        r"([\d.]+)° \((\w+)\)", text.partition("At b/R 0.3 this gives squirts of ")[2].partition(".\n")[0]
+    )
+    assert len(told) == 5
+    for squirt, name in told:
+        cue = cf.load(SCENES.parents[1] / "meshes" / f"{name}.toml")
+        assert isinstance(cue, cf.Cue)
+        assert f"{math.degrees(cf.strike(cf.usual_scene(cue)).squirt):.2f}" == squirt
 
 
 @pytest.mark.heavy
