@@ -26,7 +26,6 @@ import numpy as np
 from cuefem import Cue, LeatherTip, PointMass, Resolution, Stroke, TipDome, TipShear
 from cuefem.beam.modes import Modes
 from cuefem.beam.tip import TipModes
-from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array
 from cuefem.tip_modes import Solved, tip_modes_of
 from studies import pages, strokes
@@ -479,14 +478,14 @@ def sprung_ratio(spring: float, inches: float, mass: float = 11e-3) -> float:
     if spring < np.inf:
         solved = Solved(light, FINE_MODES)
         tip = sprung(solved.tip, solved.modes, x, mass, spring, tip)
-    return float(np.degrees(strike_modes(scene, tip).squirt)) / unloaded()
+    return float(np.degrees(strokes.strike_modes(scene, tip).squirt)) / unloaded()
 
 
 @cache
 def unloaded() -> float:
     """Squirt of the whole stroke without a mass, with as many modes, deg."""
     scene = pool.leather_scene(strokes.cue("pool_maple"))
-    return float(np.degrees(strike_modes(scene, tip_modes_of(scene, FINE_MODES)).squirt))
+    return float(np.degrees(strokes.strike_modes(scene, tip_modes_of(scene, FINE_MODES)).squirt))
 
 
 def sprung_miss(spring: float) -> float:

@@ -173,7 +173,7 @@ def test_a_file_that_was_saved_says_all_of_it(folder: Path) -> None:
         ("strike leather.toml --contact-time 1ms", "--contact-time: must be left out beside LeatherTip, from which it"),
         ("strike shaft.toml --contact-time 1ms --dome dime", "--dome: must be left out beside --contact-time"),
         ("strike shaft.toml --dome penny", 'such as "12 mm", or "dime", "nickel", "flat"; got \'penny\''),
-        ("strike shaft.toml --leather sofd", '"soft", "medium", "hard"; got \'sofd\''),
+        ("strike shaft.toml --leather sofd", "\"le professional\"; got 'sofd'"),
         ("strike shaft.toml --restitution 2", "shaft.toml: --restitution: must be 0 to 1; got 2.0"),
         (
             "strike shaft.toml --restitution 0.05",
