@@ -49,7 +49,7 @@ def _sheets(file: Path, record: Record, about: Record) -> list[Sheet | str]:
     sheets = report_sheets(record, about)
     return (
         [*sheets, "", f"What would change it: cuefem improve {file}, with the same options"]
-        if "verdict" in record
+        if "verdict" in record and "modes" in record  # a lumped cue has nothing that a maker can change
         else sheets
     )
 

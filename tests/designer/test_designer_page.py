@@ -85,7 +85,7 @@ WRONG = {
     "empty.toml": ("", "empty.toml: must hold a cue or a scene; got an empty file"),
     "bare.toml": ("[[segments]]\nlength = 0.7\n", "segments[0].length: needs a unit"),
     "lumped.toml": (
-        '[cue]\nmass = "0.5 kg"\nend_mass = "6 g"\n',
+        'game = "kim"\n[cue]\nmass = "0.5 kg"\nend_mass = "6 g"\n',
         "Scene.cue must be a Cue of segments",
     ),
     "elsewhere.toml": ('cue = "shaft.toml"\n', "elsewhere.toml: cue: shaft.toml: cannot be read: No such file"),

@@ -127,7 +127,7 @@ class Contact:
         smooth = self.terms["exponent"] == 1 and not self.terms.get("curve")
         self.poses = int(self.turns) + len(self.slopes)  # what C depends on
         self.linear = smooth and not self.poses and self.forces == 2
-        self.tolerance = self.terms["tolerance"] / (1 if self.terms.get("rings") else 10)
+        self.tolerance = self.terms["tolerance"] / (3 if self.terms.get("rings") else 10)
         self.time = self.depth = self.angle = self.shear = self.deepest = self.height = 0.0
         self.peak, self.parted, self.last = 0.0, False, None
         self.grip, self.press, self.table, self.start = "stick", "load", "held", 0.0
