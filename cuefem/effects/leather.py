@@ -91,7 +91,8 @@ class LeatherTip(CueEffect):
 
     Limit: The give vanishes in proportion to 1/E; with a stiff leather the dome's lever is what is left.
 
-    Source: handbook: Effects; studies/leather_elasticity.py; K. L. Johnson, Contact Mechanics (1985), chapters 3 and 4.
+    Source: handbook: Effects; studies/beam/leather_elasticity.py; K. L. Johnson, Contact Mechanics (1985),
+    chapters 3 and 4.
 
     The offset b/R is the sine of the angle phi between the cue's axis and the normal of the contact. The contact lies
     r sin(phi) off the axis, or on the rim where the dome ends before that. Elastic methods take a ``diameter``, that

@@ -1,4 +1,4 @@
-"""The static give of a leather tip, from the table beside this file, which studies/leather_elasticity.py makes.
+"""The static give of a leather tip, from the table beside this file, which studies/beam/leather_elasticity.py makes.
 
 Lengths are over the tip's diameter D and moduli over Young's modulus E here. A tip is its height, its dome's curvature
 D/r (0: flat) and Poisson's ratio nu; a patch is the place of its centre, the distance from the axis over D/2, and its

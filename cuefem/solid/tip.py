@@ -100,6 +100,11 @@ class Shape:
         return np.cumsum([layer.height for layer in self.layers]) / self.height
 
     @property
+    def leather(self) -> float:
+        """Height of the leather over D, the dome included."""
+        return self.height - sum(layer.height for layer in self.layers)
+
+    @property
     def sag(self) -> float:
         """Depth of the dome, over D."""
         return float(drop(0.5, self.curvature))

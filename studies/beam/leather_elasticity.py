@@ -1,18 +1,18 @@
 """How much does a leather tip give, from its geometry? The table that cuefem's LeatherTip reads, and how good it is.
 
-A tip is a domed cylinder of linear, isotropic leather on a rigid ferrule, solved by cuefem/solid/tip.py. Two things
-are tabulated, over height, dome, Poisson's ratio and the patch's radius: the compliance along the normal and along the
-surface of a patch with Hertz's pressure anywhere on the dome, and force and depth of a ball that is pressed on it head
-on. `cuefem.effects.leather_table` holds the coordinates and reads the table. The page compares the solid with exact
-solutions, and the table with the solid at random tips. python -m studies.beam.leather_elasticity computes the table in
-twenty minutes and the page in four; with the word page only the page.
+A tip is a domed cylinder of linear, isotropic leather on a rigid ferrule, solved by cuefem/solid/tip.py, and
+cuefem/solid/tip_table.py gives one tip's part of the table. Two things are tabulated, over height, dome, Poisson's
+ratio and the patch's radius: the compliance along the normal and along the surface of a patch with Hertz's pressure
+anywhere on the dome, and force and depth of a ball that is pressed on it head on. `cuefem.effects.leather_table` holds
+the coordinates and reads the table. The page compares the solid with exact solutions, and the table with the solid at
+random tips. python -m studies.beam.leather_elasticity computes the table in twenty minutes and the page in four; with
+the word page only the page.
 """
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
-from itertools import chain
+from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -29,57 +29,24 @@ from cuefem.solid.tip import (
     fitted,
     head_on,
     loads,
-    punch,
     surfaces,
     usual,
 )
+from cuefem.solid.tip_table import HEAD_ON, SHEETS, TABLE, all_loads, gains, of_shape
 from studies import pages
 from studies.pages import table
 
 KEPT = Path(lt.__file__).with_suffix(".npz")
-OFF = usual(5, 6, 5, 36)
-# Nodes of the table, per panel for the curvature: (places, radii) of the three sheets.
-COUNTS = {"curvature": 5, "height": 7, "nu": 4, "head_on": 8, "punch": 10}
-SHEETS = {"whole": (8, 9), "cut": (8, 8), "rim": (5, 9)}
+# Nodes of the table along the axes that one tip does not have, per panel for the curvature.
+COUNTS = {"curvature": 5, "height": 7, "nu": 4}
 
 
 def shape_at(curvature: float, coordinate: float) -> Shape:
     return Shape(np.exp(coordinate) - lt.SOFTENED + lt.sag(curvature), curvature)
 
 
-def patches(sheet: str, curvature: float) -> list[list[Patch]]:
-    """Places and radii of the nodes of a sheet."""
-    count, each = SHEETS[sheet]
-    limit = lt.inner(curvature)
-    places = lt.nodes(*((limit, 1.0) if sheet == "rim" else (lt.AXIS, limit)), count)
-    return [[Patch(s, a) for a in np.exp(lt.nodes(*lt.radii(sheet, curvature, s), each))] for s in places]
-
-
 def curvatures(panel: int, count: int) -> Array:
     return 2 * np.sin(lt.nodes(*(lt.steepness(end) for end in lt.PANELS[panel : panel + 2]), count))
-
-
-def geometry(shape: Shape, where: Sequence[Patch], load: Array, nus: Array, n: dict[str, int]) -> tuple[Array, Array]:
-    """Rows of the table for one shape: the patches (nu, patch, 3) and head_on (nu, radius, 2, 3)."""
-    off = TipSolid(shape, OFF)
-    places, radii = np.array(where).T
-    straight = np.exp(lt.nodes(*lt.LOG_HEAD_ON, n["head_on"]))
-    patch = []
-    for nu in nus:
-        C = np.zeros((len(where), 2, 2))
-        for m, surface in enumerate(surfaces(off, nu)):
-            C += (load[:, m] @ surface) @ load[:, m].transpose(0, 2, 1)
-        direct = np.stack([C[:, 0, 0], C[:, 1, 1]], -1)
-        across = C[:, 0, 1] / places / np.sqrt(direct.prod(axis=-1))
-        patch.append(np.concatenate([np.log(direct / lt.half_space(nu, radii)), across[:, None]], -1))
-    head = np.zeros((len(nus), n["head_on"], 2, 3))
-    for i, a in enumerate(straight):
-        how = fitted(shape.height, a)
-        on = TipSolid(shape, how)
-        for k, nu in enumerate(nus):
-            found = head_on(shape, on.surface(nu, 0), a, how)
-            head[k, i] = np.log(found / lt.half_space_head_on(nu, a))
-    return np.array(patch), head
 
 
 def build(n: dict[str, int] = COUNTS) -> lt.Table:
@@ -87,47 +54,30 @@ def build(n: dict[str, int] = COUNTS) -> lt.Table:
     nus = (1 - np.exp(-lt.nodes(*lt.NU, n["nu"]))) / 2
     panels = len(lt.PANELS) - 1
     first = (n["curvature"], n["height"], n["nu"])
-    found = {name: np.zeros((panels - (name == "rim"), *first, *size, 3)) for name, size in SHEETS.items()}
-    head = np.zeros((panels, *first, n["head_on"], 2, 3))
+    parts = {name: np.zeros((panels - (name == "rim"), *first, *size, 3)) for name, size in SHEETS.items()}
+    parts["head_on"] = np.zeros((panels, *first, HEAD_ON, 2, 3))
     for panel in range(panels):
-        sheets = [name for name in SHEETS if panel < len(found[name])]
         for i, k in enumerate(curvatures(panel, n["curvature"])):
             if panel and i == 0:  # where panels meet
-                head[panel, 0] = head[panel - 1, -1]
-                for name in sheets:
-                    found[name][panel, 0] = found[name][panel - 1, -1]
+                for part in parts.values():
+                    if panel < len(part):
+                        part[panel, 0] = part[panel - 1, -1]
                 continue
-            where = {name: list(chain(*patches(name, k))) for name in sheets}
-            every = list(chain(*where.values()))
-            load = np.array([loads(Shape(1.0, k), patch, OFF) for patch in every])
-            ends = np.cumsum([len(some) for some in where.values()])[:-1]
+            load = all_loads(k)
             for j, v in enumerate(lt.nodes(*lt.heights(k), n["height"])):
-                rows, head[panel, i, j] = geometry(shape_at(k, v), every, load, nus, n)
-                for name, part in zip(sheets, np.split(rows, ends, axis=1), strict=True):
-                    found[name][panel, i, j] = part.reshape(n["nu"], *SHEETS[name], 3)
+                for u, tip in enumerate(of_shape(shape_at(k, v), nus, load)):
+                    for name, part in parts.items():
+                        if panel < len(part):
+                            part[panel, i, j, u] = getattr(tip, name)
             print(f"curvature {k:.3f} done", file=sys.stderr, flush=True)
-    return lt.Table(**found, head_on=head, punch=gains(nus, n))
-
-
-def gains(nus: Array, n: dict[str, int]) -> Array:
-    """Of flat tips: what a patch that sticks gives less than a Hertz-weighted one, over that on a half-space."""
-    how = OFF._replace(harmonics=1)
-    radii = np.exp(lt.nodes(*lt.radii("rim", 0.0, 0.0), n["punch"]))
-    found = np.zeros((n["height"], n["nu"], n["punch"], 2))
-    for j, v in enumerate(lt.nodes(*lt.heights(0.0), n["height"])):
-        shape = shape_at(0.0, v)
-        solid, load = TipSolid(shape, how), [loads(shape, Patch(0.0, a), how, (0.5, -0.5)) for a in radii]
-        for k, nu in enumerate(nus):
-            surfaces = [solid.surface(nu, m) for m in (0, 1)]
-            both = [compliance(surfaces, f) for f in load]
-            found[j, k] = [np.diagonal(C[:2, :2] - punch(C)) for C in both] / (lt.half_space(nu, radii) / 6)
-    return found
+    flat = [gains(shape_at(0.0, v), nus) for v in lt.nodes(*lt.heights(0.0), n["height"])]
+    return lt.Table(**parts, punch=np.array(flat))
 
 
 # The page
 
 
-def solved(shape: Shape, nu: float, patch: Patch, how: TipFineness = OFF) -> Array:
+def solved(shape: Shape, nu: float, patch: Patch, how: TipFineness = TABLE) -> Array:
     """E D times the compliance of one Hertz-weighted patch, by the solid itself."""
     return compliance(surfaces(TipSolid(shape, how), nu), loads(shape, patch, how))
 
@@ -149,7 +99,7 @@ def exact() -> Iterator[list[str | float]]:
         yield [f"half-space, patch of 1/{part} of the height, along t", t]
 
 
-MESHES = (usual(4, 5, 4, 24), usual(4, 6, 5, 36), OFF, usual(6, 8, 6, 48))
+MESHES = (usual(4, 5, 4, 24), usual(4, 6, 5, 36), TABLE, usual(6, 8, 6, 48))
 
 
 def refined() -> Iterator[list[str | float]]:
@@ -158,7 +108,7 @@ def refined() -> Iterator[list[str | float]]:
     for how in MESHES:
         C = solved(shape, 0.4, patch, how) * 1e6 / (100e6 * 12.75e-3)
         mesh = f"{len(how.across) - 1} x {len(how.up) - 1} of order {how.order}, {how.harmonics} harmonics"
-        yield [mesh + (", the table's" if how is OFF else ""), C[0, 0], C[1, 1], C[0, 1]]
+        yield [mesh + (", the table's" if how is TABLE else ""), C[0, 0], C[1, 1], C[0, 1]]
 
 
 class Errors(NamedTuple):
