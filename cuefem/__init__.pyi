@@ -37,13 +37,13 @@ from .side.accuracy import resolve_side_strike as resolve_side_strike
 from .side.motion import SideMotion as SideMotion, side_motion as side_motion
 from .side.scene import SideStrike as SideStrike, Striker as Striker
 from .side.strike import SideOutcome as SideOutcome, side_strike as side_strike
+from .solid.resolution import Solid as Solid
 from .solid.shaft import SolidModes as SolidModes, solid_modes as solid_modes
 from .scene import (
     Ball as Ball,
     Outcome as Outcome,
     Resolution as Resolution,
     Scene as Scene,
-    Solid as Solid,
     Stroke as Stroke,
     Tip as Tip,
 )

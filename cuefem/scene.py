@@ -369,46 +369,6 @@ class Resolution:
             check_count("Resolution.elements", count, 1)
 
 
-@dataclass(frozen=True)
-class Solid:
-    """A cue computed as a solid of revolution, by 3-D elasticity, in the place of a beam.
-
-    Parameters
-    ----------
-    order
-        Polynomial degree of the elements, 2 to 12.
-    modes
-        Number of flexible bending modes kept. The rigid ones are always kept.
-
-    Raises
-    ------
-    TypeError
-        If a number is not whole.
-    ValueError
-        If a number is out of bounds.
-
-    Examples
-    --------
-    >>> import cuefem as cf
-    >>> cone = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(E=12.6e9, G=4.85e9, rho=700.0)),), body_mass=0.4)
-    >>> scene = cf.Scene(cone, tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(offset=0.3))
-    >>> mesh = cf.Resolution(elements=4, order=16, modes=30)
-    >>> beam, solid = cf.strike(scene, at=mesh), cf.strike(scene, at=cf.Solid(modes=30))
-    >>> abs(beam.squirt / solid.squirt - 1) < 1e-3
-    True
-    """
-
-    order: int = 6
-    modes: int = 60
-
-    def __post_init__(self) -> None:
-        for name, low, high in (("order", 2, 12), ("modes", 1, 400)):
-            count = getattr(self, name)
-            check_count(f"Solid.{name}", count, low)
-            if count > high:
-                raise ValueError(f"Solid.{name} must be in [{low}, {high}]; got {count}")
-
-
 def equal_fields(one: Any, other: Any) -> bool:
     """Whether two dataclasses of one class hold equal fields, arrays among them: their ``__eq__``."""
     if type(one) is not type(other):

@@ -20,7 +20,8 @@ from cuefem.beam.tip import TipModes, lumped_tip_modes, tip_modes
 from cuefem.beam.waves import ended_mesh_for, mesh_for, modes_below
 from cuefem.cue import Cue
 from cuefem.quantity import CONTACT_TIME
-from cuefem.scene import Resolution, Scene, Solid
+from cuefem.scene import Resolution, Scene
+from cuefem.solid.resolution import Solid
 
 if TYPE_CHECKING:
     from cuefem.beam.modes import Modes
@@ -123,7 +124,7 @@ class Solved:
         if isinstance(self.at, Solid):
             from cuefem.solid.shaft import solid_tip_modes
 
-            return solid_tip_modes(self.scene, self.at)
+            return solid_tip_modes(self.scene.shaft, self.at, mass_on_face(self.scene), self.scene.axial_mass)
         return tip_modes_from(self._modes(least), self.scene)
 
     def without_spectra(self) -> Solved:
@@ -192,3 +193,17 @@ def tip_modes_from(found: Ended, scene: Scene) -> TipModes:
     for effect in effects:
         tip = effect.damp(tip, cue, (found, *along))
     return tip.ascending() if along else tip
+
+
+def mass_on_face(scene: Scene) -> float:
+    """Mass that the scene's effects put on the tip's face, kg; ValueError for effects that a solid cannot have."""
+    mass = 0.0
+    for effect in scene.cue_effects:
+        more = effect.mass_on_face(scene.shaft)
+        if more is None:
+            raise ValueError(
+                "Scene.effects must be those that a Solid can have, at the tip or masses on its face; got "
+                f"{type(effect).__name__}"
+            )
+        mass += more
+    return mass

@@ -13,7 +13,11 @@ import numpy as np
 from cuefem.cue import SOFT, Array, Cue
 from cuefem.effects.base import CueEffect, Effect
 from cuefem.effects.leather_law import Curves, LeatherLaw
-from cuefem.effects.leather_table import (
+from cuefem.effects.on_cue import PointMass
+from cuefem.effects.terms import ContactTerms
+from cuefem.materials import LEATHER_NAMES
+from cuefem.quantity import DIAMETER, Flag, Number, Quantity, check_kind, scalar
+from cuefem.solid.leather_table import (
     CURVATURE,
     HEAD_ON_RADIUS,
     HEIGHT,
@@ -24,10 +28,6 @@ from cuefem.effects.leather_table import (
     of_tip,
     punch_gain,
 )
-from cuefem.effects.on_cue import PointMass
-from cuefem.effects.terms import ContactTerms
-from cuefem.materials import LEATHER_NAMES
-from cuefem.quantity import DIAMETER, Flag, Number, Quantity, check_kind, scalar
 
 if TYPE_CHECKING:
     from cuefem.beam.mesh import Terms

@@ -17,7 +17,8 @@ from cuefem.endmass.drives import formula_of
 from cuefem.results.records import Record, Sheet, sheet
 from cuefem.scene import Scene
 from cuefem.solid.half_section import Fineness, blocks, check_size
-from cuefem.solid.shaft import AXIAL, Body, mass_on_face
+from cuefem.solid.shaft import AXIAL, Body
+from cuefem.tip_modes import mass_on_face
 
 # Flexible modes on both sides; tones that are told.
 MODES, TONES = 40, 6

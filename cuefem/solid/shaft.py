@@ -25,8 +25,8 @@ from cuefem.beam.tip import TipModes, free_tip_modes
 from cuefem.cue import Array, Cue, Material
 from cuefem.notebook import brief
 from cuefem.quantity import check_count, check_kind
-from cuefem.scene import Scene, Solid
 from cuefem.solid.half_section import SAME, Fineness, check_size, half_section
+from cuefem.solid.resolution import Solid
 
 # A square frequency, (rad/s)^2, well below the first mode of every cue: K is singular, K plus it times M is not.
 SHIFT = (2 * np.pi * 30.0) ** 2
@@ -347,21 +347,7 @@ def solid_modes(cue: Cue, count: int = 6, at: Solid | None = None) -> SolidModes
     return Body(cue, Fineness(order)).modes(count + 2)
 
 
-def mass_on_face(scene: Scene) -> float:
-    """Mass that the scene's effects put on the tip's face, kg; ValueError for effects that a solid cannot have."""
-    mass = 0.0
-    for effect in scene.cue_effects:
-        more = effect.mass_on_face(scene.shaft)
-        if more is None:
-            raise ValueError(
-                "Scene.effects must be those that a Solid can have, at the tip or masses on its face; got "
-                f"{type(effect).__name__}"
-            )
-        mass += more
-    return mass
-
-
-def solid_tip_modes(scene: Scene, at: Solid) -> TipModes:
-    """Tip modes of the scene's cue as a solid, summed plainly; ValueError for effects that a solid cannot have."""
-    body = Body(scene.shaft, Fineness(at.order))
-    return body.modes(at.modes + 2, mass=mass_on_face(scene)).tip_modes(scene.axial_mass)
+def solid_tip_modes(cue: Cue, at: Solid, mass: float, axial_mass: float) -> TipModes:
+    """Tip modes of a cue as a solid, summed plainly: with a mass on the tip's face, and that which a head-on blow
+    feels, kg."""
+    return Body(cue, Fineness(at.order)).modes(at.modes + 2, mass=mass).tip_modes(axial_mass)

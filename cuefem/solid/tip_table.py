@@ -1,4 +1,4 @@
-"""The give of tips as `cuefem.effects.leather_table` reads it, computed from the solid (`cuefem.solid.tip`).
+"""The give of tips as `cuefem.solid.leather_table` reads it, computed from the solid (`cuefem.solid.tip`).
 
 The table in the package and a single tip that it does not hold, with layers or out of its bounds, are made by the same
 functions: `of_shape`, and `gains` of flat tips.
@@ -11,7 +11,7 @@ from itertools import chain
 
 import numpy as np
 
-from cuefem.effects import leather_table as lt
+from cuefem.solid import leather_table as lt
 from cuefem.solid.tip import (
     Array,
     Patch,

@@ -3,7 +3,7 @@
 A tip is a domed cylinder of linear, isotropic leather on a rigid ferrule, solved by cuefem/solid/tip.py, and
 cuefem/solid/tip_table.py gives one tip's part of the table. Two things are tabulated, over height, dome, Poisson's
 ratio and the patch's radius: the compliance along the normal and along the surface of a patch with Hertz's pressure
-anywhere on the dome, and force and depth of a ball that is pressed on it head on. `cuefem.effects.leather_table` holds
+anywhere on the dome, and force and depth of a ball that is pressed on it head on. `cuefem.solid.leather_table` holds
 the coordinates and reads the table. The page compares the solid with exact solutions, and the table with the solid at
 random tips. python -m studies.beam.leather_elasticity computes the table in twenty minutes and the page in four; with
 the word page only the page.
@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cuefem.effects import leather_table as lt
+from cuefem.solid import leather_table as lt
 from cuefem.solid.tip import (
     Array,
     Patch,

@@ -7,7 +7,7 @@ from importlib.resources import files
 import numpy as np
 import pytest
 
-from cuefem.effects import leather_table as lt
+from cuefem.solid import leather_table as lt
 from cuefem.solid.tip import Layer, Shape
 from cuefem.solid.tip_table import SHEETS, all_loads, gains, of_shape
 from studies.beam.leather_elasticity import COUNTS, curvatures, shape_at
@@ -67,5 +67,5 @@ def test_ten_random_tips_and_one_with_a_pad_of_leather() -> None:
 
 def test_the_file_is_small() -> None:
     """Under a megabyte in the package, all finite."""
-    assert len(files("cuefem.effects").joinpath("leather_table.npz").read_bytes()) < 1e6
+    assert len(files("cuefem.solid").joinpath("leather_table.npz").read_bytes()) < 1e6
     assert all(np.all(np.isfinite(part)) for part in lt.table())

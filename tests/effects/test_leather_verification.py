@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from cuefem import LeatherTip
-from cuefem.effects import leather_table as lt
+from cuefem.solid import leather_table as lt
 from cuefem.solid.tip import Patch, Shape, TipSolid, compliance, fitted, head_on, loads, surfaces, usual
 from studies.beam.leather_elasticity import solved
 
