@@ -17,7 +17,6 @@ from cuefem import (
     Stroke,
     Tip,
     TipDome,
-    TipShear,
     impulse,
     strike,
 )
@@ -115,50 +114,6 @@ def test_lumped_cue_feels_the_restitution_not_the_law(exponent, offset, e, frict
     assert stepped.regime == lumped.regime
     for name, part in lumped.energy.items():
         assert abs(stepped.energy[name] - part) < STEPPED
-
-
-def sliding_oracle(scene: Scene, tip: TipModes, exponent: float) -> np.ndarray:
-    """(V_t, V_n) of a strike that slips throughout: Newton's equations in SI, by LSODA, phase by phase."""
-    phi, mu, e = asin(scene.stroke.offset), scene.tip.friction, scene.tip.restitution
-    s, c, n = sin(phi), cos(phi), len(tip.omega)
-    t, normal = tip.amplitude @ [s, c], tip.amplitude @ [c, -s]
-    mass, U, T = scene.head_on_mass, 1.0, scene.contact_time
-    depth = U * T / ((1 + e) * loading_time(exponent))
-    k = (exponent + 1) * mass * U**2 / (2 * depth ** (exponent + 1))
-    state, peak = np.concatenate([np.zeros(n), scene.stroke.speed * tip.approach, [0.0, 0.0, 0.0]]), None
-
-    def force(y):
-        if peak is None:
-            return k * max(y[-1], 0.0) ** exponent
-        return k * peak**exponent * (max(y[-1] - (1 - e**2) * peak, 0.0) / (e**2 * peak)) ** exponent
-
-    def change(_, y):
-        q, v, F = y[:n], y[n : 2 * n], force(y)
-        pushed = -(tip.omega**2) * q - normal * F - t * mu * F
-        return np.concatenate([v, pushed, [mu * F / scene.ball.mass, F / scene.ball.mass, normal @ v - y[2 * n + 1]]])
-
-    def deepest(_, y):
-        return normal @ y[n : 2 * n] - y[2 * n + 1]
-
-    def gone(_, y):
-        return y[-1] - (1 - e**2) * peak
-
-    for event in (deepest, gone):
-        event.terminal, event.direction = True, -1
-        found = solve_ivp(
-            change, [0, 20 * T], state, method="LSODA", events=event, rtol=1e-11, atol=1e-13, max_step=T / 100
-        )
-        state = found.y[:, -1]
-        peak = state[-1] if peak is None else peak
-    return state[2 * n : 2 * n + 2]
-
-
-@pytest.mark.parametrize(("exponent", "offset", "friction"), [(1.5, 0.3, 0.0), (2.0, 0.6, 0.05), (1.5, 0.5, 0.1)])
-def test_sliding_strike_of_a_vibrating_cue(exponent, offset, friction):
-    scene = replace(kim_scene(offset, friction=friction), stroke=Stroke(2.5, offset))
-    outcome = strike_modes(replace(scene, effects=(PowerLawTip(exponent),)), bent())
-    assert [phase.grip for phase in outcome.phases] == ["slip", "slip"]
-    assert np.abs(outcome.ball_velocity - sliding_oracle(scene, bent(), exponent)).max() < 1e-8
 
 
 # ------------------------------------------------------------------------------------------------------- RollingContact
@@ -287,100 +242,6 @@ def test_compression_left_out_is_of_second_order():
 
 
 # ------------------------------------------------------------------------------------------------------------ SecondHit
-
-
-def springy_cue(frequency: float, part: float) -> TipModes:
-    """A cue of 540 g that vibrates along its axis with one mode of the tip's amplitude ``part`` of the rigid one."""
-    amplitude = np.array([[0.54**-0.5, 0.0], [0.0, 9.0], [part * 0.54**-0.5, 0.0]])
-    return TipModes(np.array([0, 0, 2 * np.pi * frequency]), amplitude, np.array([0.54**0.5, 0, 0]), np.zeros(3))
-
-
-def head_on_oracle(scene: Scene, tip: TipModes, window: float) -> tuple[float, list[tuple[float, float]]]:
-    """Ball speed, and (start, end) of every contact of a head-on strike: displacements, LSODA, one event at a time."""
-    n, k, e, M = len(tip.omega), scene.stiffness, scene.tip.restitution, scene.ball.mass
-    a, peak, press = tip.amplitude[:, 0], 0.0, "load"
-    state, time, spans, until = (
-        np.concatenate([np.zeros(n + 1), scene.stroke.speed * tip.approach, [0.0]]),
-        0.0,
-        [[0.0]],
-        inf,
-    )
-
-    def overlap(y):
-        return a @ y[:n] - y[n]
-
-    def force(y):
-        if press == "free":
-            return 0.0
-        return k * overlap(y) if press == "load" else k / e**2 * (overlap(y) - (1 - e**2) * peak)
-
-    def change(_, y):
-        F = force(y)
-        return np.concatenate([y[n + 1 :], -(tip.omega**2) * y[:n] - a * F, [F / M]])
-
-    ends = {
-        "load": [lambda _, y: a @ y[n + 1 : -1] - y[-1]],
-        "unload": [lambda _, y: overlap(y) - (1 - e**2) * peak, lambda _, y: peak - overlap(y)],
-        "free": [lambda _, y: (1 - e**2) * peak - overlap(y)],
-    }
-    for events in ends.values():
-        for event in events:
-            event.terminal, event.direction = True, -1
-    while True:
-        limit = until if press == "free" else time + 0.1
-        found = solve_ivp(
-            change, [time, limit], state, "LSODA", events=ends[press], rtol=1e-12, atol=1e-14, max_step=2e-5
-        )
-        state, time = found.y[:, -1], found.t[-1]
-        if found.status == 0:
-            return state[-1], [tuple(span) for span in spans]
-        if press == "load":
-            press, peak = "unload", overlap(state)
-        elif press == "unload" and len(found.t_events[1]):
-            press = "load"
-        elif press == "unload":
-            press, until = "free", min(until, time + window)
-            spans[-1].append(time)
-        else:
-            press = "unload"
-            spans.append([time])
-
-
-@pytest.mark.parametrize(("frequency", "part", "e"), [(300.0, 1.5, 0.2), (150.0, 2.0, 0.3), (200.0, 3.0, 0.5)])
-def test_second_hit_of_a_springy_cue(frequency, part, e):
-    tip = springy_cue(frequency, part)
-    scene = Scene(LumpedCue(0.54, 0.005), tip=Tip(e, contact_time=1e-3))
-    speed, spans = head_on_oracle(scene, tip, 8e-3)
-    assert len(spans) > 1
-    outcome = strike_modes(replace(scene, effects=(SecondHit(8e-3),)), tip)
-    found = hits(outcome)
-    assert len(found) == len(spans)
-    for hit, span in zip(found, spans, strict=True):
-        assert np.abs(np.subtract(hit[:2], span)).max() < 1e-7 * outcome.duration
-    assert abs(outcome.ball_speed - speed) < 1e-8
-    assert abs(sum(hit.impulse[1] for hit in found) / outcome.impulse[1] - 1) < 1e-12
-    assert outcome.ball_speed > strike_modes(scene, tip).ball_speed * 1.001
-    assert imbalance(outcome) < 1e-11
-
-
-@pytest.mark.parametrize(
-    ("scene", "effects"),
-    [
-        (kim_scene(0.3, restitution=0.1), (SecondHit(),)),
-        (kim_scene(0.6, restitution=0.5), (SecondHit(), TipShear(0.75))),
-        (kim_scene(0.5, restitution=0.3, friction=0.3), (SecondHit(), TipShear(0.75))),
-    ],
-)
-def test_second_hit_stepped_is_the_exact_one(scene, effects):
-    scene = replace(scene, effects=effects)
-    exact = strike(scene, KIM_AT)
-    stepped = strike(replace(scene, effects=(PowerLawTip(1.0), *effects)), KIM_AT)
-    assert len(hits(exact)) == len(hits(stepped)) > 2
-    assert worst(exact, stepped) < 1e-7  # every hit multiplies what is off before it
-    assert max(imbalance(exact), imbalance(stepped)) < 1e-11
-    force = exact.history(np.array([hit.end + 1e-9 for hit in hits(exact)[:-1]]))
-    assert np.abs(force["force_n"]).max() == 0
-    assert np.all(force["velocity_n"] > 0)
 
 
 def test_without_a_second_hit_nothing_is_added():

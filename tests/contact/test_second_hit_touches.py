@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cuefem import LumpedCue, Outcome, Scene, SecondHit, Stroke, Tip, strike
+from cuefem.contact.outcome import hits
 from tests.contact.test_independent_effects import AT, Draw, hit_again
 
 
@@ -29,6 +30,11 @@ def test_the_window_counts_from_the_first_separation(seed: int) -> None:
     others = tuple(effect for effect in scene.effects if not isinstance(effect, SecondHit))
     outcome = strike(scene, AT)
     again, first = starts(outcome)[0], parted(outcome)
+    touches = hits(outcome)
+    assert [hit.start for hit in touches] == [0.0, *starts(outcome)]
+    assert (touches[0].end, touches[-1].end) == (first, outcome.duration)
+    pushed = np.sum([hit.impulse for hit in touches], axis=0) * (np.sign(scene.stroke.offset), 1)
+    assert pushed == pytest.approx(outcome.impulse, rel=1e-12)
     wait = again - first
     assert wait > 0
     just, missed = (

@@ -12,7 +12,7 @@ from scipy.integrate import quad
 
 from cuefem import Cue, LumpedCue, Resolution, Scene, Support, end_mass, modes
 from cuefem.beam.tip import TipModes
-from cuefem.endmass.drives import end_mass_spread, flexible, force, stick, velocity
+from cuefem.endmass.drives import end_mass_spread, flexible, force, velocity
 from cuefem.endmass.undamped import smooth_start_impulse
 from cuefem.tip_modes import default_resolution, tip_modes_of
 from tests.helpers.cues import cone, kim, rod, scaled, scene
@@ -111,54 +111,6 @@ def test_semi_infinite_euler_beam(
 
 
 # --- the same definitions solved in time, mode by mode ---
-
-
-def normal_rate(e: float, T: float) -> Callable[[float], float]:
-    """The normal force of the bilinear tip over the whole normal impulse: quarter periods of k and of k/e^2."""
-    peak = T / (1 + e)
-    a = math.pi / 2 / peak
-
-    def rate(t: float) -> float:
-        return a / (1 + e) * (math.sin(a * t) if t <= peak else math.cos(a / e * (t - peak)))
-
-    return rate
-
-
-def stick_constants(found: Scene) -> tuple[float, float]:
-    """(c, K) of handbook: Effective end mass."""
-    M, nu, e, Q0 = found.ball.mass, found.ball.inertia, found.tip.restitution, found.cue.mass / found.ball.mass
-    return (1 + 1 / nu) / M, (1 + e) * (1 + 1 / nu + 1 / Q0) / (1 + 1 / Q0)
-
-
-def test_stick_by_time_stepping() -> None:
-    """The integral equation h*g + c G = K P - 1 stepped by the midpoint rule: order 2, and its extrapolation."""
-    tip, found = few_modes(), scene(kim(), 1e-3)
-    e, T = found.tip.restitution, found.contact_time
-    omega, phi = tip.transverse
-    c, K = stick_constants(found)
-    rate, n = normal_rate(e, T), len(omega)
-    total = phi @ phi + c
-
-    def stepped(steps: int) -> float:
-        h = T / steps
-        flow = np.block([[np.zeros((n, n)), np.eye(n)], [np.outer(phi, phi * omega**2) / total, np.zeros((n, n))]])
-        flow[n:, :n] -= np.diag(omega**2)
-        push = np.concatenate([np.zeros(n), phi]) / total
-        advance = np.linalg.inv(np.eye(2 * n) - h / 2 * flow)
-        z, J = np.concatenate([np.zeros(n), -phi / total]), -1 / total
-        for i in range(steps):
-            drive = K * rate((i + 0.5) * h)
-            new = advance @ (z + h / 2 * flow @ z + h * drive * push)
-            J += h * (drive + phi @ (omega**2 * (z + new)[:n] / 2)) / total
-            z = new
-        return 1 / ((K - 1) / J - c)
-
-    steps = 7 * np.array([60, 120, 240, 480])  # the greatest compression, at 4/7 of T, falls between steps
-    found_masses = np.array([stepped(int(m)) for m in steps])
-    exact = stick(tip, found)
-    assert_order(2, 1.0 / steps, np.abs(found_masses / exact - 1), within=0.02)
-    extrapolated = (4 * found_masses[-1] - found_masses[-2]) / 3
-    np.testing.assert_allclose(extrapolated, exact, rtol=1e-7)
 
 
 @pytest.mark.parametrize("T", [0.8e-3, 2e-3])

@@ -7,9 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.integrate import quad, solve_ivp
-from scipy.optimize import brentq
-from scipy.special import ellipe, ellipk
+from scipy.integrate import quad
 
 from cuefem import (
     Cue,
@@ -123,28 +121,6 @@ def test_hertz_on_a_rigid_body(restitution: float) -> None:
     assert abs(outcome.phases[0].end / (duration / (1 + restitution)) - 1) < 2e-5
 
 
-@pytest.mark.parametrize(("ball", "stronger"), [(1.0, 0.01), (3.0, 0.04)])
-def test_a_round_side_as_one_radius(ball: float, stronger: float) -> None:
-    """A ball on a round beam touches it in an ellipse; R = sqrt(R1^2 R2/(R1 + R2)) is so much too soft (handbook).
-
-    Hertz's integrals with a = E* = 1, e^2 = 1 - b^2: half the curvatures are A = p0 b/e^2 (K - E) and
-    B = p0 b/e^2 (E/b^2 - K), the depth is p0 b K, the force 2/3 pi b p0.
-    """
-    curvatures = 1 / ball, 1 / ball + 1.0  # along the beam and around it; the beam's radius is 1
-
-    def misfit(x: float) -> float:  # x = (b/a)^2
-        K, E = ellipk(1 - x), ellipe(1 - x)
-        return float((E / x - K) / (K - E) - curvatures[1] / curvatures[0])
-
-    x = brentq(misfit, 1e-4, 1 - 1e-9)
-    K, E = ellipk(1 - x), ellipe(1 - x)
-    b = math.sqrt(x)
-    p0 = curvatures[1] / 2 * (1 - x) / (b * (E / x - K))
-    force, depth = 2 * math.pi * b * p0 / 3, b * p0 * K
-    radius = math.sqrt(ball**2 / (ball + 1.0))
-    assert abs(force / (4 / 3 * math.sqrt(radius) * depth**1.5) - 1 - stronger) < 0.003
-
-
 def test_times_against_a_wall() -> None:
     """2.94 d/v for Hertz, pi sqrt(m/k) for a spring, the time given for a time; e splits it 1 : e."""
     ball = Striker(0.028, 1.0, modulus=12e9, radius=9.5e-3)
@@ -215,37 +191,6 @@ def _convolved(struck: SideStrike, moving: SideStrike, end: float, at: Resolutio
 
 
 # --- independent solution in time ---
-
-
-def test_against_an_independent_solution_in_time() -> None:
-    """The same modes, striker and spring in Newton's equations, stepped by scipy."""
-    scene = SideStrike(kim(), replace(BALL, restitution=1.0), 0.1, 2.0)
-    outcome = side_strike(scene, FEW)
-    found = modes(scene.cue, 8, effects=(PointMass(0.1, 0.0),), at=FEW)  # a node there, as the strike has it
-    centre, m = scene.cue.balance_point, scene.cue.shaft_mass
-    spun = (1 / scene.rigid_mass - 1 / m) ** -1 * (0.1 - centre) ** 2
-    phi = np.concatenate([[m**-0.5, (0.1 - centre) * spun**-0.5], found.shape(0.1)[0]])
-    omega = np.concatenate([[0.0, 0.0], found.omega])
-    k, mass = scene.striker.law.stiffness, scene.striker.mass
-
-    def rate(_: float, z: np.ndarray) -> np.ndarray:
-        q, p, (y, v) = z[:10], z[10:20], z[20:]
-        force = k * (y - phi @ q)
-        return np.concatenate([p, phi * force - omega**2 * q, [v, -force / mass]])
-
-    def parted(_: float, z: np.ndarray) -> float:
-        return float(z[20] - phi @ z[:10])
-
-    parted.terminal, parted.direction = True, -1  # type: ignore[attr-defined]
-    start = np.zeros(22)
-    start[21] = 2.0
-    solved = solve_ivp(rate, (0, 0.01), start, "DOP853", events=parted, rtol=1e-12, atol=1e-15)
-    assert abs(outcome.duration / solved.t[-1] - 1) < 1e-9
-    assert abs(outcome.rebound_speed + solved.y[21, -1]) < 1e-9
-    moved = side_motion(scene, [outcome.duration], FEW)
-    assert abs(moved.striker[0] / solved.y[20, -1] - 1) < 1e-9
-    np.testing.assert_allclose(moved.deflection(0.1)[0][0], phi @ solved.y[:10, -1], rtol=1e-9)
-    assert abs(outcome.place_speed - phi @ solved.y[10:20, -1]) < 1e-9
 
 
 # --- a strike at the tip, and the end mass ---
