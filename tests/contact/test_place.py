@@ -28,23 +28,6 @@ def struck(point, direction=NORTH, **how):
     return outcome, cf.place(outcome, point, direction, ball=BALL)
 
 
-def about(axis, angle):
-    """Rodrigues' rotation matrix."""
-    x, y, z = np.array(axis) / np.linalg.norm(axis)
-    K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return np.eye(3) + sin(angle) * K + (1 - cos(angle)) * K @ K
-
-
-def test_a_level_stroke_on_the_equator_is_the_planar_one():
-    for offset in (0.0, 1e-9, 0.3, 0.55, 0.9):
-        outcome, placed = struck((offset * R, R))
-        phi = np.arcsin(offset)
-        normal, tangent = np.array([-sin(phi), cos(phi), 0]), np.array([cos(phi), sin(phi), 0])
-        planar = outcome.ball_velocity[0] * tangent + outcome.ball_velocity[1] * normal
-        np.testing.assert_allclose(placed.velocity, planar, rtol=0, atol=1e-14)
-        np.testing.assert_allclose(placed.spin, [0, 0, outcome.spin], rtol=1e-14, atol=1e-13)
-
-
 @pytest.mark.parametrize(
     ("side", "spin", "squirt"),
     [
@@ -98,46 +81,6 @@ def contact_of(point, unit):
     forward = np.cross([0, 0, 1], right)
     h, up = point[0], point[1] - R
     return h * right + up * np.array([0, 0, 1]) - np.sqrt(max(R**2 - h**2 - up**2, 0)) * forward
-
-
-@MANY
-@given(INSIDE, st.floats(0, 2 * pi), st.floats(-1, 1))
-def test_turning_the_player_turns_the_outcome(point, turn, elevation):
-    direction = np.array([0.0, cos(elevation), sin(elevation)])
-    assume(contact_of(point, direction) @ direction < -0.05 * R)
-    matrix = about([0, 0, 1], turn)
-    outcome, here = struck(point, direction)
-    there = cf.place(outcome, point, matrix @ direction, ball=BALL)
-    np.testing.assert_allclose(there.velocity, matrix @ here.velocity, rtol=0, atol=1e-13)
-    np.testing.assert_allclose(there.spin, matrix @ here.spin, rtol=0, atol=1e-11)
-
-
-@MANY
-@given(st.floats(0, 0.9), st.floats(0, 2 * pi))
-def test_the_side_of_a_level_stroke_turns_about_its_axis(offset, clock):
-    """Round the cue's axis all points of one offset are alike: the planar result, recovered by rotation."""
-    outcome = stroke(offset)
-    right = cf.place(outcome, (offset * R, R), NORTH, ball=BALL)
-    point = (offset * R * cos(clock), R * (1 + offset * sin(clock)))
-    turned = cf.place(outcome, point, NORTH, ball=BALL)
-    matrix = about(NORTH, -clock)
-    np.testing.assert_allclose(turned.velocity, matrix @ right.velocity, rtol=0, atol=1e-13)
-    np.testing.assert_allclose(turned.spin, matrix @ right.spin, rtol=0, atol=1e-10)
-
-
-def test_an_elevated_cue_through_the_centre_drives_straight_down():
-    down = np.array([0.0, cos(0.5), -sin(0.5)])
-    outcome, placed = struck((0.0, R * (1 + sin(0.5))), down)
-    np.testing.assert_allclose(placed.velocity, outcome.ball_speed * down, rtol=0, atol=1e-14)
-    np.testing.assert_allclose(placed.spin, 0, rtol=0, atol=1e-12)
-
-
-def test_an_upright_cue_strikes_the_upper_half_behind_the_centre():
-    outcome, placed = struck((0.3 * R, R * (1 + 0.8)), (0, 0, -1.0))
-    assert offset_of((0.3 * R, R * 1.8), (0, 0, -1.0), ball=BALL) == pytest.approx(0.6, rel=1e-14)
-    # struck right of and behind the centre, pushed down: the ball is thrown to the left and ahead
-    assert placed.velocity[0] < 0 < placed.velocity[1]
-    assert placed.velocity[2] == pytest.approx(-outcome.ball_speed * cos(outcome.squirt), rel=1e-14)
 
 
 def test_arrays_of_strokes():
