@@ -74,16 +74,6 @@ def test_a_power_law_knows_no_speed_of_its_own(exponent, speed, reference, offse
     assert np.allclose(numbers(first), numbers(second), rtol=1e-9, atol=1e-9 * speed**2)
 
 
-def test_order_of_the_list_does_not_matter():
-    listed = (PowerLawTip(1.5), RollingContact(), SecondHit(), TipDome(0.009))
-    outcomes = [
-        strike_modes(replace(kim_scene(0.4, restitution=0.3), effects=effects), bent())
-        for effects in [listed, listed[::-1], listed[2:] + listed[:2]]
-    ]
-    assert all(np.array_equal(numbers(outcomes[0]), numbers(other)) for other in outcomes[1:])
-    assert all(outcomes[0].phases == other.phases for other in outcomes[1:])
-
-
 def test_they_go_with_the_effects_on_the_cue():
     scene = replace(
         kim_scene(0.4),
