@@ -25,6 +25,7 @@ from .effects import (
     StructuralDamping as StructuralDamping,
     Support as Support,
     TipDome as TipDome,
+    TipLayer as TipLayer,
     TipShear as TipShear,
 )
 from .endmass.drives import end_mass as end_mass

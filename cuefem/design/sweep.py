@@ -27,6 +27,8 @@ from cuefem.scene import Resolution, Scene
 ATTEMPTS = 3
 # A Dask scheduler that does not answer for so long is not there; how often one is asked while nothing comes, s.
 PATIENCE, GLANCE = 10.0, 1.0
+# What writes to stderr when a scheduler is gone, which `dask` tells in one line.
+LOGS = ("distributed", "distributed.client", "tornado.application")
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -290,7 +292,7 @@ def dask(address: str) -> Iterator[Pool]:
         finally:
             executor.shutdown(wait=False)  # which cancels
 
-    levels = {log: log.level for log in map(logging.getLogger, ("distributed", "distributed.client"))}
+    levels = {log: log.level for log in map(logging.getLogger, LOGS)}
     for log in levels:
         log.setLevel(logging.CRITICAL)  # a scheduler that is gone is told in one line: `check`
     try:

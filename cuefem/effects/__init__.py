@@ -15,7 +15,7 @@ from cuefem.effects.base import (
     check_effects,
     effect_kinds,
 )
-from cuefem.effects.leather import LeatherTip
+from cuefem.effects.leather import LeatherTip, TipLayer
 from cuefem.effects.on_cue import AxialWaves, GeometricStiffness, Joint, PointMass, StructuralDamping, Support
 from cuefem.effects.stroke import Elevation, SecondHit
 
@@ -35,6 +35,7 @@ __all__ = [
     "Support",
     "TipDome",
     "TipEffect",
+    "TipLayer",
     "TipShear",
     "Usual",
     "Vibrations",

@@ -16,18 +16,20 @@ from cuefem.effects.leather_law import Curves, LeatherLaw
 from cuefem.effects.on_cue import PointMass
 from cuefem.effects.terms import ContactTerms
 from cuefem.materials import LEATHER_NAMES
-from cuefem.quantity import DIAMETER, Flag, Number, Quantity, check_kind, scalar
+from cuefem.quantity import DIAMETER, Flag, Number, OutOfBounds, Quantity, check_fields, check_kind, scalar
 from cuefem.solid.leather_table import (
     CURVATURE,
     HEAD_ON_RADIUS,
-    HEIGHT,
+    WALL,
     TipTable,
     compliance,
+    covers,
     farthest,
     head_on,
     of_tip,
     punch_gain,
 )
+from cuefem.solid.own_tip import OwnTip, own_table, read
 
 if TYPE_CHECKING:
     from cuefem.beam.mesh import Terms
@@ -36,6 +38,44 @@ if TYPE_CHECKING:
 DOMES = {"dime": 8.955e-3, "nickel": 10.605e-3, "flat": math.inf}
 STIFFEST = 1000  # times E height: the greatest stiffness along the surface, N/m
 RADII = np.linspace(0.0, 0.5, 101)  # over D: radii of the patches at which curves are given
+HEIGHTS = (0.05, 3.0)  # over D: what a tip can be computed for; `covers` says what the table has
+MODULI = (1e-3, 1e4)  # over E: of what is under the leather
+
+
+@dataclass(frozen=True)
+class TipLayer:
+    """A flat layer under the leather of a `LeatherTip`: a pad, another leather, or the ferrule.
+
+    Parameters
+    ----------
+    height : float
+        Its height, m.
+    E : float
+        Young's modulus, Pa.
+    nu : float, default 0.35
+        Poisson's ratio, in [0, 0.49].
+    rho : float, default 1000.0
+        Density, kg/m^3. A ferrule's counts only in the cue's drawing.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of bounds.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> cf.TipLayer(height=0.8e-3, E=2e9).nu
+    0.35
+    """
+
+    height: Annotated[float, Quantity("m", "(0, inf)")]
+    E: Annotated[float, Quantity("Pa", "(0, inf)")]
+    nu: Annotated[float, Quantity("", "[0, 0.49]")] = 0.35
+    rho: Annotated[float, Quantity("kg/m^3", "(0, inf)")] = 1000.0
+
+    def __post_init__(self) -> None:
+        check_fields(self)
 
 
 @dataclass(frozen=True)
@@ -45,13 +85,13 @@ class LeatherTip(CueEffect):
     Parameters
     ----------
     height : float
-        Height of the leather from the ferrule to the apex of the dome, m.
+        Height of the tip from the ferrule to the apex of the dome, m, with the layers under the leather.
     dome_radius : float
         Radius of the dome, m; inf for a flat tip.
     E : float
         Young's modulus of the leather, Pa.
     nu : float, default 0.4
-        Poisson's ratio of the leather, in [0.2, 0.45].
+        Poisson's ratio of the leather, in [0, 0.49].
     rho : float, default 1000.0
         Density of the leather, kg/m^3.
     shear : float, optional
@@ -62,12 +102,19 @@ class LeatherTip(CueEffect):
     surface_restitution : float, default 1.0
         The root of the part of the work that the leather gives back along its surface, in [0.1, 1]: what the tip's
         restitution is along the normal. Below 1 it takes a patch that follows the load, without ``shear``.
+    layers : tuple of TipLayer, optional
+        What is glued under the leather, from the ferrule up, within ``height`` and below the dome.
+    diameter : float, optional
+        Diameter of the tip, m, where it is smaller than the end of the ferrule; by default it is flush.
+    ferrule : TipLayer, optional
+        The ferrule below, if it gives under the tip; by default it is rigid there. Only what it gives beyond an end
+        section that moves as a whole is added: that the beam has. Two diameters of its height are enough.
 
     Raises
     ------
     ValueError
-        If a number is out of bounds; by the methods, if the tip cannot be on a shaft of that diameter, or if it is
-        outside the table of the elasticity: heights of 2/15 to 3/2 of the diameter, domes of half of it or more.
+        If a number is out of bounds; by the methods, if the tip cannot be on a shaft of that diameter, or if its
+        layers reach into the dome.
 
     Notes
     -----
@@ -85,7 +132,7 @@ class LeatherTip(CueEffect):
     Matters when: Always. The whole tip gives sideways two to three times as much as along the normal, where the patch
     alone gives 4/3 times as much, and the contact grows stiffer and shorter with the speed of the stroke.
 
-    Wrong when: The leather is strained far (it is linear here), layered or loose, or its patch grows over the rim,
+    Wrong when: The leather is strained far (it is linear here), or loose, or its patch grows over the rim,
     where the pressure is cut off. The rings are exact on a half-space; on a bonded layer of 6 mm squirt is off by
     0.04, 0.3 and 1.1 % at b/R 0.187, 0.375 and 0.453.
 
@@ -93,6 +140,9 @@ class LeatherTip(CueEffect):
 
     Source: handbook: Effects; studies/beam/leather_elasticity.py; K. L. Johnson, Contact Mechanics (1985),
     chapters 3 and 4.
+
+    The package has a table for plain tips of nu 0.2 to 0.45, 2/15 to 3/2 of the diameter high. Any other is computed
+    once, in about ten seconds, and kept in the user's cache folder.
 
     The offset b/R is the sine of the angle phi between the cue's axis and the normal of the contact. The contact lies
     r sin(phi) off the axis, or on the rim where the dome ends before that. Elastic methods take a ``diameter``, that
@@ -118,14 +168,26 @@ class LeatherTip(CueEffect):
     height: Annotated[float, Quantity("m", "(0, inf)")]
     dome_radius: Annotated[float, Quantity("m", "(0, inf]", tuple(DOMES.items()))]
     E: Annotated[float, Quantity("Pa", "(0, inf)")]
-    nu: Annotated[float, Quantity("", "[0.2, 0.45]")] = 0.4
+    nu: Annotated[float, Quantity("", "[0, 0.49]")] = 0.4
     rho: Annotated[float, Quantity("kg/m^3", "(0, inf)")] = 1000.0
     shear: Annotated[float | None, Quantity("N/m", "(0, inf)")] = None
     rolls: Annotated[bool, Flag()] = True
     surface_restitution: Annotated[float, Quantity("", "[0.1, 1]")] = 1.0
+    layers: tuple[TipLayer, ...] = ()
+    diameter: Annotated[float | None, DIAMETER] = None
+    ferrule: TipLayer | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        check_kind("LeatherTip.layers", self.layers, (tuple, list))
+        object.__setattr__(self, "layers", tuple(self.layers))
+        under = [(f"layers[{i}]", layer) for i, layer in enumerate(self.layers)]
+        for name, layer in [*under, *([] if self.ferrule is None else [("ferrule", self.ferrule)])]:
+            check_kind(f"LeatherTip.{name}", layer, TipLayer)
+            low, high = (part * self.E for part in MODULI)
+            if not low <= layer.E <= high:
+                bounds = Quantity("Pa", f"[{low:.6g}, {high:.6g}]")
+                raise OutOfBounds(f"LeatherTip.{name}.E", bounds, layer.E, ", 1e-3 to 1e4 of the leather's E")
         check_kind("LeatherTip.rolls", self.rolls, bool)
         if self.shear is not None and self.shear > STIFFEST * self.E * self.height:
             raise ValueError(
@@ -150,7 +212,15 @@ class LeatherTip(CueEffect):
                 f"{name} must be the only leather: draw the cue without its first {1e3 * cue.leather:.4g} mm, which "
                 f"have an E below {SOFT / 1e9:g} GPa; got a {type(self).__name__} before them"
             )
-        self.check_diameter(cue.segments[0].tip_diameter)
+        end = cue.segments[0].tip_diameter
+        if self.diameter is not None and self.diameter > end * (1 + 1e-9):
+            why = ", the end of the ferrule"
+            raise OutOfBounds(f"{name}.diameter", Quantity("m", f"(0, {end}]"), self.diameter, why)
+        self.check_diameter(self.diameter_on(end))
+
+    def diameter_on(self, end: float) -> float:
+        """Diameter of the tip, m, on a ferrule whose end has this one, m."""
+        return end if self.diameter is None else self.diameter
 
     def add_to(self, terms: Terms) -> None:
         """Add the mass of the leather, lumped at the end of the ferrule."""
@@ -158,7 +228,7 @@ class LeatherTip(CueEffect):
 
     def mass_on(self, cue: Cue) -> float:
         """Mass of the leather on this cue, kg."""
-        return self.mass(cue.segments[0].tip_diameter)
+        return self.mass(self.diameter_on(cue.segments[0].tip_diameter))
 
     def mass_on_face(self, cue: Cue) -> float | None:
         """The mass of the leather."""
@@ -171,12 +241,12 @@ class LeatherTip(CueEffect):
     def add_to_contact(self, terms: ContactTerms) -> None:
         """The whole tip, and the normal that turns."""
         if terms.tip_diameter is not None:  # a lumped cue is refused in words
-            terms.set_tip(OnCue(self, terms.tip_diameter))
+            terms.set_tip(OnCue(self, self.diameter_on(terms.tip_diameter)))
         if self.rolls:
             terms.turn()
 
     def check_diameter(self, diameter: float) -> None:
-        """Refuse a tip that cannot be on a shaft, or that the table does not cover.
+        """Refuse a tip that cannot be on a shaft, or that is too flat or too high to compute.
 
         Parameters
         ----------
@@ -200,7 +270,18 @@ class LeatherTip(CueEffect):
                 f"a leather tip on {1e3 * diameter:.4g} mm must be higher than {1e3 * deep:.4g} mm, the depth of its "
                 f"dome; got {1e3 * self.height:.4g} mm"
             )
-        low, high = (part * diameter for part in HEIGHT)
+        below = math.fsum(layer.height for layer in self.layers)
+        if self.layers and below > self.height - deep - WALL * diameter:
+            raise ValueError(
+                f"the layers of a leather tip must be at most {1e3 * (self.height - deep - WALL * diameter):.4g} mm "
+                f"high together, to end below its dome; got {1e3 * below:.4g} mm"
+            )
+        if self.ferrule is not None and self.ferrule.height > 5 * diameter:
+            raise ValueError(
+                f"LeatherTip.ferrule.height must be at most {5e3 * diameter:.4g} mm, five diameters of the tip, of "
+                f"which two are enough; got {1e3 * self.ferrule.height:.4g} mm"
+            )
+        low, high = (part * diameter for part in HEIGHTS)
         if not low * (1 - 1e-9) <= self.height <= high * (1 + 1e-9):
             raise ValueError(
                 f"a leather tip on {1e3 * diameter:.4g} mm must be {1e3 * low:.3g} to {1e3 * high:.3g} mm high; "
@@ -218,12 +299,13 @@ class LeatherTip(CueEffect):
         Returns
         -------
         float
-            Mass of the domed cylinder, kg.
+            Mass of the domed cylinder, kg, with its layers.
         """
         self.check_diameter(diameter)
         deep, rim = self._drop(diameter / 2), diameter / 2
         dome = math.pi * deep * (3 * rim**2 + deep**2) / 6
-        return self.rho * (math.pi * rim**2 * (self.height - deep) + dome)
+        more = math.fsum((layer.rho - self.rho) * layer.height for layer in self.layers)  # in the place of leather
+        return self.rho * (math.pi * rim**2 * (self.height - deep) + dome) + math.pi * rim**2 * more
 
     def lever(self, phi: float, diameter: float) -> tuple[float, float]:
         """Where the contact is, about the end of the ferrule.
@@ -355,8 +437,47 @@ class LeatherTip(CueEffect):
 
     def _table(self, diameter: float) -> TipTable:
         self.check_diameter(diameter)
-        curvature = min(diameter / self.dome_radius, CURVATURE[1])
-        return of_tip(self.height / diameter, curvature, self.nu)
+        own = self._own(diameter)
+        return of_tip(self.height / diameter, self._curvature(diameter), self.nu) if own is None else own_table(own)
+
+    def _curvature(self, diameter: float) -> float:
+        return min(diameter / self.dome_radius, CURVATURE[1])
+
+    def _own(self, diameter: float) -> OwnTip | None:
+        """The tip that the table does not hold, lengths over its diameter; None for one that it does."""
+
+        def flat(layer: TipLayer) -> tuple[float, float, float]:
+            return layer.height / diameter, layer.E / self.E, layer.nu
+
+        layers: list[tuple[float, float, float]] = []
+        for height, modulus, nu in map(flat, self.layers):
+            if layers and layers[-1][1:] == (modulus, nu):  # two of one kind are one
+                height += layers.pop()[0]
+            layers.append((height, modulus, nu))
+        if layers and layers[-1][1:] == (1.0, self.nu):  # it is of the leather itself
+            layers.pop()
+        height = self.height / diameter
+        if not layers and self.ferrule is None and covers(height, self.nu):
+            return None
+        ferrule = None if self.ferrule is None else flat(self.ferrule)
+        return OwnTip(height, self._curvature(diameter), self.nu, tuple(layers), ferrule)
+
+    def at_hand(self, diameter: float) -> bool:
+        """Whether the tip's elasticity is known: from the table, or because it was computed once.
+
+        Parameters
+        ----------
+        diameter
+            Diameter of the tip, m.
+
+        Returns
+        -------
+        bool
+            False if the next question takes about ten seconds.
+        """
+        self.check_diameter(diameter)
+        own = self._own(diameter)
+        return own is None or read(own) is not None
 
     def _place(self, diameter: float, offset: float) -> tuple[float, float]:
         """Distance of the patch's centre from the axis, over the tip's radius, and the angle there that is missing."""
@@ -384,7 +505,7 @@ class LeatherTip(CueEffect):
         at = RADII[1:]
         direct = np.diagonal(self._compliance(diameter, offset, at), axis1=1, axis2=2)
         below = self.height - self._drop(self._place(diameter, offset)[0] * diameter / 2)
-        return np.asarray(direct - punch_gain(below / diameter, self.nu, at))
+        return np.asarray(direct - punch_gain(self._table(diameter), below / diameter, at))
 
 
 @lru_cache(maxsize=32)

@@ -23,7 +23,8 @@ def tip_record(scene: Scene) -> Record:
     patch which sticks, as large as the greatest of a head-on blow at the scene's speed, along the surface over along
     the normal.
     """
-    leather, diameter = scene.leather, scene.shaft.segments[0].tip_diameter
+    leather = scene.leather
+    diameter = leather.diameter_on(scene.shaft.segments[0].tip_diameter)
     restitution = float(scene.tip.restitution)
     law = scene.tip_law(restitution)
     patches, depths, _ = leather.head_on(diameter, float(scene.ball.radius))

@@ -55,9 +55,13 @@ def effect_words(effect: Effect) -> str:
 
 
 def _short(value: Any) -> str:
-    """A number, with its unit if it has one, to six digits; true or false."""
+    """A number, with its unit if it has one, to six digits; true or false; a table or a list of them."""
     if isinstance(value, bool):
         return str(value).lower()
+    if isinstance(value, list):
+        return " and ".join(map(_short, value))
+    if isinstance(value, dict):
+        return "of " + ", ".join(f"{name} {_short(number)}" for name, number in value.items())
     number_text, _, unit = str(value).partition(" ")
     number = float(number_text)
     if unit == "GPa" and abs(number) < 1:  # leather's, as people say it

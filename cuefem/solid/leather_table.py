@@ -1,5 +1,7 @@
 """The static give of a leather tip, from the table beside this file, which studies/beam/leather_elasticity.py makes.
 
+A tip outside the table, with layers, or on a ferrule that gives, has a `TipTable` of its own (`cuefem.solid.own_tip`).
+
 Lengths are over the tip's diameter D and moduli over Young's modulus E here. A tip is its height, its dome's curvature
 D/r (0: flat) and Poisson's ratio nu; a patch is the place of its centre, the distance from the axis over D/2, and its
 radius. The table holds, at Chebyshev's nodes, logarithms of the compliance over a half-space's, in which nothing is
@@ -146,7 +148,10 @@ def table() -> Table:
 
 
 class TipTable(NamedTuple):
-    """The table of one tip: `Table` without its first axes; rim is None on steep domes."""
+    """The table of one tip: `Table` without its first axes; rim is None on steep domes.
+
+    punch: (height, radius, 2), of flat tips at the nodes of ``heights``, the range of the coordinate of the height.
+    """
 
     curvature: float
     nu: float
@@ -154,6 +159,13 @@ class TipTable(NamedTuple):
     cut: Array
     rim: Array | None
     head_on: Array
+    punch: Array
+    heights: tuple[float, float]
+
+
+def covers(height: float, nu: float) -> bool:
+    """Whether the table has the height, over D, and Poisson's ratio of a tip."""
+    return HEIGHT[0] * (1 - 1e-9) <= height <= HEIGHT[1] * (1 + 1e-9) and POISSON[0] <= nu <= POISSON[1]
 
 
 @lru_cache(maxsize=64)
@@ -174,7 +186,8 @@ def of_tip(height: float, curvature: float, nu: float) -> TipTable:
 
     whole, cut, straight = (mixed(part[panel]) for part in (all_tips.whole, all_tips.cut, all_tips.head_on))
     rim = mixed(all_tips.rim[panel]) if panel < len(all_tips.rim) else None
-    return TipTable(curvature, nu, whole, cut, rim, straight)
+    punch = np.tensordot(u, all_tips.punch, (0, 1))
+    return TipTable(curvature, nu, whole, cut, rim, straight, punch, heights(0.0))
 
 
 def radii(sheet: str, curvature: float, place: float) -> tuple[float, float]:
@@ -222,16 +235,14 @@ def _read(tip: TipTable, place: float, radius: Array) -> Array:
     return np.array([[normal, across], [across, shear]]).transpose(2, 0, 1)
 
 
-def punch_gain(height: float, nu: float, radius: Array) -> Array:
+def punch_gain(tip: TipTable, height: float, radius: Array) -> Array:
     """E D times what a rigid patch that sticks gives less than a Hertz-weighted one along n and t; (radii, 2).
 
     On a half-space a sixth of the compliance; on a leather as thick as the one below the patch, from the table.
     """
-    kept = table().punch
-    h = weights(height_coordinate(height, 0.0), *heights(0.0), kept.shape[0])
-    u = weights(poisson_coordinate(nu), *NU, kept.shape[1])
-    a = weights(np.log(np.maximum(radius, RADIUS[0])), *radii("rim", 0.0, 0.0), kept.shape[2])
-    return np.asarray(half_space(nu, radius) / 6 * (a @ np.tensordot(u, np.tensordot(h, kept, 1), 1)))
+    h = weights(height_coordinate(height, 0.0), *tip.heights, tip.punch.shape[0])
+    a = weights(np.log(np.maximum(radius, RADIUS[0])), *radii("rim", 0.0, 0.0), tip.punch.shape[1])
+    return np.asarray(half_space(tip.nu, radius) / 6 * (a @ np.tensordot(h, tip.punch, 1)))
 
 
 def head_on(tip: TipTable, radius: Array, ball: float) -> Array:

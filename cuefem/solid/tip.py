@@ -27,6 +27,7 @@ from cuefem.quantity import Quantity, check_fields
 
 Array = NDArray[np.float64]
 SOLVED = (10, 12, 15, 18, 22, 26, 31)  # harmonics above 8 that are computed; the others are interpolated
+ROWS = (0.0, 0.25, 0.75, 1.0)  # where elements end within a layer
 POINTS = 48  # Gauss points along a ray of a patch, and over each part of the half circle of rays
 
 
@@ -114,7 +115,7 @@ def layered(how: TipFineness, shape: Shape) -> TipFineness:
     """Rows for a tip with layers: those of ``how`` within the leather, and three within every layer."""
     rows, start = [0.0], 0.0
     for end in shape.ends:
-        rows += [start + part * (end - start) for part in (0.25, 0.75, 1.0)]
+        rows += [start + part * (end - start) for part in ROWS[1:]]
         start = float(end)
     return how._replace(up=(*rows, *(start + y * (1 - start) for y in how.up[1:])))
 

@@ -1,7 +1,7 @@
 """How much does a leather tip give, from its geometry? The table that cuefem's LeatherTip reads, and how good it is.
 
 A tip is a domed cylinder of linear, isotropic leather on a rigid ferrule, solved by cuefem/solid/tip.py, and
-cuefem/solid/tip_table.py gives one tip's part of the table. Two things are tabulated, over height, dome, Poisson's
+cuefem/solid/tip_sheets.py gives one tip's part of the table. Two things are tabulated, over height, dome, Poisson's
 ratio and the patch's radius: the compliance along the normal and along the surface of a patch with Hertz's pressure
 anywhere on the dome, and force and depth of a ball that is pressed on it head on. `cuefem.solid.leather_table` holds
 the coordinates and reads the table. The page compares the solid with exact solutions, and the table with the solid at
@@ -32,7 +32,7 @@ from cuefem.solid.tip import (
     surfaces,
     usual,
 )
-from cuefem.solid.tip_table import HEAD_ON, SHEETS, TABLE, all_loads, gains, of_shape
+from cuefem.solid.tip_sheets import HEAD_ON, SHEETS, TABLE, all_loads, gains, sheets_of
 from studies import pages
 from studies.pages import table
 
@@ -65,7 +65,7 @@ def build(n: dict[str, int] = COUNTS) -> lt.Table:
                 continue
             load = all_loads(k)
             for j, v in enumerate(lt.nodes(*lt.heights(k), n["height"])):
-                for u, tip in enumerate(of_shape(shape_at(k, v), nus, load)):
+                for u, tip in enumerate(sheets_of(shape_at(k, v), nus, load)):
                     for name, part in parts.items():
                         if panel < len(part):
                             part[panel, i, j, u] = getattr(tip, name)

@@ -183,7 +183,7 @@ def test_a_tip_as_thin_as_a_hair(tmp_path: Path, command: str) -> None:
     assert (status, out) == (2, "")
     assert err.splitlines()[0].startswith("unusual: segments[0].tip_diameter 0.012 mm; check the unit")
     assert err.splitlines()[-1].startswith(
-        f"cuefem: {path}: a leather tip on 0.012 mm must be 0.0016 to 0.018 mm high; got 6 mm"
+        f"cuefem: {path}: a leather tip on 0.012 mm must be 0.0006 to 0.036 mm high; got 6 mm"
     )
     status, out, err = call(command, path, "--contact-time", "2 ms", "--ball", "carom")
     assert (status, out) == (2, "")

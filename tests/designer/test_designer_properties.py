@@ -170,7 +170,7 @@ def test_the_files_own_materials_are_offered() -> None:
         ),
         ({"butt_diameter": -0.001}, "the cue must be thicker than nothing; got -1 mm"),
         ({"joint_compliance": 1e-3, "joint_position": 0.8}, "must be in (0, 0.7306) m"),
-        ({"tip_height": 0.1}, "must be 1.7 to 19.1 mm high; got 100 mm"),
+        ({"tip_height": 0.1}, "must be 0.638 to 38.2 mm high; got 100 mm"),
         ({"restitution": 1.1}, "Tip.restitution must be in [0, 1]; got 1.1"),
     ],
 )

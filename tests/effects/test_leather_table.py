@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from cuefem.solid import leather_table as lt
-from cuefem.solid.tip import Layer, Shape
-from cuefem.solid.tip_table import SHEETS, all_loads, gains, of_shape
+from cuefem.solid.own_tip import Flat, OwnTip
+from cuefem.solid.tip import Shape
+from cuefem.solid.tip_sheets import SHEETS, all_loads, gains, own_tip, sheets_of
 from studies.beam.leather_elasticity import COUNTS, curvatures, shape_at
 
 LARGEST = (0.0252, 0.0068)  # the page's, of patches within the rim and head on; 95 of 100 are below half a per cent
@@ -22,7 +23,7 @@ def test_one_tip_of_every_panel(panel: int, i: int, j: int, u: int) -> None:
     """All patches of all sheets, and all head on, of a curvature, height and Poisson's ratio out of the table."""
     k = curvatures(panel, COUNTS["curvature"])[i]
     shape = shape_at(k, lt.nodes(*lt.heights(k), COUNTS["height"])[j])
-    (tip,) = of_shape(shape, NUS[u : u + 1], all_loads(k))
+    (tip,) = sheets_of(shape, NUS[u : u + 1], all_loads(k))
     for name in (*SHEETS, "head_on"):
         if panel < len(getattr(lt.table(), name)):
             committed = getattr(lt.table(), name)[panel, i, j, u]
@@ -36,10 +37,10 @@ def test_what_a_patch_that_sticks_gives_less() -> None:
     np.testing.assert_allclose(gains(shape, NUS), lt.table().punch[j], rtol=2e-5, atol=2e-6)
 
 
-def errors(shape: Shape, nu: float, layers: tuple[Layer, ...] = ()) -> list[float]:
+def errors(shape: Shape, nu: float, layers: tuple[Flat, ...] = ()) -> list[float]:
     """The largest relative differences between a tip's own sheets and those of the table: within the rim, head on."""
     k = shape.curvature
-    (own,) = of_shape(Shape(shape.height, k, layers), [nu], all_loads(k))
+    own = own_tip(OwnTip(shape.height, k, nu, layers, None))
     table, radius = lt.of_tip(shape.height, k, nu), np.linspace(0.06, 0.4, 8)
     apart = []
     for place in np.array([0.1, 0.5, 0.9]) * lt.farthest(k):
@@ -59,7 +60,7 @@ def test_ten_random_tips_and_one_with_a_pad_of_leather() -> None:
     for i in range(10):
         k, nu = rng.uniform(0.5, 2.0), rng.uniform(0.2, 0.45)
         height = rng.uniform(max(lt.HEIGHT[0], lt.sag(k) + 0.05), 1.2)
-        apart.append(errors(Shape(height, k), nu, (Layer(0.04, 1.0, nu),) if i == 0 else ()))
+        apart.append(errors(Shape(height, k), nu, ((0.04, 1.0, nu),) if i == 0 else ()))
     print("median, 95 %, largest of patches and head on:", np.quantile(apart, (0.5, 0.95, 1.0), axis=0).T.round(5))
     assert np.all(np.max(apart, axis=0) < LARGEST)
     assert np.all(np.quantile(apart, 0.95, axis=0) < 0.005)

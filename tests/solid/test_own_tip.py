@@ -1,0 +1,170 @@
+"""Tips that the table does not hold: what they give, where they are kept, and what is refused."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import cuefem as cf
+from cuefem.solid.own_tip import own_table, read
+from tests.helpers.command_line import call
+from tests.helpers.refusals import command_refuses
+
+D = 12.75e-3
+PLAIN = cf.LeatherTip(height=6e-3, dome_radius=9.5e-3, E=100e6)
+FLAT = cf.LeatherTip(height=1.5e-3, dome_radius=np.inf, E=100e6)  # lower than the table's, and the soonest computed
+PATCHES = np.array([1e-3, 2e-3, 3e-3])
+
+SCENE = """
+game = "pool"
+cue = { shaft = "conical taper", material = "hard maple", body_mass = "400 g" }
+
+[[effects]]
+type = "LeatherTip"
+dome_radius = "9.5 mm"
+E = "100 MPa"
+"""
+
+
+@pytest.fixture
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty cache folder; what this process knows of tips is forgotten."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    own_table.cache_clear()
+    return tmp_path / "cache" / "cuefem" / "tips"
+
+
+def gives(tip: cf.LeatherTip) -> list[np.ndarray]:
+    """Everything that a contact asks of a tip."""
+    return [
+        tip.compliance(D, 0.375, PATCHES),
+        np.array(tip.head_on(D, 0.0286)[1:])[:, 1:],
+        tip.shear_stiffness(D, 0.375)[1][1:],
+    ]
+
+
+def test_layers_of_the_leather_are_no_layers() -> None:
+    """To 1e-10, and at no cost: two halves of one pad are the pad, a pad of the leather is the leather."""
+    same = cf.TipLayer(1e-3, 100e6, 0.4)
+    for layers in ((same,), (same, same)):
+        for own, plain in zip(gives(replace(PLAIN, layers=layers)), gives(PLAIN), strict=True):
+            np.testing.assert_allclose(own, plain, rtol=1e-10)
+    pad = cf.TipLayer(1e-3, 2e9)
+    halves, whole = (replace(PLAIN, layers=layers)._own(D) for layers in ((replace(pad, height=0.5e-3),) * 2, (pad,)))
+    assert halves == whole
+
+
+def test_the_mass_has_its_layers() -> None:
+    pad = cf.TipLayer(1e-3, 2e9, rho=1900.0)
+    more = replace(PLAIN, layers=(pad,)).mass(D) - PLAIN.mass(D)
+    assert more == pytest.approx(np.pi / 4 * D**2 * 1e-3 * 900.0, rel=1e-12)
+
+
+def test_a_tip_that_is_smaller_than_its_ferrule() -> None:
+    """It strikes as on a ferrule of its own diameter, on a cue that is otherwise the same."""
+    cue = cf.Cue((cf.Segment(0.7, D, 21e-3, cf.Material(12.6e9, 1.1e9, 700.0)),), body_mass=0.4)
+    small = cf.usual_scene(cue, "pool", tip=replace(PLAIN, diameter=11e-3))
+    assert small.contact_terms.tip.diameter == 11e-3  # type: ignore[union-attr]
+    assert small.leather.mass_on(cue) == PLAIN.mass(11e-3)
+    wide, narrow = cf.strike(cf.usual_scene(cue, "pool", tip=PLAIN)), cf.strike(small)
+    assert 0 < narrow.squirt / wide.squirt - 1 < 0.1 or 0 < 1 - narrow.squirt / wide.squirt < 0.1
+
+
+def test_kept_in_a_file_and_made_again_when_that_is_spoilt(cache: Path) -> None:
+    """The file gives what was computed, bit by bit; a torn, an empty and a foreign file are as none."""
+    assert not FLAT.at_hand(D)
+    first = gives(FLAT)
+    assert FLAT.at_hand(D)
+    (file,) = cache.iterdir()
+    content = file.read_bytes()
+    own_table.cache_clear()
+    for again, before in zip(gives(FLAT), first, strict=True):
+        np.testing.assert_array_equal(again, before)
+    half = len(content) // 2
+    for spoilt in (content[:half], b"", b"hello", content[:half] + b"\0" * 40 + content[half + 40 :]):
+        file.write_bytes(spoilt)
+        assert not FLAT.at_hand(D)
+    own_table.cache_clear()
+    for again, before in zip(gives(FLAT), first, strict=True):
+        np.testing.assert_allclose(again, before, rtol=1e-10)
+    assert file.read_bytes() != spoilt
+    assert FLAT.at_hand(D)
+
+
+def test_without_a_place_to_keep_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A tip is computed all the same where the cache folder is a file."""
+    (tmp_path / "file").touch()
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    own_table.cache_clear()
+    assert np.all(np.isfinite(FLAT.head_on(D, 0.0286)[2]))
+    own = FLAT._own(D)
+    assert own is not None
+    assert read(own) is None
+
+
+@pytest.mark.heavy
+def test_two_processes_at_once(cache: Path) -> None:
+    """Both compute the same tip, and what is kept is whole."""
+    ask = "import cuefem as cf; print(cf.LeatherTip(1.5e-3, float('inf'), 1e8).compliance(0.01275, 0.0, 2e-3).tolist())"
+    both = [subprocess.Popen([sys.executable, "-c", ask], stdout=subprocess.PIPE, env=os.environ) for _ in range(2)]
+    told = [process.communicate(timeout=300)[0] for process in both]
+    assert told[0] == told[1] != b""
+    assert [file.suffix for file in cache.iterdir()] == [".npz"]
+    assert FLAT.at_hand(D)
+
+
+@pytest.mark.heavy
+def test_a_ferrule_that_gives(cache: Path) -> None:
+    """It adds little; how high it is drawn does not matter, for the beam has its bending; a hard one adds nothing."""
+    high, higher, hard = (
+        gives(replace(PLAIN, ferrule=cf.TipLayer(height, E)))
+        for height, E in ((20e-3, 3e9), (40e-3, 3e9), (20e-3, 9e11))
+    )
+    plain = gives(PLAIN)
+    for at_20, at_40, rigid, table in zip(high, higher, hard, plain, strict=True):
+        scale = np.abs(table).max() if table.shape == (3, 2, 2) else np.abs(table)
+        assert np.max(np.abs(at_40 - at_20) / scale) < 5e-4
+        assert np.max(np.abs(rigid - table) / scale) < 5e-3  # what the table claims
+        assert np.max(np.abs(at_20 - table) / scale) < 0.03
+    assert np.all(np.diagonal(high[0], axis1=1, axis2=2) > np.diagonal(plain[0], axis1=1, axis2=2))
+
+
+@pytest.mark.heavy
+def test_the_command_says_that_it_computes_once(cache: Path, tmp_path: Path) -> None:
+    file = tmp_path / "scene.toml"
+    file.write_text(SCENE + 'height = "6 mm"\nlayers = [{ height = "1 mm", E = "2 GPa" }]\n')
+    (_, first, said), (_, second, silent) = (call("strike", file, "--json") for _ in range(2))
+    assert "computing this tip once" in said
+    assert "computing" not in silent
+    assert first == second != ""
+    loaded = cf.load(file)
+    cf.save(loaded, tmp_path / "again.toml")
+    assert cf.load(tmp_path / "again.toml") == loaded
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        ('height = "6 mm"\nlayers = [{ height = "0 mm", E = "2 GPa" }]', "effects[0].layers[0].height: must be"),
+        ('height = "6 mm"\nlayers = [{ height = "1 mm" }]', "effects[0].layers[0].E: must be given"),
+        ('height = "6 mm"\nlayers = [{ height = "1 mm", E = "2 GPa", nu = 0.5 }]', "layers[0].nu: must be 0 to 0.49"),
+        ('height = "6 mm"\nlayers = [{ height = "1 mm", E = "2e6 GPa" }]', "1e-3 to 1e4 of the leather's E"),
+        ('height = "6 mm"\nlayers = [{ height = "5 mm", E = "2 GPa" }]', "to end below its dome; got 5 mm"),
+        ('height = "6 mm"\nlayers = [{ thickness = "1 mm", E = "2 GPa" }]', "must be one of the keys height, E, nu"),
+        ('height = "6 mm"\ndiameter = "14 mm"', "diameter: must be"),
+        ('height = "6 mm"\nferrule = { height = "90 mm", E = "2 GPa" }', "five diameters of the tip"),
+        ('height = "60 mm"', "high; got 60 mm"),
+        ('height = "6 mm"\nnu = 0.5', "nu: must be 0 to 0.49; got 0.5"),
+    ],
+)
+def test_refusals(tmp_path: Path, more: str, words: str) -> None:
+    """In one line, with status 2, before anything is computed."""
+    file = tmp_path / "scene.toml"
+    file.write_text(SCENE + more + "\n")
+    command_refuses(words, "strike", file)
