@@ -12,10 +12,9 @@ from cuefem.effects.leather import DOMES
 from cuefem.materials import MATERIALS, WOODS
 from cuefem.parts import Layout
 from cuefem.results.band import OF_DIFFERENCE
-from cuefem.results.designs import OneDesign, at_offset
-from cuefem.results.quantities import RESULTS
+from cuefem.results.designs import OneDesign, off_centre
+from cuefem.results.quantities import RESULTS, scaled, with_unit
 from cuefem.results.records import Record
-from cuefem.results.verdict import USUAL_OFFSET
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved
 from cuefem.vary import PLACES, varied
@@ -57,10 +56,10 @@ def _bores(own: Record) -> Iterator[Advice]:
         return
     if depth <= 0:
         new = {"bore depth": NEW_DEPTH, "bore width": NEW_BORE}
-        yield Advice(f"a bore, {_mm(NEW_BORE)} mm wide and {_mm(NEW_DEPTH)} mm deep", new)
+        yield Advice(f"a bore, {with_unit(NEW_BORE, 'm')} wide and {with_unit(NEW_DEPTH, 'm')} deep", new)
         return
-    yield Advice(f"bore wider, {_mm(width)} → {_mm(width + WIDER)} mm", {"bore width": width + WIDER})
-    yield Advice(f"bore deeper, {_mm(depth)} → {_mm(depth + DEEPER)} mm", {"bore depth": depth + DEEPER})
+    yield Advice(f"bore wider, {_from_to(width, width + WIDER)}", {"bore width": width + WIDER})
+    yield Advice(f"bore deeper, {_from_to(depth, depth + DEEPER)}", {"bore depth": depth + DEEPER})
 
 
 def _fronts(own: Record) -> Iterator[Advice]:
@@ -68,9 +67,7 @@ def _fronts(own: Record) -> Iterator[Advice]:
     if length is None:
         return
     if length - SHORTER >= LEAST_FERRULE:
-        yield Advice(
-            f"ferrule shorter, {_mm(length)} → {_mm(length - SHORTER)} mm", {"ferrule length": length - SHORTER}
-        )
+        yield Advice(f"ferrule shorter, {_from_to(length, length - SHORTER)}", {"ferrule length": length - SHORTER})
     for name in FERRULES:
         if MATERIALS[name].material != material:
             yield Advice(f"ferrule of {name}", {"ferrule material": name})
@@ -79,7 +76,7 @@ def _fronts(own: Record) -> Iterator[Advice]:
 def _tips(own: Record) -> Iterator[Advice]:
     height, dome = own["tip_height"], own["dome"]
     if height is not None and height - LOWER >= LEAST_TIP:
-        yield Advice(f"leather lower, {_mm(height)} → {_mm(height - LOWER)} mm", {"tip height": height - LOWER})
+        yield Advice(f"leather lower, {_from_to(height, height - LOWER)}", {"tip height": height - LOWER})
     for name in ("dime", "nickel"):
         if dome is not None and abs(DOMES[name] - dome) > 0.1 * MM:
             yield Advice(f"dome of a {name}", {"dome": DOMES[name]})
@@ -98,11 +95,11 @@ def _tapers(cue: Cue, own: Record) -> Iterator[Advice]:
     assert at is not None
     x = at(cue)
     thinner = {"tip diameter": tip - THINNER, "taper diameter": taper - THINNER}
-    yield Advice(f"{_mm(THINNER)} mm thinner from the tip to {_mm(x)} mm", thinner)
+    yield Advice(f"{with_unit(THINNER, 'm')} thinner from the tip to {with_unit(x, 'm')}", thinner)
     cone, pro = tip + (end - tip) * x / cue.length, tip + PRO_GAIN
     for name, wanted in (("straight taper, a cone", cone), ("pro taper", pro)):
         if abs(wanted - taper) > 0.2 * MM:
-            yield Advice(f"{name}, {_mm(wanted)} mm at {_mm(x)} mm", {"taper diameter": wanted})
+            yield Advice(f"{name}, {with_unit(wanted, 'm')} at {with_unit(x, 'm')}", {"taper diameter": wanted})
 
 
 def _woods(cue: Cue) -> Iterator[Advice]:
@@ -120,11 +117,11 @@ def _woods(cue: Cue) -> Iterator[Advice]:
             f"cue.segments[{i}].tip_bore": segment.tip_diameter - 2 * CARBON_WALL,
             f"cue.segments[{i}].butt_bore": segment.butt_diameter - 2 * CARBON_WALL,
         }
-    yield Advice(f"shaft a carbon tube, wall {_mm(CARBON_WALL)} mm, foam inside", tube)
+    yield Advice(f"shaft a carbon tube, wall {with_unit(CARBON_WALL, 'm')}, foam inside", tube)
 
 
-def _mm(length: float) -> str:
-    return f"{1e3 * length:.4g}"
+def _from_to(old: float, new: float) -> str:
+    return f"{scaled(old, 'm'):.4g} → {with_unit(new, 'm')}"
 
 
 def advice_record(scene: Scene, *, solved: Solved | None = None, follow: Follow = list) -> Record:
@@ -134,20 +131,19 @@ def advice_record(scene: Scene, *, solved: Solved | None = None, follow: Follow 
     "verdict": whether it pays. A stroke head on is taken at the usual offset. solved: the scene's modes, if they are
     known. follow: shows how far the work is.
     """
-    if not scene.stroke.offset:
-        scene, solved = at_offset(scene, USUAL_OFFSET), None
-    own = _numbers(solved or Solved(scene))
+    struck = off_centre(scene)
+    own = _numbers(Solved(struck) if solved is None or struck is not scene else solved)
     rows = []
-    for change in follow(changes_of(scene)):
+    for change in follow(changes_of(struck)):
         try:
-            made = varied(scene, change.places)
-            if _wall(made) < min(LEAST_WALL, _wall(scene)):
+            made = varied(struck, change.places)
+            if _wall(made) < min(LEAST_WALL, _wall(struck)):
                 continue
             rows.append(_row(change, own, _numbers(Solved(made))))
         except (ValueError, RuntimeError):
             continue
     rows.sort(key=lambda row: row["squirt_change"])
-    return {"offset": float(scene.stroke.offset), "own": own, "changes": rows}
+    return {"offset": float(struck.stroke.offset), "own": own, "changes": rows}
 
 
 def _numbers(solved: Solved) -> Record:

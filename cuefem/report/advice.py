@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
-
 from cuefem.results.band import OF_DIFFERENCE
+from cuefem.results.quantities import with_unit
 from cuefem.results.records import Record, Sheet, sheet
 
 STYLES = {"pays": "bold", "more squirt": "dim"}
@@ -35,8 +34,8 @@ def advice_notes(record: Record) -> list[str]:
     """What the table is."""
     return [
         f"Each change alone, by the whole stroke at b/R {record['offset']:g}, where this cue has "
-        f"{math.degrees(record['own']['squirt']):.2f}° (what that may be off: `cuefem report`); a change of squirt was "
-        f"right to {100 * OF_DIFFERENCE:.0f} % of itself on measured cues.",
+        f"{with_unit(record['own']['squirt'], 'rad', decimals=2)} (what that may be off: `cuefem report`); a change of "
+        f"squirt was right to {100 * OF_DIFFERENCE:.0f} % of itself on measured cues.",
         "Stiffness: static, at the tip, the butt end clamped. Pays: a hundredth less squirt or more; costs stiffness: "
         "a twentieth of it or more.",
     ]

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from cuefem.report.words import listed
 from cuefem.results.band import OF_DIFFERENCE
+from cuefem.results.quantities import scaled, with_unit
 from cuefem.results.records import Record, Sheet
 
 SAME = 0.005  # differences below this are told as "as much"
@@ -14,17 +15,17 @@ SAME = 0.005  # differences below this are told as "as much"
 
 def squirt_words(record: Record) -> tuple[str, str]:
     """The squirt to the digits that are sure, and what it may be off: "1.8°" and "0.3°"."""
-    squirt, error = (math.degrees(abs(record[name])) for name in ("squirt", "squirt_error"))
-    decimals = min(3, max(0, -math.floor(math.log10(error)))) if error else 1
-    return f"{squirt:.{decimals}f}°", f"{error:.{decimals}f}°"
+    squirt, error = abs(record["squirt"]), record["squirt_error"]
+    decimals = min(3, max(0, -math.floor(math.log10(scaled(error, "rad"))))) if error else 1
+    return with_unit(squirt, "rad", decimals=decimals), with_unit(error, "rad", decimals=decimals)
 
 
 def headline(record: Record) -> str:
     """The squirt with its band in a line."""
     squirt, error = squirt_words(record)
-    aside = 1e3 * math.tan(abs(record["squirt"]))
+    aside = with_unit(math.tan(abs(record["squirt"])), "m", decimals=0)
     where = f"at b/R {record['offset']:g}" + (", for the stroke itself is head on" if record["head_on"] else "")
-    return f"squirt {squirt}, give or take {error} ({where}): the ball goes {aside:.0f} mm aside in a metre"
+    return f"squirt {squirt}, give or take {error} ({where}): the ball goes {aside} aside in a metre"
 
 
 def than_words(difference: float) -> str:
@@ -118,7 +119,7 @@ def scale(record: Record) -> list[ScaleRow]:
 def _rounded(squirt: float, like: str) -> str:
     """A squirt with a decimal more than one's own, since ratios are surer than levels."""
     decimals = len(like.rstrip("°").partition(".")[2]) + 1
-    return f"{math.degrees(squirt):.{decimals}f}°"
+    return with_unit(squirt, "rad", decimals=decimals)
 
 
 def verdict_part(record: Record) -> Record:

@@ -72,14 +72,14 @@ def of_inputs(solved: Solved, own: float) -> dict[str, float]:
         for off in ways:  # the other way where no cue can be farther out
             try:
                 made = replaced(scene, {known.steps(): value * math.exp(off)})
-                changes[key] = abs(_squirt_beside(solved, made) / own - 1)
+                changes[key] = abs(squirt_beside(solved, made) / own - 1)
             except (ValueError, RuntimeError):
                 continue
             break
     return changes
 
 
-def _squirt_beside(solved: Solved, made: Scene) -> float:
+def squirt_beside(solved: Solved, made: Scene) -> float:
     """Squirt of a changed scene, rad, by the modes that are known where the cue is not changed."""
     if (made.cue, made.cue_effects) == (solved.scene.cue, solved.scene.cue_effects):
         return float(strike_modes(made, solved.tip, recorded=False).squirt)

@@ -19,17 +19,24 @@ from cuefem.cue import Array
 from cuefem.effects import Support
 from cuefem.endmass.drives import DEFINITIONS, Definition, flexible, small_offset_slope, stick
 from cuefem.endmass.undamped import StickLimit, stick_reason
+from cuefem.games import GAMES
 from cuefem.results.pivot import pivot_length
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import Solved
 
 TONES = 5  # bending modes that are told of one scene
+USUAL_OFFSET = GAMES["pool"].offset  # b/R
 OFFSETS = (0.1, 0.2, 0.3, 0.4, 0.5)  # b/R at which its squirt is told
 
 
 def at_offset(scene: Scene, offset: Any) -> Scene:
     """The same stroke at another offset, or at an array of them."""
     return replace(scene, stroke=replace(scene.stroke, offset=offset))
+
+
+def off_centre(scene: Scene) -> Scene:
+    """The scene itself; one that is struck head on, which has no squirt, with the usual offset instead."""
+    return scene if scene.stroke.offset else at_offset(scene, USUAL_OFFSET)
 
 
 def strikes_at(scene: Scene, offsets: Iterable[float], tip: TipModes) -> Iterator[Outcome]:

@@ -293,10 +293,14 @@ GRIPS = {
 }
 
 
-def with_unit(value: float, unit: str, digits: int = 4, *, error: float | None = None) -> str:
-    """A number of that SI unit as people read it, to so many digits; with an error, to the error's second digit."""
+def with_unit(
+    value: float, unit: str, digits: int = 4, *, error: float | None = None, decimals: int | None = None
+) -> str:
+    """A number of that SI unit as people read it, to so many digits or decimals; with an error, to its second digit."""
     scale, name = TRADE.get(unit, (1.0, unit))
     tail = f" {name}" if name not in ("", "°") else name
+    if decimals is not None:
+        return f"{scale * value:.{decimals}f}{tail}"
     if error is None or not math.isfinite(error) or error <= 0:
         return f"{scale * value:.{digits}g}{tail}"
     decimals = max(0, 1 - math.floor(math.log10(scale * error)))

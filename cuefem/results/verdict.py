@@ -5,17 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from cuefem.contact.strike import strike_modes
 from cuefem.cue import Cue
 from cuefem.effects import Joint, PointMass, Support
-from cuefem.games import GAMES, without_leather
-from cuefem.results.band import band, of_difference, of_inputs, of_shaft, squirt_of
-from cuefem.results.designs import at_offset
+from cuefem.games import without_leather
+from cuefem.results.band import band, of_difference, of_inputs, of_shaft, squirt_beside, squirt_of
+from cuefem.results.designs import off_centre
 from cuefem.results.records import Record
 from cuefem.scene import Outcome, Scene
 from cuefem.tip_modes import Solved
-
-USUAL_OFFSET = GAMES["pool"].offset
 
 
 def verdict_record(scene: Scene, outcome: Outcome, ready: Mapping[str, Cue], *, solved: Solved | None = None) -> Record:
@@ -25,18 +22,18 @@ def verdict_record(scene: Scene, outcome: Outcome, ready: Mapping[str, Cue], *, 
     squirt. "among": squirt, own squirt over it less 1, and the error of that. ready: the first is what is compared with
     in words. solved: the scene's modes by default, if they are known already.
     """
-    offset = float(scene.stroke.offset)
-    struck = scene if offset else at_offset(scene, USUAL_OFFSET)
-    solved = Solved(struck) if solved is None or not offset else solved
+    struck = off_centre(scene)
+    head_on = struck is not scene
+    solved = Solved(struck) if solved is None or head_on else solved
     # as fine as what it is compared with, where the outcome may be finer
-    own = float(outcome.squirt if offset and outcome.error is None else strike_modes(struck, solved.tip).squirt)
-    squirt = float(outcome.squirt) if offset else own
+    own = squirt_beside(solved, struck) if head_on or outcome.error is not None else float(outcome.squirt)
+    squirt = own if head_on else float(outcome.squirt)
     inputs = of_inputs(solved, own)
     found = band(struck, inputs, outcome.error)
     among = {name: _beside(struck, own, cue, of_shaft(inputs)) for name, cue in ready.items()}
     return {
         "offset": float(struck.stroke.offset),
-        "head_on": not offset,
+        "head_on": head_on,
         "squirt": squirt,
         "band": found._asdict() | {"whole": found.whole},
         "inputs": inputs,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,8 +13,11 @@ import pytest
 
 import cuefem as cf
 from cuefem.design.advice import COSTS, LEAST_WALL, PAYS, advice_record, changes_of
+from cuefem.games import GAMES
 from cuefem.materials import material
 from cuefem.report.page import page
+from cuefem.results.verdict import verdict_record
+from cuefem.tip_modes import Solved
 from cuefem.vary import varied
 from tests.helpers.command_line import call
 
@@ -43,6 +47,19 @@ def test_every_row_is_the_strike_of_the_changed_cue(found: tuple[cf.Scene, dict]
         assert row["shaft_mass_change"] == pytest.approx(made.cue.shaft_mass - scene.cue.shaft_mass, abs=1e-12)
         heard = cf.modes(made.cue, effects=made.cue_effects).frequencies[0]
         assert row["frequency_change"] == pytest.approx(heard - tone, abs=1e-6 * tone)
+
+
+def test_head_on_the_advice_and_the_verdict_are_those_of_the_usual_offset() -> None:
+    scene = scene_of("pool_maple")
+    head_on = replace(scene, stroke=replace(scene.stroke, offset=0.0))
+    usual = replace(scene, stroke=replace(scene.stroke, offset=GAMES["pool"].offset))
+    solved = Solved(head_on)
+    advice, verdict = advice_record(head_on, solved=solved), verdict_record(head_on, cf.strike(head_on), {})
+    assert advice == advice_record(usual)
+    assert verdict["head_on"]
+    assert advice["offset"] == verdict["offset"] == usual.stroke.offset
+    assert advice["own"]["squirt"] == pytest.approx(verdict["squirt"], rel=1e-9)
+    assert verdict["squirt"] == pytest.approx(cf.strike(usual).squirt, rel=1e-9)
 
 
 def test_the_least_squirt_comes_first_and_what_pays_says_so(found: tuple[cf.Scene, dict]) -> None:
