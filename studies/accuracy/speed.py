@@ -163,9 +163,9 @@ def report(rounds: int = ROUNDS, repeats: int = STARTS) -> str:
         "|---|---|---|---|",
         *(f"| {name} | {1e3 * t:.2f} | {t / expm:.1f} | {t / eigh:.1f} |" for name, t in found.items()),
         "",
-        f"To assemble the beam's matrices scikit-fem takes {found[FORMS] / found[STRIKE]:.0f} times as long as a whole "
-        f"strike, and {found[FORMS] / found[TABULATED]:.0f} times as long as cuefem's tabulated basis, which is kept while",
-        "that is more than a quarter of a strike.",
+        f"To assemble the beam's matrices scikit-fem takes {found[FORMS] / found[STRIKE]:.0f} times as long as a whole",
+        f"strike, and {found[FORMS] / found[TABULATED]:.0f} times as long as cuefem's tabulated basis, which is kept",
+        "while that is more than a quarter of a strike.",
         "",
         "| whole process | s |",
         "|---|---|",
