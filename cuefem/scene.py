@@ -306,6 +306,12 @@ class Scene:
             raise ValueError("Scene.effects must hold a LeatherTip; got none")
         return found
 
+    @property
+    def tip_at_hand(self) -> bool:
+        """Whether the elasticity of the scene's tip is known; False if its first blow computes it for seconds."""
+        tips = [] if self._tip_diameter is None else [e for e in self.effects if isinstance(e, LeatherTip)]
+        return all(tip.at_hand(tip.diameter_on(self._tip_diameter or 0.0)) for tip in tips)
+
     def tip_law(self, restitution: float = 1.0, offset: float = 0.0) -> LeatherLaw:
         """The law of a whole tip (`LeatherTip`) on this cue and ball; ValueError if the scene has none."""
         whole = self.contact_terms.tip

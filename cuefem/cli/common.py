@@ -11,7 +11,6 @@ import click
 
 from cuefem.cli.printing import assumed_lines, json_option, tell
 from cuefem.cli.strokes import option, place_options, refuse_game, usual, with_options
-from cuefem.effects import LeatherTip
 from cuefem.effects.leather_law import TooDeep
 from cuefem.games import DEFAULT_GAME
 from cuefem.io import InputError, check_place, load_stroke
@@ -23,7 +22,7 @@ from cuefem.report.words import cue_line, effect_words
 from cuefem.results.quantities import UNITS
 from cuefem.results.records import Record, plain
 from cuefem.scene import Scene
-from cuefem.solid.own_tip import SECONDS
+from cuefem.solid.own_tip import ONCE
 
 
 def file_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -107,14 +106,9 @@ def scene_of(
 def compute_tip(scene: Scene) -> None:
     """Compute the scene's leather tip if it is none of the table's and was never computed, and say that it takes a
     while."""
-    if scene.lumped is not None:
-        return
-    for tip in scene.effects:
-        if isinstance(tip, LeatherTip):
-            diameter = tip.diameter_on(scene.shaft.segments[0].tip_diameter)
-            if not tip.at_hand(diameter):
-                click.echo(f"computing this tip once (about {SECONDS} s)", err=True)
-                tip.head_on(diameter, float(scene.ball.radius))
+    if not scene.tip_at_hand:
+        click.echo(ONCE, err=True)
+        scene.tip_law()
 
 
 def remark(scene: Scene, *, blow: bool = True) -> None:

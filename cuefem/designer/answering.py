@@ -15,6 +15,7 @@ from typing import Any, Protocol
 from cuefem.designer.answers import answers, completing, coupled_points, density, with_end_mass
 from cuefem.designer.computing import FAILURES, Memory, Results, computed, give_back
 from cuefem.scene import Scene
+from cuefem.solid.own_tip import ONCE
 
 IDLE = 0.12  # s without a move before the slower results are computed
 SENT = 0.002  # s that the numbers are given to leave before anything else is computed
@@ -102,6 +103,9 @@ class Answering:
         scene = self.page.scenes()[0]
         one = self.memory.get(scene)
         try:
+            if one is None and not scene.tip_at_hand:
+                self.page.say(ONCE)
+                self.failed = True  # so that the words go with the answer
             one = one or await self._begun(scene)
             if self.mine is not None and self.mine.whole:
                 self.before = self.mine

@@ -22,7 +22,7 @@ import platformdirs
 from cuefem.solid.leather_table import TipTable
 
 VERSION = 1  # of what a file holds, and of how it is computed
-SECONDS = 10  # what a tip takes, about
+ONCE = "computing this tip once (about 10 s)"  # what a person is told meanwhile
 
 Flat = tuple[float, float, float]  # a layer's height over D, Young's modulus over that of the leather, Poisson's ratio
 

@@ -11,6 +11,7 @@ import pytest
 from cuefem.designer.answering import Answering
 from cuefem.designer.start import first_scene
 from cuefem.scene import Scene
+from cuefem.solid.own_tip import ONCE
 
 
 class Page:
@@ -115,3 +116,25 @@ def test_pictures_follow_while_knobs_are_moved_all_the_time(monkeypatch: pytest.
 
     told = asyncio.run(answered()).told
     assert told[: told.index("pictures") + 1] == ["busy", "numbers", "move", "numbers", "pictures"]
+
+
+def test_a_tip_that_is_computed_for_seconds_is_told_and_the_words_go_with_the_answer(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    words: list[str] = []
+
+    async def answered() -> Page:
+        page = Page(at_offset(0.3))
+        page.say = lambda told: page.told.append(told) or words.append(told)  # type: ignore[method-assign,assignment,func-returns-value]
+        moving = asyncio.create_task(Answering(page).moved())
+        await page.drawn.wait()
+        moving.cancel()
+        await asyncio.gather(moving, return_exceptions=True)
+        return page
+
+    asyncio.run(answered())
+    assert words == []
+    monkeypatch.setattr(Scene, "tip_at_hand", False)
+    told = asyncio.run(answered()).told
+    assert words == [ONCE, ""]
+    assert told[:4] == ["busy", ONCE, "", "numbers"]
