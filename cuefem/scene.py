@@ -241,16 +241,22 @@ class Scene:
     @property
     def level(self) -> Scene:
         """The scene with a level cue: without effects that put a table under the ball."""
-        kept = tuple(effect for effect in self.effects if ContactTerms.of((effect,), self._tip_diameter).table is None)
+        kept = tuple(effect for effect in self.effects if ContactTerms.of((effect,), self._end_diameter).table is None)
         return self if len(kept) == len(self.effects) else replace(self, effects=kept)
 
     @property
     def contact_terms(self) -> ContactTerms:
         """What the effects add at the contact."""
-        return ContactTerms.of(self.effects, self._tip_diameter)
+        return ContactTerms.of(self.effects, self._end_diameter)
 
     @property
-    def _tip_diameter(self) -> float | None:
+    def tip_diameter(self) -> float:
+        """Diameter of the tip, m: that of a whole tip, or else of the shaft's end; ValueError for a lumped cue."""
+        whole = self.contact_terms.tip
+        return self.shaft.segments[0].tip_diameter if whole is None else float(whole.diameter)
+
+    @property
+    def _end_diameter(self) -> float | None:
         return None if self.lumped is not None else self.shaft.segments[0].tip_diameter
 
     @property
@@ -309,8 +315,8 @@ class Scene:
     @property
     def tip_at_hand(self) -> bool:
         """Whether the elasticity of the scene's tip is known; False if its first blow computes it for seconds."""
-        tips = [] if self._tip_diameter is None else [e for e in self.effects if isinstance(e, LeatherTip)]
-        return all(tip.at_hand(tip.diameter_on(self._tip_diameter or 0.0)) for tip in tips)
+        tips = [] if self._end_diameter is None else [e for e in self.effects if isinstance(e, LeatherTip)]
+        return all(tip.at_hand(tip.diameter_on(self._end_diameter or 0.0)) for tip in tips)
 
     def tip_law(self, restitution: float = 1.0, offset: float = 0.0) -> LeatherLaw:
         """The law of a whole tip (`LeatherTip`) on this cue and ball; ValueError if the scene has none."""

@@ -26,6 +26,10 @@ class WholeTip(Protocol):
     """A tip that gives everything at the contact: where this is on the cue, and the forces there."""
 
     @property
+    def diameter(self) -> float:
+        """Its diameter, m."""
+
+    @property
     def dome_radius(self) -> float:
         """Radius of its dome, m; 0 for a flat tip."""
 

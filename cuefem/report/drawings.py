@@ -81,12 +81,16 @@ def materials_of(cue: SeenCue) -> tuple[str, ...]:
 
 
 def seen(scene: Scene) -> SeenCue:
-    """The cue as one sees it: with the leather of a tip that is given as a whole, in front of its segments."""
+    """The cue as one sees it: with the leather and the layers of a whole tip in front of its segments."""
     segments = scene.shaft.segments
     if scene.contact_terms.tip is None:
         return SeenCue(segments)
-    across = segments[0].tip_diameter
-    return SeenCue((Segment(scene.leather.height, across, across, MATERIALS["leather"].material), *segments))
+    tip = scene.leather
+    across = tip.diameter_on(segments[0].tip_diameter)
+    below = [(layer.height, Material(layer.E, layer.E / 2 / (1 + layer.nu), layer.rho)) for layer in tip.layers[::-1]]
+    leather = tip.height - math.fsum(height for height, _ in below)
+    in_front = [(leather, MATERIALS["leather"].material), *below]
+    return SeenCue((*(Segment(height, across, across, of) for height, of in in_front), *segments))
 
 
 def style_of(name: str) -> str:
@@ -185,7 +189,7 @@ def strike_drawing(scene: Scene, squirt: float) -> StrikeDrawing:
     R = scalar("Ball.radius", scene.ball.radius)
     phi = math.asin(scalar("Stroke.offset", scene.stroke.offset))
     r = scene.dome_radius
-    across = scene.cue.segments[0].tip_diameter if scene.cue.segments else 0.4 * R
+    across = scene.tip_diameter if scene.cue.segments else 0.4 * R
     apex, scale = 300.0, 1.9e3 * 0.03 / R
     middle = 75.0
     centre = (apex + scale * (r - (R + r) * math.cos(phi)), middle)

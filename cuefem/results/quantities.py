@@ -249,7 +249,7 @@ RESULTS = {
     "tip_diameter": Result(
         *("diameter of the tip", "m"),
         heading="tip diameter",
-        of=of_drawing(lambda scene: scene.shaft.segments[0].tip_diameter),
+        of=of_drawing(lambda scene: scene.tip_diameter),
         segments=True,
     ),
     "butt_diameter": Result("diameter of the butt", "m"),

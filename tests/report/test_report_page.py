@@ -252,6 +252,17 @@ def test_a_leather_tip_is_drawn_in_front_of_the_cue() -> None:
     assert strike_drawing(blow, 0.03).pieces[0][1] == "m-leather"
 
 
+def test_a_tip_is_drawn_with_its_layers_and_as_wide_as_it_is() -> None:
+    plain = cf.usual_scene(scene("kim").shaft)
+    layers = (cf.TipLayer(1e-3, 2e9), cf.TipLayer(2e-3, 1e9))  # from the ferrule up
+    tip = replace(plain.leather, height=9e-3, layers=layers, diameter=10e-3)
+    drawing = front_drawing(replace(plain, effects=(tip,)))
+    boxes = [np.array(re.findall(r"(-?[0-9.]+) (-?[0-9.]+)", piece.outline), float) for piece in drawing.pieces]
+    scale = (WIDE - 20) / 0.09
+    assert [np.ptp(box[:, 0]) / scale for box in boxes[:3]] == pytest.approx([6e-3, 2e-3, 1e-3], abs=1e-5)
+    assert [np.ptp(box[:, 1]) / scale for box in boxes[:3]] == pytest.approx([10e-3] * 3, rel=1e-3)
+
+
 def test_the_blow_is_drawn_true() -> None:
     blow = scene("pool_low_deflection")
     made = strike_drawing(blow, 0.03)
