@@ -36,7 +36,7 @@ class Phase(NamedTuple):
     start, end : float
         Times from first touch, s.
     impulse : tuple of float
-        Impulse (t, n) on the ball in this phase, N s.
+        Impulse (t, n) on the ball in this phase, N s, with the signs of `Outcome.impulse`, of which it is a part.
     """
 
     grip: str
@@ -45,9 +45,16 @@ class Phase(NamedTuple):
     end: float
     impulse: tuple[float, float]
 
+    def mirrored(self, side: float) -> Phase:
+        """The phase of the stroke on the other side where ``side`` is -1; itself where it is 1."""
+        return self._replace(impulse=(side * self.impulse[0], self.impulse[1]))
+
 
 class Hit(NamedTuple):
-    """One contact of tip and ball: its start and end, s, and the impulse (t, n) on the ball in it, N s."""
+    """One contact of tip and ball: its start and end, s, and the impulse (t, n) on the ball in it, N s.
+
+    The impulses of a strike's hits add up to `Outcome.impulse`.
+    """
 
     start: float
     end: float

@@ -104,7 +104,7 @@ def outcome_of(solved: SolvedContact, scene: Scene) -> Outcome:
         duration=solved.time,
         regime=_regime(solved),
         jam=_jams(solved),
-        phases=solved.phases,
+        phases=tuple(phase.mirrored(side) for phase in solved.phases),
         energy=_energy(solved, inertia, (p_t**2 + p_n**2) / (2 * M), nu * M * turning**2 / 2),
         unknowns=model.unknowns,
         history=None if solved.records is None else solved.history(side, scalar("Ball.radius", scene.ball.radius)),

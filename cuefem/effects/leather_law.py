@@ -52,6 +52,11 @@ class LeatherLaw:
     restitution: float
     most: float
 
+    def __post_init__(self) -> None:
+        if len(self.force_terms) != len(self.give_terms):  # the kernel reads as many of one as of the other
+            counts = f"{len(self.force_terms)} and {len(self.give_terms)}"
+            raise ValueError(f"LeatherLaw takes as many force_terms as give_terms; got {counts}")
+
     @classmethod
     def fitted(cls, curves: Curves, restitution: float) -> LeatherLaw:
         """The law through the curves, by least squares of relative differences."""

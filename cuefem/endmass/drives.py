@@ -309,7 +309,7 @@ def sticking_squirt(tip: TipModes, scene: Scene) -> float:
     outcome = strike_modes(_gripping(scene), tip.straight)
     # past the peak of a tip without restitution nothing presses, but endless friction would go on pulling
     p_t, p_n = np.sum([phase.impulse for phase in outcome.phases if phase.press != "rigid"], axis=0)
-    return float(abs(scene.stroke.angle) - math.atan2(p_t, p_n))
+    return float(abs(scene.stroke.angle) - math.atan2(p_t * np.sign(scene.stroke.offset), p_n))
 
 
 def _gripping(scene: Scene) -> Scene:

@@ -30,6 +30,7 @@ from cuefem import (
     modes,
     strike,
 )
+from cuefem.effects.leather_law import LeatherLaw
 from tests.helpers.refusals import refuses
 from tests.helpers.strike_scenes import KIM, kim_scene, pool_cue
 
@@ -53,6 +54,7 @@ TWO: Any = np.array([0.01, 0.012])
 FINITE = (PointMass(0.1, 0.01), Support(0.1, 5.0), Joint(0.1), AxialWaves(), TipDome(0.01), LEATHER)
 PARTS = (TipDome(0.01), SHEAR, PowerLawTip(), RollingContact(), Elevation(0.1))
 CALLS: list[tuple[Callable[[], object], str]] = [
+    (lambda: LeatherLaw((1.0, 2.0), (1.0,), 0.7, 1e-3), "as many force_terms as give_terms; got 2 and 1"),
     (lambda: PointMass(nan, 0.01), "PointMass.position must be in [0, inf) m; got nan"),
     (lambda: PointMass(inf, 0.01), "PointMass.position must be in [0, inf) m; got inf"),
     (lambda: PointMass(-0.1, 0.01), "PointMass.position must be in [0, inf) m; got -0.1"),
