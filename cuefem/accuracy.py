@@ -184,12 +184,12 @@ def resolve_end_mass(scene: Scene, drive: str = "stick", rtol: float = 1e-4) -> 
     rtol, formula = RTOL.check("resolve_end_mass rtol", rtol), formula_of(drive)
     if scene.lumped is not None:
         return float(end_mass(scene, drive)), ROUNDING
-    found = None
-    for found in end_mass_ladder(scene, formula):
-        if found[2] <= rtol:
+    rung = None
+    for rung in end_mass_ladder(scene, formula):
+        if rung[2] <= rtol:
             break
-    assert found is not None
-    return found[1:]
+    assert rung is not None
+    return rung[1:]
 
 
 def end_mass_ladder(scene: Scene, formula: Callable[[TipModes, Scene], float]) -> Iterator[tuple[int, float, float]]:
@@ -333,18 +333,18 @@ class _Tips(NamedTuple):
 
     at: Resolution
     scene: Scene
-    found: Ended
+    bending: Ended
     end_rings: float
 
     @property
     def end_unheard(self) -> bool:
         """Whether the modes kept stop short of a rung past the turning resonance of the cue's first segment."""
-        return self.found.highest < RATIO * self.end_rings
+        return self.bending.highest < RATIO * self.end_rings
 
     @property
     def tip(self) -> TipModes:
         """Those of the rung, with their tail."""
-        return tip_modes_from(self.found, self.scene)
+        return tip_modes_from(self.bending, self.scene)
 
 
 def _tips(scene: Scene) -> Iterator[_Tips]:

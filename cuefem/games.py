@@ -140,8 +140,8 @@ def usual_tip(cue: Cue, game: str = DEFAULT_GAME) -> LeatherTip:
     >>> usual_tip(cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 700.0)),))).height
     0.006
     """
-    found = _game(game).tip
-    return replace(found, height=cue.leather) if cue.leather else found
+    tip = _game(game).tip
+    return replace(tip, height=cue.leather) if cue.leather else tip
 
 
 def usual_scene(cue: Cue, game: str = DEFAULT_GAME, *, tip: LeatherTip | None = None) -> Scene:

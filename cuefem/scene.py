@@ -188,11 +188,11 @@ class Scene:
             remark_light(self.cue.mass, self.cue.length)
         whole = self.contact_terms.tip is not None  # the terms refuse what may be given only once
         for name, unit in (("contact_time", "s"), ("stiffness", "N/m")):
-            given = getattr(self.tip, name)
-            if whole and given is not None:
+            value = getattr(self.tip, name)
+            if whole and value is not None:
                 raise ValueError(
                     f"Tip.{name} must be left out beside an effect that gives the whole tip, from which it follows; "
-                    f"got {given} {unit}"
+                    f"got {value} {unit}"
                 )
 
     def _repr_html_(self) -> str:
@@ -234,15 +234,15 @@ class Scene:
         """The scene without its effects at the tip: the mass and the contact time of a whole tip stay."""
         if self.lumped is not None:
             return replace(self, effects=tuple(effect for effect in self.effects if not effect.at_tip))
-        kept = tuple(chain.from_iterable(effect.left_on(self.shaft) for effect in self.effects))
+        effects = tuple(chain.from_iterable(effect.left_on(self.shaft) for effect in self.effects))
         timed = self.tip if self.contact_terms.tip is None else replace(self.tip, contact_time=self.contact_time)
-        return replace(self, tip=timed, effects=kept)
+        return replace(self, tip=timed, effects=effects)
 
     @property
     def level(self) -> Scene:
         """The scene with a level cue: without effects that put a table under the ball."""
-        kept = tuple(effect for effect in self.effects if ContactTerms.of((effect,), self._end_diameter).table is None)
-        return self if len(kept) == len(self.effects) else replace(self, effects=kept)
+        effects = tuple(each for each in self.effects if ContactTerms.of((each,), self._end_diameter).table is None)
+        return self if len(effects) == len(self.effects) else replace(self, effects=effects)
 
     @property
     def contact_terms(self) -> ContactTerms:
@@ -307,10 +307,10 @@ class Scene:
     @property
     def leather(self) -> LeatherTip:
         """The scene's tip of leather; ValueError if it has none."""
-        found = next((effect for effect in self.effects if isinstance(effect, LeatherTip)), None)
-        if found is None:
+        leather = next((effect for effect in self.effects if isinstance(effect, LeatherTip)), None)
+        if leather is None:
             raise ValueError("Scene.effects must hold a LeatherTip; got none")
-        return found
+        return leather
 
     @property
     def tip_at_hand(self) -> bool:
@@ -381,18 +381,18 @@ class Resolution:
             check_count("Resolution.elements", count, 1)
 
 
-def equal_fields(one: Any, other: Any) -> bool:
+def equal_fields(this: Any, other: Any) -> bool:
     """Whether two dataclasses of one class hold equal fields, arrays among them: their ``__eq__``."""
-    if type(one) is not type(other):
+    if type(this) is not type(other):
         return NotImplemented
-    pairs = ((getattr(one, field.name), getattr(other, field.name)) for field in fields(one))
+    pairs = ((getattr(this, field.name), getattr(other, field.name)) for field in fields(this))
     return all(_equal(a, b) for a, b in pairs)
 
 
-def _equal(one: Any, other: Any) -> bool:
-    if isinstance(one, dict) and isinstance(other, dict):
-        return one.keys() == other.keys() and all(_equal(one[name], other[name]) for name in one)
-    return np.array_equal(one, other) if isinstance(one, np.ndarray) else bool(np.all(one == other))
+def _equal(this: Any, other: Any) -> bool:
+    if isinstance(this, dict) and isinstance(other, dict):
+        return this.keys() == other.keys() and all(_equal(this[name], other[name]) for name in this)
+    return np.array_equal(this, other) if isinstance(this, np.ndarray) else bool(np.all(this == other))
 
 
 @dataclass(frozen=True, eq=False)

@@ -178,20 +178,20 @@ def turning(scene: Scene) -> bool:
     return any(scene.contact_terms.lever(math.pi / 6))
 
 
-def tip_modes_from(found: Ended, scene: Scene) -> TipModes:
+def tip_modes_from(bending: Ended, scene: Scene) -> TipModes:
     """Tip modes of the scene's finite-element cue from its bending modes, with what its effects add to them."""
     cue, effects = scene.shaft, scene.cue_effects
-    tip = tip_modes(found, scene.axial_mass)
+    tip = tip_modes(bending, scene.axial_mass)
     bent = [
-        part for part in (effect.geometric_stiffness(found, cue, effects) for effect in effects) if part is not None
+        part for part in (effect.geometric_stiffness(bending, cue, effects) for effect in effects) if part is not None
     ]
     if bent:  # the first of the tip modes moves along the axis
         tip = replace(tip, geometric=np.pad(sum(bent[1:], bent[0]), (1, 0)))
-    along = tuple(chain.from_iterable(effect.vibrations(found, cue, effects) for effect in effects))
+    along = tuple(chain.from_iterable(effect.vibrations(bending, cue, effects) for effect in effects))
     for family in along:
         tip = tip.beside(family.omega, family.along, family.radiation)
     for effect in effects:
-        tip = effect.damp(tip, cue, (found, *along))
+        tip = effect.damp(tip, cue, (bending, *along))
     return tip.ascending() if along else tip
 
 

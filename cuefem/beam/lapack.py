@@ -31,8 +31,8 @@ def _alone() -> Any:
     if spec is None or spec.loader is None:
         return None
     try:
-        found = module_from_spec(spec)
-        spec.loader.exec_module(found)
+        module = module_from_spec(spec)
+        spec.loader.exec_module(module)
     except ImportError:
         return None
-    return found if hasattr(found, "dsygvd") else None
+    return module if hasattr(module, "dsygvd") else None

@@ -95,27 +95,28 @@ class Mesh:
         return self.first + 2 * self.orders + 1
 
     @cached_property
-    def _held(self) -> list[NDArray[np.intp]]:
+    def _columns(self) -> list[NDArray[np.intp]]:
         """For each element, which of the unknowns of the highest order it has."""
         p = self.order
-        found = {q: np.r_[0, 1, 2 : 2 + q, 2 + p : 1 + p + q, 2 * p + 1, 2 * p + 2] for q in set(self.orders.tolist())}
-        return [found[q] for q in self.orders.tolist()]
+        orders = self.orders.tolist()
+        columns = {q: np.r_[0, 1, 2 : 2 + q, 2 + p : 1 + p + q, 2 * p + 1, 2 * p + 2] for q in set(orders)}
+        return [columns[q] for q in orders]
 
     def own(self, vectors: Array) -> Array:
         """The elements' own unknowns of the highest order, (elements, u, k), of ``vectors`` (unknowns, k)."""
         if np.all(self.orders == self.order):
             return vectors[self.first[:, None] + np.arange(2 * self.order + 3)]
-        found = np.zeros((len(self.orders), 2 * self.order + 3, vectors.shape[1]))
-        for each, start, held in zip(found, self.first, self._held, strict=True):
-            each[held] = vectors[start : start + len(held)]
-        return found
+        spread = np.zeros((len(self.orders), 2 * self.order + 3, vectors.shape[1]))
+        for each, start, columns in zip(spread, self.first, self._columns, strict=True):
+            each[columns] = vectors[start : start + len(columns)]
+        return spread
 
     def blocks(self, roots: Array) -> Sequence[Array]:
         """roots' roots of every element, exactly symmetric, in the unknowns that it has; roots: (elements, rows, u)."""
         if np.all(self.orders == self.order):
             squared: Array = roots.swapaxes(-1, -2) @ roots
             return list(squared)
-        parts = (each[:, held] for each, held in zip(roots, self._held, strict=True))
+        parts = (each[:, columns] for each, columns in zip(roots, self._columns, strict=True))
         return [part.T @ part for part in parts]
 
     def unknowns_at(self, node: int) -> tuple[int, int]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -45,7 +45,7 @@ class Modes:
 
     def _repr_html_(self) -> str:
         """The modes as a notebook shows them."""
-        rows = [(str(i), f"{one:.2f}") for i, one in enumerate(self.frequencies, start=1)]
+        rows = [(str(i), f"{frequency:.2f}") for i, frequency in enumerate(self.frequencies, start=1)]
         return table(("mode", "frequency, Hz"), rows, f"{self.rigid} rigid motions, then")
 
     @property
@@ -148,7 +148,7 @@ def modes(
     system = assemble(cue, elements=elements, order=order, effects=effects, count=wanted)
     if near is None:
         return solve(system, count)
-    return _nearest(solve(system, min(wanted, _held(system))), count, near)
+    return _nearest(solve(system, min(wanted, _most_modes(system))), count, near)
 
 
 def _on_the_cue(effects: tuple[Any, ...]) -> tuple[ActsOnCue, ...]:
@@ -166,9 +166,9 @@ def solve(system: System, count: int) -> Modes:
     M q = mu (K + sigma M) q, whose largest mu are the lowest modes, and then takes their frequencies from the strains.
     Relative errors stay near rounding, even with soft tips and stiff ferrules.
     """
-    held = _held(system)
-    if count > held:
-        raise ValueError(f"modes: the mesh holds {held} flexible modes; got {count} wanted; use more elements or order")
+    most = _most_modes(system)
+    if count > most:
+        raise ValueError(f"modes: the mesh holds {most} flexible modes; got {count} wanted; use more elements or order")
     rigid, shift = system.rigid.shape[1], system.shift
     K, M, free = system.K, system.M, system.free
     if free is not None:
@@ -206,7 +206,7 @@ def _polished(system: System, squares: Array, flexible: Array, rigid: Array) -> 
     return np.sqrt(np.einsum("ij,ij->j", energies, energies)), flexible @ mix
 
 
-def _held(system: System) -> int:
+def _most_modes(system: System) -> int:
     unknowns = system.mesh.unknowns if system.free is None else system.free.shape[1]
     return int(unknowns) - system.rigid.shape[1]
 
@@ -267,7 +267,7 @@ def normalised(system: System) -> Array:
     return np.asarray(np.linalg.solve(np.linalg.cholesky(rigid.T @ (system.M @ rigid)), rigid.T).T)
 
 
-def _nearest(found: Modes, count: int, near: float) -> Modes:
-    ranked = np.argsort(np.abs(found.frequencies - near), kind="stable")[:count]
+def _nearest(candidates: Modes, count: int, near: float) -> Modes:
+    ranked = np.argsort(np.abs(candidates.frequencies - near), kind="stable")[:count]
     chosen = np.sort(ranked)
-    return Modes(found.frequencies[chosen], found.vectors[:, chosen], found.rigid, found.rigid_vectors, found.system)
+    return replace(candidates, frequencies=candidates.frequencies[chosen], vectors=candidates.vectors[:, chosen])

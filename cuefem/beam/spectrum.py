@@ -37,7 +37,7 @@ class Reduced:
 
     system: the beam. diagonal: (n,), off: (n - 1,), of the matrix. upper: (n, n) triangle, upper' upper = K + shift M
     with the unknowns in reverse. reflectors: (n - 1, n - 1), tau: Q as LAPACK keeps it; Q leaves the first entry alone.
-    kept: how many of the lowest modes are asked for.
+    wanted: how many of the lowest modes are asked for.
     """
 
     system: System
@@ -46,7 +46,7 @@ class Reduced:
     upper: Array
     reflectors: Array
     tau: Array
-    kept: int
+    wanted: int
 
     @cached_property
     def eigen(self) -> tuple[Array, Array]:
@@ -56,9 +56,9 @@ class Reduced:
         whose first moments in mu they have.
         """
         size = len(self.diagonal)
-        part = min(size, int(LEADING * self.kept) + SPARE)
+        part = min(size, int(LEADING * self.wanted) + SPARE)
         mu, z = self._leading(part)
-        if part < size and np.any(abs(self.off[part - 1] * z[-1, : self.kept]) > ROUNDING * mu[: self.kept]):
+        if part < size and np.any(abs(self.off[part - 1] * z[-1, : self.wanted]) > ROUNDING * mu[: self.wanted]):
             mu, z = self._leading(size)
         return mu, z
 
@@ -98,10 +98,10 @@ class Reduced:
         return np.asarray(turned)
 
 
-def reduced(system: System, kept: int | None = None) -> Reduced:
+def reduced(system: System, wanted: int | None = None) -> Reduced:
     """The tridiagonal form of a dense beam none of whose unknowns are taken out.
 
-    kept: how many modes are asked for, whose tail takes loads on the tip's deflection alone; None for all.
+    wanted: how many modes are asked for, whose tail takes loads on the tip's deflection alone; None for all.
     """
     # with the unknowns in reverse the tip is last, where LAPACK's upper triangles leave it alone
     upper, failed = lapack().dpotrf((system.K + system.shift * system.M)[::-1, ::-1], lower=0)
@@ -111,7 +111,7 @@ def reduced(system: System, kept: int | None = None) -> Reduced:
     work = 10 * len(upper)  # wider blocks take longer for so few unknowns
     whole, diagonal, off, tau, failed = lapack().dsytrd(standard[::-1, ::-1], lower=1, lwork=work)
     _check(failed, "dsytrd")
-    return Reduced(system, diagonal, off, upper, np.asfortranarray(whole[1:, :-1]), tau, kept or len(upper))
+    return Reduced(system, diagonal, off, upper, np.asfortranarray(whole[1:, :-1]), tau, wanted or len(upper))
 
 
 def _check(failed: int, routine: str) -> None:
@@ -142,8 +142,8 @@ class TipSpectrum:
     @cached_property
     def modes(self) -> Modes:
         """The same modes with their shapes."""
-        found = Modes(self.frequencies, self.shapes(), self.rigid, self.rigid_vectors, self.system)
-        return replace(found, radiation=self.radiation)
+        shaped = Modes(self.frequencies, self.shapes(), self.rigid, self.rigid_vectors, self.system)
+        return replace(shaped, radiation=self.radiation)
 
     @property
     def frequencies(self) -> Array:
@@ -176,8 +176,8 @@ def ended(system: System, most: int, *, turning: bool) -> Callable[[int], Ended]
     whole, deflect = solve(system, most), flexibility(system)
 
     def solved(count: int) -> Modes:
-        kept = replace(whole, frequencies=whole.frequencies[:count], vectors=whole.vectors[:, :count])
-        return tail(kept, turning=turning, deflect=deflect)
+        lowest = replace(whole, frequencies=whole.frequencies[:count], vectors=whole.vectors[:, :count])
+        return tail(lowest, turning=turning, deflect=deflect)
 
     return solved
 
@@ -198,15 +198,15 @@ def _ended(form: Reduced, rigid_vectors: Array, count: int, *, loads: int) -> Ti
     """
     system, rigid = form.system, rigid_vectors.shape[1]
     mu, felt, first = form.eigen[0], form.felt, rigid + count
-    kept, rest = slice(rigid, first), mu[first:, None]
+    asked, rest = slice(rigid, first), mu[first:, None]
     force = felt[:loads, first:].T
     basis = np.linalg.qr(np.concatenate([rest**step * force for step in range(STEPS)], axis=1))[0]
     t, mix = np.linalg.eigh(basis.T @ (rest * basis))
     t, mix = t[::-1], (mix / np.sqrt(t))[:, ::-1]
     ends, basis = mix[-loads:], basis @ mix
-    signs = np.where(felt[0, kept] < 0, -1.0, 1.0) / np.sqrt(mu[kept])
-    omega = np.sqrt(form.squares[kept])
-    flexible = np.concatenate([felt[:, kept] * signs, felt[:, first:] @ basis], axis=1)
+    signs = np.where(felt[0, asked] < 0, -1.0, 1.0) / np.sqrt(mu[asked])
+    omega = np.sqrt(form.squares[asked])
+    flexible = np.concatenate([felt[:, asked] * signs, felt[:, first:] @ basis], axis=1)
     still = np.array([rigid_vectors[0], rigid_vectors[1]])
     across, turned = np.concatenate([still, flexible], axis=1)
 

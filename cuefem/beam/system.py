@@ -59,8 +59,8 @@ class System:
         source = np.arange(self.mesh.unknowns)
         source[self.tied[:, 0]] = self.tied[:, 1]
         rows = np.flatnonzero(~np.isin(source, self.fixed))
-        kept, columns = np.unique(source[rows], return_inverse=True)
-        return scipy.sparse.csc_matrix((np.ones(len(rows)), (rows, columns)), shape=(self.mesh.unknowns, len(kept)))
+        free, columns = np.unique(source[rows], return_inverse=True)
+        return scipy.sparse.csc_matrix((np.ones(len(rows)), (rows, columns)), shape=(self.mesh.unknowns, len(free)))
 
     def strains(self, vectors: Array) -> Array:
         """Strains of unknowns ``vectors`` (unknowns, k), times roots of stiffness, (rows, k): K = strains' strains.
@@ -71,10 +71,10 @@ class System:
         """
         own = self.mesh.own(vectors)
         strained = (self.roots @ own).reshape(-1, own.shape[2])
-        held = np.flatnonzero(self.springs)
-        if len(held) + len(self.links.stiffness) == 0:
+        supported = np.flatnonzero(self.springs)
+        if len(supported) + len(self.links.stiffness) == 0:
             return np.asarray(strained)
-        sprung = np.sqrt(self.springs[held])[:, None] * vectors[held]
+        sprung = np.sqrt(self.springs[supported])[:, None] * vectors[supported]
         jumps = np.sqrt(self.links.stiffness)[:, None] * (vectors[self.links.after] - vectors[self.links.before])
         return np.concatenate([strained, sprung, jumps])
 

@@ -35,36 +35,36 @@ class Ritz(NamedTuple):
     radiation: Array
 
 
-def tail(found: Modes, *, turning: bool = False, deflect: Deflect | None = None, position: float = 0.0) -> Modes:
+def tail(modes: Modes, *, turning: bool = False, deflect: Deflect | None = None, position: float = 0.0) -> Modes:
     """The modes with a tail: a few more vectors, and their radiation, that stand for the modes left out.
 
     turning: whether the contact lies off the cue's axis, so that a couple acts at the tip beside the force. deflect:
     the `flexibility` of the system, if it is known already. position: where the force acts, m from the tip; a node.
     Cost: one factorisation of K and `STEPS` solutions.
     """
-    system = found.system
-    kept = np.concatenate([found.rigid_vectors, found.vectors], axis=1)
+    system = modes.system
+    vectors = np.concatenate([modes.rigid_vectors, modes.vectors], axis=1)
     force = np.zeros((system.mesh.unknowns, 2 if turning else 1))
     places = system.mesh.unknowns_at(system.mesh.node(position))[: force.shape[1]]  # w, and theta
     force[list(places), np.arange(force.shape[1])] = 1.0
     if system.free is not None:  # no force acts on an unknown that a clamp holds
         force = force[:, np.asarray(abs(system.free.T @ force).sum(axis=0)).ravel() > 0]
     if force.shape[1] == 0:
-        return found
+        return modes
     deflect = deflect or flexibility(system)
-    more = ritz(kept, system.K, system.M, force, shift=system.shift, deflect=deflect, highest=found.highest)
+    more = ritz(vectors, system.K, system.M, force, shift=system.shift, deflect=deflect, highest=modes.highest)
     return replace(
-        found,
-        frequencies=np.concatenate([found.frequencies, more.omega / (2 * np.pi)]),
-        vectors=np.concatenate([found.vectors, more.vectors], axis=1),
+        modes,
+        frequencies=np.concatenate([modes.frequencies, more.omega / (2 * np.pi)]),
+        vectors=np.concatenate([modes.vectors, more.vectors], axis=1),
         radiation=more.radiation,
     )
 
 
 def ritz(
-    kept: Array, K: Any, M: Any, force: Array, *, shift: float | Array, deflect: Deflect, highest: float | Array
+    modes: Array, K: Any, M: Any, force: Array, *, shift: float | Array, deflect: Deflect, highest: float | Array
 ) -> Ritz:
-    """Tail of the modes ``kept`` (unknowns, n) of K q = omega^2 M q, all of them up to ``highest`` rad/s.
+    """Tail of ``modes`` (unknowns, n) of K q = omega^2 M q, all of them up to ``highest`` rad/s.
 
     The flexibility of the modes left out, as the tip feels it under each force (unknowns, loads), by `STEPS` steps of
     Lanczos from the static deflections, which match its first moments in 1/omega^2. The chain ends in a dashpot, as the
@@ -73,21 +73,21 @@ def ritz(
     one axis more in front, shift and highest of shape (beams,).
     """
     shift, highest = (np.asarray(value)[..., None, None] for value in (shift, highest))
-    basis = _krylov(kept, K, M, force, shift=shift, deflect=deflect)
+    basis = _krylov(modes, K, M, force, shift=shift, deflect=deflect)
     t, mix = np.linalg.eigh(_gram(basis, M))  # the chain's masses; its stiffness is 1 - shift t
     t, mix = t[..., ::-1], (mix / np.sqrt(t)[..., None, :])[..., ::-1]
     ends = mix[..., -force.shape[-1] :, :]
     return Ritz(np.sqrt(1 / t - shift[..., 0]), basis @ mix, DASHPOT / highest * (_transposed(ends) @ ends))
 
 
-def _krylov(kept: Array, K: Any, M: Any, force: Array, *, shift: Array, deflect: Deflect) -> Array:
-    """Basis of the tail, (unknowns, STEPS loads): orthonormal in K + shift M, M-orthogonal to the modes kept."""
-    heavy = _transposed(M @ kept)
+def _krylov(modes: Array, K: Any, M: Any, force: Array, *, shift: Array, deflect: Deflect) -> Array:
+    """Basis of the tail, (unknowns, STEPS loads): orthonormal in K + shift M, M-orthogonal to ``modes``."""
+    heavy = _transposed(M @ modes)
     steps: list[Array] = []
     for _ in range(STEPS):
         step = deflect(force)
         for _ in range(2):
-            step = step - kept @ (heavy @ step)
+            step = step - modes @ (heavy @ step)
         step = step / np.sqrt(np.sum(step * (M @ step), axis=-2, keepdims=True))
         force = M @ step
         steps.append(step)
@@ -113,8 +113,8 @@ def flexibility(system: System) -> Deflect:
     S, free = system.K + system.shift * system.M, system.free
     if free is not None:
         S = free.T @ S @ free
-    held = inverse(S)
-    return held if free is None else lambda load: free @ held(free.T @ load)
+    deflect = inverse(S)
+    return deflect if free is None else lambda load: free @ deflect(free.T @ load)
 
 
 def inverse(S: Any) -> Deflect:

@@ -111,11 +111,11 @@ def lumped_tip_modes(cue: LumpedCue) -> TipModes:
     return TipModes(np.zeros(2), amplitude, np.linalg.solve(amplitude.T, [1.0, 0.0]), np.zeros(2))
 
 
-def tip_modes(found: Ended, axial_mass: float) -> TipModes:
+def tip_modes(bending: Ended, axial_mass: float) -> TipModes:
     """Tip modes of a beam's bending modes beside a rigid axial motion of ``axial_mass`` kg (the first mode)."""
-    omega = np.concatenate([np.zeros(found.rigid), found.omega])
-    damping, radiation = _resistances(found, 1 + len(omega))
-    return replace(free_tip_modes(omega, *found.at_tip, axial_mass), damping=damping, radiation=radiation)
+    omega = np.concatenate([np.zeros(bending.rigid), bending.omega])
+    damping, radiation = _resistances(bending, 1 + len(omega))
+    return replace(free_tip_modes(omega, *bending.at_tip, axial_mass), damping=damping, radiation=radiation)
 
 
 def free_tip_modes(omega: Array, across: Array, turning: Array, axial_mass: float) -> TipModes:
@@ -127,27 +127,27 @@ def free_tip_modes(omega: Array, across: Array, turning: Array, axial_mass: floa
     return TipModes(np.append(0.0, omega), amplitude, approach, np.append(0.0, turning))
 
 
-def side_modes(found: Modes, position: float) -> TipModes:
+def side_modes(bending: Modes, position: float) -> TipModes:
     """All that a body feels which strikes the beam from the side at ``position``, m from the tip, a node.
 
     The first direction of the contact is that of the body's rebound, against the deflection w of the beam; nothing
     moves along the second. The beam is at rest.
     """
-    vectors = np.concatenate([found.rigid_vectors, found.vectors], axis=1)
-    deflection, rotation = found.system.mesh.unknowns_at(found.system.mesh.node(position))
-    omega = np.concatenate([np.zeros(found.rigid), found.omega])
-    damping, radiation = _resistances(found, len(omega))
+    vectors = np.concatenate([bending.rigid_vectors, bending.vectors], axis=1)
+    deflection, rotation = bending.system.mesh.unknowns_at(bending.system.mesh.node(position))
+    omega = np.concatenate([np.zeros(bending.rigid), bending.omega])
+    damping, radiation = _resistances(bending, len(omega))
     amplitude = np.column_stack([-vectors[deflection], np.zeros(len(omega))])
-    turning = vectors[rotation] / found.system.length
+    turning = vectors[rotation] / bending.system.length
     return TipModes(omega, amplitude, np.zeros(len(omega)), turning, damping, radiation)
 
 
-def _resistances(found: Ended, count: int) -> tuple[Array | None, Array | None]:
-    """Damping by dashpots and radiation by a tail of ``count`` modes, whose last ones are those ``found``."""
+def _resistances(bending: Ended, count: int) -> tuple[Array | None, Array | None]:
+    """Damping by dashpots and radiation by a tail of ``count`` modes, of which the ``bending`` ones are the last."""
     damping = None
-    if found.system.dashpots is not None:
-        vectors = np.concatenate([found.rigid_vectors, found.vectors], axis=1)
-        own = vectors.T @ (found.system.dashpots[:, None] * vectors)
+    if bending.system.dashpots is not None:
+        vectors = np.concatenate([bending.rigid_vectors, bending.vectors], axis=1)
+        own = vectors.T @ (bending.system.dashpots[:, None] * vectors)
         damping = np.pad(own, (count - len(own), 0))
-    radiation = None if found.radiation is None else np.pad(found.radiation, (count - len(found.radiation), 0))
+    radiation = None if bending.radiation is None else np.pad(bending.radiation, (count - len(bending.radiation), 0))
     return damping, radiation

@@ -71,8 +71,8 @@ def mesh_for(cue: Cue, count: int) -> tuple[int | tuple[int, ...], int]:
     # where one element is enough, a lower order is cheaper; argmin finds the lowest order
     elements = np.ceil(phases / (2 * (orders - SPARE))[:, None]).astype(int)
     best = int(np.argmin(elements.sum(axis=1) * orders))
-    found = tuple(map(int, elements[best]))
-    return found if len(found) > 1 else found[0], int(orders[best])
+    counts = tuple(map(int, elements[best]))
+    return counts if len(counts) > 1 else counts[0], int(orders[best])
 
 
 def ended_mesh_for(cue: Cue, count: int, *, spare: int = SPARE_ENDED) -> tuple[tuple[int, ...], tuple[int, ...]]:

@@ -46,8 +46,8 @@ def slope_rows(tip: TipModes, time: float, until: float) -> Array:
     together = np.concatenate(shapes, axis=1)
     onto = tip.geometric @ together
     parts, ways = np.linalg.eigh(together.T @ onto)
-    kept = np.flatnonzero(parts > LEAST_PART * parts[-1])[-MOST:]
-    return np.concatenate([(onto @ (ways[:, kept] / np.sqrt(parts[kept]))).T[::-1], tip.rotation[None]])
+    strongest = np.flatnonzero(parts > LEAST_PART * parts[-1])[-MOST:]
+    return np.concatenate([(onto @ (ways[:, strongest] / np.sqrt(parts[strongest]))).T[::-1], tip.rotation[None]])
 
 
 def buckling_thrust(tip: TipModes, ahead: float = 0.0) -> float:

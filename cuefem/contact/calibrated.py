@@ -60,10 +60,10 @@ def leather_modulus(scene: Scene, contact_time: float) -> float:
 
     first = math.log(STIFF)
     guess = first - too_long(first) / FIRST_SLOPE
-    found = root_scalar(too_long, x0=first, x1=guess, method="secant", xtol=CLOSE)
-    if not found.converged:
-        raise RuntimeError(f"no E of the leather was found for a contact of {contact_time:g} s: {found.flag}")
-    return math.exp(found.root)
+    solution = root_scalar(too_long, x0=first, x1=guess, method="secant", xtol=CLOSE)
+    if not solution.converged:
+        raise RuntimeError(f"no E of the leather was found for a contact of {contact_time:g} s: {solution.flag}")
+    return math.exp(solution.root)
 
 
 def with_modulus(scene: Scene, E: float) -> Scene:

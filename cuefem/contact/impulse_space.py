@@ -162,10 +162,10 @@ def _strokes(
 ) -> dict[str, Array]:
     """One block of strokes: flat arrays by name."""
     offset = np.atleast_1d(offset)
-    side, struck = np.sign(offset), np.abs(offset)
+    side, distance = np.sign(offset), np.abs(offset)
     cue = _Lumped(m, m_e, np.where(side == 0, 0.0, coupling))
-    B = inverse_mass(cue, _Sphere(M, nu), struck)  # type: ignore[arg-type]
-    s, c = sine_cosine(struck)
+    B = inverse_mass(cue, _Sphere(M, nu), distance)  # type: ignore[arg-type]
+    s, c = sine_cosine(distance)
     course = _course(B, -s, -c, mu=mu, e=e)  # at unit speed
     p_t, p_n = U * course.tangential, U * course.final
     p_u = s * p_t + c * p_n

@@ -124,8 +124,8 @@ def motion(scene: Scene, times: ArrayLike, at: Resolution | None = None) -> Moti
     if scene.contact_terms.table is not None:
         raise ValueError("motion takes strokes in the plane of cue and ball; got Elevation")
     solved = Solved(scene, at)
-    found, tip = solved.modes, solved.tip
-    return _read(scene, found, tip, solved=solve_contact(model_of(scene, tip)), times=times)
+    bending, tip = solved.modes, solved.tip
+    return _read(scene, bending, tip, solved=solve_contact(model_of(scene, tip)), times=times)
 
 
 def last_contact(scene: Scene, at: Resolution | None = None) -> float:
@@ -141,11 +141,11 @@ def ascending(times: ArrayLike) -> Array:
     return times
 
 
-def _read(scene: Scene, found: Modes, tip: TipModes, *, solved: SolvedContact, times: Array) -> Motion:
+def _read(scene: Scene, bending: Modes, tip: TipModes, *, solved: SolvedContact, times: Array) -> Motion:
     phi, side = solved.model.phi, math.copysign(1.0, scalar("Stroke.offset", scene.stroke.offset))
     tangent, normal = np.array([math.sin(phi), math.cos(phi)]), np.array([math.cos(phi), -math.sin(phi)])
     path = Path.of(solved, times)
-    vectors, across = _bending(found, tip)
+    vectors, across = _bending(bending, tip)
     R = scalar("Ball.radius", scene.ball.radius)
     aside, back = scene.contact_terms.lever(phi)  # where on the cue's end the contact lies
     centre = R * normal + [-back, aside] + path.ball[:, :2] @ np.array([tangent, normal])
@@ -154,7 +154,7 @@ def _read(scene: Scene, found: Modes, tip: TipModes, *, solved: SolvedContact, t
     return Motion(
         times,
         solved.time,
-        found,
+        bending,
         fields=side * vectors @ path.modes[across],
         along=tip.amplitude[:, 0] @ path.modes - _shortened(tip, path.modes),
         centre=centre * [1.0, side],
@@ -168,10 +168,10 @@ def _shortened(tip: TipModes, modes: Array) -> Array | float:
     return 0.0 if tip.geometric is None else np.einsum("it,ij,jt->t", modes, tip.geometric, modes) / 2
 
 
-def _bending(found: Modes, tip: TipModes) -> tuple[Array, Any]:
+def _bending(bending: Modes, tip: TipModes) -> tuple[Array, Any]:
     """Vectors of the bending modes, (unknowns, k), and which of the tip modes they are."""
-    vectors = np.concatenate([found.rigid_vectors, found.vectors], axis=1)
-    columns = np.argsort(np.concatenate([np.zeros(found.rigid), found.omega]), kind="stable")
+    vectors = np.concatenate([bending.rigid_vectors, bending.vectors], axis=1)
+    columns = np.argsort(np.concatenate([np.zeros(bending.rigid), bending.omega]), kind="stable")
     across = np.flatnonzero(tip.amplitude[:, 0] == 0)
     return vectors[:, columns], across[np.argsort(tip.omega[across], kind="stable")]
 
@@ -242,9 +242,9 @@ class _Walk:
     def displacements(self, xi: Complex, gone: Array) -> Array:
         """Of all modes, (times, modes), from the coordinates and the ways of the rigid ones."""
         omega = self.propagator.omega
-        found = (xi @ self.propagator.displacements.T).real / np.where(self.rigid, 1.0, omega)
-        found[:, self.rigid] = gone
-        return np.asarray(found)
+        displaced = (xi @ self.propagator.displacements.T).real / np.where(self.rigid, 1.0, omega)
+        displaced[:, self.rigid] = gone
+        return np.asarray(displaced)
 
     def follow(self, here: Array, parts: Array, loads: Array, span: float) -> tuple[Complex, Array, Array]:
         """Coordinates, ways of the rigid modes and of the ball at times from the start of a step under its loads."""

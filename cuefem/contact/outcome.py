@@ -109,8 +109,8 @@ class History:
         values = np.moveaxis(self.values[which], (-2, -1), (1, 0))
         waves = np.tensordot(WAVES, values, axes=1)
         at = legendre.legval(2 * part - 1, waves, tensor=False)
-        found = np.where(part == 0, values[0], at)
-        return dict(zip(("force_t", "force_n", "velocity_t", "velocity_n"), np.asarray(found), strict=True))
+        evaluated = np.where(part == 0, values[0], at)
+        return dict(zip(("force_t", "force_n", "velocity_t", "velocity_n"), np.asarray(evaluated), strict=True))
 
 
 def hits(outcome: Outcome) -> tuple[Hit, ...]:

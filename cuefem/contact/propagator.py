@@ -104,11 +104,11 @@ class ModalPropagator:
         waves: (times, ports + slopes, nodes), Legendre coefficients of the loads over each time; None without loads.
         """
         xi, times = np.ascontiguousarray(xi), np.ascontiguousarray(times, float)
-        found = np.empty((len(times), len(xi)), complex)
+        coordinates = np.empty((len(times), len(xi)), complex)
         loads = None if waves is None else np.ascontiguousarray(waves, float)
         pointer = None if loads is None else loads.ctypes.data
-        library().cue_follow(self.cue, xi.ctypes.data, pointer, times.ctypes.data, len(times), found.ctypes.data)
-        return found
+        library().cue_follow(self.cue, xi.ctypes.data, pointer, times.ctypes.data, len(times), coordinates.ctypes.data)
+        return coordinates
 
 
 class _Group:
@@ -138,12 +138,12 @@ class _Group:
             nudge = NUDGE * np.linalg.norm(states) * np.diag(np.linspace(-1.0, 0.0, len(states)))
             rates, right = np.linalg.eig(states + nudge)
         left = np.linalg.inv(right).astype(complex)
-        kept = np.flatnonzero(rates.imag >= 0)
-        right = (right[:, kept] * np.where(rates[kept].imag > 0, 2.0, 1.0)).astype(complex)
-        displacements = np.zeros((len(modes), len(kept)), complex)
+        upper = np.flatnonzero(rates.imag >= 0)
+        right = (right[:, upper] * np.where(rates[upper].imag > 0, 2.0, 1.0)).astype(complex)
+        displacements = np.zeros((len(modes), len(upper)), complex)
         displacements[vibrating] = right[:count]
-        velocities, onto = np.asarray(right[count:], complex), np.asarray(left[kept][:, count:], complex)
-        return cls(modes, rates[kept].astype(complex), displacements, velocities, onto)
+        velocities, onto = np.asarray(right[count:], complex), np.asarray(left[upper][:, count:], complex)
+        return cls(modes, rates[upper].astype(complex), displacements, velocities, onto)
 
 
 def _coupled_groups(coupled: Any) -> Iterator[Index]:

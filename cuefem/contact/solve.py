@@ -157,7 +157,7 @@ def solve_contact(model: ContactModel, *, recorded: bool = True) -> SolvedContac
     """
     kernel, propagator = library(), model.propagator
     before = propagator.approaching * model.speed
-    held = {
+    arrays = {
         "facing": np.ascontiguousarray(model.facing),
         "ball_gives": np.ascontiguousarray(model.ball_gives),
         "xi": before.copy(),
@@ -183,15 +183,15 @@ def solve_contact(model: ContactModel, *, recorded: bool = True) -> SolvedContac
         "recording": int(recorded),
         "plane": len(propagator.slopes) // (1 if model.table is None else 2),
     }
-    c = KernelContact(**numbers | model.terms | {name: array.ctypes.data for name, array in held.items()})
+    c = KernelContact(**numbers | model.terms | {name: array.ctypes.data for name, array in arrays.items()})
     c.cue = propagator.cue
     kernel.contact_run(ctypes.byref(c))
     phases = _phases(model, _rows(c.phases, c.phase_count, 4 + 2 * c.speeds), c.speeds)
-    held["ball"] = held["ball"][: c.speeds]
+    arrays["ball"] = arrays["ball"][: c.speeds]
     records = _rows(c.records, c.record_count, c.row) if recorded else None
     kernel.contact_free(ctypes.byref(c))
     if c.status != _ENDED:
-        raise _failure(model, c, phases, held)
+        raise _failure(model, c, phases, arrays)
     losses = {"friction": c.friction_loss, "shear": c.shear_loss, "table": c.table_loss}
     losses |= {"damping": c.damping_loss, "radiated": c.radiated}
     return SolvedContact(
@@ -199,14 +199,14 @@ def solve_contact(model: ContactModel, *, recorded: bool = True) -> SolvedContac
         phases=phases,
         time=c.time,
         xi_before=before,
-        xi=held["xi"],
-        ball=held["ball"],
+        xi=arrays["xi"],
+        ball=arrays["ball"],
         parted=bool(c.parted),
         deepest=c.deepest,
         peak=c.peak,
         losses=losses,
         records=records,
-        slopes=held.get("slopes", _NOTHING),
+        slopes=arrays.get("slopes", _NOTHING),
     )
 
 
@@ -229,7 +229,7 @@ def _buckling(model: ContactModel) -> float:
     return buckling_thrust(model.tip, float(model.arrays["slope_weights"][-1]))
 
 
-def _failure(model: ContactModel, c: KernelContact, phases: tuple[Phase, ...], held: dict[str, Array]) -> Exception:
+def _failure(model: ContactModel, c: KernelContact, phases: tuple[Phase, ...], arrays: dict[str, Array]) -> Exception:
     """What a contact that did not end says."""
     if c.status == _NO_MEMORY:
         return MemoryError("no memory for the steps of a contact")
@@ -248,7 +248,7 @@ def _failure(model: ContactModel, c: KernelContact, phases: tuple[Phase, ...], h
             f"the contact could not be stepped on from {c.time:.6g} s, after {c.steps} steps, in {where}; "
             "keep fewer modes, or a Tip.restitution further from 0"
         )
-    v = _velocities(model, np.asarray(held["xi"], complex), held["ball"], held.get("slopes", _NOTHING))
+    v = _velocities(model, np.asarray(arrays["xi"], complex), arrays["ball"], arrays.get("slopes", _NOTHING))
     return RuntimeError(
         f"the ball does not leave the cue: after {c.time:.6g} s and {len(phases)} phases "
         f"(head-on contact time {model.time:.6g} s) the contact is in {where}, with v_t = {v[0]:.3g} m/s, "

@@ -204,14 +204,14 @@ def batch_strike(scenes: Sequence[Scene], at: Resolution | None = None, *, threa
         check_kind("batch_strike scenes", scene, Scene)
     if not scenes:
         raise ValueError("batch_strike takes one scene or more; got none")
-    found: list[dict[str, Any]] = [{}] * len(scenes)
+    results: list[dict[str, Any]] = [{}] * len(scenes)
     jobs = _jobs(scenes, at)
     if threads == 1:
-        _put(found, map(_struck, jobs))
+        _put(results, map(_struck, jobs))
     else:
         with ThreadPoolExecutor(threads) as executor:
-            _put(found, executor.map(_struck, jobs))
-    return _together(found)
+            _put(results, executor.map(_struck, jobs))
+    return _together(results)
 
 
 class _Job(NamedTuple):
@@ -264,24 +264,24 @@ class _Numbered:
 
 def _struck(job: _Job) -> list[tuple[int, dict[str, Any]]]:
     """The numbers of each strike."""
-    found = []
+    results = []
     for i, scene in job.scenes:
         with _Numbered(i):
             outcome = strike_modes(scene, job.shared.tip, recorded=False)
             numbers = {name: getattr(outcome, name) for name in (*NUMBERS, "energy", "unknowns")}
-        found.append((i, numbers))
-    return found
+        results.append((i, numbers))
+    return results
 
 
-def _put(found: list[dict[str, Any]], done: Iterator[list[tuple[int, dict[str, Any]]]]) -> None:
+def _put(results: list[dict[str, Any]], done: Iterator[list[tuple[int, dict[str, Any]]]]) -> None:
     for part in done:
         for i, numbers in part:
-            found[i] = numbers
+            results[i] = numbers
 
 
-def _together(found: list[dict[str, Any]]) -> Outcome:
-    names = dict.fromkeys(name for numbers in found for name in numbers["energy"])
-    energy = {name: np.array([numbers["energy"].get(name, 0.0) for numbers in found]) for name in names}
-    columns = {name: np.array([numbers[name] for numbers in found]) for name in NUMBERS}
-    unknowns = max(numbers["unknowns"] for numbers in found)
+def _together(results: list[dict[str, Any]]) -> Outcome:
+    names = dict.fromkeys(name for numbers in results for name in numbers["energy"])
+    energy = {name: np.array([numbers["energy"].get(name, 0.0) for numbers in results]) for name in names}
+    columns = {name: np.array([numbers[name] for numbers in results]) for name in NUMBERS}
+    unknowns = max(numbers["unknowns"] for numbers in results)
     return Outcome(**columns, phases=(), energy=energy, unknowns=unknowns)  # type: ignore[arg-type]

@@ -109,13 +109,13 @@ def rod_modes(
     _, vectors = lowest(K, M, count=count + 1, shift=shift)
     vectors *= np.where(vectors[0] < 0, -1.0, 1.0)
     flexible = RodModes(vectors[:, 1:], system, chain)  # the first is the rigid motion
-    kept = vectors[:, : 1 + int(np.sum(flexible.omega <= below))]
+    chosen = vectors[:, : 1 + int(np.sum(flexible.omega <= below))]
     radiation = None
     if tailed:
         tip = np.eye(len(vectors), 1)
-        more = ritz(kept, K, M, tip, shift=shift, deflect=inverse(K + shift * M), highest=below)
-        kept, radiation = np.concatenate([kept, more.vectors], axis=1), more.radiation
-    return RodModes(kept[:, 1:], system, chain, radiation)
+        more = ritz(chosen, K, M, tip, shift=shift, deflect=inverse(K + shift * M), highest=below)
+        chosen, radiation = np.concatenate([chosen, more.vectors], axis=1), more.radiation
+    return RodModes(chosen[:, 1:], system, chain, radiation)
 
 
 def _matrices(system: System, masses: Sequence[tuple[float, float]], chain: _Chain) -> tuple[Any, Any]:

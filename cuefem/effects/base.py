@@ -131,12 +131,12 @@ class CueEffect(Effect):
         """Mass that the effect puts on the tip's face, kg, if that is all it does; None if it does anything else."""
         return None
 
-    def vibrations(self, found: Ended, cue: Cue, effects: Sequence[CueEffect]) -> tuple[AxialVibrations, ...]:
-        """Families of modes beside the bending modes ``found``; effects: all that act on the cue."""
+    def vibrations(self, bending: Ended, cue: Cue, effects: Sequence[CueEffect]) -> tuple[AxialVibrations, ...]:
+        """Families of modes beside the ``bending`` modes; effects: all that act on the cue."""
         return ()
 
-    def geometric_stiffness(self, found: Ended, cue: Cue, effects: Sequence[CueEffect]) -> Array | None:
-        """What thrust at the tip does to the bending modes ``found``, rigid ones first (`TipModes.geometric`)."""
+    def geometric_stiffness(self, bending: Ended, cue: Cue, effects: Sequence[CueEffect]) -> Array | None:
+        """What thrust at the tip does to the ``bending`` modes, rigid ones first (`TipModes.geometric`)."""
         return None
 
     def damp(self, tip: TipModes, cue: Cue, families: Sequence[Vibrations]) -> TipModes:
@@ -210,14 +210,14 @@ def _check_excluded(effects: tuple[Effect, ...], scene: str) -> None:
 
 def _check_clamps(cue: Cue, effects: tuple[Effect, ...], scene: str) -> None:
     """Two clamps of one unknown at one place are a slip of the pen: nothing is left for the second to hold."""
-    found: list[tuple[int, str, float]] = []
+    clamps: list[tuple[int, str, float]] = []
     for i, effect in enumerate(effects):
         for name, x in effect.clamps if isinstance(effect, CueEffect) else ():
-            first = next((j for j, other, at in found if other == name and abs(at - x) <= NEAR * cue.length), None)
+            first = next((j for j, other, at in clamps if other == name and abs(at - x) <= NEAR * cue.length), None)
             if first is not None:
                 unit = "N/m" if name == "stiffness" else "N m/rad"
                 raise ValueError(
                     f"{scene}.effects[{i}].{name} must be in [0, inf) {unit} at {x} m, "
                     f"where effects[{first}] is a clamp already; got inf"
                 )
-            found.append((i, name, x))
+            clamps.append((i, name, x))

@@ -353,8 +353,8 @@ class LeatherTip(CueEffect):
         """
         self.check_diameter(diameter)
         radii = np.asarray(Quantity("m", f"(0, {diameter / 2}]").check("patch", patch)) / diameter
-        found = self._compliance(diameter, offset, radii.ravel()) / (self.E * diameter)
-        return np.asarray(found.reshape(*radii.shape, 2, 2))
+        matrices = self._compliance(diameter, offset, radii.ravel()) / (self.E * diameter)
+        return np.asarray(matrices.reshape(*radii.shape, 2, 2))
 
     def head_on(self, diameter: float, ball_radius: float) -> tuple[Array, Array, Array]:
         """The force over the depth of a ball that is pressed on the dome, without friction.
@@ -380,8 +380,8 @@ class LeatherTip(CueEffect):
         """
         scalar("ball_radius", Quantity("m", "(0, inf)").check("ball_radius", ball_radius))
         radius = np.linspace(0.0, HEAD_ON_RADIUS[1], 91)[1:]
-        found = head_on(self._table(diameter), radius, ball_radius / diameter)
-        force, depth = np.vstack([np.zeros(2), found * [self.E * diameter**2, diameter]]).T
+        scaled = head_on(self._table(diameter), radius, ball_radius / diameter)
+        force, depth = np.vstack([np.zeros(2), scaled * [self.E * diameter**2, diameter]]).T
         return np.append(0.0, radius * diameter), depth, force
 
     def shear_stiffness(self, diameter: float, offset: float) -> tuple[Array, Array]:
@@ -489,11 +489,11 @@ class LeatherTip(CueEffect):
     def _compliance(self, diameter: float, offset: float, radii: Array) -> Array:
         """E D times the compliance at radii over D."""
         place, missing = self._place(diameter, offset)
-        found = compliance(self._table(diameter), place, radii)
+        matrices = compliance(self._table(diameter), place, radii)
         turn = np.array([[math.cos(missing), -math.sin(missing)], [math.sin(missing), math.cos(missing)]])
-        found = turn @ found @ turn.T
-        found = (found + found.transpose(0, 2, 1)) / 2  # of rounding
-        return found * np.array([[1, math.copysign(1, offset)], [math.copysign(1, offset), 1]])
+        matrices = turn @ matrices @ turn.T
+        matrices = (matrices + matrices.transpose(0, 2, 1)) / 2  # of rounding
+        return matrices * np.array([[1, math.copysign(1, offset)], [math.copysign(1, offset), 1]])
 
     def _punch(self, diameter: float, offset: float) -> tuple[Array, Array]:
         """Radii over D from zero up, and E D times the two direct compliances of a patch that sticks beyond zero."""
@@ -511,9 +511,9 @@ class LeatherTip(CueEffect):
 @lru_cache(maxsize=32)
 def _punched(tip: LeatherTip, diameter: float, offset: float) -> Array:
     """Both stiffnesses of a patch ask for its compliances."""
-    found = tip._direct(diameter, offset)
-    found.flags.writeable = False
-    return found
+    compliances = tip._direct(diameter, offset)
+    compliances.flags.writeable = False
+    return compliances
 
 
 @dataclass(frozen=True)

@@ -144,5 +144,5 @@ def _series(y: Array, values: Array, *, lowest: int) -> tuple[float, ...]:
     scale = float(y[-1])
     powers = lowest + np.arange(min(TERMS, len(y)))
     rows = (y[:, None] / scale) ** powers / values[:, None]
-    found = np.linalg.lstsq(rows, np.ones(len(y)), rcond=None)[0] / scale**powers
-    return tuple(float(term) for term in found)
+    coefficients = np.linalg.lstsq(rows, np.ones(len(y)), rcond=None)[0] / scale**powers
+    return tuple(float(term) for term in coefficients)

@@ -294,12 +294,12 @@ class AxialWaves(CueEffect):
     across: ClassVar[bool] = False
     usual: ClassVar[Usual | None] = Usual({}, "the cue's own EA and mass")
 
-    def vibrations(self, found: Ended, cue: Cue, effects: Sequence[CueEffect]) -> tuple[AxialVibrations, ...]:
+    def vibrations(self, bending: Ended, cue: Cue, effects: Sequence[CueEffect]) -> tuple[AxialVibrations, ...]:
         """The rod modes."""
         from cuefem.effects.axial import rod_modes  # loaded when used: it solves the beam
 
-        tailed = found.radiation is not None
-        return (rod_modes(found.system, cue, lumps_on(cue, effects), below=found.highest, tailed=tailed),)
+        tailed = bending.radiation is not None
+        return (rod_modes(bending.system, cue, lumps_on(cue, effects), below=bending.highest, tailed=tailed),)
 
 
 @dataclass(frozen=True)
@@ -340,10 +340,10 @@ class GeometricStiffness(CueEffect):
     across: ClassVar[bool] = False
     usual: ClassVar[Usual | None] = Usual({}, "the cue's own shape and mass")
 
-    def geometric_stiffness(self, found: Ended, cue: Cue, effects: Sequence[CueEffect]) -> Array | None:
+    def geometric_stiffness(self, bending: Ended, cue: Cue, effects: Sequence[CueEffect]) -> Array | None:
         """That of the bending modes for a newton of thrust."""
-        vectors = np.concatenate([found.rigid_vectors, found.vectors], axis=1)
-        return found.system.geometric_stiffness(vectors, lumps_on(cue, effects))
+        vectors = np.concatenate([bending.rigid_vectors, bending.vectors], axis=1)
+        return bending.system.geometric_stiffness(vectors, lumps_on(cue, effects))
 
 
 def lumps_on(cue: Cue, effects: Sequence[CueEffect]) -> list[tuple[float, float]]:

@@ -134,8 +134,8 @@ class ContactTerms:
         self._refuse_twice("window for a second hit", self.window is not None)
         self.window = window
 
-    def _refuse_twice(self, what: str, given: bool) -> None:
-        if given:
+    def _refuse_twice(self, what: str, present: bool) -> None:
+        if present:
             raise ValueError(f"Scene.effects must give the contact one {what}; got a second one")
 
     @property

@@ -18,7 +18,7 @@ import numpy as np
 from cuefem.beam.tip import TipModes
 from cuefem.cue import Array
 from cuefem.endmass import undamped
-from cuefem.endmass.poles import held, response
+from cuefem.endmass.poles import held_tip, response
 from cuefem.endmass.undamped import StickLimit, loading
 
 # Coefficients of the diagonal Padé approximant of exp of degree 13, and the norm up to which it is exact to rounding.
@@ -31,7 +31,7 @@ def expm(X: Array) -> Array:
 
     scipy has it too, but would take half of a cold `cuefem end-mass` to load.
     """
-    one, second = np.eye(len(X)), X @ X
+    identity, second = np.eye(len(X)), X @ X
     fourth = second @ second
     sixth = fourth @ second
     norm = max(np.linalg.norm(power, 1) ** (1 / n) for n, power in ((4, fourth), (6, sixth)))
@@ -41,14 +41,14 @@ def expm(X: Array) -> Array:
     )
 
     def half(c: list[float]) -> Array:
-        low = c[3] * sixth + c[2] * fourth + c[1] * second + c[0] * one
+        low = c[3] * sixth + c[2] * fourth + c[1] * second + c[0] * identity
         return np.asarray(sixth @ (c[6] * sixth + c[5] * fourth + c[4] * second) + low)
 
     odd, even = X @ half(_PADE[1::2]), half(_PADE[0::2])
-    found = np.linalg.solve(even - odd, even + odd)
+    exponential = np.linalg.solve(even - odd, even + odd)
     for _ in range(halvings):
-        found = found @ found
-    return np.asarray(found)
+        exponential = exponential @ exponential
+    return np.asarray(exponential)
 
 
 def _motion(tip: TipModes) -> tuple[Array, Array]:
@@ -84,7 +84,7 @@ def _half_sine_velocity(tip: TipModes, T: float) -> float:
 
 def smooth_start_impulse(tip: TipModes, T: float) -> float:
     """Impulse that makes the tip follow the velocity (1 - cos(pi t/T))/2 from 0 to T, N s per m/s."""
-    free = held(tip, 0.0)
+    free = held_tip(tip, 0.0)
     if free is not None:
         return float(free.impulse(1.0, undamped.smooth_start_swing(free.rates, T, response)))
     start = np.zeros(2 * len(tip.omega) + 3)
@@ -97,13 +97,13 @@ def stick_impulse(tip: TipModes, limit: StickLimit) -> Any:
 
     limit: its K and T may be arrays, for contacts at many offsets.
     """
-    stuck = held(tip, limit.c)
+    stuck = held_tip(tip, limit.c)
     if stuck is not None:
         return stuck.impulse(limit.K - 1, limit.swing(stuck.rates, response))
     if np.ndim(limit.K) or np.ndim(limit.T):
         pairs = np.broadcast(limit.K, limit.T)
-        found = [stick_impulse_in_time(tip, replace(limit, K=float(K), T=float(T))) for K, T in pairs]
-        return np.reshape(found, pairs.shape)
+        impulses = [stick_impulse_in_time(tip, replace(limit, K=float(K), T=float(T))) for K, T in pairs]
+        return np.reshape(impulses, pairs.shape)
     return stick_impulse_in_time(tip, limit)
 
 

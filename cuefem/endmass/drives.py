@@ -138,8 +138,8 @@ def spreads_of(solved: Solved) -> Callable[[str], Spread]:
         rigid, whole = int(np.sum(plain.omega == 0)), len(plain.omega)
         cutoffs = 5 if definition.strikes(tip, scene) else 13
         least = rigid + math.ceil((whole - rigid) / 4)
-        kept = sorted(set(np.linspace(least, whole, cutoffs).astype(int).tolist()))
-        values = [float(definition.of(each, scene)) for each in (tip, *map(plain.lowest, kept))]
+        counts = sorted(set(np.linspace(least, whole, cutoffs).astype(int).tolist()))
+        values = [float(definition.of(each, scene)) for each in (tip, *map(plain.lowest, counts))]
         error = definition.error(tip, scene)
         reach = [values[0] * (1 + side * (error or 0.0)) for side in (-1, 1)]
         return Spread(values[0], min(*values, *reach), max(*values, *reach), error)
@@ -215,16 +215,16 @@ def stick_at_offset(tip: TipModes, scene: Scene) -> Any:
     if np.ndim(b) == 0:
         return float(_end_mass_at(tip, scene, b))
     flat, places = np.unique(b, return_inverse=True)
-    found = [_end_mass_at(tip, scene, flat[i : i + BLOCK]) for i in range(0, len(flat), BLOCK)]
-    return np.concatenate(found)[places.ravel()].reshape(b.shape)
+    masses = [_end_mass_at(tip, scene, flat[i : i + BLOCK]) for i in range(0, len(flat), BLOCK)]
+    return np.concatenate(masses)[places.ravel()].reshape(b.shape)
 
 
 def _each(function: Callable[[float, float], float], offset: Any, speed: Any) -> Any:
     """The function's values at every offset and speed, which broadcast; each different pair is computed once."""
     b, U = np.broadcast_arrays(offset, speed)
     pairs, places = np.unique(np.stack([b.ravel(), U.ravel()]), axis=1, return_inverse=True)
-    found = np.array([function(*pair) for pair in pairs.T.tolist()])
-    return found[places.ravel()].reshape(b.shape) if b.shape else float(found[0])
+    values = np.array([function(*pair) for pair in pairs.T.tolist()])
+    return values[places.ravel()].reshape(b.shape) if b.shape else float(values[0])
 
 
 def limit_at(scene: Scene, offset: Any) -> StickLimit:
@@ -322,8 +322,8 @@ def squirt_equivalent(tip: TipModes, scene: Scene) -> float:
 
     ValueError if there is none: see `equivalent_end_mass`.
     """
-    struck = scene if scene.stroke.offset else _aside(scene)
-    return equivalent_end_mass(strike_modes(struck, tip, recorded=False), struck)
+    off_centre = scene if scene.stroke.offset else _aside(scene)
+    return equivalent_end_mass(strike_modes(off_centre, tip, recorded=False), off_centre)
 
 
 def equivalent_end_mass(outcome: Outcome, scene: Scene) -> float:
@@ -348,12 +348,12 @@ def _with_squirt(squirt: float, scene: Scene, drive: str) -> float:
 
     log_masses = np.linspace(math.log(1e-9), math.log(1e3), MASSES)
     with trying():
-        found = excess(log_masses)
-        if not found[0] < -FLAT < FLAT < found[-1]:  # of all light lumps the tip slides at one squirt
+        excesses = excess(log_masses)
+        if not excesses[0] < -FLAT < FLAT < excesses[-1]:  # of all light lumps the tip slides at one squirt
             raise ValueError(
                 f"end_mass drive {drive!r}: no single lumped end mass in [1e-9, 1e3] kg has the squirt {squirt:.6g} rad"
             )
-        above = int(np.argmax(found >= 0))
+        above = int(np.argmax(excesses >= 0))
         return math.exp(zero(excess, *log_masses[above - 1 : above + 1].tolist()))
 
 
@@ -397,8 +397,8 @@ class Definition(NamedTuple):
 
 # The one table of the definitions, in the order in which they are shown. What is added here is found everywhere.
 DEFINITIONS: dict[str, Definition] = {
-    one.name: one
-    for one in (
+    definition.name: definition
+    for definition in (
         Definition(
             "stick",
             "stick, small offsets",

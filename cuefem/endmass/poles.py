@@ -33,7 +33,7 @@ class Admittance(NamedTuple):
     rigid: float
 
 
-class Held(NamedTuple):
+class HeldTip(NamedTuple):
     """1/(s Y(s)), the force that a unit velocity step of the tip takes: rates and residues of the upper half plane."""
 
     direct: float
@@ -66,11 +66,11 @@ def admittance(tip: TipModes) -> Admittance | None:
     residues = phi[alone] ** 2 * poles / (2 * (poles + rate))
     if coupled.any():
         row = np.concatenate([np.zeros(coupled.sum()), phi[coupled]])
-        found, vectors = np.linalg.eig(_motion(omega[coupled], resistance[np.ix_(coupled, coupled)]))
-        upper = found.imag > 0
-        if 2 * upper.sum() < len(found):
+        eigenvalues, vectors = np.linalg.eig(_motion(omega[coupled], resistance[np.ix_(coupled, coupled)]))
+        upper = eigenvalues.imag > 0
+        if 2 * upper.sum() < len(eigenvalues):
             return None
-        poles = np.concatenate([poles, found[upper]])
+        poles = np.concatenate([poles, eigenvalues[upper]])
         residues = np.concatenate([residues, ((row @ vectors) * np.linalg.solve(vectors, row))[upper]])
     order = np.argsort(poles.imag)
     return Admittance(poles[order], residues[order], float(np.sum(phi[still] ** 2)))
@@ -83,15 +83,15 @@ def _motion(omega: Array, resistance: Array) -> Array:
     return A
 
 
-def held(tip: TipModes, c: float) -> Held | None:
+def held_tip(tip: TipModes, c: float) -> HeldTip | None:
     """The tip of damped modes held by a ball of inertia 1/c; None if `admittance` is, or if a rate is real."""
-    found = admittance(tip)
-    return None if found is None else _held(found, c)
+    Y = admittance(tip)
+    return None if Y is None else _held_tip(Y, c)
 
 
-def _held(found: Admittance, c: float) -> Held | None:
-    poles, residues = found.poles, found.residues
-    still = found.rigid + c
+def _held_tip(Y: Admittance, c: float) -> HeldTip | None:
+    poles, residues = Y.poles, Y.residues
+    still = Y.rigid + c
     if still <= 0 or len(poles) == 0:
         return None
     beta, gamma = -2 * poles.real, np.abs(poles) ** 2
@@ -102,11 +102,11 @@ def _held(found: Admittance, c: float) -> Held | None:
     def sampled(s: Array) -> tuple[Array, Array, Array]:
         """(s Y, its derivative, the sum of 1/(s - pole)) at s."""
         over = 1 / (s[:, None] * (s[:, None] + beta) + gamma)
-        a, d, b, one = (over @ sums).T
+        a, d, b, inverse = (over @ sums).T
         a2, d2, ab2, db2 = ((over * over) @ slopes).T
         value = still + s * (s * a + d)
         slope = 2 * s * a + d - s * (s * (2 * s * a2 + ab2) + 2 * s * d2 + db2)
-        return value, slope, 2 * s * one + b
+        return value, slope, 2 * s * inverse + b
 
     # a held tip's frequencies lie below and between the free ones
     z = (poles + np.concatenate([[0.0], poles[:-1]])) / 2
@@ -128,7 +128,7 @@ def _held(found: Admittance, c: float) -> Held | None:
     wanted = -float(beta.sum()) + moved
     if len(active) or np.any(z.imag <= 0) or abs(2 * z.real.sum() - wanted) > SUM * np.abs(z).sum():
         return None
-    return Held(1 / total, z, 1 / sampled(z)[1])
+    return HeldTip(1 / total, z, 1 / sampled(z)[1])
 
 
 def response(z: Array, T: Any, span: tuple[Any, Any], *, a: Any = 0.0, b: Any = 0.0) -> Array:

@@ -100,7 +100,7 @@ class StickLimit:
     def of_each(cls, scenes: Sequence[Scene], axial_mass: Array) -> StickLimit:
         """The stack of the limits of scenes with cues of ``axial_mass`` kg, (scenes,)."""
         limits = [cls.of(scene, m) for scene, m in zip(scenes, axial_mass, strict=True)]
-        return cls(*(np.array([getattr(one, part.name) for one in limits]) for part in fields(cls)))
+        return cls(*(np.array([getattr(limit, part.name) for limit in limits]) for part in fields(cls)))
 
     @classmethod
     def law(cls, ball_mass: Any, inertia: Any, restitution: Any, contact_time: Any, axial_mass: Any) -> StickLimit:
@@ -112,7 +112,7 @@ class StickLimit:
 
     def __getitem__(self, part: slice) -> StickLimit:
         """A part of a stack; a field that is one number holds for all."""
-        values = (getattr(self, one.name) for one in fields(self))
+        values = (getattr(self, each.name) for each in fields(self))
         return StickLimit(*(value[part] if np.ndim(value) else value for value in values))
 
     def transverse_impulse(self, omega: Array, phi: Array, rigid: Any, *, top: Any = None) -> Any:
@@ -157,17 +157,17 @@ class StickLimit:
 
         ValueError, with the reason of `stick_reason`, if no end mass does.
         """
-        found = self.end_masses(J)
-        for i in np.argwhere(np.isnan(found))[:1]:
-            slope = float(np.broadcast_to(self.slope(J), np.shape(found))[tuple(i)])
+        masses = self.end_masses(J)
+        for i in np.argwhere(np.isnan(masses))[:1]:
+            slope = float(np.broadcast_to(self.slope(J), np.shape(masses))[tuple(i)])
             raise ValueError(f"end_mass drive 'stick': {stick_reason(slope)}; see cuefem.lump")
-        return found
+        return masses
 
     def end_masses(self, J: Any) -> Any:
         """As `end_mass`, for a stack: nan where no end mass gives J; `stick_reason` then says why."""
         rest = np.divide(self.K - 1, J, out=np.full(np.shape(J), np.nan), where=np.asarray(J) > 0) - self.c
-        found = np.divide(1.0, rest, out=np.full(np.shape(rest), np.nan), where=rest > 0)
-        return found if np.ndim(found) else found[()]
+        masses = np.divide(1.0, rest, out=np.full(np.shape(rest), np.nan), where=rest > 0)
+        return masses if np.ndim(masses) else masses[()]
 
     def coupling(self, J: Any, end_mass: Any) -> Any:
         """The coupling per sin(phi) with which ``end_mass`` takes the transverse impulse J, 1/kg."""

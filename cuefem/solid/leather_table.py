@@ -43,9 +43,9 @@ def weights(x: Array | float, low: float, high: float, count: int) -> Array:
     sign[[0, -1]] /= 2
     gap = np.clip(x, low, high)[..., None] - at if isinstance(x, np.ndarray) else np.clip(x, low, high) - at
     hit = gap == 0
-    found = sign / np.where(hit, 1.0, gap)
-    found = np.where(hit.any(axis=-1, keepdims=True), hit, found)
-    return np.asarray(found / found.sum(axis=-1, keepdims=True))
+    terms = sign / np.where(hit, 1.0, gap)
+    terms = np.where(hit.any(axis=-1, keepdims=True), hit, terms)
+    return np.asarray(terms / terms.sum(axis=-1, keepdims=True))
 
 
 def sag(curvature: float) -> float:
@@ -123,7 +123,7 @@ def half_space_head_on(nu: float, radius: Array) -> Array:
     return np.stack([force, depth], axis=-2)
 
 
-class Table(NamedTuple):
+class LeatherTable(NamedTuple):
     """The table's values; the first axes are the panel of the curvature, curvature, height and Poisson's ratio.
 
     whole, cut, rim: (..., place, radius, 3), the logarithms of C_nn and C_tt over a half-space's, and C_nt over the
@@ -141,14 +141,14 @@ class Table(NamedTuple):
 
 
 @cache
-def table() -> Table:
+def table() -> LeatherTable:
     """The table that belongs to cuefem."""
-    with np.load(Path(__file__).with_name("leather_table.npz")) as kept:
-        return Table(*(kept[name].astype(float) for name in Table._fields))
+    with np.load(Path(__file__).with_name("leather_table.npz")) as file:
+        return LeatherTable(*(file[name].astype(float) for name in LeatherTable._fields))
 
 
 class TipTable(NamedTuple):
-    """The table of one tip: `Table` without its first axes; rim is None on steep domes.
+    """The table of one tip: `LeatherTable` without its first axes; rim is None on steep domes.
 
     punch: (height, radius, 2), of flat tips at the nodes of ``heights``, the range of the coordinate of the height.
     """
@@ -204,14 +204,14 @@ def compliance(tip: TipTable, place: float, radius: Array) -> Array:
     reaches over the rim, they go on as a constant and a part in proportion to 1/radius, from the two smallest ones.
     """
     at = np.maximum(radius, RADIUS[0])
-    found = _read(tip, place, at)
+    matrices = _read(tip, place, at)
     if np.all(at == radius):
-        return found
+        return matrices
     if edge(tip.curvature, place) >= RADIUS[0]:
         more = half_space(tip.nu, radius) - half_space(tip.nu, at)
-        return np.asarray(found + more[:, None] * np.eye(2))
+        return np.asarray(matrices + more[:, None] * np.eye(2))
     first, second = _read(tip, place, np.array([1.0, 1.5]) * RADIUS[0])
-    return np.asarray(found + 3 * (first - second) * (RADIUS[0] / radius - RADIUS[0] / at)[:, None, None])
+    return np.asarray(matrices + 3 * (first - second) * (RADIUS[0] / radius - RADIUS[0] / at)[:, None, None])
 
 
 def _read(tip: TipTable, place: float, radius: Array) -> Array:
@@ -226,12 +226,12 @@ def _read(tip: TipTable, place: float, radius: Array) -> Array:
         return np.asarray(weights(np.log(radius), *ends, len(s)) @ s)
 
     if place > limit and tip.rim is not None:
-        found = sheet("rim", tip.rim, limit, 1.0)
+        logarithms = sheet("rim", tip.rim, limit, 1.0)
     else:
         whole, cut = sheet("whole", tip.whole, AXIS, limit), sheet("cut", tip.cut, AXIS, limit)
-        found = np.where((radius <= edge(k, min(place, limit)))[:, None], whole, cut)
-    normal, shear = (np.exp(found[:, :2]) * half_space(tip.nu, radius)).T
-    across = found[:, 2] * place * np.sqrt(normal * shear)
+        logarithms = np.where((radius <= edge(k, min(place, limit)))[:, None], whole, cut)
+    normal, shear = (np.exp(logarithms[:, :2]) * half_space(tip.nu, radius)).T
+    across = logarithms[:, 2] * place * np.sqrt(normal * shear)
     return np.array([[normal, across], [across, shear]]).transpose(2, 0, 1)
 
 

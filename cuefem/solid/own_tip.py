@@ -47,13 +47,13 @@ class OwnTip(NamedTuple):
 @lru_cache(maxsize=64)
 def own_table(tip: OwnTip) -> TipTable:
     """The table of one tip, read or computed."""
-    kept = read(tip)
-    if kept is None:
+    computed = read(tip)
+    if computed is None:
         from cuefem.solid.tip_sheets import own_tip
 
-        kept = own_tip(tip)
-        write(tip, kept)
-    return kept
+        computed = own_tip(tip)
+        write(tip, computed)
+    return computed
 
 
 def read(tip: OwnTip) -> TipTable | None:
@@ -72,9 +72,9 @@ def read(tip: OwnTip) -> TipTable | None:
     return None
 
 
-def write(tip: OwnTip, found: TipTable) -> None:
+def write(tip: OwnTip, table: TipTable) -> None:
     """Keep the table of a tip, if there is a place for it."""
-    parts = {name: part for name, part in found._asdict().items() if part is not None}
+    parts = {name: part for name, part in table._asdict().items() if part is not None}
     with suppress(OSError):
         tip.file.parent.mkdir(parents=True, exist_ok=True)
         handle, beside = tempfile.mkstemp(dir=tip.file.parent, suffix=".part")

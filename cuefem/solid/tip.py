@@ -178,9 +178,9 @@ def lagrange(radius: Array, how: TipFineness) -> Array:
     factors = np.array(
         [np.prod([(place - b) / (a - b) for j, b in enumerate(local) if j != i], axis=0) for i, a in enumerate(local)]
     )
-    found = np.zeros((len(x), (len(ends) - 1) * how.order + 1))
-    found[np.arange(len(x))[:, None], cell[:, None] * how.order + np.arange(how.order + 1)] = factors.T
-    return found
+    values = np.zeros((len(x), (len(ends) - 1) * how.order + 1))
+    values[np.arange(len(x))[:, None], cell[:, None] * how.order + np.arange(how.order + 1)] = factors.T
+    return values
 
 
 # The body
@@ -239,7 +239,7 @@ class TipSolid:
             if self.how.harmonics > 0:
                 cross = a.transpose(0, 2, 1) @ b
                 blocks += [cross + cross.transpose(0, 2, 1), b.transpose(0, 2, 1) @ b]
-        basis, found = self.grid.basis, []
+        basis, rows = self.grid.basis, []
         own = (basis.N * np.arange(3)[:, None, None] + basis.element_dofs).transpose(2, 0, 1)
         own = own.reshape(own.shape[0], -1)
         level = np.round(self.grid.y.mean(axis=1), 9)
@@ -251,8 +251,8 @@ class TipSolid:
             for cell, place in zip(cells, places, strict=True):
                 for k, block in enumerate(blocks):
                     whole[k][np.ix_(place, place)] += block[cell]
-            found.append((unknowns, whole))
-        return found
+            rows.append((unknowns, whole))
+        return rows
 
     @cached_property
     def _sides(self) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:
@@ -274,15 +274,15 @@ class TipSolid:
         powers = [1.0, m, m * m] if self.how.harmonics > 0 else [1.0]
         turn = np.pi * (2 if m == 0 else 1)
         axis, base, top = self._sides
-        held = [base, N + base, 2 * N + base]
+        clamped = [base, N + base, 2 * N + base]
         if m == 0:
-            held += [axis, N + np.arange(N)]
+            clamped += [axis, N + np.arange(N)]
         elif m == 1:
-            held += [N + axis, 2 * N + axis]  # V = -U there: see below
+            clamped += [N + axis, 2 * N + axis]  # V = -U there: see below
         else:
-            held += [axis, N + axis, 2 * N + axis]
+            clamped += [axis, N + axis, 2 * N + axis]
         stopped = np.zeros(3 * N, dtype=bool)
-        stopped[np.concatenate(held)] = True
+        stopped[np.concatenate(clamped)] = True
         carried, passed = np.zeros((0, 0)), np.zeros(0, dtype=np.intp)
         for i, (unknowns, parts) in enumerate(self.rows):
             E, ratio = bodies[of_row[i]]
@@ -319,15 +319,15 @@ def surfaces(solid: TipSolid, nu: float, *, every: bool = False) -> list[Array]:
     highest = solid.how.harmonics
     solved = [m for m in range(highest + 1) if every or m <= 8 or m == highest or m in SOLVED]
     known = {m: solid.surface(nu, m) for m in solved}
-    found = []
+    matrices = []
     for m in range(highest + 1):
         if m not in known:
             low, high = max(k for k in solved if k < m), min(k for k in solved if k > m)
             part = (m - low) / (high - low)
-            found.append(((1 - part) * low * known[low] + part * high * known[high]) / m)
+            matrices.append(((1 - part) * low * known[low] + part * high * known[high]) / m)
         else:
-            found.append(known[m])
-    return found
+            matrices.append(known[m])
+    return matrices
 
 
 # Patches
@@ -428,5 +428,5 @@ def head_on(shape: Shape, surface: Array, radius: float, how: TipFineness, terms
     matrix = np.hstack([load @ axial @ load[:-1].T, -shapes.sum(axis=1)[:, None]])
     k = shape.curvature
     gaps = np.array([p * p / (1 + np.sqrt(np.maximum(1 - np.square(k * p), 0))), p * p / 2, p**4 / 8])
-    found = np.linalg.solve(matrix, -(shapes @ gaps.T))
-    return np.array([shapes[:-1].sum(axis=1) @ found[:-1], found[-1]])
+    solution = np.linalg.solve(matrix, -(shapes @ gaps.T))
+    return np.array([shapes[:-1].sum(axis=1) @ solution[:-1], solution[-1]])

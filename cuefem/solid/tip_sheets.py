@@ -141,15 +141,15 @@ def _carried(shape: Shape, how: TipFineness, section: Array, m: int) -> Array:
     """The compliance of the surface's nodes in harmonic m that comes of the ferrule's end section alone, which carries
     the tip as a rigid body; (3 nodes, 3 nodes)."""
     x = grid(how).nodes
-    none, one = np.zeros_like(x), np.ones_like(x)
+    zeros, ones = np.zeros_like(x), np.ones_like(x)
     if m > 1:
         return np.zeros((3 * len(x), 3 * len(x)))
     if m == 0:
-        moved = np.concatenate([none, none, one])[None]
+        moved = np.concatenate([zeros, zeros, ones])[None]
         return np.asarray(moved.T @ section[:1, :1] @ moved)
     r = np.sin(np.pi / 2 * x) / 2
     z = shape.height - drop(r, shape.curvature) - shape.layers[0].height
-    moved = np.array([np.concatenate([one, -one, none]), np.concatenate([z, -z, -r])])
+    moved = np.array([np.concatenate([ones, -ones, zeros]), np.concatenate([z, -z, -r])])
     return np.asarray(moved.T @ section[1:, 1:] @ moved)
 
 

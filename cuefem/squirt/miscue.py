@@ -18,9 +18,9 @@ def miscue_friction(beta: Coefficients, offset: Any, *, restitution: Any) -> Any
     """
     offset, restitution = checked(offset=offset, restitution=restitution)
     s, c = sine_cosine(offset)
-    held = 1 + restitution
-    above = s * beta.perpendicular + held * c * beta.cross
-    return above / (held * c * beta.parallel + s * beta.cross)
+    rebound = 1 + restitution
+    above = s * beta.perpendicular + rebound * c * beta.cross
+    return above / (rebound * c * beta.parallel + s * beta.cross)
 
 
 def compression_stick_friction(offset: Any, *, end_mass_ratio: Any, inertia: Any = 0.4) -> Any:

@@ -34,8 +34,8 @@ def alciatore_a31_mass_ratio(offset: Any, squirt: Any, *, inertia: Any = 0.4) ->
     s, c = sine_cosine(offset)
     tangent = np.tan(squirt)
     ratio = s * c / nu / np.where(tangent == 0, np.nan, tangent) - 1 - c**2 / nu
-    if not np.all(held := ratio > 0):
-        where, (b, psi) = first_failure(held, offset, squirt)
+    if not np.all(positive := ratio > 0):
+        where, (b, psi) = first_failure(positive, offset, squirt)
         raise ValueError(
             "squirt must be of its offset's sign and less than that of an endless end mass in [A.31]; "
             f"got {psi:.6g} rad at offset {b:.6g}{where}"

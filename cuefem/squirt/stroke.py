@@ -149,15 +149,15 @@ def closed_form(
         restitution=restitution,
         friction=friction,
     )
-    side, struck = np.copysign(1.0, offset), np.abs(offset)
+    side, distance = np.copysign(1.0, offset), np.abs(offset)
     ratios = {"cue_mass_ratio": mass / ball_mass, "end_mass_ratio": end_mass / ball_mass, "inertia": inertia}
-    beta = lumped(struck, **ratios)
-    slip, compression = slip_impulse(beta, struck, friction), compression_impulse(beta, struck)
+    beta = lumped(distance, **ratios)
+    slip, compression = slip_impulse(beta, distance, friction), compression_impulse(beta, distance)
     _refuse(beta, offset, friction, slip=slip, compression=compression)
-    factor = restitution_factor(beta, struck, friction)
-    tangential, final = final_impulse(beta, struck, restitution=restitution, factor=factor)
-    tangent = squirt_tangent(struck, restitution=restitution, factor=factor, **ratios)
-    s, c = sine_cosine(struck)
+    factor = restitution_factor(beta, distance, friction)
+    tangential, final = final_impulse(beta, distance, restitution=restitution, factor=factor)
+    tangent = squirt_tangent(distance, restitution=restitution, factor=factor, **ratios)
+    s, c = sine_cosine(distance)
     return ClosedForm(
         side * np.arctan(tangent),
         np.stack(np.broadcast_arrays(side * tangential, final), axis=-1),
@@ -176,9 +176,9 @@ def closed_form_holds(
     offset, mass, end_mass, ball_mass, inertia, friction = checked(
         offset=offset, mass=mass, end_mass=end_mass, ball_mass=ball_mass, inertia=inertia, friction=friction
     )
-    struck = np.abs(offset)
-    beta = lumped(struck, cue_mass_ratio=mass / ball_mass, end_mass_ratio=end_mass / ball_mass, inertia=inertia)
-    in_time = slip_impulse(beta, struck, friction) <= compression_impulse(beta, struck)
+    distance = np.abs(offset)
+    beta = lumped(distance, cue_mass_ratio=mass / ball_mass, end_mass_ratio=end_mass / ball_mass, inertia=inertia)
+    in_time = slip_impulse(beta, distance, friction) <= compression_impulse(beta, distance)
     return in_time & (-critical_friction(beta) <= friction)
 
 

@@ -24,7 +24,7 @@ from cuefem.beam.tail import tail
 from cuefem.beam.tip import TipModes
 from cuefem.beam.waves import modes_below
 from cuefem.endmass.drives import flexible, force, ringing, stick
-from cuefem.endmass.poles import held, response
+from cuefem.endmass.poles import held_tip, response
 from cuefem.endmass.undamped import smooth_start_swing
 from cuefem.tip_modes import LEAST_STUCK, tip_modes_from
 from studies import pages, strokes
@@ -170,7 +170,7 @@ def driven(name: str, drive: str) -> np.ndarray:
     if drive == "force":
         exact = [force(tip, scene) for scene in scenes]
     else:
-        free = held(tip, 0.0)
+        free = held_tip(tip, 0.0)
         assert free is not None
         exact = [free.impulse(1.0, smooth_start_swing(free.rates, T, response)) for T in times]
     return np.array([abs(end_mass(scene, drive) / m - 1) for scene, m in zip(scenes, exact, strict=True)])

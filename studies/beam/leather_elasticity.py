@@ -49,7 +49,7 @@ def curvatures(panel: int, count: int) -> Array:
     return 2 * np.sin(lt.nodes(*(lt.steepness(end) for end in lt.PANELS[panel : panel + 2]), count))
 
 
-def build(n: dict[str, int] = COUNTS) -> lt.Table:
+def build(n: dict[str, int] = COUNTS) -> lt.LeatherTable:
     """The whole table."""
     nus = (1 - np.exp(-lt.nodes(*lt.NU, n["nu"]))) / 2
     panels = len(lt.PANELS) - 1
@@ -71,7 +71,7 @@ def build(n: dict[str, int] = COUNTS) -> lt.Table:
                             part[panel, i, j, u] = getattr(tip, name)
             print(f"curvature {k:.3f} done", file=sys.stderr, flush=True)
     flat = [gains(shape_at(0.0, v), nus) for v in lt.nodes(*lt.heights(0.0), n["height"])]
-    return lt.Table(**parts, punch=np.array(flat))
+    return lt.LeatherTable(**parts, punch=np.array(flat))
 
 
 # The page

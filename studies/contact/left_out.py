@@ -60,8 +60,9 @@ def stiffening(model: ContactModel, height: float) -> ContactModel:
     terms = np.zeros(len(force) + 4)
     for power, part in ((0, 1.0), (2, 1 / height), (4, 4 / 3 / height**2)):
         terms[power : power + len(force)] += part * force
-    law, edges = replace(model.law, force_terms=tuple(terms.tolist())), model.arrays["ring_edges"]
-    give = np.pad(model.arrays["give_terms"], (0, len(terms) - len(force)))  # as many terms as of the force
+    give = np.pad(model.law.give_terms, (0, len(terms) - len(force)))  # as many terms as of the force
+    law = replace(model.law, force_terms=tuple(terms.tolist()), give_terms=tuple(give.tolist()))
+    edges = model.arrays["ring_edges"]
     changed = {
         "force_terms": terms,
         "give_terms": give,

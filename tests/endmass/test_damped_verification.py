@@ -43,7 +43,7 @@ def test_the_rates_of_the_held_tip_are_the_motion_in_time(restitution: float, ef
         tip, limit = Solved(found).tip, StickLimit.of(found)
         exact = damped.stick_impulse_in_time(tip, limit)
         assert damped.stick_impulse(tip, limit) == pytest.approx(exact, rel=1e-11)
-        held = poles.held(tip, limit.c)
+        held = poles.held_tip(tip, limit.c)
         assert held is not None
         A, row = damped._motion(tip)
         rates = np.linalg.eigvals(A - np.outer(row, row @ A) / (row @ row + limit.c))
@@ -68,7 +68,7 @@ def test_all_offsets_at_once_are_each_alone() -> None:
 def test_dashpots_and_rates_that_are_real_are_left_to_the_exponential() -> None:
     found = scene(kim(), 1e-3)
     dashed = Solved(replace(found, effects=(cf.Support(0.5, 1e4, 0.0, 5.0),))).tip
-    assert poles.held(dashed, 10.0) is None
+    assert poles.held_tip(dashed, 10.0) is None
     tip = Solved(found).tip
     overdamped = replace(tip, radiation=None, damping=np.diag(np.where(tip.omega > 0, 2.5 * tip.omega[-1], 0.0)))
-    assert poles.held(overdamped, 10.0) is None
+    assert poles.held_tip(overdamped, 10.0) is None
