@@ -230,7 +230,7 @@ def _largest(A: Any, B: Any, count: int) -> tuple[Array, Array]:
     if FEW * count < len(A) < SMALL:
         low, high = len(A) - count + 1, len(A)
         mu, vectors, _, _, failed = lapack().dsygvx(A.T, B.T, uplo="L", range="I", il=low, iu=high)
-        _check(failed, "dsygvx")
+        check_solved(failed, "dsygvx")
         mu = mu[:count]
     else:
         mu, vectors = _all_of(A, B)
@@ -240,11 +240,12 @@ def _largest(A: Any, B: Any, count: int) -> tuple[Array, Array]:
 def _all_of(A: Array, B: Array) -> tuple[Array, Array]:
     """Every mu of A q = mu B q, ascending, and vectors with q' B q = 1; A and B symmetric, B positive definite."""
     mu, vectors, failed = lapack().dsygvd(A.T, B.T, uplo="L")
-    _check(failed, "dsygvd")
+    check_solved(failed, "dsygvd")
     return mu, vectors
 
 
-def _check(failed: int, routine: str) -> None:
+def check_solved(failed: int, routine: str) -> None:
+    """LinAlgError if a routine of LAPACK failed."""
     if failed:
         raise np.linalg.LinAlgError(f"the eigenproblem of the modes has no solution ({routine} {failed})")
 

@@ -16,7 +16,7 @@ from functools import cached_property
 import numpy as np
 
 from cuefem.beam.lapack import lapack
-from cuefem.beam.modes import Modes, normalised, solve
+from cuefem.beam.modes import Modes, check_solved, normalised, solve
 from cuefem.beam.system import System
 from cuefem.beam.tail import DASHPOT, STEPS, flexibility, tail
 from cuefem.cue import Array, Section
@@ -64,7 +64,7 @@ class Reduced:
 
     def _leading(self, size: int) -> tuple[Array, Array]:
         mu, z, failed = lapack().dstevd(self.diagonal[:size], self.off[: size - 1])
-        _check(failed, "dstevd")
+        check_solved(failed, "dstevd")
         return mu[::-1], z[:, ::-1]
 
     @property
@@ -88,13 +88,13 @@ class Reduced:
         y[: len(mix)] = self.eigen[1] @ mix
         y[1:] = self._turned(y[1:], "N")
         q, failed = lapack().dtrtrs(self.upper, y[::-1])
-        _check(failed, "dtrtrs")
+        check_solved(failed, "dtrtrs")
         return np.asarray(q[::-1])
 
     def _turned(self, y: Array, trans: str) -> Array:
         """Q or its transpose times y, both without their first row."""
         turned, _, failed = lapack().dormqr("L", trans, self.reflectors, self.tau, y, 64 * y.shape[1])
-        _check(failed, "dormqr")
+        check_solved(failed, "dormqr")
         return np.asarray(turned)
 
 
@@ -105,18 +105,13 @@ def reduced(system: System, wanted: int | None = None) -> Reduced:
     """
     # with the unknowns in reverse the tip is last, where LAPACK's upper triangles leave it alone
     upper, failed = lapack().dpotrf((system.K + system.shift * system.M)[::-1, ::-1], lower=0)
-    _check(failed, "dpotrf")
+    check_solved(failed, "dpotrf")
     standard, failed = lapack().dsygst(system.M[::-1, ::-1], upper, lower=0)
-    _check(failed, "dsygst")
+    check_solved(failed, "dsygst")
     work = 10 * len(upper)  # wider blocks take longer for so few unknowns
     whole, diagonal, off, tau, failed = lapack().dsytrd(standard[::-1, ::-1], lower=1, lwork=work)
-    _check(failed, "dsytrd")
+    check_solved(failed, "dsytrd")
     return Reduced(system, diagonal, off, upper, np.asfortranarray(whole[1:, :-1]), tau, wanted or len(upper))
-
-
-def _check(failed: int, routine: str) -> None:
-    if failed:
-        raise np.linalg.LinAlgError(f"the eigenproblem of the modes has no solution ({routine} {failed})")
 
 
 @dataclass(frozen=True, eq=False)

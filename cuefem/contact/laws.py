@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -148,9 +148,8 @@ def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
     radius, (u, w) = scalar("Ball.radius", scene.ball.radius), terms.lever(phi)
     s, c = math.sin(phi), math.cos(phi)
     law: TipLaw | LeatherLaw
-    numbers: dict[str, float]
+    numbers: dict[str, float] = {"tolerance": TOLERANCE}
     arrays: dict[str, Array] = {}
-    numbers = {"tolerance": TOLERANCE}
     if terms.tip is not None:
         law = terms.tip.law(radius, offset, e)
         shear = terms.tip.shear
@@ -279,17 +278,8 @@ def _raised(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
     (u, w), phi, mass, nu = terms.lever(common["phi"]), common["phi"], common["ball_mass"], common["inertia"]
     s, c = math.sin(phi), math.cos(phi)
     right, forward, up = table_axes(phi, terms.table.angle)
-    lever = (u, w)
-    if any(lever):
-        tip = TipModes(
-            tip.omega,
-            tip.amplitude + np.outer(tip.rotation, lever),
-            tip.approach,
-            tip.rotation,
-            tip.damping,
-            tip.radiation,
-            tip.geometric,
-        )
+    if u or w:
+        tip = replace(tip, amplitude=tip.amplitude + np.outer(tip.rotation, (u, w)))
     facing = np.zeros((6, 9))
     facing[0, [0, 1]], facing[1, [0, 1]], facing[2, 2] = (-s, -c), (-c, s), -1.0
     facing[[0, 1, 2], [3, 4, 5]] = 1.0

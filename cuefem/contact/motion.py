@@ -192,7 +192,6 @@ class Path(NamedTuple):
     def of(cls, solved: SolvedContact, times: Array) -> Path:
         """Follow the steps of a contact once more, from load to load; times: ascending, s."""
         course, propagator = solved.course, solved.model.propagator
-        assert course is not None
         speeds, walk = len(solved.ball), _Walk(solved)
         modes, ball = np.zeros((len(propagator.omega), len(times))), np.zeros((len(times), speeds))
         angle, force = np.zeros(len(times)), np.zeros((len(times), 2))

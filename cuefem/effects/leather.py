@@ -14,7 +14,7 @@ from cuefem.cue import SOFT, Array, Cue
 from cuefem.effects.base import CueEffect, Effect
 from cuefem.effects.leather_law import Curves, LeatherLaw
 from cuefem.effects.on_cue import PointMass
-from cuefem.effects.terms import ContactTerms
+from cuefem.effects.terms import ContactTerms, WholeTip
 from cuefem.materials import LEATHER_NAMES
 from cuefem.quantity import DIAMETER, Flag, Number, OutOfBounds, Quantity, check_fields, check_kind, scalar
 from cuefem.solid.leather_table import (
@@ -241,7 +241,7 @@ class LeatherTip(CueEffect):
     def add_to_contact(self, terms: ContactTerms) -> None:
         """The whole tip, and the normal that turns."""
         if terms.tip_diameter is not None:  # a lumped cue is refused in words
-            terms.set_tip(OnCue(self, self.diameter_on(terms.tip_diameter)))
+            terms.set_tip(whole_tip(self, self.diameter_on(terms.tip_diameter)))
         if self.rolls:
             terms.turn()
 
@@ -404,9 +404,9 @@ class LeatherTip(CueEffect):
         From the compliance of the Hertz-weighted patch, less what a rigid patch gives less than it: on a half-space a
         sixth, 0.05 (1 - nu/2)/(G a), and on thin leather what a leather layer as thick as that below the patch has.
         """
-        at, give = self._punch(diameter, offset)
+        give = self._punch(diameter, offset)
         stiffness = np.maximum.accumulate(1 / give[:, 1])  # near the rim it levels off, to a thousandth
-        return at * diameter, np.append(0.0, self.E * diameter * stiffness)
+        return RADII * diameter, np.append(0.0, self.E * diameter * stiffness)
 
     def normal_ratio(self, diameter: float, offset: float) -> tuple[Array, Array]:
         """The stiffness along the normal of a patch that sticks, off the axis over that on it.
@@ -423,9 +423,8 @@ class LeatherTip(CueEffect):
         tuple of ndarray
             Radius of the patch, from zero to half of the diameter, m; the ratio, which is 1 for the smallest patches.
         """
-        at, give = self._punch(diameter, offset)
-        ratio = self._punch(diameter, 0.0)[1][:, 0] / give[:, 0]
-        return at * diameter, np.append(1.0, ratio)
+        ratio = self._punch(diameter, 0.0)[:, 0] / self._punch(diameter, offset)[:, 0]
+        return RADII * diameter, np.append(1.0, ratio)
 
     def _drop(self, off: float) -> float:
         """Depth of the dome below its apex at a distance from the axis, m."""
@@ -495,78 +494,41 @@ class LeatherTip(CueEffect):
         matrices = (matrices + matrices.transpose(0, 2, 1)) / 2  # of rounding
         return matrices * np.array([[1, math.copysign(1, offset)], [math.copysign(1, offset), 1]])
 
-    def _punch(self, diameter: float, offset: float) -> tuple[Array, Array]:
-        """Radii over D from zero up, and E D times the two direct compliances of a patch that sticks beyond zero."""
-        self._place(diameter, offset)  # which says what is wrong with them
-        return RADII, _punched(self, diameter, offset)
-
-    def _direct(self, diameter: float, offset: float) -> Array:
-        """The two compliances of `_punch`, solved for."""
+    def _punch(self, diameter: float, offset: float) -> Array:
+        """E D times the two direct compliances of a patch that sticks, at `RADII` beyond zero."""
         at = RADII[1:]
         direct = np.diagonal(self._compliance(diameter, offset, at), axis1=1, axis2=2)
         below = self.height - self._drop(self._place(diameter, offset)[0] * diameter / 2)
         return np.asarray(direct - punch_gain(self._table(diameter), below / diameter, at))
 
 
-@lru_cache(maxsize=32)
-def _punched(tip: LeatherTip, diameter: float, offset: float) -> Array:
-    """Both stiffnesses of a patch ask for its compliances."""
-    compliances = tip._direct(diameter, offset)
-    compliances.flags.writeable = False
-    return compliances
-
-
-@dataclass(frozen=True)
-class OnCue:
-    """A tip of leather on a cue's end of a diameter, m: what a contact asks of it (`cuefem.effects.terms.WholeTip`)."""
-
-    tip: LeatherTip
-    diameter: float
-
-    @property
-    def dome_radius(self) -> float:
-        """Radius of the dome, m; 0 for a flat tip."""
-        return self.tip.dome_radius if math.isfinite(self.tip.dome_radius) else 0.0
-
-    @property
-    def shear(self) -> float | None:
-        """The constant stiffness along the surface, N/m, if there is one."""
-        return self.tip.shear
-
-    @property
-    def surface_restitution(self) -> float:
-        """The root of what the leather gives back along the surface."""
-        return self.tip.surface_restitution
-
-    def lever(self, phi: float) -> tuple[float, float]:
-        """Displacement (u, w) of the contact per unit rotation of the ferrule's end section, m."""
-        return self.tip.lever(phi, self.diameter)
-
-    @property
-    def rim(self) -> float:
-        """Angle of the contact at which the dome ends, rad; behind it the ball rolls on an edge."""
-        if self.tip.dome_radius <= self.diameter / 2:
-            return math.pi / 2
-        return math.asin(self.diameter / 2 / self.tip.dome_radius)
-
-    def law(self, ball_radius: float, offset: float, restitution: float) -> LeatherLaw:
-        """The forces on a ball of that radius, m, that is struck at b/R = offset."""
-        return _law(self, ball_radius, offset, restitution)
+def whole_tip(tip: LeatherTip, diameter: float) -> WholeTip:
+    """What a contact asks of a tip of leather on a cue, whose own diameter is this one, m."""
+    ends = tip.dome_radius > diameter / 2  # the dome ends at a rim
+    return WholeTip(
+        diameter=diameter,
+        dome_radius=tip.dome_radius if math.isfinite(tip.dome_radius) else 0.0,
+        rim=math.asin(diameter / 2 / tip.dome_radius) if ends else math.pi / 2,
+        shear=tip.shear,
+        surface_restitution=tip.surface_restitution,
+        lever=lambda phi: tip.lever(phi, diameter),
+        law=lambda ball_radius, offset, restitution: _law(tip, diameter, ball_radius, offset, restitution),
+    )
 
 
 @lru_cache(maxsize=64)
-def _pressed(on: OnCue, ball_radius: float) -> tuple[Array, Array, Array]:
+def _pressed(tip: LeatherTip, diameter: float, ball_radius: float) -> tuple[Array, Array, Array]:
     """Patch, depth and force of a head-on blow, without zero, which the laws of all offsets ask for."""
-    patch, depth, force = on.tip.head_on(on.diameter, ball_radius)
+    patch, depth, force = tip.head_on(diameter, ball_radius)
     for part in (patch, depth, force):
         part.flags.writeable = False
     return patch[1:], depth[1:], force[1:]
 
 
 @lru_cache(maxsize=256)
-def _law(on: OnCue, ball_radius: float, offset: float, restitution: float) -> LeatherLaw:
+def _law(tip: LeatherTip, diameter: float, ball_radius: float, offset: float, restitution: float) -> LeatherLaw:
     """The law of a tip; scenes ask for it again and again."""
-    patch, depth, force = _pressed(on, ball_radius)
-    radius, shear = on.tip.shear_stiffness(on.diameter, offset)
+    patch, depth, force = _pressed(tip, diameter, ball_radius)
+    radius, shear = tip.shear_stiffness(diameter, offset)
     of_patch = patch * np.interp(patch, radius[1:], shear[1:] / radius[1:])  # nearly straight, other than the stiffness
     return LeatherLaw.fitted(Curves(depth, force, of_patch), restitution)

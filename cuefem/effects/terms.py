@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 from cuefem.effects.law import TipLaw
@@ -22,34 +23,23 @@ class HeadOn(NamedTuple):
     speed: float
 
 
-class WholeTip(Protocol):
-    """A tip that gives everything at the contact: where this is on the cue, and the forces there."""
+@dataclass(frozen=True)
+class WholeTip:
+    """A tip that gives everything at the contact: where this is on the cue, and the forces there.
 
-    @property
-    def diameter(self) -> float:
-        """Its diameter, m."""
+    diameter: m. dome_radius: m; 0 for a flat tip. rim: the contact's angle at which the dome ends, rad; beyond it the
+    ball rolls on an edge. shear: a constant stiffness along the surface, N/m; None where the patch has its own.
+    surface_restitution: the root of what the leather gives back of the work that strains it along the surface. lever:
+    for angles >= 0. law: the forces on a ball by its radius, m, the offset b/R >= 0 and the restitution.
+    """
 
-    @property
-    def dome_radius(self) -> float:
-        """Radius of its dome, m; 0 for a flat tip."""
-
-    @property
-    def shear(self) -> float | None:
-        """A constant stiffness along the surface, N/m, in the place of its patch's; None: the patch's."""
-
-    @property
-    def surface_restitution(self) -> float:
-        """The root of what its leather gives back of the work that strains it along the surface."""
-
-    def lever(self, phi: float) -> tuple[float, float]:
-        """Displacement (u, w) of the contact per unit rotation of the cue's end section, m; phi >= 0, rad."""
-
-    @property
-    def rim(self) -> float:
-        """Angle of the contact at which the dome ends, rad; behind it the ball rolls on an edge."""
-
-    def law(self, ball_radius: float, offset: float, restitution: float) -> LeatherLaw:
-        """Its forces on a ball of that radius, m, that is struck at b/R = offset >= 0."""
+    diameter: float
+    dome_radius: float
+    rim: float
+    shear: float | None
+    surface_restitution: float
+    lever: Lever
+    law: Callable[[float, float, float], LeatherLaw]
 
 
 # Makes a tip's law along the normal from its head-on blow, and tells about how long the contact takes, s.

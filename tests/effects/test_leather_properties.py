@@ -10,7 +10,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from cuefem import LeatherTip
-from cuefem.effects.leather import OnCue
+from cuefem.effects.leather import whole_tip
 
 DIAMETERS = st.floats(8e-3, 15e-3)
 TIPS = st.builds(
@@ -90,7 +90,7 @@ def test_every_ring_presses_and_holds(tip: LeatherTip, diameter: float, offset: 
 
     Near the rim the patch's stiffness levels off too: it falls by less than a thousandth of its greatest.
     """
-    law = OnCue(possible(tip, diameter), diameter).law(0.028575, offset, 0.7)
+    law = whole_tip(possible(tip, diameter), diameter).law(0.028575, offset, 0.7)
     depth = law.most * np.linspace(0.0, 1.0, 1000) ** 2
     slope, stiffness = law.slope(depth), law.at(depth)[1]
     assert np.all(np.diff(slope)[depth[1:] < 0.8 * law.most] > 0)
