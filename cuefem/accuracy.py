@@ -45,16 +45,16 @@ DECAY, WINDOW = 0.75, 3
 FLOOR, ROUNDING = 1e-8, 1e-12
 # Squirt is judged against no less than this part of sin(phi), rad: where it vanishes a relative error means nothing.
 LEAST_SQUIRT = 0.01
-# Tip and ball nearly part where their normal force falls to this part of its peak and rises again. More modes may let
-# them part there, so the error is that of parting; so it is where the force falls to no more than the rungs differ by.
-# Rungs whose contact times differ by more than COURSE took different courses: one parted and another did not.
+# Tip and ball nearly part where their normal force falls below NEARLY_APART of its peak, or below what rungs differ by
+# there, and rises again. With more modes they may part there: the error is then the difference that parting makes.
+# Of rungs whose contact times differ by more than COURSE one parted and another did not.
 NEARLY_APART, COURSE, LOOKS = 5e-3, 0.05, 1001
-# Dips are a little earlier or later in other rungs: by this part of the contact at most.
+# The same dip of the force comes earlier or later in another rung, by this part of the contact at most.
 SHIFT = 0.01
-# A tip that leaves the ball slowly, with less than this part of the normal speed of a head-on blow, may catch up with
-# it at once: `ladder` looks whether it nearly did.
+# A tip that leaves the ball with less than SLOWLY times the normal speed after a head-on blow may catch up with it at
+# once: `ladder` looks whether it nearly did. That is so if a tip glued to the ball would have pulled on it, until they
+# touch again, with no more than GRAZED times the peak force.
 SLOWLY = 0.3
-# It nearly did where a tip that stuck to the ball would have pulled on it with no more than this part of the peak.
 GRAZED = 0.03
 # Of the dips of the normal force the lowest few are looked at.
 FEW_DIPS = 3
@@ -238,7 +238,7 @@ def _scale(outcome: Outcome, scene: Scene) -> Array:
 
 
 def _ringing(tip: TipModes) -> TipModes:
-    """Those tip modes with a tail that gives nothing away: what it is set vibrating, it goes on ringing with."""
+    """The tip modes with a tail that radiates nothing: the vibration that the blow gives it goes on."""
     return replace(tip, radiation=None)
 
 

@@ -339,7 +339,7 @@ class Scene:
 
 @lru_cache(maxsize=256)
 def _pressed(law: LeatherLaw, mass: float, speed: float) -> tuple[float, float]:
-    """The blow of a law: the strokes of a sweep at one speed ask for it again and again."""
+    """The blow of a law, computed once for all strokes of a sweep at one speed."""
     deepest, time = law.blow(mass, speed)
     return float(deepest), float(time)
 

@@ -49,9 +49,8 @@ def default_resolution(scene: Scene, *, periods: float = PERIODS_KEPT, least: in
 
 def default_modes(scene: Scene, *, periods: float = PERIODS_KEPT, least: int = LEAST) -> int:
     """The number of modes of the default resolution."""
-    if not CONTACT_TIME.holds(
-        scene.contact_time
-    ):  # one made by a stiffness; or by a whole tip; one given is bounded already
+    # a contact time that the user gave is in bounds; one that follows from a stiffness or a whole tip may not be
+    if not CONTACT_TIME.holds(scene.contact_time):
         got = f"{scene.stiffness:.6g} N/m, {scene.contact_time:.3g} s"
         raise ValueError(f"Tip.stiffness must make a head-on contact time in {CONTACT_TIME.bounds}; got {got}")
     return _count_for(scene.shaft, scene.contact_time, periods, least)
@@ -98,8 +97,8 @@ class Solved:
     def least_smooth(self) -> int:
         """How many modes the end mass of a smooth drive takes: a strike's, or `tip_stuck`'s on a leather segment.
 
-        Soft leather between ball and wood rings so high that a push of a millisecond still hears its missing modes:
-        with a strike's alone the end mass by force was 0.9 % off, with a brass ferrule behind the leather.
+        A leather segment of the drawing has resonances far above the modes of a strike, and a push of a millisecond
+        still excites them: with a strike's modes alone, the end mass by force was 0.9 % off for leather before brass.
         """
         lumped = self.scene.lumped is not None
         return LEAST if lumped or self.scene.shaft.segments[0].material.E > SOFT else LEAST_STUCK
@@ -130,7 +129,8 @@ class Solved:
     def without_spectra(self) -> Solved:
         """The same, but of what it solved it holds the tip modes alone: the spectra with their matrices take 4 MB.
 
-        They are copies, so that what strikes made of them and share, another MB and a half, is let go as well.
+        The tip modes are copied: strikes share a propagator of 1.5 MB as long as the tip modes live that it was made
+        of, and that is freed too.
         """
         small = Solved(self.scene, self.at)
         vars(small).update({name: replace(value) for name, value in vars(self).items() if isinstance(value, TipModes)})

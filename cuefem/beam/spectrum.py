@@ -21,8 +21,9 @@ from cuefem.beam.system import System
 from cuefem.beam.tail import DASHPOT, STEPS, flexibility, tail
 from cuefem.cue import Array, Section
 
-# The lowest modes live in the leading part of the tridiagonal form, which the tip's load reaches first: for LEADING
-# times as many modes as are kept, and SPARE, what the rest of the form adds to them is below ROUNDING of each.
+# The lowest modes follow from the leading part of the tridiagonal form. If it has LEADING times as many rows as modes
+# are asked for, and SPARE more, the rest of the form usually changes none of them by more than ROUNDING of itself;
+# where it does, the whole form is taken.
 LEADING, SPARE, ROUNDING = 2.2, 12, 1e-16
 
 # K carries a rounding error of eps times its largest entry, which shows in the lowest mode where stiffness is uneven (a
@@ -52,8 +53,8 @@ class Reduced:
     def eigen(self) -> tuple[Array, Array]:
         """(mu, z) descending in mu, ascending in frequency, of all modes or of the form's leading part: (m,), (m, m).
 
-        The modes asked for are the beam's; to a load on the deflection of the tip the others are as good as its others,
-        whose first moments in mu they have.
+        The modes asked for are exact. The others of a leading part stand for all further modes of the beam: a load
+        on the tip's deflection finds the same first moments in mu in both.
         """
         size = len(self.diagonal)
         part = min(size, int(LEADING * self.wanted) + SPARE)

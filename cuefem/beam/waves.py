@@ -40,10 +40,10 @@ def modes_below(cue: Cue, omega: float) -> int:
 # Orders of an element beyond half the phase of the waves on it, and the highest order of `mesh_for`.
 SPARE, HIGHEST_ORDER = 8, 26
 
-# The same of `ended_mesh_for`: where a tail ends the modes, the highest need no more accuracy than the tail has, and
-# elements may be as long as their tables are cheap. With these, squirt changes by up to 3e-6 and a stick end mass by
-# 1e-5, in the median by 3e-8 (tests/test_default_verification.py). TAPERED: what a cone's taper may leave by itself in
-# the tip's amplitudes; in frequencies it is their square.
+# The same for `ended_mesh_for`, whose modes end in a tail: the highest of them need no more accuracy than the tail has,
+# and elements may be longer, up to the order WIDEST. Against a finer mesh squirt differs by up to 3e-6 and a stick end
+# mass by 1e-5, in the median by 3e-8 (tests/test_default_verification.py). TAPERED: the error in the tip's amplitudes
+# that the taper of a cone may cause; that in the frequencies is its square.
 SPARE_ENDED, WIDEST, TAPERED = 6, 42, 1e-7
 
 _GUESSES = np.geomspace(1e0, 1e9, 100)  # angular frequencies between which `mesh_for` interpolates, rad/s

@@ -14,11 +14,12 @@ import numpy as np
 from cuefem.beam.tip import TipModes
 from cuefem.cue import Array
 
-# Pushes of these parts of the contact's time, looked at so often, up to this many contact times from the touch on.
+# The half-sine pushes last these parts of the contact time. The modes' motion under each is sampled LOOKS times from
+# the first touch up to UNTIL contact times.
 PUSHES, LOOKS, UNTIL = (0.5, 1.0), 16, 1.5
-# Rows are kept down to this part of the greatest in q'Gq, but no more than MOST.
+# Of the decomposition, rows that carry less than this part of the greatest one's q'Gq are dropped, and all beyond MOST.
 LEAST_PART, MOST = 1e-12, 12
-# A rigid motion that turns the cue by less than this part of what is in G does not turn it.
+# A rigid motion whose entry in G is less than this part of the largest entry does not turn the cue: that is rounding.
 BALANCED = 1e-12
 
 
@@ -53,9 +54,8 @@ def slope_rows(tip: TipModes, time: float, until: float) -> Array:
 def buckling_thrust(tip: TipModes, ahead: float = 0.0) -> float:
     """The thrust along a fixed line that buckles a cue if it lasts, N; ahead: how far before its end that acts, m.
 
-    It is the least P > 0 for which omega^2 - P G is singular. A cue that nothing holds turns under any thrust; what
-    bends it is a shape whose turning is balanced, so that rigid motions take part as they like:
-    G - G_fr G_rr^-1 G_rf over the flexible modes.
+    It is the least P > 0 for which omega^2 - P G is singular. Any thrust turns a cue that nothing holds, and that is no
+    buckling: the rigid motions are eliminated, G - G_fr G_rr^-1 G_rf over the flexible modes f and the rigid ones r.
     """
     assert tip.geometric is not None
     stiffness = tip.geometric + ahead * np.outer(tip.rotation, tip.rotation)

@@ -1,4 +1,4 @@
-"""A tip from how a head-on blow comes out: the leather's E from its time, the tip's restitution from the rebound."""
+"""From a measured head-on blow to the tip: the leather's E from the contact time, the restitution from the rebound."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from cuefem.quantity import CONTACT_TIME, Quantity, scalar
 from cuefem.scene import Outcome, Scene
 
 CLOSE = 1e-9  # of the contact time
-# The search starts from leather that is stiffer than any, which is not pressed too deep, and goes on along the slope of
-# ln T over ln E, about.
+# The search starts from an E above that of any leather, so that the ball is not pressed in too deep; its second guess
+# follows from this slope of ln T over ln E, which is about right.
 STIFF, FIRST_SLOPE = 1e9, -0.4
 REBOUND_LEAST = 0.1  # a tip of leather takes no less
 REBOUND = Quantity("", "[0.1, 1]")

@@ -1,4 +1,4 @@
-"""Which law a contact follows: the numbers that a scene's terms ask the kernel for, and what a contact refuses."""
+"""From a scene's contact terms to the law and the numbers that the kernel takes; what no contact can do is refused."""
 
 from __future__ import annotations
 
@@ -18,22 +18,23 @@ from cuefem.effects.terms import ContactTerms, HeadOn, Lever, Table
 from cuefem.quantity import scalar
 from cuefem.scene import Scene
 
-# A contact that lasts this many head-on contact times (and a period and a half of the slowest vibration, on which a
-# rigid tip may ride) does not end.
+# A contact is given up after this many head-on contact times and, since a rigid tip may ride on the cue's slowest
+# vibration, a period and a half of that.
 LONGEST = 200
-# A tip that gives back less than this part of the speed, but not nothing, rings 1/e times faster than the contact, and
-# following every swing takes longer than anybody waits. Leather's law along the surface is given up earlier.
+# A tip of a small restitution e unloads 1/e times as fast as it loads, and to follow that takes longer than anybody
+# waits. Such tips are refused below the first number (e = 0, a dead tip, is another law), and leather below the second.
 LEAST_RESTITUTION, LEAST_OF_LEATHER = 1e-4, 0.1
 # What the last terms of a step may add, as a part of the blow's impulse; rings make forces with many small kinks.
 TOLERANCE, LEATHER_TOLERANCE, RINGED_TOLERANCE = 1e-11, 1e-10, 3e-7
 RINGS, DEEPER = 120, 1.05  # even in the root of the compression, up to so many times a head-on blow's greatest
 RIGID_PATCH, SPRING_PATCH, RINGED_PATCH = range(3)
-# What happens along the surface is computed relative to itself, down to this part of the rest: where the normal does
-# not turn nothing of the rest comes in, so that rounding is relative to itself too.
+# Errors along the surface are measured by the motion there, but by no less than this part of the motion along the
+# normal. Where the normal turns, the motion along it enters with its rounding, and the least part is larger.
 LEAST_ACROSS, LEAST_ACROSS_TURNING = 1e-9, 1e-3
 # Levers that are functions are sampled over this range of the contact's angle, rad, by so many Chebyshev terms.
 LEVER_REACH, LEVER_TERMS, LEVER_FIT = 0.5, 24, 1e-11
-# A law that stiffens from nothing grips a patch on a spring at once if it does so from this part of a blow's depth on.
+# The stiffness of a power law is zero at the first touch. Whether a patch on a spring grips there is therefore judged
+# at a compression of this part of the stroke's speed times the contact time.
 TOUCHED = 1e-11
 
 
@@ -211,7 +212,7 @@ def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
 
 
 def _thrust(propagator: ModalPropagator, ahead: float, planes: int = 1) -> dict[str, Array]:
-    """The weights of a bent cue's slopes; ahead: how far the centre of the tip's dome lies before the cue's end, m."""
+    """The arrays that a bent cue adds; ahead: how far the centre of the tip's dome lies before the cue's end, m."""
     count = len(propagator.slopes)
     if not count:
         return {}

@@ -14,9 +14,10 @@ from cuefem.contact.rule import WAVES
 from cuefem.cue import Array
 from cuefem.scene import Outcome, equal_fields
 
-# Of the push, while the tip slides: a warning; and, in all or up to the end, from where on squirt grows fast: no shot.
-# The end alone does not tell it: a bare tip that slid through the first 79 % and then gripped squirts a fifth more than
-# farther in, after 46 % next to nothing more; leather that slid through the last 39 % squirts three quarters more.
+# Parts of the push that are given while the tip slides. Above SLIDES cuefem warns. Above LETS_GO in all, or above
+# SLIDES_AWAY without a break up to the end, squirt grows fast, and this is no shot. Both are needed: a bare tip that
+# slid through the first 79 % and then gripped squirts a fifth more than closer to the centre (after 46 % hardly more),
+# and leather that slid through the last 39 % three quarters more.
 SLIDES, LETS_GO, SLIDES_AWAY = 0.25, 0.5, 1 / 3
 MISSED = ("miscue", "lets go")
 # The grip of a blow, and grip and press of a flight, in which ball and tip are apart before they touch again.

@@ -25,12 +25,13 @@ from cuefem.cue import Array
 
 Complex = NDArray[np.complex128]
 Index = NDArray[np.intp]
-# Groups of modes whose eigenvectors have a larger condition number lose digits; by how much they are then changed.
+# Eigenvectors of coupled modes whose condition number is above DEFECTIVE would lose digits. The diagonal is then
+# changed by up to NUDGE of the norm, which parts rates that are equal.
 DEFECTIVE, NUDGE = 1e7, 1e-9
 
 
 class ModalPropagator:
-    """Tip modes with their ports, which the compiled kernel keeps the responses of.
+    """Tip modes with their ports; the compiled kernel computes their responses to loads once and keeps them.
 
     rows: (ports, modes), what each port reads of the modes' velocities, and pushes. slopes: (slopes, modes), likewise,
     of the bent cue (`cuefem.contact.bent`); none without thrust. omega, approach: of the modes.
@@ -127,7 +128,7 @@ class _Group:
 
     @classmethod
     def damped(cls, omega: Array, resistance: Array, modes: Index) -> _Group:
-        """The eigenvectors of (omega q, v)' = (omega v, -omega^2 q/omega - C v); of a pair of conjugates one, twice."""
+        """The eigenvectors of (omega q, v)' = (omega v, -omega^2 q/omega - C v); of two conjugates one, doubled."""
         vibrating = np.flatnonzero(omega[modes])  # a rigid mode has no displacement among the states
         count, turning = len(vibrating), omega[modes[vibrating]]
         states = np.zeros((count + len(modes), count + len(modes)))

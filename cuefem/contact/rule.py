@@ -1,4 +1,4 @@
-"""Nodes of a step, Radau's, and what polynomials through them do: the tables that the compiled kernel works with.
+"""The nodes of a step, which are Radau's, and the tables by which the kernel integrates polynomials through them.
 
 Forces are polynomials through the nodes, of which the last is the step's end. Velocities are known at its start too.
 """

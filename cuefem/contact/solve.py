@@ -97,7 +97,7 @@ class SolvedContact:
 
     @property
     def impulse(self) -> tuple[float, float]:
-        """On the ball, (t, n), N s; of one that came in, its momentum."""
+        """The momentum (t, n) of the ball after the contact, N s: the impulse on it if it was at rest before."""
         p_t, p_n = impulse_on(self.model, self.ball).tolist()
         return p_t, p_n
 

@@ -64,17 +64,17 @@ class Effect:
     needs_beam: ClassVar[bool] = False
     once: ClassVar[bool] = False
     excludes: ClassVar[tuple[str, ...]] = ()
-    # What to try it at; None for an effect that has defaults for all of its fields, or that says what is on this cue
-    # (a point mass): no cue has one of those as a matter of course.
+    # The values at which commands try the effect on a scene that does not list it. None for an effect whose fields all
+    # have defaults, and for one that describes this very cue, as a point mass does: it is not tried.
     usual: ClassVar[Usual | None] = None
     # Whether it acts at the tip (the cue without it is `Scene.bare`), and whether it is part of a cue that lies free.
     at_tip: ClassVar[bool] = False
     part_of_cue: ClassVar[bool] = False
-    # Whether the cue moves otherwise across its axis for it, when nothing presses along the axis.
+    # Whether it changes how the cue moves across its axis when nothing presses along the axis.
     across: ClassVar[bool] = True
     # Whether it gives the whole tip, so that the `Tip` has no contact time of its own.
     whole_tip: ClassVar[bool] = False
-    # Keys of a file that stand for several fields: by key and by the name that it holds, the fields, SI.
+    # Words in a file that stand for several fields: for each key the names it may hold, for each name the fields, SI.
     named: ClassVar[Mapping[str, Mapping[str, Mapping[str, float]]]] = MappingProxyType({})
 
     def __post_init__(self) -> None:

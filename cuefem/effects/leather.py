@@ -479,7 +479,8 @@ class LeatherTip(CueEffect):
         return own is None or read(own) is not None
 
     def _place(self, diameter: float, offset: float) -> tuple[float, float]:
-        """Distance of the patch's centre from the axis, over the tip's radius, and the angle there that is missing."""
+        """Distance of the patch's centre from the axis over the tip's radius, and by how much the contact's angle
+        exceeds that of the dome there, rad."""
         scalar("offset", Quantity("", "(-1, 1)").check("offset", offset))
         phi, curvature = math.asin(abs(offset)), diameter / self.dome_radius
         place = min(2 * self._off_axis(phi) / diameter, farthest(min(curvature, CURVATURE[1])))

@@ -29,14 +29,15 @@ from cuefem.scene import Outcome, Resolution, Scene, Stroke
 from cuefem.slips import trying
 from cuefem.tip_modes import Solved
 
-# The tail stands for the modes that are left out. The error of the stick end mass is estimated as this part of what
-# those modes could add at most, if they lost no energy. Measured: the estimate covers all errors above 0.2 %
+# The tail stands for the modes left out. If those modes kept all their energy, they would change the stick end mass by
+# some amount; this part of it is the estimated error. Measured: the estimate covers all errors above 0.2 %
 # (studies/accuracy/default_accuracy.md).
 HEARD = 0.6
 
 # Offsets whose end masses are worked at a time, so that the arrays of modes by offsets stay small.
 BLOCK = 1024
-# Lumped end masses of which squirts are known at once, at the cost of two, before one is sought between two of them.
+# The squirts of this many lumped end masses are computed in one call, which costs as much as two single ones; the
+# root is then sought between two neighbours.
 MASSES = 500
 NEAR = 1e-5  # b/R that stands for the limit of small offsets
 FLAT = 1e-12  # rad: squirts that differ by less are the same

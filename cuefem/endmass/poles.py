@@ -19,9 +19,11 @@ from cuefem.cue import Array
 MOST_ROUNDS, SETTLED = 40, 1e-13
 # How far, relative to their sum, the zeros may be from what the coefficients of Y say it is.
 SUM = 1e-9
-# Modes that are coupled by damping, a tail's, are parted by a small eigenproblem; more of them by no more than this.
+# The modes of a tail are coupled by its damping, and a small eigenproblem parts them. With more coupled modes than this
+# the closed form is not used.
 COUPLED = 8
-# Closer than this in phase to a drive's own frequency, a vibration's response is taken from its series' side.
+# The response of a vibration to a drive of nearly its own frequency would be 0/0: where their phases part by less than
+# this over the span, it is computed from expm1.
 NEAR = 0.5
 
 

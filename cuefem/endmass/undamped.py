@@ -18,7 +18,7 @@ from cuefem.quantity import scalar
 from cuefem.scene import Scene
 
 # Modes begin to fade at this part of the highest frequency kept. Measured: 0.35 to 0.65 serve equally well
-# (studies/batch.py).
+# (studies/accuracy/batch.py).
 FADED = 0.5
 
 
