@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from cuefem.contact.propagator import ModalPropagator, planar_propagator, raised
 from cuefem.cue import Array
 from cuefem.effects.law import TipLaw
 from cuefem.effects.leather_law import LeatherLaw
-from cuefem.effects.terms import ContactTerms, HeadOn, Lever, Table
+from cuefem.effects.terms import ContactTerms, HeadOn, Lever, Table, WholeTip
 from cuefem.quantity import scalar
 from cuefem.scene import Scene
 
@@ -144,53 +144,63 @@ def check_lively(name: str, restitution: float) -> None:
         )
 
 
-def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, Any], offset: float) -> ContactModel:
-    phi, mass, nu, e = (common[name] for name in ("phi", "ball_mass", "inertia", "restitution"))
-    radius, (u, w) = scalar("Ball.radius", scene.ball.radius), terms.lever(phi)
-    s, c = math.sin(phi), math.cos(phi)
+class _TipPart(NamedTuple):
+    """What the tip gives a planar contact: its laws, its dome, and about how long the contact takes, s."""
+
     law: TipLaw | LeatherLaw
-    numbers: dict[str, float] = {"tolerance": TOLERANCE}
-    arrays: dict[str, Array] = {}
-    if terms.tip is not None:
-        law = terms.tip.law(radius, offset, e)
-        shear = terms.tip.shear
-        patch = RINGED_PATCH if shear is None else SPRING_PATCH
-        dome, rim, turns = terms.tip.dome_radius, terms.tip.rim, terms.turns
-        numbers |= {"curve": 1, "most": law.most, "terms": len(law.force_terms)}
-        arrays |= {"force_terms": np.array(law.force_terms), "give_terms": np.array(law.give_terms)}
-        if shear is None:
-            numbers |= {"rings": RINGS, "tolerance": RINGED_TOLERANCE}
-            numbers["surface_restitution"] = terms.tip.surface_restitution
-            arrays |= _rings(law, min(law.most, DEEPER * scene.deepest))
-        else:
-            numbers |= {"tolerance": LEATHER_TOLERANCE, "compliance": 1 / shear, "first_ratio": math.inf}
+    patch: int
+    dome: float
+    rim: float
+    numbers: dict[str, float]
+    arrays: dict[str, Array]
+    time: float
+
+
+def _leather(scene: Scene, whole: WholeTip, common: dict[str, Any], offset: float) -> _TipPart:
+    """A whole tip, whose patch slips ring by ring, or is a spring where it has a constant stiffness."""
+    law = whole.law(scalar("Ball.radius", scene.ball.radius), offset, common["restitution"])
+    numbers = {"curve": 1, "most": law.most, "terms": len(law.force_terms)}
+    arrays = {"force_terms": np.array(law.force_terms), "give_terms": np.array(law.give_terms)}
+    if whole.shear is None:
+        patch = RINGED_PATCH
+        numbers |= {"rings": RINGS, "tolerance": RINGED_TOLERANCE, "surface_restitution": whole.surface_restitution}
+        arrays |= _rings(law, min(law.most, DEEPER * scene.deepest))
     else:
-        law, time = normal_law(scene, common)
-        compliance = terms.compliance / scene.stiffness
-        patch = SPRING_PATCH if compliance else RIGID_PATCH
-        dome, rim, turns = terms.dome_radius, math.inf, terms.turns
-        numbers |= power_law(law) | {"compliance": compliance}
-        if compliance:
-            n, touched = law.exponent, TOUCHED * common["speed"] * time
-            numbers["first_ratio"] = 1 / (compliance * law.stiffness * n * touched ** (n - 1))
-        common |= {"time": time}
+        patch = SPRING_PATCH
+        numbers |= {"tolerance": LEATHER_TOLERANCE, "compliance": 1 / whole.shear, "first_ratio": math.inf}
+    return _TipPart(law, patch, whole.dome_radius, whole.rim, numbers, arrays, common["time"])
+
+
+def _power_tip(scene: Scene, terms: ContactTerms, common: dict[str, Any]) -> _TipPart:
+    """A tip with a power law along the normal, whose patch is rigid or a spring."""
+    law, time = normal_law(scene, common)
+    compliance = terms.compliance / scene.stiffness
+    numbers = power_law(law) | {"tolerance": TOLERANCE, "compliance": compliance}
+    if compliance:
+        n, touched = law.exponent, TOUCHED * common["speed"] * time
+        numbers["first_ratio"] = 1 / (compliance * law.stiffness * n * touched ** (n - 1))
+    patch = SPRING_PATCH if compliance else RIGID_PATCH
+    return _TipPart(law, patch, terms.dome_radius, math.inf, numbers, {}, time)
+
+
+def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, Any], offset: float) -> ContactModel:
+    """A level cue: the contact stays in the plane of the cue's axis and the ball's centre."""
+    phi, mass, nu = (common[name] for name in ("phi", "ball_mass", "inertia"))
+    (u, w), turns = terms.lever(phi), terms.turns
+    s, c = math.sin(phi), math.cos(phi)
     lever_t, lever_n = s * u + c * w, c * u - s * w
+    whole = terms.tip
+    part = _power_tip(scene, terms, common) if whole is None else _leather(scene, whole, common, offset)
+    numbers, arrays, common = part.numbers, part.arrays, common | {"time": part.time}
     if turns:
-        numbers |= {
-            "turns": 1,
-            "phi": phi,
-            "dome": dome,
-            "rim": rim,
-            "radius": radius,
-            "lever_t": lever_t,
-            "lever_n": lever_n,
-        }
+        numbers |= {"turns": 1, "phi": phi, "dome": part.dome, "rim": part.rim, "radius": float(scene.ball.radius)}
+        numbers |= {"lever_t": lever_t, "lever_n": lever_n}
         if terms.levers:
             numbers |= {"levers": LEVER_TERMS, "lever_reach": LEVER_REACH}
             arrays["lever_terms"] = _sampled(terms.levers, phi)
-    turning = bool(u or w or (turns and (dome or terms.levers)))
-    propagator = planar_propagator(tip, turning=turning, time=common["time"], window=common["window"] or 0.0)
-    rolling = dome if phi < rim else 0.0
+    turning = bool(u or w or (turns and (part.dome or terms.levers)))
+    propagator = planar_propagator(tip, turning=turning, time=part.time, window=common["window"] or 0.0)
+    rolling = part.dome if phi < part.rim else 0.0
     arrays |= _thrust(propagator, -w - rolling * c)
     of_cue = np.array([[-s, -c, -lever_t], [-c, s, -lever_n]])[:, : len(propagator.rows)]
     facing = np.concatenate([of_cue, [[1.0, 0.0, 1.0], [0.0, 1.0, 0.0]]], axis=1)
@@ -202,10 +212,10 @@ def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
         np.array([1 / mass, 1 / mass, 1 / (nu * mass)]),
         np.zeros(3),
         across=max(s, pushed, LEAST_ACROSS_TURNING if turns else LEAST_ACROSS),
-        patch=patch,
+        patch=part.patch,
         terms=numbers,
         arrays=arrays,
-        law=law,
+        law=part.law,
         tip=tip,
         **common,
     )
