@@ -64,13 +64,13 @@ def of_sweep(path: str | PathLike[str], study: str | None = None) -> pd.DataFram
     return _frame(read_table(path, study))
 
 
-def _frame(found: StoredTable) -> Any:
+def _frame(table: StoredTable) -> Any:
     pandas = _library("pandas")
-    names = ["design", *found.names, "failure"]
-    frame = pandas.DataFrame.from_records(found.rows, columns=names).set_index("design")
-    numbers = [name for name in found.names if name not in found.named]
+    names = ["design", *table.names, "failure"]
+    frame = pandas.DataFrame.from_records(table.rows, columns=names).set_index("design")
+    numbers = [name for name in table.names if name not in table.named]
     frame[numbers] = frame[numbers].astype(float)
-    frame.attrs = {"units": dict(found.units), "varied": list(found.varied), "responses": list(found.responses)}
+    frame.attrs = {"units": dict(table.units), "varied": list(table.varied), "responses": list(table.responses)}
     return frame
 
 
@@ -95,18 +95,18 @@ def sweep_grid(path: str | PathLike[str], study: str | None = None) -> xr.Datase
         If the designs are no grid, the file is no store, or a row in it is not as it was written.
     """
     xarray = _library("xarray")
-    found = read_table(path, study)
-    if found.sampled:
+    table = read_table(path, study)
+    if table.sampled:
         raise ValueError(f"{path}: holds a sample and no grid: of_sweep reads it")
-    frame = _frame(found)
-    frame = frame[~frame.duplicated(list(found.varied))].set_index(list(found.varied))[list(found.responses)]
+    frame = _frame(table)
+    frame = frame[~frame.duplicated(list(table.varied))].set_index(list(table.varied))[list(table.responses)]
     data = xarray.Dataset.from_dataframe(frame)
     for name in data.variables:
-        data[name].attrs["units"] = found.units[str(name)]
+        data[name].attrs["units"] = table.units[str(name)]
     return data
 
 
-def of_scatter(wanted: Scatter, found: Drivers) -> pd.DataFrame:
+def of_scatter(wanted: Scatter, drivers: Drivers) -> pd.DataFrame:
     """The designs of a scatter: what varied in them and their responses.
 
     Parameters
@@ -123,14 +123,14 @@ def of_scatter(wanted: Scatter, found: Drivers) -> pd.DataFrame:
     """
     pandas = _library("pandas")
     study = wanted.study
-    varied = pandas.DataFrame(list(found.spread.values), columns=[vary.name for vary in study.vary])
+    varied = pandas.DataFrame(list(drivers.spread.values), columns=[vary.name for vary in study.vary])
     names = [response.name for response in study.responses]
-    frame = varied.join(pandas.DataFrame(found.spread.responses, columns=names))
+    frame = varied.join(pandas.DataFrame(drivers.spread.responses, columns=names))
     frame.attrs = {"units": dict(zip(study.columns, study.units, strict=True))}
     return frame
 
 
-def of_drivers(wanted: Scatter, found: Drivers) -> pd.DataFrame:
+def of_drivers(wanted: Scatter, drivers: Drivers) -> pd.DataFrame:
     """Which cause has which share of the variance.
 
     Parameters
@@ -148,11 +148,11 @@ def of_drivers(wanted: Scatter, found: Drivers) -> pd.DataFrame:
     """
     pandas = _library("pandas")
     names = [response.name for response in wanted.study.responses]
-    index = pandas.MultiIndex.from_product([names, found.causes], names=["response", "cause"])
+    index = pandas.MultiIndex.from_product([names, drivers.causes], names=["response", "cause"])
     columns = dict[str, Any]()
     for name, value, ends in (
-        ("first", found.first, found.first_interval),
-        ("total", found.total, found.total_interval),
+        ("first", drivers.first, drivers.first_interval),
+        ("total", drivers.total, drivers.total_interval),
     ):
         columns |= {name: value.T.ravel(), f"{name}_low": ends[0].T.ravel(), f"{name}_high": ends[1].T.ravel()}
     return pandas.DataFrame(columns, index=index)

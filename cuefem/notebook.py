@@ -15,7 +15,7 @@ def brief(value: Any) -> str:
     """A value in a few letters: numbers to four digits, arrays by their shape unless they are short."""
     if isinstance(value, np.ndarray):
         if value.ndim == 1 and len(value) <= 8:
-            return f"[{', '.join(brief(one) for one in value)}]"
+            return f"[{', '.join(brief(each) for each in value)}]"
         return f"array{value.shape}" if value.ndim else brief(value[()])
     if isinstance(value, bool | np.bool_):
         return str(bool(value))

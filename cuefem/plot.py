@@ -41,10 +41,10 @@ _SOFT, _WOODY, _METAL = 1e9, (300.0, 1250.0), 2500.0  # Pa: leather and foam; kg
 _LOCAL = 5e-4  # m: where end mass lives is drawn from behind the leather, and beyond this
 
 
-def _axes(given: Axes | None) -> Axes:
+def _axes(axes: Axes | None) -> Axes:
     """The axes to draw on; a figure's own are made if none are given."""
-    if given is not None:
-        return given
+    if axes is not None:
+        return axes
     import matplotlib.pyplot as plt
 
     return plt.subplots(figsize=(6.4, 3.6), layout="constrained")[1]
@@ -115,9 +115,9 @@ def modes(cue: Cue | Scene, count: int = 4, ax: Axes | None = None, *, at: Resol
     """
     drawn, axes = _cue_of(cue), _axes(ax)
     check_count("count", count, 1)
-    found = solved_modes(drawn, count, effects=cue.cue_effects if isinstance(cue, Scene) else (), at=at)
+    solved = solved_modes(drawn, count, effects=cue.cue_effects if isinstance(cue, Scene) else (), at=at)
     x = np.linspace(0, drawn.length, 400)
-    for frequency, deflection in zip(found.frequencies, found.shape(x)[0], strict=True):
+    for frequency, deflection in zip(solved.frequencies, solved.shape(x)[0], strict=True):
         axes.plot(scaled(x, "m"), deflection / np.abs(deflection).max(), label=f"{frequency:.0f} Hz")
     axes.axhline(0, color="#888", linewidth=0.6)
     axes.set(xlabel=FROM_TIP, ylabel="deflection", xlim=(0, scaled(drawn.length, "m")))
@@ -235,12 +235,12 @@ def end_mass(scene: Scene, ax: Axes | None = None, *, at: Resolution | None = No
     if scene.effects:
         bare = replace(scene.bare, effects=())
         left_out = f", without the {with_unit(scene.axial_mass - bare.axial_mass, 'kg', 2)} of its leather"
-    found, axes = sensitivity(bare, at=at), _axes(ax)
-    behind = found.x > scene.shaft.leather + _LOCAL
-    axes.plot(scaled(found.x[behind], "m"), (found.rhoA + found.axial_mass)[behind])
+    drivers, axes = sensitivity(bare, at=at), _axes(ax)
+    behind = drivers.x > scene.shaft.leather + _LOCAL
+    axes.plot(scaled(drivers.x[behind], "m"), (drivers.rhoA + drivers.axial_mass)[behind])
     axes.axhline(0, color="#888", linewidth=0.6)
     axes.set(
         xlabel=FROM_TIP, ylabel=with_heading("end mass a gram adds", "kg"), xlim=(0, scaled(scene.shaft.length, "m"))
     )
-    axes.set_title(f"end mass {with_unit(found.end_mass, 'kg', 3)}{left_out}", fontsize="medium")
+    axes.set_title(f"end mass {with_unit(drivers.end_mass, 'kg', 3)}{left_out}", fontsize="medium")
     return axes

@@ -228,7 +228,7 @@ MOST_UNKNOWNS = 50_000  # of a beam: a cue of 30 segments takes 10,000 for the m
 def quantities(kind: type) -> tuple[tuple[str, Quantity, bool, bool], ...]:
     """The dimensioned fields of a dataclass: (name, quantity, whether None is allowed, whether an array is)."""
     hints = typing.get_type_hints(kind, include_extras=True)
-    found = []
+    listed = []
     for field in dataclasses.fields(kind):
         hint = hints[field.name]
         if typing.get_origin(hint) is Annotated:
@@ -236,8 +236,8 @@ def quantities(kind: type) -> tuple[tuple[str, Quantity, bool, bool], ...]:
                 if isinstance(mark, Quantity):
                     kinds = typing.get_args(hint.__origin__)
                     arrays = any(typing.get_origin(k) is np.ndarray for k in kinds)
-                    found.append((field.name, mark, type(None) in kinds, arrays))
-    return tuple(found)
+                    listed.append((field.name, mark, type(None) in kinds, arrays))
+    return tuple(listed)
 
 
 def check_fields(instance: Any) -> None:

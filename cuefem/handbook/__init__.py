@@ -64,12 +64,12 @@ def _chapter(name: str) -> Chapter:
 
 def effect_lines(effect: type) -> dict[str, str]:
     """The five lines of an effect's docstring by their headings."""
-    found = {}
+    lines = {}
     for paragraph in (inspect.getdoc(effect) or "").split("\n\n"):
         head, _, rest = paragraph.removeprefix("Notes\n-----\n").partition(":")
         if head in LINES:
-            found[head] = " ".join(rest.split())
-    return found
+            lines[head] = " ".join(rest.split())
+    return lines
 
 
 def _every_effect() -> str:

@@ -84,10 +84,10 @@ def _linked(text: str) -> str:
     title = "|".join(map(re.escape, names))
     cited = rf"(?<=handbook: )(?:{title})(?:, (?:{title}))*"
 
-    def link(one: re.Match[str]) -> str:
-        return f'<a href="#{names[one[0]]}">{one[0]}</a>'
+    def link(match: re.Match[str]) -> str:
+        return f'<a href="#{names[match[0]]}">{match[0]}</a>'
 
-    return re.sub(cited, lambda found: re.sub(title, link, found[0]), text)
+    return re.sub(cited, lambda cited_title: re.sub(title, link, cited_title[0]), text)
 
 
 @cache

@@ -129,10 +129,10 @@ def _load_cue(path: Path, material: str | None = None, length_unit: str | None =
 
 def load_stroke(path: Path, **told: str | None) -> Cue | Scene:
     """A cue or the scene of a stroke along it, told: as for `load`; InputError for a strike from the side."""
-    found = load(path, **told)
-    if isinstance(found, SideStrike):
+    stroke = load(path, **told)
+    if isinstance(stroke, SideStrike):
         raise InputError(path, "striker", "must be absent here: `cuefem side` takes a strike from the side")
-    return found
+    return stroke
 
 
 def save(obj: Cue | Scene | SideStrike, path: str | os.PathLike[str]) -> None:
@@ -207,9 +207,9 @@ def write_whole(path: Path, put: Callable[[Path], object]) -> None:
 def check_place(path: Path) -> None:
     """Raise InputError, before anything is computed, if no file can be written at ``path``."""
     goal = Path(os.path.realpath(path))
-    held = goal.parent.is_dir()
-    if goal.is_dir() or not held or not os.access(goal.parent, os.W_OK):
-        code = errno.EISDIR if goal.is_dir() else errno.EACCES if held else errno.ENOENT
+    exists = goal.parent.is_dir()
+    if goal.is_dir() or not exists or not os.access(goal.parent, os.W_OK):
+        code = errno.EISDIR if goal.is_dir() else errno.EACCES if exists else errno.ENOENT
         raise InputError(path, "", f"cannot be written: {os.strerror(code)}")
 
 

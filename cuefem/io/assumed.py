@@ -19,18 +19,18 @@ ON_TENON = f"the ferrule sits on a tenon of the shaft's wood, {TENON:g} of its w
 SHORTER = "; about 1 ms is usual"  # a pool ball's, measured; 2 ms is [Kim]'s
 
 
-def assumed(path: Path, given: Collection[str], *, offered: Collection[str] = (), blow: bool = True) -> list[str]:
+def assumed(path: Path, options: Collection[str], *, offered: Collection[str] = (), blow: bool = True) -> list[str]:
     """What a loaded cue or scene file leaves to defaults.
 
-    given: the options that were given as well, such as "offset". offered: all options that the command has. blow:
+    options: the options that were given as well, such as "offset". offered: all options that the command has. blow:
     whether ball, tip and stroke count.
     """
-    found = read_tables(path) if path.suffix.lower() == ".toml" else {}
-    if "cue" not in found:
-        return _profile(path, given, " (choose with --material)")
-    cue = found["cue"]
-    shaft = _profile(path.parent / cue, given) if isinstance(cue, str) else []
-    return [*shaft, *(assumed_blow(found, given, offered=offered) if blow else [])]
+    tables = read_tables(path) if path.suffix.lower() == ".toml" else {}
+    if "cue" not in tables:
+        return _profile(path, options, " (choose with --material)")
+    cue = tables["cue"]
+    shaft = _profile(path.parent / cue, options) if isinstance(cue, str) else []
+    return [*shaft, *(assumed_blow(tables, options, offered=offered) if blow else [])]
 
 
 def assumed_drawing(path: Path) -> list[str]:
@@ -40,41 +40,41 @@ def assumed_drawing(path: Path) -> list[str]:
     return [*_profile(path, ("body_mass",)), "no mass behind the shaft (a cue.toml can have body_mass)"]
 
 
-def _profile(path: Path, given: Collection[str], choose: str = "") -> list[str]:
+def _profile(path: Path, options: Collection[str], choose: str = "") -> list[str]:
     """What a lathe profile or a surface cannot say: its unit, its material, and what is screwed to the shaft."""
     if path.suffix.lower() not in SHAPES:
         return []
-    lengths = path.suffix.lower() in SURFACES and "length_unit" not in given
-    found = None if path.suffix.lower() in SURFACES else read_profile(path, DEFAULT_UNIT, checked=False)
+    lengths = path.suffix.lower() in SURFACES and "length_unit" not in options
+    profile = None if path.suffix.lower() in SURFACES else read_profile(path, DEFAULT_UNIT, checked=False)
     unit = f"lengths in {DEFAULT_UNIT}{choose and ' (--length-unit gives another)'}"
     return [
         *([unit] if lengths else []),
-        *(_fit(path) if found is None else found.notes),
+        *(_fit(path) if profile is None else profile.notes),
         *(
             []
-            if "material" in given or (found is not None and found.named)
+            if "material" in options or (profile is not None and profile.named)
             else [f"material {DEFAULT_MATERIAL}{choose}"]
         ),
-        *([] if "body_mass" in given else ["no mass behind the shaft (--body-mass gives it)"]),
-        *_parts(found, given, choose),
+        *([] if "body_mass" in options else ["no mass behind the shaft (--body-mass gives it)"]),
+        *_parts(profile, options, choose),
     ]
 
 
-def _parts(found: Profile | None, given: Collection[str], choose: str) -> list[str]:
+def _parts(profile: Profile | None, options: Collection[str], choose: str) -> list[str]:
     """What a shape has neither drawn nor told: ferrule and bore, the ferrule's tenon, the leather at its front."""
     words = {"ferrule": f'--ferrule "{FERRULE}"', "bore": f'--bore "{BORE}"'}
-    lacking = [name for name in (("ferrule", "bore") if found is None else found.lacking) if name not in given]
+    lacking = [name for name in (("ferrule", "bore") if profile is None else profile.lacking) if name not in options]
     add = " and ".join(words[name] for name in lacking)
     names = " or a column of that name" if len(lacking) == 1 else " or columns of those names"
-    columns = "" if found is None else names
+    columns = "" if profile is None else names
     pronoun = "them" if len(lacking) > 1 else "it"
     told = f"{', '.join(f'no {name}' for name in lacking)}: add {pronoun} with {add}{columns}"
-    tenon = "ferrule" in given or (found is not None and found.on_tenon)
-    leather = found is not None and found.leather
+    tenon = "ferrule" in options or (profile is not None and profile.on_tenon)
+    leather = profile is not None and profile.leather
     return [
         *([told if choose else told.partition(":")[0]] if lacking else []),
         *([ON_TENON] if tenon else []),
-        *([BEGINS] if choose and not leather and "begins" not in given else []),
+        *([BEGINS] if choose and not leather and "begins" not in options else []),
     ]
 
 
@@ -82,9 +82,9 @@ def _fit(path: Path) -> list[str]:
     """How near a surface's segments keep to it, and how far its facets leave the round form open."""
     from cuefem.io.surface import read_surface
 
-    found = read_surface(path)
-    fit, corners = found.fit / found.widest, 2 * found.facets / found.widest
-    count = len(found.pieces)
+    surface = read_surface(path)
+    fit, corners = surface.fit / surface.widest, 2 * surface.facets / surface.widest
+    count = len(surface.pieces)
     return [
         f"{count} conical segment{'s' if count > 1 else ''}, diameters within {max(fit, 1e-9):.0e} of the widest",
         f"facets round (their corners lie up to {corners:.0e} of the widest diameter further out)",
@@ -93,10 +93,10 @@ def _fit(path: Path) -> list[str]:
 
 
 def assumed_usual(
-    cue: Cue, game: str, given: Collection[str], *, offered: Collection[str], blow: bool = True
+    cue: Cue, game: str, options: Collection[str], *, offered: Collection[str], blow: bool = True
 ) -> list[str]:
     """What a cue alone gets of its game's usual stroke (`cuefem.games`); arguments as for `assumed`."""
-    known, timed = GAMES[game], "contact_time" in given
+    known, timed = GAMES[game], "contact_time" in options
     ball, tip = known.ball, usual_tip(cue, game)
     drawn = f"{1e3 * cue.leather:.4g} mm"
     height = (
@@ -104,39 +104,39 @@ def assumed_usual(
         if cue.leather
         else f"a leather tip {1e3 * tip.height:g} mm high, put on what is drawn"
     )
-    if cue.leather and "tip_height" in given:
+    if cue.leather and "tip_height" in options:
         height = f"the drawn leather, {drawn}, left out: the leather tip stands in its place"
     sizes = f"{1e3 * ball.mass:g} g, {2e3 * ball.radius:g} mm"
     bounce = f"{known.restitution:g}" if timed else known.bounce
     said = (
         (False, f"a usual stroke of {game}{_option('game', offered)}"),
         (
-            not blow or "ball" in given,
+            not blow or "ball" in options,
             f"ball {sizes}{_option('ball', offered)}",
         ),
-        (timed or (not cue.leather and "tip_height" in given), f"{height}{_option('tip_height', offered)}"),
-        (timed or "dome" in given, f"its dome {1e3 * tip.dome_radius:g} mm{_option('dome', offered)}"),
+        (timed or (not cue.leather and "tip_height" in options), f"{height}{_option('tip_height', offered)}"),
+        (timed or "dome" in options, f"its dome {1e3 * tip.dome_radius:g} mm{_option('dome', offered)}"),
         (
-            timed or "leather" in given,
+            timed or "leather" in options,
             f"its leather {known.leather}, E {1e-6 * tip.E:g} MPa{_option('leather', offered)}",
         ),
-        (not blow or "restitution" in given, f"e {bounce}{_option('restitution', offered)}"),
-        (not blow or "friction" in given, f"mu {known.friction:g}{_option('friction', offered)}"),
-        (not blow or "speed" in given, f"stroke {known.speed:g} m/s{_option('speed', offered)}"),
-        (not blow or "offset" in given, f"offset b/R {known.offset:g}{_option('offset', offered)}"),
+        (not blow or "restitution" in options, f"e {bounce}{_option('restitution', offered)}"),
+        (not blow or "friction" in options, f"mu {known.friction:g}{_option('friction', offered)}"),
+        (not blow or "speed" in options, f"stroke {known.speed:g} m/s{_option('speed', offered)}"),
+        (not blow or "offset" in options, f"offset b/R {known.offset:g}{_option('offset', offered)}"),
     )
     return [words for told, words in said if not told]
 
 
-def assumed_blow(found: dict[str, Any], given: Collection[str], *, offered: Collection[str]) -> list[str]:
+def assumed_blow(tables: dict[str, Any], options: Collection[str], *, offered: Collection[str]) -> list[str]:
     """What a scene's tables leave out of ball, tip, stroke and effects, and its game supplies."""
-    game = str(found.get("game", DEFAULT_GAME))
-    missing = {key for key in left_out(found) if key.rpartition(".")[2] not in given}
-    missing -= {"ball.mass", "ball.radius"} if "ball" in given else set()
+    game = str(tables.get("game", DEFAULT_GAME))
+    missing = {key for key in left_out(tables) if key.rpartition(".")[2] not in options}
+    missing -= {"ball.mass", "ball.radius"} if "ball" in options else set()
     missing -= {"effects"} if game == KIM else set()
-    cue, tip = found["cue"], found.get("tip", {})
-    timed = bool({"contact_time", "stiffness"} & {*tip, *given})
-    kinds = [effect_kinds().get(str(effect.get("type"))) for effect in found.get("effects", ())]
+    cue, tip = tables["cue"], tables.get("tip", {})
+    timed = bool({"contact_time", "stiffness"} & {*tip, *options})
+    kinds = [effect_kinds().get(str(effect.get("type"))) for effect in tables.get("effects", ())]
     usual = "effects" in missing and game != KIM and not (isinstance(cue, dict) and "end_mass" in cue)
     whole = (usual and not timed) or any(kind and kind.whole_tip for kind in kinds)
     ball, tip_of, stroke, bounce = Ball(), Tip(), Stroke(), f"{Tip().restitution:g}"
@@ -151,7 +151,7 @@ def assumed_blow(found: dict[str, Any], given: Collection[str], *, offered: Coll
     time = f"{1e3 * DEFAULT_CONTACT_TIME:g} ms{_option('contact_time', offered, SHORTER)}"
     stroke_of = "Kim's stroke" if game == KIM else f"a usual stroke of {game}"
     told = (
-        (bool(missing), stroke_of if len(found) <= 1 + ("game" in found) else f"what is left out as in {stroke_of}"),
+        (bool(missing), stroke_of if len(tables) <= 1 + ("game" in tables) else f"what is left out as in {stroke_of}"),
         (bool(said), f"ball {', '.join(said)}{_option('ball', offered)}"),
         ("effects" in missing and usual, f"{effects} (effects = [] is without)"),
         (not (timed or whole), f"head-on contact time {time}"),

@@ -90,8 +90,8 @@ def _encoding(content: bytes) -> str:
 def parted(cell: str) -> tuple[str, str]:
     """A cell's number and what stands behind it, its unit; the number is empty if the cell begins with none."""
     cell = cell.replace("−", "-").lstrip("'")
-    found = _NUMBER.match(cell)
-    return (found[0], cell[found.end() :].strip()) if found else ("", cell)
+    match = _NUMBER.match(cell)
+    return (match[0], cell[match.end() :].strip()) if match else ("", cell)
 
 
 def is_number(cell: str) -> bool:

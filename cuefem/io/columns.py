@@ -132,7 +132,7 @@ def _kind(words: Sequence[str]) -> str:
             return kind
     long = {word: kind for kind, known in _WORDS.items() if kind not in NAMES for word in known if len(word) > 4}
     close = [difflib.get_close_matches(word, long, n=1, cutoff=0.8) for word in words if len(word) > 4]
-    return next((long[found[0]] for found in close if found), "")
+    return next((long[match[0]] for match in close if match), "")
 
 
 def from_butt(column: ProfileColumn) -> bool:

@@ -41,11 +41,11 @@ def load_documented(folder: Path) -> tuple[DocumentedCue, list[str]]:
         if name not in known:
             raise unknown_key(name, value, known, file=str(path), key="")
     scene, notes = _scene(folder, path, tables)
-    found = tuple(_measurements(folder, path, tables))
+    measurements = tuple(_measurements(folder, path, tables))
     priors = tuple(_priors(path, tables.get("unknowns", []), scene))
     name, source = (_words(path, tables, key) for key in ("name", "source"))
     with faults_of(path, ""):
-        made = DocumentedCue(name or folder.resolve().name, scene, found, priors, source)
+        made = DocumentedCue(name or folder.resolve().name, scene, measurements, priors, source)
     return made, [*notes, *_examples(folder)]
 
 
@@ -98,12 +98,12 @@ def _scene(folder: Path, path: Path, tables: dict[str, Any]) -> tuple[Scene, lis
 
 
 def _drawing(path: Path) -> Any:
-    found = load(path)
-    if isinstance(found, Scene):
+    drawing = load(path)
+    if isinstance(drawing, Scene):
         raise InputError(
             path, "cue", "must be absent here: this file is the drawing; ball and tip stand in " + MEASURED
         )
-    return found
+    return drawing
 
 
 def _measurements(folder: Path, path: Path, tables: dict[str, Any]) -> Iterator[Measurement]:
@@ -140,11 +140,11 @@ def _series(path: Path, kind: type[Measurement]) -> Iterator[Measurement]:
 
 
 def _column(path: Path, line: int, heading: str, kind: type, marks: dict[str, Quantity]) -> tuple[str, str]:
-    found, names = _COLUMN.fullmatch(heading), keys_of(kind)
-    if not found or found[1] not in names:
+    match, names = _COLUMN.fullmatch(heading), keys_of(kind)
+    if not match or match[1] not in names:
         hint = nearest(heading.partition("[")[0].strip(), names)
         raise InputError(path, f"line {line}", f"must have headings {', '.join(names)}; got {shown(heading)}{hint}")
-    name, unit = found[1], found[2] or ""
+    name, unit = match[1], match[2] or ""
     wanted = marks[name].unit if name in marks else ""
     if bool(wanted) != bool(unit):
         example = f'"{name} [{wanted}]"' if wanted else f'"{name}"'

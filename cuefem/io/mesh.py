@@ -108,15 +108,15 @@ def _read_vtu(path: Path, content: bytes) -> meshio.Mesh:
         raise meshio.ReadError("it must have no document type, whose entities may unfold to any size")
     budget = _Budget(LARGEST_MESH)
     names = {"zlib": _Unpacker(zlib.decompressobj, budget), "lzma": _Unpacker(lzma.LZMADecompressor, budget)}
-    kept = {name: getattr(_vtu, name) for name in names}
+    originals = {name: getattr(_vtu, name) for name in names}
     try:
         for name, unpacker in names.items():  # by these names meshio unpacks, wherever the data stand in the file
             setattr(_vtu, name, unpacker)
-        found = _CountedReader(path, budget)
+        reader = _CountedReader(path, budget)
     finally:
-        for name, module in kept.items():
+        for name, module in originals.items():
             setattr(_vtu, name, module)
-    return meshio.Mesh(found.points, found.cells, cell_data=found.cell_data)
+    return meshio.Mesh(reader.points, reader.cells, cell_data=reader.cell_data)
 
 
 class _Budget:
@@ -141,11 +141,11 @@ class _Unpacker:
     def decompress(self, data: bytes) -> bytes:
         """All of ``data`` unpacked."""
         unpacker = self.begin()
-        found: bytes = unpacker.decompress(data, self.budget.left + 1)
-        self.budget.spend(len(found))
+        content: bytes = unpacker.decompress(data, self.budget.left + 1)
+        self.budget.spend(len(content))
         if not unpacker.eof:
             raise EOFError("compressed data end too early")
-        return found
+        return content
 
 
 class _CountedReader(_vtu.VtuReader):

@@ -86,42 +86,42 @@ def save_vtu(path: Path, surface: ShaftSurface, data: Mapping[str, Array], field
     tree = ET.parse(path)
     grid = tree.getroot().find("UnstructuredGrid")
     assert grid is not None
-    held = ET.Element("FieldData")
+    field_data = ET.Element("FieldData")
     for name, values in fields.items():
         rows = np.atleast_1d(values)
         wide = {"NumberOfComponents": str(rows.shape[1])} if rows.ndim == 2 else {}
         about = {"type": "Float64", "Name": name, "NumberOfTuples": str(len(rows)), "format": "ascii", **wide}
-        ET.SubElement(held, "DataArray", about).text = " ".join(repr(float(value)) for value in rows.ravel())
-    grid.insert(0, held)
+        ET.SubElement(field_data, "DataArray", about).text = " ".join(repr(float(value)) for value in rows.ravel())
+    grid.insert(0, field_data)
     tree.write(path, encoding="utf-8", xml_declaration=True)
 
 
-def save_modes(path: Path, cue: Cue, found: Modes) -> None:
+def save_modes(path: Path, cue: Cue, solved: Modes) -> None:
     """Mode shapes on the shaft, mass-normalised: mode_k a displacement, 1/sqrt(kg), mode_k_theta, 1/(m sqrt(kg))."""
     surface = shaft_surface(cue)
-    shapes, turns = found.shape(surface.x)
+    shapes, turns = solved.shape(surface.x)
     data = {"x": surface.x}
     for k, (w, theta) in enumerate(zip(shapes, turns, strict=True), start=1):
         data |= {f"mode_{k}": vectors(surface, w, theta), f"mode_{k}_theta": theta}
-    save_vtu(path, surface, data, {"frequencies": found.frequencies})
+    save_vtu(path, surface, data, {"frequencies": solved.frequencies})
 
 
-def save_strike(folder: Path, scene: Scene, found: Motion, *, scale: float = 1.0, track: Track = iter) -> None:
+def save_strike(folder: Path, scene: Scene, motion: Motion, *, scale: float = 1.0, track: Track = iter) -> None:
     """Write folder/strike.pvd and, in folder/strike, a shaft and a ball a time.
 
     scale: what bending is drawn with; the displacement beside the points is the true one.
     """
-    _save_series(folder, scene.shaft, scalar("Ball.radius", scene.ball.radius), found, scale=scale, track=track)
+    _save_series(folder, scene.shaft, scalar("Ball.radius", scene.ball.radius), motion, scale=scale, track=track)
 
 
 def save_side_strike(
-    folder: Path, scene: SideStrike, found: SideMotion, *, scale: float = 1.0, track: Track = iter
+    folder: Path, scene: SideStrike, motion: SideMotion, *, scale: float = 1.0, track: Track = iter
 ) -> None:
     """Write folder/strike.pvd and its files as `save_strike` does.
 
     The striker comes along Y. It is drawn as a ball of Hertz's radius, or as large as phenolic of its mass would be.
     """
-    striker, count = scene.striker, len(found.times)
+    striker, count = scene.striker, len(motion.times)
     radius = striker.radius or (striker.mass / 1700 * 3 / (4 * np.pi)) ** (1 / 3)
     inside = min(scene.position, scene.cue.length)
     piece = int(np.clip(np.searchsorted(scene.cue.nodes, inside, side="right") - 1, 0, len(scene.cue.segments) - 1))
@@ -129,32 +129,32 @@ def save_side_strike(
     ends = scene.cue.segments[piece].tip_diameter, scene.cue.segments[piece].butt_diameter
     side = (ends[0] + part * (ends[1] - ends[0])) / 2
     whole = Motion(
-        found.times,
-        found.duration,
-        found.modes,
-        found.fields,
+        motion.times,
+        motion.duration,
+        motion.modes,
+        motion.fields,
         along=np.zeros(count),
-        centre=np.column_stack([np.full(count, -inside), found.striker - radius - side]),
+        centre=np.column_stack([np.full(count, -inside), motion.striker - radius - side]),
         turned=np.zeros(count),
-        force=np.column_stack([np.zeros(count), -found.force]),
+        force=np.column_stack([np.zeros(count), -motion.force]),
     )
     _save_series(folder, scene.cue, radius, whole, scale=scale, track=track)
 
 
-def _save_series(folder: Path, cue: Cue, radius: float, found: Motion, *, scale: float, track: Track) -> None:
+def _save_series(folder: Path, cue: Cue, radius: float, motion: Motion, *, scale: float, track: Track) -> None:
     shaft, ball = shaft_surface(cue), ball_surface(radius)
-    w, theta = found.deflection(shaft.x)
-    centres, forces = (np.pad(plane, [(0, 0), (0, 1)]) for plane in (found.centre, found.force))
+    w, theta = motion.deflection(shaft.x)
+    centres, forces = (np.pad(plane, [(0, 0), (0, 1)]) for plane in (motion.centre, motion.force))
     (folder / "strike").mkdir()
     series = []
-    for i in track(range(len(found.times))):
-        time, along = float(found.times[i]), float(found.along[i])
+    for i in track(range(len(motion.times))):
+        time, along = float(motion.times[i]), float(motion.along[i])
         names = [f"strike/{body}_{i:04d}.vtu" for body in ("shaft", "ball")]
-        fields = {"TimeValue": found.times[i], "force": forces[[i]], "ball": centres[[i]]}
+        fields = {"TimeValue": motion.times[i], "force": forces[[i]], "ball": centres[[i]]}
         drawn = shaft._replace(points=shaft.points + vectors(shaft, scale * w[i], scale * theta[i], along=along))
         true = vectors(shaft, w[i], theta[i], along=along)
         save_vtu(folder / names[0], drawn, {"x": shaft.x, "displacement": true, "w": w[i], "theta": theta[i]}, fields)
-        flown = ball._replace(points=np.add(_turned(ball.points, float(found.turned[i])), centres[i]))
+        flown = ball._replace(points=np.add(_turned(ball.points, float(motion.turned[i])), centres[i]))
         gone = flown.points - np.add(ball.points, centres[0])
         save_vtu(folder / names[1], flown, {"displacement": gone}, fields)
         series += [(time, part, name) for part, name in enumerate(names)]
@@ -169,9 +169,9 @@ def _turned(points: Array, angle: float) -> Array:
 def save_pvd(path: Path, series: Iterable[tuple[float, int, str]]) -> None:
     """Write ParaView's collection of files: time, s, part and path of each."""
     root = ET.Element("VTKFile", type="Collection", version="0.1", byte_order="LittleEndian")
-    held = ET.SubElement(root, "Collection")
+    collection = ET.SubElement(root, "Collection")
     for time, part, name in series:
-        ET.SubElement(held, "DataSet", timestep=repr(float(time)), group="", part=str(part), file=name)
+        ET.SubElement(collection, "DataSet", timestep=repr(float(time)), group="", part=str(part), file=name)
     ET.indent(root)
     ET.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
 

@@ -105,14 +105,14 @@ def load_profile(path: Path, material: Material, length_unit: str | None = None)
     value: the shaft begins there. One segment an interval; straight tapers become one. Columns bore, material, core
     and ferrule hold from a row on; material: where the file names none. length_unit: of columns that name none.
     """
-    found = read_profile(path, length_unit)
-    points, inside = found.points, found.inside
+    profile = read_profile(path, length_unit)
+    points, inside = profile.points, profile.inside
     if len(points) < 2:
         raise InputError(path, "", f"must hold at least 2 points; got {len(points)}")
 
     def alike(i: int) -> tuple[object, ...]:
         """What two intervals share that may be one segment; an interval with a tapered bore is one by itself."""
-        bores = found.bores(i)
+        bores = profile.bores(i)
         here = inside[i]
         return (bores, here.material, here.core, here.ferrule, i if bores[0] != bores[1] else None)
 
@@ -120,7 +120,7 @@ def load_profile(path: Path, material: Material, length_unit: str | None = None)
     with faults_of(path, ""):
         for _, run in itertools.groupby(range(len(points) - 1), key=alike):
             first, *others = run
-            here, bores = inside[first], found.bores(first)
+            here, bores = inside[first], profile.bores(first)
             corners = _corners(points[first : first + len(others) + 2])
             rest = (here.material or material, *bores, here.core if bores[0] else None)
             drawn = [Segment(_apart(x0, x1), d0, d1, *rest) for (x0, d0), (x1, d1) in itertools.pairwise(corners)]
@@ -148,7 +148,7 @@ def read_profile(path: Path, length_unit: str | None = None, *, checked: bool = 
     d = [_number(path, header.rows[i], width, mark) for i in range(len(header.rows))]
     points = _ordered(path, header, place, list(zip(x, d, strict=True)))
     inside = _inside(path, header, columns, mark, d)
-    if any(one != Inside() for one in inside) and (from_butt(place) or points[0][0] != x[0]):
+    if any(each != Inside() for each in inside) and (from_butt(place) or points[0][0] != x[0]):
         problem = "must run from tip to butt where a bore or a material stands beside it: each holds from its row on"
         raise InputError(path, f"line {header.line}, x", problem)
     behind = dict(zip(x, inside, strict=True))
@@ -162,7 +162,7 @@ def _inside(
     """What every row says of bore, material and core; an empty cell means the material above, and no ferrule."""
     bore = next((column for column in columns if column.kind == BORE), None)
     named = {column.kind: column for column in header.names}
-    found, before = list[Inside](), dict[str, Material]()
+    rows, before = list[Inside](), dict[str, Material]()
     for row, outer in zip(header.rows, diameters, strict=True):
         line, cells = row
         for kind, column in named.items():
@@ -176,17 +176,18 @@ def _inside(
         if width >= outer:
             across = f"{1e3 * outer:.6g} mm, the diameter there; got {1e3 * width:.6g} mm"
             raise InputError(path, f"line {line}, bore", f"must be less than {across}")
-        found.append(Inside(width, before.get(MATERIAL), before.get(CORE), before.get(FERRULE)))
-    return found
+        rows.append(Inside(width, before.get(MATERIAL), before.get(CORE), before.get(FERRULE)))
+    return rows
 
 
-def _bored(found: Profile, unit: str) -> list[str]:
+def _bored(profile: Profile, unit: str) -> list[str]:
     """Where the shaft is bored, so that who wrote the file sees how it was read."""
     per = number(f"1 {unit}", "m")
+    pieces = zip(itertools.pairwise(profile.points), profile.inside, strict=False)
     return [
-        f"bored {found.inside[i].bore / per:.6g} {unit} from {x / per:.6g} to {found.points[i + 1][0] / per:.6g} {unit}"
-        for i, (x, _) in enumerate(found.points[:-1])
-        if found.inside[i].bore
+        f"bored {inside.bore / per:.6g} {unit} from {x / per:.6g} to {end / per:.6g} {unit}"
+        for ((x, _), (end, _)), inside in pieces
+        if inside.bore
     ]
 
 
@@ -210,23 +211,23 @@ def _cells(rows: Sequence[Row], column: ProfileColumn) -> list[str]:
     return [cells[column.index] if column.index < len(cells) else "" for _, cells in rows]
 
 
-def _with_units(path: Path, header: Header, given: str | None, mark: str, checked: bool) -> list[ProfileColumn]:
-    """The columns with the units that header, cells or ``given`` say; InputError if there are none."""
+def _with_units(path: Path, header: Header, length_unit: str | None, mark: str, checked: bool) -> list[ProfileColumn]:
+    """The columns with the units that header, cells or ``length_unit`` say; InputError if there are none."""
     columns = []
     for column in header.used:
         beside = {unit_of(rest) for _, rest in map(parted, _cells(header.rows, column)) if rest}
         unit = column.unit or ("".join(beside) if len(beside) == 1 else "")
         columns.append(ProfileColumn(column.kind, column.index, column.name, unit))
     bare = [column for column in columns if not column.unit]
-    if given is not None and checked:
+    if length_unit is not None and checked:
         if not bare:
-            problem = f"names its units itself: length_unit is for a table without units; got {shown(given)}"
+            problem = f"names its units itself: length_unit is for a table without units; got {shown(length_unit)}"
             raise InputError(path, "", problem)
-        if not unit_of(given):
-            raise InputError(path, "length unit", f"must be a unit of length, such as mm; got {shown(given)}")
-    if bare and given is None:
+        if not unit_of(length_unit):
+            raise InputError(path, "length unit", f"must be a unit of length, such as mm; got {shown(length_unit)}")
+    if bare and length_unit is None:
         raise InputError(path, f"line {header.line}", _no_unit(header, columns, bare, mark))
-    unit = unit_of(given) if given is not None else ""
+    unit = unit_of(length_unit) if length_unit is not None else ""
     return [ProfileColumn(c.kind, c.index, c.name, c.unit or unit) for c in columns]
 
 
@@ -261,8 +262,8 @@ def _guess(header: Header, columns: Sequence[ProfileColumn], mark: str) -> str:
         return ""
 
 
-def _only(found: Sequence[str]) -> str:
-    return found[0] if len(found) == 1 else ""
+def _only(units: Sequence[str]) -> str:
+    return units[0] if len(units) == 1 else ""
 
 
 def _first(columns: Sequence[ProfileColumn], *kinds: str) -> ProfileColumn:
@@ -280,8 +281,8 @@ def _chosen(
             continue
         used = place if column.kind == PLACE else width
         pairs = [(_number(path, row, used, mark), _number(path, row, column, mark)) for row in header.rows]
-        largest = max((abs(one) for one, _ in pairs), default=0.0)
-        if any(abs(one - other) > _SAME * largest for one, other in pairs):
+        largest = max((abs(value) for value, _ in pairs), default=0.0)
+        if any(abs(value - other) > _SAME * largest for value, other in pairs):
             word = "place" if column.kind == PLACE else "diameter"
             both = f"{shown(used.name)} and {shown(column.name)}"
             problem = f"two columns may be the {word}, {both}, and they differ: keep one"
@@ -312,19 +313,19 @@ def _ordered(path: Path, header: Header, place: ProfileColumn, points: list[Poin
     lines = list(zip((line for line, _ in header.rows), points, strict=True))
     if all(here[1][0] > there[1][0] for here, there in itertools.pairwise(lines)):  # butt first
         lines.reverse()
-    kept: list[Point] = []
+    ordered: list[Point] = []
     for line, (x, d) in lines:
-        if kept and (x, d) == kept[-1]:
+        if ordered and (x, d) == ordered[-1]:
             continue  # written twice
-        if kept and x <= kept[-1][0]:
+        if ordered and x <= ordered[-1][0]:
             scale = number(f"1 {place.unit}", "m")
-            before, here = (f"{value / scale:g}" for value in (kept[-1][0], x))
+            before, here = (f"{value / scale:g}" for value in (ordered[-1][0], x))
             problem = f"must be beyond {before} {place.unit}, the x of the line before (points run from tip to butt)"
             step = "; a step in the diameter is two points a little apart, such as "
-            hint = f"{step}{before} and {x / scale + 0.1:g} {place.unit}" if x == kept[-1][0] else ""
+            hint = f"{step}{before} and {x / scale + 0.1:g} {place.unit}" if x == ordered[-1][0] else ""
             raise InputError(path, f"line {line}, x", f"{problem}; got '{here} {place.unit}'{hint}")
-        kept.append((x, d))
-    return tuple(kept)
+        ordered.append((x, d))
+    return tuple(ordered)
 
 
 def _apart(first: float, last: float) -> float:

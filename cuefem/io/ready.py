@@ -45,11 +45,11 @@ class Preset(NamedTuple):
         if not strokes:
             return self.told
         struck = strikes_at(scene, strokes, Solved(scene).tip)
-        found = (
-            f"{math.degrees(one.squirt):.2f}° at b/R {offset:g}, {_more(math.degrees(one.squirt) - measured)}"
-            for (offset, measured), one in zip(strokes.items(), struck, strict=True)
+        texts = (
+            f"{math.degrees(stroke.squirt):.2f}° at b/R {offset:g}, {_more(math.degrees(stroke.squirt) - measured)}"
+            for (offset, measured), stroke in zip(strokes.items(), struck, strict=True)
         )
-        return f"{self.told}; computed for this cue: {'; '.join(found)}"
+        return f"{self.told}; computed for this cue: {'; '.join(texts)}"
 
     @property
     def told(self) -> str:
@@ -86,18 +86,18 @@ SCALE = {
 
 def opened(preset: Preset) -> tuple[Scene, list[str]]:
     """The scene of a ready file, and what was assumed for it."""
-    found: Any = load(folder() / preset.file)
-    if isinstance(found, Cue):
+    scene: Any = load(folder() / preset.file)
+    if isinstance(scene, Cue):
         bounce = f"e {GAMES[preset.game].bounce}"
-        return usual_scene(found, preset.game), [f"a usual stroke of {preset.game}", bounce]
-    return found, []
+        return usual_scene(scene, preset.game), [f"a usual stroke of {preset.game}", bounce]
+    return scene, []
 
 
 @cache
 def ready_cues() -> dict[str, Cue]:
     """The ready cues among which a verdict places a cue, from the most squirt to less."""
-    found: dict[str, Any] = {name: load(folder() / file) for name, file in SCALE.items()}
-    return found
+    cues: dict[str, Any] = {name: load(folder() / file) for name, file in SCALE.items()}
+    return cues
 
 
 def ready_cue(name: str) -> bytes | None:

@@ -257,14 +257,14 @@ def sliced(body: Surface, tolerance: float = TOLERANCE) -> Sliced:
         cuts = [body.cut(p, butt_side=p < stop) for p in x]
         for place, cut in zip(x, cuts, strict=True):
             _check_round(cut, place, widest)
-        found = np.array([cut.diameters for cut in cuts])
-        found[:, 0] = np.maximum(found[:, 0], tolerance * widest)  # an apex
-        kept = _corners(x[::2], found[::2], tolerance * widest)
-        for i, j in itertools.pairwise(2 * kept):
-            (outer0, bore0), (outer1, bore1) = found[i].tolist(), found[j].tolist()
+        diameters = np.array([cut.diameters for cut in cuts])
+        diameters[:, 0] = np.maximum(diameters[:, 0], tolerance * widest)  # an apex
+        corners = _corners(x[::2], diameters[::2], tolerance * widest)
+        for i, j in itertools.pairwise(2 * corners):
+            (outer0, bore0), (outer1, bore1) = diameters[i].tolist(), diameters[j].tolist()
             pieces.append(ConicalPiece(float(x[j] - x[i]), (outer0, outer1), (bore0, bore1)))
-        fit = max(fit, _deviation(x, found, 2 * kept))
-        facets = max(facets, *(float(cut.reach - d / 2) for cut, d in zip(cuts, found[:, 0], strict=True)))
+        fit = max(fit, _deviation(x, diameters, 2 * corners))
+        facets = max(facets, *(float(cut.reach - d / 2) for cut, d in zip(cuts, diameters[:, 0], strict=True)))
     return Sliced(tuple(pieces), fit, facets)
 
 
@@ -304,24 +304,24 @@ def _check_round(cut: Slice, place: float, widest: float) -> None:
         raise ValueError(f"must be round, its second moment within {100 * ROUND:g} % of a disc's; got {got}")
 
 
-def _corners(x: Array, found: Array, near: float) -> Index:
+def _corners(x: Array, diameters: Array, near: float) -> Index:
     """Indices of the points that straight pieces need to keep within ``near`` of all of them (Douglas & Peucker)."""
-    kept, open_ends = {0, len(x) - 1}, [(0, len(x) - 1)]
+    corners, open_ends = {0, len(x) - 1}, [(0, len(x) - 1)]
     while open_ends:
         i, j = open_ends.pop()
-        off = _offsets(x[i : j + 1], found[i : j + 1])
+        off = _offsets(x[i : j + 1], diameters[i : j + 1])
         worst = int(np.argmax(off))
         if off[worst] > near:
-            kept.add(i + worst)
+            corners.add(i + worst)
             open_ends += [(i, i + worst), (i + worst, j)]
-    return np.array(sorted(kept), dtype=np.intp)
+    return np.array(sorted(corners), dtype=np.intp)
 
 
-def _offsets(x: Array, found: Array) -> Array:
+def _offsets(x: Array, diameters: Array) -> Array:
     """Distances of diameters from the straight line between the first and the last, the larger of outer and bore."""
     t = (x - x[0]) / (x[-1] - x[0])
-    return np.asarray(np.abs(found - found[0] - t[:, None] * (found[-1] - found[0])).max(axis=1))
+    return np.asarray(np.abs(diameters - diameters[0] - t[:, None] * (diameters[-1] - diameters[0])).max(axis=1))
 
 
-def _deviation(x: Array, found: Array, kept: Index) -> float:
-    return max(float(_offsets(x[i : j + 1], found[i : j + 1]).max()) for i, j in itertools.pairwise(kept))
+def _deviation(x: Array, diameters: Array, corners: Index) -> float:
+    return max(float(_offsets(x[i : j + 1], diameters[i : j + 1]).max()) for i, j in itertools.pairwise(corners))

@@ -35,20 +35,20 @@ def load_recording(path: str | Path) -> Recording:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", wavfile.WavFileWarning)  # what phones write beside the sound
-            rate, found = wavfile.read(io.BytesIO(content))
+            rate, samples = wavfile.read(io.BytesIO(content))
     except (ValueError, TypeError, ArithmeticError, MemoryError, struct.error, UnboundLocalError) as error:
         detail = "" if isinstance(error, UnboundLocalError) else f" ({error})"  # no data in it
         raise InputError(path, "", f"must be a .wav file of sound{detail}") from None
-    if found.size == 0 or rate <= 0:
+    if samples.size == 0 or rate <= 0:
         raise InputError(path, "", "must hold a sound; got none")
-    if len(found) > LONGEST * rate:
-        raise InputError(path, "", f"must last {LONGEST:g} s at most; got {len(found) / rate:.0f} s")
-    return Recording(_scaled(found.reshape(len(found), -1)), float(rate))
+    if len(samples) > LONGEST * rate:
+        raise InputError(path, "", f"must last {LONGEST:g} s at most; got {len(samples) / rate:.0f} s")
+    return Recording(_scaled(samples.reshape(len(samples), -1)), float(rate))
 
 
-def _scaled(found: np.ndarray) -> Array:
+def _scaled(samples: np.ndarray) -> Array:
     """Samples as fractions of full scale; 24 bits stand in the upper ones of 32."""
-    if found.dtype.kind == "f":
-        return found.astype(float)
-    middle = 128.0 if found.dtype.kind == "u" else 0.0
-    return (found.astype(float) - middle) / 2.0 ** (8 * found.dtype.itemsize - 1)
+    if samples.dtype.kind == "f":
+        return samples.astype(float)
+    middle = 128.0 if samples.dtype.kind == "u" else 0.0
+    return (samples.astype(float) - middle) / 2.0 ** (8 * samples.dtype.itemsize - 1)

@@ -48,13 +48,13 @@ def load_scatter(path: str | Path, *, offset: float = 0.3) -> tuple[Scatter, Sam
     line if it is not valid.
     """
     path = Path(path)
-    found = _study_tables(path)
-    study = _study(found, path, offset, SCATTER_KEYS)
+    tables = _study_tables(path)
+    study = _study(tables, path, offset, SCATTER_KEYS)
     if study.sample is None or study.sample.method != "sobol":
         got = study.sample.method if study.sample else "nothing"
         raise InputError(path, "sample", f'must be given, its method "sobol"; got {got}')
     with faults_of(path, ""):
-        return Scatter(study, _correlations(found.get("correlations", []), path), _groups(found, path)), study.sample
+        return Scatter(study, _correlations(tables.get("correlations", []), path), _groups(tables, path)), study.sample
 
 
 def load_optimum(path: str | Path, *, offset: float = 0.3) -> Problem:
@@ -64,22 +64,22 @@ def load_optimum(path: str | Path, *, offset: float = 0.3) -> Problem:
     [[limit]] tables of a response with low or high.
     """
     path = Path(path)
-    found = _study_tables(path)
-    _check_keys(found, OPTIMUM_KEYS, path, "")
-    base = _base(found, path, offset)
-    objective = found.get("objective")
+    tables = _study_tables(path)
+    _check_keys(tables, OPTIMUM_KEYS, path, "")
+    base = _base(tables, path, offset)
+    objective = tables.get("objective")
     if not isinstance(objective, dict) or len(objective) != 1 or not {"minimize", "maximize"} & set(objective):
-        got = shown(objective) if "objective" in found else "nothing"
+        got = shown(objective) if "objective" in tables else "nothing"
         raise InputError(path, "objective", f'must be a table such as minimize = "squirt_slope"; got {got}')
     ((aim, asked),) = objective.items()
-    limits = _list(found, "limit", path) if "limit" in found else []
+    limits = _list(tables, "limit", path) if "limit" in tables else []
     with faults_of(path, ""):
         return Problem(
             base,
-            tuple(_vary(table, base, path, i, sample=True) for i, table in enumerate(_list(found, "vary", path))),
+            tuple(_vary(table, base, path, i, sample=True) for i, table in enumerate(_list(tables, "vary", path))),
             _response(asked, path, joined("objective", aim)),
             tuple(_limit(table, path, joined("limit", i)) for i, table in enumerate(limits)),
-            _resolution(found, path),
+            _resolution(tables, path),
             largest=aim == "maximize",
         )
 
@@ -93,45 +93,47 @@ def _limit(table: Any, path: Path, key: str) -> Limit:
         return Limit(response, **sides)  # type: ignore[arg-type]
 
 
-def _correlations(given: Any, path: Path) -> dict[tuple[str, str], float]:
-    if not isinstance(given, list):
-        raise InputError(path, "correlations", f"must be a list of [name, name, number]; got {shown(given)}")
-    found: dict[tuple[str, str], float] = {}
-    for i, one in enumerate(given):
-        fits = isinstance(one, list) and len(one) == 3 and all(isinstance(name, str) for name in one[:2])
-        if not fits or isinstance(one[2], bool) or not isinstance(one[2], int | float):
-            raise InputError(path, joined("correlations", i), f"must be [name, name, number]; got {shown(one)}")
-        if tuple(one[:2]) in found:
-            raise InputError(path, joined("correlations", i), f"must be said once; got {one[0]} and {one[1]} twice")
-        found[one[0], one[1]] = float(one[2])
-    return found
+def _correlations(listed: Any, path: Path) -> dict[tuple[str, str], float]:
+    if not isinstance(listed, list):
+        raise InputError(path, "correlations", f"must be a list of [name, name, number]; got {shown(listed)}")
+    correlations: dict[tuple[str, str], float] = {}
+    for i, entry in enumerate(listed):
+        fits = isinstance(entry, list) and len(entry) == 3 and all(isinstance(name, str) for name in entry[:2])
+        if not fits or isinstance(entry[2], bool) or not isinstance(entry[2], int | float):
+            raise InputError(path, joined("correlations", i), f"must be [name, name, number]; got {shown(entry)}")
+        if tuple(entry[:2]) in correlations:
+            raise InputError(path, joined("correlations", i), f"must be said once; got {entry[0]} and {entry[1]} twice")
+        correlations[entry[0], entry[1]] = float(entry[2])
+    return correlations
 
 
 def _groups(tables: dict[str, Any], path: Path) -> dict[str, tuple[str, ...]]:
-    given = tables.get("groups", {})
-    if not isinstance(given, dict):
-        raise InputError(path, "groups", f"must be a table of lists of names; got {shown(given)}")
-    for group, names in given.items():
+    groups = tables.get("groups", {})
+    if not isinstance(groups, dict):
+        raise InputError(path, "groups", f"must be a table of lists of names; got {shown(groups)}")
+    for group, names in groups.items():
         if not isinstance(names, list) or not names or not all(isinstance(name, str) for name in names):
             raise InputError(path, joined("groups", group), f"must be a list of names; got {shown(names)}")
-    return {group: tuple(names) for group, names in given.items()}
+    return {group: tuple(names) for group, names in groups.items()}
 
 
-def _study(found: dict[str, Any], path: Path, offset: float, known: list[str]) -> Study:
-    _check_keys(found, known, path, "")
-    base = _base(found, path, offset)
-    asked = enumerate(_list(found, "responses", path))
+def _study(tables: dict[str, Any], path: Path, offset: float, known: list[str]) -> Study:
+    _check_keys(tables, known, path, "")
+    base = _base(tables, path, offset)
+    asked = enumerate(_list(tables, "responses", path))
     responses = tuple(_response(text, path, joined("responses", i)) for i, text in asked)
-    vary = tuple(_vary(table, base, path, i, found.get("sample")) for i, table in enumerate(_list(found, "vary", path)))
-    sample = _sample(found["sample"], path) if "sample" in found else None
+    vary = tuple(
+        _vary(table, base, path, i, tables.get("sample")) for i, table in enumerate(_list(tables, "vary", path))
+    )
+    sample = _sample(tables["sample"], path) if "sample" in tables else None
     with faults_of(path, ""):
-        return Study(base, vary, responses, sample, _resolution(found, path))
+        return Study(base, vary, responses, sample, _resolution(tables, path))
 
 
-def _resolution(found: dict[str, Any], path: Path) -> Resolution | None:
-    if "resolution" not in found:
+def _resolution(tables: dict[str, Any], path: Path) -> Resolution | None:
+    if "resolution" not in tables:
         return None
-    return build(Resolution, found["resolution"], file=str(path), key="resolution")
+    return build(Resolution, tables["resolution"], file=str(path), key="resolution")
 
 
 def _study_tables(path: Path) -> dict[str, Any]:
@@ -146,32 +148,32 @@ def _study_tables(path: Path) -> dict[str, Any]:
     return tables
 
 
-def _check_keys(found: Any, known: list[str], path: Path, key: str) -> None:
-    if not isinstance(found, dict):
-        raise InputError(path, key, f"must be a table with the keys {', '.join(known)}; got {shown(found)}")
-    for name, value in found.items():
+def _check_keys(table: Any, known: list[str], path: Path, key: str) -> None:
+    if not isinstance(table, dict):
+        raise InputError(path, key, f"must be a table with the keys {', '.join(known)}; got {shown(table)}")
+    for name, value in table.items():
         if name not in known:
             raise unknown_key(name, value, known, file=str(path), key=key)
 
 
-def _list(found: dict[str, Any], key: str, path: Path) -> list[Any]:
-    value = found.get(key)
+def _list(tables: dict[str, Any], key: str, path: Path) -> list[Any]:
+    value = tables.get(key)
     if not isinstance(value, list) or not value:
         what = f"[[{key}]] tables" if key != "responses" else 'a list such as ["end_mass", "squirt(0.3)"]'
-        raise InputError(path, key, f"must be {what}, one at least; got {shown(value) if key in found else 'nothing'}")
+        raise InputError(path, key, f"must be {what}, one at least; got {shown(value) if key in tables else 'nothing'}")
     return value
 
 
-def _base(found: dict[str, Any], path: Path, offset: float) -> Scene:
-    name = found.get("scene")
+def _base(tables: dict[str, Any], path: Path, offset: float) -> Scene:
+    name = tables.get("scene")
     if not isinstance(name, str):
-        got = shown(name) if "scene" in found else "nothing"
+        got = shown(name) if "scene" in tables else "nothing"
         raise InputError(path, "scene", f"must be the path of a scene or a cue, from this file's folder; got {got}")
-    base, game = load_stroke(path.parent / name), game_of(found, path)
+    base, game = load_stroke(path.parent / name), game_of(tables, path)
     if not isinstance(base, Scene):
         with faults_of(path, "game"):
             return Scene(base, stroke=Stroke(offset=offset)) if game == KIM else usual_scene(base, game)
-    if "game" in found:
+    if "game" in tables:
         problem = f"must be left out: {name} is a scene, which has its own ball, tip and stroke"
         raise InputError(path, "game", f"{problem}; got {shown(game)}")
     return base
@@ -179,15 +181,15 @@ def _base(found: dict[str, Any], path: Path, offset: float) -> Scene:
 
 def assumed_base(path: Path, base: Scene) -> list[str]:
     """What the base of a study is struck with, where the file that it names holds a cue alone."""
-    found = read_tables(path)
-    if isinstance(load_stroke(path.parent / found["scene"]), Scene):
+    tables = read_tables(path)
+    if isinstance(load_stroke(path.parent / tables["scene"]), Scene):
         return []
-    game = game_of(found, path)
+    game = game_of(tables, path)
     if game != KIM:
-        before = "" if "game" in found else '; before version 0.2.0 it was Kim\'s: game = "kim"'
-        return [f"{found['scene']} is a cue alone, struck with a usual stroke of {game} (game){before}"]
+        before = "" if "game" in tables else '; before version 0.2.0 it was Kim\'s: game = "kim"'
+        return [f"{tables['scene']} is a cue alone, struck with a usual stroke of {game} (game){before}"]
     ball, time = with_unit(float(base.ball.mass), "kg", 6), with_unit(float(base.contact_time), "s", 6)
-    told = f"{found['scene']} is a cue alone, struck with a ball of {ball} and a flat tip in contact for {time}"
+    told = f"{tables['scene']} is a cue alone, struck with a ball of {ball} and a flat tip in contact for {time}"
     return [f"{told}, b/R {base.stroke.offset:g} (game)"]
 
 
@@ -225,25 +227,25 @@ def _vary(table: Any, base: Scene, path: Path, i: int, sample: Any) -> Vary:
 def _wanted(texts: list[str], base: Scene, how: dict[str, bool], path: Path, key: str) -> Quantity | None:
     """Unit and bounds of the values; None for names of materials."""
     with faults_of(path, key):
-        field = next(one for text in texts for one in paths(base, text))
-    held = quantity_at(base, field)
+        field = next(place for text in texts for place in paths(base, text))
+    value = quantity_at(base, field)
     if not any(how.values()):
-        return held
-    if held is None or value_at(base, field) is None:
+        return value
+    if value is None or value_at(base, field) is None:
         word = "factor must multiply" if how["factor"] else "shift must move"
         raise InputError(path, key, f"{word} a number; got {texts[0]}, which holds none")
-    return FACTOR if how["factor"] else Quantity(held.unit)
+    return FACTOR if how["factor"] else Quantity(value.unit)
 
 
 def _range(
     table: dict[str, Any], wanted: Quantity | None, path: Path, key: str, sampled: bool
 ) -> Levels | Span | Normal:
     kinds = {"values": {"values"}, "low and high": {"low", "high", "count"}, "middle and sd": {"middle", "sd"}}
-    given = [kind for kind, keys in kinds.items() if keys & set(table)]
-    if len(given) != 1:
-        got = ", and ".join(given) or "none of them"
+    asked = [kind for kind, keys in kinds.items() if keys & set(table)]
+    if len(asked) != 1:
+        got = ", and ".join(asked) or "none of them"
         raise InputError(path, key, f"must have values, or low and high, or middle and sd; got {got}")
-    if given == ["middle and sd"]:
+    if asked == ["middle and sd"]:
         return _normal(table, wanted, path, key, sampled)
     if "values" in table:
         values = table["values"]
@@ -306,11 +308,11 @@ def _spacing(table: dict[str, Any], path: Path, key: str) -> bool:
     return bool(spacing == "logarithmic")
 
 
-def _sample(found: Any, path: Path) -> Sample:
-    _check_keys(found, SAMPLE_KEYS, path, "sample")
+def _sample(table: Any, path: Path) -> Sample:
+    _check_keys(table, SAMPLE_KEYS, path, "sample")
     for name in SAMPLE_KEYS:
-        if name not in found:
+        if name not in table:
             what = f"one of {', '.join(METHODS)}" if name == "method" else "a whole number"
             raise InputError(path, joined("sample", name), f"must be given, {what}; got nothing")
     with faults_of(path, "sample"):
-        return Sample(found["method"], found["count"], found["seed"])
+        return Sample(table["method"], table["count"], table["seed"])

@@ -82,32 +82,32 @@ def read_tables(path: Path) -> dict[str, Any]:
 
 def _unquoted(text: str, error: str) -> str:
     """A hint if the line of a syntax error has a value with a unit and no quotes."""
-    found = re.search(r"at line (\d+)", error)
-    line = text.splitlines()[int(found[1]) - 1] if found else ""
+    match = re.search(r"at line (\d+)", error)
+    line = text.splitlines()[int(match[1]) - 1] if match else ""
     return "; a value with a unit stands in quotes" if re.search(r"=\s*[-+.\d]+\s*[^\W\d_]", line) else ""
 
 
 def load_toml(path: Path, cue_file: Callable[[Path], Cue]) -> Cue | Scene | SideStrike:
     """The cue or scene of a TOML file; ``cue_file`` loads the cue file that a scene names."""
-    found = read_tables(path)
-    if {"segments", "shaft"} & {*found} and "cue" not in found:
-        return _cue(found, path, "")
-    if "striker" in found:
-        return _side_strike(found, path, cue_file)
-    return scene_of_tables(found, path, cue_file)
+    tables = read_tables(path)
+    if {"segments", "shaft"} & {*tables} and "cue" not in tables:
+        return _cue(tables, path, "")
+    if "striker" in tables:
+        return _side_strike(tables, path, cue_file)
+    return scene_of_tables(tables, path, cue_file)
 
 
 def load_cue(path: Path) -> Cue:
     """The cue of a TOML file that must not be a scene."""
-    found = read_tables(path)
-    if "cue" in found:
+    tables = read_tables(path)
+    if "cue" in tables:
         raise InputError(
             path, "cue", "must be absent here: a scene's cue is a cue file, with [[segments]]; got a scene"
         )
-    return _cue(found, path, "")
+    return _cue(tables, path, "")
 
 
-def scene_of_table(found: Any, name: str) -> Scene:
+def scene_of_table(table: Any, name: str) -> Scene:
     """The scene of nested tables as `schema.table` makes them; it holds its cue itself. name: for messages.
 
     These leave out what is empty, and nothing else.
@@ -116,56 +116,56 @@ def scene_of_table(found: Any, name: str) -> Scene:
     def no_file(path: Path) -> Cue:
         raise InputError(name, "cue", "must be a table of its own; got the path of a file")
 
-    if not isinstance(found, dict):
-        raise InputError(name, "", f"must be a table; got {shown(found)}")
-    return scene_of_tables({"game": KIM} | found, Path(name), no_file)
+    if not isinstance(table, dict):
+        raise InputError(name, "", f"must be a table; got {shown(table)}")
+    return scene_of_tables({"game": KIM} | table, Path(name), no_file)
 
 
 def load_accuracy(path: str | Path) -> float | None:
     """The relative accuracy rtol that a scene file's [accuracy] table asks for; None if there is no such table."""
     path = Path(path)
-    found = read_tables(path) if path.suffix.lower() == ".toml" else {}
-    return _accuracy(found.get("accuracy"), path)
+    tables = read_tables(path) if path.suffix.lower() == ".toml" else {}
+    return _accuracy(tables.get("accuracy"), path)
 
 
-def _accuracy(found: Any, path: Path) -> float | None:
-    return None if found is None else build(Accuracy, found, file=str(path), key="accuracy").rtol
+def _accuracy(table: Any, path: Path) -> float | None:
+    return None if table is None else build(Accuracy, table, file=str(path), key="accuracy").rtol
 
 
-def _cue(found: dict[str, Any], path: Path, key: str) -> Cue:
-    if "shaft" in found:
-        found = _of_parts(found, path, key)
-    segments = found.get("segments")
+def _cue(table: dict[str, Any], path: Path, key: str) -> Cue:
+    if "shaft" in table:
+        table = _of_parts(table, path, key)
+    segments = table.get("segments")
     if isinstance(segments, list):
         if len(segments) > MOST_SEGMENTS:
             problem = f"must hold at most {MOST_SEGMENTS} segments; got {len(segments)}"
             raise InputError(path, joined(key, "segments"), problem)
         within = joined(key, "segments")
-        found = {**found, "segments": [_segment(s, path, joined(within, i)) for i, s in enumerate(segments)]}
-    return build(Cue, found, file=str(path), key=key)
+        table = {**table, "segments": [_segment(s, path, joined(within, i)) for i, s in enumerate(segments)]}
+    return build(Cue, table, file=str(path), key=key)
 
 
-def _of_parts(found: dict[str, Any], path: Path, key: str) -> dict[str, Any]:
+def _of_parts(cue_table: dict[str, Any], path: Path, key: str) -> dict[str, Any]:
     """A cue's table whose shaft is one of the shelf, with its segments in the place of the parts that it names."""
-    parts = {name: found.get(name) for name in OF_SHAFT}
+    parts = {name: cue_table.get(name) for name in OF_SHAFT}
     for name, value in parts.items():
         if not isinstance(value, str | None):
             raise InputError(path, joined(key, name), f"must be a text, such as {EXAMPLES[name]}; got {shown(value)}")
-    if "segments" in found:
+    if "segments" in cue_table:
         raise InputError(path, joined(key, "segments"), "must be left out beside shaft, which draws them")
     shaft = str(parts.pop("shaft"))
     with faults_of(path, joined(key, "shaft")):
         cue = assembled(shaft, load_cue, **parts)
-    rest = {name: value for name, value in found.items() if name not in OF_SHAFT}
+    rest = {name: value for name, value in cue_table.items() if name not in OF_SHAFT}
     return rest | {"segments": [table(segment) for segment in cue.segments]}
 
 
-def _segment(found: Any, path: Path, key: str) -> Any:
+def _segment(table: Any, path: Path, key: str) -> Any:
     """A segment's table with the names of materials looked up."""
-    if not isinstance(found, dict):
-        return found
-    named = {name: found[name] for name in ("material", "core") if isinstance(found.get(name), str)}
-    return found | {name: named_material(value, path, joined(key, name)) for name, value in named.items()}
+    if not isinstance(table, dict):
+        return table
+    named = {name: table[name] for name in ("material", "core") if isinstance(table.get(name), str)}
+    return table | {name: named_material(value, path, joined(key, name)) for name, value in named.items()}
 
 
 def named_material(name: str, path: Path, key: str) -> Material:
@@ -176,40 +176,40 @@ def named_material(name: str, path: Path, key: str) -> Material:
         raise InputError(path, key, f"{error}; see `cuefem materials`") from None
 
 
-def scene_of_tables(found: dict[str, Any], path: Path, cue_file: Callable[[Path], Cue]) -> Scene:
+def scene_of_tables(tables: dict[str, Any], path: Path, cue_file: Callable[[Path], Cue]) -> Scene:
     """A scene from a file's tables; ``cue_file`` loads the cue file that it names."""
-    _check_keys(found, [*keys_of(Scene), "game", "accuracy"], path)
-    if "cue" not in found:
+    _check_keys(tables, [*keys_of(Scene), "game", "accuracy"], path)
+    if "cue" not in tables:
         raise InputError(path, "cue", "must be given: [[segments]] make a cue, [cue] a scene; got neither")
-    game = game_of(found, path)
-    parts = _parts({name: value for name, value in found.items() if name != "game"}, path, cue_file)
+    game = game_of(tables, path)
+    parts = _parts({name: value for name, value in tables.items() if name != "game"}, path, cue_file)
     scene = build(Scene, parts if game == KIM else _completed(parts, game, path), file=str(path), key="")
     _check_effects(scene, path)
-    if "game" not in found and (missing := left_out(found)):
+    if "game" not in tables and (missing := left_out(tables)):
         since = "which is pool's here, and before version 0.2.0 was Kim's"
         problem = f'leaves out {", ".join(missing)}, {since}: game = "pool" or game = "kim" says which'
         warnings.warn(f"{path}: {problem}", FormerFile, stacklevel=2)
     return scene
 
 
-def game_of(found: dict[str, Any], path: Path) -> str:
+def game_of(tables: dict[str, Any], path: Path) -> str:
     """The game that a file's tables name, or pool."""
-    game = found.get("game", DEFAULT_GAME)
+    game = tables.get("game", DEFAULT_GAME)
     if game not in STROKES:
         hint = nearest(game, STROKES) if isinstance(game, str) else ""
         raise InputError(path, "game", f"must be one of {', '.join(STROKES)}; got {shown(game)}{hint}")
     return str(game)
 
 
-def left_out(found: dict[str, Any]) -> list[str]:
+def left_out(tables: dict[str, Any]) -> list[str]:
     """The keys that a scene's tables leave to its game."""
     missing = [
         f"{part}.{name}"
         for part, names in OF_GAME.items()
         for name in names
-        if not isinstance(found.get(part, {}), dict) or name not in found.get(part, {})
+        if not isinstance(tables.get(part, {}), dict) or name not in tables.get(part, {})
     ]
-    return missing + ["effects"] * ("effects" not in found)
+    return missing + ["effects"] * ("effects" not in tables)
 
 
 def _completed(parts: dict[str, Any], game: str, path: Path) -> dict[str, Any]:
@@ -236,30 +236,30 @@ def _completed(parts: dict[str, Any], game: str, path: Path) -> dict[str, Any]:
     return parts
 
 
-def _check_keys(found: dict[str, Any], names: list[str], path: Path) -> None:
-    unknown = [name for name in found if name not in names]
+def _check_keys(table: dict[str, Any], names: list[str], path: Path) -> None:
+    unknown = [name for name in table if name not in names]
     if unknown:  # a misspelt key first: beside [[segment]], body_mass is not the fault
         name = next((name for name in unknown if nearest(name, ["segments", *names])), unknown[0])
-        raise unknown_key(name, found[name], ["segments", *names], file=str(path), key="")
+        raise unknown_key(name, table[name], ["segments", *names], file=str(path), key="")
 
 
-def _parts(found: dict[str, Any], path: Path, cue_file: Callable[[Path], Cue]) -> dict[str, Any]:
+def _parts(tables: dict[str, Any], path: Path, cue_file: Callable[[Path], Cue]) -> dict[str, Any]:
     """The fields of a scene: its tables, with the cue and the effects made."""
-    _accuracy(found.get("accuracy"), path)
-    parts = {name: value for name, value in found.items() if name != "accuracy"}
-    parts["cue"] = _scene_cue(found["cue"], path, cue_file)
-    effects = found.get("effects")
+    _accuracy(tables.get("accuracy"), path)
+    parts = {name: value for name, value in tables.items() if name != "accuracy"}
+    parts["cue"] = _scene_cue(tables["cue"], path, cue_file)
+    effects = tables.get("effects")
     if isinstance(effects, list):
         parts["effects"] = [_effect(e, path, joined("effects", i)) for i, e in enumerate(effects)]
     return parts
 
 
-def _side_strike(found: dict[str, Any], path: Path, cue_file: Callable[[Path], Cue]) -> SideStrike:
+def _side_strike(tables: dict[str, Any], path: Path, cue_file: Callable[[Path], Cue]) -> SideStrike:
     """A strike from the side, which [striker] makes."""
-    _check_keys(found, [*keys_of(SideStrike), "accuracy"], path)
-    if "cue" not in found:
+    _check_keys(tables, [*keys_of(SideStrike), "accuracy"], path)
+    if "cue" not in tables:
         raise InputError(path, "cue", "must be given: a table or the path of a cue file; got nothing")
-    parts = _parts(found, path, cue_file)
+    parts = _parts(tables, path, cue_file)
     if isinstance(parts["cue"], LumpedCue):
         raise InputError(path, "cue", "must be a cue of segments: a lumped cue has no side; got mass and end_mass")
     return build(SideStrike, parts, file=str(path), key="")
@@ -276,53 +276,53 @@ def _check_effects(scene: Scene, path: Path) -> None:
                 raise InputError(path, key, problem) from None
 
 
-def _scene_cue(found: Any, path: Path, cue_file: Callable[[Path], Cue]) -> Cue | LumpedCue:
-    if isinstance(found, str):
+def _scene_cue(cue: Any, path: Path, cue_file: Callable[[Path], Cue]) -> Cue | LumpedCue:
+    if isinstance(cue, str):
         try:
-            return cue_file(path.parent / found)
+            return cue_file(path.parent / cue)
         except InputError as error:
             if error.key:  # a fault inside the cue file, which has its own key
                 raise
             raise InputError(path, "cue", str(error)) from None
-    if not isinstance(found, dict):
-        raise InputError(path, "cue", f"must be a table or the path of a cue file; got {shown(found)}")
-    lumped = {"mass", "end_mass"} & set(found) and not {"segments", "shaft"} & set(found)
-    return build(LumpedCue, found, file=str(path), key="cue") if lumped else _cue(found, path, "cue")
+    if not isinstance(cue, dict):
+        raise InputError(path, "cue", f"must be a table or the path of a cue file; got {shown(cue)}")
+    lumped = {"mass", "end_mass"} & set(cue) and not {"segments", "shaft"} & set(cue)
+    return build(LumpedCue, cue, file=str(path), key="cue") if lumped else _cue(cue, path, "cue")
 
 
-def _effect(found: Any, path: Path, key: str) -> Effect:
+def _effect(table: Any, path: Path, key: str) -> Effect:
     kinds = effect_kinds()
     names = ", ".join(kinds)
-    if not isinstance(found, dict) or "type" not in found:
-        got = "nothing" if isinstance(found, dict) else shown(found)
+    if not isinstance(table, dict) or "type" not in table:
+        got = "nothing" if isinstance(table, dict) else shown(table)
         raise InputError(path, joined(key, "type"), f"must be one of {names}; got {got}")
-    name = found["type"]
+    name = table["type"]
     if not isinstance(name, str) or name not in kinds:
         problem = f"must be one of {names}; got {shown(name)}{nearest(str(name), kinds)}"
         raise InputError(path, joined(key, "type"), problem)
-    rest = {field: value for field, value in found.items() if field != "type"}
+    rest = {field: value for field, value in table.items() if field != "type"}
     for field, why in FORMER.get(name, {}).items():
         if rest.pop(field, None) is not None:
             warnings.warn(f"{path}: {joined(key, field)} says nothing any more: {why}", FormerFile, stacklevel=2)
     return build(kinds[name], _spelt_out(kinds[name], rest, path, key), file=str(path), key=key)
 
 
-def _spelt_out(kind: type[Effect], found: dict[str, Any], path: Path, key: str) -> dict[str, Any]:
+def _spelt_out(kind: type[Effect], table: dict[str, Any], path: Path, key: str) -> dict[str, Any]:
     """The table with the fields in the place of each word that stands for several, such as the name of a leather."""
     marks = {name: mark for name, mark, *_ in quantities(kind)}  # type: ignore[arg-type]
     for word, names in kind.named.items():
         wanted = f"must be one of {', '.join(names)}"
         meant = [*dict.fromkeys(name for values in names.values() for name in values)]
         here, first = joined(key, word), meant[0]
-        if word not in found:
-            if first not in found and set(found) <= {*keys_of(kind)}:  # a misspelt key is told first
+        if word not in table:
+            if first not in table and set(table) <= {*keys_of(kind)}:  # a misspelt key is told first
                 raise InputError(path, here, f"{wanted}, or {first} be given in its place; got nothing")
             continue
-        given = found[word].casefold() if isinstance(found[word], str) else found[word]
-        if not isinstance(given, str) or given not in names:
-            raise InputError(path, here, f"{wanted}; got {shown(given)}{nearest(str(given), names)}")
-        if twice := [name for name in meant if name in found]:
+        spelt = table[word].casefold() if isinstance(table[word], str) else table[word]
+        if not isinstance(spelt, str) or spelt not in names:
+            raise InputError(path, here, f"{wanted}; got {shown(spelt)}{nearest(str(spelt), names)}")
+        if twice := [name for name in meant if name in table]:
             raise InputError(path, joined(key, twice[0]), f"must be left out beside {word}, which gives it")
-        rest = {name: value for name, value in found.items() if name != word}
-        found = rest | {name: marks[name].written(value) for name, value in names[given].items()}
-    return found
+        rest = {name: value for name, value in table.items() if name != word}
+        table = rest | {name: marks[name].written(value) for name, value in names[spelt].items()}
+    return table

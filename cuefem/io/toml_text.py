@@ -38,9 +38,9 @@ def _item(value: Any) -> Any:
     return value
 
 
-def _row(found: dict[str, Any]) -> Any:
+def _row(table: dict[str, Any]) -> Any:
     made = tomlkit.table()
-    for name, inner in found.items():
+    for name, inner in table.items():
         if isinstance(inner, dict):
             inline = tomlkit.inline_table()
             inline.update(inner)

@@ -55,21 +55,21 @@ def _best(table: ModeTable, sets: Array) -> Array:
     place = np.clip(np.rint((sets - np.log(LOW)) / BIN).astype(int), 0, int(np.log(HIGH / LOW) / BIN))
     best = np.full(len(sets), -np.inf)
     score, hits = np.empty((2, len(sets), len(E)), np.float32)
-    taken, own = np.empty((2, len(sets), len(E)), np.uint32)
+    chosen, own = np.empty((2, len(sets), len(E)), np.uint32)
     for ratio in np.linspace(*table.shaft.ratios, RATIOS):
         value, bit, audible, known = _explained(table, E, np.full(len(E), ratio))
         score[:] = known
-        taken[:], hits[:] = 0, 0.0
-        for one in place.T:
-            score += value[one]
-            np.take(bit, one, axis=0, out=own)
+        chosen[:], hits[:] = 0, 0.0
+        for column in place.T:
+            score += value[column]
+            np.take(bit, column, axis=0, out=own)
             hits += own > 0
-            taken |= own
-        below: Any = taken.copy()
+            chosen |= own
+        below: Any = chosen.copy()
         for shift in (1, 2, 4, 8, 16):
             below |= below >> shift
-        score += _count(below & audible & ~taken) * np.float32(np.log(UNHEARD))
-        score -= np.float32(TWICE) * (hits - _count(taken))
+        score += _count(below & audible & ~chosen) * np.float32(np.log(UNHEARD))
+        score -= np.float32(TWICE) * (hits - _count(chosen))
         np.maximum(best, score.max(axis=1), out=best)
     return best
 

@@ -54,8 +54,8 @@ class DocumentedCue:
 
     def __post_init__(self) -> None:
         check_kind("DocumentedCue.scene", self.scene, Scene)
-        for i, one in enumerate(self.found):
-            check_kind(f"DocumentedCue.found[{i}]", one, Measurement)
+        for i, measurement in enumerate(self.found):
+            check_kind(f"DocumentedCue.found[{i}]", measurement, Measurement)
         _ = self.scene.shaft, self.unknowns
 
     @cached_property
@@ -73,7 +73,7 @@ class DocumentedCue:
     def computed(self, z: Array | None = None, also: Sequence[Measurement] = ()) -> Array:
         """The values of its measurements by the model, SI, and of others ``also``."""
         setup = self.setup(z)
-        return np.array([one.computed(setup) for one in (*self.found, *also)])
+        return np.array([measurement.computed(setup) for measurement in (*self.found, *also)])
 
     def slopes(
         self, z: Array, also: Sequence[Measurement] = (), *, at: Array | None = None, track: Track = iter
@@ -111,7 +111,10 @@ class DocumentedCue:
     @property
     def lacking(self) -> list[str]:
         """What a useful data set has and this one does not, and what that costs."""
-        said = (kind.lacking([one for one in self.found if isinstance(one, kind)]) for kind in KINDS.values())
+        said = (
+            kind.lacking([measurement for measurement in self.found if isinstance(measurement, kind)])
+            for kind in KINDS.values()
+        )
         return [words for words in said if words]
 
 
@@ -145,9 +148,19 @@ def compare(cue: DocumentedCue, *, track: Track = iter) -> tuple[Row, ...]:
 def rows_of(cue: DocumentedCue, computed: Array, spread: Array) -> tuple[Row, ...]:
     """The table of computed values with their standard deviations."""
     made = []
-    for one, value, error in zip(cue.found, computed.tolist(), spread.tolist(), strict=True):
-        gap = one.measured - value
-        made.append(Row(one, one.measured, one.sd, value, error, gap / one.sd, gap / float(np.hypot(one.sd, error))))
+    for measurement, value, error in zip(cue.found, computed.tolist(), spread.tolist(), strict=True):
+        gap = measurement.measured - value
+        made.append(
+            Row(
+                measurement,
+                measurement.measured,
+                measurement.sd,
+                value,
+                error,
+                gap / measurement.sd,
+                gap / float(np.hypot(measurement.sd, error)),
+            )
+        )
     return tuple(made)
 
 
@@ -170,8 +183,10 @@ def zeros(cue: DocumentedCue, rows: Sequence[Row]) -> tuple[Zero, ...]:
     radius = float(cue.scene.ball.radius)
     made = []
     for row in rows:
-        one = row.measurement
-        if isinstance(one, Squirt) and one.left is not None and one.right is not None:
-            slope = row.measured / (one.offset * radius)
-            made.append(Zero(one, (one.left - one.right) / 2 / slope, abs(one.sd / slope)))
+        measurement = row.measurement
+        if isinstance(measurement, Squirt) and measurement.left is not None and measurement.right is not None:
+            slope = row.measured / (measurement.offset * radius)
+            made.append(
+                Zero(measurement, (measurement.left - measurement.right) / 2 / slope, abs(measurement.sd / slope))
+            )
     return tuple(made)

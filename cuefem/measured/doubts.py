@@ -29,109 +29,109 @@ WRONG_RATES = {44.1 / 48: "44.1 kHz for 48", 48 / 44.1: "48 kHz for 44.1"} | {
 UNITS = {"E": (1e9, "GPa"), "G": (1e9, "GPa"), "rho": (1.0, "kg/m³")}
 
 
-def missing(found: TapFit) -> list[int]:
+def missing(fit: TapFit) -> list[int]:
     """Modes, 1 the lowest, between `LOW` and the highest one heard that were not heard, not even faintly."""
-    ours = [match.mode for match in found.matched if match.mode is not None]
-    faint = [match.tone for match in found.matched if match.tone.kind == "faint"]
+    ours = [match.mode for match in fit.matched if match.mode is not None]
+    faint = [match.tone for match in fit.matched if match.tone.kind == "faint"]
     return [
         mode
-        for mode, f in enumerate(found.frequencies[: max(ours)], start=1)
+        for mode, f in enumerate(fit.frequencies[: max(ours)], start=1)
         if f > LOW and mode not in ours and not any(abs(tone.frequency - f) < 2 * tone.error for tone in faint)
     ]
 
 
-def explained(found: TapFit) -> float:
+def explained(fit: TapFit) -> float:
     """The share of the clear tones' power that lies in modes of the shaft; 1 without clear tones."""
-    clear = [match for match in found.matched if match.tone.kind == "tone"]
+    clear = [match for match in fit.matched if match.tone.kind == "tone"]
     loud = sum(match.tone.level**2 for match in clear)
     return sum(match.tone.level**2 for match in clear if match.mode is not None) / loud if loud else 1.0
 
 
-def refusals(found: TapFit, *, edge: bool = False) -> list[str]:
+def refusals(fit: TapFit, *, edge: bool = False) -> list[str]:
     """Reasons not to trust this result, one line each; edge: whether G/E stopped at a bound of the search."""
     lines = []
-    heard = {match.mode for match in found.matched if match.mode is not None}
-    clear = sum(match.tone.kind == "tone" for match in found.matched)
-    if found.chance > LEVEL:
+    heard = {match.mode for match in fit.matched if match.mode is not None}
+    clear = sum(match.tone.kind == "tone" for match in fit.matched)
+    if fit.chance > LEVEL:
         sets = f"random sets of {clear} tones" if clear > 1 else "random single tones"
-        share = f"{100 * found.chance:.2g} % of {sets} fit as well, above {100 * LEVEL:g} %"
+        share = f"{100 * fit.chance:.2g} % of {sets} fit as well, above {100 * LEVEL:g} %"
         lines.append(f"the tones fit this shaft no better than by chance ({share})")
-    if found.note:
-        of = sum(match.tone.kind in ("tone", "harmonic") for match in found.matched)
+    if fit.note:
+        of = sum(match.tone.kind in ("tone", "harmonic") for match in fit.matched)
         lines.append(
-            f"a string, a pipe or a voice explains the tones better: {found.note.partials} of {of} are partials of a "
-            f"note of {found.note.frequency:.4g} Hz"
+            f"a string, a pipe or a voice explains the tones better: {fit.note.partials} of {of} are partials of a "
+            f"note of {fit.note.frequency:.4g} Hz"
         )
-    if len(missed := missing(found)) > len(heard):
+    if len(missed := missing(fit)) > len(heard):
         lines.append(f"{len(missed)} of the {len(missed) + len(heard)} modes that should be heard are missing")
-    if explained(found) < MOST:
+    if explained(fit) < MOST:
         lines.append("most of the sound's power is in tones that this shaft does not have")
-    if found.rivals:
-        others = ", ".join(f"{E / 1e9:.3g} GPa (odds 1 : {odds:.2g})" for E, odds in found.rivals)
-        lines.append(f"the tones cannot be told apart: E may be {found.wood.E / 1e9:.3g} GPa or {others}")
-    if abs(np.log(found.wood.E / found.before.E)) > FAR * np.log(FACTOR):
+    if fit.rivals:
+        others = ", ".join(f"{E / 1e9:.3g} GPa (odds 1 : {odds:.2g})" for E, odds in fit.rivals)
+        lines.append(f"the tones cannot be told apart: E may be {fit.wood.E / 1e9:.3g} GPa or {others}")
+    if abs(np.log(fit.wood.E / fit.before.E)) > FAR * np.log(FACTOR):
         lines.append(f"E is at the end of the search, a factor {FACTOR:g} from the file's")
     if edge:
         lines.append(f"G/E is at the end of what shafts have, {RATIOS[0]:.3g} to {RATIOS[1]:.3g}")
-    return lines + unlike(found.wood, found.before) + wrong_rate(found)
+    return lines + unlike(fit.wood, fit.before) + wrong_rate(fit)
 
 
-def wrong_rate(found: TapFit) -> list[str]:
+def wrong_rate(fit: TapFit) -> list[str]:
     """What the lowest tone and E would be at another sampling rate, if only that makes the wood one that exists."""
     for factor, words in WRONG_RATES.items():
-        wood = replace(found.wood, E=factor**2 * found.wood.E, G=factor**2 * found.wood.G)
-        if unlike(found.wood, found.before) and not unlike(wood, found.before):
-            return [f"if the file's sampling rate is wrong, {words}, {at_rate(found, factor)}"]
+        wood = replace(fit.wood, E=factor**2 * fit.wood.E, G=factor**2 * fit.wood.G)
+        if unlike(fit.wood, fit.before) and not unlike(wood, fit.before):
+            return [f"if the file's sampling rate is wrong, {words}, {at_rate(fit, factor)}"]
     return []
 
 
-def other_rate(found: TapFit, rate: float) -> str:
+def other_rate(fit: TapFit, rate: float) -> str:
     """What the tap would tell at the usual sampling rate that is nearest to the one its file says."""
     usual = min((each for each in RATES if abs(each - rate) > 1.0), key=lambda each: abs(np.log(each / rate)))
     return (
         f"the file says {rate:g} samples a second, which is believed; if it was recorded at {usual:g}, "
-        f"{at_rate(found, usual / rate)}"
+        f"{at_rate(fit, usual / rate)}"
     )
 
 
-def at_rate(found: TapFit, factor: float) -> str:
+def at_rate(fit: TapFit, factor: float) -> str:
     """The lowest tone and E at a sampling rate ``factor`` times that of the file.
 
     All tones of a shaft rise with the root of E and G together, so a wrong rate is heard as other wood.
     """
-    lowest = min(match.tone.frequency for match in found.matched if match.mode is not None)
+    lowest = min(match.tone.frequency for match in fit.matched if match.mode is not None)
     return (
         f"the lowest tone is {factor * lowest:.4g} Hz, not {lowest:.4g} Hz, and "
-        f"E is {factor**2 * found.wood.E / 1e9:.3g} GPa, not {found.wood.E / 1e9:.3g} GPa"
+        f"E is {factor**2 * fit.wood.E / 1e9:.3g} GPa, not {fit.wood.E / 1e9:.3g} GPa"
     )
 
 
-def remarks(found: TapFit, rate: float | None = None) -> list[str]:
+def remarks(fit: TapFit, rate: float | None = None) -> list[str]:
     """What else is worth knowing about a result, one line each, without repeating `refusals`.
 
     rate: of the recording, by its file, samples a second.
     """
-    heard = [match.mode for match in found.matched if match.mode is not None]
+    heard = [match.mode for match in fit.matched if match.mode is not None]
     lines = []
-    if not found.told:
+    if not fit.told:
         why = "one tone cannot tell" if len(heard) == 1 else "these tones cannot tell"
         lines.append(f"{why} G from E: the file's G/E is kept, and assumed known to {100 * KEPT:.0f} %")
-    if not found.weighed:
+    if not fit.weighed:
         lines.append(
             f"the shaft was not weighed: its density is kept as it is, and assumed known to {100 * DENSITY:.0f} %"
         )
-    if MOST <= explained(found) < NEARLY_ALL:
+    if MOST <= explained(fit) < NEARLY_ALL:
         lines.append("some loud tones are not this shaft's: check that it is the one drawn, and that it hung free")
-    if found.misfit > POOR:
-        lines.append(f"the tones fit to {100 * found.misfit:.2g} % only: check the drawing; errors are widened")
-    if foreign := [match.tone for match in found.matched if match.tone.kind == "tone" and match.mode is None]:
+    if fit.misfit > POOR:
+        lines.append(f"the tones fit to {100 * fit.misfit:.2g} % only: check the drawing; errors are widened")
+    if foreign := [match.tone for match in fit.matched if match.tone.kind == "tone" and match.mode is None]:
         lines.append(f"not a bending tone of this shaft: {', '.join(f'{tone.frequency:.1f}' for tone in foreign)} Hz")
-    if missed := missing(found):
+    if missed := missing(fit):
         lines.append(f"not heard: mode{'s' if len(missed) > 1 else ''} {', '.join(map(str, missed))}")
-    if any(match.tone.kind == "twin" for match in found.matched):
+    if any(match.tone.kind == "twin" for match in fit.matched):
         lines.append("some tones are double: the shaft bends differently in two planes; their means are used")
-    if rate is not None and not wrong_rate(found):
-        lines.append(other_rate(found, rate))
+    if rate is not None and not wrong_rate(fit):
+        lines.append(other_rate(fit, rate))
     return lines
 
 
@@ -171,15 +171,15 @@ def _widened(own: Range) -> Range:
 
 def shear_coefficients(cue: Cue, wood: Material) -> tuple[float, float]:
     """Smallest and largest shear coefficient of the sections that are made of this material."""
-    found = []
+    coefficients = []
     for segment in cue.segments:
         if segment.material != wood and segment.core != wood:
             continue
         if segment.kappa is not None:
-            found.append(segment.kappa)
+            coefficients.append(segment.kappa)
         elif segment.material != wood:
-            found.append(float(shear_coefficient(wood.effective_poisson_ratio)))
+            coefficients.append(float(shear_coefficient(wood.effective_poisson_ratio)))
         else:
             ends = (segment.tip_bore / segment.tip_diameter, segment.butt_bore / segment.butt_diameter)
-            found += [float(shear_coefficient(wood.effective_poisson_ratio, np.array(ratio))) for ratio in ends]
-    return min(found), max(found)
+            coefficients += [float(shear_coefficient(wood.effective_poisson_ratio, np.array(ratio))) for ratio in ends]
+    return min(coefficients), max(coefficients)

@@ -107,13 +107,13 @@ class Estimate:
         """
         J, residuals = _scaled(self.cue, self.z, self.computed, self.slopes)
         made = []
-        for i, one in enumerate(self.cue.found):
+        for i, measurement in enumerate(self.cue.found):
             others = np.arange(len(J)) != i
             foreseen = J[i] @ np.linalg.solve(J[others].T @ J[others] + np.eye(len(self.z)), J[i])
             if NOTICED**2 * (1 + foreseen) > WIDER**2:
                 mean, covariance, _ = solved(J[others], residuals[others])
                 rests = int(np.argmax(np.diag(covariance) / np.diag(self.covariance)))
-                made.append(Unchecked(one, self._values(mean, covariance)[rests]))
+                made.append(Unchecked(measurement, self._values(mean, covariance)[rests]))
         return tuple(made)
 
     @property
@@ -139,17 +139,17 @@ class Estimate:
         Each as if it came out as the estimate predicts it; it may also check those that were made.
         """
         target = squirt_of(self.cue)
-        others = [one for kind in KINDS.values() for one in kind.next(self.cue.scene)]
+        others = [measurement for kind in KINDS.values() for measurement in kind.next(self.cue.scene)]
         at, slopes = self._also((target, *others))
         J, residuals = _scaled(self.cue, self.z, self.computed, self.slopes)
         made = []
-        for one, slope in zip(others, slopes[1:] / [[one.sd] for one in others], strict=True):
+        for measurement, slope in zip(others, slopes[1:] / [[measurement.sd] for measurement in others], strict=True):
             after = solved(np.vstack([J, slope]), np.append(residuals, slope @ self.z)).covariance
             left = np.sqrt(np.diag(after) / np.diag(self.covariance))
             i = int(np.argmin(left))
             bits = 0.5 / np.log(2) * (np.linalg.slogdet(self.covariance)[1] - np.linalg.slogdet(after)[1])
             relative = float(np.sqrt(slopes[0] @ after @ slopes[0])) / abs(float(at[0]))
-            made.append(Worth(one, float(bits), self.cue.unknowns[i].words, float(left[i]), relative))
+            made.append(Worth(measurement, float(bits), self.cue.unknowns[i].words, float(left[i]), relative))
         return tuple(sorted(made, key=lambda worth: worth.squirt_left))
 
 
@@ -188,7 +188,7 @@ def estimate(cue: DocumentedCue, *, track: Track = iter) -> Estimate:
     if not cue.found or not cue.unknowns:
         what = "measurements" if not cue.found else "unknowns"
         raise ValueError(f"estimate takes a cue with {what}; got none")
-    measured, sd = np.array([[one.measured, one.sd] for one in cue.found]).T
+    measured, sd = np.array([[measurement.measured, measurement.sd] for measurement in cue.found]).T
     z = np.zeros(len(cue.unknowns))
     at = cue.computed(z)
     cost, converged = _cost(z, (measured - at) / sd), False
@@ -225,7 +225,7 @@ def _counted(cue: DocumentedCue, z: Array, at: Array, misfit: float) -> Estimate
 
 def _scaled(cue: DocumentedCue, z: Array, at: Array, slopes: Array) -> tuple[Array, Array]:
     """The linear problem about z: slopes and residuals (of z = 0) in the measurements' errors."""
-    measured, sd = np.array([[one.measured, one.sd] for one in cue.found]).T
+    measured, sd = np.array([[measurement.measured, measurement.sd] for measurement in cue.found]).T
     J = slopes / sd[:, None]
     return J, (measured - at) / sd + J @ z
 
@@ -245,10 +245,10 @@ def _lowest(
     best = None
     for halving in range(HALVINGS):
         there = z + step / 2**halving
-        found = cue.possible(there)
-        after = np.inf if found is None else _cost(there, (measured - found) / sd)
-        if found is not None and after < (cost if best is None else best[2]):
-            best = there, found, after
+        lowest = cue.possible(there)
+        after = np.inf if lowest is None else _cost(there, (measured - lowest) / sd)
+        if lowest is not None and after < (cost if best is None else best[2]):
+            best = there, lowest, after
         elif best is not None:
             break
     return best

@@ -31,11 +31,11 @@ class Hum:
 def without_hum(signal: Array, rate: float) -> tuple[Array, Hum | None]:
     """The recording, (samples, channels), without its mains hum, and that hum; None if no hum was found."""
     pieces = np.array_split(signal, max(1, round(len(signal) / (PIECE * rate))))
-    found = [_hum(piece, rate) for piece in pieces]
-    heard = [(base, multiples) for base, multiples, _ in found if multiples]
+    hums = [_hum(piece, rate) for piece in pieces]
+    heard = [(base, multiples) for base, multiples, _ in hums if multiples]
     if not heard:
         return signal, None
-    clean = np.concatenate([piece - hum for piece, (_, _, hum) in zip(pieces, found, strict=True)])
+    clean = np.concatenate([piece - hum for piece, (_, _, hum) in zip(pieces, hums, strict=True)])
     power = np.square(signal - clean).sum() / max(np.square(clean).sum(), np.finfo(float).tiny)
     multiples = sorted(set().union(*(own for _, own in heard)))
     return clean, Hum(float(np.median([base for base, _ in heard])), tuple(multiples), float(10 * np.log10(power)))

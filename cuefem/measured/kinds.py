@@ -78,9 +78,9 @@ class Measurement:
         raise NotImplementedError
 
     @classmethod
-    def lacking(cls, found: Sequence[Any]) -> str:
+    def lacking(cls, measurements: Sequence[Any]) -> str:
         """What is missing of this kind in a data set, and what that costs; empty if nothing is."""
-        return "" if found else f"{cls.words}: {cls.costs}"
+        return "" if measurements else f"{cls.words}: {cls.costs}"
 
     @classmethod
     def next(cls, scene: Scene) -> tuple[Measurement, ...]:
@@ -178,8 +178,8 @@ class Tone(Measurement):
     @classmethod
     def next(cls, scene: Scene) -> tuple[Measurement, ...]:
         """The four lowest, by ear of a telephone."""
-        found = numbers_of(scene).frequencies[:4]
-        return tuple(cls(mode=i + 1, value=float(f), error=0.1) for i, f in enumerate(found))
+        frequencies = numbers_of(scene).frequencies[:4]
+        return tuple(cls(mode=i + 1, value=float(f), error=0.1) for i, f in enumerate(frequencies))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -209,11 +209,11 @@ class Stiffness(Measurement):
         return setup.numbers.stiffness(wood if self.free_length is None else self.free_length)
 
     @classmethod
-    def lacking(cls, found: Sequence[Any]) -> str:
+    def lacking(cls, measurements: Sequence[Any]) -> str:
         """One length tells E; the second, near the tip, tells the bore."""
-        if len({one.free_length for one in found}) == 1:
+        if len({measurement.free_length for measurement in measurements}) == 1:
             return "static stiffness at a second free length: a bore in the front and the wood's E cannot be told apart"
-        return super().lacking(found)
+        return super().lacking(measurements)
 
     @classmethod
     def next(cls, scene: Scene) -> tuple[Measurement, ...]:
@@ -289,13 +289,13 @@ class Squirt(Measurement):
         return setup.squirt_factor * setup.numbers.squirt(min(max(offset, -0.99), 0.99), self.speed)
 
     @classmethod
-    def lacking(cls, found: Sequence[Any]) -> str:
+    def lacking(cls, measurements: Sequence[Any]) -> str:
         """Which part of the full set is missing."""
-        if not found:
-            return super().lacking(found)
-        offsets, speeds = ({getattr(one, name) for one in found} for name in ("offset", "speed"))
+        if not measurements:
+            return super().lacking(measurements)
+        offsets, speeds = ({getattr(measurement, name) for measurement in measurements} for name in ("offset", "speed"))
         parts = []
-        if any(one.left is None for one in found):
+        if any(measurement.left is None for measurement in measurements):
             parts.append("the other side (a zero error of the offset stays in the numbers)")
         if len(offsets) < 3:
             parts.append(f"three offsets, here {len(offsets)} (the growth with the offset, which tests the tip)")

@@ -97,17 +97,17 @@ class ModeTable:
         ratios = np.linspace(*self.shaft.ratios, 41)
         proposed = np.concatenate([self._proposed(heard, r) for r in ratios])
         scores = self._scores(proposed, heard, wrong, 3 * TOLERANCE)
-        found: dict[tuple[int, ...], Hypothesis] = {}
+        best: dict[tuple[int, ...], Hypothesis] = {}
         for theta in self._unlike(proposed[np.argsort(-scores)[:200]], heard):
             refined = self._refined(theta, heard, wrong)
             if max(refined.modes) < 0:
                 continue
-            if refined.modes not in found or found[refined.modes].score < refined.score:
-                found[refined.modes] = refined
+            if refined.modes not in best or best[refined.modes].score < refined.score:
+                best[refined.modes] = refined
         apart: list[Hypothesis] = []
-        for one in sorted(found.values(), key=lambda h: -h.score):
-            if all(abs(one.theta[0] - other.theta[0]) > SAME for other in apart):
-                apart.append(one)
+        for hypothesis in sorted(best.values(), key=lambda h: -h.score):
+            if all(abs(hypothesis.theta[0] - other.theta[0]) > SAME for other in apart):
+                apart.append(hypothesis)
         return apart
 
     def _unlike(self, proposed: Array, heard: Array) -> list[Array]:
@@ -172,10 +172,10 @@ def weighed(f: Array, heard: Array, wrong: Array, tolerance: float) -> Array:
     density = -((gap / tolerance) ** 2) / 2 - np.log(tolerance * np.sqrt(2 * np.pi) * np.maximum(audible, 1))[:, None]
     own, none = density + np.log1p(-wrong), np.log(wrong / np.log(HIGH / LOW))
     explained = own > none
-    taken = np.zeros(f.shape, bool)
+    used = np.zeros(f.shape, bool)
     rows = np.arange(len(f))[:, None]
-    taken[np.broadcast_to(rows, nearest.shape)[explained], nearest[explained]] = True
-    top = np.where(taken, f, -np.inf).max(axis=1)
-    unheard = ((f > np.log(LOW)) & (f < top[:, None]) & ~taken).sum(axis=1)
-    twice = explained.sum(axis=1) - taken.sum(axis=1)
+    used[np.broadcast_to(rows, nearest.shape)[explained], nearest[explained]] = True
+    top = np.where(used, f, -np.inf).max(axis=1)
+    unheard = ((f > np.log(LOW)) & (f < top[:, None]) & ~used).sum(axis=1)
+    twice = explained.sum(axis=1) - used.sum(axis=1)
     return np.asarray(np.maximum(own, none).sum(axis=1) + unheard * np.log(UNHEARD) - TWICE * twice)

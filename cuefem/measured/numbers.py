@@ -68,10 +68,10 @@ class Numbers:
         elements, order = mesh_for(cue, STATIC)
         clamp = Support(min(free, cue.length), np.inf, np.inf)
         system = assemble(cue, elements=elements, order=order, effects=(clamp,))
-        held = system.free
-        assert held is not None
-        force = held.T @ np.eye(system.mesh.unknowns, 1)[:, 0]
-        K = held.T @ system.K @ held
+        onto_free = system.free
+        assert onto_free is not None
+        force = onto_free.T @ np.eye(system.mesh.unknowns, 1)[:, 0]
+        K = onto_free.T @ system.K @ onto_free
         K = K if isinstance(K, np.ndarray) else K.toarray()
         return float(1 / (force @ np.linalg.solve(K, force)))
 
@@ -85,9 +85,9 @@ class Numbers:
 
     def end_mass(self, striker: Striker, position: float) -> float:
         """Effective mass, kg, that a striker feels across the shaft hung free; position: m from the end of the tip."""
-        held = tuple(effect for effect in self.scene.bare.cue_effects if effect.part_of_cue)
+        effects = tuple(effect for effect in self.scene.bare.cue_effects if effect.part_of_cue)
         place = self.place(position, "end_mass position")
-        return side_strike(SideStrike(self.scene.shaft, striker, place, effects=held)).effective_mass
+        return side_strike(SideStrike(self.scene.shaft, striker, place, effects=effects)).effective_mass
 
     def _strike(self, offset: float, speed: float | None, lump: tuple[float, float] | None) -> Outcome:
         scene = self._with_lump(lump)
@@ -124,5 +124,5 @@ def numbers_of(scene: Scene) -> Numbers:
 def _without_leather(cue: Cue) -> Cue:
     """The cue from the ferrule's end on."""
     soft = cue.leather
-    kept: Any = tuple(s for s, x in zip(cue.segments, cue.nodes, strict=False) if x >= soft * (1 - 1e-9))
-    return replace(cue, segments=kept) if soft else cue
+    segments: Any = tuple(s for s, x in zip(cue.segments, cue.nodes, strict=False) if x >= soft * (1 - 1e-9))
+    return replace(cue, segments=segments) if soft else cue

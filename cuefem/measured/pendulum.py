@@ -213,13 +213,13 @@ class PendulumTest:
         if self.wall is None:
             budget["restitution"] = budget.pop("held shaft, after")
             del budget["held shaft, before"]
-        found = Weighed(self, self.ball_mass * (1 + a) / (e - a), a, e, budget)
-        if found.relative_error > 1:
+        weighed = Weighed(self, self.ball_mass * (1 + a) / (e - a), a, e, budget)
+        if weighed.relative_error > 1:
             raise ValueError(
                 "the readings must tell the end mass to within its own size: the ball came back from the free shaft "
-                f"nearly as from the held one; got an error of {100 * found.relative_error:.3g} %"
+                f"nearly as from the held one; got an error of {100 * weighed.relative_error:.3g} %"
             )
-        return found
+        return weighed
 
     def as_measured(self, weighed: Weighed, position: float) -> EndMass:
         """The result as a measurement of a documented cue; position: of the blow, m from the end of the tip."""
@@ -279,30 +279,30 @@ def squirt_told(test: PendulumTest, weighed: Weighed, scene: Scene, position: fl
     of it; the squirt is that of the coupled strike with them, so that its own contact time, dome and tip count. Its
     error holds what stays open, and a tenth for the model. position: of the blow, m from the end of the tip.
     """
-    one = test.as_measured(weighed, position)
-    blank = DocumentedCue("pendulum", scene, (one,))
+    measurement = test.as_measured(weighed, position)
+    blank = DocumentedCue("pendulum", scene, (measurement,))
     zero = np.zeros(len(blank.unknowns))
     drawn = float(blank.computed(zero)[0])
     if test.contact_time_error:
-        later = EndMass(**{**_fields(one), "contact_time": 1.02 * one.contact_time})
+        later = EndMass(**{**_fields(measurement), "contact_time": 1.02 * measurement.contact_time})
         slope = math.log(later.computed(blank.setup()) / drawn) / math.log(1.02)
-        more = abs(slope) * test.contact_time_error / test.contact_time * one.value
-        one = EndMass(**{**_fields(one), "error": math.hypot(one.error, more)})
-    cue = DocumentedCue("pendulum", scene, (one,))
+        more = abs(slope) * test.contact_time_error / test.contact_time * measurement.value
+        measurement = EndMass(**{**_fields(measurement), "error": math.hypot(measurement.error, more)})
+    cue = DocumentedCue("pendulum", scene, (measurement,))
     target = squirt_of(cue)
     free = Estimate(cue, zero, np.eye(len(zero)), np.array([drawn]), np.zeros((1, len(zero))), 0.0, True, np.zeros(1))
-    found = estimate(cue)
-    before, after = free.predicted(target), found.predicted(target)
-    return Told(drawn, one.value, _with_model(before), _with_model(after), target.offset, found)
+    estimated = estimate(cue)
+    before, after = free.predicted(target), estimated.predicted(target)
+    return Told(drawn, measurement.value, _with_model(before), _with_model(after), target.offset, estimated)
 
 
-def _fields(one: EndMass) -> dict[str, Any]:
+def _fields(end_mass: EndMass) -> dict[str, Any]:
     names = ("value", "error", "ball_mass", "restitution", "contact_time", "position")
-    return {name: getattr(one, name) for name in names}
+    return {name: getattr(end_mass, name) for name in names}
 
 
-def _with_model(found: tuple[float, float]) -> tuple[float, float]:
-    return found[0], math.hypot(found[1], MODEL_OF_SQUIRT * found[0])
+def _with_model(value: tuple[float, float]) -> tuple[float, float]:
+    return value[0], math.hypot(value[1], MODEL_OF_SQUIRT * value[0])
 
 
 def lumped_squirt(end_mass: float, mass: float, ball: Ball, tip: Tip, stroke: Stroke) -> float:

@@ -62,24 +62,24 @@ def ringing(signal: ArrayLike, rate: float) -> Ringing:
         why = "clipped beyond use: record with less gain or farther away" if clipped.any() else "tapped at its end"
         raise ValueError(f"a recording must ring freely for {SHORTEST:g} s after a tap; got one that is {why}")
     enough = np.flatnonzero(lengths >= max(SHORTEST * rate, 0.5 * min(lengths.max(), LONGEST * rate)))
-    kept = sorted(enough, key=lambda i: -float(np.square(signal[begun[i] : ends[i]]).sum()))[:TAPS]
-    size = int(min(lengths[kept].min(), LONGEST * rate))
-    traces = np.concatenate([signal[begun[i] : begun[i] + size].T for i in kept])
-    lost = max((begun[i] - onsets[i]) / rate for i in kept)
-    return Ringing(traces, rate, len(kept), lost, hum)
+    loudest = sorted(enough, key=lambda i: -float(np.square(signal[begun[i] : ends[i]]).sum()))[:TAPS]
+    size = int(min(lengths[loudest].min(), LONGEST * rate))
+    traces = np.concatenate([signal[begun[i] : begun[i] + size].T for i in loudest])
+    lost = max((begun[i] - onsets[i]) / rate for i in loudest)
+    return Ringing(traces, rate, len(loudest), lost, hum)
 
 
 def _channels(signal: Array) -> Array:
     """The channels, without silent ones and copies of others."""
-    kept: list[Array] = []
+    channels: list[Array] = []
     for channel in signal.T:
         power = channel @ channel
-        copies = (abs(channel @ other) > (1 - 1e-6) * np.sqrt(power * (other @ other)) for other in kept)
+        copies = (abs(channel @ other) > (1 - 1e-6) * np.sqrt(power * (other @ other)) for other in channels)
         if power > 0 and not any(copies):
-            kept.append(channel)
-    if not kept:
+            channels.append(channel)
+    if not channels:
         raise ValueError("a recording must hold a sound; got silence")
-    return np.stack(kept, axis=1)
+    return np.stack(channels, axis=1)
 
 
 def _onsets(signal: Array, rate: float) -> list[int]:
@@ -89,15 +89,15 @@ def _onsets(signal: Array, rate: float) -> list[int]:
     hops = np.square(signal[: count * hop]).sum(axis=1).reshape(count, hop).sum(axis=1)
     before = np.concatenate([[0.0], hops[:-1]])
     risen = np.flatnonzero((hops > RISE * before) & (hops > FAINT * hops.max()))
-    found: list[int] = []
+    onsets: list[int] = []
     for i in risen if len(risen) else [int(hops.argmax())]:
         window = np.abs(signal[i * hop : (i + 2) * hop]).max(axis=1)
         start = int(i * hop + window.argmax() + CONTACT * rate)
-        if not found or start - found[-1] > hop:
-            found.append(start)
+        if not onsets or start - onsets[-1] > hop:
+            onsets.append(start)
         else:
-            found[-1] = start
-    return found
+            onsets[-1] = start
+    return onsets
 
 
 def _clipped(signal: Array) -> Array:

@@ -41,7 +41,7 @@ class Sample:
     acceptance: float
 
 
-def sampled(found: Estimate, count: int = 20_000, *, seed: int = 1, track: Track = iter) -> Sample:
+def sampled(estimated: Estimate, count: int = 20_000, *, seed: int = 1, track: Track = iter) -> Sample:
     """Draw from the posterior about an estimate.
 
     Parameters
@@ -74,27 +74,27 @@ def sampled(found: Estimate, count: int = 20_000, *, seed: int = 1, track: Track
     except ModuleNotFoundError as error:
         raise ModuleNotFoundError("sampled needs emcee: pip install '.[sample]' in the clone") from error
     check_count("sampled count", count, 500)
-    expansion = Expansion.about(found, track=track)
-    measured, sd = np.array([[one.measured, one.sd] for one in found.cue.found]).T
+    expansion = Expansion.about(estimated, track=track)
+    measured, sd = np.array([[measurement.measured, measurement.sd] for measurement in estimated.cue.found]).T
 
     def log_posterior(z: Array) -> Array:
         fit = log_density((measured - expansion.values(z)) / sd, MISTAKEN)
         return np.asarray(np.sum(fit, axis=-1) - 0.5 * np.sum(z**2, axis=-1))
 
-    n = len(found.z)
+    n = len(estimated.z)
     walkers = max(WALKERS * n, 8) // 2 * 2
     steps = -(-count // walkers)
     burned = int(np.ceil(steps * BURNED / (1 - BURNED)))
     generator = np.random.default_rng(seed)
-    start = found.z + generator.normal(size=(walkers, n)) @ expansion.axes.T
+    start = estimated.z + generator.normal(size=(walkers, n)) @ expansion.axes.T
     sampler: Any = emcee.EnsembleSampler(walkers, n, log_posterior, vectorize=True)
     sampler.run_mcmc(emcee.State(start, random_state=np.random.RandomState(seed).get_state()), burned + steps)
     z = np.asarray(sampler.get_chain(discard=burned, flat=True))
     time = float(np.max(sampler.get_autocorr_time(discard=burned, tol=0)))
     return Sample(
         z,
-        _values(found, z),
-        _missed(found, expansion, z[generator.integers(len(z), size=CHECKED)], sd),
+        _values(estimated, z),
+        _missed(estimated, expansion, z[generator.integers(len(z), size=CHECKED)], sd),
         time,
         steps,
         float(np.mean(sampler.acceptance_fraction)),
@@ -115,26 +115,26 @@ class Expansion:
     H: Array
 
     @classmethod
-    def about(cls, found: Estimate, *, track: Track = iter) -> Expansion:
+    def about(cls, estimated: Estimate, *, track: Track = iter) -> Expansion:
         """By differences of one standard deviation along each axis, and along the sum of each pair.
 
         The differences are halved while they lead to a cue that cannot be.
         """
         for step in STEP * 0.5 ** np.arange(NEARER):
             try:
-                return cls._over(found, float(step), track)
+                return cls._over(estimated, float(step), track)
             except ValueError:  # what is possible ends there
                 continue
-        return cls._over(found, float(STEP * 0.5**NEARER), track)
+        return cls._over(estimated, float(STEP * 0.5**NEARER), track)
 
     @classmethod
-    def _over(cls, found: Estimate, step: float, track: Track) -> Expansion:
-        axes = np.asarray(np.linalg.cholesky(found.covariance), float)
-        n, at = len(found.z), found.computed
+    def _over(cls, estimated: Estimate, step: float, track: Track) -> Expansion:
+        axes = np.asarray(np.linalg.cholesky(estimated.covariance), float)
+        n, at = len(estimated.z), estimated.computed
         unit = step * np.eye(n)
 
         def value(u: Array) -> Array:
-            return found.cue.computed(found.z + axes @ u)
+            return estimated.cue.computed(estimated.z + axes @ u)
 
         moves = [(i, j) for i in range(n) for j in range(i, n)]
         above = {}
@@ -148,7 +148,7 @@ class Expansion:
             if i != j:
                 mixed = value(unit[i] + unit[j]) - above[i] - above[j] + at
                 H[:, i, j] = H[:, j, i] = mixed / step**2
-        return cls(found.z, axes, at, J, H)
+        return cls(estimated.z, axes, at, J, H)
 
     def values(self, z: Array) -> Array:
         """Values at points (..., unknowns): (..., n)."""
@@ -156,20 +156,20 @@ class Expansion:
         return np.asarray(self.at + u @ self.J.T + 0.5 * np.einsum("...i,nij,...j->...n", u, self.H, u))
 
 
-def _values(found: Estimate, z: Array) -> tuple[Value, ...]:
+def _values(estimated: Estimate, z: Array) -> tuple[Value, ...]:
     made = []
-    for i, unknown in enumerate(found.cue.unknowns):
+    for i, unknown in enumerate(estimated.cue.unknowns):
         middle, low, high = (unknown.value(float(q)) for q in np.quantile(z[:, i], (0.5, 0.1587, 0.8413)))
         about = (unknown.name, unknown.words, unknown.unit, unknown.usual)
         made.append(Value(*about, middle, low, high, float(np.std(z[:, i]))))
     return tuple(made)
 
 
-def _missed(found: Estimate, expansion: Expansion, z: Array, sd: Array) -> float:
+def _missed(estimated: Estimate, expansion: Expansion, z: Array, sd: Array) -> float:
     gaps = []
     for each in z:
         try:
-            gaps.append((found.cue.computed(each) - expansion.values(each)) / sd)
+            gaps.append((estimated.cue.computed(each) - expansion.values(each)) / sd)
         except ValueError:  # a cue that cannot be: all is missed there
             gaps.append(np.full(len(sd), np.inf))
     return float(np.sqrt(np.mean(np.square(gaps))))

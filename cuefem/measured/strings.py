@@ -66,10 +66,10 @@ def _proposed(loud: Array) -> Array:
     low, low_order = (each.ravel() for each in np.meshgrid(loud, np.arange(1.0, FIRST + 1), indexing="ij"))
     order = np.maximum(np.rint(loud / (low / low_order)[:, None]), 1)
     # (f/n)^2 = f0^2 (1 + B n^2) at both orders
-    one, other = (low / low_order)[:, None] ** 2, (loud / order) ** 2
+    lower, other = (low / low_order)[:, None] ** 2, (loud / order) ** 2
     with np.errstate(divide="ignore", invalid="ignore"):
-        rise = (other - one) / (one * order**2 - other * low_order[:, None] ** 2)
+        rise = (other - lower) / (lower * order**2 - other * low_order[:, None] ** 2)
     B = np.clip(np.nan_to_num(rise, nan=0.0, posinf=0.0, neginf=0.0), 0.0, STIFFEST)
-    f = np.sqrt(one / (1 + B * low_order[:, None] ** 2))
+    f = np.sqrt(lower / (1 + B * low_order[:, None] ** 2))
     made = np.column_stack([f.ravel(), B.ravel()])
     return made[(made[:, 0] >= LOW / FIRST) & (made[:, 0] <= HIGH)]

@@ -85,8 +85,8 @@ def tones(heard: Ringing) -> tuple[Tone, ...]:
         w, a = spectrum.fitted(np.concatenate([w, more.real]), np.concatenate([a, more.imag]), steps=ROUGH)
     if len(w):
         w, a = spectrum.fitted(w, a)
-    found = sorted(spectrum.tones(w, a), key=lambda tone: tone.frequency)
-    kinds = _harmonics(_twins(found))
+    ascending = sorted(spectrum.tones(w, a), key=lambda tone: tone.frequency)
+    kinds = _harmonics(_twins(ascending))
     if not any(tone.kind == "tone" for tone in kinds):
         raise RuntimeError(f"a recording must hold a decaying tone between {LOW:g} and {HIGH:g} Hz; got none")
     return tuple(kinds)
@@ -139,17 +139,17 @@ class _Spectrum:
 
     def _apart(self, peaks: list[tuple[float, float, complex]], w: Array, a: Array) -> Complex:
         """Places of the peaks (score, amplitude, place) that are no flank of a stronger peak nor shadow of a tone."""
-        kept: list[complex] = []
+        apart: list[complex] = []
         level = self._amplitudes(w, a)
         for _, amplitude, peak in peaks:
             f, far = peak.real, np.abs(w - peak.real)
-            if not 2 * np.pi * LOWEST <= f <= 2 * np.pi * HIGH or len(kept) + len(w) >= MOST:
+            if not 2 * np.pi * LOWEST <= f <= 2 * np.pi * HIGH or len(apart) + len(w) >= MOST:
                 continue
             close = far < NEAR * w + 2 * a
             shadow = close.any() and (amplitude < SHADOW * level[close].max() or far.min() < 1e-3 * f)
-            if not shadow and all(abs(f - k.real) >= NEAR * k.real + 4 * k.imag for k in kept):
-                kept.append(peak)
-        return np.array(kept, complex)
+            if not shadow and all(abs(f - k.real) >= NEAR * k.real + 4 * k.imag for k in apart):
+                apart.append(peak)
+        return np.array(apart, complex)
 
     def _level(self, power: Array) -> Array:
         """Mean power of the noise at every bin, (traces, bins), from the quiet bins of blocks: exponential there."""
@@ -254,7 +254,7 @@ class _Spectrum:
         level = np.sqrt(np.square(linear).sum(axis=(0, 1)))
         basis = self._basis(w, a)[:2]
         heard = np.sqrt((2 * np.abs(np.einsum("tck,ckb->tkb", linear, basis)) ** 2 / noise[:, None]).sum(axis=(0, 2)))
-        found, faintest = [], gammainccinv(len(self.X) + 1, FALSE_ALARM)
+        tones, faintest = [], gammainccinv(len(self.X) + 1, FALSE_ALARM)
         for k in range(len(w)):
             natural = np.hypot(w[k], a[k]) / (2 * np.pi)
             error = np.hypot(errors[0, k] / (2 * np.pi), CLOCK * natural)
@@ -264,8 +264,8 @@ class _Spectrum:
                 kind, error = "faint", np.hypot(error, a[k] / (2 * np.pi))
             lossy = 2 * a[k] > LOSSY * w[k]
             if heard[k] ** 2 / 2 >= faintest and vague < VAGUE and not lossy and LOW <= natural <= HIGH:
-                found.append(Tone(natural, error, a[k], errors[1, k], level[k], heard[k], kind))
-        return found
+                tones.append(Tone(natural, error, a[k], errors[1, k], level[k], heard[k], kind))
+        return tones
 
 
 def _blocks(frequencies: Array) -> NDArray[np.intp]:
@@ -289,12 +289,12 @@ def _solve(matrix: Array, right: Array) -> Array:
     return np.asarray(((vectors @ (turned.T * inverse).T).T * scale).T)
 
 
-def _twins(found: list[Tone]) -> list[Tone]:
+def _twins(tones: list[Tone]) -> list[Tone]:
     """Pairs of tones of a shaft that is not quite round: the mean stands for both, half the distance is its error.
 
     Bending modes lie farther apart than `NEAR`.
     """
-    made = list(found)
+    made = list(tones)
     for i in range(len(made) - 1):
         low, high = made[i], made[i + 1]
         if low.kind == high.kind == "tone" and high.frequency - low.frequency < NEAR * low.frequency:
@@ -306,9 +306,9 @@ def _twins(found: list[Tone]) -> list[Tone]:
     return made
 
 
-def _harmonics(found: list[Tone]) -> list[Tone]:
+def _harmonics(tones: list[Tone]) -> list[Tone]:
     """Mark whole multiples of louder tones, and third-order sums of the loudest: clipping and limiters make them."""
-    loud = sorted((tone for tone in found if tone.kind == "tone"), key=lambda tone: -tone.level)
+    loud = sorted((tone for tone in tones if tone.kind == "tone"), key=lambda tone: -tone.level)
     sums = [[(k, low)] for low in loud for k in HARMONICS]
     for parts in combinations_with_replacement(loud[:LOUD], 3):
         for signs in ((1, 1, 1), (1, 1, -1), (1, -1, 1), (-1, 1, 1)):
@@ -322,4 +322,4 @@ def _harmonics(found: list[Tone]) -> list[Tone]:
         return gap < 4 * error + 1e-3 * tone.frequency and tone.level < WEAKER * max(low.level for _, low in parts)
 
     doubtful = [tone for tone in loud if any(is_made_of(tone, parts) for parts in sums)]
-    return [replace(tone, kind="harmonic") if tone in doubtful else tone for tone in found]
+    return [replace(tone, kind="harmonic") if tone in doubtful else tone for tone in tones]

@@ -78,7 +78,7 @@ def _key(name: str) -> str:
     return known.key if known else name
 
 
-def unknowns_of(scene: Scene, found: Sequence[Measurement], priors: Sequence[Prior] = ()) -> tuple[Unknown, ...]:
+def unknowns_of(scene: Scene, measurements: Sequence[Measurement], priors: Sequence[Prior] = ()) -> tuple[Unknown, ...]:
     """What is open in a documented cue: the usual unknowns, those of the file, and what its measurements bring along.
 
     ValueError if a prior is of something that the scene does not have.
@@ -99,15 +99,15 @@ def unknowns_of(scene: Scene, found: Sequence[Measurement], priors: Sequence[Pri
         middle, spread = _prior(prior, usual, spread)
         unit = known.quantity(scene).unit
         made.append(Unknown(known.name, known.words, unit, middle, spread, _on_scene(known.steps())))
-    squirts = [one for one in found if isinstance(one, Squirt)]
+    squirts = [measurement for measurement in measurements if isinstance(measurement, Squirt)]
     _, spread = _prior(asked.get(SQUIRT_MODEL), 1.0, MODEL_OF_SQUIRT)
     if squirts:
         put: Any = lambda setup, value: setup._replace(squirt_factor=value)  # noqa: E731
         made.append(Unknown(SQUIRT_MODEL, "true squirt over the model's", "", 1.0, spread, put))
     series: dict[str, float] = {}
-    for one in squirts:
-        if one.zero_error is not None:
-            series[one.series] = max(one.zero_error, series.get(one.series, 0.0))
+    for measurement in squirts:
+        if measurement.zero_error is not None:
+            series[measurement.series] = max(measurement.zero_error, series.get(measurement.series, 0.0))
     for name, error in series.items():
         words = f"zero of the offset{', ' + name if name else ''}"
         made.append(Unknown(f"{ZERO} {name}".strip(), words, "m", 0.0, error, _zero(name), plain=True))

@@ -99,9 +99,9 @@ class TapTest:
         RuntimeError if they are not the bending tones of any such shaft.
         """
         used = [tone for tone in tones if tone.kind in ("tone", "harmonic")]
-        found = self.table.hypotheses(used) if used else []
+        hypotheses = self.table.hypotheses(used) if used else []
         clear = sum(tone.kind == "tone" for tone in used)
-        explained = sum(mode >= 0 for mode in found[0].modes) if found else 0
+        explained = sum(mode >= 0 for mode in hypotheses[0].modes) if hypotheses else 0
         if explained < (2 if clear >= 3 else 1):
             tell = ", ".join(f"{tone.frequency:.0f}" for tone in used[:6])
             raise RuntimeError(
@@ -111,7 +111,7 @@ class TapTest:
         heard = np.log([tone.frequency for tone in used])
         doubt = [FOLDED if tone.kind == "harmonic" else 0.0 for tone in used]
         sd = np.hypot(np.hypot([tone.error / tone.frequency for tone in used], self.model), doubt)
-        own, theta = np.array(found[0].modes), np.array([*found[0].theta, np.log(self.rho)])
+        own, theta = np.array(hypotheses[0].modes), np.array([*hypotheses[0].theta, np.log(self.rho)])
         for _ in range(4):
             theta, covariance, told, f = self._solved(theta, heard, own, sd)
             pulls = np.abs(heard - f[own])[own >= 0] / sd[own >= 0]
@@ -126,9 +126,9 @@ class TapTest:
             else Matched(tone, None, None)
             for tone in tones
         )
-        rivals = [(h, found[0].score - h.score) for h in found[1:]]
+        rivals = [(h, hypotheses[0].score - h.score) for h in hypotheses[1:]]
         rivals = [(h, odds) for h, odds in rivals if odds < RIVAL]
-        told_by = by_chance(self.table, tones), better_note(used, found[0].score), rate
+        told_by = by_chance(self.table, tones), better_note(used, hypotheses[0].score), rate
         return self._told(np.exp(f), matched, theta, covariance, told, rivals, *told_by)
 
     def _told(
@@ -148,7 +148,7 @@ class TapTest:
         ours = [m for m in matched if m.mode is not None]
         gaps = np.array([m.tone.frequency / m.frequency - 1 for m in ours])
         trust = np.array([(m.tone.error / m.tone.frequency) ** 2 + MODEL**2 for m in ours])
-        found = TapFit(
+        fit = TapFit(
             cue=with_material(self.shaft.cue, self.shaft.wood, wood),
             frequencies=frequencies,
             wood=wood,
@@ -165,9 +165,9 @@ class TapTest:
             note=note,
         )
         edge = bool(told and not self.shaft.ratios[0] < theta[1] < self.shaft.ratios[1])
-        doubts, kappa = tuple(refusals(found, edge=edge)), shear_coefficients(found.cue, wood)
-        notes = (*self.notes, *remarks(found, rate))
-        return replace(found, notes=notes, shear_coefficients=kappa, refusals=doubts)
+        doubts, kappa = tuple(refusals(fit, edge=edge)), shear_coefficients(fit.cue, wood)
+        notes = (*self.notes, *remarks(fit, rate))
+        return replace(fit, notes=notes, shear_coefficients=kappa, refusals=doubts)
 
     def _solved(self, theta: Array, heard: Array, own: Array, sd: Array) -> tuple[Array, Array, bool, Array]:
         """(ln E, ln G/E, ln rho), their covariance, whether the tones tell G, and ln of the frequencies there.
@@ -220,11 +220,11 @@ def _covariance(rows: Array, free: list[int]) -> Array:
     covariance = np.zeros((3, 3))
     covariance[np.ix_(free, free)] = inner
     # the last row is that of the scale, which says nothing about a density that is kept
-    for kept in {0, 1, 2} - set(free):
-        tones = rows[:-1] if kept == 2 else rows
+    for known in {0, 1, 2} - set(free):
+        tones = rows[:-1] if known == 2 else rows
         drift = np.zeros(3)
-        drift[kept], drift[free] = 1.0, -inner @ tones[:, free].T @ tones[:, kept]
-        covariance += {1: KEPT, 2: DENSITY}[kept] ** 2 * np.outer(drift, drift)
+        drift[known], drift[free] = 1.0, -inner @ tones[:, free].T @ tones[:, known]
+        covariance += {1: KEPT, 2: DENSITY}[known] ** 2 * np.outer(drift, drift)
     return covariance
 
 
@@ -234,23 +234,23 @@ def slopes(of: Callable[[Array], Any], theta: Array, *, step: float) -> Array:
     return np.stack([np.asarray(of(theta + move) - of(theta - move)) / (2 * step) for move in moves], axis=-1)
 
 
-def predicted(scene: Scene, found: TapFit) -> dict[str, Predicted]:
+def predicted(scene: Scene, fit: TapFit) -> dict[str, Predicted]:
     """Stick end mass, kg, and squirt at the scene's offset, rad, with the fitted wood.
 
     Errors: linear propagation of the wood's covariance alone, by central differences. Cost: eight strikes.
     """
 
     def with_wood(wood: Material) -> Array:
-        here = replace(scene, cue=with_material(found.cue, found.wood, wood))
+        here = replace(scene, cue=with_material(fit.cue, fit.wood, wood))
         return np.array([end_mass(here), strike(here).squirt], float)
 
     def at(theta: Array) -> Array:
         E, ratio, rho = np.exp(theta)
-        return with_wood(replace(found.wood, E=E, G=ratio * E, rho=rho))
+        return with_wood(replace(fit.wood, E=E, G=ratio * E, rho=rho))
 
-    wood = found.wood
+    wood = fit.wood
     theta, fitted = np.log([wood.E, wood.G / wood.E, wood.rho]), with_wood(wood)
     slope = slopes(at, theta, step=STEP)
-    errors = np.sqrt(np.einsum("ij,jk,ik->i", slope, found.covariance, slope))
-    values = zip(fitted, errors, with_wood(found.before), strict=True)
+    errors = np.sqrt(np.einsum("ij,jk,ik->i", slope, fit.covariance, slope))
+    values = zip(fitted, errors, with_wood(fit.before), strict=True)
     return {name: Predicted(*map(float, v)) for name, v in zip(("end_mass", "squirt"), values, strict=True)}

@@ -66,12 +66,12 @@ def resolve_side_strike(scene: SideStrike, rtol: float) -> SideOutcome:
     """
     check_kind("resolve_side_strike scene", scene, SideStrike)
     rtol = RTOL.check("resolve_side_strike rtol", rtol)
-    found = None
-    for found in side_ladder(scene):
-        if found.error is not None and found.error <= rtol:
+    rung = None
+    for rung in side_ladder(scene):
+        if rung.error is not None and rung.error <= rtol:
             break
-    assert found is not None
-    return found
+    assert rung is not None
+    return rung
 
 
 def side_ladder(scene: SideStrike) -> Iterator[SideOutcome]:
@@ -83,8 +83,8 @@ def side_ladder(scene: SideStrike) -> Iterator[SideOutcome]:
         system = assemble(scene.cue, elements=elements, order=order, effects=acting(scene))
         whole, deflect = solve(system, group[-1]), flexibility(system)
         for n in group:
-            kept = replace(whole, frequencies=whole.frequencies[:n], vectors=whole.vectors[:, :n])
-            place = place_modes(tail(kept, deflect=deflect, position=scene.position), scene)
+            lowest = replace(whole, frequencies=whole.frequencies[:n], vectors=whole.vectors[:, :n])
+            place = place_modes(tail(lowest, deflect=deflect, position=scene.position), scene)
             outcome = outcome_of(solved_side(scene, place), scene)
             counts, outcomes = [*counts[-WINDOW:], n], [*outcomes[-WINDOW:], outcome]
             if len(counts) > JUDGED:

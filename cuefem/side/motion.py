@@ -98,14 +98,14 @@ def side_motion(scene: SideStrike, times: ArrayLike, at: Resolution | None = Non
     check_kind("side_motion scene", scene, SideStrike)
     times = ascending(times)
     solved = SideSolved(scene, at)
-    found = solved.modes
+    modes = solved.modes
     contact = solved_side(scene, solved.place)
     path = Path.of(contact, times)
-    vectors = np.concatenate([found.rigid_vectors, found.vectors], axis=1)
+    vectors = np.concatenate([modes.rigid_vectors, modes.vectors], axis=1)
     return SideMotion(
         times,
         contact.time,
-        found,
+        modes,
         fields=vectors @ path.modes,
         striker=-path.ball[:, 1],
         force=path.force[:, 1],

@@ -69,9 +69,9 @@ class Striker:
     def __post_init__(self) -> None:
         check_fields(self)
         marks = (("stiffness", "N/m"), ("contact_time", "s"), ("modulus", "Pa"), ("radius", "m"))
-        given = [(name, getattr(self, name), unit) for name, unit in marks if getattr(self, name) is not None]
-        if [name for name, _, _ in given] not in (["stiffness"], ["contact_time"], ["modulus", "radius"]):
-            got = ", ".join(f"{name} {value} {unit}" for name, value, unit in given) or "none of them"
+        stated = [(name, getattr(self, name), unit) for name, unit in marks if getattr(self, name) is not None]
+        if [name for name, _, _ in stated] not in (["stiffness"], ["contact_time"], ["modulus", "radius"]):
+            got = ", ".join(f"{name} {value} {unit}" for name, value, unit in stated) or "none of them"
             raise ValueError(
                 "Striker takes one law of contact: stiffness (N/m), contact_time (s), "
                 f"or modulus (Pa) with radius (m); got {got}"
@@ -180,9 +180,9 @@ class SideStrike:
         total = np.zeros((2, 2))
         for segment, start in zip(self.cue.segments, self.cue.nodes[:-1], strict=True):
             s = segment.length * (1 + points) / 2
-            found, x = segment.section(s), start + s - self.position
+            section, x = segment.section(s), start + s - self.position
             w = weights * segment.length / 2
-            total += [[w @ found.rhoA, w @ (found.rhoA * x)], [0.0, w @ (found.rhoA * x**2 + found.rhoI)]]
+            total += [[w @ section.rhoA, w @ (section.rhoA * x)], [0.0, w @ (section.rhoA * x**2 + section.rhoI)]]
         for effect in self.cue_effects:
             mass = effect.mass_on(self.cue)
             if mass:

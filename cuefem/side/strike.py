@@ -145,8 +145,8 @@ class SideSolved:
 
         scene, at = self.scene, self.at or default_side_resolution(self.scene)
         system = assemble(scene.cue, elements=at.elements, order=at.order, effects=acting(scene))
-        found = solve(system, at.modes + 2 - system.rigid.shape[1])
-        return found if self.at is not None else tail(found, position=scene.position)
+        solved = solve(system, at.modes + 2 - system.rigid.shape[1])
+        return solved if self.at is not None else tail(solved, position=scene.position)
 
     @cached_property
     def place(self) -> TipModes:
@@ -172,11 +172,11 @@ def checked_time(scene: SideStrike) -> float:
     return time
 
 
-def place_modes(found: Modes, scene: SideStrike) -> TipModes:
+def place_modes(modes: Modes, scene: SideStrike) -> TipModes:
     """What the striker feels of a beam of these modes, with what effects add to them."""
-    place = side_modes(found, scene.position)
+    place = side_modes(modes, scene.position)
     for effect in scene.cue_effects:
-        place = effect.damp(place, scene.cue, (found,))
+        place = effect.damp(place, scene.cue, (modes,))
     return place
 
 
