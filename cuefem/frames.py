@@ -106,7 +106,7 @@ def sweep_grid(path: str | PathLike[str], study: str | None = None) -> xr.Datase
     return data
 
 
-def of_scatter(wanted: Scatter, drivers: Drivers) -> pd.DataFrame:
+def of_scatter(wanted: Scatter, found: Drivers) -> pd.DataFrame:
     """The designs of a scatter: what varied in them and their responses.
 
     Parameters
@@ -123,14 +123,14 @@ def of_scatter(wanted: Scatter, drivers: Drivers) -> pd.DataFrame:
     """
     pandas = _library("pandas")
     study = wanted.study
-    varied = pandas.DataFrame(list(drivers.spread.values), columns=[vary.name for vary in study.vary])
+    varied = pandas.DataFrame(list(found.spread.values), columns=[vary.name for vary in study.vary])
     names = [response.name for response in study.responses]
-    frame = varied.join(pandas.DataFrame(drivers.spread.responses, columns=names))
+    frame = varied.join(pandas.DataFrame(found.spread.responses, columns=names))
     frame.attrs = {"units": dict(zip(study.columns, study.units, strict=True))}
     return frame
 
 
-def of_drivers(wanted: Scatter, drivers: Drivers) -> pd.DataFrame:
+def of_drivers(wanted: Scatter, found: Drivers) -> pd.DataFrame:
     """Which cause has which share of the variance.
 
     Parameters
@@ -148,11 +148,11 @@ def of_drivers(wanted: Scatter, drivers: Drivers) -> pd.DataFrame:
     """
     pandas = _library("pandas")
     names = [response.name for response in wanted.study.responses]
-    index = pandas.MultiIndex.from_product([names, drivers.causes], names=["response", "cause"])
+    index = pandas.MultiIndex.from_product([names, found.causes], names=["response", "cause"])
     columns = dict[str, Any]()
     for name, value, ends in (
-        ("first", drivers.first, drivers.first_interval),
-        ("total", drivers.total, drivers.total_interval),
+        ("first", found.first, found.first_interval),
+        ("total", found.total, found.total_interval),
     ):
         columns |= {name: value.T.ravel(), f"{name}_low": ends[0].T.ravel(), f"{name}_high": ends[1].T.ravel()}
     return pandas.DataFrame(columns, index=index)

@@ -24,7 +24,7 @@ STEP = 1.0  # of the expansion, in standard deviations
 
 
 @dataclass(frozen=True, eq=False)
-class Sample:
+class PosteriorSample:
     """Draws of the posterior.
 
     z: (draws, unknowns), in standard deviations of the priors. values: median and the ends of the interval of 68 %.
@@ -41,12 +41,12 @@ class Sample:
     acceptance: float
 
 
-def sampled(estimated: Estimate, count: int = 20_000, *, seed: int = 1, track: Track = iter) -> Sample:
+def sampled(estimated: Estimate, count: int = 20_000, *, seed: int = 1, track: Track = iter) -> PosteriorSample:
     """Draw from the posterior about an estimate.
 
     Parameters
     ----------
-    found : Estimate
+    estimated : Estimate
         Where the values are expanded.
     count : int
         Draws, at least 500.
@@ -57,7 +57,7 @@ def sampled(estimated: Estimate, count: int = 20_000, *, seed: int = 1, track: T
 
     Returns
     -------
-    Sample
+    PosteriorSample
 
     Raises
     ------
@@ -74,7 +74,7 @@ def sampled(estimated: Estimate, count: int = 20_000, *, seed: int = 1, track: T
     except ModuleNotFoundError as error:
         raise ModuleNotFoundError("sampled needs emcee: pip install '.[sample]' in the clone") from error
     check_count("sampled count", count, 500)
-    expansion = Expansion.about(estimated, track=track)
+    expansion = SecondOrder.about(estimated, track=track)
     measured, sd = np.array([[measurement.measured, measurement.sd] for measurement in estimated.cue.found]).T
 
     def log_posterior(z: Array) -> Array:
@@ -91,7 +91,7 @@ def sampled(estimated: Estimate, count: int = 20_000, *, seed: int = 1, track: T
     sampler.run_mcmc(emcee.State(start, random_state=np.random.RandomState(seed).get_state()), burned + steps)
     z = np.asarray(sampler.get_chain(discard=burned, flat=True))
     time = float(np.max(sampler.get_autocorr_time(discard=burned, tol=0)))
-    return Sample(
+    return PosteriorSample(
         z,
         _values(estimated, z),
         _missed(estimated, expansion, z[generator.integers(len(z), size=CHECKED)], sd),
@@ -102,7 +102,7 @@ def sampled(estimated: Estimate, count: int = 20_000, *, seed: int = 1, track: T
 
 
 @dataclass(frozen=True, eq=False)
-class Expansion:
+class SecondOrder:
     """Values to second order in u, z = z0 + axes u: at + J u + u' H u/2.
 
     J: (values, unknowns). H: (values, unknowns, unknowns).
@@ -115,7 +115,7 @@ class Expansion:
     H: Array
 
     @classmethod
-    def about(cls, estimated: Estimate, *, track: Track = iter) -> Expansion:
+    def about(cls, estimated: Estimate, *, track: Track = iter) -> SecondOrder:
         """By differences of one standard deviation along each axis, and along the sum of each pair.
 
         The differences are halved while they lead to a cue that cannot be.
@@ -128,7 +128,7 @@ class Expansion:
         return cls._over(estimated, float(STEP * 0.5**NEARER), track)
 
     @classmethod
-    def _over(cls, estimated: Estimate, step: float, track: Track) -> Expansion:
+    def _over(cls, estimated: Estimate, step: float, track: Track) -> SecondOrder:
         axes = np.asarray(np.linalg.cholesky(estimated.covariance), float)
         n, at = len(estimated.z), estimated.computed
         unit = step * np.eye(n)
@@ -165,7 +165,7 @@ def _values(estimated: Estimate, z: Array) -> tuple[Value, ...]:
     return tuple(made)
 
 
-def _missed(estimated: Estimate, expansion: Expansion, z: Array, sd: Array) -> float:
+def _missed(estimated: Estimate, expansion: SecondOrder, z: Array, sd: Array) -> float:
     gaps = []
     for each in z:
         try:

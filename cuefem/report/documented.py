@@ -11,7 +11,7 @@ import numpy as np
 from cuefem.measured.documented import DocumentedCue, Row, Zero
 from cuefem.measured.estimate import Estimate, Value, Worth
 from cuefem.measured.kinds import AddedMass, Squirt
-from cuefem.measured.sampler import Sample
+from cuefem.measured.sampler import PosteriorSample
 from cuefem.report.charts import WIDE, Axis, Chart, Curve, Tick, chart
 from cuefem.report.drawings import cue_drawing, front_drawing
 from cuefem.report.glossary import with_words
@@ -317,7 +317,7 @@ def _estimate_notes(record: Record) -> list[str]:
     return [*notes, "Error left: the width of the interval over that before any measurement."]
 
 
-def sampled_record(found: Estimate, sample: Sample) -> Record:
+def sampled_record(found: Estimate, sample: PosteriorSample) -> Record:
     """What the sampler found, beside the estimate."""
     names = ("missed", "correlation", "steps", "acceptance")
     record: Record = {name: getattr(sample, name) for name in names}

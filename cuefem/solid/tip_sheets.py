@@ -1,4 +1,4 @@
-"""The give of tips as `cuefem.solid.leather_table` reads it, computed from the solid (`cuefem.solid.tip`).
+"""The give of tips as `cuefem.solid.leather_table` reads it, computed from the solid (`cuefem.solid.tip_solid`).
 
 The table in the package and a single tip that it does not hold, with layers or out of its bounds, are made by the same
 functions: `sheets_of`, and `gains` of flat tips. Where the ferrule below gives too, it is the lowest layer, and what
@@ -16,7 +16,7 @@ import numpy as np
 
 from cuefem.solid import leather_table as lt
 from cuefem.solid.own_tip import OwnTip
-from cuefem.solid.tip import (
+from cuefem.solid.tip_solid import (
     ROWS,
     Array,
     Layer,

@@ -24,6 +24,20 @@ from cuefem.squirt.cue_end import (
     inertia_factor,
     volume_ratio,
 )
+from cuefem.squirt.kim_stroke import (
+    ClosedForm,
+    Impulses,
+    closed_form,
+    closed_form_holds,
+    compression_impulse,
+    final_impulse,
+    initial_impulse,
+    leaving_tangent,
+    restitution_bounds,
+    restitution_factor,
+    slip_impulse,
+    squirt_tangent,
+)
 from cuefem.squirt.light import (
     Expansion,
     ball_speed,
@@ -55,20 +69,6 @@ from cuefem.squirt.published import (
     force_line_offset,
     natural_pivot_length,
     shepard,
-)
-from cuefem.squirt.stroke import (
-    ClosedForm,
-    Impulses,
-    closed_form,
-    closed_form_holds,
-    compression_impulse,
-    final_impulse,
-    initial_impulse,
-    leaving_tangent,
-    restitution_bounds,
-    restitution_factor,
-    slip_impulse,
-    squirt_tangent,
 )
 
 __all__ = [

@@ -1,6 +1,6 @@
 """How much does a leather tip give, from its geometry? The table that cuefem's LeatherTip reads, and how good it is.
 
-A tip is a domed cylinder of linear, isotropic leather on a rigid ferrule, solved by cuefem/solid/tip.py, and
+A tip is a domed cylinder of linear, isotropic leather on a rigid ferrule, solved by cuefem/solid/tip_solid.py, and
 cuefem/solid/tip_sheets.py gives one tip's part of the table. Two things are tabulated, over height, dome, Poisson's
 ratio and the patch's radius: the compliance along the normal and along the surface of a patch with Hertz's pressure
 anywhere on the dome, and force and depth of a ball that is pressed on it head on. `cuefem.solid.leather_table` holds
@@ -19,7 +19,8 @@ from typing import NamedTuple
 import numpy as np
 
 from cuefem.solid import leather_table as lt
-from cuefem.solid.tip import (
+from cuefem.solid.tip_sheets import HEAD_ON, SHEETS, TABLE, all_loads, gains, sheets_of
+from cuefem.solid.tip_solid import (
     Array,
     Patch,
     Shape,
@@ -32,7 +33,6 @@ from cuefem.solid.tip import (
     surfaces,
     usual,
 )
-from cuefem.solid.tip_sheets import HEAD_ON, SHEETS, TABLE, all_loads, gains, sheets_of
 from studies import pages
 from studies.pages import table
 

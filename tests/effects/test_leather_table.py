@@ -9,8 +9,8 @@ import pytest
 
 from cuefem.solid import leather_table as lt
 from cuefem.solid.own_tip import Flat, OwnTip
-from cuefem.solid.tip import Shape
 from cuefem.solid.tip_sheets import SHEETS, all_loads, gains, own_tip, sheets_of
+from cuefem.solid.tip_solid import Shape
 from studies.beam.leather_elasticity import COUNTS, curvatures, shape_at
 
 LARGEST = (0.0252, 0.0068)  # the page's, of patches within the rim and head on; 95 of 100 are below half a per cent

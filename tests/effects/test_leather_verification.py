@@ -9,7 +9,7 @@ import pytest
 
 from cuefem import LeatherTip
 from cuefem.solid import leather_table as lt
-from cuefem.solid.tip import Patch, Shape, TipSolid, compliance, fitted, head_on, loads, surfaces, usual
+from cuefem.solid.tip_solid import Patch, Shape, TipSolid, compliance, fitted, head_on, loads, surfaces, usual
 from studies.beam.leather_elasticity import solved
 
 TIP, DIAMETER = LeatherTip(6e-3, 9.5e-3, 100e6), 12.75e-3

@@ -11,7 +11,7 @@ from cuefem.measured.documented import DocumentedCue
 from cuefem.measured.estimate import Estimate, estimate
 from cuefem.measured.kinds import KINDS, Measurement, Stiffness, Tone, Weight
 from cuefem.measured.outliers import HOLDS_95, MISTAKEN, log_density, solved
-from cuefem.measured.sampler import Expansion, sampled
+from cuefem.measured.sampler import SecondOrder, sampled
 from cuefem.measured.unknowns import Prior
 from tests.helpers.documented import SCENE, blank, documented
 
@@ -210,7 +210,7 @@ def test_the_sampler_is_exact_on_its_own_target(found: Estimate) -> None:
         priors=(CLOSED, Prior("G", 0.0), Prior("bore", 0.0)),
     )
     small = estimate(cue)
-    expansion = Expansion.about(small)
+    expansion = SecondOrder.about(small)
     # fine at the top, and out to where the priors end, which is where a wrong measurement leaves the unknowns
     finest = np.sinh(np.linspace(-6, 6, 321)) / np.sinh(6)
     axis = [small.z[i] + 6 * finest for i in range(2)]

@@ -7,7 +7,18 @@ import math
 import numpy as np
 import pytest
 
-from cuefem.solid.tip import Layer, Patch, Shape, TipFineness, TipSolid, compliance, layered, loads, surfaces, usual
+from cuefem.solid.tip_solid import (
+    Layer,
+    Patch,
+    Shape,
+    TipFineness,
+    TipSolid,
+    compliance,
+    layered,
+    loads,
+    surfaces,
+    usual,
+)
 
 
 def give(shape: Shape, nu: float, patch: Patch, how: TipFineness) -> np.ndarray:
