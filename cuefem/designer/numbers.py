@@ -18,7 +18,7 @@ from cuefem.report.strike import MISCUE
 from cuefem.report.templates import verdict_markup as as_verdict
 from cuefem.report.trust import trust_lines
 from cuefem.report.verdict import squirt_words, verdict_part
-from cuefem.results.quantities import NONE, RESULTS, Result, significant
+from cuefem.results.quantities import NONE, RESULTS, Result, signed, significant
 from cuefem.scene import Scene
 
 WAITING = "…"
@@ -87,8 +87,7 @@ def percent(value: float | None, other: float | None) -> str:
         return "the same"
     if not other:
         return NONE
-    part = f"{100 * (value - other) / abs(other):+.1f}"
-    return f"{part[1:] if float(part) == 0 else part.replace('-', '−')}\u00a0%"
+    return signed(100 * (value - other) / abs(other), 1, "%")
 
 
 def difference(row: NumberRow, other: NumberRow, system: UnitSystem = METRIC) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cuefem.results.band import OF_DIFFERENCE
-from cuefem.results.quantities import with_unit
+from cuefem.results.quantities import signed, with_unit
 from cuefem.results.records import Record, Sheet, sheet
 
 STYLES = {"pays": "bold", "more squirt": "dim"}
@@ -18,8 +18,8 @@ def advice_sheet(record: Record) -> Sheet:
             "change": "{change}",
             "squirt": lambda row: _percent(row["squirt_change"]),
             "stiffness": lambda row: _percent(row["tip_stiffness_change"]),
-            "weight": lambda row: _signed(1e3 * row["shaft_mass_change"], 1, "g"),
-            "first tone": lambda row: _signed(row["frequency_change"], 1, "Hz"),
+            "weight": lambda row: signed(1e3 * row["shaft_mass_change"], 1, "g"),
+            "first tone": lambda row: signed(row["frequency_change"], 1, "Hz"),
             "worth it?": "{verdict}",
         },
         rows,
@@ -42,10 +42,4 @@ def advice_notes(record: Record) -> list[str]:
 
 
 def _percent(share: float) -> str:
-    return _signed(100 * share, 1 if abs(share) < 0.095 else 0, "%")
-
-
-def _signed(value: float, decimals: int, unit: str) -> str:
-    """A change with its sign; nothing that rounds to zero has one."""
-    text = f"{value:+.{decimals}f}"
-    return f"{text if float(text) else text[1:]}\u00a0{unit}".replace("-", "−")
+    return signed(100 * share, 1 if abs(share) < 0.095 else 0, "%")

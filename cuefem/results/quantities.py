@@ -108,6 +108,12 @@ class _Error(Result):
         return f"{value:.1e}"
 
 
+def signed(change: float, decimals: int, unit: str) -> str:
+    """A change with its sign and unit; nothing that rounds to zero has a sign."""
+    text = f"{change:+.{decimals}f}"
+    return f"{text if float(text) else text[1:]}\u00a0{unit}".replace("-", "−")
+
+
 def significant(value: float, digits: int = 4) -> str:
     """A number to so many digits where they are decimals."""
     if value == 0 or not math.isfinite(value):
