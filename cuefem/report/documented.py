@@ -54,10 +54,6 @@ def _rms(values: Sequence[float]) -> float | None:
     return float(np.sqrt(np.mean(np.square(values)))) if len(values) else None
 
 
-def _signed(value: float) -> str:
-    return f"{value:+.1f}"
-
-
 def compare_sheets(record: Record) -> list[Sheet | str]:
     """For people: the table, the zeros, what is missing."""
     made: list[Sheet | str] = [_fit_sheet("Measured and computed", record, "of both")] if record["rows"] else []
@@ -79,7 +75,6 @@ def _with_error(value: str, error: str) -> Entry:
     return lambda row: with_unit(row[value], row["unit"], error=row[error])
 
 
-MORE = {"of both": "{pull:+.1f}", "source": "{source}"}
 MORE = {"of both": "{pull:+.1f}", "source": "{source}"}
 PAIRS = (("measured", "error"), ("computed", "spread"))
 
@@ -124,7 +119,7 @@ def compare_page(cue: DocumentedCue, rows: Sequence[Row], record: Record, notes:
         return float(across.place(min(max(value, -EDGE), EDGE), left, right))
 
     bars = [
-        ResidualBar(row.measurement.label, place(row.pull), place(row.residual), _signed(row.pull), _style(row.pull))
+        ResidualBar(row.measurement.label, place(row.pull), place(row.residual), f"{row.pull:+.1f}", _style(row.pull))
         for row in rows
     ]
     drawings = [cue_drawing(scene, across=1.0), cue_drawing(scene, across=8.0), front_drawing(scene)]
