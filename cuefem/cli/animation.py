@@ -16,8 +16,8 @@ from cuefem.cli.printing import assumed_lines, output_option, print_json
 from cuefem.cli.progress import followed
 from cuefem.cli.strokes import blow_options, measured, offset_option
 from cuefem.contact.motion import last_contact, motion
-from cuefem.io import InputError
-from cuefem.io.paraview import check_new, save_modes, save_strike, write_whole_folder
+from cuefem.io import InputError, check_new, write_whole_folder
+from cuefem.io.paraview import save_modes, save_strike
 from cuefem.quantity import Quantity
 from cuefem.scene import Scene
 

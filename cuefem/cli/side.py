@@ -14,9 +14,9 @@ from cuefem.cli.printing import output_option, tell
 from cuefem.cli.progress import followed
 from cuefem.cli.strokes import measured, option, with_body
 from cuefem.cue import Cue
-from cuefem.io import InputError, load, load_accuracy
+from cuefem.io import InputError, check_new, load, load_accuracy, write_whole_folder
 from cuefem.io.assumed import assumed
-from cuefem.io.paraview import check_new, save_side_strike, write_whole_folder
+from cuefem.io.paraview import save_side_strike
 from cuefem.quantity import Quantity
 from cuefem.report.side import side_record, side_scene_record, side_sheets
 from cuefem.results.quantities import UNITS

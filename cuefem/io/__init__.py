@@ -6,6 +6,7 @@ from __future__ import annotations
 import ast
 import errno
 import os
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -21,6 +22,7 @@ from cuefem.units import number
 __all__ = [
     "DEFAULT_MATERIAL",
     "InputError",
+    "check_new",
     "check_place",
     "load",
     "load_accuracy",
@@ -30,6 +32,7 @@ __all__ = [
     "save_page",
     "studies_with",
     "write_whole",
+    "write_whole_folder",
 ]
 
 FIGURES = (".png", ".svg")
@@ -202,6 +205,26 @@ def write_whole(path: Path, put: Callable[[Path], object]) -> None:
         raise InputError(path, "", f"cannot be written: {reason(error)}") from None
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def check_new(folder: Path) -> None:
+    """InputError if a folder, or anything of its name, is there already."""
+    if folder.exists() or folder.is_symlink():
+        raise InputError(folder, "", "must be a new folder; there is one, or a file, of that name")
+
+
+def write_whole_folder(folder: Path, put: Callable[[Path], object]) -> None:
+    """Write into a new folder beside ``folder`` and move it there whole, so that nothing half written is ever seen."""
+    check_new(folder)
+    temporary = folder.with_name(f".{folder.name}.{os.getpid()}")
+    try:
+        temporary.mkdir()
+        put(temporary)
+        temporary.rename(folder)
+    except OSError as error:
+        raise InputError(folder, "", f"cannot be written: {reason(error)}") from None
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
 
 
 def check_place(path: Path) -> None:

@@ -9,7 +9,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any, cast
 
-from cuefem.io import InputError, load
+from cuefem.io import InputError, load, write_whole_folder
 from cuefem.io.assumed import assumed_blow, assumed_drawing
 from cuefem.io.errors import faults_of, nearest, shown
 from cuefem.io.schema import build, joined, keys_of, unknown_key
@@ -51,12 +51,12 @@ def load_documented(folder: Path) -> tuple[DocumentedCue, list[str]]:
 
 def write_template(folder: Path) -> None:
     """Make a folder with the files of a documented cue, to be filled in; InputError if it exists."""
-    try:
-        folder.mkdir()
-    except OSError as error:
-        raise InputError(folder, "", f"cannot be made: {error.strerror}") from None
-    for name in TEMPLATE:
-        (folder / name).write_text(_example(name), encoding="utf-8")
+
+    def put(temporary: Path) -> None:
+        for name in TEMPLATE:
+            (temporary / name).write_text(_example(name), encoding="utf-8")
+
+    write_whole_folder(folder, put)
 
 
 def _example(name: str) -> str:

@@ -6,8 +6,6 @@ A point at height y in the section moves by (u + theta y, w, 0): small rotations
 
 from __future__ import annotations
 
-import os
-import shutil
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
@@ -19,7 +17,6 @@ import numpy as np
 from cuefem.beam.modes import Modes
 from cuefem.contact.motion import Motion
 from cuefem.cue import Array, Cue
-from cuefem.io.errors import InputError, reason
 from cuefem.quantity import scalar
 from cuefem.scene import Scene
 from cuefem.side.motion import SideMotion
@@ -174,23 +171,3 @@ def save_pvd(path: Path, series: Iterable[tuple[float, int, str]]) -> None:
         ET.SubElement(collection, "DataSet", timestep=repr(float(time)), group="", part=str(part), file=name)
     ET.indent(root)
     ET.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
-
-
-def check_new(folder: Path) -> None:
-    """InputError if a folder, or anything of its name, is there already."""
-    if folder.exists() or folder.is_symlink():
-        raise InputError(folder, "", "must be a new folder; there is one, or a file, of that name")
-
-
-def write_whole_folder(folder: Path, put: Callable[[Path], object]) -> None:
-    """Write into a new folder beside ``folder`` and move it there whole, so that nothing half written is ever seen."""
-    check_new(folder)
-    temporary = folder.with_name(f".{folder.name}.{os.getpid()}")
-    try:
-        temporary.mkdir()
-        put(temporary)
-        temporary.rename(folder)
-    except OSError as error:
-        raise InputError(folder, "", f"cannot be written: {reason(error)}") from None
-    finally:
-        shutil.rmtree(temporary, ignore_errors=True)

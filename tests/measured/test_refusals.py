@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 from collections.abc import Callable
 from pathlib import Path
 
@@ -102,12 +103,25 @@ def test_series(name: str, text: str, message: str, tmp_path: Path) -> None:
     command_refuses(message, "compare", place)
 
 
+def test_a_template_is_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(path: Path, *_: object, **__: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device", str(path))
+
+    with monkeypatch.context() as patch:
+        patch.setattr("cuefem.io.documented.TEMPLATE", ("README.md", "none"))  # the second file cannot be read
+        untouched(tmp_path, "cannot be written", "compare", tmp_path / "cue", "--template")
+        patch.setattr(Path, "write_text", full)
+        untouched(tmp_path, "cannot be written: No space left on device", "compare", tmp_path / "cue", "--template")
+    assert call("compare", tmp_path / "cue", "--template")[0] == 0
+
+
 def test_folders(tmp_path: Path) -> None:
     command_refuses("got no folder", "compare", tmp_path / "none")
     empty = tmp_path / "empty"
     empty.mkdir()
     command_refuses("must hold the shaft's drawing, cue.toml or cue.csv; got none", "compare", empty)
-    untouched(tmp_path, "cannot be made: File exists", "compare", empty, "--template")
+    untouched(tmp_path, "must be a new folder", "compare", empty, "--template")
+    untouched(tmp_path, "cannot be written: No such file", "compare", tmp_path / "no" / "folder", "--template")
     scene = folder(
         tmp_path / "scene", SOME, f"game = 'kim'\n[cue]\n{DRAWING.replace('[[segments]]', '[[cue.segments]]')}"
     )
