@@ -103,11 +103,16 @@ def _numbers(scene: Scene, tip: TipModes, across: float, along: float) -> Number
     return found
 
 
+def _percent(part: float, digits: int, sign: str = "-") -> str:
+    """A part in per cent, so many digits of it; never as a power of ten where it is large."""
+    return f"{100 * part:{sign}.{digits}g} %" if abs(part) < 0.1 else f"{100 * part:{sign}.0f} %"
+
+
 def _sentence(rows: Sequence[Record]) -> str:
     """How far beam theory is off, in a sentence."""
     row = next((row for row in rows if row["quantity"] == "squirt"), None) or rows[-1]
     off, own = abs(row["difference"]), row["mesh_error"]
-    size = f"{100 * max(off, own):.{2 if own < 0.05 * off else 1}g} %"
+    size = _percent(max(off, own), 2 if own < 0.05 * off else 1)
     words = f"less than {size}" if off < own else size
     return f"For this shaft beam theory is off by {words} in {row['quantity']}."
 
@@ -119,8 +124,8 @@ def model_error_sheet(record: Record) -> Sheet:
         "unit": lambda row: row["unit"],
         "beam": lambda row: f"{row['beam']:.6g}",
         "solid": lambda row: f"{row['solid']:.6g}",
-        "beam is off by": lambda row: f"{100 * row['difference']:+.2g} %",
-        "the mesh's own error": lambda row: f"{100 * row['mesh_error']:.1g} %",
+        "beam is off by": lambda row: _percent(row["difference"], 2, "+"),
+        "the mesh's own error": lambda row: _percent(row["mesh_error"], 1),
     }
     notes = [
         f"both from {record['modes']} bending modes, summed plainly; the mesh's own error is the change from elements "

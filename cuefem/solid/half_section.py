@@ -143,4 +143,5 @@ def half_section(cue: Cue, how: Fineness) -> tuple[MeshQuad, list[Material]]:
     where = np.array(points)
     rounded = np.round(where / SAME).astype(np.int64)
     _, first, same = np.unique(rounded, axis=0, return_index=True, return_inverse=True)
-    return MeshQuad(where[first].T, same.ravel()[np.array(cells)].T), materials
+    corners = same.ravel()[np.array(cells)]
+    return MeshQuad(np.ascontiguousarray(where[first].T), np.ascontiguousarray(corners.T)), materials

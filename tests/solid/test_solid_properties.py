@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -14,6 +15,7 @@ from hypothesis import strategies as st
 
 import cuefem as cf
 from cuefem.io import InputError
+from cuefem.solid.half_section import Fineness
 from cuefem.solid.shaft import Body
 from tests.helpers.command_line import call
 
@@ -132,6 +134,24 @@ def test_check_says_how_far_beam_theory_is_off() -> None:
     assert 1e-3 < rows["tone 6"]["difference"] < 4e-3
     off = abs(rows["squirt"]["difference"])
     assert answer["sentence"] == f"For this shaft beam theory is off by {100 * off:.1g} % in squirt."
+
+
+def test_check_says_what_is_far_off_without_powers_of_ten(tmp_path: Path) -> None:
+    """A short stub with a conical bore, where a beam is no model at all."""
+    stub = cf.Cue((cf.Segment(0.0021, 0.0092, 0.0095, WOOD, 0.0026, 0.0061),), body_mass=0.42)
+    cf.save(replace(SCENE, cue=stub), tmp_path / "stub.toml")
+    status, out, _ = call("check", tmp_path / "stub.toml")
+    assert status == 0
+    assert "+298 %" in out
+    assert not re.search(r"e\+\d+ %", out)
+    assert max(row["difference"] for row in json.loads(call("check", tmp_path / "stub.toml", "--json")[1])["rows"]) > 1
+
+
+def test_a_long_drawing_is_meshed_without_a_word(caplog: pytest.LogCaptureFixture) -> None:
+    """scikit-fem tells on standard error when it has to copy a mesh of over a thousand points."""
+    pieces = tuple(cf.Segment(0.0007, 0.012, 0.012, WOOD) for _ in range(1001))
+    assert Body(cf.Cue(pieces), Fineness(2, 2.0, 0.2)).cells[0].nelements >= 1001
+    assert not caplog.records
 
 
 def test_the_report_says_on_request_what_check_says(tmp_path: Path) -> None:
