@@ -86,6 +86,20 @@ def test_constants_across_the_grain_hardly_matter() -> None:
     assert np.abs(found[1] / found[0] - 1).max() < 1e-4
 
 
+def test_a_ferrule_gives_where_its_force_leaves_it_through_a_ring() -> None:
+    """What makes the carbon cue 6.6 % softer along the axis than its beam: it falls as 1/E does and not with the
+    ferrule's length, and is what an evenly loaded ring says but for how the force is spread over it."""
+    drawn = cue("carbon")
+    _, ferrule, *tube = drawn.segments
+    rule = solid.ferrule_give(ferrule.material.E, ferrule.material.nu, ferrule.butt_diameter / 2, tube[0].tip_bore / 2)
+    usual, long = (
+        solid.along_the_axis(replace(drawn, segments=(replace(ferrule, length=length), *tube)), 6)
+        for length in (ferrule.length, 2 * ferrule.length)
+    )
+    assert 0.7 < usual / rule < 0.9
+    assert long == pytest.approx(usual, rel=0.05)
+
+
 # the table of leather tips
 
 
