@@ -7,7 +7,8 @@ the whole stroke (LeatherTip, waves along the cue, thrust on the bent shaft), in
 are the largest over a family: five cues of meshes/ x (0.7 ms, b/R 0.4), (1 ms, 0.3), (2 ms, 0.1); in (c) Kim's four
 strokes of contact_cost.py; in (d) five cues x (leather of 400 MPa at 4 m/s, b/R 0.4), (140 MPa, 2 m/s, 0.3), (60 MPa,
 0.8 m/s, 0.1), where each whole stroke tells the other models what can be measured of it head on: how long it lasts, and
-how the cue rebounds. References: 12 elements of order 14; 220 modes with a tail on a mesh of another order; exact
+how the cue rebounds; (e) the last rung of a strike, the cue as a solid, on Kim's shaft and a pool shaft, against the
+beam with as many modes. References: 12 elements of order 14; 220 modes with a tail on a mesh of another order; exact
 phases in cells a third as long. Left out: SecondHit, which changes only what follows the stroke; material data and
 friction, which no refinement improves. Equations: handbook: The beam, The strike, Effective end mass, What the paper
 says, Effects. Values and seconds stand on pages of their own; takes about two minutes.
@@ -31,6 +32,7 @@ from cuefem import (
     Resolution,
     RollingContact,
     Scene,
+    Solid,
     Stroke,
     StructuralDamping,
     Support,
@@ -257,6 +259,43 @@ def model_errors(name: str) -> np.ndarray:
     return np.asarray(squirts(name) / squirts(list(models())[-1]) - 1)
 
 
+# (e) the solid
+
+SOLID = Solid(modes=60)
+RUNGS = {"kim": (0, 1, 2), "pool_maple": (3, 4, 5)}  # of the family
+PREDICTED = {
+    "kim: solid against beam, largest, %": "below 0.05",
+    "pool_maple: solid against beam, largest, %": "below 0.2",
+}
+
+
+@cache
+def by_rungs(index: int) -> dict[str, float]:
+    """Squirt of a scene of the family by the beam with its default, by a beam of as many modes as the solid, and by
+    the solid; rad."""
+    scene = family()[index]
+    same = Resolution(*mesh_for(cue_of(scene), SOLID.modes), SOLID.modes)
+    return {name: float(strike(scene, at).squirt) for name, at in (("default", None), ("beam", same), ("solid", SOLID))}
+
+
+def solid_offs(name: str) -> np.ndarray:
+    """Squirt by the solid over that by the beam of as many modes, less 1, for a cue's three strokes."""
+    return np.array([by_rungs(i)["solid"] / by_rungs(i)["beam"] - 1 for i in RUNGS[name]])
+
+
+def solid_table() -> str:
+    """What the solid changes, beside what the modes do that neither has."""
+    rows = []
+    for name, scenes in RUNGS.items():
+        for i in scenes:
+            T, b = STROKES[i % len(STROKES)]
+            squirt, exact = by_rungs(i), float(reference(i).squirt)
+            offs = squirt["solid"] / squirt["beam"], squirt["beam"] / exact, squirt["default"] / exact
+            rows.append([name, f"{1e3 * T:g} ms, b/R {b:g}", *(f"{100 * (off - 1):+.2f}" for off in offs)])
+    heads = ["solid over beam, 60 modes each, %", "60 modes over all, beam, %", "default over all, beam, %"]
+    return str(pages.table(["cue", "stroke", *heads], rows))
+
+
 # Growth of the cost
 
 
@@ -345,7 +384,7 @@ def point(elements: int, order: int) -> Any:
 
 
 def conclusions() -> list[str]:
-    """Three sentences, of numbers that the tables hold."""
+    """Four sentences, of numbers that the tables hold."""
     low, high, more, most = point(8, 4), point(4, 8), point(8, 8), point(4, 16)
     plain, ended = curves("modes")["plain sum"][-1], curves("modes")["tail"][-1]
     coarse = curves("contact")["Newmark"][0]
@@ -362,7 +401,22 @@ def conclusions() -> list[str]:
         f"end mass {off['lumped, stick end mass']}, the bare coupled strike {off['coupled']}, the coupled strike with "
         f"the dome of the tip {off['... and dome']}, and with the shear of the tip too {off['... and tip shear']}. One "
         "more effect may lead away: only the whole stroke has them all.",
+        f"The solid changes squirt by {solid_size('kim')} % at most on Kim's shaft, whose drawing has a shear "
+        f"coefficient of its own, 0.9, and by {solid_size('pool_maple')} % on a pool shaft. Sixty modes without a tail "
+        f"lack {lacking('beam', 'kim')} and {lacking('beam', 'pool_maple')} % by themselves, the beam's default "
+        f"{lacking('default', 'kim')} and {lacking('default', 'pool_maple')} %: the solid says how far to trust the "
+        "beam; a better squirt it does not give.",
     ]
+
+
+def solid_size(name: str) -> str:
+    """The largest change of squirt from beam to solid over a cue's three strokes, %."""
+    return f"{100 * np.max(np.abs(solid_offs(name))):.2f}"
+
+
+def lacking(how: str, name: str) -> str:
+    """The largest error of the beam's squirt against all modes over a cue's three strokes, %."""
+    return f"{100 * max(abs(by_rungs(i)[how] / float(reference(i).squirt) - 1) for i in RUNGS[name]):.2f}"
 
 
 def report() -> str:
@@ -384,6 +438,14 @@ def report() -> str:
             f"## (d) The ladder of models\n\nThe error of squirt relative to the whole stroke, over {PLAYED_SAID}. "
             "The other models are told its head-on contact time and rebound.\n",
             model_table(),
+            "## (e) The solid\n\nSquirt by `strike(scene, at=Solid(modes=60))` over that by a beam with as many modes, "
+            "both summed plainly; beside it, what sixty modes and the default lack of all modes.\n",
+            solid_table(),
+            pages.BEFORE + "\n",
+            pages.table(
+                ["number", "predicted", "found"],
+                [[*said, solid_size(name)] for said, name in zip(PREDICTED.items(), RUNGS, strict=True)],
+            ),
         ]
     )
 
@@ -411,6 +473,11 @@ def plain_ticks(axis: Any, ticks: Sequence[float]) -> None:
 def seconds(part: str, name: str) -> list[float]:
     """Median seconds of a curve's points."""
     return [pages.seconds_of(point.work, 5) for point in curves(part)[name]]
+
+
+def solid_seconds() -> dict[str, float]:
+    """Median seconds of one stroke (1 ms, b/R 0.3) of Kim's shaft and of a pool shaft, on the solid."""
+    return {name: pages.seconds_of(lambda i=scenes[1]: strike(family()[i], SOLID), 5) for name, scenes in RUNGS.items()}
 
 
 @cache
@@ -472,6 +539,7 @@ def seconds_report() -> str:
     for name in models():
         error = float(np.median(np.abs(model_errors(name))))
         rows.append(line("models", name, f"{error:.0e}" if error else "", 1e3 * model_seconds(name)))
+    rows += [line("solid", name, "", 1e3 * t) for name, t in solid_seconds().items()]
     ratios, wanted = [], []
     for rtol in (1e-2, 1e-3, 1e-4):
         scene = family()[1]
@@ -515,6 +583,7 @@ STUDY = pages.Study(
     again={
         "named models": pages.Again(report, left_out=len(models()) - len(SHORT), instead={"models": lambda: SHORT}),
         "the beam": pages.Again(beam_table, left_out=None, heavy=False),
+        "the solid": pages.Again(solid_table, left_out=None),
     },
 )
 
