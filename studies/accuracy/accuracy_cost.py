@@ -263,10 +263,6 @@ def model_errors(name: str) -> np.ndarray:
 
 SOLID = Solid(modes=60)
 RUNGS = {"kim": (0, 1, 2), "pool_maple": (3, 4, 5)}  # of the family
-PREDICTED = {
-    "kim: solid against beam, largest, %": "below 0.05",
-    "pool_maple: solid against beam, largest, %": "below 0.2",
-}
 
 
 @cache
@@ -441,11 +437,6 @@ def report() -> str:
             "## (e) The solid\n\nSquirt by `strike(scene, at=Solid(modes=60))` over that by a beam with as many modes, "
             "both summed plainly; beside it, what sixty modes and the default lack of all modes.\n",
             solid_table(),
-            pages.BEFORE + "\n",
-            pages.table(
-                ["number", "predicted", "found"],
-                [[*said, solid_size(name)] for said, name in zip(PREDICTED.items(), RUNGS, strict=True)],
-            ),
         ]
     )
 

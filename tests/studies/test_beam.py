@@ -87,8 +87,8 @@ def test_constants_across_the_grain_hardly_matter() -> None:
 
 
 def test_a_ferrule_gives_where_its_force_leaves_it_through_a_ring() -> None:
-    """What makes the carbon cue 6.6 % softer along the axis than its beam: it falls as 1/E does and not with the
-    ferrule's length, and is what an evenly loaded ring says but for how the force is spread over it."""
+    """What makes the carbon cue 6.6 % softer along the axis than its beam: it does not grow with the ferrule's
+    length, and is what an evenly loaded ring says but for how the force is spread over it."""
     drawn = cue("carbon")
     _, ferrule, *tube = drawn.segments
     rule = solid.ferrule_give(ferrule.material.E, ferrule.material.nu, ferrule.butt_diameter / 2, tube[0].tip_bore / 2)
