@@ -24,7 +24,7 @@ from cuefem.contact.strike import strike, strike_modes
 from cuefem.cue import Array, Cue
 from cuefem.effects import SecondHit
 from cuefem.endmass.drives import end_mass, formula_of
-from cuefem.quantity import Quantity, check_kind, scalar
+from cuefem.quantity.fields import Quantity, check_kind, scalar
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import MOST, tip_modes_from, turning
 

@@ -12,7 +12,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from cuefem.notebook import outline, table
-from cuefem.quantity import DIAMETER, LENGTH, MOST_SEGMENTS, Number, OutOfBounds, Quantity, check_fields, check_kind
+from cuefem.quantity.fields import (
+    DIAMETER,
+    LENGTH,
+    MOST_SEGMENTS,
+    Number,
+    OutOfBounds,
+    Quantity,
+    check_fields,
+    check_kind,
+)
 
 Array = NDArray[np.float64]
 

@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike
 from cuefem.design.batch import CueBatch
 from cuefem.design.scatter import Drivers, Scatter
 from cuefem.io.store import StoredTable, read_table
-from cuefem.quantity import check_kind
+from cuefem.quantity.fields import check_kind
 from cuefem.results.quantities import RESULTS
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from types import MappingProxyType
 from cuefem.cue import SOFT, Cue
 from cuefem.effects import AxialWaves, Effect, GeometricStiffness, LeatherTip
 from cuefem.materials import LEATHERS
-from cuefem.quantity import check_kind
+from cuefem.quantity.fields import check_kind
 from cuefem.scene import Ball, Scene, Stroke, Tip
 
 

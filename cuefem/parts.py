@@ -22,7 +22,7 @@ import numpy as np
 
 from cuefem.cue import SOFT, Cue, Material, Segment
 from cuefem.effects import Effect, Joint, LeatherTip, Support
-from cuefem.quantity import DIAMETER, LENGTH, Quantity
+from cuefem.quantity.fields import DIAMETER, LENGTH, Quantity
 
 LONGEST_FERRULE = 0.06  # m
 TAPER_AT = 0.3302  # m, 13 in: so far pool shafts stay nearly straight; half the length of a cue shorter than twice that

@@ -24,7 +24,7 @@ from cuefem.contact.outcome import MISSED
 from cuefem.contact.strike import strike
 from cuefem.cue import Cue, Material
 from cuefem.design.sensitivity import sensitivity
-from cuefem.quantity import check_count, check_kind
+from cuefem.quantity.fields import check_count, check_kind
 from cuefem.results.designs import coupled_curve, course
 from cuefem.results.quantities import scaled, with_heading, with_unit
 from cuefem.scene import Outcome, Resolution, Scene

@@ -15,8 +15,17 @@ from cuefem.effects import CueEffect, Effect, LeatherTip, acting_on_cue, check_e
 from cuefem.effects.leather_law import LeatherLaw, TooDeep
 from cuefem.effects.terms import ContactTerms
 from cuefem.notebook import brief, said, table
-from cuefem.quantity import CONTACT_TIME, Number, Quantity, check_count, check_fields, check_kind, quantities, scalar
-from cuefem.slips import remark_light
+from cuefem.quantity.fields import (
+    CONTACT_TIME,
+    Number,
+    Quantity,
+    check_count,
+    check_fields,
+    check_kind,
+    quantities,
+    scalar,
+)
+from cuefem.quantity.slips import remark_light
 
 DEFAULT_CONTACT_TIME = 2e-3  # s, [Kim] sec. 4
 

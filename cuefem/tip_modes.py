@@ -19,7 +19,7 @@ import numpy as np
 from cuefem.beam.tip import TipModes, lumped_tip_modes, tip_modes
 from cuefem.beam.waves import ended_mesh_for, mesh_for, modes_below
 from cuefem.cue import Cue
-from cuefem.quantity import CONTACT_TIME
+from cuefem.quantity.fields import CONTACT_TIME
 from cuefem.scene import Resolution, Scene
 from cuefem.solid.resolution import Solid
 

@@ -30,9 +30,9 @@ from cuefem.parts import (
     taper_at,
     taper_position,
 )
-from cuefem.quantity import CONTACT_TIME, Quantity, quantities
+from cuefem.quantity.fields import CONTACT_TIME, Quantity, quantities
+from cuefem.quantity.units import number
 from cuefem.scene import Scene
-from cuefem.units import number
 
 Step = str | int
 Path = tuple[Step, ...]

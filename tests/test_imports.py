@@ -17,8 +17,6 @@ PACKAGE = Path(cuefem.__file__).parent
 
 # Every part of cuefem; a part imports only what stands above it. A folder is one part.
 ORDER = [
-    "units",
-    "slips",
     "notebook",
     "quantity",
     "cue",
@@ -36,7 +34,6 @@ ORDER = [
     "contact",
     "endmass",
     "accuracy",
-    "side",
     "results",
     "design",
     "plot",

@@ -20,7 +20,7 @@ from cuefem.designer.sliders import groups, sliders
 from cuefem.io.study import load_optimum, load_scatter, load_study
 from cuefem.measured.unknowns import Prior, unknowns_of
 from cuefem.parts import Part
-from cuefem.quantity import LENGTH
+from cuefem.quantity.fields import LENGTH
 from cuefem.vary import PLACES, Place, Range, knobs_of, paths, varied
 
 WOOD, BRASS = cf.Material(12.6e9, 0.84e9, 700.0), cf.Material(97e9, 37e9, 8500.0)

@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem import slips
 from cuefem.effects import effect_kinds
+from cuefem.quantity import slips
 from tests.helpers.command_line import call
 
 ROOT = Path(__file__).parents[1]

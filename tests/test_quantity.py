@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cuefem.cue import Cue, Material, Segment
-from cuefem.quantity import Number, OutOfBounds, Quantity, check_count, check_fields, check_kind, quantities
+from cuefem.quantity.fields import Number, OutOfBounds, Quantity, check_count, check_fields, check_kind, quantities
 from cuefem.scene import Scene
 
 SCENE = Scene(Cue((Segment(0.7, 0.012, 0.021, Material(12.6e9, 0.84e9, 782.0)),)))

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cuefem.cue import Array, Cue
-from cuefem.quantity import MOST_UNKNOWNS
+from cuefem.quantity.fields import MOST_UNKNOWNS
 
 # Two points count as one if they are closer than this fraction of the cue's length.
 NEAR = 1e-9

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cuefem.cue import Array, LumpedCue
-from cuefem.quantity import scalar
+from cuefem.quantity.fields import scalar
 
 if TYPE_CHECKING:
     from cuefem.beam.modes import Modes

@@ -15,7 +15,7 @@ import click
 from click.shell_completion import CompletionItem
 
 from cuefem.contact.kernel import KernelError
-from cuefem.slips import FormerFile, Unusual
+from cuefem.quantity.slips import FormerFile, Unusual
 
 # Before NumPy is loaded: small dense matrices gain nothing from BLAS threads, and two of them on a busy machine can be
 # a hundred times slower than one.

@@ -18,7 +18,7 @@ from cuefem.cli.strokes import blow_options, measured, offset_option
 from cuefem.contact.motion import last_contact, motion
 from cuefem.io import InputError, check_new, write_whole_folder
 from cuefem.io.paraview import save_modes, save_strike
-from cuefem.quantity import Quantity
+from cuefem.quantity.fields import Quantity
 from cuefem.scene import Scene
 
 

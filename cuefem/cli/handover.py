@@ -15,7 +15,7 @@ from cuefem.cli.definitions import Definitions
 from cuefem.cli.printing import output_option, print_all, tell
 from cuefem.cli.strokes import measured
 from cuefem.io import InputError, write_whole
-from cuefem.quantity import LENGTH, Quantity
+from cuefem.quantity.fields import LENGTH, Quantity
 from cuefem.report.handover import (
     POOLTOOL,
     POOLTOOL_LINE,

@@ -14,10 +14,10 @@ import click
 from cuefem.cue import Cue, LumpedCue
 from cuefem.games import DEFAULT_GAME, GAMES, usual_scene, usual_tip
 from cuefem.io import InputError
-from cuefem.quantity import Quantity
+from cuefem.measured.side.scene import SideStrike
+from cuefem.quantity.fields import Quantity
+from cuefem.quantity.units import number
 from cuefem.scene import Scene, Stroke, Tip
-from cuefem.side.scene import SideStrike
-from cuefem.units import number
 from cuefem.vary import PLACES, Place, replaced, with_fields
 from cuefem.vary import Path as Steps
 

@@ -12,13 +12,13 @@ from cuefem.cli.common import file_options, show
 from cuefem.cli.printing import page_option
 from cuefem.cli.strokes import tip_options
 from cuefem.io import InputError
-from cuefem.quantity import Quantity
+from cuefem.quantity.fields import Quantity
+from cuefem.quantity.units import number
 from cuefem.report import (
     modes_record,
     modes_sheet,
 )
 from cuefem.scene import Scene
-from cuefem.units import number
 
 
 @click.command()

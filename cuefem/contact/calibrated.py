@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 
 from cuefem.contact.strike import strike
-from cuefem.quantity import CONTACT_TIME, Quantity, scalar
+from cuefem.quantity.fields import CONTACT_TIME, Quantity, scalar
 from cuefem.scene import Outcome, Scene
 
 CLOSE = 1e-9  # of the contact time

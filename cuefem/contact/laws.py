@@ -15,7 +15,7 @@ from cuefem.cue import Array
 from cuefem.effects.law import TipLaw
 from cuefem.effects.leather_law import LeatherLaw
 from cuefem.effects.terms import ContactTerms, HeadOn, Lever, Table, WholeTip
-from cuefem.quantity import scalar
+from cuefem.quantity.fields import scalar
 from cuefem.scene import Scene
 
 # A contact is given up after this many head-on contact times and, since a rigid tip may ride on the cue's slowest

@@ -22,7 +22,7 @@ from cuefem.contact.propagator import Complex
 from cuefem.contact.rule import FORCE_WAVES, GAUSS, WEIGHTS, sums_to, values_at, waves_over
 from cuefem.contact.solve import SolvedContact, solve_contact
 from cuefem.cue import Array
-from cuefem.quantity import check_kind, scalar
+from cuefem.quantity.fields import check_kind, scalar
 from cuefem.scene import Resolution, Scene
 from cuefem.tip_modes import Solved
 

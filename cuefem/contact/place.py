@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from cuefem import squirt
 from cuefem.cue import Array
 from cuefem.notebook import said
-from cuefem.quantity import Quantity
+from cuefem.quantity.fields import Quantity
 from cuefem.scene import Ball, Outcome
 from cuefem.squirt.arguments import first_failure
 

@@ -14,7 +14,7 @@ from cuefem.contact.laws import RIGID_PATCH, model_of, table_axes
 from cuefem.contact.outcome import regime_of
 from cuefem.contact.solve import SolvedContact, solve_contact
 from cuefem.cue import Cue
-from cuefem.quantity import check_count, check_kind, scalar, shown
+from cuefem.quantity.fields import check_count, check_kind, scalar, shown
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.solid.resolution import Solid
 from cuefem.tip_modes import Solved, default_resolution, tip_modes_of, turning

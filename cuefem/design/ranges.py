@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from cuefem.cue import Array
-from cuefem.quantity import check_count
+from cuefem.quantity.fields import check_count
 
 # The most points of a Sobol sequence of 30 bits.
 MOST = 2**30

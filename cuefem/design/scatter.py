@@ -21,7 +21,7 @@ from cuefem.cue import Array
 from cuefem.design import Levels, Pool, Row, Study, Task
 from cuefem.design.ranges import Value
 from cuefem.design.sweep import computed, in_parallel, scenes_of, tasks_of
-from cuefem.quantity import check_count
+from cuefem.quantity.fields import check_count
 
 CONFIDENCE, RESAMPLES = 0.95, 400  # of the bootstrapped intervals
 HALF_CELL = 2.0**-31  # of scipy's Sobol points, so that none is 0

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from cuefem.effects import Effect, effect_kinds
 from cuefem.games import GAMES, usual_scene, without_leather
 from cuefem.parts import halves, with_segments
-from cuefem.quantity import quantities
+from cuefem.quantity.fields import quantities
 from cuefem.scene import Scene
 from cuefem.vary import Path
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
+from cuefem.quantity.units import UnknownUnit, kind_of, number
 from cuefem.results.quantities import IMPERIAL, TRADE, Units, significant
-from cuefem.units import UnknownUnit, kind_of, number
 
 MM_PER_INCH, GRAMS_PER_OUNCE = 25.4, 28.349523125
 

@@ -8,7 +8,7 @@ from typing import Annotated, ClassVar
 from cuefem.effects.base import TipEffect, Usual
 from cuefem.effects.law import TipLaw, slowed
 from cuefem.effects.terms import ContactTerms, HeadOn
-from cuefem.quantity import Quantity
+from cuefem.quantity.fields import Quantity
 
 
 @dataclass(frozen=True)

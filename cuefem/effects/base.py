@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
 
 from cuefem.cue import Array, Cue, LumpedCue, Section
-from cuefem.quantity import OutOfBounds, Quantity, check_fields, check_kind
+from cuefem.quantity.fields import OutOfBounds, Quantity, check_fields, check_kind
 
 if TYPE_CHECKING:
     from cuefem.beam.mesh import Terms

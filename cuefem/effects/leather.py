@@ -16,7 +16,7 @@ from cuefem.effects.leather_law import Curves, LeatherLaw
 from cuefem.effects.on_cue import PointMass
 from cuefem.effects.terms import ContactTerms, WholeTip
 from cuefem.materials import LEATHER_NAMES
-from cuefem.quantity import DIAMETER, Flag, Number, OutOfBounds, Quantity, check_fields, check_kind, scalar
+from cuefem.quantity.fields import DIAMETER, Flag, Number, OutOfBounds, Quantity, check_fields, check_kind, scalar
 from cuefem.solid.leather_table import (
     CURVATURE,
     HEAD_ON_RADIUS,

@@ -11,7 +11,7 @@ import numpy as np
 
 from cuefem.cue import Array, Cue
 from cuefem.effects.base import NEAR, AxialVibrations, CueEffect, Usual, Vibrations
-from cuefem.quantity import Quantity
+from cuefem.quantity.fields import Quantity
 
 if TYPE_CHECKING:
     from cuefem.beam.mesh import Terms

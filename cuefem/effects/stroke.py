@@ -8,7 +8,7 @@ from typing import Annotated, ClassVar
 
 from cuefem.effects.base import Effect, Usual
 from cuefem.effects.terms import ContactTerms, Table
-from cuefem.quantity import Quantity
+from cuefem.quantity.fields import Quantity
 
 
 @dataclass(frozen=True)

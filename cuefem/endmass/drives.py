@@ -24,9 +24,9 @@ from cuefem.endmass import damped
 from cuefem.endmass import undamped as transverse
 from cuefem.endmass.root import zero
 from cuefem.endmass.undamped import StickLimit
-from cuefem.quantity import check_kind, scalar
+from cuefem.quantity.fields import check_kind, scalar
+from cuefem.quantity.slips import trying
 from cuefem.scene import Outcome, Resolution, Scene, Stroke
-from cuefem.slips import trying
 from cuefem.tip_modes import Solved
 
 # The tail stands for the modes left out. If those modes kept all their energy, they would change the stick end mass by

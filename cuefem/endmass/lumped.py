@@ -12,7 +12,7 @@ from cuefem.contact.impulse_space import impact
 from cuefem.cue import LumpedCue
 from cuefem.endmass.drives import _gripping, end_mass, stick_at_offset, sticking_squirt
 from cuefem.endmass.root import zero
-from cuefem.quantity import check_kind, scalar
+from cuefem.quantity.fields import check_kind, scalar
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import Solved
 

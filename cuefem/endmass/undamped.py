@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from cuefem.cue import Array
-from cuefem.quantity import scalar
+from cuefem.quantity.fields import scalar
 from cuefem.scene import Scene
 
 # Modes begin to fade at this part of the highest frequency kept. Measured: 0.35 to 0.65 serve equally well

@@ -15,9 +15,9 @@ from cuefem.io.errors import InputError, faults_of, reason, shown
 from cuefem.io.fittings import fitted, with_shaft_of
 from cuefem.io.profile import DEFAULT_MATERIAL, SHAPES, SURFACES, TABLES, load_profile
 from cuefem.io.toml import load_accuracy, load_cue, load_toml, named_material, read_text
+from cuefem.measured.side.scene import SideStrike
+from cuefem.quantity.units import number
 from cuefem.scene import Scene
-from cuefem.side.scene import SideStrike
-from cuefem.units import number
 
 __all__ = [
     "DEFAULT_MATERIAL",

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from cuefem.io.cells import Row, is_number
 from cuefem.io.errors import InputError, shown
-from cuefem.units import first_name, scale
+from cuefem.quantity.units import first_name, scale
 
 EXAMPLE = '"x [mm],diameter [mm]"'
 TITLES = 20  # lines that may stand above the header

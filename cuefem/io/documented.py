@@ -17,7 +17,7 @@ from cuefem.io.toml import OF_GAME, game_of, left_out, read_tables, read_text, s
 from cuefem.measured.documented import DocumentedCue
 from cuefem.measured.kinds import KINDS, Measurement
 from cuefem.measured.unknowns import Prior, names
-from cuefem.quantity import Quantity, quantities
+from cuefem.quantity.fields import Quantity, quantities
 from cuefem.scene import Scene
 from cuefem.vary import place
 

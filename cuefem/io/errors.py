@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
 
-from cuefem.quantity import nearest, shown
+from cuefem.quantity.fields import nearest, shown
 
 _KINDS = {
     stat.S_IFDIR: "a folder",

@@ -13,9 +13,9 @@ from cuefem.effects import effect_kinds
 from cuefem.games import STROKES
 from cuefem.io.schema import choices, mark_of, needed, types_of
 from cuefem.io.toml import Accuracy
-from cuefem.quantity import Quantity
+from cuefem.measured.side.scene import SideStrike
+from cuefem.quantity.fields import Quantity
 from cuefem.scene import Scene
-from cuefem.side.scene import SideStrike
 
 _PLAIN = {bool: "boolean", int: "integer", str: "string"}
 

@@ -16,8 +16,8 @@ from cuefem.io.cells import parted, plain
 from cuefem.io.columns import unit_of
 from cuefem.materials import material as material_of
 from cuefem.parts import LONGEST_FERRULE, PARTS, SAME, Bore, Layout, split_at
+from cuefem.quantity.units import number
 from cuefem.scene import Scene
-from cuefem.units import number
 
 HIGHEST = 0.03  # m, of leather
 TENON = 0.62  # of a ferrule's width: 5/16 in in a pool ferrule of 12.75 mm

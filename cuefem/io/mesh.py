@@ -20,7 +20,7 @@ from meshio.vtu import _vtu
 from cuefem.cue import Cue, Material, Segment
 from cuefem.io.errors import InputError, faults_of, read_bytes, shown
 from cuefem.io.schema import NAMES
-from cuefem.quantity import MOST_SEGMENTS, quantities
+from cuefem.quantity.fields import MOST_SEGMENTS, quantities
 
 # What a damaged mesh file makes meshio raise: it checks little itself.
 DAMAGED = (

@@ -17,10 +17,10 @@ import numpy as np
 from cuefem.beam.modes import Modes
 from cuefem.contact.motion import Motion
 from cuefem.cue import Array, Cue
-from cuefem.quantity import scalar
+from cuefem.measured.side.motion import SideMotion
+from cuefem.measured.side.scene import SideStrike
+from cuefem.quantity.fields import scalar
 from cuefem.scene import Scene
-from cuefem.side.motion import SideMotion
-from cuefem.side.scene import SideStrike
 
 AROUND = 24  # points of a ring
 LONGEST = 0.01  # m between rings, at most

@@ -29,9 +29,9 @@ from cuefem.io.columns import (
 from cuefem.io.errors import InputError, faults_of, shown
 from cuefem.io.fittings import on_tenon
 from cuefem.io.toml import named_material
-from cuefem.quantity import DIAMETER as WIDTH
-from cuefem.quantity import Quantity
-from cuefem.units import number
+from cuefem.quantity.fields import DIAMETER as WIDTH
+from cuefem.quantity.fields import Quantity
+from cuefem.quantity.units import number
 
 DEFAULT_MATERIAL = "hard maple"
 DEFAULT_UNIT = "mm"  # of a surface's coordinates

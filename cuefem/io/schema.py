@@ -14,7 +14,7 @@ from cuefem.cue import Material
 from cuefem.effects import Effect
 from cuefem.io.errors import InputError, faults_of, nearest, shown
 from cuefem.materials import MATERIALS
-from cuefem.quantity import OutOfBounds, Quantity
+from cuefem.quantity.fields import OutOfBounds, Quantity
 
 Kind = TypeVar("Kind")
 

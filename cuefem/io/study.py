@@ -14,7 +14,7 @@ from cuefem.io.errors import InputError, faults_of, shown, state_of
 from cuefem.io.profile import SHAPES
 from cuefem.io.schema import build, joined, unknown_key
 from cuefem.io.toml import game_of, named_material, read_tables
-from cuefem.quantity import Quantity
+from cuefem.quantity.fields import Quantity
 from cuefem.results.quantities import with_unit
 from cuefem.scene import Resolution, Scene, Stroke
 from cuefem.vary import paths, quantity_at, value_at

@@ -15,7 +15,7 @@ from cuefem.io.errors import InputError, faults_of, read_bytes, shown, state_of
 from cuefem.io.mesh import DAMAGED, quiet
 from cuefem.io.profile import DEFAULT_UNIT
 from cuefem.io.slices import Index, Sliced, sliced, surface
-from cuefem.units import number
+from cuefem.quantity.units import number
 
 _VERTEX = re.compile(rb"^[ \t]*vertex[ \t]+(\S+)[ \t]+(\S+)[ \t]+(\S+)", re.IGNORECASE | re.MULTILINE)
 _FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])

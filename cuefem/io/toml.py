@@ -22,10 +22,10 @@ from cuefem.io.fittings import BORE, FERRULE
 from cuefem.io.schema import build, joined, keys_of, table, unknown_key
 from cuefem.io.shelf import assembled
 from cuefem.materials import material
-from cuefem.quantity import MOST_SEGMENTS, Quantity, check_fields, quantities
+from cuefem.measured.side.scene import SideStrike
+from cuefem.quantity.fields import MOST_SEGMENTS, Quantity, check_fields, quantities
+from cuefem.quantity.slips import FormerFile
 from cuefem.scene import Scene, Stroke, Tip
-from cuefem.side.scene import SideStrike
-from cuefem.slips import FormerFile
 
 # The parts of which a cue is put together in the place of [[segments]], each with an example.
 EXAMPLES = {"shaft": '"conical taper"', "material": '"ash"', "ferrule": f'"{FERRULE}"', "bore": f'"{BORE}"'}

@@ -9,8 +9,8 @@ import tomlkit
 
 from cuefem.cue import Cue
 from cuefem.io.schema import table
+from cuefem.measured.side.scene import SideStrike
 from cuefem.scene import Scene
-from cuefem.side.scene import SideStrike
 
 
 def toml_text(thing: Cue | Scene | SideStrike) -> str:

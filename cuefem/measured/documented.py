@@ -12,7 +12,7 @@ import numpy as np
 from cuefem.cue import Array
 from cuefem.measured.kinds import KINDS, Measurement, Setup, Squirt
 from cuefem.measured.unknowns import Prior, Unknown, unknowns_of
-from cuefem.quantity import check_kind
+from cuefem.quantity.fields import check_kind
 from cuefem.scene import Scene
 
 STEP = 0.1  # of differences, in standard deviations of a prior

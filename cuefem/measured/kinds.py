@@ -8,10 +8,10 @@ from types import MappingProxyType
 from typing import Annotated, Any, ClassVar, NamedTuple
 
 from cuefem.measured.numbers import TONES, Numbers, numbers_of
+from cuefem.measured.side.scene import Striker
 from cuefem.measured.wood import MODEL, SCALE
-from cuefem.quantity import CONTACT_TIME, LENGTH, Quantity, check_fields
+from cuefem.quantity.fields import CONTACT_TIME, LENGTH, Quantity, check_fields
 from cuefem.scene import Scene
-from cuefem.side.scene import Striker
 
 MASS = Quantity("kg", "(0, inf)")
 ANGLE = Quantity("rad", "(-1.5, 1.5)")

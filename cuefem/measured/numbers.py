@@ -14,9 +14,9 @@ from cuefem.beam.waves import mesh_for
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array, Cue
 from cuefem.effects import Effect, PointMass, Support
+from cuefem.measured.side.scene import SideStrike, Striker
+from cuefem.measured.side.strike import side_strike
 from cuefem.scene import Outcome, Scene, Stroke
-from cuefem.side.scene import SideStrike, Striker
-from cuefem.side.strike import side_strike
 from cuefem.tip_modes import Solved
 
 TONES = 8  # tones that are solved together

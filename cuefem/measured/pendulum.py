@@ -20,10 +20,10 @@ from cuefem.measured.documented import DocumentedCue
 from cuefem.measured.estimate import Estimate, estimate, squirt_of
 from cuefem.measured.kinds import EndMass
 from cuefem.measured.outliers import middle_of
+from cuefem.measured.side.scene import Striker
 from cuefem.measured.unknowns import MODEL_OF_SQUIRT
-from cuefem.quantity import CONTACT_TIME, Quantity, check_fields, check_kind
+from cuefem.quantity.fields import CONTACT_TIME, Quantity, check_fields, check_kind
 from cuefem.scene import Ball, Scene, Stroke, Tip
-from cuefem.side.scene import Striker
 
 GRAVITY = 9.81  # m/s2
 TIMES = (0.5e-3, 2e-3)  # contact times that say something of a stroke, s

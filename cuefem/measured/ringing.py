@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from cuefem.cue import Array
 from cuefem.measured.hum import Hum, without_hum
-from cuefem.quantity import Quantity
+from cuefem.quantity.fields import Quantity
 
 HOP = 0.02  # s, of the envelope: two periods of the lowest tone that a phone hears
 RISE = 4.0  # of the power from one hop to the next: a tap, where beating tones never rise so fast

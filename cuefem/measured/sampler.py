@@ -16,7 +16,7 @@ from cuefem.cue import Array
 from cuefem.measured.documented import NEARER, Track
 from cuefem.measured.estimate import Estimate, Value
 from cuefem.measured.outliers import MISTAKEN, log_density
-from cuefem.quantity import check_count
+from cuefem.quantity.fields import check_count
 
 WALKERS, BURNED = 4, 0.3  # walkers for each unknown; part of the steps that is thrown away
 CHECKED = 8  # draws computed in full

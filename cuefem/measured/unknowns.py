@@ -14,7 +14,7 @@ from typing import Annotated, Any
 
 from cuefem.cue import Material
 from cuefem.measured.kinds import Measurement, Setup, Squirt
-from cuefem.quantity import Quantity, check_fields
+from cuefem.quantity.fields import Quantity, check_fields
 from cuefem.scene import Scene
 from cuefem.vary import PLACES, Path, place, replaced
 

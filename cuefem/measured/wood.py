@@ -24,7 +24,7 @@ from cuefem.measured.matching import FACTOR, RIVAL, ModeTable, Shaft, assigned
 from cuefem.measured.strings import Note, better_note
 from cuefem.measured.tones import Tone
 from cuefem.parts import main_material, with_material
-from cuefem.quantity import Quantity, check_kind
+from cuefem.quantity.fields import Quantity, check_kind
 from cuefem.scene import Scene
 
 MODEL = 2e-3  # relative, of a mode's frequency: diameters to 0.1 %, uneven grain, the beam

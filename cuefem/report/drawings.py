@@ -13,7 +13,7 @@ import numpy as np
 from cuefem.beam.modes import Modes
 from cuefem.cue import Material, Segment
 from cuefem.materials import MATERIALS
-from cuefem.quantity import scalar
+from cuefem.quantity.fields import scalar
 from cuefem.report.charts import WIDE, Axis, Tick, path
 from cuefem.results.quantities import TRADE, Units
 from cuefem.scene import Scene

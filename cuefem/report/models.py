@@ -12,7 +12,7 @@ from cuefem.beam.tip import TipModes
 from cuefem.cue import LumpedCue
 from cuefem.endmass.drives import stick_at_offset
 from cuefem.endmass.lumped import lump_modes
-from cuefem.quantity import scalar
+from cuefem.quantity.fields import scalar
 from cuefem.report.words import tip_effect_notes
 from cuefem.results.designs import at_offset
 from cuefem.results.records import Record

@@ -19,7 +19,7 @@ from cuefem.contact.strike import strike_modes
 from cuefem.design.advice import advice_record
 from cuefem.endmass.drives import DEFINITIONS
 from cuefem.io.ready import ready_cues
-from cuefem.quantity import scalar
+from cuefem.quantity.fields import scalar
 from cuefem.report.advice import advice_sheet
 from cuefem.report.charts import Axis, Chart, Shade
 from cuefem.report.contact import contact_part

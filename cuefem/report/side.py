@@ -7,11 +7,11 @@ from dataclasses import asdict, replace
 
 import numpy as np
 
+from cuefem.measured.side.scene import SideStrike
+from cuefem.measured.side.strike import SideOutcome, side_strike
 from cuefem.report.record import cue_record
 from cuefem.results.quantities import NONE, RESULTS, with_heading, written
 from cuefem.results.records import Entry, Record, Sheet, sheet, value_rows, values_sheet
-from cuefem.side.scene import SideStrike
-from cuefem.side.strike import SideOutcome, side_strike
 
 NAMES = ("rebound_speed", "apparent_restitution", "effective_mass", "impulse", "duration", "place_speed")
 PLACES = 9

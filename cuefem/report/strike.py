@@ -7,7 +7,7 @@ from dataclasses import replace
 from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.endmass.lumped import impulse
-from cuefem.quantity import scalar
+from cuefem.quantity.fields import scalar
 from cuefem.report.models import (
     a31_squirt,
     bare_scene,

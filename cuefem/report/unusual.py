@@ -7,9 +7,9 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 from cuefem.cue import Segment
+from cuefem.quantity.slips import LIGHTEST
 from cuefem.results.quantities import scaled
 from cuefem.scene import Scene
-from cuefem.slips import LIGHTEST
 
 JUMP = 1.5  # of the diameter between two segments
 LEAST_DRAWN = 0.02  # kg, of a shaft

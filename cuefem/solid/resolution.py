@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from cuefem.quantity import check_count
+from cuefem.quantity.fields import check_count
 
 
 @dataclass(frozen=True)

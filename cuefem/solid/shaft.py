@@ -24,7 +24,7 @@ from skfem import Basis, ElementQuadP, FacetBasis, MeshQuad
 from cuefem.beam.tip import TipModes, free_tip_modes
 from cuefem.cue import Array, Cue, Material
 from cuefem.notebook import brief
-from cuefem.quantity import check_count, check_kind
+from cuefem.quantity.fields import check_count, check_kind
 from cuefem.solid.half_section import SAME, Fineness, check_size, half_section
 from cuefem.solid.resolution import Solid
 

@@ -23,7 +23,7 @@ import scipy.linalg as la
 from numpy.typing import NDArray
 from skfem import Basis, ElementQuadP, MeshQuad
 
-from cuefem.quantity import Quantity, check_fields
+from cuefem.quantity.fields import Quantity, check_fields
 
 Array = NDArray[np.float64]
 SOLVED = (10, 12, 15, 18, 22, 26, 31)  # harmonics above 8 that are computed; the others are interpolated

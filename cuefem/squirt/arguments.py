@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from cuefem.quantity import Quantity
+from cuefem.quantity.fields import Quantity
 
 _OFFSET, _RATIO = Quantity("", "(-1, 1)"), Quantity("", "(0, inf)")
 _QUANTITIES = {

@@ -7,10 +7,10 @@ from typing import Annotated
 import numpy as np
 import pytest
 
-from cuefem import Elevation, PowerLawTip, Resolution, RollingContact, SecondHit, TipDome, motion, quantity, strike
+from cuefem import Elevation, PowerLawTip, Resolution, RollingContact, SecondHit, TipDome, motion, strike
 from cuefem.effects import TipEffect
 from cuefem.effects.terms import ContactTerms
-from cuefem.quantity import Quantity
+from cuefem.quantity.fields import Quantity, quantities
 from cuefem.scene import Scene
 from tests.helpers.strike_scenes import imbalance, kim_scene
 
@@ -59,7 +59,7 @@ def another_window() -> type[TipEffect]:
 def forgotten():
     """The made-up effects are gone when a test is over: files and tables list every effect that there is."""
     yield
-    quantity.quantities.cache_clear()
+    quantities.cache_clear()
     gc.collect()
     assert {kind.__module__ for kind in TipEffect.__subclasses__()} == {"cuefem.effects.at_tip"}
 

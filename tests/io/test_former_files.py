@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.slips import FormerFile
+from cuefem.quantity.slips import FormerFile
 from tests.helpers.command_line import call
 from tests.helpers.leather_scenes import leather_scene
 

@@ -15,8 +15,8 @@ from cuefem.effects import Effect
 from cuefem.io import InputError, load_accuracy
 from cuefem.io.export import json_schema
 from cuefem.materials import material
-from cuefem.quantity import Quantity
-from cuefem.units import text as text_of
+from cuefem.quantity.fields import Quantity
+from cuefem.quantity.units import text as text_of
 
 MAPLE = cf.Material(12.6e9, 0.84e9, 782.3284453057836)
 SEGMENT = cf.Segment(0.7, 0.012, 0.021, MAPLE, kappa=0.9)

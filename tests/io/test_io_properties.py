@@ -17,8 +17,8 @@ from scipy import constants
 import cuefem as cf
 from cuefem.effects import Effect
 from cuefem.io import InputError
-from cuefem.quantity import Quantity, check_fields
-from cuefem.units import EXAMPLES, UNITS, number, text
+from cuefem.quantity.fields import Quantity, check_fields
+from cuefem.quantity.units import EXAMPLES, UNITS, number, text
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from pathlib import Path
 from types import FrameType
 from typing import NamedTuple
 
-from cuefem.units import scale
+from cuefem.quantity.units import scale
 
 
 class Unusual(UserWarning):
@@ -87,7 +87,7 @@ FAR = 5.0  # times beyond the usual: nearer than this a number may be meant
 LIGHTEST = 0.25  # kg, of a whole cue: a child's
 WHOLE = (0.3, 1.2)  # m, of a drawing that is a shaft's and not a whole cue's: a model to scale is left alone
 SHORTEST, LONGEST = 1e-6, 0.1  # N/m or s: springs of such stiffness hold no striker, and contacts last so long
-_PACKAGE = str(Path(__file__).parent)
+_PACKAGE = str(Path(__file__).parents[1])
 _trying = ContextVar("whether a search of this package tries numbers of its own", default=False)
 
 

@@ -23,9 +23,9 @@ from cuefem.beam.system import assemble
 from cuefem.beam.tail import flexibility, tail
 from cuefem.beam.waves import mesh_for
 from cuefem.cue import Array
-from cuefem.quantity import check_kind
-from cuefem.side.scene import SideStrike
-from cuefem.side.strike import SideOutcome, acting, checked_time, outcome_of, place_modes, solved_side
+from cuefem.measured.side.scene import SideStrike
+from cuefem.measured.side.strike import SideOutcome, acting, checked_time, outcome_of, place_modes, solved_side
+from cuefem.quantity.fields import check_kind
 
 
 def resolve_side_strike(scene: SideStrike, rtol: float) -> SideOutcome:

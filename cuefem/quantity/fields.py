@@ -14,8 +14,8 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cuefem.slips import remark
-from cuefem.units import (
+from cuefem.quantity.slips import remark
+from cuefem.quantity.units import (
     BOTH,
     LONGEST_TEXT,
     UNITS,

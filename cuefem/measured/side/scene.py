@@ -13,8 +13,8 @@ from cuefem.effects import CueEffect, Effect, acting_on_cue, check_effects
 from cuefem.effects.base import NEAR
 from cuefem.effects.law import TipLaw, loading_time
 from cuefem.effects.terms import ContactTerms
-from cuefem.quantity import CONTACT_TIME, Quantity, check_fields, check_kind
-from cuefem.slips import remark_time_as_stiffness
+from cuefem.quantity.fields import CONTACT_TIME, Quantity, check_fields, check_kind
+from cuefem.quantity.slips import remark_time_as_stiffness
 
 # Hertz's force grows with this power of the compression: F = 4/3 E* sqrt(R) d^(3/2).
 HERTZ = 1.5
