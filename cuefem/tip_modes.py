@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cuefem.beam.tip import TipModes, lumped_tip_modes, tip_modes
+from cuefem.beam.tip import TipModes, free_tip_modes, lumped_tip_modes, tip_modes
 from cuefem.beam.waves import ended_mesh_for, mesh_for, modes_below
 from cuefem.cue import Cue
 from cuefem.quantity.fields import CONTACT_TIME
@@ -121,9 +121,10 @@ class Solved:
         if self.scene.lumped is not None:
             return lumped_tip_modes(self.scene.lumped)
         if isinstance(self.at, Solid):
-            from cuefem.solid.shaft import solid_tip_modes
+            from cuefem.solid.shaft import face_loaded_modes
 
-            return solid_tip_modes(self.scene.shaft, self.at, mass_on_face(self.scene), self.scene.axial_mass)
+            solid = face_loaded_modes(self.scene.shaft, self.at, mass_on_face(self.scene))
+            return free_tip_modes(solid.omega, *solid.at_tip, self.scene.axial_mass)
         return tip_modes_from(self._modes(least), self.scene)
 
     def without_spectra(self) -> Solved:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from cuefem.beam.modes import modes
-from cuefem.beam.tip import TipModes, tip_modes
+from cuefem.beam.tip import TipModes, free_tip_modes, tip_modes
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Cue
 from cuefem.effects.base import CueEffect
@@ -86,7 +86,8 @@ def _by_beam(scene: Scene) -> Numbers:
 
 def _by_solid(scene: Scene, mesh: Fineness) -> Numbers:
     body = Body(scene.shaft, mesh)
-    tip = body.modes(MODES + 2, mass=mass_on_face(scene)).tip_modes(scene.axial_mass)
+    bending = body.modes(MODES + 2, mass=mass_on_face(scene))
+    tip = free_tip_modes(bending.omega, *bending.at_tip, scene.axial_mass)
     return _numbers(scene, tip, body.give, Body(scene.shaft, mesh, AXIAL).give)
 
 

@@ -21,7 +21,6 @@ import scipy.sparse.linalg as sla
 from numpy.typing import NDArray
 from skfem import Basis, ElementQuadP, FacetBasis, MeshQuad
 
-from cuefem.beam.tip import TipModes, free_tip_modes
 from cuefem.cue import Array, Cue, Material
 from cuefem.notebook import brief
 from cuefem.quantity.fields import check_count, check_kind
@@ -300,10 +299,6 @@ class SolidModes:
         """Deflection, 1/sqrt(kg), and rotation, 1/(m sqrt(kg)), of the tip in the rigid motions, then in the modes."""
         return self.tip, self.turning
 
-    def tip_modes(self, axial_mass: float) -> TipModes:
-        """All that an impact sees of the cue, beside its rigid motion along the axis."""
-        return free_tip_modes(self.omega, self.tip, self.turning, axial_mass)
-
 
 def solid_modes(cue: Cue, count: int = 6, at: Solid | None = None) -> SolidModes:
     """Flexible bending modes of a cue that is computed as a solid, and its two rigid motions.
@@ -347,7 +342,6 @@ def solid_modes(cue: Cue, count: int = 6, at: Solid | None = None) -> SolidModes
     return Body(cue, Fineness(order)).modes(count + 2)
 
 
-def solid_tip_modes(cue: Cue, at: Solid, mass: float, axial_mass: float) -> TipModes:
-    """Tip modes of a cue as a solid, summed plainly: with a mass on the tip's face, and that which a head-on blow
-    feels, kg."""
-    return Body(cue, Fineness(at.order)).modes(at.modes + 2, mass=mass).tip_modes(axial_mass)
+def face_loaded_modes(cue: Cue, at: Solid, mass: float) -> SolidModes:
+    """As many modes of a cue as ``at`` asks for, with a mass on the tip's face, kg."""
+    return Body(cue, Fineness(at.order)).modes(at.modes + 2, mass=mass)
