@@ -21,6 +21,7 @@ from cuefem.solid.leather_table import (
     CURVATURE,
     HEAD_ON_RADIUS,
     WALL,
+    OwnTip,
     TipTable,
     compliance,
     covers,
@@ -29,7 +30,7 @@ from cuefem.solid.leather_table import (
     of_tip,
     punch_gain,
 )
-from cuefem.solid.own_tip import OwnTip, own_table, read
+from cuefem.solid.own_tip import own_table, read
 
 if TYPE_CHECKING:
     from cuefem.beam.mesh import Terms

@@ -163,6 +163,20 @@ class TipTable(NamedTuple):
     heights: tuple[float, float]
 
 
+Flat = tuple[float, float, float]  # a layer's height over D, Young's modulus over that of the leather, Poisson's ratio
+
+
+class OwnTip(NamedTuple):
+    """A tip that the table does not hold, lengths over its diameter: the height of leather and layers, the dome's
+    curvature, the leather's Poisson's ratio, the layers from the ferrule up, and the ferrule if it gives."""
+
+    height: float
+    curvature: float
+    nu: float
+    layers: tuple[Flat, ...]
+    ferrule: Flat | None
+
+
 def covers(height: float, nu: float) -> bool:
     """Whether the table has the height, over D, and Poisson's ratio of a tip."""
     return HEIGHT[0] * (1 - 1e-9) <= height <= HEIGHT[1] * (1 + 1e-9) and POISSON[0] <= nu <= POISSON[1]

@@ -14,34 +14,20 @@ import zlib
 from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import platformdirs
 
-from cuefem.solid.leather_table import TipTable
+from cuefem.solid.leather_table import OwnTip, TipTable
 
 VERSION = 1  # of what a file holds, and of how it is computed
 ONCE = "computing this tip once (about 10 s)"  # what a person is told meanwhile
 
-Flat = tuple[float, float, float]  # a layer's height over D, Young's modulus over that of the leather, Poisson's ratio
 
-
-class OwnTip(NamedTuple):
-    """A tip that the table does not hold, lengths over its diameter: the height of leather and layers, the dome's
-    curvature, the leather's Poisson's ratio, the layers from the ferrule up, and the ferrule if it gives."""
-
-    height: float
-    curvature: float
-    nu: float
-    layers: tuple[Flat, ...]
-    ferrule: Flat | None
-
-    @property
-    def file(self) -> Path:
-        """Where it is kept."""
-        name = hashlib.sha256(repr((VERSION, *self)).encode()).hexdigest()[:32]
-        return platformdirs.user_cache_path("cuefem") / "tips" / f"{name}.npz"
+def file_of(tip: OwnTip) -> Path:
+    """Where the table of a tip is kept."""
+    name = hashlib.sha256(repr((VERSION, *tip)).encode()).hexdigest()[:32]
+    return platformdirs.user_cache_path("cuefem") / "tips" / f"{name}.npz"
 
 
 @lru_cache(maxsize=64)
@@ -59,7 +45,7 @@ def own_table(tip: OwnTip) -> TipTable:
 def read(tip: OwnTip) -> TipTable | None:
     """The table of a tip that was computed before; None if there is no file, or none that can be read."""
     unreadable = (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error)
-    with suppress(*unreadable), tip.file.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
+    with suppress(*unreadable), file_of(tip).open("rb") as stream, np.load(stream, allow_pickle=False) as file:
         parts = {name: np.asarray(file[name], float) for name in file.files}
         if all(np.all(np.isfinite(part)) for part in parts.values()):
             return TipTable(
@@ -75,13 +61,14 @@ def read(tip: OwnTip) -> TipTable | None:
 def write(tip: OwnTip, table: TipTable) -> None:
     """Keep the table of a tip, if there is a place for it."""
     parts = {name: part for name, part in table._asdict().items() if part is not None}
+    file = file_of(tip)
     with suppress(OSError):
-        tip.file.parent.mkdir(parents=True, exist_ok=True)
-        handle, beside = tempfile.mkstemp(dir=tip.file.parent, suffix=".part")
+        file.parent.mkdir(parents=True, exist_ok=True)
+        handle, beside = tempfile.mkstemp(dir=file.parent, suffix=".part")
         try:
-            with os.fdopen(handle, "wb") as file:
-                np.savez_compressed(file, **parts)
-            os.replace(beside, tip.file)
+            with os.fdopen(handle, "wb") as stream:
+                np.savez_compressed(stream, **parts)
+            os.replace(beside, file)
         except BaseException:
             Path(beside).unlink(missing_ok=True)
             raise

@@ -15,7 +15,6 @@ from typing import NamedTuple
 import numpy as np
 
 from cuefem.solid import leather_table as lt
-from cuefem.solid.own_tip import OwnTip
 from cuefem.solid.tip_solid import (
     ROWS,
     Array,
@@ -171,7 +170,7 @@ def gains(shape: Shape, nus: Sequence[float], how: TipFineness = TABLE) -> Array
 HEIGHTS = 4  # flat tips from the side of a dome up to its apex
 
 
-def own_tip(tip: OwnTip) -> lt.TipTable:
+def own_tip(tip: lt.OwnTip) -> lt.TipTable:
     """The table of one tip, by itself."""
     under = tuple(Layer(*layer) for layer in tip.layers)
     if tip.ferrule is not None:

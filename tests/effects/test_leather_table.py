@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from cuefem.solid import leather_table as lt
-from cuefem.solid.own_tip import Flat, OwnTip
+from cuefem.solid.leather_table import Flat, OwnTip
 from cuefem.solid.tip_sheets import SHEETS, all_loads, gains, own_tip, sheets_of
 from cuefem.solid.tip_solid import Shape
 from studies.beam.leather_elasticity import COUNTS, curvatures, shape_at
