@@ -117,6 +117,7 @@ def test_leather_on_a_heavy_head_has_its_end_mass_by_force(E: float, height: flo
         assert end_mass(at, "force") == pytest.approx(formula_of("force")(exact, at), rel=5e-3)
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("length", [0.005, 0.05, 0.3])
 @pytest.mark.parametrize(("thin", "thick"), [(0.012, 0.03), (0.004, 0.03), (0.002, 0.012)])
 @pytest.mark.parametrize("bored", [0.0, 0.7])

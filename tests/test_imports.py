@@ -195,6 +195,7 @@ def test_the_kernel_has_no_circle() -> None:
         assert gives.get(name, set()) <= words, name
 
 
+@pytest.mark.heavy
 def test_few_imports_stand_inside_functions() -> None:
     assert within_functions("def f():\n    import os\n    def g():\n        from os import path\n") == 2
     assert sum(within_functions(path.read_text(encoding="utf-8")) for path in SOURCES) <= 45

@@ -573,7 +573,7 @@ STUDY = pages.Study(
     seconds=seconds_report,
     again={
         "named models": pages.Again(report, left_out=len(models()) - len(SHORT), instead={"models": lambda: SHORT}),
-        "the beam": pages.Again(beam_table, left_out=None, heavy=False),
+        "the beam": pages.Again(beam_table, left_out=None),
         "the solid": pages.Again(solid_table, left_out=None),
     },
 )

@@ -153,6 +153,7 @@ def test_squirt_changes_as_in_a_geometrically_exact_chain(speed: float, offset: 
     assert bends < 0.95 * straight
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize(("speed", "offset"), [(2.0, 0.375), (7.0, 0.187)])
 def test_beside_waves_along_the_cue_it_changes_by_a_hundredth_less(speed: float, offset: float) -> None:
     """The beam against a chain of wood: there the thrust runs along the cue too, which the share p leaves out."""

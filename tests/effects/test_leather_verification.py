@@ -57,6 +57,7 @@ def test_refinement() -> None:
     assert abs(coarse[0, 1] - coarse[1, 0]) < 1e-9
 
 
+@pytest.mark.heavy
 def test_harmonics_that_are_interpolated() -> None:
     """They take less than a thousandth from a patch near the rim, where the most of them count."""
     solid, patch = TipSolid(SHAPE, usual(4, 6, 5, 36)), Patch(0.8, 0.08)
@@ -90,6 +91,7 @@ RANDOM = [  # height, diameter, dome radius, mm; nu; b/R; patch, mm
 ]
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize(("height", "diameter", "dome", "nu", "offset", "patch"), RANDOM)
 def test_the_table_is_the_solution(
     height: float, diameter: float, dome: float, nu: float, offset: float, patch: float

@@ -35,6 +35,7 @@ def test_the_first_pages_have_no_symbols() -> None:
         assert re.findall(r"b/R|[α-ωΑ-Ω√²³∥]|\b[A-Za-z]_[a-z]\b|=", prose) == []
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("name", PICTURES)
 def test_a_picture_is_as_it_would_be_drawn_now(name: str) -> None:
     """Up to three pixels and one in a hundred: a number that is rounded must not hang on another machine's digits."""

@@ -30,6 +30,7 @@ def weighed(mass: float, error: float) -> DocumentedCue:
     return replace(cue, found=(*cue.found, Weight(value=mass, error=error)))
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize(("mass", "error"), [(0.1025, 1e-4), (0.1025, 3e-4), (0.100, 1e-4), (0.105, 1e-4)])
 def test_a_bore_that_comes_near_the_outside(mass: float, error: float) -> None:
     """On its way the search meets bores within a tenth of a standard deviation of the outer diameter."""

@@ -142,6 +142,7 @@ def linear_estimate(cue: DocumentedCue, slopes: np.ndarray, values: np.ndarray) 
     return Estimate(off, mean, covariance, there + slopes @ mean, slopes, 0.0, True, wrong)
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("wrong", [None, *range(7)])
 def test_intervals_cover_whichever_measurement_is_wrong(
     wrong: int | None, linear: tuple[DocumentedCue, np.ndarray]

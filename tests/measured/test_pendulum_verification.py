@@ -175,6 +175,7 @@ def test_intervals_cover_in_a_thousand_tests(shafts: list[Shaft], way: str) -> N
     assert wide == pytest.approx(0.95, abs=0.021)
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize(
     ("times", "wrong"),
     [(2, False), (2, True), (3, False), (3, True), (4, True)]

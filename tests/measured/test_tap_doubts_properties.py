@@ -109,6 +109,7 @@ def test_strings_and_voices_are_refused_as_such(name: str, sound: Callable[[], n
     assert any(f"of {len(with_tones)} are partials of a note of" in line for line in refusals)
 
 
+@pytest.mark.heavy
 @given(
     note=st.floats(70.0, 600.0),
     stiffness=st.floats(0.0, 1e-3),
@@ -134,7 +135,7 @@ def test_the_note_of_any_string_is_found(note: float, stiffness: float, count: i
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[pytest.mark.heavy] * (name not in ("kim", "carbon"))) for name in NAMES[:-1]]
+    "name", [pytest.param(name, marks=[pytest.mark.heavy] * (name != "carbon")) for name in NAMES[:-1]]
 )
 def test_no_shaft_sounds_like_a_string(name: str) -> None:
     """Woods of half to twice the file's E, from three tones to all of them, also with multiples that clipping adds.
@@ -151,6 +152,7 @@ def test_no_shaft_sounds_like_a_string(name: str) -> None:
             assert not wood or better_note(heard, wood[0].score) is None
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize(
     ("rate", "usual"),
     [(44100, 48000), (48000, 44100), (22050, 16000), (8000, 16000), (96000, 88200), (11025, 8000), (32000, 44100)],

@@ -147,7 +147,7 @@ def test_tones_of_another_thing() -> None:
         TapTest(cue("kim")).fit([])
 
 
-@pytest.mark.parametrize("option", ["--doubted", "--force"])
+@pytest.mark.parametrize("option", ["--doubted", pytest.param("--force", marks=pytest.mark.heavy)])
 def test_what_cannot_be_told_apart_is_not_written(tmp_path: Path, option: str) -> None:
     """One tone, of the seventh mode perhaps: refused with status 1, told and written when asked to go on."""
     path, new = tmp_path / "tap.wav", tmp_path / "new.toml"

@@ -54,6 +54,7 @@ QUICK = ("kim", "carbon")
 ALL = [name if name in QUICK else pytest.param(name, marks=pytest.mark.heavy) for name in NAMES]
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("name", ALL)
 def test_exact_tones_give_the_wood_exactly(name: str) -> None:
     """Some modes unheard, one wrong tone: E and G to 1e-6 of what made them, and the modes by their numbers."""
@@ -85,7 +86,9 @@ def check(name: str, found: TapFit) -> None:
             assert match.tone.frequency == pytest.approx(f[match.mode - 1], rel=0.01)
 
 
-@pytest.mark.parametrize(("name", "rate"), [("kim", 48000.0), ("pool_maple", 44100.0)])
+@pytest.mark.parametrize(
+    ("name", "rate"), [("kim", 48000.0), pytest.param("pool_maple", 44100.0, marks=pytest.mark.heavy)]
+)
 def test_young_modulus_within_a_per_cent_at_20_db(name: str, rate: float) -> None:
     """Clipped to half its peak, one mode missing: clipped samples are left out, and the count does not shift."""
     check(name, heard(name, rate, 20.0, 0, clip=0.5, missing=2))

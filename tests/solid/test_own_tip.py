@@ -99,6 +99,7 @@ def test_kept_in_a_file_and_made_again_when_that_is_spoilt(cache: Path) -> None:
     assert FLAT.at_hand(D)
 
 
+@pytest.mark.heavy
 def test_without_a_place_to_keep_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A tip is computed all the same where the cache folder is a file."""
     (tmp_path / "file").touch()

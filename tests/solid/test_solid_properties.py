@@ -154,6 +154,7 @@ def test_a_long_drawing_is_meshed_without_a_word(caplog: pytest.LogCaptureFixtur
     assert not caplog.records
 
 
+@pytest.mark.heavy
 def test_the_report_says_on_request_what_check_says(tmp_path: Path) -> None:
     asked = ("report", MESHES / "kim.toml")
     checked, told = (json.loads(call(*words, "--json")[1]) for words in (("check", asked[1]), (*asked, "--check")))

@@ -150,6 +150,7 @@ def test_honest_taps_are_believed() -> None:
 # added_mass
 
 
+@pytest.mark.heavy
 def test_a_mass_on_a_stiff_spring_is_one_that_moves_with_the_shaft() -> None:
     """To the thousandth that 100 modes leave out; a soft spring leaves what the mass does along the axis."""
     rigid = added_mass.sprung_ratio(math.inf, 3)
