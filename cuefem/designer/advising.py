@@ -66,21 +66,21 @@ class AdviceSide:
         record = self.record
         if record is None:
             return
-        found = advice_sheet(record)
-        self.said.set_content("".join(f"<p>{escape(note)}</p>" for note in found.notes))
+        advice = advice_sheet(record)
+        self.said.set_content("".join(f"<p>{escape(note)}</p>" for note in advice.notes))
         self.rows.clear()
         with self.rows, ui.element("table"):
             with ui.element("thead"), ui.element("tr"):
-                for name in ("", *found.head):
+                for name in ("", *advice.head):
                     self._cell("th", name, left=name in ("change", ""))
             with ui.element("tbody"):
-                for cells, row in zip(found.rows, record["changes"], strict=True):
+                for cells, row in zip(advice.rows, record["changes"], strict=True):
                     with ui.element("tr").props(f'data-verdict="{row["verdict"]}"'):
                         with ui.element("td"):
                             made = button("Try", partial(self._take, row))
                             made.props(f'aria-label="try: {escape(row["change"])}"')
                         for i, text in enumerate(cells):
-                            self._cell("td", self.units().said(text), left=i in found.texts)
+                            self._cell("td", self.units().said(text), left=i in advice.texts)
 
     def _cell(self, tag: str, text: str, *, left: bool) -> None:
         with ui.element(tag).classes("text" if left else ""):

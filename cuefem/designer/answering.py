@@ -101,15 +101,15 @@ class Answering:
     async def _answer(self) -> bool:
         """The strike at once; the end mass too, if no newer move waits."""
         scene = self.page.scenes()[0]
-        one = self.memory.get(scene)
+        results = self.memory.get(scene)
         try:
-            if one is None and not scene.tip_at_hand:
+            if results is None and not scene.tip_at_hand:
                 self.page.say(ONCE)
                 self.failed = True  # so that the words go with the answer
-            one = one or await self._begun(scene)
+            results = results or await self._begun(scene)
             if self.mine is not None and self.mine.whole:
                 self.before = self.mine
-            self.mine = one
+            self.mine = results
             if self.failed:
                 self.failed = False
                 self.page.say("")
@@ -117,12 +117,12 @@ class Answering:
             await asyncio.sleep(SENT)
             more = None
             if self.answered == self.moves:
-                if not one.found.has_end_mass:
-                    more = asyncio.create_task(computed(with_end_mass, one.found))
+                if not results.answers.has_end_mass:
+                    more = asyncio.create_task(computed(with_end_mass, results.answers))
                 await asyncio.sleep(SEEN)
             self.page.show_move()
             if more is not None:
-                one.found = await more
+                results.answers = await more
                 self.page.show_numbers()
         except FAILURES as error:
             self.failed = True
@@ -142,8 +142,8 @@ class Answering:
 
     async def _begun(self, scene: Scene) -> Results:
         """The first results of a scene. Two moves that ask for them at the same time get the same ones."""
-        found = await computed(answers, scene)
-        return self.memory.get(scene) or self.memory.put(found, self.page.scenes())
+        answer = await computed(answers, scene)
+        return self.memory.get(scene) or self.memory.put(answer, self.page.scenes())
 
     async def _refine(self, move: int) -> None:
         """Compute the coupled curve, where end mass lives, and both of the pinned designs, unless a knob is moved."""
@@ -162,33 +162,33 @@ class Answering:
 
     async def _steps_of(self, scene: Scene, move: int) -> AsyncIterator[None]:
         """Compute and show all of a scene step by step; who asks for the steps stops when a knob is moved."""
-        one = self.memory.get(scene) or await self._begun(scene)
-        if not one.found.has_end_mass:
+        results = self.memory.get(scene) or await self._begun(scene)
+        if not results.answers.has_end_mass:
             yield
-            one.found = await computed(with_end_mass, one.found)
+            results.answers = await computed(with_end_mass, results.answers)
             self.page.show_numbers()
             self.page.show_table()
         yield
-        if not one.found.complete:
-            parts = completing(one.found)
+        if not results.answers.complete:
+            parts = completing(results.answers)
             while more := await computed(next, parts, None):
-                one.found = more
+                results.answers = more
                 self.page.show_numbers()
                 yield  # between two of them a newer move is heard
             self.page.show_numbers()
             self.page.show_table()
-        if not one.whole:
-            work = _after(coupled_points(one.found), len(one.points))
+        if not results.whole:
+            work = _after(coupled_points(results.answers), len(results.points))
             while point := await computed(next, work, None):
-                one.points = (*one.points, point)
-                if len(one.points) % SHOWN_EVERY == 1:
+                results.points = (*results.points, point)
+                if len(results.points) % SHOWN_EVERY == 1:
                     self.page.show_curves()
                 yield
-            one.whole = True
+            results.whole = True
         self.page.show_curves()
         yield
-        if one.density is None:
-            one.density = await computed(density, scene)
+        if results.density is None:
+            results.density = await computed(density, scene)
             self.page.show_curves()
 
 

@@ -82,7 +82,7 @@ class Answers:
     """The numbers of a design, SI; those that are not computed yet are missing or None.
 
     strike: as `outcome_record`, of the coupled strike at the scene's own offset. safety: see `safety`. solved, outcome:
-    for what is computed later. end_masses: by definition, None where one has no answer. found: the lowest bending
+    for what is computed later. end_masses: by definition, None where one has no answer. bending: the lowest bending
     modes. numbers: every listed result, by name. lumped: the impulse solver's curve, with the end mass of a tip that
     sticks at each offset and without effects at the tip. verdict: see `verdict_record`; empty until it is computed.
     """
@@ -93,7 +93,7 @@ class Answers:
     safety: str
     outcome: Outcome
     end_masses: Mapping[str, float | None] = field(default_factory=dict)
-    found: Modes | None = None
+    bending: Modes | None = None
     numbers: Mapping[str, float | None] = field(default_factory=dict)
     lumped: SquirtCurve | None = None
     verdict: Record = field(default_factory=dict)
@@ -106,7 +106,7 @@ class Answers:
     @property
     def has_end_mass(self) -> bool:
         """Whether `with_end_mass` has added its numbers."""
-        return self.found is not None
+        return self.bending is not None
 
     @property
     def complete(self) -> bool:
@@ -116,7 +116,7 @@ class Answers:
     @property
     def frequencies(self) -> Array:
         """The lowest bending frequencies, Hz; none if they are not computed yet."""
-        return self.found.frequencies if self.found is not None else np.zeros(0)
+        return self.bending.frequencies if self.bending is not None else np.zeros(0)
 
 
 def answers(scene: Scene) -> Answers:
@@ -129,34 +129,34 @@ def answers(scene: Scene) -> Answers:
     return Answers(scene, record, solved.without_spectra(), safety(outcome), small, numbers=numbers)
 
 
-def with_end_mass(found: Answers) -> Answers:
+def with_end_mass(known: Answers) -> Answers:
     """The numbers with the stick end mass, the tones, and every listed result."""
-    scene, cue = found.scene, found.scene.shaft
-    first = _end_mass(FIRST, found.solved)
+    scene, cue = known.scene, known.scene.shaft
+    first = _end_mass(FIRST, known.solved)
     return replace(
-        found,
-        solved=found.solved.without_spectra(),
+        known,
+        solved=known.solved.without_spectra(),
         end_masses={FIRST: first},
-        found=modes(cue, TONES, effects=scene.cue_effects),
-        numbers=listed(OneDesign(found.solved, found.outcome)),
+        bending=modes(cue, TONES, effects=scene.cue_effects),
+        numbers=listed(OneDesign(known.solved, known.outcome)),
     )
 
 
-def completing(found: Answers) -> Iterator[Answers]:
+def completing(known: Answers) -> Iterator[Answers]:
     """The numbers with the verdict, one more definition of the end mass each time, and at last the lumped curve."""
-    if not found.verdict:
-        found = replace(found, verdict=verdict_record(found.scene, found.outcome, ready_cues(), solved=found.solved))
-        yield found
+    if not known.verdict:
+        known = replace(known, verdict=verdict_record(known.scene, known.outcome, ready_cues(), solved=known.solved))
+        yield known
     for drive in DEFINITIONS:
-        if drive not in found.end_masses:
-            found = replace(found, end_masses={**found.end_masses, drive: _end_mass(drive, found.solved)})
-            yield found
-    yield replace(found, lumped=lumped_curve(found.solved))
+        if drive not in known.end_masses:
+            known = replace(known, end_masses={**known.end_masses, drive: _end_mass(drive, known.solved)})
+            yield known
+    yield replace(known, lumped=lumped_curve(known.solved))
 
 
-def completed(found: Answers) -> Answers:
+def completed(known: Answers) -> Answers:
     """The numbers with all definitions of the end mass, and the lumped curve."""
-    *_, whole = completing(found)
+    *_, whole = completing(known)
     return whole
 
 
@@ -169,15 +169,15 @@ def _end_mass(drive: str, solved: Solved) -> float | None:
 
 def lumped_curve(solved: Solved) -> SquirtCurve:
     """The impulse solver's curve, with the cue lumped at each offset; nan if no lumped cue has that squirt."""
-    found = two_part_curve(solved, CURVE_OFFSETS)
-    return SquirtCurve(found["squirt"], found["pivot_length"])
+    curve = two_part_curve(solved, CURVE_OFFSETS)
+    return SquirtCurve(curve["squirt"], curve["pivot_length"])
 
 
-def coupled_points(found: Answers) -> Iterator[Point]:
+def coupled_points(known: Answers) -> Iterator[Point]:
     """The coupled strike offset by offset, each computed when it is asked for; it ends well beyond the miscue."""
     missed = 0
-    for offset, outcome in zip(CURVE_OFFSETS, strikes_at(found.scene, CURVE_OFFSETS, found.tip), strict=True):
-        pivot = pivot_length(at_offset(found.scene, offset), outcome.squirt)
+    for offset, outcome in zip(CURVE_OFFSETS, strikes_at(known.scene, CURVE_OFFSETS, known.tip), strict=True):
+        pivot = pivot_length(at_offset(known.scene, offset), outcome.squirt)
         yield Point(offset, outcome.squirt, float(pivot), safety(outcome))
         missed = missed + 1 if outcome.regime == "miscue" else 0
         if missed == MISCUES:
@@ -198,14 +198,14 @@ def density(scene: Scene) -> Density:
     at = default_resolution(bare)
     if at.modes > MOST_DENSITY_MODES:
         at = Resolution(*mesh_for(bare.shaft, MOST_DENSITY_MODES), MOST_DENSITY_MODES)
-    found = sensitivity(bare, "stick", at)
-    section = bare.shaft.section(found.x)
+    effect = sensitivity(bare, "stick", at)
+    section = bare.shaft.section(effect.x)
     return Density(
-        x=found.x,
-        from_mass=found.rhoA * section.rhoA + found.rhoI * section.rhoI,
-        from_stiffness=found.EI * section.EI + found.kGA * section.kGA,
-        weights=found.weights,
-        end_mass=found.end_mass,
+        x=effect.x,
+        from_mass=effect.rhoA * section.rhoA + effect.rhoI * section.rhoI,
+        from_stiffness=effect.EI * section.EI + effect.kGA * section.kGA,
+        weights=effect.weights,
+        end_mass=effect.end_mass,
     )
 
 

@@ -44,7 +44,7 @@ def give_back() -> None:
 class Results:
     """What is known of one design so far. whole: whether its coupled curve is; failed: whether it has none."""
 
-    found: Answers
+    answers: Answers
     points: tuple[Point, ...] = ()
     whole: bool = False
     density: Density | None = None
@@ -63,16 +63,16 @@ class Memory:
 
     def get(self, scene: Scene) -> Results | None:
         """What is known of a scene."""
-        found = self.results.pop(scene, None)
-        if found is not None:
-            self.results[scene] = found
-        return found
+        results = self.results.pop(scene, None)
+        if results is not None:
+            self.results[scene] = results
+        return results
 
-    def put(self, found: Answers, keep: Iterable[Scene]) -> Results:
+    def put(self, answers: Answers, keep: Iterable[Scene]) -> Results:
         """Remember a scene's first results; those to keep, and the latest, are not forgotten."""
-        made = self.results[found.scene] = Results(found)
-        kept = {*keep, found.scene}
+        made = self.results[answers.scene] = Results(answers)
+        scenes = {*keep, answers.scene}
         for scene in list(self.results)[:-MOST_KEPT]:
-            if scene not in kept:
+            if scene not in scenes:
                 del self.results[scene]
         return made

@@ -181,20 +181,20 @@ class Desk:
 
     async def _begin(self) -> None:
         """Take up what this browser kept, and the design of a link if the page was opened by one."""
-        found: dict[str, str] = {}
+        stored: dict[str, str] = {}
         with suppress(TimeoutError):
-            found = await self.client.run_javascript(f"cuefem.kept({json.dumps(self.key)})", timeout=20) or {}
-        self.system = SYSTEMS.get(str(found.get("units")), METRIC)
+            stored = await self.client.run_javascript(f"cuefem.kept({json.dumps(self.key)})", timeout=20) or {}
+        self.system = SYSTEMS.get(str(stored.get("units")), METRIC)
         self.units.set_value(self.system.name)
         with suppress(*FAILURES):  # what an older version kept
-            if found.get("kept"):
-                self.state = await computed(state_of, str(found["kept"]))
+            if stored.get("kept"):
+                self.state = await computed(state_of, str(stored["kept"]))
         self._show_design()
-        if found.get("link"):
-            words = await self._open_link(str(found["link"]))
+        if stored.get("link"):
+            words = await self._open_link(str(stored["link"]))
             if words:
                 self.say(f"the link in the address was not opened: {words}")
-        if self.weigh and not found.get("kept") and not found.get("link"):
+        if self.weigh and not stored.get("kept") and not stored.get("link"):
             self.shape.weigh(self.design.name, self.design.scene, list(self.design.notes), self.system)
         await self.answering.moved()
 
@@ -311,10 +311,10 @@ class Desk:
         if len(self.pinned) >= MOST_PINNED:
             self.say(f"at most {MOST_PINNED} designs can be pinned: take one off first")
             return
-        taken = {design.name for design in self.pinned}
+        pinned_names = {design.name for design in self.pinned}
         stem = Path(self.design.name).stem if self.design.name.endswith(KINDS) else self.design.name
         names = (f"{stem[: LONGEST_NAME - 4]} {i}" for i in range(1, MOST_PINNED + 2))
-        name = next(name for name in names if name not in taken)
+        name = next(name for name in names if name not in pinned_names)
         self._pinned((*self.pinned, replace(self.design, name=name)))
 
     def _pinned(self, pinned: tuple[Design, ...], label: str = "") -> None:
@@ -343,7 +343,9 @@ class Desk:
     def _columns(self) -> list[Column]:
         known = [self.answering.mine, *(self.answering.known(design.scene) for design in self.pinned)]
         designs = (self.design, *self.pinned)
-        return [Column(design, one.found if one else None) for design, one in zip(designs, known, strict=True)]
+        return [
+            Column(design, results.answers if results else None) for design, results in zip(designs, known, strict=True)
+        ]
 
     def _export(self) -> None:
         if self.answering.mine is not None:
@@ -443,8 +445,8 @@ class Desk:
         self.report.disable()
         self.say("writing the report …")
         try:
-            given: dict[str, Any] = {"notes": list(design.notes), "remarks": unusual(design.scene)}
-            text = await computed(lambda: report_page(design.name, design.scene, **given))
+            options: dict[str, Any] = {"notes": list(design.notes), "remarks": unusual(design.scene)}
+            text = await computed(lambda: report_page(design.name, design.scene, **options))
         except FAILURES as error:
             self.say(" ".join(str(error).split()))
             return

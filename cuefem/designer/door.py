@@ -74,9 +74,9 @@ async def _refused(status: int, words: str, scope: Scope, receive: Receive, send
     await answer(scope, receive, send)
 
 
-def file_name(given: Any) -> str:
+def file_name(told: Any) -> str:
     """The name of a file as the browser sent it, without folders; ValueError if no file can have that name."""
-    name = str(given or "").replace("\\", "/").rsplit("/", 1)[-1]
+    name = str(told or "").replace("\\", "/").rsplit("/", 1)[-1]
     if name.strip() in ("", ".", "..") or not name.isprintable():
         raise ValueError(f"a file must have a name; got {name[:20]!r}")
     size = len(name.encode(errors="replace"))

@@ -93,8 +93,8 @@ def with_game(scene: Scene, game: str) -> Scene:
     cue = scene.shaft
     usual = usual_scene(cue, game)
     brought = {type(effect) for effect in usual.effects}
-    kept = tuple(effect for effect in scene.effects if not effect.at_tip and type(effect) not in brought)
-    return replace(usual, cue=without_leather(cue), effects=(*usual.effects, *kept))
+    staying = tuple(effect for effect in scene.effects if not effect.at_tip and type(effect) not in brought)
+    return replace(usual, cue=without_leather(cue), effects=(*usual.effects, *staying))
 
 
 def game_of(scene: Scene) -> str | None:

@@ -106,29 +106,29 @@ def _unpacked(text: str) -> dict[str, Any]:
             raise TooMuch(f"{_WHAT} must hold at most {LARGEST // 10**6} MB of designs")
         if not unpacking.eof:
             raise ValueError("cut off")
-        found = json.loads(content)
+        state = json.loads(content)
     except TooMuch:
         raise
     except (ValueError, binascii.Error, zlib.error, RecursionError):
         raise ValueError(f"{_WHAT} is not whole: copy all of it; got {shown(text[:20])}") from None
-    if not isinstance(found, dict) or found.get("version") != VERSION:
+    if not isinstance(state, dict) or state.get("version") != VERSION:
         raise ValueError(f"{_WHAT} must be of version {VERSION}: it is from another version of cuefem")
-    return found
+    return state
 
 
-def _read(found: dict[str, Any], most_steps: int) -> State:
-    rows, at = found["steps"], found["at"]
+def _read(state: dict[str, Any], most_steps: int) -> State:
+    rows, at = state["steps"], state["at"]
     if not 0 < len(rows) <= most_steps or type(at) is not int or not 0 <= at < len(rows):
         wanted = f"1 to {most_steps} steps" if most_steps > 1 else "1 step"
         raise ValueError(f"{_WHAT} must hold {wanted}; got {len(rows)}")
     most = most_steps * (1 + MOST_PINNED)
-    for entries in (found["scenes"], found["designs"]):
+    for entries in (state["scenes"], state["designs"]):
         if len(entries) > most:
             raise ValueError(f"{_WHAT} must hold at most {most} designs; got {len(entries)}")
-    for entry in found["scenes"]:  # all of them, before any is made
+    for entry in state["scenes"]:  # all of them, before any is made
         check_segments(len(entry["cue"]["segments"]) if "segments" in entry["cue"] else 0)
-    scenes = [scene_of_table(entry, _WHAT) for entry in found["scenes"]]
-    designs = [_design(entry, scenes) for entry in found["designs"]]
+    scenes = [scene_of_table(entry, _WHAT) for entry in state["scenes"]]
+    designs = [_design(entry, scenes) for entry in state["designs"]]
     if any(len(row) > 1 + MOST_PINNED for row in rows):
         raise ValueError(f"{_WHAT} must hold at most {MOST_PINNED} pinned designs a step")
     steps = (Step(_at(designs, row[0]), tuple(_at(designs, number) for number in row[1:])) for row in rows)
@@ -151,9 +151,9 @@ def _design(entry: Any, scenes: Sequence[Scene]) -> Design:
         key = known.key if known else written
         knobs[key] = _material(key, value, offered[key]) if key in offered else _number(key, value, own.get(key))
     said = tuple(_words(note, LONGEST_NOTE) for note in notes)
-    found = Design(_words(name, LONGEST_NAME), base, knobs, said)
-    found.scene  # noqa: B018  # no such cue: ValueError
-    return found
+    design = Design(_words(name, LONGEST_NAME), base, knobs, said)
+    design.scene  # noqa: B018  # no such cue: ValueError
+    return design
 
 
 def _words(text: Any, longest: int) -> str:

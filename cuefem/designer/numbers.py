@@ -45,13 +45,13 @@ class NumberRow(NamedTuple):
         return self.known.number(self.value, units=system.units)
 
 
-def rows(found: Answers) -> list[NumberRow]:
+def rows(answers: Answers) -> list[NumberRow]:
     """All numbers of a design, each with its definition."""
-    strike, offset = found.strike, found.scene.stroke.offset
-    labels = {one.name: f"end mass m_e, {one.label_at(offset)}" for one in DEFINITIONS.values()}
+    strike, offset = answers.strike, answers.scene.stroke.offset
+    labels = {definition.name: f"end mass m_e, {definition.label_at(offset)}" for definition in DEFINITIONS.values()}
     pivot = strike["pivot_length"]
-    later = not found.has_end_mass
-    tones = [None] * TONES if later else found.frequencies.tolist()
+    later = not answers.has_end_mass
+    tones = [None] * TONES if later else answers.frequencies.tolist()
 
     def row(name: str, quantity: str, value: float | None, label: str = "") -> NumberRow:
         known = RESULTS[quantity]
@@ -61,13 +61,13 @@ def rows(found: Answers) -> list[NumberRow]:
         row("squirt", "squirt", strike["squirt"], f"squirt, coupled, at b/R {offset:g}"),
         row("pivot", "pivot_length", None if pivot is None else float(pivot)),
         *(
-            row(f"end_mass_{drive}", "end_mass", found.end_masses.get(drive), labels[drive])._replace(
-                waiting=drive not in found.end_masses
+            row(f"end_mass_{drive}", "end_mass", answers.end_masses.get(drive), labels[drive])._replace(
+                waiting=drive not in answers.end_masses
             )
             for drive in DEFINITIONS
         ),
         *(
-            row(SHORT.get(name, name), name, found.numbers.get(name))._replace(waiting=name not in found.numbers)
+            row(SHORT.get(name, name), name, answers.numbers.get(name))._replace(waiting=name not in answers.numbers)
             for name, result in RESULTS.items()
             if result.of is not None and result.listed and name != "squirt"
         ),
@@ -109,10 +109,10 @@ def difference(row: NumberRow, other: NumberRow, system: UnitSystem = METRIC) ->
 
 
 class Column(NamedTuple):
-    """A design beside others; found: None while it is computed."""
+    """A design beside others; answers: None while it is computed."""
 
     design: Design
-    found: Answers | None
+    answers: Answers | None
 
 
 class Line(NamedTuple):
@@ -133,18 +133,18 @@ class Line(NamedTuple):
 
 def compared(columns: Sequence[Column], reference: int, system: UnitSystem) -> list[Line]:
     """All numbers of all designs, then the settings in which they differ. reference: the one compared with."""
-    found = [rows(column.found) if column.found else None for column in columns]
+    tables = [rows(column.answers) if column.answers else None for column in columns]
     lines = []
-    for i, row in enumerate(next(one for one in found if one)):
-        beside = [one[i] if one else None for one in found]
-        same = len({one.label for one in beside if one}) == 1
+    for i, row in enumerate(next(listed for listed in tables if listed)):
+        beside = [listed[i] if listed else None for listed in tables]
+        same = len({listed.label for listed in beside if listed}) == 1
         lines.append(
             Line(
                 row.name,
                 row.label if same else row.label.partition(" at b/R")[0].rstrip(","),
                 row.known.shown_in(system.units)[1],
-                [one.number(system) if one else WAITING for one in beside],
-                _parts([one.value if one else None for one in beside], reference),
+                [listed.number(system) if listed else WAITING for listed in beside],
+                _parts([listed.value if listed else None for listed in beside], reference),
             )
         )
     return [*lines, *_settings([column.design for column in columns], reference, system)]
@@ -162,14 +162,14 @@ def _settings(designs: Sequence[Design], reference: int, system: UnitSystem) -> 
     turned = [{slider.knob: slider for slider in sliders(design.scene, system)} for design in designs]
     chosen = [{choice.knob: choice for choice in choices(design.scene)} for design in designs]
     lines = []
-    for knob, known in {knob: one[knob] for one in reversed(turned) for knob in one}.items():
+    for knob, known in {knob: knobs[knob] for knobs in reversed(turned) for knob in knobs}.items():
         beside = list(zip(turned, designs, strict=True))
-        numbers = [one[knob].text(one[knob].shown(d.knobs)) if knob in one else NONE for one, d in beside]
+        numbers = [knobs[knob].text(knobs[knob].shown(d.knobs)) if knob in knobs else NONE for knobs, d in beside]
         if len(set(numbers)) > 1:
             values = [design.knobs.get(knob) for design in designs]
             lines.append(Line(knob, known.label.partition(", from")[0], known.unit, numbers, _parts(values, reference)))
-    for knob, label in {knob: one[knob].label for one in chosen for knob in one}.items():
-        names = [one[knob].name(d.knobs) if knob in one else NONE for one, d in zip(chosen, designs, strict=True)]
+    for knob, label in {knob: knobs[knob].label for knobs in chosen for knob in knobs}.items():
+        names = [knobs[knob].name(d.knobs) if knob in knobs else NONE for knobs, d in zip(chosen, designs, strict=True)]
         if len(set(names)) > 1:
             lines.append(Line(knob, label, "", names, [""] * len(designs)))
     return lines
@@ -224,28 +224,28 @@ KEYS = {
 
 
 def key_markup(
-    found: Answers, other: Answers | None, system: UnitSystem = METRIC, before: Answers | None = None
+    answers: Answers, other: Answers | None, system: UnitSystem = METRIC, before: Answers | None = None
 ) -> str:
     """The numbers that matter most, each with its definition or its difference from the design compared with.
 
     before: the last design with all of them; its own stand, pale, where a number is not computed yet.
     """
-    mine, theirs, last = ({row.name: row for row in rows(one)} if one else {} for one in (found, other, before))
+    mine, theirs, last = ({row.name: row for row in rows(each)} if each else {} for each in (answers, other, before))
     parts = []
     for name, (label, remark) in KEYS.items():
         row = last.get(name, mine[name]) if mine[name].waiting else mine[name]
         said = difference(row, theirs[name], system) if theirs and not theirs[name].waiting else remark
-        if name == "squirt" and not theirs and found.verdict and not found.verdict["head_on"]:
-            said = f"give or take {squirt_words(found.verdict)[1]}, at this offset"
+        if name == "squirt" and not theirs and answers.verdict and not answers.verdict["head_on"]:
+            said = f"give or take {squirt_words(answers.verdict)[1]}, at this offset"
         pale = ' class="stale"' if mine[name].waiting else ""
         value = f'<b data-key="{name}"{pale}>{escape(row.text(system))}</b>'
         parts.append(f"<div><dt>{label}</dt><dd>{value}<small>{escape(said)}</small></dd></div>")
-    return f'<dl class="key">{"".join(parts)}</dl>{_warned(found.safety)}'
+    return f'<dl class="key">{"".join(parts)}</dl>{_warned(answers.safety)}'
 
 
-def verdict_markup(found: Answers) -> str:
+def verdict_markup(answers: Answers) -> str:
     """The squirt with its band, and where it stands among the ready cues; nothing until that is computed."""
-    return as_verdict(verdict_part(found.verdict)) if found.verdict else ""
+    return as_verdict(verdict_part(answers.verdict)) if answers.verdict else ""
 
 
 def trust_markup(scene: Scene) -> str:

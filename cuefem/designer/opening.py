@@ -53,13 +53,13 @@ def reading(name: str, content: bytes, read: Callable[[Path], Any]) -> Any:
 def _with_ready_cue(name: str, content: bytes, folder: Path) -> bytes:
     """The content of a scene, with the ready cue that it names beside it."""
     text = content.decode(errors="replace") if name.lower().endswith(".toml") else ""
-    found = _CUE.search(text)
-    ready = ready_cue(found[1]) if found and "meshes/" in found[1] else None
-    if found is None or ready is None:
+    match = _CUE.search(text)
+    ready = ready_cue(match[1]) if match and "meshes/" in match[1] else None
+    if match is None or ready is None:
         return content
-    beside = f"ready_{Path(found[1]).name}"
+    beside = f"ready_{Path(match[1]).name}"
     (folder / beside).write_bytes(ready)
-    return text.replace(found[0], f'cue = "{beside}"', 1).encode()
+    return text.replace(match[0], f'cue = "{beside}"', 1).encode()
 
 
 class PresetMenu:

@@ -46,7 +46,7 @@ class Drawn(NamedTuple):
 
 
 def offset_charts(
-    found: Answers,
+    answers: Answers,
     coupled: SquirtCurve | None,
     pinned: Sequence[Drawn],
     *,
@@ -61,15 +61,17 @@ def offset_charts(
     lines: list[tuple[str, str, SquirtCurve]] = []
     if coupled is not None:
         lines.append(("coupled, in time", "c1", coupled) if current else ("coupled, before", "c1 stale", coupled))
-    lines += [(one.name, style, one.coupled) for one, style in zip(pinned, cycle(STYLES), strict=False) if one.coupled]
-    if found.lumped is not None and (not pinned or coupled is None):
-        lines.append(("lumped, stick end mass", "c3", found.lumped))
+    lines += [
+        (curve.name, style, curve.coupled) for curve, style in zip(pinned, cycle(STYLES), strict=False) if curve.coupled
+    ]
+    if answers.lumped is not None and (not pinned or coupled is None):
+        lines.append(("lumped, stick end mass", "c3", answers.lumped))
     if not lines:  # nothing is computed yet
         return ""
     charts = report_charts(
-        [(name, style, _smooth(one.squirt), _smooth(one.pivot_length)) for name, style, one in lines],
+        [(name, style, _smooth(curve.squirt), _smooth(curve.pivot_length)) for name, style, curve in lines],
         FINE.tolist(),
-        float(found.scene.stroke.offset),
+        float(answers.scene.stroke.offset),
         height=HIGH,
         spans=limits,
         units=system.units,
@@ -103,40 +105,40 @@ def limits_of(points: Sequence[Point]) -> tuple[list[Shade], str]:
     return spans, f"Shaded: the tip {', and '.join(said)}." if said else ""
 
 
-def density_chart(found: Density, pinned: Sequence[Drawn], system: UnitSystem = METRIC) -> str:
+def density_chart(density: Density, pinned: Sequence[Drawn], system: UnitSystem = METRIC) -> str:
     """Where end mass lives along the cue, and how near to the tip half of it does."""
     (per_metre, length), (per_kilogram, mass) = system.units["m"], system.units["kg"]
     per, scale = ("cm", 0.01 * per_kilogram) if length == "mm" else (length, per_kilogram / per_metre)
-    x = per_metre * found.x
+    x = per_metre * density.x
     curves = [
-        figures.Curve("whole", x, scale * (found.from_mass + found.from_stiffness), "c1"),
+        figures.Curve("whole", x, scale * (density.from_mass + density.from_stiffness), "c1"),
         *(
-            figures.Curve(f"{one.name}, whole", per_metre * d.x, scale * (d.from_mass + d.from_stiffness), style)
-            for one, style in zip(pinned, cycle(STYLES), strict=False)
-            if (d := one.density)
+            figures.Curve(f"{drawn.name}, whole", per_metre * d.x, scale * (d.from_mass + d.from_stiffness), style)
+            for drawn, style in zip(pinned, cycle(STYLES), strict=False)
+            if (d := drawn.density)
         ),
     ]
     if not pinned:
-        curves.append(figures.Curve("from the mass there", x, scale * found.from_mass, "c3"))
-        curves.append(figures.Curve("from the stiffness there", x, scale * found.from_stiffness, "c4"))
+        curves.append(figures.Curve("from the mass there", x, scale * density.from_mass, "c3"))
+        curves.append(figures.Curve("from the stiffness there", x, scale * density.from_stiffness, "c4"))
     made = chart(
         *("End mass per length of cue", curves),
         x=Axis(f"distance from the tip, {length}", 0.0),
         y=Axis(f"end mass, {mass}/{per}"),
         height=HIGH,
     )
-    half = f"Half of it lies within {system.length(half_within(found), 3)} of the tip."
+    half = f"Half of it lies within {system.length(half_within(density), 3)} of the tip."
     return chart_markup(made, "density") + f"<p>{half} Stick end mass of the bare cue, without effects.</p>"
 
 
-def half_within(found: Density) -> float:
+def half_within(density: Density) -> float:
     """The distance from the tip within which half of the end mass lies, m."""
-    sums = np.cumsum((found.from_mass + found.from_stiffness) * found.weights)
-    return float(found.x[int(np.argmax(sums >= sums[-1] / 2))])
+    sums = np.cumsum((density.from_mass + density.from_stiffness) * density.weights)
+    return float(density.x[int(np.argmax(sums >= sums[-1] / 2))])
 
 
-def shapes_picture(found: Answers, system: UnitSystem = METRIC) -> str:
+def shapes_picture(answers: Answers, system: UnitSystem = METRIC) -> str:
     """The bending modes; nothing if they are not computed yet."""
-    if found.found is None:
+    if answers.bending is None:
         return ""
-    return shapes_markup(modes_drawing(found.found, found.scene.shaft.length, units=system.units))
+    return shapes_markup(modes_drawing(answers.bending, answers.scene.shaft.length, units=system.units))

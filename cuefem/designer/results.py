@@ -54,32 +54,32 @@ class ResultsSide:
 
     def show_numbers(self, columns: Sequence[Column], reference: int, system: UnitSystem) -> None:
         """The numbers of the first design that matter most, beside the one compared with."""
-        found, other = columns[0].found, columns[reference].found
-        if found is None:
+        answers, other = columns[0].answers, columns[reference].answers
+        if answers is None:
             return
-        keys = numbers.key_markup(found, other if reference else None, system, self.before)
+        keys = numbers.key_markup(answers, other if reference else None, system, self.before)
         self.keys.set_content(explained(keys))
-        if found.verdict:
-            self.verdict.set_content(explained(system.said(numbers.verdict_markup(found))))
-        self.verdict.set_stale(not found.verdict)
+        if answers.verdict:
+            self.verdict.set_content(explained(system.said(numbers.verdict_markup(answers))))
+        self.verdict.set_stale(not answers.verdict)
         self.table.set_stale(True)
-        if found.has_end_mass:
-            self.before = found
+        if answers.has_end_mass:
+            self.before = answers
 
     def show_table(self, columns: Sequence[Column], reference: int, system: UnitSystem) -> None:
         """All numbers of the first design beside the others', and how it rings."""
-        found = columns[0].found
-        if found is None or not found.has_end_mass:
+        answers = columns[0].answers
+        if answers is None or not answers.has_end_mass:
             return
-        self.tones.set_content(numbers.tones_markup(found.frequencies.tolist()))
-        self.shapes.set_content(pictures.shapes_picture(found, system))
+        self.tones.set_content(numbers.tones_markup(answers.frequencies.tolist()))
+        self.shapes.set_content(pictures.shapes_picture(answers, system))
         self.table.set_content(explained(numbers.table_markup(columns, reference, system)))
         self.table.set_stale(False)
 
     def show_cue(self, mine: Results, system: UnitSystem) -> None:
         """The cue."""
-        self.cue.set_content(pictures.cue_pictures(mine.found.scene, system))
-        self.trust.set_content(explained(numbers.trust_markup(mine.found.scene)))
+        self.cue.set_content(pictures.cue_pictures(mine.answers.scene, system))
+        self.trust.set_content(explained(numbers.trust_markup(mine.answers.scene)))
 
     def show_charts(
         self, mine: Results, before: Results | None, pinned: Sequence[tuple[Design, Results | None]], system: UnitSystem
@@ -88,9 +88,14 @@ class ResultsSide:
         current = bool(mine.points)
         shown = mine if current or before is None else before
         spans, said = pictures.limits_of(mine.points)
-        drawn = [Drawn(d.name, one.coupled if one else None, one.density if one else None) for d, one in pinned]
-        markup = pictures.offset_charts(mine.found, shown.coupled, drawn, current=current, limits=spans, system=system)
-        waiting = sum(one is None or not one.whole for _, one in pinned)
+        drawn = [
+            Drawn(d.name, answers.coupled if answers else None, answers.density if answers else None)
+            for d, answers in pinned
+        ]
+        markup = pictures.offset_charts(
+            mine.answers, shown.coupled, drawn, current=current, limits=spans, system=system
+        )
+        waiting = sum(answers is None or not answers.whole for _, answers in pinned)
         words = [said, f"Still computing {waiting} of the pinned designs." if waiting else ""]
         if not mine.whole:
             words = [f"Computing the coupled curve: {len(mine.points)} of {len(CURVE_OFFSETS)} offsets.", *words]
@@ -105,6 +110,6 @@ class ResultsSide:
         current = mine.density is not None
         shown = mine if current or before is None else before
         if shown.density is not None:
-            drawn = [Drawn(d.name, None, one.density if one else None) for d, one in pinned]
+            drawn = [Drawn(d.name, None, answers.density if answers else None) for d, answers in pinned]
             self.lives.set_content(explained(pictures.density_chart(shown.density, drawn, system)))
         self.lives.set_stale(not current)

@@ -134,8 +134,8 @@ class DrawingSheet:
             return
         scale, unit = self._unit(field.unit)
         try:
-            given = text.strip().lower()
-            value = None if not given else float("inf") if given in ("inf", "∞") else typed(text, unit) / scale
+            entry = text.strip().lower()
+            value = None if not entry else float("inf") if entry in ("inf", "∞") else typed(text, unit) / scale
         except ValueError as error:
             self._say(f"{field.label} {error}; the design stays as it was", cell)
             return

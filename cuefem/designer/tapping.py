@@ -30,7 +30,7 @@ DEEPEST = -90.0  # dB, of the spectrum
 class Tapped:
     """What a recording tells of a scene's shaft."""
 
-    found: TapFit
+    fit: TapFit
     heard: Ringing
 
 
@@ -51,23 +51,23 @@ def tapped(scene: Scene, content: bytes, mass: float | None) -> Tapped:
     return Tapped(test.fit(tones(heard), heard.rate), heard)
 
 
-def with_wood(scene: Scene, found: TapFit) -> Scene:
+def with_wood(scene: Scene, fit: TapFit) -> Scene:
     """The scene with the wood that was heard in the place of the one it has."""
-    return replace(scene, cue=with_material(scene.shaft, found.before, found.wood))
+    return replace(scene, cue=with_material(scene.shaft, fit.before, fit.wood))
 
 
-def tapped_markup(one: Tapped, system: UnitSystem) -> str:
+def tapped_markup(tap: Tapped, system: UnitSystem) -> str:
     """The wood with its doubts, the spectrum, and the tones."""
-    found, heard = one.found, one.heard
-    doubts = "".join(f'<p class="wrong" role="alert">Doubt: {escape(line)}</p>' for line in found.refusals)
-    notes = "".join(f"<p>{escape(system.said(line))}</p>" for line in found.notes)
-    return f"{doubts}{_wood(found)}{notes}{_spectrum(found, heard)}{_tones(found)}"
+    fit, heard = tap.fit, tap.heard
+    doubts = "".join(f'<p class="wrong" role="alert">Doubt: {escape(line)}</p>' for line in fit.refusals)
+    notes = "".join(f"<p>{escape(system.said(line))}</p>" for line in fit.notes)
+    return f"{doubts}{_wood(fit)}{notes}{_spectrum(fit, heard)}{_tones(fit)}"
 
 
-def _wood(found: TapFit) -> str:
+def _wood(fit: TapFit) -> str:
     rows = ""
-    for name, error in zip(("E", "G", "rho"), found.errors, strict=True):
-        value, before = getattr(found.wood, name), getattr(found.before, name)
+    for name, error in zip(("E", "G", "rho"), fit.errors, strict=True):
+        value, before = getattr(fit.wood, name), getattr(fit.before, name)
         cells = (written(name, value), f"± {written(name, error)}", written(name, before))
         label = {"E": "E, stiffness along the grain", "G": "G, stiffness in shear", "rho": "density"}[name]
         numbers = "".join(f"<td>{escape(cell)}</td>" for cell in cells)
@@ -76,17 +76,17 @@ def _wood(found: TapFit) -> str:
     return f'<div class="scroll"><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>'
 
 
-def _spectrum(found: TapFit, heard: Ringing) -> str:
+def _spectrum(fit: TapFit, heard: Ringing) -> str:
     size = heard.traces.shape[1]
     f = np.fft.rfftfreq(size, 1 / heard.rate)
     power = np.square(np.abs(np.fft.rfft(heard.traces))).sum(axis=0)
-    last = min(HIGH, heard.rate / 2, 1.15 * max(match.tone.frequency for match in found.matched))
+    last = min(HIGH, heard.rate / 2, 1.15 * max(match.tone.frequency for match in fit.matched))
     inside = (f >= LOW) & (f <= last)
     f, power = f[inside], power[inside]
     pieces = np.array_split(np.arange(len(f)), min(DRAWN, len(f)))
     top = np.array([power[piece].max() for piece in pieces])
     decibels = np.maximum(10 * np.log10(top / top.max() + 1e-12), DEEPEST)
-    modes = [Mark(hertz, str(i)) for i, hertz in enumerate(found.frequencies.tolist(), 1) if LOW <= hertz <= last]
+    modes = [Mark(hertz, str(i)) for i, hertz in enumerate(fit.frequencies.tolist(), 1) if LOW <= hertz <= last]
     made = chart(
         "What was heard, and the modes of the fitted shaft by their numbers",
         [Curve("the sound", [f[piece[0]] for piece in pieces], decibels, "c1")],
@@ -97,9 +97,9 @@ def _spectrum(found: TapFit, heard: Ringing) -> str:
     return chart_markup(made, "spectrum")
 
 
-def _tones(found: TapFit) -> str:
+def _tones(fit: TapFit) -> str:
     rows = ""
-    for match in found.matched:
+    for match in fit.matched:
         tone = match.tone
         mode = KINDS.get(tone.kind, "not of this shaft") if match.mode is None else f"mode {match.mode}"
         apart = f"{100 * (tone.frequency / match.frequency - 1):+.2f} %" if match.frequency else ""

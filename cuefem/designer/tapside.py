@@ -72,5 +72,5 @@ class TapSide:
 
     def _take(self) -> None:
         if self.one is not None:
-            found = self.one.found
-            self.beside.say(self.edit(lambda scene: with_wood(scene, found), ""))
+            fit = self.one.fit
+            self.beside.say(self.edit(lambda scene: with_wood(scene, fit), ""))

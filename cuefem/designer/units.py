@@ -41,8 +41,8 @@ SYSTEMS = {system.name: system for system in (METRIC, INCHES)}
 _METRIC = re.compile(r"(?<![\w.])([0-9]+(?:\.[0-9]+)?)(?:( to | → )([0-9]+(?:\.[0-9]+)?))?([ \u00a0])(mm|g)(?![\w/])")
 
 
-def _in_inches(found: re.Match[str]) -> str:
-    first, between, last, space, metric = found.groups()
+def _in_inches(match: re.Match[str]) -> str:
+    first, between, last, space, metric = match.groups()
     per, unit = {"mm": (MM_PER_INCH, "in"), "g": (GRAMS_PER_OUNCE, "oz")}[metric]
     values = [significant(float(text) / per) for text in (first, last) if text]
     return f"{(between or '').join(values)}{space}{unit}"
@@ -60,19 +60,19 @@ def typed(text: str, unit: str) -> float:
 
     A comma is a decimal comma. A unit of its own is taken, whatever ``unit`` is.
     """
-    found = _TYPED.fullmatch(text) if len(text) <= LONGEST else None
-    if found is None:
+    match = _TYPED.fullmatch(text) if len(text) <= LONGEST else None
+    if match is None:
         many = len(re.findall("[.,]", text)) > 1
         hint = ": no separators between thousands" if many else ""
         raise ValueError(f"must be a number, such as 11.8 or 11,8{hint}")
-    if found["number"]:
-        value = float(found["number"].replace(",", "."))
-    elif int(found["bottom"]) == 0:
+    if match["number"]:
+        value = float(match["number"].replace(",", "."))
+    elif int(match["bottom"]) == 0:
         raise ValueError("must be a number, such as 29/64; got a division by 0")
     else:
-        value = int(found["whole"] or 0) + int(found["top"]) / int(found["bottom"])
-    value = -value if found["sign"] in ("-", "−") else value
-    own = found["unit"] or unit
+        value = int(match["whole"] or 0) + int(match["top"]) / int(match["bottom"])
+    value = -value if match["sign"] in ("-", "−") else value
+    own = match["unit"] or unit
     if own == unit:
         return value
     if not unit:

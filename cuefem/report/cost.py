@@ -41,17 +41,17 @@ def _climbed(scene: Scene, most: int, track: Track) -> list[tuple[Rung, float]]:
 
     The climb is timed when it is done again, so that nothing is in it that a process does once.
     """
-    found: list[Rung] = []
+    climbed: list[Rung] = []
     rungs = ladder(scene)
     for _ in track(range(_rungs_up_to(most))):
         rung = next(rungs, None)
-        if rung is None or (len(found) > JUDGED and rung.at.modes > most):
+        if rung is None or (len(climbed) > JUDGED and rung.at.modes > most):
             break
-        found.append(rung)
+        climbed.append(rung)
         if rung.outcome.error is not None and rung.outcome.error <= min(WANTED):
             break
     again, start = ladder(scene), perf_counter()
-    return [(next(again), perf_counter() - start) for _ in track(found)]
+    return [(next(again), perf_counter() - start) for _ in track(climbed)]
 
 
 def _rungs_up_to(most: int) -> int:
@@ -80,10 +80,10 @@ def _rung_record(scene: Scene, rung: Rung, seconds: float, best: Any) -> Record:
 def _recommended(rtol: float, rungs: Sequence[Record]) -> Record:
     """The first rung whose estimate is within ``rtol``; none: the best, which says how far it gets."""
     judged = [rung for rung in rungs if rung["estimate"] is not None]
-    found = next((rung for rung in judged if rung["estimate"] <= rtol), None)
+    first = next((rung for rung in judged if rung["estimate"] <= rtol), None)
     names = ("modes", "elements", "order", "unknowns", "estimate", "seconds")
     last = judged[-1] if judged else rungs[-1]
-    return {"rtol": rtol, "reached": found is not None, **{name: (found or last)[name] for name in names}}
+    return {"rtol": rtol, "reached": first is not None, **{name: (first or last)[name] for name in names}}
 
 
 def cost_sheets(record: Record) -> list[Sheet]:

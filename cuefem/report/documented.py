@@ -29,11 +29,14 @@ DOUBTED = 0.2  # chance of a measurement to be wrong that deserves one
 
 def row_record(row: Row) -> Record:
     """A measurement beside the model's value."""
-    one = row.measurement
+    measurement = row.measurement
     names = ("measured", "error", "computed", "spread", "residual", "pull")
-    return {"kind": one.key, "what": one.label, "unit": one.unit, "source": one.source} | {
-        name: getattr(row, name) for name in names
-    }
+    return {
+        "kind": measurement.key,
+        "what": measurement.label,
+        "unit": measurement.unit,
+        "source": measurement.source,
+    } | {name: getattr(row, name) for name in names}
 
 
 def compare_record(cue: DocumentedCue, rows: Sequence[Row], zeros: Sequence[Zero]) -> Record:
@@ -174,12 +177,12 @@ def _crosses(x: Any, y: Any, error: Any, width: float) -> tuple[Any, Any]:
 
 def _squirt_charts(cue: DocumentedCue, rows: Sequence[Row]) -> list[Chart]:
     """Squirt against offset, if it was measured."""
-    found = [(row, row.measurement) for row in rows if isinstance(row.measurement, Squirt)]
-    if not found:
+    strokes = [(row, row.measurement) for row in rows if isinstance(row.measurement, Squirt)]
+    if not strokes:
         return []
     setup = cue.setup()
-    x = np.array([one.offset for _, one in found])
-    y, error = (np.degrees([getattr(row, name) for row, _ in found]) for name in ("measured", "error"))
+    x = np.array([stroke.offset for _, stroke in strokes])
+    y, error = (np.degrees([getattr(row, name) for row, _ in strokes]) for name in ("measured", "error"))
     top = max([*COMPARED_OFFSETS[:1], *(each for each in COMPARED_OFFSETS if each <= x.max() + 0.05)])
     offsets = [each for each in COMPARED_OFFSETS if each <= top]
     curve = np.degrees([setup.numbers.squirt(each) for each in offsets])
@@ -217,25 +220,25 @@ def value_record(value: Value) -> Record:
 
 def worth_record(worth: Worth) -> Record:
     """What a further measurement would tell."""
-    one = worth.measurement
-    about = {"kind": one.key, "what": one.label, "unit": one.unit, "error": one.sd}
+    measurement = worth.measurement
+    about = {"kind": measurement.key, "what": measurement.label, "unit": measurement.unit, "error": measurement.sd}
     return about | {name: value for name, value in worth._asdict().items() if name != "measurement"}
 
 
-def estimate_record(found: Estimate, worths: Sequence[Worth], squirt: tuple[float, float], offset: float) -> Record:
+def estimate_record(estimate: Estimate, worths: Sequence[Worth], squirt: tuple[float, float], offset: float) -> Record:
     """What all measurements together say."""
     return {
-        "name": found.cue.name,
-        "values": [value_record(value) for value in found.values],
-        "correlations": _correlations(found),
-        "rows": [row_record(row) for row in found.rows],
-        "misfit": found.misfit,
-        "measurements": len(found.cue.found),
-        "wrong": found.wrong.tolist(),
+        "name": estimate.cue.name,
+        "values": [value_record(value) for value in estimate.values],
+        "correlations": _correlations(estimate),
+        "rows": [row_record(row) for row in estimate.rows],
+        "misfit": estimate.misfit,
+        "measurements": len(estimate.cue.found),
+        "wrong": estimate.wrong.tolist(),
         "unchecked": [
-            {"what": each.measurement.label, "without": value_record(each.value)} for each in found.unchecked
+            {"what": each.measurement.label, "without": value_record(each.value)} for each in estimate.unchecked
         ],
-        "converged": found.converged,
+        "converged": estimate.converged,
         "squirt": squirt[0],
         "squirt_error": squirt[1],
         "offset": offset,
@@ -244,9 +247,9 @@ def estimate_record(found: Estimate, worths: Sequence[Worth], squirt: tuple[floa
     }
 
 
-def _correlations(found: Estimate) -> list[list[float]]:
-    sd = np.sqrt(np.diag(found.covariance))
-    return (found.covariance / np.outer(sd, sd)).tolist()
+def _correlations(estimate: Estimate) -> list[list[float]]:
+    sd = np.sqrt(np.diag(estimate.covariance))
+    return (estimate.covariance / np.outer(sd, sd)).tolist()
 
 
 def estimate_sheets(record: Record) -> list[Sheet | str]:
@@ -312,7 +315,7 @@ def _estimate_notes(record: Record) -> list[str]:
     return [*notes, "Error left: the width of the interval over that before any measurement."]
 
 
-def sampled_record(found: Estimate, sample: PosteriorSample) -> Record:
+def sampled_record(estimate: Estimate, sample: PosteriorSample) -> Record:
     """What the sampler found, beside the estimate."""
     names = ("missed", "correlation", "steps", "acceptance")
     record: Record = {name: getattr(sample, name) for name in names}

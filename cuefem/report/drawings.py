@@ -76,8 +76,8 @@ class SeenCue:
 
 def materials_of(cue: SeenCue) -> tuple[str, ...]:
     """Names of a cue's materials, from tip to butt, each once."""
-    found = [m for segment in cue.segments for m in (segment.material, segment.core) if m is not None]
-    return tuple(dict.fromkeys(map(material_name, found)))
+    materials = [m for segment in cue.segments for m in (segment.material, segment.core) if m is not None]
+    return tuple(dict.fromkeys(map(material_name, materials)))
 
 
 def seen(scene: Scene) -> SeenCue:
@@ -227,13 +227,13 @@ def _struck_end(
             for x, s in zip(ends, segments, strict=False)
             if x < reach
         ]
-    found = []
+    shapes = []
     for x, end, first, last, style in parts:
         near, far = apex + scale * x, min(apex + scale * end, WIDE)
         wide = scale * first / 2, scale * (first + (last - first) * min(1, (reach - x) / (end - x))) / 2
         xs, ys = ([*front[0]], [*front[1]]) if x == 0 else ([near, near], [line + wide[0], line - wide[0]])
-        found.append((path([*xs, far, far], [*ys, line - wide[1], line + wide[1]]) + "Z", style))
-    return tuple(found)
+        shapes.append((path([*xs, far, far], [*ys, line - wide[1], line + wide[1]]) + "Z", style))
+    return tuple(shapes)
 
 
 class ModeRow(NamedTuple):
@@ -255,14 +255,14 @@ class ModesDrawing:
     unit: str = "mm"
 
 
-def modes_drawing(found: Modes, length: float, *, row: float = 38.0, units: Units = TRADE) -> ModesDrawing:
+def modes_drawing(modes: Modes, length: float, *, row: float = 38.0, units: Units = TRADE) -> ModesDrawing:
     """The modes' deflections, all drawn equally high."""
     left, right = 10.0, WIDE - 78.0
     x = np.linspace(0, length, 241)
-    shapes, _ = found.shape(x)
+    shapes, _ = modes.shape(x)
     places = left + (right - left) * x / length
     rows = []
-    for i, (shape, frequency) in enumerate(zip(shapes, found.frequencies, strict=True)):
+    for i, (shape, frequency) in enumerate(zip(shapes, modes.frequencies, strict=True)):
         axis, high = row * (i + 0.5) + 4, shape / np.abs(shape).max()
         change = np.flatnonzero(high[:-1] * high[1:] < 0)
         nodes = places[change] + (places[1] - places[0]) * high[change] / (high[change] - high[change + 1])

@@ -32,8 +32,8 @@ def struck(scene: Scene, at: Resolution | None) -> Outcome:
     """A scene's strike with its modes solved anew at a resolution and ended by a tail; None for a lumped cue."""
     if at is None:
         return strike(scene)
-    found = modes(scene.shaft, at.modes, effects=scene.cue_effects, at=at)
-    return strike_modes(scene, tip_modes_from(tail(found, turning=turning(scene)), scene))
+    bending = modes(scene.shaft, at.modes, effects=scene.cue_effects, at=at)
+    return strike_modes(scene, tip_modes_from(tail(bending, turning=turning(scene)), scene))
 
 
 def timed_strike(scene: Scene, at: Resolution | None) -> tuple[Outcome, float]:
@@ -101,13 +101,13 @@ def _row(variant: Variant, scene: Scene, base: Outcome, *, rtol: float, at: Reso
         outcome, seconds = timed_strike(variant.scene, at)
     except (ValueError, RuntimeError) as error:
         return about | _refused(str(error))
-    found = change(outcome, base, offset=scene.stroke.offset)
+    changed = change(outcome, base, offset=scene.stroke.offset)
     return about | {
         "refused": None,
         **_figures(outcome, variant.scene),
-        "change": _changes(found),
-        "weight": found.weight,
-        "matters": found.weight >= rtol,
+        "change": _changes(changed),
+        "weight": changed.weight,
+        "matters": changed.weight >= rtol,
         "unknowns": outcome.unknowns,
         "seconds": seconds,
     }
@@ -117,8 +117,8 @@ def _refused(reason: str) -> Record:
     return {"refused": reason, "weight": None, "matters": None}
 
 
-def _changes(found: Change) -> Record:
-    gaps = asdict(found)
+def _changes(changed: Change) -> Record:
+    gaps = asdict(changed)
     relative = gaps.pop("relative")
     return {name: {"by": gap, "relative": relative.get(name)} for name, gap in gaps.items()}
 

@@ -80,7 +80,9 @@ def _spread(row: Mapping[str, Any]) -> str:
 
 def _counted() -> str:
     """Which definitions count effects at the tip as end mass."""
-    counting, others = ([one.name for one in DEFINITIONS.values() if one.counts_tip is c] for c in (True, False))
+    counting, others = (
+        [definition.name for definition in DEFINITIONS.values() if definition.counts_tip is c] for c in (True, False)
+    )
     return (
         f"{listed(counting)} count effects at the tip as end mass; {listed(others)} do not, nor does the offset end "
         "mass of the two-part cues in `strike` and `report`"

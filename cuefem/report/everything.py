@@ -28,17 +28,17 @@ def report_record(scene: Scene, *, count: int = 6) -> Record:
     "no_contact".
     """
     solved = Solved(scene)
-    found: Record = {"modes": modes_record(scene, count=count, near=None)} if scene.cue.segments else {}
+    record: Record = {"modes": modes_record(scene, count=count, near=None)} if scene.cue.segments else {}
     try:
         scene.contact_time  # noqa: B018
         squirts = {"end_masses": end_mass_record(scene, solved=solved), "squirt": squirt_record(scene, solved=solved)}
         outcome = strike_modes(scene, solved.tip)
     except (TooDeep, BentTooFar) as error:
-        return found | {"no_contact": str(error)}
-    found |= squirts
+        return record | {"no_contact": str(error)}
+    record |= squirts
     numbers = listed(OneDesign(solved, outcome))
     verdict = verdict_record(scene, outcome, ready_cues(), solved=solved)
-    return found | {"verdict": verdict, "numbers": numbers, "regime": outcome.regime, "grip": grip_of(outcome)}
+    return record | {"verdict": verdict, "numbers": numbers, "regime": outcome.regime, "grip": grip_of(outcome)}
 
 
 def report_sheets(record: Record, scene: Record) -> list[Sheet | str]:

@@ -49,12 +49,12 @@ def explained(markup: str) -> str:
     seen: set[str] = set()
     inside: list[str] = []
 
-    def button(found: re.Match[str]) -> str:
-        name = known[found[1].lower()]
+    def button(match: re.Match[str]) -> str:
+        name = known[match[1].lower()]
         if name in seen:
-            return found[0]
+            return match[0]
         seen.add(name)
-        return f'<button type="button" class="term" popovertarget="{name}">{found[0]}</button>'
+        return f'<button type="button" class="term" popovertarget="{name}">{match[0]}</button>'
 
     pieces = _TAG.split(markup)
     for i, piece in enumerate(pieces):

@@ -51,7 +51,7 @@ def model_error_record(scene: Scene, follow: Follow = iter) -> Record:
     check_size(scene.shaft, mesh)
     work = (lambda: _by_beam(scene), lambda: _by_solid(scene, mesh))
     coarser = mesh._replace(order=mesh.order - 1)
-    beam, solid, coarse = (one() for one in follow([*work, lambda: _by_solid(scene, coarser)]))
+    beam, solid, coarse = (work_of() for work_of in follow([*work, lambda: _by_solid(scene, coarser)]))
     rows = [
         {
             "quantity": words,
@@ -94,14 +94,14 @@ def _by_solid(scene: Scene, mesh: Fineness) -> Numbers:
 def _numbers(scene: Scene, tip: TipModes, across: float, along: float) -> Numbers:
     """What is compared, by its words and its unit, from a cue's tip modes and its gives with the butt held, m/N."""
     omega, amplitude = tip.omega[3:], tip.amplitude[3:, 1]
-    found = {(f"tone {k}", "Hz"): float(w) / (2 * np.pi) for k, w in enumerate(omega[:TONES], 1)}
-    found["stiffness at the tip, butt held", "N/m"] = 1 / across
-    found["stiffness along the axis, butt held", "N/m"] = 1 / along
-    found["give of the tip, cue free", "m/N"] = float(np.sum((amplitude / omega) ** 2))
+    numbers = {(f"tone {k}", "Hz"): float(w) / (2 * np.pi) for k, w in enumerate(omega[:TONES], 1)}
+    numbers["stiffness at the tip, butt held", "N/m"] = 1 / across
+    numbers["stiffness along the axis, butt held", "N/m"] = 1 / along
+    numbers["give of the tip, cue free", "m/N"] = float(np.sum((amplitude / omega) ** 2))
     for drive, words in DRIVES.items():
-        found[words, "kg"] = float(formula_of(drive)(tip, scene))
-    found["squirt", "rad"] = float(strike_modes(scene, tip, recorded=False).squirt)
-    return found
+        numbers[words, "kg"] = float(formula_of(drive)(tip, scene))
+    numbers["squirt", "rad"] = float(strike_modes(scene, tip, recorded=False).squirt)
+    return numbers
 
 
 def _percent(part: float, digits: int, sign: str = "-") -> str:

@@ -12,14 +12,14 @@ def modes_record(scene: Scene, *, count: int, near: float | None) -> Record:
 
     "nearest": the one frequency nearest ``near``; None if ``near`` is.
     """
-    found = modes(scene.shaft, count, near, effects=scene.cue_effects)
-    amplitudes, _ = found.shape(0.0)
-    nearest = None if near is None else min(found.frequencies.tolist(), key=lambda f: abs(f - near))
+    bending = modes(scene.shaft, count, near, effects=scene.cue_effects)
+    amplitudes, _ = bending.shape(0.0)
+    nearest = None if near is None else min(bending.frequencies.tolist(), key=lambda f: abs(f - near))
     return {
         "near": near,
         "nearest": nearest,
-        "rigid": found.rigid,
-        "frequencies": found.frequencies.tolist(),
+        "rigid": bending.rigid,
+        "frequencies": bending.frequencies.tolist(),
         "tip_amplitudes": amplitudes.tolist(),
     }
 

@@ -95,14 +95,14 @@ def page(
     rtol: what is asked of the accuracy; notes: what was assumed; remarks: what is unusual; trust: what was
     computed on how far to trust it; track: follows the stages.
     """
-    found: Record = {}
+    records: Record = {}
     rtol = DEFAULT_RTOL if rtol is None else rtol
     for stage in track(_stages(scene, rtol)):
-        found[stage.name] = stage.work()
+        records[stage.name] = stage.work()
     template = environment().get_template("page.html.j2")
     asked = f"{100 * rtol:.3g} %"
     said = {"notes": list(notes), "remarks": list(remarks), "checked": list(trust)}
-    return with_words(template.render(name=name, asked=asked, **said, **_context(scene, found))) + "\n"
+    return with_words(template.render(name=name, asked=asked, **said, **_context(scene, records))) + "\n"
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,8 +148,8 @@ def _stages(scene: Scene, rtol: float) -> list[Stage]:
         return _steps(rungs, rtol)
 
     def usual() -> Solved:
-        found = solved()
-        return found.by_default() if isinstance(found, _ToAccuracy) else found
+        fine = solved()
+        return fine.by_default() if isinstance(fine, _ToAccuracy) else fine
 
     def outcome() -> Outcome:
         return rungs[-1][0].outcome if rungs else strike_modes(scene, solved().tip)
@@ -179,31 +179,31 @@ def _steps(rungs: Sequence[tuple[Rung, float]], rtol: float) -> Sheet:
     return Sheet(title, head, tuple(rows), texts=(), styles=dict.fromkeys(reached, "reached"))
 
 
-def _context(scene: Scene, found: Record) -> Record:
-    outcome: Outcome = found["outcome"]
-    record = found["strike"]
+def _context(scene: Scene, records: Record) -> Record:
+    outcome: Outcome = records["outcome"]
+    record = records["strike"]
     return {
         "scene": scene,
         "facts": _facts(scene),
-        "figures": _key_figures(record, found["end_masses"], outcome),
+        "figures": _key_figures(record, records["end_masses"], outcome),
         "strike": strike_drawing(scene, outcome.squirt),
         "squirt": degrees(outcome.squirt),
         "error": "" if outcome.error is None else f"{100.0 * outcome.error:.2g} %",
-        "verdict": verdict_part(found["verdict"]),
-        "advice": advice_sheet(found["advice"]) if "advice" in found else None,
+        "verdict": verdict_part(records["verdict"]),
+        "advice": advice_sheet(records["advice"]) if "advice" in records else None,
         "trust": trust_lines(scene),
         "warning": MISCUE if grip_of(outcome) in MISSED else "",
         "cue": _cue_part(scene) if scene.cue.segments else None,
         "modes": _modes_part(scene) if scene.cue.segments else None,
         "contact": None if outcome.history is None else contact_part(outcome),
-        "by_offset": _by_offset(found["squirt"], scene),
-        "slipped": bool(_slipped(found["squirt"])),
-        "end_masses": _end_masses(found["end_masses"], found["squirt"], scene, outcome),
+        "by_offset": _by_offset(records["squirt"], scene),
+        "slipped": bool(_slipped(records["squirt"])),
+        "end_masses": _end_masses(records["end_masses"], records["squirt"], scene, outcome),
         "energy": _energy(outcome),
         "models": replace(models_sheet(record, BRIEF), title="The same stroke by every model"),
         "coupling": record["coupling"],
-        "numbers": values_sheet("The cue and this stroke in numbers", value_rows(found["numbers"])),
-        "steps": found.get("steps"),
+        "numbers": values_sheet("The cue and this stroke in numbers", value_rows(records["numbers"])),
+        "steps": records.get("steps"),
     }
 
 
@@ -270,7 +270,7 @@ def _style(model: str) -> str:
 
 
 def _by_offset(record: Record, scene: Scene) -> tuple[Chart, Chart]:
-    lines = [(name, _style(name), one["squirt"], one["pivot_length"]) for name, one in record["models"].items()]
+    lines = [(name, _style(name), model["squirt"], model["pivot_length"]) for name, model in record["models"].items()]
     own = scalar("Stroke.offset", scene.stroke.offset)
     return offset_charts(lines, record["offsets"], own, height=300, spans=_slipped(record))
 
@@ -321,9 +321,12 @@ def _end_masses(record: Record, squirt: Record, scene: Scene, outcome: Outcome) 
         "ends": (left, right),
         "height": 26.0 * len(rows) + 44,
         "reasons": [values["reason"] for values in record["drives"].values() if values["end_mass"] is None],
-        "meanings": [*((one.label_at(record["offset"]), one.meaning) for one in DEFINITIONS.values()), *SOURCES],
+        "meanings": [
+            *((definition.label_at(record["offset"]), definition.meaning) for definition in DEFINITIONS.values()),
+            *SOURCES,
+        ],
         "coupling": squirt["coupling"],
-        "counted": "; ".join(one.label for one in DEFINITIONS.values() if one.counts_tip),
+        "counted": "; ".join(definition.label for definition in DEFINITIONS.values() if definition.counts_tip),
     }
 
 

@@ -24,7 +24,7 @@ PLAN_ERROR = 0.01  # of a ratio of speeds: 1 mm in a swing of 0.2 m, both ways, 
 def weigh_record(weighed: Weighed, told: Told | None, lumped: float | None) -> Record:
     """The end mass, where its error comes from, and what it says about squirt."""
     test = weighed.test
-    found: Record = {
+    record: Record = {
         "end_mass": weighed.end_mass,
         "error": weighed.relative_error * weighed.end_mass,
         "interval_68": list(weighed.interval()),
@@ -40,7 +40,7 @@ def weigh_record(weighed: Weighed, told: Told | None, lumped: float | None) -> R
         "squirt": None,
     }
     if told is not None:
-        found["squirt"] = {
+        record["squirt"] = {
             "offset": told.offset,
             "drawn_end_mass": told.drawn,
             "before": told.before[0],
@@ -49,7 +49,7 @@ def weigh_record(weighed: Weighed, told: Told | None, lumped: float | None) -> R
             "after_error": told.after[1],
             "unknowns": [value_record(value) for value in told.estimate.values],
         }
-    return found
+    return record
 
 
 def remarks(weighed: Weighed) -> list[str]:
@@ -119,7 +119,7 @@ def plan_record(end_mass: float = USUAL, restitution: float = 0.8) -> Record:
         "balls": [choice._asdict() for choice in choices(end_mass, restitution, PLAN_ERROR)],
         "swings": [{"swing": d, "speed": v} for d, v in zip(SWINGS, speeds, strict=True)],
         "thread": THREAD,
-        "softness": [one._asdict() for one in softness(end_mass, speeds[1], restitution)],
+        "softness": [pad._asdict() for pad in softness(end_mass, speeds[1], restitution)],
         "pressed": PRESSED,
     }
 
@@ -139,7 +139,7 @@ def plan_sheets(record: Record) -> list[Sheet]:
         sheet(
             "How soft",
             {"contact time": "{contact_time:s}", "pressed 0.5 mm into the ferrule by": "{force:.0f} N ({load:.1f} kg)"},
-            [{**one, "load": one["force"] / 9.81} for one in record["softness"]],
+            [{**pad, "load": pad["force"] / 9.81} for pad in record["softness"]],
             "By Hertz's law, for a ball as heavy as the end mass and a swing of 0.2 m. A stroke lasts 0.5 to 2 ms.",
             "Press the ball on the ferrule, on a kitchen scale, and give --press and --press-depth.",
             texts=(),

@@ -19,10 +19,10 @@ PLACES = 9
 
 def side_scene_record(scene: SideStrike) -> Record:
     """The scene of a strike from the side: beam, striker, place, speed and effects."""
-    given = {name: value for name, value in asdict(scene.striker).items() if value is not None}
+    striker = {name: value for name, value in asdict(scene.striker).items() if value is not None}
     return {
         "cue": cue_record(scene.cue),
-        "striker": given | {"wall_time": scene.striker.wall_time(scene.speed)},
+        "striker": striker | {"wall_time": scene.striker.wall_time(scene.speed)},
         "position": scene.position,
         "speed": scene.speed,
         "effects": [{"type": type(effect).__name__, **asdict(effect)} for effect in scene.effects],

@@ -41,13 +41,13 @@ def _curve(
     squirt: Callable[[Scene, LumpedCue], Any] = lambda scene, cue: impulse(bare_scene(scene, cue)).squirt,
 ) -> Record:
     """Squirt and natural pivot length of one lumped cue an offset; nan at an offset that has no such cue."""
-    found: Record = {"squirt": np.full(len(offsets), np.nan), "pivot_length": np.full(len(offsets), np.nan)}
+    curve: Record = {"squirt": np.full(len(offsets), np.nan), "pivot_length": np.full(len(offsets), np.nan)}
     for i, (offset, cue) in enumerate(zip(offsets, cues, strict=True)):
         if cue is not None:
             struck = at_offset(scene, offset)
-            found["squirt"][i] = squirt(struck, cue)
-            found["pivot_length"][i] = pivot_length(struck, found["squirt"][i])
-    return found
+            curve["squirt"][i] = squirt(struck, cue)
+            curve["pivot_length"][i] = pivot_length(struck, curve["squirt"][i])
+    return curve
 
 
 def two_part_curve(solved: Solved, offsets: Sequence[float]) -> Record:
@@ -64,19 +64,19 @@ def squirt_record(scene: Scene, offsets: Sequence[float] = OFFSETS, *, solved: S
     """
     solved = solved or Solved(scene)
     cues, slope = two_part_cues(scene, offsets, solved.tip_stuck), coupling_slope(scene, solved.tip_stuck)
-    found: Record = {"coupled, this cue": coupled_curve(scene, offsets, solved.tip)}
+    models: Record = {"coupled, this cue": coupled_curve(scene, offsets, solved.tip)}
     if slope:
         lumped = [with_coupling(cue, slope * abs(b)) for cue, b in zip(cues, offsets, strict=True)]
-        found["lumped, this cue"] = _curve(scene, offsets, lumped)
+        models["lumped, this cue"] = _curve(scene, offsets, lumped)
     papers = LumpedCue.two_part(scene.axial_mass, PAPER_CUE_END_MASS)
-    found["two-part, this cue"] = _curve(scene, offsets, cues)
-    found["two-part, 12 g"] = _curve(scene, offsets, [papers] * len(offsets))
-    found["A.31, this cue"] = _curve(scene, offsets, cues, a31_squirt)
+    models["two-part, this cue"] = _curve(scene, offsets, cues)
+    models["two-part, 12 g"] = _curve(scene, offsets, [papers] * len(offsets))
+    models["A.31, this cue"] = _curve(scene, offsets, cues, a31_squirt)
     return {
         "offsets": list(offsets),
         "end_mass": [None if cue is None else cue.end_mass for cue in cues],
         "coupling": slope,
-        "models": found,
+        "models": models,
     }
 
 

@@ -28,8 +28,8 @@ from cuefem.tip_modes import Solved
 def outcome_record(outcome: Outcome, scene: Scene) -> Record:
     """A strike's outcome with the natural pivot length of its squirt (None at offset 0)."""
     names = ("squirt", "ball_speed", "ball_velocity", "spin", "cue_speed", "impulse", "duration", "regime", "energy")
-    found = {name: getattr(outcome, name) for name in (*names, "unknowns", "error")}
-    return found | {"grip": grip_of(outcome), "pivot_length": pivot_length(scene, outcome.squirt)}
+    record = {name: getattr(outcome, name) for name in (*names, "unknowns", "error")}
+    return record | {"grip": grip_of(outcome), "pivot_length": pivot_length(scene, outcome.squirt)}
 
 
 def strike_record(scene: Scene, outcome: Outcome | None = None, *, solved: Solved | None = None) -> Record:

@@ -128,12 +128,12 @@ def _shares(column: np.ndarray, results: Array) -> Array:
     """Variance of the groups' means over the whole, (responses,); ranges less what chance gives them."""
     which = _groups(column)
     sizes = np.bincount(which)
-    kept = sizes > 0
-    means = np.array([np.bincount(which, weights=r)[kept] / sizes[kept] for r in results.T]).T
+    spread = sizes > 0
+    means = np.array([np.bincount(which, weights=r)[spread] / sizes[spread] for r in results.T]).T
     whole = results.var(axis=0)
-    between = (sizes[kept, None] * (means - results.mean(axis=0)) ** 2).sum(axis=0) / len(results)
+    between = (sizes[spread, None] * (means - results.mean(axis=0)) ** 2).sum(axis=0) / len(results)
     share = np.divide(between, whole, out=np.zeros_like(whole), where=whole > 0)
-    groups, count = int(kept.sum()), len(results)
+    groups, count = int(spread.sum()), len(results)
     if groups < len(np.unique(column)) and count > groups:
         share = np.clip(1 - (1 - share) * (count - 1) / (count - groups), 0.0, 1.0)
     return np.asarray(share)
@@ -143,27 +143,28 @@ def _ranks(values: Array) -> Array:
     return np.unique(values, return_inverse=True)[1].astype(float)
 
 
-def _correlation(one: Array, other: Array) -> float:
-    spread = one.std() * other.std()
-    return float(np.mean((one - one.mean()) * (other - other.mean())) / spread) if spread > 0 else 0.0
+def _correlation(first: Array, other: Array) -> float:
+    spread = first.std() * other.std()
+    return float(np.mean((first - first.mean()) * (other - other.mean())) / spread) if spread > 0 else 0.0
 
 
 def _trend(column: np.ndarray, result: Array) -> str:
     if column.dtype.kind not in "fi":
         return ""
-    found = _correlation(_ranks(column), _ranks(result))
-    return "rises" if found > CLEAR else "falls" if found < -CLEAR else ""
+    correlation = _correlation(_ranks(column), _ranks(result))
+    return "rises" if correlation > CLEAR else "falls" if correlation < -CLEAR else ""
 
 
 def column_label(name: str) -> str:
     """A column's name as people say it; fields of the scene are said in words: "segment 3 tip bore"."""
-    return ", ".join(_field_words(one) if _FIELD.fullmatch(one) else one for one in name.split(", "))
+    return ", ".join(_field_words(path) if _FIELD.fullmatch(path) else path for path in name.split(", "))
 
 
 def _field_words(path: str) -> str:
     steps = path.removeprefix("cue.").split(".")
     items = (
-        _ITEM.sub(lambda one: f"all {one[1]}s" if one[2] == "*" else f"{one[1]} {int(one[2]) + 1}", s) for s in steps
+        _ITEM.sub(lambda match: f"all {match[1]}s" if match[2] == "*" else f"{match[1]} {int(match[2]) + 1}", s)
+        for s in steps
     )
     return " ".join(items).replace("_", " ")
 
@@ -180,8 +181,8 @@ def study_record(table: StudyTable) -> dict[str, Any]:
 
     def design(i: int) -> dict[str, Any]:
         at = {name: column[i].item() for name, column in zip(table.names, table.values, strict=True)}
-        found = {response.name: table.results[i, k] for k, response in enumerate(table.responses)}
-        return {"design": int(table.numbers[i]), "at": at, "responses": found}
+        results = {response.name: table.results[i, k] for k, response in enumerate(table.responses)}
+        return {"design": int(table.numbers[i]), "at": at, "responses": results}
 
     names = [response.name for response in table.responses]
     record: dict[str, Any] = {
@@ -232,10 +233,10 @@ def front_sheet(table: StudyTable, most: int) -> Sheet:
     assert table.pair is not None
     picked = np.unique(np.linspace(0, len(table.front) - 1, min(most, len(table.front))).round().astype(int))
     two = [table.responses[k] for k in table.pair]
-    names = (*(one.heading for one in two), *map(with_heading, table.labels, table.units))
+    names = (*(response.heading for response in two), *map(with_heading, table.labels, table.units))
     rows = []
     for i in (table.front[j] for j in picked):
-        results = (shown(table.results[i, k], one.unit) for k, one in zip(table.pair, two, strict=True))
+        results = (shown(table.results[i, k], response.unit) for k, response in zip(table.pair, two, strict=True))
         rows.append((str(table.numbers[i]), *results, *table.at(i)))
     return Sheet(f"Trade-off, {front_words(table, most)}", ("design", *names), tuple(rows))
 
@@ -243,12 +244,12 @@ def front_sheet(table: StudyTable, most: int) -> Sheet:
 def front_words(table: StudyTable, most: int) -> str:
     """What the front is, and how many of its designs are listed where there is room for ``most``."""
     assert table.pair is not None
-    one, other = (table.responses[k] for k in table.pair)
+    first, other = (table.responses[k] for k in table.pair)
     count = len(table.front)
     few = f"; {most} of them are listed, evenly picked" if most < count else ""
     if count == 1:
-        return f"{one.label} and {other.label}: one design is the best for both"
-    return f"{one.label} against {other.label}: {count} designs, of which none is beaten in both{few}"
+        return f"{first.label} and {other.label}: one design is the best for both"
+    return f"{first.label} against {other.label}: {count} designs, of which none is beaten in both{few}"
 
 
 def study_sheets(table: StudyTable) -> list[Sheet | str]:

@@ -128,10 +128,10 @@ def _parallel(table: StudyTable) -> tuple[list[tuple[str, int]], list[Coordinate
         *map(with_heading, table.labels, table.units),
         *(r.heading for r in table.responses),
     ]
-    names = [wrap(one, NAME) for one in headings]
+    names = [wrap(near, NAME) for near in headings]
     units = [*table.units, *(r.unit for r in table.responses)]
     widths = [max(map(len, lines)) for lines in names]
-    beside = [one + other for one, other in pairwise(widths)]
+    beside = [near + other for near, other in pairwise(widths)]
     step = max(110.0, LETTER * (max(beside) / 2 + 2))  # names of neighbours do not meet
     x = step / 2 + step * np.arange(len(columns))
     y = np.array([_scaled(_places(column), 200.0, 30.0) for column in columns])
@@ -171,15 +171,15 @@ def _panels(table: StudyTable, k: int, *, shares: bool) -> list[Panel]:
 def _front_panel(table: StudyTable) -> Panel:
     """The pair of responses, all designs as points and the front as a line."""
     assert table.pair is not None
-    one, other = (table.responses[k] for k in table.pair)
+    sideways, other = (table.responses[k] for k in table.pair)
     first, second = (table.results[:, k] for k in table.pair)
     every = _picked(len(first), MOST_POINTS)
     panel = _panel(
         other.heading,
-        one.heading,
+        sideways.heading,
         first,
         second,
-        (one.unit, other.unit),
+        (sideways.unit, other.unit),
         every,
     )
     left, right, top, bottom = BOX

@@ -37,8 +37,8 @@ class WholeTable(Table):
 
     def add_row(self, *cells: str, **options: Any) -> None:  # type: ignore[override]
         """A row of plain strings; brackets in them are not taken for markup."""
-        found = (Text(cell, no_wrap=i not in self.texts) for i, cell in enumerate(cells))
-        super().add_row(*found, **options)
+        texts = (Text(cell, no_wrap=i not in self.texts) for i, cell in enumerate(cells))
+        super().add_row(*texts, **options)
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> Iterator[Any]:
         ranges = [self._range(column, console, options) for column in self.columns]

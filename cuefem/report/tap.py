@@ -32,26 +32,26 @@ KINDS = {
 }
 
 
-def tap_record(found: TapFit, heard: Ringing, numbers: Mapping[str, Predicted], struck: Outcome) -> Record:
+def tap_record(fit: TapFit, heard: Ringing, numbers: Mapping[str, Predicted], struck: Outcome) -> Record:
     """The wood, the tones and their modes, what the scene's numbers become; errors are standard deviations.
 
     struck: the scene's stroke with the fitted wood.
     """
     wood = {
-        name: {"value": getattr(found.wood, name), "error": error, "before": getattr(found.before, name)}
-        for name, error in zip(("E", "G", "rho"), found.errors, strict=True)
+        name: {"value": getattr(fit.wood, name), "error": error, "before": getattr(fit.before, name)}
+        for name, error in zip(("E", "G", "rho"), fit.errors, strict=True)
     }
     return {
-        "wood": wood | {"covariance": found.covariance, "loss": found.loss},
-        "G_told": found.told,
-        "weighed": found.weighed,
-        "rivals": [{"E": E, "odds_against": odds} for E, odds in found.rivals],
-        "misfit": found.misfit,
-        "chance": found.chance,
-        "shear_coefficients": found.shear_coefficients,
-        "refusals": list(found.refusals),
-        "tones": [asdict(m.tone) | {"mode": m.mode, "model_frequency": m.frequency} for m in found.matched],
-        "shaft_mass": found.cue.shaft_mass,
+        "wood": wood | {"covariance": fit.covariance, "loss": fit.loss},
+        "G_told": fit.told,
+        "weighed": fit.weighed,
+        "rivals": [{"E": E, "odds_against": odds} for E, odds in fit.rivals],
+        "misfit": fit.misfit,
+        "chance": fit.chance,
+        "shear_coefficients": fit.shear_coefficients,
+        "refusals": list(fit.refusals),
+        "tones": [asdict(m.tone) | {"mode": m.mode, "model_frequency": m.frequency} for m in fit.matched],
+        "shaft_mass": fit.cue.shaft_mass,
         "predicted": {name: asdict(number) for name, number in numbers.items()},
         "units": UNITS,
         "regime": struck.regime,
@@ -59,7 +59,7 @@ def tap_record(found: TapFit, heard: Ringing, numbers: Mapping[str, Predicted], 
         "taps": heard.taps,
         "clipped": heard.clipped,
         "hum": None if heard.hum is None else asdict(heard.hum),
-        "notes": [*found.notes, *_clipping(heard), *_hum(heard)],
+        "notes": [*fit.notes, *_clipping(heard), *_hum(heard)],
     }
 
 
@@ -118,8 +118,8 @@ def _wood(record: Record) -> Sheet:
     return Sheet("The wood", ("", "fitted", "±", "", "in the file"), tuple(rows), notes)
 
 
-def _shear(found: tuple[float, float]) -> str:
-    least, most = (f"{one:.3f}" for one in found)
+def _shear(ends: tuple[float, float]) -> str:
+    least, most = (f"{coefficient:.3f}" for coefficient in ends)
     return f"a shear coefficient of {least}" if least == most else f"shear coefficients of {least} to {most}"
 
 
@@ -139,17 +139,17 @@ def _numbers(record: Record, about: Record) -> Sheet:
     return Sheet("What follows", ("", "fitted", "±", "with the file's wood"), tuple(rows), (*missed, note))
 
 
-def tap_figure(found: TapFit, heard: Ringing, title: str, kind: str) -> bytes:
+def tap_figure(fit: TapFit, heard: Ringing, title: str, kind: str) -> bytes:
     """The spectrum with its tones and the fitted shaft's modes, as a file's content; kind: "png", "svg"."""
 
     def draw(_: Any, axes: Any) -> None:
-        draw_spectrum(axes, found, heard)
+        draw_spectrum(axes, fit, heard)
         axes.set_title(title)
 
     return figure_content(kind, draw, figsize=(9, 4.4))
 
 
-def draw_spectrum(axes: Any, found: TapFit, heard: Ringing) -> None:
+def draw_spectrum(axes: Any, fit: TapFit, heard: Ringing) -> None:
     """The sound's power over frequency, the fitted shaft's modes as numbered lines, the tones marked on their peaks."""
     size = heard.traces.shape[1]
     f = np.fft.rfftfreq(size, 1 / heard.rate)
@@ -158,7 +158,7 @@ def draw_spectrum(axes: Any, found: TapFit, heard: Ringing) -> None:
     f, decibels = f[inside], 10 * np.log10(power[inside] / power[inside].max() + 1e-12)
     axes.semilogx(f, decibels, color="0.55", lw=0.6)
     low, high = np.quantile(decibels, 0.01) - 5, 14.0
-    for number, mode in enumerate(found.frequencies, start=1):
+    for number, mode in enumerate(fit.frequencies, start=1):
         if LOW <= mode <= f[-1]:
             axes.axvline(mode, color="C0", lw=0.6, ls=":")
             axes.annotate(
@@ -172,7 +172,7 @@ def draw_spectrum(axes: Any, found: TapFit, heard: Ringing) -> None:
             )
     styles = {"mode": ("o", "C0", "tone of a mode"), "other": ("X", "C3", "other tone")}
     drawn = set()
-    for match in found.matched:
+    for match in fit.matched:
         style = "mode" if match.mode is not None else "other"
         mark, colour, label = styles[style]
         near = np.abs(f - match.tone.frequency) <= max(3 * match.tone.error, 2 * heard.rate / size)

@@ -33,14 +33,14 @@ def chart_script() -> str:
     return environment().get_template("charts.js").render()
 
 
-def chart_markup(found: Chart, name: str) -> str:
+def chart_markup(drawing: Chart, name: str) -> str:
     """A chart as a figure; name: its own on the page."""
-    return str(_macros().chart(found, name))
+    return str(_macros().chart(drawing, name))
 
 
-def cue_markup(found: CueDrawing) -> str:
+def cue_markup(drawing: CueDrawing) -> str:
     """A drawing of the cue as a figure."""
-    return str(_macros().drawing(found))
+    return str(_macros().drawing(drawing))
 
 
 def verdict_markup(part: dict[str, Any]) -> str:
@@ -48,9 +48,9 @@ def verdict_markup(part: dict[str, Any]) -> str:
     return str(_macros().verdict_section(part))
 
 
-def shapes_markup(found: ModesDrawing) -> str:
+def shapes_markup(drawing: ModesDrawing) -> str:
     """Mode shapes as a drawing."""
-    return str(_macros().shapes(found))
+    return str(_macros().shapes(drawing))
 
 
 @cache

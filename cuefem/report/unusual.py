@@ -129,8 +129,8 @@ def _beyond(usual: UsualNumbers, scene: Scene) -> str:
 def _shape(segments: tuple[Segment, ...]) -> list[str]:
     """What the outline of a cue has that none has."""
     lines = []
-    for i, (one, other) in enumerate(pairwise(segments)):
-        ends = one.butt_diameter, other.tip_diameter
+    for i, (near, other) in enumerate(pairwise(segments)):
+        ends = near.butt_diameter, other.tip_diameter
         if max(ends) > JUMP * min(ends):
             sizes = " to ".join(f"{scaled(end, 'm'):.4g}" for end in ends)
             lines.append(f"the diameter jumps from {sizes} mm between segments[{i}] and segments[{i + 1}]")

@@ -140,9 +140,9 @@ def verdict_part(record: Record) -> Record:
 
 def verdict_things(record: Record) -> list[Sheet | str]:
     """The verdict in the terminal."""
-    found = scale(record)
-    rows = tuple((row.name, row.text, _bar(row), row.beside) for row in found)
-    own = {i: "bold" for i, row in enumerate(found) if row.own}
+    scale_sheet = scale(record)
+    rows = tuple((row.name, row.text, _bar(row), row.beside) for row in scale_sheet)
+    own = {i: "bold" for i, row in enumerate(scale_sheet) if row.own}
     head = ("cue", "squirt", "less to more squirt", "")
     table = Sheet("Among ready pool cues, by the same stroke", head, rows, (band_line(record),), (0, 2, 3), own)
     return [headline(record), *standing(record), "", table]

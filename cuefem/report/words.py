@@ -49,8 +49,8 @@ def plain_cue_line(cue: Cue | LumpedCue) -> str:
 def effect_words(effect: Effect) -> str:
     """An effect in a few words, without what is at its default: "PointMass (position 100 mm, mass 5 g)"."""
     usual = {field.name: field.default for field in fields(effect)}
-    given = {name: value for name, value in file_table(effect).items() if getattr(effect, name) != usual[name]}
-    entries = [f"{name.replace('_', ' ')} {_short(value)}" for name, value in given.items()]
+    entered = {name: value for name, value in file_table(effect).items() if getattr(effect, name) != usual[name]}
+    entries = [f"{name.replace('_', ' ')} {_short(value)}" for name, value in entered.items()]
     return type(effect).__name__ + (f" ({', '.join(entries)})" if entries else "")
 
 

@@ -15,7 +15,7 @@ from cuefem.results.quantities import RESULTS, Result
 def asked() -> dict[str, Result]:
     """All results that can be asked of a design, by name: also "end_mass_NAME" for every definition of the end mass."""
     own = {name: result for name, result in RESULTS.items() if result.of is not None}
-    return own | {f"end_mass_{name}": _defined(one) for name, one in DEFINITIONS.items()}
+    return own | {f"end_mass_{name}": _defined(definition) for name, definition in DEFINITIONS.items()}
 
 
 def _defined(definition: Definition) -> Result:

@@ -29,15 +29,15 @@ def verdict_record(scene: Scene, outcome: Outcome, ready: Mapping[str, Cue], *, 
     own = squirt_beside(solved, struck) if head_on or outcome.error is not None else float(outcome.squirt)
     squirt = own if head_on else float(outcome.squirt)
     inputs = of_inputs(solved, own)
-    found = band(struck, inputs, outcome.error)
+    squirt_band = band(struck, inputs, outcome.error)
     among = {name: _beside(struck, own, cue, of_shaft(inputs)) for name, cue in ready.items()}
     return {
         "offset": float(struck.stroke.offset),
         "head_on": head_on,
         "squirt": squirt,
-        "band": found._asdict() | {"whole": found.whole},
+        "band": squirt_band._asdict() | {"whole": squirt_band.whole},
         "inputs": inputs,
-        "squirt_error": found.whole * abs(squirt),
+        "squirt_error": squirt_band.whole * abs(squirt),
         "among": {name: beside for name, beside in among.items() if beside},
     }
 

@@ -70,8 +70,8 @@ def test_numbers_come_before_all_else_and_pictures_once_at_the_end(moves: int, m
             await asyncio.sleep(0.005)
         await page.drawn.wait()
         assert answering.mine is not None
-        assert answering.mine.found.scene == page.scene  # the newest
-        assert answering.mine.found.has_end_mass
+        assert answering.mine.answers.scene == page.scene  # the newest
+        assert answering.mine.answers.has_end_mass
         for task in tasks:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)

@@ -178,7 +178,7 @@ def test_designs_stand_side_by_side_like_with_like() -> None:
     columns = [Column(own, weighed(scene)), Column(replace(own, name="b"), weighed(scene)), Column(thin, None)]
     columns.append(Column(thin, weighed(thin.scene)))
     lines = {line.name: line for line in compared(columns, 1, INCHES)}
-    felt = [column.found.end_masses["stick"] for column in (columns[0], columns[3]) if column.found]
+    felt = [column.answers.end_masses["stick"] for column in (columns[0], columns[3]) if column.answers]
     assert lines["end_mass_stick"].parts[:3] == ["the same", "", "–"]
     part = float(lines["end_mass_stick"].parts[3].removesuffix("\u00a0%").replace("−", "-"))
     assert part == pytest.approx(100 * (felt[1] / felt[0] - 1), abs=0.051)
@@ -189,7 +189,7 @@ def test_designs_stand_side_by_side_like_with_like() -> None:
     assert rows_read[0][:6] == ["", "unit", "this design", "this design, % from b", "b", """'=1+"thin, new\""""]
     assert {len(row) for row in rows_read} == {9}
     squirt = next(row for row in rows_read if row[0].startswith("squirt"))
-    assert float(squirt[7]) == pytest.approx(np.degrees(columns[3].found.strike["squirt"]), abs=5e-4)  # type: ignore[union-attr]
+    assert float(squirt[7]) == pytest.approx(np.degrees(columns[3].answers.strike["squirt"]), abs=5e-4)  # type: ignore[union-attr]
     assert float(squirt[8]) < 0
 
 
