@@ -8,15 +8,13 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 import cuefem as cf
 from cuefem.cli.printing import print_all
-from cuefem.report.words import effect_words
 from cuefem.squirt import alciatore_a31, natural_pivot_length
-from tests.helpers.command_line import call
+from tests.helpers.command_line import as_json, call, said
 
 KIM = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 782.3284453057836), kappa=0.9),), 0.42)
 BALL = cf.Ball()
@@ -43,21 +41,12 @@ def scene(tmp_path: Path) -> str:
 
 
 SCENE = cf.Scene(
-    KIM, cf.Ball(0.17, 0.028575), cf.Tip(0.8, 0.6, 1e-3), cf.Stroke(2.0, -0.2), (cf.PointMass(0.1, 0.005),)
+    KIM,
+    cf.Ball(0.17, 0.028575),
+    cf.Tip(0.8, 0.6, 1e-3),
+    cf.Stroke(2.0, -0.2),
+    (cf.PointMass(0.1, 0.005), cf.Elevation(math.radians(5)), cf.AxialWaves()),
 )
-
-
-def run(*arguments: str) -> str:
-    status, out, err = call(*arguments)
-    assert (status, err) == (0, "")
-    return out
-
-
-def as_json(*arguments: str) -> Any:
-    def no_constant(name: str) -> None:
-        raise AssertionError(f"{name} is no JSON")
-
-    return json.loads(run(*arguments, "--json"), parse_constant=no_constant)
 
 
 def test_modes(kim: str) -> None:
@@ -69,7 +58,7 @@ def test_modes(kim: str) -> None:
     assert as_json("modes", kim, "--near", "0.25 kHz", "--count", "2")["frequencies"] == found["frequencies"]
     lowest = as_json("modes", kim)["frequencies"]
     assert lowest == pytest.approx(cf.modes(KIM).frequencies.tolist(), rel=1e-12)
-    shown = run("modes", kim, "--count", "1")
+    shown = said("modes", kim, "--count", "1")
     assert f"{lowest[0]:.2f} Hz" in shown
     assert "2 rigid motions" in shown
 
@@ -84,9 +73,17 @@ def test_end_mass(kim: str) -> None:
         assert values["cue_end_mass"] == pytest.approx(4 * values["end_mass"], rel=1e-12)
         assert values["eps"] == pytest.approx(values["cue_end_mass"] / 0.21, rel=1e-12)
         assert values["lowest"] <= values["end_mass"] <= values["highest"] < 1.02 * values["lowest"]
-    shown = run("end-mass", kim, "--contact-time", "1 ms")
+    shown = said("end-mass", kim, "--contact-time", "1 ms")
     assert f"{1e3 * found['drives']['stick']['end_mass']:.3f} g" in shown
     assert "head-on contact time 1 ms, e 0.75, mu 0.7" in shown
+
+
+def test_the_papers_own_end_mass_is_shown_where_it_is_asked_for(kim: str) -> None:
+    plain, paper = (" ".join(said("end-mass", kim, *more).split()) for more in ((), ("--paper",)))
+    assert "m_c" not in plain
+    assert "eps" not in plain
+    assert "m_c = 4 m_e: cue end of the paper's two-part cue" in paper
+    assert "eps: m_c as a part of the ball's mass" in paper
 
 
 def test_strike(kim: str) -> None:
@@ -102,39 +99,30 @@ def test_strike(kim: str) -> None:
         assert model["pivot_length"] == pytest.approx(pivot, rel=1e-12)
     a31 = alciatore_a31(0.3, mass_ratio=BALL.mass / cf.end_mass(blow, "offset"))
     assert found["A.31"]["squirt"] == pytest.approx(a31, rel=1e-12)
-    assert f"{math.degrees(a31):.3f}°" in run("strike", kim)
+    assert f"{math.degrees(a31):.3f}°" in said("strike", kim)
 
 
 def test_a_miscue_is_said_first(kim: str) -> None:
-    caption = run("strike", kim, "--offset", "0.85").split("grip")[1]
+    caption = said("strike", kim, "--offset", "0.85").split("grip")[1]
     assert "miscue" in caption.splitlines()[0]
     assert caption.index("this stroke miscues: ") < caption.index("head-on contact time 2 ms")
-    assert "miscues" not in run("strike", kim)
+    assert "miscues" not in said("strike", kim)
 
 
 def test_head_on_there_is_no_pivot(kim: str) -> None:
     model = as_json("strike", kim, "--offset", "0")["models"]["two-part"]
     assert (model["squirt"], model["pivot_length"]) == (0, None)
-    assert "Strike at offset b/R = 0" in run("strike", kim, "--offset", "0")
+    assert "Strike at offset b/R = 0" in said("strike", kim, "--offset", "0")
 
 
 def test_a_scene_file_uses_its_own(scene: str) -> None:
     found = as_json("strike", scene)
     assert found["assumed"] == []
-    assert found["scene"]["effects"] == [{"type": "PointMass", "position": 0.1, "mass": 0.005, "rotary_inertia": 0}]
+    assert found["scene"]["effects"][0] == {"type": "PointMass", "position": 0.1, "mass": 0.005, "rotary_inertia": 0}
     assert found["models"]["coupled"]["squirt"] == pytest.approx(cf.strike(SCENE).squirt, rel=1e-12)
-    shown = run("strike", scene)
-    assert "effects: PointMass (position 100 mm, mass 5 g)" in shown
+    shown = said("strike", scene)
+    assert "effects: PointMass (position 100 mm, mass 5 g), Elevation (angle 5 deg), AxialWaves" in shown
     assert "assumed" not in shown
-
-
-def test_an_effect_in_words() -> None:
-    assert effect_words(cf.Elevation(math.radians(5))) == "Elevation (angle 5 deg)"
-    assert effect_words(cf.TipShear(0.75)) == "TipShear (ratio 0.75)"
-    assert effect_words(cf.Support(0.2, math.inf)) == "Support (position 200 mm, stiffness inf N/m)"
-    assert effect_words(cf.AxialWaves()) == "AxialWaves"
-    leather = cf.LeatherTip(6e-3, 9.5e-3, 0.14e9)
-    assert effect_words(leather) == "LeatherTip (height 6 mm, dome radius 9.5 mm, E 140 MPa)"
 
 
 def test_options_replace_what_a_scene_says(scene: str) -> None:
@@ -154,23 +142,23 @@ def test_report(kim: str) -> None:
             assert models[f"{many}, this cue"][key][2] == pytest.approx(one[single][key], rel=1e-12)
     paper = cf.Scene(cf.LumpedCue.two_part(KIM.mass, 0.012), stroke=BLOW)
     assert models["two-part, 12 g"]["squirt"][2] == pytest.approx(cf.impulse(paper).squirt, rel=1e-12)
-    shown = run("report", kim)
+    shown = said("report", kim)
     for title in ("Bending modes", "Effective end mass", "Squirt", "Natural pivot length"):
         assert f"\n{title} " in shown
 
 
 @pytest.mark.heavy
 def test_a_report_says_first_that_the_stroke_miscues(kim: str, tmp_path: Path) -> None:
-    shown = run("report", kim, "--offset", "0.7")
+    shown = said("report", kim, "--offset", "0.7")
     assert 0 < shown.index("this stroke miscues: ") < shown.index("Bending modes")
     assert as_json("report", kim, "--offset", "0.7")["regime"] == "miscue"
-    assert "miscue" not in run("report", kim)
+    assert "miscue" not in said("report", kim)
     slippery = cf.Scene(KIM, tip=cf.Tip(friction=0.35), stroke=BLOW)
     cf.save(slippery, tmp_path / "slippery.toml")
     regimes = [cf.strike(cf.Scene(KIM, tip=slippery.tip, stroke=cf.Stroke(offset=b))).regime for b in (0.1, 0.4, 0.5)]
     assert regimes[0] != "miscue"
     assert regimes[1:] == ["miscue", "miscue"]
-    rows = [line for line in run("report", str(tmp_path / "slippery.toml")).splitlines() if line.strip()[:3] == "0.4"]
+    rows = [line for line in said("report", str(tmp_path / "slippery.toml")).splitlines() if line.strip()[:3] == "0.4"]
     assert all("miscue" in row for row in rows)
     assert len(rows) == 2  # of squirt and of pivot length
 
@@ -180,27 +168,16 @@ def test_a_lumped_cue_has_no_modes_but_the_rest(tmp_path: Path) -> None:
     found = as_json("report", str(tmp_path / "lumped.toml"))
     assert "modes" not in found
     assert found["end_masses"]["drives"]["force"]["end_mass"] == 0.006
-    assert "lumped cue, 540.0 g, end mass 6.000 g" in run("report", str(tmp_path / "lumped.toml"))
+    assert "lumped cue, 540.0 g, end mass 6.000 g" in said("report", str(tmp_path / "lumped.toml"))
 
 
-def test_a_profile_announces_its_material(tmp_path: Path) -> None:
+def test_a_profile_announces_its_material_and_that_nothing_is_behind_it(tmp_path: Path) -> None:
     (tmp_path / "shaft.csv").write_text("x [mm],diameter [mm]\n0,12\n700,21\n")
     shaft = str(tmp_path / "shaft.csv")
     assert as_json("modes", shaft)["assumed"][0] == "material hard maple (choose with --material)"
-    assert "material hard maple" not in run("modes", shaft, "--material", "ash")
-    run("convert", shaft, str(tmp_path / "shaft.toml"), "--material", "ash")
+    assert "material hard maple" not in said("modes", shaft, "--material", "ash")
+    said("convert", shaft, str(tmp_path / "shaft.toml"), "--material", "ash")
     assert cf.load(tmp_path / "shaft.toml") == cf.load(shaft, material="ash")
-
-
-def test_the_package_of_commands_runs_as_a_program() -> None:
-    done = subprocess.run([sys.executable, "-m", "cuefem.cli", "--version"], capture_output=True, text=True)
-    assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout.startswith("cuefem, version ")
-
-
-def test_a_profile_announces_that_nothing_is_behind_it(tmp_path: Path) -> None:
-    (tmp_path / "shaft.csv").write_text("x [mm],diameter [mm]\n0,12\n700,21\n")
-    shaft = str(tmp_path / "shaft.csv")
     words = "no mass behind the shaft (--body-mass gives it)"
     assert words in json.loads(call("strike", shaft, "--json")[1])["assumed"]  # and a remark on stderr
     whole = as_json("strike", shaft, "--body-mass", "15 oz")
@@ -227,14 +204,6 @@ def test_a_scene_announces_what_it_leaves_out(cue: str, tmp_path: Path) -> None:
     ]
 
 
-def test_convert(cue: str, tmp_path: Path) -> None:
-    goal = str(tmp_path / "cue.vtu")
-    assert run("convert", cue, goal) == f"wrote {goal}\n"
-    assert cf.load(goal) == KIM
-    assert run("convert", cue, goal, "--force", "--body-mass", "15 oz") == f"wrote {goal}\n"
-    assert cf.load(goal) == replace(KIM, body_mass=0.425242846875)
-
-
 SOLID = (
     'no ferrule, no bore: add them with --ferrule "25 mm melamine" and --bore "6 mm wide, 127 mm deep" or columns '
     'of those names; the drawing begins at the ferrule, and the tip is put in front (--begins "leather 6 mm" if it has '
@@ -242,23 +211,25 @@ SOLID = (
 )
 
 
-def test_convert_says_what_it_assumed(scene: str, tmp_path: Path) -> None:
+def test_convert(cue: str, scene: str, tmp_path: Path) -> None:
+    mesh = str(tmp_path / "cue.vtu")
+    assert said("convert", cue, mesh) == f"wrote {mesh}\n"
+    assert cf.load(mesh) == KIM
+    assert said("convert", cue, mesh, "--force", "--body-mass", "15 oz") == f"wrote {mesh}\n"
+    assert cf.load(mesh) == replace(KIM, body_mass=0.425242846875)
     (tmp_path / "shaft.csv").write_text("x [mm],diameter [mm]\n0,12\n700,21\n")
     shaft, goal = str(tmp_path / "shaft.csv"), str(tmp_path / "shaft.toml")
-    assert run("convert", shaft, goal).splitlines() == [
-        "assumed: material hard maple (choose with --material); no mass behind the shaft (--body-mass gives it); "
-        f"{SOLID}",
-        f"wrote {goal}",
-    ]
-    told = run("convert", shaft, goal, "--body-mass", "420 g", "--material", "ash", "--force")
+    left = "material hard maple (choose with --material); no mass behind the shaft (--body-mass gives it)"
+    assert said("convert", shaft, goal) == f"assumed: {left}; {SOLID}\nwrote {goal}\n"
+    told = said("convert", shaft, goal, "--body-mass", "420 g", "--material", "ash", "--force")
     assert told == f"assumed: {SOLID}\nwrote {goal}\n"
     assert cf.load(goal).body_mass == 0.42
-    run("convert", scene, goal, "--body-mass", "0.4 kg", "--force")
+    said("convert", scene, goal, "--body-mass", "0.4 kg", "--force")
     assert cf.load(goal) == replace(SCENE, cue=replace(KIM, body_mass=0.4))
 
 
 def test_schema_is_json() -> None:
-    assert json.loads(run("schema")) == as_json("schema")
+    assert json.loads(said("schema")) == as_json("schema")
 
 
 STUDY = """
@@ -269,6 +240,12 @@ def claims():
 """
 
 
+def test_the_package_of_commands_runs_as_a_program() -> None:
+    done = subprocess.run([sys.executable, "-m", "cuefem.cli", "--version"], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("cuefem, version ")
+
+
 def test_validate(tmp_path: Path) -> None:
     studies = tmp_path / "papers"
     studies.mkdir()
@@ -277,7 +254,7 @@ def test_validate(tmp_path: Path) -> None:
     (claim,) = as_json("validate", "--studies", str(studies))["claims"]
     assert (claim["study"], claim["printed"], claim["derived"], claim["verdict"]) == ("kim", 1.0, 0.728, "rounding")
     assert claim["difference"] == pytest.approx(0.272 / 0.728, rel=1e-12)
-    shown = run("validate", "--studies", str(studies))
+    shown = said("validate", "--studies", str(studies))
     assert "[Kim] sec. 4" in shown
     assert "1 rounding" in shown
     assert "slip: a slip in the paper" in " ".join(shown.split())
@@ -287,7 +264,7 @@ def test_materials() -> None:
     found = as_json("materials")
     assert "hard maple" in found["materials"]
     assert found["leathers"]["medium"]["E"] == 140e6
-    shown = run("materials")
+    shown = said("materials")
     assert "hard maple" in shown
     assert "hard leather of a LeatherTip: E 360 MPa; 0.8 ms head on" in shown
 

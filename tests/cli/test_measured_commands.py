@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -14,7 +13,7 @@ from cuefem.io.documented import TEMPLATE, load_documented
 from cuefem.measured.documented import compare
 from cuefem.measured.estimate import estimate
 from cuefem.measured.kinds import KINDS
-from tests.helpers.command_line import call
+from tests.helpers.command_line import as_json, call, said
 from tests.helpers.documented import SOME, folder
 from tests.helpers.refusals import command_refuses
 
@@ -23,9 +22,7 @@ SAMPLE = ("--sample", "500")
 
 def test_numbers(tmp_path: Path) -> None:
     place = folder(tmp_path / "cue")
-    status, out, err = call("compare", place, "--json")
-    assert (status, err) == (0, "")
-    found = json.loads(out)
+    found = as_json("compare", place)
     cue, _ = load_documented(place)
     for told, row in zip(found["rows"], compare(cue), strict=True):
         assert told["what"] == row.measurement.label
@@ -33,14 +30,9 @@ def test_numbers(tmp_path: Path) -> None:
     assert found["name"] == "a cue"
     assert "ball 210 g" in found["assumed"][1]
     assert found["lacking"] == cue.lacking != []
-
-
-def test_a_table_for_people(tmp_path: Path) -> None:
-    status, out, err = call("compare", folder(tmp_path / "cue"))
-    assert (status, err) == (0, "")
-    assert "weight of the shaft" in out
-    assert "100.00 ± 0.50 g" in out
-    assert "not measured, and what that costs" in out
+    out = said("compare", place)
+    for words in ("weight of the shaft", "100.00 ± 0.50 g", "not measured, and what that costs"):
+        assert words in out
 
 
 def test_series_and_file_are_read_alike(tmp_path: Path) -> None:
@@ -118,9 +110,8 @@ def test_the_page_has_every_row(tmp_path: Path) -> None:
 
 def test_an_estimate_and_its_sampler(tmp_path: Path) -> None:
     place = folder(tmp_path / "cue")
-    status, out, err = call("estimate", place, "--json", "--sample", "500", "--seed", "3")
-    assert (status, err) == (0, "")
-    told, found = json.loads(out), estimate(load_documented(place)[0])
+    told = as_json("estimate", place, "--sample", "500", "--seed", "3")
+    found = estimate(load_documented(place)[0])
     assert [value["value"] for value in told["values"]] == pytest.approx([value.value for value in found.values])
     assert told["misfit"] == pytest.approx(found.misfit)
     assert (told["converged"], told["sampled"]["draws"] >= 500) == (True, True)
@@ -128,17 +119,11 @@ def test_an_estimate_and_its_sampler(tmp_path: Path) -> None:
     assert all(0 < worth["left"] <= 1 and worth["bits"] >= 0 for worth in told["next"])
 
 
-def test_an_estimate_for_people(tmp_path: Path) -> None:
-    status, out, err = call("estimate", folder(tmp_path / "cue"))
-    assert (status, err) == (0, "")
+def test_an_estimate_for_people_tells_contradictions(tmp_path: Path) -> None:
+    weights = "".join(f'[[weight]]\nvalue = "{mass} g"\nerror = "0.5 g"\n' for mass in (90, 100, 110))
+    out = said("estimate", folder(tmp_path / "cue", SOME + weights))
     for words in ("E of the wood", "diameter of the bore", "What to measure next", "squirt at b/R 0.3 by the model"):
         assert words in out
-
-
-def test_contradictions_are_told(tmp_path: Path) -> None:
-    weights = "".join(f'[[weight]]\nvalue = "{mass} g"\nerror = "0.5 g"\n' for mass in (90, 100, 110))
-    status, out, err = call("estimate", folder(tmp_path / "cue", weights))
-    assert (status, err) == (0, "")
     assert "It is too large: a measurement, an error or the model is wrong" in out
 
 

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+import cuefem as cf
+from cuefem.materials import material
 from tests.helpers.command_line import call
 from tests.helpers.refusals import untouched
 
@@ -23,17 +25,7 @@ butt_bore = "4 mm"
 material = { E = "12.6 GPa", G = "840 MPa", rho = "782 kg/m^3" }
 """
 CSV = "x [mm],diameter [mm]\n"
-
-
-def refused(*arguments: str | Path) -> str:
-    """What a command says on stderr, once it is clear that it says nothing else and writes nothing."""
-    status, out, err = call(*arguments)
-    assert (status, out) == (2, "")
-    assert err.count("\n") == 1
-    assert err.startswith("cuefem: ")
-    return err.removeprefix("cuefem: ").rstrip("\n")
-
-
+SHAFT = cf.Cue((cf.Segment(0.7, 0.0118, 0.021, material("hard maple")),), 0.42)
 FILES = {
     "good.toml": GOOD,
     "bad.toml": GOOD.replace("700 mm", "-700 mm"),
@@ -43,62 +35,83 @@ FILES = {
     "off.toml": "cue = 'good.toml'\n[[effects]]\ntype = 'PointMass'\nposition = '29 in'\nmass = '5 g'\n",
     "of_none.toml": "cue = 'none.toml'\n",
     "of_bad.toml": "cue = 'bad.toml'\n",
-    "shaft.csv": CSV + "0,12\n700,21\n",
+    "bare.csv": CSV + "0,12\n700,21\n",
     "back.csv": CSV + "0,12\n700,21\n350,16\n",
     "headless.csv": "0,12\n700,21\n",
     **{f"kept.{suffix}": "somebody's work" for suffix in ("toml", "vtk", "vtu")},
 }
-HERTZ = 'good.toml: --near: must be 0 Hz or more, such as 250 or "0.25 kHz"; got '
-LENGTH = 'a length with its unit, such as "12 mm"; got '
+SAVED = {
+    "shaft.toml": SHAFT,
+    "spring.toml": cf.Scene(SHAFT, stroke=cf.Stroke(offset=0.3)),
+    "leather.toml": cf.usual_scene(SHAFT),
+}
+WEIGH = "weigh --ball-mass '8 g' --before '200 mm' --after '-34 mm' --held-after '162 mm' --thread '1 m'"
 # Commands on these files, each with a part of the one line that says why they are refused.
 COMMANDS = [
+    # numbers and their units
     ("strike good.toml --offset 1", "good.toml: --offset: must be between -1 and 1; got 1.0"),
-    ("strike good.toml --offset -1.5", "good.toml: --offset: must be between -1 and 1; got -1.5"),
     ("strike good.toml --offset nan", "good.toml: --offset: must be between -1 and 1; got nan"),
-    (
-        "strike good.toml --offset half",
-        "good.toml: --offset: must be a bare number, between -1 and 1, b/R, or a length such as \"8 mm\"; got 'half'",
-    ),
+    ("strike good.toml --offset half", "good.toml: --offset: must be a bare number, between -1 and 1, b/R, or a lengt"),
+    ("strike shaft.toml --offset 0,3", "or a length such as \"8 mm\"; got '0,3'; a decimal point, no comma"),
+    ("strike shaft.toml --offset '8 kg'", "b/R, or a length such as \"8 mm\"; got '8 kg'"),
+    ("strike shaft.toml --offset '40 mm'", "1, or a length of less than 28.575 mm, the radius of the ball; got '40 mm"),
+    ("strike shaft.toml --restitution 2", "shaft.toml: --restitution: must be 0 to 1; got 2.0"),
+    ("strike shaft.toml --speed fast", "cuefem: shaft.toml: --speed: must be a speed with its unit, such as"),
+    ("strike shaft.toml --speed 1e400", "a number that is not so large, with its unit; got 1e400"),
     ("end-mass good.toml --contact-time 2", "--contact-time: needs a unit: \"1.2 ms\"; got '2'"),
     ("end-mass good.toml --contact-time '-2 ms'", "good.toml: --contact-time: must be 0.001 to 10000 ms; got -2 ms"),
     ("report good.toml --contact-time '2 mm'", "--contact-time: must be a time with its unit, such"),
     ("report good.toml --body-mass '-1 oz'", "good.toml: --body-mass: must be 0 oz or more; got -1 oz"),
-    ("modes good.toml --near -250", f"{HERTZ}'-250'"),
-    ("modes good.toml --near abc", f"{HERTZ}'abc'"),
-    ("modes good.toml --near '3 mm'", f"{HERTZ}'3 mm'"),
+    ("modes good.toml --near -250", "good.toml: --near: must be 0 Hz or more, such as 250 or \"0.25 kHz\"; got '-250'"),
+    ("modes good.toml --near '3 mm'", "--near: must be 0 Hz or more, such as"),
+    ("side shaft.toml --contact-time '10 s'", "--contact-time: must be 1e-6 to 0.5 s; got 10 s"),
+    (f"{WEIGH} --contact-time '1 ms' --material ash", "--material: must go with --scene, whose shape it is for; got n"),
+    # the tip and the game
+    ("report shaft.toml --ball chess", "'chess' is not one of 'pool', 'carom', 'snooker' (`"),
+    ("strike spring.toml --game pool", "--game: must be left out: FILE is a scene"),
+    ("strike spring.toml --dome dime", "--dome: must be left out: the scene has no LeatherTip among its effects"),
+    ("strike lumped.toml --leather soft", "--leather: must be left out: the scene has no LeatherTip"),
+    ("strike leather.toml --contact-time 1ms", "--contact-time: must be left out beside LeatherTip, from which it"),
+    ("strike shaft.toml --contact-time 1ms --dome dime", "--dome: must be left out beside --contact-time"),
+    ("strike shaft.toml --dome penny", 'such as "12 mm", or "dime", "nickel", "flat"; got \'penny\''),
+    ("strike shaft.toml --leather sofd", "\"le professional\"; got 'sofd'"),
+    ("strike shaft.toml --restitution 0.05", "Tip.restitution must be in [0.1, 1] beside LeatherTip; got 0.05: leathe"),
+    ("strike shaft.toml --tip-height 40mm", "got 40 mm (--tip-height, --dome, --contact-time change it)"),
+    ("modes shaft.toml --tip-height 40mm", "got 40 mm (--tip-height, --dome change it)"),
+    ("strike leather.toml --tip-height 40mm", " mm high; got 40 mm"),
+    ("strike shaft.toml --leather 1MPa", "further than its law is known"),
+    ("strike shaft.toml --leather 1MPa", "(--tip-height, --leather, --speed)"),
+    ("tip leather.toml --leather '0 MPa'", "--leather: must be more than 0 MPa; got 0 MPa"),
+    ("tip leather.toml --leather '9 MPa' --contact-time '1 ms'", "--leather: must be left out with --contact-time"),
+    ("tip leather.toml --contact-time '8 ms'", "the tip's leather is compressed by"),
+    ("tip spring.toml", "Scene.effects must hold a LeatherTip; got none"),
+    # the drawing, and what is said beside it
     ("modes lumped.toml --material ash", "is a lumped cue, which has no material, ferrule or bore"),
-    (
-        "modes good.toml --begins ferrule",
-        "has its own leather: begins is for .csv, .stl, .ply and .obj files alone; got",
-    ),
-    (
-        "modes shaft.csv --begins leather",
-        'begins must be "ferrule" or the leather with its height, such as "leather 6 mm"',
-    ),
-    ("modes shaft.csv --begins 'leather 40 mm'", "begins must have at most 30 mm of leather; got 'leather 40 mm'"),
-    ("modes shaft.csv --ferrule melamine", 'ferrule must be a length and a material, such as "25 mm melamine"; got'),
-    ("modes shaft.csv --ferrule '25 mm'", 'ferrule must be a length and a material, such as "25 mm melamine"; got'),
-    ("modes shaft.csv --ferrule '25 mm cheese'", "no material is called 'cheese'; "),
-    ("modes shaft.csv --ferrule '70 mm abs'", "ferrule must be at most 60 mm long; got '70 mm abs'"),
-    ("modes shaft.csv --ferrule '25 mm abs, tenon 14 mm'", "must be "),
-    ("modes shaft.csv --ferrule '25 mm abs, glued'", 'ferrule must be such as "25 mm melamine, tenon 8 mm" or "25 mm'),
-    ("modes shaft.csv --bore '6 mm'", 'bore must be a width and a depth, such as "6 mm wide, 127 mm deep"; got'),
-    ("modes shaft.csv --bore '6, 127 mm'", "bore must have lengths above 0 with a unit, "),
-    (
-        "modes shaft.csv --bore '15 mm wide, 127 mm deep'",
-        "the bore must be narrower than the cue, 12 mm there; got",
-    ),
-    ("modes shaft.csv --bore '6 mm wide, 2 m deep'", "the bore must be at most 700 mm deep; got 2000 mm"),
+    ("modes good.toml --begins ferrule", "has its own leather: begins is for .csv, .stl, .ply and .obj files alone; g"),
+    ("modes bare.csv --begins leather", 'begins must be "ferrule" or the leather with its height, such as "leather 6 '),
+    ("modes bare.csv --begins 'leather 40 mm'", "begins must have at most 30 mm of leather; got 'leather 40 mm'"),
+    ("modes bare.csv --ferrule melamine", 'ferrule must be a length and a material, such as "25 mm melamine"; got'),
+    ("modes bare.csv --ferrule '25 mm'", 'ferrule must be a length and a material, such as "25 mm melamine"; got'),
+    ("modes bare.csv --ferrule '25 mm cheese'", "no material is called 'cheese'; "),
+    ("modes bare.csv --ferrule '70 mm abs'", "ferrule must be at most 60 mm long; got '70 mm abs'"),
+    ("modes bare.csv --ferrule '25 mm abs, tenon 14 mm'", "must be "),
+    ("modes bare.csv --ferrule '25 mm abs, glued'", 'ferrule must be such as "25 mm melamine, tenon 8 mm" or "25 mm'),
+    ("modes bare.csv --bore '6 mm'", 'bore must be a width and a depth, such as "6 mm wide, 127 mm deep"; got'),
+    ("modes bare.csv --bore '6, 127 mm'", "bore must have lengths above 0 with a unit, "),
+    ("modes bare.csv --bore '15 mm wide, 127 mm deep'", "the bore must be narrower than the cue, 12 mm there; got"),
+    ("modes bare.csv --bore '6 mm wide, 2 m deep'", "the bore must be at most 700 mm deep; got 2000 mm"),
     ("modes back.csv", "back.csv: line 4, x: must be beyond 700 mm, the x of the line before"),
     ("modes headless.csv", 'headless.csv: line 1: must name the columns, such as "x [mm],diameter [mm]"'),
-    ("modes shaft.csv --material 'hard mapel'", "hard maple"),
-    ("modes shaft.csv --material 'hard mapel'", "see `cuefem materials`"),
-    ("strike of_none.toml", "of_none.toml: cue: none.toml: cannot be read: No such file or directory"),
-    ("strike of_bad.toml", "cuefem: bad.toml: segments[0].length: must be more than 0"),
-    ("modes inn.toml", f"{LENGTH}'28 inn': no unit is called 'inn'; did you mean 'in'?"),
+    ("modes bare.csv --material 'hard mapel'", "hard maple"),
+    ("modes bare.csv --material 'hard mapel'", "see `cuefem materials`"),
     ("modes lumped.toml", "lumped.toml: Scene.cue must be a Cue of segments: its modes or its shape are needed; got"),
     ("modes lumped.toml --body-mass '1 kg'", "lumped.toml: --body-mass: must be left out: a lumped cue is whole"),
     ("convert lumped.toml out.toml --body-mass '1 kg'", "--body-mass: must be left out: a lumped cue is whole"),
+    # files
+    ("strike of_none.toml", "of_none.toml: cue: none.toml: cannot be read: No such file or directory"),
+    ("strike of_bad.toml", "cuefem: bad.toml: segments[0].length: must be more than 0"),
+    ("modes bad.toml", "bad.toml: segments[0].length: must be more than 0 and at most 1000 m; got -700 mm"),
+    ("modes inn.toml", "a length with its unit, such as \"12 mm\"; got '28 inn': no unit is called 'inn'; did you"),
     *(
         (f"{command} off.toml", "cuefem: off.toml: effects[0].position: must be 0 to 700 mm, on the cue; got 736.6 mm")
         for command in ("strike", "effects", "report", "report -o page.html")
@@ -110,36 +123,38 @@ COMMANDS = [
         for kind in ("toml", "vtk", "vtu")
     ),
     *((f"convert good.toml kept.{kind}", "is there already: --force replaces it") for kind in ("toml", "vtk", "vtu")),
+    ("modes shaft.toml -o none/modes.html", "cuefem: none/modes.html: cannot be written: No such file or directory"),
+    ("sweep none.toml -o x.sqlite", "--store names the file that keeps designs"),
+    ("validate --studies none", "none: cannot be read: no such folder of studies; they are in a clone of cuefem's rep"),
+    ("validate --studies empty", "empty: must hold studies (.py) that define claims(), got none; they are in a clone "),
+    # wrong use
+    ("strike", "--help` lists the options)"),
+    ("nonsense", "--help` lists the options)"),
+    ("--frog", "--frog"),
+    ("modes shaft.toml --count 0", "--help` lists the options)"),
+    ("strike shaft.toml --offset", "Option '--offset' requires an argument"),
 ]
 
 
-@pytest.mark.parametrize(("command", "message"), COMMANDS)
-def test_commands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: str, message: str) -> None:
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Everything that these commands are called on; each leaves it as it is."""
+    folder = tmp_path_factory.mktemp("refused")
     for name, content in FILES.items():
-        (tmp_path / name).write_text(content)
-    monkeypatch.chdir(tmp_path)
-    untouched(tmp_path, message, *shlex.split(command))
+        (folder / name).write_text(content)
+    for name, thing in SAVED.items():
+        cf.save(thing, folder / name)
+    (folder / "empty").mkdir()
+    return folder
 
 
-def test_no_studies(tmp_path: Path) -> None:
-    missing = tmp_path / "studies"
-    where = "they are in a clone of cuefem's repository: run there, or name their folder with --studies"
-    assert refused("validate", "--studies", missing) == f"{missing}: cannot be read: no such folder of studies; {where}"
-    missing.mkdir()
-    said = refused("validate", "--studies", missing)
-    assert said == f"{missing}: must hold studies (.py) that define claims(), got none; {where}"
+@pytest.mark.parametrize(("command", "message"), COMMANDS)
+def test_commands(folder: Path, monkeypatch: pytest.MonkeyPatch, command: str, message: str) -> None:
+    monkeypatch.chdir(folder)
+    untouched(folder, message, *shlex.split(command))
 
 
-def test_wrong_use_ends_with_status_2() -> None:
-    for arguments in (["strike"], ["nonsense"], ["modes", "file.toml", "--count", "0"]):
-        status, out, err = call(*arguments)
-        assert (status, out) == (2, "")
-        (line,) = err.splitlines()
-        assert line.startswith("cuefem: ")
-        assert line.endswith("--help` lists the options)")
-
-
-def test_output_that_cannot_be_written(tmp_path: Path) -> None:
+def test_output_that_cannot_be_written() -> None:
     program = "from cuefem.cli import main; main()"
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
     environment.pop("PYTHONUNBUFFERED", None)  # what stays in the buffer would fail once more at the end
@@ -151,45 +166,34 @@ def test_output_that_cannot_be_written(tmp_path: Path) -> None:
         assert (done.returncode, done.stderr) == (1, "cuefem: cannot write: No space left on device\n")
 
 
-def test_a_whole_process_says_one_line(tmp_path: Path) -> None:
-    bad = tmp_path / "bad.toml"
-    bad.write_text(GOOD.replace("700 mm", "-700 mm"))
-    program = "from cuefem.cli import main; main()"
-    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
-    done = subprocess.run(
-        [sys.executable, "-c", program, "modes", str(bad)], capture_output=True, text=True, env=environment
-    )
-    assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr == f"cuefem: {bad}: segments[0].length: must be more than 0 and at most 1000 m; got -700 mm\n"
-
-
 @pytest.mark.parametrize(("was", "size"), [("700 mm", "1e-300 m"), ("782 kg/m^3", "1e308 kg/m^3")])
 def test_sizes_out_of_all_proportion(was: str, size: str, tmp_path: Path) -> None:
     """In bounds, but no double holds what follows from them: status 2, said in one line, no traceback."""
     path = tmp_path / "cue.toml"
     path.write_text(GOOD.replace(was, size), encoding="utf-8")
     status, out, err = call("strike", path)
-    assert status == 2
-    assert out == ""
-    assert [line for line in err.splitlines() if not line.startswith("unusual")] == [err.splitlines()[-1]]
-    assert "out of all proportion" in err
+    *remarks, last = err.splitlines()
+    assert (status, out) == (2, "")
+    assert all(line.startswith("unusual") for line in remarks)
+    assert "out of all proportion" in last
 
 
 @pytest.mark.parametrize("command", ["report", "end-mass"])
 def test_a_tip_as_thin_as_a_hair(tmp_path: Path, command: str) -> None:
     path = tmp_path / "cue.toml"
     path.write_text(GOOD.replace("tip_bore", "# tip_bore").replace("butt_bore", "# ").replace("12 mm", "0.012 mm"))
-    status, out, err = call(command, path)
-    assert (status, out) == (2, "")
-    assert err.splitlines()[0].startswith("unusual: segments[0].tip_diameter 0.012 mm; check the unit")
-    assert err.splitlines()[-1].startswith(
-        f"cuefem: {path}: a leather tip on 0.012 mm must be 0.0006 to 0.036 mm high; got 6 mm"
-    )
-    status, out, err = call(command, path, "--contact-time", "2 ms", "--ball", "carom")
-    assert (status, out) == (2, "")
-    assert err.splitlines()[0].startswith("unusual: segments[0].tip_diameter 0.012 mm; check the unit")
-    assert err.splitlines()[-1].startswith(f"cuefem: {path}: the end mass comes out as -")
-    assert err.splitlines()[-1].endswith("check sizes, E and the contact time")
+    spring = ("--contact-time", "2 ms", "--ball", "carom")
+    high = "a leather tip on 0.012 mm must be 0.0006 to 0.036 mm high; got 6 mm"
+    for more, words, end in (
+        ((), high, ""),
+        (spring, "the end mass comes out as -", "check sizes, E and the contact time"),
+    ):
+        status, out, err = call(command, path, *more)
+        first, *_, last = err.splitlines()
+        assert (status, out) == (2, "")
+        assert first.startswith("unusual: segments[0].tip_diameter 0.012 mm; check the unit")
+        assert last.startswith(f"cuefem: {path}: {words}")
+        assert last.endswith(end)
 
 
 def test_more_memory_than_there_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -199,7 +203,5 @@ def test_more_memory_than_there_is(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr("cuefem.cli.tones.modes_record", full)
     path = tmp_path / "cue.toml"
     path.write_text(GOOD, encoding="utf-8")
-    said = (
-        "cuefem: this needs more memory than there is: ask for less, or check sizes, masses and times (MemoryError)\n"
-    )
-    assert call("modes", path, "--count", "1000000") == (2, "", said)
+    why = "this needs more memory than there is: ask for less, or check sizes, masses and times (MemoryError)"
+    assert call("modes", path, "--count", "1000000") == (2, "", f"cuefem: {why}\n")

@@ -1,4 +1,5 @@
-"""A cue alone on the command line: a game's usual stroke, the options that change it, and what is said (regression)."""
+"""A cue alone on the command line: a game's usual stroke, the options that change it, what is typed, and what the tip
+alone does (regression)."""
 
 from __future__ import annotations
 
@@ -6,7 +7,6 @@ import json
 import re
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import click
 import pytest
@@ -15,8 +15,8 @@ import cuefem as cf
 from cuefem.cli import COMMANDS, main
 from cuefem.games import GAMES
 from cuefem.materials import LEATHERS, material
-from tests.helpers.command_line import call
-from tests.helpers.refusals import untouched
+from cuefem.report.tip import SHEAR_OFFSETS, SPEEDS
+from tests.helpers.command_line import as_json, call, said
 
 SHAFT = cf.Cue((cf.Segment(0.7, 0.0118, 0.021, material("hard maple")),), 0.42)
 DRAWN = cf.Cue((cf.Segment(5e-3, 0.0118, 0.0118, material("leather")), *SHAFT.segments), 0.42)
@@ -34,12 +34,6 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def as_json(*arguments: str) -> Any:
-    status, out, err = call(*arguments, "--json")
-    assert (status, err) == (0, "")
-    return json.loads(out)
-
-
 def test_a_cue_alone_is_struck_as_in_pool_and_says_so(folder: Path) -> None:
     found = as_json("strike", "shaft.toml")
     assert found["assumed"] == [
@@ -55,11 +49,11 @@ def test_a_cue_alone_is_struck_as_in_pool_and_says_so(folder: Path) -> None:
 
 def test_the_tip_tells_how_the_whole_cue_rebounds() -> None:
     drawing = Path(__file__).parents[2] / GAMES["pool"].cue
-    struck = as_json("tip", str(drawing))["struck"]
+    struck = as_json("tip", drawing)["struck"]
     assert struck["rebound"] == pytest.approx(GAMES["pool"].restitution, abs=1e-4)
-    out = " ".join(call("tip", str(drawing))[1].split())
-    assert "the whole cue rebounds with 0.730" in out
-    timed = as_json("tip", str(drawing), "--contact-time", "1.2 ms")["struck"]
+    assert "the whole cue rebounds with 0.730" in " ".join(said("tip", drawing).split())
+    assert "E is what makes a head-on blow at 2 m/s last 1 ms" in said("tip", drawing, "--contact-time", "1 ms")
+    timed = as_json("tip", drawing, "--contact-time", "1.2 ms")["struck"]
     assert timed["contact_time"] == pytest.approx(1.2e-3, rel=1e-6)
 
 
@@ -105,18 +99,12 @@ def test_every_assumption_has_its_option(folder: Path) -> None:
     assert as_json("tip", "shaft.toml", "--leather", "200 MPa", "--dome", "flat")["E"] == pytest.approx(200e6)
 
 
-def test_the_commands_that_strike_have_all_the_options(folder: Path) -> None:
-    context = click.Context(main)
-    commands = {name: main.get_command(context, name) for name in COMMANDS}
+def test_the_commands_that_strike_have_all_the_options() -> None:
+    commands = {name: main.get_command(click.Context(main), name) for name in COMMANDS}
     names = {name: {p.name for p in command.params} for name, command in commands.items() if command}
     on_files = {name for name, params in names.items() if {"body_mass", "as_json"} <= params}
-    assert {name for name in on_files if names[name] >= STRUCK} == on_files - {
-        "modes",
-        "tip",
-        "side",
-        "weigh",
-        "convert",
-    }
+    others = {"modes", "tip", "side", "weigh", "convert"}
+    assert {name for name in on_files if names[name] >= STRUCK} == on_files - others
     assert on_files >= {"strike", "end-mass", "effects", "cost", "report", "animate", "tap"}
     assert names["modes"] >= {"game", "tip_height", "dome", "leather"}
     assert names["tip"] >= {"game", "tip_height", "dome", "leather", "restitution", "speed"}
@@ -131,12 +119,8 @@ def test_all_start_from_the_same_scene(folder: Path) -> None:
 
 def test_modes_assume_the_tip_alone(folder: Path) -> None:
     told = as_json("modes", "shaft.toml")["assumed"]
-    assert [re.findall(r"--[a-z-]+", words) for words in told] == [
-        ["--game"],
-        ["--tip-height"],
-        ["--dome"],
-        ["--leather"],
-    ]
+    options = ["--game", "--tip-height", "--dome", "--leather"]
+    assert [re.findall(r"--[a-z-]+", words) for words in told] == [[option] for option in options]
     assert set(as_json("modes", "shaft.toml")["scene"]) == {"cue", "effects"}
 
 
@@ -164,45 +148,15 @@ def test_a_file_that_was_saved_says_all_of_it(folder: Path) -> None:
     assert cf.load(folder / "leather.toml") == cf.usual_scene(SHAFT)
 
 
-@pytest.mark.parametrize(
-    ("command", "message"),
-    [
-        ("strike spring.toml --game pool", "--game: must be left out: FILE is a scene"),
-        ("strike spring.toml --dome dime", "--dome: must be left out: the scene has no LeatherTip among its effects"),
-        ("strike lumped.toml --leather soft", "--leather: must be left out: the scene has no LeatherTip"),
-        ("strike leather.toml --contact-time 1ms", "--contact-time: must be left out beside LeatherTip, from which it"),
-        ("strike shaft.toml --contact-time 1ms --dome dime", "--dome: must be left out beside --contact-time"),
-        ("strike shaft.toml --dome penny", 'such as "12 mm", or "dime", "nickel", "flat"; got \'penny\''),
-        ("strike shaft.toml --leather sofd", "\"le professional\"; got 'sofd'"),
-        ("strike shaft.toml --restitution 2", "shaft.toml: --restitution: must be 0 to 1; got 2.0"),
-        (
-            "strike shaft.toml --restitution 0.05",
-            "Tip.restitution must be in [0.1, 1] beside LeatherTip; got 0.05: leather",
-        ),
-        ("strike shaft.toml --friction -1", "shaft.toml: --friction: must be 0 or more; got -1.0"),
-        ("strike shaft.toml --speed fast", "cuefem: shaft.toml: --speed: must be a speed with its unit, such as"),
-        ("tip shaft.toml --speed fast", "cuefem: shaft.toml: --speed: must be a speed with its unit, such as"),
-        ("strike shaft.toml --tip-height 40mm", "got 40 mm (--tip-height, --dome, --contact-time change it)"),
-        ("modes shaft.toml --tip-height 40mm", "got 40 mm (--tip-height, --dome change it)"),
-        ("strike leather.toml --tip-height 40mm", " mm high; got 40 mm"),
-        ("strike shaft.toml --leather 1MPa", "further than its law is known"),
-        ("strike shaft.toml --leather 1MPa", "(--tip-height, --leather, --speed)"),
-    ],
-)
-def test_refusals(folder: Path, command: str, message: str) -> None:
-    untouched(folder, message, *command.split())
-
-
 def test_leather_too_soft_for_the_stroke_stops_what_needs_the_contact_alone(folder: Path) -> None:
     found = as_json("modes", "shaft.toml", "--leather", "1 MPa")
     assert found["frequencies"] == as_json("modes", "shaft.toml")["frequencies"]
     report = as_json("report", "shaft.toml", "--leather", "1 MPa")
     assert report["modes"]["frequencies"] == found["frequencies"]
     assert "further than its law is known" in report["no_contact"]
-    status, out, err = call("report", "shaft.toml", "--leather", "1 MPa")
-    assert (status, err) == (0, "")
-    assert "Bending modes" in out
-    assert "no end mass and no squirt: the tip's leather is compressed by" in out
+    assert "no end mass and no squirt: the tip's leather is compressed by" in said(
+        "report", "shaft.toml", "--leather", "1 MPa"
+    )
 
 
 def test_a_shaft_that_thrust_would_buckle_is_refused_in_words_everywhere(folder: Path) -> None:
@@ -218,24 +172,56 @@ def test_a_shaft_that_thrust_would_buckle_is_refused_in_words_everywhere(folder:
         assert (status, out) == (2, "")
         assert bends in err.splitlines()[-1]
     reported = ("report", "thin.toml", "--leather", "hard", "--speed", "8 m/s")
-    status, out, _ = call(*reported)
-    assert status == 0
-    assert "Bending modes" in out
-    assert "no end mass and no squirt: the thrust of" in out
     assert bends in json.loads(call(*reported, "--json")[1])["no_contact"]
-    study = "scene = 'struck.toml'\nresponses = ['squirt(0.5)', 'frequency(1)']\n"
-    (folder / "study.toml").write_text(f"{study}[[vary]]\npath = 'stroke.speed'\nvalues = ['0.5 m/s', '8 m/s']\n")
-    done = json.loads(call("sweep", "study.toml", "--json")[1])
-    assert (done["designs"], done["failed"]) == (2, 1)
-    assert bends in done["first_failure"]
+    one_of_two_fails(folder, "struck.toml", "path = 'stroke.speed'\nvalues = ['0.5 m/s', '8 m/s']", bends)
 
 
 def test_one_leather_that_is_too_soft_does_not_stop_a_sweep(folder: Path) -> None:
-    scene = cf.usual_scene(SHAFT)
-    cf.save(replace(scene, effects=(replace(scene.leather, E=1e6),)), folder / "soft.toml")
-    study = "scene = 'soft.toml'\nresponses = ['squirt(0.3)', 'frequency(1)']\n"
-    study += "[[vary]]\npath = 'effects[0].E'\nvalues = ['1 MPa', '140 MPa']\n"
-    (folder / "study.toml").write_text(study)
-    done = as_json("sweep", "study.toml")
+    soft = "path = 'leather.E'\nvalues = ['1 MPa', '140 MPa']"
+    one_of_two_fails(folder, "leather.toml", soft, "further than its law is known")
+
+
+def one_of_two_fails(folder: Path, scene: str, vary: str, words: str) -> None:
+    """Of a sweep's two designs one has an answer, and the words say why the other has none."""
+    asked = f"scene = '{scene}'\nresponses = ['squirt(0.5)', 'frequency(1)']\n[[vary]]\n{vary}\n"
+    (folder / "study.toml").write_text(asked)
+    done = json.loads(call("sweep", "study.toml", "--json")[1])
     assert (done["designs"], done["failed"]) == (2, 1)
-    assert "further than its law is known" in done["first_failure"]
+    assert words in done["first_failure"]
+
+
+@pytest.mark.parametrize(("game", "radius"), [("pool", 28.575), ("carom", 30.75)])
+@pytest.mark.parametrize(("typed", "mm"), [("8 mm", 8.0), ("-0.25 in", -6.35), ("1 cm", 10.0)])
+def test_an_offset_is_a_length_over_the_radius_of_the_ball(
+    folder: Path, game: str, radius: float, typed: str, mm: float
+) -> None:
+    scene = as_json("strike", "shaft.toml", "--game", game, "--offset", typed)["scene"]
+    assert scene["stroke"]["offset"] == pytest.approx(mm / radius, rel=1e-12)
+
+
+def test_numbers_of_the_tip(folder: Path) -> None:
+    found = as_json("tip", "leather.toml", "--speed", "3 m/s", "--leather", "200 MPa")
+    assert found["E"] == pytest.approx(200e6)
+    assert [blow["speed"] for blow in found["blows"]] == list(SPEEDS)
+    times = [blow["contact_time"] for blow in found["blows"]]
+    assert times == sorted(times, reverse=True)
+    assert found["contact_time"] == pytest.approx(times[SPEEDS.index(3.0)], rel=1e-12)
+    assert found["tip_mass"] == cf.usual_scene(SHAFT).leather.mass(0.0118)
+    assert [at["offset"] for at in found["shear_ratios"]] == list(SHEAR_OFFSETS)
+    assert all(0.25 < at["ratio"] < 0.5 for at in found["shear_ratios"])
+
+
+def test_a_fixed_normal_is_named_and_a_speed_beyond_the_law_has_no_numbers(folder: Path) -> None:
+    scene = cf.usual_scene(SHAFT)
+    cf.save(replace(scene, effects=(replace(scene.leather, rolls=False),)), folder / "fixed.toml")
+    out = said("tip", "fixed.toml", "--leather", "20 MPa")
+    assert "rolls false" in out
+    assert "–: the leather would be pressed further than its law is known" in out
+
+
+def test_a_constant_stiffness_along_the_surface_is_what_the_ratio_shows(folder: Path) -> None:
+    scene, ratios = cf.usual_scene(SHAFT), []
+    for shear in (1e5, 2e5):
+        cf.save(replace(scene, effects=(replace(scene.leather, shear=shear),)), folder / "steady.toml")
+        ratios.append([at["ratio"] for at in as_json("tip", "steady.toml")["shear_ratios"]])
+    assert ratios[1] == pytest.approx([2 * ratio for ratio in ratios[0]], rel=1e-12)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import io
+import json
 from contextlib import redirect_stderr, redirect_stdout
+from typing import Any
 
 import pytest
 
@@ -16,3 +18,19 @@ def call(*arguments: object) -> tuple[object, str, str]:
     with redirect_stdout(out), redirect_stderr(err), pytest.raises(SystemExit) as ended:
         main([str(argument) for argument in arguments])
     return ended.value.code, out.getvalue(), err.getvalue()
+
+
+def said(*arguments: object) -> str:
+    """What a command prints that ends well and has no remark."""
+    status, out, err = call(*arguments)
+    assert (status, err) == (0, "")
+    return out
+
+
+def as_json(*arguments: object) -> Any:
+    """What such a command tells programs, which is strict JSON, without NaN and Infinity."""
+
+    def no_constant(name: str) -> None:
+        raise AssertionError(f"{name} is no JSON")
+
+    return json.loads(said(*arguments, "--json"), parse_constant=no_constant)
