@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from cuefem import AxialWaves, TipDome, leather_modulus, strike
+from cuefem import AxialWaves, leather_modulus, rebound, strike, tip_restitution
 from cuefem.contact.calibrated import with_modulus
 from tests.helpers.leather_scenes import LEATHER, leather_scene
 
@@ -30,10 +30,9 @@ def test_axial_waves_are_counted() -> None:
     assert found > 1.05 * leather_modulus(leather_scene(), 1.1e-3)  # the wood gives way too
 
 
-def test_refusals() -> None:
-    with pytest.raises(ValueError, match=r"^leather_modulus contact_time must be in \[1e-6, 10\] s; got 0"):
-        leather_modulus(leather_scene(), 0.0)
-    with pytest.raises(ValueError, match=r"^Scene.effects must hold a LeatherTip; got none$"):
-        leather_modulus(replace(leather_scene(), effects=(TipDome(0.01),)), 1e-3)
-    with pytest.raises(ValueError, match="further than its law is known"):
-        leather_modulus(leather_scene(), 9e-3)
+def test_the_whole_cue_rebounds_less_or_more_than_its_tip() -> None:
+    """A rigid cue and ball part with the tip's restitution times the stroke's speed; it is what the tip is told by."""
+    assert rebound(leather_scene(0.3)) == pytest.approx(0.73, rel=1e-7)
+    scene = leather_scene(0.0, AxialWaves())
+    told = tip_restitution(scene, 0.8)
+    assert rebound(replace(scene, tip=replace(scene.tip, restitution=told))) == pytest.approx(0.8, rel=1e-6)

@@ -5,11 +5,9 @@ import numpy as np
 import pytest
 
 from cuefem import Resolution
-from cuefem.beam.modes import modes
-from cuefem.beam.system import assemble
 from cuefem.tip_modes import tip_modes_of
 from studies import pages, strokes
-from tests.helpers.orders import assert_order, observed_orders
+from tests.helpers.orders import observed_orders
 
 mpl.use("Agg")
 from studies.paper import convergence as study
@@ -18,24 +16,11 @@ from studies.paper import convergence_roads as roads
 KIM = strokes.scene(strokes.cue("kim"), 1e-3, 0.3)
 
 
-# (a), (b)
-
-
 def test_the_stub_has_the_exact_rigid_end_mass_of_its_frustum():
     """m_c nu_c/(1 + nu_c) is what its two rigid modes give; nu_c with rotary inertia, 0.309 (without: 0.307)."""
     tip = tip_modes_of(strokes.scene(roads.stub()), Resolution(1, 6, 1))
     assert roads.stub_end_mass() == pytest.approx(roads.rigid_end_mass(tip), rel=1e-12)
     assert roads.stub_end_mass() == pytest.approx(2.84587e-3, rel=1e-5)
-
-
-def test_stiffness_scales_every_frequency_by_its_root():
-    """What road (a) rests on: one eigenproblem serves all stiffnesses."""
-    soft = roads.stub()
-    (end,) = soft.segments
-    wood = strokes.replace(end.material, E=9 * end.material.E, G=9 * end.material.G)
-    stiff = strokes.replace(soft, segments=(strokes.replace(end, material=wood),))
-    assert modes(stiff, 4).frequencies == pytest.approx(3 * modes(soft, 4).frequencies, rel=1e-9)
-    assert np.array_equal(assemble(stiff, elements=1, order=4).M, assemble(soft, elements=1, order=4).M)
 
 
 @pytest.mark.heavy
@@ -65,15 +50,6 @@ def test_kims_shaft_at_its_rigid_limit():
     assert np.degrees(strokes.lumped_squirt(KIM, roads.rigid_end_mass(tip))) == pytest.approx(4.093, abs=5e-4)
 
 
-# (c)
-
-
-# (d)
-
-
-# modes, elements, order
-
-
 @pytest.mark.heavy
 def test_the_tail_of_the_modes_follows_the_compliance_left_out():
     """As a power of it the tail is the first; their ratio wanders by some per cent and does not settle."""
@@ -85,24 +61,17 @@ def test_the_tail_of_the_modes_follows_the_compliance_left_out():
     assert study.modes_rate() == pytest.approx(-1.4, abs=0.1)
 
 
-@pytest.mark.parametrize("order", [2, 3])
+@pytest.mark.parametrize("order", [1, 2, 3])
 def test_squirt_converges_with_two_orders_a_degree(order):
+    """Linear elements only late."""
     road = study.road("more_elements", order)
-    assert_order(2 * order, 1 / road.along, np.abs(road.errors["squirt"]), within=0.06)
-
-
-def test_linear_elements_converge_late_to_second_order():
-    road = study.road("more_elements", 1)
     orders = observed_orders(1 / road.along, np.abs(road.errors["squirt"]))
-    assert orders[-1] == pytest.approx(2, abs=0.03)
+    assert orders[-1 if order == 1 else 0 :] == pytest.approx(2 * order, abs=0.03 if order == 1 else 0.06)
 
 
 def test_the_order_converges_faster_than_any_power():
     """Every three orders gain more than the three before, from 12 on; at 21 the error is 5e-11."""
     road = study.road("higher_order")
     errors = dict(zip(road.along, np.abs(road.errors["squirt"]), strict=True))
-    gains = [errors[p] / errors[p + 3] for p in (12, 15, 18)]
-    assert gains[0] > 10
-    assert gains[1] > 100
-    assert gains[2] > 100
+    assert all(errors[p] / errors[p + 3] > gain for p, gain in ((12, 10), (15, 100), (18, 100)))
     assert 1e-13 < errors[21] < 5e-10

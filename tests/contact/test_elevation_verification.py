@@ -21,21 +21,12 @@ def level_part(raised) -> np.ndarray:
     return numbers(replace(raised, energy=kept))
 
 
-@pytest.mark.heavy
 @pytest.mark.parametrize("table", [0.0, 0.2, 5.0])
-@pytest.mark.parametrize(
-    ("offset", "tip", "effects"),
-    [
-        (0.3, {}, ()),
-        (0.6, {"friction": 0.3}, ()),
-        (-0.5, {"restitution": 0.4}, ()),
-        (0.2, {"friction": inf}, ()),
-        (0.3, {}, (PowerLawTip(1.5),)),
-        (0.0, {"friction": 0.0}, ()),
-    ],
-)
-def test_level_cue_is_not_raised(offset, tip, effects, table):
-    scene = replace(kim_scene(offset, **tip), effects=effects)
+@pytest.mark.parametrize("offset", [0.3, 0.6, -0.5, 0.2, 0.0])
+def test_level_cue_is_not_raised(offset, table):
+    tip = {0.6: {"friction": 0.3}, -0.5: {"restitution": 0.4}, 0.2: {"friction": inf}, 0.0: {"friction": 0.0}}
+    effects = (PowerLawTip(1.5),) if table else ()
+    scene = replace(kim_scene(offset, **tip.get(offset, {})), effects=effects)
     level, raised = strike(scene, KIM_AT), strike(replace(scene, effects=(*effects, Elevation(0.0, table))), KIM_AT)
     assert np.abs(level_part(raised) - numbers(level)).max() < STEPPED
     assert level.regime == raised.regime
@@ -101,8 +92,7 @@ class Blow:
         return [self.row(way, arm, tip=False) for way in ((z, x, y) if held else (z,))]
 
 
-@pytest.mark.parametrize("angle", [0.05, 0.4, 1.1])
-@pytest.mark.parametrize("exponent", [1.0, 1.5])
+@pytest.mark.parametrize(("angle", "exponent"), [(0.05, 1.0), (0.4, 1.5), (1.1, 1.0)])
 @pytest.mark.parametrize(
     ("offset", "friction", "table"),
     [(0.35, 0.0, 0.0), (0.35, inf, 0.0), (0.6, inf, 0.0), (0.0, inf, 1e9), (0.6, 0.0, 1e9), (0.0, 0.0, 1e9)],

@@ -1,4 +1,4 @@
-"""What every stroke of the impulse solver obeys, whatever the regime: scale, mirror, order, work, energy, shapes."""
+"""What every stroke of the impulse solver obeys, whatever the regime: energy, momentum, mirror, scale, shapes."""
 
 from dataclasses import replace
 from math import inf, sqrt
@@ -38,10 +38,19 @@ def everything(out):
 
 
 @MANY
-@given(scenes())
-@example(Scene(LumpedCue(0.5, 0.2, -2.9), Ball(1.0, 0.03), Tip(0.5, inf), Stroke(1.0, 0.995)))
-def test_never_nan_and_only_the_end_of_a_miscue_s_slip_is_infinite(scene):
+@given(scenes(), powers(-5, 5))
+@example(Scene(LumpedCue(0.5, 0.2, -2.9), Ball(1.0, 0.03), Tip(0.5, inf), Stroke(1.0, 0.995)), 1.0)
+def test_what_every_stroke_keeps(scene, factor):
     out = impulse(scene)
+    finite(out)
+    energy_closes(scene, out)
+    momentum_is_kept(scene, out)
+    mirrors(out, impulse(replace(scene, stroke=replace(scene.stroke, offset=-scene.stroke.offset))))
+    scales(scene, out, factor)
+
+
+def finite(out):
+    """Never nan; only the end of a miscue's slip is infinite."""
     for name, value in everything(out).items():
         if name == "slip ends" and out.regime == "miscue":
             assert value == inf
@@ -49,10 +58,7 @@ def test_never_nan_and_only_the_end_of_a_miscue_s_slip_is_infinite(scene):
             assert np.all(np.isfinite(value)), name
 
 
-@MANY
-@given(scenes())
-def test_energy_closes(scene):
-    out = impulse(scene)
+def energy_closes(scene, out):
     initial, *parts = (out.energy[name] for name in PLACES)
     assert set(out.energy) == set(PLACES)
     assert abs(sum(parts) - initial) < 1e-12 * initial
@@ -68,29 +74,23 @@ def test_energy_closes(scene):
         assert abs(out.energy["friction loss"]) < 1e-15 * initial
 
 
-@pytest.mark.heavy
-@MANY
-@given(scenes(), powers(-5, 5))
-def test_impulses_scale_with_the_speed_and_energies_with_its_square(scene, factor):
-    one = impulse(scene)
+def scales(scene, one, factor):
+    """Impulses with the speed, energies with its square."""
     other = impulse(replace(scene, stroke=replace(scene.stroke, speed=scene.stroke.speed * factor)))
     assert (one.regime, one.jam) == (other.regime, other.jam)
     for name, value in everything(one).items():
         power = 0 if name == "squirt" else 2 if name in PLACES else 1
         scale = one.energy["initial"] if name in PLACES else np.max(np.abs(value))
         scale = scene.stroke.speed if name == "cue_speed" else scale
-        finite = np.isfinite(value)
-        got = np.asarray(everything(other)[name])[finite] / factor**power
+        if name == "squirt" and scene.cue.coupling:  # a coupled cue may squirt by next to nothing, a difference
+            scale = max(scale, abs(scene.stroke.offset))
         least = 1e-13 * scale + np.finfo(float).tiny  # smaller numbers have not all their digits
-        np.testing.assert_allclose(got, np.asarray(value)[finite], rtol=1e-11, atol=least, err_msg=name)
+        some = np.isfinite(value)
+        got = np.asarray(everything(other)[name])[some] / factor**power
+        np.testing.assert_allclose(got, np.asarray(value)[some], rtol=1e-11, atol=least, err_msg=name)
 
 
-@pytest.mark.heavy
-@MANY
-@given(scenes())
-def test_a_negative_offset_is_the_exact_mirror_image(scene):
-    right = impulse(scene)
-    left = impulse(replace(scene, stroke=replace(scene.stroke, offset=-scene.stroke.offset)))
+def mirrors(right, left):
     assert (left.squirt, left.spin, left.cue_speed) == (-right.squirt, -right.spin, right.cue_speed)
     assert tuple(left.ball_velocity) == (-right.ball_velocity[0], right.ball_velocity[1])
     assert tuple(left.impulse) == (-right.impulse[0], right.impulse[1])
@@ -98,10 +98,7 @@ def test_a_negative_offset_is_the_exact_mirror_image(scene):
     assert (left.regime, left.jam) == (right.regime, right.jam)
 
 
-@MANY
-@given(scenes())
-def test_momentum_of_ball_and_cue(scene):
-    out = impulse(scene)
+def momentum_is_kept(scene, out):
     M, ball = scene.ball.mass, scene.ball
     np.testing.assert_allclose(out.impulse, M * out.ball_velocity, rtol=1e-14)
     assert out.ball_speed == pytest.approx(np.hypot(*out.ball_velocity), rel=1e-14)
@@ -132,52 +129,32 @@ def many_scenes(rng, shape):
     return Scene(LumpedCue(cue, ends, coupling), Ball(M, rng.uniform(0.02, 0.04, shape), 0.4), tip, stroke)
 
 
-def test_an_array_of_strokes_is_its_strokes_one_by_one():
-    rng = np.random.default_rng(5)
-    whole = many_scenes(rng, (40,))
+@pytest.mark.parametrize("block", [8192, 1, 7, 64])
+def test_an_array_of_strokes_is_its_strokes_one_by_one(monkeypatch, block):
+    """However many are worked at a time."""
+    monkeypatch.setattr("cuefem.contact.impulse_space.BLOCK", block)
+    whole = many_scenes(np.random.default_rng(5), (5, 8))
     out = impulse(whole)
-    for i in range(40):
+    for at in np.ndindex(5, 8):
         single = Scene(
-            LumpedCue(whole.cue.mass[i], whole.cue.end_mass[i], whole.cue.coupling[i]),
-            Ball(whole.ball.mass[i], whole.ball.radius[i], 0.4),
-            Tip(whole.tip.restitution[i], whole.tip.friction[i]),
-            Stroke(whole.stroke.speed[i], whole.stroke.offset[i]),
+            LumpedCue(whole.cue.mass[at], whole.cue.end_mass[at], whole.cue.coupling[at]),
+            Ball(whole.ball.mass[at], whole.ball.radius[at], 0.4),
+            Tip(whole.tip.restitution[at], whole.tip.friction[at]),
+            Stroke(whole.stroke.speed[at], whole.stroke.offset[at]),
         )
         one = impulse(single)
-        assert (one.regime, one.jam) == (out.regime[i], out.jam[i])
+        assert (one.regime, one.jam) == (out.regime[at], out.jam[at])
         for name, value in everything(one).items():
-            np.testing.assert_allclose(everything(out)[name][i], value, rtol=1e-13, atol=1e-300)
+            np.testing.assert_allclose(everything(out)[name][at], value, rtol=1e-13, atol=1e-300)
 
 
-@pytest.mark.parametrize("block", [1, 7, 64, 10**6])
-def test_the_block_size_changes_nothing(monkeypatch, block):
-    scene = many_scenes(np.random.default_rng(6), (5, 40))
-    before = impulse(scene)
-    monkeypatch.setattr("cuefem.contact.impulse_space.BLOCK", block)
-    after = impulse(scene)
-    for name, value in everything(before).items():
-        np.testing.assert_allclose(everything(after)[name], value, rtol=4e-15, atol=1e-300, err_msg=name)
-    np.testing.assert_array_equal(after.regime, before.regime)
-    np.testing.assert_array_equal(after.jam, before.jam)
-
-
-def test_fields_broadcast_to_rows_and_columns():
-    offsets, ends = np.linspace(-0.6, 0.6, 5)[:, None], np.array([1e-3, 4e-3, 0.02])
-    out = impulse(Scene(LumpedCue(0.54, ends), stroke=Stroke(2.0, offsets)))
-    assert out.squirt.shape == out.spin.shape == out.regime.shape == out.jam.shape == (5, 3)
-    assert out.ball_velocity.shape == out.impulse.shape == (5, 3, 2)
-    assert {np.shape(value) for value in out.energy.values()} == {(5, 3)}
-    assert [np.shape(event.impulse) for event in out.phases] == [(5, 3)] * 3
-    one = impulse(Scene(LumpedCue(0.54, 4e-3), stroke=Stroke(2.0, float(offsets[3, 0]))))
-    assert out.squirt[3, 1] == pytest.approx(one.squirt, rel=1e-14)
-    assert isinstance(one.squirt, float)
-    assert isinstance(one.regime, str)
-    assert isinstance(one.jam, bool)
-
-
-@pytest.mark.parametrize("shape", [(0,), (3, 0), (0, 2)])
-def test_no_strokes_give_empty_outcomes(shape):
-    out = impulse(Scene(LumpedCue(0.54, 0.003), stroke=Stroke(1.0, np.zeros(shape))))
-    assert out.squirt.shape == out.regime.shape == out.jam.shape == shape
-    assert out.ball_velocity.shape == (*shape, 2)
+@pytest.mark.parametrize("shape", [(5, 3), (0,), (3, 0), (0, 2)])
+def test_fields_broadcast_also_to_no_strokes(shape):
+    """Offsets in rows, end masses in columns."""
+    offsets, ends = np.linspace(-0.6, 0.6, shape[0]), np.linspace(1e-3, 0.02, shape[-1])
+    rows = offsets[:, None] if len(shape) == 2 else offsets
+    out = impulse(Scene(LumpedCue(0.54, ends), stroke=Stroke(2.0, rows)))
+    assert out.squirt.shape == out.spin.shape == out.regime.shape == out.jam.shape == shape
+    assert out.ball_velocity.shape == out.impulse.shape == (*shape, 2)
     assert {np.shape(value) for value in out.energy.values()} == {shape}
+    assert [np.shape(event.impulse) for event in out.phases] == [shape] * 3

@@ -1,7 +1,8 @@
 """The impulse solver against exact solutions, an oracle that shares no formula with it, and at regime boundaries."""
 
 from collections import Counter
-from math import asin, inf, tan
+from itertools import product
+from math import inf, tan
 
 import numpy as np
 import pytest
@@ -105,11 +106,11 @@ def test_an_oracle_agrees_in_every_regime():
         assert seen[regime] >= 30, (regime, seen)
 
 
-@pytest.mark.parametrize("ends", [2.5e-10, 1e-12, 1e-15, 1e9])
-@pytest.mark.parametrize("mu", [0.2, 0.7, 5.0])
-@pytest.mark.parametrize("b", [1e-9, 0.03, 0.5, 0.9, 0.999999])
-def test_digits_are_kept_at_extreme_end_masses(ends, mu, b):
-    for Q0, e in ((18 / 7, 0.75), (1e-6, 0.0), (1e6, 1.0)):
+@pytest.mark.parametrize("ends", [2.5e-10, 1e-12, 1e-15, 1e9, 0.02, 50.0])
+def test_digits_are_kept_at_extreme_end_masses_and_on_the_edge_of_the_ball(ends):
+    offsets = (1e-9, 0.03, 0.5, 0.9, 0.999999, 1 - 1e-9)
+    cues = ((18 / 7, 0.75), (1e-6, 0.0), (1e6, 1.0))
+    for b, mu, (Q0, e) in product(offsets, (0.0, 0.2, 0.7, 5.0, 1e3, inf), cues):
         scene = Scene(LumpedCue(Q0, ends), Ball(1.0, 0.03), Tip(e, mu), Stroke(1.0, b))
         out, told = impulse(scene), exact(scene, digits=90)
         assert out.regime == regime_of(told)
@@ -196,13 +197,6 @@ def test_continuous_where_the_offset_the_restitution_or_the_friction_ends():
         assert abs(limit.energy["friction loss"] - near.energy["friction loss"]) < 1e-11
 
 
-def test_a_tip_without_friction_pushes_along_the_normal():
-    for b in (1e-9, 0.3, 0.95):
-        out = impulse(scene_of(b, eps=2 / 35, Q0=18 / 7, mu=0.0))
-        assert (out.regime, out.spin, out.energy["friction loss"]) == ("miscue", 0, 0)
-        assert out.squirt == pytest.approx(asin(b), rel=1e-14)
-
-
 def test_mu_exactly_critical_is_a_miscue():
     # B_tt and B_tn in exact binary fractions: cos = 0.8 is not one, so search the friction's neighbours too
     b = 0.6
@@ -213,14 +207,6 @@ def test_mu_exactly_critical_is_a_miscue():
     assert [out.regime for out in outs] == ["miscue"] * 3
     assert np.ptp([out.squirt for out in outs]) < 1e-14
     assert [out.phases[0].impulse for out in outs] == [inf] * 3
-
-
-def test_the_edge_of_the_ball():
-    for b in (0.999, 1 - 1e-9, np.nextafter(1, 0)):
-        for mu in (0.0, 0.7, 1e3, inf):
-            for ends in (1e-6, 0.02, 1.0, 50.0):
-                scene = Scene(LumpedCue(2.5, ends), Ball(1.0, 0.03), Tip(0.75, mu), Stroke(1.0, b))
-                assert impulse(scene).squirt == pytest.approx(np.arctan(float(exact(scene).tangent)), rel=1e-12, abs=0)
 
 
 def test_a_blow_that_separates_while_it_still_grips():

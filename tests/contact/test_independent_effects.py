@@ -22,8 +22,9 @@ They are the small steps' own: they fall with the steps. Of the 40 second hits 2
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -146,8 +147,7 @@ def hit_again(draw: Draw) -> Scene:
     return replace(scene, stroke=draw.stroke(0.9))
 
 
-@dataclass(frozen=True)
-class Kind:
+class Kind(NamedTuple):
     """A kind of scene, the seeds of the daily ones, and how far any number of them may be off with ``STEPS`` steps."""
 
     make: Callable[[Draw], Scene]
@@ -193,18 +193,15 @@ def compared(scene: Scene, steps: int) -> dict[str, float]:
     return differences(scene, ours, theirs)
 
 
-@pytest.mark.parametrize(("kind", "seed"), [(name, seed) for name, kind in KINDS.items() for seed in kind.daily])
-def test_a_few_of_each_kind(kind: str, seed: int) -> None:
-    off = compared(KINDS[kind].make(Draw(seed)), STEPS)
-    assert max(off.values()) < KINDS[kind].within, off
+DAILY = [pytest.param(name, kind.daily, STEPS) for name, kind in KINDS.items()]
+MANY = [pytest.param(name, range(40), 2 * STEPS, marks=pytest.mark.heavy) for name in KINDS]
 
 
-@pytest.mark.heavy
-@pytest.mark.parametrize("kind", KINDS)
-def test_many_of_each_kind(kind: str) -> None:
-    found = [compared(KINDS[kind].make(Draw(seed)), 2 * STEPS) for seed in range(40)]
-    worst = {name: max(off[name] for off in found) for name in found[0]}
-    print(kind, len(found), {name: f"{value:.1e}" for name, value in worst.items()})
+@pytest.mark.parametrize(("kind", "seeds", "steps"), [*DAILY, *MANY])
+def test_strikes_of_each_kind(kind: str, seeds: Iterable[int], steps: int) -> None:
+    off = [compared(KINDS[kind].make(Draw(seed)), steps) for seed in seeds]
+    worst = {name: max(each[name] for each in off) for name in off[0]}
+    print(kind, len(off), {name: f"{value:.1e}" for name, value in worst.items()})
     assert max(worst.values()) < KINDS[kind].within, worst
 
 

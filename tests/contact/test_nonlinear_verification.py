@@ -1,11 +1,11 @@
 """The nonlinear effects against exact solutions, other solvers and the rates at which they vanish."""
 
 from dataclasses import replace
-from math import asin, cos, inf, sin
+from math import asin, cos, sin
 
 import numpy as np
 import pytest
-from scipy.integrate import quad, solve_ivp
+from scipy.integrate import solve_ivp
 
 from cuefem import (
     Ball,
@@ -13,72 +13,32 @@ from cuefem import (
     PowerLawTip,
     RollingContact,
     Scene,
-    SecondHit,
     Stroke,
     Tip,
     TipDome,
-    impulse,
     strike,
 )
-from cuefem.beam.tip import TipModes, lumped_tip_modes
-from cuefem.contact.outcome import hits
+from cuefem.beam.tip import lumped_tip_modes
 from cuefem.contact.strike import strike_modes
-from cuefem.effects.law import loading_time
 from tests.helpers.orders import assert_order
-from tests.helpers.strike_scenes import KIM_AT, hand_made, imbalance, kim_scene, numbers
+from tests.helpers.strike_scenes import KIM, KIM_AT, a_few_modes, imbalance, kim_scene, numbers
 
 # What solver tolerances of 1e-11 leave of a strike of one or a few phases, beside speeds of 1 m/s.
 STEPPED = 1e-9
 
 
-def bent(count: int = 3) -> TipModes:
-    """A shaft of a few modes by hand whose end section turns with them."""
-    tip = hand_made([500.0, 3000.0, 9000.0][:count], [5.0, 8.0, 7.0][:count], rigid=9.0)
-    return replace(tip, rotation=np.array([0, -50.0, -60.0, -80.0, -120.0][: count + 2]))
-
-
-def worst(first, second) -> float:
-    return float(np.abs(numbers(first) - numbers(second)).max())
-
-
 # ---------------------------------------------------------------------------------------------------------- PowerLawTip
 
 
+def test_exponent_one_is_the_bilinear_law():
+    scene = kim_scene(0.6, friction=0.3)
+    exact, power = strike(scene, KIM_AT), strike(replace(scene, effects=(PowerLawTip(1.0),)), KIM_AT)
+    assert np.abs(numbers(exact) - numbers(power)).max() < STEPPED
+    assert (exact.regime, exact.jam) == (power.regime, power.jam)
+
+
 @pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 3.7])
-def test_loading_time_is_its_integral(exponent):
-    # s = 1 - y^2 takes the root out of the end
-    told = quad(lambda y: 2 * y / np.sqrt(1 - (1 - y * y) ** (exponent + 1)), 0, 1, epsabs=0, epsrel=1e-13)[0]
-    assert abs(loading_time(exponent) / told - 1) < 1e-12
-
-
-@pytest.mark.parametrize("e", [1.0, 0.75, 0.3, 0.0])
-@pytest.mark.parametrize(("offset", "friction"), [(0.3, 0.7), (0.6, 0.3), (0.2, inf)])
-def test_exponent_one_is_the_bilinear_law(e, offset, friction):
-    scene = kim_scene(offset, restitution=e, friction=friction)
-    exact = strike(scene, KIM_AT)
-    stepped = strike(replace(scene, effects=(PowerLawTip(1.0),)), KIM_AT)
-    assert worst(exact, stepped) < STEPPED
-    assert (exact.regime, exact.jam) == (stepped.regime, stepped.jam)
-    assert abs(stepped.duration / exact.duration - 1) < STEPPED
-    assert imbalance(stepped) < 1e-11
-
-
-def test_exponent_one_has_the_bilinear_history():
-    scene = kim_scene(0.3)
-    exact = strike(scene, KIM_AT)
-    stepped = strike(replace(scene, effects=(PowerLawTip(1.0),)), KIM_AT)
-    times = np.linspace(0, exact.duration * (1 - 1e-9), 101).reshape(1, 101)
-    for name, values in exact.history(times).items():
-        other = stepped.history(times)[name]
-        assert other.shape == (1, 101)
-        assert np.abs(values - other).max() < 1e-7 * max(np.abs(values).max(), 1.0)
-    with pytest.raises(ValueError, match="History takes times in"):
-        stepped.history(2 * exact.duration)
-
-
-@pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 3.0])
-@pytest.mark.parametrize("speed", [0.2, 1.0, 7.0])
-@pytest.mark.parametrize("e", [0.0, 0.4, 1.0])
+@pytest.mark.parametrize(("speed", "e"), [(0.2, 0.4), (1.0, 0.0), (7.0, 1.0)])
 def test_head_on_contact_time_falls_with_speed(exponent, speed, e):
     scene = Scene(
         LumpedCue(0.5, 0.005),
@@ -93,29 +53,6 @@ def test_head_on_contact_time_falls_with_speed(exponent, speed, e):
     assert abs(outcome.ball_speed / (speed * (1 + e) * Q0 / (1 + Q0)) - 1) < STEPPED
 
 
-@pytest.mark.parametrize("exponent", [1.5, 2.5])
-@pytest.mark.parametrize(
-    ("offset", "e", "friction", "end_mass"),
-    [
-        (0.3, 0.75, 0.7, 0.006),
-        (0.5, 0.75, 0.2, 0.006),
-        (0.6, 0.4, 0.6, 0.03),
-        (0.4, 0.0, 0.7, 0.01),
-        (0.3, 0.9, inf, 0.02),
-        (-0.45, 1.0, 0.35, 1.5),
-    ],
-)
-def test_lumped_cue_feels_the_restitution_not_the_law(exponent, offset, e, friction, end_mass):
-    scene = Scene(LumpedCue(0.54, end_mass), tip=Tip(e, friction, 1e-3), stroke=Stroke(1.7, offset))
-    lumped = impulse(scene)
-    stepped = strike(replace(scene, effects=(PowerLawTip(exponent),)))
-    assert abs(stepped.squirt - lumped.squirt) < STEPPED
-    assert np.abs(stepped.ball_velocity - lumped.ball_velocity).max() < STEPPED
-    assert stepped.regime == lumped.regime
-    for name, part in lumped.energy.items():
-        assert abs(stepped.energy[name] - part) < STEPPED
-
-
 # ------------------------------------------------------------------------------------------------------- RollingContact
 
 
@@ -124,10 +61,8 @@ def test_turning_of_the_contact_vanishes_with_its_time(effects):
     errors, spins, times = [], [], 1e-3 * 2.0 ** -np.arange(5, 10)
     for time in times:
         scene = replace(kim_scene(0.3, contact_time=float(time)), effects=effects)
-        bare, turned = (
-            strike_modes(scene, bent()),
-            strike_modes(replace(scene, effects=(*effects, RollingContact())), bent()),
-        )
+        rolling = replace(scene, effects=(*effects, RollingContact()))
+        bare, turned = (strike_modes(each, a_few_modes()) for each in (scene, rolling))
         errors.append(turned.squirt / bare.squirt - 1)
         spins.append(turned.spin / bare.spin - 1)
         assert imbalance(turned) < 1e-11
@@ -190,24 +125,18 @@ class Plane:
         return np.arctan2(state[7], state[6])  # the cue's line is w = 0; the struck side is w > 0
 
 
-@pytest.mark.parametrize(("offset", "friction"), [(0.4, 0.0), (0.3, 0.05), (0.6, 0.1)])
-def test_turning_contact_in_cartesian_coordinates(offset, friction):
-    cue, tip = LumpedCue(0.54, 0.02), Tip(0.8, friction, 2e-3)
-    scene = Scene(cue, Ball(), tip, Stroke(1.5, offset))
-    outcome = strike(replace(scene, effects=(RollingContact(),)))
-    assert {phase.grip for phase in outcome.phases} == {"slip"}
-    told = Plane(scene, true=False).squirt()
-    assert abs(-outcome.squirt - told) < 1e-8
-    assert abs(outcome.squirt - strike(scene).squirt) > 1e-3  # it is no small thing here
-
-
-def test_dome_lengthens_the_line_of_centres():
+@pytest.mark.parametrize(
+    ("offset", "friction", "dome"), [(0.4, 0.0, 0.0), (0.3, 0.05, 0.0), (0.6, 0.1, 0.0), (0.4, 0.05, 0.012)]
+)
+def test_turning_contact_in_cartesian_coordinates(offset, friction, dome):
+    """A dome lengthens the line of centres; the end section of a lumped cue does not turn."""
     cue = LumpedCue(0.54, 0.02)
-    scene = Scene(cue, tip=Tip(0.8, 0.05, 2e-3), stroke=Stroke(1.5, 0.4))
-    effects = (TipDome(0.012), RollingContact())
-    domed = replace(kim_scene(), tip=scene.tip, stroke=scene.stroke, effects=effects)
-    outcome = strike_modes(domed, lumped_tip_modes(cue))  # the end section of a lumped cue does not turn
-    assert abs(outcome.squirt + Plane(scene, true=False, dome=0.012).squirt()) < 1e-8
+    scene = Scene(cue, Ball(), Tip(0.8, friction, 2e-3), Stroke(1.5, offset))
+    domed = replace(scene, cue=KIM, effects=(RollingContact(), *[TipDome(dome)] * (dome > 0)))
+    outcome = strike_modes(domed, lumped_tip_modes(cue))
+    assert {phase.grip for phase in outcome.phases} == {"slip"}
+    assert abs(outcome.squirt + Plane(scene, true=False, dome=dome).squirt()) < 1e-8
+    assert abs(outcome.squirt - strike(scene).squirt) > 1e-3  # it is no small thing here
 
 
 @pytest.mark.parametrize(
@@ -239,15 +168,3 @@ def test_compression_left_out_is_of_second_order():
         turned = strike(replace(scene, effects=(RollingContact(),)))
         errors.append(abs(turned.squirt + Plane(scene, true=True).squirt()))
     assert_order(2, times, errors, within=[0.15, 0.08, 0.04, 0.02], rounding=1e-12)
-
-
-# ------------------------------------------------------------------------------------------------------------ SecondHit
-
-
-def test_without_a_second_hit_nothing_is_added():
-    for effects in ((), (PowerLawTip(),), (RollingContact(),)):
-        scene = replace(kim_scene(0.3), effects=effects)
-        bare, followed = strike(scene, KIM_AT), strike(replace(scene, effects=(*effects, SecondHit())), KIM_AT)
-        assert np.array_equal(numbers(bare), numbers(followed))
-        assert bare.phases == followed.phases
-        assert len(hits(followed)) == 1

@@ -1,6 +1,7 @@
 """What a stroke refuses: calls, each with a part of the one line that names field, bound, unit and value."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from math import inf, nan
 from typing import Any
 
@@ -9,68 +10,72 @@ import pytest
 
 from cuefem import (
     Ball,
-    Cue,
+    Elevation,
     LumpedCue,
-    Material,
+    PowerLawTip,
+    Resolution,
+    RollingContact,
     Scene,
-    Segment,
+    SecondHit,
     Stroke,
     Tip,
+    TipDome,
     TipShear,
+    batch_strike,
     impulse,
     leather_modulus,
+    place,
     strike,
 )
+from cuefem.contact.place import offset_of_axis
 from tests.helpers.leather_scenes import leather_scene
 from tests.helpers.refusals import refuses
+from tests.helpers.strike_scenes import KIM, kim_scene
 
 TWO: Any = np.array([1.0, 2.0])
-MAKERS = {
-    "LumpedCue.mass": lambda x: LumpedCue(x, 0.003),
-    "LumpedCue.end_mass": lambda x: LumpedCue(0.54, x),
-    "LumpedCue.coupling": lambda x: LumpedCue(0.54, 0.003, x),
-    "Ball.mass": lambda x: Ball(mass=x),
-    "Ball.radius": lambda x: Ball(radius=x),
-    "Ball.inertia": lambda x: Ball(inertia=x),
-    "Tip.restitution": lambda x: Tip(restitution=x),
-    "Tip.friction": lambda x: Tip(friction=x),
-    "Stroke.speed": lambda x: Stroke(speed=x),
-    "Stroke.offset": lambda x: Stroke(offset=x),
+FIELDS = {  # how it is made, its bounds, a good value and wrong ones
+    "LumpedCue.mass": (lambda x: LumpedCue(x, 0.003), "(0, inf) kg", 0.5, [nan, inf, 0.0, -0.5]),
+    "LumpedCue.end_mass": (lambda x: LumpedCue(0.54, x), "(0, inf) kg", 0.5, [nan, inf, 0.0, -1e-3]),
+    "LumpedCue.coupling": (lambda x: LumpedCue(0.54, 0.003, x), "(-inf, inf) 1/kg", 0.0, [nan, inf, -inf]),
+    "Ball.mass": (lambda x: Ball(mass=x), "(0, inf) kg", 0.5, [nan, inf, 0.0, -0.2]),
+    "Ball.radius": (lambda x: Ball(radius=x), "(0, inf) m", 0.5, [nan, inf, 0.0, -0.03]),
+    "Ball.inertia": (lambda x: Ball(inertia=x), "(0, 1]", 0.5, [nan, inf, 0.0, 1.1]),
+    "Tip.restitution": (lambda x: Tip(restitution=x), "[0, 1]", 0.5, [nan, inf, -0.1, 1.0000001]),
+    "Tip.friction": (lambda x: Tip(friction=x), "[0, inf]", 0.5, [nan, -inf, -1e-9]),
+    "Stroke.speed": (lambda x: Stroke(speed=x), "(0, inf) m/s", 0.5, [nan, inf, 0.0, -1.0]),
+    "Stroke.offset": (lambda x: Stroke(offset=x), "(-1, 1)", 0.2, [nan, inf, 1.0, -1.0, 1.5]),
 }
-BOUNDS = {
-    "LumpedCue.mass": "(0, inf) kg",
-    "LumpedCue.end_mass": "(0, inf) kg",
-    "LumpedCue.coupling": "(-inf, inf) 1/kg",
-    "Ball.mass": "(0, inf) kg",
-    "Ball.radius": "(0, inf) m",
-    "Ball.inertia": "(0, 1]",
-    "Tip.restitution": "[0, 1]",
-    "Tip.friction": "[0, inf]",
-    "Stroke.speed": "(0, inf) m/s",
-    "Stroke.offset": "(-1, 1)",
-}
-WRONG = {
-    "LumpedCue.mass": [nan, inf, 0.0, -0.5],
-    "LumpedCue.end_mass": [nan, inf, 0.0, -1e-3],
-    "LumpedCue.coupling": [nan, inf, -inf],
-    "Ball.mass": [nan, inf, 0.0, -0.2],
-    "Ball.radius": [nan, inf, 0.0, -0.03],
-    "Ball.inertia": [nan, inf, 0.0, 1.1],
-    "Tip.restitution": [nan, inf, -0.1, 1.0000001],
-    "Tip.friction": [nan, -inf, -1e-9],
-    "Stroke.speed": [nan, inf, 0.0, -1.0],
-    "Stroke.offset": [nan, inf, 1.0, -1.0, 1.5],
-}
-CASES = [(field, value) for field, values in WRONG.items() for value in values]
-GOOD = {"LumpedCue.coupling": 0.0, "Stroke.offset": 0.2}
-SHAFT = Cue((Segment(0.7, 0.0125, 0.021, Material(12.6e9, 0.84e9, 700.0)),), body_mass=0.4)
 THREE_SHAPES = Scene(
     LumpedCue(0.54, np.full(3, 0.003)), Ball(), Tip(0.75, np.full((2, 1), 0.7)), Stroke(1.0, np.zeros(4))
 )
+BALL, NORTH = Ball(0.17, 0.0286), (0.0, 1.0, 0.0)
+R = BALL.radius
+GOOD = (0.3 * R, R)
+STRUCK = impulse(Scene(LumpedCue(0.54, 0.004), BALL, Tip(0.75, 0.7), Stroke(2.0, 0.3)))
+NEARLY_DEAD = "Tip.restitution must be 0, or in [0.0001, 1], where a contact is followed in time; got "
+
+
+def placed(point: Any = GOOD, direction: Any = NORTH, ball: Ball = BALL) -> Callable[[], object]:
+    return lambda: place(STRUCK, point, direction, ball=ball)
+
+
+def struck(scene: Scene, at: Resolution | None = None, **changes: Any) -> Callable[[], object]:
+    return lambda: strike(replace(scene, **changes), at)
+
+
+ARRAYS: dict[str, dict[str, Any]] = {
+    "Stroke.offset": {"stroke": Stroke(offset=TWO / 10)},
+    "Stroke.speed": {"stroke": Stroke(speed=TWO)},
+    "Ball.mass": {"ball": Ball(mass=TWO / 10)},
+    "Ball.inertia": {"ball": Ball(inertia=TWO / 4)},
+    "Ball.radius": {"ball": Ball(radius=TWO / 50)},
+    "Tip.friction": {"tip": Tip(friction=TWO / 4)},
+    "Tip.restitution": {"tip": Tip(TWO / 4)},
+}
 CALLS: list[tuple[Callable[[], object], str]] = [
     *[
-        (lambda f=field, v=value: MAKERS[f](v), f"TypeError: {field} must be a number in {BOUNDS[field]}; got ")
-        for field in MAKERS
+        (lambda f=make, v=value: f(v), f"TypeError: {field} must be a number in {bounds}; got ")
+        for field, (make, bounds, _, _) in FIELDS.items()
         for value in ("0.5", None, True, [0.5, "x"], {})
     ],
     (lambda: LumpedCue(0.25, 0.25, 4.0), "LumpedCue.coupling must be in (-4.0, 4.0) 1/kg; got 4.0"),
@@ -87,22 +92,69 @@ CALLS: list[tuple[Callable[[], object], str]] = [
         lambda: impulse(Scene(LumpedCue(np.ones(2), np.ones(3)))),
         "got shapes LumpedCue.mass (2,), LumpedCue.end_mass (3,)",
     ),
-    (
-        lambda: impulse(Scene(SHAFT, Ball(mass=np.array([0.17, 0.21])))),
-        "must be one number; got an array of shape (2,)",
-    ),
-    (lambda: impulse(Scene(SHAFT, tip=Tip(np.array([0.7, 0.8])))), "Tip.restitution must be one number"),
+    (lambda: impulse(Scene(KIM, Ball(mass=TWO / 10))), "must be one number; got an array of shape (2,)"),
+    (lambda: impulse(Scene(KIM, tip=Tip(TWO / 4))), "Tip.restitution must be one number"),
     (lambda: Scene("cue"), "TypeError: Scene.cue must be a Cue or LumpedCue; got 'cue'"),
     (lambda: Scene(LumpedCue(0.5, 0.003), tip=0.7), "TypeError: Scene.tip must be a Tip"),
     (
         lambda: impulse(Scene(LumpedCue(0.54, 0.005), effects=(TipShear(0.75),))),
         "impulse takes a LumpedCue without effects",
     ),
-    (lambda: strike(leather_scene(speed=TWO)), "Stroke.speed must be one number; got an array of shape (2,)"),
-    (lambda: strike(leather_scene(e=TWO / 4)), "Tip.restitution must be one number; got an array of shape (2,)"),
+    # strikes
+    *[(struck(kim_scene(), **part), field) for field, part in ARRAYS.items()],
+    *[(struck(Scene(LumpedCue(0.54, 0.003)), **part), field) for field, part in ARRAYS.items()],
+    (struck(Scene(LumpedCue(TWO / 4, 0.003))), "LumpedCue.mass"),
+    (struck(Scene(LumpedCue(0.5, TWO / 300))), "LumpedCue.end_mass"),
+    (struck(leather_scene(speed=TWO)), "Stroke.speed must be one number; got an array of shape (2,)"),
+    (struck(leather_scene(e=TWO / 4)), "Tip.restitution must be one number; got an array of shape (2,)"),
+    (struck(leather_scene(e=0.05)), "LeatherTip; got 0.05: leather that gives back less rings on"),
+    (struck(leather_scene(speed=60.0)), "mm): give LeatherTip a larger height or E, or Stroke a lower speed"),
+    *[
+        (struck(kim_scene(-0.4, restitution=e), Resolution(4, 12, 12), effects=effects), NEARLY_DEAD + f"{e:g}: such")
+        for e in (9e-5, 1e-6, 5e-324)
+        for effects in ((), (TipShear(0.75),), (RollingContact(),), (PowerLawTip(1.5),), (Elevation(0.1),))
+    ],
+    (struck(kim_scene(restitution=9e-5), effects=(SecondHit(),)), "Tip.restitution in [0.0001, 1]; got 9e-05"),
+    (struck(kim_scene(restitution=0.0), effects=(Elevation(0.1),)), "a Tip.restitution in (0, 1]; got 0.0"),
+    (lambda: Resolution(4, 8, 0), "Resolution.modes"),
+    (struck(kim_scene(), Resolution(2, 3, 500)), "more elements or order"),
+    *[
+        (lambda t=time: strike(kim_scene(), Resolution(2, 8, 4)).history(t), "History takes times in [0, ")
+        for time in (-1e-9, 1.0, nan)
+    ],
+    # many strikes
+    (lambda: batch_strike(kim_scene()), "TypeError: batch_strike scenes must be a sequence of Scene; got one Scene: "),
+    (lambda: batch_strike(3), "TypeError: batch_strike scenes must be a sequence of Scene; got 3"),
+    (lambda: batch_strike([kim_scene(), 3]), "TypeError: batch_strike scenes must be a Scene"),
+    (lambda: batch_strike([]), "batch_strike takes one scene or more; got none"),
+    (lambda: batch_strike([kim_scene()], threads=0), "batch_strike threads must be"),
+    (
+        lambda: batch_strike([kim_scene(), replace(kim_scene(restitution=0.0), effects=(SecondHit(),))]),
+        "scene 1: SecondHit takes a Tip.restitution",
+    ),
+    # a measured blow
     (lambda: leather_modulus(leather_scene(), TWO), "leather_modulus contact_time must be one number; got an array"),
-    (lambda: strike(leather_scene(e=0.05)), "LeatherTip; got 0.05: leather that gives back less rings on"),
-    (lambda: strike(leather_scene(speed=60.0)), "mm): give LeatherTip a larger height or E, or Stroke a lower speed"),
+    (lambda: leather_modulus(leather_scene(), 0.0), "leather_modulus contact_time must be in [1e-6, 10] s; got 0"),
+    (
+        lambda: leather_modulus(replace(leather_scene(), effects=(TipDome(0.01),)), 1e-3),
+        "Scene.effects must hold a LeatherTip; got none",
+    ),
+    (lambda: leather_modulus(leather_scene(), 9e-3), "further than its law is known"),
+    # the table's frame
+    (placed((R, 1.5 * R)), "R = 0.0286 m; got (0.0286, 0.0429"),
+    (placed((nan, R)), "point must be in (-inf, inf) m; got nan at index 0"),
+    (placed(direction=(0, inf, 0)), "got inf at index 1"),
+    (placed(direction=(0, 0, 0)), "direction must have a length; got (0, 0, 0)"),
+    (placed(direction=(0, 1)), "direction must have 3 components on its last axis"),
+    (placed((1.0, 2.0, 3.0)), "point must have 2 components on its last axis"),
+    (placed((0.0, 0.0)), "point must be on the side of the ball that the direction meets, less than 90 degrees"),
+    (placed((0.0, 0.2 * R), (0, 0.1, -1.0)), "point must be on the side"),
+    (placed((0.31 * R, R)), "0.31 or -0.31; got one at 0.3"),
+    (placed([GOOD, (0.2 * R, R)]), "got one at 0.3 at index 1"),
+    (placed(ball=Ball()), "got one at 0.3"),
+    (lambda: offset_of_axis([0.01, 0.04], 0.0095, ball=BALL), "got 0.04 at index 1"),
+    (lambda: offset_of_axis(nan, 0.0095), "axis_distance must be in "),
+    (lambda: offset_of_axis(0.01, -1.0), "dome_radius must be in [0, inf) m; got -1"),
 ]
 
 
@@ -111,19 +163,30 @@ def test_calls(ask: Callable[[], object], message: str) -> None:
     refuses(ask, message)
 
 
-@pytest.mark.parametrize(("field", "value"), CASES)
-def test_numbers_out_of_bounds(field: str, value: float) -> None:
+@pytest.mark.parametrize("field", FIELDS)
+def test_numbers_out_of_bounds(field: str) -> None:
     """The whole line; of an array the first index."""
-    fine, message = GOOD.get(field, 0.5), f"{field} must be in {BOUNDS[field]}; got {value}"
-    for given, where in (
-        (value, ""),
-        (np.array([fine, fine, value, value]), " at index 2"),
-        (np.array([[fine, fine], [value, fine]]), " at index (1, 0)"),
-    ):
-        with pytest.raises(ValueError, match=r".*") as refused:
-            MAKERS[field](given)
-        assert str(refused.value) == message + where
+    make, bounds, fine, wrong = FIELDS[field]
+    for value in wrong:
+        message = f"{field} must be in {bounds}; got {value}"
+        for given, where in (
+            (value, ""),
+            (np.array([fine, fine, value, value]), " at index 2"),
+            (np.array([[fine, fine], [value, fine]]), " at index (1, 0)"),
+        ):
+            with pytest.raises(ValueError, match=r".*") as refused:
+                make(given)
+            assert str(refused.value) == message + where
 
 
 def test_what_is_just_allowed() -> None:
     assert impulse(Scene(LumpedCue(1, 1), Ball(1, 1, 1), Tip(0, inf), Stroke(1, 0))).cue_speed == 0.5
+
+
+@pytest.mark.parametrize("limit", [("laws.LONGEST", 0.3), ("solve.MOST_PHASES", 0), ("solve.MOST_STEPS", 1)])
+def test_a_strike_that_does_not_separate_says_so_with_its_state(monkeypatch, limit) -> None:
+    name, most = limit
+    monkeypatch.setattr(f"cuefem.contact.{name}", most)
+    message = r"does not leave the cue: after .* s and \d+ phases .*v_t = .*v_n = .*pressed by .* m; check restitution"
+    with pytest.raises(RuntimeError, match=message):
+        strike(Scene(LumpedCue(0.54, 0.003), stroke=Stroke(offset=0.3)))

@@ -89,6 +89,13 @@ def hand_made(omega: list[float], across: list[float], *, mass: float = 0.54, ri
     return TipModes(np.r_[0.0, 0.0, omega], amplitude, approach, np.zeros(len(amplitude)))
 
 
+def a_few_modes(damping: float = 0.0) -> TipModes:
+    """A shaft of a few modes by hand whose end section turns with them, each damped or none."""
+    tip = hand_made([500.0, 3000.0, 9000.0], [5.0, 8.0, 7.0], rigid=9.0)
+    tip = replace(tip, rotation=np.array([0, -50.0, -60.0, -80.0, -120.0]))
+    return replace(tip, damping=np.diag(damping * tip.omega)) if damping else tip
+
+
 def imbalance(outcome: Outcome) -> float:
     """What the energy account misses, relative to the energy at the start."""
     parts = dict(outcome.energy)
@@ -126,6 +133,21 @@ def sound(outcome: Outcome) -> None:
     assert times[-1][1] == outcome.duration
     assert all(first[1] == second[0] for first, second in pairwise(times))
     assert all(start <= end for start, end in times)
+
+
+def mirrors(right: Outcome, left: Outcome) -> None:
+    """The stroke on the other side is the exact mirror image, its history too."""
+    mirrored = numbers(left)
+    mirrored[[0, 1, 4, 6]] *= -1  # squirt, V_t, spin, impulse along t
+    assert np.array_equal(numbers(right), mirrored)
+    assert left.duration == right.duration
+    assert [phase.mirrored(-1) for phase in left.phases] == list(right.phases)
+    times = np.linspace(0, right.duration, 7)
+    for name, values in right.history(times).items():
+        assert np.array_equal(left.history(times)[name], -values if name[-1] == "t" else values)
+    if right.history.velocity is not None:
+        assert np.array_equal(right.history.velocity, left.history.velocity * [-1, 1, 1])
+        assert np.array_equal(right.history.spin, left.history.spin * [1, -1, -1])
 
 
 def logarithmic(low: float, high: float) -> st.SearchStrategy[float]:

@@ -17,7 +17,6 @@ def stroke(**changes: object) -> Callable[[], object]:
 
 
 CALLS: list[tuple[Callable[[], object], str]] = [
-    (stroke(friction=0.5), "friction must be > mu_c = 0.5373"),
     (stroke(friction=0.5), " for slip to end at offset 0.5; got 0.5"),
     (stroke(friction=0.55), "p_s <= p_c = 0.437"),
     (stroke(friction=0.55), " M U with friction 0.55 at offset 0.5"),
