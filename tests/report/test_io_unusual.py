@@ -48,23 +48,15 @@ def test_no_false_alarm(path: Path) -> None:
     assert remarks(path) == []
 
 
-def test_the_files_of_this_test_are_ordinary(tmp_path: Path) -> None:
-    for name, content in (("cue.toml", CUE), ("scene.toml", SCENE), ("shaft.csv", PROFILE)):
-        (tmp_path / name).write_text(content)
-        assert remarks(tmp_path / name) == []
-
-
 @pytest.mark.parametrize(
     ("old", "new", "line"),
     [
         ("28.575 mm", "57.15 mm", "ball radius 57.15 mm; 26 to 31 is usual: is that the diameter?"),
-        ("28.575 mm", "28.575 m", "ball radius 28575 mm; 26 to 31 is usual: is that the diameter?"),
         ("9.5 mm", "9.5 m", "dome radius 9500 mm; 9 to 10.6 is usual, a dime's or a nickel's"),
         ("offset = 0.3", 'speed = "200 m/s"', "stroke speed 200 m/s; 0.5 to 12 is usual"),
         ("[ball]", '[ball]\nmass = "170 kg"', "ball mass 170000 g; 140 to 210 is usual"),
         ("420 g", "15 kg", "mass of the whole cue 15.09"),
         ("12.7 mm", "0.0127 mm", "segments[0].tip_diameter 0.0127 mm; check the unit of the diameters"),
-        ("12.8 mm", "12.8 cm", "segments[1].tip_diameter 128 mm; check the unit of the diameters"),
         ("12.8 mm", "128 mm", "the diameter jumps from 12.7 to 128 mm between segments[0] and segments[1]"),
         ("12.8 mm", "8.1 mm", "the diameter jumps from 12.7 to 8.1 mm between segments[0] and segments[1]"),
         ("400 mm", "400 m", "drawn length 400325 mm; check the unit of the lengths"),
@@ -73,44 +65,35 @@ def test_the_files_of_this_test_are_ordinary(tmp_path: Path) -> None:
             '"14 mm", butt_bore = "3 mm", mat',
             "the bore of segments[1] comes to a point; is tip_bore left",
         ),
-        (
-            '"14 mm", mat',
-            '"14 mm", tip_bore = "3 mm", mat',
-            "the bore of segments[1] comes to a point; is butt_bore left",
-        ),
     ],
 )
 def test_a_slip_is_remarked(tmp_path: Path, old: str, new: str, line: str) -> None:
     assert old in CUE + SCENE
-    for name, content in (("cue.toml", CUE), ("scene.toml", SCENE)):
-        (tmp_path / name).write_text(content.replace(old, new, 1))
+    for changed, remarked in (((old, old), False), ((old, new), True)):
+        for name, content in (("cue.toml", CUE), ("scene.toml", SCENE)):
+            (tmp_path / name).write_text(content.replace(*changed, 1))
+        assert bool(remarks(tmp_path / "scene.toml")) is remarked
     assert any(said.startswith(line) for said in remarks(tmp_path / "scene.toml"))
 
 
 @pytest.mark.parametrize(
-    ("content", "begins"),
+    ("rows", "begins"),
     [
+        ("[mm],diameter [mm]\n0,12.5\n250,12.9\n737,21", []),
         (
-            "x [mm],diameter [mm]\n0,0.0125\n0.25,0.0129\n0.737,0.021\n",
-            ["drawn length 0.737 mm", "segments[0].tip_d", "drawn"],
+            "[mm],diameter [mm]\n0,0.0125\n0.25,0.0129\n0.737,0.021",
+            ["drawn length 0.737", "segments[0].tip_d", "drawn"],
         ),
-        (
-            "x [mm],diameter [mm]\n0,21\n487,12.9\n737,12.5\n",
-            ["the tip is thicker than the butt, 21 and 12.5 mm; is the"],
-        ),
-        (
-            "x [mm],diameter [mm]\n0,6.4\n737,10.7\n",
-            ["diameter at the tip 6.4 mm; 8.5 to 14 is usual: is that the rad"],
-        ),
-        ("x [m],diameter [mm]\n0,12\n700,21\n", ["drawn length 700000 mm", "mass of the whole cue 108."]),
-        ("x [mm],diameter [cm]\n0,12\n700,21\n", ["segments[0].tip_diameter 120 mm", "mass of the whole cue 11."]),
+        ("[mm],diameter [mm]\n0,21\n487,12.9\n737,12.5", ["the tip is thicker than the butt, 21 and 12.5 mm; is the"]),
+        ("[mm],diameter [mm]\n0,6.4\n737,10.7", ["diameter at the tip 6.4 mm; 8.5 to 14 is usual: is that the rad"]),
+        ("[m],diameter [mm]\n0,12\n700,21", ["drawn length 700000 mm", "mass of the whole cue 108."]),
+        ("[mm],diameter [cm]\n0,12\n700,21", ["segments[0].tip_diameter 120 mm", "mass of the whole cue 11."]),
     ],
 )
-def test_profiles(tmp_path: Path, content: str, begins: list[str]) -> None:
-    (tmp_path / "shaft.csv").write_text(content)
-    found = remarks(tmp_path / "shaft.csv")
-    assert len(found) == len(begins)
-    assert all(line.startswith(begin) for line, begin in zip(found, begins, strict=True))
+def test_profiles(tmp_path: Path, rows: str, begins: list[str]) -> None:
+    (tmp_path / "shaft.csv").write_text(f"x {rows}\n")
+    said = remarks(tmp_path / "shaft.csv")
+    assert all(line.startswith(begin) for line, begin in zip(said, begins, strict=True))
 
 
 LEFT_OUT = "; 400 to 700 is usual: is what is behind the shaft left out (--body-mass, or body_mass in a drawing)?"
@@ -148,14 +131,7 @@ def test_a_lumped_cue(tmp_path: Path) -> None:
     assert remarks(tmp_path / "lumped.toml") == ["mass of the whole cue 540 kg; 0.4 to 0.7 is usual"]
 
 
-def test_remarks_stand_on_stderr_in_json_and_on_the_page(tmp_path: Path) -> None:
+def test_remarks_stand_on_the_page(tmp_path: Path) -> None:
     (tmp_path / "cue.toml").write_text(CUE.replace("420 g", "15 kg"))
-    line = "mass of the whole cue 15.09"
-    status, out, err = call("strike", tmp_path / "cue.toml", "--json")
-    assert (status, err.splitlines()) == (0, [f"unusual: {json.loads(out)['unusual'][0]}"])
-    assert json.loads(out)["unusual"][0].startswith(line)
     assert call("report", tmp_path / "cue.toml", "-o", tmp_path / "page.html")[0] == 0
-    assert f"unusual: {line}" in (tmp_path / "page.html").read_text(encoding="utf-8")
-    (tmp_path / "cue.toml").write_text(CUE)
-    status, out, err = call("strike", tmp_path / "cue.toml", "--json")
-    assert (err, json.loads(out)["unusual"]) == ("", [])
+    assert "unusual: mass of the whole cue 15.09" in (tmp_path / "page.html").read_text(encoding="utf-8")

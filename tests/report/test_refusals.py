@@ -15,6 +15,7 @@ from cuefem.contact.motion import motion
 from cuefem.squirt import alciatore_a31_mass_ratio
 from tests.helpers.command_line import call
 from tests.helpers.refusals import command_refuses, refuses, untouched
+from tests.helpers.sweeps import STUDY
 
 KIM = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 782.3284453057836), kappa=0.9),), 0.42)
 SCENE = cf.Scene(KIM, cf.Ball(0.17, 0.028575), cf.Tip(0.75, 0.7, 1e-3), cf.Stroke(2.0, 0.3))
@@ -35,16 +36,10 @@ CALLS: list[tuple[Callable[[], object], str]] = [
 ]
 UNTIL = "scene.toml: --until: needs a unit: \"1.2 ms\"; got '3'"
 COMMANDS = [
-    (
-        "strike scene.toml --for pooltool -o cue.json --offset 0",
-        "scene.toml: end mass 'A.31' does not exist here: [A.31] has no",
-    ),
+    ("strike scene.toml --for pooltool -o cue.json --offset 0", "end mass 'A.31' does not exist here: [A.31] has no"),
     ("strike scene.toml --for pooltool -o cue.json --offset 0.9", "the stroke miscues at offset 0.9; got no end mass"),
     ("strike scene.toml --for pooltool -o cue.json --offset 1.5", "scene.toml: --offset: must be between -1 and 1"),
-    (
-        "strike scene.toml --for pooltool -o cue.toml",
-        "cue.toml: --output: must end in .html or .json or .csv; got '.toml'",
-    ),
+    ("strike scene.toml --for pooltool -o cue.toml", "--output: must end in .html or .json or .csv; got '.toml'"),
     ("strike scene.toml --for pooltool -o none/cue.json", "none/cue.json: cannot be written: "),
     ("strike scene.toml --for pooltool -o dir.json", "dir.json: cannot be written: "),
     ("strike scene.toml -o cue.json", "--output: must go with --for pooltool, for which it is"),
@@ -55,12 +50,16 @@ COMMANDS = [
     ("strike scene.toml --for table --offsets '0.5 to 0.1 in 3'", "--offsets: must begin below its end; got '0.5 to"),
     ("strike scene.toml --for table --offsets '0.1 to 0.5 in 1'", "must have 2 to 1000 steps after \"in\"; got '1'"),
     ("strike scene.toml --for table --offsets '0.1, 1.2'", "--offsets: must be between -1 and 1; got"),
-    (
-        "strike scene.toml --for table --offsets '0.1 to 0.5 in 900'",
-        "must make at most 1000 strokes with --speeds; got",
-    ),
+    ("strike scene.toml --for table --offsets '0.1 to 0.5 in 900'", "must make at most 1000 strokes with --speeds"),
     ("strike scene.toml --for table --speeds '1 m/s, 0 m/s' -o t.csv", "--speeds: must be more than 0"),
     ("strike scene.toml --for table --speeds '1, 2'", "--speeds: needs a unit"),
+    ("cost scene.toml --output cost.pdf", "must end in .html or .png or .svg; got '.pdf'"),
+    ("cost lumped.toml", "must be a Cue of segments"),
+    ("report lumped.toml -o page.pdf", "page.pdf: --output: must end in .html; got '.pdf'"),
+    ("report lumped.toml -o page.html --json", "page.html: --output: must be left out with --json"),
+    ("report lumped.toml -o none/page.html", "none/page.html: cannot be written: No such file or directory"),
+    ("report lumped.toml -o page.html --offset 1", "lumped.toml: --offset: must be between -1 and 1; got 1.0"),
+    ("sweep study.toml -o page.pdf", "page.pdf: --output: must end in .html; got '.pdf'"),
     ("animate scene.toml -o seen --until 3", UNTIL),
     ("animate scene.toml -o seen --until '-1 ms'", "--until: must be more than 0 ms; got -1 ms"),
     ("animate scene.toml -o seen --scale nan", "--scale: must be finite; got nan"),
@@ -74,6 +73,8 @@ COMMANDS = [
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     cf.save(SCENE, tmp_path / "scene.toml")
     cf.save(RAISED, tmp_path / "raised.toml")
+    cf.save(LUMPED, tmp_path / "lumped.toml")
+    (tmp_path / "study.toml").write_text(STUDY)
     (tmp_path / "dir.json").mkdir()
     monkeypatch.chdir(tmp_path)
     return tmp_path
@@ -89,16 +90,12 @@ def test_commands(folder: Path, command: str, message: str) -> None:
     untouched(folder, message, *shlex.split(command))
 
 
-@pytest.mark.parametrize("options", [("--count", "0"), ("--count", "101"), ("--frames", "1"), ("--frames", "10001")])
-def test_an_animation_of_too_few_or_too_many(folder: Path, options: tuple[str, ...]) -> None:
-    status, out, err = call("animate", "scene.toml", "-o", "seen", *options)
-    assert (status, out) == (2, "")
-    assert f"Invalid value for '{options[0]}': {options[1]} is not in the range" in err
-    assert not (folder / "seen").exists()
-
-
-def test_a_head_on_stroke_has_its_stick_end_mass(folder: Path) -> None:
-    assert call("strike", "scene.toml", "--for", "pooltool", "--offset", "0", "--drive", "stick")[0] == 0
+@pytest.mark.parametrize("option", ["--count 0", "--count 101", "--frames 1", "--frames 10001"])
+def test_an_animation_of_too_few_or_too_many(folder: Path, option: str) -> None:
+    name, value = option.split()
+    status, _, err = call("animate", "scene.toml", "-o", "seen", name, value)
+    assert (status, (folder / "seen").exists()) == (2, False)
+    assert f"Invalid value for '{name}': {value} is not in the range" in err
 
 
 def test_an_animation_that_stops_half_way(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -37,15 +37,6 @@ def pool() -> str:
     return page("pool.toml", scene("pool_low_deflection"))
 
 
-def test_a_cue_of_as_many_segments_as_there_may_be_is_drawn_with_its_leather() -> None:
-    piece = cf.Segment(0.36e-3, 0.012, 0.012, cf.Material(12.6e9, 0.84e9, 700.0))
-    longest = cf.usual_scene(cf.Cue((piece,) * 2000, body_mass=0.45))
-    drawn = cue_drawing(longest, across=8.0)
-    assert len(drawn.pieces) == 2001
-    assert drawn.pieces[0].material == "m-leather"
-    assert strike_drawing(longest, 0.03).pieces[0][1] == "m-leather"
-
-
 class Reader(HTMLParser):
     """Tags, attributes and text of a page; refuses tags that do not close in order."""
 
@@ -66,12 +57,8 @@ class Reader(HTMLParser):
         if tag not in VOID:
             self.open.append(tag)
 
-    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.tags[tag] += 1
-        self.attributes += [(name, value or "") for name, value in attrs]
-
     def handle_endtag(self, tag: str) -> None:
-        assert self.open.pop() == tag
+        assert tag in VOID or self.open.pop() == tag
         self.within = tag == "button"
 
     def handle_data(self, data: str) -> None:
@@ -102,30 +89,22 @@ def assert_sound(text: str) -> Reader:
 def test_a_page_is_whole_and_self_contained(pool: str) -> None:
     found = assert_sound(pool)
     words = " ".join(found.text)
-    for title in (
-        "The cue",
-        "How it rings",
-        "Effective end mass",
-        "The contact",
-        "Squirt and pivot length against the offset",
-        "Where the energy goes",
-        "The same stroke by every model",
-        "How exact the numbers are",
-    ):
-        assert title in words
     for effect in ("TipDome (radius 9.5 mm)", "TipShear (ratio 0.75)", "Support (position 203.2 mm"):
         assert effect in words
+    assert "How it rings" in words
+    assert "shaded: " not in words
     assert len(pool.encode()) < 200_000
 
 
 def test_the_pages_numbers_are_the_librarys(pool: str) -> None:
     blow = scene("pool_low_deflection")
     outcome = resolve(blow, 1e-2)
-    words = " ".join(Reader(pool).text)
+    words = " ".join(" ".join(Reader(pool).text).split())
     assert f"{math.degrees(outcome.squirt):.3f}°" in words
     assert f"{outcome.ball_speed:.3f} m/s" in words
     assert f"{1e3 * outcome.duration:.3f} ms" in words
     assert f"{outcome.error:.1e}" in words
+    assert f"have an estimated error of {100.0 * outcome.error:.2g} %; 1 % was asked for." in words
     for frequency in cf.modes(blow.cue, 5, effects=blow.cue_effects).frequencies:
         assert (f"{frequency:.1f} Hz" if frequency < 1e3 else f"{frequency / 1e3:.2f} kHz") in words
     parts = [float(part) for part in re.findall(r'style="width:([0-9.]+)%"', pool)]
@@ -150,6 +129,7 @@ def test_pages_of_lumped_cues(blow: cf.Scene) -> None:
     words = " ".join(assert_sound(page("lumped.toml", blow)).text)
     assert "How it rings" not in words
     assert "How exact" not in words
+    assert "estimated error" not in words
     assert f"{math.degrees(cf.strike(blow).squirt):.3f}°" in words
 
 
@@ -168,12 +148,6 @@ def test_names_are_text_and_no_markup() -> None:
     assert_sound(text)
 
 
-def test_the_work_is_followed_stage_by_stage() -> None:
-    stages: list[str] = []
-    page("a", LUMPED, track=lambda work: (stages.append(stage.name) or stage for stage in work))
-    assert stages == ["outcome", "verdict", "end_masses", "squirt", "strike", "numbers"]
-
-
 def test_the_command_writes_a_page(tmp_path: Path) -> None:
     cf.save(LUMPED, tmp_path / "lumped.toml")
     target = tmp_path / "page.html"
@@ -183,32 +157,14 @@ def test_the_command_writes_a_page(tmp_path: Path) -> None:
     assert sorted(path.name for path in tmp_path.iterdir()) == ["lumped.toml", "page.html"]
 
 
-@pytest.mark.parametrize(
-    ("arguments", "line"),
-    [
-        (["-o", "page.pdf"], "page.pdf: --output: must end in .html; got '.pdf'"),
-        (["-o", "page.html", "--json"], "page.html: --output: must be left out with --json"),
-        (["-o", "missing/page.html"], "missing/page.html: cannot be written: No such file or directory"),
-        (["-o", "page.html", "--offset", "1"], "lumped.toml: --offset: must be between -1 and 1; got 1.0"),
-    ],
-)
-def test_nothing_is_written_on_bad_input(tmp_path: Path, arguments: list[str], line: str) -> None:
-    cf.save(LUMPED, tmp_path / "lumped.toml")
-    placed = [str(tmp_path / part) if part.startswith(("page", "missing")) else part for part in arguments]
-    status, out, err = call("report", tmp_path / "lumped.toml", *placed)
-    assert (status, out, err.count("\n")) == (2, "", 1)
-    assert err.startswith(f"cuefem: {tmp_path}/{line}")
-    assert [path.name for path in tmp_path.iterdir()] == ["lumped.toml"]
-
-
 def test_ticks_are_round_numbers() -> None:
     assert [round_step(length) for length in (1.0, 6.0, 7.0, 0.0123, 5000.0)] == [0.2, 1.0, 2.0, 0.005, 1000.0]
     scale = Axis("x").over([np.array([0.3, 2.7, np.nan])])
     assert (scale.low, scale.high, scale.step) == (0.0, 3.0, 0.5)
-    assert [tick.label for tick in scale.ticks(0, 60)] == ["0.0", "0.5", "1.0", "1.5", "2.0", "2.5", "3.0"]
-    assert [tick.at for tick in scale.ticks(0, 60)] == pytest.approx([0, 10, 20, 30, 40, 50, 60])
-    flat = Axis("x").over([np.zeros(3)])
-    assert (flat.low, flat.high) == (0.0, 1.0)
+    assert [(tick.label, tick.at) for tick in scale.ticks(0, 60)] == [
+        (f"{i / 2}", pytest.approx(10 * i)) for i in range(7)
+    ]
+    assert Axis("x").over([np.zeros(3)])[:2] == (0.0, 1.0)
 
 
 def test_a_chart_keeps_its_curves_near() -> None:
@@ -219,6 +175,7 @@ def test_a_chart_keeps_its_curves_near() -> None:
     assert numbers[2] == pytest.approx(right)
     assert numbers[3] > top - 2 * (bottom - top)
     assert made.marks[0].at == pytest.approx(right)
+    assert top == 22  # room for the mark's label
 
 
 def test_the_cue_is_drawn_to_scale() -> None:
@@ -249,7 +206,11 @@ def test_a_leather_tip_is_drawn_in_front_of_the_cue() -> None:
         assert [piece.material for piece in drawing.pieces] == ["m-leather", "m-other"]
         assert [sign.label for sign in drawing.signs] == ["PointMass"]
         assert drawing.signs[0].at == pytest.approx(10 + (WIDE - 20) * 0.056 / length)
-    assert strike_drawing(blow, 0.03).pieces[0][1] == "m-leather"
+    piece = cf.Segment(0.36e-3, 0.012, 0.012, cf.Material(12.6e9, 0.84e9, 700.0))
+    longest = cf.usual_scene(cf.Cue((piece,) * 2000, body_mass=0.45))  # of as many as there may be
+    assert len(cue_drawing(longest, across=8.0).pieces) == 2001
+    for each in (blow, longest):
+        assert strike_drawing(each, 0.03).pieces[0][1] == "m-leather"
 
 
 def test_a_tip_is_drawn_with_its_layers_and_as_wide_as_it_is() -> None:
@@ -274,21 +235,10 @@ def test_the_blow_is_drawn_true() -> None:
     assert fall == pytest.approx(math.tan(0.03), rel=1e-9)
 
 
-def test_offsets_that_slip_long_are_shaded(pool: str) -> None:
+def test_offsets_that_slip_long_are_shaded() -> None:
     shot = scene("kim")
     slippery = replace(shot, tip=replace(shot.tip, friction=0.4))
     regimes = {cf.strike(replace(slippery, stroke=cf.Stroke(1.0, b))).regime for b in (0.3, 0.6)}
     assert regimes == {"stick", "miscue"}
     shaded = "".join(Reader(page("kim.toml", slippery)).text)
-    assert "shaded: the tip slips through much of the push, at first or when it lets go late" in shaded
-    assert "shaded: " not in pool
-
-
-def test_the_page_says_how_exact_its_numbers_are(pool: str) -> None:
-    outcome = resolve(scene("pool_low_deflection"), 1e-2)
-    words = " ".join(" ".join(Reader(pool).text).split())
-    assert (
-        f"Squirt, ball speed and spin on this page have an estimated error of {100.0 * outcome.error:.2g} %; "
-        "1 % was asked for." in words
-    )
-    assert "estimated error" not in page("lumped.toml", LUMPED)
+    assert "shaded: the tip slips through much of the push" in shaded

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import itertools
 import json
-from html.parser import HTMLParser
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 
 from cuefem.design import Response
 from cuefem.report.study import StudyTable, column_label, front_sheet
@@ -51,9 +54,9 @@ def test_names_are_groups_of_their_own() -> None:
     assert found.trends == [["", ""]]
 
 
-@pytest.mark.parametrize("seed", range(5))
-def test_the_front_is_what_none_beats(seed: int) -> None:
-    results = np.random.default_rng(seed).integers(0, 12, (60, 2)).astype(float)  # with ties
+@given(arrays(int, (60, 2), elements=st.integers(0, 11)))  # with ties
+def test_the_front_is_what_none_beats(numbers: np.ndarray) -> None:
+    results = numbers.astype(float)
     found = table({"x": np.arange(60.0)}, results)
     wanted = results * [1, -1]  # stiffness is better if it is higher
     beaten = [any((other <= own).all() and (other < own).any() for other in wanted) for own in wanted]
@@ -63,15 +66,12 @@ def test_the_front_is_what_none_beats(seed: int) -> None:
     assert found.best(1) in np.flatnonzero(results[:, 1] == results[:, 1].max())
 
 
-@pytest.mark.parametrize(
-    ("most", "words"), [(7, "20 designs, of which none is beaten in both; 7 of them are listed"), (30, "both")]
-)
-def test_a_front_says_how_many_of_its_designs_are_listed(most: int, words: str) -> None:
+@pytest.mark.parametrize("most", [7, 30])
+def test_a_front_says_how_many_of_its_designs_are_listed(most: int) -> None:
     x = np.linspace(0, 1, 20)
     sheet = front_sheet(table({"x": x}, np.stack([x, x], axis=1)), most)
     assert len(sheet.rows) == min(most, 20)
-    assert words in sheet.title
-    assert ("listed" in sheet.title) == (most < 20)
+    assert (f"{most} of them are listed" in sheet.title) == (most < 20)
 
 
 def test_the_pair_is_the_strongest_trade_off() -> None:
@@ -89,31 +89,13 @@ def test_every_kind_says_which_way_is_better() -> None:
     assert Response.of("end_mass_force").better == "lower"
 
 
-class _Read(HTMLParser):
-    def __init__(self) -> None:
-        super().__init__()
-        self.counts: dict[str, int] = {}
-        self.links: list[str] = []
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        kind = f"{tag}.{dict(attrs).get('class') or ''}"
-        self.counts[kind] = self.counts.get(kind, 0) + 1
-        self.links += [value or "" for name, value in attrs if name in ("src", "href")]
-
-
 def test_the_command_ends_with_a_summary_and_a_page(tmp_path: Path) -> None:
     (tmp_path / "scene.toml").write_text(SCENE)
     (tmp_path / "study.toml").write_text(STUDY)
     code, out, err = call("sweep", tmp_path / "study.toml", "-o", tmp_path / "page.html")
     assert (code, err) == (0, "")
     assert out.splitlines()[0] == f"64 designs in {tmp_path / 'study.sqlite'}, drawn on {tmp_path / 'page.html'}"
-    for words in (
-        "end mass, g (lower is better)",
-        "stiffness at the tip, N/m (higher is better)",
-        "falls",
-        "Trade-off",
-    ):
-        assert words in " ".join(out.split())
+    assert "stiffness at the tip, N/m (higher is better)" in " ".join(out.split())
     told = json.loads(call("sweep", tmp_path / "study.toml", "--json")[1])["summary"]
     best = told["best"]["end_mass"]
     assert best["at"]["bore"] == pytest.approx(0.011, rel=1e-12)  # the widest of those that exist
@@ -122,20 +104,10 @@ def test_the_command_ends_with_a_summary_and_a_page(tmp_path: Path) -> None:
     assert told["front"]["of"] == ["end_mass", "tip_stiffness"]
     assert told["front"]["designs"][0]["design"] == best["design"]
     page = (tmp_path / "page.html").read_text(encoding="utf-8")
-    read = _Read()
-    read.feed(page)
-    assert sum(count for kind, count in read.counts.items() if kind.startswith("path.s")) == 48  # a line a design
-    assert read.counts["svg.small"] == 3 * 3 + 1
-    assert read.links == ["data:,"]
+    assert len(re.findall('<path class="s', page)) == 48  # a line a design
+    assert page.count('<svg class="small') == 3 * 3 + 1
+    assert re.findall('(?:href|src)="([^"]*)"', page) == ["data:,"]
     assert len(page) < 500_000
-
-
-def test_a_page_is_refused_before_anything_is_computed(tmp_path: Path) -> None:
-    (tmp_path / "scene.toml").write_text(SCENE)
-    (tmp_path / "study.toml").write_text(STUDY)
-    code, _, err = call("sweep", tmp_path / "study.toml", "-o", tmp_path / "page.pdf")
-    assert (code, err) == (2, f"cuefem: {tmp_path / 'page.pdf'}: --output: must end in .html; got '.pdf'\n")
-    assert not (tmp_path / "study.sqlite").exists()
 
 
 def test_no_design_has_no_summary(tmp_path: Path) -> None:
@@ -153,13 +125,9 @@ def test_no_design_has_no_summary(tmp_path: Path) -> None:
         ("tip.contact_time", "tip contact time"),
         ("cue.segments[2].tip_bore", "segment 3 tip bore"),
         ("cue.segments[*].material.E", "all segments material E"),
-        ("cue.segments[0].length, ball.mass", "segment 1 length, ball mass"),
-        ("effects[0].dome_radius", "effect 1 dome radius"),
-        ("bore depth", "bore depth"),
-        ("E", "E"),
+        ("cue.segments[0].length, effects[0].dome_radius", "segment 1 length, effect 1 dome radius"),
         ("bore of 2.5, v1.5", "bore of 2.5, v1.5"),
         ("bore.depth", "bore.depth"),
-        ("classes[2].mass", "classes[2].mass"),
     ],
 )
 def test_columns_are_named_in_words(name: str, words: str) -> None:
@@ -173,9 +141,8 @@ def test_responses_are_named_in_words() -> None:
     assert said[4:] == ["end mass, force", "thinnest wall"]
     every = [
         Response(name, x).label
-        for name in asked()
-        for x in (None, 0.3, 0.3000001, 2)
-        if x is None or asked()[name].argument
+        for name, of in asked().items()
+        for x in ((None, 0.3, 0.3000001, 2) if of.argument else (None,))
     ]
     assert len({*every}) == len(every)
     assert not any("_" in label for label in every)
