@@ -33,10 +33,10 @@ from .endmass.lumped import impulse as impulse, lump as lump
 from .endmass.undamped import StickLimit as StickLimit
 from .games import usual_scene as usual_scene
 from .io import load as load, save as save
-from .measured.side.accuracy import resolve_side_strike as resolve_side_strike
-from .measured.side.motion import SideMotion as SideMotion, side_motion as side_motion
-from .measured.side.scene import SideStrike as SideStrike, Striker as Striker
-from .measured.side.strike import SideOutcome as SideOutcome, side_strike as side_strike
+from .measured.side.side_accuracy import resolve_side_strike as resolve_side_strike
+from .measured.side.side_motion import SideMotion as SideMotion, side_motion as side_motion
+from .measured.side.side_scene import SideStrike as SideStrike, Striker as Striker
+from .measured.side.side_strike import SideOutcome as SideOutcome, side_strike as side_strike
 from .quantity.slips import Unusual as Unusual
 from .solid.resolution import Solid as Solid
 from .solid.shaft import SolidModes as SolidModes, solid_modes as solid_modes

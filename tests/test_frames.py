@@ -10,7 +10,7 @@ import pytest
 import cuefem as cf
 from cuefem.design.scatter import drivers
 from cuefem.io import InputError
-from cuefem.io.study import load_scatter
+from cuefem.io.study_files import load_scatter
 from tests.helpers.command_line import call
 
 pd = pytest.importorskip("pandas")

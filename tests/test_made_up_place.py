@@ -17,7 +17,7 @@ from cuefem.design.scatter import Scatter, spread
 from cuefem.designer.design import Design, State, Step
 from cuefem.designer.kept import step_of, text_of
 from cuefem.designer.sliders import groups, sliders
-from cuefem.io.study import load_optimum, load_scatter, load_study
+from cuefem.io.study_files import load_optimum, load_scatter, load_study
 from cuefem.measured.unknowns import Prior, unknowns_of
 from cuefem.parts import Part
 from cuefem.quantity.fields import LENGTH

@@ -17,8 +17,8 @@ from cuefem.io import InputError, check_place, load_stroke
 from cuefem.io.assumed import assumed, assumed_usual
 from cuefem.io.fittings import FITTINGS
 from cuefem.report.record import scene_record
+from cuefem.report.scene_words import cue_line, effect_words
 from cuefem.report.unusual import unusual
-from cuefem.report.words import cue_line, effect_words
 from cuefem.results.quantities import UNITS
 from cuefem.results.records import Record, plain
 from cuefem.scene import Scene

@@ -16,7 +16,7 @@ from cuefem.cli.printing import output_option, print_all, tell
 from cuefem.cli.strokes import measured
 from cuefem.io import InputError, write_whole
 from cuefem.quantity.fields import LENGTH, Quantity
-from cuefem.report.handover import (
+from cuefem.report.handover_table import (
     POOLTOOL,
     POOLTOOL_LINE,
     handover_sheet,

@@ -13,7 +13,7 @@ from cuefem.cli.progress import followed
 from cuefem.cli.strokes import blow_options, offset_option
 from cuefem.design.advice import advice_record
 from cuefem.io import InputError, save
-from cuefem.report.advice import advice_sheet
+from cuefem.report.advice_table import advice_sheet
 from cuefem.vary import varied
 
 

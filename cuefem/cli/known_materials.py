@@ -8,7 +8,7 @@ import click
 
 from cuefem.cli.printing import json_option, page_option, tell
 from cuefem.report import materials_record, materials_sheet
-from cuefem.report.materials import parts_record, parts_sheets
+from cuefem.report.materials_table import parts_record, parts_sheets
 
 
 @click.command()

@@ -11,12 +11,12 @@ from cuefem.cli.common import blaming, remark, whole_record
 from cuefem.cli.printing import assumed_lines, json_option, page_option, tell
 from cuefem.cli.progress import followed
 from cuefem.io import InputError, save_page
-from cuefem.io.documented import load_documented, write_template
+from cuefem.io.documented_folder import load_documented, write_template
 from cuefem.measured.documented import compare as compared
 from cuefem.measured.documented import zeros
 from cuefem.measured.estimate import estimate as estimated
 from cuefem.measured.estimate import squirt_of
-from cuefem.report.documented import (
+from cuefem.report.documented_page import (
     compare_page,
     compare_record,
     compare_sheets,

@@ -14,9 +14,9 @@ from cuefem.cli.common import blaming, check_free, force_option, remark
 from cuefem.cli.printing import assumed_lines, json_option, output_option, tell
 from cuefem.design.optimum import Problem, optimum
 from cuefem.io import save
-from cuefem.io.study import assumed_base, load_optimum
+from cuefem.io.study_files import assumed_base, load_optimum
 from cuefem.quantity.units import text
-from cuefem.report.study import column_label
+from cuefem.report.study_table import column_label
 from cuefem.scene import Scene
 from cuefem.vary import replaced, value_at
 

@@ -59,7 +59,7 @@ def _model_error(scene: Scene) -> Record:
 
 
 def _write_page(file: Path, output: Path, given: dict[str, Any], *, check: bool) -> None:
-    from cuefem.report.page import page  # templates and charts take 0.1 s, which tables need not pay
+    from cuefem.report.report_page import page  # templates and charts take 0.1 s, which tables need not pay
 
     if given["as_json"]:
         raise InputError(output, "--output", "must be left out with --json: a page is no JSON")

@@ -14,10 +14,10 @@ from cuefem.cli.progress import bar
 from cuefem.cli.sweep import opened, pool_options
 from cuefem.design.scatter import drivers
 from cuefem.io import save_page
-from cuefem.io.study import assumed_base, load_scatter
-from cuefem.report.scatter import cause_sheet, scatter_record, scatter_sheets, scatter_words, spread_sheet
-from cuefem.report.study import table_of_study
+from cuefem.io.study_files import assumed_base, load_scatter
+from cuefem.report.scatter_table import cause_sheet, scatter_record, scatter_sheets, scatter_words, spread_sheet
 from cuefem.report.study_page import Scattered, study_page
+from cuefem.report.study_table import table_of_study
 
 
 @click.command()

@@ -17,12 +17,12 @@ from cuefem.cue import Cue
 from cuefem.io import InputError, check_new, load, load_accuracy, write_whole_folder
 from cuefem.io.assumed import assumed
 from cuefem.io.paraview import save_side_strike
-from cuefem.measured.side.accuracy import resolve_side_strike
-from cuefem.measured.side.motion import side_motion
-from cuefem.measured.side.scene import SideStrike, Striker
-from cuefem.measured.side.strike import side_strike
+from cuefem.measured.side.side_accuracy import resolve_side_strike
+from cuefem.measured.side.side_motion import side_motion
+from cuefem.measured.side.side_scene import SideStrike, Striker
+from cuefem.measured.side.side_strike import side_strike
 from cuefem.quantity.fields import Quantity
-from cuefem.report.side import side_record, side_scene_record, side_sheets
+from cuefem.report.side_table import side_record, side_scene_record, side_sheets
 from cuefem.results.quantities import UNITS
 from cuefem.vary import Path as Steps
 from cuefem.vary import with_fields

@@ -14,7 +14,7 @@ import click
 from cuefem.cue import Cue, LumpedCue
 from cuefem.games import DEFAULT_GAME, GAMES, usual_scene, usual_tip
 from cuefem.io import InputError
-from cuefem.measured.side.scene import SideStrike
+from cuefem.measured.side.side_scene import SideStrike
 from cuefem.quantity.fields import Quantity
 from cuefem.quantity.units import number
 from cuefem.scene import Scene, Stroke, Tip

@@ -17,9 +17,9 @@ from cuefem.design import dask as cluster
 from cuefem.design import sweep as run
 from cuefem.io import InputError, check_place, save_page, write_whole
 from cuefem.io.store import Store, export_path, write_table
-from cuefem.io.study import assumed_base, load_study
-from cuefem.report.study import StudyTable, study_record, study_sheets, table_of_study
+from cuefem.io.study_files import assumed_base, load_study
 from cuefem.report.study_page import study_page
+from cuefem.report.study_table import StudyTable, study_record, study_sheets, table_of_study
 
 
 def pool_options(command: Callable[..., Any]) -> Callable[..., Any]:

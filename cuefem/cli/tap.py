@@ -23,7 +23,7 @@ from cuefem.measured.wood import Predicted, TapTest, predicted
 from cuefem.parts import with_material
 from cuefem.quantity.fields import Quantity
 from cuefem.report.record import scene_record
-from cuefem.report.tap import tap_figure, tap_record, tap_sheets
+from cuefem.report.tap_table import tap_figure, tap_record, tap_sheets
 from cuefem.scene import Outcome, Scene
 
 

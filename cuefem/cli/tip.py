@@ -13,7 +13,7 @@ from cuefem.cli.strokes import measured, place_options, tip_options
 from cuefem.contact.calibrated import leather_modulus, with_modulus
 from cuefem.io import InputError
 from cuefem.quantity.fields import CONTACT_TIME
-from cuefem.report.tip import tip_record, tip_sheets
+from cuefem.report.tip_table import tip_record, tip_sheets
 from cuefem.scene import Scene
 
 

@@ -16,7 +16,7 @@ from cuefem.io.fittings import FITTINGS
 from cuefem.measured.pendulum import WAYS as KNOWN
 from cuefem.measured.pendulum import Bounces, PendulumTest, Told, Weighed, lumped_squirt, pressed_time, squirt_told
 from cuefem.quantity.fields import Quantity
-from cuefem.report.pendulum import plan_record, plan_sheets, weigh_record, weigh_sheets
+from cuefem.report.pendulum_table import plan_record, plan_sheets, weigh_record, weigh_sheets
 from cuefem.results.quantities import UNITS as QUANTITIES
 from cuefem.scene import Stroke, Tip
 

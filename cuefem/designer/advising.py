@@ -12,8 +12,8 @@ from cuefem.design.advice import advice_record
 from cuefem.designer.computing import FAILURES, computed
 from cuefem.designer.controls import Beside, button
 from cuefem.designer.markup import Markup
-from cuefem.designer.units import UnitSystem
-from cuefem.report.advice import advice_sheet
+from cuefem.designer.unit_system import UnitSystem
+from cuefem.report.advice_table import advice_sheet
 from cuefem.results.records import Record
 from cuefem.scene import Scene
 from cuefem.vary import varied

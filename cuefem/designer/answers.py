@@ -24,7 +24,7 @@ from cuefem.design.sensitivity import sensitivity
 from cuefem.endmass.drives import DEFINITIONS
 from cuefem.io.ready import ready_cues
 from cuefem.report.squirt import two_part_curve
-from cuefem.report.strike import outcome_record
+from cuefem.report.strike_table import outcome_record
 from cuefem.results.asking import listed
 from cuefem.results.designs import TONES, OneDesign, at_offset, strikes_at
 from cuefem.results.pivot import pivot_length

@@ -10,7 +10,7 @@ from nicegui import events, ui
 
 from cuefem.designer.markup import Markup
 from cuefem.designer.sliders import Choice, Slider
-from cuefem.designer.units import typed
+from cuefem.designer.unit_system import typed
 from cuefem.report.glossary import explained
 
 Turn = Callable[[float], str]

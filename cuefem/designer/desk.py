@@ -25,7 +25,7 @@ from cuefem.designer.editing import game_of, with_game
 from cuefem.designer.kept import LONGEST_NAME, MOST_PINNED, key_of, state_of, step_of, text_of
 from cuefem.designer.links import LinkDialog
 from cuefem.designer.markup import Markup
-from cuefem.designer.numbers import Column, csv_text
+from cuefem.designer.numbers_panel import Column, csv_text
 from cuefem.designer.opening import PresetMenu, ShapeDialog, asked, reading
 from cuefem.designer.pinned import PinnedList
 from cuefem.designer.receiving import Receiver
@@ -34,14 +34,14 @@ from cuefem.designer.sheet import DrawingSheet
 from cuefem.designer.sliders import choices, groups, sliders, without
 from cuefem.designer.style import SCRIPT, STYLE
 from cuefem.designer.tapside import TapSide
-from cuefem.designer.units import METRIC, SYSTEMS, UnitSystem
+from cuefem.designer.unit_system import METRIC, SYSTEMS, UnitSystem
 from cuefem.designer.words import head_markup
 from cuefem.games import GAMES
 from cuefem.io.ready import Preset
 from cuefem.io.ready import opened as preset_opened
 from cuefem.io.toml_text import toml_text
 from cuefem.report.glossary import definitions, explained
-from cuefem.report.page import page as report_page
+from cuefem.report.report_page import page as report_page
 from cuefem.report.templates import chart_script, page_style
 from cuefem.report.unusual import unusual
 from cuefem.scene import Scene

@@ -17,7 +17,7 @@ from cuefem.cue import Cue
 from cuefem.designer.computing import FAILURES
 from cuefem.designer.controls import Beside, button
 from cuefem.designer.markup import Markup
-from cuefem.designer.units import UnitSystem, typed
+from cuefem.designer.unit_system import UnitSystem, typed
 from cuefem.games import DEFAULT_GAME, GAMES, usual_scene
 from cuefem.io import load
 from cuefem.io.fittings import FITTINGS, fitted

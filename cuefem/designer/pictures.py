@@ -11,7 +11,7 @@ from scipy.interpolate import PchipInterpolator
 
 from cuefem.cue import Array
 from cuefem.designer.answers import CURVE_OFFSETS, Answers, Density, Point, SquirtCurve
-from cuefem.designer.units import METRIC, UnitSystem
+from cuefem.designer.unit_system import METRIC, UnitSystem
 from cuefem.report import charts as figures
 from cuefem.report.charts import Axis, Shade, chart
 from cuefem.report.drawings import cue_drawing, front_drawing, materials_of, modes_drawing, seen, style_of

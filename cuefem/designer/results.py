@@ -6,14 +6,14 @@ from collections.abc import Sequence
 
 from nicegui import ui
 
-from cuefem.designer import numbers, pictures
+from cuefem.designer import numbers_panel, pictures
 from cuefem.designer.answers import CURVE_OFFSETS, Answers
 from cuefem.designer.computing import Results
 from cuefem.designer.design import Design
 from cuefem.designer.markup import Markup
-from cuefem.designer.numbers import Column
+from cuefem.designer.numbers_panel import Column
 from cuefem.designer.pictures import Drawn
-from cuefem.designer.units import UnitSystem
+from cuefem.designer.unit_system import UnitSystem
 from cuefem.designer.words import ABOUT
 from cuefem.report.glossary import explained
 
@@ -57,10 +57,10 @@ class ResultsSide:
         answers, other = columns[0].answers, columns[reference].answers
         if answers is None:
             return
-        keys = numbers.key_markup(answers, other if reference else None, system, self.before)
+        keys = numbers_panel.key_markup(answers, other if reference else None, system, self.before)
         self.keys.set_content(explained(keys))
         if answers.verdict:
-            self.verdict.set_content(explained(system.said(numbers.verdict_markup(answers))))
+            self.verdict.set_content(explained(system.said(numbers_panel.verdict_markup(answers))))
         self.verdict.set_stale(not answers.verdict)
         self.table.set_stale(True)
         if answers.has_end_mass:
@@ -71,15 +71,15 @@ class ResultsSide:
         answers = columns[0].answers
         if answers is None or not answers.has_end_mass:
             return
-        self.tones.set_content(numbers.tones_markup(answers.frequencies.tolist()))
+        self.tones.set_content(numbers_panel.tones_markup(answers.frequencies.tolist()))
         self.shapes.set_content(pictures.shapes_picture(answers, system))
-        self.table.set_content(explained(numbers.table_markup(columns, reference, system)))
+        self.table.set_content(explained(numbers_panel.table_markup(columns, reference, system)))
         self.table.set_stale(False)
 
     def show_cue(self, mine: Results, system: UnitSystem) -> None:
         """The cue."""
         self.cue.set_content(pictures.cue_pictures(mine.answers.scene, system))
-        self.trust.set_content(explained(numbers.trust_markup(mine.answers.scene)))
+        self.trust.set_content(explained(numbers_panel.trust_markup(mine.answers.scene)))
 
     def show_charts(
         self, mine: Results, before: Results | None, pinned: Sequence[tuple[Design, Results | None]], system: UnitSystem

@@ -14,7 +14,7 @@ from cuefem.designer import editing
 from cuefem.designer.controls import Beside, button
 from cuefem.designer.editing import Field
 from cuefem.designer.markup import Markup
-from cuefem.designer.units import METRIC, UnitSystem, typed
+from cuefem.designer.unit_system import METRIC, UnitSystem, typed
 from cuefem.effects import Effect, effect_kinds
 from cuefem.materials import MATERIALS
 from cuefem.parts import materials_in

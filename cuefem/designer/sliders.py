@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from cuefem.cue import Material
-from cuefem.designer.units import METRIC, UnitSystem
+from cuefem.designer.unit_system import METRIC, UnitSystem
 from cuefem.games import GAMES
 from cuefem.materials import MATERIALS
 from cuefem.report.drawings import material_name

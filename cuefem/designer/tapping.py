@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from cuefem.designer.units import UnitSystem
+from cuefem.designer.unit_system import UnitSystem
 from cuefem.io.sound import load_recording
 from cuefem.measured.fit import TapFit
 from cuefem.measured.ringing import Ringing, ringing
@@ -17,7 +17,7 @@ from cuefem.measured.tones import HIGH, LOW, tones
 from cuefem.measured.wood import TapTest
 from cuefem.parts import with_material
 from cuefem.report.charts import Axis, Curve, Mark, chart
-from cuefem.report.tap import KINDS
+from cuefem.report.tap_table import KINDS
 from cuefem.report.templates import chart_markup
 from cuefem.results.quantities import written
 from cuefem.scene import Scene

@@ -12,7 +12,7 @@ from cuefem.designer.computing import FAILURES, LONGEST_WORK
 from cuefem.designer.controls import Beside, button
 from cuefem.designer.markup import Markup
 from cuefem.designer.tapping import Tapped, tapped, tapped_markup, with_wood
-from cuefem.designer.units import METRIC, UnitSystem, typed
+from cuefem.designer.unit_system import METRIC, UnitSystem, typed
 from cuefem.scene import Scene
 
 SECONDS = 6  # that are recorded

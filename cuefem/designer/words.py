@@ -5,10 +5,10 @@ from __future__ import annotations
 from html import escape
 
 from cuefem.designer.design import Design
-from cuefem.designer.units import METRIC, UnitSystem
+from cuefem.designer.unit_system import METRIC, UnitSystem
 from cuefem.report.record import scene_record
+from cuefem.report.scene_words import assumptions, effect_words, plain_cue_line
 from cuefem.report.unusual import unusual
-from cuefem.report.words import assumptions, effect_words, plain_cue_line
 
 MEASURED = ("measured on such cues: ", "no measurement known")  # so notes begin that are no assumptions
 

@@ -15,7 +15,7 @@ from cuefem.io.errors import InputError, faults_of, reason, shown
 from cuefem.io.fittings import fitted, with_shaft_of
 from cuefem.io.profile import DEFAULT_MATERIAL, SHAPES, SURFACES, TABLES, load_profile
 from cuefem.io.toml import load_accuracy, load_cue, load_toml, named_material, read_text
-from cuefem.measured.side.scene import SideStrike
+from cuefem.measured.side.side_scene import SideStrike
 from cuefem.quantity.units import number
 from cuefem.scene import Scene
 
@@ -117,7 +117,7 @@ def _load_cue(path: Path, material: str | None = None, length_unit: str | None =
     if path.suffix.lower() == ".csv":
         return load_profile(path, named_material(material or DEFAULT_MATERIAL, path, "material"), length_unit)
     if path.suffix.lower() in _MESHES:
-        from cuefem.io.mesh import load_mesh
+        from cuefem.io.mesh_files import load_mesh
 
         return load_mesh(path)
     if path.suffix.lower() in SURFACES:
@@ -170,7 +170,7 @@ def save(obj: Cue | Scene | SideStrike, path: str | os.PathLike[str]) -> None:
         content = toml_text(obj)
         write_whole(path, lambda temporary: temporary.write_text(content, encoding="utf-8"))
     elif path.suffix.lower() in _MESHES and isinstance(obj, Cue):
-        from cuefem.io.mesh import save_mesh
+        from cuefem.io.mesh_files import save_mesh
 
         write_whole(path, lambda temporary: save_mesh(obj, temporary))
     else:

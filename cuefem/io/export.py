@@ -13,7 +13,7 @@ from cuefem.effects import effect_kinds
 from cuefem.games import STROKES
 from cuefem.io.schema import choices, mark_of, needed, types_of
 from cuefem.io.toml import Accuracy
-from cuefem.measured.side.scene import SideStrike
+from cuefem.measured.side.side_scene import SideStrike
 from cuefem.quantity.fields import Quantity
 from cuefem.scene import Scene
 

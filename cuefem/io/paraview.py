@@ -17,8 +17,8 @@ import numpy as np
 from cuefem.beam.modes import Modes
 from cuefem.contact.motion import Motion
 from cuefem.cue import Array, Cue
-from cuefem.measured.side.motion import SideMotion
-from cuefem.measured.side.scene import SideStrike
+from cuefem.measured.side.side_motion import SideMotion
+from cuefem.measured.side.side_scene import SideStrike
 from cuefem.quantity.fields import scalar
 from cuefem.scene import Scene
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from cuefem.cue import Array, Cue, Material, Segment
 from cuefem.io.errors import InputError, faults_of, read_bytes, shown, state_of
-from cuefem.io.mesh import DAMAGED, quiet
+from cuefem.io.mesh_files import DAMAGED, quiet
 from cuefem.io.profile import DEFAULT_UNIT
 from cuefem.io.slices import Index, Sliced, sliced, surface
 from cuefem.quantity.units import number

@@ -22,7 +22,7 @@ from cuefem.io.fittings import BORE, FERRULE
 from cuefem.io.schema import build, joined, keys_of, table, unknown_key
 from cuefem.io.shelf import assembled
 from cuefem.materials import material
-from cuefem.measured.side.scene import SideStrike
+from cuefem.measured.side.side_scene import SideStrike
 from cuefem.quantity.fields import MOST_SEGMENTS, Quantity, check_fields, quantities
 from cuefem.quantity.slips import FormerFile
 from cuefem.scene import Scene, Stroke, Tip

@@ -9,7 +9,7 @@ import tomlkit
 
 from cuefem.cue import Cue
 from cuefem.io.schema import table
-from cuefem.measured.side.scene import SideStrike
+from cuefem.measured.side.side_scene import SideStrike
 from cuefem.scene import Scene
 
 

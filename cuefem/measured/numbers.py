@@ -14,8 +14,8 @@ from cuefem.beam.waves import mesh_for
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array, Cue
 from cuefem.effects import Effect, PointMass, Support
-from cuefem.measured.side.scene import SideStrike, Striker
-from cuefem.measured.side.strike import side_strike
+from cuefem.measured.side.side_scene import SideStrike, Striker
+from cuefem.measured.side.side_strike import side_strike
 from cuefem.scene import Outcome, Scene, Stroke
 from cuefem.tip_modes import Solved
 

@@ -4,12 +4,12 @@ from .claims import claims_record, claims_sheet
 from .effects import DEFAULT_RTOL, effects_record, effects_sheet
 from .end_mass import end_mass_record, end_mass_sheet
 from .everything import report_record, report_sheets
-from .materials import materials_record, materials_sheet
+from .materials_table import materials_record, materials_sheet
 from .model_error import model_error_record
-from .modes import modes_record, modes_sheet
+from .modes_table import modes_record, modes_sheet
 from .record import cue_record
 from .squirt import squirt_record, squirt_sheets
-from .strike import strike_record, strike_sheet
+from .strike_table import strike_record, strike_sheet
 
 __all__ = [
     "DEFAULT_RTOL",

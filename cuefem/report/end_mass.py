@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from cuefem.endmass.drives import DEFINITIONS, Spread, spreads_of
-from cuefem.report.words import assumptions, listed, tip_effect_notes
+from cuefem.report.scene_words import assumptions, listed, tip_effect_notes
 from cuefem.results.quantities import NONE, RESULTS, grams, with_unit
 from cuefem.results.records import Record, Sheet, sheet
 from cuefem.scene import Scene

@@ -8,11 +8,11 @@ from cuefem.contact.strike import strike_modes
 from cuefem.effects.leather_law import TooDeep
 from cuefem.io.ready import ready_cues
 from cuefem.report.end_mass import end_mass_record, end_mass_sheet
-from cuefem.report.modes import modes_record, modes_sheet
+from cuefem.report.modes_table import modes_record, modes_sheet
+from cuefem.report.scene_words import assumptions
 from cuefem.report.squirt import squirt_record, squirt_sheets
-from cuefem.report.strike import MISCUE
-from cuefem.report.verdict import verdict_things
-from cuefem.report.words import assumptions
+from cuefem.report.strike_table import MISCUE
+from cuefem.report.verdict_table import verdict_things
 from cuefem.results.asking import listed
 from cuefem.results.designs import OneDesign
 from cuefem.results.records import Record, Sheet, value_rows, values_sheet

@@ -13,7 +13,7 @@ from cuefem.cue import LumpedCue
 from cuefem.endmass.drives import stick_at_offset
 from cuefem.endmass.lumped import lump_modes
 from cuefem.quantity.fields import scalar
-from cuefem.report.words import tip_effect_notes
+from cuefem.report.scene_words import tip_effect_notes
 from cuefem.results.designs import at_offset
 from cuefem.results.records import Record
 from cuefem.scene import Scene

@@ -22,8 +22,8 @@ from cuefem.report.models import (
     two_part_cues,
     with_coupling,
 )
-from cuefem.report.strike import PIVOT
-from cuefem.report.words import assumptions
+from cuefem.report.scene_words import assumptions
+from cuefem.report.strike_table import PIVOT
 from cuefem.results.designs import OFFSETS, at_offset, coupled_curve
 from cuefem.results.pivot import pivot_length
 from cuefem.results.quantities import NONE, RESULTS, TRADE, Units, grams, written

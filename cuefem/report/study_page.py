@@ -11,7 +11,7 @@ import numpy as np
 from cuefem.cue import Array
 from cuefem.report.charts import path
 from cuefem.report.glossary import with_words
-from cuefem.report.study import (
+from cuefem.report.study_table import (
     DRIVES,
     TREND,
     StudyTable,

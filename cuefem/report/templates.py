@@ -44,7 +44,7 @@ def cue_markup(drawing: CueDrawing) -> str:
 
 
 def verdict_markup(part: dict[str, Any]) -> str:
-    """A verdict, as `cuefem.report.verdict.verdict_part` tells it."""
+    """A verdict, as `cuefem.report.verdict_table.verdict_part` tells it."""
     return str(_macros().verdict_section(part))
 
 

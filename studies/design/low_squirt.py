@@ -21,7 +21,7 @@ import numpy as np
 from cuefem import Cue, CueBatch, Resolution, Scene, Stroke, Tip, TipDome, TipShear, batch_stick, resolve, strike
 from cuefem.design import Response, Span, Vary
 from cuefem.design.optimum import Limit, Problem, front, optimum, search
-from cuefem.io.study import load_optimum
+from cuefem.io.study_files import load_optimum
 from studies import pages
 from studies.measured import pool
 from studies.pages import STUDIES, predictions, table

@@ -19,7 +19,7 @@ import numpy as np
 
 from cuefem.design import Response, evaluate
 from cuefem.design.scatter import Drivers, Scatter, drivers, spread
-from cuefem.io.study import load_scatter
+from cuefem.io.study_files import load_scatter
 from studies import pages
 from studies.measured import pool
 from studies.pages import STUDIES, predictions, table

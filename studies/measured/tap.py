@@ -27,7 +27,7 @@ from cuefem.measured.ringing import ringing
 from cuefem.measured.tones import tones
 from cuefem.measured.wood import TapTest
 from cuefem.parts import main_material, with_material
-from cuefem.report.tap import draw_spectrum
+from cuefem.report.tap_table import draw_spectrum
 from studies import pages
 from studies.pages import table
 from studies.strokes import NAMES, cue, scene

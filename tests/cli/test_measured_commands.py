@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.io.documented import TEMPLATE, load_documented
+from cuefem.io.documented_folder import TEMPLATE, load_documented
 from cuefem.measured.documented import compare
 from cuefem.measured.estimate import estimate
 from cuefem.measured.kinds import KINDS

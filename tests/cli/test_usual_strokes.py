@@ -15,7 +15,7 @@ import cuefem as cf
 from cuefem.cli import COMMANDS, main
 from cuefem.games import GAMES
 from cuefem.materials import LEATHERS, material
-from cuefem.report.tip import SHEAR_OFFSETS, SPEEDS
+from cuefem.report.tip_table import SHEAR_OFFSETS, SPEEDS
 from tests.helpers.command_line import as_json, call, said
 
 SHAFT = cf.Cue((cf.Segment(0.7, 0.0118, 0.021, material("hard maple")),), 0.42)

@@ -16,7 +16,7 @@ from cuefem.contact import bent as bent_cue
 from cuefem.contact.laws import model_of
 from cuefem.effects.base import TipEffect
 from cuefem.effects.terms import ContactTerms
-from cuefem.measured.side.strike import SideSolved, solved_side
+from cuefem.measured.side.side_strike import SideSolved, solved_side
 from cuefem.tip_modes import tip_modes_of
 from tests.helpers.leather_scenes import LEATHER, SHAFT
 from tests.helpers.strike_scenes import hollow_cue, kim_cue, pool_cue

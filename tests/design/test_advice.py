@@ -15,7 +15,7 @@ import cuefem as cf
 from cuefem.design.advice import COSTS, LEAST_WALL, PAYS, advice_record, changes_of
 from cuefem.games import GAMES
 from cuefem.materials import material
-from cuefem.report.page import page
+from cuefem.report.report_page import page
 from cuefem.results.verdict import verdict_record
 from cuefem.tip_modes import Solved
 from cuefem.vary import varied

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.io.study import load_optimum, load_scatter, load_study
+from cuefem.io.study_files import load_optimum, load_scatter, load_study
 from tests.helpers.command_line import call
 from tests.helpers.refusals import command_refuses
 from tests.helpers.sweeps import OPTIMUM, SCATTER, SCENE, STUDY, written

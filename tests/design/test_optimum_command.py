@@ -13,7 +13,7 @@ import cuefem as cf
 from cuefem.cli.optimize import _progress
 from cuefem.design.evaluation import evaluate
 from cuefem.design.optimum import optimum
-from cuefem.io.study import load_optimum
+from cuefem.io.study_files import load_optimum
 from studies.pages import STUDIES
 from tests.helpers.command_line import call
 from tests.helpers.sweeps import OPTIMUM, written

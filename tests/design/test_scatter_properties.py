@@ -15,7 +15,7 @@ from scipy.stats import spearmanr
 from cuefem import Resolution, Scene, load
 from cuefem.design import Normal, Response, Span, Study, Vary
 from cuefem.design.scatter import Scatter, drivers, scores, spread
-from cuefem.io.study import load_scatter
+from cuefem.io.study_files import load_scatter
 from tests.helpers.command_line import call
 from tests.helpers.sweeps import SCATTER, written
 

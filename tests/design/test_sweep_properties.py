@@ -16,7 +16,7 @@ import pytest
 
 from cuefem import Resolution
 from cuefem.design import Pool, Row, evaluate
-from cuefem.io.study import load_study
+from cuefem.io.study_files import load_study
 from tests.helpers.command_line import call
 from tests.helpers.sweeps import SCENE, STRUCK, STUDY, rows_of, swept, written
 

@@ -18,7 +18,7 @@ import cuefem as cf
 from cuefem.design import Pool, Task, sweep
 from cuefem.io import InputError
 from cuefem.io.store import Store, opened, unlocked
-from cuefem.io.study import load_study
+from cuefem.io.study_files import load_study
 from tests.helpers.command_line import call
 from tests.helpers.refusals import command_refuses, untouched
 from tests.helpers.sweeps import SCENE, STRUCK, changed, rows_of, swept, written

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from cuefem import Resolution, Scene, Tip, load
 from cuefem.design import Levels, Normal, Response, Sample, Span, Study, Vary
-from cuefem.io.study import load_study
+from cuefem.io.study_files import load_study
 from tests.helpers.sweeps import SCENE, STRUCK, written
 
 HOLLOW = load(Path(__file__).parents[2] / "meshes" / "pool_hollow.toml")

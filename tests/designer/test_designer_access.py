@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import cuefem as cf
-from cuefem.report.page import page as report_page
+from cuefem.report.report_page import page as report_page
 from tests.helpers.designer_browser import BROWSER, opened, turn
 from tests.helpers.study_page import study_of_ten_columns
 

@@ -190,7 +190,7 @@ def test_a_lumped_cue_has_no_knobs() -> None:
 
 def test_what_is_unusual_is_not_said_to_be_assumed() -> None:
     from cuefem.designer.design import Design
-    from cuefem.designer.units import INCHES
+    from cuefem.designer.unit_system import INCHES
     from cuefem.designer.words import head_markup
 
     scene = replace(first_scene(), ball=cf.Ball(radius=0.05715))
@@ -203,7 +203,7 @@ def test_what_is_unusual_is_not_said_to_be_assumed() -> None:
 
 @pytest.mark.parametrize("name", SCENES)
 def test_sliders_in_inches_turn_the_same_knobs(name: str) -> None:
-    from cuefem.designer.units import INCHES
+    from cuefem.designer.unit_system import INCHES
 
     own = knobs_of(SCENES[name])
     for slider, metric in zip(sliders(SCENES[name], INCHES), sliders(SCENES[name]), strict=True):
@@ -215,7 +215,7 @@ def test_sliders_in_inches_turn_the_same_knobs(name: str) -> None:
 
 
 def test_half_an_inch_is_saved_as_such() -> None:
-    from cuefem.designer.units import INCHES
+    from cuefem.designer.unit_system import INCHES
 
     tip = sliders(first_scene(), INCHES)[0]
     assert tip.turned(knobs_of(first_scene()), 0.5)["tip_diameter"] == 0.0127

@@ -24,14 +24,23 @@ from cuefem.designer.answers import (
     with_end_mass,
 )
 from cuefem.designer.design import Design
-from cuefem.designer.numbers import Column, NumberRow, compared, csv_text, difference, key_markup, rows, table_markup
+from cuefem.designer.numbers_panel import (
+    Column,
+    NumberRow,
+    compared,
+    csv_text,
+    difference,
+    key_markup,
+    rows,
+    table_markup,
+)
 from cuefem.designer.pictures import limits_of, offset_charts
 from cuefem.designer.start import first_scene
-from cuefem.designer.units import INCHES
+from cuefem.designer.unit_system import INCHES
 from cuefem.report.end_mass import end_mass_record
-from cuefem.report.modes import modes_record
+from cuefem.report.modes_table import modes_record
 from cuefem.report.squirt import squirt_record
-from cuefem.report.strike import strike_record
+from cuefem.report.strike_table import strike_record
 from cuefem.results.quantities import RESULTS
 from cuefem.vary import knobs_of, turned
 

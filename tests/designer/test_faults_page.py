@@ -11,10 +11,10 @@ import pytest
 import cuefem as cf
 from cuefem.designer.sliders import sliders
 from cuefem.designer.start import first_scene
-from cuefem.designer.units import INCHES
+from cuefem.designer.unit_system import INCHES
 from cuefem.designer.words import MEASURED
 from cuefem.io.ready import PRESETS
-from cuefem.report.page import page as report_page
+from cuefem.report.report_page import page as report_page
 from cuefem.vary import PLACES, knobs_of
 from tests.helpers.designer_browser import BROWSER, opened, settled
 

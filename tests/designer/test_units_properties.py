@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cuefem.designer.units import INCHES, METRIC, typed
+from cuefem.designer.unit_system import INCHES, METRIC, typed
 from cuefem.results.quantities import RESULTS
 
 TYPED = {

@@ -22,8 +22,8 @@ from cuefem.endmass.drives import DEFINITIONS
 from cuefem.endmass.lumped import lump
 from cuefem.report.drawings import cue_drawing, front_drawing, strike_drawing
 from cuefem.report.everything import report_record
-from cuefem.report.handover import pooltool_record
-from cuefem.report.strike import strike_record
+from cuefem.report.handover_table import pooltool_record
+from cuefem.report.strike_table import strike_record
 from cuefem.report.unusual import unusual
 from tests.helpers.command_line import call
 from tests.helpers.strike_scenes import pool_cue

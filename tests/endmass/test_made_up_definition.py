@@ -14,10 +14,10 @@ from cuefem.design.evaluation import evaluate
 from cuefem.design.responses import Response
 from cuefem.designer.answers import answers, completed
 from cuefem.designer.design import Design
-from cuefem.designer.numbers import Column, rows, table_markup
+from cuefem.designer.numbers_panel import Column, rows, table_markup
 from cuefem.endmass.drives import DEFINITIONS, Definition, end_mass_spreads, flexible
-from cuefem.report.handover import pooltool_record
-from cuefem.report.page import page
+from cuefem.report.handover_table import pooltool_record
+from cuefem.report.report_page import page
 from tests.helpers.command_line import call
 from tests.helpers.strike_scenes import kim_scene
 

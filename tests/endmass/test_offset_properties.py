@@ -13,7 +13,7 @@ from cuefem.design import evaluate
 from cuefem.endmass.drives import squirt_equivalent, stick, stick_at_offset
 from cuefem.endmass.lumped import lump
 from cuefem.report.squirt import squirt_record
-from cuefem.report.strike import strike_record
+from cuefem.report.strike_table import strike_record
 from cuefem.tip_modes import tip_modes_of
 from tests.helpers.strike_scenes import KIM_AT, hand_made, kim_scene
 

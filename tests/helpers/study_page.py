@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from cuefem.design import Response
-from cuefem.report.study import StudyTable
 from cuefem.report.study_page import study_page
+from cuefem.report.study_table import StudyTable
 
 
 def study_of_ten_columns() -> str:

@@ -8,7 +8,7 @@ from typing import Any
 
 from cuefem.design import sweep
 from cuefem.io.store import Store, read_table
-from cuefem.io.study import load_study
+from cuefem.io.study_files import load_study
 
 SCENE = """
 game = "kim"

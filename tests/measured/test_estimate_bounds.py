@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cuefem.io.documented import load_documented
+from cuefem.io.documented_folder import load_documented
 from cuefem.measured.documented import DocumentedCue, compare
 from cuefem.measured.estimate import estimate
 from cuefem.measured.kinds import Stiffness, Tone, Weight

@@ -108,7 +108,7 @@ def test_a_template_is_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: 
         raise OSError(errno.ENOSPC, "No space left on device", str(path))
 
     with monkeypatch.context() as patch:
-        patch.setattr("cuefem.io.documented.TEMPLATE", ("README.md", "none"))  # the second file cannot be read
+        patch.setattr("cuefem.io.documented_folder.TEMPLATE", ("README.md", "none"))  # the second file cannot be read
         untouched(tmp_path, "cannot be written", "compare", tmp_path / "cue", "--template")
         patch.setattr(Path, "write_text", full)
         untouched(tmp_path, "cannot be written: No space left on device", "compare", tmp_path / "cue", "--template")

@@ -20,7 +20,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.endmass.drives import DEFINITIONS
-from cuefem.report.handover import NICKEL, POOLTOOL, POOLTOOL_LINE, handover_sheet, pooltool_record
+from cuefem.report.handover_table import NICKEL, POOLTOOL, POOLTOOL_LINE, handover_sheet, pooltool_record
 from cuefem.squirt import alciatore_a31, alciatore_a31_mass_ratio
 from tests.helpers.command_line import call
 

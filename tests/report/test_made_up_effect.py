@@ -23,7 +23,7 @@ from cuefem.designer.words import head_markup
 from cuefem.effects import CueEffect, Usual, effect_kinds
 from cuefem.io import schema
 from cuefem.quantity.fields import Quantity
-from cuefem.report.page import page
+from cuefem.report.report_page import page
 from cuefem.vary import knobs_of, turned
 from tests.helpers.command_line import call
 

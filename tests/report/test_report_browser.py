@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 import cuefem as cf
-from cuefem.report.page import PAGE_OFFSETS, page
+from cuefem.report.report_page import PAGE_OFFSETS, page
 from cuefem.report.squirt import squirt_record
 from tests.helpers.designer_browser import BROWSER, launched
 from tests.helpers.study_page import study_of_ten_columns

@@ -16,7 +16,7 @@ import cuefem as cf
 from cuefem.accuracy import resolve
 from cuefem.report.charts import WIDE, Axis, Curve, Mark, chart, round_step
 from cuefem.report.drawings import cue_drawing, front_drawing, strike_drawing
-from cuefem.report.page import page
+from cuefem.report.report_page import page
 from tests.helpers.command_line import call
 
 MESHES = Path(__file__).parents[2] / "meshes"

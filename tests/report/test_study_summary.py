@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from cuefem.design import Response
-from cuefem.report.study import StudyTable, column_label, front_sheet
+from cuefem.report.study_table import StudyTable, column_label, front_sheet
 from cuefem.results.asking import asked
 from tests.helpers.command_line import call
 from tests.helpers.sweeps import SCENE, STUDY

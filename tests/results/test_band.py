@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.io.documented import load_documented
+from cuefem.io.documented_folder import load_documented
 from cuefem.measured.kinds import AddedMass, Squirt
 from cuefem.results.band import LEVEL, LEVEL_OF_SPRING, OF_DIFFERENCE, of_inputs, of_shaft
 from cuefem.tip_modes import Solved

@@ -10,8 +10,8 @@ import pytest
 import cuefem as cf
 from cuefem.designer.answers import answers, completed, with_end_mass
 from cuefem.designer.design import Design
-from cuefem.designer.numbers import Column, csv_text, rows, table_markup
-from cuefem.designer.units import INCHES
+from cuefem.designer.numbers_panel import Column, csv_text, rows, table_markup
+from cuefem.designer.unit_system import INCHES
 from cuefem.frames import of_sweep
 from cuefem.results.quantities import RESULTS, Result, of_drawing, of_strike
 from tests.helpers.command_line import call

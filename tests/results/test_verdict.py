@@ -12,11 +12,11 @@ import pytest
 
 import cuefem as cf
 from cuefem.designer.answers import answers, completed
-from cuefem.designer.numbers import key_markup, verdict_markup
+from cuefem.designer.numbers_panel import key_markup, verdict_markup
 from cuefem.games import without_leather
 from cuefem.io.ready import PRESETS, SCALE, STROKES, Preset, opened, ready_cues
-from cuefem.report.page import page
-from cuefem.report.verdict import headline, scale, squirt_words, standing
+from cuefem.report.report_page import page
+from cuefem.report.verdict_table import headline, scale, squirt_words, standing
 from cuefem.results.band import LEVEL, LEVEL_OF_SPRING, OF_DIFFERENCE
 from cuefem.results.verdict import same_stroke, verdict_record
 from cuefem.squirt import alciatore_a31

@@ -22,7 +22,7 @@ from cuefem import (
     side_motion,
     side_strike,
 )
-from cuefem.measured.side.accuracy import side_ladder
+from cuefem.measured.side.side_accuracy import side_ladder
 from tests.helpers.cues import FAMILY, kim, pool, scaled
 
 AT = Resolution(2, 12, 12)

@@ -27,7 +27,7 @@ from cuefem import (
     side_motion,
     side_strike,
 )
-from cuefem.measured.side.scene import HERTZ
+from cuefem.measured.side.side_scene import HERTZ
 from tests.helpers.cues import FAMILY, cone, kim, pool, rod, scaled
 from tests.helpers.orders import assert_order
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cuefem.io.documented import load_documented
+from cuefem.io.documented_folder import load_documented
 from cuefem.measured.kinds import AddedMass, Measurement, Squirt
 from cuefem.results.quantities import with_unit
 from studies.pages import STUDIES

@@ -17,7 +17,7 @@ from cuefem.report.models import (
     two_part_cues,
     with_coupling,
 )
-from cuefem.report.words import assumptions
+from cuefem.report.scene_words import assumptions
 from cuefem.results.pivot import pivot_length
 from cuefem.results.quantities import GRIPS, NONE, RESULTS, grams, written
 from cuefem.results.records import Record, Sheet

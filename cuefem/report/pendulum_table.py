@@ -13,7 +13,7 @@ from cuefem.measured.pendulum import (
     choices,
     softness,
 )
-from cuefem.report.documented import value_record
+from cuefem.report.documented_page import value_record
 from cuefem.results.quantities import with_unit
 from cuefem.results.records import Record, Sheet, sheet
 

@@ -7,8 +7,8 @@ from dataclasses import asdict, replace
 
 import numpy as np
 
-from cuefem.measured.side.scene import SideStrike
-from cuefem.measured.side.strike import SideOutcome, side_strike
+from cuefem.measured.side.side_scene import SideStrike
+from cuefem.measured.side.side_strike import SideOutcome, side_strike
 from cuefem.report.record import cue_record
 from cuefem.results.quantities import NONE, RESULTS, with_heading, written
 from cuefem.results.records import Entry, Record, Sheet, sheet, value_rows, values_sheet

@@ -15,8 +15,8 @@ from cuefem.measured.sampler import PosteriorSample
 from cuefem.report.charts import WIDE, Axis, Chart, Curve, Tick, chart
 from cuefem.report.drawings import cue_drawing, front_drawing
 from cuefem.report.glossary import with_words
+from cuefem.report.scene_words import effect_words, plain_cue_line
 from cuefem.report.templates import environment
-from cuefem.report.words import effect_words, plain_cue_line
 from cuefem.results.quantities import NONE, scaled, with_unit
 from cuefem.results.records import Entry, Record, Sheet, sheet
 

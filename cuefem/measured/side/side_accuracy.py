@@ -23,8 +23,8 @@ from cuefem.beam.system import assemble
 from cuefem.beam.tail import flexibility, tail
 from cuefem.beam.waves import mesh_for
 from cuefem.cue import Array
-from cuefem.measured.side.scene import SideStrike
-from cuefem.measured.side.strike import SideOutcome, acting, checked_time, outcome_of, place_modes, solved_side
+from cuefem.measured.side.side_scene import SideStrike
+from cuefem.measured.side.side_strike import SideOutcome, acting, checked_time, outcome_of, place_modes, solved_side
 from cuefem.quantity.fields import check_kind
 
 

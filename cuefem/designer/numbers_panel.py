@@ -10,14 +10,14 @@ from typing import NamedTuple
 from cuefem.designer.answers import TONES, Answers, note
 from cuefem.designer.design import Design
 from cuefem.designer.sliders import choices, sliders
-from cuefem.designer.units import METRIC, UnitSystem
+from cuefem.designer.unit_system import METRIC, UnitSystem
 from cuefem.endmass.drives import DEFINITIONS
 from cuefem.report import table
 from cuefem.report.glossary import subscripts
-from cuefem.report.strike import MISCUE
+from cuefem.report.strike_table import MISCUE
 from cuefem.report.templates import verdict_markup as as_verdict
 from cuefem.report.trust import trust_lines
-from cuefem.report.verdict import squirt_words, verdict_part
+from cuefem.report.verdict_table import squirt_words, verdict_part
 from cuefem.results.quantities import NONE, RESULTS, Result, signed, significant
 from cuefem.scene import Scene
 

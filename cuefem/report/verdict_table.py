@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from cuefem.report.words import listed
+from cuefem.report.scene_words import listed
 from cuefem.results.band import OF_DIFFERENCE
 from cuefem.results.quantities import scaled, with_unit
 from cuefem.results.records import Record, Sheet

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from cuefem.design.scatter import Drivers, Scatter
-from cuefem.report.study import shown
+from cuefem.report.study_table import shown
 from cuefem.results.quantities import TRADE
 from cuefem.results.records import Sheet
 

@@ -20,7 +20,7 @@ from cuefem.contact.outcome import Phase
 from cuefem.contact.propagator import planar_propagator
 from cuefem.contact.solve import SolvedContact, solve_contact
 from cuefem.contact.strike import tip_loss
-from cuefem.measured.side.scene import SideStrike
+from cuefem.measured.side.side_scene import SideStrike
 from cuefem.quantity.fields import CONTACT_TIME, check_kind
 from cuefem.scene import Resolution, equal_fields
 from cuefem.tip_modes import resolution_for

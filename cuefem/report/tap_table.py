@@ -15,7 +15,7 @@ from cuefem.measured.ringing import Ringing
 from cuefem.measured.tones import HIGH, LOW
 from cuefem.measured.wood import Predicted
 from cuefem.report.figures import figure_content
-from cuefem.report.strike import MISCUE
+from cuefem.report.strike_table import MISCUE
 from cuefem.results.quantities import RESULTS, grams, written
 from cuefem.results.records import Entry, Record, Sheet, sheet
 from cuefem.scene import Outcome

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 from cuefem.beam.modes import Modes
 from cuefem.contact.motion import Path, ascending
 from cuefem.cue import Array
-from cuefem.measured.side.scene import SideStrike
-from cuefem.measured.side.strike import SideSolved, solved_side
+from cuefem.measured.side.side_scene import SideStrike
+from cuefem.measured.side.side_strike import SideSolved, solved_side
 from cuefem.quantity.fields import check_kind
 from cuefem.scene import Resolution
 

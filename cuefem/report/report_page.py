@@ -20,7 +20,7 @@ from cuefem.design.advice import advice_record
 from cuefem.endmass.drives import DEFINITIONS
 from cuefem.io.ready import ready_cues
 from cuefem.quantity.fields import scalar
-from cuefem.report.advice import advice_sheet
+from cuefem.report.advice_table import advice_sheet
 from cuefem.report.charts import Axis, Chart, Shade
 from cuefem.report.contact import contact_part
 from cuefem.report.drawings import (
@@ -37,12 +37,12 @@ from cuefem.report.effects import seconds_words
 from cuefem.report.end_mass import end_mass_record
 from cuefem.report.glossary import with_words
 from cuefem.report.models import ALCIATORE, PAPER
+from cuefem.report.scene_words import assumptions, effect_words, plain_cue_line
 from cuefem.report.squirt import PAPER_CUE_END_MASS, offset_charts, squirt_record
-from cuefem.report.strike import BRIEF, MISCUE, models_sheet, strike_record
+from cuefem.report.strike_table import BRIEF, MISCUE, models_sheet, strike_record
 from cuefem.report.templates import environment
 from cuefem.report.trust import trust_lines
-from cuefem.report.verdict import verdict_part
-from cuefem.report.words import assumptions, effect_words, plain_cue_line
+from cuefem.report.verdict_table import verdict_part
 from cuefem.results.asking import listed
 from cuefem.results.designs import OneDesign
 from cuefem.results.quantities import GRIPS, NONE, RESULTS, degrees, grams, scaled, written
