@@ -13,8 +13,8 @@ import pytest
 import cuefem as cf
 from cuefem.designer.numbers_panel import trust_markup
 from cuefem.report import strike_record, strike_sheet
-from cuefem.report.report_page import A31_NAME, MEASURED_A31, SOURCES, page
 from cuefem.report.record import scene_record
+from cuefem.report.report_page import A31_NAME, MEASURED_A31, SOURCES, page
 from cuefem.report.strike_table import LUMPED
 from cuefem.report.trust import trust_lines
 from cuefem.squirt import alciatore_a31_mass_ratio
