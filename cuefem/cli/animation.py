@@ -11,10 +11,10 @@ import click
 import numpy as np
 
 from cuefem.beam.modes import modes
-from cuefem.cli.common import blaming, file_options, scene_of
+from cuefem.cli.common import blaming, scene_of, stroke_options
 from cuefem.cli.printing import assumed_lines, output_option, print_json
 from cuefem.cli.progress import followed
-from cuefem.cli.strokes import blow_options, measured, offset_option
+from cuefem.cli.strokes import measured
 from cuefem.contact.motion import last_contact, motion
 from cuefem.io import InputError, check_new, write_whole_folder
 from cuefem.io.paraview import save_modes, save_strike
@@ -23,9 +23,7 @@ from cuefem.scene import Scene
 
 
 @click.command()
-@file_options
-@blow_options
-@offset_option
+@stroke_options
 @click.option("--count", type=click.IntRange(1, 100), default=6, show_default=True, help="How many modes.")
 @click.option(
     "--frames", type=click.IntRange(2, 10_000), default=61, show_default=True, help="How many frames of the strike."

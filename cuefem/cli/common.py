@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 from cuefem.cli.printing import assumed_lines, json_option, tell
-from cuefem.cli.strokes import option, place_options, refuse_game, usual, with_options
+from cuefem.cli.strokes import blow_options, offset_option, option, place_options, refuse_game, usual, with_options
 from cuefem.effects.leather_law import TooDeep
 from cuefem.games import DEFAULT_GAME
 from cuefem.io import InputError, check_place, load_stroke
@@ -28,6 +28,11 @@ from cuefem.solid.own_tip import ONCE
 def file_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """The file argument, and the options of every command on a file."""
     return click.argument("file", type=click.Path(path_type=Path))(cue_options(command))
+
+
+def stroke_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The file argument, and the options of every command on one stroke of its cue."""
+    return file_options(blow_options(offset_option(command)))
 
 
 def cue_options(command: Callable[..., Any]) -> Callable[..., Any]:

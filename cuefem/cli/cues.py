@@ -8,11 +8,11 @@ from typing import Any
 import click
 
 from cuefem.accuracy import resolve
-from cuefem.cli.common import file_options, show
+from cuefem.cli.common import file_options, show, stroke_options
 from cuefem.cli.definitions import WithDefinitions
 from cuefem.cli.handover import ONLY, ONLY_TABLE, hand_over, simulator_options, table_for
 from cuefem.cli.printing import page_option
-from cuefem.cli.strokes import blow_options, offset_option
+from cuefem.cli.strokes import blow_options
 from cuefem.io import InputError, load_accuracy
 from cuefem.report import (
     end_mass_record,
@@ -34,9 +34,7 @@ def end_mass(file: Path, paper: bool, **given: Any) -> None:
 
 
 @click.command(cls=WithDefinitions)
-@file_options
-@blow_options
-@offset_option
+@stroke_options
 @simulator_options
 def strike(
     file: Path,

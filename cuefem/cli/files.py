@@ -1,4 +1,4 @@
-"""Commands about files: convert, schema."""
+"""Commands about files and what they can name: convert, schema, materials, parts."""
 
 from __future__ import annotations
 
@@ -8,12 +8,14 @@ from pathlib import Path
 import click
 
 from cuefem.cli.common import check_free, force_option, shape_options
-from cuefem.cli.printing import assumed_lines, json_option, print_json
+from cuefem.cli.printing import assumed_lines, json_option, page_option, print_json, tell
 from cuefem.cli.strokes import with_body
 from cuefem.io import load, save
 from cuefem.io.assumed import assumed
 from cuefem.io.export import json_schema
 from cuefem.io.profile import SHAPES
+from cuefem.report import materials_record, materials_sheet
+from cuefem.report.materials_table import parts_record, parts_sheets
 
 
 @click.command()
@@ -43,3 +45,21 @@ def convert(file: Path, output: Path, body_mass: str | None, force: bool, as_jso
 def schema(as_json: bool) -> None:
     """Print the JSON schema of cue and scene files, for editors; it is JSON with --json and without."""
     click.echo(json.dumps(json_schema(), indent=2, allow_nan=False, ensure_ascii=False))
+
+
+@click.command()
+@page_option
+@json_option
+def materials(as_json: bool, output: Path | None) -> None:
+    """List the materials that a file can name, with their sources."""
+    found = materials_record()
+    tell(as_json, found, [materials_sheet(found)], output)
+
+
+@click.command()
+@page_option
+@json_option
+def parts(as_json: bool, output: Path | None) -> None:
+    """List the shafts, woods, ferrules and tips of which a cue is put together by name, with their sources."""
+    found = parts_record()
+    tell(as_json, found, parts_sheets(found), output)

@@ -1,4 +1,4 @@
-"""Commands that say what a result hangs on: effects, cost."""
+"""Commands that say what a result hangs on: effects, cost, check."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from typing import Any
 
 import click
 
-from cuefem.cli.common import file_options, show
+import cuefem.report
+from cuefem.cli.common import show, stroke_options
 from cuefem.cli.printing import output_option, page_option
 from cuefem.cli.progress import followed
-from cuefem.cli.strokes import blow_options, offset_option
 from cuefem.io import FIGURES, load_accuracy, save_figure
 from cuefem.report import DEFAULT_RTOL, effects_record, effects_sheet
 from cuefem.report.cost import cost_figure, cost_record, cost_sheets
@@ -18,9 +18,7 @@ from cuefem.scene import Scene
 
 
 @click.command()
-@file_options
-@blow_options
-@offset_option
+@stroke_options
 @page_option
 def effects(file: Path, **given: Any) -> None:
     """Show what each effect changes: every effect of FILE is left out, every other one added, one at a time.
@@ -36,9 +34,7 @@ def effects(file: Path, **given: Any) -> None:
 
 
 @click.command()
-@file_options
-@blow_options
-@offset_option
+@stroke_options
 @click.option(
     "--most", type=click.IntRange(min=24), default=150, show_default=True, help="The largest number of modes."
 )
@@ -54,3 +50,19 @@ def cost(file: Path, most: int, output: Path | None, **given: Any) -> None:
 
     page = output if output is not None and output.suffix not in FIGURES else None
     show(file, {**given, "output": page}, results, lambda found, about: cost_sheets(found))
+
+
+@click.command()
+@stroke_options
+@page_option
+def check(file: Path, **given: Any) -> None:
+    """Show how far beam theory is off for a shaft: its numbers by the beam, and by 3-D elasticity of the solid.
+
+    FILE is a cue or a scene. The shaft is computed as a solid of revolution on two meshes, so that the mesh's own error
+    stands beside each difference; this takes some seconds.
+    """
+
+    def results(scene: Scene) -> Any:
+        return cuefem.report.model_error_record(scene, followed)  # loads scikit-fem, which the others need not
+
+    show(file, given, results, lambda found, about: [cuefem.report.model_error_sheet(found), found["sentence"]])

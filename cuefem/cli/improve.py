@@ -7,10 +7,9 @@ from typing import Any
 
 import click
 
-from cuefem.cli.common import blaming, check_free, file_options, force_option, scene_of, show
+from cuefem.cli.common import blaming, check_free, force_option, scene_of, show, stroke_options
 from cuefem.cli.printing import output_option
 from cuefem.cli.progress import followed
-from cuefem.cli.strokes import blow_options, offset_option
 from cuefem.design.advice import advice_record
 from cuefem.io import InputError, save
 from cuefem.report.advice_table import advice_sheet
@@ -18,9 +17,7 @@ from cuefem.vary import varied
 
 
 @click.command()
-@file_options
-@blow_options
-@offset_option
+@stroke_options
 @output_option(".html", ".toml")
 @click.option(
     "--take", type=click.IntRange(min=1), metavar="ROW", help="Save the cue of this row of the table, 1 the first."

@@ -9,10 +9,9 @@ from typing import Any
 import click
 
 import cuefem.report
-from cuefem.cli.common import blaming, file_options, scene_of, show
+from cuefem.cli.common import blaming, scene_of, show, stroke_options
 from cuefem.cli.printing import page_option
 from cuefem.cli.progress import followed
-from cuefem.cli.strokes import blow_options, offset_option
 from cuefem.io import InputError, load_accuracy, save_page
 from cuefem.report import report_record, report_sheets
 from cuefem.report.unusual import unusual
@@ -21,9 +20,7 @@ from cuefem.scene import Scene
 
 
 @click.command()
-@file_options
-@blow_options
-@offset_option
+@stroke_options
 @page_option
 @click.option(
     "--check",

@@ -6,7 +6,7 @@ from a complex step through the one formula of `cuefem.cue`. A longer segment st
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -27,15 +27,13 @@ class Gradient:
 
     end_mass_to, squirt_to: `SegmentRows` of arrays (segments,), per SI unit of each number: E and G at fixed Poisson
     ratio, nu the effective one at fixed E and G; kappa nan if it follows from the section. The body's mass stays.
-    end_mass_to_body_mass, squirt_to_body_mass: per kg. Squirt is None for a drive other than "stick".
+    Squirt is None for a drive other than "stick".
     """
 
     end_mass: float
     squirt: float | None
     end_mass_to: SegmentRows
     squirt_to: SegmentRows | None
-    end_mass_to_body_mass: float
-    squirt_to_body_mass: float | None
 
 
 def gradient(scene: Scene, drive: str = "stick", at: Resolution | None = None) -> Gradient:
@@ -69,11 +67,10 @@ def gradient(scene: Scene, drive: str = "stick", at: Resolution | None = None) -
     own = densities_to(found, rows)
     end_mass_to = SegmentRows(*(d + found.axial_mass * m for d, m in zip(own, heavier, strict=True)))
     if drive != "stick":
-        return Gradient(found.end_mass, None, end_mass_to, None, found.axial_mass, None)
+        return Gradient(found.end_mass, None, end_mass_to, None)
     squirt, to_m, to_axial = _squirt(scene, found.end_mass)
     squirt_to = SegmentRows(*(to_m * d + to_axial * m for d, m in zip(end_mass_to, heavier, strict=True)))
-    body = to_m * found.axial_mass + to_axial
-    return Gradient(found.end_mass, squirt, end_mass_to, squirt_to, found.axial_mass, body)
+    return Gradient(found.end_mass, squirt, end_mass_to, squirt_to)
 
 
 def _squirt(scene: Scene, end_mass: float) -> tuple[float, float, float]:
@@ -92,25 +89,26 @@ def drawing(cue: Cue) -> SegmentRows:
     return SegmentRows(*np.array([segment.constants for segment in cue.segments]).T)
 
 
-def stepped(rows: SegmentRows) -> Iterator[tuple[int, SegmentRows, Array]]:
-    """(field's index, rows with a complex step in it in every segment, the steps), E and G with the Poisson ratio."""
-    for i, name in enumerate(rows._fields):
-        steps = STEP * np.maximum(np.abs(np.nan_to_num(rows[i])), 1e-3)
-        moved = [*map(np.asarray, rows)]
-        moved[i] = rows[i] + 1j * steps
-        if name in ("E", "G", "core_E", "core_G"):
-            there = rows._fields.index("core_nu" if name.startswith("core") else "nu")
-            nu, sign = rows[there], -1 if name.endswith("E") else 1
-            # nu_e/(1 + nu_e) = 2 nu G/E, so d nu_e = nu_e (1 + nu_e) (dG/G - dE/E)
-            ratio = np.divide(steps, rows[i], out=np.zeros_like(steps), where=rows[i] > 0)
-            moved[there] = nu + 1j * sign * nu * (1 + nu) * ratio
-        yield i, SegmentRows(*moved), steps
+def with_poisson_ratios(rows: SegmentRows, moves: SegmentRows) -> SegmentRows:
+    """Moves of a drawing's numbers, with those of the effective Poisson ratios, which E and G carry along."""
+    for kind in ("", "core_"):  # nu_e/(1 + nu_e) = 2 nu G/E, so d nu_e = nu_e (1 + nu_e) (dG/G - dE/E)
+        E, G, nu = (getattr(rows, f"{kind}{name}") for name in ("E", "G", "nu"))
+        dE, dG, own = (getattr(moves, f"{kind}{name}") for name in ("E", "G", "nu"))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            carried = np.where(E > 0, nu * (1 + nu) * (dG / G - dE / E), 0.0)
+        moves = moves._replace(**{f"{kind}nu": own + carried})
+    return moves
 
 
 def derivatives(rows: SegmentRows, of: Callable[[SegmentRows], Array]) -> SegmentRows:
     """Derivatives of each segment's share of a number, (segments,), to the segment's own numbers."""
-    found = [np.imag(of(moved)) / steps for _, moved, steps in stepped(rows)]
-    return SegmentRows(*(np.where(np.isnan(row), np.nan, slope) for row, slope in zip(rows, found, strict=True)))
+    slopes, still = [], SegmentRows(*np.zeros((len(rows), len(rows.length))))
+    for name, row in zip(rows._fields, rows, strict=True):
+        steps = STEP * np.maximum(np.abs(np.nan_to_num(row)), 1e-3)
+        moves = with_poisson_ratios(rows, still._replace(**{name: steps}))
+        moved = SegmentRows(*(number + 1j * move for number, move in zip(rows, moves, strict=True)))
+        slopes.append(np.where(np.isnan(row), np.nan, np.imag(of(moved)) / steps))
+    return SegmentRows(*slopes)
 
 
 def masses_to(rows: SegmentRows) -> SegmentRows:

@@ -16,7 +16,7 @@ import numpy as np
 from cuefem.cue import Array, SegmentRows
 from cuefem.design.batch import CueBatch
 from cuefem.design.evaluation import evaluate
-from cuefem.design.gradient import STEP, densities_to, drawing, gradient
+from cuefem.design.gradient import STEP, densities_to, drawing, gradient, with_poisson_ratios
 from cuefem.design.ranges import Span
 from cuefem.design.responses import Response
 from cuefem.design.sensitivity import frequency_sensitivity
@@ -214,13 +214,7 @@ class Problem:
             for path, number in self.study.numbers(dict(enumerate(shifted.tolist()))).items():
                 i, name = _row(path) or (0, "")
                 getattr(moves, name)[k, i] = np.imag(number) / STEP
-        rows = drawing(cue)
-        for kind in ("", "core_"):  # nu_e/(1 + nu_e) = 2 nu G/E, so d nu_e = nu_e (1 + nu_e) (dG/G - dE/E)
-            E, G, nu = (getattr(rows, f"{kind}{name}") for name in ("E", "G", "nu"))
-            dE, dG = (getattr(moves, f"{kind}{name}") for name in ("E", "G"))
-            with np.errstate(invalid="ignore"):
-                getattr(moves, f"{kind}nu")[:] = np.where(E > 0, nu * (1 + nu) * (dG / G - dE / E), 0.0)
-        return moves
+        return with_poisson_ratios(drawing(cue), moves)
 
 
 def _row(path: Path) -> tuple[int, str] | None:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.cli.optimize import _progress
+from cuefem.cli.studies import _progress
 from cuefem.design.evaluation import evaluate
 from cuefem.design.optimum import optimum
 from cuefem.io.study_files import load_optimum
