@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from cuefem.results.band import OF_DIFFERENCE
 from cuefem.results.quantities import signed, with_unit
 from cuefem.results.records import Record, Sheet, sheet
@@ -27,7 +29,7 @@ def advice_sheet(record: Record) -> Sheet:
         texts=(0, 5),
     )
     styles = {i: STYLES[row["verdict"]] for i, row in enumerate(rows) if row["verdict"] in STYLES}
-    return Sheet(made.title, made.head, made.rows, made.notes, made.texts, styles)
+    return replace(made, styles=styles)
 
 
 def advice_notes(record: Record) -> list[str]:

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cuefem.measured.documented import DocumentedCue, Row, Zero
-from cuefem.measured.estimate import Estimate, Value, Worth
+from cuefem.measured.estimate import Estimate, Worth
 from cuefem.measured.kinds import AddedMass, Squirt
 from cuefem.measured.sampler import PosteriorSample
 from cuefem.report.charts import WIDE, Axis, Chart, Curve, Tick, chart
@@ -45,16 +45,12 @@ def compare_record(cue: DocumentedCue, rows: Sequence[Row], zeros: Sequence[Zero
         "name": cue.name,
         "source": cue.source,
         "rows": [row_record(row) for row in rows],
-        "rms_pull": _rms([row.pull for row in rows]),
+        "rms_pull": float(np.sqrt(np.mean([row.pull**2 for row in rows]))) if rows else None,
         "zeros": [{"what": zero.measurement.label, "zero": zero.zero, "error": zero.error} for zero in zeros],
         "open": [unknown.words for unknown in cue.unknowns],
         "lacking": cue.lacking,
         "units": UNITS,
     }
-
-
-def _rms(values: Sequence[float]) -> float | None:
-    return float(np.sqrt(np.mean(np.square(values)))) if len(values) else None
 
 
 def compare_sheets(record: Record) -> list[Sheet | str]:
@@ -213,11 +209,6 @@ def _mass_charts(rows: Sequence[Row]) -> list[Chart]:
     return made
 
 
-def value_record(value: Value) -> Record:
-    """An unknown before and after."""
-    return value._asdict()
-
-
 def worth_record(worth: Worth) -> Record:
     """What a further measurement would tell."""
     measurement = worth.measurement
@@ -227,17 +218,16 @@ def worth_record(worth: Worth) -> Record:
 
 def estimate_record(estimate: Estimate, worths: Sequence[Worth], squirt: tuple[float, float], offset: float) -> Record:
     """What all measurements together say."""
+    sd = np.sqrt(np.diag(estimate.covariance))
     return {
         "name": estimate.cue.name,
-        "values": [value_record(value) for value in estimate.values],
-        "correlations": _correlations(estimate),
+        "values": [value._asdict() for value in estimate.values],
+        "correlations": (estimate.covariance / np.outer(sd, sd)).tolist(),
         "rows": [row_record(row) for row in estimate.rows],
         "misfit": estimate.misfit,
         "measurements": len(estimate.cue.found),
         "wrong": estimate.wrong.tolist(),
-        "unchecked": [
-            {"what": each.measurement.label, "without": value_record(each.value)} for each in estimate.unchecked
-        ],
+        "unchecked": [{"what": each.measurement.label, "without": each.value._asdict()} for each in estimate.unchecked],
         "converged": estimate.converged,
         "squirt": squirt[0],
         "squirt_error": squirt[1],
@@ -245,11 +235,6 @@ def estimate_record(estimate: Estimate, worths: Sequence[Worth], squirt: tuple[f
         "next": [worth_record(worth) for worth in worths],
         "units": UNITS,
     }
-
-
-def _correlations(estimate: Estimate) -> list[list[float]]:
-    sd = np.sqrt(np.diag(estimate.covariance))
-    return (estimate.covariance / np.outer(sd, sd)).tolist()
 
 
 def estimate_sheets(record: Record) -> list[Sheet | str]:
@@ -319,7 +304,7 @@ def sampled_record(estimate: Estimate, sample: PosteriorSample) -> Record:
     """What the sampler found, beside the estimate."""
     names = ("missed", "correlation", "steps", "acceptance")
     record: Record = {name: getattr(sample, name) for name in names}
-    return record | {"draws": len(sample.z), "values": [value_record(value) for value in sample.values]}
+    return record | {"draws": len(sample.z), "values": [value._asdict() for value in sample.values]}
 
 
 def sampled_sheet(record: Record) -> Sheet:

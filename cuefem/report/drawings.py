@@ -141,32 +141,21 @@ def _piece(
     end = min(segment.length, length - x)
     part = end / segment.length
 
-    def half(tip: float, butt: float, s: float) -> float:
-        return scale * across * (tip + (butt - tip) * s) / 2
-
-    def box(tip: float, butt: float) -> str:
+    def outline(tip: float, butt: float, dome: float) -> str:
         first, last = 10 + scale * x, 10 + scale * (x + end)
-        high, low = half(tip, butt, 0.0), half(tip, butt, part)
+        high, low = (scale * across * (tip + (butt - tip) * s) / 2 for s in (0.0, part))
         xs, ys = [first, last, last, first], [axis - high, axis - low, axis + low, axis + high]
-        if dome > 0 and dome >= segment.tip_diameter / 2:
-            angle = np.linspace(1, -1, 25) * math.asin(segment.tip_diameter / 2 / dome)
+        if dome > 0 and dome >= tip / 2:
+            angle = np.linspace(1, -1, 25) * math.asin(tip / 2 / dome)
             front = 10 + scale * dome * (1 - np.cos(angle))
             xs, ys = [*xs[1:3], *front], [*ys[1:3], *(axis + scale * across * dome * np.sin(angle))]
         return path(xs, ys) + "Z"
 
-    bored = max(segment.tip_bore, segment.butt_bore) > 0
-    core = "hollow" if segment.core is None else style_of(material_name(segment.core))
-    bore = path(
-        [10 + scale * x, 10 + scale * (x + end), 10 + scale * (x + end), 10 + scale * x],
-        axis
-        + np.array([-1, -1, 1, 1])
-        * np.array([half(segment.tip_bore, segment.butt_bore, s) for s in (0.0, part, part, 0.0)]),
-    )
     return Piece(
-        box(segment.tip_diameter, segment.butt_diameter),
+        outline(segment.tip_diameter, segment.butt_diameter, dome),
         style_of(material_name(segment.material)),
-        bore + "Z" if bored else "",
-        core,
+        outline(segment.tip_bore, segment.butt_bore, 0.0) if max(segment.tip_bore, segment.butt_bore) > 0 else "",
+        "hollow" if segment.core is None else style_of(material_name(segment.core)),
     )
 
 

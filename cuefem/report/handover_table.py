@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -20,12 +21,13 @@ from cuefem.contact.strike import strike_modes
 from cuefem.endmass.drives import DEFINITIONS
 from cuefem.results.designs import OFFSETS, coupled_curve
 from cuefem.results.quantities import NONE, RESULTS, degrees, grams, units_of, with_unit, written
-from cuefem.results.records import Record, Sheet
+from cuefem.results.records import Entry, Record, Sheet, sheet
 from cuefem.scene import Scene
 from cuefem.squirt import alciatore_a31, alciatore_a31_mass_ratio
 from cuefem.tip_modes import Solved
 
 FASTER = (0.5, 1.0, 2.0)  # times the stroke's speed: at which the end mass is given too
+OWN = FASTER.index(1.0)
 SAME = 1e-6  # relative: end masses that are one
 WHOLE_CUE = 1.4732  # m, 58 in: pool cues, and pooltool's own
 SHORTEST_CUE = 1.2  # m: a drawing that is shorter is a shaft's
@@ -61,8 +63,9 @@ def pooltool_record(name: str, scene: Scene, *, drive: str = "A.31", length: flo
     masses, reasons = _end_masses(solved)
     if drive in reasons:
         raise ValueError(f"end mass {drive!r} does not exist here: {reasons[drive]}")
-    worth = _worth(scene, solved.tip, masses[drive])
-    by_offset = _by_offset(scene, solved.tip, worth)
+    strokes = [_strokes(scene, solved.tip, OFFSETS, factor * float(scene.stroke.speed)) for factor in FASTER]
+    theirs = alciatore_a31(np.array(OFFSETS), mass_ratio=scene.ball.mass / masses[drive], inertia=POOLTOOL_INERTIA)
+    by_offset = _by_offset(strokes)
     return {
         "for": "pooltool",
         "version": POOLTOOL,
@@ -80,7 +83,13 @@ def pooltool_record(name: str, scene: Scene, *, drive: str = "A.31", length: flo
         },
         "signs": SIGNS,
         "notes": [*_notes(scene, length), by_offset["words"]],
-        "squirt": worth,
+        "squirt": {
+            "offsets": list(OFFSETS),
+            "coupled": [stroke["squirt"] for stroke in strokes[OWN]],
+            "regimes": [stroke["regime"] for stroke in strokes[OWN]],
+            "grips": [stroke["grip"] for stroke in strokes[OWN]],
+            "pooltool": theirs.tolist(),
+        },
         "by_offset": by_offset,
         "units": UNITS,
     }
@@ -121,116 +130,90 @@ def _notes(scene: Scene, length: float | None) -> list[str]:
     return notes
 
 
-def _end_masses(solved: Solved) -> tuple[dict[str, float | None], dict[str, str]]:
-    masses: dict[str, float | None] = {}
+def _end_masses(solved: Solved) -> tuple[dict[str, Any], dict[str, str]]:
+    """The end mass by [A.31] and by every definition, kg, None where there is none; and the reasons why."""
+    ways = {"A.31": _a31_end_mass} | {name: definition.of_solved for name, definition in DEFINITIONS.items()}
+    masses: dict[str, Any] = {}
     reasons: dict[str, str] = {}
-    for drive in ("A.31", *DEFINITIONS):
+    for drive, way in ways.items():
         try:
-            masses[drive] = _end_mass(solved, drive)
+            masses[drive] = float(way(solved))
         except ValueError as error:
             masses[drive], reasons[drive] = None, str(error)
     return masses, reasons
 
 
-def _end_mass(solved: Solved, drive: str) -> float:
-    if drive == "A.31":
-        return _a31_end_mass(solved.scene, solved.tip)
-    return float(DEFINITIONS[drive].of_solved(solved))
-
-
-def _a31_end_mass(scene: Scene, tip: TipModes) -> float:
-    offset = scene.stroke.offset
+def _a31_end_mass(solved: Solved) -> float:
+    offset = float(solved.scene.stroke.offset)
     if offset == 0:
         raise ValueError("[A.31] has no squirt head on; got the offset 0 (--offset takes another)")
-    outcome = strike_modes(scene, tip)
+    outcome = strike_modes(solved.scene, solved.tip)
     if grip_of(outcome) in MISSED:
         raise ValueError(f"the stroke miscues at offset {offset}; got no end mass")
-    return _mass_of(scene, float(offset), float(outcome.squirt))
+    return _mass_of(solved.scene, offset, float(outcome.squirt))
 
 
-def _worth(scene: Scene, tip: TipModes, end_mass: float | None) -> Record:
-    """Squirt against the offset, rad: of the coupled strike, and of pooltool with the number handed over."""
-    assert end_mass is not None
-    curve = coupled_curve(scene, OFFSETS, tip)
-    theirs = alciatore_a31(np.array(OFFSETS), mass_ratio=scene.ball.mass / end_mass, inertia=POOLTOOL_INERTIA)
-    return {
-        "offsets": list(OFFSETS),
-        "coupled": curve["squirt"].tolist(),
-        "regimes": curve["regime"],
-        "grips": curve["grip"],
-        "pooltool": theirs.tolist(),
-    }
+def _mass_of(scene: Scene, offset: float, squirt: float) -> float:
+    return float(scene.ball.mass / alciatore_a31_mass_ratio(offset, squirt, inertia=POOLTOOL_INERTIA))
 
 
-def _by_offset(scene: Scene, tip: TipModes, worth: Record) -> Record:
-    """The end mass that [A.31] takes at each offset, kg, None in a miscue, at several speeds."""
-    speeds = [factor * float(scene.stroke.speed) for factor in FASTER]
-    own_curve = worth["coupled"], worth["grips"]
-    masses = [_masses(scene, *own_curve) if factor == 1 else _masses_at(scene, tip, factor) for factor in FASTER]
-    own = masses[FASTER.index(1.0)]
-    apart = [
-        abs(other / mass - 1)
-        for row in masses
-        for mass, other in zip(own, row, strict=True)
-        if mass is not None and other is not None
+def _strokes(scene: Scene, tip: TipModes, offsets: Sequence[float], speed: float) -> list[Record]:
+    """The coupled strikes at a speed, m/s, with the end mass of [A.31] for each squirt: None in a miscue and head on.
+
+    A tip whose contact time changes with the speed is solved anew.
+    """
+    if speed != scene.stroke.speed:
+        scene = replace(scene, stroke=replace(scene.stroke, speed=speed))
+        tip = Solved(scene).tip if scene.contact_terms.tip is not None else tip
+    curve = coupled_curve(scene, offsets, tip)
+    return [
+        {
+            "speed": speed,
+            "offset": offset,
+            "end_mass": None if grip in MISSED or squirt * offset <= 0 else _mass_of(scene, offset, squirt),
+            "squirt": squirt,
+            "regime": regime,
+            "grip": grip,
+        }
+        for offset, squirt, regime, grip in zip(
+            offsets, curve["squirt"].tolist(), curve["regime"], curve["grip"], strict=True
+        )
     ]
-    matters = max(apart, default=0.0) > SAME
-    slow, fast = (f"{speed:g}" for speed in (speeds[0], speeds[-1]))
+
+
+def _by_offset(strokes: Sequence[Sequence[Record]]) -> Record:
+    """The end mass that [A.31] takes at each offset, kg, None in a miscue, at several speeds."""
+    speeds = [row[0]["speed"] for row in strokes]
+    masses = [[stroke["end_mass"] for stroke in row] for row in strokes]
+    pairs = (pair for row in masses for pair in zip(masses[OWN], row, strict=True) if None not in pair)
+    apart = max((abs(other / mass - 1) for mass, other in pairs), default=0.0)
     words = (
-        f"the end mass depends on the speed, by up to {100 * max(apart):.2g} % from {slow} to {fast} m/s, "
+        f"the end mass depends on the speed, by up to {100 * apart:.2g} % from {speeds[0]:g} to {speeds[-1]:g} m/s, "
         "so that it is given at three speeds"
-        if matters
+        if apart > SAME
         else "the speed drops out: end mass and squirt are the same at every speed, for the tip's law is linear"
     )
     return {
         "offsets": list(OFFSETS),
-        "end_mass": own,
-        "speed_matters": matters,
+        "end_mass": masses[OWN],
+        "speed_matters": apart > SAME,
         "speeds": speeds,
         "end_mass_at_speeds": masses,
         "words": words,
     }
 
 
-def _masses_at(scene: Scene, tip: TipModes, factor: float) -> list[float | None]:
-    """As `_masses` at another speed."""
-    curve = _curve_at(scene, tip, OFFSETS, factor * float(scene.stroke.speed))
-    return _masses(scene, curve["squirt"].tolist(), curve["grip"])
-
-
-def _curve_at(scene: Scene, tip: TipModes, offsets: Sequence[float], speed: float) -> Record:
-    """The coupled strikes at a speed, m/s; a tip whose contact time changes with it is solved anew."""
-    other = replace(scene, stroke=replace(scene.stroke, speed=speed))
-    return coupled_curve(other, offsets, Solved(other).tip if scene.contact_terms.tip is not None else tip)
-
-
-def _masses(
-    scene: Scene, squirts: Sequence[float], grips: Sequence[str], offsets: Sequence[float] = OFFSETS
-) -> list[float | None]:
-    """The end masses of [A.31] for the squirt of the coupled strike at each offset; None in a miscue and head on."""
-    return [
-        None if grip in MISSED or squirt * offset <= 0 else _mass_of(scene, offset, squirt)
-        for offset, squirt, grip in zip(offsets, squirts, grips, strict=True)
-    ]
-
-
 def table_record(scene: Scene, offsets: Sequence[float], speeds: Sequence[float]) -> Record:
     """The end mass of [A.31] and squirt of the coupled strike at every speed, m/s, and offset b/R: a row a stroke."""
-    tip, rows = Solved(scene).tip, list[Record]()
-    for speed in speeds:
-        curve = _curve_at(scene, tip, offsets, speed)
-        squirts, grips = curve["squirt"].tolist(), curve["grip"]
-        both = zip(offsets, _masses(scene, squirts, grips, offsets), squirts, grips, strict=True)
-        rows += [
-            {"speed": speed, "offset": offset, "end_mass": mass, "squirt": squirt, "miscue": grip in MISSED}
-            for offset, mass, squirt, grip in both
-        ]
+    tip = Solved(scene).tip
+    strokes = [stroke for speed in speeds for stroke in _strokes(scene, tip, offsets, speed)]
+    names = ("speed", "offset", "end_mass", "squirt")
     return {
         "for": "table",
         "definition": TABLE_MEANING,
         "signs": TABLE_SIGNS,
         "ball_mass": scene.ball.mass,
-        "rows": rows,
+        "rows": [{name: it[name] for name in names} | {"miscue": it["grip"] in MISSED} for it in strokes],
         "units": {"speed": "m/s", "offset": "", "ball_mass": "kg"} | units_of("end_mass", "squirt"),
     }
 
@@ -249,21 +232,13 @@ def table_csv(record: Record) -> str:
 
 def table_sheet(record: Record) -> Sheet:
     """The rows of a `table_record`, for people."""
-    rows = tuple(
-        (
-            f"{row['speed']:g} m/s",
-            f"{row['offset']:.4g}",
-            _exact(row["end_mass"]),
-            "miscue" if row["miscue"] else degrees(row["squirt"]),
-        )
-        for row in record["rows"]
-    )
-    notes = (record["definition"], record["signs"])
-    return Sheet("End mass and squirt", ("speed", "offset b/R", "end mass", "squirt"), rows, notes, texts=())
-
-
-def _mass_of(scene: Scene, offset: float, squirt: float) -> float:
-    return float(scene.ball.mass / alciatore_a31_mass_ratio(offset, squirt, inertia=POOLTOOL_INERTIA))
+    columns: dict[str, Entry] = {
+        "speed": "{speed:g} m/s",
+        "offset b/R": "{offset:.4g}",
+        "end mass": lambda row: _exact(row["end_mass"]),
+        "squirt": lambda row: "miscue" if row["miscue"] else degrees(row["squirt"]),
+    }
+    return sheet("End mass and squirt", columns, record["rows"], record["definition"], record["signs"], texts=())
 
 
 def handover_words(record: Record) -> str:
@@ -280,24 +255,22 @@ def handover_words(record: Record) -> str:
 
 def handover_sheet(record: Record) -> Sheet:
     """The equivalent end mass against the offset, for people."""
-    by_offset, own = record["by_offset"], FASTER.index(1.0)
+    by_offset, squirt = record["by_offset"], record["squirt"]
     matters = by_offset["speed_matters"]
     at = [f" at {speed:g} m/s" if matters else "" for speed in by_offset["speeds"]]
-    shown = range(len(FASTER)) if matters else [own]
-    rows = zip(by_offset["offsets"], zip(*by_offset["end_mass_at_speeds"], strict=True), _told(record), strict=True)
+    shown = range(len(FASTER)) if matters else [OWN]
+    told = [
+        "miscue" if grip in MISSED else degrees(angle)
+        for angle, grip in zip(squirt["coupled"], squirt["grips"], strict=True)
+    ]
+    rows = zip(by_offset["offsets"], zip(*by_offset["end_mass_at_speeds"], strict=True), told, strict=True)
     return Sheet(
         "Equivalent end mass for [A.31]",
-        ("offset b/R", *(f"end mass{at[i]}" for i in shown), f"squirt{at[own]}"),
+        ("offset b/R", *(f"end mass{at[i]}" for i in shown), f"squirt{at[OWN]}"),
         tuple((f"{offset:g}", *(_exact(masses[i]) for i in shown), squirt) for offset, masses, squirt in rows),
         (A31_WORDS, by_offset["words"]),
         texts=(),
     )
-
-
-def _told(record: Record) -> list[str]:
-    """The coupled squirt at each offset, or that the stroke miscues."""
-    both = zip(record["squirt"]["coupled"], record["squirt"]["grips"], strict=True)
-    return ["miscue" if grip in MISSED else degrees(squirt) for squirt, grip in both]
 
 
 def _exact(mass: float | None) -> str:

@@ -3,17 +3,7 @@
 from __future__ import annotations
 
 from cuefem.measured.outliers import HOLDS_95
-from cuefem.measured.pendulum import (
-    GRAVITY,
-    PRESSED,
-    TIMES,
-    USUAL,
-    Told,
-    Weighed,
-    choices,
-    softness,
-)
-from cuefem.report.documented_page import value_record
+from cuefem.measured.pendulum import GRAVITY, PRESSED, TIMES, USUAL, Told, Weighed, choices, softness
 from cuefem.results.quantities import with_unit
 from cuefem.results.records import Record, Sheet, sheet
 
@@ -47,7 +37,7 @@ def weigh_record(weighed: Weighed, told: Told | None, lumped: float | None) -> R
             "before_error": told.before[1],
             "after": told.after[0],
             "after_error": told.after[1],
-            "unknowns": [value_record(value) for value in told.estimate.values],
+            "unknowns": [value._asdict() for value in told.estimate.values],
         }
     return record
 

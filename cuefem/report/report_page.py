@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from typing import Any, NamedTuple
 
@@ -37,6 +37,7 @@ from cuefem.report.effects import seconds_words
 from cuefem.report.end_mass import end_mass_record
 from cuefem.report.glossary import with_words
 from cuefem.report.models import ALCIATORE, PAPER
+from cuefem.report.record import scene_record
 from cuefem.report.scene_words import assumptions, effect_words, plain_cue_line
 from cuefem.report.squirt import PAPER_CUE_END_MASS, offset_charts, squirt_record
 from cuefem.report.strike_table import BRIEF, MISCUE, models_sheet, strike_record
@@ -194,7 +195,9 @@ def _context(scene: Scene, records: Record) -> Record:
         "trust": trust_lines(scene),
         "warning": MISCUE if grip_of(outcome) in MISSED else "",
         "cue": _cue_part(scene) if scene.cue.segments else None,
-        "modes": _modes_part(scene) if scene.cue.segments else None,
+        "modes": modes_drawing(modes(scene.shaft, effects=scene.cue_effects), scene.shaft.length)
+        if scene.cue.segments
+        else None,
         "contact": None if outcome.history is None else contact_part(outcome),
         "by_offset": _by_offset(records["squirt"], scene),
         "slipped": bool(_slipped(records["squirt"])),
@@ -208,13 +211,8 @@ def _context(scene: Scene, records: Record) -> Record:
 
 
 def _facts(scene: Scene) -> list[str]:
-    about = {
-        "ball": asdict(scene.ball),
-        "tip": {**asdict(scene.tip), "contact_time": scene.known_contact_time},
-        "stroke": asdict(scene.stroke),
-    }
-    effects = [f"with {effect_words(effect)}" for effect in scene.effects]
-    return [plain_cue_line(scene.cue), f"{assumptions(about)}, offset b/R {scene.stroke.offset:g}", *effects]
+    told = f"{assumptions(scene_record(scene))}, offset b/R {scene.stroke.offset:g}"
+    return [plain_cue_line(scene.cue), told, *(f"with {effect_words(effect)}" for effect in scene.effects)]
 
 
 def _key_figures(record: Record, end_masses: Record, outcome: Outcome) -> list[tuple[str, str, str]]:
@@ -233,10 +231,6 @@ def _key_figures(record: Record, end_masses: Record, outcome: Outcome) -> list[t
         for name, remark in remarks.items()
         if name != "duration" or outcome.duration is not None
     ]
-
-
-def _modes_part(scene: Scene) -> Any:
-    return modes_drawing(modes(scene.shaft, effects=scene.cue_effects), scene.shaft.length)
 
 
 SEGMENT_COLUMNS = ("at, mm", "length, mm", "diameter, mm", "bore, mm", "mass", "material")

@@ -104,11 +104,8 @@ def _picked(count: int, most: int) -> Array:
 
 def _places(column: np.ndarray) -> Array:
     """A column as numbers: names by their order."""
-    return (
-        np.asarray(column, float)
-        if column.dtype.kind in "fi"
-        else np.unique(column, return_inverse=True)[1].astype(float)
-    )
+    numbers = column if column.dtype.kind in "fi" else np.unique(column, return_inverse=True)[1]
+    return np.asarray(numbers, float)
 
 
 def _ends(column: np.ndarray, unit: str) -> tuple[str, str]:
@@ -124,10 +121,7 @@ def _scaled(values: Array, low: float, high: float) -> Array:
 def _parallel(table: StudyTable) -> tuple[list[tuple[str, int]], list[Coordinate], float]:
     """Lines of designs over what varied and the responses, best drawn last, with their shade; the axes; the width."""
     columns = [*table.values, *table.results.T]
-    headings = [
-        *map(with_heading, table.labels, table.units),
-        *(r.heading for r in table.responses),
-    ]
+    headings = [*map(with_heading, table.labels, table.units), *(r.heading for r in table.responses)]
     names = [wrap(near, NAME) for near in headings]
     units = [*table.units, *(r.unit for r in table.responses)]
     widths = [max(map(len, lines)) for lines in names]
@@ -173,15 +167,8 @@ def _front_panel(table: StudyTable) -> Panel:
     assert table.pair is not None
     sideways, other = (table.responses[k] for k in table.pair)
     first, second = (table.results[:, k] for k in table.pair)
-    every = _picked(len(first), MOST_POINTS)
-    panel = _panel(
-        other.heading,
-        sideways.heading,
-        first,
-        second,
-        (sideways.unit, other.unit),
-        every,
-    )
+    units = (sideways.unit, other.unit)
+    panel = _panel(other.heading, sideways.heading, first, second, units, _picked(len(first), MOST_POINTS))
     left, right, top, bottom = BOX
     across, up = _scaled(first, left, right), _scaled(second, bottom, top)
     return panel._replace(curve=path(across[table.front], up[table.front]))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from itertools import pairwise
+from math import inf
 from typing import Any, NamedTuple
 
 from cuefem.cue import Segment
@@ -13,11 +14,8 @@ from cuefem.scene import Scene
 
 JUMP = 1.5  # of the diameter between two segments
 LEAST_DRAWN = 0.02  # kg, of a shaft
-LONG, STIFF, LIGHT = (
-    0.3,
-    3e10,
-    2500.0,
-)  # m, Pa, kg/m^3: a long piece of a material stiffer than wood, lighter than metal
+# m, Pa, kg/m^3: a long piece of a material stiffer than wood, lighter than metal
+LONG, STIFF, LIGHT = 0.3, 3e10, 2500.0
 
 
 class UsualNumbers(NamedTuple):
@@ -26,25 +24,25 @@ class UsualNumbers(NamedTuple):
     of: Callable[[Scene], Iterable[tuple[str, Any]]]
     least: float
     most: float
-    scale: float
     unit: str
     ask: str
     blow: bool = True  # whether it matters to a blow alone, and not to how the cue rings
 
 
-def _segments(scene: Scene) -> tuple[Segment, ...]:
-    return scene.cue.segments
+def _of_drawing(name: str, attribute: str) -> Callable[[Scene], Iterable[tuple[str, Any]]]:
+    """A number of the segments, if the cue has any."""
+    return lambda scene: [(name, getattr(scene.shaft, attribute))] if scene.cue.segments else []
 
 
 def _diameters(scene: Scene) -> Iterable[tuple[str, float]]:
-    for i, segment in enumerate(_segments(scene)):
+    for i, segment in enumerate(scene.cue.segments):
         yield f"segments[{i}].tip_diameter", segment.tip_diameter
         yield f"segments[{i}].butt_diameter", segment.butt_diameter
 
 
 def _thin_tip(scene: Scene) -> Iterable[tuple[str, float]]:
     """The diameter at the tip, if it is no wrong unit's."""
-    ends = [segment.tip_diameter for segment in _segments(scene)[:1]]
+    ends = [segment.tip_diameter for segment in scene.cue.segments[:1]]
     return [("diameter at the tip", end) for end in ends if 0.005 <= end <= 0.06]
 
 
@@ -52,7 +50,7 @@ def _solid_tubes(scene: Scene) -> Iterable[tuple[str, float]]:
     """The mass of a shaft with a long piece that is solid, of a material that shafts have as a tube (carbon fibre)."""
     solid = [
         segment
-        for segment in _segments(scene)
+        for segment in scene.cue.segments
         if segment.length > LONG and segment.material.E > STIFF and segment.material.rho < LIGHT
         if not max(segment.tip_bore, segment.butt_bore)
     ]
@@ -66,46 +64,34 @@ def _light_cue(scene: Scene) -> Iterable[tuple[str, float]]:
     return [("mass of the whole cue", float(scene.cue.mass))]
 
 
+BALL, DIAMETERS = "26 to 31 is usual: is that the diameter?", "check the unit of the diameters"
+TUBES = "such shafts are tubes: a bore is drawn in a .toml (`cuefem guide files`)"
+BODY = "400 to 700 is usual: is what is behind the shaft left out (--body-mass, or body_mass in a drawing)?"
+SHOWN = {"mm": 1e3, "g": 1e3}  # how many of the unit an SI unit is, if not one
 # Beyond every cue and every table, yet within a factor of ten: what a unit is wrong by.
 USUAL = (
     UsualNumbers(
-        lambda s: [] if s.known_contact_time is None else [("head-on contact time", s.known_contact_time)],
-        *(1e-5, 0.05, 1, "s", "leather's is 0.001 to 0.002 s"),
+        lambda s: [("head-on contact time", s.known_contact_time)], 1e-5, 0.05, "s", "leather's is 0.001 to 0.002 s"
     ),
+    UsualNumbers(lambda s: [("ball radius", s.ball.radius)], 0.02, 0.04, "mm", BALL),
+    UsualNumbers(lambda s: [("ball mass", s.ball.mass)], 0.08, 0.4, "g", "140 to 210 is usual"),
+    UsualNumbers(lambda s: [("stroke speed", s.stroke.speed)], 0.01, 30.0, "m/s", "0.5 to 12 is usual"),
     UsualNumbers(
-        lambda s: [("ball radius", s.ball.radius)], 0.02, 0.04, 1e3, "mm", "26 to 31 is usual: is that the diameter?"
+        lambda s: [("dome radius", s.dome_radius or None)],
+        0.005,
+        0.02,
+        "mm",
+        "9 to 10.6 is usual, a dime's or a nickel's",
     ),
-    UsualNumbers(lambda s: [("ball mass", s.ball.mass)], 0.08, 0.4, 1e3, "g", "140 to 210 is usual"),
-    UsualNumbers(lambda s: [("stroke speed", s.stroke.speed)], 0.01, 30.0, 1, "m/s", "0.5 to 12 is usual"),
+    UsualNumbers(_of_drawing("drawn length", "length"), 0.3, 3.0, "mm", "check the unit of the lengths", False),
+    UsualNumbers(_diameters, 0.005, 0.06, "mm", DIAMETERS, False),
+    UsualNumbers(_thin_tip, 0.0075, 0.06, "mm", "8.5 to 14 is usual: is that the radius?", False),
     UsualNumbers(
-        lambda s: [("dome radius", s.dome_radius)] if s.dome_radius else [],
-        *(0.005, 0.02, 1e3, "mm", "9 to 10.6 is usual, a dime's or a nickel's"),
+        _of_drawing("drawn mass", "shaft_mass"), LEAST_DRAWN, inf, "g", "check the sizes and the densities", False
     ),
-    UsualNumbers(
-        lambda s: [("drawn length", s.shaft.length)] if s.cue.segments else [],
-        *(0.3, 3.0, 1e3, "mm", "check the unit of the lengths", False),
-    ),
-    UsualNumbers(_diameters, 0.005, 0.06, 1e3, "mm", "check the unit of the diameters", False),
-    UsualNumbers(_thin_tip, 0.0075, 0.06, 1e3, "mm", "8.5 to 14 is usual: is that the radius?", False),
-    UsualNumbers(
-        lambda s: [("drawn mass", s.shaft.shaft_mass)] if s.cue.segments else [],
-        *(LEAST_DRAWN, float("inf"), 1e3, "g", "check the sizes and the densities", False),
-    ),
-    UsualNumbers(
-        _solid_tubes,
-        *(0, 0.0, 1e3, "g", "such shafts are tubes: a bore is drawn in a .toml (`cuefem guide files`)", False),
-    ),
-    UsualNumbers(lambda s: [("mass of the whole cue", float(s.cue.mass))], 0, 1.0, 1, "kg", "0.4 to 0.7 is usual"),
-    UsualNumbers(
-        _light_cue,
-        *(
-            LIGHTEST,
-            float("inf"),
-            1e3,
-            "g",
-            "400 to 700 is usual: is what is behind the shaft left out (--body-mass, or body_mass in a drawing)?",
-        ),
-    ),
+    UsualNumbers(_solid_tubes, 0.0, 0.0, "g", TUBES, False),
+    UsualNumbers(lambda s: [("mass of the whole cue", float(s.cue.mass))], 0.0, 1.0, "kg", "0.4 to 0.7 is usual"),
+    UsualNumbers(_light_cue, LIGHTEST, inf, "g", BODY),
 )
 
 
@@ -115,14 +101,14 @@ def unusual(scene: Scene, *, blow: bool = True) -> list[str]:
     blow: whether ball, tip, stroke and the mass of the whole cue count.
     """
     asked = [usual for usual in USUAL if blow or not usual.blow]
-    return [*filter(None, map(lambda usual: _beyond(usual, scene), asked)), *_shape(_segments(scene))]
+    return [*filter(None, map(lambda usual: _beyond(usual, scene), asked)), *_shape(scene.cue.segments)]
 
 
 def _beyond(usual: UsualNumbers, scene: Scene) -> str:
     """The first number that is out of bounds, in a line."""
     for name, value in usual.of(scene):
-        if not usual.least <= value <= usual.most:
-            return f"{name} {usual.scale * value:.6g} {usual.unit}; {usual.ask}"
+        if value is not None and not usual.least <= value <= usual.most:
+            return f"{name} {SHOWN.get(usual.unit, 1) * value:.6g} {usual.unit}; {usual.ask}"
     return ""
 
 
