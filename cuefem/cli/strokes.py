@@ -128,16 +128,14 @@ def usual(cue: Cue, file: Path, given: dict[str, Any]) -> Scene:
         offered = [name for name in map(option, ("tip_height", "dome", "contact_time")) if name in map(option, given)]
         help_words = f" ({', '.join(offered)} {'change' if len(offered) > 1 else 'changes'} it)" if offered else ""
         raise InputError(file, "", f"{error}{help_words}") from None
-    return with_options(scene, file, given, lambda known: not _is_leather(known))
+    return with_options(scene, file, given)
 
 
-def with_options(
-    scene: Scene, file: Path, given: dict[str, Any], which: Callable[[Place], bool] = lambda known: True
-) -> Scene:
-    """The scene with the values that the command's options give, of those places that ``which`` tells."""
+def with_options(scene: Scene, file: Path, given: dict[str, Any]) -> Scene:
+    """The scene with the values that the command's options give."""
     if given.get("ball") is not None:
         scene = replace(scene, ball=GAMES[given["ball"]].ball)
-    changes = _changes(scene, file, given, which)
+    changes = _changes(scene, file, given)
     try:
         return replaced(scene, changes) if changes else scene
     except ValueError as error:
@@ -148,12 +146,14 @@ def _is_leather(known: Place) -> bool:
     return known.path.startswith("leather.")
 
 
-def _options(given: dict[str, Any], which: Callable[[Place], bool]) -> Iterator[Place]:
+def _options(given: dict[str, Any], which: Callable[[Place], bool] = lambda known: True) -> Iterator[Place]:
     """The places of which options give a value."""
     return (known for known in PLACES.values() if known.option and given.get(known.key) is not None and which(known))
 
 
-def _changes(scene: Any, file: Path, given: dict[str, Any], which: Callable[[Place], bool]) -> dict[Steps, Any]:
+def _changes(
+    scene: Any, file: Path, given: dict[str, Any], which: Callable[[Place], bool] = lambda known: True
+) -> dict[Steps, Any]:
     """The values that options give, by the paths of their places."""
     changes = dict[Steps, Any]()
     for known in _options(given, which):
