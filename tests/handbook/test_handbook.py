@@ -13,7 +13,7 @@ from cuefem.design.worth import effect_kinds
 from cuefem.endmass.drives import DEFINITIONS, end_mass
 from cuefem.handbook import CHAPTERS, LINES, chapters, effect_lines
 from cuefem.handbook.page import page
-from tests.helpers.command_line import call
+from tests.helpers.command_line import said
 from tests.helpers.refusals import untouched
 
 ROOT = Path(__file__).parents[2]
@@ -100,15 +100,13 @@ def test_the_page_needs_nothing_from_the_network_and_its_links_lead_somewhere() 
 
 
 @pytest.mark.parametrize(
-    ("there", "said"), [(True, "opened file:"), (False, "no browser found; open this file in one")]
+    ("there", "words"), [(True, "opened file:"), (False, "no browser found; open this file in one")]
 )
-def test_the_command_opens_a_browser(there: bool, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_command_opens_a_browser(there: bool, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     opened: list[str] = []
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     monkeypatch.setattr(webbrowser, "open", lambda address: opened.append(address) or there)
-    status, out, err = call("guide", "glossary")
-    assert (status, err) == (0, "")
-    assert out.startswith(said)
+    assert said("guide", "glossary").startswith(words)
     (made,) = tmp_path.glob("cuefem-guide-*.html")
     assert opened == [f"{made.as_uri()}#glossary"]
     assert made.read_text(encoding="utf-8") == page()
@@ -116,14 +114,13 @@ def test_the_command_opens_a_browser(there: bool, said: str, tmp_path: Path, mon
 
 def test_the_command_prints_a_chapter_and_writes_the_page(tmp_path: Path) -> None:
     path = tmp_path / "guide.html"
-    assert call("guide", "-o", path) == (0, f"wrote {path}\n", "")
+    assert said("guide", "-o", path) == f"wrote {path}\n"
     assert path.read_text(encoding="utf-8") == page()
-    status, out, err = call("guide", "glossary", "--print")
-    assert (status, err) == (0, "")
+    out = said("guide", "glossary", "--print")
     assert "effective end mass" in out
-    assert ("Hutchinson" in out, "Hutchinson" in call("guide", "--print")[1]) == (False, True)
-    said = " ".join(call("guide", "--help")[1].split())
-    assert [name for name in CHAPTERS if name not in said] == []
+    assert ("Hutchinson" in out, "Hutchinson" in said("guide", "--print")) == (False, True)
+    listed = " ".join(said("guide", "--help").split())
+    assert [name for name in CHAPTERS if name not in listed] == []
 
 
 @pytest.mark.parametrize(

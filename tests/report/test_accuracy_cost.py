@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from itertools import pairwise
 from pathlib import Path
 
@@ -12,7 +11,7 @@ from cuefem import resolve
 from cuefem.accuracy import JUDGED
 from cuefem.report.cost import WANTED, cost_record
 from tests.helpers.accuracy_scenes import MESHES, scene
-from tests.helpers.command_line import call
+from tests.helpers.command_line import as_json, said
 
 KIM = MESHES / "kim.toml"
 
@@ -45,9 +44,8 @@ def test_what_is_recommended_is_what_resolve_takes(record: dict) -> None:
 
 def test_the_command_prints_draws_and_speaks_json(tmp_path: Path) -> None:
     for name, start in (("cost.svg", b"<?xml"), ("cost.png", b"\x89PNG")):
-        status, out, err = call("cost", KIM, "--most", 24, "--output", tmp_path / name)
-        assert (status, err) == (0, "")
+        out = said("cost", KIM, "--most", 24, "--output", tmp_path / name)
         assert (tmp_path / name).read_bytes().startswith(start)
     assert "1e-06, not reached" in out
-    told = json.loads(call("cost", KIM, "--most", 24, "--json")[1])
+    told = as_json("cost", KIM, "--most", 24)
     assert [row["rtol"] for row in told["wanted"]] == list(WANTED)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,7 +14,7 @@ from cuefem.design.worth import variants
 from cuefem.effects import effect_kinds
 from cuefem.report import effects_record
 from cuefem.report.effects import MARGIN, advice
-from tests.helpers.command_line import call
+from tests.helpers.command_line import as_json
 
 CUE = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 782.3284453057836), kappa=0.9),), 0.42)
 DOME, SHEAR = cf.TipDome(9.5e-3), cf.TipShear(0.75)
@@ -121,9 +120,7 @@ def test_the_command(tmp_path: Path) -> None:
     file = tmp_path / "scene.toml"
     cf.save(cf.Scene(cf.LumpedCue(0.54, 0.006), stroke=cf.Stroke(offset=0.3)), file)
     file.write_text(file.read_text(encoding="utf-8") + "\n[accuracy]\nrtol = 0.02\n", encoding="utf-8")
-    status, out, err = call("effects", file, "--json")
-    assert (status, err) == (0, "")
-    told = json.loads(out)
+    told = as_json("effects", file)
     assert told["rtol"] == 0.02
     assert told["base"]["squirt"] == cf.strike(cf.load(file)).squirt  # type: ignore[arg-type]
     assert {row["name"] for row in told["effects"]} == set(effect_kinds())

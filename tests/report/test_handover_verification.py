@@ -22,7 +22,7 @@ import cuefem as cf
 from cuefem.endmass.drives import DEFINITIONS
 from cuefem.report.handover_table import NICKEL, POOLTOOL, POOLTOOL_LINE, handover_sheet, pooltool_record
 from cuefem.squirt import alciatore_a31, alciatore_a31_mass_ratio
-from tests.helpers.command_line import call
+from tests.helpers.command_line import as_json, said
 
 KIM = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 782.3284453057836), kappa=0.9),), 0.42)
 SCENE = cf.Scene(KIM, cf.Ball(0.17, 0.028575), cf.Tip(0.75, 0.7, 1e-3), cf.Stroke(2.0, 0.3), (cf.TipDome(0.0095),))
@@ -38,10 +38,8 @@ def pooltool_squirt(mass: float, end_mass: float, a: float) -> float:
     return -math.atan2(2.5 * a * math.sqrt(A), 1 + mass / end_mass + 2.5 * A)
 
 
-def as_json(*arguments: object) -> Any:
-    status, out, err = call("strike", *arguments, "--for", "pooltool", *(() if "--json" in arguments else ("--json",)))
-    assert (status, err) == (0, "")
-    return json.loads(out)
+def handed(*arguments: object) -> Any:
+    return as_json("strike", *arguments, "--for", "pooltool")
 
 
 @pytest.fixture
@@ -91,7 +89,7 @@ def test_each_end_mass_and_its_squirt(drive: Any) -> None:
 
 
 def test_the_json_of_the_command(scene: Path, tmp_path: Path) -> None:
-    found = as_json(scene)
+    found = handed(scene)
     assert set(found["CueSpecs"]) == OF_A_SHAFT
     specs = found["CueSpecs"]
     expected = {"M": KIM.mass, "length": 1.4732, "tip_radius": 0.0095, "shaft_radius_at_tip": 0.006}
@@ -102,15 +100,15 @@ def test_the_json_of_the_command(scene: Path, tmp_path: Path) -> None:
     assert found["end_mass"]["contact_time"] == 1e-3
     assert (found["units"]["end_mass"], found["units"]["length"]) == ("kg", "m")
     assert "alpha(a) = -squirt" in found["signs"]
-    status, out, err = call("strike", scene, "--for", "pooltool", "-o", tmp_path / "cue.json")
-    assert (status, out.splitlines()[0], err) == (0, f"wrote {tmp_path / 'cue.json'}", "")
-    assert "the speed drops out" in out
+    told = said("strike", scene, "--for", "pooltool", "-o", tmp_path / "cue.json")
+    assert told.splitlines()[0] == f"wrote {tmp_path / 'cue.json'}"
+    assert "the speed drops out" in told
     assert json.loads((tmp_path / "cue.json").read_text(encoding="utf-8")) == found
-    assert as_json(scene, "-o", tmp_path / "again.json", "--json") == found
+    assert handed(scene, "-o", tmp_path / "again.json") == found
     assert (tmp_path / "again.json").read_bytes() == (tmp_path / "cue.json").read_bytes()
-    said = call("strike", scene, "--for", "pooltool")[1]
-    assert f"handed over: end mass {1e3 * specs['end_mass']:.3f} g by A.31, at b/R 0.3" in said
-    assert as_json(scene, "--length", "57 in")["CueSpecs"]["length"] == pytest.approx(1.4478, rel=1e-12)
+    told = said("strike", scene, "--for", "pooltool")
+    assert f"handed over: end mass {1e3 * specs['end_mass']:.3f} g by A.31, at b/R 0.3" in told
+    assert handed(scene, "--length", "57 in")["CueSpecs"]["length"] == pytest.approx(1.4478, rel=1e-12)
 
 
 def test_how_the_speed_matters_with_leather() -> None:
@@ -120,6 +118,7 @@ def test_how_the_speed_matters_with_leather() -> None:
     assert found["speeds"] == [1.0, 2.0, 4.0]
     assert found["speed_matters"]
     assert found["words"] in record["notes"]
+    assert "from 1 to 4 m/s" in found["words"]
     heads = list(handover_sheet(record).head)
     assert heads == ["offset b/R", *(f"end mass at {speed} m/s" for speed in (1, 2, 4)), "squirt at 2 m/s"]
     for speed, row in zip(found["speeds"], found["end_mass_at_speeds"], strict=True):
@@ -157,8 +156,8 @@ def test_a_table_for_any_other_simulator(tmp_path: Path) -> None:
     cf.save(LETS_GO, tmp_path / "leather.toml")
     ranges = ("--offsets", "-0.3 to 0.5 in 9", "--speeds", "1 m/s, 4 m/s")
     for name in ("table.csv", "table.json"):
-        status, out, err = call("strike", tmp_path / "leather.toml", "--for", "table", *ranges, "-o", tmp_path / name)
-        assert (status, out, err) == (0, f"wrote {tmp_path / name}\n", "")
+        told = said("strike", tmp_path / "leather.toml", "--for", "table", *ranges, "-o", tmp_path / name)
+        assert told == f"wrote {tmp_path / name}\n"
     record = json.loads((tmp_path / "table.json").read_text(encoding="utf-8"))
     assert record["units"] == {"speed": "m/s", "offset": "", "ball_mass": "kg", "end_mass": "kg", "squirt": "rad"}
     lines = (tmp_path / "table.csv").read_text(encoding="utf-8").splitlines()
@@ -210,7 +209,7 @@ def test_a_ball_that_pooltool_strikes(scene: Path) -> None:
     """pooltool reads what is handed over; its own stroke leaves its aim by our squirt, away from the struck side."""
     python = pooltool_python()
     offsets = (-0.4, 0.1, 0.3, 0.5)
-    sent = json.dumps([(offset, as_json(scene, f"--offset={offset}")) for offset in offsets])
+    sent = json.dumps([(offset, handed(scene, f"--offset={offset}")) for offset in offsets])
     done = subprocess.run([python, "-c", IN_POOLTOOL], input=sent, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     version, answers = json.loads(done.stdout)

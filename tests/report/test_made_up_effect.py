@@ -25,7 +25,7 @@ from cuefem.io import schema
 from cuefem.quantity.fields import Quantity
 from cuefem.report.report_page import page
 from cuefem.vary import knobs_of, turned
-from tests.helpers.command_line import call
+from tests.helpers.command_line import as_json, said
 
 CUE = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 782.3284453057836), kappa=0.9),), 0.42)
 BARE = cf.Scene(CUE, tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(offset=0.3))
@@ -69,17 +69,15 @@ def test_files_hold_it(collar: type[cf.Effect], scene: cf.Scene, tmp_path: Path)
     cf.save(scene, tmp_path / "scene.toml")
     assert 'type = "Collar"' in (tmp_path / "scene.toml").read_text(encoding="utf-8")
     assert cf.load(tmp_path / "scene.toml") == scene
-    assert json.loads(call("schema")[1])["$defs"]["Collar"]["required"] == ["type", "position", "mass"]
+    assert json.loads(said("schema"))["$defs"]["Collar"]["required"] == ["type", "position", "mass"]
 
 
 def test_commands_and_pages_name_it(scene: cf.Scene, tmp_path: Path) -> None:
     file = tmp_path / "scene.toml"
     cf.save(scene, file)
     for command in ("strike", "report", "end-mass", "modes"):
-        status, out, err = call(command, file)
-        assert (status, err) == (0, "")
-        assert WORDS in out
-    assert json.loads(call("strike", file, "--json")[1])["scene"]["effects"][0]["type"] == "Collar"
+        assert WORDS in said(command, file)
+    assert as_json("strike", file)["scene"]["effects"][0]["type"] == "Collar"
     shown = page("scene.toml", scene)
     assert f"with {WORDS}" in shown
     assert ">Collar</text>" in shown  # at its place on the drawing
@@ -99,9 +97,9 @@ def test_it_is_tried_at_its_usual_values(scene: cf.Scene, tmp_path: Path) -> Non
     (added,) = (v for v in variants(BARE) if v.name == "Collar")
     assert (added.listed, added.scene) == (False, scene)
     cf.save(BARE, tmp_path / "bare.toml")
-    assert f"with {WORDS}" in call("effects", tmp_path / "bare.toml")[1]
+    assert f"with {WORDS}" in said("effects", tmp_path / "bare.toml")
     cf.save(scene, tmp_path / "scene.toml")
-    found = json.loads(call("effects", tmp_path / "scene.toml", "--json")[1])
+    found = as_json("effects", tmp_path / "scene.toml")
     assert found["textbook"]["Collar"] == {"values": {"position": 0.03, "mass": 4e-3}, "source": "made up"}
     assert [row["name"] for row in found["effects"] if row["listed"]] == ["Collar"]
 
