@@ -31,16 +31,16 @@ from cuefem.scene import Scene
 @click.option("--until", metavar="TIME", help="Time of the last frame; by default three contact times.")
 @click.option("--scale", type=float, default=1.0, show_default=True, help="Bending is drawn this many times enlarged.")
 @output_option("", required=True)
-def animate(file: Path, output: Path, as_json: bool, **given: Any) -> None:
+def animate(file: Path, output: Path, as_json: bool, **options: Any) -> None:
     """Write mode shapes and the cue's motion in a strike for ParaView: FOLDER/modes.vtu, FOLDER/strike.pvd, frames."""
-    drawn = {name: given.pop(name) for name in ("count", "frames", "until", "scale")}
+    drawn = {name: options.pop(name) for name in ("count", "frames", "until", "scale")}
     if not math.isfinite(drawn["scale"]):
         raise InputError(file, "--scale", f"must be finite; got {drawn['scale']}")
     if drawn["until"] is not None:
         drawn["until"] = measured(file, "--until", drawn["until"], Quantity("s", "(0, inf)"))
     check_new(output)
-    scene, notes = scene_of(file, given)
-    with blaming(file, given):
+    scene, notes = scene_of(file, options)
+    with blaming(file, options):
         put = _animation(scene, **drawn)
     write_whole_folder(output, put)
     if as_json:
@@ -56,10 +56,10 @@ def _animation(scene: Scene, *, count: int, frames: int, until: float | None, sc
     last = 3 * last_contact(scene) if until is None else until
     moving = motion(scene, np.linspace(0, last, frames))
     cue = scene.shaft
-    found = modes(cue, count, effects=scene.cue_effects)
+    bending = modes(cue, count, effects=scene.cue_effects)
 
     def put(folder: Path) -> None:
-        save_modes(folder / "modes.vtu", cue, found)
+        save_modes(folder / "modes.vtu", cue, bending)
         save_strike(folder, scene, moving, scale=scale, track=followed)
 
     return put

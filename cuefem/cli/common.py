@@ -47,9 +47,9 @@ def shape_options(command: Callable[..., Any]) -> Callable[..., Any]:
     return place_options("body_mass")(command)
 
 
-def fittings_of(given: Mapping[str, Any]) -> dict[str, str | None]:
+def fittings_of(options: Mapping[str, Any]) -> dict[str, str | None]:
     """What the options tell `load` of a drawing."""
-    return {name: given.get(name) for name in FITTINGS}
+    return {name: options.get(name) for name in FITTINGS}
 
 
 def force_option(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -65,22 +65,24 @@ def check_free(drawing: Path, *, force: bool) -> None:
 
 
 @contextmanager
-def blaming(file: Path, given: Collection[str] = ()) -> Iterator[None]:
+def blaming(file: Path, options: Collection[str] = ()) -> Iterator[None]:
     """Name the file in errors that appear only while computing, such as an effect that lies off the cue.
 
-    given: the options that the command has, to be named where they help.
+    options: those that the command has, to be named where they help.
     """
     try:
         yield
     except InputError:  # which names a file already
         raise
     except ValueError as error:
-        help_words = " (--tip-height, --leather, --speed)" if isinstance(error, TooDeep) and "leather" in given else ""
+        help_words = (
+            " (--tip-height, --leather, --speed)" if isinstance(error, TooDeep) and "leather" in options else ""
+        )
         raise InputError(file, "", f"{error}{help_words}") from None
 
 
 def scene_of(
-    file: Path, given: dict[str, Any], *, blow: bool = True, settled: Collection[str] = (), remarked: bool = True
+    file: Path, options: dict[str, Any], *, blow: bool = True, settled: Collection[str] = (), remarked: bool = True
 ) -> tuple[Scene, list[str]]:
     """The scene that a command computes, and what was assumed because neither file nor options say it.
 
@@ -88,19 +90,19 @@ def scene_of(
     so that what is assumed of them is told too. settled: options that have no say, for the command finds their value.
     remarked: whether unusual numbers are told.
     """
-    found = load_stroke(file, **fittings_of(given))
-    said = {name for name, value in given.items() if value is not None} | {*settled}
-    notes = assumed(file, said, offered=given, blow=blow)
-    if isinstance(found, Scene):
-        refuse_game(file, given)
-        scene = with_options(found, file, given)
+    opened = load_stroke(file, **fittings_of(options))
+    said = {name for name, value in options.items() if value is not None} | {*settled}
+    notes = assumed(file, said, offered=options, blow=blow)
+    if isinstance(opened, Scene):
+        refuse_game(file, options)
+        scene = with_options(opened, file, options)
     else:
         try:
-            scene = usual(found, file, given)
+            scene = usual(opened, file, options)
         except InputError:
-            remark(Scene(found), blow=False)
+            remark(Scene(opened), blow=False)
             raise
-        notes += assumed_usual(found, given.get("game") or DEFAULT_GAME, said, offered=given, blow=blow)
+        notes += assumed_usual(opened, options.get("game") or DEFAULT_GAME, said, offered=options, blow=blow)
     with blaming(file):
         compute_tip(scene)
     if remarked:
@@ -124,7 +126,7 @@ def remark(scene: Scene, *, blow: bool = True) -> None:
 
 def show(
     file: Path,
-    given: dict[str, Any],
+    options: dict[str, Any],
     results: Callable[[Scene], Any],
     sheets: Callable[..., Any],
     *,
@@ -136,23 +138,23 @@ def show(
 
     blow, settled: see `scene_of`. change: what the command's own options make of the scene.
     """
-    page = given.pop("output", None)
-    scene, notes = scene_of(file, given, blow=blow, settled=settled)
-    with blaming(file, given):
+    page = options.pop("output", None)
+    scene, notes = scene_of(file, options, blow=blow, settled=settled)
+    with blaming(file, options):
         scene = scene if change is None else change(scene)
-        about, found = scene_record(scene), results(scene)
+        about, answer = scene_record(scene), results(scene)
     struck = about if blow else {name: value for name, value in about.items() if name in ("cue", "effects")}
-    record = whole_record(file, notes, scene, found, blow=blow, scene=struck)
-    lines = [*head_lines(file, about, scene.effects, notes), "", *sheets(found, about)]
-    tell(given["as_json"], record, lines, page)
+    record = whole_record(file, notes, scene, answer, blow=blow, scene=struck)
+    lines = [*head_lines(file, about, scene.effects, notes), "", *sheets(answer, about)]
+    tell(options["as_json"], record, lines, page)
 
 
 def whole_record(
-    file: Path, notes: Sequence[str], solved: Scene, found: Record, *, blow: bool = True, **more: Any
+    file: Path, notes: Sequence[str], solved: Scene, record: Record, *, blow: bool = True, **more: Any
 ) -> Record:
     """What a program is told: the file, what was assumed and is unusual, the scene, the result, the units."""
     said = {"file": str(file), "assumed": notes, "unusual": unusual(solved, blow=blow), "scene": scene_record(solved)}
-    return said | more | found | {"units": UNITS | found.get("units", {})}
+    return said | more | record | {"units": UNITS | record.get("units", {})}
 
 
 def head_lines(file: Path, about: dict[str, Any], effects: Sequence[Any], notes: Sequence[str]) -> list[str]:

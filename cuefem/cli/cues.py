@@ -28,9 +28,9 @@ from cuefem.scene import Scene
 @blow_options
 @page_option
 @click.option("--paper", is_flag=True, help="Also show what Kim's paper calls end mass, m_c, and its eps.")
-def end_mass(file: Path, paper: bool, **given: Any) -> None:
+def end_mass(file: Path, paper: bool, **options: Any) -> None:
     """Show the effective end mass: how much mass the ball has to push aside at the tip."""
-    show(file, given, end_mass_record, lambda found, about: [end_mass_sheet(found, about, paper=paper)])
+    show(file, options, end_mass_record, lambda record, about: [end_mass_sheet(record, about, paper=paper)])
 
 
 @click.command(cls=WithDefinitions)
@@ -44,7 +44,7 @@ def strike(
     offsets: str | None,
     speeds: str | None,
     output: Path | None,
-    **given: Any,
+    **options: Any,
 ) -> None:
     """Compute one stroke: squirt, speed, spin and pivot length; to the rtol of the file's [accuracy], if it has one."""
     of_table = (("--offsets", offsets), ("--speeds", speeds))
@@ -53,12 +53,12 @@ def strike(
         if value is not None:
             raise InputError(file, option, ONLY_TABLE if whom != "table" else ONLY)
     if whom == "table":
-        table_for(file, given, offsets=offsets, speeds=speeds, output=output)
+        table_for(file, options, offsets=offsets, speeds=speeds, output=output)
         return
     if whom is not None:
         if output is not None and output.suffix == ".csv":
             raise InputError(output, "--output", "must end in .html or .json; got '.csv', which --for table writes")
-        hand_over(file, given, drive=drive, length=length, output=output)
+        hand_over(file, options, drive=drive, length=length, output=output)
         return
     simulators = output if output is not None and output.suffix != ".html" else None
     for option, value in (*of_pooltool, ("--output", simulators)):
@@ -69,4 +69,4 @@ def strike(
         rtol = load_accuracy(file)
         return strike_record(scene, None if rtol is None else resolve(scene, rtol))
 
-    show(file, {**given, "output": output}, results, lambda found, about: [strike_sheet(found, about)])
+    show(file, {**options, "output": output}, results, lambda record, about: [strike_sheet(record, about)])

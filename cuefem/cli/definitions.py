@@ -25,4 +25,4 @@ class WithDefinitions(click.Command):
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write name and meaning of every definition."""
         with formatter.section("Definitions of the end mass"):
-            formatter.write_dl([(one.name, one.meaning) for one in DEFINITIONS.values()])
+            formatter.write_dl([(definition.name, definition.meaning) for definition in DEFINITIONS.values()])

@@ -31,7 +31,7 @@ from cuefem.io.profile import SHAPES
 @cue_options
 @blow_options
 @offset_option
-def designer(scene: Path | None, port: int, show: bool, as_json: bool, **given: Any) -> None:
+def designer(scene: Path | None, port: int, show: bool, as_json: bool, **options: Any) -> None:
     """Open a page on this computer: change a cue with sliders and see its end mass and squirt at once.
 
     SCENE is a cue or scene file, as FILE is for other commands; by default a maple pool shaft. A cue alone gets the
@@ -49,15 +49,15 @@ def designer(scene: Path | None, port: int, show: bool, as_json: bool, **given: 
 
     weigh = False
     if scene is None:
-        for name, value in given.items():
+        for name, value in options.items():
             if value is not None:
                 raise ValueError(f"{option(name)} must go with a SCENE, whose cue or stroke it changes; got no SCENE")
         first = Design.of(NAME, first_scene())
     else:
-        weigh = scene.suffix.lower() in SHAPES and given["body_mass"] is None
-        found = scene_of(scene, given, remarked=not weigh)
+        weigh = scene.suffix.lower() in SHAPES and options["body_mass"] is None
+        opened = scene_of(scene, options, remarked=not weigh)
         with blaming(scene):
-            first = Design.of(scene.name, *found)
+            first = Design.of(scene.name, *opened)
     said: Callable[[str], None] = (lambda address: print_json({"address": address})) if as_json else click.echo
     with suppress(KeyboardInterrupt):  # Ctrl-C is how one ends it
         serve(first, read, weigh=weigh, port=_free(port), show=show, announce=said)

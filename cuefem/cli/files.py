@@ -24,14 +24,14 @@ from cuefem.report.materials_table import parts_record, parts_sheets
 @shape_options
 @json_option
 @force_option
-def convert(file: Path, output: Path, body_mass: str | None, force: bool, as_json: bool, **given: str | None) -> None:
+def convert(file: Path, output: Path, body_mass: str | None, force: bool, as_json: bool, **options: str | None) -> None:
     """Convert FILE to another kind of file: OUTPUT ends in .toml, .vtk or .vtu."""
     check_free(output, force=force)
-    found = load(file, **given)
+    drawing = load(file, **options)
     if body_mass is not None:
-        found = with_body(found, file, body_mass)
-    save(found, output)
-    said = {name for name, value in (given | {"body_mass": body_mass}).items() if value is not None}
+        drawing = with_body(drawing, file, body_mass)
+    save(drawing, output)
+    said = {name for name, value in (options | {"body_mass": body_mass}).items() if value is not None}
     notes = assumed(file, said) if file.suffix.lower() in SHAPES else []
     if as_json:
         print_json({"written": str(output), "assumed": notes})
@@ -52,8 +52,8 @@ def schema(as_json: bool) -> None:
 @json_option
 def materials(as_json: bool, output: Path | None) -> None:
     """List the materials that a file can name, with their sources."""
-    found = materials_record()
-    tell(as_json, found, [materials_sheet(found)], output)
+    record = materials_record()
+    tell(as_json, record, [materials_sheet(record)], output)
 
 
 @click.command()
@@ -61,5 +61,5 @@ def materials(as_json: bool, output: Path | None) -> None:
 @json_option
 def parts(as_json: bool, output: Path | None) -> None:
     """List the shafts, woods, ferrules and tips of which a cue is put together by name, with their sources."""
-    found = parts_record()
-    tell(as_json, found, parts_sheets(found), output)
+    record = parts_record()
+    tell(as_json, record, parts_sheets(record), output)

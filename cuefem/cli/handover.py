@@ -67,10 +67,12 @@ def simulator_options(command: Callable[..., Any]) -> Callable[..., Any]:
     return command
 
 
-def hand_over(file: Path, given: dict[str, Any], *, drive: str | None, length: str | None, output: Path | None) -> None:
+def hand_over(
+    file: Path, options: dict[str, Any], *, drive: str | None, length: str | None, output: Path | None
+) -> None:
     """Show the end mass for a simulator; the JSON has pooltool's CueSpecs, what the number means, how well it works."""
-    scene, notes = scene_of(file, given)
-    with blaming(file, given):
+    scene, notes = scene_of(file, options)
+    with blaming(file, options):
         whole = None if length is None else measured(file, "--length", length, LENGTH)
         record = pooltool_record(file.stem, scene, drive=drive or DRIVE, length=whole)
     record["notes"] += [f"assumed: {note}" for note in notes] + [f"unusual: {remark}" for remark in unusual(scene)]
@@ -78,11 +80,11 @@ def hand_over(file: Path, given: dict[str, Any], *, drive: str | None, length: s
     first = head_lines(file, scene_record(scene), scene.effects, notes)
     sheets = [handover_sheet(record), handover_words(record)]
     if output is not None and output.suffix == ".html":
-        tell(given["as_json"], record, [*first, *sheets], output)
+        tell(options["as_json"], record, [*first, *sheets], output)
         return
     if output is not None:
         write_whole(output, lambda temporary: temporary.write_text(text + "\n", encoding="utf-8"))
-    if given["as_json"]:
+    if options["as_json"]:
         click.echo(text)
     elif output is not None:
         print_all([f"wrote {output}", "", sheets[0]])
@@ -92,11 +94,11 @@ def hand_over(file: Path, given: dict[str, Any], *, drive: str | None, length: s
 
 
 def table_for(
-    file: Path, given: dict[str, Any], *, offsets: str | None, speeds: str | None, output: Path | None
+    file: Path, options: dict[str, Any], *, offsets: str | None, speeds: str | None, output: Path | None
 ) -> None:
     """Show end mass and squirt against offset and speed, for a simulator; or write them as CSV or JSON."""
-    scene, notes = scene_of(file, given)
-    with blaming(file, given):
+    scene, notes = scene_of(file, options)
+    with blaming(file, options):
         places = _values(file, "--offsets", offsets or OFFSETS, OFFSET)
         paces = _values(file, "--speeds", speeds or SPEEDS, SPEED)
         if len(places) * len(paces) > MOST:
@@ -107,10 +109,10 @@ def table_for(
     if output is not None and output.suffix != ".html":
         text = table_csv(record) if output.suffix == ".csv" else json_text(record) + "\n"
         write_whole(output, lambda temporary: temporary.write_text(text, encoding="utf-8"))
-        click.echo(json_text(record) if given["as_json"] else f"wrote {output}")
+        click.echo(json_text(record) if options["as_json"] else f"wrote {output}")
         return
     first = head_lines(file, scene_record(scene), scene.effects, notes)
-    tell(given["as_json"], record, [*first, "", table_sheet(record)], output)
+    tell(options["as_json"], record, [*first, "", table_sheet(record)], output)
 
 
 def _values(file: Path, name: str, text: str, wanted: Quantity) -> tuple[float, ...]:

@@ -20,7 +20,7 @@ from cuefem.scene import Scene
 @click.command()
 @stroke_options
 @page_option
-def effects(file: Path, **given: Any) -> None:
+def effects(file: Path, **options: Any) -> None:
     """Show what each effect changes: every effect of FILE is left out, every other one added, one at a time.
 
     An effect matters if it changes more than the rtol of the file's [accuracy], by default 1e-2.
@@ -30,7 +30,7 @@ def effects(file: Path, **given: Any) -> None:
         rtol = load_accuracy(file)
         return effects_record(scene, rtol=DEFAULT_RTOL if rtol is None else rtol, track=followed)
 
-    show(file, given, results, lambda found, about: [effects_sheet(found, about)])
+    show(file, options, results, lambda record, about: [effects_sheet(record, about)])
 
 
 @click.command()
@@ -39,23 +39,23 @@ def effects(file: Path, **given: Any) -> None:
     "--most", type=click.IntRange(min=24), default=150, show_default=True, help="The largest number of modes."
 )
 @output_option(".html", *FIGURES)
-def cost(file: Path, most: int, output: Path | None, **given: Any) -> None:
+def cost(file: Path, most: int, output: Path | None, **options: Any) -> None:
     """Show what accuracy costs for this scene: error against time and unknowns, and which resolution to take."""
 
     def results(scene: Scene) -> Any:
-        found = cost_record(scene, most=most, track=followed)
+        record = cost_record(scene, most=most, track=followed)
         if output is not None and output.suffix in FIGURES:
-            save_figure(cost_figure(found, f"{file.name}: what accuracy costs", output.suffix[1:]), output)
-        return found
+            save_figure(cost_figure(record, f"{file.name}: what accuracy costs", output.suffix[1:]), output)
+        return record
 
     page = output if output is not None and output.suffix not in FIGURES else None
-    show(file, {**given, "output": page}, results, lambda found, about: cost_sheets(found))
+    show(file, {**options, "output": page}, results, lambda record, about: cost_sheets(record))
 
 
 @click.command()
 @stroke_options
 @page_option
-def check(file: Path, **given: Any) -> None:
+def check(file: Path, **options: Any) -> None:
     """Show how far beam theory is off for a shaft: its numbers by the beam, and by 3-D elasticity of the solid.
 
     FILE is a cue or a scene. The shaft is computed as a solid of revolution on two meshes, so that the mesh's own error
@@ -65,4 +65,4 @@ def check(file: Path, **given: Any) -> None:
     def results(scene: Scene) -> Any:
         return cuefem.report.model_error_record(scene, followed)  # loads scikit-fem, which the others need not
 
-    show(file, given, results, lambda found, about: [cuefem.report.model_error_sheet(found), found["sentence"]])
+    show(file, options, results, lambda record, about: [cuefem.report.model_error_sheet(record), record["sentence"]])

@@ -23,7 +23,7 @@ from cuefem.vary import varied
     "--take", type=click.IntRange(min=1), metavar="ROW", help="Save the cue of this row of the table, 1 the first."
 )
 @force_option
-def improve(file: Path, take: int | None, output: Path | None, force: bool, **given: Any) -> None:
+def improve(file: Path, take: int | None, output: Path | None, force: bool, **options: Any) -> None:
     """Show what would change squirt: what a maker can do to this cue, with stiffness, weight and first tone.
 
     Each change alone, by the whole stroke; the least squirt first.
@@ -34,14 +34,14 @@ def improve(file: Path, take: int | None, output: Path | None, force: bool, **gi
     if take is None or output is None:
         show(
             file,
-            {**given, "output": output},
+            {**options, "output": output},
             lambda scene: advice_record(scene, follow=followed),
-            lambda found, about: [advice_sheet(found)],
+            lambda record, about: [advice_sheet(record)],
         )
         return
     check_free(output, force=force)
-    scene, _ = scene_of(file, given)
-    with blaming(file, given):
+    scene, _ = scene_of(file, options)
+    with blaming(file, options):
         rows = advice_record(scene, follow=followed)["changes"]
     if take > len(rows):
         raise InputError(file, "--take", f"must be a row of the table, 1 to {len(rows)}; got {take}")

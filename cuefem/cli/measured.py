@@ -72,14 +72,20 @@ def estimate(folder: Path, sample: int | None, seed: int, output: Path | None, a
     cue, notes = load_documented(folder)
     remark(cue.scene)
     with blaming(folder):
-        found = estimated(cue, track=followed)
+        estimate_of_cue = estimated(cue, track=followed)
         target = squirt_of(cue)
-        record: Any = estimate_record(found, found.next(), found.predicted(target), target.offset)
+        record: Any = estimate_record(
+            estimate_of_cue, estimate_of_cue.next(), estimate_of_cue.predicted(target), target.offset
+        )
         if sample is not None:
             from cuefem.measured.sampler import sampled
 
             try:
-                record |= {"sampled": sampled_record(found, sampled(found, sample, seed=seed, track=followed))}
+                record |= {
+                    "sampled": sampled_record(
+                        estimate_of_cue, sampled(estimate_of_cue, sample, seed=seed, track=followed)
+                    )
+                }
             except ModuleNotFoundError as error:
                 raise InputError(folder, "--sample", str(error)) from None
     more = [sampled_sheet(record["sampled"])] if sample is not None else []

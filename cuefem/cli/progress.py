@@ -62,5 +62,5 @@ def bar(total: int) -> Iterator[Progress]:
         return
     texts = TextColumn("{task.description}"), TextColumn("{task.fields[rate]}")
     columns = (SpinnerColumn(), texts[0], BarColumn(), MofNCompleteColumn(), texts[1], TimeElapsedColumn())
-    with Bar(*columns, TimeRemainingColumn(), console=console, transient=True) as found:
-        yield Progress(found, total)
+    with Bar(*columns, TimeRemainingColumn(), console=console, transient=True) as shown:
+        yield Progress(shown, total)

@@ -27,18 +27,18 @@ from cuefem.scene import Scene
     is_flag=True,
     help="Say also how far beam theory is off for this shaft, which takes some seconds (see `cuefem check`).",
 )
-def report(file: Path, output: Path | None, check: bool, **given: Any) -> None:
+def report(file: Path, output: Path | None, check: bool, **options: Any) -> None:
     """Show modes, end masses, squirt and pivot length against offset, as tables or as a page with figures."""
 
     def results(scene: Scene) -> Record:
-        found = report_record(scene)
-        checked = check and "no_contact" not in found
-        return found | ({"model_error": _model_error(scene)} if checked else {})
+        record = report_record(scene)
+        checked = check and "no_contact" not in record
+        return record | ({"model_error": _model_error(scene)} if checked else {})
 
     if output is None:
-        show(file, given, results, partial(_sheets, file))
+        show(file, options, results, partial(_sheets, file))
     else:
-        _write_page(file, output, given, check=check)
+        _write_page(file, output, options, check=check)
 
 
 def _sheets(file: Path, record: Record, about: Record) -> list[Sheet | str]:
@@ -55,13 +55,13 @@ def _model_error(scene: Scene) -> Record:
     return cuefem.report.model_error_record(scene, followed)  # loads scikit-fem, which other reports need not
 
 
-def _write_page(file: Path, output: Path, given: dict[str, Any], *, check: bool) -> None:
+def _write_page(file: Path, output: Path, options: dict[str, Any], *, check: bool) -> None:
     from cuefem.report.report_page import page  # templates and charts take 0.1 s, which tables need not pay
 
-    if given["as_json"]:
+    if options["as_json"]:
         raise InputError(output, "--output", "must be left out with --json: a page is no JSON")
-    scene, notes = scene_of(file, given)
-    with blaming(file, given):
+    scene, notes = scene_of(file, options)
+    with blaming(file, options):
         trust = (_model_error(scene)["sentence"],) if check else ()
         asked: dict[str, Any] = {"rtol": load_accuracy(file), "notes": notes, "remarks": unusual(scene), "trust": trust}
         text = page(file.name, scene, track=followed, **asked)

@@ -49,7 +49,7 @@ OPTIONS: dict[Steps, Quantity] = {
 @output_option(".html", "")
 @click.option("--frames", type=click.IntRange(2, 10_000), default=61, show_default=True, help="How many frames of it.")
 @cue_options
-def side(file: Path, places: int, output: Path | None, frames: int, as_json: bool, **given: Any) -> None:
+def side(file: Path, places: int, output: Path | None, frames: int, as_json: bool, **options: Any) -> None:
     """Strike a shaft, a bat or a stick from the side with a ball or a hammer, and show how that bounces off.
 
     FILE is a cue or a scene; with a [striker] in it nothing else is needed.
@@ -57,41 +57,41 @@ def side(file: Path, places: int, output: Path | None, frames: int, as_json: boo
     folder, page = (output if output is not None and (output.suffix == "") is new else None for new in (True, False))
     if folder is not None:
         check_new(folder)
-    scene, notes = _scene(file, given)
+    scene, notes = _scene(file, options)
     rtol = load_accuracy(file)
     with blaming(file):
         outcome = side_strike(scene) if rtol is None else resolve_side_strike(scene, rtol)
-        about, found = side_scene_record(scene), side_record(scene, outcome, places=places)
+        about, record = side_scene_record(scene), side_record(scene, outcome, places=places)
         put = None if folder is None else _animation(scene, outcome.duration, frames)
     if folder is not None and put is not None:
         write_whole_folder(folder, put)
     written = [] if folder is None else [f"wrote {folder}: strike.pvd and {frames} frames"]
-    lines = [*head_lines(file, about, scene.effects, notes), "", *side_sheets(found, about), *written]
-    tell(as_json, {"file": str(file), "assumed": notes, "scene": about, **found, "units": UNITS}, lines, page)
+    lines = [*head_lines(file, about, scene.effects, notes), "", *side_sheets(record, about), *written]
+    tell(as_json, {"file": str(file), "assumed": notes, "scene": about, **record, "units": UNITS}, lines, page)
 
 
-def _scene(file: Path, given: dict[str, Any]) -> tuple[SideStrike, list[str]]:
+def _scene(file: Path, options: dict[str, Any]) -> tuple[SideStrike, list[str]]:
     """The scene of a file and its options, and what was assumed."""
-    found = load(file, **fittings_of(given))
-    said = {name for name, value in given.items() if value is not None}
-    notes = assumed(file, said, offered=given, blow=False)
-    if given["body_mass"] is not None:
-        found = with_body(found, file, given["body_mass"])
-    if not isinstance(found, SideStrike):
-        cue = found if isinstance(found, Cue) else found.cue
+    opened = load(file, **fittings_of(options))
+    said = {name for name, value in options.items() if value is not None}
+    notes = assumed(file, said, offered=options, blow=False)
+    if options["body_mass"] is not None:
+        opened = with_body(opened, file, options["body_mass"])
+    if not isinstance(opened, SideStrike):
+        cue = opened if isinstance(opened, Cue) else opened.cue
         if not isinstance(cue, Cue):
             raise InputError(file, "cue", "must be a cue of segments: a lumped cue has no side")
         notes += _assumed(said)
         with blaming(file):  # of a whole tip its mass stays
-            effects = () if isinstance(found, Cue) else found.bare.cue_effects
-            found = SideStrike(cue, Striker(MASS, RESTITUTION, contact_time=CONTACT_TIME), effects=effects)
+            effects = () if isinstance(opened, Cue) else opened.bare.cue_effects
+            opened = SideStrike(cue, Striker(MASS, RESTITUTION, contact_time=CONTACT_TIME), effects=effects)
     changes = {
-        path: measured(file, option(str(path[-1])), given[str(path[-1])], quantity)
+        path: measured(file, option(str(path[-1])), options[str(path[-1])], quantity)
         for path, quantity in OPTIONS.items()
-        if given[str(path[-1])] is not None
+        if options[str(path[-1])] is not None
     }
     with blaming(file):
-        return with_fields(found, changes) if changes else found, notes
+        return with_fields(opened, changes) if changes else opened, notes
 
 
 def _assumed(said: set[str]) -> list[str]:

@@ -108,34 +108,34 @@ def with_body(thing: Cue | Scene | SideStrike, file: Path, text: str) -> Any:
     return with_fields(thing, {("body_mass",) if isinstance(thing, Cue) else ("cue", "body_mass"): mass})
 
 
-def usual(cue: Cue, file: Path, given: dict[str, Any]) -> Scene:
+def usual(cue: Cue, file: Path, options: dict[str, Any]) -> Scene:
     """The scene of a cue alone: the game's usual stroke, with a spring as tip where a contact time is given."""
-    game = given.get("game") or DEFAULT_GAME
+    game = options.get("game") or DEFAULT_GAME
     leather = usual_tip(cue, game)
-    changes = _changes(SimpleNamespace(effects=(leather,)), file, given, _is_leather)
-    if given.get("contact_time") is not None:
-        for known in _options(given, _is_leather):
+    changes = _changes(SimpleNamespace(effects=(leather,)), file, options, _is_leather)
+    if options.get("contact_time") is not None:
+        for known in _options(options, _is_leather):
             raise InputError(
                 file, option(known.key), "must be left out beside --contact-time, which takes a spring as tip"
             )
         played = GAMES[game]
         tip, stroke = Tip(played.restitution, played.friction), Stroke(played.speed, played.offset)
-        return with_options(Scene(cue, played.ball, tip, stroke), file, given)
+        return with_options(Scene(cue, played.ball, tip, stroke), file, options)
     try:
         leather = with_fields(leather, {path[1:]: value for path, value in changes.items()})
         scene = usual_scene(cue, game, tip=leather)
     except ValueError as error:
-        offered = [name for name in map(option, ("tip_height", "dome", "contact_time")) if name in map(option, given)]
+        offered = [name for name in map(option, ("tip_height", "dome", "contact_time")) if name in map(option, options)]
         help_words = f" ({', '.join(offered)} {'change' if len(offered) > 1 else 'changes'} it)" if offered else ""
         raise InputError(file, "", f"{error}{help_words}") from None
-    return with_options(scene, file, given)
+    return with_options(scene, file, options)
 
 
-def with_options(scene: Scene, file: Path, given: dict[str, Any]) -> Scene:
+def with_options(scene: Scene, file: Path, options: dict[str, Any]) -> Scene:
     """The scene with the values that the command's options give."""
-    if given.get("ball") is not None:
-        scene = replace(scene, ball=GAMES[given["ball"]].ball)
-    changes = _changes(scene, file, given)
+    if options.get("ball") is not None:
+        scene = replace(scene, ball=GAMES[options["ball"]].ball)
+    changes = _changes(scene, file, options)
     try:
         return replaced(scene, changes) if changes else scene
     except ValueError as error:
@@ -146,18 +146,18 @@ def _is_leather(known: Place) -> bool:
     return known.path.startswith("leather.")
 
 
-def _options(given: dict[str, Any], which: Callable[[Place], bool] = lambda known: True) -> Iterator[Place]:
+def _options(options: dict[str, Any], which: Callable[[Place], bool] = lambda known: True) -> Iterator[Place]:
     """The places of which options give a value."""
-    return (known for known in PLACES.values() if known.option and given.get(known.key) is not None and which(known))
+    return (known for known in PLACES.values() if known.option and options.get(known.key) is not None and which(known))
 
 
 def _changes(
-    scene: Any, file: Path, given: dict[str, Any], which: Callable[[Place], bool] = lambda known: True
+    scene: Any, file: Path, options: dict[str, Any], which: Callable[[Place], bool] = lambda known: True
 ) -> dict[Steps, Any]:
     """The values that options give, by the paths of their places."""
     changes = dict[Steps, Any]()
-    for known in _options(given, which):
-        text, path = given[known.key], known.steps()
+    for known in _options(options, which):
+        text, path = options[known.key], known.steps()
         try:
             wanted = known.quantity(scene)
         except ValueError:
@@ -180,8 +180,8 @@ def _absent(scene: Scene, known: Place) -> str:
     return NO_SHAFT if scene.lumped else f"must be left out: {known.absent or f'there is no {known.words}'}"
 
 
-def refuse_game(file: Path, given: dict[str, Any]) -> None:
+def refuse_game(file: Path, options: dict[str, Any]) -> None:
     """A game is for a cue alone: a scene has ball, tip and stroke of its own."""
-    if given.get("game") is not None:
+    if options.get("game") is not None:
         problem = "must be left out: FILE is a scene, which has its own ball, tip and stroke"
         raise InputError(file, "--game", f"{problem} (--ball replaces the ball)")

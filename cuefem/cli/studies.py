@@ -73,10 +73,10 @@ def sweep(
             run(wanted, designs, pool=pool, progress=lambda rows: progress.to(designs.done))
         except (KeyboardInterrupt, RuntimeError) as error:
             progress.end()
-            kept = f"{designs.count()} of {wanted.size} designs are kept in {designs.path}: the same command goes on"
+            so_far = f"{designs.count()} of {wanted.size} designs are kept in {designs.path}: the same command goes on"
             if isinstance(error, RuntimeError):
-                raise RuntimeError(f"{error}; {kept}") from None
-            click.echo(f"cuefem: interrupted; {kept}", err=True)
+                raise RuntimeError(f"{error}; {so_far}") from None
+            click.echo(f"cuefem: interrupted; {so_far}", err=True)
             raise click.exceptions.Exit(130) from None
         progress.end()
         for line in designs.damaged:
@@ -124,10 +124,10 @@ def _tell(
         facts = [f"{designs} designs of {store.path.name}" + (f", {failed} without an answer" if failed else "")]
         save_page(study_page(store.path.stem, table, facts), output)
     if as_json:
-        found: dict[str, Any] = {"database": str(store.path), "export": goal and str(goal), "designs": designs}
-        found |= {"evaluated": store.computed, "failed": failed, "resolution": vars(store.study.resolution)}
-        found |= {"first_failure": first and first[1], "summary": table and study_record(table)}
-        print_json(found | {"page": output and str(output), "assumed": notes})
+        record: dict[str, Any] = {"database": str(store.path), "export": goal and str(goal), "designs": designs}
+        record |= {"evaluated": store.computed, "failed": failed, "resolution": vars(store.study.resolution)}
+        record |= {"first_failure": first and first[1], "summary": table and study_record(table)}
+        print_json(record | {"page": output and str(output), "assumed": notes})
         return
     words = [f"{designs} designs in {store.path}"]
     words += [f"{designs - store.computed} of them from before"] if designs > store.computed else []
@@ -157,17 +157,25 @@ def scatter(study: Path, output: Path | None, as_json: bool, **where: Any) -> No
     total = (len(wanted.causes) + 2) * sample.count
     with opened(**where) as pool, bar(total) as progress, blaming(study):
         progress.begin(0)
-        found = drivers(wanted, sample.count, seed=sample.seed, pool=pool, progress=progress)
+        drivers_of_spread = drivers(wanted, sample.count, seed=sample.seed, pool=pool, progress=progress)
     if output is not None:
-        table = table_of_study(wanted.study, zip(count(), found.spread.values, found.spread.responses, strict=False))
+        table = table_of_study(
+            wanted.study,
+            zip(count(), drivers_of_spread.spread.values, drivers_of_spread.spread.responses, strict=False),
+        )
         assert table is not None
-        facts = [f"{len(found.spread.values)} designs, as wood, turning and strokes scatter"]
-        scattered = Scattered(spread_sheet(wanted, found), cause_sheet(wanted, found))
+        facts = [f"{len(drivers_of_spread.spread.values)} designs, as wood, turning and strokes scatter"]
+        scattered = Scattered(spread_sheet(wanted, drivers_of_spread), cause_sheet(wanted, drivers_of_spread))
         save_page(study_page(study.stem, table, facts, scattered=scattered), output)
     about = {"file": str(study), "assumed": notes, "count": sample.count, "seed": sample.seed}
     written = [f"wrote {output}"] if output else []
-    lines = [*assumed_lines(notes), *scatter_sheets(wanted, found), *scatter_words(wanted, found), *written]
-    tell(as_json, about | {"responses": scatter_record(wanted, found)}, lines)
+    lines = [
+        *assumed_lines(notes),
+        *scatter_sheets(wanted, drivers_of_spread),
+        *scatter_words(wanted, drivers_of_spread),
+        *written,
+    ]
+    tell(as_json, about | {"responses": scatter_record(wanted, drivers_of_spread)}, lines)
 
 
 @click.command()
@@ -192,26 +200,26 @@ def optimize(study: Path, output: tuple[Path, ...], iterations: int, seed: int, 
         check_free(drawing, force=force)
     remark(wanted.base)
     with blaming(study), _counter() as progress:
-        found = optimum(wanted, iterations=iterations, seed=seed, progress=progress)
+        best = optimum(wanted, iterations=iterations, seed=seed, progress=progress)
     if drawing is not None:
-        save(_rounded(found.scene, wanted), drawing)
+        save(_rounded(best.scene, wanted), drawing)
     aim = "maximize" if wanted.largest else "minimize"
     units = dict(zip(wanted.study.columns, wanted.study.units, strict=True))
-    way = "by exact gradients" if found.exact else "by differential evolution"
-    labels = {one.name: one.label for one in wanted.study.responses}
-    lines = [f"{aim} {wanted.objective.label}: {found.evaluations} evaluations {way}", ""]
-    both = {**found.numbers, **found.values}
+    way = "by exact gradients" if best.exact else "by differential evolution"
+    labels = {response.name: response.label for response in wanted.study.responses}
+    lines = [f"{aim} {wanted.objective.label}: {best.evaluations} evaluations {way}", ""]
+    both = {**best.numbers, **best.values}
     words = {name: labels.get(name) or column_label(name) for name in both}
     width = max(map(len, words.values()))
     lines += [f"{words[name]:{width}}  {_short(value, units[name])}" for name, value in both.items()]
-    held = (limit.rsplit(" ", 2) for limit in found.active)
-    held_by = [f"{words[name]} {sign} {_short(float(bound), units[name])}" for name, sign, bound in held]
+    limits = (limit.rsplit(" ", 2) for limit in best.active)
+    held_by = [f"{words[name]} {sign} {_short(float(bound), units[name])}" for name, sign, bound in limits]
     lines += ["", f"held by: {', '.join(held_by) or 'nothing'}"]
-    if found.unfinished:
-        lines.append(f"not finished: {found.unfinished}; more --iterations may find a better design")
+    if best.unfinished:
+        lines.append(f"not finished: {best.unfinished}; more --iterations may find a better design")
     about = {"file": str(study), "assumed": notes, "written": drawing and str(drawing)}
-    numbers = {"value": found.value, "numbers": found.numbers, "values": found.values, "active": found.active}
-    search = {"evaluations": found.evaluations, "exact_gradients": found.exact, "unfinished": found.unfinished}
+    numbers = {"value": best.value, "numbers": best.numbers, "values": best.values, "active": best.active}
+    search = {"evaluations": best.evaluations, "exact_gradients": best.exact, "unfinished": best.unfinished}
     record = about | {"objective": {aim: wanted.objective.name}} | numbers | search
     said = [*lines, *assumed_lines(notes), *([f"wrote {drawing}"] if drawing else [])]
     tell(as_json, record | {"resolution": vars(wanted.study.resolution), "units": units}, said, page)

@@ -44,7 +44,7 @@ from cuefem.scene import Outcome, Scene
 @cue_options
 @blow_options
 @offset_option
-def tap(recording: Path, file: Path, output: tuple[Path, ...], force: bool, doubted: bool, **given: Any) -> None:
+def tap(recording: Path, file: Path, output: tuple[Path, ...], force: bool, doubted: bool, **options: Any) -> None:
     """Find the shaft's wood by ear: E, G and density from a recording of the shaft, hung free and tapped.
 
     RECORDING is a .wav of one or more taps; -o NEW.toml writes FILE with the fitted wood, -o FIGURE.png the spectrum.
@@ -57,42 +57,42 @@ def tap(recording: Path, file: Path, output: tuple[Path, ...], force: bool, doub
     )
     if drawing is not None:
         check_free(drawing, force=force)
-    scene, notes = scene_of(file, given)
-    heard, found = _heard(recording, file, _as_drawn(scene, file, given), given)
-    if found.refusals and not (doubted or force):
-        raise RuntimeError(f"{recording}: refused, --doubted goes on: {'; '.join(found.refusals)}")
-    record = tap_record(found, heard, *_predicted(file, scene, found))
-    about = scene_record(replace(scene, cue=_struck(scene, found)))
+    scene, notes = scene_of(file, options)
+    heard, fit = _heard(recording, file, _as_drawn(scene, file, options), options)
+    if fit.refusals and not (doubted or force):
+        raise RuntimeError(f"{recording}: refused, --doubted goes on: {'; '.join(fit.refusals)}")
+    record = tap_record(fit, heard, *_predicted(file, scene, fit))
+    about = scene_record(replace(scene, cue=_struck(scene, fit)))
     if drawing is not None:
-        save(_updated(file, scene, found, given), drawing)
+        save(_updated(file, scene, fit, options), drawing)
     if figure is not None:
-        save_figure(tap_figure(found, heard, f"{recording.name}: {file.name}", figure.suffix[1:]), figure)
+        save_figure(tap_figure(fit, heard, f"{recording.name}: {file.name}", figure.suffix[1:]), figure)
     written = [f"wrote {path}" for path in (drawing, figure) if path is not None]
     whole = whole_record(file, notes, scene, record, scene=about, recording=str(recording))
     lines = [f"{recording.name}, {file.name}", "", *tap_sheets(record, about), *assumed_lines(notes), *written]
-    tell(given["as_json"], whole, lines, page)
+    tell(options["as_json"], whole, lines, page)
 
 
-def _as_drawn(scene: Scene, file: Path, given: dict[str, Any]) -> Scene:
+def _as_drawn(scene: Scene, file: Path, options: dict[str, Any]) -> Scene:
     """The scene of FILE; of a cue alone the scene with the cue as it is drawn, its leather included."""
-    held = load_stroke(file, **fittings_of(given))
-    if isinstance(held, Scene):
+    drawn = load_stroke(file, **fittings_of(options))
+    if isinstance(drawn, Scene):
         return scene
-    return Scene(held if given["body_mass"] is None else with_body(held, file, given["body_mass"]))
+    return Scene(drawn if options["body_mass"] is None else with_body(drawn, file, options["body_mass"]))
 
 
-def _struck(scene: Scene, found: TapFit) -> Cue:
+def _struck(scene: Scene, fit: TapFit) -> Cue:
     """The fitted cue as the scene has it: a scene with a whole tip has no drawn leather."""
-    return found.cue if scene.contact_terms.tip is None else without_leather(found.cue)
+    return fit.cue if scene.contact_terms.tip is None else without_leather(fit.cue)
 
 
-def _heard(recording: Path, file: Path, scene: Scene, given: dict[str, Any]) -> tuple[Ringing, TapFit]:
+def _heard(recording: Path, file: Path, scene: Scene, options: dict[str, Any]) -> tuple[Ringing, TapFit]:
     if not scene.cue.segments:
         raise InputError(file, "", "must hold a cue of segments: a lumped cue has no tones")
-    mass = given["mass"]
+    mass = options["mass"]
     mass = None if mass is None else measured(file, "--mass", mass, Quantity("kg", "(0, inf)"))
     with blaming(file):
-        test = TapTest(scene.shaft, segment=given["segment"], mass=mass, effects=scene.cue_effects)
+        test = TapTest(scene.shaft, segment=options["segment"], mass=mass, effects=scene.cue_effects)
     sound = load_recording(recording)
     with blaming(recording):
         heard = ringing(sound.samples, sound.rate)
@@ -102,16 +102,16 @@ def _heard(recording: Path, file: Path, scene: Scene, given: dict[str, Any]) -> 
         raise RuntimeError(f"{recording}: {error}") from None
 
 
-def _predicted(file: Path, scene: Scene, found: TapFit) -> tuple[dict[str, Predicted], Outcome]:
+def _predicted(file: Path, scene: Scene, fit: TapFit) -> tuple[dict[str, Predicted], Outcome]:
     """The scene's numbers and its stroke with the fitted wood."""
     with blaming(file):
-        cue = _struck(scene, found)
-        return predicted(scene, replace(found, cue=cue)), strike(replace(scene, cue=cue))
+        cue = _struck(scene, fit)
+        return predicted(scene, replace(fit, cue=cue)), strike(replace(scene, cue=cue))
 
 
-def _updated(file: Path, scene: Scene, found: TapFit, given: dict[str, Any]) -> Any:
+def _updated(file: Path, scene: Scene, fit: TapFit, options: dict[str, Any]) -> Any:
     """The cue or scene of FILE with the fitted wood, to six digits."""
-    short = {name: float(f"{getattr(found.wood, name):.6g}") for name in ("E", "G", "rho", "loss", "nu")}
-    cue = with_material(found.cue, found.wood, replace(found.wood, **short))
-    held = load_stroke(file, **fittings_of(given))
-    return replace(held, cue=cue) if isinstance(held, Scene) else cue
+    short = {name: float(f"{getattr(fit.wood, name):.6g}") for name in ("E", "G", "rho", "loss", "nu")}
+    cue = with_material(fit.cue, fit.wood, replace(fit.wood, **short))
+    drawn = load_stroke(file, **fittings_of(options))
+    return replace(drawn, cue=cue) if isinstance(drawn, Scene) else cue

@@ -28,13 +28,13 @@ from cuefem.scene import Scene
     metavar="TIME",
     help='Find the E with which the tip touches the ball this long head on, e.g. "1.1 ms".',
 )
-def tip(file: Path, wanted: str | None, **given: Any) -> None:
+def tip(file: Path, wanted: str | None, **options: Any) -> None:
     """Show what the leather tip of a cue does: force over depth, contact time over speed, and its shear ratio.
 
     FILE is a cue, or a scene with a LeatherTip among its effects. What is shown holds for a head-on blow of the
     scene's cue and ball; --contact-time finds the E of the leather from a measured contact time.
     """
-    if given["leather"] is not None and wanted is not None:
+    if options["leather"] is not None and wanted is not None:
         raise InputError(file, "--leather", "must be left out with --contact-time, which finds it")
     time = None if wanted is None else measured(file, "--contact-time", wanted, CONTACT_TIME)
 
@@ -42,4 +42,6 @@ def tip(file: Path, wanted: str | None, **given: Any) -> None:
         return scene if time is None else with_modulus(scene, leather_modulus(scene, time))
 
     settled = ("friction", "offset", *(() if time is None else ("leather",)))
-    show(file, given, tip_record, lambda found, about: tip_sheets(found, about, time), change=asked, settled=settled)
+    show(
+        file, options, tip_record, lambda record, about: tip_sheets(record, about, time), change=asked, settled=settled
+    )

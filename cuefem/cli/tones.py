@@ -27,14 +27,14 @@ from cuefem.scene import Scene
 @page_option
 @click.option("--near", metavar="HERTZ", help="Show the modes nearest this frequency, not the lowest.")
 @click.option("--count", type=click.IntRange(min=1), default=6, show_default=True, help="How many modes.")
-def modes(file: Path, near: str | None, count: int, **given: Any) -> None:
+def modes(file: Path, near: str | None, count: int, **options: Any) -> None:
     """Show how the cue rings: its bending frequencies and tip amplitudes."""
 
     def results(scene: Scene) -> Any:
         return modes_record(scene, count=count, near=hertz)
 
     hertz = None if near is None else _hertz(file, near)
-    show(file, given, results, lambda found, about: [modes_sheet(found)], blow=False)
+    show(file, options, results, lambda record, about: [modes_sheet(record)], blow=False)
 
 
 def _hertz(file: Path, near: str) -> float:

@@ -22,10 +22,10 @@ from cuefem.validation import Claim
 @json_option
 def validate(studies: Path, as_json: bool, output: Path | None) -> None:
     """Check every claim of the sources against what follows from their equations; needs a clone of the repository."""
-    found = claims_record(_claims(studies))
-    counts = Counter(claim["verdict"] for claim in found)
+    record = claims_record(_claims(studies))
+    counts = Counter(claim["verdict"] for claim in record)
     totals = ", ".join(f"{count} {verdict}" for verdict, count in sorted(counts.items()))
-    tell(as_json, {"claims": found}, [claims_sheet(found), totals, VERDICT_WORDS], output)
+    tell(as_json, {"claims": record}, [claims_sheet(record), totals, VERDICT_WORDS], output)
 
 
 def _claims(folder: Path) -> list[tuple[str, Claim]]:
@@ -38,7 +38,7 @@ def _claims(folder: Path) -> list[tuple[str, Claim]]:
         raise InputError(folder, "", f"must hold studies (.py) that define claims(), got none; {clone}")
     if (above := str(folder.resolve().parent)) not in sys.path:
         sys.path.insert(0, above)  # studies import one another as studies.SUBJECT.NAME
-    found = []
+    claims = []
     for file in files:
         name = ".".join((folder.resolve().name, *file.relative_to(folder).with_suffix("").parts))
         spec = importlib.util.spec_from_file_location(name, file)
@@ -46,5 +46,5 @@ def _claims(folder: Path) -> list[tuple[str, Claim]]:
         study = importlib.util.module_from_spec(spec)
         sys.modules[spec.name] = study  # dataclasses look their module up
         spec.loader.exec_module(study)
-        found += [(file.stem, claim) for claim in study.claims()]
-    return found
+        claims += [(file.stem, claim) for claim in study.claims()]
+    return claims

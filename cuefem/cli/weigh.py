@@ -56,7 +56,7 @@ WAYS = ("swing", "height", "speed", "frames")
 @shape_options
 @offset_option
 def weigh(
-    plan: bool, end_mass: str | None, file: Path | None, as_json: bool, output: Path | None, **given: Any
+    plan: bool, end_mass: str | None, file: Path | None, as_json: bool, output: Path | None, **options: Any
 ) -> None:
     """Weigh a shaft's end: a light ball on a thread hits the side of the tip end of the shaft, which hangs free.
 
@@ -65,13 +65,13 @@ def weigh(
     with all the steps stands in the handbook, Measuring a cue (`cuefem guide measuring`).
     """
     if plan:
-        found = plan_record() if end_mass is None else plan_record(_read("--end-mass", end_mass, "kg"))
-        tell(as_json, found | {"units": UNITS}, plan_sheets(found), output)
+        plan_of_test = plan_record() if end_mass is None else plan_record(_read("--end-mass", end_mass, "kg"))
+        tell(as_json, plan_of_test | {"units": UNITS}, plan_sheets(plan_of_test), output)
         return
-    test = _test(given)
+    test = _test(options)
     with blaming(NAME):
         weighed = test.weighed()
-    told, lumped, notes = _squirt(test, weighed, file, given)
+    told, lumped, notes = _squirt(test, weighed, file, options)
     record = weigh_record(weighed, told, lumped)
     whole = {"assumed": notes, **record, "units": UNITS}
     tell(as_json, whole, [*assumed_lines(notes), *weigh_sheets(record)], output)
@@ -81,81 +81,82 @@ def _read(option: str, text: str, unit: str, bounds: str = "(0, inf)") -> float:
     return measured(NAME, option, text, Quantity(unit, bounds))
 
 
-def _test(given: dict[str, Any]) -> PendulumTest:
+def _test(options: dict[str, Any]) -> PendulumTest:
     """The test that the options tell of."""
     for name in ("ball_mass", "before", "after"):
-        if not given[name]:
+        if not options[name]:
             raise InputError(NAME, f"--{name.replace('_', '-')}", "must be given (or --plan); got nothing")
-    mass = _read("--ball-mass", given["ball_mass"], "kg")
-    free = _bounces(given, "")
-    wall = _bounces(given, "held_") if given["held_after"] else None
-    e = given["restitution"]
+    mass = _read("--ball-mass", options["ball_mass"], "kg")
+    free = _bounces(options, "")
+    wall = _bounces(options, "held_") if options["held_after"] else None
+    e = options["restitution"]
     if (wall is None) == (e is None):
         got = "neither" if wall is None else "both"
         raise InputError(NAME, "--held-after", f"or --restitution must be given; got {got}")
     restitution = None if e is None else _read("--restitution", e, "", "(0, 1]")
-    if given["contact_time"] is not None:
-        time = _read("--contact-time", given["contact_time"], "s", "[1e-6, 10]")
-    elif given["press"] is not None and given["press_depth"] is not None:
+    if options["contact_time"] is not None:
+        time = _read("--contact-time", options["contact_time"], "s", "[1e-6, 10]")
+    elif options["press"] is not None and options["press_depth"] is not None:
         speed = free.impact_speed
         if speed is None:
             raise InputError(
                 NAME, "--press", "must go with readings that tell a speed; got frames: give --contact-time"
             )
-        force, depth = _read("--press", given["press"], "N"), _read("--press-depth", given["press_depth"], "m")
+        force, depth = _read("--press", options["press"], "N"), _read("--press-depth", options["press_depth"], "m")
         back = restitution if wall is None else min(max(wall.ratio[0], 0.01), 1.0)
         assert back is not None
         time = pressed_time(force, depth, mass, speed, back)
     else:
         raise InputError(NAME, "--contact-time", "must be given, or --press and --press-depth; got nothing")
-    later = given["contact_time_error"]
+    later = options["contact_time_error"]
     about: dict[str, Any] = {
         "restitution": restitution,
         "restitution_error": 0.0
         if e is None
-        else _read("--restitution-error", given["restitution_error"], "", "[0, 1)"),
+        else _read("--restitution-error", options["restitution_error"], "", "[0, 1)"),
         "contact_time_error": time / 10 if later is None else _read("--contact-time-error", later, "s", "[0, inf)"),
     }
-    error = _read("--ball-mass-error", given["ball_mass_error"], "kg", "[0, inf)")
+    error = _read("--ball-mass-error", options["ball_mass_error"], "kg", "[0, inf)")
     with blaming(NAME):
         return PendulumTest(mass, error, free, contact_time=time, wall=wall, **about)
 
 
-def _bounces(given: dict[str, Any], held: str) -> Bounces:
-    """The readings of the bounces off the free shaft; with held "held_", off the shaft that is held firm."""
-    way = given["read"]
+def _bounces(options: dict[str, Any], grip: str) -> Bounces:
+    """The readings of the bounces off the free shaft; with grip "held_", off the shaft that is held firm."""
+    way = options["read"]
     unit = KNOWN[way].unit
-    names = f"{held}before", f"{held}after"
+    names = f"{grip}before", f"{grip}after"
     before, after = (
-        tuple(_read(f"--{name.replace('_', '-')}", text, unit, "(-inf, inf)") for text in given[name]) for name in names
+        tuple(_read(f"--{name.replace('_', '-')}", text, unit, "(-inf, inf)") for text in options[name])
+        for name in names
     )
-    before = before or tuple(_read("--before", text, unit, "(-inf, inf)") for text in given["before"][:1])
+    before = before or tuple(_read("--before", text, unit, "(-inf, inf)") for text in options["before"][:1])
     usual = {"m": "1 mm", "m/s": "0.01 m/s", "": "0.5"}[unit]
-    error = _read("--reading-error", given["reading_error"] or usual, unit)
-    thread = {} if given["thread"] is None else {"thread": _read("--thread", given["thread"], "m")}
+    error = _read("--reading-error", options["reading_error"] or usual, unit)
+    thread = {} if options["thread"] is None else {"thread": _read("--thread", options["thread"], "m")}
     with blaming(NAME):
         return Bounces(way, before, after, error, **thread)
 
 
 def _squirt(
-    test: PendulumTest, weighed: Weighed, file: Path | None, given: dict[str, Any]
+    test: PendulumTest, weighed: Weighed, file: Path | None, options: dict[str, Any]
 ) -> tuple[Told | None, float | None, list[str]]:
     """What the end mass says about squirt: through the drawing, or as a lumped cue's; and what was assumed."""
     if file is None:
         for name in FITTINGS:
-            if given[name] is not None:
+            if options[name] is not None:
                 option = f"--{name.replace('_', '-')}"
                 raise InputError(NAME, option, "must go with --scene, whose shape it is for; got no --scene")
-        ball = GAMES[given["ball"] or "pool"].ball
-        offset = 0.3 if given["offset"] is None else offset_of(NAME, given["offset"], float(ball.radius))
-        cue, kind = 0.54, given["ball"] or "pool"
-        body = given["body_mass"]
+        ball = GAMES[options["ball"] or "pool"].ball
+        offset = 0.3 if options["offset"] is None else offset_of(NAME, options["offset"], float(ball.radius))
+        cue, kind = 0.54, options["ball"] or "pool"
+        body = options["body_mass"]
         mass = cue if body is None else _read("--body-mass", body, "kg")
         notes = [f"{kind} ball", f"offset b/R {offset:g}", f"cue {1e3 * mass:.4g} g", f"e {Tip().restitution:g}"]
         return None, lumped_squirt(weighed.end_mass, mass, ball, Tip(), Stroke(1.0, offset)), notes
-    scene, notes = scene_of(file, {**given, "contact_time": None})
+    scene, notes = scene_of(file, {**options, "contact_time": None})
     if scene.lumped is not None:
         raise InputError(file, "", "must hold a cue of segments, which can be weighed; got a lumped cue")
-    position = _read("--position", given["position"], "m", "[0, inf)")
+    position = _read("--position", options["position"], "m", "[0, inf)")
     with blaming(file):
         return squirt_told(test, weighed, scene, position), None, notes

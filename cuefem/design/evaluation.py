@@ -42,7 +42,7 @@ def evaluate(
     from that by up to 2 %. A response that a scene has not gets a reason and disturbs neither the scene's other
     responses nor other scenes. ValueError if no response has one of the names.
     """
-    asked = tuple(Response.of(one) if isinstance(one, str) else one for one in responses)
+    asked = tuple(Response.of(response) if isinstance(response, str) else response for response in responses)
     at = at or common_resolution(scenes, asked)
     values, reasons = np.full((len(scenes), len(asked)), np.nan), dict[int, str]()
     waiting = _blocks(scenes)
@@ -80,7 +80,7 @@ def _values(scenes: Sequence[Scene], responses: Sequence[Response], at: Resoluti
     Of a single scene a response that fails leaves the others their values; of several it fails for all.
     """
     bare = scenes[0].cue.segments and not scenes[0].effects
-    count = max([0, *(one.modes for one in responses)])
+    count = max([0, *(each.modes for each in responses)])
     solver: Designs = (Together if bare else OneByOne)(scenes, at, count)
     values, why = np.full((len(scenes), len(responses)), np.nan), list[str | None]([None] * len(scenes))
     for j, response in enumerate(responses):
@@ -112,7 +112,10 @@ def common_resolution(scenes: Sequence[Scene], responses: Sequence[Response]) ->
     modes and lets a tail stand for those above. Designs compare well with each other, but their stick end masses are
     off by up to 2 %: on the reference cues 1.2 % at 2 ms (maple) and 1.8 % at 1.5 ms (carbon).
     """
-    count, strikes = max([1, *(one.modes for one in responses)]), any(one.strikes for one in responses)
+    count, strikes = (
+        max([1, *(response.modes for response in responses)]),
+        any(response.strikes for response in responses),
+    )
     mesh, modes = (1, 1), 1
     for scene in scenes:
         if not scene.cue.segments:
@@ -120,7 +123,7 @@ def common_resolution(scenes: Sequence[Scene], responses: Sequence[Response]) ->
         time = scene.known_contact_time if strikes else None
         if strikes and time is None:  # its contact fails by itself, with its reason, and stops no other design
             continue
-        kept = count if time is None else modes_below(scene.shaft, 2 * np.pi * PERIODS_KEPT / time)
+        own = count if time is None else modes_below(scene.shaft, 2 * np.pi * PERIODS_KEPT / time)
         # a mesh of more elements follows shorter waves, and so does one of as many of a higher order
-        mesh, modes = max(mesh, even_mesh_for(scene.shaft, max(kept, count))), max(modes, kept)
+        mesh, modes = max(mesh, even_mesh_for(scene.shaft, max(own, count))), max(modes, own)
     return Resolution(*mesh, modes)

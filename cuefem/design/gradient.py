@@ -62,15 +62,15 @@ def gradient(scene: Scene, drive: str = "stick", at: Resolution | None = None) -
     -----
     The cost is one dense eigenproblem, for however many numbers.
     """
-    found, rows = sensitivity(scene, drive, at), drawing(scene.shaft)
+    densities, rows = sensitivity(scene, drive, at), drawing(scene.shaft)
     heavier = masses_to(rows)
-    own = densities_to(found, rows)
-    end_mass_to = SegmentRows(*(d + found.axial_mass * m for d, m in zip(own, heavier, strict=True)))
+    own = densities_to(densities, rows)
+    end_mass_to = SegmentRows(*(d + densities.axial_mass * m for d, m in zip(own, heavier, strict=True)))
     if drive != "stick":
-        return Gradient(found.end_mass, None, end_mass_to, None)
-    squirt, to_m, to_axial = _squirt(scene, found.end_mass)
+        return Gradient(densities.end_mass, None, end_mass_to, None)
+    squirt, to_m, to_axial = _squirt(scene, densities.end_mass)
     squirt_to = SegmentRows(*(to_m * d + to_axial * m for d, m in zip(end_mass_to, heavier, strict=True)))
-    return Gradient(found.end_mass, squirt, end_mass_to, squirt_to)
+    return Gradient(densities.end_mass, squirt, end_mass_to, squirt_to)
 
 
 def _squirt(scene: Scene, end_mass: float) -> tuple[float, float, float]:
@@ -123,28 +123,35 @@ def masses_to(rows: SegmentRows) -> SegmentRows:
     return derivatives(rows, mass)
 
 
-def densities_to(found: Sensitivity, rows: SegmentRows) -> SegmentRows:
-    """Derivatives to the numbers of the drawing of the number whose densities are ``found``; the axial mass stays.
+def densities_to(densities: Sensitivity, rows: SegmentRows) -> SegmentRows:
+    """Derivatives to the numbers of the drawing of the number whose densities these are; the axial mass stays.
 
     Sections depend on s/length alone, so a longer segment keeps them and stretches the fields: dx grows, the slopes w'
     and theta' shrink, theta stays.
     """
     ends = np.cumsum(rows.length)
-    piece = np.searchsorted(ends[:-1], found.x)
-    t = (found.x - (ends - rows.length)[piece]) / rows.length[piece]
+    piece = np.searchsorted(ends[:-1], densities.x)
+    t = (densities.x - (ends - rows.length)[piece]) / rows.length[piece]
 
     def sections(moved: SegmentRows) -> Section:
         each = SegmentRows(*(row[piece] for row in moved))
         return section_properties(each, each.length * t)
 
     def gathered(values: Any) -> Array:
-        values = found.weights * values
+        values = densities.weights * values
         return np.asarray(np.bincount(piece, values.real) + 1j * np.bincount(piece, values.imag))
 
     def change(moved: SegmentRows) -> Array:
         section = sections(moved)
-        return gathered(sum(getattr(section, name) * getattr(found, name) for name in ("rhoA", "rhoI", "EI", "kGA")))
+        return gathered(
+            sum(getattr(section, name) * getattr(densities, name) for name in ("rhoA", "rhoI", "EI", "kGA"))
+        )
 
     s = sections(rows)
-    stretch = s.rhoA * found.rhoA + s.rhoI * found.rhoI - s.EI * found.EI + s.kGA * (found.kGA - 2 * found.shear_slope)
+    stretch = (
+        s.rhoA * densities.rhoA
+        + s.rhoI * densities.rhoI
+        - s.EI * densities.EI
+        + s.kGA * (densities.kGA - 2 * densities.shear_slope)
+    )
     return derivatives(rows, change)._replace(length=np.real(gathered(stretch + 0j)) / rows.length)

@@ -120,9 +120,9 @@ class Problem:
     def parts(self, points: Array) -> Array:
         """The inverse of `points`."""
         low, high = self.bounds
-        found, even = (points - low) / (high - low), self._log_ratio == 0
-        found[..., ~even] = np.log(points[..., ~even] / low[~even]) / self._log_ratio[~even]
-        return np.clip(found, 0, 1)
+        parts, even = (points - low) / (high - low), self._log_ratio == 0
+        parts[..., ~even] = np.log(points[..., ~even] / low[~even]) / self._log_ratio[~even]
+        return np.clip(parts, 0, 1)
 
     def stretch(self, points: Array) -> Array:
         """Derivatives of `points` to their parts, (..., variables)."""
@@ -139,12 +139,12 @@ class Problem:
     def start(self) -> Array:
         """The base design as a point, (variables,), moved into the ranges, or their middle if it has no value."""
         low, high = self.bounds
-        held = [
+        bounded = [
             1.0 if vary.factor else 0.0 if vary.shift else value_at(self.base, vary.fields(self.base)[0])
             for vary in self.vary
         ]
         middle = (low + high) / 2
-        return np.clip([m if value is None else value for value, m in zip(held, middle, strict=True)], low, high)
+        return np.clip([m if value is None else value for value, m in zip(bounded, middle, strict=True)], low, high)
 
     def scene(self, point: Array) -> Scene:
         """The design at a point; ValueError if it cannot be made."""
@@ -153,27 +153,27 @@ class Problem:
     def values(self, points: Array, *more: Response) -> Array:
         """Responses of the study, then ``more``, at points (n, variables): (n, responses), nan if there is none."""
         asked = (*self.study.responses, *more)
-        found, scenes = np.full((len(points), len(asked)), np.nan), dict[int, Scene]()
+        values, scenes = np.full((len(points), len(asked)), np.nan), dict[int, Scene]()
         for i, point in enumerate(points):
             try:
                 scenes[i] = self.scene(point)
             except ValueError:
                 continue
         if scenes:
-            found[list(scenes)] = evaluate(list(scenes.values()), asked, at=self.study.resolution).values
-        return found
+            values[list(scenes)] = evaluate(list(scenes.values()), asked, at=self.study.resolution).values
+        return values
 
     def room(self, values: Array) -> Array:
         """How far values (n, responses) lie inside the limits, relative to each limit's size: (n, sides).
 
         Negative outside, and where a response has no value.
         """
-        found = [
+        rooms = [
             sign * (values[:, self.study.responses.index(limit.response)] - bound) / _size(bound)
             for limit in self.limits
             for sign, bound in limit.sides
         ]
-        return np.nan_to_num(np.reshape(found, (-1, len(values))).T, nan=-EXCLUDED)
+        return np.nan_to_num(np.reshape(rooms, (-1, len(values))).T, nan=-EXCLUDED)
 
     @cached_property
     def exact(self) -> bool:
@@ -181,7 +181,7 @@ class Problem:
         follows from the drawing, or is a frequency, the small-offset squirt or the stick end mass."""
         moved = {path for vary in self.vary for path in (*vary.fields(self.base), *vary.givers(self.base))}
         known = {*_DRAWN, "frequency", "squirt_slope", "end_mass"}
-        drawn = all(one.kind in known and not one.in_time for one in self.study.responses)
+        drawn = all(response.kind in known and not response.in_time for response in self.study.responses)
         return drawn and not self.base.effects and None not in map(_row, moved)
 
     def derived(self, response: Response, point: Array) -> tuple[Array, Array]:
@@ -193,9 +193,11 @@ class Problem:
         cue = scene.shaft
         match response.kind:
             case "squirt_slope" | "end_mass":
-                found = gradient(scene, "stick", at)
+                gradients = gradient(scene, "stick", at)
                 squirt = response.kind == "squirt_slope"
-                value, to = (found.squirt, found.squirt_to) if squirt else (found.end_mass, found.end_mass_to)
+                value, to = (
+                    (gradients.squirt, gradients.squirt_to) if squirt else (gradients.end_mass, gradients.end_mass_to)
+                )
                 assert value is not None
                 assert to is not None
                 return np.array([value]), _along(to, moves)
@@ -287,7 +289,7 @@ def optimum(
     broken = [words for words, room in rooms if not room >= -TOLERANCE]
     if broken:
         raise ValueError(f"no design within {', '.join(broken)} was found: {unfinished or 'none is near'}")
-    named = dict(zip((one.name for one in problem.study.responses), values[0].tolist(), strict=True))
+    named = dict(zip((response.name for response in problem.study.responses), values[0].tolist(), strict=True))
     numbers = {vary.name: float(p) for vary, p in zip(problem.vary, point, strict=True)}
     active = tuple(words for words, room in rooms if room < TOLERANCE)
     return Optimum(problem.scene(point), values[0, 0].item(), numbers, named, active, count, problem.exact, unfinished)
@@ -312,7 +314,7 @@ def _by_gradients(
     scale = _scale(problem, problem.points(start))
     known: dict[tuple[bytes, Response], tuple[Array, Array]] = {}
 
-    def found(u: Array, response: Response) -> tuple[Array, Array]:
+    def value_and_slopes(u: Array, response: Response) -> tuple[Array, Array]:
         key = u.tobytes(), response
         if key not in known:
             point = problem.points(u)
@@ -321,7 +323,7 @@ def _by_gradients(
         return known[key]
 
     def objective(u: Array) -> tuple[float, Array]:
-        values, slopes = found(u, problem.objective)
+        values, slopes = value_and_slopes(u, problem.objective)
         progress(evaluations(), float(values[0]))
         return scale * values[0], scale * slopes[0]
 
@@ -330,7 +332,10 @@ def _by_gradients(
 
     def constraint(response: Response, sign: int, bound: float) -> dict[str, Any]:
         unit = sign / _size(bound)
-        fun, jac = (lambda u: unit * (found(u, response)[0] - bound)), (lambda u: unit * found(u, response)[1])
+        fun, jac = (
+            (lambda u: unit * (value_and_slopes(u, response)[0] - bound)),
+            (lambda u: unit * value_and_slopes(u, response)[1]),
+        )
         return {"type": "ineq", "fun": fun, "jac": jac}
 
     sides = [constraint(limit.response, *side) for limit in problem.limits for side in limit.sides]
@@ -356,10 +361,10 @@ def _by_evolution(
         values = problem.values(problem.points(u.T))
         missing = np.minimum(problem.room(values), 0).sum(axis=1)
         own = np.nan_to_num(scale * values[:, 0], nan=EXCLUDED)
-        found = np.where(missing < 0, EXCLUDED - missing, own)
-        seen, best = seen + len(found), min(best, found.min())
+        scores = np.where(missing < 0, EXCLUDED - missing, own)
+        seen, best = seen + len(scores), min(best, scores.min())
         progress(seen, best / scale if best < EXCLUDED else np.nan)
-        return found
+        return scores
 
     box, generator = [(0, 1)] * len(start), np.random.default_rng(seed)
     shared = {"vectorized": True, "updating": "deferred", "polish": False, "tol": 1e-6, "maxiter": iterations}
@@ -371,11 +376,11 @@ def _rooms(problem: Problem, point: Array, values: Array) -> list[tuple[str, flo
     """(words, how far inside relative to its size) of every limit and every end of a range."""
     sides = [(limit.response.name, sign, bound) for limit in problem.limits for sign, bound in limit.sides]
     words = [f"{name} {'>=' if sign > 0 else '<='} {bound:g}" for name, sign, bound in sides]
-    found = list(zip(words, problem.room(values)[0].tolist(), strict=True))
+    rooms = list(zip(words, problem.room(values)[0].tolist(), strict=True))
     for vary, p, low, high in zip(problem.vary, point, *problem.bounds, strict=True):
-        found.append((f"{vary.name} >= {low:g}", (p - low) / (high - low)))
-        found.append((f"{vary.name} <= {high:g}", (high - p) / (high - low)))
-    return found
+        rooms.append((f"{vary.name} >= {low:g}", (p - low) / (high - low)))
+        rooms.append((f"{vary.name} <= {high:g}", (high - p) / (high - low)))
+    return rooms
 
 
 def search(problem: Problem, count: int, *, seed: int = 0) -> tuple[Array, Array, Array]:
@@ -420,8 +425,8 @@ def front(
             out["G"] = -shown.room(values)
 
     shafts = Shafts(n_var=len(low), n_obj=2, n_ieq_constr=shown.room(np.ones((1, 99))).shape[1], xl=low, xu=high)
-    found = evolve(shafts, NSGA2(pop_size=size), ("n_gen", rounds), seed=seed, verbose=False)
-    if found.X is None:
+    evolved = evolve(shafts, NSGA2(pop_size=size), ("n_gen", rounds), seed=seed, verbose=False)
+    if evolved.X is None:
         raise ValueError("front found no design within the limits")
-    order = np.argsort(found.F[:, 0])
-    return np.atleast_2d(found.X)[order], (signs * found.F)[order]
+    order = np.argsort(evolved.F[:, 0])
+    return np.atleast_2d(evolved.X)[order], (signs * evolved.F)[order]

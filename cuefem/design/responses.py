@@ -28,12 +28,12 @@ class Response:
     @classmethod
     def of(cls, text: str) -> Response:
         """Read text such as "squirt(0.3)"; ValueError, suggesting similar names, if no response matches."""
-        found = _NAME.fullmatch(text.strip())
-        if not found or found[1] not in asked():
+        match = _NAME.fullmatch(text.strip())
+        if not match or match[1] not in asked():
             close = difflib.get_close_matches(text.partition("(")[0], asked(), n=3, cutoff=0.5)
             hint = f"; did you mean {' or '.join(close)}?" if close else ""
             raise ValueError(f"must be one of {', '.join(map(_usage, asked()))}; got {text!r}{hint}")
-        return cls(found[1], _argument(found[1], found[2], text))
+        return cls(match[1], _argument(match[1], match[2], text))
 
     @property
     def result(self) -> Result:
@@ -105,14 +105,14 @@ def _usage(kind: str) -> str:
     return f"{kind}({argument})" if argument == "mode" else f"{kind}[({argument})]" if argument else kind
 
 
-def _argument(kind: str, given: str | None, text: str) -> float | int | None:
+def _argument(kind: str, argument: str | None, text: str) -> float | int | None:
     wanted = asked()[kind].argument
-    if given is None and wanted != "mode":
+    if argument is None and wanted != "mode":
         return None
     if wanted == "":
         raise ValueError(f"must be {kind}, which takes nothing in brackets; got {text!r}")
     try:
-        number = float(given or "nan")
+        number = float(argument or "nan")
     except ValueError:
         number = float("nan")
     if wanted == "mode":

@@ -101,11 +101,11 @@ class Scatter:
     @cached_property
     def matrix(self) -> Array:
         """Correlations of the normal scores, (vary, vary)."""
-        found = np.eye(len(self.names))
-        for (one, other), r in self.correlations.items():
-            i, j = self.names.index(one), self.names.index(other)
-            found[i, j] = found[j, i] = r
-        return found
+        matrix = np.eye(len(self.names))
+        for (first, other), r in self.correlations.items():
+            i, j = self.names.index(first), self.names.index(other)
+            matrix[i, j] = matrix[j, i] = r
+        return matrix
 
     @cached_property
     def _members(self) -> tuple[tuple[int, ...], ...]:
@@ -135,7 +135,7 @@ class Scatter:
 
         shares = ndtr(scores @ np.linalg.cholesky(self.matrix).T)
         ranges = [vary.range for vary in self.study.vary]
-        return [tuple(one.quantile(u) for one, u in zip(ranges, row, strict=True)) for row in shares.tolist()]
+        return [tuple(range_of.quantile(u) for range_of, u in zip(ranges, row, strict=True)) for row in shares.tolist()]
 
 
 @dataclass(frozen=True)
@@ -207,12 +207,12 @@ def drivers(
     failed = [row.failure for row in rows if row.failure]
     if failed:
         raise ValueError(f"{len(failed)} of {len(rows)} designs have no answer: narrow the ranges; first: {failed[0]}")
-    found = np.array([row.responses for row in rows]).reshape(-1, count, len(scatter.study.responses))
+    results = np.array([row.responses for row in rows]).reshape(-1, count, len(scatter.study.responses))
     sample = _spread(rows[: 2 * count])
     for response, mean, sd in zip(scatter.study.responses, sample.mean, sample.sd, strict=True):
         if sd <= 1e-12 * abs(mean):
             raise ValueError(f"{response.name} does not scatter: nothing that varies changes it")
-    return Drivers(scatter.causes, *indices(found.swapaxes(1, 2), seed=seed), sample)
+    return Drivers(scatter.causes, *indices(results.swapaxes(1, 2), seed=seed), sample)
 
 
 def scores(size: int, count: int, *, seed: int) -> Array:
@@ -238,9 +238,9 @@ def indices(values: Array, *, seed: int) -> tuple[Array, Array, Array, Array]:
 
     def both(rows: Any) -> Array:
         A, B, *mixed = values[:, :, rows]
-        found = sobol_indices(func={"f_A": A, "f_B": B, "f_AB": np.array(mixed)}, n=count)
+        shares = sobol_indices(func={"f_A": A, "f_B": B, "f_AB": np.array(mixed)}, n=count)
         # scipy drops axes of length 1
-        return np.stack([part.reshape(len(A), len(mixed)).T for part in (found.first_order, found.total_order)])
+        return np.stack([part.reshape(len(A), len(mixed)).T for part in (shares.first_order, shares.total_order)])
 
     # scipy's own bootstrap of the indices takes no seed
     resampled = bootstrap(

@@ -97,12 +97,12 @@ def sensitivity(scene: Scene, drive: str = "stick", at: Resolution | None = None
         raise ValueError(f"sensitivity takes a scene without effects; got {len(scene.effects)}")
     at = at or default_resolution(scene, periods=PLAIN_PERIODS)
     system = assemble(scene.shaft, elements=at.elements, order=at.order)
-    found = solve(system, system.mesh.unknowns - system.rigid.shape[1])
-    kept, squares, phi = at.modes, found.omega**2, found.vectors[0]
-    still = found.rigid_vectors[0]
-    gradient = _GRADIENTS[drive](squares[:kept], phi[:kept], float(still @ still), scene)
+    bending = solve(system, system.mesh.unknowns - system.rigid.shape[1])
+    count, squares, phi = at.modes, bending.omega**2, bending.vectors[0]
+    still = bending.rigid_vectors[0]
+    gradient = _GRADIENTS[drive](squares[:count], phi[:count], float(still @ still), scene)
     stiff, heavy = _forms(gradient, squares, phi, still)
-    return _densities(system, np.concatenate([found.rigid_vectors, found.vectors], axis=1), stiff, heavy, gradient)
+    return _densities(system, np.concatenate([bending.rigid_vectors, bending.vectors], axis=1), stiff, heavy, gradient)
 
 
 def frequency_sensitivity(scene: Scene, mode: int, at: Resolution) -> Sensitivity:
@@ -111,28 +111,28 @@ def frequency_sensitivity(scene: Scene, mode: int, at: Resolution) -> Sensitivit
     Rayleigh's quotient: d lambda_k = dK_kk - lambda_k dM_kk.
     """
     system = assemble(scene.shaft, elements=at.elements, order=at.order)
-    found = solve(system, mode)
-    frequency, square = found.frequencies[-1], found.omega[-1] ** 2
+    bending = solve(system, mode)
+    frequency, square = bending.frequencies[-1], bending.omega[-1] ** 2
     stiff = np.array([[1 / (8 * np.pi**2 * frequency)]])
-    value = _Gradient(float(frequency), found.omega, found.omega, 0.0)
-    return _densities(system, found.vectors[:, -1:], stiff, -square * stiff, value)
+    value = _Gradient(float(frequency), bending.omega, bending.omega, 0.0)
+    return _densities(system, bending.vectors[:, -1:], stiff, -square * stiff, value)
 
 
 def _forms(gradient: _Gradient, squares: Array, phi: Array, still: Array) -> tuple[Array, Array]:
     """The quadratic forms in the modes (rigid ones first) that give dm for dK and for dM."""
-    rigid, kept = len(still), len(gradient.squares)
+    rigid, modes = len(still), len(gradient.squares)
     all_squares, all_phi = np.concatenate([np.zeros(rigid), squares]), np.concatenate([still, phi])
     size = len(all_phi)
     stiff, heavy = np.zeros((size, size)), np.zeros((size, size))
-    rows = rigid + np.arange(kept)
-    gaps = squares[:kept, None] - all_squares
-    gaps[np.arange(kept), rows] = np.inf
+    rows = rigid + np.arange(modes)
+    gaps = squares[:modes, None] - all_squares
+    gaps[np.arange(modes), rows] = np.inf
     stiff[rows] = gradient.amplitudes[:, None] * all_phi / gaps
     stiff[rows, rows] = gradient.squares
     # no strain, no change of the rigid motions; but a stretched piece strains what was one (`cuefem.design.gradient`)
     stiff[:rigid, rigid:] -= 2 * gradient.rigid * still[:, None] * phi / squares
-    heavy[rows] = -squares[:kept, None] * stiff[rows]
-    heavy[rows, rows] -= gradient.amplitudes * phi[:kept] / 2
+    heavy[rows] = -squares[:modes, None] * stiff[rows]
+    heavy[rows, rows] -= gradient.amplitudes * phi[:modes] / 2
     heavy[:rigid, :rigid] -= gradient.rigid * np.outer(still, still)
     return (stiff + stiff.T) / 2, (heavy + heavy.T) / 2
 
@@ -165,28 +165,28 @@ def _densities(system: System, vectors: Array, stiff: Array, heavy: Array, gradi
 
 def _force(squares: Array, phi: Array, rigid: float, scene: Scene) -> _Gradient:
     T = scene.contact_time
-    given = 2 * T / np.pi
+    impulse = 2 * T / np.pi
 
     def response(square: Any) -> Any:
         return half_sine_response(np.sqrt(square), T)
 
-    speed = float(phi**2 @ response(squares)) + rigid * given
-    slope = -given / speed**2
+    speed = float(phi**2 @ response(squares)) + rigid * impulse
+    slope = -impulse / speed**2
     amplitudes = slope * 2 * phi * response(squares)
-    return _Gradient(given / speed, slope * phi**2 * _derivative(response, squares), amplitudes, slope * given)
+    return _Gradient(impulse / speed, slope * phi**2 * _derivative(response, squares), amplitudes, slope * impulse)
 
 
 def _velocity(squares: Array, phi: Array, rigid: float, scene: Scene) -> _Gradient:
     T = scene.contact_time
-    held = _Held(squares, phi, rigid)
-    value, to_squares, to_amplitudes, to_still, _ = held.impulse(lambda s: smooth_start_swing(np.sqrt(s), T), 1.0)
+    tip = _Held(squares, phi, rigid)
+    value, to_squares, to_amplitudes, to_still, _ = tip.impulse(lambda s: smooth_start_swing(np.sqrt(s), T), 1.0)
     return _Gradient(value, to_squares, to_amplitudes, to_still)
 
 
 def _stick(squares: Array, phi: Array, rigid: float, scene: Scene) -> _Gradient:
     limit = StickLimit.of(scene)
-    held = _Held(squares, phi, rigid + limit.c)
-    J, to_squares, to_amplitudes, to_still, to_K = held.impulse(
+    tip = _Held(squares, phi, rigid + limit.c)
+    J, to_squares, to_amplitudes, to_still, to_K = tip.impulse(
         lambda s: limit.swing(np.sqrt(s)), limit.K - 1, lambda s: limit.swing_per_K(np.sqrt(s))
     )
     m = float(limit.end_mass(J))

@@ -61,8 +61,8 @@ class Together(Designs):
     @cached_property
     def _kept(self) -> BatchModes:
         """The modes that a contact takes."""
-        found, n = self._modes, self.at.modes
-        return BatchModes(found.frequencies[:, :n], found.tip[:, :n], found.rigid)
+        modes, n = self._modes, self.at.modes
+        return BatchModes(modes.frequencies[:, :n], modes.tip[:, :n], modes.rigid)
 
     @cached_property
     def stick(self) -> Stick:
@@ -71,10 +71,10 @@ class Together(Designs):
 
     def tip(self, i: int) -> TipModes:
         """Tip modes of a design, its two rigid motions across the cue as the one that moves the tip."""
-        found, scene = self._kept, self.scenes[i]
-        omega = np.concatenate([[0.0, 0.0], 2 * np.pi * found.frequencies[i]])
+        modes, scene = self._kept, self.scenes[i]
+        omega = np.concatenate([[0.0, 0.0], 2 * np.pi * modes.frequencies[i]])
         amplitude, approach = np.zeros((len(omega), 2)), np.zeros(len(omega))
-        amplitude[1:, 1] = np.concatenate([[np.sqrt(found.rigid[i])], found.tip[i]])
+        amplitude[1:, 1] = np.concatenate([[np.sqrt(modes.rigid[i])], modes.tip[i]])
         amplitude[0, 0], approach[0] = scene.axial_mass**-0.5, scene.axial_mass**0.5
         return TipModes(omega, amplitude, approach, np.zeros(len(omega)))  # the rotation is for effects at the tip
 
@@ -110,7 +110,7 @@ class OneByOne(Designs):
     @property
     def frequencies(self) -> Array:
         """The lowest bending frequencies, Hz, (designs, n)."""
-        return np.array([found.frequencies[: self._count] for found in self._modes])
+        return np.array([modes.frequencies[: self._count] for modes in self._modes])
 
     def tip(self, i: int) -> TipModes:
         """Tip modes of a design, with its effects; those of designs that have the same are one object."""
@@ -124,9 +124,9 @@ class OneByOne(Designs):
 
     def _kept(self, i: int) -> Modes:
         """The modes that a contact takes: with a support as many in all as without (`tip_modes_of`)."""
-        found = self._modes[i]
-        count = self.at.modes + 2 - found.rigid
-        return replace(found, frequencies=found.frequencies[:count], vectors=found.vectors[:, :count])
+        modes = self._modes[i]
+        count = self.at.modes + 2 - modes.rigid
+        return replace(modes, frequencies=modes.frequencies[:count], vectors=modes.vectors[:, :count])
 
 
 def key_of(scene: Scene, *parts: Any) -> Hashable:

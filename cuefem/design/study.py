@@ -65,20 +65,20 @@ class Vary:
 
     def fields(self, base: Scene) -> tuple[Path, ...]:
         """The fields of a scene that vary; ValueError if a path names no field, or a value does not fit the field."""
-        found = tuple(path for text in self.paths for path in paths(base, text))
-        for path in found:
+        places = tuple(path for text in self.paths for path in paths(base, text))
+        for path in places:
             self._check_field(base, path)
-        return found
+        return places
 
     def givers(self, base: Scene) -> tuple[Path, ...]:
         """The fields of `taken_from`; ValueError if one holds no number, or has another unit than what varies."""
-        found = tuple(path for text in self.taken_from for path in paths(base, text))
+        places = tuple(path for text in self.taken_from for path in paths(base, text))
         gainer = self.fields(base)[0]
-        for path in found:
+        for path in places:
             numbers = all(isinstance(value_at(base, each), float) for each in (path, gainer))
             if not numbers or quantity_at(base, path).unit != quantity_at(base, gainer).unit:  # type: ignore[union-attr]
                 raise ValueError(f"taken_from must name numbers of the unit of what varies; got {spelt(path)}")
-        return found
+        return places
 
     def _check_field(self, base: Scene, path: Path) -> None:
         wanted, values = quantity_at(base, path), self.range.ends
@@ -93,7 +93,7 @@ class Vary:
     def unit(self, base: Scene) -> str:
         """SI unit of its values, "" for factors and names; ValueError if its fields have different units."""
         wanted = [quantity_at(base, path) for path in self.fields(base)]
-        units = sorted({"" if self.factor or one is None else one.unit for one in wanted})
+        units = sorted({"" if self.factor or quantity is None else quantity.unit for quantity in wanted})
         if len(units) > 1:
             raise ValueError(f"path must name fields of one unit; got {' and '.join(map(repr, units))}")
         return units[0]
@@ -146,7 +146,7 @@ class Study:
         twice = [name for name in names if names.count(name) > 1]
         if twice:
             raise ValueError(f"columns must have different names; got {twice[0]!r} twice")
-        lacking = [one.name for one in self.responses if one.segments and not self.base.cue.segments]
+        lacking = [response.name for response in self.responses if response.segments and not self.base.cue.segments]
         if lacking:
             raise ValueError(f"{lacking[0]} needs a cue of segments; got a lumped cue")
 
@@ -163,12 +163,12 @@ class Study:
     @property
     def columns(self) -> tuple[str, ...]:
         """Names of what varies and of the responses."""
-        return (*(vary.name for vary in self.vary), *(one.name for one in self.responses))
+        return (*(vary.name for vary in self.vary), *(response.name for response in self.responses))
 
     @property
     def units(self) -> tuple[str, ...]:
         """SI units of the columns, "" for pure numbers and names."""
-        return (*(vary.unit(self.base) for vary in self.vary), *(one.unit for one in self.responses))
+        return (*(vary.unit(self.base) for vary in self.vary), *(response.unit for response in self.responses))
 
     @property
     def size(self) -> int:
@@ -178,7 +178,7 @@ class Study:
     @property
     def block(self) -> int:
         """Number of designs in a block; the last block may hold fewer."""
-        slow = any(one.in_time for one in self.responses) or self.base.effects
+        slow = any(response.in_time for response in self.responses) or self.base.effects
         return STRUCK_BLOCK if slow else BLOCK
 
     def blocks(self) -> Iterator[list[tuple[Value, ...]]]:
@@ -223,7 +223,7 @@ class Study:
         Plain arithmetic on the values, so that complex values carry a derivative along.
         """
         scene = self.base if scene is None else scene
-        numbers, taken = dict[Path, Any](), list[tuple[Path, Any]]()
+        numbers, shifts = dict[Path, Any](), list[tuple[Path, Any]]()
 
         def now(path: Path) -> Any:
             return numbers.get(path, value_at(scene, path))
@@ -235,8 +235,8 @@ class Study:
                     continue
                 before = [now(path) for path in fields]
                 numbers |= {p: vary.applied(value, old) for p, old in zip(fields, before, strict=True)}
-                taken += [(path, numbers[fields[0]] - before[0]) for path in self._givers[i]]
-        for path, gain in taken:
+                shifts += [(path, numbers[fields[0]] - before[0]) for path in self._givers[i]]
+        for path, gain in shifts:
             numbers[path] = now(path) - gain
         return numbers
 
@@ -272,7 +272,7 @@ class Study:
             "cuefem": version("cuefem"),
             "scene": spelt_out(self.base),
             "vary": [repr(vary) for vary in self.vary],
-            "responses": [one.name for one in self.responses],
+            "responses": [response.name for response in self.responses],
             "sample": repr(self.sample),
             "resolution": repr(self.resolution),
         }

@@ -117,11 +117,11 @@ def computed(task: Task) -> list[Row]:
         return [*task.failed]
     asked = [i for i, response in enumerate(task.responses) if response.name not in task.known[0]]
     answers = np.array([[known.get(response.name, np.nan) for response in task.responses] for known in task.known])
-    found = evaluate(task.scenes, [task.responses[i] for i in asked], at=task.at)
-    answers[:, asked] = found.values
+    evaluation = evaluate(task.scenes, [task.responses[i] for i in asked], at=task.at)
+    answers[:, asked] = evaluation.values
     rows = (
         Row(design, values, tuple(None if x != x else x for x in numbers), reason)
-        for (design, values), numbers, reason in zip(task.designs, answers.tolist(), found.reasons, strict=True)
+        for (design, values), numbers, reason in zip(task.designs, answers.tolist(), evaluation.reasons, strict=True)
     )
     return sorted([*task.failed, *rows], key=lambda row: row.design)
 
