@@ -14,6 +14,7 @@ cancels, so that squirt keeps its digits however light the end mass is.
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -163,8 +164,8 @@ def _strokes(
     """One block of strokes: flat arrays by name."""
     offset = np.atleast_1d(offset)
     side, distance = np.sign(offset), np.abs(offset)
-    cue = _Lumped(m, m_e, np.where(side == 0, 0.0, coupling))
-    B = inverse_mass(cue, _Sphere(M, nu), distance)  # type: ignore[arg-type]
+    cue = SimpleNamespace(mass=m, end_mass=m_e, coupling=np.where(side == 0, 0.0, coupling))
+    B = inverse_mass(cue, SimpleNamespace(mass=M, inertia=nu), distance)  # type: ignore[arg-type]
     s, c = sine_cosine(distance)
     course = _course(B, -s, -c, mu=mu, e=e)  # at unit speed
     p_t, p_n = U * course.tangential, U * course.final
@@ -200,17 +201,6 @@ def _strokes(
         "friction loss": U**2 * course.friction_loss,
     }
     return dict(zip(out, np.broadcast_arrays(*out.values()), strict=True))
-
-
-class _Lumped(NamedTuple):
-    mass: Any
-    end_mass: Any
-    coupling: Any
-
-
-class _Sphere(NamedTuple):
-    mass: Any
-    inertia: Any
 
 
 EVENTS = ("slip ends", "greatest compression", "separation")

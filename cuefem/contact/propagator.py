@@ -13,7 +13,7 @@ import threading
 import weakref
 from collections.abc import Callable, Iterator
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,9 +46,8 @@ class ModalPropagator:
         omega, count = tip.omega, len(tip.omega)
         resistance = np.zeros((count, count)) if tip.resistance is None else tip.resistance
         coupled = resistance != 0
-        alone = np.flatnonzero(~coupled.any(axis=1))
-        groups = list(_coupled_groups(coupled))
-        parts = [_Group.undamped(omega, alone), *(_Group.damped(omega, resistance, group) for group in groups)]
+        parts = [_alone(omega, np.flatnonzero(~coupled.any(axis=1)))]
+        parts += [_coupled(omega, resistance, group) for group in _coupled_groups(coupled)]
         self.rates = np.concatenate([part.rates for part in parts])
         self.displacements, self.velocities = (np.zeros((count, len(self.rates)), complex) for _ in range(2))
         self.onto = np.zeros((len(self.rates), count), complex)
@@ -112,39 +111,40 @@ class ModalPropagator:
         return coordinates
 
 
-class _Group:
-    """Modes by themselves, or coupled by dampers, as coordinates that turn by themselves."""
+class _Group(NamedTuple):
+    """Modes by themselves, or coupled by dampers, as coordinates that turn by themselves (`ModalPropagator`)."""
 
-    def __init__(self, modes: Index, rates: Complex, displacements: Complex, velocities: Complex, onto: Complex):
-        self.modes, self.rates, self.onto = modes, rates, onto
-        self.displacements, self.velocities = displacements, velocities
+    modes: Index
+    rates: Complex
+    displacements: Complex
+    velocities: Complex
+    onto: Complex
 
-    @classmethod
-    def undamped(cls, omega: Array, modes: Index) -> _Group:
-        """Each mode a coordinate v + i omega q; a rigid one is its velocity."""
-        own = np.eye(len(modes), dtype=complex)
-        rates, resting = np.asarray(1j * omega[modes], complex), np.asarray(-1j * own * (omega[modes] > 0), complex)
-        return cls(modes, rates, resting, own, own)
 
-    @classmethod
-    def damped(cls, omega: Array, resistance: Array, modes: Index) -> _Group:
-        """The eigenvectors of (omega q, v)' = (omega v, -omega^2 q/omega - C v); of two conjugates one, doubled."""
-        vibrating = np.flatnonzero(omega[modes])  # a rigid mode has no displacement among the states
-        count, turning = len(vibrating), omega[modes[vibrating]]
-        states = np.zeros((count + len(modes), count + len(modes)))
-        states[count:, count:] = -resistance[modes[:, None], modes]
-        states[np.arange(count), count + vibrating], states[count + vibrating, np.arange(count)] = turning, -turning
-        rates, right = np.linalg.eig(states)
-        if np.linalg.cond(right, "fro") > DEFECTIVE:  # two rates are one, as of a critically damped mode: part them
-            nudge = NUDGE * np.linalg.norm(states) * np.diag(np.linspace(-1.0, 0.0, len(states)))
-            rates, right = np.linalg.eig(states + nudge)
-        left = np.linalg.inv(right).astype(complex)
-        upper = np.flatnonzero(rates.imag >= 0)
-        right = (right[:, upper] * np.where(rates[upper].imag > 0, 2.0, 1.0)).astype(complex)
-        displacements = np.zeros((len(modes), len(upper)), complex)
-        displacements[vibrating] = right[:count]
-        velocities, onto = np.asarray(right[count:], complex), np.asarray(left[upper][:, count:], complex)
-        return cls(modes, rates[upper].astype(complex), displacements, velocities, onto)
+def _alone(omega: Array, modes: Index) -> _Group:
+    """Each mode a coordinate v + i omega q; a rigid one is its velocity."""
+    own = np.eye(len(modes), dtype=complex)
+    return _Group(modes, np.asarray(1j * omega[modes], complex), -1j * own * (omega[modes] > 0), own, own)
+
+
+def _coupled(omega: Array, resistance: Array, modes: Index) -> _Group:
+    """The eigenvectors of (omega q, v)' = (omega v, -omega^2 q/omega - C v); of two conjugates one, doubled."""
+    vibrating = np.flatnonzero(omega[modes])  # a rigid mode has no displacement among the states
+    count, turning = len(vibrating), omega[modes[vibrating]]
+    states = np.zeros((count + len(modes), count + len(modes)))
+    states[count:, count:] = -resistance[modes[:, None], modes]
+    states[np.arange(count), count + vibrating], states[count + vibrating, np.arange(count)] = turning, -turning
+    rates, right = np.linalg.eig(states)
+    if np.linalg.cond(right, "fro") > DEFECTIVE:  # two rates are one, as of a critically damped mode: part them
+        nudge = NUDGE * np.linalg.norm(states) * np.diag(np.linspace(-1.0, 0.0, len(states)))
+        rates, right = np.linalg.eig(states + nudge)
+    left = np.linalg.inv(right).astype(complex)
+    upper = np.flatnonzero(rates.imag >= 0)
+    right = (right[:, upper] * np.where(rates[upper].imag > 0, 2.0, 1.0)).astype(complex)
+    displacements = np.zeros((len(modes), len(upper)), complex)
+    displacements[vibrating] = right[:count]
+    velocities, onto = np.asarray(right[count:], complex), np.asarray(left[upper][:, count:], complex)
+    return _Group(modes, rates[upper].astype(complex), displacements, velocities, onto)
 
 
 def _coupled_groups(coupled: Any) -> Iterator[Index]:

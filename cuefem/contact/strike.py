@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any, NamedTuple
+from contextlib import contextmanager
+from typing import Any
 
 import numpy as np
 
@@ -204,36 +205,31 @@ def batch_strike(scenes: Sequence[Scene], at: Resolution | None = None, *, threa
         check_kind("batch_strike scenes", scene, Scene)
     if not scenes:
         raise ValueError("batch_strike takes one scene or more; got none")
-    results: list[dict[str, Any]] = [{}] * len(scenes)
     jobs = _jobs(scenes, at)
     if threads == 1:
-        _put(results, map(_struck, jobs))
-    else:
-        with ThreadPoolExecutor(threads) as executor:
-            _put(results, executor.map(_struck, jobs))
-    return _together(results)
+        return _together(dict(pair for job in jobs for pair in _struck(*job)))
+    with ThreadPoolExecutor(threads) as executor:
+        return _together(dict(pair for done in executor.map(lambda job: _struck(*job), jobs) for pair in done))
 
 
-class _Job(NamedTuple):
-    """Strikes with the same modes: the scenes by their numbers, and the solved modes."""
-
-    shared: Solved
-    scenes: tuple[tuple[int, Scene], ...]
+Numbered = list[tuple[int, Scene]]  # scenes by their numbers
 
 
-def _jobs(scenes: tuple[Scene, ...], at: Resolution | None) -> Iterator[_Job]:
-    groups: dict[Any, list[int]] = {}
+def _jobs(scenes: tuple[Scene, ...], at: Resolution | None) -> Iterator[tuple[Solved, Numbered]]:
+    """Strikes with the same modes: what solves these, and the scenes."""
+    groups: dict[Any, Numbered] = {}
     resolutions: dict[tuple[Cue, float], Resolution] = {}
     for i, scene in enumerate(scenes):
-        with _Numbered(i):
-            groups.setdefault(_modes_of(scene, at, resolutions), []).append(i)
-    for rows in groups.values():
-        shared = Solved(scenes[rows[0]], at)
-        if len(rows) > CHUNK:
-            with _Numbered(rows[0]):
+        with _told_of(i):
+            groups.setdefault(_modes_of(scene, at, resolutions), []).append((i, scene))
+    for group in groups.values():
+        number, scene = group[0]
+        shared = Solved(scene, at)
+        if len(group) > CHUNK:
+            with _told_of(number):
                 shared.tip  # noqa: B018  # solved here: threads would all begin to
-        for start in range(0, len(rows), CHUNK):
-            yield _Job(shared, tuple((i, scenes[i]) for i in rows[start : start + CHUNK]))
+        for start in range(0, len(group), CHUNK):
+            yield shared, group[start : start + CHUNK]
 
 
 def _modes_of(scene: Scene, at: Resolution | None, resolutions: dict[tuple[Cue, float], Resolution]) -> tuple[Any, ...]:
@@ -247,39 +243,28 @@ def _modes_of(scene: Scene, at: Resolution | None, resolutions: dict[tuple[Cue, 
     return scene.cue, scene.cue_effects, float(scene.axial_mass), turning(scene), resolution
 
 
-class _Numbered:
-    """Errors of a scene, with its number in front."""
-
-    def __init__(self, number: int) -> None:
-        self.number = number
-
-    def __enter__(self) -> None:
-        pass
-
-    def __exit__(self, kind: Any, error: BaseException | None, trace: Any) -> None:
-        if isinstance(error, ValueError | RuntimeError):
-            raised = ValueError if isinstance(error, ValueError) else RuntimeError
-            raise raised(f"scene {self.number}: {error}") from error
+@contextmanager
+def _told_of(number: int) -> Iterator[None]:
+    """Errors of a scene have its number in front."""
+    try:
+        yield
+    except (ValueError, RuntimeError) as error:
+        raised = ValueError if isinstance(error, ValueError) else RuntimeError
+        raise raised(f"scene {number}: {error}") from error
 
 
-def _struck(job: _Job) -> list[tuple[int, dict[str, Any]]]:
-    """The numbers of each strike."""
+def _struck(shared: Solved, scenes: Numbered) -> list[tuple[int, dict[str, Any]]]:
+    """The numbers of each strike, by the scene's number."""
     results = []
-    for i, scene in job.scenes:
-        with _Numbered(i):
-            outcome = strike_modes(scene, job.shared.tip, recorded=False)
-            numbers = {name: getattr(outcome, name) for name in (*NUMBERS, "energy", "unknowns")}
-        results.append((i, numbers))
+    for i, scene in scenes:
+        with _told_of(i):
+            outcome = strike_modes(scene, shared.tip, recorded=False)
+        results.append((i, {name: getattr(outcome, name) for name in (*NUMBERS, "energy", "unknowns")}))
     return results
 
 
-def _put(results: list[dict[str, Any]], done: Iterator[list[tuple[int, dict[str, Any]]]]) -> None:
-    for part in done:
-        for i, numbers in part:
-            results[i] = numbers
-
-
-def _together(results: list[dict[str, Any]]) -> Outcome:
+def _together(by_number: dict[int, dict[str, Any]]) -> Outcome:
+    results = [by_number[i] for i in range(len(by_number))]
     names = dict.fromkeys(name for numbers in results for name in numbers["energy"])
     energy = {name: np.array([numbers["energy"].get(name, 0.0) for numbers in results]) for name in names}
     columns = {name: np.array([numbers[name] for numbers in results]) for name in NUMBERS}
