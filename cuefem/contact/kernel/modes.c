@@ -76,62 +76,59 @@ FAST static void add_series(const Cue *cue, const double *kappa, int count, Resp
         }
 }
 
-/* The part of one mode that turns too fast for that: its moments up to each node. */
-static void add_fast(const Cue *cue, int k, Response *r)
+/* What a load at the nodes makes of one mode there, real and imaginary: by the series, or by moments up to each node. */
+FAST static void answer_of_mode(const Cue *cue, int k, double h, double to[2][Q * Q])
 {
-    double h = r->step, re[Q], im[Q];
+    double yr = cue->rates[2 * k] * h / 2, yi = cue->rates[2 * k + 1] * h / 2, size = hypot(yr, yi);
+    double re[TERMS], im[TERMS];
+    memset(to, 0, 2 * sizeof to[0]);
+    if (size < TERMS - 42) {
+        int count = (int)larger(size + 14 + 6 * cbrt(size), Q + 4);
+        moments_of(yr, yi, count, re, im);
+        for (int t = 0; t < count; t++) {
+            double f = h * (2 * t + 1) * (t % 2 ? -1 : 1), fr = f * re[t], fi = f * im[t];
+            const double *from = rule.convolved[t][0];
+            for (int j = 0; j < Q * Q; j++) to[0][j] += fr * from[j], to[1][j] += fi * from[j];
+        }
+        return;
+    }
     for (int i = 0; i < Q; i++) {
-        double c = rule.nodes[i], row_r[Q] = {0}, row_i[Q] = {0};
-        moments_of(cue->rates[2 * k] * h * c / 2, cue->rates[2 * k + 1] * h * c / 2, Q, re, im);
+        double c = rule.nodes[i];
+        moments_of(yr * c, yi * c, Q, re, im);
         for (int t = 0; t < Q; t++)
             for (int j = 0; j < Q; j++) {
-                row_r[j] += re[t] * c * rule.shortened[i][t][j];
-                row_i[j] += im[t] * c * rule.shortened[i][t][j];
-            }
-        for (int a = 0; a < cue->reads; a++)
-            for (int b = 0; b < cue->ports; b++) {
-                const double *y = cue->readings + 2 * (a * cue->modes + k), *d = cue->drives + 2 * (b * cue->modes + k);
-                double pr = h * (y[0] * d[0] - y[1] * d[1]), pi = h * (y[0] * d[1] + y[1] * d[0]);
-                if (pr == 0 && pi == 0) continue;
-                double *to = r->answer + (a * cue->ports + b) * Q * Q;
-                for (int j = 0; j < Q; j++) to[j * Q + i] += pr * row_r[j] - pi * row_i[j];
+                to[0][j * Q + i] += h * c * re[t] * rule.shortened[i][t][j];
+                to[1][j * Q + i] += h * c * im[t] * rule.shortened[i][t][j];
             }
     }
 }
 
-/* What loads at the nodes make of each channel of the slopes, at the nodes. */
-FAST static int add_channels(const Cue *cue, Response *r)
+/* The part of one mode that turns too fast for the series of all. */
+FAST static void add_fast(const Cue *cue, int k, Response *r)
 {
-    int n = cue->channels, before = -1;
-    double h = r->step, to[2][Q * Q];
+    double of_mode[2][Q * Q];
+    answer_of_mode(cue, k, r->step, of_mode);
+    for (int a = 0; a < cue->reads; a++)
+        for (int b = 0; b < cue->ports; b++) {
+            const double *y = cue->readings + 2 * (a * cue->modes + k), *d = cue->drives + 2 * (b * cue->modes + k);
+            double pr = y[0] * d[0] - y[1] * d[1], pi = y[0] * d[1] + y[1] * d[0];
+            double *to = r->answer + (a * cue->ports + b) * Q * Q;
+            if (pr == 0 && pi == 0) continue;
+            for (int j = 0; j < Q * Q; j++) to[j] += pr * of_mode[0][j] - pi * of_mode[1][j];
+        }
+}
+
+/* What loads at the nodes make of each channel of the slopes, at the nodes. */
+static int add_channels(const Cue *cue, Response *r)
+{
+    int n = cue->channels;
+    double of_mode[2][Q * Q];
     if (!n) return 1;
     if (!(r->bending = malloc(Q * Q * n * sizeof(double)))) return 0;
     for (int b = 0; b < n; b++) {
         int k = cue->channel_of[b] / 2;
-        double yr = cue->rates[2 * k] * h / 2, yi = cue->rates[2 * k + 1] * h / 2, size = hypot(yr, yi);
-        double re[TERMS], im[TERMS];
-        if (k != before) memset(to, 0, sizeof to);
-        if (k == before) {
-        } else if (size < TERMS - 42) {
-            int count = (int)larger(size + 14 + 6 * cbrt(size), Q + 4);
-            moments_of(yr, yi, count, re, im);
-            for (int t = 0; t < count; t++) {
-                double f = h * (2 * t + 1) * (t % 2 ? -1 : 1), fr = f * re[t], fi = f * im[t];
-                const double *from = rule.convolved[t][0];
-                for (int j = 0; j < Q * Q; j++) to[0][j] += fr * from[j], to[1][j] += fi * from[j];
-            }
-        } else
-            for (int i = 0; i < Q; i++) {
-                double c = rule.nodes[i];
-                moments_of(yr * c, yi * c, Q, re, im);
-                for (int t = 0; t < Q; t++)
-                    for (int j = 0; j < Q; j++) {
-                        to[0][j * Q + i] += h * c * re[t] * rule.shortened[i][t][j];
-                        to[1][j * Q + i] += h * c * im[t] * rule.shortened[i][t][j];
-                    }
-            }
-        before = k;
-        memcpy(r->bending + b * Q * Q, to[cue->channel_of[b] % 2], sizeof to[0]);
+        if (b == 0 || k != cue->channel_of[b - 1] / 2) answer_of_mode(cue, k, r->step, of_mode);
+        memcpy(r->bending + b * Q * Q, of_mode[cue->channel_of[b] % 2], sizeof of_mode[0]);
     }
     return 1;
 }

@@ -1,6 +1,17 @@
 /* What is written down of a contact: its steps and its phases. */
 #include "contact.h"
 
+/* One more of these rows; NULL if there is no memory. Their room doubles at every power of two. */
+static double *next_row(double **rows, int *count, int wide)
+{
+    if ((*count & (*count - 1)) == 0) {
+        double *more = realloc(*rows, (*count ? 2 * (size_t)*count : 1) * wide * sizeof *more);
+        if (!more) return NULL;
+        *rows = more;
+    }
+    return *rows + (size_t)(*count)++ * wide;
+}
+
 /* A row of the records: time, step, part, grip, press; F and v at the start and the nodes, compression and angle; loads on all
    ports and slopes at the nodes; and the blows on these before the step. */
 int record(Work *w, const Step *s, double part)
@@ -9,15 +20,8 @@ int record(Work *w, const Step *s, double part)
     if (!c->recording) return 1;
     int ports = PORTS + c->speeds, slopes = c->cue->slopes;
     c->row = 5 + 2 * c->forces * WITH + 2 * WITH + (ports + slopes) * (Q + 1);
-    if ((c->record_count & (c->record_count - 1)) == 0) { /* room for twice as many at every power of two */
-        size_t room = c->record_count ? 2 * (size_t)c->record_count : 64;
-        if (c->record_count == 0 || c->record_count >= 64) {
-            double *more = realloc(c->records, room * c->row * sizeof *more);
-            if (!more) return 0;
-            c->records = more;
-        }
-    }
-    double *to = c->records + (size_t)c->record_count++ * c->row;
+    double *to = next_row(&c->records, &c->record_count, c->row);
+    if (!to) return 0;
     *to++ = c->time, *to++ = s->step, *to++ = part, *to++ = w->hold.grip, *to++ = w->hold.press;
     for (int f = 0; f < c->forces; f++) memcpy(to, s->F[f], sizeof s->F[f]), to += WITH;
     for (int f = 0; f < c->forces; f++) memcpy(to, s->v[f], sizeof s->v[f]), to += WITH;
@@ -35,14 +39,9 @@ int record(Work *w, const Step *s, double part)
 void end_phase(Work *w, Hold hold, double start, const double *ball_before)
 {
     Contact *c = w->c;
-    int row = 4 + 2 * c->speeds;
     if (c->phase_count >= c->most_phases) return;
-    if ((c->phase_count & (c->phase_count - 1)) == 0) {
-        double *more = realloc(c->phases, (c->phase_count ? 2 * (size_t)c->phase_count : 1) * row * sizeof *more);
-        if (!more) return;
-        c->phases = more;
-    }
-    double *to = c->phases + (size_t)c->phase_count++ * row;
+    double *to = next_row(&c->phases, &c->phase_count, 4 + 2 * c->speeds);
+    if (!to) return;
     to[0] = hold.grip, to[1] = hold.press, to[2] = start, to[3] = c->time;
     memcpy(to + 4, ball_before, c->speeds * sizeof *to), memcpy(to + 4 + c->speeds, c->ball, c->speeds * sizeof *to);
 }
