@@ -23,39 +23,23 @@ tip_diameter = "12 mm"
 butt_diameter = "21 mm"
 material = "hard maple"
 """
-STUDY = """scene = "cue.toml"
+COARSE = "[resolution]\nelements = 1\norder = 8\nmodes = 6\n"
+TIP = '[[vary]]\nname = "tip"\npath = "cue.segments[0].tip_diameter"\nlow = "11 mm"\nhigh = "13 mm"\n'
+STUDY = f"""scene = "cue.toml"
 responses = ["end_mass", "mass"]
-[resolution]
-elements = 1
-order = 8
-modes = 6
-[[vary]]
-name = "tip"
-path = "cue.segments[0].tip_diameter"
-low = "11 mm"
-high = "13 mm"
-count = 3
+{COARSE}{TIP}count = 3
 [[vary]]
 name = "wood"
 path = "cue.segments[0].material"
 values = ["hard maple", "ash"]
 """
-SAMPLE = """scene = "cue.toml"
+SAMPLE = f"""scene = "cue.toml"
 responses = ["end_mass"]
-[resolution]
-elements = 1
-order = 8
-modes = 6
-[sample]
+{COARSE}[sample]
 method = "sobol"
 count = 16
 seed = 1
-[[vary]]
-name = "tip"
-path = "cue.segments[0].tip_diameter"
-low = "11 mm"
-high = "13 mm"
-[[vary]]
+{TIP}[[vary]]
 name = "butt"
 path = "cue.segments[0].butt_diameter"
 low = "20 mm"

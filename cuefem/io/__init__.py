@@ -13,7 +13,7 @@ from pathlib import Path
 from cuefem.cue import Cue
 from cuefem.io.errors import InputError, faults_of, reason, shown
 from cuefem.io.fittings import fitted, with_shaft_of
-from cuefem.io.profile import DEFAULT_MATERIAL, SHAPES, SURFACES, TABLES, load_profile
+from cuefem.io.profile import DEFAULT_MATERIAL, SHAPES, TABLES, load_profile
 from cuefem.io.toml import load_accuracy, load_cue, load_toml, named_material, read_text
 from cuefem.measured.side.side_scene import SideStrike
 from cuefem.quantity.units import number
@@ -112,21 +112,23 @@ def load(
 
 
 def _load_cue(path: Path, material: str | None = None, length_unit: str | None = None) -> Cue:
-    if path.suffix.lower() == ".toml":
+    ending = path.suffix.lower()
+    if ending == ".toml":
         return load_cue(path)
-    if path.suffix.lower() == ".csv":
-        return load_profile(path, named_material(material or DEFAULT_MATERIAL, path, "material"), length_unit)
-    if path.suffix.lower() in _MESHES:
-        from cuefem.io.mesh_files import load_mesh
+    if ending in _MESHES:
+        from cuefem.io.mesh import load_mesh
 
         return load_mesh(path)
-    if path.suffix.lower() in SURFACES:
+    if ending in SHAPES:
+        wood = named_material(material or DEFAULT_MATERIAL, path, "material")
+        if ending == ".csv":
+            return load_profile(path, wood, length_unit)
         from cuefem.io.surface import load_surface
 
-        return load_surface(path, named_material(material or DEFAULT_MATERIAL, path, "material"), length_unit)
+        return load_surface(path, wood, length_unit)
     if os.path.isdir(path):  # unlike Path.is_dir, of names too long as well
         raise InputError(path, "", "must be a file; got a folder")
-    hint = "; save the table as .csv" if path.suffix.lower() in TABLES else ""
+    hint = "; save the table as .csv" if ending in TABLES else ""
     raise InputError(path, "", f"must end in .toml, .csv, .vtk, .vtu, .stl, .ply or .obj; got {path.suffix!r}{hint}")
 
 

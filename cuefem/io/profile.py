@@ -250,19 +250,14 @@ def _guess(header: Header, columns: Sequence[ProfileColumn], mark: str) -> str:
             [float(plain(parted(cell)[0], mark)) for cell in _cells(header.rows, column)]
             for column in (_first(columns, PLACE), _first(columns, DIAMETER, RADIUS))
         )
-        return _only(
-            [
-                unit
-                for unit, scale in _USUAL.items()
-                if _LENGTHS[0] <= scale * (max(x) - min(x)) <= _LENGTHS[1]
-                and _WIDTHS[0] <= scale * min(d) <= scale * max(d) <= _WIDTHS[1]
-            ]
-        )
+        units = [
+            unit
+            for unit, scale in _USUAL.items()
+            if _LENGTHS[0] <= scale * (max(x) - min(x)) <= _LENGTHS[1]
+            and _WIDTHS[0] <= scale * min(d) <= scale * max(d) <= _WIDTHS[1]
+        ]
     except ValueError:
         return ""
-
-
-def _only(units: Sequence[str]) -> str:
     return units[0] if len(units) == 1 else ""
 
 

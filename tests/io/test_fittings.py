@@ -104,10 +104,17 @@ def test_every_command_on_a_drawing_takes_them_all() -> None:
     assert {"abs", "melamine"} <= {*MATERIALS}
 
 
-def test_strikes_follow_what_is_told(tmp_path: Path) -> None:
-    squirts = []
-    for more in ((), ("--ferrule", "13 mm abs"), ("--ferrule", "13 mm abs", "--bore", "6 mm wide, 127 mm deep")):
-        status, out, _ = call("end-mass", shaft(tmp_path), "--body-mass", "15 oz", *more)
-        assert status == 0
-        squirts.append(out)
-    assert len({*squirts}) == 3
+def test_what_is_told_to_a_command_is_drawn(tmp_path: Path) -> None:
+    told = [
+        "--material",
+        "ash",
+        "--ferrule",
+        "13 mm abs",
+        "--bore",
+        "6 mm wide, 127 mm deep",
+        "--begins",
+        "leather 6 mm",
+    ]
+    assert call("convert", shaft(tmp_path), tmp_path / "made.toml", *told)[0] == 0
+    names = [name.removeprefix("--") for name in told[::2]]
+    assert cf.load(tmp_path / "made.toml") == cf.load(shaft(tmp_path), **dict(zip(names, told[1::2], strict=True)))

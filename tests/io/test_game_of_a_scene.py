@@ -15,7 +15,6 @@ from hypothesis import strategies as st
 import cuefem as cf
 from cuefem.games import GAMES
 from tests.helpers.command_line import call
-from tests.helpers.refusals import command_refuses
 
 CUE = """
 body_mass = "430 g"
@@ -55,10 +54,6 @@ def loaded(folder: Path, text: str) -> cf.Scene:
 @pytest.mark.parametrize("game", GAMES)
 def test_a_cue_alone_is_struck_as_in_its_game(folder: Path, game: str) -> None:
     assert loaded(folder, f'game = "{game}"\ncue = "cue.toml"') == cf.usual_scene(cue_of(folder), game)
-
-
-def test_of_kim_it_is_the_bare_scene(folder: Path) -> None:
-    assert loaded(folder, 'game = "kim"\ncue = "cue.toml"') == cf.Scene(cue_of(folder))
     assert cf.usual_scene(cue_of(folder), "kim") == cf.Scene(cue_of(folder))
 
 
@@ -114,14 +109,3 @@ def test_the_command_says_the_same_of_a_scene_and_of_its_drawing(folder: Path) -
     assert scene["models"] == drawing["models"]
     assert scene["assumed"][0] == "a usual stroke of pool"
     assert "a leather tip as high as it is drawn" in scene["assumed"][2]
-
-
-def test_refusals(folder: Path) -> None:
-    for text, message in (
-        ('game = "chess"', "game: must be one of pool, carom, snooker, kim; got 'chess'"),
-        ('game = "snoker"', "did you mean 'snooker'?"),
-        ("game = 3", "game: must be one of pool, carom, snooker, kim; got 3"),
-        ("ball = 3", "ball: must be a table"),
-    ):
-        (folder / "bad.toml").write_text(f'{text}\ncue = "cue.toml"\n', encoding="utf-8")
-        command_refuses(message, "strike", folder / "bad.toml")

@@ -14,7 +14,6 @@ import cuefem as cf
 from cuefem.effects import Effect
 from cuefem.io import InputError, load_accuracy
 from cuefem.io.export import json_schema
-from cuefem.materials import material
 from cuefem.quantity.fields import Quantity
 from cuefem.quantity.units import text as text_of
 
@@ -80,13 +79,6 @@ def test_scene_file_finds_its_cue_beside_it(tmp_path: Path, monkeypatch: pytest.
     assert load_accuracy("kim.toml") is None
 
 
-def test_scene_of_a_lumped_cue(tmp_path: Path) -> None:
-    (tmp_path / "lumped.toml").write_text(
-        'game = "kim"\n[cue]\nmass = "19 oz"\nend_mass = "6 g"\ncoupling = "-3.5 1/kg"\n'
-    )
-    assert cf.load(tmp_path / "lumped.toml") == cf.Scene(cf.LumpedCue(0.538640939375, 0.006, -3.5))
-
-
 PROFILE = "# a shaft\nx [mm],diameter [in]\n10,0.5\n110,0.5\n210,0.5\n\n310,0.6\n410,0.7\n710,0.8\n"
 
 
@@ -102,22 +94,9 @@ def test_lathe_profile_merges_straight_tapers(tmp_path: Path) -> None:
     assert replace(ash.segments[1], material=cue.segments[1].material) == cue.segments[1]
 
 
-def test_units_of_a_profile_stand_in_brackets_of_either_kind(tmp_path: Path) -> None:
-    (tmp_path / "square.csv").write_text("x [mm],diameter [in]\n0,0.5\n700,0.8\n")
-    (tmp_path / "round.csv").write_text("x (mm), diameter (in)\n0,0.5\n700,0.8\n")
-    assert cf.load(tmp_path / "round.csv") == cf.load(tmp_path / "square.csv")
-
-
 def test_lathe_profile_keeps_a_bend_of_a_micrometre(tmp_path: Path) -> None:
     (tmp_path / "shaft.csv").write_text("x [mm],diameter [mm]\n0,12\n350,16.501\n700,21\n")
     assert [s.butt_diameter for s in cf.load(tmp_path / "shaft.csv").segments] == [0.016501, 0.021]
-
-
-def test_a_material_is_for_all_that_a_drawing_leaves_to_it(tmp_path: Path) -> None:
-    (tmp_path / "kim.toml").write_text(KIM_TOML)
-    found = cf.load(tmp_path / "kim.toml", material="ash")
-    assert isinstance(found, cf.Cue)
-    assert found.segments[0].material == material("ash")
 
 
 @pytest.mark.parametrize("suffix", ["vtk", "vtu"])

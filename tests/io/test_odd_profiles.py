@@ -1,4 +1,4 @@
-"""Odd but honest CSVs: each is read as it was meant, or refused in words that a cue maker understands."""
+"""Odd but honest CSVs: each is read as it was meant (`test_refusals` has those that are refused)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ import cuefem as cf
 from cuefem.io import InputError
 from cuefem.io.assumed import assumed
 from cuefem.materials import material
-from tests.helpers.command_line import call
 
 MAPLE = material("hard maple")
 MEANT = ((0.0, 12.75), (330.0, 13.2), (736.6, 21.5))  # mm
@@ -94,86 +93,6 @@ READ = {
     "a point written twice": Odd("x [mm],diameter [mm]\n0,12.75\n330,13.2\n330,13.2\n736.6,21.5\n"),
 }
 
-REFUSED = {
-    "no units": (
-        "x,diameter\n0,12.75\n330,13.2\n736.6,21.5\n",
-        'line 1: the columns have no unit: write "x [mm],diameter [mm]", if these are mm, or give --length-unit',
-    ),
-    "one unit": (
-        "x [mm],diameter\n0,0.5\n330,0.52\n736.6,0.85\n",
-        "line 1: the column 'diameter' has no unit: write one in brackets, such as \"diameter [mm]\", or give --length",
-    ),
-    "no names": (
-        "0,12.75\n330,13.2\n736.6,21.5\n",
-        "line 1: must name the columns, such as \"x [mm],diameter [mm]\"; got numbers, '0,12.75'",
-    ),
-    "other names": (
-        "a,b\n1,2\n3,4\n",
-        "line 1: must name one column for the place along the shaft and one for the dia",
-    ),
-    "commas for both": (
-        "x [mm],diameter [mm]\n0,0,12,75\n330,0,13,2\n736,6,21,5\n",
-        "line 2: must have no more numbers than there are columns, 2; got '0,0,12,75'; where commas part the columns, "
-        "write decimal points, or part the columns by semicolons",
-    ),
-    "a spreadsheet": (b"PK\x03\x04" + bytes(60), "is a spreadsheet, not a .csv: in its program, save it as CSV"),
-    "a bore from the butt": (
-        "distance from butt [mm],diameter [mm],bore [mm]\n0,21.5,\n736.6,12.75,6\n",
-        "line 1, x: must run from tip to butt where a bore or a material stands beside it: each holds from its row on",
-    ),
-    "a bore, butt first": (
-        "x [mm],diameter [mm],bore [mm]\n736.6,21.5,\n0,12.75,6\n",
-        "line 1, x: must run from tip to butt where a bore or a material stands beside it",
-    ),
-    "a bore without a unit": (
-        "x [mm],diameter [mm],bore\n0,12.75,6\n736.6,21.5,\n",
-        "line 1: the column 'bore' has no unit: write one in brackets",
-    ),
-    "a bore as wide as the shaft": (
-        "x [mm],diameter [mm],bore [mm]\n0,12.75,12.75\n736.6,21.5,\n",
-        "line 2, bore: must be less than 12.75 mm, the diameter there; got 12.75 mm",
-    ),
-    "a bore below nothing": (
-        "x [mm],diameter [mm],bore [mm]\n0,12.75,-6\n736.6,21.5,\n",
-        "line 2, bore: must be 0 to 10000 mm; got -6 mm",
-    ),
-    "an unknown material": (
-        "x [mm],diameter [mm],material\n0,12.75,hard mapel\n736.6,21.5,\n",
-        "line 2, material: no material is called 'hard mapel'; nearest: hard maple",
-    ),
-    "two diameters": (
-        "x [mm],diameter 1 [mm],diameter 2 [mm]\n0,12.75,12.9\n736.6,21.5,21.4\n",
-        "line 1: two columns may be the diameter, 'diameter 1 [mm]' and 'diameter 2 [mm]', and they differ: keep one",
-    ),
-    "a point out of order": (
-        "x [mm],diameter [mm]\n0,12.75\n736.6,21.5\n330,13.2\n",
-        "line 4, x: must be beyond 736.6 mm, the x of the line before (points run from tip to butt); got '330 mm'",
-    ),
-    "a step": (
-        "x [mm],diameter [mm]\n0,12.75\n25,12.75\n25,13\n736.6,21.5\n",
-        "line 4, x: must be beyond 25 mm, the x of the line before (points run from tip to butt); got '25 mm'; a step "
-        "in the diameter is two points a little apart, such as 25 and 25.1 mm",
-    ),
-    "a word": (
-        "x [mm],diameter [mm]\n0,12.75\n330,about 13\n736.6,21.5\n",
-        "line 3, diameter: must be a number; got 'about 13'",
-    ),
-    "a gap": ("x [mm],diameter [mm]\n0,12.75\n330,\n736.6,21.5\n", "line 3, diameter: must be a number; got nothing"),
-    "points and commas": (
-        "x [mm];diameter [mm]\n0;12.75\n330,5;13.2\n736.6;21.5\n",
-        "line 3, x: must be written with the decimal point of the other numbers; got '330,5'",
-    ),
-    "no length": (
-        "x [kg],diameter [mm]\n0,12\n700,21\n",
-        "line 1, x: must be in a unit of length, such as mm; got 'kg'",
-    ),
-    "a line without end": ("x [mm],diameter [mm]\n0," + 200_000 * "1" + "\n", "line 2: must be shorter; got "),
-    "a picture": (
-        b"\x89PNG\r\n\x1a\n" + bytes(range(256)),
-        "must be text, a table of numbers; got a file of another kind",
-    ),
-}
-
 
 def drawn(points: tuple[tuple[float, float], ...]) -> cf.Cue:
     pairs = itertools.pairwise(points)
@@ -242,19 +161,6 @@ def test_read_as_meant(name: str, tmp_path: Path) -> None:
     assert tuple(told) == (*odd.said, *SOLID)
 
 
-@pytest.mark.parametrize("name", REFUSED)
-def test_refused_in_words(name: str, tmp_path: Path) -> None:
-    content, words = REFUSED[name]
-    path = written(tmp_path, content)
-    with pytest.raises(InputError) as caught:
-        cf.load(path)
-    line = str(caught.value).removeprefix(f"{path}: ")
-    assert line.startswith(words)
-    assert len(line.splitlines()) == 1
-    status, out, err = call("modes", path)
-    assert (status, out, err) == (2, "", f"cuefem: {caught.value}\n")
-
-
 def test_the_unit_of_a_profile_that_names_none(tmp_path: Path) -> None:
     path = written(tmp_path, "x,diameter\n0,0.5\n13,0.52\n29,0.85\n")
     found = cf.load(path, length_unit="in")
@@ -264,13 +170,6 @@ def test_the_unit_of_a_profile_that_names_none(tmp_path: Path) -> None:
     path = written(tmp_path, "x,diameter\n0,0.5\n13,0.52\n29,0.85\n")
     with pytest.raises(InputError, match="length unit: must be a unit of length, such as mm; got 'kg'"):
         cf.load(path, length_unit="kg")
-
-
-def test_the_notes_stand_where_results_are_read(tmp_path: Path) -> None:
-    path = written(tmp_path, READ["it begins after 0"].content)
-    status, out, _ = call("modes", path, "--body-mass", "15 oz", "--material", "Hard Maple")
-    assert status == 0
-    assert "the shaft begins at its first point, x = 10 mm: nothing is drawn before it" in " ".join(out.split())
 
 
 @pytest.mark.parametrize("name", ["spreadsheet.xlsx", "shaft.ods", "shaft.txt", "shaft.tsv"])

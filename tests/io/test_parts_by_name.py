@@ -1,4 +1,4 @@
-"""Cues that are put together from parts by name: the shapes, the words in every place, and what is refused."""
+"""Cues that are put together from parts by name: the shapes, and the words in every place."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ import cuefem as cf
 from cuefem.io.shelf import SHAFTS
 from cuefem.materials import LEATHERS, MATERIALS, TIPS
 from tests.helpers.command_line import call
-from tests.helpers.refusals import command_refuses
 
 ROOT = Path(__file__).parents[2]
 CONE = 'shaft = "conical taper"\nbody_mass = "15 oz"\n'
@@ -74,24 +73,6 @@ def test_the_list_has_every_part_with_its_source() -> None:
             assert len(source) > 20
             assert name in out
     assert all("assumed" in record["tips"][name] for name in TIPS)
-
-
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ('shaft = "conical tapr"', "got 'conical tapr'; did you mean 'conical taper'?"),
-        ('shaft = 3\nferrule = "25 mm melamine"', 'shaft: must be a text, such as "conical taper"; got 3'),
-        (f'{CONE}ferrule = "25 mm melamin"', "no material is called 'melamin'; nearest: melamine"),
-        (f'{CONE}material = "hard mapel"', "no material is called 'hard mapel'; nearest: hard maple"),
-        (f'{CONE}bore = "wide"', "bore must be a width and a depth"),
-        (f"{CONE}segments = []", "segments: must be left out beside shaft, which draws them"),
-        (f'{CONE}tip = "soft"', "parts.toml: tip: "),
-    ],
-)
-def test_what_is_refused(text: str, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    written(tmp_path, text)
-    monkeypatch.chdir(tmp_path)
-    command_refuses(said, "modes", "parts.toml")
 
 
 def test_an_unknown_tip_is_one_line_with_the_nearest(tmp_path: Path) -> None:

@@ -41,21 +41,12 @@ LENGTH = r'a length with its unit, such as "12 mm"'
 # What is replaced in a good file, by what, and the line that says so.
 CHANGES = [
     (CUE, '"700 mm"', '"-700 mm"', "segments[0].length: must be more than 0 and at most 1000 m; got -700 mm"),
-    (CUE, '"700 mm"', '"0 mm"', "segments[0].length: must be more than 0 and at most 1000 m; got 0 mm"),
-    (CUE, '"700 mm"', '"nan mm"', "segments[0].length: must be more than 0 and at most 1000 m; got nan mm"),
     (CUE, '"700 mm"', '"inf mm"', "segments[0].length: must be more than 0 and at most 1000 m; got inf mm"),
     (CUE, '"700 mm"', '"1e999 mm"', "segments[0].length: must be a number that is not so large; got 1e999 mm"),
-    (CUE, '"700 mm"', '"1e-999 mm"', "segments[0].length: must be more than 0 and at most 1000 m; got 1e-999 mm"),
-    (CUE, '"700 mm"', "700", 'segments[0].length: needs a unit: "0.5 in" or "12.7 mm"; got 700'),
     (CUE, '"700 mm"', '"700"', 'segments[0].length: needs a unit: "0.5 in" or "12.7 mm"; got \'700\''),
-    (CUE, '"700 mm"', '"mm"', f"segments[0].length: must be {LENGTH}; got 'mm'"),
-    (CUE, '"700 mm"', '"700 g"', f"segments[0].length: must be {LENGTH}; got '700 g', which is a mass"),
-    (CUE, '"700 mm"', '"700 mmm"', f"segments[0].length: must be {LENGTH}; got '700 mmm': no unit is called"),
     (CUE, '"700 mm"', '"700 m^9^9^9^9"', f"segments[0].length: must be {LENGTH}; got '700 m^9^9^9^9'"),
-    (CUE, '"700 mm"', "true", f"segments[0].length: must be {LENGTH}; got True"),
     (CUE, '"700 mm"', "[]", f"segments[0].length: must be {LENGTH}; got []"),
     (CUE, 'length = "700 mm"\n', "", f"segments[0].length: must be given, {LENGTH}; got nothing"),
-    (CUE, '"12 mm"', '"-12 mm"', "segments[0].tip_diameter: must be more than 0 and at most 10000 mm; got -12 mm"),
     (CUE, '"21 mm"', '"0 in"', "segments[0].butt_diameter: must be more than 0 and at most 393.701 in; got 0 in"),
     (
         CUE,
@@ -64,8 +55,6 @@ CHANGES = [
         "segments[0].tip_bore: must be at least 0 and less than 12 mm, its outer diameter; got 13 mm",
     ),
     (CUE, "kappa = 0.9", "kappa = 1.5", "segments[0].kappa: must be more than 0 and at most 1; got 1.5"),
-    (CUE, "kappa = 0.9", "kappa = nan", "segments[0].kappa: must be more than 0 and at most 1; got nan"),
-    (CUE, "kappa = 0.9", 'kappa = "0.9"', "segments[0].kappa: must be a bare number, more than 0 and at most 1; got"),
     (
         CUE,
         "kappa = 0.9",
@@ -73,7 +62,6 @@ CHANGES = [
         f"segments[0].kappa: must be more than 0 and at most 1; got {'9' * 57}",
     ),
     (CUE, '"420 g"', '"-1 g"', "body_mass: must be 0 g or more; got -1 g"),
-    (CUE, '"12.6 GPa"', '"0 GPa"', "segments[0].material.E: must be more than 0 GPa; got 0 GPa"),
     (
         CUE,
         '"840 MPa"',
@@ -110,32 +98,25 @@ CHANGES = [
     (CUE, "[[segments]]", "[segments]", "segments: must be an array of tables; got {'length': '700 mm'"),
     (CUE, '{ E = "12.6 GPa"', '"hard mapel" #', "segments[0].material: "),
     (CUE, "kappa = 0.9", "core = 3", "segments[0].core: must be a table with the keys E, G, rho, loss, nu"),
-    (SCENE, "0.3", "1.5", "stroke.offset: must be between -1 and 1; got 1.5"),
-    (SCENE, "0.3", "-1", "stroke.offset: must be between -1 and 1; got -1"),
-    (SCENE, "0.3", "nan", "stroke.offset: must be between -1 and 1; got nan"),
-    (SCENE, '"1 ms"', '"1 mm"', 'tip.contact_time: must be a time with its unit, such as "1.2 ms"'),
-    (SCENE, '"1 ms"', '"1 ms"\nstiffness = "1e5 N/m"', "tip: Tip takes contact_time (s) or stiffness (N/m)"),
+    (SCENE, '"kim"', '"chess"', "game: must be one of pool, carom, snooker, kim; got 'chess'"),
     (
         SCENE,
-        "[ball]",
-        "[bal]",
-        "bal: must be one of the keys segments, cue, ball, tip, stroke, effects, game, accuracy; got",
+        '"kim"',
+        '"snoker"',
+        "game: must be one of pool, carom, snooker, kim; got 'snoker'; did you mean 'snooker'?",
     ),
+    (SCENE, '"kim"', "3", "game: must be one of pool, carom, snooker, kim; got 3"),
+    (SCENE, "[ball]", "[bal]", "bal: must be one of the keys segments, cue, ball, tip, stroke"),
+    (SCENE, "0.3", "1.5", "stroke.offset: must be between -1 and 1; got 1.5"),
+    (SCENE, '"1 ms"', '"1 mm"', 'tip.contact_time: must be a time with its unit, such as "1.2 ms"'),
+    (SCENE, '"1 ms"', '"1 ms"\nstiffness = "1e5 N/m"', "tip: Tip takes contact_time (s) or stiffness (N/m)"),
     (SCENE, "[ball]", "[accuracy]\nrtol=2\n[ball]", "accuracy.rtol: must be between 0 and 1; got 2"),
-    (SCENE, "[ball]", "[accuracy]\nrtl=2\n[ball]", "accuracy.rtl: must be one of the keys rtol; got rtl = 2"),
     (SCENE, "[cue]", "[cue]\ncoupling = '99 1/kg'", "cue.coupling: must be in ("),
     (SCENE, 'mass = "540 g"\n', "", "cue.mass: must be given, a mass with its unit"),
     (SCENE, "[cue]", "effects = 3\n[cue]", "effects: must be an array"),
     (SCENE, "[cue]", "effects = [{}]\n[cue]", "effects[0].type: must be one of "),
     (SCENE, "[cue]", "effects = [{type = 'PontMass'}]\n[cue]", "effects[0].type: must be one of "),
-    (
-        SCENE,
-        "[cue]",
-        "effects = [{type = 'Support', position = '8 in', stiffness = '1e999 N/m'}]\n[cue]",
-        "effects[0].stiffness: must be a number that is not so large; got 1e999 N/m",
-    ),
     (SCENE, "[cue]", "cue = 3\n[cew]", "cew: must be one of the keys"),
-    (CUE, '"12 mm"', '"20,5 mm"', f"segments[0].tip_diameter: must be {LENGTH}; got '20,5 mm'; a decimal"),
     (
         *(CUE, 'length = "700 mm"', "length = 700 mm"),
         "must be TOML; got a syntax error: Expected newline or end of document after a statement "
@@ -288,6 +269,7 @@ def test_options_are_for_the_files_that_lack_them(tmp_path: Path) -> None:
 
 
 HEADER = "x [mm],diameter [mm]\n"
+CONE = b'shaft = "conical taper"\nbody_mass = "15 oz"\n'
 NO_FACES = "faces: must be triangles", "must be a ."
 TOML: list[tuple[bytes, str]] = [
     (b"", "must hold a cue or a scene; got an empty file"),
@@ -301,26 +283,103 @@ TOML: list[tuple[bytes, str]] = [
     (b"cue = 'missing.toml'\n", "cue: missing.toml: cannot be read: No such file or directory"),
     (b"segments = []\n", "segments: must hold at least one Segment; got none, a cue without mass"),
     (b"[[segments]]\n", "segments[0].length: must be given"),
+    (b"ball = 3\n[cue]\nmass = '540 g'\nend_mass = '6 g'\n", "ball: must be a table"),
+    (
+        b'shaft = "conical tapr"',
+        "shaft: must be one of pro taper, conical taper, low deflection, carbon; got 'conical tapr'",
+    ),
+    (b'shaft = 3\nferrule = "25 mm melamine"', 'shaft: must be a text, such as "conical taper"; got 3'),
+    (CONE + b'ferrule = "25 mm melamin"', "shaft: no material is called 'melamin'; nearest: melamine"),
+    (CONE + b'material = "hard mapel"', "shaft: no material is called 'hard mapel'; nearest: hard maple"),
+    (CONE + b'bore = "wide"', "shaft: bore must be a width and a depth"),
+    (CONE + b"segments = []", "segments: must be left out beside shaft, which draws them"),
+    (CONE + b'tip = "soft"', "tip: "),
 ]
-PROFILES: list[tuple[str, str]] = [
+PROFILES: list[tuple[str | bytes, str]] = [
     ("", "must hold a cue or a scene; got an empty file"),
     ("# x\n", 'must begin with the header "x [mm],diameter [mm]"; got comments alone'),
-    (
-        HEADER + "0,12,5\n",
-        "line 2: must have no more numbers than there are columns, 2; got '0,12,5'; where commas part",
-    ),
     (HEADER, "must hold at least 2 points; got 0"),
     (HEADER + "0,12\n", "must hold at least 2 points; got 1"),
-    (HEADER + "0,12\n350\n", "line 3, diameter: must be a number; got nothing"),
-    (HEADER + "0,12\n700,wide\n", "line 3, diameter: must be a number; got 'wide'"),
     (HEADER + "0,12\n\n700,-21\n", "line 4, diameter: must be more than 0 and at most 10000 mm; got -21 mm"),
     (HEADER + "0,12\n700,0\n", "line 3, diameter: must be more than 0 and at most 10000 mm; got 0 mm"),
     (HEADER + "nan,12\n700,0\n", "line 2, x: must be a finite number of mm; got nan mm"),
     (
-        HEADER + "0,12\n700,21\n350,16\n",
-        "line 4, x: must be beyond 700 mm, the x of the line before (points run from tip to butt); got '350 mm'",
+        "x,diameter\n0,12.75\n330,13.2\n736.6,21.5\n",
+        'line 1: the columns have no unit: write "x [mm],diameter [mm]", if these are mm, or give --length-unit',
     ),
-    (HEADER + "0,12\n0,21\n", "line 3, x: must be beyond 0 mm, the x of the line before"),
+    (
+        "x [mm],diameter\n0,0.5\n330,0.52\n736.6,0.85\n",
+        "line 1: the column 'diameter' has no unit: write one in brackets, such as \"diameter [mm]\", or give --length",
+    ),
+    (
+        "0,12.75\n330,13.2\n736.6,21.5\n",
+        "line 1: must name the columns, such as \"x [mm],diameter [mm]\"; got numbers, '0,12.75'",
+    ),
+    (
+        "a,b\n1,2\n3,4\n",
+        "line 1: must name one column for the place along the shaft and one for the dia",
+    ),
+    (
+        "x [mm],diameter [mm]\n0,0,12,75\n330,0,13,2\n736,6,21,5\n",
+        "line 2: must have no more numbers than there are columns, 2; got '0,0,12,75'; where commas part the columns, "
+        "write decimal points, or part the columns by semicolons",
+    ),
+    (b"PK\x03\x04" + bytes(60), "is a spreadsheet, not a .csv: in its program, save it as CSV"),
+    (
+        "distance from butt [mm],diameter [mm],bore [mm]\n0,21.5,\n736.6,12.75,6\n",
+        "line 1, x: must run from tip to butt where a bore or a material stands beside it: each holds from its row on",
+    ),
+    (
+        "x [mm],diameter [mm],bore [mm]\n736.6,21.5,\n0,12.75,6\n",
+        "line 1, x: must run from tip to butt where a bore or a material stands beside it",
+    ),
+    (
+        "x [mm],diameter [mm],bore\n0,12.75,6\n736.6,21.5,\n",
+        "line 1: the column 'bore' has no unit: write one in brackets",
+    ),
+    (
+        "x [mm],diameter [mm],bore [mm]\n0,12.75,12.75\n736.6,21.5,\n",
+        "line 2, bore: must be less than 12.75 mm, the diameter there; got 12.75 mm",
+    ),
+    (
+        "x [mm],diameter [mm],bore [mm]\n0,12.75,-6\n736.6,21.5,\n",
+        "line 2, bore: must be 0 to 10000 mm; got -6 mm",
+    ),
+    (
+        "x [mm],diameter [mm],material\n0,12.75,hard mapel\n736.6,21.5,\n",
+        "line 2, material: no material is called 'hard mapel'; nearest: hard maple",
+    ),
+    (
+        "x [mm],diameter 1 [mm],diameter 2 [mm]\n0,12.75,12.9\n736.6,21.5,21.4\n",
+        "line 1: two columns may be the diameter, 'diameter 1 [mm]' and 'diameter 2 [mm]', and they differ: keep one",
+    ),
+    (
+        "x [mm],diameter [mm]\n0,12.75\n736.6,21.5\n330,13.2\n",
+        "line 4, x: must be beyond 736.6 mm, the x of the line before (points run from tip to butt); got '330 mm'",
+    ),
+    (
+        "x [mm],diameter [mm]\n0,12.75\n25,12.75\n25,13\n736.6,21.5\n",
+        "line 4, x: must be beyond 25 mm, the x of the line before (points run from tip to butt); got '25 mm'; a step "
+        "in the diameter is two points a little apart, such as 25 and 25.1 mm",
+    ),
+    (
+        "x [mm],diameter [mm]\n0,12.75\n330,about 13\n736.6,21.5\n",
+        "line 3, diameter: must be a number; got 'about 13'",
+    ),
+    ("x [mm],diameter [mm]\n0,12.75\n330,\n736.6,21.5\n", "line 3, diameter: must be a number; got nothing"),
+    (
+        "x [mm];diameter [mm]\n0;12.75\n330,5;13.2\n736.6;21.5\n",
+        "line 3, x: must be written with the decimal point of the other numbers; got '330,5'",
+    ),
+    (
+        "x [kg],diameter [mm]\n0,12\n700,21\n",
+        "line 1, x: must be in a unit of length, such as mm; got 'kg'",
+    ),
+    ("x [mm],diameter [mm]\n0," + 200_000 * "1" + "\n", "line 2: must be shorter; got "),
+    (
+        b"\x89PNG\r\n\x1a\n" + bytes(range(256)),
+        "must be text, a table of numbers; got a file of another kind",
+    ),
 ]
 SURFACE_FILES: list[tuple[str, bytes, str | tuple[str, str]]] = [
     ("shaft.stl", b"", NO_FACES),
@@ -337,7 +396,7 @@ SURFACE_FILES: list[tuple[str, bytes, str | tuple[str, str]]] = [
 ]
 FILES = [
     *(("file.toml", content, line) for content, line in TOML),
-    *(("shaft.csv", content.encode(), line) for content, line in PROFILES),
+    *(("shaft.csv", c if isinstance(c, bytes) else c.encode(), line) for c, line in PROFILES),
     *SURFACE_FILES,
 ]
 
@@ -346,7 +405,6 @@ FILES = [
 def test_contents(tmp_path: Path, name: str, content: bytes, line: str | tuple[str, str]) -> None:
     path = tmp_path / name
     path.write_bytes(content)
-    with pytest.raises(InputError) as caught:
-        cf.load(path)
-    assert len(str(caught.value).splitlines()) == 1
-    assert str(caught.value).removeprefix(f"{path}: ").replace(f"{tmp_path}/", "").startswith(line)
+    said = refused(path)
+    assert said.replace(f"{tmp_path}/", "").startswith(line)
+    assert call("modes", path) == (2, "", f"cuefem: {path}: {said}\n")

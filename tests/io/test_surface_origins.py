@@ -91,20 +91,3 @@ def test_the_command_reads_it(tmp_path: Path, name: str) -> None:
     sizes = found.segments[0].tip_diameter, found.segments[-1].butt_diameter
     round16 = np.sqrt(16 / 2 * np.sin(2 * np.pi / 16) / np.pi)  # of the disc that 16 facets are as large as
     assert sizes == pytest.approx((0.012 * round16, 0.021 * round16), rel=1e-4)
-
-
-@pytest.mark.parametrize("command", ["modes", "end-mass"])
-def test_numbers_come_out(tmp_path: Path, command: str) -> None:
-    (tmp_path / "shaft.stl").write_bytes(ascii_stl())
-    status, out, _ = call(command, tmp_path / "shaft.stl")
-    assert status == 0
-    assert "shaft.stl" in out
-
-
-@pytest.mark.heavy
-def test_a_report_comes_out(tmp_path: Path) -> None:
-    (tmp_path / "shaft.stl").write_bytes(ascii_stl(end="\r\n"))
-    status, out, _ = call("report", tmp_path / "shaft.stl", "-o", tmp_path / "page.html")
-    assert status == 0
-    assert (tmp_path / "page.html").read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
-    assert out.endswith("page.html\n")
