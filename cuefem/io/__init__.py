@@ -116,7 +116,7 @@ def _load_cue(path: Path, material: str | None = None, length_unit: str | None =
     if ending == ".toml":
         return load_cue(path)
     if ending in _MESHES:
-        from cuefem.io.mesh import load_mesh
+        from cuefem.io.mesh_files import load_mesh
 
         return load_mesh(path)
     if ending in SHAPES:
