@@ -169,10 +169,6 @@ class StickLimit:
         masses = np.divide(1.0, rest, out=np.full(np.shape(rest), np.nan), where=rest > 0)
         return masses if np.ndim(masses) else masses[()]
 
-    def coupling(self, J: Any, end_mass: Any) -> Any:
-        """The coupling per sin(phi) with which ``end_mass`` takes the transverse impulse J, 1/kg."""
-        return (J * (1 / end_mass + self.c) - (self.K - 1)) / ((1 + self.e) * self.head_on_mass)
-
 
 def stick_reason(slope: float) -> str:
     """The reason why no end mass has this squirt over phi."""

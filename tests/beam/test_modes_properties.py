@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cuefem import Ball, Cue, Material, Resolution, Scene, Segment, Tip, end_mass, modes
-from cuefem.beam.waves import modes_below
+from cuefem.beam.waves import modes_below, wave_phase
 from tests.helpers.cues import kim, scaled
 
 WOOD, SOFT, STIFF = Material(12e9, 0.8e9, 700.0), Material(0.1e9, 0.036e9, 1000.0), Material(200e9, 77e9, 7850.0)
@@ -120,3 +120,16 @@ def test_a_longer_pulse_feels_more(T: float, longer: float, drive: str) -> None:
     at = Resolution(2, 20, 25)
     short, long = (end_mass(Scene(kim(), tip=Tip(contact_time=t)), drive, at) for t in (T, T * longer))  # type: ignore[arg-type]
     assert 0 < short < long < kim().shaft_mass
+
+
+@given(cues(), st.floats(100.0, 1e5))
+@settings(max_examples=40)
+def test_waves_turn_as_often_either_way_along_a_cue(cue: Cue, omega: float) -> None:
+    """The phase of a piece is that of the piece turned round; of the whole cue, of all pieces in any order."""
+    turned = replace(
+        cue,
+        segments=tuple(
+            replace(s, tip_diameter=s.butt_diameter, butt_diameter=s.tip_diameter) for s in reversed(cue.segments)
+        ),
+    )
+    np.testing.assert_allclose(wave_phase(turned, omega)[:, ::-1], wave_phase(cue, omega), rtol=1e-12, atol=1e-12)
