@@ -24,7 +24,8 @@ LONGEST = 200
 # A tip of a small restitution e unloads 1/e times as fast as it loads, and to follow that takes longer than anybody
 # waits. Such tips are refused below the first number (e = 0, a dead tip, is another law), and leather below the second.
 LEAST_RESTITUTION, LEAST_OF_LEATHER = 1e-4, 0.1
-# What the last terms of a step may add, as a part of the blow's impulse; rings make forces with many small kinks.
+# What the last terms of a step may add, as a part of the blow's impulse. Forces of rings have many small kinks, but not
+# along the blow, where the kernel asks for a tenth.
 TOLERANCE, LEATHER_TOLERANCE, RINGED_TOLERANCE = 1e-11, 1e-10, 3e-7
 RINGS, DEEPER = 120, 1.05  # even in the root of the compression, up to so many times a head-on blow's greatest
 RIGID_PATCH, SPRING_PATCH, RINGED_PATCH = range(3)

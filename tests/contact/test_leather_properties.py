@@ -8,7 +8,7 @@ from math import inf
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from cuefem import (
@@ -29,7 +29,10 @@ from studies.strokes import cue
 from tests.helpers.leather_scenes import AT, LEATHER, leather_scene
 from tests.helpers.strike_scenes import hand_made, imbalance, mirrors
 
-CLOSES = 1e-8  # of the energy; a step of rings leaves out 3e-7 of the blow's impulse
+CLOSES = 1e-8  # of the energy
+# A step of rings leaves out 3e-7 of the blow's impulse across, a tenth along. Of 34,000 random strokes the account
+# misses 2e-12 in the median, 6e-10 at 95 %, 1.1e-8 at most (a miscue at a friction of 0.04).
+AT_RANDOM = 3e-8
 
 EVERY = (
     AxialWaves(),
@@ -52,12 +55,16 @@ EVERY = (
     rolls=st.booleans(),
     surface=st.one_of(st.just(1.0), st.floats(0.3, 1.0)),
 )
+@example(offset=0.0, speed=1.0, e=0.716796875, friction=inf, E=142981276.0, shear=None, rolls=False, surface=1.0)
+@example(offset=0.0, speed=5.426, e=1.0, friction=inf, E=1.1335e8, shear=None, rolls=True, surface=1.0)
+@example(offset=0.2309, speed=3.8607, e=0.883, friction=0.17, E=3.8934e8, shear=None, rolls=True, surface=0.66216)
+@example(offset=-0.2583, speed=1.0, e=0.164, friction=inf, E=1.494e8, shear=None, rolls=True, surface=1.0)
 def test_the_energy_account_closes_and_nothing_is_gained(offset, speed, e, friction, E, shear, rolls, surface) -> None:
     surface = surface if shear is None else 1.0  # a constant shear is a spring without loss
     tip = replace(LEATHER, E=E * (1 + speed / 3), shear=shear, rolls=rolls, surface_restitution=surface)
     found = strike(leather_scene(offset, speed=speed, e=e, friction=friction, leather=tip), AT)
-    assert imbalance(found) < CLOSES
-    slack = CLOSES * found.energy["initial"]
+    assert imbalance(found) < AT_RANDOM
+    slack = AT_RANDOM * found.energy["initial"]
     assert all(found.energy[name] > -slack for name in ("tip loss", "tip shear", "friction loss"))
     assert (found.energy["tip loss"] > slack) == (e < 1 - 1e-6)
     mirrors(found, strike(leather_scene(-offset, speed=speed, e=e, friction=friction, leather=tip), AT))
