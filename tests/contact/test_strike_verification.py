@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from cuefem import Ball, LumpedCue, Outcome, PowerLawTip, Resolution, Scene, Stroke, Tip, impulse, load, strike
 from cuefem.beam.modes import modes
 from cuefem.beam.tail import tail
+from cuefem.contact.impulse_space import inverse_mass
 from cuefem.contact.strike import strike_modes
 from cuefem.tip_modes import default_resolution, tip_modes_from
 from tests.helpers.strike_scenes import (
@@ -64,7 +65,6 @@ def agree(scene: Scene) -> Outcome:
 
 def test_a_lumped_cue_gives_the_impulse_solver_s_answer_in_every_regime():
     seen: Counter[str] = Counter()
-    unlike = 0
 
     @settings(max_examples=300, deadline=None)
     @given(st.one_of(lumped_scenes(), near_miscue_scenes()))
@@ -73,10 +73,11 @@ def test_a_lumped_cue_gives_the_impulse_solver_s_answer_in_every_regime():
     @example(Scene(LumpedCue(0.05, 1.0), Ball(), Tip(0.9, 0.2), Stroke(offset=0.3)))  # slip reversal
     @example(Scene(LumpedCue(0.54, 0.3), Ball(), Tip(1.0, 0.35), Stroke(offset=0.5)))  # late stick
     def everywhere(scene: Scene) -> None:
-        nonlocal unlike
         coupled = agree(scene)
         seen.update([coupled.regime, "jam"] if coupled.jam else [coupled.regime])
-        unlike += coupled.regime != impulse(scene).regime
+        B = inverse_mass(scene.cue, scene.ball, abs(scene.stroke.offset))
+        just_sticks = abs(scene.tip.friction - abs(B.tn / B.tt)) < 1e-12  # a tie, which rounding names
+        assert just_sticks or coupled.regime == impulse(scene).regime
 
     everywhere()
     rng = np.random.default_rng(5)  # heavy cue ends and little friction: the rarer regimes, whatever hypothesis draws
@@ -95,7 +96,6 @@ def test_a_lumped_cue_gives_the_impulse_solver_s_answer_in_every_regime():
         seen.update(["jam"] if outcome.jam else [])
     for regime in ("stick", "late stick", "miscue", "slip reversal", "jam"):
         assert seen[regime] >= 5, (regime, seen)
-    assert unlike <= 5  # a tie of two events, named by rounding
 
 
 @pytest.mark.parametrize("coupling", [-0.8, -0.1, 0.3, 0.8])
