@@ -26,8 +26,7 @@ class Page:
         return [self.scene]
 
     def say(self, words: str) -> None:
-        if words:
-            self.told.append(words)
+        self.told.append(words)
 
     def show_busy(self, busy: bool) -> None:
         self.told.append("busy" if busy else "ready")
@@ -56,30 +55,39 @@ def at_offset(offset: float) -> Scene:
     return replace(scene, stroke=replace(scene.stroke, offset=offset))
 
 
-@pytest.mark.parametrize("moves", [1, 4])
-def test_numbers_come_before_all_else_and_pictures_once_at_the_end(moves: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("cuefem.designer.answering.DRAWN_EVERY", float("inf"))
+def follow(page: Page, offsets: list[float], until: str = "") -> Answering:
+    """The answering of a page that is moved to offsets one after the other, until its pictures are drawn.
 
-    async def answered() -> Page:
-        page = Page(at_offset(0.3))
-        answering = Answering(page)
-        tasks = []
-        for i in range(moves):
-            page.scene = at_offset(0.3 + 0.01 * i)
+    until: what the page must have shown before each further move; without it, moves come 5 ms apart.
+    """
+
+    async def followed() -> Answering:
+        answering, tasks = Answering(page), []
+        for offset in offsets:
+            while tasks and until and until not in page.told:
+                await asyncio.sleep(0.001)
+            page.scene = at_offset(offset)
             tasks.append(asyncio.create_task(answering.moved()))
-            await asyncio.sleep(0.005)
+            await asyncio.sleep(0 if until else 0.005)
         await page.drawn.wait()
-        assert answering.mine is not None
-        assert answering.mine.answers.scene == page.scene  # the newest
-        assert answering.mine.answers.has_end_mass
         for task in tasks:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
-        return page
+        return answering
 
-    told = asyncio.run(answered()).told
-    said = [what for what in told if what != "busy"]
-    assert told[0] == "busy"
+    return asyncio.run(followed())
+
+
+@pytest.mark.parametrize("moves", [1, 4])
+def test_numbers_come_before_all_else_and_pictures_once_at_the_end(moves: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("cuefem.designer.answering.DRAWN_EVERY", float("inf"))
+    page = Page(at_offset(0.3))
+    mine = follow(page, [0.3 + 0.01 * i for i in range(moves)]).mine
+    assert mine is not None
+    assert mine.answers.scene == page.scene  # the newest
+    assert mine.answers.has_end_mass
+    said = [what for what in page.told if what != "busy"]
+    assert page.told[0] == "busy"
     assert said[:2] == ["numbers", "move"]
     assert said[-4:] == ["move", "numbers", "pictures", "more pictures"]  # the strike's, then the end mass's
     assert said.count("pictures") == 1
@@ -93,48 +101,24 @@ def test_a_scene_that_is_begun_twice_at_a_time_has_its_results_in_one_place() ->
         answering = Answering(Page(at_offset(0.3)))
         return await asyncio.gather(*(answering._begun(at_offset(0.3)) for _ in range(2)))
 
-    one, other = asyncio.run(begun())
-    assert one is other
+    first, second = asyncio.run(begun())
+    assert first is second
 
 
 def test_pictures_follow_while_knobs_are_moved_all_the_time(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("cuefem.designer.answering.DRAWN_EVERY", 0.0)
-
-    async def answered() -> Page:
-        page = Page(at_offset(0.3))
-        answering = Answering(page)
-        moving = asyncio.create_task(answering.moved())
-        while "pictures" not in page.told:
-            await asyncio.sleep(0.001)
-        page.scene = at_offset(0.31)
-        other = asyncio.create_task(answering.moved())
-        await page.drawn.wait()
-        for task in (moving, other):
-            task.cancel()
-        await asyncio.gather(moving, other, return_exceptions=True)
-        return page
-
-    told = asyncio.run(answered()).told
-    assert told[: told.index("pictures") + 1] == ["busy", "numbers", "move", "numbers", "pictures"]
+    page = Page(at_offset(0.3))
+    follow(page, [0.3, 0.31], until="pictures")
+    assert page.told[: page.told.index("pictures") + 1] == ["busy", "numbers", "move", "numbers", "pictures"]
 
 
 def test_a_tip_that_is_computed_for_seconds_is_told_and_the_words_go_with_the_answer(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    words: list[str] = []
-
-    async def answered() -> Page:
-        page = Page(at_offset(0.3))
-        page.say = lambda told: page.told.append(told) or words.append(told)  # type: ignore[method-assign,assignment,func-returns-value]
-        moving = asyncio.create_task(Answering(page).moved())
-        await page.drawn.wait()
-        moving.cancel()
-        await asyncio.gather(moving, return_exceptions=True)
-        return page
-
-    asyncio.run(answered())
-    assert words == []
+    at_hand, computed = Page(at_offset(0.3)), Page(at_offset(0.3))
+    follow(at_hand, [0.3])
+    assert not {ONCE, ""} & {*at_hand.told}
     monkeypatch.setattr(Scene, "tip_at_hand", False)
-    told = asyncio.run(answered()).told
-    assert words == [ONCE, ""]
-    assert told[:4] == ["busy", ONCE, "", "numbers"]
+    follow(computed, [0.3])
+    assert computed.told[:4] == ["busy", ONCE, "", "numbers"]
+    assert computed.told.count("") == computed.told.count(ONCE) == 1

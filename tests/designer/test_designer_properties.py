@@ -1,4 +1,4 @@
-"""The designer's knobs: what they leave alone, and that they come back from what they made (properties)."""
+"""The designer's knobs and fields: what they move, what they leave alone, and that it comes back (properties)."""
 
 from __future__ import annotations
 
@@ -13,12 +13,18 @@ from hypothesis import strategies as st
 
 import cuefem as cf
 from cuefem.cli.common import scene_of
+from cuefem.designer import editing
+from cuefem.designer.design import Design
 from cuefem.designer.sliders import choices, sliders, without
 from cuefem.designer.start import first_cue, first_scene
+from cuefem.designer.unit_system import INCHES
+from cuefem.designer.words import head_markup
+from cuefem.effects import effect_kinds
 from cuefem.games import GAMES
+from cuefem.io.ready import PRESETS
 from cuefem.materials import MATERIALS
-from cuefem.parts import outer_diameter, taper_position
-from cuefem.vary import FERRULES, SHAFTS, knobs_of, turned
+from cuefem.parts import materials_in, outer_diameter, taper_position
+from cuefem.vary import FERRULES, SHAFTS, knobs_of, replaced, turned, value_at
 
 ROOT = Path(__file__).parents[2]
 FILES = [*sorted((ROOT / "meshes").glob("*.toml")), *sorted((ROOT / "studies" / "scenes").glob("*.toml"))]
@@ -36,9 +42,14 @@ def close(a: dict[str, Any], b: dict[str, Any]) -> bool:
 def test_knobs_where_they_stand_change_nothing(name: str) -> None:
     scene = SCENES[name]
     assert turned(scene, knobs_of(scene)) is scene
-    for slider in sliders(scene):
-        assert slider.turned(knobs_of(scene), slider.shown(knobs_of(scene))) == knobs_of(scene)
-        assert slider.low <= slider.shown(knobs_of(scene)) <= slider.high
+    own = knobs_of(scene)
+    for slider, metric in zip(sliders(scene, INCHES), sliders(scene), strict=True):
+        for each in (slider, metric):
+            assert each.turned(own, each.shown(own)) == own
+            assert each.low <= each.shown(own) <= each.high
+        assert (slider.unit == "in") == (metric.unit == "mm")
+        for mine, theirs in ((slider.most, metric.most), (slider.least, metric.least)):
+            assert mine / slider.scale == pytest.approx(theirs / metric.scale, rel=1e-9, abs=1e-12)
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -57,66 +68,52 @@ def test_every_slider_moves_what_it_says_and_nothing_else(name: str) -> None:
         assert close(knobs_of(made), wanted), slider.knob
         assert made.cue.length == pytest.approx(scene.cue.length, rel=1e-12)
         assert made.ball == scene.ball
-
-
-@pytest.mark.parametrize("name", SCENES)
-def test_what_has_no_knob_is_kept(name: str) -> None:
-    scene = SCENES[name]
-    own = knobs_of(scene)
-    wanted = {**own, "tip_diameter": own["tip_diameter"] + 1e-4, "joint_compliance": 1e-4}
-    made = turned(scene, wanted)
+    # what has no knob stays, and what the others move
+    made = turned(scene, {**knobs_of(scene), "tip_diameter": own["tip_diameter"] + 1e-4, "joint_compliance": 1e-4})
     assert made.cue.body_mass == scene.cue.body_mass
     assert {s.material for s in made.cue.segments if s.core} == {s.material for s in scene.cue.segments if s.core}
     assert [effect for effect in made.effects if not isinstance(effect, cf.Joint)] == list(scene.effects)
-    assert made.stroke == scene.stroke
-    assert made.tip == scene.tip
+    assert (made.stroke, made.tip) == (scene.stroke, scene.tip)
 
 
-def of(scene: cf.Scene, wanted: dict[str, Any]) -> dict[str, Any]:
-    """A scene's knobs where they are wanted; those that it does not have stay away."""
-    own = knobs_of(scene)
-    return {**own, **{name: value for name, value in wanted.items() if name in own}}
-
-
-@st.composite
-def knobs(draw: st.DrawFn) -> dict[str, Any]:
-    def between(low: float, high: float) -> float:
-        return draw(st.floats(low, high))
-
-    return dict(
-        tip_diameter=between(0.010, 0.014),
-        taper_diameter=between(0.012, 0.016),
-        butt_diameter=between(0.018, 0.024),
-        bore_depth=between(0.01, 0.3),
-        bore_width=between(0.002, 0.007),
-        ferrule_length=between(0.002, 0.04),
-        ferrule_material=MATERIALS[draw(st.sampled_from(FERRULES))].material,
-        shaft_material=MATERIALS[draw(st.sampled_from(SHAFTS))].material,
-        joint_position=between(0.1, 0.7),
-        joint_compliance=between(1e-5, 5e-3),
-        contact_time=between(6e-4, 3e-3),
-        tip_height=between(0.004, 0.012),
-        dome=between(0.0085, 0.02),
-        leather=between(3e7, 4e8),
-        restitution=between(0.5, 0.9),
-        friction=between(0.3, 1.0),
-        bridge_position=between(0.1, 0.5),
-        bridge_stiffness=between(100.0, 1e4),
-        speed=between(0.5, 10),
-        offset=between(0, 0.6),
-        body_mass=between(0, 0.6),
-    )
+RANGES = dict(
+    tip_diameter=(0.010, 0.014),
+    taper_diameter=(0.012, 0.016),
+    butt_diameter=(0.018, 0.024),
+    bore_depth=(0.01, 0.3),
+    bore_width=(0.002, 0.007),
+    ferrule_length=(0.002, 0.04),
+    joint_position=(0.1, 0.7),
+    joint_compliance=(1e-5, 5e-3),
+    contact_time=(6e-4, 3e-3),
+    tip_height=(0.004, 0.012),
+    dome=(0.0085, 0.02),
+    leather=(3e7, 4e8),
+    restitution=(0.5, 0.9),
+    friction=(0.3, 1.0),
+    bridge_position=(0.1, 0.5),
+    bridge_stiffness=(100.0, 1e4),
+    speed=(0.5, 10.0),
+    offset=(0.0, 0.6),
+    body_mass=(0.0, 0.6),
+)
+WOODS = {"ferrule_material": FERRULES, "shaft_material": SHAFTS}
+KNOBS = st.fixed_dictionaries(
+    {knob: st.floats(*ends) for knob, ends in RANGES.items()}
+    | {knob: st.sampled_from([MATERIALS[name].material for name in names]) for knob, names in WOODS.items()}
+)
 
 
 @pytest.mark.parametrize("name", ["meshes/pool_maple", "meshes/pool_hollow", "scenes/snooker"])
-@given(wanted=knobs())
+@given(wanted=KNOBS)
 def test_knobs_come_back_from_the_scene_they_made(name: str, wanted: dict[str, Any]) -> None:
-    wanted = of(SCENES[name], wanted)
-    made = turned(SCENES[name], wanted)
-    found = knobs_of(made)
-    assert close(found, wanted)
-    assert turned(made, found) == made
-    assert made.cue.length == pytest.approx(SCENES[name].cue.length, rel=1e-12)
+    scene = SCENES[name]
+    own = knobs_of(scene)
+    wanted = own | {knob: value for knob, value in wanted.items() if knob in own}
+    made = turned(scene, wanted)
+    assert close(knobs_of(made), wanted)
+    assert turned(made, knobs_of(made)) == made
+    assert made.cue.length == pytest.approx(scene.cue.length, rel=1e-12)
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -138,8 +135,6 @@ def test_a_whole_new_bore_takes_out_its_wood() -> None:
 
 
 def test_the_first_scene_is_the_maple_shaft_of_meshes() -> None:
-    assert first_cue() == cf.load(ROOT / "meshes/pool_maple.toml")
-    assert first_scene() == cf.usual_scene(first_cue())  # as `cuefem designer meshes/pool_maple.toml` opens it
     assert first_scene() == SCENES["meshes/pool_maple"]
 
 
@@ -189,10 +184,6 @@ def test_a_lumped_cue_has_no_knobs() -> None:
 
 
 def test_what_is_unusual_is_not_said_to_be_assumed() -> None:
-    from cuefem.designer.design import Design
-    from cuefem.designer.unit_system import INCHES
-    from cuefem.designer.words import head_markup
-
     scene = replace(first_scene(), ball=cf.Ball(radius=0.05715))
     head = head_markup(Design.of("mine.toml", scene, ["material hard maple"]))
     assert "assumed: material hard maple<" in head
@@ -201,22 +192,7 @@ def test_what_is_unusual_is_not_said_to_be_assumed() -> None:
     assert ">unusual: ball radius 2.250 in" in head_markup(Design.of("mine.toml", scene), INCHES)
 
 
-@pytest.mark.parametrize("name", SCENES)
-def test_sliders_in_inches_turn_the_same_knobs(name: str) -> None:
-    from cuefem.designer.unit_system import INCHES
-
-    own = knobs_of(SCENES[name])
-    for slider, metric in zip(sliders(SCENES[name], INCHES), sliders(SCENES[name]), strict=True):
-        assert slider.turned(own, slider.shown(own)) == own
-        assert (slider.unit == "in") == (metric.unit == "mm")
-        assert slider.low <= slider.shown(own) <= slider.high
-        for mine, theirs in ((slider.most, metric.most), (slider.least, metric.least)):
-            assert mine / slider.scale == pytest.approx(theirs / metric.scale, rel=1e-9, abs=1e-12)
-
-
 def test_half_an_inch_is_saved_as_such() -> None:
-    from cuefem.designer.unit_system import INCHES
-
     tip = sliders(first_scene(), INCHES)[0]
     assert tip.turned(knobs_of(first_scene()), 0.5)["tip_diameter"] == 0.0127
 
@@ -230,3 +206,67 @@ def test_the_bounce_is_labelled_with_its_own_game(game: str) -> None:
     still = replace(scene, effects=tuple(effect for effect in scene.effects if not isinstance(effect, cf.AxialWaves)))
     (label,) = (slider.label for slider in sliders(still) if slider.knob == "restitution")
     assert label == "Bounce of the tip, e"
+
+
+def test_all_ready_cues_and_scenes_are_on_offer() -> None:
+    assert {Path(preset.file).stem for preset in PRESETS} == {path.stem for path in FILES}
+    assert all(preset.measured for preset in PRESETS)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_every_number_is_edited_where_it_is(name: str) -> None:
+    scene = SCENES[name]
+    things = {("ball",): scene.ball, ("tip",): scene.tip, ("stroke",): scene.stroke}
+    things |= {("cue", "segments", i): s for i, s in enumerate(scene.cue.segments)}
+    things |= {("effects", i): e for i, e in enumerate(scene.effects)}
+    for at, thing in things.items():
+        for field in editing.fields_of(thing, at):
+            assert value_at(scene, field.path) == field.value
+            if field.value is None or field.value in (0.0, float("inf")):
+                continue
+            if field.path[-1] == "surface_restitution":  # below 1, its upper bound, it asks for rings that slip
+                continue
+            made = replaced(scene, {field.path: field.value * (1 + 1e-4)})
+            assert value_at(made, field.path) == field.value * (1 + 1e-4)
+            assert replaced(made, {field.path: field.value}) == scene
+
+
+def test_segments_are_split_added_and_removed() -> None:
+    scene = first_scene()
+    halved = editing.split(scene, 1)
+    assert halved.cue.length == pytest.approx(scene.cue.length, rel=1e-15)
+    assert halved.cue.shaft_mass == pytest.approx(scene.cue.shaft_mass, rel=1e-12)
+    longer = editing.added(scene, 3)
+    assert longer.cue.length == pytest.approx(scene.cue.length + 0.05)
+    assert editing.removed(longer, 4) == scene
+    last = replace(scene, cue=replace(scene.cue, segments=scene.cue.segments[1:2]))
+    with pytest.raises(ValueError, match=r"^a cue needs a segment: this is the last one$"):
+        editing.removed(last, 0)
+
+
+def test_a_material_of_ones_own_is_everywhere() -> None:
+    scene = first_scene()
+    i = [m.E for m in materials_in(scene.cue)].index(scene.cue.segments[2].material.E)
+    made = replaced(scene, {("materials", i, "E"): 15e9})
+    assert made.cue.segments[0].core == made.cue.segments[1].material == made.cue.segments[-1].material
+    assert made.cue.segments[1].material.E == 15e9
+
+
+@pytest.mark.parametrize("kind", effect_kinds())
+def test_every_effect_is_switched_on_and_off(kind: str) -> None:
+    scene = replace(first_scene(), effects=())
+    made = editing.with_effect(scene, editing.new_effect(scene, kind))
+    assert type(made.effects[-1]).__name__ == kind
+    assert editing.without_effect(made, 0) == scene
+
+
+@pytest.mark.parametrize("game", GAMES)
+def test_a_game_is_chosen(game: str) -> None:
+    scene = turned(first_scene(), {**knobs_of(first_scene()), "bridge_stiffness": 5e3})
+    if game == "snooker":  # its dome is too round for a tip so wide
+        scene = turned(scene, {**knobs_of(scene), "tip_diameter": 0.0095, "tip_height": 0.004})
+    made = editing.with_game(scene, game)
+    assert editing.game_of(made) == game
+    assert made.stroke.speed == GAMES[game].speed
+    assert cf.Support(0.2032, 5e3) in made.effects
+    assert scene.cue.body_mass == made.cue.body_mass
