@@ -10,7 +10,7 @@ import sys
 from functools import cache
 from importlib import import_module
 from importlib.machinery import PathFinder
-from importlib.util import find_spec, module_from_spec
+from importlib.util import module_from_spec
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +25,7 @@ def lapack() -> Any:
 
 def _alone() -> Any:
     """scipy's module of routines by itself; None if it is not there or does not load alone."""
-    scipy = find_spec("scipy")
+    scipy = PathFinder.find_spec("scipy")  # `find_spec` would load a lazy module
     folders = [str(Path(folder) / "linalg") for folder in (scipy.submodule_search_locations or ())] if scipy else []
     spec = PathFinder.find_spec(NAME, folders)
     if spec is None or spec.loader is None:

@@ -266,9 +266,11 @@ def _rigid_motions(mesh: Mesh, length: float, springs: Array, fixed: NDArray[np.
     for w, x in ((mesh.first, mesh.nodes[:-1]), (mesh.last, mesh.nodes[1:])):
         motions[w, 0], motions[w, 1] = 1.0, x / length
         motions[w + 1, 1] = 1.0
-    if len(fixed) == 0 and not springs.any():
+    resisted = springs != 0
+    resisted[fixed] = True
+    if not resisted.any():
         return motions
-    _, strength, directions = np.linalg.svd(motions[np.union1d(fixed, np.flatnonzero(springs))])
+    _, strength, directions = np.linalg.svd(motions[resisted])
     rank = int(np.sum(strength > 1e-12 * strength[0]))
     return motions @ directions[rank:].T
 

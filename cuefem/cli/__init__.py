@@ -8,12 +8,12 @@ import warnings
 from collections.abc import Callable
 from contextlib import suppress
 from importlib import import_module
-from importlib.metadata import version
 from typing import Any, NoReturn
 
 import click
 from click.shell_completion import CompletionItem
 
+from cuefem import __version__
 from cuefem.contact.kernel import KernelError
 from cuefem.quantity.slips import FormerFile, Unusual
 
@@ -175,7 +175,7 @@ def _forget_output() -> None:
 def _version(ctx: click.Context, _: click.Parameter, asked: bool) -> None:
     if not asked or ctx.resilient_parsing:
         return
-    click.echo(f"cuefem, version {version('cuefem')}")
+    click.echo(f"cuefem, version {__version__}")
     ctx.exit()
 
 
