@@ -15,14 +15,9 @@ import pytest
 import cuefem as cf
 from cuefem.results.quantities import degrees
 from tests.helpers.command_line import call
-from tests.helpers.designer_browser import BROWSER, launched, opened, served, settled, shown
+from tests.helpers.designer_browser import downloaded, launched, needs_browser, opened, served, settled, shown
 
-pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
-pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
-pytestmark = [
-    pytest.mark.heavy,
-    pytest.mark.skipif(BROWSER is None, reason="needs Chromium: apt-get install chromium"),
-]
+pytestmark = needs_browser()
 # As a spreadsheet of a German maker leaves it: semicolons, decimal commas, a note, a row of notes, a blank line.
 SLOPPY = """\ufeffMy shaft, March;;;;;
 Pos. [mm];Diameter [mm];Bore (mm);material;core;remark
@@ -56,15 +51,6 @@ def verdict(file: Path, *options: str) -> float:
     return float(said)
 
 
-def saved(page: Any, button: str, folder: Path) -> Path:
-    """What a button of the page writes."""
-    with page.expect_download() as waiting:
-        page.get_by_role("button", name=button).click()
-    path = folder / waiting.value.suggested_filename
-    waiting.value.save_as(path)
-    return path
-
-
 def test_a_sloppy_table_its_best_change_and_the_printed_report(page: Any, browser: Any, tmp_path: Path) -> None:
     mine = tmp_path / "mine.csv"
     mine.write_text(SLOPPY, encoding="utf-8")
@@ -90,14 +76,14 @@ def test_a_sloppy_table_its_best_change_and_the_printed_report(page: Any, browse
         assert shown(page, "squirt") == degrees(row["squirt"])
     assert rows[0]["squirt"] < rows[1]["squirt"] < before
 
-    best = saved(page, "Save as .toml", tmp_path)
+    best = downloaded(page, "Save as .toml", tmp_path)
     told = page.locator(".verdict .squirt b").inner_text()
     after = cf.strike(cf.load(best)).squirt
     assert after == pytest.approx(rows[0]["squirt"], rel=1e-9)
     assert verdict(best) == pytest.approx(after, rel=1e-9)
     assert told in call("report", best)[1]
 
-    report = saved(page, "Write the report", tmp_path)
+    report = downloaded(page, "Write the report", tmp_path)
     printed = browser.new_page()
     printed.goto(report.as_uri())
     printed.emulate_media(media="print")
@@ -116,7 +102,7 @@ def test_the_handbook_is_a_click_away(page: Any) -> None:
 
 
 def test_beam_theory_is_checked_on_request_as_by_the_command(page: Any, tmp_path: Path) -> None:
-    path = saved(page, "Save as .toml", tmp_path)
+    path = downloaded(page, "Save as .toml", tmp_path)
     page.get_by_role("button", name="Check beam theory").click()
     page.locator(".check", has_text="Computing: step").wait_for()
     page.locator(".check", has_text=json.loads(call("check", path, "--json")[1])["sentence"]).wait_for()

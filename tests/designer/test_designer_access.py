@@ -9,18 +9,13 @@ import pytest
 
 import cuefem as cf
 from cuefem.report.report_page import page as report_page
-from tests.helpers.designer_browser import BROWSER, opened, turn
+from tests.helpers.designer_browser import needs_browser, opened, turn
 from tests.helpers.study_page import study_of_ten_columns
 
-pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
 axe = pytest.importorskip(
     "axe_playwright_python.sync_playwright", reason="needs axe: pip install axe-playwright-python"
 )
-pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
-pytestmark = [
-    pytest.mark.heavy,
-    pytest.mark.skipif(BROWSER is None, reason="needs Chromium: apt-get install chromium"),
-]
+pytestmark = needs_browser()
 ROOT = Path(__file__).parents[2]
 KINDS = [("light", 1280), ("dark", 1280), ("light", 390), ("dark", 390)]
 

@@ -13,14 +13,10 @@ from scipy.io import wavfile
 
 import cuefem as cf
 from cuefem.parts import with_material
-from tests.helpers.designer_browser import BROWSER, opened, served, settled, shown, turn
+from tests.helpers.designer_browser import BROWSER, downloaded, needs_browser, opened, served, settled, shown, turn
 
 sync_api = pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
-pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
-pytestmark = [
-    pytest.mark.heavy,
-    pytest.mark.skipif(BROWSER is None, reason="needs Chromium: apt-get install chromium"),
-]
+pytestmark = needs_browser()
 OUNCE = 28.349523125e-3  # kg
 DRAWING = "position (in);diameter (in)\n0;0,5\n13;0,52\n29;0,85\n"
 WOOD = cf.Material(11.3e9, 1.0e9, 660.0)
@@ -66,15 +62,6 @@ def browser(folder: Path) -> Iterator[Any]:
         found = driver.chromium.launch(executable_path=BROWSER, args=options)
         yield found
         found.close()
-
-
-def downloaded(page: Any, button: str, folder: Path) -> Path:
-    """What a button gives."""
-    with page.expect_download() as waiting:
-        page.get_by_role("button", name=button).click()
-    path = folder / waiting.value.suggested_filename
-    waiting.value.save_as(path)
-    return path
 
 
 def heard(page: Any) -> float:

@@ -8,15 +8,10 @@ from typing import Any
 
 import pytest
 
-from tests.helpers.designer_browser import BROWSER, launched, opened, served, settled
+from tests.helpers.designer_browser import launched, needs_browser, opened, served, settled
 
-pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
 psutil = pytest.importorskip("psutil", reason="needs psutil: pip install psutil")
-pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
-pytestmark = [
-    pytest.mark.heavy,
-    pytest.mark.skipif(BROWSER is None, reason="needs Chromium: apt-get install chromium"),
-]
+pytestmark = needs_browser()
 MOVES, WARM = 500, 160  # the first moves fill what is kept: results, steps to undo, threads
 STOPS, BETWEEN = 3, 40  # memory is the median of this many stops, as many moves apart: one alone may be 15 MB more
 # Bytes. One result or one picture left behind a move would be 50e6 and more in the server; what its allocator holds

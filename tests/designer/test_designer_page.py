@@ -14,25 +14,11 @@ import cuefem as cf
 from cuefem.designer.start import first_scene
 from cuefem.vary import knobs_of
 from tests.helpers.command_line import call
-from tests.helpers.designer_browser import BROWSER, opened, served, settled, shown, turn
+from tests.helpers.designer_browser import downloaded, needs_browser, opened, served, settled, shown, turn
 
-pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
-pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
-pytestmark = [
-    pytest.mark.heavy,
-    pytest.mark.skipif(BROWSER is None, reason="needs Chromium: apt-get install chromium"),
-]
+pytestmark = needs_browser()
 ROOT = Path(__file__).parents[2]
 MOVES = 20
-
-
-def saved(page: Any, folder: Path) -> Path:
-    """The design as its file."""
-    with page.expect_download() as waiting:
-        page.get_by_role("button", name="Save as .toml").click()
-    path = folder / waiting.value.suggested_filename
-    waiting.value.save_as(path)
-    return path
 
 
 def assert_as_commanded(page: Any, path: Path) -> None:
@@ -57,7 +43,7 @@ def assert_as_commanded(page: Any, path: Path) -> None:
 
 def test_moved_sliders_give_the_numbers_of_the_command_line(browser: Any, address: str, tmp_path: Path) -> None:
     with opened(browser, address) as page:
-        assert cf.load(saved(page, tmp_path)) == first_scene()
+        assert cf.load(downloaded(page, "Save as .toml", tmp_path)) == first_scene()
         before = {name: shown(page, name) for name in ("squirt", "end_mass_stick", "mode1", "stiffness", "balance")}
         turn(page, "tip_diameter", "ArrowLeft", 4)
         turn(page, "bore_depth", "PageUp", 3)
@@ -65,7 +51,7 @@ def test_moved_sliders_give_the_numbers_of_the_command_line(browser: Any, addres
         turn(page, "leather", "ArrowRight", 2)
         turn(page, "offset", "ArrowRight", 2)
         assert all(shown(page, name) != was for name, was in before.items())
-        path = saved(page, tmp_path)
+        path = downloaded(page, "Save as .toml", tmp_path)
         made = cf.load(path)
         assert made.cue.segments[0].tip_diameter == pytest.approx(12.55e-3)
         assert made.stroke.offset == pytest.approx(0.32)
@@ -233,7 +219,7 @@ def test_a_person_starts_from_nothing(browser: Any, address: str, tmp_path: Path
         page.get_by_role("button", name="Open it", exact=True).last.click()
         page.get_by_role("heading", level=1, name="mine.csv").wait_for()
         settled(page)
-        made = cf.load(saved(page, tmp_path))
+        made = cf.load(downloaded(page, "Save as .toml", tmp_path))
         assert made.cue.mass == pytest.approx(19 * 28.349523125e-3, rel=1e-9)
         bare = cf.load(tmp_path / "mine.csv", ferrule="25 mm melamine", bore="1/4 in wide, 5 in deep")
         assert made == cf.usual_scene(replace(bare, body_mass=made.cue.body_mass))
@@ -249,7 +235,7 @@ def test_a_person_starts_from_nothing(browser: Any, address: str, tmp_path: Path
         settled(page)
         ready = cf.load(ROOT / "studies" / "scenes" / "pool_low_deflection.toml")
         kept = tuple(effect for effect in ready.effects if not isinstance(effect, cf.Support))
-        assert cf.load(saved(page, tmp_path)) == replace(ready, effects=kept)
+        assert cf.load(downloaded(page, "Save as .toml", tmp_path)) == replace(ready, effects=kept)
 
 
 def test_the_page_asks_for_the_weight_of_a_profile(browser: Any, tmp_path: Path) -> None:
@@ -264,7 +250,7 @@ def test_the_page_asks_for_the_weight_of_a_profile(browser: Any, tmp_path: Path)
         page.get_by_role("button", name="Open it", exact=True).last.click()
         page.get_by_label("Weight, g").wait_for(state="hidden")
         settled(page)
-        made = cf.load(saved(page, tmp_path))
+        made = cf.load(downloaded(page, "Save as .toml", tmp_path))
         assert made.cue.mass == pytest.approx(19 * 28.349523125e-3, rel=1e-9)
         assert made.stroke.speed == 3
         bare = cf.load(file, ferrule="25 mm melamine", material="ash")
@@ -310,7 +296,7 @@ def test_a_file_is_opened_changed_and_taken_back(browser: Any, address: str, tmp
         assert page.locator('[data-knob="ferrule_length"]').count() == 0
         assert page.get_by_text("assumed: a usual stroke of pool").count() == 1
         assert page.get_by_text("e 0.73 of the whole cue head on: 0.63 of its tip").count() == 1
-        path = saved(page, tmp_path)
+        path = downloaded(page, "Save as .toml", tmp_path)
         assert cf.load(path) == cf.usual_scene(cf.load(ROOT / "meshes" / "kim.toml"))
         assert_as_commanded(page, path)
         was = shown(page, "squirt")

@@ -16,14 +16,9 @@ from cuefem.designer.words import MEASURED
 from cuefem.io.ready import PRESETS
 from cuefem.report.report_page import page as report_page
 from cuefem.vary import PLACES, knobs_of
-from tests.helpers.designer_browser import BROWSER, opened, settled
+from tests.helpers.designer_browser import needs_browser, opened, settled
 
-pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
-pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
-browsed = [
-    pytest.mark.heavy,
-    pytest.mark.skipif(BROWSER is None, reason="needs Chromium: apt-get install chromium"),
-]
+browsed = needs_browser()
 MESHES = Path(__file__).parents[2] / "meshes"
 
 

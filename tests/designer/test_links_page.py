@@ -6,15 +6,10 @@ from typing import Any
 
 import pytest
 
-from tests.helpers.designer_browser import BROWSER, opened, settled, shown, turn
+from tests.helpers.designer_browser import needs_browser, opened, settled, shown, turn
 from tests.helpers.designer_links import TEXT, WRONG
 
-pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
-pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
-pytestmark = [
-    pytest.mark.heavy,
-    pytest.mark.skipif(BROWSER is None, reason="needs Chromium: apt-get install chromium"),
-]
+pytestmark = needs_browser()
 LINKS = ("cut off", "knobs [5]", "offset nan", "steps [[-1]]", "many segments", "no end of segments")
 
 

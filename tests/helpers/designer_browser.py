@@ -13,9 +13,18 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 COMMAND = "import sys; from cuefem.cli import main; main()"
 PATIENCE = 90_000  # ms, on a busy machine
+
+
+def needs_browser() -> list[pytest.MarkDecorator]:
+    """Skip a file where nothing can serve or show a page; else the marks of its tests."""
+    pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
+    pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
+    return [pytest.mark.heavy, pytest.mark.skipif(BROWSER is None, reason="needs Chromium: apt-get install chromium")]
 
 
 @contextmanager
@@ -114,6 +123,15 @@ def settled(page: Any) -> None:
 def shown(page: Any, name: str) -> str:
     """A number of the table, as it stands there."""
     return str(page.locator(f'[data-number="{name}"]').inner_text())
+
+
+def downloaded(page: Any, button: str, folder: Path) -> Path:
+    """What a button of the page gives, as a file in the folder."""
+    with page.expect_download() as waiting:
+        page.get_by_role("button", name=button).click()
+    path = folder / str(waiting.value.suggested_filename)
+    waiting.value.save_as(path)
+    return path
 
 
 def turn(page: Any, knob: str, key: str = "ArrowRight", times: int = 1) -> None:
