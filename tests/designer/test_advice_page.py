@@ -15,7 +15,7 @@ import pytest
 import cuefem as cf
 from cuefem.results.quantities import degrees
 from tests.helpers.command_line import call
-from tests.helpers.designer_browser import downloaded, launched, needs_browser, opened, served, settled, shown
+from tests.helpers.designer_browser import downloaded, needs_browser, opened, served, settled, shown
 
 pytestmark = needs_browser()
 # As a spreadsheet of a German maker leaves it: semicolons, decimal commas, a note, a row of notes, a blank line.
@@ -29,12 +29,6 @@ Pos. [mm];Diameter [mm];Bore (mm);material;core;remark
 736,6;21,5;;;;joint
 """
 BODY = ("--body-mass", "425 g")
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    with launched() as found:
-        yield found
 
 
 @pytest.fixture(scope="module")

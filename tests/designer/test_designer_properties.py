@@ -192,11 +192,6 @@ def test_what_is_unusual_is_not_said_to_be_assumed() -> None:
     assert ">unusual: ball radius 2.250 in" in head_markup(Design.of("mine.toml", scene), INCHES)
 
 
-def test_half_an_inch_is_saved_as_such() -> None:
-    tip = sliders(first_scene(), INCHES)[0]
-    assert tip.turned(knobs_of(first_scene()), 0.5)["tip_diameter"] == 0.0127
-
-
 @pytest.mark.parametrize("game", GAMES)
 def test_the_bounce_is_labelled_with_its_own_game(game: str) -> None:
     """What a tip by itself needs for a cue's 0.73 is another number in each game; without waves none stands."""

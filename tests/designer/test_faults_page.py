@@ -22,17 +22,15 @@ browsed = needs_browser()
 MESHES = Path(__file__).parents[2] / "meshes"
 
 
-def test_a_place_is_labelled_as_it_is() -> None:
-    labels = [slider.label for slider in sliders(first_scene())]
-    assert "Taper, at 330.2 mm" in labels
-    assert "Taper, at 13 in" in [slider.label for slider in sliders(first_scene(), INCHES)]
-
-
-def test_inches_have_no_more_digits_than_a_maker_reads() -> None:
+def test_a_place_is_labelled_as_it_is_with_no_more_digits_than_a_maker_reads() -> None:
+    assert "Taper, at 330.2 mm" in [slider.label for slider in sliders(first_scene())]
+    inches = {slider.knob: slider for slider in sliders(first_scene(), INCHES)}
+    assert "Taper, at 13 in" in [slider.label for slider in inches.values()]
     knobs = knobs_of(first_scene())
-    texts = {slider.knob: slider.text(slider.shown(knobs)) for slider in sliders(first_scene(), INCHES)}
+    texts = {knob: slider.text(slider.shown(knobs)) for knob, slider in inches.items()}
     assert texts["tip_diameter"] == "0.502"
     assert max(len(text.partition(".")[2]) for text in texts.values()) <= 4
+    assert inches["tip_diameter"].turned(knobs, 0.5)["tip_diameter"] == 0.0127  # half an inch is saved as such
 
 
 # Cells with one word that takes two lines.
