@@ -30,9 +30,9 @@ class System:
 
     K, M: (unknowns, unknowns), arrays or sparse (`suits_dense`). rigid: (unknowns, r), the exact
     rigid motions that stay free (two for a free cue). dashpots: diagonal of the viscous matrix, None without one.
-    fixed: unknowns that a clamp takes out. shift: a square frequency of the order of the lowest mode's, rad2/s2.
-    section: at the Gauss points, arrays (elements, q). roots: (elements, 2 q, u), whose squares roots' roots are the
-    elements' stiffness (`stiffness_roots`); with columns of the bubbles that an element of a low order does not have.
+    fixed: unknowns that a clamp takes out. shift: a square frequency of the order of the lowest mode's, rad2/s2, with
+    which K + shift M is regular where K is not. section: at the Gauss points, arrays (elements, q). roots:
+    (elements, 2 q, u): roots.T @ roots is an element's stiffness (`stiffness_roots`).
     springs: the part of K's diagonal that effects add. links: the springs of joints. tied: (n, 2) pairs of unknowns
     (tip side, butt side) that a joint keeps equal.
     """
@@ -63,7 +63,7 @@ class System:
         return scipy.sparse.csc_matrix((np.ones(len(rows)), (rows, columns)), shape=(self.mesh.unknowns, len(free)))
 
     def strains(self, vectors: Array) -> Array:
-        """Strains of unknowns ``vectors`` (unknowns, k), times roots of stiffness, (rows, k): K = strains' strains.
+        """Strains of unknowns ``vectors`` (unknowns, k), times roots of stiffness, (rows, k): K = strains.T @ strains.
 
         First those of bending and of shear at the Gauss points, element by element, then of springs and links. For a
         rigid motion the strains are zero to rounding, while K times it is rounding times the stiffest element.
@@ -138,7 +138,7 @@ def weighted_strains(own: Array, section: Section, sizes: Array, length: Any, or
 
 
 def stiffness_roots(section: Section, sizes: Array, length: float, order: int) -> Array:
-    """The weighted strains of each element's unknowns, (elements, 2 q, u): its stiffness is roots' roots.
+    """The weighted strains of each element's unknowns, (elements, 2 q, u): its stiffness is roots.T @ roots.
 
     Curvatures, then shears, at the Gauss points; ``length`` scales theta.
     """

@@ -116,7 +116,7 @@ def _argument(kind: str, argument: str | None, text: str) -> float | int | None:
     except ValueError:
         number = float("nan")
     if wanted == "mode":
-        if not (number >= 1 and number == int(number)):
+        if not (number >= 1 and number.is_integer()):
             raise ValueError(f"must be {kind}(n), n a whole number >= 1; got {text!r}")
         return int(number)
     if not -1 < number < 1 or (number == 0 and kind == "pivot_length"):

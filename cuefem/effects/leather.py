@@ -108,8 +108,8 @@ class LeatherTip(CueEffect):
     diameter : float, optional
         Diameter of the tip, m, where it is smaller than the end of the ferrule; by default it is flush.
     ferrule : TipLayer, optional
-        The ferrule below, if it gives under the tip; by default it is rigid there. Only what it gives beyond an end
-        section that moves as a whole is added: that the beam has. Two diameters of its height are enough.
+        The ferrule below, if it gives under the tip; by default it is rigid there. Only what it gives in
+        itself is added; the motion of its end section as a whole is the beam's. Two diameters of its height are enough.
 
     Raises
     ------
@@ -350,7 +350,7 @@ class LeatherTip(CueEffect):
         Notes
         -----
         Where the patch reaches over the rim, the traction there is cut off and the rest scaled up. On a steep dome
-        the contact stays short of the rim, where the table ends, and only the directions turn further (b/R > 0.6).
+        (b/R > 0.6) the patch is kept where the table ends, short of the rim, and only normal and tangent turn further.
         """
         self.check_diameter(diameter)
         radii = np.asarray(Quantity("m", f"(0, {diameter / 2}]").check("patch", patch)) / diameter
@@ -371,7 +371,7 @@ class LeatherTip(CueEffect):
         -------
         tuple of ndarray
             Radius of the patch, m; depth by which ball and ferrule have come closer, m; force, N. All start at zero
-            and rise, up to the largest patch, 0.45 diameters wide in radius. Beyond it take the force to go on along
+            and rise, up to the largest patch, of radius 0.45 diameters. Beyond it take the force to go on along
             the slope of the last two points, that of the patch as it is: its edge is at the rim by then.
 
         Notes
@@ -402,8 +402,8 @@ class LeatherTip(CueEffect):
 
         Notes
         -----
-        From the compliance of the Hertz-weighted patch, less what a rigid patch gives less than it: on a half-space a
-        sixth, 0.05 (1 - nu/2)/(G a), and on thin leather what a leather layer as thick as that below the patch has.
+        From the compliance of the Hertz-weighted patch, less the difference between it and a rigid patch: a sixth on a
+        half-space, 0.05 (1 - nu/2)/(G a); on thin leather that of a layer as thick as the leather below the patch.
         """
         give = self._punch(diameter, offset)
         stiffness = np.maximum.accumulate(1 / give[:, 1])  # near the rim it levels off, to a thousandth

@@ -1,7 +1,7 @@
-"""The drives of `cuefem.endmass.undamped` on modes that are damped or radiate.
+"""The drives of `cuefem.endmass.undamped` on modes that are damped or radiate, as the default modes of any cue do.
 
-Where each mode is damped by itself and the tail radiates, in closed form (`cuefem.endmass.poles`). Where dashpots
-couple the modes, each smooth stretch of a drive takes one matrix exponential:
+Where each mode is damped by itself and the tail (what the modes left out add, `cuefem.beam.tail`) radiates, they have
+a closed form (`cuefem.endmass.poles`). Where dashpots couple the modes, each smooth stretch takes a matrix exponential:
 
 z = (omega q, q') of all modes; the tip's transverse velocity is row . z. A tip that must follow a velocity V(t)
 against the ball's inertia 1/c takes the force g with row . z + c J = V, J the integral of g.
@@ -27,7 +27,7 @@ _REACH = 4.25
 
 
 def expm(X: Array) -> Array:
-    """exp(X) by scaling and squaring (Higham, SIAM J. Matrix Anal. Appl. 26 (2005) 1179).
+    """exp(X) by scaling and squaring (Al-Mohy & Higham, SIAM J. Matrix Anal. Appl. 31 (2009) 970).
 
     scipy has it too, but would take half of a cold `cuefem end-mass` to load.
     """
@@ -84,9 +84,9 @@ def _half_sine_velocity(tip: TipModes, T: float) -> float:
 
 def smooth_start_impulse(tip: TipModes, T: float) -> float:
     """Impulse that makes the tip follow the velocity (1 - cos(pi t/T))/2 from 0 to T, N s per m/s."""
-    free = held_tip(tip, 0.0)
-    if free is not None:
-        return float(free.impulse(1.0, undamped.smooth_start_swing(free.rates, T, response)))
+    alone = held_tip(tip, 0.0)  # against no ball
+    if alone is not None:
+        return float(alone.impulse(1.0, undamped.smooth_start_swing(alone.rates, T, response)))
     start = np.zeros(2 * len(tip.omega) + 3)
     start[-2] = np.pi / T / 2  # V' = (a/2) sin(a t)
     return float((expm(_following(tip, 0.0, np.pi / T) * T) @ start)[-1])

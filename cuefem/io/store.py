@@ -47,8 +47,8 @@ TABLES = (
     "CREATE INDEX by_scene ON designs (scene)",
     "CREATE TABLE claims (study BLOB, first INTEGER, sweep BLOB NOT NULL, PRIMARY KEY (study, first)) WITHOUT ROWID",
 )
-# What does not change an answer, of the parts of cuefem.
-EDGES = {"cli", "designer", "frames.py", "handbook", "io", "measured", "plot.py", "ready", "report", "tap"}
+# Parts of cuefem that change no answer: left out of the digest.
+NO_PHYSICS = {"cli", "designer", "frames.py", "handbook", "io", "measured", "plot.py", "report"}
 
 
 def digest(*parts: Any) -> bytes:
@@ -64,13 +64,13 @@ def physics() -> str:
     code = hashlib.blake2b(version("cuefem").encode(), digest_size=16)
     for path in sorted(package.rglob("*")):
         inside = path.relative_to(package)
-        if inside.parts[0] not in EDGES and path.is_file() and path.suffix not in (".pyc", ".so", ".pyd", ".dll"):
+        if inside.parts[0] not in NO_PHYSICS and path.is_file() and path.suffix not in (".pyc", ".so", ".pyd", ".dll"):
             code.update(inside.as_posix().encode() + path.read_bytes())
     return code.hexdigest()
 
 
 def what_it_is(scene: Scene, at: str) -> bytes:
-    """A design's digest. What only its place in memory tells apart, such as a function, is never the same again."""
+    """A design's digest; a random one, never met again, where its text has a place in memory, as a function has."""
     text = spelt_out(scene)
     return digest(physics(), text, at, os.urandom(16) if " at 0x" in text else b"")
 
@@ -97,11 +97,11 @@ class StoredTable(NamedTuple):
 class Store:
     """The designs of a study in a file that may hold those of others; a `cuefem.design.Store` and a context manager.
 
-    InputError, with the file left as it was, if it is none of these files or damaged, and if it has two names (hard
+    InputError, with the file left as it was, if it is no store or a damaged one, and if it has two names (hard
     links): SQLite keeps its journal by the name, so that two sweeps by two names would destroy it.
 
     done: designs of the blocks taken so far that are there. computed: those of them that this sweep computed. damaged:
-    rows that were not as they were written. changes: why a study of this name that was swept before helps nothing.
+    rows that were not as they were written. changes: why designs of an earlier sweep of this name cannot be used.
     """
 
     def __init__(self, path: str | Path, study: Study, name: str = "") -> None:

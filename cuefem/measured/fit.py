@@ -29,10 +29,11 @@ class TapFit:
     otherwise the file's G/E is kept. weighed: whether rho comes from a mass. rivals: other wood that explains the tones
     nearly as well: (E in Pa, odds against it). loss: median loss factor of the tones matched, an upper bound of the
     wood's. misfit: root mean square of the tones' relative distances from their modes, sharp tones counting more.
-    notes: what a person should know, one line each. chance: p-value of tones that are not the shaft's
-    (`cuefem.measured.chance`). shear_coefficients: smallest and largest kappa along the wood; the value of G belongs to
-    them. note: of a string or a voice that explains the tones better than this shaft, if one does
-    (`cuefem.measured.strings`). refusals: reasons not to trust the result, one line each; empty for a sound one.
+    notes: what a person should know, one line each. chance: p-value, the share of random sets of tones that a shaft
+    would fit as well: small is good (`cuefem.measured.chance`). shear_coefficients: smallest and largest kappa
+    along the wood; the tones tell kappa G alone, and G is for these. note: the string or voice that explains the
+    tones better than this shaft, if one does (`cuefem.measured.strings`). refusals: reasons not to trust the
+    result, one line each; empty for a sound one.
     """
 
     cue: Cue

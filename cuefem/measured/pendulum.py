@@ -30,6 +30,11 @@ TIMES = (0.5e-3, 2e-3)  # contact times that say something of a stroke, s
 USUAL = 7e-3  # kg, an end mass to plan for
 
 
+def swing_speed(aside: float, thread: float) -> float:
+    """Speed at the lowest point, m/s, of a ball that began so far aside."""
+    return 2 * math.sqrt(GRAVITY * thread) * abs(_swing(aside, thread))
+
+
 def _height(value: float, thread: float) -> float:
     """The root of a height: proportional to the speed below."""
     return math.copysign(math.sqrt(abs(value)), value)
@@ -58,7 +63,7 @@ WAYS = {
         "m",
         "how far aside the ball swings",
         _swing,
-        lambda d, L: 2 * math.sqrt(GRAVITY * L) * abs(_swing(d, L)),
+        swing_speed,
     ),
     "height": Way("m", "how high it swings", _height, lambda h, _: math.sqrt(2 * GRAVITY * abs(h))),
     "speed": Way("m/s", "its speed", lambda v, _: v, lambda v, _: abs(v)),

@@ -1,18 +1,24 @@
-"""What a pendulum test tells: the end mass, its error budget, what it says about squirt, and how to plan the test."""
+"""What a pendulum test tells (a ball on a thread hits the side of a hanging shaft), and how to plan one.
+
+The end mass, its error budget, and what it says about squirt.
+"""
 
 from __future__ import annotations
 
 from cuefem.measured.outliers import HOLDS_95
-from cuefem.measured.pendulum import GRAVITY, PRESSED, TIMES, USUAL, Told, Weighed, choices, softness
+from cuefem.measured.pendulum import GRAVITY, PRESSED, TIMES, USUAL, Told, Weighed, choices, softness, swing_speed
 from cuefem.results.quantities import with_unit
 from cuefem.results.records import Record, Sheet, sheet
 
 THREAD, SWINGS = 1.0, (0.1, 0.2, 0.3)  # m, of the plan
-PLAN_ERROR = 0.01  # of a ratio of speeds: 1 mm in a swing of 0.2 m, both ways, three times
+PLAN_ERROR = 0.01  # of a ratio of speeds, two swings of 0.2 m read to 1 mm and somewhat more
 
 
 def weigh_record(weighed: Weighed, told: Told | None, lumped: float | None) -> Record:
-    """The end mass, where its error comes from, and what it says about squirt."""
+    """The end mass, where its error comes from, and what it says about squirt.
+
+    told: squirt by the drawing, where there is one; lumped: squirt of a lumped cue with this end mass, rad.
+    """
     test = weighed.test
     record: Record = {
         "end_mass": weighed.end_mass,
@@ -88,8 +94,8 @@ def weigh_sheets(record: Record) -> list[Sheet | str]:
             "",
             f"the drawing has {with_unit(squirt['drawn_end_mass'], 'kg')} in this test",
             f"squirt at b/R {squirt['offset']:g}: by the drawing alone {before}, with this end mass {after}",
-            "(of the coupled strike with its own contact time, dome and tip; what stays open, and a tenth for the "
-            "model, count as error)",
+            "(of the coupled strike with its own contact time, dome and tip; the error includes what the test leaves "
+            "undetermined, and a tenth for the model)",
         ]
     elif record["lumped_squirt"] is not None:
         made += [
@@ -102,7 +108,7 @@ def weigh_sheets(record: Record) -> list[Sheet | str]:
 
 def plan_record(end_mass: float = USUAL, restitution: float = 0.8) -> Record:
     """How to choose ball and thread."""
-    speeds = [2 * (GRAVITY * THREAD) ** 0.5 * (1 - (1 - (d / THREAD) ** 2) ** 0.5) ** 0.5 / 2**0.5 for d in SWINGS]
+    speeds = [swing_speed(d, THREAD) for d in SWINGS]
     return {
         "end_mass": end_mass,
         "restitution": restitution,
@@ -129,7 +135,7 @@ def plan_sheets(record: Record) -> list[Sheet]:
         sheet(
             "How soft",
             {"contact time": "{contact_time:s}", "pressed 0.5 mm into the ferrule by": "{force:.0f} N ({load:.1f} kg)"},
-            [{**pad, "load": pad["force"] / 9.81} for pad in record["softness"]],
+            [{**pad, "load": pad["force"] / GRAVITY} for pad in record["softness"]],
             "By Hertz's law, for a ball as heavy as the end mass and a swing of 0.2 m. A stroke lasts 0.5 to 2 ms.",
             "Press the ball on the ferrule, on a kitchen scale, and give --press and --press-depth.",
             texts=(),

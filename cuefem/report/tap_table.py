@@ -21,14 +21,15 @@ from cuefem.results.records import Entry, Record, Sheet, sheet
 from cuefem.scene import Outcome
 
 UNITS = {
-    **{"frequency": "Hz", "error": "as its number", "decay": "1/s", "clipped": "s", "mains": "Hz", "level": "dB"},
+    **{"frequency": "Hz", "error": "as its number", "decay": "1/s", "clipped": "s", "mains": "Hz"},
+    "level": "of a tone as recorded, of a hum in dB",
     "covariance": "of ln E, ln G/E, ln rho",
 }
 KINDS = {
     "faint": "too faint to tell",
     "steady": "steady hum",
     "harmonic": "sum of other tones?",
-    "twin": "twin of the other",
+    "twin": "second plane of bending, beside a louder tone",
 }
 
 

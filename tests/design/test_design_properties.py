@@ -264,6 +264,7 @@ def test_records_tell_studies_apart() -> None:
         ("end_mass(1)", r"an offset b/R in \(-1, 1\)"),
         ("frequency", r"frequency\(n\), n a whole number >= 1"),
         ("frequency(1.5)", "a whole number"),
+        ("frequency(inf)", "a whole number"),
         ("squirt(1)", r"an offset b/R in \(-1, 1\)"),
         ("squirt(x)", "an offset"),
         ("pivot_length(0)", "without 0"),
