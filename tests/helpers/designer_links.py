@@ -66,7 +66,7 @@ WRONG = {
     "many steps": (spoilt(steps=[[0], [0]]), "must hold 1 step; got 2"),
     "many designs": (spoilt(designs=[["a", 0, {}, []]] * 14), "must hold at most 13 designs; got 14"),
     "many pinned": (spoilt(steps=[[0] * 14]), "must hold at most 12 pinned designs a step"),
-    "many segments": (many_segments(2000), "the designer takes a cue of at most 300 segments; got 2000: draw it with "),
+    "many segments": (many_segments(301), "the designer takes a cue of at most 300 segments; got 301: draw it with "),
     "no end of segments": (many_segments(5000), "this link must hold at most 4 MB of designs"),
     "a path": (spoilt(scenes=[{"cue": "/etc/passwd"}]), "cue: must be a table of its own; got the path of a file"),
     "a lumped cue": (spoilt(scenes=[{"cue": {"mass": "1 kg", "end_mass": "6 g"}}]), "must be a Cue of segments"),
@@ -76,6 +76,9 @@ WRONG = {
     "no name": (spoilt(designs=[[5, 0, {}, []]]), DAMAGED),
     "no list of notes": (spoilt(designs=[["a", 0, {}, 5]]), DAMAGED),
     **{f"knobs {value!r}": (knobs(value), DAMAGED) for value in (0, "x", None, True, [], [5], ["offset"])},
-    **{f"offset {value!r}": (knobs({"offset": value}), NUMBER) for value in (None, True, [], {}, float("nan"), "1")},
+    **{
+        f"offset {value!r}": (knobs({"offset": value}), NUMBER)
+        for value in (None, True, [], {}, float("nan"), float("inf"), "1")
+    },
     **{f"steps {value!r}": (spoilt(steps=value), DAMAGED) for value in (5, None, [[]], [[1]], [[-1]], [["0"]])},
 }
