@@ -13,7 +13,6 @@ from typing import Any, NoReturn
 import click
 from click.shell_completion import CompletionItem
 
-from cuefem import __version__
 from cuefem.contact.kernel import KernelError
 from cuefem.quantity.slips import FormerFile, Unusual
 
@@ -172,15 +171,8 @@ def _forget_output() -> None:
         os.dup2(nowhere, sys.stdout.fileno())
 
 
-def _version(ctx: click.Context, _: click.Parameter, asked: bool) -> None:
-    if not asked or ctx.resilient_parsing:
-        return
-    click.echo(f"cuefem, version {__version__}")
-    ctx.exit()
-
-
 @click.group(cls=_OneLine, context_settings={"help_option_names": ["-h", "--help"]})
-@click.option("--version", is_flag=True, expose_value=False, is_eager=True, callback=_version, help="Show the version.")
+@click.version_option(package_name="cuefem", prog_name="cuefem", help="Show the version.")
 def main() -> None:
     """From a cue shaft's drawing to its effective end mass and squirt.
 
