@@ -289,6 +289,12 @@ def material(name: str) -> Material:
     return MATERIALS[plain].material
 
 
+def material_name(material: Material) -> str:
+    """A material's name in the table of materials, or its modulus."""
+    known = (name for name, documented in MATERIALS.items() if documented.material == material)
+    return next(known, f"E {material.E / 1e9:.4g} GPa")
+
+
 def _offer(name: str) -> str:
     """The materials that a name may mean: those that share a word with it, then those that are spelt like it."""
     words = {word for word in name.split() if len(word) > 2}

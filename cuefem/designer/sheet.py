@@ -16,9 +16,8 @@ from cuefem.designer.editing import Field
 from cuefem.designer.markup import Markup
 from cuefem.designer.unit_system import METRIC, UnitSystem, typed
 from cuefem.effects import Effect, effect_kinds
-from cuefem.materials import MATERIALS
+from cuefem.materials import MATERIALS, material_name
 from cuefem.parts import materials_in
-from cuefem.report.drawings import material_name
 from cuefem.scene import Scene
 from cuefem.vary import Path, replaced, value_at
 

@@ -10,8 +10,7 @@ from typing import Any
 from cuefem.cue import Material
 from cuefem.designer.unit_system import METRIC, UnitSystem
 from cuefem.games import GAMES
-from cuefem.materials import MATERIALS
-from cuefem.report.drawings import material_name
+from cuefem.materials import MATERIALS, material_name
 from cuefem.scene import Scene
 from cuefem.vary import PLACES, Place, knobs_of
 

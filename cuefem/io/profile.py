@@ -29,6 +29,7 @@ from cuefem.io.columns import (
 from cuefem.io.errors import InputError, faults_of, shown
 from cuefem.io.fittings import on_tenon
 from cuefem.io.toml import named_material
+from cuefem.materials import material_name
 from cuefem.quantity.fields import DIAMETER as WIDTH
 from cuefem.quantity.fields import Quantity
 from cuefem.quantity.units import number
@@ -41,6 +42,7 @@ TABLES = (".xlsx", ".xls", ".ods", ".numbers", ".txt", ".tsv", ".dat")  # files 
 # Points closer than this to a straight taper lie on it, m: the rounding of a file, far below what a lathe measures.
 _STRAIGHT = 1e-9
 _SAME = 0.005  # relative: two columns that say one thing in two units
+_NOTHING = ("none", "no", "-", "–", "—")  # cells without a bore or a material
 
 _POSITION, _HOLE = Quantity("m"), Quantity("m", "[0, 10]")
 _USUAL = {"mm": 1e-3, "in": 25.4e-3, "cm": 1e-2, "m": 1.0}  # units of a column that names none
@@ -51,7 +53,7 @@ Point = tuple[float, float]  # position, diameter, m
 
 @dataclass(frozen=True)
 class Inside:
-    """What a row says of the shaft from its place on: bore, m, and the names of materials; None if there are none."""
+    """The bore, m, and the materials of the shaft from a row on; None where there is none."""
 
     bore: float = 0.0
     material: Material | None = None
@@ -93,17 +95,22 @@ class Profile:
         return first is not None and first.E < SOFT
 
     def bores(self, i: int) -> tuple[float, float]:
-        """The bore between a point and the next: it tapers to the next row's, and where that has none it ends there."""
-        first, last = self.inside[i].bore, self.inside[i + 1].bore
-        return (first, last) if first and last else (first, first)
+        """The bore's widths between a point and the next: it tapers to the next row's bore in the same materials.
+
+        The last row draws nothing behind it, so only its width counts.
+        """
+        here, behind = self.inside[i], self.inside[i + 1]
+        same = i + 2 == len(self.inside) or replace(here, bore=0.0) == replace(behind, bore=0.0)
+        return (here.bore, behind.bore) if here.bore and behind.bore and same else (here.bore, here.bore)
 
 
 def load_profile(path: Path, material: Material, length_unit: str | None = None) -> Cue:
     """The shaft of a CSV that names a column x and a column diameter (or radius), with their units of length.
 
     Separator, decimal mark, encoding, order and names of the columns may be any usual ones. The first x may have any
-    value: the shaft begins there. One segment an interval; straight tapers become one. Columns bore, material, core
-    and ferrule hold from a row on; material: where the file names none. length_unit: of columns that name none.
+    value: the shaft begins there. One segment an interval; straight tapers become one. Bore, core and ferrule hold for
+    their row, a material until another is named. material: where the file names none. length_unit: of columns that
+    name none.
     """
     profile = read_profile(path, length_unit)
     points, inside = profile.points, profile.inside
@@ -159,33 +166,43 @@ def read_profile(path: Path, length_unit: str | None = None, *, checked: bool = 
 def _inside(
     path: Path, header: Header, columns: Sequence[ProfileColumn], mark: str, diameters: Sequence[float]
 ) -> list[Inside]:
-    """What every row says of bore, material and core; an empty cell means the material above, and no ferrule."""
+    """The bore and the materials of every row. An empty cell repeats the material above; bore, core and ferrule hold
+    for their own row."""
     bore = next((column for column in columns if column.kind == BORE), None)
     named = {column.kind: column for column in header.names}
-    rows, before = list[Inside](), dict[str, Material]()
+    rows, material = list[Inside](), None
     for row, outer in zip(header.rows, diameters, strict=True):
         line, cells = row
-        for kind, column in named.items():
-            cell = cells[column.index].strip() if column.index < len(cells) else ""
-            if kind == FERRULE:
-                before.pop(kind, None)
-            if cell:
-                before[kind] = named_material(cell.casefold(), path, f"line {line}, {kind}")
-        empty = bore is None or bore.index >= len(cells) or not cells[bore.index].strip(" -–")
-        width = 0.0 if empty or bore is None else _number(path, row, bore, mark)
+        found = {
+            kind: named_material(text.casefold(), path, f"line {line}, {kind}")
+            for kind, column in named.items()
+            if (text := _entry(cells, column))
+        }
+        material = found.get(MATERIAL, material)
+        width = 0.0 if bore is None or not _entry(cells, bore) else _number(path, row, bore, mark)
         if width >= outer:
             across = f"{1e3 * outer:.6g} mm, the diameter there; got {1e3 * width:.6g} mm"
             raise InputError(path, f"line {line}, bore", f"must be less than {across}")
-        rows.append(Inside(width, before.get(MATERIAL), before.get(CORE), before.get(FERRULE)))
+        if CORE in found and not width and row is not header.rows[-1]:
+            problem = f"must stand beside a bore, which it fills; got {shown(_entry(cells, named[CORE]))}"
+            raise InputError(path, f"line {line}, core", problem)
+        rows.append(Inside(width, material, found.get(CORE), found.get(FERRULE)))
     return rows
 
 
+def _entry(cells: Sequence[str], column: ProfileColumn) -> str:
+    """A cell's text, "" where it says that there is nothing."""
+    text = cells[column.index].strip() if column.index < len(cells) else ""
+    return "" if text.casefold() in _NOTHING else text
+
+
 def _bored(profile: Profile, unit: str) -> list[str]:
-    """Where the shaft is bored, so that who wrote the file sees how it was read."""
+    """Where the shaft is bored and what fills the bore, as it was read."""
     per = number(f"1 {unit}", "m")
     pieces = zip(itertools.pairwise(profile.points), profile.inside, strict=False)
     return [
         f"bored {inside.bore / per:.6g} {unit} from {x / per:.6g} to {end / per:.6g} {unit}"
+        + (f" and filled with {material_name(inside.core)}" if inside.core else "")
         for ((x, _), (end, _)), inside in pieces
         if inside.bore
     ]

@@ -12,7 +12,7 @@ import numpy as np
 
 from cuefem.beam.modes import Modes
 from cuefem.cue import Material, Segment
-from cuefem.materials import MATERIALS
+from cuefem.materials import MATERIALS, material_name
 from cuefem.quantity.fields import scalar
 from cuefem.report.charts import WIDE, Axis, Tick, path
 from cuefem.results.quantities import TRADE, Units
@@ -49,12 +49,6 @@ class CueDrawing:
     ticks: tuple[Tick, ...]
     across: float
     unit: str = "mm"
-
-
-def material_name(material: Material) -> str:
-    """A material's name in the table of materials, or its modulus."""
-    known = (name for name, documented in MATERIALS.items() if documented.material == material)
-    return next(known, f"E {material.E / 1e9:.4g} GPa")
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,7 @@ from cuefem.contact.strike import strike_modes
 from cuefem.design.advice import advice_record
 from cuefem.endmass.drives import DEFINITIONS
 from cuefem.io.ready import ready_cues
+from cuefem.materials import material_name
 from cuefem.quantity.fields import scalar
 from cuefem.report.advice_table import advice_sheet
 from cuefem.report.charts import Axis, Chart, Shade
@@ -26,7 +27,6 @@ from cuefem.report.contact import contact_part
 from cuefem.report.drawings import (
     cue_drawing,
     front_drawing,
-    material_name,
     materials_of,
     modes_drawing,
     seen,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -88,17 +89,32 @@ def test_what_is_said_of_changes() -> None:
     assert all(abs(value) < 9 for name, value in found.items() if name.startswith("shaft of "))
 
 
-def test_the_tables_to_write_are_read(tmp_path: Path) -> None:
-    tables = re.findall(r"```csv\n(.*?)```", TEXTS["measure_your_shaft"], re.DOTALL)
-    assert len(tables) == 2
-    for text in tables:
-        (tmp_path / "my_shaft.csv").write_text(text, encoding="utf-8")
-        status, _, err = call("modes", tmp_path / "my_shaft.csv")
+def squirt_of(path: Path) -> float:
+    """Degrees, by the usual stroke of pool with a rest of the cue of 15 oz."""
+    cue: Any = cf.load(path)
+    return math.degrees(cf.strike(cf.usual_scene(replace(cue, body_mass=0.42524))).squirt)
+
+
+def test_tables_of_the_pages_draw_the_bored_shaft(tmp_path: Path) -> None:
+    """The bore behind the ferrule is empty, and both ways of writing the ferrule have one squirt."""
+    plain, ferrule = re.findall(r"```csv\n(.*?)```", TEXTS["measure_your_shaft"], re.DOTALL)
+    files = next(chapter.text for chapter in chapters() if chapter.name == "files")
+    cored = next(text for text in re.findall(r"```csv\n(.*?)```", files, re.DOTALL) if "core" in text)
+    squirts = []
+    for text in (plain, ferrule, cored):
+        (path := tmp_path / "my_shaft.csv").write_text(text, encoding="utf-8")
+        status, out, err = call("modes", path)
         assert (status, err) == (0, "")
-    second: Any = cf.load(tmp_path / "my_shaft.csv")
-    ferrule, bored = second.segments[:2]
-    assert (ferrule.length, ferrule.tip_bore, bored.tip_bore) == pytest.approx((0.025, 0.008, 0.006))
-    assert ferrule.core == bored.material
+        squirts.append(squirt_of(path))
+        if text == plain:
+            continue
+        assert "bored 6 mm from 25 to 152 mm;" in " ".join(out.split())
+        front, bored, *rest = cf.load(path).segments  # type: ignore[union-attr]
+        assert (front.length, front.tip_bore, bored.tip_bore) == pytest.approx((0.025, 0.008, 0.006), rel=0.02)
+        assert (bored.core, bored.material) == (None, front.core)
+        assert all(segment.tip_bore == 0 for segment in rest)
+    assert squirts[2] == pytest.approx(1.601, abs=5e-3)  # 1.772 with the bore filled by the tenon's wood
+    assert squirts[1] == pytest.approx(squirts[2], rel=0.01)
 
 
 @pytest.fixture(scope="module")

@@ -118,12 +118,12 @@ FERRULED = """x [mm],Diameter [mm],Bore [mm],Material,Core
 
 
 def test_bore_ferrule_and_core_stand_in_columns(tmp_path: Path) -> None:
-    """Each holds from its row on; a bore tapers to the next one, and ends where a row has none."""
+    """A material holds from its row on, bore and core for their row; a bore tapers within the same materials."""
     path = written(tmp_path, FERRULED)
     leather, melamine, foam = map(material, ("leather", "melamine", "foam"))
     sizes = [
         (0, 12.75, 6, 12.75, leather, 0, 0, None),
-        (6, 12.75, 31, 12.8, melamine, 8, 6, MAPLE),
+        (6, 12.75, 31, 12.8, melamine, 8, 8, MAPLE),
         (31, 12.8, 150, 13, MAPLE, 6, 5, foam),
         (150, 13, 200, 13.1, MAPLE, 5, 5, foam),
         (200, 13.1, 330, 13.2, MAPLE, 0, 0, None),
@@ -138,9 +138,39 @@ def test_bore_ferrule_and_core_stand_in_columns(tmp_path: Path) -> None:
         assert numbers == pytest.approx(meant, rel=1e-12, abs=1e-15)
         assert (segment.material, segment.core) == (wood, core)
     told = assumed(path, {"body_mass"})
-    assert told == ["bored 8 mm from 6 to 31 mm", "bored 6 mm from 31 to 150 mm", "bored 5 mm from 150 to 200 mm"]
+    assert told == [
+        "bored 8 mm from 6 to 31 mm and filled with hard maple",
+        "bored 6 mm from 31 to 150 mm and filled with foam",
+        "bored 5 mm from 150 to 200 mm and filled with foam",
+    ]
     cf.save(found, tmp_path / "cue.toml")
     assert cf.load(tmp_path / "cue.toml") == found
+
+
+# The core of the second row in each: none of them fills the bore behind the ferrule.
+ENDED = {
+    "an empty cell": "25,12.8,6,,\n",
+    "none": "25,12.8,6,,none\n",
+    "a dash": "25,12.8,6,,-\n",
+    "a change of material": "25,12.8,6,hard maple,\n",
+}
+
+
+@pytest.mark.parametrize("row", ENDED.values(), ids=[*ENDED])
+def test_core_ends_with_its_row(row: str, tmp_path: Path) -> None:
+    text = "x [mm],diameter [mm],bore [mm],material,core\n0,12.75,8,melamine,hard maple\n" + row
+    cue = cf.load(written(tmp_path, text + "152,12.95\n736.6,21.5\n"))
+    assert isinstance(cue, cf.Cue)
+    ferrule, bored, rest = cue.segments
+    assert (ferrule.core, bored.core, rest.core) == (MAPLE, None, None)
+    assert (ferrule.tip_bore, bored.tip_bore, bored.butt_bore) == (0.008, 0.006, 0.006)
+    assert ferrule.butt_bore == 0.008  # no taper into the empty bore
+
+
+def test_core_without_bore_is_refused(tmp_path: Path) -> None:
+    path = written(tmp_path, "x [mm],diameter [mm],core\n0,12.75,foam\n330,13.2,\n736.6,21.5,foam\n")
+    with pytest.raises(InputError, match="line 2, core: must stand beside a bore"):
+        cf.load(path)
 
 
 def test_a_plain_profile_is_as_without_the_columns(tmp_path: Path) -> None:
