@@ -11,18 +11,19 @@ from __future__ import annotations
 import difflib
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cache
 from typing import Any, NamedTuple, get_args, get_type_hints
 
 from cuefem.cue import Cue, LumpedCue, Material
-from cuefem.materials import LEATHER_NAMES, MATERIALS, WOODS
+from cuefem.materials import LEATHER_NAMES, MATERIALS, WOODS, material_name
 from cuefem.materials import material as named_material
 from cuefem.parts import (
     BORED_WIDTH,
     GROWTH,
     PARTS,
+    Layout,
     Part,
     bore_mouth,
     deepest_bore,
@@ -288,6 +289,39 @@ def is_material(scene: Scene, path: Path) -> bool:
 def _kinds(kind: type) -> dict[str, tuple[Any, ...]]:
     """What each field of a dataclass may hold."""
     return {name: (hint, *get_args(hint)) for name, hint in get_type_hints(kind).items()}
+
+
+def named_pieces(scene: Scene, of: Sequence[Path]) -> list[str]:
+    """The pieces of a cue that hold some paths, each with its material and extent from the tip."""
+    cue = scene.shaft
+    layout = Layout.of(cue)
+    parts = {"ferrule": layout.ferrule, "bore": layout.bore or range(0), "drilling": layout.bore or range(0)}
+    woods = {"ferrule": layout.ferrule, "shaft": layout.shaft}
+    found = set[int]()
+    for path in of:
+        if path[:2] == ("cue", "segments") and len(path) > 2:
+            found.add(int(path[2]))
+        else:
+            found |= {*(woods.get(str(path[-1]), ()) if path[0] == "woods" else parts.get(str(path[0]), ()))}
+    runs = list[list[int]]()
+    for i in sorted(found):
+        if runs and runs[-1][-1] == i - 1 and _piece_name(cue, layout, i) == _piece_name(cue, layout, i - 1):
+            runs[-1].append(i)
+        else:
+            runs.append([i])
+    ends = ((cue.nodes[run[0]], cue.nodes[run[-1] + 1]) for run in runs)
+    return [
+        f"{_piece_name(cue, layout, run[0])}, {1e3 * first:.5g} to {1e3 * last:.5g} mm"
+        for run, (first, last) in zip(runs, ends, strict=True)
+    ]
+
+
+def _piece_name(cue: Cue, layout: Layout, i: int) -> str:
+    """A segment's part and material."""
+    segment = cue.segments[i]
+    hollow = "bored " if layout.bore and i in layout.bore else ""
+    part = "ferrule" if i in layout.ferrule else "shaft" if i in layout.shaft else f"segment {i}"
+    return f"{hollow}{part} of {material_name(segment.material)}"
 
 
 # --- changes -------------------------------------------------------------------------------------

@@ -26,7 +26,15 @@ from cuefem.io.study_files import assumed_base, load_optimum, load_scatter, load
 from cuefem.quantity.units import text
 from cuefem.report.scatter_table import cause_sheet, scatter_record, scatter_sheets, scatter_words, spread_sheet
 from cuefem.report.study_page import Scattered, study_page
-from cuefem.report.study_table import StudyTable, column_label, study_record, study_sheets, table_of_study
+from cuefem.report.study_table import (
+    StudyTable,
+    column_label,
+    study_record,
+    study_sheets,
+    table_of_study,
+    varied_lines,
+    varied_pieces,
+)
 from cuefem.scene import Scene
 from cuefem.vary import replaced, value_at
 
@@ -124,10 +132,11 @@ def _tell(
         facts = [f"{designs} designs of {store.path.name}" + (f", {failed} without an answer" if failed else "")]
         save_page(study_page(store.path.stem, table, facts), output)
     if as_json:
+        varied = varied_pieces(store.study.vary, store.study.base)
         record: dict[str, Any] = {"database": str(store.path), "export": goal and str(goal), "designs": designs}
         record |= {"evaluated": store.computed, "failed": failed, "resolution": vars(store.study.resolution)}
         record |= {"first_failure": first and first[1], "summary": table and study_record(table)}
-        print_json(record | {"page": output and str(output), "assumed": notes})
+        print_json(record | {"page": output and str(output), "assumed": notes, "varied": varied})
         return
     words = [f"{designs} designs in {store.path}"]
     words += [f"{designs - store.computed} of them from before"] if designs > store.computed else []
@@ -136,7 +145,7 @@ def _tell(
     click.echo(", ".join(words))
     if first:
         click.echo(f"{failed} failed, the first of them design {first[0]}: {first[1]}")
-    print_all(assumed_lines(notes))
+    print_all([*assumed_lines(notes), *varied_lines(store.study.vary, store.study.base)])
     if table is not None:
         print_all(["", *study_sheets(table)])
 
@@ -167,10 +176,12 @@ def scatter(study: Path, output: Path | None, as_json: bool, **where: Any) -> No
         facts = [f"{len(drivers_of_spread.spread.values)} designs, as wood, turning and strokes scatter"]
         scattered = Scattered(spread_sheet(wanted, drivers_of_spread), cause_sheet(wanted, drivers_of_spread))
         save_page(study_page(study.stem, table, facts, scattered=scattered), output)
-    about = {"file": str(study), "assumed": notes, "count": sample.count, "seed": sample.seed}
+    varied = varied_pieces(wanted.study.vary, wanted.study.base)
+    about = {"file": str(study), "assumed": notes, "varied": varied, "count": sample.count, "seed": sample.seed}
     written = [f"wrote {output}"] if output else []
     lines = [
         *assumed_lines(notes),
+        *varied_lines(wanted.study.vary, wanted.study.base),
         *scatter_sheets(wanted, drivers_of_spread),
         *scatter_words(wanted, drivers_of_spread),
         *written,
@@ -217,11 +228,13 @@ def optimize(study: Path, output: tuple[Path, ...], iterations: int, seed: int, 
     lines += ["", f"held by: {', '.join(held_by) or 'nothing'}"]
     if best.unfinished:
         lines.append(f"not finished: {best.unfinished}; more --iterations may find a better design")
-    about = {"file": str(study), "assumed": notes, "written": drawing and str(drawing)}
+    varied = varied_pieces(wanted.vary, wanted.base)
+    about = {"file": str(study), "assumed": notes, "varied": varied, "written": drawing and str(drawing)}
     numbers = {"value": best.value, "numbers": best.numbers, "values": best.values, "active": best.active}
     search = {"evaluations": best.evaluations, "exact_gradients": best.exact, "unfinished": best.unfinished}
     record = about | {"objective": {aim: wanted.objective.name}} | numbers | search
-    said = [*lines, *assumed_lines(notes), *([f"wrote {drawing}"] if drawing else [])]
+    pieces = varied_lines(wanted.vary, wanted.base)
+    said = [*lines, "", *pieces, *assumed_lines(notes), *([f"wrote {drawing}"] if drawing else [])]
     tell(as_json, record | {"resolution": vars(wanted.study.resolution), "units": units}, said, page)
 
 

@@ -14,7 +14,7 @@ from cuefem.cue import Cue
 from cuefem.io.errors import InputError, faults_of, reason, shown
 from cuefem.io.fittings import fitted, with_shaft_of
 from cuefem.io.profile import DEFAULT_MATERIAL, SHAPES, TABLES, load_profile
-from cuefem.io.toml import load_accuracy, load_cue, load_toml, named_material, read_text
+from cuefem.io.toml import drawn_cue, load_accuracy, load_cue, load_toml, named_material, read_text
 from cuefem.measured.side.side_scene import SideStrike
 from cuefem.quantity.units import number
 from cuefem.scene import Scene
@@ -138,6 +138,15 @@ def load_stroke(path: Path, **told: str | None) -> Cue | Scene:
     if isinstance(stroke, SideStrike):
         raise InputError(path, "striker", "must be absent here: `cuefem side` takes a strike from the side")
     return stroke
+
+
+def replaced_segments(path: Path, scene: Scene) -> int:
+    """How many segments of a cue's or a scene's file are no segments of its scene, since a `LeatherTip` replaces them.
+
+    They are the first of the drawing: segment N of the file is segment N less so many of the scene.
+    """
+    drawn = drawn_cue(path, _load_cue) if isinstance(load_stroke(path), Scene) else _load_cue(path)
+    return len(drawn.segments) - len(scene.cue.segments)
 
 
 def save(obj: Cue | Scene | SideStrike, path: str | os.PathLike[str]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +10,7 @@ from cuefem.design import METHODS, Levels, Normal, Response, Sample, Span, Study
 from cuefem.design.optimum import Limit, Problem
 from cuefem.design.scatter import Scatter
 from cuefem.games import KIM, usual_scene
-from cuefem.io import load_stroke
+from cuefem.io import load_stroke, replaced_segments
 from cuefem.io.errors import InputError, faults_of, shown, state_of
 from cuefem.io.profile import SHAPES
 from cuefem.io.schema import build, joined, unknown_key
@@ -28,6 +29,7 @@ VARY_KEYS = [
 ]
 SAMPLE_KEYS = ["method", "count", "seed"]
 FACTOR = Quantity("", "(0, inf)")
+_SEGMENT = re.compile(r"((?:cue\.)?segments)\[(\d+)\]")
 
 
 def load_study(path: str | Path, *, offset: float = 0.3) -> Study:
@@ -76,7 +78,7 @@ def load_optimum(path: str | Path, *, offset: float = 0.3) -> Problem:
     with faults_of(path, ""):
         return Problem(
             base,
-            tuple(_vary(table, base, path, i, sample=True) for i, table in enumerate(_list(tables, "vary", path))),
+            _varied(tables, base, path, sample=True),
             _response(asked, path, joined("objective", aim)),
             tuple(_limit(table, path, joined("limit", i)) for i, table in enumerate(limits)),
             _resolution(tables, path),
@@ -122,9 +124,7 @@ def _study(tables: dict[str, Any], path: Path, offset: float, known: list[str]) 
     base = _base(tables, path, offset)
     asked = enumerate(_list(tables, "responses", path))
     responses = tuple(_response(text, path, joined("responses", i)) for i, text in asked)
-    vary = tuple(
-        _vary(table, base, path, i, tables.get("sample")) for i, table in enumerate(_list(tables, "vary", path))
-    )
+    vary = _varied(tables, base, path, tables.get("sample"))
     sample = _sample(tables["sample"], path) if "sample" in tables else None
     with faults_of(path, ""):
         return Study(base, vary, responses, sample, _resolution(tables, path))
@@ -198,26 +198,54 @@ def _response(text: Any, path: Path, key: str) -> Response:
         return Response.of(text if isinstance(text, str) else repr(text))
 
 
-def _vary(table: Any, base: Scene, path: Path, i: int, sample: Any) -> Vary:
+def _varied(tables: dict[str, Any], base: Scene, path: Path, sample: Any) -> tuple[Vary, ...]:
+    """What varies, by the [[vary]] tables of a study."""
+    replaced = replaced_segments(path.parent / tables["scene"], base)
+    return tuple(_vary(table, base, replaced, path, i, sample) for i, table in enumerate(_list(tables, "vary", path)))
+
+
+def _in_scene(text: str, base: Scene, replaced: int, path: Path, key: str) -> str:
+    """A path whose segments count as in the cue's file, as a path of the scene, in which a `LeatherTip` replaces the
+    first ``replaced`` segments."""
+    match = _SEGMENT.match(text)
+    if match is None or not base.cue.segments:
+        return text
+    i, last = int(match[2]), replaced + len(base.cue.segments) - 1
+    if i > last:
+        raise InputError(path, key, f"must name a segment of the cue's file, 0 to {last}, 0 at the tip; got {text!r}")
+    if i < replaced:
+        names = '"tip height" or "leather"'
+        raise InputError(
+            path,
+            key,
+            f"must not name the drawn leather, which LeatherTip replaces: {names} varies the tip; got {text!r}",
+        )
+    return f"{match[1]}[{i - replaced}]{text[match.end() :]}"
+
+
+def _vary(table: Any, base: Scene, replaced: int, path: Path, i: int, sample: Any) -> Vary:
     key = joined("vary", i)
     _check_keys(table, VARY_KEYS, path, key)
     named = table.get("path")
-    texts = [named] if isinstance(named, str) else named
-    if not isinstance(texts, list) or not texts or not all(isinstance(text, str) for text in texts):
+    written = [named] if isinstance(named, str) else named
+    if not isinstance(written, list) or not written or not all(isinstance(text, str) for text in written):
         problem = f'must be a field such as "cue.segments[0].tip_bore", or a list of them; got {shown(named)}'
         raise InputError(path, joined(key, "path"), problem)
+    texts = [_in_scene(text, base, replaced, path, joined(key, "path")) for text in written]
     for name, kind, what in (("name", str, "a text"), *((n, bool, "true or false") for n in ("factor", "shift"))):
         if name in table and not isinstance(table[name], kind):
             raise InputError(path, joined(key, name), f"must be {what}; got {shown(table[name])}")
     how = {name: bool(table.get(name, False)) for name in ("factor", "shift")}
     wanted = _wanted(texts, base, how, path, joined(key, "path"))
     drawn = _range(table, wanted, path, key, sample is not None)
-    giver = table.get("taken_from", [])
+    giver, of_giver = table.get("taken_from", []), joined(key, "taken_from")
     givers = [giver] if isinstance(giver, str) else giver
     if not isinstance(givers, list) or not all(isinstance(text, str) for text in givers):
-        raise InputError(path, joined(key, "taken_from"), f"must be a field, or a list of them; got {shown(giver)}")
+        raise InputError(path, of_giver, f"must be a field, or a list of them; got {shown(giver)}")
+    name = table.get("name", "") or ", ".join(written)
     with faults_of(path, key):
-        made = Vary(tuple(texts), drawn, table.get("name", ""), taken_from=tuple(givers), **how)
+        taken = tuple(_in_scene(text, base, replaced, path, of_giver) for text in givers)
+        made = Vary(tuple(texts), drawn, name, taken_from=taken, **how)
     for name, check in (("path", made.unit), ("taken_from", made.givers)):
         with faults_of(path, joined(key, name)):
             check(base)

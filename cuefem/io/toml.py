@@ -97,6 +97,11 @@ def load_toml(path: Path, cue_file: Callable[[Path], Cue]) -> Cue | Scene | Side
     return scene_of_tables(tables, path, cue_file)
 
 
+def drawn_cue(path: Path, cue_file: Callable[[Path], Cue]) -> Cue | LumpedCue:
+    """The cue of a scene's file as it is drawn, with the leather that a `LeatherTip` replaces in the scene."""
+    return _scene_cue(read_tables(path)["cue"], path, cue_file)
+
+
 def load_cue(path: Path) -> Cue:
     """The cue of a TOML file that must not be a scene."""
     tables = read_tables(path)

@@ -11,10 +11,11 @@ from typing import Any
 import numpy as np
 
 from cuefem.cue import Array
-from cuefem.design import Response, Study
+from cuefem.design import Response, Study, Vary
 from cuefem.results.quantities import TRADE, significant, with_heading
 from cuefem.results.records import Sheet
 from cuefem.scene import Scene
+from cuefem.vary import named_pieces
 
 MOST_LEVELS = 24  # values of a column that are groups of their own; of more, each group is a range
 RANGES = 12  # so many then
@@ -100,6 +101,19 @@ class StudyTable:
                 rows.append(i)
                 least = second[i]
         return rows
+
+
+def varied_pieces(vary: Sequence[Vary], base: Scene) -> dict[str, list[str]]:
+    """The pieces of the cue that each column varies, with their extents, by the column's name; none off the cue."""
+    pieces = {each.name: named_pieces(base, each.fields(base)) for each in vary} if base.lumped is None else {}
+    return {name: words for name, words in pieces.items() if words}
+
+
+def varied_lines(vary: Sequence[Vary], base: Scene) -> list[str]:
+    """A line for each column that varies a piece of the cue."""
+    found = varied_pieces(vary, base)
+    lines = [f"{column_label(name)}: {', '.join(words)}" for name, words in found.items()]
+    return [*lines, "positions from the front of the modelled cue", ""] if lines else []
 
 
 def table_of_study(study: Study, rows: Iterable[tuple[int, Sequence[Any], Sequence[Any]]]) -> StudyTable | None:

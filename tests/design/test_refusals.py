@@ -115,7 +115,7 @@ SWEEP, SAMPLED, SCATTER_FILE, OPTIMIZE = (
 RANGE, BETWEEN, LEAST = 'low = "0 mm"\nhigh = "13 mm"', 'low = "1 mm"\nhigh = "9 mm"', 'low = "300 N/m"'
 FILES = [
     (SWEEP, 'tip.contact_time"', 'tip.contact_tim"', "did you mean contact_time"),
-    (SWEEP, "segments[0].material", "segments[3].material", "where cue.segments has 1 items"),
+    (SWEEP, "segments[0].material", "segments[3].material", "a segment of the cue's file, 0 to 0"),
     (SWEEP, 'path = "tip.contact_time"', 'path = "tip"', "must name one number or a material"),
     (SWEEP, '["0.8 ms", "1.2 ms"]', "[]", "vary[1].values: must be a list of one value at least"),
     (SWEEP, 'low = "0 mm"', 'low = "15 mm"', "vary[0]: low must be below high; got low = '15 mm', high ="),
