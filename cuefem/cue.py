@@ -16,6 +16,7 @@ from cuefem.quantity.fields import (
     DIAMETER,
     LENGTH,
     MOST_SEGMENTS,
+    Flag,
     Number,
     OutOfBounds,
     Quantity,
@@ -284,6 +285,8 @@ class Cue:
     body_mass
         Mass of the cue that is not drawn, kg. It moves along the cue's axis only ([Kim] sec. 4): a head-on blow feels
         it, bending does not.
+    weighed
+        Whether the density of the main material follows from the shaft's weight, so that no uncertainty counts it.
 
     Raises
     ------
@@ -303,6 +306,7 @@ class Cue:
 
     segments: tuple[Segment, ...]
     body_mass: Annotated[float, Quantity("kg", "[0, inf)")] = 0.0
+    weighed: Annotated[bool, Flag()] = False
 
     def __repr__(self) -> str:
         count = f"{len(self.segments)} segment{'s' if len(self.segments) > 1 else ''}"

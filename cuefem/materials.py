@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from types import MappingProxyType
 
@@ -289,10 +289,18 @@ def material(name: str) -> Material:
     return MATERIALS[plain].material
 
 
+def table_name(material: Material) -> str | None:
+    """The name in the table of a material, or of one that differs from it in density alone; None if there is none."""
+    alike = (name for name, known in MATERIALS.items() if replace(known.material, rho=material.rho) == material)
+    return next((name for name, known in MATERIALS.items() if known.material == material), next(alike, None))
+
+
 def material_name(material: Material) -> str:
-    """A material's name in the table of materials, or its modulus."""
-    known = (name for name, documented in MATERIALS.items() if documented.material == material)
-    return next(known, f"E {material.E / 1e9:.4g} GPa")
+    """A material's name in the table of materials, with its density if that is its own; or its modulus."""
+    name = table_name(material)
+    if name is None:
+        return f"E {material.E / 1e9:.4g} GPa"
+    return name if MATERIALS[name].material == material else f"{name} of {material.rho:.0f} kg/m³"
 
 
 def _offer(name: str) -> str:

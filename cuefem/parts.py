@@ -28,6 +28,7 @@ LONGEST_FERRULE = 0.06  # m
 TAPER_AT = 0.3302  # m, 13 in: so far pool shafts stay nearly straight; half the length of a cue shorter than twice that
 BRIDGE_AT = 0.2032  # m, 8 in
 USUAL_BORE = 0.006  # m, the width of a new bore
+LEAST_DENSITY, MOST_DENSITY = 20.0, 23_000.0  # kg/m3, foam to platinum: of a material that a weight tells
 SAME = 1e-9  # relative to a length: positions closer than this are the same
 
 
@@ -74,6 +75,13 @@ class Woods:
 
     ferrule: Material | None
     shaft: Material
+
+
+@dataclass(frozen=True)
+class Weight:
+    """The mass of all that is drawn, a leather tip included, kg."""
+
+    mass: Annotated[float, Quantity("kg", "(0, 100]")]
 
 
 class Layout(NamedTuple):
@@ -176,6 +184,38 @@ def materials_in(cue: Cue) -> tuple[Material, ...]:
     return tuple(dict.fromkeys(m for s in cue.segments for m in (s.material, s.core) if m is not None))
 
 
+# --- the weight ----------------------------------------------------------------------------
+
+
+def with_shaft_mass(cue: Cue, mass: float) -> Cue:
+    """The cue with the density of its main material such that what is drawn weighs ``mass``, kg.
+
+    ValueError if the other materials weigh as much, or if no material has such a density.
+    """
+    wood = main_material(cue)
+    half = _with_materials(cue, {wood: replace(wood, rho=wood.rho / 2)}).shaft_mass
+    volume = (cue.shaft_mass - half) / (wood.rho / 2)  # m3 of that material
+    others = cue.shaft_mass - volume * wood.rho
+    rho = (mass - others) / volume
+    if not LEAST_DENSITY <= rho <= MOST_DENSITY:
+        least, most = (1e3 * (others + volume * end) for end in (LEAST_DENSITY, MOST_DENSITY))
+        raise ValueError(
+            f"must be {least:.4g} to {most:.4g} g, with which its main material has {LEAST_DENSITY:g} to "
+            f"{MOST_DENSITY:g} kg/m3; got {1e3 * mass:.4g} g"
+        )
+    return replace(with_material(cue, wood, replace(wood, rho=rho)), weighed=True)
+
+
+def _tip_mass(scene: Any) -> float:
+    """The mass of a leather tip in front of what is drawn, kg."""
+    leather = _leather(scene)
+    return 0.0 if leather is None else leather.mass_on(scene.shaft)
+
+
+def _with_weight(scene: Any, new: Weight) -> Any:
+    return replace(scene, cue=with_shaft_mass(scene.shaft, new.mass - _tip_mass(scene)))
+
+
 # --- the ferrule, and what ferrule and shaft are made of ----------------------------------
 
 
@@ -220,7 +260,8 @@ def _with_woods(scene: Any, new: Woods) -> Any:
     for i in layout.ferrule:
         core = new.shaft if segments[i].core == old else segments[i].core
         segments[i] = replace(segments[i], material=new.ferrule or segments[i].material, core=core)
-    return with_segments(scene, segments)
+    made = with_segments(scene, segments)
+    return made if new.shaft == old else replace(made, cue=replace(made.cue, weighed=False))
 
 
 # --- the taper -------------------------------------------------------------------------------------
@@ -394,8 +435,10 @@ def _exchanged(read: Callable[[Any], Effect | None], acts: Callable[[Any], bool]
     return write
 
 
-# In the order in which they are written: materials last, because the ferrule and the shaft are told by theirs.
+# In the order in which they are written: the weight first, that of the shaft before other changes; materials last,
+# because the ferrule and the shaft are told by theirs.
 PARTS: dict[str, Part] = {
+    "weight": Part(lambda scene: Weight(scene.shaft.shaft_mass + _tip_mass(scene)), _with_weight),
     "ferrule": Part(_ferrule, _with_ferrule, keeps=("drilling",)),
     "diameters": Part(_diameters, _with_diameters),
     "drilling": Part(_bore, _with_bore),

@@ -17,7 +17,7 @@ from functools import cache
 from typing import Any, NamedTuple, get_args, get_type_hints
 
 from cuefem.cue import Cue, LumpedCue, Material
-from cuefem.materials import LEATHER_NAMES, MATERIALS, WOODS, material_name
+from cuefem.materials import LEATHER_NAMES, MATERIALS, WOODS, material_name, table_name
 from cuefem.materials import material as named_material
 from cuefem.parts import (
     BORED_WIDTH,
@@ -110,7 +110,7 @@ class Place:
     hint: str = ""
     range: Range | Callable[[Cue], Range] | None = None
     materials: tuple[str, ...] = ()
-    spread: float | Callable[[Scene], float] | None = None
+    spread: float | Callable[[Scene], float | None] | None = None
     below: float | None = None
     option: str = ""
     help: str = ""
@@ -446,13 +446,14 @@ def turned(scene: Scene, knobs: Mapping[str, Any]) -> Scene:
     return replaced(scene, changes) if changes else scene
 
 
-def _wood_spread(name: str) -> Callable[[Scene], float]:
-    """Half the width of the range in which real pieces of the wood lie, in logarithms."""
+def _wood_spread(name: str) -> Callable[[Scene], float | None]:
+    """Half the width of the range in which real pieces of the wood lie, in logarithms; None for a weighed density."""
 
-    def spread(scene: Scene) -> float:
+    def spread(scene: Scene) -> float | None:
+        if name == "rho" and scene.shaft.weighed:
+            return None
         wood = main_material(scene.shaft)
-        known = next((entry for entry in MATERIALS.values() if entry.material == wood), MATERIALS["hard maple"])
-        low, high = known.ranges[name]
+        low, high = MATERIALS[table_name(wood) or "hard maple"].ranges[name]
         return math.log(high / low) / 2
 
     return spread
@@ -484,6 +485,11 @@ PLACES: dict[str, Place] = {
         Place("rho", "density of the wood", "wood.rho", spread=_wood_spread("rho")),
         Place("bore", "diameter of the bore", part=BORED_WIDTH, spread=math.log(7.5 / 6) / 2),  # meshes/README.md
         Place("taper", "diameter gained to the joint", part=GROWTH),
+        Place(
+            *("shaft mass", "weight of the shaft as drawn, with its tip", "weight.mass"),
+            option="MASS",
+            help='Weight of the shaft as FILE draws it, with its tip, e.g. "112 g": sets the density of its wood.',
+        ),
         Place(
             *("tip diameter", "Tip diameter", "diameters.tip"),
             group="Shaft",

@@ -41,10 +41,10 @@ def cue_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def shape_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The options for what a drawing leaves out or has otherwise: the mass behind it, and `FITTINGS`."""
+    """The options for what a drawing leaves out or has otherwise: the masses, and `FITTINGS`."""
     for name, known in reversed(FITTINGS.items()):
         command = click.option(option(name), metavar=known.metavar, help=known.help)(command)
-    return place_options("body_mass")(command)
+    return place_options("body_mass", "shaft_mass")(command)
 
 
 def fittings_of(options: Mapping[str, Any]) -> dict[str, str | None]:

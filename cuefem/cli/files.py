@@ -9,7 +9,7 @@ import click
 
 from cuefem.cli.common import check_free, force_option, shape_options
 from cuefem.cli.printing import assumed_lines, json_option, page_option, print_json, tell
-from cuefem.cli.strokes import with_body
+from cuefem.cli.strokes import with_body, with_weight
 from cuefem.io import load, save
 from cuefem.io.assumed import assumed
 from cuefem.io.export import json_schema
@@ -24,14 +24,17 @@ from cuefem.report.materials_table import parts_record, parts_sheets
 @shape_options
 @json_option
 @force_option
-def convert(file: Path, output: Path, body_mass: str | None, force: bool, as_json: bool, **options: str | None) -> None:
+def convert(file: Path, output: Path, force: bool, as_json: bool, **options: str | None) -> None:
     """Convert FILE to another kind of file: OUTPUT ends in .toml, .vtk or .vtu."""
     check_free(output, force=force)
+    said = {name for name, value in options.items() if value is not None}
+    body_mass, shaft_mass = options.pop("body_mass"), options.pop("shaft_mass")
     drawing = load(file, **options)
     if body_mass is not None:
         drawing = with_body(drawing, file, body_mass)
+    if shaft_mass is not None:
+        drawing = with_weight(drawing, file, shaft_mass)
     save(drawing, output)
-    said = {name for name, value in (options | {"body_mass": body_mass}).items() if value is not None}
     notes = assumed(file, said) if file.suffix.lower() in SHAPES else []
     if as_json:
         print_json({"written": str(output), "assumed": notes})

@@ -14,7 +14,9 @@ import click
 from cuefem.cue import Cue, LumpedCue
 from cuefem.games import DEFAULT_GAME, GAMES, usual_scene, usual_tip
 from cuefem.io import InputError
+from cuefem.io.errors import faults_of
 from cuefem.measured.side.side_scene import SideStrike
+from cuefem.parts import with_shaft_mass
 from cuefem.quantity.fields import Quantity
 from cuefem.quantity.units import number
 from cuefem.scene import Scene, Stroke, Tip
@@ -24,6 +26,7 @@ from cuefem.vary import Path as Steps
 Command = Callable[..., Any]
 
 OF_BLOW = ("restitution", "friction", "speed", "contact_time")  # and, for commands with one stroke, the offset
+OF_CUE = ("body_mass", "shaft_mass")
 NO_SHAFT = "must be left out: a lumped cue is whole"
 NO_SPRING = (
     "must be left out beside LeatherTip, from which it follows (--leather changes it, and "
@@ -55,7 +58,7 @@ def game_option(name: str, help_words: str) -> Callable[[Command], Command]:
 
 def tip_options(command: Command) -> Command:
     """The game, and the options of the leather tip and of whatever else on the cue is an option."""
-    own = (key for key, known in PLACES.items() if known.option and key not in (*OF_BLOW, "offset", "body_mass"))
+    own = (key for key, known in PLACES.items() if known.option and key not in (*OF_BLOW, *OF_CUE, "offset"))
     said = "Whose usual ball, tip and stroke a cue without a scene gets; pool by default."
     return game_option("--game", said)(place_options(*own)(command))
 
@@ -106,6 +109,15 @@ def with_body(thing: Cue | Scene | SideStrike, file: Path, text: str) -> Any:
     if not isinstance(thing, Cue) and isinstance(thing.cue, LumpedCue):
         raise InputError(file, "--body-mass", NO_SHAFT)
     return with_fields(thing, {("body_mass",) if isinstance(thing, Cue) else ("cue", "body_mass"): mass})
+
+
+def with_weight(thing: Cue | Scene | SideStrike, file: Path, text: str) -> Any:
+    """The cue or scene of a file with the density of its wood that --shaft-mass says."""
+    mass = measured(file, "--shaft-mass", text, Quantity("kg", "(0, 100]"))
+    if isinstance(thing, SideStrike) or (isinstance(thing, Scene) and thing.lumped):
+        raise InputError(file, "--shaft-mass", "must be left out: FILE is no cue or stroke with a shaft")
+    with faults_of(file, "--shaft-mass"):
+        return with_shaft_mass(thing, mass) if isinstance(thing, Cue) else replaced(thing, {("weight", "mass"): mass})
 
 
 def usual(cue: Cue, file: Path, options: dict[str, Any]) -> Scene:

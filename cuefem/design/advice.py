@@ -9,7 +9,7 @@ import numpy as np
 
 from cuefem.cue import Cue
 from cuefem.effects.leather import DOMES
-from cuefem.materials import MATERIALS, WOODS
+from cuefem.materials import MATERIALS, WOODS, table_name
 from cuefem.parts import Layout
 from cuefem.results.band import OF_DIFFERENCE
 from cuefem.results.designs import OneDesign, off_centre
@@ -84,7 +84,7 @@ def _tips(own: Record) -> Iterator[Advice]:
 
 def _woods_and_tapers(cue: Cue, own: Record) -> Iterator[Advice]:
     """Of a wooden shaft: a tube is made on a mandrel, and is neither turned nor exchanged for solid wood."""
-    if own["shaft_material"] != MATERIALS["carbon fibre"].material:
+    if table_name(own["shaft_material"]) != "carbon fibre":
         yield from _tapers(cue, own)
         yield from _woods(cue)
 
@@ -104,9 +104,9 @@ def _tapers(cue: Cue, own: Record) -> Iterator[Advice]:
 
 def _woods(cue: Cue) -> Iterator[Advice]:
     shaft = Layout.of(cue).shaft
-    own = cue.segments[shaft.start].material
+    own = table_name(cue.segments[shaft.start].material)
     for name in WOODS:
-        if MATERIALS[name].material != own:
+        if name != own:
             yield Advice(f"shaft of {name}", {"shaft material": name})
     tube: dict[str, Any] = {}
     for i in shaft:

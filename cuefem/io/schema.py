@@ -19,7 +19,7 @@ from cuefem.quantity.fields import OutOfBounds, Quantity
 Kind = TypeVar("Kind")
 
 NAMES = {known.material: name for name, known in MATERIALS.items()}
-ABSENT = ("tip_bore", "butt_bore")  # not written if 0, their default: a bore that is not there
+ABSENT = ("tip_bore", "butt_bore", "weighed")  # not written if 0 or false, their default
 
 
 def build(kind: type[Kind], table: Any, *, file: str, key: str) -> Kind:

@@ -23,6 +23,7 @@ from cuefem.io.schema import build, joined, keys_of, table, unknown_key
 from cuefem.io.shelf import assembled
 from cuefem.materials import material
 from cuefem.measured.side.side_scene import SideStrike
+from cuefem.parts import with_shaft_mass
 from cuefem.quantity.fields import MOST_SEGMENTS, Quantity, check_fields, quantities
 from cuefem.quantity.slips import FormerFile
 from cuefem.scene import Scene, Stroke, Tip
@@ -147,7 +148,13 @@ def _cue(table: dict[str, Any], path: Path, key: str) -> Cue:
             raise InputError(path, joined(key, "segments"), problem)
         within = joined(key, "segments")
         table = {**table, "segments": [_segment(s, path, joined(within, i)) for i, s in enumerate(segments)]}
-    return build(Cue, table, file=str(path), key=key)
+    weight = table.get("shaft_mass")
+    without = {name: value for name, value in table.items() if name != "shaft_mass"}
+    cue = build(Cue, without, file=str(path), key=key)
+    if weight is None:
+        return cue
+    with faults_of(path, joined(key, "shaft_mass")):
+        return with_shaft_mass(cue, Quantity("kg", "(0, 100]").read(weight))
 
 
 def _of_parts(cue_table: dict[str, Any], path: Path, key: str) -> dict[str, Any]:

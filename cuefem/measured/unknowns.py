@@ -95,7 +95,7 @@ def unknowns_of(scene: Scene, measurements: Sequence[Measurement], priors: Seque
             continue
         if not usual > 0:
             raise ValueError(f"unknowns must be above 0, for their logarithm is estimated; got {key}, {usual:g}")
-        spread = known.spread(scene) if callable(known.spread) else known.spread or 0.0
+        spread = (known.spread(scene) if callable(known.spread) else known.spread) or 0.0
         middle, spread = _prior(prior, usual, spread)
         unit = known.quantity(scene).unit
         made.append(Unknown(known.name, known.words, unit, middle, spread, _on_scene(known.steps())))

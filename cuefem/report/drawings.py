@@ -12,7 +12,7 @@ import numpy as np
 
 from cuefem.beam.modes import Modes
 from cuefem.cue import Material, Segment
-from cuefem.materials import MATERIALS, material_name
+from cuefem.materials import MATERIALS, material_name, table_name
 from cuefem.quantity.fields import scalar
 from cuefem.report.charts import WIDE, Axis, Tick, path
 from cuefem.results.quantities import TRADE, Units
@@ -71,7 +71,7 @@ class SeenCue:
 def materials_of(cue: SeenCue) -> tuple[str, ...]:
     """Names of a cue's materials, from tip to butt, each once."""
     materials = [m for segment in cue.segments for m in (segment.material, segment.core) if m is not None]
-    return tuple(dict.fromkeys(map(material_name, materials)))
+    return tuple(dict.fromkeys(map(legend_name, materials)))
 
 
 def seen(scene: Scene) -> SeenCue:
@@ -85,6 +85,11 @@ def seen(scene: Scene) -> SeenCue:
     leather = tip.height - math.fsum(height for height, _ in below)
     in_front = [(leather, MATERIALS["leather"].material), *below]
     return SeenCue((*(Segment(height, across, across, of) for height, of in in_front), *segments))
+
+
+def legend_name(material: Material) -> str:
+    """A material's name in a drawing's legend, whatever its density."""
+    return table_name(material) or material_name(material)
 
 
 def style_of(name: str) -> str:
@@ -147,9 +152,9 @@ def _piece(
 
     return Piece(
         outline(segment.tip_diameter, segment.butt_diameter, dome),
-        style_of(material_name(segment.material)),
+        style_of(legend_name(segment.material)),
         outline(segment.tip_bore, segment.butt_bore, 0.0) if max(segment.tip_bore, segment.butt_bore) > 0 else "",
-        "hollow" if segment.core is None else style_of(material_name(segment.core)),
+        "hollow" if segment.core is None else style_of(legend_name(segment.core)),
     )
 
 
@@ -206,7 +211,7 @@ def _struck_end(
     if segments:
         ends = [0.0, *accumulate(s.length for s in segments)]
         parts = [
-            (x, x + s.length, s.tip_diameter, s.butt_diameter, style_of(material_name(s.material)))
+            (x, x + s.length, s.tip_diameter, s.butt_diameter, style_of(legend_name(s.material)))
             for x, s in zip(ends, segments, strict=False)
             if x < reach
         ]

@@ -1,0 +1,81 @@
+"""The weight of a shaft sets the density of its wood, and no uncertainty counts that density any more."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import cuefem as cf
+from cuefem.io import InputError
+from cuefem.parts import main_material, with_shaft_mass
+from cuefem.results.band import of_inputs
+from cuefem.tip_modes import Solved
+from cuefem.vary import varied
+from tests.helpers.command_line import as_json, call
+from tests.helpers.cues import pool
+
+CSV = "x [mm],diameter [mm]\n0,12.75\n330,13.2\n736.6,21.5\n"
+
+
+@given(st.floats(0.03, 0.4))
+def test_shaft_mass_sets_the_main_density_alone(mass: float) -> None:
+    cue = with_shaft_mass(pool(), mass)
+    assert cue.shaft_mass == pytest.approx(mass, rel=1e-12)
+    wood = main_material(cue)
+    assert replace(wood, rho=main_material(pool()).rho) == main_material(pool())
+    assert [s.material for s in cue.segments[:2]] == [s.material for s in pool().segments[:2]]
+    assert cue.segments[1].core == wood
+
+
+def test_weight_counts_the_leather_tip_and_precedes_other_changes() -> None:
+    scene = cf.usual_scene(pool())
+    weighed = varied(scene, {"shaft mass": 0.112})
+    tip = scene.leather.mass_on(scene.shaft)
+    assert weighed.shaft.shaft_mass + tip == pytest.approx(0.112, rel=1e-12)
+    bored = varied(scene, {"shaft mass": 0.112, "bore depth": 0.1})
+    assert bored == varied(weighed, {"bore depth": 0.1})
+    assert bored.shaft.shaft_mass < weighed.shaft.shaft_mass
+    assert not varied(weighed, {"shaft material": "ash"}).shaft.weighed
+
+
+def test_weighed_density_is_no_input_of_the_uncertainty() -> None:
+    scene = cf.usual_scene(pool())
+    inputs = [of_inputs(Solved(each), cf.strike(each).squirt) for each in (scene, varied(scene, {"shaft mass": 0.112}))]
+    assert inputs[0]["rho"] > 0.02
+    assert {*inputs[0]} - {*inputs[1]} == {"rho"}
+
+
+def test_option_and_file_key_agree_and_are_kept(tmp_path: Path) -> None:
+    (csv := tmp_path / "my.csv").write_text(CSV)
+    toml = tmp_path / "my.toml"
+    assert call("convert", csv, toml, "--shaft-mass", "112 g")[0] == 0
+    cue = cf.load(toml)
+    assert isinstance(cue, cf.Cue)
+    assert (cue.weighed, cue.shaft_mass) == (True, pytest.approx(0.112, rel=1e-12))
+    toml.write_text(toml.read_text().replace("weighed = true", 'shaft_mass = "0.112 kg"'))
+    other = cf.load(toml)
+    assert isinstance(other, cf.Cue)
+    assert main_material(other).rho == pytest.approx(main_material(cue).rho, rel=1e-12)
+    leather = as_json("strike", csv, "--shaft-mass", "112 g", "--body-mass", "15 oz")["scene"]["cue"]["shaft_mass"]
+    assert 0.111 < leather < 0.112
+
+
+@pytest.mark.parametrize(
+    ("mass", "words"),
+    [("112", "needs a unit"), ("0 g", "must be more than 0"), ("1 g", "must be 2.8"), ("9 kg", "to 3257 g")],
+)
+def test_impossible_weights_are_refused(mass: str, words: str, tmp_path: Path) -> None:
+    (csv := tmp_path / "my.csv").write_text(CSV)
+    for command in (("strike", csv), ("convert", csv, tmp_path / "out.toml")):
+        status, out, err = call(*command, "--shaft-mass", mass)
+        assert (status, out, err.count("\n")) == (2, "", 1)
+    assert words in err
+    assert not (tmp_path / "out.toml").exists()
+    cf.save(pool(), path := tmp_path / "cue.toml")
+    path.write_text(f'shaft_mass = "{mass}"\n' + path.read_text())
+    with pytest.raises(InputError, match="shaft_mass"):
+        cf.load(path)
