@@ -86,7 +86,7 @@ CHANGES = [
         CUE,
         "body_mass",
         "bodymass",
-        "bodymass: must be one of the keys segments, body_mass, weighed; got bodymass = '420 g'; did you mean 'body_mass'?",
+        "bodymass: must be one of the keys segments, body_mass, weighed; got bodymass = '420 g'",
     ),
     (
         CUE,
