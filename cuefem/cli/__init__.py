@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import sys
 import warnings
-from collections.abc import Callable
 from contextlib import suppress
 from importlib import import_module
 from typing import Any, NoReturn
@@ -14,7 +13,7 @@ import click
 from click.shell_completion import CompletionItem
 
 from cuefem.contact.kernel import KernelError
-from cuefem.quantity.slips import FormerFile, Unusual
+from cuefem.quantity.slips import Unusual
 
 # Before NumPy is loaded: small dense matrices gain nothing from BLAS threads, and two of them on a busy machine can be
 # a hundred times slower than one.
@@ -40,7 +39,6 @@ COMMANDS = {
     "parts": ("cuefem.cli.files:parts", "Shafts, woods, ferrules and tips by name."),
     "report": ("cuefem.cli.reporting:report", "Everything about a cue, as tables or as a page."),
     "scatter": ("cuefem.cli.studies:scatter", "How much a design's numbers scatter, and why."),
-    "schema": ("cuefem.cli.files:schema", "Print the JSON schema of cue and scene files, for editors."),
     "side": ("cuefem.cli.side:side", "A strike from the side: rebound and effective mass."),
     "strike": ("cuefem.cli.cues:strike", "One stroke: squirt, speed, spin and pivot length."),
     "sweep": ("cuefem.cli.studies:sweep", "Compute every design of a STUDY (.toml)."),
@@ -49,12 +47,6 @@ COMMANDS = {
     "validate": ("cuefem.cli.validate:validate", "Check every claim of the sources."),
     "weigh": ("cuefem.cli.weigh:weigh", "The effective end mass, weighed by a ball on a thread."),
 }
-
-
-# Names of the last version, which answer for this one more, by what they are now.
-FORMER = {"handover": ("strike", "--for", "pooltool")}
-# Former options of a command, which are now --output.
-FORMER_OPTIONS = {("sweep", "--page"), ("scatter", "--page"), ("tap", "--figure")}
 
 
 class _Commands(click.Group):
@@ -71,22 +63,6 @@ class _Commands(click.Group):
         module, _, attribute = COMMANDS[name][0].partition(":")
         command: click.Command = getattr(import_module(module), attribute)
         return command
-
-    def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
-        """The command that is asked for; a former name is said to be one."""
-        now = FORMER.get(args[0])
-        if now is not None:
-            click.echo(
-                f"cuefem: {args[0]} is now `cuefem {' '.join(now)}`; the old name ends with this version", err=True
-            )
-            program = ["--json"] if "--for" in args and not {"-o", "--output"} & {*args} else []
-            args = [now[0], *args[1:], *now[1:], *program]
-        for i, word in enumerate(args[1:], 1):
-            was, sign, value = word.partition("=")
-            if (args[0], was) in FORMER_OPTIONS:
-                click.echo(f"cuefem: {args[0]} {was} is now --output; the old name ends with this version", err=True)
-                args = [*args[:i], f"--output{sign}{value}", *args[i + 1 :]]
-        return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the table."""
@@ -124,8 +100,6 @@ class _OneLine(_Commands):
         try:
             with np.errstate(over="raise", divide="raise", invalid="raise"), warnings.catch_warnings():
                 warnings.filterwarnings("ignore", category=Unusual)  # commands say it in their own words: `remark`
-                warnings.filterwarnings("always", category=FormerFile)
-                warnings.showwarning = _show_warning(warnings.showwarning)
                 return super().invoke(ctx)
         except click.UsageError as error:
             _refuse_usage(error)
@@ -140,18 +114,6 @@ class _OneLine(_Commands):
                 raise
             click.echo(f"cuefem: {' '.join(str(error).split())}", err=True)
             raise click.exceptions.Exit(2 if isinstance(error, ValueError | KernelError) else 1) from None
-
-
-def _show_warning(otherwise: Callable[..., None]) -> Callable[..., None]:
-    """What an earlier version's file says is told in a line; other warnings as Python does."""
-
-    def show(message: Warning | str, category: type[Warning], *more: Any, **options: Any) -> None:
-        if issubclass(category, FormerFile):
-            click.echo(f"cuefem: {message}", err=True)
-        else:
-            otherwise(message, category, *more, **options)
-
-    return show
 
 
 def _refuse_usage(error: click.UsageError) -> NoReturn:

@@ -1,8 +1,7 @@
-"""Commands about files and what they can name: convert, schema, materials, parts."""
+"""Commands about files and what they can name: convert, materials, parts."""
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import click
@@ -12,7 +11,6 @@ from cuefem.cli.printing import assumed_lines, json_option, page_option, print_j
 from cuefem.cli.strokes import with_body, with_weight
 from cuefem.io import load, save
 from cuefem.io.assumed import assumed
-from cuefem.io.export import json_schema
 from cuefem.io.profile import SHAPES
 from cuefem.report import materials_record, materials_sheet
 from cuefem.report.materials_table import parts_record, parts_sheets
@@ -41,13 +39,6 @@ def convert(file: Path, output: Path, force: bool, as_json: bool, **options: str
         return
     for line in (*assumed_lines(notes), f"wrote {output}"):
         click.echo(line)
-
-
-@click.command()
-@json_option
-def schema(as_json: bool) -> None:
-    """Print the JSON schema of cue and scene files, for editors; it is JSON with --json and without."""
-    click.echo(json.dumps(json_schema(), indent=2, allow_nan=False, ensure_ascii=False))
 
 
 @click.command()

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 import tomllib
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,15 +24,11 @@ from cuefem.materials import material
 from cuefem.measured.side.side_scene import SideStrike
 from cuefem.parts import with_shaft_mass
 from cuefem.quantity.fields import MOST_SEGMENTS, Quantity, check_fields, quantities
-from cuefem.quantity.slips import FormerFile
 from cuefem.scene import Scene, Stroke, Tip
 
 # The parts of which a cue is put together in the place of [[segments]], each with an example.
 EXAMPLES = {"shaft": '"conical taper"', "material": '"ash"', "ferrule": f'"{FERRULE}"', "bore": f'"{BORE}"'}
 OF_SHAFT = tuple(EXAMPLES)
-
-# Fields that effects had in earlier versions, and why they have them no more.
-FORMER = {"LeatherTip": {"partial_slip": "the patch always holds, slides and lets go ring by ring"}}
 
 # What a scene's tables leave to its game.
 OF_GAME = {"ball": ("mass", "radius"), "tip": ("restitution", "friction"), "stroke": ("speed", "offset")}
@@ -197,10 +192,6 @@ def scene_of_tables(tables: dict[str, Any], path: Path, cue_file: Callable[[Path
     parts = _parts({name: value for name, value in tables.items() if name != "game"}, path, cue_file)
     scene = build(Scene, parts if game == KIM else _completed(parts, game, path), file=str(path), key="")
     _check_effects(scene, path)
-    if "game" not in tables and (missing := left_out(tables)):
-        since = "which is pool's here, and before version 0.2.0 was Kim's"
-        problem = f'leaves out {", ".join(missing)}, {since}: game = "pool" or game = "kim" says which'
-        warnings.warn(f"{path}: {problem}", FormerFile, stacklevel=2)
     return scene
 
 
@@ -313,9 +304,6 @@ def _effect(table: Any, path: Path, key: str) -> Effect:
         problem = f"must be one of {names}; got {shown(name)}{nearest(str(name), kinds)}"
         raise InputError(path, joined(key, "type"), problem)
     rest = {field: value for field, value in table.items() if field != "type"}
-    for field, why in FORMER.get(name, {}).items():
-        if rest.pop(field, None) is not None:
-            warnings.warn(f"{path}: {joined(key, field)} says nothing any more: {why}", FormerFile, stacklevel=2)
     return build(kinds[name], _spelt_out(kinds[name], rest, path, key), file=str(path), key=key)
 
 

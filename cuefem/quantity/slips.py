@@ -36,10 +36,6 @@ class Unusual(UserWarning):
     """
 
 
-class FormerFile(UserWarning):
-    """A file of an earlier version says something that has no meaning any more; it is loaded without it."""
-
-
 class RealRange(NamedTuple):
     """Between which numbers (SI) a field of real cues lies, its unit, and other units that people think in."""
 

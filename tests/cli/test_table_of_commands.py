@@ -49,17 +49,6 @@ def test_a_made_up_command_is_a_file_and_a_line(monkeypatch: pytest.MonkeyPatch)
     assert [(one.value, one.help) for one in completed] == [(n, COMMANDS[n][1]) for n in ("sweep", "sweet-spot")]
 
 
-def test_a_former_name_answers_with_a_remark() -> None:
-    scene = Path(__file__).parents[2] / "studies/scenes/kim.toml"
-    for given in ([], ["--json"]):
-        now = call("strike", scene, "--for", "pooltool", *given)
-        status, out, err = call("handover", scene, *given)
-        assert (status, out) == (0, now[1])
-        assert err == "cuefem: handover is now `cuefem strike --for pooltool`; the old name ends with this version\n"
-    assert call("handover", scene, "--for", "pooltool")[1] == now[1]
-    assert "handover" not in call("--help")[1]
-
-
 def option_of(command: click.Command, name: str) -> click.Parameter | None:
     return next((one for one in command.params if name in one.opts), None)
 
@@ -74,7 +63,7 @@ def test_every_command_takes_the_same_options(name: str) -> None:
     assert (program.name, program.is_flag) == ("as_json", True)  # type: ignore[attr-defined]
     written = option_of(command, "-o")
     assert written is option_of(command, "--output")
-    assert (written is None) is (name in ("convert", "designer", "schema"))
+    assert (written is None) is (name in ("convert", "designer"))
     assert [one.opts for one in command.params if isinstance(one.type, Output)] == (
         [] if written is None else [["-o", "--output"]]
     )
@@ -88,15 +77,6 @@ def test_a_command_without_a_page_of_its_own_writes_what_it_prints(tmp_path: Pat
     text, told = page.read_text(encoding="utf-8"), json.loads(call("modes", shaft, "--json")[1])
     assert all(f"{hertz:.2f} Hz" in text for hertz in told["frequencies"])
     assert "<h2>Bending modes" in text
-
-
-def test_former_options_answer_with_a_remark(tmp_path: Path) -> None:
-    for option in ("--page", f"--page={tmp_path / 'page.pdf'}"):
-        status, out, err = call("sweep", "none.toml", option, *([] if "=" in option else [tmp_path / "page.pdf"]))
-        said, why = err.splitlines()
-        assert (status, out) == (2, "")
-        assert said == "cuefem: sweep --page is now --output; the old name ends with this version"
-        assert why.endswith("page.pdf: --output: must end in .html; got '.pdf'")
 
 
 def test_a_list_of_the_commands_loads_none_of_them() -> None:

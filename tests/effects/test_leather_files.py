@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from math import inf
 from pathlib import Path
 
 import pytest
 
 import cuefem as cf
-from cuefem.effects.leather import DOMES
-from cuefem.io.export import json_schema
 from cuefem.materials import LEATHER_NAMES, LEATHERS
 from tests.helpers.leather_scenes import SHAFT
 from tests.helpers.refusals import refuses
@@ -85,11 +82,3 @@ def test_refusals(file: Path, entries: dict[str, str | None], message: str) -> N
 def test_rolls_is_read_as_it_stands(file: Path) -> None:
     assert tip_of(put(file, rolls="false")).rolls is False
     assert tip_of(put(file, rolls="true")).rolls is True
-
-
-def test_the_schema_knows_the_words() -> None:
-    found = json_schema()["$defs"]["LeatherTip"]
-    assert found["properties"]["leather"] == {"enum": [*LEATHER_NAMES]}
-    assert found["required"] == ["type", "height", "dome_radius"]
-    assert all(f'"{word}"' in found["properties"]["dome_radius"]["description"] for word in DOMES)
-    json.dumps(found, allow_nan=False)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 import warnings
 from dataclasses import replace
 from pathlib import Path
@@ -84,23 +83,6 @@ def test_a_tip_that_is_told_as_a_spring_takes_no_leather(folder: Path) -> None:
     assert found.cue == cue_of(folder)
     lumped = loaded(folder, 'game = "pool"\n[cue]\nmass = "540 g"\nend_mass = "6 g"')
     assert lumped == cf.Scene(lumped.cue, GAMES["pool"].ball, cf.Tip(0.73, 0.7), cf.Stroke(2.0, 0.3))
-
-
-def test_who_leaves_something_out_without_a_game_is_told_what_changed(folder: Path) -> None:
-    text = 'cue = "cue.toml"\n[ball]\nmass = "165 g"\n[stroke]\nspeed = "2 m/s"\noffset = 0.2'
-    left = (
-        "leaves out ball.radius, tip.restitution, tip.friction, effects, which is pool's here, and before version 0.2.0"
-    )
-    with pytest.warns(UserWarning, match=re.escape(left)):
-        found = loaded(folder, text)
-    assert found == loaded(folder, f'game = "pool"\n{text}')
-    status, out, err = call("strike", folder / "scene.toml", "--json")
-    assert (status, err) == (0, "")
-    (folder / "before.toml").write_text(text, encoding="utf-8")
-    again = call("strike", folder / "before.toml", "--json")
-    assert (again[0], again[2].count("\n")) == (0, 1)
-    assert left in again[2]
-    assert json.loads(again[1])["models"] == json.loads(out)["models"]
 
 
 def test_the_command_says_the_same_of_a_scene_and_of_its_drawing(folder: Path) -> None:

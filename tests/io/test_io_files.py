@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -13,7 +12,6 @@ import pytest
 import cuefem as cf
 from cuefem.effects import Effect
 from cuefem.io import InputError, load_accuracy
-from cuefem.io.export import json_schema
 from cuefem.quantity.fields import Quantity
 from cuefem.quantity.units import text as text_of
 
@@ -200,20 +198,6 @@ def test_a_failed_save_leaves_nothing_behind(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"cue\.toml: cannot be written: Is a directory"):
         cf.save(KIM, folder)
     assert list(tmp_path.iterdir()) == [folder]
-
-
-def test_schema_says_units_bounds_and_other_forms() -> None:
-    schema = json.loads(json.dumps(json_schema(), allow_nan=False))
-    found = schema["$defs"]
-    length = found["Segment"]["properties"]["length"]
-    assert length == {"type": "string", "description": 'a length with its unit, such as "12 mm"; in (0, 1000] m'}
-    offset = found["Stroke"]["properties"]["offset"]
-    assert (offset["type"], offset["exclusiveMinimum"], offset["exclusiveMaximum"]) == ("number", -1, 1)
-    assert found["Ball"]["properties"]["radius"]["default"] == "30.75 mm"
-    assert found["Segment"]["additionalProperties"] is False
-    assert found["Material"]["anyOf"][0]["type"] == "string"
-    assert found["Sticker"]["properties"]["type"] == {"const": "Sticker"}
-    assert {"$ref": "#/$defs/Sticker"} in found["Scene"]["properties"]["effects"]["items"]["anyOf"]
 
 
 def test_every_mesh_agrees_with_its_toml() -> None:
