@@ -33,6 +33,7 @@ from .endmass.lumped import impulse as impulse, lump as lump
 from .endmass.undamped import StickLimit as StickLimit
 from .games import usual_scene as usual_scene
 from .io import load as load, save as save
+from .io.paraview import save_motion as save_motion
 from .measured.side.side_accuracy import resolve_side_strike as resolve_side_strike
 from .measured.side.side_motion import SideMotion as SideMotion, side_motion as side_motion
 from .measured.side.side_scene import SideStrike as SideStrike, Striker as Striker

@@ -22,7 +22,6 @@ for _threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
 
 # Every command by its name: the file and function that it is, and what `cuefem --help` says of it.
 COMMANDS = {
-    "animate": ("cuefem.cli.animation:animate", "Mode shapes and the moving cue for ParaView."),
     "check": ("cuefem.cli.how_sure:check", "How far beam theory is off for a shaft: beam beside solid."),
     "compare": ("cuefem.cli.measured:compare", "A documented cue: measured and computed, side by side."),
     "convert": ("cuefem.cli.files:convert", "Convert FILE to .toml, .vtk or .vtu."),

@@ -1,4 +1,4 @@
-"""A cue's modes and a strike's motion for ParaView: .vtu meshes through meshio, and a .pvd that gives them their times.
+"""A cue's modes and a strike's motion for ParaView: .vtu meshes through meshio, and a .pvd that lists their times.
 
 The shaft is a tube of its outer surface, X along the stroke with the tip at 0 and the butt behind it, Y across, Z up.
 A point at height y in the section moves by (u + theta y, w, 0): small rotations, as in the beam.
@@ -6,6 +6,8 @@ A point at height y in the section moves by (u + theta y, w, 0): small rotations
 
 from __future__ import annotations
 
+import math
+import os
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
@@ -14,9 +16,10 @@ from typing import Any, NamedTuple
 import meshio
 import numpy as np
 
-from cuefem.beam.modes import Modes
-from cuefem.contact.motion import Motion
+from cuefem.beam.modes import Modes, modes
+from cuefem.contact.motion import Motion, last_contact, motion
 from cuefem.cue import Array, Cue
+from cuefem.io import check_new, write_whole_folder
 from cuefem.measured.side.side_motion import SideMotion
 from cuefem.measured.side.side_scene import SideStrike
 from cuefem.quantity.fields import scalar
@@ -24,7 +27,79 @@ from cuefem.scene import Scene
 
 AROUND = 24  # points of a ring
 LONGEST = 0.01  # m between rings, at most
+MOST_FRAMES = 10_000
 Track = Callable[[Sequence[Any]], Iterable[Any]]
+
+
+def save_motion(
+    scene: Scene,
+    folder: str | os.PathLike[str],
+    *,
+    frames: int = 61,
+    until: float | None = None,
+    scale: float = 1.0,
+    count: int = 6,
+) -> None:
+    """Write the mode shapes of a cue and its motion during a strike as a folder for ParaView.
+
+    Parameters
+    ----------
+    scene : Scene
+        A level stroke of a cue of segments.
+    folder : str or path
+        The folder to create. It must not exist yet, and it appears whole or not at all.
+    frames : int, optional
+        Number of frames of the strike, 2 to 10,000.
+    until : float, optional
+        Time of the last frame, s from first touch; 3 contact times by default.
+    scale : float, optional
+        Factor by which the drawn bending is enlarged. Point data hold the true displacement.
+    count : int, optional
+        Number of bending modes.
+
+    Raises
+    ------
+    InputError
+        If the folder exists or cannot be written.
+    ValueError
+        For a lumped or a raised cue, as in `motion`, and for frames, until or scale out of bounds.
+
+    Notes
+    -----
+    ``modes.vtu`` holds the shaft's surface with a displacement ``mode_k`` and a rotation ``mode_k_theta`` for each
+    mode, mass-normalised; ``strike.pvd`` lists a shaft and a ball for each frame, with the force on the ball, N, as
+    field data. X points along the stroke with its origin at the tip, Y across it, Z up; all lengths are in m.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> import pathlib, tempfile
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> cue = cf.Cue((cf.Segment(0.74, 0.012, 0.0215, wood),), body_mass=0.42)
+    >>> scene = cf.Scene(cue, stroke=cf.Stroke(speed=2.0, offset=0.3))
+    >>> with tempfile.TemporaryDirectory() as place:
+    ...     cf.save_motion(scene, pathlib.Path(place) / "seen", frames=2)
+    ...     sorted(path.name for path in pathlib.Path(place, "seen").iterdir())
+    ['modes.vtu', 'strike', 'strike.pvd']
+    """
+    folder = Path(folder)
+    check_new(folder)
+    for name, value, holds, bounds in (
+        ("frames", frames, isinstance(frames, int) and 2 <= frames <= MOST_FRAMES, f"an integer in [2, {MOST_FRAMES}]"),
+        ("until", until, until is None or 0 < until < math.inf, "in (0, inf) s"),
+        ("scale", scale, math.isfinite(scale), "finite"),
+    ):
+        if not holds:
+            raise ValueError(f"save_motion: {name} must be {bounds}; got {value}")
+    last = 3 * last_contact(scene) if until is None else until
+    moving = motion(scene, np.linspace(0, last, frames))
+    cue, bending = scene.shaft, modes(scene.shaft, count, effects=scene.cue_effects)
+
+    def put(new: Path) -> None:
+        save_modes(new / "modes.vtu", cue, bending)
+        save_strike(new, scene, moving, scale=scale)
+
+    write_whole_folder(folder, put)
 
 
 class ShaftSurface(NamedTuple):

@@ -105,7 +105,7 @@ def test_the_commands_that_strike_have_all_the_options() -> None:
     on_files = {name for name, params in names.items() if {"body_mass", "as_json"} <= params}
     others = {"modes", "tip", "side", "weigh", "convert"}
     assert {name for name in on_files if names[name] >= STRUCK} == on_files - others
-    assert on_files >= {"strike", "end-mass", "effects", "cost", "report", "animate", "tap"}
+    assert on_files >= {"strike", "end-mass", "effects", "cost", "report", "tap"}
     assert names["modes"] >= {"game", "tip_height", "dome", "leather"}
     assert names["tip"] >= {"game", "tip_height", "dome", "leather", "restitution", "speed"}
 

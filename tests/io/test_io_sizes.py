@@ -50,7 +50,6 @@ COMMANDS = {
     "effects": [],
     "cost": [],
     "report": [],
-    "animate": ["-o", "folder"],
     "designer": ["--no-open", "--port", "0"],
     "convert": ["made.toml"],
     "tap": ["none.wav", "--scene"],

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import xml.etree.ElementTree as ET
 from dataclasses import replace
 from pathlib import Path
@@ -13,24 +12,12 @@ import pytest
 
 import cuefem as cf
 from cuefem.contact.motion import last_contact, motion
+from cuefem.io import InputError
 from cuefem.io.paraview import AROUND, ball_surface, shaft_surface, vectors
-from tests.helpers.command_line import call
 
 MAPLE = cf.Material(12.6e9, 0.84e9, 782.3284453057836)
 CUE = cf.Cue((cf.Segment(0.025, 0.0125, 0.0128, MAPLE), cf.Segment(0.7, 0.012, 0.021, MAPLE)), 0.42)
 SCENE = cf.Scene(CUE, cf.Ball(0.17, 0.028575), cf.Tip(0.75, 0.7, 1e-3), cf.Stroke(2.0, 0.3))
-
-
-@pytest.fixture
-def scene(tmp_path: Path) -> Path:
-    cf.save(SCENE, tmp_path / "scene.toml")
-    return tmp_path / "scene.toml"
-
-
-def animated(scene: Path, *options: object) -> Path:
-    folder = scene.parent / "seen"
-    assert call("animate", scene, "-o", folder, *options)[::2] == (0, "")
-    return folder
 
 
 def area_and_volume(points: np.ndarray, cells: dict[str, np.ndarray]) -> tuple[float, float]:
@@ -74,8 +61,9 @@ def test_a_rigid_turn_keeps_the_distances() -> None:
         np.testing.assert_allclose(np.sum((ends[1] - ends[0]) * (u[1] - u[0]), axis=1), 0, atol=1e-15)
 
 
-def test_the_modes(scene: Path) -> None:
-    read = meshio.read(animated(scene, "--count", 4, "--frames", 2) / "modes.vtu")
+def test_the_modes(tmp_path: Path) -> None:
+    cf.save_motion(SCENE, tmp_path / "seen", count=4, frames=2)
+    read = meshio.read(tmp_path / "seen/modes.vtu")
     found = cf.modes(CUE, 4)
     shapes, turns = found.shape(read.point_data["x"])
     np.testing.assert_array_equal(read.field_data["frequencies"], found.frequencies)
@@ -86,9 +74,9 @@ def test_the_modes(scene: Path) -> None:
     np.testing.assert_array_equal(read.points[:, 0], -read.point_data["x"])
 
 
-def test_the_strike(scene: Path) -> None:
-    scale = 20.0
-    folder = animated(scene, "--frames", 5, "--scale", scale)
+def test_the_strike(tmp_path: Path) -> None:
+    scale, folder = 20.0, tmp_path / "seen"
+    cf.save_motion(SCENE, folder, frames=5, scale=scale)
     times = np.linspace(0, 3 * last_contact(SCENE), 5)
     found = motion(SCENE, times)
     shaft = shaft_surface(CUE)
@@ -119,15 +107,21 @@ def test_the_strike(scene: Path) -> None:
     np.testing.assert_array_equal(found.force[2:], 0)
 
 
-def test_the_time_of_the_last_frame_and_what_is_said(scene: Path) -> None:
-    status, out, _ = call("animate", scene, "-o", scene.parent / "seen", "--frames", 2, "--until", "4 ms", "--json")
-    assert (status, json.loads(out)["frames"]) == (0, 2)
-    collection = ET.parse(scene.parent / "seen" / "strike.pvd").getroot()
+def test_effects_and_the_time_of_the_last_frame(tmp_path: Path) -> None:
+    scene = replace(SCENE, effects=(cf.TipDome(0.0095), cf.Support(0.25, stiffness=1e4)))
+    cf.save_motion(scene, tmp_path / "seen", frames=2, until=4e-3)
+    read = meshio.read(tmp_path / "seen/modes.vtu")
+    expected = cf.modes(CUE, 6, effects=(cf.Support(0.25, stiffness=1e4),)).frequencies
+    np.testing.assert_array_equal(read.field_data["frequencies"], expected)
+    collection = ET.parse(tmp_path / "seen/strike.pvd").getroot()
     assert [float(entry.attrib["timestep"]) for entry in collection.iter("DataSet")] == [0, 0, 0.004, 0.004]
 
 
-def test_effects_go_with_it(scene: Path) -> None:
-    cf.save(replace(SCENE, effects=(cf.TipDome(0.0095), cf.Support(0.25, stiffness=1e4))), scene)
-    read = meshio.read(animated(scene, "--frames", 2) / "modes.vtu")
-    expected = cf.modes(CUE, 6, effects=(cf.Support(0.25, stiffness=1e4),)).frequencies
-    np.testing.assert_array_equal(read.field_data["frequencies"], expected)
+def test_a_failed_save_leaves_no_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("cuefem.io.paraview.save_pvd", full)
+    with pytest.raises(InputError, match="seen: cannot be written: No space left on device"):
+        cf.save_motion(SCENE, tmp_path / "seen", frames=2)
+    assert list(tmp_path.iterdir()) == []

@@ -13,8 +13,7 @@ import pytest
 import cuefem as cf
 from cuefem.contact.motion import motion
 from cuefem.squirt import alciatore_a31_mass_ratio
-from tests.helpers.command_line import call
-from tests.helpers.refusals import command_refuses, refuses, untouched
+from tests.helpers.refusals import refuses, untouched
 from tests.helpers.sweeps import STUDY
 
 KIM = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 782.3284453057836), kappa=0.9),), 0.42)
@@ -33,8 +32,13 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: motion(SCENE, [np.inf]), TIMES),
     (lambda: motion(RAISED, [0.0]), "motion takes strokes in the plane of cue and ball; got Elevation"),
     (lambda: motion(LUMPED, [0.0]), "Scene.cue must be a Cue of segments: its modes or its shape are needed"),
+    (lambda: cf.save_motion(SCENE, "seen", frames=1), "save_motion: frames must be an integer in [2, 10000]; got 1"),
+    (lambda: cf.save_motion(SCENE, "seen", until=0.0), "save_motion: until must be in (0, inf) s; got 0.0"),
+    (lambda: cf.save_motion(SCENE, "seen", scale=np.nan), "save_motion: scale must be finite; got nan"),
+    (lambda: cf.save_motion(RAISED, "seen"), "motion takes strokes in the plane of cue and ball; got Elevation"),
+    (lambda: cf.save_motion(SCENE, Path(__file__)), "must be a new folder; there is one, or a file, of that name"),
+    (lambda: cf.save_motion(SCENE, "none/seen", frames=2), "seen: cannot be written: No such file or directory"),
 ]
-UNTIL = "scene.toml: --until: needs a unit: \"1.2 ms\"; got '3'"
 COMMANDS = [
     ("strike scene.toml --for pooltool -o cue.json --offset 0", "end mass 'A.31' does not exist here: [A.31] has no"),
     ("strike scene.toml --for pooltool -o cue.json --offset 0.9", "the stroke miscues at offset 0.9; got no end mass"),
@@ -60,12 +64,6 @@ COMMANDS = [
     ("report lumped.toml -o none/page.html", "none/page.html: cannot be written: No such file or directory"),
     ("report lumped.toml -o page.html --offset 1", "lumped.toml: --offset: must be between -1 and 1; got 1.0"),
     ("sweep study.toml -o page.pdf", "page.pdf: --output: must end in .html; got '.pdf'"),
-    ("animate scene.toml -o seen --until 3", UNTIL),
-    ("animate scene.toml -o seen --until '-1 ms'", "--until: must be more than 0 ms; got -1 ms"),
-    ("animate scene.toml -o seen --scale nan", "--scale: must be finite; got nan"),
-    ("animate raised.toml -o seen", "in the plane of cue and ball; got Elevation"),
-    ("animate scene.toml -o dir.json", "dir.json: must be a new folder; there is one"),
-    ("animate scene.toml -o none/seen --frames 2", "seen: cannot be written: No such file or directory"),
 ]
 
 
@@ -88,21 +86,3 @@ def test_calls(ask: Callable[[], object], message: str) -> None:
 @pytest.mark.parametrize(("command", "message"), COMMANDS, ids=[command for command, _ in COMMANDS])
 def test_commands(folder: Path, command: str, message: str) -> None:
     untouched(folder, message, *shlex.split(command))
-
-
-@pytest.mark.parametrize("option", ["--count 0", "--count 101", "--frames 1", "--frames 10001"])
-def test_an_animation_of_too_few_or_too_many(folder: Path, option: str) -> None:
-    name, value = option.split()
-    status, _, err = call("animate", "scene.toml", "-o", "seen", name, value)
-    assert (status, (folder / "seen").exists()) == (2, False)
-    assert f"Invalid value for '{name}': {value} is not in the range" in err
-
-
-def test_an_animation_that_stops_half_way(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def full(*_: object) -> None:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr("cuefem.io.paraview.save_pvd", full)
-    arguments = shlex.split("animate scene.toml -o seen --frames 2")
-    command_refuses("seen: cannot be written: No space left on device", *arguments)
-    assert not (folder / "seen").exists()
