@@ -2,7 +2,7 @@
 
 A study is a module with a `STUDY`; run as a program it writes its page and its figures beside itself. A test makes the
 page again, or the parts that `STUDY` names where the whole takes too long, and compares every number at its printed
-precision (`cuefem.validation.disagreements`).
+precision (`disagreements`).
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 import platform
 import random
+import re
 import subprocess
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -25,12 +26,11 @@ import numpy as np
 import scipy
 import scipy.linalg as la
 
-from cuefem.validation import number
-
 STUDIES = Path(__file__).parent
 STYLE = {"svg.hashsalt": "cuefem", "svg.fonttype": "path", "font.size": 10, "axes.grid": True, "grid.alpha": 0.3}
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 T = TypeVar("T")
+NONE = "–"
 BEFORE = "Predicted before it was run here."
 LEATHER = "## LeatherTip"  # what ends the pages of studies that stood before it
 
@@ -205,3 +205,35 @@ def expm_50() -> Callable[[], Any]:
     matrix = np.random.default_rng(0).normal(size=(50, 50))
     matrix /= np.linalg.norm(matrix, 2)
     return lambda: la.expm(matrix)
+
+
+def number(value: float | None, digits: int = 8) -> str:
+    """A number as tables print it."""
+    return NONE if value is None else f"{value:.{digits}g}"
+
+
+_NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d*)?(?:e[+-]?\d+)?(?![\w.]*\w)")
+
+
+def disagreements(committed: str, derived: str) -> list[str]:
+    """Where two tables differ: text that is not the same, numbers apart by more than one in the last printed place.
+
+    Lists the pairs of lines, empty where the tables agree. Numbers as in "4.1e-05" count by their last digit.
+    """
+    ours, theirs = committed.splitlines(), derived.splitlines()
+    if len(ours) != len(theirs):
+        return [f"{len(ours)} lines committed, {len(theirs)} derived"]
+    return [f"{a}\n{b}" for a, b in zip(ours, theirs, strict=True) if not _same(a, b)]
+
+
+def _same(ours: str, theirs: str) -> bool:
+    if _NUMBER.sub("#", ours) != _NUMBER.sub("#", theirs):
+        return False
+    pairs = zip(_NUMBER.findall(ours), _NUMBER.findall(theirs), strict=True)
+    return all(abs(float(a) - float(b)) <= 1.01 * max(_last_place(a), _last_place(b)) for a, b in pairs if a != b)
+
+
+def _last_place(text: str) -> float:
+    digits, _, exponent = text.partition("e")
+    decimals = len(digits.partition(".")[2])
+    return 10.0 ** (int(exponent or 0) - decimals)

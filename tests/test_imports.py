@@ -21,7 +21,6 @@ ORDER = [
     "quantity",
     "cue",
     "materials",
-    "validation",
     "squirt",
     "solid",
     "beam",

@@ -43,7 +43,6 @@ COMMANDS = {
     "sweep": ("cuefem.cli.studies:sweep", "Compute every design of a STUDY (.toml)."),
     "tap": ("cuefem.cli.tap:tap", "The shaft's wood by ear: E, G, density from a tapped sound."),
     "tip": ("cuefem.cli.tip:tip", "The leather tip by itself: force, contact time, shear ratio."),
-    "validate": ("cuefem.cli.validate:validate", "Check every claim of the sources."),
     "weigh": ("cuefem.cli.weigh:weigh", "The effective end mass, weighed by a ball on a thread."),
 }
 

@@ -3,7 +3,6 @@ shafts as CAD surfaces."""
 
 from __future__ import annotations
 
-import ast
 import errno
 import os
 import shutil
@@ -14,7 +13,7 @@ from cuefem.cue import Cue
 from cuefem.io.errors import InputError, faults_of, reason, shown
 from cuefem.io.fittings import fitted, with_shaft_of
 from cuefem.io.profile import DEFAULT_MATERIAL, SHAPES, TABLES, load_profile
-from cuefem.io.toml import drawn_cue, load_accuracy, load_cue, load_toml, named_material, read_text
+from cuefem.io.toml import drawn_cue, load_accuracy, load_cue, load_toml, named_material
 from cuefem.measured.side.side_scene import SideStrike
 from cuefem.quantity.units import number
 from cuefem.scene import Scene
@@ -30,7 +29,6 @@ __all__ = [
     "number",
     "save",
     "save_page",
-    "studies_with",
     "write_whole",
     "write_whole_folder",
 ]
@@ -245,14 +243,3 @@ def check_place(path: Path) -> None:
     if goal.is_dir() or not exists or not os.access(goal.parent, os.W_OK):
         code = errno.EISDIR if goal.is_dir() else errno.EACCES if exists else errno.ENOENT
         raise InputError(path, "", f"cannot be written: {os.strerror(code)}")
-
-
-def studies_with(folder: Path, function: str) -> list[Path]:
-    """The .py files of a folder and its folders that define ``function`` at their top, in the order of their names."""
-    if not folder.is_dir():
-        raise InputError(folder, "", "cannot be read: no such folder")
-    return [path for path in sorted([*folder.glob("*.py"), *folder.glob("*/*.py")]) if _defines(path, function)]
-
-
-def _defines(path: Path, function: str) -> bool:
-    return any(isinstance(node, ast.FunctionDef) and node.name == function for node in ast.parse(read_text(path)).body)

@@ -1,6 +1,5 @@
 """What the commands show: records of plain SI numbers for programs, and sheets made of them for people."""
 
-from .claims import claims_record, claims_sheet
 from .effects import DEFAULT_RTOL, effects_record, effects_sheet
 from .end_mass import end_mass_record, end_mass_sheet
 from .everything import report_record, report_sheets
@@ -13,8 +12,6 @@ from .strike_table import strike_record, strike_sheet
 
 __all__ = [
     "DEFAULT_RTOL",
-    "claims_record",
-    "claims_sheet",
     "cue_record",
     "effects_record",
     "effects_sheet",

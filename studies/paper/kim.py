@@ -24,8 +24,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 from cuefem import Ball, Effect, Outcome, Resolution, Scene, Stroke, Tip, TipDome, end_mass, squirt, strike
-from cuefem.validation import VERDICTS, Claim, markdown
 from studies import pages
+from studies.paper.claims import VERDICTS, Claim, markdown
 from studies.paper.kim_tone import CUE_MASS, DENSITY, MAPLE, MASS, SHAFT, front, nearest, pieces
 
 B, Q0, EPS, E, MU, NU, NU_C = 0.5, 18 / 7, 2 / 35, 0.75, 0.7, 0.4, 1 / 3

@@ -227,36 +227,10 @@ def test_convert(cue: str, scene: str, tmp_path: Path) -> None:
     assert cf.load(goal) == replace(SCENE, cue=replace(KIM, body_mass=0.4))
 
 
-def test_schema_is_json() -> None:
-    assert json.loads(said("schema")) == as_json("schema")
-
-
-STUDY = """
-from cuefem.validation import Claim
-
-def claims():
-    return [Claim("[Kim] sec. 4", "squirt", 1.0, 0.728, "deg", "rounding", "read off")]
-"""
-
-
 def test_the_package_of_commands_runs_as_a_program() -> None:
     done = subprocess.run([sys.executable, "-m", "cuefem.cli", "--version"], capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.startswith("cuefem, version ")
-
-
-def test_validate(tmp_path: Path) -> None:
-    studies = tmp_path / "papers"
-    studies.mkdir()
-    (studies / "kim.py").write_text(STUDY)
-    (studies / "other.py").write_text("raise RuntimeError('a study without claims() is not run')")
-    (claim,) = as_json("validate", "--studies", str(studies))["claims"]
-    assert (claim["study"], claim["printed"], claim["derived"], claim["verdict"]) == ("kim", 1.0, 0.728, "rounding")
-    assert claim["difference"] == pytest.approx(0.272 / 0.728, rel=1e-12)
-    shown = said("validate", "--studies", str(studies))
-    assert "[Kim] sec. 4" in shown
-    assert "1 rounding" in shown
-    assert "slip: a slip in the paper" in " ".join(shown.split())
 
 
 def test_materials() -> None:

@@ -38,16 +38,9 @@ COMMANDS = {
     "report": (["report", POOL], "two-part, this cue"),
     "lumped report": (["report", "{lumped}"], "two-part, this cue"),
     "materials": (["materials"], "yellow birch"),
-    "validate": (["validate", "--studies", "{studies}"], "printed"),
     "scatter": (["scatter", "{scatter}"], "95 %"),
     "tap": (["tap", "{recording}", "--scene", "meshes/kim.toml", "--mass", "118 g"], "of the fitted shaft"),
 }
-CLAIMS = """
-from cuefem.validation import Claim
-WHAT = "first natural frequency of the free shaft with its ferrule, as [Kim] prints it in table 2"
-def claims():
-    return [Claim("Kim, table 2", WHAT, 251.5, 251.4987, "Hz", "agrees", "the mesh is the paper's")]
-"""
 
 
 def rendered(things: list[Any], width: int) -> str:
@@ -65,15 +58,13 @@ def words(text: str) -> list[str]:
 @pytest.fixture(scope="module")
 def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     folder = tmp_path_factory.mktemp("tables")
-    (folder / "studies").mkdir()
-    (folder / "studies" / "one.py").write_text(CLAIMS, encoding="utf-8")
     sound = tap.recording(tap.ringing_shaft(tap.true("kim"), 44100)[:, :1], 25.0, 3)
     wavfile.write(folder / "tap.wav", 44100, (sound * 32767).astype(np.int16))
     cf.save(cf.Scene(cf.LumpedCue(0.54, 0.006), stroke=cf.Stroke(offset=0.3)), folder / "lumped.toml")
     study = (ROOT / "studies/design/scatter_maple.toml").read_text(encoding="utf-8").replace("count = 256", "count = 8")
     study = study.replace("scatter_scene.toml", str(ROOT / "studies/design/scatter_scene.toml"))
     (folder / "scatter.toml").write_text(study, encoding="utf-8")
-    made = {"lumped": "lumped.toml", "studies": "studies", "recording": "tap.wav"}
+    made = {"lumped": "lumped.toml", "recording": "tap.wav"}
     return {name: str(folder / path) for name, path in made.items()} | {"scatter": str(folder / "scatter.toml")}
 
 

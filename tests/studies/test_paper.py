@@ -1,14 +1,15 @@
 """What the studies of the papers claim: kim.py, kim_tone.py and miscue.py."""
 
 import math
+import runpy
 from collections import Counter
 
 import numpy as np
 import pytest
 
-from cuefem.validation import read_markdown
 from studies.pages import STUDIES
 from studies.paper import kim, miscue
+from studies.paper.claims import read_markdown
 
 
 def test_the_readme_counts_the_verdicts():
@@ -17,6 +18,13 @@ def test_the_readme_counts_the_verdicts():
         f"Of {count.total()} claims {count['agrees']} agree, {count['rounding']} are roundings, {count['slip']} slips, "
     )
     assert said + f"{count['not derivable']} cannot" in (STUDIES / "README.md").read_text(encoding="utf-8")
+
+
+def test_the_package_of_studies_prints_them(capsys):
+    runpy.run_module("studies.paper", run_name="__main__")
+    printed = capsys.readouterr().out
+    assert "136 agrees" in printed
+    assert "V, tone: 250 Hz as mode 2" in printed
 
 
 def test_the_committed_table_reads_back_as_the_claims():

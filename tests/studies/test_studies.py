@@ -13,9 +13,8 @@ from pathlib import Path
 import matplotlib as mpl
 import pytest
 
-from cuefem.validation import disagreements
 from studies import pages
-from studies.pages import STUDIES, Again, Study
+from studies.pages import STUDIES, Again, Study, disagreements
 from tests.helpers.study_tables import after, row
 
 mpl.use("Agg")
@@ -36,7 +35,7 @@ def parts() -> Iterator[object]:
 def not_committed(page: str, derived: str) -> list[str]:
     """Lines of a derived part of a page that do not stand in it in this order; empty where all do.
 
-    A number may be one off in its last printed place, as in `cuefem.validation.disagreements`.
+    A number may be one off in its last printed place, as in `studies.pages.disagreements`.
     """
     left, missing = page.splitlines(), []
     for line in derived.splitlines():

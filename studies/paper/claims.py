@@ -1,16 +1,15 @@
-"""A source's claim beside what follows from its equations, and the tables that validation studies commit."""
+"""A statement of a source beside what follows from its equations, and the table that a study commits."""
 
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from studies.pages import NONE, number
+
 VERDICTS = ("agrees", "rounding", "slip", "not derivable")
 COLUMNS = ("source", "what", "printed", "derived", "unit", "relative difference", "verdict", "cause")
-NONE = "–"
-DIGITS = 8
 NOISE = 1e-9  # relative differences below it are rounding errors, the same on no two machines
 
 
@@ -50,17 +49,16 @@ class Claim:
         return (self.printed - self.derived) / abs(self.derived)
 
 
-def number(value: float | None, digits: int = DIGITS) -> str:
-    """A number as tables print it."""
-    return NONE if value is None else f"{value:.{digits}g}"
+def gap(claim: Claim) -> str:
+    """The relative difference of a claim as tables print it."""
+    size = claim.difference
+    return NONE if size is None else f"< {NOISE:g}" if abs(size) < NOISE else f"{size:.2g}"
 
 
 def markdown_row(claim: Claim) -> str:
     """A claim as a row of a markdown table."""
-    gap = claim.difference
-    shown = NONE if gap is None else f"< {NOISE:g}" if abs(gap) < NOISE else f"{gap:.2g}"
     numbers = (number(claim.printed), number(claim.derived))
-    cells = (claim.source, claim.what, *numbers, claim.unit, shown, claim.verdict, claim.cause)
+    cells = (claim.source, claim.what, *numbers, claim.unit, gap(claim), claim.verdict, claim.cause)
     return "| " + " | ".join(cells) + " |"
 
 
@@ -83,30 +81,3 @@ def read_markdown(text: str) -> list[Claim]:
 
 def _value(cell: str) -> float | None:
     return None if cell == NONE else float(cell)
-
-
-_NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d*)?(?:e[+-]?\d+)?(?![\w.]*\w)")
-
-
-def disagreements(committed: str, derived: str) -> list[str]:
-    """Where two tables differ: text that is not the same, numbers apart by more than one in the last printed place.
-
-    Lists the pairs of lines, empty where the tables agree. Numbers as in "4.1e-05" count by their last digit.
-    """
-    ours, theirs = committed.splitlines(), derived.splitlines()
-    if len(ours) != len(theirs):
-        return [f"{len(ours)} lines committed, {len(theirs)} derived"]
-    return [f"{a}\n{b}" for a, b in zip(ours, theirs, strict=True) if not _same(a, b)]
-
-
-def _same(ours: str, theirs: str) -> bool:
-    if _NUMBER.sub("#", ours) != _NUMBER.sub("#", theirs):
-        return False
-    pairs = zip(_NUMBER.findall(ours), _NUMBER.findall(theirs), strict=True)
-    return all(abs(float(a) - float(b)) <= 1.01 * max(_last_place(a), _last_place(b)) for a, b in pairs if a != b)
-
-
-def _last_place(text: str) -> float:
-    digits, _, exponent = text.partition("e")
-    decimals = len(digits.partition(".")[2])
-    return 10.0 ** (int(exponent or 0) - decimals)

@@ -2,7 +2,8 @@
 
 import pytest
 
-from cuefem.validation import Claim, disagreements, markdown, number, read_markdown
+from studies.pages import disagreements, number
+from studies.paper.claims import Claim, markdown, read_markdown
 
 CLAIMS = [
     Claim("I, eq. a", "speed after", -0.26, 0.51, "m/s", "slip", "breaks momentum"),

@@ -1,0 +1,34 @@
+"""`python -m studies.paper` prints every claim of Kim's paper beside what follows from its equations."""
+
+from collections import Counter
+
+from rich.console import Console
+
+from cuefem.report.table import terminal
+from cuefem.results.records import sheet
+from studies.pages import number
+from studies.paper.claims import Claim, gap
+from studies.paper.kim import claims
+
+COLUMNS = {
+    "source: what, unit": lambda claim: f"{claim.source}: {', '.join(filter(None, (claim.what, claim.unit)))}",
+    "verdict": lambda claim: claim.verdict,
+    "printed": lambda claim: number(claim.printed, 6),
+    "ours": lambda claim: number(claim.derived, 6),
+    "difference": gap,
+}
+
+
+def main() -> None:
+    """Print the table, and how many claims have each verdict."""
+    found: list[Claim] = claims()
+    console = Console(highlight=False)
+    console.width = console.width if console.is_terminal else 120
+    console.print(terminal(sheet("Claims of [Kim], checked", COLUMNS, found, texts=(0, 1))), crop=False)
+    counts = Counter(claim.verdict for claim in found)
+    print(", ".join(f"{count} {verdict}" for verdict, count in sorted(counts.items())))
+    print("`cuefem guide accuracy` explains the verdicts, studies/paper/kim.md gives the causes.")
+
+
+if __name__ == "__main__":
+    main()
