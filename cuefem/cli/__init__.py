@@ -42,7 +42,6 @@ COMMANDS = {
     "strike": ("cuefem.cli.cues:strike", "One stroke: squirt, speed, spin and pivot length."),
     "sweep": ("cuefem.cli.studies:sweep", "Compute every design of a STUDY (.toml)."),
     "tap": ("cuefem.cli.tap:tap", "The shaft's wood by ear: E, G, density from a tapped sound."),
-    "tip": ("cuefem.cli.tip:tip", "The leather tip by itself: force, contact time, shear ratio."),
     "weigh": ("cuefem.cli.weigh:weigh", "The effective end mass, weighed by a ball on a thread."),
 }
 

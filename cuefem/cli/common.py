@@ -82,16 +82,15 @@ def blaming(file: Path, options: Collection[str] = ()) -> Iterator[None]:
 
 
 def scene_of(
-    file: Path, options: dict[str, Any], *, blow: bool = True, settled: Collection[str] = (), remarked: bool = True
+    file: Path, options: dict[str, Any], *, blow: bool = True, remarked: bool = True
 ) -> tuple[Scene, list[str]]:
     """The scene that a command computes, and what was assumed because neither file nor options say it.
 
     A cue alone gets a game's usual stroke (`cuefem.games`). blow: whether ball, tip and stroke matter to the command,
-    so that what is assumed of them is told too. settled: options that have no say, for the command finds their value.
-    remarked: whether unusual numbers are told.
+    so that what is assumed of them is told too. remarked: whether unusual numbers are told.
     """
     opened = load_stroke(file, **fittings_of(options))
-    said = {name for name, value in options.items() if value is not None} | {*settled}
+    said = {name for name, value in options.items() if value is not None}
     notes = assumed(file, said, offered=options, blow=blow)
     if isinstance(opened, Scene):
         refuse_game(file, options)
@@ -131,17 +130,14 @@ def show(
     sheets: Callable[..., Any],
     *,
     blow: bool = True,
-    change: Callable[[Scene], Scene] | None = None,
-    settled: Collection[str] = (),
 ) -> None:
     """Compute all of it first, then print it all: as JSON, or as a heading and tables; or write these as a page.
 
-    blow, settled: see `scene_of`. change: what the command's own options make of the scene.
+    blow: see `scene_of`.
     """
     page = options.pop("output", None)
-    scene, notes = scene_of(file, options, blow=blow, settled=settled)
+    scene, notes = scene_of(file, options, blow=blow)
     with blaming(file, options):
-        scene = scene if change is None else change(scene)
         about, answer = scene_record(scene), results(scene)
     struck = about if blow else {name: value for name, value in about.items() if name in ("cue", "effects")}
     record = whole_record(file, notes, scene, answer, blow=blow, scene=struck)

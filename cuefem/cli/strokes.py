@@ -30,7 +30,7 @@ OF_CUE = ("body_mass", "shaft_mass")
 NO_SHAFT = "must be left out: a lumped cue is whole"
 NO_SPRING = (
     "must be left out beside LeatherTip, from which it follows (--leather changes it, and "
-    "`cuefem tip --contact-time` finds the leather that has it)"
+    "`cf.leather_modulus` finds the leather that has it)"
 )
 
 

@@ -12,6 +12,7 @@ from cuefem.report.modes_table import modes_record, modes_sheet
 from cuefem.report.scene_words import assumptions
 from cuefem.report.squirt import squirt_record, squirt_sheets
 from cuefem.report.strike_table import MISCUE
+from cuefem.report.tip_table import tip_record, tip_sheet
 from cuefem.report.verdict_table import verdict_things
 from cuefem.results.asking import listed
 from cuefem.results.designs import OneDesign
@@ -22,7 +23,7 @@ from cuefem.tip_modes import Solved
 
 
 def report_record(scene: Scene, *, count: int = 6) -> Record:
-    """The verdict, modes, end masses, squirt and pivot length, all listed results and the grip of the own stroke.
+    """The verdict, modes, end masses, squirt, pivot length, leather tip, all listed results and the grip of the stroke.
 
     Where a stroke presses a leather tip or bends the shaft further than their laws are known, modes and the reason,
     "no_contact".
@@ -35,7 +36,7 @@ def report_record(scene: Scene, *, count: int = 6) -> Record:
         outcome = strike_modes(scene, solved.tip)
     except (TooDeep, BentTooFar) as error:
         return record | {"no_contact": str(error)}
-    record |= squirts
+    record |= squirts | ({} if scene.contact_terms.tip is None else {"tip": tip_record(scene)})
     numbers = listed(OneDesign(solved, outcome))
     verdict = verdict_record(scene, outcome, ready_cues(), solved=solved)
     return record | {"verdict": verdict, "numbers": numbers, "regime": outcome.regime, "grip": grip_of(outcome)}
@@ -56,5 +57,6 @@ def report_sheets(record: Record, scene: Record) -> list[Sheet | str]:
         *shown,
         end_mass_sheet(record["end_masses"], scene),
         *squirt_sheets(record["squirt"], scene),
+        *([tip_sheet(record["tip"])] if "tip" in record else []),
         numbers,
     ]

@@ -42,6 +42,7 @@ from cuefem.report.scene_words import assumptions, effect_words, plain_cue_line
 from cuefem.report.squirt import PAPER_CUE_END_MASS, offset_charts, squirt_record
 from cuefem.report.strike_table import BRIEF, MISCUE, models_sheet, strike_record
 from cuefem.report.templates import environment
+from cuefem.report.tip_table import tip_record, tip_sheet
 from cuefem.report.trust import trust_lines
 from cuefem.report.verdict_table import verdict_part
 from cuefem.results.asking import listed
@@ -199,6 +200,7 @@ def _context(scene: Scene, records: Record) -> Record:
         if scene.cue.segments
         else None,
         "contact": None if outcome.history is None else contact_part(outcome),
+        "tip": None if scene.contact_terms.tip is None else tip_sheet(tip_record(scene)),
         "by_offset": _by_offset(records["squirt"], scene),
         "slipped": bool(_slipped(records["squirt"])),
         "end_masses": _end_masses(records["end_masses"], records["squirt"], scene, outcome),

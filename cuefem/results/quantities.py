@@ -280,6 +280,7 @@ RESULTS = {
     "tip_amplitudes": Result("tip amplitude", "1/sqrt(kg)", 3),
     "force": Result("force", "N"),
     "depth": Result("depth", "m", 2),
+    "stiffness": Result("stiffness of the tip", "N/m"),
     "patch": Result("diameter of the patch", "m", 1),
     "tip_mass": Result("mass of the leather", "kg"),
     "E": Result("E", "Pa"),

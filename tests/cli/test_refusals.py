@@ -81,10 +81,7 @@ COMMANDS = [
     ("strike leather.toml --tip-height 40mm", " mm high; got 40 mm"),
     ("strike shaft.toml --leather 1MPa", "further than its law is known"),
     ("strike shaft.toml --leather 1MPa", "(--tip-height, --leather, --speed)"),
-    ("tip leather.toml --leather '0 MPa'", "--leather: must be more than 0 MPa; got 0 MPa"),
-    ("tip leather.toml --leather '9 MPa' --contact-time '1 ms'", "--leather: must be left out with --contact-time"),
-    ("tip leather.toml --contact-time '8 ms'", "the tip's leather is compressed by"),
-    ("tip spring.toml", "Scene.effects must hold a LeatherTip; got none"),
+    ("strike leather.toml --leather '0 MPa'", "--leather: must be more than 0 MPa; got 0 MPa"),
     # the drawing, and what is said beside it
     ("modes lumped.toml --material ash", "is a lumped cue, which has no material, ferrule or bore"),
     ("modes good.toml --begins ferrule", "has its own leather: begins is for .csv, .stl, .ply and .obj files alone; g"),

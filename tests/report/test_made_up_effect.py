@@ -6,7 +6,6 @@ It is known by its class alone: nothing else of the package is told of it.
 from __future__ import annotations
 
 import gc
-import json
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -69,7 +68,6 @@ def test_files_hold_it(collar: type[cf.Effect], scene: cf.Scene, tmp_path: Path)
     cf.save(scene, tmp_path / "scene.toml")
     assert 'type = "Collar"' in (tmp_path / "scene.toml").read_text(encoding="utf-8")
     assert cf.load(tmp_path / "scene.toml") == scene
-    assert json.loads(said("schema"))["$defs"]["Collar"]["required"] == ["type", "position", "mass"]
 
 
 def test_commands_and_pages_name_it(scene: cf.Scene, tmp_path: Path) -> None:
