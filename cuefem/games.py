@@ -77,7 +77,7 @@ class Game:
 _ALL = (
     "Restitution: playing cues 0.71 to 0.75 (billiards.colostate.edu, FAQ, cue tip efficiency; TP A.30), of the whole "
     "cue; the tip's own follows from it. Friction: "
-    "chalked leather, 0.6 to 0.7 (usual). Leather: see `cuefem materials`"
+    "chalked leather, 0.6 to 0.7 (usual). Leather: see `cuefem parts`"
 )
 GAMES: Mapping[str, Game] = MappingProxyType(
     {

@@ -1,4 +1,4 @@
-"""Commands about files and what they can name: convert, materials, parts."""
+"""Commands about files and what they can name: convert, parts."""
 
 from __future__ import annotations
 
@@ -12,8 +12,7 @@ from cuefem.cli.strokes import with_body, with_weight
 from cuefem.io import load, save
 from cuefem.io.assumed import assumed
 from cuefem.io.profile import SHAPES
-from cuefem.report import materials_record, materials_sheet
-from cuefem.report.materials_table import parts_record, parts_sheets
+from cuefem.report.parts_table import parts_record, parts_sheets
 
 
 @click.command()
@@ -44,16 +43,7 @@ def convert(file: Path, output: Path, force: bool, as_json: bool, **options: str
 @click.command()
 @page_option
 @json_option
-def materials(as_json: bool, output: Path | None) -> None:
-    """List the materials that a file can name, with their sources."""
-    record = materials_record()
-    tell(as_json, record, [materials_sheet(record)], output)
-
-
-@click.command()
-@page_option
-@json_option
 def parts(as_json: bool, output: Path | None) -> None:
-    """List the shafts, woods, ferrules and tips of which a cue is put together by name, with their sources."""
+    """List the shafts, materials (woods, ferrules) and tips that a file can name, with their sources."""
     record = parts_record()
     tell(as_json, record, parts_sheets(record), output)

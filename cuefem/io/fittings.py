@@ -39,7 +39,7 @@ class Fitting(NamedTuple):
 
 FITTINGS = {
     "material": Fitting(
-        "NAME", "Material of the shaft", "Material of the shaft, in the place of the file's (see `cuefem materials`)."
+        "NAME", "Material of the shaft", "Material of the shaft, in the place of the file's (see `cuefem parts`)."
     ),
     "length_unit": Fitting(
         "UNIT", "Unit of length", "Unit of a CAD surface, by default mm, or of a .csv that names none."

@@ -138,7 +138,7 @@ def _wanted(hint: Any) -> str:
     if mark is not None:
         return mark.wanted
     if is_dataclass(first):
-        named = " or a name from `cuefem materials`" if first is Material else ""
+        named = " or a name from `cuefem parts`" if first is Material else ""
         return f"a table with the keys {', '.join(keys_of(cast(type, first)))}{named}"
     if typing.get_origin(first) is tuple:
         return "an array of tables" if is_dataclass(typing.get_args(first)[0]) else "an array"

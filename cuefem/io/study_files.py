@@ -290,7 +290,7 @@ def _value(value: Any, wanted: Quantity | None, path: Path, key: str) -> float |
         if wanted is not None:
             return wanted.read(value)
         if not isinstance(value, str):
-            raise ValueError(f"must be the name of a material (see `cuefem materials`); got {shown(value)}")
+            raise ValueError(f"must be the name of a material (see `cuefem parts`); got {shown(value)}")
         named_material(value, path, key)
         return value
 

@@ -180,7 +180,7 @@ def named_material(name: str, path: Path, key: str) -> Material:
     try:
         return material(name)
     except ValueError as error:
-        raise InputError(path, key, f"{error}; see `cuefem materials`") from None
+        raise InputError(path, key, f"{error}; see `cuefem parts`") from None
 
 
 def scene_of_tables(tables: dict[str, Any], path: Path, cue_file: Callable[[Path], Cue]) -> Scene:

@@ -3,7 +3,6 @@
 from .effects import DEFAULT_RTOL, effects_record, effects_sheet
 from .end_mass import end_mass_record, end_mass_sheet
 from .everything import report_record, report_sheets
-from .materials_table import materials_record, materials_sheet
 from .model_error import model_error_record, model_error_sheet
 from .modes_table import modes_record, modes_sheet
 from .record import cue_record
@@ -17,8 +16,6 @@ __all__ = [
     "effects_sheet",
     "end_mass_record",
     "end_mass_sheet",
-    "materials_record",
-    "materials_sheet",
     "model_error_record",
     "model_error_sheet",
     "modes_record",

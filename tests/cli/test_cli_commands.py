@@ -233,15 +233,6 @@ def test_the_package_of_commands_runs_as_a_program() -> None:
     assert done.stdout.startswith("cuefem, version ")
 
 
-def test_materials() -> None:
-    found = as_json("materials")
-    assert "hard maple" in found["materials"]
-    assert found["leathers"]["medium"]["E"] == 140e6
-    shown = said("materials")
-    assert "hard maple" in shown
-    assert "hard leather of a LeatherTip: E 360 MPa; 0.8 ms head on" in shown
-
-
 def test_colons_in_a_name_are_no_emoji(capsys: pytest.CaptureFixture[str]) -> None:
     print_all([":smile: cue"])
     assert capsys.readouterr().out == ":smile: cue\n"

@@ -100,7 +100,7 @@ COMMANDS = [
     ("modes back.csv", "back.csv: line 4, x: must be beyond 700 mm, the x of the line before"),
     ("modes headless.csv", 'headless.csv: line 1: must name the columns, such as "x [mm],diameter [mm]"'),
     ("modes bare.csv --material 'hard mapel'", "hard maple"),
-    ("modes bare.csv --material 'hard mapel'", "see `cuefem materials`"),
+    ("modes bare.csv --material 'hard mapel'", "see `cuefem parts`"),
     ("modes lumped.toml", "lumped.toml: Scene.cue must be a Cue of segments: its modes or its shape are needed; got"),
     ("modes lumped.toml --body-mass '1 kg'", "lumped.toml: --body-mass: must be left out: a lumped cue is whole"),
     ("convert lumped.toml out.toml --body-mass '1 kg'", "--body-mass: must be left out: a lumped cue is whole"),

@@ -68,11 +68,14 @@ def test_the_list_has_every_part_with_its_source() -> None:
     assert {*record["shafts"]} == {*SHAFTS}
     assert {*record["tips"]} == {*LEATHERS, *TIPS}
     out = " ".join(call("parts")[1].split())
-    for kind in ("shafts", "woods", "ferrules", "tips"):
-        for name, source in record[kind].items():
-            assert len(source) > 20
+    assert {*record["materials"]} == {*MATERIALS}
+    assert record["materials"]["melamine"]["use"] == "ferrule"
+    assert record["tips"]["medium"]["E"] == 140e6
+    for kind in ("shafts", "materials", "tips"):
+        for name, part in record[kind].items():
+            assert len(part["source"]) > 20
             assert name in out
-    assert all("assumed" in record["tips"][name] for name in TIPS)
+    assert all("assumed" in record["tips"][name]["source"] for name in TIPS)
 
 
 def test_an_unknown_tip_is_one_line_with_the_nearest(tmp_path: Path) -> None:

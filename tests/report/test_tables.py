@@ -37,7 +37,7 @@ COMMANDS = {
     "check": (["check", "meshes/kim.toml"], "give of the tip, cue free"),
     "report": (["report", POOL], "two-part, this cue"),
     "lumped report": (["report", "{lumped}"], "two-part, this cue"),
-    "materials": (["materials"], "yellow birch"),
+    "parts": (["parts"], "yellow birch"),
     "scatter": (["scatter", "{scatter}"], "95 %"),
     "tap": (["tap", "{recording}", "--scene", "meshes/kim.toml", "--mass", "118 g"], "of the fitted shaft"),
 }
@@ -125,9 +125,9 @@ def test_headings_wrap_before_texts_and_numbers_never() -> None:
 def test_a_terminal_gets_it_whole(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("FORCE_COLOR", "1")
     monkeypatch.setenv("COLUMNS", "40")
-    out = re.sub(r"\x1b\[[0-9;]*m", "", call("materials")[1])
+    out = re.sub(r"\x1b\[[0-9;]*m", "", call("parts")[1])
     assert "…" not in out
-    table, _ = out.split("in brackets the range")
+    table = out.split("Materials")[1].split("in brackets the range")[0]
     rows = [line for line in table.splitlines() if "(" in line]
     assert len(rows) == len(MATERIALS)
     assert all(name in row for name, row in zip(MATERIALS, rows, strict=True))

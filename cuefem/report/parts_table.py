@@ -1,0 +1,77 @@
+"""The parts that a file can name: shafts, materials and tips; record and sheets."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict
+from typing import Any
+
+from cuefem.io.shelf import SHAFTS
+from cuefem.materials import LEATHER_NAMES, LEATHERS, MATERIALS, TIPS, WOODS
+from cuefem.results.quantities import RESULTS, units_of, with_heading
+from cuefem.results.records import Entry, Record, Sheet, sheet
+from cuefem.vary import FERRULES
+
+
+def parts_record() -> Record:
+    """The parts of which a cue is put together by name, each with its numbers and their source."""
+    sources = {name: known.source for name, known in LEATHERS.items()} | {name: tip[1] for name, tip in TIPS.items()}
+    return {
+        "shafts": {name: {"source": known.source} for name, known in SHAFTS.items()},
+        "materials": {
+            name: {
+                "use": "wood" if name in WOODS else "ferrule" if name in FERRULES else "",
+                **asdict(known.material),
+                "ranges": {key: list(ends) for key, ends in known.ranges.items()},
+                "source": known.source,
+                "note": known.note,
+            }
+            for name, known in MATERIALS.items()
+        },
+        "tips": {name: {**LEATHER_NAMES[name], "source": source} for name, source in sources.items()},
+        "units": units_of("E", "G", "rho"),
+    }
+
+
+def parts_sheets(record: Record) -> list[Sheet]:
+    """A table for each kind of part, with how a file and an option name it."""
+    source: dict[str, Entry] = {"source": "{source}"}
+    moduli: dict[str, Entry] = {with_heading(name, RESULTS[name].unit): _with_range(name) for name in ("E", "G", "rho")}
+    return [
+        sheet(
+            "Shafts",
+            {"name": "{name}", **source},
+            _rows(record["shafts"]),
+            'shaft = "conical taper" at the top of a .toml',
+            texts=(0, 1),
+        ),
+        sheet(
+            "Materials",
+            {"name": "{name}", "use": "{use}", **moduli, "loss": "{loss:g}"},
+            _rows(record["materials"]),
+            "in brackets the range of real pieces; loss: loss factor; --json has more",
+            'wood: material = "ash" at the top of a .toml, a column material, --material "ash"',
+            'ferrule: ferrule = "25 mm melamine" there, a column ferrule, --ferrule "25 mm melamine"',
+            *(f"{name}: {values['source']}" for name, values in record["materials"].items()),
+            texts=(0, 1),
+        ),
+        sheet(
+            "Tips",
+            {"name": "{name}", "E, MPa": lambda row: f"{1e-6 * row['E']:g}", **source},
+            _rows(record["tips"]),
+            'leather = "kamui soft" of a LeatherTip, --leather "kamui soft"',
+            texts=(0, 2),
+        ),
+    ]
+
+
+def _rows(parts: Record) -> list[Record]:
+    return [{"name": name, **values} for name, values in parts.items()]
+
+
+def _with_range(name: str) -> Entry:
+    def text(row: Mapping[str, Any]) -> str:
+        middle, low, high = (RESULTS[name].scale * value for value in (row[name], *row["ranges"][name]))
+        return f"{middle:.4g} ({low:.4g}–{high:.4g})"
+
+    return text
