@@ -130,8 +130,8 @@ def show(
     sheets: Callable[..., Any],
     *,
     blow: bool = True,
-) -> None:
-    """Compute all of it first, then print it all: as JSON, or as a heading and tables; or write these as a page.
+) -> Record:
+    """Compute all of it first, then print it all: as JSON, or as a heading and tables; or write these into a file.
 
     blow: see `scene_of`.
     """
@@ -143,6 +143,7 @@ def show(
     record = whole_record(file, notes, scene, answer, blow=blow, scene=struck)
     lines = [*head_lines(file, about, scene.effects, notes), "", *sheets(answer, about)]
     tell(options["as_json"], record, lines, page)
+    return record
 
 
 def whole_record(

@@ -10,16 +10,16 @@ import click
 from cuefem.accuracy import resolve
 from cuefem.cli.common import file_options, show, stroke_options
 from cuefem.cli.definitions import WithDefinitions
-from cuefem.cli.handover import ONLY, ONLY_TABLE, hand_over, simulator_options, table_for
-from cuefem.cli.printing import page_option
+from cuefem.cli.printing import page_option, print_all
 from cuefem.cli.strokes import blow_options
-from cuefem.io import InputError, load_accuracy
+from cuefem.io import load_accuracy
 from cuefem.report import (
     end_mass_record,
     end_mass_sheet,
     strike_record,
     strike_sheet,
 )
+from cuefem.report.simulator_export import pooltool_record, pooltool_sheets
 from cuefem.scene import Scene
 
 
@@ -35,38 +35,30 @@ def end_mass(file: Path, paper: bool, **options: Any) -> None:
 
 @click.command(cls=WithDefinitions)
 @stroke_options
-@simulator_options
-def strike(
-    file: Path,
-    whom: str | None,
-    drive: Any,
-    length: str | None,
-    offsets: str | None,
-    speeds: str | None,
-    output: Path | None,
-    **options: Any,
-) -> None:
+@page_option
+@click.option(
+    "--format",
+    "simulator",
+    type=click.Choice(["pooltool"]),
+    help="The end mass that this simulator takes, instead; -o FILE.json writes its file.",
+)
+def strike(file: Path, simulator: str | None, **options: Any) -> None:
     """Compute one stroke: squirt, speed, spin and pivot length; to the rtol of the file's [accuracy], if it has one."""
-    of_table = (("--offsets", offsets), ("--speeds", speeds))
-    of_pooltool = (("--drive", drive), ("--length", length))
-    for option, value in of_table if whom != "table" else of_pooltool:
-        if value is not None:
-            raise InputError(file, option, ONLY_TABLE if whom != "table" else ONLY)
-    if whom == "table":
-        table_for(file, options, offsets=offsets, speeds=speeds, output=output)
-        return
-    if whom is not None:
-        if output is not None and output.suffix == ".csv":
-            raise InputError(output, "--output", "must end in .html or .json; got '.csv', which --for table writes")
-        hand_over(file, options, drive=drive, length=length, output=output)
-        return
-    simulators = output if output is not None and output.suffix != ".html" else None
-    for option, value in (*of_pooltool, ("--output", simulators)):
-        if value is not None:
-            raise InputError(file, option, ONLY)
 
     def results(scene: Scene) -> Any:
         rtol = load_accuracy(file)
         return strike_record(scene, None if rtol is None else resolve(scene, rtol))
 
-    show(file, {**options, "output": output}, results, lambda record, about: [strike_sheet(record, about)])
+    if simulator is None:
+        show(file, options, results, lambda record, about: [strike_sheet(record, about)])
+        return
+    output = options["output"]
+    to_file = output is not None and output.suffix == ".json"
+    record = show(
+        file,
+        options,
+        lambda scene: pooltool_record(file.stem, scene, str(output) if to_file else "cue.json"),
+        lambda record, about: pooltool_sheets(record, written=to_file),
+    )
+    if to_file:
+        print_all(pooltool_sheets(record, written=True))

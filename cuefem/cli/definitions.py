@@ -1,22 +1,10 @@
-"""The definitions of the end mass on the command line: a choice of them, and a help that explains them."""
+"""A help that explains the definitions of the end mass."""
 
 from __future__ import annotations
 
 import click
 
 from cuefem.endmass.drives import DEFINITIONS
-
-
-class Definitions(click.Choice[str]):
-    """The names of the table's definitions as they are when a command is called, and ``more``."""
-
-    def __init__(self, *more: str) -> None:
-        self.more, self.case_sensitive = more, True
-
-    @property
-    def choices(self) -> tuple[str, ...]:  # type: ignore[override]
-        """All names."""
-        return (*self.more, *DEFINITIONS)
 
 
 class WithDefinitions(click.Command):

@@ -10,20 +10,19 @@ from typing import Any
 import click
 from rich.console import Console
 
-from cuefem.io import InputError, check_place, save_page
+from cuefem.io import InputError, check_place, save_page, write_whole
 from cuefem.report.table import json_text, terminal
 
 # The option of every command, for programs.
 json_option = click.option("--json", "as_json", is_flag=True, help="Say it as JSON, for programs; numbers in SI.")
 
-# What a file of each ending is that commands write; "" is a folder.
+# What a file of each ending is that commands write.
 WRITTEN = {
     ".html": "a page",
     ".png": "a picture",
     ".svg": "a picture",
     ".toml": "a drawing or scene",
-    ".json": "a simulator's file",
-    ".csv": "a simulator's file",
+    ".json": "the numbers as --json says them",
     "": "a folder for ParaView",
 }
 
@@ -38,14 +37,11 @@ class Output(click.Path):
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The path, whose ending is one that the command writes."""
         path = Path(os.fsdecode(super().convert(value, param, ctx)))
-        if path.suffix not in self.endings and self.endings != ("",):
-            wanted = " or ".join(ending for ending in self.endings if ending)
+        if path.suffix not in self.endings and "" not in self.endings:
+            wanted = " or ".join(self.endings)
             more = "; --store names the file that keeps designs" if path.suffix == ".sqlite" else ""
             raise InputError(path, "--output", f"must end in {wanted}; got {path.suffix!r}{more}")
-        if path.suffix in self.endings and path.suffix not in (
-            "",
-            ".toml",
-        ):  # of a folder and a drawing the command itself looks
+        if path.suffix not in (".toml", ""):  # of a drawing the command itself looks
             check_place(path)
         return path
 
@@ -53,9 +49,7 @@ class Output(click.Path):
 def output_option(*endings: str, required: bool = False, many: bool = False) -> Callable[..., Any]:
     """The option -o of every command, with what it writes, told by the ending; many: it may stand several times."""
     kinds = dict.fromkeys(WRITTEN[ending] for ending in endings)
-    said = "; ".join(
-        f"{kind} ({', '.join(e for e in endings if e and WRITTEN[e] == kind)})".removesuffix(" ()") for kind in kinds
-    )
+    said = "; ".join(f"{kind} ({', '.join(e for e in endings if WRITTEN[e] == kind)})" for kind in kinds)
     said = f"Write {said}, as its ending says{'; may be repeated' if many else ''}."
     return click.option(
         *("-o", "--output"), type=Output(endings), metavar="FILE", help=said, required=required, multiple=many
@@ -63,7 +57,7 @@ def output_option(*endings: str, required: bool = False, many: bool = False) -> 
 
 
 # Of commands whose page is their tables.
-page_option = output_option(".html")
+page_option = output_option(".html", ".json")
 
 
 def assumed_lines(notes: Sequence[str]) -> list[str]:
@@ -77,8 +71,10 @@ def print_json(record: Any) -> None:
 
 
 def tell(as_json: bool, record: Any, things: Sequence[Any], page: Path | None = None) -> None:
-    """Print a record for programs, or lines and sheets for people; page: where these are to stand instead."""
-    if page is not None:
+    """Print a record for programs, or lines and sheets for people; page: where one of these is to stand instead."""
+    if page is not None and page.suffix == ".json":
+        write_whole(page, lambda temporary: temporary.write_text(json_text(record) + "\n", encoding="utf-8"))
+    elif page is not None:
         from cuefem.report.plain_page import plain_page  # templates take 0.1 s, which tables need not pay
 
         save_page(plain_page(page.stem, things), page)

@@ -22,7 +22,7 @@ from cuefem.endmass.drives import DEFINITIONS
 from cuefem.endmass.lumped import lump
 from cuefem.report.drawings import cue_drawing, front_drawing, strike_drawing
 from cuefem.report.everything import report_record
-from cuefem.report.handover_table import pooltool_record
+from cuefem.report.simulator_export import pooltool_record
 from cuefem.report.strike_table import strike_record
 from cuefem.report.unusual import unusual
 from tests.helpers.command_line import call
@@ -88,7 +88,7 @@ ASKED = {
     "sweep": swept,
     "strike record": strike_record,
     "report record": report_record,
-    "handover": lambda s: pooltool_record("a cue", s),
+    "simulator export": lambda s: pooltool_record("a cue", s),
     "designer": designed,
     "drawings": lambda s: [cue_drawing(s, across=1.0).pieces, front_drawing(s).pieces, strike_drawing(s, 0.03)],
     "unusual": unusual,
@@ -135,7 +135,7 @@ def test_two_domes_are_one_of_the_sum_of_their_radii(split: str, asked: str, who
 
 @pytest.mark.parametrize("split", [name for name in PARTS if not name.startswith("dome ") or "2 + 3" in name])
 def test_splitting_an_effect_changes_nothing_that_is_asked(split: str, whole: dict[str, Any]) -> None:
-    for asked in ("dome radius", "strike", "sweep", "handover", "lumped", "drawings", "unusual"):
+    for asked in ("dome radius", "strike", "sweep", "simulator export", "lumped", "drawings", "unusual"):
         assert_alike(ASKED[asked](scene(PARTS[split])), whole[asked])
 
 
@@ -160,7 +160,7 @@ def test_the_commands_say_the_same_of_split_domes(command: str, tmp_path: Path) 
     for effects in (WHOLE, PARTS["dome 4 + 5 mm"]):
         cf.save(scene(effects), tmp_path / "scene.toml")
         status, out, err = call(
-            command, tmp_path / "scene.toml", *(["--for", "pooltool"] if command == "strike" else []), "--json"
+            command, tmp_path / "scene.toml", *(["--format", "pooltool"] if command == "strike" else []), "--json"
         )
         assert (status, err) == (0, "")
         told.append(json.loads(out))

@@ -16,7 +16,6 @@ from cuefem.designer.answers import answers, completed
 from cuefem.designer.design import Design
 from cuefem.designer.numbers_panel import Column, rows, table_markup
 from cuefem.endmass.drives import DEFINITIONS, Definition, end_mass_spreads, flexible
-from cuefem.report.handover_table import pooltool_record
 from cuefem.report.report_page import page
 from tests.helpers.command_line import call
 from tests.helpers.strike_scenes import kim_scene
@@ -56,10 +55,6 @@ def test_every_command_tells_it(made_up: Definition, file: Path) -> None:
         drives = (found if key is None else found[key])["drives"]
         assert drives["rigid"]["end_mass"] == pytest.approx(felt, rel=1e-12)
         assert "rigid, at b/R 0.3" in call(command, file)[1]
-    handed = json.loads(call("strike", file, "--for", "pooltool", "--drive", "rigid", "--json")[1])
-    assert handed["end_mass"]["meaning"] == MEANING
-    assert handed["CueSpecs"]["end_mass"] == pytest.approx(felt, rel=1e-6)
-    assert "rigid" in pooltool_record("cue", kim_scene(0.3))["end_mass"]["others"]
 
 
 def test_the_table_says_whether_the_tip_counts_in_it(

@@ -70,10 +70,10 @@ def designer(folder: Path) -> None:
         (command("strike"), 2),  # the end mass of the two-part model takes more modes
         (command("end-mass"), 3),  # of a tip that sticks, of one that is pushed or led (a strike's modes), plain sums
         (command("modes"), 1),
-        (command("strike", "--for", "pooltool"), 2),
+        (command("strike", "--format", "pooltool"), 1),
         (designer, 3 + 6),
     ],
-    ids=["report", "page", "strike", "end mass", "modes", "handover", "designer"],
+    ids=["report", "page", "strike", "end mass", "modes", "pooltool", "designer"],
 )
 def test_no_eigenproblem_is_solved_twice(
     work: Callable[[Path], None], count: int, solved: list[tuple[int, str]], tmp_path: Path
