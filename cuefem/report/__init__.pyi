@@ -6,7 +6,7 @@ from .everything import report_record, report_sheets
 from .model_error import model_error_record, model_error_sheet
 from .modes_table import modes_record, modes_sheet
 from .record import cue_record
-from .squirt import squirt_record, squirt_sheets
+from .squirt import squirt_record, squirt_sheet
 from .strike_table import strike_record, strike_sheet
 
 __all__ = [
@@ -23,7 +23,7 @@ __all__ = [
     "report_record",
     "report_sheets",
     "squirt_record",
-    "squirt_sheets",
+    "squirt_sheet",
     "strike_record",
     "strike_sheet",
 ]

@@ -13,6 +13,8 @@ from cuefem.scene import Scene
 from cuefem.squirt import cue_end_mass
 from cuefem.tip_modes import Solved
 
+SQUIRT_END_MASS = "squirt-equivalent end mass"  # the one that pages and tables for people show
+
 
 def end_mass_record(scene: Scene, *, solved: Solved | None = None) -> Record:
     """The end masses m_e, their range while fewer modes are kept, and [Kim]'s m_c and eps = m_c/M of each.

@@ -7,15 +7,16 @@ from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.effects.leather_law import TooDeep
 from cuefem.io.ready import ready_cues
-from cuefem.report.end_mass import end_mass_record, end_mass_sheet
+from cuefem.report.end_mass import SQUIRT_END_MASS, end_mass_record
 from cuefem.report.modes_table import modes_record, modes_sheet
 from cuefem.report.scene_words import assumptions
-from cuefem.report.squirt import squirt_record, squirt_sheets
+from cuefem.report.squirt import squirt_record, squirt_sheet
 from cuefem.report.strike_table import MISCUE
 from cuefem.report.tip_table import tip_record, tip_sheet
 from cuefem.report.verdict_table import verdict_things
 from cuefem.results.asking import listed
 from cuefem.results.designs import OneDesign
+from cuefem.results.quantities import grams
 from cuefem.results.records import Record, Sheet, value_rows, values_sheet
 from cuefem.results.verdict import verdict_record
 from cuefem.scene import Scene
@@ -51,12 +52,12 @@ def report_sheets(record: Record, scene: Record) -> list[Sheet | str]:
     first += verdict_things(record["verdict"])
     first += [record["model_error"]["sentence"], ""] if "model_error" in record else []
     title = f"The cue, and its stroke at offset b/R = {scene['stroke']['offset']:g}"
-    numbers = values_sheet(title, value_rows(record["numbers"]), assumptions(scene))
+    felt = (SQUIRT_END_MASS, grams(record["end_masses"]["drives"]["squirt"]["end_mass"]))
+    numbers = values_sheet(title, [felt, *value_rows(record["numbers"])], assumptions(scene))
     return [
         *first,
         *shown,
-        end_mass_sheet(record["end_masses"], scene),
-        *squirt_sheets(record["squirt"], scene),
+        squirt_sheet(record["squirt"], scene),
         *([tip_sheet(record["tip"])] if "tip" in record else []),
         numbers,
     ]

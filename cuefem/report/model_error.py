@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
@@ -13,7 +14,8 @@ from cuefem.beam.tip import TipModes, free_tip_modes, tip_modes
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Cue
 from cuefem.effects.base import CueEffect
-from cuefem.endmass.drives import formula_of
+from cuefem.endmass.drives import DEFINITIONS
+from cuefem.results.quantities import TRADE, scaled
 from cuefem.results.records import Record, Sheet, sheet
 from cuefem.scene import Scene
 from cuefem.solid.half_section import Fineness, blocks, check_size
@@ -23,7 +25,6 @@ from cuefem.tip_modes import mass_on_face
 # Flexible modes on both sides; tones that are told.
 MODES, TONES = 40, 6
 ORDER, LARGE_ORDER, LARGE = 6, 4, 150  # a drawing of more elements than LARGE is computed with LARGE_ORDER
-DRIVES = {"stick": "end mass, stick", "force": "end mass, force"}
 Follow = Callable[[Sequence[Any]], Iterable[Any]]
 
 
@@ -98,8 +99,9 @@ def _numbers(scene: Scene, tip: TipModes, across: float, along: float) -> Number
     numbers["stiffness at the tip, butt held", "N/m"] = 1 / across
     numbers["stiffness along the axis, butt held", "N/m"] = 1 / along
     numbers["give of the tip, cue free", "m/N"] = float(np.sum((amplitude / omega) ** 2))
-    for drive, words in DRIVES.items():
-        numbers[words, "kg"] = float(formula_of(drive)(tip, scene))
+    for definition in DEFINITIONS.values():
+        with suppress(ValueError):  # a miscue has no squirt-equivalent end mass
+            numbers[f"end mass, {definition.label_at(scene.stroke.offset)}", "kg"] = float(definition.of(tip, scene))
     numbers["squirt", "rad"] = float(strike_modes(scene, tip, recorded=False).squirt)
     return numbers
 
@@ -120,18 +122,23 @@ def _sentence(rows: Sequence[Record]) -> str:
 
 def model_error_sheet(record: Record) -> Sheet:
     """Beam and solid side by side."""
+    without = " *" if record["left_out"] else ""
+    of_strike = ("end mass", "squirt")
     columns: Any = {
-        "": lambda row: row["quantity"],
-        "unit": lambda row: row["unit"],
-        "beam": lambda row: f"{row['beam']:.6g}",
-        "solid": lambda row: f"{row['solid']:.6g}",
+        "": lambda row: row["quantity"] + (without if row["quantity"].startswith(of_strike) else ""),
+        "unit": lambda row: TRADE.get(row["unit"], (1.0, row["unit"]))[1],
+        "beam": lambda row: f"{scaled(row['beam'], row['unit']):.6g}",
+        "solid": lambda row: f"{scaled(row['solid'], row['unit']):.6g}",
         "beam is off by": lambda row: _percent(row["difference"], 2, "+"),
         "the mesh's own error": lambda row: _percent(row["mesh_error"], 1),
     }
     notes = [
-        f"both from {record['modes']} bending modes, summed plainly; the mesh's own error is the change from elements "
-        f"of order {record['order'] - 1} to {record['order']}"
+        f"both from {record['modes']} bending modes without a truncation correction, which `cuefem end-mass` and "
+        f"`cuefem strike` have; the mesh's own error is the change from elements of order {record['order'] - 1} to "
+        f"{record['order']}"
     ]
     if record["left_out"]:
-        notes.append(f"left out on both sides, because no solid can have it: {', '.join(record['left_out'])}")
+        notes.append(
+            f"* without {', '.join(record['left_out'])}, which a solid does not have; `cuefem end-mass` has them"
+        )
     return sheet("Beam beside solid", columns, record["rows"], *notes, texts=(0, 1))

@@ -34,7 +34,7 @@ from cuefem.report.drawings import (
     style_of,
 )
 from cuefem.report.effects import seconds_words
-from cuefem.report.end_mass import end_mass_record
+from cuefem.report.end_mass import SQUIRT_END_MASS, end_mass_record
 from cuefem.report.glossary import with_words
 from cuefem.report.models import ALCIATORE, PAPER
 from cuefem.report.record import scene_record
@@ -228,8 +228,9 @@ def _key_figures(record: Record, end_masses: Record, outcome: Outcome) -> list[t
         "duration": GRIPS[grip_of(outcome)][1],
     }
     values = coupled | {"end_mass": felt}
+    words = {"end_mass": SQUIRT_END_MASS}
     return [
-        (RESULTS[name].words, written(name, values[name], brief=True), remark)
+        (words.get(name, RESULTS[name].words), written(name, values[name], brief=True), remark)
         for name, remark in remarks.items()
         if name != "duration" or outcome.duration is not None
     ]

@@ -7,18 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from cuefem.contact.outcome import MISSED
 from cuefem.cue import LumpedCue
 from cuefem.endmass.lumped import impulse
 from cuefem.report.charts import Axis, Chart, Curve, Mark, Shade, chart
 from cuefem.report.models import (
-    ALCIATORE,
-    PAPER,
     a31_squirt,
     bare_scene,
     coupling_slope,
-    model_notes,
-    offset_words,
     two_part_cues,
     with_coupling,
 )
@@ -26,7 +21,7 @@ from cuefem.report.scene_words import assumptions
 from cuefem.report.strike_table import PIVOT
 from cuefem.results.designs import OFFSETS, at_offset, coupled_curve
 from cuefem.results.pivot import pivot_length
-from cuefem.results.quantities import NONE, RESULTS, TRADE, Units, grams, written
+from cuefem.results.quantities import TRADE, Units, written
 from cuefem.results.records import Record, Sheet
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved
@@ -80,35 +75,15 @@ def squirt_record(scene: Scene, offsets: Sequence[float] = OFFSETS, *, solved: S
     }
 
 
-def squirt_sheets(record: Record, scene: Record) -> list[Sheet]:
-    """Squirt and natural pivot length against the offset."""
-    known = [mass for mass in record["end_mass"] if mass is not None]
-    felt = f"{RESULTS['mass'].number(known[0])} to {grams(known[-1])}" if known else NONE
-    models = (
-        f"coupled: vibrating shaft in time; two-part: end mass m_e {felt} ({offset_words(scene)}); 12 g: the mass "
-        f"m_c of the cue end, m_e 3 g, in {PAPER}; A.31: {ALCIATORE}"
-    )
-    squirt_notes = (assumptions(scene), models, *model_notes(scene, record, "b/R /kg"))
-    return [
-        _by_offset("Squirt", record, "squirt", *squirt_notes),
-        _by_offset("Natural pivot length", record, "pivot_length", PIVOT),
-    ]
-
-
-def _by_offset(title: str, record: Record, name: str, *notes: str) -> Sheet:
-    """A quantity against the offset, a column for each model."""
-    models = record["models"]
+def squirt_sheet(record: Record, scene: Record) -> Sheet:
+    """Squirt, natural pivot length and the state of the contact against the offset."""
+    own = record["models"]["coupled, this cue"]
+    names = ("squirt", "pivot_length", "grip")
     rows = [
-        (f"{offset:g}", *(written(name, model[name][i]) + _missed(model, i) for model in models.values()))
-        for i, offset in enumerate(record["offsets"])
+        (f"{offset:g}", *(written(name, own[name][i]) for name in names)) for i, offset in enumerate(record["offsets"])
     ]
-    return Sheet(title, ("b/R", *models), tuple(rows), notes, texts=())
-
-
-def _missed(model: Record, i: int) -> str:
-    """A word beside the number of a stroke that miscues or nearly does, if the model tells."""
-    (grip,) = model.get("grip", ("",) * len(model["squirt"]))[i : i + 1]
-    return ", miscue" if grip in MISSED else ", lets go" if grip == "slides" else ""
+    head = ("b/R", "squirt", "natural pivot length", "grip")
+    return Sheet("Squirt against the offset", head, tuple(rows), (assumptions(scene), PIVOT), texts=(3,))
 
 
 LONGEST_PIVOT = 1.5  # m; beyond it a pivot is behind the cue

@@ -19,7 +19,7 @@ from cuefem.report.models import (
 )
 from cuefem.report.scene_words import assumptions
 from cuefem.results.pivot import pivot_length
-from cuefem.results.quantities import GRIPS, NONE, RESULTS, grams, written
+from cuefem.results.quantities import GRIPS, RESULTS, written
 from cuefem.results.records import Record, Sheet
 from cuefem.scene import Outcome, Scene
 from cuefem.tip_modes import Solved
@@ -92,7 +92,6 @@ MISCUE = "this stroke miscues: the tip slips on the ball to the end; not a valid
 def strike_sheet(record: Record, scene: Record) -> Sheet:
     """One strike, a column for each model."""
     coupled = record["models"]["coupled"]
-    felt = NONE if record["end_mass"] is None else grams(record["end_mass"])
     missed = [MISCUE] if coupled["grip"] in MISSED else []
     exact = ", modes kept for 0.5 % of squirt" if "length" in scene["cue"] and coupled["error"] is None else ""
     pivots = any(model.get("pivot_length") is not None for model in record["models"].values())
@@ -102,7 +101,8 @@ def strike_sheet(record: Record, scene: Record) -> Sheet:
         notes=(
             *missed,
             assumptions(scene),
-            f"coupled: vibrating shaft in time{exact}; two-part and A.31: end mass m_e {felt} ({offset_words(scene)})",
+            f"coupled: vibrating shaft in time{exact}; two-part and A.31: two masses, with the end mass of a tip that "
+            f"sticks ({offset_words(scene)}; `cuefem end-mass`)",
             *([f"natural pivot length: {PIVOT}"] if pivots else []),
             "grip, {}: {}".format(*GRIPS[coupled["grip"]]),
             *_on_speed(record, scene),

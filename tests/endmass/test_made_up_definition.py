@@ -54,7 +54,7 @@ def test_every_command_tells_it(made_up: Definition, file: Path) -> None:
         found = json.loads(call(command, file, "--json")[1])
         drives = (found if key is None else found[key])["drives"]
         assert drives["rigid"]["end_mass"] == pytest.approx(felt, rel=1e-12)
-        assert "rigid, at b/R 0.3" in call(command, file)[1]
+    assert "rigid, at b/R 0.3" in call("end-mass", file)[1]
 
 
 def test_the_table_says_whether_the_tip_counts_in_it(
