@@ -8,6 +8,12 @@ from .contact.calibrated import (
 )
 from .contact.motion import motion as motion
 from .contact.place import Placed as Placed, place as place
+from .contact.side_strike import (
+    SideOutcome as SideOutcome,
+    SideStrike as SideStrike,
+    Striker as Striker,
+    side_strike as side_strike,
+)
 from .contact.strike import batch_strike as batch_strike, strike as strike
 from .cue import Cue as Cue, LumpedCue as LumpedCue, Material as Material, Segment as Segment
 from .design.batch import CueBatch as CueBatch, batch_stick as batch_stick
@@ -34,10 +40,6 @@ from .endmass.undamped import StickLimit as StickLimit
 from .games import usual_scene as usual_scene
 from .io import load as load, save as save
 from .io.paraview import save_motion as save_motion
-from .measured.side.side_accuracy import resolve_side_strike as resolve_side_strike
-from .measured.side.side_motion import SideMotion as SideMotion, side_motion as side_motion
-from .measured.side.side_scene import SideStrike as SideStrike, Striker as Striker
-from .measured.side.side_strike import SideOutcome as SideOutcome, side_strike as side_strike
 from .quantity.slips import Unusual as Unusual
 from .solid.resolution import Solid as Solid
 from .solid.shaft import SolidModes as SolidModes, solid_modes as solid_modes

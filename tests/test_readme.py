@@ -27,7 +27,7 @@ README = (ROOT / "README.md").read_text(encoding="utf-8")
 # the README, and the chapters of the handbook that hold what it has no room for
 MORE = [
     (ROOT / "cuefem" / "handbook" / f"{name}.md").read_text(encoding="utf-8")
-    for name in ("files", "working", "accuracy")
+    for name in ("files", "working", "accuracy", "side")
 ]
 TEXT = "\n".join([README, *MORE])
 BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```", TEXT, flags=re.MULTILINE | re.DOTALL)
@@ -47,7 +47,7 @@ def test_a_newcomer_reads_it_at_once() -> None:
 
 
 def test_every_block_is_of_a_kind_that_runs() -> None:
-    assert {name for name, _ in BLOCKS} == {"sh", "csv", "toml", "python"}
+    assert {name for name, _ in BLOCKS} == {"sh", "csv", "toml", "python", "text"}  # text: formulas
     assert TEXT.count("```") == 2 * len(BLOCKS)
 
 

@@ -37,7 +37,6 @@ COMMANDS = {
     "parts": ("cuefem.cli.files:parts", "Shafts, materials and tips by name."),
     "report": ("cuefem.cli.reporting:report", "Everything about a cue, as tables or as a page."),
     "scatter": ("cuefem.cli.studies:scatter", "How much a design's numbers scatter, and why."),
-    "side": ("cuefem.cli.side:side", "A strike from the side: rebound and effective mass."),
     "strike": ("cuefem.cli.cues:strike", "One stroke: squirt, speed, spin and pivot length."),
     "sweep": ("cuefem.cli.studies:sweep", "Compute every design of a STUDY (.toml)."),
     "tap": ("cuefem.cli.tap:tap", "The shaft's wood by ear: E, G, density from a tapped sound."),

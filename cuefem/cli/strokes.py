@@ -11,11 +11,11 @@ from typing import Any
 
 import click
 
+from cuefem.contact.side_strike import SideStrike
 from cuefem.cue import Cue, LumpedCue
 from cuefem.games import DEFAULT_GAME, GAMES, usual_scene, usual_tip
 from cuefem.io import InputError
 from cuefem.io.errors import faults_of
-from cuefem.measured.side.side_scene import SideStrike
 from cuefem.parts import with_shaft_mass
 from cuefem.quantity.fields import Quantity
 from cuefem.quantity.units import number

@@ -9,12 +9,12 @@ import shutil
 from collections.abc import Callable
 from pathlib import Path
 
+from cuefem.contact.side_strike import SideStrike
 from cuefem.cue import Cue
 from cuefem.io.errors import InputError, faults_of, reason, shown
 from cuefem.io.fittings import fitted, with_shaft_of
 from cuefem.io.profile import DEFAULT_MATERIAL, SHAPES, TABLES, load_profile
 from cuefem.io.toml import drawn_cue, load_accuracy, load_cue, load_toml, named_material
-from cuefem.measured.side.side_scene import SideStrike
 from cuefem.quantity.units import number
 from cuefem.scene import Scene
 
@@ -134,7 +134,7 @@ def load_stroke(path: Path, **told: str | None) -> Cue | Scene:
     """A cue or the scene of a stroke along it, told: as for `load`; InputError for a strike from the side."""
     stroke = load(path, **told)
     if isinstance(stroke, SideStrike):
-        raise InputError(path, "striker", "must be absent here: `cuefem side` takes a strike from the side")
+        raise InputError(path, "striker", "must be absent here: `cuefem.side_strike` takes a side strike")
     return stroke
 
 

@@ -20,8 +20,6 @@ from cuefem.beam.modes import Modes, modes
 from cuefem.contact.motion import Motion, last_contact, motion
 from cuefem.cue import Array, Cue
 from cuefem.io import check_new, write_whole_folder
-from cuefem.measured.side.side_motion import SideMotion
-from cuefem.measured.side.side_scene import SideStrike
 from cuefem.quantity.fields import scalar
 from cuefem.scene import Scene
 
@@ -184,33 +182,6 @@ def save_strike(folder: Path, scene: Scene, motion: Motion, *, scale: float = 1.
     scale: what bending is drawn with; the displacement beside the points is the true one.
     """
     _save_series(folder, scene.shaft, scalar("Ball.radius", scene.ball.radius), motion, scale=scale, track=track)
-
-
-def save_side_strike(
-    folder: Path, scene: SideStrike, motion: SideMotion, *, scale: float = 1.0, track: Track = iter
-) -> None:
-    """Write folder/strike.pvd and its files as `save_strike` does.
-
-    The striker comes along Y. It is drawn as a ball of Hertz's radius, or as large as phenolic of its mass would be.
-    """
-    striker, count = scene.striker, len(motion.times)
-    radius = striker.radius or (striker.mass / 1700 * 3 / (4 * np.pi)) ** (1 / 3)
-    inside = min(scene.position, scene.cue.length)
-    piece = int(np.clip(np.searchsorted(scene.cue.nodes, inside, side="right") - 1, 0, len(scene.cue.segments) - 1))
-    part = (inside - scene.cue.nodes[piece]) / scene.cue.segments[piece].length
-    ends = scene.cue.segments[piece].tip_diameter, scene.cue.segments[piece].butt_diameter
-    side = (ends[0] + part * (ends[1] - ends[0])) / 2
-    whole = Motion(
-        motion.times,
-        motion.duration,
-        motion.modes,
-        motion.fields,
-        along=np.zeros(count),
-        centre=np.column_stack([np.full(count, -inside), motion.striker - radius - side]),
-        turned=np.zeros(count),
-        force=np.column_stack([np.zeros(count), -motion.force]),
-    )
-    _save_series(folder, scene.cue, radius, whole, scale=scale, track=track)
 
 
 def _save_series(folder: Path, cue: Cue, radius: float, motion: Motion, *, scale: float, track: Track) -> None:

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
+from cuefem.contact.side_strike import SideStrike
 from cuefem.cue import Cue, LumpedCue, Material
 from cuefem.effects import AxialWaves, Effect, effect_kinds
 from cuefem.games import DEFAULT_GAME, GAMES, KIM, STROKES, usual_scene
@@ -21,7 +22,6 @@ from cuefem.io.fittings import BORE, FERRULE
 from cuefem.io.schema import build, joined, keys_of, table, unknown_key
 from cuefem.io.shelf import assembled
 from cuefem.materials import material
-from cuefem.measured.side.side_scene import SideStrike
 from cuefem.parts import with_shaft_mass
 from cuefem.quantity.fields import MOST_SEGMENTS, Quantity, check_fields, quantities
 from cuefem.scene import Scene, Stroke, Tip
@@ -259,7 +259,7 @@ def _parts(tables: dict[str, Any], path: Path, cue_file: Callable[[Path], Cue]) 
 
 def _side_strike(tables: dict[str, Any], path: Path, cue_file: Callable[[Path], Cue]) -> SideStrike:
     """A strike from the side, which [striker] makes."""
-    _check_keys(tables, [*keys_of(SideStrike), "accuracy"], path)
+    _check_keys(tables, keys_of(SideStrike), path)
     if "cue" not in tables:
         raise InputError(path, "cue", "must be given: a table or the path of a cue file; got nothing")
     parts = _parts(tables, path, cue_file)

@@ -7,9 +7,9 @@ from typing import Any
 
 import tomlkit
 
+from cuefem.contact.side_strike import SideStrike
 from cuefem.cue import Cue
 from cuefem.io.schema import table
-from cuefem.measured.side.side_scene import SideStrike
 from cuefem.scene import Scene
 
 

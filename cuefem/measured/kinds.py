@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Annotated, Any, ClassVar, NamedTuple
 
+from cuefem.contact.side_strike import Striker
 from cuefem.measured.numbers import TONES, Numbers, numbers_of
-from cuefem.measured.side.side_scene import Striker
 from cuefem.measured.wood import MODEL, SCALE
 from cuefem.quantity.fields import CONTACT_TIME, LENGTH, Quantity, check_fields
 from cuefem.scene import Scene

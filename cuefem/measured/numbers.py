@@ -11,11 +11,10 @@ import numpy as np
 from cuefem.beam.modes import modes
 from cuefem.beam.system import assemble
 from cuefem.beam.waves import mesh_for
+from cuefem.contact.side_strike import SideStrike, Striker, side_strike
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array, Cue
 from cuefem.effects import Effect, PointMass, Support
-from cuefem.measured.side.side_scene import SideStrike, Striker
-from cuefem.measured.side.side_strike import side_strike
 from cuefem.scene import Outcome, Scene, Stroke
 from cuefem.tip_modes import Solved
 

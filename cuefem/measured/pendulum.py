@@ -14,13 +14,13 @@ from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
+from cuefem.contact.side_strike import Striker
 from cuefem.cue import Array, LumpedCue
 from cuefem.endmass.lumped import impulse
 from cuefem.measured.documented import DocumentedCue
 from cuefem.measured.estimate import Estimate, estimate, squirt_of
 from cuefem.measured.kinds import EndMass
 from cuefem.measured.outliers import middle_of
-from cuefem.measured.side.side_scene import Striker
 from cuefem.measured.unknowns import MODEL_OF_SQUIRT
 from cuefem.quantity.fields import CONTACT_TIME, Quantity, check_fields, check_kind
 from cuefem.scene import Ball, Scene, Stroke, Tip

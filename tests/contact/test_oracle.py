@@ -14,9 +14,9 @@ import pytest
 import cuefem as cf
 from cuefem.contact import bent as bent_cue
 from cuefem.contact.laws import model_of
+from cuefem.contact.side_strike import solved_side
 from cuefem.effects.base import TipEffect
 from cuefem.effects.terms import ContactTerms
-from cuefem.measured.side.side_strike import SideSolved, solved_side
 from cuefem.tip_modes import tip_modes_of
 from tests.helpers.leather_scenes import LEATHER, SHAFT
 from tests.helpers.strike_scenes import hollow_cue, kim_cue, pool_cue
@@ -181,7 +181,7 @@ def agrees_from_the_side(seed: int) -> None:
         effects = (*effects, cf.SecondHit(3e-3))
     scene = cf.SideStrike(cue, striker, float(rng.uniform(0, cue.length)), float(rng.uniform(0.5, 5)), effects)
     outcome = cf.side_strike(scene, AT)
-    model = solved_side(scene, SideSolved(scene, AT).place).model
+    model = solved_side(scene, AT).model
     mine = oracle(model)
     off = {
         "rebound": outcome.rebound_speed / scene.speed - mine.ball[1] / scene.speed,

@@ -19,12 +19,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import quad
 from scipy.optimize import brentq
-from scipy.special import gamma, wofz
-
-Array = NDArray[np.float64]
+from scipy.special import wofz
 
 
 def spring_exact(inelasticity: float) -> tuple[float, float]:
@@ -44,51 +41,3 @@ def spring_exact(inelasticity: float) -> tuple[float, float]:
     # force is smooth in the root of time
     impulse = quad(lambda x: 2 * x * force(x * x), 0, math.sqrt(last), epsabs=1e-13, limit=200)[0]
     return impulse - 1, last
-
-
-def stepped(
-    inelasticity: float, *, exponent: float = 1.0, restitution: float = 1.0, steps: int = 4000, span: float = 6.0
-) -> tuple[float, float]:
-    """(e_A, duration) of a power law F = d^exponent that gives back e^2 of its work, by product integration.
-
-    Forces are taken straight between ``steps`` times up to ``span``; the error falls like 1/steps^2. Units: of length
-    (m v^2/K)^(1/(n + 1)), of time that over v.
-    """
-    h = span / steps
-    orders = ((2.0, 1.0), (1.5, inelasticity))
-    weights = np.zeros(steps + 1)
-    n = np.arange(steps + 1.0)
-    for a, factor in orders:
-        scale = factor * h**a / gamma(a + 2)
-        weights[1:] += scale * ((n[1:] + 1) ** (a + 1) - 2 * n[1:] ** (a + 1) + (n[1:] - 1) ** (a + 1))
-        weights[0] += scale
-    forces, depth, deepest, impulse = np.zeros(steps + 1), np.zeros(steps + 1), None, 0.0
-    for i in range(1, steps + 1):
-        free = i * h - weights[i - 1 : 0 : -1] @ forces[1:i]  # forces[0] is zero
-        rest = 0.0 if deepest is None else (1 - restitution**2) * deepest
-        soft = 1.0 if deepest is None else restitution**2
-        depth[i] = _balance(free, weights[0], exponent, rest, soft, start=depth[i - 1])
-        if deepest is not None and depth[i] <= rest:
-            part = (depth[i - 1] - rest) / (depth[i - 1] - depth[i])
-            return impulse + forces[i - 1] * part * h / (exponent + 1) - 1, (i - 1 + part) * h
-        forces[i] = max((depth[i] - rest) / soft, 0.0) ** exponent
-        if deepest is None and depth[i] < depth[i - 1]:
-            curve = depth[i - 2] - 2 * depth[i - 1] + depth[i]
-            deepest = depth[i - 1] - (depth[i] - depth[i - 2]) ** 2 / (8 * curve)
-            rest = (1 - restitution**2) * deepest
-            forces[i] = max((depth[i] - rest) / restitution**2, 0.0) ** exponent
-        impulse += (forces[i - 1] + forces[i]) * h / 2
-    raise RuntimeError("the contact lasts longer than the span")
-
-
-def _balance(free: float, weight: float, exponent: float, rest: float, soft: float, *, start: float) -> float:
-    """The depth d with d + weight ((d - rest)/soft)^exponent = free, by Newton's steps."""
-    d = start
-    for _ in range(60):
-        squeezed = max((d - rest) / soft, 0.0)
-        slope = exponent * squeezed ** (exponent - 1) / soft if squeezed > 0 or exponent == 1 else 0.0
-        step = (d + weight * squeezed**exponent - free) / (1 + weight * slope)
-        d -= step
-        if abs(step) < 1e-15 * (1 + abs(d)):
-            break
-    return d

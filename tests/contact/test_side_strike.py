@@ -1,0 +1,169 @@
+"""The side strike: rigid limits, closed forms of Hertz and of endless beams, energies, effects, files, refusals."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+import cuefem as cf
+from cuefem import PointMass, Resolution, SideStrike, Striker, Support, side_strike
+from tests.helpers.cues import FAMILY, cone, kim, pool, rod, scaled
+from tests.helpers.half_order import spring_exact
+from tests.helpers.orders import assert_order
+from tests.helpers.refusals import command_refuses, refuses
+
+BALL = Striker(0.005, 0.8, contact_time=1e-3)
+SOFT = Striker(0.005, 0.8, modulus=1e8, radius=0.02)
+FEW = Resolution(2, 10, 8)
+HAND, DAMPED, JOINT = Support(0.5, 1e4, dashpot=3.0), cf.StructuralDamping(0.02), cf.Joint(0.3, 1e-3)
+SCENE = SideStrike(kim(), Striker(0.02, 0.8, contact_time=1e-3), 0.05, 2.0, (PointMass(0.1, 2e-3), Support(0.6, 5e3)))
+
+
+def stiffened(cue: cf.Cue) -> cf.Cue:
+    """The cue so stiff that a contact of a millisecond holds 3,000 periods of its lowest mode."""
+    factor = (3000 / cf.modes(cue, 1).frequencies[0] / 1e-3) ** 2
+    return scaled(cue, E=factor, G=factor)
+
+
+@pytest.mark.parametrize("restitution", [1.0, 0.5])
+@pytest.mark.parametrize(
+    ("cue", "limit"),
+    [(rod(3e3), 4.0), (cone(3e3, 0.4), 6.8318457694), (kim(), 5.494268)],
+    ids=["rod", "cone 0.4", "kim"],
+)
+def test_effective_mass_of_a_stiff_beam_is_the_rigid_one(cue: cf.Cue, limit: float, restitution: float) -> None:
+    """A free rigid rod is felt at its end as 1/4 of its mass, a cone of 0.4 as 1/6.83; anywhere as `rigid_mass`."""
+    striker, at = Striker(0.1 * cue.shaft_mass, restitution, contact_time=1e-3), Resolution(1, 12, 2)
+    scene = SideStrike(stiffened(cue), striker)
+    assert cue.shaft_mass / side_strike(scene, at).effective_mass == pytest.approx(limit, rel=1e-6)
+    elsewhere = replace(scene, position=cue.length / 3, effects=(PointMass(0.2, 5e-3),))
+    assert side_strike(elsewhere, at).effective_mass == pytest.approx(elsewhere.rigid_mass, rel=1e-6)
+
+
+@pytest.mark.parametrize("restitution", [1.0, 0.6, 0.2])
+def test_hertz_on_a_wall_meets_its_closed_form(restitution: float) -> None:
+    """Duration 2.94 of the greatest compression (15 m v²/(16 E* √R))^(2/5) over v, times (1 + e)/2; e_A = e."""
+    striker = Striker(0.02, restitution, modulus=1e8, radius=0.01)
+    wall = (Support(0.2, math.inf, math.inf),)
+    outcome = side_strike(SideStrike(kim(), striker, 0.2, 2.0, wall), Resolution(1, 6, 2))
+    smooth = lambda u: 2 * u / math.sqrt(-math.expm1(2.5 * math.log1p(-(u**2))))  # noqa: E731
+    half = quad(smooth, 0, 1, epsabs=1e-14)[0] * (15 * 0.02 * 4.0 / (16 * 1e8 * math.sqrt(0.01))) ** 0.4 / 2.0
+    load, unload = outcome.phases
+    assert (load.end, unload.end - unload.start) == pytest.approx((half, restitution * half), rel=1e-9)
+    assert outcome.apparent_restitution == pytest.approx(restitution, abs=1e-9)
+    assert striker.wall_time(2.0) == pytest.approx(outcome.duration, rel=1e-9)
+    assert striker.wall_time(64.0) == pytest.approx(outcome.duration / 2, rel=1e-9)  # goes with v^(-1/5)
+
+
+@pytest.mark.parametrize("inelasticity", [0.05, 0.5, 2.0])
+@pytest.mark.parametrize(("where", "lengths"), [("middle", 16.0), ("end", 8.0)])
+def test_a_long_thin_beam_meets_the_endless_one(where: str, lengths: float, inelasticity: float) -> None:
+    """An elastic spring on an endless Euler beam: e_A by Laplace's transform, one parameter C m √ω0."""
+    time, diameter, rho = 1e-3, 1e-2, 700.0
+    spread = 250 * diameter  # (EI/rhoA)^(1/4) sqrt(T): thin, and without shear, it is nearly Euler's beam
+    E = 16 * rho * (spread**2 / time) ** 2 / diameter**2
+    thin = cf.Cue((cf.Segment(lengths * spread, diameter, diameter, cf.Material(E, 1e4 * E, rho, nu=0.0), kappa=1.0),))
+    section, unit = thin.section(0.0), time / math.pi
+    C = (1 if where == "middle" else 4) / (2 * math.sqrt(2) * float(section.EI) ** 0.25 * float(section.rhoA) ** 0.75)
+    mass = inelasticity / C * math.sqrt(unit)
+    place = thin.length / 2 if where == "middle" else 0.0
+    outcome = side_strike(SideStrike(thin, Striker(mass, 1.0, stiffness=mass / unit**2), place))
+    exact, duration = spring_exact(inelasticity)
+    assert outcome.apparent_restitution == pytest.approx(exact, abs=1e-5)
+    assert outcome.duration / unit == pytest.approx(duration, rel=1e-4)
+
+
+@pytest.mark.parametrize("striker", [BALL, SOFT, replace(BALL, restitution=0.0), replace(BALL, mass=0.5)])
+@pytest.mark.parametrize("effects", [(), (PointMass(0.1, 2e-3, 1e-7), HAND, JOINT, DAMPED)], ids=["bare", "effects"])
+def test_energies_and_momentum_balance(striker: Striker, effects: tuple[cf.Effect, ...]) -> None:
+    scene = SideStrike(kim(), striker, 0.04, 1.7, effects)
+    outcome = side_strike(scene, FEW)
+    parts = sum(joules for name, joules in outcome.energy.items() if name != "initial")
+    assert parts == pytest.approx(outcome.energy["initial"], rel=1e-10)
+    assert min(outcome.energy.values()) > -1e-12
+    assert outcome.impulse == pytest.approx(striker.mass * (1.7 + outcome.rebound_speed), rel=1e-12)
+    ratio = striker.mass / outcome.effective_mass
+    assert outcome.apparent_restitution == pytest.approx((striker.restitution - ratio) / (1 + ratio), abs=1e-9)
+
+
+def test_effects_add_in_any_order_and_vanish_in_their_limit() -> None:
+    lump, halves = PointMass(0.1, 4e-3), (Support(0.5, 5e3, dashpot=1.5),) * 2
+    ways = [(lump, HAND, JOINT), (JOINT, lump, HAND), (JOINT, PointMass(0.1, 1e-3), PointMass(0.1, 3e-3), *halves)]
+    scene = SideStrike(pool(), BALL, 0.05)
+    found = [side_strike(replace(scene, effects=effects)).apparent_restitution for effects in ways]
+    assert found[0] == found[1] == pytest.approx(found[2], abs=1e-11)
+    node, at = PointMass(0.02, 0.0), Resolution(2, 16, 14)
+    bare = side_strike(replace(scene, effects=(node,)), at).apparent_restitution
+    for none in (PointMass(0.02, 1e-12), Support(0.02, 1e-7), cf.Joint(0.02, 1e-10), cf.StructuralDamping(1e-12)):
+        assert side_strike(replace(scene, effects=(node, none)), at).apparent_restitution == pytest.approx(
+            bare, abs=1e-8
+        )
+
+
+@pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.heavy) if n != "kim" else n for n in FAMILY])
+def test_a_light_striker_feels_the_end_mass_by_force(name: str) -> None:
+    """The force of a striker of no mass is a half sine; impulse over the tip's speed at its end is that definition."""
+    cue, at = FAMILY[name], Resolution(2, 14, 24)
+    felt, masses = cf.end_mass(cf.Scene(cue, tip=cf.Tip(contact_time=1e-3)), "force", at), [1e-7, 1e-8]
+    strikes = [side_strike(SideStrike(cue, Striker(mass, 1.0, contact_time=1e-3)), at) for mass in masses]
+    errors = [abs(outcome.impulse / outcome.place_speed / felt - 1) for outcome in strikes]
+    assert_order(1, masses, errors, within=0.02)
+    assert errors[-1] < 2e-5
+
+
+@pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.heavy) if n != "kim" else n for n in FAMILY])
+def test_the_default_resolution_gives_e_A_within_1e_4(name: str) -> None:
+    rng, cue = np.random.default_rng(7), FAMILY[name]
+    for _ in range(3):
+        mass, time = np.exp(rng.uniform(np.log([1e-3, 0.3e-3]), np.log([0.2, 3e-3])))
+        place, restitution = rng.uniform(0, 0.15), float(rng.uniform(0.3, 1))
+        scene = SideStrike(cue, Striker(float(mass), restitution, contact_time=float(time)), float(place))
+        few, many = (side_strike(scene, Resolution(8, 24, n)).apparent_restitution for n in (100, 200))
+        limit = 2 * many - few  # the error of a plain sum falls like 1/modes
+        assert side_strike(scene).apparent_restitution == pytest.approx(limit, abs=1e-4)
+
+
+@pytest.mark.parametrize("law", [{"contact_time": 0.3e-3}, {"modulus": 1e9, "radius": 0.02}], ids=["linear", "Hertz"])
+def test_a_second_hit_is_followed(law: dict[str, float]) -> None:
+    """The end that a heavy striker drove away hits it again; a contact that outlasts the window is the last."""
+    scene = SideStrike(kim(), Striker(0.05, 0.8, **law), 0.0)
+    once, twice = side_strike(scene, FEW), side_strike(replace(scene, effects=(cf.SecondHit(20e-3),)), FEW)
+    flight = next(phase for phase in twice.phases if phase.grip == "apart")
+    assert twice.rebound_speed > once.rebound_speed
+    window = flight.end - once.duration + 1e-6  # ends in the second touch
+    cut = side_strike(replace(scene, effects=(cf.SecondHit(window),)), FEW)
+    assert sum(phase.grip == "apart" for phase in cut.phases) == 1
+    assert cut.duration > once.duration + window
+
+
+@pytest.mark.parametrize("striker", [BALL, SOFT, Striker(0.1, 0.5, stiffness=3e5)])
+def test_a_file_reads_back(tmp_path: Path, striker: Striker) -> None:
+    scene = replace(SCENE, striker=striker)
+    cf.save(scene, tmp_path / "side.toml")
+    assert cf.load(tmp_path / "side.toml") == scene
+    command_refuses("striker: must be absent here: ", "strike", tmp_path / "side.toml")
+
+
+CALLS: list[tuple[Callable[[], object], str]] = [
+    (lambda: Striker(0.02, 0.8), "takes one law of contact"),
+    (lambda: Striker(0.02, 0.8, modulus=1e9), "got modulus 1000000000.0 Pa"),
+    (lambda: Striker(math.nan, 0.8, stiffness=1e5), "Striker.mass must be in (0, inf) kg; got nan"),
+    (lambda: SideStrike(kim(), BALL, 0.71), "SideStrike.position must be in [0, 0.7] m, on the cue; got 0.71"),
+    (lambda: SideStrike(cf.LumpedCue(0.5, 0.006), BALL), "TypeError: SideStrike.cue must be a Cue"),  # type: ignore[arg-type]
+    (lambda: SideStrike(kim(), BALL, effects=PointMass(0.1, 1e-3)), "TypeError: SideStrike.effects must be a seq"),  # type: ignore[arg-type]
+    (lambda: SideStrike(kim(), BALL, effects=(cf.TipDome(0.01),)), "does not touch the cue's tip; got TipDome"),
+    (lambda: side_strike(kim()), "TypeError: side_strike scene must be a SideStrike; got a Cue"),  # type: ignore[arg-type]
+    (lambda: side_strike(SideStrike(kim(), Striker(0.02, 1.0, stiffness=1e15))), "contact time in [1e-6, 10] s"),
+    (lambda: cf.strike(SCENE), "TypeError: strike scene must be a Scene"),  # type: ignore[arg-type]
+]
+
+
+@pytest.mark.parametrize(("ask", "message"), CALLS, ids=[message for _, message in CALLS])
+def test_bad_input_is_refused(ask: Callable[[], object], message: str) -> None:
+    refuses(ask, message)
