@@ -62,7 +62,6 @@ HOMES = {
     "sqlite3": {"io"},
     "pyarrow": {"io"},
     "distributed": {"design"},
-    "emcee": {"measured"},
     "nicegui": {"designer"},
     "starlette": {"designer"},
 }

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import click
 
@@ -22,8 +21,6 @@ from cuefem.report.documented_page import (
     compare_sheets,
     estimate_record,
     estimate_sheets,
-    sampled_record,
-    sampled_sheet,
 )
 
 
@@ -59,11 +56,9 @@ def compare(folder: Path, template: bool, output: Path | None, as_json: bool) ->
 
 @click.command()
 @click.argument("folder", metavar="CUE_FOLDER", type=click.Path(path_type=Path))
-@click.option("--sample", type=click.IntRange(min=500), metavar="N", help="Check by N draws of a sampler (an extra).")
-@click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of the sampler.")
 @page_option
 @json_option
-def estimate(folder: Path, sample: int | None, seed: int, output: Path | None, as_json: bool) -> None:
+def estimate(folder: Path, output: Path | None, as_json: bool) -> None:
     """Find the wood, the bore and the tip that all measurements in CUE_FOLDER together make most likely.
 
     The folder is that of `cuefem compare`. The priors are those of the table of materials and of the folder's
@@ -72,22 +67,7 @@ def estimate(folder: Path, sample: int | None, seed: int, output: Path | None, a
     cue, notes = load_documented(folder)
     remark(cue.scene)
     with blaming(folder):
-        estimate_of_cue = estimated(cue, track=followed)
-        target = squirt_of(cue)
-        record: Any = estimate_record(
-            estimate_of_cue, estimate_of_cue.next(), estimate_of_cue.predicted(target), target.offset
-        )
-        if sample is not None:
-            from cuefem.measured.sampler import sampled
-
-            try:
-                record |= {
-                    "sampled": sampled_record(
-                        estimate_of_cue, sampled(estimate_of_cue, sample, seed=seed, track=followed)
-                    )
-                }
-            except ModuleNotFoundError as error:
-                raise InputError(folder, "--sample", str(error)) from None
-    more = [sampled_sheet(record["sampled"])] if sample is not None else []
+        found, target = estimated(cue, track=followed), squirt_of(cue)
+        record = estimate_record(found, found.next(), found.predicted(target), target.offset)
     whole = whole_record(folder, notes, cue.scene, record)
-    tell(as_json, whole, [cue.name, *assumed_lines(notes), "", *estimate_sheets(record), *more], output)
+    tell(as_json, whole, [cue.name, *assumed_lines(notes), "", *estimate_sheets(record)], output)

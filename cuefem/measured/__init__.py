@@ -16,5 +16,4 @@ unknowns     what a drawing leaves open, and within what
 estimate     the unknowns by least squares, their errors, and which measurement to make next
 outliers     numbers of which some may be wrong
 pendulum     the end mass by a ball on a thread
-sampler      an estimate by a sampler (an extra), as a check of the errors
 """

@@ -2,8 +2,7 @@
 
 The posterior is that of the priors of `cuefem.measured.unknowns` and of independent errors, one or two of which may be
 far larger than stated (`cuefem.measured.outliers`). Gauss and Newton's method finds where the model fits best; about
-that point the model is taken as linear, and mean and covariance of the posterior follow. `cuefem.measured.sampler`
-checks that.
+that point the model is taken as linear, and mean and covariance of the posterior follow.
 """
 
 from __future__ import annotations

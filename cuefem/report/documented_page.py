@@ -11,7 +11,6 @@ import numpy as np
 from cuefem.measured.documented import DocumentedCue, Row, Zero
 from cuefem.measured.estimate import Estimate, Worth
 from cuefem.measured.kinds import AddedMass, Squirt
-from cuefem.measured.sampler import PosteriorSample
 from cuefem.report.charts import WIDE, Axis, Chart, Curve, Tick, chart
 from cuefem.report.drawings import cue_drawing, front_drawing
 from cuefem.report.glossary import with_words
@@ -298,25 +297,3 @@ def _estimate_notes(record: Record) -> list[str]:
             "The search did not settle: the measurements contradict each other, and the intervals are too narrow."
         )
     return [*notes, "Error left: the width of the interval over that before any measurement."]
-
-
-def sampled_record(estimate: Estimate, sample: PosteriorSample) -> Record:
-    """What the sampler found, beside the estimate."""
-    names = ("missed", "correlation", "steps", "acceptance")
-    record: Record = {name: getattr(sample, name) for name in names}
-    return record | {"draws": len(sample.z), "values": [value._asdict() for value in sample.values]}
-
-
-def sampled_sheet(record: Record) -> Sheet:
-    """For people."""
-    times = record["steps"] / record["correlation"]
-    lines = [
-        f"{record['draws']} draws, {times:.0f} autocorrelation times for each walker, "
-        f"{100 * record['acceptance']:.0f} % of the moves taken.",
-        f"The sampler works on an expansion to second order, which misses {record['missed']:.2f} errors of a "
-        "measurement (root mean square).",
-    ]
-    if not record["missed"] < 0.5 or times < 20:
-        lines.append("That is too much, or these are too few draws: do not rely on this table.")
-    columns = {"unknown": "{words}", "median": _value("value")} | _INTERVAL
-    return sheet("By the sampler", columns, record["values"], *lines)

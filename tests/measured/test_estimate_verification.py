@@ -1,4 +1,4 @@
-"""The inverse: exact data are found again, errors cover on made-up cues, the sampler agrees, what to measure next."""
+"""The inverse: exact data are found again, errors cover on made-up cues, what to measure next."""
 
 from __future__ import annotations
 
@@ -10,8 +10,7 @@ import pytest
 from cuefem.measured.documented import DocumentedCue
 from cuefem.measured.estimate import Estimate, estimate
 from cuefem.measured.kinds import KINDS, Measurement, Stiffness, Tone, Weight
-from cuefem.measured.outliers import HOLDS_95, MISTAKEN, log_density, solved
-from cuefem.measured.sampler import SecondOrder, sampled
+from cuefem.measured.outliers import HOLDS_95, solved
 from cuefem.measured.unknowns import Prior
 from tests.helpers.documented import SCENE, blank, documented
 
@@ -182,52 +181,6 @@ def test_intervals_cover_whichever_measurement_is_wrong(
     elif wrong > 1:
         assert np.mean(named) < 0.5
     assert wide > {0: 0.6, 1: 0.8}.get(wrong, 0.86)
-
-
-@pytest.fixture(scope="module")
-def found() -> Estimate:
-    return estimate(made_up(5, size=0.7)[0])
-
-
-def test_the_sampler_agrees_with_the_estimate(found: Estimate) -> None:
-    """Two ways to the same posterior, one by its width at the top and one by draws."""
-    sample = sampled(found, 20_000, seed=2)
-    sd = np.sqrt(np.diag(found.covariance))
-    assert sample.missed < 0.1
-    assert sample.steps > 20 * sample.correlation
-    assert sample.z.mean(axis=0) == pytest.approx(found.z, abs=float(0.25 * sd.max()))
-    assert np.abs(sample.z.mean(axis=0) - found.z) / sd == pytest.approx(0, abs=0.25)
-    assert sample.z.std(axis=0) == pytest.approx(sd, rel=0.15)
-    for ours, theirs in zip(found.values, sample.values, strict=True):
-        assert (theirs.name, theirs.unit, theirs.before) == (ours.name, ours.unit, ours.before)
-        assert theirs.low < theirs.value < theirs.high
-
-
-def test_the_sampler_is_exact_on_its_own_target(found: Estimate) -> None:
-    """The mean of draws is that of the posterior on a grid, in the two unknowns of a smaller problem."""
-    cue = documented(
-        Weight(value=0.105, error=2e-3),
-        Tone(mode=1, value=97.0, error=1.0),
-        priors=(CLOSED, Prior("G", 0.0), Prior("bore", 0.0)),
-    )
-    small = estimate(cue)
-    expansion = SecondOrder.about(small)
-    # fine at the top, and out to where the priors end, which is where a wrong measurement leaves the unknowns
-    finest = np.sinh(np.linspace(-6, 6, 321)) / np.sinh(6)
-    axis = [small.z[i] + 6 * finest for i in range(2)]
-    cell = np.multiply.outer(*(np.gradient(each) for each in axis)).ravel()
-    grid = np.stack(np.meshgrid(*axis, indexing="ij"), axis=-1)
-    measured, sd = np.array([[one.measured, one.sd] for one in cue.found]).T
-    residuals = (measured - expansion.values(grid.reshape(-1, 2))) / sd
-    level = log_density(residuals, MISTAKEN).sum(axis=-1) - np.sum(grid.reshape(-1, 2) ** 2, axis=-1) / 2
-    weight = cell * np.exp(level - level.max())
-    mean = weight @ grid.reshape(-1, 2) / weight.sum()
-    spread = np.sqrt(weight @ (grid.reshape(-1, 2) - mean) ** 2 / weight.sum())
-    sample = sampled(small, 40_000, seed=3)
-    error = np.sqrt(sample.correlation / len(sample.z))  # of the chain's mean, in standard deviations
-    assert error < 0.05
-    assert (sample.z.mean(axis=0) - mean) / spread == pytest.approx(0, abs=4 * error)
-    assert sample.z.std(axis=0) == pytest.approx(spread, rel=0.1)
 
 
 def test_what_a_next_measurement_would_tell_is_what_it_tells() -> None:
