@@ -95,13 +95,7 @@ def test_a_new_user_gets_a_report_from_nothing(tmp_path: Path) -> None:
     assert "natural pivot length" in (fresh / "my_shaft.html").read_text(encoding="utf-8")
 
 
-def timed(block: str) -> object:
-    """A block of commands under its first words; the study of tap tests is long."""
-    marks = [pytest.mark.heavy] if "studies.measured.tap" in block else []
-    return pytest.param(block, marks=marks, id=" ".join(block.split()[:3]))
-
-
-@pytest.mark.parametrize("block", list(map(timed, COMMANDS)))
+@pytest.mark.parametrize("block", COMMANDS, ids=lambda block: " ".join(block.split()[:3]))
 def test_commands_run(block: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("meshes", "studies"):
         shutil.copytree(ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("*.svg", "*.png", "*.py", "data"))

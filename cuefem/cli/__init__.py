@@ -39,8 +39,6 @@ COMMANDS = {
     "scatter": ("cuefem.cli.studies:scatter", "How much a design's numbers scatter, and why."),
     "strike": ("cuefem.cli.cues:strike", "One stroke: squirt, speed, spin and pivot length."),
     "sweep": ("cuefem.cli.studies:sweep", "Compute every design of a STUDY (.toml)."),
-    "tap": ("cuefem.cli.tap:tap", "The shaft's wood by ear: E, G, density from a tapped sound."),
-    "weigh": ("cuefem.cli.weigh:weigh", "The effective end mass, weighed by a ball on a thread."),
 }
 
 

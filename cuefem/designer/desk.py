@@ -33,7 +33,6 @@ from cuefem.designer.results import ResultsSide
 from cuefem.designer.sheet import DrawingSheet
 from cuefem.designer.sliders import choices, groups, sliders, without
 from cuefem.designer.style import SCRIPT, STYLE
-from cuefem.designer.tapside import TapSide
 from cuefem.designer.unit_system import METRIC, SYSTEMS, UnitSystem
 from cuefem.designer.words import head_markup
 from cuefem.games import GAMES
@@ -114,7 +113,6 @@ class Desk:
             self.advice = AdviceSide(lambda: self.design.scene, lambda: self.system, self.edit)
         with self.results.below_cue:
             self.sheet = DrawingSheet(self.edit)
-            self.tap = TapSide(self.receiver.address, lambda: self.design.scene, self.edit)
         self._show_design()
 
     def _show_design(self) -> None:
@@ -134,7 +132,6 @@ class Desk:
         self.reference = min(self.reference, max(0, len(self.pinned) - 1))
         self.pins.show(self.pinned, self.reference)
         self.sheet.show(self.design.scene, self.system)
-        self.tap.show(self.system)
         self._show_head()
 
     def _show_ways(self) -> None:
@@ -414,9 +411,6 @@ class Desk:
     # --- files -----------------------------------------------------------------------------------------------------
 
     async def _received(self, name: str, content: bytes) -> None:
-        if name.lower().endswith(".wav"):
-            await self.tap.listen(content)
-            return
         try:
             known = await computed(reading, name, content, self.read)
         except FAILURES as error:

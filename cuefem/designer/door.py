@@ -11,7 +11,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 LARGEST_FILE = 5_000_000  # bytes
 AROUND_FILE = 10_000  # bytes of a form beside its file
 LONGEST_NAME = 255  # bytes: what file systems take
-KINDS = (".toml", ".csv", ".vtk", ".vtu", ".stl", ".ply", ".obj", ".wav")
+KINDS = (".toml", ".csv", ".vtk", ".vtu", ".stl", ".ply", ".obj")
 REJECTED = f"a file must be a {', '.join(KINDS[:-1])} or {KINDS[-1]} of at most {LARGEST_FILE // 10**6} MB"
 
 

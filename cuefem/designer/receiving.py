@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Awaitable, Callable
 
 from nicegui import app, background_tasks, ui
@@ -26,6 +27,8 @@ class Receiver:
             on_rejected=lambda: say(f"not opened: {REJECTED}"),
         ).props(f'accept="{",".join(kinds)}"')
         self.address = str(self.upload.props["url"])
+        client = ui.context.client
+        client.on_connect(lambda: client.run_javascript(f"cuefem.sends({json.dumps(self.address)})"))
         app.remove_route(self.address)  # NiceGUI's own takes no form without a file
         app.post(self.address, include_in_schema=False)(self._sent)
 

@@ -136,76 +136,20 @@ window.cuefem = {
   busy(busy) { document.querySelector(".answers").ariaBusy = busy; },
   remember(units) { try { localStorage.setItem("cuefem-units", units); } catch {} },
 };
-// Recordings: from the microphone, a chosen or a dropped file of any kind that the browser plays, sent as .wav.
-const said = words => {
-  document.querySelector(".tap .beside").innerHTML = "<p class=wrong role=alert></p>";
-  document.querySelector(".tap .beside p").textContent = words;
-};
-const wave = (pieces, rate) => {
-  const size = pieces.reduce((sum, piece) => sum + piece.length, 0);
-  const view = new DataView(new ArrayBuffer(44 + 2 * size));
-  const text = (at, words) => [...words].forEach((letter, i) => view.setUint8(at + i, letter.charCodeAt(0)));
-  text(0, "RIFF"); view.setUint32(4, 36 + 2 * size, true); text(8, "WAVEfmt "); view.setUint32(16, 16, true);
-  view.setUint16(20, 1, true); view.setUint16(22, 1, true); view.setUint32(24, rate, true);
-  view.setUint32(28, 2 * rate, true); view.setUint16(32, 2, true); view.setUint16(34, 16, true);
-  text(36, "data"); view.setUint32(40, 2 * size, true);
-  let at = 44;
-  for (const piece of pieces) for (const x of piece) {
-    view.setInt16(at, Math.round(32767 * Math.max(-1, Math.min(1, x))), true);
-    at += 2;
-  }
-  return new Blob([view], { type: "audio/wav" });
-};
+// A dropped file goes where a chosen one does.
 Object.assign(window.cuefem, {
   sends(address) { this.address = address; },
-  send(blob, name) {
+  send(file) {
     const form = new FormData();
-    form.append("file", blob, name);
+    form.append("file", file, file.name);
     return fetch(this.address, { method: "POST", body: form });
-  },
-  async take(file) {
-    if (!file.type.startsWith("audio/") || file.name.toLowerCase().endsWith(".wav")) return this.send(file, file.name);
-    try {
-      const sound = await new OfflineAudioContext(1, 1, 48000).decodeAudioData(await file.arrayBuffer());
-      await this.send(wave([sound.getChannelData(0)], sound.sampleRate), "tap.wav");
-    } catch { said("this browser cannot read " + file.name + ": save it as .wav"); }
-  },
-  pick() {
-    const input = document.createElement("input");
-    input.type = "file"; input.accept = "audio/*,.wav";
-    input.onchange = () => input.files[0] && this.take(input.files[0]);
-    input.click();
-  },
-  async record(seconds) {
-    let stream, context;
-    try {
-      const plain = { echoCancellation: false, noiseSuppression: false, autoGainControl: false };
-      stream = await navigator.mediaDevices.getUserMedia({ audio: plain });
-      context = new AudioContext();
-      const code = "registerProcessor('taken', class extends AudioWorkletProcessor { process(inputs) { " +
-        "if (inputs[0][0]) this.port.postMessage(inputs[0][0].slice()); return true; } });";
-      const address = URL.createObjectURL(new Blob([code], { type: "text/javascript" }));
-      await context.audioWorklet.addModule(address);
-      URL.revokeObjectURL(address);
-      const node = new AudioWorkletNode(context, "taken"), pieces = [];
-      node.port.onmessage = event => pieces.push(event.data);
-      context.createMediaStreamSource(stream).connect(node);
-      for (let left = seconds; left > 0; left--) {
-        said("Recording: tap now. " + left + " s left.");
-        await new Promise(done => setTimeout(done, 1000));
-      }
-      document.querySelector(".tap .beside").innerHTML = "";
-      await this.send(wave(pieces, context.sampleRate), "tap.wav");
-    } catch (error) { said("no microphone could be used (" + error.message + "): choose a recording instead"); }
-    stream?.getTracks().forEach(track => track.stop());
-    context?.close();
   },
 });
 addEventListener("dragover", event => event.preventDefault());
 addEventListener("drop", event => {
   if (!event.dataTransfer?.files.length) return;
   event.preventDefault();
-  window.cuefem.take(event.dataTransfer.files[0]);
+  window.cuefem.send(event.dataTransfer.files[0]);
 });
 addEventListener("hashchange", () => { if (location.hash.startsWith("#d=")) location.reload(); });
 addEventListener("keydown", event => {

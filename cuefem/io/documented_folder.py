@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 import csv
+import io
 import re
+import struct
+import warnings
 from collections.abc import Iterator
 from importlib.resources import files
 from pathlib import Path
 from typing import Any, cast
 
+from scipy.io import wavfile
+
 from cuefem.io import InputError, load, write_whole_folder
 from cuefem.io.assumed import assumed_blow, assumed_drawing
-from cuefem.io.errors import faults_of, nearest, shown
+from cuefem.io.errors import faults_of, nearest, read_bytes, shown
 from cuefem.io.schema import build, joined, keys_of, unknown_key
 from cuefem.io.toml import OF_GAME, game_of, left_out, read_tables, read_text, scene_of_tables
 from cuefem.measured.documented import DocumentedCue
-from cuefem.measured.kinds import KINDS, Measurement
+from cuefem.measured.kinds import KINDS, Measurement, Setup, Tone
+from cuefem.measured.pendulum import Pendulum
+from cuefem.measured.recording import Recording, combined, tones_of
 from cuefem.measured.unknowns import Prior, names
 from cuefem.quantity.fields import Quantity, quantities
 from cuefem.scene import Scene
@@ -25,6 +32,8 @@ MEASURED = "measured.toml"
 DRAWINGS = ("cue.toml", "cue.csv")
 SCENE_KEYS = ("cue", "game", "ball", "tip", "stroke", "effects")
 OWN_KEYS = ("name", "source", "unknowns")
+READINGS: dict[str, type] = {"recording": Recording, "pendulum": Pendulum}  # from which measurements are made
+LONGEST, LARGEST_SOUND = 120.0, 100_000_000  # s, bytes of a recording: as long, two channels at 96 kHz in 32 bits
 TEMPLATE = ("README.md", "added_mass.csv", "cue.toml", MEASURED, "squirt.csv")
 
 _COLUMN = re.compile(r"\s*([a-z_]+)\s*(?:\[([^\]]+)\])?\s*")
@@ -36,12 +45,12 @@ def load_documented(folder: Path) -> tuple[DocumentedCue, list[str]]:
         raise InputError(folder, "", "must be the folder of a documented cue (`--template` makes one); got no folder")
     path = folder / MEASURED
     tables = read_tables(path) if path.exists() else {}
-    known = [*OWN_KEYS, *SCENE_KEYS, *KINDS]
+    known = [*OWN_KEYS, *SCENE_KEYS, *KINDS, *READINGS]
     for name, value in tables.items():
         if name not in known:
             raise unknown_key(name, value, known, file=str(path), key="")
     scene, notes = _scene(folder, path, tables)
-    measurements = tuple(_measurements(folder, path, tables))
+    measurements = (*_measurements(folder, path, tables), *_readings(folder, path, tables, scene))
     priors = tuple(_priors(path, tables.get("unknowns", []), scene))
     name, source = (_words(path, tables, key) for key in ("name", "source"))
     with faults_of(path, ""):
@@ -108,11 +117,7 @@ def _drawing(path: Path) -> Any:
 
 def _measurements(folder: Path, path: Path, tables: dict[str, Any]) -> Iterator[Measurement]:
     for key, kind in KINDS.items():
-        rows = tables.get(key, [])
-        if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
-            raise InputError(path, key, f"must be tables, [[{key}]]; got {shown(rows)}")
-        for i, row in enumerate(rows):
-            yield build(kind, row, file=str(path), key=joined(key, i))
+        yield from _rows(path, tables, key, kind)
         series = folder / f"{key}.csv"
         if series.exists():
             yield from _series(series, kind)
@@ -120,6 +125,46 @@ def _measurements(folder: Path, path: Path, tables: dict[str, Any]) -> Iterator[
         if other.name not in DRAWINGS and other.stem not in KINDS:
             names = ", ".join(f"{key}.csv" for key in KINDS)
             raise InputError(other, "", f"must be one of {names}{nearest(other.stem, KINDS)}")
+
+
+def _rows(path: Path, tables: dict[str, Any], key: str, kind: type[Any]) -> Iterator[Any]:
+    """What the tables [[key]] say."""
+    rows = tables.get(key, [])
+    if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
+        raise InputError(path, key, f"must be tables, [[{key}]]; got {shown(rows)}")
+    for i, row in enumerate(rows):
+        yield build(kind, row, file=str(path), key=joined(key, i))
+
+
+def _readings(folder: Path, path: Path, tables: dict[str, Any], scene: Scene) -> Iterator[Measurement]:
+    """What pendulum tests and recordings measure: end masses, and one tone for each mode that sounds."""
+    for pendulum in _rows(path, tables, "pendulum", Pendulum):
+        yield pendulum.end_mass
+    tones: list[Tone] = []
+    for recording in _rows(path, tables, "recording", Recording):
+        sound = folder / recording.file
+        samples, rate = _sound(sound)
+        with faults_of(sound, ""):
+            source = recording.source or recording.file
+            tones += tones_of(samples, rate, Setup(scene).numbers.frequencies, source)
+    yield from combined(tones)
+
+
+def _sound(path: Path) -> tuple[Any, float]:
+    """Samples, (n, channels), and samples per second of a .wav file; InputError if it cannot be read."""
+    if path.suffix.lower() != ".wav":
+        raise InputError(path, "", f"must end in .wav; got {path.suffix!r} (ffmpeg -i tap.m4a tap.wav converts)")
+    content = read_bytes(path, LARGEST_SOUND)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", wavfile.WavFileWarning)  # what phones write beside the sound
+            rate, samples = wavfile.read(io.BytesIO(content))
+    except (ValueError, TypeError, ArithmeticError, MemoryError, struct.error, UnboundLocalError) as error:
+        detail = "" if isinstance(error, UnboundLocalError) else f" ({error})"  # no data in it
+        raise InputError(path, "", f"must be a .wav file of sound{detail}") from None
+    if samples.size == 0 or not 0 < len(samples) <= LONGEST * rate:
+        raise InputError(path, "", f"must last {LONGEST:g} s at most, and hold a sound; got {len(samples)} samples")
+    return samples.reshape(len(samples), -1).astype(float), float(rate)
 
 
 def _series(path: Path, kind: type[Measurement]) -> Iterator[Measurement]:

@@ -9,7 +9,6 @@ from typing import Annotated, Any, ClassVar, NamedTuple
 
 from cuefem.contact.side_strike import Striker
 from cuefem.measured.numbers import TONES, Numbers, numbers_of
-from cuefem.measured.wood import MODEL, SCALE
 from cuefem.quantity.fields import CONTACT_TIME, LENGTH, Quantity, check_fields
 from cuefem.scene import Scene
 
@@ -18,7 +17,9 @@ ANGLE = Quantity("rad", "(-1.5, 1.5)")
 ERROR = "(0, inf)"
 PARTS = ("shaft", "cue")
 INCH = 0.0254
+MODEL = 2e-3  # relative, of a natural frequency: diameters to 0.1 %, uneven grain, the beam
 # What one can reach with simple means, for advice on what to measure next.
+SCALE = 0.5e-3  # kg, of a kitchen scale
 FORCE_AND_DIAL = 0.02  # relative, of a static stiffness: a kitchen scale and a dial gauge
 STRING = 1e-3  # m, of a balance point
 GOOD_SQUIRT = 8.7e-4  # rad, 0.05 degrees: the mean of some shots on either side
@@ -30,12 +31,13 @@ class Setup(NamedTuple):
     """A scene as it was measured.
 
     zeros: how far the strokes of each series hit beside where they were aimed, m, by its name. squirt_factor: true
-    squirt over that of the model.
+    squirt over that of the model. time_factor: true contact time of a pendulum's ball over the stated one.
     """
 
     scene: Scene
     zeros: Mapping[str, float] = MappingProxyType({})
     squirt_factor: float = 1.0
+    time_factor: float = 1.0
 
     @property
     def numbers(self) -> Numbers:
@@ -163,7 +165,7 @@ class Tone(Measurement):
 
     @property
     def sd(self) -> float:
-        """With what a beam and a drawing leave open, as in a tap test."""
+        """With `MODEL`: what a beam and a drawing leave open."""
         return float((self.error**2 + (MODEL * self.value) ** 2) ** 0.5)
 
     @property
@@ -380,10 +382,10 @@ class ContactTime(Measurement):
 
 @dataclass(frozen=True, kw_only=True)
 class EndMass(Measurement):
-    """The end mass by the pendulum test (`cuefem.measured.pendulum`): that which a light ball feels from the side.
+    """The end mass by a pendulum test (`cuefem.measured.pendulum`): that which a light ball feels from the side.
 
-    ball_mass, restitution, contact_time: of the ball on the shaft held firm, as in that test. position: of the blow,
-    from the end of the tip.
+    ball_mass, restitution, contact_time: of the ball on the clamped shaft. position: of the impact, from the end of the
+    tip. contact_time_error: shared by all pendulum tests of a cue.
     """
 
     key: ClassVar[str] = "end_mass"
@@ -396,6 +398,7 @@ class EndMass(Measurement):
     ball_mass: Annotated[float, MASS]
     restitution: Annotated[float, Quantity("", "(0, 1]")]
     contact_time: Annotated[float, CONTACT_TIME]
+    contact_time_error: Annotated[float | None, Quantity("s", ERROR)] = None
     position: Annotated[float, LENGTH]
 
     @property
@@ -404,8 +407,9 @@ class EndMass(Measurement):
         return f"end mass, pendulum, {1e3 * self.contact_time:.3g} ms"
 
     def computed(self, setup: Setup) -> float:
-        """Of a strike from the side."""
-        striker = Striker(self.ball_mass, self.restitution, contact_time=self.contact_time)
+        """Of a side strike."""
+        time = self.contact_time * setup.time_factor
+        striker = Striker(self.ball_mass, self.restitution, contact_time=time)
         return setup.numbers.end_mass(striker, self.position)
 
     @classmethod

@@ -1,9 +1,9 @@
 """Numbers of which some may be wrong: each has its stated error or, in a small share of cases, a far larger one.
 
-A wrong number's error is `WIDER` times the stated one, or, among repeated readings, Cauchy's, which has no end. A
-number that agrees with the others counts in full, one that contradicts them hardly at all, and where the numbers cannot
-tell which of them is wrong, the error grows (the good-and-bad data model: W. H. Press, in Unsolved Problems in
-Astrophysics, Princeton 1997, 49; D. S. Sivia, Data Analysis, Oxford 2006, ch. 8).
+A wrong number's error is `WIDER` times the stated one. A number that agrees with the others counts in full, one that
+contradicts them hardly at all, and where the numbers cannot tell which of them is wrong, the error grows (the
+good-and-bad data model: W. H. Press, in Unsolved Problems in Astrophysics, Princeton 1997, 49; D. S. Sivia, Data
+Analysis, Oxford 2006, ch. 8).
 """
 
 from __future__ import annotations
@@ -16,35 +16,9 @@ import numpy as np
 from cuefem.cue import Array
 
 WIDER = 10.0  # times the stated error: that of a wrong number
-MISREAD = 0.1  # share of readings by eye that are wrong
 MISTAKEN = 1e-3  # share of measurements that are wrong: contradictions of `NOTICED` errors outweigh it
 NOTICED = float(np.sqrt(2 * np.log(WIDER / MISTAKEN)))
 TOGETHER = 2  # measurements that are wrong at once, at most
-HOLDS_95 = 1.959964  # standard deviations either way that hold 95 %
-FINE = 20  # points a standard deviation
-
-
-def log_density(residuals: Array, wrong: float) -> Array:
-    """ln of the density of residuals in units of their errors, but for a constant; ``wrong``: share of wrong ones."""
-    bad = np.log(wrong / WIDER) - np.log1p((residuals / WIDER) ** 2)
-    return np.asarray(np.logaddexp(np.log1p(-wrong) - residuals**2 / 2, bad))
-
-
-def middle_of(values: Array, errors: Array) -> tuple[float, float]:
-    """The number that repeated readings tell, some of which may be wrong, and its error.
-
-    The middle of its 68 % interval; the error is half of that, or as much as its 95 % interval asks for. A single
-    reading is taken as it is.
-    """
-    if len(values) == 1:
-        return float(values[0]), float(errors[0])
-    steps = np.linspace(-8, 8, 16 * FINE + 1)
-    x = np.unique((values[:, None, None] + errors[:, None, None] * np.outer((1.0, WIDER), steps)).ravel())
-    level = sum(log_density((x - value) / error, MISREAD) for value, error in zip(values, errors, strict=True))
-    density = np.exp(level - np.max(level))
-    share = np.concatenate([[0.0], np.cumsum(np.diff(x) * (density[1:] + density[:-1]) / 2)])
-    far, low, high, farther = np.interp((0.025, 0.1586553, 0.8413447, 0.975), share / share[-1], x)
-    return float(low + high) / 2, float(max((high - low) / 2, (farther - far) / 2 / HOLDS_95))
 
 
 class Linear(NamedTuple):

@@ -13,13 +13,13 @@ from dataclasses import dataclass, field
 from typing import Annotated, Any
 
 from cuefem.cue import Material
-from cuefem.measured.kinds import Measurement, Setup, Squirt
+from cuefem.measured.kinds import EndMass, Measurement, Setup, Squirt
 from cuefem.quantity.fields import Quantity, check_fields
 from cuefem.scene import Scene
 from cuefem.vary import PLACES, Path, place, replaced
 
 MODEL_OF_SQUIRT = 0.1  # relative, one for all squirts: what the law of the shrinking patch is worth (leather_tip.md)
-ZERO, SQUIRT_MODEL = "zero", "squirt model"
+ZERO, SQUIRT_MODEL, BALL_TIME = "zero", "squirt model", "ball time"
 
 
 @dataclass(frozen=True)
@@ -104,6 +104,12 @@ def unknowns_of(scene: Scene, measurements: Sequence[Measurement], priors: Seque
     if squirts:
         put: Any = lambda setup, value: setup._replace(squirt_factor=value)  # noqa: E731
         made.append(Unknown(SQUIRT_MODEL, "true squirt over the model's", "", 1.0, spread, put))
+    ends = [one for one in measurements if isinstance(one, EndMass) and one.contact_time_error]
+    if ends:
+        spread = max((one.contact_time_error or 0.0) / one.contact_time for one in ends)
+        longer: Any = lambda setup, value: setup._replace(time_factor=value)  # noqa: E731
+        words = "true contact time of the pendulum over the stated"
+        made.append(Unknown(BALL_TIME, words, "", 1.0, spread, longer))
     series: dict[str, float] = {}
     for measurement in squirts:
         if measurement.zero_error is not None:

@@ -55,7 +55,7 @@ def compare_record(cue: DocumentedCue, rows: Sequence[Row], zeros: Sequence[Zero
 def compare_sheets(record: Record) -> list[Sheet | str]:
     """For people: the table, the zeros, what is missing."""
     made: list[Sheet | str] = [_fit_sheet("Measured and computed", record, "of both")] if record["rows"] else []
-    made += zero_lines(record)
+    made += [*contradictions(record), *zero_lines(record)]
     if record["lacking"]:
         made += ["not measured, and what that costs:", *(f"  {words}" for words in record["lacking"])]
     return made
@@ -85,6 +85,17 @@ def captions(record: Record) -> list[str]:
         "Residual: measured less computed, in units of the measurement's error; of both: of both errors together "
         f"(root mean square {record['rms_pull']:.2f}).",
     ]
+
+
+def contradictions(record: Record) -> list[str]:
+    """The measurements that neither their errors nor what the drawing leaves open explain."""
+    made = []
+    for row in record["rows"]:
+        if abs(row["pull"]) > FAR:
+            measured, computed = (with_unit(row[value], row["unit"], error=row[error]) for value, error in PAIRS)
+            apart = f"measured {measured}, computed {computed}, {abs(row['pull']):.1f} errors of both apart"
+            made.append(f"{row['what']} contradicts the drawing: {apart}")
+    return made
 
 
 def zero_lines(record: Record) -> list[str]:
@@ -137,7 +148,7 @@ def compare_page(cue: DocumentedCue, rows: Sequence[Row], record: Record, notes:
         band=(place(-2), place(2)),
         height=22.0 * len(bars) + 44,
         table=_fit_sheet("Measured and computed", record, "of both", *sourced) if rows else None,
-        zeros=zero_lines(record),
+        zeros=[*contradictions(record), *zero_lines(record)],
         lacking=record["lacking"],
         drawings=drawings,
         charts=[*_squirt_charts(cue, rows), *_mass_charts(rows)],

@@ -77,7 +77,7 @@ WRONG = {
     "elsewhere.toml": ('cue = "shaft.toml"\n', "elsewhere.toml: cue: shaft.toml: cannot be read: No such file"),
     "profile.csv": ("a,b\n1,2\n", "profile.csv:"),
     "<b>.toml": ("x = 1", "<b>.toml: x: "),
-    "notes.txt": ("x = 1", "a file must be a .toml, .csv, .vtk, .vtu, .stl, .ply, .obj or .wav of at most 5 MB"),
+    "notes.txt": ("x = 1", "a file must be a .toml, .csv, .vtk, .vtu, .stl, .ply or .obj of at most 5 MB"),
     "many.toml": (PIECE * 2001, "many.toml: segments: must hold at most 2000 segments; got 2001"),
     "long.toml": (
         PIECE.replace("1 mm", "1e9 m"),

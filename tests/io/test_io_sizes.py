@@ -52,7 +52,6 @@ COMMANDS = {
     "report": [],
     "designer": ["--no-open", "--port", "0"],
     "convert": ["made.toml"],
-    "tap": ["none.wav", "--scene"],
 }
 STUDY = """scene = "{}"
 responses = ["end_mass"]
@@ -85,8 +84,7 @@ def test_every_command_refuses_what_would_not_end(folder: Path, command: str) ->
         pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
     for name, (content, line) in FILES.items():
         Path(name).write_text(content)
-        words = [*COMMANDS[command], name] if command == "tap" else [name, *COMMANDS[command]]
-        assert refused(command, *words).startswith(f"{name}: {line}")
+        assert refused(command, name, *COMMANDS[command]).startswith(f"{name}: {line}")
 
 
 @pytest.mark.parametrize("command", ["sweep", "scatter"])
@@ -232,8 +230,10 @@ def soon() -> Iterator[None]:
 def commands_on(name: str) -> list[list[str]]:
     """Command lines that read a file of this name, by itself or because another file names it."""
     if name.endswith("wav"):
-        Path("whole.toml").write_text(f'body_mass = "420 g"\n{GOOD}')
-        return [["tap", name, "--scene", "whole.toml"]]
+        Path("measured").mkdir(exist_ok=True)
+        Path("measured/cue.toml").write_text(f'body_mass = "420 g"\n{GOOD}')
+        Path("measured/measured.toml").write_text(f'[[recording]]\nfile = "../{name}"\n')
+        return [["compare", "measured"]]
     Path("names.toml").write_text(f'cue = "{name}"\n')
     Path("study.toml").write_text(STUDY.format(name, "0.7 m"))
     return [["modes", name], ["modes", "names.toml"], ["sweep", "study.toml"], ["convert", name, "made.toml"]]

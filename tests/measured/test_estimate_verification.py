@@ -10,10 +10,11 @@ import pytest
 from cuefem.measured.documented import DocumentedCue
 from cuefem.measured.estimate import Estimate, estimate
 from cuefem.measured.kinds import KINDS, Measurement, Stiffness, Tone, Weight
-from cuefem.measured.outliers import HOLDS_95, solved
+from cuefem.measured.outliers import solved
 from cuefem.measured.unknowns import Prior
 from tests.helpers.documented import SCENE, blank, documented
 
+HOLDS_95 = 1.959964  # standard deviations either way that hold 95 %
 CLOSED = Prior("contact time", 0.0)  # nothing here depends on it
 
 

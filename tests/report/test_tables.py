@@ -10,17 +10,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 from rich.console import Console
-from scipy.io import wavfile
 
 import cuefem as cf
 from cuefem.cli import COMMANDS as TABLE
 from cuefem.materials import MATERIALS
 from cuefem.report.table import terminal
 from cuefem.results.records import Sheet
-from studies.measured import tap
 from tests.helpers.command_line import call
 
 ROOT = Path(__file__).parents[2]
@@ -39,7 +36,6 @@ COMMANDS = {
     "lumped report": (["report", "{lumped}"], "two-part, this cue"),
     "parts": (["parts"], "yellow birch"),
     "scatter": (["scatter", "{scatter}"], "95 %"),
-    "tap": (["tap", "{recording}", "--scene", "meshes/kim.toml", "--mass", "118 g"], "of the fitted shaft"),
 }
 
 
@@ -58,13 +54,11 @@ def words(text: str) -> list[str]:
 @pytest.fixture(scope="module")
 def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     folder = tmp_path_factory.mktemp("tables")
-    sound = tap.recording(tap.ringing_shaft(tap.true("kim"), 44100)[:, :1], 25.0, 3)
-    wavfile.write(folder / "tap.wav", 44100, (sound * 32767).astype(np.int16))
     cf.save(cf.Scene(cf.LumpedCue(0.54, 0.006), stroke=cf.Stroke(offset=0.3)), folder / "lumped.toml")
     study = (ROOT / "studies/design/scatter_maple.toml").read_text(encoding="utf-8").replace("count = 256", "count = 8")
     study = study.replace("scatter_scene.toml", str(ROOT / "studies/design/scatter_scene.toml"))
     (folder / "scatter.toml").write_text(study, encoding="utf-8")
-    made = {"lumped": "lumped.toml", "recording": "tap.wav"}
+    made = {"lumped": "lumped.toml"}
     return {name: str(folder / path) for name, path in made.items()} | {"scatter": str(folder / "scatter.toml")}
 
 

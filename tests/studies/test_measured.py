@@ -1,18 +1,16 @@
-"""What the studies of measured squirt and of taps claim: measured.py, leather_tip.py, added_mass.py, tap.py,
-tap_refusals.py."""
+"""What the studies of measured squirt claim: measured.py, leather_tip.py, added_mass.py."""
 
 from __future__ import annotations
 
 import math
-import re
 from dataclasses import replace
 
 import pytest
 
 import cuefem as cf
 from cuefem.games import GAMES
-from studies import pages, strokes
-from studies.measured import added_mass, leather_tip, measured, measured_shafts, pool, tap, tap_refusals, tap_sounds
+from studies import pages
+from studies.measured import added_mass, leather_tip, measured, measured_shafts, pool
 from tests.helpers.study_tables import rows
 
 BOTH, MODERN = "dome + shear", pool.MODERN
@@ -119,32 +117,6 @@ def test_the_readmes_opening_says_what_is_computed() -> None:
         ]
         told = ", ".join(f"{math.degrees(cf.strike(scene).squirt):.2f}" for scene in scenes)
         assert f"{told}°" in opening
-
-
-# taps
-
-
-def test_modulus_within_a_per_cent_and_end_mass_within_a_thousandth_at_20_db() -> None:
-    found = rows(tap.STUDY.committed)[1:]
-    assert [(cells[0], float(cells[1])) for cells in found] == [(n, snr) for n in strokes.NAMES for snr in tap.NOISES]
-    for cells in found:
-        assert float(cells[3]) < 1.0
-        assert float(cells[7]) < 0.1
-
-
-def test_no_other_sound_is_taken_for_a_tap() -> None:
-    kinds = {cells[0]: [int(cell) for cell in cells[1:]] for cells in rows(tap_refusals.STUDY.committed)
-             if cells[0] in tap_sounds.KINDS}  # fmt: skip
-    assert kinds.keys() == tap_sounds.KINDS.keys()
-    assert sum(recordings for recordings, _, _ in kinds.values()) >= 200
-    assert sum(taken for _, _, taken in kinds.values()) == 0
-
-
-def test_honest_taps_are_believed() -> None:
-    page = tap_refusals.STUDY.committed
-    refused = dict(re.findall(r"^\| (honest|hummed) \| (\d+) of", page, flags=re.MULTILINE))
-    assert int(refused["honest"]) <= 0.05 * tap_refusals.HONEST
-    assert int(refused["hummed"]) <= 0.2 * tap_refusals.HUMMED
 
 
 # added_mass

@@ -1,0 +1,146 @@
+"""Tones of a shaft from recordings: peaks of a spectrum, numbered by the natural frequencies of the drawing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from cuefem.cue import Array
+from cuefem.measured.kinds import Tone
+
+SECONDS, LEAST = 0.4, 0.1  # s that are transformed after the loudest sample, and that there must be
+BLOCK = 600.0  # Hz, over which the median is the noise: wider than a peak
+ABOVE, BELOW = (
+    12.0,
+    40.0,
+)  # dB of a peak above the noise, as noise alone is once in 50 recordings; below the highest one
+APART, NEAR = 0.05, 0.05  # ln f, least distance of two peaks, and largest one of a peak from its mode
+SHIFT, FARTHEST = 0.15, 0.35  # ln f, of sqrt(E/rho) from that of the drawing: standard deviation, and largest
+FEWEST = 2  # tones: any single peak is near some mode of some wood
+
+
+@dataclass(frozen=True, kw_only=True)
+class Recording:
+    """A .wav file of the freely suspended shaft, tapped once or more; the loudest tap counts."""
+
+    file: str
+    source: str = ""
+
+
+class Peak(NamedTuple):
+    """A peak of a spectrum, and its standard error, Hz."""
+
+    frequency: float
+    error: float
+
+
+def spectral_peaks(samples: Array, rate: float, low: float, high: float) -> list[Peak]:
+    """Peaks between ``low`` and ``high``, Hz, after the loudest sample.
+
+    samples: (n, channels). rate: samples per second, Hz. ValueError for silence, and for less than `LEAST` after the
+    tap.
+    """
+    size = np.abs(samples).max(axis=1)
+    if not (np.isfinite(size).all() and size.max() > size.min()):
+        raise ValueError("must hold a sound; got silence, or samples that are not finite")
+    after = samples[size.argmax() :][: int(SECONDS * rate)]
+    if len(after) < LEAST * rate:
+        raise ValueError(f"must last {LEAST:g} s or more after its loudest tap; got {len(after) / rate:.2g} s")
+    fading = np.hanning(2 * len(after))[len(after) :, None]
+    count = 1 << int(np.ceil(np.log2(4 * rate)))  # bins of 1/4 Hz or less
+    power = np.square(np.abs(np.fft.rfft(fading * (after - after.mean(axis=0)), count, axis=0))).sum(axis=1)
+    level, step = 10 * np.log10(power + 1e-30), rate / count
+    noise = _noise(level, int(BLOCK / step))
+    top = 1 + np.flatnonzero((level[1:-1] > level[:-2]) & (level[1:-1] >= level[2:]))
+    top = top[(top * step > low) & (top * step < high) & (level[top] > noise[top] + ABOVE)]
+    kept: list[int] = []
+    for at in top[np.argsort(-level[top])].tolist():
+        if level[at] > level[kept[0] if kept else at] - BELOW and all(abs(np.log(at / near)) > APART for near in kept):
+            kept.append(at)
+    return [_peak(level, at, noise[at], step) for at in kept]
+
+
+def _noise(level: Array, block: int) -> Array:
+    """The level of the noise, dB: medians of blocks, between which it is interpolated."""
+    count = len(level) // block
+    medians = np.median(level[: count * block].reshape(count, block), axis=1)
+    return np.interp(np.arange(len(level)), (np.arange(count) + 0.5) * block, medians)
+
+
+def _peak(level: Array, at: int, noise: float, step: float) -> Peak:
+    """The vertex of the parabola through three levels; error: half the width at -3 dB times noise over signal."""
+    before, here, after = level[at - 1 : at + 2]
+    vertex = at + (before - after) / 2 / (before - 2 * here + after)
+    below = np.flatnonzero(level < here - 3)
+    i = int(np.searchsorted(below, at))
+    width = (below[i] if i < len(below) else len(level)) - (below[i - 1] if i else 0)
+    return Peak(float(vertex * step), float(width / 2 * 10 ** ((noise - here) / 20) * step))
+
+
+def numbered(peaks: Sequence[Peak], frequencies: Array) -> dict[int, Peak]:
+    """The peak of each mode, 1 the lowest, of a shaft with these natural frequencies, Hz, by its drawing.
+
+    One factor for all modes, sqrt(E/rho) of the true wood over the drawing's, is sought first: the one that brings most
+    peaks nearest to modes, and is not far from 1. So a mode that does not sound leaves the others their numbers.
+    """
+    shifts = np.linspace(-FARTHEST, FARTHEST, 281)
+    apart = np.log([[peak.frequency] for peak in peaks]) - np.log(frequencies)  # (peaks, modes)
+    off = np.abs(apart - shifts[:, None, None])
+    cost = np.minimum(off.min(axis=2) / NEAR, 1) ** 2
+    best = off[np.argmin(cost.sum(axis=1) + (shifts / SHIFT) ** 2)]
+    nearest = best.argmin(axis=0)  # of the peaks, for each mode
+    return {mode + 1: peaks[i] for mode, i in enumerate(nearest) if best[i, mode] == best[i].min() < NEAR}
+
+
+def tones_of(samples: Array, rate: float, frequencies: Array, source: str = "") -> tuple[Tone, ...]:
+    """The tones of a shaft in a recording.
+
+    Parameters
+    ----------
+    samples : (n, channels) array
+        Of the recording.
+    rate : float
+        Samples per second, Hz.
+    frequencies : array
+        Natural frequencies of the drawing, freely suspended, Hz.
+    source : str
+        Of the tones.
+
+    Raises
+    ------
+    ValueError
+        If the recording is silent, ends too soon, or has no two peaks near modes of the drawing.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from cuefem.measured.recording import tones_of
+    >>> time = np.arange(22050) / 44100
+    >>> sound = sum(np.exp(-20 * time) * np.cos(2 * np.pi * f * time) for f in (100.0, 570.0))
+    >>> [(tone.mode, round(tone.value)) for tone in tones_of(sound[:, None], 44100.0, np.array([95.0, 280.0, 560.0]))]
+    [(1, 100), (3, 570)]
+    """
+    margin = np.exp(FARTHEST)
+    peaks = spectral_peaks(samples, rate, frequencies[0] / margin, frequencies[-1] * margin)
+    found = numbered(peaks, frequencies) if peaks else {}
+    if len(found) < FEWEST:
+        there = ", ".join(f"{peak.frequency:.0f}" for peak in sorted(peaks)) or "none"
+        modes = ", ".join(f"{hertz:.0f}" for hertz in frequencies)
+        raise ValueError(f"must hold {FEWEST} tones or more near those of the drawn shaft, {modes} Hz; got {there}")
+    return tuple(Tone(mode=k, value=peak.frequency, error=peak.error, source=source) for k, peak in found.items())
+
+
+def combined(tones: Sequence[Tone]) -> tuple[Tone, ...]:
+    """One tone per mode from several recordings: the weighted mean, its error no less than what their scatter asks."""
+    made = []
+    for mode in sorted({tone.mode for tone in tones}):
+        own = [tone for tone in tones if tone.mode == mode]
+        values, weights = np.array([tone.value for tone in own]), np.array([tone.error**-2.0 for tone in own])
+        mean, error = float(np.average(values, weights=weights)), float(weights.sum() ** -0.5)
+        scatter = float(np.sqrt(np.average((values - mean) ** 2, weights=weights) / max(len(own) - 1, 1)))
+        sources = ", ".join(dict.fromkeys(tone.source for tone in own))
+        made.append(replace(own[0], value=mean, error=max(error, scatter), source=sources))
+    return tuple(made)

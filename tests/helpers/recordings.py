@@ -1,0 +1,57 @@
+"""Recordings of a freely suspended, tapped shaft, made from its own modes; no tests."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from scipy.io import wavfile
+
+import cuefem as cf
+from cuefem.effects.loss import section_loss
+from cuefem.parts import main_material, with_material
+
+LOSS = 0.012  # maple's, where a file gives none
+PULSE = 3e-4  # s, a small hard mallet: a half sine
+BEFORE, SECONDS = 0.15, 1.2  # s of silence before a tap, and from one to the next
+EARS = (0.04, 0.12)  # places of two microphones, over the length from the tip
+
+
+def other_wood(drawn: cf.Cue, *, E: float = 1.15, G: float = 0.85, rho: float = 1.06) -> cf.Cue:
+    """The cue with the main material's constants times these factors."""
+    wood = main_material(drawn)
+    return with_material(drawn, wood, replace(wood, E=E * wood.E, G=G * wood.G, rho=rho * wood.rho))
+
+
+def tapped(shaft: cf.Cue, rate: float = 44100.0, *, missing: Sequence[int] = ()) -> np.ndarray:
+    """What two microphones hear of a tap at the butt, (samples, 2); missing: modes, 1 the lowest, that do not sound."""
+    found = cf.modes(shaft, 26)
+    loss = found.loss_factors(section_loss(shaft, found.system, None))
+    loss = loss if loss.max() > 0 else np.full(len(loss), LOSS)
+    at_butt, _ = found.shape(shaft.length)
+    t = np.arange(int(SECONDS * rate)) / rate - BEFORE
+    sound, after = np.zeros((len(t), len(EARS))), t >= 0
+    for k, w in enumerate(found.omega):
+        if k + 1 in missing or found.frequencies[k] > 0.45 * rate:
+            continue
+        heard = at_butt[k] * found.shape(shaft.length * np.array(EARS))[0][k]
+        x, decay = w * PULSE / np.pi, loss[k] * w / 2
+        pulse = np.pi / 4 * (np.sinc((x - 1) / 2) + np.sinc((x + 1) / 2))
+        tone = np.exp(-decay * t[after]) * np.cos(np.sqrt(w**2 - decay**2) * t[after])
+        sound[after] += pulse * heard * tone[:, None]
+    return sound
+
+
+def recording(sound: np.ndarray, snr: float, seed: int, *, taps: int = 3) -> np.ndarray:
+    """Taps of a sound in white noise ``snr`` dB below its mean power, 16 bits of full scale 1."""
+    whole = np.tile(sound, (taps, 1))
+    noise = np.sqrt(np.mean(whole**2) * 10 ** (-snr / 10))
+    heard = whole + noise * np.random.default_rng(seed).standard_normal(whole.shape)
+    return np.round(heard / np.abs(heard).max() * 0.98 * 32767) / 32768
+
+
+def save_wav(path: Path, samples: np.ndarray, rate: int = 44100) -> None:
+    """Write samples of full scale 1 as 16 bits."""
+    wavfile.write(path, rate, np.round(samples * 32768).astype(np.int16))

@@ -1,0 +1,166 @@
+"""The pendulum test: exact on free masses, README's and the handbook's numbers, contradictions, and what is refused."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import cuefem as cf
+from cuefem.io.documented_folder import load_documented
+from cuefem.measured.documented import compare
+from cuefem.measured.kinds import EndMass, Setup
+from cuefem.measured.pendulum import GRAVITY, Pendulum
+from tests.helpers.command_line import as_json, call, said
+from tests.helpers.documented import SCENE, documented, folder
+from tests.helpers.refusals import command_refuses, refuses
+
+TEXT = """[[pendulum]]
+ball_mass = "8 g"
+thread = "1 m"
+before = ["200 mm"]
+after = ["-34 mm"]
+clamped_after = ["162 mm"]
+contact_time = "1 ms"
+position = "10 mm"
+"""
+TWICE = TEXT.replace('"-34 mm"', '"-34 mm", "-35 mm"').replace('"162 mm"', '"162 mm", "161 mm"')
+PRESSED = TWICE.replace('contact_time = "1 ms"', 'force = "50 N"\ndepth = "0.5 mm"')
+
+
+def measured(text: str, place: Path) -> EndMass:
+    (found,) = load_documented(folder(place, text))[0].found
+    assert isinstance(found, EndMass)
+    return found
+
+
+def swing(speed: float) -> float:
+    """How far aside a thread of 1 m swings for a speed, m/s."""
+    return math.copysign(math.sin(2 * math.asin(abs(speed) / (2 * math.sqrt(GRAVITY)))), speed)
+
+
+def of_speeds(m: float, back: float, clamped: float, U: float = 0.6, **more: float) -> Pendulum:
+    swings = {"before": (swing(U),), "after": (swing(back),), "clamped_after": (swing(clamped),)}
+    return Pendulum(ball_mass=m, thread=1.0, position=0.02, contact_time=1e-3, **swings, **more)  # type: ignore[arg-type]
+
+
+def test_readings_of_the_readme_and_of_the_handbook(tmp_path: Path) -> None:
+    """6.80 ± 0.12 g for 1 ms; 6.78 ± 0.11 g of two rebounds, for 1.01 ms by force and depth."""
+    one = measured(TEXT, tmp_path / "one")
+    assert (round(1e3 * one.value, 2), round(1e3 * one.error, 2)) == (6.80, 0.12)
+    two = measured(PRESSED, tmp_path / "two")
+    assert (round(1e3 * two.value, 2), round(1e3 * two.error, 2)) == (6.78, 0.11)
+    assert two.contact_time == pytest.approx(1.01e-3, rel=5e-3)
+    assert two.contact_time_error == pytest.approx(0.1 * two.contact_time)
+
+
+@pytest.mark.parametrize("m", [3e-3, 7e-3, 20e-3])
+def test_a_free_mass_is_measured_exactly(m: float) -> None:
+    """Momentum and restitution: a ball of mass m against a free mass M."""
+    M, e, U = 7.3e-3, 0.8, 0.6
+    found = of_speeds(m, U * (e * M - m) / (m + M), e * U).end_mass
+    assert found.value == pytest.approx(M, rel=1e-12)
+    assert found.restitution == pytest.approx(e, rel=1e-12)
+
+
+def test_a_shaft_is_measured_as_its_side_strike_computes_it() -> None:
+    ball = cf.Striker(8e-3, 0.8, contact_time=1e-3)
+    struck = cf.side_strike(cf.SideStrike(SCENE.shaft, ball, 0.02))
+    found = of_speeds(8e-3, 0.6 * struck.apparent_restitution, 0.6 * 0.8).end_mass
+    assert found.value == pytest.approx(struck.effective_mass, rel=1e-9)
+    assert found.computed(Setup(SCENE)) == pytest.approx(struck.effective_mass, rel=1e-9)
+
+
+def test_its_error_covers_the_readings_errors() -> None:
+    """A thousand tests with noise in every reading and in the ball's mass: 68 % lie within the stated error."""
+    generator, M, e, m, U = np.random.default_rng(4), 7e-3, 0.8, 6e-3, 0.6
+    back, inside = U * (e * M - m) / (m + M), []
+    for _ in range(1000):
+        off = generator.normal(scale=1e-3, size=(4, 3))
+        speeds = zip((U, back, U, e * U), off.tolist(), strict=True)
+        before, after, held, wall = (tuple(swing(speed) + x for x in row) for speed, row in speeds)
+        weighed = m + 5e-5 * generator.normal()
+        found = Pendulum(
+            ball_mass=weighed,
+            ball_mass_error=5e-5,
+            thread=1.0,
+            position=0.02,
+            contact_time=1e-3,
+            before=before,
+            after=after,
+            clamped_before=held,
+            clamped_after=wall,
+        ).end_mass
+        inside.append(abs(found.value - M) < found.error)
+    assert np.mean(inside) == pytest.approx(0.70, abs=0.05)
+    wild = replace(of_speeds(m, back, e * U), after=(0.01, 0.02, 0.03)).end_mass
+    assert wild.error > 3 * replace(of_speeds(m, back, e * U), after=(0.02, 0.02, 0.02)).end_mass.error
+
+
+def test_compare_tells_a_contradiction_with_the_drawing(tmp_path: Path) -> None:
+    """8.95 g measured for 6.06 g drawn: beyond the readings' errors, and beyond what drawing and contact time allow."""
+    drawing = (Path(__file__).parents[2] / "meshes" / "pool_maple.toml").read_text(encoding="utf-8")
+    place = folder(tmp_path / "cue", TEXT.replace("-34 mm", "-9 mm"), drawing)
+    (row,) = as_json("compare", place)["rows"]
+    assert (1e3 * row["measured"], 1e3 * row["computed"]) == pytest.approx((8.95, 6.06), abs=0.02)
+    assert row["residual"] > 15
+    assert row["pull"] > 5
+    assert "contradicts the drawing" in said("compare", place)
+
+
+def test_the_template_holds_a_pendulum_and_a_recording_to_uncomment(tmp_path: Path) -> None:
+    assert call("compare", tmp_path / "cue", "--template")[0] == 0
+    file = tmp_path / "cue" / "measured.toml"
+    text = file.read_text(encoding="utf-8")
+    block = text[text.index("# [[pendulum]]") : text.index("[[end_mass]]")]
+    file.write_text(text.replace(block, re.sub("^# ", "", block, flags=re.MULTILINE)), encoding="utf-8")
+    ends = [one.value for one in load_documented(tmp_path / "cue")[0].found if isinstance(one, EndMass)]
+    assert 1e3 * np.array(ends) == pytest.approx([6.9, 6.8], abs=0.05)
+    assert "# [[recording]]" in text
+
+
+def test_its_contact_time_is_uncertain() -> None:
+    """A tenth of the time is an uncertain parameter of its own, shared by all pendulum tests."""
+    one = of_speeds(8e-3, -0.1, 0.48).end_mass
+    sure = replace(one, contact_time_error=None)
+    assert [unknown.name for unknown in documented(one, one).unknowns][-1] == "ball time"
+    (wide, *_), (narrow, *_) = compare(documented(one, one)), compare(documented(sure, sure))
+    later = replace(one, contact_time=1.1e-3).computed(Setup(SCENE)) - one.computed(Setup(SCENE))
+    assert math.sqrt(wide.spread**2 - narrow.spread**2) == pytest.approx(later, rel=0.1)
+
+
+GOOD = of_speeds(8e-3, -0.1, 0.48)
+CALLS: dict[str, tuple[Callable[[], object], str]] = {
+    "mass": (lambda: replace(GOOD, ball_mass=0.0), "Pendulum.ball_mass must be in (0, inf) kg; got 0.0"),
+    "thread": (lambda: replace(GOOD, thread=0.1), "must be swings shorter than the thread, 0.1 m; got 0.19"),
+    "none": (lambda: replace(GOOD, after=()), "Pendulum.after must be swings shorter than the thread, 1.0 m; got no r"),
+    "numbers": (lambda: replace(GOOD, before=(0.2, 0.2)), "Pendulum.before must be one reading, or 1 as after; got 2"),
+    "time": (lambda: replace(GOOD, contact_time=None), "contact_time must be given, or force and depth without it; g"),
+    "both": (lambda: replace(GOOD, force=9.0), "without it; got contact_time and force"),
+    "wall": (lambda: replace(GOOD, clamped_after=(0.3,)), "Pendulum.clamped_after must be (0, 1] of the speed before"),
+    "free": (lambda: replace(GOOD, after=(0.19,)), "Pendulum.after must be between -1 and 0.8 of the speed before"),
+    "same": (lambda: replace(GOOD, after=(0.152,)), "to tell the end mass to within its own size; got an error of"),
+}
+
+
+@pytest.mark.parametrize(("ask", "message"), CALLS.values(), ids=CALLS.keys())
+def test_bad_readings_are_refused(ask: Callable[[], object], message: str) -> None:
+    refuses(ask, message)
+
+
+FILES = {
+    "key": (TEXT + "colour = 1\n", "pendulum[0].colour: must be one of the keys ball_mass, ball_mass_error, thread"),
+    "unit": (TEXT.replace("-34 mm", "-34"), 'pendulum[0].after[0]: needs a unit: "0.5 in" or "12.7 mm"; got \'-34\''),
+    "place": (TEXT.replace("10 mm", "2 m"), "end_mass position must be in [0.006, 0.736] m, on the shaft; got 2.0"),
+    "thread": (TEXT.replace('1 m"', '0.1 m"'), "measured.toml: pendulum[0].before: must be swings shorter than"),
+}
+
+
+@pytest.mark.parametrize(("text", "message"), FILES.values(), ids=FILES.keys())
+def test_bad_tables_are_refused(text: str, message: str, tmp_path: Path) -> None:
+    command_refuses(message, "compare", folder(tmp_path / "cue", text))

@@ -1,0 +1,127 @@
+"""Recordings: the wood that they tell, numbers of modes where some are missing, noise, and what is refused."""
+
+from __future__ import annotations
+
+import itertools
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import cuefem as cf
+from cuefem.io.documented_folder import load_documented
+from cuefem.measured.estimate import estimate
+from cuefem.measured.kinds import Tone
+from cuefem.measured.recording import Peak, numbered, tones_of
+from tests.helpers.documented import DRAWING, SCENE, SHAFT, folder
+from tests.helpers.recordings import other_wood, recording, save_wav, tapped
+from tests.helpers.refusals import command_refuses
+
+POOL = Path(__file__).parents[2] / "meshes" / "pool_maple.toml"
+HEARD = '[[recording]]\nfile = "tap.wav"\n'
+DRAWN = cf.modes(SHAFT, 8).frequencies
+
+
+def test_the_wood_of_a_recording_is_found(tmp_path: Path) -> None:
+    """Three taps of pool_maple in another wood, 25 dB: the true E, G, density, and what three taps told before."""
+    drawn = cf.load(POOL)
+    assert isinstance(drawn, cf.Cue)
+    shaft = other_wood(drawn)
+    weight = f'[[weight]]\nvalue = "{1e3 * shaft.shaft_mass:.1f} g"\nerror = "0.5 g"\n'
+    place = folder(tmp_path / "cue", weight + HEARD, POOL.read_text(encoding="utf-8"))
+    save_wav(place / "tap.wav", recording(tapped(shaft), 25.0, 0))
+    cue, _ = load_documented(place)
+    assert [one.mode for one in cue.found if isinstance(one, Tone)] == [1, 2, 3, 4, 5, 6, 7]
+    assert {one.source for one in cue.found if isinstance(one, Tone)} == {"tap.wav"}
+    found = estimate(cue)
+    assert found.misfit < 2 * len(cue.found)
+    values = {value.name: value for value in found.values}
+    for name, *known in (("E", 15.94e9, 15.84e9), ("G", 1.025e9, 1.015e9), ("rho", 748.0, 742.0)):
+        error = (values[name].high - values[name].low) / 2
+        assert values[name].value == pytest.approx(known[0], abs=2 * error)
+        assert values[name].value == pytest.approx(known[1], abs=2 * error)
+        assert error < 0.04 * known[0]
+
+
+@pytest.mark.parametrize("snr", [10.0, 20.0, 60.0])
+@pytest.mark.parametrize("missing", [(), (1,), (3,), (1, 2)])
+def test_tones_are_those_of_their_modes(snr: float, missing: tuple[int, ...]) -> None:
+    """The wood is 15 % stiffer than drawn; a mode that does not sound leaves the others their numbers."""
+    shaft = other_wood(SHAFT)
+    true = cf.modes(shaft, 8).frequencies
+    tones = tones_of(recording(tapped(shaft, missing=missing), snr, 1), 44100.0, DRAWN)
+    assert [tone.mode for tone in tones][: 6 - len(missing)] == [k for k in range(1, 7) if k not in missing]
+    for tone in tones:
+        assert abs(tone.value - true[tone.mode - 1]) < 3 * tone.sd
+        assert tone.error < 2e-3 * tone.value
+
+
+def test_numbers_hold_for_every_set_of_modes_and_any_wood() -> None:
+    """Woods from the table's spread; what three lone high modes leave open may be named otherwise, five may not."""
+    generator, wrong, sets = np.random.default_rng(0), 0, 0
+    for E, G, rho in np.exp(generator.normal(0, (0.2, 0.25, 0.1), (12, 3))):
+        true = cf.modes(other_wood(SHAFT, E=E, G=G, rho=rho), 8).frequencies
+        for count in (3, 5, 7):
+            for chosen in itertools.combinations(range(8), count):
+                found = numbered([Peak(float(true[i]), 0.1) for i in chosen], DRAWN)
+                off = any(abs(peak.frequency / true[mode - 1] - 1) > 1e-9 for mode, peak in found.items())
+                assert not off or count == 3
+                wrong, sets = wrong + off, sets + 1
+    assert wrong < 0.02 * sets
+
+
+def test_two_recordings_are_one_tone_per_mode(tmp_path: Path) -> None:
+    """Their scatter is an error: 1 Hz apart, it is half of that; and their tones have both as source."""
+    time = np.arange(44100) / 44100
+
+    def sound(*tones: float) -> np.ndarray:
+        return 0.4 * sum(np.exp(-15 * time) * np.sin(2 * np.pi * f * time) for f in tones)[:, None]
+
+    place = folder(tmp_path / "cue", HEARD + HEARD.replace("tap", "two"))
+    save_wav(place / "tap.wav", sound(*DRAWN[:3]))
+    save_wav(place / "two.wav", sound(DRAWN[0], DRAWN[1] + 1.0))
+    first, second, third = load_documented(place)[0].found
+    assert isinstance(second, Tone)
+    assert (first.source, third.source) == ("tap.wav, two.wav", "tap.wav")
+    assert DRAWN[1] < second.value < DRAWN[1] + 1
+    assert second.error == pytest.approx(0.5, rel=0.2)
+
+
+SECOND = np.arange(22050) / 22050
+SOUNDS = {
+    "silent": (np.zeros((4000, 1)), "tap.wav: must hold a sound; got silence"),
+    "short": (np.linspace(0, 0.5, 4000)[:, None], "tap.wav: must last 0.1 s or more after its loudest tap; got"),
+    "noise": (0.1 * np.random.default_rng(3).standard_normal((22050, 1)), "must hold 2 tones or more near those of"),
+    "one tone": (0.5 * np.exp(-9 * SECOND[:, None]) * np.sin(2e3 * SECOND[:, None]), "3206 Hz; got 318"),
+}
+
+
+@pytest.mark.parametrize(("samples", "message"), SOUNDS.values(), ids=SOUNDS.keys())
+def test_a_sound_of_no_shaft_is_refused(samples: np.ndarray, message: str, tmp_path: Path) -> None:
+    place = folder(tmp_path / "cue", HEARD)
+    save_wav(place / "tap.wav", samples, 22050)
+    command_refuses(message, "compare", place)
+
+
+FILES = {
+    "absent": (HEARD, None, "tap.wav: cannot be read: No such file"),
+    "no sound": (HEARD, b"RIFF\x00\x00\x00\x00WAVE", "tap.wav: must be a .wav file of sound"),
+    "no wav": (HEARD, b"ID3 and so on", "tap.wav: must be a .wav file of sound"),
+    "other": (HEARD.replace("wav", "mp3"), None, "tap.mp3: must end in .wav; got '.mp3'"),
+    "key": (HEARD + "loud = 1\n", None, "recording[0].loud: must be one of the keys file, source; got loud = 1"),
+    "no table": ('recording = "tap.wav"\n', None, "recording: must be tables, [[recording]]; got 'tap.wav'"),
+    "nothing": ("[[recording]]\n", None, "recording[0].file: must be given, text; got nothing"),
+}
+
+
+@pytest.mark.parametrize(("text", "content", "message"), FILES.values(), ids=FILES.keys())
+def test_a_file_of_no_sound_is_refused(text: str, content: bytes | None, message: str, tmp_path: Path) -> None:
+    place = folder(tmp_path / "cue", text, DRAWING)
+    if content is not None:
+        (place / "tap.wav").write_bytes(content)
+    command_refuses(message, "compare", place)
+
+
+def test_the_scene_gives_the_modes() -> None:
+    """Tones are numbered by the shaft that hangs: with what is part of the cue."""
+    assert np.all(cf.modes(SHAFT, 8, effects=SCENE.cue_effects).frequencies == DRAWN)
