@@ -46,12 +46,3 @@ def test_many_strikes_are_the_strikes_one_by_one(scenes: list[cf.Scene], at: cf.
 @pytest.mark.parametrize("threads", [2, 5])
 def test_threads_change_nothing(threads: int) -> None:
     assert cf.batch_strike(SCENES, AT, threads=threads) == cf.batch_strike(SCENES, AT)
-
-
-def test_the_modes_of_a_cue_are_solved_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    import cuefem.beam.modes as bending
-
-    solve, calls = bending.solve, []
-    monkeypatch.setattr(bending, "solve", lambda *args: calls.append(args) or solve(*args))
-    cf.batch_strike(SCENES[:21], AT)
-    assert len(calls) == 2  # a dome turns the contact: other tail, the modes once more

@@ -9,28 +9,10 @@ import pytest
 from cuefem import Elevation, LumpedCue, PowerLawTip, Scene, Stroke, Tip, strike
 from cuefem.contact.strike import strike_modes
 from tests.helpers.orders import assert_order
-from tests.helpers.strike_scenes import KIM_AT, hand_made, imbalance, kim_scene, numbers
+from tests.helpers.strike_scenes import hand_made, imbalance, kim_scene
 
+pytestmark = pytest.mark.kernel
 STEPPED = 1e-9
-
-
-def level_part(raised) -> np.ndarray:
-    """What a raised outcome has in common with a level one: all but the energies that only it has."""
-    extra = ("ball roll", "ball hop", "table loss")
-    kept = {name: part for name, part in raised.energy.items() if name not in extra}
-    return numbers(replace(raised, energy=kept))
-
-
-@pytest.mark.parametrize("table", [0.0, 0.2, 5.0])
-@pytest.mark.parametrize("offset", [0.3, 0.6, -0.5, 0.2, 0.0])
-def test_level_cue_is_not_raised(offset, table):
-    tip = {0.6: {"friction": 0.3}, -0.5: {"restitution": 0.4}, 0.2: {"friction": inf}, 0.0: {"friction": 0.0}}
-    effects = (PowerLawTip(1.5),) if table else ()
-    scene = replace(kim_scene(offset, **tip.get(offset, {})), effects=effects)
-    level, raised = strike(scene, KIM_AT), strike(replace(scene, effects=(*effects, Elevation(0.0, table))), KIM_AT)
-    assert np.abs(level_part(raised) - numbers(level)).max() < STEPPED
-    assert level.regime == raised.regime
-    assert raised.energy["ball roll"] + raised.energy["ball hop"] + abs(raised.energy["table loss"]) < 1e-15
 
 
 @pytest.mark.heavy

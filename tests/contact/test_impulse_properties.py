@@ -146,15 +146,3 @@ def test_an_array_of_strokes_is_its_strokes_one_by_one(monkeypatch, block):
         assert (one.regime, one.jam) == (out.regime[at], out.jam[at])
         for name, value in everything(one).items():
             np.testing.assert_allclose(everything(out)[name][at], value, rtol=1e-13, atol=1e-300)
-
-
-@pytest.mark.parametrize("shape", [(5, 3), (0,), (3, 0), (0, 2)])
-def test_fields_broadcast_also_to_no_strokes(shape):
-    """Offsets in rows, end masses in columns."""
-    offsets, ends = np.linspace(-0.6, 0.6, shape[0]), np.linspace(1e-3, 0.02, shape[-1])
-    rows = offsets[:, None] if len(shape) == 2 else offsets
-    out = impulse(Scene(LumpedCue(0.54, ends), stroke=Stroke(2.0, rows)))
-    assert out.squirt.shape == out.spin.shape == out.regime.shape == out.jam.shape == shape
-    assert out.ball_velocity.shape == out.impulse.shape == (*shape, 2)
-    assert {np.shape(value) for value in out.energy.values()} == {shape}
-    assert [np.shape(event.impulse) for event in out.phases] == [shape] * 3

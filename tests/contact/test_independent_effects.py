@@ -194,7 +194,7 @@ def compared(scene: Scene, steps: int) -> dict[str, float]:
 
 
 DAILY = [pytest.param(name, kind.daily, STEPS) for name, kind in KINDS.items()]
-MANY = [pytest.param(name, range(40), 2 * STEPS, marks=pytest.mark.heavy) for name in KINDS]
+MANY = [pytest.param(name, range(40), 2 * STEPS, marks=pytest.mark.nightly) for name in KINDS]
 
 
 @pytest.mark.parametrize(("kind", "seeds", "steps"), [*DAILY, *MANY])

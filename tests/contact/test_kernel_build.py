@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 import shutil
 import subprocess
 import sys
@@ -80,9 +79,3 @@ def test_without_a_compiler_it_takes_zig_or_names_both(folder: Path, environment
     assert (status, printed) == (1, "")
     assert said[0].startswith("cuefem: the contact's kernel does not compile with ")
     assert said[-1].endswith("a zig that does not compile")
-
-
-def test_the_tests_that_ci_names_exist() -> None:
-    named = re.findall(r"tests/[\w/]+\.py", "".join(path.read_text("utf-8") for path in (ROOT / ".ci").iterdir()))
-    assert named
-    assert [path for path in named if not (ROOT / path).is_file()] == []

@@ -40,8 +40,3 @@ def test_squirt_on_maple_is_that_of_an_exact_chain(speed: float, chain: float) -
     """The whole stroke: rings that slip, waves along the cue, thrust on the bent shaft."""
     found = strike(leather_scene(0.375, AxialWaves(), GeometricStiffness(), cue=MAPLE, speed=speed))
     assert np.degrees(found.squirt) == pytest.approx(chain, rel=0.02)
-
-
-def test_squirt_hardly_depends_on_the_leather() -> None:
-    found = [degrees(leather=replace(LEATHER, E=E)) for E in (40e6, 70e6, 100e6, 200e6, 400e6)]
-    assert max(found) / min(found) < 1.2

@@ -72,25 +72,6 @@ def test_the_relative_velocity_is_that_of_the_history(name: str, offset: float) 
     assert found.duration == outcome.phases[-1].end
 
 
-@pytest.mark.parametrize("name", EFFECTS)
-def test_the_ball_goes_where_the_forces_push_it_and_flies_off_as_the_outcome_says(name: str) -> None:
-    """M C'' = F: the centre against the forces, which a turning contact gives in directions that turn."""
-    scene = scene_with(name)
-    outcome = cf.strike(scene, AT)
-    until = 0.8 * outcome.duration
-    times, weights = fine(outcome, 0.0 if LEATHER in scene.effects else until)  # rings make forces with many kinks
-    flight = outcome.duration + np.array([1e-3, 3e-3])
-    found = motion(scene, np.concatenate([times, [until], flight]), AT)
-    if len(times):
-        pushed = (weights * (until - times)) @ found.force[: len(times)] / scene.ball.mass
-        np.testing.assert_allclose(found.centre[len(times)] - found.centre[0], pushed, rtol=1e-7)
-    velocity = np.diff(found.centre[-2:], axis=0)[0] / 2e-3
-    s, c = 0.3, np.sqrt(1 - 0.3**2)
-    np.testing.assert_allclose(velocity, outcome.ball_velocity @ [[s, c], [c, -s]], rtol=1e-10)
-    assert np.arctan2(-velocity[1], velocity[0]) == pytest.approx(outcome.squirt, rel=1e-9)
-    assert np.diff(found.turned[-2:])[0] / 2e-3 == pytest.approx(-outcome.spin, rel=1e-10)
-
-
 def test_the_shaft_is_what_the_forces_make_of_its_modes() -> None:
     outcome, until = cf.strike(SCENE, AT), 2e-3
     found = motion(SCENE, [until], AT)
@@ -122,14 +103,3 @@ def test_a_stroke_on_the_other_side_is_its_mirror_image() -> None:
     np.testing.assert_array_equal(found.force * [1, -1], mirrored.force)
     np.testing.assert_array_equal(found.along, mirrored.along)
     np.testing.assert_array_equal(found.turned, -mirrored.turned)
-
-
-def test_a_bent_cue_with_rod_waves() -> None:
-    """Head on the shaft does not bend, and the tip gives way along the cue as the ball does, less the leather."""
-    scene = replace(SCENE, stroke=cf.Stroke(2.0, 0.0), effects=(cf.AxialWaves(),))
-    found = motion(scene, [0.0, 1e-4, 1e-2], AT)
-    np.testing.assert_allclose(found.fields, 0, atol=1e-15)
-    outcome = cf.strike(scene, AT)
-    times, weights = fine(outcome, 1e-4)
-    gap = weights @ outcome.history(times)["velocity_n"]
-    assert found.centre[1, 0] - found.centre[0, 0] - found.along[1] == pytest.approx(gap, rel=1e-9)

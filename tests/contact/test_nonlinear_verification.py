@@ -21,20 +21,13 @@ from cuefem import (
 from cuefem.beam.tip import lumped_tip_modes
 from cuefem.contact.strike import strike_modes
 from tests.helpers.orders import assert_order
-from tests.helpers.strike_scenes import KIM, KIM_AT, a_few_modes, imbalance, kim_scene, numbers
+from tests.helpers.strike_scenes import KIM
 
 # What solver tolerances of 1e-11 leave of a strike of one or a few phases, beside speeds of 1 m/s.
 STEPPED = 1e-9
 
 
 # ---------------------------------------------------------------------------------------------------------- PowerLawTip
-
-
-def test_exponent_one_is_the_bilinear_law():
-    scene = kim_scene(0.6, friction=0.3)
-    exact, power = strike(scene, KIM_AT), strike(replace(scene, effects=(PowerLawTip(1.0),)), KIM_AT)
-    assert np.abs(numbers(exact) - numbers(power)).max() < STEPPED
-    assert (exact.regime, exact.jam) == (power.regime, power.jam)
 
 
 @pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 3.7])
@@ -54,20 +47,6 @@ def test_head_on_contact_time_falls_with_speed(exponent, speed, e):
 
 
 # ------------------------------------------------------------------------------------------------------- RollingContact
-
-
-@pytest.mark.parametrize("effects", [(), (TipDome(0.0095),), (PowerLawTip(1.5),)])
-def test_turning_of_the_contact_vanishes_with_its_time(effects):
-    errors, spins, times = [], [], 1e-3 * 2.0 ** -np.arange(5, 10)
-    for time in times:
-        scene = replace(kim_scene(0.3, contact_time=float(time)), effects=effects)
-        rolling = replace(scene, effects=(*effects, RollingContact()))
-        bare, turned = (strike_modes(each, a_few_modes()) for each in (scene, rolling))
-        errors.append(turned.squirt / bare.squirt - 1)
-        spins.append(turned.spin / bare.spin - 1)
-        assert imbalance(turned) < 1e-11
-    assert_order(1, times, errors, within=[0.04, 0.02, 0.01, 0.005], rounding=1e-10)
-    assert_order(1, times, spins, within=[0.04, 0.02, 0.01, 0.005], rounding=1e-10)
 
 
 class Plane:
@@ -137,27 +116,6 @@ def test_turning_contact_in_cartesian_coordinates(offset, friction, dome):
     assert {phase.grip for phase in outcome.phases} == {"slip"}
     assert abs(outcome.squirt + Plane(scene, true=False, dome=dome).squirt()) < 1e-8
     assert abs(outcome.squirt - strike(scene).squirt) > 1e-3  # it is no small thing here
-
-
-@pytest.mark.parametrize(
-    ("offset", "grip", "effects"),
-    [
-        (0.2, "stick", (TipDome(0.0095), RollingContact())),
-        (0.5, "stick", (TipDome(0.0095), RollingContact())),
-        (0.2, "slip back", (RollingContact(),)),
-    ],
-)
-def test_turning_contact_of_a_dead_tip_is_held(offset, grip, effects):
-    scene = replace(kim_scene(offset, restitution=0.0, friction=0.9), stroke=Stroke(3.0, offset), effects=effects)
-    outcome = strike(scene, KIM_AT)
-    held = [phase for phase in outcome.phases if phase.press == "rigid" and phase.end > phase.start]
-    assert grip in {phase.grip for phase in held}
-    for phase in outcome.phases:
-        now = outcome.history(np.linspace(phase.start, phase.end, 52)[1:-1])
-        if phase.press == "rigid":
-            assert np.abs(now["velocity_n"]).max() < 1e-9
-        if phase.grip == "stick":
-            assert np.abs(now["velocity_t"]).max() < 1e-9
 
 
 def test_compression_left_out_is_of_second_order():

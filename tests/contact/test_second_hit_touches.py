@@ -6,12 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
 
 from cuefem import Outcome, Scene, SecondHit, strike
 from cuefem.contact.outcome import hits
 from tests.contact.test_independent_effects import AT, Draw, hit_again
-from tests.helpers.strike_scenes import lumped_scenes
 
 
 def starts(outcome: Outcome) -> list[float]:
@@ -61,14 +59,3 @@ def test_the_window_counts_from_the_first_separation(seed: int) -> None:
     assert not starts(missed)
     assert missed.squirt == pytest.approx(alone.squirt, rel=1e-9)
     assert parted(missed) == pytest.approx(float(alone.duration), rel=1e-9)
-
-
-@settings(max_examples=30)
-@given(lumped_scenes())
-def test_what_cannot_vibrate_strikes_once(scene: Scene) -> None:
-    """A lumped cue and a ball that have parted fly apart for good, be they ever so slow."""
-    assume(scene.tip.restitution > 0)
-    once, twice = strike(scene), strike(replace(scene, effects=(SecondHit(0.1),)))
-    assert not starts(twice)
-    assert twice.squirt == once.squirt
-    assert twice.energy == once.energy

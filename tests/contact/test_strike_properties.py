@@ -1,37 +1,27 @@
-"""What holds for every coupled strike: energy, scale, symmetry, units, a course of forces that obeys its laws."""
+"""What holds for every coupled strike with any effects: energy, mirror, order, splitting, limits, units, friction.
+
+Effects are drawn from one strategy (`strikes`), a tip of leather, a raised cue and a second hit among them.
+"""
+
+from __future__ import annotations
 
 from dataclasses import replace
-from math import isinf
+from math import inf, isinf
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from cuefem import (
-    Ball,
-    Cue,
-    Elevation,
-    LumpedCue,
-    Material,
-    Outcome,
-    PowerLawTip,
-    Resolution,
-    RollingContact,
-    Scene,
-    SecondHit,
-    Segment,
-    Stroke,
-    StructuralDamping,
-    Tip,
-    TipDome,
-    TipShear,
-    strike,
-)
+import cuefem as cf
 from cuefem.contact.strike import strike_modes
+from cuefem.effects import CueEffect, Effect, TipEffect
+from tests.helpers.cues import scaled
 from tests.helpers.leather_scenes import LEATHER, leather_scene
+from tests.helpers.orders import assert_order
 from tests.helpers.strike_scenes import (
     FRICTION,
+    KIM,
     KIM_AT,
     OFFSET,
     RESTITUTION,
@@ -40,6 +30,7 @@ from tests.helpers.strike_scenes import (
     hand_made,
     imbalance,
     kim_scene,
+    logarithmic,
     mirrors,
     numbers,
     pool_cue,
@@ -47,170 +38,268 @@ from tests.helpers.strike_scenes import (
     sound,
 )
 
+pytestmark = pytest.mark.kernel
+AT = cf.Resolution(2, 10, 8)
 EXACT = 1e-10
+# A step of rings leaves out 3e-7 of the impulse across, a tenth along: 2e-12 of the energy in the median of 34,000
+# strikes, 6e-10 at 95 %, 1.1e-8 at most.
+ON_LEATHER = 3e-8
+HERE = 0.213  # m
+PLACE = st.floats(0.01, 0.69)
 
 
-def same_course(first: Outcome, second: Outcome) -> None:
-    """The same phases in the same order, but for those of no length."""
-    names = [[(p.grip, p.press) for p in o.phases if p.end > p.start + 1e-9 * o.duration] for o in (first, second)]
-    assert names[0] == names[1]
+def size(low: float, high: float) -> st.SearchStrategy[float]:
+    """None, or any power of ten between."""
+    return st.just(0.0) | logarithmic(low, high)
 
 
-@pytest.mark.parametrize("examples", [40, pytest.param(400, marks=pytest.mark.heavy)])
-def test_energy_closes_and_the_other_side_mirrors_on_any_shaft(examples):
-    @settings(max_examples=examples, deadline=None)
-    @given(shaft_scenes())
-    def everywhere(drawn):
-        scene, at = drawn
-        outcome = strike(scene, at)
-        sound(outcome)
-        mirrors(outcome, strike(replace(scene, stroke=Stroke(1.0, -scene.stroke.offset)), at))
+ON_CUE = st.one_of(
+    st.builds(cf.PointMass, PLACE, size(1e-5, 0.1), size(1e-9, 1e-3)),
+    st.builds(cf.Support, PLACE, size(1.0, 1e7), size(0.01, 1e3), size(0.1, 100.0)),
+    st.just(cf.Support(KIM.length, inf, inf)),
+    st.builds(cf.Joint, PLACE, size(1e-6, 1e2), size(1e-11, 1e-3)),
+    st.builds(cf.StructuralDamping, size(1e-4, 0.9)),
+    st.just(cf.AxialWaves()),
+    st.just(cf.GeometricStiffness()),
+)
+DOME, POWER = st.builds(cf.TipDome, size(1e-4, 0.02)), st.builds(cf.PowerLawTip, st.floats(1.0, 3.0))
+LEVEL = (
+    DOME,
+    POWER,
+    st.builds(cf.TipShear, st.floats(0.05, 50.0)),
+    st.just(cf.RollingContact()),
+    st.just(cf.SecondHit()),
+)
+RAISED = st.builds(cf.Elevation, st.floats(0.0, 1.2), st.sampled_from([0.0, 0.2, 3.0]))
+WHOLE_TIP = st.builds(
+    lambda E, shear, rolls, lost: replace(
+        LEATHER, E=E, shear=shear, rolls=rolls, surface_restitution=1.0 if shear else lost
+    ),
+    st.floats(1.5e8, 6e8),
+    st.none() | st.floats(1e5, 1e6),
+    st.booleans(),
+    st.just(1.0) | st.floats(0.3, 1.0),
+)
+
+
+@st.composite
+def strikes(draw: st.DrawFn) -> cf.Scene:
+    """A scene with some effects on the cue, and some at its tip that go together."""
+    kinds = {type(effect): effect for effect in draw(st.lists(ON_CUE, max_size=3))}
+    e, mu, way = draw(RESTITUTION), draw(FRICTION), draw(st.sampled_from(["level", "raised", "leather"]))
+    stroke = cf.Stroke(draw(st.floats(0.3, 3.0)), draw(SIGN) * draw(OFFSET))
+    if way == "leather":
+        again = draw(st.sampled_from([(), (cf.SecondHit(),)]))
+        tip = draw(WHOLE_TIP)
+        return leather_scene(
+            stroke.offset, *again, *kinds.values(), speed=stroke.speed, e=max(e, 0.15), friction=mu, leather=tip
+        )
+    if way == "raised":
+        return replace(kim_scene(friction=mu, restitution=max(e, 0.1)), stroke=stroke,
+                       effects=(draw(RAISED), *draw(st.tuples(DOME, POWER)), *kinds.values()))  # fmt: skip
+    at_tip = draw(st.lists(st.sampled_from(LEVEL), unique=True).flatmap(lambda chosen: st.tuples(*chosen)))
+    e = max(e, 0.1) if any(isinstance(effect, cf.SecondHit) for effect in at_tip) else e
+    return replace(kim_scene(friction=mu, restitution=e), stroke=stroke, effects=(*at_tip, *kinds.values()))
+
+
+def strike(scene: cf.Scene, at: cf.Resolution = AT) -> cf.Outcome | None:
+    """The strike, or None where the shaft bends further than its thrust is known for."""
+    try:
+        return cf.strike(scene, at)
+    except ValueError as refused:
+        if "bends the shaft by" not in str(refused):
+            raise
+        return None
+
+
+@pytest.mark.parametrize("examples", [12, pytest.param(600, marks=pytest.mark.heavy)])
+def test_energy_closes_and_the_other_side_mirrors(examples: int) -> None:
+    @settings(max_examples=examples)
+    @given(strikes())
+    @example(replace(kim_scene(0.3, restitution=0.0), effects=(cf.Support(0.25, dashpot=5.0),)))
+    @example(replace(kim_scene(0.3, restitution=0.0), effects=(cf.AxialWaves(),)))
+    @example(leather_scene(0.0, e=0.716796875, friction=inf, leather=replace(LEATHER, E=142981276.0, rolls=False)))
+    @example(leather_scene(0.2309, speed=3.8607, e=0.883, friction=0.17, leather=replace(LEATHER, E=3.9e8)))
+    def everywhere(scene: cf.Scene) -> None:
+        if (found := strike(scene)) is None:
+            return
+        assert np.all(np.isfinite(numbers(found)))
+        leather = any(type(effect) is cf.LeatherTip for effect in scene.effects)
+        assert imbalance(found) < (ON_LEATHER if leather else 1e-9)
+        assert min(found.energy.values()) > -ON_LEATHER * found.energy["initial"]
+        assert ("damping loss" in found.energy) >= any(
+            isinstance(effect, cf.StructuralDamping) and effect.loss for effect in scene.effects
+        )
+        if found.history.velocity is not None:
+            assert found.history.velocity[2] > -1e-9  # the table keeps the ball up
+        other = strike(replace(scene, stroke=replace(scene.stroke, offset=-scene.stroke.offset)))
+        assert other is not None
+        mirrors(found, other)
 
     everywhere()
 
 
-LEVEL = st.sets(
-    st.sampled_from([PowerLawTip(1.5), RollingContact(), SecondHit(2e-3), TipDome(0.009), TipShear(0.75)]), min_size=1
-).map(lambda chosen: tuple(sorted(chosen, key=repr)))
-ANGLE = st.one_of(st.sampled_from([0.0, 1e-6, 0.03]), st.floats(0.001, 1.4))
-TABLE = st.one_of(st.sampled_from([0.0, 0.2]), st.floats(0.01, 3.0))
-RAISED = st.builds(lambda angle, table: (Elevation(angle, table),), ANGLE, TABLE)
+@pytest.mark.parametrize("examples", [15, pytest.param(400, marks=pytest.mark.heavy)])
+def test_energy_closes_and_the_other_side_mirrors_on_any_shaft(examples: int) -> None:
+    @settings(max_examples=examples)
+    @given(shaft_scenes())
+    def everywhere(drawn: tuple[cf.Scene, cf.Resolution]) -> None:
+        scene, at = drawn
+        outcome = cf.strike(scene, at)
+        sound(outcome)
+        mirrors(outcome, cf.strike(replace(scene, stroke=cf.Stroke(1.0, -scene.stroke.offset)), at))
+
+    everywhere()
 
 
-@settings(max_examples=32)
-@given(st.one_of(LEVEL, RAISED), RESTITUTION, FRICTION, OFFSET, SIGN, st.sampled_from([0.0, 0.02]))
-def test_energy_closes_and_the_other_side_mirrors_with_any_effects_at_the_tip(effects, e, mu, offset, side, damping):
-    raised = isinstance(effects[0], Elevation)
-    assume(e >= 0.1 or not (raised or SecondHit(2e-3) in effects))
-    scene = replace(kim_scene(side * offset, restitution=e, friction=mu), effects=effects)
-    outcome = strike_modes(scene, a_few_modes(damping))
-    sound(outcome)
-    assert imbalance(outcome) < 1e-10
-    assert ("damping loss" in outcome.energy) == (damping > 0)
-    if raised:
-        assert outcome.history.velocity[2] > -1e-9  # the table keeps the ball up
-    other = replace(scene, stroke=Stroke(offset=-scene.stroke.offset))
-    mirrors(outcome, strike_modes(other, a_few_modes(damping)))
+@settings(max_examples=10)
+@given(strikes(), st.randoms(use_true_random=False))
+def test_the_order_of_effects_does_not_matter(scene: cf.Scene, random: object) -> None:
+    shuffled = list(scene.effects)
+    random.shuffle(shuffled)  # type: ignore[attr-defined]
+    one, other = (strike(replace(scene, effects=tuple(effects))) for effects in (scene.effects, shuffled))
+    assert (one is None) == (other is None)
+    if one is not None and other is not None:
+        assert numbers(other) == pytest.approx(numbers(one), rel=1e-9, abs=1e-12)
 
 
-@settings(max_examples=12)
-@given(st.floats(1.0, 3.0), st.floats(0.2, 8.0), st.floats(0.2, 8.0), OFFSET)
-def test_a_power_law_knows_no_speed_of_its_own(exponent, speed, reference, offset):
-    """The law that lasts T at one speed is the law that lasts T (U/U0)^((1-n)/(1+n)) at another."""
-    scene = replace(kim_scene(offset), stroke=Stroke(speed, offset))
-    time = 1e-3 * (speed / reference) ** ((1 - exponent) / (1 + exponent))
-    other = replace(scene.tip, contact_time=time)
-    first = strike_modes(replace(scene, effects=(PowerLawTip(exponent, reference),)), a_few_modes())
-    second = strike_modes(replace(scene, tip=other, effects=(PowerLawTip(exponent, speed),)), a_few_modes())
-    assert np.allclose(numbers(first), numbers(second), rtol=1e-9, atol=1e-9 * speed**2)
-
-
-def test_effects_at_the_tip_go_with_those_on_the_cue():
-    at_tip = (PowerLawTip(1.5), RollingContact(), TipDome(0.009), SecondHit())
-    outcome = strike(replace(kim_scene(0.4), effects=(StructuralDamping(0.02), *at_tip)))
-    sound(outcome)
-    assert outcome.energy["damping loss"] > 0
-
-
-@settings(max_examples=20, deadline=None)
-@given(shaft_scenes(), st.sampled_from([1e-3, 0.1, 7.0, 1e3]))
-def test_speed_scales_every_velocity_and_no_time(drawn, factor):
-    scene, at = drawn
-    slow, fast = strike(scene, at), strike(replace(scene, stroke=replace(scene.stroke, speed=factor)), at)
-    same_course(slow, fast)
-    assert abs(fast.squirt - slow.squirt) < EXACT
-    assert abs(fast.duration / slow.duration - 1) < EXACT
-    assert abs(fast.cue_speed - factor * slow.cue_speed) < EXACT * factor
-    assert np.abs(fast.ball_velocity - factor * slow.ball_velocity).max() < EXACT * factor * slow.ball_speed
-    for name, joules in slow.energy.items():
-        assert abs(fast.energy[name] - factor**2 * joules) < EXACT * fast.energy["initial"]
-
-
-def in_units(scene: Scene, *, time: float, length: float, mass: float) -> Scene:
-    """The same scene with its numbers in other units: a second is ``time`` of the new ones, and so on."""
-    pressure = mass / length / time**2
-
-    def material(m: Material) -> Material:
-        return replace(m, E=m.E * pressure, G=m.G * pressure, rho=m.rho * mass / length**3)
-
-    def segment(s: Segment) -> Segment:
-        lengths = ("length", "tip_diameter", "butt_diameter", "tip_bore", "butt_bore")
-        scaled = {name: getattr(s, name) * length for name in lengths}
-        return replace(s, **scaled, material=material(s.material), core=s.core and material(s.core))
-
-    cue = Cue(tuple(segment(s) for s in scene.cue.segments), scene.cue.body_mass * mass)
-    ball = replace(scene.ball, mass=scene.ball.mass * mass, radius=scene.ball.radius * length)
-    tip = replace(scene.tip, contact_time=scene.contact_time * time)
-    return Scene(cue, ball, tip, replace(scene.stroke, speed=scene.stroke.speed * length / time))
-
-
-@pytest.mark.parametrize("units", [(1e3, 1, 1), (1, 400, 1), (1, 1, 1e3), (1e-2, 39.37, 2.2)])
-@pytest.mark.parametrize(("offset", "e", "mu"), [(0.3, 0.75, 0.7), (0.6, 0.75, 0.3), (0.2, 0.0, 0.7), (0.9, 0.05, 0.3)])
-def test_the_answer_does_not_depend_on_the_units(units, offset, e, mu):
-    time, length, mass = units
-    scene, at = Scene(pool_cue(), Ball(), Tip(e, mu, contact_time=1e-3), Stroke(1.3, offset)), Resolution(4, 10, 20)
-    ours, theirs = strike(scene, at), strike(in_units(scene, time=time, length=length, mass=mass), at)
-    same_course(ours, theirs)
-    assert abs(theirs.squirt - ours.squirt) < EXACT
-    assert abs(theirs.duration / time / ours.duration - 1) < EXACT
-    assert abs(theirs.spin * time / ours.spin - 1) < EXACT
-    velocity = theirs.ball_velocity * time / length
-    assert np.abs(velocity - ours.ball_velocity).max() < EXACT * ours.ball_speed
-    for name, joules in ours.energy.items():
-        scaled = theirs.energy[name] * time**2 / length**2 / mass
-        assert abs(scaled - joules) < EXACT * ours.energy["initial"], name
-
-
-LOUD = Scene(LumpedCue(0.54, 0.01), Ball(), Tip(0.3, 0.05, contact_time=3e-3), Stroke(1.5, 0.5))
-COURSES = {
-    "stick": kim_scene(0.3),
-    "miscue": kim_scene(0.8),
-    "late stick": kim_scene(0.3, restitution=1.0, friction=0.3),
-    "dead tip": kim_scene(0.3, restitution=0.0),
-    "reload": kim_scene(0.9, restitution=0.05, friction=0.3, contact_time=3e-3),
-    "endless friction": kim_scene(-0.5, friction=float("inf")),
-    "lumped": Scene(LumpedCue(0.54, 0.004), stroke=Stroke(offset=0.4)),
-    "a cue made by hand, which slips and sticks eight times": LOUD,
+SPLIT: dict[str, tuple[Effect, ...]] = {  # the first is the sum of the others
+    "mass": (cf.PointMass(0.1, 5e-3, 1e-7), cf.PointMass(0.1, 2e-3, 4e-8), cf.PointMass(0.1, 3e-3, 6e-8)),
+    "support": (cf.Support(0.2, 5e3, 1.0, 20.0), cf.Support(0.2, 2e3, 0.4, 5.0), cf.Support(0.2, 3e3, 0.6, 15.0)),
+    "dome": (cf.TipDome(9e-3), cf.TipDome(4e-3), cf.TipDome(5e-3), cf.TipDome(0.0)),
+    "shear, in series": (cf.TipShear(0.75), cf.TipShear(3.0), cf.TipShear(2.0), cf.TipShear(2.0)),
 }
 
 
-def struck(scene: Scene) -> Outcome:
+@pytest.mark.parametrize("name", SPLIT)
+def test_an_effect_in_parts_is_the_whole(name: str) -> None:
+    """For strike, end mass, motion and the impulse solver alike."""
+    whole, *parts = SPLIT[name]
+    one, other = (replace(kim_scene(), effects=tuple(effects)) for effects in ([whole], parts))
+    assert numbers(cf.strike(other, AT)) == pytest.approx(numbers(cf.strike(one, AT)), rel=1e-9, abs=1e-14)
+    for drive in ("offset", "velocity"):
+        assert cf.end_mass(other, drive, AT) == pytest.approx(cf.end_mass(one, drive, AT), rel=1e-9)
+    assert cf.impulse(other).squirt == pytest.approx(cf.impulse(one).squirt, rel=1e-9)
+    moved = [cf.motion(scene, [0.0, 3e-4, 2e-3], AT).centre for scene in (one, other)]
+    np.testing.assert_allclose(*moved, rtol=1e-9, atol=1e-14)
+    assert one.dome_radius == pytest.approx(other.dome_radius, abs=1e-15)
+
+
+NODE = cf.PointMass(HERE, 0.0)  # a node alone: the mesh's error is the same with and without the effect
+VANISHING = {
+    "point mass": (lambda x: cf.PointMass(HERE, 1e-4 * x), NODE),
+    "rotary inertia": (lambda x: cf.PointMass(HERE, 0.0, 1e-7 * x), NODE),
+    "support": (lambda x: cf.Support(HERE, 1e3 * x), NODE),
+    "rotational support": (lambda x: cf.Support(HERE, 0.0, x), NODE),
+    "dashpot": (lambda x: cf.Support(HERE, dashpot=0.1 * x), NODE),
+    "damping": (lambda x: cf.StructuralDamping(0.01 * x), None),
+    "rotational joint": (lambda x: cf.Joint(HERE, rotational_compliance=1e-5 * x), NODE),
+    "shear joint": (lambda x: cf.Joint(HERE, shear_compliance=1e-8 * x), NODE),
+    "dome": (lambda x: cf.TipDome(1e-3 * x), None),
+}
+
+
+def squirt(*effects: Effect, **stroke: float) -> float:
+    scene = replace(kim_scene(), effects=effects)
+    return float(cf.strike(replace(scene, stroke=replace(scene.stroke, **stroke)), KIM_AT).squirt)
+
+
+@pytest.mark.parametrize("name", VANISHING)
+def test_an_effect_vanishes_linearly(name: str) -> None:
+    make, limit = VANISHING[name]
+    bare = squirt(limit) if limit else squirt()
+    steps = [1.0, 1e-1, 1e-2]
+    assert_order(1.0, steps, [abs(squirt(make(x)) - bare) for x in steps], within=[0.04, 0.01])
+    assert abs(squirt(make(0.0)) / bare - 1) < 1e-14
+
+
+def test_other_limits() -> None:
+    """Stiff shear is none, like one over its ratio with wiggles of a factor 2; exponent 1 is the bilinear law; a level
+    cue is not raised; thrust falls with the speed; a turning contact, with its time."""
+    bare = squirt()
+    for ratio in (1e3, 1e5):
+        assert 5e-3 / ratio < abs(squirt(cf.TipShear(ratio)) - bare) < 5e-2 / ratio
+    assert squirt(cf.PowerLawTip(1.0)) == pytest.approx(bare, rel=1e-8)
+    assert squirt(cf.Elevation(0.0, 0.2)) == pytest.approx(bare, rel=1e-8)
+    slow = [squirt(cf.GeometricStiffness(), speed=speed) / bare - 1 for speed in (0.1, 0.2)]
+    assert slow[1] / slow[0] == pytest.approx(2.0, rel=1e-2)
+    rolled = []
+    for time in 1e-3 * 2.0 ** -np.arange(5, 9):
+        scene = kim_scene(0.3, contact_time=float(time))
+        turned, fixed = (strike_modes(replace(scene, effects=e), a_few_modes()) for e in ((cf.RollingContact(),), ()))
+        rolled.append(turned.squirt / fixed.squirt - 1)
+    assert_order(1, 2.0 ** -np.arange(4.0), rolled, within=[0.04, 0.02, 0.01], rounding=1e-10)
+
+
+def test_a_bare_scene_enters_no_effect(monkeypatch: pytest.MonkeyPatch) -> None:
+    before = cf.strike(kim_scene(), AT)
+
+    def entered(*_: object) -> None:
+        pytest.fail("code of an effect that is not listed was entered")
+
+    for kind in (CueEffect, TipEffect, *CueEffect.__subclasses__(), *TipEffect.__subclasses__()):
+        for name, value in list(vars(kind).items()):
+            if isinstance(value, property) or (callable(value) and not name.startswith("__")):
+                monkeypatch.setattr(kind, name, property(entered))
+    assert cf.strike(kim_scene(), AT) == before
+
+
+@pytest.mark.parametrize("units", [(1e3, 1, 1), (1, 400, 1), (1, 1, 1e3)])
+@pytest.mark.parametrize(("offset", "e", "mu"), [(0.3, 0.75, 0.7), (0.2, 0.0, 0.7), (0.9, 0.05, 0.3)])
+def test_the_answer_does_not_depend_on_the_units(
+    units: tuple[float, float, float], offset: float, e: float, mu: float
+) -> None:
+    """A second is ``time`` of the new units, and so on."""
+    time, length, mass = units
+    ours, at = (
+        cf.Scene(pool_cue(), tip=cf.Tip(e, mu, contact_time=1e-3), stroke=cf.Stroke(1.3, offset)),
+        cf.Resolution(4, 10, 20),
+    )
+    stiff, heavy = mass / length / time**2, mass / length**3
+    cue = replace(scaled(ours.cue, E=stiff, G=stiff, rho=heavy, length=length), body_mass=ours.cue.body_mass * mass)
+    ball = cf.Ball(ours.ball.mass * mass, ours.ball.radius * length)
+    theirs = cf.Scene(cue, ball, replace(ours.tip, contact_time=1e-3 * time), cf.Stroke(1.3 * length / time, offset))
+    one, other = cf.strike(ours, at), cf.strike(theirs, at)
+    assert other.squirt == pytest.approx(one.squirt, abs=EXACT)
+    assert other.duration / time == pytest.approx(one.duration, rel=EXACT)
+    assert other.spin * time == pytest.approx(one.spin, rel=EXACT)
+    for name, joules in one.energy.items():
+        assert abs(other.energy[name] * time**2 / length**2 / mass - joules) < EXACT * one.energy["initial"], name
+
+
+LOUD = cf.Scene(cf.LumpedCue(0.54, 0.01), tip=cf.Tip(0.3, 0.05, contact_time=3e-3), stroke=cf.Stroke(1.5, 0.5))
+COURSES = {
+    "stick": kim_scene(0.3),
+    "miscue": kim_scene(0.8),
+    "dead tip": kim_scene(0.3, restitution=0.0),
+    "reload": kim_scene(0.9, restitution=0.05, friction=0.3, contact_time=3e-3),
+    "endless friction": kim_scene(-0.5, friction=inf),
+    "lumped": cf.Scene(cf.LumpedCue(0.54, 0.004), stroke=cf.Stroke(offset=0.4)),
+    "slips and sticks eight times": LOUD,
+}
+
+
+def struck(name: str) -> cf.Outcome:
+    scene = COURSES[name]
     if scene is LOUD:
         return strike_modes(scene, hand_made([870.0, 2600.0], [11.0, 12.0], rigid=0.5))
-    return strike(scene, None if isinstance(scene.cue, LumpedCue) else KIM_AT)
-
-
-@pytest.mark.parametrize(
-    "scene", [*COURSES.values(), leather_scene(leather=replace(LEATHER, rolls=False))], ids=[*COURSES, "leather"]
-)
-def test_forces_integrate_to_the_impulse(scene):
-    """By a Gauss rule that is exact for the polynomials of the steps."""
-    outcome = struck(scene)
-    points, weights = np.polynomial.legendre.leggauss(16)
-    for phase in outcome.phases:
-        if phase.grip == "blow":
-            continue
-        edges = np.unique([phase.start, *outcome.history.start, phase.end])
-        edges = edges[(edges >= phase.start) & (edges <= phase.end)]
-        half = np.diff(edges)[:, None] / 2
-        now = outcome.history(np.clip(edges[:-1, None] + half * (1 + points), phase.start, phase.end))
-        for row, key in enumerate(("force_t", "force_n")):
-            total = np.sum(half * weights * now[key])
-            assert abs(total - phase.impulse[row]) < 1e-10 * outcome.impulse[1], (phase, key)
-    total = np.sum([phase.impulse for phase in outcome.phases], axis=0)
-    assert np.abs(total - outcome.impulse).max() < 1e-12 * outcome.impulse[1]
+    return cf.strike(scene, None if isinstance(scene.cue, cf.LumpedCue) else KIM_AT)
 
 
 @pytest.mark.parametrize("name", COURSES)
-def test_forces_and_velocities_obey_the_laws_of_their_phase(name):
-    scene, outcome = COURSES[name], struck(COURSES[name])
-    side, mu = np.sign(scene.stroke.offset), scene.tip.friction
+def test_forces_obey_the_laws_of_friction_and_give_the_impulse(name: str) -> None:
+    scene, outcome = COURSES[name], struck(name)
+    side, mu, speed = np.sign(scene.stroke.offset), scene.tip.friction, scene.stroke.speed
     force = np.abs(outcome.history(np.linspace(0, outcome.duration, 400))["force_n"]).max()
-    speed = scene.stroke.speed
+    points, weights = np.polynomial.legendre.leggauss(16)
     for phase in outcome.phases:
         if not phase.end > phase.start:
             continue
-        now = outcome.history(np.linspace(phase.start, phase.end, 203)[1:-1])
+        edges = np.unique(np.clip([phase.start, *outcome.history.start, phase.end], phase.start, phase.end))
+        half = np.diff(edges)[:, None] / 2
+        now = outcome.history(edges[:-1, None] + half * (1 + points))
+        given_by = [np.sum(half * weights * now[key]) for key in ("force_t", "force_n")]
+        np.testing.assert_allclose(given_by, phase.impulse, rtol=0, atol=1e-10 * outcome.impulse[1])
         assert np.all(now["force_n"] > -1e-11 * force)
         if not isinf(mu):
             assert np.all(np.abs(now["force_t"]) < mu * now["force_n"] + 1e-10 * force)
@@ -220,22 +309,11 @@ def test_forces_and_velocities_obey_the_laws_of_their_phase(name):
             way = side * (1 if phase.grip == "slip" else -1)
             assert np.abs(now["force_t"] - way * mu * now["force_n"]).max() < 1e-11 * force
             assert np.all(way * now["velocity_t"] < 1e-11 * speed)
-        if phase.press == "load":
-            assert np.all(now["velocity_n"] < 1e-11 * speed)
-        if phase.press == "rigid":
-            assert np.abs(now["velocity_n"]).max() < 1e-11 * speed
+    assert np.sum([phase.impulse for phase in outcome.phases], axis=0) == pytest.approx(outcome.impulse, rel=1e-12)
 
 
-def test_history_keeps_the_shape():
-    history = strike(kim_scene(), KIM_AT).history
-    assert history(np.zeros((3, 2)))["force_n"].shape == (3, 2)
-    assert np.shape(history(0.0)["velocity_t"]) == ()
-
-
-@pytest.mark.parametrize("extra", [(), (PowerLawTip(1.5),), (Elevation(0.1),), (SecondHit(),)])
-def test_single_numbers_are_plain_floats_that_print_well(extra):
-    found = strike(Scene(LumpedCue(0.54, 0.006), stroke=Stroke(offset=0.3), effects=extra))
-    numbers = [found.squirt, found.ball_speed, found.spin, found.cue_speed, found.duration, *found.energy.values()]
-    times = [time for phase in found.phases for time in (phase.start, phase.end)]
-    assert {type(value) for value in (*numbers, *times)} == {float}
-    assert "np." not in repr(found.energy)
+@pytest.mark.parametrize("extra", [(), (cf.PowerLawTip(1.5),), (cf.Elevation(0.1),), (cf.SecondHit(),)])
+def test_single_numbers_are_plain_floats(extra: tuple[Effect, ...]) -> None:
+    found = cf.strike(cf.Scene(cf.LumpedCue(0.54, 0.006), stroke=cf.Stroke(offset=0.3), effects=extra))
+    values = [found.squirt, found.ball_speed, found.spin, found.cue_speed, found.duration, *found.energy.values()]
+    assert {type(value) for value in values} == {float}

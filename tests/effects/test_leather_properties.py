@@ -54,20 +54,6 @@ def test_head_on(tip: LeatherTip, diameter: float, ball: float) -> None:
     assert np.all(np.diff(np.diff(curves[2]) / np.diff(curves[1])) > 0)
 
 
-@settings(max_examples=60, deadline=None)
-@given(TIPS, DIAMETERS, OFFSETS)
-def test_a_patch_that_sticks(tip: LeatherTip, diameter: float, offset: float) -> None:
-    """It never grows softer with its radius, and is stiffer than a Hertz-weighted one, but not by far."""
-    radius, stiffness = possible(tip, diameter).shear_stiffness(diameter, offset)
-    assert radius[0] == stiffness[0] == 0
-    assert np.all(np.diff(stiffness) >= 0)
-    gain = stiffness[1:] * tip.compliance(diameter, offset, radius[1:])[:, 1, 1]
-    assert np.all((gain > 1) & (gain < 1.7))
-    radius, ratio = tip.normal_ratio(diameter, offset)
-    assert ratio[0] == 1
-    assert np.all(ratio > 0)
-
-
 @given(TIPS, DIAMETERS, st.floats(-0.6, 0.6))
 def test_lever(tip: LeatherTip, diameter: float, phi: float) -> None:
     """The contact lies on the dome or on its rim, and the mass is between that of cylinders."""

@@ -1,0 +1,148 @@
+"""Draws mutants of the package at random and counts those that a test notices: `python tests/mutants.py --seed 1`.
+
+A mutant is the package with one operator, comparison, condition or number changed in one function. The tests of its
+room and the root's (`CONCERNED`) run on a copy of the tree until the first fails. Printed: a line a mutant, then the
+part that is noticed with its 95 % interval (Wilson).
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import math
+import os
+import random
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).parents[1]
+FACES = ("cli", "design", "designer", "handbook", "io", "measured", "report")
+# room -> folders of tests that see it, soonest first; what is not named: its own
+CONCERNED = {
+    "": ("contact", "endmass", "effects", "results", "report", "io", "cli"),
+    "beam": ("beam", "endmass", "contact", "effects"),
+    "contact": ("contact", "effects", "endmass", "side"),
+    "effects": ("effects", "contact", "solid"),
+    "endmass": ("endmass", "contact", "results"),
+    "quantity": ("io", "cli", "report", "design"),
+    "results": ("results", "report", "design", "designer"),
+    "solid": ("solid", "effects"),
+    "squirt": ("squirt", "contact", "results"),
+    "handbook": ("handbook", "cli"),
+    "io": ("io", "cli", "effects", "report", "design"),
+    "report": ("report", "results", "cli", "handbook", "design"),
+    "measured": ("measured", "side", "cli"),
+    "design": ("design", "cli", "report"),
+    "designer": ("designer", "results", "report"),
+}
+SWAPS: dict[type, type] = {
+    **{ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.Pow: ast.Mult},
+    **{ast.Lt: ast.GtE, ast.LtE: ast.Gt, ast.Gt: ast.LtE, ast.GtE: ast.Lt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq},
+    **{ast.Is: ast.IsNot, ast.IsNot: ast.Is, ast.In: ast.NotIn, ast.NotIn: ast.In, ast.And: ast.Or, ast.Or: ast.And},
+}
+
+
+class Mutant(NamedTuple):
+    """A file, the first line and the ends of what is changed in it (bytes of UTF-8), and what stands there instead."""
+
+    path: Path
+    line: int
+    ends: tuple[int, int]
+    text: str
+
+
+def changed(node: ast.AST) -> ast.expr | None:
+    """Another expression for one of these, or None."""
+    match node:
+        case ast.BinOp(left, op, right) if type(op) in SWAPS and not isinstance(left, ast.Constant | ast.JoinedStr):
+            return ast.BinOp(left, SWAPS[type(op)](), right)
+        case ast.Compare(left, [op], right):
+            return ast.Compare(left, [SWAPS[type(op)]()], right)
+        case ast.BoolOp(op, values):
+            return ast.BoolOp(SWAPS[type(op)](), values)
+        case ast.UnaryOp(ast.Not() | ast.USub(), operand):
+            return operand
+        case ast.Constant(bool(value)):
+            return ast.Constant(not value)
+        case ast.Constant(int(value) | float(value)):
+            return ast.Constant(value + 1 if isinstance(value, int) else 1.1 * value)
+    return None
+
+
+def mutants(path: Path) -> Iterator[Mutant]:
+    """Every mutant of a file's functions."""
+    text = path.read_bytes()
+    starts = [0]
+    for row in text.splitlines(keepends=True):
+        starts.append(starts[-1] + len(row))
+    for outer in ast.walk(ast.parse(text)):
+        if isinstance(outer, ast.FunctionDef):
+            for node in (found for part in outer.body for found in ast.walk(part)):
+                new = None if isinstance(node, ast.FunctionDef) else changed(node)
+                if new is not None and isinstance(node, ast.expr) and node.end_lineno and node.end_col_offset:
+                    ends = starts[node.lineno - 1] + node.col_offset, starts[node.end_lineno - 1] + node.end_col_offset
+                    yield Mutant(path, node.lineno, ends, f"({ast.unparse(new)})")
+
+
+def is_noticed(tree: Path, mutant: Mutant) -> str:
+    """The first line of what failed with it, or nothing."""
+    file = tree / mutant.path.relative_to(ROOT)
+    whole = file.read_bytes()
+    file.write_bytes(whole[: mutant.ends[0]] + mutant.text.encode() + whole[mutant.ends[1] :])
+    room = "" if file.parent.name == "cuefem" else file.relative_to(tree / "cuefem").parts[0]
+    folders = [f"tests/{name}" for name in CONCERNED.get(room, (room,)) if (tree / "tests" / name).is_dir()]
+    tests = [
+        "tests/test_docstrings.py",
+        *folders,
+        *sorted(str(path.relative_to(tree)) for path in tree.glob("tests/test_*.py")),
+    ]
+    environment = os.environ | {"PYTHONPATH": str(tree), "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    command = [sys.executable, "-m", "pytest", "-n", "0", "-x", "--tb=no", "-p", "no:warnings", *dict.fromkeys(tests)]
+    try:
+        done = subprocess.run(command, cwd=tree, env=environment, capture_output=True, text=True, timeout=900)
+        said = [line for line in done.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))]
+        return "" if done.returncode == 0 else (said or ["does not even start"])[0][:110]
+    except subprocess.TimeoutExpired:
+        return "does not end"
+    finally:
+        file.write_bytes(whole)
+
+
+def main() -> None:
+    """As the module says."""
+    parser = argparse.ArgumentParser(description="random mutants, and how many of them a test notices")
+    for name, value in (("--seed", 1), ("--core", 40), ("--faces", 20)):
+        parser.add_argument(name, type=int, default=value)
+    parser.add_argument("--only", type=int, nargs="*", help="numbers of mutants to try; all others are passed over")
+    asked = parser.parse_args()
+    files = sorted((ROOT / "cuefem").rglob("*.py"))
+    faces = [file for file in files if file.relative_to(ROOT / "cuefem").parts[0] in FACES]
+    drawn: list[Mutant] = []
+    for seed, (part, count) in enumerate(((sorted({*files} - {*faces}), asked.core), (faces, asked.faces))):
+        every = [mutant for file in part for mutant in mutants(file)]
+        drawn += random.Random(f"{asked.seed} {seed}").sample(every, count)
+    tried = [*range(len(drawn))] if asked.only is None else asked.only
+    noticed = 0
+    with tempfile.TemporaryDirectory() as folder:
+        tree = Path(folder) / "tree"
+        shutil.copytree(ROOT, tree, ignore=shutil.ignore_patterns(".git", ".venv*", "__pycache__", "dist", "*.sqlite"))
+        for number in tried:
+            mutant = drawn[number]
+            by = is_noticed(tree, mutant)
+            noticed += bool(by)
+            print(
+                number, f"{mutant.path.relative_to(ROOT)}:{mutant.line}", mutant.text, "|", by or "SURVIVES", flush=True
+            )
+    n, z, rate = len(tried), 1.96, noticed / len(tried)
+    middle = (rate + z**2 / 2 / n) / (1 + z**2 / n)
+    half = z * math.sqrt(rate * (1 - rate) / n + z**2 / 4 / n**2) / (1 + z**2 / n)
+    print(f"noticed {noticed} of {n}: {rate:.0%}, 95 % interval {middle - half:.0%} to {middle + half:.0%}")
+
+
+if __name__ == "__main__":
+    main()
