@@ -19,6 +19,7 @@ if os.environ.pop("PYTHONDONTWRITEBYTECODE", ""):
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(name, "1")
 
+import pytest  # noqa: E402
 from hypothesis import settings  # noqa: E402
 
 import cuefem  # noqa: E402
@@ -30,3 +31,8 @@ for found in pkgutil.walk_packages(cuefem.__path__, "cuefem."):
 
 settings.register_profile("cuefem", derandomize=True, deadline=None, database=None, print_blob=True)
 settings.load_profile("cuefem")
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """`--update` writes golden files anew (tests/test_faces.py)."""
+    parser.addoption("--update", action="store_true", help="write the golden files of tests/golden anew")

@@ -113,42 +113,17 @@ def test_lumped_cues_of_the_paper() -> None:
 
 PIECE = Segment(0.7, 0.012, 0.021, MAPLE)
 CALLS: list[tuple[Callable[[], object], str]] = [
-    *[
-        (lambda change=change: replace(PIECE, **change), f"Segment.{words}")
-        for change, words in (
-            ({"length": 0.0}, "length must be in (0, 1000] m; got 0.0"),
-            ({"length": -0.1}, "length must be in (0, 1000] m; got -0.1"),
-            ({"length": float("nan")}, "length must be in (0, 1000] m; got nan"),
-            ({"tip_diameter": float("inf")}, "tip_diameter must be in (0, 10] m; got inf"),
-            ({"butt_bore": -1e-3}, "butt_bore must be in [0, inf) m; got -0.001"),
-            ({"tip_bore": 0.013}, "tip_bore must be in [0, 0.012) m, its outer diameter; got 0.013"),
-            ({"butt_bore": 0.021}, "butt_bore must be in [0, 0.021) m, its outer diameter; got 0.021"),
-            ({"kappa": 1.5}, "kappa must be in (0, 1]; got 1.5"),
-        )
-    ],
-    *[
-        (lambda change=change: replace(PIECE, **change), f"TypeError: Segment.{words}")
-        for change, words in (
-            ({"length": "12 mm"}, "length must be a number in (0, 1000] m; got '12 mm'"),
-            ({"length": True}, "length must be a number in (0, 1000] m; got True"),
-            ({"material": "maple"}, "material must be a Material; got 'maple'"),
-            ({"core": 3}, "core must be a Material or NoneType; got 3"),
-        )
-    ],
-    *[
-        (lambda change=change: replace(MAPLE, **change), f"Material.{words}")
-        for change, words in (
-            ({"E": 0.0}, "E must be in (0, inf) Pa; got 0.0"),
-            ({"rho": float("inf")}, "rho must be in (0, inf) kg/m^3; got inf"),
-            ({"loss": 1.0}, "loss must be in [0, 1); got 1.0"),
-            ({"nu": 0.6}, "nu must be in [0, 0.5]; got 0.6"),
-            ({"E": 6e9, "G": 10e9}, "G must be in (0, 10000000000.0) Pa, E/(2 nu) of E = 6000000000.0 Pa, nu = 0.3; "),
-        )
-    ],
+    (lambda: replace(PIECE, tip_bore=0.013), "Segment.tip_bore must be in [0, 0.012) m, its outer diameter; got 0.013"),
+    (lambda: replace(PIECE, butt_bore=0.021), "Segment.butt_bore must be in [0, 0.021) m, its outer diameter"),
+    (lambda: replace(PIECE, material="maple"), "TypeError: Segment.material must be a Material; got 'maple'"),  # type: ignore[arg-type]
+    (lambda: replace(PIECE, core=3), "TypeError: Segment.core must be a Material or NoneType; got 3"),  # type: ignore[arg-type]
+    (
+        lambda: replace(MAPLE, E=6e9, G=10e9),
+        "Material.G must be in (0, 10000000000.0) Pa, E/(2 nu) of E = 6000000000.0 Pa",
+    ),
     (lambda: Cue(PIECE), "TypeError: Cue.segments must be a sequence of Segment; got one Segment"),
     (lambda: Cue((PIECE, 7)), "TypeError: Cue.segments[1] must be a Segment; got 7"),
     (lambda: Cue(()), "Cue.segments must hold at least one Segment; got none, a cue without mass"),
-    (lambda: Cue((PIECE,), body_mass=-0.1), "Cue.body_mass must be in [0, inf) kg; got -0.1"),
     *[(lambda x=x: kim().section(x), "Cue.section takes positions in [0, 0.7] m") for x in (-1e-9, 0.7000001, np.nan)],
     (lambda: LumpedCue(0.5, 0.005, 20.0), "LumpedCue.coupling must be in (-20.0, 20.0) 1/kg; got 20.0"),
     (lambda: LumpedCue.two_part(0.5, 0.012, 0.0), "nu_c"),

@@ -12,9 +12,7 @@ from cuefem import (
     Ball,
     Elevation,
     LumpedCue,
-    PowerLawTip,
     Resolution,
-    RollingContact,
     Scene,
     SecondHit,
     Stroke,
@@ -33,18 +31,6 @@ from tests.helpers.refusals import refuses
 from tests.helpers.strike_scenes import KIM, kim_scene
 
 TWO: Any = np.array([1.0, 2.0])
-FIELDS = {  # how it is made, its bounds, a good value and wrong ones
-    "LumpedCue.mass": (lambda x: LumpedCue(x, 0.003), "(0, inf) kg", 0.5, [nan, inf, 0.0, -0.5]),
-    "LumpedCue.end_mass": (lambda x: LumpedCue(0.54, x), "(0, inf) kg", 0.5, [nan, inf, 0.0, -1e-3]),
-    "LumpedCue.coupling": (lambda x: LumpedCue(0.54, 0.003, x), "(-inf, inf) 1/kg", 0.0, [nan, inf, -inf]),
-    "Ball.mass": (lambda x: Ball(mass=x), "(0, inf) kg", 0.5, [nan, inf, 0.0, -0.2]),
-    "Ball.radius": (lambda x: Ball(radius=x), "(0, inf) m", 0.5, [nan, inf, 0.0, -0.03]),
-    "Ball.inertia": (lambda x: Ball(inertia=x), "(0, 1]", 0.5, [nan, inf, 0.0, 1.1]),
-    "Tip.restitution": (lambda x: Tip(restitution=x), "[0, 1]", 0.5, [nan, inf, -0.1, 1.0000001]),
-    "Tip.friction": (lambda x: Tip(friction=x), "[0, inf]", 0.5, [nan, -inf, -1e-9]),
-    "Stroke.speed": (lambda x: Stroke(speed=x), "(0, inf) m/s", 0.5, [nan, inf, 0.0, -1.0]),
-    "Stroke.offset": (lambda x: Stroke(offset=x), "(-1, 1)", 0.2, [nan, inf, 1.0, -1.0, 1.5]),
-}
 THREE_SHAPES = Scene(
     LumpedCue(0.54, np.full(3, 0.003)), Ball(), Tip(0.75, np.full((2, 1), 0.7)), Stroke(1.0, np.zeros(4))
 )
@@ -73,11 +59,6 @@ ARRAYS: dict[str, dict[str, Any]] = {
     "Tip.restitution": {"tip": Tip(TWO / 4)},
 }
 CALLS: list[tuple[Callable[[], object], str]] = [
-    *[
-        (lambda f=make, v=value: f(v), f"TypeError: {field} must be a number in {bounds}; got ")
-        for field, (make, bounds, _, _) in FIELDS.items()
-        for value in ("0.5", None, True, [0.5, "x"], {})
-    ],
     (lambda: LumpedCue(0.25, 0.25, 4.0), "LumpedCue.coupling must be in (-4.0, 4.0) 1/kg; got 4.0"),
     (
         lambda: LumpedCue(np.array([0.25, 1.0]), 0.25, np.array([2.0, -2.5])),
@@ -102,18 +83,13 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     ),
     # strikes
     *[(struck(kim_scene(), **part), field) for field, part in ARRAYS.items()],
-    *[(struck(Scene(LumpedCue(0.54, 0.003)), **part), field) for field, part in ARRAYS.items()],
     (struck(Scene(LumpedCue(TWO / 4, 0.003))), "LumpedCue.mass"),
     (struck(Scene(LumpedCue(0.5, TWO / 300))), "LumpedCue.end_mass"),
     (struck(leather_scene(speed=TWO)), "Stroke.speed must be one number; got an array of shape (2,)"),
     (struck(leather_scene(e=TWO / 4)), "Tip.restitution must be one number; got an array of shape (2,)"),
     (struck(leather_scene(e=0.05)), "LeatherTip; got 0.05: leather that gives back less rings on"),
     (struck(leather_scene(speed=60.0)), "mm): give LeatherTip a larger height or E, or Stroke a lower speed"),
-    *[
-        (struck(kim_scene(-0.4, restitution=e), Resolution(4, 12, 12), effects=effects), NEARLY_DEAD + f"{e:g}: such")
-        for e in (9e-5, 1e-6, 5e-324)
-        for effects in ((), (TipShear(0.75),), (RollingContact(),), (PowerLawTip(1.5),), (Elevation(0.1),))
-    ],
+    (struck(kim_scene(restitution=9e-5)), NEARLY_DEAD + "9e-05: such"),
     (struck(kim_scene(restitution=9e-5), effects=(SecondHit(),)), "Tip.restitution in [0.0001, 1]; got 9e-05"),
     (struck(kim_scene(restitution=0.0), effects=(Elevation(0.1),)), "a Tip.restitution in (0, 1]; got 0.0"),
     (lambda: Resolution(4, 8, 0), "Resolution.modes"),
@@ -161,22 +137,6 @@ CALLS: list[tuple[Callable[[], object], str]] = [
 @pytest.mark.parametrize(("ask", "message"), CALLS)
 def test_calls(ask: Callable[[], object], message: str) -> None:
     refuses(ask, message)
-
-
-@pytest.mark.parametrize("field", FIELDS)
-def test_numbers_out_of_bounds(field: str) -> None:
-    """The whole line; of an array the first index."""
-    make, bounds, fine, wrong = FIELDS[field]
-    for value in wrong:
-        message = f"{field} must be in {bounds}; got {value}"
-        for given, where in (
-            (value, ""),
-            (np.array([fine, fine, value, value]), " at index 2"),
-            (np.array([[fine, fine], [value, fine]]), " at index (1, 0)"),
-        ):
-            with pytest.raises(ValueError, match=r".*") as refused:
-                make(given)
-            assert str(refused.value) == message + where
 
 
 def test_what_is_just_allowed() -> None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from math import inf, nan
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +21,6 @@ from cuefem import (
     RollingContact,
     Scene,
     SecondHit,
-    StructuralDamping,
     Support,
     Tip,
     TipDome,
@@ -55,33 +54,6 @@ FINITE = (PointMass(0.1, 0.01), Support(0.1, 5.0), Joint(0.1), AxialWaves(), Tip
 PARTS = (TipDome(0.01), SHEAR, PowerLawTip(), RollingContact(), Elevation(0.1))
 CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: LeatherLaw((1.0, 2.0), (1.0,), 0.7, 1e-3), "as many force_terms as give_terms; got 2 and 1"),
-    (lambda: PointMass(nan, 0.01), "PointMass.position must be in [0, inf) m; got nan"),
-    (lambda: PointMass(inf, 0.01), "PointMass.position must be in [0, inf) m; got inf"),
-    (lambda: PointMass(-0.1, 0.01), "PointMass.position must be in [0, inf) m; got -0.1"),
-    (lambda: PointMass(0.1, -0.01), "PointMass.mass must be in [0, inf) kg; got -0.01"),
-    (lambda: PointMass(0.1, inf), "PointMass.mass must be in [0, inf) kg; got inf"),
-    (lambda: PointMass(0.1, 0.1, -1.0), "PointMass.rotary_inertia must be in [0, inf) kg m^2; got -1.0"),
-    (lambda: Support(nan), "Support.position must be in [0, inf) m; got nan"),
-    (lambda: Support(0.1, -1.0), "Support.stiffness must be in [0, inf] N/m; got -1.0"),
-    (lambda: Support(0.1, 0, nan), "Support.rotational_stiffness must be in [0, inf] N m/rad; got nan"),
-    (lambda: Support(0.1, dashpot=inf), "Support.dashpot must be in [0, inf) N s/m; got inf"),
-    (lambda: Joint(0.0), "Joint.position must be in (0, inf) m; got 0.0"),
-    (lambda: Joint(nan), "Joint.position must be in (0, inf) m; got nan"),
-    (lambda: Joint(0.1, -1.0), "Joint.rotational_compliance must be in [0, inf) rad/(N m); got -1.0"),
-    (lambda: Joint(0.1, inf), "Joint.rotational_compliance must be in [0, inf) rad/(N m); got inf"),
-    (lambda: Joint(0.1, 0, inf), "Joint.shear_compliance must be in [0, inf) m/N; got inf"),
-    (lambda: StructuralDamping(1.0), "StructuralDamping.loss must be in [0, 1); got 1.0"),
-    (lambda: StructuralDamping(-0.1), "StructuralDamping.loss must be in [0, 1); got -0.1"),
-    (lambda: TipDome(-0.01), "TipDome.radius must be in [0, inf) m; got -0.01"),
-    (lambda: TipShear(0.0), "TipShear.ratio must be in (0, inf); got 0.0"),
-    (lambda: TipShear(inf), "TipShear.ratio must be in (0, inf); got inf"),
-    (lambda: PowerLawTip(0.99), "PowerLawTip.exponent must be in [1, inf); got 0.99"),
-    (lambda: PowerLawTip(1.5, 0.0), "PowerLawTip.speed must be in (0, inf) m/s; got 0.0"),
-    (lambda: SecondHit(0.0), "SecondHit.window must be in (0, inf) s; got 0.0"),
-    (lambda: SecondHit(inf), "SecondHit.window must be in (0, inf) s; got inf"),
-    (lambda: Elevation(1.6), "Elevation.angle must be in [0, 1.57"),
-    (lambda: Elevation(-0.1), " rad; got -0.1"),
-    (lambda: Elevation(0.1, -1.0), "Elevation.friction must be in [0, inf); got -1.0"),
     (listed(Elevation(0.1), Elevation(0.2)), "Elevation acts once"),
     *[
         (listed(*pair), f"{type(other).__name__}; got Elevation, which does not")
@@ -95,11 +67,6 @@ CALLS: list[tuple[Callable[[], object], str]] = [
             (Elevation(0.1), "Elevation takes a Tip.restitution in (0, 1]; got 0.0"),
         )
     ],
-    (lambda: LeatherTip(0.0, 9.5e-3, 1e8), "LeatherTip.height must be in (0, inf) m; got 0.0"),
-    (lambda: LeatherTip(6e-3, 0.0, 1e8), "LeatherTip.dome_radius must be in (0, inf] m; got 0.0"),
-    (lambda: LeatherTip(6e-3, nan, 1e8), "LeatherTip.dome_radius must be in (0, inf] m; got nan"),
-    (lambda: LeatherTip(6e-3, 9.5e-3, inf), "LeatherTip.E must be in (0, inf) Pa; got inf"),
-    (lambda: LeatherTip(6e-3, 9.5e-3, 1e8, 0.5), "LeatherTip.nu must be in [0, 0.49]; got 0.5"),
     (
         lambda: LeatherTip(6e-3, 9.5e-3, 1e8, surface_restitution=0.0),
         "LeatherTip.surface_restitution must be in [0.1, 1]; got 0.0",
@@ -108,7 +75,6 @@ CALLS: list[tuple[Callable[[], object], str]] = [
         lambda: LeatherTip(6e-3, 9.5e-3, 1e8, shear=1e6, surface_restitution=0.9),
         "LeatherTip.surface_restitution must be 1 beside a constant shear, which is a spring without loss; got 0.9",
     ),
-    (lambda: LeatherTip(6e-3, 9.5e-3, 1e8, rho=0.0), "LeatherTip.rho must be in (0, inf) kg/m^3; got 0.0"),
     (lambda: LeatherTip(6e-3, 6e-3, 1e8).mass(0.013), "must have a radius of 6.5 mm or more, half of"),
     (lambda: LeatherTip(2e-3, 9.5e-3, 1e8).mass(0.01275), "must be higher than 2.457 mm, the depth"),
     (lambda: LeatherTip(6e-4, inf, 1e8).mass(0.01275), "a leather tip on 12.75 mm must be 0.638 to 38.2 mm high; got "),
@@ -125,10 +91,6 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     *[
         (listed(LeatherTip(6e-3, 9.5e-3, 1e8), other), f"effects[1], {type(other).__name__}; got LeatherTip")
         for other in (TipDome(9e-3), SHEAR, PowerLawTip(1.5))
-    ],
-    *[
-        (lambda value=value: PointMass(0.1, value), "TypeError: PointMass.mass must be a number in [0, inf) kg; got ")
-        for value in ("10 g", None, True)
     ],
     *[(listed(SHEAR, effect), f"Scene.effects[1].{words}") for effect, words in OFF],
     *[(lambda e=e: modes(KIM, 3, effects=(e,)), f"{type(e).__name__}.{words}") for e, words in OFF],
@@ -170,7 +132,6 @@ CALLS: list[tuple[Callable[[], object], str]] = [
         lambda: replace(kim_scene(), tip=Tip(), effects=(replace(LEATHER, dome_radius=5e-3),)),
         "the dome of a leather tip on 12 mm must have a radius of 6 mm or more, half of that; got 5 mm",
     ),
-    (lambda: replace(LEATHER, shear=0.0), "LeatherTip.shear must be in (0, inf) N/m; got 0.0"),
     (lambda: replace(LEATHER, rolls="no"), "TypeError: LeatherTip.rolls must be a bool; got 'no'"),
     (listed(SHEAR, "TipDome"), "TypeError: Scene.effects[1] must be an Effect; got 'TipDome'"),  # type: ignore[arg-type]
 ]

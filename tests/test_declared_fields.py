@@ -1,0 +1,135 @@
+"""Every declared field refuses what it cannot be, in Python and in a file, by its name and its bound (properties).
+
+In Python beyond both ends, nan and another kind; in a file also without a unit, in a wrong one, misspelt and missing.
+"""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Iterator
+from dataclasses import fields, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import tomlkit
+
+import cuefem as cf
+from cuefem.effects import effect_kinds
+from cuefem.io import InputError
+from cuefem.io.schema import mark_of, needed, types_of
+from cuefem.quantity.fields import Quantity, quantities
+
+WOOD = cf.Material(12.6e9, 0.84e9, 700.0)
+LEATHER = cf.LeatherTip(6e-3, 9.5e-3, 140e6)
+# What is made with the fewest words; effects with no field that must be given are made by their class.
+MADE: list[Any] = [
+    *(WOOD, cf.Segment(0.7, 0.012, 0.021, WOOD), cf.Ball(), cf.Tip(), cf.Stroke()),
+    *(cf.LumpedCue(0.54, 0.01), cf.PointMass(0.1, 0.01), cf.Support(0.1, 1e3), cf.Joint(0.1, 1e-3), LEATHER),
+    *(cf.TipDome(0.01), cf.TipShear(0.75), cf.Elevation(0.1), cf.TipLayer(1e-3, 1e9)),
+    *(cf.StructuralDamping(0.01), cf.PowerLawTip(), cf.SecondHit(), cf.Striker(0.02, 0.8, contact_time=1e-3)),
+]
+ARRAYS = {"LumpedCue", "Ball", "Stroke"}
+
+
+def beyond(mark: Quantity) -> Iterator[float]:
+    """Numbers that are not in an interval."""
+    yield math.nan
+    for end, way, bracket in zip(mark.ends, (-1, 1), (mark.interval[0], mark.interval[-1]), strict=True):
+        if math.isfinite(end):
+            yield end + way * max(1e-7, 1e-7 * abs(end))
+        if bracket in "()":
+            yield end
+
+
+@pytest.mark.parametrize("made", MADE, ids=lambda made: type(made).__name__)
+def test_in_python(made: Any) -> None:
+    kind = type(made)
+    for name, mark, optional, arrays in quantities(kind):
+        said = f"{kind.__name__}.{name} must be "
+        for wrong in beyond(mark):
+            with pytest.raises(ValueError, match=r"must be in") as refused:
+                replace(made, **{name: wrong})
+            assert str(refused.value).startswith(f"{said}in "), name
+        for wrong in ("0.5", True, {}, *([] if optional else [None])):
+            with pytest.raises(TypeError) as told:
+                replace(made, **{name: wrong})
+            assert str(told.value).startswith(f"{said}a number in {mark.bounds}; got "), name
+        many = np.full(2, next(value for value in (0.5, 1.0, 0.3) if mark.holds(value)))
+        if arrays:
+            many[1] = math.nan
+        with pytest.raises(ValueError, match="at index 1" if arrays else "must be one number; got an array"):
+            replace(made, **{name: many})
+
+
+def test_every_effect_is_tried() -> None:
+    tried = {type(made).__name__ for made in MADE}
+    kinds = {name: kind for name, kind in effect_kinds().items() if kind.__module__.startswith("cuefem.")}
+    assert {name for name, kind in kinds.items() if fields(kind)} <= tried
+
+
+METALS = {"E": "12.6 GPa", "G": "840 MPa", "rho": "782 kg/m^3"}
+CONE = {"length": "700 mm", "tip_diameter": "12 mm", "butt_diameter": "21 mm", "tip_bore": "3 mm", "material": METALS}
+SCENE: dict[str, Any] = {
+    "game": "kim",
+    "cue": {"segments": [CONE], "body_mass": "420 g"},
+    "ball": {"mass": "210 g"},
+    "tip": {"contact_time": "1 ms"},
+    "stroke": {"offset": 0.3},
+    "effects": [{"type": "PointMass", "position": "0.1 m", "mass": "5 g"}],
+}
+TABLES = {
+    "cue.segments[0].material": cf.Material,
+    "cue.segments[0]": cf.Segment,
+    "cue": cf.Cue,
+    "ball": cf.Ball,
+    "tip": cf.Tip,
+    "stroke": cf.Stroke,
+    "effects[0]": cf.PointMass,
+}
+
+
+def in_a_file(mark: Quantity) -> Iterator[tuple[Any, str]]:
+    """Values of a file that a field does not take, each with what is said of it."""
+    for end, way in zip(mark.ends, (-1, 1), strict=True):
+        if math.isfinite(end):
+            wrong = end + way * max(1.0, abs(end))
+            yield (f"{wrong} {mark.unit}" if mark.unit else wrong), f"{end:.6g}".replace("e-0", "e-")
+    yield "inf mm" if mark.unit == "m" else [], "must be "
+    if mark.unit:
+        yield "700", "needs a unit: "
+        yield "1 V", "no unit is called 'V'"
+        yield "3 s" if mark.unit != "s" else "3 g", "must be "
+
+
+@pytest.mark.parametrize("key", TABLES)
+def test_in_a_file(tmp_path: Path, key: str) -> None:
+    path, kind = tmp_path / "scene.toml", TABLES[key]
+
+    def said(name: str, value: Any) -> str:
+        scene: Any = copy.deepcopy(SCENE)
+        table = scene
+        for part in key.replace("[0]", ".0").split("."):
+            table = table[int(part) if part.isdecimal() else part]
+        table.pop(name, None) if value is None else table.update({name: value})
+        path.write_text(tomlkit.dumps(scene))
+        with pytest.raises(InputError) as refused:
+            cf.load(path)
+        line = str(refused.value)
+        assert line.startswith(f"{path}: ")
+        assert "\n" not in line
+        return line.removeprefix(f"{path}: ")
+
+    for name, hint in types_of(kind).items():
+        mark = mark_of(hint)
+        for value, words in in_a_file(mark) if mark else [(3, "must be ")]:
+            line = said(name, value)
+            assert line.startswith(f"{key}.{name}: "), line
+            assert words in line, line
+        line = said(f"{name}x", 1)
+        assert line.startswith(f"{key}.{name}x: must be one of the keys "), line
+        assert len(name) < 4 or line.endswith(f"; did you mean '{name}'?"), line
+        if name in needed(kind):
+            assert said(name, None).startswith(f"{key}.{name}: must be given, ")
