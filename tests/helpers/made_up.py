@@ -1,0 +1,118 @@
+"""A made-up place, result, definition of the end mass and effects, known by their entry or class alone; no tests."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Annotated, Any, ClassVar
+
+import cuefem as cf
+from cuefem.designer.answers import answers, completed, with_end_mass
+from cuefem.designer.design import Design
+from cuefem.designer.numbers_panel import Column, table_markup
+from cuefem.designer.words import head_markup
+from cuefem.effects import CueEffect, TipEffect, Usual
+from cuefem.effects.terms import ContactTerms
+from cuefem.endmass.drives import Definition, flexible
+from cuefem.parts import Part
+from cuefem.quantity.fields import LENGTH, Quantity
+from cuefem.report.report_page import page
+from cuefem.results.quantities import Result, of_drawing, of_strike
+from cuefem.vary import Place, Range
+from tests.helpers.command_line import call
+
+
+def faces(scene: cf.Scene, folder: Path, *names: str) -> dict[str, str]:
+    """The words that these faces show of a scene: commands, the JSON of the report, the report page, the designer."""
+    file = folder / "scene.toml"
+    cf.save(scene, file)
+
+    def shown(name: str) -> str:
+        if name == "json":
+            return call("report", file, "--json")[1]
+        if name == "page":
+            return page("this", scene)
+        if name == "designer":
+            found = completed(with_end_mass(answers(scene)))
+            design = Design.of("this", scene)
+            return head_markup(design) + table_markup([Column(design, found)], 0)
+        return call(name, file)[1]
+
+    return {name: " ".join(re.sub("<[^>]*>", "", shown(name)).split()) for name in names}
+
+
+def missing(words: str, shown: dict[str, str]) -> list[str]:
+    """The faces that do not show the words."""
+    return [name for name, text in shown.items() if words not in text]
+
+
+def _length(scene: Any) -> float | None:
+    return scene.shaft.segments[1].length if len(scene.shaft.segments) > 2 else None
+
+
+def _with_length(scene: Any, value: float) -> Any:
+    front, collar, behind = scene.shaft.segments
+    rest = replace(behind, length=behind.length - (value - collar.length))
+    return replace(scene, cue=replace(scene.shaft, segments=(front, replace(collar, length=value), rest)))
+
+
+PLACE = Place(
+    *("collar length", "length of the collar"),
+    part=Part(_length, _with_length, LENGTH),
+    group="Shaft",
+    range=Range("mm", 1e3, 2, 40, 0.5, 0.5, 60),
+    spread=0.1,
+    option="LENGTH",
+)
+SPOT = Result(
+    *("sweet spot, from the tip", "m", 2),
+    heading="sweet spot",
+    of=of_drawing(lambda scene: scene.shaft.length / 5),
+    better="higher",
+)
+PUSH = Result("push", "m/s", 3, of=of_strike(lambda outcome: 2 * outcome.ball_speed), argument="offset", strikes=True)
+RIGID = Definition(
+    *("rigid", "rigid body", "the inertia of the tip as a rigid body, plus one gram", "1/sum of the rigid phi^2"),
+    lambda tip, _: 1e-3 + 1 / flexible(tip)[2],
+    True,
+)
+
+
+def collar_effect() -> type[CueEffect]:
+    """The class of an effect on the cue; made inside, so that it is gone when a test is over."""
+
+    @dataclass(frozen=True)
+    class Collar(CueEffect):
+        """A ring on the shaft."""
+
+        usual: ClassVar[Usual | None] = Usual({"position": 0.03, "mass": 4e-3}, "made up")
+        position: Annotated[float, Quantity("m", "[0, inf)")]
+        mass: Annotated[float, Quantity("kg", "[0, inf)")]
+
+        @property
+        def positions(self) -> tuple[float, ...]:
+            """Its place."""
+            return (self.position,)
+
+        def add_to(self, terms: Any) -> None:
+            """Its mass."""
+            terms.add(self.position, "mass", self.mass, 0.0)
+
+    return Collar
+
+
+def lever_effect() -> type[TipEffect]:
+    """The class of an effect at the tip."""
+
+    @dataclass(frozen=True)
+    class Lever(TipEffect):
+        """A tip whose contact lies off the cue's axis by ``shift``, m."""
+
+        shift: Annotated[float, Quantity("m")]
+
+        def add_to_contact(self, terms: ContactTerms) -> None:
+            """A lever that does not change with the angle."""
+            terms.add_lever(lambda phi: (-self.shift, 0.0))
+
+    return Lever

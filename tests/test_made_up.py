@@ -1,0 +1,155 @@
+"""What is added by one entry of a table, or by a class, is found everywhere: place, result, definition, effects."""
+
+from __future__ import annotations
+
+import functools
+import gc
+import json
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import cuefem as cf
+from cuefem.design import Levels, Response, Study, Vary, evaluate
+from cuefem.design.worth import variants
+from cuefem.designer.design import Design, State, Step
+from cuefem.designer.kept import step_of, text_of
+from cuefem.designer.sliders import sliders
+from cuefem.effects import effect_kinds
+from cuefem.endmass.drives import DEFINITIONS
+from cuefem.measured.unknowns import unknowns_of
+from cuefem.results.quantities import RESULTS
+from cuefem.vary import PLACES, knobs_of, paths, varied
+from tests.helpers.made_up import PLACE, PUSH, RIGID, SPOT, collar_effect, faces, lever_effect, missing
+from tests.helpers.strike_scenes import imbalance, kim_scene
+
+AT = cf.Resolution(2, 8, 12)
+WOOD, BRASS = cf.Material(12.6e9, 0.84e9, 700.0), cf.Material(97e9, 37e9, 8500.0)
+FRONT, RING, REST = ((0.10, 0.0125, 0.0126, WOOD), (0.01, 0.0126, 0.0126, BRASS), (0.59, 0.0126, 0.021, WOOD))
+RINGED = cf.Cue(tuple(cf.Segment(*part) for part in (FRONT, RING, REST)), 0.42)
+
+
+@pytest.fixture
+def _forgotten() -> Iterator[None]:
+    """Made-up effects are gone when a test is over: files and tables list every effect that there is."""
+    yield
+    for kept in gc.get_objects():
+        if isinstance(kept, functools._lru_cache_wrapper) and str(kept.__module__).startswith("cuefem"):
+            kept.cache_clear()
+    gc.collect()
+
+
+def test_a_place(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(PLACES, PLACE.key, PLACE)
+    scene = cf.usual_scene(RINGED)
+    study = Study(scene, (Vary(("collar length",), Levels((0.005, 0.025))),), (Response.of("shaft_mass"),))
+    assert study.units[0] == "m"
+    assert study.scene((0.025,)).cue.segments[1].length == 0.025
+    (unknown,) = (each for each in unknowns_of(scene, ()) if each.name == "collar length")
+    assert (unknown.words, unknown.unit, unknown.usual, unknown.spread) == ("length of the collar", "m", 0.01, 0.1)
+    (slider,) = (each for each in sliders(scene) if each.knob == "collar_length")
+    assert (slider.label, slider.unit, slider.shown(knobs_of(scene))) == ("Length of the collar", "mm", 10)
+    design = Design.of("cue", scene)
+    longer = replace(design, knobs=slider.turned(design.knobs, 20))
+    assert step_of(text_of(State((Step(longer),)))).design == longer
+    plain = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.0125, 0.021, WOOD),), 0.42))
+    assert "collar_length" not in knobs_of(plain)
+    with pytest.raises(ValueError, match="got 'collar length', which this scene does not have"):
+        paths(plain, "collar length")
+
+
+OPTION = """import sys
+from cuefem.vary import PLACES
+from tests.helpers.made_up import PLACE
+
+PLACES[PLACE.key] = PLACE
+from tests.helpers.command_line import call
+
+print(call("strike", sys.argv[1], "--collar-length", "20 mm", "--json")[1])
+"""
+
+
+def test_a_place_is_an_option_of_commands(tmp_path: Path) -> None:
+    """In a process of its own: a command's options are those of the table when the command is loaded."""
+    cf.save(RINGED, tmp_path / "cue.toml")
+    command = [sys.executable, "-c", OPTION, str(tmp_path / "cue.toml")]
+    done = subprocess.run(command, cwd=Path(__file__).parents[1], capture_output=True, text=True, check=True)
+    mass = json.loads(done.stdout)["scene"]["cue"]["shaft_mass"]
+    assert mass > RINGED.shaft_mass + 0.005
+
+
+def test_a_result(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setitem(RESULTS, "sweet_spot", SPOT)
+    monkeypatch.setitem(RESULTS, "push", PUSH)
+    scene = kim_scene(0.3)
+    assert missing("sweet spot", faces(scene, tmp_path, "designer")) == []
+    numbers = json.loads(faces(scene, tmp_path, "json")["json"])["numbers"]
+    assert numbers["sweet_spot"] == pytest.approx(scene.shaft.length / 5, rel=1e-12)
+    assert numbers["push"] == pytest.approx(2 * cf.strike(scene).ball_speed, rel=1e-12)
+    found = evaluate([scene], ["sweet_spot", "push(0.2)"], at=AT).values[0]
+    assert found == pytest.approx([0.14, 2 * cf.strike(kim_scene(0.2), AT).ball_speed], rel=1e-6)
+    with pytest.raises(ValueError, match="did you mean sweet_spot"):
+        Response.of("sweet_spott")
+
+
+def test_a_definition_of_the_end_mass(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setitem(DEFINITIONS, RIGID.name, RIGID)
+    scene = kim_scene(0.3)
+    felt = cf.end_mass(scene, "rigid", AT)
+    assert cf.resolve_end_mass(scene, "rigid", 1e-3)[0] == pytest.approx(felt, rel=1e-6)
+    assert cf.end_mass(cf.Scene(cf.LumpedCue(0.5, 0.006)), "rigid") == 0.006
+    assert missing("rigid, at b/R 0.3", faces(scene, tmp_path, "end-mass")) == []
+    assert missing("rigid body at b/R 0.3", faces(scene, tmp_path, "designer")) == []
+    found = evaluate([scene], ["end_mass_rigid", "end_mass_rigid(0.1)"], at=AT).values[0]
+    assert found == pytest.approx([felt] * 2, rel=1e-9)
+
+
+@pytest.mark.usefixtures("_forgotten")
+def test_an_effect_on_the_cue(tmp_path: Path) -> None:
+    made: Any = collar_effect()
+    bare = kim_scene(0.3)
+    scene = replace(bare, effects=(made(0.03, 4e-3),))
+    assert effect_kinds()["Collar"] is made
+    assert missing("Collar (position 30 mm, mass 4 g)", faces(scene, tmp_path, "strike", "designer")) == []
+    assert 'type = "Collar"' in (tmp_path / "scene.toml").read_text(encoding="utf-8")
+    assert cf.load(tmp_path / "scene.toml") == scene
+    assert cf.strike(scene, AT).squirt > 1.01 * cf.strike(bare, AT).squirt
+    (added,) = (one for one in variants(bare) if one.name == "Collar")
+    assert (added.listed, added.scene) == (False, scene)
+    study = Study(scene, (Vary(("effects[0].mass",), Levels((0.0, 4e-3))),), (Response.of("squirt"),))
+    assert (study.scene((4e-3,)), study.units[0]) == (scene, "kg")
+    assert varied(scene, {"effects[0].mass": 5e-3}).effects == (made(0.03, 5e-3),)
+
+
+@pytest.mark.usefixtures("_forgotten")
+def test_an_effect_at_the_tip() -> None:
+    lever: Any = lever_effect()
+
+    def struck(*effects: Any) -> cf.Scene:
+        return replace(kim_scene(0.4), effects=effects)
+
+    dome, others = cf.TipDome(0.009), (cf.PowerLawTip(1.5), cf.RollingContact())
+    shift, back = 0.009 * 0.4, 0.009 * (1 - np.sqrt(1 - 0.4**2))
+    terms = struck(dome, lever(-shift)).contact_terms
+    assert terms.lever(float(np.arcsin(0.4))) == pytest.approx((0.0, back), abs=1e-18)
+    whole = cf.strike(struck(lever(0.002), *others, dome), AT)
+    split = cf.strike(struck(*others, lever(0.0005), dome, lever(0.0015)), AT)
+    assert imbalance(whole) < 1e-8
+    assert split.squirt == pytest.approx(whole.squirt, rel=1e-9)
+    assert whole.squirt != cf.strike(struck(*others, dome), AT).squirt
+    assert struck(lever(0.002)).bare == struck()
+
+
+@pytest.mark.heavy
+def test_report_and_page_show_them_all(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setitem(RESULTS, "sweet_spot", SPOT)
+    monkeypatch.setitem(DEFINITIONS, RIGID.name, RIGID)
+    shown = faces(kim_scene(0.3), tmp_path, "report", "page")
+    for words in ("sweet spot, from the tip", "rigid"):
+        assert missing(words, shown) == []
