@@ -69,8 +69,15 @@ def same(kept: Any, now: Any, path: str = "") -> None:
         assert kept == now, path
 
 
-@pytest.mark.parametrize("scene", SCENES)
-@pytest.mark.parametrize("face", [*FACES, *(pytest.param(face, marks=pytest.mark.heavy) for face in HEAVY)])
+EVERYDAY = [("kim", face) for face in (*FACES, "effects.txt")] + [
+    ("pool", face) for face in FACES if "page" not in face
+]
+SLOW = [(scene, face) for scene in SCENES for face in FACES | HEAVY if (scene, face) not in EVERYDAY]
+
+
+@pytest.mark.parametrize(
+    ("scene", "face"), [*EVERYDAY, *(pytest.param(*slow, marks=pytest.mark.heavy) for slow in SLOW)]
+)
 def test_a_face(face: str, scene: str, request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: Any) -> None:
     monkeypatch.chdir(ROOT)
     monkeypatch.setenv("COLUMNS", "110")

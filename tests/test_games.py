@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.games import GAMES, usual_tip, without_leather
+from cuefem.games import GAMES, usual_tip
 from cuefem.materials import LEATHERS, material
 from tests.helpers.refusals import refuses
 
@@ -75,11 +75,6 @@ def test_a_cue_whose_tip_is_drawn_is_struck_with_all_that_a_usual_stroke_has(gam
     drawn = cf.usual_scene(cf.Cue((leather(bare.leather.height), WOOD), 0.4), game)
     assert drawn == bare
     assert cf.strike(drawn).squirt == cf.strike(bare).squirt
-
-
-def test_a_cue_as_soft_as_leather_has_no_leather() -> None:
-    cue = cf.Cue((leather(0.7),))
-    assert without_leather(cue) is cue
 
 
 def test_refusals() -> None:

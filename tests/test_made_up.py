@@ -144,6 +144,10 @@ def test_an_effect_at_the_tip() -> None:
     assert split.squirt == pytest.approx(whole.squirt, rel=1e-9)
     assert whole.squirt != cf.strike(struck(*others, dome), AT).squirt
     assert struck(lever(0.002)).bare == struck()
+    with pytest.raises(ValueError, match="takes a tip without give sideways, a fixed normal and a single"):
+        cf.strike(struck(lever(0.0, give=1.0), cf.Elevation(0.1)), AT)
+    with pytest.raises(ValueError, match=r"Scene\.effects must give the contact one window for a second hit; got"):
+        struck(cf.SecondHit(), lever(0.0, window=1e-3))
 
 
 @pytest.mark.heavy

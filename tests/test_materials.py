@@ -5,10 +5,9 @@ import dataclasses
 import pytest
 
 import cuefem as cf
-from cuefem.materials import MATERIALS, WOODS, material
+from cuefem.materials import MATERIALS, material
 
 FIELDS = {"E", "G", "rho", "loss", "nu"}
-ISOTROPIC = ["abs", "melamine", "phenolic", "nylon", "leather", "foam", "brass", "steel", "aluminium", "titanium"]
 
 
 @pytest.mark.parametrize("name", MATERIALS)
@@ -25,22 +24,6 @@ def test_every_entry_names_its_source_and_may_have_any_number_of_its_ranges(name
             assert getattr(dataclasses.replace(known.material, **{key: end}), key) == end
 
 
-def test_keys_of_sources_are_explained() -> None:
-    import re
-
-    import cuefem.materials
-
-    keys = {key for found in MATERIALS.values() for key in re.findall(r"\[\w+\]", found.source + found.note)}
-    assert keys == set(re.findall(r"\[\w+\]", cuefem.materials.__doc__ or ""))
-
-
-@pytest.mark.parametrize("name", WOODS)
-def test_shear_of_woods(name: str) -> None:
-    wood = material(name)
-    assert 9 <= wood.E / wood.G <= 16  # handbook: The beam
-    assert 15 <= wood.E / wood.rho / 1e6 <= 25  # the specific modulus of hardwoods, GPa m3/Mg
-
-
 @pytest.mark.parametrize(
     ("name", "E", "G", "rho", "nu"),
     [
@@ -53,19 +36,6 @@ def test_shear_of_woods(name: str) -> None:
 def test_woods_from_the_wood_handbook(name: str, E: float, G: float, rho: float, nu: float) -> None:
     wood = material(name)
     assert (wood.E, wood.G, wood.rho, wood.nu) == pytest.approx((E, G, rho, nu), rel=1e-12)
-
-
-def test_maple_against_bats() -> None:
-    """Appl. Sci. 12 (2022) 3494, table A1: maple bats of 592 to 673 kg/m3, E_L 14.7 to 15.5 GPa, G 0.111 E_L."""
-    low, high = MATERIALS["hard maple"].ranges["E"]
-    assert low < 14.7e9 < 15.5e9 < high
-    assert MATERIALS["hard maple"].ranges["G"][1] == pytest.approx(0.111 * 13.86e9, rel=0.01)
-
-
-@pytest.mark.parametrize("name", ISOTROPIC)
-def test_isotropic_materials(name: str) -> None:
-    found = material(name)
-    assert pytest.approx(found.E / (2 * (1 + found.nu)), rel=0.03) == found.G
 
 
 def test_carbon_from_its_plies() -> None:
@@ -115,13 +85,6 @@ def test_an_unknown_name_offers_near_ones(name: str, offer: str) -> None:
 def test_a_name_like_none_offers_all() -> None:
     with pytest.raises(ValueError, match=r"no material is called 'xyzzy'; known: hard maple, ash, .*titanium"):
         material("xyzzy")
-
-
-def test_the_table_cannot_be_written_to() -> None:
-    with pytest.raises(TypeError):
-        MATERIALS["wood"] = MATERIALS["ash"]  # type: ignore[index]
-    with pytest.raises(TypeError):
-        MATERIALS["ash"].ranges["E"] = (0, 1)  # type: ignore[index]
 
 
 @pytest.mark.parametrize(

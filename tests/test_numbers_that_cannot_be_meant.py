@@ -11,8 +11,6 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.effects import effect_kinds
-from cuefem.quantity import slips
 from tests.helpers.command_line import call
 
 ROOT = Path(__file__).parents[1]
@@ -85,25 +83,6 @@ def test_limits_and_scales_pass_without_a_word(make: Callable[[], object]) -> No
         make()
 
 
-def test_what_a_search_tries_is_nobody_s_slip() -> None:
-    scene = cf.usual_scene(cf.load(ROOT / "meshes" / "pool_maple.toml"))  # its search comes by a lump of 1 kg
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        assert 0.006 < cf.end_mass(scene, "squirt") < 0.008
-    with pytest.warns(cf.Unusual, match="1 g"):
-        cf.LumpedCue(0.5, 1.0)
-
-
-FILES = sorted({*ROOT.glob("meshes/*.toml"), *ROOT.glob("studies/scenes/*.toml"), *ROOT.glob("meshes/*.vtu")})
-
-
-@pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
-def test_ready_files_pass_without_a_word(path: Path) -> None:
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        cf.load(path)
-
-
 def test_a_file_s_slip_is_told_to_the_one_who_loads_it(tmp_path: Path) -> None:
     shutil.copy(ROOT / "meshes" / "pool_maple.toml", tmp_path / "cue.toml")
     path = tmp_path / "scene.toml"
@@ -116,10 +95,3 @@ def test_a_file_s_slip_is_told_to_the_one_who_loads_it(tmp_path: Path) -> None:
         warnings.simplefilter("error")
         status, _, err = call("strike", path)  # says it in its own words
     assert (status, err) == (0, "unusual: dome radius 9500 mm; 9 to 10.6 is usual, a dime's or a nickel's\n")
-
-
-def test_every_entry_is_a_field() -> None:
-    kinds = {kind.__name__: kind for kind in (cf.Material, cf.Segment, cf.Cue, cf.LumpedCue, cf.Ball, cf.Tip)}
-    kinds |= effect_kinds()
-    for name, field in slips.USUAL:
-        assert field in {one.name for one in dataclasses.fields(kinds[name])}

@@ -11,7 +11,6 @@ import pytest
 from matplotlib.axes import Axes
 
 import cuefem as cf
-from cuefem.design.sensitivity import sensitivity
 
 HOLLOW = cf.load(Path(__file__).parents[1] / "meshes" / "pool_hollow.toml")
 assert isinstance(HOLLOW, cf.Cue)
@@ -58,15 +57,6 @@ def test_squirt_is_that_of_strikes_and_ends_at_a_miscue() -> None:
     assert line(axes, 1)[0].tolist() == [0.8]
 
 
-def test_squirt_ends_where_leather_lets_go() -> None:
-    """It held at first, so that the regime is "stick"; it slides through more than half of the push."""
-    scene = cf.usual_scene(HOLLOW)
-    assert cf.strike(replace(scene, stroke=cf.Stroke(2.0, 0.6))).regime == "stick"
-    axes = cf.plot.squirt(scene, [0.45, 0.6])
-    assert np.isnan(line(axes)[1]).tolist() == [False, True]
-    assert line(axes, 1)[0].tolist() == [0.6]
-
-
 def test_forces_add_up_to_the_impulse() -> None:
     outcome = cf.strike(SCENE, AT)
     for axes in (cf.plot.forces(outcome), cf.plot.forces(SCENE, at=AT)):
@@ -75,17 +65,6 @@ def test_forces_add_up_to_the_impulse() -> None:
             assert np.trapezoid(y, 1e-3 * x) == pytest.approx(part, rel=2e-3)
     with pytest.raises(ValueError, match="forces needs an outcome of strike"):
         cf.plot.forces(cf.impulse(cf.Scene(cf.LumpedCue(0.5, 0.006))))
-
-
-def test_where_end_mass_lives() -> None:
-    figure, given = plt.subplots()
-    axes = cf.plot.end_mass(SCENE, given, at=AT)
-    assert axes is given
-    assert figure.axes == [axes]
-    x, y = line(axes)
-    found = sensitivity(SCENE, at=AT)
-    assert x[0] > 6  # behind the leather
-    assert y[-1] == pytest.approx(found.rhoA[-1] + found.axial_mass, rel=1e-12)
 
 
 def test_where_end_mass_lives_behind_a_leather_tip() -> None:
@@ -98,11 +77,3 @@ def test_where_end_mass_lives_behind_a_leather_tip() -> None:
     assert "without" not in cf.plot.end_mass(bare, at=AT).get_title()
     with pytest.raises(ValueError, match=r"takes a scene without effects, LeatherTip apart; got TipDome"):
         cf.plot.end_mass(replace(SCENE, effects=(cf.TipDome(0.0095),)))
-
-
-def test_a_lumped_cue_has_no_shape() -> None:
-    for draw in (cf.plot.shaft, cf.plot.modes):
-        with pytest.raises(ValueError, match="its modes or its shape are needed"):
-            draw(cf.Scene(cf.LumpedCue(0.5, 0.006)))
-        with pytest.raises(TypeError, match="cue must be a Cue or Scene"):
-            draw(3)

@@ -52,13 +52,6 @@ def test_all_of_an_object_can_still_be_written_out() -> None:
     assert eval(spelt_out(SCENE), names) == SCENE
 
 
-def test_dir_lists_public_names_alone() -> None:
-    assert dir(cf) == sorted(cf.__all__)
-    program = "import cuefem; print([name for name in vars(cuefem) if not name.startswith('_')])"
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
-    assert done.stdout == "[]\n"
-
-
 def test_the_package_runs_as_a_program() -> None:
     done = subprocess.run([sys.executable, "-m", "cuefem", "--version"], capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 import cuefem as cf
 from cuefem.io.ready import PRESETS, opened
 from cuefem.materials import LEATHERS, material
-from cuefem.parts import outer_diameter, taper_position
+from cuefem.parts import outer_diameter
 from cuefem.vary import PLACES, knobs_of, paths, turned, varied
 
 SCENES = {preset.name: opened(preset)[0] for preset in PRESETS}
@@ -64,11 +64,6 @@ def test_a_place_is_named_in_many_ways(name: str) -> None:
     assert paths(scene, "segments[0].length") == paths(scene, "cue.segments[0].length")
 
 
-def test_another_name_of_the_dome() -> None:
-    assert varied(FIRST, {"tip dome": 9e-3}) == varied(FIRST, {"dome": 9e-3})
-    assert varied(FIRST, {"tip.height": 5e-3}).leather.height == 5e-3
-
-
 @given(x=st.floats(0.05, 0.7), more=st.floats(1e-8, 5e-4).flatmap(lambda size: st.sampled_from((size, -size))))
 def test_the_taper_at_a_position_moves_between_the_ends_alone(x: float, more: float) -> None:
     name = f"taper at {1e3 * x!r} mm"
@@ -77,11 +72,6 @@ def test_the_taper_at_a_position_moves_between_the_ends_alone(x: float, more: fl
     for at in np.linspace(0, made.length, 15):
         hat = np.interp(at, [0, x, made.length], [0, more, 0])
         assert outer_diameter(made, at) == pytest.approx(outer_diameter(FIRST.cue, at) + hat, rel=1e-9)
-
-
-def test_the_taper_of_the_knob_is_that_at_its_position() -> None:
-    position = f"taper at {taper_position(FIRST.cue)!r} m"
-    assert varied(FIRST, {position: 0.014}) == varied(FIRST, {"taper diameter": 0.014})
 
 
 def test_names_stand_for_materials_and_leathers() -> None:

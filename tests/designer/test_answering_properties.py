@@ -94,17 +94,6 @@ def test_numbers_come_before_all_else_and_pictures_once_at_the_end(moves: int, m
     assert said.count("numbers") <= 1 + said.count("move")  # the end mass is not computed while a newer move waits
 
 
-def test_a_scene_that_is_begun_twice_at_a_time_has_its_results_in_one_place() -> None:
-    """What is computed later is shown only where the page looks for it."""
-
-    async def begun() -> list[object]:
-        answering = Answering(Page(at_offset(0.3)))
-        return await asyncio.gather(*(answering._begun(at_offset(0.3)) for _ in range(2)))
-
-    first, second = asyncio.run(begun())
-    assert first is second
-
-
 def test_pictures_follow_while_knobs_are_moved_all_the_time(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("cuefem.designer.answering.DRAWN_EVERY", 0.0)
     page = Page(at_offset(0.3))

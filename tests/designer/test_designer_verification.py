@@ -18,7 +18,6 @@ from cuefem.designer.answers import (
     answers,
     completed,
     coupled_points,
-    curve_of,
     density,
     note,
     with_end_mass,
@@ -39,7 +38,6 @@ from cuefem.designer.start import first_scene
 from cuefem.designer.unit_system import INCHES
 from cuefem.report.end_mass import end_mass_record
 from cuefem.report.modes_table import modes_record
-from cuefem.report.squirt import squirt_record
 from cuefem.report.strike_table import strike_record
 from cuefem.results.quantities import RESULTS
 from cuefem.vary import knobs_of, turned
@@ -82,31 +80,6 @@ def test_the_numbers_are_the_commands_own(name: str) -> None:
     assert found.frequencies.tolist() == modes_record(scene, count=5, near=None)["frequencies"]
 
 
-@pytest.mark.heavy
-@pytest.mark.parametrize("name", ["turned", "kim", "clay"])
-def test_the_curves_are_those_of_the_report(name: str) -> None:
-    scene = designs()[name]
-    found = completed(weighed(scene))
-    points = list(coupled_points(found))
-    known = len(points)
-    record = squirt_record(scene, CURVE_OFFSETS)["models"]
-    assert [point.offset for point in points] == list(CURVE_OFFSETS[:known])
-    assert known == len(CURVE_OFFSETS) or [point.safety for point in points[-3:]] == ["miscue"] * 3
-    coupled, curve = record["coupled, this cue"], curve_of(points)
-    assert curve.squirt[:known] == pytest.approx(coupled["squirt"][:known], rel=1e-12)
-    assert curve.pivot_length[:known] == pytest.approx(coupled["pivot_length"][:known], rel=1e-12)
-    assert np.isnan(curve.squirt[known:]).all()
-    assert found.lumped.squirt == pytest.approx(record["two-part, this cue"]["squirt"], rel=1e-12, nan_ok=True)
-    pivot = record["two-part, this cue"]["pivot_length"]
-    assert found.lumped.pivot_length == pytest.approx(pivot, rel=1e-12, nan_ok=True)
-
-
-def test_without_effects_at_the_tip_both_curves_begin_alike() -> None:
-    found = completed(weighed(loaded("kim")))
-    assert found.end_masses["offset"] == strike_record(found.scene)["end_mass"]
-    assert next(coupled_points(found)).squirt == pytest.approx(found.lumped.squirt[0], rel=0.1)
-
-
 def test_the_static_stiffness_is_that_of_a_clamped_cue() -> None:
     scene = replace(first_scene(), effects=())
     exact = float(CueBatch.of([scene.cue]).tip_stiffness[0])
@@ -135,11 +108,6 @@ def test_the_densities_share_out_the_end_mass(name: str) -> None:
     assert found.end_mass == pytest.approx(weighed(scene).end_masses["stick"], rel=5e-3)
 
 
-def test_the_density_of_a_scene_is_that_of_its_bare_cue() -> None:
-    scene = first_scene()
-    assert density(scene).end_mass == density(replace(scene, effects=())).end_mass
-
-
 def test_notes_are_those_of_the_piano() -> None:
     notes = {440.0: "A4 +0", 261.6256: "C4 +0", 27.5: "A0 +0", 4186.009: "C8 +0", 450.0: "A4 +39", 225.0: "A3 +39"}
     assert {frequency: note(frequency) for frequency in notes} == notes
@@ -161,20 +129,6 @@ def test_notes_are_those_of_the_piano() -> None:
 def test_differences_are_those_of_the_numbers(mine: float | None, pinned: float | None, words: str) -> None:
     row = NumberRow("end_mass_stick", "end mass", mine, RESULTS["end_mass"])
     assert difference(row, row._replace(value=pinned)) == words
-
-
-def test_every_number_of_a_design_is_written() -> None:
-    found = completed(weighed(designs()["head on"]))
-    written = {row.name: row.value for row in rows(found)}
-    assert written["pivot"] is None
-    assert written["squirt"] == 0
-    assert written["mass"] == found.scene.cue.mass
-    assert written["balance"] == found.scene.cue.balance_point
-    mine = Design.of("mine", designs()["head on"])
-    text = table_markup([Column(mine, found)], 0) + key_markup(found, found)
-    assert "nan" not in text
-    assert text.count("data-number") == len(written) == 20
-    assert "the same" in text
 
 
 def test_designs_stand_side_by_side_like_with_like() -> None:
@@ -199,21 +153,6 @@ def test_designs_stand_side_by_side_like_with_like() -> None:
     assert float(squirt[8]) < 0
 
 
-def test_a_number_that_is_not_computed_yet_stands_pale_as_it_was() -> None:
-    found = answers(loaded("kim"))
-    before = weighed(replace(found.scene, tip=replace(found.scene.tip, contact_time=2e-3)))
-    text = key_markup(found, None, before=before)
-    assert '<b data-key="squirt">' in text
-    felt = next(row for row in rows(before) if row.name == "end_mass_stick").text()
-    assert f'<b data-key="end_mass_stick" class="stale">{felt}</b>' in text
-    assert "class" not in key_markup(with_end_mass(found), None, before=before).replace('class="key"', "")
-    waiting = {row.name for row in rows(found) if row.waiting}
-    assert waiting == {row.name for row in rows(before)} - {
-        *("squirt", "pivot", "shaft_mass", "mass", "balance"),
-        *("ball_speed", "vibration_energy", "tip_diameter", "wall"),
-    }
-
-
 def test_before_any_curve_is_known_nothing_is_drawn() -> None:
     found = answers(loaded("kim"))
     assert not found.complete
@@ -232,3 +171,22 @@ def test_limits_are_shaded_and_said() -> None:
     assert (safe.safety, "miscue" in key_markup(safe, None)) == ("safe", False)
     missed = answers(replace(found.scene, stroke=replace(found.scene.stroke, offset=0.75)))
     assert (missed.safety, "miscue" in key_markup(missed, None)) == ("miscue", True)
+
+
+def test_the_density_of_a_scene_is_that_of_its_bare_cue() -> None:
+    scene = first_scene()
+    assert density(scene).end_mass == density(replace(scene, effects=())).end_mass
+
+
+def test_every_number_of_a_design_is_written() -> None:
+    found = completed(weighed(designs()["head on"]))
+    written = {row.name: row.value for row in rows(found)}
+    assert written["pivot"] is None
+    assert written["squirt"] == 0
+    assert written["mass"] == found.scene.cue.mass
+    assert written["balance"] == found.scene.cue.balance_point
+    mine = Design.of("mine", designs()["head on"])
+    text = table_markup([Column(mine, found)], 0) + key_markup(found, found)
+    assert "nan" not in text
+    assert text.count("data-number") == len(written) == 20
+    assert "the same" in text

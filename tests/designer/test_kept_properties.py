@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 import cuefem as cf
 from cuefem.cli.common import scene_of
-from cuefem.designer.design import MOST_SEGMENTS, MOST_STEPS, Design, State, Step
+from cuefem.designer.design import Design, State, Step
 from cuefem.designer.kept import key_of, state_of, step_of, text_of
 from cuefem.designer.pictures import cue_pictures
 from cuefem.designer.sliders import choices, sliders
@@ -58,18 +58,6 @@ def test_every_step_comes_back(diameters: list[float], at: int, wood: float) -> 
     assert state_of(text_of(state)) == state
 
 
-def test_a_link_of_three_designs_is_short() -> None:
-    others = (turned(tip_diameter=0.0118), turned(bore_depth=0.1, bore_width=0.006))
-    assert len(text_of(State((Step(FIRST, others),)))) < 2000  # letters: every mail and messenger takes them
-
-
-def test_another_file_is_kept_apart() -> None:
-    changed = replace(first_scene(), ball=cf.Ball())
-    keys = [key_of(Design.of(*file)) for file in (("a", first_scene()), ("b", first_scene()), ("a", changed))]
-    assert len(set(keys)) == 3
-    assert key_of(Design.of("a", first_scene())) == keys[0]
-
-
 def test_steps_are_undone_and_done_again() -> None:
     a, b, c = (Step(turned(tip_diameter=d)) for d in (0.0127, 0.0125, 0.0123))
     state = State((a,)).put(b).put(c)
@@ -81,18 +69,6 @@ def test_steps_are_undone_and_done_again() -> None:
     assert (state.steps, state.can_redo) == ((a, b, a), False)
 
 
-def test_one_drag_of_a_knob_is_one_step_and_the_oldest_are_forgotten() -> None:
-    state = State((Step(FIRST),))
-    for i in range(1, 20):
-        state = state.put(Step(turned(offset=0.3 + 0.001 * i)), "offset", when=0.1 * i)
-    state = state.put(Step(turned(offset=0.4)), "offset", when=30.0)
-    assert [step.design.knobs["offset"] for step in state.steps] == pytest.approx([0.3, 0.319, 0.4])
-    for i in range(3 * MOST_STEPS):
-        state = state.put(Step(turned(offset=0.001 * (i + 1))))
-    assert len(state.steps) == MOST_STEPS
-    assert state_of(text_of(state)) == state
-
-
 @pytest.mark.parametrize("name", WRONG)
 def test_a_wrong_link_is_refused_in_one_line(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     text, words = WRONG[name]
@@ -102,15 +78,6 @@ def test_a_wrong_link_is_refused_in_one_line(name: str, monkeypatch: pytest.Monk
         step_of(text)
     assert words in str(refused.value)
     assert "\n" not in str(refused.value)
-
-
-def test_a_design_has_no_more_segments_than_can_be_answered_for() -> None:
-    scene = first_scene()
-    piece = replace(scene.cue.segments[-1], length=0.002, tip_diameter=0.012, butt_diameter=0.012)
-    most = replace(scene, cue=replace(scene.cue, segments=(piece,) * MOST_SEGMENTS))
-    assert Design.of("most", most).scene == most
-    with pytest.raises(ValueError, match=r"^the designer takes a cue of at most 300 segments; got 301: "):
-        Design.of("more", replace(scene, cue=replace(scene.cue, segments=(piece,) * (MOST_SEGMENTS + 1))))
 
 
 # --- thousands of links that somebody changed: each opens whole, or is refused in a line ---------------------------

@@ -53,11 +53,6 @@ def test_what_is_no_number_is_refused_in_words(text: str, unit: str) -> None:
         typed(text, unit)
 
 
-@given(st.floats(0.001, 5000).map(lambda x: round(x, 4)), st.sampled_from([".", ","]))
-def test_point_and_comma_are_one(value: float, point: str) -> None:
-    assert typed(f"{value:.4f}".replace(".", point), "mm") == value
-
-
 @given(st.floats(0.001, 2))
 def test_both_systems_write_the_same_length_and_mass(value: float) -> None:
     for name, unit, most in (("length", "m", 0.5e-3), ("radius", "m", 0.005e-3), ("mass", "kg", 1e-3 * value)):

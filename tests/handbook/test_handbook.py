@@ -45,18 +45,6 @@ def test_every_citation_names_a_chapter() -> None:
     assert {str(path): wrong for path, text in texts.items() if (wrong := cited_wrongly(text))} == {}
 
 
-def test_a_wrong_citation_is_told() -> None:
-    assert cited_wrongly("handbook: The beam, The strike, and more (handbook:\n    Effects).") == []
-    assert cited_wrongly("handbook: Measured squirt, claim by claim.") == []
-    assert cited_wrongly("handbook: The beam, The stroke.") == ["The stroke"]
-
-
-def test_every_chapter_is_listed_once() -> None:
-    files = {path.stem for path in (ROOT / "cuefem" / "handbook").glob("*.md")}
-    assert (len(CHAPTERS), set(CHAPTERS)) == (len(files), files)
-    assert len(TITLES) == len(CHAPTERS)
-
-
 @pytest.mark.parametrize("name", EFFECTS)
 def test_the_handbook_shows_the_five_lines_of_every_effect(name: str) -> None:
     lines = effect_lines(EFFECTS[name])

@@ -110,9 +110,15 @@ def lever_effect() -> type[TipEffect]:
         """A tip whose contact lies off the cue's axis by ``shift``, m."""
 
         shift: Annotated[float, Quantity("m")]
+        give: float = 0.0
+        window: float = 0.0
 
         def add_to_contact(self, terms: ContactTerms) -> None:
-            """A lever that does not change with the angle."""
+            """A lever, a compliance across as a part of that along the normal, a window for a second hit."""
             terms.add_lever(lambda phi: (-self.shift, 0.0))
+            if self.give:
+                terms.add_compliance(self.give)
+            if self.window:
+                terms.set_window(self.window)
 
     return Lever

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from pathlib import Path
 
 import pytest
 
 from cuefem import resolve
-from cuefem.accuracy import JUDGED
 from cuefem.report.cost import WANTED, cost_record
 from tests.helpers.accuracy_scenes import MESHES, scene
 from tests.helpers.command_line import as_json, said
@@ -19,16 +17,6 @@ KIM = MESHES / "kim.toml"
 @pytest.fixture(scope="module")
 def record() -> dict:
     return cost_record(scene("kim", 1e-3, 0.3), most=60)
-
-
-def test_rungs_grow_and_the_climb_takes_time(record: dict) -> None:
-    rungs = record["rungs"]
-    for name in ("modes", "unknowns", "seconds"):
-        values = [rung[name] for rung in rungs]
-        assert all(first < second for first, second in pairwise(values))
-    assert [rung["estimate"] is None for rung in rungs] == [True] * JUDGED + [False] * (len(rungs) - JUDGED)
-    assert rungs[-1]["difference"] is None
-    assert all(rung["plain"]["difference"] > 0 for rung in rungs)
 
 
 def test_what_is_recommended_is_what_resolve_takes(record: dict) -> None:

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 import cuefem as cf
-from cuefem.contact.outcome import MISSED, grip_of
-from cuefem.contact.strike import strike_modes
+from cuefem.contact.outcome import grip_of
 from cuefem.designer.answers import safety
-from cuefem.tip_modes import tip_modes_of
-from tests.helpers.command_line import call
 
 MAPLE = cf.load(Path(__file__).parents[2] / "meshes" / "pool_maple.toml")
 assert isinstance(MAPLE, cf.Cue)
@@ -38,23 +34,6 @@ def test_the_tip_lets_go_where_friction_ends(scene: cf.Scene, offset: float, gri
     assert safety(outcome) == {"stick": "safe", "slides": "slips", "lets go": "miscue"}[grip]
 
 
-@pytest.mark.parametrize("offset", [0.7, 0.9])
-def test_far_out_both_miscue_and_the_ball_is_slow(offset: float) -> None:
-    for scene in (LEATHER, BARE):
-        outcome = struck(scene, offset)
-        assert grip_of(outcome) in MISSED
-        assert outcome.ball_speed < 0.3 * struck(scene, 0.45).ball_speed
-
-
-def test_what_a_grip_is_called_does_not_depend_on_what_is_recorded() -> None:
-    for scene in (LEATHER, BARE):
-        tip = tip_modes_of(scene)
-        for offset in (0.45, 0.575, 0.6, 0.63, 0.7):
-            aside = replace(scene, stroke=cf.Stroke(2.0, offset))
-            known, bare = (strike_modes(aside, tip, recorded=recorded) for recorded in (True, False))
-            assert grip_of(known) == grip_of(bare)
-
-
 def test_a_tip_that_slides_away_has_no_end_mass() -> None:
     """Its squirt hardly depends on the cue: an end mass of it would be 18.7 g at 0.63, and 7 g where it grips."""
     lets_go = replace(LEATHER, stroke=cf.Stroke(2.0, 0.63))
@@ -72,14 +51,3 @@ def test_a_tip_that_grips_at_last_has_the_end_mass_of_its_cue() -> None:
         grips[offset] = grip_of(cf.strike(late))
         assert cf.end_mass(late, "squirt") == pytest.approx(0.007, rel=1e-6)
     assert "lets go" in grips.values(), grips
-
-
-def test_the_commands_say_so() -> None:
-    path = Path(__file__).parents[2] / "meshes" / "pool_maple.toml"
-    for command in ("strike", "report"):
-        status, out, err = call(command, path, "--offset", "0.7")
-        assert (status, err) == (0, "")
-        assert "this stroke miscues: " in out
-    said = " ".join(call("strike", path, "--offset", "0.7")[1].split())
-    assert "grip, miscue: the tip slid through most of the push, or away at its end, a miscue" in said
-    assert json.loads(call("strike", path, "--offset", "0.7", "--json")[1])["models"]["coupled"]["grip"] == "lets go"

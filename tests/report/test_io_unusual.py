@@ -124,14 +124,3 @@ def test_a_solid_rod_of_carbon_is_remarked(tmp_path: Path) -> None:
         assert line.startswith("unusual: a solid rod as stiff as carbon fibre, drawn mass 2")
         assert line.endswith("g; such shafts are tubes: a bore is drawn in a .toml (`cuefem guide files`)")
     assert call("modes", shaft, "--material", "steel")[2] == ""
-
-
-def test_a_lumped_cue(tmp_path: Path) -> None:
-    (tmp_path / "lumped.toml").write_text('game = "kim"\n[cue]\nmass = "540 kg"\nend_mass = "6 g"\n')
-    assert remarks(tmp_path / "lumped.toml") == ["mass of the whole cue 540 kg; 0.4 to 0.7 is usual"]
-
-
-def test_remarks_stand_on_the_page(tmp_path: Path) -> None:
-    (tmp_path / "cue.toml").write_text(CUE.replace("420 g", "15 kg"))
-    assert call("report", tmp_path / "cue.toml", "-o", tmp_path / "page.html")[0] == 0
-    assert "unusual: mass of the whole cue 15.09" in (tmp_path / "page.html").read_text(encoding="utf-8")

@@ -14,10 +14,9 @@ import pytest
 
 import cuefem as cf
 from cuefem.accuracy import resolve
-from cuefem.report.charts import WIDE, Axis, Curve, Mark, chart, round_step
+from cuefem.report.charts import WIDE, Axis, round_step
 from cuefem.report.drawings import cue_drawing, front_drawing, strike_drawing
 from cuefem.report.report_page import page
-from tests.helpers.command_line import call
 
 MESHES = Path(__file__).parents[2] / "meshes"
 SCENES = MESHES.parent / "studies" / "scenes"
@@ -133,28 +132,12 @@ def test_pages_of_lumped_cues(blow: cf.Scene) -> None:
     assert f"{math.degrees(cf.strike(blow).squirt):.3f}°" in words
 
 
-def test_a_page_of_the_other_side_is_the_mirror_image() -> None:
-    right, left = (" ".join(Reader(page("a", replace(LUMPED, stroke=cf.Stroke(offset=b)))).text) for b in (0.3, -0.3))
-    assert "-1.391°" in left
-    assert "-1.391°" not in right
-    assert right.count("1.391°") == left.count("-1.391°")
-
-
 def test_names_are_text_and_no_markup() -> None:
     text = page("<script>alert(1)</script> & co.toml", LUMPED, notes=["a < b", "ash (take --material)"])
     assert "<script>alert" not in text
     assert "&lt;script&gt;alert(1)&lt;/script&gt; &amp; co.toml" in text
     assert 'assumed: a &lt; b; ash (take <span class="option">--material)</span></p>' in text
     assert_sound(text)
-
-
-def test_the_command_writes_a_page(tmp_path: Path) -> None:
-    cf.save(LUMPED, tmp_path / "lumped.toml")
-    target = tmp_path / "page.html"
-    target.write_text("old", encoding="utf-8")
-    assert call("report", tmp_path / "lumped.toml", "-o", target) == (0, f"wrote {target}\n", "")
-    assert_sound(target.read_text(encoding="utf-8"))
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["lumped.toml", "page.html"]
 
 
 def test_ticks_are_round_numbers() -> None:
@@ -165,17 +148,6 @@ def test_ticks_are_round_numbers() -> None:
         (f"{i / 2}", pytest.approx(10 * i)) for i in range(7)
     ]
     assert Axis("x").over([np.zeros(3)])[:2] == (0.0, 1.0)
-
-
-def test_a_chart_keeps_its_curves_near() -> None:
-    made = chart("t", [Curve("far", [0, 1], [0, 1e9], "c1")], x=Axis("x"), y=Axis("y", 0, 1), marks=[Mark(1, "m")])
-    left, top, right, bottom = made.box
-    numbers = [float(n) for n in re.findall(r"-?[0-9.]+", made.curves[0][2])]
-    assert numbers[0] == pytest.approx(left)
-    assert numbers[2] == pytest.approx(right)
-    assert numbers[3] > top - 2 * (bottom - top)
-    assert made.marks[0].at == pytest.approx(right)
-    assert top == 22  # room for the mark's label
 
 
 def test_the_cue_is_drawn_to_scale() -> None:
@@ -233,12 +205,3 @@ def test_the_blow_is_drawn_true() -> None:
     assert (y - made.contact[1]) / radius == pytest.approx(0.375, rel=1e-9)  # b/R above its centre
     fall = (made.path_end[1] - y) / (x - made.path_end[0])
     assert fall == pytest.approx(math.tan(0.03), rel=1e-9)
-
-
-def test_offsets_that_slip_long_are_shaded() -> None:
-    shot = scene("kim")
-    slippery = replace(shot, tip=replace(shot.tip, friction=0.4))
-    regimes = {cf.strike(replace(slippery, stroke=cf.Stroke(1.0, b))).regime for b in (0.3, 0.6)}
-    assert regimes == {"stick", "miscue"}
-    shaded = "".join(Reader(page("kim.toml", slippery)).text)
-    assert "shaded: the tip slips through much of the push" in shaded

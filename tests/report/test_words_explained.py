@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cuefem.report.glossary import definitions, entries, explained, with_words
+from cuefem.report.glossary import definitions, entries, explained
 
 WORDS = [word for entry in entries() for word in entry.words]
 TAGS = re.compile(r"<[^>]*>")
@@ -45,9 +45,3 @@ def test_a_word_is_explained_once_in_a_section() -> None:
 def test_the_text_stays_as_it_was(parts: list[str]) -> None:
     markup = "".join(parts)
     assert TAGS.sub("", explained(markup)) == TAGS.sub("", markup)
-
-
-def test_a_page_has_the_meanings_of_its_own_words_alone() -> None:
-    page = with_words("<p>squirt and spins</p><!-- words -->")
-    assert re.findall(r'popover id="([^"]*)"', page) == ["w-spin", "w-squirt"]
-    assert with_words("<p>nothing</p><!-- words -->") == "<p>nothing</p><!-- words -->"

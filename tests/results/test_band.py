@@ -12,11 +12,9 @@ import pytest
 import cuefem as cf
 from cuefem.io.documented_folder import load_documented
 from cuefem.measured.kinds import AddedMass, Squirt
-from cuefem.results.band import LEVEL, LEVEL_OF_SPRING, OF_DIFFERENCE, of_inputs, of_shaft
+from cuefem.results.band import LEVEL, OF_DIFFERENCE, of_inputs, of_shaft
 from cuefem.tip_modes import Solved
 from cuefem.vary import varied
-from studies.measured import measured
-from studies.measured import measured_shafts as shafts
 
 MESHES = Path(__file__).parents[2] / "meshes"
 MEASURED = Path(__file__).parents[2] / "studies" / "measured"
@@ -54,16 +52,6 @@ def test_the_error_of_a_level() -> None:
     strokes = [pair for name in CUES for pair in pairs(name, Squirt)]
     assert len(strokes) == 7
     assert round(rms([found / ours - 1 for found, ours in strokes]), 2) == LEVEL
-
-
-@pytest.mark.heavy
-def test_the_error_of_a_level_with_a_spring() -> None:
-    """The larger of those with dome and shear and without."""
-    errors = [
-        rms([row.squirt / measured.usual(row, model) - 1 for row in shafts.measurements()])
-        for model in ("bare", "dome + shear")
-    ]
-    assert round(max(errors), 2) == LEVEL_OF_SPRING
 
 
 @pytest.mark.heavy

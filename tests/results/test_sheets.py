@@ -7,18 +7,14 @@ import io
 import json
 import re
 from html import unescape
-from pathlib import Path
 
-import pytest
 from rich.console import Console
 
-import cuefem
 from cuefem.report.table import csv_text, json_text, terminal
 from cuefem.report.templates import environment
-from cuefem.results.quantities import NONE, RESULTS, Result
-from cuefem.results.records import Sheet, by_words, sheet, value_rows
+from cuefem.results.quantities import NONE
+from cuefem.results.records import Sheet, sheet
 
-PACKAGE = Path(cuefem.__file__).parent
 ROWS = [{"at": 0.01, "felt": 0.0062, "part": 0.25}, {"at": 0.02, "felt": None, "part": -0.5}]
 
 
@@ -44,23 +40,9 @@ def test_every_medium_shows_the_same_cells() -> None:
     assert cells(made) == dict.fromkeys(("terminal", "page", "spreadsheet"), whole)
 
 
-def test_a_made_up_quantity_is_shown_by_its_declaration_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(RESULTS, "collar", Result("length of the collar", "m", 2))
-    made = sheet("Collars", by_words("collar"), [{"collar": 0.0123}])
-    assert (made.head, made.rows) == (("length of the collar",), (("12.30 mm",),))
-    assert value_rows({"collar": None, "mass": 0.5}, ["collar", "mass"]) == [("mass of the cue", "500.0 g")]
-
-
 def test_what_is_missing_is_a_dash_and_what_no_medium_has_is_left_out() -> None:
     made = sheet("", {"error": "{plain[error]:error}"}, [{"plain": {"error": 1e-3}}, {"plain": None}])
     assert made.rows == (("1.0e-03",), (NONE,))
     numbers = json.loads(json_text({"a": float("inf"), "b": [float("nan"), 1.0], "c": {"d": 2}}))
     assert numbers == {"a": None, "b": [None, 1.0], "c": {"d": 2}}
     assert csv_text(["=1+1"], [["-2"], ["-x"]]).split() == ["'=1+1", "-2", "'-x"]  # none is taken for a formula
-
-
-def test_one_file_alone_renders_a_medium() -> None:
-    """What is shown is declared without a word on how: rich stands in one file, a table's markup in one template."""
-    texts = {path.name: path.read_text(encoding="utf-8") for path in (PACKAGE / "report").iterdir() if path.is_file()}
-    assert [name for name, text in texts.items() if "\nfrom rich" in text or "\nimport rich" in text] == ["table.py"]
-    assert [name for name, text in texts.items() if "<thead>" in text] == ["drawings.html.j2"]
