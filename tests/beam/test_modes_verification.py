@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-from cuefem import Cue, LumpedCue, Resolution, Segment, modes
-from cuefem.beam.tip import lumped_tip_modes, tip_modes
+from cuefem import Cue, Resolution, modes
+from cuefem.beam.tip import tip_modes
 from cuefem.beam.waves import mesh_for
 from tests.helpers.cues import (
-    CARBON,
     FAMILY,
-    FOAM,
     isotropic_kim,
     kim,
     pool,
@@ -57,17 +52,6 @@ def test_modes_are_orthonormal_in_the_mass(name: str) -> None:
     np.testing.assert_allclose(scalar_product(cue, rigid, shape, nodes) / sizes[:, None], 0, atol=1e-9)
 
 
-@pytest.mark.parametrize("name", SHAFTS)
-def test_rigid_vectors_are_orthonormal_and_span_the_rigid_motions(name: str) -> None:
-    found = modes(SHAFTS[name], 1)
-    R, M = found.rigid_vectors, found.system.M
-    np.testing.assert_allclose(R.T @ (M @ R), np.eye(2), atol=1e-12)
-    x = np.linspace(0, SHAFTS[name].length, 9)
-    w, theta = found.system.interpolate(R, x)
-    np.testing.assert_allclose(w, w[:, :1] + theta[:, :1] * x, rtol=0, atol=1e-12 * np.abs(w).max())
-    np.testing.assert_allclose(theta, theta[:, :1] * np.ones(9), rtol=1e-10, atol=1e-12 * np.abs(theta).max())
-
-
 def test_shape_at_nodes_and_between() -> None:
     """At a mesh node the shape is the unknown itself; in a rod theta tends to w' where the rod is slender."""
     cue = pool()
@@ -84,15 +68,6 @@ def test_shape_at_nodes_and_between() -> None:
     np.testing.assert_allclose(slope, turned, rtol=0, atol=1e-5 * np.abs(turned).max())
 
 
-def test_shape_keeps_the_shape_asked_for() -> None:
-    found = modes(kim(), 3)
-    assert [part.shape for part in found.shape(np.zeros((2, 5)))] == [(3, 2, 5), (3, 2, 5)]
-    assert [part.shape for part in found.shape(0.1)] == [(3,), (3,)]
-    for x in (-1e-9, 0.7000001, math.nan):
-        with pytest.raises(ValueError, match=r"Modes.shape takes positions in \[0, 0.7\] m"):
-            found.shape(x)
-
-
 @pytest.mark.parametrize("mode", [0, 1, 2])
 def test_near_an_eigenfrequency(mode: int) -> None:
     """E and G scaled until 250 Hz *is* the frequency of a mode: no singular matrix, and it comes first of all."""
@@ -105,24 +80,6 @@ def test_near_an_eigenfrequency(mode: int) -> None:
     assert np.all(np.isfinite(three.vectors))
     exact = float(modes(tuned, 1, near=250.0).frequencies[0])
     np.testing.assert_allclose(modes(tuned, 1, near=exact).frequencies, [exact], rtol=1e-12)
-
-
-def test_a_piece_cut_in_two_is_the_same_piece() -> None:
-    """Cut at 0.3 of its length, bore and core with it: the same modes once resolved."""
-    whole = Segment(0.7, 0.012, 0.021, CARBON, 0.009, 0.015, core=FOAM)
-    outer, bore = 0.012 + 0.3 * 0.009, 0.009 + 0.3 * 0.006
-    parts = Cue(
-        (
-            replace(whole, length=0.21, butt_diameter=outer, butt_bore=bore),
-            replace(whole, length=0.49, tip_diameter=outer, tip_bore=bore),
-        )
-    )
-    at = Resolution(4, 14, 6)
-    one, two = modes(Cue((whole,)), 6, at=at), modes(parts, 6, at=at)
-    np.testing.assert_allclose(two.frequencies, one.frequencies, rtol=1e-12)
-    x = np.linspace(0, 0.7, 40)
-    for first, second in zip(one.shape(x), two.shape(x), strict=True):
-        np.testing.assert_allclose(second, first, rtol=0, atol=1e-8 * np.abs(first).max())
 
 
 @pytest.mark.parametrize("name", [*SHAFTS, "isotropic"])
@@ -153,9 +110,3 @@ def test_tip_modes_are_what_a_ball_feels() -> None:
     spun = weights @ (s.rhoA * (x - centre) ** 2 + s.rhoI)
     rigid = tip.amplitude[:3, 1] @ tip.amplitude[:3, 1]
     np.testing.assert_allclose(rigid, 1 / cue.shaft_mass + centre**2 / spun, rtol=1e-12)
-
-
-def test_lumped_cue_as_tip_modes() -> None:
-    tip = lumped_tip_modes(LumpedCue(0.54, 0.004, 3.0))
-    np.testing.assert_allclose(tip.amplitude.T @ tip.amplitude, [[1 / 0.54, 3.0], [3.0, 250.0]], rtol=1e-13)
-    np.testing.assert_allclose(tip.amplitude.T @ tip.approach, [1.0, 0.0], atol=1e-14)

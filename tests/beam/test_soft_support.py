@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 
-from cuefem import Cue, LeatherTip, PointMass, Scene, Segment, Stroke, Support, end_mass, modes, strike
+from cuefem import Cue, LeatherTip, PointMass, Scene, Segment, Stroke, Support, end_mass, strike
 from tests.helpers.strike_scenes import maple
 
 CUE = Cue((Segment(0.02, 0.01275, 0.01275, maple(8e9)), Segment(0.7, 0.01275, 0.0215, maple())), body_mass=0.42)
@@ -23,10 +22,3 @@ def test_end_mass_and_squirt_go_to_those_of_a_free_cue(cue: Cue, k: float) -> No
     held, free = (scene(cue, effect) for effect in (Support(0.5, k), PointMass(0.5, 1e-15)))
     assert end_mass(held) == pytest.approx(end_mass(free), rel=1e-7)
     assert strike(held).squirt == pytest.approx(strike(free).squirt, rel=1e-8)
-
-
-@pytest.mark.parametrize("k", [1e-12, 1e-9, 1e-6, 1e-3])
-def test_frequencies_go_on_with_the_root_of_the_support(k: float) -> None:
-    soft, softer = (modes(CUE, 4, effects=(Support(0.5, each),)).frequencies for each in (k, k / 4))
-    assert soft[0] / softer[0] == pytest.approx(2.0, rel=1e-7)
-    np.testing.assert_allclose(soft[1:], softer[1:], rtol=1e-7)

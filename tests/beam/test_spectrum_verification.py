@@ -8,7 +8,7 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 
-from cuefem import PointMass, Support
+from cuefem import Support
 from cuefem.beam.modes import solve
 from cuefem.beam.spectrum import TipSpectrum, ended, reduced
 from cuefem.beam.system import System, assemble
@@ -46,18 +46,6 @@ def test_it_is_the_modes_and_their_tail(name: str, turning: bool) -> None:
     np.testing.assert_allclose(abs(found.radiation), abs(theirs.radiation), rtol=1e-7)
     for own, their in zip(found.at_tip, theirs.at_tip, strict=True):
         np.testing.assert_allclose(abs(own), abs(their), rtol=0, atol=1e-8 * abs(their).max())
-
-
-def test_effects_that_stay_on_the_beam_are_in_it() -> None:
-    effects = (PointMass(0.3, 0.005, 1e-6), Support(0.2, 2e4, dashpot=3.0))
-    system = beam(kim(), effects)
-    found, theirs = ended(system, COUNT, turning=False)(COUNT), tail(solve(system, COUNT))
-    assert isinstance(found, TipSpectrum)
-    assert found.rigid == theirs.rigid == system.rigid.shape[1]
-    np.testing.assert_allclose(found.omega[:COUNT], theirs.omega[:COUNT], rtol=1e-11)
-    np.testing.assert_allclose(
-        found.modes.shape(np.array([0.2]))[0][:COUNT], theirs.shape(np.array([0.2]))[0][:COUNT], atol=1e-8
-    )
 
 
 @pytest.mark.parametrize(("cue", "effects"), [(stiff_ferrule(), ()), (kim(), (Support(0.3, np.inf),))])

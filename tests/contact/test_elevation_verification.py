@@ -105,3 +105,20 @@ def test_table_friction_of_a_head_on_slide():
     assert abs(outcome.history.spin[0] / -follow - 1) < STEPPED  # forward roll turns about -x
     slide = impulse * along / M - follow * scene.ball.radius  # of the lowest point, at the end; in proportion before
     assert abs(outcome.energy["table loss"] / (mu * sin(angle) * impulse * slide / 2) - 1) < STEPPED
+
+
+def test_the_table_keeps_the_ball_up_and_lets_it_hop():
+    """Of random strikes on a few modes some let the ball leave the table; none drives it through, and energy closes."""
+    rng, up = np.random.default_rng(1), []
+    for _ in range(60):
+        tip = hand_made(
+            sorted(10 ** rng.uniform(2.5, 4.5, 3)), list(rng.normal(size=3) * 10), rigid=rng.uniform(0.5, 10)
+        )
+        law = Tip(rng.uniform(0.3, 1), rng.choice([0.7, 2.0, inf]), contact_time=10 ** rng.uniform(-3.5, -2))
+        raised = Elevation(rng.uniform(0.3, 1.5), rng.choice([0.0, 0.1, 0.5]))
+        scene = Scene(LumpedCue(0.54, 0.01), tip=law, stroke=Stroke(1.0, rng.uniform(-0.9, 0.9)), effects=(raised,))
+        outcome = strike_modes(scene, tip)
+        assert imbalance(outcome) < 1e-8
+        up.append(outcome.history.velocity[2])
+    assert min(up) > -1e-9
+    assert sum(value > 1e-6 for value in up) > 3

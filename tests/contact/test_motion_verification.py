@@ -72,27 +72,6 @@ def test_the_relative_velocity_is_that_of_the_history(name: str, offset: float) 
     assert found.duration == outcome.phases[-1].end
 
 
-def test_the_shaft_is_what_the_forces_make_of_its_modes() -> None:
-    outcome, until = cf.strike(SCENE, AT), 2e-3
-    found = motion(SCENE, [until], AT)
-    times, weights = fine(outcome, outcome.duration)
-    known, phi = outcome.history(times), SCENE.stroke.angle
-    across = np.cos(phi) * known["force_t"] - np.sin(phi) * known["force_n"]  # on the ball
-    x = np.linspace(0, 0.7, 7)
-    modes = cf.modes(KIM, 8, at=AT)
-    w, theta = modes.shape(x)
-    pulled = -weights * across
-    q = [pulled @ np.sin(omega * (until - times)) / omega for omega in modes.omega]
-    rigid_w, rigid_theta = modes.system.interpolate(modes.rigid_vectors, x)
-    tip, _ = modes.system.tip_displacement(modes.rigid_vectors)
-    free = tip * (pulled @ (until - times))
-    tips = modes.shape(0.0)[0]
-    deflection, rotation = found.deflection(x)
-    np.testing.assert_allclose(deflection[0], free @ rigid_w + (q * tips) @ w, rtol=0, atol=1e-10 * abs(w).max())
-    np.testing.assert_allclose(rotation[0], free @ rigid_theta + (q * tips) @ theta, rtol=0, atol=1e-9)
-    assert abs(deflection).max() > 1e-4
-
-
 def test_a_stroke_on_the_other_side_is_its_mirror_image() -> None:
     other = replace(SCENE, stroke=replace(SCENE.stroke, offset=-0.3))
     times = np.linspace(0, 3e-3, 7)

@@ -20,7 +20,6 @@ from cuefem import (
 )
 from cuefem.beam.tip import lumped_tip_modes
 from cuefem.contact.strike import strike_modes
-from tests.helpers.orders import assert_order
 from tests.helpers.strike_scenes import KIM
 
 # What solver tolerances of 1e-11 leave of a strike of one or a few phases, beside speeds of 1 m/s.
@@ -116,13 +115,3 @@ def test_turning_contact_in_cartesian_coordinates(offset, friction, dome):
     assert {phase.grip for phase in outcome.phases} == {"slip"}
     assert abs(outcome.squirt + Plane(scene, true=False, dome=dome).squirt()) < 1e-8
     assert abs(outcome.squirt - strike(scene).squirt) > 1e-3  # it is no small thing here
-
-
-def test_compression_left_out_is_of_second_order():
-    """The true geometry differs from RollingContact's by one order of the contact time more than the turning itself."""
-    errors, times = [], 2e-3 * 2.0 ** -np.arange(2, 7)
-    for time in times:
-        scene = Scene(LumpedCue(0.54, 0.02), tip=Tip(0.8, 0.05, float(time)), stroke=Stroke(1.5, 0.4))
-        turned = strike(replace(scene, effects=(RollingContact(),)))
-        errors.append(abs(turned.squirt + Plane(scene, true=True).squirt()))
-    assert_order(2, times, errors, within=[0.15, 0.08, 0.04, 0.02], rounding=1e-12)

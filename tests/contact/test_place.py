@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 
 import cuefem as cf
 from cuefem.contact.place import axis_offset, offset_of, offset_of_axis
-from tests.helpers.strike_scenes import KIM
 
 MANY = settings(max_examples=200, deadline=None)
 BALL = cf.Ball(0.17, 0.0286)
@@ -95,13 +94,6 @@ def test_arrays_of_strokes():
     one = cf.place(stroke(offsets[1, 2]), points[2], (1, 0, 0), ball=BALL)
     np.testing.assert_array_equal(placed.velocity[1, 2], one.velocity)
     np.testing.assert_array_equal(placed.spin[1, 2], one.spin)
-
-
-@pytest.mark.parametrize("offset", [0.2, -0.2])
-def test_the_default_ball_a_finite_element_cue_and_offsets_of_either_sign(offset):
-    outcome = cf.strike(cf.Scene(KIM, stroke=cf.Stroke(1.0, offset)))
-    placed = cf.place(outcome, (0.2 * 0.03075, 0.03075), NORTH)
-    assert placed.velocity[0] == pytest.approx(-sin(abs(outcome.squirt)) * outcome.ball_speed, rel=1e-9)
 
 
 @given(st.floats(-0.99, 0.99), st.floats(0, 0.02))

@@ -1,7 +1,6 @@
 """Verification of the waves along a cue: against closed forms, a chain of masses stepped in time, and many modes."""
 
 import math
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -22,16 +21,12 @@ from cuefem import (
 )
 from cuefem.beam.modes import Modes, solve
 from cuefem.beam.system import assemble
-from cuefem.beam.tail import tail
 from cuefem.beam.waves import mesh_for
-from cuefem.contact.strike import strike_modes
 from cuefem.effects.axial import rod_modes
 from cuefem.materials import MATERIALS
-from cuefem.tip_modes import tip_modes_from
-from tests.helpers.orders import assert_order
 
 MESHES = Path(__file__).parents[2] / "meshes"
-LEATHER, MAPLE = MATERIALS["leather"].material, MATERIALS["hard maple"].material
+MAPLE = MATERIALS["hard maple"].material
 TIP = Tip(0.73, 0.7, contact_time=1.1e-3)
 
 
@@ -53,23 +48,6 @@ def seen(outcome: Outcome, cue: Cue) -> tuple[float, float]:
 
 
 # --- the leather is part of the tip's spring ------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("E", [45e6, 210e6])
-def test_on_stiff_wood_a_head_on_blow_gives_the_scenes_contact_time_and_restitution(E):
-    """What the wood adds vanishes like one over its stiffness, whatever the leather's own; its mass is felt."""
-    leather = Segment(0.006, 0.01275, 0.01275, replace(LEATHER, E=E, G=0.36 * E))
-    steps, longer, more = 4.0 ** -np.arange(1, 6), [], []
-    for x in steps:
-        wood = replace(MAPLE, E=MAPLE.E / x, G=MAPLE.G / x)
-        cue = Cue((leather, Segment(0.73, 0.0128, 0.0215, wood)), 0.467)
-        T, e = seen(strike(head_on(cue)), cue)
-        longer.append(T - TIP.contact_time)
-        more.append(e - TIP.restitution)
-    assert_order(1.0, steps, longer, within=0.15)
-    assert_order(1.0, steps, more, within=0.3)
-    assert longer[-1] < 2e-3 * TIP.contact_time
-    assert more[-1] < 2e-3
 
 
 def stepped(cue: Cue, pieces: int = 200) -> tuple[float, float]:
@@ -128,30 +106,8 @@ def test_with_its_tail_the_rod_gives_way_as_much_as_all_of_its_modes(below):
     assert np.sum(plain.along**2 / (plain.omega**2 + s)) < 0.95 * exact
 
 
-def struck(name: str, T: float, offset: float) -> Scene:
-    """A reference cue with waves along it."""
-    return Scene(drawn(name), tip=Tip(contact_time=T), stroke=Stroke(1.0, offset), effects=(AxialWaves(),))
-
-
 @cache
 def many(name: str) -> Modes:
     """250 modes of a reference cue."""
     elements, order = mesh_for(drawn(name), 250)
     return solve(assemble(drawn(name), elements=elements, order=order), 250)
-
-
-def at_modes(waves: Scene, name: str, count: int, *, tailed: bool) -> np.ndarray:
-    """Squirt, ball speed and contact time."""
-    whole = many(name)
-    kept = replace(whole, frequencies=whole.frequencies[:count], vectors=whole.vectors[:, :count])
-    outcome = strike_modes(waves, tip_modes_from(tail(kept) if tailed else kept, waves))
-    return np.array([outcome.squirt, outcome.ball_speed, outcome.duration])
-
-
-@pytest.mark.heavy
-@pytest.mark.parametrize("T", [0.5e-3, 0.7e-3, 1e-3, 1.4e-3, 2e-3, 3e-3])
-@pytest.mark.parametrize("name", ["kim", "pool_maple", "pool_hollow"])
-def test_the_default_holds_half_a_percent_of_squirt(name, T):
-    waves = struck(name, T, 0.3)
-    exact = at_modes(waves, name, 250, tailed=True)
-    assert strike(waves).squirt == pytest.approx(exact[0], rel=5e-3)

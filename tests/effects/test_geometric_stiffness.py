@@ -114,17 +114,6 @@ def test_squirt_changes_as_in_a_geometrically_exact_chain(speed: float, offset: 
     assert bends < 0.95 * straight
 
 
-@pytest.mark.heavy
-@pytest.mark.parametrize(("speed", "offset"), [(2.0, 0.375), (7.0, 0.187)])
-def test_beside_waves_along_the_cue_it_changes_by_a_hundredth_less(speed: float, offset: float) -> None:
-    """The beam against a chain of wood: there the thrust runs along the cue too, which the share p leaves out."""
-    scene, chain = struck_shaft(speed, offset), chain_of(stiffer=1.0)
-    straight, bends = (cf.strike(each).squirt for each in (scene, replace(scene, effects=(*scene.effects, THRUST))))
-    linear = chain_squirt(chain, scene.stroke, scene.ball, STIFFNESS, SHEAR, exact=False)
-    assert straight == pytest.approx(linear, rel=3e-3)
-    assert bends / straight - 1 == pytest.approx(changes(chain, scene), rel=0.012)
-
-
 def test_tones_end_masses_and_blows_from_the_side_do_not_know_it() -> None:
     scene = cf.Scene(SHAFT, stroke=cf.Stroke(4.0, 0.3))
     bends = replace(scene, effects=(THRUST,))

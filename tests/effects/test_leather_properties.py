@@ -45,15 +45,6 @@ def test_compliance(tip: LeatherTip, diameter: float, offset: float, patch: floa
     )
 
 
-@settings(max_examples=100, deadline=None)
-@given(TIPS, DIAMETERS, st.floats(0.02, 0.05))
-def test_head_on(tip: LeatherTip, diameter: float, ball: float) -> None:
-    """Radius, depth and force rise together from zero, and the force ever faster."""
-    curves = possible(tip, diameter).head_on(diameter, ball)
-    assert all(curve[0] == 0 and np.all(np.diff(curve) > 0) for curve in curves)
-    assert np.all(np.diff(np.diff(curves[2]) / np.diff(curves[1])) > 0)
-
-
 @given(TIPS, DIAMETERS, st.floats(-0.6, 0.6))
 def test_lever(tip: LeatherTip, diameter: float, phi: float) -> None:
     """The contact lies on the dome or on its rim, and the mass is between that of cylinders."""

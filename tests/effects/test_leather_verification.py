@@ -9,7 +9,7 @@ import pytest
 
 from cuefem import LeatherTip
 from cuefem.solid import leather_table as lt
-from cuefem.solid.tip_solid import Patch, Shape, TipSolid, compliance, fitted, head_on, loads, surfaces, usual
+from cuefem.solid.tip_solid import Patch, Shape, TipSolid, fitted, head_on, usual
 from studies.beam.leather_elasticity import solved
 
 TIP, DIAMETER = LeatherTip(6e-3, 9.5e-3, 100e6), 12.75e-3
@@ -55,16 +55,6 @@ def test_refinement() -> None:
     fine = solved(SHAPE, 0.4, PATCH, usual(6, 8, 6, 48))
     np.testing.assert_allclose(coarse, fine, rtol=2e-3)
     assert abs(coarse[0, 1] - coarse[1, 0]) < 1e-9
-
-
-@pytest.mark.heavy
-def test_harmonics_that_are_interpolated() -> None:
-    """They take less than a thousandth from a patch near the rim, where the most of them count."""
-    solid, patch = TipSolid(SHAPE, usual(4, 6, 5, 36)), Patch(0.8, 0.08)
-    load = loads(SHAPE, patch, solid.how)
-    some, every = (compliance(surfaces(solid, 0.4, every=all_of_them), load) for all_of_them in (False, True))
-    np.testing.assert_allclose(some, every, rtol=1e-3)
-    assert np.any(some != every)
 
 
 # --- the table --------------------------------------------------------------------------------------------------------
@@ -122,22 +112,3 @@ def test_the_head_on_table_is_the_solution(
 
 
 # --- head on ----------------------------------------------------------------------------------------------------------
-
-
-def contact_time(tip: LeatherTip, speed: float, restitution: float = 0.73) -> float:
-    """Of a rigid cue of 567 g and a pool ball, s: to the greatest depth, and e times that back."""
-    mass = 1 / (1 / 0.170 + 1 / 0.567)
-    _, depth, force = tip.head_on(DIAMETER, 28.575e-3)
-    work = np.append(0.0, np.cumsum(np.diff(depth) * (force[1:] + force[:-1]) / 2))
-    energy = mass * speed**2 / 2
-    deepest = np.interp(energy, work, depth)
-    angle = (np.arange(2000) + 0.5) / 2000 * math.pi / 2
-    at = deepest * np.sin(angle)
-    speeds = np.sqrt(2 / mass * (energy - np.interp(at, depth, work)))
-    return float(np.mean(deepest * np.cos(angle) / speeds) * math.pi / 2 * (1 + restitution))
-
-
-@pytest.mark.parametrize(("speed", "time"), [(1.0, 1.35e-3), (2.0, 1.14e-3), (5.0, 0.89e-3)])
-def test_contact_time(speed: float, time: float) -> None:
-    """A unilateral iteration on the nodes of another mesh gave these."""
-    assert abs(contact_time(LeatherTip(6e-3, 9.5e-3, 140e6), speed) / time - 1) < 0.02

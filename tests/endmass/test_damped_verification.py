@@ -18,20 +18,6 @@ mpl.use("Agg")
 from studies.accuracy.default_accuracy import random_cue
 
 
-def test_nothing_touched_is_the_closed_form() -> None:
-    """The limit of a dashpot that vanishes."""
-    found = scene(kim(), 1e-3)
-    tip = Solved(found).tip
-    still = replace(tip, radiation=1e-14 * tip.radiation)
-    bare, limit = replace(tip, radiation=None), StickLimit.of(found)
-    omega, phi = bare.transverse
-    flexible = omega > 0
-    args = omega[flexible], phi[flexible], float(np.sum(phi[~flexible] ** 2))
-    exact = damped.undamped.half_sine_velocity(*args, T=1e-3)
-    assert damped.half_sine_velocity(still, 1e-3) == pytest.approx(exact, rel=1e-12)
-    assert damped.stick_impulse(still, limit) == pytest.approx(limit.transverse_impulse(*args), rel=1e-10)
-
-
 @pytest.mark.parametrize("effects", [(), (cf.StructuralDamping(0.02),), (cf.PointMass(0.3, 0.01),)])
 @pytest.mark.parametrize("restitution", [0.0, 0.75, 1.0])
 def test_the_rates_of_the_held_tip_are_the_motion_in_time(restitution: float, effects: tuple[cf.Effect, ...]) -> None:
@@ -63,12 +49,3 @@ def test_all_offsets_at_once_are_each_alone() -> None:
     by_exponentials = cf.end_mass(lumps, "offset")
     one = cf.end_mass(replace(lumps, stroke=cf.Stroke(1.0, 0.1)), "offset")
     assert by_exponentials[0, 1] == pytest.approx(one, rel=1e-13)
-
-
-def test_dashpots_and_rates_that_are_real_are_left_to_the_exponential() -> None:
-    found = scene(kim(), 1e-3)
-    dashed = Solved(replace(found, effects=(cf.Support(0.5, 1e4, 0.0, 5.0),))).tip
-    assert poles.held_tip(dashed, 10.0) is None
-    tip = Solved(found).tip
-    overdamped = replace(tip, radiation=None, damping=np.diag(np.where(tip.omega > 0, 2.5 * tip.omega[-1], 0.0)))
-    assert poles.held_tip(overdamped, 10.0) is None

@@ -9,13 +9,12 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.design import evaluate
-from cuefem.endmass.drives import squirt_equivalent, stick, stick_at_offset
+from cuefem.endmass.drives import squirt_equivalent
 from cuefem.endmass.lumped import lump
 from cuefem.report.squirt import squirt_record
 from cuefem.report.strike_table import strike_record
 from cuefem.tip_modes import tip_modes_of
-from tests.helpers.strike_scenes import KIM_AT, hand_made, kim_scene
+from tests.helpers.strike_scenes import KIM_AT, kim_scene
 
 EFFECTS = {
     "bare": (),
@@ -42,32 +41,6 @@ def test_it_tends_to_stick_like_the_square_of_the_offset_on_either_side(effects:
     assert gaps[0] / gaps[1] == pytest.approx(4, rel=0.05)
     assert abs(gaps[0]) < 1e-2
     assert offset_mass(at(scene, -0.3)) == pytest.approx(offset_mass(at(scene, 0.3)), rel=1e-12)
-
-
-@pytest.mark.parametrize("drive", ["stick", "offset"])
-def test_a_raised_cue_with_a_dome_has_the_end_mass_of_the_level_one(drive: str) -> None:
-    """The table's push is no part of an end mass; the dome is, and it is the scene's either way."""
-    dome = (cf.TipDome(9e-3),)
-    level, raised = (
-        cf.end_mass(replace(kim_scene(0.3), effects=effects), drive, KIM_AT)
-        for effects in (dome, (*dome, cf.Elevation(0.1)))
-    )
-    assert raised == pytest.approx(level, rel=1e-12)
-    bare = cf.end_mass(kim_scene(0.3), drive, KIM_AT)
-    assert abs(level / bare - 1) > 1e-3
-
-
-def test_a_lumped_cue_has_its_own() -> None:
-    cue = cf.LumpedCue(0.54, 5e-3)
-    assert cf.end_mass(cf.Scene(cue, stroke=cf.Stroke(1.0, 0.4)), "offset") == 5e-3
-    assert lump(cf.Scene(cue)) is cue
-
-
-def test_modes_that_are_rigid_have_their_own_at_every_offset() -> None:
-    """A tip that is a lump is that lump, whatever drives it."""
-    tip = hand_made([], [], rigid=14.0)
-    for b in (0.0, 0.2, 0.5, 0.8):
-        assert stick_at_offset(tip, at(kim_scene(), b)) == pytest.approx(stick(tip, kim_scene()), rel=1e-12)
 
 
 @pytest.mark.parametrize("effects", [EFFECTS["bare"], EFFECTS["dome and shear"]], ids=["bare", "dome"])
@@ -109,14 +82,6 @@ def test_where_there_is_none_the_lumped_models_are_left_out() -> None:
     curve = squirt_record(scene, (0.3, 0.85))
     assert curve["end_mass"][1] is None
     assert np.isnan(curve["models"]["two-part, this cue"]["squirt"]).tolist() == [False, True]
-
-
-@pytest.mark.parametrize("effects", [(), (cf.TipDome(9e-3),)], ids=["together", "one by one"])
-def test_a_sweep_asks_for_it_at_an_offset(effects: tuple[object, ...]) -> None:
-    scene = replace(kim_scene(0.2), effects=effects)
-    found = evaluate([scene], ["end_mass", "end_mass(0.4)", "end_mass(0)"], at=KIM_AT).values[0]
-    here = offset_mass(at(scene, 0.4))
-    assert found == pytest.approx([cf.end_mass(scene, "stick", KIM_AT), here, found[0]], rel=1e-8)
 
 
 @pytest.mark.parametrize("effects", [(), (cf.GeometricStiffness(),), (cf.Elevation(0.2), cf.GeometricStiffness())])

@@ -36,12 +36,3 @@ def test_impulse_of_kims_cue_is_within_one_percent_where_stick_is_ten_off() -> N
     assert 0.08 < small[0] < 0.11
     scene = cf.Scene(cf.load(MESHES / "kim.toml"), tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(1.0, 0.3))
     assert abs(cf.impulse(scene).squirt / cf.strike(scene).squirt - 1) == pytest.approx(own[0], rel=1e-6)
-
-
-@pytest.mark.heavy
-def test_over_cues_and_contact_times_at_three_tenths() -> None:
-    times = np.linspace(0.8e-3, 2e-3, 9)
-    own, small = np.hstack([errors(name, times, 0.3) for name in ("kim", "pool_maple", "pool_hollow")])
-    assert 0.003 < np.median(own) < 0.009
-    assert 0.02 < own.max() < 0.04
-    assert 0.06 < np.median(small) < 0.09

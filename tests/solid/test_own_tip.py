@@ -12,8 +12,7 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.solid.own_tip import own_table, read
-from tests.helpers.command_line import call
+from cuefem.solid.own_tip import own_table
 from tests.helpers.refusals import command_refuses
 
 D = 12.75e-3
@@ -66,16 +65,6 @@ def test_the_mass_has_its_layers() -> None:
     assert more == pytest.approx(np.pi / 4 * D**2 * 1e-3 * 900.0, rel=1e-12)
 
 
-def test_a_tip_that_is_smaller_than_its_ferrule() -> None:
-    """It strikes as on a ferrule of its own diameter, on a cue that is otherwise the same."""
-    cue = cf.Cue((cf.Segment(0.7, D, 21e-3, cf.Material(12.6e9, 1.1e9, 700.0)),), body_mass=0.4)
-    small = cf.usual_scene(cue, "pool", tip=replace(PLAIN, diameter=11e-3))
-    assert small.contact_terms.tip.diameter == 11e-3  # type: ignore[union-attr]
-    assert small.leather.mass_on(cue) == PLAIN.mass(11e-3)
-    wide, narrow = cf.strike(cf.usual_scene(cue, "pool", tip=PLAIN)), cf.strike(small)
-    assert narrow.squirt / wide.squirt - 1 == pytest.approx(-0.056, abs=0.005)
-
-
 def test_kept_in_a_file_and_made_again_when_that_is_spoilt(cache: Path) -> None:
     """The file gives what was computed, bit by bit; a torn, an empty and a foreign file are as none."""
     scene = cf.usual_scene(cf.Cue((cf.Segment(0.7, D, 21e-3, cf.Material(12.6e9, 1.1e9, 700.0)),)), "pool", tip=FLAT)
@@ -97,18 +86,6 @@ def test_kept_in_a_file_and_made_again_when_that_is_spoilt(cache: Path) -> None:
         np.testing.assert_allclose(again, before, rtol=1e-10)
     assert file.read_bytes() != spoilt
     assert FLAT.at_hand(D)
-
-
-@pytest.mark.heavy
-def test_without_a_place_to_keep_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A tip is computed all the same where the cache folder is a file."""
-    (tmp_path / "file").touch()
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
-    own_table.cache_clear()
-    assert np.all(np.isfinite(FLAT.head_on(D, 0.0286)[2]))
-    own = FLAT._own(D)
-    assert own is not None
-    assert read(own) is None
 
 
 @pytest.mark.heavy
@@ -136,19 +113,6 @@ def test_a_ferrule_that_gives(cache: Path) -> None:
         assert np.max(np.abs(rigid - table) / scale) < 5e-3  # what the table claims
         assert np.max(np.abs(at_20 - table) / scale) < 0.03
     assert np.all(np.diagonal(high[0], axis1=1, axis2=2) > np.diagonal(plain[0], axis1=1, axis2=2))
-
-
-@pytest.mark.heavy
-def test_the_command_says_that_it_computes_once(cache: Path, tmp_path: Path) -> None:
-    file = tmp_path / "scene.toml"
-    file.write_text(SCENE + 'height = "6 mm"\nlayers = [{ height = "1 mm", E = "2 GPa" }]\n')
-    (_, first, said), (_, second, silent) = (call("strike", file, "--json") for _ in range(2))
-    assert "computing this tip once" in said
-    assert "computing" not in silent
-    assert first == second != ""
-    loaded = cf.load(file)
-    cf.save(loaded, tmp_path / "again.toml")
-    assert cf.load(tmp_path / "again.toml") == loaded
 
 
 @pytest.mark.parametrize(

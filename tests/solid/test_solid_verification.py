@@ -22,7 +22,6 @@ from cuefem.solid.shaft import (
     Displacement,
     Harmonic,
     axial_strains,
-    bending_displacements,
     bending_strains,
     stiffness,
 )
@@ -114,18 +113,6 @@ def test_a_pulled_rod_is_as_stiff_as_its_section(wood: Material) -> None:
     assert Body(rod, Fineness(4, 1.0, 0.01), AXIAL).give == pytest.approx(give, rel=1e-10)
 
 
-def test_a_slender_cantilever_bends_as_a_beam() -> None:
-    """L^3/(3 EI) + L/(kappa G A), and what is left is the ends' own give, which does not grow with the length."""
-    off = []
-    for long in (20, 40):
-        rod = Cue((Segment(2 * RADIUS * long, 2 * RADIUS, 2 * RADIUS, STEEL),))
-        s = rod.section(0.0)
-        beam = rod.length**3 / 3 / float(s.EI) + rod.length / float(s.kGA)
-        off.append(Body(rod, Fineness(5, 0.6, 0.1)).give / beam - 1)
-    assert abs(off[0]) < 2e-4
-    assert off[1] / off[0] == pytest.approx(1 / 8, rel=0.02)
-
-
 def fields_of(function: object, own: int, count: int) -> list[Displacement]:
     """One of ``count`` fields is scikit-fem's function, the others vanish."""
     field = Displacement(function, function.grad[0], function.grad[1])  # type: ignore[attr-defined]
@@ -158,10 +145,3 @@ def test_the_matrices_are_those_of_scikit_fems_own_assembly(motion: Harmonic, st
             part = np.ix_(i * N + np.arange(N), j * N + np.arange(N))
             np.testing.assert_allclose(K[part], block(i, j, strains), rtol=1e-9, atol=1e-11 * abs(K).max())
             np.testing.assert_allclose(M[part], block(i, j, None), rtol=1e-9, atol=1e-11 * abs(M).max())
-
-
-def test_the_displacements_of_bending_add_to_a_shift() -> None:
-    """U = 1, S = W = 0 is the body's shift across: u_r = cos t, u_t = -sin t."""
-    one, none = Displacement(1.0, 0.0, 0.0), Displacement(0.0, 0.0, 0.0)
-    assert bending_displacements(one, none, none) == [1.0, -1.0, 0.0]
-    assert bending_strains(one, none, none, 0.5) == [0.0] * 6

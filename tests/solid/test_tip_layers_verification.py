@@ -26,14 +26,6 @@ def give(shape: Shape, nu: float, patch: Patch, how: TipFineness) -> np.ndarray:
     return compliance(surfaces(TipSolid(shape, how), nu), loads(shape, patch, how))
 
 
-def test_equal_layers_of_a_flat_tip_are_the_plain_one() -> None:
-    """To 1e-10, on the same rows of elements."""
-    patch = Patch(0.3, 0.15)
-    two = Shape(0.5, 0.0, (Layer(0.1, 1.0, 0.4), Layer(0.15, 1.0, 0.4)))
-    how = layered(usual(4, 5, 3, 8), two)
-    np.testing.assert_allclose(give(two, 0.4, patch, how), give(Shape(0.5, 0.0), 0.4, patch, how), rtol=1e-10)
-
-
 def test_equal_layers_under_a_dome_are_the_plain_one() -> None:
     """One pad in two halves is the pad to 1e-10; a pad of the leather itself is the leather but for the mesh, which is
     another one inside a dome: 1e-3."""
@@ -87,9 +79,3 @@ def test_refusals(layer: tuple[float, float, float], words: str) -> None:
     """A layer of no thickness, constants that are not positive definite, layers that reach into the dome."""
     with pytest.raises(ValueError, match=words):
         Shape(0.5, 1.3, (Layer(*layer),))
-
-
-def test_rows_without_the_ends_of_layers_are_refused() -> None:
-    """In words, not by a mesh that mixes two materials."""
-    with pytest.raises(ValueError, match="must have the ends of all layers"):
-        TipSolid(Shape(0.5, 0.0, (Layer(0.1, 1.0, 0.3),)), usual())
