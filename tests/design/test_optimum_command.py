@@ -49,13 +49,13 @@ def test_what_a_person_reads(tmp_path: Path) -> None:
     assert lines[0].endswith("evaluations by exact gradients")
     assert [line.split(maxsplit=1)[1] for line in lines[2:4]] == ["9 mm", "10 mm"]
     assert re.fullmatch(r"stiffness at the tip +\d{3}\.\d{1,3} N/m", lines[5])
-    assert lines[-1] == "held by: bore <= 9 mm, tip >= 10 mm"
+    assert "held by: bore <= 9 mm, tip >= 10 mm" in lines
 
 
 def test_an_unfinished_optimum_says_so_in_words(tmp_path: Path) -> None:
     code, out, err = call("optimize", written(tmp_path, OPTIMUM), "--iterations", 1)
     assert (code, err) == (0, "")
-    assert out.splitlines()[-1] == "not finished: Iteration limit reached; more --iterations may find a better design"
+    assert "not finished: Iteration limit reached; more --iterations may find a better design" in out.splitlines()
     code, out, err = call("optimize", STUDY, "--iterations", 1)  # a step that ends outside the limits
     assert (code, out) == (2, "")
     assert err.endswith("no design within tip_stiffness >= 386.7 was found: Iteration limit reached\n")

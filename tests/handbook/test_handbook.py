@@ -116,7 +116,7 @@ def test_the_command_prints_a_chapter_and_writes_the_page(tmp_path: Path) -> Non
     [
         ("glosary", "got 'glosary'; did you mean 'glossary'?"),
         ("--print -o guide.html", "must be left out with --print"),
-        ("-o guide.txt", "must end in .html; got '.txt'"),
+        ("-o guide.txt", "must end in .html or .json; got '.txt'"),
     ],
 )
 def test_refusals(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: str, message: str) -> None:
