@@ -6,6 +6,7 @@ import os
 import sys
 import warnings
 from contextlib import suppress
+from difflib import get_close_matches
 from importlib import import_module
 from typing import Any, NoReturn
 
@@ -20,25 +21,26 @@ from cuefem.quantity.slips import Unusual
 for _threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(_threads, "1")
 
-# Every command by its name: the file and function that it is, and what `cuefem --help` says of it.
+# Every command by its name: the file and function that it is, its group, and what `cuefem --help` says of it.
+CUE, SURE, STUDIES, FILES, PAGE = "A cue", "How sure", "Studies", "Files and parts", "Designer"
 COMMANDS = {
-    "check": ("cuefem.cli.how_sure:check", "How far beam theory is off for a shaft: beam beside solid."),
-    "compare": ("cuefem.cli.measured:compare", "A documented cue: measured and computed, side by side."),
-    "convert": ("cuefem.cli.files:convert", "Convert FILE to .toml, .vtk or .vtu."),
-    "cost": ("cuefem.cli.how_sure:cost", "What accuracy costs, and which resolution to take."),
-    "designer": ("cuefem.cli.designer:designer", "Change a cue with sliders on a page and see the effect."),
-    "effects": ("cuefem.cli.how_sure:effects", "What each effect changes, left out or added."),
-    "end-mass": ("cuefem.cli.cues:end_mass", "The effective end mass, by every definition."),
-    "estimate": ("cuefem.cli.measured:estimate", "Wood, bore and tip from everything measured on a cue together."),
-    "guide": ("cuefem.cli.guide:guide", "Open the handbook: physics, glossary, and every effect."),
-    "improve": ("cuefem.cli.improve:improve", "What to change: squirt, stiffness and weight of each change."),
-    "modes": ("cuefem.cli.tones:modes", "How the cue rings: its bending frequencies."),
-    "optimize": ("cuefem.cli.studies:optimize", "Find the best design of a STUDY (.toml) within its limits."),
-    "parts": ("cuefem.cli.files:parts", "Shafts, materials and tips by name."),
-    "report": ("cuefem.cli.reporting:report", "Everything about a cue, as tables or as a page."),
-    "scatter": ("cuefem.cli.studies:scatter", "How much a design's numbers scatter, and why."),
-    "strike": ("cuefem.cli.cues:strike", "One stroke: squirt, speed, spin and pivot length."),
-    "sweep": ("cuefem.cli.studies:sweep", "Compute every design of a STUDY (.toml)."),
+    "report": ("cuefem.cli.cue_commands:report", CUE, "Everything about a cue, as tables or as a page."),
+    "improve": ("cuefem.cli.cue_commands:improve", CUE, "Design changes: squirt, stiffness and weight of each."),
+    "modes": ("cuefem.cli.cue_commands:modes", CUE, "Natural frequencies of bending."),
+    "end-mass": ("cuefem.cli.cue_commands:end_mass", CUE, "The effective end mass, by every definition."),
+    "strike": ("cuefem.cli.cue_commands:strike", CUE, "One stroke: squirt, speed, spin and pivot length."),
+    "compare": ("cuefem.cli.measured:compare", CUE, "A documented cue: measured and computed, side by side."),
+    "estimate": ("cuefem.cli.measured:estimate", CUE, "Wood, bore and tip from all measurements on a cue together."),
+    "effects": ("cuefem.cli.how_sure:effects", SURE, "What each effect changes, left out or added."),
+    "cost": ("cuefem.cli.how_sure:cost", SURE, "Error against resolution, and which resolution to take."),
+    "check": ("cuefem.cli.how_sure:check", SURE, "How far beam theory is off for a shaft: beam beside solid."),
+    "sweep": ("cuefem.cli.studies:sweep", STUDIES, "Compute every design of a STUDY (.toml)."),
+    "scatter": ("cuefem.cli.studies:scatter", STUDIES, "How much a design's numbers scatter, and why."),
+    "optimize": ("cuefem.cli.studies:optimize", STUDIES, "Find the best design of a STUDY (.toml) within its limits."),
+    "parts": ("cuefem.cli.files:parts", FILES, "Shafts, materials and tips that a file can name."),
+    "convert": ("cuefem.cli.files:convert", FILES, "Convert FILE to .toml, .vtk or .vtu."),
+    "guide": ("cuefem.cli.guide:guide", FILES, "Open the handbook: physics, glossary, and every effect."),
+    "designer": ("cuefem.cli.designer:designer", PAGE, "Change a cue with sliders on a page and see the effect."),
 }
 
 
@@ -46,8 +48,8 @@ class _Commands(click.Group):
     """The commands of `COMMANDS`: a command's file is loaded when the command is called, not for a list of them."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """All names, in the order of the alphabet."""
-        return sorted(COMMANDS)
+        """All names, in the order of their groups."""
+        return list(COMMANDS)
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
         """The command of that name, its file loaded; None if there is none."""
@@ -57,16 +59,25 @@ class _Commands(click.Group):
         command: click.Command = getattr(import_module(module), attribute)
         return command
 
+    def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
+        """The command that is called; for an unknown one the nearest name too."""
+        near = get_close_matches(args[0], COMMANDS, 1) if args[0] not in COMMANDS and args[0][0] != "-" else []
+        if near:
+            ctx.fail(f"No such command {args[0]!r}; did you mean {near[0]!r}?")
+        return super().resolve_command(ctx, args)
+
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the table."""
-        with formatter.section("Commands"):
-            formatter.write_dl([(name, COMMANDS[name][1]) for name in self.list_commands(ctx)])
+        """Write the table, a group under each heading."""
+        width = max(map(len, COMMANDS))
+        for group in dict.fromkeys(group for _, group, _ in COMMANDS.values()):
+            with formatter.section(group):
+                formatter.write_dl([(f"{n:{width}}", words) for n, (_, g, words) in COMMANDS.items() if g == group])
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
         """The commands that begin so, and then as for every command."""
-        names = [name for name in self.list_commands(ctx) if name.startswith(incomplete)]
+        names = [name for name in COMMANDS if name.startswith(incomplete)]
         options = click.Command.shell_complete(self, ctx, incomplete)
-        return [*(CompletionItem(name, help=COMMANDS[name][1]) for name in names), *options]
+        return [*(CompletionItem(name, help=COMMANDS[name][2]) for name in names), *options]
 
 
 class _OneLine(_Commands):

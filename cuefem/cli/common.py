@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from cuefem.cli.printing import assumed_lines, json_option, tell
+from cuefem.cli.printing import assumed_lines, json_option, shared_option, tell
 from cuefem.cli.strokes import blow_options, offset_option, option, place_options, refuse_game, usual, with_options
 from cuefem.effects.leather_law import TooDeep
 from cuefem.games import DEFAULT_GAME
@@ -43,8 +43,8 @@ def cue_options(command: Callable[..., Any]) -> Callable[..., Any]:
 def shape_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """The options for what a drawing leaves out or has otherwise: the masses, and `FITTINGS`."""
     for name, known in reversed(FITTINGS.items()):
-        command = click.option(option(name), metavar=known.metavar, help=known.help)(command)
-    return place_options("body_mass", "shaft_mass")(command)
+        command = shared_option("Cue", option(name), metavar=known.metavar, help=known.help)(command)
+    return place_options("Cue", "body_mass", "shaft_mass")(command)
 
 
 def fittings_of(options: Mapping[str, Any]) -> dict[str, str | None]:
@@ -54,7 +54,7 @@ def fittings_of(options: Mapping[str, Any]) -> dict[str, str | None]:
 
 def force_option(command: Callable[..., Any]) -> Callable[..., Any]:
     """The option of every command that writes a drawing."""
-    return click.option("--force", is_flag=True, help="Replace a drawing that exists already.")(command)
+    return shared_option("Output", "--force", is_flag=True, help="Replace a drawing that exists already.")(command)
 
 
 def check_free(drawing: Path, *, force: bool) -> None:

@@ -11,14 +11,14 @@ from typing import Any
 import click
 
 from cuefem.cli.common import blaming, cue_options, scene_of
-from cuefem.cli.printing import print_json
-from cuefem.cli.strokes import blow_options, offset_option, option
+from cuefem.cli.printing import command, print_json
+from cuefem.cli.strokes import option
 from cuefem.designer.design import Design
 from cuefem.designer.start import NAME, first_scene
 from cuefem.io.profile import SHAPES
 
 
-@click.command()
+@command()
 @click.argument("scene", type=click.Path(path_type=Path), required=False)
 @click.option(
     "--port",
@@ -29,8 +29,6 @@ from cuefem.io.profile import SHAPES
 )
 @click.option("--open/--no-open", "show", default=True, help="Open the page in the browser.", show_default=True)
 @cue_options
-@blow_options
-@offset_option
 def designer(scene: Path | None, port: int, show: bool, as_json: bool, **options: Any) -> None:
     """Open a page on this computer: change a cue with sliders and see its end mass and squirt at once.
 

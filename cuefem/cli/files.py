@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from cuefem.cli.common import check_free, force_option, shape_options
-from cuefem.cli.printing import assumed_lines, json_option, page_option, print_json, tell
+from cuefem.cli.printing import assumed_lines, command, json_option, page_option, print_json, tell
 from cuefem.cli.strokes import with_body, with_weight
 from cuefem.io import load, save
 from cuefem.io.assumed import assumed
@@ -15,7 +15,7 @@ from cuefem.io.profile import SHAPES
 from cuefem.report.parts_table import parts_record, parts_sheets
 
 
-@click.command()
+@command()
 @click.argument("file", type=click.Path(path_type=Path))
 @click.argument("output", type=click.Path(path_type=Path))
 @shape_options
@@ -40,7 +40,7 @@ def convert(file: Path, output: Path, force: bool, as_json: bool, **options: str
         click.echo(line)
 
 
-@click.command()
+@command()
 @page_option
 @json_option
 def parts(as_json: bool, output: Path | None) -> None:

@@ -10,7 +10,7 @@ import click
 from rich.console import Console
 from rich.markdown import Markdown
 
-from cuefem.cli.printing import json_option, page_option, print_json
+from cuefem.cli.printing import command, json_option, page_option, print_json
 from cuefem.handbook import CHAPTERS, chapters
 from cuefem.handbook.page import page
 from cuefem.io import InputError, save_page
@@ -23,7 +23,7 @@ def _known(context: click.Context, parameter: click.Parameter, chapter: str | No
     raise ValueError(f"CHAPTER must be one of {', '.join(CHAPTERS)}; got {chapter!r}{nearest(chapter, CHAPTERS)}")
 
 
-@click.command()
+@command()
 @click.argument("chapter", callback=_known, required=False, metavar="[CHAPTER]")
 @page_option
 @json_option

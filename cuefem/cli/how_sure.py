@@ -9,7 +9,7 @@ import click
 
 import cuefem.report
 from cuefem.cli.common import show, stroke_options
-from cuefem.cli.printing import output_option, page_option
+from cuefem.cli.printing import command, output_option, page_option
 from cuefem.cli.progress import followed
 from cuefem.io import FIGURES, load_accuracy, save_figure
 from cuefem.report import DEFAULT_RTOL, effects_record, effects_sheet
@@ -17,7 +17,7 @@ from cuefem.report.cost import cost_figure, cost_record, cost_sheets
 from cuefem.scene import Scene
 
 
-@click.command()
+@command()
 @stroke_options
 @page_option
 def effects(file: Path, **options: Any) -> None:
@@ -33,7 +33,7 @@ def effects(file: Path, **options: Any) -> None:
     show(file, options, results, lambda record, about: [effects_sheet(record, about)])
 
 
-@click.command()
+@command()
 @stroke_options
 @click.option(
     "--most", type=click.IntRange(min=24), default=150, show_default=True, help="The largest number of modes."
@@ -52,7 +52,7 @@ def cost(file: Path, most: int, output: Path | None, **options: Any) -> None:
     show(file, {**options, "output": page}, results, lambda record, about: cost_sheets(record))
 
 
-@click.command()
+@command()
 @stroke_options
 @page_option
 def check(file: Path, **options: Any) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +14,42 @@ from rich.console import Console
 from cuefem.io import InputError, check_place, save_page, write_whole
 from cuefem.report.table import json_text, terminal
 
+# The heading of an option that many commands share, in the order of a command's help.
+HEADINGS = ("Cue", "Tip", "Stroke", "Output")
+
+
+class SharedOption(click.Option):
+    """An option that stands under a heading, below those of the command alone."""
+
+    def __init__(self, *names: Any, heading: str, **about: Any) -> None:
+        super().__init__(*names, **about)
+        self.heading = heading
+
+
+class Command(click.Command):
+    """A command whose help shows its own options first and shared ones under their headings."""
+
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the options, a group under each heading."""
+        for heading in ("", *HEADINGS):
+            options = [p for p in self.get_params(ctx) if isinstance(p, click.Option)]
+            records = (p.get_help_record(ctx) for p in options if getattr(p, "heading", "") == heading)
+            if rows := [record for record in records if record]:
+                with formatter.section(heading or "Options"):
+                    formatter.write_dl(rows)
+
+
+def shared_option(heading: str, *names: str, **about: Any) -> Callable[[Any], Any]:
+    """An option under a heading."""
+    return click.option(*names, cls=SharedOption, heading=heading, **about)
+
+
+command = partial(click.command, cls=Command)
+
 # The option of every command, for programs.
-json_option = click.option("--json", "as_json", is_flag=True, help="Say it as JSON, for programs; numbers in SI.")
+json_option = shared_option(
+    "Output", "--json", "as_json", is_flag=True, help="Print JSON, for programs; numbers in SI units."
+)
 
 # What a file of each ending is that commands write.
 WRITTEN = {
@@ -22,7 +57,7 @@ WRITTEN = {
     ".png": "a picture",
     ".svg": "a picture",
     ".toml": "a drawing or scene",
-    ".json": "the numbers as --json says them",
+    ".json": "the JSON of --json",
     "": "a folder for ParaView",
 }
 
@@ -51,8 +86,8 @@ def output_option(*endings: str, required: bool = False, many: bool = False) -> 
     kinds = dict.fromkeys(WRITTEN[ending] for ending in endings)
     said = "; ".join(f"{kind} ({', '.join(e for e in endings if WRITTEN[e] == kind)})" for kind in kinds)
     said = f"Write {said}, as its ending says{'; may be repeated' if many else ''}."
-    return click.option(
-        *("-o", "--output"), type=Output(endings), metavar="FILE", help=said, required=required, multiple=many
+    return shared_option(
+        "Output", *("-o", "--output"), type=Output(endings), metavar="FILE", help=said, required=required, multiple=many
     )
 
 

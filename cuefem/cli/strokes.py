@@ -11,6 +11,7 @@ from typing import Any
 
 import click
 
+from cuefem.cli.printing import shared_option
 from cuefem.contact.side_strike import SideStrike
 from cuefem.cue import Cue, LumpedCue
 from cuefem.games import DEFAULT_GAME, GAMES, usual_scene, usual_tip
@@ -39,13 +40,13 @@ def option(name: str) -> str:
     return f"--{name.replace('_', '-')}"
 
 
-def place_options(*keys: str) -> Callable[[Command], Command]:
-    """The options of places, by their keys."""
+def place_options(heading: str, *keys: str) -> Callable[[Command], Command]:
+    """The options of places, by their keys, under a heading."""
 
     def decorated(command: Command) -> Command:
         for known in (PLACES[key] for key in reversed(keys)):
             help_words = known.help or f"{known.title}."
-            command = click.option(option(known.key), metavar=known.option, help=help_words)(command)
+            command = shared_option(heading, option(known.key), metavar=known.option, help=help_words)(command)
         return command
 
     return decorated
@@ -53,25 +54,25 @@ def place_options(*keys: str) -> Callable[[Command], Command]:
 
 def game_option(name: str, help_words: str) -> Callable[[Command], Command]:
     """An option that takes the name of a game."""
-    return click.option(name, type=click.Choice([*GAMES]), help=help_words)
+    return shared_option("Stroke", name, type=click.Choice([*GAMES]), help=help_words)
 
 
 def tip_options(command: Command) -> Command:
     """The game, and the options of the leather tip and of whatever else on the cue is an option."""
     own = (key for key, known in PLACES.items() if known.option and key not in (*OF_BLOW, *OF_CUE, "offset"))
     said = "Whose usual ball, tip and stroke a cue without a scene gets; pool by default."
-    return game_option("--game", said)(place_options(*own)(command))
+    return game_option("--game", said)(place_options("Tip", *own)(command))
 
 
 def blow_options(command: Command) -> Command:
     """The options that replace ball, tip and speed."""
     ball = game_option("--ball", "The ball; by default the scene's or the game's.")
-    return tip_options(ball(place_options(*OF_BLOW)(command)))
+    return tip_options(ball(place_options("Stroke", *OF_BLOW)(command)))
 
 
 def offset_option(command: Command) -> Command:
     """The option that replaces the stroke's offset."""
-    return place_options("offset")(command)
+    return place_options("Stroke", "offset")(command)
 
 
 def measured(file: Path, name: str, text: str, wanted: Quantity) -> float:

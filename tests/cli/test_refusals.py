@@ -192,7 +192,7 @@ def test_more_memory_than_there_is(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     def full(*_: object, **__: object) -> None:
         raise MemoryError
 
-    monkeypatch.setattr("cuefem.cli.tones.modes_record", full)
+    monkeypatch.setattr("cuefem.cli.cue_commands.modes_record", full)
     path = tmp_path / "cue.toml"
     path.write_text(GOOD, encoding="utf-8")
     why = "this needs more memory than there is: ask for less, or check sizes, masses and times (MemoryError)"

@@ -31,8 +31,8 @@ def test_every_command_of_the_table_answers(name: str) -> None:
 
 def test_a_made_up_command_is_a_file_and_a_line(monkeypatch: pytest.MonkeyPatch) -> None:
     """It is listed, completed and called; and it is loaded when it is called, not before."""
-    monkeypatch.setitem(COMMANDS, "sweet-spot", ("made_up_command:sweet_spot", "Where a hit stings least."))
-    assert "sweet-spot  Where a hit stings least." in call("--help")[1]
+    monkeypatch.setitem(COMMANDS, "sweet-spot", ("made_up_command:sweet_spot", "Places", "Where a hit stings least."))
+    assert "Places:\n  sweet-spot  Where a hit stings least.\n" in call("--help")[1]
     with pytest.raises(ModuleNotFoundError):  # its file is not there yet
         main(["sweet-spot"])
     module = ModuleType("made_up_command")
@@ -46,7 +46,22 @@ def test_a_made_up_command_is_a_file_and_a_line(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setitem(sys.modules, "made_up_command", module)
     assert call("sweet-spot") == (0, "at 12 mm\n", "")
     completed = ShellComplete(main, {}, "cuefem", "_CUEFEM_COMPLETE").get_completions([], "sw")
-    assert [(one.value, one.help) for one in completed] == [(n, COMMANDS[n][1]) for n in ("sweep", "sweet-spot")]
+    assert [(one.value, one.help) for one in completed] == [(n, COMMANDS[n][2]) for n in ("sweep", "sweet-spot")]
+
+
+@pytest.mark.parametrize(("name", "nearest"), [("strik", "'strike'"), ("endmass", "'end-mass'"), ("nonsense", None)])
+def test_an_unknown_name_is_refused_with_the_nearest(name: str, nearest: str | None) -> None:
+    hint = "" if nearest is None else f"; did you mean {nearest}?"
+    status, out, err = call(name, "scene.toml")
+    assert (status, out) == (2, "")
+    assert err.startswith(f"cuefem: No such command {name!r}{hint} (`")
+
+
+def test_help_shows_a_commands_own_options_first_and_shared_ones_under_headings() -> None:
+    out = call("improve", "--help")[1]
+    words = ("--take", "\nCue:", "--bore", "\nTip:", "--dome", "\nStroke:", "--speed", "\nOutput:", "--json")
+    places = [out.index(word) for word in words]
+    assert places == sorted(places)
 
 
 def option_of(command: click.Command, name: str) -> click.Parameter | None:

@@ -1,0 +1,198 @@
+"""Commands on a cue: report, improve, modes, end-mass, strike."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import click
+
+import cuefem.report
+from cuefem.accuracy import resolve
+from cuefem.cli.common import blaming, check_free, file_options, force_option, scene_of, show, stroke_options
+from cuefem.cli.printing import Command, command, output_option, page_option, print_all
+from cuefem.cli.progress import followed
+from cuefem.cli.strokes import blow_options, tip_options
+from cuefem.design.advice import advice_record
+from cuefem.endmass.drives import DEFINITIONS
+from cuefem.io import InputError, load_accuracy, save, save_page
+from cuefem.quantity.fields import Quantity
+from cuefem.quantity.units import number
+from cuefem.report import (
+    end_mass_record,
+    end_mass_sheet,
+    modes_record,
+    modes_sheet,
+    report_record,
+    report_sheets,
+    strike_record,
+    strike_sheet,
+)
+from cuefem.report.advice_table import advice_sheet
+from cuefem.report.simulator_export import pooltool_record, pooltool_sheets
+from cuefem.report.unusual import unusual
+from cuefem.results.records import Record, Sheet
+from cuefem.scene import Scene
+from cuefem.vary import varied
+
+
+class WithDefinitions(Command):
+    """A command whose help ends with the definitions of the end mass."""
+
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write name and meaning of every definition."""
+        with formatter.section("Definitions of the end mass"):
+            formatter.write_dl([(definition.name, definition.meaning) for definition in DEFINITIONS.values()])
+
+
+@command()
+@stroke_options
+@page_option
+@click.option(
+    "--check",
+    is_flag=True,
+    help="Say also how far beam theory is off for this shaft, which takes some seconds (see `cuefem check`).",
+)
+def report(file: Path, output: Path | None, check: bool, **options: Any) -> None:
+    """Show modes, end masses, squirt and pivot length against offset, as tables or as a page with figures."""
+
+    def results(scene: Scene) -> Record:
+        record = report_record(scene)
+        checked = check and "no_contact" not in record
+        return record | ({"model_error": _model_error(scene)} if checked else {})
+
+    if output is None:
+        show(file, options, results, partial(_sheets, file))
+    else:
+        _write_page(file, output, options, check=check)
+
+
+def _sheets(file: Path, record: Record, about: Record) -> list[Sheet | str]:
+    """The tables, and at their end what one asks next."""
+    sheets = report_sheets(record, about)
+    return (
+        [*sheets, "", f"What would change it: cuefem improve {file}, with the same options"]
+        if "verdict" in record and "modes" in record  # a lumped cue has nothing that a maker can change
+        else sheets
+    )
+
+
+def _model_error(scene: Scene) -> Record:
+    return cuefem.report.model_error_record(scene, followed)  # loads scikit-fem, which other reports need not
+
+
+def _write_page(file: Path, output: Path, options: dict[str, Any], *, check: bool) -> None:
+    from cuefem.report.report_page import page  # templates and charts take 0.1 s, which tables need not pay
+
+    if options["as_json"]:
+        raise InputError(output, "--output", "must be left out with --json: a page is no JSON")
+    scene, notes = scene_of(file, options)
+    with blaming(file, options):
+        trust = (_model_error(scene)["sentence"],) if check else ()
+        asked: dict[str, Any] = {"rtol": load_accuracy(file), "notes": notes, "remarks": unusual(scene), "trust": trust}
+        text = page(file.name, scene, track=followed, **asked)
+    save_page(text, output)
+    click.echo(f"wrote {output}")
+
+
+@command()
+@stroke_options
+@output_option(".html", ".toml")
+@click.option(
+    "--take", type=click.IntRange(min=1), metavar="ROW", help="Save the cue of this row of the table, 1 the first."
+)
+@force_option
+def improve(file: Path, take: int | None, output: Path | None, force: bool, **options: Any) -> None:
+    """Show what would change squirt: what a maker can do to this cue, with stiffness, weight and first tone.
+
+    Each change alone, by the whole stroke; the least squirt first.
+    """
+    drawing = output is not None and output.suffix == ".toml"
+    if (take is not None) != drawing:
+        raise InputError(file, "--take", "goes with -o FILE.toml, and that with --take: the row, and the file to save")
+    if take is None or output is None:
+        show(
+            file,
+            {**options, "output": output},
+            lambda scene: advice_record(scene, follow=followed),
+            lambda record, about: [advice_sheet(record)],
+        )
+        return
+    check_free(output, force=force)
+    scene, _ = scene_of(file, options)
+    with blaming(file, options):
+        rows = advice_record(scene, follow=followed)["changes"]
+    if take > len(rows):
+        raise InputError(file, "--take", f"must be a row of the table, 1 to {len(rows)}; got {take}")
+    row = rows[take - 1]
+    save(varied(scene, row["set"]), output)
+    click.echo(f"wrote {output}: {row['change']}")
+
+
+@command()
+@file_options
+@tip_options
+@page_option
+@click.option("--near", metavar="HERTZ", help="Show the modes nearest this frequency, not the lowest.")
+@click.option("--count", type=click.IntRange(min=1), default=6, show_default=True, help="How many modes.")
+def modes(file: Path, near: str | None, count: int, **options: Any) -> None:
+    """Show how the cue rings: its bending frequencies and tip amplitudes."""
+
+    def results(scene: Scene) -> Any:
+        return modes_record(scene, count=count, near=hertz)
+
+    hertz = None if near is None else _hertz(file, near)
+    show(file, options, results, lambda record, about: [modes_sheet(record)], blow=False)
+
+
+def _hertz(file: Path, near: str) -> float:
+    """The frequency that --near gives: a number of hertz, or a number with its unit."""
+    wanted = Quantity("Hz", "[0, inf)")
+    for text in (near, f"{near} Hz"):
+        with suppress(ValueError):
+            if wanted.holds(hertz := number(text, "Hz")):
+                return hertz
+    raise InputError(file, "--near", f'must be {wanted.bounds_in("Hz")}, such as 250 or "0.25 kHz"; got {near!r}')
+
+
+@command("end-mass", cls=WithDefinitions)
+@file_options
+@blow_options
+@page_option
+@click.option("--paper", is_flag=True, help="Also show what Kim's paper calls end mass, m_c, and its eps.")
+def end_mass(file: Path, paper: bool, **options: Any) -> None:
+    """Show the effective end mass: how much mass the ball has to push aside at the tip."""
+    show(file, options, end_mass_record, lambda record, about: [end_mass_sheet(record, about, paper=paper)])
+
+
+@command()
+@stroke_options
+@page_option
+@click.option(
+    "--format",
+    "simulator",
+    type=click.Choice(["pooltool"]),
+    help="The end mass that this simulator takes, instead; -o FILE.json writes its file.",
+)
+def strike(file: Path, simulator: str | None, **options: Any) -> None:
+    """Compute one stroke: squirt, speed, spin and pivot length; to the rtol of the file's [accuracy], if it has one."""
+
+    def results(scene: Scene) -> Any:
+        rtol = load_accuracy(file)
+        return strike_record(scene, None if rtol is None else resolve(scene, rtol))
+
+    if simulator is None:
+        show(file, options, results, lambda record, about: [strike_sheet(record, about)])
+        return
+    output = options["output"]
+    to_file = output is not None and output.suffix == ".json"
+    record = show(
+        file,
+        options,
+        lambda scene: pooltool_record(file.stem, scene, str(output) if to_file else "cue.json"),
+        lambda record, about: pooltool_sheets(record, written=to_file),
+    )
+    if to_file:
+        print_all(pooltool_sheets(record, written=True))
