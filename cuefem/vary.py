@@ -71,7 +71,7 @@ class Place:
     Parameters
     ----------
     name
-        As files, options and links write it, with blanks or underscores.
+        As files and options write it, with blanks or underscores.
     words
         What it is.
     path

@@ -19,7 +19,7 @@ import cuefem as cf
 from cuefem.design import Levels, Response, Study, Vary, evaluate
 from cuefem.design.worth import variants
 from cuefem.designer.design import Design, State, Step
-from cuefem.designer.kept import step_of, text_of
+from cuefem.designer.kept import state_of, text_of
 from cuefem.designer.sliders import sliders
 from cuefem.effects import effect_kinds
 from cuefem.endmass.drives import DEFINITIONS
@@ -57,7 +57,7 @@ def test_a_place(monkeypatch: pytest.MonkeyPatch) -> None:
     assert (slider.label, slider.unit, slider.shown(knobs_of(scene))) == ("Length of the collar", "mm", 10)
     design = Design.of("cue", scene)
     longer = replace(design, knobs=slider.turned(design.knobs, 20))
-    assert step_of(text_of(State((Step(longer),)))).design == longer
+    assert state_of(text_of(State((Step(longer),)))).now.design == longer
     plain = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.0125, 0.021, WOOD),), 0.42))
     assert "collar_length" not in knobs_of(plain)
     with pytest.raises(ValueError, match="got 'collar length', which this scene does not have"):

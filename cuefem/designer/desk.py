@@ -22,8 +22,7 @@ from cuefem.designer.controls import ChoiceField, NumberField, button
 from cuefem.designer.design import Design, State, Step
 from cuefem.designer.door import KINDS
 from cuefem.designer.editing import game_of, with_game
-from cuefem.designer.kept import LONGEST_NAME, MOST_PINNED, key_of, state_of, step_of, text_of
-from cuefem.designer.links import LinkDialog
+from cuefem.designer.kept import LONGEST_NAME, MOST_PINNED, key_of, state_of, text_of
 from cuefem.designer.markup import Markup
 from cuefem.designer.numbers_panel import Column, csv_text
 from cuefem.designer.opening import PresetMenu, ShapeDialog, asked, reading
@@ -91,7 +90,6 @@ class Desk:
                 self.undo = button("Undo", lambda: self._go(self.state.undo())).props("data-undo")
                 self.redo = button("Redo", lambda: self._go(self.state.redo())).props("data-redo")
                 button("Back to the file", lambda: self.open(self.opened))
-                button("Link", lambda: self.links.show(text_of(State((self.state.now,)))))
                 button("Pin this design", self._pin)
                 ui.link("Guide", "/guide", new_tab=True).style("color: inherit")
                 self.units = ui.select(list(SYSTEMS), value=METRIC.name, label="Units", on_change=self._switch)
@@ -99,7 +97,6 @@ class Desk:
             self.message = Markup().on("click", lambda: self.say(""))
         with ui.element("div").classes("unseen"):
             self.receiver = Receiver(KINDS, self._received, self.say)
-        self.links = LinkDialog(self._open_link)
         self.shape = ShapeDialog(self._opened)
         with ui.element("div").classes("desk"):
             self.panel = ui.element("section").classes("knobs").props('aria-label="knobs"')
@@ -177,7 +174,7 @@ class Desk:
     # --- where it begins, and what is kept -------------------------------------------------------------------------
 
     async def _begin(self) -> None:
-        """Take up what this browser kept, and the design of a link if the page was opened by one."""
+        """Take up what this browser kept."""
         stored: dict[str, str] = {}
         with suppress(TimeoutError):
             stored = await self.client.run_javascript(f"cuefem.kept({json.dumps(self.key)})", timeout=20) or {}
@@ -187,11 +184,7 @@ class Desk:
             if stored.get("kept"):
                 self.state = await computed(state_of, str(stored["kept"]))
         self._show_design()
-        if stored.get("link"):
-            words = await self._open_link(str(stored["link"]))
-            if words:
-                self.say(f"the link in the address was not opened: {words}")
-        if self.weigh and not stored.get("kept") and not stored.get("link"):
+        if self.weigh and not stored.get("kept"):
             self.shape.weigh(self.design.name, self.design.scene, list(self.design.notes), self.system)
         await self.answering.moved()
 
@@ -200,16 +193,6 @@ class Desk:
         text = await asyncio.to_thread(text_of, state)
         if state is self.state:
             self.client.run_javascript(f"cuefem.keep({json.dumps(self.key)}, {json.dumps(text)})")
-
-    async def _open_link(self, text: str) -> str:
-        """Go on from the designs of a link, which undoing takes back; what is wrong with it, or ""."""
-        try:
-            step = await computed(step_of, text)
-        except FAILURES as error:
-            return " ".join(str(error).split())
-        self._put(step)
-        self._show_design()
-        return ""
 
     # --- what a person does ----------------------------------------------------------------------------------------
 

@@ -120,11 +120,9 @@ SCRIPT = """
 // What this browser keeps: the desk of this tab, and the last desk of all tabs; nothing of it leaves the computer.
 window.cuefem = {
   kept(key) {
-    const link = location.hash.startsWith("#d=") ? location.hash.slice(3) : "";
-    if (location.hash) history.replaceState(null, "", location.pathname);
     const read = (store, name) => { try { return store().getItem(name) || ""; } catch { return ""; } };
     const kept = read(() => sessionStorage, key) || read(() => localStorage, key);
-    return { link, kept, units: read(() => localStorage, "cuefem-units") };
+    return { kept, units: read(() => localStorage, "cuefem-units") };
   },
   keep(key, text) {
     for (const store of [() => sessionStorage, () => localStorage]) try { store().setItem(key, text); } catch {}

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import base64
+import json
+import zlib
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,14 +14,14 @@ from hypothesis import strategies as st
 
 import cuefem as cf
 from cuefem.cli.common import scene_of
-from cuefem.designer.design import Design, State, Step
-from cuefem.designer.kept import state_of, step_of, text_of
+from cuefem.designer.design import MOST_SEGMENTS, MOST_STEPS, Design, State, Step
+from cuefem.designer.kept import key_of, state_of, text_of
 from cuefem.designer.start import first_scene
 from cuefem.materials import material
 from cuefem.parts import with_material
-from tests.helpers.designer_links import FIRST, WRONG
 
 ROOT = Path(__file__).parents[2]
+FIRST = Design.of("maple", first_scene(), ["material hard maple"])
 FILES = [*sorted((ROOT / "meshes").glob("*.toml")), *sorted((ROOT / "studies" / "scenes").glob("*.toml"))]
 
 
@@ -30,7 +33,7 @@ def turned(design: Design = FIRST, **changes: object) -> Design:
 def test_every_scene_comes_back(path: Path) -> None:
     scene, notes = scene_of(path, {"body_mass": None, "material": None})
     step = Step(Design.of(path.name, scene, notes))
-    assert step_of(text_of(State((step,)))) == step
+    assert state_of(text_of(State((step,)))).now == step
 
 
 @given(
@@ -49,6 +52,13 @@ def test_every_step_comes_back(diameters: list[float], at: int, wood: float) -> 
     assert state_of(text_of(state)) == state
 
 
+def test_another_file_is_kept_apart() -> None:
+    changed = replace(first_scene(), ball=cf.Ball())
+    keys = [key_of(Design.of(*file)) for file in (("a", first_scene()), ("b", first_scene()), ("a", changed))]
+    assert len(set(keys)) == 3
+    assert key_of(Design.of("a", first_scene())) == keys[0]
+
+
 def test_steps_are_undone_and_done_again() -> None:
     a, b, c = (Step(turned(tip_diameter=d)) for d in (0.0127, 0.0125, 0.0123))
     state = State((a,)).put(b).put(c)
@@ -60,12 +70,54 @@ def test_steps_are_undone_and_done_again() -> None:
     assert (state.steps, state.can_redo) == ((a, b, a), False)
 
 
-@pytest.mark.parametrize("name", WRONG)
-def test_a_wrong_link_is_refused_in_one_line(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    text, words = WRONG[name]
-    if "segments" in name:  # they stalled every page of the server for 7.8 s
-        monkeypatch.setattr("cuefem.designer.kept.scene_of_table", lambda *_: pytest.fail("a scene was made"))
-    with pytest.raises(ValueError, match=r"this link|Stroke|Scene|the designer") as refused:
-        step_of(text)
-    assert words in str(refused.value)
+def test_one_drag_of_a_knob_is_one_step_and_the_oldest_are_forgotten() -> None:
+    state = State((Step(FIRST),))
+    for i in range(1, 20):
+        state = state.put(Step(turned(offset=0.3 + 0.001 * i)), "offset", when=0.1 * i)
+    state = state.put(Step(turned(offset=0.4)), "offset", when=30.0)
+    assert [step.design.knobs["offset"] for step in state.steps] == pytest.approx([0.3, 0.319, 0.4])
+    for i in range(3 * MOST_STEPS):
+        state = state.put(Step(turned(offset=0.001 * (i + 1))))
+    assert len(state.steps) == MOST_STEPS
+    assert state_of(text_of(state)) == state
+
+
+def packed(record: object) -> str:
+    return base64.urlsafe_b64encode(zlib.compress(json.dumps(record).encode())).decode()
+
+
+WHOLE = text_of(State((Step(FIRST),)))
+RECORD = json.loads(zlib.decompress(base64.urlsafe_b64decode(WHOLE + "=" * (-len(WHOLE) % 4))))
+SEGMENTS = [RECORD["scenes"][0]["cue"]["segments"][-1]] * (MOST_SEGMENTS + 1)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        *("", "%%%é", WHOLE[:-8], "a" * 1_000_001, packed([1])),
+        base64.urlsafe_b64encode(zlib.compress(b" " * 50_000_000)).decode(),
+        *(
+            packed(RECORD | changed)
+            for changed in (
+                *({"version": 2}, {"scenes": []}, {"steps": []}, {"steps": [[0] * 14]}, {"at": 5}),
+                *({"scenes": [{"cue": "/etc/passwd"}]}, {"scenes": [{"cue": {"segments": SEGMENTS}}]}),
+                *({"designs": [["a", 0, {"offset": value}, []]]} for value in (3, None, "1", float("nan"), 10**400)),
+                *({"designs": [["a", 0, {"made up": 1.0}, []]]}, {"designs": [[5, 0, {}, []]]}),
+            )
+        ),
+    ],
+)
+def test_a_damaged_state_is_refused_in_one_line(text: str) -> None:
+    with pytest.raises(ValueError) as refused:  # noqa: PT011  # by whichever part finds it
+        state_of(text)
     assert "\n" not in str(refused.value)
+    assert len(str(refused.value)) < 400
+
+
+def test_a_design_has_no_more_segments_than_can_be_answered_for() -> None:
+    scene = first_scene()
+    piece = replace(scene.cue.segments[-1], length=0.002, tip_diameter=0.012, butt_diameter=0.012)
+    most = replace(scene, cue=replace(scene.cue, segments=(piece,) * MOST_SEGMENTS))
+    assert Design.of("most", most).scene == most
+    with pytest.raises(ValueError, match=r"^the designer takes a cue of at most 300 segments; got 301: "):
+        Design.of("more", replace(scene, cue=replace(scene.cue, segments=(piece,) * (MOST_SEGMENTS + 1))))
