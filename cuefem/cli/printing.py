@@ -105,14 +105,17 @@ def print_json(record: Any) -> None:
     click.echo(json_text(record))
 
 
-def tell(as_json: bool, record: Any, things: Sequence[Any], page: Path | None = None) -> None:
-    """Print a record for programs, or lines and sheets for people; page: where one of these is to stand instead."""
+def tell(as_json: bool, record: Any, things: Sequence[Any], page: Path | None = None, title: str = "") -> None:
+    """Print a record for programs, or lines and sheets for people.
+
+    page: the file in which one of these is to stand instead; title: of a page, by default the file's name.
+    """
     if page is not None and page.suffix == ".json":
         write_whole(page, lambda temporary: temporary.write_text(json_text(record) + "\n", encoding="utf-8"))
     elif page is not None:
         from cuefem.report.plain_page import plain_page  # templates take 0.1 s, which tables need not pay
 
-        save_page(plain_page(page.stem, things), page)
+        save_page(plain_page(title or page.stem, things), page)
     if as_json:
         print_json(record)
     else:

@@ -4,23 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any, NamedTuple
 
 import numpy as np
 
 from cuefem.measured.documented import DocumentedCue, Row, Zero
 from cuefem.measured.estimate import Estimate, Worth
-from cuefem.measured.kinds import AddedMass, Squirt
-from cuefem.report.charts import WIDE, Axis, Chart, Curve, Tick, chart
-from cuefem.report.drawings import cue_drawing, front_drawing
-from cuefem.report.glossary import with_words
-from cuefem.report.scene_words import effect_words, plain_cue_line
-from cuefem.report.templates import environment
-from cuefem.results.quantities import NONE, scaled, with_unit
+from cuefem.results.quantities import NONE, with_unit
 from cuefem.results.records import Entry, Record, Sheet, sheet
 
-COMPARED_OFFSETS = tuple(round(0.05 * i, 2) for i in range(1, 11))  # b/R of the computed curve
-EDGE = 5.0  # residuals beyond this are drawn at the edge
 FAR = 3.0  # residuals that deserve a word
 UNITS = {"residual": "", "pull": "", "zero": "m", "squirt_error": "rad"}
 DOUBTED = 0.2  # chance of a measurement to be wrong that deserves one
@@ -54,7 +45,10 @@ def compare_record(cue: DocumentedCue, rows: Sequence[Row], zeros: Sequence[Zero
 
 def compare_sheets(record: Record) -> list[Sheet | str]:
     """For people: the table, the zeros, what is missing."""
-    made: list[Sheet | str] = [_fit_sheet("Measured and computed", record, "of both")] if record["rows"] else []
+    sourced = ["source"] if any(row["source"] for row in record["rows"]) else []
+    made: list[Sheet | str] = []
+    if record["rows"]:
+        made.append(_fit_sheet("Measured and computed", record, "of both", *sourced))
     made += [*contradictions(record), *zero_lines(record)]
     if record["lacking"]:
         made += ["not measured, and what that costs:", *(f"  {words}" for words in record["lacking"])]
@@ -106,117 +100,6 @@ def zero_lines(record: Record) -> list[str]:
     mean = float(weights @ [zero["zero"] for zero in record["zeros"]] / weights.sum())
     told, side = with_unit(abs(mean), "m", error=float(weights.sum() ** -0.5)), "left" if mean > 0 else "right"
     return [f"The strokes hit {told} to the {side} of their aim; the mean of left and right is free of it"]
-
-
-class ResidualBar(NamedTuple):
-    """A residual on the page: its words, its places for both errors together and for the measurement's alone."""
-
-    what: str
-    at: float
-    alone: float
-    text: str
-    style: str
-
-
-def compare_page(cue: DocumentedCue, rows: Sequence[Row], record: Record, notes: Sequence[str]) -> str:
-    """The comparison as a page."""
-    scene = cue.scene
-    left, right = 210.0, WIDE - 44
-    across = Axis("", -EDGE, EDGE).over([[0.0]])
-
-    def place(value: float) -> float:
-        return float(across.place(min(max(value, -EDGE), EDGE), left, right))
-
-    bars = [
-        ResidualBar(row.measurement.label, place(row.pull), place(row.residual), f"{row.pull:+.1f}", _style(row.pull))
-        for row in rows
-    ]
-    drawings = [cue_drawing(scene, across=1.0), cue_drawing(scene, across=8.0), front_drawing(scene)]
-    sourced = ["source"] if any(row["source"] for row in record["rows"]) else []
-    template = environment().get_template("documented.html.j2")
-    facts = [plain_cue_line(scene.cue), *(f"with {effect_words(effect)}" for effect in scene.effects)]
-    facts += [cue.source] if cue.source else []
-    figures = _figures(rows, record)
-    text = template.render(
-        name=cue.name,
-        facts=facts,
-        notes=list(notes),
-        figures=figures,
-        bars=bars,
-        ticks=[Tick(place(tick), f"{tick:g}") for tick in (-4, -2, 0, 2, 4)],
-        ends=(left, right),
-        band=(place(-2), place(2)),
-        height=22.0 * len(bars) + 44,
-        table=_fit_sheet("Measured and computed", record, "of both", *sourced) if rows else None,
-        zeros=[*contradictions(record), *zero_lines(record)],
-        lacking=record["lacking"],
-        drawings=drawings,
-        charts=[*_squirt_charts(cue, rows), *_mass_charts(rows)],
-    )
-    return with_words(text) + "\n"
-
-
-def _style(pull: float) -> str:
-    return "c2" if abs(pull) > FAR else "c1"
-
-
-def _figures(rows: Sequence[Row], record: Record) -> list[tuple[str, str, str]]:
-    if not rows:
-        return [("measurements", "0", "nothing was measured")]
-    near = sum(abs(row.pull) <= 2 for row in rows)
-    kinds = len({row.measurement.key for row in rows})
-    return [
-        ("measurements", f"{len(rows)}", f"of {kinds} kind{'s' if kinds > 1 else ''}"),
-        ("within two errors", f"{near}", "of both measurement and drawing"),
-        ("root mean square", f"{record['rms_pull']:.2f}", "of the residuals, in errors; 1 is what errors alone make"),
-        ("kinds missing", f"{len(record['lacking'])}", "in part or whole, listed below"),
-    ]
-
-
-def _crosses(x: Any, y: Any, error: Any, width: float) -> tuple[Any, Any]:
-    """Points with error bars as one broken line."""
-    gap = np.full(len(x), np.nan)
-    across = np.column_stack([x - width, x + width, gap, x, x, gap])
-    up = np.column_stack([y, y, gap, y - error, y + error, gap])
-    return across.ravel(), up.ravel()
-
-
-def _squirt_charts(cue: DocumentedCue, rows: Sequence[Row]) -> list[Chart]:
-    """Squirt against offset, if it was measured."""
-    strokes = [(row, row.measurement) for row in rows if isinstance(row.measurement, Squirt)]
-    if not strokes:
-        return []
-    setup = cue.setup()
-    x = np.array([stroke.offset for _, stroke in strokes])
-    y, error = (np.degrees([getattr(row, name) for row, _ in strokes]) for name in ("measured", "error"))
-    top = max([*COMPARED_OFFSETS[:1], *(each for each in COMPARED_OFFSETS if each <= x.max() + 0.05)])
-    offsets = [each for each in COMPARED_OFFSETS if each <= top]
-    curve = np.degrees([setup.numbers.squirt(each) for each in offsets])
-    speed = f"{float(cue.scene.stroke.speed):.3g} m/s"
-    curves = [
-        Curve("measured", *_crosses(x, y, error, 0.006), "c1"),
-        Curve(f"computed, {speed}", [0.0, *offsets], [0.0, *curve], "c2"),
-    ]
-    return [chart("Squirt against the offset", curves, x=Axis("offset b/R", 0.0), y=Axis("squirt, °", 0.0))]
-
-
-def _mass_charts(rows: Sequence[Row]) -> list[Chart]:
-    """Squirt with masses over that without, a chart for each mass."""
-    masses = sorted({row.measurement.mass for row in rows if isinstance(row.measurement, AddedMass)})
-    made = []
-    for mass in masses:
-        own = [row for row in rows if isinstance(row.measurement, AddedMass) and row.measurement.mass == mass]
-        own.sort(key=lambda row: row.measurement.position)  # type: ignore[attr-defined]
-        x = scaled([row.measurement.position for row in own], "m")  # type: ignore[attr-defined]
-        y, error, computed = (
-            np.array([getattr(row, name) for row in own]) for name in ("measured", "error", "computed")
-        )
-        curves = [Curve("measured", *_crosses(x, y, error, 2.0), "c1"), Curve("computed", x, computed, "c2")]
-        title = f"Squirt with {with_unit(mass, 'kg', 3)} on the shaft, over that without"
-        low = 0.1 * math.floor(10 * min((y - error).min(), computed.min()))
-        ends = Axis("distance from the end of the tip, mm", 0.0), Axis("ratio", low)
-        made.append(chart(title, curves, x=ends[0], y=ends[1]))
-    return made
 
 
 def worth_record(worth: Worth) -> Record:

@@ -1,14 +1,16 @@
-"""The page of a command that has no other: the lines and sheets that it prints."""
+"""The page of a command that has no other: the lines and tables that it prints, and figures."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
+from cuefem.report.charts import Chart
+from cuefem.report.drawings import CueDrawing
 from cuefem.report.templates import environment
 from cuefem.results.records import Sheet
 
 
-def plain_page(name: str, things: Sequence[str | Sheet]) -> str:
-    """Lines and sheets as a page that needs no network."""
+def plain_page(name: str, things: Sequence[str | Sheet | Chart | CueDrawing]) -> str:
+    """Lines, tables, charts and drawings as a page that needs no network."""
     lines = [thing for thing in things if thing]
     return environment().get_template("plain.html.j2").render(name=name, things=lines)

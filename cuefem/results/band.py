@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -47,10 +47,11 @@ def band(scene: Scene, inputs: Mapping[str, float], error: float | None = None) 
 
 def of_shaft(inputs: Mapping[str, float]) -> float:
     """What the inputs of the shaft alone may be off: what is left where two shafts are struck with one tip."""
-    return math.hypot(*(share for key, share in inputs.items() if not _of_tip(PLACES[key])))
+    return math.hypot(*(share for key, share in inputs.items() if not of_tip(PLACES[key])))
 
 
-def _of_tip(known: Place) -> bool:
+def of_tip(known: Place) -> bool:
+    """Whether a place is the tip's, which two shafts may share."""
     return known.group == "Tip" or known.path.startswith("leather.")
 
 
@@ -59,11 +60,21 @@ def of_inputs(solved: Solved, own: float) -> dict[str, float]:
 
     own: its squirt, rad.
     """
-    scene = solved.scene
-    if not scene.cue.segments or not own:
+    if not own:
         return {}
-    changes: dict[str, float] = {}
-    for key, known in PLACES.items():
+    changes = changes_by_input(solved.scene, {"squirt": own}, lambda made: {"squirt": squirt_beside(solved, made)})
+    return {key: abs(change["squirt"]) for key, change in changes.items()}
+
+
+def changes_by_input(
+    scene: Scene, own: Mapping[str, float], of: Callable[[Scene], Mapping[str, float]]
+) -> dict[str, dict[str, float]]:
+    """The relative changes of some numbers of a scene with each place that may be off by its usual spread.
+
+    own: the numbers of the scene. of: those of a changed one. Signs are those of a larger value at the place.
+    """
+    changes: dict[str, dict[str, float]] = {}
+    for key, known in PLACES.items() if scene.cue.segments else ():
         spread = known.spread(scene) if callable(known.spread) else known.spread
         ways = (spread, -spread) if spread is not None else (math.log1p(-known.below),) if known.below else ()
         value = known.value(scene) if ways else None
@@ -71,10 +82,10 @@ def of_inputs(solved: Solved, own: float) -> dict[str, float]:
             continue
         for off in ways:  # the other way where no cue can be farther out
             try:
-                made = replaced(scene, {known.steps(): value * math.exp(off)})
-                changes[key] = abs(squirt_beside(solved, made) / own - 1)
+                made = of(replaced(scene, {known.steps(): value * math.exp(off)}))
             except (ValueError, RuntimeError):
                 continue
+            changes[key] = {name: math.copysign(1.0, off) * (made[name] / own[name] - 1) for name in own}
             break
     return changes
 

@@ -1,0 +1,109 @@
+"""`cuefem compare`: cues side by side, or a cue beside what was measured on it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import click
+
+from cuefem.cli.common import blaming, cue_options, remark, scene_of, whole_record
+from cuefem.cli.printing import assumed_lines, command, page_option, tell
+from cuefem.cli.progress import followed
+from cuefem.cli.strokes import blow_options, offset_option, option
+from cuefem.io import InputError
+from cuefem.io.documented_folder import load_documented, write_template
+from cuefem.measured.documented import compare as compared
+from cuefem.measured.documented import zeros
+from cuefem.measured.estimate import estimate as estimated
+from cuefem.measured.estimate import squirt_of
+from cuefem.report.comparison_table import comparison_figures, comparison_sentences, comparison_sheet
+from cuefem.report.documented_page import compare_record, compare_sheets, estimate_record, estimate_sheets
+from cuefem.report.record import scene_record
+from cuefem.results.comparison import comparison_record
+from cuefem.results.quantities import UNITS
+
+MOST_CUES = 5
+
+
+@command()
+@click.argument("files", metavar="FILE FILE ... | FOLDER", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.option("--same-shaft", is_flag=True, help="The files are one shaft before and after a change: its wood cancels.")
+@click.option("--estimate", is_flag=True, help="Estimate wood, bore and tip from the measurements in FOLDER.")
+@click.option("--template", is_flag=True, help="Make FOLDER with files to fill in, instead.")
+@page_option
+@cue_options
+@blow_options
+@offset_option
+def compare(
+    files: tuple[Path, ...], same_shaft: bool, estimate: bool, template: bool, output: Path | None, **options: Any
+) -> None:
+    """Compare cues side by side, each difference with its uncertainty; or a cue with what was measured on it.
+
+    FILE FILE ...: two to five cues or scenes, struck with the ball and stroke of the first. FOLDER holds the shaft's
+    drawing, cue.toml or cue.csv; measured.toml, with what was measured; and long series as a CSV each, such as
+    squirt.csv. Only the drawing must be there.
+    """
+    as_json = options["as_json"]
+    if len(files) > 1:
+        for name, flag in (("--estimate", estimate), ("--template", template)):
+            if flag:
+                raise InputError(files[0], name, f"takes one FOLDER; got {len(files)} files")
+        _side_by_side(files, options, output, same_shaft=same_shaft)
+        return
+    (folder,) = files
+    if same_shaft or any(value is not None for name, value in options.items() if name != "as_json"):
+        raise InputError(folder, "", "compares with measurements: options of cue and stroke are for two or more FILEs")
+    if template:
+        write_template(folder)
+        click.echo(f"wrote {folder}: its numbers are examples; put yours, then `cuefem compare {folder}`")
+    elif folder.is_file():
+        raise InputError(folder, "", "needs another FILE to compare with, or a FOLDER with measurements")
+    else:
+        _with_measurements(folder, output, as_json=as_json, estimate=estimate)
+
+
+def _side_by_side(files: Sequence[Path], options: dict[str, Any], output: Path | None, *, same_shaft: bool) -> None:
+    """Print, or write, cues side by side."""
+    if len(files) > MOST_CUES:
+        raise InputError(files[MOST_CUES], "", f"must be one of at most {MOST_CUES} cues; got {len(files)}")
+    if options["shaft_mass"] is not None:
+        raise InputError(files[0], option("shaft_mass"), "must stand in each cue's file (shaft_mass) to compare cues")
+    loaded = [scene_of(file, options) for file in files]
+    scenes = {name: scene for name, (scene, _) in zip(_names(files), loaded, strict=True)}
+    notes = [f"{name}: {note}" for name, (_, own) in zip(scenes, loaded, strict=True) for note in own]
+    shared = [note for note in loaded[0][1] if all(note in own for _, own in loaded)]
+    notes = shared + [note for note in notes if note.partition(": ")[2] not in shared]
+    with blaming(files[0], options):
+        record = comparison_record(scenes, same_shaft=same_shaft, follow=followed)
+    about: dict[str, Any] = {"files": [str(file) for file in files], "assumed": notes}
+    about |= {"scenes": {name: scene_record(scene) for name, scene in scenes.items()}}
+    things: list[Any] = [*comparison_sentences(record), "", comparison_sheet(record)]
+    if output is not None and output.suffix == ".html":
+        things += comparison_figures(scenes, record)
+    title = f"{', '.join([*scenes][:-1])} and {[*scenes][-1]}"
+    tell(options["as_json"], about | record | {"units": UNITS}, [*things, *assumed_lines(notes)], output, title)
+
+
+def _names(files: Sequence[Path]) -> list[str]:
+    """The files' names, with their folders where two are alike."""
+    names = [file.stem for file in files]
+    return names if len({*names}) == len(names) else [str(file.with_suffix("")) for file in files]
+
+
+def _with_measurements(folder: Path, output: Path | None, *, as_json: bool, estimate: bool) -> None:
+    """Print, or write, a cue beside what was measured on it, or what all of that together says."""
+    cue, notes = load_documented(folder)
+    remark(cue.scene)
+    with blaming(folder):
+        if estimate:
+            found, target = estimated(cue, track=followed), squirt_of(cue)
+            record = estimate_record(found, found.next(), found.predicted(target), target.offset)
+            sheets = estimate_sheets(record)
+        else:
+            rows = compared(cue, track=followed)
+            record = compare_record(cue, rows, zeros(cue, rows))
+            sheets = compare_sheets(record)
+    whole = whole_record(folder, notes, cue.scene, record)
+    tell(as_json, whole, [cue.name, *assumed_lines(notes), "", *sheets], output)

@@ -1,0 +1,103 @@
+"""Cues side by side, for people: a sentence for each difference of squirt, a table, and figures for a page."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from cuefem.report.charts import Chart
+from cuefem.report.drawings import CueDrawing, cue_drawing
+from cuefem.report.end_mass import SQUIRT_END_MASS
+from cuefem.report.squirt import offset_charts
+from cuefem.results.comparison import struck_alike
+from cuefem.results.designs import coupled_curve
+from cuefem.results.quantities import NONE, RESULTS, with_unit
+from cuefem.results.records import Record, Sheet
+from cuefem.scene import Scene
+from cuefem.tip_modes import Solved
+
+CURVE_OFFSETS = tuple(round(0.05 * i, 2) for i in range(1, 13))  # b/R
+STYLES = ("c1", "c2", "c3", "c4", "c5")
+_WORDS = {"end_mass_squirt": SQUIRT_END_MASS}
+
+
+def comparison_sentences(record: Record) -> list[str]:
+    """What the differences of squirt say."""
+    first = record["reference"]
+    made = []
+    for name, differences in record["differences"].items():
+        squirt = differences.get("squirt")
+        if squirt is None:
+            made.append(f"{name} and {first} cannot be compared in squirt: one of them has none.")
+        elif not squirt["distinct"]:
+            made.append(f"{name} cannot be told apart from {first} in squirt: {_signed(squirt)} (1σ).")
+        else:
+            more = "more" if squirt["difference"] > 0 else "less"
+            size, error = 100 * abs(squirt["difference"]), 100 * squirt["error"]
+            made.append(f"{name} squirts {size:.0f} ± {error:.0f} % {more} than {first} (1σ).")
+    return made
+
+
+def _signed(difference: Record) -> str:
+    """A difference in per cent with its uncertainty."""
+    size, error = 100 * difference["difference"], 100 * difference["error"]
+    digits = 0 if error >= 2 else 1 if error >= 0.2 else 2
+    return f"{size:+.{digits}f} ± {error:.{digits}f} %".replace("-", "−")
+
+
+def comparison_sheet(record: Record) -> Sheet:
+    """A row for each number: the cues' values, and the others' differences from the first."""
+    first, *others = record["cues"]
+    rows = []
+    for name, own in record["cues"][first].items():
+        cells = [_label(name), _value(name, own)]
+        for other in others:
+            difference = record["differences"][other].get(name)
+            told = "" if difference is None else _signed(difference) + ("" if difference["distinct"] else " *")
+            cells += [_value(name, record["cues"][other][name]), told or NONE]
+        rows.append(tuple(cells))
+        if name == "squirt":
+            lateral = [_lateral(record["cues"][cue][name]) for cue in (first, *others)]
+            rows.append(("off line after 1 m", lateral[0], *(cell for each in lateral[1:] for cell in (each, ""))))
+    head = ("", first, *(cell for other in others for cell in (other, "difference")))
+    shaft = "one shaft, before and after a change" if record["same_shaft"] else "shafts of different pieces of wood"
+    notes = (
+        f"Struck alike, b/R {record['offset']:.3g} at {record['speed']:g} m/s. ±: 1σ of the difference, for {shaft}; "
+        "errors that the cues share cancel.",
+        "* smaller than its uncertainty: the cues cannot be told apart in this number.",
+    )
+    return Sheet("Side by side", head, tuple(rows), notes)
+
+
+def _label(name: str) -> str:
+    if name.startswith("frequency_"):
+        return f"natural frequency {name.removeprefix('frequency_')}"
+    return _WORDS.get(name) or RESULTS[name].words
+
+
+def _value(name: str, value: float) -> str:
+    """A value with its unit."""
+    if name.startswith("frequency_"):
+        return RESULTS["frequency"].written(value)
+    return RESULTS["end_mass" if name in _WORDS else name].written(value)
+
+
+def _lateral(squirt: float) -> str:
+    return NONE if math.isnan(squirt) else with_unit(math.tan(squirt), "m", decimals=0)
+
+
+def comparison_figures(scenes: Mapping[str, Scene], record: Record) -> list[Chart | CueDrawing]:
+    """Squirt and pivot length of the cues against the offset, and each cue's drawing."""
+    lines = []
+    for style, (name, scene) in zip(STYLES, struck_alike(scenes).items(), strict=False):
+        curve = coupled_curve(scene, CURVE_OFFSETS, Solved(scene).tip)
+        lines.append((name, style, np.asarray(curve["squirt"]), curve["pivot_length"]))
+    charts = offset_charts(lines, CURVE_OFFSETS, record["offset"], height=300)
+    drawings = (cue_drawing(scene, across=8.0) for scene in scenes.values())
+    return [
+        *charts,
+        *(replace(drawing, title=f"{name}: {drawing.title}") for name, drawing in zip(scenes, drawings, strict=True)),
+    ]

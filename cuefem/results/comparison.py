@@ -1,0 +1,108 @@
+"""Cues side by side: their numbers, and each difference with the uncertainty that the cues do not share."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+from cuefem.results.asking import asked
+from cuefem.results.band import OF_DIFFERENCE, changes_by_input, of_tip
+from cuefem.results.designs import OneDesign, off_centre
+from cuefem.results.records import Record
+from cuefem.scene import Scene
+from cuefem.tip_modes import Solved
+from cuefem.vary import PLACES
+
+# The numbers that are compared, by their names in the registry of results.
+OF_SQUIRT = ("squirt", "end_mass_squirt", "pivot_length")  # what squirt makes them, so that the model adds its error
+OF_SHAPE = ("tip_stiffness", "shaft_mass", "mass")
+N_FREQUENCIES = 3
+FLOOR = 0.01  # relative, of a difference of squirt: what calipers and the computation leave open
+Follow = Callable[[Sequence[Any]], Iterable[Any]]
+
+
+class _Compared(NamedTuple):
+    """A scene, its numbers, and their relative changes with each input that may be off."""
+
+    scene: Scene
+    numbers: dict[str, float]
+    inputs: dict[str, dict[str, float]]
+
+
+def comparison_record(scenes: Mapping[str, Scene], *, same_shaft: bool = False, follow: Follow = list) -> Record:
+    """Numbers of some cues, SI, and the relative differences of the others from the first with their uncertainty.
+
+    An error that two cues share cancels in their difference: that of a tip of the same value on both, and of the wood
+    if they are one shaft before and after a change (same_shaft). To squirt and what follows from it, the model adds
+    `OF_DIFFERENCE` of the logarithm, and `FLOOR`. "distinct": whether a difference exceeds its uncertainty (1 sigma).
+
+    All cues are struck with the ball, the speed and the offset of the first. follow: shows how far the work is.
+    """
+    struck = struck_alike(scenes)
+    compared = {name: _compared(struck[name]) for name in follow([*struck])}
+    reference, *others = compared
+    first = struck[reference]
+    return {
+        "offset": float(first.stroke.offset),
+        "speed": float(first.stroke.speed),
+        "same_shaft": same_shaft,
+        "reference": reference,
+        "cues": {name: each.numbers for name, each in compared.items()},
+        "differences": {
+            name: _differences(compared[reference], compared[name], same_shaft=same_shaft) for name in others
+        },
+    }
+
+
+def struck_alike(scenes: Mapping[str, Scene]) -> dict[str, Scene]:
+    """The scenes with the ball and the stroke of the first, off centre."""
+    first = off_centre(next(iter(scenes.values())))
+    return {name: replace(scene, ball=first.ball, stroke=first.stroke) for name, scene in scenes.items()}
+
+
+def _compared(scene: Scene) -> _Compared:
+    numbers = _numbers(scene)
+    return _Compared(scene, numbers, changes_by_input(scene, numbers, _numbers))
+
+
+def _numbers(scene: Scene) -> dict[str, float]:
+    """The numbers of a scene that are compared; nan where it has none, such as a miscue's end mass."""
+    _ = scene.shaft  # ValueError for a lumped cue, which has no shape
+    design, known = OneDesign(Solved(scene)), asked()
+    arguments: dict[str, Any] = {"pivot_length": float(scene.stroke.offset)}
+
+    def value(name: str, argument: Any) -> float:
+        of = known[name].of
+        assert of is not None
+        try:
+            return float(of(design, argument)[0])
+        except (ValueError, RuntimeError):
+            return math.nan
+
+    numbers = {name: value(name, arguments.get(name)) for name in (*OF_SQUIRT, *OF_SHAPE)}
+    return numbers | {f"frequency_{k}": value("frequency", k) for k in range(1, N_FREQUENCIES + 1)}
+
+
+def _differences(first: _Compared, other: _Compared, *, same_shaft: bool) -> dict[str, Record]:
+    """Relative differences, their uncertainty, and whether they are distinct, by number, if both have a value."""
+    made: dict[str, Record] = {}
+    for name, own in first.numbers.items():
+        ratio = other.numbers[name] / own
+        if not ratio > 0:
+            continue
+        errors = [_of_input(first, other, key, name, same_shaft=same_shaft) for key in {**first.inputs, **other.inputs}]
+        if name in OF_SQUIRT:
+            errors += [OF_DIFFERENCE * math.log(ratio), FLOOR]
+        error = ratio * math.hypot(*errors)
+        made[name] = {"difference": ratio - 1, "error": error, "distinct": abs(ratio - 1) > error}
+    return made
+
+
+def _of_input(first: _Compared, other: _Compared, key: str, name: str, *, same_shaft: bool) -> float:
+    """What an input leaves open in the logarithm of the ratio of two cues' numbers."""
+    changes = [each.inputs.get(key, {}).get(name, 0.0) for each in (first, other)]
+    known = PLACES[key]
+    shared = known.value(first.scene) == known.value(other.scene) if of_tip(known) else same_shaft
+    return abs(changes[1] - changes[0]) if shared else math.hypot(*changes)

@@ -1,0 +1,87 @@
+"""Cues side by side: differences are those of the strikes, and errors that cues share cancel (properties)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import cuefem as cf
+from cuefem.results.band import OF_DIFFERENCE
+from cuefem.results.comparison import FLOOR, comparison_record
+from cuefem.vary import varied
+from tests.helpers.command_line import as_json, call
+from tests.helpers.cues import pool
+
+SCENE = cf.usual_scene(pool())
+BORED = varied(SCENE, {"bore depth": 0.1, "bore width": 0.006})
+
+
+def test_differences_are_those_of_the_cues_alone() -> None:
+    record = comparison_record({"plain": SCENE, "bored": BORED})
+    squirts = [float(cf.strike(scene).squirt) for scene in (SCENE, BORED)]
+    assert [record["cues"][name]["squirt"] for name in ("plain", "bored")] == pytest.approx(squirts, rel=1e-9)
+    assert record["cues"]["plain"]["end_mass_squirt"] == pytest.approx(cf.end_mass(SCENE, "squirt"), rel=1e-9)
+    squirt = record["differences"]["bored"]["squirt"]
+    assert squirt["difference"] == pytest.approx(squirts[1] / squirts[0] - 1, rel=1e-9)
+    assert squirt["error"] > abs(squirt["difference"]) * OF_DIFFERENCE / 1.1
+
+
+def test_shared_errors_cancel() -> None:
+    """Of one cue beside itself only the floor is left; of two pieces of wood the root of two of each input's."""
+    twin = {"a": SCENE, "b": replace(SCENE)}
+    same = comparison_record(twin, same_shaft=True)["differences"]["b"]
+    assert same["squirt"]["error"] == pytest.approx(FLOOR, rel=1e-9)
+    assert same["shaft_mass"]["error"] == same["frequency_1"]["error"] == 0
+    two = comparison_record(twin)["differences"]["b"]
+    assert not any(each["distinct"] for each in two.values())
+    rho = varied(SCENE, {"rho": 700.0 * math.exp(0.1)})
+    assert two["shaft_mass"]["error"] > 0.9 * (rho.shaft.shaft_mass / SCENE.shaft.shaft_mass - 1)
+
+
+def test_a_weight_makes_a_difference_surer_and_all_are_struck_like_the_first() -> None:
+    faster = replace(SCENE, stroke=cf.Stroke(4.0, 0.1))
+    light, heavy = (varied(scene, {"shaft mass": mass}) for scene, mass in ((SCENE, 0.100), (faster, 0.115)))
+    weighed = comparison_record({"light": light, "heavy": heavy})
+    assert (weighed["speed"], weighed["offset"]) == (SCENE.stroke.speed, SCENE.stroke.offset)
+    mass = weighed["differences"]["heavy"]["shaft_mass"]
+    assert (mass["error"] < 0.01, mass["distinct"]) == (True, True)
+    bare = comparison_record({"light": SCENE, "heavy": varied(SCENE, {"rho": 800.0})})
+    assert bare["differences"]["heavy"]["squirt"]["error"] > weighed["differences"]["heavy"]["squirt"]["error"]
+
+
+def test_the_command_compares_files_of_ones_own(tmp_path: Path) -> None:
+    csv = "x [mm],diameter [mm]{0}\n0,12.75{1}\n150,12.95{2}\n330,13.2{2}\n736.6,21.5{2}\n"
+    (tmp_path / "plain.csv").write_text(csv.format("", "", ""))
+    (tmp_path / "bored.csv").write_text(csv.format(",bore [mm]", ",6", ","))
+    files = (tmp_path / "plain.csv", tmp_path / "bored.csv", "--same-shaft", "--body-mass", "15 oz")
+    record = as_json("compare", *files)
+    assert record["differences"]["bored"]["squirt"]["distinct"]
+    assert record["cues"]["plain"]["squirt"] == as_json("report", *files[:1], *files[3:])["numbers"]["squirt"]
+    assert call("compare", *files, "-o", tmp_path / "both.html")[0] == 0
+    page = (tmp_path / "both.html").read_text(encoding="utf-8")
+    assert page.count("<svg") >= 4
+    assert "plain and bored" in page
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["cue.toml"], "needs another FILE"),
+        (["cue.toml", "--speed", "3 m/s"], "compares with measurements"),
+        (["cue.toml", "cue.toml", "--shaft-mass", "112 g"], "must stand in each cue's file"),
+        (["cue.toml", "cue.toml", "--estimate"], "takes one FOLDER"),
+        (["cue.toml"] * 6, "at most 5 cues"),
+        (["cue.toml", "lumped.toml"], "LumpedCue"),
+        (["nowhere"], "got no folder"),
+    ],
+)
+def test_refusals(arguments: list[str], words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    cf.save(pool(), tmp_path / "cue.toml")
+    cf.save(cf.Scene(cf.LumpedCue(0.54, 0.006)), tmp_path / "lumped.toml")
+    monkeypatch.chdir(tmp_path)
+    status, out, err = call("compare", *arguments)
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert words.casefold() in err.casefold()
