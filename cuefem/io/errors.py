@@ -19,7 +19,7 @@ _KINDS = {
     stat.S_IFBLK: "a device",
 }
 
-__all__ = ["InputError", "faults_of", "nearest", "read_bytes", "reason", "shown", "state_of"]
+__all__ = ["InputError", "check_size", "faults_of", "nearest", "read_bytes", "reason", "shown", "state_of"]
 
 
 LARGEST_TEXT = 1_000_000  # bytes: five times what as many segments as there may be take
@@ -61,18 +61,19 @@ def state_of(path: Path) -> os.stat_result:
     return state
 
 
+def check_size(path: Path, most: int) -> None:
+    """InputError if a file cannot be found, or holds more than ``most`` bytes."""
+    if (size := state_of(path).st_size) > most:
+        raise InputError(path, "", f"must be a file of at most {most / 1e6:g} MB; got {size / 1e6:.9g}")
+
+
 def read_bytes(path: Path, most: int) -> bytes:
-    """The bytes of a file; InputError if it cannot be read, or holds more than ``most``, which is looked at first."""
-    size = state_of(path).st_size
+    """The bytes of a file; InputError if it cannot be read, or holds more than ``most``."""
+    check_size(path, most)
     try:
-        with path.open("rb") as file:
-            content = b"" if size > most else file.read(most + 1)
+        return path.read_bytes()
     except OSError as error:
         raise InputError(path, "", f"cannot be read: {reason(error)}") from None
-    if max(size, len(content)) > most:
-        got = f"{size / 1e6:.9g}" if size > most else "more"
-        raise InputError(path, "", f"must be a file of at most {most / 1e6:g} MB; got {got}")
-    return content
 
 
 def reason(error: OSError) -> str:

@@ -9,13 +9,12 @@ import re
 import threading
 import warnings
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import meshio
 import numpy as np
-from meshio.vtu import _vtu
 
 from cuefem.cue import Cue, Material, Segment
 from cuefem.io.errors import InputError, faults_of, read_bytes, shown
@@ -24,10 +23,10 @@ from cuefem.quantity.fields import MOST_SEGMENTS, quantities
 
 # What a damaged mesh file makes meshio raise: it checks little itself.
 DAMAGED = (
-    *(meshio.ReadError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError, AssertionError),
+    *(meshio.ReadError, OSError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError, AssertionError),
     *(SyntaxError, EOFError, MemoryError, RecursionError, zlib.error, lzma.LZMAError, SystemExit),
 )
-LARGEST_MESH = 20_000_000  # bytes, of the file and of all that is unpacked of it: ten times what any cue takes
+LARGEST_MESH = 20_000_000  # bytes of the file: ten times what any cue takes
 _ALONE = threading.Lock()
 _AGREES = 1e-9  # of the cue's length: a cell's stored length against its points
 
@@ -92,78 +91,12 @@ def _format(path: Path) -> Any:
 
 
 def _read(path: Path) -> meshio.Mesh:
-    """The mesh of a file that is not too big, nor too big when it is unpacked."""
+    """The mesh of a file of at most `LARGEST_MESH` bytes."""
     content = read_bytes(path, LARGEST_MESH)
+    if path.suffix.lower() == ".vtk" and not re.search(rb"^\s*DATASET\s+UNSTRUCTURED_GRID", content, re.I | re.M):
+        raise meshio.ReadError("DATASET must be UNSTRUCTURED_GRID")  # a structured one may say any number of points
     with quiet():
-        if path.suffix.lower() == ".vtu":
-            return _read_vtu(path, content)
-        for kind in re.findall(rb"^\s*DATASET\s+(\S+)", content, re.IGNORECASE | re.MULTILINE):
-            if kind.upper() != b"UNSTRUCTURED_GRID":  # a structured one may be said to have any number of points
-                raise meshio.ReadError(f"DATASET must be UNSTRUCTURED_GRID; got {shown(kind.decode('latin-1'))}")
-        return meshio.vtk.read(str(path))
-
-
-def _read_vtu(path: Path, content: bytes) -> meshio.Mesh:
-    if b"<!" in content.replace(b"\0", b"").replace(b"<!--", b""):
-        raise meshio.ReadError("it must have no document type, whose entities may unfold to any size")
-    budget = _Budget(LARGEST_MESH)
-    names = {"zlib": _Unpacker(zlib.decompressobj, budget), "lzma": _Unpacker(lzma.LZMADecompressor, budget)}
-    originals = {name: getattr(_vtu, name) for name in names}
-    try:
-        for name, unpacker in names.items():  # by these names meshio unpacks, wherever the data stand in the file
-            setattr(_vtu, name, unpacker)
-        reader = _CountedReader(path, budget)
-    finally:
-        for name, module in originals.items():
-            setattr(_vtu, name, module)
-    return meshio.Mesh(reader.points, reader.cells, cell_data=reader.cell_data)
-
-
-class _Budget:
-    """How many bytes may still be unpacked."""
-
-    def __init__(self, left: int) -> None:
-        self.left = left
-
-    def spend(self, size: int) -> None:
-        """Take ``size`` bytes; ReadError if there are no more."""
-        self.left -= size
-        if self.left < 0:
-            raise meshio.ReadError(f"its data must be at most {LARGEST_MESH / 1e6:g} MB when they are unpacked")
-
-
-class _Unpacker:
-    """In zlib's or lzma's place: unpacks no further than the budget goes."""
-
-    def __init__(self, begin: Callable[[], Any], budget: _Budget) -> None:
-        self.begin, self.budget = begin, budget
-
-    def decompress(self, data: bytes) -> bytes:
-        """All of ``data`` unpacked."""
-        unpacker = self.begin()
-        content: bytes = unpacker.decompress(data, self.budget.left + 1)
-        self.budget.spend(len(content))
-        if not unpacker.eof:
-            raise EOFError("compressed data end too early")
-        return content
-
-
-class _CountedReader(_vtu.VtuReader):
-    """meshio's reader, with all that it decodes counted: many arrays may name the same data."""
-
-    def __init__(self, path: Path, budget: _Budget) -> None:
-        self.budget = budget
-        super().__init__(str(path))
-
-    def read_uncompressed_binary(self, data: str, dtype: Any) -> Any:
-        """Numbers of base64 text."""
-        self.budget.spend(len(data))
-        return super().read_uncompressed_binary(data, dtype)
-
-    def read_compressed_binary(self, data: str, dtype: Any) -> Any:
-        """Numbers of compressed base64 text."""
-        self.budget.spend(len(data))
-        return super().read_compressed_binary(data, dtype)
+        return _format(path).read(str(path))
 
 
 def load_mesh(path: Path) -> Cue:

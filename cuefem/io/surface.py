@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 import functools
-import io
-import re
 from pathlib import Path
 
 import meshio
 import numpy as np
 
 from cuefem.cue import Array, Cue, Material, Segment
-from cuefem.io.errors import InputError, faults_of, read_bytes, shown, state_of
+from cuefem.io.errors import InputError, check_size, faults_of, shown, state_of
 from cuefem.io.mesh_files import DAMAGED, quiet
 from cuefem.io.profile import DEFAULT_UNIT
 from cuefem.io.slices import Index, Sliced, sliced, surface
 from cuefem.quantity.units import number
 
-_VERTEX = re.compile(rb"^[ \t]*vertex[ \t]+(\S+)[ \t]+(\S+)[ \t]+(\S+)", re.IGNORECASE | re.MULTILINE)
-_FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 LARGEST_SURFACE = 100_000_000  # bytes: two million triangles
 # What a surface may hold beside faces: corners and edges that a program wrote too.
 _PASSED_OVER = ("vertex", "line")
@@ -55,30 +51,17 @@ def _read(path: Path, changed: int, size: int) -> Sliced:
         return sliced(surface(points, triangles))
 
 
-def _read_stl(content: bytes) -> meshio.Mesh:
-    """The triangles of an .stl, binary (be its head "solid" or not) or ASCII, in capitals or not."""
-    count = int.from_bytes(content[80:84], "little")
-    if len(content) == 84 + 50 * count:
-        rows = np.frombuffer(content, _FACET, count, offset=84)["corners"].reshape(-1, 3)
-    else:
-        rows = np.array(_VERTEX.findall(content), dtype=float).reshape(-1, 3)
-    if not len(rows) or len(rows) % 3:
-        raise meshio.ReadError("it has no triangles, or half of one")
-    points, where = np.unique(rows, axis=0, return_inverse=True)
-    return meshio.Mesh(points, [("triangle", where.reshape(-1, 3))])
-
-
-def _read_ply(content: bytes) -> meshio.Mesh:
-    if b"end_header" not in content:
+def _read_ply(path: Path) -> meshio.Mesh:
+    if b"end_header" not in path.read_bytes():
         raise meshio.ReadError("its header does not end")  # meshio would read on for ever
-    return meshio.ply.read(io.BytesIO(content))
+    return meshio.ply.read(str(path))
 
 
-def _read_obj(content: bytes) -> meshio.Mesh:
+def _read_obj(path: Path) -> meshio.Mesh:
     """Corners and faces of an .obj; meshio wants a normal for every corner, which few programs write."""
     points: list[list[float]] = []
     faces: dict[int, list[list[int]]] = {}
-    for line in content.decode("latin-1").replace("\\\n", " ").splitlines():
+    for line in path.read_text("latin-1").replace("\\\n", " ").splitlines():
         kind, *words = line.split() or [""]
         if kind == "v":
             points.append([float(word) for word in words[:3]])
@@ -92,15 +75,15 @@ def _read_obj(content: bytes) -> meshio.Mesh:
     return meshio.Mesh(np.array(points).reshape(-1, 3), cells)
 
 
-_READERS = {".stl": _read_stl, ".ply": _read_ply, ".obj": _read_obj}
+_READERS = {".stl": meshio.stl.read, ".ply": _read_ply, ".obj": _read_obj}
 
 
 def _faces(path: Path) -> tuple[Array, Index]:
     """Corners and triangles of a surface file; faces of more corners as fans."""
-    content = read_bytes(path, LARGEST_SURFACE)
+    check_size(path, LARGEST_SURFACE)
     try:
         with quiet():  # a signalling nan in 32 bits is refused below
-            mesh = _READERS[path.suffix.lower()](content)
+            mesh = _READERS[path.suffix.lower()](path)
             points = np.asarray(mesh.points, float)
         blocks = [(block.type, np.asarray(block.data, dtype=np.intp)) for block in mesh.cells]
     except DAMAGED as error:

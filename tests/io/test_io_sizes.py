@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import base64
-import lzma
 import os
 import re
 import resource
 import shutil
 import signal
 import socket
-import struct
 import time
-import zlib
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -125,76 +121,11 @@ def stiff(stiffness: float) -> cf.Scene:
     return cf.Scene(cf.Cue((cf.Segment(0.7, 0.012, 0.021, ash),)), tip=cf.Tip(stiffness=stiffness))
 
 
-# --- .vtu that unpack to more than they hold -------------------------------------------------------------------------
-SIZE = 100_000_000  # bytes of zeros
-VTU = """<VTKFile type="UnstructuredGrid" version="0.1" header_type="UInt32" byte_order="LittleEndian"{}>
-<UnstructuredGrid><Piece NumberOfPoints="2" NumberOfCells="1"><CellData>{}</CellData></Piece></UnstructuredGrid>
-{}</VTKFile>"""
-ARRAY = '<DataArray type="Float64" Name="x" format="{}"{}>{}</DataArray>'
-
-
-def blocks(packed: bytes, count: int = 1) -> tuple[bytes, bytes]:
-    return struct.pack(f"<{3 + count}I", count, SIZE, SIZE, *[len(packed)] * count), packed * count
-
-
-def inline(compressor: str, packed: bytes, count: int = 1) -> bytes:
-    text = "".join(base64.b64encode(part).decode() for part in blocks(packed, count))
-    return VTU.format(f' compressor="{compressor}"', ARRAY.format("binary", "", text), "").encode()
-
-
-def appended(packed: bytes, *, raw: bool) -> bytes:
-    head = VTU.format(' compressor="vtkZLibDataCompressor"', ARRAY.format("appended", ' offset="0"', ""), "@")
-    data = b"".join(blocks(packed)) if raw else b"".join(map(base64.b64encode, blocks(packed)))
-    kind = b"raw" if raw else b"base64"
-    return head.encode().replace(b"@", b'<AppendedData encoding="' + kind + b'">_' + data + b"\n</AppendedData>")
-
-
-def named_often() -> bytes:
-    """Data without compression that ten thousand arrays name."""
-    data = base64.b64encode(struct.pack("<I", 2_000_000) + bytes(2_000_000)).decode()
-    arrays = ARRAY.format("appended", ' offset="0"', "") * 10_000
-    return VTU.format("", arrays, f'<AppendedData encoding="base64">_{data}</AppendedData>').encode()
-
-
-ENTITIES = '<!DOCTYPE x [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;&a;">]>'
-UNPACKED = "its data must be at most 20 MB when they are unpacked"
-BOMBS = {
-    "zlib": (lambda: inline("vtkZLibDataCompressor", zlib.compress(bytes(SIZE))), UNPACKED),
-    "many blocks": (lambda: inline("vtkZLibDataCompressor", zlib.compress(bytes(10**6)), 1000), UNPACKED),
-    "lzma": (lambda: inline("vtkLZMADataCompressor", lzma.compress(bytes(SIZE))), UNPACKED),
-    "appended": (lambda: appended(zlib.compress(bytes(SIZE)), raw=False), UNPACKED),
-    "appended raw": (lambda: appended(zlib.compress(bytes(SIZE)), raw=True), UNPACKED),
-    "named often": (named_often, UNPACKED),
-    "entities": (lambda: (ENTITIES + VTU.format("", "&b;", "")).encode(), "it must have no document type"),
-    "big": (lambda: bytes(20_000_001), "must be a file of at most 20 MB; got 20"),
-}
-
-
-@pytest.mark.parametrize("name", BOMBS)
-def test_what_unpacks_without_end_is_refused_while_it_is_unpacked(tmp_path: Path, name: str) -> None:
-    import tracemalloc
-
-    make, line = BOMBS[name]
-    path = tmp_path / "cue.vtu"
-    path.write_bytes(make())
-    tracemalloc.start()
-    try:
-        begun = time.process_time()
-        with pytest.raises(InputError) as caught:
-            cf.load(path)
-        assert time.process_time() - begun < SOON
-        assert tracemalloc.get_traced_memory()[1] < 2e8  # bytes
-    finally:
-        tracemalloc.stop()
-    assert line in str(caught.value)
-    assert len(str(caught.value).splitlines()) == 1
-
-
 def test_a_structured_grid_of_any_size_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "cue.vtk"
     head = "# vtk DataFile Version 3.0\nx\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 9000 9000 9000\n"
     path.write_text(head + "ORIGIN 0 0 0\nSPACING 1 1 1\n")
-    with pytest.raises(InputError, match="DATASET must be UNSTRUCTURED_GRID; got 'STRUCTURED_POINTS'"):
+    with pytest.raises(InputError, match="DATASET must be UNSTRUCTURED_GRID"):
         cf.load(path)
 
 

@@ -62,7 +62,6 @@ FILES: dict[str, tuple[str, Callable[[], bytes]]] = {
     "ascii, long head": (".stl", lambda: ascii_stl("solid " + "OpenSCAD_Model " * 12)),
     "ascii, no name": (".stl", lambda: ascii_stl("solid", tail="endsolid")),
     "ascii, scientific": (".stl", lambda: ascii_stl(form="{:.8e}")),
-    "ascii, capitals": (".stl", lambda: ascii_stl(form="{:+.7E}", upper=True)),
     "ascii, lines of Windows": (".stl", lambda: ascii_stl("solid Exported from Blender-2.82", end="\r\n")),
     "ascii, tabs": (".stl", lambda: ascii_stl().replace(b"  ", b"\t")),
     "ascii, a name like a corner": (".stl", lambda: ascii_stl("solid vertex 1 2 3")),
