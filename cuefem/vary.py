@@ -567,8 +567,6 @@ PLACES: dict[str, Place] = {
             absent="the contact time follows from the leather tip, so there is no knob for it",
             range=Range("ms", 1e3, 0.6, 3, 0.01, 0.2, 20),
             spread=0.1,  # leather 1.0 to 1.2 ms
-            option="TIME",
-            help='A spring as tip, without dome and shear, that touches the ball so long head on, e.g. "1 ms".',
         ),
         Place(
             *("restitution", "Bounce of the tip, e", "tip.restitution"),

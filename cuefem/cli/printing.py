@@ -58,7 +58,6 @@ WRITTEN = {
     ".svg": "a picture",
     ".toml": "a drawing or scene",
     ".json": "the JSON of --json",
-    "": "a folder for ParaView",
 }
 
 
@@ -72,11 +71,11 @@ class Output(click.Path):
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The path, whose ending is one that the command writes."""
         path = Path(os.fsdecode(super().convert(value, param, ctx)))
-        if path.suffix not in self.endings and "" not in self.endings:
+        if path.suffix not in self.endings:
             wanted = " or ".join(self.endings)
             more = "; --store names the file that keeps designs" if path.suffix == ".sqlite" else ""
             raise InputError(path, "--output", f"must end in {wanted}; got {path.suffix!r}{more}")
-        if path.suffix not in (".toml", ""):  # of a drawing the command itself looks
+        if path.suffix != ".toml":  # of a drawing the command itself looks
             check_place(path)
         return path
 

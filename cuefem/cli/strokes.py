@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -20,19 +19,15 @@ from cuefem.io.errors import faults_of
 from cuefem.parts import with_shaft_mass
 from cuefem.quantity.fields import Quantity
 from cuefem.quantity.units import number
-from cuefem.scene import Scene, Stroke, Tip
+from cuefem.scene import Scene
 from cuefem.vary import PLACES, Place, replaced, with_fields
 from cuefem.vary import Path as Steps
 
 Command = Callable[..., Any]
 
-OF_BLOW = ("restitution", "friction", "speed", "contact_time")  # and, for commands with one stroke, the offset
+OF_BLOW = ("restitution", "friction", "speed")  # and, for commands with one stroke, the offset
 OF_CUE = ("body_mass", "shaft_mass")
 NO_SHAFT = "must be left out: a lumped cue is whole"
-NO_SPRING = (
-    "must be left out beside LeatherTip, from which it follows (--leather changes it, and "
-    "`cf.leather_modulus` finds the leather that has it)"
-)
 
 
 def option(name: str) -> str:
@@ -65,9 +60,8 @@ def tip_options(command: Command) -> Command:
 
 
 def blow_options(command: Command) -> Command:
-    """The options that replace ball, tip and speed."""
-    ball = game_option("--ball", "The ball; by default the scene's or the game's.")
-    return tip_options(ball(place_options("Stroke", *OF_BLOW)(command)))
+    """The options that replace tip and speed."""
+    return tip_options(place_options("Stroke", *OF_BLOW)(command))
 
 
 def offset_option(command: Command) -> Command:
@@ -122,32 +116,20 @@ def with_weight(thing: Cue | Scene | SideStrike, file: Path, text: str) -> Any:
 
 
 def usual(cue: Cue, file: Path, options: dict[str, Any]) -> Scene:
-    """The scene of a cue alone: the game's usual stroke, with a spring as tip where a contact time is given."""
+    """The scene of a cue alone: the game's usual stroke."""
     game = options.get("game") or DEFAULT_GAME
     leather = usual_tip(cue, game)
     changes = _changes(SimpleNamespace(effects=(leather,)), file, options, _is_leather)
-    if options.get("contact_time") is not None:
-        for known in _options(options, _is_leather):
-            raise InputError(
-                file, option(known.key), "must be left out beside --contact-time, which takes a spring as tip"
-            )
-        played = GAMES[game]
-        tip, stroke = Tip(played.restitution, played.friction), Stroke(played.speed, played.offset)
-        return with_options(Scene(cue, played.ball, tip, stroke), file, options)
     try:
         leather = with_fields(leather, {path[1:]: value for path, value in changes.items()})
         scene = usual_scene(cue, game, tip=leather)
     except ValueError as error:
-        offered = [name for name in map(option, ("tip_height", "dome", "contact_time")) if name in map(option, options)]
-        help_words = f" ({', '.join(offered)} {'change' if len(offered) > 1 else 'changes'} it)" if offered else ""
-        raise InputError(file, "", f"{error}{help_words}") from None
+        raise InputError(file, "", f"{error} (--tip-height, --dome change it)") from None
     return with_options(scene, file, options)
 
 
 def with_options(scene: Scene, file: Path, options: dict[str, Any]) -> Scene:
     """The scene with the values that the command's options give."""
-    if options.get("ball") is not None:
-        scene = replace(scene, ball=GAMES[options["ball"]].ball)
     changes = _changes(scene, file, options)
     try:
         return replaced(scene, changes) if changes else scene
@@ -188,13 +170,10 @@ def _absent(scene: Scene, known: Place) -> str:
     """Why a scene has no such place."""
     if _is_leather(known):
         return "must be left out: the scene has no LeatherTip among its effects"
-    if known.key == "contact_time":
-        return NO_SPRING
     return NO_SHAFT if scene.lumped else f"must be left out: {known.absent or f'there is no {known.words}'}"
 
 
 def refuse_game(file: Path, options: dict[str, Any]) -> None:
     """A game is for a cue alone: a scene has ball, tip and stroke of its own."""
     if options.get("game") is not None:
-        problem = "must be left out: FILE is a scene, which has its own ball, tip and stroke"
-        raise InputError(file, "--game", f"{problem} (--ball replaces the ball)")
+        raise InputError(file, "--game", "must be left out: FILE is a scene, which has its own ball, tip and stroke")

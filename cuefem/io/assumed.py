@@ -16,7 +16,6 @@ from cuefem.scene import DEFAULT_CONTACT_TIME, Ball, Stroke, Tip
 
 BEGINS = f'the drawing begins at the ferrule, and the tip is put in front (--begins "{LEATHER}" if it has the leather)'
 ON_TENON = f"the ferrule sits on a tenon of the shaft's wood, {TENON:g} of its width"
-SHORTER = "; about 1 ms is usual"  # a pool ball's, measured; 2 ms is [Kim]'s
 
 
 def assumed(path: Path, options: Collection[str], *, offered: Collection[str] = (), blow: bool = True) -> list[str]:
@@ -96,7 +95,7 @@ def assumed_usual(
     cue: Cue, game: str, options: Collection[str], *, offered: Collection[str], blow: bool = True
 ) -> list[str]:
     """What a cue alone gets of its game's usual stroke (`cuefem.games`); arguments as for `assumed`."""
-    known, timed = GAMES[game], "contact_time" in options
+    known = GAMES[game]
     ball, tip = known.ball, usual_tip(cue, game)
     drawn = f"{1e3 * cue.leather:.4g} mm"
     height = (
@@ -107,20 +106,16 @@ def assumed_usual(
     if cue.leather and "tip_height" in options:
         height = f"the drawn leather, {drawn}, left out: the leather tip stands in its place"
     sizes = f"{1e3 * ball.mass:g} g, {2e3 * ball.radius:g} mm"
-    bounce = f"{known.restitution:g}" if timed else known.bounce
     said = (
         (False, f"a usual stroke of {game}{_option('game', offered)}"),
+        (not blow, f"ball {sizes}"),
+        (not cue.leather and "tip_height" in options, f"{height}{_option('tip_height', offered)}"),
+        ("dome" in options, f"its dome {1e3 * tip.dome_radius:g} mm{_option('dome', offered)}"),
         (
-            not blow or "ball" in options,
-            f"ball {sizes}{_option('ball', offered)}",
-        ),
-        (timed or (not cue.leather and "tip_height" in options), f"{height}{_option('tip_height', offered)}"),
-        (timed or "dome" in options, f"its dome {1e3 * tip.dome_radius:g} mm{_option('dome', offered)}"),
-        (
-            timed or "leather" in options,
+            "leather" in options,
             f"its leather {known.leather}, E {1e-6 * tip.E:g} MPa{_option('leather', offered)}",
         ),
-        (not blow or "restitution" in options, f"e {bounce}{_option('restitution', offered)}"),
+        (not blow or "restitution" in options, f"e {known.bounce}{_option('restitution', offered)}"),
         (not blow or "friction" in options, f"mu {known.friction:g}{_option('friction', offered)}"),
         (not blow or "speed" in options, f"stroke {known.speed:g} m/s{_option('speed', offered)}"),
         (not blow or "offset" in options, f"offset b/R {known.offset:g}{_option('offset', offered)}"),
@@ -132,10 +127,9 @@ def assumed_blow(tables: dict[str, Any], options: Collection[str], *, offered: C
     """What a scene's tables leave out of ball, tip, stroke and effects, and its game supplies."""
     game = str(tables.get("game", DEFAULT_GAME))
     missing = {key for key in left_out(tables) if key.rpartition(".")[2] not in options}
-    missing -= {"ball.mass", "ball.radius"} if "ball" in options else set()
     missing -= {"effects"} if game == KIM else set()
     cue, tip = tables["cue"], tables.get("tip", {})
-    timed = bool({"contact_time", "stiffness"} & {*tip, *options})
+    timed = bool({"contact_time", "stiffness"} & {*tip})
     kinds = [effect_kinds().get(str(effect.get("type"))) for effect in tables.get("effects", ())]
     usual = "effects" in missing and game != KIM and not (isinstance(cue, dict) and "end_mass" in cue)
     whole = (usual and not timed) or any(kind and kind.whole_tip for kind in kinds)
@@ -148,11 +142,11 @@ def assumed_blow(tables: dict[str, Any], options: Collection[str], *, offered: C
     said = [words for key, words in sizes.items() if key in missing]
     leather = "a leather tip as high as it is drawn, or as is usual" if whole else ""
     effects = " and ".join(filter(None, [leather, "waves along the cue and thrust on the bent shaft"]))
-    time = f"{1e3 * DEFAULT_CONTACT_TIME:g} ms{_option('contact_time', offered, SHORTER)}"
+    time = f"{1e3 * DEFAULT_CONTACT_TIME:g} ms; about 1 ms is usual"
     stroke_of = "Kim's stroke" if game == KIM else f"a usual stroke of {game}"
     told = (
         (bool(missing), stroke_of if len(tables) <= 1 + ("game" in tables) else f"what is left out as in {stroke_of}"),
-        (bool(said), f"ball {', '.join(said)}{_option('ball', offered)}"),
+        (bool(said), f"ball {', '.join(said)}"),
         ("effects" in missing and usual, f"{effects} (effects = [] is without)"),
         (not (timed or whole), f"head-on contact time {time}"),
         ("tip.restitution" in missing, f"e {bounce}{_option('restitution', offered)}"),
@@ -163,6 +157,6 @@ def assumed_blow(tables: dict[str, Any], options: Collection[str], *, offered: C
     return [words for wanted, words in told if wanted]
 
 
-def _option(name: str, offered: Collection[str], more: str = "") -> str:
+def _option(name: str, offered: Collection[str]) -> str:
     """The option that gives another value, if the command has it."""
-    return f" (--{name.replace('_', '-')}{more})" if name in offered else ""
+    return f" (--{name.replace('_', '-')})" if name in offered else ""

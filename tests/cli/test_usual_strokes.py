@@ -21,7 +21,7 @@ from tests.helpers.command_line import as_json, call, said
 
 SHAFT = cf.Cue((cf.Segment(0.7, 0.0118, 0.021, material("hard maple")),), 0.42)
 DRAWN = cf.Cue((cf.Segment(5e-3, 0.0118, 0.0118, material("leather")), *SHAFT.segments), 0.42)
-STRUCK = {"game", "ball", "tip_height", "dome", "leather", "restitution", "friction", "speed", "contact_time"}
+STRUCK = {"game", "tip_height", "dome", "leather", "restitution", "friction", "speed"}
 
 
 @pytest.fixture
@@ -38,7 +38,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_a_cue_alone_is_struck_as_in_pool_and_says_so(folder: Path) -> None:
     found = as_json("strike", "shaft.toml")
     assert found["assumed"] == [
-        *("a usual stroke of pool (--game)", "ball 170 g, 57.15 mm (--ball)"),
+        *("a usual stroke of pool (--game)", "ball 170 g, 57.15 mm"),
         *("a leather tip 6 mm high, put on what is drawn (--tip-height)", "its dome 9.5 mm (--dome)"),
         "its leather medium, E 140 MPa (--leather)",
         "e 0.73 of the whole cue head on: 0.63 of its tip, raised by waves along the cue (--restitution)",
@@ -74,14 +74,13 @@ OPTIONS = {
     "--friction": ("0.6", lambda scene: scene["tip"]["friction"], 0.6),
     "--speed": ("3 m/s", lambda scene: scene["stroke"]["speed"], 3.0),
     "--offset": ("0.2", lambda scene: scene["stroke"]["offset"], 0.2),
-    "--ball": ("carom", lambda scene: scene["ball"]["mass"], 0.21),
 }
 
 
 def test_every_assumption_has_its_option(folder: Path) -> None:
     given = [word for name, (text, *_) in OPTIONS.items() for word in (name, text)]
     found = as_json("strike", "shaft.toml", *given)
-    assert found["assumed"] == ["a usual stroke of pool (--game)"]
+    assert found["assumed"] == ["a usual stroke of pool (--game)", "ball 170 g, 57.15 mm"]
     for name, (_, value, wanted) in OPTIONS.items():
         assert value(found["scene"]) == pytest.approx(wanted, rel=1e-12), name
     changed = as_json("strike", "leather.toml", *given)
@@ -111,14 +110,6 @@ def test_modes_assume_the_tip_alone(folder: Path) -> None:
     options = ["--game", "--tip-height", "--dome", "--leather"]
     assert [re.findall(r"--[a-z-]+", words) for words in told] == [[option] for option in options]
     assert set(as_json("modes", "shaft.toml")["scene"]) == {"cue", "effects"}
-
-
-def test_a_contact_time_takes_the_spring_and_the_cue_as_drawn(folder: Path) -> None:
-    found = as_json("strike", "drawn.toml", "--contact-time", "1 ms", "--ball", "carom")
-    spring = cf.Scene(DRAWN, cf.Ball(), cf.Tip(0.73, 0.7, 1e-3), cf.Stroke(2.0, 0.3))
-    assert found["scene"]["effects"] == []
-    assert found["models"]["coupled"]["squirt"] == pytest.approx(cf.strike(spring).squirt, rel=1e-12)
-    assert not [words for words in found["assumed"] if "leather" in words]
 
 
 @pytest.mark.heavy

@@ -69,7 +69,7 @@ csv  | x [mm],diameter [mm],material\n0,12,hard mapel\n700,21, | line 2, materia
 csv  | x [mm];diameter [mm]\n0;12.75\n330,5;13     | line 3, x: must be written with the decimal point of the other
 csv  | PK\x03\x04xxxx                       | is a spreadsheet, not a .csv: in its program, save it as CSV
 csv  | \x89PNG\r\n\x1a\n\x00\x01\x02        | must be text, a table of numbers; got a file of another kind
-stl  |                                      | must be a .stl surface; got a file that meshio cannot read
+stl  |                                      | faces: must be triangles or polygons; got none
 ply  | solid                                | must be a .ply surface; got a file that meshio cannot read
 obj  | v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9   | faces: must name corners in [0, 3); got another
 obj  | v 0 0 0\nv 1 0 0\nf 1 2              | faces: must have three corners or more; got one of fewer
