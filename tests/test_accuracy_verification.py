@@ -8,21 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cuefem import (
-    AxialWaves,
-    Ball,
-    Cue,
-    Joint,
-    Material,
-    Outcome,
-    Scene,
-    Segment,
-    Stroke,
-    Support,
-    Tip,
-    TipDome,
-    resolve_end_mass,
-)
+import cuefem as cf
 from cuefem.accuracy import DECAY, MOST, Rung, end_mass_ladder, estimated_error, ladder
 from cuefem.beam.modes import Modes, solve
 from cuefem.beam.system import assemble
@@ -34,9 +20,9 @@ from cuefem.tip_modes import tip_modes_from, turning
 from tests.helpers.accuracy_scenes import NAMES, endless_friction, family, scene
 
 
-def all_modes(scene: Scene, count: int, *, order: int = 0) -> Modes:
+def all_modes(scene: cf.Scene, count: int, *, order: int = 0) -> Modes:
     """Every mode of a mesh that holds ``count``, of ``order`` more than `resolve` would take."""
-    assert isinstance(scene.cue, Cue)
+    assert isinstance(scene.cue, cf.Cue)
     elements, p = mesh_for(scene.cue, count)
     system = assemble(scene.cue, elements=elements, order=p + order, effects=scene.cue_effects)
     held = system.mesh.unknowns if system.free is None else system.free.shape[1]
@@ -47,20 +33,20 @@ def lowest(found: Modes, count: int) -> Modes:
     return replace(found, frequencies=found.frequencies[:count], vectors=found.vectors[:, :count])
 
 
-def judged(outcome: Outcome) -> np.ndarray:
+def judged(outcome: cf.Outcome) -> np.ndarray:
     return np.array([outcome.squirt, outcome.ball_speed, outcome.spin])
 
 
-def reference(scene: Scene, modes: int) -> np.ndarray:
+def reference(scene: cf.Scene, modes: int) -> np.ndarray:
     """Squirt, ball speed and spin from far more modes, on another mesh of another order."""
-    assert isinstance(scene.cue, Cue)
+    assert isinstance(scene.cue, cf.Cue)
     elements, p = mesh_for(scene.cue, modes)
     more = elements + 1 if isinstance(elements, int) else tuple(count + 1 for count in elements)
     found = solve(assemble(scene.cue, elements=more, order=p - 2, effects=scene.cue_effects), modes)
     return judged(strike_modes(scene, tip_modes_from(tail(found, turning=turning(scene)), scene)))
 
 
-def true_error(outcome: Outcome, best: np.ndarray, scene: Scene) -> float:
+def true_error(outcome: cf.Outcome, best: np.ndarray, scene: cf.Scene) -> float:
     size = np.maximum(np.abs(best), [0.01 * abs(scene.stroke.offset), 0, 0])
     return float((np.abs(judged(outcome) - best) / size).max())
 
@@ -73,7 +59,7 @@ def moment(found: Modes, power: int, *, past: int) -> np.ndarray:
 
 
 @pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("effects", [(), (Support(0.2, stiffness=np.inf),), (Joint(0.3, 1e-3),)], ids=str)
+@pytest.mark.parametrize("effects", [(), (cf.Support(0.2, stiffness=np.inf),), (cf.Joint(0.3, 1e-3),)], ids=str)
 def test_tail_holds_the_moments_of_every_mode_left_out(name: str, effects: tuple) -> None:
     """Two steps of Lanczos hold four moments; with a force alone, those of the deflection alone."""
     whole = all_modes(scene(name, 1e-3, 0.3, effects=effects), 40)
@@ -111,7 +97,7 @@ def test_end_masses_to_an_accuracy() -> None:
     here = scene("kim", 1e-3, 0.3)
     tip = tip_modes_from(tail(lowest(all_modes(here, 130, order=2), 130)), here)
     for drive in ("stick", "velocity", "force"):
-        value, error = resolve_end_mass(here, drive, 1e-3)
+        value, error = cf.resolve_end_mass(here, drive, 1e-3)
         assert error <= 1e-3
         assert abs(value / formula_of(drive)(tip, here) - 1) <= 3 * error
 
@@ -134,12 +120,14 @@ def test_the_estimated_error_holds_on_the_family(number: int) -> None:
             break
 
 
-def flips() -> Scene:
+def flips() -> cf.Scene:
     """A low, stiff blow on a cue with soft leather, whose contact nearly parts: rungs part at one number of modes and
     go on at the next, and end 5 % apart."""
-    leather, wood = Material(6e7, 2e7, 1000.0), Material(9.57e9, 9.337e8, 711.6)
-    cue = Cue((Segment(0.006, 0.0106, 0.0106, leather), Segment(1.09965, 0.0106, 0.02376, wood)), 0.21651)
-    return Scene(cue, Ball(0.17, 0.03), Tip(0.75, 0.1, contact_time=7e-4), Stroke(1.0, 0.61), (AxialWaves(),))
+    leather, wood = cf.Material(6e7, 2e7, 1000.0), cf.Material(9.57e9, 9.337e8, 711.6)
+    cue = cf.Cue((cf.Segment(0.006, 0.0106, 0.0106, leather), cf.Segment(1.09965, 0.0106, 0.02376, wood)), 0.21651)
+    return cf.Scene(
+        cue, cf.Ball(0.17, 0.03), cf.Tip(0.75, 0.1, contact_time=7e-4), cf.Stroke(1.0, 0.61), (cf.AxialWaves(),)
+    )
 
 
 def test_the_error_of_a_contact_that_flips_from_rung_to_rung_holds() -> None:
@@ -160,11 +148,16 @@ def test_the_error_of_a_contact_that_flips_from_rung_to_rung_holds() -> None:
 def test_a_false_plateau_below_the_resonance_of_the_leather_is_charged() -> None:
     """Up to 31 modes the stick end masses agree to 6e-4, all 1 % off: the leather's turning resonance, at 10 kHz, lies
     above the modes that they keep."""
-    leather, wood = Material(5.6e7, 1.87e7, 1017.0), Material(1.06e10, 7.2e8, 900.0)
-    cue = Cue((Segment(0.00926, 0.0121, 0.0121, leather), Segment(1.45, 0.0121, 0.029, wood)))
-    tip, effects = Tip(0.44, 1.07, contact_time=1.6e-3), (TipDome(0.0058), Support(0.243, stiffness=1e9, dashpot=20.0))
+    leather, wood = cf.Material(5.6e7, 1.87e7, 1017.0), cf.Material(1.06e10, 7.2e8, 900.0)
+    cue = cf.Cue((cf.Segment(0.00926, 0.0121, 0.0121, leather), cf.Segment(1.45, 0.0121, 0.029, wood)))
+    tip, effects = (
+        cf.Tip(0.44, 1.07, contact_time=1.6e-3),
+        (cf.TipDome(0.0058), cf.Support(0.243, stiffness=1e9, dashpot=20.0)),
+    )
     rungs = []
-    for rung in end_mass_ladder(Scene(cue, Ball(0.184, 0.02517), tip, Stroke(1.0, 0.3), effects), formula_of("stick")):
+    for rung in end_mass_ladder(
+        cf.Scene(cue, cf.Ball(0.184, 0.02517), tip, cf.Stroke(1.0, 0.3), effects), formula_of("stick")
+    ):
         rungs.append(rung)
         if rung[0] > 80:
             break

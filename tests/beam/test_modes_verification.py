@@ -12,8 +12,6 @@ from tests.helpers.cues import (
     FAMILY,
     isotropic_kim,
     kim,
-    pool,
-    rod,
     scaled,
     stiff_ferrule,
 )
@@ -50,22 +48,6 @@ def test_modes_are_orthonormal_in_the_mass(name: str) -> None:
     rigid = np.array([np.ones_like(x), x]), np.array([np.zeros_like(x), np.ones_like(x)])
     sizes = np.sqrt(np.diag(scalar_product(cue, rigid, rigid, nodes)))
     np.testing.assert_allclose(scalar_product(cue, rigid, shape, nodes) / sizes[:, None], 0, atol=1e-9)
-
-
-def test_shape_at_nodes_and_between() -> None:
-    """At a mesh node the shape is the unknown itself; in a rod theta tends to w' where the rod is slender."""
-    cue = pool()
-    found = modes(cue, 4)
-    node = found.system.mesh.node(cue.nodes[2])
-    w, theta = found.system.mesh.unknowns_at(node)
-    values = found.shape(cue.nodes[2])
-    np.testing.assert_allclose(values[0], found.vectors[w], rtol=1e-13)
-    np.testing.assert_allclose(values[1], found.vectors[theta] / cue.length, rtol=1e-13)
-    slender = rod(1e4)
-    found, x, h = modes(slender, 3), np.linspace(0.1, 0.9, 17) * slender.length, 1e-4 * slender.length
-    slope = (found.shape(x + h)[0] - found.shape(x - h)[0]) / (2 * h)
-    turned = found.shape(x)[1]
-    np.testing.assert_allclose(slope, turned, rtol=0, atol=1e-5 * np.abs(turned).max())
 
 
 @pytest.mark.parametrize("mode", [0, 1, 2])

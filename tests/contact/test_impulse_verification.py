@@ -4,7 +4,6 @@ from collections import Counter
 from math import inf, tan
 
 import numpy as np
-import pytest
 
 from cuefem import Ball, LumpedCue, Outcome, Scene, Stroke, Tip, impulse, squirt
 from tests.helpers.impulse_oracle import exact, regime_of
@@ -56,61 +55,3 @@ def test_an_oracle_agrees_in_every_regime():
             close(out, told, scene, 1e-12)
     for regime in REGIMES:
         assert seen[regime] >= 30, (regime, seen)
-
-
-def both_sides(scene_at, edge, step):
-    """Outcomes just below and above an edge, and their largest difference relative to the stroke."""
-    below, above = (impulse(scene_at(edge * (1 + sign * step))) for sign in (-1, 1))
-    scale = below.ball_speed
-    difference = max(
-        abs(below.squirt - above.squirt),
-        np.abs(below.ball_velocity - above.ball_velocity).max() / scale,
-        abs(below.cue_speed - above.cue_speed) / scale,
-        *(abs(below.energy[k] - above.energy[k]) / below.energy["initial"] for k in below.energy),
-    )
-    return below, above, difference
-
-
-def edges():
-    """Regime boundaries in friction: (name, where, scene at a friction, regimes or jams on its two sides)."""
-    for b, Q0, ends, e, nu in [
-        (0.3, 18 / 7, 1 / 70, 0.75, 0.4),
-        (0.6, 3.0, 0.36, 1.0, 0.4),
-        (0.45, 0.5, 1.5, 0.3, 0.7),
-    ]:
-        beta = squirt.lumped(b, cue_mass_ratio=Q0, end_mass_ratio=ends, inertia=nu)
-
-        def scene_at(mu, b=b, Q0=Q0, ends=ends, e=e, nu=nu):
-            return Scene(LumpedCue(Q0, ends), Ball(1.0, 0.03, nu), Tip(e, mu), Stroke(1.0, b))
-
-        late = squirt.compression_stick_friction(b, end_mass_ratio=ends, inertia=nu)
-        yield "in compression", late, scene_at, ("late stick", "stick")
-        yield "miscue", squirt.miscue_friction(beta, b, restitution=e), scene_at, ("miscue", "late stick")
-        mu_c, jam = squirt.critical_friction(beta), squirt.jam_friction(beta)
-        if mu_c > 0:
-            yield "mu_c", mu_c, scene_at, ("miscue", "miscue")
-        if np.isfinite(jam):
-            yield "jam", jam, scene_at, (False, True)
-    for b, Q0, ends in [(0.3, 0.2, 10.0), (0.6, 0.3, 3.0)]:
-        beta = squirt.lumped(b, cue_mass_ratio=Q0, end_mass_ratio=ends)
-
-        def heavy(mu, b=b, Q0=Q0, ends=ends):
-            return Scene(LumpedCue(Q0, ends), Ball(1.0), Tip(0.9, mu), Stroke(1.0, b))
-
-        yield "reversal", -squirt.critical_friction(beta), heavy, ("slip reversal", None)
-
-
-@pytest.mark.parametrize(("name", "edge", "scene_at", "sides"), list(edges()))
-def test_continuous_across_every_regime_boundary(name, edge, scene_at, sides):
-    for step in (1e-4, 1e-6, 1e-8, 1e-10, 1e-12):
-        below, above, difference = both_sides(scene_at, edge, step)
-        assert difference < 20 * step + 1e-13, (name, step)
-        if name == "jam":
-            assert (below.jam, above.jam) == sides
-        elif step >= 1e-8 and name != "reversal":
-            assert (below.regime, above.regime) == sides
-        elif step >= 1e-8:
-            assert below.regime == "slip reversal"
-            assert above.regime in ("stick", "late stick")
-    on = impulse(scene_at(edge))
-    assert np.isfinite([on.squirt, *on.ball_velocity, on.cue_speed, *on.energy.values()]).all()

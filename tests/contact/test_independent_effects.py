@@ -29,29 +29,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from cuefem import (
-    Ball,
-    Cue,
-    Effect,
-    Elevation,
-    Joint,
-    LumpedCue,
-    Material,
-    Outcome,
-    PointMass,
-    Resolution,
-    Scene,
-    SecondHit,
-    Segment,
-    Stroke,
-    StructuralDamping,
-    Support,
-    Tip,
-    TipDome,
-    TipShear,
-    modes,
-    strike,
-)
+import cuefem as cf
 from tests.oracle.small_steps import Seen, struck
 from tests.oracle.spectral_beam import bending
 
@@ -71,86 +49,86 @@ class Draw:
     def often(self, part: float) -> bool:
         return bool(self.rng.random() < part)
 
-    def cue(self) -> Cue:
+    def cue(self) -> cf.Cue:
         """A ferrule and a shaft of two pieces, one of them bored and filled, with losses of their own."""
         front, E = self.between(0.011, 0.014), self.between(10e9, 16e9)
-        wood = Material(E, E / self.between(12, 17), self.between(600, 800), loss=self.between(0.005, 0.03))
-        plastic = Material(3e9, 1.1e9, 1200.0, loss=0.04)
+        wood = cf.Material(E, E / self.between(12, 17), self.between(600, 800), loss=self.between(0.005, 0.03))
+        plastic = cf.Material(3e9, 1.1e9, 1200.0, loss=0.04)
         bore, middle = self.between(0.2, 0.6) * front, self.between(0.2, 0.4)
-        return Cue(
+        return cf.Cue(
             (
-                Segment(self.between(0.01, 0.03), front, front, plastic, bore, bore, core=wood, kappa=0.9),
-                Segment(middle, front, 1.05 * front, wood, bore, bore, kappa=0.85),
-                Segment(0.75 - middle, 1.05 * front, self.between(0.018, 0.023), wood, kappa=0.9),
+                cf.Segment(self.between(0.01, 0.03), front, front, plastic, bore, bore, core=wood, kappa=0.9),
+                cf.Segment(middle, front, 1.05 * front, wood, bore, bore, kappa=0.85),
+                cf.Segment(0.75 - middle, 1.05 * front, self.between(0.018, 0.023), wood, kappa=0.9),
             ),
             body_mass=self.between(0.3, 0.5),
         )
 
-    def tip(self, least: float = 0.3) -> Tip:
+    def tip(self, least: float = 0.3) -> cf.Tip:
         friction = self.between(0.1, 0.5) if self.often(0.4) else self.between(0.5, 0.9)
-        return Tip(self.between(least, 1.0), friction, contact_time=self.scaled(6e-4, 3e-3))
+        return cf.Tip(self.between(least, 1.0), friction, contact_time=self.scaled(6e-4, 3e-3))
 
-    def stroke(self, most: float = 0.7) -> Stroke:
+    def stroke(self, most: float = 0.7) -> cf.Stroke:
         side = -1 if self.often(0.4) else 1
-        return Stroke(self.scaled(0.5, 6.0), side * self.between(0.05, most))
+        return cf.Stroke(self.scaled(0.5, 6.0), side * self.between(0.05, most))
 
-    def scene(self, cue: Cue | LumpedCue, *effects: Effect, tip: Tip | None = None) -> Scene:
-        ball = Ball(self.between(0.14, 0.22), self.between(0.026, 0.031), self.between(0.35, 0.45))
-        more: tuple[Effect, ...] = ()
-        raised = any(isinstance(effect, Elevation) for effect in effects)
-        if isinstance(cue, Cue) and self.often(0.4):
-            more = (TipDome(self.between(5e-3, 12e-3)),)
+    def scene(self, cue: cf.Cue | cf.LumpedCue, *effects: cf.Effect, tip: cf.Tip | None = None) -> cf.Scene:
+        ball = cf.Ball(self.between(0.14, 0.22), self.between(0.026, 0.031), self.between(0.35, 0.45))
+        more: tuple[cf.Effect, ...] = ()
+        raised = any(isinstance(effect, cf.Elevation) for effect in effects)
+        if isinstance(cue, cf.Cue) and self.often(0.4):
+            more = (cf.TipDome(self.between(5e-3, 12e-3)),)
         elif not raised and self.often(0.4):
-            more = (TipShear(self.scaled(0.4, 2.0)),)
-        return Scene(cue, ball, tip or self.tip(), self.stroke(), (*effects, *more))
+            more = (cf.TipShear(self.scaled(0.4, 2.0)),)
+        return cf.Scene(cue, ball, tip or self.tip(), self.stroke(), (*effects, *more))
 
 
-def supported(draw: Draw) -> Scene:
+def supported(draw: Draw) -> cf.Scene:
     """A spring and a dashpot near the tip, or a clamp."""
     cue = draw.cue()
     if draw.often(0.25):
-        return draw.scene(cue, Support(cue.length, math.inf, math.inf), Support(0.2, draw.scaled(1e3, 1e5)))
+        return draw.scene(cue, cf.Support(cue.length, math.inf, math.inf), cf.Support(0.2, draw.scaled(1e3, 1e5)))
     place = draw.between(0.04, 0.4)
-    return draw.scene(cue, Support(place, draw.scaled(1e3, 1e6), draw.scaled(0.1, 50.0), draw.scaled(1.0, 50.0)))
+    return draw.scene(cue, cf.Support(place, draw.scaled(1e3, 1e6), draw.scaled(0.1, 50.0), draw.scaled(1.0, 50.0)))
 
 
-def jointed(draw: Draw) -> Scene:
+def jointed(draw: Draw) -> cf.Scene:
     """A joint that turns, or turns and shears."""
     give = draw.scaled(1e-9, 1e-6) if draw.often(0.5) else 0.0
-    return draw.scene(draw.cue(), Joint(draw.between(0.03, 0.4), draw.scaled(1e-4, 1e-1), give))
+    return draw.scene(draw.cue(), cf.Joint(draw.between(0.03, 0.4), draw.scaled(1e-4, 1e-1), give))
 
 
-def damped(draw: Draw) -> Scene:
+def damped(draw: Draw) -> cf.Scene:
     """The materials' own losses, or one for all."""
-    return draw.scene(draw.cue(), StructuralDamping(None if draw.often(0.5) else draw.scaled(1e-2, 0.3)))
+    return draw.scene(draw.cue(), cf.StructuralDamping(None if draw.often(0.5) else draw.scaled(1e-2, 0.3)))
 
 
-def all_on_the_cue(draw: Draw) -> Scene:
+def all_on_the_cue(draw: Draw) -> cf.Scene:
     """Everything across the cue at once, two of it at one place."""
-    place, lump = draw.between(0.05, 0.3), PointMass(draw.between(0.01, 0.1), draw.scaled(1e-3, 2e-2), 1e-6)
-    hand = Support(place, draw.scaled(1e3, 1e5), 0.0, draw.scaled(1.0, 30.0))
-    return draw.scene(draw.cue(), StructuralDamping(), Joint(place, draw.scaled(1e-4, 1e-2)), lump, hand)
+    place, lump = draw.between(0.05, 0.3), cf.PointMass(draw.between(0.01, 0.1), draw.scaled(1e-3, 2e-2), 1e-6)
+    hand = cf.Support(place, draw.scaled(1e3, 1e5), 0.0, draw.scaled(1.0, 30.0))
+    return draw.scene(draw.cue(), cf.StructuralDamping(), cf.Joint(place, draw.scaled(1e-4, 1e-2)), lump, hand)
 
 
-def raised(draw: Draw) -> Scene:
+def raised(draw: Draw) -> cf.Scene:
     """A raised cue with a table that rubs, slides or is smooth."""
     table = 0.0 if draw.often(0.25) else draw.scaled(0.05, 2.0)
-    cue = LumpedCue(draw.between(0.45, 0.65), draw.scaled(3e-3, 0.05)) if draw.often(0.3) else draw.cue()
-    return draw.scene(cue, Elevation(draw.between(0.02, 0.5), table))
+    cue = cf.LumpedCue(draw.between(0.45, 0.65), draw.scaled(3e-3, 0.05)) if draw.often(0.3) else draw.cue()
+    return draw.scene(cue, cf.Elevation(draw.between(0.02, 0.5), table))
 
 
-def hit_again(draw: Draw) -> Scene:
+def hit_again(draw: Draw) -> cf.Scene:
     """A lossy tip on a vibrating cue, often a heavy one, which may catch up with the ball."""
     cue = replace(draw.cue(), body_mass=draw.between(0.4, 2.0))
-    tip = Tip(draw.scaled(0.12, 0.6), draw.between(0.2, 0.9), contact_time=draw.scaled(1e-3, 8e-3))
-    scene = draw.scene(cue, SecondHit(draw.between(3e-3, 1e-2)), tip=tip)
+    tip = cf.Tip(draw.scaled(0.12, 0.6), draw.between(0.2, 0.9), contact_time=draw.scaled(1e-3, 8e-3))
+    scene = draw.scene(cue, cf.SecondHit(draw.between(3e-3, 1e-2)), tip=tip)
     return replace(scene, stroke=draw.stroke(0.9))
 
 
 class Kind(NamedTuple):
     """A kind of scene, the seeds of the daily ones, and how far any number of them may be off with ``STEPS`` steps."""
 
-    make: Callable[[Draw], Scene]
+    make: Callable[[Draw], cf.Scene]
     daily: tuple[int, ...]
     within: float
 
@@ -164,15 +142,15 @@ KINDS = {
     "SecondHit": Kind(hit_again, (6, 20, 24), 5e-4),  # 2, 4 and 2 touches
 }
 MODES, STEPS = 12, 800
-AT = Resolution(3, 14, MODES)
+AT = cf.Resolution(3, 14, MODES)
 
 
-def touches(outcome: Outcome) -> int:
+def touches(outcome: cf.Outcome) -> int:
     """How often tip and ball touched."""
     return 1 + sum(phase.press == "free" for phase in outcome.phases)
 
 
-def differences(scene: Scene, ours: Outcome, theirs: Seen) -> dict[str, float]:
+def differences(scene: cf.Scene, ours: cf.Outcome, theirs: Seen) -> dict[str, float]:
     """Of each number, over a sensible size."""
     first, speed = ours.energy["initial"], ours.ball_speed
     return {
@@ -186,9 +164,9 @@ def differences(scene: Scene, ours: Outcome, theirs: Seen) -> dict[str, float]:
     }
 
 
-def compared(scene: Scene, steps: int) -> dict[str, float]:
+def compared(scene: cf.Scene, steps: int) -> dict[str, float]:
     """Differences of a strike from its small steps; both must have touched equally often."""
-    ours, theirs = strike(scene, AT), struck(scene, MODES, steps)
+    ours, theirs = cf.strike(scene, AT), struck(scene, MODES, steps)
     assert touches(ours) == len(theirs.touches)
     return differences(scene, ours, theirs)
 
@@ -209,8 +187,8 @@ def test_strikes_of_each_kind(kind: str, seeds: Iterable[int], steps: int) -> No
 def test_the_beam_rings_like_ours(kind: str) -> None:
     """Two discretisations of one beam: frequencies of the lowest modes, and how their tips move."""
     scene = KINDS[kind].make(Draw(1))
-    assert isinstance(scene.cue, Cue)
-    ours = modes(scene.cue, MODES, effects=scene.cue_effects, at=AT)
+    assert isinstance(scene.cue, cf.Cue)
+    ours = cf.modes(scene.cue, MODES, effects=scene.cue_effects, at=AT)
     theirs = bending(scene.cue, scene.cue_effects, MODES + 2)
     moving = theirs.omega > 0
     count = min(MODES, int(moving.sum()))
@@ -222,8 +200,8 @@ def test_the_beam_rings_like_ours(kind: str) -> None:
 def test_small_steps_come_nearer_with_their_square() -> None:
     """A lossless tip that slides throughout: what is left in the vibrations. Where in its step the contact ends is
     chance, so that the error falls between two parabolas."""
-    tip = Tip(1.0, 0.1, contact_time=1e-3)
-    scene = Scene(Draw(0).cue(), Ball(), tip, Stroke(1.0, 0.5), (TipDome(9e-3), Joint(0.1, 1e-3)))
-    assert strike(scene, AT).regime == "miscue"
+    tip = cf.Tip(1.0, 0.1, contact_time=1e-3)
+    scene = cf.Scene(Draw(0).cue(), cf.Ball(), tip, cf.Stroke(1.0, 0.5), (cf.TipDome(9e-3), cf.Joint(0.1, 1e-3)))
+    assert cf.strike(scene, AT).regime == "miscue"
     for steps in (250, 500, 1000, 2000):
         assert 0.05 < compared(scene, steps)["vibration"] * steps**2 < 1.0

@@ -7,17 +7,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from cuefem import (
-    Ball,
-    LumpedCue,
-    PowerLawTip,
-    RollingContact,
-    Scene,
-    Stroke,
-    Tip,
-    TipDome,
-    strike,
-)
+import cuefem as cf
 from cuefem.beam.tip import lumped_tip_modes
 from cuefem.contact.strike import strike_modes
 from tests.helpers.strike_scenes import KIM
@@ -32,13 +22,13 @@ STEPPED = 1e-9
 @pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 3.7])
 @pytest.mark.parametrize(("speed", "e"), [(0.2, 0.4), (1.0, 0.0), (7.0, 1.0)])
 def test_head_on_contact_time_falls_with_speed(exponent, speed, e):
-    scene = Scene(
-        LumpedCue(0.5, 0.005),
-        tip=Tip(e, contact_time=1.3e-3),
-        stroke=Stroke(speed),
-        effects=(PowerLawTip(exponent, speed=2.0),),
+    scene = cf.Scene(
+        cf.LumpedCue(0.5, 0.005),
+        tip=cf.Tip(e, contact_time=1.3e-3),
+        stroke=cf.Stroke(speed),
+        effects=(cf.PowerLawTip(exponent, speed=2.0),),
     )
-    outcome = strike(scene)
+    outcome = cf.strike(scene)
     time = 1.3e-3 * (speed / 2.0) ** ((1 - exponent) / (1 + exponent))
     assert abs(outcome.duration / time - 1) < STEPPED
     Q0 = 0.5 / 0.210
@@ -55,7 +45,7 @@ class Plane:
     turns at its rate without the compression, as RollingContact has it. Newton's equations with F_t = mu F_n.
     """
 
-    def __init__(self, scene: Scene, *, true: bool, dome: float = 0.0):
+    def __init__(self, scene: cf.Scene, *, true: bool, dome: float = 0.0):
         self.scene, self.true, self.reach = scene, true, scene.ball.radius + dome
         self.masses = np.array([scene.cue.mass, scene.cue.end_mass])
         self.phi = asin(scene.stroke.offset)
@@ -108,10 +98,10 @@ class Plane:
 )
 def test_turning_contact_in_cartesian_coordinates(offset, friction, dome):
     """A dome lengthens the line of centres; the end section of a lumped cue does not turn."""
-    cue = LumpedCue(0.54, 0.02)
-    scene = Scene(cue, Ball(), Tip(0.8, friction, 2e-3), Stroke(1.5, offset))
-    domed = replace(scene, cue=KIM, effects=(RollingContact(), *[TipDome(dome)] * (dome > 0)))
+    cue = cf.LumpedCue(0.54, 0.02)
+    scene = cf.Scene(cue, cf.Ball(), cf.Tip(0.8, friction, 2e-3), cf.Stroke(1.5, offset))
+    domed = replace(scene, cue=KIM, effects=(cf.RollingContact(), *[cf.TipDome(dome)] * (dome > 0)))
     outcome = strike_modes(domed, lumped_tip_modes(cue))
     assert {phase.grip for phase in outcome.phases} == {"slip"}
     assert abs(outcome.squirt + Plane(scene, true=False, dome=dome).squirt()) < 1e-8
-    assert abs(outcome.squirt - strike(scene).squirt) > 1e-3  # it is no small thing here
+    assert abs(outcome.squirt - cf.strike(scene).squirt) > 1e-3  # it is no small thing here

@@ -8,114 +8,101 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cuefem import (
-    Ball,
-    Elevation,
-    LumpedCue,
-    Resolution,
-    Scene,
-    SecondHit,
-    Stroke,
-    Tip,
-    TipDome,
-    TipShear,
-    batch_strike,
-    impulse,
-    leather_modulus,
-    place,
-    strike,
-)
+import cuefem as cf
 from cuefem.contact.place import offset_of_axis
 from tests.helpers.leather_scenes import leather_scene
 from tests.helpers.refusals import refuses
 from tests.helpers.strike_scenes import KIM, kim_scene
 
 TWO: Any = np.array([1.0, 2.0])
-THREE_SHAPES = Scene(
-    LumpedCue(0.54, np.full(3, 0.003)), Ball(), Tip(0.75, np.full((2, 1), 0.7)), Stroke(1.0, np.zeros(4))
+THREE_SHAPES = cf.Scene(
+    cf.LumpedCue(0.54, np.full(3, 0.003)), cf.Ball(), cf.Tip(0.75, np.full((2, 1), 0.7)), cf.Stroke(1.0, np.zeros(4))
 )
-BALL, NORTH = Ball(0.17, 0.0286), (0.0, 1.0, 0.0)
+BALL, NORTH = cf.Ball(0.17, 0.0286), (0.0, 1.0, 0.0)
 R = BALL.radius
 GOOD = (0.3 * R, R)
-STRUCK = impulse(Scene(LumpedCue(0.54, 0.004), BALL, Tip(0.75, 0.7), Stroke(2.0, 0.3)))
+STRUCK = cf.impulse(cf.Scene(cf.LumpedCue(0.54, 0.004), BALL, cf.Tip(0.75, 0.7), cf.Stroke(2.0, 0.3)))
 NEARLY_DEAD = "Tip.restitution must be 0, or in [0.0001, 1], where a contact is followed in time; got "
 
 
-def placed(point: Any = GOOD, direction: Any = NORTH, ball: Ball = BALL) -> Callable[[], object]:
-    return lambda: place(STRUCK, point, direction, ball=ball)
+def placed(point: Any = GOOD, direction: Any = NORTH, ball: cf.Ball = BALL) -> Callable[[], object]:
+    return lambda: cf.place(STRUCK, point, direction, ball=ball)
 
 
-def struck(scene: Scene, at: Resolution | None = None, **changes: Any) -> Callable[[], object]:
-    return lambda: strike(replace(scene, **changes), at)
+def struck(scene: cf.Scene, at: cf.Resolution | None = None, **changes: Any) -> Callable[[], object]:
+    return lambda: cf.strike(replace(scene, **changes), at)
 
 
 ARRAYS: dict[str, dict[str, Any]] = {
-    "Stroke.offset": {"stroke": Stroke(offset=TWO / 10)},
-    "Stroke.speed": {"stroke": Stroke(speed=TWO)},
-    "Ball.mass": {"ball": Ball(mass=TWO / 10)},
-    "Ball.inertia": {"ball": Ball(inertia=TWO / 4)},
-    "Ball.radius": {"ball": Ball(radius=TWO / 50)},
-    "Tip.friction": {"tip": Tip(friction=TWO / 4)},
-    "Tip.restitution": {"tip": Tip(TWO / 4)},
+    "Stroke.offset": {"stroke": cf.Stroke(offset=TWO / 10)},
+    "Stroke.speed": {"stroke": cf.Stroke(speed=TWO)},
+    "Ball.mass": {"ball": cf.Ball(mass=TWO / 10)},
+    "Ball.inertia": {"ball": cf.Ball(inertia=TWO / 4)},
+    "Ball.radius": {"ball": cf.Ball(radius=TWO / 50)},
+    "Tip.friction": {"tip": cf.Tip(friction=TWO / 4)},
+    "Tip.restitution": {"tip": cf.Tip(TWO / 4)},
 }
 CALLS: list[tuple[Callable[[], object], str]] = [
-    (lambda: LumpedCue(0.25, 0.25, 4.0), "LumpedCue.coupling must be in (-4.0, 4.0) 1/kg; got 4.0"),
+    (lambda: cf.LumpedCue(0.25, 0.25, 4.0), "LumpedCue.coupling must be in (-4.0, 4.0) 1/kg; got 4.0"),
     (
-        lambda: LumpedCue(np.array([0.25, 1.0]), 0.25, np.array([2.0, -2.5])),
+        lambda: cf.LumpedCue(np.array([0.25, 1.0]), 0.25, np.array([2.0, -2.5])),
         "LumpedCue.coupling must be in (-2.0, 2.0) 1/kg; got -2.5 at index 1",
     ),
     (
-        lambda: impulse(THREE_SHAPES),
+        lambda: cf.impulse(THREE_SHAPES),
         "array fields of a scene must broadcast together; got shapes LumpedCue.end_mass (3,), Tip.friction (2, 1), "
         "Stroke.offset (4,)",
     ),
     (
-        lambda: impulse(Scene(LumpedCue(np.ones(2), np.ones(3)))),
+        lambda: cf.impulse(cf.Scene(cf.LumpedCue(np.ones(2), np.ones(3)))),
         "got shapes LumpedCue.mass (2,), LumpedCue.end_mass (3,)",
     ),
-    (lambda: impulse(Scene(KIM, Ball(mass=TWO / 10))), "must be one number; got an array of shape (2,)"),
-    (lambda: impulse(Scene(KIM, tip=Tip(TWO / 4))), "Tip.restitution must be one number"),
-    (lambda: Scene("cue"), "TypeError: Scene.cue must be a Cue or LumpedCue; got 'cue'"),
-    (lambda: Scene(LumpedCue(0.5, 0.003), tip=0.7), "TypeError: Scene.tip must be a Tip"),
+    (lambda: cf.impulse(cf.Scene(KIM, cf.Ball(mass=TWO / 10))), "must be one number; got an array of shape (2,)"),
+    (lambda: cf.impulse(cf.Scene(KIM, tip=cf.Tip(TWO / 4))), "Tip.restitution must be one number"),
+    (lambda: cf.Scene("cue"), "TypeError: Scene.cue must be a Cue or LumpedCue; got 'cue'"),
+    (lambda: cf.Scene(cf.LumpedCue(0.5, 0.003), tip=0.7), "TypeError: Scene.tip must be a Tip"),
     (
-        lambda: impulse(Scene(LumpedCue(0.54, 0.005), effects=(TipShear(0.75),))),
+        lambda: cf.impulse(cf.Scene(cf.LumpedCue(0.54, 0.005), effects=(cf.TipShear(0.75),))),
         "impulse takes a LumpedCue without effects",
     ),
     # strikes
     *[(struck(kim_scene(), **part), field) for field, part in ARRAYS.items()],
-    (struck(Scene(LumpedCue(TWO / 4, 0.003))), "LumpedCue.mass"),
-    (struck(Scene(LumpedCue(0.5, TWO / 300))), "LumpedCue.end_mass"),
+    (struck(cf.Scene(cf.LumpedCue(TWO / 4, 0.003))), "LumpedCue.mass"),
+    (struck(cf.Scene(cf.LumpedCue(0.5, TWO / 300))), "LumpedCue.end_mass"),
     (struck(leather_scene(speed=TWO)), "Stroke.speed must be one number; got an array of shape (2,)"),
     (struck(leather_scene(e=TWO / 4)), "Tip.restitution must be one number; got an array of shape (2,)"),
     (struck(leather_scene(e=0.05)), "LeatherTip; got 0.05: leather that gives back less rings on"),
     (struck(leather_scene(speed=60.0)), "mm): give LeatherTip a larger height or E, or Stroke a lower speed"),
     (struck(kim_scene(restitution=9e-5)), NEARLY_DEAD + "9e-05: such"),
-    (struck(kim_scene(restitution=9e-5), effects=(SecondHit(),)), "Tip.restitution in [0.0001, 1]; got 9e-05"),
-    (struck(kim_scene(restitution=0.0), effects=(Elevation(0.1),)), "a Tip.restitution in (0, 1]; got 0.0"),
-    (lambda: Resolution(4, 8, 0), "Resolution.modes"),
-    (struck(kim_scene(), Resolution(2, 3, 500)), "more elements or order"),
+    (struck(kim_scene(restitution=9e-5), effects=(cf.SecondHit(),)), "Tip.restitution in [0.0001, 1]; got 9e-05"),
+    (struck(kim_scene(restitution=0.0), effects=(cf.Elevation(0.1),)), "a Tip.restitution in (0, 1]; got 0.0"),
+    (lambda: cf.Resolution(4, 8, 0), "Resolution.modes"),
+    (struck(kim_scene(), cf.Resolution(2, 3, 500)), "more elements or order"),
     *[
-        (lambda t=time: strike(kim_scene(), Resolution(2, 8, 4)).history(t), "History takes times in [0, ")
+        (lambda t=time: cf.strike(kim_scene(), cf.Resolution(2, 8, 4)).history(t), "History takes times in [0, ")
         for time in (-1e-9, 1.0, nan)
     ],
     # many strikes
-    (lambda: batch_strike(kim_scene()), "TypeError: batch_strike scenes must be a sequence of Scene; got one Scene: "),
-    (lambda: batch_strike(3), "TypeError: batch_strike scenes must be a sequence of Scene; got 3"),
-    (lambda: batch_strike([kim_scene(), 3]), "TypeError: batch_strike scenes must be a Scene"),
-    (lambda: batch_strike([]), "batch_strike takes one scene or more; got none"),
-    (lambda: batch_strike([kim_scene()], threads=0), "batch_strike threads must be"),
     (
-        lambda: batch_strike([kim_scene(), replace(kim_scene(restitution=0.0), effects=(SecondHit(),))]),
+        lambda: cf.batch_strike(kim_scene()),
+        "TypeError: batch_strike scenes must be a sequence of Scene; got one Scene: ",
+    ),
+    (lambda: cf.batch_strike(3), "TypeError: batch_strike scenes must be a sequence of Scene; got 3"),
+    (lambda: cf.batch_strike([kim_scene(), 3]), "TypeError: batch_strike scenes must be a Scene"),
+    (lambda: cf.batch_strike([]), "batch_strike takes one scene or more; got none"),
+    (lambda: cf.batch_strike([kim_scene()], threads=0), "batch_strike threads must be"),
+    (
+        lambda: cf.batch_strike([kim_scene(), replace(kim_scene(restitution=0.0), effects=(cf.SecondHit(),))]),
         "scene 1: SecondHit takes a Tip.restitution",
     ),
     # a measured blow
-    (lambda: leather_modulus(leather_scene(), TWO), "leather_modulus contact_time must be one number; got an array"),
-    (lambda: leather_modulus(leather_scene(), 0.0), "leather_modulus contact_time must be in [1e-6, 10] s; got 0"),
+    (lambda: cf.leather_modulus(leather_scene(), TWO), "leather_modulus contact_time must be one number; got an array"),
+    (lambda: cf.leather_modulus(leather_scene(), 0.0), "leather_modulus contact_time must be in [1e-6, 10] s; got 0"),
     (
-        lambda: leather_modulus(replace(leather_scene(), effects=(TipDome(0.01),)), 1e-3),
+        lambda: cf.leather_modulus(replace(leather_scene(), effects=(cf.TipDome(0.01),)), 1e-3),
         "Scene.effects must hold a LeatherTip; got none",
     ),
-    (lambda: leather_modulus(leather_scene(), 9e-3), "further than its law is known"),
+    (lambda: cf.leather_modulus(leather_scene(), 9e-3), "further than its law is known"),
     # the table's frame
     (placed((R, 1.5 * R)), "R = 0.0286 m; got (0.0286, 0.0429"),
     (placed((nan, R)), "point must be in (-inf, inf) m; got nan at index 0"),
@@ -127,7 +114,7 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (placed((0.0, 0.2 * R), (0, 0.1, -1.0)), "point must be on the side"),
     (placed((0.31 * R, R)), "0.31 or -0.31; got one at 0.3"),
     (placed([GOOD, (0.2 * R, R)]), "got one at 0.3 at index 1"),
-    (placed(ball=Ball()), "got one at 0.3"),
+    (placed(ball=cf.Ball()), "got one at 0.3"),
     (lambda: offset_of_axis([0.01, 0.04], 0.0095, ball=BALL), "got 0.04 at index 1"),
     (lambda: offset_of_axis(nan, 0.0095), "axis_distance must be in "),
     (lambda: offset_of_axis(0.01, -1.0), "dome_radius must be in [0, inf) m; got -1"),
@@ -140,7 +127,7 @@ def test_calls(ask: Callable[[], object], message: str) -> None:
 
 
 def test_what_is_just_allowed() -> None:
-    assert impulse(Scene(LumpedCue(1, 1), Ball(1, 1, 1), Tip(0, inf), Stroke(1, 0))).cue_speed == 0.5
+    assert cf.impulse(cf.Scene(cf.LumpedCue(1, 1), cf.Ball(1, 1, 1), cf.Tip(0, inf), cf.Stroke(1, 0))).cue_speed == 0.5
 
 
 @pytest.mark.parametrize("limit", [("laws.LONGEST", 0.3), ("solve.MOST_PHASES", 0), ("solve.MOST_STEPS", 1)])
@@ -149,4 +136,4 @@ def test_a_strike_that_does_not_separate_says_so_with_its_state(monkeypatch, lim
     monkeypatch.setattr(f"cuefem.contact.{name}", most)
     message = r"does not leave the cue: after .* s and \d+ phases .*v_t = .*v_n = .*pressed by .* m; check restitution"
     with pytest.raises(RuntimeError, match=message):
-        strike(Scene(LumpedCue(0.54, 0.003), stroke=Stroke(offset=0.3)))
+        cf.strike(cf.Scene(cf.LumpedCue(0.54, 0.003), stroke=cf.Stroke(offset=0.3)))

@@ -3,16 +3,10 @@
 from __future__ import annotations
 
 import asyncio
-import re
-import urllib.error
-import urllib.request
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import pytest
-
-from tests.helpers.designer_browser import served
 
 pytest.importorskip("nicegui", reason="needs NiceGUI: pip install '.[designer]' in the clone")
 from cuefem.designer.door import LARGEST_FILE, REJECTED, Door, file_name
@@ -98,35 +92,3 @@ def test_names() -> None:
     assert file_name("../../etc/cue.toml") == "cue.toml"
     assert file_name("C:\\cues\\Löffel.toml") == "Löffel.toml"
     assert file_name("a" * 250 + ".toml") == "a" * 250 + ".toml"
-
-
-FORM = '--X\r\nContent-Disposition: form-data; name="f"{}\r\n\r\nx = 1\r\n--X--\r\n'
-FORMS = {
-    '; filename="cue.toml"': 200,
-    '; filename=".."': 400,
-    '; filename=""': 400,
-    f'; filename="{"a" * 300}.toml"': 400,
-    "": 400,
-}
-
-
-@pytest.mark.heavy
-def test_a_served_page_answers_every_form_and_its_log_stays_empty(tmp_path: Path) -> None:
-    with served(tmp_path) as address:  # it must say nothing on stderr
-        page = urllib.request.urlopen(address, timeout=60).read().decode()
-        found = re.search(r"_nicegui/client/[-0-9a-f]+/upload/\d+", page)
-        assert found is not None
-
-        def status(body: bytes, **headers: str) -> int:
-            kind = {"Content-Type": "multipart/form-data; boundary=X"} | headers
-            try:
-                return int(
-                    urllib.request.urlopen(urllib.request.Request(address + found[0], body, kind), timeout=60).status
-                )
-            except urllib.error.HTTPError as error:
-                return error.code
-
-        for named, expected in FORMS.items():
-            assert status(FORM.format(named).encode()) == expected
-        assert status(FORM.format('; filename="cue.toml"').encode(), Origin="http://elsewhere.example") == 403
-        assert status(b"") == 400

@@ -7,18 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cuefem import (
-    AxialWaves,
-    Ball,
-    Cue,
-    Outcome,
-    Scene,
-    Segment,
-    Stroke,
-    Tip,
-    load,
-    strike,
-)
+import cuefem as cf
 from cuefem.beam.modes import Modes, solve
 from cuefem.beam.system import assemble
 from cuefem.beam.waves import mesh_for
@@ -27,30 +16,30 @@ from cuefem.materials import MATERIALS
 
 MESHES = Path(__file__).parents[2] / "meshes"
 MAPLE = MATERIALS["hard maple"].material
-TIP = Tip(0.73, 0.7, contact_time=1.1e-3)
+TIP = cf.Tip(0.73, 0.7, contact_time=1.1e-3)
 
 
 @cache
-def drawn(name: str) -> Cue:
+def drawn(name: str) -> cf.Cue:
     """A reference cue."""
-    cue = load(MESHES / f"{name}.toml")
-    assert isinstance(cue, Cue)
+    cue = cf.load(MESHES / f"{name}.toml")
+    assert isinstance(cue, cf.Cue)
     return cue
 
 
-def head_on(cue: Cue) -> Scene:
-    return Scene(cue, Ball(), TIP, Stroke(1.0, 0.0), (AxialWaves(),))
+def head_on(cue: cf.Cue) -> cf.Scene:
+    return cf.Scene(cue, cf.Ball(), TIP, cf.Stroke(1.0, 0.0), (cf.AxialWaves(),))
 
 
-def seen(outcome: Outcome, cue: Cue) -> tuple[float, float]:
+def seen(outcome: cf.Outcome, cue: cf.Cue) -> tuple[float, float]:
     """Contact time, s, and the restitution that the ball's speed shows, of a cue that is rigid along its axis."""
-    return outcome.duration, outcome.ball_speed * (1 + Ball().mass / cue.mass) - 1
+    return outcome.duration, outcome.ball_speed * (1 + cf.Ball().mass / cue.mass) - 1
 
 
 # --- the leather is part of the tip's spring ------------------------------------------------------------------------
 
 
-def stepped(cue: Cue, pieces: int = 200) -> tuple[float, float]:
+def stepped(cue: cf.Cue, pieces: int = 200) -> tuple[float, float]:
     """Contact time, s, and the restitution seen: a chain of masses and springs behind the tip's spring, in small
     steps."""
     x = np.linspace(cue.leather, cue.length, pieces + 1)
@@ -68,11 +57,11 @@ def stepped(cue: Cue, pieces: int = 200) -> tuple[float, float]:
         most = max(most, pressed)
         force = max(k * most - k / e**2 * (most - pressed), 0.0)
         if time > 0 and force == 0:
-            return time, ball * (1 + Ball().mass / cue.mass) - 1
+            return time, ball * (1 + cf.Ball().mass / cue.mass) - 1
         held = np.r_[0.0, springs * squeeze] - np.r_[springs * squeeze, 0.0]
         held[0] -= force
         v += dt * held / m
-        ball += dt * force / Ball().mass
+        ball += dt * force / cf.Ball().mass
         squeeze += dt * (v[:-1] - v[1:])
         pressed += dt * (v[0] - ball)
         time += dt
@@ -82,7 +71,7 @@ def stepped(cue: Cue, pieces: int = 200) -> tuple[float, float]:
 def test_what_the_wood_adds_is_what_a_chain_of_masses_says(name, T, e):
     """The remainder, of 1.1 ms and 0.73: about 0.16 ms and 0.05."""
     cue = drawn(name)
-    found = seen(strike(head_on(cue)), cue)
+    found = seen(cf.strike(head_on(cue)), cue)
     assert found == pytest.approx(stepped(cue), rel=2e-3)
     assert found == pytest.approx((T, e), rel=5e-4)
 
@@ -94,7 +83,7 @@ def test_what_the_wood_adds_is_what_a_chain_of_masses_says(name, T, e):
 def test_with_its_tail_the_rod_gives_way_as_much_as_all_of_its_modes(below):
     """A free uniform rod on springs of s per mass under a steady force at its end: the sum of along^2/(omega^2 + s),
     for the s = 10 (c/L)^2 with which the tail is made, is coth(L sqrt(s)/c) / sqrt(s EA rhoA), rigid motion and all."""
-    cue = Cue((Segment(0.7, 0.012, 0.012, MAPLE),))
+    cue = cf.Cue((cf.Segment(0.7, 0.012, 0.012, MAPLE),))
     system, section = assemble(cue, elements=8, order=12), cue.section(0.0)
     s = 10 * section.EA / section.rhoA / cue.length**2
     exact = 1 / np.tanh(math.sqrt(10)) / np.sqrt(s * section.EA * section.rhoA) - 1 / (cue.mass * s)

@@ -7,23 +7,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from cuefem import (
-    AxialWaves,
-    Cue,
-    Joint,
-    LumpedCue,
-    Material,
-    PointMass,
-    Resolution,
-    Scene,
-    Segment,
-    StructuralDamping,
-    Support,
-    TipDome,
-    impulse,
-    modes,
-    strike,
-)
+import cuefem as cf
 from cuefem.beam.system import assemble
 from cuefem.contact.strike import strike_modes
 from cuefem.effects import Effect
@@ -36,12 +20,12 @@ HERE = 0.213  # m, between the nodes of every mesh used here
 
 
 def squirt(*effects: Effect, offset: float = 0.3) -> float:
-    return strike(replace(kim_scene(offset), effects=effects), KIM_AT).squirt
+    return cf.strike(replace(kim_scene(offset), effects=effects), KIM_AT).squirt
 
 
 # --- limits in which an effect vanishes -------------------------------------------------------------------------------
 
-NODE = PointMass(HERE, 0.0)  # a node alone: the mesh's error is the same with and without the effect
+NODE = cf.PointMass(HERE, 0.0)  # a node alone: the mesh's error is the same with and without the effect
 
 
 # --- supports ---------------------------------------------------------------------------------------------------------
@@ -51,7 +35,7 @@ CLAMPED = [30.0962060889, 135.9070113953]  # Hz, Kim's isotropic cone clamped at
 
 @pytest.mark.parametrize(("stiffness", "within"), [(inf, 1e-11), (1e12, 1e-7)])
 def test_a_clamp_at_the_butt(stiffness, within):
-    found = modes(isotropic_kim(), 2, effects=(Support(0.7, stiffness, stiffness),))
+    found = cf.modes(isotropic_kim(), 2, effects=(cf.Support(0.7, stiffness, stiffness),))
     np.testing.assert_allclose(found.frequencies, CLAMPED, rtol=within)
     assert found.rigid == 0
 
@@ -70,7 +54,7 @@ def test_a_joint_is_a_spring_in_series(compliances, order):
     """A force at the tip of a cue clamped at its butt bends it by the joint's lever squared, and shears it, more."""
 
     def give(*effects: Effect) -> float:
-        system = assemble(KIM, elements=3, order=order, effects=(Support(0.7, inf, inf), *effects))
+        system = assemble(KIM, elements=3, order=order, effects=(cf.Support(0.7, inf, inf), *effects))
         force = np.zeros(system.mesh.unknowns)
         force[0] = 1.0
         moved = np.linalg.solve(system.free.T @ system.K @ system.free, system.free.T @ force)
@@ -78,27 +62,27 @@ def test_a_joint_is_a_spring_in_series(compliances, order):
 
     rotational, shear = compliances
     extra = HERE**2 * rotational + shear
-    assert abs(give(Joint(HERE, *compliances)) / (give(NODE) + extra) - 1) < 1e-11
+    assert abs(give(cf.Joint(HERE, *compliances)) / (give(NODE) + extra) - 1) < 1e-11
 
 
 def test_a_hinge_in_the_middle_leaves_odd_modes_and_makes_even_ones_of_two_halves():
     """Even modes of a hinged rod: each half is free at both ends; odd ones have no moment in the middle anyway."""
-    whole, half = Cue((Segment(0.8, 0.012, 0.012, MAPLE),)), Cue((Segment(0.4, 0.012, 0.012, MAPLE),))
-    at = Resolution(2, 20, 7)
-    hinged = modes(whole, 7, effects=(Joint(0.4, rotational_compliance=1e12),), at=at).frequencies
-    odd, even = modes(whole, 6, at=at).frequencies[1::2], modes(half, 3, at=at).frequencies
+    whole, half = cf.Cue((cf.Segment(0.8, 0.012, 0.012, MAPLE),)), cf.Cue((cf.Segment(0.4, 0.012, 0.012, MAPLE),))
+    at = cf.Resolution(2, 20, 7)
+    hinged = cf.modes(whole, 7, effects=(cf.Joint(0.4, rotational_compliance=1e12),), at=at).frequencies
+    odd, even = cf.modes(whole, 6, at=at).frequencies[1::2], cf.modes(half, 3, at=at).frequencies
     assert hinged[0] < 1e-3  # the hinge's own swing
     np.testing.assert_allclose(hinged[1:], np.sort([*odd, *even]), rtol=1e-11)
 
 
 # --- axial waves ------------------------------------------------------------------------------------------------------
 
-ROD = Cue((Segment(0.7, 0.012, 0.012, MAPLE),))
+ROD = cf.Cue((cf.Segment(0.7, 0.012, 0.012, MAPLE),))
 SPEED = (MAPLE.E / MAPLE.rho) ** 0.5
 
 
-def rods(cue: Cue, *masses: tuple[float, float]) -> np.ndarray:
-    system = assemble(cue, elements=4, order=16, effects=tuple(PointMass(x, 0.0) for x, _ in masses))
+def rods(cue: cf.Cue, *masses: tuple[float, float]) -> np.ndarray:
+    system = assemble(cue, elements=4, order=16, effects=tuple(cf.PointMass(x, 0.0) for x, _ in masses))
     return rod_modes(system, cue, masses, below=2 * pi * 3e4).omega
 
 
@@ -132,29 +116,32 @@ def test_a_cone_s_rod_modes():
 # --- structural damping -----------------------------------------------------------------------------------------------
 
 
-def lossy_cue(shell: float = 1.0, core: float = 1.0) -> Cue:
+def lossy_cue(shell: float = 1.0, core: float = 1.0) -> cf.Cue:
     """A bored shaft with a core and a plain one behind it; the factors scale both moduli of two of its materials."""
-    plastic, foam = Material(3e9 * shell, 1.1e9 * shell, 1200.0, 0.05), Material(1e9 * core, 4e8 * core, 300.0, 0.2)
+    plastic, foam = (
+        cf.Material(3e9 * shell, 1.1e9 * shell, 1200.0, 0.05),
+        cf.Material(1e9 * core, 4e8 * core, 300.0, 0.2),
+    )
     wood = replace(MAPLE, loss=0.012)
-    front = Segment(0.3, 0.0125, 0.0125, plastic, 0.008, 0.009, core=foam, kappa=0.9)
-    return Cue((front, Segment(0.4, 0.0125, 0.02, wood, kappa=0.9)))
+    front = cf.Segment(0.3, 0.0125, 0.0125, plastic, 0.008, 0.009, core=foam, kappa=0.9)
+    return cf.Cue((front, cf.Segment(0.4, 0.0125, 0.02, wood, kappa=0.9)))
 
 
-def modal_loss(cue: Cue, effect: StructuralDamping, **more: float) -> np.ndarray:
+def modal_loss(cue: cf.Cue, effect: cf.StructuralDamping, **more: float) -> np.ndarray:
     """Loss factors of the tip modes: damping over frequency."""
-    tip = tip_modes_of(Scene(cue, effects=(effect, *more.get("effects", ()))), Resolution(3, 16, 12))
+    tip = tip_modes_of(cf.Scene(cue, effects=(effect, *more.get("effects", ()))), cf.Resolution(3, 16, 12))
     assert np.count_nonzero(tip.damping - np.diag(np.diag(tip.damping))) == 0
     vibrating = tip.omega > 0
     assert np.all(np.diag(tip.damping)[~vibrating] == 0)
     return np.diag(tip.damping)[vibrating] / tip.omega[vibrating]
 
 
-@pytest.mark.parametrize("effects", [(), (AxialWaves(),), (Joint(0.3, 1e-3),)])
+@pytest.mark.parametrize("effects", [(), (cf.AxialWaves(),), (cf.Joint(0.3, 1e-3),)])
 def test_loss_factors_are_those_of_the_strain_energy(effects):
     """A material's share of a mode's strain energy is what its moduli do to the frequency: d ln omega^2 / d ln E."""
 
     def squares(shell: float, core: float) -> np.ndarray:
-        return tip_modes_of(Scene(lossy_cue(shell, core), effects=effects), Resolution(3, 16, 12)).omega ** 2
+        return tip_modes_of(cf.Scene(lossy_cue(shell, core), effects=effects), cf.Resolution(3, 16, 12)).omega ** 2
 
     h = 1e-4
     shares = []
@@ -163,23 +150,23 @@ def test_loss_factors_are_those_of_the_strain_energy(effects):
         moving = up > 0
         shares.append((np.log(up[moving]) - np.log(down[moving])) / (2 * h))
     front, inside = shares
-    if not any(isinstance(effect, Joint) for effect in effects):  # whose energy is lost nowhere
+    if not any(isinstance(effect, cf.Joint) for effect in effects):  # whose energy is lost nowhere
         expected = 0.05 * front + 0.2 * inside + 0.012 * (1 - front - inside)
-        found = modal_loss(lossy_cue(), StructuralDamping(), effects=effects)
+        found = modal_loss(lossy_cue(), cf.StructuralDamping(), effects=effects)
         np.testing.assert_allclose(found, expected, rtol=1e-5)
         assert np.ptp(found) > 1e-3
     else:
-        found = modal_loss(lossy_cue(), StructuralDamping(0.05), effects=effects)
+        found = modal_loss(lossy_cue(), cf.StructuralDamping(0.05), effects=effects)
         assert np.all(found < 0.05)
         assert found.min() < 0.05 * 0.99
 
 
 def test_one_material_s_loss_is_every_mode_s():
-    np.testing.assert_allclose(modal_loss(kim(), StructuralDamping(0.012)), 0.012, rtol=1e-12)
+    np.testing.assert_allclose(modal_loss(kim(), cf.StructuralDamping(0.012)), 0.012, rtol=1e-12)
     wood = replace(kim().segments[0].material, loss=0.012)
-    lossy = Cue((replace(kim().segments[0], material=wood),))
-    np.testing.assert_allclose(modal_loss(lossy, StructuralDamping()), 0.012, rtol=1e-12)
-    assert np.all(modal_loss(kim(), StructuralDamping()) == 0)
+    lossy = cf.Cue((replace(kim().segments[0], material=wood),))
+    np.testing.assert_allclose(modal_loss(lossy, cf.StructuralDamping()), 0.012, rtol=1e-12)
+    assert np.all(modal_loss(kim(), cf.StructuralDamping()) == 0)
 
 
 # --- dome -------------------------------------------------------------------------------------------------------------
@@ -188,13 +175,13 @@ def test_one_material_s_loss_is_every_mode_s():
 RADIUS = 0.012
 
 
-def rigid_domed(offset: float) -> tuple[Cue, LumpedCue]:
+def rigid_domed(offset: float) -> tuple[cf.Cue, cf.LumpedCue]:
     """A stub, and its inverse mass at the contact as a rigid body's with a dome.
 
     With u forward along the axis and w across it the contact lies from the centre of mass at x forward to the apex,
     r back to the dome's centre, and r along n = (cos phi, -sin phi): rotation moves it by (-w, u) of that.
     """
-    stub = Cue((Segment(0.06, 0.012, 0.016, MAPLE),))
+    stub = cf.Cue((cf.Segment(0.06, 0.012, 0.016, MAPLE),))
     x = stub.balance_point
     s, weights = np.polynomial.legendre.leggauss(10)
     s = (s + 1) * 0.03
@@ -204,7 +191,7 @@ def rigid_domed(offset: float) -> tuple[Cue, LumpedCue]:
     forward, aside = x - RADIUS + RADIUS * np.cos(phi), -RADIUS * np.sin(phi)
     u, w = -aside, forward
     along, across = 1 / stub.mass + u**2 / inertia, 1 / stub.mass + w**2 / inertia
-    return stub, LumpedCue(1 / along, 1 / across, u * w / inertia)
+    return stub, cf.LumpedCue(1 / along, 1 / across, u * w / inertia)
 
 
 @pytest.mark.parametrize("offset", [0.05, 0.3, 0.6, -0.3])
@@ -212,12 +199,12 @@ def rigid_domed(offset: float) -> tuple[Cue, LumpedCue]:
 def test_a_rigid_body_with_a_dome_is_a_lumped_cue_with_coupling(offset, restitution, friction):
     stub, lumped = rigid_domed(abs(offset))
     scene = replace(kim_scene(offset, restitution=restitution, friction=friction), cue=stub)
-    domed = replace(scene, effects=(TipDome(RADIUS),))
-    coupled = strike_modes(domed, tip_modes_of(domed, Resolution(1, 4, 1)).lowest(3))
-    expected = impulse(replace(scene, cue=lumped))
+    domed = replace(scene, effects=(cf.TipDome(RADIUS),))
+    coupled = strike_modes(domed, tip_modes_of(domed, cf.Resolution(1, 4, 1)).lowest(3))
+    expected = cf.impulse(replace(scene, cue=lumped))
     assert abs(coupled.squirt - expected.squirt) < 1e-9
     np.testing.assert_allclose(coupled.impulse, expected.impulse, rtol=1e-9, atol=1e-12)
-    flat = impulse(replace(scene, cue=replace(lumped, coupling=0.0)))
+    flat = cf.impulse(replace(scene, cue=replace(lumped, coupling=0.0)))
     assert abs(expected.squirt - flat.squirt) > 1e-4 or friction == 0.2
 
 

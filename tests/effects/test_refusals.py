@@ -9,127 +9,119 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cuefem import (
-    AxialWaves,
-    Effect,
-    Elevation,
-    Joint,
-    LeatherTip,
-    LumpedCue,
-    PointMass,
-    PowerLawTip,
-    RollingContact,
-    Scene,
-    SecondHit,
-    Support,
-    Tip,
-    TipDome,
-    TipShear,
-    load,
-    modes,
-    strike,
-)
+import cuefem as cf
 from cuefem.effects.leather_law import LeatherLaw
 from tests.helpers.refusals import refuses
 from tests.helpers.strike_scenes import KIM, kim_scene, pool_cue
 
 
-def listed(*effects: Effect) -> Callable[[], Scene]:
+def listed(*effects: cf.Effect) -> Callable[[], cf.Scene]:
     return lambda: replace(kim_scene(), effects=effects)
 
 
-def lumped(*effects: Effect) -> Callable[[], Scene]:
-    return lambda: replace(kim_scene(), cue=LumpedCue(0.54, 0.005), effects=effects)
+def lumped(*effects: cf.Effect) -> Callable[[], cf.Scene]:
+    return lambda: replace(kim_scene(), cue=cf.LumpedCue(0.54, 0.005), effects=effects)
 
 
-CLAMP, TURNED, SHEAR = Support(0.7, inf, inf), Support(0.7, 0.0, inf), TipShear(0.75)
+CLAMP, TURNED, SHEAR = cf.Support(0.7, inf, inf), cf.Support(0.7, 0.0, inf), cf.TipShear(0.75)
 ON, BETWEEN = (
     "position must be in [0, 0.7] m, on the cue",
     "position must be in (0, 0.7) m, between the ends of the cue",
 )
-OFF = ((PointMass(0.71, 0.01), ON), (Support(0.8, 1.0), ON), (Joint(0.7, 1e-3), BETWEEN), (Joint(0.9), BETWEEN))
-LEATHER = LeatherTip(6e-3, 9.5e-3, 1.4e8)
+OFF = (
+    (cf.PointMass(0.71, 0.01), ON),
+    (cf.Support(0.8, 1.0), ON),
+    (cf.Joint(0.7, 1e-3), BETWEEN),
+    (cf.Joint(0.9), BETWEEN),
+)
+LEATHER = cf.LeatherTip(6e-3, 9.5e-3, 1.4e8)
 TWO: Any = np.array([0.01, 0.012])
-FINITE = (PointMass(0.1, 0.01), Support(0.1, 5.0), Joint(0.1), AxialWaves(), TipDome(0.01), LEATHER)
-PARTS = (TipDome(0.01), SHEAR, PowerLawTip(), RollingContact(), Elevation(0.1))
+FINITE = (cf.PointMass(0.1, 0.01), cf.Support(0.1, 5.0), cf.Joint(0.1), cf.AxialWaves(), cf.TipDome(0.01), LEATHER)
+PARTS = (cf.TipDome(0.01), SHEAR, cf.PowerLawTip(), cf.RollingContact(), cf.Elevation(0.1))
 CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: LeatherLaw((1.0, 2.0), (1.0,), 0.7, 1e-3), "as many force_terms as give_terms; got 2 and 1"),
-    (listed(Elevation(0.1), Elevation(0.2)), "Elevation acts once"),
+    (listed(cf.Elevation(0.1), cf.Elevation(0.2)), "Elevation acts once"),
     *[
         (listed(*pair), f"{type(other).__name__}; got Elevation, which does not")
-        for other in (TipShear(0.75), RollingContact(), SecondHit())
-        for pair in ((other, Elevation(0.1)), (Elevation(0.1), other))
+        for other in (cf.TipShear(0.75), cf.RollingContact(), cf.SecondHit())
+        for pair in ((other, cf.Elevation(0.1)), (cf.Elevation(0.1), other))
     ],
     *[
-        (lambda e=e: strike(replace(kim_scene(restitution=0.0), effects=(e,))), words)
+        (lambda e=e: cf.strike(replace(kim_scene(restitution=0.0), effects=(e,))), words)
         for e, words in (
-            (SecondHit(), "SecondHit takes a Tip.restitution in [0.0001, 1]; got 0.0"),
-            (Elevation(0.1), "Elevation takes a Tip.restitution in (0, 1]; got 0.0"),
+            (cf.SecondHit(), "SecondHit takes a Tip.restitution in [0.0001, 1]; got 0.0"),
+            (cf.Elevation(0.1), "Elevation takes a Tip.restitution in (0, 1]; got 0.0"),
         )
     ],
     (
-        lambda: LeatherTip(6e-3, 9.5e-3, 1e8, surface_restitution=0.0),
+        lambda: cf.LeatherTip(6e-3, 9.5e-3, 1e8, surface_restitution=0.0),
         "LeatherTip.surface_restitution must be in [0.1, 1]; got 0.0",
     ),
     (
-        lambda: LeatherTip(6e-3, 9.5e-3, 1e8, shear=1e6, surface_restitution=0.9),
+        lambda: cf.LeatherTip(6e-3, 9.5e-3, 1e8, shear=1e6, surface_restitution=0.9),
         "LeatherTip.surface_restitution must be 1 beside a constant shear, which is a spring without loss; got 0.9",
     ),
-    (lambda: LeatherTip(6e-3, 6e-3, 1e8).mass(0.013), "must have a radius of 6.5 mm or more, half of"),
-    (lambda: LeatherTip(2e-3, 9.5e-3, 1e8).mass(0.01275), "must be higher than 2.457 mm, the depth"),
-    (lambda: LeatherTip(6e-4, inf, 1e8).mass(0.01275), "a leather tip on 12.75 mm must be 0.638 to 38.2 mm high; got "),
-    (lambda: LeatherTip(0.04, inf, 1e8).mass(0.01275), "a leather tip on 12.75 mm must be 0.638 to 38.2 mm high; got "),
-    (lambda: LeatherTip(6e-3, inf, 1e8).mass(-1.0), "diameter must be in (0, 10] m; got -1.0"),
-    (lambda: LeatherTip(6e-3, inf, 1e8).compliance(0.012, 0.1, 7e-3), "patch must be in (0, 0.006] m; got 0.007"),
-    (lambda: LeatherTip(6e-3, inf, 1e8).compliance(0.012, 1.0, 1e-3), "offset must be in (-1, 1); got 1.0"),
-    (lambda: LeatherTip(6e-3, inf, 1e8).head_on(0.012, 0.0), "ball_radius must be in (0, inf) m; got 0.0"),
+    (lambda: cf.LeatherTip(6e-3, 6e-3, 1e8).mass(0.013), "must have a radius of 6.5 mm or more, half of"),
+    (lambda: cf.LeatherTip(2e-3, 9.5e-3, 1e8).mass(0.01275), "must be higher than 2.457 mm, the depth"),
+    (
+        lambda: cf.LeatherTip(6e-4, inf, 1e8).mass(0.01275),
+        "a leather tip on 12.75 mm must be 0.638 to 38.2 mm high; got ",
+    ),
+    (
+        lambda: cf.LeatherTip(0.04, inf, 1e8).mass(0.01275),
+        "a leather tip on 12.75 mm must be 0.638 to 38.2 mm high; got ",
+    ),
+    (lambda: cf.LeatherTip(6e-3, inf, 1e8).mass(-1.0), "diameter must be in (0, 10] m; got -1.0"),
+    (lambda: cf.LeatherTip(6e-3, inf, 1e8).compliance(0.012, 0.1, 7e-3), "patch must be in (0, 0.006] m; got 0.007"),
+    (lambda: cf.LeatherTip(6e-3, inf, 1e8).compliance(0.012, 1.0, 1e-3), "offset must be in (-1, 1); got 1.0"),
+    (lambda: cf.LeatherTip(6e-3, inf, 1e8).head_on(0.012, 0.0), "ball_radius must be in (0, inf) m; got 0.0"),
     (lambda: LEATHER.mass(TWO), "diameter must be one number; got an array of shape (2,)"),
     (lambda: LEATHER.compliance(0.012, TWO, 1e-3), "offset must be one number; got an array of shape (2,)"),
     (lambda: LEATHER.shear_stiffness(0.012, TWO), "offset must be one number; got an array of shape (2,)"),
     (lambda: LEATHER.lever(TWO, 0.012), "phi must be one number; got an array of shape (2,)"),
     (lambda: LEATHER.head_on(0.012, TWO), "ball_radius must be one number; got an array of shape (2,)"),
     *[
-        (listed(LeatherTip(6e-3, 9.5e-3, 1e8), other), f"effects[1], {type(other).__name__}; got LeatherTip")
-        for other in (TipDome(9e-3), SHEAR, PowerLawTip(1.5))
+        (listed(cf.LeatherTip(6e-3, 9.5e-3, 1e8), other), f"effects[1], {type(other).__name__}; got LeatherTip")
+        for other in (cf.TipDome(9e-3), SHEAR, cf.PowerLawTip(1.5))
     ],
     *[(listed(SHEAR, effect), f"Scene.effects[1].{words}") for effect, words in OFF],
-    *[(lambda e=e: modes(KIM, 3, effects=(e,)), f"{type(e).__name__}.{words}") for e, words in OFF],
+    *[(lambda e=e: cf.modes(KIM, 3, effects=(e,)), f"{type(e).__name__}.{words}") for e, words in OFF],
     (
-        listed(CLAMP, Support(0.2, inf), CLAMP),
+        listed(CLAMP, cf.Support(0.2, inf), CLAMP),
         "Scene.effects[2].stiffness must be in [0, inf) N/m at 0.7 m, where effects[0] is a clamp already; got inf",
     ),
     (listed(CLAMP, TURNED), "Scene.effects[1].rotational_stiffness must be in [0, inf) N m/rad at"),
-    (lambda: modes(KIM, 3, effects=(CLAMP, TURNED)), "a clamp must be the only one at its place; got two at 0.7 m"),
+    (lambda: cf.modes(KIM, 3, effects=(CLAMP, TURNED)), "a clamp must be the only one at its place; got two at 0.7 m"),
     *[(lumped(SHEAR, effect), f"got {type(effect).__name__}, which needs a finite-element Cue") for effect in FINITE],
-    (lumped(SHEAR, AxialWaves()), "Scene.effects[1] must be an effect that a LumpedCue can have"),
+    (lumped(SHEAR, cf.AxialWaves()), "Scene.effects[1] must be an effect that a LumpedCue can have"),
     (
-        listed(AxialWaves(), SHEAR, AxialWaves()),
+        listed(cf.AxialWaves(), SHEAR, cf.AxialWaves()),
         "Scene.effects[2] must be another effect, AxialWaves acts once; got Axial",
     ),
     *[
         (listed(once, once), f"{type(once).__name__} acts once")
-        for once in (PowerLawTip(), RollingContact(), SecondHit(), LEATHER)
+        for once in (cf.PowerLawTip(), cf.RollingContact(), cf.SecondHit(), LEATHER)
     ],
     *[
         (listed(part, LEATHER), f"must be an effect that goes with effects[0], {type(part).__name__}; got LeatherTip")
         for part in PARTS
     ],
     (
-        listed(LEATHER, TipDome(0.01)),
+        listed(LEATHER, cf.TipDome(0.01)),
         "Scene.effects[0] must be an effect that goes with effects[1], TipDome; got Leath",
     ),
     (listed(LEATHER), "Tip.contact_time must be left out beside an effect that gives the whole tip, from which it fol"),
     (
-        lambda: replace(kim_scene(), tip=Tip(stiffness=1e6), effects=(LEATHER,)),
+        lambda: replace(kim_scene(), tip=cf.Tip(stiffness=1e6), effects=(LEATHER,)),
         "Tip.stiffness must be left out beside an effect that gives the whole tip, from which it follows; got 1",
     ),
     (
-        lambda: replace(kim_scene(), cue=pool_cue(), tip=Tip(), effects=(AxialWaves(), LEATHER)),
+        lambda: replace(kim_scene(), cue=pool_cue(), tip=cf.Tip(), effects=(cf.AxialWaves(), LEATHER)),
         "Scene.effects[1] must be the only leather: draw the cue without its first 6 mm, which have an E below 1 GPa",
     ),
-    (lambda: modes(pool_cue(), effects=(LEATHER,)), "LeatherTip must be the only leather: draw the cue without its"),
+    (lambda: cf.modes(pool_cue(), effects=(LEATHER,)), "LeatherTip must be the only leather: draw the cue without its"),
     (
-        lambda: replace(kim_scene(), tip=Tip(), effects=(replace(LEATHER, dome_radius=5e-3),)),
+        lambda: replace(kim_scene(), tip=cf.Tip(), effects=(replace(LEATHER, dome_radius=5e-3),)),
         "the dome of a leather tip on 12 mm must have a radius of 6 mm or more, half of that; got 5 mm",
     ),
     (lambda: replace(LEATHER, rolls="no"), "TypeError: LeatherTip.rolls must be a bool; got 'no'"),
@@ -145,8 +137,8 @@ def test_calls(ask: Callable[[], object], message: str) -> None:
 def test_what_is_just_allowed() -> None:
     """The very end is on the cue, but for rounding; springs beside a clamp, and a clamp of the rotation beside one of
     the deflection, are no second clamp."""
-    assert modes(KIM, 1, effects=(Support(0.7 * (1 + 1e-12), inf, inf),)).rigid == 0
-    replace(kim_scene(), effects=(Support(0.7, inf), TURNED, Support(0.7, 5.0)))
+    assert cf.modes(KIM, 1, effects=(cf.Support(0.7 * (1 + 1e-12), inf, inf),)).rigid == 0
+    replace(kim_scene(), effects=(cf.Support(0.7, inf), TURNED, cf.Support(0.7, 5.0)))
 
 
 SCENE = """
@@ -177,4 +169,4 @@ FILES = [
 def test_files(tmp_path: Path, effect: str, message: str) -> None:
     path = tmp_path / "scene.toml"
     path.write_text(SCENE.format(effect=effect), encoding="utf-8")
-    refuses(lambda: load(path), f"{path}: {message}")
+    refuses(lambda: cf.load(path), f"{path}: {message}")

@@ -11,10 +11,9 @@ from scipy.integrate import quad
 
 from cuefem import Cue, LumpedCue, Resolution, Scene, end_mass, modes
 from cuefem.beam.tip import TipModes
-from cuefem.endmass.drives import end_mass_spread, flexible, force, velocity
+from cuefem.endmass.drives import end_mass_spread, force, velocity
 from cuefem.tip_modes import default_resolution, tip_modes_of
 from tests.helpers.cues import cone, kim, rod, scaled, scene
-from tests.helpers.orders import assert_order
 
 
 def few_modes(count: int = 6) -> TipModes:
@@ -52,24 +51,6 @@ def test_long_pulses_feel_the_rigid_cue(cue: Cue, limit: float, drive: str) -> N
     found = ratio(cue, 1e4, drive)
     np.testing.assert_allclose(found, rigid_ratio(cue), rtol=1e-7)
     np.testing.assert_allclose(found, limit, rtol=1e-6)
-
-
-@pytest.mark.parametrize("formula", [force, velocity])
-def test_the_rigid_limit_is_reached_like_pulse_length_to_minus_two(
-    formula: Callable[[TipModes, Scene], float],
-) -> None:
-    """One flexible mode, at whole numbers of its periods, so that only T^-2 is left; its next term is T^-4.
-
-    The tip that is led through a given velocity vibrates at the frequency of the cue with its tip held.
-    """
-    cue = kim()
-    tip = few_modes(1)
-    (omega,), (phi,), rigid = flexible(tip)
-    period = 2 * math.pi / (omega if formula is force else omega * math.sqrt(rigid / (rigid + phi**2)))
-    counts = np.array([4.0, 8, 16, 32, 64])
-    ratios = np.array([cue.shaft_mass / formula(tip, scene(cue, n * period)) for n in counts])
-    errors = np.abs(ratios / rigid_ratio(cue) - 1)
-    assert_order(2, 1 / counts, errors, within=3 / counts[:-1] ** 2 + 1e-4, rounding=1e-13)
 
 
 # --- a beam so long that no wave returns ---

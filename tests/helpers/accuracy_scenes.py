@@ -5,35 +5,21 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-from cuefem import (
-    AxialWaves,
-    Ball,
-    Cue,
-    Joint,
-    PointMass,
-    Scene,
-    Stroke,
-    StructuralDamping,
-    Support,
-    Tip,
-    TipDome,
-    TipShear,
-    load,
-)
+import cuefem as cf
 from cuefem.effects import Effect
 
 NAMES = ("kim", "pool_maple", "pool_hollow", "carbon", "whole_cue")
 MESHES = Path(__file__).parents[2] / "meshes"
 
 
-def reference_cue(name: str) -> Cue:
-    cue = load(MESHES / f"{name}.toml")
-    assert isinstance(cue, Cue)
+def reference_cue(name: str) -> cf.Cue:
+    cue = cf.load(MESHES / f"{name}.toml")
+    assert isinstance(cue, cf.Cue)
     return cue
 
 
-DOME, SHEAR, WAVES = TipDome(0.0095), TipShear(0.75), AxialWaves()
-BRIDGE, CLAY = Support(0.2, stiffness=1e4, dashpot=5.0), PointMass(0.1, 0.011)
+DOME, SHEAR, WAVES = cf.TipDome(0.0095), cf.TipShear(0.75), cf.AxialWaves()
+BRIDGE, CLAY = cf.Support(0.2, stiffness=1e4, dashpot=5.0), cf.PointMass(0.1, 0.011)
 
 # (contact time s, offset, restitution, friction) of the bare cues; every cue takes six of these eight.
 STROKES = (
@@ -53,11 +39,11 @@ WITH_EFFECTS: tuple[tuple[str, float, float, tuple[Effect, ...]], ...] = (
     ("pool_maple", 1.2e-3, 0.375, (DOME, SHEAR)),
     ("pool_hollow", 1e-3, 0.4, (DOME, SHEAR)),
     ("carbon", 1e-3, 0.2, (SHEAR,)),
-    ("whole_cue", 1e-3, 0.3, (BRIDGE, StructuralDamping(0.012))),
+    ("whole_cue", 1e-3, 0.3, (BRIDGE, cf.StructuralDamping(0.012))),
     ("kim", 1e-3, 0.4, (CLAY, BRIDGE)),
     ("pool_hollow", 1.5e-3, 0.3, (DOME, CLAY)),
     ("kim", 1e-3, 0.3, (WAVES,)),
-    ("whole_cue", 1e-3, 0.35, (DOME, SHEAR, Joint(0.74, 1e-4, 1e-8), StructuralDamping())),
+    ("whole_cue", 1e-3, 0.35, (DOME, SHEAR, cf.Joint(0.74, 1e-4, 1e-8), cf.StructuralDamping())),
 )
 
 
@@ -69,20 +55,20 @@ def scene(
     friction: float = 0.7,
     *,
     effects: tuple[Effect, ...] = (),
-) -> Scene:
-    tip = Tip(restitution, friction, contact_time=contact_time)
-    return Scene(reference_cue(name), Ball(), tip, Stroke(1.0, offset), effects)
+) -> cf.Scene:
+    tip = cf.Tip(restitution, friction, contact_time=contact_time)
+    return cf.Scene(reference_cue(name), cf.Ball(), tip, cf.Stroke(1.0, offset), effects)
 
 
-def bare_scenes() -> list[Scene]:
+def bare_scenes() -> list[cf.Scene]:
     """Six strokes a cue, shifted from cue to cue so that all eight meet every other one."""
     return [scene(name, *STROKES[(i + 3 * j) % len(STROKES)]) for j, name in enumerate(NAMES) for i in range(6)]
 
 
-def family() -> list[Scene]:
+def family() -> list[cf.Scene]:
     return bare_scenes() + [scene(name, T, b, effects=effects) for name, T, b, effects in WITH_EFFECTS]
 
 
-def endless_friction() -> Scene:
+def endless_friction() -> cf.Scene:
     """A tip that never slips: the ball takes a blow aside at first touch."""
     return scene("kim", 1e-3, 0.3, friction=math.inf)

@@ -16,18 +16,7 @@ import numpy as np
 import scipy.linalg as la
 from numpy.typing import NDArray
 
-from cuefem import (
-    Cue,
-    Elevation,
-    Joint,
-    PointMass,
-    Scene,
-    SecondHit,
-    StructuralDamping,
-    Support,
-    TipDome,
-    TipShear,
-)
+import cuefem as cf
 from tests.oracle.spectral_beam import Bending, bending
 
 Array = NDArray[np.float64]
@@ -52,7 +41,7 @@ class Seen:
     lost: float
 
 
-def struck(scene: Scene, modes: int, steps: int) -> Seen:
+def struck(scene: cf.Scene, modes: int, steps: int) -> Seen:
     """A strike with so many flexible modes of the free cue, in so many steps for a head-on contact time."""
     return Steps(scene, modes, steps).run()
 
@@ -60,14 +49,23 @@ def struck(scene: Scene, modes: int, steps: int) -> Seen:
 class Steps:
     """The strike of one scene; see `struck`."""
 
-    def __init__(self, scene: Scene, modes: int, steps: int) -> None:
-        known = (Elevation, SecondHit, Support, Joint, StructuralDamping, PointMass, TipDome, TipShear)
+    def __init__(self, scene: cf.Scene, modes: int, steps: int) -> None:
+        known = (
+            cf.Elevation,
+            cf.SecondHit,
+            cf.Support,
+            cf.Joint,
+            cf.StructuralDamping,
+            cf.PointMass,
+            cf.TipDome,
+            cf.TipShear,
+        )
         assert all(isinstance(effect, known) for effect in scene.effects), scene.effects
         self.scene = scene
-        self.raised = self._effect(Elevation)
+        self.raised = self._effect(cf.Elevation)
         self.ball, self.tip, self.stroke = scene.ball, scene.tip, scene.stroke
         self.bent = self._bent(modes)
-        added = math.fsum(effect.mass for effect in scene.effects if isinstance(effect, PointMass))
+        added = math.fsum(effect.mass for effect in scene.effects if isinstance(effect, cf.PointMass))
         self.mass = scene.cue.mass + added
         felt = 1 / (1 / self.ball.mass + 1 / self.mass)
         self.time = self.tip.contact_time
@@ -85,11 +83,13 @@ class Steps:
 
     def _bent(self, modes: int) -> Bending:
         cue = self.scene.cue
-        if not isinstance(cue, Cue):  # a mass along the axis and one across it
+        if not isinstance(cue, cf.Cue):  # a mass along the axis and one across it
             assert cue.coupling == 0
             one = np.array([cue.end_mass**-0.5])
             return Bending(np.zeros(1), one, np.zeros(1), np.zeros((1, 1)))
-        on_cue = tuple(e for e in self.scene.effects if isinstance(e, (Support, Joint, StructuralDamping, PointMass)))
+        on_cue = tuple(
+            e for e in self.scene.effects if isinstance(e, (cf.Support, cf.Joint, cf.StructuralDamping, cf.PointMass))
+        )
         return bending(cue, on_cue, modes + 2)
 
     def _frame(self) -> None:
@@ -100,7 +100,7 @@ class Steps:
         right, up = np.eye(3)[0], np.eye(3)[2]
         axis, rise = np.array([0, math.cos(a), -math.sin(a)]), np.array([0, math.sin(a), math.cos(a)])
         n, t = c * axis - s * right, s * axis + c * right
-        r = math.fsum(effect.radius for effect in self.scene.effects if isinstance(effect, TipDome))
+        r = math.fsum(effect.radius for effect in self.scene.effects if isinstance(effect, cf.TipDome))
         bent, many = self.bent, self.many
         tip = np.zeros((3, self.size))  # velocity of the tip's contact point in the table's frame
         tip += np.outer(axis, np.eye(self.size)[0]) / math.sqrt(self.mass)
@@ -144,8 +144,8 @@ class Steps:
     def run(self) -> Seen:
         """The strike from touch to the last separation."""
         n, h, e, k = self.size, self.step, self.tip.restitution, self.stiffness
-        shear = self._effect(TipShear)
-        window = self._effect(SecondHit)
+        shear = self._effect(cf.TipShear)
+        window = self._effect(cf.SecondHit)
         z = np.zeros(2 * n)
         z[n] = self.stroke.speed * math.sqrt(self.mass)
         first = z[n] ** 2 / 2

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,19 +10,10 @@ import pytest
 import cuefem as cf
 from cuefem.report import strike_record, strike_sheet
 from cuefem.report.record import scene_record
-from cuefem.report.report_page import A31_NAME, MEASURED_A31, SOURCES
 from cuefem.report.strike_table import LUMPED
-from cuefem.squirt import alciatore_a31_mass_ratio
 
 ROOT = Path(__file__).parents[2]
 SCENE = cf.usual_scene(cf.load(ROOT / "meshes" / "pool_maple.toml"))
-
-
-@pytest.mark.parametrize(("end", "offset", "degrees"), [(0, 0.453, 1.8), (1, 0.267, 2.4)], ids=["Predator", "Stinger"])
-def test_measured_end_masses_are_those_of_a31(end: int, offset: float, degrees: float) -> None:
-    felt = 0.170 / alciatore_a31_mass_ratio(offset, math.radians(degrees))
-    assert MEASURED_A31[end] == pytest.approx(float(felt), rel=0.01)
-    assert f"{degrees:g}° at b/R {offset:g}" in dict(SOURCES)[A31_NAME]
 
 
 def test_the_slower_ball_of_a_lumped_cue_is_explained_where_waves_raise_the_coupled_one() -> None:

@@ -37,13 +37,6 @@ def test_the_band_is_its_parts_in_quadrature() -> None:
     assert {"E", "rho", "tip_height"} <= set(RECORD["inputs"])
 
 
-def test_an_input_is_worth_what_the_strike_says() -> None:
-    tip = SCENE.leather
-    higher = replace(SCENE, effects=(replace(tip, height=tip.height * math.exp(0.1)), *SCENE.effects[1:]))
-    change = abs(cf.strike(higher).squirt / cf.strike(SCENE).squirt - 1)
-    assert RECORD["inputs"]["tip_height"] == pytest.approx(change, rel=1e-9)
-
-
 def test_what_is_fixed_to_the_cue_stays_with_it() -> None:
     more = (cf.PointMass(0.1, 0.011), cf.Support(0.2, 1e3), cf.Support(0.72, 1e3))
     scene = replace(SCENE, effects=(*SCENE.effects, *more))
