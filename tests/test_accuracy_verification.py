@@ -102,7 +102,7 @@ def test_end_masses_to_an_accuracy() -> None:
         assert abs(value / formula_of(drive)(tip, here) - 1) <= 3 * error
 
 
-@pytest.mark.heavy
+@pytest.mark.nightly
 @pytest.mark.parametrize("number", range(0, 41, 3))
 def test_the_estimated_error_holds_on_the_family(number: int) -> None:
     """The true error is known no better than two references agree; where that is coarser, it cannot contradict."""

@@ -119,7 +119,7 @@ def shipped() -> list:
     return [*built, *((path.stem, load(path)) for path in MESHES)]
 
 
-@pytest.mark.heavy
+@pytest.mark.nightly
 @pytest.mark.parametrize("time", [0.7e-3, 1e-3, 2e-3, 3.2e-3, 4e-3])
 @pytest.mark.parametrize(("name", "cue"), shipped(), ids=[name for name, _ in shipped()])
 def test_the_default_keeps_squirt_within_half_a_percent_of_many_modes(name, cue, time):

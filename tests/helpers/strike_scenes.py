@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from cuefem import Ball, Cue, LumpedCue, Material, Outcome, Resolution, Scene, Segment, Stroke, Tip
 from cuefem.beam.tip import TipModes
 from cuefem.contact.impulse_space import inverse_mass
+from tests.helpers.cues import kim
 
 # Energy balance and agreement that rounding leaves, relative.
 CLOSED = 1e-9
@@ -21,14 +22,7 @@ def maple(E: float = 12.6e9, rho: float = 700.0) -> Material:
     return Material(E, E / 15, rho)
 
 
-def kim_cue() -> Cue:
-    """[Kim]'s shaft, meshes/kim.toml: a cone of radius 6 to 10.5 mm, 70 cm, 120 g; the whole cue 540 g."""
-    volume = pi / 3 * 0.70 * (0.006**2 + 0.006 * 0.0105 + 0.0105**2)
-    wood = Material(12.6e9, 12.6e9 / 15, 0.120 / volume)
-    return Cue((Segment(0.70, 0.012, 0.021, wood, kappa=0.9),), body_mass=0.420)
-
-
-KIM = kim_cue()
+KIM = kim()
 KIM_TIP = Tip(restitution=0.75, friction=0.7, contact_time=1e-3)
 KIM_AT = Resolution(4, 20, 22)
 

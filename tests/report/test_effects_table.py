@@ -13,10 +13,10 @@ from cuefem.design.worth import variants
 from cuefem.effects import effect_kinds
 from cuefem.report import effects_record
 from cuefem.report.effects import MARGIN, advice
+from tests.helpers.strike_scenes import KIM
 
-CUE = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 782.3284453057836), kappa=0.9),), 0.42)
 DOME, CLAY, HAND = cf.TipDome(9.5e-3), cf.PointMass(0.05, 0.011), cf.Support(0.2032, 5e3)
-SCENE = cf.Scene(CUE, tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(offset=0.3), effects=(DOME, CLAY, HAND))
+SCENE = cf.Scene(KIM, tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(offset=0.3), effects=(DOME, CLAY, HAND))
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +46,7 @@ def test_two_of_a_kind_are_dropped_one_at_a_time_and_what_does_not_go_says_so() 
     two = replace(SCENE, effects=(CLAY, cf.PointMass(0.1, 0.003)))
     dropped = [v.scene.effects for v in variants(two) if v.listed and v.scene is not None]
     assert dropped == [two.effects[1:], two.effects[:1]]
-    short = cf.Cue((cf.Segment(0.15, 0.012, 0.013, CUE.segments[0].material),), 0.5)
+    short = cf.Cue((cf.Segment(0.15, 0.012, 0.013, KIM.segments[0].material),), 0.5)
     (support,) = (v for v in variants(replace(SCENE, cue=short, effects=(DOME,))) if v.name == "Support")
     assert support.scene is None
     assert support.reason == "Support.position must be in [0, 0.15] m, on the cue; got 0.2032"

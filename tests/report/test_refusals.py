@@ -14,9 +14,9 @@ import cuefem as cf
 from cuefem.contact.motion import motion
 from cuefem.squirt import alciatore_a31_mass_ratio
 from tests.helpers.refusals import refuses, untouched
+from tests.helpers.strike_scenes import KIM
 from tests.helpers.sweeps import STUDY
 
-KIM = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 782.3284453057836), kappa=0.9),), 0.42)
 SCENE = cf.Scene(KIM, cf.Ball(0.17, 0.028575), cf.Tip(0.75, 0.7, 1e-3), cf.Stroke(2.0, 0.3))
 RAISED = replace(SCENE, effects=(cf.Elevation(0.1),))
 LUMPED = replace(SCENE, cue=cf.LumpedCue(0.54, 0.005))
