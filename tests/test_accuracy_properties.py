@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from hypothesis import given
+from hypothesis import given, settings
 
 from cuefem import LumpedCue, Scene, Stroke, resolve, resolve_end_mass, strike
 from tests.helpers.accuracy_scenes import scene
@@ -14,6 +14,7 @@ from tests.helpers.strike_scenes import lumped_scenes, numbers
 KIM = scene("kim", 1e-3, 0.3)
 
 
+@settings(max_examples=25)
 @given(lumped_scenes())
 def test_a_lumped_cue_is_exact(lumped: Scene) -> None:
     found, same = resolve(lumped, 1e-3), strike(lumped)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cuefem import Cue, Material, Segment
@@ -34,6 +34,7 @@ cues = st.builds(Cue, st.lists(segments(), min_size=1, max_size=5), st.floats(0.
 places = st.floats(0.0, 1.0)
 
 
+@settings(max_examples=30)
 @given(cues, places, st.floats(0.01, 100), st.floats(0.01, 100))
 def test_constants_enter_linearly(cue: Cue, place: float, stiffer: float, heavier: float) -> None:
     x = place * cue.length
@@ -42,6 +43,7 @@ def test_constants_enter_linearly(cue: Cue, place: float, stiffer: float, heavie
     np.testing.assert_allclose([t.rhoA, t.rhoI], np.multiply(heavier, [s.rhoA, s.rhoI]), rtol=1e-12)
 
 
+@settings(max_examples=30)
 @given(cues, places, st.floats(0.1, 10))
 def test_sizes_enter_as_area_and_inertia(cue: Cue, place: float, larger: float) -> None:
     grown = scaled(cue, length=larger)

@@ -35,7 +35,7 @@ def test_a_brass_tip_says_what_it_rings_by() -> None:
     assert wood.error < 5e-3
 
 
-@pytest.mark.parametrize("number", [*range(3), *(pytest.param(n, marks=pytest.mark.nightly) for n in range(3, 40))])
+@pytest.mark.parametrize("number", [0, *(pytest.param(n, marks=pytest.mark.nightly) for n in range(1, 40))])
 def test_the_modes_of_a_strike_hold_the_end_masses_of_smooth_drives(number: int) -> None:
     """Force to 0.5 % on leather, which rings above the modes kept, soft one from 1 ms on; to 0.1 % on all else."""
     draw = np.random.default_rng([8, number])

@@ -80,14 +80,18 @@ def imported(tree: ast.Module) -> Iterator[str]:
             assert node.level == 0, "imports are absolute"
             names = [alias.name for alias in node.names] if node.module == "cuefem" else []
             yield from [f"cuefem.{name}" for name in names] or [node.module or ""]
-        elif isinstance(node, ast.Call) and ast.unparse(node.func) == "lazy_loader.load":
+        elif (
+            isinstance(node, ast.Call)
+            and getattr(node.func, "attr", "") == "load"
+            and ast.unparse(node.func) == "lazy_loader.load"
+        ):
             yield ast.literal_eval(node.args[0])
 
 
 def walk(node: ast.AST) -> Iterator[ast.AST]:
     yield node
     for child in ast.iter_child_nodes(node):
-        if not (isinstance(child, ast.If) and ast.unparse(child.test) == "TYPE_CHECKING"):
+        if not (isinstance(child, ast.If) and getattr(child.test, "id", "") == "TYPE_CHECKING"):
             yield from walk(child)
 
 

@@ -75,6 +75,7 @@ print(call("strike", sys.argv[1], "--collar-length", "20 mm", "--json")[1])
 """
 
 
+@pytest.mark.heavy
 def test_a_place_is_an_option_of_commands(tmp_path: Path) -> None:
     """In a process of its own: a command's options are those of the table when the command is loaded."""
     cf.save(RINGED, tmp_path / "cue.toml")

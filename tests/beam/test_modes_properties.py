@@ -36,7 +36,7 @@ drives = st.sampled_from(["force", "velocity", "stick"])
 
 
 @given(cues(), factors, factors, factors)
-@settings(max_examples=40)
+@settings(max_examples=20)
 def test_frequencies_in_other_units(cue: Cue, length: float, time: float, mass: float) -> None:
     """Units of length, time, mass a, b, c times smaller: E and G c/(a b^2), rho c/a^3, frequency 1/b, w 1/sqrt(c)."""
     stiff, heavy = mass / (length * time**2), mass / length**3
@@ -51,7 +51,7 @@ def test_frequencies_in_other_units(cue: Cue, length: float, time: float, mass: 
 
 
 @given(cues(), drives, factors, factors, factors)
-@settings(max_examples=40)
+@settings(max_examples=20)
 def test_end_mass_in_other_units(cue: Cue, drive: str, length: float, time: float, mass: float) -> None:
     stiff, heavy = mass / (length * time**2), mass / length**3
     other = replace(scaled(cue, E=stiff, G=stiff, rho=heavy, length=length), body_mass=cue.body_mass * mass)
@@ -62,7 +62,7 @@ def test_end_mass_in_other_units(cue: Cue, drive: str, length: float, time: floa
 
 
 @given(cues(), st.floats(1.01, 4.0))
-@settings(max_examples=40)
+@settings(max_examples=20)
 def test_stiffer_is_faster_and_heavier_is_slower(cue: Cue, factor: float) -> None:
     """Rayleigh: with E alone (or G alone) no frequency falls; with both all go like the root, as with mass."""
     plain = modes(cue, 6, at=AT).frequencies
@@ -76,7 +76,7 @@ def test_stiffer_is_faster_and_heavier_is_slower(cue: Cue, factor: float) -> Non
 
 
 @given(cues(), st.floats(0.0, 8000.0), st.integers(1, 5))
-@settings(max_examples=60)
+@settings(max_examples=20)
 def test_near_is_the_nearest(cue: Cue, near: float, count: int) -> None:
     many = modes_below(cue, 2 * np.pi * near) + count + 6
     every = modes(cue, many).frequencies

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from cuefem import Ball, LumpedCue, Scene, Stroke, Tip, impulse
 
-MANY = settings(max_examples=200, deadline=None)
+MANY = settings(max_examples=60, deadline=None)
 PLACES = ("initial", "ball translation", "ball rotation", "cue", "tip loss", "friction loss")
 
 

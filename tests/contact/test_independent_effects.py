@@ -138,7 +138,7 @@ KINDS = {
     "Joint": Kind(jointed, (0, 1, 2, 3), 1e-4),
     "StructuralDamping": Kind(damped, (0, 1, 2, 3), 1e-4),
     "all on the cue": Kind(all_on_the_cue, (0, 1, 2, 3), 1e-4),
-    "Elevation": Kind(raised, (0, 3, 6), 2e-4),
+    "Elevation": Kind(raised, (0, 3), 2e-4),
     "SecondHit": Kind(hit_again, (6, 20, 24), 5e-4),  # 2, 4 and 2 touches
 }
 MODES, STEPS = 12, 800

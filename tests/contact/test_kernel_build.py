@@ -50,7 +50,9 @@ SPOILED = {  # the file of the kernel that is changed, and what becomes of its b
 }
 
 
-@pytest.mark.parametrize("how", SPOILED)
+@pytest.mark.parametrize(
+    "how", ["cut short", *(pytest.param(how, marks=pytest.mark.heavy) for how in SPOILED if how != "cut short")]
+)
 def test_a_kernel_that_is_not_of_these_sources_ends_in_a_line_and_a_build_mends_it(folder: Path, how: str) -> None:
     name, spoil, words = SPOILED[how]
     binary = folder / BINARY.relative_to(ROOT)

@@ -75,7 +75,7 @@ def test_the_relative_velocity_is_that_of_the_history(name: str, offset: float) 
 def test_a_stroke_on_the_other_side_is_its_mirror_image() -> None:
     other = replace(SCENE, stroke=replace(SCENE.stroke, offset=-0.3))
     times = np.linspace(0, 3e-3, 7)
-    found, mirrored = motion(SCENE, times), motion(other, times)
+    found, mirrored = motion(SCENE, times, AT), motion(other, times, AT)
     for one, two in zip(found.deflection([0.0, 0.3]), mirrored.deflection([0.0, 0.3]), strict=True):
         np.testing.assert_array_equal(one, -two)
     np.testing.assert_array_equal(found.centre * [1, -1], mirrored.centre)

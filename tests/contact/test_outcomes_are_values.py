@@ -43,6 +43,7 @@ def struck(effects: tuple[cf.Effect, ...]) -> cf.Outcome:
     return cf.strike(replace(scene, effects=effects), AT)
 
 
+@pytest.mark.heavy
 def test_an_outcome_is_a_value_also_in_another_process() -> None:
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as executor:
         for effects, sent in zip(EFFECTS, executor.map(struck, EFFECTS), strict=True):

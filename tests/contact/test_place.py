@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import cuefem as cf
 from cuefem.contact.place import axis_offset, offset_of, offset_of_axis
 
-MANY = settings(max_examples=200, deadline=None)
+MANY = settings(max_examples=60, deadline=None)
 BALL = cf.Ball(0.17, 0.0286)
 R = BALL.radius
 NORTH = (0.0, 1.0, 0.0)

@@ -108,7 +108,7 @@ LIVELY = st.one_of(st.sampled_from([0.0, 1.0]), st.floats(0.05, 1))
 
 
 @pytest.mark.parametrize(
-    ("examples", "most"), [(150, 10), pytest.param(600, 50, marks=pytest.mark.heavy)], ids=["some", "many"]
+    ("examples", "most"), [(50, 10), pytest.param(600, 50, marks=pytest.mark.heavy)], ids=["some", "many"]
 )
 def test_loud_cues(examples: int, most: int) -> None:
     @settings(max_examples=examples, deadline=None)

@@ -64,7 +64,7 @@ def agree(scene: Scene) -> Outcome:
 def test_a_lumped_cue_gives_the_impulse_solver_s_answer_in_every_regime():
     seen: Counter[str] = Counter()
 
-    @settings(max_examples=300, deadline=None)
+    @settings(max_examples=60, deadline=None)
     @given(st.one_of(lumped_scenes(), near_miscue_scenes()))
     @example(Scene(LumpedCue(0.54, 0.003), Ball(), Tip(0.75, 0.7), Stroke(offset=0.3)))  # jam
     @example(Scene(LumpedCue(0.54, 0.003), Ball(), Tip(0.75, 0.3), Stroke(offset=0.5)))  # miscue
@@ -80,11 +80,11 @@ def test_a_lumped_cue_gives_the_impulse_solver_s_answer_in_every_regime():
     everywhere()
     rng = np.random.default_rng(5)  # heavy cue ends and little friction: the rarer regimes, whatever hypothesis draws
     for mass, end_mass, e, mu, offset in zip(
-        10 ** rng.uniform(-1.5, 0, 200),
-        10 ** rng.uniform(-1.5, 0.3, 200),
-        rng.uniform(0.3, 1, 200),
-        rng.uniform(0.05, 0.6, 200),
-        rng.uniform(0.1, 0.8, 200),
+        10 ** rng.uniform(-1.5, 0, 80),
+        10 ** rng.uniform(-1.5, 0.3, 80),
+        rng.uniform(0.3, 1, 80),
+        rng.uniform(0.05, 0.6, 80),
+        rng.uniform(0.1, 0.8, 80),
         strict=True,
     ):
         outcome = agree(Scene(LumpedCue(mass, end_mass), tip=Tip(e, mu), stroke=Stroke(offset=offset)))
@@ -93,7 +93,7 @@ def test_a_lumped_cue_gives_the_impulse_solver_s_answer_in_every_regime():
         outcome = agree(Scene(LumpedCue(0.54, end_mass), Ball(), Tip(0.75, 0.7), Stroke(offset=0.3)))
         seen.update(["jam"] if outcome.jam else [])
     for regime in ("stick", "late stick", "miscue", "slip reversal", "jam"):
-        assert seen[regime] >= 5, (regime, seen)
+        assert seen[regime] >= 3, (regime, seen)
 
 
 @pytest.mark.parametrize("exponent", [1.5, 2.5])

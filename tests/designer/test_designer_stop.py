@@ -15,6 +15,7 @@ from tests.helpers.designer_browser import await_listening
 pytest.importorskip("nicegui")
 
 
+@pytest.mark.heavy
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows sends Ctrl-C to whole groups of processes")
 def test_ctrl_c_ends_it_quietly() -> None:
     command = [sys.executable, "-m", "cuefem", "designer", "--no-open", "--port", "0"]

@@ -21,11 +21,10 @@ RINGING = cf.Cue((cf.Segment(0.006, 0.012, 0.012, BRASS), cf.Segment(0.7, 0.012,
 @pytest.mark.parametrize(
     ("scene", "told"),
     [
-        (USUAL, False),
         (cf.Scene(USUAL.cue, USUAL.ball, cf.Tip(contact_time=2e-3), USUAL.stroke), False),
         (cf.Scene(RINGING, tip=cf.Tip(contact_time=1.2e-3), stroke=cf.Stroke(offset=0.3)), True),
     ],
-    ids=["leather", "spring", "a brass tip that rings"],
+    ids=["spring", "a brass tip that rings"],
 )
 def test_a_line_through_a_dot_is_told_only_where_one_is(scene: cf.Scene, told: bool) -> None:
     """The range of an end mass while fewer modes are kept is told only where it is longer than its dot."""

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import cuefem as cf
@@ -36,6 +36,7 @@ def test_every_scene_comes_back(path: Path) -> None:
     assert state_of(text_of(State((step,)))).now == step
 
 
+@settings(max_examples=15)
 @given(
     diameters=st.lists(st.floats(0.0101, 0.0139), min_size=1, max_size=30),
     at=st.integers(0, 29),

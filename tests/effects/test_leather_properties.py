@@ -31,7 +31,7 @@ def possible(tip: LeatherTip, diameter: float) -> LeatherTip:
     return tip
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=50, deadline=None)
 @given(TIPS, DIAMETERS, OFFSETS, st.floats(0.005, 0.5))
 def test_compliance(tip: LeatherTip, diameter: float, offset: float, patch: float) -> None:
     """Symmetric and positive definite, mirrored with the offset, in proportion to 1/E."""

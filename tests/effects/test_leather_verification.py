@@ -29,6 +29,7 @@ def test_a_long_tip_is_a_rod() -> None:
     assert abs(slender[1, 1] * 3 * math.pi / 64 / 30**3 - 1) < 5e-3
 
 
+@pytest.mark.heavy
 def test_a_small_patch_has_a_half_space_below_it() -> None:
     """Within 5 % at a/h = 1/16, and the difference falls as a/h."""
     errors = []

@@ -31,7 +31,7 @@ def test_what_is_recommended_is_what_resolve_takes(record: dict) -> None:
 
 
 def test_the_command_prints_draws_and_speaks_json(tmp_path: Path) -> None:
-    for name, start in (("cost.svg", b"<?xml"), ("cost.png", b"\x89PNG")):
+    for name, start in (("cost.svg", b"<?xml"),):
         out = said("cost", KIM, "--most", 24, "--output", tmp_path / name)
         assert (tmp_path / name).read_bytes().startswith(start)
     assert "1e-06, not reached" in out

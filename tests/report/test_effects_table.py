@@ -67,6 +67,7 @@ def test_a_change_is_that_of_two_strikes(record: Any, name: str) -> None:
         assert row["change"][quantity]["by"] == pytest.approx(gap, rel=1e-9)
 
 
+@pytest.mark.heavy
 def test_signs_and_sizes_on_kims_shaft(record: Any) -> None:
     named = rows(record)
     # a dome of 9 mm makes 0.117 of 0.0713, so that dropping it takes 0.39
@@ -76,6 +77,7 @@ def test_signs_and_sizes_on_kims_shaft(record: Any) -> None:
     assert abs(named["Support"]["change"]["squirt"]["relative"]) < 0.01
 
 
+@pytest.mark.heavy
 def test_the_recommendation_follows_the_tolerance(record: Any) -> None:
     worth = record["worth"]
     assert worth["drop"] == ["Support (position 203.2 mm, stiffness 5000 N/m)"]

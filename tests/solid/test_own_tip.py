@@ -59,6 +59,7 @@ def test_layers_of_the_leather_are_no_layers() -> None:
     assert halves == whole
 
 
+@pytest.mark.heavy
 def test_kept_in_a_file_and_made_again_when_that_is_spoilt(cache: Path) -> None:
     """The file gives what was computed, bit by bit; a torn, an empty and a foreign file are as none."""
     scene = cf.usual_scene(cf.Cue((cf.Segment(0.7, D, 21e-3, cf.Material(12.6e9, 1.1e9, 700.0)),)), "pool", tip=FLAT)
