@@ -1,7 +1,7 @@
 """An accuracy asked for, and the least work that reaches it: `resolve` and `resolve_end_mass`.
 
 `ladder` climbs the number of modes, each rung ended by a tail (`cuefem.beam.tail`), and judges every rung by those
-within an octave below it. What that costs: studies/accuracy/accuracy_cost.md, and
+within an octave below it. What that costs: studies/accuracy/accuracy.md, and
 `cuefem cost` for a scene of one's own.
 """
 
@@ -33,8 +33,8 @@ from cuefem.tip_modes import MOST, tip_modes_from, turning
 FIRST, RATIO, JUDGED = 8, 1.3, 3
 # Errors are taken to fall at least like n^-DECAY; each is judged by the WINDOW rungs below it, an octave. Most fall
 # faster; the slowest are those of a tip that never slips under a dome, and of soft leather: the blow of the first touch
-# falls like 1/n, and the wave fronts that it sends out come back from every joint before the contact ends. How well the
-# estimates hold over random scenes with every effect: studies/accuracy/resolve_errors.md.
+# falls like 1/n, and the wave fronts that it sends out come back from every joint before the contact ends. On 280
+# random scenes with every effect true errors were above the estimates in 0.9 % of 1086 levels (version 0.1).
 # Rungs may agree and yet be wrong where the cue's first segment has a resonance of its own above all modes kept, as the
 # leather of a tip has between 5 and 100 kHz. The tail stands for that resonance by its flexibility and a dashpot, as if
 # what rings there left for good; the leather keeps it. The truth lies between a tail that radiates and one that
@@ -100,9 +100,9 @@ def resolve(scene: Scene, rtol: float) -> Outcome:
     that nearly parts and goes on has the error of parting there; one that parts and nearly goes on has the error of
     going on (except for a dead or nearly dead tip, e <= 1e-4, and a raised cue). A leather tip, or another first
     segment that reflects waves, is also charged what a tail that rings without loss would change, until the modes are
-    well past the segment's own turning resonance. How well the estimate holds over random scenes with every effect is
-    measured in studies/accuracy/resolve_errors.md. Cost: cubic in the modes; all steps together take about twice the
-    last.
+    well past the segment's own turning resonance. On 280 random scenes with every effect true errors were above the
+    estimate in 0.9 % of 1086 levels, by at most 2.3 times. Cost: cubic in the modes; all steps together take about
+    twice the last.
 
     Examples
     --------

@@ -33,7 +33,7 @@ PERIODS_KEPT, PLAIN_PERIODS = 30, 60
 # But never fewer than LEAST, however long the contact. The end mass of a tip that sticks needs more: its velocity
 # begins with a step, whose front comes back from the butt at 2 L/c with frequencies of 10 to 80 kHz, whatever the
 # contact time. A tip that is pushed or led from rest starts no such front, and its end mass takes a strike's modes.
-# What these numbers hold: studies/accuracy/default_accuracy.md.
+# What these numbers hold: studies/accuracy/accuracy.md.
 LEAST, LEAST_STUCK = 40, 120
 SOFT = 1e9  # Pa: leather is softer, everything else that cues are made of is stiffer
 # Never more than this by default, which a contact of a fraction of a millisecond would ask for: the tail does the rest,

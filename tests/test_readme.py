@@ -169,7 +169,7 @@ def test_paths_are_there() -> None:
 
 def test_the_verdicts_are_counted_as_the_study_counts_them() -> None:
     counted = re.search(
-        r"(\d+) claims; agrees: (\d+), rounding: (\d+), slip: (\d+)", (ROOT / "studies/paper/kim.md").read_text()
+        r"Of (\d+) claims (\d+) agree, (\d+) are roundings, (\d+) slips", (ROOT / "studies/paper/kim.md").read_text()
     )
     assert counted is not None
     claims, agree, rounded, slips = counted.groups()

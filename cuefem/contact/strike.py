@@ -35,7 +35,7 @@ def strike(scene: Scene, at: Resolution | Solid | None = None) -> Outcome:
     at : Resolution or Solid, optional
         How finely the cue is computed: the plain sum over the modes asked for, of a beam or of a solid. By default
         modes of a beam are kept by frequency and completed, so that squirt is within 0.5 % (what was measured:
-        studies/default_accuracy.md). A lumped cue needs none.
+        studies/accuracy/accuracy.md). A lumped cue needs none.
 
     Returns
     -------
@@ -184,7 +184,7 @@ def batch_strike(scenes: Sequence[Scene], at: Resolution | None = None, *, threa
 
     Notes
     -----
-    What a strike costs beside its modes is in studies/speed_seconds.md.
+    What a strike costs beside its modes is in studies/accuracy/speed.md.
 
     Examples
     --------

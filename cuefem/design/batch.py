@@ -191,7 +191,7 @@ def batch_stick(
 
     Notes
     -----
-    Accuracy on 210 random wooden cues at 101 contact times from 0.5 to 3 ms (studies/accuracy/batch_wood.md),
+    Accuracy on 210 random wooden cues at 101 contact times from 0.5 to 3 ms (studies/accuracy/accuracy.md has fewer),
     ``ended``: median, 95 % and largest error of the end mass in 1e-3, of the worst of bare shafts, with ferrule, and
     with leather too:
 

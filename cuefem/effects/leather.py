@@ -139,7 +139,7 @@ class LeatherTip(CueEffect):
 
     Limit: The give vanishes in proportion to 1/E; with a stiff leather the dome's lever is what is left.
 
-    Source: handbook: Effects; studies/beam/leather_elasticity.py; K. L. Johnson, Contact Mechanics (1985),
+    Source: handbook: Effects; studies/beam/leather.py; K. L. Johnson, Contact Mechanics (1985),
     chapters 3 and 4.
 
     The package has a table for plain tips of nu 0.2 to 0.45, 2/15 to 3/2 of the diameter high. Any other is computed

@@ -17,8 +17,7 @@ from cuefem.cue import Array
 from cuefem.quantity.fields import scalar
 from cuefem.scene import Scene
 
-# Modes begin to fade at this part of the highest frequency kept. Measured: 0.35 to 0.65 serve equally well
-# (studies/accuracy/batch.py).
+# Modes begin to fade at this part of the highest frequency kept. Measured: 0.35 to 0.65 serve equally well.
 FADED = 0.5
 
 

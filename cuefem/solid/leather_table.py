@@ -1,4 +1,4 @@
-"""The static give of a leather tip, from the table beside this file, which studies/beam/leather_elasticity.py makes.
+"""The static give of a leather tip, from the table beside this file, which studies/beam/leather.py makes.
 
 A tip outside the table, with layers, or on a ferrule that gives, has a `TipTable` of its own (`cuefem.solid.own_tip`).
 

@@ -2,7 +2,7 @@
 
 Numpy only. Everything is per unit cue speed and broadcasts over arrays; masses are ratios to the ball's, except in
 `closed_form`. m_e is always the effective end mass felt at the tip, m_c [Kim]'s mass of the cue end. Where what [Kim]
-prints does not follow from its own equations these functions give the derived result; studies/kim.md shows both.
+prints does not follow from its own equations these functions give the derived result; studies/paper/kim.md shows both.
 """
 
 from cuefem.squirt.coefficients import (

@@ -6,7 +6,7 @@ the paper's own condition mu = tan(phi). And the offset beyond which slip no lon
 [Kim]'s closed form is not valid: where the paper's mu = 0.6 stops working. Equations: a miscue is slip that still goes
 on when e^2 of the normal work is regained, tan(phi) (B_nn + mu B_tn) = (1 + e) (mu B_tt + B_tn), a cubic in tan(phi)
 (cuefem.squirt.miscue_offset); the table's last column finds the same edge by bisection on the regime of the general
-solver (cuefem.impulse). Takes a second.
+solver (cuefem.impulse).
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from scipy.optimize import brentq
 
 from cuefem import Ball, LumpedCue, Scene, Stroke, Tip, impulse, squirt
 from studies import pages
+from studies.pages import table
 
 E, NU, NU_C = 0.75, 0.4, 0.136
 FRICTIONS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 1.0, 1.2)
@@ -80,36 +81,38 @@ def turning_ratio(phi: float, friction: float = 0.6) -> float:
     return brentq(lambda q: float(compression_limit(rigid(q), friction)) - math.sin(phi), 1e-9, 100.0)
 
 
-def table() -> str:
+def text() -> str:
     """Offsets at the edge of a miscue, and where mu = 0.6 stops working."""
-    lines = ["# Largest offset b/R before a miscue", ""]
-    names = [cue.name for cue in CUES]
-    lines.append("| " + " | ".join(["friction", "tan phi = mu", *names, "two-part, slip ends in compression",
-                                    "two-part, by the general solver"]) + " |")  # fmt: skip
-    lines.append("|---" * (4 + len(CUES)) + "|")
+    rows = []
     for mu in FRICTIONS:
         values = [math.sin(math.atan(mu)), *(miscue(cue, mu) for cue in CUES), compression_limit(TWO_PART, mu)]
-        cells = [f"{mu:g}", *(f"{float(v):.6f}" for v in (*values, by_regime(TWO_PART, mu)))]
-        lines.append("| " + " | ".join(cells) + " |")
-    return "\n".join([*lines, "", "## Where [Kim]'s mu = 0.6 stops working", "", *six_tenths()]) + "\n"
-
-
-def six_tenths() -> list[str]:
-    """For mu = 0.6: the edge of the closed form and of a miscue, each cue."""
-    lines = [
-        "| cue | closed form valid to b/R | to phi, deg | miscue from b/R | from phi, deg |",
-        "|---|---|---|---|---|",
-    ]
+        rows.append([f"{mu:g}", *(f"{float(v):.4f}" for v in (*values, by_regime(TWO_PART, mu)))])
+    edges = []
     for cue in (*(rigid(q) for q in (0.3, 1.0, 18 / 7, 3.0, 5.0)), *CUES[1:]):
-        cells = [cue.name]
-        for value in (compression_limit(cue, 0.6), miscue(cue, 0.6)):
-            cells += [f"{float(value):.5f}", f"{math.degrees(math.asin(float(value))):.3f}"]
-        lines.append("| " + " | ".join(cells) + " |")
-    whole = turning_ratio(math.radians(45))
-    lines += ["", f"The map of the rigid cue to 45 degrees needs a Q0 of at least {whole:.5f} at mu = 0.6."]
+        both = compression_limit(cue, 0.6), miscue(cue, 0.6)
+        edges.append([cue.name, *(c for v in both for c in (f"{float(v):.3f}", f"{math.degrees(math.asin(v)):.1f}"))])
     needed = float(squirt.compression_stick_friction(0.7, end_mass_ratio=TWO_PART.end_mass))
-    lines.append(f"The two-part cue at the paper's limit b/R = 0.7 needs a mu of at least {needed:.5f}.")
-    return lines
+    return pages.page(
+        "Largest offset before a miscue",
+        "How far off centre can one strike without a miscue?",
+        "Kim's tan phi = mu holds for an end mass of zero. Real cues allow a little more: mu = 0.6 allows b/R "
+        f"{float(miscue(TWO_PART, 0.6)):.3f} (the closed form holds to "
+        f"{float(compression_limit(TWO_PART, 0.6)):.3f}), not Coriolis' 0.7, which takes a mu of {needed:.2f}.",
+        table(
+            [
+                "friction",
+                "tan phi = mu",
+                *(c.name for c in CUES),
+                "two-part, slip ends in compression",
+                "two-part, solver",
+            ],
+            rows,
+        ),
+        "## Where Kim's mu = 0.6 stops working",
+        table(["cue", "closed form valid to b/R", "to phi, deg", "miscue from b/R", "from phi, deg"], edges),
+        f"The map of the rigid cue to 45 degrees takes a Q0 of at least {turning_ratio(math.radians(45)):.2f} at mu = "
+        "0.6.",
+    )
 
 
 def draw(axes: Any) -> None:
@@ -129,7 +132,7 @@ def draw(axes: Any) -> None:
     axes.legend(fontsize=8, loc="lower right")
 
 
-STUDY = pages.Study(__file__, table, {"miscue.svg": pages.Figure(draw, size=(6.4, 4.6))}, heavy=False, drawn=True)
+STUDY = pages.Study(__file__, text, {"miscue.svg": pages.Figure(draw, size=(6.4, 4.6))})
 
 
 if __name__ == "__main__":

@@ -12,10 +12,10 @@ from scipy.integrate import quad, solve_ivp
 from cuefem import Scene, resolve, strike
 from cuefem.beam.tip import TipModes
 from cuefem.contact.strike import strike_modes
-from studies.contact.leather_release import LEATHER as RELEASED
-from studies.contact.leather_release import struck_scene
 from tests.helpers.leather_scenes import AT, LEATHER, POOL, leather_scene
 from tests.helpers.strike_scenes import a_few_modes
+from tests.oracle.ring_stepper import LEATHER as RELEASED
+from tests.oracle.ring_stepper import struck_scene
 
 D = 0.01275
 

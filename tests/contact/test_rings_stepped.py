@@ -1,4 +1,4 @@
-"""A patch that slips ring by ring, against the stepper of studies/contact/leather_release.py, which has no phases:
+"""A patch that slips ring by ring, against small steps, which have no phases:
 across sliding as a whole, with the tip's rim, fast and slow (verification); and squirt over the offset, which has no
 jump (property).
 """
@@ -12,8 +12,7 @@ import numpy as np
 import pytest
 
 from cuefem import LeatherTip, Resolution, Scene, Tip, batch_strike, strike
-from studies.contact import leather_release
-from studies.contact.leather_release import LEATHER
+from tests.oracle.ring_stepper import LEATHER, stepped, struck_scene
 
 WITHIN = 5e-3
 # A jump: squirt changes from one offset to the next by more than so many times what it does at either neighbour, and
@@ -26,24 +25,24 @@ def drawn(seed: int) -> Scene:
     rng = np.random.default_rng([21, seed])
     tip = Tip(float(rng.uniform(0.5, 0.9)), float(rng.uniform(0.2, 0.7)))
     speed, E = float(np.exp(rng.uniform(math.log(0.8), math.log(7.0)))), float(rng.uniform(100e6, 400e6))
-    return leather_release.struck_scene(float(rng.uniform(0.1, 0.7)), speed, replace(LEATHER, E=E), tip=tip)
+    return struck_scene(float(rng.uniform(0.1, 0.7)), speed, replace(LEATHER, E=E), tip=tip)
 
 
 def off(scene: Scene, step: float = 1e-6) -> float:
     """Relative difference of squirt."""
-    return leather_release.stepped(scene, "rings that slip", step).squirt / math.degrees(strike(scene).squirt) - 1
+    return stepped(scene, step) / math.degrees(strike(scene).squirt) - 1
 
 
 @pytest.mark.parametrize(("friction", "offset"), [(0.3, 0.38), (0.4, 0.5), (0.5, 0.6)])
 def test_sliding_as_a_whole_is_what_comes_out(friction: float, offset: float) -> None:
-    scene = leather_release.struck_scene(offset, leather=LEATHER, tip=Tip(0.73, friction))
+    scene = struck_scene(offset, leather=LEATHER, tip=Tip(0.73, friction))
     assert abs(off(scene, 2e-6)) < WITHIN
 
 
 @pytest.mark.parametrize(("restitution", "offset"), [(0.95, 0.375), (0.7, 0.2), (0.5, 0.5)])
 def test_leather_that_loses_along_its_surface_is_what_comes_out(restitution: float, offset: float) -> None:
     leather = replace(LEATHER, surface_restitution=restitution)
-    assert abs(off(leather_release.struck_scene(offset, leather=leather), 2e-6)) < WITHIN
+    assert abs(off(struck_scene(offset, leather=leather), 2e-6)) < WITHIN
 
 
 @pytest.mark.heavy
@@ -67,7 +66,7 @@ def jumps(offsets: np.ndarray, squirts: np.ndarray) -> list[float]:
 def test_squirt_has_no_jump_over_the_offset(friction: float, speed: float) -> None:
     """Steps of 1e-3: none changes squirt by more than one and a half times what both its neighbours do."""
     offsets, at = np.arange(0.1, 0.7, 1e-3), Resolution(2, 12, 12)
-    scenes = [leather_release.struck_scene(float(b), speed, LEATHER, tip=Tip(0.73, friction)) for b in offsets]
+    scenes = [struck_scene(float(b), speed, LEATHER, tip=Tip(0.73, friction)) for b in offsets]
     assert jumps(offsets, batch_strike(scenes, at).squirt) == []
 
 
@@ -78,6 +77,6 @@ def test_squirt_has_no_jump_over_the_offset(friction: float, speed: float) -> No
 def test_it_has_none_where_it_once_had(leather: LeatherTip, friction: float, offset: float) -> None:
     """Where the rings began to slide as a whole, and where the contact begins on the tip's rim."""
     offsets = offset + np.arange(-5, 6) * 1e-3
-    scenes = (leather_release.struck_scene(float(b), 2.0, leather, tip=Tip(0.73, friction)) for b in offsets)
+    scenes = (struck_scene(float(b), 2.0, leather, tip=Tip(0.73, friction)) for b in offsets)
     squirts = np.array([strike(scene).squirt for scene in scenes])
     assert jumps(offsets, squirts) == []

@@ -6,7 +6,7 @@ import numpy as np
 
 from cuefem.solid import leather_table as lt
 from cuefem.solid.tip_sheets import gains
-from studies.beam.leather_elasticity import COUNTS, shape_at
+from studies.beam.leather import COUNTS, shape_at
 
 NUS = (1 - np.exp(-lt.nodes(*lt.NU, COUNTS["nu"]))) / 2
 

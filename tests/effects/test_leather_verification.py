@@ -10,7 +10,7 @@ import pytest
 from cuefem import LeatherTip
 from cuefem.solid import leather_table as lt
 from cuefem.solid.tip_solid import Patch, Shape, TipSolid, fitted, head_on, usual
-from studies.beam.leather_elasticity import solved
+from studies.beam.leather import solved
 
 TIP, DIAMETER = LeatherTip(6e-3, 9.5e-3, 100e6), 12.75e-3
 SHAPE = Shape(6 / 12.75, 12.75 / 9.5)

@@ -20,7 +20,7 @@ ROOT = Path(__file__).parents[2]
 MAPLE = ROOT / "meshes" / "pool_maple.toml"
 FOLDER = ROOT / "cuefem" / "handbook"
 # Squirt of one cue at one offset, degrees: the robot's two values, and the series of 2007 between its points
-# (studies/measured/measured.md).
+# (studies/measured/squirt.md).
 MEASURED = {"by a robot, 2008": 2.43, "the same, once more": 2.30, "the year before": 1.87}
 OFFSET = 0.375  # of all of them
 

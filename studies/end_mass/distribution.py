@@ -1,0 +1,65 @@
+"""Which part of a cue makes its end mass: how much does a gram added here add?
+
+For each cue of meshes/ and contacts of 0.7, 1 and 2 ms the stick end mass with a small mass on the shaft, less that
+without it, over the mass. Equations: handbook: Effective end mass.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+import cuefem as cf
+from studies import pages
+from studies.pages import table
+from studies.strokes import INCH, NAMES, cue, scene
+
+TIMES, PLACES, SMALL = (0.7e-3, 1e-3, 2e-3), (0.01, 0.025, 0.05, 0.1, 0.15, 0.2, 0.3), 1e-4  # s, m from the tip, kg
+
+
+@cache
+def end_mass(name: str, time: float, place: float | None = None) -> float:
+    """Stick end mass, kg, with `SMALL` at a place or nowhere."""
+    lump = () if place is None else (cf.PointMass(place, SMALL),)
+    return float(cf.end_mass(replace(scene(cue(name), time), effects=lump)))
+
+
+def added(name: str, time: float, place: float) -> float:
+    """Grams of end mass that one gram at a place adds."""
+    return (end_mass(name, time, place) - end_mass(name, time)) / SMALL
+
+
+def text() -> str:
+    rows = [
+        [name, f"{1e3 * T:g}", 1e3 * end_mass(name, T), *(f"{added(name, T, x) + 0.0:.2f}" for x in PLACES)]
+        for name in NAMES
+        for T in TIMES
+    ]
+    near, far = ([added(name, 1e-3, x) for name in NAMES] for x in (0.025, 0.1))
+    return pages.page(
+        "Which part of the cue makes the end mass",
+        "Which part of a cue makes its end mass?",
+        f"The first 10 cm. At 1 ms a gram at 2.5 cm from the tip adds {pages.span(near, 1)} g of stick end mass, at "
+        f"10 cm {pages.span(far, 1)} g; farther away it may even take some off. At 2 ms a longer part counts.",
+        "Grams of stick end mass that one gram adds, by its distance from the tip:",
+        table(["cue", "T, ms", "end mass, g", *(f"{100 * place:g} cm" for place in PLACES)], rows),
+    )
+
+
+def draw(axes: Any) -> None:
+    """What a gram adds, along three cues, at 1 ms."""
+    places = np.linspace(0.006, 0.4, 50)
+    for name in ("kim", "pool_maple", "carbon"):
+        axes.plot(places / INCH, [added(name, 1e-3, float(x)) for x in places], label=name)
+    axes.axhline(0, color="black", lw=0.8)
+    axes.set(xlabel="inches from the tip", ylabel="grams of end mass that one gram adds, T = 1 ms")
+    axes.legend(fontsize=8)
+
+
+STUDY = pages.Study(__file__, text, {"distribution.svg": pages.Figure(draw)})
+
+if __name__ == "__main__":
+    STUDY.write()

@@ -1,0 +1,131 @@
+"""A patch of leather that shrinks and slips ring by ring, in small steps that share nothing with the kernel.
+
+A symmetric splitting of second order: half a kick by the contact's forces, the exact turn of the modes, half a kick.
+Let k(a) be the tip's stiffness along the surface with a stuck patch of radius a. Where the patch grows from a to a +
+da while the surfaces shift by d(delta), the tractions of a stuck punch of radius a are added, times d(delta). So the
+ring at x is strained by u(x) = delta - (delta at the time when x touched), F_t = integral of u dk, and each ring
+slips where u dk exceeds mu times its part (d - x) dS of the normal force: the partial slip of Cattaneo, Mindlin and
+Deresiewicz (Jaeger's superposition). A boundary-element solver with vector friction gives the same squirt: within 0.0
+% on a half-space, and within 0.04, 0.3 and 1.1 % at b/R 0.187, 0.375 and 0.453 on a bonded layer of 6 mm. A force
+that falls in proportion to the patch's stiffness instead makes 7 to 11 % more squirt. x stands for a patch by the
+compression that it belongs to.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import scipy.linalg as la
+
+from cuefem import Ball, Effect, LeatherTip, Scene, Stroke, Tip
+from cuefem.effects.leather_law import LeatherLaw
+from cuefem.tip_modes import tip_modes_of
+from studies.strokes import cue
+
+LEATHER = LeatherTip(height=6e-3, dome_radius=9.5e-3, E=140e6)
+RINGS = 400
+
+
+def struck_scene(
+    offset: float = 0.375,
+    speed: float = 2.0,
+    leather: LeatherTip = LEATHER,
+    more: tuple[Effect, ...] = (),
+    tip: Tip | None = None,
+) -> Scene:
+    """The maple shaft before a pool ball, its leather as a `LeatherTip`."""
+    shaft = cue("pool_maple")
+    bare = replace(shaft, segments=shaft.segments[1:])
+    return Scene(bare, Ball(0.170, 0.028575), tip or Tip(0.73, 0.7), Stroke(speed, offset), (leather, *more))
+
+
+@dataclass
+class Patch:
+    """The force along the surface, ring by ring."""
+
+    law: LeatherLaw
+    friction: float
+    most: float
+    restitution: float = 1.0  # along the surface
+    strain: np.ndarray = field(init=False)
+
+    def __post_init__(self) -> None:
+        edges = self.most * np.linspace(0.0, 1.0, RINGS + 1) ** 2
+        self.middle = (edges[1:] + edges[:-1]) / 2
+        self.stiff = np.diff(self.law.at(edges)[1])
+        self.normal = np.diff(self.law.slope(edges))
+        self.strain = np.zeros(RINGS)
+
+    def shift(self, by: float, eta: float, F_n: float) -> float:
+        """F_t, N, after the surfaces have shifted by so much, m, at the virtual compression eta, m."""
+        open_now = self.middle <= eta
+        self.strain[~open_now] = 0.0
+        before, e2 = self.strain.copy(), self.restitution**2
+        falls = np.where(abs(by) < e2 * np.abs(before), before + by / e2, by + e2 * before)
+        self.strain[open_now] = np.where(before * by < 0, falls, before + by)[open_now]
+        bound = self.friction * self.normal * np.maximum(eta - self.middle, 0.0) / self.stiff
+        self.strain = np.clip(self.strain, -bound, bound)
+        most = self.friction * F_n
+        return min(max(float(self.stiff @ self.strain), -most), most)
+
+
+def stepped(scene: Scene, step: float = 1e-6) -> float:
+    """Squirt, deg."""
+    tip, ball, at, leather = scene.tip, scene.ball, scene.stroke, scene.effects[0]
+    assert isinstance(leather, LeatherTip)
+    law = scene.tip_law(tip.restitution, at.offset)
+    modes = tip_modes_of(scene)
+    deepest = float(law.blow(scene.head_on_mass, at.speed)[0])
+    most = min(law.most, 1.3 * deepest)
+    patch = Patch(law, tip.friction, most, leather.surface_restitution)
+    n, omega = len(modes.omega), modes.omega
+    turn = np.zeros((3 * n, 3 * n))  # of q, omega q and q'
+    turn[:n, 2 * n :] = np.eye(n)
+    turn[n : 2 * n, 2 * n :], turn[2 * n :, n : 2 * n] = np.diag(omega), np.diag(-omega)
+    if modes.resistance is not None:
+        turn[2 * n :, 2 * n :] = -modes.resistance
+    turn = la.expm(turn * step)
+    z = np.concatenate([np.zeros(2 * n), at.speed * modes.approach])
+    velocity, spin, inertia = np.zeros(2), 0.0, ball.inertia * ball.mass
+    diameter = scene.shaft.segments[0].tip_diameter
+    dome_centre = modes.amplitude + np.outer(modes.rotation, [0.0, leather.dome_radius - leather.height])
+    phi, depth, peak, loading, F_t, F_n = math.asin(at.offset), 0.0, 0.0, True, 0.0, 0.0
+
+    def directions() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        t, normal = np.array([math.sin(phi), math.cos(phi)]), np.array([math.cos(phi), -math.sin(phi)])
+        reach = modes.amplitude + np.outer(modes.rotation, leather.lever(phi, diameter))
+        return t, normal, reach
+
+    def turned(moved: np.ndarray, by_ball: np.ndarray) -> float:
+        """Angle that the contact turns by: the ball rolls over the dome or, from there on, over its rim, an edge."""
+        t, _, reach = directions()
+        on_rim = leather.dome_radius * abs(math.sin(phi)) >= diameter / 2
+        centre, rolling = (reach, ball.radius) if on_rim else (dome_centre, ball.radius + leather.dome_radius)
+        return float(moved @ centre @ t - by_ball @ t) / rolling
+
+    while True:
+        t, normal, reach = directions()
+        force = F_n * normal + F_t * t
+        z[2 * n :] -= reach @ force * step / 2
+        velocity, spin = velocity + force * step / (2 * ball.mass), spin + F_t * step / (2 * inertia)
+        old = z
+        z = turn @ z
+        moved = z[:n] - old[:n]
+        phi += turned(moved, velocity * step) / 2
+        t, normal, reach = directions()  # about the middle of the step
+        near = velocity * step - moved @ reach
+        depth -= float(near @ normal)
+        phi += turned(moved, velocity * step) / 2
+        loading, peak = loading and depth >= peak, max(peak, depth)
+        eta = float(law.virtual(depth, None if loading else peak))
+        if eta <= 0:
+            break
+        F_n = float(law.at(np.array([eta]))[0][0])
+        F_t = patch.shift(-(float(near @ t) + spin * step), eta, F_n)
+        t, normal, reach = directions()
+        force = F_n * normal + F_t * t
+        z[2 * n :] -= reach @ force * step / 2
+        velocity, spin = velocity + force * step / (2 * ball.mass), spin + F_t * step / (2 * inertia)
+    return math.degrees(math.atan2(-velocity[1], velocity[0]))
