@@ -13,7 +13,6 @@ import pytest
 
 import cuefem as cf
 from cuefem.io.documented_folder import load_documented
-from cuefem.measured.documented import compare
 from cuefem.measured.kinds import EndMass, Setup
 from cuefem.measured.pendulum import GRAVITY, Pendulum
 from tests.helpers.command_line import as_json, call, said
@@ -77,10 +76,10 @@ def test_a_shaft_is_measured_as_its_side_strike_computes_it() -> None:
 
 
 def test_its_error_covers_the_readings_errors() -> None:
-    """A thousand tests with noise in every reading and in the ball's mass: 68 % lie within the stated error."""
+    """Some hundred tests with noise in every reading and in the ball's mass: 68 % lie within the stated error."""
     generator, M, e, m, U = np.random.default_rng(4), 7e-3, 0.8, 6e-3, 0.6
     back, inside = U * (e * M - m) / (m + M), []
-    for _ in range(1000):
+    for _ in range(300):
         off = generator.normal(scale=1e-3, size=(4, 3))
         speeds = zip((U, back, U, e * U), off.tolist(), strict=True)
         before, after, held, wall = (tuple(swing(speed) + x for x in row) for speed, row in speeds)
@@ -97,7 +96,7 @@ def test_its_error_covers_the_readings_errors() -> None:
             clamped_after=wall,
         ).end_mass
         inside.append(abs(found.value - M) < found.error)
-    assert np.mean(inside) == pytest.approx(0.70, abs=0.05)
+    assert np.mean(inside) == pytest.approx(0.683, abs=0.08)
     wild = replace(of_speeds(m, back, e * U), after=(0.01, 0.02, 0.03)).end_mass
     assert wild.error > 3 * replace(of_speeds(m, back, e * U), after=(0.02, 0.02, 0.02)).end_mass.error
 
@@ -127,11 +126,12 @@ def test_the_template_holds_a_pendulum_and_a_recording_to_uncomment(tmp_path: Pa
 def test_its_contact_time_is_uncertain() -> None:
     """A tenth of the time is an uncertain parameter of its own, shared by all pendulum tests."""
     one = of_speeds(8e-3, -0.1, 0.48).end_mass
-    sure = replace(one, contact_time_error=None)
-    assert [unknown.name for unknown in documented(one, one).unknowns][-1] == "ball time"
-    (wide, *_), (narrow, *_) = compare(documented(one, one)), compare(documented(sure, sure))
-    later = replace(one, contact_time=1.1e-3).computed(Setup(SCENE)) - one.computed(Setup(SCENE))
-    assert math.sqrt(wide.spread**2 - narrow.spread**2) == pytest.approx(later, rel=0.1)
+    cue = documented(one, one)
+    assert cue.unknowns[-1].name == "ball time"
+    assert "ball time" not in [unknown.name for unknown in documented(replace(one, contact_time_error=None)).unknowns]
+    by_time = cue.computed(np.eye(len(cue.unknowns))[-1])
+    longer = replace(one, contact_time=math.exp(0.1) * one.contact_time).computed(Setup(SCENE))
+    assert by_time == pytest.approx([longer, longer], rel=1e-12)
 
 
 GOOD = of_speeds(8e-3, -0.1, 0.48)

@@ -43,8 +43,7 @@ def test_the_wood_of_a_recording_is_found(tmp_path: Path) -> None:
         assert error < 0.04 * known[0]
 
 
-@pytest.mark.parametrize("snr", [10.0, 20.0, 60.0])
-@pytest.mark.parametrize("missing", [(), (1,), (3,), (1, 2)])
+@pytest.mark.parametrize(("snr", "missing"), [(10.0, ()), (10.0, (1, 2)), (20.0, (1,)), (60.0, (3,))])
 def test_tones_are_those_of_their_modes(snr: float, missing: tuple[int, ...]) -> None:
     """The wood is 15 % stiffer than drawn; a mode that does not sound leaves the others their numbers."""
     shaft = other_wood(SHAFT)
@@ -59,7 +58,7 @@ def test_tones_are_those_of_their_modes(snr: float, missing: tuple[int, ...]) ->
 def test_numbers_hold_for_every_set_of_modes_and_any_wood() -> None:
     """Woods from the table's spread; what three lone high modes leave open may be named otherwise, five may not."""
     generator, wrong, sets = np.random.default_rng(0), 0, 0
-    for E, G, rho in np.exp(generator.normal(0, (0.2, 0.25, 0.1), (12, 3))):
+    for E, G, rho in np.exp(generator.normal(0, (0.2, 0.25, 0.1), (6, 3))):
         true = cf.modes(other_wood(SHAFT, E=E, G=G, rho=rho), 8).frequencies
         for count in (3, 5, 7):
             for chosen in itertools.combinations(range(8), count):
