@@ -36,7 +36,7 @@ ORDER = [
     "results",
     "design",
     "plot",
-    "measured",
+    "measurements",
     "io",
     "frames",
     "report",

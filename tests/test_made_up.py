@@ -23,7 +23,7 @@ from cuefem.designer.kept import state_of, text_of
 from cuefem.designer.sliders import sliders
 from cuefem.effects import effect_kinds
 from cuefem.endmass.drives import DEFINITIONS
-from cuefem.measured.unknowns import unknowns_of
+from cuefem.measurements.uncertain_parameters import parameters_of
 from cuefem.results.quantities import RESULTS
 from cuefem.vary import PLACES, knobs_of, paths, varied
 from tests.helpers.made_up import PLACE, PUSH, RIGID, SPOT, collar_effect, faces, lever_effect, missing
@@ -51,7 +51,7 @@ def test_a_place(monkeypatch: pytest.MonkeyPatch) -> None:
     study = Study(scene, (Vary(("collar length",), Levels((0.005, 0.025))),), (Response.of("shaft_mass"),))
     assert study.units[0] == "m"
     assert study.scene((0.025,)).cue.segments[1].length == 0.025
-    (unknown,) = (each for each in unknowns_of(scene, ()) if each.name == "collar length")
+    (unknown,) = (each for each in parameters_of(scene, ()) if each.name == "collar length")
     assert (unknown.words, unknown.unit, unknown.usual, unknown.spread) == ("length of the collar", "m", 0.01, 0.1)
     (slider,) = (each for each in sliders(scene) if each.knob == "collar_length")
     assert (slider.label, slider.unit, slider.shown(knobs_of(scene))) == ("Length of the collar", "mm", 10)

@@ -13,13 +13,13 @@ from cuefem.cli.printing import assumed_lines, command, page_option, tell
 from cuefem.cli.progress import followed
 from cuefem.cli.strokes import blow_options, offset_option, option
 from cuefem.io import InputError
-from cuefem.io.documented_folder import load_documented, write_template
-from cuefem.measured.documented import compare as compared
-from cuefem.measured.documented import zeros
-from cuefem.measured.estimate import estimate as estimated
-from cuefem.measured.estimate import squirt_of
+from cuefem.io.measured_folder import load_measured, write_template
+from cuefem.measurements.estimate import estimate as estimated
+from cuefem.measurements.estimate import squirt_of
+from cuefem.measurements.measured_cue import compare as compared
+from cuefem.measurements.measured_cue import zeros
 from cuefem.report.comparison_table import comparison_figures, comparison_sentences, comparison_sheet
-from cuefem.report.documented_page import compare_record, compare_sheets, estimate_record, estimate_sheets
+from cuefem.report.measured_page import compare_record, compare_sheets, estimate_record, estimate_sheets
 from cuefem.report.record import scene_record
 from cuefem.results.comparison import comparison_record
 from cuefem.results.quantities import UNITS
@@ -94,7 +94,7 @@ def _names(files: Sequence[Path]) -> list[str]:
 
 def _with_measurements(folder: Path, output: Path | None, *, as_json: bool, estimate: bool) -> None:
     """Print, or write, a cue beside what was measured on it, or what all of that together says."""
-    cue, notes = load_documented(folder)
+    cue, notes = load_measured(folder)
     remark(cue.scene)
     with blaming(folder):
         if estimate:

@@ -1,4 +1,4 @@
-"""The commands on documented cues: numbers of the library, the template, the page (regression)."""
+"""The commands on measured cues: numbers of the library, the template, the page (regression)."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.io.documented_folder import TEMPLATE, load_documented
-from cuefem.measured.documented import compare
-from cuefem.measured.estimate import estimate
-from cuefem.measured.kinds import KINDS
+from cuefem.io.measured_folder import TEMPLATE, load_measured
+from cuefem.measurements.estimate import estimate
+from cuefem.measurements.measured_cue import compare
+from cuefem.measurements.measurement_types import MEASUREMENT_TYPES
 from tests.helpers.command_line import as_json, call, said
-from tests.helpers.documented import SOME, folder
+from tests.helpers.measured_cues import SOME, folder
 from tests.helpers.refusals import command_refuses
 
 
 def test_numbers(tmp_path: Path) -> None:
     place = folder(tmp_path / "cue")
     found = as_json("compare", place)
-    cue, _ = load_documented(place)
+    cue, _ = load_measured(place)
     for told, row in zip(found["rows"], compare(cue), strict=True):
         assert told["what"] == row.measurement.label
         assert [told[name] for name in ("computed", "spread", "pull")] == [row.computed, row.spread, row.pull]
@@ -38,8 +38,8 @@ def test_series_and_file_are_read_alike(tmp_path: Path) -> None:
     assert tone in SOME
     place = folder(tmp_path / "cue", SOME.replace(tone, ""))
     (place / "tone.csv").write_text("# by ear\nmode,value [Hz],error [Hz],source\n1,95,0.2,\n", encoding="utf-8")
-    (before, _), (after, _) = load_documented(folder(tmp_path / "other")), load_documented(place)
-    assert set(before.found) == set(after.found)
+    (before, _), (after, _) = load_measured(folder(tmp_path / "other")), load_measured(place)
+    assert set(before.measurements) == set(after.measurements)
 
 
 @pytest.mark.parametrize("drawing", ["cue.toml", "cue.csv"])
@@ -54,7 +54,7 @@ def test_only_the_shaft_must_be_there(tmp_path: Path, drawing: str) -> None:
     status, out, err = call("compare", place)
     assert (status, err[: len(rest) or None]) == (0, rest)
     assert ("no mass behind the shaft (a cue.toml can have" in " ".join(out.split())) == bool(rest)
-    assert all(kind.words in out for kind in KINDS.values())
+    assert all(kind.words in out for kind in MEASUREMENT_TYPES.values())
 
 
 def test_the_template_holds_every_kind(tmp_path: Path) -> None:
@@ -62,14 +62,14 @@ def test_the_template_holds_every_kind(tmp_path: Path) -> None:
     said = f"wrote {place}: its numbers are examples; put yours, then `cuefem compare {place}`\n"
     assert call("compare", place, "--template") == (0, said, "")
     assert sorted(path.name for path in place.iterdir()) == sorted(TEMPLATE)
-    cue, notes = load_documented(place)
-    assert {type(one) for one in cue.found} == set(KINDS.values())
+    cue, notes = load_measured(place)
+    assert {type(one) for one in cue.measurements} == set(MEASUREMENT_TYPES.values())
     assert cue.lacking == []
     names = ", ".join(name for name in sorted(TEMPLATE) if name != "README.md")
     assert notes == [f"{names} as in the template, whose numbers are examples: put yours there"]
     (place / "squirt.csv").unlink()
     (place / "cue.toml").write_text((place / "cue.toml").read_text().replace("467 g", "450 g"), encoding="utf-8")
-    assert load_documented(place)[1] == [
+    assert load_measured(place)[1] == [
         "added_mass.csv, measured.toml as in the template, whose numbers are examples: put yours there"
     ]
 
@@ -81,14 +81,14 @@ def test_without_a_scene_it_is_the_games_usual_stroke(tmp_path: Path) -> None:
         place = folder(tmp_path / f"cue {game}", '[[weight]]\nvalue = "100 g"\nerror = "1 g"\n')
         if game:
             (place / "measured.toml").write_text(f'game = "{game}"\n', encoding="utf-8")
-        cue, notes = load_documented(place)
+        cue, notes = load_measured(place)
         drawing = cf.load(place / "cue.toml")
         assert isinstance(drawing, cf.Cue)
         assert cue.scene == cf.usual_scene(drawing, game or "pool")
         assert notes[0] == f"a usual stroke of {game or 'pool'}"
         found[game] = cue
     assert found[""].scene.ball.mass == 0.170
-    both, _ = load_documented(folder(tmp_path / "both", 'game = "pool"\n[tip]\nfriction = 0.5\n'))
+    both, _ = load_measured(folder(tmp_path / "both", 'game = "pool"\n[tip]\nfriction = 0.5\n'))
     assert both.scene == replace(found[""].scene, tip=replace(found[""].scene.tip, friction=0.5))
     place = folder(tmp_path / "other", 'game = "chess"\n')
     command_refuses("measured.toml: game: must be one of pool, carom, snooker, kim; got 'chess'", "compare", place)
@@ -99,20 +99,20 @@ def test_the_page_has_every_row(tmp_path: Path) -> None:
     (place / "squirt.csv").write_text("offset,value [deg],error [deg]\n0.3,1.5,0.1\n", encoding="utf-8")
     assert call("compare", place, "-o", page) == (0, f"wrote {page}\n", "")
     text = page.read_text(encoding="utf-8")
-    cue, _ = load_documented(place)
-    assert all(f">{one.label}<" in text for one in cue.found)
+    cue, _ = load_measured(place)
+    assert all(f">{one.label}<" in text for one in cue.measurements)
     assert "http" not in text.replace("http://www.w3.org", "")
 
 
 def test_an_estimate_has_the_numbers_of_the_library(tmp_path: Path) -> None:
-    known = "".join(f'[[unknowns]]\nname = "{name}"\nspread = 0.0\n' for name in ("G", "bore", "contact time"))
+    known = "".join(f'[[uncertain]]\nname = "{name}"\nspread = 0.0\n' for name in ("G", "bore", "contact time"))
     place = folder(tmp_path / "cue", SOME + known)
     told = as_json("compare", place, "--estimate")
-    found = estimate(load_documented(place)[0])
+    found = estimate(load_measured(place)[0])
     assert [value["value"] for value in told["values"]] == pytest.approx([value.value for value in found.values])
     assert told["misfit"] == pytest.approx(found.misfit)
     assert told["converged"]
-    assert {worth["kind"] for worth in told["next"]} <= set(KINDS)
+    assert {worth["kind"] for worth in told["next"]} <= set(MEASUREMENT_TYPES)
     assert all(0 < worth["left"] <= 1 and worth["bits"] >= 0 for worth in told["next"])
 
 

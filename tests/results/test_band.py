@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.io.documented_folder import load_documented
-from cuefem.measured.kinds import AddedMass, Squirt
+from cuefem.io.measured_folder import load_measured
+from cuefem.measurements.measurement_types import AddedMass, Squirt
 from cuefem.results.band import LEVEL, OF_DIFFERENCE, of_inputs, of_shaft
 from cuefem.tip_modes import Solved
 from cuefem.vary import varied
@@ -24,9 +24,11 @@ CUES = ("players_maple", "predator_z", "stinger")
 @cache
 def pairs(name: str, kind: type) -> list[tuple[float, float]]:
     """Measured and computed values of a kind on one cue."""
-    cue, _ = load_documented(MEASURED / name)
+    cue, _ = load_measured(MEASURED / name)
     return [
-        (one.measured, float(value)) for one, value in zip(cue.found, cue.computed(), strict=True) if type(one) is kind
+        (one.measured, float(value))
+        for one, value in zip(cue.measurements, cue.computed(), strict=True)
+        if type(one) is kind
     ]
 
 

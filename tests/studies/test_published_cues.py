@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cuefem.io.documented_folder import load_documented
-from cuefem.measured.kinds import AddedMass, Measurement, Squirt
+from cuefem.io.measured_folder import load_measured
+from cuefem.measurements.measurement_types import AddedMass, Measurement, Squirt
 from cuefem.results.quantities import with_unit
 from studies.pages import STUDIES
 from tests.helpers.command_line import call
@@ -27,7 +27,7 @@ def rows(name: str) -> list[dict[str, str]]:
 
 
 def found(folder: str, kind: type[Measurement]) -> list[Measurement]:
-    return [one for one in load_documented(HOME / folder)[0].found if isinstance(one, kind)]
+    return [one for one in load_measured(HOME / folder)[0].measurements if isinstance(one, kind)]
 
 
 def test_squirts_are_those_of_the_data() -> None:
@@ -42,7 +42,7 @@ def test_added_masses_are_those_of_the_data() -> None:
     told = [(r["mass_g"], r["distance_in"], r["squirt_deg"]) for r in rows("added_mass_players_feb2008")]
     own = [
         (1e3 * one.mass, one.position / 0.0254, math.degrees(one.value))
-        for one in load_documented(PLAYERS)[0].found
+        for one in load_measured(PLAYERS)[0].measurements
         if isinstance(one, AddedMass)
     ]
     assert np.array(own) == pytest.approx(np.array(told, float), rel=1e-12)
@@ -53,8 +53,8 @@ def test_the_page_says_what_is_computed() -> None:
     text = (HOME / "README.md").read_text(encoding="utf-8")
     for path in FOLDERS:
         assert f"[{path.name}]({path.name}/measured.toml)" in text
-        cue, _ = load_documented(path)
-        for one in cue.found:
+        cue, _ = load_measured(path)
+        for one in cue.measurements:
             if not isinstance(one, AddedMass):
                 computed = with_unit(one.computed(cue.setup()), one.unit)
                 told = with_unit(one.measured, one.unit, error=one.sd)

@@ -1,13 +1,13 @@
-"""A small documented cue for tests: cheap measurements on a plain shaft, and folders of one."""
+"""A small measured cue for tests: cheap measurements on a plain shaft, and folders of one."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 import cuefem as cf
-from cuefem.measured.documented import DocumentedCue
-from cuefem.measured.kinds import Measurement, Stiffness, Tone, Weight
-from cuefem.measured.unknowns import Prior
+from cuefem.measurements.measured_cue import MeasuredCue
+from cuefem.measurements.measurement_types import Measurement, Stiffness, Tone, Weight
+from cuefem.measurements.uncertain_parameters import Prior
 
 WOOD = cf.Material(E=13.86e9, G=1.2e9, rho=705.0)
 SHAFT = cf.Cue((cf.Segment(0.13, 0.012, 0.0122, WOOD, 0.006, 0.006), cf.Segment(0.6, 0.0122, 0.021, WOOD)), 0.45)
@@ -50,9 +50,9 @@ error = "90 N/m"
 """
 
 
-def documented(*found: Measurement, priors: tuple[Prior, ...] = ()) -> DocumentedCue:
+def measured_cue(*found: Measurement, priors: tuple[Prior, ...] = ()) -> MeasuredCue:
     """The cue with some measurements."""
-    return DocumentedCue("a cue", SCENE, found, priors)
+    return MeasuredCue("a cue", SCENE, found, priors)
 
 
 def blank() -> tuple[Measurement, ...]:
@@ -63,7 +63,7 @@ def blank() -> tuple[Measurement, ...]:
 
 
 def folder(place: Path, measured: str = SOME, drawing: str = DRAWING) -> Path:
-    """A folder of a documented cue."""
+    """A folder of a measured cue."""
     place.mkdir()
     (place / "cue.toml").write_text(drawing, encoding="utf-8")
     (place / "measured.toml").write_text(measured, encoding="utf-8")

@@ -16,7 +16,7 @@ import numpy as np
 
 from cuefem.contact.side_strike import Striker
 from cuefem.cue import Array
-from cuefem.measured.kinds import EndMass
+from cuefem.measurements.measurement_types import EndMass
 from cuefem.quantity.fields import CONTACT_TIME, LENGTH, Quantity, check_fields
 
 GRAVITY = 9.81  # m/s2
@@ -65,7 +65,7 @@ class Pendulum:
 
     Examples
     --------
-    >>> from cuefem.measured.pendulum import Pendulum
+    >>> from cuefem.measurements.pendulum import Pendulum
     >>> swings = {"before": (0.2,), "after": (-0.034,), "clamped_after": (0.162,)}
     >>> measured = Pendulum(ball_mass=8e-3, thread=1.0, position=0.016, contact_time=1e-3, **swings).end_mass
     >>> round(1e3 * measured.value, 2), round(1e3 * measured.error, 2)  # g

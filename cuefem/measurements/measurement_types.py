@@ -1,4 +1,4 @@
-"""The measurements that a documented cue may hold, one class each; a new one takes a class and an entry in `KINDS`."""
+"""The measurements that a measured cue may hold, one class each, listed in `MEASUREMENT_TYPES`."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Annotated, Any, ClassVar, NamedTuple
 
 from cuefem.contact.side_strike import Striker
-from cuefem.measured.numbers import TONES, Numbers, numbers_of
+from cuefem.measurements.predictions import TONES, Predictions, predictions_of
 from cuefem.quantity.fields import CONTACT_TIME, LENGTH, Quantity, check_fields
 from cuefem.scene import Scene
 
@@ -40,9 +40,9 @@ class Setup(NamedTuple):
     time_factor: float = 1.0
 
     @property
-    def numbers(self) -> Numbers:
+    def predictions(self) -> Predictions:
         """What its cue does."""
-        return numbers_of(self.scene)
+        return predictions_of(self.scene)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -115,7 +115,7 @@ class Weight(Measurement):
 
     def computed(self, setup: Setup) -> float:
         """That of the drawing."""
-        return setup.numbers.shaft_mass + (setup.scene.shaft.body_mass if self.of == "cue" else 0.0)
+        return setup.predictions.shaft_mass + (setup.scene.shaft.body_mass if self.of == "cue" else 0.0)
 
     @classmethod
     def next(cls, scene: Scene) -> tuple[Measurement, ...]:
@@ -137,7 +137,7 @@ class Balance(Measurement):
 
     def computed(self, setup: Setup) -> float:
         """That of the drawing."""
-        return setup.numbers.balance_point
+        return setup.predictions.balance_point
 
     @classmethod
     def next(cls, scene: Scene) -> tuple[Measurement, ...]:
@@ -175,12 +175,12 @@ class Tone(Measurement):
 
     def computed(self, setup: Setup) -> float:
         """Of the beam."""
-        return float(setup.numbers.frequencies[self.mode - 1])
+        return float(setup.predictions.frequencies[self.mode - 1])
 
     @classmethod
     def next(cls, scene: Scene) -> tuple[Measurement, ...]:
         """The four lowest, by ear of a telephone."""
-        frequencies = numbers_of(scene).frequencies[:4]
+        frequencies = predictions_of(scene).frequencies[:4]
         return tuple(cls(mode=i + 1, value=float(f), error=0.1) for i, f in enumerate(frequencies))
 
 
@@ -208,7 +208,7 @@ class Stiffness(Measurement):
     def computed(self, setup: Setup) -> float:
         """One linear solution of the beam."""
         wood = setup.scene.shaft.length - setup.scene.shaft.leather
-        return setup.numbers.stiffness(wood if self.free_length is None else self.free_length)
+        return setup.predictions.stiffness(wood if self.free_length is None else self.free_length)
 
     @classmethod
     def lacking(cls, measurements: Sequence[Any]) -> str:
@@ -288,7 +288,7 @@ class Squirt(Measurement):
         """Of the coupled strike; the mean of both sides, to first order, if both were measured."""
         aside = 0.0 if self.left is not None else setup.zeros.get(self.series, 0.0)
         offset = self.offset + aside / float(setup.scene.ball.radius)
-        return setup.squirt_factor * setup.numbers.squirt(min(max(offset, -0.99), 0.99), self.speed)
+        return setup.squirt_factor * setup.predictions.squirt(min(max(offset, -0.99), 0.99), self.speed)
 
     @classmethod
     def lacking(cls, measurements: Sequence[Any]) -> str:
@@ -348,8 +348,8 @@ class AddedMass(Measurement):
 
     def computed(self, setup: Setup) -> float:
         """Two coupled strikes."""
-        with_mass = setup.numbers.squirt(self.offset, self.speed, (self.mass, self.position))
-        return with_mass / setup.numbers.squirt(self.offset, self.speed)
+        with_mass = setup.predictions.squirt(self.offset, self.speed, (self.mass, self.position))
+        return with_mass / setup.predictions.squirt(self.offset, self.speed)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -372,7 +372,7 @@ class ContactTime(Measurement):
 
     def computed(self, setup: Setup) -> float:
         """Of the coupled strike."""
-        return setup.numbers.duration(self.speed)
+        return setup.predictions.duration(self.speed)
 
     @classmethod
     def next(cls, scene: Scene) -> tuple[Measurement, ...]:
@@ -382,7 +382,7 @@ class ContactTime(Measurement):
 
 @dataclass(frozen=True, kw_only=True)
 class EndMass(Measurement):
-    """The end mass by a pendulum test (`cuefem.measured.pendulum`): that which a light ball feels from the side.
+    """The end mass by a pendulum test (`cuefem.measurements.pendulum`): that which a light ball feels from the side.
 
     ball_mass, restitution, contact_time: of the ball on the clamped shaft. position: of the impact, from the end of the
     tip. contact_time_error: shared by all pendulum tests of a cue.
@@ -410,16 +410,16 @@ class EndMass(Measurement):
         """Of a side strike."""
         time = self.contact_time * setup.time_factor
         striker = Striker(self.ball_mass, self.restitution, contact_time=time)
-        return setup.numbers.end_mass(striker, self.position)
+        return setup.predictions.end_mass(striker, self.position)
 
     @classmethod
     def next(cls, scene: Scene) -> tuple[Measurement, ...]:
         """A ball of 8 g that touches a wall for 1 ms, 10 mm behind the ferrule's end."""
-        place = 0.01 + numbers_of(scene).tip_height
+        place = 0.01 + predictions_of(scene).tip_height
         blank = cls(value=1.0, error=1.0, ball_mass=8e-3, restitution=0.8, contact_time=1e-3, position=place)
         value = blank.computed(Setup(scene))
         return (replace(blank, value=value, error=GOOD_END_MASS * value),)
 
 
-_KINDS: tuple[type[Measurement], ...] = (Weight, Balance, Tone, Stiffness, ContactTime, EndMass, Squirt, AddedMass)
-KINDS: dict[str, type[Measurement]] = {kind.key: kind for kind in _KINDS}
+_TYPES: tuple[type[Measurement], ...] = (Weight, Balance, Tone, Stiffness, ContactTime, EndMass, Squirt, AddedMass)
+MEASUREMENT_TYPES: dict[str, type[Measurement]] = {kind.key: kind for kind in _TYPES}

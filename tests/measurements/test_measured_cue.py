@@ -1,4 +1,4 @@
-"""What documented cues compute: exact static stiffness, errors from priors, residuals, the zero of the offset."""
+"""What measured cues compute: exact static stiffness, errors from priors, residuals, the zero of the offset."""
 
 from __future__ import annotations
 
@@ -9,11 +9,21 @@ import pytest
 
 import cuefem as cf
 from cuefem.cue import shear_coefficient
-from cuefem.measured.documented import compare, zeros
-from cuefem.measured.kinds import KINDS, AddedMass, Balance, ContactTime, Setup, Squirt, Stiffness, Tone, Weight
-from cuefem.measured.numbers import numbers_of
-from tests.helpers.documented import SCENE, SHAFT, WOOD, blank, documented
+from cuefem.measurements.measured_cue import compare, zeros
+from cuefem.measurements.measurement_types import (
+    MEASUREMENT_TYPES,
+    AddedMass,
+    Balance,
+    ContactTime,
+    Setup,
+    Squirt,
+    Stiffness,
+    Tone,
+    Weight,
+)
+from cuefem.measurements.predictions import predictions_of
 from tests.helpers.leather_scenes import leather_scene
+from tests.helpers.measured_cues import SCENE, SHAFT, WOOD, blank, measured_cue
 
 ROD = replace(SCENE, cue=cf.Cue((cf.Segment(0.7, 0.014, 0.014, WOOD),)))
 
@@ -38,7 +48,7 @@ def test_stiffness_is_that_behind_the_leather() -> None:
 def test_weight_and_balance_hold_the_tip() -> None:
     scene = leather_scene()
     tip = scene.leather.mass_on(scene.shaft)
-    found = numbers_of(scene)
+    found = predictions_of(scene)
     assert found.shaft_mass == pytest.approx(scene.shaft.shaft_mass + tip, rel=1e-14)
     assert Weight(of="cue", value=1.0, error=1.0).computed(Setup(scene)) == pytest.approx(scene.shaft.mass + tip)
     moment = scene.shaft.shaft_mass * scene.shaft.balance_point
@@ -76,14 +86,14 @@ def test_a_zero_of_the_offset_moves_one_side_alone() -> None:
     sides = Squirt(offset=0.3, left=both[0], right=both[1], error=1e-3, series="a")
     assert alone.computed(setup) == pytest.approx(both[0], rel=1e-12)
     assert sides.computed(setup) == pytest.approx(cf.strike(SCENE).squirt, rel=1e-12)
-    cue = documented(sides)
+    cue = measured_cue(sides)
     (told,) = zeros(cue, compare(cue))
     assert told.zero == pytest.approx(aside, rel=0.2)
     assert told.error > 0
 
 
 def test_residuals_are_in_errors() -> None:
-    rows = compare(documented(*blank()))
+    rows = compare(measured_cue(*blank()))
     for row in rows:
         assert row.residual == pytest.approx((row.measured - row.computed) / row.error)
         assert row.pull == pytest.approx((row.measured - row.computed) / np.hypot(row.error, row.spread))
@@ -95,11 +105,11 @@ def test_residuals_are_in_errors() -> None:
 
 
 def test_what_is_missing_is_named() -> None:
-    assert len(documented().lacking) == len(KINDS)
-    one = documented(Stiffness(value=400.0, error=8.0), Squirt(offset=0.3, value=0.03, error=1e-3))
+    assert len(measured_cue().lacking) == len(MEASUREMENT_TYPES)
+    one = measured_cue(Stiffness(value=400.0, error=8.0), Squirt(offset=0.3, value=0.03, error=1e-3))
     said = " ".join(one.lacking)
     assert "static stiffness at a second free length" in said
     assert "three offsets, here 1" in said
     assert "the other side" in said
     assert "tones" in said
-    assert "tones" not in " ".join(documented(Tone(mode=1, value=95.0, error=0.2)).lacking)
+    assert "tones" not in " ".join(measured_cue(Tone(mode=1, value=95.0, error=0.2)).lacking)

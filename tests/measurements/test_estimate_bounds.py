@@ -8,15 +8,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cuefem.io.documented_folder import load_documented
-from cuefem.measured.documented import DocumentedCue, compare
-from cuefem.measured.estimate import estimate
-from cuefem.measured.kinds import Stiffness, Tone, Weight
-from cuefem.measured.unknowns import Prior
+from cuefem.io.measured_folder import load_measured
+from cuefem.measurements.estimate import estimate
+from cuefem.measurements.measured_cue import MeasuredCue, compare
+from cuefem.measurements.measurement_types import Stiffness, Tone, Weight
+from cuefem.measurements.uncertain_parameters import Prior
 from cuefem.scene import Scene
 from studies.pages import STUDIES
-from tests.helpers.documented import SCENE
 from tests.helpers.leather_scenes import leather_scene
+from tests.helpers.measured_cues import SCENE
 
 CHEAP = (
     Weight(value=0.1, error=5e-4),
@@ -26,10 +26,10 @@ CHEAP = (
 FARTHEST = 12.0  # standard deviations of a prior: what has no limit within is not limited
 
 
-def weighed(mass: float, error: float) -> DocumentedCue:
+def weighed(mass: float, error: float) -> MeasuredCue:
     """The published Predator Z-2, weighed too."""
-    cue = load_documented(STUDIES / "measured" / "predator_z2")[0]
-    return replace(cue, found=(*cue.found, Weight(value=mass, error=error)))
+    cue = load_measured(STUDIES / "measured" / "predator_z2")[0]
+    return replace(cue, measurements=(*cue.measurements, Weight(value=mass, error=error)))
 
 
 @pytest.mark.heavy
@@ -52,12 +52,12 @@ def test_no_weight_stops_an_estimate(error: float) -> None:
         assert np.isfinite(estimate(weighed(float(mass), error)).covariance).all()
 
 
-def limits(cue: DocumentedCue, i: int) -> list[float]:
-    """Where the cue stops being possible along an unknown, in standard deviations of its prior."""
+def limits(cue: MeasuredCue, i: int) -> list[float]:
+    """Where the cue stops being possible along an uncertain parameter, in standard deviations of its prior."""
     ends = []
     for side in (-1.0, 1.0):
         inside, outside = 0.0, side * FARTHEST
-        unit = np.eye(len(cue.unknowns))[i]
+        unit = np.eye(len(cue.parameters))[i]
         if setup_of(cue, outside * unit):
             continue
         while abs(outside - inside) > 1e-9:
@@ -67,7 +67,7 @@ def limits(cue: DocumentedCue, i: int) -> list[float]:
     return ends
 
 
-def setup_of(cue: DocumentedCue, z: np.ndarray) -> bool:
+def setup_of(cue: MeasuredCue, z: np.ndarray) -> bool:
     """Whether there can be such a cue."""
     try:
         return bool(cue.setup(z))
@@ -77,24 +77,24 @@ def setup_of(cue: DocumentedCue, z: np.ndarray) -> bool:
 
 @pytest.mark.parametrize("name", ["E", "bore", "taper"])
 def test_an_unknown_at_its_limits(name: str) -> None:
-    at_limits(DocumentedCue("a cue", SCENE, CHEAP, (Prior("taper", 0.1),)), [name])
+    at_limits(MeasuredCue("a cue", SCENE, CHEAP, (Prior("taper", 0.1),)), [name])
 
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("scene", [SCENE, leather_scene()], ids=["plain tip", "leather tip"])
 def test_every_unknown_at_its_limits(scene: Scene) -> None:
-    cue = DocumentedCue("a cue", scene, CHEAP, (Prior("taper", 0.1),))
-    assert at_limits(cue, [unknown.name for unknown in cue.unknowns]) >= 3
+    cue = MeasuredCue("a cue", scene, CHEAP, (Prior("taper", 0.1),))
+    assert at_limits(cue, [parameter.name for parameter in cue.parameters]) >= 3
 
 
-def at_limits(cue: DocumentedCue, names: Sequence[str]) -> int:
+def at_limits(cue: MeasuredCue, names: Sequence[str]) -> int:
     """Drawings at the limit of what can be, or a little inside, are compared and estimated like others."""
     met = 0
-    for i, unknown in enumerate(cue.unknowns):
-        for end in limits(cue, i) if unknown.name in names else ():
+    for i, parameter in enumerate(cue.parameters):
+        for end in limits(cue, i) if parameter.name in names else ():
             for inside in (0.0, 0.3):
                 there = end - np.sign(end) * inside
-                near = replace(cue, scene=unknown.setup(cue.setup(), float(there)).scene)
+                near = replace(cue, scene=parameter.setup(cue.setup(), float(there)).scene)
                 assert np.isfinite([row.spread for row in compare(near)]).all()
                 met += 1
             assert np.isfinite(estimate(near).covariance).all()

@@ -1,8 +1,8 @@
-"""The unknowns of a documented cue from all its measurements together, and which measurement to make next.
+"""The uncertain parameters of a measured cue from all its measurements together, and which measurement to make next.
 
-The posterior is that of the priors of `cuefem.measured.unknowns` and of independent errors, one or two of which may be
-far larger than stated (`cuefem.measured.outliers`). Gauss and Newton's method finds where the model fits best; about
-that point the model is taken as linear, and mean and covariance of the posterior follow.
+The posterior is that of the priors of `cuefem.measurements.uncertain_parameters` and of independent errors, one or two
+of which may be far larger than stated (`cuefem.measurements.outliers`). Gauss and Newton's method finds where the model
+fits best; about that point the model is taken as linear, and mean and covariance of the posterior follow.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from typing import NamedTuple
 import numpy as np
 
 from cuefem.cue import Array
-from cuefem.measured.documented import DocumentedCue, Row, Track, rows_of
-from cuefem.measured.kinds import KINDS, Measurement, Squirt
-from cuefem.measured.outliers import NOTICED, WIDER, solved
+from cuefem.measurements.measured_cue import MeasuredCue, Row, Track, rows_of
+from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, Measurement, Squirt
+from cuefem.measurements.outliers import NOTICED, WIDER, solved
 
 STEPS, SETTLED = 12, 0.05  # steps at most; length of a step, in standard deviations of the result, that ends them
 AGAIN = 6  # steps at most of the search that counts contradictions less
@@ -26,7 +26,7 @@ TARGET = 0.3  # b/R of the squirt that is predicted where the scene has no offse
 
 
 class Value(NamedTuple):
-    """An unknown: its name and words, its unit, what it was taken to be, and what it is now.
+    """An uncertain parameter: its name and words, its unit, what it was taken to be, and what it is now.
 
     low, high: the ends of the interval that holds it with 68 %; narrowed: the part of the prior's width that is left.
     """
@@ -44,7 +44,7 @@ class Value(NamedTuple):
 class Worth(NamedTuple):
     """What a further measurement would tell.
 
-    bits: about all unknowns. narrows: the unknown that it narrows most; left: the part of its error that is left.
+    bits: about all parameters. narrows: the parameter that it narrows most; left: the part of its error that is left.
     squirt_left: the relative error of the squirt that is left.
     """
 
@@ -58,7 +58,7 @@ class Worth(NamedTuple):
 class Unchecked(NamedTuple):
     """A measurement that nothing else checks: a mistake of ten of its errors would go unnoticed, and nothing covers it.
 
-    value: the unknown that rests on it most, as it is without this measurement.
+    value: the parameter that rests on it most, as it is without this measurement.
     """
 
     measurement: Measurement
@@ -67,15 +67,15 @@ class Unchecked(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Estimate:
-    """The unknowns of a cue after its measurements.
+    """The uncertain parameters of a cue after its measurements.
 
-    z: (unknowns,) mean, in standard deviations of the priors. covariance: (unknowns, unknowns). computed: (n,) values
-    of the measurements there. slopes: (n, unknowns). misfit: the sum of squares of the residuals and the priors where
-    it is least, every measurement in full. converged: whether the last step was short. wrong: (n,) the chance that a
+    z: (parameters,) mean, in standard deviations of the priors. covariance: (parameters, parameters). computed: (n,)
+    values of the measurements there. slopes: (n, parameters). misfit: the least sum of squares of the residuals and the
+    priors, every measurement in full. converged: whether the last step was short. wrong: (n,) the chance that a
     measurement is wrong: that its error is far larger than stated.
     """
 
-    cue: DocumentedCue
+    cue: MeasuredCue
     z: Array
     covariance: Array
     computed: Array
@@ -86,14 +86,14 @@ class Estimate:
 
     @property
     def values(self) -> tuple[Value, ...]:
-        """The unknowns in their units."""
+        """The parameters in their units."""
         return self._values(self.z, self.covariance)
 
     def _values(self, mean: Array, covariance: Array) -> tuple[Value, ...]:
         made = []
-        for unknown, z, sd in zip(self.cue.unknowns, mean, np.sqrt(np.diag(covariance)), strict=True):
-            names = (unknown.name, unknown.words, unknown.unit, unknown.usual)
-            at, low, high = (unknown.value(float(each)) for each in (z, z - sd, z + sd))
+        for parameter, z, sd in zip(self.cue.parameters, mean, np.sqrt(np.diag(covariance)), strict=True):
+            names = (parameter.name, parameter.words, parameter.unit, parameter.usual)
+            at, low, high = (parameter.value(float(each)) for each in (z, z - sd, z + sd))
             made.append(Value(*names, at, low, high, float(sd)))
         return tuple(made)
 
@@ -106,7 +106,7 @@ class Estimate:
         """
         J, residuals = _scaled(self.cue, self.z, self.computed, self.slopes)
         made = []
-        for i, measurement in enumerate(self.cue.found):
+        for i, measurement in enumerate(self.cue.measurements):
             others = np.arange(len(J)) != i
             foreseen = J[i] @ np.linalg.solve(J[others].T @ J[others] + np.eye(len(self.z)), J[i])
             if NOTICED**2 * (1 + foreseen) > WIDER**2:
@@ -117,18 +117,18 @@ class Estimate:
 
     @property
     def rows(self) -> tuple[Row, ...]:
-        """The measurements beside the values with the estimated unknowns."""
+        """The measurements beside the values with the estimated parameters."""
         spread = np.sqrt(np.einsum("ij,jk,ik->i", self.slopes, self.covariance, self.slopes))
         return rows_of(self.cue, self.computed, spread)
 
     def predicted(self, what: Measurement) -> tuple[float, float]:
-        """Value of something else by the model with the estimated unknowns, and its error; SI."""
+        """Value of something else by the model with the estimated parameters, and its error; SI."""
         at, slope = self._also((what,))
         return float(at[0]), float(np.sqrt(slope[0] @ self.covariance @ slope[0]))
 
     def _also(self, others: Sequence[Measurement]) -> tuple[Array, Array]:
-        bare = DocumentedCue(self.cue.name, self.cue.scene, (), self.cue.priors)
-        bare.__dict__["unknowns"] = self.cue.unknowns  # those of all measurements, the zeros too
+        bare = MeasuredCue(self.cue.name, self.cue.scene, (), self.cue.priors)
+        bare.__dict__["parameters"] = self.cue.parameters  # those of all measurements, the zeros too
         at = bare.computed(self.z, others)
         return at, bare.slopes(self.z, others)
 
@@ -138,7 +138,7 @@ class Estimate:
         Each as if it came out as the estimate predicts it; it may also check those that were made.
         """
         target = squirt_of(self.cue)
-        others = [measurement for kind in KINDS.values() for measurement in kind.next(self.cue.scene)]
+        others = [measurement for kind in MEASUREMENT_TYPES.values() for measurement in kind.next(self.cue.scene)]
         at, slopes = self._also((target, *others))
         J, residuals = _scaled(self.cue, self.z, self.computed, self.slopes)
         made = []
@@ -148,22 +148,22 @@ class Estimate:
             i = int(np.argmin(left))
             bits = 0.5 / np.log(2) * (np.linalg.slogdet(self.covariance)[1] - np.linalg.slogdet(after)[1])
             relative = float(np.sqrt(slopes[0] @ after @ slopes[0])) / abs(float(at[0]))
-            made.append(Worth(measurement, float(bits), self.cue.unknowns[i].words, float(left[i]), relative))
+            made.append(Worth(measurement, float(bits), self.cue.parameters[i].words, float(left[i]), relative))
         return tuple(sorted(made, key=lambda worth: worth.squirt_left))
 
 
-def squirt_of(cue: DocumentedCue) -> Squirt:
+def squirt_of(cue: MeasuredCue) -> Squirt:
     """The squirt that an estimate predicts: at the scene's own offset; its value does not count."""
     own = abs(float(cue.scene.stroke.offset))
     return Squirt(offset=own or TARGET, left=0.0, right=0.0, error=1.0)
 
 
-def estimate(cue: DocumentedCue, *, track: Track = iter) -> Estimate:
-    """The unknowns that all measurements of a cue and the priors together make most likely, with their errors.
+def estimate(cue: MeasuredCue, *, track: Track = iter) -> Estimate:
+    """The uncertain parameters that all measurements of a cue and the priors make most likely, with their errors.
 
     Parameters
     ----------
-    cue : DocumentedCue
+    cue : MeasuredCue
         At least one measurement.
     track : callable, optional
         Follows the steps.
@@ -176,19 +176,19 @@ def estimate(cue: DocumentedCue, *, track: Track = iter) -> Estimate:
     Raises
     ------
     ValueError
-        If nothing was measured, or nothing is unknown.
+        If nothing was measured, or nothing is uncertain.
 
     Notes
     -----
     First all measurements count in full: Gauss and Newton's method, steps of at most 1.5 standard deviations of the
     priors, halved while they lead upwards or to a cue that cannot be. From there on, what contradicts the others counts
-    less. Cost: some seven steps, each two computations of all values for every unknown.
+    less. Cost: some seven steps, each two computations of all values for every parameter.
     """
-    if not cue.found or not cue.unknowns:
-        what = "measurements" if not cue.found else "unknowns"
+    if not cue.measurements or not cue.parameters:
+        what = "measurements" if not cue.measurements else "uncertain parameters"
         raise ValueError(f"estimate takes a cue with {what}; got none")
-    measured, sd = np.array([[measurement.measured, measurement.sd] for measurement in cue.found]).T
-    z = np.zeros(len(cue.unknowns))
+    measured, sd = np.array([[measurement.measured, measurement.sd] for measurement in cue.measurements]).T
+    z = np.zeros(len(cue.parameters))
     at = cue.computed(z)
     cost, converged = _cost(z, (measured - at) / sd), False
     for _ in track(range(STEPS)):
@@ -207,7 +207,7 @@ def estimate(cue: DocumentedCue, *, track: Track = iter) -> Estimate:
     return _counted(cue, z, at, cost)
 
 
-def _counted(cue: DocumentedCue, z: Array, at: Array, misfit: float) -> Estimate:
+def _counted(cue: MeasuredCue, z: Array, at: Array, misfit: float) -> Estimate:
     """The estimate about a start, in which a measurement that contradicts the others counts less."""
     for last in range(1, AGAIN + 1):
         slopes = cue.slopes(z)
@@ -222,20 +222,20 @@ def _counted(cue: DocumentedCue, z: Array, at: Array, misfit: float) -> Estimate
     return Estimate(cue, z, covariance, at, slopes, misfit, converged, wrong)
 
 
-def _scaled(cue: DocumentedCue, z: Array, at: Array, slopes: Array) -> tuple[Array, Array]:
+def _scaled(cue: MeasuredCue, z: Array, at: Array, slopes: Array) -> tuple[Array, Array]:
     """The linear problem about z: slopes and residuals (of z = 0) in the measurements' errors."""
-    measured, sd = np.array([[measurement.measured, measurement.sd] for measurement in cue.found]).T
+    measured, sd = np.array([[measurement.measured, measurement.sd] for measurement in cue.measurements]).T
     J = slopes / sd[:, None]
     return J, (measured - at) / sd + J @ z
 
 
 def _limited(step: Array) -> Array:
-    """A step of at most `FARTHEST` in any unknown."""
+    """A step of at most `FARTHEST` in any parameter."""
     return step * min(1.0, FARTHEST / max(float(np.abs(step).max()), 1e-12))
 
 
 def _lowest(
-    cue: DocumentedCue, z: Array, step: Array, cost: float, measured: Array, sd: Array
+    cue: MeasuredCue, z: Array, step: Array, cost: float, measured: Array, sd: Array
 ) -> tuple[Array, Array, float] | None:
     """The lowest point along a step, halved as long as that leads lower; None if no point is below ``cost``.
 

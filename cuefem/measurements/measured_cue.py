@@ -1,4 +1,4 @@
-"""A documented cue: its drawing, the stroke, what was measured on it, and the table of measured and computed values."""
+"""A measured cue: its drawing, the stroke, what was measured on it, and the table of measured and computed values."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cuefem.cue import Array
-from cuefem.measured.kinds import KINDS, Measurement, Setup, Squirt
-from cuefem.measured.unknowns import Prior, Unknown, unknowns_of
+from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, Measurement, Setup, Squirt
+from cuefem.measurements.uncertain_parameters import Prior, UncertainParameter, parameters_of
 from cuefem.quantity.fields import check_kind
 from cuefem.scene import Scene
 
@@ -22,7 +22,7 @@ Track = Callable[[Sequence[Any]], Iterable[Any]]
 
 
 @dataclass(frozen=True)
-class DocumentedCue:
+class MeasuredCue:
     """A cue that was measured.
 
     Parameters
@@ -31,10 +31,10 @@ class DocumentedCue:
         What it is called.
     scene : Scene
         Its drawing with the ball and the tip; the stroke's speed holds where a measurement gives none.
-    found : tuple
-        The measurements, of the classes in `cuefem.measured.kinds.KINDS`.
+    measurements : tuple
+        The measurements, of the classes in `cuefem.measurements.measurement_types.MEASUREMENT_TYPES`.
     priors : tuple of Prior, optional
-        What is known of what is unknown, beyond the usual.
+        What is known of uncertain parameters, beyond the usual.
     source : str, optional
         Where the numbers come from.
 
@@ -48,37 +48,37 @@ class DocumentedCue:
 
     name: str
     scene: Scene
-    found: tuple[Measurement, ...]
+    measurements: tuple[Measurement, ...]
     priors: tuple[Prior, ...] = ()
     source: str = ""
 
     def __post_init__(self) -> None:
-        check_kind("DocumentedCue.scene", self.scene, Scene)
-        for i, measurement in enumerate(self.found):
-            check_kind(f"DocumentedCue.found[{i}]", measurement, Measurement)
-        _ = self.scene.shaft, self.unknowns
+        check_kind("MeasuredCue.scene", self.scene, Scene)
+        for i, measurement in enumerate(self.measurements):
+            check_kind(f"MeasuredCue.measurements[{i}]", measurement, Measurement)
+        _ = self.scene.shaft, self.parameters
 
     @cached_property
-    def unknowns(self) -> tuple[Unknown, ...]:
+    def parameters(self) -> tuple[UncertainParameter, ...]:
         """What its drawing leaves open."""
-        return unknowns_of(self.scene, self.found, self.priors)
+        return parameters_of(self.scene, self.measurements, self.priors)
 
     def setup(self, z: Array | None = None) -> Setup:
-        """The scene with its unknowns ``z`` standard deviations of their priors off the usual values."""
+        """The scene with its uncertain parameters ``z`` standard deviations of their priors off the usual values."""
         made = Setup(self.scene)
-        for unknown, each in zip(self.unknowns, np.zeros(len(self.unknowns)) if z is None else z, strict=True):
-            made = unknown.setup(made, float(each))
+        for parameter, each in zip(self.parameters, np.zeros(len(self.parameters)) if z is None else z, strict=True):
+            made = parameter.setup(made, float(each))
         return made
 
     def computed(self, z: Array | None = None, also: Sequence[Measurement] = ()) -> Array:
         """The values of its measurements by the model, SI, and of others ``also``."""
         setup = self.setup(z)
-        return np.array([measurement.computed(setup) for measurement in (*self.found, *also)])
+        return np.array([measurement.computed(setup) for measurement in (*self.measurements, *also)])
 
     def slopes(
         self, z: Array, also: Sequence[Measurement] = (), *, at: Array | None = None, track: Track = iter
     ) -> Array:
-        """Derivatives of the values with respect to the unknowns, (values, unknowns), by central differences.
+        """Derivatives of the values with respect to the parameters, (values, parameters), by central differences.
 
         By one-sided ones from the values ``at`` that point, if these are given.
         """
@@ -112,8 +112,8 @@ class DocumentedCue:
     def lacking(self) -> list[str]:
         """What a useful data set has and this one does not, and what that costs."""
         said = (
-            kind.lacking([measurement for measurement in self.found if isinstance(measurement, kind)])
-            for kind in KINDS.values()
+            kind.lacking([measurement for measurement in self.measurements if isinstance(measurement, kind)])
+            for kind in MEASUREMENT_TYPES.values()
         )
         return [words for words in said if words]
 
@@ -134,21 +134,21 @@ class Row(NamedTuple):
     pull: float
 
 
-def compare(cue: DocumentedCue, *, track: Track = iter) -> tuple[Row, ...]:
-    """Every measurement of a documented cue beside the model's value, nothing fitted.
+def compare(cue: MeasuredCue, *, track: Track = iter) -> tuple[Row, ...]:
+    """Every measurement of a measured cue beside the model's value, nothing fitted.
 
-    Cost: one strike for each squirt, times one more than there are unknowns. track: follows these steps.
+    Cost: one strike for each squirt, times one more than there are parameters. track: follows these steps.
     """
-    z = np.zeros(len(cue.unknowns))
+    z = np.zeros(len(cue.parameters))
     at = cue.computed(z)
     spread = np.sqrt(np.sum(cue.slopes(z, at=at, track=track) ** 2, axis=1))
     return rows_of(cue, at, spread)
 
 
-def rows_of(cue: DocumentedCue, computed: Array, spread: Array) -> tuple[Row, ...]:
+def rows_of(cue: MeasuredCue, computed: Array, spread: Array) -> tuple[Row, ...]:
     """The table of computed values with their standard deviations."""
     made = []
-    for measurement, value, error in zip(cue.found, computed.tolist(), spread.tolist(), strict=True):
+    for measurement, value, error in zip(cue.measurements, computed.tolist(), spread.tolist(), strict=True):
         gap = measurement.measured - value
         made.append(
             Row(
@@ -175,7 +175,7 @@ class Zero(NamedTuple):
     error: float
 
 
-def zeros(cue: DocumentedCue, rows: Sequence[Row]) -> tuple[Zero, ...]:
+def zeros(cue: MeasuredCue, rows: Sequence[Row]) -> tuple[Zero, ...]:
     """The zero of the offset by each squirt that was measured on both sides.
 
     Squirt is taken to be proportional to the offset there, which is right to a fifth.

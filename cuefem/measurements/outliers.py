@@ -1,4 +1,4 @@
-"""Numbers of which some may be wrong: each has its stated error or, in a small share of cases, a far larger one.
+"""Predictions of which some may be wrong: each has its stated error or, in a small share of cases, a far larger one.
 
 A wrong number's error is `WIDER` times the stated one. A number that agrees with the others counts in full, one that
 contradicts them hardly at all, and where the numbers cannot tell which of them is wrong, the error grows (the
@@ -22,7 +22,7 @@ TOGETHER = 2  # measurements that are wrong at once, at most
 
 
 class Linear(NamedTuple):
-    """What measurements tell of unknowns whose priors are 0 ± 1; wrong: the chance of each measurement to be so."""
+    """What measurements tell of parameters whose priors are 0 ± 1; wrong: the chance of each measurement to be so."""
 
     mean: Array
     covariance: Array
@@ -30,19 +30,19 @@ class Linear(NamedTuple):
 
 
 def solved(slopes: Array, residuals: Array) -> Linear:
-    """The unknowns of a linear problem, of whose measurements `TOGETHER` at most are wrong.
+    """The parameters of a linear problem, of whose measurements `TOGETHER` at most are wrong.
 
-    slopes: (measurements, unknowns) and residuals: (measurements,), both in units of the measurements' errors. Every
+    slopes: (measurements, parameters) and residuals: (measurements,), both in units of the measurements' errors. Every
     set of measurements that may be wrong, their errors `WIDER` times the stated ones, is a problem of its own; the
     problems count by how likely they make what was measured.
     """
-    count, unknowns = slopes.shape
+    count, parameters = slopes.shape
     sets = [each for size in range(min(TOGETHER, count) + 1) for each in combinations(range(count), size)]
     bad = np.zeros((len(sets), count))
     for row, each in zip(bad, sets, strict=True):
         row[list(each)] = 1.0
     weights = np.where(bad, WIDER**-2, 1.0)
-    inverse = np.einsum("sm,mi,mj->sij", weights, slopes, slopes) + np.eye(unknowns)
+    inverse = np.einsum("sm,mi,mj->sij", weights, slopes, slopes) + np.eye(parameters)
     covariance = np.linalg.inv(inverse)
     right = (weights * residuals) @ slopes
     means = np.einsum("sij,sj->si", covariance, right)

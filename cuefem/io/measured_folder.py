@@ -1,4 +1,4 @@
-"""A documented cue as a folder: the drawing, measured.toml with what was measured, and a CSV for each long series."""
+"""A measured cue as a folder: the drawing, measured.toml with what was measured, and a CSV for each long series."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from cuefem.io.assumed import assumed_blow, assumed_drawing
 from cuefem.io.errors import faults_of, nearest, read_bytes, shown
 from cuefem.io.schema import build, joined, keys_of, unknown_key
 from cuefem.io.toml import OF_GAME, game_of, left_out, read_tables, read_text, scene_of_tables
-from cuefem.measured.documented import DocumentedCue
-from cuefem.measured.kinds import KINDS, Measurement, Setup, Tone
-from cuefem.measured.pendulum import Pendulum
-from cuefem.measured.recording import Recording, combined, tones_of
-from cuefem.measured.unknowns import Prior, names
+from cuefem.measurements.measured_cue import MeasuredCue
+from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, Measurement, Setup, Tone
+from cuefem.measurements.pendulum import Pendulum
+from cuefem.measurements.recording import Recording, combined, tones_of
+from cuefem.measurements.uncertain_parameters import Prior, names
 from cuefem.quantity.fields import Quantity, quantities
 from cuefem.scene import Scene
 from cuefem.vary import place
@@ -31,7 +31,7 @@ from cuefem.vary import place
 MEASURED = "measured.toml"
 DRAWINGS = ("cue.toml", "cue.csv")
 SCENE_KEYS = ("cue", "game", "ball", "tip", "stroke", "effects")
-OWN_KEYS = ("name", "source", "unknowns")
+OWN_KEYS = ("name", "source", "uncertain")
 READINGS: dict[str, type] = {"recording": Recording, "pendulum": Pendulum}  # from which measurements are made
 LONGEST, LARGEST_SOUND = 120.0, 100_000_000  # s, bytes of a recording: as long, two channels at 96 kHz in 32 bits
 TEMPLATE = ("README.md", "added_mass.csv", "cue.toml", MEASURED, "squirt.csv")
@@ -39,27 +39,27 @@ TEMPLATE = ("README.md", "added_mass.csv", "cue.toml", MEASURED, "squirt.csv")
 _COLUMN = re.compile(r"\s*([a-z_]+)\s*(?:\[([^\]]+)\])?\s*")
 
 
-def load_documented(folder: Path) -> tuple[DocumentedCue, list[str]]:
-    """The documented cue of a folder, and what its files leave to defaults; InputError if they cannot be used."""
+def load_measured(folder: Path) -> tuple[MeasuredCue, list[str]]:
+    """The measured cue of a folder, and what its files leave to defaults; InputError if they cannot be used."""
     if not folder.is_dir():
-        raise InputError(folder, "", "must be the folder of a documented cue (`--template` makes one); got no folder")
+        raise InputError(folder, "", "must be the folder of a measured cue (`--template` makes one); got no folder")
     path = folder / MEASURED
     tables = read_tables(path) if path.exists() else {}
-    known = [*OWN_KEYS, *SCENE_KEYS, *KINDS, *READINGS]
+    known = [*OWN_KEYS, *SCENE_KEYS, *MEASUREMENT_TYPES, *READINGS]
     for name, value in tables.items():
         if name not in known:
             raise unknown_key(name, value, known, file=str(path), key="")
     scene, notes = _scene(folder, path, tables)
     measurements = (*_measurements(folder, path, tables), *_readings(folder, path, tables, scene))
-    priors = tuple(_priors(path, tables.get("unknowns", []), scene))
+    priors = tuple(_priors(path, tables.get("uncertain", []), scene))
     name, source = (_words(path, tables, key) for key in ("name", "source"))
     with faults_of(path, ""):
-        made = DocumentedCue(name or folder.resolve().name, scene, measurements, priors, source)
+        made = MeasuredCue(name or folder.resolve().name, scene, measurements, priors, source)
     return made, [*notes, *_examples(folder)]
 
 
 def write_template(folder: Path) -> None:
-    """Make a folder with the files of a documented cue, to be filled in; InputError if it exists."""
+    """Make a folder with the files of a measured cue, to be filled in; InputError if it exists."""
 
     def put(temporary: Path) -> None:
         for name in TEMPLATE:
@@ -70,7 +70,7 @@ def write_template(folder: Path) -> None:
 
 def _example(name: str) -> str:
     """A file of the template."""
-    return files(__package__).joinpath("documented_template", name).read_text(encoding="utf-8")
+    return files(__package__).joinpath("measured_template", name).read_text(encoding="utf-8")
 
 
 def _examples(folder: Path) -> list[str]:
@@ -116,15 +116,15 @@ def _drawing(path: Path) -> Any:
 
 
 def _measurements(folder: Path, path: Path, tables: dict[str, Any]) -> Iterator[Measurement]:
-    for key, kind in KINDS.items():
+    for key, kind in MEASUREMENT_TYPES.items():
         yield from _rows(path, tables, key, kind)
         series = folder / f"{key}.csv"
         if series.exists():
             yield from _series(series, kind)
     for other in sorted(folder.glob("*.csv")):
-        if other.name not in DRAWINGS and other.stem not in KINDS:
-            names = ", ".join(f"{key}.csv" for key in KINDS)
-            raise InputError(other, "", f"must be one of {names}{nearest(other.stem, KINDS)}")
+        if other.name not in DRAWINGS and other.stem not in MEASUREMENT_TYPES:
+            names = ", ".join(f"{key}.csv" for key in MEASUREMENT_TYPES)
+            raise InputError(other, "", f"must be one of {names}{nearest(other.stem, MEASUREMENT_TYPES)}")
 
 
 def _rows(path: Path, tables: dict[str, Any], key: str, kind: type[Any]) -> Iterator[Any]:
@@ -146,7 +146,7 @@ def _readings(folder: Path, path: Path, tables: dict[str, Any], scene: Scene) ->
         samples, rate = _sound(sound)
         with faults_of(sound, ""):
             source = recording.source or recording.file
-            tones += tones_of(samples, rate, Setup(scene).numbers.frequencies, source)
+            tones += tones_of(samples, rate, Setup(scene).predictions.frequencies, source)
     yield from combined(tones)
 
 
@@ -211,9 +211,9 @@ def _cell(path: Path, line: int, name: str, cell: str, unit: str, mark: Quantity
 
 def _priors(path: Path, rows: Any, scene: Scene) -> Iterator[Prior]:
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
-        raise InputError(path, "unknowns", f"must be tables, [[unknowns]]; got {shown(rows)}")
+        raise InputError(path, "uncertain", f"must be tables, [[uncertain]]; got {shown(rows)}")
     for i, row in enumerate(rows):
-        key = joined("unknowns", i)
+        key = joined("uncertain", i)
         name = row.get("name")
         if name not in names():
             hint = nearest(str(name), names())
@@ -223,7 +223,9 @@ def _priors(path: Path, rows: Any, scene: Scene) -> Iterator[Prior]:
                 raise unknown_key(other, row[other], keys_of(Prior), file=str(path), key=key)
         known = place(name)
         if known and known.value(scene) is None:
-            raise InputError(path, "", f"unknowns must be of this cue; got {name!r}, which it does not have")
+            raise InputError(
+                path, "", f"uncertain parameters must be of this cue; got {name!r}, which it does not have"
+            )
         ends = Quantity(known.quantity(scene).unit if known else "", "(0, inf)")
         marks = {"spread": Quantity("", "[0, 3]"), "low": ends, "high": ends}
         values = {}

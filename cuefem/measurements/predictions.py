@@ -23,7 +23,7 @@ STATIC = 8  # modes for which the mesh of a static load is made: it is exact to 
 
 
 @dataclass(frozen=True, eq=False)
-class Numbers:
+class Predictions:
     """A scene's cue as it is measured."""
 
     scene: Scene
@@ -115,9 +115,9 @@ class Numbers:
 
 
 @lru_cache(maxsize=128)
-def numbers_of(scene: Scene) -> Numbers:
+def predictions_of(scene: Scene) -> Predictions:
     """What a scene's cue does, the same object for the same scene."""
-    return Numbers(scene)
+    return Predictions(scene)
 
 
 def _without_leather(cue: Cue) -> Cue:

@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.io.documented_folder import load_documented
-from cuefem.measured.kinds import EndMass, Setup
-from cuefem.measured.pendulum import GRAVITY, Pendulum
+from cuefem.io.measured_folder import load_measured
+from cuefem.measurements.measurement_types import EndMass, Setup
+from cuefem.measurements.pendulum import GRAVITY, Pendulum
 from tests.helpers.command_line import as_json, call, said
-from tests.helpers.documented import SCENE, documented, folder
+from tests.helpers.measured_cues import SCENE, folder, measured_cue
 from tests.helpers.refusals import command_refuses, refuses
 
 TEXT = """[[pendulum]]
@@ -33,7 +33,7 @@ PRESSED = TWICE.replace('contact_time = "1 ms"', 'force = "50 N"\ndepth = "0.5 m
 
 
 def measured(text: str, place: Path) -> EndMass:
-    (found,) = load_documented(folder(place, text))[0].found
+    (found,) = load_measured(folder(place, text))[0].measurements
     assert isinstance(found, EndMass)
     return found
 
@@ -118,7 +118,7 @@ def test_the_template_holds_a_pendulum_and_a_recording_to_uncomment(tmp_path: Pa
     text = file.read_text(encoding="utf-8")
     block = text[text.index("# [[pendulum]]") : text.index("[[end_mass]]")]
     file.write_text(text.replace(block, re.sub("^# ", "", block, flags=re.MULTILINE)), encoding="utf-8")
-    ends = [one.value for one in load_documented(tmp_path / "cue")[0].found if isinstance(one, EndMass)]
+    ends = [one.value for one in load_measured(tmp_path / "cue")[0].measurements if isinstance(one, EndMass)]
     assert 1e3 * np.array(ends) == pytest.approx([6.9, 6.8], abs=0.05)
     assert "# [[recording]]" in text
 
@@ -126,10 +126,12 @@ def test_the_template_holds_a_pendulum_and_a_recording_to_uncomment(tmp_path: Pa
 def test_its_contact_time_is_uncertain() -> None:
     """A tenth of the time is an uncertain parameter of its own, shared by all pendulum tests."""
     one = of_speeds(8e-3, -0.1, 0.48).end_mass
-    cue = documented(one, one)
-    assert cue.unknowns[-1].name == "ball time"
-    assert "ball time" not in [unknown.name for unknown in documented(replace(one, contact_time_error=None)).unknowns]
-    by_time = cue.computed(np.eye(len(cue.unknowns))[-1])
+    cue = measured_cue(one, one)
+    assert cue.parameters[-1].name == "ball time"
+    assert "ball time" not in [
+        parameter.name for parameter in measured_cue(replace(one, contact_time_error=None)).parameters
+    ]
+    by_time = cue.computed(np.eye(len(cue.parameters))[-1])
     longer = replace(one, contact_time=math.exp(0.1) * one.contact_time).computed(Setup(SCENE))
     assert by_time == pytest.approx([longer, longer], rel=1e-12)
 

@@ -1,4 +1,4 @@
-"""What documented cues tell: measured beside computed, and what the measurements together say of the unknowns."""
+"""What measured cues tell: measured beside computed, and what the measurements together say of uncertain parameters."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cuefem.measured.documented import DocumentedCue, Row, Zero
-from cuefem.measured.estimate import Estimate, Worth
+from cuefem.measurements.estimate import Estimate, Worth
+from cuefem.measurements.measured_cue import MeasuredCue, Row, Zero
 from cuefem.results.quantities import NONE, with_unit
 from cuefem.results.records import Entry, Record, Sheet, sheet
 
@@ -29,7 +29,7 @@ def row_record(row: Row) -> Record:
     } | {name: getattr(row, name) for name in names}
 
 
-def compare_record(cue: DocumentedCue, rows: Sequence[Row], zeros: Sequence[Zero]) -> Record:
+def compare_record(cue: MeasuredCue, rows: Sequence[Row], zeros: Sequence[Zero]) -> Record:
     """Everything measured beside everything computed, and what is missing."""
     return {
         "name": cue.name,
@@ -37,7 +37,7 @@ def compare_record(cue: DocumentedCue, rows: Sequence[Row], zeros: Sequence[Zero
         "rows": [row_record(row) for row in rows],
         "rms_pull": float(np.sqrt(np.mean([row.pull**2 for row in rows]))) if rows else None,
         "zeros": [{"what": zero.measurement.label, "zero": zero.zero, "error": zero.error} for zero in zeros],
-        "open": [unknown.words for unknown in cue.unknowns],
+        "open": [parameter.words for parameter in cue.parameters],
         "lacking": cue.lacking,
         "units": UNITS,
     }
@@ -118,7 +118,7 @@ def estimate_record(estimate: Estimate, worths: Sequence[Worth], squirt: tuple[f
         "correlations": (estimate.covariance / np.outer(sd, sd)).tolist(),
         "rows": [row_record(row) for row in estimate.rows],
         "misfit": estimate.misfit,
-        "measurements": len(estimate.cue.found),
+        "measurements": len(estimate.cue.measurements),
         "wrong": estimate.wrong.tolist(),
         "unchecked": [{"what": each.measurement.label, "without": each.value._asdict()} for each in estimate.unchecked],
         "converged": estimate.converged,
@@ -131,18 +131,18 @@ def estimate_record(estimate: Estimate, worths: Sequence[Worth], squirt: tuple[f
 
 
 def estimate_sheets(record: Record) -> list[Sheet | str]:
-    """For people: the unknowns, how the measurements fit then, and what to measure next."""
+    """For people: the uncertain parameters, how the measurements fit then, and what to measure next."""
     squirt = with_unit(record["squirt"], "rad", error=record["squirt_error"])
     return [
         sheet(
             "What the measurements tell",
-            {"unknown": "{words}", "drawing": _value("before"), "estimate": _value("value")} | _INTERVAL,
+            {"uncertain parameter": "{words}", "drawing": _value("before"), "estimate": _value("value")} | _INTERVAL,
             record["values"],
             *_estimate_notes(record),
         ),
         _fit_sheet("Measured and computed with the estimate", record),
         "",
-        f"squirt at b/R {record['offset']:g} by the model with these unknowns: {squirt}",
+        f"squirt at b/R {record['offset']:g} by the model with these parameters: {squirt}",
         "",
         sheet(
             "What to measure next",

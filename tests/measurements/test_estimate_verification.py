@@ -7,61 +7,61 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cuefem.measured.documented import DocumentedCue
-from cuefem.measured.estimate import Estimate, estimate
-from cuefem.measured.kinds import KINDS, Measurement, Stiffness, Tone, Weight
-from cuefem.measured.outliers import solved
-from cuefem.measured.unknowns import Prior
-from tests.helpers.documented import SCENE, blank, documented
+from cuefem.measurements.estimate import Estimate, estimate
+from cuefem.measurements.measured_cue import MeasuredCue
+from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, Measurement, Stiffness, Tone, Weight
+from cuefem.measurements.outliers import solved
+from cuefem.measurements.uncertain_parameters import Prior
+from tests.helpers.measured_cues import SCENE, blank, measured_cue
 
 HOLDS_95 = 1.959964  # standard deviations either way that hold 95 %
 CLOSED = Prior("contact time", 0.0)  # nothing here depends on it
 
 
-def measured_as(cue: DocumentedCue, values: np.ndarray) -> DocumentedCue:
+def measured_as(cue: MeasuredCue, values: np.ndarray) -> MeasuredCue:
     """The cue with other values measured."""
-    found = tuple(replace(one, value=float(value)) for one, value in zip(cue.found, values, strict=True))  # type: ignore[call-arg]
-    return replace(cue, found=found)
+    found = tuple(replace(one, value=float(value)) for one, value in zip(cue.measurements, values, strict=True))  # type: ignore[call-arg]
+    return replace(cue, measurements=found)
 
 
-def made_up(seed: int, found: tuple[Measurement, ...] = blank(), size: float = 1.0) -> tuple[DocumentedCue, np.ndarray]:
-    """A cue whose unknowns are drawn from their priors, measured with noise; and these unknowns."""
+def made_up(seed: int, found: tuple[Measurement, ...] = blank(), size: float = 1.0) -> tuple[MeasuredCue, np.ndarray]:
+    """A cue whose parameters are drawn from their priors, measured with noise; and these parameters."""
     generator = np.random.default_rng(seed)
-    cue = documented(*found, priors=(CLOSED,))
-    z = size * generator.normal(size=len(cue.unknowns))
+    cue = measured_cue(*found, priors=(CLOSED,))
+    z = size * generator.normal(size=len(cue.parameters))
     exact = cue.computed(z)
     # errors follow the values, as a person would state them
     scaled = tuple(
         replace(one, value=float(value), error=one.error * float(value) / one.measured)  # type: ignore[call-arg,attr-defined]
-        for one, value in zip(cue.found, exact, strict=True)
+        for one, value in zip(cue.measurements, exact, strict=True)
     )
-    cue = replace(cue, found=scaled)
-    noise = generator.normal(size=len(exact)) * [one.sd for one in cue.found]
+    cue = replace(cue, measurements=scaled)
+    noise = generator.normal(size=len(exact)) * [one.sd for one in cue.measurements]
     return measured_as(cue, exact + noise), z
 
 
 def test_exact_data_are_found_again() -> None:
-    """With small errors the priors do not count, and four unknowns come back from seven values."""
+    """With small errors the priors do not count, and four parameters come back from seven values."""
     small = tuple(replace(one, error=1e-3 * one.error) for one in blank() if not isinstance(one, Tone))  # type: ignore[call-arg,attr-defined]
-    cue = documented(*small, priors=(CLOSED, Prior("G", 0.0)))
+    cue = measured_cue(*small, priors=(CLOSED, Prior("G", 0.0)))
     z = np.array([0.7, -0.4, 0.5])
     found = estimate(measured_as(cue, cue.computed(z)))
-    assert [unknown.name for unknown in cue.unknowns] == ["E", "rho", "bore"]
+    assert [parameter.name for parameter in cue.parameters] == ["E", "rho", "bore"]
     assert found.converged
     assert found.z == pytest.approx(z, abs=2e-3)
-    for value, unknown, each in zip(found.values, cue.unknowns, z, strict=True):
-        assert value.value == pytest.approx(unknown.value(float(each)), rel=1e-3)
+    for value, parameter, each in zip(found.values, cue.parameters, z, strict=True):
+        assert value.value == pytest.approx(parameter.value(float(each)), rel=1e-3)
         assert value.low < value.value < value.high
         assert value.narrowed < 0.05
 
 
 def test_a_linear_case_is_that_of_the_textbook() -> None:
-    """One weight, one unknown: the mean of prior and measurement by their weights."""
+    """One weight, one parameter: the mean of prior and measurement by their weights."""
     one = Weight(value=0.110, error=5e-3)
-    cue = documented(one, priors=(CLOSED, *(Prior(name, 0.0) for name in ("E", "G", "bore"))))
-    (unknown,) = cue.unknowns
+    cue = measured_cue(one, priors=(CLOSED, *(Prior(name, 0.0) for name in ("E", "G", "bore"))))
+    (parameter,) = cue.parameters
     drawn = float(cue.computed()[0])
-    slope = drawn * unknown.spread
+    slope = drawn * parameter.spread
     found = estimate(cue)
     # ln(mass) is linear in z; the mass nearly so
     assert found.z[0] == pytest.approx(slope * (0.110 - drawn) / (slope**2 + 5e-3**2), rel=0.1)
@@ -69,40 +69,42 @@ def test_a_linear_case_is_that_of_the_textbook() -> None:
 
 
 def test_a_closed_unknown_is_held_and_an_open_one_opened() -> None:
-    assert [one.name for one in documented(*blank()).unknowns] == ["E", "G", "rho", "bore", "contact time"]
-    (taper,) = (one for one in documented(priors=(Prior("taper", 0.2),)).unknowns if one.name == "taper")
+    assert [one.name for one in measured_cue(*blank()).parameters] == ["E", "G", "rho", "bore", "contact time"]
+    (taper,) = (one for one in measured_cue(priors=(Prior("taper", 0.2),)).parameters if one.name == "taper")
     assert (taper.usual, taper.spread) == (pytest.approx(9e-3), 0.2)
-    (bore,) = (one for one in documented(priors=(Prior("bore", low=5e-3, high=8e-3),)).unknowns if one.name == "bore")
+    (bore,) = (
+        one for one in measured_cue(priors=(Prior("bore", low=5e-3, high=8e-3),)).parameters if one.name == "bore"
+    )
     assert bore.value(1.0) == pytest.approx(8e-3)
     assert bore.value(-1.0) == pytest.approx(5e-3)
 
 
 @pytest.mark.parametrize("name", ["E", "G", "rho", "bore", "taper", "contact time"])
 def test_every_unknown_is_put_where_it_belongs(name: str) -> None:
-    """A changed unknown reads back, and at its usual value nothing changes."""
-    from cuefem.measured.kinds import Setup
+    """A changed parameter reads back, and at its usual value nothing changes."""
+    from cuefem.measurements.measurement_types import Setup
     from cuefem.vary import PLACES
 
-    cue = documented(priors=(Prior("taper", 0.1),))
-    (unknown,) = (one for one in cue.unknowns if one.name == name)
-    moved = unknown.setup(Setup(SCENE), 0.5).scene
+    cue = measured_cue(priors=(Prior("taper", 0.1),))
+    (parameter,) = (one for one in cue.parameters if one.name == name)
+    moved = parameter.setup(Setup(SCENE), 0.5).scene
     known = PLACES[name.replace(" ", "_")]
-    assert known.value(moved) == pytest.approx(unknown.value(0.5), rel=1e-12)
-    back = replace(unknown, usual=unknown.usual).put(Setup(moved), unknown.usual).scene
-    assert known.value(back) == pytest.approx(unknown.usual, rel=1e-12)
+    assert known.value(moved) == pytest.approx(parameter.value(0.5), rel=1e-12)
+    back = replace(parameter, usual=parameter.usual).put(Setup(moved), parameter.usual).scene
+    assert known.value(back) == pytest.approx(parameter.usual, rel=1e-12)
 
 
-def contradictory(cue: DocumentedCue, seed: int) -> tuple[DocumentedCue, int]:
+def contradictory(cue: MeasuredCue, seed: int) -> tuple[MeasuredCue, int]:
     """The cue with one measurement off by 6 to 20 of its errors, and which."""
     generator = np.random.default_rng([seed, 5])
-    wrong = int(generator.integers(len(cue.found)))
-    values = np.array([one.measured for one in cue.found])
-    values[wrong] += generator.choice([-1, 1]) * generator.uniform(6, 20) * cue.found[wrong].sd
+    wrong = int(generator.integers(len(cue.measurements)))
+    values = np.array([one.measured for one in cue.measurements])
+    values[wrong] += generator.choice([-1, 1]) * generator.uniform(6, 20) * cue.measurements[wrong].sd
     return measured_as(cue, values), wrong
 
 
 def pulls_of(count: int, *, wrong: bool = False) -> np.ndarray:
-    """How far the unknowns of made-up cues lie off their estimates, in the stated errors."""
+    """How far the parameters of made-up cues lie off their estimates, in the stated errors."""
     made = []
     for seed in range(count):
         cue, z = made_up(seed)
@@ -114,10 +116,10 @@ def pulls_of(count: int, *, wrong: bool = False) -> np.ndarray:
 
 @pytest.mark.heavy
 @pytest.mark.parametrize("wrong", [False, True], ids=["clean", "contradictory"])
-def test_intervals_cover_the_unknowns_of_made_up_cues(wrong: bool) -> None:
-    """A hundred cues of four unknowns drawn from the priors: 68 and 95 % intervals to three standard deviations.
+def test_intervals_cover_the_parameters_of_made_up_cues(wrong: bool) -> None:
+    """A hundred cues of four parameters drawn from the priors: 68 and 95 % intervals to three standard deviations.
 
-    The four unknowns of a cue with a wrong measurement are off together: three standard deviations of a hundred.
+    The four parameters of a cue with a wrong measurement are off together: three standard deviations of a hundred.
     """
     pulls = np.abs(pulls_of(100, wrong=wrong))
     for share, half_width in ((0.683, 1.0), (0.95, HOLDS_95)):
@@ -126,18 +128,18 @@ def test_intervals_cover_the_unknowns_of_made_up_cues(wrong: bool) -> None:
 
 
 @pytest.fixture(scope="module")
-def linear() -> tuple[DocumentedCue, np.ndarray]:
+def linear() -> tuple[MeasuredCue, np.ndarray]:
     """A cue measured as its drawing computes, and the slopes of its values."""
     cue = made_up(0, size=0.0)[0]
-    zero = np.zeros(len(cue.unknowns))
+    zero = np.zeros(len(cue.parameters))
     return measured_as(cue, cue.computed(zero)), cue.slopes(zero)
 
 
-def linear_estimate(cue: DocumentedCue, slopes: np.ndarray, values: np.ndarray) -> Estimate:
-    """What `estimate` is where the values are linear in the unknowns, measured beside the drawing's by ``values``."""
-    sd = np.array([one.sd for one in cue.found])
+def linear_estimate(cue: MeasuredCue, slopes: np.ndarray, values: np.ndarray) -> Estimate:
+    """What `estimate` is where the values are linear in the parameters, measured beside the drawing's by ``values``."""
+    sd = np.array([one.sd for one in cue.measurements])
     mean, covariance, wrong = solved(slopes / sd[:, None], values / sd)
-    there = np.array([one.measured for one in cue.found])
+    there = np.array([one.measured for one in cue.measurements])
     off = measured_as(cue, there + values)
     return Estimate(off, mean, covariance, there + slopes @ mean, slopes, 0.0, True, wrong)
 
@@ -145,14 +147,14 @@ def linear_estimate(cue: DocumentedCue, slopes: np.ndarray, values: np.ndarray) 
 @pytest.mark.heavy
 @pytest.mark.parametrize("wrong", [None, *range(7)])
 def test_intervals_cover_whichever_measurement_is_wrong(
-    wrong: int | None, linear: tuple[DocumentedCue, np.ndarray]
+    wrong: int | None, linear: tuple[MeasuredCue, np.ndarray]
 ) -> None:
     """A reading that is 6 to 20 errors off: the intervals hold the truth, or the estimate says that nothing checks it.
 
-    Without that reading, as the estimate tells it, the unknown that rests on it lies in its interval as often as said.
+    Without that reading the parameter that rests on it lies in its interval as often as the estimate states.
     """
     cue, slopes = linear
-    generator, sd = np.random.default_rng(26), np.array([one.sd for one in cue.found])
+    generator, sd = np.random.default_rng(26), np.array([one.sd for one in cue.measurements])
     pulls, without, named = [], [], []
     for _ in range(300):
         z = generator.normal(size=slopes.shape[1])
@@ -162,12 +164,12 @@ def test_intervals_cover_whichever_measurement_is_wrong(
         found = linear_estimate(cue, slopes, slopes @ z + sd * noise)
         pulls.append(np.abs(found.z - z) / np.sqrt(np.diag(found.covariance)))
         unchecked = {each.measurement.label: each.value for each in found.unchecked}
-        label = None if wrong is None else cue.found[wrong].label
+        label = None if wrong is None else cue.measurements[wrong].label
         named.append(label in unchecked)
         if label in unchecked:
             value = unchecked[label]
-            i = [unknown.name for unknown in cue.unknowns].index(value.name)
-            truth = np.log(cue.unknowns[i].value(float(z[i])))
+            i = [parameter.name for parameter in cue.parameters].index(value.name)
+            truth = np.log(cue.parameters[i].value(float(z[i])))
             low, high = np.log([value.low, value.high])
             without.append(abs(truth - (low + high) / 2) / ((high - low) / 2))
     covered, wide = (np.mean(np.array(pulls) < each) for each in (1.0, HOLDS_95))
@@ -189,13 +191,13 @@ def test_what_a_next_measurement_would_tell_is_what_it_tells() -> None:
     cue, _ = made_up(9, blank()[:4], size=0.5)
     before = estimate(cue)
     worths = before.next()
-    assert {type(worth.measurement) for worth in worths} <= set(KINDS.values())
+    assert {type(worth.measurement) for worth in worths} <= set(MEASUREMENT_TYPES.values())
     told = next(w for w in worths if isinstance(w.measurement, Stiffness) and w.measurement.free_length)
     value = before.predicted(told.measurement)[0]
     more = replace(told.measurement, value=value)  # type: ignore[call-arg]
-    after = estimate(replace(cue, found=(*cue.found, more)))
+    after = estimate(replace(cue, measurements=(*cue.measurements, more)))
     ratio = np.sqrt(np.diag(after.covariance) / np.diag(before.covariance))
-    words = [unknown.words for unknown in cue.unknowns]
+    words = [parameter.words for parameter in cue.parameters]
     assert told.narrows == words[int(np.argmin(ratio))]
     assert told.left == pytest.approx(float(ratio.min()), rel=0.05)
     gain = 0.5 * np.log2(np.linalg.det(before.covariance) / np.linalg.det(after.covariance))

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cuefem.cue import Array
-from cuefem.measured.kinds import Tone
+from cuefem.measurements.measurement_types import Tone
 
 SECONDS, LEAST = 0.4, 0.1  # s that are transformed after the loudest sample, and that there must be
 BLOCK = 600.0  # Hz, over which the median is the noise: wider than a peak
@@ -117,7 +117,7 @@ def tones_of(samples: Array, rate: float, frequencies: Array, source: str = "") 
     Examples
     --------
     >>> import numpy as np
-    >>> from cuefem.measured.recording import tones_of
+    >>> from cuefem.measurements.recording import tones_of
     >>> time = np.arange(22050) / 44100
     >>> sound = sum(np.exp(-20 * time) * np.cos(2 * np.pi * f * time) for f in (100.0, 570.0))
     >>> [(tone.mode, round(tone.value)) for tone in tones_of(sound[:, None], 44100.0, np.array([95.0, 280.0, 560.0]))]

@@ -1,4 +1,4 @@
-"""What documented cues refuse: measurements that cannot be, folders that are none (regression)."""
+"""What measured cues refuse: measurements that cannot be, folders that are none (regression)."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from cuefem.measured.documented import DocumentedCue
-from cuefem.measured.estimate import estimate
-from cuefem.measured.kinds import AddedMass, Setup, Squirt, Stiffness, Tone, Weight
-from cuefem.measured.unknowns import Prior
+from cuefem.measurements.estimate import estimate
+from cuefem.measurements.measured_cue import MeasuredCue
+from cuefem.measurements.measurement_types import AddedMass, Setup, Squirt, Stiffness, Tone, Weight
+from cuefem.measurements.uncertain_parameters import Prior
 from tests.helpers.command_line import call
-from tests.helpers.documented import DRAWING, SCENE, SOME, documented, folder
+from tests.helpers.measured_cues import DRAWING, SCENE, SOME, folder, measured_cue
 from tests.helpers.refusals import command_refuses, refuses, untouched
 
 CALLS: dict[str, tuple[Callable[[], object], str]] = {
@@ -30,9 +30,9 @@ CALLS: dict[str, tuple[Callable[[], object], str]] = {
     "prior": (lambda: Prior("colour", 0.1), "Prior.name must be one of E, G, rho, bore, taper"),
     "two priors": (lambda: Prior("E", 0.1, 1e9, 2e9), "or low and high without it"),
     "ends": (lambda: Prior("E", low=2e9, high=1e9), "Prior.low must be in (0, high)"),
-    "no dome": (lambda: documented(priors=(Prior("dome", 0.1),)), "got 'dome', which it does not have"),
-    "no cue": (lambda: DocumentedCue("a", "cue", ()), "TypeError: DocumentedCue.scene must be a Scene"),  # type: ignore[arg-type]
-    "found": (lambda: documented("a tone"), "TypeError: DocumentedCue.found[0] must be a Measurement"),  # type: ignore[arg-type]
+    "no dome": (lambda: measured_cue(priors=(Prior("dome", 0.1),)), "got 'dome', which it does not have"),
+    "no cue": (lambda: MeasuredCue("a", "cue", ()), "TypeError: MeasuredCue.scene must be a Scene"),  # type: ignore[arg-type]
+    "found": (lambda: measured_cue("a tone"), "TypeError: MeasuredCue.measurements[0] must be a Measurement"),  # type: ignore[arg-type]
     "too long": (
         lambda: Stiffness(free_length=0.8, value=1.0, error=1.0).computed(Setup(SCENE)),
         "stiffness free_length must be in (0, 0.73] m, that of the wood; got 0.8",
@@ -43,7 +43,7 @@ CALLS: dict[str, tuple[Callable[[], object], str]] = {
         ),
         "added_mass position must be in [0, 0.73] m, on the shaft; got 0.8",
     ),
-    "no estimate": (lambda: estimate(documented()), "estimate takes a cue with measurements; got none"),
+    "no estimate": (lambda: estimate(measured_cue()), "estimate takes a cue with measurements; got none"),
 }
 
 
@@ -63,11 +63,17 @@ FILES = {
     "no table": ('weight = "100 g"\n', "weight: must be tables, [[weight]]; got '100 g'"),
     "squirt": ('[[squirt]]\noffset = 0.3\nerror = "1 deg"\n', "squirt[0].value: must be given, or left and right"),
     "name": ("name = 3\n", "name: must be text; got 3"),
-    "unknown": ('[[unknowns]]\nname = "bor"\n', "unknowns[0].name: must be one of E, G, rho, bore"),
-    "prior": ('[[unknowns]]\nname = "bore"\nlow = 6\nhigh = 7\n', "unknowns[0].low: needs a unit"),
+    "unknown": (
+        '[[uncertain]]\nname = "bor"\n',
+        "uncertain[0].name: must be one of E, G, rho, bore",
+    ),
+    "prior": (
+        '[[uncertain]]\nname = "bore"\nlow = 6\nhigh = 7\n',
+        "uncertain[0].low: needs a unit",
+    ),
     "closed": (
-        'game = "kim"\n[tip]\nfriction = 0.6\n[[unknowns]]\nname = "dome"\nspread = 0.1\n',
-        "unknowns must be of this cue; got 'dome'",
+        'game = "kim"\n[tip]\nfriction = 0.6\n[[uncertain]]\nname = "dome"\nspread = 0.1\n',
+        "uncertain parameters must be of this cue; got 'dome'",
     ),
     "lumped": (
         'cue = { mass = "0.5 kg", end_mass = "6 g" }\n',
@@ -108,7 +114,7 @@ def test_a_template_is_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: 
         raise OSError(errno.ENOSPC, "No space left on device", str(path))
 
     with monkeypatch.context() as patch:
-        patch.setattr("cuefem.io.documented_folder.TEMPLATE", ("README.md", "none"))  # the second file cannot be read
+        patch.setattr("cuefem.io.measured_folder.TEMPLATE", ("README.md", "none"))  # the second file cannot be read
         untouched(tmp_path, "cannot be written", "compare", tmp_path / "cue", "--template")
         patch.setattr(Path, "write_text", full)
         untouched(tmp_path, "cannot be written: No space left on device", "compare", tmp_path / "cue", "--template")

@@ -2,7 +2,7 @@
 
 The prior of a positive number is lognormal about the drawing's value. Its spread, the standard deviation of the
 logarithm, comes from the table of materials where that has a range (which spans one standard deviation either way), and
-from the file of a documented cue where that gives one.
+from the file of a measured cue where that gives one.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, Any
 
 from cuefem.cue import Material
-from cuefem.measured.kinds import EndMass, Measurement, Setup, Squirt
+from cuefem.measurements.measurement_types import EndMass, Measurement, Setup, Squirt
 from cuefem.quantity.fields import Quantity, check_fields
 from cuefem.scene import Scene
 from cuefem.vary import PLACES, Path, place, replaced
@@ -23,7 +23,7 @@ ZERO, SQUIRT_MODEL, BALL_TIME = "zero", "squirt model", "ball time"
 
 
 @dataclass(frozen=True)
-class Unknown:
+class UncertainParameter:
     """A number that is not known: its value in the drawing, and its prior.
 
     spread: standard deviation of its logarithm; of the number itself, in its unit, if ``plain``. put: a setup with
@@ -49,7 +49,7 @@ class Unknown:
 
 @dataclass(frozen=True)
 class Prior:
-    """What a file says of an unknown: its spread, or a low and a high value, one standard deviation either way."""
+    """What a file says of an uncertain parameter: its spread, or a low and a high value, one standard deviation off."""
 
     name: str
     spread: Annotated[float | None, Quantity("", "[0, 3]")] = None
@@ -68,7 +68,7 @@ class Prior:
 
 
 def names() -> tuple[str, ...]:
-    """What can be unknown: the places of a scene that hold a number, and the model's own error."""
+    """What can be uncertain: the places of a scene that hold a number, and the model's own error."""
     return (*(known.name for known in PLACES.values() if not known.materials), SQUIRT_MODEL)
 
 
@@ -78,8 +78,10 @@ def _key(name: str) -> str:
     return known.key if known else name
 
 
-def unknowns_of(scene: Scene, measurements: Sequence[Measurement], priors: Sequence[Prior] = ()) -> tuple[Unknown, ...]:
-    """What is open in a documented cue: the usual unknowns, those of the file, and what its measurements bring along.
+def parameters_of(
+    scene: Scene, measurements: Sequence[Measurement], priors: Sequence[Prior] = ()
+) -> tuple[UncertainParameter, ...]:
+    """What is open in a measured cue: the usual parameters, those of the file, and what its measurements bring along.
 
     ValueError if a prior is of something that the scene does not have.
     """
@@ -91,33 +93,37 @@ def unknowns_of(scene: Scene, measurements: Sequence[Measurement], priors: Seque
         usual, prior = known.value(scene), asked.get(key)
         if usual is None or isinstance(usual, Material):
             if prior:
-                raise ValueError(f"unknowns must be of this cue; got {prior.name!r}, which it does not have")
+                raise ValueError(
+                    f"uncertain parameters must be of this cue; got {prior.name!r}, which it does not have"
+                )
             continue
         if not usual > 0:
-            raise ValueError(f"unknowns must be above 0, for their logarithm is estimated; got {key}, {usual:g}")
+            raise ValueError(
+                f"uncertain parameters must be above 0, for their logarithm is estimated; got {key}, {usual:g}"
+            )
         spread = (known.spread(scene) if callable(known.spread) else known.spread) or 0.0
         middle, spread = _prior(prior, usual, spread)
         unit = known.quantity(scene).unit
-        made.append(Unknown(known.name, known.words, unit, middle, spread, _on_scene(known.steps())))
+        made.append(UncertainParameter(known.name, known.words, unit, middle, spread, _on_scene(known.steps())))
     squirts = [measurement for measurement in measurements if isinstance(measurement, Squirt)]
     _, spread = _prior(asked.get(SQUIRT_MODEL), 1.0, MODEL_OF_SQUIRT)
     if squirts:
         put: Any = lambda setup, value: setup._replace(squirt_factor=value)  # noqa: E731
-        made.append(Unknown(SQUIRT_MODEL, "true squirt over the model's", "", 1.0, spread, put))
+        made.append(UncertainParameter(SQUIRT_MODEL, "true squirt over the model's", "", 1.0, spread, put))
     ends = [one for one in measurements if isinstance(one, EndMass) and one.contact_time_error]
     if ends:
         spread = max((one.contact_time_error or 0.0) / one.contact_time for one in ends)
         longer: Any = lambda setup, value: setup._replace(time_factor=value)  # noqa: E731
         words = "true contact time of the pendulum over the stated"
-        made.append(Unknown(BALL_TIME, words, "", 1.0, spread, longer))
+        made.append(UncertainParameter(BALL_TIME, words, "", 1.0, spread, longer))
     series: dict[str, float] = {}
     for measurement in squirts:
         if measurement.zero_error is not None:
             series[measurement.series] = max(measurement.zero_error, series.get(measurement.series, 0.0))
     for name, error in series.items():
         words = f"zero of the offset{', ' + name if name else ''}"
-        made.append(Unknown(f"{ZERO} {name}".strip(), words, "m", 0.0, error, _zero(name), plain=True))
-    return tuple(unknown for unknown in made if unknown.spread > 0)
+        made.append(UncertainParameter(f"{ZERO} {name}".strip(), words, "m", 0.0, error, _zero(name), plain=True))
+    return tuple(parameter for parameter in made if parameter.spread > 0)
 
 
 def _prior(said: Prior | None, usual: float, spread: float) -> tuple[float, float]:

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.io.documented_folder import load_documented
-from cuefem.measured.estimate import estimate
-from cuefem.measured.kinds import Tone
-from cuefem.measured.recording import Peak, numbered, tones_of
-from tests.helpers.documented import DRAWING, SCENE, SHAFT, folder
+from cuefem.io.measured_folder import load_measured
+from cuefem.measurements.estimate import estimate
+from cuefem.measurements.measurement_types import Tone
+from cuefem.measurements.recording import Peak, numbered, tones_of
+from tests.helpers.measured_cues import DRAWING, SCENE, SHAFT, folder
 from tests.helpers.recordings import other_wood, recording, save_wav, tapped
 from tests.helpers.refusals import command_refuses
 
@@ -30,11 +30,11 @@ def test_the_wood_of_a_recording_is_found(tmp_path: Path) -> None:
     weight = f'[[weight]]\nvalue = "{1e3 * shaft.shaft_mass:.1f} g"\nerror = "0.5 g"\n'
     place = folder(tmp_path / "cue", weight + HEARD, POOL.read_text(encoding="utf-8"))
     save_wav(place / "tap.wav", recording(tapped(shaft), 25.0, 0))
-    cue, _ = load_documented(place)
-    assert [one.mode for one in cue.found if isinstance(one, Tone)] == [1, 2, 3, 4, 5, 6, 7]
-    assert {one.source for one in cue.found if isinstance(one, Tone)} == {"tap.wav"}
+    cue, _ = load_measured(place)
+    assert [one.mode for one in cue.measurements if isinstance(one, Tone)] == [1, 2, 3, 4, 5, 6, 7]
+    assert {one.source for one in cue.measurements if isinstance(one, Tone)} == {"tap.wav"}
     found = estimate(cue)
-    assert found.misfit < 2 * len(cue.found)
+    assert found.misfit < 2 * len(cue.measurements)
     values = {value.name: value for value in found.values}
     for name, *known in (("E", 15.94e9, 15.84e9), ("G", 1.025e9, 1.015e9), ("rho", 748.0, 742.0)):
         error = (values[name].high - values[name].low) / 2
@@ -79,7 +79,7 @@ def test_two_recordings_are_one_tone_per_mode(tmp_path: Path) -> None:
     place = folder(tmp_path / "cue", HEARD + HEARD.replace("tap", "two"))
     save_wav(place / "tap.wav", sound(*DRAWN[:3]))
     save_wav(place / "two.wav", sound(DRAWN[0], DRAWN[1] + 1.0))
-    first, second, third = load_documented(place)[0].found
+    first, second, third = load_measured(place)[0].measurements
     assert isinstance(second, Tone)
     assert (first.source, third.source) == ("tap.wav, two.wav", "tap.wav")
     assert DRAWN[1] < second.value < DRAWN[1] + 1
