@@ -65,7 +65,7 @@ def test_the_page_says_what_is_computed() -> None:
 def test_compare(name: str, tmp_path: Path) -> None:
     status, _, err = call("compare", HOME / name, "-o", tmp_path / "page.html")
     assert (status, err) == (0, "")
-    assert "Measured less computed" in (tmp_path / "page.html").read_text(encoding="utf-8")
+    assert "Measured and computed" in (tmp_path / "page.html").read_text(encoding="utf-8")
 
 
 @pytest.mark.heavy
