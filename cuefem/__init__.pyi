@@ -40,6 +40,7 @@ from .endmass.undamped import StickLimit as StickLimit
 from .games import usual_scene as usual_scene
 from .io import load as load, save as save
 from .io.paraview import save_motion as save_motion
+from .io.study_files import study as study
 from .quantity.slips import Unusual as Unusual
 from .solid.resolution import Solid as Solid
 from .solid.shaft import SolidModes as SolidModes, solid_modes as solid_modes

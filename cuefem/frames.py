@@ -1,7 +1,7 @@
-"""Tables of studies as pandas and xarray objects (`pip install '.[pandas]'`), for analysis in Python.
+"""Tables of studies as pandas frames (`pip install '.[pandas]'`), for analysis in Python.
 
-Numbers are SI; the units of the columns stand in ``attrs["units"]`` of a frame and ``attrs["units"]`` of each variable
-of a dataset.
+Numbers are SI; the units of the columns stand in ``attrs["units"]``. What pandas does with a frame is pandas' own, such
+as ``to_parquet`` and ``to_xarray``.
 
 >>> import cuefem as cf
 >>> from cuefem import frames
@@ -14,145 +14,111 @@ of a dataset.
 from __future__ import annotations
 
 import importlib
+from collections.abc import Iterable, Sequence
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from cuefem.design import Row
 from cuefem.design.batch import CueBatch
-from cuefem.design.scatter import Drivers, Scatter
-from cuefem.io.store import StoredTable, read_table
+from cuefem.design.study_result import StudyResult
+from cuefem.io.store import read_table
 from cuefem.quantity.fields import check_kind
 from cuefem.results.quantities import RESULTS
 
 if TYPE_CHECKING:
     import pandas as pd
-    import xarray as xr
 
-__all__ = ["of_batch", "of_drivers", "of_scatter", "of_sweep", "sweep_grid"]
+__all__ = ["of_batch", "of_drivers", "of_store", "of_study"]
 
 
-def _library(name: str) -> Any:
+def _pandas() -> Any:
     try:
-        return importlib.import_module(name)
+        return importlib.import_module("pandas")
     except ModuleNotFoundError:
-        raise RuntimeError(f"this needs the library {name}: pip install '.[pandas]' in the clone") from None
+        raise RuntimeError("this needs the library pandas: pip install '.[pandas]' in the clone") from None
 
 
-def of_sweep(path: str | PathLike[str], study: str | None = None) -> pd.DataFrame:
-    """Read the store of a sweep.
+def of_store(path: str | PathLike[str], study: str | None = None) -> pd.DataFrame:
+    """Read the store of a study.
 
     Parameters
     ----------
     path : str or path
-        What `cuefem sweep` wrote, ``STUDY.sqlite``; it may still be at work on it.
+        What `cuefem study` wrote, ``STUDY.sqlite``; it may still be at work on it.
     study : str, optional
-        The name of a study's file, without its ending, in a store of several; by default the one swept last.
+        The name of a study's file, without its ending, in a store of several; by default the one computed last.
+
+    Returns
+    -------
+    pandas.DataFrame
+        As `of_study` gives it.
+
+    Raises
+    ------
+    ValueError
+        If the file is no store, or a damaged one.
+    """
+    table = read_table(path, study)
+    return _frame(table.rows, table.varied, table.responses, table.units)
+
+
+def of_study(result: StudyResult) -> pd.DataFrame:
+    """The designs of a study.
+
+    Parameters
+    ----------
+    result : StudyResult
+        What `cuefem.study` returned.
 
     Returns
     -------
     pandas.DataFrame
         A row a design, by its number: what varied, the responses in SI (nan where one is missing), and ``failure``,
         why it is missing. ``attrs``: "units", "varied", "responses".
-
-    Raises
-    ------
-    ValueError
-        If the file is no store, or a row in it is not as it was written.
     """
-    return _frame(read_table(path, study))
+    varied = [vary.name for vary in result.study.vary]
+    return _frame(result.rows, varied, [response.name for response in result.study.responses], result.units)
 
 
-def _frame(table: StoredTable) -> Any:
-    pandas = _library("pandas")
-    names = ["design", *table.names, "failure"]
-    frame = pandas.DataFrame.from_records(table.rows, columns=names).set_index("design")
-    numbers = [name for name in table.names if name not in table.named]
-    frame[numbers] = frame[numbers].astype(float)
-    frame.attrs = {"units": dict(table.units), "varied": list(table.varied), "responses": list(table.responses)}
+def _frame(rows: Iterable[Row], varied: Sequence[str], responses: Sequence[str], units: dict[str, str]) -> Any:
+    lines = [(row.design, *row.values, *row.responses, row.failure) for row in rows]
+    frame = _pandas().DataFrame.from_records(lines, columns=["design", *varied, *responses, "failure"], index="design")
+    frame[[*responses]] = frame[[*responses]].astype(float)
+    frame.attrs = {"units": dict(units), "varied": [*varied], "responses": [*responses]}
     return frame
 
 
-def sweep_grid(path: str | PathLike[str], study: str | None = None) -> xr.Dataset:
-    """Read the store of a sweep over a grid as arrays with named axes.
-
-    Parameters
-    ----------
-    path : str or path
-        What `cuefem sweep` wrote for a study without [sample].
-    study : str, optional
-        The name of a study's file, as in `of_sweep`.
-
-    Returns
-    -------
-    xarray.Dataset
-        A variable a response, with what varied as its axes; nan where a design failed or is not computed yet.
-
-    Raises
-    ------
-    ValueError
-        If the designs are no grid, the file is no store, or a row in it is not as it was written.
-    """
-    xarray = _library("xarray")
-    table = read_table(path, study)
-    if table.sampled:
-        raise ValueError(f"{path}: holds a sample and no grid: of_sweep reads it")
-    frame = _frame(table)
-    frame = frame[~frame.duplicated(list(table.varied))].set_index(list(table.varied))[list(table.responses)]
-    data = xarray.Dataset.from_dataframe(frame)
-    for name in data.variables:
-        data[name].attrs["units"] = table.units[str(name)]
-    return data
-
-
-def of_scatter(wanted: Scatter, found: Drivers) -> pd.DataFrame:
-    """The designs of a scatter: what varied in them and their responses.
-
-    Parameters
-    ----------
-    wanted : Scatter
-        The study.
-    found : Drivers
-        What `cuefem.design.scatter.drivers` returned.
-
-    Returns
-    -------
-    pandas.DataFrame
-        A row a design of the two independent samples.
-    """
-    pandas = _library("pandas")
-    study = wanted.study
-    varied = pandas.DataFrame(list(found.spread.values), columns=[vary.name for vary in study.vary])
-    names = [response.name for response in study.responses]
-    frame = varied.join(pandas.DataFrame(found.spread.responses, columns=names))
-    frame.attrs = {"units": dict(zip(study.columns, study.units, strict=True))}
-    return frame
-
-
-def of_drivers(wanted: Scatter, found: Drivers) -> pd.DataFrame:
+def of_drivers(result: StudyResult) -> pd.DataFrame:
     """Which cause has which share of the variance.
 
     Parameters
     ----------
-    wanted : Scatter
-        The study.
-    found : Drivers
-        What `cuefem.design.scatter.drivers` returned.
+    result : StudyResult
+        Of a study with tolerances.
 
     Returns
     -------
     pandas.DataFrame
         A row a response and cause, with the columns "first", "first_low", "first_high", "total", "total_low" and
         "total_high": Sobol indices and their 95 % intervals.
+
+    Raises
+    ------
+    ValueError
+        If the study has no tolerances.
     """
-    pandas = _library("pandas")
-    names = [response.name for response in wanted.study.responses]
-    index = pandas.MultiIndex.from_product([names, found.causes], names=["response", "cause"])
+    drivers = result.drivers
+    if drivers is None:
+        raise ValueError(f"of_drivers takes a scatter, a study with tolerances; got one of kind {result.kind}")
+    pandas = _pandas()
+    index = pandas.MultiIndex.from_product([[*result.responses], drivers.causes], names=["response", "cause"])
     columns = dict[str, Any]()
     for name, value, ends in (
-        ("first", found.first, found.first_interval),
-        ("total", found.total, found.total_interval),
+        ("first", drivers.first, drivers.first_interval),
+        ("total", drivers.total, drivers.total_interval),
     ):
         columns |= {name: value.T.ravel(), f"{name}_low": ends[0].T.ravel(), f"{name}_high": ends[1].T.ravel()}
     return pandas.DataFrame(columns, index=index)
@@ -179,7 +145,7 @@ def of_batch(batch: CueBatch, **results: ArrayLike) -> pd.DataFrame:
         If a result has not one number a cue.
     """
     check_kind("batch", batch, CueBatch)
-    pandas = _library("pandas")
+    pandas = _pandas()
     rows = batch.rows
     columns: dict[str, Any] = {
         "length": rows.length.sum(axis=1),

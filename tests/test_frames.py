@@ -1,4 +1,4 @@
-"""Tables of studies as pandas and xarray objects hold what the studies found (properties)."""
+"""Tables of studies as pandas frames hold what the studies found (properties)."""
 
 from __future__ import annotations
 
@@ -8,13 +8,9 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.design.scatter import drivers
 from cuefem.io import InputError
-from cuefem.io.study_files import load_scatter
-from tests.helpers.command_line import call
 
 pd = pytest.importorskip("pandas")
-xr = pytest.importorskip("xarray")
 
 CUE = """body_mass = "420 g"
 [[segments]]
@@ -33,10 +29,9 @@ name = "wood"
 path = "cue.segments[0].material"
 values = ["hard maple", "ash"]
 """
-SAMPLE = f"""scene = "cue.toml"
+SCATTER = f"""scene = "cue.toml"
 responses = ["end_mass"]
-{COARSE}[sample]
-method = "sobol"
+{COARSE}[tolerances]
 count = 16
 seed = 1
 {TIP}[[vary]]
@@ -47,46 +42,34 @@ high = "22 mm"
 """
 
 
-def swept(folder: Path, study: str) -> Path:
+def study(folder: Path, text: str) -> Path:
     (folder / "cue.toml").write_text(CUE)
-    (folder / "study.toml").write_text(study)
-    assert call("sweep", folder / "study.toml")[0] == 0
-    return folder / "study.sqlite"
+    (folder / "study.toml").write_text(text)
+    return folder / "study.toml"
 
 
-def test_a_sweep_as_a_frame_and_as_a_grid(tmp_path: Path) -> None:
-    path = swept(tmp_path, STUDY)
-    frame = cf.frames.of_sweep(path)
+def test_a_sweep(tmp_path: Path) -> None:
+    """The frame of its result, and that of its store; pandas takes it on."""
+    found = cf.study(study(tmp_path, STUDY), store=tmp_path / "study.sqlite")
+    frame = cf.frames.of_study(found)
+    pd.testing.assert_frame_equal(frame, cf.frames.of_store(tmp_path / "study.sqlite"))
     assert list(frame.columns) == ["tip", "wood", "end_mass", "mass", "failure"]
     assert frame.attrs["units"] == {"tip": "m", "wood": "", "end_mass": "kg", "mass": "kg"}
     assert (len(frame), frame.index.name, frame["failure"].notna().sum()) == (6, "design", 0)
-    grid = cf.frames.sweep_grid(path)
-    assert dict(grid.sizes) == {"tip": 3, "wood": 2}
-    assert grid["end_mass"].attrs["units"] == "kg"
-    for row in frame.itertuples():
-        assert float(grid["end_mass"].sel(tip=row.tip, wood=row.wood)) == row.end_mass
-    assert np.all(np.diff(grid["end_mass"].sel(wood="ash")) > 0)
-
-
-def test_a_sample_is_no_grid(tmp_path: Path) -> None:
-    path = swept(tmp_path, SAMPLE)
-    assert cf.frames.of_sweep(path)["tip"].between(0.011, 0.013).all()
-    with pytest.raises(ValueError, match="holds a sample and no grid"):
-        cf.frames.sweep_grid(path)
+    grid = frame.pivot_table(index="tip", columns="wood", values="end_mass")
+    assert grid.shape == (3, 2)
+    assert np.all(np.diff(grid["ash"]) > 0)
 
 
 def test_a_scatter(tmp_path: Path) -> None:
-    (tmp_path / "cue.toml").write_text(CUE)
-    (tmp_path / "study.toml").write_text(SAMPLE)
-    wanted, sample = load_scatter(tmp_path / "study.toml")
-    found = drivers(wanted, sample.count, seed=sample.seed)
-    frame = cf.frames.of_scatter(wanted, found)
-    assert list(frame.columns) == ["tip", "butt", "end_mass"]
-    assert len(frame) == 32
-    assert frame["end_mass"].mean() == pytest.approx(float(found.spread.mean[0]), rel=1e-12)
-    shares = cf.frames.of_drivers(wanted, found)
-    assert shares.loc[("end_mass", "tip"), "total"] == found.total[0, 0]
+    found = cf.study(study(tmp_path, SCATTER))
+    frame, shares = cf.frames.of_study(found), cf.frames.of_drivers(found)
+    assert (list(frame.columns), len(frame)) == (["tip", "butt", "end_mass", "failure"], 64)
+    assert frame["end_mass"][:32].mean() == pytest.approx(found.spread["end_mass"]["mean"], rel=1e-12)
+    assert shares.loc[("end_mass", "tip"), "total"] == found.drivers.total[0, 0]
     assert (shares["total_low"] <= shares["total_high"]).all()
+    with pytest.raises(ValueError, match="takes a scatter, a study with tolerances; got one of kind sweep"):
+        cf.frames.of_drivers(cf.study(study(tmp_path, STUDY)))
 
 
 def test_a_batch() -> None:
@@ -103,9 +86,9 @@ def test_a_batch() -> None:
         cf.frames.of_batch(batch, end_mass=[1, 2, 3])
 
 
-def test_what_is_no_sweep(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="no such file"):
-        cf.frames.of_sweep(tmp_path / "none.sqlite")
+def test_what_is_no_store(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="No such file"):
+        cf.frames.of_store(tmp_path / "none.sqlite")
     (tmp_path / "text.sqlite").write_text("x" * 200)
     with pytest.raises(InputError, match="cannot be read or written as a database"):
-        cf.frames.of_sweep(tmp_path / "text.sqlite")
+        cf.frames.of_store(tmp_path / "text.sqlite")

@@ -58,6 +58,7 @@ WRITTEN = {
     ".svg": "a picture",
     ".toml": "a drawing or scene",
     ".json": "the JSON of --json",
+    ".csv": "a table",
 }
 
 
@@ -109,16 +110,22 @@ def tell(as_json: bool, record: Any, things: Sequence[Any], page: Path | None = 
 
     page: the file in which one of these is to stand instead; title: of a page, by default the file's name.
     """
-    if page is not None and page.suffix == ".json":
-        write_whole(page, lambda temporary: temporary.write_text(json_text(record) + "\n", encoding="utf-8"))
-    elif page is not None:
-        from cuefem.report.plain_page import plain_page  # templates take 0.1 s, which tables need not pay
-
-        save_page(plain_page(title or page.stem, things), page)
+    if page is not None:
+        write_told(page, record, things, title)
     if as_json:
         print_json(record)
     else:
         print_all(things if page is None else [f"wrote {page}"])
+
+
+def write_told(path: Path, record: Any, things: Sequence[Any], title: str = "") -> None:
+    """Write a record as .json, or lines and sheets as a page."""
+    if path.suffix == ".json":
+        write_whole(path, lambda temporary: temporary.write_text(json_text(record) + "\n", encoding="utf-8"))
+    else:
+        from cuefem.report.plain_page import plain_page  # templates take 0.1 s, which tables need not pay
+
+        save_page(plain_page(title or path.stem, things), path)
 
 
 def print_all(things: Sequence[Any]) -> None:

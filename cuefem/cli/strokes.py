@@ -14,7 +14,7 @@ from cuefem.cli.printing import shared_option
 from cuefem.contact.side_strike import SideStrike
 from cuefem.cue import Cue, LumpedCue
 from cuefem.games import DEFAULT_GAME, GAMES, usual_scene, usual_tip
-from cuefem.io import InputError
+from cuefem.io import InputError, with_body_mass
 from cuefem.io.errors import faults_of
 from cuefem.parts import with_shaft_mass
 from cuefem.quantity.fields import Quantity
@@ -100,10 +100,9 @@ def offset_of(file: Path, text: str, radius: float) -> float:
 
 def with_body(thing: Cue | Scene | SideStrike, file: Path, text: str) -> Any:
     """The cue or scene of a file with the mass behind its segments that --body-mass says."""
-    mass = measured(file, "--body-mass", text, Quantity("kg", "[0, inf)"))
     if not isinstance(thing, Cue) and isinstance(thing.cue, LumpedCue):
         raise InputError(file, "--body-mass", NO_SHAFT)
-    return with_fields(thing, {("body_mass",) if isinstance(thing, Cue) else ("cue", "body_mass"): mass})
+    return with_body_mass(thing, file, "--body-mass", text)
 
 
 def with_weight(thing: Cue | Scene | SideStrike, file: Path, text: str) -> Any:

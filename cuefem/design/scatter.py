@@ -10,17 +10,18 @@ of their own.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
+from scipy.special import ndtr, ndtri
 
 from cuefem.cue import Array
-from cuefem.design import Levels, Pool, Row, Study, Task
-from cuefem.design.ranges import Value
-from cuefem.design.sweep import computed, in_parallel, scenes_of, tasks_of
+from cuefem.design.ranges import Levels, Value
+from cuefem.design.study import Study
+from cuefem.design.sweep import MemoryStore, Pool, Row, sweep
 from cuefem.quantity.fields import check_count
 
 CONFIDENCE, RESAMPLES = 0.95, 400  # of the bootstrapped intervals
@@ -44,6 +45,10 @@ class Scatter:
     groups : mapping, optional
         {name: names of what varies}, each counted as one cause. Correlated numbers must share a group; without one
         they form a group of their own.
+    count : int
+        Designs of a sample, a power of two.
+    seed : int
+        Of the samples.
 
     Raises
     ------
@@ -54,8 +59,15 @@ class Scatter:
     study: Study
     correlations: Mapping[tuple[str, str], float] = field(default_factory=dict)
     groups: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    count: int = 256
+    seed: int = 0
 
     def __post_init__(self) -> None:
+        check_count("count", self.count, 2)
+        check_count("seed", self.seed, 0)
+        if self.count & (self.count - 1):
+            near = 1 << (self.count.bit_length() - 1)
+            raise ValueError(f"count must be a power of two; got {self.count}: take {near} or {2 * near}")
         seen: set[frozenset[str]] = set()
         for pair, r in self.correlations.items():
             self._check_names("a correlation", pair)
@@ -124,18 +136,52 @@ class Scatter:
         called = {self.names.index(name): group for group, names in self.groups.items() for name in names}
         return tuple(called.get(each[0], " + ".join(self.names[i] for i in each)) for each in self._members)
 
+    def scores(self, size: int) -> Array:
+        """Independent normal scores (count, size) of a scrambled Sobol sequence."""
+        from scipy.stats import qmc  # loaded when used: half a second
+
+        engine = qmc.Sobol(size, seed=np.random.default_rng(self.seed))
+        return np.asarray(ndtri(engine.random(self.count) + HALF_CELL))
+
+    def correlated(self, scores: Array) -> Array:
+        """The shares of what varies below independent normal scores (n, vary), with their correlations."""
+        return np.asarray(ndtr(scores @ np.linalg.cholesky(self.matrix).T))
+
     def mixed(self, scores: Array) -> list[Array]:
         """Scores of two samples, (2, n, vary): the first one with each cause in turn from the second."""
         first, second = scores
         return [np.where(np.isin(np.arange(len(self.names)), members), second, first) for members in self._members]
 
-    def designs(self, scores: Array) -> list[tuple[Value, ...]]:
-        """Values of what varies for independent normal scores (n, vary)."""
-        from scipy.special import ndtr
+    @property
+    def designs(self) -> Study:
+        """The study whose designs the Sobol indices take: two independent samples, and the first one with each cause
+        in turn from the second."""
+        return replace(self.study, sample=_Points(self, len(self._members) + 2))
 
-        shares = ndtr(scores @ np.linalg.cholesky(self.matrix).T)
-        ranges = [vary.range for vary in self.study.vary]
-        return [tuple(range_of.quantile(u) for range_of, u in zip(ranges, row, strict=True)) for row in shares.tolist()]
+
+@dataclass(frozen=True)
+class _Points:
+    """Points of a scatter: ``samples`` times its count; of one alone, a sample as dense as it can be."""
+
+    scatter: Scatter
+    samples: int
+
+    def __repr__(self) -> str:
+        about = self.scatter.correlations, self.scatter.groups, self.scatter.seed
+        return f"{self.samples} samples of {self.scatter.count}, {about}"
+
+    @property
+    def count(self) -> int:
+        return self.samples * self.scatter.count
+
+    def blocks(self, dimensions: int, size: int) -> Iterator[Array]:
+        if self.samples == 1:
+            scores = self.scatter.scores(dimensions)
+        else:
+            both = np.stack(np.split(self.scatter.scores(2 * dimensions), 2, axis=1))
+            scores = np.concatenate([*both, *self.scatter.mixed(both)])
+        points = self.scatter.correlated(scores)
+        yield from (points[start : start + size] for start in range(0, len(points), size))
 
 
 @dataclass(frozen=True)
@@ -181,52 +227,40 @@ class Drivers:
     spread: ResponseSpread
 
 
-def spread(
-    scatter: Scatter, count: int, *, seed: int, pool: Pool | None = None, progress: Progress = lambda rows: None
-) -> ResponseSpread:
-    """The distribution of a study's responses over ``count`` designs, a power of two: a scrambled Sobol sequence.
+def spread(scatter: Scatter, *, pool: Pool | None = None, progress: Progress = lambda rows: None) -> ResponseSpread:
+    """The distribution of a study's responses over ``count`` designs.
 
     pool, progress: as in `sweep`. ValueError if no design has an answer.
     """
-    rows = _rows(scatter, scores(len(scatter.names), count, seed=seed), pool, progress)
-    return _spread(rows)
+    store = MemoryStore(replace(scatter.study, sample=_Points(scatter, 1)))
+    sweep(store.study, store, pool=pool, progress=progress)
+    return _spread([*store.rows()])
 
 
-def drivers(
-    scatter: Scatter, count: int, *, seed: int, pool: Pool | None = None, progress: Progress = lambda rows: None
-) -> Drivers:
-    """Sobol indices of a study's responses, by (causes + 2) ``count`` designs, ``count`` a power of two.
+def drivers(scatter: Scatter, *, pool: Pool | None = None, progress: Progress = lambda rows: None) -> Drivers:
+    """Sobol indices of a study's responses, by (causes + 2) ``count`` designs: see `drivers_of`."""
+    store = MemoryStore(scatter.designs)
+    sweep(store.study, store, pool=pool, progress=progress)
+    return drivers_of(scatter, [*store.rows()])
+
+
+def drivers_of(scatter: Scatter, rows: Sequence[Row]) -> Drivers:
+    """Sobol indices from the rows of `Scatter.designs`.
 
     Estimators of Saltelli et al. (Comput. Phys. Commun. 181 (2010) 259, table 2 b, f) as scipy.stats has them; error
     about 1/sqrt(count) or less, see the intervals. ValueError if a design has no answer, naming the first reason, or
     a response does not scatter.
     """
-    size = len(scatter.names)
-    both = np.stack(np.split(scores(2 * size, count, seed=seed), 2, axis=1))
-    rows = _rows(scatter, np.concatenate([*both, *scatter.mixed(both)]), pool, progress)
     failed = [row.failure for row in rows if row.failure]
     if failed:
         raise ValueError(f"{len(failed)} of {len(rows)} designs have no answer: narrow the ranges; first: {failed[0]}")
+    count = scatter.count
     results = np.array([row.responses for row in rows]).reshape(-1, count, len(scatter.study.responses))
     sample = _spread(rows[: 2 * count])
     for response, mean, sd in zip(scatter.study.responses, sample.mean, sample.sd, strict=True):
         if sd <= 1e-12 * abs(mean):
             raise ValueError(f"{response.name} does not scatter: nothing that varies changes it")
-    return Drivers(scatter.causes, *indices(results.swapaxes(1, 2), seed=seed), sample)
-
-
-def scores(size: int, count: int, *, seed: int) -> Array:
-    """Independent normal scores (count, size) of a scrambled Sobol sequence; ValueError unless a power of two."""
-    from scipy.special import ndtri
-    from scipy.stats import qmc
-
-    check_count("count", count, 2)
-    check_count("seed", seed, 0)
-    if count & (count - 1):
-        near = 1 << (count.bit_length() - 1)
-        raise ValueError(f"count must be a power of two; got {count}: take {near} or {2 * near}")
-    engine = qmc.Sobol(size, seed=np.random.default_rng(seed))
-    return np.asarray(ndtri(engine.random(count) + HALF_CELL))
+    return Drivers(scatter.causes, *indices(results.swapaxes(1, 2), seed=scatter.seed), sample)
 
 
 def indices(values: Array, *, seed: int) -> tuple[Array, Array, Array, Array]:
@@ -256,22 +290,7 @@ def indices(values: Array, *, seed: int) -> tuple[Array, Array, Array, Array]:
     return first, total, np.stack([low[0], high[0]]), np.stack([low[1], high[1]])
 
 
-def _rows(scatter: Scatter, points: Array, pool: Pool | None, progress: Progress) -> list[Row]:
-    """The designs of these scores, computed in blocks."""
-    study, designs, rows = scatter.study, dict(enumerate(scatter.designs(points))), list[Row]()
-
-    def tasks() -> Iterator[Task]:
-        for start in range(0, len(designs), study.block):
-            block = {i: designs[i] for i in range(start, min(start + study.block, len(designs)))}
-            yield from tasks_of(study, block, *scenes_of(study, block))
-
-    for done in in_parallel(computed, tasks(), pool):
-        progress(done)
-        rows += done
-    return sorted(rows, key=lambda row: row.design)
-
-
-def _spread(rows: list[Row]) -> ResponseSpread:
+def _spread(rows: Sequence[Row]) -> ResponseSpread:
     good = [row for row in rows if not row.failure]
     failures = tuple(row.failure for row in rows if row.failure)
     if not good:

@@ -34,9 +34,8 @@ class Sensitivity:
 
     x: Gauss points of the mesh, m from the tip, (points,). weights: their lengths, m. rhoA, rhoI, EI, kGA: densities of
     the derivatives per unit length, so that dm = integral of density times the change of the property; rhoA is a pure
-    number per unit: kg of end mass for a kg put there. shear_slope: like kGA, but with w' - theta and w' as the two
-    strains, as a stretched piece of shaft needs it (`cuefem.design.gradient`). ball_mass, axial_mass: derivatives to M
-    and m_a (zero but for "stick"), pure numbers. end_mass: kg.
+    number per unit: kg of end mass for a kg put there. ball_mass, axial_mass: derivatives to M and m_a (zero but for
+    "stick"), pure numbers. end_mass: kg.
     """
 
     x: Array
@@ -45,7 +44,6 @@ class Sensitivity:
     rhoI: Array
     EI: Array
     kGA: Array
-    shear_slope: Array
     ball_mass: float
     axial_mass: float
     end_mass: float
@@ -105,19 +103,6 @@ def sensitivity(scene: Scene, drive: str = "stick", at: Resolution | None = None
     return _densities(system, np.concatenate([bending.rigid_vectors, bending.vectors], axis=1), stiff, heavy, gradient)
 
 
-def frequency_sensitivity(scene: Scene, mode: int, at: Resolution) -> Sensitivity:
-    """The same densities for a flexible bending frequency, Hz, counted from 1; the field ``end_mass`` holds its value.
-
-    Rayleigh's quotient: d lambda_k = dK_kk - lambda_k dM_kk.
-    """
-    system = assemble(scene.shaft, elements=at.elements, order=at.order)
-    bending = solve(system, mode)
-    frequency, square = bending.frequencies[-1], bending.omega[-1] ** 2
-    stiff = np.array([[1 / (8 * np.pi**2 * frequency)]])
-    value = _Gradient(float(frequency), bending.omega, bending.omega, 0.0)
-    return _densities(system, bending.vectors[:, -1:], stiff, -square * stiff, value)
-
-
 def _forms(gradient: _Gradient, squares: Array, phi: Array, still: Array) -> tuple[Array, Array]:
     """The quadratic forms in the modes (rigid ones first) that give dm for dK and for dM."""
     rigid, modes = len(still), len(gradient.squares)
@@ -129,8 +114,6 @@ def _forms(gradient: _Gradient, squares: Array, phi: Array, still: Array) -> tup
     gaps[np.arange(modes), rows] = np.inf
     stiff[rows] = gradient.amplitudes[:, None] * all_phi / gaps
     stiff[rows, rows] = gradient.squares
-    # no strain, no change of the rigid motions; but a stretched piece strains what was one (`cuefem.design.gradient`)
-    stiff[:rigid, rigid:] -= 2 * gradient.rigid * still[:, None] * phi / squares
     heavy[rows] = -squares[:modes, None] * stiff[rows]
     heavy[rows, rows] -= gradient.amplitudes * phi[:modes] / 2
     heavy[:rigid, :rigid] -= gradient.rigid * np.outer(still, still)
@@ -143,10 +126,9 @@ def _densities(system: System, vectors: Array, stiff: Array, heavy: Array, gradi
     bent, slope, turned = slopes(own, mesh.sizes[:, None, None], system.length, mesh.order)
     moved, sheared = t.w.T @ own, slope - turned
 
-    def density(form: Array, fields: Array, others: Array | None = None) -> Array:
+    def density(form: Array, fields: Array) -> Array:
         fields = fields.reshape(-1, fields.shape[-1])
-        others = fields if others is None else others.reshape(fields.shape)
-        return np.asarray(((fields @ form) * others).sum(axis=1))
+        return np.asarray(((fields @ form) * fields).sum(axis=1))
 
     x = mesh.nodes[:-1, None] + mesh.sizes[:, None] * t.points
     return Sensitivity(
@@ -156,7 +138,6 @@ def _densities(system: System, vectors: Array, stiff: Array, heavy: Array, gradi
         rhoI=density(heavy, turned),
         EI=density(stiff, bent),
         kGA=density(stiff, sheared),
-        shear_slope=density(stiff, sheared, slope),
         ball_mass=gradient.ball_mass,
         axial_mass=gradient.axial_mass,
         end_mass=gradient.value,

@@ -7,12 +7,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from importlib.metadata import version
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
+from cuefem.cue import Array
 from cuefem.design.evaluation import common_resolution
-from cuefem.design.ranges import Levels, Normal, Sample, Span, Value
+from cuefem.design.ranges import Levels, Normal, Span, Value
 from cuefem.design.responses import Response
 from cuefem.materials import material
 from cuefem.notebook import spelt_out
@@ -21,6 +22,17 @@ from cuefem.vary import Path, paths, quantity_at, replaced, spelt, value_at
 
 # Designs evaluated, and written, at a time; fewer if each takes a strike in time.
 BLOCK, STRUCK_BLOCK = 256, 16
+
+
+class Sampled(Protocol):
+    """Points in the unit cube that stand for designs, such as a `Sample`; its repr tells it from others."""
+
+    @property
+    def count(self) -> int:
+        """How many."""
+
+    def blocks(self, dimensions: int, size: int) -> Iterator[Array]:
+        """So many of them at a time, each (size, dimensions)."""
 
 
 @dataclass(frozen=True)
@@ -109,6 +121,15 @@ class Vary:
 
 
 @dataclass(frozen=True)
+class StudyDesign:
+    """A design of a study: its scene, the values of what varies and its responses by their names, in SI units."""
+
+    scene: Scene
+    values: dict[str, Value]
+    responses: dict[str, float]
+
+
+@dataclass(frozen=True)
 class Study:
     """A design study: a base scene, what varies in it, and what is asked of every design.
 
@@ -121,7 +142,7 @@ class Study:
     responses : tuple of Response
         What is asked of every design.
     sample : Sample, optional
-        A quasi-random sample in place of the grid.
+        A quasi-random sample in place of the grid; any object with its ``count`` and ``blocks``.
     at : Resolution, optional
         One resolution for all designs, so that responses do not jump between them. The default is that of the design
         in the ranges that needs most modes (`common_resolution`: stick end masses are off by up to 2 %).
@@ -135,7 +156,7 @@ class Study:
     base: Scene
     vary: tuple[Vary, ...]
     responses: tuple[Response, ...]
-    sample: Sample | None = None
+    sample: Sampled | None = None
     at: Resolution | None = None
 
     def __post_init__(self) -> None:
@@ -207,22 +228,13 @@ class Study:
 
     def scene(self, values: tuple[Value, ...]) -> Scene:
         """The design with these values; ValueError if it cannot be made, such as a bore wider than its shaft."""
-        return self._made(dict(enumerate(values)))
+        return self.made(dict(enumerate(values)))
 
-    def _made(self, values: dict[int, Value]) -> Scene:
+    def made(self, values: dict[int, Value]) -> Scene:
         """The base scene with some of what varies at a value: whole materials first, then numbers, then factors, then
         shifts, and last what is taken."""
         named = {p: material(v) for i, v in values.items() if isinstance(v, str) for p in self._fields[i]}
         scene: Scene = replaced(self.base, named) if named else self.base
-        numbers = self.numbers(values, scene)
-        return replaced(scene, numbers) if numbers else scene
-
-    def numbers(self, values: dict[int, Any], scene: Scene | None = None) -> dict[Path, Any]:
-        """The numbers that these values put into the fields of a scene, the base scene by default.
-
-        Plain arithmetic on the values, so that complex values carry a derivative along.
-        """
-        scene = self.base if scene is None else scene
         numbers, shifts = dict[Path, Any](), list[tuple[Path, Any]]()
 
         def now(path: Path) -> Any:
@@ -238,7 +250,7 @@ class Study:
                 shifts += [(path, numbers[fields[0]] - before[0]) for path in self._givers[i]]
         for path, gain in shifts:
             numbers[path] = now(path) - gain
-        return numbers
+        return replaced(scene, numbers) if numbers else scene
 
     @cached_property
     def resolution(self) -> Resolution:
@@ -261,7 +273,7 @@ class Study:
     def _tried(self, values: dict[int, Value]) -> list[Scene]:
         """The scene with these values in a list, or an empty list: an end of a range may be no design by itself."""
         try:
-            return [self._made(values)]
+            return [self.made(values)]
         except ValueError:
             return []
 

@@ -10,12 +10,10 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, ProcessPoolExecutor
 from concurrent.futures import wait as wait_for
 from contextlib import AbstractContextManager, contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import chain, count, islice
 from multiprocessing import get_context, parent_process, resource_tracker
 from typing import NamedTuple, ParamSpec, Protocol, TypeVar
-
-import numpy as np
 
 from cuefem.design.evaluation import Failed, evaluate
 from cuefem.design.ranges import Value
@@ -45,35 +43,51 @@ class Row(NamedTuple):
 
 
 class Task(NamedTuple):
-    """Designs to compute: number and what varied of each, its scene, the question, and the answers known already.
-
-    known: a dict from a response's name to its number for each design; what it lacks is computed. failed: rows of
-    designs that cannot be made.
-    """
+    """Designs to compute: number and values of each, its scene, and the question; failed: rows of designs that cannot
+    be made."""
 
     designs: Sequence[tuple[int, tuple[Value, ...]]]
     scenes: Sequence[Scene]
     responses: tuple[Response, ...]
     at: Resolution
-    known: Sequence[dict[str, float]]
     failed: Sequence[Row] = ()
 
 
 class Store(Protocol):
-    """Where a sweep's rows go, and what is known already."""
+    """Where a study's rows go, and what is known already."""
 
-    def take(self, designs: dict[int, tuple[Value, ...]], *, from_others: bool) -> list[Task] | None:
-        """What is to be computed of a block: designs by number.
-
-        None if another sweep is at work on the block, unless ``from_others`` says to compute it all the same.
-        """
+    def take(self, designs: dict[int, tuple[Value, ...]]) -> Task | None:
+        """What is to be computed of a block, designs by number; None if nothing is."""
 
     def write(self, rows: list[Row]) -> None:
-        """Keep the rows of a task, all or none of them."""
+        """Store the rows of a task, all or none of them."""
+
+    def rows(self) -> Iterator[Row]:
+        """All rows in the order of the designs."""
 
 
-def scenes_of(study: Study, designs: dict[int, tuple[Value, ...]]) -> tuple[dict[int, Scene], list[Row]]:
-    """The scenes of designs by number, and the rows of those designs that cannot be made."""
+@dataclass
+class MemoryStore:
+    """A store that ends with the process."""
+
+    study: Study
+    kept: list[Row] = field(default_factory=list)
+
+    def take(self, designs: dict[int, tuple[Value, ...]]) -> Task:
+        """All of them."""
+        return task_of(self.study, designs)
+
+    def write(self, rows: list[Row]) -> None:
+        """Store rows."""
+        self.kept += rows
+
+    def rows(self) -> Iterator[Row]:
+        """All rows in the order of the designs."""
+        return iter(sorted(self.kept, key=lambda row: row.design))
+
+
+def task_of(study: Study, designs: dict[int, tuple[Value, ...]]) -> Task:
+    """The task of designs by number."""
     scenes, failed = dict[int, Scene](), list[Row]()
     for design, values in designs.items():
         try:
@@ -81,47 +95,18 @@ def scenes_of(study: Study, designs: dict[int, tuple[Value, ...]]) -> tuple[dict
         except Failed as error:
             nothing = (None,) * len(study.responses)
             failed.append(Row(design, values, nothing, " ".join(str(error).split())))
-    return scenes, failed
-
-
-def tasks_of(
-    study: Study,
-    designs: dict[int, tuple[Value, ...]],
-    scenes: dict[int, Scene],
-    failed: list[Row],
-    known: dict[int, dict[str, float]] | None = None,
-) -> list[Task]:
-    """Tasks for the designs that have scenes, one for each set of responses that is to be computed."""
-    groups = dict[frozenset[str], list[int]]()
-    for design in scenes:
-        groups.setdefault(frozenset((known or {}).get(design, {})), []).append(design)
-    tasks = [
-        Task(
-            [(design, designs[design]) for design in group],
-            [scenes[design] for design in group],
-            study.responses,
-            study.resolution,
-            [(known or {}).get(design, {}) for design in group],
-        )
-        for group in groups.values()
-    ]
-    if failed:
-        first = tasks.pop(0) if tasks else Task([], [], study.responses, study.resolution, [])
-        tasks.insert(0, first._replace(failed=failed))
-    return tasks
+    there = [(design, designs[design]) for design in scenes]
+    return Task(there, [*scenes.values()], study.responses, study.resolution, failed)
 
 
 def computed(task: Task) -> list[Row]:
     """The rows of a task. The same scenes give the same bits, whatever else is in the task."""
-    if not task.designs:
-        return [*task.failed]
-    asked = [i for i, response in enumerate(task.responses) if response.name not in task.known[0]]
-    answers = np.array([[known.get(response.name, np.nan) for response in task.responses] for known in task.known])
-    evaluation = evaluate(task.scenes, [task.responses[i] for i in asked], at=task.at)
-    answers[:, asked] = evaluation.values
+    evaluation = evaluate(task.scenes, task.responses, at=task.at)
     rows = (
         Row(design, values, tuple(None if x != x else x for x in numbers), reason)
-        for (design, values), numbers, reason in zip(task.designs, answers.tolist(), evaluation.reasons, strict=True)
+        for (design, values), numbers, reason in zip(
+            task.designs, evaluation.values.tolist(), evaluation.reasons, strict=True
+        )
     )
     return sorted([*task.failed, *rows], key=lambda row: row.design)
 
@@ -130,8 +115,6 @@ def sweep(
     study: Study, store: Store, *, pool: Pool | None = None, progress: Callable[[list[Row]], object] = lambda rows: None
 ) -> None:
     """Compute the designs of a study that the store does not hold yet, and write them, a block at a time.
-
-    Blocks on which another sweep is at work come last, the one that it began last first.
 
     Parameters
     ----------
@@ -149,24 +132,12 @@ def sweep(
     RuntimeError
         If the pool breaks time after time, or its scheduler is gone. What was written stays.
     """
-    for rows in in_parallel(computed, _tasks(study, store), pool):
+    numbers = count()
+    blocks = ({next(numbers): values for values in block} for block in study.blocks())
+    tasks = (task for block in blocks if (task := store.take(block)) is not None)
+    for rows in in_parallel(computed, tasks, pool):
         store.write(rows)
         progress(rows)
-
-
-def _tasks(study: Study, store: Store) -> Iterator[Task]:
-    """What there is to compute."""
-    blocks, others, first = study.blocks(), list[dict[int, tuple[Value, ...]]](), 0
-    for values in blocks:
-        block = dict(enumerate(values, start=first))
-        first += len(values)
-        tasks = store.take(block, from_others=False)
-        if tasks is None:
-            others.append(block)
-        else:
-            yield from tasks
-    for block in reversed(others):
-        yield from store.take(block, from_others=True) or []
 
 
 @dataclass(frozen=True)
@@ -260,6 +231,18 @@ def _follow() -> None:
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     threading.Thread(target=until_it_ends, daemon=True).start()
+
+
+@contextmanager
+def pool_of(workers: int | None, address: str | None) -> Iterator[Pool | None]:
+    """The worker processes, or the Dask cluster, to work on; None for this process; ValueError if both are asked."""
+    if workers and address:
+        raise ValueError("workers are for this machine, dask for a cluster: give one")
+    if address:
+        with dask(address) as pool:
+            yield pool
+    else:
+        yield processes(workers) if workers else None
 
 
 @contextmanager

@@ -21,6 +21,7 @@ CHAPTERS = (
     *MAKERS,
     "start",
     "files",
+    "study",
     "working",
     "frame",
     "inverse_mass",
@@ -41,6 +42,8 @@ CHAPTERS = (
 )
 # The headed lines of every effect's docstring, in their order.
 LINES = ("Adds", "Matters when", "Wrong when", "Limit", "Source")
+# How a response's argument is written: an offset b/R may be left out.
+ARGUMENTS = {"": "", "mode": "(n)", "offset": "[(b)]"}
 
 
 class Chapter(NamedTuple):
@@ -59,7 +62,8 @@ def chapters() -> tuple[Chapter, ...]:
 def _chapter(name: str) -> Chapter:
     text = files(__package__).joinpath(f"{name}.md").read_text(encoding="utf-8")
     title = text.partition("\n")[0].removeprefix("# ")
-    return Chapter(name, title, text + _every_effect() if name == "effects" else text)
+    more = {"effects": _every_effect, "study": _every_response}.get(name, str)
+    return Chapter(name, title, text + more())
 
 
 def effect_lines(effect: type) -> dict[str, str]:
@@ -82,3 +86,19 @@ def _every_effect() -> str:
         lines = "\n".join(f"- **{head}:** {text}" for head, text in effect_lines(kind).items())
         parts.append(f"\n## {name}\n\n{summary}\n\n{lines}\n")
     return "".join(parts)
+
+
+def _every_response() -> str:
+    """The responses of studies as a table: name, unit in which people read it, what it is, and which is better."""
+    from cuefem.results.asking import asked
+    from cuefem.results.quantities import TRADE
+    from cuefem.vary import PLACES
+
+    rows = [
+        f"| `{name}{ARGUMENTS[result.argument]}` | {TRADE.get(result.unit, (1, result.unit))[1]} "
+        f"| {result.about or result.words} | {result.better} |"
+        for name, result in asked().items()
+    ]
+    places = ", ".join(f"`{known.name}`" for known in PLACES.values())
+    table = "\n".join(["| response | unit | what it is | better |", "|---|---|---|---|", *rows])
+    return f"{table}\n\n## Places by name\n\n{places}.\n"

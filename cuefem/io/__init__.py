@@ -8,6 +8,7 @@ import os
 import shutil
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from cuefem.contact.side_strike import SideStrike
 from cuefem.cue import Cue
@@ -15,8 +16,10 @@ from cuefem.io.errors import InputError, faults_of, reason, shown
 from cuefem.io.fittings import fitted, with_shaft_of
 from cuefem.io.profile import DEFAULT_MATERIAL, SHAPES, TABLES, load_profile
 from cuefem.io.toml import drawn_cue, load_accuracy, load_cue, load_toml, named_material
+from cuefem.quantity.fields import Quantity
 from cuefem.quantity.units import number
 from cuefem.scene import Scene
+from cuefem.vary import with_fields
 
 __all__ = [
     "DEFAULT_MATERIAL",
@@ -45,6 +48,7 @@ def load(
     begins: str | None = None,
     ferrule: str | None = None,
     bore: str | None = None,
+    body_mass: str | float | None = None,
 ) -> Cue | Scene | SideStrike:
     """Load a cue or a scene from a file.
 
@@ -64,6 +68,8 @@ def load(
         of its width; "25 mm melamine, tenon 8 mm" and "25 mm melamine, no tenon" are others.
     bore : str, optional
         A bore, such as "6 mm wide, 127 mm deep": from the end of the ferrule's tenon on, or else from the front.
+    body_mass : str or float, optional
+        Mass of the rest of the cue behind the drawing, such as "15 oz", or a number in kg; without it that of the file.
 
     Returns
     -------
@@ -84,8 +90,8 @@ def load(
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = pathlib.Path(folder) / "cue.toml"
     ...     cf.save(cue, path)
-    ...     cf.load(path) == cue
-    True
+    ...     cf.load(path) == cue, cf.load(path, body_mass="15 oz").body_mass
+    (True, 0.425242...)
     """
     path = Path(path)
     shape = path.suffix.lower() in SHAPES
@@ -98,15 +104,23 @@ def load(
     else:
         loaded = _load_cue(path, material if shape else None, length_unit)
     told = {"begins": begins, "ferrule": ferrule, "bore": bore}
-    if (material is None or shape) and not any(told.values()):
-        return loaded
-    if isinstance(loaded, Scene) and loaded.lumped:
-        raise InputError(path, "cue", "is a lumped cue, which has no material, ferrule or bore")
+    changed = any(told.values()) or (material is not None and not shape)
+    if (changed or body_mass is not None) and isinstance(loaded, Scene) and loaded.lumped:
+        raise InputError(path, "cue", "is a lumped cue, which has no material, ferrule, bore or body mass")
     with faults_of(path, ""):
         if material is not None and not shape:
             named_material(material, path, "material")
             loaded = with_shaft_of(loaded, material)
-        return fitted(loaded, **told)
+        if changed:
+            loaded = fitted(loaded, **told)
+    return loaded if body_mass is None else with_body_mass(loaded, path, "body_mass", body_mass)
+
+
+def with_body_mass(thing: Any, path: Path, key: str, mass: str | float) -> Any:
+    """A file's cue, scene or side strike with another mass behind the drawing: a text with its unit, or kg."""
+    with faults_of(path, key):
+        value = Quantity("kg", "[0, inf)").read(mass if isinstance(mass, str) else f"{mass!r} kg")
+    return with_fields(thing, {("body_mass",) if isinstance(thing, Cue) else ("cue", "body_mass"): value})
 
 
 def _load_cue(path: Path, material: str | None = None, length_unit: str | None = None) -> Cue:

@@ -1,84 +1,156 @@
-"""Design studies as TOML: a base scene by its path, [[vary]] tables, responses, and how designs are drawn."""
+"""Studies as TOML: a base scene by its path, [[vary]] tables, and what is asked: responses of a sweep, a scatter with
+[tolerances], or the [objective] of an optimum. The handbook's chapter on studies has every key."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
+from contextlib import ExitStack
+from os import PathLike
 from pathlib import Path
 from typing import Any
 
 from cuefem.design import METHODS, Levels, Normal, Response, Sample, Span, Study, Vary
 from cuefem.design.optimum import Limit, Problem
 from cuefem.design.scatter import Scatter
+from cuefem.design.study_result import StudyResult, found
+from cuefem.design.sweep import pool_of
 from cuefem.games import KIM, usual_scene
 from cuefem.io import load_stroke, replaced_segments
 from cuefem.io.errors import InputError, faults_of, shown, state_of
 from cuefem.io.profile import SHAPES
 from cuefem.io.schema import build, joined, unknown_key
+from cuefem.io.store import Store
 from cuefem.io.toml import game_of, named_material, read_tables
 from cuefem.quantity.fields import Quantity
 from cuefem.results.quantities import with_unit
 from cuefem.scene import Resolution, Scene, Stroke
 from cuefem.vary import paths, quantity_at, value_at
 
-KEYS = ["scene", "game", "responses", "vary", "sample", "resolution"]
-SCATTER_KEYS = [*KEYS, "correlations", "groups"]
+KEYS = ["scene", "game", "responses", "vary", "resolution"]
+SWEEP_KEYS, SCATTER_KEYS = [*KEYS, "sample"], [*KEYS, "tolerances"]
 OPTIMUM_KEYS = ["scene", "game", "objective", "limit", "vary", "resolution"]
 LIMIT_KEYS = ["response", "low", "high"]
 VARY_KEYS = [
     *("path", "name", "values", "low", "high", "count", "spacing", "middle", "sd", "factor", "shift", "taken_from"),
 ]
 SAMPLE_KEYS = ["method", "count", "seed"]
+TOLERANCE_KEYS = ["count", "seed", "correlations", "groups"]
+OFFSET = 0.3  # b/R, of a cue alone with the game "kim"
 FACTOR = Quantity("", "(0, inf)")
 _SEGMENT = re.compile(r"((?:cue\.)?segments)\[(\d+)\]")
 
 
-def load_study(path: str | Path, *, offset: float = 0.3) -> Study:
-    """Load a design study from a TOML file; InputError in one line if it is not a valid study.
+def load_study(path: str | PathLike[str]) -> Study | Scatter | Problem:
+    """Load a study from a TOML file; InputError in one line if it is not valid.
 
-    A base that is a cue alone gets the usual stroke of the ``game`` that the file names; without one the default ball
-    and tip, as ever, so that a saved study gives what it gave, struck at b/R ``offset``. Values carry their units as
-    text.
-    """
-    path = Path(path)
-    return _study(_study_tables(path), path, offset, KEYS)
-
-
-def load_scatter(path: str | Path, *, offset: float = 0.3) -> tuple[Scatter, Sample]:
-    """Load a study with distributions, and the sample to draw, from a TOML file with [sample], correlations and groups.
-
-    In the file, correlations are lists of two names and a number, groups a table of lists of names. InputError in one
-    line if it is not valid.
+    [objective] makes it a `Problem`, [tolerances] a `Scatter`, else it is a `Study`. A base that is a cue alone gets
+    the default stroke of the ``game`` that the file names. Values carry their units as text.
     """
     path = Path(path)
     tables = _study_tables(path)
-    study = _study(tables, path, offset, SCATTER_KEYS)
-    if study.sample is None or study.sample.method != "sobol":
-        got = study.sample.method if study.sample else "nothing"
-        raise InputError(path, "sample", f'must be given, its method "sobol"; got {got}')
+    both = [name for name in ("objective", "tolerances", "sample") if name in tables]
+    if len(both) > 1:
+        raise InputError(path, both[1], f"must be left out beside [{both[0]}]: a study is of one kind")
+    kinds: dict[str, tuple[list[str], Callable[..., Study | Scatter | Problem]]] = {
+        "objective": (OPTIMUM_KEYS, _problem),
+        "tolerances": (SCATTER_KEYS, _scatter),
+    }
+    keys, load = kinds.get("".join(both), (SWEEP_KEYS, _study))
+    _check_keys(tables, [*dict.fromkeys((*SWEEP_KEYS, *SCATTER_KEYS, *OPTIMUM_KEYS))], path, "")
+    _check_keys(tables, keys, path, "")
+    return load(tables, path)
+
+
+def study(
+    what: str | PathLike[str] | Study | Scatter | Problem,
+    *,
+    store: str | PathLike[str] | None = None,
+    workers: int | None = None,
+    dask: str | None = None,
+) -> StudyResult:
+    """Compute a study: a sweep over designs, a scatter with tolerances, or an optimum within limits.
+
+    Parameters
+    ----------
+    what : str, path, Study, Scatter or Problem
+        A study's file (.toml), as `cuefem study` takes it (`cuefem guide study`), or the object that it means.
+    store : str or path, optional
+        A file (.sqlite) for the designs, from which an interrupted or edited study goes on. An optimum has none.
+    workers : int, optional
+        Number of worker processes; by default none is started.
+    dask : str, optional
+        The address of a Dask scheduler to work on instead, such as "tcp://host:8786".
+
+    Returns
+    -------
+    StudyResult
+        ``designs`` and ``responses`` are arrays by name, in the SI ``units``; ``best`` has the best design by response,
+        ``spread`` mean, standard deviation and quantiles; ``optimum`` and ``drivers`` what such studies have besides.
+        ``cf.frames.of_study`` makes a pandas frame of it.
+
+    Raises
+    ------
+    ValueError
+        If the file is no study, a response does not exist, or no design is within the limits.
+    RuntimeError
+        If worker processes die time after time, or the scheduler is gone.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> from cuefem.design import Response, Span, Study, Vary
+    >>> cue = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 700.0)),), 0.42)
+    >>> tip = Vary(("cue.segments[0].tip_diameter",), Span(0.011, 0.013, count=3), name="tip")
+    >>> found = cf.study(Study(cf.Scene(cue), (tip,), (Response("tip_stiffness"), Response("shaft_mass"))))
+    >>> found
+    StudyResult(sweep of 3 designs)
+      tip_stiffness: 649.4 N/m, tip 13 mm
+      shaft_mass: 107.5 ± 5.8 g, mean ± sd
+    >>> found.designs["tip"], found.units["tip"]
+    (array([0.011, 0.012, 0.013]), 'm')
+    """
+    asked = load_study(what) if isinstance(what, str | PathLike) else what
+    if isinstance(asked, Problem):
+        if store or workers or dask:
+            raise ValueError("an optimum takes no store, workers or dask: its designs follow from one another")
+        return found(asked)
+    designs = asked.designs if isinstance(asked, Scatter) else asked
+    with ExitStack() as opened:
+        pool = opened.enter_context(pool_of(workers, dask))
+        kept = opened.enter_context(Store(store, designs)) if store else None
+        return found(asked, store=kept, pool=pool)
+
+
+def _study(tables: dict[str, Any], path: Path) -> Study:
+    base = _base(tables, path)
+    asked = enumerate(_list(tables, "responses", path))
+    responses = tuple(_response(text, path, joined("responses", i)) for i, text in asked)
+    vary = _varied(tables, base, path, sampled="sample" in tables or "tolerances" in tables)
+    sample = _sample(tables["sample"], path) if "sample" in tables else None
     with faults_of(path, ""):
-        return Scatter(study, _correlations(tables.get("correlations", []), path), _groups(tables, path)), study.sample
+        return Study(base, vary, responses, sample, _resolution(tables, path))
 
 
-def load_optimum(path: str | Path, *, offset: float = 0.3) -> Problem:
-    """Load an optimisation from a TOML file; InputError in one line if it is not valid.
+def _scatter(tables: dict[str, Any], path: Path) -> Scatter:
+    told = tables["tolerances"]
+    _check_keys(told, TOLERANCE_KEYS, path, "tolerances")
+    study, correlations = _study(tables, path), _correlations(told.get("correlations", []), path)
+    numbers = {name: told[name] for name in ("count", "seed") if name in told}
+    with faults_of(path, "tolerances"):
+        return Scatter(study, correlations, _groups(told.get("groups", {}), path), **numbers)
 
-    The file has the scene and the [[vary]] tables of a study, [objective] with ``minimize`` or ``maximize``, and
-    [[limit]] tables of a response with low or high.
-    """
-    path = Path(path)
-    tables = _study_tables(path)
-    _check_keys(tables, OPTIMUM_KEYS, path, "")
-    base = _base(tables, path, offset)
-    objective = tables.get("objective")
+
+def _problem(tables: dict[str, Any], path: Path) -> Problem:
+    base, objective = _base(tables, path), tables["objective"]
     if not isinstance(objective, dict) or len(objective) != 1 or not {"minimize", "maximize"} & set(objective):
-        got = shown(objective) if "objective" in tables else "nothing"
-        raise InputError(path, "objective", f'must be a table such as minimize = "squirt_slope"; got {got}')
+        raise InputError(path, "objective", f'must be a table such as minimize = "squirt(0.3)"; got {shown(objective)}')
     ((aim, asked),) = objective.items()
     limits = _list(tables, "limit", path) if "limit" in tables else []
     with faults_of(path, ""):
         return Problem(
             base,
-            _varied(tables, base, path, sample=True),
+            _varied(tables, base, path, sampled=True),
             _response(asked, path, joined("objective", aim)),
             tuple(_limit(table, path, joined("limit", i)) for i, table in enumerate(limits)),
             _resolution(tables, path),
@@ -96,38 +168,27 @@ def _limit(table: Any, path: Path, key: str) -> Limit:
 
 
 def _correlations(listed: Any, path: Path) -> dict[tuple[str, str], float]:
+    key, correlations = "tolerances.correlations", dict[tuple[str, str], float]()
     if not isinstance(listed, list):
-        raise InputError(path, "correlations", f"must be a list of [name, name, number]; got {shown(listed)}")
-    correlations: dict[tuple[str, str], float] = {}
+        raise InputError(path, key, f"must be a list of [name, name, number]; got {shown(listed)}")
     for i, entry in enumerate(listed):
         fits = isinstance(entry, list) and len(entry) == 3 and all(isinstance(name, str) for name in entry[:2])
         if not fits or isinstance(entry[2], bool) or not isinstance(entry[2], int | float):
-            raise InputError(path, joined("correlations", i), f"must be [name, name, number]; got {shown(entry)}")
+            raise InputError(path, joined(key, i), f"must be [name, name, number]; got {shown(entry)}")
         if tuple(entry[:2]) in correlations:
-            raise InputError(path, joined("correlations", i), f"must be said once; got {entry[0]} and {entry[1]} twice")
+            raise InputError(path, joined(key, i), f"must be said once; got {entry[0]} and {entry[1]} twice")
         correlations[entry[0], entry[1]] = float(entry[2])
     return correlations
 
 
-def _groups(tables: dict[str, Any], path: Path) -> dict[str, tuple[str, ...]]:
-    groups = tables.get("groups", {})
+def _groups(groups: Any, path: Path) -> dict[str, tuple[str, ...]]:
+    key = "tolerances.groups"
     if not isinstance(groups, dict):
-        raise InputError(path, "groups", f"must be a table of lists of names; got {shown(groups)}")
+        raise InputError(path, key, f"must be a table of lists of names; got {shown(groups)}")
     for group, names in groups.items():
         if not isinstance(names, list) or not names or not all(isinstance(name, str) for name in names):
-            raise InputError(path, joined("groups", group), f"must be a list of names; got {shown(names)}")
+            raise InputError(path, joined(key, group), f"must be a list of names; got {shown(names)}")
     return {group: tuple(names) for group, names in groups.items()}
-
-
-def _study(tables: dict[str, Any], path: Path, offset: float, known: list[str]) -> Study:
-    _check_keys(tables, known, path, "")
-    base = _base(tables, path, offset)
-    asked = enumerate(_list(tables, "responses", path))
-    responses = tuple(_response(text, path, joined("responses", i)) for i, text in asked)
-    vary = _varied(tables, base, path, tables.get("sample"))
-    sample = _sample(tables["sample"], path) if "sample" in tables else None
-    with faults_of(path, ""):
-        return Study(base, vary, responses, sample, _resolution(tables, path))
 
 
 def _resolution(tables: dict[str, Any], path: Path) -> Resolution | None:
@@ -164,7 +225,7 @@ def _list(tables: dict[str, Any], key: str, path: Path) -> list[Any]:
     return value
 
 
-def _base(tables: dict[str, Any], path: Path, offset: float) -> Scene:
+def _base(tables: dict[str, Any], path: Path) -> Scene:
     name = tables.get("scene")
     if not isinstance(name, str):
         got = shown(name) if "scene" in tables else "nothing"
@@ -172,7 +233,7 @@ def _base(tables: dict[str, Any], path: Path, offset: float) -> Scene:
     base, game = load_stroke(path.parent / name), game_of(tables, path)
     if not isinstance(base, Scene):
         with faults_of(path, "game"):
-            return Scene(base, stroke=Stroke(offset=offset)) if game == KIM else usual_scene(base, game)
+            return Scene(base, stroke=Stroke(offset=OFFSET)) if game == KIM else usual_scene(base, game)
     if "game" in tables:
         problem = f"must be left out: {name} is a scene, which has its own ball, tip and stroke"
         raise InputError(path, "game", f"{problem}; got {shown(game)}")
@@ -186,8 +247,7 @@ def assumed_base(path: Path, base: Scene) -> list[str]:
         return []
     game = game_of(tables, path)
     if game != KIM:
-        before = "" if "game" in tables else '; before version 0.2.0 it was Kim\'s: game = "kim"'
-        return [f"{tables['scene']} is a cue alone, struck with a usual stroke of {game} (game){before}"]
+        return [f"{tables['scene']} is a cue alone, struck with a usual stroke of {game} (game)"]
     ball, time = with_unit(float(base.ball.mass), "kg", 6), with_unit(float(base.contact_time), "s", 6)
     told = f"{tables['scene']} is a cue alone, struck with a ball of {ball} and a flat tip in contact for {time}"
     return [f"{told}, b/R {base.stroke.offset:g} (game)"]
@@ -198,10 +258,10 @@ def _response(text: Any, path: Path, key: str) -> Response:
         return Response.of(text if isinstance(text, str) else repr(text))
 
 
-def _varied(tables: dict[str, Any], base: Scene, path: Path, sample: Any) -> tuple[Vary, ...]:
+def _varied(tables: dict[str, Any], base: Scene, path: Path, *, sampled: bool) -> tuple[Vary, ...]:
     """What varies, by the [[vary]] tables of a study."""
     replaced = replaced_segments(path.parent / tables["scene"], base)
-    return tuple(_vary(table, base, replaced, path, i, sample) for i, table in enumerate(_list(tables, "vary", path)))
+    return tuple(_vary(table, base, replaced, path, i, sampled) for i, table in enumerate(_list(tables, "vary", path)))
 
 
 def _in_scene(text: str, base: Scene, replaced: int, path: Path, key: str) -> str:
@@ -223,7 +283,7 @@ def _in_scene(text: str, base: Scene, replaced: int, path: Path, key: str) -> st
     return f"{match[1]}[{i - replaced}]{text[match.end() :]}"
 
 
-def _vary(table: Any, base: Scene, replaced: int, path: Path, i: int, sample: Any) -> Vary:
+def _vary(table: Any, base: Scene, replaced: int, path: Path, i: int, sampled: bool) -> Vary:
     key = joined("vary", i)
     _check_keys(table, VARY_KEYS, path, key)
     named = table.get("path")
@@ -237,7 +297,7 @@ def _vary(table: Any, base: Scene, replaced: int, path: Path, i: int, sample: An
             raise InputError(path, joined(key, name), f"must be {what}; got {shown(table[name])}")
     how = {name: bool(table.get(name, False)) for name in ("factor", "shift")}
     wanted = _wanted(texts, base, how, path, joined(key, "path"))
-    drawn = _range(table, wanted, path, key, sample is not None)
+    drawn = _range(table, wanted, path, key, sampled)
     giver, of_giver = table.get("taken_from", []), joined(key, "taken_from")
     givers = [giver] if isinstance(giver, str) else giver
     if not isinstance(givers, list) or not all(isinstance(text, str) for text in givers):
@@ -314,7 +374,11 @@ def _span(table: dict[str, Any], wanted: Quantity | None, path: Path, key: str, 
 
 def _normal(table: dict[str, Any], wanted: Quantity | None, path: Path, key: str, sampled: bool) -> Normal:
     if wanted is None or not sampled:
-        problem = "middle and sd are of numbers, drawn by a sample: give [sample]" if wanted else "names have no middle"
+        problem = (
+            "middle and sd are of numbers, drawn by a sample: give [sample] or [tolerances]"
+            if wanted
+            else "names have no middle"
+        )
         raise InputError(path, key, problem)
     logarithmic = _spacing(table, path, key)
     each = {"middle": wanted, "sd": Quantity("" if logarithmic else wanted.unit, "(0, inf)")}

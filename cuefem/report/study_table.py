@@ -1,9 +1,10 @@
-"""What a study of many designs says: the best of them, what drives the results, and where two results trade off."""
+"""What a study says, as records for programs and sheets for people: what varies; of a sweep the best designs, what
+drives the results and where two of them trade off; of a scatter the spread and its causes; of an optimum the design."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any
@@ -11,8 +12,11 @@ from typing import Any
 import numpy as np
 
 from cuefem.cue import Array
-from cuefem.design import Response, Study, Vary
-from cuefem.results.quantities import TRADE, significant, with_heading
+from cuefem.design import Levels, Normal, Response, Span, Study, Vary
+from cuefem.design.optimum import Optimum, Problem
+from cuefem.design.scatter import Drivers, Scatter
+from cuefem.design.study_result import SHARES, StudyResult
+from cuefem.results.quantities import TRADE, significant, with_heading, with_unit
 from cuefem.results.records import Sheet
 from cuefem.scene import Scene
 from cuefem.vary import named_pieces
@@ -24,7 +28,10 @@ _FIELD = re.compile(rf"({'|'.join(field.name for field in fields(Scene))})(\[[\d
 _ITEM = re.compile(r"(\w+)s\[(\d+|\*)\]")
 SHOWN = 7  # designs of a front in the terminal
 
+LEAST_NAMED = 0.01  # share of a cause that is named among the strongest
+
 DRIVES = "What drives the results: the part of the spread between designs that goes with one column alone"
+CAUSES = "What drives the spread: share of the variance, in per cent"
 TREND = (
     "falls: a larger number in the column gives a smaller result (a larger bore, less squirt); rises: a larger one; "
     "parts that only act together are in no column"
@@ -109,24 +116,47 @@ def varied_pieces(vary: Sequence[Vary], base: Scene) -> dict[str, list[str]]:
     return {name: words for name, words in pieces.items() if words}
 
 
-def varied_lines(vary: Sequence[Vary], base: Scene) -> list[str]:
-    """A line for each column that varies a piece of the cue."""
-    found = varied_pieces(vary, base)
-    lines = [f"{column_label(name)}: {', '.join(words)}" for name, words in found.items()]
-    return [*lines, "positions from the front of the modelled cue", ""] if lines else []
+def varied_sheet(study: Study) -> Sheet:
+    """What varies: its name, its range with the unit, and the pieces of the cue that it is of."""
+    pieces = varied_pieces(study.vary, study.base)
+    rows = tuple(
+        (column_label(vary.name), range_words(vary, unit), ", ".join(pieces.get(vary.name, ())))
+        for vary, unit in zip(study.vary, study.units, strict=False)
+    )
+    notes = ("positions from the front of the modelled cue",) if pieces else ()
+    head = ("varies", "over", "of")
+    return Sheet(
+        "What varies",
+        head if pieces else head[:2],
+        tuple(row[: 2 + bool(pieces)] for row in rows),
+        notes,
+        texts=(0, 1, 2),
+    )
 
 
-def table_of_study(study: Study, rows: Iterable[tuple[int, Sequence[Any], Sequence[Any]]]) -> StudyTable | None:
-    """The designs that have all answers; None if there are fewer than two. rows: number, what varied, responses."""
-    good = [row for row in rows if None not in row[2] and not any(value != value for value in row[2])]
+def range_words(vary: Vary, unit: str) -> str:
+    """The values that a column takes, with their unit."""
+    scale, name = TRADE.get(unit, (1.0, unit))
+    match vary.range:
+        case Levels(values):
+            words = ", ".join(v if isinstance(v, str) else f"{scale * v:.4g}" for v in values)
+        case Span(low, high):
+            words = f"{scale * low:.4g} to {scale * high:.4g}"
+        case Normal(middle, sd, logarithmic):
+            words = f"{scale * middle:.4g} ± {f'{100 * sd:.3g} %,' if logarithmic else f'{scale * sd:.3g}'}"
+    how = "times what is drawn" if vary.factor else "added to what is drawn" if vary.shift else ""
+    return " ".join(word for word in (words, name, how) if word)
+
+
+def table_of(result: StudyResult) -> StudyTable | None:
+    """The designs of a sweep that have all answers; None if there are fewer than two."""
+    good = [row for row in result.rows if None not in row.responses]
     if len(good) < 2:
         return None
-    columns = tuple(np.array(column) for column in zip(*(row[1] for row in good), strict=True))
-    results = np.array([row[2] for row in good], float)
-    numbers = np.array([row[0] for row in good])
-    return StudyTable(
-        study.columns[: len(study.vary)], study.units[: len(study.vary)], study.responses, numbers, columns, results
-    )
+    columns = tuple(np.array(column) for column in zip(*(row.values for row in good), strict=True))
+    results, numbers = np.array([row.responses for row in good], float), np.array([row.design for row in good])
+    names, units = (part[: len(columns)] for part in (result.study.columns, result.study.units))
+    return StudyTable(names, units, result.study.responses, numbers, columns, results)
 
 
 def _groups(column: np.ndarray) -> np.ndarray:
@@ -190,8 +220,32 @@ def shown(value: Any, unit: str) -> str:
     return significant(TRADE.get(unit, (1.0, unit))[0] * float(value))
 
 
-def study_record(table: StudyTable) -> dict[str, Any]:
-    """The summary for programs, SI."""
+def study_record(result: StudyResult) -> dict[str, Any]:
+    """What a study found, for programs: SI."""
+    if isinstance(result.asked, Problem) and result.optimum:
+        return optimum_record(result.asked, result.optimum)
+    if isinstance(result.asked, Scatter) and result.drivers:
+        about = {"count": result.asked.count, "seed": result.asked.seed}
+        return about | {"responses": scatter_record(result.asked, result.drivers)}
+    table, failed = table_of(result), [*result.failures.values()]
+    counts = {"designs": len(result.rows), "failed": len(failed), "first_failure": failed[0] if failed else None}
+    return counts | {"summary": table and sweep_record(table)}
+
+
+def study_sheets(result: StudyResult) -> list[Sheet | str]:
+    """What a study found, for people."""
+    varies = varied_sheet(result.study)
+    if isinstance(result.asked, Problem) and result.optimum:
+        return [varies, *optimum_sheets(result.asked, result.optimum)]
+    if isinstance(result.asked, Scatter) and result.drivers:
+        return [varies, *scatter_sheets(result.asked, result.drivers), *scatter_words(result.asked, result.drivers)]
+    table, failures = table_of(result), [*result.failures.items()]
+    lines = [f"{len(failures)} failed, the first of them design {n}: {reason}" for n, reason in failures[:1]]
+    return [*lines, varies, *([] if table is None else sweep_sheets(table))]
+
+
+def sweep_record(table: StudyTable) -> dict[str, Any]:
+    """The summary of a sweep."""
 
     def design(i: int) -> dict[str, Any]:
         at = {name: column[i].item() for name, column in zip(table.names, table.values, strict=True)}
@@ -266,7 +320,123 @@ def front_words(table: StudyTable, most: int) -> str:
     return f"{first.label} against {other.label}: {count} designs, of which none is beaten in both{few}"
 
 
-def study_sheets(table: StudyTable) -> list[Sheet | str]:
-    """The summary for people."""
+def sweep_sheets(table: StudyTable) -> list[Sheet | str]:
+    """The summary of a sweep."""
     front = [] if table.pair is None else [front_sheet(table, SHOWN)]
-    return [best_sheet(table), "", drive_sheet(table), *front]
+    return [best_sheet(table), drive_sheet(table), *front]
+
+
+def scatter_record(scatter: Scatter, drivers: Drivers) -> dict[str, Any]:
+    """The distribution of every response, and the shares of its causes."""
+    quantiles = drivers.spread.quantiles(SHARES)
+    return {
+        response.name: {
+            "unit": response.unit,
+            "mean": drivers.spread.mean[k],
+            "sd": drivers.spread.sd[k],
+            "quantiles": {str(share): value for share, value in zip(SHARES, quantiles[:, k], strict=True)},
+            "causes": {
+                cause: {
+                    "first": drivers.first[i, k],
+                    "first_interval": drivers.first_interval[:, i, k],
+                    "total": drivers.total[i, k],
+                    "total_interval": drivers.total_interval[:, i, k],
+                }
+                for i, cause in enumerate(drivers.causes)
+            },
+        }
+        for k, response in enumerate(scatter.study.responses)
+    }
+
+
+def scatter_sheets(scatter: Scatter, drivers: Drivers) -> list[Sheet]:
+    """The spread of every response, and what drives it."""
+    spreads, rows, bold = list[tuple[str, ...]](), list[tuple[str, ...]](), dict[int, str]()
+    for k, response in enumerate(scatter.study.responses):
+        numbers = [drivers.spread.mean[k], drivers.spread.sd[k], *drivers.spread.quantiles(SHARES)[:, k]]
+        spreads.append((response.heading, *(shown(value, response.unit) for value in numbers)))
+        bold[len(rows)] = "bold"
+        rows.append((response.label, "", ""))
+        for i in drivers.total[:, k].argsort()[::-1]:
+            both = ((drivers.first, drivers.first_interval), (drivers.total, drivers.total_interval))
+            rows.append((f"  {drivers.causes[i]}", *(_share(value[i, k], ends[:, i, k]) for value, ends in both)))
+    drawn = "a column headed 5 %: 5 % of the designs lie below its value; sd: standard deviation"
+    notes = (
+        "alone: the part of the variance that goes away if this cause is known; in all: the part that stays if all "
+        "other causes are known",
+        "in brackets 95 % intervals, bootstrapped",
+        *(f"{cause}: {', '.join(names)}" for cause, names in scatter.groups.items()),
+    )
+    head = ("response", "mean", "sd", *(f"{100 * share:g} %" for share in SHARES))
+    return [
+        Sheet(f"Spread of {len(drivers.spread.values)} designs", head, tuple(spreads), (drawn,)),
+        Sheet(CAUSES, ("response, cause", "alone", "in all"), tuple(rows), notes, styles=bold),
+    ]
+
+
+def scatter_words(scatter: Scatter, drivers: Drivers) -> list[str]:
+    """The result in a sentence for each response."""
+    lines = []
+    for k, response in enumerate(scatter.study.responses):
+        unit = TRADE.get(response.unit, (1, response.unit))[1]
+        low, high = (shown(value, response.unit) for value in drivers.spread.quantiles((0.05, 0.95))[:, k])
+        total = np.clip(drivers.total[:, k], 0.0, 1.0)  # an estimate may lie beyond
+        most = [i for i in total.argsort()[::-1][:2] if total[i] >= LEAST_NAMED]
+        named = " and ".join(f"{drivers.causes[i]} ({100 * total[i]:.0f} %)" for i in most)
+        named = f"the strongest cause{'s are' if len(most) > 1 else ' is'} {named}" if most else "no cause stands out"
+        lines.append(f"{response.label}: nine in ten lie from {low} to {high} {unit}".rstrip() + f"; {named}")
+    return lines
+
+
+def _share(value: float, ends: Any) -> str:
+    low, high = (100 * float(end) for end in ends)
+    return f"{100 * value:.1f} ({low:.1f} to {high:.1f})"
+
+
+def optimum_record(problem: Problem, best: Optimum) -> dict[str, Any]:
+    """The best design, and how it was found."""
+    aim = {"maximize" if problem.largest else "minimize": problem.objective.name}
+    return {
+        "objective": aim,
+        "value": best.responses[problem.objective.name],
+        "values": best.values,
+        "responses": best.responses,
+        "active": best.active,
+        "evaluations": best.evaluations,
+        "unfinished": best.unfinished,
+        "choices": [choice._asdict() for choice in best.choices],
+    }
+
+
+def optimum_sheets(problem: Problem, best: Optimum) -> list[Sheet | str]:
+    """The best design, what holds it, and the best with each of the listed values."""
+    units = dict(zip(problem.study.columns, problem.study.units, strict=True))
+    labels = {response.name: response.label for response in problem.study.responses}
+
+    def words(name: str, value: Any) -> str:
+        return value if isinstance(value, str) else with_unit(value, units[name], 6)
+
+    both = {**best.responses, **best.values}
+    names = {name: labels.get(name) or column_label(name) for name in both}
+    title = f"{'maximize' if problem.largest else 'minimize'} {problem.objective.label}: {best.evaluations} designs"
+    limits = (limit.rsplit(" ", 2) for limit in best.active)
+    held_by = [f"{names[name]} {sign} {words(name, float(bound))}" for name, sign, bound in limits]
+    things: list[Sheet | str] = [
+        Sheet(title, ("", "value"), tuple((names[name], words(name, value)) for name, value in both.items())),
+        f"held by: {', '.join(held_by) or 'nothing'}",
+    ]
+    if best.unfinished:
+        things.append(f"not finished: {best.unfinished}; more --iterations may find a better design")
+    if best.choices:
+        head = (*map(column_label, best.choices[0].values), problem.objective.heading, "")
+        rows = tuple(
+            (
+                *(words(name, value) for name, value in choice.values.items()),
+                "—" if choice.reason else shown(choice.objective, problem.objective.unit),
+                choice.reason,
+            )
+            for choice in best.choices
+        )
+        texts = (*range(len(head) - 2), len(head) - 1)
+        things.append(Sheet("The best with each of the listed values", head, rows, texts=texts))
+    return things

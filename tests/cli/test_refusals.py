@@ -76,7 +76,7 @@ COMMANDS = [
     ("strike shaft.toml --leather 1MPa", "(--tip-height, --leather, --speed)"),
     ("strike leather.toml --leather '0 MPa'", "--leather: must be more than 0 MPa; got 0 MPa"),
     # the drawing, and what is said beside it
-    ("modes lumped.toml --material ash", "is a lumped cue, which has no material, ferrule or bore"),
+    ("modes lumped.toml --material ash", "is a lumped cue, which has no material, ferrule, bore or body"),
     ("modes good.toml --begins ferrule", "has its own leather: begins is for .csv, .stl, .ply and .obj files alone; g"),
     ("modes bare.csv --begins leather", 'begins must be "ferrule" or the leather with its height, such as "leather 6 '),
     ("modes bare.csv --begins 'leather 40 mm'", "begins must have at most 30 mm of leather; got 'leather 40 mm'"),
@@ -114,7 +114,7 @@ COMMANDS = [
     ),
     *((f"convert good.toml kept.{kind}", "is there already: --force replaces it") for kind in ("toml", "vtk", "vtu")),
     ("modes shaft.toml -o none/modes.html", "cuefem: none/modes.html: cannot be written: No such file or directory"),
-    ("sweep none.toml -o x.sqlite", "--store names the file that keeps designs"),
+    ("study none.toml -o x.sqlite", "--store names the file that keeps designs"),
     # wrong use
     ("strike", "--help` lists the options)"),
     ("nonsense", "--help` lists the options)"),

@@ -45,8 +45,8 @@ def test_a_made_up_command_is_a_file_and_a_line(monkeypatch: pytest.MonkeyPatch)
     module.sweet_spot = sweet_spot  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "made_up_command", module)
     assert call("sweet-spot") == (0, "at 12 mm\n", "")
-    completed = ShellComplete(main, {}, "cuefem", "_CUEFEM_COMPLETE").get_completions([], "sw")
-    assert [(one.value, one.help) for one in completed] == [(n, COMMANDS[n][2]) for n in ("sweep", "sweet-spot")]
+    completed = ShellComplete(main, {}, "cuefem", "_CUEFEM_COMPLETE").get_completions([], "sweet")
+    assert [(one.value, one.help) for one in completed] == [(n, COMMANDS[n][2]) for n in ("sweet-spot",)]
 
 
 @pytest.mark.parametrize(("name", "nearest"), [("strik", "'strike'"), ("endmass", "'end-mass'"), ("nonsense", None)])

@@ -165,7 +165,7 @@ def one_of_two_fails(folder: Path, scene: str, vary: str, words: str) -> None:
     """Of a sweep's two designs one has an answer, and the words say why the other has none."""
     asked = f"scene = '{scene}'\nresponses = ['squirt(0.5)', 'frequency(1)']\n[[vary]]\n{vary}\n"
     (folder / "study.toml").write_text(asked)
-    done = json.loads(call("sweep", "study.toml", "--json")[1])
+    done = json.loads(call("study", "study.toml", "--json")[1])
     assert (done["designs"], done["failed"]) == (2, 1)
     assert words in done["first_failure"]
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.io.study_files import load_optimum, load_scatter, load_study
+from cuefem.io.study_files import load_study
 from tests.helpers.command_line import call
 from tests.helpers.refusals import command_refuses
 from tests.helpers.sweeps import OPTIMUM, SCATTER, SCENE, STUDY, written
@@ -38,17 +38,17 @@ def test_of_kim_it_is_his_bare_stroke_and_without_a_game_that_of_pool(tmp_path: 
     cue = cf.load(tmp_path / "scene.toml")
     assert isinstance(cue, cf.Cue)
     assert load_study(study).base == cf.Scene(cue, stroke=cf.Stroke(offset=0.3))
-    status, out, err = call("sweep", study)
+    status, out, err = call("study", study)
     assert (status, err) == (0, "")
     assert f"assumed: {BARE}" in " ".join(out.split())
-    assert json.loads(call("sweep", study, "--json")[1])["assumed"][0].startswith(BARE)
+    assert json.loads(call("study", study, "--json")[1])["assumed"][0].startswith(BARE)
     study = written(tmp_path, FEW, scene=CUE)
     assert load_study(study).base == cf.usual_scene(cue)
-    assert f'{USUAL}; before version 0.2.0 it was Kim\'s: game = "kim"' in " ".join(call("sweep", study)[1].split())
+    assert USUAL in " ".join(call("study", study)[1].split())
 
 
-@pytest.mark.parametrize(("load", "text"), [(load_study, FEW), (load_scatter, SCATTER), (load_optimum, OPTIMUM)])
-def test_a_game_gives_its_usual_stroke(tmp_path: Path, load: object, text: str) -> None:
+@pytest.mark.parametrize("text", [FEW, SCATTER, OPTIMUM])
+def test_a_game_gives_its_usual_stroke(tmp_path: Path, text: str) -> None:
     text = text.replace(
         'path = "tip.contact_time"\nlow = "0.8 ms"\nhigh = "1.5 ms"',
         'path = "stroke.speed"\nlow = "1 m/s"\nhigh = "3 m/s"',
@@ -56,14 +56,13 @@ def test_a_game_gives_its_usual_stroke(tmp_path: Path, load: object, text: str) 
     study = written(tmp_path, f'game = "carom"\n{text}', scene=CUE)
     cue = cf.load(tmp_path / "scene.toml")
     assert isinstance(cue, cf.Cue)
-    found = load(study)  # type: ignore[operator]
-    base = found[0].study.base if isinstance(found, tuple) else found.base
-    assert base == cf.usual_scene(cue, "carom")
+    found = load_study(study)
+    assert getattr(found, "study", found).base == cf.usual_scene(cue, "carom")
 
 
 def test_a_design_of_such_a_sweep_is_the_strike_of_the_command(tmp_path: Path) -> None:
     study = written(tmp_path, f'game = "pool"\n{FEW}', scene=CUE)
-    status, out, _ = call("sweep", study, "--export", tmp_path / "out.csv")
+    status, out, _ = call("study", study, "-o", tmp_path / "out.csv")
     assert status == 0
     assert f"assumed: {USUAL}" in " ".join(out.split())
     last = (tmp_path / "out.csv").read_text(encoding="utf-8").splitlines()[2].split(",")
@@ -79,6 +78,6 @@ def test_a_design_of_such_a_sweep_is_the_strike_of_the_command(tmp_path: Path) -
 
 def test_a_game_is_for_a_cue_alone(tmp_path: Path) -> None:
     study = written(tmp_path, f'game = "pool"\n{STUDY}')
-    command_refuses("study.toml: game: must be left out: scene.toml is a scene, which has", "sweep", study)
+    command_refuses("study.toml: game: must be left out: scene.toml is a scene, which has", "study", study)
     study = written(tmp_path, f'game = "chess"\n{FEW}', scene=CUE)
-    command_refuses("study.toml: game: must be one of pool, carom, snooker, kim; got 'chess'", "sweep", study)
+    command_refuses("study.toml: game: must be one of pool, carom, snooker, kim; got 'chess'", "study", study)

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 from cuefem import Ball, Cue, Material, Resolution, Scene, Segment, StructuralDamping, Tip, end_mass
-from cuefem.design import Levels, Normal, Response, Sample, Study, Vary, evaluate, sweep
+from cuefem.design import Levels, Normal, Response, Study, Vary, evaluate
 from cuefem.design.batch import BLOCK, CueBatch, batch_stick
 from cuefem.design.scatter import Scatter, spread
-from cuefem.io.store import Store
+from cuefem.design.study_result import found
 from tests.helpers.cues import MAPLE
 
 AT = Resolution(1, 24, 12)
@@ -65,18 +63,16 @@ def light(effects: tuple[StructuralDamping, ...] = ()) -> Study:
 
 @pytest.mark.parametrize("effects", [(), (StructuralDamping(),)], ids=["together", "one by one"])
 def test_a_sweep_says_which_design_has_none_and_keeps_its_squirt(
-    effects: tuple[StructuralDamping, ...], tmp_path: Path
+    effects: tuple[StructuralDamping, ...],
 ) -> None:
     study = light(effects)
-    with Store(tmp_path / "light.sqlite", study) as store:
-        sweep(study, store)
-        heavy, alone, none = store.rows()
-    assert heavy[-1] is None
-    assert none[2:-1] == (None, None, None)
-    assert alone[2] is None
-    assert alone[3] < 0
-    assert alone[4] == pytest.approx(0.021)
-    assert alone[-1].startswith("end_mass: the squirt is -")
+    heavy, alone, none = found(study).rows
+    assert heavy.failure is None
+    assert none.responses == (None, None, None)
+    assert alone.responses[0] is None
+    assert alone.responses[1] < 0
+    assert alone.responses[2] == pytest.approx(0.021)
+    assert alone.failure.startswith("end_mass: the squirt is -")
 
 
 def test_who_asks_for_squirt_alone_has_it() -> None:
@@ -89,8 +85,7 @@ def test_who_asks_for_squirt_alone_has_it() -> None:
 def test_scatter_goes_on_without_it() -> None:
     study = light()
     vary = Vary(("cue.segments[0].material.E",), Normal(15e9, 4e9), name="E")
-    scattered = Study(study.base, (vary,), study.responses[:1], Sample("sobol", 16, 1), AT)
-    found = spread(Scatter(scattered), 16, seed=1)
+    found = spread(Scatter(Study(study.base, (vary,), study.responses[:1], at=AT), count=16, seed=1))
     assert len(found.responses) + len(found.failures) == 16
     assert len(found.failures) > 0
     assert all(failure.startswith("end_mass: the squirt is -") for failure in found.failures)

@@ -10,11 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cuefem import Cue, LumpedCue, Material, PointMass, Resolution, Scene, Segment, Tip, load
-from cuefem.design.gradient import gradient
+from cuefem import Cue, LumpedCue, Material, PointMass, Resolution, Scene, Tip, load
 from cuefem.design.sensitivity import Sensitivity, sensitivity
 from cuefem.endmass.drives import end_mass
-from cuefem.endmass.undamped import StickLimit
 from tests.helpers.cues import carbon_tube, kim, low_deflection
 
 MESHES = Path(__file__).parents[2] / "meshes"
@@ -112,104 +110,10 @@ def test_the_ball_and_the_mass_along_the_axis() -> None:
     assert slope(body, 1e-3) == pytest.approx(found.axial_mass, rel=1e-6)
 
 
-NUMBERS = ["length", "tip_diameter", "butt_diameter", "tip_bore", "butt_bore", "E", "G", "rho"]
-
-
-def changed(cue: Cue, number: str, index: int, factor: float) -> Cue:
-    """The cue with one number of one segment multiplied."""
-    segment = cue.segments[index]
-    if number in ("E", "G", "rho"):
-        material = replace(segment.material, **{number: getattr(segment.material, number) * factor})
-        segment = replace(segment, material=material)
-    else:
-        segment = replace(segment, **{number: getattr(segment, number) * factor})
-    return replace(cue, segments=(*cue.segments[:index], segment, *cue.segments[index + 1 :]))
-
-
-@pytest.mark.parametrize("drive", ["stick", "force"])
-@pytest.mark.parametrize("number", NUMBERS)
-@pytest.mark.parametrize("index", [2, 3])
-def test_a_number_of_the_drawing(number: str, index: int, drive: str) -> None:
-    """Of the carbon tube, whose shaft is bored from end to end; squirt too, where the drive has it."""
-    cue = carbon_tube()
-    found = gradient(scene(cue), drive, AT)
-    segment = cue.segments[index]
-    value = getattr(segment.material if number in ("E", "G", "rho") else segment, number)
-
-    def felt(h: float) -> float:
-        return end_mass(scene(changed(cue, number, index, 1 + h)), drive, AT)
-
-    def squirt(h: float) -> float:
-        there = scene(changed(cue, number, index, 1 + h))
-        limit = StickLimit.of(there)
-        return float(limit.slope((limit.K - 1) / (1 / felt(h) + limit.c)))
-
-    # 1e-6 of the number, or of a thousandth of the end mass per relative change, where the derivative is nearly nothing
-    assert slope(felt, 1e-3) / value == pytest.approx(
-        getattr(found.end_mass_to, number)[index], rel=1e-6, abs=1e-9 * found.end_mass / value
-    )
-    if found.squirt_to is not None and found.squirt is not None:
-        assert found.squirt == pytest.approx(squirt(0.0), rel=1e-12)
-        assert slope(squirt, 1e-3) / value == pytest.approx(
-            getattr(found.squirt_to, number)[index], rel=1e-6, abs=1e-9 * found.squirt / value
-        )
-
-
-def filled() -> Cue:
-    """A carbon tube over a core, Poisson's ratios given, the shear coefficient of one piece too."""
-    shell = Material(80e9, 14e9, 1580.0, nu=0.27)
-    core = Material(3e9, 1.1e9, 1100.0, nu=0.33)
-    front = Segment(0.03, 0.012, 0.0125, shell, 0.009, 0.008, core)
-    middle = Segment(0.35, 0.0125, 0.013, shell, 0.0105, 0.0105, core)
-    rear = Segment(0.3, 0.013, 0.021, shell, 0.0105, 0.017, core, kappa=0.8)
-    return Cue((front, middle, rear), body_mass=0.4)
-
-
-def altered(cue: Cue, number: str, index: int, factor: float) -> Cue:
-    """The cue with kappa, or a number of a material ("nu", "core_E"), of one segment multiplied."""
-    segment = cue.segments[index]
-    part, name = ("core", number.removeprefix("core_")) if number.startswith("core") else ("material", number)
-    if number == "kappa":
-        segment = replace(segment, kappa=segment.kappa * factor)
-    else:
-        whole = getattr(segment, part)
-        segment = replace(segment, **{part: replace(whole, **{name: getattr(whole, name) * factor})})
-    return replace(cue, segments=(*cue.segments[:index], segment, *cue.segments[index + 1 :]))
-
-
-@pytest.mark.parametrize("drive", ["stick", "velocity"])
-@pytest.mark.parametrize(
-    ("number", "index"),
-    [*((f"core_{name}", i) for name in ("E", "G", "rho", "nu") for i in (0, 1)), ("nu", 0), ("nu", 1), ("kappa", 2)],
-)
-def test_a_number_of_the_core_and_of_shear(number: str, index: int, drive: str) -> None:
-    """By central differences to 1e-6; nu_e/(1 + nu_e) = 2 nu G/E makes a slope to the effective ratio one to nu."""
-    cue = filled()
-    found = gradient(scene(cue), drive, AT)
-    segment = cue.segments[index]
-    chain, whole = 1.0, segment.core if number.startswith("core") else segment.material
-    assert whole is not None
-    value = segment.kappa if number == "kappa" else getattr(whole, number.removeprefix("core_"))
-    if number.endswith("nu"):
-        ratio = 2 * whole.nu * whole.G / whole.E
-        chain = ratio / whole.nu / (1 - ratio) ** 2
-    measured = slope(lambda h: end_mass(scene(altered(cue, number, index, 1 + h)), drive, AT), 1e-3)
-    exact = getattr(found.end_mass_to, number)[index] * chain
-    assert measured / value == pytest.approx(exact, rel=1e-6, abs=1e-9 * found.end_mass / value)
-    assert exact != 0
-
-
-def test_a_shear_coefficient_left_out_has_no_slope() -> None:
-    """Nor has a Poisson's ratio where the coefficient is given."""
-    found = gradient(scene(filled()), "stick", AT)
-    assert np.isnan(found.end_mass_to.kappa).tolist() == [True, True, False]
-    assert found.end_mass_to.nu[2] == found.end_mass_to.core_nu[2] == 0
-
-
 def test_bad_input() -> None:
     with pytest.raises(ValueError, match="one of stick, velocity, force; got 'push'"):
         sensitivity(scene(kim()), "push")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="without effects; got 1"):
         sensitivity(replace(scene(kim()), effects=(PointMass(0.1, 1e-3),)))
     with pytest.raises(ValueError, match=r"Scene\.cue must be a Cue of segments"):
-        gradient(Scene(LumpedCue(0.5, 0.01)))
+        sensitivity(Scene(LumpedCue(0.5, 0.01)))

@@ -1,4 +1,4 @@
-"""Small studies that tests of sweeps share; no tests."""
+"""Small studies that tests share; no tests."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import sqlite3
 from pathlib import Path
 from typing import Any
 
-from cuefem.design import sweep
+from cuefem.design.study_result import found
 from cuefem.io.store import Store, read_table
 from cuefem.io.study_files import load_study
 
@@ -80,20 +80,17 @@ factor = true
 SCATTER = """
 scene = "scene.toml"
 responses = ["end_mass", "tip_stiffness"]
-correlations = [["E", "density", 0.4]]
-
-[groups]
-wood = ["E", "density"]
 
 [resolution]
 elements = 1
 order = 8
 modes = 4
 
-[sample]
-method = "sobol"
+[tolerances]
 count = 64
 seed = 5
+correlations = [["E", "density", 0.4]]
+groups = { wood = ["E", "density"] }
 
 [[vary]]
 name = "E"
@@ -153,15 +150,15 @@ def written(folder: Path, study: str = STUDY, scene: str = SCENE, name: str = "s
 
 
 def swept(study: Path, output: Path, **more: Any) -> list[tuple[Any, ...]]:
-    """The table of a study, computed into a store by `cuefem.design.sweep` with its options."""
+    """The table of a study, computed into a store."""
     with Store(output, load_study(study), study.stem) as store:
-        sweep(store.study, store, **more)
+        found(store.study, store=store, **more)
     return rows_of(output)
 
 
 def rows_of(path: Path, name: str | None = None) -> list[tuple[Any, ...]]:
     """The whole table of a study in a store, numbers as they are kept."""
-    return read_table(path, name).rows
+    return [(row.design, *row.values, *row.responses, row.failure) for row in read_table(path, name).rows]
 
 
 def changed(path: Path, command: str, *values: object) -> None:

@@ -83,17 +83,16 @@ def test_every_command_refuses_what_would_not_end(folder: Path, command: str) ->
         assert refused(command, name, *COMMANDS[command]).startswith(f"{name}: {line}")
 
 
-@pytest.mark.parametrize("command", ["sweep", "scatter"])
-def test_studies_refuse_it_too(folder: Path, command: str) -> None:
+def test_studies_refuse_it_too(folder: Path) -> None:
     for name, (content, line) in FILES.items():
         Path(name).write_text(content)
         Path("study.toml").write_text(STUDY.format(name, "0.7 m"))
-        assert refused(command, "study.toml").startswith(f"{name}: {line}")
+        assert refused("study", "study.toml").startswith(f"{name}: {line}")
     Path("study.toml").write_text(STUDY.format("good.toml", "1e9 m"))
     line = "study.toml: vary[0].values[0]: must be more than 0 and at most 1000 m; got 1e9 m"
-    assert refused(command, "study.toml").startswith(line)
+    assert refused("study", "study.toml").startswith(line)
     Path("deep.toml").write_text(FILES["deep.toml"][0])
-    assert refused(command, "deep.toml").startswith(f"deep.toml: {DEEP}")
+    assert refused("study", "deep.toml").startswith(f"deep.toml: {DEEP}")
 
 
 def test_python_has_the_same_bounds() -> None:
@@ -162,7 +161,7 @@ def commands_on(name: str) -> list[list[str]]:
         return [["compare", "measured"]]
     Path("names.toml").write_text(f'cue = "{name}"\n')
     Path("study.toml").write_text(STUDY.format(name, "0.7 m"))
-    return [["modes", name], ["modes", "names.toml"], ["sweep", "study.toml"], ["convert", name, "made.toml"]]
+    return [["modes", name], ["modes", "names.toml"], ["study", "study.toml"], ["convert", name, "made.toml"]]
 
 
 def made_of_no_file(name: str, kind: str) -> None:

@@ -58,7 +58,7 @@ def test_segments_count_as_in_the_file(path: str, of: str, tmp_path: Path) -> No
 
 @pytest.mark.parametrize("path", PLACES)
 def test_output_names_the_varied_piece_and_its_extent(path: str, tmp_path: Path) -> None:
-    status, out, _ = call("sweep", study(tmp_path, path), "--json")
+    status, out, _ = call("study", study(tmp_path, path), "--json")
     assert (status, json.loads(out)["varied"]) == (0, {path: [PLACES[path][-1]]})
 
 

@@ -54,7 +54,7 @@ COMMANDS = [
     ("report lumped.toml -o page.html --json", "page.html: --output: must be left out with --json"),
     ("report lumped.toml -o none/page.html", "none/page.html: cannot be written: No such file or directory"),
     ("report lumped.toml -o page.html --offset 1", "lumped.toml: --offset: must be between -1 and 1; got 1.0"),
-    ("sweep study.toml -o page.pdf", "page.pdf: --output: must end in .html or .json; got '.pdf'"),
+    ("study study.toml -o page.pdf", "page.pdf: --output: must end in .html or .csv or .json or .toml; got '.pdf'"),
 ]
 
 

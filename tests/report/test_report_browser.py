@@ -8,13 +8,16 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import cuefem as cf
+from cuefem.design import Response
+from cuefem.report.plain_page import plain_page
 from cuefem.report.report_page import PAGE_OFFSETS, page
 from cuefem.report.squirt import squirt_record
+from cuefem.report.study_table import StudyTable, sweep_sheets
 from tests.helpers.designer_browser import BROWSER, launched
-from tests.helpers.study_page import study_of_ten_columns
 
 pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install playwright")
 axe = pytest.importorskip(
@@ -67,6 +70,17 @@ def test_values_are_read_off_a_chart_words_are_explained_and_it_prints(opened: A
     assert 2 <= len(re.findall(rb"/Type /Page\b(?!s)", opened.pdf(format="A4", print_background=True))) <= 5
     opened.emulate_media(media="print")
     assert opened.evaluate(CUT) == 0
+
+
+def study_of_ten_columns() -> str:
+    """The page of a sweep over three columns with seven responses, as wide as those in studies/sweeps."""
+    bore, deep, time = (x.ravel() for x in np.meshgrid([2.0, 5.0, 9.0], [50.0, 140.0], [0.8, 1.2], indexing="ij"))
+    kinds = ("end_mass", "squirt(0.3)", "pivot_length", "tip_stiffness", "shaft_mass", "balance_point", "frequency(1)")
+    results = np.stack([time - 0.1 * bore, -bore, bore, -bore, -bore, bore, bore], axis=1)
+    names, units = ("bore", "bore depth", "tip.contact_time"), ("m", "m", "s")
+    values = (1e-3 * bore, 1e-3 * deep, 1e-3 * time)
+    table = StudyTable(names, units, tuple(map(Response.of, kinds)), np.arange(12), values, results)
+    return plain_page("bore", ["12 designs", *sweep_sheets(table)])
 
 
 @pytest.mark.parametrize("width", [1280, 390])

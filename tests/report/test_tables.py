@@ -25,7 +25,7 @@ COMMANDS = {
     "lumped report": (["report", "{lumped}"], "two-part, this cue"),
     "materials": (["materials"], "yellow birch"),
     "validate": (["validate", "--studies", "{studies}"], "printed"),
-    "scatter": (["scatter", "{scatter}"], "95 %"),
+    "scatter": (["study", "{scatter}"], "95 %"),
     "tap": (["tap", "{recording}", "--scene", "meshes/kim.toml", "--mass", "118 g"], "of the fitted shaft"),
 }
 CLAIMS = """

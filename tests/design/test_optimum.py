@@ -1,0 +1,181 @@
+"""The optimum of a study: what the committed one finds, limits that hold it, names, the fall-back (verification)."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.stats import qmc
+
+import cuefem as cf
+from cuefem import Resolution, Scene, Stroke, Tip, resolve, strike
+from cuefem.cli.studies import round_words
+from cuefem.design import Response, Span, Vary
+from cuefem.design.optimum import Limit, Optimum, Problem, Round, optimum
+from cuefem.io.study_files import load_study
+from cuefem.materials import material
+from studies.pages import STUDIES
+from tests.helpers.command_line import said
+from tests.helpers.cues import low_deflection
+from tests.helpers.refusals import command_refuses
+from tests.helpers.sweeps import OPTIMUM, written
+
+STUDY = STUDIES / "design" / "optimum.toml"
+FOUND = {
+    "bore": 7e-3,
+    "bore depth": 0.20449269,
+    "ferrule length": 5e-3,
+    "tip diameter": 11e-3,
+    "end of the taper": 16e-3,
+}
+SCENE = Scene(low_deflection(), tip=Tip(contact_time=1e-3))
+SQUIRT, WALL, STIFFNESS = Response("squirt_slope"), Response("wall"), Response("tip_stiffness")
+
+
+def vary(name: str, low: float, high: float, *fields: str, taken_from: tuple[str, ...] = ()) -> Vary:
+    return Vary(tuple(f"cue.segments{field}" for field in fields), Span(low, high), name, taken_from=taken_from)
+
+
+BORE = vary("bore", 0.002, 0.010, *(f"[{i}].{end}_bore" for i in (1, 2) for end in ("tip", "butt")))
+DEPTH = vary("bore depth", 0.03, 0.25, "[2].length", taken_from=("cue.segments[3].length",))
+TIP = vary("tip", 0.011, 0.0135, *(f"[{i}].{e}_diameter" for i in (0, 1) for e in ("tip", "butt")), "[2].tip_diameter")
+TAPER = vary("taper end", 0.0127, 0.016, "[3].butt_diameter", "[4].tip_diameter")
+LIMITS = (
+    Limit(STIFFNESS, low=430.0),
+    Limit(WALL, low=0.0015),
+    Limit(Response("tip_diameter"), low=0.0118),
+    Limit(Response("shaft_mass"), 0.085, 0.11),
+    Limit(Response("balance_point"), high=0.48),
+    Limit(Response("frequency", 1), low=95.0),
+)
+PROBLEM = Problem(SCENE, (BORE, DEPTH, TIP, TAPER), SQUIRT, LIMITS, Resolution(1, 6, 8))
+
+
+@cache
+def best() -> Optimum:
+    return optimum(PROBLEM)
+
+
+def test_committed_study_finds_the_design_of_exact_gradients(tmp_path: Path) -> None:
+    """The design that exact gradients found before; the scene that is written is as stiff as was asked."""
+    goal = tmp_path / "best.toml"
+    told = json.loads(said("study", STUDY, "--json", "-o", goal))
+    assert (told["kind"], told["objective"], told["unfinished"]) == ("optimum", {"minimize": "squirt_slope"}, "")
+    assert told["value"] == pytest.approx(0.03951969007, rel=1e-8)
+    assert told["values"] == pytest.approx(FOUND, rel=1e-6)
+    assert told["active"][:2] == ["tip_stiffness >= 386.7", "wall >= 0.002"]
+    assert told["responses"] == pytest.approx({"squirt_slope": told["value"], "tip_stiffness": 386.7, "wall": 0.002})
+    written_best = cf.load(goal)
+    assert cf.CueBatch.of([written_best.cue]).tip_stiffness[0] == pytest.approx(386.7, rel=1e-6)
+    assert written_best.cue.segments[0].tip_diameter == pytest.approx(told["values"]["tip diameter"], rel=1e-8)
+    command_refuses("--force replaces it", "study", STUDY, "-o", goal)
+
+
+@pytest.mark.heavy
+def test_strike_in_time_converges_to_the_same_design() -> None:
+    """Squirt of a strike at b/R 0.3, for which differential evolution takes thousands of strikes."""
+    problem, told = replace(load_study(STUDY), objective=Response("squirt", 0.3)), list[Round]()
+    found = optimum(problem, progress=told.append)
+    assert (found.unfinished, told[-1].evaluations < 200) == ("", True)
+    assert found.responses["squirt(0.3)"] == pytest.approx(0.010864, abs=2e-6)
+    assert found.values == pytest.approx(FOUND, rel=1e-4)
+
+
+@pytest.mark.heavy
+def test_named_limits_hold_the_optimum() -> None:
+    """Without a limit named active there is a better design; without one that is not, there is none."""
+    point = np.array([best().values[v.name] for v in PROBLEM.vary])
+    assert PROBLEM.room(PROBLEM.values(point[None])).min() == pytest.approx(0.0, abs=1e-6)
+    assert (best().scene, best().unfinished) == (PROBLEM.scene(point), "")
+    assert best().active
+    for limit in LIMITS:
+        rest = tuple(other for other in LIMITS if other != limit)
+        freed = optimum(replace(PROBLEM, limits=rest), start=point).responses["squirt_slope"]
+        named = any(text.startswith(limit.response.name) for text in best().active)
+        gained = freed / best().responses["squirt_slope"]
+        assert (gained < 1 - 1e-5) == named or (named and gained == pytest.approx(1, abs=1e-6)), limit
+
+
+@pytest.mark.heavy
+def test_no_design_of_a_search_is_better() -> None:
+    points = PROBLEM.points(qmc.Halton(4, rng=7).random(300))
+    values = PROBLEM.values(points)
+    within = (PROBLEM.room(values) >= 0).all(axis=1)
+    assert within.any()
+    assert values[within, 0].min() > best().responses["squirt_slope"]
+
+
+def test_largest_under_the_limit_of_the_least() -> None:
+    """Stiffness as large as a limit on squirt allows: as much as the least squirt of so stiff a shaft has."""
+    least = optimum(Problem(SCENE, (BORE, TIP, TAPER), SQUIRT, (Limit(STIFFNESS, low=430.0),), PROBLEM.at))
+    bound = Limit(SQUIRT, high=least.responses["squirt_slope"])
+    stiffest = optimum(Problem(SCENE, (BORE, TIP, TAPER), STIFFNESS, (bound,), PROBLEM.at, largest=True))
+    assert stiffest.responses["tip_stiffness"] == pytest.approx(least.responses["tip_stiffness"], rel=1e-4)
+
+
+def test_coupled_strike_gains_as_much() -> None:
+    """What small-offset squirt promises, a strike gives at b/R 0.01, by the plain strike and by `resolve`."""
+    promised = best().responses["squirt_slope"] / PROBLEM.values(PROBLEM.start[None])[0, 0]
+    pair = [replace(SCENE, cue=cue, stroke=Stroke(offset=0.01)) for cue in (SCENE.cue, best().scene.cue)]
+    for struck in (strike, lambda scene: resolve(scene, 1e-3)):
+        before, after = (struck(scene).squirt for scene in pair)
+        assert after / before == pytest.approx(promised, rel=0.02)
+
+
+@pytest.mark.heavy
+def test_start_that_cannot_be_made_is_searched_by_evolution_and_then_refined() -> None:
+    """A bore wider than the tip: SLSQP cannot begin there; the optimum is the one from a design that can be made."""
+    wide = replace(BORE, range=Span(0.002, 0.014))
+    problem = Problem(SCENE, (wide, TIP), SQUIRT, (Limit(WALL, low=0.0015),), Resolution(1, 6, 8))
+    good, bad = (optimum(problem, start=np.array([x, 0.0125]), rounds=15) for x in (0.005, 0.0139))
+    assert bad.evaluations > 100 > good.evaluations
+    assert (bad.unfinished, bad.values) == ("", pytest.approx(good.values, rel=1e-4))
+
+
+NAMES = OPTIMUM + '[[vary]]\npath = "cue.segments[0].material"\nvalues = ["hard maple", "ash", "purpleheart"]\n'
+
+
+def test_listed_names_are_tried_one_by_one(tmp_path: Path) -> None:
+    problem = load_study(written(tmp_path, NAMES.replace("300 N/m", "700 N/m")))
+    found = optimum(problem, rounds=8)
+    each = {str(choice.values["cue.segments[0].material"]): choice for choice in found.choices}
+    assert [*each] == ["hard maple", "ash", "purpleheart"]
+    assert each["ash"].reason.startswith("no design within tip_stiffness >= 700 was found")
+    for name in ("hard maple", "purpleheart"):
+        base = replace(problem.base, cue=replace(problem.base.cue, segments=(of(problem.base.cue, name),)))
+        alone = optimum(replace(problem, base=base, vary=problem.vary[:2]))
+        assert alone.responses["squirt_slope"] == pytest.approx(each[name].objective, rel=1e-6)
+    assert found.responses["squirt_slope"] == min(each[name].objective for name in ("hard maple", "purpleheart"))
+    assert found.scene.cue.segments[0].material == material(found.values["cue.segments[0].material"])
+
+
+def of(cue: cf.Cue, name: str) -> cf.Segment:
+    return replace(cue.segments[0], material=material(name))
+
+
+def test_output_has_units_limits_and_rounds(tmp_path: Path) -> None:
+    out = said("study", written(tmp_path, OPTIMUM))
+    assert {"bore 9 mm", "tip 10 mm"} <= {" ".join(line.split()) for line in out.splitlines()}
+    assert "held by: bore <= 9 mm, tip >= 10 mm" in out
+    text = said("study", tmp_path / "study.toml", "--iterations", 1)
+    assert "not finished: " in text
+    problem = load_study(tmp_path / "study.toml")
+    words = [round_words(problem, Round({"wood": "ash"}, 3, 30, best), 60) for best in (np.nan, 0.0412345678)]
+    assert words[0] == "ash: round 3 of at most 60, 30 designs, no design within the limits yet"
+    assert words[1].endswith("squirt slope 0.0412346 so far")
+
+
+def test_logarithmic_spacing_seeks_in_equal_ratios(tmp_path: Path) -> None:
+    plain = load_study(written(tmp_path, OPTIMUM))
+    wanted = OPTIMUM.replace('low = "1 mm"\nhigh = "9 mm"', 'low = "1 mm"\nhigh = "9 mm"\nspacing = "logarithmic"')
+    problem = load_study(written(tmp_path, wanted))
+    bores, tips = problem.points(np.array([[0.0, 0.0], [0.25, 0.5], [0.5, 1.0], [1.0, 1.0]])).T
+    assert bores == pytest.approx([1e-3, 1e-3 * 3**0.5, 3e-3, 9e-3], rel=1e-14)
+    assert tips == pytest.approx([0.010, 0.0115, 0.013, 0.013], rel=1e-14)
+    parts = np.array([[0.3, 0.7]])
+    assert problem.parts(problem.points(parts)) == pytest.approx(parts, rel=1e-13)
+    assert optimum(problem).values == pytest.approx(optimum(plain).values, rel=1e-6)

@@ -1,0 +1,170 @@
+"""Scatter: exact indices and moments, correlations in the sample, seeds and causes (verification)."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.special import ndtr
+from scipy.stats import spearmanr
+
+import cuefem as cf
+from cuefem import Resolution, Scene, Tip, load
+from cuefem.design import Levels, Normal, Response, Span, Study, Vary, evaluate
+from cuefem.design.scatter import Scatter, drivers, indices, spread
+from cuefem.io.study_files import load_study
+from tests.helpers.command_line import said
+from tests.helpers.sweeps import SCATTER, written
+
+MAPLE = load(Path(__file__).parents[2] / "meshes" / "pool_maple.toml")
+BASE = Scene(MAPLE, tip=Tip(contact_time=1e-3))
+COARSE = Resolution(1, 8, 10)
+VARY = (
+    Vary(("cue.segments[*].material.E",), Normal(1.0, 0.22, logarithmic=True), "E", factor=True),
+    Vary(("cue.segments[*].material.rho",), Normal(1.0, 0.1, logarithmic=True), "rho", factor=True),
+    Vary(("cue.segments[*].material.G",), Normal(1.0, 0.15), "G", factor=True),
+    Vary(("tip.contact_time",), Span(0.8e-3, 1.5e-3), "time"),
+)
+STUDY = Study(BASE, VARY, (Response.of("shaft_mass"), Response.of("tip_stiffness")), at=Resolution(1, 4, 2))
+
+
+def designs(scatter: Scatter) -> np.ndarray:
+    return np.array([values for block in scatter.designs.blocks() for values in block])
+
+
+def test_indices_of_ishigami() -> None:
+    """sin x + 7 sin^2 y + z^4 sin(x)/10 on (-pi, pi)^3: indices in closed form (Saltelli et al. 2008, p. 197)."""
+    a, b, pi4 = 7.0, 0.1, math.pi**4
+    parts = np.array([(1 + b * pi4 / 5) ** 2 / 2, a**2 / 8, 0.0])
+    crossed = b**2 * pi4**2 * (1 / 18 - 1 / 50)
+    variance = parts.sum() + crossed
+    first, total = parts / variance, (parts + crossed * np.array([1, 0, 1])) / variance
+
+    def ishigami(points: np.ndarray) -> np.ndarray:
+        x, y, z = (2 * ndtr(points).T - 1) * math.pi
+        return np.sin(x) + a * np.sin(y) ** 2 + b * z**4 * np.sin(x)
+
+    errors = []
+    for count in (256, 2048):
+        A, B = np.split(Scatter(STUDY, count=count, seed=3).scores(6), 2, axis=1)
+        mixed = [np.where(np.arange(3) == i, B, A) for i in range(3)]
+        found = indices(np.array([ishigami(points) for points in (A, B, *mixed)])[:, None], seed=3)
+        errors.append(max(abs(found[0][:, 0] - first).max(), abs(found[1][:, 0] - total).max()))
+        for estimate, (low, high), exact in zip(found[:2], found[2:], (first, total), strict=True):
+            assert np.all((low <= estimate) & (estimate <= high))
+            assert np.all((low[:, 0] - 3e-3 <= exact) & (exact <= high[:, 0] + 3e-3))
+    assert errors[-1] < min(0.02, errors[0])
+
+
+DENSITIES = (
+    Vary(("cue.segments[1].material.rho",), Normal(1500.0, 100.0), "ferrule"),
+    Vary(("cue.segments[2].material.rho",), Normal(705.0, 20.0), "front"),
+    Vary(("cue.segments[3].material.rho",), Normal(705.0, 40.0), "middle"),
+    Vary(("cue.segments[4].material.rho",), Normal(705.0, 5.0), "rear"),
+)
+
+
+def test_sum_of_correlated_numbers() -> None:
+    """The mass of a shaft is a sum of densities times volumes: indices of independent ones, and of groups, exact."""
+    r = {("front", "middle"): 0.8, ("middle", "rear"): -0.5}
+    study = Study(BASE, DENSITIES, (Response.of("shaft_mass"),), at=COARSE)
+    scatter = Scatter(study, r, {"wood": ("front", "middle", "rear")}, 128, 1)
+    assert scatter.causes == ("ferrule", "wood")
+    found = drivers(scatter)
+    per_rho = np.array([segment.mass / segment.material.rho for segment in MAPLE.segments[1:]])
+    ferrule = MAPLE.segments[1]
+    hole = math.pi / 4 * ferrule.length * ferrule.tip_bore**2
+    per_rho[0] = (ferrule.mass - hole * ferrule.core.rho) / ferrule.material.rho
+    # a normal number cut at 4 sd: its variance loses 8 pdf(4)/(1 - 2 tail)
+    cut = 1 - 8 * math.exp(-8) / math.sqrt(2 * math.pi)
+    terms = per_rho * [vary.range.sd for vary in DENSITIES] * math.sqrt(cut)
+    parts = np.array([terms[0] ** 2, terms[1:] @ scatter.matrix[1:, 1:] @ terms[1:]])
+    assert found.first[:, 0] == pytest.approx(parts / parts.sum(), abs=0.03)
+    assert found.total[:, 0] == pytest.approx(parts / parts.sum(), abs=0.03)
+    assert found.spread.sd[0] == pytest.approx(math.sqrt(parts.sum()), rel=0.03)
+    apart = drivers(Scatter(study, count=128, seed=1))
+    assert apart.causes == ("ferrule", "front", "middle", "rear")
+    assert apart.first[:, 0] == pytest.approx(terms**2 / (terms**2).sum(), abs=0.03)
+
+
+@pytest.mark.heavy
+def test_spread_is_that_of_plain_monte_carlo() -> None:
+    """Independent draws of NumPy, correlated by NumPy, of a shaft's wood, bore and contact time."""
+    vary = (replace(VARY[0], range=Normal(1.0, 0.2, logarithmic=True)), VARY[1], VARY[3])
+    study = Study(BASE, vary, (Response.of("end_mass"), Response.of("squirt_slope")), at=COARSE)
+    found = spread(Scatter(study, {("E", "rho"): 0.6}, count=2048, seed=1))
+    random, count = np.random.default_rng(9), 2048
+    logs = random.multivariate_normal([0, 0], [[0.04, 0.012], [0.012, 0.01]], count)
+    values = zip(*np.exp(logs).T.tolist(), random.uniform(0.8e-3, 1.5e-3, count).tolist(), strict=True)
+    plain = evaluate([study.scene(each) for each in values], study.responses, at=COARSE).values
+    error = plain.std(axis=0) / math.sqrt(count)
+    assert np.all(abs(found.mean - plain.mean(axis=0)) < 4 * error)
+    assert np.all(abs(found.sd / plain.std(axis=0) - 1) < 4 / math.sqrt(2 * count))
+
+
+@pytest.mark.heavy
+def test_indices_by_their_definition() -> None:
+    """The variance of means: of the end mass over a grid of contact times, wood drawn anew for each."""
+    wood, time = VARY[1], Vary(("tip.contact_time",), Levels((0.8e-3, 1.0e-3, 1.3e-3, 1.5e-3)), "time")
+    study = Study(BASE, (wood, time), (Response.of("end_mass"),), at=COARSE)
+    found = drivers(Scatter(study, count=1024, seed=2))
+    shares = (np.arange(64) + 0.5) / 64
+    grid = [study.scene((wood.range.quantile(u), t)) for t in time.range.ends for u in shares]
+    table = evaluate(grid, study.responses, at=COARSE).values.reshape(4, 64)
+    by_time, by_wood = table.mean(axis=1).var() / table.var(), table.mean(axis=0).var() / table.var()
+    assert found.first[:, 0] == pytest.approx([by_wood, by_time], abs=0.02)
+    assert found.total[:, 0] == pytest.approx([1 - by_time, 1 - by_wood], abs=0.02)
+
+
+@pytest.mark.parametrize(("one", "other", "third"), [(0.5, -0.3, 0.5), (-0.55, 0.55, 0.1)])
+def test_correlations_are_in_every_sample(one: float, other: float, third: float) -> None:
+    """Of logarithms and of normal numbers the correlation, of a uniform one the rank correlation 6/pi asin(r/2)."""
+    pairs = {("E", "rho"): one, ("rho", "G"): other, ("E", "time"): third}
+    for values in np.split(designs(Scatter(STUDY, pairs, count=1024, seed=1)), 3):  # two samples, and one of both
+        E, rho, G, time = np.log(values[:, 0]), np.log(values[:, 1]), values[:, 2], values[:, 3]
+        assert np.corrcoef(E, rho)[0, 1] == pytest.approx(one, abs=0.03)
+        assert np.corrcoef(rho, G)[0, 1] == pytest.approx(other, abs=0.03)
+        assert np.corrcoef(E, G)[0, 1] == pytest.approx(0, abs=0.03)
+        assert spearmanr(E, time).statistic == pytest.approx(6 / math.pi * math.asin(third / 2), abs=0.03)
+        assert [E.std(), rho.std(), G.std()] == pytest.approx([0.22, 0.1, 0.15], rel=0.02)
+
+
+def test_correlated_numbers_are_one_cause() -> None:
+    assert Scatter(STUDY).causes == ("E", "rho", "G", "time")
+    assert Scatter(STUDY, {("G", "E"): 0.5}).causes == ("E + G", "rho", "time")
+    assert Scatter(STUDY, {("G", "E"): 0.5, ("time", "G"): 0.1}).causes == ("E + G + time", "rho")
+    assert Scatter(STUDY, {("G", "E"): 0.5}, {"wood": ("E", "rho", "G")}).causes == ("wood", "time")
+
+
+def test_designs_without_an_answer_are_counted() -> None:
+    """A bore that may be wider than the shaft: the rest has a distribution, indices it has not (see the refusals)."""
+    bore = Vary(("cue.segments[2].tip_bore",), Span(0.0, 0.0256), "bore")
+    found = spread(Scatter(Study(BASE, (bore,), STUDY.responses, at=STUDY.at), count=64, seed=1))
+    assert len(found.failures) == pytest.approx(32, abs=1)
+    assert len(found.values) == len(found.responses) == 64 - len(found.failures)
+    assert max(value for (value,) in found.values) < 0.0128
+
+
+def test_command_prints_what_the_function_gives(tmp_path: Path) -> None:
+    study = written(tmp_path, SCATTER)
+    scatter = load_study(study)
+    assert (scatter.correlations, scatter.groups) == ({("E", "density"): 0.4}, {"wood": ("E", "density")})
+    found, result = drivers(scatter), cf.study(study)
+    assert np.array_equal(result.drivers.first_interval, found.first_interval)
+    told = json.loads(said("study", study, "--json"))
+    assert (told["kind"], told["count"], told["seed"]) == ("scatter", 64, 5)
+    stiffness = told["responses"]["tip_stiffness"]
+    assert stiffness["mean"] == pytest.approx(result.spread["tip_stiffness"]["mean"], rel=1e-14)
+    assert stiffness["quantiles"]["0.5"] == found.spread.quantiles(0.5)[1] == result.spread["tip_stiffness"]["50 %"]
+    assert stiffness["causes"]["wood"]["first"] == found.first[0, 1]
+    assert stiffness["causes"]["time"]["total_interval"] == [0, 0]
+    out = " ".join(said("study", study, "-o", tmp_path / "page.html", "-o", tmp_path / "all.csv").split())
+    assert f"end mass, g {1e3 * found.spread.mean[0]:.3f}" in out
+    assert "E 12 ± 2 GPa" in out
+    assert "the strongest cause is wood (100 %)" in out  # time changes no stiffness
+    assert len((tmp_path / "all.csv").read_text(encoding="utf-8").splitlines()) == 1 + 64 * 4
+    assert "Spread of 128 designs" in (tmp_path / "page.html").read_text(encoding="utf-8")

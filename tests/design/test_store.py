@@ -1,0 +1,223 @@
+"""A study loses nothing, does nothing twice, and its table does not depend on how it came about (properties)."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from cuefem.design import evaluate
+from cuefem.io import InputError
+from cuefem.io.study_files import load_study
+from tests.helpers.command_line import said
+from tests.helpers.refusals import untouched
+from tests.helpers.sweeps import SCATTER, SCENE, STRUCK, STUDY, changed, rows_of, swept, written
+
+ROOT = str(Path(__file__).parents[2])
+ENVIRONMENT = os.environ | {"PYTHONPATH": ROOT}
+GRID = """
+scene = "scene.toml"
+responses = ["end_mass", "mass"]
+[resolution]
+elements = 1
+order = 8
+modes = 4
+[[vary]]
+name = "bore"
+path = "cue.segments[0].tip_bore"
+values = ["0 mm", "1 mm", "2 mm", "3 mm"]
+[[vary]]
+path = "cue.segments[0].tip_diameter"
+values = ["12 mm", "12.5 mm"]
+"""
+
+
+def told(study: Path, *options: object) -> dict[str, Any]:
+    """What `study --json` says."""
+    return dict(json.loads(said("study", study, "--json", *options)))
+
+
+def command(study: Path, *more: str) -> list[str]:
+    return [sys.executable, str(Path(ROOT) / "tests/helpers/sweep_run.py"), "study", str(study), *more]
+
+
+def started(study: Path, *more: str) -> subprocess.Popen[bytes]:
+    quiet = subprocess.PIPE
+    return subprocess.Popen(
+        command(study, *more), env=ENVIRONMENT, stdout=quiet, stderr=quiet, start_new_session=True, preexec_fn=heard
+    )
+
+
+def heard() -> None:
+    """Ctrl-C reaches the command, although what runs in the background of a shell is made deaf to it."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+def waited_for(store: Path, run: subprocess.Popen[bytes], rows: int) -> int:
+    """Wait until so many rows are there, or the study has ended; how many there are."""
+    begun, there = time.monotonic(), 0
+    while run.poll() is None and there < rows and time.monotonic() - begun < 60:
+        time.sleep(0.02)
+        try:
+            there = len(rows_of(store)) if store.exists() else 0
+        except InputError:  # it is just being made
+            there = 0
+    return there
+
+
+# --- kill -9, Ctrl-C, edits ------------------------------------------------------------------------------------------
+@pytest.mark.heavy
+@pytest.mark.parametrize("workers", [(), ("--workers", "2")], ids=["alone", "two workers"])
+def test_killed_at_three_moments_and_resumed_then_edited_and_resumed_gives_the_same_table(
+    tmp_path: Path, workers: tuple[str, ...]
+) -> None:
+    """200 designs; kill -9 after 1, 5 and 9 blocks and a random while."""
+    study, store = written(tmp_path, STRUCK.replace("count = 150", "count = 200")), tmp_path / "study.sqlite"
+    kept, rng = [0], random.Random(len(workers))
+    for blocks in (1, 5, 9):
+        run = started(study, *workers)
+        waited_for(store, run, 16 * blocks)
+        time.sleep(rng.uniform(0, 0.05))
+        os.killpg(run.pid, signal.SIGKILL)
+        run.communicate()
+        kept.append(len(rows_of(store)))
+    assert 0 < kept[1] <= kept[2] <= kept[3]
+    whole, own = tmp_path / "whole.csv", tmp_path / "own.csv"
+    made = sum(row[1] < 0.012 for row in rows_of(store))
+    assert told(study, "-o", whole)["evaluated"] == sum(row[1] < 0.012 for row in rows_of(store)) - made
+    study = written(tmp_path, study.read_text(encoding="utf-8").replace("high = 1.3", "high = 1.4"), name="edited.toml")
+    said("study", study, "--store", store, "-o", tmp_path / "edited.csv")
+    for name, path in (("study", whole), ("edited", tmp_path / "edited.csv")):
+        said("study", tmp_path / f"{name}.toml", "--store", tmp_path / f"fresh_{name}.sqlite", "-o", own)
+        assert path.read_bytes() == own.read_bytes()
+        assert len(own.read_bytes().splitlines()) == 201
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("workers", [(), ("--workers", "2")], ids=["alone", "two workers"])
+def test_interrupt_prints_one_line_and_the_same_command_goes_on(tmp_path: Path, workers: tuple[str, ...]) -> None:
+    study, store = written(tmp_path, STRUCK.replace("count = 150", "count = 3000")), tmp_path / "study.sqlite"
+    run = started(study, *workers)
+    waited_for(store, run, 100)
+    os.killpg(run.pid, signal.SIGINT)
+    out, err = run.communicate(timeout=60)
+    count = len(rows_of(store))
+    assert (run.returncode, out) == (130, b"")
+    kept = f"{count} of 3000 designs are kept in {store}"
+    assert err.decode() == f"cuefem: interrupted; {kept}: the same command goes on\n"
+    assert 100 <= count < 3000
+
+
+EDITS = [  # what the study becomes, its designs, and how many of them were not there
+    (("", ""), 8, 8),
+    (('"3 mm"', '"3 mm", "4 mm"'), 10, 2),
+    (('"12 mm", "12.5 mm"', '"12.5 mm", "12 mm", "13 mm"'), 12, 4),
+    (('name = "bore"', 'name = "hole"'), 8, 0),
+    (('"end_mass", "mass"', '"mass"'), 8, 0),
+    (('"end_mass", "mass"', '"mass", "tip_stiffness"'), 8, 8),
+    (("modes = 4", "modes = 5"), 8, 8),
+]
+
+
+def test_edited_study_computes_each_design_once(tmp_path: Path) -> None:
+    """In one store, whatever the study is called; its table is the one of a store of its own."""
+    store = tmp_path / "all.sqlite"
+    for (old, new), size, fresh in EDITS:
+        study = written(tmp_path, GRID.replace(old, new))
+        found = told(study, "--store", store)
+        assert (found["designs"], found["evaluated"]) == (size, fresh), new
+        (tmp_path / "own.sqlite").unlink(missing_ok=True)
+        assert rows_of(store) == swept(study, tmp_path / "own.sqlite")
+    moved = SCENE.replace('tip_diameter = "12 mm"', 'tip_diameter = "12.5 mm"')
+    assert told(written(tmp_path, GRID, moved), "--store", store)["evaluated"] == 0  # by another way the same designs
+    assert told(written(tmp_path, GRID, SCENE.replace("420 g", "421 g")), "--store", store)["evaluated"] == 8
+
+
+def test_another_version_computes_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    study = written(tmp_path, GRID)
+    assert [told(study)["evaluated"], told(study)["evaluated"]] == [8, 0]
+    monkeypatch.setattr("cuefem.io.store.code", lambda: "another")
+    assert told(study)["evaluated"] == 8
+
+
+def test_scatter_is_kept_too(tmp_path: Path) -> None:
+    study = written(tmp_path, SCATTER)
+    first, again = told(study), told(study)
+    assert (first.pop("evaluated"), again.pop("evaluated")) == (256, 0)
+    assert first == again
+
+
+# --- damage ----------------------------------------------------------------------------------------------------------
+def test_any_flipped_byte_is_refused_in_one_line_or_does_no_harm(tmp_path: Path) -> None:
+    store, rng = tmp_path / "study.sqlite", random.Random(1)
+    table = swept(written(tmp_path, GRID), store)
+    data, flipped, lines = store.read_bytes(), tmp_path / "flipped.sqlite", list[str]()
+    for _ in range(120):
+        place, bit = rng.randrange(len(data)), rng.randrange(1, 256)
+        flipped.write_bytes(data[:place] + bytes([data[place] ^ bit]) + data[place + 1 :])
+        try:
+            assert rows_of(flipped) == table
+        except InputError as error:
+            lines.append(str(error))
+    assert len(lines) > 10
+    assert all(line.startswith(f"{flipped}: ") and len(line.splitlines()) == 1 for line in lines)
+
+
+# --- the table -------------------------------------------------------------------------------------------------------
+@pytest.mark.parametrize("text", [STUDY, STRUCK.replace("count = 150", "count = 40")], ids=["grid", "sample"])
+def test_csv_holds_every_design_to_the_last_bit(text: str, tmp_path: Path) -> None:
+    """Each evaluated alone gives the same; one that cannot be made says why, and only its responses are empty."""
+    study = written(tmp_path, text)
+    asked = load_study(study)
+    said("study", study, "-o", tmp_path / "out.csv")
+    with (tmp_path / "out.csv").open(newline="", encoding="utf-8") as file:
+        head, *lines = csv.reader(file)
+    units = zip(asked.columns, asked.units, strict=True)
+    assert head == ["design", *(f"{name} [{unit}]" if unit else name for name, unit in units), "failure"]
+    assert [int(line[0]) for line in lines] == list(range(asked.size))
+    for line, values in zip(lines, (values for block in asked.blocks() for values in block), strict=True):
+        inside, responses = line[1 : 1 + len(values)], line[1 + len(values) : -1]
+        assert inside == [value if isinstance(value, str) else repr(value) for value in values]
+        if values[0] >= 0.012:
+            assert line[-1].startswith("Segment.tip_bore must be in [0, 0.012) m, its outer diameter; got 0.01")
+            assert set(responses) == {""}
+        else:
+            (alone,) = evaluate([asked.scene(values)], asked.responses, at=asked.resolution).values
+            assert [float(x) for x in responses] == pytest.approx(alone, rel=1e-12)
+            assert line[-1] == ""
+
+
+def test_studies_in_one_store_are_read_by_their_names(tmp_path: Path) -> None:
+    store = tmp_path / "all.sqlite"
+    for name, text in (("grid", GRID), ("quick", STRUCK.replace("count = 150", "count = 16"))):
+        said("study", written(tmp_path, text, name=f"{name}.toml"), "--store", store)
+    assert [len(rows_of(store, name)) for name in (None, "grid")] == [16, 8]
+    with pytest.raises(InputError, match="must hold a study other; got quick, grid"):
+        rows_of(store, "other")
+
+
+REFUSED = [
+    ("PRAGMA application_id = 7", "must be a store of `cuefem study`; got another database"),
+    (
+        """UPDATE designs SET answer = replace(answer, '0.0', '0.1') WHERE design = 3""",
+        "is damaged: design 3 is not as",
+    ),
+    ("UPDATE designs SET answer = (SELECT answer FROM designs WHERE design = 2) WHERE design = 3", "design 3 is not"),
+]
+
+
+@pytest.mark.parametrize(("statement", "message"), REFUSED)
+def test_altered_store_is_refused_and_left_as_it_is(tmp_path: Path, statement: str, message: str) -> None:
+    study, store = written(tmp_path, GRID), tmp_path / "study.sqlite"
+    swept(study, store)
+    changed(store, statement)
+    untouched(tmp_path, message, "study", study)

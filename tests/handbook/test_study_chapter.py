@@ -1,0 +1,57 @@
+"""The chapter on studies: its examples are of the kinds that it says and run, and it has every key (regression)."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+import cuefem as cf
+from cuefem.handbook import chapters
+from cuefem.io import study_files
+from cuefem.io.study_files import load_study
+from cuefem.results.asking import asked
+
+(TEXT,) = (chapter.text for chapter in chapters() if chapter.name == "study")
+EXAMPLES = {
+    kind: re.findall(r"```toml\n(.*?)```", TEXT.partition(f"\n## {title}\n")[2].partition("\n## ")[0], re.DOTALL)
+    for kind, title in (("sweep", "A sweep"), ("scatter", "A scatter"), ("optimum", "An optimum"))
+}
+KINDS = {"sweep": "Study", "scatter": "Scatter", "optimum": "Problem"}
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    cf.save(cf.load(Path(__file__).parents[2] / "meshes" / "pool_hollow.toml"), tmp_path / "my_cue.toml")
+    for kind, (text, *_) in EXAMPLES.items():
+        (tmp_path / f"{kind}.toml").write_text(text, encoding="utf-8")
+    return tmp_path
+
+
+def test_examples_are_of_their_kinds(folder: Path) -> None:
+    for kind, name in KINDS.items():
+        assert type(load_study(folder / f"{kind}.toml")).__name__ == name
+    first, sample = EXAMPLES["sweep"]
+    drawn = first.replace("count = 6\n", "").replace("[[vary]]", f"{sample}\n[[vary]]", 1)
+    (folder / "drawn.toml").write_text(drawn, encoding="utf-8")
+    assert load_study(folder / "drawn.toml").size == 4096
+
+
+def test_every_key_and_response_is_there() -> None:
+    lists = [value for name, value in vars(study_files).items() if name.endswith("KEYS")]
+    keys = {f"`{key}`" for each in lists for key in each}
+    tables = {"`vary`", "`sample`", "`tolerances`", "`objective`", "`limit`", "`resolution`"}
+    assert sorted(key for key in keys - tables if key not in TEXT) == []
+    assert sorted(key for key in tables if f"[{key[1:-1]}]" not in TEXT) == []
+    assert [name for name in asked() if f"| `{name}" not in TEXT] == []
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("code", re.findall(r"```python\n(.*?)```", TEXT, re.DOTALL), ids=["front", "one call"])
+def test_python_examples_run(folder: Path, code: str, capsys: pytest.CaptureFixture[str]) -> None:
+    exec(compile(code.replace(", workers=2", ""), "example", "exec"), {"__name__": "example"})
+    out = capsys.readouterr().out
+    squirts = [float(line.split()[1]) for line in out.splitlines() if line[:1] in "34"]
+    assert squirts == sorted(squirts)
