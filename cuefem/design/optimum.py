@@ -120,39 +120,23 @@ class Problem:
         at = self.study.resolution
         return [replace(self, chosen=dict(zip(lists, v, strict=True)), at=at) for v in product(*lists.values())]
 
-    @property
-    def bounds(self) -> Array:
-        """Lowest and highest values, (2, variables)."""
-        return np.array([span.ends for span in self.spans.values()], float).reshape(-1, 2).T
-
     def points(self, parts: Array) -> Array:
         """Points from parts in [0, 1] of the ranges, (..., variables); logarithmic spacing goes in equal ratios."""
-        low, high = self.bounds
-        even = low + parts * (high - low)
-        return np.clip(np.where(self._log_ratio > 0, low * np.exp(parts * self._log_ratio), even), low, high)
+        return _each(Span.quantile, self.spans, parts)
 
     def parts(self, points: Array) -> Array:
         """The inverse of `points`."""
-        low, high = self.bounds
-        parts, even = (points - low) / (high - low), self._log_ratio == 0
-        parts[..., ~even] = np.log(points[..., ~even] / low[~even]) / self._log_ratio[~even]
-        return np.clip(parts, 0, 1)
-
-    @cached_property
-    def _log_ratio(self) -> Array:
-        """Logarithm of high over low of the ranges with logarithmic spacing, 0 of the others."""
-        return np.array([np.log(span.high / span.low) if span.logarithmic else 0.0 for span in self.spans.values()])
+        return _each(Span.share, self.spans, points)
 
     @property
     def start(self) -> Array:
         """The base design as a point, (variables,), moved into the ranges, or their middle if it has no value."""
-        low, high = self.bounds
-        own = [
-            1.0 if vary.factor else 0.0 if vary.shift else value_at(self.base, vary.fields(self.base)[0])
-            for vary in (self.vary[i] for i in self.spans)
-        ]
-        middle = (low + high) / 2
-        return np.clip([m if value is None else value for value, m in zip(own, middle, strict=True)], low, high)
+        point = list[float]()
+        for i, span in self.spans.items():
+            vary = self.vary[i]
+            own = 1.0 if vary.factor else 0.0 if vary.shift else value_at(self.base, vary.fields(self.base)[0])
+            point.append(span.quantile(0.5) if own is None else min(max(own, span.low), span.high))
+        return np.array(point)
 
     def design(self, point: Array) -> dict[int, Value]:
         """The values at a point, by the numbers of the variables."""
@@ -185,6 +169,14 @@ class Problem:
             for sign, bound in limit.sides
         ]
         return np.nan_to_num(np.reshape(rooms, (-1, len(values))).T, nan=-EXCLUDED)
+
+
+def _each(of: Callable[[Span, float], float], spans: Mapping[int, Span], values: Array) -> Array:
+    """A function of every range at its column of values (..., variables)."""
+    rows = values.reshape(-1, len(spans)).tolist()
+    return np.array([[of(span, x) for span, x in zip(spans.values(), row, strict=True)] for row in rows]).reshape(
+        values.shape
+    )
 
 
 def optimum(
@@ -384,13 +376,9 @@ class _Search:
         bounds = [(limit.response.name, *side) for limit in self.problem.limits for side in limit.sides]
         words = [f"{name} {'>=' if sign > 0 else '<='} {bound:g}" for name, sign, bound in bounds]
         rooms = list(zip(words, self.problem.room(self.at(u)[None])[0].tolist(), strict=True))
-        ends = self.problem.bounds.T
-        for i, p, (low, high) in zip(self.problem.spans, self.problem.points(u), ends, strict=True):
+        for (i, span), part in zip(self.problem.spans.items(), u.tolist(), strict=True):
             name = self.problem.vary[i].name
-            rooms += [
-                (f"{name} >= {low:g}", float((p - low) / (high - low))),
-                (f"{name} <= {high:g}", float((high - p) / (high - low))),
-            ]
+            rooms += [(f"{name} >= {span.low:g}", part), (f"{name} <= {span.high:g}", 1 - part)]
         return rooms
 
     def broken(self, u: Array) -> list[str]:

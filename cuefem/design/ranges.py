@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from statistics import NormalDist
-from typing import Any
 
 import numpy as np
 
@@ -79,6 +78,11 @@ class Span:
         if self.logarithmic:
             return math.exp((1 - u) * math.log(self.low) + u * math.log(self.high)) if u else self.low
         return (1 - u) * self.low + u * self.high
+
+    def share(self, value: float) -> float:
+        """The inverse of `quantile`, at most 1 and at least 0."""
+        low, high, at = (math.log(x) if self.logarithmic else x for x in (self.low, self.high, value))
+        return min(max((at - low) / (high - low), 0.0), 1.0)
 
     @property
     def ends(self) -> tuple[float, ...]:
@@ -153,7 +157,9 @@ class Sample:
 
     def blocks(self, dimensions: int, size: int) -> Iterator[Array]:
         """Points in [0, 1) of ``size`` designs at a time, each (size, dimensions)."""
-        engine = _engine(self.method, dimensions, self.seed)
+        from scipy.stats import qmc  # loaded when used: half a second
+
+        engine = getattr(qmc, METHODS[self.method])(dimensions, seed=np.random.default_rng(self.seed))
         if self.method == "latin hypercube":  # a part of one is not one
             points = engine.random(self.count)
             yield from (points[start : start + size] for start in range(0, self.count, size))
@@ -163,9 +169,3 @@ class Sample:
 
 
 METHODS = {"sobol": "Sobol", "halton": "Halton", "latin hypercube": "LatinHypercube"}
-
-
-def _engine(method: str, dimensions: int, seed: int) -> Any:
-    from scipy.stats import qmc  # loaded when used: half a second
-
-    return getattr(qmc, METHODS[method])(dimensions, seed=np.random.default_rng(seed))

@@ -1,4 +1,4 @@
-"""Where end mass lives: exact derivatives of an end mass to the section properties along the cue.
+"""Where end mass lives: exact derivatives of the stick end mass to the section properties along the cue.
 
 The end mass is a function of the kept modes' squares lambda_k = omega_k^2 and tip amplitudes phi_k. A change of
 stiffness and mass changes those by first-order perturbation over *all* modes of the mesh (kept, dropped and rigid j):
@@ -21,7 +21,7 @@ from cuefem.beam.basis import table
 from cuefem.beam.modes import solve
 from cuefem.beam.system import System, assemble, slopes
 from cuefem.cue import Array
-from cuefem.endmass.undamped import StickLimit, half_sine_response, smooth_start_swing
+from cuefem.endmass.undamped import StickLimit
 from cuefem.scene import Resolution, Scene
 from cuefem.tip_modes import PLAIN_PERIODS, default_resolution
 
@@ -34,8 +34,8 @@ class Sensitivity:
 
     x: Gauss points of the mesh, m from the tip, (points,). weights: their lengths, m. rhoA, rhoI, EI, kGA: densities of
     the derivatives per unit length, so that dm = integral of density times the change of the property; rhoA is a pure
-    number per unit: kg of end mass for a kg put there. ball_mass, axial_mass: derivatives to M and m_a (zero but for
-    "stick"), pure numbers. end_mass: kg.
+    number per unit: kg of end mass for a kg put there. ball_mass, axial_mass: derivatives to M and m_a, pure numbers.
+    end_mass: kg.
     """
 
     x: Array
@@ -57,19 +57,17 @@ class _Gradient:
     squares: Array
     amplitudes: Array
     rigid: float
-    ball_mass: float = 0.0
-    axial_mass: float = 0.0
+    ball_mass: float
+    axial_mass: float
 
 
-def sensitivity(scene: Scene, drive: str = "stick", at: Resolution | None = None) -> Sensitivity:
-    """Derivatives of a bare cue's end mass to the section properties along it.
+def sensitivity(scene: Scene, at: Resolution | None = None) -> Sensitivity:
+    """Derivatives of a bare cue's stick end mass to the section properties along it.
 
     Parameters
     ----------
     scene : Scene
         With a finite-element cue and without effects.
-    drive : str
-        The definition of the end mass: "stick", "velocity" or "force".
     at : Resolution, optional
         The default is that of `end_mass` without a tail.
 
@@ -81,16 +79,14 @@ def sensitivity(scene: Scene, drive: str = "stick", at: Resolution | None = None
     Raises
     ------
     ValueError
-        If the cue is lumped, the drive is another one, or the scene has effects.
+        If the cue is lumped or the scene has effects.
 
     Notes
     -----
-    The formulas stand at the top of `cuefem.design.sensitivity`. The densities times their properties integrate to m_e,
-    for "stick" to m_e - M dm/dM - m_a dm/dm_a: m_e scales with all masses and stiffnesses together. The cost is one
-    dense eigenproblem for all modes of the mesh.
+    The formulas stand at the top of `cuefem.design.sensitivity`. The densities times their properties integrate to
+    m_e - M dm/dM - m_a dm/dm_a: m_e scales with all masses and stiffnesses together. The cost is one dense eigenproblem
+    for all modes of the mesh.
     """
-    if drive not in _GRADIENTS:
-        raise ValueError(f"sensitivity drive must be one of {', '.join(_GRADIENTS)}; got {drive!r}")
     if scene.effects:
         raise ValueError(f"sensitivity takes a scene without effects; got {len(scene.effects)}")
     at = at or default_resolution(scene, periods=PLAIN_PERIODS)
@@ -98,7 +94,7 @@ def sensitivity(scene: Scene, drive: str = "stick", at: Resolution | None = None
     bending = solve(system, system.mesh.unknowns - system.rigid.shape[1])
     count, squares, phi = at.modes, bending.omega**2, bending.vectors[0]
     still = bending.rigid_vectors[0]
-    gradient = _GRADIENTS[drive](squares[:count], phi[:count], float(still @ still), scene)
+    gradient = _stick(squares[:count], phi[:count], float(still @ still), scene)
     stiff, heavy = _forms(gradient, squares, phi, still)
     return _densities(system, np.concatenate([bending.rigid_vectors, bending.vectors], axis=1), stiff, heavy, gradient)
 
@@ -144,32 +140,28 @@ def _densities(system: System, vectors: Array, stiff: Array, heavy: Array, gradi
     )
 
 
-def _force(squares: Array, phi: Array, rigid: float, scene: Scene) -> _Gradient:
-    T = scene.contact_time
-    impulse = 2 * T / np.pi
-
-    def response(square: Any) -> Any:
-        return half_sine_response(np.sqrt(square), T)
-
-    speed = float(phi**2 @ response(squares)) + rigid * impulse
-    slope = -impulse / speed**2
-    amplitudes = slope * 2 * phi * response(squares)
-    return _Gradient(impulse / speed, slope * phi**2 * _derivative(response, squares), amplitudes, slope * impulse)
-
-
-def _velocity(squares: Array, phi: Array, rigid: float, scene: Scene) -> _Gradient:
-    T = scene.contact_time
-    tip = _Held(squares, phi, rigid)
-    value, to_squares, to_amplitudes, to_still, _ = tip.impulse(lambda s: smooth_start_swing(np.sqrt(s), T), 1.0)
-    return _Gradient(value, to_squares, to_amplitudes, to_still)
-
-
 def _stick(squares: Array, phi: Array, rigid: float, scene: Scene) -> _Gradient:
+    """Derivatives of the stick end mass, a function of J = (K - 1)/total + v' R(S) v/total^2 and of K and c.
+
+    The tip is held by the inertia 1/still, still = rigid + c: S = diag(lambda) - v v'/total, v = phi omega, total =
+    sum phi^2 + still, R(mu) = swing(mu)/sqrt(mu); see `cuefem.endmass.undamped`.
+    """
     limit = StickLimit.of(scene)
-    tip = _Held(squares, phi, rigid + limit.c)
-    J, to_squares, to_amplitudes, to_still, to_K = tip.impulse(
-        lambda s: limit.swing(np.sqrt(s)), limit.K - 1, lambda s: limit.swing_per_K(np.sqrt(s))
-    )
+    omega, total = np.sqrt(squares), float(phi @ phi) + rigid + limit.c
+    v = phi * omega
+    poles, Y = np.linalg.eigh(np.diag(squares) - np.outer(v, v) / total)
+
+    def R(mu: Any) -> Any:
+        return limit.swing(np.sqrt(mu)) / np.sqrt(mu)
+
+    a = Y.T @ v
+    pulled = Y @ (R(poles) * a)
+    P = Y @ (np.outer(a, a) * _divided_differences(R, poles)) @ Y.T / total**2
+    energy, factor = float(v @ pulled), limit.K - 1
+    J = factor / total + energy / total**2
+    to_v = 2 * pulled / total**2 - 2 * P @ v / total
+    to_total = -factor / total**2 + float(v @ P @ v) / total**2 - 2 * energy / total**3
+    to_K = 1 / total + float(a**2 @ (limit.swing_per_K(np.sqrt(poles)) / np.sqrt(poles))) / total**2
     m = float(limit.end_mass(J))
     scale = m**2 * (limit.K - 1) / J**2  # dm/dJ at fixed c and K
     c, K, M, m_a = limit.c, limit.K, scene.ball.mass, scene.axial_mass
@@ -177,56 +169,15 @@ def _stick(squares: Array, phi: Array, rigid: float, scene: Scene) -> _Gradient:
     dc_dM, head_on = -c / M, limit.head_on_mass
     dK_dM = (1 + limit.e) * head_on * dc_dM + K * head_on / M**2
     dK_dma = (-(1 + limit.e) * head_on + K * head_on) / m_a**2
-    per_c, per_K = scale * to_still + m**2, scale * to_K - m**2 / J
+    per_c, per_K = scale * to_total + m**2, scale * to_K - m**2 / J
     return _Gradient(
         m,
-        scale * to_squares,
-        scale * to_amplitudes,
-        scale * to_still,
+        scale * (np.diag(P) + to_v * phi / (2 * omega)),
+        scale * (to_v * omega + to_total * 2 * phi),
+        scale * to_total,
         ball_mass=float(per_c * dc_dM + per_K * dK_dM),
         axial_mass=float(per_K * dK_dma),
     )
-
-
-_GRADIENTS: dict[str, Callable[[Array, Array, float, Scene], _Gradient]] = {
-    "stick": _stick,
-    "velocity": _velocity,
-    "force": _force,
-}
-
-
-@dataclass(frozen=True)
-class _Held:
-    """The cue with its tip held by the inertia 1/still: J = factor/total + v' R(S) v/total^2 and its derivatives.
-
-    S = diag(lambda) - v v'/total, v = phi omega, total = sum phi^2 + still; see `cuefem.endmass.undamped`.
-    """
-
-    squares: Array
-    phi: Array
-    still: float
-
-    def impulse(self, swing: Response, factor: float, per_factor: Response | None = None) -> tuple[Any, ...]:
-        """(J, dJ/dlambda, dJ/dphi, dJ/dstill, dJ/dfactor) for the response R(mu) = swing(mu)/sqrt(mu)."""
-        omega, total = np.sqrt(self.squares), float(self.phi @ self.phi) + self.still
-        v = self.phi * omega
-        poles, Y = np.linalg.eigh(np.diag(self.squares) - np.outer(v, v) / total)
-
-        def R(mu: Any) -> Any:
-            return swing(mu) / np.sqrt(mu)
-
-        a = Y.T @ v
-        pulled = Y @ (R(poles) * a)
-        P = Y @ (np.outer(a, a) * _divided_differences(R, poles)) @ Y.T / total**2
-        energy = float(v @ pulled)
-        to_v = 2 * pulled / total**2 - 2 * P @ v / total
-        to_total = -factor / total**2 + float(v @ P @ v) / total**2 - 2 * energy / total**3
-        to_squares = np.diag(P) + to_v * self.phi / (2 * omega)
-        to_phi = to_v * omega + to_total * 2 * self.phi
-        to_factor = 1 / total
-        if per_factor is not None:
-            to_factor += float(a**2 @ (per_factor(poles) / np.sqrt(poles))) / total**2
-        return factor / total + energy / total**2, to_squares, to_phi, to_total, to_factor
 
 
 def _derivative(function: Response, at: Array) -> Array:

@@ -183,43 +183,26 @@ def in_parallel(work: Callable[[T], R], tasks: Iterable[T], pool: Pool | None) -
 
 
 def processes(number: int) -> Pool:
-    """That many worker processes of this machine. They end when the process that opened them does, killed or not."""
+    """That many worker processes of this machine. They end when the process that opened them does, killed or not.
 
-    return Pool(lambda: _Processes(number), 2 * number + 1)
+    They are spawned, since a fork would copy locks that threads of this process hold.
+    """
 
-
-class _Processes(ProcessPoolExecutor):
-    """Worker processes; spawned, since a fork would copy locks that threads of this process hold."""
-
-    def __init__(self, number: int) -> None:
-        super().__init__(number, mp_context=get_context("spawn"), initializer=_follow)
+    @contextmanager
+    def opened() -> Iterator[Executor]:
+        executor = ProcessPoolExecutor(number, mp_context=get_context("spawn"), initializer=_follow)
         resource_tracker.ensure_running()  # whoever starts it lets Ctrl-C through again: not in the midst of `submit`
+        try:
+            yield executor
+        finally:
+            # the pool's own thread cancels: a future cancelled here while a worker dies would break that thread
+            executor.shutdown(wait=True, cancel_futures=True)
 
-    def submit(self, fn: Callable[P, R], /, *args: P.args, **kwargs: P.kwargs) -> Future[R]:
-        """As its parent does; a process that this starts hears Ctrl-C in `_follow` first, and ends without a word."""
-        with _interrupts_wait():
-            return super().submit(fn, *args, **kwargs)
-
-    def __exit__(self, *error: object) -> None:
-        # the pool's own thread cancels: a future cancelled here while a worker dies would break that thread
-        self.shutdown(wait=True, cancel_futures=True)
-
-
-@contextmanager
-def _interrupts_wait() -> Iterator[None]:
-    """Ctrl-C waits until this is left; processes begun meanwhile are deaf to it. Windows has no such mask."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    return Pool(opened, 2 * number + 1)
 
 
 def _follow() -> None:
-    """End this worker when its parent has, and at once on Ctrl-C: a killed parent cannot tell it to."""
+    """End this worker when its parent has, killed or by Ctrl-C, and not by itself."""
     parent = parent_process()
     assert parent is not None
 
@@ -227,9 +210,7 @@ def _follow() -> None:
         parent.join()
         os._exit(1)
 
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-    if hasattr(signal, "pthread_sigmask"):
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=until_it_ends, daemon=True).start()
 
 

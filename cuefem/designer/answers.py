@@ -198,7 +198,7 @@ def density(scene: Scene) -> Density:
     at = default_resolution(bare)
     if at.modes > MOST_DENSITY_MODES:
         at = Resolution(*mesh_for(bare.shaft, MOST_DENSITY_MODES), MOST_DENSITY_MODES)
-    effect = sensitivity(bare, "stick", at)
+    effect = sensitivity(bare, at)
     section = bare.shaft.section(effect.x)
     return Density(
         x=effect.x,

@@ -13,13 +13,14 @@ import time
 from pathlib import Path
 from typing import Any
 
+import psutil
 import pytest
 
 from cuefem.design import evaluate
 from cuefem.io import InputError
 from cuefem.io.study_files import load_study
 from tests.helpers.command_line import said
-from tests.helpers.refusals import untouched
+from tests.helpers.refusals import command_refuses, untouched
 from tests.helpers.sweeps import SCATTER, SCENE, STRUCK, STUDY, changed, rows_of, swept, written
 
 ROOT = str(Path(__file__).parents[2])
@@ -115,6 +116,31 @@ def test_interrupt_prints_one_line_and_the_same_command_goes_on(tmp_path: Path, 
     kept = f"{count} of 3000 designs are kept in {store}"
     assert err.decode() == f"cuefem: interrupted; {kept}: the same command goes on\n"
     assert 100 <= count < 3000
+
+
+@pytest.mark.heavy
+def test_cluster_of_two_workers_gives_the_same_table(tmp_path: Path) -> None:
+    """By the command on a Dask cluster; without its scheduler it ends in one line."""
+    LocalCluster = pytest.importorskip("distributed").LocalCluster
+    study = written(tmp_path, STRUCK)
+    alone = swept(study, tmp_path / "alone.sqlite")
+    asked = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": ":0", "local_directory": str(tmp_path)}
+    with LocalCluster(**asked) as cluster:
+        run = started(study, "--dask", cluster.scheduler_address)
+        assert (run.communicate()[1], run.returncode) == (b"", 0)
+    assert rows_of(tmp_path / "study.sqlite") == alone
+    command_refuses("no Dask scheduler answers at 'tcp://127.0.0.1:9'", "study", study, "--dask", "tcp://127.0.0.1:9")
+
+
+@pytest.mark.heavy
+def test_killed_worker_is_replaced(tmp_path: Path) -> None:
+    study = written(tmp_path, STRUCK)
+    run = started(study, "--workers", "2")
+    waited_for(tmp_path / "study.sqlite", run, 32)
+    workers = [p for p in psutil.Process(run.pid).children(recursive=True) if "spawn_main" in " ".join(p.cmdline())]
+    workers[0].kill()
+    assert (run.communicate()[1], run.returncode) == (b"", 0)
+    assert rows_of(tmp_path / "study.sqlite") == swept(study, tmp_path / "alone.sqlite")
 
 
 EDITS = [  # what the study becomes, its designs, and how many of them were not there

@@ -1,4 +1,4 @@
-"""`cuefem sweep` as a process of its own, which tests kill; no tests. The guard is for the workers it spawns."""
+"""`cuefem study` as a process of its own, which tests kill; no tests. The guard is for the workers it spawns."""
 
 from cuefem.cli import main
 

@@ -1,0 +1,80 @@
+"""Paths of a scene: what they find, set and refuse (properties)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from cuefem import Scene, Stroke, Tip
+from cuefem.vary import paths, replaced, spelt, value_at
+from tests.helpers.cues import MAPLE, low_deflection
+
+BASE = Scene(low_deflection(), tip=Tip(contact_time=1.2e-3), stroke=Stroke(2.0, 0.3))
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        ("cue.segments[2].tip_bore", 0.008),
+        ("cue.segments[4].material.E", MAPLE.E),
+        ("cue.body_mass", 0.43),
+        ("tip.contact_time", 1.2e-3),
+        ("stroke.offset", 0.3),
+        ("cue.segments[0].kappa", None),
+    ],
+)
+def test_a_path_finds_its_field(path: str, value: float) -> None:
+    (found,) = paths(BASE, path)
+    assert value_at(BASE, found) == value
+    assert spelt(found) == path
+
+
+def test_a_star_is_every_item() -> None:
+    assert [spelt(path) for path in paths(BASE, "cue.segments[*].length")] == [
+        f"cue.segments[{i}].length" for i in range(5)
+    ]
+
+
+@pytest.mark.parametrize(
+    ("path", "words"),
+    [
+        ("cue.segments[2].tip_boar", "got 'cue.segments[2].tip_boar'; did you mean tip_bore"),
+        ("kue.segments[0].length", "did you mean cue"),
+        ("cue.segments[5].length", "where cue.segments has 5 items"),
+        ("cue.segments.length", "where cue.segments has no fields"),
+        ("cue[0]", "where cue is no list"),
+        ("cue.segments[0].core.E", "where cue.segments[0].core is empty"),
+        ("cue.segments[0]", "must name one number or a material"),
+        ("ball", "which holds mass, radius, inertia"),
+        ("effects[*].mass", "of an empty list"),
+        ("effects[0].mass", "where effects has 0 items"),
+        ("cue..length", "must be a path such as cue.segments[0].tip_bore"),
+        ("", "must be a path"),
+        ("cue.zzz", "where cue has segments, body_mass"),
+    ],
+)
+def test_a_path_that_names_no_field_is_refused(path: str, words: str) -> None:
+    with pytest.raises(ValueError, match="must") as error:
+        paths(BASE, path)
+    assert words in str(error.value)
+
+
+def test_values_are_replaced_all_at_once() -> None:
+    """A bore may be wider than the shaft was, where the shaft grows with it; nothing else changes."""
+    (bore,), (outer,) = paths(BASE, "cue.segments[2].tip_bore"), paths(BASE, "cue.segments[2].tip_diameter")
+    found = replaced(BASE, {bore: 0.0126, outer: 0.014})
+    assert found.cue.segments[2] == replace(BASE.cue.segments[2], tip_bore=0.0126, tip_diameter=0.014)
+    assert replaced(found, {bore: 0.008, outer: 0.0125}) == BASE
+
+
+def test_what_is_replaced_is_checked() -> None:
+    (bore,) = paths(BASE, "cue.segments[2].tip_bore")
+    with pytest.raises(ValueError, match=r"Segment.tip_bore must be in \[0, 0.0125\) m, its outer diameter; got 0.02"):
+        replaced(BASE, {bore: 0.02})
+
+
+def test_a_contact_time_takes_a_stiffness_out() -> None:
+    hard = replace(BASE, tip=Tip(stiffness=1e6))
+    (time,) = paths(hard, "tip.contact_time")
+    assert replaced(hard, {time: 2e-3}).tip == Tip(contact_time=2e-3)
