@@ -10,6 +10,7 @@ from os import PathLike
 from pathlib import Path
 
 from cuefem.quantity.fields import nearest, shown
+from cuefem.quantity.messages import brief, printable
 
 _KINDS = {
     stat.S_IFDIR: "a folder",
@@ -33,9 +34,8 @@ class InputError(ValueError):
     """
 
     def __init__(self, file: str | PathLike[str], key: str, problem: str) -> None:
-        self.file, self.key, self.problem = str(file), key, problem
-        parts = [part for part in (self.file, key, problem) if part]
-        super().__init__(" ".join(": ".join(parts).split()))
+        self.file, self.key, self.problem = str(file), brief(key), brief(problem)
+        super().__init__(": ".join(part for part in (printable(self.file), self.key, self.problem) if part))
 
 
 @contextmanager

@@ -68,7 +68,7 @@ COMMANDS = [
     ("strike spring.toml --dome dime", "--dome: must be left out: the scene has no LeatherTip among its effects"),
     ("strike lumped.toml --leather soft", "--leather: must be left out: the scene has no LeatherTip"),
     ("strike shaft.toml --dome penny", 'such as "12 mm", or "dime", "nickel", "flat"; got \'penny\''),
-    ("strike shaft.toml --leather sofd", "\"le professional\"; got 'sofd'"),
+    ("strike shaft.toml --leather sofd", "\"kamui hard\", ...; got 'sofd'"),
     ("strike shaft.toml --restitution 0.05", "Tip.restitution must be in [0.1, 1] beside LeatherTip; got 0.05: leathe"),
     ("modes shaft.toml --tip-height 40mm", "got 40 mm (--tip-height, --dome change it)"),
     ("strike leather.toml --tip-height 40mm", " mm high; got 40 mm"),
@@ -140,6 +140,28 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_commands(folder: Path, monkeypatch: pytest.MonkeyPatch, command: str, message: str) -> None:
     monkeypatch.chdir(folder)
     untouched(folder, message, *shlex.split(command))
+
+
+@pytest.mark.parametrize(
+    ("file", "options"),
+    [
+        ("LONG = 1", []),
+        ('cue = "x.toml"\n"\\u001b[31mLONG" = 1', []),
+        ('[[segments]]\nlength = "DIGITS mm"', []),
+        ('[[segments]]\nmaterial = "\\u001b[31m LONG"', []),
+        (GOOD, ["--material", "\x1b[31mLONG"]),
+        (GOOD, ["--leather", "\x1b[31m LONG"]),
+        (GOOD, ["--game", "\x1b[31mLONG"]),
+        (GOOD, ["--near\x1b[31mLONG"]),
+    ],
+)
+def test_what_is_echoed_is_short_and_printable(file: str, options: list[str], tmp_path: Path) -> None:
+    path = tmp_path / "x.toml"
+    path.write_text(file.replace("LONG", "y" * 3000).replace("DIGITS", "9" * 150), encoding="utf-8")
+    status, out, err = call("modes", path, *(option.replace("LONG", "y" * 3000) for option in options))
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert err.removesuffix("\n").isprintable()
+    assert len(err.replace(str(path), "")) < 420
 
 
 def test_output_that_cannot_be_written() -> None:
