@@ -33,15 +33,6 @@ def struck(scene: cf.Scene, at: cf.Resolution | None = None, **changes: Any) -> 
     return lambda: cf.strike(replace(scene, **changes), at)
 
 
-ARRAYS: dict[str, dict[str, Any]] = {
-    "Stroke.offset": {"stroke": cf.Stroke(offset=TWO / 10)},
-    "Stroke.speed": {"stroke": cf.Stroke(speed=TWO)},
-    "Ball.mass": {"ball": cf.Ball(mass=TWO / 10)},
-    "Ball.inertia": {"ball": cf.Ball(inertia=TWO / 4)},
-    "Ball.radius": {"ball": cf.Ball(radius=TWO / 50)},
-    "Tip.friction": {"tip": cf.Tip(friction=TWO / 4)},
-    "Tip.restitution": {"tip": cf.Tip(TWO / 4)},
-}
 CALLS: list[tuple[Callable[[], object], str]] = [
     (lambda: cf.LumpedCue(0.25, 0.25, 4.0), "LumpedCue.coupling must be in (-4.0, 4.0) 1/kg; got 4.0"),
     (
@@ -53,12 +44,7 @@ CALLS: list[tuple[Callable[[], object], str]] = [
         "array fields of a scene must broadcast together; got shapes LumpedCue.end_mass (3,), Tip.friction (2, 1), "
         "Stroke.offset (4,)",
     ),
-    (
-        lambda: cf.impulse(cf.Scene(cf.LumpedCue(np.ones(2), np.ones(3)))),
-        "got shapes LumpedCue.mass (2,), LumpedCue.end_mass (3,)",
-    ),
     (lambda: cf.impulse(cf.Scene(KIM, cf.Ball(mass=TWO / 10))), "must be one number; got an array of shape (2,)"),
-    (lambda: cf.impulse(cf.Scene(KIM, tip=cf.Tip(TWO / 4))), "Tip.restitution must be one number"),
     (lambda: cf.Scene("cue"), "TypeError: Scene.cue must be a Cue or LumpedCue; got 'cue'"),
     (lambda: cf.Scene(cf.LumpedCue(0.5, 0.003), tip=0.7), "TypeError: Scene.tip must be a Tip"),
     (
@@ -66,22 +52,17 @@ CALLS: list[tuple[Callable[[], object], str]] = [
         "impulse takes a LumpedCue without effects",
     ),
     # strikes
-    *[(struck(kim_scene(), **part), field) for field, part in ARRAYS.items()],
+    (struck(kim_scene(), stroke=cf.Stroke(offset=TWO / 10)), "Stroke.offset must be one number"),
+    (struck(kim_scene(), ball=cf.Ball(mass=TWO / 10)), "Ball.mass must be one number"),
     (struck(cf.Scene(cf.LumpedCue(TWO / 4, 0.003))), "LumpedCue.mass"),
     (struck(cf.Scene(cf.LumpedCue(0.5, TWO / 300))), "LumpedCue.end_mass"),
     (struck(leather_scene(speed=TWO)), "Stroke.speed must be one number; got an array of shape (2,)"),
-    (struck(leather_scene(e=TWO / 4)), "Tip.restitution must be one number; got an array of shape (2,)"),
     (struck(leather_scene(e=0.05)), "LeatherTip; got 0.05: leather that gives back less rings on"),
     (struck(leather_scene(speed=60.0)), "mm): give LeatherTip a larger height or E, or Stroke a lower speed"),
     (struck(kim_scene(restitution=9e-5)), NEARLY_DEAD + "9e-05: such"),
-    (struck(kim_scene(restitution=9e-5), effects=(cf.SecondHit(),)), "Tip.restitution in [0.0001, 1]; got 9e-05"),
-    (struck(kim_scene(restitution=0.0), effects=(cf.Elevation(0.1),)), "a Tip.restitution in (0, 1]; got 0.0"),
     (lambda: cf.Resolution(4, 8, 0), "Resolution.modes"),
     (struck(kim_scene(), cf.Resolution(2, 3, 500)), "more elements or order"),
-    *[
-        (lambda t=time: cf.strike(kim_scene(), cf.Resolution(2, 8, 4)).history(t), "History takes times in [0, ")
-        for time in (-1e-9, 1.0, nan)
-    ],
+    (lambda: cf.strike(kim_scene(), cf.Resolution(2, 8, 4)).history(-1e-9), "History takes times in [0, "),
     # many strikes
     (
         lambda: cf.batch_strike(kim_scene()),
@@ -111,10 +92,8 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (placed(direction=(0, 1)), "direction must have 3 components on its last axis"),
     (placed((1.0, 2.0, 3.0)), "point must have 2 components on its last axis"),
     (placed((0.0, 0.0)), "point must be on the side of the ball that the direction meets, less than 90 degrees"),
-    (placed((0.0, 0.2 * R), (0, 0.1, -1.0)), "point must be on the side"),
     (placed((0.31 * R, R)), "0.31 or -0.31; got one at 0.3"),
     (placed([GOOD, (0.2 * R, R)]), "got one at 0.3 at index 1"),
-    (placed(ball=cf.Ball()), "got one at 0.3"),
     (lambda: offset_of_axis([0.01, 0.04], 0.0095, ball=BALL), "got 0.04 at index 1"),
     (lambda: offset_of_axis(nan, 0.0095), "axis_distance must be in "),
     (lambda: offset_of_axis(0.01, -1.0), "dome_radius must be in [0, inf) m; got -1"),
