@@ -21,12 +21,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 ROOT = Path(__file__).parents[1]
-FACES = ("cli", "design", "designer", "handbook", "io", "measured", "report")
+FACES = ("cli", "design", "designer", "handbook", "io", "measurements", "report")
 # room -> folders of tests that see it, soonest first; what is not named: its own
 CONCERNED = {
     "": ("contact", "endmass", "effects", "results", "report", "io", "cli"),
     "beam": ("beam", "endmass", "contact", "effects"),
-    "contact": ("contact", "effects", "endmass", "side"),
+    "contact": ("contact", "effects", "endmass"),
     "effects": ("effects", "contact", "solid"),
     "endmass": ("endmass", "contact", "results"),
     "quantity": ("io", "cli", "report", "design"),
@@ -36,7 +36,7 @@ CONCERNED = {
     "handbook": ("handbook", "cli"),
     "io": ("io", "cli", "effects", "report", "design"),
     "report": ("report", "results", "cli", "handbook", "design"),
-    "measured": ("measured", "side", "cli"),
+    "measurements": ("measurements", "cli"),
     "design": ("design", "cli", "report"),
     "designer": ("designer", "results", "report"),
 }
