@@ -57,12 +57,12 @@ def test_a_dome_by_a_coin_a_length_or_flat(file: Path, text: str, radius: float)
 @pytest.mark.parametrize(
     ("entries", "message"),
     [
-        ({"leather": None}, f"effects[0].leather: must be one of {NAMES}, or E be given in its place; got"),
+        ({"leather": None}, "effects[0].leather: must be one of soft, medium, hard, kamui soft"),
         (
             {"leather": "'sofd'"},
-            f"leather: must be one of {NAMES}; got 'sofd'; did you mean 'soft'?",
+            "got 'sofd'; did you mean 'soft'?",
         ),
-        ({"leather": "3"}, f"effects[0].leather: must be one of {NAMES}; got 3"),
+        ({"leather": "3"}, "effects[0].leather: must be one of soft, medium, hard, kamui soft"),
         ({"E": "'1 MPa'"}, "effects[0].E: must be left out beside leather, which gives it"),
         ({"nu": "0.3"}, "effects[0].nu: must be left out beside leather, which gives it"),
         ({"leather": None, "lether": "'soft'"}, "got lether = 'soft'; did you mean 'leather'?"),
