@@ -17,6 +17,7 @@ from .contact.side_strike import (
 from .contact.strike import batch_strike as batch_strike, strike as strike
 from .cue import Cue as Cue, LumpedCue as LumpedCue, Material as Material, Segment as Segment
 from .design.batch import CueBatch as CueBatch, batch_stick as batch_stick
+from .design.design_changes import design_changes as design_changes
 from .effects import (
     AxialWaves as AxialWaves,
     Effect as Effect,
@@ -41,6 +42,7 @@ from .games import usual_scene as usual_scene
 from .io import load as load, save as save
 from .io.paraview import save_motion as save_motion
 from .io.study_files import study as study
+from .report.verdict_table import verdict as verdict
 from .quantity.slips import Unusual as Unusual
 from .solid.resolution import Solid as Solid
 from .solid.shaft import SolidModes as SolidModes, solid_modes as solid_modes

@@ -15,7 +15,7 @@ from cuefem.cli.common import blaming, check_free, file_options, force_option, s
 from cuefem.cli.printing import Command, command, output_option, page_option, print_all
 from cuefem.cli.progress import followed
 from cuefem.cli.strokes import blow_options, tip_options
-from cuefem.design.advice import advice_record
+from cuefem.design.design_changes import design_changes
 from cuefem.endmass.drives import DEFINITIONS
 from cuefem.io import InputError, load_accuracy, save, save_page
 from cuefem.quantity.fields import Quantity
@@ -116,14 +116,14 @@ def improve(file: Path, take: int | None, output: Path | None, force: bool, **op
         show(
             file,
             {**options, "output": output},
-            lambda scene: advice_record(scene, follow=followed),
+            lambda scene: design_changes(scene, follow=followed),
             lambda record, about: [advice_sheet(record)],
         )
         return
     check_free(output, force=force)
     scene, _ = scene_of(file, options)
     with blaming(file, options):
-        rows = advice_record(scene, follow=followed)["changes"]
+        rows = design_changes(scene, follow=followed)["changes"]
     if take > len(rows):
         raise InputError(file, "--take", f"must be a row of the table, 1 to {len(rows)}; got {take}")
     row = rows[take - 1]

@@ -8,7 +8,7 @@ from html import escape
 
 from nicegui import ui
 
-from cuefem.design.advice import advice_record
+from cuefem.design.design_changes import design_changes
 from cuefem.designer.computing import FAILURES, computed
 from cuefem.designer.controls import Beside, button
 from cuefem.designer.markup import Markup
@@ -49,7 +49,7 @@ class AdviceSide:
         self.ask.disable()
         self.said.set_content("<p>Computing …</p>")
         try:
-            record = await computed(advice_record, scene)
+            record = await computed(design_changes, scene)
         except FAILURES as error:
             self.beside.say(" ".join(str(error).split()))
             return

@@ -16,7 +16,7 @@ from cuefem.beam.modes import modes
 from cuefem.beam.tip import TipModes
 from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
-from cuefem.design.advice import advice_record
+from cuefem.design.design_changes import design_changes
 from cuefem.endmass.drives import DEFINITIONS
 from cuefem.io.ready import ready_cues
 from cuefem.materials import material_name
@@ -160,7 +160,7 @@ def _stages(scene: Scene, rtol: float) -> list[Stage]:
         *([Stage("steps", climbed)] if scene.lumped is None else []),
         Stage("outcome", outcome),
         Stage("verdict", lambda: verdict_record(scene, outcome(), ready_cues(), solved=usual())),
-        *([Stage("advice", lambda: advice_record(scene, solved=usual()))] if scene.lumped is None else []),
+        *([Stage("advice", lambda: design_changes(scene, solved=usual()))] if scene.lumped is None else []),
         Stage("end_masses", lambda: end_mass_record(scene, solved=solved())),
         Stage("squirt", lambda: squirt_record(scene, PAGE_OFFSETS, solved=solved())),
         Stage("strike", lambda: strike_record(scene, outcome(), solved=solved())),

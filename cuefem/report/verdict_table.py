@@ -5,12 +5,50 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from cuefem.contact.strike import strike_modes
+from cuefem.io.ready import ready_cues
 from cuefem.report.scene_words import listed
 from cuefem.results.band import OF_DIFFERENCE
 from cuefem.results.quantities import scaled, with_unit
 from cuefem.results.records import Record, Sheet
+from cuefem.results.verdict import verdict_record
+from cuefem.scene import Scene
+from cuefem.tip_modes import Solved
 
 SAME = 0.005  # differences below this are told as "as much"
+
+
+def verdict(scene: Scene) -> Record:
+    """Squirt of a stroke with its uncertainty, beside the reference cues struck the same way.
+
+    Parameters
+    ----------
+    scene : Scene
+        A stroke with a cue of segments or a lumped cue. A central stroke is taken at the game's usual offset.
+
+    Returns
+    -------
+    dict
+        "squirt", rad, and "squirt_error", its uncertainty (1 sigma); "offset", b/R; "band", the relative parts of the
+        uncertainty (model, inputs, computation, and the whole in quadrature); "inputs", what each uncertain parameter
+        adds; "among", for each reference cue its squirt, the relative "difference" of the scene's and its error.
+
+    Raises
+    ------
+    ValueError
+        If the stroke is beyond a law's range, such as a leather tip that is pressed too far.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> scene = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.01275, 0.021, wood),), body_mass=0.43))
+    >>> found = cf.verdict(scene)
+    >>> 0.1 < found["squirt_error"] / found["squirt"] < 0.3, "plain maple" in found["among"]
+    (True, True)
+    """
+    solved = Solved(scene)
+    return verdict_record(scene, strike_modes(scene, solved.tip), ready_cues(), solved=solved)
 
 
 def squirt_words(record: Record) -> tuple[str, str]:

@@ -40,7 +40,7 @@ class Advice(NamedTuple):
 
 
 def changes_of(scene: Scene) -> list[Advice]:
-    """The changes to try on this cue; `advice_record` drops those that its shape does not allow."""
+    """The changes to try on this cue; `design_changes` drops those that its shape does not allow."""
     own = {key: known.value(scene) for key, known in PLACES.items()}
     return [
         *_bores(own),
@@ -124,12 +124,38 @@ def _from_to(old: float, new: float) -> str:
     return f"{scaled(old, 'm'):.4g} → {with_unit(new, 'm')}"
 
 
-def advice_record(scene: Scene, *, solved: Solved | None = None, follow: Follow = list) -> Record:
-    """The cue's own numbers, and those of each change alone: the least squirt first.
+def design_changes(scene: Scene, *, solved: Solved | None = None, follow: Follow = list) -> Record:
+    """What a maker can change on a cue, and what each change alone does to it.
 
-    "set": what the change sets, by its places; changes of squirt and stiffness are relative, others SI;
-    "verdict": whether it pays. A stroke head on is taken at the usual offset. solved: the scene's modes, if they are
-    known. follow: shows how far the work is.
+    Parameters
+    ----------
+    scene : Scene
+        A stroke with a cue of segments, such as `usual_scene` makes of a drawing. A central stroke is taken at the
+        game's usual offset.
+    solved, follow : optional
+        The scene's modes, if they are known, and what shows the progress of the work.
+
+    Returns
+    -------
+    dict
+        "offset", b/R; "own", the cue's squirt (rad), tip stiffness (N/m), shaft mass (kg) and first natural frequency
+        (Hz); "changes", a list of dicts with the least squirt first: "change" in words, "set" for `cuefem.vary.varied`,
+        the four numbers, relative changes of squirt (with "squirt_change_error", 1 sigma) and stiffness, absolute
+        ones of mass and frequency, and a "verdict".
+
+    Raises
+    ------
+    ValueError
+        If the cue is lumped, and so has no shape to change.
+
+    Examples
+    --------
+    >>> import cuefem as cf
+    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+    >>> scene = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.01275, 0.021, wood),), body_mass=0.43))
+    >>> rows = cf.design_changes(scene)["changes"]
+    >>> rows[0]["squirt_change"] < rows[-1]["squirt_change"]
+    True
     """
     struck = off_centre(scene)
     own = _numbers(Solved(struck) if solved is None or struck is not scene else solved)

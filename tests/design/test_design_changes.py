@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.design.advice import COSTS, LEAST_WALL, PAYS, advice_record, changes_of
+from cuefem.design.design_changes import COSTS, LEAST_WALL, PAYS, changes_of, design_changes
 from cuefem.games import GAMES
 from cuefem.materials import material
 from cuefem.report.report_page import page
@@ -32,7 +32,7 @@ def scene_of(name: str) -> cf.Scene:
 @pytest.fixture(scope="module", params=READY)
 def found(request: pytest.FixtureRequest) -> tuple[cf.Scene, dict]:
     scene = scene_of(request.param)
-    return scene, advice_record(scene)
+    return scene, design_changes(scene)
 
 
 def test_every_row_is_the_strike_of_the_changed_cue(found: tuple[cf.Scene, dict]) -> None:
@@ -54,8 +54,8 @@ def test_head_on_the_advice_and_the_verdict_are_those_of_the_usual_offset() -> N
     head_on = replace(scene, stroke=replace(scene.stroke, offset=0.0))
     usual = replace(scene, stroke=replace(scene.stroke, offset=GAMES["pool"].offset))
     solved = Solved(head_on)
-    advice, verdict = advice_record(head_on, solved=solved), verdict_record(head_on, cf.strike(head_on), {})
-    assert advice == advice_record(usual)
+    advice, verdict = design_changes(head_on, solved=solved), verdict_record(head_on, cf.strike(head_on), {})
+    assert advice == design_changes(usual)
     assert verdict["head_on"]
     assert advice["offset"] == verdict["offset"] == usual.stroke.offset
     assert advice["own"]["squirt"] == pytest.approx(verdict["squirt"], rel=1e-9)
@@ -101,7 +101,7 @@ def test_a_tube_is_neither_turned_nor_filled_with_wood() -> None:
 def test_the_command_the_page_and_the_saved_file_agree(tmp_path: Path) -> None:
     path = ROOT / "meshes" / "pool_hollow.toml"
     rows = json.loads(call("improve", path, "--json")[1])["changes"]
-    own = advice_record(scene_of("pool_hollow"))["changes"]
+    own = design_changes(scene_of("pool_hollow"))["changes"]
     assert [row["squirt"] for row in rows] == pytest.approx([row["squirt"] for row in own], rel=1e-12)
     status, out, _ = call("improve", path)
     text = html.unescape(re.sub("<[^>]+>", "", page("x", scene_of("pool_hollow"))))
