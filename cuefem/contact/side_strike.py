@@ -230,7 +230,7 @@ class SideOutcome:
     effective_mass : float
         m_e = m (1 + e_A)/(e - e_A), kg: of the free mass from which the striker would bounce in the same way. Infinite
         for a beam that bounces it like a wall; negative for one that throws it back faster than a wall would.
-    place_speed : float
+    contact_point_speed : float
         Of the place that was struck, at the end of the contact, m/s, in the direction of the strike.
     phases : tuple
         The course of the contact (`cuefem.contact.outcome.Phase`); impulses are (0, along the strike), N s.
@@ -250,7 +250,7 @@ class SideOutcome:
     impulse: float
     duration: float
     effective_mass: float
-    place_speed: float
+    contact_point_speed: float
     phases: tuple[Phase, ...]
     energy: dict[str, float]
     unknowns: int = 0
@@ -312,7 +312,7 @@ def side_strike(scene: SideStrike, at: Resolution | None = None) -> SideOutcome:
         impulse=m * (rebound + scene.speed),
         duration=solved.time,
         effective_mass=m * (1 + apparent) / (e - apparent) if e != apparent else math.inf,
-        place_speed=solved.velocity[1] - rebound,
+        contact_point_speed=solved.velocity[1] - rebound,
         phases=solved.phases,
         energy=_energy(solved, scene, rebound),
         unknowns=solved.model.unknowns,

@@ -143,8 +143,8 @@ def _readings(folder: Path, path: Path, tables: dict[str, Any], scene: Scene) ->
     tones: list[Tone] = []
     for recording in _rows(path, tables, "recording", Recording):
         sound = folder / recording.file
-        samples, rate = _sound(sound)
         with faults_of(sound, ""):
+            samples, rate = _sound(sound)
             source = recording.source or recording.file
             tones += tones_of(samples, rate, Setup(scene).predictions.frequencies, source)
     yield from combined(tones)

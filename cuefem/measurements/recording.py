@@ -11,6 +11,7 @@ import numpy as np
 from cuefem.cue import Array
 from cuefem.measurements.measurement_types import Tone
 
+RATES = (4e3, 4e5)  # Hz, of samples: a telephone line has 8 kHz, a studio 192 kHz
 SECONDS, LEAST = 0.4, 0.1  # s that are transformed after the loudest sample, and that there must be
 BLOCK = 600.0  # Hz, over which the median is the noise: wider than a peak
 ABOVE, BELOW = (
@@ -19,7 +20,7 @@ ABOVE, BELOW = (
 )  # dB of a peak above the noise, as noise alone is once in 50 recordings; below the highest one
 APART, NEAR = 0.05, 0.05  # ln f, least distance of two peaks, and largest one of a peak from its mode
 SHIFT, FARTHEST = 0.15, 0.35  # ln f, of sqrt(E/rho) from that of the drawing: standard deviation, and largest
-FEWEST = 2  # tones: any single peak is near some mode of some wood
+FEWEST = 3  # tones: any two peaks are near two modes of some wood
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,12 +41,16 @@ class Peak(NamedTuple):
 def spectral_peaks(samples: Array, rate: float, low: float, high: float) -> list[Peak]:
     """Peaks between ``low`` and ``high``, Hz, after the loudest sample.
 
-    samples: (n, channels). rate: samples per second, Hz. ValueError for silence, and for less than `LEAST` after the
-    tap.
+    samples: (n, channels). rate: samples per second, Hz. ValueError for silence, for less than `LEAST` after the tap,
+    and for a rate beyond `RATES`.
     """
-    size = np.abs(samples).max(axis=1)
-    if not (np.isfinite(size).all() and size.max() > size.min()):
-        raise ValueError("must hold a sound; got silence, or samples that are not finite")
+    if not RATES[0] <= rate <= RATES[1]:
+        raise ValueError(f"must have {RATES[0]:g} to {RATES[1]:g} samples per second; got {rate:g}")
+    if not np.isfinite(samples).all():
+        raise ValueError("must hold finite samples; got inf or nan")
+    size = np.abs(samples - samples.mean(axis=0)).max(axis=1)
+    if not size.max() > 0:
+        raise ValueError("must hold a sound; got silence")
     after = samples[size.argmax() :][: int(SECONDS * rate)]
     if len(after) < LEAST * rate:
         raise ValueError(f"must last {LEAST:g} s or more after its loudest tap; got {len(after) / rate:.2g} s")
@@ -112,16 +117,17 @@ def tones_of(samples: Array, rate: float, frequencies: Array, source: str = "") 
     Raises
     ------
     ValueError
-        If the recording is silent, ends too soon, or has no two peaks near modes of the drawing.
+        If the recording is silent, ends too soon, or has no three peaks near modes of the drawing.
 
     Examples
     --------
     >>> import numpy as np
     >>> from cuefem.measurements.recording import tones_of
     >>> time = np.arange(22050) / 44100
-    >>> sound = sum(np.exp(-20 * time) * np.cos(2 * np.pi * f * time) for f in (100.0, 570.0))
-    >>> [(tone.mode, round(tone.value)) for tone in tones_of(sound[:, None], 44100.0, np.array([95.0, 280.0, 560.0]))]
-    [(1, 100), (3, 570)]
+    >>> sound = sum(np.exp(-20 * time) * np.cos(2 * np.pi * f * time) for f in (100.0, 570.0, 970.0))
+    >>> drawn = np.array([95.0, 280.0, 560.0, 930.0])
+    >>> [(tone.mode, round(tone.value)) for tone in tones_of(sound[:, None], 44100.0, drawn)]
+    [(1, 100), (3, 570), (4, 970)]
     """
     margin = np.exp(FARTHEST)
     peaks = spectral_peaks(samples, rate, frequencies[0] / margin, frequencies[-1] * margin)

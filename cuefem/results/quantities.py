@@ -238,11 +238,6 @@ RESULTS = {
     "impulse": Result("impulse", "N s"),
     "coupling": Result("coupling", "1/kg"),
     "position": Result("distance from the tip", "m", 1),
-    "rebound_speed": Result("rebound speed", "m/s", 4),
-    "apparent_restitution": Result("apparent restitution e_A", "", 4),
-    "effective_mass": Result("effective mass", "kg"),
-    "rigid_mass": Result("effective mass of a rigid beam", "kg"),
-    "place_speed": Result("speed of the place at the end", "m/s", 4),
     "tip_stiffness": Result(
         *("shaft stiffness at the tip, static, butt clamped", "N/m"),
         heading="stiffness at the tip",

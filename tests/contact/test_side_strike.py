@@ -112,7 +112,7 @@ def test_a_light_striker_feels_the_end_mass_by_force(name: str) -> None:
     cue, at = FAMILY[name], Resolution(2, 14, 24)
     felt, masses = cf.end_mass(cf.Scene(cue, tip=cf.Tip(contact_time=1e-3)), "force", at), [1e-7, 1e-8]
     strikes = [side_strike(SideStrike(cue, Striker(mass, 1.0, contact_time=1e-3)), at) for mass in masses]
-    errors = [abs(outcome.impulse / outcome.place_speed / felt - 1) for outcome in strikes]
+    errors = [abs(outcome.impulse / outcome.contact_point_speed / felt - 1) for outcome in strikes]
     assert_order(1, masses, errors, within=0.02)
     assert errors[-1] < 2e-5
 

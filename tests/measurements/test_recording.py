@@ -78,28 +78,44 @@ def test_two_recordings_are_one_tone_per_mode(tmp_path: Path) -> None:
 
     place = folder(tmp_path / "cue", HEARD + HEARD.replace("tap", "two"))
     save_wav(place / "tap.wav", sound(*DRAWN[:3]))
-    save_wav(place / "two.wav", sound(DRAWN[0], DRAWN[1] + 1.0))
-    first, second, third = load_measured(place)[0].measurements
+    save_wav(place / "two.wav", sound(DRAWN[0], DRAWN[1] + 1.0, DRAWN[3]))
+    first, second, third, fourth = load_measured(place)[0].measurements
     assert isinstance(second, Tone)
-    assert (first.source, third.source) == ("tap.wav, two.wav", "tap.wav")
+    assert (first.source, third.source, fourth.source) == ("tap.wav, two.wav", "tap.wav", "two.wav")
     assert DRAWN[1] < second.value < DRAWN[1] + 1
     assert second.error == pytest.approx(0.5, rel=0.2)
 
 
 SECOND = np.arange(22050) / 22050
 SOUNDS = {
-    "silent": (np.zeros((4000, 1)), "tap.wav: must hold a sound; got silence"),
-    "short": (np.linspace(0, 0.5, 4000)[:, None], "tap.wav: must last 0.1 s or more after its loudest tap; got"),
-    "noise": (0.1 * np.random.default_rng(3).standard_normal((22050, 1)), "must hold 2 tones or more near those of"),
-    "one tone": (0.5 * np.exp(-9 * SECOND[:, None]) * np.sin(2e3 * SECOND[:, None]), "got 318"),
+    "silent": (np.zeros((4000, 1)), 22050, "tap.wav: must hold a sound; got silence"),
+    "short": (np.linspace(0, 0.5, 4000)[:, None] ** 2, 22050, "tap.wav: must last 0.1 s or more after its loudest tap"),
+    "noise": (0.1 * np.random.default_rng(3).standard_normal((22050, 1)), 22050, "must hold 3 tones or more near"),
+    "one tone": (
+        0.5 * np.exp(-9 * SECOND[:, None]) * np.sin(2e3 * SECOND[:, None]),
+        22050,
+        "got 318",
+    ),
+    "slow": (np.random.default_rng(3).uniform(-1, 1, (900, 1)), 1000, "must have 4000 to 400000 samples per second; g"),
+    "fast": (np.random.default_rng(3).uniform(-1, 1, (900, 1)), 10**9, "samples per second; got 1e+09"),
 }
 
 
-@pytest.mark.parametrize(("samples", "message"), SOUNDS.values(), ids=SOUNDS.keys())
-def test_a_sound_of_no_shaft_is_refused(samples: np.ndarray, message: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("samples", "rate", "message"), SOUNDS.values(), ids=SOUNDS.keys())
+def test_a_sound_of_no_shaft_is_refused(samples: np.ndarray, rate: int, message: str, tmp_path: Path) -> None:
     place = folder(tmp_path / "cue", HEARD)
-    save_wav(place / "tap.wav", samples, 22050)
+    save_wav(place / "tap.wav", samples, rate)
     command_refuses(message, "compare", place)
+
+
+def test_eight_bits_and_an_offset_change_no_tone() -> None:
+    """The middle of 8 bits is 128, and cheap converters add a constant."""
+    sound = recording(tapped(other_wood(SHAFT)), 40.0, 1, taps=1)
+    fine, coarse = (
+        tones_of(samples, 44100.0, DRAWN) for samples in (sound, np.round(128 + 100 * sound / np.abs(sound).max()))
+    )
+    for one, other in zip(fine[:5], coarse, strict=False):
+        assert (other.mode, other.value) == (one.mode, pytest.approx(one.value, rel=1e-3))
 
 
 FILES = {
@@ -109,6 +125,7 @@ FILES = {
     "other": (HEARD.replace("wav", "mp3"), None, "tap.mp3: must end in .wav; got '.mp3'"),
     "key": (HEARD + "loud = 1\n", None, "recording[0].loud: must be one of the keys file, source; got loud = 1"),
     "no table": ('recording = "tap.wav"\n', None, "recording: must be tables, [[recording]]; got 'tap.wav'"),
+    "nul": ('[[recording]]\nfile = "\\u0000.wav"\n', None, ".wav: embedded null byte"),
     "nothing": ("[[recording]]\n", None, "recording[0].file: must be given, text; got nothing"),
 }
 
