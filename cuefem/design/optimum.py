@@ -270,8 +270,7 @@ class _Search:
 
     def optimum(self, start: Array, rounds: int, seed: int) -> Optimum:
         """The best design; ValueError if none is within the limits."""
-        values = self.rows(start[None])
-        size = abs(values[0, 0]) if self.problem.objective.unit else 1.0
+        size = abs(self.at(start)[0]) if self.problem.objective.unit else 1.0
         self.scale, self.best = self.scale / (size if np.isfinite(size) and size else 1.0), np.inf
         ends = [(start, "")]
         if len(start):
@@ -281,8 +280,9 @@ class _Search:
                 ends.append(self.by_differences(ends[-1][0], rounds))
         u = min((u for u, _ in ends), key=lambda u: self.scores(self.at(u)[None])[0])
         broken, unfinished = self.broken(u), ends[-1][1]
-        if broken:
-            raise ValueError(f"no design within {', '.join(broken)} was found: {unfinished or 'none is near'}")
+        if broken or not np.isfinite(self.at(u)).all():
+            what = f"within {', '.join(broken)}" if broken else f"that has {self.problem.objective.name}"
+            raise ValueError(f"no design {what} was found: {unfinished or 'none is near'}")
         point, study = self.problem.points(u), self.problem.study
         return Optimum(
             self.problem.scene(point),

@@ -143,7 +143,8 @@ class StudyResult:
 
     def __repr__(self) -> str:
         failed = f", {len(self.failures)} without an answer" if self.failures else ""
-        head = f"StudyResult({self.kind} of {len(self.rows)} designs{failed})"
+        count = self.optimum.evaluations if self.optimum else len(self.rows)
+        head = f"StudyResult({self.kind} of {count} designs{failed})"
         return "\n  ".join([head, *(f"{name}: {value}, {at}" for name, value, at in self._lines())])
 
     def _repr_html_(self) -> str:

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import json
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -41,7 +39,6 @@ def test_of_kim_it_is_his_bare_stroke_and_without_a_game_that_of_pool(tmp_path: 
     status, out, err = call("study", study)
     assert (status, err) == (0, "")
     assert f"assumed: {BARE}" in " ".join(out.split())
-    assert json.loads(call("study", study, "--json")[1])["assumed"][0].startswith(BARE)
     study = written(tmp_path, FEW, scene=CUE)
     assert load_study(study).base == cf.usual_scene(cue)
     assert USUAL in " ".join(call("study", study)[1].split())
@@ -58,22 +55,6 @@ def test_a_game_gives_its_usual_stroke(tmp_path: Path, text: str) -> None:
     assert isinstance(cue, cf.Cue)
     found = load_study(study)
     assert getattr(found, "study", found).base == cf.usual_scene(cue, "carom")
-
-
-def test_a_design_of_such_a_sweep_is_the_strike_of_the_command(tmp_path: Path) -> None:
-    study = written(tmp_path, f'game = "pool"\n{FEW}', scene=CUE)
-    status, out, _ = call("study", study, "-o", tmp_path / "out.csv")
-    assert status == 0
-    assert f"assumed: {USUAL}" in " ".join(out.split())
-    last = (tmp_path / "out.csv").read_text(encoding="utf-8").splitlines()[2].split(",")
-    cue = cf.load(tmp_path / "scene.toml")
-    assert isinstance(cue, cf.Cue)
-    struck = cf.strike(
-        cf.usual_scene(replace(cue, segments=(replace(cue.segments[0], tip_diameter=0.012),))), cf.Resolution(1, 8, 4)
-    )
-    assert any(
-        float(cell) == pytest.approx(struck.squirt, rel=1e-9) for cell in last if cell.replace(".", "").isdigit()
-    )
 
 
 def test_a_game_is_for_a_cue_alone(tmp_path: Path) -> None:

@@ -28,7 +28,6 @@ from cuefem import (
 from cuefem.beam.modes import solve
 from cuefem.beam.waves import even_mesh_for
 from cuefem.design import Levels, Response, Sample, Span, Study, Vary, evaluate
-from cuefem.design.solvers import key_of
 from cuefem.endmass.drives import DEFINITIONS, small_offset_slope
 from cuefem.materials import material
 from cuefem.results.asking import asked
@@ -298,21 +297,3 @@ def test_a_failing_design_disturbs_no_other() -> None:
     assert found.reasons[1]
     assert np.isnan(found.values[1, 0])
     np.testing.assert_allclose(found.values[[0, 2]], alone.values, rtol=1e-12)
-
-
-@pytest.mark.heavy
-@given(st.permutations(range(6)))
-def test_order_and_company_do_not_matter(order: list[int]) -> None:
-    """Two topologies, with and without effects, in any order."""
-    cues = [low_deflection(), pool(), kim()]
-    scenes = [replace(BASE, cue=cue, effects=effects) for cue in cues for effects in ((), (PointMass(0.1, 0.01),))]
-    at = Resolution(1, 6, 2)
-    found = evaluate([scenes[i] for i in order], ["end_mass", "tip_stiffness"], at=at).values
-    apart = np.concatenate([evaluate([scenes[i]], ["end_mass", "tip_stiffness"], at=at).values for i in order])
-    np.testing.assert_allclose(found, apart, rtol=1e-11)
-
-
-def test_scenes_share_modes_by_what_can_be_compared() -> None:
-    one, equal = Scene(kim()), Scene(kim())
-    assert key_of(one, one.cue, (1.0,)) == key_of(equal, equal.cue, (1.0,))
-    assert key_of(one, one.cue, [1.0]) != key_of(equal, equal.cue, [1.0])  # a list of an effect has no hash

@@ -118,3 +118,17 @@ def test_what_is_told_to_a_command_is_drawn(tmp_path: Path) -> None:
     assert call("convert", shaft(tmp_path), tmp_path / "made.toml", *told)[0] == 0
     names = [name.removeprefix("--") for name in told[::2]]
     assert cf.load(tmp_path / "made.toml") == cf.load(shaft(tmp_path), **dict(zip(names, told[1::2], strict=True)))
+
+
+def test_body_mass_of_load_is_that_of_the_option(tmp_path: Path) -> None:
+    csv, ounces = shaft(tmp_path), 15 * 0.028349523125
+    assert [cf.load(csv, body_mass=mass).body_mass for mass in ("15 oz", ounces, 0)] == pytest.approx(
+        [ounces, ounces, 0]
+    )
+    assert call("convert", csv, tmp_path / "cue.toml", "--body-mass", "15 oz")[0] == 0
+    assert cf.load(tmp_path / "cue.toml") == cf.load(csv, body_mass="15 oz")
+    cf.save(cf.usual_scene(CONE), tmp_path / "scene.toml")
+    assert cf.load(tmp_path / "scene.toml", body_mass="1 lb", material="ash").cue.body_mass == pytest.approx(0.45359237)
+    for bad in ("15", "-1 oz", float("nan")):
+        with pytest.raises(ValueError, match=r"shaft.csv: body_mass: "):
+            cf.load(csv, body_mass=bad)
