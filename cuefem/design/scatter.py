@@ -10,7 +10,7 @@ of their own.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -19,15 +19,13 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 
 from cuefem.cue import Array
-from cuefem.design.ranges import Levels, Value
+from cuefem.design.ranges import Levels
 from cuefem.design.study import Study
-from cuefem.design.sweep import MemoryStore, Pool, Row, sweep
+from cuefem.design.sweep import Row
 from cuefem.quantity.fields import check_count
 
 CONFIDENCE, RESAMPLES = 0.95, 400  # of the bootstrapped intervals
 HALF_CELL = 2.0**-31  # of scipy's Sobol points, so that none is 0
-
-Progress = Callable[[list[Row]], object]
 
 
 @dataclass(frozen=True)
@@ -90,13 +88,13 @@ class Scatter:
         twice = [name for name in grouped if grouped.count(name) > 1]
         if twice:
             raise ValueError(f"what varies is in one group; got {twice[0]!r} in two")
-        for members in self._members:
+        for members in self.members:
             own = {self.names[i] for i in members}
             for group, names in self.groups.items():
                 if own & set(names) and own != set(names):
                     beside = ", ".join(sorted(own - set(names)))
                     raise ValueError(f"group {group!r} must hold all that is correlated with it; it lacks {beside}")
-        if len(set(self.causes)) < len(self._members):
+        if len(set(self.causes)) < len(self.members):
             raise ValueError(f"causes must have different names; got {', '.join(self.causes)}")
 
     def _check_names(self, what: str, names: tuple[str, ...]) -> None:
@@ -120,7 +118,7 @@ class Scatter:
         return matrix
 
     @cached_property
-    def _members(self) -> tuple[tuple[int, ...], ...]:
+    def members(self) -> tuple[tuple[int, ...], ...]:
         """Indices of what varies, a cause each, in order of their first."""
         joined = self.matrix != 0
         for names in self.groups.values():
@@ -134,81 +132,38 @@ class Scatter:
     def causes(self) -> tuple[str, ...]:
         """Names of what is drawn independently: groups, and what varies alone."""
         called = {self.names.index(name): group for group, names in self.groups.items() for name in names}
-        return tuple(called.get(each[0], " + ".join(self.names[i] for i in each)) for each in self._members)
-
-    def scores(self, size: int) -> Array:
-        """Independent normal scores (count, size) of a scrambled Sobol sequence."""
-        from scipy.stats import qmc  # loaded when used: half a second
-
-        engine = qmc.Sobol(size, seed=np.random.default_rng(self.seed))
-        return np.asarray(ndtri(engine.random(self.count) + HALF_CELL))
-
-    def correlated(self, scores: Array) -> Array:
-        """The shares of what varies below independent normal scores (n, vary), with their correlations."""
-        return np.asarray(ndtr(scores @ np.linalg.cholesky(self.matrix).T))
-
-    def mixed(self, scores: Array) -> list[Array]:
-        """Scores of two samples, (2, n, vary): the first one with each cause in turn from the second."""
-        first, second = scores
-        return [np.where(np.isin(np.arange(len(self.names)), members), second, first) for members in self._members]
+        return tuple(called.get(each[0], " + ".join(self.names[i] for i in each)) for each in self.members)
 
     @property
     def designs(self) -> Study:
         """The study whose designs the Sobol indices take: two independent samples, and the first one with each cause
         in turn from the second."""
-        return replace(self.study, sample=_Points(self, len(self._members) + 2))
+        return replace(self.study, sample=_Points(self))
 
 
 @dataclass(frozen=True)
 class _Points:
-    """Points of a scatter: ``samples`` times its count; of one alone, a sample as dense as it can be."""
+    """The shares of what varies below its values: a scrambled Sobol sequence in both samples, then mixed."""
 
     scatter: Scatter
-    samples: int
 
     def __repr__(self) -> str:
-        about = self.scatter.correlations, self.scatter.groups, self.scatter.seed
-        return f"{self.samples} samples of {self.scatter.count}, {about}"
+        about = self.scatter.count, self.scatter.seed, self.scatter.correlations, self.scatter.groups
+        return f"tolerances {about}"
 
     @property
     def count(self) -> int:
-        return self.samples * self.scatter.count
+        return (len(self.scatter.causes) + 2) * self.scatter.count
 
     def blocks(self, dimensions: int, size: int) -> Iterator[Array]:
-        if self.samples == 1:
-            scores = self.scatter.scores(dimensions)
-        else:
-            both = np.stack(np.split(self.scatter.scores(2 * dimensions), 2, axis=1))
-            scores = np.concatenate([*both, *self.scatter.mixed(both)])
-        points = self.scatter.correlated(scores)
+        from scipy.stats import qmc  # loaded when used: half a second
+
+        engine = qmc.Sobol(2 * dimensions, seed=np.random.default_rng(self.scatter.seed))
+        first, other = np.split(ndtri(engine.random(self.scatter.count) + HALF_CELL), 2, axis=1)
+        drawn = (np.isin(np.arange(dimensions), cause) for cause in self.scatter.members)
+        scores = np.concatenate([first, other, *(np.where(cause, other, first) for cause in drawn)])
+        points = ndtr(scores @ np.linalg.cholesky(self.scatter.matrix).T)
         yield from (points[start : start + size] for start in range(0, len(points), size))
-
-
-@dataclass(frozen=True)
-class ResponseSpread:
-    """Distribution of responses over designs.
-
-    values: of what varies, a tuple a design. responses: (designs, responses), SI. Of designs that answered; failures:
-    why the others did not.
-    """
-
-    values: tuple[tuple[Value, ...], ...]
-    responses: Array
-    failures: tuple[str, ...]
-
-    @property
-    def mean(self) -> Array:
-        """(responses,)."""
-        return np.asarray(self.responses.mean(axis=0))
-
-    @property
-    def sd(self) -> Array:
-        """Standard deviation, (responses,)."""
-        return np.asarray(self.responses.std(axis=0, ddof=1))
-
-    def quantiles(self, shares: Any) -> Array:
-        """Values below which these shares of the designs lie, (shares, responses)."""
-        return np.asarray(np.quantile(self.responses, shares, axis=0))
 
 
 @dataclass(frozen=True)
@@ -216,7 +171,6 @@ class Drivers:
     """Sobol indices: the parts of each response's variance that causes have.
 
     first, total: (causes, responses). first_interval, total_interval: (2, causes, responses), bootstrapped, 95 %.
-    spread: the distribution, from the two independent samples they were made of.
     """
 
     causes: tuple[str, ...]
@@ -224,24 +178,6 @@ class Drivers:
     total: Array
     first_interval: Array
     total_interval: Array
-    spread: ResponseSpread
-
-
-def spread(scatter: Scatter, *, pool: Pool | None = None, progress: Progress = lambda rows: None) -> ResponseSpread:
-    """The distribution of a study's responses over ``count`` designs.
-
-    pool, progress: as in `sweep`. ValueError if no design has an answer.
-    """
-    store = MemoryStore(replace(scatter.study, sample=_Points(scatter, 1)))
-    sweep(store.study, store, pool=pool, progress=progress)
-    return _spread([*store.rows()])
-
-
-def drivers(scatter: Scatter, *, pool: Pool | None = None, progress: Progress = lambda rows: None) -> Drivers:
-    """Sobol indices of a study's responses, by (causes + 2) ``count`` designs: see `drivers_of`."""
-    store = MemoryStore(scatter.designs)
-    sweep(store.study, store, pool=pool, progress=progress)
-    return drivers_of(scatter, [*store.rows()])
 
 
 def drivers_of(scatter: Scatter, rows: Sequence[Row]) -> Drivers:
@@ -254,13 +190,11 @@ def drivers_of(scatter: Scatter, rows: Sequence[Row]) -> Drivers:
     failed = [row.failure for row in rows if row.failure]
     if failed:
         raise ValueError(f"{len(failed)} of {len(rows)} designs have no answer: narrow the ranges; first: {failed[0]}")
-    count = scatter.count
-    results = np.array([row.responses for row in rows]).reshape(-1, count, len(scatter.study.responses))
-    sample = _spread(rows[: 2 * count])
-    for response, mean, sd in zip(scatter.study.responses, sample.mean, sample.sd, strict=True):
-        if sd <= 1e-12 * abs(mean):
+    results = np.array([row.responses for row in rows]).reshape(-1, scatter.count, len(scatter.study.responses))
+    for response, column in zip(scatter.study.responses, np.moveaxis(results[:2], -1, 0), strict=True):
+        if column.std() <= 1e-12 * abs(column.mean()):
             raise ValueError(f"{response.name} does not scatter: nothing that varies changes it")
-    return Drivers(scatter.causes, *indices(results.swapaxes(1, 2), seed=scatter.seed), sample)
+    return Drivers(scatter.causes, *indices(results.swapaxes(1, 2), seed=scatter.seed))
 
 
 def indices(values: Array, *, seed: int) -> tuple[Array, Array, Array, Array]:
@@ -288,11 +222,3 @@ def indices(values: Array, *, seed: int) -> tuple[Array, Array, Array, Array]:
     ).confidence_interval
     (first, total), low, high = both(np.arange(count)), resampled.low, resampled.high
     return first, total, np.stack([low[0], high[0]]), np.stack([low[1], high[1]])
-
-
-def _spread(rows: Sequence[Row]) -> ResponseSpread:
-    good = [row for row in rows if not row.failure]
-    failures = tuple(row.failure for row in rows if row.failure)
-    if not good:
-        raise ValueError(f"no design has an answer: {failures[0]}")
-    return ResponseSpread(tuple(row.values for row in good), np.array([row.responses for row in good], float), failures)

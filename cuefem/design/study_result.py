@@ -51,7 +51,8 @@ class StudyResult:
         The best design by the name of the response that it is best for: its ``scene``, ``values`` and ``responses``.
         Of a scatter, which is no choice, empty.
     spread : dict
-        Mean, standard deviation ("sd") and quantiles ("5 %", ...) of each response over the designs.
+        Mean, standard deviation ("sd") and quantiles ("5 %", ...) of each response over the designs, of a scatter over
+        its two independent samples.
     """
 
     asked: Study | Scatter | Problem
@@ -113,11 +114,9 @@ class StudyResult:
     @cached_property
     def spread(self) -> dict[str, dict[str, float]]:
         """How the responses are distributed."""
-        if self.drivers:
-            first = self.drivers.spread
-            columns = dict(zip(self.responses, first.responses.T, strict=True))
-        else:
-            columns = {name: column[np.isfinite(column)] for name, column in self.responses.items()}
+        independent = slice(2 * self.asked.count if isinstance(self.asked, Scatter) else None)
+        columns = {name: column[independent] for name, column in self.responses.items()}
+        columns = {name: column[np.isfinite(column)] for name, column in columns.items()}
         return {
             name: {"mean": float(column.mean()), "sd": float(column.std(ddof=1))}
             | {f"{100 * s:g} %": float(q) for s, q in zip(SHARES, np.quantile(column, SHARES), strict=True)}

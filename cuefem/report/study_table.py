@@ -15,7 +15,7 @@ from cuefem.cue import Array
 from cuefem.design import Levels, Normal, Response, Span, Study, Vary
 from cuefem.design.optimum import Optimum, Problem
 from cuefem.design.scatter import Drivers, Scatter
-from cuefem.design.study_result import SHARES, StudyResult
+from cuefem.design.study_result import StudyResult
 from cuefem.results.quantities import TRADE, significant, with_heading, with_unit
 from cuefem.results.records import Sheet
 from cuefem.scene import Scene
@@ -226,7 +226,7 @@ def study_record(result: StudyResult) -> dict[str, Any]:
         return optimum_record(result.asked, result.optimum)
     if isinstance(result.asked, Scatter) and result.drivers:
         about = {"count": result.asked.count, "seed": result.asked.seed}
-        return about | {"responses": scatter_record(result.asked, result.drivers)}
+        return about | {"responses": scatter_record(result, result.drivers)}
     table, failed = table_of(result), [*result.failures.values()]
     counts = {"designs": len(result.rows), "failed": len(failed), "first_failure": failed[0] if failed else None}
     return counts | {"summary": table and sweep_record(table)}
@@ -238,7 +238,7 @@ def study_sheets(result: StudyResult) -> list[Sheet | str]:
     if isinstance(result.asked, Problem) and result.optimum:
         return [varies, *optimum_sheets(result.asked, result.optimum)]
     if isinstance(result.asked, Scatter) and result.drivers:
-        return [varies, *scatter_sheets(result.asked, result.drivers), *scatter_words(result.asked, result.drivers)]
+        return [varies, *scatter_sheets(result, result.asked, result.drivers)]
     table, failures = table_of(result), [*result.failures.items()]
     lines = [f"{len(failures)} failed, the first of them design {n}: {reason}" for n, reason in failures[:1]]
     return [*lines, varies, *([] if table is None else sweep_sheets(table))]
@@ -326,15 +326,12 @@ def sweep_sheets(table: StudyTable) -> list[Sheet | str]:
     return [best_sheet(table), drive_sheet(table), *front]
 
 
-def scatter_record(scatter: Scatter, drivers: Drivers) -> dict[str, Any]:
+def scatter_record(result: StudyResult, drivers: Drivers) -> dict[str, Any]:
     """The distribution of every response, and the shares of its causes."""
-    quantiles = drivers.spread.quantiles(SHARES)
     return {
         response.name: {
             "unit": response.unit,
-            "mean": drivers.spread.mean[k],
-            "sd": drivers.spread.sd[k],
-            "quantiles": {str(share): value for share, value in zip(SHARES, quantiles[:, k], strict=True)},
+            **result.spread[response.name],
             "causes": {
                 cause: {
                     "first": drivers.first[i, k],
@@ -345,21 +342,28 @@ def scatter_record(scatter: Scatter, drivers: Drivers) -> dict[str, Any]:
                 for i, cause in enumerate(drivers.causes)
             },
         }
-        for k, response in enumerate(scatter.study.responses)
+        for k, response in enumerate(result.study.responses)
     }
 
 
-def scatter_sheets(scatter: Scatter, drivers: Drivers) -> list[Sheet]:
-    """The spread of every response, and what drives it."""
-    spreads, rows, bold = list[tuple[str, ...]](), list[tuple[str, ...]](), dict[int, str]()
+def scatter_sheets(result: StudyResult, scatter: Scatter, drivers: Drivers) -> list[Sheet | str]:
+    """The spread of every response, what drives it, and both in a sentence for each."""
+    spreads, rows, bold, lines = list[tuple[str, ...]](), list[tuple[str, ...]](), dict[int, str](), list[str]()
     for k, response in enumerate(scatter.study.responses):
-        numbers = [drivers.spread.mean[k], drivers.spread.sd[k], *drivers.spread.quantiles(SHARES)[:, k]]
-        spreads.append((response.heading, *(shown(value, response.unit) for value in numbers)))
+        numbers = {name: shown(value, response.unit) for name, value in result.spread[response.name].items()}
+        spreads.append((response.heading, *numbers.values()))
         bold[len(rows)] = "bold"
         rows.append((response.label, "", ""))
-        for i in drivers.total[:, k].argsort()[::-1]:
+        strongest = drivers.total[:, k].argsort()[::-1]
+        for i in strongest:
             both = ((drivers.first, drivers.first_interval), (drivers.total, drivers.total_interval))
             rows.append((f"  {drivers.causes[i]}", *(_share(value[i, k], ends[:, i, k]) for value, ends in both)))
+        total = np.clip(drivers.total[:, k], 0.0, 1.0)  # an estimate may lie beyond
+        most = [f"{drivers.causes[i]} ({100 * total[i]:.0f} %)" for i in strongest[:2] if total[i] >= LEAST_NAMED]
+        unit = TRADE.get(response.unit, (1, response.unit))[1]
+        ends = f"{response.label}: nine in ten lie from {numbers['5 %']} to {numbers['95 %']} {unit}".rstrip()
+        named = f"the strongest cause{'s are' if len(most) > 1 else ' is'} {' and '.join(most)}"
+        lines.append(f"{ends}; {named if most else 'no cause stands out'}")
     drawn = "a column headed 5 %: 5 % of the designs lie below its value; sd: standard deviation"
     notes = (
         "alone: the part of the variance that goes away if this cause is known; in all: the part that stays if all "
@@ -367,25 +371,11 @@ def scatter_sheets(scatter: Scatter, drivers: Drivers) -> list[Sheet]:
         "in brackets 95 % intervals, bootstrapped",
         *(f"{cause}: {', '.join(names)}" for cause, names in scatter.groups.items()),
     )
-    head = ("response", "mean", "sd", *(f"{100 * share:g} %" for share in SHARES))
     return [
-        Sheet(f"Spread of {len(drivers.spread.values)} designs", head, tuple(spreads), (drawn,)),
+        Sheet(f"Spread of {2 * scatter.count} designs", ("response", *numbers), tuple(spreads), (drawn,)),
         Sheet(CAUSES, ("response, cause", "alone", "in all"), tuple(rows), notes, styles=bold),
+        *lines,
     ]
-
-
-def scatter_words(scatter: Scatter, drivers: Drivers) -> list[str]:
-    """The result in a sentence for each response."""
-    lines = []
-    for k, response in enumerate(scatter.study.responses):
-        unit = TRADE.get(response.unit, (1, response.unit))[1]
-        low, high = (shown(value, response.unit) for value in drivers.spread.quantiles((0.05, 0.95))[:, k])
-        total = np.clip(drivers.total[:, k], 0.0, 1.0)  # an estimate may lie beyond
-        most = [i for i in total.argsort()[::-1][:2] if total[i] >= LEAST_NAMED]
-        named = " and ".join(f"{drivers.causes[i]} ({100 * total[i]:.0f} %)" for i in most)
-        named = f"the strongest cause{'s are' if len(most) > 1 else ' is'} {named}" if most else "no cause stands out"
-        lines.append(f"{response.label}: nine in ten lie from {low} to {high} {unit}".rstrip() + f"; {named}")
-    return lines
 
 
 def _share(value: float, ends: Any) -> str:

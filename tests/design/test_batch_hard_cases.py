@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from cuefem import Ball, Cue, Material, Resolution, Scene, Segment, StructuralDamping, Tip, end_mass
-from cuefem.design import Levels, Normal, Response, Study, Vary, evaluate
+from cuefem.design import Levels, Response, Study, Vary, evaluate
 from cuefem.design.batch import BLOCK, CueBatch, batch_stick
-from cuefem.design.scatter import Scatter, spread
 from cuefem.design.study_result import found
 from tests.helpers.cues import MAPLE
 
@@ -80,13 +79,3 @@ def test_who_asks_for_squirt_alone_has_it() -> None:
     found = evaluate(scenes, ["squirt_slope"], at=AT)
     assert found.reasons == (None,) * len(scenes)
     assert np.all(found.values[HARD] < 0)
-
-
-def test_scatter_goes_on_without_it() -> None:
-    study = light()
-    vary = Vary(("cue.segments[0].material.E",), Normal(15e9, 4e9), name="E")
-    found = spread(Scatter(Study(study.base, (vary,), study.responses[:1], at=AT), count=16, seed=1))
-    assert len(found.responses) + len(found.failures) == 16
-    assert len(found.failures) > 0
-    assert all(failure.startswith("end_mass: the squirt is -") for failure in found.failures)
-    assert np.all(np.isfinite(found.responses))
