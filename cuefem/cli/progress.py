@@ -26,7 +26,7 @@ def followed(work: Sequence[Any]) -> Iterable[Any]:
 
 
 class Progress:
-    """Takes the rows of finished blocks; shown as a bar with rate and times from the first second on."""
+    """How many designs are done; shown as a bar with rate and times from the first second on."""
 
     def __init__(self, bar: Any, total: int) -> None:
         self.bar, self.total = bar, total
@@ -36,10 +36,6 @@ class Progress:
         """From here on designs are computed, of which so many are done."""
         if self.bar:
             self.bar.update(self.task, description="designs", total=self.total, completed=done)
-
-    def __call__(self, rows: Sequence[Any]) -> None:
-        """Count the rows of a block."""
-        self.to(len(rows) + self.bar.tasks[0].completed if self.bar else 0)
 
     def to(self, done: int) -> None:
         """Say how many designs are done."""
