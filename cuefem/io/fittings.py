@@ -129,7 +129,9 @@ def on_tenon(segment: Segment, stuff: Material, wood: Material, tenon: float | N
     """The segment as a ferrule on a tenon of wood, m wide, by default `TENON` of its width; a bored one stays bored."""
     if segment.tip_bore or segment.butt_bore or tenon == 0:
         return replace(segment, material=stuff)
-    first, last = (TENON * d if tenon is None else tenon for d in (segment.tip_diameter, segment.butt_diameter))
+    first, last = (
+        round(TENON * d, 9) if tenon is None else tenon for d in (segment.tip_diameter, segment.butt_diameter)
+    )
     return replace(segment, material=stuff, tip_bore=first, butt_bore=last, core=wood)
 
 

@@ -32,6 +32,7 @@ from cuefem.io.toml import named_material
 from cuefem.materials import material_name
 from cuefem.quantity.fields import DIAMETER as WIDTH
 from cuefem.quantity.fields import Quantity
+from cuefem.quantity.slips import CUE_DIAMETER, CUE_LENGTH
 from cuefem.quantity.units import number
 
 DEFAULT_MATERIAL = "hard maple"
@@ -46,7 +47,6 @@ _NOTHING = ("none", "no", "-", "–", "—")  # cells without a bore or a materi
 
 _POSITION, _HOLE = Quantity("m"), Quantity("m", "[0, 10]")
 _USUAL = {"mm": 1e-3, "in": 25.4e-3, "cm": 1e-2, "m": 1.0}  # units of a column that names none
-_LENGTHS, _WIDTHS = (0.3, 1.6), (0.0075, 0.04)  # m: of shafts and cues, by which such a unit is guessed
 
 Point = tuple[float, float]  # position, diameter, m
 
@@ -200,11 +200,12 @@ def _bored(profile: Profile, unit: str) -> list[str]:
     """Where the shaft is bored and what fills the bore, as it was read."""
     per = number(f"1 {unit}", "m")
     pieces = zip(itertools.pairwise(profile.points), profile.inside, strict=False)
+    runs = [(hole, list(run)) for hole, run in itertools.groupby(pieces, lambda piece: (piece[1].bore, piece[1].core))]
     return [
-        f"bored {inside.bore / per:.6g} {unit} from {x / per:.6g} to {end / per:.6g} {unit}"
-        + (f" and filled with {material_name(inside.core)}" if inside.core else "")
-        for ((x, _), (end, _)), inside in pieces
-        if inside.bore
+        f"bored {bore / per:.6g} {unit} from {run[0][0][0][0] / per:.6g} to {run[-1][0][1][0] / per:.6g} {unit}"
+        + (f" and filled with {material_name(core)}" if core else "")
+        for (bore, core), run in runs
+        if bore
     ]
 
 
@@ -270,8 +271,8 @@ def _guess(header: Header, columns: Sequence[ProfileColumn], mark: str) -> str:
         units = [
             unit
             for unit, scale in _USUAL.items()
-            if _LENGTHS[0] <= scale * (max(x) - min(x)) <= _LENGTHS[1]
-            and _WIDTHS[0] <= scale * min(d) <= scale * max(d) <= _WIDTHS[1]
+            if CUE_LENGTH.least <= scale * (max(x) - min(x)) <= CUE_LENGTH.most
+            and CUE_DIAMETER.least <= scale * min(d) <= scale * max(d) <= CUE_DIAMETER.most
         ]
     except ValueError:
         return ""

@@ -45,8 +45,9 @@ class RealRange(NamedTuple):
     others: tuple[str, ...]
 
 
+CUE_LENGTH = RealRange(0.3, 1.6, "m", ("mm", "in"))
 _PLACE = RealRange(0.01, 1.6, "m", ("mm", "in"))
-_DIAMETER = RealRange(0.0075, 0.04, "m", ("mm", "in"))
+CUE_DIAMETER = RealRange(0.0075, 0.04, "m", ("mm", "in"))
 _BORE = RealRange(0.001, 0.03, "m", ("mm", "in"))
 _DOME = RealRange(0.005, 0.02, "m", ("mm", "in"))
 _STIFF = RealRange(5e6, 6e11, "Pa", ("GPa", "MPa"))
@@ -58,15 +59,17 @@ USUAL = {
     ("Material", "G"): _STIFF,
     ("Material", "rho"): _DENSITY,
     ("Segment", "length"): RealRange(0.002, 1.6, "m", ("mm", "in")),
-    ("Segment", "tip_diameter"): _DIAMETER,
-    ("Segment", "butt_diameter"): _DIAMETER,
+    ("Segment", "tip_diameter"): CUE_DIAMETER,
+    ("Segment", "butt_diameter"): CUE_DIAMETER,
     ("Segment", "tip_bore"): _BORE,
     ("Segment", "butt_bore"): _BORE,
     ("Cue", "body_mass"): RealRange(0.05, 0.8, "kg", ("g", "oz")),
     ("LumpedCue", "mass"): RealRange(0.1, 1.0, "kg", ("g", "oz")),
     ("LumpedCue", "end_mass"): RealRange(1e-3, 0.1, "kg", ("g",)),
+    ("Cue", "length"): CUE_LENGTH,
+    ("Stroke", "speed"): RealRange(0.01, 30.0, "m/s", ()),
     ("Ball", "mass"): RealRange(0.08, 0.4, "kg", ("g", "oz")),
-    ("Ball", "radius"): RealRange(0.02, 0.07, "m", ("mm", "in")),
+    ("Ball", "radius"): RealRange(0.02, 0.04, "m", ("mm", "in")),
     ("Tip", "contact_time"): _TIME,
     ("TipDome", "radius"): _DOME,
     ("LeatherTip", "height"): RealRange(0.001, 0.015, "m", ("mm", "in")),

@@ -8,7 +8,7 @@ from math import inf
 from typing import Any, NamedTuple
 
 from cuefem.cue import Segment
-from cuefem.quantity.slips import LIGHTEST
+from cuefem.quantity.slips import LIGHTEST, USUAL
 from cuefem.results.quantities import scaled
 from cuefem.scene import Scene
 
@@ -19,7 +19,7 @@ LONG, STIFF, LIGHT = 0.3, 3e10, 2500.0
 
 
 class UsualNumbers(NamedTuple):
-    """Numbers of a scene (by name, SI), between which two they lie, the unit that shows them, and what else to ask."""
+    """Numbers of a scene (by name, SI), their usual range, the unit that shows them, and what else to ask."""
 
     of: Callable[[Scene], Iterable[tuple[str, Any]]]
     least: float
@@ -27,6 +27,11 @@ class UsualNumbers(NamedTuple):
     unit: str
     ask: str
     blow: bool = True  # whether it matters to a blow alone, and not to how the cue rings
+
+
+def _usual(kind: str, name: str) -> tuple[float, float]:
+    """The range of the one table."""
+    return USUAL[kind, name].least, USUAL[kind, name].most
 
 
 def _of_drawing(name: str, attribute: str) -> Callable[[Scene], Iterable[tuple[str, Any]]]:
@@ -38,12 +43,6 @@ def _diameters(scene: Scene) -> Iterable[tuple[str, float]]:
     for i, segment in enumerate(scene.cue.segments):
         yield f"segments[{i}].tip_diameter", segment.tip_diameter
         yield f"segments[{i}].butt_diameter", segment.butt_diameter
-
-
-def _thin_tip(scene: Scene) -> Iterable[tuple[str, float]]:
-    """The diameter at the tip, if it is no wrong unit's."""
-    ends = [segment.tip_diameter for segment in scene.cue.segments[:1]]
-    return [("diameter at the tip", end) for end in ends if 0.005 <= end <= 0.06]
 
 
 def _solid_tubes(scene: Scene) -> Iterable[tuple[str, float]]:
@@ -64,28 +63,36 @@ def _light_cue(scene: Scene) -> Iterable[tuple[str, float]]:
     return [("mass of the whole cue", float(scene.cue.mass))]
 
 
-BALL, DIAMETERS = "26 to 31 is usual: is that the diameter?", "check the unit of the diameters"
 TUBES = "such shafts are tubes: a bore is drawn in a .toml (`cuefem guide files`)"
 BODY = "400 to 700 is usual: is what is behind the shaft left out (--body-mass, or body_mass in a drawing)?"
 SHOWN = {"mm": 1e3, "g": 1e3}  # how many of the unit an SI unit is, if not one
-# Beyond every cue and every table, yet within a factor of ten: what a unit is wrong by.
-USUAL = (
+ASKED = (
     UsualNumbers(
-        lambda s: [("head-on contact time", s.known_contact_time)], 1e-5, 0.05, "s", "leather's is 0.001 to 0.002 s"
+        lambda s: [("head-on contact time", s.known_contact_time)],
+        *(*_usual("Tip", "contact_time"), "s", "leather's is 0.001 to 0.002 s"),
     ),
-    UsualNumbers(lambda s: [("ball radius", s.ball.radius)], 0.02, 0.04, "mm", BALL),
-    UsualNumbers(lambda s: [("ball mass", s.ball.mass)], 0.08, 0.4, "g", "140 to 210 is usual"),
-    UsualNumbers(lambda s: [("stroke speed", s.stroke.speed)], 0.01, 30.0, "m/s", "0.5 to 12 is usual"),
+    UsualNumbers(
+        lambda s: [("ball radius", s.ball.radius)],
+        *(*_usual("Ball", "radius"), "mm", "26 to 31 is usual: is that the diameter?"),
+    ),
+    UsualNumbers(lambda s: [("ball mass", s.ball.mass)], *_usual("Ball", "mass"), "g", "140 to 210 is usual"),
+    UsualNumbers(lambda s: [("stroke speed", s.stroke.speed)], *_usual("Stroke", "speed"), "m/s", "0.5 to 12 is usual"),
     UsualNumbers(
         lambda s: [("dome radius", s.dome_radius or None)],
-        0.005,
-        0.02,
-        "mm",
-        "9 to 10.6 is usual, a dime's or a nickel's",
+        *(*_usual("TipDome", "radius"), "mm", "9 to 10.6 is usual, a dime's or a nickel's"),
     ),
-    UsualNumbers(_of_drawing("drawn length", "length"), 0.3, 3.0, "mm", "check the unit of the lengths", False),
-    UsualNumbers(_diameters, 0.005, 0.06, "mm", DIAMETERS, False),
-    UsualNumbers(_thin_tip, 0.0075, 0.06, "mm", "8.5 to 14 is usual: is that the radius?", False),
+    UsualNumbers(
+        _of_drawing("drawn length", "length"), *_usual("Cue", "length"), "mm", "check the unit of the lengths", False
+    ),
+    UsualNumbers(
+        _diameters,
+        *(
+            *_usual("Segment", "tip_diameter"),
+            "mm",
+            "check the unit of the diameters; a tip has 8.5 to 14: are these radii?",
+            False,
+        ),
+    ),
     UsualNumbers(
         _of_drawing("drawn mass", "shaft_mass"), LEAST_DRAWN, inf, "g", "check the sizes and the densities", False
     ),
@@ -100,7 +107,7 @@ def unusual(scene: Scene, *, blow: bool = True) -> list[str]:
 
     blow: whether ball, tip, stroke and the mass of the whole cue count.
     """
-    asked = [usual for usual in USUAL if blow or not usual.blow]
+    asked = [usual for usual in ASKED if blow or not usual.blow]
     return [*filter(None, map(lambda usual: _beyond(usual, scene), asked)), *_shape(scene.cue.segments)]
 
 

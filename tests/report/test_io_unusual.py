@@ -85,7 +85,10 @@ def test_a_slip_is_remarked(tmp_path: Path, old: str, new: str, line: str) -> No
             ["drawn length 0.737", "segments[0].tip_d", "drawn"],
         ),
         ("[mm],diameter [mm]\n0,21\n487,12.9\n737,12.5", ["the tip is thicker than the butt, 21 and 12.5 mm; is the"]),
-        ("[mm],diameter [mm]\n0,6.4\n737,10.7", ["diameter at the tip 6.4 mm; 8.5 to 14 is usual: is that the rad"]),
+        (
+            "[mm],diameter [mm]\n0,6.4\n737,10.7",
+            ["segments[0].tip_diameter 6.4 mm; check the unit of the diameters; a tip has 8.5 to 14: are these radii?"],
+        ),
         ("[m],diameter [mm]\n0,12\n700,21", ["drawn length 700000 mm", "mass of the whole cue 108."]),
         ("[mm],diameter [cm]\n0,12\n700,21", ["segments[0].tip_diameter 120 mm", "mass of the whole cue 11."]),
     ],
