@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from cuefem.cue import Material, Segment
 from cuefem.quantity.fields import Number, OutOfBounds, Quantity, check_fields, quantities
+from cuefem.quantity.units import number
 
 INTERVALS = ["(0, inf)", "[0, inf)", "[0, inf]", "[0, 1]", "(-1, 1)", "(-inf, inf)"]
 
@@ -91,3 +92,10 @@ def test_bounds_that_hang_on_another_field_are_told_in_both_ways() -> None:
     with pytest.raises(OutOfBounds, match=words) as error:
         Segment(0.7, 0.012, 0.021, Material(12.6e9, 0.84e9, 782.0), tip_bore=0.013)
     assert error.value.in_words == "must be at least 0 and less than 12 mm, its outer diameter; got 13 mm"
+
+
+@pytest.mark.parametrize(("text", "inches"), [("5/16 in", 0.3125), ("1 1/4 in", 1.25), ('29 1/2"', 29.5)])
+def test_a_fraction_is_a_number(text: str, inches: float) -> None:
+    assert number(text, "m") == pytest.approx(25.4e-3 * inches, rel=1e-15)
+    with pytest.raises(ValueError, match="needs a unit"):
+        Quantity("m").read(text.rstrip('in" '))

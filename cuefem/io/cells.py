@@ -5,10 +5,10 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Iterable, Sequence
-from decimal import Decimal
 from pathlib import Path
 
 from cuefem.io.errors import LARGEST_TEXT, InputError, read_bytes, shown
+from cuefem.quantity.units import FRACTION, decimal
 
 LONGEST_LINE = 10_000  # letters of a line
 
@@ -19,10 +19,9 @@ _MARKS = {b"\xef\xbb\xbf": "utf-8-sig", b"\xff\xfe": "utf-16", b"\xfe\xff": "utf
 _COMMENTS = ("#", "//")
 _SEPARATORS = "\t;|,"  # the first of them that stands in most lines
 _ANY = re.compile(r"[\t;|,]")
-_FRACTION = re.compile(r"(?:(\d+)\s+)?(\d+)\s*/\s*([1-9]\d*)")
 _GAPS = re.compile(r"(?<=\d)[ '](?=\d{3}(?!\d))")  # 1 470 and 1'470
 _PLAIN = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?|[+-]?(?:inf|nan)", re.IGNORECASE)
-_NUMBER = re.compile(rf"(?:{_FRACTION.pattern}|[+-]?[\d.,](?:[\d.,' ]*[\d.,])?(?:e[+-]?\d+)?|[+-]?(?:inf|nan))", re.I)
+_NUMBER = re.compile(rf"(?:{FRACTION.pattern}|[+-]?[\d.,](?:[\d.,' ]*[\d.,])?(?:e[+-]?\d+)?|[+-]?(?:inf|nan))", re.I)
 
 
 def read_rows(path: Path) -> list[Row]:
@@ -111,9 +110,8 @@ def decimal_mark(numbers: Sequence[str]) -> str:
 
 def plain(number: str, mark: str) -> str:
     """A number as Python writes it, from one with this decimal mark; ValueError if it has the other mark or is none."""
-    if fraction := _FRACTION.fullmatch(number):
-        whole, above, below = fraction.groups(default="0")
-        return str(Decimal(whole) + Decimal(above) / Decimal(below))
+    if FRACTION.fullmatch(number):
+        return str(decimal(number))
     other = "," if mark == "." else "."
     number = _GAPS.sub("", number)
     if other in number:

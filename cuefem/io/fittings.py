@@ -12,8 +12,6 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 from cuefem.cue import SOFT, Cue, Material, Segment
-from cuefem.io.cells import parted, plain
-from cuefem.io.columns import unit_of
 from cuefem.materials import material as material_of
 from cuefem.parts import LONGEST_FERRULE, PARTS, SAME, Bore, Layout, split_at
 from cuefem.quantity.units import number
@@ -166,11 +164,10 @@ def _bored(scene: Any, text: str) -> Any:
 
 
 def _length(name: str, text: str) -> float:
-    """A length of more than nothing, m; fractions such as 1/4 in are read too."""
-    digits, unit = parted(text.strip())
+    """A length of more than nothing, m; of a text such as "25 mm" or "1/4 in"."""
     length = math.nan
     with suppress(ValueError):
-        length = number(f"{plain(digits, '.')} {unit_of(unit)}", "m")
+        length = number(text, "m")
     if not 0 < length < math.inf:
         raise ValueError(
             f'{name} must have lengths above 0 with a unit, such as "25 mm" or "1 in"; got {text.strip()!r}'

@@ -20,6 +20,7 @@ from cuefem.quantity.units import (
     LONGEST_TEXT,
     UNITS,
     UnknownUnit,
+    decimal,
     example_of,
     kind_of,
     number,
@@ -122,7 +123,7 @@ class Quantity:
 
     def _no_unit(self, value: Any, digits: str) -> str:
         """What is said of a value that is no number with a unit."""
-        if digits and math.isfinite(float(digits)):
+        if digits and math.isfinite(float(decimal(digits))):
             named = " or ".join(f'"{text}"' for text in BOTH.get(self.unit, example_of(self.unit)[1:]))
             return f"needs a unit: {named}{self._named}; got {shown(value)}"
         if digits[-3:].lower() in ("inf", "nan"):

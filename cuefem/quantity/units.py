@@ -78,7 +78,11 @@ UNITS = {
     for name in names
 }
 
-_TEXT = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[+-]?[0-9]+)?|[+-]?inf|nan)\s*(.*?)\s*", re.IGNORECASE)
+FRACTION = re.compile(r"(?:([0-9]+)\s+)?([0-9]+)\s*/\s*([1-9][0-9]*)")  # 5/16 and 1 1/4
+_TEXT = re.compile(
+    rf"\s*({FRACTION.pattern}|[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[+-]?[0-9]+)?|[+-]?inf|nan)\s*(.*?)\s*",
+    re.IGNORECASE,
+)
 LONGEST_TEXT = 200  # letters of a number and its unit: beyond it matching takes the square of them
 _SIGNS = re.compile(r"\s*([*/·])\s*|\s+")
 _FACTOR = re.compile(r"([^\W\d_]+|[°\"″”']+)(?:\^(-?[0-9])|([23]))?")
@@ -158,16 +162,24 @@ def units_like(unit: str) -> list[str]:
 def parted(text: str) -> tuple[str, str]:
     """The number and the unit of a text, each "" if it has none."""
     parts = _TEXT.fullmatch(text) if len(text) <= LONGEST_TEXT else None
-    return (parts[1], parts[2]) if parts else ("", "")
+    return (parts[1], parts[5]) if parts else ("", "")
+
+
+def decimal(digits: str) -> Decimal:
+    """The number that digits or a fraction say."""
+    if fraction := FRACTION.fullmatch(digits):
+        whole, above, below = fraction.groups(default="0")
+        return Decimal(whole) + Decimal(above) / Decimal(below)
+    return Decimal(digits)
 
 
 def number(text: str, unit: str) -> float:
-    """The number of ``unit`` that ``text`` ("12 mm") says; ValueError if its unit is missing, wrong or unknown."""
+    """The number of ``unit`` that ``text`` ("12 mm", "5/16 in") says; ValueError if its unit is missing or wrong."""
     digits, own = parted(text)
     if not own:
         raise ValueError("a number and a unit")
     try:
-        return float(Decimal(digits) * scale(own, unit))
+        return float(decimal(digits) * scale(own, unit))
     except (DecimalException, OverflowError):
         return math.nan  # beyond every decimal: in no interval
 
