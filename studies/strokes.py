@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
+from itertools import pairwise
 from math import degrees
+
+import numpy as np
 
 import cuefem as cf
 from studies.pages import STUDIES
@@ -34,6 +37,33 @@ def hollow(bore: float) -> cf.Cue:
     found = cue("pool_hollow")
     drilled = (replace(s, tip_bore=bore, butt_bore=bore) if s.tip_bore else s for s in found.segments)
     return replace(found, segments=tuple(drilled))
+
+
+def wood(draw: np.random.Generator) -> cf.Material:
+    """A wood drawn at random."""
+    E = draw.uniform(9e9, 18e9)
+    return cf.Material(E, E / draw.uniform(10, 20), draw.uniform(450, 1000))
+
+
+def random_cue(draw: np.random.Generator, kind: str | None = None) -> cf.Cue:
+    """A cue drawn at random: of one to four pieces, of wood or a tube of carbon, some bored, with a leather or not."""
+    u = draw.uniform
+    kind = kind or str(draw.choice(["none", "leather", "leather and ferrule", "ferrule"]))
+    timber, tube = wood(draw), draw.random() < 0.25
+    front, back, length, power, wall = u(0.010, 0.0135), u(0.019, 0.024), u(0.65, 0.8), u(1, 2.5), u(0.001, 0.002)
+    carbon, foam = cf.Material(u(40e9, 130e9), 5e9, 1550.0), cf.Material(7e7, 2.5e7, 60.0)
+    leather, plastic = cf.Material(u(5e7, 4e8), 4e7, 1000.0), cf.Material(u(2e9, 10e9), 2e9, 1200.0)
+    head = [cf.Segment(u(0.003, 0.012), front, front, leather)] if "leather" in kind else []
+    if "ferrule" in kind:
+        head.append(cf.Segment(u(0.005, 0.03), front, front, plastic, 0.55 * front, 0.55 * front, core=timber))
+    ends = np.r_[0, np.sort(u(0.1, 0.9, draw.integers(0, 4))), 1]
+    depth = u(0.3, 0.65) * front if draw.random() < 0.3 else 0.0  # of a bore, as wide, in the first piece
+    shaft = []
+    for i, (first, last) in enumerate(pairwise(ends)):
+        a, b = (front + (back - front) * x**power for x in (first, last))
+        bores = (a - 2 * wall, b - 2 * wall, foam) if tube else (depth, depth, None) if i == 0 else (0.0, 0.0, None)
+        shaft.append(cf.Segment(length * (last - first), a, b, carbon if tube else timber, *bores))
+    return cf.Cue((*head, *shaft), u(0.3, 0.5))
 
 
 def scene(struck: cf.Cue | cf.LumpedCue, contact_time: float = 1e-3, offset: float = 0.0) -> cf.Scene:

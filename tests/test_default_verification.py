@@ -13,7 +13,7 @@ from cuefem.tip_modes import tip_modes_from
 from tests.helpers.cues import LEATHER, MAPLE, kim, scene
 
 mpl.use("Agg")
-from studies.accuracy.accuracy import random_cue
+from studies.strokes import random_cue
 
 BRASS = Material(1e11, 3.7e10, 8500.0)
 MANY = 200  # modes of a reference

@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -34,37 +33,10 @@ EFFECTS: tuple[tuple[str, tuple[cf.Effect, ...]], ...] = (
 )
 
 
-def wood(draw: np.random.Generator) -> cf.Material:
-    """A wood drawn at random."""
-    E = draw.uniform(9e9, 18e9)
-    return cf.Material(E, E / draw.uniform(10, 20), draw.uniform(450, 1000))
-
-
-def random_cue(draw: np.random.Generator, kind: str | None = None) -> cf.Cue:
-    """A cue drawn at random: of one to four pieces, of wood or a tube of carbon, some bored, with a leather or not."""
-    u = draw.uniform
-    kind = kind or str(draw.choice(["none", "leather", "leather and ferrule", "ferrule"]))
-    timber, tube = wood(draw), draw.random() < 0.25
-    front, back, length, power, wall = u(0.010, 0.0135), u(0.019, 0.024), u(0.65, 0.8), u(1, 2.5), u(0.001, 0.002)
-    carbon, foam = cf.Material(u(40e9, 130e9), 5e9, 1550.0), cf.Material(7e7, 2.5e7, 60.0)
-    leather, plastic = cf.Material(u(5e7, 4e8), 4e7, 1000.0), cf.Material(u(2e9, 10e9), 2e9, 1200.0)
-    head = [cf.Segment(u(0.003, 0.012), front, front, leather)] if "leather" in kind else []
-    if "ferrule" in kind:
-        head.append(cf.Segment(u(0.005, 0.03), front, front, plastic, 0.55 * front, 0.55 * front, core=timber))
-    ends = np.r_[0, np.sort(u(0.1, 0.9, draw.integers(0, 4))), 1]
-    depth = u(0.3, 0.65) * front if draw.random() < 0.3 else 0.0  # of a bore, as wide, in the first piece
-    shaft = []
-    for i, (first, last) in enumerate(pairwise(ends)):
-        a, b = (front + (back - front) * x**power for x in (first, last))
-        bores = (a - 2 * wall, b - 2 * wall, foam) if tube else (depth, depth, None) if i == 0 else (0.0, 0.0, None)
-        shaft.append(cf.Segment(length * (last - first), a, b, carbon if tube else timber, *bores))
-    return cf.Cue((*head, *shaft), u(0.3, 0.5))
-
-
 def default_errors() -> dict[str, np.ndarray]:
     """Relative errors of the default by quantity, over random cues and those of meshes/, three strokes each."""
     draw = np.random.default_rng(SEED)
-    cues = [*map(strokes.cue, strokes.NAMES), *(random_cue(draw) for _ in range(RANDOM))]
+    cues = [*map(strokes.cue, strokes.NAMES), *(strokes.random_cue(draw) for _ in range(RANDOM))]
     found: dict[str, list[float]] = {"squirt": [], "squirt, axial waves": [], "end mass, stick": []}
     found |= {"end mass, force": [], "squirt by resolve to 1e-3": []}
     for cue in cues:
@@ -87,10 +59,10 @@ def batch_errors() -> dict[str, np.ndarray]:
     for i, kind in enumerate(("none", "ferrule", "leather and ferrule")):
         cues = []
         for _ in range(WOODS):
-            head = random_cue(draw, kind).segments[:i]
+            head = strokes.random_cue(draw, kind).segments[:i]
             front, butt = draw.uniform(0.009, 0.014), draw.uniform(0.018, 0.024)
             front = head[0].tip_diameter if head else front
-            body = cf.Segment(draw.uniform(0.65, 0.8), front, butt, wood(draw))
+            body = cf.Segment(draw.uniform(0.65, 0.8), front, butt, strokes.wood(draw))
             cues.append(cf.Cue((*head, body), draw.uniform(0.25, 0.6)))
         batch = cf.CueBatch.of(cues)
 

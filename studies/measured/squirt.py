@@ -1,4 +1,4 @@
-"""Does the model give the squirt and the added-mass curve that were measured on real cues, with nothing fitted?
+"""Does the model give the squirt that was measured on real cues, with nothing fitted?
 
 Three models of one stroke: bare (a spring along the normal, 1.1 ms), patchwork (the same with a dome of 9.5 mm and
 Mindlin's ratio of shear, 0.75), and the whole stroke (LeatherTip of 6 mm, 140 MPa, axial waves, axial force on the bent
@@ -28,7 +28,6 @@ from studies.strokes import INCH, cue, hollow, pool_scene, squirt, whole
 TIME, DATA = 1.1e-3, pages.STUDIES / "measured" / "data"
 MODELS = {"bare": (), "patchwork": (strokes.DOME, strokes.SHEAR), "whole stroke": None}
 WHOLE = "whole stroke"
-INCHES = (2, 3, 4, 5, 6, 6.5, 7, 8, 9, 10)
 SCATTER = 0.05  # deg, assumed of a value of the series of 2007
 GRID = (0.08, 0.16, 0.24, 0.32, 0.40, 0.47)
 
@@ -174,35 +173,8 @@ def asked_bore(E: float) -> float:
     return 1e3 * float(brentq(lambda bore: stiffness(bore) - 3480, 4e-3, 11.5e-3))
 
 
-@cache
-def with_mass(model: str, inches: float, mass: float = 11e-3) -> float:
-    """Squirt of the maple shaft with a mass on it over that without it, at b/R 0.375."""
-    row = measurements()[4]
-    bare = scene(row, model)
-    ahead = cue("pool_maple").segments[0].length if model == WHOLE else 0.0  # the leather is not in the drawing
-    lump = cf.PointMass(inches * INCH - ahead, mass)
-    return squirt(replace(bare, effects=(*bare.effects, lump))) / squirt(bare)
-
-
-@cache
-def curve(mass: str) -> dict[float, float]:
-    """Measured squirt over its baseline of 2.30 deg by inches."""
-    rows = read("added_mass_players_feb2008")
-    return {float(r["distance_in"]): float(r["squirt_deg"]) / 2.30 for r in rows if r["mass_g"] == mass}
-
-
-def mass_table() -> str:
-    """Measured and computed ratios of 11 g."""
-    told = {x: float(np.interp(x, list(curve("11")), list(curve("11").values()))) for x in INCHES}
-    rows = [[f"{x:g} in", f"{told[x]:.2f}", *(f"{with_mass(m, x):.2f}" for m in MODELS)] for x in INCHES]
-    miss = [f"{pages.rms(with_mass(m, x) - told[x] for x in INCHES):.2f}" for m in MODELS]
-    return table(["11 g at", "measured", *MODELS], [*rows, ["root mean square of the difference", "", *miss]])
-
-
 def text() -> str:
     robot, solid, soft = measurements()[3], measurements()[0], measurements()[5]
-    three = [with_mass(WHOLE, x, 3e-3) - 1 for x in (2, 4)]
-    eleven = [with_mass(WHOLE, x) - 1 for x in (2, 4)]
     bores = ", ".join(f"{asked_bore(E):.1f} mm for {E / 1e9:g} GPa" for E in (10.8e9, 13.9e9, 16.9e9))
     return pages.page(
         "Measured squirt, nothing fitted",
@@ -210,7 +182,8 @@ def text() -> str:
         f"At b/R 0.375 the whole stroke gives {computed(robot, WHOLE):.2f}° (a robot measured 2.30 and 2.43°); over "
         f"seven published values it is off by {off(WHOLE)} (patchwork {off('patchwork')}, bare beam {off('bare')}). A "
         f"low-deflection shaft has {computed(soft, WHOLE) / computed(solid, WHOLE):.2f} of a maple shaft's squirt "
-        "(measured 0.72). It fails in the series of 2007, for a break cue, and in how much 11 g near the tip add.",
+        "(measured 0.72). It fails in the series of 2007 and for a break cue. [Masses on the shaft](added_mass.md) "
+        "have a page of their own.",
         squirt_table(),
         "The two series contradict each other: read at b/R 0.375, that of 2007 gives 1.87°, and the robot measured "
         "23 to 30 % more with the same cue. The article shows 0.55 to 1.13° at b/R 0.187.",
@@ -226,36 +199,22 @@ def text() -> str:
         bore_table(),
         "The last 8 in of a shaft that is taken for this one have 3480 N/m (data/static_stiffness.csv): a bore of "
         f"{bores}.",
-        "## 11 g on the maple shaft: squirt over that without them",
-        mass_table(),
-        "The dip at 6 to 9 in is a bending wave that the mass reflects; it comes earlier in shorter contacts. 3 g "
-        f"add {three[0] / eleven[0]:.2f} to {three[1] / eleven[1]:.2f} of what 11 g add at 2 and 4 in, where 0.51 to "
-        "0.80 was measured: the model fails there, or the label or the digitised curve is wrong.",
     )
 
 
 def draw(axes: Any) -> None:
-    """Squirt over the offset, and the curve of added masses."""
-    left, right = axes
-    offsets, places = np.linspace(0.05, 0.5, 12), np.linspace(0.5, 10.5, 24)
+    """Squirt over the offset."""
+    offsets = np.linspace(0.05, 0.5, 12)
     for i, model in enumerate(MODELS):
-        left.plot(
-            offsets,
-            [computed(measurements()[0]._replace(offset=float(b)), model) for b in offsets],
-            f"C{i}",
-            label=model,
-        )
-        right.plot(places, [with_mass(model, float(x)) for x in places], f"C{i}", label=model)
+        rows = [measurements()[0]._replace(offset=float(b)) for b in offsets]
+        axes.plot(offsets, [computed(row, model) for row in rows], f"C{i}", label=model)
     for some, mark in ((measurements()[:3], "ks"), (measurements()[3:5], "ko")):
-        left.plot([r.offset for r in some], [r.squirt for r in some], mark, label="robot" if mark == "ko" else "2007")
-    right.plot(list(curve("11")), list(curve("11").values()), "ko", label="measured, 11 g")
-    left.set(xlabel="offset b/R", ylabel="squirt, degrees", title="maple shaft")
-    right.set(xlabel="inches from the tip", ylabel="squirt over that without the mass", title="11 g on the shaft")
-    for axis in axes:
-        axis.legend(fontsize=8)
+        axes.plot([r.offset for r in some], [r.squirt for r in some], mark, label="robot" if mark == "ko" else "2007")
+    axes.set(xlabel="offset b/R", ylabel="squirt, degrees", title="maple shaft")
+    axes.legend(fontsize=8)
 
 
-STUDY = pages.Study(__file__, text, {"squirt.svg": pages.Figure(draw, (1, 2), (10, 4.4))})
+STUDY = pages.Study(__file__, text, {"squirt.svg": pages.Figure(draw)})
 
 if __name__ == "__main__":
     STUDY.write()

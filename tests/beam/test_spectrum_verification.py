@@ -17,7 +17,7 @@ from cuefem.effects import acting_on_cue
 from tests.helpers.cues import kim, pool, soft_tip, stiff_ferrule
 
 mpl.use("Agg")
-from studies.accuracy.accuracy import random_cue
+from studies.strokes import random_cue
 
 COUNT = 30
 

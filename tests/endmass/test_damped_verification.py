@@ -15,7 +15,7 @@ from cuefem.tip_modes import Solved
 from tests.helpers.cues import kim, scene
 
 mpl.use("Agg")
-from studies.accuracy.accuracy import random_cue
+from studies.strokes import random_cue
 
 
 @pytest.mark.parametrize("effects", [(), (cf.StructuralDamping(0.02),), (cf.PointMass(0.3, 0.01),)])

@@ -12,7 +12,7 @@ from studies import pages
 from studies.pages import STUDIES, Study, disagreements
 
 # Studies whose page takes more than 20 s of a processor: only `.ci/nightly` makes them again.
-NIGHTLY = ("accuracy", "leather", "squirt", "solid", "convergence")
+NIGHTLY = ("accuracy", "leather", "solid")
 PROGRAMS = sorted(path for path in STUDIES.rglob("*.py") if re.search(r"^STUDY = ", path.read_text("utf-8"), re.M))
 STUDY: dict[str, Study] = {
     path.stem: import_module(".".join(path.relative_to(STUDIES.parent).with_suffix("").parts)).STUDY
