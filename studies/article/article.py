@@ -49,9 +49,6 @@ def input_table() -> str:
 
         return replace(usual, cue=replace(usual.shaft, segments=tuple(map(stiffer, usual.shaft.segments))))
 
-    def tip(**fields: float) -> cf.Scene:
-        return replace(usual, tip=replace(usual.tip, **fields))  # type: ignore[arg-type]
-
     def leather(**fields: float) -> cf.Scene:
         return whole(cue("pool_maple"), **fields)
 
@@ -60,7 +57,9 @@ def input_table() -> str:
         "height of the tip, 5 and 7 mm": (leather(height=5e-3), leather(height=7e-3)),
         "dome, 8.96 mm (dime) and 10.6 mm (nickel)": (leather(dome_radius=8.955e-3), leather(dome_radius=10.605e-3)),
         "E of the leather, 70 and 280 MPa": (leather(E=70e6), leather(E=280e6)),
-        "restitution of the tip, 0.58 and 0.68": (tip(restitution=0.58), tip(restitution=0.68)),
+        "restitution of the tip, 0.58 and 0.68": tuple(
+            replace(usual, tip=replace(usual.tip, restitution=e)) for e in (0.58, 0.68)
+        ),
         "tangential restitution, 0.9 and 0.95": (leather(surface_restitution=0.9), leather(surface_restitution=0.95)),
     }
     rows = [[name, *(f"{100 * (squirt(s) / squirt(usual) - 1):+.1f} %" for s in pair)] for name, pair in pairs.items()]
@@ -188,10 +187,7 @@ def draw_stroke(panels: Any) -> None:
         axis.legend(fontsize=8)
 
 
-FIGURES = {
-    "article_stroke.svg": pages.Figure(draw_stroke, (1, 2), (9.6, 3.6)),
-    "article.svg": pages.Figure(draw),
-}
+FIGURES = {"article_stroke.svg": pages.Figure(draw_stroke, (1, 2), (9.6, 3.6)), "article.svg": pages.Figure(draw)}
 STUDY = pages.Study(__file__, text, FIGURES)
 
 if __name__ == "__main__":

@@ -142,7 +142,7 @@ def text() -> str:
         shaft_table(),
         f"Least squirt: {sizes}; limits: stiffness of the solid shaft, walls of 2 mm, "
         + ", ".join(f"{1e3 * low:g} to {1e3 * high:g}" for low, high in BOUNDS)
-        + " mm. `cuefem optimize studies/design/optimum.toml` finds such shafts for a bare tip.",
+        + " mm. `cuefem study studies/design/optimum.toml` finds such shafts for a bare tip.",
     )
 
 

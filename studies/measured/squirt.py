@@ -73,9 +73,9 @@ def scene(row: Measurement, model: str) -> cf.Scene:
     if model != WHOLE:
         found = pool_scene(shaft(row.shaft), 0.9e-3 if hard else TIME, row.offset, MODELS[model] or ())
         return replace(found, tip=replace(found.tip, restitution=0.85)) if hard else found
-    found = whole(shaft(row.shaft), row.offset)
+    phenolic = {"nu": 0.35, "rho": material("phenolic").rho} if hard else {}
+    found = whole(shaft(row.shaft), row.offset, **phenolic)
     if hard:
-        found = whole(shaft("break"), row.offset, nu=0.35, rho=material("phenolic").rho)
         found = replace(found, tip=replace(found.tip, restitution=found.tip.restitution + 0.12))
         E = cf.leather_modulus(found, 0.9e-3)
         found = replace(found, effects=(replace(found.effects[0], E=E), *found.effects[1:]))
@@ -132,10 +132,8 @@ def zero_table() -> str:
     def left(squirts: Any) -> float:
         return float(np.sum(((squirts - told) / SCATTER) ** 2))
 
-    def moved(zero: float) -> float:
-        return left(there([r.offset - zero / strokes.POOL.radius for r in series]))
-
-    zero = minimize_scalar(moved, bounds=(0, 5e-3), method="bounded")
+    offsets = np.array([r.offset for r in series])
+    zero = minimize_scalar(lambda z: left(there(offsets - z / strokes.POOL.radius)), bounds=(0, 5e-3), method="bounded")
     angle, scale = float(np.mean(told - own)), float(told @ own / (own @ own))
     found = {"nothing": (0.0, left(own)), "zero of the angle, deg": (angle, left(own + angle))}
     found |= {"zero of the offset, mm": (-1e3 * zero.x, zero.fun), "scale of the angle": (scale, left(scale * own))}
@@ -148,10 +146,8 @@ def bore_table() -> str:
     solid = {m: computed(measurements()[0], m) for m in MODELS}
     rows = []
     for bore in (6e-3, *strokes.BORES):
-        scenes = {m: scene(measurements()[5], m) for m in MODELS}
-        drawn = {
-            m: replace(s, cue=hollow(bore)) if m != WHOLE else whole(hollow(bore), 0.453) for m, s in scenes.items()
-        }
+        drawn = {m: pool_scene(hollow(bore), TIME, 0.453, effects or ()) for m, effects in MODELS.items()}
+        drawn[WHOLE] = whole(hollow(bore), 0.453)
         rows.append([f"{1e3 * bore:g} mm", *(f"{squirt(s) / solid[m]:.2f}" for m, s in drawn.items())])
     return table(["bore", *MODELS], rows)
 
