@@ -26,6 +26,7 @@ from cuefem.io.ready import PRESETS, Preset, ready_cue
 from cuefem.materials import MATERIALS, material
 from cuefem.parts import with_material
 from cuefem.scene import Scene
+from cuefem.vary import varied
 
 TOLD = ("begins", "ferrule", "bore")  # of `FITTINGS`, what the page asks of a shape
 _CUE = re.compile(r"""^\s*cue\s*=\s*["']([^"'\n]+)["']""", re.MULTILINE)
@@ -73,6 +74,9 @@ class PresetMenu:
                     Markup(f"<span>{escape(preset.name)}</span><small>{measured}</small>")
 
 
+PER_UNIT = {"g": 1e-3, "oz": 28.349523125e-3}  # kg
+
+
 class ShapeDialog:
     """Asks for what a shape cannot say: the weight of the rest, the material, the game."""
 
@@ -89,6 +93,10 @@ class ShapeDialog:
             self.weight = ui.input("Weight", value="").props("outlined dense inputmode=decimal autocomplete=off")
             self.which = ui.radio({"rest": "of the rest of the cue", "whole": "of the whole cue"}, value="whole")
             self.which.props("inline dense")
+            self.shaft = ui.input("Weight of the shaft", value="").classes("wide-field")
+            self.shaft.props("outlined dense inputmode=decimal autocomplete=off").tooltip(
+                "With its tip, if you have a scale: it sets the density of the wood"
+            )
             self.material = ui.select(list(MATERIALS), value=DEFAULT_MATERIAL, label="Material of the shaft")
             self.material.props("outlined dense").classes("wide-field")
             self.told = {name: ui.input(FITTINGS[name].title).classes("wide-field") for name in TOLD}
@@ -120,6 +128,8 @@ class ShapeDialog:
         self.facts.set_content(f"<p>{escape(name)}: {' long, tip '.join(sizes)} wide. How heavy is the cue?</p>")
         self.weight.props(f'label="Weight, {self.unit}"')
         self.weight.set_value("")
+        self.shaft.props(f'label="Weight of the shaft with its tip, {self.unit}, if known"')
+        self.shaft.set_value("")
         self.beside.say("")
         self.dialog.open()
 
@@ -138,22 +148,26 @@ class ShapeDialog:
 
     def _scene(self) -> Scene:
         assert self.cue is not None
-        try:
-            weight = typed(str(self.weight.value), self.unit)
-        except ValueError as error:
-            raise ValueError(f"the weight {error}") from None
-        kilograms = weight * {"g": 1e-3, "oz": 28.349523125e-3}[self.unit]
+        kilograms = self._kilograms(self.weight, "the weight")
+        shaft = self._kilograms(self.shaft, "the weight of the shaft") if str(self.shaft.value).strip() else None
         if self.scene is not None:
             cue = self.cue
         else:
             told = {name: field.value.strip() or None for name, field in self.told.items()}
             wood = material(self.material.value)
             cue = fitted(with_material(self.cue, material(DEFAULT_MATERIAL), wood), **told)
-        rest = kilograms - (cue.shaft_mass if self.which.value == "whole" else 0.0)
+        drawn = cue.shaft_mass if shaft is None else shaft
+        rest = kilograms - (drawn if self.which.value == "whole" else 0.0)
         if rest < 0:
-            drawn = cue.shaft_mass / kilograms * weight
-            raise ValueError(
-                f"the whole cue must weigh more than what is drawn, {drawn:.4g} {self.unit}; got {weight:g}"
-            )
+            least, got = (f"{mass / PER_UNIT[self.unit]:.4g} {self.unit}" for mass in (drawn, kilograms))
+            raise ValueError(f"the whole cue must weigh more than its shaft, {least}; got {got}")
         whole = replace(cue, body_mass=float(f"{rest:.12g}"))
-        return usual_scene(whole, self.game.value) if self.scene is None else replace(self.scene, cue=whole)
+        scene = usual_scene(whole, self.game.value) if self.scene is None else replace(self.scene, cue=whole)
+        return scene if shaft is None else varied(scene, {"shaft mass": shaft})
+
+    def _kilograms(self, field: Any, name: str) -> float:
+        """What a field says, kg; ValueError that names it."""
+        try:
+            return typed(str(field.value), self.unit) * PER_UNIT[self.unit]
+        except ValueError as error:
+            raise ValueError(f"{name} {error}") from None
