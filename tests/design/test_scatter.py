@@ -97,7 +97,7 @@ def test_spread_is_that_of_plain_monte_carlo() -> None:
     """Independent draws of NumPy, correlated by NumPy, of a shaft's wood, bore and contact time."""
     vary = (replace(VARY[0], range=Normal(1.0, 0.2, logarithmic=True)), VARY[1], VARY[3])
     study = Study(BASE, vary, (Response.of("end_mass"), Response.of("squirt_slope")), at=COARSE)
-    found = cf.study(Scatter(study, {("E", "rho"): 0.6}, count=1024, seed=1)).spread
+    found = cf.study(Scatter(study, {("E", "rho"): 0.6}, count=256, seed=1)).spread
     random, count = np.random.default_rng(9), 2048
     logs = random.multivariate_normal([0, 0], [[0.04, 0.012], [0.012, 0.01]], count)
     values = zip(*np.exp(logs).T.tolist(), random.uniform(0.8e-3, 1.5e-3, count).tolist(), strict=True)
@@ -113,13 +113,13 @@ def test_indices_by_their_definition() -> None:
     """The variance of means: of the end mass over a grid of contact times, wood drawn anew for each."""
     wood, time = VARY[1], Vary(("tip.contact_time",), Levels((0.8e-3, 1.0e-3, 1.3e-3, 1.5e-3)), "time")
     study = Study(BASE, (wood, time), (Response.of("end_mass"),), at=COARSE)
-    found = cf.study(Scatter(study, count=1024, seed=2)).drivers
+    found = cf.study(Scatter(study, count=256, seed=2)).drivers
     shares = (np.arange(64) + 0.5) / 64
     grid = [study.scene((wood.range.quantile(u), t)) for t in time.range.ends for u in shares]
     table = evaluate(grid, study.responses, at=COARSE).values.reshape(4, 64)
     by_time, by_wood = table.mean(axis=1).var() / table.var(), table.mean(axis=0).var() / table.var()
-    assert found.first[:, 0] == pytest.approx([by_wood, by_time], abs=0.02)
-    assert found.total[:, 0] == pytest.approx([1 - by_time, 1 - by_wood], abs=0.02)
+    assert found.first[:, 0] == pytest.approx([by_wood, by_time], abs=0.04)
+    assert found.total[:, 0] == pytest.approx([1 - by_time, 1 - by_wood], abs=0.04)
 
 
 @pytest.mark.parametrize(("one", "other", "third"), [(0.5, -0.3, 0.5), (-0.55, 0.55, 0.1)])
