@@ -1,0 +1,109 @@
+"""Reads the stored answers of the former engine (`make.py`): strikes with their inputs, end masses and frequencies.
+
+A strike is stored with the numbers that its contact is given: the tip modes, and the terms of a leather tip's law. So a
+test compares the contact alone; a change of mesh or of the tip's elasticity does not reach it.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+from unittest import mock
+
+import numpy as np
+
+import cuefem as cf
+from cuefem.beam.tip import TipModes, lumped_tip_modes
+from cuefem.effects import leather
+from cuefem.effects.leather_law import LeatherLaw
+from cuefem.scene import Scene
+
+DATA = Path(__file__).parent
+WOOD = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
+EFFECTS = {
+    kind.__name__: kind
+    for kind in (
+        *(cf.TipDome, cf.TipShear, cf.PowerLawTip, cf.RollingContact, cf.SecondHit, cf.Elevation, cf.LeatherTip),
+        *(cf.AxialWaves, cf.GeometricStiffness, cf.StructuralDamping),
+    )
+}
+
+
+@cache
+def strikes() -> tuple[dict[str, Any], ...]:
+    """The stored strikes, each a row: kind, inputs, answers."""
+    return tuple(json.loads((DATA / "strikes.json").read_text()))
+
+
+@cache
+def tips() -> dict[str, TipModes]:
+    """The stored tip modes by name."""
+    with np.load(DATA / "tip_modes.npz") as stored:
+        parts = {name: stored[name].astype(float) for name in stored}
+    names = {name.split(":")[0] for name in parts}
+    return {n: rebuilt({key: parts[f"{n}:{key}"] for key in PARTS if f"{n}:{key}" in parts}) for n in names}
+
+
+PARTS = ("omega", "amplitude", "approach", "rotation", "damping", "radiation", "geometric")
+
+
+def rebuilt(parts: dict[str, Any]) -> TipModes:
+    """Tip modes from their parts, of which the matrices are rows whose squares add up to them."""
+    squares = {name: rows.T @ rows for name in PARTS[4:] if (rows := parts.get(name)) is not None}
+    return TipModes(*(parts[name] for name in PARTS[:4]), **squares)
+
+
+def scene_of(row: dict[str, Any]) -> Scene:
+    """The scene of a row; its cue has the mass and the tip's diameter of the one that was struck, and nothing else."""
+    numbers = row["scene"]
+    if "lumped" in numbers:
+        cue: cf.Cue | cf.LumpedCue = cf.LumpedCue(*numbers["lumped"])
+    else:
+        diameter, mass = numbers["cue"]
+        shaft = cf.Segment(0.7, diameter, diameter, WOOD)
+        cue = cf.Cue((shaft,), body_mass=mass - cf.Cue((shaft,), body_mass=1.0).shaft_mass)
+    tip = {name: math.inf if value == "inf" else value for name, value in numbers["tip"].items()}
+    effects = tuple(EFFECTS[name](**fields) for name, fields in numbers["effects"].items())
+    return Scene(cue, cf.Ball(*numbers["ball"]), cf.Tip(**tip), cf.Stroke(*numbers["stroke"]), effects)
+
+
+def tip_of(row: dict[str, Any]) -> TipModes:
+    """The tip modes of a row."""
+    return lumped_tip_modes(cf.LumpedCue(*row["scene"]["lumped"])) if "lumped" in row["scene"] else tips()[row["tip"]]
+
+
+@contextmanager
+def stored_law(row: dict[str, Any]) -> Iterator[None]:
+    """The row's leather tip has the stored law; nothing is computed in 3-D elasticity."""
+    if "law" not in row:
+        yield
+        return
+    real, laws = leather.whole_tip, row["law"]
+
+    def law(radius: float, offset: float, restitution: float) -> LeatherLaw:
+        force, give, most = laws["at offset" if offset else "head on"]
+        return LeatherLaw(tuple(force), tuple(give), restitution, most)
+
+    with mock.patch.object(leather, "whole_tip", lambda tip, diameter: replace(real(tip, diameter), law=law)):
+        yield
+
+
+@cache
+def cues() -> tuple[dict[str, Any], ...]:
+    """The stored cues: segments, contact time, frequencies, and end masses by definition, free and damped."""
+    return tuple(json.loads((DATA / "cues.json").read_text()))
+
+
+def cue_of(row: dict[str, Any]) -> cf.Cue:
+    """The cue of a row."""
+    segments = [
+        cf.Segment(length, tip, butt, cf.Material(E, G, rho, loss), *bores)
+        for length, tip, butt, E, G, rho, loss, *bores in row["segments"]
+    ]
+    return cf.Cue(tuple(segments), body_mass=row["body_mass"])
