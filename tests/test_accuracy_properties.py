@@ -2,24 +2,27 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
 from hypothesis import given, settings
 
-from cuefem import LumpedCue, Scene, Stroke, resolve, resolve_end_mass, strike
-from tests.helpers.accuracy_scenes import scene
-from tests.helpers.strike_scenes import lumped_scenes, numbers
+from cuefem import LumpedCue, Scene, Stroke, impulse, resolve, resolve_end_mass
+from cuefem.accuracy import levels, mode_counts
+from cuefem.tip_modes import MOST
+from tests.helpers.accuracy_scenes import endless_friction, scene
+from tests.helpers.strike_scenes import lumped_scenes, numbers, sound
 
 KIM = scene("kim", 1e-3, 0.3)
 
 
-@settings(max_examples=25)
+@settings(max_examples=8, deadline=None)
 @given(lumped_scenes())
-def test_a_lumped_cue_is_exact(lumped: Scene) -> None:
-    found, same = resolve(lumped, 1e-3), strike(lumped)
-    np.testing.assert_array_equal(numbers(found), numbers(same))
-    assert found.error == 1e-12
+def test_a_lumped_cue_takes_steps_alone(lumped: Scene) -> None:
+    found, exact = resolve(lumped, 1e-3), impulse(lumped)
+    assert found.error <= 1e-3
+    assert abs(found.squirt - exact.squirt) <= 1e-3 * max(abs(exact.squirt), abs(lumped.stroke.angle))
 
 
 def test_a_lumped_cue_answers_its_own_end_mass() -> None:
@@ -41,3 +44,16 @@ def test_better_is_never_cheaper() -> None:
     assert [outcome.unknowns for outcome in found] == sorted(outcome.unknowns for outcome in found)
     errors = [outcome.error for outcome in found]
     assert all(error is not None and error <= rtol for error, rtol in zip(errors, (0.5, 1e-2, 1e-3, 3e-4), strict=True))
+
+
+def test_endless_friction_resolves() -> None:
+    sound(resolve(endless_friction(), 1e-2))
+
+
+def test_levels_double_modes_and_steps() -> None:
+    first, second = itertools.islice(levels(KIM), 2)
+    assert second.at.modes == 2 * first.at.modes
+    assert second.at.steps == 2 * first.at.steps
+    assert first.outcome.error is second.outcome.error is None
+    assert mode_counts(1) == [12, 24, 48, 96, 192, MOST]
+    assert mode_counts(MOST) == [50, 100, 200, MOST]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
@@ -14,29 +13,15 @@ from cuefem.contact.propagator import ModalPropagator, planar_propagator, raised
 from cuefem.cue import Array
 from cuefem.effects.law import TipLaw
 from cuefem.effects.leather_law import LeatherLaw
-from cuefem.effects.terms import ContactTerms, HeadOn, Lever, Table, WholeTip
+from cuefem.effects.terms import ContactTerms, HeadOn, Table, WholeTip
 from cuefem.quantity.fields import scalar
 from cuefem.scene import Scene
 
-# A contact is given up after this many head-on contact times and, since a rigid tip may ride on the cue's slowest
-# vibration, a period and a half of that.
-LONGEST = 200
-# A tip of a small restitution e unloads 1/e times as fast as it loads, and to follow that takes longer than anybody
-# waits. Such tips are refused below the first number (e = 0, a dead tip, is another law), and leather below the second.
-LEAST_RESTITUTION, LEAST_OF_LEATHER = 1e-4, 0.1
-# What the last terms of a step may add, as a part of the blow's impulse. Forces of rings have many small kinks, but not
-# along the blow, where the kernel asks for a tenth.
-TOLERANCE, LEATHER_TOLERANCE, RINGED_TOLERANCE = 1e-11, 1e-10, 3e-7
-RINGS, DEEPER = 120, 1.05  # even in the root of the compression, up to so many times a head-on blow's greatest
-RIGID_PATCH, SPRING_PATCH, RINGED_PATCH = range(3)
-# Errors along the surface are measured by the motion there, but by no less than this part of the motion along the
-# normal. Where the normal turns, the motion along it enters with its rounding, and the least part is larger.
-LEAST_ACROSS, LEAST_ACROSS_TURNING = 1e-9, 1e-3
-# Levers that are functions are sampled over this range of the contact's angle, rad, by so many Chebyshev terms.
-LEVER_REACH, LEVER_TERMS, LEVER_FIT = 0.5, 24, 1e-11
-# The stiffness of a power law is zero at the first touch. Whether a patch on a spring grips there is therefore judged
-# at a compression of this part of the stroke's speed times the contact time.
-TOUCHED = 1e-11
+# A tip of a small restitution e unloads 1/e times as fast as it loads, and takes as many steps. Such tips are refused
+# below the first number, and leather, which rings on the ball then, below the second.
+LEAST_RESTITUTION, LEAST_OF_LEATHER = 0.05, 0.1
+RINGS, DEEPER = 120, 1.05  # even in the root of the indentation, up to so many times a head-on blow's greatest
+RIGID_PATCH, SPRING_PATCH, PARTIAL_SLIP = range(3)
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,15 +29,14 @@ class ContactModel:
     """A contact as the kernel takes it.
 
     propagator: the cue's modes and ports. facing: (forces, ports + ball), from the velocities of the ports to those of
-    the contact at the first touch. ball_gives: (n,), the inverse masses of the ball's velocities; ball: these at the
-    first touch, m/s. law: the force along the normal. across: the part of the
-    speed along the surface, by which its errors are measured. terms, arrays: what `kernel/contact.h` names, by name.
-    tip: the cue's modes, where they are known.
+    the contact at the first touch. inverse_masses: (n,), of the ball's velocities; ball: these at the first touch, m/s.
+    law: the force along the normal. terms, arrays: what `kernel/contact.h` names, by name. tip: the cue's modes, where
+    they are known.
     """
 
     propagator: ModalPropagator
     facing: Array
-    ball_gives: Array
+    inverse_masses: Array
     ball: Array
     phi: float
     ball_mass: float
@@ -62,7 +46,6 @@ class ContactModel:
     speed: float
     time: float
     law: TipLaw | LeatherLaw
-    across: float = 1.0
     patch: int = RIGID_PATCH
     terms: dict[str, float] = field(default_factory=dict)
     arrays: dict[str, Array] = field(default_factory=dict)
@@ -75,25 +58,20 @@ class ContactModel:
         """Rates of the contact's velocities per force at the first touch, (forces, forces), 1/kg."""
         ports = len(self.propagator.rows)
         of_cue, of_ball = self.facing[:, :ports], self.facing[:, ports:]
-        return np.asarray(of_cue @ self.propagator.mobility[0] @ of_cue.T + (of_ball * self.ball_gives) @ of_ball.T)
+        return np.asarray(of_cue @ self.propagator.mobility[0] @ of_cue.T + (of_ball * self.inverse_masses) @ of_ball.T)
 
     @property
-    def longest(self) -> float:
-        """How long the contact may last at most, s.
-
-        A dead tip may stay on a slow mode, slower still with the ball on it, by no more than the second term.
-        """
-        ports = len(self.propagator.rows)
-        along, of_ball = self.facing[1, :ports], float(self.facing[1, ports:] ** 2 @ self.ball_gives)
-        whole, rigid = (float(along @ part @ along) + of_ball for part in self.propagator.mobility)
-        return LONGEST * self.time + 10 / self.propagator.slowest * math.sqrt(whole / rigid)
+    def approach(self) -> Array:
+        """Velocities of the contact (t, n) at the first touch, m/s."""
+        cue = self.propagator.rows @ self.propagator.approach * self.speed
+        return np.asarray(self.facing @ np.concatenate([cue, self.ball]))[:2]
 
     @property
     def unknowns(self) -> int:
         """Of the model: the modes' displacements and velocities, the ball's, and the states of the tip."""
         omega = self.propagator.omega
         forces = len(self.facing)
-        turns, gives = bool(self.terms.get("turns")), self.patch != RIGID_PATCH
+        turns, gives = bool(self.terms.get("rolls")), self.patch != RIGID_PATCH
         of_tip = {2: 3 + 2 * turns + gives, 6: 8}[forces]
         return len(omega) + int(np.count_nonzero(omega)) + of_tip
 
@@ -126,22 +104,18 @@ def model_of(scene: Scene, tip: TipModes) -> ContactModel:
 def _check_restitution(e: float, terms: ContactTerms) -> None:
     if terms.tip is not None and e < LEAST_OF_LEATHER:
         raise ValueError(
-            f"Tip.restitution must be in [{LEAST_OF_LEATHER}, 1] beside LeatherTip; got {e}: leather "
-            "that gives back less rings on the ball while it is unloaded, which is not computed (cue tips: 0.7 to 0.85)"
+            f"Tip.restitution must be in [{LEAST_OF_LEATHER}, 1] beside LeatherTip; got {e:g}: leather that gives back "
+            "less rings on the ball while it is unloaded, which is not computed (cue tips: 0.7 to 0.85)"
         )
-    if terms.window is not None and e < LEAST_RESTITUTION:
-        raise ValueError(f"SecondHit takes a Tip.restitution in [{LEAST_RESTITUTION:g}, 1]; got {e}")
-    if terms.table is not None and e == 0:
-        raise ValueError("Elevation takes a Tip.restitution in (0, 1]; got 0.0")
-    check_lively("Tip.restitution", e)
+    check_restitution("Tip.restitution", e)
 
 
-def check_lively(name: str, restitution: float) -> None:
-    """ValueError for a tip that gives back next to nothing, but not nothing."""
-    if 0 < restitution < LEAST_RESTITUTION:
+def check_restitution(name: str, restitution: float) -> None:
+    """ValueError for a restitution near 0."""
+    if restitution < LEAST_RESTITUTION:
         raise ValueError(
-            f"{name} must be 0, or in [{LEAST_RESTITUTION:g}, 1], where a contact is followed in time; got "
-            f"{restitution:g}: such a tip rings too fast past its peak (0 is a dead tip)"
+            f"{name} must be in [{LEAST_RESTITUTION:g}, 1] where a contact is followed in time; got {restitution:g} "
+            "(cuefem.impulse takes any)"
         )
 
 
@@ -160,15 +134,14 @@ class _TipPart(NamedTuple):
 def _leather(scene: Scene, whole: WholeTip, common: dict[str, Any], offset: float) -> _TipPart:
     """A whole tip, whose patch slips ring by ring, or is a spring where it has a constant stiffness."""
     law = whole.law(scalar("Ball.radius", scene.ball.radius), offset, common["restitution"])
-    numbers = {"curve": 1, "most": law.most, "terms": len(law.force_terms)}
-    arrays = {"force_terms": np.array(law.force_terms), "give_terms": np.array(law.give_terms)}
+    numbers: dict[str, float] = {"law": 1, "most": law.most, "terms": len(law.force_terms)}
+    arrays = {"force_terms": np.array(law.force_terms), "compliance_terms": np.array(law.give_terms)}
     if whole.shear is None:
-        patch = RINGED_PATCH
-        numbers |= {"rings": RINGS, "tolerance": RINGED_TOLERANCE, "surface_restitution": whole.surface_restitution}
+        patch = PARTIAL_SLIP
+        numbers |= {"rings": RINGS, "surface_restitution": whole.surface_restitution}
         arrays |= _rings(law, min(law.most, DEEPER * scene.deepest))
     else:
-        patch = SPRING_PATCH
-        numbers |= {"tolerance": LEATHER_TOLERANCE, "compliance": 1 / whole.shear, "first_ratio": math.inf}
+        patch, numbers = SPRING_PATCH, numbers | {"compliance": 1 / whole.shear}
     return _TipPart(law, patch, whole.dome_radius, whole.rim, numbers, arrays, common["time"])
 
 
@@ -176,10 +149,7 @@ def _power_tip(scene: Scene, terms: ContactTerms, common: dict[str, Any]) -> _Ti
     """A tip with a power law along the normal, whose patch is rigid or a spring."""
     law, time = normal_law(scene, common)
     compliance = terms.compliance / scene.stiffness
-    numbers = power_law(law) | {"tolerance": TOLERANCE, "compliance": compliance}
-    if compliance:
-        n, touched = law.exponent, TOUCHED * common["speed"] * time
-        numbers["first_ratio"] = 1 / (compliance * law.stiffness * n * touched ** (n - 1))
+    numbers = power_law(law) | {"compliance": compliance}
     patch = SPRING_PATCH if compliance else RIGID_PATCH
     return _TipPart(law, patch, terms.dome_radius, math.inf, numbers, {}, time)
 
@@ -189,30 +159,24 @@ def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
     phi, mass, nu = (common[name] for name in ("phi", "ball_mass", "inertia"))
     (u, w), turns = terms.lever(phi), terms.turns
     s, c = math.sin(phi), math.cos(phi)
-    lever_t, lever_n = s * u + c * w, c * u - s * w
+    arm_t, arm_n = s * u + c * w, c * u - s * w
     whole = terms.tip
     part = _power_tip(scene, terms, common) if whole is None else _leather(scene, whole, common, offset)
     numbers, arrays, common = part.numbers, part.arrays, common | {"time": part.time}
     if turns:
-        numbers |= {"turns": 1, "phi": phi, "dome": part.dome, "rim": part.rim, "radius": float(scene.ball.radius)}
-        numbers |= {"lever_t": lever_t, "lever_n": lever_n}
-        if terms.levers:
-            numbers |= {"levers": LEVER_TERMS, "lever_reach": LEVER_REACH}
-            arrays["lever_terms"] = _sampled(terms.levers, phi)
-    turning = bool(u or w or (turns and (part.dome or terms.levers)))
+        numbers |= {"rolls": 1, "dome": part.dome, "rim": min(part.rim, math.pi), "radius": float(scene.ball.radius)}
+        numbers |= {"arm_t": arm_t, "arm_n": arm_n}
+    turning = bool(u or w or (turns and part.dome))
     propagator = planar_propagator(tip, turning=turning, time=part.time, window=common["window"] or 0.0)
     rolling = part.dome if phi < part.rim else 0.0
     arrays |= _thrust(propagator, -w - rolling * c)
-    of_cue = np.array([[-s, -c, -lever_t], [-c, s, -lever_n]])[:, : len(propagator.rows)]
+    of_cue = np.array([[-s, -c, -arm_t], [-c, s, -arm_n]])[:, : len(propagator.rows)]
     facing = np.concatenate([of_cue, [[1.0, 0.0, 1.0], [0.0, 1.0, 0.0]]], axis=1)
-    tn, nn = (of_cue @ propagator.mobility[0] @ of_cue[1]).tolist()
-    pushed = min(1.0, abs(tn) / (nn + 1 / mass))  # by what moves the tip along and across at once
     return ContactModel(
         propagator,
         facing,
         np.array([1 / mass, 1 / mass, 1 / (nu * mass)]),
         np.zeros(3),
-        across=max(s, pushed, LEAST_ACROSS_TURNING if turns else LEAST_ACROSS),
         patch=part.patch,
         terms=numbers,
         arrays=arrays,
@@ -228,7 +192,7 @@ def _thrust(propagator: ModalPropagator, ahead: float, planes: int = 1) -> dict[
     if not count:
         return {}
     weights = np.append(np.ones(count // planes - 1), ahead)
-    return {"slope_weights": np.tile(weights, planes), "slopes": np.zeros(count)}
+    return {"slope_weights": np.tile(weights, planes)}
 
 
 def normal_law(scene: Scene, common: dict[str, Any]) -> tuple[TipLaw, float]:
@@ -253,28 +217,7 @@ def _rings(law: LeatherLaw, deepest: float) -> dict[str, Array]:
         "ring_forces": force,
         "ring_stiffness": stiffness,
         "ring_slopes": law.slope(edges),
-        "ring_shear": np.zeros(RINGS),
     }
-
-
-def _sampled(levers: Sequence[Lever], phi: float) -> Array:
-    """Chebyshev terms of how levers move the contact (u, w) as it turns on from phi; ValueError if they are rough."""
-
-    def moved(angle: Array) -> Array:
-        at = np.array([np.sum([lever(phi + each) for lever in levers], axis=0) for each in angle])
-        return np.asarray(at - np.sum([lever(phi) for lever in levers], axis=0))
-
-    chebyshev = np.polynomial.chebyshev
-    places = chebyshev.chebpts1(LEVER_TERMS)
-    terms = np.linalg.solve(chebyshev.chebvander(places, LEVER_TERMS - 1), moved(LEVER_REACH * places))
-    between = np.cos(np.arange(1, LEVER_TERMS) * math.pi / LEVER_TERMS)
-    off = np.abs(chebyshev.chebvander(between, LEVER_TERMS - 1) @ terms - moved(LEVER_REACH * between)).max()
-    if not off <= LEVER_FIT:
-        raise ValueError(
-            f"a lever of the contact must be smooth over {LEVER_REACH} rad about its angle, to {LEVER_FIT} m; "
-            f"got one that a polynomial misses by {off:.3g} m"
-        )
-    return np.ascontiguousarray(terms.T)
 
 
 def _raised(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, Any]) -> ContactModel:
@@ -304,7 +247,7 @@ def _raised(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
         facing,
         np.repeat([1 / mass, 1 / (nu * mass)], 3),
         np.zeros(6),
-        terms={"tolerance": TOLERANCE, "table_friction": terms.table.friction} | power_law(law),
+        terms={"table_friction": terms.table.friction} | power_law(law),
         arrays=_thrust(propagator, -w - terms.dome_radius * c, planes=2),
         law=law,
         table=terms.table,
@@ -317,3 +260,13 @@ def table_axes(phi: float, angle: float) -> tuple[Array, Array, Array]:
     """Right, forward and up in (t, n, p), under a cue that points down by ``angle``, rad."""
     s, c, sin_a, cos_a = math.sin(phi), math.cos(phi), math.sin(angle), math.cos(angle)
     return np.array([c, -s, 0]), np.array([cos_a * s, cos_a * c, sin_a]), np.array([-sin_a * s, -sin_a * c, cos_a])
+
+
+def impulse_on(model: ContactModel, ball: Array) -> Array:
+    """The impulses (t, n), N s, that gave balls at rest velocities (..., speeds); above a table, along it."""
+    if model.table is None:
+        return np.asarray(model.ball_mass * ball[..., :2])
+    s, c = math.sin(model.phi), math.cos(model.phi)
+    right, forward, _ = table_axes(model.phi, model.table.angle)
+    along = np.array([s * forward + c * right, c * forward - s * right])
+    return np.asarray(model.ball_mass * (ball[..., :3] @ along.T))

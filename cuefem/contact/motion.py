@@ -1,7 +1,7 @@
 """Where cue and ball are at any time of a strike and after it.
 
-The modes turn exactly between the contact's forces, so the motion follows from the loads of the steps that were taken.
-Positions of rigid motions and of the ball are integrals of velocities, carried along.
+Over a step the contact's forces are constant and the modes answer them exactly, so the motion is known at every time
+from the states at the ends of the steps.
 Coordinates: u along the cue in the direction of the stroke and w across it, on the side that is struck at a positive
 offset; their origin is the tip's centre at first touch.
 """
@@ -18,9 +18,9 @@ from numpy.typing import ArrayLike
 from cuefem.beam.modes import Modes
 from cuefem.beam.tip import TipModes
 from cuefem.contact.laws import model_of
-from cuefem.contact.propagator import Complex
-from cuefem.contact.rule import FORCE_WAVES, GAUSS, WEIGHTS, sums_to, values_at, waves_over
+from cuefem.contact.propagator import Complex, responses
 from cuefem.contact.solve import SolvedContact, solve_contact
+from cuefem.contact.strike import steps_of
 from cuefem.cue import Array
 from cuefem.quantity.fields import check_kind, scalar
 from cuefem.scene import Resolution, Scene
@@ -125,7 +125,8 @@ def motion(scene: Scene, times: ArrayLike, at: Resolution | None = None) -> Moti
         raise ValueError("motion takes strokes in the plane of cue and ball; got Elevation")
     solved = Solved(scene, at)
     bending, tip = solved.modes, solved.tip
-    return _read(scene, bending, tip, solved=solve_contact(model_of(scene, tip)), times=times)
+    contact = solve_contact(model_of(scene, tip), steps=steps_of(at), course=True)
+    return _read(scene, bending, tip, solved=contact, times=times)
 
 
 def last_contact(scene: Scene, at: Resolution | None = None) -> float:
@@ -190,89 +191,45 @@ class Path(NamedTuple):
 
     @classmethod
     def of(cls, solved: SolvedContact, times: Array) -> Path:
-        """Follow the steps of a contact once more, from load to load; times: ascending, s."""
-        course, propagator = solved.course, solved.model.propagator
-        speeds, walk = len(solved.ball), _Walk(solved)
-        modes, ball = np.zeros((len(propagator.omega), len(times))), np.zeros((len(times), speeds))
-        angle, force = np.zeros(len(times)), np.zeros((len(times), 2))
-        ends = np.append(course.start[1:], solved.time)
-        bounds = np.append(np.searchsorted(times, course.start), np.searchsorted(times, solved.time, side="right"))
-        for i in range(len(course.start)):
-            walk.blow(course.blows[i])
-            first, last = bounds[i], bounds[i + 1]
-            here, span = np.append(times[first:last], ends[i]) - course.start[i], course.step[i]
-            parts = np.minimum(here / span, course.part[i])
-            xi, gone, way = walk.follow(here, parts, course.loads[i], span)
-            if last > first:
-                modes[:, first:last] = walk.displacements(xi[:-1], gone[:-1]).T
-                ball[first:last] = way[:-1]
-                values = values_at(parts[:-1])
-                angle[first:last] = values @ course.angle[i]
-                if course.pressed[i]:
-                    force[first:last] = values @ course.force[i, :2].T
-            walk.go_on(xi[-1], gone[-1], way[-1], course.loads[i], parts[-1], span)
-        late = np.flatnonzero(times > solved.time) if len(course.start) else np.arange(len(times))
-        if len(late):
-            if not len(course.start):  # a blow that threw the two apart
-                walk.end(solved)
-            xi, gone, way = walk.fly(times[late] - solved.time)
-            modes[:, late], ball[late] = walk.displacements(xi, gone).T, way
-            angle[late] = course.angle[-1] @ values_at(course.part[-1]) if len(course.start) else 0.0
-        return cls(modes, ball, angle, force)
+        """Read the steps of a contact that was solved with its course; after it cue and ball fly freely.
+
+        Under a load that is constant over a step of length h, xi = exp(rate t) xi_0 + a (exp(rate t) - 1)/rate, and its
+        integral follows; a is known from xi at the step's end.
+        """
+        assert solved.course is not None
+        p, model, steps = solved.model.propagator, solved.model, solved.steps
+        ends, rigid = np.append(0.0, steps["time"]), p.omega == 0
+        lengths = np.append(steps["length"], 0.0)
+        which = np.searchsorted(ends, times, side="right") - 1  # the step of each time; behind the last, the flight
+        here, flying = times - ends[which], which == len(steps)
+        balls = np.vstack([model.ball, steps["ball"][:, : len(model.ball)]])
+        loads, pulls = _loads(solved.course, p.rates, lengths), np.zeros_like(balls)
+        pressed = steps["length"] > 0
+        pulls[:-1][pressed] = np.diff(balls, axis=0)[pressed] / lengths[:-1][pressed, None]
+        xi, summed = _driven(solved.course[which], loads[which], p.rates, here)
+        before = _driven(solved.course[:-1], loads[:-1], p.rates, lengths[:-1])[1] @ p.velocities[rigid].T
+        gone = np.vstack([np.zeros(int(rigid.sum())), np.cumsum(before.real, axis=0)])
+        ways = np.cumsum(lengths[:-1, None] * (balls[1:] + balls[:-1]) / 2, axis=0)
+        displaced = (xi @ p.displacements.T).real / np.where(rigid, 1.0, p.omega)
+        displaced[:, rigid] = gone[which] + (summed @ p.velocities[rigid].T).real
+        t, ways = here[:, None], np.vstack([0 * balls[:1], ways])
+        way = ways[which] + t * (balls[which] + t * pulls[which] / 2)
+        seen = solved.history(1.0)(np.minimum(times, solved.time)) if pressed.any() else {}
+        force = np.column_stack([np.where(flying, 0.0, seen.get(name, 0.0)) for name in ("force_t", "force_n")])
+        return cls(displaced.T, way, np.interp(times, ends, np.append(0.0, steps["angle"])), force)
 
 
-class _Walk:
-    """The state of cue and ball on the way through the steps: coordinates, ways of the rigid modes and of the ball."""
+def _driven(xi: Complex, loads: Complex, rates: Complex, times: Array) -> tuple[Complex, Complex]:
+    """Coordinates after these times from ``xi`` under constant loads, and their integrals, (times, coordinates)."""
+    t = times[:, None]
+    turned, first, second = responses(rates * t)
+    return turned * xi + t * first * loads, t * first * xi + t**2 * second * loads
 
-    def __init__(self, solved: SolvedContact) -> None:
-        self.propagator, self.gives = solved.model.propagator, solved.model.ball_gives
-        self.xi, self.rigid = solved.xi_before.copy(), self.propagator.omega == 0
-        self.ball, self.way = np.array(solved.model.ball, float), np.zeros(len(solved.ball))
-        self.gone = np.zeros(int(self.rigid.sum()))
-        self.ports = len(self.propagator.pushed)
-        self.drives = self.propagator.onto @ self.propagator.pushed.T
 
-    def blow(self, impulses: Array) -> None:
-        """What blows on the ports do at once."""
-        if impulses.any():
-            self.xi = self.xi + self.drives @ impulses[: self.ports]
-            self.ball = self.ball + self.gives * impulses[self.ports :]
-
-    def displacements(self, xi: Complex, gone: Array) -> Array:
-        """Of all modes, (times, modes), from the coordinates and the ways of the rigid ones."""
-        omega = self.propagator.omega
-        displaced = (xi @ self.propagator.displacements.T).real / np.where(self.rigid, 1.0, omega)
-        displaced[:, self.rigid] = gone
-        return np.asarray(displaced)
-
-    def follow(self, here: Array, parts: Array, loads: Array, span: float) -> tuple[Complex, Array, Array]:
-        """Coordinates, ways of the rigid modes and of the ball at times from the start of a step under its loads."""
-        inner = parts[:, None] * GAUSS  # of each time, the points of an integral up to it
-        every = np.concatenate([inner.ravel(), parts])
-        waves = np.array([loads[: self.ports] @ waves_over(part).T for part in every])
-        xi = self.propagator.follow(self.xi, span * every, waves)
-        between, at = xi[: inner.size].reshape(*inner.shape, -1), xi[inner.size :]
-        speeds = (between @ self.propagator.velocities[self.rigid].T).real
-        gone = self.gone + span * parts[:, None] * np.einsum("q,tqr->tr", WEIGHTS, speeds)
-        pushed = np.array([sums_to(part, FORCE_WAVES) for part in inner.ravel()]) @ loads[self.ports :].T
-        moving = self.ball + span * self.gives * pushed.reshape(*inner.shape, -1)
-        return at, gone, self.way + span * parts[:, None] * np.einsum("q,tqb->tb", WEIGHTS, moving)
-
-    def go_on(self, xi: Complex, gone: Array, way: Array, loads: Array, part: float, span: float) -> None:
-        """To the end of a step."""
-        self.xi, self.gone, self.way = xi, gone, way
-        self.ball = self.ball + span * self.gives * (loads[self.ports :] @ sums_to(part, FORCE_WAVES))
-
-    def end(self, solved: SolvedContact) -> None:
-        """To the end of a contact without steps."""
-        self.xi, self.ball = solved.xi, solved.ball
-
-    def fly(self, here: Array) -> tuple[Complex, Array, Array]:
-        """The same without loads, at any time: a coordinate's integral is known in closed form."""
-        xi, rates = self.propagator.follow(self.xi, here), self.propagator.rates
-        turned = np.multiply.outer(here, rates)
-        still = turned == 0
-        mean = np.where(still, 1.0, np.expm1(turned) / np.where(still, 1.0, turned))
-        summed = self.xi * here[:, None] * mean
-        gone = self.gone + (summed @ self.propagator.velocities[self.rigid].T).real
-        return xi, gone, self.way + here[:, None] * self.ball
+def _loads(course: Complex, rates: Complex, lengths: Array) -> Complex:
+    """The constant loads on the coordinates in each step, from the states around it; none behind the last."""
+    loads, steps = np.zeros_like(course), np.flatnonzero(lengths)
+    t = lengths[steps, None]
+    turned, first, _ = responses(rates * t)
+    loads[steps] = (course[steps + 1] - turned * course[steps]) / (t * first)
+    return loads

@@ -7,10 +7,8 @@ from itertools import takewhile
 from typing import NamedTuple
 
 import numpy as np
-from numpy.polynomial import legendre
 from numpy.typing import ArrayLike
 
-from cuefem.contact.rule import WAVES
 from cuefem.cue import Array
 from cuefem.scene import Outcome, equal_fields
 
@@ -33,7 +31,7 @@ class Phase(NamedTuple):
         "slip", "stick" or "slip back"; "blow" for the blow of endless friction, "apart" between two hits. A patch of
         rings (`LeatherTip`) slips where all of them slide.
     press : str
-        How the tip is pressed: "load", "unload", "rigid" (a dead tip past its peak), "free" between two hits.
+        How the tip is pressed: "load", "unload", "free" between two hits.
     start, end : float
         Times from first touch, s.
     impulse : tuple of float
@@ -71,12 +69,14 @@ class History:
 
     Attributes
     ----------
-    start, step : (n,) array
-        When each step of the contact begins, and how long it is, s.
-    duration : float
-        When the last contact ends, s.
-    values : (n, 4, nodes + 1) array
-        The two forces and the two velocities at the start and the nodes of each step.
+    middles : (n + 2,) array
+        The first touch, the middles of the steps and the last separation, s.
+    forces : (n + 2, 2) array
+        (t, n) there, N.
+    ends : (n + 1,) array
+        The first touch and the ends of the steps, s.
+    velocities : (n + 1, 2) array
+        (t, n) there, m/s.
     velocity, spin : (3,) array or None
         Of the ball after a raised stroke (`Elevation`): x right, y forward, z up, in m/s and rad/s.
 
@@ -88,30 +88,34 @@ class History:
     ['force_n', 'force_t', 'velocity_n', 'velocity_t']
     """
 
-    start: Array
-    step: Array
-    duration: float
-    values: Array
+    middles: Array
+    forces: Array
+    ends: Array
+    velocities: Array
     velocity: Array | None = None
     spin: Array | None = None
 
     __eq__ = equal_fields
     __hash__ = None  # type: ignore[assignment]
 
+    @property
+    def duration(self) -> float:
+        """When the last contact ends, s."""
+        return float(self.ends[-1])
+
     def __call__(self, time: ArrayLike) -> dict[str, Array]:
-        """Evaluate the polynomials of the steps that the times fall in."""
+        """Interpolate the steps by straight lines."""
         time = np.asarray(time, float)
-        if not len(self.start):
+        if len(self.ends) < 2:
             raise ValueError("History takes times in [0, duration] s; this contact is a blow, without any")
         if not np.all((time >= 0) & (time <= self.duration * (1 + 1e-12))):
             raise ValueError(f"History takes times in [0, {self.duration}] s, the contact's; got {time}")
-        which = np.maximum(np.searchsorted(self.start, time, side="right") - 1, 0)
-        part = (time - self.start[which]) / self.step[which]
-        values = np.moveaxis(self.values[which], (-2, -1), (1, 0))
-        waves = np.tensordot(WAVES, values, axes=1)
-        at = legendre.legval(2 * part - 1, waves, tensor=False)
-        evaluated = np.where(part == 0, values[0], at)
-        return dict(zip(("force_t", "force_n", "velocity_t", "velocity_n"), np.asarray(evaluated), strict=True))
+        named = {"force": (self.middles, self.forces), "velocity": (self.ends, self.velocities)}
+        return {
+            f"{name}_{axis}": np.asarray(np.interp(time, known, values[:, i]))
+            for name, (known, values) in named.items()
+            for i, axis in enumerate("tn")
+        }
 
 
 def hits(outcome: Outcome) -> tuple[Hit, ...]:

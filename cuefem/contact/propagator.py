@@ -7,7 +7,6 @@ y = Re(readings xi), and all of it belongs to the cue alone: strikes at other sp
 
 from __future__ import annotations
 
-import ctypes
 import math
 import threading
 import weakref
@@ -20,7 +19,6 @@ from numpy.typing import NDArray
 
 from cuefem.beam.tip import TipModes
 from cuefem.contact.bent import half_octave, slope_rows
-from cuefem.contact.compiled import library
 from cuefem.cue import Array
 
 Complex = NDArray[np.complex128]
@@ -31,7 +29,7 @@ DEFECTIVE, NUDGE = 1e7, 1e-9
 
 
 class ModalPropagator:
-    """Tip modes with their ports; the compiled kernel computes their responses to loads once and keeps them.
+    """Tip modes with their ports, as the coordinates that the compiled kernel steps.
 
     rows: (ports, modes), what each port reads of the modes' velocities, and pushes. slopes: (slopes, modes), likewise,
     of the bent cue (`cuefem.contact.bent`); none without thrust. omega, approach: of the modes.
@@ -81,34 +79,46 @@ class ModalPropagator:
         return self.rows @ self.rows.T, rigid @ rigid.T
 
     @cached_property
-    def slowest(self) -> float:
-        """The lowest angular frequency of a vibration, rad/s; endless without any."""
-        return float(self.omega[self.omega > 0].min(initial=math.inf))
+    def readings(self) -> Complex:
+        """From the coordinates to the velocities of ports and slopes, (ports + slopes, coordinates), as real parts."""
+        return np.ascontiguousarray(self.pushed @ self.velocities)
 
     @cached_property
-    def cue(self) -> ctypes.c_void_p:
-        """What the kernel keeps of it: made when a contact first asks, and freed with this object."""
-        kernel = library()
-        readings = np.ascontiguousarray(np.concatenate([self.pushed, self.dampers]) @ self.velocities)
-        drives = np.ascontiguousarray((self.onto @ self.pushed.T).T)
-        pointers = [part.ctypes.data for part in (self.rates, readings, drives)]
-        handle = kernel.cue_new(len(self.rates), len(self.rows), len(self.slopes), len(readings), *pointers)
-        if not handle:
-            raise MemoryError("no memory for the modes of a contact")
-        weakref.finalize(self, kernel.cue_free, handle)
-        return ctypes.c_void_p(handle)
+    def drives(self) -> Complex:
+        """What unit impulses on ports and slopes add to the coordinates, (ports + slopes, coordinates)."""
+        return np.ascontiguousarray((self.onto @ self.pushed.T).T)
 
-    def follow(self, xi: Complex, times: Array, waves: Array | None = None) -> Complex:
-        """The coordinates at times from now on, (times, coordinates).
+    @cached_property
+    def _damped(self) -> Complex:
+        return np.asarray((self.dampers @ self.velocities).T)
 
-        waves: (times, ports + slopes, nodes), Legendre coefficients of the loads over each time; None without loads.
+    def dissipated(self, xi: Complex, lengths: Array) -> Array:
+        """Energy lost, and radiated, in each of n steps, (n, 2), J; xi: (n + 1, coordinates), before and after them.
+
+        The dampers' velocities are parabolas with the values v, w at the ends of a step and the mean m over it, whose
+        squares have the mean (4 v^2 + 4 w^2 - 2 v w)/30 + m (6 m - v - w)/5. Under constant loads the mean of xi is
+        (phi_1 - exp(z) phi_2/phi_1) xi_0 + phi_2/phi_1 xi_1.
         """
-        xi, times = np.ascontiguousarray(xi), np.ascontiguousarray(times, float)
-        coordinates = np.empty((len(times), len(xi)), complex)
-        loads = None if waves is None else np.ascontiguousarray(waves, float)
-        pointer = None if loads is None else loads.ctypes.data
-        library().cue_follow(self.cue, xi.ctypes.data, pointer, times.ctypes.data, len(times), coordinates.ctypes.data)
-        return coordinates
+        ends, means = (xi @ self._damped).real, np.zeros((len(lengths), len(self.dampers)))
+        for length in np.unique(lengths[lengths > 0]):
+            here = np.flatnonzero(lengths == length)
+            turned, first, second = responses(self.rates * length)
+            before, after = (first - turned * second / first)[:, None], (second / first)[:, None]
+            means[here] = (xi[here] @ (before * self._damped) + xi[here + 1] @ (after * self._damped)).real
+        v, w = ends[:-1], ends[1:]
+        squares = (4 * v**2 + 4 * w**2 - 2 * v * w) / 30 + means * (6 * means - v - w) / 5
+        squares *= lengths[:, None]
+        return np.column_stack([squares[:, : self.lossy].sum(axis=1), squares[:, self.lossy :].sum(axis=1)])
+
+
+def responses(z: Complex) -> tuple[Complex, Complex, Complex]:
+    """exp(z), phi_1 = (exp(z) - 1)/z and phi_2 = (phi_1 - 1)/z, of a mode's response to a constant load."""
+    large = np.abs(z) > 0.5
+    safe = np.where(large, z, 1.0)
+    second = np.where(
+        large, (np.exp(safe) - 1 - safe) / safe**2, sum(z ** (n - 2) / math.factorial(n) for n in range(2, 16))
+    )
+    return 1 + z * (1 + z * second), 1 + z * second, second
 
 
 class _Group(NamedTuple):
@@ -224,5 +234,4 @@ def _shared(
         of_tip = _known.setdefault(tip, {})
         if key not in of_tip:
             of_tip[key] = ModalPropagator(*parts(slope_rows(tip, lasting, until)))
-            of_tip[key].cue  # noqa: B018  # made here: threads would all begin to
         return of_tip[key]

@@ -1,99 +1,60 @@
-"""A contact solved: the kernel runs the model, and its numbers come back as phases, losses and the course of it all."""
+"""A contact solved: the kernel takes its steps, and their records become phases, losses and a history."""
 
 from __future__ import annotations
 
 import ctypes
-import math
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cuefem.contact.bent import BentTooFar, buckling_thrust
-from cuefem.contact.compiled import KernelContact, library
-from cuefem.contact.laws import ContactModel, table_axes
+from cuefem.contact.compiled import STEP, KernelContact, library
+from cuefem.contact.laws import PARTIAL_SLIP, ContactModel, impulse_on, table_axes
 from cuefem.contact.outcome import BLOW, FLIGHT, History, Phase
-from cuefem.contact.propagator import Complex, ModalPropagator
-from cuefem.contact.rule import NODES
+from cuefem.contact.propagator import Complex
 from cuefem.cue import Array
 from cuefem.effects.leather_law import LeatherLaw
 
 GRIPS = {0: "stick", 1: "slip", -1: "slip back", 2: BLOW, 3: FLIGHT[0]}
-PRESSES = ("load", "unload", "rigid", "free")
-# A contact that changes phase this often, or takes so many steps, does not end.
-MOST_PHASES, MOST_STEPS = 5_000, 200_000
-_ENDED, _LATE, _CROWDED, _STUCK, _TOO_DEEP, _TURNED_TOO_FAR, _BENT_TOO_FAR, _NO_MEMORY = range(8)
-_WITH = NODES + 1
-_NOTHING = np.zeros(0)
+PRESSES = ("load", "unload", "free")
+# Steps in a head-on contact time: squirt of a default strike is then right to 0.1 %
+# (tests/contact/test_stored_answers.py).
+STEPS = 400
+ENDLESS = 1e12  # friction, as the kernel takes it
+CHUNK = 2048  # steps that the kernel takes at a call
+LONGEST = 200  # head-on contact times, after which a contact is given up
+_RUNNING, _ENDED, _, _TOO_DEEP, _BENT_TOO_FAR, _UNSOLVED, _NO_MEMORY = range(7)
 
 
-@dataclass(frozen=True, eq=False)
-class Course:
-    """The steps of a contact, one row each: what cue and ball do at any time follows from them.
-
-    start, step, part: the time at which a step began, s, its length, s, and the part of it that was taken. pressed:
-    whether ball and tip touched in it. force, velocity: (steps, forces, nodes + 1), of the contact, N and m/s; depth,
-    angle: (steps, nodes + 1), m and rad; loads: (steps, rows, nodes), on the cue's ports, its slopes and the ball's
-    velocities, N; blows: (steps, rows), on them before the step, N s.
-    """
-
-    start: Array
-    step: Array
-    part: Array
-    pressed: Array
-    force: Array
-    velocity: Array
-    depth: Array
-    angle: Array
-    loads: Array
-    blows: Array
-
-    @classmethod
-    def of(cls, records: Array, forces: int, propagator: ModalPropagator, speeds: int) -> Course:
-        """From the kernel's records, whose rows hold room for three ports of the cue, and its slopes at the end."""
-        ports, slopes = len(propagator.rows), len(propagator.slopes)
-        count, wide = len(records), 3 + speeds + slopes
-        shapes = [(forces, _WITH), (forces, _WITH), (_WITH,), (_WITH,), (wide, NODES), (wide,)]
-        ends = 5 + np.cumsum([math.prod(shape) for shape in shapes])
-        parts = [
-            part.reshape(count, *shape)
-            for part, shape in zip(np.split(records[:, 5:], ends[:-1] - 5, axis=1), shapes, strict=True)
-        ]
-        there = np.r_[:ports, 3 + speeds : wide, 3 : 3 + speeds]
-        start, step, part, _, press = records[:, :5].T
-        force, velocity, depth, angle, loads, blows = parts
-        pressed = press != PRESSES.index("free")
-        return cls(start, step, part, pressed, force, velocity, depth, angle, loads[:, there], blows[:, there])
+Steps = NDArray[np.void]
 
 
 @dataclass(frozen=True, eq=False)
 class SolvedContact:
     """A contact that is over.
 
-    xi_before, xi: the coordinates of the cue's modes before and after it (`ModalPropagator`). ball: the ball's
-    velocities after it, m/s (raised: and its spins times R). losses: J by name. peak, deepest: the tip's greatest
-    force, N, and compression, m. records: the kernel's rows, one a step; None where they were not asked for.
+    steps: its records (`STEP`) up to the last separation. course: (steps + 1, coordinates), the modes' coordinates
+    before and after each; None where they were not asked for. xi: these at the end. ball: its velocities there, m/s
+    (raised: and its spins times R). losses: J by name. deepest: the tip's greatest indentation, m. parted: whether the
+    blow of endless friction threw ball and tip apart.
     """
 
     model: ContactModel
-    phases: tuple[Phase, ...]
-    time: float
-    xi_before: Complex
+    steps: Steps
+    course: Complex | None
     xi: Complex
     ball: Array
-    parted: bool
-    deepest: float
-    peak: float
     losses: dict[str, float]
-    records: Array | None
-    slopes: Array
+    deepest: float
+    parted: bool
 
-    @cached_property
-    def course(self) -> Course:
-        """Its steps, of a contact that was recorded."""
-        assert self.records is not None
-        model = self.model
-        return Course.of(self.records, len(model.facing), model.propagator, len(model.ball_gives))
+    @property
+    def time(self) -> float:
+        """When the last contact ended, s."""
+        return float(self.steps["time"][-1])
 
     @property
     def impulse(self) -> tuple[float, float]:
@@ -103,9 +64,9 @@ class SolvedContact:
 
     @property
     def velocity(self) -> tuple[float, float]:
-        """Of ball against tip (t, n), m/s, in the directions of the first touch."""
-        v = _velocities(self.model, self.xi, self.ball, self.slopes)
-        return float(v[0]), float(v[1])
+        """Of ball against tip (t, n) as they part, m/s."""
+        v_t, v_n = self.steps["v"][-1, :2].tolist()
+        return v_t, v_n
 
     @property
     def cue_energy(self) -> tuple[float, float]:
@@ -116,142 +77,126 @@ class SolvedContact:
         vibrating = stretched @ stretched + moving[~rigid] @ moving[~rigid]
         return float(moving[rigid] @ moving[rigid]) / 2, float(vibrating) / 2
 
+    @cached_property
+    def phases(self) -> tuple[Phase, ...]:
+        """Runs of steps with one grip and one press, each from the end of the one before."""
+        steps, model = self.steps, self.model
+        state = np.column_stack([steps["grip"], steps["press"]])
+        firsts = np.flatnonzero(np.any(np.diff(state, axis=0, prepend=np.nan) != 0, axis=1)).tolist()
+        times = np.append(0.0, steps["time"]).tolist()
+        given = impulse_on(model, np.vstack([model.ball, steps["ball"][:, : len(model.ball)]])).tolist()
+        return tuple(
+            Phase(
+                GRIPS[int(state[a, 0])],
+                PRESSES[int(state[a, 1])],
+                times[a],
+                times[b],
+                (given[b][0] - given[a][0], given[b][1] - given[a][1]),
+            )
+            for a, b in pairwise([*firsts, len(steps)])
+        )
+
     def history(self, mirror: float, radius: float = 1.0) -> History:
         """Forces and velocities; mirror: -1 for a stroke on the other side; radius: of the ball, m."""
-        assert self.records is not None
-        count, forces = len(self.records), len(self.model.facing)
-        start, step = self.records[:, :2].T.copy()
-        both = self.records[:, 5 : 5 + 2 * forces * _WITH].reshape(count, 2, forces, _WITH)[:, :, :2]
-        values = (both * np.array([[mirror], [1.0]])).reshape(count, 4, _WITH)
-        if self.model.table is None:
-            return History(start, step, self.time, values)
-        axes, flip = np.array(table_axes(self.model.phi, self.model.table.angle)), np.array([mirror, 1.0, 1.0])
-        velocity, turning = axes @ self.ball[:3] * flip, axes @ self.ball[3:] / radius * flip * mirror
-        return History(start, step, self.time, values, velocity, turning)
+        steps, model = self.steps[self.steps["length"] > 0], self.model
+        flip = np.array([mirror, 1.0])
+        middles = np.concatenate([[0.0], steps["time"] - steps["length"] / 2, [self.time]])
+        forces = np.pad(steps["F"][:, :2] * flip, ((1, 1), (0, 0)))  # none at the touch, and none as the two part
+        times = np.append(0.0, steps["time"])
+        velocities = np.vstack([model.approach, steps["v"][:, :2]]) * flip
+        if model.table is None:
+            return History(middles, forces, times, velocities)
+        axes, side = np.array(table_axes(model.phi, model.table.angle)), np.array([mirror, 1.0, 1.0])
+        velocity, turning = axes @ self.ball[:3] * side, axes @ self.ball[3:] / radius * side * mirror
+        return History(middles, forces, times, velocities, velocity, turning)
 
 
-def _velocities(model: ContactModel, xi: Complex, ball: Array, slopes: Array) -> Array:
-    """Of the contact, m/s, in the directions of the first touch; a bent cue takes its tip back as it bends further."""
-    propagator = model.propagator
-    modes = (propagator.velocities @ xi).real
-    ports = propagator.rows @ modes
-    if len(slopes):
-        ports[0] -= (model.arrays["slope_weights"] * slopes) @ (propagator.slopes @ modes)
-    return np.asarray(model.facing @ np.concatenate([ports, ball]))
+def solve_contact(model: ContactModel, *, steps: int | None = None, course: bool = False) -> SolvedContact:
+    """Follow a contact from touch to separation, and what comes after it within its window.
 
-
-def impulse_on(model: ContactModel, ball: Array) -> Array:
-    """The impulses (t, n), N s, that gave balls at rest velocities (..., speeds); above a table, along it."""
-    if model.table is None:
-        return np.asarray(model.ball_mass * ball[..., :2])
-    s, c = math.sin(model.phi), math.cos(model.phi)
-    right, forward, _ = table_axes(model.phi, model.table.angle)
-    along = np.array([s * forward + c * right, c * forward - s * right])
-    return np.asarray(model.ball_mass * (ball[..., :3] @ along.T))
-
-
-def solve_contact(model: ContactModel, *, recorded: bool = True) -> SolvedContact:
-    """Follow a contact from touch to parting, and what comes after it within its window.
-
-    RuntimeError if the ball does not leave the cue, or the contact cannot be stepped on.
+    steps: in a head-on contact time. course: whether the modes' coordinates are kept. RuntimeError if the ball does
+    not leave the cue; ValueError where leather or a bent cue leave the range of their theory.
     """
-    kernel, propagator = library(), model.propagator
-    before = propagator.approaching * model.speed
+    kernel, propagator, level = library(), model.propagator, model.table is None
     arrays = {
-        "facing": np.ascontiguousarray(model.facing),
-        "ball_gives": np.ascontiguousarray(model.ball_gives),
-        "xi": before.copy(),
-        "ball": np.append(model.ball, np.zeros(6 - len(model.ball))),  # the kernel has room for six
-        **{name: np.array(values, float) for name, values in model.arrays.items()},
+        "rates": propagator.rates,
+        "rows": propagator.readings,
+        "drives": propagator.drives,
+        "facing": model.facing,
+        "inverse_masses": model.inverse_masses,
+        "xi": propagator.approaching * model.speed,
+        "ball": model.ball.copy(),
+        **model.arrays,
     }
+    arrays = {name: np.ascontiguousarray(values) for name, values in arrays.items()}
     numbers = {
-        "exponent": 1.0,
-        "restitution": model.restitution,
-        "friction": model.friction,
-        "speed": model.speed,
-        "across": model.across,
-        "clock": model.time,
-        "impulse": model.speed * model.ball_mass,
-        "longest": model.longest,
-        "window": model.window or 0.0,
-        "most_phases": MOST_PHASES,
-        "most_steps": MOST_STEPS,
+        "modes": len(propagator.rates),
+        "ports": len(propagator.rows),
+        "slopes": len(propagator.slopes),
         "forces": len(model.facing),
-        "speeds": len(model.ball_gives),
+        "speeds": len(model.ball),
+        "planes": 1 if level else 2,
         "patch": model.patch,
-        "lossy": propagator.lossy,
-        "recording": int(recorded),
-        "plane": len(propagator.slopes) // (1 if model.table is None else 2),
+        "phi": model.phi,
+        "restitution": model.restitution,
+        "friction": min(model.friction, ENDLESS),
+        "step": model.time / (steps or STEPS),
+        "longest": LONGEST * model.time,
+        "window": model.window or 0.0,
     }
     c = KernelContact(**numbers | model.terms | {name: array.ctypes.data for name, array in arrays.items()})
-    c.cue = propagator.cue
-    kernel.contact_run(ctypes.byref(c))
-    phases = _phases(model, _rows(c.phases, c.phase_count, 4 + 2 * c.speeds), c.speeds)
-    arrays["ball"] = arrays["ball"][: c.speeds]
-    records = _rows(c.records, c.record_count, c.row) if recorded else None
-    kernel.contact_free(ctypes.byref(c))
+    records, states, dissipated = [], [arrays["xi"][None].copy()], []
+    watched = course or len(propagator.dampers) > 0
+    work = kernel.contact_new(ctypes.byref(c))
+    if not work:
+        raise MemoryError("no memory for the steps of a contact")
+    while c.status == _RUNNING:
+        rows, after = np.empty(CHUNK, STEP), np.empty((CHUNK if watched else 0, 2, len(propagator.rates)))
+        count = kernel.contact_steps(work, CHUNK, rows.ctypes.data, after.ctypes.data if watched else None)
+        records.append(rows[:count])
+        if watched:
+            states.append(after[:count, 0] + 1j * after[:count, 1])
+            xi = np.concatenate([states[-2][-1:], states[-1]])
+            dissipated.append(propagator.dissipated(xi, rows["length"][:count]))
+            states = states if course else states[-1:]
+    kernel.contact_free(work)
     if c.status != _ENDED:
-        raise _failure(model, c, phases, arrays)
-    losses = {"friction": c.friction_loss, "shear": c.shear_loss, "table": c.table_loss}
-    losses |= {"damping": c.damping_loss, "radiated": c.radiated}
+        raise _failure(model, c)
+    tangential = c.work[0] + c.work[2]
+    shear = tangential if model.patch == PARTIAL_SLIP and model.friction >= ENDLESS else c.shear_loss
+    damping, radiated = np.concatenate([*dissipated, np.zeros((1, 2))])[: c.pressed].sum(axis=0).tolist()
+    losses = {"friction": tangential - shear, "shear": shear, "table": sum(c.work[3:])}
     return SolvedContact(
-        model=model,
-        phases=phases,
-        time=c.time,
-        xi_before=before,
-        xi=arrays["xi"],
-        ball=arrays["ball"],
-        parted=bool(c.parted),
-        deepest=c.deepest,
-        peak=c.peak,
-        losses=losses,
-        records=records,
-        slopes=arrays.get("slopes", _NOTHING),
+        model,
+        np.concatenate(records)[: c.pressed],
+        np.concatenate(states)[: c.pressed + 1] if course else None,
+        arrays["xi"],
+        arrays["ball"],
+        losses | {"damping": damping, "radiated": radiated},
+        c.deepest,
+        bool(c.parted),
     )
 
 
-def _rows(pointer: ctypes._Pointer[ctypes.c_double], count: int, wide: int) -> Array:
-    """A copy of the kernel's rows."""
-    return np.frombuffer(ctypes.string_at(pointer, 8 * count * wide) if count else b"").reshape(count, max(wide, 5))
-
-
-def _phases(model: ContactModel, rows: Array, speeds: int) -> tuple[Phase, ...]:
-    before, after = rows[:, 4 : 4 + speeds], rows[:, 4 + speeds :]
-    impulses = impulse_on(model, after) - impulse_on(model, before)
-    return tuple(
-        Phase(GRIPS[int(grip)], PRESSES[int(press)], start, end, (p_t, p_n))
-        for (grip, press, start, end), (p_t, p_n) in zip(rows[:, :4].tolist(), impulses.tolist(), strict=True)
-    )
-
-
-def _buckling(model: ContactModel) -> float:
-    assert model.tip is not None
-    return buckling_thrust(model.tip, float(model.arrays["slope_weights"][-1]))
-
-
-def _failure(model: ContactModel, c: KernelContact, phases: tuple[Phase, ...], arrays: dict[str, Array]) -> Exception:
-    """What a contact that did not end says."""
+def _failure(model: ContactModel, c: KernelContact) -> Exception:
+    """What a contact that did not end reports."""
     if c.status == _NO_MEMORY:
         return MemoryError("no memory for the steps of a contact")
     if c.status == _TOO_DEEP and isinstance(model.law, LeatherLaw):
         return model.law.too_deep(c.depth)
-    where = f"{GRIPS[c.grip]}, {PRESSES[c.press]}"
-    if c.status == _TURNED_TOO_FAR:
-        return RuntimeError(f"the contact has rolled by {c.angle:.3g} rad, further than its levers are known")
     if c.status == _BENT_TOO_FAR:
+        assert model.tip is not None
+        buckles = buckling_thrust(model.tip, float(model.arrays["slope_weights"][-1]))
         return BentTooFar(
             f"the thrust of {c.thrust:.4g} N bends the shaft by {c.steepest:.3g} rad at its tip, further than "
-            f"GeometricStiffness holds; thrust that lasts buckles it from {_buckling(model):.4g} N on"
+            f"GeometricStiffness holds; thrust that lasts buckles it from {buckles:.4g} N on"
         )
-    if c.status == _STUCK:
+    if c.status == _UNSOLVED:
         return RuntimeError(
-            f"the contact could not be stepped on from {c.time:.6g} s, after {c.steps} steps, in {where}; "
-            "keep fewer modes, or a Tip.restitution further from 0"
+            f"the forces of the contact have no solution after {c.time:.6g} s and {c.steps} steps, in "
+            f"{GRIPS[c.grip]}; take more steps, or keep fewer modes"
         )
-    v = _velocities(model, np.asarray(arrays["xi"], complex), arrays["ball"], arrays.get("slopes", _NOTHING))
     return RuntimeError(
-        f"the ball does not leave the cue: after {c.time:.6g} s and {len(phases)} phases "
-        f"(head-on contact time {model.time:.6g} s) the contact is in {where}, with v_t = {v[0]:.3g} m/s, "
-        f"v_n = {v[1]:.3g} m/s and the tip pressed by {c.depth:.3g} m; "
-        "check restitution, contact time and the masses, or keep fewer modes"
+        f"the ball does not leave the cue: after {c.time:.6g} s (head-on contact time {model.time:.6g} s) the tip is "
+        f"pressed by {c.depth:.3g} m, in {GRIPS[c.grip]}; check restitution, contact time and masses"
     )

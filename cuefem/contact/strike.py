@@ -47,17 +47,16 @@ def strike(scene: Scene, at: Resolution | Solid | None = None) -> Outcome:
     Raises
     ------
     ValueError
-        For a scene of arrays, effects that no contact honours together, or a tip that gives back next to nothing: a
-        restitution above 0 and below 1e-4.
+        For a scene of arrays, effects that no contact honours together, or a restitution below 0.05 (0.1 beside
+        `LeatherTip`); `cuefem.impulse` takes any.
     RuntimeError
         If the ball does not leave the cue.
 
     Notes
     -----
-    The cue's modes, the tip and the ball are one system. Between the forces of the contact the modes turn exactly;
-    over a step the forces are polynomials, found by Newton's method, so that the modes kept are the only approximation
-    that counts: the steps add about 1e-12 for a linear tip, 1e-10 for others, and 1e-6 for a patch that slips ring by
-    ring (handbook: The contact).
+    The cue's modes, the tip and the ball are one system. Over a step the forces of the contact are constant, and the
+    modes answer them exactly; the tip's law is taken at mid-step and friction is a return mapping (Moreau 1988, Jean
+    1999). Second order in the step; what the default steps leave: handbook: The contact.
 
     Examples
     --------
@@ -70,15 +69,20 @@ def strike(scene: Scene, at: Resolution | Solid | None = None) -> Outcome:
     2.187
     """
     check_kind("strike scene", scene, Scene)
-    return strike_modes(scene, tip_modes_of(scene, at))
+    return strike_modes(scene, tip_modes_of(scene, at), steps=steps_of(at))
 
 
-def strike_modes(scene: Scene, tip: TipModes, *, recorded: bool = True) -> Outcome:
-    """The coupled strike of a cue that is given by its tip modes, as `strike`.
+def steps_of(at: Resolution | Solid | None) -> int | None:
+    """The steps that a resolution asks for; None for the default."""
+    return at.steps if isinstance(at, Resolution) else None
 
-    recorded: whether the outcome has a history. Strikes with the same tip modes share what belongs to the cue.
+
+def strike_modes(scene: Scene, tip: TipModes, *, steps: int | None = None) -> Outcome:
+    """The coupled strike of a cue that is given by its tip modes, as `strike`; steps: `Resolution.steps`.
+
+    Strikes with the same tip modes share what belongs to the cue.
     """
-    return outcome_of(solve_contact(model_of(scene, tip), recorded=recorded), scene)
+    return outcome_of(solve_contact(model_of(scene, tip), steps=steps), scene)
 
 
 def outcome_of(solved: SolvedContact, scene: Scene) -> Outcome:
@@ -108,7 +112,7 @@ def outcome_of(solved: SolvedContact, scene: Scene) -> Outcome:
         phases=tuple(phase.mirrored(side) for phase in solved.phases),
         energy=_energy(solved, inertia, (p_t**2 + p_n**2) / (2 * M), nu * M * turning**2 / 2),
         unknowns=model.unknowns,
-        history=None if solved.records is None else solved.history(side, scalar("Ball.radius", scene.ball.radius)),
+        history=solved.history(side, scalar("Ball.radius", scene.ball.radius)),
     )
 
 
@@ -258,7 +262,7 @@ def _struck(shared: Solved, scenes: Numbered) -> list[tuple[int, dict[str, Any]]
     results = []
     for i, scene in scenes:
         with _told_of(i):
-            outcome = strike_modes(scene, shared.tip, recorded=False)
+            outcome = strike_modes(scene, shared.tip, steps=steps_of(shared.at))
         results.append((i, {name: getattr(outcome, name) for name in (*NUMBERS, "energy", "unknowns")}))
     return results
 

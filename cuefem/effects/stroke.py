@@ -80,8 +80,8 @@ class Elevation(Effect):
     of the ball after the stroke is not included.
 
     Wrong when: The stroke is a jump shot, which needs the bounce of cloth and slate, the ball is frozen to another one,
-    or infinite tip friction begins with an impulsive blow, in which the table does not rub. It cannot be used with a
-    dead tip, TipShear, RollingContact or SecondHit.
+    or infinite tip friction begins with an impulsive blow, in which the table does not rub. It cannot be used with
+    TipShear, RollingContact or SecondHit.
 
     Limit: The effect vanishes as the angle goes to zero, in proportion to the angle with friction on the cloth and to
     its square without.

@@ -307,9 +307,7 @@ def sticking_squirt(tip: TipModes, scene: Scene) -> float:
 
     The cue is the straight one, as for all end masses but "squirt": thrust would make them fall with the speed.
     """
-    outcome = strike_modes(_gripping(scene), tip.straight)
-    # past the peak of a tip without restitution nothing presses, but endless friction would go on pulling
-    p_t, p_n = np.sum([phase.impulse for phase in outcome.phases if phase.press != "rigid"], axis=0)
+    p_t, p_n = strike_modes(_gripping(scene), tip.straight).impulse
     return float(abs(scene.stroke.angle) - math.atan2(p_t * np.sign(scene.stroke.offset), p_n))
 
 
@@ -324,7 +322,7 @@ def squirt_equivalent(tip: TipModes, scene: Scene) -> float:
     ValueError if there is none: see `equivalent_end_mass`.
     """
     off_centre = scene if scene.stroke.offset else _aside(scene)
-    return equivalent_end_mass(strike_modes(off_centre, tip, recorded=False), off_centre)
+    return equivalent_end_mass(strike_modes(off_centre, tip), off_centre)
 
 
 def equivalent_end_mass(outcome: Outcome, scene: Scene) -> float:

@@ -296,9 +296,10 @@ def nearest(name: str, names: Iterable[str]) -> str:
     return f"; did you mean {known[close[0]]!r}?" if close else ""
 
 
-def check_count(name: str, value: Any, least: int) -> None:
-    """TypeError or ValueError unless ``value`` is a whole number of at least ``least``."""
+def check_count(name: str, value: Any, least: int, most: int | None = None) -> None:
+    """TypeError or ValueError unless ``value`` is a whole number of at least ``least``, and at most ``most``."""
+    bounds = f">= {least}" if most is None else f"in [{least}, {most}]"
     if isinstance(value, bool) or not isinstance(value, int | np.integer):
-        raise TypeError(f"{name} must be a whole number >= {least}; got {shown(value)}")
-    if value < least or not math.isfinite(value):
-        raise ValueError(f"{name} must be a whole number >= {least}; got {value}")
+        raise TypeError(f"{name} must be a whole number {bounds}; got {shown(value)}")
+    if value < least or (most is not None and value > most):
+        raise ValueError(f"{name} must be a whole number {bounds}; got {value}")

@@ -55,12 +55,6 @@ def _turn(before: Any, after: Any) -> str:
     presses = {
         "load": "pressed beyond its old peak",
         "unload": "greatest compression",
-        "rigid": "greatest compression",
-        "ringing": "the tip rings",
-        "capped": "the tip rings less and less",
-        "rubbed": "friction damps the ringing",
-        "rubbed back": "friction damps the ringing",
-        "swinging": "the tip rings and slips by turns",
     }
     words = []
     if after.press != before.press:

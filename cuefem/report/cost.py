@@ -6,9 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from time import perf_counter
 from typing import Any
 
-import numpy as np
-
-from cuefem.accuracy import FIRST, JUDGED, MOST, RATIO, Rung, ladder, relative_error
+from cuefem.accuracy import MOST, Level, levels, relative_error
 from cuefem.contact.strike import strike
 from cuefem.report.figures import figure_content
 from cuefem.results.quantities import NONE, TRADE, significant
@@ -24,71 +22,65 @@ Track = Callable[[Sequence[Any]], Iterable[Any]]
 
 
 def cost_record(scene: Scene, *, most: int = MOST, track: Track = iter) -> Record:
-    """A ladder of resolutions up to ``most`` modes, each with its errors and seconds; what to take for `WANTED`.
+    """Levels of resolution up to ``most`` modes, each with its errors and seconds; what to take for `WANTED`.
 
-    Of each rung: "modes", "elements", "order", "unknowns"; "estimate", its estimated relative error (None on the first
-    rungs); "difference" from the last rung; "seconds" of all rungs up to it, which is what `cuefem.resolve` takes, and
+    Of each level: "modes", "steps", "elements", "order", "unknowns"; "estimate", its estimated relative error (None on
+    the first two); "difference" from the last level; "seconds" of all levels up to it, as `cuefem.resolve` takes; and
     "plain", the sum without a tail: its own difference and seconds. ValueError for a lumped cue, which is exact.
     """
     climbed = _climbed(scene, most, track)
     best = climbed[-1][0].outcome
-    rungs = [_rung_record(scene, rung, seconds, best) for rung, seconds in track(climbed)]
-    return {"rungs": rungs, "wanted": [_recommended(rtol, rungs) for rtol in WANTED]}
+    rows = [_level_record(scene, level, seconds, best) for level, seconds in track(climbed)]
+    return {"levels": rows, "wanted": [_recommended(rtol, rows) for rtol in WANTED]}
 
 
-def _climbed(scene: Scene, most: int, track: Track) -> list[tuple[Rung, float]]:
-    """Rungs with the seconds of the climb to each: up to ``most`` modes or the finest accuracy wanted.
+def _climbed(scene: Scene, most: int, track: Track) -> list[tuple[Level, float]]:
+    """Levels with the seconds of the climb to each: up to ``most`` modes or the finest accuracy wanted.
 
     The climb is timed when it is done again, so that nothing is in it that a process does once.
     """
-    climbed: list[Rung] = []
-    rungs = ladder(scene)
-    for _ in track(range(_rungs_up_to(most))):
-        rung = next(rungs, None)
-        if rung is None or (len(climbed) > JUDGED and rung.at.modes > most):
+    climbed: list[Level] = []
+    for level in levels(scene):
+        if len(climbed) > 2 and level.at.modes > most:
             break
-        climbed.append(rung)
-        if rung.outcome.error is not None and rung.outcome.error <= min(WANTED):
+        climbed.append(level)
+        if level.outcome.error is not None and level.outcome.error <= min(WANTED):
             break
-    again, start = ladder(scene), perf_counter()
+    again, start = levels(scene), perf_counter()
     return [(next(again), perf_counter() - start) for _ in track(climbed)]
 
 
-def _rungs_up_to(most: int) -> int:
-    """No fewer than a ladder from its lowest possible start has."""
-    return JUDGED + 3 + int(np.log(max(most, FIRST) / FIRST) / np.log(RATIO))
-
-
-def _rung_record(scene: Scene, rung: Rung, seconds: float, best: Any) -> Record:
+def _level_record(scene: Scene, level: Level, seconds: float, best: Any) -> Record:
     plain = None
-    if rung.at.modes <= MOST_PLAIN:
+    if level.at.modes <= MOST_PLAIN:
         start = perf_counter()
-        outcome = strike(scene, rung.at)
+        outcome = strike(scene, level.at)
         plain = {"seconds": perf_counter() - start, "difference": relative_error(outcome, best, scene)}
     return {
-        "modes": rung.at.modes,
-        "elements": list(rung.at.elements) if isinstance(rung.at.elements, tuple) else rung.at.elements,
-        "order": rung.at.order,
-        "unknowns": rung.outcome.unknowns,
-        "estimate": rung.outcome.error,
-        "difference": None if rung.outcome is best else relative_error(rung.outcome, best, scene),
+        "modes": level.at.modes,
+        "steps": level.at.steps,
+        "elements": list(level.at.elements) if isinstance(level.at.elements, tuple) else level.at.elements,
+        "order": level.at.order,
+        "unknowns": level.outcome.unknowns,
+        "estimate": level.outcome.error,
+        "difference": None if level.outcome is best else relative_error(level.outcome, best, scene),
         "seconds": seconds,
         "plain": plain,
     }
 
 
-def _recommended(rtol: float, rungs: Sequence[Record]) -> Record:
-    """The first rung whose estimate is within ``rtol``; none: the best, which says how far it gets."""
-    judged = [rung for rung in rungs if rung["estimate"] is not None]
-    first = next((rung for rung in judged if rung["estimate"] <= rtol), None)
-    names = ("modes", "elements", "order", "unknowns", "estimate", "seconds")
-    last = judged[-1] if judged else rungs[-1]
+def _recommended(rtol: float, rows: Sequence[Record]) -> Record:
+    """The first level whose estimate is within ``rtol``; none: the best, which says how far it gets."""
+    judged = [row for row in rows if row["estimate"] is not None]
+    first = next((row for row in judged if row["estimate"] <= rtol), None)
+    names = ("modes", "steps", "elements", "order", "unknowns", "estimate", "seconds")
+    last = judged[-1] if judged else rows[-1]
     return {"rtol": rtol, "reached": first is not None, **{name: (first or last)[name] for name in names}}
 
 
 def cost_sheets(record: Record) -> list[Sheet]:
-    """The ladder, and what to take."""
-    sizes: dict[str, Entry] = {"modes": "{modes}", "elements x order": _mesh, "unknowns": "{unknowns}"}
+    """The levels, and what to take."""
+    sizes: dict[str, Entry] = {"modes": "{modes}", "steps": "{steps}", "elements x order": _mesh}
     errors = {"estimate": "{estimate:error}", "difference": "{difference:error}"}
     times: dict[str, Entry] = {
         "ms, climb": lambda row: _milliseconds(row["seconds"]),
@@ -100,7 +92,7 @@ def cost_sheets(record: Record) -> list[Sheet]:
         sheet(
             "Error against cost",
             sizes | errors | times,
-            record["rungs"],
+            record["levels"],
             "Largest relative error of squirt, ball speed and spin: as estimated, and as the difference from the last "
             "row.",
             "ms, climb: time of all rows down to this one, as `resolve` takes it. Plain sum: the same modes without "
@@ -134,7 +126,7 @@ def cost_figure(record: Record, title: str, kind: str) -> bytes:
 
     def draw(canvas: Any, panels: Any) -> None:
         for axes, name in zip(panels, ("seconds", "unknowns"), strict=True):
-            _draw(axes, record["rungs"], name)
+            _draw(axes, record["levels"], name)
         panels[0].set(xlabel="seconds (tail: the whole climb)", ylabel="largest relative error")
         panels[1].set(xlabel="unknowns of the strike")
         panels[0].legend()
@@ -147,11 +139,11 @@ def cost_figure(record: Record, title: str, kind: str) -> bytes:
     return figure_content(kind, draw, ncols=2, figsize=(9, 4.2), sharey=True)
 
 
-def _draw(axes: Any, rungs: Sequence[Record], name: str) -> None:
-    judged = [rung for rung in rungs if rung["estimate"] is not None]
-    known = [rung for rung in rungs if rung["difference"]]
-    plain = [rung for rung in rungs if rung["plain"]]
-    sizes = [rung["plain"]["seconds"] if name == "seconds" else rung["unknowns"] for rung in plain]
+def _draw(axes: Any, rows: Sequence[Record], name: str) -> None:
+    judged = [row for row in rows if row["estimate"] is not None]
+    known = [row for row in rows if row["difference"]]
+    plain = [row for row in rows if row["plain"]]
+    sizes = [row["plain"]["seconds"] if name == "seconds" else row["unknowns"] for row in plain]
     axes.loglog([r[name] for r in judged], [r["estimate"] for r in judged], "o-", color="C0", label="tail: estimate")
     axes.loglog(
         [r[name] for r in known], [r["difference"] for r in known], "o--", color="C0", mfc="w", label="tail: difference"

@@ -56,8 +56,8 @@ def effects_record(scene: Scene, *, rtol: float = DEFAULT_RTOL, track: Track = i
     """
     at = None
     if scene.lumped is None:
-        *_, rung = climb(scene, rtol / MARGIN)
-        at = rung.at
+        *_, level = climb(scene, rtol / MARGIN)
+        at = level.at
     base, seconds = timed_strike(scene, at)
     rows = [_row(variant, scene, base, rtol=rtol, at=at) for variant in track(variants(scene))]
     rows.sort(key=lambda row: -1.0 if row["weight"] is None else row["weight"], reverse=True)

@@ -102,7 +102,7 @@ def _numbers(scene: Scene, tip: TipModes, across: float, along: float) -> Number
     for definition in DEFINITIONS.values():
         with suppress(ValueError):  # a miscue has no squirt-equivalent end mass
             numbers[f"end mass, {definition.label_at(scene.stroke.offset)}", "kg"] = float(definition.of(tip, scene))
-    numbers["squirt", "rad"] = float(strike_modes(scene, tip, recorded=False).squirt)
+    numbers["squirt", "rad"] = float(strike_modes(scene, tip).squirt)
     return numbers
 
 

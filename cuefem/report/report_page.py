@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cuefem.accuracy import Rung, climb
+from cuefem.accuracy import Level, climb
 from cuefem.beam.modes import modes
 from cuefem.beam.tip import TipModes
 from cuefem.contact.outcome import MISSED, grip_of
@@ -109,24 +109,24 @@ def page(
 
 @dataclass(frozen=True, eq=False)
 class _ToAccuracy(Solved):
-    """A scene solved as finely as an accuracy asks for, by the last rung that its strike climbed to."""
+    """A scene solved as finely as an accuracy asks for, by the last level that its strike climbed to."""
 
-    rung: Rung | None = None
+    level: Level | None = None
 
     @cached_property
     def tip(self) -> TipModes:
-        """Those of the rung."""
-        assert self.rung is not None
-        return self.rung.tip
+        """Those of the level."""
+        assert self.level is not None
+        return self.level.tip
 
     @cached_property
     def tip_stuck(self) -> TipModes:
-        """Those of the rung too, unless an end mass takes more modes by default."""
+        """Those of the level too, unless an end mass takes more modes by default."""
         return self._as_fine(LEAST_STUCK)
 
     @cached_property
     def tip_smooth(self) -> TipModes:
-        """Likewise, so that a coarse rung changes no end mass."""
+        """Likewise, so that a coarse level changes no end mass."""
         return self._as_fine(self.least_smooth)
 
     def by_default(self) -> Solved:
@@ -136,25 +136,25 @@ class _ToAccuracy(Solved):
         return usual
 
     def _as_fine(self, least: int) -> TipModes:
-        assert self.rung is not None
-        return self.tip if self.rung.at.modes >= LEAST_STUCK else self.tip_modes(least)
+        assert self.level is not None
+        return self.tip if self.level.at.modes >= LEAST_STUCK else self.tip_modes(least)
 
 
 def _stages(scene: Scene, rtol: float) -> list[Stage]:
-    rungs: list[tuple[Rung, float]] = []
-    solved = cache(lambda: _ToAccuracy(scene, rung=rungs[-1][0]) if rungs else Solved(scene))
+    climbed_to: list[tuple[Level, float]] = []
+    solved = cache(lambda: _ToAccuracy(scene, level=climbed_to[-1][0]) if climbed_to else Solved(scene))
 
     def climbed() -> Sheet:
         begun = time.perf_counter()
-        rungs.extend((rung, time.perf_counter() - begun) for rung in climb(scene, rtol))
-        return _steps(rungs, rtol)
+        climbed_to.extend((level, time.perf_counter() - begun) for level in climb(scene, rtol))
+        return _steps(climbed_to, rtol)
 
     def usual() -> Solved:
         fine = solved()
         return fine.by_default() if isinstance(fine, _ToAccuracy) else fine
 
     def outcome() -> Outcome:
-        return rungs[-1][0].outcome if rungs else strike_modes(scene, solved().tip)
+        return climbed_to[-1][0].outcome if climbed_to else strike_modes(scene, solved().tip)
 
     return [
         *([Stage("steps", climbed)] if scene.lumped is None else []),
@@ -168,15 +168,15 @@ def _stages(scene: Scene, rtol: float) -> list[Stage]:
     ]
 
 
-def _steps(rungs: Sequence[tuple[Rung, float]], rtol: float) -> Sheet:
-    """The ladder of resolutions: modes and unknowns, squirt, its estimated error, and seconds so far."""
-    outcomes = [(rung.at.modes, rung.outcome, seconds) for rung, seconds in rungs]
+def _steps(climbed_to: Sequence[tuple[Level, float]], rtol: float) -> Sheet:
+    """The levels of resolution: modes and steps, squirt, its estimated error, and seconds so far."""
+    outcomes = [(level.at, level.outcome, seconds) for level, seconds in climbed_to]
     rows = [
-        (str(count), str(it.unknowns), degrees(it.squirt), written("error", it.error), seconds_words(seconds))
-        for count, it, seconds in outcomes
+        (str(at.modes), str(at.steps), degrees(it.squirt), written("error", it.error), seconds_words(seconds))
+        for at, it, seconds in outcomes
     ]
     reached = [i for i, (_, it, _) in enumerate(outcomes) if it.error is not None and it.error <= rtol]
-    head = ("modes", "unknowns", "squirt", "error", "time so far")
+    head = ("modes", "steps", "squirt", "error", "time so far")
     title = "How exact the numbers are"
     return Sheet(title, head, tuple(rows), texts=(), styles=dict.fromkeys(reached, "reached"))
 

@@ -93,14 +93,14 @@ def changes_by_input(
 def squirt_beside(solved: Solved, made: Scene) -> float:
     """Squirt of a changed scene, rad, by the modes that are known where the cue is not changed."""
     if (made.cue, made.cue_effects) == (solved.scene.cue, solved.scene.cue_effects):
-        return float(strike_modes(made, solved.tip, recorded=False).squirt)
+        return float(strike_modes(made, solved.tip).squirt)
     return squirt_of(made)
 
 
 @lru_cache(maxsize=64)
 def squirt_of(scene: Scene) -> float:
     """Squirt of a scene's coupled strike, rad, remembered for what is asked again and again, such as a ready cue."""
-    return float(strike_modes(scene, Solved(scene).tip, recorded=False).squirt)
+    return float(strike_modes(scene, Solved(scene).tip).squirt)
 
 
 def of_difference(mine: float, other: float, inputs: float = 0.0) -> float:

@@ -159,7 +159,7 @@ class Designs:
     def strike(self, i: int, offset: float | None) -> Outcome:
         """The coupled strike of a design at an offset b/R, or at its scene's own; each is made once."""
         if (i, offset) not in self._outcomes:
-            self._outcomes[i, offset] = strike_modes(self._scene(i, offset), self.tip(i), recorded=False)
+            self._outcomes[i, offset] = strike_modes(self._scene(i, offset), self.tip(i))
         return self._outcomes[i, offset]
 
 

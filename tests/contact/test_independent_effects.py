@@ -142,7 +142,7 @@ KINDS = {
     "SecondHit": Kind(hit_again, (6, 20, 24), 5e-4),  # 2, 4 and 2 touches
 }
 MODES, STEPS = 12, 800
-AT = cf.Resolution(3, 14, MODES)
+AT = cf.Resolution(3, 14, MODES, 2 * STEPS)
 
 
 def touches(outcome: cf.Outcome) -> int:

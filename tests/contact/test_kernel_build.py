@@ -46,7 +46,7 @@ SPOILED = {  # the file of the kernel that is changed, and what becomes of its b
     "without digest": ("_kernel.sha256", lambda whole: None, "is missing"),
     "cut short": (BINARY.name, lambda whole: whole[: len(whole) // 2], "is damaged: it is not the one that was built"),
     "half a digest": ("_kernel.sha256", lambda whole: b"half", "is damaged: it is not the one that was built"),
-    "other sources": ("march.c", lambda whole: whole + b"/* another version */\n", "was built from other sources"),
+    "other sources": ("step.c", lambda whole: whole + b"/* another version */\n", "was built from other sources"),
 }
 
 

@@ -30,7 +30,7 @@ def test_contact_times_of_a_rigid_cue_of_567_g(speed: float, time: float) -> Non
     steel = Material(200e12, 80e12, 1000.0)
     rigid = Cue((Segment(0.3, 0.01275, 0.01275, steel),), body_mass=0.5)
     rigid = replace(rigid, body_mass=0.567 - rigid.shaft_mass - LEATHER.mass(0.01275))
-    found = strike(leather_scene(0.0, speed=speed, cue=rigid), Resolution(1, 4, 2))
+    found = strike(leather_scene(0.0, speed=speed, cue=rigid), Resolution(1, 4, 2, 6400))
     assert 1e3 * found.duration == pytest.approx(time, rel=0.02)
     assert found.ball_speed == pytest.approx(speed * 1.73 * 0.567 / 0.737, rel=1e-6)
 

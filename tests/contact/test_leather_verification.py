@@ -13,6 +13,7 @@ from cuefem import Scene, resolve, strike
 from cuefem.beam.tip import TipModes
 from cuefem.contact.strike import strike_modes
 from tests.helpers.leather_scenes import AT, LEATHER, POOL, leather_scene
+from tests.helpers.orders import falls_with_the_step
 from tests.helpers.strike_scenes import a_few_modes
 from tests.oracle.ring_stepper import LEATHER as RELEASED
 from tests.oracle.ring_stepper import struck_scene
@@ -68,16 +69,20 @@ def by_other_solver(scene: Scene, tip: TipModes) -> tuple[float, float, float]:
 @pytest.mark.parametrize(("e", "offset", "rolls"), [(0.73, 0.3, True), (1.0, 0.45, True), (0.4, 0.2, False)])
 def test_another_solver_gives_the_same(e: float, offset: float, rolls: bool) -> None:
     scene = leather_scene(offset, e=e, friction=inf, leather=replace(LEATHER, rolls=rolls, shear=8e5))
-    found, (squirt, surface, duration) = strike_modes(scene, a_few_modes()), by_other_solver(scene, a_few_modes())
-    assert found.squirt == pytest.approx(squirt, rel=1e-7)
-    assert found.spin * POOL.radius == pytest.approx(surface, rel=1e-7)
-    assert found.duration == pytest.approx(duration, rel=1e-6)
+    squirt, surface, duration = by_other_solver(scene, a_few_modes())
+
+    def error(steps: int) -> float:
+        found = strike_modes(scene, a_few_modes(), steps=steps)
+        pairs = ((found.squirt, squirt), (found.spin * POOL.radius, surface), (found.duration, duration))
+        return max(abs(value / exact - 1) for value, exact in pairs)
+
+    falls_with_the_step(error, most=2e-4)
 
 
 @pytest.mark.parametrize("speed", [1.0, 2.0, 5.0])
 def test_head_on_the_contact_time_is_that_of_the_law_by_quadrature(speed: float) -> None:
     scene = leather_scene(0.0, speed=speed)
-    assert strike(scene, AT).duration == pytest.approx(scene.contact_time, rel=1e-7)
+    falls_with_the_step(lambda steps: abs(strike(scene, replace(AT, steps=steps)).duration / scene.contact_time - 1))
     law, mass = scene.tip_law(), scene.head_on_mass
     deepest, loading = law.blow(mass, speed)
     assert law.work(deepest) == pytest.approx(mass * speed**2 / 2, rel=1e-12)
@@ -116,10 +121,10 @@ def test_what_a_patch_loses_is_friction_unless_that_is_endless(offset: float) ->
     rubs, grips = (strike(leather_scene(offset, friction=mu), AT).energy for mu in (0.7, inf))
     assert rubs["friction loss"] > 1e-4 * rubs["initial"]
     assert abs(rubs["tip shear"]) < 1e-12 * rubs["initial"]
-    assert grips["friction loss"] == 0
+    assert abs(grips["friction loss"]) < 1e-12 * grips["initial"]
     assert 1e-4 < grips["tip shear"] / grips["initial"] < 0.03
     constant = strike(leather_scene(offset, e=1.0, leather=replace(LEATHER, shear=4e5)), AT).energy
-    assert abs(constant["tip shear"]) < 1e-9 * constant["initial"]
+    assert abs(constant["tip shear"]) < 1e-7 * constant["initial"]
 
 
 def test_leather_that_keeps_a_little_of_its_work_along_the_surface() -> None:

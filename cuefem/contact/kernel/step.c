@@ -1,268 +1,191 @@
-/* One step: what its forces make of cue and ball, the forces that the law asks for by Newton's method, and its length. */
+/* A contact from touch to separation, and what comes after it within its window, step by step. */
 #include "contact.h"
 
-/* The level of a step that is about as long as the contact's clock. */
-int clock_level(const Contact *c)
+/* The tip turns this far at most, rad: beyond that w'^2/2 is no measure of how the cue shortens. */
+static const double STEEPEST = 0.25;
+/* A tip of a restitution e unloads 1/e times as fast as it loads: below SOFT with steps of e/SOFT. */
+static const double SOFT = 0.5;
+static const double ENDLESS = 1e12; /* friction */
+
+static void read_modes(Work *w)
 {
-    return LONGEST_POWER - (int)floor(log2(c->clock));
+    const int Q = w->c->ports + w->c->slopes, wide = 2 * w->c->modes;
+    for (int q = 0; q < Q; q++) {
+        w->rates[q] = 0;
+        for (int i = 0; i < wide; i++) w->rates[q] += w->rows[q * wide + i] * w->state[i];
+    }
 }
 
-/* What the cue's rows read at the start and the nodes if nothing loads it: its own motion. */
-FAST static void own_motion(const Contact *c, const Response *r, double (*own)[WITH])
+EXPORTED void contact_free(Work *w)
 {
-    const Cue *cue = c->cue;
-    for (int a = 0; a < cue->reads; a++) {
-        const double *row = cue->readings + 2 * a * cue->modes, *x = c->xi;
-        double now = 0, later[Q] = {0};
-        for (int k = 0; k < cue->modes; k++, row += 2, x += 2) {
-            const double *turn = r->turns + 2 * Q * k;
-            double re = row[0] * x[0] - row[1] * x[1], im = row[0] * x[1] + row[1] * x[0];
-            now += re;
-            for (int i = 0; i < Q; i++) later[i] += turn[i] * re - turn[Q + i] * im;
+    if (w) free(w->t.turn), free(w->rows), free(w);
+}
+
+/* A contact at its first touch; NULL without memory. */
+EXPORTED Work *contact_new(Contact *c)
+{
+    const int K = c->modes, Q = c->ports + c->slopes, wide = 2 * K;
+    Work *w = calloc(1, sizeof *w);
+    if (!w || !(w->rows = malloc((size_t)(2 * Q + 1) * wide * sizeof(double)))) return contact_free(w), NULL;
+    w->c = c, w->drives = w->rows + Q * wide, w->state = w->drives + Q * wide;
+    for (int k = 0; k < K; k++) {
+        w->state[k] = c->xi[2 * k], w->state[K + k] = c->xi[2 * k + 1];
+        for (int q = 0; q < Q; q++) {
+            const double *row = c->rows + 2 * (q * K + k), *drive = c->drives + 2 * (q * K + k);
+            w->rows[q * wide + k] = row[0], w->rows[q * wide + K + k] = -row[1];
+            w->drives[q * wide + k] = drive[0], w->drives[q * wide + K + k] = drive[1];
         }
-        own[a][0] = now, memcpy(own[a] + 1, later, sizeof later);
     }
+    memcpy(w->ball, c->ball, c->speeds * sizeof(double));
+    w->until = HUGE_VAL, w->longest = c->longest, w->last = -1;
+    read_modes(w);
+    if (!tabulate(w, c->step)) return contact_free(w), NULL;
+    return w;
 }
 
-/* What the cue's rows from the first to the last read once loads act; without any, loads is NULL. */
-FAST static void loaded(const Cue *cue, const Response *r, const double (*own)[WITH], const double (*loads)[Q],
-                        int first, int last, double (*y)[WITH])
-{
-    for (int a = first; a < last; a++) {
-        memcpy(y[a - first], own[a], sizeof own[a]);
-        if (loads) add_product(cue->ports * Q, r->answer + a * cue->ports * Q * Q, *loads, 1, y[a - first] + 1);
-    }
-}
-
-/* The contact's own answer V: from its forces at the nodes to its velocities there, and behind it to their integrals. */
-FAST static void answer_of(const Work *w, const Response *r, double *V)
-{
-    const Contact *c = w->c;
-    int n = c->forces, ports = c->cue->ports;
-    const double *sums_of_ball = rule.force_sums[0];
-    memset(V, 0, 2 * n * n * Q * Q * sizeof *V);
-    for (int f = 0; f < n; f++)
-        for (int g = 0; g < n; g++) {
-            double *to = V + (f * n + g) * Q * Q, *sum = to + n * n * Q * Q, ball = 0;
-            for (int a = 0; a < ports; a++)
-                for (int b = 0; b < ports; b++) {
-                    const double *from = r->answer + (a * ports + b) * Q * Q;
-                    double by = w->C[0][f][a] * w->C[0][g][b];
-                    for (int i = 0; by != 0 && i < Q * Q; i++) to[i] += by * from[i];
-                }
-            for (int b = 0; b < c->speeds; b++)
-                ball += w->C[0][f][PORTS + b] * c->ball_gives[b] * w->C[0][g][PORTS + b];
-            for (int i = 0; i < Q * Q; i++) to[i] += ball * r->step * sums_of_ball[i];
-            for (int j = 0; j < Q; j++) add_product(Q, rule.sums[1], to + j * Q, r->step, sum + j * Q);
-        }
-}
-
-/* J = on_F + on_v V + on_x (integrals of V). */
-FAST static void jacobian(int n, const Residual *r, const double *V, double *J)
-{
-    int wide = n * Q;
-    const double *sums = V + n * n * Q * Q;
-    memset(J, 0, wide * wide * sizeof *J);
-    for (int f = 0; f < n; f++)
-        for (int g = 0; g < n; g++) {
-            const double *by_F = r->on_F[f][g], *by_v = r->on_v[f][g], *by_x = r->on_x[f][g];
-            int moves = 0;
-            for (int i = 0; i < Q; i++) J[(g * Q + i) * wide + f * Q + i] += by_F[i], moves |= by_v[i] != 0 || by_x[i] != 0;
-            for (int b = 0; moves && b < n; b++)
-                for (int j = 0; j < Q; j++) {
-                    double *to = J + (b * Q + j) * wide + f * Q;
-                    const double *v = V + ((g * n + b) * Q + j) * Q, *x = sums + ((g * n + b) * Q + j) * Q;
-                    for (int i = 0; i < Q; i++) to[i] += by_v[i] * v[i] + by_x[i] * x[i];
-                }
-        }
-}
-
-/* What was known at the nodes of the step before, gone on with at the nodes of one of another length: past its end with
-   its first terms alone, which do not run away. */
-static void go_on(const Work *w, const double *nodes, double step, double *to)
-{
-    double waves[Q] = {0};
-    int inside = w->last_part < 1;
-    add_product(Q, rule.force_waves[0], nodes, 1, waves);
-    for (int i = 0; i < Q; i++) {
-        double at = w->last_part + rule.nodes[i] * step / w->last_step;
-        to[i] = legendre(waves, inside ? Q : 5, fmin(at, inside ? 1 : 3));
-    }
-}
-
-/* What moves in a step with these forces: loads, velocities, their integrals, the compression and the angle; by how
-   much the angle changed. Without forces F is NULL. */
-FAST static double move(Work *w, const Response *r, const double (*own)[WITH], const double (*F)[Q], Step *s)
-{
-    const Contact *c = w->c;
-    int n = c->forces, ports = c->cue->ports, all = PORTS + c->speeds, turns = c->turns;
-    int slopes = c->cue->slopes;
-    double of_cue[PORTS + SLOPES][WITH], y[ALL_PORTS][WITH], changed = 0;
-    for (int p = 0; p < all; p = p == ports - 1 ? PORTS : p + 1) {
-        memset(s->loads[p], 0, sizeof s->loads[p]);
-        for (int f = 0; f < n && F; f++)
-            for (int i = 0; i < Q; i++) s->loads[p][i] += w->C[turns ? i + 1 : 0][f][p] * F[f][i];
-    }
-    loaded(c->cue, r, own, F ? (const double(*)[Q])s->loads : NULL, 0, ports + slopes, of_cue);
-    if (slopes) changed = bend_step(c, r, s, of_cue);
-    memcpy(y, of_cue, ports * sizeof *y);
-    for (int b = 0; b < c->speeds; b++) {
-        for (int i = 0; i < WITH; i++) y[PORTS + b][i] = c->ball[b];
-        if (F) add_product(Q, rule.force_sums[0], s->loads[PORTS + b], r->step * c->ball_gives[b], y[PORTS + b] + 1);
-    }
-    for (int f = 0; f < n; f++) {
-        memset(s->v[f], 0, sizeof s->v[f]), memset(s->x[f], 0, sizeof s->x[f]);
-        for (int p = 0; p < all; p = p == ports - 1 ? PORTS : p + 1)
-            for (int i = 0; i < WITH; i++) s->v[f][i] += w->C[turns ? i : 0][f][p] * y[p][i];
-        add_product(WITH, rule.sums[0], s->v[f], r->step, s->x[f] + 1);
-    }
-    for (int i = 0; i < WITH; i++) s->depth[i] = c->depth - s->x[1][i];
-    if (!turns) return changed;
-    double rate[WITH], angle[WITH];
-    for (int i = 0; i < WITH; i++) {
-        double dome = rolls_on(c, s->angle[i]);
-        rate[i] = -(s->v[0][i] - y[PORTS + 2][i] - (ports > 2 ? dome * y[2][i] : 0)) / (c->radius + dome);
-        angle[i] = c->angle;
-    }
-    add_product(WITH, rule.sums[0], rate, r->step, angle + 1);
-    for (int i = 1; i < WITH; i++) {
-        changed = larger(changed, fabs(angle[i] - s->angle[i]));
-        s->angle[i] = angle[i];
-        facing_at(c, s->angle[i], w->C[i]);
-    }
-    return changed;
-}
-
-/* Solve a step of 2^(LONGEST_POWER - level) s in the hold of w; 0 if Newton's method does not settle. */
-int solve_step(Work *w, int level, Step *s)
+/* Ball and tip are apart: what the patch stores is lost, and their state is that of the end so far. */
+static void separate(Work *w, double shift)
 {
     Contact *c = w->c;
-    Response *r = response_of(c->cue, level);
-    int n = c->forces, wide = n * Q, dampers = dampers_of(c->cue);
-    if (!r) return 0;
-    double size = c->impulse / c->clock, F[FORCES][Q], left = HUGE_VAL, own[c->cue->reads][WITH];
-    Factor mine, *by = &mine;
-    s->level = level, s->step = r->step;
-    own_motion(c, r, own);
-    memset(F, 0, sizeof F);
-    for (int f = 0; f < n && w->known && !w->linear; f++) go_on(w, w->last_F[f], r->step, F[f]);
-    for (int i = 0; i < WITH; i++) s->angle[i] = c->angle;
-    if (c->turns && w->known) go_on(w, w->last_angle, r->step, s->angle + 1);
-    begin_slopes(c, s);
-    facing_at(c, c->angle, w->C[0]);
-    for (int i = 1; i < WITH && c->turns; i++) facing_at(c, s->angle[i], w->C[i]);
-    int settled = 0, slow = 0;
-    double last = HUGE_VAL;
-    for (int round = 0; round < 30; round++) {
-        c->rounds++;
-        int pushed = round || !w->linear; /* what is linear begins without forces */
-        double turned = move(w, r, (const double(*)[WITH])own, pushed ? (const double(*)[Q])F : NULL, s);
-        for (int f = 0; f < n; f++) {
-            memcpy(s->F[f] + 1, F[f], sizeof F[f]), s->F[f][0] = 0;
-            for (int j = 0; j < Q; j++) s->F[f][0] += rule.first[j] * F[f][j];
-        }
-        settled = w->hold.press == FREE ? turned < 1e-14 : round && (w->linear || left < 0.01 * c->tolerance);
-        if (settled) break;
-        if (w->hold.press == FREE) continue;
-        w->law->residual(w, s, &w->residual);
-        int known = w->linear && w->factors[level][w->hold.grip + 1 + 3 * w->hold.press] != NULL;
-        if (known) by = w->factors[level][w->hold.grip + 1 + 3 * w->hold.press];
-        else if (round == 0 || slow) { /* the matrix of a round before does as long as it brings the forces nearer */
-            /* V from where the contact used this step before: turned on a little it still leads there */
-            int stale = !w->V[level] || (c->turns && (slow || fabs(c->angle - w->V_angle[level]) > 0.02));
-            if (!w->V[level] && !(w->V[level] = malloc(2 * n * n * Q * Q * sizeof(double)))) break;
-            if (stale) answer_of(w, r, w->V[level]), w->V_angle[level] = c->angle;
-            const double *V = w->V[level];
-            if (w->linear) {
-                by = malloc(sizeof *by);
-                if (!by) break;
-            }
-            jacobian(n, &w->residual, V, by->matrix);
-            int good = factor(wide, by);
-            if (w->linear) w->factors[level][w->hold.grip + 1 + 3 * w->hold.press] = by;
-            if (!good) break;
-        }
-        double g[FORCES * Q], off = turned * size;
-        memcpy(g, w->residual.g, wide * sizeof *g);
-        solve_factored(wide, by, g);
-        for (int f = 0; f < n; f++)
-            for (int i = 0; i < Q; i++) F[f][i] -= g[f * Q + i], off = larger(off, fabs(g[f * Q + i]));
-        off /= size;
-        if (!(off < 1e9)) break;
-        double rate = round ? off / last : 1;
-        slow = rate > 0.1 && round, last = off;
-        left = (off < 1e-9 || off * r->step < 1e-13 * c->clock) && off > 0.5 * left ? 0 : off; /* rounding is left */
-        /* with one matrix each round leaves about this part of the one before; kinks make more of a step's error */
-        if (c->patch == RINGED_PATCH && rate < 0.5) left *= 2 * rate;
+    if (c->patch == SPRING_PATCH && c->steps > c->pressed) {
+        double F = w->side ? w->F[T] : (shift - w->origin) / c->compliance;
+        c->shear_loss += c->compliance * F * F / 2;
     }
-    if (c->depth == 0 && c->time == 0) /* the first touch has no force yet */
-        for (int f = 0; f < n; f++) s->F[f][0] = 0;
-    if (settled && dampers) {
-        int first = c->cue->reads - dampers;
-        double(*damped)[WITH] = (double(*)[WITH])s->damped;
-        loaded(c->cue, r, (const double(*)[WITH])own, (const double(*)[Q])s->loads, first, c->cue->reads, damped);
-        if (c->cue->slopes) add_bending(c, r, s, first, c->cue->reads, damped);
-    }
-    return settled;
+    c->pressed = c->steps, w->longest = c->longest + c->time;
+    w->press = FREE, w->last = 0, w->held = 0, w->virtual_mid = 0, w->origin = w->shift_mid = shift;
+    memset(w->ring_F, 0, sizeof w->ring_F), memset(w->F, 0, sizeof w->F);
+    for (int k = 0; k < c->modes; k++) c->xi[2 * k] = w->state[k], c->xi[2 * k + 1] = w->state[c->modes + k];
+    memcpy(c->ball, w->ball, c->speeds * sizeof(double));
+    if (!isfinite(w->until)) w->until = c->time + c->window;
 }
 
-/* The forces that a hold would ask for now: those at a node of a very short step. */
-int forces_held(Work *w, Hold hold, double *F, int node)
-{
-    static const int SHORT = 12;
-    Hold here = w->hold;
-    int level = clock_level(w->c) + SHORT, known = w->known;
-    w->hold = hold;
-    int settled = solve_step(w, level < LEVELS ? level : LEVELS - 1, &w->step);
-    w->hold = here, w->known = known;
-    for (int f = 0; f < w->c->forces; f++) F[f] = settled ? w->step.F[f][node] : 0;
-    return settled;
-}
+static int lengthen(Work *w, double h) { return w->t.h == h || tabulate(w, h); }
 
-/* What is left out of a step: the last terms of its loads and velocities, in units of what is allowed. */
-static double error_of(const Work *w, const Step *s)
-{
-    const Contact *c = w->c;
-    double of_load = 0, of_speed = 0;
-    static const int ALONG[ALL_PORTS] = {1, 0, 0, 0, 1, 0, 0, 0, 0}; /* ports that feel the blow itself */
-    for (int p = 0; p < PORTS + c->speeds; p++) {
-        if (p >= c->cue->ports && p < PORTS) continue;
-        double scale = c->forces == 2 && !ALONG[p] ? c->across : 1;
-        if (ALONG[p] && c->patch == RINGED_PATCH) scale = 0.1; /* no kinks, and most of the energy */
-        for (int t = Q - 2; t < Q; t++) {
-            double sum = 0;
-            for (int j = 0; j < Q; j++) sum += rule.force_waves[j][t] * s->loads[p][j];
-            of_load = larger(of_load, fabs(sum) / scale);
-        }
-    }
-    for (int f = 0; f < c->forces; f++)
-        for (int t = Q - 1; t <= Q; t++) {
-            double sum = 0;
-            for (int j = 0; j < WITH; j++) sum += rule.waves[j][t] * s->v[f][j];
-            of_speed = larger(of_speed, fabs(sum) / (c->forces == 2 && !f ? c->across : 1));
-        }
-    return larger(of_load * s->step / c->impulse, of_speed / (10 * c->speed)) / c->tolerance;
-}
-
-/* Steps that are shorter by so many halvings feel what rounding left of a velocity that is held. */
-enum { SETTLES = 8 };
-
-/* The longest step that holds the tolerance; ENDED, or why there is none. */
-int longest_step(Work *w)
+/* What follows a step at whose end ball and tip move apart by v_n. */
+static void follow(Work *w, double v_n)
 {
     Contact *c = w->c;
-    int longest = clock_level(c), rough = c->patch == RINGED_PATCH;
-    while (w->level < LEVELS) {
-        c->tried++;
-        if (w->level > longest + SETTLES && w->hold.press != FREE) w->law->settle(w);
-        int found = solve_step(w, w->level, &w->step);
-        double error = found ? error_of(w, &w->step) : HUGE_VAL;
-        if (error <= 1 || (found && rough && w->level >= longest + 11)) {
-            /* twice the step makes 16,000 times the error; of a very short step rounding is most of it */
-            if ((error < (rough ? 1e-5 : 5e-5) || (error < 0.1 && w->level > longest + 12)) && w->level > longest) w->level--;
-            return ENDED;
-        }
-        w->level += error > 1e5 ? 2 : 1;
-    }
-    return STUCK;
+    double soft = c->restitution < SOFT ? c->step * c->restitution / SOFT : c->step, h = w->t.h;
+    if (w->press == LOADING && v_n > 0) {
+        c->deepest = larger(c->deepest, c->depth), w->press = UNLOADING, h = soft;
+    } else if (w->press == UNLOADING && (w->last || c->depth <= unloaded(c)))
+        separate(w, w->shift), h = c->step;
+    else if (w->press == UNLOADING && c->depth > c->deepest)
+        w->press = LOADING, h = c->step;
+    else if (w->press == FREE && (w->last || c->depth > unloaded(c)))
+        w->press = UNLOADING, w->last = -1, h = soft;
+    if (!lengthen(w, h)) c->status = NO_MEMORY;
 }
+
+/* How the contact grips, at a mean velocity u along the surface. */
+static int grip_of(const Work *w, double u)
+{
+    const Contact *c = w->c;
+    if (c->friction == 0) return u < 0 ? SLIP : u > 0 ? SLIP_BACK : STICK;
+    int stops = !w->side && !w->held && c->patch == RIGID_PATCH; /* within the step: it slips still */
+    if (c->patch != PARTIAL_SLIP)
+        return !stops || w->rest[T] == 0 ? w->side : w->rest[T] < 0 ? SLIP : SLIP_BACK;
+    if (fabs(w->F[T]) < c->friction * w->F[N] * (1 - 1e-6)) return STICK;
+    return w->F[T] > 0 ? SLIP : w->F[T] < 0 ? SLIP_BACK : c->grip;
+}
+
+/* One step; 0 where it is too long, as ball and tip part or touch before its end, and a shorter one is ready.
+ */
+static int take_step(Work *w, Step *row)
+{
+    Contact *c = w->c;
+    const int Q = c->ports + c->slopes;
+    const double h = w->t.h;
+    double loads[WIDE] = {0}, v[FORCES], u[FORCES], turned = 0, spin = w->ball[2];
+    free_motion(w);
+    contact_matrices(w);
+    if (w->press != FREE && !(c->forces == 2 ? level_forces(w) : raised_forces(w))) c->status = UNSOLVED;
+    velocities(w, v, u);
+    double left = c->depth - unloaded(c), then = left - h * u[N];
+    int crosses = w->press == UNLOADING ? then < 0 : w->press == FREE && left < 0 && then > 0;
+    if (crosses && w->last != 1) {
+        w->last = 1;
+        if (!tabulate(w, h * larger(left / (h * u[N]), 1e-6))) c->status = NO_MEMORY;
+        return 0;
+    }
+    for (int f = 0; f < c->forces; f++) {
+        c->work[f] -= h * w->F[f] * u[f];
+        for (int p = 0; p < Q + c->speeds; p++) loads[p] += w->C[f][p] * w->F[f];
+    }
+    advance_modes(w, loads);
+    for (int p = 0; p < Q; p++) {
+        double end = w->end_free[p], mean = w->mean_free[p];
+        for (int q = 0; q < Q; q++) end += w->t.end[p][q] * loads[q], mean += w->t.mean[p][q] * loads[q];
+        if (p == 2 && c->ports > 2) turned = mean; /* of the tip's section, or out of the plane */
+        if (p >= c->ports) w->slopes[p - c->ports] += h * mean;
+        w->rates[p] = end;
+    }
+    for (int b = 0; b < c->speeds; b++) w->ball[b] += h * c->inverse_masses[b] * loads[Q + b];
+    if (c->rolls) { /* the contact moves on over ball and dome by their rolling and slipping; on a rim by the
+                       ball's alone */
+        double dome = fabs(c->phi + c->angle) < c->rim ? c->dome : 0;
+        w->rolling = ((spin + w->ball[2]) / 2 - u[T] + dome * turned) / (c->radius + dome);
+        c->angle += h * w->rolling;
+    }
+    double middle = w->shift - h / 2 * u[T];
+    if (w->press != FREE) {
+        if (w->side && c->patch == SPRING_PATCH) w->origin = middle - c->compliance * w->F[T];
+        if (c->patch == PARTIAL_SLIP)
+            memcpy(w->ring_F, w->ring_now, sizeof w->ring_F), c->shear_loss += w->lost;
+        w->virtual_mid = w->virtual_now;
+        c->grip = grip_of(w, u[T]), w->held = !w->side;
+    } else
+        c->grip = SEPARATED,
+        middle = w->origin = w->shift - h * u[T]; /* a patch that touches is not strained */
+    w->shift -= h * u[T], w->shift_mid = middle, c->depth -= h * u[N], c->time += h;
+    if (c->forces > 2) c->height = larger(0, c->height + h * u[UP]);
+    *row = (Step){.time = c->time, .length = h, .grip = c->grip, .press = w->press, .angle = c->angle};
+    memcpy(row->F, w->F, sizeof row->F), memcpy(row->v, v, c->forces * sizeof(double));
+    return 1;
+}
+
+/* Why a contact that goes on cannot. */
+static int trouble(Work *w)
+{
+    Contact *c = w->c;
+    for (int a = c->slopes / c->planes; a && a <= c->slopes;
+         a += c->slopes / c->planes) { /* the tip's slope is the last */
+        double turned = fabs(w->slopes[a - 1]);
+        if (turned > c->steepest) c->steepest = turned, c->thrust = w->F[N];
+    }
+    if (!isfinite(c->depth + c->time + w->F[T] + w->F[N])) return UNSOLVED;
+    if (c->law == LEATHER_LAW && c->depth > c->most) return TOO_DEEP;
+    if (c->steepest > STEEPEST) return BENT_TOO_FAR;
+    if (w->press == FREE) return c->time >= w->until ? ENDED : RUNNING;
+    return c->time > w->longest ? LATE : RUNNING;
+}
+
+/* Up to so many steps more, each with a row and the modes' coordinates after it (course may be NULL): how
+   many there were. The status is RUNNING where there is more to come. */
+EXPORTED int contact_steps(Work *w, int most, Step *rows, double *course)
+{
+    Contact *c = w->c;
+    int done = 0;
+    while (done < most && c->status == RUNNING) {
+        int touches = w->last < 0; /* a new touch: what it begins with is a blow where friction is endless */
+        if (touches) w->last = 0;
+        if (touches && c->friction >= ENDLESS && c->patch == RIGID_PATCH && c->phi > 0) {
+            rows[done] = (Step){.time = c->time, .grip = BLOW, .angle = c->angle};
+            int stays = blow(w, rows + done);
+            read_modes(w);
+            c->steps++;
+            if (!stays) c->parted = 1, separate(w, w->shift), c->status = ENDED;
+        } else if (take_step(w, rows + done)) {
+            c->steps++;
+            follow(w, rows[done].v[N]);
+            if (c->status == RUNNING) c->status = trouble(w);
+        } else
+            continue;
+        memcpy(rows[done].ball, w->ball, sizeof w->ball);
+        if (course) memcpy(course + (size_t)2 * c->modes * done, w->state, 2 * c->modes * sizeof(double));
+        done++;
+    }
+    return done;
+}
+
+EXPORTED const size_t contact_size = sizeof(Contact), step_size = sizeof(Step);

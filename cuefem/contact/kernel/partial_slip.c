@@ -1,0 +1,55 @@
+/* A patch of leather that sticks and slips annulus by annulus (Cattaneo, Mindlin and Deresiewicz; Jaeger's
+   superposition).
+
+   Where the patch grows from the indentation x to x + dx while the surfaces shift by d(delta), the tractions
+   of a stuck punch of that size are added: the tangential force is a sum over rings, each strained by what
+   the surfaces have shifted since it touched. So is the normal force. A ring between two edges of the
+   indentation has the stiffness k and the normal force N of the law between them; it bears f, |f| <= mu N:
+
+       f -> clip(f min(k after/k before, 1) + k d(delta), +-mu N).
+
+   Leather that dissipates a part of the work has the slope k/e^2 while |f| falls, e the restitution along the
+   surface: of the work f d(delta) that strains a ring it stores e^2, f^2 e^2/2k in all. */
+#include "contact.h"
+
+/* Take the rings from the middle of the last step to a virtual indentation, after a shift: their force, and
+   its slopes over the shift and over the virtual indentation. */
+FAST double shift_rings(Work *w, double depth, double shift, double *stuck, double *slid)
+{
+    const Contact *c = w->c;
+    const double *edge = c->ring_edges, *F = c->ring_forces, *S = c->ring_slopes, *K = c->ring_stiffness,
+                 *was = w->ring_F;
+    double *now = w->ring_now, e2 = c->surface_restitution * c->surface_restitution, mu = c->friction,
+           before = w->virtual_mid;
+    double unused, rise, force = tip_force(c, LOADING, depth, &rise, &unused), sum = 0, holds = 0, slides = 0,
+                         lost = 0;
+    double K_now = tangential_stiffness(c, depth), K_before = tangential_stiffness(c, before);
+    for (int r = 0; r < c->rings; r++) {
+        double in = edge[r],
+               out = r + 1 < c->rings ? edge[r + 1] : HUGE_VAL; /* the last ring has all that lies beyond */
+        if (depth <= in) {
+            now[r] = 0;
+            continue;
+        }
+        int whole = depth > out;
+        double k_after = (whole ? K[r + 1] : K_now) - K[r], inner = F[r] + S[r] * (depth - in);
+        double k_before = before <= in ? 0 : (before > out ? K[r + 1] : K_before) - K[r];
+        double normal = (whole ? F[r + 1] + S[r + 1] * (depth - out) : force) - inner,
+               k = (k_after + k_before) / 2;
+        double bound = mu * larger(normal, 0), old = was[r] * (k_before > k_after ? k_after / k_before : 1);
+        double by = k * shift, steep = k, f = old + by;
+        if (e2 < 1 && old * by < 0) {
+            int falls = fabs(by) < e2 * fabs(old);
+            f = falls ? old + by / e2 : by + e2 * old, steep = falls ? k / e2 : k;
+        }
+        if (fabs(f) < bound)
+            holds += steep;
+        else
+            f = copysign(bound, f), slides += copysign(mu * ((whole ? S[r + 1] : rise) - S[r]), f);
+        double grown = f * f - (old * f > 0 ? old * old : 0);
+        if (e2 < 1 && grown > 0 && k > 0) lost += grown * (1 - e2) / (2 * k);
+        now[r] = f, sum += f;
+    }
+    w->lost = lost, *stuck = holds, *slid = slides;
+    return sum;
+}

@@ -1,0 +1,210 @@
+"""The steps of the contact: their order, how smooth their answers are, and what they do where strikes are hard."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import cache
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import cuefem as cf
+from cuefem.beam.tip import TipModes, lumped_tip_modes
+from cuefem.contact.strike import strike_modes
+from cuefem.tip_modes import tip_modes_of
+from tests.data.stored import scene_of, stored_law, strikes, tip_of
+from tests.helpers.cues import scaled
+from tests.helpers.strike_scenes import KIM, hand_made, imbalance, numbers
+
+MESHES = sorted((Path(__file__).parents[2] / "meshes").glob("*.toml"))
+ORDER, WITHIN = (
+    2.0,
+    0.4,
+)  # where in its step an event falls is chance: the root mean square of many errors has the order
+
+
+def random_lumped(rng: np.random.Generator) -> cf.Scene:
+    """A lumped cue, light or heavy, a tip and a stroke: every regime is among them."""
+    mass, end_mass = 10 ** rng.uniform((-1.3, -2.7), (0.3, 0.3))
+    coupling = rng.uniform(-0.6, 0.6) / math.sqrt(mass * end_mass) * (rng.random() < 0.3)
+    friction = float(rng.choice([rng.uniform(0.05, 0.8), 0.0, math.inf], p=[0.9, 0.05, 0.05]))
+    tip = cf.Tip(float(rng.uniform(0.2, 1)), friction, contact_time=1e-3)
+    return cf.Scene(
+        cf.LumpedCue(mass, end_mass, coupling), tip=tip, stroke=cf.Stroke(1.3, float(rng.uniform(0.05, 0.8)))
+    )
+
+
+def test_lumped_cues_come_to_the_impulse_solver_with_the_square_of_the_step() -> None:
+    rng, seen = np.random.default_rng(3), Counter()
+    errors: dict[int, list[float]] = {250: [], 1000: []}
+    for _ in range(120):
+        scene = random_lumped(rng)
+        exact = cf.impulse(replace(scene, effects=()))
+        for steps, found in errors.items():
+            outcome = cf.strike(scene, cf.Resolution(1, 1, 1, steps))
+            off = [outcome.squirt - exact.squirt, outcome.ball_speed / exact.ball_speed - 1]
+            off += [(outcome.energy[name] - joules) / exact.energy["initial"] for name, joules in exact.energy.items()]
+            found.append(float(np.abs(off).max()))
+        seen.update([outcome.regime])
+        assert outcome.regime == exact.regime
+    coarse, fine = (np.array(each) for each in errors.values())
+    assert coarse.max() < 2e-3
+    assert np.log(np.sqrt(np.mean(coarse**2) / np.mean(fine**2))) / math.log(4) == pytest.approx(ORDER, abs=WITHIN)
+    assert all(seen[regime] >= 2 for regime in ("stick", "late stick", "miscue", "slip reversal")), seen
+
+
+# Stick, slip, rings, everything of a default strike, and a raised cue. The force of leather begins like a root of the
+# indentation, which costs half an order.
+COURSES = {"linear": 2.0, "rolling": 2.0, "leather": 1.5, "usual": 1.5, "second hit": 2.0, "raised": 2.0}
+
+
+@pytest.mark.parametrize("kind", COURSES)
+def test_squirt_comes_nearer_with_the_step(kind: str) -> None:
+    rows = [row for row in strikes() if row["kind"] == kind]
+    errors = {}
+    for steps in (100, 800):
+        found = []
+        for row in rows:
+            with stored_law(row):
+                squirt = strike_modes(scene_of(row), tip_of(row), steps=steps).squirt
+            found.append((squirt - row["answer"]["squirt"]) / abs(row["scene"]["stroke"][1]))
+        errors[steps] = float(np.median(np.abs(found)))
+    order = math.log(errors[100] / errors[800]) / math.log(8)
+    assert order == pytest.approx(COURSES[kind], abs=WITHIN)
+
+
+def test_a_stiffer_shaft_comes_to_the_impulse_solver_with_its_flexibility() -> None:
+    """The paper's model of a rigid cue is the limit of a stiff shaft: the error falls like 1/E."""
+    scene = cf.Scene(KIM, tip=cf.Tip(0.75, 0.7, contact_time=1e-3), stroke=cf.Stroke(1.0, 0.3))
+    rigid = tip_modes_of(scene, cf.Resolution(1, 6, 1)).amplitude[:3, 1]
+    exact = cf.impulse(replace(scene, cue=cf.LumpedCue(KIM.mass, 1 / float(rigid @ rigid)))).squirt
+    stiffer, errors = 10.0 ** np.arange(5, 7.6, 0.25), []
+    for factor in stiffer:
+        stiff = replace(scene, cue=scaled(KIM, E=factor, G=factor))
+        errors.append(abs(cf.strike(stiff, cf.Resolution(2, 10, 1, 10_000)).squirt - exact))
+    assert np.polyfit(np.log(stiffer), np.log(errors), 1)[0] == pytest.approx(-1.0, abs=0.2)
+    assert errors[-1] < 1e-4 * exact
+
+
+@cache
+def default_scene(kind: str) -> tuple[cf.Scene, TipModes]:
+    """A pool strike with leather and everything, or with a bare tip."""
+    cue = cf.load(MESHES[3])
+    assert isinstance(cue, cf.Cue)
+    usual = cf.usual_scene(cue)
+    scene = usual if kind == "usual" else cf.Scene(cue, usual.ball, cf.Tip(contact_time=1e-3), usual.stroke)
+    return scene, tip_modes_of(scene)
+
+
+OVER = {
+    "offset": (np.linspace(0.1, 0.5, 2001), lambda s, x: replace(s, stroke=replace(s.stroke, offset=x))),
+    "speed": (np.linspace(1.0, 3.0, 2001), lambda s, x: replace(s, stroke=replace(s.stroke, speed=x))),
+    "friction": (np.linspace(0.5, 1.0, 2001), lambda s, x: replace(s, tip=replace(s.tip, friction=x))),
+}
+
+
+@pytest.mark.parametrize("over", [pytest.param(name, marks=pytest.mark.heavy) for name in OVER])
+@pytest.mark.parametrize("kind", ["usual", "bare"])
+def test_squirt_has_no_step(kind: str, over: str) -> None:
+    """Neighbouring squirts differ by what the curve's slope makes of it, and by no more than 1e-5 of squirt.
+
+    A bare tip, whose grip changes at once, takes more steps for that.
+    """
+    (values, make), (scene, tip) = OVER[over], default_scene(kind)
+    steps = None if kind == "usual" else 1600
+    squirts = np.array([strike_modes(make(scene, float(x)), tip, steps=steps).squirt for x in values])
+    steps_up = np.diff(squirts)
+    slope = np.median(np.lib.stride_tricks.sliding_window_view(np.pad(steps_up, 10, mode="reflect"), 21), axis=1)
+    assert np.abs((steps_up - slope) / squirts[1:]).max() < 1e-5
+
+
+@pytest.mark.parametrize(("kind", "most"), [("usual", 1e-5), ("bare", 2e-4)])
+def test_squirt_over_a_few_offsets_is_smooth(kind: str, most: float) -> None:
+    scene, tip = default_scene(kind)
+    x = np.linspace(0.30, 0.32, 41)
+    squirts = np.array([strike_modes(OVER["offset"][1](scene, float(each)), tip).squirt for each in x])
+    smooth = np.polyval(np.polyfit(x - 0.31, squirts, 4), x - 0.31)
+    assert np.abs(squirts / smooth - 1).max() < most
+
+
+def loud() -> Iterator[tuple[cf.Scene, TipModes]]:
+    """Cues made by hand whose few modes are loud, of any frequency, and coupled along and across."""
+    rng = np.random.default_rng(1)
+    for i in range(300):
+        count = int(rng.integers(1, 12))
+        omega, across = np.sort(10 ** rng.uniform(2, 5.3, count)), rng.uniform(-20, 20, count)
+        tip = hand_made(list(omega), list(across), mass=10 ** rng.uniform(-1.5, 1), rigid=rng.uniform(0.1, 20))
+        if i % 2:
+            tip.amplitude[2:, 0] = rng.uniform(-5, 5, count)
+        law = cf.Tip(
+            float(rng.choice([0.05, 0.3, 1])), float(rng.choice([0, 1e-6, 0.1, 0.5, 2])), 10 ** rng.uniform(-3.7, -2)
+        )
+        stroke = cf.Stroke(1.0, float(rng.choice([1e-9, 0.1, 0.5, 0.9, 0.999])))
+        yield cf.Scene(cf.LumpedCue(float(tip.approach @ tip.approach), 0.01), tip=law, stroke=stroke), tip
+
+
+def light() -> Iterator[tuple[cf.Scene, TipModes]]:
+    """End masses down to a tenth of a milligram, level and raised."""
+    for end_mass, mu, offset, e in product((1e-7, 1e-3, 2.0), (0.0, 0.7, 5.0), (1e-9, 0.3, 0.9), (0.05, 1.0)):
+        cue = cf.LumpedCue(0.54, end_mass)
+        scene = cf.Scene(cue, tip=cf.Tip(e, mu, 1e-3), stroke=cf.Stroke(2.0, offset))
+        for effects in ((), (cf.Elevation(0.3, 0.2),), (cf.SecondHit(),)):
+            yield replace(scene, effects=effects), lumped_tip_modes(cue)
+
+
+def extreme() -> Iterator[tuple[cf.Scene, TipModes]]:
+    """Every reference cue, contacts of 0.05 and 50 ms, friction 0 and much; one cue with 400 modes."""
+    for i, path in enumerate(MESHES):
+        loaded = cf.load(path)
+        cue = loaded.cue if isinstance(loaded, cf.Scene) else loaded
+        scene = cf.Scene(cue, tip=cf.Tip(contact_time=1e-3), stroke=cf.Stroke(1.0, 0.3), effects=(cf.TipDome(0.0095),))
+        tip = tip_modes_of(scene, cf.Resolution(6, 26, 400) if i == 3 else cf.Resolution(4, 10, 24))
+        for e, mu, offset, time in product((0.05, 1.0), (0.0, 0.3, 5.0), (0.1, -0.4, 0.9), (5e-5, 1e-3, 5e-2)):
+            law, stroke = cf.Tip(e, mu, contact_time=time), cf.Stroke(1.0, offset)
+            yield replace(scene, tip=law, stroke=stroke), tip
+
+
+@pytest.mark.parametrize(
+    "scenes", [pytest.param(loud, marks=pytest.mark.heavy), light, pytest.param(extreme, marks=pytest.mark.heavy)]
+)
+def test_hard_strikes_end_with_an_energy_that_closes(scenes) -> None:
+    for scene, tip in scenes():
+        outcome = strike_modes(scene, tip)
+        assert np.all(np.isfinite(numbers(outcome)))
+        if imbalance(outcome) > 2e-5:  # a tip that chatters at e = 0.05 over modes of a megahertz
+            assert imbalance(outcome) < 3e-3, scene
+            assert imbalance(strike_modes(scene, tip, steps=6400)) < imbalance(outcome) / 10
+        assert min(outcome.energy.values()) > -1e-9 * outcome.energy["initial"]
+        assert outcome.impulse[1] > 0
+
+
+@pytest.mark.parametrize("time", [5e-5, 1e-3, 5e-2])
+@pytest.mark.parametrize("offset", [1e-5, 0.3, 0.9])
+def test_endless_friction_ends_too(offset: float, time: float) -> None:
+    """Its blow starts fronts that no step resolves: the account of energy closes as the step falls."""
+    scene = cf.Scene(KIM, tip=cf.Tip(0.5, math.inf, contact_time=time), stroke=cf.Stroke(1.0, offset))
+    outcomes = [cf.strike(scene, cf.Resolution(4, 12, 12, steps)) for steps in (400, 1600)]
+    assert imbalance(outcomes[0]) < 1e-3
+    assert imbalance(outcomes[1]) < max(imbalance(outcomes[0]) / 4, 1e-9)
+    assert outcomes[1].phases[0].grip == "blow"
+
+
+def test_a_blow_may_throw_the_two_apart() -> None:
+    """A light cue end against endless friction: the blow alone ends the contact, as in the impulse solver."""
+    cue = cf.LumpedCue(0.54, 0.2, 2.2)
+    scene = cf.Scene(cue, tip=cf.Tip(0.5, math.inf, contact_time=1e-3), stroke=cf.Stroke(1.0, 0.9))
+    outcome, exact = cf.strike(scene), cf.impulse(scene)
+    if [phase.grip for phase in outcome.phases] == ["blow"]:
+        assert outcome.duration == 0
+    assert outcome.squirt == pytest.approx(exact.squirt, abs=1e-3)
+
+
+@pytest.mark.parametrize("steps", [19, 1_000_001])
+def test_steps_out_of_bounds_are_refused(steps: int) -> None:
+    with pytest.raises(ValueError, match=rf"Resolution.steps must be a whole number in \[20, 1000000\]; got {steps}"):
+        cf.Resolution(1, 1, 1, steps)

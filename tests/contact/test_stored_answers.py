@@ -1,0 +1,83 @@
+"""The contact, end masses and frequencies against what the former engine answered at 1e-9 (tests/data; verification).
+
+Squirt is taken relative to itself, but to no less than 0.01 b/R.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import cuefem as cf
+from cuefem import Outcome
+from cuefem.contact.strike import strike_modes
+from tests.data.stored import cue_of, cues, scene_of, stored_law, strikes, tip_of
+from tests.helpers.strike_scenes import imbalance
+
+KINDS = tuple(dict.fromkeys(row["kind"] for row in strikes()))
+# Endless friction begins with a blow, whose fronts the steps do not resolve.
+ENDLESS = "endless"
+BLOW_STEPS = 1600
+
+
+def struck(row: dict[str, Any], **resolution: int) -> Outcome:
+    with stored_law(row):
+        return strike_modes(scene_of(row), tip_of(row), **resolution)
+
+
+def squirt_error(outcome: Outcome, row: dict[str, Any]) -> float:
+    squirt = row["answer"]["squirt"]
+    return abs(outcome.squirt - squirt) / max(abs(squirt), 0.01 * abs(row["scene"]["stroke"][1]))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_strikes_of_a_kind_answer_as_stored(kind: str) -> None:
+    rows = [row for row in strikes() if row["kind"] == kind]
+    outcomes = [struck(row) for row in rows]
+    errors = np.array([squirt_error(outcome, row) for outcome, row in zip(outcomes, rows, strict=True)])
+    assert np.median(errors) < 1e-4
+    assert np.quantile(errors, 0.95) < 1e-3
+    assert errors.max() < 2e-3
+    for name, most in (("ball_speed", 5e-4), ("cue_speed", 5e-4), ("spin", 5e-4), ("duration", 1e-3)):
+        pairs = [(getattr(outcome, name), row["answer"][name]) for outcome, row in zip(outcomes, rows, strict=True)]
+        assert max(abs(value / stored - 1) for value, stored in pairs) < most, name
+    for outcome, row in zip(outcomes, rows, strict=True):
+        initial = row["answer"]["energy"]["initial"]
+        for name, joules in row["answer"]["energy"].items():
+            assert abs(outcome.energy[name] - joules) < 2e-4 * initial, name
+        np.testing.assert_allclose(
+            outcome.ball_velocity, row["answer"]["ball_velocity"], atol=5e-4 * outcome.ball_speed
+        )
+    assert (
+        np.mean([outcome.regime == row["answer"]["regime"] for outcome, row in zip(outcomes, rows, strict=True)]) > 0.9
+    )
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_energy_of_a_kind_closes(kind: str) -> None:
+    steps = BLOW_STEPS if kind == ENDLESS else 800
+    assert max(imbalance(struck(row, steps=steps)) for row in strikes() if row["kind"] == kind) < 1e-6
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("damped", [False, True])
+def test_end_masses_answer_as_stored(damped: bool) -> None:
+    """The default modes leave up to 0.6 % of an end mass (studies/accuracy/default_accuracy.md)."""
+    errors = []
+    for row in cues():
+        effects = (cf.StructuralDamping(),) if damped else ()
+        tip = cf.Tip(contact_time=row["contact_time"], friction=np.inf)
+        scene = cf.Scene(cue_of(row), tip=tip, stroke=cf.Stroke(2.0, 0.3), effects=effects)
+        for drive, mass in row["end_mass"]["damped" if damped else "free"].items():
+            errors.append(abs(cf.end_mass(scene, drive) / mass - 1))
+    assert np.median(errors) < 1e-3
+    assert max(errors) < 6e-3
+
+
+def test_frequencies_answer_as_stored() -> None:
+    with_modes = [row for row in cues() if "frequencies" in row]
+    assert len(with_modes) == 30
+    for row in with_modes[::3]:
+        np.testing.assert_allclose(cf.modes(cue_of(row), 12).frequencies[:12], row["frequencies"], rtol=1e-6)
