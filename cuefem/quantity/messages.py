@@ -10,7 +10,6 @@ MOST = 8  # names of a list
 _LONG = re.compile(
     rf"(?P<quote>['\"])(?P<said>[^'\"]{{{LONGEST}}})[^'\"]+(?P=quote)|(?P<word>[^\s/'\"]{{{LONGEST}}})[^\s/'\"]+"
 )
-_NAMES = re.compile(rf"((?:[^,;:]{{1,40}}, ){{{MOST}}})[^;:]+(?=;|$)")
 
 
 def brief(text: str) -> str:
@@ -20,7 +19,14 @@ def brief(text: str) -> str:
         quote = match["quote"] or ""
         return f"{quote}{match['said'] or match['word']}...{quote}"
 
-    return _NAMES.sub(r"\1...", _LONG.sub(cut, printable(text)))
+    return "; ".join(map(_ended, _LONG.sub(cut, printable(text)).split("; ")))
+
+
+def _ended(part: str) -> str:
+    """A part of a message whose list of names ends after `MOST`, and what stands behind the list with "or"."""
+    names = part.split(", ")
+    rest = next((i for i, name in enumerate(names) if i >= MOST and name.startswith("or ")), len(names))
+    return part if rest <= MOST else ", ".join([*names[:MOST], "...", *names[rest:]])
 
 
 def printable(text: str) -> str:
