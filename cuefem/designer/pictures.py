@@ -14,7 +14,7 @@ from cuefem.designer.answers import CURVE_OFFSETS, Answers, Density, Point, Squi
 from cuefem.designer.unit_system import METRIC, UnitSystem
 from cuefem.report import charts as figures
 from cuefem.report.charts import Axis, Shade, chart
-from cuefem.report.drawings import cue_drawing, front_drawing, materials_of, modes_drawing, seen, style_of
+from cuefem.report.drawings import cue_drawing, materials_of, modes_drawing, seen, style_of
 from cuefem.report.squirt import offset_charts as report_charts
 from cuefem.report.templates import chart_markup, cue_markup, shapes_markup
 from cuefem.scene import Scene
@@ -25,16 +25,12 @@ LIMITS = {"slips": ("slip", "slips through much of the blow"), "miscue": ("miss"
 
 
 def cue_pictures(scene: Scene, system: UnitSystem = METRIC) -> str:
-    """The cue to scale, enlarged across, its tip end; and which colour is which material."""
-    units = system.units
-    whole, wide = (cue_drawing(scene, across=across, units=units) for across in (1.0, 8.0))
-    front = front_drawing(scene, units=units)
+    """The cue, enlarged across; and which colour is which material."""
     cue = scene.shaft
     hollow = any((s.tip_bore or s.butt_bore) and s.core is None for s in cue.segments)
     named = [(name, style_of(name)) for name in materials_of(seen(scene))] + ([("bore", "hollow")] if hollow else [])
     legend = "".join(f'<span><i class="swatch {style}"></i>{name}</span> ' for name, style in named)
-    near = f'<div class="grid2">{cue_markup(wide)}{cue_markup(front)}</div>'
-    return f'{cue_markup(whole)}{near}<p class="legend">{legend}</p>'
+    return f'{cue_markup(cue_drawing(scene, units=system.units))}<p class="legend">{legend}</p>'
 
 
 class Drawn(NamedTuple):

@@ -96,7 +96,7 @@ def comparison_figures(scenes: Mapping[str, Scene], record: Record) -> list[Char
         curve = coupled_curve(scene, CURVE_OFFSETS, Solved(scene).tip)
         lines.append((name, style, np.asarray(curve["squirt"]), curve["pivot_length"]))
     charts = offset_charts(lines, CURVE_OFFSETS, record["offset"], height=300)
-    drawings = (cue_drawing(scene, across=8.0) for scene in scenes.values())
+    drawings = (cue_drawing(scene) for scene in scenes.values())
     return [
         *charts,
         *(replace(drawing, title=f"{name}: {drawing.title}") for name, drawing in zip(scenes, drawings, strict=True)),

@@ -18,7 +18,8 @@ from cuefem.report.charts import WIDE, Axis, Tick, path
 from cuefem.results.quantities import TRADE, Units
 from cuefem.scene import Scene
 
-FRONT = 0.09  # m of the tip end that is drawn enlarged
+ACROSS = 8.0  # times that diameters are enlarged
+TITLE = f"Diameters {ACROSS:g} times enlarged"
 
 
 class Piece(NamedTuple):
@@ -39,7 +40,7 @@ class Sign(NamedTuple):
 
 @dataclass(frozen=True)
 class CueDrawing:
-    """A cue, or its front, from the side, tip to the left: magnified across its axis by ``across``."""
+    """A cue from the side, tip to the left, its diameters `ACROSS` times enlarged."""
 
     title: str
     height: float
@@ -47,7 +48,6 @@ class CueDrawing:
     pieces: tuple[Piece, ...]
     signs: tuple[Sign, ...]
     ticks: tuple[Tick, ...]
-    across: float
     unit: str = "mm"
 
 
@@ -97,57 +97,37 @@ def style_of(name: str) -> str:
     return "m-" + name.replace(" ", "-") if name in MATERIALS else "m-other"
 
 
-def cue_drawing(scene: Scene, *, across: float, units: Units = TRADE) -> CueDrawing:
-    """The whole cue, with its diameters drawn ``across`` times enlarged."""
-    title = "True to scale" if across == 1 else f"Diameters {across:g} times enlarged"
-    return _drawn(scene, title, length=seen(scene).length, across=across, units=units)
-
-
-def front_drawing(scene: Scene, *, units: Units = TRADE) -> CueDrawing:
-    """The tip end, true to scale, with its dome."""
-    return _drawn(scene, "The tip end, true to scale", length=min(FRONT, seen(scene).length), across=1.0, units=units)
-
-
-def _drawn(scene: Scene, title: str, *, length: float, across: float, units: Units) -> CueDrawing:
+def cue_drawing(scene: Scene, *, units: Units = TRADE) -> CueDrawing:
+    """The whole cue from the side, its diameters `ACROSS` times enlarged."""
     cue = seen(scene)
     ahead = cue.length - scene.shaft.length  # positions on the cue count from behind the leather
-    scale = (WIDE - 20) / length
-    shown = [(x, segment) for x, segment in zip(cue.nodes[:-1], cue.segments, strict=True) if x < length]
-    ends = [s.tip_diameter + (s.butt_diameter - s.tip_diameter) * min(1, (length - x) / s.length) for x, s in shown]
-    widest = max(*ends, *(s.tip_diameter for _, s in shown)) * scale * across
+    scale = (WIDE - 20) / cue.length
+    widest = max(max(s.tip_diameter, s.butt_diameter) for s in cue.segments) * scale * ACROSS
     signs = tuple(
         Sign(10 + scale * (x + ahead), type(effect).__name__)
         for effect in scene.effects
         for x in effect.positions
-        if x + ahead <= length and not effect.whole_tip
+        if not effect.whole_tip
     )
-    above = 14.0 if signs and across > 1 else 3.0
-    axis = above + widest / 2
+    axis = (14.0 if signs else 3.0) + widest / 2
     pieces = tuple(
-        _piece(segment, x, scale=scale, across=across, axis=axis, length=length, dome=0.0 if x else scene.dome_radius)
-        for x, segment in shown
+        _piece(segment, x, scale=scale, axis=axis, dome=0.0 if x else scene.dome_radius)
+        for x, segment in zip(cue.nodes[:-1], cue.segments, strict=True)
     )
-    low_tick = across > 1 or length < cue.length
     per_metre, unit = units["m"]
-    places = Axis(unit, 0.0, per_metre * length).over([np.zeros(1)])
-    ticks = places.ticks(10.0, WIDE - 10.0) if low_tick else ()
-    return CueDrawing(title, axis + widest / 2 + (16 if low_tick else 3), axis, pieces, signs, ticks, across, unit)
+    ticks = Axis(unit, 0.0, per_metre * cue.length).over([np.zeros(1)]).ticks(10.0, WIDE - 10.0)
+    return CueDrawing(TITLE, axis + widest / 2 + 16, axis, pieces, signs, ticks, unit)
 
 
-def _piece(
-    segment: Segment, x: float, *, scale: float, across: float, axis: float, length: float, dome: float
-) -> Piece:
-    end = min(segment.length, length - x)
-    part = end / segment.length
-
+def _piece(segment: Segment, x: float, *, scale: float, axis: float, dome: float) -> Piece:
     def outline(tip: float, butt: float, dome: float) -> str:
-        first, last = 10 + scale * x, 10 + scale * (x + end)
-        high, low = (scale * across * (tip + (butt - tip) * s) / 2 for s in (0.0, part))
+        first, last = 10 + scale * x, 10 + scale * (x + segment.length)
+        high, low = (scale * ACROSS * width / 2 for width in (tip, butt))
         xs, ys = [first, last, last, first], [axis - high, axis - low, axis + low, axis + high]
         if dome > 0 and dome >= tip / 2:
             angle = np.linspace(1, -1, 25) * math.asin(tip / 2 / dome)
             front = 10 + scale * dome * (1 - np.cos(angle))
-            xs, ys = [*xs[1:3], *front], [*ys[1:3], *(axis + scale * across * dome * np.sin(angle))]
+            xs, ys = [*xs[1:3], *front], [*ys[1:3], *(axis + scale * ACROSS * dome * np.sin(angle))]
         return path(xs, ys) + "Z"
 
     return Piece(

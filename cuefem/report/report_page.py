@@ -26,7 +26,6 @@ from cuefem.report.charts import Axis, Chart, Shade
 from cuefem.report.contact import contact_part
 from cuefem.report.drawings import (
     cue_drawing,
-    front_drawing,
     materials_of,
     modes_drawing,
     seen,
@@ -256,7 +255,7 @@ def _cue_part(scene: Scene) -> Record:
     names = materials_of(seen(scene))
     hollow = any((s.tip_bore or s.butt_bore) and s.core is None for s in cue.segments)
     return {
-        "drawings": [cue_drawing(scene, across=1.0), cue_drawing(scene, across=8.0), front_drawing(scene)],
+        "drawing": cue_drawing(scene),
         "materials": [(name, style_of(name)) for name in names] + ([("bore", "hollow")] if hollow else []),
         "segments": Sheet("Segments, from tip to butt", SEGMENT_COLUMNS, tuple(rows), texts=(5,)),
     }

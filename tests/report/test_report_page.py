@@ -15,7 +15,7 @@ import pytest
 import cuefem as cf
 from cuefem.accuracy import resolve
 from cuefem.report.charts import WIDE, Axis, round_step
-from cuefem.report.drawings import cue_drawing, front_drawing, strike_drawing
+from cuefem.report.drawings import ACROSS, cue_drawing, strike_drawing
 from cuefem.report.report_page import page
 
 MESHES = Path(__file__).parents[2] / "meshes"
@@ -154,35 +154,32 @@ def test_ticks_are_round_numbers() -> None:
 
 def test_the_cue_is_drawn_to_scale() -> None:
     blow = scene("pool_low_deflection")
-    true, wide, front = cue_drawing(blow, across=1.0), cue_drawing(blow, across=8.0), front_drawing(blow)
+    drawing = cue_drawing(blow)
     length, last = blow.cue.length, blow.cue.segments[-1]
 
     def extent(outline: str) -> tuple[float, float]:
         points = np.array(re.findall(r"(-?[0-9.]+) (-?[0-9.]+)", outline), float)
         return float(np.ptp(points[:, 0])), float(np.ptp(points[:, 1]))
 
-    for drawing, across in ((true, 1.0), (wide, 8.0)):
-        along, high = extent(drawing.pieces[-1].outline)
-        assert high / along == pytest.approx(across * last.butt_diameter / last.length, rel=1e-3)
-        assert along == pytest.approx((WIDE - 20) * last.length / length, abs=0.02)
-        assert len(drawing.pieces) == len(blow.cue.segments)
-    assert [sign.label for sign in wide.signs] == ["Support"]
-    assert wide.signs[0].at == pytest.approx(10 + (WIDE - 20) * 0.2032 / length)
-    assert [bool(piece.bore) for piece in wide.pieces] == [False, True, True, False, False, False]
-    along, high = extent(front.pieces[0].outline)
-    assert high / along == pytest.approx(11.85 / 6, rel=2e-3)
+    along, high = extent(drawing.pieces[-1].outline)
+    assert high / along == pytest.approx(ACROSS * last.butt_diameter / last.length, rel=1e-3)
+    assert along == pytest.approx((WIDE - 20) * last.length / length, abs=0.02)
+    assert len(drawing.pieces) == len(blow.cue.segments)
+    assert [sign.label for sign in drawing.signs] == ["Support"]
+    assert drawing.signs[0].at == pytest.approx(10 + (WIDE - 20) * 0.2032 / length)
+    assert [bool(piece.bore) for piece in drawing.pieces] == [False, True, True, False, False, False]
 
 
 def test_a_leather_tip_is_drawn_in_front_of_the_cue() -> None:
     blow = cf.usual_scene(scene("kim").shaft)
     blow = replace(blow, effects=(*blow.effects, cf.PointMass(0.05, 0.01)))
-    for drawing, length in ((cue_drawing(blow, across=8.0), 0.706), (front_drawing(blow), 0.09)):
-        assert [piece.material for piece in drawing.pieces] == ["m-leather", "m-other"]
-        assert [sign.label for sign in drawing.signs] == ["PointMass"]
-        assert drawing.signs[0].at == pytest.approx(10 + (WIDE - 20) * 0.056 / length)
+    drawing = cue_drawing(blow)
+    assert [piece.material for piece in drawing.pieces] == ["m-leather", "m-other"]
+    assert [sign.label for sign in drawing.signs] == ["PointMass"]
+    assert drawing.signs[0].at == pytest.approx(10 + (WIDE - 20) * 0.056 / 0.706)
     piece = cf.Segment(0.36e-3, 0.012, 0.012, cf.Material(12.6e9, 0.84e9, 700.0))
     longest = cf.usual_scene(cf.Cue((piece,) * 200, body_mass=0.45))
-    assert len(cue_drawing(longest, across=8.0).pieces) == 201
+    assert len(cue_drawing(longest).pieces) == 201
     for each in (blow, longest):
         assert strike_drawing(each, 0.03).pieces[0][1] == "m-leather"
 
@@ -191,11 +188,11 @@ def test_a_tip_is_drawn_with_its_layers_and_as_wide_as_it_is() -> None:
     plain = cf.usual_scene(scene("kim").shaft)
     layers = (cf.TipLayer(1e-3, 2e9), cf.TipLayer(2e-3, 1e9))  # from the ferrule up
     tip = replace(plain.leather, height=9e-3, layers=layers, diameter=10e-3)
-    drawing = front_drawing(replace(plain, effects=(tip,)))
+    drawing = cue_drawing(replace(plain, effects=(tip,)))
     boxes = [np.array(re.findall(r"(-?[0-9.]+) (-?[0-9.]+)", piece.outline), float) for piece in drawing.pieces]
-    scale = (WIDE - 20) / 0.09
-    assert [np.ptp(box[:, 0]) / scale for box in boxes[:3]] == pytest.approx([6e-3, 2e-3, 1e-3], abs=1e-5)
-    assert [np.ptp(box[:, 1]) / scale for box in boxes[:3]] == pytest.approx([10e-3] * 3, rel=1e-3)
+    scale = (WIDE - 20) / (plain.cue.length + tip.height)
+    assert [np.ptp(box[:, 0]) / scale for box in boxes[:3]] == pytest.approx([6e-3, 2e-3, 1e-3], abs=5e-5)
+    assert [np.ptp(box[:, 1]) / scale / ACROSS for box in boxes[:3]] == pytest.approx([10e-3] * 3, rel=1e-3)
 
 
 def test_the_blow_is_drawn_true() -> None:
