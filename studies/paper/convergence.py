@@ -21,7 +21,7 @@ from studies.pages import table
 
 KIM, OFFSETS, WINDOW = strokes.cue("kim"), (0.1, 0.3, 0.5), 6  # samples in each window of (a), a factor of 2 in time
 STARTS, FACTORS = 2e-3 * 2.0 ** np.arange(10), 10.0 ** np.arange(0, -5.1, -1)
-FEW, MANY = cf.Resolution(4, 20, 12), cf.Resolution(8, 26, 22)
+FEW, MANY = cf.Resolution(4, 20, 12, steps=4000), cf.Resolution(8, 26, 22)
 DRIVES = ("force", "velocity", "stick", "squirt")
 
 
