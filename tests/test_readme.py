@@ -76,7 +76,7 @@ def test_ones_own_shaft_takes_three_commands(tmp_path: Path) -> None:
     assert "assumed:" in page
 
 
-@pytest.mark.heavy
+@pytest.mark.nightly
 def test_a_new_user_gets_a_report_from_nothing(tmp_path: Path) -> None:
     fresh = tmp_path / "cuefem"
     fresh.mkdir()

@@ -71,7 +71,7 @@ def test_outcomes_of_many_strikes_are_values() -> None:
     assert deepcopy(side) == pickle.loads(pickle.dumps(side)) == side
 
 
-@pytest.mark.parametrize("strikes", [pytest.param(100_000, marks=pytest.mark.heavy)])
+@pytest.mark.parametrize("strikes", [pytest.param(20_000, marks=pytest.mark.nightly)])
 def test_strikes_leave_no_memory_behind(strikes: int) -> None:
     """The greatest memory of this process hardly grows over so many strikes; few are on leather."""
     bare, few = kim_scene(0.3), cf.Resolution(2, 8, 4)

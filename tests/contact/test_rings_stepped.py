@@ -45,7 +45,7 @@ def test_leather_that_loses_along_its_surface_is_what_comes_out(restitution: flo
     assert abs(off(struck_scene(offset, leather=leather), 2e-6)) < WITHIN
 
 
-@pytest.mark.heavy
+@pytest.mark.nightly
 def test_a_hundred_random_strikes() -> None:
     found = np.array([off(drawn(seed)) for seed in range(100)])
     wrong = np.flatnonzero(np.abs(found) >= WITHIN).tolist()

@@ -111,7 +111,7 @@ def strike(scene: cf.Scene, at: cf.Resolution = AT) -> cf.Outcome | None:
         return None
 
 
-@pytest.mark.parametrize("examples", [8, pytest.param(600, marks=pytest.mark.heavy)])
+@pytest.mark.parametrize("examples", [8, pytest.param(250, marks=pytest.mark.heavy)])
 def test_energy_closes_and_the_other_side_mirrors(examples: int) -> None:
     @settings(max_examples=examples)
     @given(strikes())
@@ -137,7 +137,7 @@ def test_energy_closes_and_the_other_side_mirrors(examples: int) -> None:
     everywhere()
 
 
-@pytest.mark.parametrize("examples", [10, pytest.param(400, marks=pytest.mark.heavy)])
+@pytest.mark.parametrize("examples", [10, pytest.param(200, marks=pytest.mark.heavy)])
 def test_energy_closes_and_the_other_side_mirrors_on_any_shaft(examples: int) -> None:
     @settings(max_examples=examples)
     @given(shaft_scenes())
