@@ -173,10 +173,8 @@ class Problem:
 
 def _each(of: Callable[[Span, float], float], spans: Mapping[int, Span], values: Array) -> Array:
     """A function of every range at its column of values (..., variables)."""
-    rows = values.reshape(-1, len(spans)).tolist()
-    return np.array([[of(span, x) for span, x in zip(spans.values(), row, strict=True)] for row in rows]).reshape(
-        values.shape
-    )
+    rows = ([of(*pair) for pair in zip(spans.values(), row, strict=True)] for row in np.atleast_2d(values).tolist())
+    return np.array([*rows], float).reshape(values.shape)
 
 
 def optimum(

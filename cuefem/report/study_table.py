@@ -408,11 +408,12 @@ def optimum_sheets(problem: Problem, best: Optimum) -> list[Sheet | str]:
 
     both = {**best.responses, **best.values}
     names = {name: labels.get(name) or column_label(name) for name in both}
-    title = f"{'maximize' if problem.largest else 'minimize'} {problem.objective.label}: {best.evaluations} designs"
+    aim = f"{'maximize' if problem.largest else 'minimize'} {problem.objective.label}"
     limits = (limit.rsplit(" ", 2) for limit in best.active)
     held_by = [f"{names[name]} {sign} {words(name, float(bound))}" for name, sign, bound in limits]
     things: list[Sheet | str] = [
-        Sheet(title, ("", "value"), tuple((names[name], words(name, value)) for name, value in both.items())),
+        f"{aim}: {best.evaluations} designs computed",
+        Sheet("Best design", ("", "value"), tuple((names[name], words(name, value)) for name, value in both.items())),
         f"held by: {', '.join(held_by) or 'nothing'}",
     ]
     if best.unfinished:

@@ -153,6 +153,14 @@ def test_listed_names_are_tried_one_by_one(tmp_path: Path) -> None:
     assert found.scene.cue.segments[0].material == material(found.values["cue.segments[0].material"])
 
 
+def test_values_alone_are_an_optimum_too(tmp_path: Path) -> None:
+    head, *_, last = NAMES.split("[[vary]]")
+    found = cf.study(written(tmp_path, f"{head}[[vary]]{last}")).optimum
+    assert found.evaluations == len(found.choices) == 3
+    best = min(found.choices, key=lambda choice: choice.objective)
+    assert (found.values, found.responses["squirt_slope"]) == (best.values, best.objective)
+
+
 def of(cue: cf.Cue, name: str) -> cf.Segment:
     return replace(cue.segments[0], material=material(name))
 
