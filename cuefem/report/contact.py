@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import islice, pairwise
 from typing import Any
 
 import numpy as np
 
+from cuefem.contact.outcome import Phase
 from cuefem.report.charts import Axis, Chart, Curve, Mark, Shade, chart
 from cuefem.results.designs import course
 from cuefem.results.quantities import scaled, with_heading
@@ -15,13 +16,15 @@ from cuefem.results.records import Record
 from cuefem.scene import Outcome
 
 MOST_EVENTS = 12
+LEAST = 0.01  # of the normal impulse: near separation, where F_n is near 0, grip changes step by step
 
 
 def contact_part(outcome: Outcome) -> Record:
     """Charts over time, the numbered moments on them in words, and whether the tip slips."""
-    events = list(_events(outcome))
+    phases = _main_phases(outcome)
+    events = list(_events(phases))
     t = np.linspace(0, outcome.duration, 401)
-    ends = [scaled([phase.start, phase.end], "s").tolist() for phase in outcome.phases if phase.grip.startswith("slip")]
+    ends = [scaled([phase.start, phase.end], "s").tolist() for phase in phases if phase.grip.startswith("slip")]
     spans = [Shade(start, end, "slip") for start, end in ends]
     marks = [Mark(float(scaled(at, "s")), str(i + 1)) for i, (at, _) in enumerate(events)]
     time = Axis(with_heading("time", "s"), 0.0, float(scaled(outcome.duration, "s")))
@@ -41,9 +44,21 @@ def contact_part(outcome: Outcome) -> Record:
     }
 
 
-def _events(outcome: Outcome) -> Iterator[tuple[float, str]]:
+def _main_phases(outcome: Outcome) -> list[Phase]:
+    """The phases of a contact, without those of less than `LEAST` of its normal impulse; alike neighbours are one."""
+    whole = sum(abs(phase.impulse[1]) for phase in outcome.phases)
+    main: list[Phase] = []
+    for phase in outcome.phases:
+        small = phase.grip in ("stick", "slip", "slip back") and abs(phase.impulse[1]) < LEAST * whole
+        if main and (small or (phase.grip, phase.press) == (main[-1].grip, main[-1].press)):
+            main[-1] = main[-1]._replace(end=phase.end)
+        else:
+            main.append(phase)
+    return main
+
+
+def _events(phases: Sequence[Any]) -> Iterator[tuple[float, str]]:
     """The moments, s, at which the phase changes, in words: the first `MOST_EVENTS` of them, and the last."""
-    phases = outcome.phases
     yield phases[0].start, "first touch, the tip slips" if phases[0].grip != "stick" else "first touch, the tip sticks"
     for before, after in islice(pairwise(phases), MOST_EVENTS):
         yield after.start, _turn(before, after)
