@@ -32,7 +32,6 @@ CONCERNED = {
     "quantity": ("io", "cli", "report", "design"),
     "results": ("results", "report", "design", "designer"),
     "solid": ("solid", "effects"),
-    "squirt": ("squirt", "contact", "results"),
     "handbook": ("handbook", "cli"),
     "io": ("io", "cli", "effects", "report", "design"),
     "report": ("report", "results", "cli", "handbook", "design"),

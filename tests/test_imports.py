@@ -21,7 +21,6 @@ ORDER = [
     "quantity",
     "cue",
     "materials",
-    "squirt",
     "solid",
     "beam",
     "effects",

@@ -20,8 +20,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cuefem.cue import Array, LumpedCue
+from cuefem.quantity.fields import sine_cosine
 from cuefem.scene import Ball, Outcome, Scene
-from cuefem.squirt.arguments import sine_cosine
 
 # Strokes worked at a time, so that the intermediate arrays stay in cache.
 BLOCK = 8192

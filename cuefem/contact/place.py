@@ -13,12 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cuefem import squirt
 from cuefem.cue import Array
 from cuefem.notebook import said
-from cuefem.quantity.fields import Quantity
+from cuefem.quantity.fields import Quantity, first_failure
 from cuefem.scene import Ball, Outcome
-from cuefem.squirt.arguments import first_failure
 
 # How far the offset of an outcome may lie from that of the point it is placed at.
 SAME_OFFSET = 1e-9
@@ -128,7 +126,7 @@ def offset_of(point: ArrayLike, direction: ArrayLike, *, ball: Ball | None = Non
 def axis_offset(contact_offset: Any, tip_radius: Any, *, ball: Ball | None = None) -> Any:
     """Distance of the cue's axis from the ball's centre, of a contact at offset b/R.
 
-    A domed tip of radius r touches the ball beside its own axis: b_axis = (R + r) b/R ([B.1], `squirt.axis_offset`).
+    A domed tip of radius r touches the ball beside its own axis: b_axis = (R + r) b/R ([B.1]).
 
     Parameters
     ----------
@@ -145,7 +143,8 @@ def axis_offset(contact_offset: Any, tip_radius: Any, *, ball: Ball | None = Non
         b_axis, m.
     """
     radius = (Ball() if ball is None else ball).radius
-    return squirt.axis_offset(contact_offset, radius=radius, dome_radius=tip_radius)
+    offset = Quantity("", "(-1, 1)").check("contact_offset", contact_offset)
+    return (radius + Quantity("m", "[0, inf)").check("tip_radius", tip_radius)) * offset
 
 
 def offset_of_axis(axis_distance: Any, tip_radius: Any, *, ball: Ball | None = None) -> Any:

@@ -26,8 +26,8 @@ from cuefem.io.ready import ready_cues
 from cuefem.report.squirt import two_part_curve
 from cuefem.report.strike_table import outcome_record
 from cuefem.results.asking import listed
+from cuefem.results.closed_forms import pivot_length
 from cuefem.results.designs import TONES, OneDesign, at_offset, strikes_at
-from cuefem.results.pivot import pivot_length
 from cuefem.results.records import Record
 from cuefem.results.verdict import verdict_record
 from cuefem.scene import Outcome, Resolution, Scene

@@ -303,3 +303,16 @@ def check_count(name: str, value: Any, least: int, most: int | None = None) -> N
         raise TypeError(f"{name} must be a whole number {bounds}; got {shown(value)}")
     if value < least or (most is not None and value > most):
         raise ValueError(f"{name} must be a whole number {bounds}; got {value}")
+
+
+def first_failure(holds: Any, *values: Any) -> tuple[str, tuple[float, ...]]:
+    """Where ``holds`` is false first (" at index 3", "" for a single stroke), and the values there."""
+    holds, *spread = np.broadcast_arrays(holds, *values)
+    index = tuple(int(i) for i in np.argwhere(~holds)[0])
+    where = f" at index {index if len(index) > 1 else index[0]}" if index else ""
+    return where, tuple(float(v[index]) for v in spread)
+
+
+def sine_cosine(offset: Any) -> tuple[Any, Any]:
+    """(sin phi, cos phi) of an offset b/R = sin phi, without cancellation as |offset| -> 1."""
+    return offset, np.sqrt((1 - offset) * (1 + offset))

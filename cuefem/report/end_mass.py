@@ -7,10 +7,10 @@ from typing import Any
 
 from cuefem.endmass.drives import DEFINITIONS, Spread, spreads_of
 from cuefem.report.scene_words import assumptions, listed, tip_effect_notes
+from cuefem.results.closed_forms import cue_end_mass
 from cuefem.results.quantities import NONE, RESULTS, grams, with_unit
 from cuefem.results.records import Record, Sheet, sheet
 from cuefem.scene import Scene
-from cuefem.squirt import cue_end_mass
 from cuefem.tip_modes import Solved
 
 SQUIRT_END_MASS = "squirt-equivalent end mass"  # the one that pages and tables for people show

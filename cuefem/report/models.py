@@ -14,10 +14,10 @@ from cuefem.endmass.drives import stick_at_offset
 from cuefem.endmass.lumped import lump_modes
 from cuefem.quantity.fields import scalar
 from cuefem.report.scene_words import tip_effect_notes
+from cuefem.results.closed_forms import alciatore_a31
 from cuefem.results.designs import at_offset
 from cuefem.results.records import Record
 from cuefem.scene import Scene
-from cuefem.squirt import alciatore_a31
 
 # What the numbers beside the coupled strike's rest on, in words that stand without the handbook.
 PAPER = "H.-C. Kim's paper (arXiv:2104.11232)"

@@ -45,12 +45,12 @@ from cuefem.report.tip_table import tip_record, tip_sheet
 from cuefem.report.trust import trust_lines
 from cuefem.report.verdict_table import verdict_part
 from cuefem.results.asking import listed
+from cuefem.results.closed_forms import alciatore_a31_mass_ratio
 from cuefem.results.designs import OneDesign
 from cuefem.results.quantities import GRIPS, NONE, RESULTS, degrees, grams, scaled, written
 from cuefem.results.records import Record, Sheet, value_rows, values_sheet
 from cuefem.results.verdict import verdict_record
 from cuefem.scene import Outcome, Scene
-from cuefem.squirt import alciatore_a31_mass_ratio
 from cuefem.tip_modes import LEAST, LEAST_STUCK, Solved
 
 DEFAULT_RTOL = 1e-2

@@ -11,10 +11,10 @@ from __future__ import annotations
 
 from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
+from cuefem.results.closed_forms import alciatore_a31, alciatore_a31_mass_ratio
 from cuefem.results.quantities import RESULTS, degrees, units_of, with_unit
 from cuefem.results.records import Record, Sheet, sheet
 from cuefem.scene import Scene
-from cuefem.squirt import alciatore_a31, alciatore_a31_mass_ratio
 from cuefem.tip_modes import Solved
 
 VERSION = "0.6.0"  # the release whose CueSpecs these are; .ci/pooltool installs it

@@ -19,8 +19,8 @@ from cuefem.report.models import (
 )
 from cuefem.report.scene_words import assumptions
 from cuefem.report.strike_table import PIVOT
+from cuefem.results.closed_forms import pivot_length
 from cuefem.results.designs import OFFSETS, at_offset, coupled_curve
-from cuefem.results.pivot import pivot_length
 from cuefem.results.quantities import TRADE, Units, written
 from cuefem.results.records import Record, Sheet
 from cuefem.scene import Scene

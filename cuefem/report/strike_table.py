@@ -18,7 +18,7 @@ from cuefem.report.models import (
     with_coupling,
 )
 from cuefem.report.scene_words import assumptions
-from cuefem.results.pivot import pivot_length
+from cuefem.results.closed_forms import pivot_length
 from cuefem.results.quantities import GRIPS, RESULTS, written
 from cuefem.results.records import Record, Sheet
 from cuefem.scene import Outcome, Scene

@@ -20,7 +20,7 @@ from cuefem.effects import Support
 from cuefem.endmass.drives import DEFINITIONS, Definition, flexible, small_offset_slope, stick
 from cuefem.endmass.undamped import StickLimit, stick_reason
 from cuefem.games import GAMES
-from cuefem.results.pivot import pivot_length
+from cuefem.results.closed_forms import pivot_length
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import Solved
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cuefem.cue import Array
-from cuefem.results.pivot import pivot_at
+from cuefem.results.closed_forms import pivot_at
 from cuefem.scene import Outcome, Scene
 
 if TYPE_CHECKING:  # at work every command that writes a number would pay for it

@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 
 import cuefem as cf
-from cuefem.squirt import cue_end_mass, squirt_slope
 from studies import pages, strokes
 from studies.pages import table
+from studies.paper.closed_forms import cue_end_mass, squirt_slope
 
 KIM, OFFSETS, WINDOW = strokes.cue("kim"), (0.1, 0.3, 0.5), 6  # samples in each window of (a), a factor of 2 in time
 STARTS, FACTORS = 2e-3 * 2.0 ** np.arange(10), 10.0 ** np.arange(0, -5.1, -1)

@@ -5,7 +5,7 @@ What: each numbered result of the paper is evaluated as printed, beside what fol
 two-part cue (epsilon = m_c/M = 2/35, Q0 = M_c/M = 18/7, nu_c = 1/3), e = 3/4, mu = 0.7 (a rigid cue: Q0 = 3, nu_c =
 0.136, mu = 0.6). Limits epsilon -> 0 are Richardson-extrapolated from the exact law. Numbers that the text quotes stand
 beside the same quantities as derived. Sections are the paper's, I (introduction) to VI (summary). Equations: handbook:
-Frame and signs, Inverse mass, The impulse solver, What the paper says; cuefem.squirt. Last what [Kim] says of the
+Frame and signs, Inverse mass, The impulse solver, What the paper says; closed_forms. Last what [Kim] says of the
 shaft itself, its cue end, and finite elements: E 12.6 GPa, E/G 15, kappa 0.9, 540 g along its axis, T = 2 ms head on,
 22 flexible bending modes; numbers to four digits, which is about as exact as these modes allow. Takes seconds.
 """
@@ -23,8 +23,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 from scipy.optimize import brentq
 
-from cuefem import Ball, Effect, Outcome, Resolution, Scene, Stroke, Tip, TipDome, end_mass, squirt, strike
+from cuefem import Ball, Effect, Outcome, Resolution, Scene, Stroke, Tip, TipDome, end_mass, strike
 from studies import pages
+from studies.paper import closed_forms as squirt
 from studies.paper.claims import Claim, markdown
 from studies.paper.tone import CUE_MASS, DENSITY, MAPLE, MASS, SHAFT, front, nearest, pieces
 

@@ -5,7 +5,7 @@ cue (Q0 = 18/7, epsilon = 2/35), for the [A.31]-like limit (the same end mass, e
 the paper's own condition mu = tan(phi). And the offset beyond which slip no longer ends during compression, so that
 [Kim]'s closed form is not valid: where the paper's mu = 0.6 stops working. Equations: a miscue is slip that still goes
 on when e^2 of the normal work is regained, tan(phi) (B_nn + mu B_tn) = (1 + e) (mu B_tt + B_tn), a cubic in tan(phi)
-(cuefem.squirt.miscue_offset); the table's last column finds the same edge by bisection on the regime of the general
+(closed_forms.miscue_offset); the table's last column finds the same edge by bisection on the regime of the general
 solver (cuefem.impulse).
 """
 
@@ -18,9 +18,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
-from cuefem import Ball, LumpedCue, Scene, Stroke, Tip, impulse, squirt
+from cuefem import Ball, LumpedCue, Scene, Stroke, Tip, impulse
 from studies import pages
 from studies.pages import table
+from studies.paper import closed_forms as squirt
 
 E, NU, NU_C = 0.75, 0.4, 0.136
 FRICTIONS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 1.0, 1.2)

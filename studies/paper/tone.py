@@ -14,9 +14,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cuefem import Cue, Material, Segment, Support, modes, squirt
+from cuefem import Cue, Material, Segment, Support, modes
 from studies import pages
 from studies.pages import table
+from studies.paper import closed_forms as squirt
 
 SHAFT = {"length": 0.7, "tip_radius": 6e-3, "butt_radius": 10.5e-3}  # m
 MASS, CUE_MASS = 0.12, 0.54  # kg

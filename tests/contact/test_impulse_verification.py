@@ -5,7 +5,8 @@ from math import inf, tan
 
 import numpy as np
 
-from cuefem import Ball, LumpedCue, Outcome, Scene, Stroke, Tip, impulse, squirt
+from cuefem import Ball, LumpedCue, Outcome, Scene, Stroke, Tip, impulse
+from studies.paper import closed_forms as squirt
 from tests.helpers.impulse_oracle import exact, regime_of
 
 REGIMES = ("stick", "late stick", "miscue", "slip reversal", "jam")

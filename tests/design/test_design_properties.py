@@ -32,8 +32,8 @@ from cuefem.endmass.drives import DEFINITIONS, small_offset_slope
 from cuefem.materials import material
 from cuefem.results.asking import asked
 from cuefem.results.quantities import RESULTS
-from cuefem.squirt import natural_pivot_length
 from cuefem.tip_modes import default_resolution, tip_modes_of
+from studies.paper.closed_forms import natural_pivot_length
 from tests.helpers.cues import MAPLE, kim, low_deflection, pool
 
 AT = Resolution(1, 14, 7)

@@ -12,7 +12,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.contact.motion import motion
-from cuefem.squirt import alciatore_a31_mass_ratio
+from studies.paper.closed_forms import alciatore_a31_mass_ratio
 from tests.helpers.refusals import refuses, untouched
 from tests.helpers.strike_scenes import KIM
 from tests.helpers.sweeps import STUDY

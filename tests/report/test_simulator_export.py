@@ -20,7 +20,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.report.simulator_export import DEFAULT, VERSION, pooltool_record
-from cuefem.squirt import alciatore_a31, alciatore_a31_mass_ratio
+from studies.paper.closed_forms import alciatore_a31, alciatore_a31_mass_ratio
 from tests.helpers.command_line import as_json, said
 
 KIM = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 782.3284453057836), kappa=0.9),), 0.42)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cuefem import squirt
+from studies.paper import closed_forms as squirt
 
 OFFSETS = np.array([0.01, 0.1, 0.3, 0.5, 0.55])
 LINE = {"cue_mass_ratio": 18 / 7}

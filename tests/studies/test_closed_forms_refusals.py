@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from cuefem import squirt
+from studies.paper import closed_forms as squirt
 from tests.helpers.refusals import refuses
 
 

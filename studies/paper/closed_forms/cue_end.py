@@ -4,13 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from cuefem.squirt.arguments import checked
-
-
-def cue_end_mass(end_mass: Any, nu_c: Any = 1 / 3) -> Any:
-    """[Kim]'s m_c = m_e (1 + nu_c)/nu_c, kg, whose tip feels the effective end mass m_e."""
-    end_mass, nu_c = checked(end_mass=end_mass, nu_c=nu_c)
-    return end_mass * (1 + nu_c) / nu_c
+from studies.paper.closed_forms.arguments import checked
 
 
 def base_radius(end_length: Any, *, length: Any, tip_radius: Any, butt_radius: Any) -> Any:

@@ -1,4 +1,7 @@
-"""Formulas of other authors: [Shepard], Alciatore's [A.30], [A.31], [B.1]; and what "b" each of them means."""
+"""The papers' formulas that results need: Alciatore's [A.31], the natural pivot length [B.1] and [Kim]'s cue end.
+
+The other closed forms stand in studies/paper/closed_forms.
+"""
 
 from __future__ import annotations
 
@@ -6,13 +9,31 @@ from typing import Any
 
 import numpy as np
 
-from cuefem.squirt.arguments import checked, first_failure, sine_cosine
+from cuefem.quantity.fields import Quantity, first_failure, sine_cosine
+from cuefem.scene import Scene
+
+_OFFSET, _POSITIVE = Quantity("", "(-1, 1)"), "(0, inf)"
+_QUANTITIES = {
+    "offset": _OFFSET,
+    "mass_ratio": Quantity("", "[0, inf)"),
+    "inertia": Quantity("", "(0, 1]"),
+    "squirt": Quantity("rad", "(-1.5707963267948966, 1.5707963267948966)"),
+    "radius": Quantity("m", _POSITIVE),
+    "dome_radius": Quantity("m", "[0, inf)"),
+    "end_mass": Quantity("kg", _POSITIVE),
+    "nu_c": Quantity("", _POSITIVE),
+}
 
 
-def alciatore_a30(offset: Any, *, mass_ratio: Any, inertia: Any = 0.4) -> Any:
-    """[A.30]: ball speed over cue speed of an elastic stroke, 2/(1 + M/M_c + (b/R)^2/nu); mass_ratio M/M_c."""
-    offset, ratio, nu = checked(offset=offset, mass_ratio=mass_ratio, inertia=inertia)
-    return 2 / (1 + ratio + offset**2 / nu)
+def _checked(**values: Any) -> tuple[Any, ...]:
+    """The values as floats or float arrays, in the order given; ValueError names field, bound, unit and value."""
+    return tuple(_QUANTITIES[name].check(name, value) for name, value in values.items())
+
+
+def cue_end_mass(end_mass: Any, nu_c: Any = 1 / 3) -> Any:
+    """[Kim]'s m_c = m_e (1 + nu_c)/nu_c, kg, whose tip feels the effective end mass m_e."""
+    end_mass, nu_c = _checked(end_mass=end_mass, nu_c=nu_c)
+    return end_mass * (1 + nu_c) / nu_c
 
 
 def alciatore_a31(offset: Any, *, mass_ratio: Any, inertia: Any = 0.4) -> Any:
@@ -20,7 +41,7 @@ def alciatore_a31(offset: Any, *, mass_ratio: Any, inertia: Any = 0.4) -> Any:
 
     tan psi = (sin cos/nu)/(1 + M/m_e + cos^2/nu), b/R = sin(phi) of the contact: [Kim]'s law at e = 0.
     """
-    offset, ratio, nu = checked(offset=offset, mass_ratio=mass_ratio, inertia=inertia)
+    offset, ratio, nu = _checked(offset=offset, mass_ratio=mass_ratio, inertia=inertia)
     s, c = sine_cosine(offset)
     return np.arctan(s * c / nu / (1 + ratio + c**2 / nu))
 
@@ -30,7 +51,7 @@ def alciatore_a31_mass_ratio(offset: Any, squirt: Any, *, inertia: Any = 0.4) ->
 
     ValueError if no end mass in (0, inf) has it: head on, and at or beyond the squirt of an infinite end mass.
     """
-    offset, squirt, nu = checked(offset=offset, squirt=squirt, inertia=inertia)
+    offset, squirt, nu = _checked(offset=offset, squirt=squirt, inertia=inertia)
     s, c = sine_cosine(offset)
     tangent = np.tan(squirt)
     ratio = s * c / nu / np.where(tangent == 0, np.nan, tangent) - 1 - c**2 / nu
@@ -43,32 +64,9 @@ def alciatore_a31_mass_ratio(offset: Any, squirt: Any, *, inertia: Any = 0.4) ->
     return ratio[()]
 
 
-def shepard(offset: Any, *, mass_ratio: Any, inertia: Any = 0.4) -> Any:
-    """[Shepard] as [Kim] prints it: squirt, rad, with b/R measured to the force's line; mass_ratio M/m_e.
-
-    tan psi = (sin cos/nu)/(1 + M/m_e + sin^2/nu): [A.31] exactly, once `contact_offset` has turned b into the
-    contact's.
-    """
-    offset, ratio, nu = checked(offset=offset, mass_ratio=mass_ratio, inertia=inertia)
-    s, c = sine_cosine(offset)
-    return np.arctan(s * c / nu / (1 + ratio + s**2 / nu))
-
-
-def force_line_offset(offset: Any, squirt: Any) -> Any:
-    """b'/R = sin(phi - psi): how far the line of the force, the ball's path, passes from the ball's centre."""
-    offset, squirt = checked(offset=offset, squirt=squirt)
-    return np.sin(np.arcsin(offset) - squirt)
-
-
-def contact_offset(force_line_offset: Any, squirt: Any) -> Any:
-    """b/R = sin(phi' + psi) of the contact, from the offset b'/R = sin(phi') of the line of the force."""
-    offset, squirt = checked(force_line_offset=force_line_offset, squirt=squirt)
-    return np.sin(np.arcsin(offset) + squirt)
-
-
 def axis_offset(offset: Any, *, radius: Any, dome_radius: Any) -> Any:
     """[B.1]: distance of the cue's axis from the ball's centre, m, of a contact at ``offset``: (R + r) b/R."""
-    offset, radius, dome_radius = checked(offset=offset, radius=radius, dome_radius=dome_radius)
+    offset, radius, dome_radius = _checked(offset=offset, radius=radius, dome_radius=dome_radius)
     return (radius + dome_radius) * offset
 
 
@@ -78,7 +76,7 @@ def natural_pivot_length(offset: Any, squirt: Any, *, radius: Any, dome_radius: 
     p = (R + r) b/(R sin psi) - R; radius R of the ball, dome_radius r of the tip (0: its curvature is left out).
     Infinite without squirt; ValueError at offset 0, where every bridge will do.
     """
-    offset, squirt, radius, dome_radius = checked(offset=offset, squirt=squirt, radius=radius, dome_radius=dome_radius)
+    offset, squirt, radius, dome_radius = _checked(offset=offset, squirt=squirt, radius=radius, dome_radius=dome_radius)
     if not np.all(beside := np.not_equal(offset, 0)):
         where, _ = first_failure(beside)
         raise ValueError(f"offset must be in (-1, 1) without 0, where no pivot is defined; got 0{where}")
@@ -86,3 +84,15 @@ def natural_pivot_length(offset: Any, squirt: Any, *, radius: Any, dome_radius: 
     turned = np.copysign(1.0, offset) * np.sin(squirt)
     straight = turned == 0
     return np.where(straight, np.inf, aside / np.where(straight, 1.0, turned) - radius)[()]
+
+
+def pivot_length(scene: Scene, squirt: Any) -> Any:
+    """The natural pivot length of a squirt, m; None for a head-on stroke, which has none."""
+    if not np.all(scene.stroke.offset):
+        return None
+    return pivot_at(scene, scene.stroke.offset, squirt)
+
+
+def pivot_at(scene: Scene, offset: Any, squirt: Any) -> Any:
+    """The same at another offset b/R than the scene's own."""
+    return natural_pivot_length(offset, squirt, radius=scene.ball.radius, dome_radius=scene.dome_radius)

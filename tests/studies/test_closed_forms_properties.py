@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cuefem import squirt
+from studies.paper import closed_forms as squirt
 
 OFFSET = st.floats(1e-4, 0.95)
 STROKE = {

@@ -10,7 +10,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cuefem.squirt.arguments import checked, first_failure, sine_cosine
+from cuefem.quantity.fields import first_failure, sine_cosine
+from studies.paper.closed_forms.arguments import checked
 
 
 class Expansion(NamedTuple):

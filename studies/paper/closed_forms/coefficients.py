@@ -6,7 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cuefem.squirt.arguments import checked, sine_cosine
+from cuefem.quantity.fields import sine_cosine
+from studies.paper.closed_forms.arguments import checked
 
 
 class Coefficients(NamedTuple):

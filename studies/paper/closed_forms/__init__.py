@@ -5,7 +5,14 @@ Numpy only. Everything is per unit cue speed and broadcasts over arrays; masses 
 prints does not follow from its own equations these functions give the derived result; studies/paper/kim.md shows both.
 """
 
-from cuefem.squirt.coefficients import (
+from cuefem.results.closed_forms import (
+    alciatore_a31,
+    alciatore_a31_mass_ratio,
+    axis_offset,
+    cue_end_mass,
+    natural_pivot_length,
+)
+from studies.paper.closed_forms.coefficients import (
     Coefficients,
     critical_friction,
     gamma,
@@ -15,16 +22,15 @@ from cuefem.squirt.coefficients import (
     rigid,
     two_part,
 )
-from cuefem.squirt.cue_end import (
+from studies.paper.closed_forms.cue_end import (
     base_radius,
     centre_of_mass,
     cone_end_mass,
-    cue_end_mass,
     full_cone_length,
     inertia_factor,
     volume_ratio,
 )
-from cuefem.squirt.kim_stroke import (
+from studies.paper.closed_forms.kim_stroke import (
     ClosedForm,
     Impulses,
     closed_form,
@@ -38,7 +44,7 @@ from cuefem.squirt.kim_stroke import (
     slip_impulse,
     squirt_tangent,
 )
-from cuefem.squirt.light import (
+from studies.paper.closed_forms.light import (
     Expansion,
     ball_speed,
     ball_spin,
@@ -59,15 +65,11 @@ from cuefem.squirt.light import (
     resistance,
     squirt_slope,
 )
-from cuefem.squirt.miscue import compression_stick_friction, miscue_friction, miscue_offset
-from cuefem.squirt.published import (
+from studies.paper.closed_forms.miscue import compression_stick_friction, miscue_friction, miscue_offset
+from studies.paper.closed_forms.published import (
     alciatore_a30,
-    alciatore_a31,
-    alciatore_a31_mass_ratio,
-    axis_offset,
     contact_offset,
     force_line_offset,
-    natural_pivot_length,
     shepard,
 )
 

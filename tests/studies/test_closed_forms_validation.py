@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cuefem import squirt
+from studies.paper import closed_forms as squirt
 
 KIM = {"mass": 0.54, "end_mass": 0.012 / 4}
 

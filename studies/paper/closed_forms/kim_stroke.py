@@ -6,8 +6,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cuefem.squirt.arguments import checked, first_failure, sine_cosine
-from cuefem.squirt.coefficients import Coefficients, critical_friction, lumped
+from cuefem.quantity.fields import first_failure, sine_cosine
+from studies.paper.closed_forms.arguments import checked
+from studies.paper.closed_forms.coefficients import Coefficients, critical_friction, lumped
 
 
 def initial_impulse(beta: Coefficients, offset: Any) -> Any:

@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from cuefem.squirt.arguments import checked, sine_cosine
-from cuefem.squirt.coefficients import Coefficients
+from cuefem.quantity.fields import sine_cosine
+from studies.paper.closed_forms.arguments import checked
+from studies.paper.closed_forms.coefficients import Coefficients
 
 
 def miscue_friction(beta: Coefficients, offset: Any, *, restitution: Any) -> Any:

@@ -1,10 +1,8 @@
-"""The quantities that the closed forms take, checked in one place; and the sine and cosine of an offset."""
+"""The quantities that the closed forms take, checked in one place."""
 
 from __future__ import annotations
 
 from typing import Any
-
-import numpy as np
 
 from cuefem.quantity.fields import Quantity
 
@@ -38,16 +36,3 @@ _QUANTITIES = {
 def checked(**values: Any) -> tuple[Any, ...]:
     """The values as floats or float arrays, in the order given; ValueError names field, bound, unit and value."""
     return tuple(_QUANTITIES[name].check(name, value) for name, value in values.items())
-
-
-def sine_cosine(offset: Any) -> tuple[Any, Any]:
-    """(sin phi, cos phi) of an offset b/R = sin phi, without cancellation as |offset| -> 1."""
-    return offset, np.sqrt((1 - offset) * (1 + offset))
-
-
-def first_failure(holds: Any, *values: Any) -> tuple[str, tuple[float, ...]]:
-    """Where ``holds`` is false first (" at index 3", "" for a single stroke), and the values there."""
-    holds, *spread = np.broadcast_arrays(holds, *values)
-    index = tuple(int(i) for i in np.argwhere(~holds)[0])
-    where = f" at index {index if len(index) > 1 else index[0]}" if index else ""
-    return where, tuple(float(v[index]) for v in spread)
