@@ -87,9 +87,12 @@ def _side_by_side(files: Sequence[Path], options: dict[str, Any], output: Path |
 
 
 def _names(files: Sequence[Path]) -> list[str]:
-    """The files' names, with their folders where two are alike."""
-    names = [file.stem for file in files]
-    return names if len({*names}) == len(names) else [str(file.with_suffix("")) for file in files]
+    """The files' names: without ending and folder, unless another's is the same."""
+    for i, file in enumerate(files):
+        if file.resolve() in [other.resolve() for other in files[:i]]:
+            raise InputError(file, "", "must be another file than the ones before it to be compared with them")
+    forms = [(file.stem, file.name, str(file)) for file in files]
+    return [next(own for k, own in enumerate(form) if [each[k] for each in forms].count(own) == 1) for form in forms]
 
 
 def _with_measurements(folder: Path, output: Path | None, *, as_json: bool, estimate: bool) -> None:

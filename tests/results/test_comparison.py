@@ -66,6 +66,15 @@ def test_the_command_compares_files_of_ones_own(tmp_path: Path) -> None:
     assert "plain and bored" in page
 
 
+def test_cues_of_one_name_are_told_apart(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "old").mkdir()
+    files = ["cue.toml", "cue.vtu", "old/cue.toml", "other.toml"]
+    for file in files:
+        cf.save(pool(), tmp_path / file)
+    monkeypatch.chdir(tmp_path)
+    assert [*as_json("compare", *files)["cues"]] == ["cue.toml", "cue.vtu", "old/cue.toml", "other"]
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
@@ -75,6 +84,7 @@ def test_the_command_compares_files_of_ones_own(tmp_path: Path) -> None:
         (["cue.toml", "cue.toml", "--estimate"], "takes one FOLDER"),
         (["cue.toml"] * 6, "at most 5 cues"),
         (["cue.toml", "lumped.toml"], "LumpedCue"),
+        (["cue.toml", "lumped.toml", "./cue.toml"], "another file"),
         (["nowhere"], "got no folder"),
     ],
 )
