@@ -21,10 +21,11 @@ from cuefem.measurements.measured_cue import zeros
 from cuefem.report.comparison_table import comparison_figures, comparison_sentences, comparison_sheet
 from cuefem.report.measured_page import compare_record, compare_sheets, estimate_record, estimate_sheets
 from cuefem.report.record import scene_record
-from cuefem.results.comparison import comparison_record
+from cuefem.results.comparison import comparison_record, struck_alike
 from cuefem.results.quantities import UNITS
 
 MOST_CUES = 5
+STRUCK = ("ball ", "stroke ", "offset ")  # what is assumed of ball and stroke, which are the first cue's
 
 
 @command()
@@ -73,12 +74,14 @@ def _side_by_side(files: Sequence[Path], options: dict[str, Any], output: Path |
     loaded = [scene_of(file, options) for file in files]
     scenes = {name: scene for name, (scene, _) in zip(_names(files), loaded, strict=True)}
     notes = [f"{name}: {note}" for name, (_, own) in zip(scenes, loaded, strict=True) for note in own]
-    shared = [note for note in loaded[0][1] if all(note in own for _, own in loaded)]
-    notes = shared + [note for note in notes if note.partition(": ")[2] not in shared]
+    shared = [note for note in loaded[0][1] if note.startswith(STRUCK) or all(note in own for _, own in loaded)]
+    notes = shared + [
+        note for note in notes if not (own := note.partition(": ")[2]).startswith(STRUCK) and own not in shared
+    ]
     with blaming(files[0], options):
         record = comparison_record(scenes, same_shaft=same_shaft, follow=followed)
     about: dict[str, Any] = {"files": [str(file) for file in files], "assumed": notes}
-    about |= {"scenes": {name: scene_record(scene) for name, scene in scenes.items()}}
+    about |= {"scenes": {name: scene_record(scene) for name, scene in struck_alike(scenes).items()}}
     things: list[Any] = [*comparison_sentences(record), "", comparison_sheet(record)]
     if output is not None and output.suffix == ".html":
         things += comparison_figures(scenes, record)

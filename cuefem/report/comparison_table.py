@@ -31,7 +31,9 @@ def comparison_sentences(record: Record) -> list[str]:
     for name, differences in record["differences"].items():
         squirt = differences.get("squirt")
         if squirt is None:
-            made.append(f"{name} and {first} cannot be compared in squirt: one of them has none.")
+            missed = [cue for cue in (first, name) if math.isnan(record["cues"][cue]["squirt"])]
+            which = f"the stroke of {' and of '.join(missed)} is a miscue" if missed else "a stroke is nearly a miscue"
+            made.append(f"{name} and {first} cannot be compared in squirt: {which}.")
         elif not squirt["distinct"]:
             made.append(f"{name} cannot be told apart from {first} in squirt: {_signed(squirt)} (1σ).")
         else:
@@ -65,8 +67,8 @@ def comparison_sheet(record: Record) -> Sheet:
     head = ("", first, *(cell for other in others for cell in (other, "difference")))
     shaft = "one shaft, before and after a change" if record["same_shaft"] else "shafts of different pieces of wood"
     notes = (
-        f"Struck alike, b/R {record['offset']:.3g} at {record['speed']:g} m/s. ±: 1σ of the difference, for {shaft}; "
-        "errors that the cues share cancel.",
+        f"Struck alike, with the ball of {first}, b/R {record['offset']:.3g} at {record['speed']:g} m/s. ±: 1σ of the "
+        f"difference, for {shaft}; errors that the cues share cancel.",
         "* smaller than its uncertainty: the cues cannot be told apart in this number.",
     )
     return Sheet("Side by side", head, tuple(rows), notes)

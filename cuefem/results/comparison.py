@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
+from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.results.asking import asked
 from cuefem.results.band import OF_DIFFERENCE, changes_by_input, of_tip
 from cuefem.results.designs import OneDesign, off_centre
@@ -36,7 +37,8 @@ def comparison_record(scenes: Mapping[str, Scene], *, same_shaft: bool = False, 
 
     An error that two cues share cancels in their difference: that of a tip of the same value on both, and of the wood
     if they are one shaft before and after a change (same_shaft). To squirt and what follows from it, the model adds
-    `OF_DIFFERENCE` of the logarithm, and `FLOOR`. "distinct": whether a difference exceeds its uncertainty (1 sigma).
+    `OF_DIFFERENCE` of the logarithm, and `FLOOR`. "distinct": whether a difference exceeds its uncertainty (1 sigma),
+    whichever of two cues is the first.
 
     All cues are struck with the ball, the speed and the offset of the first. follow: shows how far the work is.
     """
@@ -68,7 +70,7 @@ def _compared(scene: Scene) -> _Compared:
 
 
 def _numbers(scene: Scene) -> dict[str, float]:
-    """The numbers of a scene that are compared; nan where it has none, such as a miscue's end mass."""
+    """The numbers of a scene that are compared; nan where it has none, as squirt of a miscue."""
     _ = scene.shaft  # ValueError for a lumped cue, which has no shape
     design, known = OneDesign(Solved(scene)), asked()
     arguments: dict[str, Any] = {"pivot_length": float(scene.stroke.offset)}
@@ -77,6 +79,8 @@ def _numbers(scene: Scene) -> dict[str, float]:
         of = known[name].of
         assert of is not None
         try:
+            if name in OF_SQUIRT and grip_of(design.strike(0, None)) in MISSED:
+                return math.nan
             return float(of(design, argument)[0])
         except (ValueError, RuntimeError):
             return math.nan
@@ -95,7 +99,10 @@ def _differences(first: _Compared, other: _Compared, *, same_shaft: bool) -> dic
         errors = [_of_input(first, other, key, name, same_shaft=same_shaft) for key in {**first.inputs, **other.inputs}]
         if name in OF_SQUIRT:
             errors += [OF_DIFFERENCE * math.log(ratio), FLOOR]
-        error = ratio * math.hypot(*errors)
+        ln = math.log(ratio)
+        error = math.hypot(*errors) * (math.expm1(ln) / ln if ln else 1.0)
+        if math.isnan(error):  # a strike at an end of an input's range miscues
+            continue
         made[name] = {"difference": ratio - 1, "error": error, "distinct": abs(ratio - 1) > error}
     return made
 

@@ -66,6 +66,36 @@ def test_the_command_compares_files_of_ones_own(tmp_path: Path) -> None:
     assert "plain and bored" in page
 
 
+def test_the_verdict_is_the_same_in_either_order() -> None:
+    for depth in (0.02, 0.1):
+        bored = varied(SCENE, {"bore depth": depth, "bore width": 0.006})
+        ends = [("a", SCENE), ("b", bored)]
+        ways = [comparison_record(dict(pair), same_shaft=True) for pair in (ends, ends[::-1])]
+        one, other = ways[0]["differences"]["b"], ways[1]["differences"]["a"]
+        for name in one:
+            sizes = [each[name]["difference"] / (each[name]["error"] or math.inf) for each in (one, other)]
+            assert sizes[0] == pytest.approx(-sizes[1], rel=1e-6, abs=1e-9)
+
+
+def test_a_miscue_is_not_compared(tmp_path: Path) -> None:
+    for name, scene in (("plain", SCENE), ("bored", BORED)):
+        cf.save(replace(scene, stroke=cf.Stroke(2.0, 0.8)), tmp_path / f"{name}.toml")
+    files = (tmp_path / "plain.toml", tmp_path / "bored.toml")
+    record = as_json("compare", *files)
+    assert record["cues"]["plain"]["squirt"] is None
+    assert not {"squirt", "pivot_length"} & {*record["differences"]["bored"]}
+    assert "miscue" in call("compare", *files)[1]
+
+
+def test_ball_and_stroke_are_those_of_the_first_alone(tmp_path: Path) -> None:
+    cf.save(replace(SCENE, ball=cf.Ball(0.21, 0.03075), stroke=cf.Stroke(3.0, 0.4)), tmp_path / "first.toml")
+    cf.save(pool(), tmp_path / "other.toml")
+    record = as_json("compare", tmp_path / "first.toml", tmp_path / "other.toml")
+    first, other = record["scenes"].values()
+    assert (other["ball"], other["stroke"]) == (first["ball"], first["stroke"])
+    assert not [note for note in record["assumed"] if any(word in note for word in (": ball", ": stroke", ": offset"))]
+
+
 def test_cues_of_one_name_are_told_apart(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "old").mkdir()
     files = ["cue.toml", "cue.vtu", "old/cue.toml", "other.toml"]
