@@ -64,6 +64,18 @@ def test_option_and_file_key_agree_and_are_kept(tmp_path: Path) -> None:
     assert 0.111 < leather < 0.112
 
 
+@pytest.mark.parametrize("told", [{"material": "ash"}, {"bore": "6 mm wide, 127 mm deep"}, {"ferrule": "25 mm abs"}])
+def test_what_is_told_of_a_weighed_shaft_keeps_its_weight(told: dict[str, str], tmp_path: Path) -> None:
+    bare = cf.Cue((cf.Segment(0.73, 0.0127, 0.0215, main_material(pool())),), 0.42)
+    for thing in (with_shaft_mass(bare, 0.112), cf.Scene(with_shaft_mass(bare, 0.112))):
+        cf.save(thing, tmp_path / "weighed.toml")
+        loaded = cf.load(tmp_path / "weighed.toml", **told)
+        cue = loaded if isinstance(loaded, cf.Cue) else loaded.cue
+        assert isinstance(cue, cf.Cue)
+        assert (cue.weighed, cue.shaft_mass) == (True, pytest.approx(0.112, rel=1e-12))
+        assert len(cue.segments) > 1 or main_material(cue).E != main_material(bare).E
+
+
 @pytest.mark.parametrize(
     ("mass", "words"),
     [("112", "needs a unit"), ("0 g", "must be more than 0"), ("1 g", "must be 2.8"), ("9 kg", "to 3257 g")],

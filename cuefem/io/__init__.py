@@ -7,6 +7,7 @@ import errno
 import os
 import shutil
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from cuefem.io.errors import InputError, faults_of, reason, shown
 from cuefem.io.fittings import fitted, with_shaft_of
 from cuefem.io.profile import DEFAULT_MATERIAL, SHAPES, TABLES, load_profile
 from cuefem.io.toml import drawn_cue, load_accuracy, load_cue, load_toml, named_material
+from cuefem.parts import with_shaft_mass
 from cuefem.quantity.fields import Quantity
 from cuefem.quantity.units import number
 from cuefem.scene import Scene
@@ -107,12 +109,18 @@ def load(
     changed = any(told.values()) or (material is not None and not shape)
     if (changed or body_mass is not None) and isinstance(loaded, Scene) and loaded.lumped:
         raise InputError(path, "cue", "is a lumped cue, which has no material, ferrule, bore or body mass")
+    cue = loaded if isinstance(loaded, Cue) else loaded.cue
+    weight = cue.shaft_mass if isinstance(cue, Cue) and cue.weighed else 0.0
     with faults_of(path, ""):
         if material is not None and not shape:
             named_material(material, path, "material")
             loaded = with_shaft_of(loaded, material)
         if changed:
             loaded = fitted(loaded, **told)
+        if changed and weight:  # what is told of a shaft does not change what the scale said
+            told_of: Any = loaded if isinstance(loaded, Cue) else loaded.cue
+            weighed = with_shaft_mass(told_of, weight)
+            loaded = weighed if isinstance(loaded, Cue) else replace(loaded, cue=weighed)
     return loaded if body_mass is None else with_body_mass(loaded, path, "body_mass", body_mass)
 
 
