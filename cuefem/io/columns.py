@@ -117,6 +117,8 @@ def _column(path: Path, line: int, index: int, cell: str) -> ProfileColumn:
     kind = _kind(words)
     if words == ["id"] and not unit:  # the number of a row, no inner diameter
         kind = ""
+    if kind == BORE and _WORDS[RADIUS] & {*words}:
+        raise InputError(path, f"line {line}, {kind}", f"must be a column of diameters; got {shown(cell)}")
     if kind and inside and not unit and inside[0].strip() in _OTHERS:
         problem = f"must be in a unit of length, such as mm; got {shown(inside[0])}"
         raise InputError(path, f"line {line}, {kind}", problem)

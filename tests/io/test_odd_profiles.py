@@ -173,6 +173,13 @@ def test_core_without_bore_is_refused(tmp_path: Path) -> None:
         cf.load(path)
 
 
+@pytest.mark.parametrize("name", ["bore radius [mm]", "inner radius (mm)"])
+def test_a_bore_told_by_its_radius_is_refused(name: str, tmp_path: Path) -> None:
+    (path := tmp_path / "a.csv").write_text(f"x [mm],radius [mm],{name}\n0,6.375,3\n736.6,10.75,\n")
+    with pytest.raises(InputError, match="must be a column of diameters"):
+        cf.load(path)
+
+
 def test_a_plain_profile_is_as_without_the_columns(tmp_path: Path) -> None:
     plain = cf.load(written(tmp_path, PLAIN), material="ash")
     text = PLAIN.replace("[mm]\n", "[mm],bore [mm],material\n", 1)
