@@ -70,7 +70,8 @@ def _side_by_side(files: Sequence[Path], options: dict[str, Any], output: Path |
     if len(files) > MOST_CUES:
         raise InputError(files[MOST_CUES], "", f"must be one of at most {MOST_CUES} cues; got {len(files)}")
     if options["shaft_mass"] is not None:
-        raise InputError(files[0], option("shaft_mass"), "must stand in each cue's file (shaft_mass) to compare cues")
+        problem = "must stand in each cue's file (shaft_mass) to compare cues: `cuefem convert` makes a .toml with it"
+        raise InputError(files[0], option("shaft_mass"), problem)
     loaded = [scene_of(file, options) for file in files]
     scenes = {name: scene for name, (scene, _) in zip(_names(files), loaded, strict=True)}
     notes = [f"{name}: {note}" for name, (_, own) in zip(scenes, loaded, strict=True) for note in own]

@@ -199,14 +199,24 @@ def _entry(cells: Sequence[str], column: ProfileColumn) -> str:
 def _bored(profile: Profile, unit: str) -> list[str]:
     """Where the shaft is bored and what fills the bore, as it was read."""
     per = number(f"1 {unit}", "m")
-    pieces = zip(itertools.pairwise(profile.points), profile.inside, strict=False)
-    runs = [(hole, list(run)) for hole, run in itertools.groupby(pieces, lambda piece: (piece[1].bore, piece[1].core))]
-    return [
-        f"bored {bore / per:.6g} {unit} from {run[0][0][0][0] / per:.6g} to {run[-1][0][1][0] / per:.6g} {unit}"
-        + (f" and filled with {material_name(core)}" if core else "")
-        for (bore, core), run in runs
-        if bore
+    pieces = zip(range(len(profile.points) - 1), profile.inside, strict=False)
+    runs = [
+        (hole, [i for i, _ in run]) for hole, run in itertools.groupby(pieces, lambda piece: _hole(profile, *piece))
     ]
+    places = [x / per for x, _ in profile.points]
+    return [
+        f"bored {' to '.join(f'{width / per:.6g}' for width in dict.fromkeys(widths))} {unit} "
+        f"from {places[run[0]]:.6g} to {places[run[-1] + 1]:.6g} {unit}"
+        + (f" and filled with {material_name(core)}" if core else "")
+        for (widths, core, _), run in runs
+        if widths[0]
+    ]
+
+
+def _hole(profile: Profile, i: int, inside: Inside) -> tuple[Point, Material | None, int]:
+    """What intervals share that are one bore, as a taper is by itself: its widths, what fills it."""
+    widths = profile.bores(i)
+    return widths, inside.core, i if widths[0] != widths[1] else -1
 
 
 def _notes(

@@ -140,7 +140,7 @@ def test_bore_ferrule_and_core_stand_in_columns(tmp_path: Path) -> None:
     told = assumed(path, {"body_mass"})
     assert told == [
         "bored 8 mm from 6 to 31 mm and filled with hard maple",
-        "bored 6 mm from 31 to 150 mm and filled with foam",
+        "bored 6 to 5 mm from 31 to 150 mm and filled with foam",
         "bored 5 mm from 150 to 200 mm and filled with foam",
     ]
     cf.save(found, tmp_path / "cue.toml")
@@ -171,6 +171,13 @@ def test_core_without_bore_is_refused(tmp_path: Path) -> None:
     path = written(tmp_path, "x [mm],diameter [mm],core\n0,12.75,foam\n330,13.2,\n736.6,21.5,foam\n")
     with pytest.raises(InputError, match="line 2, core: must stand beside a bore"):
         cf.load(path)
+
+
+def test_a_tapered_bore_is_told_as_it_is_read(tmp_path: Path) -> None:
+    rows = "0,12.75,6\n80,12.8,6\n152,12.95,5\n200,13,\n736.6,21.5,\n"
+    notes = assumed(written(tmp_path, "x [mm],diameter [mm],bore [mm]\n" + rows), ())
+    told = ["bored 6 mm from 0 to 80 mm", "bored 6 to 5 mm from 80 to 152 mm", "bored 5 mm from 152 to 200 mm"]
+    assert [note for note in notes if note.startswith("bored")] == told
 
 
 @pytest.mark.parametrize("name", ["bore radius [mm]", "inner radius (mm)"])
