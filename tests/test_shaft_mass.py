@@ -91,3 +91,10 @@ def test_impossible_weights_are_refused(mass: str, words: str, tmp_path: Path) -
     path.write_text(f'shaft_mass = "{mass}"\n' + path.read_text())
     with pytest.raises(InputError, match="shaft_mass"):
         cf.load(path)
+
+
+@pytest.mark.parametrize(("mass", "said"), [("112 g", False), ("300 g", True), ("60 g", True)])
+def test_a_density_that_no_such_wood_has_is_told(mass: str, said: bool, tmp_path: Path) -> None:
+    (csv := tmp_path / "my.csv").write_text(CSV)
+    status, _, err = call("strike", csv, "--body-mass", "15 oz", "--shaft-mass", mass)
+    assert (status, "density of its hard maple" in err) == (0, said)

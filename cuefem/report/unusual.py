@@ -8,6 +8,8 @@ from math import inf
 from typing import Any, NamedTuple
 
 from cuefem.cue import Segment
+from cuefem.materials import MATERIALS, table_name
+from cuefem.parts import main_material
 from cuefem.quantity.slips import LIGHTEST, USUAL
 from cuefem.results.quantities import scaled
 from cuefem.scene import Scene
@@ -15,6 +17,7 @@ from cuefem.scene import Scene
 JUMP = 1.5  # of the diameter between two segments
 LEAST_DRAWN = 0.02  # kg, of a shaft
 # m, Pa, kg/m^3: a long piece of a material stiffer than wood, lighter than metal
+AT_EASE = 0.1  # relative: so far beyond the range of a wood its density may be
 LONG, STIFF, LIGHT = 0.3, 3e10, 2500.0
 
 
@@ -54,6 +57,17 @@ def _solid_tubes(scene: Scene) -> Iterable[tuple[str, float]]:
         if not max(segment.tip_bore, segment.butt_bore)
     ]
     return [("a solid rod as stiff as carbon fibre, drawn mass", scene.shaft.shaft_mass)] if solid else []
+
+
+def _weighed_wood(scene: Scene) -> Iterable[tuple[str, float]]:
+    """The density that a weight gives to the main material, over the usual range of that material."""
+    wood = main_material(scene.shaft) if scene.cue.segments else None
+    name = table_name(wood) if wood is not None and scene.shaft.weighed else None
+    if wood is None or name is None:
+        return []
+    low, high = MATERIALS[name].ranges["rho"]
+    beyond = wood.rho < (1 - AT_EASE) * low or wood.rho > (1 + AT_EASE) * high
+    return [(f"by the weight of the shaft the density of its {name} is", wood.rho)] if beyond else []
 
 
 def _light_cue(scene: Scene) -> Iterable[tuple[str, float]]:
@@ -96,6 +110,7 @@ ASKED = (
     UsualNumbers(
         _of_drawing("drawn mass", "shaft_mass"), LEAST_DRAWN, inf, "g", "check the sizes and the densities", False
     ),
+    UsualNumbers(_weighed_wood, 0.0, 0.0, "kg/m3", "is a joint, or the rest of the cue, weighed too?", False),
     UsualNumbers(_solid_tubes, 0.0, 0.0, "g", TUBES, False),
     UsualNumbers(lambda s: [("mass of the whole cue", float(s.cue.mass))], 0.0, 1.0, "kg", "0.4 to 0.7 is usual"),
     UsualNumbers(_light_cue, LIGHTEST, inf, "g", BODY),

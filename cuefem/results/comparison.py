@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 from cuefem.contact.outcome import MISSED, grip_of
+from cuefem.parts import main_material
 from cuefem.results.asking import asked
 from cuefem.results.band import OF_DIFFERENCE, changes_by_input, of_tip
 from cuefem.results.designs import OneDesign, off_centre
@@ -21,6 +22,7 @@ OF_SQUIRT = ("squirt", "end_mass_squirt", "pivot_length")  # what squirt makes t
 OF_SHAPE = ("tip_stiffness", "shaft_mass", "mass")
 N_FREQUENCIES = 3
 FLOOR = 0.01  # relative, of a difference of squirt: what calipers and the computation leave open
+OTHER_FLOOR = 2e-3  # the same of shape, weights and frequencies: 0.2 g of 100 g, 0.01 mm of 13 mm to the fourth power
 Follow = Callable[[Sequence[Any]], Iterable[Any]]
 
 
@@ -37,12 +39,16 @@ def comparison_record(scenes: Mapping[str, Scene], *, same_shaft: bool = False, 
 
     An error that two cues share cancels in their difference: that of a tip of the same value on both, and of the wood
     if they are one shaft before and after a change (same_shaft). To squirt and what follows from it, the model adds
-    `OF_DIFFERENCE` of the logarithm, and `FLOOR`. "distinct": whether a difference exceeds its uncertainty (1 sigma),
-    whichever of two cues is the first.
+    `OF_DIFFERENCE` of the logarithm, and `FLOOR`; other numbers have `OTHER_FLOOR`. "distinct": whether a difference
+    exceeds its uncertainty (1 sigma), whichever of two cues is the first. ValueError for one shaft of two woods.
 
     All cues are struck with the ball, the speed and the offset of the first. follow: shows how far the work is.
     """
     struck = struck_alike(scenes)
+    woods = {main_material(scene.shaft).E for scene in struck.values()}
+    if same_shaft and len(woods) > 1:
+        found = " and ".join(f"{E / 1e9:.4g} GPa" for E in sorted(woods))
+        raise ValueError(f"one shaft before and after a change must be of one wood; got E of {found}")
     compared = {name: _compared(struck[name]) for name in follow([*struck])}
     reference, *others = compared
     first = struck[reference]
@@ -97,8 +103,7 @@ def _differences(first: _Compared, other: _Compared, *, same_shaft: bool) -> dic
         if not ratio > 0:
             continue
         errors = [_of_input(first, other, key, name, same_shaft=same_shaft) for key in {**first.inputs, **other.inputs}]
-        if name in OF_SQUIRT:
-            errors += [OF_DIFFERENCE * math.log(ratio), FLOOR]
+        errors += [OF_DIFFERENCE * math.log(ratio), FLOOR] if name in OF_SQUIRT else [OTHER_FLOOR]
         ln = math.log(ratio)
         error = math.hypot(*errors) * (math.expm1(ln) / ln if ln else 1.0)
         if math.isnan(error):  # a strike at an end of an input's range miscues

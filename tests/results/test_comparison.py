@@ -10,7 +10,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.results.band import OF_DIFFERENCE
-from cuefem.results.comparison import FLOOR, comparison_record
+from cuefem.results.comparison import FLOOR, OTHER_FLOOR, comparison_record
 from cuefem.vary import varied
 from tests.helpers.command_line import as_json, call
 from tests.helpers.cues import pool
@@ -34,7 +34,7 @@ def test_shared_errors_cancel() -> None:
     twin = {"a": SCENE, "b": replace(SCENE)}
     same = comparison_record(twin, same_shaft=True)["differences"]["b"]
     assert same["squirt"]["error"] == pytest.approx(FLOOR, rel=1e-9)
-    assert same["shaft_mass"]["error"] == same["frequency_1"]["error"] == 0
+    assert same["shaft_mass"]["error"] == same["frequency_1"]["error"] == pytest.approx(OTHER_FLOOR, rel=1e-9)
     two = comparison_record(twin)["differences"]["b"]
     assert not any(each["distinct"] for each in two.values())
     rho = varied(SCENE, {"rho": 700.0 * math.exp(0.1)})
@@ -114,6 +114,7 @@ def test_cues_of_one_name_are_told_apart(tmp_path: Path, monkeypatch: pytest.Mon
         (["cue.toml", "cue.toml", "--estimate"], "takes one FOLDER"),
         (["cue.toml"] * 6, "at most 5 cues"),
         (["cue.toml", "lumped.toml"], "LumpedCue"),
+        (["cue.toml", "ash.toml", "--same-shaft"], "must be of one wood"),
         (["cue.toml", "lumped.toml", "./cue.toml"], "another file"),
         (["nowhere"], "got no folder"),
     ],
@@ -121,6 +122,7 @@ def test_cues_of_one_name_are_told_apart(tmp_path: Path, monkeypatch: pytest.Mon
 def test_refusals(arguments: list[str], words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     cf.save(pool(), tmp_path / "cue.toml")
     cf.save(cf.Scene(cf.LumpedCue(0.54, 0.006)), tmp_path / "lumped.toml")
+    cf.save(varied(SCENE, {"wood": "ash"}).shaft, tmp_path / "ash.toml")
     monkeypatch.chdir(tmp_path)
     status, out, err = call("compare", *arguments)
     assert (status, out, err.count("\n")) == (2, "", 1)
