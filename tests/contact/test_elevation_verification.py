@@ -19,9 +19,9 @@ pytestmark = pytest.mark.kernel
 def test_level_cue_is_approached_at_the_rate_of_the_table(table, order):
     """Frictionless, the table does with the angle's square; its friction, in proportion to the angle."""
     scene, angles = kim_scene(0.4), 0.04 * 2.0 ** -np.arange(5)
-    bare = strike_modes(scene, hand_made([600.0, 3000.0], [5.0, 8.0], rigid=9.0))
+    bare = strike_modes(scene, hand_made([600.0, 3000.0], [5.0, 8.0], rigid=9.0), steps=6400)
     tip = hand_made([600.0, 3000.0], [5.0, 8.0], rigid=9.0)
-    raised = [strike_modes(replace(scene, effects=(Elevation(float(a), table),)), tip) for a in angles]
+    raised = [strike_modes(replace(scene, effects=(Elevation(float(a), table),)), tip, steps=6400) for a in angles]
     for name in ("ball_speed", "spin", "squirt")[: 3 if table == 0 else 2]:
         errors = [abs(getattr(outcome, name) - getattr(bare, name)) for outcome in raised]
         assert_order(order, angles, errors, within=[0.16, 0.08, 0.04, 0.02], rounding=1e-12)

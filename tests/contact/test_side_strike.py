@@ -108,7 +108,7 @@ def test_effects_add_in_any_order_and_vanish_in_their_limit() -> None:
 @pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.heavy) if n != "kim" else n for n in FAMILY])
 def test_a_light_striker_feels_the_end_mass_by_force(name: str) -> None:
     """The force of a striker of no mass is a half sine; impulse over the tip's speed at its end is that definition."""
-    cue, at = FAMILY[name], Resolution(2, 14, 24)
+    cue, at = FAMILY[name], Resolution(2, 14, 24, 1600)
     felt = cf.end_mass(cf.Scene(cue, tip=cf.Tip(contact_time=1e-3)), "force", at)
     outcome = side_strike(SideStrike(cue, Striker(1e-7, 1.0, contact_time=1e-3)), at)
     assert outcome.impulse / outcome.contact_point_speed == pytest.approx(felt, rel=1e-4)
