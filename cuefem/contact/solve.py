@@ -81,34 +81,29 @@ class SolvedContact:
     def phases(self) -> tuple[Phase, ...]:
         """Runs of steps with one grip and one press, each from the end of the one before."""
         steps, model = self.steps, self.model
-        state = np.column_stack([steps["grip"], steps["press"]])
-        firsts = np.flatnonzero(np.any(np.diff(state, axis=0, prepend=np.nan) != 0, axis=1)).tolist()
-        times = np.append(0.0, steps["time"]).tolist()
-        given = impulse_on(model, np.vstack([model.ball, steps["ball"][:, : len(model.ball)]])).tolist()
-        return tuple(
-            Phase(
-                GRIPS[int(state[a, 0])],
-                PRESSES[int(state[a, 1])],
-                times[a],
-                times[b],
-                (given[b][0] - given[a][0], given[b][1] - given[a][1]),
-            )
-            for a, b in pairwise([*firsts, len(steps)])
-        )
+        grip, press = steps["grip"], steps["press"]
+        ends = np.append(np.flatnonzero(np.diff(8 * grip + press)), len(steps) - 1)
+        times = [0.0, *steps["time"][ends].tolist()]
+        given = impulse_on(model, np.vstack([model.ball, steps["ball"][ends, : len(model.ball)]]))
+        names = [(GRIPS[int(g)], PRESSES[int(p)]) for g, p in zip(grip[ends], press[ends], strict=True)]
+        spans = zip(names, pairwise(times), np.diff(given, axis=0).tolist(), strict=True)
+        return tuple(Phase(*name, start, end, (p_t, p_n)) for name, (start, end), (p_t, p_n) in spans)
 
     def history(self, mirror: float, radius: float = 1.0) -> History:
         """Forces and velocities; mirror: -1 for a stroke on the other side; radius: of the ball, m."""
-        steps, model = self.steps[self.steps["length"] > 0], self.model
-        flip = np.array([mirror, 1.0])
-        middles = np.concatenate([[0.0], steps["time"] - steps["length"] / 2, [self.time]])
-        forces = np.pad(steps["F"][:, :2] * flip, ((1, 1), (0, 0)))  # none at the touch, and none as the two part
-        times = np.append(0.0, steps["time"])
-        velocities = np.vstack([model.approach, steps["v"][:, :2]]) * flip
+        model, blows = self.model, int(np.sum(self.steps["length"] == 0))  # which take no time
+        steps = self.steps[self.steps["length"] > 0] if blows else self.steps
+        count, ends = len(steps), np.append(0.0, steps["time"])
+        middles, forces = np.empty(count + 2), np.zeros((count + 2, 2))  # none at the touch, and none as the two part
+        middles[0], middles[1:-1], middles[-1] = 0.0, ends[1:] - steps["length"] / 2, self.time
+        forces[1:-1], velocities = steps["F"][:, :2], np.vstack([model.approach, steps["v"][:, :2]])
+        forces[:, 0] *= mirror
+        velocities[:, 0] *= mirror
         if model.table is None:
-            return History(middles, forces, times, velocities)
+            return History(middles, forces, ends, velocities)
         axes, side = np.array(table_axes(model.phi, model.table.angle)), np.array([mirror, 1.0, 1.0])
         velocity, turning = axes @ self.ball[:3] * side, axes @ self.ball[3:] / radius * side * mirror
-        return History(middles, forces, times, velocities, velocity, turning)
+        return History(middles, forces, ends, velocities, velocity, turning)
 
 
 def solve_contact(model: ContactModel, *, steps: int | None = None, course: bool = False) -> SolvedContact:
