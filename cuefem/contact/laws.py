@@ -58,7 +58,7 @@ class ContactModel:
         """Rates of the contact's velocities per force at the first touch, (forces, forces), 1/kg."""
         ports = len(self.propagator.rows)
         of_cue, of_ball = self.facing[:, :ports], self.facing[:, ports:]
-        return np.asarray(of_cue @ self.propagator.mobility[0] @ of_cue.T + (of_ball * self.inverse_masses) @ of_ball.T)
+        return np.asarray(of_cue @ self.propagator.mobility @ of_cue.T + (of_ball * self.inverse_masses) @ of_ball.T)
 
     @property
     def approach(self) -> Array:
@@ -79,7 +79,7 @@ class ContactModel:
 def model_of(scene: Scene, tip: TipModes) -> ContactModel:
     """The contact of a scene at an offset >= 0, a negative one being its mirror image.
 
-    ValueError for what no contact honours together, and for a tip that gives back next to nothing.
+    ValueError for what no contact honours together, and for a tip of too low a restitution.
     """
     offset = abs(scalar("Stroke.offset", scene.stroke.offset))
     terms, phi = scene.contact_terms, math.asin(offset)

@@ -72,11 +72,10 @@ class ModalPropagator:
         """The coordinates of a cue that moves along its axis at 1 m/s."""
         return np.asarray(self.onto @ self.approach, complex)
 
-    @cached_property
-    def mobility(self) -> tuple[Array, Array]:
-        """Rates of the ports' velocities per load, (ports, ports), 1/kg: of all modes, and of the rigid ones alone."""
-        rigid = self.rows[:, self.omega == 0]
-        return self.rows @ self.rows.T, rigid @ rigid.T
+    @property
+    def mobility(self) -> Array:
+        """Rates of the ports' velocities per load, (ports, ports), 1/kg."""
+        return np.asarray(self.rows @ self.rows.T)
 
     @cached_property
     def readings(self) -> Complex:
