@@ -99,7 +99,7 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (placed([GOOD, (0.2 * R, R)]), "got one at 0.3 at index 1"),
     (lambda: offset_of_axis([0.01, 0.04], 0.0095, ball=BALL), "got 0.04 at index 1"),
     (lambda: offset_of_axis(nan, 0.0095), "axis_distance must be in "),
-    (lambda: offset_of_axis(0.01, -1.0), "dome_radius must be in [0, inf) m; got -1"),
+    (lambda: offset_of_axis(0.01, -1.0), "tip_radius must be in [0, inf) m; got -1"),
 ]
 
 
