@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from cuefem.io.cells import Row, is_number
+from cuefem.io.cells import Row, is_number, parted
 from cuefem.io.errors import InputError, shown
 from cuefem.quantity.units import first_name, scale
 
@@ -26,16 +26,17 @@ _WORDS = {
     RADIUS: {"radius", "radii", "rad", "r", "halbmesser"},
     DIAMETER: {
         *("diameter", "diameters", "dia", "diam", "d", "ø", "od", "width", "thickness"),
-        *("durchmesser", "diamètre", "diametre", "diámetro", "diametro"),
+        *("thick", "dicke", "durchmesser", "diamètre", "diametre", "diámetro", "diametro"),
     },
     PLACE: {
         *("x", "z", "position", "pos", "place", "location", "station", "distance", "dist", "length", "along", "from"),
-        *("abstand", "länge", "distancia", "posición", "posizione", "distanza"),
+        *("von", "abstand", "länge", "distancia", "posición", "posizione", "distanza"),
     },
 }
 _OTHERS = ("kg", "g", "oz", "lb", "s", "ms", "n", "deg", "°", "%")  # units of no length
 _BRACKETS = re.compile(r"[\[({<]([^])}>]*)[\])}>]")
 _TOKENS = re.compile(r"[^\W\d_]+")
+_WALL = re.compile(r"wall|wand")  # how the name of a tube's wall thickness begins
 _BUTT = {"butt", "joint"}  # where x is measured from, if "from" stands before it
 
 
@@ -51,7 +52,8 @@ class ProfileColumn:
 
 @dataclass(frozen=True)
 class Header:
-    """The columns of a profile that say a length, a material, and nothing that is used; and the lines below."""
+    """The columns of a profile that say a length, a material, and nothing that is used; the lines below that hold
+    numbers; and which lines are titles and notes."""
 
     line: int
     used: tuple[ProfileColumn, ...]
@@ -59,6 +61,7 @@ class Header:
     unused: tuple[str, ...]
     width: int
     rows: tuple[Row, ...]
+    passed: tuple[int, ...]
 
 
 def unit_of(text: str) -> str:
@@ -73,6 +76,7 @@ def unit_of(text: str) -> str:
 
 def read_header(path: Path, rows: Sequence[Row]) -> Header:
     """The header of a profile's rows; InputError if no row names a place and a diameter."""
+    lacking = dict[int, str]()
     for i, (line, cells) in enumerate(rows[:TITLES]):
         columns = [_column(path, line, j, cell) for j, cell in enumerate(cells)]
         used = tuple(column for column in columns if column.kind and column.kind not in NAMES)
@@ -85,14 +89,31 @@ def read_header(path: Path, rows: Sequence[Row]) -> Header:
                 used = tuple(_with_unit(column, units) for column in used)
                 below = below[1:]
             unused = tuple(column.name for column in columns if column.name and not column.kind)
-            return Header(line, used, names, unused, len(cells), tuple(below))
+            if wall := next((name for name in unused if any(map(_WALL.match, _TOKENS.findall(name.casefold())))), None):
+                problem = f"column {shown(wall)} is a wall thickness: write a column bore, the diameter less two walls"
+                raise InputError(path, f"line {line}", problem)
+            noted = tuple(row for row in below if not _has_data(row[1], used, names))
+            passed = tuple(number for number, _ in (*rows[:i], *noted))
+            return Header(line, used, names, unused, len(cells), tuple(r for r in below if r not in noted), passed)
+        if len(cells) > 1 and kinds:
+            lacking[line] = "a column for the diameter" if PLACE in kinds else "a column for the place along the shaft"
         if len(cells) > 1 and all(map(is_number, cells)):
             break
     line, cells = rows[0]
     if all(map(is_number, cells)):
         raise InputError(path, f"line {line}", f"must name the columns, such as {EXAMPLE}; got numbers, {_got(cells)}")
+    if lacking:
+        line, column = next(iter(lacking.items()))
+        got = _got(next(cells for number, cells in rows if number == line))
+        raise InputError(path, f"line {line}", f"must name {column} too, such as {EXAMPLE}; got {got}")
     wanted = f"must name one column for the place along the shaft and one for the diameter, such as {EXAMPLE}"
     raise InputError(path, f"line {line}", f"{wanted}; got {_got(cells)}")
+
+
+def _has_data(cells: Sequence[str], used: Sequence[ProfileColumn], names: Sequence[ProfileColumn]) -> bool:
+    """Whether a line is a row of the table: it has a number or a material where one belongs."""
+    inside = [[cells[c.index] for c in columns if c.index < len(cells)] for columns in (used, names)]
+    return any(parted(cell)[0] for cell in inside[0]) or any(inside[1])
 
 
 def _got(cells: Sequence[str]) -> str:
@@ -110,8 +131,9 @@ def _column(path: Path, line: int, index: int, cell: str) -> ProfileColumn:
     inside = _BRACKETS.findall(text)
     unit = next(filter(None, map(unit_of, inside)), "")
     words = _TOKENS.findall(_BRACKETS.sub(" ", text) if unit else text)
-    if not unit and len(words) > 1 and (unit := unit_of(words[-1])):
-        words.pop()
+    for place in (-1, 0):  # "diameter mm", "inches from tip"
+        if not unit and len(words) > 1 and (unit := unit_of(words[place])):
+            words.pop(place)
     if not unit and text.rstrip().endswith(('"', "″", "”")):
         unit = "in"
     kind = _kind(words)
@@ -129,6 +151,8 @@ def _kind(words: Sequence[str]) -> str:
     """The kind of column that words mean; a long word may be misspelt."""
     if FERRULE in words and {*words} <= {FERRULE, MATERIAL}:  # "distance from ferrule" is a place
         return FERRULE
+    if any(map(_WALL.match, words)):
+        return ""
     for kind, known in _WORDS.items():
         if known & set(words):
             return kind

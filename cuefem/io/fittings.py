@@ -133,6 +133,11 @@ def on_tenon(segment: Segment, stuff: Material, wood: Material, tenon: float | N
     return replace(segment, material=stuff, tip_bore=first, butt_bore=last, core=wood)
 
 
+def has_length(text: str) -> bool:
+    """Whether the text of a ferrule has a length in it, as "25 mm melamine" has."""
+    return _SIZE.search(text.casefold()) is not None
+
+
 def _ferrule_of(text: str) -> tuple[float, Material, float | None]:
     """Length, material and tenon's width that a text says, m; the tenon is None if it says nothing of it."""
     first, *more = (piece.strip() for piece in text.casefold().split(","))

@@ -27,11 +27,12 @@ from cuefem.io.columns import (
     unit_of,
 )
 from cuefem.io.errors import InputError, faults_of, shown
-from cuefem.io.fittings import on_tenon
+from cuefem.io.fittings import fitted, has_length, on_tenon
 from cuefem.io.toml import named_material
 from cuefem.materials import material_name
 from cuefem.quantity.fields import DIAMETER as WIDTH
 from cuefem.quantity.fields import Quantity
+from cuefem.quantity.messages import MOST
 from cuefem.quantity.slips import CUE_DIAMETER, CUE_LENGTH
 from cuefem.quantity.units import number
 
@@ -68,6 +69,7 @@ class Profile:
     points: tuple[Point, ...]
     inside: tuple[Inside, ...]
     notes: tuple[str, ...]
+    ferrule: str = ""  # one whose cell has its length too, as `fitted` takes it
 
     @property
     def named(self) -> bool:
@@ -78,7 +80,7 @@ class Profile:
     def lacking(self) -> tuple[str, ...]:
         """Which of ferrule and bore the file has not; a material of its own may be a ferrule's."""
         own = {
-            "ferrule": any(inside.ferrule or inside.material for inside in self.inside),
+            "ferrule": bool(self.ferrule) or any(inside.ferrule or inside.material for inside in self.inside),
             "bore": any(inside.bore for inside in self.inside),
         }
         return tuple(name for name, drawn in own.items() if not drawn)
@@ -86,7 +88,7 @@ class Profile:
     @property
     def on_tenon(self) -> bool:
         """Whether a ferrule has a tenon that the file does not draw."""
-        return any(inside.ferrule and not inside.bore for inside in self.inside)
+        return bool(self.ferrule) or any(inside.ferrule and not inside.bore for inside in self.inside)
 
     @property
     def leather(self) -> bool:
@@ -133,7 +135,8 @@ def load_profile(path: Path, material: Material, length_unit: str | None = None)
             drawn = [Segment(_apart(x0, x1), d0, d1, *rest) for (x0, d0), (x1, d1) in itertools.pairwise(corners)]
             stuff = here.ferrule
             segments += drawn if stuff is None else [on_tenon(s, stuff, here.material or material) for s in drawn]
-        return Cue(tuple(segments))
+        cue = Cue(tuple(segments))
+        return fitted(cue, ferrule=profile.ferrule) if profile.ferrule else cue
 
 
 def read_profile(path: Path, length_unit: str | None = None, *, checked: bool = True) -> Profile:
@@ -159,7 +162,8 @@ def read_profile(path: Path, length_unit: str | None = None, *, checked: bool = 
         problem = "must run from tip to butt where a bore or a material stands beside it: each holds from its row on"
         raise InputError(path, f"line {header.line}, x", problem)
     behind = dict(zip(x, inside, strict=True))
-    told = Profile(points, tuple(behind.get(at, Inside()) for at, _ in points), ())
+    ferrule = _ferrule_with_length(path, header, inside)
+    told = Profile(points, tuple(behind.get(at, Inside()) for at, _ in points), (), ferrule)
     return replace(told, notes=(*_notes(header, place, width, spare, points), *_bored(told, place.unit)))
 
 
@@ -176,7 +180,7 @@ def _inside(
         found = {
             kind: named_material(text.casefold(), path, f"line {line}, {kind}")
             for kind, column in named.items()
-            if (text := _entry(cells, column))
+            if (text := _entry(cells, column)) and not (kind == FERRULE and has_length(text))
         }
         material = found.get(MATERIAL, material)
         width = 0.0 if bore is None or not _entry(cells, bore) else _number(path, row, bore, mark)
@@ -188,6 +192,19 @@ def _inside(
             raise InputError(path, f"line {line}, core", problem)
         rows.append(Inside(width, material, found.get(CORE), found.get(FERRULE)))
     return rows
+
+
+def _ferrule_with_length(path: Path, header: Header, inside: Sequence[Inside]) -> str:
+    """The ferrule of a cell such as "25 mm melamine", which begins at its row; "" if no cell has a length."""
+    column = next((column for column in header.names if column.kind == FERRULE), None)
+    entries = [_entry(cells, column) if column else "" for _, cells in header.rows]
+    told = [(i, text) for i, text in enumerate(entries) if has_length(text)]
+    front = next((i for i, each in enumerate(inside) if each.material is None or each.material.E >= SOFT), 0)
+    for i, text in told:
+        if i != front or len([*filter(None, entries)]) > 1:
+            problem = f"with a length must be the only one, in the first line of the shaft; got {shown(text)}"
+            raise InputError(path, f"line {header.rows[i][0]}, ferrule", problem)
+    return told[0][1] if told else ""
 
 
 def _entry(cells: Sequence[str], column: ProfileColumn) -> str:
@@ -225,7 +242,9 @@ def _notes(
     names = [*header.unused, *spare]
     butt, first = from_butt(place), points[0][0] if points else 0.0
     told = f"{first / number(f'1 {place.unit}', 'm'):.6g} {place.unit}"
+    lines = ", ".join(map(str, header.passed[:MOST])) + ", ..." * (len(header.passed) > MOST)
     notes = {
+        f"line{'s' * (len(header.passed) > 1)} {lines} passed over: no numbers of the table": bool(header.passed),
         f"column{'s' if len(names) > 1 else ''} {', '.join(map(shown, names))} {'are' if len(names) > 1 else 'is'} not "
         "used": bool(names),
         f"diameters are twice the column {shown(width.name)}": width.kind == RADIUS,

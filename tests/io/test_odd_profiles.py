@@ -70,7 +70,16 @@ READ = {
     ),
     "a line of units": Odd("x,diameter\nmm,mm\n0,12.75\n330,13.2\n736.6,21.5\n"),
     "units beside the numbers": Odd("x,diameter\n0 mm,12.75 mm\n330 mm,13.2mm\n736.6 mm,21.5 mm\n"),
-    "titles above": Odd("Shaft 12; maple\nmeasured by Ann; 3 May\n\n" + GERMAN),
+    "titles above": Odd(
+        "Shaft 12; maple\nmeasured by Ann; 3 May\n\n" + GERMAN,
+        said=("lines 1, 2 passed over: no numbers of the table",),
+    ),
+    "notes below": Odd(
+        PLAIN.replace("\n330", "\n--- 13 in ---\n330") + "Note: dry, cold, and straight\n",
+        said=("lines 3, 6 passed over: no numbers of the table",),
+    ),
+    "the unit first": Odd("inches from tip,thick in inches\n0,0.5\n13,0.52\n29,0.85\n", in_inches(INCHES)),
+    "German words": Odd(GERMAN.replace("x [mm];Durchmesser [mm]", "mm von der Spitze;Dicke mm")),
     "empty rows and columns of a spreadsheet": Odd(
         "x [mm],diameter [mm],,\n0,12.75,,\n,,,\n330,13.2,,\n736.6,21.5,,\n,,,\n,,,\n"
     ),
@@ -145,6 +154,18 @@ def test_bore_ferrule_and_core_stand_in_columns(tmp_path: Path) -> None:
     ]
     cf.save(found, tmp_path / "cue.toml")
     assert cf.load(tmp_path / "cue.toml") == found
+
+
+def test_ferrule_with_its_length_in_a_cell_is_the_option(tmp_path: Path) -> None:
+    """The cell as the help writes the option; behind leather it begins at its row."""
+    told = cf.load(written(tmp_path, PLAIN), ferrule="25 mm melamine")
+    text = "x [mm],diameter [mm],ferrule\n0,12.75,25 mm melamine\n330,13.2,\n736.6,21.5,\n"
+    assert cf.load(written(tmp_path, text)) == told
+    behind = "x [mm],diameter [mm],material,ferrule\n0,12.75,leather,\n6,12.75,ash,1 in abs\n330,13.2\n736.6,21.5\n"
+    found = cf.load(written(tmp_path, behind))
+    assert isinstance(found, cf.Cue)
+    assert found.nodes[:3] == pytest.approx([0, 0.006, 0.0314], rel=1e-12)
+    assert [s.core for s in found.segments[:3]] == [None, material("ash"), None]
 
 
 # The core of the second row in each: none of them fills the bore behind the ferrule.

@@ -61,6 +61,10 @@ csv  | x,diameter\n0,12.75\n700,21.5        | line 1: the columns have no unit: 
 csv  | x [mm],diameter\n0,12.75\n700,21.5   | line 1: the column 'diameter' has no unit: write one in brackets
 csv  | 0,12.75\n700,21.5                    | line 1: must name the columns, such as "x [mm],diameter [mm]"; got
 csv  | a,b\n1,2                             | line 1: must name one column for the place along the shaft
+csv  | x [mm],weight [g]\n0,12\n700,21       | line 1: must name a column for the diameter too
+csv  | no.,diameter [mm]\n0,12\n700,21       | line 1: must name a column for the place along the shaft too
+csv  | x [mm],diameter [mm],Wandstärke\n0,12,3 | line 1: column 'Wandstärke' is a wall thickness: write a column bore
+csv  | x [mm],diameter [mm],ferrule\n0,12,\n20,12,5 mm abs\n700,21, | line 3, ferrule: with a length must be the
 csv  | x [kg],diameter [mm]\n0,12           | line 1, x: must be in a unit of length, such as mm; got 'kg'
 csv  | x [mm],diameter 1 [mm],diameter 2 [mm]\n0,12.75,12.9\n700,21,22 | line 1: two columns may be the diameter,
 csv  | x [mm],diameter [mm],bore [mm]\n700,21,\n0,12,6  | line 1, x: must run from tip to butt where a bore or a
