@@ -11,6 +11,7 @@ import click
 
 from cuefem.cli.printing import assumed_lines, json_option, shared_option, tell
 from cuefem.cli.strokes import blow_options, offset_option, option, place_options, refuse_game, usual, with_options
+from cuefem.cue import Cue
 from cuefem.effects.leather_law import TooDeep
 from cuefem.games import DEFAULT_GAME
 from cuefem.io import InputError, check_place, load_stroke
@@ -91,7 +92,8 @@ def scene_of(
     """
     opened = load_stroke(file, **fittings_of(options))
     said = {name for name, value in options.items() if value is not None}
-    notes = assumed(file, said, offered=options, blow=blow)
+    shaft = opened.cue if isinstance(opened, Scene) else opened
+    notes = assumed(file, said, cue=shaft if isinstance(shaft, Cue) else None, offered=options, blow=blow)
     if isinstance(opened, Scene):
         refuse_game(file, options)
         scene = with_options(opened, file, options)

@@ -9,6 +9,7 @@ import click
 from cuefem.cli.common import check_free, force_option, shape_options
 from cuefem.cli.printing import assumed_lines, command, json_option, page_option, print_json, tell
 from cuefem.cli.strokes import with_body, with_weight
+from cuefem.cue import Cue
 from cuefem.io import load, save
 from cuefem.io.assumed import assumed
 from cuefem.io.profile import SHAPES
@@ -32,7 +33,7 @@ def convert(file: Path, output: Path, force: bool, as_json: bool, **options: str
     if shaft_mass is not None:
         drawing = with_weight(drawing, file, shaft_mass)
     save(drawing, output)
-    notes = assumed(file, said) if file.suffix.lower() in SHAPES else []
+    notes = assumed(file, said, cue=drawing) if isinstance(drawing, Cue) and file.suffix.lower() in SHAPES else []
     if as_json:
         print_json({"written": str(output), "assumed": notes})
         return

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection
 from pathlib import Path
 from typing import Any
@@ -12,34 +13,38 @@ from cuefem.games import DEFAULT_GAME, GAMES, KIM, usual_tip
 from cuefem.io.fittings import BORE, FERRULE, LEATHER, TENON
 from cuefem.io.profile import DEFAULT_MATERIAL, DEFAULT_UNIT, SHAPES, SURFACES, Profile, read_profile
 from cuefem.io.toml import left_out, read_tables
+from cuefem.parts import Layout
 from cuefem.scene import DEFAULT_CONTACT_TIME, Ball, Stroke, Tip
 
 BEGINS = f'the drawing begins at the ferrule, and the tip is put in front (--begins "{LEATHER}" if it has the leather)'
 ON_TENON = f"the ferrule sits on a tenon of the shaft's wood, {TENON:g} of its width"
+BORED_FERRULE = "the ferrule is bored as the shaft there, without a tenon"
 
 
-def assumed(path: Path, options: Collection[str], *, offered: Collection[str] = (), blow: bool = True) -> list[str]:
+def assumed(
+    path: Path, options: Collection[str], *, cue: Cue | None = None, offered: Collection[str] = (), blow: bool = True
+) -> list[str]:
     """What a loaded cue or scene file leaves to defaults.
 
-    options: the options that were given as well, such as "offset". offered: all options that the command has. blow:
-    whether ball, tip and stroke count.
+    options: the options that were given as well, such as "offset". cue: what file and options draw. offered: all
+    options that the command has. blow: whether ball, tip and stroke count.
     """
     tables = read_tables(path) if path.suffix.lower() == ".toml" else {}
     if "cue" not in tables:
-        return _profile(path, options, " (choose with --material)")
-    cue = tables["cue"]
-    shaft = _profile(path.parent / cue, options) if isinstance(cue, str) else []
+        return _profile(path, options, " (choose with --material)", cue)
+    named = tables["cue"]
+    shaft = _profile(path.parent / named, options, cue=cue) if isinstance(named, str) else []
     return [*shaft, *(assumed_blow(tables, options, offered=offered) if blow else [])]
 
 
-def assumed_drawing(path: Path) -> list[str]:
+def assumed_drawing(path: Path, cue: Cue) -> list[str]:
     """What a drawing that other files stand beside cannot say: its material, and what is behind the shaft."""
     if path.suffix.lower() not in SHAPES:
         return []
-    return [*_profile(path, ("body_mass",)), "no mass behind the shaft (a cue.toml can have body_mass)"]
+    return [*_profile(path, ("body_mass",), cue=cue), "no mass behind the shaft (a cue.toml can have body_mass)"]
 
 
-def _profile(path: Path, options: Collection[str], choose: str = "") -> list[str]:
+def _profile(path: Path, options: Collection[str], choose: str = "", cue: Cue | None = None) -> list[str]:
     """What a lathe profile or a surface cannot say: its unit, its material, and what is screwed to the shaft."""
     if path.suffix.lower() not in SHAPES:
         return []
@@ -55,11 +60,11 @@ def _profile(path: Path, options: Collection[str], choose: str = "") -> list[str
             else [f"material {DEFAULT_MATERIAL}{choose}"]
         ),
         *([] if "body_mass" in options else ["no mass behind the shaft (--body-mass gives it)"]),
-        *_parts(profile, options, choose),
+        *_parts(profile, options, choose, cue),
     ]
 
 
-def _parts(profile: Profile | None, options: Collection[str], choose: str) -> list[str]:
+def _parts(profile: Profile | None, options: Collection[str], choose: str, cue: Cue | None) -> list[str]:
     """What a shape has neither drawn nor told: ferrule and bore, the ferrule's tenon, the leather at its front."""
     words = {"ferrule": f'--ferrule "{FERRULE}"', "bore": f'--bore "{BORE}"'}
     lacking = [name for name in (("ferrule", "bore") if profile is None else profile.lacking) if name not in options]
@@ -68,13 +73,20 @@ def _parts(profile: Profile | None, options: Collection[str], choose: str) -> li
     columns = "" if profile is None else names
     pronoun = "them" if len(lacking) > 1 else "it"
     told = f"{', '.join(f'no {name}' for name in lacking)}: add {pronoun} with {add}{columns}"
-    tenon = "ferrule" in options or (profile is not None and profile.on_tenon)
     leather = profile is not None and profile.leather
     return [
         *([told if choose else told.partition(":")[0]] if lacking else []),
-        *([ON_TENON] if tenon else []),
+        *(_tenon(cue) if "ferrule" in options or (profile is not None and profile.ferruled) else []),
         *([BEGINS] if choose and not leather and "begins" not in options else []),
     ]
+
+
+def _tenon(cue: Cue | None) -> list[str]:
+    """What was drawn inside a ferrule that says nothing of it."""
+    pieces = [] if cue is None else [cue.segments[i] for i in Layout.of(cue).ferrule]
+    if pieces and all(s.core and math.isclose(s.tip_bore, TENON * s.tip_diameter, rel_tol=1e-4) for s in pieces):
+        return [ON_TENON]
+    return [BORED_FERRULE] if any(s.tip_bore and s.core is None for s in pieces) else []
 
 
 def _fit(path: Path) -> list[str]:

@@ -125,6 +125,8 @@ def _without_tenon(ferrule: Segment, wood: Material) -> Segment:
 
 def on_tenon(segment: Segment, stuff: Material, wood: Material, tenon: float | None = None) -> Segment:
     """The segment as a ferrule on a tenon of wood, m wide, by default `TENON` of its width; a bored one stays bored."""
+    if tenon and (segment.tip_bore or segment.butt_bore):
+        raise ValueError("ferrule must be told without a tenon: the shaft is bored there")
     if segment.tip_bore or segment.butt_bore or tenon == 0:
         return replace(segment, material=stuff)
     first, last = (

@@ -100,9 +100,9 @@ def _scene(folder: Path, path: Path, tables: dict[str, Any]) -> tuple[Scene, lis
     if not told or left_out(parts) == ["stroke.offset"]:  # every measurement has its own offset
         parts["game"] = game_of(parts, path)
     scene = scene_of_tables(parts, path, _drawing)
-    drawn = assumed_drawing(path.parent / parts["cue"]) if isinstance(parts["cue"], str) else []
     if scene.lumped is not None:
         raise InputError(path, "cue", "must be a cue of segments, which can be measured; got a lumped cue")
+    drawn = assumed_drawing(path.parent / parts["cue"], scene.shaft) if isinstance(parts["cue"], str) else []
     return scene, [*drawn, *assumed_blow(parts, ["offset"], offered=())]
 
 

@@ -86,9 +86,9 @@ class Profile:
         return tuple(name for name, drawn in own.items() if not drawn)
 
     @property
-    def on_tenon(self) -> bool:
-        """Whether a ferrule has a tenon that the file does not draw."""
-        return bool(self.ferrule) or any(inside.ferrule and not inside.bore for inside in self.inside)
+    def ferruled(self) -> bool:
+        """Whether a column names a ferrule."""
+        return bool(self.ferrule) or any(inside.ferrule for inside in self.inside)
 
     @property
     def leather(self) -> bool:

@@ -67,6 +67,19 @@ def test_a_bore_as_people_say_it(text: str) -> None:
     assert behind.tip_bore == 0
 
 
+@pytest.mark.parametrize(
+    ("mm", "end", "meant"), [(None, "", "sits on a tenon"), (6, "", "without a tenon"), (None, ", no tenon", "")]
+)
+def test_words_about_the_tenon_are_those_of_the_drawing(mm: float | None, end: str, meant: str, tmp_path: Path) -> None:
+    bored = BARE if mm is None else f"x [mm],diameter [mm],bore [mm]\n0,12,{mm}\n152,14,\n700,21,\n"
+    said = " ".join(call("modes", shaft(tmp_path, bored), "--ferrule", f"25 mm melamine{end}")[1].split())
+    assert meant in said
+    assert ("tenon" in said) is bool(meant)
+    if mm:
+        status, _, error = call("modes", tmp_path / "shaft.csv", "--ferrule", "25 mm melamine, tenon 8 mm")
+        assert (status, "the shaft is bored there" in error) == (2, True)
+
+
 def test_a_bore_begins_behind_the_tenon_of_a_ferrule() -> None:
     leather, ferrule, bored, rest = fitted(
         CONE, begins="leather 6 mm", ferrule="1 in melamine", bore="6 mm wide, 100 mm deep"

@@ -146,7 +146,7 @@ def test_bore_ferrule_and_core_stand_in_columns(tmp_path: Path) -> None:
         meant = [value / 1e3 for value in (x1 - x0, d0, d1, b0, b1)]
         assert numbers == pytest.approx(meant, rel=1e-12, abs=1e-15)
         assert (segment.material, segment.core) == (wood, core)
-    told = assumed(path, {"body_mass"})
+    told = assumed(path, {"body_mass"}, cue=found)
     assert told == [
         "bored 8 mm from 6 to 31 mm and filled with hard maple",
         "bored 6 to 5 mm from 31 to 150 mm and filled with foam",
