@@ -88,13 +88,13 @@ def standing(record: Record) -> list[str]:
     own = among[first]
     sure = f"give or take {100 * own['difference_error']:.0f} %"
     if abs(own["difference"]) < SAME:
-        said = f"As much squirt as a {first} shaft, {sure}."
+        said = f"As much squirt as a {first} shaft with the same tip, {sure}."
     else:
-        said = f"{than_words(own['difference'])} squirt than a {first} shaft, {sure}."
+        said = f"{than_words(own['difference'])} squirt than a {first} shaft with the same tip, {sure}."
     ratios = {name: among[name]["squirt"] / among[first]["squirt"] - 1 for name in others}
     rest = [f"the {name} one has {than_words(ratio)}" for name, ratio in ratios.items()]
     return (
-        [said, f"Of the ready pool cues (meshes/), struck the same way, {listed(rest)} than {first}."]
+        [said, f"Of the ready pool cues (meshes/), struck with the same tip and stroke, {listed(rest)} than {first}."]
         if rest
         else [said]
     )
@@ -182,7 +182,9 @@ def verdict_things(record: Record) -> list[Sheet | str]:
     rows = tuple((row.name, row.text, _bar(row), row.beside) for row in scale_sheet)
     own = {i: "bold" for i, row in enumerate(scale_sheet) if row.own}
     head = ("cue", "squirt", "less to more squirt", "")
-    table = Sheet("Among ready pool cues, by the same stroke", head, rows, (band_line(record),), (0, 2, 3), own)
+    table = Sheet(
+        "Among ready pool cues, with the same tip and stroke", head, rows, (band_line(record),), (0, 2, 3), own
+    )
     return [headline(record), *standing(record), "", table]
 
 

@@ -27,6 +27,14 @@ def test_each_ready_cue_is_struck_the_same_way(name: str) -> None:
     assert among["difference"] == pytest.approx(cf.strike(SCENE).squirt / struck.squirt - 1, abs=1e-12)
 
 
+def test_reference_cues_have_the_scenes_leather_and_the_words_say_so() -> None:
+    soft = replace(SCENE, effects=(replace(SCENE.effects[0], E=30e6), *SCENE.effects[1:]))
+    record = verdict_record(soft, cf.strike(soft), ready_cues())
+    maple = replace(soft, cue=without_leather(cf.load(ROOT / SCALE["plain maple"])))
+    assert record["among"]["plain maple"]["squirt"] == pytest.approx(cf.strike(maple).squirt, rel=1e-12)
+    assert all("the same tip" in sentence for sentence in standing(record))
+
+
 def test_the_band_is_its_parts_in_quadrature() -> None:
     band = RECORD["band"]
     parts = [band[name] for name in ("model", "inputs", "computation")]
