@@ -17,6 +17,9 @@ from cuefem.scene import Outcome, equal_fields
 # slid through the first 79 % and then gripped squirts a fifth more than closer to the centre (after 46 % hardly more),
 # and leather that slid through the last 39 % three quarters more.
 SLIDES, LETS_GO, SLIDES_AWAY = 0.25, 0.5, 1 / 3
+# Friction loss over the ball's kinetic energy above which parts of a patch slip through much of the impulse: squirt of
+# a leather tip, in proportion to b/R closer to the centre, is then 7 to 15 % above that line and rises fast.
+PARTLY = 0.1
 MISSED = ("miscue", "lets go")
 # The grip of a blow, and grip and press of a flight, in which ball and tip are apart before they touch again.
 BLOW, FLIGHT = "blow", ("apart", "free")
@@ -151,18 +154,24 @@ def hits(outcome: Outcome) -> tuple[Hit, ...]:
 
 
 def grip_of(outcome: Outcome) -> str:
-    """How the tip gripped the ball: the regime of the strike, or "slides" or "lets go" if it slid through much of it.
+    """How the tip gripped the ball: the regime of the strike, or "partial slip", "slides" or "lets go".
 
     Soft leather takes up its load along the ball slowly, so that it grips at every offset and lets go only later.
     "slides": through more than a quarter of the push; "lets go": through more than half of it, or through its last
-    third, which is a miscue.
+    third, which is a miscue. "partial slip": friction took more than `PARTLY` of the ball's energy, while the patch as
+    a whole held.
     """
     if outcome.regime not in ("stick", "late stick"):
         return str(outcome.regime)
     slid, away = _shares(outcome)
     if slid > LETS_GO or away > SLIDES_AWAY:
         return "lets go"
-    return "slides" if slid > SLIDES else str(outcome.regime)
+    if slid > SLIDES:
+        return "slides"
+    energy = outcome.energy
+    ball = energy["ball translation"] + energy["ball rotation"]
+    partly = outcome.regime == "stick" and energy["friction loss"] > PARTLY * ball
+    return "partial slip" if partly else str(outcome.regime)
 
 
 def slides_away(outcome: Outcome) -> bool:

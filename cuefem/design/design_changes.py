@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from cuefem.contact.outcome import grip_of
 from cuefem.cue import Cue
 from cuefem.effects.leather import DOMES
 from cuefem.materials import MATERIALS, WOODS, table_name
@@ -138,10 +139,10 @@ def design_changes(scene: Scene, *, solved: Solved | None = None, follow: Follow
     Returns
     -------
     dict
-        "offset", b/R; "own", the cue's squirt (rad), tip stiffness (N/m), shaft mass (kg) and first natural frequency
-        (Hz); "changes", a list of dicts with the least squirt first: "change" in words, "set" for `cuefem.vary.varied`,
-        the four numbers, relative changes of squirt (with "squirt_change_error", 1 sigma) and stiffness, absolute
-        ones of mass and frequency, and a "verdict".
+        "offset", b/R; "grip", the contact's (`cuefem.contact.outcome.grip_of`); "own", the cue's squirt (rad), tip
+        stiffness (N/m), shaft mass (kg) and first natural frequency (Hz); "changes", a list of dicts with the least
+        squirt first: "change" in words, "set" for `cuefem.vary.varied`, the four numbers, relative changes of squirt
+        (with "squirt_change_error", 1 sigma) and stiffness, absolute ones of mass and frequency, and a "verdict".
 
     Raises
     ------
@@ -158,7 +159,8 @@ def design_changes(scene: Scene, *, solved: Solved | None = None, follow: Follow
     True
     """
     struck = off_centre(scene)
-    own = _numbers(Solved(struck) if solved is None or struck is not scene else solved)
+    solved = Solved(struck) if solved is None or struck is not scene else solved
+    own, grip = _numbers(solved), grip_of(OneDesign(solved).strike(0, None))
     rows = []
     for change in follow(changes_of(struck)):
         try:
@@ -169,7 +171,7 @@ def design_changes(scene: Scene, *, solved: Solved | None = None, follow: Follow
         except (ValueError, RuntimeError):
             continue
     rows.sort(key=lambda row: row["squirt_change"])
-    return {"offset": float(struck.stroke.offset), "own": own, "changes": rows}
+    return {"offset": float(struck.stroke.offset), "grip": grip, "own": own, "changes": rows}
 
 
 def _numbers(solved: Solved) -> Record:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from cuefem.report.strike_table import grip_warning
 from cuefem.results.band import OF_DIFFERENCE
 from cuefem.results.quantities import signed, with_unit
 from cuefem.results.records import Record, Sheet, sheet
@@ -34,7 +35,9 @@ def advice_sheet(record: Record) -> Sheet:
 
 def advice_notes(record: Record) -> list[str]:
     """What the table is."""
+    warning = grip_warning(record["grip"])
     return [
+        *([warning] if warning else []),
         f"Each change alone, by the whole stroke at b/R {record['offset']:g}, where this cue has "
         f"{with_unit(record['own']['squirt'], 'rad', decimals=2)} (a report says how far that may be off); a change of "
         f"squirt was right to {100 * OF_DIFFERENCE:.0f} % of itself on measured cues.",

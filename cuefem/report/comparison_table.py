@@ -12,6 +12,7 @@ from cuefem.report.charts import Chart
 from cuefem.report.drawings import CueDrawing, cue_drawing
 from cuefem.report.end_mass import SQUIRT_END_MASS
 from cuefem.report.squirt import offset_charts
+from cuefem.report.strike_table import grip_warning
 from cuefem.results.comparison import struck_alike
 from cuefem.results.designs import coupled_curve
 from cuefem.results.quantities import NONE, RESULTS, with_unit
@@ -69,6 +70,7 @@ def comparison_sheet(record: Record) -> Sheet:
     notes = (
         f"Struck alike, with the ball of {first}, b/R {record['offset']:.3g} at {record['speed']:g} m/s. ±: 1σ of the "
         f"difference, for {shaft}; errors that the cues share cancel.",
+        *(f"{name}: {words}" for name, grip in record["grips"].items() if (words := grip_warning(grip))),
         "* smaller than its uncertainty: the cues cannot be told apart in this number.",
     )
     return Sheet("Side by side", head, tuple(rows), notes)

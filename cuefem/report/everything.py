@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cuefem.contact.bent import BentTooFar
-from cuefem.contact.outcome import MISSED, grip_of
+from cuefem.contact.outcome import grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.effects.leather_law import TooDeep
 from cuefem.io.ready import ready_cues
@@ -11,7 +11,7 @@ from cuefem.report.end_mass import SQUIRT_END_MASS, end_mass_record
 from cuefem.report.modes_table import modes_record, modes_sheet
 from cuefem.report.scene_words import assumptions
 from cuefem.report.squirt import squirt_record, squirt_sheet
-from cuefem.report.strike_table import MISCUE
+from cuefem.report.strike_table import grip_warning
 from cuefem.report.tip_table import tip_record, tip_sheet
 from cuefem.report.verdict_table import verdict_things
 from cuefem.results.asking import listed
@@ -48,7 +48,8 @@ def report_sheets(record: Record, scene: Record) -> list[Sheet | str]:
     shown: list[Sheet | str] = [modes_sheet(record["modes"])] if "modes" in record else []
     if "no_contact" in record:
         return [*shown, f"no end mass and no squirt: {record['no_contact']}"]
-    first: list[Sheet | str] = [MISCUE, ""] if record["grip"] in MISSED else []
+    warning = grip_warning(record["grip"])
+    first: list[Sheet | str] = [warning, ""] if warning else []
     first += verdict_things(record["verdict"])
     first += [record["model_error"]["sentence"], ""] if "model_error" in record else []
     title = f"The cue, and its stroke at offset b/R = {scene['stroke']['offset']:g}"

@@ -39,7 +39,7 @@ from cuefem.report.models import ALCIATORE, PAPER
 from cuefem.report.record import scene_record
 from cuefem.report.scene_words import assumptions, effect_words, plain_cue_line
 from cuefem.report.squirt import PAPER_CUE_END_MASS, offset_charts, squirt_record
-from cuefem.report.strike_table import BRIEF, MISCUE, models_sheet, strike_record
+from cuefem.report.strike_table import BRIEF, grip_warning, models_sheet, strike_record
 from cuefem.report.templates import environment
 from cuefem.report.tip_table import tip_record, tip_sheet
 from cuefem.report.trust import trust_lines
@@ -68,7 +68,7 @@ SOURCES = (
     ),
     ("A.31", ALCIATORE),
 )
-LATE = ("late stick", "slides", *MISSED)
+LATE = ("late stick", "partial slip", "slides", *MISSED)
 
 # A model's class on the page, by the beginning of its name.
 STYLES = {"coupled": "c1", "lumped": "c2", "two-part, this": "c3", "A.31": "c4", "two-part, 12": "c5"}
@@ -193,7 +193,7 @@ def _context(scene: Scene, records: Record) -> Record:
         "verdict": verdict_part(records["verdict"]),
         "advice": advice_sheet(records["advice"]) if "advice" in records else None,
         "trust": trust_lines(scene),
-        "warning": MISCUE if grip_of(outcome) in MISSED else "",
+        "warning": grip_warning(grip_of(outcome)),
         "cue": _cue_part(scene) if scene.cue.segments else None,
         "modes": modes_drawing(modes(scene.shaft, effects=scene.cue_effects), scene.shaft.length)
         if scene.cue.segments

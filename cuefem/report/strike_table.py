@@ -89,6 +89,11 @@ OFF = "what squirt may be off, from what the model missed on measured cues and w
 MISCUE = "this stroke miscues: the tip slips on the ball to the end; not a valid shot: ignore squirt and pivot length"
 
 
+def grip_warning(grip: str) -> str:
+    """What stands beside a squirt that miscues, or to which slip adds; "" for others."""
+    return MISCUE if grip in MISSED else GRIPS[grip][1] if grip in ("partial slip", "slides") else ""
+
+
 def strike_sheet(record: Record, scene: Record) -> Sheet:
     """One strike, a column for each model."""
     coupled = record["models"]["coupled"]

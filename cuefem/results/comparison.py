@@ -27,10 +27,12 @@ Follow = Callable[[Sequence[Any]], Iterable[Any]]
 
 
 class _Compared(NamedTuple):
-    """A scene, its numbers, and their relative changes with each input that may be off."""
+    """A scene, its numbers, the grip of its strike ("" if it cannot be made), and their relative changes with
+    each input that may be off."""
 
     scene: Scene
     numbers: dict[str, float]
+    grip: str
     inputs: dict[str, dict[str, float]]
 
 
@@ -57,6 +59,7 @@ def comparison_record(scenes: Mapping[str, Scene], *, same_shaft: bool = False, 
         "speed": float(first.stroke.speed),
         "same_shaft": same_shaft,
         "reference": reference,
+        "grips": {name: each.grip for name, each in compared.items()},
         "cues": {name: each.numbers for name, each in compared.items()},
         "differences": {
             name: _differences(compared[reference], compared[name], same_shaft=same_shaft) for name in others
@@ -72,7 +75,11 @@ def struck_alike(scenes: Mapping[str, Scene]) -> dict[str, Scene]:
 
 def _compared(scene: Scene) -> _Compared:
     numbers = _numbers(scene)
-    return _Compared(scene, numbers, changes_by_input(scene, numbers, _numbers))
+    try:
+        grip = grip_of(OneDesign(Solved(scene)).strike(0, None))
+    except (ValueError, RuntimeError):  # no squirt either
+        grip = ""
+    return _Compared(scene, numbers, grip, changes_by_input(scene, numbers, _numbers))
 
 
 def _numbers(scene: Scene) -> dict[str, float]:

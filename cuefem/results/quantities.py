@@ -290,6 +290,10 @@ GRIPS = {
     "late stick": ("held late", "the tip slipped first, then held late, near a miscue"),
     "slip reversal": ("slipped back", "the tip slipped first, then slipped back"),
     "miscue": ("miscue", "the tip slipped to the end, a miscue"),
+    "partial slip": (
+        "partly slipped",
+        "parts of the tip slid through much of the push: squirt rises fast, near a miscue",
+    ),
     "slides": ("let go", "the tip slid through more than a quarter of the push, near a miscue"),
     "lets go": ("miscue", "the tip slid through most of the push, or away at its end, a miscue"),
 }

@@ -10,6 +10,7 @@ import pytest
 import cuefem as cf
 from cuefem.contact.outcome import grip_of
 from cuefem.designer.answers import safety
+from cuefem.report.strike_table import grip_warning
 
 MAPLE = cf.load(Path(__file__).parents[2] / "meshes" / "pool_maple.toml")
 assert isinstance(MAPLE, cf.Cue)
@@ -21,6 +22,16 @@ BEYOND = {0.63: LEATHER, 0.6: BARE}
 
 def struck(scene: cf.Scene, offset: float) -> cf.Outcome:
     return cf.strike(replace(scene, stroke=cf.Stroke(2.0, offset)))
+
+
+@pytest.mark.parametrize(
+    ("speed", "offset", "grip"), [(7.0, 0.4, "stick"), (7.0, 0.5, "partial slip"), (4.0, 0.5, "partial slip")]
+)
+def test_partial_slip_through_much_of_the_impulse_is_named(speed: float, offset: float, grip: str) -> None:
+    """Squirt over b/R is 20 to 60 % above that close to the centre where the patch slips in part."""
+    outcome, close = (cf.strike(replace(LEATHER, stroke=cf.Stroke(speed, b))) for b in (offset, 0.2))
+    assert (outcome.regime, grip_of(outcome)) == ("stick", grip)
+    assert bool(grip_warning(grip)) == (grip != "stick") == (outcome.squirt / offset > 1.1 * close.squirt / 0.2)
 
 
 @pytest.mark.parametrize(
