@@ -74,17 +74,18 @@ def study(
         result = _kept(file, asked, kept, **where)
     record: dict[str, Any] = {"file": str(file), "kind": result.kind, "assumed": notes, "units": result.units}
     record |= {"varied": varied_pieces(designs.vary, designs.base), "resolution": vars(designs.resolution)}
-    lines = [f"{file.name}: {result.kind}"]
+    stored = []
     if kept:
         record |= {"store": str(kept.path), "evaluated": kept.computed}
         before = len(result.rows) - kept.computed
-        lines.append(
+        stored.append(
             f"{len(result.rows)} designs in {kept.path}" + (f", {before} of them from before" if before else "")
         )
-    record, things = record | study_record(result), [*lines, *assumed_lines(notes), *study_sheets(result)]
+    record |= study_record(result)
+    title, things = f"{file.name}: {result.kind}", [*assumed_lines(notes), *study_sheets(result)]
     for path in output:
-        _write(path, result, record, things)
-    tell(as_json, record, [*things, *(f"wrote {path}" for path in output)])
+        _write(path, result, record, [title, *things])
+    tell(as_json, record, [title, *stored, *things, *(f"wrote {path}" for path in output)])
 
 
 def _kept(file: Path, asked: Study | Scatter, designs: Store, *, workers: int | None, dask: str | None) -> StudyResult:

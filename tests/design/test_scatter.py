@@ -160,4 +160,6 @@ def test_command_prints_what_the_function_gives(tmp_path: Path) -> None:
     assert "E 12 ± 2 GPa" in out
     assert "the strongest cause is wood (100 %)" in out  # time changes no stiffness
     assert len((tmp_path / "all.csv").read_text(encoding="utf-8").splitlines()) == 1 + 64 * 4
-    assert "Spread of 128 designs" in (tmp_path / "page.html").read_text(encoding="utf-8")
+    page = (tmp_path / "page.html").read_text(encoding="utf-8")
+    assert "Spread of 128 designs" in page
+    assert ".sqlite" not in page
