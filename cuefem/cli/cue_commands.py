@@ -84,7 +84,9 @@ def _model_error(scene: Scene) -> Record:
 
 
 def _write_page(file: Path, output: Path, options: dict[str, Any], *, check: bool) -> None:
-    from cuefem.report.report_page import page  # templates and charts take 0.1 s, which tables need not pay
+    from cuefem.report.report_page import (
+        page_and_headline,
+    )  # templates and charts take 0.1 s, which tables need not pay
 
     if options["as_json"]:
         raise InputError(output, "--output", "must be left out with --json: a page is no JSON")
@@ -92,9 +94,9 @@ def _write_page(file: Path, output: Path, options: dict[str, Any], *, check: boo
     with blaming(file, options):
         trust = (_model_error(scene)["sentence"],) if check else ()
         asked: dict[str, Any] = {"rtol": load_accuracy(file), "notes": notes, "remarks": unusual(scene), "trust": trust}
-        text = page(file.name, scene, track=followed, **asked)
+        text, line = page_and_headline(file.name, scene, track=followed, **asked)
     save_page(text, output)
-    click.echo(f"wrote {output}")
+    click.echo(f"{line}\nwrote {output}")
 
 
 @command()

@@ -58,7 +58,7 @@ def rows(answers: Answers) -> list[NumberRow]:
         return NumberRow(name, label or known.words, value, known)
 
     return [
-        row("squirt", "squirt", strike["squirt"], f"squirt, coupled, at b/R {offset:g}"),
+        row("squirt", "squirt", strike["squirt"], f"squirt, coupled, at b/R {offset:.4g}"),
         row("pivot", "pivot_length", None if pivot is None else float(pivot)),
         *(
             row(f"end_mass_{drive}", "end_mass", answers.end_masses.get(drive), labels[drive])._replace(

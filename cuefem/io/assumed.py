@@ -164,7 +164,7 @@ def assumed_blow(tables: dict[str, Any], options: Collection[str], *, offered: C
         ("tip.restitution" in missing, f"e {bounce}{_option('restitution', offered)}"),
         ("tip.friction" in missing, f"mu {tip_of.friction:g}{_option('friction', offered)}"),
         ("stroke.speed" in missing, f"stroke {stroke.speed:g} m/s{_option('speed', offered)}"),
-        ("stroke.offset" in missing, f"offset b/R {stroke.offset:g}{_option('offset', offered)}"),
+        ("stroke.offset" in missing, f"offset b/R {stroke.offset:.4g}{_option('offset', offered)}"),
     )
     return [words for wanted, words in told if wanted]
 

@@ -250,7 +250,7 @@ def assumed_base(path: Path, base: Scene) -> list[str]:
         return [f"{tables['scene']} is a cue alone, struck with a usual stroke of {game} (game)"]
     ball, time = with_unit(float(base.ball.mass), "kg", 6), with_unit(float(base.contact_time), "s", 6)
     told = f"{tables['scene']} is a cue alone, struck with a ball of {ball} and a flat tip in contact for {time}"
-    return [f"{told}, b/R {base.stroke.offset:g} (game)"]
+    return [f"{told}, b/R {base.stroke.offset:.4g} (game)"]
 
 
 def _response(text: Any, path: Path, key: str) -> Response:

@@ -38,7 +38,7 @@ def advice_notes(record: Record) -> list[str]:
     warning = grip_warning(record["grip"])
     return [
         *([warning] if warning else []),
-        f"Each change alone, by the whole stroke at b/R {record['offset']:g}, where this cue has "
+        f"Each change alone, by the whole stroke at b/R {record['offset']:.4g}, where this cue has "
         f"{with_unit(record['own']['squirt'], 'rad', decimals=2)} (a report says how far that may be off); a change of "
         f"squirt was right to {100 * OF_DIFFERENCE:.0f} % of itself on measured cues.",
         "Stiffness: static, at the tip, the butt end clamped. Pays: a hundredth less squirt or more; costs stiffness: "

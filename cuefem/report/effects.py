@@ -147,7 +147,7 @@ def effects_sheet(record: Record, scene: Record) -> Sheet:
     if small:  # a row and no style alone says so, also where colours are not
         rows += [(f"changes less than {percent}:", *[""] * 6), *map(_cells, small)]
     return Sheet(
-        f"What each effect is worth at offset b/R = {scene['stroke']['offset']:g}",
+        f"What each effect is worth at offset b/R = {scene['stroke']['offset']:.4g}",
         ("", "squirt", "end mass", "ball speed, m/s", "spin, rad/s", "unknowns", "CPU time"),
         tuple(rows),
         (

@@ -54,7 +54,7 @@ def _end_mass(scene: Scene, spread: Callable[[str], Spread], drive: str) -> Reco
 
 def end_mass_sheet(record: Record, scene: Record, *, paper: bool = False) -> Sheet:
     """The end masses by definition. paper: with [Kim]'s m_c and eps of each."""
-    at = f", at b/R {record['offset']:g}"
+    at = f", at b/R {record['offset']:.4g}"
     papers = {"m_c": "cue_end_mass", "eps": "{eps:.4f}"} if paper else {}
     their = "m_c = 4 m_e: cue end of the paper's two-part cue (nu_c 1/3); eps: m_c as a part of the ball's mass"
     rows = [{"name": drive, **values} for drive, values in record["drives"].items()]

@@ -142,7 +142,7 @@ def estimate_sheets(record: Record) -> list[Sheet | str]:
         ),
         _fit_sheet("Measured and computed with the estimate", record),
         "",
-        f"squirt at b/R {record['offset']:g} by the model with these parameters: {squirt}",
+        f"squirt at b/R {record['offset']:.4g} by the model with these parameters: {squirt}",
         "",
         sheet(
             "What to measure next",

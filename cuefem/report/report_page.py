@@ -43,7 +43,7 @@ from cuefem.report.strike_table import BRIEF, grip_warning, models_sheet, strike
 from cuefem.report.templates import environment
 from cuefem.report.tip_table import tip_record, tip_sheet
 from cuefem.report.trust import trust_lines
-from cuefem.report.verdict_table import verdict_part
+from cuefem.report.verdict_table import headline, verdict_part
 from cuefem.results.asking import listed
 from cuefem.results.closed_forms import alciatore_a31_mass_ratio
 from cuefem.results.designs import OneDesign
@@ -81,7 +81,12 @@ class Stage(NamedTuple):
     work: Callable[[], Any]
 
 
-def page(
+def page(name: str, scene: Scene, **about: Any) -> str:
+    """The report of a scene as HTML; about: as for `page_and_headline`."""
+    return page_and_headline(name, scene, **about)[0]
+
+
+def page_and_headline(
     name: str,
     scene: Scene,
     *,
@@ -90,8 +95,8 @@ def page(
     remarks: Sequence[str] = (),
     trust: Sequence[str] = (),
     track: Any = iter,
-) -> str:
-    """The report of a scene as HTML.
+) -> tuple[str, str]:
+    """The report of a scene as HTML, and its squirt in a line.
 
     rtol: what is asked of the accuracy; notes: what was assumed; remarks: what is unusual; trust: what was
     computed on how far to trust it; track: follows the stages.
@@ -103,7 +108,8 @@ def page(
     template = environment().get_template("page.html.j2")
     asked = f"{100 * rtol:.3g} %"
     said = {"notes": list(notes), "remarks": list(remarks), "checked": list(trust)}
-    return with_words(template.render(name=name, asked=asked, **said, **_context(scene, records))) + "\n"
+    text = with_words(template.render(name=name, asked=asked, **said, **_context(scene, records))) + "\n"
+    return text, headline(records["verdict"])
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,7 +194,7 @@ def _context(scene: Scene, records: Record) -> Record:
         "facts": _facts(scene),
         "figures": _key_figures(record, records["end_masses"], outcome),
         "strike": strike_drawing(scene, outcome.squirt),
-        "squirt": degrees(outcome.squirt),
+        "squirt": written("squirt", outcome.squirt, brief=True),
         "error": "" if outcome.error is None else f"{100.0 * outcome.error:.2g} %",
         "verdict": verdict_part(records["verdict"]),
         "advice": advice_sheet(records["advice"]) if "advice" in records else None,
@@ -212,7 +218,7 @@ def _context(scene: Scene, records: Record) -> Record:
 
 
 def _facts(scene: Scene) -> list[str]:
-    told = f"{assumptions(scene_record(scene))}, offset b/R {scene.stroke.offset:g}"
+    told = f"{assumptions(scene_record(scene))}, offset b/R {scene.stroke.offset:.4g}"
     return [plain_cue_line(scene.cue), told, *(f"with {effect_words(effect)}" for effect in scene.effects)]
 
 

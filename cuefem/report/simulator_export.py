@@ -102,7 +102,7 @@ def _notes(scene: Scene) -> list[str]:
 
 def pooltool_sheets(record: Record, written: bool) -> list[Sheet | str]:
     """The end mass beside pooltool's default, and how pooltool gets it. written: whether its file is written."""
-    stroke = f"b/R {record['offset']:g}, {record['speed']:g} m/s, contact {with_unit(record['contact_time'], 's', 3)}"
+    stroke = f"b/R {record['offset']:.4g}, {record['speed']:g} m/s, contact {with_unit(record['contact_time'], 's', 3)}"
     rows = [
         ("this cue", record["CueSpecs"]["end_mass"], record["squirt"]),
         ("pooltool's default cue", record["default_end_mass"], record["default_squirt"]),

@@ -80,7 +80,8 @@ def squirt_sheet(record: Record, scene: Record) -> Sheet:
     own = record["models"]["coupled, this cue"]
     names = ("squirt", "pivot_length", "grip")
     rows = [
-        (f"{offset:g}", *(written(name, own[name][i]) for name in names)) for i, offset in enumerate(record["offsets"])
+        (f"{offset:g}", *(written(name, own[name][i], brief=True) for name in names))
+        for i, offset in enumerate(record["offsets"])
     ]
     head = ("b/R", "squirt", "natural pivot length", "grip")
     return Sheet("Squirt against the offset", head, tuple(rows), (assumptions(scene), PIVOT), texts=(3,))

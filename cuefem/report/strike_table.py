@@ -102,7 +102,7 @@ def strike_sheet(record: Record, scene: Record) -> Sheet:
     pivots = any(model.get("pivot_length") is not None for model in record["models"].values())
     return replace(
         models_sheet(record),
-        title=f"Strike at offset b/R = {scene['stroke']['offset']:g}",
+        title=f"Strike at offset b/R = {scene['stroke']['offset']:.4g}",
         notes=(
             *missed,
             assumptions(scene),

@@ -52,9 +52,9 @@ def verdict(scene: Scene) -> Record:
 
 
 def squirt_words(record: Record) -> tuple[str, str]:
-    """The squirt to the digits that are sure, and what it may be off: "1.8°" and "0.3°"."""
+    """The squirt as tables have it, and what it may be off: "1.82°" and "0.31°"."""
     squirt, error = abs(record["squirt"]), record["squirt_error"]
-    decimals = min(3, max(0, -math.floor(math.log10(scaled(error, "rad"))))) if error else 1
+    decimals = 3 if error and scaled(error, "rad") < 0.01 else 2
     return with_unit(squirt, "rad", decimals=decimals), with_unit(error, "rad", decimals=decimals)
 
 
@@ -62,8 +62,17 @@ def headline(record: Record) -> str:
     """The squirt with its band in a line."""
     squirt, error = squirt_words(record)
     aside = with_unit(math.tan(abs(record["squirt"])), "m", decimals=0)
-    where = f"at b/R {record['offset']:g}" + (", for the stroke itself is head on" if record["head_on"] else "")
+    where = f"at b/R {record['offset']:.4g}, {way_out(record['offset'])}" + (
+        ", for the stroke itself is head on" if record["head_on"] else ""
+    )
     return f"squirt {squirt}, give or take {error} ({where}): the ball goes {aside} aside in a metre"
+
+
+def way_out(offset: float) -> str:
+    """How far out the ball is struck: "3/10 of the way to the edge"."""
+    tenths, percent = round(10 * abs(offset)), 100 * abs(offset)
+    part = f"{tenths}/10" if abs(percent - 10 * tenths) < 0.5 else f"{percent:.0f} %"
+    return f"{part} of the way to the edge"
 
 
 def than_words(difference: float) -> str:
@@ -135,6 +144,7 @@ def scale(record: Record) -> list[ScaleRow]:
     others = {name: abs(beside["squirt"]) for name, beside in record["among"].items()}
     most = 1.05 * max([mine + error, *others.values()]) or 1.0
     text, off = squirt_words(record)
+    decimals = len(text.rstrip("°").partition(".")[2])
 
     def row(name: str, squirt: float, band: float, words: str, beside: str) -> ScaleRow:
         places = (100 * each / most for each in (squirt, max(0.0, squirt - band), squirt + band))
@@ -146,18 +156,12 @@ def scale(record: Record) -> list[ScaleRow]:
             name,
             squirt,
             0.0,
-            _rounded(squirt, text),
+            with_unit(squirt, "rad", decimals=decimals),
             "" if name == first else beside_words(squirt / others[first] - 1, first),
         )
         for name, squirt in others.items()
     ]
     return sorted([*rows, row("yours", mine, error, text, f"give or take {off}")], key=lambda each: each.at)
-
-
-def _rounded(squirt: float, like: str) -> str:
-    """A squirt with a decimal more than one's own, since ratios are surer than levels."""
-    decimals = len(like.rstrip("°").partition(".")[2]) + 1
-    return with_unit(squirt, "rad", decimals=decimals)
 
 
 def verdict_part(record: Record) -> Record:
@@ -167,7 +171,7 @@ def verdict_part(record: Record) -> Record:
     return {
         "squirt": squirt,
         "error": error,
-        "offset": f"{record['offset']:g}",
+        "offset": f"{record['offset']:.4g}, {way_out(record['offset'])}",
         "head_on": record["head_on"],
         "aside": aside,
         "standing": standing(record),

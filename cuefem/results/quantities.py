@@ -82,12 +82,12 @@ class Result:
         return units.get(self.unit, (1.0, self.unit))
 
     def number(self, value: float, *, brief: bool = False, units: Units = TRADE) -> str:
-        """A value in the unit that people read, without it; brief: three decimals at most."""
+        """A value in the unit that people read, without it; brief: a decimal less, of three or more."""
         scale, unit = self.shown_in(units)
         if self.decimals is None:
             return significant(scale * value)
         decimals = self.decimals + _FINER.get(unit, 0)
-        return f"{scale * value:.{min(decimals, 3) if brief else decimals}f}"
+        return f"{scale * value:.{decimals - (brief and decimals > 2)}f}"
 
     def written(self, value: Any, *, brief: bool = False, units: Units = TRADE) -> str:
         """A value with its unit; a dash if there is no value; words unchanged."""

@@ -98,7 +98,7 @@ def value_rows(record: Mapping[str, Any], names: Iterable[str] | None = None) ->
     """Name in full and value with its unit of a record's quantities, or of those of the names that have a value."""
     if names is not None:
         record = {name: record[name] for name in names if record[name] is not None}
-    return [(RESULTS[name].words, written(name, value)) for name, value in record.items()]
+    return [(RESULTS[name].words, written(name, value, brief=True)) for name, value in record.items()]
 
 
 def plain(value: Any) -> Any:

@@ -39,7 +39,8 @@ def test_a_picture_is_as_it_would_be_drawn_now(name: str) -> None:
 def test_what_is_said_of_squirt() -> None:
     verdict = answers("report")["verdict"]
     degrees, aside = math.degrees(verdict["squirt"]), 1e3 * math.tan(verdict["squirt"])
-    said = f"squirt {degrees:.1f}°, give or take {degrees * verdict['band']['whole']:.1f}°: the ball goes"
+    off = degrees * verdict["band"]["whole"]
+    said = f"squirt {degrees:.2f}°, give or take {off:.2f}° (at b/R 0.3, 3/10 of the way to the edge): the ball goes"
     assert said in TEXTS["read_the_report"]
     assert f"about {aside:.0f} mm off after one metre" in TEXTS["what_squirt_is"]
     known = ready()

@@ -131,7 +131,7 @@ def test_pages_of_lumped_cues(blow: cf.Scene) -> None:
     assert "How it rings" not in words
     assert "How exact" not in words
     assert "estimated error" not in words
-    assert f"{math.degrees(cf.strike(blow).squirt):.3f}°" in words
+    assert f"{math.degrees(cf.strike(blow).squirt):.2f}°" in words
 
 
 def test_names_are_text_and_no_markup() -> None:

@@ -11,7 +11,7 @@ import pytest
 import cuefem as cf
 from cuefem.games import without_leather
 from cuefem.io.ready import PRESETS, SCALE, STROKES, Preset, opened, ready_cues
-from cuefem.report.verdict_table import scale, squirt_words, standing
+from cuefem.report.verdict_table import headline, scale, squirt_words, standing
 from cuefem.results.verdict import same_stroke, verdict_record
 
 ROOT = Path(__file__).parents[2]
@@ -68,11 +68,16 @@ def test_the_scale_is_in_order_and_compares_every_cue_with_plain_maple() -> None
 
 
 @pytest.mark.parametrize(
-    ("squirt", "error", "words"), [(1.847, 0.31, "1.8°"), (0.4, 0.042, "0.40°"), (12.3, 2.2, "12°")]
+    ("squirt", "error", "words"), [(1.847, 0.31, "1.85°"), (0.4, 0.042, "0.40°"), (0.04, 0.0042, "0.040°")]
 )
-def test_it_has_no_more_digits_than_are_sure(squirt: float, error: float, words: str) -> None:
+def test_squirt_has_the_digits_of_the_tables(squirt: float, error: float, words: str) -> None:
     record = {"squirt": math.radians(squirt), "squirt_error": math.radians(error)}
     assert squirt_words(record)[0] == words
+
+
+@pytest.mark.parametrize(("offset", "words"), [(0.3, "b/R 0.3, 3/10 of"), (8 / 28.575, "b/R 0.28, 28 % of")])
+def test_headline_says_how_far_out_the_ball_is_struck(offset: float, words: str) -> None:
+    assert words in headline(RECORD | {"offset": offset})
 
 
 @pytest.mark.parametrize("preset", [preset for preset in PRESETS if preset.measured in STROKES], ids=lambda p: p.file)
