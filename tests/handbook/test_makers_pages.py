@@ -12,6 +12,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.handbook import MAKERS, chapters
+from cuefem.vary import varied
 from tests.helpers.command_line import call
 from tests.helpers.maker_pictures import FOLDER, PICTURES, answers, ready
 
@@ -55,6 +56,22 @@ def squirt_of(path: Path) -> float:
     """Degrees, by the usual stroke of pool with a rest of the cue of 15 oz."""
     cue: Any = cf.load(path)
     return math.degrees(cf.strike(cf.usual_scene(replace(cue, body_mass=0.42524))).squirt)
+
+
+@pytest.mark.parametrize(("name", "least", "most"), [("pool_maple", -0.5, 1.0), ("pool_hollow", -2.0, -1.0)])
+def test_a_deeper_bore_is_worth_what_the_page_and_improve_say(name: str, least: float, most: float) -> None:
+    """From 5 to 7 in: 2 % under the light ferrule of one, nothing under the other's; beyond 8 in no gain on either."""
+    scene = cf.usual_scene(cf.load(Path("meshes") / f"{name}.toml"))
+    of = {
+        inches: cf.strike(varied(scene, {"bore depth": 0.0254 * inches, "bore width": 0.006})).squirt
+        for inches in (5, 7, 9, 12, 16)
+    }
+    change = {inches: 100 * (squirt / of[5] - 1) for inches, squirt in of.items()}
+    assert least < change[7] < most
+    assert all(-0.3 < change[inches] < 2 for inches in (9, 12, 16))
+    if name == "pool_maple":
+        assert "takes about 9 % off" in TEXTS["change_it"]
+        assert 1 - of[5] / cf.strike(scene).squirt == pytest.approx(0.09, abs=0.005)
 
 
 def test_tables_of_the_pages_draw_the_bored_shaft(tmp_path: Path) -> None:
