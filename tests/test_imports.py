@@ -45,7 +45,7 @@ ORDER = [
     "__main__",
 ]
 HOMES = {
-    "skfem": {"solid"},
+    "skfem": {"solid", "beam"},
     "meshio": {"io"},
     "matplotlib": {"report", "plot"},
     "pandas": {"frames"},
