@@ -10,6 +10,7 @@ from typing import Annotated, Any, ClassVar, NamedTuple
 from cuefem.contact.side_strike import Striker
 from cuefem.measurements.predictions import TONES, Predictions, predictions_of
 from cuefem.quantity.fields import CONTACT_TIME, LENGTH, Quantity, check_fields
+from cuefem.results.closed_forms import pivot_at
 from cuefem.scene import Scene
 
 MASS = Quantity("kg", "(0, inf)")
@@ -312,6 +313,38 @@ class Squirt(Measurement):
 
 
 @dataclass(frozen=True, kw_only=True)
+class PivotLength(Measurement):
+    """The natural pivot length at an offset b/R: turned about it, the cue sends the ball along its first line.
+
+    Zeros of angle and offset cancel in it. speed: of the cue, by default the scene's.
+    """
+
+    key: ClassVar[str] = "pivot_length"
+    unit: ClassVar[str] = "m"
+    words: ClassVar[str] = "natural pivot length"
+    costs: ClassVar[str] = "squirt is not tested by a value that is free of the zeros of angle and offset"
+
+    offset: Annotated[float, Quantity("", "(0, 1)")]
+    value: Annotated[float, Quantity("m", "(0, inf)")]
+    error: Annotated[float, Quantity("m", ERROR)]
+    speed: Annotated[float | None, Quantity("m/s", "(0, inf)")] = None
+
+    @property
+    def label(self) -> str:
+        """At which offset and speed."""
+        return f"{self.words} at b/R {self.offset:g}{'' if self.speed is None else f', {self.speed:.3g} m/s'}"
+
+    def computed(self, setup: Setup) -> float:
+        """Of the coupled strike's squirt and the radii of ball and dome [B.1]; ValueError without squirt."""
+        squirt = setup.squirt_factor * setup.predictions.squirt(self.offset, self.speed)
+        if not squirt > 0:
+            raise ValueError(
+                f"pivot_length must be of a stroke with squirt above 0 rad; got {squirt:.3g} rad at b/R {self.offset:g}"
+            )
+        return float(pivot_at(setup.scene, self.offset, squirt))
+
+
+@dataclass(frozen=True, kw_only=True)
 class AddedMass(Measurement):
     """Squirt with a mass on the shaft, over that without it; position: from the end of the tip.
 
@@ -421,5 +454,8 @@ class EndMass(Measurement):
         return (replace(blank, value=value, error=GOOD_END_MASS * value),)
 
 
-_TYPES: tuple[type[Measurement], ...] = (Weight, Balance, Tone, Stiffness, ContactTime, EndMass, Squirt, AddedMass)
+_TYPES: tuple[type[Measurement], ...] = (
+    *(Weight, Balance, Tone, Stiffness, ContactTime, EndMass),
+    *(Squirt, PivotLength, AddedMass),
+)
 MEASUREMENT_TYPES: dict[str, type[Measurement]] = {kind.key: kind for kind in _TYPES}

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, Any
 
 from cuefem.cue import Material
-from cuefem.measurements.measurement_types import EndMass, Measurement, Setup, Squirt
+from cuefem.measurements.measurement_types import EndMass, Measurement, PivotLength, Setup, Squirt
 from cuefem.quantity.fields import Quantity, check_fields
 from cuefem.scene import Scene
 from cuefem.vary import PLACES, Path, place, replaced
@@ -107,7 +107,7 @@ def parameters_of(
         made.append(UncertainParameter(known.name, known.words, unit, middle, spread, _on_scene(known.steps())))
     squirts = [measurement for measurement in measurements if isinstance(measurement, Squirt)]
     _, spread = _prior(asked.get(SQUIRT_MODEL), 1.0, MODEL_OF_SQUIRT)
-    if squirts:
+    if any(isinstance(measurement, Squirt | PivotLength) for measurement in measurements):
         put: Any = lambda setup, value: setup._replace(squirt_factor=value)  # noqa: E731
         made.append(UncertainParameter(SQUIRT_MODEL, "true squirt over the model's", "", 1.0, spread, put))
     ends = [one for one in measurements if isinstance(one, EndMass) and one.contact_time_error]

@@ -15,6 +15,7 @@ from cuefem.measurements.measurement_types import (
     AddedMass,
     Balance,
     ContactTime,
+    PivotLength,
     Setup,
     Squirt,
     Stiffness,
@@ -65,6 +66,17 @@ def test_squirt_and_time_are_those_of_a_strike() -> None:
         head_on = cf.strike(replace(scene, stroke=cf.Stroke(1.5, 0.0)))
         time = ContactTime(value=1e-3, error=1e-4, speed=1.5)
         assert time.computed(Setup(scene)) == pytest.approx(head_on.duration, rel=1e-12)
+
+
+def test_pivot_length_is_that_of_the_strike_s_squirt_and_of_the_dome() -> None:
+    """TP B.1 by hand: turned by psi about the bridge, the cue's axis points beside the centre by (R + r) b/R."""
+    for scene, dome in ((SCENE, 0.0), (leather_scene(), leather_scene().leather.dome_radius)):
+        one, radius = PivotLength(offset=0.25, value=0.3, error=0.01, speed=1.5), float(scene.ball.radius)
+        for factor in (1.0, 1.1):
+            turned = factor * cf.strike(replace(scene, stroke=cf.Stroke(1.5, 0.25))).squirt
+            found = one.computed(Setup(scene, squirt_factor=factor))
+            assert (radius + found) * np.sin(turned) == pytest.approx((radius + dome) * 0.25, rel=1e-12)
+    assert measured_cue(one).parameters[-1].name == "squirt model"
 
 
 def test_an_added_mass_stands_behind_the_leather() -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from cuefem.measurements.estimate import estimate
 from cuefem.measurements.measured_cue import MeasuredCue
-from cuefem.measurements.measurement_types import AddedMass, Setup, Squirt, Stiffness, Tone, Weight
+from cuefem.measurements.measurement_types import AddedMass, PivotLength, Setup, Squirt, Stiffness, Tone, Weight
 from cuefem.measurements.uncertain_parameters import Prior
 from tests.helpers.command_line import call
 from tests.helpers.measured_cues import DRAWING, SCENE, SOME, folder, measured_cue
@@ -26,6 +26,18 @@ CALLS: dict[str, tuple[Callable[[], object], str]] = {
     "zero": (
         lambda: Squirt(offset=0.3, left=0.03, right=0.03, error=1e-3, zero_error=1e-3),
         "Squirt.zero_error must be absent beside left and right, whose mean has none; got 0.001 m",
+    ),
+    "pivot": (
+        lambda: PivotLength(offset=0.3, value=0.0, error=0.01),
+        "PivotLength.value must be in (0, inf) m; got 0.0",
+    ),
+    "pivot's side": (
+        lambda: PivotLength(offset=-0.3, value=0.3, error=0.01),
+        "PivotLength.offset must be in (0, 1); got -0.3",
+    ),
+    "no squirt": (
+        lambda: PivotLength(offset=0.3, value=0.3, error=0.01).computed(Setup(SCENE, squirt_factor=0.0)),
+        "pivot_length must be of a stroke with squirt above 0 rad; got 0 rad at b/R 0.3",
     ),
     "prior": (lambda: Prior("colour", 0.1), "Prior.name must be one of E, G, rho, bore, taper"),
     "two priors": (lambda: Prior("E", 0.1, 1e9, 2e9), "or low and high without it"),
@@ -62,6 +74,10 @@ FILES = {
     ),
     "no table": ('weight = "100 g"\n', "weight: must be tables, [[weight]]; got '100 g'"),
     "squirt": ('[[squirt]]\noffset = 0.3\nerror = "1 deg"\n', "squirt[0].value: must be given, or left and right"),
+    "pivot": (
+        '[[pivot_length]]\noffset = 0.3\nvalue = "13 in"\n',
+        "pivot_length[0].error: must be given, a length with its unit",
+    ),
     "name": ("name = 3\n", "name: must be text; got 3"),
     "unknown": (
         '[[uncertain]]\nname = "bor"\n',
