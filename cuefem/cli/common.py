@@ -23,7 +23,7 @@ from cuefem.report.unusual import unusual
 from cuefem.results.quantities import UNITS
 from cuefem.results.records import Record, plain
 from cuefem.scene import Scene
-from cuefem.solid.own_tip import ONCE
+from cuefem.solid.own_tip import announcement
 
 
 def file_options(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -115,7 +115,7 @@ def compute_tip(scene: Scene) -> None:
     """Compute the scene's leather tip if it is none of the table's and was never computed, and say that it takes a
     while."""
     if not scene.tip_at_hand:
-        click.echo(ONCE, err=True)
+        click.echo(announcement(), err=True)
         scene.tip_law()
 
 

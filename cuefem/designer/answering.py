@@ -15,7 +15,7 @@ from typing import Any, Protocol
 from cuefem.designer.answers import answers, completing, coupled_points, density, with_end_mass
 from cuefem.designer.computing import FAILURES, Memory, Results, computed, give_back
 from cuefem.scene import Scene
-from cuefem.solid.own_tip import ONCE
+from cuefem.solid.own_tip import announcement
 
 IDLE = 0.12  # s without a move before the slower results are computed
 SENT = 0.002  # s that the numbers are given to leave before anything else is computed
@@ -104,7 +104,7 @@ class Answering:
         results = self.memory.get(scene)
         try:
             if results is None and not scene.tip_at_hand:
-                self.page.say(ONCE)
+                self.page.say(announcement())
                 self.failed = True  # so that the words go with the answer
             results = results or await self._begun(scene)
             if self.mine is not None and self.mine.whole:

@@ -163,6 +163,7 @@ class TipTable(NamedTuple):
     heights: tuple[float, float]
 
 
+FLAT_HEIGHTS = 4  # flat tips of an `OwnTip`'s table, from the side of its dome up to its apex
 Flat = tuple[float, float, float]  # a layer's height over D, Young's modulus over that of the leather, Poisson's ratio
 
 

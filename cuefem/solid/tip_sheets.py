@@ -167,9 +167,6 @@ def gains(shape: Shape, nus: Sequence[float], how: TipFineness = TABLE) -> Array
     return less
 
 
-HEIGHTS = 4  # flat tips from the side of a dome up to its apex
-
-
 def own_tip(tip: lt.OwnTip) -> lt.TipTable:
     """The table of one tip, by itself."""
     under = tuple(Layer(*layer) for layer in tip.layers)
@@ -184,6 +181,6 @@ def own_tip(tip: lt.OwnTip) -> lt.TipTable:
     (own,) = sheets_of(whole, [tip.nu], all_loads(tip.curvature), on_ferrule=tip.ferrule is not None)
     side = lt.height_coordinate(whole.height - below, tip.curvature)
     heights = side, max(lt.height_coordinate(tip.height, 0.0), side + 0.05)
-    flat = [shape(float(np.exp(v)) - lt.SOFTENED, 0.0) for v in lt.nodes(*heights, HEIGHTS)]
+    flat = [shape(float(np.exp(v)) - lt.SOFTENED, 0.0) for v in lt.nodes(*heights, lt.FLAT_HEIGHTS)]
     punch = np.array([gains(each, [tip.nu])[0] for each in flat])
     return lt.TipTable(tip.curvature, tip.nu, *own, punch=punch, heights=heights)

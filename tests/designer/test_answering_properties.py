@@ -11,7 +11,7 @@ import pytest
 from cuefem.designer.answering import Answering
 from cuefem.designer.start import first_scene
 from cuefem.scene import Scene
-from cuefem.solid.own_tip import ONCE
+from cuefem.solid.own_tip import announcement
 
 
 class Page:
@@ -109,5 +109,5 @@ def test_a_tip_that_is_computed_for_seconds_is_told_and_the_words_go_with_the_an
     assert {*at_hand.told} <= {"busy", "ready", "numbers", "move", "pictures", "more pictures", "table", "curves"}
     monkeypatch.setattr(Scene, "tip_at_hand", False)
     follow(computed, [0.3])
-    assert computed.told[:4] == ["busy", ONCE, "", "numbers"]
-    assert computed.told.count("") == computed.told.count(ONCE) == 1
+    assert computed.told[:4] == ["busy", announcement(), "", "numbers"]
+    assert computed.told.count("") == computed.told.count(announcement()) == 1

@@ -12,7 +12,9 @@ import numpy as np
 import pytest
 
 import cuefem as cf
+from cuefem.solid.leather_table import FLAT_HEIGHTS, HEIGHT, OwnTip, TipTable, of_tip
 from cuefem.solid.own_tip import own_table
+from tests.helpers.command_line import call
 from tests.helpers.refusals import command_refuses
 
 D = 12.75e-3
@@ -81,6 +83,48 @@ def test_kept_in_a_file_and_made_again_when_that_is_spoilt(cache: Path) -> None:
         np.testing.assert_allclose(again, before, rtol=1e-10)
     assert file.read_bytes() != spoilt
     assert FLAT.at_hand(D)
+
+
+@pytest.fixture
+def quick(cache: Path, monkeypatch: pytest.MonkeyPatch) -> list[OwnTip]:
+    """Tips whose computation was asked for; in its place stands the package's table of the lowest tip."""
+    computed: list[OwnTip] = []
+    lowest = of_tip(HEIGHT[0], 0.0, 0.4)
+
+    def own_tip(tip: OwnTip) -> TipTable:
+        computed.append(tip)
+        return lowest._replace(punch=lowest.punch[:FLAT_HEIGHTS])
+
+    monkeypatch.setattr("cuefem.solid.tip_sheets.own_tip", own_tip)
+    return computed
+
+
+def test_a_kept_table_of_another_shape_is_computed_again(cache: Path, quick: list[OwnTip]) -> None:
+    FLAT.compliance(D, 0.0, 2e-3)
+    (file,) = cache.iterdir()
+    with np.load(file) as kept:
+        parts = dict(kept)
+    for name in ("whole", "punch", "heights"):
+        np.savez(file, **parts | {name: parts[name][..., :1]})
+        own_table.cache_clear()
+        assert not FLAT.at_hand(D)
+        FLAT.compliance(D, 0.0, 2e-3)
+        assert FLAT.at_hand(D)
+    assert len(quick) == 4
+
+
+def test_a_tip_without_a_home_folder_is_computed_and_not_kept(
+    cache: Path, quick: list[OwnTip], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def homeless(*_: object) -> Path:
+        raise RuntimeError("could not determine the home directory")
+
+    monkeypatch.setattr("platformdirs.user_cache_path", homeless)
+    scene = tmp_path / "scene.toml"
+    scene.write_text(SCENE.replace('"9.5 mm"', 'inf\nheight = "1.5 mm"'), encoding="utf-8")
+    status, _, told = call("strike", scene)
+    assert (status, len(quick), cache.exists()) == (0, 1, False)
+    assert "not kept" in told.splitlines()[0]
 
 
 @pytest.mark.heavy
