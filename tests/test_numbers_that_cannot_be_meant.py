@@ -95,3 +95,16 @@ def test_a_file_s_slip_is_told_to_the_one_who_loads_it(tmp_path: Path) -> None:
         warnings.simplefilter("error")
         status, _, err = call("strike", path)  # says it in its own words
     assert (status, err) == (0, "unusual: dome radius 9500 mm; 9 to 10.6 is usual, a dime's or a nickel's\n")
+
+
+def test_a_sweep_is_warned_once_per_call_site_and_field() -> None:
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("default")
+        for radius in (9.5, 9.6, 9.7):
+            cf.TipDome(radius)
+        cf.TipDome(9.8)
+        for diameter in (0.7, 0.71):
+            cf.Segment(0.7, 0.012, diameter, cf.Material(12.6e9, 0.84e9, 700.0))
+    assert [str(each.message).partition(" is ")[0] for each in told] == [
+        *("TipDome.radius", "TipDome.radius", "Segment.butt_diameter")
+    ]

@@ -118,25 +118,35 @@ def remark(kind: str, name: str, value: float) -> None:
     """Warn of a number that cannot be meant, at the line that lies outside this package."""
     said = slip(kind, name, value)
     if said and not _trying.get():
-        warnings.warn(said, Unusual, stacklevel=_outside())
+        _warn(said)
 
 
 def remark_time_as_stiffness(kind: str, stiffness: float | None) -> None:
     """Warn of a stiffness so small that it must be a contact time: the third number of a `Striker` is a stiffness."""
     if stiffness is not None and SHORTEST <= stiffness <= LONGEST:
         said = f"{kind}.stiffness is {stiffness:g} N/m, which nothing has: is it a contact time in s? "
-        warnings.warn(f"{said}Write {kind}(..., contact_time={stiffness:g})", Unusual, _outside())
+        _warn(f"{said}Write {kind}(..., contact_time={stiffness:g})")
 
 
 def remark_light(mass: float, length: float) -> None:
     """Warn of a shaft, in its real size, that is about to be struck without the rest of its cue."""
     if mass < LIGHTEST and WHOLE[0] <= length <= WHOLE[1]:
         said = f"Cue.body_mass is 0 kg, so the whole cue weighs {mass:.3g} kg; 0.4 to 0.7 is usual: what is behind the "
-        warnings.warn(f"{said}shaft counts in a stroke (dataclasses.replace(cue, body_mass=0.43))", Unusual, _outside())
+        _warn(f"{said}shaft counts in a stroke (dataclasses.replace(cue, body_mass=0.43))")
+
+
+def _warn(said: str) -> None:
+    """Warn at the line outside this package; of a field that this line was warned of in the words of that time, which
+    Python's filter knows, so that a sweep is warned once."""
+    level = _outside()
+    frame = sys._getframe(level - 1)
+    field, known = said.partition(" is ")[0], frame.f_globals.get("__warningregistry__", {})
+    told = (key[0] for key in known if isinstance(key, tuple) and key[1:] == (Unusual, frame.f_lineno))
+    warnings.warn(next((text for text in told if text.startswith(f"{field} is ")), said), Unusual, level)
 
 
 def _outside() -> int:
-    """How many frames above `remark` the call into this package stands."""
+    """How many frames above `_warn` the call into this package stands."""
     frame: FrameType | None = sys._getframe(1)
     level, inside = 0, 0
     while frame is not None:
