@@ -15,7 +15,7 @@ from studies.pages import STUDIES
 
 MESHES = STUDIES.parent / "meshes"
 NAMES = ("kim", "pool_maple", "pool_hollow", "carbon", "whole_cue")
-INCH = 0.0254
+INCH, MPH = 0.0254, 0.44704
 POOL = cf.Ball(mass=0.170, radius=0.028575)
 # Textbook tip of the models before LeatherTip: Alciatore's dime to nickel, and Mindlin's ratio of stiffnesses.
 DOME, SHEAR = cf.TipDome(9.5e-3), cf.TipShear(0.75)
@@ -81,6 +81,16 @@ def whole(drawn: cf.Cue, offset: float = 0.375, speed: float = 2.0, **leather: f
     usual = cf.usual_scene(drawn)
     effects = tuple(replace(e, **leather) if isinstance(e, cf.LeatherTip) else e for e in usual.effects)
     return replace(usual, stroke=cf.Stroke(speed, offset), effects=effects)
+
+
+@cache
+def robot_speeds() -> tuple[float, float]:
+    """Cue speeds of the robot's strokes (Billiards Digest, February 2008), m/s.
+
+    It timed the ball, 3.6 to 7.8 mph between two beams; at b/R 0.375 the ball is faster than the cue was.
+    """
+    ratio = float(cf.strike(whole(cue("pool_maple"))).ball_speed) / 2.0
+    return 3.6 * MPH / ratio, 7.8 * MPH / ratio
 
 
 @cache

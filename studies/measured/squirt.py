@@ -2,9 +2,10 @@
 
 Three models of one stroke: bare (a spring along the normal, 1.1 ms), patchwork (the same with a dome of 9.5 mm and
 Mindlin's ratio of shear, 0.75), and the whole stroke (LeatherTip of 6 mm, 140 MPa, axial waves, axial force on the bent
-shaft). Pool ball, 2 m/s, e = 0.73 of the whole cue, mu = 0.7. Only the diameter of each measured tip was published, so
-a usual drawing stands for each cue; the break cue is a maple shaft a size wider with a hard tip (0.9 ms, e 0.85).
-Measured: D. Alciatore, Billiards Digest, September 2007 (by hand), February 2008 (robot), TP B.1 (data/, with sources).
+shaft). Pool ball, 2 m/s, mu = 0.7, head-on rebound 0.73 (ball's speed over the cue's). Only the diameter of each tip
+was published, so a usual drawing stands for each cue; the break cue is a maple shaft a size wider with a hard tip
+(0.9 ms, e 0.85, dome 12.7 mm by TP B.1). Measured: D. Alciatore, Billiards Digest, September 2007 (angles, by hand),
+November 2007 (pivot lengths), February 2008 (robot), TP B.1 (data/, with sources).
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 import cuefem as cf
 from cuefem.materials import material
+from cuefem.results.closed_forms import natural_pivot_length, pivot_at
 from studies import pages, strokes
 from studies.pages import table
 from studies.strokes import INCH, cue, hollow, pool_scene, squirt, whole
@@ -28,6 +30,7 @@ from studies.strokes import INCH, cue, hollow, pool_scene, squirt, whole
 TIME, DATA = 1.1e-3, pages.STUDIES / "measured" / "data"
 MODELS = {"bare": (), "patchwork": (strokes.DOME, strokes.SHEAR), "whole stroke": None}
 WHOLE = "whole stroke"
+DIME, BREAK_DOME = 8.96e-3, 12.7e-3  # m: a usual dome, and the break cue's (0.5 in, TP B.1)
 SCATTER = 0.05  # deg, assumed of a value of the series of 2007
 GRID = (0.08, 0.16, 0.24, 0.32, 0.40, 0.47)
 
@@ -47,14 +50,22 @@ def read(name: str) -> list[dict[str, str]]:
     return list(csv.DictReader(line for line in lines if not line.startswith("#")))
 
 
+SHAFTS = {"Players": "maple", "Predator": "hollow", "Stinger": "break"}
+
+
 @cache
 def measurements() -> tuple[Measurement, ...]:
     """What was measured: three strokes of 2007, two of the robot, a low-deflection shaft, a break cue."""
-    shafts = {"Players": "maple", "Predator": "hollow", "Stinger": "break"}
     rows = read("measured_squirt")
     return tuple(
-        Measurement(r["cue"], shafts[r["cue"].split()[0]], float(r["b_over_R"]), float(r["squirt_deg"])) for r in rows
+        Measurement(r["cue"], SHAFTS[r["cue"].split()[0]], float(r["b_over_R"]), float(r["squirt_deg"])) for r in rows
     )
+
+
+def pivot(offset: float, degrees: float, dome: float = DIME) -> float:
+    """Natural pivot length of an angle of squirt, in, by TP B.1."""
+    radius = strokes.POOL.radius
+    return float(natural_pivot_length(offset, math.radians(degrees), radius=radius, dome_radius=dome)) / INCH
 
 
 @cache
@@ -71,9 +82,10 @@ def scene(row: Measurement, model: str) -> cf.Scene:
     """The scene of a measurement in a model."""
     hard = row.shaft == "break"
     if model != WHOLE:
-        found = pool_scene(shaft(row.shaft), 0.9e-3 if hard else TIME, row.offset, MODELS[model] or ())
+        effects = tuple(cf.TipDome(BREAK_DOME) if hard and e == strokes.DOME else e for e in MODELS[model] or ())
+        found = pool_scene(shaft(row.shaft), 0.9e-3 if hard else TIME, row.offset, effects)
         return replace(found, tip=replace(found.tip, restitution=0.85)) if hard else found
-    phenolic = {"nu": 0.35, "rho": material("phenolic").rho} if hard else {}
+    phenolic = {"nu": 0.35, "rho": material("phenolic").rho, "dome_radius": BREAK_DOME} if hard else {}
     found = whole(shaft(row.shaft), row.offset, **phenolic)
     if hard:
         found = replace(found, tip=replace(found.tip, restitution=found.tip.restitution + 0.12))
@@ -101,6 +113,17 @@ def squirt_table() -> str:
     for name, some in {"all": measurements(), "2007, maple": measurements()[:3], "robot": measurements()[3:5]}.items():
         rows.append([f"rms of the relative differences, {name}", "", "", *(off(m, some) for m in MODELS)])
     return table(["cue", "b/R", "measured, deg", *MODELS], rows)
+
+
+def pivot_table() -> str:
+    """Measured pivot lengths beside the models."""
+    rows = []
+    for r in read("pivot_lengths_2007"):
+        own = Measurement(r["cue"], SHAFTS[r["cue"].split()[0]], float(r["b_over_R"]), math.nan)
+        scenes = [scene(own, m) for m in MODELS]
+        found = [float(pivot_at(s, own.offset, math.radians(squirt(s)))) / INCH for s in scenes]
+        rows.append([own.cue, f"{own.offset:.3f}", r["pivot_length_in"], *(f"{p:.1f}" for p in found)])
+    return table(["cue", "b/R", "measured, in", *MODELS], rows)
 
 
 def depends_table() -> str:
@@ -170,7 +193,9 @@ def asked_bore(E: float) -> float:
 
 
 def text() -> str:
-    robot, solid, soft = measurements()[3], measurements()[0], measurements()[5]
+    low, high = strokes.robot_speeds()
+    robot, solid, soft, hard = (measurements()[i] for i in (3, 0, 5, 6))
+    angles = ", ".join(f"{pivot(r.offset, r.squirt):.1f}" for r in measurements()[2::-1])
     bores = ", ".join(f"{asked_bore(E):.1f} mm for {E / 1e9:g} GPa" for E in (10.8e9, 13.9e9, 16.9e9))
     return pages.page(
         "Measured squirt, nothing fitted",
@@ -178,15 +203,26 @@ def text() -> str:
         f"At b/R 0.375 the whole stroke gives {computed(robot, WHOLE):.2f}° (a robot measured 2.30 and 2.43°); over "
         f"seven published values it is off by {off(WHOLE)} (patchwork {off('patchwork')}, bare beam {off('bare')}). A "
         f"low-deflection shaft has {computed(soft, WHOLE) / computed(solid, WHOLE):.2f} of a maple shaft's squirt "
-        "(measured 0.72). It fails in the series of 2007 and for a break cue. [Masses on the shaft](added_mass.md) "
+        "(measured 0.72). It fails in the angles of 2007. Nothing is fitted to squirt: E of the leather, 140 MPa, "
+        "gives a published contact time, 1.135 ms, on a cue rigid along its axis. [Masses](added_mass.md) on the shaft "
         "have a page of their own.",
         squirt_table(),
         "The two series contradict each other: read at b/R 0.375, that of 2007 gives 1.87°, and the robot measured "
         "23 to 30 % more with the same cue. The article shows 0.55 to 1.13° at b/R 0.187.",
+        "## Pivot lengths, November 2007",
+        pivot_table(),
+        "The cue is turned about the bridge until squirt cancels; zeros of angle and offset cancel too. Strokes were "
+        "fast, balls sprayed with silicone; speeds and errors were not published. Each model has its own dome. "
+        f"Read as pivot lengths (dome {1e3 * DIME:.2f} mm, a dime), the maple angles of September 2007 are {angles} in "
+        "at b/R 0.187, 0.320, 0.453, for a cue that measured 12.7 in two months later. The Predator's angle reads as "
+        f"{pivot(soft.offset, soft.squirt):.1f} in and the Stinger's, with its dome, as "
+        f"{pivot(hard.offset, hard.squirt, BREAK_DOME):.1f} in, which are their pivot lengths: these two cues may have "
+        "been measured once, not twice.",
         "## What squirt depends on: maple shaft, b/R 0.375",
         depends_table(),
-        "Players say that the hardness of the tip has no practical effect (Alciatore's FAQ), and the robot found no "
-        "trend over 1.6 to 3.5 m/s, with a scatter of 9 %.",
+        "Players say that the hardness of the tip has no practical effect (Alciatore's FAQ); nobody measured that to "
+        "better than ±5 %. The robot found no trend over 3.6 to 7.8 mph of the ball between two beams, which are "
+        f"{low:.1f} to {high:.1f} m/s of the cue, with a scatter of 9 %.",
         "## The series of 2007",
         zero_table(),
         "No correction fits to the scatter assumed; three values do not say which it was, or whether it was one of "

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from cuefem.io.measured_folder import load_measured
-from cuefem.measurements.measurement_types import AddedMass, Measurement, Squirt
+from cuefem.measurements.measurement_types import AddedMass, Measurement, PivotLength, Squirt
 from cuefem.results.quantities import with_unit
 from studies.pages import STUDIES
 from tests.helpers.command_line import call
@@ -36,6 +36,13 @@ def test_squirts_are_those_of_the_data() -> None:
         own = found(CUES[row["cue"].split()[0]], Squirt)
         values = [(one.offset, round(math.degrees(one.measured), 6)) for one in own]
         assert (float(row["b_over_R"]), float(row["squirt_deg"])) in values
+
+
+def test_pivot_lengths_are_those_of_the_data() -> None:
+    for row in rows("pivot_lengths_2007"):
+        (own,) = found(CUES[row["cue"].split()[0]], PivotLength)
+        told = (float(row["b_over_R"]), float(row["pivot_length_in"]))
+        assert (own.offset, own.value / 0.0254) == pytest.approx(told, rel=1e-12)
 
 
 def test_added_masses_are_those_of_the_data() -> None:
@@ -72,4 +79,4 @@ def test_compare(name: str, tmp_path: Path) -> None:
 def test_compare_the_longest(tmp_path: Path) -> None:
     status, _, err = call("compare", PLAYERS, "-o", tmp_path / "page.html")
     assert (status, err) == (0, "")
-    assert "Squirt with 11 g on the shaft" in (tmp_path / "page.html").read_text(encoding="utf-8")
+    assert "squirt ratio, 11 g at 50.8 mm" in (tmp_path / "page.html").read_text(encoding="utf-8")
