@@ -100,6 +100,7 @@ def test_table_friction_of_a_head_on_slide():
     angle, mu, e = 0.3, 0.15, 0.8
     scene = Scene(LumpedCue(0.5, 0.01), tip=Tip(e, 0.0, 1e-3), stroke=Stroke(1.0))
     outcome = strike(replace(scene, effects=(Elevation(angle, mu),)), Resolution(1, 1, 1, 1600))
+    assert outcome.regime == "miscue"  # the tip slides over the ball in the vertical plane alone
     M, along = scene.ball.mass, cos(angle) - mu * sin(angle)
     impulse = (1 + e) / (1 / 0.5 + cos(angle) * along / M)
     assert abs(outcome.ball_speed / (impulse * along / M) - 1) < 1e-5

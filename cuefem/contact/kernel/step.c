@@ -81,7 +81,7 @@ static void follow(Work *w, double v_n)
 static int grip_of(const Work *w, double u)
 {
     const Contact *c = w->c;
-    if (c->friction == 0) return u < 0 ? SLIP : u > 0 ? SLIP_BACK : STICK;
+    if (c->friction == 0 && c->forces == 2) return u < 0 ? SLIP : u > 0 ? SLIP_BACK : STICK;
     int stops = !w->side && !w->held && c->patch == RIGID_PATCH; /* within the step: it slips still */
     if (c->patch != PARTIAL_SLIP)
         return !stops || w->rest[T] == 0 ? w->side : w->rest[T] < 0 ? SLIP : SLIP_BACK;
