@@ -145,16 +145,18 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, course: bool
     work = kernel.contact_new(ctypes.byref(c))
     if not work:
         raise MemoryError("no memory for the steps of a contact")
-    while c.status == _RUNNING:
-        rows, after = np.empty(CHUNK, STEP), np.empty((CHUNK if watched else 0, 2, len(propagator.rates)))
-        count = kernel.contact_steps(work, CHUNK, rows.ctypes.data, after.ctypes.data if watched else None)
-        records.append(rows[:count])
-        if watched:
-            states.append(after[:count, 0] + 1j * after[:count, 1])
-            xi = np.concatenate([states[-2][-1:], states[-1]])
-            dissipated.append(propagator.dissipated(xi, rows["length"][:count]))
-            states = states if course else states[-1:]
-    kernel.contact_free(work)
+    try:
+        while c.status == _RUNNING:
+            rows, after = np.empty(CHUNK, STEP), np.empty((CHUNK if watched else 0, 2, len(propagator.rates)))
+            count = kernel.contact_steps(work, CHUNK, rows.ctypes.data, after.ctypes.data if watched else None)
+            records.append(rows[:count])
+            if watched:
+                states.append(after[:count, 0] + 1j * after[:count, 1])
+                xi = np.concatenate([states[-2][-1:], states[-1]])
+                dissipated.append(propagator.dissipated(xi, rows["length"][:count]))
+                states = states if course else states[-1:]
+    finally:
+        kernel.contact_free(work)
     if c.status != _ENDED:
         raise _failure(model, c)
     tangential = c.work[0] + c.work[2]
