@@ -18,7 +18,7 @@ from cuefem.quantity.fields import Quantity, check_fields
 from cuefem.scene import Scene
 from cuefem.vary import PLACES, Path, place, replaced
 
-MODEL_OF_SQUIRT = 0.1  # relative, one for all squirts: what the law of the shrinking patch is worth (leather_tip.md)
+MODEL_OF_SQUIRT = 0.1  # relative, one for all: what the law of the shrinking patch is worth (handbook: Effects)
 ZERO, SQUIRT_MODEL, BALL_TIME = "zero", "squirt model", "ball time"
 
 

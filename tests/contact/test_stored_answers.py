@@ -64,7 +64,7 @@ def test_energy_of_a_kind_closes(kind: str) -> None:
 @pytest.mark.heavy
 @pytest.mark.parametrize("damped", [False, True])
 def test_end_masses_answer_as_stored(damped: bool) -> None:
-    """The default modes leave up to 0.6 % of an end mass (studies/accuracy/default_accuracy.md)."""
+    """The default modes leave up to 0.6 % of an end mass (handbook: Accuracy)."""
     errors = []
     for row in cues():
         effects = (cf.StructuralDamping(),) if damped else ()

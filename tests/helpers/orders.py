@@ -1,4 +1,4 @@
-"""Measures orders of convergence; no tests. tests/test_orders.py shows that it can fail."""
+"""Measures orders of convergence; no tests."""
 
 from __future__ import annotations
 
