@@ -98,7 +98,7 @@ def strike_sheet(record: Record, scene: Record) -> Sheet:
     """One strike, a column for each model."""
     coupled = record["models"]["coupled"]
     missed = [MISCUE] if coupled["grip"] in MISSED else []
-    exact = ", modes kept for 0.5 % of squirt" if "length" in scene["cue"] and coupled["error"] is None else ""
+    exact = ", modes and steps for 0.2 % of squirt" if "length" in scene["cue"] and coupled["error"] is None else ""
     pivots = any(model.get("pivot_length") is not None for model in record["models"].values())
     return replace(
         models_sheet(record),

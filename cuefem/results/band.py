@@ -19,7 +19,7 @@ LEVEL, LEVEL_OF_SPRING = 0.15, 0.28
 # Of two shafts' squirt: the error of the logarithm of their ratio as a part of that logarithm, of one measured pair of
 # shafts and of 31 places of two masses on a shaft. Nothing that two shafts share adds to it.
 OF_DIFFERENCE = 0.53
-COMPUTED = 0.005  # of squirt at the default resolution
+COMPUTED = 0.002  # of squirt at the default resolution: 0.19 % at most (studies/accuracy/accuracy.md)
 
 
 class Band(NamedTuple):
