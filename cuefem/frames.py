@@ -34,6 +34,11 @@ if TYPE_CHECKING:
 __all__ = ["of_batch", "of_drivers", "of_store", "of_study"]
 
 
+def __dir__() -> list[str]:
+    """What a person looks for here, without what the module imports."""
+    return __all__
+
+
 def _pandas() -> Any:
     try:
         return importlib.import_module("pandas")

@@ -35,6 +35,12 @@ if TYPE_CHECKING:
 
 __all__ = ["end_mass", "forces", "modes", "shaft", "squirt"]
 
+
+def __dir__() -> list[str]:
+    """What a person looks for here, without what the module imports."""
+    return __all__
+
+
 PLOT_OFFSETS = tuple(np.round(np.arange(0.0, 0.525, 0.025), 3).tolist())
 FROM_TIP, TIME = with_heading("from the tip", "m"), with_heading("time", "s")
 _SOFT, _WOODY, _METAL = 1e9, (300.0, 1250.0), 2500.0  # Pa: leather and foam; kg/m3: woods, metals

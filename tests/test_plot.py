@@ -77,3 +77,8 @@ def test_where_end_mass_lives_behind_a_leather_tip() -> None:
     assert "without" not in cf.plot.end_mass(bare, at=AT).get_title()
     with pytest.raises(ValueError, match=r"takes a scene without effects, LeatherTip apart; got TipDome"):
         cf.plot.end_mass(replace(SCENE, effects=(cf.TipDome(0.0095),)))
+
+
+def test_dir_shows_what_plots_and_what_frames() -> None:
+    assert dir(cf.plot) == ["end_mass", "forces", "modes", "shaft", "squirt"]
+    assert dir(cf.frames) == sorted(cf.frames.__all__)

@@ -260,7 +260,10 @@ def check_fields(instance: Any) -> None:
 def scalar(name: str, value: Number) -> float:
     """``value`` as a float where one number is needed; ValueError for an array."""
     if isinstance(value, np.ndarray):
-        raise ValueError(f"{name} must be one number; got an array of shape {value.shape}")
+        problem = f"{name} must be one number; got an array of shape {value.shape}"
+        raise ValueError(
+            problem + ("; impulse alone takes arrays" if name.startswith(("Stroke.", "Ball.", "Tip.")) else "")
+        )
     return value
 
 

@@ -56,7 +56,7 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (struck(kim_scene(), ball=cf.Ball(mass=TWO / 10)), "Ball.mass must be one number"),
     (struck(cf.Scene(cf.LumpedCue(TWO / 4, 0.003))), "LumpedCue.mass"),
     (struck(cf.Scene(cf.LumpedCue(0.5, TWO / 300))), "LumpedCue.end_mass"),
-    (struck(leather_scene(speed=TWO)), "Stroke.speed must be one number; got an array of shape (2,)"),
+    (struck(leather_scene(speed=TWO)), "Stroke.speed must be one number; got an array of shape (2,); impulse alone"),
     (struck(leather_scene(e=0.05)), "LeatherTip; got 0.05: leather that gives back less rings on"),
     (struck(leather_scene(speed=60.0)), "mm): give LeatherTip a larger height or E, or Stroke a lower speed"),
     *[
