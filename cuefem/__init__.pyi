@@ -35,9 +35,9 @@ from .effects import (
     TipLayer as TipLayer,
     TipShear as TipShear,
 )
-from .endmass.drives import end_mass as end_mass
+from .endmass.definitions import end_mass as end_mass
 from .endmass.lumped import impulse as impulse, lump as lump
-from .endmass.undamped import StickLimit as StickLimit
+from .endmass.sticking_contact import StickLimit as StickLimit
 from .games import usual_scene as usual_scene
 from .io import load as load, save as save
 from .io.paraview import save_motion as save_motion

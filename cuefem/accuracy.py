@@ -19,7 +19,7 @@ from cuefem.beam.tip import TipModes
 from cuefem.beam.waves import ended_mesh_for, modes_below
 from cuefem.contact.strike import strike, strike_modes
 from cuefem.cue import Array
-from cuefem.endmass.drives import end_mass, formula_of
+from cuefem.endmass.definitions import end_mass, formula_of
 from cuefem.quantity.fields import Quantity, check_kind, scalar
 from cuefem.scene import MOST_STEPS, Outcome, Resolution, Scene
 from cuefem.tip_modes import MOST, tip_modes_from, turning

@@ -15,7 +15,7 @@ from cuefem.beam.system import assemble
 from cuefem.beam.tail import tail
 from cuefem.beam.waves import mesh_for
 from cuefem.contact.strike import strike_modes
-from cuefem.endmass.drives import formula_of
+from cuefem.endmass.definitions import formula_of
 from cuefem.tip_modes import tip_modes_from, turning
 from tests.helpers.accuracy_scenes import NAMES, endless_friction, family, scene
 

@@ -8,7 +8,7 @@ from cuefem import Cue, Material, Segment, end_mass
 from cuefem.beam.spectrum import ended
 from cuefem.beam.system import assemble
 from cuefem.beam.waves import ended_mesh_for
-from cuefem.endmass.drives import end_mass_spreads, formula_of
+from cuefem.endmass.definitions import end_mass_spreads, formula_of
 from cuefem.tip_modes import tip_modes_from
 from tests.helpers.cues import LEATHER, MAPLE, kim, scene
 

@@ -22,7 +22,7 @@ from cuefem.designer.design import Design, State, Step
 from cuefem.designer.kept import state_of, text_of
 from cuefem.designer.sliders import sliders
 from cuefem.effects import effect_kinds
-from cuefem.endmass.drives import DEFINITIONS
+from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.measurements.uncertain_parameters import parameters_of
 from cuefem.results.quantities import RESULTS
 from cuefem.vary import PLACES, knobs_of, paths, varied

@@ -16,7 +16,7 @@ from cuefem.cli.printing import Command, command, output_option, page_option, pr
 from cuefem.cli.progress import followed
 from cuefem.cli.strokes import blow_options, tip_options
 from cuefem.design.design_changes import design_changes
-from cuefem.endmass.drives import DEFINITIONS
+from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.io import InputError, load_accuracy, save, save_page
 from cuefem.quantity.fields import Quantity
 from cuefem.quantity.units import number

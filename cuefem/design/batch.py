@@ -17,7 +17,8 @@ from cuefem.beam.basis import table
 from cuefem.beam.system import element_matrices, weighted_strains
 from cuefem.beam.tail import ritz
 from cuefem.cue import Array, Cue, Section, SegmentRows, section_properties
-from cuefem.endmass.undamped import StickLimit
+from cuefem.endmass.impulse_response import ImpulseResponse
+from cuefem.endmass.sticking_contact import StickLimit
 from cuefem.results.designs import Stick
 from cuefem.scene import Resolution, Scene
 
@@ -129,13 +130,31 @@ class BatchModes:
     """Flexible bending modes of a batch: frequencies (cues, count), Hz; tip, (cues, count), w(0) of the mass-normalised
     shapes, 1/sqrt(kg); rigid, (cues,), the sum of the two rigid motions' squares of it, 1/kg.
 
-    top: (cues,), rad/s, the highest frequency of the modes where a tail follows them, two numbers more; else None.
+    radiation: (cues, 2, 2), 1/s, of the tail that the last two of the numbers are (`TipModes`), or None.
     """
 
     frequencies: Array
     tip: Array
     rigid: Array
-    top: Array | None = None
+    radiation: Array | None = None
+
+    @property
+    def response(self) -> ImpulseResponse:
+        """The impulse responses of the cues: the tail's vectors are coupled by what they radiate."""
+        omega, still = 2 * np.pi * self.frequencies, np.zeros((len(self.rigid), 1))
+        kept = omega.shape[1] - (0 if self.radiation is None else self.radiation.shape[1])
+        rates, weights = [still, 1j * omega[:, :kept]], [self.rigid[:, None], self.tip[:, :kept] ** 2]
+        if self.radiation is not None:
+            size = self.radiation.shape[1]
+            motion = np.zeros((len(omega), 2 * size, 2 * size))
+            motion[:, size:, size:], turn = -self.radiation, omega[:, kept:, None] * np.eye(size)
+            motion[:, :size, size:], motion[:, size:, :size] = turn, -turn
+            across = np.concatenate([np.zeros((len(omega), size)), self.tip[:, kept:]], axis=1)
+            own, vectors = np.linalg.eig(motion)
+            read = (across[:, None] @ vectors)[:, 0]
+            rates.append(own)
+            weights.append(read * np.linalg.solve(vectors, across[..., None].astype(complex))[..., 0])
+        return ImpulseResponse(np.concatenate(weights, axis=1).astype(complex), np.concatenate(rates, axis=1))
 
 
 def batch_frequencies(batch: CueBatch, count: int, *, at: Resolution) -> Array:
@@ -164,9 +183,8 @@ def batch_stick(
     at : Resolution
         Elements, order and modes of every cue. Take an order of 5/3 of the modes.
     ended : bool
-        Whether a tail (`cuefem.beam.tail`) stands for the modes that are left out, fading where it has a dashpot
-        (`cuefem.endmass.undamped.fade`). Without it the result is the plain sum of modes that `end_mass` gives for one
-        cue at a resolution.
+        Whether a tail (`cuefem.beam.tail`) stands for the modes that are left out. Without it the result is the plain
+        sum of modes that `end_mass` gives for one cue at a resolution.
 
     Returns
     -------
@@ -214,7 +232,7 @@ def batch_stick(
 def stick_of(batch: CueBatch, modes: BatchModes, scenes: Scene | Sequence[Scene] | StickLimit) -> Stick:
     """Stick end mass, kg, and small-offset squirt over phi, from the modes of cues, each in its own scene's place."""
     law = _law(batch, scenes)
-    J = law.transverse_impulse(2 * np.pi * modes.frequencies, modes.tip, modes.rigid, top=modes.top)
+    J = law.transverse_impulse(modes.response.held(law.c, law.T), law.T)
     return Stick(law.end_masses(J), law.slope(J))
 
 
@@ -231,11 +249,11 @@ def _law(batch: CueBatch, scenes: Scene | Sequence[Scene] | StickLimit) -> Stick
 
 
 def _joined(parts: Sequence[BatchModes]) -> BatchModes:
-    tops = [part.top for part in parts if part.top is not None]
+    radiations = [part.radiation for part in parts if part.radiation is not None]
     frequencies, tip, rigid = (
         np.concatenate([getattr(part, name) for part in parts]) for name in ("frequencies", "tip", "rigid")
     )
-    return BatchModes(frequencies, tip, rigid, np.concatenate(tops) if tops else None)
+    return BatchModes(frequencies, tip, rigid, np.concatenate(radiations) if radiations else None)
 
 
 @dataclass(frozen=True)
@@ -336,16 +354,15 @@ def _block_modes(batch: CueBatch, count: int, at: Resolution, ended: bool) -> Ba
     vectors = back @ (y[:, :, chosen] / np.sqrt(mu[:, None, chosen]))
     omega, mix = _polished(beams, vectors)
     # the rigid part: inverse of the 2 x 2 mass of translation and rotation about the tip, its translation entry
-    tip, rigid, top = np.abs(np.einsum("bj,bjk->bk", vectors[:, 0], mix)), _rigid_tip(batch), None
+    tip, rigid, radiation = np.abs(np.einsum("bj,bjk->bk", vectors[:, 0], mix)), _rigid_tip(batch), None
     if ended:
-        top = omega[:, -1]
-        high, follow = _tail(beams, back, vectors @ mix, top)
+        high, follow, radiation = _tail(beams, back, vectors @ mix, omega[:, -1])
         omega, tip = np.concatenate([omega, high], axis=1), np.concatenate([tip, follow], axis=1)
-    return BatchModes(omega / (2 * np.pi), tip, rigid, top)
+    return BatchModes(omega / (2 * np.pi), tip, rigid, radiation)
 
 
-def _tail(beams: Beams, back: Array, flexible: Array, top: Array) -> tuple[Array, Array]:
-    """(omega, w(0)) of the vectors that end the modes up to ``top``, (cues, steps) each; their dashpot is left out."""
+def _tail(beams: Beams, back: Array, flexible: Array, top: Array) -> tuple[Array, Array, Array]:
+    """(omega, w(0), radiation) of the vectors that end the modes up to ``top``, (cues, steps) each; of w(0) >= 0."""
     rigid = beams.rigid
     mass = rigid.transpose(0, 2, 1) @ (beams.M @ rigid)
     rigid = rigid @ np.linalg.inv(np.linalg.cholesky(mass)).transpose(0, 2, 1)
@@ -357,7 +374,9 @@ def _tail(beams: Beams, back: Array, flexible: Array, top: Array) -> tuple[Array
 
     known = np.concatenate([rigid, flexible], axis=2)
     vectors = ritz(known, beams.K, beams.M, force, shift=beams.shift, deflect=deflect, highest=top)
-    return vectors.omega, np.abs(vectors.vectors[:, 0])
+    across = vectors.vectors[:, 0]
+    signs = np.where(across < 0, -1.0, 1.0)
+    return vectors.omega, signs * across, signs[:, :, None] * vectors.radiation * signs[:, None]
 
 
 def _polished(beams: Beams, vectors: Array) -> tuple[Array, Array]:

@@ -11,7 +11,6 @@ so that dm is a quadratic form in the modes' curvatures, shears, deflections and
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,11 +20,10 @@ from cuefem.beam.basis import table
 from cuefem.beam.modes import solve
 from cuefem.beam.system import System, assemble, slopes
 from cuefem.cue import Array
-from cuefem.endmass.undamped import StickLimit
+from cuefem.endmass.impulse_response import STEPS, ImpulseResponse, toeplitz_solution
+from cuefem.endmass.sticking_contact import StickLimit
 from cuefem.scene import Resolution, Scene
 from cuefem.tip_modes import PLAIN_PERIODS, default_resolution
-
-Response = Callable[[Any], Any]  # of a squared frequency
 
 
 @dataclass(frozen=True)
@@ -141,56 +139,51 @@ def _densities(system: System, vectors: Array, stiff: Array, heavy: Array, gradi
 
 
 def _stick(squares: Array, phi: Array, rigid: float, scene: Scene) -> _Gradient:
-    """Derivatives of the stick end mass, a function of J = (K - 1)/total + v' R(S) v/total^2 and of K and c.
+    """Derivatives of the stick end mass, by the adjoint of the linear solve that gives its J (`ImpulseResponse.held`).
 
-    The tip is held by the inertia 1/still, still = rigid + c: S = diag(lambda) - v v'/total, v = phi omega, total =
-    sum phi^2 + still, R(mu) = swing(mu)/sqrt(mu); see `cuefem.endmass.undamped`.
+    J is a sum of ``edges`` times the impulse at the edges of the steps. The mean velocities over the steps are linear
+    in the modes' phi^2; a response R(omega) is the derivative of J to the phi^2 of a mode of this frequency.
     """
-    limit = StickLimit.of(scene)
-    omega, total = np.sqrt(squares), float(phi @ phi) + rigid + limit.c
-    v = phi * omega
-    poles, Y = np.linalg.eigh(np.diag(squares) - np.outer(v, v) / total)
+    limit, omega = StickLimit.of(scene), np.sqrt(squares)
+    T, c, K = float(limit.T), float(limit.c), float(limit.K)
+    tip = ImpulseResponse(np.append(rigid, phi**2).astype(complex), 1j * np.append(0.0, omega))
+    h, t = T / STEPS, T / STEPS * np.arange(STEPS)
+    after_blow, column = tip.means_with_ball(c, T)
+    blow = 1 / (float(phi @ phi) + rigid + c)
+    force = toeplitz_solution(column, 1 - blow * after_blow)
+    given = -np.diff(limit.normal_impulse(T - np.append(t, T)))
+    normal = (np.append(given, 0.0) + np.append(0.0, given)) / 2  # of the edges in the part of J that goes with K
+    edges = K * normal
+    edges[-1] -= 1
+    adjoint = toeplitz_solution(column, h * np.cumsum(edges[:0:-1]))[::-1]
+    of_column = -np.correlate(adjoint, force, "full")[STEPS - 1 :]
+    of_column[0] /= 2
+    of_blow = -(blow**2) * (float(edges.sum()) - float(adjoint @ after_blow))
 
-    def R(mu: Any) -> Any:
-        return limit.swing(np.sqrt(mu)) / np.sqrt(mu)
+    def R(omega: Any) -> Array:
+        half = omega * h / 2
+        mean = np.sin(half) / half
+        blown = mean * np.cos(omega * (t[:, None] + h / 2))
+        pushed = h * mean**2 * np.cos(omega * t[:, None])
+        return np.asarray(of_blow - blow * (adjoint @ blown) + of_column @ pushed)
 
-    a = Y.T @ v
-    pulled = Y @ (R(poles) * a)
-    P = Y @ (np.outer(a, a) * _divided_differences(R, poles)) @ Y.T / total**2
-    energy, factor = float(v @ pulled), limit.K - 1
-    J = factor / total + energy / total**2
-    to_v = 2 * pulled / total**2 - 2 * P @ v / total
-    to_total = -factor / total**2 + float(v @ P @ v) / total**2 - 2 * energy / total**3
-    to_K = 1 / total + float(a**2 @ (limit.swing_per_K(np.sqrt(poles)) / np.sqrt(poles))) / total**2
+    impulses = np.append(blow, blow + h * np.cumsum(force))
+    J, to_K, still = float(edges @ impulses), float(normal @ impulses), float(R(np.full(1, 1e-9 / T))[0])
     m = float(limit.end_mass(J))
-    scale = m**2 * (limit.K - 1) / J**2  # dm/dJ at fixed c and K
-    c, K, M, m_a = limit.c, limit.K, scene.ball.mass, scene.axial_mass
+    scale = m**2 * (K - 1) / J**2  # dm/dJ at fixed c and K
+    M, m_a, head_on = scene.ball.mass, scene.axial_mass, limit.head_on_mass
     # K = (1 + e)(c + 1/m_a)/(1/M + 1/m_a), c proportional to 1/M
-    dc_dM, head_on = -c / M, limit.head_on_mass
+    dc_dM = -c / M
     dK_dM = (1 + limit.e) * head_on * dc_dM + K * head_on / M**2
     dK_dma = (-(1 + limit.e) * head_on + K * head_on) / m_a**2
-    per_c, per_K = scale * to_total + m**2, scale * to_K - m**2 / J
+    per_c, per_K = scale * still + m**2, scale * to_K - m**2 / J
+    response, step = R(omega), 1e-30
+    slope = np.imag(R(omega * (1 + 1j * step))) / (step * omega)  # by a complex step, exact to rounding
     return _Gradient(
         m,
-        scale * (np.diag(P) + to_v * phi / (2 * omega)),
-        scale * (to_v * omega + to_total * 2 * phi),
-        scale * to_total,
+        scale * phi**2 * slope / (2 * omega),
+        scale * response * 2 * phi,
+        scale * still,
         ball_mass=float(per_c * dc_dM + per_K * dK_dM),
         axial_mass=float(per_K * dK_dma),
     )
-
-
-def _derivative(function: Response, at: Array) -> Array:
-    """Derivative of an analytic function by a complex step, exact to rounding."""
-    step = 1e-30 * np.maximum(np.abs(at), 1.0)
-    return np.asarray(np.imag(function(at + 1j * step)) / step)
-
-
-def _divided_differences(function: Response, at: Array) -> Array:
-    """(f(a) - f(b))/(a - b) for all pairs; the derivative between points too close for the difference."""
-    values, gaps = function(at), at[:, None] - at
-    near = np.abs(gaps) < 1e-6 * (np.abs(at[:, None]) + np.abs(at))
-    middles = (at[:, None] + at) / 2
-    differences = (values[:, None] - values) / np.where(near, 1.0, gaps)
-    differences[near] = _derivative(function, middles[near])
-    return np.asarray(differences)

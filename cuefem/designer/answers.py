@@ -21,7 +21,7 @@ from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array
 from cuefem.design.sensitivity import sensitivity
-from cuefem.endmass.drives import DEFINITIONS
+from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.io.ready import ready_cues
 from cuefem.report.squirt import two_part_curve
 from cuefem.report.strike_table import outcome_record

@@ -11,7 +11,7 @@ from cuefem.designer.answers import TONES, Answers, note
 from cuefem.designer.design import Design
 from cuefem.designer.sliders import choices, sliders
 from cuefem.designer.unit_system import METRIC, UnitSystem
-from cuefem.endmass.drives import DEFINITIONS
+from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.report import table
 from cuefem.report.glossary import subscripts
 from cuefem.report.strike_table import MISCUE

@@ -9,9 +9,8 @@ import numpy as np
 
 from cuefem.beam.tip import TipModes
 from cuefem.contact.impulse_space import impact
-from cuefem.cue import LumpedCue
-from cuefem.endmass.drives import _gripping, end_mass, stick_at_offset, sticking_squirt
-from cuefem.endmass.root import zero
+from cuefem.cue import Array, LumpedCue
+from cuefem.endmass.definitions import MANY, _gripping, end_mass, stick_at_offset, sticking_squirt, zoomed_root
 from cuefem.quantity.fields import check_kind, scalar
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import Solved
@@ -66,13 +65,15 @@ def _coupling(cue: LumpedCue, scene: Scene, squirt: float) -> float:
     """The coupling, 1/kg, with which the squirt of a lumped cue whose tip never slips is ``squirt``, rad."""
     most, side = (1 - 1e-9) / math.sqrt(cue.mass * cue.end_mass), np.sign(scene.stroke.offset)
 
-    def excess(part: float) -> float:
+    def excess(part: Array) -> Array:
         coupled = replace(cue, coupling=part * most)
-        return float(side * impact(replace(_gripping(scene), cue=coupled, effects=())).squirt) - squirt
+        return np.asarray(side * impact(replace(_gripping(scene), cue=coupled, effects=())).squirt - squirt)
 
-    if not excess(-1.0) < 0 < excess(1.0):
+    parts = np.linspace(-1.0, 1.0, MANY)
+    excesses = excess(parts)
+    if not excesses[0] < 0 < excesses[-1]:
         raise ValueError(f"lump: no coupling of a lumped cue has the squirt {squirt:.6g} rad of a tip that sticks")
-    return most * zero(excess, -1.0, 1.0)
+    return most * zoomed_root(excess, parts)
 
 
 def impulse(scene: Scene) -> Outcome:

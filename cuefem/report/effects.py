@@ -12,7 +12,7 @@ from cuefem.beam.tail import tail
 from cuefem.contact.strike import strike, strike_modes
 from cuefem.design.worth import Change, Variant, change, variants
 from cuefem.effects import effect_kinds
-from cuefem.endmass.drives import equivalent_end_mass
+from cuefem.endmass.definitions import equivalent_end_mass
 from cuefem.report.scene_words import assumptions, effect_words
 from cuefem.results.quantities import NONE, degrees, grams, with_unit
 from cuefem.results.records import Record, Sheet

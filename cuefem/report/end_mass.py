@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from cuefem.endmass.drives import DEFINITIONS, Spread, spreads_of
+from cuefem.endmass.definitions import DEFINITIONS, Spread, spreads_of
 from cuefem.report.scene_words import assumptions, listed, tip_effect_notes
 from cuefem.results.closed_forms import cue_end_mass
 from cuefem.results.quantities import NONE, RESULTS, grams, with_unit

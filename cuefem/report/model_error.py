@@ -16,7 +16,7 @@ from cuefem.beam.tip import TipModes, free_tip_modes, tip_modes
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Cue
 from cuefem.effects.base import CueEffect
-from cuefem.endmass.drives import DEFINITIONS
+from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.results.quantities import TRADE, scaled
 from cuefem.results.records import Record, Sheet, sheet
 from cuefem.scene import Scene

@@ -10,7 +10,7 @@ import numpy as np
 
 from cuefem.beam.tip import TipModes
 from cuefem.cue import LumpedCue
-from cuefem.endmass.drives import stick_at_offset
+from cuefem.endmass.definitions import stick_at_offset
 from cuefem.endmass.lumped import lump_modes
 from cuefem.quantity.fields import scalar
 from cuefem.report.scene_words import tip_effect_notes

@@ -17,7 +17,7 @@ from cuefem.beam.tip import TipModes
 from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.design.design_changes import design_changes
-from cuefem.endmass.drives import DEFINITIONS
+from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.io.ready import ready_cues
 from cuefem.materials import material_name
 from cuefem.quantity.fields import scalar

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from cuefem.cue import Array
-from cuefem.endmass.drives import DEFINITIONS, Definition
+from cuefem.endmass.definitions import DEFINITIONS, Definition
 from cuefem.results.designs import Designs
 from cuefem.results.quantities import RESULTS, Result
 

@@ -17,8 +17,9 @@ from cuefem.contact.outcome import grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array
 from cuefem.effects import Support
-from cuefem.endmass.drives import DEFINITIONS, Definition, flexible, small_offset_slope, stick
-from cuefem.endmass.undamped import StickLimit, stick_reason
+from cuefem.endmass.definitions import DEFINITIONS, Definition, small_offset_slope, stick
+from cuefem.endmass.impulse_response import ImpulseResponse
+from cuefem.endmass.sticking_contact import StickLimit, stick_reason
 from cuefem.games import GAMES
 from cuefem.results.closed_forms import pivot_length
 from cuefem.scene import Outcome, Resolution, Scene
@@ -142,7 +143,7 @@ class Designs:
             slope = small_offset_slope(tip, scene)
             none = np.isnan(limit.end_masses(limit.impulse(slope)))
             return np.nan if none else stick(tip, scene), slope
-        J = limit.transverse_impulse(*flexible(tip))
+        J = limit.transverse_impulse(ImpulseResponse.of(tip).held(limit.c, limit.T), limit.T)
         return limit.end_masses(J), float(limit.slope(J))
 
     def stick_at(self, offset: float) -> Array:

@@ -21,7 +21,7 @@ from cuefem.beam.tip import TipModes, lumped_tip_modes
 from cuefem.beam.waves import ended_mesh_for
 from cuefem.contact import laws
 from cuefem.contact.strike import strike_modes
-from cuefem.endmass.drives import DEFINITIONS
+from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.games import without_leather
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved, tip_modes_from, turning

@@ -12,7 +12,7 @@ import pytest
 
 from cuefem import Cue, LumpedCue, Material, PointMass, Resolution, Scene, Tip, load
 from cuefem.design.sensitivity import Sensitivity, sensitivity
-from cuefem.endmass.drives import end_mass
+from cuefem.endmass.definitions import end_mass
 from tests.helpers.cues import carbon_tube, kim, low_deflection
 
 MESHES = Path(__file__).parents[2] / "meshes"

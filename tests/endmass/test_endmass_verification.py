@@ -11,7 +11,7 @@ from scipy.integrate import quad
 
 from cuefem import Cue, LumpedCue, Resolution, Scene, end_mass, modes
 from cuefem.beam.tip import TipModes
-from cuefem.endmass.drives import end_mass_spread, force, velocity
+from cuefem.endmass.definitions import end_mass_spread, force, velocity
 from cuefem.tip_modes import default_resolution, tip_modes_of
 from tests.helpers.cues import cone, kim, rod, scaled, scene
 

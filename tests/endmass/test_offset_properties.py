@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.endmass.drives import squirt_equivalent
+from cuefem.endmass.definitions import squirt_equivalent
 from cuefem.endmass.lumped import lump
 from cuefem.report.squirt import squirt_record
 from cuefem.report.strike_table import strike_record

@@ -10,7 +10,7 @@ import pytest
 
 import cuefem as cf
 from cuefem import Ball, end_mass
-from cuefem.endmass.drives import equivalent_end_mass
+from cuefem.endmass.definitions import equivalent_end_mass
 from tests.helpers.cues import kim, scene
 from tests.helpers.refusals import refuses
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from cuefem.design.worth import effect_kinds
-from cuefem.endmass.drives import DEFINITIONS, end_mass
+from cuefem.endmass.definitions import DEFINITIONS, end_mass
 from cuefem.handbook import CHAPTERS, LINES, chapters, effect_lines
 from cuefem.handbook.page import page
 from tests.helpers.command_line import said

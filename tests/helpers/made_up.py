@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
+import numpy as np
+
 import cuefem as cf
 from cuefem.designer.answers import answers, completed, with_end_mass
 from cuefem.designer.design import Design
@@ -14,7 +16,7 @@ from cuefem.designer.numbers_panel import Column, table_markup
 from cuefem.designer.words import head_markup
 from cuefem.effects import CueEffect, TipEffect, Usual
 from cuefem.effects.terms import ContactTerms
-from cuefem.endmass.drives import Definition, flexible
+from cuefem.endmass.definitions import Definition
 from cuefem.parts import Part
 from cuefem.quantity.fields import LENGTH, Quantity
 from cuefem.report.report_page import page
@@ -74,7 +76,7 @@ SPOT = Result(
 PUSH = Result("push", "m/s", 3, of=of_strike(lambda outcome: 2 * outcome.ball_speed), argument="offset", strikes=True)
 RIGID = Definition(
     *("rigid", "rigid body", "the inertia of the tip as a rigid body, plus one gram", "1/sum of the rigid phi^2"),
-    lambda tip, _: 1e-3 + 1 / flexible(tip)[2],
+    lambda tip, _: 1e-3 + 1 / float(np.sum(tip.amplitude[tip.omega == 0, 1] ** 2)),
     True,
 )
 

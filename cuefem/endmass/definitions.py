@@ -3,7 +3,7 @@
 The effective end mass m_e is the inertia that the ball feels across the cue at the tip. A vibrating cue has no single
 one: how much of it takes part depends on how the tip is driven. `DEFINITIONS`, at the end of this file, is the table of
 the definitions that every command, page and sweep reads. All of them follow from the tip's transverse impulse response
-h(t) = sum phi_k^2 cos(omega_k t).
+h(t) = sum phi_k^2 cos(omega_k t), free or damped (`cuefem.endmass.impulse_response`).
 """
 
 from __future__ import annotations
@@ -20,10 +20,8 @@ from cuefem.contact.impulse_space import impact
 from cuefem.contact.outcome import slides_away
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array, LumpedCue
-from cuefem.endmass import damped
-from cuefem.endmass import undamped as transverse
-from cuefem.endmass.root import zero
-from cuefem.endmass.undamped import StickLimit
+from cuefem.endmass.impulse_response import ImpulseResponse
+from cuefem.endmass.sticking_contact import StickLimit
 from cuefem.quantity.fields import check_kind, scalar
 from cuefem.quantity.slips import trying
 from cuefem.scene import Outcome, Resolution, Scene, Stroke
@@ -36,9 +34,9 @@ HEARD = 0.6
 
 # Offsets whose end masses are worked at a time, so that the arrays of modes by offsets stay small.
 BLOCK = 1024
-# The squirts of this many lumped end masses are computed in one call, which costs as much as two single ones; the
-# root is then sought between two neighbours.
-MASSES = 500
+# The squirts of this many lumped cues are computed in one call, which costs as much as two single ones; a root is then
+# sought between two neighbours in the same way, ZOOMS times in all.
+MANY, ZOOMS = 500, 6
 NEAR = 1e-5  # b/R that stands for the limit of small offsets
 FLAT = 1e-12  # rad: squirts that differ by less are the same
 
@@ -53,7 +51,7 @@ def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None) -
         also depend on the ball's mass and inertia factor and on the tip's restitution; "offset" and "squirt" on the
         scene's offset; "squirt" on speed and friction too. For "offset" the offset and the speed may be arrays.
     drive
-        Which definition, by its name in `cuefem.endmass.drives.DEFINITIONS`:
+        Which definition, by its name in `cuefem.endmass.definitions.DEFINITIONS`:
 
         - "stick": the tip sticks to the ball as in the coupled strike of a straight cue, in the limit of small offsets.
           Recommended.
@@ -79,7 +77,7 @@ def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None) -
 
     Notes
     -----
-    Costs one eigenproblem of the beam; "stick", "offset" and "velocity" one more of the size of the modes kept.
+    Costs one eigenproblem of the beam; "stick", "offset" and "velocity" a linear solve over equal steps too.
     Definitions and formulas: handbook: Effective end mass.
 
     Examples
@@ -149,7 +147,7 @@ def spreads_of(solved: Solved) -> Callable[[str], Spread]:
 
 
 def _couples(tip: TipModes, scene: Scene) -> bool:
-    """Whether the closed form of a sticking tip does not hold, so that a coupled strike must be solved."""
+    """Whether the tip does not follow K P(t) - 1, so that a coupled strike must be solved."""
     along = np.any(tip.amplitude[tip.omega > 0, 0] != 0)  # rod modes change the course of the normal impulse
     return bool(along) or bool(scene.at_tip)
 
@@ -172,24 +170,17 @@ def force(tip: TipModes, scene: Scene) -> float:
     A soft tip on a heavy ferrule may be at rest when the push ends, or move back: then this is huge, or negative, and
     its inverse alone is accurate.
     """
-    T = scene.contact_time
-    if tip.resistance is None:
-        final = float(transverse.half_sine_velocity(*flexible(tip), T=T))
-    else:
-        final = damped.half_sine_velocity(tip, T)
-    return 2 * T / np.pi / final  # the impulse of a half sine of unit height over the velocity it gives
+    T = float(scene.contact_time)
+    return 2 * T / np.pi / ImpulseResponse.of(tip).half_sine_velocity(T)
 
 
 def velocity(tip: TipModes, scene: Scene) -> float:
     """Impulse that makes the tip follow (1 - cos(pi t/T))/2, over its final velocity, kg."""
-    T = scene.contact_time
-    if tip.resistance is None:
-        return float(transverse.smooth_start_impulse(*flexible(tip), T=T))
-    return damped.smooth_start_impulse(tip, T)
+    return ImpulseResponse.of(tip).smooth_start_impulse(float(scene.contact_time))
 
 
 def stick(tip: TipModes, scene: Scene) -> float:
-    """End mass of the limit b -> 0 of the coupled strike, kg: `cuefem.endmass.undamped.StickLimit`.
+    """End mass of the limit b -> 0 of the coupled strike, kg: `cuefem.endmass.sticking_contact.StickLimit`.
 
     That formula knows no effects at the tip (a dome, shear) and no axial waves: with them it takes the squirt of the
     coupled strike at a small offset.
@@ -197,7 +188,7 @@ def stick(tip: TipModes, scene: Scene) -> float:
     limit = StickLimit.of(scene)
     if _couples(tip, scene):
         return float(limit.end_mass(limit.impulse(small_offset_slope(tip, scene))))
-    return float(limit.end_mass(stick_impulse(tip, limit)))
+    return float(limit.end_mass(limit.transverse_impulse(_held(tip, limit), limit.T)))
 
 
 def stick_at_offset(tip: TipModes, scene: Scene) -> Any:
@@ -207,16 +198,17 @@ def stick_at_offset(tip: TipModes, scene: Scene) -> Any:
     lightness of the cue's end. With effects at the tip or axial waves it is the lumped end mass with the squirt of a
     coupled strike that never slips. The two ways differ in second order, by about 1 % at b/R 0.3. Both sides of the
     ball are alike, and head on it is `stick`. Offsets and speeds may be arrays; a bare cue's end mass does not depend
-    on the speed. ValueError if no end mass has that squirt. Cost: for a bare cue, one eigenproblem or the rates of the
-    held tip for all offsets (where dashpots act, two matrix exponentials for each); else a strike for each.
+    on the speed. ValueError if no end mass has that squirt. Cost: for a bare cue, one linear solve for all
+    offsets; else a strike for each.
     """
     b, stroke = np.abs(scene.stroke.offset), scene.stroke
     if _couples(tip, scene):
         return _each(lambda x, U: _stuck_end_mass(tip, replace(scene, stroke=Stroke(U, x))), b, stroke.speed)
+    held = _held(tip, StickLimit.of(scene))
     if np.ndim(b) == 0:
-        return float(_end_mass_at(tip, scene, b))
+        return float(_end_mass_at(held, scene, b))
     flat, places = np.unique(b, return_inverse=True)
-    masses = [_end_mass_at(tip, scene, flat[i : i + BLOCK]) for i in range(0, len(flat), BLOCK)]
+    masses = [_end_mass_at(held, scene, flat[i : i + BLOCK]) for i in range(0, len(flat), BLOCK)]
     return np.concatenate(masses)[places.ravel()].reshape(b.shape)
 
 
@@ -239,10 +231,10 @@ def limit_at(scene: Scene, offset: Any) -> StickLimit:
     return replace(limit, K=limit.K * share, T=limit.T * np.sqrt((1 - offset**2) * share))
 
 
-def _end_mass_at(tip: TipModes, scene: Scene, offset: Any) -> Any:
+def _end_mass_at(held: Array, scene: Scene, offset: Any) -> Any:
     limit = limit_at(scene, offset)
     try:
-        return limit.end_mass(stick_impulse(tip, limit))
+        return limit.end_mass(limit.transverse_impulse(held, scene.contact_time))
     except ValueError:
         where = f"offset {offset:g}" if np.ndim(offset) == 0 else f"offsets from {offset.min():g} to {offset.max():g}"
         raise ValueError(f"end_mass drive 'offset': a tip that sticks has no end mass's squirt; got {where}") from None
@@ -254,38 +246,23 @@ def _stuck_end_mass(tip: TipModes, scene: Scene) -> float:
     return _with_squirt(sticking_squirt(tip, scene), _gripping(scene), "offset")
 
 
-def stick_impulse(tip: TipModes, limit: StickLimit) -> Any:
-    """J of a cue without effects at the tip, kg: in closed form if nothing is damped or radiates, else in time."""
-    if tip.resistance is None:
-        return limit.transverse_impulse(*flexible(tip))
-    return damped.stick_impulse(tip, limit)
+def _held(tip: TipModes, limit: StickLimit) -> Array:
+    return ImpulseResponse.of(tip).held(limit.c, limit.T)
 
 
-def ringing(tip: TipModes, limit: StickLimit) -> float:
-    """Estimated relative error of the stick end mass of modes that end in a tail.
+def stick_error_estimate(tip: TipModes, scene: Scene) -> float | None:
+    """Estimated relative error of the stick end mass of modes that end in a tail; None without one.
 
     The step of velocity at first touch sets the tail vibrating, and its dashpot takes that away. If instead it rang on
-    without loss, as a metal tip does on wood at 100 to 250 kHz, the impulse J would swing by residue/W for each of its
-    vibrations W; `HEARD` of that is the estimate.
+    without loss, as a metal tip does on wood at 100 to 250 kHz, the impulse J would swing; `HEARD` of the most that it
+    swings in the last tenth of the contact is the estimate.
     """
-    assert tip.radiation is not None
-    tail = int(np.sum(tip.radiation.any(axis=1) & (tip.amplitude[:, 1] != 0)))
-    omega, phi, rigid = flexible(tip)
-    felt = float(limit.end_mass(limit.transverse_impulse(omega, phi, rigid)))
-    return HEARD * limit.ringing(omega, phi, rigid, tail=tail) * (1 + felt * limit.c)  # end mass goes with J so
-
-
-def _stick_error(tip: TipModes, scene: Scene) -> float | None:
-    return None if tip.radiation is None else ringing(tip, StickLimit.of(scene))
-
-
-def flexible(tip: TipModes) -> tuple[Array, Array, float]:
-    """(omega, phi) of the modes that vibrate across the cue, and the sum of the rigid ones' phi^2."""
-    omega, phi = tip.transverse
-    if len(phi) == 0:
-        raise ValueError("end_mass: a clamp holds the tip across the cue, so its end mass is infinite")
-    moving = omega > 0
-    return omega[moving], phi[moving], float(np.sum(phi[~moving] ** 2))
+    if tip.radiation is None:
+        return None
+    limit = StickLimit.of(scene)
+    held, ringing = _held(tip, limit), _held(replace(tip, radiation=None), limit)
+    swing, J = np.abs(ringing - held)[-len(held) // 10 :].max(), limit.transverse_impulse(held, limit.T)
+    return float(HEARD * swing / J * (1 + limit.end_mass(J) * limit.c))  # end mass goes with J so
 
 
 def small_offset_slope(tip: TipModes, scene: Scene) -> float:
@@ -345,15 +322,22 @@ def _with_squirt(squirt: float, scene: Scene, drive: str) -> float:
         lumped = LumpedCue(scene.axial_mass, np.exp(log_mass))
         return side * impact(replace(scene, cue=lumped, effects=())).squirt - squirt
 
-    log_masses = np.linspace(math.log(1e-9), math.log(1e3), MASSES)
+    log_masses = np.linspace(math.log(1e-9), math.log(1e3), MANY)
     with trying():
         excesses = excess(log_masses)
         if not excesses[0] < -FLAT < FLAT < excesses[-1]:  # of all light lumps the tip slides at one squirt
             raise ValueError(
                 f"end_mass drive {drive!r}: no single lumped end mass in [1e-9, 1e3] kg has the squirt {squirt:.6g} rad"
             )
-        above = int(np.argmax(excesses >= 0))
-        return math.exp(zero(excess, *log_masses[above - 1 : above + 1].tolist()))
+        return math.exp(zoomed_root(excess, log_masses))
+
+
+def zoomed_root(function: Callable[[Array], Array], places: Array) -> float:
+    """The place, to rounding, where a function that is below zero at the first of many places first is not."""
+    for _ in range(ZOOMS):
+        above = int(np.argmax(function(places) >= 0))
+        places = np.linspace(places[above - 1], places[above], len(places))
+    return float(places[-1])
 
 
 class Definition(NamedTuple):
@@ -405,7 +389,7 @@ DEFINITIONS: dict[str, Definition] = {
             "(K - 1)/J - c = 1/m_e, J the impulse across the cue that makes the tip follow V(t) = K P(t) - 1",
             stick,
             strikes=_couples,
-            error=_stick_error,
+            error=stick_error_estimate,
             counts_tip=True,
         ),
         Definition(
