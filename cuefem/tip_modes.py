@@ -34,7 +34,7 @@ PERIODS_KEPT, PLAIN_PERIODS = 30, 60
 # begins with a step, whose front comes back from the butt at 2 L/c with frequencies of 10 to 80 kHz, whatever the
 # contact time. A tip that is pushed or led from rest starts no such front, and its end mass takes a strike's modes.
 # What these numbers hold: studies/accuracy/accuracy.md.
-LEAST, LEAST_STUCK = 40, 120
+LEAST, LEAST_STUCK = 40, 160
 SOFT = 1e9  # Pa: leather is softer, everything else that cues are made of is stiffer
 # Never more than this by default, which a contact of a fraction of a millisecond would ask for: the tail does the rest,
 # and more would take over a second. MOST is the last rung of `resolve`.

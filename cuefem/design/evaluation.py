@@ -108,7 +108,7 @@ def _column(solver: Designs, response: Response) -> tuple[Array, list[str | None
 def common_resolution(scenes: Sequence[Scene], responses: Sequence[Response]) -> Resolution:
     """One resolution for all scenes: the most modes that any needs, and a mesh that carries them.
 
-    A strike keeps the modes up to `PERIODS_KEPT` periods a contact. `cuefem.end_mass` is finer: it keeps at least 120
+    A strike keeps the modes up to `PERIODS_KEPT` periods a contact. `cuefem.end_mass` is finer: it keeps at least 160
     modes and lets a tail stand for those above. Designs compare well with each other, but their stick end masses are
     off by up to 2 %: on the reference cues 1.2 % at 2 ms (maple) and 1.8 % at 1.5 ms (carbon).
     """

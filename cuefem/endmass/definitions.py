@@ -60,7 +60,7 @@ def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None) -
         - "force": the tip is pushed by a half-sine force.
         - "squirt": the lumped end mass that has the squirt of the coupled strike.
     at
-        How finely the cue is computed. By default modes are kept by frequency (`default_resolution`), at least 120 of
+        How finely the cue is computed. By default modes are kept by frequency (`default_resolution`), at least 160 of
         them, or 40 for "velocity" and "force", whose drives begin smoothly, on a cue without leather drawn in. Between
         0.5 and 3 ms that is exact to 0.5 % except for rare cues (0.53 % at most), metal tips that stick, and "force"
         through soft leather in less than 1 ms; `cuefem.resolve_end_mass` estimates the error.
