@@ -104,7 +104,7 @@ def test_head_on_the_contact_time_is_that_of_the_law_by_quadrature(speed: float)
 
 def test_resolve_bounds_its_error() -> None:
     scene = leather_scene()
-    best, rough = resolve(scene, 1e-4), resolve(scene, 3e-2)
+    best, rough = resolve(scene, 1e-5), resolve(scene, 3e-2)
     assert rough.unknowns < best.unknowns
     for name in ("squirt", "ball_speed", "spin"):
         assert abs(getattr(rough, name) / getattr(best, name) - 1) < rough.error <= 3e-2

@@ -12,6 +12,17 @@
    surface: of the work f d(delta) that strains a ring it stores e^2, f^2 e^2/2k in all. */
 #include "contact.h"
 
+/* A ring's stiffness, on the mean over the indentations of a step: it grows from one edge of the ring to the
+   other, and is constant beyond. Half the sum of both ends would be wrong by much where a step crosses many
+   rings, as the first one does. */
+static double mean_stiffness(double in, double out, double from, double to, double k_from, double k_to)
+{
+    if (k_from == k_to || from == to) return k_to;
+    double low = fmin(from, to), high = larger(from, to), top = from > to ? k_from : k_to;
+    double begins = larger(low, in), ends = larger(begins, fmin(high, out));
+    return ((k_from + k_to) / 2 * (ends - begins) + top * (high - ends)) / (high - low);
+}
+
 /* Take the rings from the middle of the last step to a virtual indentation, after a shift: their force, and
    its slopes over the shift and over the virtual indentation. */
 FAST double shift_rings(Work *w, double depth, double shift, double *stuck, double *slid)
@@ -35,7 +46,7 @@ FAST double shift_rings(Work *w, double depth, double shift, double *stuck, doub
         double k_after = (whole ? K[r + 1] : K_now) - K[r], inner = F[r] + S[r] * (depth - in);
         double k_before = before <= in ? 0 : (before > out ? K[r + 1] : K_before) - K[r];
         double normal = (whole ? F[r + 1] + S[r + 1] * (depth - out) : force) - inner,
-               k = (k_after + k_before) / 2;
+               k = mean_stiffness(in, out, before, depth, k_before, k_after);
         double bound = mu * larger(normal, 0), old = was[r] * (k_before > k_after ? k_after / k_before : 1);
         double by = k * shift, steep = k, f = old + by;
         if (e2 < 1 && old * by < 0) {
