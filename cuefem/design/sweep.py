@@ -192,6 +192,9 @@ def processes(number: int) -> Pool:
     def opened() -> Iterator[Executor]:
         executor = ProcessPoolExecutor(number, mp_context=get_context("spawn"), initializer=_follow)
         resource_tracker.ensure_running()  # whoever starts it lets Ctrl-C through again: not in the midst of `submit`
+        with _without_interrupts():  # which workers inherit: Ctrl-C is this process's to answer, while they start too
+            for _ in range(number):  # a submission starts a worker while none is idle
+                executor.submit(int)
         try:
             yield executor
         finally:
@@ -199,6 +202,19 @@ def processes(number: int) -> Pool:
             executor.shutdown(wait=True, cancel_futures=True)
 
     return Pool(opened, 2 * number + 1)
+
+
+@contextmanager
+def _without_interrupts() -> Iterator[None]:
+    """Ignore Ctrl-C for a moment, where this thread may."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _follow() -> None:

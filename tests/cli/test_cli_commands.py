@@ -160,7 +160,7 @@ def test_a_report_says_first_that_the_stroke_miscues(kim: str, tmp_path: Path) -
     assert regimes[1:] == ["miscue", "miscue"]
     rows = [line for line in said("report", str(tmp_path / "slippery.toml")).splitlines() if line.strip()[:3] == "0.4"]
     assert all("miscue" in row for row in rows)
-    assert len(rows) == 2  # of squirt and of pivot length
+    assert len(rows) == 1
 
 
 def test_a_lumped_cue_has_no_modes_but_the_rest(tmp_path: Path) -> None:
