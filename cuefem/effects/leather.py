@@ -409,24 +409,6 @@ class LeatherTip(CueEffect):
         stiffness = np.maximum.accumulate(1 / give[:, 1])  # near the rim it levels off, to a thousandth
         return RADII * diameter, np.append(0.0, self.E * diameter * stiffness)
 
-    def normal_ratio(self, diameter: float, offset: float) -> tuple[Array, Array]:
-        """The stiffness along the normal of a patch that sticks, off the axis over that on it.
-
-        Parameters
-        ----------
-        diameter
-            Diameter of the tip, m.
-        offset
-            b/R in (-1, 1), the sine of the contact's angle.
-
-        Returns
-        -------
-        tuple of ndarray
-            Radius of the patch, from zero to half of the diameter, m; the ratio, which is 1 for the smallest patches.
-        """
-        ratio = self._punch(diameter, 0.0)[:, 0] / self._punch(diameter, offset)[:, 0]
-        return RADII * diameter, np.append(1.0, ratio)
-
     def _drop(self, off: float) -> float:
         """Depth of the dome below its apex at a distance from the axis, m."""
         return off**2 / self.dome_radius / (1 + math.sqrt(max(1 - (off / self.dome_radius) ** 2, 0.0)))
