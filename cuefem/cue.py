@@ -11,7 +11,7 @@ from typing import Annotated, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cuefem.notebook import outline, table
+from cuefem.quantity.display import outline, table
 from cuefem.quantity.fields import (
     DIAMETER,
     LENGTH,

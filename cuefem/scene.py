@@ -14,7 +14,7 @@ from cuefem.cue import Array, Cue, LumpedCue
 from cuefem.effects import CueEffect, Effect, LeatherTip, acting_on_cue, check_effects
 from cuefem.effects.leather_law import LeatherLaw, TooDeep
 from cuefem.effects.terms import ContactTerms
-from cuefem.notebook import brief, said, table
+from cuefem.quantity.display import brief, said, table
 from cuefem.quantity.fields import (
     CONTACT_TIME,
     Number,

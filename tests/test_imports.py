@@ -17,7 +17,6 @@ PACKAGE = Path(cuefem.__file__).parent
 
 # Every part of cuefem; a part imports only what stands above it. A folder is one part.
 ORDER = [
-    "notebook",
     "quantity",
     "cue",
     "materials",

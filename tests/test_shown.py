@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.notebook import spelt_out
+from cuefem.quantity.display import spelt_out
 
 ROOT = Path(__file__).parents[1]
 CUE = cf.load(ROOT / "meshes" / "pool_hollow.toml")

@@ -13,7 +13,7 @@ from cuefem.beam.mesh import ActsOnCue
 from cuefem.beam.system import System, assemble, suits_dense
 from cuefem.beam.waves import mesh_for, modes_below
 from cuefem.cue import Array, Cue, Section
-from cuefem.notebook import brief, table
+from cuefem.quantity.display import brief, table
 from cuefem.quantity.fields import Quantity, check_count, check_kind
 
 # LAPACK's omega^2 and the Rayleigh quotients of its vectors agree to this where the rounding of K does not show.

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cuefem.cue import Array
-from cuefem.notebook import said
+from cuefem.quantity.display import said
 from cuefem.quantity.fields import Quantity, first_failure
 from cuefem.scene import Ball, Outcome
 

@@ -14,7 +14,7 @@ from cuefem.design.optimum import Optimum, Problem, optimum
 from cuefem.design.scatter import Drivers, Scatter, drivers_of
 from cuefem.design.study import Study, StudyDesign
 from cuefem.design.sweep import MemoryStore, Pool, Row, Store, sweep
-from cuefem.notebook import table
+from cuefem.quantity.display import table
 from cuefem.results.quantities import with_unit
 
 SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)  # of the designs below a quantile

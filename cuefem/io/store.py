@@ -23,7 +23,7 @@ from cuefem.design import Row, Study, Task
 from cuefem.design.ranges import Value
 from cuefem.design.sweep import task_of
 from cuefem.io.errors import InputError, state_of
-from cuefem.notebook import spelt_out
+from cuefem.quantity.display import spelt_out
 
 APPLICATION = 0x43754665  # SQLite's mark in the head of the file: whose database it is
 PATIENCE = 60.0  # s, for which a study waits for another one that writes into the file

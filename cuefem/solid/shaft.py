@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from skfem import Basis, ElementQuadP, FacetBasis, MeshQuad
 
 from cuefem.cue import Array, Cue, Material
-from cuefem.notebook import brief
+from cuefem.quantity.display import brief
 from cuefem.quantity.fields import check_count, check_kind
 from cuefem.solid.half_section import SAME, Fineness, check_size, half_section
 from cuefem.solid.resolution import Solid
