@@ -15,7 +15,7 @@ from .contact.side_strike import (
     side_strike as side_strike,
 )
 from .contact.strike import batch_strike as batch_strike, strike as strike
-from .cue import Cue as Cue, LumpedCue as LumpedCue, Material as Material, Segment as Segment
+from .cue.geometry import Cue as Cue, LumpedCue as LumpedCue, Material as Material, Segment as Segment
 from .design.batch import CueBatch as CueBatch, batch_stick as batch_stick
 from .design.design_changes import design_changes as design_changes
 from .effects import (

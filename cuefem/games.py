@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 from cuefem.cue import SOFT, Cue
+from cuefem.cue.materials import LEATHERS
 from cuefem.effects import AxialWaves, Effect, GeometricStiffness, LeatherTip
-from cuefem.materials import LEATHERS
 from cuefem.quantity.fields import check_kind
 from cuefem.scene import Ball, Scene, Stroke, Tip
 
@@ -26,7 +26,7 @@ class Game:
     dome_radius
         Radius of the dome, m.
     leather
-        Name of the leather in `cuefem.materials.LEATHERS`.
+        Name of the leather in `cuefem.cue.materials.LEATHERS`.
     tip_restitution
         Of the tip by itself: with it a head-on blow of ``cue``, with waves along it, rebounds with ``restitution``
         (`cuefem.tip_restitution` derives it, and a test again).

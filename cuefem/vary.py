@@ -17,8 +17,8 @@ from functools import cache
 from typing import Any, NamedTuple, get_args, get_type_hints
 
 from cuefem.cue import Cue, LumpedCue, Material
-from cuefem.materials import LEATHER_NAMES, MATERIALS, WOODS, material_name, table_name
-from cuefem.materials import material as named_material
+from cuefem.cue.materials import LEATHER_NAMES, MATERIALS, WOODS, material_name, table_name
+from cuefem.cue.materials import material as named_material
 from cuefem.parts import (
     BORED_WIDTH,
     GROWTH,

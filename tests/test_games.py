@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
+from cuefem.cue.materials import LEATHERS, material
 from cuefem.games import GAMES, usual_tip
-from cuefem.materials import LEATHERS, material
 from tests.helpers.refusals import refuses
 
 ROOT = Path(__file__).parents[1]

@@ -19,7 +19,6 @@ PACKAGE = Path(cuefem.__file__).parent
 ORDER = [
     "quantity",
     "cue",
-    "materials",
     "solid",
     "beam",
     "effects",

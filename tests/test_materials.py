@@ -5,7 +5,7 @@ import dataclasses
 import pytest
 
 import cuefem as cf
-from cuefem.materials import MATERIALS, material
+from cuefem.cue.materials import MATERIALS, material
 
 FIELDS = {"E", "G", "rho", "loss", "nu"}
 

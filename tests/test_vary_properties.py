@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import cuefem as cf
+from cuefem.cue.materials import LEATHERS, material
 from cuefem.io.ready import PRESETS, opened
-from cuefem.materials import LEATHERS, material
 from cuefem.parts import outer_diameter
 from cuefem.vary import PLACES, knobs_of, paths, turned, varied
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from cuefem.contact.outcome import grip_of
 from cuefem.cue import Cue
+from cuefem.cue.materials import MATERIALS, WOODS, table_name
 from cuefem.effects.leather import DOMES
-from cuefem.materials import MATERIALS, WOODS, table_name
 from cuefem.parts import Layout
 from cuefem.results.band import OF_DIFFERENCE
 from cuefem.results.designs import OneDesign, off_centre

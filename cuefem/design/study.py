@@ -12,10 +12,10 @@ from typing import Any, Protocol
 import numpy as np
 
 from cuefem.cue import Array
+from cuefem.cue.materials import material
 from cuefem.design.evaluation import common_resolution
 from cuefem.design.ranges import Levels, Normal, Span, Value
 from cuefem.design.responses import Response
-from cuefem.materials import material
 from cuefem.quantity.display import spelt_out
 from cuefem.scene import Resolution, Scene
 from cuefem.vary import Path, paths, quantity_at, replaced, spelt, value_at

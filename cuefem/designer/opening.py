@@ -14,6 +14,7 @@ from typing import Any
 from nicegui import ui
 
 from cuefem.cue import Cue
+from cuefem.cue.materials import MATERIALS, material
 from cuefem.designer.computing import FAILURES
 from cuefem.designer.controls import Beside, button
 from cuefem.designer.markup import Markup
@@ -23,7 +24,6 @@ from cuefem.io import load
 from cuefem.io.fittings import FITTINGS, fitted
 from cuefem.io.profile import DEFAULT_MATERIAL, SHAPES
 from cuefem.io.ready import PRESETS, Preset, ready_cue
-from cuefem.materials import MATERIALS, material
 from cuefem.parts import with_material
 from cuefem.scene import Scene
 from cuefem.vary import varied

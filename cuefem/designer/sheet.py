@@ -10,13 +10,13 @@ from typing import Any
 from nicegui import ui
 
 from cuefem.cue import Material
+from cuefem.cue.materials import MATERIALS, material_name
 from cuefem.designer import editing
 from cuefem.designer.controls import Beside, button
 from cuefem.designer.editing import Field
 from cuefem.designer.markup import Markup
 from cuefem.designer.unit_system import METRIC, UnitSystem, typed
 from cuefem.effects import Effect, effect_kinds
-from cuefem.materials import MATERIALS, material_name
 from cuefem.parts import materials_in
 from cuefem.scene import Scene
 from cuefem.vary import Path, replaced, value_at

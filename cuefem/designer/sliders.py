@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from cuefem.cue import Material
+from cuefem.cue.materials import MATERIALS, material_name
 from cuefem.designer.unit_system import METRIC, UnitSystem
 from cuefem.games import GAMES
-from cuefem.materials import MATERIALS, material_name
 from cuefem.scene import Scene
 from cuefem.vary import PLACES, Place, knobs_of
 

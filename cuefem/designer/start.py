@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from cuefem.cue import Cue, Segment
+from cuefem.cue.materials import MATERIALS
 from cuefem.games import usual_scene
-from cuefem.materials import MATERIALS
 from cuefem.scene import Scene
 
 NAME = "pool_maple.toml"

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 import numpy as np
 
 from cuefem.cue import SOFT, Array, Cue
+from cuefem.cue.materials import LEATHER_NAMES
 from cuefem.effects.base import CueEffect, Effect
 from cuefem.effects.leather_law import Curves, LeatherLaw
 from cuefem.effects.on_cue import PointMass
 from cuefem.effects.terms import ContactTerms, WholeTip
-from cuefem.materials import LEATHER_NAMES
 from cuefem.quantity.fields import DIAMETER, Flag, Number, OutOfBounds, Quantity, check_fields, check_kind, scalar
 from cuefem.solid.leather_table import (
     CURVATURE,

@@ -12,7 +12,7 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 from cuefem.cue import SOFT, Cue, Material, Segment
-from cuefem.materials import material as material_of
+from cuefem.cue.materials import material as material_of
 from cuefem.parts import LONGEST_FERRULE, PARTS, SAME, Bore, Layout, split_at
 from cuefem.quantity.units import number
 from cuefem.scene import Scene

@@ -10,6 +10,7 @@ from decimal import Decimal
 from pathlib import Path
 
 from cuefem.cue import SOFT, Cue, Material, Segment
+from cuefem.cue.materials import material_name
 from cuefem.io.cells import Row, decimal_mark, parted, plain, read_rows
 from cuefem.io.columns import (
     BORE,
@@ -29,7 +30,6 @@ from cuefem.io.columns import (
 from cuefem.io.errors import InputError, faults_of, shown
 from cuefem.io.fittings import fitted, has_length, on_tenon
 from cuefem.io.toml import named_material
-from cuefem.materials import material_name
 from cuefem.quantity.fields import DIAMETER as WIDTH
 from cuefem.quantity.fields import Quantity
 from cuefem.quantity.messages import MOST

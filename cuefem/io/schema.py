@@ -11,9 +11,9 @@ from dataclasses import MISSING, fields, is_dataclass
 from typing import Any, TypeVar, cast
 
 from cuefem.cue import Material
+from cuefem.cue.materials import MATERIALS
 from cuefem.effects import Effect
 from cuefem.io.errors import InputError, faults_of, nearest, shown
-from cuefem.materials import MATERIALS
 from cuefem.quantity.fields import OutOfBounds, Quantity
 
 Kind = TypeVar("Kind")

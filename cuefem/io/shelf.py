@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from cuefem.cue import SOFT, Cue, Segment
+from cuefem.cue.materials import MATERIALS
 from cuefem.io.fittings import fitted, with_shaft_of
-from cuefem.materials import MATERIALS
 from cuefem.quantity.fields import nearest
 
 _USUAL = "29 in, 12.75 mm and a joint of 21.5 mm: usual (meshes/README.md)"

@@ -12,7 +12,7 @@ import numpy as np
 
 from cuefem.beam.modes import Modes
 from cuefem.cue import Material, Segment
-from cuefem.materials import MATERIALS, material_name, table_name
+from cuefem.cue.materials import MATERIALS, material_name, table_name
 from cuefem.quantity.fields import scalar
 from cuefem.report.charts import WIDE, Axis, Tick, path
 from cuefem.results.quantities import TRADE, Units

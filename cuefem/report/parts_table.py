@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
+from cuefem.cue.materials import LEATHER_NAMES, LEATHERS, MATERIALS, TIPS, WOODS
 from cuefem.io.shelf import SHAFTS
-from cuefem.materials import LEATHER_NAMES, LEATHERS, MATERIALS, TIPS, WOODS
 from cuefem.results.quantities import RESULTS, units_of, with_heading
 from cuefem.results.records import Entry, Record, Sheet, sheet
 from cuefem.vary import FERRULES

@@ -16,10 +16,10 @@ from cuefem.beam.modes import modes
 from cuefem.beam.tip import TipModes
 from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
+from cuefem.cue.materials import material_name
 from cuefem.design.design_changes import design_changes
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.io.ready import ready_cues
-from cuefem.materials import material_name
 from cuefem.quantity.fields import scalar
 from cuefem.report.advice_table import advice_sheet
 from cuefem.report.charts import Axis, Chart, Shade

@@ -8,7 +8,7 @@ from math import inf
 from typing import Any, NamedTuple
 
 from cuefem.cue import Segment
-from cuefem.materials import MATERIALS, table_name
+from cuefem.cue.materials import MATERIALS, table_name
 from cuefem.parts import main_material
 from cuefem.quantity.slips import LIGHTEST, USUAL
 from cuefem.results.quantities import scaled

@@ -21,7 +21,7 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq, minimize_scalar
 
 import cuefem as cf
-from cuefem.materials import material
+from cuefem.cue.materials import material
 from cuefem.results.closed_forms import natural_pivot_length, pivot_at
 from studies import pages, strokes
 from studies.pages import table

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.materials import material
+from cuefem.cue.materials import material
 from tests.helpers.command_line import call
 from tests.helpers.refusals import untouched
 

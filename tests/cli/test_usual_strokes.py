@@ -14,8 +14,8 @@ import pytest
 
 import cuefem as cf
 from cuefem.cli import COMMANDS, main
+from cuefem.cue.materials import LEATHERS, material
 from cuefem.games import GAMES
-from cuefem.materials import LEATHERS, material
 from cuefem.report.tip_table import SPEEDS
 from tests.helpers.command_line import as_json, call, said
 

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 import cuefem as cf
+from cuefem.cue.materials import material
 from cuefem.design.design_changes import COSTS, LEAST_WALL, PAYS, changes_of, design_changes
 from cuefem.games import GAMES
-from cuefem.materials import material
 from cuefem.report.report_page import page
 from cuefem.results.verdict import verdict_record
 from cuefem.tip_modes import Solved

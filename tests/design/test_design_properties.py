@@ -27,9 +27,9 @@ from cuefem import (
 )
 from cuefem.beam.modes import solve
 from cuefem.beam.waves import even_mesh_for
+from cuefem.cue.materials import material
 from cuefem.design import Levels, Response, Sample, Span, Study, Vary, evaluate
 from cuefem.endmass.definitions import DEFINITIONS, small_offset_slope
-from cuefem.materials import material
 from cuefem.results.asking import asked
 from cuefem.results.quantities import RESULTS
 from cuefem.tip_modes import default_resolution, tip_modes_of

@@ -14,10 +14,10 @@ from scipy.stats import qmc
 import cuefem as cf
 from cuefem import Resolution, Scene, Stroke, Tip, resolve, strike
 from cuefem.cli.studies import round_words
+from cuefem.cue.materials import material
 from cuefem.design import Response, Span, Vary
 from cuefem.design.optimum import Limit, Optimum, Problem, Round, optimum
 from cuefem.io.study_files import load_study
-from cuefem.materials import material
 from studies.pages import STUDIES
 from tests.helpers.command_line import said
 from tests.helpers.cues import low_deflection

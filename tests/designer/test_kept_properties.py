@@ -14,10 +14,10 @@ from hypothesis import strategies as st
 
 import cuefem as cf
 from cuefem.cli.common import scene_of
+from cuefem.cue.materials import material
 from cuefem.designer.design import MOST_SEGMENTS, MOST_STEPS, Design, State, Step
 from cuefem.designer.kept import key_of, state_of, text_of
 from cuefem.designer.start import first_scene
-from cuefem.materials import material
 from cuefem.parts import with_material
 
 ROOT = Path(__file__).parents[2]

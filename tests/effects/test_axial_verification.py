@@ -11,8 +11,8 @@ import cuefem as cf
 from cuefem.beam.modes import Modes, solve
 from cuefem.beam.system import assemble
 from cuefem.beam.waves import mesh_for
+from cuefem.cue.materials import MATERIALS
 from cuefem.effects.axial import rod_modes
-from cuefem.materials import MATERIALS
 
 MESHES = Path(__file__).parents[2] / "meshes"
 MAPLE = MATERIALS["hard maple"].material

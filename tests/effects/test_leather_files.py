@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.materials import LEATHER_NAMES, LEATHERS
+from cuefem.cue.materials import LEATHER_NAMES, LEATHERS
 from tests.helpers.leather_scenes import SHAFT
 from tests.helpers.refusals import refuses
 

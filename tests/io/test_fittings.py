@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 import cuefem as cf
 from cuefem.cli import COMMANDS, main
+from cuefem.cue.materials import MATERIALS, material
 from cuefem.io.fittings import FITTINGS, TENON, fitted
-from cuefem.materials import MATERIALS, material
 from tests.helpers.command_line import call
 
 BARE = "x [mm],diameter [mm]\n0,12\n700,21\n"

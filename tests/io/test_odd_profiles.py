@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
+from cuefem.cue.materials import material
 from cuefem.io import InputError
 from cuefem.io.assumed import assumed
-from cuefem.materials import material
 
 MAPLE = material("hard maple")
 MEANT = ((0.0, 12.75), (330.0, 13.2), (736.6, 21.5))  # mm

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
+from cuefem.cue.materials import LEATHERS, MATERIALS, TIPS
 from cuefem.io.shelf import SHAFTS
-from cuefem.materials import LEATHERS, MATERIALS, TIPS
 from tests.helpers.command_line import call
 
 ROOT = Path(__file__).parents[2]

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import cuefem as cf
+from cuefem.cue.materials import material
 from cuefem.io.slices import TOLERANCE, sliced, surface
-from cuefem.materials import material
 from tests.helpers.command_line import call
 from tests.helpers.orders import assert_order
 from tests.helpers.surfaces import outline_of, revolved, written

@@ -13,7 +13,7 @@ from scipy.special import iv, ivp
 from skfem import Basis, BilinearForm, ElementQuadP, asm
 
 from cuefem import Cue, Material, Segment
-from cuefem.materials import material
+from cuefem.cue.materials import material
 from cuefem.solid.half_section import Fineness
 from cuefem.solid.shaft import (
     AXIAL,

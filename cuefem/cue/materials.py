@@ -20,7 +20,7 @@ from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from types import MappingProxyType
 
-from cuefem.cue import Material
+from cuefem.cue.geometry import Material
 
 Range = tuple[float, float]
 

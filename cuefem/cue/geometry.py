@@ -182,7 +182,7 @@ class Segment:
         check_fields(self)
         for name, given in (("material", self.material), ("core", self.core)):
             if isinstance(given, str):
-                hint = f"cuefem.materials.material({given!r}) is the material of that name"
+                hint = f"cuefem.cue.materials.material({given!r}) is the material of that name"
                 raise TypeError(f"Segment.{name} must be a Material; got {given!r}: {hint}")
         check_kind("Segment.material", self.material, Material)
         check_kind("Segment.core", self.core, (Material, type(None)))
