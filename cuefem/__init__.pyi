@@ -38,7 +38,7 @@ from .effects import (
 from .endmass.definitions import end_mass as end_mass
 from .endmass.lumped import impulse as impulse, lump as lump
 from .endmass.sticking_contact import StickLimit as StickLimit
-from .games import usual_scene as usual_scene
+from .scene.default_scene import usual_scene as usual_scene
 from .io import load as load, save as save
 from .io.paraview import save_motion as save_motion
 from .io.study_files import study as study
@@ -46,7 +46,7 @@ from .report.verdict_table import verdict as verdict
 from .quantity.slips import Unusual as Unusual
 from .solid.resolution import Solid as Solid
 from .solid.shaft import SolidModes as SolidModes, solid_modes as solid_modes
-from .scene import (
+from .scene.scene import (
     Ball as Ball,
     Outcome as Outcome,
     Resolution as Resolution,

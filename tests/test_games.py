@@ -9,7 +9,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.cue.materials import LEATHERS, material
-from cuefem.games import GAMES, usual_tip
+from cuefem.scene.default_scene import GAMES, usual_tip
 from tests.helpers.refusals import refuses
 
 ROOT = Path(__file__).parents[1]

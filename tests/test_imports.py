@@ -23,7 +23,6 @@ ORDER = [
     "beam",
     "effects",
     "scene",
-    "games",
     "parts",
     "vary",
     "tip_modes",

@@ -13,7 +13,6 @@ from cuefem.cli.printing import assumed_lines, json_option, shared_option, tell
 from cuefem.cli.strokes import blow_options, offset_option, option, place_options, refuse_game, usual, with_options
 from cuefem.cue import Cue
 from cuefem.effects.leather_law import TooDeep
-from cuefem.games import DEFAULT_GAME
 from cuefem.io import InputError, check_place, load_stroke
 from cuefem.io.assumed import assumed, assumed_usual
 from cuefem.io.fittings import FITTINGS
@@ -23,6 +22,7 @@ from cuefem.report.unusual import unusual
 from cuefem.results.quantities import UNITS
 from cuefem.results.records import Record, plain
 from cuefem.scene import Scene
+from cuefem.scene.default_scene import DEFAULT_GAME
 from cuefem.solid.own_tip import announcement
 
 
@@ -87,8 +87,8 @@ def scene_of(
 ) -> tuple[Scene, list[str]]:
     """The scene that a command computes, and what was assumed because neither file nor options say it.
 
-    A cue alone gets a game's usual stroke (`cuefem.games`). blow: whether ball, tip and stroke matter to the command,
-    so that what is assumed of them is told too. remarked: whether unusual numbers are told.
+    A cue alone gets a game's usual stroke (`cuefem.scene.default_scene`). blow: whether ball, tip and stroke matter to
+    the command, so that what is assumed of them is told too. remarked: whether unusual numbers are told.
     """
     opened = load_stroke(file, **fittings_of(options))
     said = {name for name, value in options.items() if value is not None}

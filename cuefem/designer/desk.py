@@ -34,7 +34,6 @@ from cuefem.designer.sliders import choices, groups, sliders, without
 from cuefem.designer.style import SCRIPT, STYLE
 from cuefem.designer.unit_system import METRIC, SYSTEMS, UnitSystem
 from cuefem.designer.words import head_markup
-from cuefem.games import GAMES
 from cuefem.io.ready import Preset
 from cuefem.io.ready import opened as preset_opened
 from cuefem.io.toml_text import toml_text
@@ -43,6 +42,7 @@ from cuefem.report.report_page import page as report_page
 from cuefem.report.templates import chart_script, page_style
 from cuefem.report.unusual import unusual
 from cuefem.scene import Scene
+from cuefem.scene.default_scene import GAMES
 
 Read = Callable[[Path], tuple[Scene, list[str]]]
 

@@ -19,13 +19,13 @@ from cuefem.designer.computing import FAILURES
 from cuefem.designer.controls import Beside, button
 from cuefem.designer.markup import Markup
 from cuefem.designer.unit_system import UnitSystem, typed
-from cuefem.games import DEFAULT_GAME, GAMES, usual_scene
 from cuefem.io import load
 from cuefem.io.fittings import FITTINGS, fitted
 from cuefem.io.profile import DEFAULT_MATERIAL, SHAPES
 from cuefem.io.ready import PRESETS, Preset, ready_cue
 from cuefem.parts import with_material
 from cuefem.scene import Scene
+from cuefem.scene.default_scene import DEFAULT_GAME, GAMES, usual_scene
 from cuefem.vary import varied
 
 TOLD = ("begins", "ferrule", "bore")  # of `FITTINGS`, what the page asks of a shape

@@ -10,8 +10,8 @@ from typing import Any
 from cuefem.cue import Material
 from cuefem.cue.materials import MATERIALS, material_name
 from cuefem.designer.unit_system import METRIC, UnitSystem
-from cuefem.games import GAMES
 from cuefem.scene import Scene
+from cuefem.scene.default_scene import GAMES
 from cuefem.vary import PLACES, Place, knobs_of
 
 Knobs = Mapping[str, Any]

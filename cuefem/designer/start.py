@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from cuefem.cue import Cue, Segment
 from cuefem.cue.materials import MATERIALS
-from cuefem.games import usual_scene
 from cuefem.scene import Scene
+from cuefem.scene.default_scene import usual_scene
 
 NAME = "pool_maple.toml"
 

@@ -9,12 +9,12 @@ from typing import Any
 
 from cuefem.cue import Cue
 from cuefem.effects import AxialWaves, effect_kinds
-from cuefem.games import DEFAULT_GAME, GAMES, KIM, usual_tip
 from cuefem.io.fittings import BORE, FERRULE, LEATHER, TENON
 from cuefem.io.profile import DEFAULT_MATERIAL, DEFAULT_UNIT, SHAPES, SURFACES, Profile, read_profile
 from cuefem.io.toml import left_out, read_tables
 from cuefem.parts import Layout
 from cuefem.scene import DEFAULT_CONTACT_TIME, Ball, Stroke, Tip
+from cuefem.scene.default_scene import DEFAULT_GAME, GAMES, KIM, usual_tip
 
 BEGINS = f'the drawing begins at the ferrule, and the tip is put in front (--begins "{LEATHER}" if it has the leather)'
 ON_TENON = f"the ferrule sits on a tenon of the shaft's wood, {TENON:g} of its width"
@@ -106,7 +106,7 @@ def _fit(path: Path) -> list[str]:
 def assumed_usual(
     cue: Cue, game: str, options: Collection[str], *, offered: Collection[str], blow: bool = True
 ) -> list[str]:
-    """What a cue alone gets of its game's usual stroke (`cuefem.games`); arguments as for `assumed`."""
+    """What a cue alone gets of its game's usual stroke (`cuefem.scene.default_scene`); arguments as for `assumed`."""
     known = GAMES[game]
     ball, tip = known.ball, usual_tip(cue, game)
     drawn = f"{1e3 * cue.leather:.4g} mm"

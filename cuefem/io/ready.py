@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from cuefem.cue import Cue
-from cuefem.games import GAMES, usual_scene
 from cuefem.io import load
 from cuefem.io.shelf import folder
 from cuefem.results.designs import strikes_at
 from cuefem.scene import Scene
+from cuefem.scene.default_scene import GAMES, usual_scene
 from cuefem.tip_modes import Solved
 
 _NOT = "no measurement known"

@@ -15,7 +15,6 @@ from cuefem.design.optimum import Limit, Problem
 from cuefem.design.scatter import Scatter
 from cuefem.design.study_result import StudyResult, found
 from cuefem.design.sweep import pool_of
-from cuefem.games import KIM, usual_scene
 from cuefem.io import load_stroke, replaced_segments
 from cuefem.io.errors import InputError, faults_of, shown, state_of
 from cuefem.io.profile import SHAPES
@@ -25,6 +24,7 @@ from cuefem.io.toml import game_of, named_material, read_tables
 from cuefem.quantity.fields import Quantity
 from cuefem.results.quantities import with_unit
 from cuefem.scene import Resolution, Scene, Stroke
+from cuefem.scene.default_scene import KIM, usual_scene
 from cuefem.vary import paths, quantity_at, value_at
 
 KEYS = ["scene", "game", "responses", "vary", "resolution"]

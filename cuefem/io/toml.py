@@ -17,7 +17,6 @@ from cuefem.contact.side_strike import SideStrike
 from cuefem.cue import Cue, LumpedCue, Material
 from cuefem.cue.materials import material
 from cuefem.effects import AxialWaves, Effect, effect_kinds
-from cuefem.games import DEFAULT_GAME, GAMES, KIM, STROKES, usual_scene
 from cuefem.io.errors import LARGEST_TEXT, InputError, faults_of, nearest, read_bytes, shown
 from cuefem.io.fittings import BORE, FERRULE
 from cuefem.io.schema import build, joined, keys_of, table, unknown_key
@@ -25,6 +24,7 @@ from cuefem.io.shelf import assembled
 from cuefem.parts import with_shaft_mass
 from cuefem.quantity.fields import MOST_SEGMENTS, Quantity, check_fields, quantities
 from cuefem.scene import Scene, Stroke, Tip
+from cuefem.scene.default_scene import DEFAULT_GAME, GAMES, KIM, STROKES, usual_scene
 
 # The parts of which a cue is put together in the place of [[segments]], each with an example.
 EXAMPLES = {"shaft": '"conical taper"', "material": '"ash"', "ferrule": f'"{FERRULE}"', "bore": f'"{BORE}"'}

@@ -20,9 +20,9 @@ from cuefem.effects import Support
 from cuefem.endmass.definitions import DEFINITIONS, Definition, small_offset_slope, stick
 from cuefem.endmass.impulse_response import ImpulseResponse
 from cuefem.endmass.sticking_contact import StickLimit, stick_reason
-from cuefem.games import GAMES
 from cuefem.results.closed_forms import pivot_length
 from cuefem.scene import Outcome, Resolution, Scene
+from cuefem.scene.default_scene import GAMES
 from cuefem.tip_modes import Solved
 
 TONES = 5  # bending modes that are told of one scene

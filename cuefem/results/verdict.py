@@ -7,11 +7,11 @@ from dataclasses import replace
 
 from cuefem.cue import Cue
 from cuefem.effects import Joint, PointMass, Support
-from cuefem.games import without_leather
 from cuefem.results.band import band, of_difference, of_inputs, of_shaft, squirt_beside, squirt_of
 from cuefem.results.designs import off_centre
 from cuefem.results.records import Record
 from cuefem.scene import Outcome, Scene
+from cuefem.scene.default_scene import without_leather
 from cuefem.tip_modes import Solved
 
 

@@ -15,8 +15,8 @@ import pytest
 import cuefem as cf
 from cuefem.cli import COMMANDS, main
 from cuefem.cue.materials import LEATHERS, material
-from cuefem.games import GAMES
 from cuefem.report.tip_table import SPEEDS
+from cuefem.scene.default_scene import GAMES
 from tests.helpers.command_line import as_json, call, said
 
 SHAFT = cf.Cue((cf.Segment(0.7, 0.0118, 0.021, material("hard maple")),), 0.42)

@@ -22,8 +22,8 @@ from cuefem.beam.waves import ended_mesh_for
 from cuefem.contact import laws
 from cuefem.contact.strike import strike_modes
 from cuefem.endmass.definitions import DEFINITIONS
-from cuefem.games import without_leather
 from cuefem.scene import Scene
+from cuefem.scene.default_scene import without_leather
 from cuefem.tip_modes import Solved, tip_modes_from, turning
 from tests.data.stored import DATA, EFFECTS, PARTS, cue_of, rebuilt, scene_of, stored_law
 

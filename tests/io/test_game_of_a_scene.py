@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import cuefem as cf
-from cuefem.games import GAMES
+from cuefem.scene.default_scene import GAMES
 from tests.helpers.command_line import call
 
 CUE = """

@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.games import without_leather
 from cuefem.io.ready import PRESETS, SCALE, STROKES, Preset, opened, ready_cues
 from cuefem.report.verdict_table import headline, scale, squirt_words, standing
 from cuefem.results.verdict import same_stroke, verdict_record
+from cuefem.scene.default_scene import without_leather
 
 ROOT = Path(__file__).parents[2]
 SCENE = cf.usual_scene(cf.load(ROOT / "meshes" / "pool_hollow.toml"))

@@ -10,7 +10,7 @@ from cuefem.cue import SOFT, Cue
 from cuefem.cue.materials import LEATHERS
 from cuefem.effects import AxialWaves, Effect, GeometricStiffness, LeatherTip
 from cuefem.quantity.fields import check_kind
-from cuefem.scene import Ball, Scene, Stroke, Tip
+from cuefem.scene.scene import Ball, Scene, Stroke, Tip
 
 
 @dataclass(frozen=True)
@@ -136,7 +136,7 @@ def usual_tip(cue: Cue, game: str = DEFAULT_GAME) -> LeatherTip:
     Examples
     --------
     >>> import cuefem as cf
-    >>> from cuefem.games import usual_tip
+    >>> from cuefem.scene.default_scene import usual_tip
     >>> usual_tip(cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 700.0)),))).height
     0.006
     """
