@@ -1,5 +1,5 @@
 from . import frames as frames, plot as plot
-from .accuracy import resolve as resolve, resolve_end_mass as resolve_end_mass
+from .results.convergence import resolve as resolve, resolve_end_mass as resolve_end_mass
 from .beam.modes import modes as modes
 from .contact.calibrated import (
     leather_modulus as leather_modulus,

@@ -9,7 +9,7 @@ import numpy as np
 from hypothesis import given, settings
 
 from cuefem import LumpedCue, Scene, Stroke, impulse, resolve, resolve_end_mass
-from cuefem.accuracy import levels, mode_counts
+from cuefem.results.convergence import levels, mode_counts
 from cuefem.tip_modes import MOST
 from tests.helpers.accuracy_scenes import endless_friction, scene
 from tests.helpers.strike_scenes import lumped_scenes, numbers, sound

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.accuracy import levels
 from cuefem.beam.modes import Modes, solve
 from cuefem.beam.system import assemble
 from cuefem.beam.tail import tail
 from cuefem.beam.waves import mesh_for
 from cuefem.contact.strike import strike_modes
 from cuefem.endmass.definitions import formula_of
+from cuefem.results.convergence import levels
 from cuefem.tip_modes import tip_modes_from, turning
 from tests.helpers.accuracy_scenes import NAMES, endless_friction, family, scene
 

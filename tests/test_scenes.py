@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
-from cuefem.accuracy import resolve
 from cuefem.io import load_accuracy
+from cuefem.results.convergence import resolve
 
 SCENES = Path(__file__).parent.parent / "studies" / "scenes"
 READY = ("break_cue", "carom", "clay_on_shaft", "kim", "pool_low_deflection", "snooker")

@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 
 import cuefem as cf
 from cuefem.io import InputError
-from cuefem.parts import main_material, with_shaft_mass
+from cuefem.parameters.parameter import varied
+from cuefem.parameters.parts import main_material, with_shaft_mass
 from cuefem.results.band import of_inputs
 from cuefem.tip_modes import Solved
-from cuefem.vary import varied
 from tests.helpers.command_line import as_json, call
 from tests.helpers.cues import pool
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from cuefem import Scene, Stroke, Tip
-from cuefem.vary import paths, replaced, spelt, value_at
+from cuefem.parameters.parameter import paths, replaced, spelt, value_at
 from tests.helpers.cues import MAPLE, low_deflection
 
 BASE = Scene(low_deflection(), tip=Tip(contact_time=1.2e-3), stroke=Stroke(2.0, 0.3))

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 import cuefem as cf
 from cuefem.cue.materials import LEATHERS, material
 from cuefem.io.ready import PRESETS, opened
-from cuefem.parts import outer_diameter
-from cuefem.vary import PLACES, knobs_of, paths, turned, varied
+from cuefem.parameters.parameter import PLACES, knobs_of, paths, turned, varied
+from cuefem.parameters.parts import outer_diameter
 
 SCENES = {preset.name: opened(preset)[0] for preset in PRESETS}
 FIRST = SCENES[PRESETS[0].name]

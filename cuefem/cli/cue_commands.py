@@ -10,7 +10,6 @@ from typing import Any
 import click
 
 import cuefem.report
-from cuefem.accuracy import resolve
 from cuefem.cli.common import blaming, check_free, file_options, force_option, scene_of, show, stroke_options
 from cuefem.cli.printing import Command, command, output_option, page_option, print_all
 from cuefem.cli.progress import followed
@@ -18,6 +17,7 @@ from cuefem.cli.strokes import blow_options, tip_options
 from cuefem.design.design_changes import design_changes
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.io import InputError, load_accuracy, save, save_page
+from cuefem.parameters.parameter import varied
 from cuefem.quantity.fields import Quantity
 from cuefem.quantity.units import number
 from cuefem.report import (
@@ -33,9 +33,9 @@ from cuefem.report import (
 from cuefem.report.advice_table import advice_sheet
 from cuefem.report.simulator_export import pooltool_record, pooltool_sheets
 from cuefem.report.unusual import unusual
+from cuefem.results.convergence import resolve
 from cuefem.results.records import Record, Sheet
 from cuefem.scene import Scene
-from cuefem.vary import varied
 
 
 class WithDefinitions(Command):

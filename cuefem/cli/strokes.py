@@ -15,13 +15,13 @@ from cuefem.contact.side_strike import SideStrike
 from cuefem.cue import Cue, LumpedCue
 from cuefem.io import InputError, with_body_mass
 from cuefem.io.errors import faults_of
-from cuefem.parts import with_shaft_mass
+from cuefem.parameters.parameter import PLACES, Place, replaced, with_fields
+from cuefem.parameters.parameter import Path as Steps
+from cuefem.parameters.parts import with_shaft_mass
 from cuefem.quantity.fields import Quantity
 from cuefem.quantity.units import number
 from cuefem.scene import Scene
 from cuefem.scene.default_scene import DEFAULT_GAME, GAMES, usual_scene, usual_tip
-from cuefem.vary import PLACES, Place, replaced, with_fields
-from cuefem.vary import Path as Steps
 
 Command = Callable[..., Any]
 

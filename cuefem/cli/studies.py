@@ -22,10 +22,10 @@ from cuefem.design.sweep import pool_of
 from cuefem.io import InputError, save, write_whole
 from cuefem.io.store import Store, write_table
 from cuefem.io.study_files import assumed_base, load_study
+from cuefem.parameters.parameter import replaced, value_at
 from cuefem.report.study_table import study_record, study_sheets, varied_pieces
 from cuefem.results.quantities import with_unit
 from cuefem.scene import Scene
-from cuefem.vary import replaced, value_at
 
 
 @command()

@@ -11,14 +11,14 @@ from cuefem.contact.outcome import grip_of
 from cuefem.cue import Cue
 from cuefem.cue.materials import MATERIALS, WOODS, table_name
 from cuefem.effects.leather import DOMES
-from cuefem.parts import Layout
+from cuefem.parameters.parameter import PLACES, varied
+from cuefem.parameters.parts import Layout
 from cuefem.results.band import OF_DIFFERENCE
 from cuefem.results.designs import OneDesign, off_centre
 from cuefem.results.quantities import RESULTS, scaled, with_unit
 from cuefem.results.records import Record
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved
-from cuefem.vary import PLACES, varied
 
 MM = 1e-3
 WIDER, DEEPER, SHORTER, LOWER, THINNER = 1 * MM, 25 * MM, 5 * MM, 1 * MM, 0.5 * MM
@@ -141,8 +141,8 @@ def design_changes(scene: Scene, *, solved: Solved | None = None, follow: Follow
     dict
         "offset", b/R; "grip", the contact's (`cuefem.contact.outcome.grip_of`); "own", the cue's squirt (rad), tip
         stiffness (N/m), shaft mass (kg) and first natural frequency (Hz); "changes", a list of dicts with the least
-        squirt first: "change" in words, "set" for `cuefem.vary.varied`, the four numbers, relative changes of squirt
-        (with "squirt_change_error", 1 sigma) and stiffness, absolute ones of mass and frequency, and a "verdict".
+        squirt first: "change" in words, "set" for `cuefem.parameters.parameter.varied`, the four numbers, relative
+        changes of squirt (with "squirt_change_error", 1 sigma) and stiffness, absolute ones of mass and frequency, and a "verdict".
 
     Raises
     ------

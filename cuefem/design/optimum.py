@@ -19,8 +19,8 @@ from cuefem.design.evaluation import evaluate
 from cuefem.design.ranges import Levels, Normal, Span, Value
 from cuefem.design.responses import Response
 from cuefem.design.study import Study, StudyDesign, Vary
+from cuefem.parameters.parameter import value_at
 from cuefem.scene import Resolution, Scene
-from cuefem.vary import value_at
 
 TOLERANCE = 1e-6  # relative to a limit's own size (1 if it is 0): a value nearer than this makes the limit active
 EXCLUDED = 1e9  # score of a design that breaks a limit: worse than any within the limits

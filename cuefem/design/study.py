@@ -16,9 +16,9 @@ from cuefem.cue.materials import material
 from cuefem.design.evaluation import common_resolution
 from cuefem.design.ranges import Levels, Normal, Span, Value
 from cuefem.design.responses import Response
+from cuefem.parameters.parameter import Path, paths, quantity_at, replaced, spelt, value_at
 from cuefem.quantity.display import spelt_out
 from cuefem.scene import Resolution, Scene
-from cuefem.vary import Path, paths, quantity_at, replaced, spelt, value_at
 
 # Designs evaluated, and written, at a time; fewer if each takes a strike in time.
 BLOCK, STRUCK_BLOCK = 256, 16

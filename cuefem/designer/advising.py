@@ -13,10 +13,10 @@ from cuefem.designer.computing import FAILURES, computed
 from cuefem.designer.controls import Beside, button
 from cuefem.designer.markup import Markup
 from cuefem.designer.unit_system import UnitSystem
+from cuefem.parameters.parameter import varied
 from cuefem.report.advice_table import advice_sheet
 from cuefem.results.records import Record
 from cuefem.scene import Scene
-from cuefem.vary import varied
 
 Edit = Callable[[Callable[[Scene], Scene], str], str]
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
+from cuefem.parameters.parameter import knobs_of, turned
 from cuefem.scene import Scene
-from cuefem.vary import knobs_of, turned
 
 TOGETHER = 1.5  # s: moves of one knob that follow each other within it are one step
 MOST_STEPS = 60

@@ -6,11 +6,11 @@ from dataclasses import MISSING, fields, replace
 from typing import Any, NamedTuple
 
 from cuefem.effects import Effect, effect_kinds
-from cuefem.parts import halves, with_segments
+from cuefem.parameters.parameter import Path
+from cuefem.parameters.parts import halves, with_segments
 from cuefem.quantity.fields import quantities
 from cuefem.scene import Scene
 from cuefem.scene.default_scene import GAMES, usual_scene, without_leather
-from cuefem.vary import Path
 
 LABELS = {
     "tip_diameter": "diameter, tip end",

@@ -21,8 +21,8 @@ from cuefem.designer.design import MOST_STEPS, Design, State, Step, check_segmen
 from cuefem.designer.sliders import choices
 from cuefem.io.schema import NAMES, table
 from cuefem.io.toml import scene_of_table
+from cuefem.parameters.parameter import knobs_of, place
 from cuefem.scene import Scene
-from cuefem.vary import knobs_of, place
 
 VERSION = 1
 LONGEST = 1_000_000  # letters of a text

@@ -23,10 +23,10 @@ from cuefem.io import load
 from cuefem.io.fittings import FITTINGS, fitted
 from cuefem.io.profile import DEFAULT_MATERIAL, SHAPES
 from cuefem.io.ready import PRESETS, Preset, ready_cue
-from cuefem.parts import with_material
+from cuefem.parameters.parameter import varied
+from cuefem.parameters.parts import with_material
 from cuefem.scene import Scene
 from cuefem.scene.default_scene import DEFAULT_GAME, GAMES, usual_scene
-from cuefem.vary import varied
 
 TOLD = ("begins", "ferrule", "bore")  # of `FITTINGS`, what the page asks of a shape
 _CUE = re.compile(r"""^\s*cue\s*=\s*["']([^"'\n]+)["']""", re.MULTILINE)

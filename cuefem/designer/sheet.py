@@ -17,9 +17,9 @@ from cuefem.designer.editing import Field
 from cuefem.designer.markup import Markup
 from cuefem.designer.unit_system import METRIC, UnitSystem, typed
 from cuefem.effects import Effect, effect_kinds
-from cuefem.parts import materials_in
+from cuefem.parameters.parameter import Path, replaced, value_at
+from cuefem.parameters.parts import materials_in
 from cuefem.scene import Scene
-from cuefem.vary import Path, replaced, value_at
 
 Edit = Callable[[Callable[[Scene], Scene], str], str]
 EMPTY = "empty"

@@ -10,9 +10,9 @@ from typing import Any
 from cuefem.cue import Material
 from cuefem.cue.materials import MATERIALS, material_name
 from cuefem.designer.unit_system import METRIC, UnitSystem
+from cuefem.parameters.parameter import PLACES, Place, knobs_of
 from cuefem.scene import Scene
 from cuefem.scene.default_scene import GAMES
-from cuefem.vary import PLACES, Place, knobs_of
 
 Knobs = Mapping[str, Any]
 DECIMALS = 9  # shown at most: beyond them a slider's own rounding begins

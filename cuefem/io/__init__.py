@@ -17,11 +17,11 @@ from cuefem.io.errors import InputError, faults_of, reason, shown
 from cuefem.io.fittings import fitted, with_shaft_of
 from cuefem.io.profile import DEFAULT_MATERIAL, SHAPES, TABLES, load_profile
 from cuefem.io.toml import drawn_cue, load_accuracy, load_cue, load_toml, named_material
-from cuefem.parts import with_shaft_mass
+from cuefem.parameters.parameter import with_fields
+from cuefem.parameters.parts import with_shaft_mass
 from cuefem.quantity.fields import Quantity
 from cuefem.quantity.units import number
 from cuefem.scene import Scene
-from cuefem.vary import with_fields
 
 __all__ = [
     "DEFAULT_MATERIAL",

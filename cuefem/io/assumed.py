@@ -12,7 +12,7 @@ from cuefem.effects import AxialWaves, effect_kinds
 from cuefem.io.fittings import BORE, FERRULE, LEATHER, TENON
 from cuefem.io.profile import DEFAULT_MATERIAL, DEFAULT_UNIT, SHAPES, SURFACES, Profile, read_profile
 from cuefem.io.toml import left_out, read_tables
-from cuefem.parts import Layout
+from cuefem.parameters.parts import Layout
 from cuefem.scene import DEFAULT_CONTACT_TIME, Ball, Stroke, Tip
 from cuefem.scene.default_scene import DEFAULT_GAME, GAMES, KIM, usual_tip
 

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 from cuefem.cue import SOFT, Cue, Material, Segment
 from cuefem.cue.materials import material as material_of
-from cuefem.parts import LONGEST_FERRULE, PARTS, SAME, Bore, Layout, split_at
+from cuefem.parameters.parts import LONGEST_FERRULE, PARTS, SAME, Bore, Layout, split_at
 from cuefem.quantity.units import number
 from cuefem.scene import Scene
 

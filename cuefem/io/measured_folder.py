@@ -24,9 +24,9 @@ from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, Measurement
 from cuefem.measurements.pendulum import Pendulum
 from cuefem.measurements.recording import Recording, combined, tones_of
 from cuefem.measurements.uncertain_parameters import Prior, names
+from cuefem.parameters.parameter import place
 from cuefem.quantity.fields import Quantity, quantities
 from cuefem.scene import Scene
-from cuefem.vary import place
 
 MEASURED = "measured.toml"
 DRAWINGS = ("cue.toml", "cue.csv")

@@ -21,11 +21,11 @@ from cuefem.io.profile import SHAPES
 from cuefem.io.schema import build, joined, unknown_key
 from cuefem.io.store import Store
 from cuefem.io.toml import game_of, named_material, read_tables
+from cuefem.parameters.parameter import paths, quantity_at, value_at
 from cuefem.quantity.fields import Quantity
 from cuefem.results.quantities import with_unit
 from cuefem.scene import Resolution, Scene, Stroke
 from cuefem.scene.default_scene import KIM, usual_scene
-from cuefem.vary import paths, quantity_at, value_at
 
 KEYS = ["scene", "game", "responses", "vary", "resolution"]
 SWEEP_KEYS, SCATTER_KEYS = [*KEYS, "sample"], [*KEYS, "tolerances"]

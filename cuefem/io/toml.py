@@ -21,7 +21,7 @@ from cuefem.io.errors import LARGEST_TEXT, InputError, faults_of, nearest, read_
 from cuefem.io.fittings import BORE, FERRULE
 from cuefem.io.schema import build, joined, keys_of, table, unknown_key
 from cuefem.io.shelf import assembled
-from cuefem.parts import with_shaft_mass
+from cuefem.parameters.parts import with_shaft_mass
 from cuefem.quantity.fields import MOST_SEGMENTS, Quantity, check_fields, quantities
 from cuefem.scene import Scene, Stroke, Tip
 from cuefem.scene.default_scene import DEFAULT_GAME, GAMES, KIM, STROKES, usual_scene

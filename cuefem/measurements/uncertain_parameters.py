@@ -14,9 +14,9 @@ from typing import Annotated, Any
 
 from cuefem.cue import Material
 from cuefem.measurements.measurement_types import EndMass, Measurement, PivotLength, Setup, Squirt
+from cuefem.parameters.parameter import PLACES, Path, place, replaced
 from cuefem.quantity.fields import Quantity, check_fields
 from cuefem.scene import Scene
-from cuefem.vary import PLACES, Path, place, replaced
 
 MODEL_OF_SQUIRT = 0.1  # relative, one for all: what the law of the shrinking patch is worth (handbook: Effects)
 ZERO, SQUIRT_MODEL, BALL_TIME = "zero", "squirt model", "ball time"

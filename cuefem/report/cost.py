@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from time import perf_counter
 from typing import Any
 
-from cuefem.accuracy import MOST, Level, levels, relative_error
 from cuefem.contact.strike import strike
 from cuefem.report.figures import figure_content
+from cuefem.results.convergence import MOST, Level, levels, relative_error
 from cuefem.results.quantities import NONE, TRADE, significant
 from cuefem.results.records import Entry, Record, Sheet, sheet
 from cuefem.scene import Scene

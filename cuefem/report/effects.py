@@ -6,7 +6,6 @@ import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict
 
-from cuefem.accuracy import climb
 from cuefem.beam.modes import modes
 from cuefem.beam.tail import tail
 from cuefem.contact.strike import strike, strike_modes
@@ -14,6 +13,7 @@ from cuefem.design.worth import Change, Variant, change, variants
 from cuefem.effects import effect_kinds
 from cuefem.endmass.definitions import equivalent_end_mass
 from cuefem.report.scene_words import assumptions, effect_words
+from cuefem.results.convergence import climb
 from cuefem.results.quantities import NONE, degrees, grams, with_unit
 from cuefem.results.records import Record, Sheet
 from cuefem.scene import Outcome, Resolution, Scene

@@ -8,9 +8,9 @@ from typing import Any
 
 from cuefem.cue.materials import LEATHER_NAMES, LEATHERS, MATERIALS, TIPS, WOODS
 from cuefem.io.shelf import SHAFTS
+from cuefem.parameters.parameter import FERRULES
 from cuefem.results.quantities import RESULTS, units_of, with_heading
 from cuefem.results.records import Entry, Record, Sheet, sheet
-from cuefem.vary import FERRULES
 
 
 def parts_record() -> Record:

@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cuefem.accuracy import Level, climb
 from cuefem.beam.modes import modes
 from cuefem.beam.tip import TipModes
 from cuefem.contact.outcome import MISSED, grip_of
@@ -46,6 +45,7 @@ from cuefem.report.trust import trust_lines
 from cuefem.report.verdict_table import headline, verdict_part
 from cuefem.results.asking import listed
 from cuefem.results.closed_forms import alciatore_a31_mass_ratio
+from cuefem.results.convergence import Level, climb
 from cuefem.results.designs import OneDesign
 from cuefem.results.quantities import GRIPS, NONE, RESULTS, degrees, grams, scaled, written
 from cuefem.results.records import Record, Sheet, value_rows, values_sheet

@@ -16,10 +16,10 @@ from cuefem.design import Levels, Normal, Response, Span, Study, Vary
 from cuefem.design.optimum import Optimum, Problem
 from cuefem.design.scatter import Drivers, Scatter
 from cuefem.design.study_result import StudyResult
+from cuefem.parameters.parameter import named_pieces
 from cuefem.results.quantities import TRADE, significant, with_heading, with_unit
 from cuefem.results.records import Sheet
 from cuefem.scene import Scene
-from cuefem.vary import named_pieces
 
 MOST_LEVELS = 24  # values of a column that are groups of their own; of more, each group is a range
 RANGES = 12  # so many then

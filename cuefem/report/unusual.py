@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from cuefem.cue import Segment
 from cuefem.cue.materials import MATERIALS, table_name
-from cuefem.parts import main_material
+from cuefem.parameters.parts import main_material
 from cuefem.quantity.slips import LIGHTEST, USUAL
 from cuefem.results.quantities import scaled
 from cuefem.scene import Scene

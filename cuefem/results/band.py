@@ -8,9 +8,9 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from cuefem.contact.strike import strike_modes
+from cuefem.parameters.parameter import PLACES, Place, replaced
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved
-from cuefem.vary import PLACES, Place, replaced
 
 # Of the model, from the folders of studies/measured with nothing fitted (tests/results/test_band.py makes them again).
 # Level: measured over computed squirt, less 1, root mean square of seven strokes of three cues, for a tip of leather

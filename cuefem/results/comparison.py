@@ -8,14 +8,14 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 from cuefem.contact.outcome import MISSED, grip_of
-from cuefem.parts import main_material
+from cuefem.parameters.parameter import PLACES
+from cuefem.parameters.parts import main_material
 from cuefem.results.asking import asked
 from cuefem.results.band import OF_DIFFERENCE, changes_by_input, of_tip
 from cuefem.results.designs import OneDesign, off_centre
 from cuefem.results.records import Record
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved
-from cuefem.vary import PLACES
 
 # The numbers that are compared, by their names in the registry of results.
 OF_SQUIRT = ("squirt", "end_mass_squirt", "pivot_length")  # what squirt makes them, so that the model adds its error

@@ -14,11 +14,11 @@ import pytest
 import cuefem as cf
 from cuefem.cue.materials import material
 from cuefem.design.design_changes import COSTS, LEAST_WALL, PAYS, changes_of, design_changes
+from cuefem.parameters.parameter import varied
 from cuefem.report.report_page import page
 from cuefem.results.verdict import verdict_record
 from cuefem.scene.default_scene import GAMES
 from cuefem.tip_modes import Solved
-from cuefem.vary import varied
 from tests.helpers.command_line import call
 
 ROOT = Path(__file__).parents[2]

@@ -35,11 +35,11 @@ from cuefem.designer.numbers_panel import (
 from cuefem.designer.pictures import limits_of, offset_charts
 from cuefem.designer.start import first_scene
 from cuefem.designer.unit_system import INCHES
+from cuefem.parameters.parameter import knobs_of, turned
 from cuefem.report.end_mass import end_mass_record
 from cuefem.report.modes_table import modes_record
 from cuefem.report.strike_table import strike_record
 from cuefem.results.quantities import RESULTS
-from cuefem.vary import knobs_of, turned
 
 SCENES = Path(__file__).parents[2] / "studies" / "scenes"
 

@@ -18,7 +18,7 @@ from cuefem.cue.materials import material
 from cuefem.designer.design import MOST_SEGMENTS, MOST_STEPS, Design, State, Step
 from cuefem.designer.kept import key_of, state_of, text_of
 from cuefem.designer.start import first_scene
-from cuefem.parts import with_material
+from cuefem.parameters.parts import with_material
 
 ROOT = Path(__file__).parents[2]
 FIRST = Design.of("maple", first_scene(), ["material hard maple"])

@@ -12,7 +12,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.handbook import MAKERS, chapters
-from cuefem.vary import varied
+from cuefem.parameters.parameter import varied
 from tests.helpers.command_line import call
 from tests.helpers.maker_pictures import FOLDER, PICTURES, answers, ready
 

@@ -17,11 +17,11 @@ from cuefem.designer.words import head_markup
 from cuefem.effects import CueEffect, TipEffect, Usual
 from cuefem.effects.terms import ContactTerms
 from cuefem.endmass.definitions import Definition
-from cuefem.parts import Part
+from cuefem.parameters.parameter import Place, Range
+from cuefem.parameters.parts import Part
 from cuefem.quantity.fields import LENGTH, Quantity
 from cuefem.report.report_page import page
 from cuefem.results.quantities import Result, of_drawing, of_strike
-from cuefem.vary import Place, Range
 from tests.helpers.command_line import call
 
 

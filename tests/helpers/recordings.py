@@ -11,7 +11,7 @@ from scipy.io import wavfile
 
 import cuefem as cf
 from cuefem.effects.loss import section_loss
-from cuefem.parts import main_material, with_material
+from cuefem.parameters.parts import main_material, with_material
 
 LOSS = 0.012  # maple's, where a file gives none
 PULSE = 3e-4  # s, a small hard mallet: a half sine

@@ -83,7 +83,7 @@ def test_a_closed_unknown_is_held_and_an_open_one_opened() -> None:
 def test_every_unknown_is_put_where_it_belongs(name: str) -> None:
     """A changed parameter reads back, and at its usual value nothing changes."""
     from cuefem.measurements.measurement_types import Setup
-    from cuefem.vary import PLACES
+    from cuefem.parameters.parameter import PLACES
 
     cue = measured_cue(priors=(Prior("taper", 0.1),))
     (parameter,) = (one for one in cue.parameters if one.name == name)

@@ -8,11 +8,11 @@ from typing import Any
 import pytest
 
 import cuefem as cf
-from cuefem.accuracy import resolve
 from cuefem.design.worth import variants
 from cuefem.effects import effect_kinds
 from cuefem.report import effects_record
 from cuefem.report.effects import MARGIN, advice
+from cuefem.results.convergence import resolve
 from tests.helpers.strike_scenes import KIM
 
 DOME, CLAY, HAND = cf.TipDome(9.5e-3), cf.PointMass(0.05, 0.011), cf.Support(0.2032, 5e3)

@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.accuracy import resolve
 from cuefem.report.charts import WIDE, Axis, round_step
 from cuefem.report.drawings import ACROSS, cue_drawing, strike_drawing
 from cuefem.report.report_page import page
+from cuefem.results.convergence import resolve
 
 MESHES = Path(__file__).parents[2] / "meshes"
 SCENES = MESHES.parent / "studies" / "scenes"

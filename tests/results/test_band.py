@@ -12,9 +12,9 @@ import pytest
 import cuefem as cf
 from cuefem.io.measured_folder import load_measured
 from cuefem.measurements.measurement_types import AddedMass, Squirt
+from cuefem.parameters.parameter import varied
 from cuefem.results.band import LEVEL, OF_DIFFERENCE, of_inputs, of_shaft
 from cuefem.tip_modes import Solved
-from cuefem.vary import varied
 
 MESHES = Path(__file__).parents[2] / "meshes"
 MEASURED = Path(__file__).parents[2] / "studies" / "measured"

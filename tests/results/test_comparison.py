@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
+from cuefem.parameters.parameter import varied
 from cuefem.results.band import OF_DIFFERENCE
 from cuefem.results.comparison import FLOOR, OTHER_FLOOR, comparison_record
-from cuefem.vary import varied
 from tests.helpers.command_line import as_json, call
 from tests.helpers.cues import pool
 

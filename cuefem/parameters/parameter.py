@@ -1,8 +1,8 @@
 """The one way to change a scene: its places, by name ("ferrule length") or by path ("cue.segments[0].tip_bore").
 
 A place holds one number or one material. A path leads through fields; "[*]" stands for every item of a list, and it may
-begin at a part that the drawing tells (`cuefem.parts`), as in "wood.E". A name of `PLACES` stands for a path. Sweeps,
-optima, scatters, knobs, unknowns and the options of commands all derive from that table: an entry there is a new one in
+begin at a part that the drawing tells (`cuefem.parameters.parts`), as in "wood.E". A name of `PLACES` stands for a
+path. Sweeps, optima, scatters, knobs, unknowns and the options of commands all derive from that table: an entry there is a new one in
 each of them.
 """
 
@@ -19,7 +19,7 @@ from typing import Any, NamedTuple, get_args, get_type_hints
 from cuefem.cue import Cue, LumpedCue, Material
 from cuefem.cue.materials import LEATHER_NAMES, MATERIALS, WOODS, material_name, table_name
 from cuefem.cue.materials import material as named_material
-from cuefem.parts import (
+from cuefem.parameters.parts import (
     BORED_WIDTH,
     GROWTH,
     PARTS,
@@ -371,7 +371,7 @@ def varied(scene: Scene, changes: Mapping[str, Any]) -> Scene:
     Examples
     --------
     >>> import cuefem as cf
-    >>> from cuefem.vary import varied
+    >>> from cuefem.parameters.parameter import varied
     >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
     >>> scene = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.012, 0.021, wood),)))
     >>> made = varied(scene, {"wood": "ash", "bore depth": 0.1, "speed": 3.0})
