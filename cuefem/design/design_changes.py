@@ -142,7 +142,8 @@ def design_changes(scene: Scene, *, solved: Solved | None = None, follow: Follow
         "offset", b/R; "grip", the contact's (`cuefem.contact.outcome.grip_of`); "own", the cue's squirt (rad), tip
         stiffness (N/m), shaft mass (kg) and first natural frequency (Hz); "changes", a list of dicts with the least
         squirt first: "change" in words, "set" for `cuefem.parameters.parameter.varied`, the four numbers, relative
-        changes of squirt (with "squirt_change_error", 1 sigma) and stiffness, absolute ones of mass and frequency, and a "verdict".
+        changes of squirt (with "squirt_change_error", 1 sigma) and stiffness, absolute ones of mass and frequency, and
+        a "verdict".
 
     Raises
     ------

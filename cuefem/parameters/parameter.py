@@ -2,8 +2,8 @@
 
 A place holds one number or one material. A path leads through fields; "[*]" stands for every item of a list, and it may
 begin at a part that the drawing tells (`cuefem.parameters.parts`), as in "wood.E". A name of `PLACES` stands for a
-path. Sweeps, optima, scatters, knobs, unknowns and the options of commands all derive from that table: an entry there is a new one in
-each of them.
+path. Sweeps, optima, scatters, knobs, unknowns and the options of commands all derive from that table: an entry there
+is a new one in each of them.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """What files are refused for, each in one line that names the file, the key path and the bound (regression).
 
-Every declared field of every table: tests/test_declared_fields.py.
+Every declared field of every table: tests/quantity/test_declared_fields.py.
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ from cuefem.cue.materials import LEATHERS, material
 from cuefem.scene.default_scene import GAMES, usual_tip
 from tests.helpers.refusals import refuses
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 WOOD = cf.Segment(0.7, 0.0118, 0.021, material("hard maple"))
 
 

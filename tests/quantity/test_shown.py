@@ -13,7 +13,7 @@ import pytest
 import cuefem as cf
 from cuefem.quantity.display import spelt_out
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 CUE = cf.load(ROOT / "meshes" / "pool_hollow.toml")
 assert isinstance(CUE, cf.Cue)
 SCENE = cf.Scene(CUE, stroke=cf.Stroke(1.0, 0.3), effects=(cf.TipDome(0.0095),))

@@ -13,7 +13,7 @@ import cuefem as cf
 from cuefem.io import load_accuracy
 from cuefem.results.convergence import resolve
 
-SCENES = Path(__file__).parent.parent / "studies" / "scenes"
+SCENES = Path(__file__).parents[2] / "studies" / "scenes"
 READY = ("break_cue", "carom", "clay_on_shaft", "kim", "pool_low_deflection", "snooker")
 
 

@@ -13,7 +13,7 @@ import pytest
 import cuefem as cf
 from tests.helpers.command_line import call
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 WOOD = cf.Material(12.6e9, 0.84e9, 700.0)
 SEGMENT = cf.Segment(0.7, 0.012, 0.021, WOOD)
 SLIPS: list[tuple[Callable[[], object], str]] = [
