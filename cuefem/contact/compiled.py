@@ -31,7 +31,7 @@ class KernelContact(ctypes.Structure):
         *((name, ctypes.c_void_p) for name in _ARRAYS.split()),
         *((name, ctypes.c_double) for name in _NUMBERS.split()),
         ("work", ctypes.c_double * 6),
-        *((name, ctypes.c_int) for name in ("status", "parted", "grip", "steps", "pressed")),
+        *((name, ctypes.c_int) for name in ("status", "grip", "steps", "pressed")),
     )
 
 

@@ -162,6 +162,11 @@ def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
     arm_t, arm_n = s * u + c * w, c * u - s * w
     whole = terms.tip
     part = _power_tip(scene, terms, common) if whole is None else _leather(scene, whole, common, offset)
+    if part.patch == RIGID_PATCH and terms.window is not None and math.isinf(common["friction"]):
+        raise ValueError(
+            "Tip.friction must be finite beside SecondHit, or the tip give along the surface (TipShear, LeatherTip): "
+            "the blows of endless friction throw ball and tip apart again and again; got inf"
+        )
     numbers, arrays, common = part.numbers, part.arrays, common | {"time": part.time}
     if turns:
         numbers |= {"rolls": 1, "dome": part.dome, "rim": min(part.rim, math.pi), "radius": float(scene.ball.radius)}

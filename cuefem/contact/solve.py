@@ -26,6 +26,7 @@ STEPS = 400
 ENDLESS = 1e12  # friction, as the kernel takes it
 CHUNK = 2048  # steps that the kernel takes at a call
 LONGEST = 200  # head-on contact times, after which a contact is given up
+MOST = 2_000_000  # steps that a strike is followed for, 0.4 GB of records
 _RUNNING, _ENDED, _, _TOO_DEEP, _BENT_TOO_FAR, _UNSOLVED, _NO_MEMORY = range(7)
 
 
@@ -38,8 +39,7 @@ class SolvedContact:
 
     steps: its records (`STEP`) up to the last separation. course: (steps + 1, coordinates), the modes' coordinates
     before and after each; None where they were not asked for. xi: these at the end. ball: its velocities there, m/s
-    (raised: and its spins times R). losses: J by name. deepest: the tip's greatest indentation, m. parted: whether the
-    blow of endless friction threw ball and tip apart.
+    (raised: and its spins times R). losses: J by name. deepest: the tip's greatest indentation, m.
     """
 
     model: ContactModel
@@ -49,7 +49,6 @@ class SolvedContact:
     ball: Array
     losses: dict[str, float]
     deepest: float
-    parted: bool
 
     @property
     def time(self) -> float:
@@ -147,6 +146,11 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, course: bool
         raise MemoryError("no memory for the steps of a contact")
     try:
         while c.status == _RUNNING:
+            if c.steps >= MOST:
+                raise RuntimeError(
+                    f"the strike takes more than {MOST} steps, of {c.step:.3g} s: it is followed for {c.time:.3g} s so "
+                    "far; take fewer steps (Resolution.steps), or a shorter window of SecondHit"
+                )
             rows, after = np.empty(CHUNK, STEP), np.empty((CHUNK if watched else 0, 2, len(propagator.rates)))
             count = kernel.contact_steps(work, CHUNK, rows.ctypes.data, after.ctypes.data if watched else None)
             records.append(rows[:count])
@@ -171,7 +175,6 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, course: bool
         arrays["ball"],
         losses | {"damping": damping, "radiated": radiated},
         c.deepest,
-        bool(c.parted),
     )
 
 

@@ -117,7 +117,7 @@ def outcome_of(solved: SolvedContact, scene: Scene) -> Outcome:
 
 
 def _regime(solved: SolvedContact) -> str:
-    if solved.parted and len(solved.steps) == 1:  # by the first blow, which stopped the slip at last or did not
+    if solved.time == 0:  # thrown apart by the blow of endless friction, which stopped the slip at last or did not
         return "late stick" if abs(solved.velocity[0]) <= 1e-12 * solved.model.speed else "miscue"
     return regime_of(solved.phases)
 

@@ -26,7 +26,8 @@ class TipDome(TipEffect):
     angle phi it lies r sin(phi) off the axis and r (1 - cos(phi)) behind the apex, so the inverse mass B gains terms
     that couple the motion along the cue with the motion across it.
 
-    Matters when: Always. A dome of 9 mm raises the squirt at small offsets by 10 % (carbon) to 63 % (Kim's shaft).
+    Matters when: Always. In a contact of 1 ms a dome of 9 mm raises squirt by 10 % (carbon) to 63 % (Kim's shaft) at
+    b/R 0.02, by 28 to 75 % at 0.3.
     A plain sum over modes then converges very slowly.
 
     Wrong when: The leather shears or flattens so much that its surface does not follow the end section.
@@ -118,7 +119,7 @@ class PowerLawTip(TipEffect):
     head-on stroke at `speed` has the tip's contact time. The tip unloads on the same curve with its compression scaled
     by e^2, F = F_peak ((d - d0)/(e^2 d_peak))^exponent with d0 = (1 - e^2) d_peak, which returns exactly the part e^2
     of the work; below the old peak it is loaded again on that curve. A `TipShear` keeps its constant spring, ratio
-    times the base model's k. The contact is stepped in time, to about 1e-10.
+    times the base model's k.
 
     Matters when: The speed of the stroke varies. The contact time falls with the speed as U^((1 - exponent)/(1 +
     exponent)), and squirt falls with it.
@@ -161,7 +162,7 @@ class RollingContact(TipEffect):
     -----
     Adds: The angle of the contact becomes a state. It grows while the tip moves past the ball's centre, at a rate equal
     to the velocity of the dome's centre less that of the ball's centre, along the tangent, over R + r. Here r is the
-    radius of the `TipDome`; without one the tip is a sharp point. The contact is stepped in time, to about 1e-10.
+    radius of the `TipDome`; without one the tip is a sharp point.
 
     Matters when: The stroke is fast. The effect is small: squirt and spin change in proportion to U T/R, by about 1 %
     at 1 m/s and 1 ms.

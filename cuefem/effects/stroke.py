@@ -31,7 +31,7 @@ class SecondHit(Effect):
 
     Wrong when: The leather recovers its shape between the hits, or the player's hand pushes or holds the cue. Gravity
     and the table are left out, and the direction of the contact stays that of the first touch unless `RollingContact`
-    turns it.
+    turns it. Infinite friction takes a tip that gives along the surface.
 
     Limit: The effect vanishes as the window goes to zero; it changes nothing if the tip does not reach the ball again.
 
@@ -79,9 +79,8 @@ class Elevation(Effect):
     cloth takes speed from it in proportion to the angle, and its squirt changes with the square of the angle. The curve
     of the ball after the stroke is not included.
 
-    Wrong when: The stroke is a jump shot, which needs the bounce of cloth and slate, the ball is frozen to another one,
-    or infinite tip friction begins with an impulsive blow, in which the table does not rub. It cannot be used with
-    TipShear, RollingContact or SecondHit.
+    Wrong when: The stroke is a jump shot, which needs the bounce of cloth and slate, or the ball is frozen to another
+    one. It cannot be used with TipShear, RollingContact or SecondHit.
 
     Limit: The effect vanishes as the angle goes to zero, in proportion to the angle with friction on the cloth and to
     its square without.

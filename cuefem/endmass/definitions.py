@@ -20,6 +20,7 @@ from cuefem.contact.impulse_space import impact
 from cuefem.contact.outcome import slides_away
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array, LumpedCue
+from cuefem.effects import Effect
 from cuefem.endmass.impulse_response import ImpulseResponse
 from cuefem.endmass.sticking_contact import StickLimit
 from cuefem.quantity.fields import check_kind, scalar
@@ -290,8 +291,13 @@ def sticking_squirt(tip: TipModes, scene: Scene) -> float:
 
 
 def _gripping(scene: Scene) -> Scene:
-    """The scene with a tip that never slips and a level cue: the table's push is no part of an end mass."""
-    return replace(scene.level, tip=replace(scene.tip, friction=math.inf))
+    """The scene with a tip that never slips, without table and later hits, which are no part of an end mass."""
+
+    def of_contact(effect: Effect) -> bool:
+        terms = replace(scene, effects=(effect,)).contact_terms
+        return terms.table is None and terms.window is None
+
+    return replace(scene, tip=replace(scene.tip, friction=math.inf), effects=tuple(filter(of_contact, scene.effects)))
 
 
 def squirt_equivalent(tip: TipModes, scene: Scene) -> float:

@@ -248,12 +248,6 @@ class Scene:
         return replace(self, tip=timed, effects=effects)
 
     @property
-    def level(self) -> Scene:
-        """The scene with a level cue: without effects that put a table under the ball."""
-        effects = tuple(each for each in self.effects if ContactTerms.of((each,), self._end_diameter).table is None)
-        return self if len(effects) == len(self.effects) else replace(self, effects=effects)
-
-    @property
     def contact_terms(self) -> ContactTerms:
         """What the effects add at the contact."""
         return ContactTerms.of(self.effects, self._end_diameter)

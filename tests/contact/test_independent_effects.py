@@ -117,6 +117,12 @@ def raised(draw: Draw) -> cf.Scene:
     return draw.scene(cue, cf.Elevation(draw.between(0.02, 0.5), table))
 
 
+def raised_and_stuck(draw: Draw) -> cf.Scene:
+    """A steep cue whose tip never slips: its blow presses the ball onto the table, which rubs."""
+    tip, lowered = cf.Tip(0.75, math.inf, contact_time=1e-3), cf.Elevation(draw.between(0.4, 0.6), 0.2)
+    return cf.Scene(draw.cue(), tip=tip, stroke=cf.Stroke(1.0, draw.between(0.5, 0.7)), effects=(lowered,))
+
+
 def hit_again(draw: Draw) -> cf.Scene:
     """A lossy tip on a vibrating cue, often a heavy one, which may catch up with the ball."""
     cue = replace(draw.cue(), body_mass=draw.between(0.4, 2.0))
@@ -139,6 +145,7 @@ KINDS = {
     "StructuralDamping": Kind(damped, (0, 1, 2, 3), 1e-4),
     "all on the cue": Kind(all_on_the_cue, (0, 1, 2, 3), 1e-4),
     "Elevation": Kind(raised, (0, 3), 2e-4),
+    "Elevation, endless friction": Kind(raised_and_stuck, (2,), 3e-3),
     "SecondHit": Kind(hit_again, (6, 20, 24), 5e-4),  # 2, 4 and 2 touches
 }
 MODES, STEPS = 12, 800

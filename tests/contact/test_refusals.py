@@ -9,7 +9,10 @@ import numpy as np
 import pytest
 
 import cuefem as cf
+from cuefem.beam.tip import lumped_tip_modes
+from cuefem.contact.laws import model_of
 from cuefem.contact.place import offset_of_axis
+from cuefem.contact.solve import solve_contact
 from tests.helpers.leather_scenes import leather_scene
 from tests.helpers.refusals import refuses
 from tests.helpers.strike_scenes import KIM, kim_scene
@@ -63,6 +66,7 @@ CALLS: list[tuple[Callable[[], object], str]] = [
         (struck(kim_scene(restitution=e), effects=effects), f"{DEAD}{e:g} (cuefem.impulse takes any)")
         for e, effects in ((0.049, ()), (0.0, ()), (0.04, (cf.SecondHit(),)), (0.0, (cf.Elevation(0.1),)))
     ],
+    (struck(kim_scene(friction=inf), effects=(cf.SecondHit(),)), "Tip.friction must be finite beside SecondHit"),
     (lambda: cf.Resolution(4, 8, 0), "Resolution.modes"),
     (struck(kim_scene(), cf.Resolution(2, 3, 500)), "more elements or order"),
     (lambda: cf.strike(kim_scene(), cf.Resolution(2, 8, 4)).history(-1e-9), "History takes times in [0, "),
@@ -119,3 +123,19 @@ def test_a_strike_that_does_not_separate_says_so_with_its_state(monkeypatch) -> 
     )
     with pytest.raises(RuntimeError, match=message):
         cf.strike(cf.Scene(cf.LumpedCue(0.54, 0.003), stroke=cf.Stroke(offset=0.3)))
+
+
+def test_a_strike_of_too_many_steps_is_given_up(monkeypatch) -> None:
+    monkeypatch.setattr("cuefem.contact.solve.MOST", 3000)
+    once = cf.Scene(cf.LumpedCue(0.54, 0.003), stroke=cf.Stroke(offset=0.3))
+    assert cf.strike(replace(once, effects=(cf.SecondHit(2e-3),))) == cf.strike(once)
+    with pytest.raises(RuntimeError, match=r"the strike takes more than 3000 steps, of 5e-06 s: it is followed for"):
+        cf.strike(replace(once, effects=(cf.SecondHit(1.0),)))
+
+
+def test_a_force_that_is_no_number_is_seen_in_its_step() -> None:
+    scene = cf.Scene(cf.LumpedCue(0.54, 0.003), stroke=cf.Stroke(offset=0.3), effects=(cf.Elevation(0.2),))
+    model = model_of(scene, lumped_tip_modes(scene.cue))
+    model.facing[2, 2] = nan  # out of the plane of the stroke
+    with pytest.raises(RuntimeError, match=r"the forces of the contact have no solution after .* s and 1 steps"):
+        solve_contact(model)

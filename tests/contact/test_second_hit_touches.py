@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
-from itertools import product
 
 import numpy as np
 import pytest
 
-from cuefem import LumpedCue, Outcome, Scene, SecondHit, Stroke, Tip, strike
+from cuefem import Outcome, Scene, SecondHit, strike
 from cuefem.contact.outcome import hits
-from cuefem.contact.strike import strike_modes
 from tests.contact.test_independent_effects import AT, Draw, hit_again
-from tests.helpers.strike_scenes import hand_made
 
 
 def starts(outcome: Outcome) -> list[float]:
@@ -64,16 +60,3 @@ def test_the_window_counts_from_the_first_separation(seed: int) -> None:
     assert not starts(missed)
     assert missed.squirt == alone.squirt
     assert parted(missed) == alone.duration
-
-
-def test_the_regime_is_that_of_the_first_touch() -> None:
-    """Endless friction: the blow of a later touch may throw ball and tip apart, which is no miscue of the strike."""
-    tip = hand_made([900.0, 4000.0, 12000.0], [12.0, -9.0, 15.0], mass=0.2, rigid=6.0)
-    seen = 0
-    for offset, e in product((0.1, 0.3, 0.5, 0.9), (0.05, 0.5, 1.0)):
-        cue = LumpedCue(float(tip.approach @ tip.approach), 0.01)
-        once = Scene(cue, tip=Tip(e, math.inf, 1e-3), stroke=Stroke(1.0, offset))
-        again = strike_modes(replace(once, effects=(SecondHit(2e-2),)), tip)
-        assert again.regime == strike_modes(once, tip).regime
-        seen += again.phases[-1].grip == "blow" and len(again.phases) > 1
-    assert seen

@@ -79,7 +79,7 @@ typedef struct {
     double phi, dome, rim, radius, arm_t, arm_n, step, longest, window;
     double time, depth, deepest, angle, height, shear_loss, thrust, steepest,
         work[FORCES];                         /* work: taken by each force */
-    int status, parted, grip, steps, pressed; /* pressed: steps up to the last separation */
+    int status, grip, steps, pressed; /* pressed: steps up to the last separation */
 } Contact;
 
 /* What modes do over a step of one length: rows of 2 modes, the real parts and then the imaginary ones. */

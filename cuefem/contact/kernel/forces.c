@@ -123,8 +123,8 @@ static int plane_friction(Work *w, int a, int b, double bound)
 }
 
 /* Forces of a raised cue over a table, which never pulls: solved in turns, point after point, until nothing
- * changes. */
-int raised_forces(Work *w)
+   changes; or the impulses of its blow, which stops the tip along the ball and the ball into the table. */
+static int settle(Work *w, int strikes)
 {
     const Contact *c = w->c;
     double *F = w->F, half = w->t.h / 2, off = 1, size = 1;
@@ -132,7 +132,7 @@ int raised_forces(Work *w)
     for (int sweep = 0; sweep < SWEEPS && off > 1e-11 * size; sweep++) {
         double before[FORCES];
         memcpy(before, F, sizeof before);
-        for (int i = 0; i < ROUNDS; i++) {
+        for (int i = 0; i < ROUNDS && !strikes; i++) {
             double u = w->u[N], slope, unused;
             for (int f = 0; f < FORCES; f++) u += w->W[N][f] * F[f];
             double by = (F[N] - tip_force(c, w->press, c->depth - half * u, &slope, &unused)) /
@@ -140,7 +140,7 @@ int raised_forces(Work *w)
             F[N] -= by;
             if (fabs(by) <= CLOSE * fabs(F[N])) break;
         }
-        sticks = plane_friction(w, T, P, c->friction * larger(F[N], 0));
+        sticks = plane_friction(w, T, P, strikes ? HUGE_VAL : c->friction * larger(F[N], 0));
         double u = w->u[UP] - w->W[UP][UP] * F[UP]; /* without the table */
         for (int f = 0; f < FORCES; f++) u += w->W[UP][f] * F[f];
         F[UP] = c->height > 0 && c->height + w->t.h * u > 0 ? 0 : larger(0, (w->rest[UP] - u) / w->W[UP][UP]);
@@ -153,48 +153,45 @@ int raised_forces(Work *w)
     return off <= NEAR * size;
 }
 
+int raised_forces(Work *w) { return settle(w, 0); }
+
 /* The blow of endless friction as ball and tip touch: it stops the tip's velocity along the ball, and the
-   ball's into the table. Whether the two stay together; where the blow alone throws them apart it ends at e
-   times their approach. */
+   ball's into the table, which rubs. Whether the two stay together; where the blow alone throws them apart it
+   ends at e times their approach. */
 int blow(Work *w, Step *row)
 {
-    const Contact *c = w->c;
-    const int held[] = {T, P, UP}, n = c->forces == 2 ? 1 : 3, Q = c->ports + c->slopes, wide = Q + c->speeds;
-    double v[FORCES] = {0}, B[FORCES][FORCES], A[3][4], loads[WIDE] = {0}, *impulse = row->F;
+    Contact *c = w->c;
+    const int Q = c->ports + c->slopes, wide = Q + c->speeds;
+    double loads[WIDE] = {0}, *F = w->F;
     face(w, c->angle, w->slopes, w->C);
     for (int f = 0; f < c->forces; f++) {
-        for (int p = 0; p < wide; p++) v[f] += w->C[f][p] * (p < Q ? w->rates[p] : w->ball[p - Q]);
+        w->v[f] = w->rest[f] = 0;
+        for (int p = 0; p < wide; p++) w->v[f] += w->C[f][p] * (p < Q ? w->rates[p] : w->ball[p - Q]);
         for (int g = 0; g < c->forces; g++) {
-            B[f][g] = 0;
-            for (int b = 0; b < c->speeds; b++)
-                B[f][g] += w->C[f][Q + b] * c->inverse_masses[b] * w->C[g][Q + b];
+            double sum = 0;
+            for (int b = 0; b < c->speeds; b++) sum += w->C[f][Q + b] * c->inverse_masses[b] * w->C[g][Q + b];
             for (int p = 0; p < Q; p++)
-                for (int q = 0; q < Q; q++) B[f][g] += w->C[f][p] * mobility(w, p, q) * w->C[g][q];
+                for (int q = 0; q < Q; q++) sum += w->C[f][p] * mobility(w, p, q) * w->C[g][q];
+            w->V[f][g] = w->W[f][g] = sum;
         }
+        w->u[f] = w->v[f];
     }
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j < n; j++) A[i][j] = B[held[i]][held[j]];
-        A[i][n] = -v[held[i]];
-    }
-    for (int i = 0; i < n; i++) /* Gauss and Jordan; B is positive definite */
-        for (int k = 0; k < n; k++) {
-            double by = k == i ? 0 : A[k][i] / A[i][i];
-            for (int j = i; j <= n; j++) A[k][j] -= by * A[i][j];
-        }
-    double turned = 0, part = 1;
-    for (int i = 0; i < n; i++)
-        impulse[held[i]] = A[i][n] / A[i][i], turned += B[N][held[i]] * impulse[held[i]];
-    int parts = v[N] + turned > 0;
-    if (parts) part = fmin(1, (1 + c->restitution) * fabs(v[N] / turned));
-    for (int f = 0; f < c->forces; f++) impulse[f] *= part;
+    if (c->forces == 2)
+        F[T] = -w->v[T] / w->V[T][T];
+    else if (!settle(w, 1))
+        c->status = UNSOLVED;
+    double turned = 0, unused[FORCES];
+    for (int f = 0; f < c->forces; f++) turned += w->V[N][f] * F[f];
+    int parts = w->v[N] + turned > 0;
+    for (int f = 0; f < c->forces && parts; f++) F[f] *= fmin(1, (1 + c->restitution) * fabs(w->v[N] / turned));
+    velocities(w, row->v, unused);
     for (int f = 0; f < c->forces; f++) {
-        row->v[f] = v[f];
-        for (int g = 0; g < c->forces; g++) row->v[f] += B[f][g] * impulse[g];
-        w->c->work[f] -= impulse[f] * (v[f] + row->v[f]) / 2;
-        for (int p = 0; p < wide; p++) loads[p] += w->C[f][p] * impulse[f];
+        c->work[f] -= F[f] * (w->v[f] + row->v[f]) / 2;
+        for (int p = 0; p < wide; p++) loads[p] += w->C[f][p] * F[f];
     }
+    memcpy(row->F, F, sizeof row->F), memset(F, 0, sizeof w->F);
     strike_modes(w, loads);
     for (int b = 0; b < c->speeds; b++) w->ball[b] += c->inverse_masses[b] * loads[Q + b];
-    w->held = w->up_held = 1, w->last = parts;
+    w->held = w->up_held = 1;
     return !parts;
 }

@@ -37,7 +37,7 @@ EXPORTED Work *contact_new(Contact *c)
         }
     }
     memcpy(w->ball, c->ball, c->speeds * sizeof(double));
-    w->until = HUGE_VAL, w->longest = c->longest, w->last = -1;
+    w->until = HUGE_VAL, w->longest = c->longest;
     read_modes(w);
     if (!tabulate(w, c->step)) return contact_free(w), NULL;
     return w;
@@ -73,7 +73,7 @@ static void follow(Work *w, double v_n)
     else if (w->press == UNLOADING && c->depth > c->deepest)
         w->press = LOADING, h = c->step;
     else if (w->press == FREE && (w->last || c->depth > unloaded(c)))
-        w->press = UNLOADING, w->last = -1, h = soft;
+        w->press = UNLOADING, w->last = 0, h = soft;
     if (!lengthen(w, h)) c->status = NO_MEMORY;
 }
 
@@ -153,7 +153,9 @@ static int trouble(Work *w)
         double turned = fabs(w->slopes[a - 1]);
         if (turned > c->steepest) c->steepest = turned, c->thrust = w->F[N];
     }
-    if (!isfinite(c->depth + c->time + w->F[T] + w->F[N])) return UNSOLVED;
+    double together = c->depth + c->time;
+    for (int f = 0; f < c->forces; f++) together += w->F[f];
+    if (!isfinite(together)) return UNSOLVED;
     if (c->law == LEATHER_LAW && c->depth > c->most) return TOO_DEEP;
     if (c->steepest > STEEPEST) return BENT_TOO_FAR;
     if (w->press == FREE) return c->time >= w->until ? ENDED : RUNNING;
@@ -167,14 +169,12 @@ EXPORTED int contact_steps(Work *w, int most, Step *rows, double *course)
     Contact *c = w->c;
     int done = 0;
     while (done < most && c->status == RUNNING) {
-        int touches = w->last < 0; /* a new touch: what it begins with is a blow where friction is endless */
-        if (touches) w->last = 0;
-        if (touches && c->friction >= ENDLESS && c->patch == RIGID_PATCH && c->phi > 0) {
-            rows[done] = (Step){.time = c->time, .grip = BLOW, .angle = c->angle};
+        if (!c->steps && c->friction >= ENDLESS && c->patch == RIGID_PATCH && c->phi > 0) {
+            rows[done] = (Step){.grip = BLOW};
             int stays = blow(w, rows + done);
             read_modes(w);
             c->steps++;
-            if (!stays) c->parted = 1, separate(w, w->shift), c->status = ENDED;
+            if (!stays && c->status == RUNNING) separate(w, w->shift), c->status = ENDED;
         } else if (take_step(w, rows + done)) {
             c->steps++;
             follow(w, rows[done].v[N]);
