@@ -15,7 +15,9 @@ from cuefem.results.records import Entry, Record, Sheet, sheet
 
 def parts_record() -> Record:
     """The parts of which a cue is put together by name, each with its numbers and their source."""
-    sources = {name: known.source for name, known in LEATHERS.items()} | {name: tip[1] for name, tip in TIPS.items()}
+    sources = {name: known.source for name, known in LEATHERS.items()} | {
+        name: tip["source"] for name, tip in TIPS.items()
+    }
     return {
         "shafts": {name: {"source": known.source} for name, known in SHAFTS.items()},
         "materials": {
