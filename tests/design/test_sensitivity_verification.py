@@ -1,7 +1,5 @@
 """Verification of sensitivities: the sum rule, and central differences of the end mass itself."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace
@@ -10,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cuefem import Cue, LumpedCue, Material, PointMass, Resolution, Scene, Tip, load
+from cuefem import Cue, Material, PointMass, Resolution, Scene, Tip, load
 from cuefem.design.sensitivity import Sensitivity, sensitivity
 from cuefem.endmass.definitions import end_mass
 from tests.helpers.cues import carbon_tube, kim, low_deflection
@@ -103,10 +101,3 @@ def test_the_ball_and_the_mass_along_the_axis() -> None:
 
     assert slope(ball, 1e-3) == pytest.approx(found.ball_mass, rel=1e-6)
     assert slope(body, 1e-3) == pytest.approx(found.axial_mass, rel=1e-6)
-
-
-def test_bad_input() -> None:
-    with pytest.raises(ValueError, match="without effects; got 1"):
-        sensitivity(replace(scene(kim()), effects=(PointMass(0.1, 1e-3),)))
-    with pytest.raises(ValueError, match=r"Scene\.cue must be a Cue of segments"):
-        sensitivity(Scene(LumpedCue(0.5, 0.01)))

@@ -1,7 +1,5 @@
 """A study loses nothing, does nothing twice, and its table does not depend on how it came about (properties)."""
 
-from __future__ import annotations
-
 import csv
 import json
 import os
@@ -21,7 +19,7 @@ from cuefem.io import InputError
 from cuefem.io.study_files import load_study
 from tests.helpers.command_line import said
 from tests.helpers.refusals import command_refuses, untouched
-from tests.helpers.sweeps import SCATTER, SCENE, STRUCK, STUDY, changed, rows_of, swept, written
+from tests.helpers.sweeps import SCENE, STRUCK, STUDY, changed, rows_of, swept, written
 
 ROOT = str(Path(__file__).parents[2])
 ENVIRONMENT = os.environ | {"PYTHONPATH": ROOT}
@@ -173,13 +171,6 @@ def test_another_version_computes_again(tmp_path: Path, monkeypatch: pytest.Monk
     assert [told(study)["evaluated"], told(study)["evaluated"]] == [8, 0]
     monkeypatch.setattr("cuefem.io.store.code", lambda: "another")
     assert told(study)["evaluated"] == 8
-
-
-def test_scatter_is_kept_too(tmp_path: Path) -> None:
-    study = written(tmp_path, SCATTER)
-    first, again = told(study), told(study)
-    assert (first.pop("evaluated"), again.pop("evaluated")) == (256, 0)
-    assert first == again
 
 
 # --- damage ----------------------------------------------------------------------------------------------------------

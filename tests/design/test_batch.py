@@ -1,18 +1,18 @@
 """Many cues as arrays give the numbers of the calls for one (verification)."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from cuefem import Ball, Cue, Resolution, Scene, Segment, Tip, end_mass, modes
+from cuefem import Ball, Cue, Material, Resolution, Scene, Segment, StructuralDamping, Tip, end_mass, modes
 from cuefem.beam.modes import solve
 from cuefem.beam.system import assemble
 from cuefem.beam.tail import tail
+from cuefem.design import Levels, Response, Study, Vary
 from cuefem.design.batch import BLOCK, CueBatch, batch_frequencies, batch_modes, batch_stick
+from cuefem.design.study_result import found
 from cuefem.endmass.definitions import stick
 from cuefem.endmass.sticking_contact import StickLimit
 from cuefem.results.designs import static_tip_stiffness
@@ -100,13 +100,6 @@ def test_end_mass_by_a_tail_is_that_of_each_cue(cues: list[Cue]) -> None:
         np.testing.assert_allclose(mass[i], stick(tip_modes_from(found, one), one), rtol=1e-8)
 
 
-def test_a_tip_of_given_stiffness_has_the_contact_time_of_each_cue() -> None:
-    cues = random_cues(2, 8)
-    scenes = [Scene(cue, tip=Tip(stiffness=2e6)) for cue in cues]
-    mass, _ = batch_stick(CueBatch.of(cues), scenes, at=AT)
-    np.testing.assert_allclose(mass, [end_mass(one, at=AT) for one in scenes], rtol=1e-10)
-
-
 def test_masses_and_balance_points(cues: list[Cue]) -> None:
     batch = CueBatch.of(cues)
     for name in ("mass", "shaft_mass", "balance_point"):
@@ -142,3 +135,61 @@ def test_static_tip_stiffness_is_that_of_the_clamped_beam(cues: list[Cue]) -> No
     stiff = single > 1
     assert stiff.any()
     np.testing.assert_allclose(CueBatch.of(cues).tip_stiffness[stiff], single[stiff], rtol=1e-8)
+
+
+FINE = Resolution(1, 24, 12)
+LONG = Tip(contact_time=2e-3)
+HARD = [12, 25, BLOCK + 2]
+
+
+def light_shaft(mass: float) -> Cue:
+    """A short, steep shaft of ash, without a body, of a mass in kg."""
+    ash = Material(9e9, 0.64e9, 660.0)
+    tip = np.sqrt(12 * mass / np.pi / 0.33 / ash.rho / (1 + 5.5 + 5.5**2))
+    return Cue((Segment(0.33, tip, 5.5 * tip, ash),))
+
+
+def stack() -> list[Cue]:
+    """Whole cues, and among them bare shafts of 16, 21 and 27 g."""
+    cues = [Cue((Segment(0.7, 0.012, 0.02, MAPLE),), m) for m in np.linspace(0.3, 0.5, BLOCK + 6)]
+    for i, mass in zip(HARD, (0.016, 0.021, 0.027), strict=True):
+        cues[i] = light_shaft(mass)
+    return cues
+
+
+@pytest.mark.parametrize("ended", [False, True])
+def test_one_design_without_an_end_mass_does_not_stop_the_stack(ended: bool) -> None:
+    cues = stack()
+    scene = Scene(cues[0], Ball(0.17, 0.0286), LONG)
+    found = batch_stick(CueBatch.of(cues), scene, at=FINE, ended=ended)
+    mass, squirt = found
+    assert np.flatnonzero(np.isnan(mass)).tolist() == HARD
+    assert np.all(np.isfinite(squirt))
+    assert np.all(squirt[HARD] < 0)
+    assert [i for i, reason in enumerate(found.reasons) if reason] == HARD
+    assert all(f"the squirt is {squirt[i]:.4g} times phi, below that of any" in str(found.reasons[i]) for i in HARD)
+    whole = [i for i in range(len(cues)) if i not in HARD]
+    np.testing.assert_allclose(
+        mass[whole], batch_stick(CueBatch.of([cues[i] for i in whole]), scene, at=FINE, ended=ended)[0], rtol=1e-12
+    )
+
+
+def light(effects: tuple[StructuralDamping, ...] = ()) -> Study:
+    """A cue, a bare shaft that is too light, and one that cannot be."""
+    vary = Vary(("cue.body_mass",), Levels((0.4, 0.0, -1.0)))
+    base = Scene(light_shaft(0.021), Ball(0.17, 0.0286), LONG, effects=effects)
+    return Study(base, (vary,), tuple(map(Response.of, ("end_mass", "squirt_slope", "mass"))), at=FINE)
+
+
+@pytest.mark.parametrize("effects", [(), (StructuralDamping(),)], ids=["together", "one by one"])
+def test_a_sweep_says_which_design_has_none_and_keeps_its_squirt(
+    effects: tuple[StructuralDamping, ...],
+) -> None:
+    study = light(effects)
+    heavy, alone, none = found(study).rows
+    assert heavy.failure is None
+    assert none.responses == (None, None, None)
+    assert alone.responses[0] is None
+    assert alone.responses[1] < 0
+    assert alone.responses[2] == pytest.approx(0.021)
+    assert alone.failure.startswith("end_mass: the squirt is -")

@@ -1,0 +1,93 @@
+"""Files of studies: places count as in the cue's file, a cue alone has its game's stroke (properties)."""
+
+from pathlib import Path
+
+import pytest
+
+import cuefem as cf
+from cuefem.design import Normal, Span
+from cuefem.io import InputError
+from cuefem.io.study_files import load_study
+from tests.helpers.command_line import as_json
+from tests.helpers.refusals import command_refuses
+from tests.helpers.sweeps import SCENE, STRUCK, STUDY, written
+
+LEATHER = ("6 mm", "12.75 mm", "12.75 mm", 'material = "leather"')
+FERRULED = (
+    "20 mm",
+    "12.75 mm",
+    "12.8 mm",
+    'tip_bore = "8 mm"\nbutt_bore = "8 mm"\ncore = "ash"\nmaterial = "melamine"',
+)
+BORED = ("126 mm", "12.8 mm", "13 mm", 'tip_bore = "6 mm"\nbutt_bore = "6 mm"\nmaterial = "hard maple"')
+REST = ("550 mm", "13 mm", "21.5 mm", 'material = "hard maple"')
+CUE = 'body_mass = "430 g"\n' + "".join(
+    f'[[segments]]\nlength = "{length}"\ntip_diameter = "{tip}"\nbutt_diameter = "{butt}"\n{more}\n'
+    for length, tip, butt, more in (LEATHER, FERRULED, BORED, REST)
+)
+OF_CUE = 'game = "pool"\ncue = "cue.toml"\n[stroke]\nspeed = "3 m/s"\n'
+# What each path varies: segment and field of the scene, value in the file, m, and the piece that the output names.
+FERRULE, BORE = "ferrule of melamine, 0 to 20 mm", "bored shaft of hard maple, 20 to 146 mm"
+PLACES = {
+    "cue.segments[1].length": (0, "length", 0.020, FERRULE),
+    "segments[2].tip_bore": (1, "tip_bore", 0.006, BORE),
+    "ferrule length": (0, "length", 0.020, FERRULE),
+    "bore": (1, "tip_bore", 0.006, BORE),
+}
+
+
+def varying(folder: Path, path: str, *, of: str = "cue.toml", more: str = "") -> Path:
+    (folder / "cue.toml").write_text(CUE, encoding="utf-8")
+    text = f'scene = "{of}"\nresponses = ["shaft_mass"]\n[[vary]]\npath = "{path}"\nvalues = ["5 mm", "7 mm"]\n{more}'
+    return written(folder, text, OF_CUE)
+
+
+@pytest.mark.parametrize("of", ["cue.toml", "scene.toml"])
+@pytest.mark.parametrize("path", PLACES)
+def test_segments_count_as_in_the_file(path: str, of: str, tmp_path: Path) -> None:
+    i, field, before, piece = PLACES[path]
+    wanted = load_study(file := varying(tmp_path, path, of=of))
+    assert getattr(wanted.base.cue.segments[i], field) == pytest.approx(before)
+    for value in (0.005, 0.007):
+        assert getattr(wanted.scene((value,)).cue.segments[i], field) == pytest.approx(value)
+    assert as_json("study", file)["varied"] == {path: [piece]}
+
+
+def test_length_taken_from_a_segment_of_the_file(tmp_path: Path) -> None:
+    wanted = load_study(varying(tmp_path, "cue.segments[1].length", more='taken_from = "cue.segments[2].length"\n'))
+    lengths = [segment.length for segment in wanted.scene((0.005,)).cue.segments]
+    assert lengths == pytest.approx([0.005, 0.141, 0.55])
+
+
+@pytest.mark.parametrize(
+    ("path", "words"),
+    [("cue.segments[0].length", "must not name the drawn leather"), ("cue.segments[4].length", "cue's file, 0 to 3")],
+)
+def test_segments_off_the_modelled_cue_are_refused(path: str, words: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=words):
+        load_study(varying(tmp_path, path))
+
+
+def test_a_cue_alone_has_the_stroke_of_the_game_and_without_one_that_of_pool(tmp_path: Path) -> None:
+    for game, usual in (("kim", lambda cue: cf.Scene(cue, stroke=cf.Stroke(offset=0.3))), ("", cf.usual_scene)):
+        file = varying(tmp_path, "bore")
+        file.write_text((f'game = "{game}"\n' if game else "") + file.read_text(encoding="utf-8"), encoding="utf-8")
+        assert load_study(file).base == usual(cf.load(tmp_path / "cue.toml"))
+        assert "cue.toml is a cue alone" in as_json("study", file)["assumed"][0]
+    file.write_text('game = "chess"\n' + file.read_text(encoding="utf-8"), encoding="utf-8")
+    command_refuses("study.toml: game: must be one of pool, carom, snooker, kim", "study", file)
+    of_scene = written(tmp_path, f'game = "pool"\n{STUDY}')
+    command_refuses("study.toml: game: must be left out: scene.toml is a scene", "study", of_scene)
+
+
+def test_a_file_says_all_that_a_range_can_be(tmp_path: Path) -> None:
+    text = STRUCK.replace('low = "0 mm"\nhigh = "13 mm"', 'middle = "5 mm"\nsd = "1 mm"')
+    text = text.replace("low = 0.7\nhigh = 1.3", 'middle = 1\nsd = 0.2\nspacing = "logarithmic"')
+    text += '[[vary]]\npath = "cue.segments[0].length"\nlow = "-5 mm"\nhigh = "5 mm"\nshift = true\n'
+    text += 'taken_from = "cue.segments[1].length"\n'
+    two = SCENE.replace("[tip]", SCENE[SCENE.index("[[") : SCENE.index("[tip]")] + "[tip]")
+    found = load_study(written(tmp_path, text, two))
+    bore, modulus, length = found.vary
+    assert (bore.range, modulus.range) == (Normal(5e-3, 1e-3), Normal(1, 0.2, logarithmic=True))
+    assert (length.range, length.shift, length.taken_from) == (Span(-5e-3, 5e-3), True, ("cue.segments[1].length",))
+    assert found.units[:3] == ("m", "", "m")
