@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
@@ -50,9 +48,3 @@ def test_all_of_an_object_can_still_be_written_out() -> None:
     """What tells studies apart; `eval` makes the same object of it."""
     names = {name: getattr(cf, name) for name in dir(cf)} | {"inf": float("inf")}
     assert eval(spelt_out(SCENE), names) == SCENE
-
-
-def test_the_package_runs_as_a_program() -> None:
-    done = subprocess.run([sys.executable, "-m", "cuefem", "--version"], capture_output=True, text=True)
-    assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout.startswith("cuefem, version ")
