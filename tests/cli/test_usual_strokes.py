@@ -11,10 +11,10 @@ import pytest
 
 import cuefem as cf
 from cuefem.cli import COMMANDS, main
-from cuefem.games import GAMES
+from cuefem.cue.materials import LEATHERS, material
 from cuefem.io.fittings import FITTINGS
-from cuefem.materials import LEATHERS, material
 from cuefem.report.tip_table import SPEEDS
+from cuefem.scene.default_scene import GAMES
 from tests.helpers.command_line import as_json, call
 
 SHAFT = cf.Cue((cf.Segment(0.7, 0.0118, 0.021, material("hard maple")),), 0.42)

@@ -8,8 +8,7 @@ import pytest
 import cuefem as cf
 from cuefem.cue.materials import material
 from cuefem.design.design_changes import COSTS, LEAST_WALL, PAYS, changes_of, design_changes
-from cuefem.materials import material
-from cuefem.vary import varied
+from cuefem.parameters.parameter import varied
 from tests.helpers.command_line import as_json, call
 from tests.helpers.refusals import command_refuses
 

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 import cuefem as cf
 from cuefem.beam.waves import even_mesh_for
+from cuefem.cue.materials import material
 from cuefem.design import Levels, Normal, Response, Sample, Span, Study, Vary, evaluate
 from cuefem.endmass.definitions import DEFINITIONS, small_offset_slope
 from cuefem.results.asking import asked
