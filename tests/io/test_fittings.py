@@ -1,7 +1,5 @@
 """What is told beside a drawing (material, ferrule, bore, where it begins) draws what the same columns draw."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest
@@ -9,13 +7,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import cuefem as cf
-from cuefem.cli import COMMANDS, main
-from cuefem.cue.materials import MATERIALS, material
-from cuefem.io.fittings import FITTINGS, TENON, fitted
+from cuefem.io.fittings import fitted
+from cuefem.materials import material
 from tests.helpers.command_line import call
 
 BARE = "x [mm],diameter [mm]\n0,12\n700,21\n"
-COLUMN = "x [mm],diameter [mm],ferrule\n0,12,Melamine\n28,12.36,\n700,21,\n"
 MAPLE, ASH, ABS = map(material, ("hard maple", "ash", "abs"))
 CONE = cf.Cue((cf.Segment(0.7, 0.012, 0.021, MAPLE),))
 
@@ -24,24 +20,6 @@ def shaft(folder: Path, text: str = BARE) -> Path:
     path = folder / "shaft.csv"
     path.write_text(text)
     return path
-
-
-def test_a_ferrule_told_is_the_one_of_the_column(tmp_path: Path) -> None:
-    column = cf.load(shaft(tmp_path, COLUMN))
-    told = cf.load(shaft(tmp_path), ferrule="28 mm melamine")
-    assert isinstance(told, cf.Cue)
-    assert isinstance(column, cf.Cue)
-    for one, other in zip(told.segments, column.segments, strict=True):
-        assert (one.material, one.core) == (other.material, other.core)
-        sizes = ("length", "tip_diameter", "butt_diameter", "tip_bore", "butt_bore")
-        assert [getattr(one, name) for name in sizes] == pytest.approx(
-            [getattr(other, name) for name in sizes], rel=1e-12
-        )
-    assert (told.segments[0].material, told.segments[0].core) == (material("melamine"), MAPLE)
-    assert told.segments[0].tip_bore == TENON * 0.012
-    words = call("modes", shaft(tmp_path, COLUMN))[1]
-    assert "no bore: add it with --bore" in " ".join(words.split())
-    assert "no ferrule" not in words
 
 
 @given(st.floats(2, 59), st.sampled_from(["abs", "Melamine", "carbon fibre", "brass"]), st.booleans())
@@ -67,19 +45,6 @@ def test_a_bore_as_people_say_it(text: str) -> None:
     assert behind.tip_bore == 0
 
 
-@pytest.mark.parametrize(
-    ("mm", "end", "meant"), [(None, "", "sits on a tenon"), (6, "", "without a tenon"), (None, ", no tenon", "")]
-)
-def test_words_about_the_tenon_are_those_of_the_drawing(mm: float | None, end: str, meant: str, tmp_path: Path) -> None:
-    bored = BARE if mm is None else f"x [mm],diameter [mm],bore [mm]\n0,12,{mm}\n152,14,\n700,21,\n"
-    said = " ".join(call("modes", shaft(tmp_path, bored), "--ferrule", f"25 mm melamine{end}")[1].split())
-    assert meant in said
-    assert ("tenon" in said) is bool(meant)
-    if mm:
-        status, _, error = call("modes", tmp_path / "shaft.csv", "--ferrule", "25 mm melamine, tenon 8 mm")
-        assert (status, "the shaft is bored there" in error) == (2, True)
-
-
 def test_a_bore_begins_behind_the_tenon_of_a_ferrule() -> None:
     leather, ferrule, bored, rest = fitted(
         CONE, begins="leather 6 mm", ferrule="1 in melamine", bore="6 mm wide, 100 mm deep"
@@ -102,35 +67,6 @@ def test_the_same_words_change_a_drawing_and_a_scene(tmp_path: Path) -> None:
     changed = cf.load(scene, **told)
     assert isinstance(changed, cf.Scene)
     assert changed.cue == cue
-
-
-def test_every_command_on_a_drawing_takes_them_all() -> None:
-    """One declaration: a command that takes --body-mass takes each of `FITTINGS`."""
-    wearing = 0
-    for name in COMMANDS:
-        command = main.get_command(None, name)  # type: ignore[arg-type]
-        options = {option.name for option in command.params}  # type: ignore[union-attr]
-        if "body_mass" in options:
-            assert {*FITTINGS} <= options, name
-            wearing += 1
-    assert wearing >= 10
-    assert {"abs", "melamine"} <= {*MATERIALS}
-
-
-def test_what_is_told_to_a_command_is_drawn(tmp_path: Path) -> None:
-    told = [
-        "--material",
-        "ash",
-        "--ferrule",
-        "13 mm abs",
-        "--bore",
-        "6 mm wide, 127 mm deep",
-        "--begins",
-        "leather 6 mm",
-    ]
-    assert call("convert", shaft(tmp_path), tmp_path / "made.toml", *told)[0] == 0
-    names = [name.removeprefix("--") for name in told[::2]]
-    assert cf.load(tmp_path / "made.toml") == cf.load(shaft(tmp_path), **dict(zip(names, told[1::2], strict=True)))
 
 
 def test_body_mass_of_load_is_that_of_the_option(tmp_path: Path) -> None:

@@ -1,14 +1,12 @@
 """What a scene file leaves out is that of its game, pool's where none is named; files of before are told so."""
 
-from __future__ import annotations
-
 import json
 import warnings
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import cuefem as cf
@@ -56,6 +54,7 @@ def test_a_cue_alone_is_struck_as_in_its_game(folder: Path, game: str) -> None:
     assert cf.usual_scene(cue_of(folder), "kim") == cf.Scene(cue_of(folder))
 
 
+@settings(max_examples=25)
 @given(told=st.sets(st.sampled_from(KEYS)), effects=st.booleans(), game=st.sampled_from([*GAMES]))
 def test_what_is_told_stays_and_the_rest_is_the_games(folder: Path, told, effects, game) -> None:
     rows = [f'game = "{game}"', 'cue = "cue.toml"', *(["effects = []"] if effects else [])]

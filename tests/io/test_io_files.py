@@ -1,81 +1,43 @@
 """Reference files of every kind: what `load` makes of them, exactly (regression)."""
 
-from __future__ import annotations
-
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
 
 import pytest
 
 import cuefem as cf
-from cuefem.cue.materials import material
-from cuefem.effects import Effect
 from cuefem.io import InputError, load_accuracy
-from cuefem.quantity.fields import Quantity
-from cuefem.quantity.units import text as text_of
+from tests.helpers.cues import kim
 
-MAPLE = cf.Material(12.6e9, 0.84e9, 782.3284453057836)
-SEGMENT = cf.Segment(0.7, 0.012, 0.021, MAPLE, kappa=0.9)
-KIM = cf.Cue((SEGMENT,), 0.42)
-
+KIM = kim()
+(SEGMENT,) = KIM.segments
+MAPLE = SEGMENT.material
 KIM_TOML = """
 segments = [
-  { length = "700 mm", tip_diameter = "12 mm", butt_diameter = "21 mm", kappa = 0.9,
-    material = { E = "12.6 GPa", G = "840 MPa", rho = "782.3284453057836 kg/m^3" } },
+  { length = "700 mm", tip_diameter = "12 mm", butt_diameter = "21 mm", kappa = 0.9, material = MAPLE },
 ]
 body_mass = "420 g"
-""".replace(",\n    material", ", material")
-
+""".replace("MAPLE", f'{{ E = "12.6 GPa", G = "840 MPa", rho = "{MAPLE.rho!r} kg/m^3" }}')
 SCENE_TOML = """
 cue = "cues/kim.toml"
-
-[ball]
-mass = "6 oz"
-radius = "1.125 in"
-
-[tip]
-restitution = 0.75
-friction = inf
-contact_time = "1.2 ms"
-
-[stroke]
-speed = "10 km/h"
-offset = 0.3
-
-[[effects]]
-type = "Sticker"
-position = "29 in"
-
-[accuracy]
-rtol = 1e-4
+ball = { mass = "6 oz", radius = "1.125 in" }
+tip = { restitution = 0.75, friction = inf, contact_time = "1.2 ms" }
+stroke = { speed = "10 km/h", offset = 0.3 }
+effects = [{ type = "PointMass", position = "1 in", mass = "5 g" }]
+accuracy = { rtol = 1e-4 }
 """
-
-
-@dataclass(frozen=True)
-class Sticker(Effect):
-    """An effect made for this test."""
-
-    position: Annotated[float, Quantity("m", "[0, inf)")]
-    label: str = "A"
 
 
 def test_scene_file_finds_its_cue_beside_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "cues").mkdir()
     (tmp_path / "cues" / "kim.toml").write_text(KIM_TOML)
     (tmp_path / "scene.toml").write_text(SCENE_TOML)
-    expected = cf.Scene(
-        KIM,
-        cf.Ball(0.17009713875, 0.028575),
-        cf.Tip(friction=math.inf, contact_time=0.0012),
-        cf.Stroke(float("2.777777777777777777777777778"), 0.3),
-        (Sticker(0.7366),),
-    )
+    ball, tip = cf.Ball(0.17009713875, 0.028575), cf.Tip(friction=math.inf, contact_time=0.0012)
+    stroke = cf.Stroke(float("2.777777777777777777777777778"), 0.3)
     monkeypatch.chdir(tmp_path / "cues")
-    assert cf.load("../scene.toml") == expected
-    assert load_accuracy("../scene.toml") == 1e-4
-    assert load_accuracy("kim.toml") is None
+    assert cf.load("../scene.toml") == cf.Scene(KIM, ball, tip, stroke, (cf.PointMass(0.0254, 0.005),))
+    assert (load_accuracy("../scene.toml"), load_accuracy("kim.toml")) == (1e-4, None)
 
 
 PROFILE = "# a shaft\nx [mm],diameter [in]\n10,0.5\n110,0.5\n210,0.5\n\n310,0.6\n410,0.7\n710,0.8\n"
@@ -93,11 +55,6 @@ def test_lathe_profile_merges_straight_tapers(tmp_path: Path) -> None:
     assert replace(ash.segments[1], material=cue.segments[1].material) == cue.segments[1]
 
 
-def test_lathe_profile_keeps_a_bend_of_a_micrometre(tmp_path: Path) -> None:
-    (tmp_path / "shaft.csv").write_text("x [mm],diameter [mm]\n0,12\n350,16.501\n700,21\n")
-    assert [s.butt_diameter for s in cf.load(tmp_path / "shaft.csv").segments] == [0.016501, 0.021]
-
-
 @pytest.mark.parametrize("suffix", ["vtk", "vtu"])
 def test_a_mesh_says_what_the_cue_is(tmp_path: Path, suffix: str) -> None:
     import meshio
@@ -113,7 +70,7 @@ def test_a_mesh_says_what_the_cue_is(tmp_path: Path, suffix: str) -> None:
 
 
 def test_a_saved_drawing_reads_as_one_is_written(tmp_path: Path) -> None:
-    maple, made_up = material("hard maple"), cf.Material(13.5e9, 1.2e9, 700.0)
+    maple, made_up = cf.materials.material("hard maple"), cf.Material(13.5e9, 1.2e9, 700.0)
     shaft = (cf.Segment(0.0762, 0.0127, 0.0128, made_up, 0.003, 0.003, maple), cf.Segment(0.66, 0.0128, 0.021, maple))
     cf.save(cf.Scene(cf.Cue(shaft, 0.42), effects=(cf.Elevation(math.radians(3)),)), tmp_path / "scene.toml")
     text = (tmp_path / "scene.toml").read_text()
@@ -139,31 +96,6 @@ material = "hard maple"
 """)
     assert 'angle = "3 deg"' in text
     assert text.endswith('"\n') or not text.endswith("\n\n")
-
-
-def test_a_saved_profile_has_the_digits_of_its_points(tmp_path: Path) -> None:
-    (tmp_path / "shaft.csv").write_text("x [mm],diameter [in]\n10,0.5\n210,0.5\n310.1,0.6\n737.3,0.8\n")
-    cf.save(cf.load(tmp_path / "shaft.csv"), tmp_path / "shaft.toml")
-    text = (tmp_path / "shaft.toml").read_text()
-    assert [line.split('"')[1] for line in text.splitlines() if line.startswith("length")] == [
-        *("200 mm", "100.1 mm", "427.2 mm")
-    ]
-    assert cf.load(tmp_path / "shaft.toml") == cf.load(tmp_path / "shaft.csv")
-
-
-@pytest.mark.parametrize(
-    ("value", "unit", "written"),
-    [
-        (math.radians(3), "rad", "3 deg"),
-        (0.1, "rad", "0.1 rad"),
-        (0.7366, "m", "736.6 mm"),
-        (0.538640939375, "kg", "538.640939375 g"),
-        (12.6e9, "Pa", "12.6 GPa"),
-        (0.0, "m", "0 mm"),
-    ],
-)
-def test_numbers_are_written_with_the_fewest_digits(value: float, unit: str, written: str) -> None:
-    assert text_of(value, unit) == written
 
 
 def test_saving_over_a_file_replaces_it_or_leaves_it(tmp_path: Path) -> None:

@@ -1,8 +1,7 @@
 """What ParaView is given, read back: modes and motion as the library has them, times and files (verification)."""
 
-from __future__ import annotations
-
 import xml.etree.ElementTree as ET
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,6 +13,7 @@ import cuefem as cf
 from cuefem.contact.motion import last_contact, motion
 from cuefem.io import InputError
 from cuefem.io.paraview import AROUND, ball_surface, shaft_surface, vectors
+from tests.helpers.refusals import refuses
 
 MAPLE = cf.Material(12.6e9, 0.84e9, 782.3284453057836)
 CUE = cf.Cue((cf.Segment(0.025, 0.0125, 0.0128, MAPLE), cf.Segment(0.7, 0.012, 0.021, MAPLE)), 0.42)
@@ -125,3 +125,23 @@ def test_a_failed_save_leaves_no_folder(tmp_path: Path, monkeypatch: pytest.Monk
     with pytest.raises(InputError, match="seen: cannot be written: No space left on device"):
         cf.save_motion(SCENE, tmp_path / "seen", frames=2)
     assert list(tmp_path.iterdir()) == []
+
+
+RAISED = replace(SCENE, effects=(cf.Elevation(0.1),))
+LUMPED = replace(SCENE, cue=cf.LumpedCue(0.5, 0.005))
+TIMES = "motion takes ascending times in [0, inf) s; got"
+CALLS = [
+    *((lambda times=times: motion(SCENE, times), TIMES) for times in ([-1e-3], [1e-3, 0.0], [np.nan], [], [np.inf])),
+    (lambda: motion(LUMPED, [0.0]), "Scene.cue must be a Cue of segments"),
+    (lambda: cf.save_motion(SCENE, "seen", frames=1), "save_motion: frames must be an integer in [2, 10000]; got 1"),
+    (lambda: cf.save_motion(SCENE, "seen", until=0.0), "save_motion: until must be in (0, inf) s; got 0.0"),
+    (lambda: cf.save_motion(SCENE, "seen", scale=np.nan), "save_motion: scale must be finite; got nan"),
+    (lambda: cf.save_motion(RAISED, "seen"), "motion takes strokes in the plane of cue and ball; got Elevation"),
+    (lambda: cf.save_motion(SCENE, Path(__file__)), "must be a new folder; there is one, or a file, of that name"),
+    (lambda: cf.save_motion(SCENE, "none/seen", frames=2), "seen: cannot be written: No such file or directory"),
+]
+
+
+@pytest.mark.parametrize(("ask", "message"), CALLS)
+def test_refusals(ask: Callable[[], object], message: str) -> None:
+    refuses(ask, message)

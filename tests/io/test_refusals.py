@@ -3,8 +3,6 @@
 Every declared field of every table: tests/quantity/test_declared_fields.py.
 """
 
-from __future__ import annotations
-
 import struct
 from pathlib import Path
 
@@ -70,6 +68,8 @@ csv  | x [mm],diameter 1 [mm],diameter 2 [mm]\n0,12.75,12.9\n700,21,22 | line 1:
 csv  | x [mm],diameter [mm],bore [mm]\n700,21,\n0,12,6  | line 1, x: must run from tip to butt where a bore or a
 csv  | x [mm],diameter [mm],bore [mm]\n0,12,12\n700,21, | line 2, bore: must be less than 12 mm, the diameter there;
 csv  | x [mm],diameter [mm],material\n0,12,hard mapel\n700,21, | line 2, material: no material is called 'hard mapel'
+csv  | x [mm],diameter [mm],core\n0,12.75,foam\n736.6,21.5,foam | line 2, core: must stand beside a bore
+csv  | x [mm],radius [mm],inner radius (mm)\n0,6.4,3\n700,10, | line 1, bore: must be a column of diameters
 csv  | x [mm];diameter [mm]\n0;12.75\n330,5;13     | line 3, x: must be written with the decimal point of the other
 csv  | PK\x03\x04xxxx                       | is a spreadsheet, not a .csv: in its program, save it as CSV
 csv  | \x89PNG\r\n\x1a\n\x00\x01\x02        | must be text, a table of numbers; got a file of another kind
@@ -148,8 +148,10 @@ def test_what_is_no_file_and_options_that_a_file_does_not_take(tmp_path: Path) -
     assert refused(tmp_path / "folder.toml") == refused(tmp_path) == "must be a file; got a folder"
     assert refused(tmp_path / "cue.msh").startswith("must end in .toml, .csv, .vtk")
     shaft = written(tmp_path / "shaft.stl", POINTS, FACES)
-    for unit in ("kg", "mm mm"):
-        assert refused(shaft, length_unit=unit).startswith("length unit: must be a unit of length")
+    assert refused(shaft, length_unit="kg").startswith("length unit: must be a unit of length")
+    for name in ("shaft.xlsx", "shaft.txt"):
+        (tmp_path / name).write_bytes(b"PK\x03\x04")
+        assert refused(tmp_path / name).endswith("save the table as .csv")
     assert refused(shaft, material="hard mapel").startswith("material: no material is called 'hard mapel'")
     (tmp_path / "shaft.csv").write_text("x [mm],diameter [mm]\n0,12\n700,21\n")
     assert refused(tmp_path / "shaft.csv", length_unit="mm").startswith("names its units itself")

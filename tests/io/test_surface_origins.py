@@ -1,8 +1,6 @@
 """Surfaces as different programs write them, read by the commands (regression)."""
 
-from __future__ import annotations
-
-import struct
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -11,77 +9,35 @@ import pytest
 
 import cuefem as cf
 from tests.helpers.command_line import call
-from tests.helpers.surfaces import revolved
+from tests.helpers.surfaces import revolved, written
 
-POINTS, FACES = revolved([(0, 0), (0, 6.0), (700, 10.5), (700, 0)], 16)  # mm
-
-
-def ascii_stl(
-    head: str = "solid shaft",
-    form: str = "{:.6f}",
-    end: str = "\n",
-    tail: str = "endsolid shaft",
-    *,
-    upper: bool = False,
-) -> bytes:
-    lines = [head]
-    for face in POINTS[FACES]:
-        lines += ["  facet normal 0 0 0", "    outer loop"]
-        lines += ["      vertex " + " ".join(form.format(v) for v in corner) for corner in face]
-        lines += ["    endloop", "  endfacet"]
-    text = end.join([*lines, tail, ""])
-    return (text.upper() if upper else text).encode()
-
-
-def binary_stl(head: bytes, attribute: int = 0) -> bytes:
-    rows = [struct.pack("<12fH", *np.zeros(3), *POINTS[face].ravel(), attribute) for face in FACES]
-    return head.ljust(80)[:80] + struct.pack("<I", len(FACES)) + b"".join(rows)
-
-
-def ply(kind: str, end: str = "\n") -> bytes:
-    counts = f"element vertex {len(POINTS)}", f"element face {len(FACES)}"
-    axes = [f"property float {name}" for name in "xyz"]
-    lines = ["ply", f"format {kind} 1.0", "comment made by hand", counts[0], *axes, counts[1]]
-    head = end.join([*lines, "property list uchar int vertex_indices", "end_header", ""]).encode()
-    if kind == "ascii":
-        rows = [" ".join(f"{v:.6e}" for v in p) for p in POINTS] + ["3 " + " ".join(map(str, f)) for f in FACES]
-        return head + end.join([*rows, ""]).encode()
-    order = "<" if kind == "binary_little_endian" else ">"
-    faces = b"".join(struct.pack(f"{order}B3i", 3, *face) for face in FACES)
-    return head + POINTS.astype(f"{order}f4").tobytes() + faces
-
-
-def obj(corner: str = "{}", end: str = "\n") -> bytes:
-    lines = ["# by hand", "mtllib none.mtl", "o shaft", *("v " + " ".join(f"{v:.6E}" for v in p) for p in POINTS)]
-    lines += ["vn 0 0 1", "g shaft", "s off", *("f " + " ".join(corner.format(i + 1) for i in f) for f in FACES)]
-    return end.join([*lines, ""]).encode()
-
-
-FILES: dict[str, tuple[str, Callable[[], bytes]]] = {
-    "ascii": (".stl", ascii_stl),
-    "ascii, long head": (".stl", lambda: ascii_stl("solid " + "OpenSCAD_Model " * 12)),
-    "ascii, no name": (".stl", lambda: ascii_stl("solid", tail="endsolid")),
-    "ascii, scientific": (".stl", lambda: ascii_stl(form="{:.8e}")),
-    "ascii, lines of Windows": (".stl", lambda: ascii_stl("solid Exported from Blender-2.82", end="\r\n")),
-    "ascii, tabs": (".stl", lambda: ascii_stl().replace(b"  ", b"\t")),
-    "ascii, a name like a corner": (".stl", lambda: ascii_stl("solid vertex 1 2 3")),
-    "binary": (".stl", lambda: binary_stl(b"STLB ATF 13.4.0.0 COLOR=")),
-    "binary, solid": (".stl", lambda: binary_stl(b"solid shaft made by a program that says solid in binary files")),
-    "binary, colours": (".stl", lambda: binary_stl(bytes(80), 0x8FFF)),
-    "ply": (".ply", lambda: ply("ascii")),
-    "ply, little": (".ply", lambda: ply("binary_little_endian")),
-    "ply, big": (".ply", lambda: ply("binary_big_endian")),
-    "obj": (".obj", obj),
-    "obj, normals": (".obj", lambda: obj("{}//1")),
-    "obj, lines of Windows": (".obj", lambda: obj(end="\r\n")),
+SHAFT = revolved([(0, 0), (0, 0.006), (0.7, 0.0105), (0.7, 0)], 16)
+# Ending, whether binary, and what another program does otherwise than meshio.
+FILES: dict[str, tuple[str, bool, Callable[[bytes], bytes]]] = {
+    "ascii": ("stl", False, lambda text: text),
+    "a long head": ("stl", False, lambda text: text.replace(b"solid", b"solid " + b"OpenSCAD_Model " * 12, 1)),
+    "lines of Windows": ("stl", False, lambda text: text.replace(b"\n", b"\r\n")),
+    "tabs": ("stl", False, lambda text: text.replace(b"  ", b"\t")),
+    "a name like a corner": ("stl", False, lambda text: re.sub(b"solid[^\n]*", b"solid vertex 1 2 3", text, count=1)),
+    "binary": ("stl", True, lambda text: text),
+    "binary that begins as text": ("stl", True, lambda text: b"solid shaft".ljust(80) + text[80:]),
+    "colours": ("stl", True, lambda text: text[:84] + re.sub(b"(.{48})..", b"\\1\xff\x8f", text[84:], flags=re.DOTALL)),
+    "ply": ("ply", False, lambda text: text),
+    "binary ply": ("ply", True, lambda text: text),
+    "obj": ("obj", False, lambda text: text.replace(b"\n", b"\r\n")),
+    "obj with normals": (
+        "obj",
+        False,
+        lambda text: b"vn 0 0 1\n" + re.sub(rb"(?<=f )(\d+) (\d+) (\d+)", rb"\1//1 \2//1 \3//1", text),
+    ),
 }
 
 
 @pytest.mark.parametrize("name", FILES)
 def test_the_command_reads_it(tmp_path: Path, name: str) -> None:
-    suffix, make = FILES[name]
-    path, made = tmp_path / f"shaft{suffix}", tmp_path / "made.toml"
-    path.write_bytes(make())
+    suffix, binary, change = FILES[name]
+    path, made = written(tmp_path / f"shaft.{suffix}", *SHAFT, binary=binary), tmp_path / "made.toml"
+    path.write_bytes(change(path.read_bytes()))
     status, _, err = call("convert", path, made)
     assert (status, err) == (0, "")
     found = cf.load(made)

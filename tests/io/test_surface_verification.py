@@ -1,9 +1,5 @@
 """Slices of closed surfaces against the exact polygons, and the shafts that files of them load as (verification)."""
 
-from __future__ import annotations
-
-import json
-from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -11,9 +7,9 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.cue.materials import material
+from cuefem.io.assumed import assumed
 from cuefem.io.slices import TOLERANCE, sliced, surface
-from tests.helpers.command_line import call
+from cuefem.materials import material
 from tests.helpers.orders import assert_order
 from tests.helpers.surfaces import outline_of, revolved, written
 
@@ -83,20 +79,6 @@ def test_a_surface_of_straight_pieces_gives_the_drawing_back(name: str) -> None:
     assert found.facets == pytest.approx(widest / 2 * (1 - shrunk), rel=1e-6)
 
 
-@pytest.mark.parametrize("name", ["kim", "hollow"])
-def test_a_loaded_shaft_plays_like_its_drawing(tmp_path: Path, name: str) -> None:
-    """Modes and end mass of fine facets within 1e-3 of the drawing."""
-    cue = CUES[name]
-    loaded = cf.load(written(tmp_path / "shaft.stl", *revolved(outline_of(cue), 96)))
-    assert isinstance(loaded, cf.Cue)
-    assert loaded.shaft_mass == pytest.approx(cue.shaft_mass, rel=1e-3)
-    assert cf.modes(loaded).frequencies == pytest.approx(cf.modes(cue).frequencies, rel=1e-3)
-    at = cf.Scene(replace(cue, body_mass=0.4), tip=cf.Tip(contact_time=1e-3))
-    here = replace(at, cue=replace(loaded, body_mass=0.4))
-    for drive in ("stick", "velocity"):
-        assert cf.end_mass(here, drive) == pytest.approx(cf.end_mass(at, drive), rel=1e-3)
-
-
 def test_facets_converge_with_the_second_order() -> None:
     """Inscribed facets, N a turn, make diameters small by (2 pi/N)^2/12 and frequencies with them."""
     facets = np.array([16, 32, 64])
@@ -148,31 +130,6 @@ def test_a_rounded_end_is_followed_to_its_apex() -> None:
     assert volume == pytest.approx(true, rel=2e-4)
 
 
-@pytest.mark.parametrize(
-    ("suffix", "binary"), [("stl", True), ("stl", False), ("ply", True), ("ply", False), ("obj", True)]
-)
-def test_every_format_gives_the_same_shaft(tmp_path: Path, suffix: str, binary: bool) -> None:
-    path = written(tmp_path / f"shaft.{suffix}", *revolved(outline_of(STEPPED), 16), binary=binary)
-    loaded = cf.load(path, material="ash")
-    expected = sliced(surface(*revolved(outline_of(STEPPED), 16))).pieces
-    assert [s.length for s in loaded.segments] == pytest.approx([p.length for p in expected], rel=1e-6)
-    assert [s.butt_diameter for s in loaded.segments] == pytest.approx([p.outer[1] for p in expected], rel=1e-6)
-    assert {s.material for s in loaded.segments} == {material("ash")}
-
-
-@pytest.mark.parametrize("name", ["SHAFT.STL", "Shaft.Ply"])
-def test_endings_in_capitals(tmp_path: Path, name: str) -> None:
-    """As CAD programs on other systems write them; through a scene and a command too."""
-    small = written(tmp_path / f"shaft{Path(name.lower()).suffix}", *revolved(outline_of(KIM), 16))
-    loaded, path = cf.load(small), small.rename(tmp_path / name)
-    assert cf.load(path, length_unit="mm") == loaded
-    (tmp_path / "SCENE.TOML").write_text(f"game = 'kim'\ncue = '{name}'\n")
-    assert cf.load(tmp_path / "SCENE.TOML").cue == loaded
-    assert "material hard maple" in call("convert", path, tmp_path / "CUE.VTU")[1]
-    assert cf.load(tmp_path / "CUE.VTU") == loaded
-    assert "700 mm modelled in 1 segment" in call("modes", tmp_path / "SCENE.TOML")[1]
-
-
 def test_polygons_are_cut_into_triangles(tmp_path: Path) -> None:
     turn = 2 * np.pi * np.arange(12) / 12
     corners = [f"v {x} {6 * np.cos(t)} {6 * np.sin(t)}" for x in (0, 500) for t in turn]
@@ -184,11 +141,18 @@ def test_polygons_are_cut_into_triangles(tmp_path: Path) -> None:
     assert segment.tip_diameter == pytest.approx(2 * np.sqrt(polygon(0.006, 12)[0] / np.pi), rel=1e-6)
 
 
-def test_unit_of_length(tmp_path: Path) -> None:
+def test_unit_of_length_and_endings_in_capitals(tmp_path: Path) -> None:
+    """As CAD programs on other systems write them; by a scene too."""
     points, faces = revolved(outline_of(KIM), 16)
-    inches = cf.load(written(tmp_path / "inches.stl", points, faces, unit=0.0254), length_unit="in")
-    assert inches.length == pytest.approx(0.7, rel=1e-6)
-    assert cf.load(tmp_path / "inches.stl").length == pytest.approx(0.7 / 25.4, rel=1e-6)
+    inches = written(tmp_path / "inches.stl", points, faces, unit=0.0254)
+    assert cf.load(inches, length_unit="in").length == pytest.approx(0.7, rel=1e-6)
+    loaded, path = cf.load(inches), inches.rename(tmp_path / "INCHES.STL")
+    assert loaded.length == pytest.approx(0.7 / 25.4, rel=1e-6)
+    assert cf.load(path, material="ash").segments[0].material == material("ash")
+    (tmp_path / "SCENE.TOML").write_text(f"game = 'kim'\ncue = '{path.name}'\n")
+    assert cf.load(tmp_path / "SCENE.TOML").cue == loaded
+    told = assumed(path, {"body_mass"})
+    assert [words.split(" ")[0] for words in told[:5]] == ["lengths", "1", "facets", "the", "material"]
 
 
 def test_the_reference_surface_is_its_drawing() -> None:
@@ -198,23 +162,3 @@ def test_the_reference_surface_is_its_drawing() -> None:
     assert found.length == pytest.approx(drawn.length, rel=1e-6)
     for end in ("tip_diameter", "butt_diameter"):
         assert getattr(found, end) / getattr(drawn, end) - 1 == pytest.approx(-((2 * np.pi / 96) ** 2) / 12, rel=1e-2)
-
-
-def test_a_scene_names_a_surface(tmp_path: Path) -> None:
-    written(tmp_path / "shaft.stl", *revolved(outline_of(KIM), 16))
-    (tmp_path / "scene.toml").write_text('game = "kim"\ncue = "shaft.stl"\n')
-    assert cf.load(tmp_path / "scene.toml").cue == cf.load(tmp_path / "shaft.stl")
-
-
-def test_a_command_says_what_it_assumed(tmp_path: Path) -> None:
-    path = written(tmp_path / "shaft.stl", *revolved(outline_of(KIM), 32))
-    said = json.loads(call("modes", path, "--json", "--body-mass", "15 oz")[1])["assumed"]
-    assert said[0] == "lengths in mm (--length-unit gives another)"
-    assert said[1] == "1 conical segment, diameters within 1e-09 of the widest"
-    assert said[2] == "facets round (their corners lie up to 3e-03 of the widest diameter further out)"
-    assert said[3:5] == ["the thinner end is the tip", "material hard maple (choose with --material)"]
-    asked = json.loads(call("modes", path, "--json", "--length-unit", "mm", "--material", "ash")[1])["assumed"]
-    assert not any("lengths" in line or "material" in line for line in asked)
-    _, converted, _ = call("convert", path, tmp_path / "shaft.toml")
-    assert converted.startswith("assumed: lengths in mm")
-    assert cf.load(tmp_path / "shaft.toml") == cf.load(path)
