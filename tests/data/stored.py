@@ -1,5 +1,7 @@
-"""Reads the stored answers of the former engine (`make.py`): strikes with their inputs, end masses and frequencies.
+"""Reads the stored answers of the former engine: strikes with their inputs, end masses and frequencies.
 
+They were made once, by tests/data/make.py of commit e00ebcc with the engine of commit 1e8a581: collocation of order 14,
+rings solved to 1e-9, scenes drawn at random over every law and effect, 20 of a kind. They are not made again.
 A strike is stored with the numbers that its contact is given: the tip modes, and the terms of a leather tip's law. So a
 test compares the contact alone; a change of mesh or of the tip's elasticity does not reach it.
 """

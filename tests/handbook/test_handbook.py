@@ -1,7 +1,5 @@
 """The handbook: every citation names a chapter, every effect has its five lines and stands in it, the page is whole."""
 
-from __future__ import annotations
-
 import re
 import webbrowser
 from html.parser import HTMLParser

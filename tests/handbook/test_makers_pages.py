@@ -1,7 +1,5 @@
 """The six pages for makers: their numbers are computed again, their pictures drawn again, and their files read."""
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import replace

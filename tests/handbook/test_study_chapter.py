@@ -1,7 +1,5 @@
 """The chapter on studies: its examples are of the kinds that it says and run, and it has every key (regression)."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Estimates near the limits of what a cue can be: slopes are taken inside, so nothing is refused (properties)."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The inverse: exact data are found again, errors cover on made-up cues, what to measure next."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What measured cues compute: exact static stiffness, errors from priors, residuals, the zero of the offset."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The pendulum test: exact on free masses, README's and the handbook's numbers, contradictions, and what is refused."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Callable

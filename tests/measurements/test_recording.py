@@ -1,7 +1,5 @@
 """Recordings: the wood that they tell, numbers of modes where some are missing, noise, and what is refused."""
 
-from __future__ import annotations
-
 import itertools
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """What measured cues refuse: measurements that cannot be, folders that are none (regression)."""
 
-from __future__ import annotations
-
 import errno
 from collections.abc import Callable
 from pathlib import Path

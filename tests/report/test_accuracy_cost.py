@@ -1,7 +1,5 @@
 """`cuefem cost`: its table, its figure and what it recommends (properties)."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """What each effect is worth: the ablation agrees with strikes made one by one (properties)."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

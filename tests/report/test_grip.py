@@ -1,7 +1,5 @@
 """A stroke that leather grips at first and then lets go is called a miscue, as a bare tip's is (properties)."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

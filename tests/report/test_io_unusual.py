@@ -1,7 +1,5 @@
 """What a wrong unit or a slip of the pen makes is remarked, and nothing else is (regression)."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from pathlib import Path

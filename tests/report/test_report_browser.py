@@ -1,7 +1,5 @@
 """The report in a headless browser: values by keys, print, nothing cut off (regression)."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """The report page: well-formed, self-contained, agrees with the library, and looks right in a browser (regression)."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections import Counter

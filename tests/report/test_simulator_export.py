@@ -4,8 +4,6 @@ pooltool 0.6.0 pins a development build of its graphics that PyPI has not, so th
 mass: no extra `cuefem[pooltool]` can be. .ci/pooltool makes an environment that has it, and POOLTOOL_PYTHON names it.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import os

@@ -1,7 +1,5 @@
 """The summary of a study: best designs, drivers and fronts against what they are by definition (verification)."""
 
-from __future__ import annotations
-
 import itertools
 import json
 import re

@@ -1,7 +1,5 @@
 """Tables for people stay whole: at any width every label and every number that the widest shows (properties)."""
 
-from __future__ import annotations
-
 import io
 import re
 from typing import Any

@@ -1,7 +1,5 @@
 """The glossary's words on a page: each is a button that opens its meaning, and says nothing else (properties)."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

@@ -1,7 +1,5 @@
 """The model's errors are those of the measured cues, nothing fitted (validation)."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Cues side by side: differences are those of the strikes, and errors that cues share cancel (properties)."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A sheet is declared once and shown alike in a terminal, on a page and in a spreadsheet (properties)."""
 
-from __future__ import annotations
-
 import csv
 import io
 import json

@@ -1,7 +1,5 @@
 """The verdict: a squirt, its band, and its place among the ready cues, each as the strike gives it (properties)."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

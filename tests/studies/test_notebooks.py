@@ -1,7 +1,5 @@
 """The notebooks run, and print what stands in them (regression)."""
 
-from __future__ import annotations
-
 import contextlib
 import io
 import json

@@ -1,14 +1,11 @@
 """Every study of studies/: its page is what its program gives, and the index names it (regression)."""
 
-from __future__ import annotations
-
 import ast
 import re
 from importlib import import_module
 
 import pytest
 
-from studies import pages
 from studies.pages import STUDIES, Study, disagreements
 
 # Studies whose page takes more than 20 s of a processor: only `.ci/nightly` makes them again.
@@ -78,8 +75,3 @@ def test_a_changed_number_of_a_committed_page_is_found() -> None:
     assert len(disagreements(page, page.replace("61.7", "61.9"))) == 1
     assert len(disagreements(page, page.replace("late stick", "stick"))) == 1
     assert len(disagreements(page, page.replace("+0.3", "-0.3"))) == 1
-
-
-def test_tables_print_text_as_it_is_and_numbers_with_the_digits_asked_for() -> None:
-    made = pages.table(["a", "b"], [["x", 1 / 3], ["y", 2e-9]], 3)
-    assert made == "| a | b |\n|---|---|\n| x | 0.333 |\n| y | 2e-09 |\n"
