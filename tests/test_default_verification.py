@@ -8,8 +8,8 @@ from cuefem import Cue, Material, Segment, end_mass
 from cuefem.beam.spectrum import ended
 from cuefem.beam.system import assemble
 from cuefem.beam.waves import ended_mesh_for
-from cuefem.endmass.definitions import end_mass_spreads, formula_of
-from cuefem.tip_modes import tip_modes_from
+from cuefem.endmass.definitions import formula_of, spread_of
+from cuefem.tip_modes import Solved, tip_modes_from
 from tests.helpers.cues import LEATHER, MAPLE, kim, scene
 
 mpl.use("Agg")
@@ -24,13 +24,13 @@ SHORT_ENDED = Cue((SHORT, Segment(0.7, 0.012, 0.021, MAPLE), Segment(0.001, 0.02
 def test_a_brass_tip_says_what_it_rings_by() -> None:
     """Its error is beyond half a percent, the estimate with the number above that and above the error."""
     cue = Cue((Segment(0.008, 0.012, 0.012, BRASS), Segment(0.7, 0.012, 0.021, MAPLE)), 0.4)
-    spread = end_mass_spreads(scene(cue, 1.3e-3))("stick")
+    spread = spread_of(Solved(scene(cue, 1.3e-3)), "stick")
     assert spread.error is not None
     assert 0.01 < spread.error < 0.1
     assert spread.lowest <= spread.end_mass * (1 - spread.error)
     assert spread.highest >= spread.end_mass * (1 + spread.error)
     assert 0.8 * spread.end_mass < spread.lowest < spread.highest < 1.2 * spread.end_mass
-    wood = end_mass_spreads(scene(kim(), 1.3e-3))("stick")
+    wood = spread_of(Solved(scene(kim(), 1.3e-3)), "stick")
     assert wood.error is not None
     assert wood.error < 5e-3
 

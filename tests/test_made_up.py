@@ -24,9 +24,9 @@ from cuefem.designer.sliders import sliders
 from cuefem.effects import effect_kinds
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.measurements.uncertain_parameters import parameters_of
-from cuefem.parameters.parameter import PLACES, knobs_of, paths, varied
 from cuefem.results.quantities import RESULTS
-from tests.helpers.made_up import PLACE, PUSH, RIGID, SPOT, collar_effect, faces, lever_effect, missing
+from cuefem.vary import PLACES, knobs_of, paths, varied
+from tests.helpers.made_up import PLACE, PUSH, RIGID, SPOT, cap_effect, collar_effect, faces, missing
 from tests.helpers.strike_scenes import imbalance, kim_scene
 
 AT = cf.Resolution(2, 8, 12)
@@ -65,7 +65,7 @@ def test_a_place(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 OPTION = """import sys
-from cuefem.parameters.parameter import PLACES
+from cuefem.vary import PLACES
 from tests.helpers.made_up import PLACE
 
 PLACES[PLACE.key] = PLACE
@@ -130,25 +130,25 @@ def test_an_effect_on_the_cue(tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("_forgotten")
 def test_an_effect_at_the_tip() -> None:
-    lever: Any = lever_effect()
+    cap: Any = cap_effect()
 
     def struck(*effects: Any) -> cf.Scene:
         return replace(kim_scene(0.4), effects=effects)
 
-    dome, others = cf.TipDome(0.009), (cf.PowerLawTip(1.5), cf.RollingContact())
-    shift, back = 0.009 * 0.4, 0.009 * (1 - np.sqrt(1 - 0.4**2))
-    terms = struck(dome, lever(-shift)).contact_terms
-    assert terms.lever(float(np.arcsin(0.4))) == pytest.approx((0.0, back), abs=1e-18)
-    whole = cf.strike(struck(lever(0.002), *others, dome), AT)
-    split = cf.strike(struck(*others, lever(0.0005), dome, lever(0.0015)), AT)
-    assert imbalance(whole) < 1e-8
+    others = (cf.PowerLawTip(1.5), cf.RollingContact())
+    aside, back = 0.009 * 0.4, 0.009 * (1 - np.sqrt(1 - 0.4**2))
+    terms = struck(cf.TipDome(0.007), cap(0.002)).contact_terms
+    assert terms.lever(float(np.arcsin(0.4))) == pytest.approx((-aside, back), rel=1e-12)
+    whole = cf.strike(struck(cap(0.002), *others, cf.TipDome(0.007)), AT)
+    split = cf.strike(struck(*others, cap(0.0005), cf.TipDome(0.007), cap(0.0015)), AT)
+    assert imbalance(whole) < 1e-6
     assert split.squirt == pytest.approx(whole.squirt, rel=1e-9)
-    assert whole.squirt != cf.strike(struck(*others, dome), AT).squirt
-    assert struck(lever(0.002)).bare == struck()
+    assert whole.squirt != cf.strike(struck(*others, cf.TipDome(0.007)), AT).squirt
+    assert struck(cap(0.002)).bare == struck()
     with pytest.raises(ValueError, match="takes a tip without give sideways, a fixed normal and a single"):
-        cf.strike(struck(lever(0.0, give=1.0), cf.Elevation(0.1)), AT)
+        cf.strike(struck(cap(0.0, give=1.0), cf.Elevation(0.1)), AT)
     with pytest.raises(ValueError, match=r"Scene\.effects must give the contact one window for a second hit; got"):
-        struck(cf.SecondHit(), lever(0.0, window=1e-3))
+        struck(cf.SecondHit(), cap(0.0, window=1e-3))
 
 
 @pytest.mark.heavy

@@ -147,7 +147,7 @@ class PowerLawTip(TipEffect):
 
     def add_to_contact(self, terms: ContactTerms) -> None:
         """The power law."""
-        terms.set_law(self._law)
+        terms.give("law", self._law)
 
     def _law(self, blow: HeadOn) -> tuple[TipLaw, float]:
         law = TipLaw.timed(self.exponent, blow.restitution, mass=blow.mass, speed=self.speed, time=blow.time)
@@ -188,4 +188,4 @@ class RollingContact(TipEffect):
 
     def add_to_contact(self, terms: ContactTerms) -> None:
         """The normal turns."""
-        terms.turn()
+        terms.give("turns", True)

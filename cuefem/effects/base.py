@@ -183,41 +183,32 @@ def check_effects(cue: Cue | LumpedCue, effects: tuple[Any, ...], scene: str = "
             )
         if isinstance(cue, Cue):
             effect.check_on(cue, f"{scene}.effects[{i}]")
-    _check_once(effects, scene)
     _check_excluded(effects, scene)
     if isinstance(cue, Cue):
         _check_clamps(cue, effects, scene)
 
 
-def _check_once(effects: tuple[Effect, ...], scene: str) -> None:
-    for i, effect in enumerate(effects):
-        if effect.once and any(type(other) is type(effect) for other in effects[:i]):
-            raise ValueError(
-                f"{scene}.effects[{i}] must be another effect, {type(effect).__name__} acts once; got {effect}"
-            )
-
-
 def _check_excluded(effects: tuple[Effect, ...], scene: str) -> None:
     names = [type(effect).__name__ for effect in effects]
     for i, effect in enumerate(effects):
-        for other in effect.excludes:
-            if other in names:
-                raise ValueError(
-                    f"{scene}.effects[{i}] must be an effect that goes with effects[{names.index(other)}], {other}; "
-                    f"got {names[i]}, which does not"
-                )
+        if effect.once and names[i] in names[:i]:
+            raise ValueError(f"{scene}.effects[{i}] must be another effect, {names[i]} acts once; got {effect}")
+        other = next((name for name in effect.excludes if name in names), None)
+        if other is not None:
+            raise ValueError(
+                f"{scene}.effects[{i}] must be an effect that goes with effects[{names.index(other)}], {other}; "
+                f"got {names[i]}, which does not"
+            )
 
 
 def _check_clamps(cue: Cue, effects: tuple[Effect, ...], scene: str) -> None:
     """Two clamps of one unknown at one place are a slip of the pen: nothing is left for the second to hold."""
-    clamps: list[tuple[int, str, float]] = []
-    for i, effect in enumerate(effects):
-        for name, x in effect.clamps if isinstance(effect, CueEffect) else ():
-            first = next((j for j, other, at in clamps if other == name and abs(at - x) <= NEAR * cue.length), None)
-            if first is not None:
-                unit = "N/m" if name == "stiffness" else "N m/rad"
-                raise ValueError(
-                    f"{scene}.effects[{i}].{name} must be in [0, inf) {unit} at {x} m, "
-                    f"where effects[{first}] is a clamp already; got inf"
-                )
-            clamps.append((i, name, x))
+    clamps = [(i, *clamp) for i, e in enumerate(effects) if isinstance(e, CueEffect) for clamp in e.clamps]
+    for n, (i, name, x) in enumerate(clamps):
+        first = next((j for j, other, at in clamps[:n] if other == name and abs(at - x) <= NEAR * cue.length), None)
+        if first is not None:
+            unit = "N/m" if name == "stiffness" else "N m/rad"
+            raise ValueError(
+                f"{scene}.effects[{i}].{name} must be in [0, inf) {unit} at {x} m, "
+                f"where effects[{first}] is a clamp already; got inf"
+            )

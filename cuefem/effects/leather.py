@@ -242,9 +242,9 @@ class LeatherTip(CueEffect):
     def add_to_contact(self, terms: ContactTerms) -> None:
         """The whole tip, and the normal that turns."""
         if terms.tip_diameter is not None:  # a lumped cue is refused in words
-            terms.set_tip(whole_tip(self, self.diameter_on(terms.tip_diameter)))
+            terms.give("tip", whole_tip(self, self.diameter_on(terms.tip_diameter)))
         if self.rolls:
-            terms.turn()
+            terms.give("turns", True)
 
     def check_diameter(self, diameter: float) -> None:
         """Refuse a tip that cannot be on a shaft, or that is too flat or too high to compute.

@@ -52,7 +52,7 @@ class SecondHit(Effect):
 
     def add_to_contact(self, terms: ContactTerms) -> None:
         """The time in which tip and ball may touch again."""
-        terms.set_window(self.window)
+        terms.give("window", self.window)
 
 
 @dataclass(frozen=True)
@@ -106,4 +106,4 @@ class Elevation(Effect):
 
     def add_to_contact(self, terms: ContactTerms) -> None:
         """The table under the ball."""
-        terms.set_table(Table(self.angle, self.friction))
+        terms.give("table", Table(self.angle, self.friction))

@@ -111,41 +111,21 @@ class Spread(NamedTuple):
     error: float | None = None
 
 
-def end_mass_spread(scene: Scene, drive: str = "stick", at: Resolution | None = None) -> tuple[float, float]:
-    """Smallest and largest end mass, kg, while only the lowest 25 to 100 % of the modes are kept.
-
-    Wave fronts that return just before the pulse ends make false plateaus, so one doubling of the modes proves nothing.
-    """
-    definition_of(drive)
-    return end_mass_spreads(scene, at)(drive)[1:3]
-
-
-def end_mass_spreads(scene: Scene, at: Resolution | None = None) -> Callable[[str], Spread]:
-    """A function that gives the end mass and its spread by any definition; the beam is solved once for all of them."""
-    return spreads_of(Solved(scene, at))
-
-
-def spreads_of(solved: Solved) -> Callable[[str], Spread]:
-    """As `end_mass_spreads`, from a solved scene.
+def spread_of(solved: Solved, drive: str) -> Spread:
+    """The end mass of a solved scene and its spread, by a definition.
 
     The spread is over plain sums, without a tail, of 13 different numbers of modes; of 5, if each takes a coupled
-    strike.
+    strike. Wave fronts that return just before the pulse ends make false plateaus: one doubling proves nothing.
     """
-    scene = solved.scene
-
-    def spread(drive: str) -> Spread:
-        definition, plain = definition_of(drive), solved.tip_plain
-        tip = definition.tip_of(solved)
-        rigid, whole = int(np.sum(plain.omega == 0)), len(plain.omega)
-        cutoffs = 5 if definition.strikes(tip, scene) else 13
-        least = rigid + math.ceil((whole - rigid) / 4)
-        counts = sorted(set(np.linspace(least, whole, cutoffs).astype(int).tolist()))
-        values = [float(definition.of(each, scene)) for each in (tip, *map(plain.lowest, counts))]
-        error = definition.error(tip, scene)
-        reach = [values[0] * (1 + side * (error or 0.0)) for side in (-1, 1)]
-        return Spread(values[0], min(*values, *reach), max(*values, *reach), error)
-
-    return spread
+    scene, definition, plain = solved.scene, definition_of(drive), solved.tip_plain
+    tip = definition.tip_of(solved)
+    rigid, whole = int(np.sum(plain.omega == 0)), len(plain.omega)
+    least, cutoffs = rigid + math.ceil((whole - rigid) / 4), 5 if definition.strikes(tip, scene) else 13
+    counts = sorted(set(np.linspace(least, whole, cutoffs).astype(int).tolist()))
+    values = [float(definition.of(each, scene)) for each in (tip, *map(plain.lowest, counts))]
+    error = definition.error(tip, scene)
+    reach = [values[0] * (1 + side * (error or 0.0)) for side in (-1, 1)]
+    return Spread(values[0], min(*values, *reach), max(*values, *reach), error)
 
 
 def _couples(tip: TipModes, scene: Scene) -> bool:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
-from cuefem.endmass.definitions import DEFINITIONS, Spread, spreads_of
+from cuefem.endmass.definitions import DEFINITIONS, spread_of
 from cuefem.report.scene_words import assumptions, listed, tip_effect_notes
 from cuefem.results.closed_forms import cue_end_mass
 from cuefem.results.quantities import NONE, RESULTS, grams, with_unit
@@ -22,17 +22,18 @@ def end_mass_record(scene: Scene, *, solved: Solved | None = None) -> Record:
     A definition `at_offset` is taken at the scene's own offset; one that has no answer says why instead. solved: the
     scene's modes, if they are known already.
     """
-    spread = spreads_of(solved or Solved(scene))
+    solved = solved or Solved(scene)
     return {
         "contact_time": scene.contact_time,
         "offset": scene.stroke.offset,
-        "drives": {drive: _end_mass(scene, spread, drive) for drive in DEFINITIONS},
+        "drives": {drive: _end_mass(solved, drive) for drive in DEFINITIONS},
     }
 
 
-def _end_mass(scene: Scene, spread: Callable[[str], Spread], drive: str) -> Record:
+def _end_mass(solved: Solved, drive: str) -> Record:
+    scene = solved.scene
     try:
-        felt, lowest, highest, _ = spread(drive)
+        felt, lowest, highest, _ = spread_of(solved, drive)
     except ValueError as error:
         names = ("end_mass", "lowest", "highest", "cue_end_mass", "eps")
         return {**dict.fromkeys(names), "reason": str(error)}

@@ -104,23 +104,23 @@ def collar_effect() -> type[CueEffect]:
     return Collar
 
 
-def lever_effect() -> type[TipEffect]:
+def cap_effect() -> type[TipEffect]:
     """The class of an effect at the tip."""
 
     @dataclass(frozen=True)
-    class Lever(TipEffect):
-        """A tip whose contact lies off the cue's axis by ``shift``, m."""
+    class Cap(TipEffect):
+        """A round cap on the tip, of ``radius``, m."""
 
-        shift: Annotated[float, Quantity("m")]
+        radius: Annotated[float, Quantity("m")]
         give: float = 0.0
         window: float = 0.0
 
         def add_to_contact(self, terms: ContactTerms) -> None:
-            """A lever, a compliance across as a part of that along the normal, a window for a second hit."""
-            terms.add_lever(lambda phi: (-self.shift, 0.0))
+            """A dome, a compliance across as a part of that along the normal, a window for a second hit."""
+            terms.add_dome(self.radius)
             if self.give:
                 terms.add_compliance(self.give)
             if self.window:
-                terms.set_window(self.window)
+                terms.give("window", self.window)
 
-    return Lever
+    return Cap
