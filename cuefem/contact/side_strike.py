@@ -21,7 +21,6 @@ from cuefem.contact.laws import ContactModel, check_restitution, power_law
 from cuefem.contact.outcome import Phase
 from cuefem.contact.propagator import planar_propagator
 from cuefem.contact.solve import SolvedContact, solve_contact
-from cuefem.contact.strike import tip_loss
 from cuefem.cue import Cue
 from cuefem.effects import CueEffect, Effect, acting_on_cue, check_effects
 from cuefem.effects.base import NEAR
@@ -363,7 +362,7 @@ def _energy(solved: SolvedContact, scene: SideStrike, rebound: float) -> dict[st
         "striker": scene.striker.mass * rebound**2 / 2,
         "beam": rigid,
         "beam vibration": vibrating + solved.losses["radiated"],
-        "contact loss": tip_loss(solved),
+        "contact loss": solved.losses["tip"],
     }
     if solved.model.propagator.lossy:
         account["damping loss"] = solved.losses["damping"]

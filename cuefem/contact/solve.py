@@ -39,7 +39,7 @@ class SolvedContact:
 
     steps: its records (`STEP`) up to the last separation. course: (steps + 1, coordinates), the modes' coordinates
     before and after each; None where they were not asked for. xi: these at the end. ball: its velocities there, m/s
-    (raised: and its spins times R). losses: J by name. deepest: the tip's greatest indentation, m.
+    (raised: and its spins times R). losses: J by name.
     """
 
     model: ContactModel
@@ -48,7 +48,6 @@ class SolvedContact:
     xi: Complex
     ball: Array
     losses: dict[str, float]
-    deepest: float
 
     @property
     def time(self) -> float:
@@ -166,15 +165,19 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, course: bool
     tangential = c.work[0] + c.work[2]
     shear = tangential if model.patch == PARTIAL_SLIP and model.friction >= ENDLESS else c.shear_loss
     damping, radiated = np.concatenate([*dissipated, np.zeros((1, 2))])[: c.pressed].sum(axis=0).tolist()
-    losses = {"friction": tangential - shear, "shear": shear, "table": sum(c.work[3:])}
+    losses = {
+        "tip": model.law.loss(c.deepest),
+        "friction": tangential - shear,
+        "shear": shear,
+        "table": sum(c.work[3:]),
+    }
     return SolvedContact(
         model,
         np.concatenate(records)[: c.pressed],
         np.concatenate(states)[: c.pressed + 1] if course else None,
         arrays["xi"],
         arrays["ball"],
-        losses | {"damping": damping, "radiated": radiated},
-        c.deepest,
+        losses | {"table": sum(c.work[3:]), "damping": damping, "radiated": radiated},
     )
 
 

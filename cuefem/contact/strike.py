@@ -18,10 +18,8 @@ from cuefem.cue import Cue
 from cuefem.quantity.fields import check_count, check_kind, scalar, shown
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.solid.resolution import Solid
-from cuefem.tip_modes import Solved, default_resolution, tip_modes_of, turning
+from cuefem.tip_modes import default_resolution, tip_modes_of, turning
 
-# Strikes of one cue that a thread takes at a time.
-CHUNK = 16
 NUMBERS = ("squirt", "ball_velocity", "ball_speed", "spin", "cue_speed", "impulse", "duration", "regime", "jam")
 
 
@@ -139,7 +137,7 @@ def _energy(solved: SolvedContact, inertia: float, moving: float, turning: float
         "ball rotation": turning,
         "cue": rigid,
         "cue vibration": vibrating + losses["radiated"],
-        "tip loss": tip_loss(solved),
+        "tip loss": losses["tip"],
         "friction loss": losses["friction"],
     }
     if model.propagator.lossy:
@@ -153,11 +151,6 @@ def _energy(solved: SolvedContact, inertia: float, moving: float, turning: float
         account["ball hop"] = model.ball_mass * hop**2 / 2
         account["table loss"] = losses["table"]
     return {name: float(joules) for name, joules in account.items()}
-
-
-def tip_loss(solved: SolvedContact) -> float:
-    """Energy that the tip did not give back along the normal, J."""
-    return float(solved.model.law.loss(solved.deepest))
 
 
 def batch_strike(scenes: Sequence[Scene], at: Resolution | None = None, *, threads: int = 1) -> Outcome:
@@ -209,31 +202,19 @@ def batch_strike(scenes: Sequence[Scene], at: Resolution | None = None, *, threa
         check_kind("batch_strike scenes", scene, Scene)
     if not scenes:
         raise ValueError("batch_strike takes one scene or more; got none")
-    jobs = _jobs(scenes, at)
-    if threads == 1:
-        return _together(dict(pair for job in jobs for pair in _struck(*job)))
-    with ThreadPoolExecutor(threads) as executor:
-        return _together(dict(pair for done in executor.map(lambda job: _struck(*job), jobs) for pair in done))
-
-
-Numbered = list[tuple[int, Scene]]  # scenes by their numbers
-
-
-def _jobs(scenes: tuple[Scene, ...], at: Resolution | None) -> Iterator[tuple[Solved, Numbered]]:
-    """Strikes with the same modes: what solves these, and the scenes."""
-    groups: dict[Any, Numbered] = {}
+    groups: dict[Any, list[int]] = {}
     resolutions: dict[tuple[Cue, float], Resolution] = {}
     for i, scene in enumerate(scenes):
         with _told_of(i):
-            groups.setdefault(_modes_of(scene, at, resolutions), []).append((i, scene))
-    for group in groups.values():
-        number, scene = group[0]
-        shared = Solved(scene, at)
-        if len(group) > CHUNK:
-            with _told_of(number):
-                shared.tip  # noqa: B018  # solved here: threads would all begin to
-        for start in range(0, len(group), CHUNK):
-            yield shared, group[start : start + CHUNK]
+            groups.setdefault(_modes_of(scene, at, resolutions), []).append(i)
+    struck: list[Any] = list(scenes)
+    with ThreadPoolExecutor(threads) as executor:
+        for group in groups.values():  # strikes with the same modes, which are solved once
+            with _told_of(group[0]):
+                tip = tip_modes_of(scenes[group[0]], at)
+            for i in group:
+                struck[i] = executor.submit(_struck, i, scenes[i], tip, steps_of(at))
+    return _together([each.result() for each in struck])
 
 
 def _modes_of(scene: Scene, at: Resolution | None, resolutions: dict[tuple[Cue, float], Resolution]) -> tuple[Any, ...]:
@@ -257,18 +238,14 @@ def _told_of(number: int) -> Iterator[None]:
         raise raised(f"scene {number}: {error}") from error
 
 
-def _struck(shared: Solved, scenes: Numbered) -> list[tuple[int, dict[str, Any]]]:
-    """The numbers of each strike, by the scene's number."""
-    results = []
-    for i, scene in scenes:
-        with _told_of(i):
-            outcome = strike_modes(scene, shared.tip, steps=steps_of(shared.at))
-        results.append((i, {name: getattr(outcome, name) for name in (*NUMBERS, "energy", "unknowns")}))
-    return results
+def _struck(number: int, scene: Scene, tip: TipModes, steps: int | None) -> dict[str, Any]:
+    """The numbers of a strike."""
+    with _told_of(number):
+        outcome = strike_modes(scene, tip, steps=steps)
+    return {name: getattr(outcome, name) for name in (*NUMBERS, "energy", "unknowns")}
 
 
-def _together(by_number: dict[int, dict[str, Any]]) -> Outcome:
-    results = [by_number[i] for i in range(len(by_number))]
+def _together(results: Sequence[dict[str, Any]]) -> Outcome:
     names = dict.fromkeys(name for numbers in results for name in numbers["energy"])
     energy = {name: np.array([numbers["energy"].get(name, 0.0) for numbers in results]) for name in names}
     columns = {name: np.array([numbers[name] for numbers in results]) for name in NUMBERS}
