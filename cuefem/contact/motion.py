@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -129,11 +129,6 @@ def motion(scene: Scene, times: ArrayLike, at: Resolution | None = None) -> Moti
     return _read(scene, bending, tip, solved=contact, times=times)
 
 
-def last_contact(scene: Scene, at: Resolution | None = None) -> float:
-    """Time at which the last contact of a strike ends, s."""
-    return motion(scene, [0.0], at).duration
-
-
 def ascending(times: ArrayLike) -> Array:
     """Times as an array, (n,); ValueError unless they ascend from zero or later."""
     times = np.atleast_1d(np.asarray(times, float))
@@ -145,28 +140,28 @@ def ascending(times: ArrayLike) -> Array:
 def _read(scene: Scene, bending: Modes, tip: TipModes, *, solved: SolvedContact, times: Array) -> Motion:
     phi, side = solved.model.phi, math.copysign(1.0, scalar("Stroke.offset", scene.stroke.offset))
     tangent, normal = np.array([math.sin(phi), math.cos(phi)]), np.array([math.cos(phi), -math.sin(phi)])
-    path = Path.of(solved, times)
+    modes, ball = _path(solved, times)
     vectors, across = _bending(bending, tip)
-    R = scalar("Ball.radius", scene.ball.radius)
+    R, pressed = scalar("Ball.radius", scene.ball.radius), solved.steps["length"] > 0
     aside, back = scene.contact_terms.lever(phi)  # where on the cue's end the contact lies
-    centre = R * normal + [-back, aside] + path.ball[:, :2] @ np.array([tangent, normal])
-    s, c = np.sin(phi + path.angle), np.cos(phi + path.angle)
-    F_t, F_n = path.force.T
+    centre = R * normal + [-back, aside] + ball[:, :2] @ np.array([tangent, normal])
+    angle = phi + np.interp(times, np.append(0.0, solved.steps["time"]), np.append(0.0, solved.steps["angle"]))
+    s, c, force = np.sin(angle), np.cos(angle), np.zeros((2, len(times)))
+    if pressed.any():
+        history = solved.history(1.0)(np.minimum(times, solved.time))
+        force = np.where(times < solved.time, [history["force_t"], history["force_n"]], 0.0)
+    F_t, F_n = force
+    shorter = 0.0 if tip.geometric is None else np.einsum("it,ij,jt->t", modes, tip.geometric, modes) / 2
     return Motion(
         times,
         solved.time,
         bending,
-        fields=side * vectors @ path.modes[across],
-        along=tip.amplitude[:, 0] @ path.modes - _shortened(tip, path.modes),
+        fields=side * vectors @ modes[across],
+        along=tip.amplitude[:, 0] @ modes - shorter,
         centre=centre * [1.0, side],
-        turned=-side * path.ball[:, 2] / R,
+        turned=-side * ball[:, 2] / R,
         force=np.column_stack([s * F_t + c * F_n, side * (c * F_t - s * F_n)]),
     )
-
-
-def _shortened(tip: TipModes, modes: Array) -> Array | float:
-    """By how much a bent cue is shorter, m, at each time (`GeometricStiffness`)."""
-    return 0.0 if tip.geometric is None else np.einsum("it,ij,jt->t", modes, tip.geometric, modes) / 2
 
 
 def _bending(bending: Modes, tip: TipModes) -> tuple[Array, Any]:
@@ -177,59 +172,33 @@ def _bending(bending: Modes, tip: TipModes) -> tuple[Array, Any]:
     return vectors[:, columns], across[np.argsort(tip.omega[across], kind="stable")]
 
 
-class Path(NamedTuple):
-    """Where the modes of a cue and the ball are at given times of a contact and after it.
+def _path(solved: SolvedContact, times: Array) -> tuple[Array, Array]:
+    """The modes' displacements, (modes, times), and the way of the ball along each of its velocities, m, (times, n).
 
-    modes: (modes, times), the modes' displacements. ball: (times, speeds), the way of the ball along each of its
-    velocities, m. angle: (times,), by which the contact has turned, rad. force: (times, 2), on the ball (t, n), N.
+    Under a load that is constant over a step of length h, xi = exp(rate t) xi_0 + a (exp(rate t) - 1)/rate, and its
+    integral follows; a is known from xi at the step's end. After the contact cue and ball fly freely.
     """
-
-    modes: Array
-    ball: Array
-    angle: Array
-    force: Array
-
-    @classmethod
-    def of(cls, solved: SolvedContact, times: Array) -> Path:
-        """Read the steps of a contact that was solved with its course; after it cue and ball fly freely.
-
-        Under a load that is constant over a step of length h, xi = exp(rate t) xi_0 + a (exp(rate t) - 1)/rate, and its
-        integral follows; a is known from xi at the step's end.
-        """
-        assert solved.course is not None
-        p, model, steps = solved.model.propagator, solved.model, solved.steps
-        ends, rigid = np.append(0.0, steps["time"]), p.omega == 0
-        lengths = np.append(steps["length"], 0.0)
-        which = np.searchsorted(ends, times, side="right") - 1  # the step of each time; behind the last, the flight
-        here, flying = times - ends[which], which == len(steps)
-        balls = np.vstack([model.ball, steps["ball"][:, : len(model.ball)]])
-        loads, pulls = _loads(solved.course, p.rates, lengths), np.zeros_like(balls)
-        pressed = steps["length"] > 0
-        pulls[:-1][pressed] = np.diff(balls, axis=0)[pressed] / lengths[:-1][pressed, None]
-        xi, summed = _driven(solved.course[which], loads[which], p.rates, here)
-        before = _driven(solved.course[:-1], loads[:-1], p.rates, lengths[:-1])[1] @ p.velocities[rigid].T
-        gone = np.vstack([np.zeros(int(rigid.sum())), np.cumsum(before.real, axis=0)])
-        ways = np.cumsum(lengths[:-1, None] * (balls[1:] + balls[:-1]) / 2, axis=0)
-        displaced = (xi @ p.displacements.T).real / np.where(rigid, 1.0, p.omega)
-        displaced[:, rigid] = gone[which] + (summed @ p.velocities[rigid].T).real
-        t, ways = here[:, None], np.vstack([0 * balls[:1], ways])
-        way = ways[which] + t * (balls[which] + t * pulls[which] / 2)
-        seen = solved.history(1.0)(np.minimum(times, solved.time)) if pressed.any() else {}
-        force = np.column_stack([np.where(flying, 0.0, seen.get(name, 0.0)) for name in ("force_t", "force_n")])
-        return cls(displaced.T, way, np.interp(times, ends, np.append(0.0, steps["angle"])), force)
+    assert solved.course is not None
+    p, model, steps = solved.model.propagator, solved.model, solved.steps
+    ends, rigid = np.append(0.0, steps["time"]), p.omega == 0
+    lengths, pressed = np.append(steps["length"], 0.0), np.flatnonzero(steps["length"])
+    which = np.searchsorted(ends, times, side="right") - 1  # the step of each time; behind the last, the flight
+    t, h = (times - ends[which])[:, None], lengths[pressed, None]
+    balls = np.vstack([model.ball, steps["ball"][:, : len(model.ball)]])
+    loads, pulls = np.zeros_like(solved.course), np.zeros_like(balls)
+    turned, first, _ = responses(p.rates * h)
+    loads[pressed] = (solved.course[pressed + 1] - turned * solved.course[pressed]) / (h * first)
+    pulls[pressed] = (balls[pressed + 1] - balls[pressed]) / h
+    xi, summed = _driven(solved.course[which], loads[which], p.rates, t)
+    before = _driven(solved.course[:-1], loads[:-1], p.rates, lengths[:-1, None])[1] @ p.velocities[rigid].T
+    gone = np.vstack([np.zeros(int(rigid.sum())), np.cumsum(before.real, axis=0)])
+    ways = np.vstack([0 * balls[:1], np.cumsum(lengths[:-1, None] * (balls[1:] + balls[:-1]) / 2, axis=0)])
+    displaced = (xi @ p.displacements.T).real / np.where(rigid, 1.0, p.omega)
+    displaced[:, rigid] = gone[which] + (summed @ p.velocities[rigid].T).real
+    return displaced.T, ways[which] + t * (balls[which] + t * pulls[which] / 2)
 
 
-def _driven(xi: Complex, loads: Complex, rates: Complex, times: Array) -> tuple[Complex, Complex]:
-    """Coordinates after these times from ``xi`` under constant loads, and their integrals, (times, coordinates)."""
-    t = times[:, None]
+def _driven(xi: Complex, loads: Complex, rates: Complex, t: Array) -> tuple[Complex, Complex]:
+    """Coordinates after times t, (n, 1), from ``xi`` under constant loads, and their integrals, (n, coordinates)."""
     turned, first, second = responses(rates * t)
     return turned * xi + t * first * loads, t * first * xi + t**2 * second * loads
-
-
-def _loads(course: Complex, rates: Complex, lengths: Array) -> Complex:
-    """The constant loads on the coordinates in each step, from the states around it; none behind the last."""
-    loads, steps = np.zeros_like(course), np.flatnonzero(lengths)
-    t = lengths[steps, None]
-    turned, first, _ = responses(rates * t)
-    loads[steps] = (course[steps + 1] - turned * course[steps]) / (t * first)
-    return loads

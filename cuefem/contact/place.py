@@ -123,62 +123,6 @@ def offset_of(point: ArrayLike, direction: ArrayLike, *, ball: Ball | None = Non
     return _geometry(point, direction, Ball() if ball is None else ball)[0][()]
 
 
-def axis_offset(contact_offset: Any, tip_radius: Any, *, ball: Ball | None = None) -> Any:
-    """Distance of the cue's axis from the ball's centre, of a contact at offset b/R.
-
-    A domed tip of radius r touches the ball beside its own axis: b_axis = (R + r) b/R ([B.1]).
-
-    Parameters
-    ----------
-    contact_offset : float or array
-        b/R, in (-1, 1).
-    tip_radius : float or array
-        Radius r of the tip's dome, m.
-    ball : Ball, optional
-        By default `Ball()`.
-
-    Returns
-    -------
-    float or array
-        b_axis, m.
-    """
-    radius = (Ball() if ball is None else ball).radius
-    offset = Quantity("", "(-1, 1)").check("contact_offset", contact_offset)
-    return (radius + Quantity("m", "[0, inf)").check("tip_radius", tip_radius)) * offset
-
-
-def offset_of_axis(axis_distance: Any, tip_radius: Any, *, ball: Ball | None = None) -> Any:
-    """Offset b/R of the contact of a domed tip; the inverse of `axis_offset`.
-
-    Parameters
-    ----------
-    axis_distance : float or array
-        Distance b_axis of the cue's axis from the ball's centre, m.
-    tip_radius : float or array
-        Radius r of the tip's dome, m.
-    ball : Ball, optional
-        By default `Ball()`.
-
-    Returns
-    -------
-    float or array
-        b/R.
-
-    Raises
-    ------
-    ValueError
-        If such a cue passes the ball: |b_axis| >= R + r.
-    """
-    reach = 2 * axis_offset(0.5, tip_radius, ball=ball)  # R + r: it is linear in the offset
-    distance = _COORDINATE.check("axis_distance", axis_distance)
-    if not np.all(touches := np.abs(distance) < reach):
-        where, (got, limit) = first_failure(touches, distance, reach)
-        raise ValueError(
-            f"axis_distance must be in ({-limit}, {limit}) m, the radii of ball and tip together; got {got}{where}"
-        )
-    return distance / reach
-
-
 def _geometry(point: ArrayLike, direction: ArrayLike, ball: Ball) -> tuple[Array, Array, Array]:
     """Offset b/R, the axis of the spin (zero head on), and the unit vector along the cue."""
     contact, along = _contact(point, direction, np.asarray(ball.radius))
@@ -198,16 +142,14 @@ def _contact(point: ArrayLike, direction: ArrayLike, radius: Array) -> tuple[Arr
     """R_I/R, from the ball's centre to the contact, and the unit vector along the cue."""
     point = _vectors("point", point, 2, _COORDINATE)
     along = _vectors("direction", direction, 3, _COMPONENT)
-    largest = np.abs(along).max(axis=-1, keepdims=True)
-    if not np.all(moves := largest[..., 0] > 0):
+    length = np.linalg.norm(along, axis=-1, keepdims=True)
+    if not np.all(moves := length[..., 0] > 0):
         where, _ = first_failure(moves)
         raise ValueError(f"direction must have a length; got (0, 0, 0){where}")
-    along = along / largest
-    along = along / np.linalg.norm(along, axis=-1, keepdims=True)
-    level = np.hypot(along[..., 0], along[..., 1])
-    upright = level == 0  # a cue straight up or down: taken to stand on the player's side, towards +y
-    safe = np.where(upright, 1.0, level)
-    ahead_x, ahead_y = along[..., 0] / safe, np.where(upright, 1.0, along[..., 1] / safe)
+    along = along / length
+    # a cue straight up or down is taken to stand on the player's side, towards +y
+    ahead = np.where(np.hypot(along[..., 0], along[..., 1]) > 0, along[..., 0] + 1j * along[..., 1], 1j)
+    ahead = ahead / np.abs(ahead)
     aside, height = point[..., 0] / radius, point[..., 1] / radius - 1
     depth = (1 - aside) * (1 + aside) - height**2
     if not np.all(on := depth >= 0):
@@ -215,8 +157,8 @@ def _contact(point: ArrayLike, direction: ArrayLike, radius: Array) -> tuple[Arr
         raise ValueError(
             f"point must be on the ball, h^2 + (l - R)^2 <= R^2 with R = {R} m; got ({h}, {height_got}) m{where}"
         )
-    behind = np.sqrt(depth)
-    x, y, z = np.broadcast_arrays(aside * ahead_y - behind * ahead_x, -aside * ahead_x - behind * ahead_y, height)
+    level = -(np.sqrt(depth) + 1j * aside) * ahead  # x + iy, behind the centre and to its right
+    x, y, z = np.broadcast_arrays(level.real, level.imag, height)
     contact = np.stack([x, y, z], axis=-1)
     return contact, np.broadcast_to(along, np.broadcast_shapes(contact.shape, along.shape))
 

@@ -17,7 +17,7 @@ import meshio
 import numpy as np
 
 from cuefem.beam.modes import Modes, modes
-from cuefem.contact.motion import Motion, last_contact, motion
+from cuefem.contact.motion import Motion, motion
 from cuefem.cue import Array, Cue
 from cuefem.io import check_new, write_whole_folder
 from cuefem.quantity.fields import scalar
@@ -89,7 +89,7 @@ def save_motion(
     ):
         if not holds:
             raise ValueError(f"save_motion: {name} must be {bounds}; got {value}")
-    last = 3 * last_contact(scene) if until is None else until
+    last = 3 * motion(scene, [0.0]).duration if until is None else until
     moving = motion(scene, np.linspace(0, last, frames))
     cue, bending = scene.shaft, modes(scene.shaft, count, effects=scene.cue_effects)
 

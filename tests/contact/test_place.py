@@ -8,7 +8,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import cuefem as cf
-from cuefem.contact.place import axis_offset, offset_of, offset_of_axis
+from cuefem.contact.place import offset_of
 
 MANY = settings(max_examples=60, deadline=None)
 BALL = cf.Ball(0.17, 0.0286)
@@ -94,10 +94,3 @@ def test_arrays_of_strokes():
     one = cf.place(stroke(offsets[1, 2]), points[2], (1, 0, 0), ball=BALL)
     np.testing.assert_array_equal(placed.velocity[1, 2], one.velocity)
     np.testing.assert_array_equal(placed.spin[1, 2], one.spin)
-
-
-@given(st.floats(-0.99, 0.99), st.floats(0, 0.02))
-def test_axis_and_contact_offsets_undo_each_other(offset, tip_radius):
-    aside = axis_offset(offset, tip_radius, ball=BALL)
-    assert aside == pytest.approx((R + tip_radius) * offset, rel=1e-15)
-    assert offset_of_axis(aside, tip_radius, ball=BALL) == pytest.approx(offset, rel=1e-14, abs=1e-300)

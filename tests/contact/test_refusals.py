@@ -11,7 +11,6 @@ import pytest
 import cuefem as cf
 from cuefem.beam.tip import lumped_tip_modes
 from cuefem.contact.laws import model_of
-from cuefem.contact.place import offset_of_axis
 from cuefem.contact.solve import solve_contact
 from tests.helpers.leather_scenes import leather_scene
 from tests.helpers.refusals import refuses
@@ -101,9 +100,6 @@ CALLS: list[tuple[Callable[[], object], str]] = [
     (placed((0.0, 0.0)), "point must be on the side of the ball that the direction meets, less than 90 degrees"),
     (placed((0.31 * R, R)), "0.31 or -0.31; got one at 0.3"),
     (placed([GOOD, (0.2 * R, R)]), "got one at 0.3 at index 1"),
-    (lambda: offset_of_axis([0.01, 0.04], 0.0095, ball=BALL), "got 0.04 at index 1"),
-    (lambda: offset_of_axis(nan, 0.0095), "axis_distance must be in "),
-    (lambda: offset_of_axis(0.01, -1.0), "tip_radius must be in [0, inf) m; got -1"),
 ]
 
 

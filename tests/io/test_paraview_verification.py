@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.contact.motion import last_contact, motion
+from cuefem.contact.motion import motion
 from cuefem.io import InputError
 from cuefem.io.paraview import AROUND, ball_surface, shaft_surface, vectors
 from tests.helpers.refusals import refuses
@@ -77,7 +77,7 @@ def test_the_modes(tmp_path: Path) -> None:
 def test_the_strike(tmp_path: Path) -> None:
     scale, folder = 20.0, tmp_path / "seen"
     cf.save_motion(SCENE, folder, frames=5, scale=scale)
-    times = np.linspace(0, 3 * last_contact(SCENE), 5)
+    times = np.linspace(0, 3 * motion(SCENE, [0.0]).duration, 5)
     found = motion(SCENE, times)
     shaft = shaft_surface(CUE)
     w, theta = found.deflection(shaft.x)
