@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -98,7 +98,7 @@ def model_of(scene: Scene, tip: TipModes) -> ContactModel:
     _check_restitution(common["restitution"], terms)
     if terms.table is not None:
         return _raised(scene, tip, terms, common)
-    return _planar(scene, tip, terms, common, offset)
+    return _planar(scene, tip, terms, common)
 
 
 def _check_restitution(e: float, terms: ContactTerms) -> None:
@@ -119,93 +119,36 @@ def check_restitution(name: str, restitution: float) -> None:
         )
 
 
-class _TipPart(NamedTuple):
-    """What the tip gives a planar contact: its laws, its dome, and about how long the contact takes, s."""
-
-    law: TipLaw | LeatherLaw
-    patch: int
-    dome: float
-    rim: float
-    numbers: dict[str, float]
-    arrays: dict[str, Array]
-    time: float
-
-
-def _leather(scene: Scene, whole: WholeTip, common: dict[str, Any], offset: float) -> _TipPart:
-    """A whole tip, whose patch slips ring by ring, or is a spring where it has a constant stiffness."""
+def _leather(scene: Scene, whole: WholeTip, common: dict[str, Any]) -> dict[str, Any]:
+    """What a whole tip gives a contact: its patch slips ring by ring, or is a spring of a constant stiffness."""
+    offset = abs(scalar("Stroke.offset", scene.stroke.offset))
     law = whole.law(scalar("Ball.radius", scene.ball.radius), offset, common["restitution"])
-    numbers: dict[str, float] = {"law": 1, "most": law.most, "terms": len(law.force_terms)}
+    terms: dict[str, float] = {"law": 1, "most": law.most, "terms": len(law.force_terms)}
     arrays = {"force_terms": np.array(law.force_terms), "compliance_terms": np.array(law.give_terms)}
-    if whole.shear is None:
-        patch = PARTIAL_SLIP
-        numbers |= {"rings": RINGS, "surface_restitution": whole.surface_restitution}
-        arrays |= _rings(law, min(law.most, DEEPER * scene.deepest))
-    else:
-        patch, numbers = SPRING_PATCH, numbers | {"compliance": 1 / whole.shear}
-    return _TipPart(law, patch, whole.dome_radius, whole.rim, numbers, arrays, common["time"])
+    if whole.shear is not None:
+        return {"law": law, "patch": SPRING_PATCH, "terms": terms | {"compliance": 1 / whole.shear}, "arrays": arrays}
+    terms |= {"rings": RINGS, "surface_restitution": whole.surface_restitution}
+    # the last ring has what lies beyond
+    edges = min(law.most, DEEPER * scene.deepest) * np.linspace(0.0, 1.0, RINGS + 1) ** 2
+    force, stiffness = law.at(edges)
+    arrays |= {"ring_edges": edges, "ring_forces": force, "ring_stiffness": stiffness, "ring_slopes": law.slope(edges)}
+    return {"law": law, "patch": PARTIAL_SLIP, "terms": terms, "arrays": arrays}
 
 
-def _power_tip(scene: Scene, terms: ContactTerms, common: dict[str, Any]) -> _TipPart:
-    """A tip with a power law along the normal, whose patch is rigid or a spring."""
-    law, time = normal_law(scene, common)
+def _power_tip(scene: Scene, terms: ContactTerms, common: dict[str, Any]) -> dict[str, Any]:
+    """What a tip with a power law gives a contact, the effects' or the linear one; its patch is rigid or a spring."""
+    law, time = TipLaw(float(scene.stiffness), 1.0, common["restitution"]), float(common["time"])
+    if terms.law is not None:
+        law, time = terms.law(HeadOn(scene.head_on_mass, common["restitution"], time, common["speed"]))
     compliance = terms.compliance / scene.stiffness
-    numbers = power_law(law) | {"compliance": compliance}
     patch = SPRING_PATCH if compliance else RIGID_PATCH
-    return _TipPart(law, patch, terms.dome_radius, math.inf, numbers, {}, time)
-
-
-def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, Any], offset: float) -> ContactModel:
-    """A level cue: the contact stays in the plane of the cue's axis and the ball's centre."""
-    phi, mass, nu = (common[name] for name in ("phi", "ball_mass", "inertia"))
-    (u, w), turns = terms.lever(phi), terms.turns
-    s, c = math.sin(phi), math.cos(phi)
-    arm_t, arm_n = s * u + c * w, c * u - s * w
-    whole = terms.tip
-    part = _power_tip(scene, terms, common) if whole is None else _leather(scene, whole, common, offset)
-    if part.patch == RIGID_PATCH and terms.window is not None and math.isinf(common["friction"]):
-        raise ValueError(
-            "Tip.friction must be finite beside SecondHit, or the tip give along the surface (TipShear, LeatherTip): "
-            "the blows of endless friction throw ball and tip apart again and again; got inf"
-        )
-    numbers, arrays, common = part.numbers, part.arrays, common | {"time": part.time}
-    if turns:
-        numbers |= {"rolls": 1, "dome": part.dome, "rim": min(part.rim, math.pi), "radius": float(scene.ball.radius)}
-        numbers |= {"arm_t": arm_t, "arm_n": arm_n}
-    turning = bool(u or w or (turns and part.dome))
-    propagator = planar_propagator(tip, turning=turning, time=part.time, window=common["window"] or 0.0)
-    rolling = part.dome if phi < part.rim else 0.0
-    arrays |= _thrust(propagator, -w - rolling * c)
-    of_cue = np.array([[-s, -c, -arm_t], [-c, s, -arm_n]])[:, : len(propagator.rows)]
-    facing = np.concatenate([of_cue, [[1.0, 0.0, 1.0], [0.0, 1.0, 0.0]]], axis=1)
-    return ContactModel(
-        propagator,
-        facing,
-        np.array([1 / mass, 1 / mass, 1 / (nu * mass)]),
-        np.zeros(3),
-        patch=part.patch,
-        terms=numbers,
-        arrays=arrays,
-        law=part.law,
-        tip=tip,
-        **common,
-    )
-
-
-def _thrust(propagator: ModalPropagator, ahead: float, planes: int = 1) -> dict[str, Array]:
-    """The arrays that a bent cue adds; ahead: how far the centre of the tip's dome lies before the cue's end, m."""
-    count = len(propagator.slopes)
-    if not count:
-        return {}
-    weights = np.append(np.ones(count // planes - 1), ahead)
-    return {"slope_weights": np.tile(weights, planes)}
-
-
-def normal_law(scene: Scene, common: dict[str, Any]) -> tuple[TipLaw, float]:
-    """The law along the normal, the scene's own or the linear one, and about how long a contact takes, s."""
-    make = scene.contact_terms.law
-    if make is None:
-        return TipLaw(float(scene.stiffness), 1.0, common["restitution"]), float(scene.contact_time)
-    return make(HeadOn(scene.head_on_mass, common["restitution"], scene.contact_time, common["speed"]))
+    return {
+        "law": law,
+        "patch": patch,
+        "terms": power_law(law) | {"compliance": compliance},
+        "arrays": {},
+        "time": time,
+    }
 
 
 def power_law(law: TipLaw) -> dict[str, float]:
@@ -213,16 +156,34 @@ def power_law(law: TipLaw) -> dict[str, float]:
     return {"stiffness": float(law.stiffness), "exponent": float(law.exponent)}
 
 
-def _rings(law: LeatherLaw, deepest: float) -> dict[str, Array]:
-    """Rings of patches up to that of a compression; the last has what lies beyond."""
-    edges = deepest * np.linspace(0.0, 1.0, RINGS + 1) ** 2
-    force, stiffness = law.at(edges)
-    return {
-        "ring_edges": edges,
-        "ring_forces": force,
-        "ring_stiffness": stiffness,
-        "ring_slopes": law.slope(edges),
-    }
+def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, Any]) -> ContactModel:
+    """A level cue: the contact stays in the plane of the cue's axis and the ball's centre."""
+    phi, mass, nu = (common[name] for name in ("phi", "ball_mass", "inertia"))
+    (u, w), whole, dome = terms.lever(phi), terms.tip, terms.dome_radius
+    s, c, rim = math.sin(phi), math.cos(phi), math.inf if whole is None else whole.rim
+    arm_t, arm_n = s * u + c * w, c * u - s * w
+    model = common | (_power_tip(scene, terms, common) if whole is None else _leather(scene, whole, common))
+    if model["patch"] == RIGID_PATCH and terms.window is not None and math.isinf(common["friction"]):
+        raise ValueError(
+            "Tip.friction must be finite beside SecondHit, or the tip give along the surface (TipShear, LeatherTip): "
+            "the blows of endless friction throw ball and tip apart again and again; got inf"
+        )
+    if terms.turns:
+        rolls = {"rolls": 1, "dome": dome, "rim": min(rim, math.pi), "radius": float(scene.ball.radius)}
+        model["terms"] |= rolls | {"arm_t": arm_t, "arm_n": arm_n}
+    turning = bool(u or w or (terms.turns and dome))
+    propagator = planar_propagator(tip, turning=turning, time=model["time"], window=terms.window or 0.0)
+    model["arrays"] |= _thrust(propagator, -w - (dome * c if phi < rim else 0.0))
+    of_cue = np.array([[-s, -c, -arm_t], [-c, s, -arm_n]])[:, : len(propagator.rows)]
+    facing = np.concatenate([of_cue, [[1.0, 0.0, 1.0], [0.0, 1.0, 0.0]]], axis=1)
+    inverse_masses = np.array([1 / mass, 1 / mass, 1 / (nu * mass)])
+    return ContactModel(propagator, facing, inverse_masses, np.zeros(3), tip=tip, **model)
+
+
+def _thrust(propagator: ModalPropagator, ahead: float, planes: int = 1) -> dict[str, Array]:
+    """The arrays that a bent cue adds; ahead: how far the centre of the tip's dome lies before the cue's end, m."""
+    count = len(propagator.slopes)
+    return {"slope_weights": np.tile(np.append(np.ones(count // planes - 1), ahead), planes)} if count else {}
 
 
 def _raised(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, Any]) -> ContactModel:
@@ -234,9 +195,8 @@ def _raised(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
     if terms.compliance or terms.turns or terms.window is not None or terms.tip is not None:
         raise ValueError("a raised cue (Elevation) takes a tip without give sideways, a fixed normal and a single hit")
     assert terms.table is not None
-    law, time = normal_law(scene, common)
     (u, w), phi, mass, nu = terms.lever(common["phi"]), common["phi"], common["ball_mass"], common["inertia"]
-    s, c = math.sin(phi), math.cos(phi)
+    s, c, model = math.sin(phi), math.cos(phi), common | _power_tip(scene, terms, common)
     right, forward, up = table_axes(phi, terms.table.angle)
     if u or w:
         tip = replace(tip, amplitude=tip.amplitude + np.outer(tip.rotation, (u, w)))
@@ -246,19 +206,11 @@ def _raised(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, 
     facing[0, 8], facing[2, 6] = 1.0, -1.0
     facing[3:, 3:6] = up, right, forward
     facing[4, 6:], facing[5, 6:] = -np.cross(up, right), -np.cross(up, forward)
-    propagator = raised_propagator(tip, time)
-    return ContactModel(
-        propagator,
-        facing,
-        np.repeat([1 / mass, 1 / (nu * mass)], 3),
-        np.zeros(6),
-        terms={"table_friction": terms.table.friction} | power_law(law),
-        arrays=_thrust(propagator, -w - terms.dome_radius * c, planes=2),
-        law=law,
-        table=terms.table,
-        tip=tip,
-        **(common | {"time": time}),
-    )
+    propagator = raised_propagator(tip, model["time"])
+    model["terms"] |= {"table_friction": terms.table.friction}
+    model["arrays"] |= _thrust(propagator, -w - terms.dome_radius * c, planes=2)
+    inverse_masses = np.repeat([1 / mass, 1 / (nu * mass)], 3)
+    return ContactModel(propagator, facing, inverse_masses, np.zeros(6), table=terms.table, tip=tip, **model)
 
 
 def table_axes(phi: float, angle: float) -> tuple[Array, Array, Array]:
