@@ -24,8 +24,8 @@ from cuefem.designer.sliders import sliders
 from cuefem.effects import effect_kinds
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.measurements.uncertain_parameters import parameters_of
+from cuefem.parameters.parameter import PLACES, knobs_of, paths, varied
 from cuefem.results.quantities import RESULTS
-from cuefem.vary import PLACES, knobs_of, paths, varied
 from tests.helpers.made_up import PLACE, PUSH, RIGID, SPOT, cap_effect, collar_effect, faces, missing
 from tests.helpers.strike_scenes import imbalance, kim_scene
 
@@ -65,7 +65,7 @@ def test_a_place(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 OPTION = """import sys
-from cuefem.vary import PLACES
+from cuefem.parameters.parameter import PLACES
 from tests.helpers.made_up import PLACE
 
 PLACES[PLACE.key] = PLACE

@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import cuefem as cf
+from cuefem.cue.materials import material
 from cuefem.io.fittings import fitted
-from cuefem.materials import material
 from tests.helpers.command_line import call
 
 BARE = "x [mm],diameter [mm]\n0,12\n700,21\n"

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
+from cuefem.cue.materials import material
 from cuefem.io import InputError, load_accuracy
 from tests.helpers.cues import kim
 
@@ -70,7 +71,7 @@ def test_a_mesh_says_what_the_cue_is(tmp_path: Path, suffix: str) -> None:
 
 
 def test_a_saved_drawing_reads_as_one_is_written(tmp_path: Path) -> None:
-    maple, made_up = cf.materials.material("hard maple"), cf.Material(13.5e9, 1.2e9, 700.0)
+    maple, made_up = material("hard maple"), cf.Material(13.5e9, 1.2e9, 700.0)
     shaft = (cf.Segment(0.0762, 0.0127, 0.0128, made_up, 0.003, 0.003, maple), cf.Segment(0.66, 0.0128, 0.021, maple))
     cf.save(cf.Scene(cf.Cue(shaft, 0.42), effects=(cf.Elevation(math.radians(3)),)), tmp_path / "scene.toml")
     text = (tmp_path / "scene.toml").read_text()

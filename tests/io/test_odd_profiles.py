@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
+from cuefem.cue.materials import material
 from cuefem.io.assumed import assumed
 
 MAPLE = material("hard maple")

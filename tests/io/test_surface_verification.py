@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import cuefem as cf
+from cuefem.cue.materials import material
 from cuefem.io.assumed import assumed
 from cuefem.io.slices import TOLERANCE, sliced, surface
-from cuefem.materials import material
 from tests.helpers.orders import assert_order
 from tests.helpers.surfaces import outline_of, revolved, written
 
