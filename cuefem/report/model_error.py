@@ -20,7 +20,7 @@ from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.results.quantities import TRADE, scaled
 from cuefem.results.records import Record, Sheet, sheet
 from cuefem.scene import Scene
-from cuefem.solid.half_section import Fineness, blocks, check_size
+from cuefem.solid.meridian_mesh import Fineness, blocks, check_size
 from cuefem.solid.shaft import AXIAL, Body
 from cuefem.tip_modes import mass_on_face
 

@@ -17,8 +17,8 @@ import numpy as np
 
 import cuefem as cf
 from cuefem.cue import shear_coefficient
-from cuefem.cue.materials import material
-from cuefem.solid.half_section import Fineness
+from cuefem.materials import material
+from cuefem.solid.meridian_mesh import Fineness
 from cuefem.solid.shaft import Body
 from studies import pages
 from studies.pages import table
@@ -125,7 +125,7 @@ def text() -> str:
         "Beam and solid",
         "How close is the beam to 3-D elasticity, and which shear coefficient is right?",
         f"Six free modes of Kim's cone agree within {plain:.1e} (isotropic) and {wood:.1e} (wood), squirt within "
-        f"{worst:.1f} % on the cues of meshes/. Hutchinson's coefficient at nu_e, nu_e/(1 + nu_e) = 2 nu_LT G/E, is "
+        f"{worst:.2f} % on the cues of meshes/. Hutchinson's coefficient at nu_e, nu_e/(1 + nu_e) = 2 nu_LT G/E, is "
         "exact for long waves, solid and hollow. The beam is more than 1e-4 off at jumps of the diameter, steel pins "
         "and thin walls.",
         "## Shear coefficient of long waves",

@@ -126,22 +126,16 @@ def check_size(cue: Cue, how: Fineness) -> None:
 def half_section(cue: Cue, how: Fineness) -> tuple[MeshQuad, list[Material]]:
     """Quadrilaterals in (z, r), and their materials."""
     radii, _, _ = lines(cue)
-    points: list[tuple[float, float]] = []
-    cells: list[NDArray[np.intp]] = []
+    corners: list[Array] = []  # of each block, (quadrilaterals, 4, 2)
     materials: list[Material] = []
-    sub = np.arange(how.layers + 1) / how.layers
-    for i, layer, material, at in blocks(cue, how):
-        r = radii[:, i, None] * (1 - at) + radii[:, i + 1, None] * at
-        z = cue.nodes[i] * (1 - at) + cue.nodes[i + 1] * at
-        rows = r[layer] + (r[layer + 1] - r[layer]) * sub[:, None]
-        for j in range(how.layers):
-            for k in range(len(at) - 1):
-                points += [(z[k], rows[j, k]), (z[k + 1], rows[j, k + 1])]
-                points += [(z[k + 1], rows[j + 1, k + 1]), (z[k], rows[j + 1, k])]
-                cells.append(len(points) - 4 + np.arange(4))
-                materials.append(material)
-    where = np.array(points)
-    rounded = np.round(where / SAME).astype(np.int64)
-    _, first, same = np.unique(rounded, axis=0, return_index=True, return_inverse=True)
-    corners = same.ravel()[np.array(cells)]
-    return MeshQuad(np.ascontiguousarray(where[first].T), np.ascontiguousarray(corners.T)), materials
+    across = np.arange(how.layers + 1)[:, None] / how.layers
+    for i, layer, material, along in blocks(cue, how):
+        below, above = (radii[k, i] * (1 - along) + radii[k, i + 1] * along for k in (layer, layer + 1))
+        r = below * (1 - across) + above * across
+        z = np.broadcast_to(cue.nodes[i] * (1 - along) + cue.nodes[i + 1] * along, r.shape)
+        p = np.stack([z, r], axis=-1)
+        corners.append(np.stack([p[:-1, :-1], p[:-1, 1:], p[1:, 1:], p[1:, :-1]], axis=2).reshape(-1, 4, 2))
+        materials += [material] * len(corners[-1])
+    where = np.concatenate(corners).reshape(-1, 2)
+    _, first, same = np.unique(np.round(where / SAME).astype(np.int64), axis=0, return_index=True, return_inverse=True)
+    return MeshQuad(np.ascontiguousarray(where[first].T), np.ascontiguousarray(same.reshape(-1, 4).T)), materials

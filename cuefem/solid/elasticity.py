@@ -1,0 +1,95 @@
+"""The weak forms of a solid of revolution in a Fourier harmonic, and their matrices.
+
+With t the angle about the axis, the harmonic m is u_r = U(r, z) cos mt, u_t = V(r, z) sin mt, u_z = W(r, z) cos mt:
+bending of a cue is m = 1, its motion along the axis m = 0. Every strain is a function of (r, z) times cos mt or sin mt,
+and the integral over t leaves pi (2 pi of m = 0). The unknowns are U, S and W with S = V, but S = U + V if m = 1: on
+the axis S = W = 0 then, so that nothing is singular there (handbook: The solid).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+from skfem import Basis
+
+from cuefem.cue import Array
+
+SAME = 1e-9  # points of the mesh closer than this are one
+
+
+def strains(m: int, U: Any, S: Any, W: Any, r: Any) -> list[Any]:
+    """Strains (rr, tt, zz, 2 rz, 2 rt, 2 tz) without their cos mt or sin mt; U, S, W: value, d/dz and d/dr each."""
+    V = displacements(m, U, S, W)[1]
+    return [
+        U[2],
+        (U[0] + m * V[0]) / r,
+        W[1],
+        U[1] + W[2],
+        V[2] - (m * U[0] + V[0]) / r,
+        V[1] - m * W[0] / r,
+    ]
+
+
+def displacements(m: int, U: Any, S: Any, W: Any) -> list[Any]:
+    """U, V and W."""
+    return [U, S - U if m == 1 else S, W]
+
+
+def stiffness(E: float, nu: float, G: float, E_across: float, nu_across: float) -> Array:
+    """The stress of strains (rr, tt, zz, 2 rz, 2 rt, 2 tz), Pa, (6, 6), of a material transversely isotropic about the
+    axis."""
+    compliance = np.diag([1 / E_across, 1 / E_across, 1 / E, 1 / G, 2 * (1 + nu_across) / E_across, 1 / G])
+    compliance[0, 1] = compliance[1, 0] = -nu_across / E_across
+    compliance[:2, 2] = compliance[2, :2] = -nu / E
+    if np.linalg.eigvalsh(compliance * np.sqrt(np.outer(1 / compliance.diagonal(), 1 / compliance.diagonal())))[0] <= 0:
+        raise ValueError(
+            "Material must store energy under every strain, (1 - nu_across) > 2 nu^2 across_ratio; got "
+            f"nu = {nu}, nu_across = {nu_across}, across_ratio = {E_across / E:.6g}"
+        )
+    return np.linalg.inv(compliance)
+
+
+def matrices(
+    basis: Basis, m: int, stiff: Sequence[Array], heavy: Sequence[float]
+) -> tuple[sp.csc_matrix, sp.csc_matrix]:
+    """K and M of the unknowns U, S, W of a basis of one field; stiff, heavy: `stiffness` and density of its cells.
+
+    scikit-fem's own assembly calls a form for each pair of functions, which takes a hundred times as long at the orders
+    used here.
+    """
+    value = np.array([np.broadcast_to(np.asarray(f[0]), basis.dx.shape) for f in basis.basis])
+    slopes = np.moveaxis(np.array([f[0].grad for f in basis.basis]), 1, 0)
+    functions = np.array([value, *slopes])  # (value and slopes, functions, cells, points)
+    radius, none = np.asarray(basis.global_coordinates())[1], np.zeros((3, *value.shape[::2]))
+    rows, columns, entries = [], [], []
+    for cell, (C, rho) in enumerate(zip(stiff, heavy, strict=True)):
+        f, r = functions[:, :, cell], radius[cell]
+        fields: list[tuple[Array, Array, Array]] = [(f, none, none), (none, f, none), (none, none, f)]
+        root = np.sqrt((np.pi if m else 2 * np.pi) * r * basis.dx[cell])
+        strain = root * np.array([strains(m, *field, r) for field in fields]).swapaxes(0, 1)
+        moved = root * np.array([displacements(m, *field) for field in fields])[:, :, 0].swapaxes(0, 1)
+        own = (basis.N * np.arange(3)[:, None] + basis.element_dofs[:, cell]).ravel()
+        pairs = (strain, np.tensordot(C, strain, 1)), (moved, rho * moved)  # (components, fields, functions, points)
+        rows.append(np.repeat(own, len(own)))
+        columns.append(np.tile(own, len(own)))
+        entries.append([np.tensordot(a, b, ((0, 3), (0, 3))).ravel() for a, b in pairs])
+    at = np.concatenate(rows), np.concatenate(columns)
+    K, M = (sp.csc_matrix((part, at), shape=(3 * basis.N,) * 2) for part in np.concatenate(entries, axis=1))
+    return K, M
+
+
+def boundary(basis: Basis, coordinate: int, at: float) -> NDArray[np.intp]:
+    """Unknowns of one field on the part of the boundary where z (0) or r (1) is ``at``."""
+    facets = basis.mesh.facets_satisfying(lambda x: np.abs(x[coordinate] - at) < SAME, boundaries_only=True)
+    return np.asarray(basis.get_dofs(facets).all())
+
+
+def free(basis: Basis, m: int, *fixed: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Unknowns that are neither ``fixed`` nor zero on the axis, as every smooth field of the harmonic is there."""
+    axis, N = boundary(basis, 1, 0.0), basis.N
+    zero = {0: [axis, N + np.arange(N)], 1: [N + axis, 2 * N + axis]}.get(m, [axis, N + axis, 2 * N + axis])
+    return np.setdiff1d(np.arange(3 * N), np.concatenate([*zero, *fixed]))
