@@ -17,7 +17,7 @@ import numpy as np
 
 import cuefem as cf
 from cuefem.cue import shear_coefficient
-from cuefem.materials import material
+from cuefem.cue.materials import material
 from cuefem.solid.meridian_mesh import Fineness
 from cuefem.solid.shaft import Body
 from studies import pages

@@ -12,7 +12,7 @@ from scipy.special import iv, ivp
 from skfem import Basis, BilinearForm, DiscreteField, ElementQuadP, ElementVector
 
 from cuefem import Cue, Material, Segment
-from cuefem.materials import material
+from cuefem.cue.materials import material
 from cuefem.solid.elasticity import displacements, matrices, stiffness, strains
 from cuefem.solid.meridian_mesh import Fineness
 from cuefem.solid.shaft import AXIAL, BENDING, Body
