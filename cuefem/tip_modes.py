@@ -192,7 +192,7 @@ def tip_modes_from(bending: Ended, scene: Scene) -> TipModes:
     for family in along:
         tip = tip.beside(family.omega, family.along, family.radiation)
     for effect in effects:
-        tip = effect.damp(tip, cue, (bending, *along))
+        tip = effect.damp(tip, [(cue, bending), *((rod.cue, rod) for rod in along)])
     return tip.ascending() if along else tip
 
 

@@ -133,8 +133,8 @@ def tip_restitution(scene: Scene, measured: float) -> float:
     >>> import cuefem as cf
     >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
     >>> cue = cf.Cue((cf.Segment(0.7, 0.01275, 0.021, wood),), body_mass=0.43)
-    >>> round(cf.tip_restitution(cf.usual_scene(cue), 0.73), 1)
-    0.6
+    >>> round(cf.tip_restitution(cf.usual_scene(cue), 0.73), 2)
+    0.66
     """
     from scipy.optimize import brentq
 

@@ -351,7 +351,7 @@ def _place_modes(scene: SideStrike, at: Resolution | None) -> TipModes:
     modes = modes if at is not None else tail(modes, position=scene.position)
     place = side_modes(modes, scene.position)
     for effect in scene.cue_effects:
-        place = effect.damp(place, scene.cue, (modes,))
+        place = effect.damp(place, ((scene.cue, modes),))
     return place
 
 

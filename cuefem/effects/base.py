@@ -11,9 +11,8 @@ from cuefem.cue import Array, Cue, LumpedCue, Section
 from cuefem.quantity.fields import OutOfBounds, Quantity, check_fields, check_kind
 
 if TYPE_CHECKING:
-    from cuefem.beam.mesh import Terms
+    from cuefem.beam.mesh import Mesh, Terms
     from cuefem.beam.spectrum import Ended
-    from cuefem.beam.system import System
     from cuefem.beam.tip import TipModes
     from cuefem.effects.terms import ContactTerms
 
@@ -21,12 +20,24 @@ if TYPE_CHECKING:
 NEAR = 1e-9
 
 
+class Meshed(Protocol):
+    """Elements of a cue, and the section's properties at their Gauss points."""
+
+    @property
+    def mesh(self) -> Mesh:
+        """The elements."""
+
+    @property
+    def section(self) -> Section:
+        """At the Gauss points, arrays (elements, q)."""
+
+
 class Vibrations(Protocol):
     """A family of vibrating modes of a cue: those of bending, and what effects add."""
 
     @property
-    def system(self) -> System:
-        """The beam whose modes they are."""
+    def system(self) -> Meshed:
+        """The beam or rod whose modes they are."""
 
     @property
     def omega(self) -> Array:
@@ -38,6 +49,10 @@ class Vibrations(Protocol):
 
 class AxialVibrations(Vibrations, Protocol):
     """A family of modes along the cue."""
+
+    @property
+    def cue(self) -> Cue:
+        """The cue that vibrates so, with all that goes on behind the drawing."""
 
     @property
     def along(self) -> Array:
@@ -98,6 +113,10 @@ class Effect:
         """What is left of the effect on a cue whose tip is bare (`Scene.bare`)."""
         return () if self.at_tip else (self,)
 
+    def unusual_on(self, cue: Cue) -> str:
+        """What is said of numbers that no such cue has; "" of ordinary ones."""
+        return ""
+
     def check_on(self, cue: Cue, name: str) -> None:
         """ValueError, in the words of ``name``, unless the effect's positions lie on the cue."""
         for x in self.positions:
@@ -139,7 +158,7 @@ class CueEffect(Effect):
         """What thrust at the tip does to the ``bending`` modes, rigid ones first (`TipModes.geometric`)."""
         return None
 
-    def damp(self, tip: TipModes, cue: Cue, families: Sequence[Vibrations]) -> TipModes:
+    def damp(self, tip: TipModes, families: Sequence[tuple[Cue, Vibrations]]) -> TipModes:
         """The tip modes with the effect's damping; their vibrating modes are the families', one after the other."""
         return tip
 

@@ -4,19 +4,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated, ClassVar
 
 import numpy as np
 
-from cuefem.cue import Array, Cue
+from cuefem.cue import Array, Cue, Segment
 from cuefem.effects.base import NEAR, AxialVibrations, CueEffect, Usual, Vibrations
-from cuefem.quantity.fields import Quantity
+from cuefem.quantity.fields import DIAMETER, LENGTH, OutOfBounds, Quantity
+from cuefem.quantity.slips import WHOLE
 
 if TYPE_CHECKING:
     from cuefem.beam.mesh import Terms
     from cuefem.beam.spectrum import Ended
     from cuefem.beam.tip import TipModes
+
+BUTTS, MOST_DENSITY = (500.0, 1900.0), 23_000.0  # kg/m3, of usual butts; the highest of a material, platinum's
+BUTT = "cue_length, butt_diameter and wave_speed"
 
 
 @dataclass(frozen=True)
@@ -249,31 +253,44 @@ class StructuralDamping(CueEffect):
 
     loss: Annotated[float | None, Quantity("", "[0, 1)")] = None
 
-    def damp(self, tip: TipModes, cue: Cue, families: Sequence[Vibrations]) -> TipModes:
+    def damp(self, tip: TipModes, families: Sequence[tuple[Cue, Vibrations]]) -> TipModes:
         """The tip modes with every vibrating mode damped."""
         from cuefem.effects.loss import damped  # loaded when used: it solves the beam
 
-        return damped(tip, cue, families, loss=self.loss)
+        return damped(tip, families, loss=self.loss)
 
 
 @dataclass(frozen=True)
 class AxialWaves(CueEffect):
     """Waves along the cue: the cue is an elastic rod along its axis instead of a rigid one.
 
+    Parameters
+    ----------
+    cue_length : float, optional
+        Length of the whole cue, m. Behind what is drawn, `Cue.body_mass` is then a rod that tapers from the end of the
+        drawing to the butt. By default that mass is rigid, at the end of the drawing.
+    butt_diameter : float, optional
+        Diameter at the end of the butt, m; with ``cue_length``.
+    wave_speed : float, optional
+        Speed of axial waves in the butt, the root of E over its density, m/s; with ``cue_length``.
+
     Notes
     -----
     Adds: Rod modes join the rigid motion along the axis, as many as lie below the highest bending frequency that is
-    kept, and with a tail if the bending modes have one. `Cue.body_mass` is rigid and sits at the butt end; point masses
+    kept, and with a tail if the bending modes have one. Nothing else sees the rod behind the drawing: bending, weights
+    and recordings are those of the drawing (if it bent too, squirt would change by another 0.3 % at most). Point masses
     sit at their places. Leather drawn at the tip (`Cue.leather`) moves as one piece along the axis, because the tip's
     force law holds its give already; its mass stays.
 
     Matters when: The contact is long enough for waves to run along the cue; in 1 ms they run 4.2 m in maple. The
     contact lasts longer, because the tip's stiffness is still defined with the rigid axial mass, and the ball leaves a
     little faster, because the rod gives back all the energy that it takes. Head on, 1.1 ms and a restitution of 0.73
-    become 1.27 ms and 0.78 on meshes/pool_maple.toml.
+    become 1.27 ms and 0.78 on meshes/pool_maple.toml. A rigid mass at the joint throws waves back after 0.33 ms, a butt
+    after 0.66 ms.
 
-    Wrong when: A support or a joint acts along the axis; here neither does. A hard tip drawn into the cue (phenolic,
-    above 1 GPa) gives in the tip's force law and again, by about 1 % of that, in the rod.
+    Wrong when: The butt's mass is uneven, as with a heavy pin or bolt. A support or a joint acts
+    along the axis; here neither does. A hard tip drawn into the cue (phenolic, above 1 GPa) gives in the tip's force
+    law and again, by about 1 % of that, in the rod.
 
     Limit: The effect vanishes as the axial stiffness EA goes to infinity; the longer contact and the changed squirt
     fall as 1/EA.
@@ -286,20 +303,74 @@ class AxialWaves(CueEffect):
     >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
     >>> shaft = cf.Cue((cf.Segment(0.7, 0.0125, 0.021, wood),), body_mass=0.42)
     >>> rigid = cf.strike(cf.Scene(shaft))
-    >>> rigid.duration < cf.strike(cf.Scene(shaft, effects=(cf.AxialWaves(),))).duration
+    >>> waves = cf.AxialWaves(cue_length=1.47, butt_diameter=0.03, wave_speed=4430.0)
+    >>> rigid.duration < cf.strike(cf.Scene(shaft, effects=(waves,))).duration
     True
     """
 
     once: ClassVar[bool] = True
     across: ClassVar[bool] = False
-    usual: ClassVar[Usual | None] = Usual({}, "the cue's own EA and mass")
+    usual: ClassVar[Usual | None] = Usual(
+        {"cue_length": 1.4732, "butt_diameter": 0.03175, "wave_speed": 4430.0}, "a pool cue's: 58 in, 1.25 in, maple"
+    )
+
+    cue_length: Annotated[float | None, LENGTH] = None
+    butt_diameter: Annotated[float | None, DIAMETER] = None
+    wave_speed: Annotated[float | None, Quantity("m/s", "(0, inf)")] = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if len({value is None for value in (self.cue_length, self.butt_diameter, self.wave_speed)}) > 1:
+            raise ValueError(f"AxialWaves must be given {BUTT} together, or none of them; got {self}")
+
+    def _volume_behind(self, cue: Cue) -> float:
+        """Volume of the rod behind what is drawn, m3; 0 without one."""
+        if self.cue_length is None or self.butt_diameter is None or not cue.body_mass:
+            return 0.0
+        first = cue.segments[-1].butt_diameter
+        square = first**2 + first * self.butt_diameter + self.butt_diameter**2
+        return math.pi / 12 * square * max(0.0, self.cue_length - cue.length)
+
+    def with_butt(self, cue: Cue) -> Cue:
+        """The cue with its rest as a segment; as it is if nothing is behind it, or no length is left for that."""
+        volume, last = self._volume_behind(cue), cue.segments[-1]
+        if not volume or self.cue_length is None or self.butt_diameter is None or self.wave_speed is None:
+            return cue
+        rho = cue.body_mass / volume
+        stiffer = rho * self.wave_speed**2 / last.material.E
+        wood = replace(last.material, E=stiffer * last.material.E, G=stiffer * last.material.G, rho=rho)
+        rest = Segment(self.cue_length - cue.length, last.butt_diameter, self.butt_diameter, wood)
+        return replace(cue, segments=(*cue.segments, rest), body_mass=0.0)
+
+    def check_on(self, cue: Cue, name: str) -> None:
+        """ValueError unless the rest of the cue can have the density of a material."""
+        volume = self._volume_behind(cue)
+        if volume and cue.body_mass > MOST_DENSITY * volume and self.cue_length is not None:
+            least = cue.length + cue.body_mass / MOST_DENSITY / volume * (self.cue_length - cue.length)
+            why = f", with which the rest of the cue has at most {MOST_DENSITY:g} kg/m^3"
+            raise OutOfBounds(f"{name}.cue_length", Quantity("m", f"[{least:.6g}, inf)"), self.cue_length, why)
+
+    def unusual_on(self, cue: Cue) -> str:
+        """A rigid mass at a joint, and a rest that is lighter or heavier than butts are."""
+        mass, volume = f"Cue.body_mass is {cue.body_mass:.4g} kg", self._volume_behind(cue)
+        if cue.body_mass and self.cue_length is None and WHOLE[0] <= cue.length <= WHOLE[1]:
+            return (
+                f"{mass}, rigid at the end of the shaft, and throws axial waves back twice as early as a butt: "
+                f"squirt is off by up to 6 %; give AxialWaves {BUTT}"
+            )
+        if volume and not BUTTS[0] <= cue.body_mass / volume <= BUTTS[1]:
+            return (
+                f"{mass}, with which the rest of the cue has {cue.body_mass / volume:.0f} kg/m^3; "
+                f"{BUTTS[0]:g} to {BUTTS[1]:g} is usual of butts"
+            )
+        return ""
 
     def vibrations(self, bending: Ended, cue: Cue, effects: Sequence[CueEffect]) -> tuple[AxialVibrations, ...]:
         """The rod modes."""
         from cuefem.effects.axial import rod_modes  # loaded when used: it solves the beam
 
-        tailed = bending.radiation is not None
-        return (rod_modes(bending.system, cue, lumps_on(cue, effects), below=bending.highest, tailed=tailed),)
+        rod, tailed = self.with_butt(cue), bending.radiation is not None
+        return (rod_modes(rod, lumps_on(rod, effects), below=bending.highest, tailed=tailed),)
 
 
 @dataclass(frozen=True)

@@ -118,8 +118,9 @@ def assumed_usual(
     if cue.leather and "tip_height" in options:
         height = f"the drawn leather, {drawn}, left out: the leather tip stands in its place"
     sizes = f"{1e3 * ball.mass:g} g, {2e3 * ball.radius:g} mm"
+    butt = f", with a butt to {1e3 * known.cue_length:g} mm, {1e3 * known.butt_diameter:g} mm wide, for axial waves"
     said = (
-        (False, f"a usual stroke of {game}{_option('game', offered)}"),
+        (False, f"a usual stroke of {game}{butt if blow and cue.body_mass else ''}{_option('game', offered)}"),
         (not blow, f"ball {sizes}"),
         (not cue.leather and "tip_height" in options, f"{height}{_option('tip_height', offered)}"),
         ("dome" in options, f"its dome {1e3 * tip.dome_radius:g} mm{_option('dome', offered)}"),

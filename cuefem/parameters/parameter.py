@@ -485,6 +485,8 @@ PLACES: dict[str, Place] = {
         Place("rho", "density of the wood", "wood.rho", spread=_wood_spread("rho")),
         Place("bore", "diameter of the bore", part=BORED_WIDTH, spread=math.log(7.5 / 6) / 2),  # meshes/README.md
         Place("taper", "diameter gained to the joint", part=GROWTH),
+        # half the logarithm of E's and rho's variation in one wood (22 and 10 %, `cuefem.materials`), in quadrature
+        Place("wave speed", "speed of axial waves in the butt", "waves.wave_speed", spread=0.12),
         Place(
             *("shaft mass", "weight of the shaft as drawn, with its tip", "weight.mass"),
             option="MASS",

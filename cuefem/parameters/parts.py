@@ -21,14 +21,15 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from cuefem.cue import SOFT, Cue, Material, Segment
-from cuefem.effects import Effect, Joint, LeatherTip, Support
+from cuefem.effects import AxialWaves, Effect, Joint, LeatherTip, Support
+from cuefem.effects.on_cue import MOST_DENSITY
 from cuefem.quantity.fields import DIAMETER, LENGTH, Quantity
 
 LONGEST_FERRULE = 0.06  # m
 TAPER_AT = 0.3302  # m, 13 in: so far pool shafts stay nearly straight; half the length of a cue shorter than twice that
 BRIDGE_AT = 0.2032  # m, 8 in
 USUAL_BORE = 0.006  # m, the width of a new bore
-LEAST_DENSITY, MOST_DENSITY = 20.0, 23_000.0  # kg/m3, foam to platinum: of a material that a weight tells
+LEAST_DENSITY = 20.0  # kg/m3, foam's: of a material that a weight tells
 SAME = 1e-9  # relative to a length: positions closer than this are the same
 
 
@@ -423,6 +424,12 @@ def _leather(scene: Any) -> LeatherTip | None:
     return next((effect for effect in scene.effects if isinstance(effect, LeatherTip)), None)
 
 
+def _waves(scene: Any) -> AxialWaves | None:
+    """The waves that see the rest of the cue as a rod."""
+    own = next((effect for effect in scene.effects if isinstance(effect, AxialWaves)), None)
+    return own if own is not None and own.with_butt(scene.shaft) is not scene.shaft else None
+
+
 def _exchanged(read: Callable[[Any], Effect | None], acts: Callable[[Any], bool]) -> Callable[[Any, Any], Any]:
     """Exchange the effect that ``read`` tells for another one, which is added where it was not listed and acts."""
 
@@ -445,6 +452,7 @@ PARTS: dict[str, Part] = {
     "joint": Part(_joint, _exchanged(_joint, lambda joint: joint.rotational_compliance > 0)),
     "bridge": Part(_bridge, _exchanged(_bridge, lambda bridge: bridge.stiffness > 0)),
     "leather": Part(_leather, _exchanged(_leather, lambda leather: True)),
+    "waves": Part(_waves, _exchanged(_waves, lambda waves: True)),
     "woods": Part(_woods, _with_woods),
     "materials": Part(
         lambda scene: materials_in(scene.shaft),

@@ -135,6 +135,13 @@ def remark_light(mass: float, length: float) -> None:
         _warn(f"{said}shaft counts in a stroke (dataclasses.replace(cue, body_mass=0.43))")
 
 
+def remark_said(*said: str) -> None:
+    """Warn of what the parts of a scene say of each other, if anything."""
+    for text in filter(None, said):
+        if not _trying.get():
+            _warn(text)
+
+
 def _warn(said: str) -> None:
     """Warn at the line outside this package; of a field that this line was warned of in the words of that time, which
     Python's filter knows, so that a sweep is warned once."""

@@ -82,11 +82,12 @@ def _spread(row: Mapping[str, Any]) -> str:
 
 
 def _counted() -> str:
-    """Which definitions count effects at the tip as end mass."""
+    """Which definitions count effects at the tip as end mass: those that take a coupled strike."""
     counting, others = (
         [definition.name for definition in DEFINITIONS.values() if definition.counts_tip is c] for c in (True, False)
     )
     return (
-        f"{listed(counting)} count effects at the tip as end mass; {listed(others)} do not, nor does the offset end "
+        f"{listed(counting)} count effects at the tip as end mass, and axial waves with the butt that these run into; "
+        f"{listed(others)} do not, nor does the offset end "
         "mass of the two-part cues in `strike` and `report`"
     )

@@ -123,7 +123,9 @@ def unusual(scene: Scene, *, blow: bool = True) -> list[str]:
     blow: whether ball, tip, stroke and the mass of the whole cue count.
     """
     asked = [usual for usual in ASKED if blow or not usual.blow]
-    return [*filter(None, map(lambda usual: _beyond(usual, scene), asked)), *_shape(scene.cue.segments)]
+    said = [effect.unusual_on(scene.shaft) for effect in scene.effects] if blow and scene.cue.segments else []
+    beyond = [_beyond(usual, scene) for usual in asked]
+    return [*filter(None, [*beyond, *said]), *_shape(scene.cue.segments)]
 
 
 def _beyond(usual: UsualNumbers, scene: Scene) -> str:

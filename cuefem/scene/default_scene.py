@@ -12,6 +12,8 @@ from cuefem.effects import AxialWaves, Effect, GeometricStiffness, LeatherTip
 from cuefem.quantity.fields import check_kind
 from cuefem.scene.scene import Ball, Scene, Stroke, Tip
 
+WAVE_SPEED = 4430.0  # m/s in the butt: the root of E over the density of maple, and of ash
+
 
 @dataclass(frozen=True)
 class Game:
@@ -34,6 +36,8 @@ class Game:
         The ready cue or scene that ``tip_restitution`` was derived with, by its path from the folder of `meshes`.
     restitution
         Of the whole cue head on, as it is measured.
+    cue_length, butt_diameter
+        Of a whole cue, m: where a drawing ends at the joint, waves along the cue go on in a butt to there.
     friction
         Of tip and ball.
     speed
@@ -50,6 +54,8 @@ class Game:
     speed: float
     tip_restitution: float
     cue: str
+    cue_length: float
+    butt_diameter: float
     source: str
     leather: str = "medium"
     restitution: float = 0.73
@@ -71,30 +77,31 @@ class Game:
     @property
     def effects(self) -> tuple[Effect, ...]:
         """What acts in a usual stroke beside the tip: waves along the cue, and thrust on the bent shaft."""
-        return AxialWaves(), GeometricStiffness()
+        return AxialWaves(self.cue_length, self.butt_diameter, WAVE_SPEED), GeometricStiffness()
 
 
 _ALL = (
     "Restitution: playing cues 0.71 to 0.75 (billiards.colostate.edu, FAQ, cue tip efficiency; TP A.30), of the whole "
-    "cue; the tip's own follows from it. Friction: "
-    "chalked leather, 0.6 to 0.7 (usual). Leather: see `cuefem parts`"
+    "cue; the tip's own follows from it. Friction: chalked leather, 0.6 to 0.7 (usual). Leather: see `cuefem parts`. "
+    "Butt: length and diameter usual, its mass is the cue's, its waves are as fast as in maple or ash (4,430 m/s; "
+    "purpleheart 4,480, rosewood 4,040)"
 )
 GAMES: Mapping[str, Game] = MappingProxyType(
     {
         "pool": Game(
             *(Ball(mass=0.170, radius=0.028575), 6e-3, 9.5e-3, 2.0),
-            *(0.6315, "meshes/pool_maple.toml"),
+            *(0.6410, "meshes/pool_maple.toml", 1.4732, 0.03175),
             "Ball: WPA 57.15 mm, 156 to 170 g. Height: usual, 4 to 8 mm. Dome: usual, between a dime's (8.96 mm) and a "
             f"nickel's (10.6 mm) radius. Speed: a medium stroke (usual). {_ALL}",
         ),
         "carom": Game(
             *(Ball(mass=0.210, radius=0.03075), 4e-3, 9.5e-3, 3.0),
-            *(0.5873, "meshes/kim.toml"),
+            *(0.5874, "meshes/kim.toml", 1.397, 0.030),
             f"Ball: UMB 61 to 61.5 mm, 205 to 220 g. Height, dome and speed: assumed. {_ALL}",
         ),
         "snooker": Game(
             *(Ball(mass=0.142, radius=0.02625), 4e-3, 7e-3, 3.0),
-            *(0.5862, "studies/scenes/snooker.toml"),
+            *(0.5739, "studies/scenes/snooker.toml", 1.4605, 0.029),
             "Ball: WPBSA 52.5 mm; sets are sold at 140 to 143 g. Height, dome (flatter than half-round, on a tip of "
             f"9.5 mm) and speed: assumed. {_ALL}",
         ),
@@ -162,6 +169,7 @@ def usual_scene(cue: Cue, game: str = DEFAULT_GAME, *, tip: LeatherTip | None = 
     -------
     Scene
         The cue with the game's ball, tip, speed and offset, with waves along the cue and thrust on the bent shaft.
+        Waves go on behind the drawing, in a butt of ``cue.body_mass``, which bending does not see.
         Its tip has a restitution of its own: waves along the cue raise it to the one that is measured of whole cues.
 
     Raises

@@ -61,6 +61,11 @@ CALLS: list[tuple[Callable[[], object], str]] = [  # a line a raise, its first w
     (lumped(SHEAR, cf.Joint(0.1)), "got Joint, which needs a finite-element Cue"),
     (lumped(SHEAR, LEATHER), "got LeatherTip, which needs a finite-element Cue"),
     (lumped(SHEAR, WAVES), "Scene.effects[1] must be an effect that a LumpedCue can have"),
+    (
+        lambda: cf.AxialWaves(1.47),
+        "AxialWaves must be given cue_length, butt_diameter and wave_speed together, or none",
+    ),
+    (listed(cf.AxialWaves(0.701, 0.03, 4430.0)), "Scene.effects[0].cue_length must be in [0.73"),
     (listed(WAVES, SHEAR, WAVES), "Scene.effects[2] must be another effect, AxialWaves acts once; got Axial"),
     (listed(LEATHER, SHEAR), "effects[1], TipShear; got LeatherTip"),
     (listed(DOME, LEATHER), "must be an effect that goes with effects[0], TipDome; got LeatherTip"),

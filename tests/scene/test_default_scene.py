@@ -35,7 +35,8 @@ def test_a_cue_without_leather_gets_the_game_s_tip_on_what_is_drawn(game: str) -
     cue = cf.Cue((WOOD,), 0.4)
     scene, known = cf.usual_scene(cue, game), GAMES[game]
     assert scene.cue == cue
-    assert set(scene.effects) == {known.tip, cf.AxialWaves(), cf.GeometricStiffness()}
+    waves = cf.AxialWaves(known.cue_length, known.butt_diameter, 4430.0)
+    assert set(scene.effects) == {known.tip, waves, cf.GeometricStiffness()}
     assert (scene.ball, scene.stroke) == (known.ball, cf.Stroke(known.speed, known.offset))
     assert scene.tip == cf.Tip(known.tip_restitution, known.friction)
     assert known.tip.E == LEATHERS["medium"].E
