@@ -35,11 +35,14 @@ class PointMass(CueEffect):
         Mass, kg.
     rotary_inertia : float, default 0
         Moment of inertia against turning with the cue, kg m^2.
+    axial_share : float, default 1
+        Part of the mass that moves along the axis with the cue: 1 for a piece fixed to it, 0 for a bridge hand, through
+        which the cue slides.
 
     Notes
     -----
-    Adds: The mass takes part in the bending motion and in the motion along the axis; the rotary inertia takes part in
-    the rotation of the section.
+    Adds: The mass takes part in the bending motion, its axial share in the motion along the axis; the rotary inertia
+    takes part in the rotation of the section.
 
     Matters when: The piece sits near the tip, within the distance that bending waves travel during the contact.
 
@@ -63,11 +66,12 @@ class PointMass(CueEffect):
     position: Annotated[float, Quantity("m", "[0, inf)")]
     mass: Annotated[float, Quantity("kg", "[0, inf)")]
     rotary_inertia: Annotated[float, Quantity("kg m^2", "[0, inf)")] = 0.0
+    axial_share: Annotated[float, Quantity("", "[0, 1]")] = 1.0
 
     @property
     def axial_mass(self) -> float:
-        """The piece moves along the axis with the cue."""
-        return self.mass
+        """What of the mass moves along the axis with the cue."""
+        return self.axial_share * self.mass
 
     @property
     def positions(self) -> tuple[float, ...]:

@@ -97,7 +97,8 @@ def test_a_report_says_that_the_stroke_miscues_and_from_where_on(folder: Path) -
 def test_a_scene_file_uses_its_own_and_options_replace_what_it_says(folder: Path) -> None:
     found = as_json("strike", "scene.toml")
     assert found["assumed"] == []
-    assert found["scene"]["effects"][0] == {"type": "PointMass", "position": 0.1, "mass": 0.005, "rotary_inertia": 0}
+    clip = {"type": "PointMass", "position": 0.1, "mass": 0.005, "rotary_inertia": 0, "axial_share": 1}
+    assert found["scene"]["effects"][0] == clip
     assert found["models"]["coupled"]["squirt"] == pytest.approx(cf.strike(SCENE).squirt, rel=1e-12)
     told = as_json("strike", "scene.toml", "--offset", "0.1", "--friction", "0.5", "--body-mass", "14 oz")["scene"]
     assert (told["stroke"]["offset"], told["tip"]["friction"]) == (0.1, 0.5)

@@ -44,6 +44,18 @@ def test_a_clamp_at_the_butt(stiffness, within):
 # --- point masses -----------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.parametrize("share", [0.0, 0.4, 1.0])
+def test_a_point_mass_loads_the_axis_by_its_share_alone(share):
+    """Bending modes are those of the whole mass; head on, the cue is as heavy as with its share of it behind."""
+    lump = cf.PointMass(HERE, 0.05, axial_share=share)
+    across = [cf.modes(kim(), 3, effects=(each,)).frequencies for each in (lump, cf.PointMass(HERE, 0.05))]
+    np.testing.assert_allclose(*across, rtol=1e-12)
+    heavier = replace(kim(), body_mass=kim().body_mass + 0.05 * share)
+    assert cf.strike(cf.Scene(kim(), effects=(lump,))).ball_speed == pytest.approx(
+        cf.strike(cf.Scene(heavier)).ball_speed
+    )
+
+
 # --- joints -----------------------------------------------------------------------------------------------------------
 
 SOFT = (3e-3, 2e-6)  # rad/(N m), m/N
