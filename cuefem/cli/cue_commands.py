@@ -73,7 +73,7 @@ def _sheets(file: Path, record: Record, about: Record) -> list[Sheet | str]:
     """The tables, and at their end what one asks next."""
     sheets = report_sheets(record, about)
     return (
-        [*sheets, "", f"What would change it: cuefem improve {file}, with the same options"]
+        [*sheets, "", f"Design changes: cuefem improve {file}, with the same options"]
         if "verdict" in record and "modes" in record  # a lumped cue has nothing that a maker can change
         else sheets
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
@@ -13,10 +14,10 @@ from cuefem.cue.materials import MATERIALS, WOODS, table_name
 from cuefem.effects.leather import DOMES
 from cuefem.parameters.parameter import PLACES, varied
 from cuefem.parameters.parts import Layout
-from cuefem.results.band import OF_DIFFERENCE
 from cuefem.results.designs import OneDesign, off_centre
 from cuefem.results.quantities import RESULTS, scaled, with_unit
 from cuefem.results.records import Record
+from cuefem.results.uncertainty import model_share, ratio_error, squirt_changes
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved
 
@@ -28,16 +29,22 @@ LEAST_FERRULE, LEAST_TIP = 5 * MM, 2 * MM  # after the change
 CARBON_WALL = 1.5 * MM  # the middle of meshes/carbon.toml
 PRO_GAIN = 0.5 * MM  # from the tip to the taper's position, as in meshes/pool_maple.toml
 FERRULES = ("abs", "melamine", "phenolic")  # that are sold for cues; brass and steel only where they stand already
-PAYS, COSTS = 0.01, 0.05  # less squirt that is worth the work; less stiffness that one feels
+COSTS = 0.05  # less stiffness that one feels
+LITTLE = 0.002  # of squirt: an input that changes it by less leaves nothing open in a change
 NUMBERS = ("squirt", "tip_stiffness", "shaft_mass", "frequency")
+WOOD = ("E", "G", "rho")
 Follow = Callable[[Sequence[Any]], Iterable[Any]]
 
 
 class Advice(NamedTuple):
-    """A change: what it is in words, and the values that it sets, SI or names of materials, by their places."""
+    """A change: what it is in words, and the values that it sets, SI or names of materials, by their places.
+
+    new: the inputs whose own value goes with it, so that the error of the new one does not cancel the old one's.
+    """
 
     words: str
     places: dict[str, Any]
+    new: tuple[str, ...] = ()
 
 
 def changes_of(scene: Scene) -> list[Advice]:
@@ -80,7 +87,7 @@ def _tips(own: Record) -> Iterator[Advice]:
         yield Advice(f"leather lower, {_from_to(height, height - LOWER)}", {"tip height": height - LOWER})
     for name in ("dime", "nickel"):
         if dome is not None and abs(DOMES[name] - dome) > 0.1 * MM:
-            yield Advice(f"dome of a {name}", {"dome": DOMES[name]})
+            yield Advice(f"dome of a {name}", {"dome": DOMES[name]}, ("dome",))
 
 
 def _woods_and_tapers(cue: Cue, own: Record) -> Iterator[Advice]:
@@ -108,7 +115,7 @@ def _woods(cue: Cue) -> Iterator[Advice]:
     own = table_name(cue.segments[shaft.start].material)
     for name in WOODS:
         if name != own:
-            yield Advice(f"shaft of {name}", {"shaft material": name})
+            yield Advice(f"shaft of {name}", {"shaft material": name}, WOOD)
     tube: dict[str, Any] = {}
     for i in shaft:
         segment = cue.segments[i]
@@ -118,7 +125,7 @@ def _woods(cue: Cue) -> Iterator[Advice]:
             f"cue.segments[{i}].tip_bore": segment.tip_diameter - 2 * CARBON_WALL,
             f"cue.segments[{i}].butt_bore": segment.butt_diameter - 2 * CARBON_WALL,
         }
-    yield Advice(f"shaft a carbon tube, wall {with_unit(CARBON_WALL, 'm')}, foam inside", tube)
+    yield Advice(f"shaft a carbon tube, wall {with_unit(CARBON_WALL, 'm')}, foam inside", tube, WOOD)
 
 
 def _from_to(old: float, new: float) -> str:
@@ -143,7 +150,7 @@ def design_changes(scene: Scene, *, solved: Solved | None = None, follow: Follow
         stiffness (N/m), shaft mass (kg) and first natural frequency (Hz); "changes", a list of dicts with the least
         squirt first: "change" in words, "set" for `cuefem.parameters.parameter.varied`, the four numbers, relative
         changes of squirt (with "squirt_change_error", 1 sigma) and stiffness, absolute ones of mass and frequency, and
-        a "verdict".
+        a "verdict": a change of squirt that is smaller than its error is "within uncertainty".
 
     Raises
     ------
@@ -162,13 +169,19 @@ def design_changes(scene: Scene, *, solved: Solved | None = None, follow: Follow
     struck = off_centre(scene)
     solved = Solved(struck) if solved is None or struck is not scene else solved
     own, grip = _numbers(solved), grip_of(OneDesign(solved).strike(0, None))
+    before = {key: x for key, x in squirt_changes(solved, own["squirt"]).items() if abs(x) > LITTLE}
     rows = []
     for change in follow(changes_of(struck)):
         try:
             made = varied(struck, change.places)
             if _wall(made) < min(LEAST_WALL, _wall(struck)):
                 continue
-            rows.append(_row(change, own, _numbers(Solved(made))))
+            new = Solved(made)
+            numbers = _numbers(new)
+            after = squirt_changes(new, numbers["squirt"], before)
+            left = (_left_open(before.get(key, 0.0), after.get(key, 0.0), key in change.new) for key in before)
+            error = ratio_error(numbers["squirt"] / own["squirt"], model_share(struck, made), *left)
+            rows.append(_row(change, own, numbers, error))
         except (ValueError, RuntimeError):
             continue
     rows.sort(key=lambda row: row["squirt_change"])
@@ -192,17 +205,25 @@ def _wall(scene: Scene) -> float:
     return min((min(s.tip_diameter - s.tip_bore, s.butt_diameter - s.butt_bore) / 2 for s in empty), default=np.inf)
 
 
-def _row(change: Advice, own: Record, made: Record) -> Record:
+def _left_open(before: float, after: float, new: bool) -> float:
+    """What an input leaves open in the logarithm of the ratio after over before; new: the change replaces its value.
+
+    An input that only the changed cue has, such as the width of a bore that the maker drills, is known.
+    """
+    return math.hypot(before, after) if new else after - before
+
+
+def _row(change: Advice, own: Record, made: Record, error: float) -> Record:
     relative = {name: made[name] / own[name] - 1 for name in ("squirt", "tip_stiffness")}
     absolute = {name: made[name] - own[name] for name in ("shaft_mass", "frequency")}
     changes = {f"{name}_change": value for name, value in (relative | absolute).items()}
-    error = {"squirt_change_error": OF_DIFFERENCE * abs(relative["squirt"])}
-    return {"change": change.words, "set": change.places} | made | changes | error | {"verdict": _verdict(relative)}
+    verdict = {"squirt_change_error": error, "verdict": _verdict(relative, error)}
+    return {"change": change.words, "set": change.places} | made | changes | verdict
 
 
-def _verdict(relative: Record) -> str:
-    if relative["squirt"] > PAYS:
+def _verdict(relative: Record, error: float) -> str:
+    if abs(relative["squirt"]) <= error:
+        return "within uncertainty"
+    if relative["squirt"] > 0:
         return "more squirt"
-    if relative["squirt"] > -PAYS:
-        return "hardly matters"
-    return "pays, costs stiffness" if relative["tip_stiffness"] < -COSTS else "pays"
+    return "worthwhile, costs stiffness" if relative["tip_stiffness"] < -COSTS else "worthwhile"

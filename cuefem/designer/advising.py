@@ -32,7 +32,7 @@ class AdviceSide:
         self.record: Record | None = None
         self.of: Scene | None = None
         with ui.element("section").classes("advice"):
-            Markup("<h2>What would change it</h2>")
+            Markup("<h2>Design changes</h2>")
             self.said = Markup("<p>Every change that a maker can make to this cue, each alone.</p>")
             with ui.element("div").classes("actions"):
                 self.ask = button("Compute the changes", self._compute)

@@ -236,7 +236,7 @@ def key_markup(
         row = last.get(name, mine[name]) if mine[name].waiting else mine[name]
         said = difference(row, theirs[name], system) if theirs and not theirs[name].waiting else remark
         if name == "squirt" and not theirs and answers.verdict and not answers.verdict["head_on"]:
-            said = f"give or take {squirt_words(answers.verdict)[1]}, at this offset"
+            said = f"± {squirt_words(answers.verdict)[1]}, at this offset"
         pale = ' class="stale"' if mine[name].waiting else ""
         value = f'<b data-key="{name}"{pale}>{escape(row.text(system))}</b>'
         parts.append(f"<div><dt>{label}</dt><dd>{value}<small>{escape(said)}</small></dd></div>")
@@ -244,7 +244,7 @@ def key_markup(
 
 
 def verdict_markup(answers: Answers) -> str:
-    """The squirt with its band, and where it stands among the ready cues; nothing until that is computed."""
+    """The squirt with its uncertainty, and where it stands among the ready cues; nothing until that is computed."""
     return as_verdict(verdict_part(answers.verdict)) if answers.verdict else ""
 
 

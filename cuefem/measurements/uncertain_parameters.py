@@ -16,9 +16,9 @@ from cuefem.cue import Material
 from cuefem.measurements.measurement_types import EndMass, Measurement, PivotLength, Setup, Squirt
 from cuefem.parameters.parameter import PLACES, Path, place, replaced
 from cuefem.quantity.fields import Quantity, check_fields
+from cuefem.results.uncertainty import model_error
 from cuefem.scene import Scene
 
-MODEL_OF_SQUIRT = 0.1  # relative, one for all: what the law of the shrinking patch is worth (handbook: Effects)
 ZERO, SQUIRT_MODEL, BALL_TIME = "zero", "squirt model", "ball time"
 
 
@@ -106,7 +106,7 @@ def parameters_of(
         unit = known.quantity(scene).unit
         made.append(UncertainParameter(known.name, known.words, unit, middle, spread, _on_scene(known.steps())))
     squirts = [measurement for measurement in measurements if isinstance(measurement, Squirt)]
-    _, spread = _prior(asked.get(SQUIRT_MODEL), 1.0, MODEL_OF_SQUIRT)
+    _, spread = _prior(asked.get(SQUIRT_MODEL), 1.0, model_error(scene))
     if any(isinstance(measurement, Squirt | PivotLength) for measurement in measurements):
         put: Any = lambda setup, value: setup._replace(squirt_factor=value)  # noqa: E731
         made.append(UncertainParameter(SQUIRT_MODEL, "true squirt over the model's", "", 1.0, spread, put))

@@ -91,7 +91,7 @@ class Place:
     spread
         As an unknown of an estimate: the standard deviation of its logarithm; None if only a file makes it one.
     below
-        Of a number that is usually at its upper bound: by what part of it less it may be, in a verdict's band.
+        Of a number that is usually at its upper bound: by what part of it less it may be, in a verdict's uncertainty.
     option, help
         The word for its value in a command's help, "" if it is no option; and what the help says.
     sets

@@ -5,25 +5,24 @@ from __future__ import annotations
 from dataclasses import replace
 
 from cuefem.report.strike_table import grip_warning
-from cuefem.results.band import OF_DIFFERENCE
 from cuefem.results.quantities import signed, with_unit
 from cuefem.results.records import Record, Sheet, sheet
 
-STYLES = {"pays": "bold", "more squirt": "dim"}
+STYLES = {"worthwhile": "bold", "more squirt": "dim", "within uncertainty": "dim"}
 
 
 def advice_sheet(record: Record) -> Sheet:
     """A row for each change, the least squirt first."""
     rows = record["changes"]
     made = sheet(
-        "What would change it",
+        "Design changes",
         {
             "change": "{change}",
-            "squirt": lambda row: _percent(row["squirt_change"]),
+            "squirt": lambda row: signed(100 * row["squirt_change"], 1, f"± {100 * row['squirt_change_error']:.1f} %"),
             "stiffness": lambda row: _percent(row["tip_stiffness_change"]),
             "weight": lambda row: signed(1e3 * row["shaft_mass_change"], 1, "g"),
             "first tone": lambda row: signed(row["frequency_change"], 1, "Hz"),
-            "worth it?": "{verdict}",
+            "recommendation": "{verdict}",
         },
         rows,
         *advice_notes(record),
@@ -39,10 +38,9 @@ def advice_notes(record: Record) -> list[str]:
     return [
         *([warning] if warning else []),
         f"Each change alone, by the whole stroke at b/R {record['offset']:.4g}, where this cue has "
-        f"{with_unit(record['own']['squirt'], 'rad', decimals=2)} (a report says how far that may be off); a change of "
-        f"squirt was right to {100 * OF_DIFFERENCE:.0f} % of itself on measured cues.",
-        "Stiffness: static, at the tip, the butt end clamped. Pays: a hundredth less squirt or more; costs stiffness: "
-        "a twentieth of it or more.",
+        f"{with_unit(record['own']['squirt'], 'rad', decimals=2)}. ±: 1σ, of the model, of the wood and tip that "
+        "nobody measured, and 1 %. Worthwhile: less squirt by more than that; within uncertainty: nobody knows.",
+        "Stiffness: static, at the tip, the butt end clamped. Costs stiffness: 5 % of it or more.",
     ]
 
 

@@ -1,4 +1,4 @@
-"""What stands behind the model's error, in sentences; its size is in the verdict's line (`cuefem.results.band`)."""
+"""What the model's error rests on, in sentences; its size is in `cuefem.results.uncertainty`."""
 
 from __future__ import annotations
 

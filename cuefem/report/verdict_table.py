@@ -1,4 +1,4 @@
-"""The verdict for people: a line with the squirt and its band, sentences, and rows of a scale."""
+"""The verdict for people: a line with the squirt and its uncertainty, sentences, and rows of a scale."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from typing import NamedTuple
 from cuefem.contact.strike import strike_modes
 from cuefem.io.ready import ready_cues
 from cuefem.report.scene_words import listed
-from cuefem.results.band import OF_DIFFERENCE
-from cuefem.results.quantities import scaled, with_unit
+from cuefem.results.quantities import scaled, signed, with_unit
 from cuefem.results.records import Record, Sheet
+from cuefem.results.uncertainty import SHAFTS
 from cuefem.results.verdict import verdict_record
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved
 
-SAME = 0.005  # differences below this are told as "as much"
+SAME = 0.005  # differences between reference cues below this are told as "as much"
 
 
 def verdict(scene: Scene) -> Record:
@@ -29,9 +29,10 @@ def verdict(scene: Scene) -> Record:
     Returns
     -------
     dict
-        "squirt", rad, and "squirt_error", its uncertainty (1 sigma); "offset", b/R; "band", the relative parts of the
-        uncertainty (model, inputs, computation, and the whole in quadrature); "inputs", what each uncertain parameter
-        adds; "among", for each reference cue its squirt, the relative "difference" of the scene's and its error.
+        "squirt", rad, and "squirt_error", its uncertainty (1 sigma); "offset", b/R; "uncertainty", its relative
+        parts (model, inputs, computation, and their total in quadrature); "inputs", what each uncertain parameter adds;
+        "among", for each reference cue its squirt, the relative "difference" of the scene's, the error of that, and
+        whether the two are "distinct", which is a difference larger than its error.
 
     Raises
     ------
@@ -52,20 +53,20 @@ def verdict(scene: Scene) -> Record:
 
 
 def squirt_words(record: Record) -> tuple[str, str]:
-    """The squirt as tables have it, and what it may be off: "1.82°" and "0.31°"."""
+    """The squirt as tables have it, and its uncertainty: "1.82°" and "0.31°"."""
     squirt, error = abs(record["squirt"]), record["squirt_error"]
     decimals = 3 if error and scaled(error, "rad") < 0.01 else 2
     return with_unit(squirt, "rad", decimals=decimals), with_unit(error, "rad", decimals=decimals)
 
 
 def headline(record: Record) -> str:
-    """The squirt with its band in a line."""
+    """The squirt with its uncertainty in a line."""
     squirt, error = squirt_words(record)
     aside = with_unit(math.tan(abs(record["squirt"])), "m", decimals=0)
     where = f"at b/R {record['offset']:.4g}, {way_out(record['offset'])}" + (
         ", for the stroke itself is head on" if record["head_on"] else ""
     )
-    return f"squirt {squirt}, give or take {error} ({where}): the ball goes {aside} aside in a metre"
+    return f"squirt {squirt.rstrip('°')} ± {error} ({where}): the ball goes {aside} aside in a metre"
 
 
 def way_out(offset: float) -> str:
@@ -95,11 +96,13 @@ def standing(record: Record) -> list[str]:
         return []
     first, *others = among
     own = among[first]
-    sure = f"give or take {100 * own['difference_error']:.0f} %"
-    if abs(own["difference"]) < SAME:
-        said = f"As much squirt as a {first} shaft with the same tip, {sure}."
+    size, error = 100 * own["difference"], 100 * own["difference_error"]
+    if own["distinct"]:
+        more = "more" if size > 0 else "less"
+        said = f"{abs(size):.0f} ± {error:.0f} % {more} squirt than a {first} shaft with the same tip."
     else:
-        said = f"{than_words(own['difference'])} squirt than a {first} shaft with the same tip, {sure}."
+        told = signed(size, 0, f"± {error:.0f} %")
+        said = f"Cannot be told from a {first} shaft with the same tip in squirt: {told}."
     ratios = {name: among[name]["squirt"] / among[first]["squirt"] - 1 for name in others}
     rest = [f"the {name} one has {than_words(ratio)}" for name, ratio in ratios.items()]
     return (
@@ -109,15 +112,14 @@ def standing(record: Record) -> list[str]:
     )
 
 
-def band_line(record: Record) -> str:
-    """What the band is made of, in a line."""
-    parts = {name: _percent(record["band"][name]) for name in ("model", "inputs", "computation")}
+def uncertainty_line(record: Record) -> str:
+    """What the uncertainty is made of, in a line."""
+    parts = {name: _percent(share) for name, share in record["uncertainty"].items()}
     return (
-        f"Give or take: what the model missed on measured cues ({parts['model']}), wood and tip that nobody measured "
-        f"({parts['inputs']}), and the computation ({parts['computation']}), together "
-        f"{_percent(record['band']['whole'])}. Comparing two shafts is surer: a difference between them was right to "
-        f"{_percent(OF_DIFFERENCE)} of itself (10 % less may be {10 - 10 * OF_DIFFERENCE:.0f} to "
-        f"{10 + 10 * OF_DIFFERENCE:.0f} %), beside what the wood of the two may be off."
+        f"±: 1σ, of the model ({parts['model']}, from published squirt), of wood and tip of this cue that nobody "
+        f"measured ({parts['inputs']}), and of the computation ({parts['computation']}), in quadrature "
+        f"{parts['total']}. The difference of two shafts: {_percent(SHAFTS)} of itself for the model, what is not "
+        "known of the wood, and 1 %."
     )
 
 
@@ -139,16 +141,16 @@ class ScaleRow(NamedTuple):
 
 
 def scale(record: Record) -> list[ScaleRow]:
-    """The cues by their squirt, the least first, with the band of one's own; per cent are of the first ready cue's."""
+    """The cues by their squirt, the least first, one's own with its uncertainty; per cent are of the scale's length."""
     mine, error = abs(record["squirt"]), record["squirt_error"]
     others = {name: abs(beside["squirt"]) for name, beside in record["among"].items()}
     most = 1.05 * max([mine + error, *others.values()]) or 1.0
     text, off = squirt_words(record)
     decimals = len(text.rstrip("°").partition(".")[2])
 
-    def row(name: str, squirt: float, band: float, words: str, beside: str) -> ScaleRow:
-        places = (100 * each / most for each in (squirt, max(0.0, squirt - band), squirt + band))
-        return ScaleRow(name, words, beside, bool(band), *places)
+    def row(name: str, squirt: float, error: float, words: str, beside: str) -> ScaleRow:
+        places = (100 * each / most for each in (squirt, max(0.0, squirt - error), squirt + error))
+        return ScaleRow(name, words, beside, bool(error), *places)
 
     first = next(iter(others), "")
     rows = [
@@ -161,7 +163,7 @@ def scale(record: Record) -> list[ScaleRow]:
         )
         for name, squirt in others.items()
     ]
-    return sorted([*rows, row("yours", mine, error, text, f"give or take {off}")], key=lambda each: each.at)
+    return sorted([*rows, row("yours", mine, error, text, f"± {off}")], key=lambda each: each.at)
 
 
 def verdict_part(record: Record) -> Record:
@@ -176,7 +178,7 @@ def verdict_part(record: Record) -> Record:
         "aside": aside,
         "standing": standing(record),
         "scale": scale(record),
-        "band": band_line(record),
+        "uncertainty": uncertainty_line(record),
     }
 
 
@@ -187,7 +189,7 @@ def verdict_things(record: Record) -> list[Sheet | str]:
     own = {i: "bold" for i, row in enumerate(scale_sheet) if row.own}
     head = ("cue", "squirt", "less to more squirt", "")
     table = Sheet(
-        "Among ready pool cues, with the same tip and stroke", head, rows, (band_line(record),), (0, 2, 3), own
+        "Among ready pool cues, with the same tip and stroke", head, rows, (uncertainty_line(record),), (0, 2, 3), own
     )
     return [headline(record), *standing(record), "", table]
 

@@ -11,9 +11,9 @@ from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.parameters.parameter import PLACES
 from cuefem.parameters.parts import main_material
 from cuefem.results.asking import asked
-from cuefem.results.band import OF_DIFFERENCE, changes_by_input, of_tip
 from cuefem.results.designs import OneDesign, off_centre
 from cuefem.results.records import Record
+from cuefem.results.uncertainty import FLOOR, changes_by_input, model_share, of_tip, ratio_error
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved
 
@@ -21,8 +21,7 @@ from cuefem.tip_modes import Solved
 OF_SQUIRT = ("squirt", "end_mass_squirt", "pivot_length")  # what squirt makes them, so that the model adds its error
 OF_SHAPE = ("tip_stiffness", "shaft_mass", "mass")
 N_FREQUENCIES = 3
-FLOOR = 0.01  # relative, of a difference of squirt: what calipers and the computation leave open
-OTHER_FLOOR = 2e-3  # the same of shape, weights and frequencies: 0.2 g of 100 g, 0.01 mm of 13 mm to the fourth power
+OTHER_FLOOR = 2e-3  # relative, of shape, weights, frequencies: 0.2 g of 100 g, 0.01 mm of 13 mm to the fourth power
 Follow = Callable[[Sequence[Any]], Iterable[Any]]
 
 
@@ -41,8 +40,9 @@ def comparison_record(scenes: Mapping[str, Scene], *, same_shaft: bool = False, 
 
     An error that two cues share cancels in their difference: that of a tip of the same value on both, and of the wood
     if they are one shaft before and after a change (same_shaft). To squirt and what follows from it, the model adds
-    `OF_DIFFERENCE` of the logarithm, and `FLOOR`; other numbers have `OTHER_FLOOR`. "distinct": whether a difference
-    exceeds its uncertainty (1 sigma), whichever of two cues is the first. ValueError for one shaft of two woods.
+    its part of the logarithm (`model_share`), and `FLOOR`; other numbers have `OTHER_FLOOR`. "distinct": whether a
+    difference exceeds its uncertainty (1 sigma), whichever of two cues is the first. ValueError for one shaft
+    of two woods.
 
     All cues are struck with the ball, the speed and the offset of the first. follow: shows how far the work is.
     """
@@ -110,9 +110,8 @@ def _differences(first: _Compared, other: _Compared, *, same_shaft: bool) -> dic
         if not ratio > 0:
             continue
         errors = [_of_input(first, other, key, name, same_shaft=same_shaft) for key in {**first.inputs, **other.inputs}]
-        errors += [OF_DIFFERENCE * math.log(ratio), FLOOR] if name in OF_SQUIRT else [OTHER_FLOOR]
-        ln = math.log(ratio)
-        error = math.hypot(*errors) * (math.expm1(ln) / ln if ln else 1.0)
+        share, floor = (model_share(first.scene, other.scene), FLOOR) if name in OF_SQUIRT else (0.0, OTHER_FLOOR)
+        error = ratio_error(ratio, share, *errors, floor=floor)
         if math.isnan(error):  # a strike at an end of an input's range miscues
             continue
         made[name] = {"difference": ratio - 1, "error": error, "distinct": abs(ratio - 1) > error}

@@ -1,4 +1,4 @@
-"""A verdict on a cue: its squirt with its band, and where that stands among other cues with the same stroke."""
+"""A verdict on a cue: its squirt with its uncertainty, and where that stands among other cues with the same stroke."""
 
 from __future__ import annotations
 
@@ -7,20 +7,28 @@ from dataclasses import replace
 
 from cuefem.cue import Cue
 from cuefem.effects import Joint, PointMass, Support
-from cuefem.results.band import band, of_difference, of_inputs, of_shaft, squirt_beside, squirt_of
 from cuefem.results.designs import off_centre
 from cuefem.results.records import Record
+from cuefem.results.uncertainty import (
+    model_share,
+    of_inputs,
+    of_shaft,
+    ratio_error,
+    squirt_beside,
+    squirt_of,
+    uncertainty_of,
+)
 from cuefem.scene import Outcome, Scene
 from cuefem.scene.default_scene import without_leather
 from cuefem.tip_modes import Solved
 
 
 def verdict_record(scene: Scene, outcome: Outcome, ready: Mapping[str, Cue], *, solved: Solved | None = None) -> Record:
-    """Squirt at the stroke's offset, its band, and the squirt of each ready cue by the same stroke.
+    """Squirt at the stroke's offset, its uncertainty, and the squirt of each ready cue by the same stroke.
 
     A stroke head on, which has no squirt, is taken at the usual offset instead. "inputs": by how much each changes
-    squirt. "among": squirt, own squirt over it less 1, and the error of that. ready: the first is what is compared with
-    in words. solved: the scene's modes by default, if they are known already.
+    squirt. "among": squirt, own squirt over it less 1, the error of that, and whether the two are "distinct". ready:
+    the first is what is compared with in words. solved: the scene's modes by default, if they are known already.
     """
     struck = off_centre(scene)
     head_on = struck is not scene
@@ -29,15 +37,15 @@ def verdict_record(scene: Scene, outcome: Outcome, ready: Mapping[str, Cue], *, 
     own = squirt_beside(solved, struck) if head_on or outcome.error is not None else float(outcome.squirt)
     squirt = own if head_on else float(outcome.squirt)
     inputs = of_inputs(solved, own)
-    squirt_band = band(struck, inputs, outcome.error)
+    uncertainty = uncertainty_of(struck, inputs, outcome.error)
     among = {name: _beside(struck, own, cue, of_shaft(inputs)) for name, cue in ready.items()}
     return {
         "offset": float(struck.stroke.offset),
         "head_on": head_on,
         "squirt": squirt,
-        "band": squirt_band._asdict() | {"whole": squirt_band.whole},
+        "uncertainty": uncertainty._asdict() | {"total": uncertainty.total},
         "inputs": inputs,
-        "squirt_error": squirt_band.whole * abs(squirt),
+        "squirt_error": uncertainty.total * abs(squirt),
         "among": {name: beside for name, beside in among.items() if beside},
     }
 
@@ -47,14 +55,16 @@ def _beside(scene: Scene, squirt: float, cue: Cue, inputs: float) -> Record | No
 
     inputs: relative error of squirt by what is not known of the scene's shaft.
     """
+    struck = same_stroke(scene, cue)
     try:
-        other = squirt_of(same_stroke(scene, cue))
+        other = squirt_of(struck)
     except (ValueError, RuntimeError):
         return None
     if not squirt * other > 0:
         return None
-    error = of_difference(squirt, other, inputs)
-    return {"squirt": other, "difference": squirt / other - 1, "difference_error": error}
+    difference, error = squirt / other - 1, ratio_error(squirt / other, model_share(scene, struck), inputs)
+    distinct = abs(difference) > error
+    return {"squirt": other, "difference": difference, "difference_error": error, "distinct": distinct}
 
 
 def same_stroke(scene: Scene, cue: Cue) -> Scene:

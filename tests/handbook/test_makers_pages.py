@@ -38,15 +38,15 @@ def test_a_picture_is_as_it_would_be_drawn_now(name: str) -> None:
 def test_what_is_said_of_squirt() -> None:
     verdict = answers("report")["verdict"]
     degrees, aside = math.degrees(verdict["squirt"]), 1e3 * math.tan(verdict["squirt"])
-    off = degrees * verdict["band"]["whole"]
-    said = f"squirt {degrees:.2f}°, give or take {off:.2f}° (at b/R 0.3, 3/10 of the way to the edge): the ball goes"
+    off = degrees * verdict["uncertainty"]["total"]
+    said = f"squirt {degrees:.2f} ± {off:.2f}° (at b/R 0.3, 3/10 of the way to the edge): the ball goes"
     assert said in TEXTS["read_the_report"]
     assert f"about {aside:.0f} mm off after one metre" in TEXTS["what_squirt_is"]
     known = ready()
     for name in ("low deflection", "carbon"):  # "about a quarter less"
         assert 0.2 < 1 - known[name] / known["plain maple"] < 0.3
-    assert verdict["band"]["model"] == pytest.approx(0.15, abs=0.005)  # "by about 15 %"
-    assert verdict["band"]["whole"] == pytest.approx(1 / 5, abs=0.025)  # "about a fifth"
+    assert verdict["uncertainty"]["model"] == pytest.approx(0.15, abs=0.005)  # "by about 15 %"
+    assert verdict["uncertainty"]["total"] == pytest.approx(1 / 5, abs=0.025)  # "about a fifth"
     assert 0.4 < verdict["inputs"]["rho"] / 0.1 < 0.6  # "by about half as much", of wood heavier by a tenth
 
 

@@ -108,7 +108,7 @@ def scale() -> str:
     """The verdict's scale of the plain maple shaft."""
     verdict = answers("report")["verdict"]
     rows = sorted(ready().items(), key=lambda item: item[1])
-    own, off = math.degrees(verdict["squirt"]), math.degrees(verdict["squirt"]) * verdict["band"]["whole"]
+    own, off = math.degrees(verdict["squirt"]), math.degrees(verdict["squirt"]) * verdict["uncertainty"]["total"]
     place = lambda degrees: 100 + 90 * degrees  # noqa: E731
     texts = [
         f'{words(90, 24 + 26 * i, name, END)}<circle class="ball" cx="{place(value):.0f}" cy="{20 + 26 * i}" r="5"/>'
@@ -170,9 +170,9 @@ def tap() -> str:
 
 
 def trust() -> str:
-    """One cue, measured three times, and computed with its band."""
+    """One cue, measured three times, and computed with its uncertainty."""
     verdict = answers("report", "--offset", str(OFFSET))["verdict"]
-    own, off = math.degrees(verdict["squirt"]), math.degrees(verdict["squirt"]) * verdict["band"]["whole"]
+    own, off = math.degrees(verdict["squirt"]), math.degrees(verdict["squirt"]) * verdict["uncertainty"]["total"]
     place = lambda degrees: 135 + 60 * degrees  # noqa: E731
     texts = [
         words(125, 24 + 26 * i, name, END)

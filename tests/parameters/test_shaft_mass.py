@@ -13,7 +13,7 @@ import cuefem as cf
 from cuefem.io import InputError
 from cuefem.parameters.parameter import varied
 from cuefem.parameters.parts import main_material, with_shaft_mass
-from cuefem.results.band import of_inputs
+from cuefem.results.uncertainty import of_inputs
 from cuefem.tip_modes import Solved
 from tests.helpers.command_line import as_json, call
 from tests.helpers.cues import pool

@@ -8,8 +8,8 @@ import pytest
 
 import cuefem as cf
 from cuefem.parameters.parameter import varied
-from cuefem.results.band import OF_DIFFERENCE
-from cuefem.results.comparison import FLOOR, OTHER_FLOOR, comparison_record
+from cuefem.results.comparison import OTHER_FLOOR, comparison_record
+from cuefem.results.uncertainty import FLOOR, MASSES, SHAFTS
 from tests.helpers.command_line import as_json, call
 from tests.helpers.cues import pool
 
@@ -24,7 +24,7 @@ def test_differences_are_those_of_the_cues_alone() -> None:
     assert record["cues"]["plain"]["end_mass_squirt"] == pytest.approx(cf.end_mass(SCENE, "squirt"), rel=1e-9)
     squirt = record["differences"]["bored"]["squirt"]
     assert squirt["difference"] == pytest.approx(squirts[1] / squirts[0] - 1, rel=1e-9)
-    assert squirt["error"] > abs(squirt["difference"]) * OF_DIFFERENCE / 1.1
+    assert squirt["error"] > abs(squirt["difference"]) * SHAFTS / 1.1
 
 
 def test_shared_errors_cancel() -> None:
@@ -48,6 +48,14 @@ def test_a_weight_makes_a_difference_surer_and_all_are_struck_like_the_first() -
     assert (mass["error"] < 0.01, mass["distinct"]) == (True, True)
     bare = comparison_record({"light": SCENE, "heavy": varied(SCENE, {"rho": 800.0})})
     assert bare["differences"]["heavy"]["squirt"]["error"] > weighed["differences"]["heavy"]["squirt"]["error"]
+
+
+def test_a_mass_on_one_shaft_is_less_sure_than_two_shafts() -> None:
+    """The model's part of a ratio with a mass on the shaft is that of the measured masses."""
+    clip = replace(SCENE, effects=(*SCENE.effects, cf.PointMass(0.05, 0.011)))
+    squirt = comparison_record({"plain": SCENE, "clip": clip}, same_shaft=True)["differences"]["clip"]["squirt"]
+    ln = math.log1p(squirt["difference"])
+    assert squirt["error"] >= MASSES * ln * squirt["difference"] / ln > SHAFTS * squirt["difference"]
 
 
 def test_the_command_compares_files_of_ones_own(tmp_path: Path) -> None:

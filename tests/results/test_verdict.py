@@ -1,4 +1,4 @@
-"""The verdict: a squirt, its band, and its place among the ready cues, each as the strike gives it (properties)."""
+"""The verdict: a squirt, its uncertainty, its place among the ready cues, each as the strike gives it (properties)."""
 
 import math
 from dataclasses import replace
@@ -8,7 +8,9 @@ import pytest
 
 import cuefem as cf
 from cuefem.io.ready import PRESETS, SCALE, STROKES, Preset, opened, ready_cues
+from cuefem.parameters.parameter import varied
 from cuefem.report.verdict_table import headline, scale, squirt_words, standing
+from cuefem.results.uncertainty import FLOOR
 from cuefem.results.verdict import same_stroke, verdict_record
 from cuefem.scene.default_scene import without_leather
 
@@ -33,14 +35,32 @@ def test_reference_cues_have_the_scenes_leather_and_the_words_say_so() -> None:
     assert all("the same tip" in sentence for sentence in standing(record))
 
 
-def test_the_band_is_its_parts_in_quadrature() -> None:
-    band = RECORD["band"]
+def test_the_uncertainty_is_its_parts_in_quadrature() -> None:
+    band = RECORD["uncertainty"]
     parts = [band[name] for name in ("model", "inputs", "computation")]
     assert all(part > 0 for part in parts)
-    assert band["whole"] == pytest.approx(math.sqrt(sum(part**2 for part in parts)), rel=1e-12)
-    assert RECORD["squirt_error"] == pytest.approx(band["whole"] * RECORD["squirt"], rel=1e-12)
+    assert band["total"] == pytest.approx(math.sqrt(sum(part**2 for part in parts)), rel=1e-12)
+    assert RECORD["squirt_error"] == pytest.approx(band["total"] * RECORD["squirt"], rel=1e-12)
     assert band["inputs"] == pytest.approx(math.hypot(*RECORD["inputs"].values()), rel=1e-12)
     assert {"E", "rho", "tip_height"} <= set(RECORD["inputs"])
+
+
+def test_a_known_shaft_makes_the_uncertainty_smaller() -> None:
+    weighed = varied(SCENE, {"shaft mass": SCENE.shaft.shaft_mass})
+    record = verdict_record(weighed, cf.strike(weighed), {})
+    assert record["uncertainty"]["model"] == RECORD["uncertainty"]["model"]
+    assert record["uncertainty"]["total"] < RECORD["uncertainty"]["total"]
+
+
+@pytest.mark.parametrize(("depth", "distinct"), [(0.01, False), (0.1, True)])
+def test_a_difference_within_its_error_is_not_told_apart(depth: float, distinct: bool) -> None:
+    maple = cf.load(ROOT / SCALE["plain maple"])
+    bored = varied(cf.usual_scene(maple), {"bore depth": depth, "bore width": 0.006})
+    record = verdict_record(bored, cf.strike(bored), {"plain maple": maple})
+    among = record["among"]["plain maple"]
+    assert among["distinct"] == distinct == (abs(among["difference"]) > among["difference_error"])
+    assert among["difference_error"] >= FLOOR
+    assert standing(record)[0].startswith("Cannot be told from a plain maple shaft") != distinct
 
 
 def test_what_is_fixed_to_the_cue_stays_with_it() -> None:

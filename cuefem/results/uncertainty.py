@@ -1,0 +1,132 @@
+"""Uncertainty of a squirt and of the ratio of two: of the model, of unmeasured inputs, of the computation (1 sigma)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping
+from functools import lru_cache
+from typing import NamedTuple
+
+from cuefem.contact.strike import strike_modes
+from cuefem.effects import PointMass
+from cuefem.scene import Scene
+from cuefem.tip_modes import Solved
+from cuefem.parameters.parameter import PLACES, Place, replaced
+
+# The model's own error, relative: what published squirt leaves when the inputs of those cues, which nobody measured
+# either, are taken off. Few series leave it in an interval; these are its upper ends, for a leather tip and for a
+# spring without a dome. studies/measured/squirt.py derives them, and tests/results/test_uncertainty.py again.
+MODEL, MODEL_OF_SPRING = 0.15, 0.28
+# The error of the logarithm of a ratio of squirt as a part of that logarithm: of two shafts (the upper end, from pairs
+# of shafts in one series), and of a shaft with and without a mass on it (31 places of two masses).
+SHAFTS, MASSES = 0.33, 0.53
+FLOOR = 0.01  # relative, of any ratio of squirt: what calipers and the computation leave open
+COMPUTED = 0.002  # of squirt at the default resolution: 0.19 % at most (studies/accuracy/accuracy.md)
+
+
+class Uncertainty(NamedTuple):
+    """Relative standard uncertainty of a squirt, by its cause.
+
+    model: what published squirt leaves. inputs: wood and tip of this scene that nobody measured. computation: modes and
+    steps.
+    """
+
+    model: float
+    inputs: float
+    computation: float
+
+    @property
+    def total(self) -> float:
+        """All of them in quadrature."""
+        return math.hypot(*self)
+
+
+def uncertainty_of(scene: Scene, inputs: Mapping[str, float], error: float | None = None) -> Uncertainty:
+    """The uncertainty of a scene's squirt. inputs: see `of_inputs`. error: of the computation, if known better."""
+    return Uncertainty(model_error(scene), math.hypot(*inputs.values()), COMPUTED if error is None else error)
+
+
+def model_error(scene: Scene) -> float:
+    """The model's own error of a scene's squirt, relative: that of a leather tip or of a spring."""
+    return MODEL if scene.contact_terms.tip is not None else MODEL_OF_SPRING
+
+
+def of_shaft(inputs: Mapping[str, float]) -> float:
+    """The share of the shaft's inputs alone: what is left where two shafts are struck with one tip."""
+    return math.hypot(*(share for key, share in inputs.items() if not of_tip(PLACES[key])))
+
+
+def of_tip(known: Place) -> bool:
+    """Whether an input is the tip's, which two shafts may share."""
+    return known.group == "Tip" or known.path.startswith("leather.")
+
+
+def of_inputs(solved: Solved, own: float) -> dict[str, float]:
+    """By how much squirt changes, relatively, with each input of a scene that is uncertain by its usual spread.
+
+    own: its squirt, rad.
+    """
+    return {key: abs(change) for key, change in squirt_changes(solved, own).items()}
+
+
+def squirt_changes(solved: Solved, own: float, of: Iterable[str] = PLACES) -> dict[str, float]:
+    """`changes_by_input` of squirt alone; own: that of the scene, rad."""
+    if not own:
+        return {}
+    changes = changes_by_input(solved.scene, {"squirt": own}, lambda made: {"squirt": squirt_beside(solved, made)}, of)
+    return {key: change["squirt"] for key, change in changes.items()}
+
+
+def changes_by_input(
+    scene: Scene,
+    own: Mapping[str, float],
+    of: Callable[[Scene], Mapping[str, float]],
+    inputs: Iterable[str] = PLACES,
+) -> dict[str, dict[str, float]]:
+    """The relative changes of some numbers of a scene with each input that is uncertain by its usual spread.
+
+    own: the numbers of the scene. of: those of a changed one. inputs: those that are asked for. Signs
+    are those of a larger value of the input.
+    """
+    changes: dict[str, dict[str, float]] = {}
+    for key in inputs if scene.cue.segments else ():
+        known = PLACES[key]
+        spread = known.spread(scene) if callable(known.spread) else known.spread
+        ways = (spread, -spread) if spread is not None else (math.log1p(-known.below),) if known.below else ()
+        value = known.value(scene) if ways else None
+        if not value:
+            continue
+        for off in ways:  # the other way where no cue can be farther out
+            try:
+                made = of(replaced(scene, {known.steps(): value * math.exp(off)}))
+            except (ValueError, RuntimeError):
+                continue
+            changes[key] = {name: math.copysign(1.0, off) * (made[name] / own[name] - 1) for name in own}
+            break
+    return changes
+
+
+def squirt_beside(solved: Solved, made: Scene) -> float:
+    """Squirt of a changed scene, rad, by the modes that are known where the cue is not changed."""
+    if (made.cue, made.cue_effects) == (solved.scene.cue, solved.scene.cue_effects):
+        return float(strike_modes(made, solved.tip).squirt)
+    return squirt_of(made)
+
+
+@lru_cache(maxsize=256)
+def squirt_of(scene: Scene) -> float:
+    """Squirt of a scene's coupled strike, rad, remembered for what is asked again and again, such as a ready cue."""
+    return float(strike_modes(scene, Solved(scene).tip).squirt)
+
+
+def model_share(first: Scene, other: Scene) -> float:
+    """The model's part of the logarithm of a ratio: `MASSES` if the masses on the two shafts differ, else `SHAFTS`."""
+    masses = [[effect for effect in scene.effects if isinstance(effect, PointMass)] for scene in (first, other)]
+    return SHAFTS if masses[0] == masses[1] else MASSES
+
+
+def ratio_error(ratio: float, share: float, *inputs: float, floor: float = FLOOR) -> float:
+    """The error of a ratio, 1 sigma: the model's share of its logarithm, what inputs leave open in it, and a floor."""
+    ln = math.log(ratio)
+    # from the logarithm to the ratio so that a difference and its error have one quotient in either order of the two
+    return math.hypot(share * ln, *inputs, floor) * (math.expm1(ln) / ln if ln else 1.0)
