@@ -1,7 +1,6 @@
 """What a maker can change: each row is the strike of a cue that `varied` makes, and can be taken over (properties)."""
 
 import math
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np

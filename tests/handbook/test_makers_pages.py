@@ -11,6 +11,7 @@ import pytest
 import cuefem as cf
 from cuefem.handbook import MAKERS, chapters
 from cuefem.parameters.parameter import varied
+from cuefem.results.uncertainty import MODEL, SHAFTS
 from tests.helpers.command_line import call
 from tests.helpers.maker_pictures import FOLDER, PICTURES, answers, ready
 
@@ -45,8 +46,10 @@ def test_what_is_said_of_squirt() -> None:
     known = ready()
     for name in ("low deflection", "carbon"):  # "about a quarter less"
         assert 0.2 < 1 - known[name] / known["plain maple"] < 0.3
-    assert verdict["uncertainty"]["model"] == pytest.approx(0.15, abs=0.005)  # "by about 15 %"
-    assert verdict["uncertainty"]["total"] == pytest.approx(1 / 5, abs=0.025)  # "about a fifth"
+    assert verdict["uncertainty"]["total"] == pytest.approx(0.2, abs=0.025)  # "off by about 20 %"
+    assert f"The model's own is {100 * MODEL:.0f} %" in TEXTS["read_the_report"]
+    assert f"a difference is {100 * SHAFTS:.0f} % of itself off by the model" in TEXTS["read_the_report"]
+    assert f"{100 * SHAFTS:.0f} % of the change for the model" in TEXTS["change_it"]
     assert 0.4 < verdict["inputs"]["rho"] / 0.1 < 0.6  # "by about half as much", of wood heavier by a tenth
 
 
