@@ -18,8 +18,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 import cuefem as cf
-from cuefem.io.measured_folder import load_measured
 from cuefem.cue.materials import material
+from cuefem.io.measured_folder import load_measured
 from cuefem.measurements.measured_cue import MeasuredCue
 from cuefem.measurements.measurement_types import AddedMass, PivotLength, Squirt
 from cuefem.measurements.uncertain_parameters import SQUIRT_MODEL, ZERO
