@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from cuefem.contact.kernel import BINARY, BUILD
@@ -70,6 +72,44 @@ def test_a_kernel_that_is_not_of_these_sources_ends_in_a_line_and_a_build_mends_
         assert run(folder, "hatch_build.py", CFLAGS="-O0") == (0, str(binary), [])
         assert run(folder, "-c", STRIKE) == (0, "", [])
         assert sorted(path.name for path in binary.parent.glob("_kernel*")) == ["_kernel.sha256", BINARY.name]
+
+
+STORED = """
+import json, sys
+from concurrent.futures import ThreadPoolExecutor
+import cuefem
+from cuefem.contact.laws import model_of
+from cuefem.contact.solve import solve_contact
+from tests.data.stored import scene_of, stored_law, strikes, tip_of
+
+assert cuefem.__file__.startswith(sys.argv[2])
+models = []
+for row in strikes():
+    with stored_law(row):
+        models.append(model_of(scene_of(row), tip_of(row)))
+with ThreadPoolExecutor(int(sys.argv[1])) as executor:
+    solved = executor.map(solve_contact, models)
+    print(json.dumps([[*each.impulse, each.time, *each.cue_energy, *each.losses.values()] for each in solved]))
+"""
+
+
+@pytest.mark.nightly
+def test_compilers_and_threads_answer_alike(folder: Path) -> None:
+    """The stored strikes with the kernel of `cc` and that of `ziglang`, on one thread and on two: 1e-9."""
+    pytest.importorskip("ziglang", reason="compares the kernel of cc with that of the wheel ziglang")
+
+    def answers(where: Path, threads: int) -> np.ndarray:
+        both = os.pathsep.join([str(where), str(ROOT), *sys.path])
+        status, printed, said = run(where, "-c", STORED, str(threads), str(where), PYTHONPATH=both)
+        assert (status, said) == (0, [])
+        return np.array(json.loads(printed))
+
+    known = answers(ROOT, 1)
+    size = np.abs(known) + 1e-3 * np.abs(known[:, 1:2])  # of what is small beside the impulse along the normal
+    assert np.array_equal(answers(ROOT, 2), known)
+    assert run(folder, "-c", BUILDING, CC="no-such-compiler", PYTHONPATH=os.pathsep.join(sys.path))[0] == 0
+    for threads in (1, 2):
+        assert np.max(np.abs(answers(folder, threads) - known) / size) < 1e-9
 
 
 @pytest.mark.parametrize("environment", [{"CC": "no-such-compiler"}, {"PATH": ""}, {"CC": "false"}])

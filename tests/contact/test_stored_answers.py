@@ -40,6 +40,7 @@ def test_strikes_of_a_kind_answer_as_stored(kind: str) -> None:
     assert np.median(errors) < 1e-4
     assert np.quantile(errors, 0.95) < 1e-3
     assert errors.max() < 2e-3
+    assert max(map(imbalance, outcomes)) < (2e-4 if kind == ENDLESS else 2e-5)
     for name, most in (("ball_speed", 5e-4), ("cue_speed", 5e-4), ("spin", 5e-4), ("duration", 1e-3)):
         pairs = [(getattr(outcome, name), row["answer"][name]) for outcome, row in zip(outcomes, rows, strict=True)]
         assert max(abs(value / stored - 1) for value, stored in pairs) < most, name
