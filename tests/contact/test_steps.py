@@ -15,6 +15,8 @@ import pytest
 
 import cuefem as cf
 from cuefem.beam.tip import TipModes, lumped_tip_modes
+from cuefem.contact.calibrated import with_modulus
+from cuefem.contact.laws import model_of
 from cuefem.contact.strike import strike_modes
 from cuefem.tip_modes import tip_modes_of
 from tests.data.stored import scene_of, stored_law, strikes, tip_of
@@ -108,10 +110,18 @@ def default_scene(kind: str) -> tuple[cf.Scene, TipModes]:
     return scene, tip_modes_of(scene)
 
 
+def stiffer(scene: cf.Scene, factor: float) -> cf.Scene:
+    """The scene with a tip that many times as stiff."""
+    if scene.tip.contact_time is not None:
+        return replace(scene, tip=replace(scene.tip, contact_time=scene.tip.contact_time / math.sqrt(factor)))
+    return with_modulus(scene, factor * scene.leather.E)
+
+
 OVER = {
     "offset": (np.linspace(0.1, 0.5, 2001), lambda s, x: replace(s, stroke=replace(s.stroke, offset=x))),
     "speed": (np.linspace(1.0, 3.0, 2001), lambda s, x: replace(s, stroke=replace(s.stroke, speed=x))),
     "friction": (np.linspace(0.5, 1.0, 2001), lambda s, x: replace(s, tip=replace(s.tip, friction=x))),
+    "stiffness": (np.linspace(0.7, 1.3, 2001), stiffer),
 }
 
 
@@ -156,6 +166,22 @@ def loud() -> Iterator[tuple[cf.Scene, TipModes]]:
         yield cf.Scene(cf.LumpedCue(float(tip.approach @ tip.approach), 0.01), tip=law, stroke=stroke), tip
 
 
+def again() -> Iterator[tuple[cf.Scene, TipModes]]:
+    """Cues made by hand that touch the ball again, chatter, and slip near the friction at which they would jam."""
+    rng = np.random.default_rng(2)
+    for _ in range(200):
+        count = int(rng.integers(1, 8))
+        omega, across = np.sort(10 ** rng.uniform(2.3, 4.5, count)), rng.uniform(-20, 20, count)
+        tip = hand_made(list(omega), list(across), mass=10 ** rng.uniform(-0.5, 1), rigid=rng.uniform(0.5, 15))
+        scene = cf.Scene(
+            cf.LumpedCue(float(tip.approach @ tip.approach), 0.01), stroke=cf.Stroke(1.0, rng.uniform(0, 0.95))
+        )
+        B = model_of(scene, tip).inverse_mass
+        friction = abs(B[1, 1] / B[0, 1]) * rng.choice([0.5, 0.99, 1.01])
+        law = cf.Tip(float(rng.choice([0.05, 0.3, 0.7])), float(min(friction, 5.0)), 10 ** rng.uniform(-3.5, -2.3))
+        yield replace(scene, tip=law, effects=(cf.SecondHit(2e-2),)), tip
+
+
 def light() -> Iterator[tuple[cf.Scene, TipModes]]:
     """End masses down to a tenth of a milligram, level and raised."""
     for end_mass, mu, offset, e in product((1e-7, 1e-3, 2.0), (0.0, 0.7, 5.0), (1e-9, 0.3, 0.9), (0.05, 1.0)):
@@ -178,7 +204,7 @@ def extreme() -> Iterator[tuple[cf.Scene, TipModes]]:
 
 
 @pytest.mark.parametrize(
-    "scenes", [pytest.param(loud, marks=pytest.mark.heavy), light, pytest.param(extreme, marks=pytest.mark.heavy)]
+    "scenes", [light, *(pytest.param(scenes, marks=pytest.mark.heavy) for scenes in (loud, again, extreme))]
 )
 def test_hard_strikes_end_with_an_energy_that_closes(scenes) -> None:
     for scene, tip in scenes():
