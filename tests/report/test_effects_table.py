@@ -30,14 +30,9 @@ def test_every_effect_is_dropped_or_added_once() -> None:
     found = variants(SCENE)
     assert sorted(variant.name for variant in found) == sorted(effect_kinds())
     assert [v.name for v in found if v.listed] == ["TipDome", "PointMass", "Support"]
-    for variant in found:
-        if variant.listed:
-            assert variant.scene is not None
-            assert variant.scene.effects == tuple(e for e in SCENE.effects if e != variant.effect)
-        elif variant.scene is not None:
-            assert variant.scene.effects == (*SCENE.effects, variant.effect)
-        else:
-            assert variant.reason
+    for v in found:
+        changed = tuple(e for e in SCENE.effects if e != v.effect) if v.listed else (*SCENE.effects, v.effect)
+        assert v.reason if v.scene is None else v.scene.effects == changed
 
 
 def test_two_of_a_kind_are_dropped_one_at_a_time_and_what_does_not_go_says_so() -> None:
@@ -63,16 +58,6 @@ def test_a_change_is_that_of_two_strikes(record: Any, name: str) -> None:
         assert row["change"][quantity]["relative"] == pytest.approx(expected, abs=promised)
         gap = row["change"][quantity]["relative"] * abs(record["base"][quantity])
         assert row["change"][quantity]["by"] == pytest.approx(gap, rel=1e-9)
-
-
-@pytest.mark.heavy
-def test_signs_and_sizes_on_kims_shaft(record: Any) -> None:
-    named = rows(record)
-    # a dome of 9 mm makes 0.117 of 0.0713, so that dropping it takes 0.39
-    assert named["TipDome"]["change"]["squirt"]["relative"] == pytest.approx(-0.39, abs=0.05)
-    assert -0.6 < named["PointMass"]["change"]["squirt"]["relative"] < -0.2
-    assert -0.3 < named["TipShear"]["change"]["squirt"]["relative"] < -0.05  # added: shear takes some
-    assert abs(named["Support"]["change"]["squirt"]["relative"]) < 0.01
 
 
 @pytest.mark.heavy

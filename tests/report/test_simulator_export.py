@@ -13,15 +13,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 
 import cuefem as cf
 from cuefem.report.simulator_export import DEFAULT, VERSION, pooltool_record
-from studies.paper.closed_forms import alciatore_a31, alciatore_a31_mass_ratio
 from tests.helpers.command_line import as_json, said
+from tests.helpers.cues import kim
 
-KIM = cf.Cue((cf.Segment(0.7, 0.012, 0.021, cf.Material(12.6e9, 0.84e9, 782.3284453057836), kappa=0.9),), 0.42)
+KIM = kim()
 SCENE = cf.Scene(KIM, cf.Ball(0.17, 0.028575), cf.Tip(0.75, 0.7, 1e-3), cf.Stroke(2.0, 0.3), (cf.TipDome(0.0095),))
 # CueSpecs of pooltool 0.6.0, in its order
 CUE_SPECS = ("brand", "M", "length", "tip_radius", "shaft_radius_at_tip", "shaft_radius_at_butt", "end_mass")
@@ -43,16 +42,6 @@ def scene(tmp_path: Path) -> Path:
     return tmp_path / "scene.toml"
 
 
-@pytest.mark.parametrize("side", [-1, 1])
-def test_the_inverse_of_a31(side: int) -> None:
-    offset = side * np.array([0.01, 0.1, 0.3, 0.5, 0.9])
-    ratio = np.geomspace(1e-3, 1e3, 13)[:, None]
-    squirt = alciatore_a31(offset, mass_ratio=ratio, inertia=0.37)
-    np.testing.assert_allclose(
-        alciatore_a31_mass_ratio(offset, squirt, inertia=0.37), np.broadcast_to(ratio, squirt.shape), rtol=1e-10
-    )
-
-
 @pytest.mark.parametrize("offset", [-0.3, 0.1, 0.5])
 def test_their_formula_turns_the_ball_as_our_strike_does(offset: float) -> None:
     struck = replace(SCENE, stroke=replace(SCENE.stroke, offset=offset))
@@ -65,15 +54,13 @@ def test_their_formula_turns_the_ball_as_our_strike_does(offset: float) -> None:
 
 def test_the_command_and_its_file(scene: Path, tmp_path: Path) -> None:
     found, goal = exported(scene), tmp_path / "kim.json"
-    expected = {"M": KIM.mass, "length": 1.4732, "tip_radius": 0.0095, "shaft_radius_at_tip": 0.006}
+    expected = {"brand": "scene", "M": KIM.mass, "length": 1.4732, "tip_radius": 0.0095, "shaft_radius_at_tip": 0.006}
     assert expected.items() <= found["CueSpecs"].items()
-    assert (tuple(found["CueSpecs"]), found["CueSpecs"]["brand"]) == (CUE_SPECS, "scene")
-    told = " ".join(said("strike", scene, "--format", "pooltool", "-o", goal).split())
+    assert tuple(found["CueSpecs"]) == CUE_SPECS
+    assert f"{1e3 * found['CueSpecs']['end_mass']:.3f} g" in said("strike", scene, "--format", "pooltool", "-o", goal)
     written = json.loads(goal.read_text(encoding="utf-8"))
     assert written["CueSpecs"] == found["CueSpecs"]
     assert written["line"] == f'CueSpecs(**json.load(open("{goal}"))["CueSpecs"])'
-    for shown in (f"{1e3 * found['CueSpecs']['end_mass']:.3f} g", "5.670 g", f"pooltool-billiards=={VERSION}"):
-        assert shown in told
 
 
 def test_a_miscue_has_no_end_mass() -> None:
@@ -134,16 +121,3 @@ def test_a_ball_that_pooltool_strikes(scene: Path) -> None:
         assert -alpha == pytest.approx(ours, rel=1e-12)
         assert math.atan2(x, y) == pytest.approx(ours, rel=1e-9)  # aimed along y, struck on the left
         assert length == 1.4732
-
-
-@pytest.mark.heavy
-def test_a31_with_the_stick_end_mass_turns_the_ball_too_little() -> None:
-    """The module's figures, and why the exported end mass is another."""
-    less: list[float] = []
-    for path in sorted((Path(__file__).parents[2] / "studies" / "scenes").glob("*.toml")):
-        scene = cf.load(path)
-        for offset in (0.1, 0.2, 0.3, 0.4, 0.5):
-            struck = replace(scene, stroke=replace(scene.stroke, offset=offset))
-            theirs = pooltool_squirt(scene.ball.mass, cf.end_mass(struck, "stick"), offset)
-            less.append(1 + theirs / cf.strike(struck).squirt)
-    assert [round(min(less), 2), round(max(less), 2)] == [0.11, 0.42]
