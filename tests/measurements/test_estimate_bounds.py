@@ -43,13 +43,6 @@ def test_a_bore_that_comes_near_the_outside(mass: float, error: float) -> None:
     assert np.isfinite(found.predicted(CHEAP[1])).all()
 
 
-@pytest.mark.heavy
-@pytest.mark.parametrize("error", [5e-5, 1e-4, 2e-4, 5e-4, 2e-3])
-def test_no_weight_stops_an_estimate(error: float) -> None:
-    for mass in np.arange(0.0805, 0.140, 0.0035):
-        assert np.isfinite(estimate(weighed(float(mass), error)).covariance).all()
-
-
 def limits(cue: MeasuredCue, i: int) -> list[float]:
     """Where the cue stops being possible along an uncertain parameter, in standard deviations of its prior."""
     ends = []

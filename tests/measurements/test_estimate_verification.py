@@ -10,7 +10,7 @@ from cuefem.measurements.measured_cue import MeasuredCue
 from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, Measurement, Stiffness, Tone, Weight
 from cuefem.measurements.outliers import solved
 from cuefem.measurements.uncertain_parameters import Prior
-from tests.helpers.measured_cues import SCENE, blank, measured_cue
+from tests.helpers.measured_cues import blank, measured_cue
 
 HOLDS_95 = 1.959964  # standard deviations either way that hold 95 %
 CLOSED = Prior("contact time", 0.0)  # nothing here depends on it
@@ -77,52 +77,17 @@ def test_a_closed_unknown_is_held_and_an_open_one_opened() -> None:
     assert bore.value(-1.0) == pytest.approx(5e-3)
 
 
-@pytest.mark.parametrize("name", ["E", "G", "rho", "bore", "taper", "contact time"])
-def test_every_unknown_is_put_where_it_belongs(name: str) -> None:
-    """A changed parameter reads back, and at its usual value nothing changes."""
-    from cuefem.measurements.measurement_types import Setup
-    from cuefem.parameters.parameter import PLACES
-
-    cue = measured_cue(priors=(Prior("taper", 0.1),))
-    (parameter,) = (one for one in cue.parameters if one.name == name)
-    moved = parameter.setup(Setup(SCENE), 0.5).scene
-    known = PLACES[name.replace(" ", "_")]
-    assert known.value(moved) == pytest.approx(parameter.value(0.5), rel=1e-12)
-    back = replace(parameter, usual=parameter.usual).put(Setup(moved), parameter.usual).scene
-    assert known.value(back) == pytest.approx(parameter.usual, rel=1e-12)
-
-
-def contradictory(cue: MeasuredCue, seed: int) -> tuple[MeasuredCue, int]:
-    """The cue with one measurement off by 6 to 20 of its errors, and which."""
-    generator = np.random.default_rng([seed, 5])
-    wrong = int(generator.integers(len(cue.measurements)))
-    values = np.array([one.measured for one in cue.measurements])
-    values[wrong] += generator.choice([-1, 1]) * generator.uniform(6, 20) * cue.measurements[wrong].sd
-    return measured_as(cue, values), wrong
-
-
-def pulls_of(count: int, *, wrong: bool = False) -> np.ndarray:
-    """How far the parameters of made-up cues lie off their estimates, in the stated errors."""
-    made = []
-    for seed in range(count):
-        cue, z = made_up(seed)
-        found = estimate(contradictory(cue, seed)[0] if wrong else cue)
-        assert found.converged or wrong
-        made.append((found.z - z) / np.sqrt(np.diag(found.covariance)))
-    return np.array(made)
-
-
 @pytest.mark.heavy
-@pytest.mark.parametrize("wrong", [False, True], ids=["clean", "contradictory"])
-def test_intervals_cover_the_parameters_of_made_up_cues(wrong: bool) -> None:
-    """A hundred cues of four parameters drawn from the priors: 68 and 95 % intervals to three standard deviations.
-
-    The four parameters of a cue with a wrong measurement are off together: three standard deviations of a hundred.
-    """
-    pulls = np.abs(pulls_of(100, wrong=wrong))
+def test_intervals_cover_the_parameters_of_made_up_cues() -> None:
+    """A hundred cues of four parameters drawn from the priors: 68 and 95 % intervals to three standard deviations."""
+    pulls = []
+    for seed in range(100):
+        cue, z = made_up(seed)
+        found = estimate(cue)
+        assert found.converged
+        pulls.append(np.abs(found.z - z) / np.sqrt(np.diag(found.covariance)))
     for share, half_width in ((0.683, 1.0), (0.95, HOLDS_95)):
-        number = 100 if wrong else 400
-        assert np.mean(pulls < half_width) == pytest.approx(share, abs=3 * np.sqrt(share * (1 - share) / number))
+        assert np.mean(np.array(pulls) < half_width) == pytest.approx(share, abs=3 * np.sqrt(share * (1 - share) / 400))
 
 
 @pytest.fixture(scope="module")

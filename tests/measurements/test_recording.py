@@ -11,9 +11,8 @@ from cuefem.io.measured_folder import load_measured
 from cuefem.measurements.estimate import estimate
 from cuefem.measurements.measurement_types import Tone
 from cuefem.measurements.recording import Peak, numbered, tones_of
-from tests.helpers.measured_cues import DRAWING, SCENE, SHAFT, folder
+from tests.helpers.measured_cues import SHAFT, folder
 from tests.helpers.recordings import other_wood, recording, save_wav, tapped
-from tests.helpers.refusals import command_refuses
 
 POOL = Path(__file__).parents[2] / "meshes" / "pool_maple.toml"
 HEARD = '[[recording]]\nfile = "tap.wav"\n'
@@ -84,28 +83,6 @@ def test_two_recordings_are_one_tone_per_mode(tmp_path: Path) -> None:
     assert second.error == pytest.approx(0.5, rel=0.2)
 
 
-SECOND = np.arange(22050) / 22050
-SOUNDS = {
-    "silent": (np.zeros((4000, 1)), 22050, "tap.wav: must hold a sound; got silence"),
-    "short": (np.linspace(0, 0.5, 4000)[:, None] ** 2, 22050, "tap.wav: must last 0.1 s or more after its loudest tap"),
-    "noise": (0.1 * np.random.default_rng(3).standard_normal((22050, 1)), 22050, "must hold 3 tones or more near"),
-    "one tone": (
-        0.5 * np.exp(-9 * SECOND[:, None]) * np.sin(2e3 * SECOND[:, None]),
-        22050,
-        "got 318",
-    ),
-    "slow": (np.random.default_rng(3).uniform(-1, 1, (900, 1)), 1000, "must have 4000 to 400000 samples per second; g"),
-    "fast": (np.random.default_rng(3).uniform(-1, 1, (900, 1)), 10**9, "samples per second; got 1e+09"),
-}
-
-
-@pytest.mark.parametrize(("samples", "rate", "message"), SOUNDS.values(), ids=SOUNDS.keys())
-def test_a_sound_of_no_shaft_is_refused(samples: np.ndarray, rate: int, message: str, tmp_path: Path) -> None:
-    place = folder(tmp_path / "cue", HEARD)
-    save_wav(place / "tap.wav", samples, rate)
-    command_refuses(message, "compare", place)
-
-
 def test_eight_bits_and_an_offset_change_no_tone() -> None:
     """The middle of 8 bits is 128, and cheap converters add a constant."""
     sound = recording(tapped(other_wood(SHAFT)), 40.0, 1, taps=1)
@@ -114,28 +91,3 @@ def test_eight_bits_and_an_offset_change_no_tone() -> None:
     )
     for one, other in zip(fine[:5], coarse, strict=False):
         assert (other.mode, other.value) == (one.mode, pytest.approx(one.value, rel=1e-3))
-
-
-FILES = {
-    "absent": (HEARD, None, "tap.wav: cannot be read: No such file"),
-    "no sound": (HEARD, b"RIFF\x00\x00\x00\x00WAVE", "tap.wav: must be a .wav file of sound"),
-    "no wav": (HEARD, b"ID3 and so on", "tap.wav: must be a .wav file of sound"),
-    "other": (HEARD.replace("wav", "mp3"), None, "tap.mp3: must end in .wav; got '.mp3'"),
-    "key": (HEARD + "loud = 1\n", None, "recording[0].loud: must be one of the keys file, source; got loud = 1"),
-    "no table": ('recording = "tap.wav"\n', None, "recording: must be tables, [[recording]]; got 'tap.wav'"),
-    "nul": ('[[recording]]\nfile = "\\u0000.wav"\n', None, ".wav: embedded null byte"),
-    "nothing": ("[[recording]]\n", None, "recording[0].file: must be given, text; got nothing"),
-}
-
-
-@pytest.mark.parametrize(("text", "content", "message"), FILES.values(), ids=FILES.keys())
-def test_a_file_of_no_sound_is_refused(text: str, content: bytes | None, message: str, tmp_path: Path) -> None:
-    place = folder(tmp_path / "cue", text, DRAWING)
-    if content is not None:
-        (place / "tap.wav").write_bytes(content)
-    command_refuses(message, "compare", place)
-
-
-def test_the_scene_gives_the_modes() -> None:
-    """Tones are numbered by the shaft that hangs: with what is part of the cue."""
-    assert np.all(cf.modes(SHAFT, 8, effects=SCENE.cue_effects).frequencies == DRAWN)

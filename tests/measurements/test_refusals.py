@@ -1,125 +1,123 @@
-"""What measured cues refuse: measurements that cannot be, folders that are none (regression)."""
+"""What measured cues refuse: measurements that cannot be, files and folders of none, a line a `raise`."""
 
 import errno
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from cuefem.measurements.estimate import estimate
 from cuefem.measurements.measured_cue import MeasuredCue
 from cuefem.measurements.measurement_types import AddedMass, PivotLength, Setup, Squirt, Stiffness, Tone, Weight
+from cuefem.measurements.pendulum import Pendulum
 from cuefem.measurements.uncertain_parameters import Prior
 from tests.helpers.command_line import call
 from tests.helpers.measured_cues import DRAWING, SCENE, SOME, folder, measured_cue
+from tests.helpers.recordings import save_wav
 from tests.helpers.refusals import command_refuses, refuses, untouched
 
-CALLS: dict[str, tuple[Callable[[], object], str]] = {
-    "weight": (lambda: Weight(of="butt", value=0.4, error=1e-3), "Weight.of must be one of shaft, cue; got 'butt'"),
-    "error": (lambda: Weight(value=0.1, error=0.0), "Weight.error must be in (0, inf) kg; got 0.0"),
-    "mode": (lambda: Tone(mode=9, value=95.0, error=0.2), "Tone.mode must be in [1, 8], 1 the lowest; got 9"),
-    "one side": (lambda: Squirt(offset=0.3, left=0.03, error=1e-3), "or left and right without it; got left"),
-    "three": (lambda: Squirt(offset=0.3, value=0.03, left=0.03, right=0.03, error=1e-3), "got value and left and"),
-    "nothing": (lambda: Squirt(offset=0.3, error=1e-3), "without it; got none of them"),
-    "zero": (
-        lambda: Squirt(offset=0.3, left=0.03, right=0.03, error=1e-3, zero_error=1e-3),
-        "Squirt.zero_error must be absent beside left and right, whose mean has none; got 0.001 m",
+SWING = {"before": (0.19,), "after": (-0.03,), "clamped_after": (0.15,)}
+GOOD = Pendulum(ball_mass=8e-3, thread=1.0, position=0.02, contact_time=1e-3, **SWING)  # type: ignore[arg-type]
+FAR = AddedMass(mass=0.01, position=0.8, value=0.1, baseline=0.1, error=0.01, offset=0.3)
+PIVOT = PivotLength(offset=0.3, value=0.3, error=0.01)
+CALLS: dict[str, Callable[[], object]] = {
+    "Weight.of must be one of shaft, cue": lambda: Weight(of="butt", value=0.4, error=1e-3),
+    "Weight.error must be in (0, inf) kg": lambda: Weight(value=0.1, error=0.0),
+    "Tone.mode must be in [1, 8]": lambda: Tone(mode=9, value=95.0, error=0.2),
+    "or left and right without it; got left": lambda: Squirt(offset=0.3, left=0.03, error=1e-3),
+    "or left and right without it; got none of them": lambda: Squirt(offset=0.3, error=1e-3),
+    "Squirt.zero_error must be absent": lambda: Squirt(offset=0.3, left=0.03, right=0.03, error=1e-3, zero_error=1e-3),
+    "PivotLength.offset must be in (0, 1); got -0.3": lambda: replace(PIVOT, offset=-0.3),
+    "pivot_length must be of a stroke with squirt": lambda: PIVOT.computed(Setup(SCENE, squirt_factor=0.0)),
+    "Prior.name must be one of E, G, rho, bore, taper": lambda: Prior("colour", 0.1),
+    "Prior.spread must be given": lambda: Prior("E", 0.1, 1e9, 2e9),
+    "Prior.low must be in (0, high)": lambda: Prior("E", low=2e9, high=1e9),
+    "got 'dome', which it does not have": lambda: measured_cue(priors=(Prior("dome", 0.1),)),
+    "TypeError: MeasuredCue.scene must be a Scene": lambda: MeasuredCue("a", "cue", ()),  # type: ignore[arg-type]
+    "TypeError: MeasuredCue.measurements[0] must be a Measurement": lambda: measured_cue("a tone"),  # type: ignore[arg-type]
+    "stiffness free_length must be in (0, 0.73] m": lambda: Stiffness(free_length=0.8, value=1.0, error=1.0).computed(
+        Setup(SCENE)
     ),
-    "pivot": (
-        lambda: PivotLength(offset=0.3, value=0.0, error=0.01),
-        "PivotLength.value must be in (0, inf) m; got 0.0",
-    ),
-    "pivot's side": (
-        lambda: PivotLength(offset=-0.3, value=0.3, error=0.01),
-        "PivotLength.offset must be in (0, 1); got -0.3",
-    ),
-    "no squirt": (
-        lambda: PivotLength(offset=0.3, value=0.3, error=0.01).computed(Setup(SCENE, squirt_factor=0.0)),
-        "pivot_length must be of a stroke with squirt above 0 rad; got 0 rad at b/R 0.3",
-    ),
-    "prior": (lambda: Prior("colour", 0.1), "Prior.name must be one of E, G, rho, bore, taper"),
-    "two priors": (lambda: Prior("E", 0.1, 1e9, 2e9), "or low and high without it"),
-    "ends": (lambda: Prior("E", low=2e9, high=1e9), "Prior.low must be in (0, high)"),
-    "no dome": (lambda: measured_cue(priors=(Prior("dome", 0.1),)), "got 'dome', which it does not have"),
-    "no cue": (lambda: MeasuredCue("a", "cue", ()), "TypeError: MeasuredCue.scene must be a Scene"),  # type: ignore[arg-type]
-    "found": (lambda: measured_cue("a tone"), "TypeError: MeasuredCue.measurements[0] must be a Measurement"),  # type: ignore[arg-type]
-    "too long": (
-        lambda: Stiffness(free_length=0.8, value=1.0, error=1.0).computed(Setup(SCENE)),
-        "stiffness free_length must be in (0, 0.73] m, that of the wood; got 0.8",
-    ),
-    "beside": (
-        lambda: AddedMass(mass=0.01, position=0.8, value=0.1, baseline=0.1, error=0.01, offset=0.3).computed(
-            Setup(SCENE)
-        ),
-        "added_mass position must be in [0, 0.73] m, on the shaft; got 0.8",
-    ),
-    "no estimate": (lambda: estimate(measured_cue()), "estimate takes a cue with measurements; got none"),
+    "added_mass position must be in [0, 0.73] m": lambda: FAR.computed(Setup(SCENE)),
+    "estimate takes a cue with measurements": lambda: estimate(measured_cue()),
+    "Pendulum.before must be swings shorter than the thread, 0.1 m": lambda: replace(GOOD, thread=0.1),
+    "Pendulum.after must be swings": lambda: replace(GOOD, after=()),
+    "Pendulum.before must be one reading, or 1": lambda: replace(GOOD, before=(0.2, 0.2)),
+    "Pendulum.contact_time must be given": lambda: replace(GOOD, contact_time=None),
+    "without it; got contact_time and force": lambda: replace(GOOD, force=9.0),
+    "Pendulum.clamped_after must be (0, 1]": lambda: replace(GOOD, clamped_after=(0.3,)),
+    "Pendulum.after must be between -1 and 0.": lambda: replace(GOOD, after=(0.188,)),
+    "to tell the end mass to within its own size": lambda: replace(GOOD, after=(0.1495,)),
 }
 
 
-@pytest.mark.parametrize(("ask", "message"), CALLS.values(), ids=CALLS.keys())
-def test_refusals(ask: Callable[[], object], message: str) -> None:
-    refuses(ask, message)
+@pytest.mark.parametrize("message", CALLS)
+def test_calls(message: str) -> None:
+    refuses(CALLS[message], message)
 
 
-FILES = {
-    "key": ('[[weigth]]\nvalue = "1 g"\n', "measured.toml: weigth: must be one of the keys name, source"),
-    "unit": ('[[weight]]\nvalue = 100\nerror = "1 g"\n', 'weight[0].value: needs a unit: "15 oz" or "425 g"; got 100'),
-    "missing": ('[[weight]]\nvalue = "100 g"\n', "weight[0].error: must be given, a mass with its unit"),
-    "extra": (
-        '[[tone]]\nvalue = "1 Hz"\nerror = "1 Hz"\nmode = 1\nloud = 1\n',
-        "tone[0].loud: must be one of the keys",
-    ),
-    "no table": ('weight = "100 g"\n', "weight: must be tables, [[weight]]; got '100 g'"),
-    "squirt": ('[[squirt]]\noffset = 0.3\nerror = "1 deg"\n', "squirt[0].value: must be given, or left and right"),
-    "pivot": (
-        '[[pivot_length]]\noffset = 0.3\nvalue = "13 in"\n',
-        "pivot_length[0].error: must be given, a length with its unit",
-    ),
-    "name": ("name = 3\n", "name: must be text; got 3"),
-    "unknown": (
-        '[[uncertain]]\nname = "bor"\n',
-        "uncertain[0].name: must be one of E, G, rho, bore",
-    ),
-    "prior": (
-        '[[uncertain]]\nname = "bore"\nlow = 6\nhigh = 7\n',
-        "uncertain[0].low: needs a unit",
-    ),
-    "closed": (
-        'game = "kim"\n[tip]\nfriction = 0.6\n[[uncertain]]\nname = "dome"\nspread = 0.1\n',
-        "uncertain parameters must be of this cue; got 'dome'",
-    ),
-    "lumped": (
-        'cue = { mass = "0.5 kg", end_mass = "6 g" }\n',
-        "cue: must be a cue of segments, which can be measured",
-    ),
-}
+PENDULUM = r"""[[pendulum]]\nball_mass = "8 g"\nthread = "1 m"\nbefore = ["200 mm"]\nclamped_after = ["162 mm"]\n"""
+PENDULUM += r"""contact_time = "1 ms"\nposition = "10 mm"\n"""
+# A file of the folder, what it holds (P is a pendulum test without the rebound), and a part of the refusal.
+FILES = r"""
+measured.toml | [[weigth]]\nvalue = "1 g"\n | measured.toml: weigth: must be one of the keys
+measured.toml | [[weight]]\nvalue = 100\nerror = "1 g"\n | weight[0].value: needs a unit
+measured.toml | [[weight]]\nvalue = "100 g"\n | weight[0].error: must be given
+measured.toml | [[tone]]\nvalue = "1 Hz"\nerror = "1 Hz"\nmode = 1\nloud = 1\n | tone[0].loud: must be one of the keys
+measured.toml | weight = "100 g"\n | weight: must be tables, [[weight]]
+measured.toml | [[squirt]]\noffset = 0.3\nerror = "1 deg"\n | squirt[0].value: must be given, or left and right
+measured.toml | name = 3\n | name: must be text
+measured.toml | uncertain = 3\n | uncertain: must be tables
+measured.toml | [[uncertain]]\nname = "bor"\n | uncertain[0].name: must be one of E, G, rho, bore
+measured.toml | [[uncertain]]\nname = "bore"\nlow = 6\nhigh = 7\n | uncertain[0].low: needs a unit
+measured.toml | cue = { mass = "0.5 kg", end_mass = "6 g" }\n | cue: must be a cue of segments
+measured.toml | Pafter = ["-34"]\n | pendulum[0].after[0]: needs a unit
+measured.toml | Pafter = ["-34 mm"]\ncolour = 1\n | pendulum[0].colour: must be one of the keys
+measured.toml | Pafter = ["250 cm"]\n | pendulum[0].after: must be swings shorter
+measured.toml | [[recording]]\nfile = "none.wav"\n | none.wav: cannot be read: No such file
+measured.toml | [[recording]]\nfile = "tap.mp3"\n | tap.mp3: must end in .wav
+measured.toml | [[recording]]\nfile = "tap.wav"\nloud = 1\n | recording[0].loud: must be one of the keys
+measured.toml | [[recording]]\n | recording[0].file: must be given
+measured.toml | [[recording]]\nfile = "\u0000.wav"\n | .wav: embedded null byte
+squirt.csv | offset,sqirt [deg]\n0.3,2\n | must have headings source, offset, value
+squirt.csv | offset,value,error [deg]\n0.3,2,1\n | line 1, value: must be the heading "value [rad]"
+squirt.csv | offset,value [deg],error [deg]\n0.3,2\n | line 2: must have 3 cells
+squirt.csv | offset,value [deg],error [deg]\na,2,1\n | line 2, offset: must be a number
+tone.csv | mode,value [Hz],error [Hz]\n1,x,1\n | line 2.value: must be a frequency with its unit
+tone.csv | # nothing\n | must begin with a line of headings
+squirts.csv | offset\n | squirts.csv: must be one of weight.csv
+"""
 
 
-@pytest.mark.parametrize(("text", "message"), FILES.values(), ids=FILES.keys())
-def test_files(text: str, message: str, tmp_path: Path) -> None:
-    command_refuses(message, "compare", folder(tmp_path / "cue", text))
-
-
-SERIES = {
-    "heading": ("squirt.csv", "offset,sqirt [deg]\n0.3,2\n", "must have headings source, offset, value"),
-    "unit": ("squirt.csv", "offset,value,error [deg]\n0.3,2,1\n", 'line 1, value: must be the heading "value [rad]"'),
-    "cells": (
-        "squirt.csv",
-        "offset,value [deg],error [deg]\n0.3,2\n",
-        "line 2: must have 3 cells, as the headings; got 2",
-    ),
-    "number": ("squirt.csv", "offset,value [deg],error [deg]\na,2,1\n", "line 2, offset: must be a number; got 'a'"),
-    "value": ("tone.csv", "mode,value [Hz],error [Hz]\n1,x,1\n", "line 2.value: must be a frequency with its unit"),
-    "empty": ("tone.csv", "# nothing\n", "must begin with a line of headings; got comments alone"),
-    "name": ("squirts.csv", "offset\n", "squirts.csv: must be one of weight.csv"),
-}
-
-
-@pytest.mark.parametrize(("name", "text", "message"), SERIES.values(), ids=SERIES.keys())
-def test_series(name: str, text: str, message: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("row", FILES.strip().splitlines())
+def test_files(row: str, tmp_path: Path) -> None:
+    name, text, message = row.split(" | ")
     place = folder(tmp_path / "cue")
-    (place / name).write_text(text, encoding="utf-8")
+    text = (PENDULUM + text[1:]) if text[0] == "P" else text
+    (place / name).write_text(text.replace("\\n", "\n"), encoding="utf-8")
+    command_refuses(message, "compare", place)
+
+
+NOISE, TIME = np.random.default_rng(3), np.arange(22050)[:, None] / 22050
+SOUNDS: dict[str, tuple[np.ndarray | bytes, int]] = {
+    "tap.wav: must hold a sound; got silence": (np.zeros((4000, 1)), 22050),
+    "tap.wav: must last 0.1 s or more": (np.linspace(0, 0.5, 4000)[:, None] ** 2, 22050),
+    "must hold 3 tones or more near": (0.1 * NOISE.standard_normal((22050, 1)), 22050),
+    "got 318": (0.5 * np.exp(-9 * TIME) * np.sin(2e3 * TIME), 22050),
+    "must have 4000 to 400000 samples per second": (NOISE.uniform(-1, 1, (900, 1)), 1000),
+    "samples per second; got 1e+09": (NOISE.uniform(-1, 1, (900, 1)), 10**9),
+    "tap.wav: must be a .wav file of sound": (b"ID3 and so on", 0),
+    "must be a .wav file of sound": (b"RIFF\x00\x00\x00\x00WAVE", 0),
+}
+
+
+@pytest.mark.parametrize("message", SOUNDS)
+def test_sounds(message: str, tmp_path: Path) -> None:
+    place, (samples, rate) = folder(tmp_path / "cue", '[[recording]]\nfile = "tap.wav"\n'), SOUNDS[message]
+    path = place / "tap.wav"
+    path.write_bytes(samples) if isinstance(samples, bytes) else save_wav(path, samples, rate)
     command_refuses(message, "compare", place)
 
 
@@ -127,25 +125,22 @@ def test_a_template_is_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: 
     def full(path: Path, *_: object, **__: object) -> None:
         raise OSError(errno.ENOSPC, "No space left on device", str(path))
 
+    template = ("compare", tmp_path / "cue", "--template")
     with monkeypatch.context() as patch:
         patch.setattr("cuefem.io.measured_folder.TEMPLATE", ("README.md", "none"))  # the second file cannot be read
-        untouched(tmp_path, "cannot be written", "compare", tmp_path / "cue", "--template")
+        untouched(tmp_path, "cannot be written", *template)
         patch.setattr(Path, "write_text", full)
-        untouched(tmp_path, "cannot be written: No space left on device", "compare", tmp_path / "cue", "--template")
-    assert call("compare", tmp_path / "cue", "--template")[0] == 0
+        untouched(tmp_path, "cannot be written: No space left on device", *template)
+    assert call(*template)[0] == 0
+    untouched(tmp_path, "must be a new folder", *template)
 
 
 def test_folders(tmp_path: Path) -> None:
     command_refuses("got no folder", "compare", tmp_path / "none")
-    empty = tmp_path / "empty"
-    empty.mkdir()
+    (empty := tmp_path / "empty").mkdir()
     command_refuses("must hold the shaft's drawing, cue.toml or cue.csv; got none", "compare", empty)
-    untouched(tmp_path, "must be a new folder", "compare", empty, "--template")
     untouched(tmp_path, "cannot be written: No such file", "compare", tmp_path / "no" / "folder", "--template")
-    scene = folder(
-        tmp_path / "scene", SOME, f"game = 'kim'\n[cue]\n{DRAWING.replace('[[segments]]', '[[cue.segments]]')}"
-    )
-    command_refuses("this file is the drawing; ball and tip stand in measured.toml", "compare", scene)
-    place = folder(tmp_path / "cue")
-    untouched(tmp_path, "cannot be written", "compare", place, "-o", tmp_path / "no" / "page.html")
-    assert call("compare", tmp_path / "cue")[0] == 0
+    scene = f"game = 'kim'\n[cue]\n{DRAWING.replace('[[segments]]', '[[cue.segments]]')}"
+    of_scene = folder(tmp_path / "scene", SOME, scene)
+    command_refuses("this file is the drawing; ball and tip stand in measured.toml", "compare", of_scene)
+    untouched(tmp_path, "cannot be written", "compare", folder(tmp_path / "cue"), "-o", tmp_path / "no" / "page.html")
