@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from cuefem.results.band import OF_DIFFERENCE
 
 import cuefem as cf
 from cuefem.parameters.parameter import varied
 from cuefem.parameters.parts import main_material
-from cuefem.results.band import OF_DIFFERENCE
 from cuefem.results.comparison import FLOOR, OTHER_FLOOR, comparison_record
 from tests.helpers.command_line import as_json, call
 from tests.helpers.cues import kim
