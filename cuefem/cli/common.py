@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 from cuefem.cli.printing import assumed_lines, json_option, shared_option, tell
-from cuefem.cli.strokes import blow_options, offset_option, option, place_options, refuse_game, usual, with_options
+from cuefem.cli.strokes import blow_options, offset_option, option, parameter_options, refuse_game, usual, with_options
 from cuefem.cue import Cue
 from cuefem.effects.leather_law import TooDeep
 from cuefem.io import InputError, check_place, load_stroke
@@ -45,7 +45,7 @@ def shape_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """The options for what a drawing leaves out or has otherwise: the masses, and `FITTINGS`."""
     for name, known in reversed(FITTINGS.items()):
         command = shared_option("Cue", option(name), metavar=known.metavar, help=known.help)(command)
-    return place_options("Cue", "body_mass", "shaft_mass")(command)
+    return parameter_options("Cue", "body_mass", "shaft_mass")(command)
 
 
 def fittings_of(options: Mapping[str, Any]) -> dict[str, str | None]:

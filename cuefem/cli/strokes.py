@@ -15,7 +15,7 @@ from cuefem.contact.side_strike import SideStrike
 from cuefem.cue import Cue, LumpedCue
 from cuefem.io import InputError, with_body_mass
 from cuefem.io.errors import faults_of
-from cuefem.parameters.parameter import PLACES, Place, replaced, with_fields
+from cuefem.parameters.parameter import PARAMETERS, Parameter, replaced, varied, with_fields
 from cuefem.parameters.parameter import Path as Steps
 from cuefem.parameters.parts import with_shaft_mass
 from cuefem.quantity.fields import Quantity
@@ -35,13 +35,12 @@ def option(name: str) -> str:
     return f"--{name.replace('_', '-')}"
 
 
-def place_options(heading: str, *keys: str) -> Callable[[Command], Command]:
-    """The options of places, by their keys, under a heading."""
+def parameter_options(heading: str, *keys: str) -> Callable[[Command], Command]:
+    """The options of parameters, by their keys, under a heading."""
 
     def decorated(command: Command) -> Command:
-        for known in (PLACES[key] for key in reversed(keys)):
-            help_words = known.help or f"{known.title}."
-            command = shared_option(heading, option(known.key), metavar=known.option, help=help_words)(command)
+        for known in (PARAMETERS[key] for key in reversed(keys)):
+            command = shared_option(heading, option(known.key), metavar=known.option, help=known.help)(command)
         return command
 
     return decorated
@@ -54,19 +53,19 @@ def game_option(name: str, help_words: str) -> Callable[[Command], Command]:
 
 def tip_options(command: Command) -> Command:
     """The game, and the options of the leather tip and of whatever else on the cue is an option."""
-    own = (key for key, known in PLACES.items() if known.option and key not in (*OF_BLOW, *OF_CUE, "offset"))
+    own = (key for key, known in PARAMETERS.items() if known.option and key not in (*OF_BLOW, *OF_CUE, "offset"))
     said = "Whose usual ball, tip and stroke a cue without a scene gets; pool by default."
-    return game_option("--game", said)(place_options("Tip", *own)(command))
+    return game_option("--game", said)(parameter_options("Tip", *own)(command))
 
 
 def blow_options(command: Command) -> Command:
     """The options that replace tip and speed."""
-    return tip_options(place_options("Stroke", *OF_BLOW)(command))
+    return tip_options(parameter_options("Stroke", *OF_BLOW)(command))
 
 
 def offset_option(command: Command) -> Command:
     """The option that replaces the stroke's offset."""
-    return place_options("Stroke", "offset")(command)
+    return parameter_options("Stroke", "offset")(command)
 
 
 def measured(file: Path, name: str, text: str, wanted: Quantity) -> float:
@@ -111,7 +110,7 @@ def with_weight(thing: Cue | Scene | SideStrike, file: Path, text: str) -> Any:
     if isinstance(thing, SideStrike) or (isinstance(thing, Scene) and thing.lumped):
         raise InputError(file, "--shaft-mass", "must be left out: FILE is no cue or stroke with a shaft")
     with faults_of(file, "--shaft-mass"):
-        return with_shaft_mass(thing, mass) if isinstance(thing, Cue) else replaced(thing, {("weight", "mass"): mass})
+        return with_shaft_mass(thing, mass) if isinstance(thing, Cue) else varied(thing, {"shaft mass": mass})
 
 
 def usual(cue: Cue, file: Path, options: dict[str, Any]) -> Scene:
@@ -136,19 +135,21 @@ def with_options(scene: Scene, file: Path, options: dict[str, Any]) -> Scene:
         raise InputError(file, "", str(error)) from None
 
 
-def _is_leather(known: Place) -> bool:
+def _is_leather(known: Parameter) -> bool:
     return known.path.startswith("leather.")
 
 
-def _options(options: dict[str, Any], which: Callable[[Place], bool] = lambda known: True) -> Iterator[Place]:
-    """The places of which options give a value."""
-    return (known for known in PLACES.values() if known.option and options.get(known.key) is not None and which(known))
+def _options(options: dict[str, Any], which: Callable[[Parameter], bool] = lambda known: True) -> Iterator[Parameter]:
+    """The parameters of which options give a value."""
+    return (
+        known for known in PARAMETERS.values() if known.option and options.get(known.key) is not None and which(known)
+    )
 
 
 def _changes(
-    scene: Any, file: Path, options: dict[str, Any], which: Callable[[Place], bool] = lambda known: True
+    scene: Any, file: Path, options: dict[str, Any], which: Callable[[Parameter], bool] = lambda known: True
 ) -> dict[Steps, Any]:
-    """The values that options give, by the paths of their places."""
+    """The values that options give, by their paths."""
     changes = dict[Steps, Any]()
     for known in _options(options, which):
         text, path = options[known.key], known.steps()
@@ -165,11 +166,11 @@ def _changes(
     return changes
 
 
-def _absent(scene: Scene, known: Place) -> str:
-    """Why a scene has no such place."""
+def _absent(scene: Scene, known: Parameter) -> str:
+    """Why a scene has no such parameter."""
     if _is_leather(known):
         return "must be left out: the scene has no LeatherTip among its effects"
-    return NO_SHAFT if scene.lumped else f"must be left out: {known.absent or f'there is no {known.words}'}"
+    return NO_SHAFT if scene.lumped else f"must be left out: there is no {known.label}"
 
 
 def refuse_game(file: Path, options: dict[str, Any]) -> None:

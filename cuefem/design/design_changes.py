@@ -12,8 +12,8 @@ from cuefem.contact.outcome import grip_of
 from cuefem.cue import Cue
 from cuefem.cue.materials import MATERIALS, WOODS, table_name
 from cuefem.effects.leather import DOMES
-from cuefem.parameters.parameter import PLACES, varied
-from cuefem.parameters.parts import Layout
+from cuefem.parameters.parameter import PARAMETERS, varied
+from cuefem.parameters.parts import Layout, taper_position
 from cuefem.results.designs import OneDesign, off_centre
 from cuefem.results.quantities import RESULTS, scaled, with_unit
 from cuefem.results.records import Record
@@ -49,7 +49,7 @@ class Advice(NamedTuple):
 
 def changes_of(scene: Scene) -> list[Advice]:
     """The changes to try on this cue; `design_changes` drops those that its shape does not allow."""
-    own = {key: known.value(scene) for key, known in PLACES.items()}
+    own = {key: known.value(scene) for key, known in PARAMETERS.items()}
     return [
         *_bores(own),
         *_fronts(own),
@@ -99,9 +99,7 @@ def _woods_and_tapers(cue: Cue, own: Record) -> Iterator[Advice]:
 
 def _tapers(cue: Cue, own: Record) -> Iterator[Advice]:
     tip, taper, end = (own[f"{name}_diameter"] for name in ("tip", "taper", "butt"))
-    at = PLACES["taper_diameter"].at
-    assert at is not None
-    x = at(cue)
+    x = taper_position(cue)
     thinner = {"tip diameter": tip - THINNER, "taper diameter": taper - THINNER}
     yield Advice(f"{with_unit(THINNER, 'm')} thinner from the tip to {with_unit(x, 'm')}", thinner)
     cone, pro = tip + (end - tip) * x / cue.length, tip + PRO_GAIN

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
-from cuefem.parameters.parameter import knobs_of, turned
+from cuefem.designer.ranges import knobs_of, turned
 from cuefem.scene import Scene
 
 TOGETHER = 1.5  # s: moves of one knob that follow each other within it are one step

@@ -18,10 +18,11 @@ from typing import Any
 
 from cuefem.cue import Material
 from cuefem.designer.design import MOST_STEPS, Design, State, Step, check_segments
+from cuefem.designer.ranges import knobs_of
 from cuefem.designer.sliders import choices
 from cuefem.io.schema import NAMES, table
 from cuefem.io.toml import scene_of_table
-from cuefem.parameters.parameter import knobs_of, place
+from cuefem.parameters.parameter import parameter
 from cuefem.scene import Scene
 
 VERSION = 1
@@ -113,7 +114,7 @@ def _design(entry: Any, scenes: Sequence[Scene]) -> Design:
     offered = {choice.knob: choice.materials for choice in choices(base)}
     knobs = dict(knobs_of(base))
     for written, value in moved.items():
-        known = place(written)
+        known = parameter(written)
         key = known.key if known else written
         if key not in knobs or not (key in offered or (isinstance(value, int | float) and math.isfinite(value))):
             raise ValueError(DAMAGED)

@@ -9,12 +9,48 @@ from typing import Any
 
 from cuefem.cue import Material
 from cuefem.cue.materials import MATERIALS, material_name
+from cuefem.designer.ranges import RANGES, knobs_of, reach
 from cuefem.designer.unit_system import METRIC, UnitSystem
-from cuefem.parameters.parameter import PLACES, Place, knobs_of
+from cuefem.parameters.parameter import PARAMETERS
+from cuefem.parameters.parts import bore_mouth, taper_position
 from cuefem.scene import Scene
 from cuefem.scene.default_scene import GAMES
 
 Knobs = Mapping[str, Any]
+LABELS = {
+    "tip_diameter": "Tip diameter",
+    "taper_diameter": "Taper, at {exact}",
+    "butt_diameter": "Taper, at the end",
+    "bore_depth": "Bore depth, from {exact} on",
+    "bore_width": "Bore width",
+    "ferrule_length": "Ferrule length",
+    "ferrule_material": "Ferrule material",
+    "shaft_material": "Shaft material",
+    "leather": "Leather, E (30 soft, 140 medium, 360 hard)",
+    "tip_height": "Height of the leather",
+    "dome": "Radius of the dome",
+    "contact_time": "Contact time (hard–soft tip)",
+    "restitution": "Bounce of the tip, e",
+    "friction": "Friction of tip and ball",
+    "speed": "Speed of the cue",
+    "offset": "Offset b/R",
+    "body_mass": "Mass behind what is drawn",
+}
+HINTS = {
+    "taper_diameter": "From here the diameter changes evenly to the tip and to the end",
+    "ferrule_length": "A longer ferrule takes its length from the wood behind it: the cue stays as long",
+}
+ABSENT = {
+    "bore_depth": "the bore behind the tip is filled, so it stays as it is",
+    "ferrule_length": "no ferrule is drawn behind the tip, so there is no knob for it",
+    "contact_time": "the contact time follows from the leather tip, so there is no knob for it",
+}
+GROUPS = {
+    "Shaft": ("tip_diameter", "taper_diameter", "butt_diameter", "bore_depth", "bore_width", "ferrule_length"),
+    "Tip": ("leather", "tip_height", "dome", "contact_time", "restitution", "friction"),
+    "Stroke": ("speed", "offset"),
+    "Butt": ("body_mass",),
+}
 DECIMALS = 9  # shown at most: beyond them a slider's own rounding begins
 
 
@@ -84,16 +120,15 @@ class Choice:
 def sliders(scene: Scene, system: UnitSystem = METRIC) -> tuple[Slider, ...]:
     """The sliders that a scene has, in a system of units; each range includes the scene's own value."""
     knobs = knobs_of(scene)
-    made = (_slider(PLACES[key], scene, system) for key in knobs if PLACES[key].range)
+    made = (_slider(key, scene, system) for key in knobs if key in RANGES)
     return tuple(slider.reaching(slider.shown(knobs)) for slider in made)
 
 
-def _slider(place: Place, scene: Scene, system: UnitSystem) -> Slider:
+def _slider(key: str, scene: Scene, system: UnitSystem) -> Slider:
     cue = scene.shaft
-    x = place.at(cue) if place.at else 0.0
-    label = place.title.format(exact=system.length(x)) + (_raised(scene) if place.key == "restitution" else "")
-    unit, scale, *reach = place.reach(cue)  # type: ignore[misc]
-    return _in_system(replace(Slider(place.key, label, unit, scale, *reach), hint=place.hint), system)
+    x = bore_mouth(cue) if key == "bore_depth" else taper_position(cue)
+    label = LABELS[key].format(exact=system.length(x)) + (_raised(scene) if key == "restitution" else "")
+    return _in_system(Slider(key, label, *reach(key, cue), hint=HINTS.get(key, "")), system)
 
 
 def _raised(scene: Scene) -> str:
@@ -125,16 +160,14 @@ def _in_system(slider: Slider, system: UnitSystem) -> Slider:
 
 def groups() -> dict[str, tuple[str, ...]]:
     """The keys of the sliders under their headings."""
-    places = [place for place in PLACES.values() if place.group and place.range]
-    titles = dict.fromkeys(place.group for place in places)
-    return {title: tuple(place.key for place in places if place.group == title) for title in titles}
+    return GROUPS
 
 
 def choices(scene: Scene) -> tuple[Choice, ...]:
     """The materials that can be chosen in a scene."""
     own = knobs_of(scene)
-    offered = ((key, PLACES[key]) for key in own if PLACES[key].materials)
-    return tuple(Choice(key, place.words, _offered(place.materials, own[key])) for key, place in offered)
+    offered = ((key, PARAMETERS[key].materials) for key in own if PARAMETERS[key].materials)
+    return tuple(Choice(key, LABELS[key], _offered(materials, own[key])) for key, materials in offered)
 
 
 def _offered(names: tuple[str, ...], own: Material) -> dict[str, Material]:
@@ -145,4 +178,4 @@ def _offered(names: tuple[str, ...], own: Material) -> dict[str, Material]:
 def without(scene: Scene) -> list[str]:
     """Sentences about the parts of this scene that have no knob."""
     own = knobs_of(scene)
-    return [place.absent for place in PLACES.values() if place.absent and place.key not in own]
+    return [words for key, words in ABSENT.items() if key not in own]

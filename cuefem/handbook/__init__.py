@@ -90,7 +90,7 @@ def _every_effect() -> str:
 
 def _every_response() -> str:
     """The responses of studies as a table: name, unit in which people read it, what it is, and which is better."""
-    from cuefem.parameters.parameter import PLACES
+    from cuefem.parameters.parameter import PARAMETERS
     from cuefem.results.asking import asked
     from cuefem.results.quantities import TRADE
 
@@ -99,6 +99,6 @@ def _every_response() -> str:
         f"| {result.about or result.words} | {result.better} |"
         for name, result in asked().items()
     ]
-    places = ", ".join(f"`{known.name}`" for known in PLACES.values())
+    names = ", ".join(f"`{known.name}`" for known in PARAMETERS.values())
     table = "\n".join(["| response | unit | what it is | better |", "|---|---|---|---|", *rows])
-    return f"{table}\n\n## Places by name\n\n{places}.\n"
+    return f"{table}\n\n## Parameters by name\n\n{names}.\n"

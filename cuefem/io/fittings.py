@@ -13,7 +13,8 @@ from typing import Any, NamedTuple
 
 from cuefem.cue import SOFT, Cue, Material, Segment
 from cuefem.cue.materials import material as material_of
-from cuefem.parameters.parts import LONGEST_FERRULE, PARTS, SAME, Bore, Layout, split_at
+from cuefem.parameters.parameter import varied
+from cuefem.parameters.parts import LONGEST_FERRULE, SAME, Layout, split_at
 from cuefem.quantity.units import number
 from cuefem.scene import Scene
 
@@ -75,8 +76,7 @@ def with_shaft_of(thing: Any, name: str) -> Any:
     """The cue or scene with the shaft, and the tenon of its wood, of another material."""
     if isinstance(thing, Cue):
         return with_shaft_of(Scene(thing), name).cue
-    part = PARTS["woods"]
-    return part.write(thing, replace(part.read(thing), shaft=material_of(name)))
+    return varied(thing, {"shaft material": name})
 
 
 def _with_leather(cue: Cue, text: str) -> Cue:
@@ -164,10 +164,9 @@ def _bored(scene: Any, text: str) -> Any:
     first, second = (_length("bore", _WORDS.sub("", piece)) for piece in pieces)
     swapped = _DEEP.search(pieces[0]) or (first > second and not _DEEP.search(pieces[1]))
     width, depth = (second, first) if swapped else (first, second)
-    part = PARTS["drilling"]
-    if part.read(scene) is None:
+    if Layout.of(scene.shaft).bore is None:
         raise ValueError("bore must be left out: the one that is drawn is filled")
-    return part.write(scene, Bore(depth, width))
+    return varied(scene, {"bore depth": depth, "bore width": width})
 
 
 def _length(name: str, text: str) -> float:

@@ -24,7 +24,7 @@ from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, Measurement
 from cuefem.measurements.pendulum import Pendulum
 from cuefem.measurements.recording import Recording, combined, tones_of
 from cuefem.measurements.uncertain_parameters import Prior, names
-from cuefem.parameters.parameter import place
+from cuefem.parameters.parameter import parameter
 from cuefem.quantity.fields import Quantity, quantities
 from cuefem.scene import Scene
 
@@ -221,7 +221,7 @@ def _priors(path: Path, rows: Any, scene: Scene) -> Iterator[Prior]:
         for other in row:
             if other not in keys_of(Prior):
                 raise unknown_key(other, row[other], keys_of(Prior), file=str(path), key=key)
-        known = place(name)
+        known = parameter(name)
         if known and known.value(scene) is None:
             raise InputError(
                 path, "", f"uncertain parameters must be of this cue; got {name!r}, which it does not have"

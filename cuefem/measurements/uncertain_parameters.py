@@ -14,7 +14,7 @@ from typing import Annotated, Any
 
 from cuefem.cue import Material
 from cuefem.measurements.measurement_types import EndMass, Measurement, PivotLength, Setup, Squirt
-from cuefem.parameters.parameter import PLACES, Path, place, replaced
+from cuefem.parameters.parameter import PARAMETERS, Path, parameter, replaced
 from cuefem.quantity.fields import Quantity, check_fields
 from cuefem.results.uncertainty import model_error
 from cuefem.scene import Scene
@@ -58,7 +58,7 @@ class Prior:
 
     def __post_init__(self) -> None:
         check_fields(self)
-        if _key(self.name) not in (*PLACES, SQUIRT_MODEL):
+        if _key(self.name) not in (*PARAMETERS, SQUIRT_MODEL):
             raise ValueError(f"Prior.name must be one of {', '.join(names())}; got {self.name!r}")
         ends = (self.low is None) + (self.high is None)
         if ends == 1 or (ends == 0) == (self.spread is not None):
@@ -68,13 +68,13 @@ class Prior:
 
 
 def names() -> tuple[str, ...]:
-    """What can be uncertain: the places of a scene that hold a number, and the model's own error."""
-    return (*(known.name for known in PLACES.values() if not known.materials), SQUIRT_MODEL)
+    """What can be uncertain: the parameters of a scene that hold a number, and the model's own error."""
+    return (*(known.name for known in PARAMETERS.values() if not known.materials), SQUIRT_MODEL)
 
 
 def _key(name: str) -> str:
-    """The key of the place that a prior names; the name itself where it names no place."""
-    known = place(name)
+    """The key of the parameter that a prior names; the name itself where it names none."""
+    known = parameter(name)
     return known.key if known else name
 
 
@@ -87,7 +87,7 @@ def parameters_of(
     """
     asked = {_key(prior.name): prior for prior in priors}
     made = []
-    for key, known in PLACES.items():
+    for key, known in PARAMETERS.items():
         if known.spread is None and key not in asked:
             continue
         usual, prior = known.value(scene), asked.get(key)
@@ -101,10 +101,10 @@ def parameters_of(
             raise ValueError(
                 f"uncertain parameters must be above 0, for their logarithm is estimated; got {key}, {usual:g}"
             )
-        spread = (known.spread(scene) if callable(known.spread) else known.spread) or 0.0
+        spread = known.spread_in(scene) or 0.0
         middle, spread = _prior(prior, usual, spread)
         unit = known.quantity(scene).unit
-        made.append(UncertainParameter(known.name, known.words, unit, middle, spread, _on_scene(known.steps())))
+        made.append(UncertainParameter(known.name, known.label, unit, middle, spread, _on_scene(known.steps())))
     squirts = [measurement for measurement in measurements if isinstance(measurement, Squirt)]
     _, spread = _prior(asked.get(SQUIRT_MODEL), 1.0, model_error(scene))
     if any(isinstance(measurement, Squirt | PivotLength) for measurement in measurements):

@@ -1,9 +1,9 @@
-"""The one way to change a scene: its places, by name ("ferrule length") or by path ("cue.segments[0].tip_bore").
+"""The one way to change a scene: its parameters, by name ("ferrule length") or by path ("cue.segments[0].tip_bore").
 
-A place holds one number or one material. A path leads through fields; "[*]" stands for every item of a list, and it may
-begin at a part that the drawing tells (`cuefem.parameters.parts`), as in "wood.E". A name of `PLACES` stands for a
-path. Sweeps, optima, scatters, knobs, unknowns and the options of commands all derive from that table: an entry there
-is a new one in each of them.
+A parameter holds one number or one material. A path leads through fields; "[*]" stands for every item of a list, and it
+may begin at a part that the drawing tells (`cuefem.parameters.parts`), as in "wood.E". A name of `PARAMETERS` stands
+for a path or a part. Sweeps, optima, scatters, knobs, uncertain parameters and the options of commands all derive from
+that table: an entry there is a new one in each of them.
 """
 
 from __future__ import annotations
@@ -11,27 +11,31 @@ from __future__ import annotations
 import difflib
 import math
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cache
-from typing import Any, NamedTuple, get_args, get_type_hints
+from typing import Any, get_args, get_type_hints
 
 from cuefem.cue import Cue, LumpedCue, Material
-from cuefem.cue.materials import LEATHER_NAMES, MATERIALS, WOODS, material_name, table_name
+from cuefem.cue.materials import LEATHER_NAMES, MATERIALS, WOODS, table_name
 from cuefem.cue.materials import material as named_material
 from cuefem.parameters.parts import (
+    BORE_DEPTH,
+    BORE_WIDTH,
     BORED_WIDTH,
+    CONTACT_TIME_OF_SPRING,
+    FERRULE_LENGTH,
+    FERRULE_MATERIAL,
     GROWTH,
     PARTS,
-    Layout,
+    SHAFT_MATERIAL,
+    WEIGHT,
     Part,
-    bore_mouth,
-    deepest_bore,
+    diameter_at,
     main_material,
-    taper_at,
     taper_position,
 )
-from cuefem.quantity.fields import CONTACT_TIME, Quantity, quantities
+from cuefem.quantity.fields import Quantity, quantities
 from cuefem.quantity.units import number
 from cuefem.scene import Scene
 
@@ -49,47 +53,24 @@ _INSTEAD = {
 }
 
 
-class Range(NamedTuple):
-    """What a slider reaches from ``low`` to ``high`` in steps, and what may be typed, from ``least`` to ``most``.
-
-    All in a unit that people read; ``scale`` is one SI unit in it.
-    """
-
-    unit: str
-    scale: float
-    low: float
-    high: float
-    step: float
-    least: float
-    most: float
-
-
 @dataclass(frozen=True)
-class Place:
-    """A named place of scenes, declared once for all that vary it.
+class Parameter:
+    """A named parameter of scenes, declared once for all that vary it.
 
     Parameters
     ----------
     name
         As files and options write it, with blanks or underscores.
-    words
+    label
         What it is.
     path
         The path that it stands for; without one it is a part of its own:
     part
         how its value is read and written, and its quantity.
-    also
-        Other names.
-    group, label, at, absent, hint
-        The heading over its knob ("" for no knob) and the knob's label if that is not ``words``; "{exact}" in
-        it stands for ``at``, a position on the cue, m from the tip; what is said where a cue has no such place; what
-        its knob says of itself where one points at it.
-    range
-        Of the slider; it may depend on the cue.
     materials
         Those on offer, if it holds a material.
     spread
-        As an unknown of an estimate: the standard deviation of its logarithm; None if only a file makes it one.
+        As an uncertain parameter: the standard deviation of its logarithm; None if only a file makes it one.
     below
         Of a number that is usually at its upper bound: by what part of it less it may be, in a verdict's uncertainty.
     option, help
@@ -99,16 +80,9 @@ class Place:
     """
 
     name: str
-    words: str
+    label: str
     path: str = ""
     part: Part | None = None
-    also: tuple[str, ...] = ()
-    group: str = ""
-    label: str = ""
-    at: Callable[[Cue], float] | None = None
-    absent: str = ""
-    hint: str = ""
-    range: Range | Callable[[Cue], Range] | None = None
     materials: tuple[str, ...] = ()
     spread: float | Callable[[Scene], float | None] | None = None
     below: float | None = None
@@ -126,8 +100,18 @@ class Place:
         return _steps(self.path) if self.path else (self.name,)
 
     def value(self, scene: Scene) -> Any:
-        """What a scene has there; None if it has no such place, or an infinite number there."""
-        return _finite(value_at(scene, self.steps()))
+        """What a scene has there; None if it has no such parameter, or an infinite number there."""
+        value = value_at(scene, self.steps())
+        return None if isinstance(value, float) and not math.isfinite(value) else value
+
+    @property
+    def of_tip(self) -> bool:
+        """Whether it is the tip's, which two shafts may share."""
+        return self.path.startswith(("leather.", "tip.")) or self.part is CONTACT_TIME_OF_SPRING
+
+    def spread_in(self, scene: Scene) -> float | None:
+        """Its spread in a scene."""
+        return self.spread(scene) if callable(self.spread) else self.spread
 
     def quantity(self, scene: Scene) -> Quantity:
         """Unit and bounds of its number, and the names that stand for numbers."""
@@ -141,37 +125,27 @@ class Place:
         """What a name of its value sets, by paths; nothing if it is no such name."""
         return {(*self.steps()[:-1], field): v for field, v in (self.sets or {}).get(name.strip().lower(), {}).items()}
 
-    @property
-    def title(self) -> str:
-        """Its label on a page."""
-        return self.label or f"{self.words[0].upper()}{self.words[1:]}"
-
-    def reach(self, cue: Cue) -> Range | None:
-        """The range of its slider on a cue."""
-        return self.range(cue) if callable(self.range) else self.range
-
 
 # --- paths -------------------------------------------------------------------------------------
 
 
-def place(text: str) -> Place | None:
-    """The named place that a text names; None if it is a path."""
+def parameter(text: str) -> Parameter | None:
+    """The parameter that a text names; None if it is a path."""
     taper = _TAPER.fullmatch(text.strip())
     if taper:
         try:
             position = number(taper[1], "m")
         except ValueError:
             raise ValueError(f'must name a position such as "taper at 330 mm"; got {text!r}') from None
-        return Place(text.strip(), f"diameter {taper[1]} from the tip", part=taper_at(position))
-    key = re.sub(r"[\s._]+", "_", text.strip())
-    return PLACES.get(key) or next((known for known in PLACES.values() if key in known.also), None)
+        return Parameter(text.strip(), f"diameter {taper[1]} from the tip", part=diameter_at(lambda cue: position))
+    return PARAMETERS.get(re.sub(r"[\s._]+", "_", text.strip()))
 
 
 def _part(step: Step) -> Part | None:
     """The part that a path begins at; None if it begins at a field of scenes."""
     if step in PARTS or step in _FIELDS:
         return PARTS.get(str(step))
-    known = place(str(step))
+    known = parameter(str(step))
     return known.part if known else None
 
 
@@ -182,7 +156,7 @@ def _steps(text: str) -> Path:
     while start < len(text) or not text:
         step = _STEP.match(text, start)
         if not step:
-            close = difflib.get_close_matches(text, [known.name for known in PLACES.values()], n=3)
+            close = difflib.get_close_matches(text, [known.name for known in PARAMETERS.values()], n=3)
             hint = f"; did you mean {' or '.join(close)}?" if close else ""
             raise ValueError(f"must be a path such as cue.segments[0].tip_bore; got {text!r}{hint}")
         steps.append(step[1] or (step[2] if step[2] == "*" else int(step[2])))
@@ -191,13 +165,13 @@ def _steps(text: str) -> Path:
 
 
 def paths(scene: Scene, text: str) -> tuple[Path, ...]:
-    """The places of a scene that a name or a path names, "[*]" spelt out; ValueError if there is none.
+    """The paths of a scene that a name or a path names, "[*]" spelt out; ValueError if there is none.
 
-    The error suggests similar names. A place holds a number or a whole material.
+    The error suggests similar names. Each leads to a number or a whole material.
     """
-    known = place(text)
+    known = parameter(text)
     if known is not None and value_at(scene, known.steps()) is None and quantity_at(scene, known.steps()) is None:
-        raise ValueError(f"must name a place of the scene; got {text!r}, which this scene does not have")
+        raise ValueError(f"must name a parameter of the scene; got {text!r}, which this scene does not have")
     ends: list[tuple[Path, Any]] = [((), scene)]
     for step in known.steps() if known else _steps(text):
         ends = [end for path, value in ends for end in _below(path, value, step, text)]
@@ -231,7 +205,7 @@ def _meant(here: str, name: str, names: list[str], *, top: bool) -> str:
     """Words that suggest similar names, or all names."""
     if not names:
         return f", where {here} has no fields"
-    offered = [*names, *(known.name for known in PLACES.values()), *PARTS] if top else names
+    offered = [*names, *(known.name for known in PARAMETERS.values()), *PARTS] if top else names
     close = difflib.get_close_matches(name, offered, n=3, cutoff=0.5)
     return f"; did you mean {' or '.join(close)}?" if close else f", where {here} has {', '.join(names)}"
 
@@ -291,45 +265,7 @@ def _kinds(kind: type) -> dict[str, tuple[Any, ...]]:
     return {name: (hint, *get_args(hint)) for name, hint in get_type_hints(kind).items()}
 
 
-def named_pieces(scene: Scene, of: Sequence[Path]) -> list[str]:
-    """The pieces of a cue that hold some paths, each with its material and extent from the tip."""
-    cue = scene.shaft
-    layout = Layout.of(cue)
-    parts = {"ferrule": layout.ferrule, "bore": layout.bore or range(0), "drilling": layout.bore or range(0)}
-    woods = {"ferrule": layout.ferrule, "shaft": layout.shaft}
-    found = set[int]()
-    for path in of:
-        if path[:2] == ("cue", "segments") and len(path) > 2:
-            found.add(int(path[2]))
-        else:
-            found |= {*(woods.get(str(path[-1]), ()) if path[0] == "woods" else parts.get(str(path[0]), ()))}
-    runs = list[list[int]]()
-    for i in sorted(found):
-        if runs and runs[-1][-1] == i - 1 and _piece_name(cue, layout, i) == _piece_name(cue, layout, i - 1):
-            runs[-1].append(i)
-        else:
-            runs.append([i])
-    ends = ((cue.nodes[run[0]], cue.nodes[run[-1] + 1]) for run in runs)
-    return [
-        f"{_piece_name(cue, layout, run[0])}, {1e3 * first:.5g} to {1e3 * last:.5g} mm"
-        for run, (first, last) in zip(runs, ends, strict=True)
-    ]
-
-
-def _piece_name(cue: Cue, layout: Layout, i: int) -> str:
-    """A segment's part and material."""
-    segment = cue.segments[i]
-    hollow = "bored " if layout.bore and i in layout.bore else ""
-    part = "ferrule" if i in layout.ferrule else "shaft" if i in layout.shaft else f"segment {i}"
-    return f"{hollow}{part} of {material_name(segment.material)}"
-
-
 # --- changes -------------------------------------------------------------------------------------
-
-
-def _finite(value: Any) -> Any:
-    """The value; None for infinity."""
-    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 @dataclass(frozen=True)
@@ -349,14 +285,14 @@ class _Draft:
 
 
 def varied(scene: Scene, changes: Mapping[str, Any]) -> Scene:
-    """A scene with other values at some places: all at once, then checked as when it is made.
+    """A scene with other values of some parameters: all at once, then checked as when it is made.
 
     Parameters
     ----------
     scene : Scene
         The scene as it is; it stays.
     changes : mapping
-        SI numbers, materials, or names of materials and leathers, by the name or path of their places.
+        SI numbers, materials, or names of materials and leathers, by the name or path of their parameters.
 
     Returns
     -------
@@ -366,7 +302,7 @@ def varied(scene: Scene, changes: Mapping[str, Any]) -> Scene:
     Raises
     ------
     ValueError
-        If a name is of no place of this scene, or no such scene can be made.
+        If a name is of no parameter of this scene, or no such scene can be made.
 
     Examples
     --------
@@ -380,7 +316,7 @@ def varied(scene: Scene, changes: Mapping[str, Any]) -> Scene:
     """
     values = dict[Path, Any]()
     for text, value in changes.items():
-        known = place(text)
+        known = parameter(text)
         beside: dict[Path, Any] = known.meant(value) if known and isinstance(value, str) else {}
         for path in paths(scene, text):
             whole = is_material(scene, path) and isinstance(value, str)
@@ -390,18 +326,20 @@ def varied(scene: Scene, changes: Mapping[str, Any]) -> Scene:
 
 def replaced(scene: Scene, changes: Mapping[Path, Any]) -> Scene:
     """A scene with the values at some paths replaced: all at once, then checked as when it is made."""
-    inside: dict[Step, dict[Path, Any]] = {}
+    below: dict[str, dict[Path, Any]] = {}
     for (head, *rest), value in changes.items():
-        if head not in _FIELDS:
-            inside.setdefault(head, {})[tuple(rest)] = value
+        below.setdefault(str(head), {})[tuple(rest)] = value
     draft = _Draft(**{name: getattr(scene, name) for name in _FIELDS})
-    draft = with_fields(draft, {path: value for path, value in changes.items() if path[0] not in inside})
-    parts = {str(head): part for head in (*PARTS, *inside) if (part := _part(head))}
-    stay = {name for head in inside for name in parts[str(head)].keeps if name not in inside}
+    draft = with_fields(draft, {path: value for path, value in changes.items() if path[0] in _FIELDS})
+    heads = (*(known.name for known in PARAMETERS.values()), *PARTS, *below)
+    parts = {head: part for head in heads if (part := _part(head))}  # in the order in which they are written
     wanted = {
-        head: with_fields(None if () in below else parts[str(head)].read(draft), below)
-        for head, below in inside.items()
-    } | {name: parts[name].read(draft) for name in stay}
+        head: with_fields(None if () in inner else parts[head].read(draft), inner)
+        for head, inner in below.items()
+        if head in parts
+    }
+    stay = {name for head in wanted for name in parts[head].keeps} - {*wanted}
+    wanted |= {name: parts[name].read(draft) for name in stay}
     for head, part in parts.items():
         if wanted.get(head) is not None:
             draft = part.write(draft, wanted[head])
@@ -430,22 +368,6 @@ def with_fields(thing: Any, changes: Mapping[Path, Any]) -> Any:
 # --- the table -------------------------------------------------------------------------------------
 
 
-def knobs_of(scene: Scene) -> dict[str, Any]:
-    """The values of all places that have a knob, by their keys; ValueError for a lumped cue, which has no shape."""
-    _ = scene.shaft
-    knobs = {known.key: known.steps() for known in PLACES.values() if known.group}
-    tops = {head: value_at(scene, (head,)) for head in dict.fromkeys(path[0] for path in knobs.values())}  # each once
-    values = {key: _finite(_inside(tops[head], tuple(rest))) for key, (head, *rest) in knobs.items()}
-    return {key: value for key, value in values.items() if value is not None}
-
-
-def turned(scene: Scene, knobs: Mapping[str, Any]) -> Scene:
-    """The scene with its knobs turned, or the scene itself if none was. ValueError if no such cue can be made."""
-    own = knobs_of(scene)
-    changes = {PLACES[key].steps(): value for key, value in knobs.items() if value != own[key]}
-    return replaced(scene, changes) if changes else scene
-
-
 def _wood_spread(name: str) -> Callable[[Scene], float | None]:
     """Half the width of the range in which real pieces of the wood lie, in logarithms; None for a weighed density."""
 
@@ -459,164 +381,85 @@ def _wood_spread(name: str) -> Callable[[Scene], float | None]:
     return spread
 
 
-def _spring_time(scene: Any) -> float | None:
-    return None if scene.contact_terms.tip is not None else float(scene.contact_time)
-
-
-def _mm(low: float, high: float, step: float, least: float, most: float) -> Range:
-    return Range("mm", 1e3, low, high, step, least, most)
-
-
-def _positions(least_end: float) -> Callable[[Cue], Range]:
-    """Along the cue, up to so many mm from its end; the slider stops 10 mm before it."""
-    return lambda cue: _mm(20, round(1e3 * cue.length - 10), 1, 1, round(1e3 * cue.length - least_end))
-
-
 SHAFTS = (*WOODS, "carbon fibre")
 FERRULES = tuple(name for name in MATERIALS if name not in (*SHAFTS, "foam", "leather"))
 _LEATHER_LOW, _LEATHER_HIGH = MATERIALS["leather"].ranges["E"]
-_BEHIND = "Joint, bridge and butt"
 
-PLACES: dict[str, Place] = {
+# Parts are written in this order: the weight first, that of the shaft before other changes; materials last, because the
+# ferrule and the shaft are told by theirs.
+PARAMETERS: dict[str, Parameter] = {
     known.key: known
     for known in (
-        Place("E", "E of the wood", "wood.E", spread=_wood_spread("E")),
-        Place("G", "G of the wood", "wood.G", spread=_wood_spread("G")),
-        Place("rho", "density of the wood", "wood.rho", spread=_wood_spread("rho")),
-        Place("bore", "diameter of the bore", part=BORED_WIDTH, spread=math.log(7.5 / 6) / 2),  # meshes/README.md
-        Place("taper", "diameter gained to the joint", part=GROWTH),
-        # half the logarithm of E's and rho's variation in one wood (22 and 10 %, `cuefem.materials`), in quadrature
-        Place("wave speed", "speed of axial waves in the butt", "waves.wave_speed", spread=0.12),
-        Place(
-            *("shaft mass", "weight of the shaft as drawn, with its tip", "weight.mass"),
+        Parameter("E", "E of the wood", "wood.E", spread=_wood_spread("E")),
+        Parameter("G", "G of the wood", "wood.G", spread=_wood_spread("G")),
+        Parameter("rho", "density of the wood", "wood.rho", spread=_wood_spread("rho")),
+        # half the logarithm of E's and rho's variation in one wood (22 and 10 %, materials.toml), in quadrature
+        Parameter("wave speed", "speed of axial waves in the butt", "waves.wave_speed", spread=0.12),
+        Parameter(
+            *("shaft mass", "weight of the shaft as drawn, with its tip"),
+            part=WEIGHT,
             option="MASS",
             help='Weight of the shaft as FILE draws it, with its tip, e.g. "112 g": sets the density of its wood.',
         ),
-        Place(
-            *("tip diameter", "Tip diameter", "diameters.tip"),
-            group="Shaft",
-            range=_mm(8, 15, 0.05, 4, 30),
-        ),
-        Place(
-            *("taper diameter", "Taper, at {exact}", "diameters.taper"),
-            group="Shaft",
-            hint="From here the diameter changes evenly to the tip and to the end",
-            at=taper_position,
-            range=_mm(8, 20, 0.05, 4, 60),
-        ),
-        Place(
-            *("butt diameter", "Taper, at the end", "diameters.butt"),
-            group="Shaft",
-            range=_mm(12, 34, 0.1, 4, 60),
-        ),
-        Place(
-            *("bore depth", "Bore depth, from {exact} on", "drilling.depth"),
-            group="Shaft",
-            at=bore_mouth,
-            absent="the bore behind the tip is filled, so it stays as it is",
-            range=lambda cue: _mm(0, round(min(300.0, 1e3 * deepest_bore(cue)), 1), 1, 0, 1e3 * deepest_bore(cue)),
-        ),
-        Place("bore width", "Bore width", "drilling.width", group="Shaft", range=_mm(1, 11, 0.1, 0.1, 30)),
-        Place(
-            *("ferrule length", "Ferrule length", "ferrule.length"),
-            group="Shaft",
-            hint="A longer ferrule takes its length from the wood behind it: the cue stays as long",
-            absent="no ferrule is drawn behind the tip, so there is no knob for it",
-            range=_mm(2, 40, 0.5, 0.5, 60),
-        ),
-        Place("ferrule material", "Ferrule material", "woods.ferrule", group="Shaft", materials=FERRULES),
-        Place("shaft material", "Shaft material", "woods.shaft", group="Shaft", materials=SHAFTS),
-        Place(
+        Parameter("ferrule length", "length of the ferrule", part=FERRULE_LENGTH),
+        Parameter("tip diameter", "diameter at the tip", part=diameter_at(lambda cue: 0.0)),
+        Parameter("taper diameter", "diameter where the taper begins", part=diameter_at(taper_position)),
+        Parameter("butt diameter", "diameter at the end", part=diameter_at(lambda cue: cue.length)),
+        Parameter("taper", "diameter gained to the joint", part=GROWTH),
+        Parameter("bore depth", "depth of the bore", part=BORE_DEPTH),
+        Parameter("bore width", "width of the bore", part=BORE_WIDTH),
+        Parameter("bore", "diameter of the bore", part=BORED_WIDTH, spread=math.log(7.5 / 6) / 2),  # meshes/README.md
+        Parameter(
             *("leather", "E of the leather", "leather.E"),
-            group="Tip",
-            label="Leather, E (30 soft, 140 medium, 360 hard)",
-            range=Range("MPa", 1e-6, 20, 500, 5, 1, 20_000),
             spread=math.log(_LEATHER_HIGH / _LEATHER_LOW) / 2,
             option="LEATHER",
             help='Its leather: soft, medium, hard, a tip of `cuefem parts`, or its E, e.g. "140 MPa".',
             sets=LEATHER_NAMES,
         ),
-        Place(
+        Parameter(
             *("tip height", "height of the tip", "leather.height"),
-            group="Tip",
-            label="Height of the leather",
-            range=_mm(2, 12, 0.1, 0.5, 40),
             spread=0.1,
             option="LENGTH",
             help='Height of the leather tip, e.g. "6 mm".',
         ),
-        Place(
+        Parameter(
             *("dome", "radius of the dome", "leather.dome_radius"),
-            also=("tip_dome",),
-            group="Tip",
-            label="Radius of the dome",
-            range=_mm(6, 20, 0.1, 3, 500),
             spread=0.1,  # a dime's 8.95 to a nickel's 10.6 mm
             option="RADIUS",
             help='Radius of its dome: nickel, dime, flat or a length, e.g. "9.5 mm".',
         ),
-        Place(
+        Parameter(
             *("surface restitution", "restitution along the leather's surface", "leather.surface_restitution"),
             below=0.05,  # nobody measured it; 0.9 is worth 7 % of squirt, and a robot's has it nearer to 1
         ),
-        Place(
-            *("contact time", "contact time"),
-            part=Part(
-                _spring_time, lambda scene, value: with_fields(scene, {("tip", "contact_time"): value}), CONTACT_TIME
-            ),
-            group="Tip",
-            label="Contact time (hard–soft tip)",
-            absent="the contact time follows from the leather tip, so there is no knob for it",
-            range=Range("ms", 1e3, 0.6, 3, 0.01, 0.2, 20),
-            spread=0.1,  # leather 1.0 to 1.2 ms
-        ),
-        Place(
-            *("restitution", "Bounce of the tip, e", "tip.restitution"),
-            group="Tip",
-            range=Range("", 1.0, 0.5, 0.95, 0.01, 0, 1),
+        # leather 1.0 to 1.2 ms
+        Parameter("contact time", "contact time", part=CONTACT_TIME_OF_SPRING, spread=0.1),
+        Parameter(
+            *("restitution", "restitution of the tip", "tip.restitution"),
             option="E",
             help="Coefficient of restitution of the tip alone, in [0, 1]; a cue's 0.73 is about 0.6 of its tip's.",
         ),
-        Place(
-            *("friction", "Friction of tip and ball", "tip.friction"),
-            group="Tip",
-            range=Range("", 1.0, 0.2, 1.2, 0.01, 0.01, 10),
+        Parameter(
+            *("friction", "friction of tip and ball", "tip.friction"),
             option="MU",
             help="Coefficient of friction of tip and ball.",
         ),
-        Place(
-            *("speed", "Speed of the cue", "stroke.speed"),
-            group="Stroke",
-            range=Range("m/s", 1.0, 0.3, 12, 0.1, 0.01, 40),
+        Parameter(
+            *("speed", "speed of the cue", "stroke.speed"),
             option="SPEED",
             help='Speed of the cue, e.g. "3 m/s".',
         ),
-        Place(
-            *("offset", "Offset b/R", "stroke.offset"),
-            group="Stroke",
-            range=Range("", 1.0, 0, 0.9, 0.01, -0.95, 0.95),
+        Parameter(
+            *("offset", "offset b/R", "stroke.offset"),
             option="B/R",
             help='How far off centre the tip hits: in ball radii, in (-1, 1), or a length, e.g. "8 mm".',
         ),
-        Place(
-            *("joint compliance", "Joint bends", "joint.rotational_compliance"),
-            group=_BEHIND,
-            hint="How far the joint gives under a torque: at 0 it is stiff",
-            range=Range("mrad/(N m)", 1e3, 0, 5, 0.05, 0, 100),
-        ),
-        Place("joint position", "Joint at", "joint.position", group=_BEHIND, range=_positions(10)),
-        Place(
-            *("bridge stiffness", "Bridge hand holds", "bridge.stiffness"),
-            group=_BEHIND,
-            range=Range("N/mm", 1e-3, 0, 30, 0.5, 0, 1000),
-        ),
-        Place("bridge position", "Bridge at", "bridge.position", group=_BEHIND, range=_positions(1)),
-        Place(
-            *("body mass", "Mass behind what is drawn", "cue.body_mass"),
-            group=_BEHIND,
-            range=Range("g", 1e3, 0, 700, 5, 0, 5000),
+        Parameter(
+            *("body mass", "mass behind what is drawn", "cue.body_mass"),
             option="MASS",
             help='Mass of the cue behind FILE\'s segments, e.g. "420 g".',
         ),
+        Parameter("ferrule material", "material of the ferrule", part=FERRULE_MATERIAL, materials=FERRULES),
+        Parameter("shaft material", "material of the shaft", part=SHAFT_MATERIAL, materials=SHAFTS),
     )
 }

@@ -2,33 +2,29 @@
 
 - The leather that is drawn is the soft material at the tip. The ferrule is the segment behind it, if that is short and
   of another material than the segment that follows. The shaft is all that follows, up to the next change of material.
-- A diameter is set at three positions: at the tip, `TAPER_AT` behind it, and at the end of the drawing. What is added
-  at one of them becomes less and less towards the next, so that every segment stays a cone.
+- A diameter changes at one position, and linearly less towards both ends of the drawing; one at an end, towards
+  `taper_position`. Every segment stays a cone.
 - A longer ferrule takes its length from the wood behind it and ends flush with that wood. The cue stays as long as it
   was, the cone of the shaft stays where it was, and the bore behind the ferrule stays as deep as it was.
 - The bore is the empty one behind the leather, or behind the ferrule if the ferrule sits on a tenon. Its depth is
   counted from where it begins. A bore that is filled cannot be varied.
-- The joint is the first `Joint` among the effects, the bridge the first soft `Support`.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Annotated, Any, NamedTuple
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from cuefem.cue import SOFT, Cue, Material, Segment
-from cuefem.effects import AxialWaves, Effect, Joint, LeatherTip, Support
 from cuefem.effects.on_cue import MOST_DENSITY
-from cuefem.quantity.fields import DIAMETER, LENGTH, Quantity
+from cuefem.quantity.fields import CONTACT_TIME, DIAMETER, LENGTH, Quantity
 
 LONGEST_FERRULE = 0.06  # m
 TAPER_AT = 0.3302  # m, 13 in: so far pool shafts stay nearly straight; half the length of a cue shorter than twice that
-BRIDGE_AT = 0.2032  # m, 8 in
-USUAL_BORE = 0.006  # m, the width of a new bore
+USUAL_BORE = 0.006  # m, the width of a new bore, where the front is wide enough
 LEAST_DENSITY = 20.0  # kg/m3, foam's: of a material that a weight tells
 SAME = 1e-9  # relative to a length: positions closer than this are the same
 
@@ -36,53 +32,14 @@ SAME = 1e-9  # relative to a length: positions closer than this are the same
 class Part(NamedTuple):
     """A part of a scene that no field holds.
 
-    read: what the scene has there: a dataclass, a material or, with its ``quantity``, a number; None if it has no such
-    part. write: the scene with another one in its place. keeps: parts that stay as they were where this one changes.
+    read: what the scene has there: an effect, a material or, with its ``quantity``, a number; None if it has no such
+    part. write: the scene with another one in its place. keeps: parameters that stay as they were where it changes.
     """
 
     read: Callable[[Any], Any]
     write: Callable[[Any, Any], Any]
     quantity: Quantity | None = None
     keeps: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True)
-class Ferrule:
-    """Its length, m."""
-
-    length: Annotated[float, LENGTH]
-
-
-@dataclass(frozen=True)
-class Diameters:
-    """Outer diameters at the tip, at `taper_position` and at the end of the drawing, m."""
-
-    tip: Annotated[float, DIAMETER]
-    taper: Annotated[float, DIAMETER]
-    butt: Annotated[float, DIAMETER]
-
-
-@dataclass(frozen=True)
-class Bore:
-    """Its depth from its mouth, and its width, m; a cue without a bore has one of no depth."""
-
-    depth: Annotated[float, Quantity("m", "[0, 1000]")]
-    width: Annotated[float, DIAMETER]
-
-
-@dataclass(frozen=True)
-class Woods:
-    """The materials of the ferrule, if there is one, and of the shaft with its tenon."""
-
-    ferrule: Material | None
-    shaft: Material
-
-
-@dataclass(frozen=True)
-class Weight:
-    """The mass of all that is drawn, a leather tip included, kg."""
-
-    mass: Annotated[float, Quantity("kg", "(0, 100]")]
 
 
 class Layout(NamedTuple):
@@ -145,7 +102,7 @@ def outer_diameter(cue: Cue, x: float) -> float:
     """Outer diameter at x m from the tip; at a jump that of the butt side."""
     i = min(int(np.searchsorted(cue.nodes, x, side="right")) - 1, len(cue.segments) - 1)
     segment = cue.segments[i]
-    t = (x - cue.nodes[i]) / segment.length
+    t = 1.0 if x == cue.length else (x - cue.nodes[i]) / segment.length
     return float(segment.tip_diameter + (segment.butt_diameter - segment.tip_diameter) * t)
 
 
@@ -168,12 +125,8 @@ def _with_materials(cue: Cue, new: Mapping[Any, Any]) -> Cue:
     )
 
 
-def main_material(cue: Cue, segment: int | None = None) -> Material:
-    """The material that fills most of the cue's length, or that of a segment, 0 at the tip. ValueError beyond."""
-    if segment is not None:
-        if not 0 <= segment < len(cue.segments):
-            raise ValueError(f"segment must be in [0, {len(cue.segments) - 1}], 0 at the tip; got {segment}")
-        return cue.segments[segment].material
+def main_material(cue: Cue) -> Material:
+    """The material that fills most of the cue's length."""
     lengths: dict[Material, float] = {}
     for s in cue.segments:
         lengths[s.material] = lengths.get(s.material, 0.0) + s.length
@@ -210,32 +163,35 @@ def with_shaft_mass(cue: Cue, mass: float) -> Cue:
 def _tip_mass(scene: Any) -> float:
     """The mass of a leather tip in front of what is drawn, kg."""
     leather = _leather(scene)
-    return 0.0 if leather is None else leather.mass_on(scene.shaft)
+    return 0.0 if leather is None else float(leather.mass_on(scene.shaft))
 
 
-def _with_weight(scene: Any, new: Weight) -> Any:
-    return replace(scene, cue=with_shaft_mass(scene.shaft, new.mass - _tip_mass(scene)))
+WEIGHT = Part(
+    lambda scene: scene.shaft.shaft_mass + _tip_mass(scene),
+    lambda scene, mass: replace(scene, cue=with_shaft_mass(scene.shaft, mass - _tip_mass(scene))),
+    Quantity("kg", "(0, 100]"),
+)
 
 
 # --- the ferrule, and what ferrule and shaft are made of ----------------------------------
 
 
-def _ferrule(scene: Any) -> Ferrule | None:
+def _ferrule_length(scene: Any) -> float | None:
     ferrule = Layout.of(scene.shaft).ferrule
-    return Ferrule(float(np.ptp(scene.shaft.nodes[[ferrule.start, ferrule.stop]]))) if ferrule else None
+    return float(np.ptp(scene.shaft.nodes[[ferrule.start, ferrule.stop]])) if ferrule else None
 
 
-def _with_ferrule(scene: Any, new: Ferrule) -> Any:
-    segments, old, at = list(scene.shaft.segments), _ferrule(scene), Layout.of(scene.shaft).ferrule.stop
-    if old is None or new == old:
+def _with_ferrule_length(scene: Any, length: float) -> Any:
+    segments, old, at = list(scene.shaft.segments), _ferrule_length(scene), Layout.of(scene.shaft).ferrule.stop
+    if old is None or length == old:
         return scene
     ferrule, behind = segments[at - 1], segments[at]
-    more = new.length - old.length
+    more = length - old
     if not -ferrule.length < more < behind.length:
-        least, most = (1e3 * (old.length + by) for by in (-ferrule.length, behind.length))
+        least, most = (1e3 * (old + by) for by in (-ferrule.length, behind.length))
         raise ValueError(
             f"the ferrule must be more than {least:.6g} and less than {most:.6g} mm long, as its neighbours allow; "
-            f"got {1e3 * new.length:.6g} mm"
+            f"got {1e3 * length:.6g} mm"
         )
     onward = -more / behind.length  # of the cone behind the ferrule, which keeps its line
     outer = behind.tip_diameter + (behind.tip_diameter - behind.butt_diameter) * onward
@@ -246,38 +202,40 @@ def _with_ferrule(scene: Any, new: Ferrule) -> Any:
     return with_segments(scene, segments)
 
 
-def _woods(scene: Any) -> Woods:
-    layout, segments = Layout.of(scene.shaft), scene.shaft.segments
-    ferrule = segments[layout.ferrule.start].material if layout.ferrule else None
-    return Woods(ferrule, segments[layout.shaft.start].material)
+FERRULE_LENGTH = Part(_ferrule_length, _with_ferrule_length, LENGTH, ("bore depth", "bore width"))
 
 
-def _with_woods(scene: Any, new: Woods) -> Any:
-    """Set the ferrule's and the shaft's material; a tenon of the shaft's wood changes with the shaft."""
+def _material_of(part: str) -> Callable[[Any], Material | None]:
+    def read(scene: Any) -> Material | None:
+        pieces: range = getattr(Layout.of(scene.shaft), part)
+        return scene.shaft.segments[pieces.start].material if pieces else None
+
+    return read
+
+
+def _with_ferrule_material(scene: Any, new: Material) -> Any:
+    ferrule = Layout.of(scene.shaft).ferrule
+    segments = scene.shaft.segments
+    return with_segments(scene, [replace(s, material=new) if i in ferrule else s for i, s in enumerate(segments)])
+
+
+def _with_shaft_material(scene: Any, new: Material) -> Any:
+    """Set the shaft's material; a tenon of its wood changes with it."""
     layout, segments = Layout.of(scene.shaft), list(scene.shaft.segments)
     old = segments[layout.shaft.start].material
+    if new == old:
+        return scene
     for i in layout.shaft:
-        segments[i] = replace(segments[i], material=new.shaft)
+        segments[i] = replace(segments[i], material=new)
     for i in layout.ferrule:
-        core = new.shaft if segments[i].core == old else segments[i].core
-        segments[i] = replace(segments[i], material=new.ferrule or segments[i].material, core=core)
-    made = with_segments(scene, segments)
-    return made if new.shaft == old else replace(made, cue=replace(made.cue, weighed=False))
+        segments[i] = replace(segments[i], core=new if segments[i].core == old else segments[i].core)
+    return replace(scene, cue=replace(scene.shaft, segments=tuple(segments), weighed=False))
 
+
+FERRULE_MATERIAL = Part(_material_of("ferrule"), _with_ferrule_material)
+SHAFT_MATERIAL = Part(_material_of("shaft"), _with_shaft_material)
 
 # --- the taper -------------------------------------------------------------------------------------
-
-
-def _diameters(scene: Any) -> Diameters:
-    cue, segments = scene.shaft, scene.shaft.segments
-    middle = outer_diameter(cue, taper_position(cue))
-    return Diameters(segments[0].tip_diameter, middle, segments[-1].butt_diameter)
-
-
-def _with_diameters(scene: Any, new: Diameters) -> Any:
-    cue, old = scene.shaft, _diameters(scene)
-    more = [new.tip - old.tip, new.taper - old.taper, new.butt - old.butt]
-    return _grown(scene, [0.0, taper_position(cue), cue.length], more) if any(more) else scene
 
 
 def _grown(scene: Any, positions: Sequence[float], more: Sequence[float]) -> Any:
@@ -296,15 +254,18 @@ def _grown(scene: Any, positions: Sequence[float], more: Sequence[float]) -> Any
     return with_segments(scene, [grown(segment, float(x)) for segment, x in zip(cue.segments, cue.nodes, strict=False)])
 
 
-def taper_at(x: float) -> Part:
-    """The outer diameter at x m from the tip; those at the two ends stay."""
+def diameter_at(position: Callable[[Cue], float]) -> Part:
+    """The outer diameter at a position, m from the tip, which moves alone: towards the ends the rest stays as it is."""
 
     def read(scene: Any) -> float | None:
-        return outer_diameter(scene.shaft, x) if 0 < x < scene.shaft.length else None
+        x = position(scene.shaft)
+        return outer_diameter(scene.shaft, x) if 0 <= x <= scene.shaft.length else None
 
     def write(scene: Any, value: float) -> Any:
-        cue = scene.shaft
-        return _grown(scene, [0.0, x, cue.length], [0.0, value - outer_diameter(cue, x), 0.0])
+        cue, x = scene.shaft, position(scene.shaft)
+        more = value - outer_diameter(cue, x)
+        knots = [0.0, x if 0 < x < cue.length else taper_position(cue), cue.length]
+        return _grown(scene, knots, [more if knot == x else 0.0 for knot in knots]) if more else scene
 
     return Part(read, write, DIAMETER)
 
@@ -328,29 +289,29 @@ GROWTH = Part(_growth, _with_growth, DIAMETER)
 # --- the bore -------------------------------------------------------------------------------------
 
 
-def _bore(scene: Any) -> Bore | None:
+def _bore(scene: Any) -> tuple[float, float] | None:
+    """Depth from its mouth and width, m; of a cue without a bore, no depth and the width of a new one."""
     cue, bore = scene.shaft, Layout.of(scene.shaft).bore
     if bore is None:
         return None
-    width = _width(cue.segments[bore.start]) if bore else USUAL_BORE
-    return Bore(float(cue.nodes[bore.stop] - cue.nodes[bore.start]), width)
+    new = min(USUAL_BORE, 0.9 * outer_diameter(cue, bore_mouth(cue)))
+    return float(cue.nodes[bore.stop] - cue.nodes[bore.start]), _width(cue.segments[bore.start]) if bore else new
 
 
-def _with_bore(scene: Any, new: Bore) -> Any:
-    """The bore as deep and wide as ``new``: its shape is widened, and continued as wide as it ends."""
-    cue = scene.shaft
-    bore, deepest, near = Layout.of(cue).bore, deepest_bore(cue), SAME * cue.length
-    if bore is None:
+def _with_bore(scene: Any, depth: float | None = None, width: float | None = None) -> Any:
+    """The bore with another depth or width: its shape is widened, and continued as wide as it ends."""
+    cue, old = scene.shaft, _bore(scene)
+    if old is None or (depth in (None, old[0]) and width in (None, old[1])):
         return scene
-    mouth, old_end = float(cue.nodes[bore.start]), float(cue.nodes[bore.stop])
-    width = _width(cue.segments[bore.start]) if bore else new.width
-    if abs(new.depth - (old_end - mouth)) <= near and new.width == width:
-        return scene
-    if new.depth > deepest + near:
-        raise ValueError(f"the bore must be at most {1e3 * deepest:g} mm deep; got {1e3 * new.depth:g} mm")
-    wider = new.width / width if width else 1.0
-    onward = wider * cue.segments[bore.stop - 1].butt_bore if bore else new.width
-    end = mouth + min(new.depth, deepest)
+    depth, new_width = old[0] if depth is None else depth, old[1] if width is None else width
+    bore, deepest, near = Layout.of(cue).bore or range(0), deepest_bore(cue), SAME * cue.length
+    mouth = bore_mouth(cue)
+    old_end = mouth + old[0]
+    if depth > deepest + near:
+        raise ValueError(f"the bore must be at most {1e3 * deepest:g} mm deep; got {1e3 * depth:g} mm")
+    wider = new_width / old[1]
+    onward = wider * cue.segments[bore.stop - 1].butt_bore if bore else new_width
+    end = mouth + min(depth, deepest)
 
     def bored(segment: Segment, start: float) -> Segment:
         was, is_now = (mouth - near <= start < stop - near for stop in (old_end, end))
@@ -401,65 +362,63 @@ def _with_bored_width(scene: Any, value: float) -> Any:
 
 BORED_WIDTH = Part(_bored_width, _with_bored_width, DIAMETER)
 
-# --- what acts on the cue, and the tip ----------------------------------------------------
+
+def _of_bore(which: int) -> Callable[[Any], float | None]:
+    def read(scene: Any) -> float | None:
+        bore = _bore(scene)
+        return None if bore is None else bore[which]
+
+    return read
 
 
-def _bridge(scene: Any) -> Support:
-    """The scene's first soft support across the cue; without one, a hand that does not hold it, 8 in behind the tip."""
-    own = (e for e in scene.effects if isinstance(e, Support) and math.isfinite(e.stiffness))
-    return next(own, Support(min(BRIDGE_AT, 0.5 * scene.shaft.length), 0.0))
+BORE_DEPTH = Part(_of_bore(0), lambda scene, depth: _with_bore(scene, depth=depth), Quantity("m", "[0, 1000]"))
+BORE_WIDTH = Part(_of_bore(1), lambda scene, width: _with_bore(scene, width=width), DIAMETER)
+
+# --- the tip, and whole materials ------------------------------------------------------------
 
 
-def _joint(scene: Any) -> Joint:
-    """The scene's first joint; without one, a stiff one at the back end of the shaft's material or inside the cue."""
-    own = next((effect for effect in scene.effects if isinstance(effect, Joint)), None)
-    if own is not None:
-        return own
-    cue: Cue = scene.shaft
-    back = float(cue.nodes[Layout.of(cue).shaft.stop])
-    return Joint(back if back < 0.99 * cue.length else 0.9 * cue.length)
+def _leather(scene: Any) -> Any:
+    """The effect that is a whole leather tip; None if there is none."""
+    return next((effect for effect in scene.effects if effect.whole_tip), None)
 
 
-def _leather(scene: Any) -> LeatherTip | None:
-    return next((effect for effect in scene.effects if isinstance(effect, LeatherTip)), None)
+def _waves(scene: Any) -> Any:
+    """The effect that sees the rest of the cue as a rod; None if there is none."""
+    rods = (effect for effect in scene.effects if getattr(effect, "wave_speed", None) is not None)
+    return next((effect for effect in rods if effect.with_butt(scene.shaft) is not scene.shaft), None)
 
 
-def _waves(scene: Any) -> AxialWaves | None:
-    """The waves that see the rest of the cue as a rod."""
-    own = next((effect for effect in scene.effects if isinstance(effect, AxialWaves)), None)
-    return own if own is not None and own.with_butt(scene.shaft) is not scene.shaft else None
+def _effect(read: Callable[[Any], Any]) -> Part:
+    """The effect that ``read`` tells, for which another one is exchanged."""
 
-
-def _exchanged(read: Callable[[Any], Effect | None], acts: Callable[[Any], bool]) -> Callable[[Any, Any], Any]:
-    """Exchange the effect that ``read`` tells for another one, which is added where it was not listed and acts."""
-
-    def write(scene: Any, new: Effect) -> Any:
+    def write(scene: Any, new: Any) -> Any:
         old = read(scene)
-        if old in scene.effects:
-            return replace(scene, effects=tuple(new if effect == old else effect for effect in scene.effects))
-        return replace(scene, effects=(*scene.effects, new)) if acts(new) else scene
+        return replace(scene, effects=tuple(new if effect == old else effect for effect in scene.effects))
 
-    return write
+    return Part(read, write)
 
 
-# In the order in which they are written: the weight first, that of the shaft before other changes; materials last,
-# because the ferrule and the shaft are told by theirs.
+def _spring_time(scene: Any) -> float | None:
+    return None if _leather(scene) is not None else float(scene.contact_time)
+
+
+def _with_spring_time(scene: Any, time: float) -> Any:
+    return replace(scene, tip=replace(scene.tip, contact_time=time, stiffness=None))
+
+
+CONTACT_TIME_OF_SPRING = Part(_spring_time, _with_spring_time, CONTACT_TIME)
+
+
+def _with_each_material(scene: Any, new: Sequence[Material]) -> Any:
+    exchanged = dict(zip(materials_in(scene.shaft), new, strict=True))
+    return replace(scene, cue=_with_materials(scene.shaft, exchanged))
+
+
+# Where a path may begin beside the fields of a scene.
 PARTS: dict[str, Part] = {
-    "weight": Part(lambda scene: Weight(scene.shaft.shaft_mass + _tip_mass(scene)), _with_weight),
-    "ferrule": Part(_ferrule, _with_ferrule, keeps=("drilling",)),
-    "diameters": Part(_diameters, _with_diameters),
-    "drilling": Part(_bore, _with_bore),
-    "joint": Part(_joint, _exchanged(_joint, lambda joint: joint.rotational_compliance > 0)),
-    "bridge": Part(_bridge, _exchanged(_bridge, lambda bridge: bridge.stiffness > 0)),
-    "leather": Part(_leather, _exchanged(_leather, lambda leather: True)),
-    "waves": Part(_waves, _exchanged(_waves, lambda waves: True)),
-    "woods": Part(_woods, _with_woods),
-    "materials": Part(
-        lambda scene: materials_in(scene.shaft),
-        lambda scene, new: replace(
-            scene, cue=_with_materials(scene.shaft, dict(zip(materials_in(scene.shaft), new, strict=True)))
-        ),
-    ),
+    "leather": _effect(_leather),
+    "waves": _effect(_waves),
+    "materials": Part(lambda scene: materials_in(scene.shaft), _with_each_material),
     "wood": Part(
         lambda scene: main_material(scene.shaft),
         lambda scene, new: replace(scene, cue=with_material(scene.shaft, main_material(scene.shaft), new)),

@@ -11,12 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from cuefem.cue import Array
+from cuefem.cue import Array, Cue
+from cuefem.cue.materials import material_name
 from cuefem.design import Levels, Normal, Response, Span, Study, Vary
 from cuefem.design.optimum import Optimum, Problem
 from cuefem.design.scatter import Drivers, Scatter
 from cuefem.design.study_result import StudyResult
-from cuefem.parameters.parameter import named_pieces
+from cuefem.parameters.parameter import Path
+from cuefem.parameters.parts import Layout
 from cuefem.results.quantities import TRADE, significant, with_heading, with_unit
 from cuefem.results.records import Sheet
 from cuefem.scene import Scene
@@ -112,8 +114,24 @@ class StudyTable:
 
 def varied_pieces(vary: Sequence[Vary], base: Scene) -> dict[str, list[str]]:
     """The pieces of the cue that each column varies, with their extents, by the column's name; none off the cue."""
-    pieces = {each.name: named_pieces(base, each.fields(base)) for each in vary} if base.lumped is None else {}
+    pieces = {each.name: _pieces(base.shaft, each.fields(base)) for each in vary} if base.lumped is None else {}
     return {name: words for name, words in pieces.items() if words}
+
+
+def _pieces(cue: Cue, paths: Sequence[Path]) -> list[str]:
+    """The pieces of a cue that some paths vary, each with its material and extent from the tip."""
+    layout = Layout.of(cue)
+    parts = {"ferrule": layout.ferrule, "bore": layout.bore or (), "shaft": layout.shaft}
+    found = set[int]()
+    for path in paths:
+        found |= {int(path[2])} if path[:2] == ("cue", "segments") else {*parts.get(str(path[0]).split()[0], ())}
+    pieces: dict[str, tuple[float, float]] = {}
+    for i in sorted(found):
+        hollow = "bored " if layout.bore and i in layout.bore else ""
+        part = "ferrule" if i in layout.ferrule else "shaft" if i in layout.shaft else f"segment {i}"
+        name = f"{hollow}{part} of {material_name(cue.segments[i].material)}"
+        pieces[name] = (pieces.get(name, (cue.nodes[i],))[0], cue.nodes[i + 1])
+    return [f"{name}, {1e3 * first:.5g} to {1e3 * last:.5g} mm" for name, (first, last) in pieces.items()]
 
 
 def varied_sheet(study: Study) -> Sheet:

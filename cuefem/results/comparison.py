@@ -8,12 +8,12 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 from cuefem.contact.outcome import MISSED, grip_of
-from cuefem.parameters.parameter import PLACES
+from cuefem.parameters.parameter import PARAMETERS
 from cuefem.parameters.parts import main_material
 from cuefem.results.asking import asked
 from cuefem.results.designs import OneDesign, off_centre
 from cuefem.results.records import Record
-from cuefem.results.uncertainty import FLOOR, changes_by_input, model_share, of_tip, ratio_error
+from cuefem.results.uncertainty import FLOOR, changes_by_input, model_share, ratio_error
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved
 
@@ -121,6 +121,6 @@ def _differences(first: _Compared, other: _Compared, *, same_shaft: bool) -> dic
 def _of_input(first: _Compared, other: _Compared, key: str, name: str, *, same_shaft: bool) -> float:
     """What an input leaves open in the logarithm of the ratio of two cues' numbers."""
     changes = [each.inputs.get(key, {}).get(name, 0.0) for each in (first, other)]
-    known = PLACES[key]
-    shared = known.value(first.scene) == known.value(other.scene) if of_tip(known) else same_shaft
+    known = PARAMETERS[key]
+    shared = known.value(first.scene) == known.value(other.scene) if known.of_tip else same_shaft
     return abs(changes[1] - changes[0]) if shared else math.hypot(*changes)

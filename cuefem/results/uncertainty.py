@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from cuefem.contact.strike import strike_modes
 from cuefem.effects import PointMass
-from cuefem.parameters.parameter import PLACES, Place, replaced
+from cuefem.parameters.parameter import PARAMETERS, replaced
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved
 
@@ -53,12 +53,7 @@ def model_error(scene: Scene) -> float:
 
 def of_shaft(inputs: Mapping[str, float]) -> float:
     """The share of the shaft's inputs alone: what is left where two shafts are struck with one tip."""
-    return math.hypot(*(share for key, share in inputs.items() if not of_tip(PLACES[key])))
-
-
-def of_tip(known: Place) -> bool:
-    """Whether an input is the tip's, which two shafts may share."""
-    return known.group == "Tip" or known.path.startswith("leather.")
+    return math.hypot(*(share for key, share in inputs.items() if not PARAMETERS[key].of_tip))
 
 
 def of_inputs(solved: Solved, own: float) -> dict[str, float]:
@@ -69,7 +64,7 @@ def of_inputs(solved: Solved, own: float) -> dict[str, float]:
     return {key: abs(change) for key, change in squirt_changes(solved, own).items()}
 
 
-def squirt_changes(solved: Solved, own: float, of: Iterable[str] = PLACES) -> dict[str, float]:
+def squirt_changes(solved: Solved, own: float, of: Iterable[str] = PARAMETERS) -> dict[str, float]:
     """`changes_by_input` of squirt alone; own: that of the scene, rad."""
     if not own:
         return {}
@@ -81,7 +76,7 @@ def changes_by_input(
     scene: Scene,
     own: Mapping[str, float],
     of: Callable[[Scene], Mapping[str, float]],
-    inputs: Iterable[str] = PLACES,
+    inputs: Iterable[str] = PARAMETERS,
 ) -> dict[str, dict[str, float]]:
     """The relative changes of some numbers of a scene with each input that is uncertain by its usual spread.
 
@@ -90,8 +85,8 @@ def changes_by_input(
     """
     changes: dict[str, dict[str, float]] = {}
     for key in inputs if scene.cue.segments else ():
-        known = PLACES[key]
-        spread = known.spread(scene) if callable(known.spread) else known.spread
+        known = PARAMETERS[key]
+        spread = known.spread_in(scene)
         ways = (spread, -spread) if spread is not None else (math.log1p(-known.below),) if known.below else ()
         value = known.value(scene) if ways else None
         if not value:

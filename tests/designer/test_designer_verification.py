@@ -33,9 +33,9 @@ from cuefem.designer.numbers_panel import (
     table_markup,
 )
 from cuefem.designer.pictures import limits_of, offset_charts
+from cuefem.designer.ranges import knobs_of, turned
 from cuefem.designer.start import first_scene
 from cuefem.designer.unit_system import INCHES
-from cuefem.parameters.parameter import knobs_of, turned
 from cuefem.report.end_mass import end_mass_record
 from cuefem.report.modes_table import modes_record
 from cuefem.report.strike_table import strike_record
@@ -52,7 +52,7 @@ def loaded(name: str) -> cf.Scene:
 
 def designs() -> dict[str, cf.Scene]:
     first = first_scene()
-    knobs = knobs_of(first) | dict(bore_depth=0.12, tip_diameter=0.012, joint_compliance=5e-4, leather=3e8)
+    knobs = knobs_of(first) | dict(bore_depth=0.12, tip_diameter=0.012, leather=3e8)
     return {
         "first": first,
         "turned": turned(first, knobs),
@@ -83,7 +83,7 @@ def test_the_static_stiffness_is_that_of_a_clamped_cue() -> None:
     scene = replace(first_scene(), effects=())
     exact = float(CueBatch.of([scene.cue]).tip_stiffness[0])
     assert weighed(scene).numbers["tip_stiffness"] == pytest.approx(exact, rel=1e-7)
-    soft = turned(scene, knobs_of(scene) | dict(joint_position=0.6, joint_compliance=1e-3))
+    soft = replace(scene, effects=(cf.Joint(0.6, 1e-3),))
     added = 1e-3 * 0.6**2  # a hinge's: the load's moment there, turned through its lever
     assert 1 / weighed(soft).numbers["tip_stiffness"] - 1 / exact == pytest.approx(added, rel=1e-6)
 

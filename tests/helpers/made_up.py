@@ -17,7 +17,7 @@ from cuefem.designer.words import head_markup
 from cuefem.effects import CueEffect, TipEffect, Usual
 from cuefem.effects.terms import ContactTerms
 from cuefem.endmass.definitions import Definition
-from cuefem.parameters.parameter import Place, Range
+from cuefem.parameters.parameter import Parameter
 from cuefem.parameters.parts import Part
 from cuefem.quantity.fields import LENGTH, Quantity
 from cuefem.report.report_page import page
@@ -59,11 +59,9 @@ def _with_length(scene: Any, value: float) -> Any:
     return replace(scene, cue=replace(scene.shaft, segments=(front, replace(collar, length=value), rest)))
 
 
-PLACE = Place(
+PLACE = Parameter(
     *("collar length", "length of the collar"),
     part=Part(_length, _with_length, LENGTH),
-    group="Shaft",
-    range=Range("mm", 1e3, 2, 40, 0.5, 0.5, 60),
     spread=0.1,
     option="LENGTH",
 )

