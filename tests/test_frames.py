@@ -29,17 +29,6 @@ name = "wood"
 path = "cue.segments[0].material"
 values = ["hard maple", "ash"]
 """
-SCATTER = f"""scene = "cue.toml"
-responses = ["end_mass"]
-{COARSE}[tolerances]
-count = 16
-seed = 1
-{TIP}[[vary]]
-name = "butt"
-path = "cue.segments[0].butt_diameter"
-low = "20 mm"
-high = "22 mm"
-"""
 
 
 def study(folder: Path, text: str) -> Path:
@@ -59,31 +48,6 @@ def test_a_sweep(tmp_path: Path) -> None:
     grid = frame.pivot_table(index="tip", columns="wood", values="end_mass")
     assert grid.shape == (3, 2)
     assert np.all(np.diff(grid["ash"]) > 0)
-
-
-def test_a_scatter(tmp_path: Path) -> None:
-    found = cf.study(study(tmp_path, SCATTER))
-    frame, shares = cf.frames.of_study(found), cf.frames.of_drivers(found)
-    assert (list(frame.columns), len(frame)) == (["tip", "butt", "end_mass", "failure"], 64)
-    assert frame["end_mass"][:32].mean() == pytest.approx(found.spread["end_mass"]["mean"], rel=1e-12)
-    assert shares.loc[("end_mass", "tip"), "total"] == found.drivers.total[0, 0]
-    assert (shares["total_low"] <= shares["total_high"]).all()
-    with pytest.raises(ValueError, match="takes a scatter, a study with tolerances; got one of kind sweep"):
-        cf.frames.of_drivers(cf.study(study(tmp_path, STUDY)))
-
-
-def test_a_batch() -> None:
-    wood = cf.Material(12.6e9, 0.84e9, 700.0)
-    batch = cf.CueBatch.of([cf.Cue((cf.Segment(0.74, d, 0.0215, wood),), 0.42) for d in (0.0115, 0.0135)])
-    frame = cf.frames.of_batch(batch, end_mass=[0.005, 0.006])
-    assert frame["tip_diameter"].tolist() == [0.0115, 0.0135]
-    assert frame["mass"].tolist() == batch.mass.tolist()
-    assert frame.attrs["units"] == {
-        **dict.fromkeys(("length", "tip_diameter", "butt_diameter"), "m"),
-        **dict.fromkeys(("shaft_mass", "mass", "body_mass"), "kg"),
-    }
-    with pytest.raises(ValueError, match=r"end_mass must have one number a cue, shape \(2,\); got \(3,\)"):
-        cf.frames.of_batch(batch, end_mass=[1, 2, 3])
 
 
 def test_what_is_no_store(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ TREES = [ast.parse(path.read_text(encoding="utf-8")) for path in Path(cuefem.__f
 def test_a_class_name_stands_in_one_file() -> None:
     names = Counter(name for tree in TREES for name in {n.name for n in ast.walk(tree) if isinstance(n, ast.ClassDef)})
     assert names["Scene"] == 1
-    assert len([name for name, count in names.items() if count > 1]) <= 3
+    assert len([name for name, count in names.items() if count > 1]) <= 1
 
 
 def test_offsets_are_those_of_one_table() -> None:

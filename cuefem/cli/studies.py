@@ -20,7 +20,7 @@ from cuefem.design.scatter import Scatter
 from cuefem.design.study_result import StudyResult, found
 from cuefem.design.sweep import pool_of
 from cuefem.io import InputError, save, write_whole
-from cuefem.io.store import Store, write_table
+from cuefem.io.store import SqliteStore, write_table
 from cuefem.io.study_files import assumed_base, load_study
 from cuefem.parameters.parameter import replaced, value_at
 from cuefem.report.study_table import study_record, study_sheets, varied_pieces
@@ -70,7 +70,7 @@ def study(
         with blaming(file), _rounds(asked, iterations) as tell_round:
             result = found(asked, rounds=iterations, progress=tell_round)
     else:
-        kept = Store(store or file.with_suffix(".sqlite"), designs, file.stem)
+        kept = SqliteStore(store or file.with_suffix(".sqlite"), designs, file.stem)
         result = _kept(file, asked, kept, **where)
     record: dict[str, Any] = {"file": str(file), "kind": result.kind, "assumed": notes, "units": result.units}
     record |= {"varied": varied_pieces(designs.vary, designs.base), "resolution": vars(designs.resolution)}
@@ -88,7 +88,9 @@ def study(
     tell(as_json, record, [title, *stored, *things, *(f"wrote {path}" for path in output)])
 
 
-def _kept(file: Path, asked: Study | Scatter, designs: Store, *, workers: int | None, dask: str | None) -> StudyResult:
+def _kept(
+    file: Path, asked: Study | Scatter, designs: SqliteStore, *, workers: int | None, dask: str | None
+) -> StudyResult:
     """The result of a sweep or a scatter; one that is interrupted says what is kept."""
     with ExitStack() as opened:
         progress = opened.enter_context(bar(designs.study.size))

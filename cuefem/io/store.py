@@ -91,7 +91,7 @@ def _rows(path: Path, file: sqlite3.Connection, study: str) -> Iterator[Row]:
         yield Row(line[1], tuple(answer["values"]), tuple(answer["responses"].values()), answer["failure"])
 
 
-class Store:
+class SqliteStore:
     """The designs of a study in a file that may hold those of others; a `cuefem.design.Store` and a context manager.
 
     InputError if the file is no store or a damaged one. done: designs of the study that are there. computed: those of

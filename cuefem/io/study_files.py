@@ -19,7 +19,7 @@ from cuefem.io import load_stroke, replaced_segments
 from cuefem.io.errors import InputError, faults_of, shown, state_of
 from cuefem.io.profile import SHAPES
 from cuefem.io.schema import build, joined, unknown_key
-from cuefem.io.store import Store
+from cuefem.io.store import SqliteStore
 from cuefem.io.toml import game_of, named_material, read_tables
 from cuefem.parameters.parameter import paths, quantity_at, value_at
 from cuefem.quantity.fields import Quantity
@@ -118,7 +118,7 @@ def study(
     designs = asked.designs if isinstance(asked, Scatter) else asked
     with ExitStack() as opened:
         pool = opened.enter_context(pool_of(workers, dask))
-        kept = opened.enter_context(Store(store, designs)) if store else None
+        kept = opened.enter_context(SqliteStore(store, designs)) if store else None
         return found(asked, store=kept, pool=pool)
 
 

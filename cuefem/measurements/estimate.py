@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cuefem.cue import Array
-from cuefem.measurements.measured_cue import MeasuredCue, Row, Track, rows_of
+from cuefem.measurements.measured_cue import MeasuredCue, Residual, Track, rows_of
 from cuefem.measurements.measurement_types import MEASUREMENT_TYPES, Measurement, Squirt
 from cuefem.measurements.outliers import NOTICED, WIDER, solved
 
@@ -116,7 +116,7 @@ class Estimate:
         return tuple(made)
 
     @property
-    def rows(self) -> tuple[Row, ...]:
+    def rows(self) -> tuple[Residual, ...]:
         """The measurements beside the values with the estimated parameters."""
         spread = np.sqrt(np.einsum("ij,jk,ik->i", self.slopes, self.covariance, self.slopes))
         return rows_of(self.cue, self.computed, spread)

@@ -118,7 +118,7 @@ class MeasuredCue:
         return [words for words in said if words]
 
 
-class Row(NamedTuple):
+class Residual(NamedTuple):
     """A measurement beside the model's value, both with one standard deviation, SI.
 
     spread: of the computed value, from the priors of what the drawing leaves open. residual: measured less computed, in
@@ -134,7 +134,7 @@ class Row(NamedTuple):
     pull: float
 
 
-def compare(cue: MeasuredCue, *, track: Track = iter) -> tuple[Row, ...]:
+def compare(cue: MeasuredCue, *, track: Track = iter) -> tuple[Residual, ...]:
     """Every measurement of a measured cue beside the model's value, nothing fitted.
 
     Cost: one strike for each squirt, times one more than there are parameters. track: follows these steps.
@@ -145,13 +145,13 @@ def compare(cue: MeasuredCue, *, track: Track = iter) -> tuple[Row, ...]:
     return rows_of(cue, at, spread)
 
 
-def rows_of(cue: MeasuredCue, computed: Array, spread: Array) -> tuple[Row, ...]:
+def rows_of(cue: MeasuredCue, computed: Array, spread: Array) -> tuple[Residual, ...]:
     """The table of computed values with their standard deviations."""
     made = []
     for measurement, value, error in zip(cue.measurements, computed.tolist(), spread.tolist(), strict=True):
         gap = measurement.measured - value
         made.append(
-            Row(
+            Residual(
                 measurement,
                 measurement.measured,
                 measurement.sd,
@@ -175,7 +175,7 @@ class Zero(NamedTuple):
     error: float
 
 
-def zeros(cue: MeasuredCue, rows: Sequence[Row]) -> tuple[Zero, ...]:
+def zeros(cue: MeasuredCue, rows: Sequence[Residual]) -> tuple[Zero, ...]:
     """The zero of the offset by each squirt that was measured on both sides.
 
     Squirt is taken to be proportional to the offset there, which is right to a fifth.

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from cuefem.measurements.estimate import Estimate, Worth
-from cuefem.measurements.measured_cue import MeasuredCue, Row, Zero
+from cuefem.measurements.measured_cue import MeasuredCue, Residual, Zero
 from cuefem.results.quantities import NONE, with_unit
 from cuefem.results.records import Entry, Record, Sheet, sheet
 
@@ -17,7 +17,7 @@ UNITS = {"residual": "", "pull": "", "zero": "m", "squirt_error": "rad"}
 DOUBTED = 0.2  # chance of a measurement to be wrong that deserves one
 
 
-def row_record(row: Row) -> Record:
+def row_record(row: Residual) -> Record:
     """A measurement beside the model's value."""
     measurement = row.measurement
     names = ("measured", "error", "computed", "spread", "residual", "pull")
@@ -29,7 +29,7 @@ def row_record(row: Row) -> Record:
     } | {name: getattr(row, name) for name in names}
 
 
-def compare_record(cue: MeasuredCue, rows: Sequence[Row], zeros: Sequence[Zero]) -> Record:
+def compare_record(cue: MeasuredCue, rows: Sequence[Residual], zeros: Sequence[Zero]) -> Record:
     """Everything measured beside everything computed, and what is missing."""
     return {
         "name": cue.name,

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from cuefem.design.study_result import found
-from cuefem.io.store import Store, read_table
+from cuefem.io.store import SqliteStore, read_table
 from cuefem.io.study_files import load_study
 
 SCENE = """
@@ -151,7 +151,7 @@ def written(folder: Path, study: str = STUDY, scene: str = SCENE, name: str = "s
 
 def swept(study: Path, output: Path, **more: Any) -> list[tuple[Any, ...]]:
     """The table of a study, computed into a store."""
-    with Store(output, load_study(study), study.stem) as store:
+    with SqliteStore(output, load_study(study), study.stem) as store:
         found(store.study, store=store, **more)
     return rows_of(output)
 
