@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from cuefem.beam.tip import TipModes
-from cuefem.contact.propagator import ModalPropagator, planar_propagator, raised_propagator
+from cuefem.contact.propagator import ModalPropagator, propagator_of
 from cuefem.cue import Array
 from cuefem.effects.law import TipLaw
 from cuefem.effects.leather_law import LeatherLaw
-from cuefem.effects.terms import ContactTerms, HeadOn, Table, WholeTip
+from cuefem.effects.terms import ContactTerms, HeadOn, WholeTip
 from cuefem.quantity.fields import scalar
 from cuefem.scene import Scene
 
@@ -30,8 +30,9 @@ class ContactModel:
 
     propagator: the cue's modes and ports. facing: (forces, ports + ball), from the velocities of the ports to those of
     the contact at the first touch. inverse_masses: (n,), of the ball's velocities; ball: these at the first touch, m/s.
-    law: the force along the normal. terms, arrays: what `kernel/contact.h` names, by name. tip: the cue's modes, where
-    they are known.
+    law: the force along the normal. terms, arrays: what `kernel/contact.h` names, by name. axes: right, forward and up
+    in (t, n, p), (3, 3), above a table; None for a level cue. tip: the cue's modes, where they are known. side: of the
+    ball that is struck, 1 or -1; all else is that of the stroke on the side 1. radius: of the ball, m.
     """
 
     propagator: ModalPropagator
@@ -49,9 +50,11 @@ class ContactModel:
     patch: int = RIGID_PATCH
     terms: dict[str, float] = field(default_factory=dict)
     arrays: dict[str, Array] = field(default_factory=dict)
-    table: Table | None = None
+    axes: Array | None = None
     window: float | None = None
     tip: TipModes | None = None
+    side: float = 1.0
+    radius: float = 1.0
 
     @property
     def inverse_mass(self) -> Array:
@@ -65,6 +68,20 @@ class ContactModel:
         """Velocities of the contact (t, n) at the first touch, m/s."""
         cue = self.propagator.rows @ self.propagator.approach * self.speed
         return np.asarray(self.facing @ np.concatenate([cue, self.ball]))[:2]
+
+    @property
+    def jams(self) -> bool:
+        """Whether slip at the first touch drives the contact's normal velocity further in."""
+        B = self.inverse_mass
+        return bool(B[1, 1] + self.friction * B[0, 1] < 0)
+
+    def momentum(self, ball: Array) -> Array:
+        """(t, n), N s, of the ball at velocities (..., speeds); above a table, along it."""
+        if self.axes is None:
+            return np.asarray(self.ball_mass * ball[..., :2])
+        s, c, (right, forward, _) = math.sin(self.phi), math.cos(self.phi), self.axes
+        along = np.array([s * forward + c * right, c * forward - s * right])
+        return np.asarray(self.ball_mass * (ball[..., :3] @ along.T))
 
     @property
     def unknowns(self) -> int:
@@ -81,24 +98,82 @@ def model_of(scene: Scene, tip: TipModes) -> ContactModel:
 
     ValueError for what no contact honours together, and for a tip of too low a restitution.
     """
-    offset = abs(scalar("Stroke.offset", scene.stroke.offset))
-    terms, phi = scene.contact_terms, math.asin(offset)
+    offset, terms = scalar("Stroke.offset", scene.stroke.offset), scene.contact_terms
     tip = tip if offset else tip.uncoupled
-    mass, nu = scalar("Ball.mass", scene.ball.mass), scalar("Ball.inertia", scene.ball.inertia)
-    common: dict[str, Any] = {
-        "phi": phi,
-        "ball_mass": mass,
-        "inertia": nu,
+    model: dict[str, Any] = {
+        "phi": math.asin(abs(offset)),
+        "side": math.copysign(1.0, offset),
+        "ball_mass": scalar("Ball.mass", scene.ball.mass),
+        "inertia": scalar("Ball.inertia", scene.ball.inertia),
+        "radius": scalar("Ball.radius", scene.ball.radius),
         "restitution": scalar("Tip.restitution", scene.tip.restitution),
         "friction": scalar("Tip.friction", scene.tip.friction),
         "speed": scalar("Stroke.speed", scene.stroke.speed),
         "time": scene.contact_time,
         "window": terms.window,
     }
-    _check_restitution(common["restitution"], terms)
+    _check_restitution(model["restitution"], terms)
+    raised = terms.table is not None
+    if raised and (terms.compliance or terms.turns or terms.window is not None or terms.tip is not None):
+        raise ValueError("a raised cue (Elevation) takes a tip without give sideways, a fixed normal and a single hit")
+    model |= _power_tip(scene, terms, model) if terms.tip is None else _leather(scene, terms.tip, model)
+    if model["patch"] == RIGID_PATCH and terms.window is not None and math.isinf(model["friction"]):
+        raise ValueError(
+            "Tip.friction must be finite beside SecondHit, or the tip give along the surface (TipShear, LeatherTip): "
+            "the blows of endless friction throw ball and tip apart again and again; got inf"
+        )
+    (u, w), dome, rim = terms.lever(model["phi"]), terms.dome_radius, math.inf if terms.tip is None else terms.tip.rim
+    if raised and (u or w):
+        tip = replace(tip, amplitude=tip.amplitude + np.outer(tip.rotation, (u, w)))
+    ports = "raised" if raised else "turning" if u or w or (terms.turns and dome) else "straight"
+    propagator = propagator_of(tip, ports, model["time"], terms.window or 0.0)
+    if len(propagator.slopes):  # of a bent cue, in one plane or two; the last is that of its end
+        ahead = -w - (dome * math.cos(model["phi"]) if model["phi"] < rim else 0.0)  # the centre of the dome, m
+        planes = 1 + raised
+        weights = np.append(np.ones(len(propagator.slopes) // planes - 1), ahead)
+        model["arrays"] |= {"slope_weights": np.tile(weights, planes)}
+    facing = _level(model["phi"], u, w)
+    if terms.turns:
+        arm_t, arm_n = -facing[:, 2]
+        model["terms"] |= {"rolls": 1, "dome": dome, "rim": min(rim, math.pi), "radius": model["radius"]}
+        model["terms"] |= {"arm_t": arm_t, "arm_n": arm_n}
+    if ports == "straight":
+        facing = np.delete(facing, 2, axis=1)
     if terms.table is not None:
-        return _raised(scene, tip, terms, common)
-    return _planar(scene, tip, terms, common)
+        model["axes"] = _table_axes(model["phi"], terms.table.angle)
+        model["terms"] |= {"table_friction": terms.table.friction}
+        facing = _raised(model["phi"], model["axes"])
+    inverse = 1 / model["ball_mass"], 1 / (model["inertia"] * model["ball_mass"])
+    inverse_masses = np.repeat(inverse, (3, 3) if raised else (2, 1))
+    return ContactModel(propagator, facing, inverse_masses, 0 * inverse_masses, tip=tip, **model)
+
+
+def _level(phi: float, u: float, w: float) -> Array:
+    """From the velocities of the ports (u, w, turning) and of the ball to those of a level contact (t, n)."""
+    s, c = math.sin(phi), math.cos(phi)
+    return np.array([[-s, -c, -s * u - c * w, 1.0, 0.0, 1.0], [-c, s, s * w - c * u, 0.0, 1.0, 0.0]])
+
+
+def _table_axes(phi: float, angle: float) -> Array:
+    """Right, forward and up in (t, n, p), under a cue that points down by ``angle``, rad."""
+    s, c, sin_a, cos_a = math.sin(phi), math.cos(phi), math.sin(angle), math.cos(angle)
+    return np.array([[c, -s, 0], [cos_a * s, cos_a * c, sin_a], [-sin_a * s, -sin_a * c, cos_a]])
+
+
+def _raised(phi: float, axes: Array) -> Array:
+    """As `_level`, of a cue that points down by an angle, over a table (handbook: Effects).
+
+    In (t, n, p), p = t x n: the velocities of the contact are those of the tip's place along all three, and of the
+    ball's lowest point upwards, aside and ahead; the ball's are its velocity and R times its spin.
+    """
+    s, c, (right, forward, up) = math.sin(phi), math.cos(phi), axes
+    facing = np.zeros((6, 9))
+    facing[0, [0, 1]], facing[1, [0, 1]], facing[2, 2] = (-s, -c), (-c, s), -1.0
+    facing[[0, 1, 2], [3, 4, 5]] = 1.0
+    facing[0, 8], facing[2, 6] = 1.0, -1.0
+    facing[3:, 3:6] = up, right, forward
+    facing[4, 6:], facing[5, 6:] = -np.cross(up, right), -np.cross(up, forward)
+    return facing
 
 
 def _check_restitution(e: float, terms: ContactTerms) -> None:
@@ -121,8 +196,7 @@ def check_restitution(name: str, restitution: float) -> None:
 
 def _leather(scene: Scene, whole: WholeTip, common: dict[str, Any]) -> dict[str, Any]:
     """What a whole tip gives a contact: its patch slips ring by ring, or is a spring of a constant stiffness."""
-    offset = abs(scalar("Stroke.offset", scene.stroke.offset))
-    law = whole.law(scalar("Ball.radius", scene.ball.radius), offset, common["restitution"])
+    law = whole.law(common["radius"], abs(float(scene.stroke.offset)), common["restitution"])
     terms: dict[str, float] = {"law": 1, "most": law.most, "terms": len(law.force_terms)}
     arrays = {"force_terms": np.array(law.force_terms), "compliance_terms": np.array(law.give_terms)}
     if whole.shear is not None:
@@ -154,76 +228,3 @@ def _power_tip(scene: Scene, terms: ContactTerms, common: dict[str, Any]) -> dic
 def power_law(law: TipLaw) -> dict[str, float]:
     """A power law as the kernel takes it."""
     return {"stiffness": float(law.stiffness), "exponent": float(law.exponent)}
-
-
-def _planar(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, Any]) -> ContactModel:
-    """A level cue: the contact stays in the plane of the cue's axis and the ball's centre."""
-    phi, mass, nu = (common[name] for name in ("phi", "ball_mass", "inertia"))
-    (u, w), whole, dome = terms.lever(phi), terms.tip, terms.dome_radius
-    s, c, rim = math.sin(phi), math.cos(phi), math.inf if whole is None else whole.rim
-    arm_t, arm_n = s * u + c * w, c * u - s * w
-    model = common | (_power_tip(scene, terms, common) if whole is None else _leather(scene, whole, common))
-    if model["patch"] == RIGID_PATCH and terms.window is not None and math.isinf(common["friction"]):
-        raise ValueError(
-            "Tip.friction must be finite beside SecondHit, or the tip give along the surface (TipShear, LeatherTip): "
-            "the blows of endless friction throw ball and tip apart again and again; got inf"
-        )
-    if terms.turns:
-        rolls = {"rolls": 1, "dome": dome, "rim": min(rim, math.pi), "radius": float(scene.ball.radius)}
-        model["terms"] |= rolls | {"arm_t": arm_t, "arm_n": arm_n}
-    turning = bool(u or w or (terms.turns and dome))
-    propagator = planar_propagator(tip, turning=turning, time=model["time"], window=terms.window or 0.0)
-    model["arrays"] |= _thrust(propagator, -w - (dome * c if phi < rim else 0.0))
-    of_cue = np.array([[-s, -c, -arm_t], [-c, s, -arm_n]])[:, : len(propagator.rows)]
-    facing = np.concatenate([of_cue, [[1.0, 0.0, 1.0], [0.0, 1.0, 0.0]]], axis=1)
-    inverse_masses = np.array([1 / mass, 1 / mass, 1 / (nu * mass)])
-    return ContactModel(propagator, facing, inverse_masses, np.zeros(3), tip=tip, **model)
-
-
-def _thrust(propagator: ModalPropagator, ahead: float, planes: int = 1) -> dict[str, Array]:
-    """The arrays that a bent cue adds; ahead: how far the centre of the tip's dome lies before the cue's end, m."""
-    count = len(propagator.slopes)
-    return {"slope_weights": np.tile(np.append(np.ones(count // planes - 1), ahead), planes)} if count else {}
-
-
-def _raised(scene: Scene, tip: TipModes, terms: ContactTerms, common: dict[str, Any]) -> ContactModel:
-    """A cue that points down by an angle, over a table (handbook: Effects).
-
-    In (t, n, p), p = t x n: the velocities of the contact are those of the tip's place along all three, and of the
-    ball's lowest point upwards, aside and ahead; the ball's are its velocity and R times its spin.
-    """
-    if terms.compliance or terms.turns or terms.window is not None or terms.tip is not None:
-        raise ValueError("a raised cue (Elevation) takes a tip without give sideways, a fixed normal and a single hit")
-    assert terms.table is not None
-    (u, w), phi, mass, nu = terms.lever(common["phi"]), common["phi"], common["ball_mass"], common["inertia"]
-    s, c, model = math.sin(phi), math.cos(phi), common | _power_tip(scene, terms, common)
-    right, forward, up = table_axes(phi, terms.table.angle)
-    if u or w:
-        tip = replace(tip, amplitude=tip.amplitude + np.outer(tip.rotation, (u, w)))
-    facing = np.zeros((6, 9))
-    facing[0, [0, 1]], facing[1, [0, 1]], facing[2, 2] = (-s, -c), (-c, s), -1.0
-    facing[[0, 1, 2], [3, 4, 5]] = 1.0
-    facing[0, 8], facing[2, 6] = 1.0, -1.0
-    facing[3:, 3:6] = up, right, forward
-    facing[4, 6:], facing[5, 6:] = -np.cross(up, right), -np.cross(up, forward)
-    propagator = raised_propagator(tip, model["time"])
-    model["terms"] |= {"table_friction": terms.table.friction}
-    model["arrays"] |= _thrust(propagator, -w - terms.dome_radius * c, planes=2)
-    inverse_masses = np.repeat([1 / mass, 1 / (nu * mass)], 3)
-    return ContactModel(propagator, facing, inverse_masses, np.zeros(6), table=terms.table, tip=tip, **model)
-
-
-def table_axes(phi: float, angle: float) -> tuple[Array, Array, Array]:
-    """Right, forward and up in (t, n, p), under a cue that points down by ``angle``, rad."""
-    s, c, sin_a, cos_a = math.sin(phi), math.cos(phi), math.sin(angle), math.cos(angle)
-    return np.array([c, -s, 0]), np.array([cos_a * s, cos_a * c, sin_a]), np.array([-sin_a * s, -sin_a * c, cos_a])
-
-
-def impulse_on(model: ContactModel, ball: Array) -> Array:
-    """The impulses (t, n), N s, that gave balls at rest velocities (..., speeds); above a table, along it."""
-    if model.table is None:
-        return np.asarray(model.ball_mass * ball[..., :2])
-    s, c = math.sin(model.phi), math.cos(model.phi)
-    right, forward, _ = table_axes(model.phi, model.table.angle)
-    along = np.array([s * forward + c * right, c * forward - s * right])
-    return np.asarray(model.ball_mass * (ball[..., :3] @ along.T))

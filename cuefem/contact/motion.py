@@ -148,8 +148,8 @@ def _read(scene: Scene, bending: Modes, tip: TipModes, *, solved: SolvedContact,
     angle = phi + np.interp(times, np.append(0.0, solved.steps["time"]), np.append(0.0, solved.steps["angle"]))
     s, c, force = np.sin(angle), np.cos(angle), np.zeros((2, len(times)))
     if pressed.any():
-        history = solved.history(1.0)(np.minimum(times, solved.time))
-        force = np.where(times < solved.time, [history["force_t"], history["force_n"]], 0.0)
+        history = solved.history(np.minimum(times, solved.time))
+        force = np.where(times < solved.time, [side * history["force_t"], history["force_n"]], 0.0)
     F_t, F_n = force
     shorter = 0.0 if tip.geometric is None else np.einsum("it,ij,jt->t", modes, tip.geometric, modes) / 2
     return Motion(

@@ -47,10 +47,6 @@ class Phase(NamedTuple):
     end: float
     impulse: tuple[float, float]
 
-    def mirrored(self, side: float) -> Phase:
-        """The phase of the stroke on the other side where ``side`` is -1; itself where it is 1."""
-        return self._replace(impulse=(side * self.impulse[0], self.impulse[1]))
-
 
 class Hit(NamedTuple):
     """One contact of tip and ball: its start and end, s, and the impulse (t, n) on the ball in it, N s.

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import threading
 import weakref
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -183,54 +183,38 @@ _known: weakref.WeakKeyDictionary[TipModes, dict[tuple[str, float, float], Modal
 _lock = threading.Lock()
 
 
-def planar_propagator(tip: TipModes, *, turning: bool, time: float, window: float = 0.0) -> ModalPropagator:
-    """The propagator of tip modes with the ports (u, w), and the turning of the tip's section where that is asked for.
+def propagator_of(tip: TipModes, ports: str = "straight", time: float = 0.0, window: float = 0.0) -> ModalPropagator:
+    """The propagator of tip modes with some ports: "straight" (u, w), "turning" (u, w, the end's turning), or "raised".
 
     time, window: how long the contact lasts, and is followed after that, s, which the slopes of a bent cue depend on
     (`slope_rows`). Strikes with the same tip modes share it.
     """
-    rows = np.concatenate([tip.amplitude.T, tip.rotation[None]]) if turning else tip.amplitude.T
-    return _shared(tip, "turning" if turning else "straight", time, window, lambda slopes: (tip, rows, slopes))
-
-
-def raised_propagator(tip: TipModes, time: float) -> ModalPropagator:
-    """The propagator with the ports (u, w, p): each bending mode stands again in the plane across, where it moves p."""
-    again = np.flatnonzero(tip.amplitude[:, 1] != 0)
-    count, more = len(tip.omega), len(again)
-
-    def both(matrix: Array | None) -> Array | None:
-        if matrix is None:
-            return None
-        whole = np.zeros((count + more, count + more))
-        whole[:count, :count], whole[count:, count:] = matrix, matrix[np.ix_(again, again)]
-        return whole
-
-    def doubled(slopes: Array) -> tuple[TipModes, Array, Array]:
-        amplitude, nothing = np.pad(tip.amplitude, ((0, more), (0, 0))), np.zeros(more)
-        modes = TipModes(
-            np.concatenate([tip.omega, tip.omega[again]]),
-            amplitude,
-            np.append(tip.approach, nothing),
-            np.append(tip.rotation, nothing),
-            both(tip.damping),
-            both(tip.radiation),
-        )
-        rows = np.concatenate([amplitude.T, np.append(np.zeros(count), tip.amplitude[again, 1])[None]])
-        across = np.pad(slopes[:, again], ((0, 0), (count, 0)))
-        return modes, rows, np.concatenate([np.pad(slopes, ((0, 0), (0, more))), across])
-
-    return _shared(tip, "raised", time, 0.0, doubled)
-
-
-def _shared(
-    tip: TipModes, ports: str, time: float, window: float, parts: Callable[[Array], tuple[TipModes, Array, Array]]
-) -> ModalPropagator:
-    """The propagator of tip modes with some ports; parts: makes of the slopes its modes, rows of ports, and slopes."""
     bends = tip.geometric is not None
     lasting, until = (half_octave(time), half_octave(time) + window) if bends else (0.0, 0.0)
     key = ports, lasting, until
     with _lock:
         of_tip = _known.setdefault(tip, {})
         if key not in of_tip:
-            of_tip[key] = ModalPropagator(*parts(slope_rows(tip, lasting, until)))
+            rows, slopes = tip.amplitude.T, slope_rows(tip, lasting, until)
+            if ports == "turning":
+                rows = np.concatenate([rows, tip.rotation[None]])
+            parts = _in_two_planes(tip, slopes) if ports == "raised" else (tip, rows, slopes)
+            of_tip[key] = ModalPropagator(*parts)
         return of_tip[key]
+
+
+def _in_two_planes(tip: TipModes, slopes: Array) -> tuple[TipModes, Array, Array]:
+    """Modes, rows of the ports (u, w, p) and slopes: each bending mode stands again in the plane across, moving p."""
+    again = np.flatnonzero(tip.amplitude[:, 1] != 0)
+    count, more = len(tip.omega), len(again)
+    both = np.append(np.arange(count), again)
+    one_plane = np.equal.outer(np.arange(len(both)) < count, np.arange(len(both)) < count)
+    amplitude, nothing = np.pad(tip.amplitude, ((0, more), (0, 0))), np.zeros(more)
+    damping, radiation = (
+        None if matrix is None else matrix[np.ix_(both, both)] * one_plane for matrix in (tip.damping, tip.radiation)
+    )
+    approach, rotation = np.append(tip.approach, nothing), np.append(tip.rotation, nothing)
+    modes = TipModes(tip.omega[both], amplitude, approach, rotation, damping, radiation)
+    rows = np.concatenate([amplitude.T, np.append(np.zeros(count), tip.amplitude[again, 1])[None]])
+    across = np.pad(slopes[:, again], ((0, 0), (count, 0)))
+    return modes, rows, np.concatenate([np.pad(slopes, ((0, 0), (0, more))), across])

@@ -19,7 +19,7 @@ from cuefem.beam.tail import tail
 from cuefem.beam.tip import TipModes, side_modes
 from cuefem.contact.laws import ContactModel, check_restitution, power_law
 from cuefem.contact.outcome import Phase
-from cuefem.contact.propagator import planar_propagator
+from cuefem.contact.propagator import propagator_of
 from cuefem.contact.solve import SolvedContact, solve_contact
 from cuefem.cue import Cue
 from cuefem.effects import CueEffect, Effect, acting_on_cue, check_effects
@@ -313,7 +313,7 @@ def side_strike(scene: SideStrike, at: Resolution | None = None) -> SideOutcome:
         phases=solved.phases,
         energy=_energy(solved, scene, rebound),
         unknowns=solved.model.unknowns,
-        history=solved.history(1.0),
+        history=solved.history,
     )
 
 
@@ -324,7 +324,7 @@ def solved_side(scene: SideStrike, at: Resolution | None = None) -> SolvedContac
         raise ValueError(f"SideStrike must make a contact time in {CONTACT_TIME.bounds}; got {time:.3g} s")
     check_restitution("Striker.restitution", striker.restitution)
     model = ContactModel(
-        planar_propagator(_place_modes(scene, at), turning=False, time=time),
+        propagator_of(_place_modes(scene, at), time=time),
         facing=np.array([[0.0, -1.0, 1.0, 0.0, 1.0], [-1.0, 0.0, 0.0, 1.0, 0.0]]),
         inverse_masses=np.full(3, 1 / striker.mass),
         ball=np.array([0.0, -scene.speed, 0.0]),

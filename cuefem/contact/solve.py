@@ -1,8 +1,9 @@
-"""A contact solved: the kernel takes its steps, and their records become phases, losses and a history."""
+"""A contact solved: the kernel takes its steps, and their records become phases, losses, a history and an outcome."""
 
 from __future__ import annotations
 
 import ctypes
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -12,11 +13,12 @@ from numpy.typing import NDArray
 
 from cuefem.contact.bent import BentTooFar, buckling_thrust
 from cuefem.contact.compiled import STEP, KernelContact, library
-from cuefem.contact.laws import PARTIAL_SLIP, ContactModel, impulse_on, table_axes
-from cuefem.contact.outcome import BLOW, FLIGHT, History, Phase
+from cuefem.contact.laws import PARTIAL_SLIP, RIGID_PATCH, ContactModel
+from cuefem.contact.outcome import BLOW, FLIGHT, History, Phase, regime_of
 from cuefem.contact.propagator import Complex
 from cuefem.cue import Array
 from cuefem.effects.leather_law import LeatherLaw
+from cuefem.scene import Outcome
 
 GRIPS = {0: "stick", 1: "slip", -1: "slip back", 2: BLOW, 3: FLIGHT[0]}
 PRESSES = ("load", "unload", "free")
@@ -57,7 +59,7 @@ class SolvedContact:
     @property
     def impulse(self) -> tuple[float, float]:
         """The momentum (t, n) of the ball after the contact, N s: the impulse on it if it was at rest before."""
-        p_t, p_n = impulse_on(self.model, self.ball).tolist()
+        p_t, p_n = self.model.momentum(self.ball).tolist()
         return p_t, p_n
 
     @property
@@ -82,26 +84,82 @@ class SolvedContact:
         grip, press = steps["grip"], steps["press"]
         ends = np.append(np.flatnonzero(np.diff(8 * grip + press)), len(steps) - 1)
         times = [0.0, *steps["time"][ends].tolist()]
-        given = impulse_on(model, np.vstack([model.ball, steps["ball"][ends, : len(model.ball)]]))
+        given = model.momentum(np.vstack([model.ball, steps["ball"][ends, : len(model.ball)]])) * [model.side, 1.0]
         names = [(GRIPS[int(g)], PRESSES[int(p)]) for g, p in zip(grip[ends], press[ends], strict=True)]
         spans = zip(names, pairwise(times), np.diff(given, axis=0).tolist(), strict=True)
         return tuple(Phase(*name, start, end, (p_t, p_n)) for name, (start, end), (p_t, p_n) in spans)
 
-    def history(self, mirror: float, radius: float = 1.0) -> History:
-        """Forces and velocities; mirror: -1 for a stroke on the other side; radius: of the ball, m."""
+    @property
+    def history(self) -> History:
+        """Forces and velocities."""
         model, blows = self.model, int(np.sum(self.steps["length"] == 0))  # which take no time
         steps = self.steps[self.steps["length"] > 0] if blows else self.steps
-        count, ends = len(steps), np.append(0.0, steps["time"])
-        middles, forces = np.empty(count + 2), np.zeros((count + 2, 2))  # none at the touch, and none as the two part
-        middles[0], middles[1:-1], middles[-1] = 0.0, ends[1:] - steps["length"] / 2, self.time
-        forces[1:-1], velocities = steps["F"][:, :2], np.vstack([model.approach, steps["v"][:, :2]])
-        forces[:, 0] *= mirror
-        velocities[:, 0] *= mirror
-        if model.table is None:
+        ends, side = np.append(0.0, steps["time"]), np.array([model.side, 1.0])
+        middles = np.concatenate([[0.0], ends[1:] - steps["length"] / 2, [self.time]])
+        forces = np.pad(steps["F"][:, :2] * side, ((1, 1), (0, 0)))  # none at the touch, and none as the two part
+        velocities = np.vstack([model.approach, steps["v"][:, :2]]) * side
+        if model.axes is None:
             return History(middles, forces, ends, velocities)
-        axes, side = np.array(table_axes(model.phi, model.table.angle)), np.array([mirror, 1.0, 1.0])
-        velocity, turning = axes @ self.ball[:3] * side, axes @ self.ball[3:] / radius * side * mirror
-        return History(middles, forces, ends, velocities, velocity, turning)
+        moving, turning = model.axes @ self.ball[:3], model.axes @ self.ball[3:] / model.radius
+        sides = np.array([model.side, 1.0, 1.0])
+        return History(middles, forces, ends, velocities, moving * sides, turning * sides * model.side)
+
+    @property
+    def outcome(self) -> Outcome:
+        """The outcome of the strike."""
+        model, side = self.model, self.model.side
+        M, s, c = model.ball_mass, math.sin(model.phi), math.cos(model.phi)
+        (p_t, p_n), approach = self.impulse, model.propagator.approach
+        inertia = float(approach @ approach)  # of a cue that moves as one along its axis
+        if model.axes is None:
+            turning, along = float(self.ball[2]), s * p_t + c * p_n
+        else:  # what turned the ball about the vertical, and what the cue gave
+            turning = float(model.axes[2] @ self.ball[3:])
+            along = model.speed * inertia - float(approach @ (model.propagator.velocities @ self.xi).real)
+        return Outcome(
+            squirt=side * math.atan2(s * p_n - c * p_t, s * p_t + c * p_n) + 0.0,
+            ball_velocity=np.array([side * p_t, p_n]) / M,
+            ball_speed=math.hypot(p_t, p_n) / M,
+            spin=side * turning / model.radius,
+            cue_speed=model.speed - along / inertia,
+            impulse=np.array([side * p_t, p_n]),
+            duration=self.time,
+            regime=self._regime,
+            jam=self.phases[0].grip == "slip" and model.jams,
+            phases=self.phases,
+            energy=self._energy(inertia, (p_t**2 + p_n**2) / (2 * M), model.inertia * M * turning**2 / 2),
+            unknowns=model.unknowns,
+            history=self.history,
+        )
+
+    @property
+    def _regime(self) -> str:
+        if self.time == 0:  # thrown apart by the blow of endless friction, which stopped the slip at last or did not
+            return "late stick" if abs(self.velocity[0]) <= 1e-12 * self.model.speed else "miscue"
+        return regime_of(self.phases)
+
+    def _energy(self, inertia: float, moving: float, turning: float) -> dict[str, float]:
+        """J by name; inertia, kg, of the cue along its axis; the ball's energy in its motion and its spin."""
+        model, losses, (rigid, vibrating) = self.model, self.losses, self.cue_energy
+        account = {
+            "initial": inertia * model.speed**2 / 2,
+            "ball translation": moving,
+            "ball rotation": turning,
+            "cue": rigid,
+            "cue vibration": vibrating + losses["radiated"],
+            "tip loss": losses["tip"],
+            "friction loss": losses["friction"],
+        }
+        if model.propagator.lossy:
+            account["damping loss"] = losses["damping"]
+        if model.patch != RIGID_PATCH:
+            account["tip shear"] = losses["shear"]
+        if model.axes is not None:
+            level, hop = model.axes[:2] @ self.ball[3:], float(model.axes[2] @ self.ball[:3])
+            account["ball roll"] = model.inertia * model.ball_mass * float(level @ level) / 2
+            account["ball hop"] = model.ball_mass * hop**2 / 2
+            account["table loss"] = losses["table"]
+        return {name: float(joules) for name, joules in account.items()}
 
 
 def solve_contact(model: ContactModel, *, steps: int | None = None, course: bool = False) -> SolvedContact:
@@ -110,7 +168,7 @@ def solve_contact(model: ContactModel, *, steps: int | None = None, course: bool
     steps: in a head-on contact time. course: whether the modes' coordinates are kept. RuntimeError if the ball does
     not leave the cue; ValueError where leather or a bent cue leave the range of their theory.
     """
-    kernel, propagator, level = library(), model.propagator, model.table is None
+    kernel, propagator, level = library(), model.propagator, model.axes is None
     arrays = {
         "rates": propagator.rates,
         "rows": propagator.readings,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
@@ -11,11 +10,10 @@ from typing import Any
 import numpy as np
 
 from cuefem.beam.tip import TipModes
-from cuefem.contact.laws import RIGID_PATCH, model_of, table_axes
-from cuefem.contact.outcome import regime_of
-from cuefem.contact.solve import SolvedContact, solve_contact
+from cuefem.contact.laws import model_of
+from cuefem.contact.solve import solve_contact
 from cuefem.cue import Cue
-from cuefem.quantity.fields import check_count, check_kind, scalar, shown
+from cuefem.quantity.fields import check_count, check_kind, shown
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.solid.resolution import Solid
 from cuefem.tip_modes import default_resolution, tip_modes_of, turning
@@ -80,77 +78,7 @@ def strike_modes(scene: Scene, tip: TipModes, *, steps: int | None = None) -> Ou
 
     Strikes with the same tip modes share what belongs to the cue.
     """
-    return outcome_of(solve_contact(model_of(scene, tip), steps=steps), scene)
-
-
-def outcome_of(solved: SolvedContact, scene: Scene) -> Outcome:
-    """The outcome of a strike's contact that is over."""
-    model, side = solved.model, math.copysign(1.0, scene.stroke.offset)
-    M, nu, s, c = model.ball_mass, model.inertia, math.sin(model.phi), math.cos(model.phi)
-    (p_t, p_n), approach = solved.impulse, model.propagator.approach
-    inertia = float(approach @ approach)  # of a cue that moves as one along its axis
-    if model.table is None:
-        turning, along = float(solved.ball[2]), s * p_t + c * p_n
-    else:
-        up = table_axes(model.phi, model.table.angle)[2]
-        turning = float(up @ solved.ball[3:])  # what turned the ball about the vertical, and what the cue gave
-        moving = (model.propagator.velocities @ solved.xi).real
-        along = model.speed * inertia - float(approach @ moving)
-    impulse = np.array([side * p_t, p_n])
-    return Outcome(
-        squirt=side * math.atan2(s * p_n - c * p_t, s * p_t + c * p_n) + 0.0,
-        ball_velocity=impulse / M,
-        ball_speed=math.hypot(p_t, p_n) / M,
-        spin=side * turning / scalar("Ball.radius", scene.ball.radius),
-        cue_speed=model.speed - along / inertia,
-        impulse=impulse,
-        duration=solved.time,
-        regime=_regime(solved),
-        jam=_jams(solved),
-        phases=tuple(phase.mirrored(side) for phase in solved.phases),
-        energy=_energy(solved, inertia, (p_t**2 + p_n**2) / (2 * M), nu * M * turning**2 / 2),
-        unknowns=model.unknowns,
-        history=solved.history(side, scalar("Ball.radius", scene.ball.radius)),
-    )
-
-
-def _regime(solved: SolvedContact) -> str:
-    if solved.time == 0:  # thrown apart by the blow of endless friction, which stopped the slip at last or did not
-        return "late stick" if abs(solved.velocity[0]) <= 1e-12 * solved.model.speed else "miscue"
-    return regime_of(solved.phases)
-
-
-def _jams(solved: SolvedContact) -> bool:
-    """Whether the first slip drove the contact's normal velocity further in."""
-    if not solved.phases or solved.phases[0].grip != "slip":
-        return False
-    B = solved.model.inverse_mass
-    return bool(B[1, 1] + solved.model.friction * B[0, 1] < 0)
-
-
-def _energy(solved: SolvedContact, inertia: float, moving: float, turning: float) -> dict[str, float]:
-    """J by name; inertia, kg, of the cue along its axis; the ball's energy in its motion and its spin."""
-    model, losses, (rigid, vibrating) = solved.model, solved.losses, solved.cue_energy
-    account = {
-        "initial": inertia * model.speed**2 / 2,
-        "ball translation": moving,
-        "ball rotation": turning,
-        "cue": rigid,
-        "cue vibration": vibrating + losses["radiated"],
-        "tip loss": losses["tip"],
-        "friction loss": losses["friction"],
-    }
-    if model.propagator.lossy:
-        account["damping loss"] = losses["damping"]
-    if model.patch != RIGID_PATCH:
-        account["tip shear"] = losses["shear"]
-    if model.table is not None:
-        right, forward, up = table_axes(model.phi, model.table.angle)
-        level, hop = np.array([right, forward]) @ solved.ball[3:], float(up @ solved.ball[:3])
-        account["ball roll"] = model.inertia * model.ball_mass * float(level @ level) / 2
-        account["ball hop"] = model.ball_mass * hop**2 / 2
-        account["table loss"] = losses["table"]
-    return {name: float(joules) for name, joules in account.items()}
+    return solve_contact(model_of(scene, tip), steps=steps).outcome
 
 
 def batch_strike(scenes: Sequence[Scene], at: Resolution | None = None, *, threads: int = 1) -> Outcome:

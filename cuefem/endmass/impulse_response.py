@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cuefem.beam.tip import TipModes
-from cuefem.contact.propagator import Complex, planar_propagator, responses
+from cuefem.contact.propagator import Complex, propagator_of, responses
 from cuefem.cue import Array
 
 # Steps of a contact. Against closed forms at the same 120 modes (100 random cues, 0.5 to 3 ms, free and damped, "stick"
@@ -31,7 +31,7 @@ class ImpulseResponse(NamedTuple):
     @classmethod
     def of(cls, tip: TipModes) -> ImpulseResponse:
         """The response of tip modes; ValueError if a clamp holds the tip."""
-        propagator = planar_propagator(tip.straight, turning=False, time=0.0)
+        propagator = propagator_of(tip.straight)
         weights = propagator.readings[1] * propagator.drives[1]
         felt = weights != 0
         if not felt.any():
