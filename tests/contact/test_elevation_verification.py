@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 from cuefem import Elevation, LumpedCue, PowerLawTip, Resolution, Scene, Stroke, Tip, strike
+from cuefem.contact.laws import model_of
+from cuefem.contact.solve import solve_contact
 from cuefem.contact.strike import strike_modes
 from tests.helpers.orders import assert_order, falls_with_the_step
 from tests.helpers.strike_scenes import CLOSED, hand_made, imbalance, kim_scene
@@ -125,3 +127,16 @@ def test_the_table_keeps_the_ball_up_and_lets_it_hop():
         up.append(outcome.history.velocity[2])
     assert min(up) > -1e-9
     assert sum(value > 1e-6 for value in up) > 3
+
+
+def test_a_ball_that_was_lifted_falls_back_onto_the_table() -> None:
+    """A loud cue lifts the ball by friction; the table pushes where it lies, and does not hold it in the air."""
+    tip = hand_made([8000.0], [15.0], rigid=1.0)
+    law, stroke = Tip(0.8, 3.0, contact_time=3e-3), Stroke(1.0, 0.8)
+    scene = Scene(LumpedCue(0.54, 0.01), tip=law, stroke=stroke, effects=(Elevation(0.7, 0.2),))
+    model = model_of(scene, tip)
+    steps = solve_contact(model).steps
+    rising = np.append(0.0, steps["ball"][:, :3] @ model.axes[2])
+    height = np.cumsum(steps["length"] * (rising[1:] + rising[:-1]) / 2)
+    assert height.max() > 2e-5
+    assert np.abs(height[steps["F"][:, 3] > 0]).max() < 1e-6
