@@ -54,13 +54,11 @@ def test_the_modes_of_a_strike_hold_the_end_masses_of_smooth_drives(number: int)
         assert end_mass(found, "force") == pytest.approx(wanted, rel=5e-3 if leather else 1e-3)
 
 
-@pytest.mark.parametrize(
-    "count", [pytest.param(12, marks=pytest.mark.heavy), pytest.param(300, marks=pytest.mark.nightly)]
-)
-def test_the_stick_end_mass_of_random_cues_is_right_to_a_thousandth(count: int) -> None:
+@pytest.mark.nightly
+def test_the_stick_end_mass_of_random_cues_is_right_to_a_thousandth() -> None:
     """In 95 %, against 400 modes: leather, ferrules, tubes and bores, contacts of 0.5 to 3 ms."""
     draw, errors = np.random.default_rng(9), []
-    for _ in range(count):
+    for _ in range(60):
         found = scene(random_cue(draw), float(draw.uniform(0.5e-3, 3e-3)))
         elements, orders = ended_mesh_for(found.shaft, MOST)
         family = ended(assemble(found.shaft, elements=elements, order=orders, count=MOST), MOST, turning=False)

@@ -1,82 +1,19 @@
-"""The contact of a whole tip of leather: against another solver, in its limits, and how its errors fall."""
+"""The contact of a whole tip of leather: its time head on, and what its surface loses."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from math import asin, atan2, inf
+from math import inf
 
 import numpy as np
 import pytest
-from scipy.integrate import quad, solve_ivp
+from scipy.integrate import quad
 
-from cuefem import Scene, resolve, strike
-from cuefem.beam.tip import TipModes
-from cuefem.contact.strike import strike_modes
-from tests.helpers.leather_scenes import AT, LEATHER, POOL, leather_scene
+from cuefem import strike
+from tests.helpers.leather_scenes import AT, LEATHER, leather_scene
 from tests.helpers.orders import falls_with_the_step
-from tests.helpers.strike_scenes import a_few_modes
 from tests.oracle.ring_stepper import LEATHER as RELEASED
 from tests.oracle.ring_stepper import struck_scene
-
-D = 0.01275
-
-
-# Against other solvers
-
-
-def by_other_solver(scene: Scene, tip: TipModes) -> tuple[float, float, float]:
-    """(squirt, ball's spin in m/s of its surface, duration) of a tip that never slips; equations written out anew.
-
-    Vectors are (u, w). States: q and q' of the modes, the ball's velocity, its surface's by spin, compression, angle of
-    the contact, F_t.
-    """
-    law, leather_tip = scene.tip_law(scene.tip.restitution, scene.stroke.offset), scene.effects[0]
-    n, M, nu, R, r = len(tip.omega), POOL.mass, POOL.inertia, POOL.radius, leather_tip.dome_radius
-    phi_0 = asin(scene.stroke.offset)
-
-    def rate(z: np.ndarray, deepest: float | None) -> np.ndarray:
-        q, v, ball, spin, d, a, F_t = z[:n], z[n : 2 * n], z[2 * n : 2 * n + 2], *z[2 * n + 2 :]
-        phi = phi_0 + a
-        t, normal = np.array([np.sin(phi), np.cos(phi)]), np.array([np.cos(phi), -np.sin(phi)])
-        moves = tip.amplitude + np.outer(tip.rotation, leather_tip.lever(phi, D))
-        centre = tip.amplitude + np.outer(tip.rotation, (0.0, r - leather_tip.height))
-        gap = ball - v @ moves
-        F_n = float(law.at(np.array([law.virtual(d, deepest)]))[0][0])
-        force = F_n * normal + F_t * t
-        v_t = gap @ t + spin
-        wound = -v_t * leather_tip.shear
-        turning = (v @ centre - ball) @ t / (R + r) if leather_tip.rolls else 0.0
-        return np.concatenate(
-            [v, -(tip.omega**2) * q - moves @ force, force / M, [F_t / (nu * M), -gap @ normal, turning, wound]]
-        )
-
-    def follow(z, start, deepest, end):
-        end.terminal, end.direction = True, -1
-        told = solve_ivp(
-            lambda _, z: rate(z, deepest), (start, 0.02), z, "DOP853", events=end, rtol=1e-11, atol=1e-13, max_step=2e-5
-        )
-        return told.y[:, -1], float(told.t[-1])
-
-    z = np.zeros(2 * n + 6)
-    z[n : 2 * n] = scene.stroke.speed * tip.approach
-    z, time = follow(z, 0.0, None, lambda _, z: rate(z, None)[2 * n + 3] + (1.0 if z[2 * n + 3] == 0 else 0.0))
-    deepest = float(z[2 * n + 3])
-    z, time = follow(z, time, deepest, lambda _, z: (z[2 * n + 3] - law.rest(deepest)) / deepest)
-    ball = z[2 * n : 2 * n + 2]
-    return atan2(-ball[1], ball[0]), float(z[2 * n + 2]), time
-
-
-@pytest.mark.parametrize(("e", "offset", "rolls"), [(0.73, 0.3, True), (1.0, 0.45, True), (0.4, 0.2, False)])
-def test_another_solver_gives_the_same(e: float, offset: float, rolls: bool) -> None:
-    scene = leather_scene(offset, e=e, friction=inf, leather=replace(LEATHER, rolls=rolls, shear=8e5))
-    squirt, surface, duration = by_other_solver(scene, a_few_modes())
-
-    def error(steps: int) -> float:
-        found = strike_modes(scene, a_few_modes(), steps=steps)
-        pairs = ((found.squirt, squirt), (found.spin * POOL.radius, surface), (found.duration, duration))
-        return max(abs(value / exact - 1) for value, exact in pairs)
-
-    falls_with_the_step(error, most=2e-4)
 
 
 @pytest.mark.parametrize("speed", [1.0, 2.0, 5.0])
@@ -97,23 +34,6 @@ def test_head_on_the_contact_time_is_that_of_the_law_by_quadrature(speed: float)
     assert loading == pytest.approx(told, rel=1e-7)
     each = leather_scene(0.0).tip_law().blow(mass, np.array([speed, 2 * speed]))[1]
     assert each[0] == pytest.approx(loading, rel=1e-12)
-
-
-# How errors fall
-
-
-def test_resolve_bounds_its_error() -> None:
-    scene = leather_scene()
-    best, rough = resolve(scene, 1e-5), resolve(scene, 3e-2)
-    assert rough.unknowns < best.unknowns
-    for name in ("squirt", "ball_speed", "spin"):
-        assert abs(getattr(rough, name) / getattr(best, name) - 1) < rough.error <= 3e-2
-
-
-# Limits
-
-
-# What is lost along the surface, and its rings
 
 
 @pytest.mark.parametrize("offset", [0.2, 0.375, 0.45])

@@ -97,7 +97,8 @@ def strikes(draw: st.DrawFn) -> cf.Scene:
         return replace(kim_scene(friction=mu, restitution=max(e, 0.1)), stroke=stroke,
                        effects=(draw(RAISED), *draw(st.tuples(DOME, POWER)), *kinds.values()))  # fmt: skip
     at_tip = draw(st.lists(st.sampled_from(LEVEL), unique=True).flatmap(lambda chosen: st.tuples(*chosen)))
-    e = max(e, 0.1) if any(isinstance(effect, cf.SecondHit) for effect in at_tip) else e
+    if any(isinstance(effect, cf.SecondHit) for effect in at_tip):
+        e, mu = max(e, 0.1), min(mu, 5.0)
     return replace(kim_scene(friction=mu, restitution=e), stroke=stroke, effects=(*at_tip, *kinds.values()))
 
 
