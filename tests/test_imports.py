@@ -1,11 +1,10 @@
 """The house has one way through it: imports run in one order, heavy libraries stay where they belong (properties)."""
 
-from __future__ import annotations
-
 import ast
 import re
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -102,17 +101,17 @@ def out_of_order(part: str, tree: ast.Module) -> list[str]:
 
 
 SOURCES = sorted(path for path in PACKAGE.rglob("*.py") if path != PACKAGE / "__init__.py")
+TREES = {path: ast.parse(path.read_bytes()) for path in SOURCES}
 
 
 def test_imports_run_one_way() -> None:
     """In the order, each library in its home, and few of them inside functions."""
-    trees = {path: ast.parse(path.read_bytes()) for path in SOURCES}
-    wrong = {path.name: out_of_order(part_of(path), tree) for path, tree in trees.items()}
+    wrong = {path.name: out_of_order(part_of(path), tree) for path, tree in TREES.items()}
     assert {name: found for name, found in wrong.items() if found} == {}
     assert out_of_order("cue", ast.parse("from cuefem.beam import assemble")) == ["cuefem.beam"]
     assert out_of_order("scene", ast.parse("def f():\n    import pint")) == ["pint"]
     kinds = (ast.Import, ast.ImportFrom)
-    assert sum(isinstance(one, kinds) and one.col_offset > 0 for tree in trees.values() for one in walk(tree)) <= 45
+    assert sum(isinstance(one, kinds) and one.col_offset > 0 for tree in TREES.values() for one in walk(tree)) <= 45
 
 
 def test_public_names_are_there() -> None:
@@ -165,3 +164,14 @@ def test_the_kernel_has_no_circle() -> None:
         asked = {other: sorted(gives[other] & words) for other in later}
         assert not any(asked.values()), (name, asked)
         assert gives.get(name, set()) <= words, name
+
+
+def test_a_class_name_stands_in_one_file_and_offsets_in_one_table() -> None:
+    names = Counter(
+        name for tree in TREES.values() for name in {n.name for n in ast.walk(tree) if isinstance(n, ast.ClassDef)}
+    )
+    assert (names["Scene"], len([name for name, count in names.items() if count > 1]) <= 3) == (1, True)
+    targets = [
+        each for tree in TREES.values() for node in tree.body if isinstance(node, ast.Assign) for each in node.targets
+    ]
+    assert [ast.unparse(each) for each in targets].count("OFFSETS") == 1

@@ -11,16 +11,16 @@ import shutil
 import subprocess
 import sys
 import tomllib
+from collections import Counter
 from pathlib import Path
 
-import meshio
 import numpy as np
 import pytest
 
 import cuefem
 from cuefem.cli import COMMANDS as TABLE
-from cuefem.io.paraview import shaft_surface
 from tests.helpers.command_line import call
+from tests.helpers.surfaces import outline_of, revolved, written
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -40,10 +40,6 @@ def blocks(kind: str) -> list[str]:
 
 
 FIRST, OWN_SHAFT, *COMMANDS = blocks("sh")
-
-
-def test_a_newcomer_reads_it_at_once() -> None:
-    assert len(README.splitlines()) < 150
 
 
 def test_every_block_is_of_a_kind_that_runs() -> None:
@@ -99,12 +95,7 @@ def test_a_new_user_gets_a_report_from_nothing(tmp_path: Path) -> None:
 def test_commands_run(block: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("meshes", "studies"):
         shutil.copytree(ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("*.svg", "*.png", "*.py", "data"))
-    surface = shaft_surface(SHAFT)
-    (_, quads), (_, lids) = surface.cells
-    triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]], lids])
-    meshio.stl.write(
-        tmp_path / "my_shaft.stl", meshio.Mesh(1e3 * surface.points, [("triangle", triangles)]), binary=True
-    )
+    written(tmp_path / "my_shaft.stl", *revolved(outline_of(SHAFT), 32))
     monkeypatch.chdir(tmp_path)
     for line in block.splitlines():
         program, *words = shlex.split(line, comments=True)
@@ -144,14 +135,7 @@ def test_drawings_and_scenes_load(tmp_path: Path) -> None:
             loaded = cuefem.load(path)
             assert type(loaded) is (cuefem.Scene if named else cuefem.Cue)
             kinds.append((kind, type(loaded).__name__))
-    assert sorted(kinds) == [
-        ("csv", "Cue"),
-        ("csv", "Cue"),
-        ("toml", "Cue"),
-        ("toml", "Cue"),
-        ("toml", "Scene"),
-        ("toml", "Scene"),
-    ]
+    assert Counter(kinds) == {("csv", "Cue"): 2, ("toml", "Cue"): 2, ("toml", "Scene"): 2}
 
 
 def test_commands_exist() -> None:
@@ -174,10 +158,6 @@ def test_the_verdicts_are_counted_as_the_study_counts_them() -> None:
     assert counted is not None
     claims, agree, rounded, slips = counted.groups()
     assert f"{agree} of {claims} claims agree, {rounded} are roundings, {slips} slips" in TEXT
-
-
-def test_the_picture_is_small() -> None:
-    assert (ROOT / "studies" / "report.png").stat().st_size < 200_000
 
 
 def test_the_citation_names_this_release() -> None:

@@ -85,14 +85,12 @@ def test_the_page_needs_nothing_from_the_network_and_its_links_lead_somewhere() 
     assert 'handbook: <a href="#beam">The beam</a>, <a href="#strike">The strike</a>, <a href="#effects">' in text
 
 
-@pytest.mark.parametrize(
-    ("there", "words"), [(True, "opened file:"), (False, "no browser found; open this file in one")]
-)
-def test_the_command_opens_a_browser(there: bool, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("there", [True, False])
+def test_the_command_opens_a_browser(there: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     opened: list[str] = []
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     monkeypatch.setattr(webbrowser, "open", lambda address: opened.append(address) or there)
-    assert said("guide", "glossary").startswith(words)
+    assert said("guide", "glossary").startswith("opened file:" if there else "no browser found")
     (made,) = tmp_path.glob("cuefem-guide-*.html")
     assert opened == [f"{made.as_uri()}#glossary"]
     assert made.read_text(encoding="utf-8") == page()
@@ -103,8 +101,7 @@ def test_the_command_prints_a_chapter_and_writes_the_page(tmp_path: Path) -> Non
     assert said("guide", "-o", path) == f"wrote {path}\n"
     assert path.read_text(encoding="utf-8") == page()
     out = said("guide", "glossary", "--print")
-    assert "effective end mass" in out
-    assert ("Hutchinson" in out, "Hutchinson" in said("guide", "--print")) == (False, True)
+    assert ("effective end mass" in out, "Hutchinson" in out) == (True, False)
     listed = " ".join(said("guide", "--help").split())
     assert [name for name in CHAPTERS if name not in listed] == []
 

@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 
 from cuefem import Ball, Cue, LumpedCue, Material, Outcome, Resolution, Scene, Segment, Stroke, Tip
 from cuefem.beam.tip import TipModes
-from cuefem.contact.impulse_space import inverse_mass
 from tests.helpers.cues import kim
 
 # How well the account of energy closes at the default steps, relative.
@@ -164,15 +163,6 @@ def lumped_scenes(draw: st.DrawFn) -> Scene:
     tip = Tip(draw(RESTITUTION), draw(FRICTION), contact_time=draw(logarithmic(1e-4, 2e-2)))
     stroke = Stroke(draw(logarithmic(0.01, 10.0)), draw(SIGN) * draw(OFFSET))
     return Scene(LumpedCue(mass, end_mass, coupling), draw(BALL), tip, stroke)
-
-
-@st.composite
-def near_miscue_scenes(draw: st.DrawFn) -> Scene:
-    """Lumped cues whose friction is about what sticking needs, mu_c (or just that): late sticks, reversals, miscues."""
-    scene = draw(lumped_scenes())
-    B = inverse_mass(scene.cue, scene.ball, abs(scene.stroke.offset))
-    friction = abs(B.tn / B.tt) * draw(st.one_of(st.just(1.0), st.floats(0.8, 1.5)))
-    return replace(scene, tip=replace(scene.tip, friction=float(friction)))
 
 
 @st.composite
