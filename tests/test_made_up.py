@@ -1,10 +1,12 @@
-"""What is added by one entry of a table, or by a class, is found everywhere: place, result, definition, effects."""
+"""What is added by one entry of a table, or by a class, is found everywhere: parameter, result, definition, effects."""
 
 from __future__ import annotations
 
 import functools
 import gc
 import json
+import subprocess
+import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -16,13 +18,10 @@ import pytest
 import cuefem as cf
 from cuefem.design import Levels, Response, Study, Vary, evaluate
 from cuefem.design.worth import variants
-from cuefem.designer.design import Design, State, Step
-from cuefem.designer.kept import state_of, text_of
-from cuefem.designer.sliders import sliders
 from cuefem.effects import effect_kinds
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.measurements.uncertain_parameters import parameters_of
-from cuefem.parameters.parameter import PLACES, knobs_of, paths, varied
+from cuefem.parameters.parameter import PARAMETERS, paths, varied
 from cuefem.results.quantities import RESULTS
 from tests.helpers.made_up import PLACE, PUSH, RIGID, SPOT, cap_effect, collar_effect, faces, missing
 from tests.helpers.strike_scenes import imbalance, kim_scene
@@ -43,23 +42,38 @@ def _forgotten() -> Iterator[None]:
     gc.collect()
 
 
-def test_a_place(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(PLACES, PLACE.key, PLACE)
+def test_a_parameter(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(PARAMETERS, PLACE.key, PLACE)
     scene = cf.usual_scene(RINGED)
     study = Study(scene, (Vary(("collar length",), Levels((0.005, 0.025))),), (Response.of("shaft_mass"),))
     assert study.units[0] == "m"
     assert study.scene((0.025,)).cue.segments[1].length == 0.025
     (unknown,) = (each for each in parameters_of(scene, ()) if each.name == "collar length")
     assert (unknown.words, unknown.unit, unknown.usual, unknown.spread) == ("length of the collar", "m", 0.01, 0.1)
-    (slider,) = (each for each in sliders(scene) if each.knob == "collar_length")
-    assert (slider.label, slider.unit, slider.shown(knobs_of(scene))) == ("Length of the collar", "mm", 10)
-    design = Design.of("cue", scene)
-    longer = replace(design, knobs=slider.turned(design.knobs, 20))
-    assert state_of(text_of(State((Step(longer),)))).now.design == longer
     plain = cf.usual_scene(cf.Cue((cf.Segment(0.7, 0.0125, 0.021, WOOD),), 0.42))
-    assert "collar_length" not in knobs_of(plain)
     with pytest.raises(ValueError, match="got 'collar length', which this scene does not have"):
         paths(plain, "collar length")
+
+
+OPTION = """import sys
+from cuefem.parameters.parameter import PARAMETERS
+from tests.helpers.made_up import PLACE
+
+PARAMETERS[PLACE.key] = PLACE
+from tests.helpers.command_line import call
+
+print(call("strike", sys.argv[1], "--collar-length", "20 mm", "--json")[1])
+"""
+
+
+@pytest.mark.heavy
+def test_a_parameter_is_an_option_of_commands(tmp_path: Path) -> None:
+    """In a process of its own: a command's options are those of the table when the command is loaded."""
+    cf.save(RINGED, tmp_path / "cue.toml")
+    command = [sys.executable, "-c", OPTION, str(tmp_path / "cue.toml")]
+    done = subprocess.run(command, cwd=Path(__file__).parents[1], capture_output=True, text=True, check=True)
+    mass = json.loads(done.stdout)["scene"]["cue"]["shaft_mass"]
+    assert mass > RINGED.shaft_mass + 0.005
 
 
 def test_a_result(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
