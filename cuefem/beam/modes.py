@@ -13,7 +13,7 @@ from cuefem.beam.mesh import ActsOnCue
 from cuefem.beam.system import System, assemble, suits_dense
 from cuefem.beam.waves import mesh_for, modes_below
 from cuefem.cue import Array, Cue, Section
-from cuefem.quantity.display import brief, table
+from cuefem.quantity.display import brief
 from cuefem.quantity.fields import Quantity, check_count, check_kind
 
 # LAPACK's omega^2 and the Rayleigh quotients of its vectors agree to this where the rounding of K does not show.
@@ -42,11 +42,6 @@ class Modes:
         first = self.frequencies[:6]
         more = f" and {len(self.frequencies) - len(first)} more" if len(first) < len(self.frequencies) else ""
         return f"Modes({brief(first)} Hz{more}, {self.rigid} rigid)"
-
-    def _repr_html_(self) -> str:
-        """The modes as a notebook shows them."""
-        rows = [(str(i), f"{frequency:.2f}") for i, frequency in enumerate(self.frequencies, start=1)]
-        return table(("mode", "frequency, Hz"), rows, f"{self.rigid} rigid motions, then")
 
     @property
     def modes(self) -> Modes:

@@ -14,7 +14,7 @@ import click
 from click.shell_completion import CompletionItem
 
 from cuefem.contact.kernel import KernelError
-from cuefem.quantity.messages import brief
+from cuefem.quantity.display import one_line
 from cuefem.quantity.slips import Unusual
 
 # Before NumPy is loaded: small dense matrices gain nothing from BLAS threads, and two of them on a busy machine can be
@@ -118,7 +118,7 @@ class _OneLine(_Commands):
         except (ValueError, RuntimeError, KernelError) as error:
             if isinstance(error, click.exceptions.Exit | click.exceptions.Abort):
                 raise
-            said = str(error) if hasattr(error, "problem") else brief(str(error))  # an InputError is brief already
+            said = str(error) if hasattr(error, "problem") else one_line(str(error))  # an InputError is brief already
             click.echo(f"cuefem: {said}", err=True)
             raise click.exceptions.Exit(2 if isinstance(error, ValueError | KernelError) else 1) from None
 
@@ -127,7 +127,7 @@ def _refuse_usage(error: click.UsageError) -> NoReturn:
     """Say in one line what is wrong with a command line, and where its help is; help that was asked for passes."""
     if type(error).__name__ == "NoArgsIsHelpError":
         raise error
-    words = brief(error.format_message()).rstrip(".")
+    words = one_line(error.format_message()).rstrip(".")
     more = "" if error.ctx is None else f" (`{error.ctx.command_path} --help` lists the options)"
     click.echo(f"cuefem: {words}{more}", err=True)
     sys.exit(2)

@@ -11,7 +11,6 @@ from typing import Annotated, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from cuefem.quantity.display import outline, table
 from cuefem.quantity.fields import (
     DIAMETER,
     LENGTH,
@@ -315,21 +314,6 @@ class Cue:
     def __repr__(self) -> str:
         count = f"{len(self.segments)} segment{'s' if len(self.segments) > 1 else ''}"
         return f"Cue({count}, {self.length:.4g} m, {self.shaft_mass:.4g} kg, body_mass={self.body_mass:.4g})"
-
-    def _repr_html_(self) -> str:
-        """The cue as a notebook shows it: its outline, and its segments in mm."""
-        pieces = [(s.length, s.tip_diameter, s.butt_diameter, s.tip_bore, s.butt_bore) for s in self.segments]
-        head = ("length, mm", "tip, mm", "butt, mm", "bores, mm", "E, GPa", "density, kg/m3", "core")
-        rows = [
-            (
-                *(f"{1e3 * size:.5g}" for size in sizes[:3]),
-                " to ".join(dict.fromkeys(f"{1e3 * bore:.4g}" for bore in sizes[3:])) if any(sizes[3:]) else "",
-                *(s.material.E / 1e9, s.material.rho, f"{s.core.E / 1e9:.4g} GPa" if s.core else ""),
-            )
-            for s, sizes in zip(self.segments, pieces, strict=True)
-        ]
-        caption = f"{1e3 * self.length:.5g} mm, {1e3 * self.shaft_mass:.4g} g, behind it {1e3 * self.body_mass:.4g} g"
-        return outline(pieces) + table(head, rows, caption)
 
     def __post_init__(self) -> None:
         check_fields(self)

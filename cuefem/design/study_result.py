@@ -14,7 +14,6 @@ from cuefem.design.optimum import Optimum, Problem, optimum
 from cuefem.design.scatter import Drivers, Scatter, drivers_of
 from cuefem.design.study import Study, StudyDesign
 from cuefem.design.sweep import MemoryStore, Pool, Row, Store, sweep
-from cuefem.quantity.display import table
 from cuefem.results.quantities import with_unit
 
 SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)  # of the designs below a quantile
@@ -145,10 +144,6 @@ class StudyResult:
         count = self.optimum.evaluations if self.optimum else len(self.rows)
         head = f"StudyResult({self.kind} of {count} designs{failed})"
         return "\n  ".join([head, *(f"{name}: {value}, {at}" for name, value, at in self._lines())])
-
-    def _repr_html_(self) -> str:
-        head = "response", "best" if self.best else "mean ± sd", "at"
-        return table(head, self._lines(), repr(self).partition("\n")[0])
 
 
 def found(

@@ -9,8 +9,8 @@ from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
 
+from cuefem.quantity.display import one_line, printable
 from cuefem.quantity.fields import nearest, shown
-from cuefem.quantity.messages import brief, printable
 
 _KINDS = {
     stat.S_IFDIR: "a folder",
@@ -34,7 +34,7 @@ class InputError(ValueError):
     """
 
     def __init__(self, file: str | PathLike[str], key: str, problem: str) -> None:
-        self.file, self.key, self.problem = str(file), brief(key), brief(problem)
+        self.file, self.key, self.problem = str(file), one_line(key), one_line(problem)
         super().__init__(": ".join(part for part in (printable(self.file), self.key, self.problem) if part))
 
 

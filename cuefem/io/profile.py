@@ -30,9 +30,9 @@ from cuefem.io.columns import (
 from cuefem.io.errors import InputError, faults_of, shown
 from cuefem.io.fittings import fitted, has_length, on_tenon
 from cuefem.io.toml import named_material
+from cuefem.quantity.display import MOST
 from cuefem.quantity.fields import DIAMETER as WIDTH
 from cuefem.quantity.fields import Quantity
-from cuefem.quantity.messages import MOST
 from cuefem.quantity.slips import CUE_DIAMETER, CUE_LENGTH
 from cuefem.quantity.units import number
 

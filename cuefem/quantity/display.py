@@ -1,27 +1,30 @@
-"""How cuefem's objects show themselves: short texts in a terminal, tables and an outline in a notebook."""
+"""How objects, values and messages show themselves: short, and in printable characters."""
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable, Sequence
+import re
+from collections.abc import Iterable
 from functools import cache
-from html import escape
 from typing import Any
 
-import numpy as np
+LONGEST = 60  # characters of an echoed value
+MOST = 8  # names of a list
+
+_LONG = re.compile(
+    rf"(?P<quote>['\"])(?P<said>[^'\"]{{{LONGEST}}})[^'\"]+(?P=quote)|(?P<word>[^\s/'\"]{{{LONGEST}}})[^\s/'\"]+"
+)
 
 
 def brief(value: Any) -> str:
     """A value in a few letters: numbers to four digits, arrays by their shape unless they are short."""
-    if isinstance(value, np.ndarray):
-        if value.ndim == 1 and len(value) <= 8:
-            return f"[{', '.join(brief(each) for each in value)}]"
-        return f"array{value.shape}" if value.ndim else brief(value[()])
-    if isinstance(value, bool | np.bool_):
-        return str(bool(value))
-    if isinstance(value, float | np.floating):
-        return f"{float(value):.4g}"
-    return repr(str(value) if isinstance(value, str) else value)
+    if hasattr(value, "ndim"):  # numpy's, which commands that print no number do not load
+        if value.ndim == 0:
+            return brief(value.item())
+        return f"[{', '.join(map(brief, value))}]" if value.shape < (9,) and value.ndim == 1 else f"array{value.shape}"
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    return repr(value)
 
 
 def said(kind: str, fields: Iterable[tuple[str, Any]]) -> str:
@@ -39,7 +42,7 @@ def spelt_out(thing: Any) -> str:
     """All that an object holds, as dataclasses write themselves: what tells two of them apart."""
     if type(thing) is float:
         return repr(thing)
-    if isinstance(thing, np.ndarray):
+    if getattr(thing, "ndim", 0):
         return f"array({thing.tolist()!r}, {thing.dtype})"
     if dataclasses.is_dataclass(thing) and not isinstance(thing, type):
         inner = ", ".join(f"{name}={spelt_out(getattr(thing, name))}" for name in _shown_fields(type(thing)))
@@ -49,36 +52,23 @@ def spelt_out(thing: Any) -> str:
     return repr(thing)
 
 
-def table(head: Sequence[str], rows: Iterable[Sequence[Any]], caption: str = "") -> str:
-    """A table for a notebook."""
-    top = "".join(f"<th>{escape(name)}</th>" for name in head)
-    body = "".join(
-        "<tr>" + "".join(f"<td>{escape(cell if isinstance(cell, str) else brief(cell))}</td>" for cell in row) + "</tr>"
-        for row in rows
-    )
-    title = f"<caption>{escape(caption)}</caption>" if caption else ""
-    return f"<table>{title}{f'<tr>{top}</tr>' if head else ''}{body}</table>"
+def one_line(text: str) -> str:
+    """The text in one line of printable characters, long values cut and long lists of names ended; paths stay whole."""
+
+    def cut(match: re.Match[str]) -> str:
+        quote = match["quote"] or ""
+        return f"{quote}{match['said'] or match['word']}...{quote}"
+
+    return "; ".join(map(_ended, _LONG.sub(cut, printable(text)).split("; ")))
 
 
-def outline(pieces: Sequence[tuple[float, float, float, float, float]]) -> str:
-    """A cue from its side as a small drawing, widths five times enlarged; what fills a bore is drawn as it is empty.
+def _ended(part: str) -> str:
+    """A part of a message whose list of names ends after `MOST`, and what stands behind the list with "or"."""
+    names = part.split(", ")
+    rest = next((i for i, name in enumerate(names) if i >= MOST and name.startswith("or ")), len(names))
+    return part if rest <= MOST else ", ".join([*names[:MOST], "...", *names[rest:]])
 
-    pieces: of each segment its length, its outer diameters and its bores at the two ends, tip side first, m.
-    """
-    length = sum(piece[0] for piece in pieces)
-    widest = max(max(piece[1:3]) for piece in pieces)
-    across, wide = 5.0, 600.0
-    scale = wide / length
-    high = across * scale * widest + 4
-    parts, x = [], 0.0
-    for long, tip, butt, *bores in pieces:
-        for ends, fill in (((tip, butt), "#e8d5b0"), (tuple(bores), "#ffffff")):
-            if any(ends):
-                near, far = (across * scale * end / 2 for end in ends)
-                corners = ((x, -near), (x + long, -far), (x + long, far), (x, near))
-                points = " ".join(f"{scale * place:.1f},{high / 2 + y:.1f}" for place, y in corners)
-                parts.append(f'<polygon points="{points}" fill="{fill}" stroke="#555" stroke-width="0.6"/>')
-        x += long
-    about = 'role="img" aria-label="the cue from its side, tip on the left, widths five times enlarged"'
-    size = f'width="{wide:.0f}" height="{high:.0f}" viewBox="-1 0 {wide + 2:.0f} {high:.0f}"'
-    return f'<svg xmlns="http://www.w3.org/2000/svg" {size} {about}>{"".join(parts)}</svg>'
+
+def printable(text: str) -> str:
+    """The text in one line, with control characters as escapes such as \\x1b."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in " ".join(text.split()))

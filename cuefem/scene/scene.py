@@ -14,7 +14,7 @@ from cuefem.cue import Array, Cue, LumpedCue
 from cuefem.effects import CueEffect, Effect, LeatherTip, acting_on_cue, check_effects
 from cuefem.effects.leather_law import LeatherLaw, TooDeep
 from cuefem.effects.terms import ContactTerms
-from cuefem.quantity.display import brief, said, table
+from cuefem.quantity.display import said
 from cuefem.quantity.fields import (
     CONTACT_TIME,
     Number,
@@ -22,7 +22,6 @@ from cuefem.quantity.fields import (
     check_count,
     check_fields,
     check_kind,
-    quantities,
     scalar,
 )
 from cuefem.quantity.slips import remark_light, remark_said
@@ -205,18 +204,6 @@ class Scene:
                     f"Tip.{name} must be left out beside an effect that gives the whole tip, from which it follows; "
                     f"got {value} {unit}"
                 )
-
-    def _repr_html_(self) -> str:
-        """The scene as a notebook shows it: its cue, and the numbers of the blow."""
-        rows = [
-            (f"{type(part).__name__.lower()}: {name.replace('_', ' ')}", brief(value), unit.unit)
-            for part in (self.ball, self.tip, self.stroke)
-            for name, unit, *_ in quantities(type(part))  # type: ignore[arg-type]
-            if (value := getattr(part, name)) is not None
-        ]
-        rows += [("effect", repr(effect), "") for effect in self.effects]
-        cue = self.cue._repr_html_() if isinstance(self.cue, Cue) else table((), [("cue", repr(self.cue))])
-        return cue + table(("blow", "", "unit"), rows)
 
     @property
     def shaft(self) -> Cue:
@@ -469,16 +456,6 @@ class Outcome:
 
     def __repr__(self) -> str:
         return said("Outcome", self._shown())
-
-    def _repr_html_(self) -> str:
-        """The outcome as a notebook shows it."""
-        units = {"squirt": "rad", "ball_speed": "m/s", "spin": "rad/s", "cue_speed": "m/s", "duration": "s"}
-        rows = [
-            (name.replace("_", " "), value if name == "regime" else brief(value), units.get(name, ""))
-            for name, value in self._shown()
-        ]
-        rows += [(f"energy: {name}", brief(value), "J") for name, value in self.energy.items()]
-        return table(("outcome", "", "unit"), rows)
 
     def _shown(self) -> list[tuple[str, Any]]:
         names = ("squirt", "ball_speed", "spin", "cue_speed", "duration", "regime", "error")
