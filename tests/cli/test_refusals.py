@@ -49,7 +49,7 @@ strike shaft.toml --offset '8 kg' | or a length such as "8 mm"
 strike shaft.toml --offset '40 mm' | or a length of less than 28.575 mm
 strike shaft.toml --restitution 2 | shaft.toml: --restitution: must be 0 to 1
 strike shaft.toml --speed fast | cuefem: shaft.toml: --speed: must be a speed with its unit
-strike shaft.toml --speed 1e400 | a number that is not so large
+strike shaft.toml --speed 1e400 | needs a unit
 end-mass good.toml --speed 2 | --speed: needs a unit
 report good.toml --body-mass '-1 oz' | good.toml: --body-mass: must be 0 oz or more
 modes good.toml --near '3 mm' | --near: must be 0 Hz or more

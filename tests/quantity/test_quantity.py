@@ -60,7 +60,7 @@ READ = [
     (MASS, "15 onces", "got '15 onces': no unit is called 'onces'; did you mean 'ounces'?"),
     (MASS, "15 mm", "must be a mass with its unit, such as \"150 g\"; got '15 mm', which is a length"),
     (MASS, "15,5 oz", "got '15,5 oz'; a decimal point, no comma"),
-    (MASS, "1e400 g", "must be a number that is not so large; got 1e400 g"),
+    (MASS, "1e400 g", "must be 0 g or more; got 1e400 g"),
     (SIZE, "mm", "must be a length with its unit, such as \"12 mm\"; got 'mm'"),
     (SIZE, "1e-999 mm", "must be more than 0 and at most 10000 mm; got 1e-999 mm"),
     (MASS, "nan g", "must be 0 g or more; got nan g"),
