@@ -9,7 +9,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cuefem import Cue, Material, Segment
-from cuefem.cue import shear_coefficient
 from tests.helpers.cues import scaled
 
 # From foam to steel; G of each stays below E/(2 nu).
@@ -56,21 +55,6 @@ def test_sizes_enter_as_area_and_inertia(cue: Cue, place: float, larger: float) 
     np.testing.assert_allclose(grown.shaft_mass, cue.shaft_mass * larger**3, rtol=1e-12)
 
 
-@given(segments(), places)
-def test_a_cut_leaves_mass_and_balance_alone(segment: Segment, place: float) -> None:
-    cut = 0.01 + 0.98 * place
-
-    def at(first: float, last: float) -> float:
-        return first + (last - first) * cut
-
-    outer, bore = at(segment.tip_diameter, segment.butt_diameter), at(segment.tip_bore, segment.butt_bore)
-    front = replace(segment, length=segment.length * cut, butt_diameter=outer, butt_bore=bore)
-    back = replace(segment, length=segment.length * (1 - cut), tip_diameter=outer, tip_bore=bore)
-    one, two = Cue((segment,)), Cue((front, back))
-    np.testing.assert_allclose(two.shaft_mass, one.shaft_mass, rtol=1e-11)
-    np.testing.assert_allclose(two.balance_point, one.balance_point, rtol=1e-10)
-
-
 @given(segments())
 def test_a_bore_takes_mass_and_a_core_gives_it_back(segment: Segment) -> None:
     bored = replace(segment, core=None)
@@ -81,10 +65,3 @@ def test_a_bore_takes_mass_and_a_core_gives_it_back(segment: Segment) -> None:
     np.testing.assert_allclose(filled.centre, solid.centre, rtol=1e-11)
     s, t = filled.section(0.3 * segment.length), solid.section(0.3 * segment.length)
     np.testing.assert_allclose([s.EA, s.EI, s.rhoA, s.rhoI], [t.EA, t.EI, t.rhoA, t.rhoI], rtol=1e-12)
-
-
-@given(st.floats(0.0, 0.5), st.floats(0.0, 0.999))
-def test_shear_coefficient_falls_with_the_bore(nu: float, bore_ratio: float) -> None:
-    """From the solid circle's to the thin tube's (1 + nu)/(2 + nu), never outside."""
-    kappa = shear_coefficient(nu, bore_ratio)
-    assert (1 + nu) / (2 + nu) * (1 - 1e-12) <= kappa <= shear_coefficient(nu) * (1 + 1e-12)
