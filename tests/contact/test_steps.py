@@ -228,14 +228,16 @@ def test_endless_friction_ends_too(offset: float, time: float) -> None:
     assert outcomes[1].phases[0].grip == "blow"
 
 
-def test_a_blow_may_throw_the_two_apart() -> None:
-    """A light cue end against endless friction: the blow alone ends the contact, as in the impulse solver."""
-    cue = cf.LumpedCue(0.54, 0.2, 2.2)
-    scene = cf.Scene(cue, tip=cf.Tip(0.5, math.inf, contact_time=1e-3), stroke=cf.Stroke(1.0, 0.9))
+@pytest.mark.parametrize(("e", "regime"), [(0.3, "miscue"), (0.9, "late stick")])
+def test_a_blow_may_throw_the_two_apart(e: float, regime: str) -> None:
+    """A light cue against endless friction: the blow alone is the contact, as in the impulse solver; at e it ends."""
+    cue = cf.LumpedCue(0.05, 0.02, -0.8 / math.sqrt(0.05 * 0.02))
+    scene = cf.Scene(cue, tip=cf.Tip(e, math.inf, contact_time=1e-3), stroke=cf.Stroke(1.0, 0.95))
     outcome, exact = cf.strike(scene), cf.impulse(scene)
-    if [phase.grip for phase in outcome.phases] == ["blow"]:
-        assert outcome.duration == 0
-    assert outcome.squirt == pytest.approx(exact.squirt, abs=1e-3)
+    assert [phase.grip for phase in outcome.phases] == ["blow"]
+    assert (outcome.regime, exact.regime, outcome.duration) == (regime, regime, 0)
+    for name in ("squirt", "ball_speed", "spin", "cue_speed"):
+        assert getattr(outcome, name) == pytest.approx(getattr(exact, name), rel=1e-12)
 
 
 @pytest.mark.parametrize("steps", [19, 1_000_001])
