@@ -1,13 +1,13 @@
 from . import frames as frames, plot as plot
 from .results.convergence import resolve as resolve, resolve_end_mass as resolve_end_mass
 from .beam.modes import modes as modes
-from .contact.calibrated import (
+from .contact.tip_identification import (
     leather_modulus as leather_modulus,
     rebound as rebound,
     tip_restitution as tip_restitution,
 )
-from .contact.motion import motion as motion
-from .contact.place import Placed as Placed, place as place
+from .contact.trajectory import motion as motion
+from .contact.table_frame import Placed as Placed, place as place
 from .contact.side_strike import (
     SideOutcome as SideOutcome,
     SideStrike as SideStrike,

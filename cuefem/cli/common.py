@@ -12,7 +12,7 @@ import click
 from cuefem.cli.printing import assumed_lines, json_option, shared_option, tell
 from cuefem.cli.strokes import blow_options, offset_option, option, parameter_options, refuse_game, usual, with_options
 from cuefem.cue import Cue
-from cuefem.effects.leather_law import TooDeep
+from cuefem.effects.force_law import TooDeep
 from cuefem.io import InputError, check_place, load_stroke
 from cuefem.io.assumed import assumed, assumed_usual
 from cuefem.io.fittings import FITTINGS

@@ -17,15 +17,15 @@ from cuefem.beam.modes import solve
 from cuefem.beam.system import assemble
 from cuefem.beam.tail import tail
 from cuefem.beam.tip import TipModes, side_modes
-from cuefem.contact.laws import ContactModel, check_restitution, power_law
+from cuefem.contact.modal_response import propagator_of
+from cuefem.contact.model import ContactModel, check_restitution, power_law
 from cuefem.contact.outcome import Phase
-from cuefem.contact.propagator import propagator_of
-from cuefem.contact.solve import SolvedContact, solve_contact
+from cuefem.contact.step_records import SolvedContact, solve_contact
 from cuefem.cue import Cue
 from cuefem.effects import CueEffect, Effect, acting_on_cue, check_effects
 from cuefem.effects.base import NEAR
-from cuefem.effects.law import TipLaw, loading_time
-from cuefem.effects.terms import ContactTerms
+from cuefem.effects.contact_settings import ContactTerms
+from cuefem.effects.force_law import TipLaw, loading_time
 from cuefem.quantity.fields import CONTACT_TIME, Quantity, check_fields, check_kind
 from cuefem.quantity.slips import remark_time_as_stiffness
 from cuefem.scene import Resolution, equal_fields

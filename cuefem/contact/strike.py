@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from cuefem.beam.tip import TipModes
-from cuefem.contact.laws import model_of
-from cuefem.contact.solve import solve_contact
+from cuefem.contact.model import model_of
+from cuefem.contact.step_records import solve_contact
 from cuefem.cue import Cue
 from cuefem.quantity.fields import check_count, check_kind, shown
 from cuefem.scene import Outcome, Resolution, Scene

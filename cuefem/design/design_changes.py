@@ -11,7 +11,7 @@ import numpy as np
 from cuefem.contact.outcome import grip_of
 from cuefem.cue import Cue
 from cuefem.cue.materials import MATERIALS, WOODS, table_name
-from cuefem.effects.leather import DOMES
+from cuefem.effects.leather_tip import DOMES
 from cuefem.parameters.parameter import PARAMETERS, varied
 from cuefem.parameters.parts import Layout, taper_position
 from cuefem.results.designs import OneDesign, off_centre

@@ -15,7 +15,7 @@ from cuefem.effects.base import (
     check_effects,
     effect_kinds,
 )
-from cuefem.effects.leather import LeatherTip, TipLayer
+from cuefem.effects.leather_tip import LeatherTip, TipLayer
 from cuefem.effects.on_cue import AxialWaves, GeometricStiffness, Joint, PointMass, StructuralDamping, Support
 from cuefem.effects.stroke import Elevation, SecondHit
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 from cuefem.effects.base import TipEffect, Usual
-from cuefem.effects.law import TipLaw, slowed
-from cuefem.effects.terms import ContactTerms, HeadOn
+from cuefem.effects.contact_settings import ContactTerms, HeadOn
+from cuefem.effects.force_law import TipLaw, slowed
 from cuefem.quantity.fields import Quantity
 
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from cuefem.beam.mesh import Mesh, Terms
     from cuefem.beam.spectrum import Ended
     from cuefem.beam.tip import TipModes
-    from cuefem.effects.terms import ContactTerms
+    from cuefem.effects.contact_settings import ContactTerms
 
 # Positions are on the cue up to this part of its length: a sum of lengths differs from their total by rounding.
 NEAR = 1e-9

@@ -259,7 +259,7 @@ class StructuralDamping(CueEffect):
 
     def damp(self, tip: TipModes, families: Sequence[tuple[Cue, Vibrations]]) -> TipModes:
         """The tip modes with every vibrating mode damped."""
-        from cuefem.effects.loss import damped  # loaded when used: it solves the beam
+        from cuefem.effects.damping import damped  # loaded when used: it solves the beam
 
         return damped(tip, families, loss=self.loss)
 

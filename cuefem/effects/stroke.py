@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 from cuefem.effects.base import Effect, Usual
-from cuefem.effects.terms import ContactTerms, Table
+from cuefem.effects.contact_settings import ContactTerms, Table
 from cuefem.quantity.fields import Quantity
 
 

@@ -16,8 +16,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cuefem.beam.tip import TipModes
-from cuefem.contact.impulse_space import impact
 from cuefem.contact.outcome import slides_away
+from cuefem.contact.rigid_impact import impact
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array, LumpedCue
 from cuefem.effects import Effect

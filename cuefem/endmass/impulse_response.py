@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cuefem.beam.tip import TipModes
-from cuefem.contact.propagator import Complex, propagator_of, responses
+from cuefem.contact.modal_response import Complex, propagator_of, responses
 from cuefem.cue import Array
 
 # Steps of a contact. Against closed forms at the same 120 modes (100 random cues, 0.5 to 3 ms, free and damped, "stick"

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from cuefem.beam.tip import TipModes
-from cuefem.contact.impulse_space import impact
+from cuefem.contact.rigid_impact import impact
 from cuefem.cue import Array, LumpedCue
 from cuefem.endmass.definitions import MANY, _gripping, end_mass, stick_at_offset, sticking_squirt, zoomed_root
 from cuefem.quantity.fields import check_kind, scalar
@@ -89,7 +89,7 @@ def impulse(scene: Scene) -> Outcome:
     Returns
     -------
     Outcome
-        With the arrays' broadcast shape. See `cuefem.contact.impulse_space.impact` for phases and energies.
+        With the arrays' broadcast shape. See `cuefem.contact.rigid_impact.impact` for phases and energies.
 
     Raises
     ------

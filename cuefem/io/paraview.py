@@ -17,7 +17,7 @@ import meshio
 import numpy as np
 
 from cuefem.beam.modes import Modes, modes
-from cuefem.contact.motion import Motion, motion
+from cuefem.contact.trajectory import Motion, motion
 from cuefem.cue import Array, Cue
 from cuefem.io import check_new, write_whole_folder
 from cuefem.quantity.fields import scalar

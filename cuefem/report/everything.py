@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from cuefem.contact.bent import BentTooFar
+from cuefem.contact.geometric_stiffness import BentTooFar
 from cuefem.contact.outcome import grip_of
 from cuefem.contact.strike import strike_modes
-from cuefem.effects.leather_law import TooDeep
+from cuefem.effects.force_law import TooDeep
 from cuefem.io.ready import ready_cues
 from cuefem.report.end_mass import SQUIRT_END_MASS, end_mass_record
 from cuefem.report.modes_table import modes_record, modes_sheet

@@ -12,8 +12,8 @@ import numpy as np
 
 from cuefem.cue import Array, Cue, LumpedCue
 from cuefem.effects import CueEffect, Effect, LeatherTip, acting_on_cue, check_effects
-from cuefem.effects.leather_law import LeatherLaw, TooDeep
-from cuefem.effects.terms import ContactTerms
+from cuefem.effects.contact_settings import ContactTerms
+from cuefem.effects.force_law import LeatherLaw, TooDeep
 from cuefem.quantity.display import said
 from cuefem.quantity.fields import (
     CONTACT_TIME,

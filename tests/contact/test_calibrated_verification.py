@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from cuefem import AxialWaves, leather_modulus, rebound, strike, tip_restitution
-from cuefem.contact.calibrated import with_modulus
+from cuefem.contact.tip_identification import with_modulus
 from tests.helpers.leather_scenes import LEATHER, leather_scene
 
 

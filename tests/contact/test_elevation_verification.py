@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from cuefem import Elevation, LumpedCue, PowerLawTip, Resolution, Scene, Stroke, Tip, strike
-from cuefem.contact.laws import model_of
-from cuefem.contact.solve import solve_contact
+from cuefem.contact.model import model_of
+from cuefem.contact.step_records import solve_contact
 from cuefem.contact.strike import strike_modes
 from tests.helpers.orders import assert_order, falls_with_the_step
 from tests.helpers.strike_scenes import CLOSED, hand_made, imbalance, kim_scene

@@ -123,7 +123,7 @@ def many_scenes(rng, shape):
 @pytest.mark.parametrize("block", [8192, 1, 7, 64])
 def test_an_array_of_strokes_is_its_strokes_one_by_one(monkeypatch, block):
     """However many are worked at a time."""
-    monkeypatch.setattr("cuefem.contact.impulse_space.BLOCK", block)
+    monkeypatch.setattr("cuefem.contact.rigid_impact.BLOCK", block)
     whole = many_scenes(np.random.default_rng(5), (5, 8))
     out = impulse(whole)
     for at in np.ndindex(5, 8):

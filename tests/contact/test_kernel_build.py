@@ -78,8 +78,8 @@ STORED = """
 import json, sys
 from concurrent.futures import ThreadPoolExecutor
 import cuefem
-from cuefem.contact.laws import model_of
-from cuefem.contact.solve import solve_contact
+from cuefem.contact.model import model_of
+from cuefem.contact.step_records import solve_contact
 from tests.data.stored import scene_of, stored_law, strikes, tip_of
 
 assert cuefem.__file__.startswith(sys.argv[2])

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.contact.motion import Motion, motion
+from cuefem.contact.trajectory import Motion, motion
 from tests.helpers.leather_scenes import LEATHER
 from tests.helpers.strike_scenes import KIM
 

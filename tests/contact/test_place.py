@@ -8,7 +8,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import cuefem as cf
-from cuefem.contact.place import offset_of
+from cuefem.contact.table_frame import offset_of
 
 MANY = settings(max_examples=60, deadline=None)
 BALL = cf.Ball(0.17, 0.0286)

@@ -10,8 +10,8 @@ import pytest
 
 import cuefem as cf
 from cuefem.beam.tip import lumped_tip_modes
-from cuefem.contact.laws import model_of
-from cuefem.contact.solve import solve_contact
+from cuefem.contact.model import model_of
+from cuefem.contact.step_records import solve_contact
 from tests.helpers.leather_scenes import leather_scene
 from tests.helpers.refusals import refuses
 from tests.helpers.strike_scenes import KIM, kim_scene
@@ -113,7 +113,7 @@ def test_what_is_just_allowed() -> None:
 
 
 def test_a_strike_that_does_not_separate_says_so_with_its_state(monkeypatch) -> None:
-    monkeypatch.setattr("cuefem.contact.solve.LONGEST", 0.3)
+    monkeypatch.setattr("cuefem.contact.step_records.LONGEST", 0.3)
     message = (
         r"does not leave the cue: after .* s \(head-on contact time .* s\) the tip is pressed by .* m, in stick; check"
     )
@@ -122,7 +122,7 @@ def test_a_strike_that_does_not_separate_says_so_with_its_state(monkeypatch) -> 
 
 
 def test_a_strike_of_too_many_steps_is_given_up(monkeypatch) -> None:
-    monkeypatch.setattr("cuefem.contact.solve.MOST", 3000)
+    monkeypatch.setattr("cuefem.contact.step_records.MOST", 3000)
     once = cf.Scene(cf.LumpedCue(0.54, 0.003), stroke=cf.Stroke(offset=0.3))
     assert cf.strike(replace(once, effects=(cf.SecondHit(2e-3),))) == cf.strike(once)
     with pytest.raises(RuntimeError, match=r"the strike takes more than 3000 steps, of 5e-06 s: it is followed for"):

@@ -15,9 +15,9 @@ import pytest
 
 import cuefem as cf
 from cuefem.beam.tip import TipModes, lumped_tip_modes
-from cuefem.contact.calibrated import with_modulus
-from cuefem.contact.laws import model_of
+from cuefem.contact.model import model_of
 from cuefem.contact.strike import strike_modes
+from cuefem.contact.tip_identification import with_modulus
 from cuefem.tip_modes import tip_modes_of
 from tests.data.stored import scene_of, stored_law, strikes, tip_of
 from tests.helpers.cues import scaled

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from cuefem import Ball, Cue, LumpedCue, Outcome, Resolution, Scene, Segment, Stroke, Tip, impulse, strike
-from cuefem.contact.impulse_space import inverse_mass
+from cuefem.contact.rigid_impact import inverse_mass
 from tests.helpers.strike_scenes import (
     KIM,
     KIM_AT,

@@ -22,8 +22,8 @@ import numpy as np
 
 import cuefem as cf
 from cuefem.beam.tip import TipModes, lumped_tip_modes
-from cuefem.effects import leather
-from cuefem.effects.leather_law import LeatherLaw
+from cuefem.effects import leather_tip
+from cuefem.effects.force_law import LeatherLaw
 from cuefem.scene import Scene
 
 DATA = Path(__file__).parent
@@ -86,13 +86,13 @@ def stored_law(row: dict[str, Any]) -> Iterator[None]:
     if "law" not in row:
         yield
         return
-    real, laws = leather.whole_tip, row["law"]
+    real, laws = leather_tip.whole_tip, row["law"]
 
     def law(radius: float, offset: float, restitution: float) -> LeatherLaw:
         force, give, most = laws["at offset" if offset else "head on"]
         return LeatherLaw(tuple(force), tuple(give), restitution, most)
 
-    with mock.patch.object(leather, "whole_tip", lambda tip, diameter: replace(real(tip, diameter), law=law)):
+    with mock.patch.object(leather_tip, "whole_tip", lambda tip, diameter: replace(real(tip, diameter), law=law)):
         yield
 
 

@@ -10,7 +10,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from cuefem import LeatherTip
-from cuefem.effects.leather import whole_tip
+from cuefem.effects.leather_tip import whole_tip
 
 DIAMETERS = st.floats(8e-3, 15e-3)
 TIPS = st.builds(

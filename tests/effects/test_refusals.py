@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.effects.leather_law import LeatherLaw
+from cuefem.effects.force_law import LeatherLaw
 from tests.helpers.refusals import refuses
 from tests.helpers.strike_scenes import KIM, kim_scene, pool_cue
 

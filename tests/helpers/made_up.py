@@ -15,7 +15,7 @@ from cuefem.designer.design import Design
 from cuefem.designer.numbers_panel import Column, table_markup
 from cuefem.designer.words import head_markup
 from cuefem.effects import CueEffect, TipEffect, Usual
-from cuefem.effects.terms import ContactTerms
+from cuefem.effects.contact_settings import ContactTerms
 from cuefem.endmass.definitions import Definition
 from cuefem.parameters.parameter import Parameter
 from cuefem.parameters.parts import Part

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.io import wavfile
 
 import cuefem as cf
-from cuefem.effects.loss import section_loss
+from cuefem.effects.damping import section_loss
 from cuefem.parameters.parts import main_material, with_material
 
 LOSS = 0.012  # maple's, where a file gives none

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.contact.motion import motion
+from cuefem.contact.trajectory import motion
 from cuefem.io import InputError
 from cuefem.io.paraview import AROUND, ball_surface, shaft_surface, vectors
 from tests.helpers.refusals import refuses

@@ -20,7 +20,7 @@ import numpy as np
 import scipy.linalg as la
 
 from cuefem import Ball, Effect, LeatherTip, Scene, Stroke, Tip
-from cuefem.effects.leather_law import LeatherLaw
+from cuefem.effects.force_law import LeatherLaw
 from cuefem.tip_modes import tip_modes_of
 from studies.strokes import cue
 

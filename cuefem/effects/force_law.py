@@ -1,9 +1,9 @@
-"""Law of a tip of leather: its force along the normal, and its stiffness along the surface, over its compression.
+"""Laws of the tip: a power law along the normal; of leather, the force and the stiffness along the surface.
 
-Both are fitted in y, the root of the compression: Hertz's contact of two spheres has the force y^3 and the patch y, and
-what the leather's finite height and width add is a power series in the patch over the height: F = y^3 (f0 + f1 y +
-...), and for the give along the surface, that of a half-space in series with the rest, y/k_t = g0 + g1 y + ... Both are
-smooth from the first touch on.
+Those of leather are fitted in y, the root of the compression: Hertz's contact of two spheres has the force y^3 and the
+patch y, and what the leather's finite height and width add is a power series in the patch over the height: F = y^3 (f0
++ f1 y + ...), and for the give along the surface, that of a half-space in series with the rest, y/k_t = g0 + g1 y +
+... Both are smooth from the first touch on.
 """
 
 from __future__ import annotations
@@ -16,6 +16,47 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cuefem.cue import Array
+
+
+@dataclass(frozen=True)
+class TipLaw:
+    """A power law (the effect PowerLawTip; exponent 1 is the base model's): F = stiffness d^exponent while loaded, N.
+
+    Unloading follows the loading curve with its compression scaled by e^2, so that the work given back is e^2 of that
+    spent; e is the restitution.
+    """
+
+    stiffness: float
+    exponent: float
+    restitution: float
+
+    @classmethod
+    def timed(cls, exponent: float, restitution: float, *, mass: float, speed: float, time: float) -> TipLaw:
+        """The law with which a head-on blow of a reduced mass, kg, at a speed, m/s, lasts ``time``, s.
+
+        Loading to the depth D takes D/U times `loading_time`, unloading e times that; D^(n + 1) = (n + 1) m U^2/(2 k').
+        """
+        depth = speed * time / ((1 + restitution) * loading_time(exponent))
+        return cls((exponent + 1) * mass * speed**2 / (2 * depth ** (exponent + 1)), exponent, restitution)
+
+    def loss(self, deepest: float) -> float:
+        """Work that loading to a compression, m, took and unloading did not give back, J."""
+        power = self.exponent + 1
+        return (1 - self.restitution**2) * self.stiffness * deepest**power / power
+
+
+def loading_time(exponent: float) -> float:
+    """Time to the greatest compression, in depth over speed: the integral of 1/sqrt(1 - s^(n + 1)) over 0..1."""
+    from scipy.special import gamma  # loaded when used: a scene alone needs no scipy
+
+    power = 1 / (exponent + 1)
+    return float(math.sqrt(math.pi) * gamma(1 + power) / gamma(0.5 + power))
+
+
+def slowed(exponent: float, ratio: float) -> float:
+    """Contact time at ``ratio`` times a speed, over that at the speed: ratio^((1 - n)/(1 + n))."""
+    return float(ratio ** ((1 - exponent) / (1 + exponent)))
+
 
 # Terms of the two series.
 TERMS = 7

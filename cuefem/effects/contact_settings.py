@@ -7,8 +7,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from cuefem.effects.law import TipLaw
-from cuefem.effects.leather_law import LeatherLaw
+from cuefem.effects.force_law import LeatherLaw, TipLaw
 
 if TYPE_CHECKING:
     from cuefem.effects.base import Effect
@@ -70,7 +69,7 @@ class ContactTerms:
     tip_diameter: of the cue's end, m; None for a lumped cue, which has none. law: makes the tip's law along the normal
     in the place of the linear one. tip: a whole tip. turns: whether the normal turns as the contact moves over ball and
     tip. table: that under the ball of a raised cue. window: how long cue and ball are followed after their first
-    separation, s. `cuefem.contact.laws` makes of them the law that the contact follows.
+    separation, s. `cuefem.contact.model` makes of them the law that the contact follows.
     """
 
     def __init__(self, tip_diameter: float | None = None) -> None:

@@ -9,11 +9,10 @@ from typing import Any
 import numpy as np
 
 from cuefem.beam.tip import TipModes
-from cuefem.contact.propagator import ModalPropagator, propagator_of
+from cuefem.contact.modal_response import ModalPropagator, propagator_of
 from cuefem.cue import Array
-from cuefem.effects.law import TipLaw
-from cuefem.effects.leather_law import LeatherLaw
-from cuefem.effects.terms import ContactTerms, HeadOn, WholeTip
+from cuefem.effects.contact_settings import ContactTerms, HeadOn, WholeTip
+from cuefem.effects.force_law import LeatherLaw, TipLaw
 from cuefem.quantity.fields import scalar
 from cuefem.scene import Scene
 

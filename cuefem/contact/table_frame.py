@@ -115,7 +115,7 @@ def offset_of(point: ArrayLike, direction: ArrayLike, *, ball: Ball | None = Non
     Examples
     --------
     >>> import cuefem as cf
-    >>> from cuefem.contact.place import offset_of
+    >>> from cuefem.contact.table_frame import offset_of
     >>> R = cf.Ball().radius
     >>> float(round(offset_of((0.3 * R, R), (0, 1, 0)), 12))
     0.3

@@ -13,9 +13,9 @@ import numpy as np
 from cuefem.cue import SOFT, Array, Cue
 from cuefem.cue.materials import LEATHER_NAMES
 from cuefem.effects.base import CueEffect, Effect
-from cuefem.effects.leather_law import Curves, LeatherLaw
+from cuefem.effects.contact_settings import ContactTerms, WholeTip
+from cuefem.effects.force_law import Curves, LeatherLaw
 from cuefem.effects.on_cue import PointMass
-from cuefem.effects.terms import ContactTerms, WholeTip
 from cuefem.quantity.fields import DIAMETER, Flag, Number, OutOfBounds, Quantity, check_fields, check_kind, scalar
 from cuefem.solid.leather_table import (
     CURVATURE,

@@ -17,9 +17,9 @@ from numpy.typing import ArrayLike
 
 from cuefem.beam.modes import Modes
 from cuefem.beam.tip import TipModes
-from cuefem.contact.laws import model_of
-from cuefem.contact.propagator import Complex, responses
-from cuefem.contact.solve import SolvedContact, solve_contact
+from cuefem.contact.modal_response import Complex, responses
+from cuefem.contact.model import model_of
+from cuefem.contact.step_records import SolvedContact, solve_contact
 from cuefem.contact.strike import steps_of
 from cuefem.cue import Array
 from cuefem.quantity.fields import check_kind, scalar

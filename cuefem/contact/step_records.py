@@ -11,13 +11,13 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from cuefem.contact.bent import BentTooFar, buckling_thrust
-from cuefem.contact.compiled import STEP, KernelContact, library
-from cuefem.contact.laws import PARTIAL_SLIP, RIGID_PATCH, ContactModel
+from cuefem.contact.geometric_stiffness import BentTooFar, buckling_thrust
+from cuefem.contact.kernel.library import STEP, KernelContact, library
+from cuefem.contact.modal_response import Complex
+from cuefem.contact.model import PARTIAL_SLIP, RIGID_PATCH, ContactModel
 from cuefem.contact.outcome import BLOW, FLIGHT, History, Phase, regime_of
-from cuefem.contact.propagator import Complex
 from cuefem.cue import Array
-from cuefem.effects.leather_law import LeatherLaw
+from cuefem.effects.force_law import LeatherLaw
 from cuefem.scene import Outcome
 
 GRIPS = {0: "stick", 1: "slip", -1: "slip back", 2: BLOW, 3: FLIGHT[0]}

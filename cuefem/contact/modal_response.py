@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cuefem.beam.tip import TipModes
-from cuefem.contact.bent import half_octave, slope_rows
+from cuefem.contact.geometric_stiffness import half_octave, slope_rows
 from cuefem.cue import Array
 
 Complex = NDArray[np.complex128]
@@ -32,7 +32,7 @@ class ModalPropagator:
     """Tip modes with their ports, as the coordinates that the compiled kernel steps.
 
     rows: (ports, modes), what each port reads of the modes' velocities, and pushes. slopes: (slopes, modes), likewise,
-    of the bent cue (`cuefem.contact.bent`); none without thrust. omega, approach: of the modes.
+    of the bent cue (`cuefem.contact.geometric_stiffness`); none without thrust. omega, approach: of the modes.
     rates: (coordinates,) 1/s.
     displacements, velocities: (modes, coordinates), which give omega q and the velocities of the modes. onto:
     (coordinates, modes), from the modes' velocities. lossy: how many of the dampers' rows lose energy; the others
