@@ -137,13 +137,13 @@ def model_of(scene: Scene, tip: TipModes) -> ContactModel:
         model["terms"] |= {"rolls": 1, "dome": dome, "rim": min(rim, math.pi), "radius": model["radius"]}
         model["terms"] |= {"arm_t": arm_t, "arm_n": arm_n}
     if ports == "straight":
-        facing = np.delete(facing, 2, axis=1)
+        facing = facing[:, [0, 1, 3, 4, 5]]
     if terms.table is not None:
         model["axes"] = _table_axes(model["phi"], terms.table.angle)
         model["terms"] |= {"table_friction": terms.table.friction}
         facing = _raised(model["phi"], model["axes"])
-    inverse = 1 / model["ball_mass"], 1 / (model["inertia"] * model["ball_mass"])
-    inverse_masses = np.repeat(inverse, (3, 3) if raised else (2, 1))
+    moves, turns = 1 / model["ball_mass"], 1 / (model["inertia"] * model["ball_mass"])
+    inverse_masses = np.array([moves] * 3 + [turns] * 3 if raised else [moves, moves, turns])
     return ContactModel(propagator, facing, inverse_masses, 0 * inverse_masses, tip=tip, **model)
 
 

@@ -96,7 +96,8 @@ class SolvedContact:
         steps = self.steps[self.steps["length"] > 0] if blows else self.steps
         ends, side = np.append(0.0, steps["time"]), np.array([model.side, 1.0])
         middles = np.concatenate([[0.0], ends[1:] - steps["length"] / 2, [self.time]])
-        forces = np.pad(steps["F"][:, :2] * side, ((1, 1), (0, 0)))  # none at the touch, and none as the two part
+        forces = np.zeros((len(steps) + 2, 2))  # none at the touch, and none as the two part
+        forces[1:-1] = steps["F"][:, :2] * side
         velocities = np.vstack([model.approach, steps["v"][:, :2]]) * side
         if model.axes is None:
             return History(middles, forces, ends, velocities)
