@@ -1,7 +1,5 @@
 """Tables of studies as pandas frames hold what the studies found (properties)."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
@@ -9,37 +7,18 @@ import pytest
 
 import cuefem as cf
 from cuefem.io import InputError
+from tests.helpers.sweeps import resolution, vary, written
 
 pd = pytest.importorskip("pandas")
 
-CUE = """body_mass = "420 g"
-[[segments]]
-length = "700 mm"
-tip_diameter = "12 mm"
-butt_diameter = "21 mm"
-material = "hard maple"
-"""
-COARSE = "[resolution]\nelements = 1\norder = 8\nmodes = 6\n"
-TIP = '[[vary]]\nname = "tip"\npath = "cue.segments[0].tip_diameter"\nlow = "11 mm"\nhigh = "13 mm"\n'
-STUDY = f"""scene = "cue.toml"
-responses = ["end_mass", "mass"]
-{COARSE}{TIP}count = 3
-[[vary]]
-name = "wood"
-path = "cue.segments[0].material"
-values = ["hard maple", "ash"]
-"""
-
-
-def study(folder: Path, text: str) -> Path:
-    (folder / "cue.toml").write_text(CUE)
-    (folder / "study.toml").write_text(text)
-    return folder / "study.toml"
+STUDY = 'scene = "scene.toml"\nresponses = ["end_mass", "mass"]\n' + resolution(8, 6)
+STUDY += vary('"cue.segments[0].tip_diameter"', 'name = "tip"', 'low = "11 mm"', 'high = "13 mm"', "count = 3")
+STUDY += vary('"cue.segments[0].material"', 'name = "wood"', 'values = ["hard maple", "ash"]')
 
 
 def test_a_sweep(tmp_path: Path) -> None:
     """The frame of its result, and that of its store; pandas takes it on."""
-    found = cf.study(study(tmp_path, STUDY), store=tmp_path / "study.sqlite")
+    found = cf.study(written(tmp_path, STUDY), store=tmp_path / "study.sqlite")
     frame = cf.frames.of_study(found)
     pd.testing.assert_frame_equal(frame, cf.frames.of_store(tmp_path / "study.sqlite"))
     assert list(frame.columns) == ["tip", "wood", "end_mass", "mass", "failure"]

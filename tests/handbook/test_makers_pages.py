@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import cuefem as cf
@@ -13,7 +14,7 @@ from cuefem.handbook import MAKERS, chapters
 from cuefem.parameters.parameter import varied
 from cuefem.results.uncertainty import MODEL, SHAFTS
 from tests.helpers.command_line import call
-from tests.helpers.maker_pictures import FOLDER, PICTURES, answers, ready
+from tests.helpers.maker_pictures import FOLDER, MAPLE, PICTURES, answers, ready
 
 TEXTS = {chapter.name: chapter.text for chapter in chapters() if chapter.name in MAKERS}
 NUMBER = re.compile(r"[−+-]?\d+(?:\.\d+)?")
@@ -22,8 +23,20 @@ NUMBER = re.compile(r"[−+-]?\d+(?:\.\d+)?")
 def test_they_stand_first_and_are_short() -> None:
     assert [chapter.name for chapter in chapters()][:6] == [*TEXTS] == [*MAKERS]
     assert max(len(text.split()) for text in TEXTS.values()) < 400
-    assert all(text.count("```drawing\n") == 1 for text in TEXTS.values())
-    assert sorted(re.findall(r"```drawing\n(\w+)", "".join(TEXTS.values()))) == sorted(PICTURES)
+    drawn = re.findall(r"```drawing\n(\w+)", "".join(TEXTS.values()))
+    assert len(drawn) == len(TEXTS)
+    assert {*PICTURES} <= {*drawn}
+    assert all((FOLDER / f"{name}.svg").exists() for name in drawn)
+
+
+def test_the_loops_of_the_picture_hang_where_the_shaft_stands_still() -> None:
+    cue = cf.load(MAPLE)
+    assert isinstance(cue, cf.Cue)
+    x = np.linspace(0, cue.length, 2001)
+    shape = cf.modes(cf.Cue(cue.segments), 1).shape(x)[0][0]
+    nodes = x[:-1][shape[:-1] * shape[1:] < 0] / cue.length
+    told = re.findall(r">(\d+) % from the tip<", (FOLDER / "tap.svg").read_text(encoding="utf-8"))
+    assert [float(percent) for percent in told] == pytest.approx(100 * nodes, abs=0.6)
 
 
 @pytest.mark.heavy

@@ -1,4 +1,4 @@
-"""The pictures of the makers' handbook, drawn from computed numbers; as a program it writes them anew.
+"""The pictures of the makers' handbook that show computed numbers; as a program it writes them anew.
 
 python -m tests.helpers.maker_pictures
 """
@@ -13,7 +13,6 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-import cuefem as cf
 from tests.helpers.command_line import call
 
 ROOT = Path(__file__).parents[2]
@@ -45,14 +44,8 @@ def ready() -> dict[str, float]:
 
 def picture(height: int, label: str, *inside: str) -> str:
     """A drawing of the handbook's width."""
-    return "\n".join(
-        [
-            f'<svg viewBox="0 0 340 {height}" class="small" role="img" aria-label="{escape(label)}">',
-            *inside,
-            "</svg>",
-            "",
-        ]
-    )
+    head = f'<svg viewBox="0 0 340 {height}" class="small" role="img" aria-label="{escape(label)}">'
+    return "\n".join([head, *inside, "</svg>", ""])
 
 
 def words(x: float, y: float, text: str, more: str = "") -> str:
@@ -61,47 +54,6 @@ def words(x: float, y: float, text: str, more: str = "") -> str:
 
 
 MIDDLE, END, SAID = ' text-anchor="middle"', ' text-anchor="end"', ' class="said"'
-
-
-def squirt() -> str:
-    """Cue and ball from above, squirt drawn three times as large as it is computed."""
-    angle = 3 * math.radians(ready()["plain maple"])
-    x, y = 195 - 180 * math.cos(angle), 80 - 180 * math.sin(angle)
-    return picture(
-        150,
-        "Seen from above: the cue strikes the ball left of its middle, and the ball leaves to the right of its line",
-        f'<path class="ghost" d="M195 80H15"/><path class="arrow" d="M195 80L{x:.0f} {y:.0f}"/>',
-        f'<circle class="arrow" cx="{x:.0f}" cy="{y:.0f}" r="2.5"/>',
-        '<path class="wood" d="M239 88L340 84V102L239 96Z"/>',
-        '<path class="block" d="M233 87.5Q230 92 233 96.5H239V87.5Z"/>',
-        '<circle class="ball" cx="195" cy="80" r="36"/>',
-        words(338, 122, "cue, left of the middle", END),
-        words(15, 94, "where the cue points"),
-        words(15, 48, "where the ball goes"),
-        words(15, 144, "seen from above, squirt drawn three times too large", SAID),
-    )
-
-
-def measure() -> str:
-    """The shaft five times as thick as long, with the places to measure."""
-    cue = cf.load(MAPLE)
-    nodes, scale = cue.nodes, 310 / cue.length
-    outline = [(nodes[i], s.tip_diameter) for i, s in enumerate(cue.segments)]
-    outline.append((cue.length, cue.segments[-1].butt_diameter))
-    top = [f"{20 + scale * x:.1f} {70 - 5 * scale * d / 2:.1f}" for x, d in outline]
-    bottom = [f"{20 + scale * x:.1f} {70 + 5 * scale * d / 2:.1f}" for x, d in reversed(outline)]
-    marks = {"front": nodes[1], "ferrule": nodes[2], "5 in": 0.127, "13 in": 0.3302, "taper": 0.43, "joint": cue.length}
-    texts = []
-    for i, (name, x) in enumerate(marks.items()):
-        at, y = 20 + scale * x, 128 if i % 2 else 142
-        texts += [f'<path class="measure" d="M{at:.1f} 34V{y - 10}"/>', words(at, y, name, END if i == 5 else MIDDLE)]
-    return picture(
-        150,
-        "A shaft from the side with six places to measure: front, behind the ferrule, 5 in, 13 in, taper, joint",
-        f'<path class="wood" d="M{"L".join([*top, *bottom])}Z"/>',
-        *texts,
-        words(20, 20, "calipers here; the tape begins at the front of the ferrule", SAID),
-    )
 
 
 def scale() -> str:
@@ -146,29 +98,6 @@ def changes_drawn() -> str:
     return picture(height, said, f'<path class="measure" d="M250 0V{height - 8}"/>', *texts)
 
 
-def tap() -> str:
-    """The shaft in two loops, where its lowest mode stands still."""
-    shaft = cf.load(MAPLE)
-    bare = cf.Cue(shaft.segments)
-    found = cf.modes(bare, 1)
-    places = [i * bare.length / 2000 for i in range(2001)]
-    shape = [float(w) for w in found.shape(places)[0][0]]
-    nodes = [x for x, a, b in zip(places, shape, shape[1:], strict=False) if a * b < 0]
-    assert len(nodes) == 2
-    at = [15 + 310 * x / bare.length for x in nodes]
-    most = max(map(abs, shape))
-    bent = "L".join(f"{15 + 0.155 * i:.0f} {70 - 14 * shape[i] / most:.1f}" for i in range(0, 2001, 50))
-    return picture(
-        130,
-        "The shaft hangs in two loops of thread where it stands still as it rings; dashed, how it bends",
-        f'<path class="thread" d="M{at[0]:.0f} 8V76M{at[1]:.0f} 8V78"/>',
-        '<path class="wood" d="M15 67L325 64V76L15 73Z"/>',
-        f'<path class="ghost" d="M{bent}"/>',
-        *(words(a, 98, f"{100 * x / bare.length:.0f} % from the tip", MIDDLE) for a, x in zip(at, nodes, strict=True)),
-        words(170, 122, "a telephone below, recording", f"{MIDDLE}{SAID}"),
-    )
-
-
 def trust() -> str:
     """One cue, measured three times, and computed with its uncertainty."""
     verdict = answers("report", "--offset", str(OFFSET))["verdict"]
@@ -192,14 +121,7 @@ def trust() -> str:
     )
 
 
-PICTURES = {
-    "squirt": squirt,
-    "measure": measure,
-    "scale": scale,
-    "changes": changes_drawn,
-    "tap": tap,
-    "trust": trust,
-}
+PICTURES = {"scale": scale, "changes": changes_drawn, "trust": trust}
 
 if __name__ == "__main__":
     for name, draw in PICTURES.items():

@@ -23,123 +23,43 @@ material = "hard maple"
 contact_time = "1.2 ms"
 """
 
-STUDY = """
-scene = "scene.toml"
-responses = ["end_mass", "tip_stiffness", "frequency(1)"]
 
-[resolution]
-elements = 1
-order = 12
-modes = 6
+def resolution(order: int, modes: int) -> str:
+    """The table of a mesh of one element a segment."""
+    return f"\n[resolution]\nelements = 1\norder = {order}\nmodes = {modes}\n"
 
-[[vary]]
-name = "bore"
-path = ["cue.segments[0].tip_bore", "cue.segments[0].butt_bore"]
-low = "0 mm"
-high = "15 mm"
-count = 16
 
-[[vary]]
-path = "tip.contact_time"
-values = ["0.8 ms", "1.2 ms"]
+def vary(path: str, *rest: str) -> str:
+    """The table of what varies, a line each."""
+    return "\n".join(["", "[[vary]]", f"path = {path}", *rest, ""])
 
-[[vary]]
-path = "cue.segments[0].material"
-values = ["hard maple", "ash"]
-"""
+
+STUDY = 'scene = "scene.toml"\nresponses = ["end_mass", "tip_stiffness", "frequency(1)"]\n' + resolution(12, 6)
+BOTH = '["cue.segments[0].tip_bore", "cue.segments[0].butt_bore"]'
+STUDY += vary(BOTH, 'name = "bore"', 'low = "0 mm"', 'high = "15 mm"', "count = 16")
+STUDY += vary('"tip.contact_time"', 'values = ["0.8 ms", "1.2 ms"]')
+STUDY += vary('"cue.segments[0].material"', 'values = ["hard maple", "ash"]')
 
 # Quasi-random; a strike in time a design, so that blocks are small.
-STRUCK = """
-scene = "scene.toml"
-responses = ["squirt(0.3)", "end_mass", "vibration_energy(0.3)"]
-
-[resolution]
-elements = 1
-order = 10
-modes = 4
-
-[sample]
-method = "sobol"
-count = 150
-seed = 5
-
-[[vary]]
-path = "cue.segments[0].tip_bore"
-low = "0 mm"
-high = "13 mm"
-
-[[vary]]
-name = "E over drawn"
-path = "cue.segments[*].material.E"
-low = 0.7
-high = 1.3
-factor = true
-"""
+STRUCK = 'scene = "scene.toml"\nresponses = ["squirt(0.3)", "end_mass", "vibration_energy(0.3)"]\n' + resolution(10, 4)
+STRUCK += '[sample]\nmethod = "sobol"\ncount = 150\nseed = 5\n'
+STRUCK += vary('"cue.segments[0].tip_bore"', 'low = "0 mm"', 'high = "13 mm"')
+STRUCK += vary('"cue.segments[*].material.E"', 'name = "E over drawn"', "low = 0.7", "high = 1.3", "factor = true")
 
 # Distributions of wood, and of a tip, for scatter.
-SCATTER = """
-scene = "scene.toml"
-responses = ["end_mass", "tip_stiffness"]
-
-[resolution]
-elements = 1
-order = 8
-modes = 4
-
-[tolerances]
-count = 64
-seed = 5
-correlations = [["E", "density", 0.4]]
-groups = { wood = ["E", "density"] }
-
-[[vary]]
-name = "E"
-path = "cue.segments[0].material.E"
-middle = "12 GPa"
-sd = "2 GPa"
-
-[[vary]]
-name = "density"
-path = "cue.segments[0].material.rho"
-middle = "700 kg/m^3"
-sd = 0.1
-spacing = "logarithmic"
-
-[[vary]]
-name = "time"
-path = "tip.contact_time"
-low = "0.8 ms"
-high = "1.5 ms"
-"""
+SCATTER = 'scene = "scene.toml"\nresponses = ["end_mass", "tip_stiffness"]\n' + resolution(8, 4)
+SCATTER += '[tolerances]\ncount = 64\nseed = 5\ncorrelations = [["E", "density", 0.4]]\n'
+SCATTER += 'groups = { wood = ["E", "density"] }\n'
+SCATTER += vary('"cue.segments[0].material.E"', 'name = "E"', 'middle = "12 GPa"', 'sd = "2 GPa"')
+DENSITY = ('name = "density"', 'middle = "700 kg/m^3"', "sd = 0.1", 'spacing = "logarithmic"')
+SCATTER += vary('"cue.segments[0].material.rho"', *DENSITY)
+SCATTER += vary('"tip.contact_time"', 'name = "time"', 'low = "0.8 ms"', 'high = "1.5 ms"')
 
 # The least squirt of a bore and a width of the tip, as stiff as 300 N/m.
-OPTIMUM = """
-scene = "scene.toml"
-
-[objective]
-minimize = "squirt_slope"
-
-[resolution]
-elements = 1
-order = 8
-modes = 4
-
-[[limit]]
-response = "tip_stiffness"
-low = "300 N/m"
-
-[[vary]]
-name = "bore"
-path = "cue.segments[0].tip_bore"
-low = "1 mm"
-high = "9 mm"
-
-[[vary]]
-name = "tip"
-path = "cue.segments[0].tip_diameter"
-low = "10 mm"
-high = "13 mm"
-"""
+OPTIMUM = 'scene = "scene.toml"\n[objective]\nminimize = "squirt_slope"\n' + resolution(8, 4)
+OPTIMUM += '[[limit]]\nresponse = "tip_stiffness"\nlow = "300 N/m"\n'
+OPTIMUM += vary('"cue.segments[0].tip_bore"', 'name = "bore"', 'low = "1 mm"', 'high = "9 mm"')
+OPTIMUM += vary('"cue.segments[0].tip_diameter"', 'name = "tip"', 'low = "10 mm"', 'high = "13 mm"')
 
 
 def written(folder: Path, study: str = STUDY, scene: str = SCENE, name: str = "study.toml") -> Path:
