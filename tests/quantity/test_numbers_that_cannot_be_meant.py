@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 import cuefem as cf
+from cuefem.report.unusual import unusual
 from tests.helpers.command_line import call
 
 ROOT = Path(__file__).parents[2]
