@@ -47,11 +47,6 @@ def cues(request: pytest.FixtureRequest) -> list[Cue]:
     return request.param
 
 
-def test_frequencies_are_those_of_each_cue(cues: list[Cue]) -> None:
-    single = np.array([modes(cue, 5, at=AT).frequencies for cue in cues])
-    np.testing.assert_allclose(batch_frequencies(CueBatch.of(cues), 5, at=AT), single, rtol=1e-10)
-
-
 def test_tip_amplitudes_are_those_of_each_cue(cues: list[Cue]) -> None:
     found = batch_modes(CueBatch.of(cues), 5, at=AT)
     for i, cue in enumerate(cues):

@@ -144,18 +144,6 @@ def of(cue: cf.Cue, name: str) -> cf.Segment:
     return replace(cue.segments[0], material=material(name))
 
 
-def test_logarithmic_spacing_seeks_in_equal_ratios(tmp_path: Path) -> None:
-    plain = load_study(written(tmp_path, OPTIMUM))
-    wanted = OPTIMUM.replace('low = "1 mm"\nhigh = "9 mm"', 'low = "1 mm"\nhigh = "9 mm"\nspacing = "logarithmic"')
-    problem = load_study(written(tmp_path, wanted))
-    bores, tips = problem.points(np.array([[0.0, 0.0], [0.25, 0.5], [0.5, 1.0], [1.0, 1.0]])).T
-    assert bores == pytest.approx([1e-3, 1e-3 * 3**0.5, 3e-3, 9e-3], rel=1e-14)
-    assert tips == pytest.approx([0.010, 0.0115, 0.013, 0.013], rel=1e-14)
-    parts = np.array([[0.3, 0.7]])
-    assert problem.parts(problem.points(parts)) == pytest.approx(parts, rel=1e-13)
-    assert optimum(problem).values == pytest.approx(optimum(plain).values, rel=1e-6)
-
-
 def test_output_has_units_limits_and_rounds(tmp_path: Path) -> None:
     out = said("study", written(tmp_path, OPTIMUM))
     assert {"bore 9 mm", "tip 10 mm"} <= {" ".join(line.split()) for line in out.splitlines()}

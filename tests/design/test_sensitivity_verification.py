@@ -87,17 +87,3 @@ def test_a_constant_of_all_materials(cue: Cue, constant: str, names: list[str]) 
     want = integral(found, cue, *names) + (found.axial_mass * cue.shaft_mass if constant == "rho" else 0.0)
     measured = slope(lambda h: end_mass(scene(multiplied(cue, constant, 1 + h)), "stick", AT), 1e-3)
     assert measured == pytest.approx(want, rel=1e-6)
-
-
-def test_the_ball_and_the_mass_along_the_axis() -> None:
-    cue, base = kim(), scene(kim())
-    found = sensitivity(base, AT)
-
-    def ball(h: float) -> float:
-        return end_mass(replace(base, ball=replace(base.ball, mass=base.ball.mass + h)), "stick", AT)
-
-    def body(h: float) -> float:
-        return end_mass(replace(base, cue=replace(cue, body_mass=cue.body_mass + h)), "stick", AT)
-
-    assert slope(ball, 1e-3) == pytest.approx(found.ball_mass, rel=1e-6)
-    assert slope(body, 1e-3) == pytest.approx(found.axial_mass, rel=1e-6)

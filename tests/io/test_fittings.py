@@ -81,9 +81,3 @@ def test_body_mass_of_load_is_that_of_the_option(tmp_path: Path) -> None:
     for bad in ("15", "-1 oz", float("nan")):
         with pytest.raises(ValueError, match=r"shaft.csv: body_mass: "):
             cf.load(csv, body_mass=bad)
-
-
-def test_a_tenon_has_the_digits_of_a_drawing(tmp_path: Path) -> None:
-    (tmp_path / "shaft.csv").write_text("x [mm],diameter [mm]\n0,12.75\n330,13.2\n736,21.5\n", encoding="utf-8")
-    assert call("convert", tmp_path / "shaft.csv", tmp_path / "shaft.toml", "--ferrule", "25 mm melamine")[0] == 0
-    assert 'tip_bore = "7.905 mm"' in (tmp_path / "shaft.toml").read_text(encoding="utf-8")

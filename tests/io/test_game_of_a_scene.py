@@ -1,6 +1,5 @@
 """What a scene file leaves out is that of its game, pool's where none is named; files of before are told so."""
 
-import json
 import warnings
 from dataclasses import replace
 from pathlib import Path
@@ -11,7 +10,6 @@ from hypothesis import strategies as st
 
 import cuefem as cf
 from cuefem.scene.default_scene import GAMES
-from tests.helpers.command_line import call
 
 CUE = """
 body_mass = "430 g"
@@ -48,12 +46,6 @@ def loaded(folder: Path, text: str) -> cf.Scene:
     return found
 
 
-@pytest.mark.parametrize("game", GAMES)
-def test_a_cue_alone_is_struck_as_in_its_game(folder: Path, game: str) -> None:
-    assert loaded(folder, f'game = "{game}"\ncue = "cue.toml"') == cf.usual_scene(cue_of(folder), game)
-    assert cf.usual_scene(cue_of(folder), "kim") == cf.Scene(cue_of(folder))
-
-
 @settings(max_examples=25)
 @given(told=st.sets(st.sampled_from(KEYS)), effects=st.booleans(), game=st.sampled_from([*GAMES]))
 def test_what_is_told_stays_and_the_rest_is_the_games(folder: Path, told, effects, game) -> None:
@@ -82,11 +74,3 @@ def test_a_tip_that_is_told_as_a_spring_takes_no_leather(folder: Path) -> None:
     assert found.cue == cue_of(folder)
     lumped = loaded(folder, 'game = "pool"\n[cue]\nmass = "540 g"\nend_mass = "6 g"')
     assert lumped == cf.Scene(lumped.cue, GAMES["pool"].ball, cf.Tip(0.73, 0.7), cf.Stroke(2.0, 0.3))
-
-
-def test_the_command_says_the_same_of_a_scene_and_of_its_drawing(folder: Path) -> None:
-    loaded(folder, 'game = "pool"\ncue = "cue.toml"')
-    scene, drawing = (json.loads(call("strike", folder / name, "--json")[1]) for name in ("scene.toml", "cue.toml"))
-    assert scene["models"] == drawing["models"]
-    assert scene["assumed"][0] == "a usual stroke of pool"
-    assert "a leather tip as high as it is drawn" in scene["assumed"][2]

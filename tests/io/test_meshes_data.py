@@ -58,14 +58,3 @@ def test_whole_cue() -> None:
     assert (cue.length - cue.balance_point) / INCH == pytest.approx(18.2, abs=0.1)
     joint = next(i for i, x in enumerate(cue.nodes) if math.isclose(x, 29 * INCH))
     assert cue.segments[joint - 1].butt_diameter == cue.segments[joint].tip_diameter
-
-
-def test_whole_cue_has_the_maple_shaft() -> None:
-    """The same drawing up to the pin: the last cone is cut there, its slope kept to 0.01 mm."""
-    shaft, cue = load("pool_maple"), load("whole_cue")
-    assert cue.segments[:4] == shaft.segments[:4]
-    last, cut, pin = shaft.segments[4], *cue.segments[4:6]
-    assert cut.length + pin.length == pytest.approx(last.length, rel=1e-12)
-    share = cut.length / last.length
-    there = last.tip_diameter + share * (last.butt_diameter - last.tip_diameter)
-    assert cut.butt_diameter == pytest.approx(there, abs=1e-5)

@@ -52,12 +52,9 @@ def test_a_tip_by_its_name_in_option_and_file(tmp_path: Path) -> None:
     assert [status for status, *_ in said] == [0] * 3
     squirts = [re.findall(r"squirt .*", out) for _, out, _ in said]
     assert squirts[0] == squirts[1] != squirts[2]
+    tip = '{ type = "LeatherTip", height = "6 mm", dome_radius = "dime", leather = "Kamui hard" }'
     scene = tmp_path / "scene.toml"
-    scene.write_text(
-        'game = "pool"\ncue = "parts.toml"\n[[effects]]\ntype = "LeatherTip"\nheight = "6 mm"\n'
-        'dome_radius = "dime"\nleather = "Kamui hard"\n',
-        encoding="utf-8",
-    )
+    scene.write_text(f'game = "pool"\ncue = "parts.toml"\neffects = [{tip}]\n', encoding="utf-8")
     assert cf.load(scene).effects[0].E == LEATHERS["hard"].E
 
 

@@ -66,17 +66,6 @@ def test_a_linear_case_is_that_of_the_textbook() -> None:
     assert found.covariance[0, 0] == pytest.approx(1 / (1 + (slope / 5e-3) ** 2), rel=0.2)
 
 
-def test_a_closed_unknown_is_held_and_an_open_one_opened() -> None:
-    assert [one.name for one in measured_cue(*blank()).parameters] == ["E", "G", "rho", "bore", "contact time"]
-    (taper,) = (one for one in measured_cue(priors=(Prior("taper", 0.2),)).parameters if one.name == "taper")
-    assert (taper.usual, taper.spread) == (pytest.approx(9e-3), 0.2)
-    (bore,) = (
-        one for one in measured_cue(priors=(Prior("bore", low=5e-3, high=8e-3),)).parameters if one.name == "bore"
-    )
-    assert bore.value(1.0) == pytest.approx(8e-3)
-    assert bore.value(-1.0) == pytest.approx(5e-3)
-
-
 @pytest.mark.heavy
 def test_intervals_cover_the_parameters_of_made_up_cues() -> None:
     """A hundred cues of four parameters drawn from the priors: 68 and 95 % intervals to three standard deviations."""

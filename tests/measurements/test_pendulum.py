@@ -1,7 +1,6 @@
 """The pendulum test: exact on free masses, README's and the handbook's numbers, contradictions, and what is refused."""
 
 import math
-import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,7 +11,7 @@ import cuefem as cf
 from cuefem.io.measured_folder import load_measured
 from cuefem.measurements.measurement_types import EndMass, Setup
 from cuefem.measurements.pendulum import GRAVITY, Pendulum
-from tests.helpers.command_line import as_json, call, said
+from tests.helpers.command_line import as_json, said
 from tests.helpers.measured_cues import SCENE, folder, measured_cue
 
 TEXT = """[[pendulum]]
@@ -97,17 +96,6 @@ def test_compare_tells_a_contradiction_with_the_drawing(tmp_path: Path) -> None:
     assert row["residual"] > 15
     assert row["pull"] > 5
     assert "contradicts the drawing" in said("compare", place)
-
-
-def test_the_template_holds_a_pendulum_and_a_recording_to_uncomment(tmp_path: Path) -> None:
-    assert call("compare", tmp_path / "cue", "--template")[0] == 0
-    file = tmp_path / "cue" / "measured.toml"
-    text = file.read_text(encoding="utf-8")
-    block = text[text.index("# [[pendulum]]") : text.index("[[end_mass]]")]
-    file.write_text(text.replace(block, re.sub("^# ", "", block, flags=re.MULTILINE)), encoding="utf-8")
-    ends = [one.value for one in load_measured(tmp_path / "cue")[0].measurements if isinstance(one, EndMass)]
-    assert 1e3 * np.array(ends) == pytest.approx([6.9, 6.8], abs=0.05)
-    assert "# [[recording]]" in text
 
 
 def test_its_contact_time_is_uncertain() -> None:

@@ -30,12 +30,6 @@ def test_a_path_finds_its_field(path: str, value: float) -> None:
     assert spelt(found) == path
 
 
-def test_a_star_is_every_item() -> None:
-    assert [spelt(path) for path in paths(BASE, "cue.segments[*].length")] == [
-        f"cue.segments[{i}].length" for i in range(5)
-    ]
-
-
 @pytest.mark.parametrize(
     ("path", "words"),
     [
@@ -66,12 +60,6 @@ def test_values_are_replaced_all_at_once() -> None:
     found = replaced(BASE, {bore: 0.0126, outer: 0.014})
     assert found.cue.segments[2] == replace(BASE.cue.segments[2], tip_bore=0.0126, tip_diameter=0.014)
     assert replaced(found, {bore: 0.008, outer: 0.0125}) == BASE
-
-
-def test_what_is_replaced_is_checked() -> None:
-    (bore,) = paths(BASE, "cue.segments[2].tip_bore")
-    with pytest.raises(ValueError, match=r"Segment.tip_bore must be in \[0, 0.0125\) m, its outer diameter; got 0.02"):
-        replaced(BASE, {bore: 0.02})
 
 
 def test_a_contact_time_takes_a_stiffness_out() -> None:

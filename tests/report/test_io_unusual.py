@@ -74,29 +74,6 @@ def test_a_slip_is_remarked(tmp_path: Path, old: str, new: str, line: str) -> No
     assert any(said.startswith(line) for said in remarks(tmp_path / "scene.toml"))
 
 
-@pytest.mark.parametrize(
-    ("rows", "begins"),
-    [
-        ("[mm],diameter [mm]\n0,12.5\n250,12.9\n737,21", []),
-        (
-            "[mm],diameter [mm]\n0,0.0125\n0.25,0.0129\n0.737,0.021",
-            ["drawn length 0.737", "segments[0].tip_d", "drawn"],
-        ),
-        ("[mm],diameter [mm]\n0,21\n487,12.9\n737,12.5", ["the tip is thicker than the butt, 21 and 12.5 mm; is the"]),
-        (
-            "[mm],diameter [mm]\n0,6.4\n737,10.7",
-            ["segments[0].tip_diameter 6.4 mm; check the unit of the diameters; a tip has 8.5 to 14: are these radii?"],
-        ),
-        ("[m],diameter [mm]\n0,12\n700,21", ["drawn length 700000 mm", "mass of the whole cue 108."]),
-        ("[mm],diameter [cm]\n0,12\n700,21", ["segments[0].tip_diameter 120 mm", "mass of the whole cue 11."]),
-    ],
-)
-def test_profiles(tmp_path: Path, rows: str, begins: list[str]) -> None:
-    (tmp_path / "shaft.csv").write_text(f"x {rows}\n")
-    said = remarks(tmp_path / "shaft.csv")
-    assert all(line.startswith(begin) for line, begin in zip(said, begins, strict=True))
-
-
 LEFT_OUT = "; 400 to 700 is usual: is what is behind the shaft left out (--body-mass, or body_mass in a drawing)?"
 
 

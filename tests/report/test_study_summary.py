@@ -61,16 +61,6 @@ def test_the_front_is_what_none_beats(numbers: np.ndarray) -> None:
     assert found.best(1) in np.flatnonzero(results[:, 1] == results[:, 1].max())
 
 
-def test_the_pair_is_the_strongest_trade_off() -> None:
-    x = np.linspace(0, 1, 20)
-    three = (Response.of("end_mass"), Response.of("squirt(0.3)"), Response.of("tip_stiffness"))
-    found = table({"x": x}, np.stack([x, x, x], axis=1), three)
-    assert found.pair == (0, 2)
-    assert len(found.front) == 20
-    neutral = table({"x": x}, np.stack([x, x], axis=1), (Response.of("frequency(1)"), Response.of("end_mass")))
-    assert (neutral.judged, neutral.pair) == ([1], None)
-
-
 def test_command_ends_with_a_summary_and_writes_it_as_a_page(tmp_path: Path) -> None:
     study, (page, best) = written(tmp_path), (tmp_path / name for name in ("page.html", "best.toml"))
     out = " ".join(said("study", study, "-o", page, "-o", best).split())

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import replace
 
 import numpy as np
 from hypothesis import given, settings
 
 from cuefem import LumpedCue, Scene, Stroke, impulse, resolve, resolve_end_mass
-from cuefem.results.convergence import levels, mode_counts
-from cuefem.tip_modes import MOST
 from tests.helpers.accuracy_scenes import endless_friction, scene
 from tests.helpers.strike_scenes import lumped_scenes, numbers, sound
 
@@ -48,12 +45,3 @@ def test_better_is_never_cheaper() -> None:
 
 def test_endless_friction_resolves() -> None:
     sound(resolve(endless_friction(), 1e-2))
-
-
-def test_levels_double_modes_and_steps() -> None:
-    first, second = itertools.islice(levels(KIM), 2)
-    assert second.at.modes == 2 * first.at.modes
-    assert second.at.steps == 2 * first.at.steps
-    assert first.outcome.error is second.outcome.error is None
-    assert mode_counts(1) == [12, 24, 48, 96, 192, MOST]
-    assert mode_counts(MOST) == [50, 100, 200, MOST]
