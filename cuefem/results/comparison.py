@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 from cuefem.contact.outcome import MISSED, grip_of
@@ -21,6 +22,7 @@ from cuefem.tip_modes import Solved
 OF_SQUIRT = ("squirt", "end_mass_squirt", "pivot_length")  # what squirt makes them, so that the model adds its error
 OF_SHAPE = ("tip_stiffness", "shaft_mass", "mass")
 N_FREQUENCIES = 3
+ALL = (*OF_SQUIRT, *OF_SHAPE, *(f"frequency_{k}" for k in range(1, N_FREQUENCIES + 1)))
 OTHER_FLOOR = 2e-3  # relative, of shape, weights, frequencies: 0.2 g of 100 g, 0.01 mm of 13 mm to the fourth power
 Follow = Callable[[Sequence[Any]], Iterable[Any]]
 
@@ -35,7 +37,9 @@ class _Compared(NamedTuple):
     inputs: dict[str, dict[str, float]]
 
 
-def comparison_record(scenes: Mapping[str, Scene], *, same_shaft: bool = False, follow: Follow = list) -> Record:
+def comparison_record(
+    scenes: Mapping[str, Scene], *, same_shaft: bool = False, names: Sequence[str] = ALL, follow: Follow = list
+) -> Record:
     """Numbers of some cues, SI, and the relative differences of the others from the first with their uncertainty.
 
     An error that two cues share cancels in their difference: that of a tip of the same value on both, and of the wood
@@ -44,14 +48,15 @@ def comparison_record(scenes: Mapping[str, Scene], *, same_shaft: bool = False, 
     difference exceeds its uncertainty (1 sigma), whichever of two cues is the first. ValueError for one shaft
     of two woods.
 
-    All cues are struck with the ball, the speed and the offset of the first. follow: shows how far the work is.
+    All cues are struck with the ball, the speed and the offset of the first. names: the numbers that are compared.
+    follow: shows how far the work is.
     """
     struck = struck_alike(scenes)
     woods = {main_material(scene.shaft).E for scene in struck.values()}
     if same_shaft and len(woods) > 1:
         found = " and ".join(f"{E / 1e9:.4g} GPa" for E in sorted(woods))
         raise ValueError(f"one shaft before and after a change must be of one wood; got E of {found}")
-    compared = {name: _compared(struck[name]) for name in follow([*struck])}
+    compared = {name: _compared(struck[name], tuple(names)) for name in follow([*struck])}
     reference, *others = compared
     first = struck[reference]
     return {
@@ -73,23 +78,25 @@ def struck_alike(scenes: Mapping[str, Scene]) -> dict[str, Scene]:
     return {name: replace(scene, ball=first.ball, stroke=first.stroke) for name, scene in scenes.items()}
 
 
-def _compared(scene: Scene) -> _Compared:
-    numbers = _numbers(scene)
+@lru_cache(maxsize=16)  # one of two cues stays while the other is changed
+def _compared(scene: Scene, names: tuple[str, ...]) -> _Compared:
+    numbers = _numbers(scene, names)
     try:
         grip = grip_of(OneDesign(Solved(scene)).strike(0, None))
     except (ValueError, RuntimeError):  # no squirt either
         grip = ""
-    return _Compared(scene, numbers, grip, changes_by_input(scene, numbers, _numbers))
+    return _Compared(scene, numbers, grip, changes_by_input(scene, numbers, lambda made: _numbers(made, names)))
 
 
-def _numbers(scene: Scene) -> dict[str, float]:
+def _numbers(scene: Scene, names: Sequence[str]) -> dict[str, float]:
     """The numbers of a scene that are compared; nan where it has none, as squirt of a miscue."""
     _ = scene.shaft  # ValueError for a lumped cue, which has no shape
     design, known = OneDesign(Solved(scene)), asked()
-    arguments: dict[str, Any] = {"pivot_length": float(scene.stroke.offset)}
 
-    def value(name: str, argument: Any) -> float:
-        of = known[name].of
+    def value(name: str) -> float:
+        base, _, mode = name.partition("frequency_")
+        of = known[base or "frequency"].of
+        argument: Any = int(mode) if mode else float(scene.stroke.offset) if name == "pivot_length" else None
         assert of is not None
         try:
             if name in OF_SQUIRT and grip_of(design.strike(0, None)) in MISSED:
@@ -98,8 +105,7 @@ def _numbers(scene: Scene) -> dict[str, float]:
         except (ValueError, RuntimeError):
             return math.nan
 
-    numbers = {name: value(name, arguments.get(name)) for name in (*OF_SQUIRT, *OF_SHAPE)}
-    return numbers | {f"frequency_{k}": value("frequency", k) for k in range(1, N_FREQUENCIES + 1)}
+    return {name: value(name) for name in names}
 
 
 def _differences(first: _Compared, other: _Compared, *, same_shaft: bool) -> dict[str, Record]:
