@@ -108,7 +108,7 @@ def test_an_effect_on_the_cue(tmp_path: Path) -> None:
     bare = kim_scene(0.3)
     scene = replace(bare, effects=(made(0.03, 4e-3),))
     assert effect_kinds()["Collar"] is made
-    assert missing("Collar (position 30 mm, mass 4 g)", faces(scene, tmp_path, "strike", "designer")) == []
+    assert missing("Collar (position 30 mm, mass 4 g)", faces(scene, tmp_path, "strike")) == []
     assert 'type = "Collar"' in (tmp_path / "scene.toml").read_text(encoding="utf-8")
     assert cf.load(tmp_path / "scene.toml") == scene
     assert cf.strike(scene, AT).squirt > 1.01 * cf.strike(bare, AT).squirt

@@ -13,9 +13,7 @@ import click
 from cuefem.cli.common import blaming, cue_options, scene_of
 from cuefem.cli.printing import command, print_json
 from cuefem.cli.strokes import option
-from cuefem.designer.design import Design
-from cuefem.designer.start import NAME, first_scene
-from cuefem.io.profile import SHAPES
+from cuefem.io.ready import PRESETS
 
 
 @command()
@@ -33,32 +31,28 @@ def designer(scene: Path | None, port: int, show: bool, as_json: bool, **options
     """Open a page on this computer: change a cue with sliders and see its end mass and squirt at once.
 
     SCENE is a cue or scene file, as FILE is for other commands; by default a maple pool shaft. A cue alone gets the
-    game's usual stroke. The page asks for the weight of the rest of a profile's cue, unless --body-mass gives it.
+    game's usual stroke. The rest of a profile's cue weighs 15 oz, unless --body-mass gives its weight.
     """
     try:
-        from cuefem.designer.app import serve
+        from cuefem.designer.server import serve
+        from cuefem.designer.state import design_of_file, reference_design
     except ModuleNotFoundError as error:
         if error.name is None or error.name.startswith("cuefem"):
             raise
         raise ValueError(f"the designer needs {error.name}: pip install '.[designer]' in the clone") from None
 
-    def read(path: Path) -> Any:
-        return scene_of(path, {"material": None, "body_mass": None})
-
-    weigh = False
+    given = {name for name, value in options.items() if value is not None}
     if scene is None:
-        for name, value in options.items():
-            if value is not None:
-                raise ValueError(f"{option(name)} must go with a SCENE, whose cue or stroke it changes; got no SCENE")
-        first = Design.of(NAME, first_scene())
+        for name in given:
+            raise ValueError(f"{option(name)} must go with a SCENE, whose cue or stroke it changes; got no SCENE")
+        first = reference_design(PRESETS[0])
     else:
-        weigh = scene.suffix.lower() in SHAPES and options["body_mass"] is None
-        opened = scene_of(scene, options, remarked=not weigh)
+        read, _ = scene_of(scene, options)
         with blaming(scene):
-            first = Design.of(scene.name, *opened)
-    said: Callable[[str], None] = (lambda address: print_json({"address": address})) if as_json else click.echo
+            first = design_of_file(scene, scene.stem, read, given)
+    told: Callable[[str], None] = (lambda address: print_json({"address": address})) if as_json else click.echo
     with suppress(KeyboardInterrupt):  # Ctrl-C is how one ends it
-        serve(first, read, weigh=weigh, port=_free(port), show=show, announce=said)
+        serve(first, port=_free(port), show=show, announce=told)
 
 
 def _free(port: int) -> int:

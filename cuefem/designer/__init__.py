@@ -1,1 +1,1 @@
-"""The designer: a page on this computer where a person turns a cue's knobs and sees at once what that does."""
+"""The designer: a page on this computer where a person changes a cue and sees at once what that does to squirt."""

@@ -102,10 +102,12 @@ def _with_leather(cue: Cue, text: str) -> Cue:
 
 def _with_ferrule(cue: Cue, text: str) -> Cue:
     """The cue with a ferrule behind its leather: on a tenon of the shaft's wood, or bored where the shaft is."""
-    length, stuff, tenon = _ferrule_of(text)
     layout = Layout.of(cue)
     wood = cue.segments[layout.shaft.start].material
     bare = [_without_tenon(s, wood) if i in layout.ferrule else s for i, s in enumerate(cue.segments)]
+    if text.strip().casefold() == "none":
+        return replace(cue, segments=tuple(bare))
+    length, stuff, tenon = _ferrule_of(text)
     first = next(i for i, s in enumerate(bare) if s.material.E >= SOFT)
     start = float(cue.nodes[first])
     longest = min(LONGEST_FERRULE, 0.9 * (cue.length - start))

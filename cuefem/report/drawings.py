@@ -20,6 +20,7 @@ from cuefem.scene import Scene
 
 ACROSS = 8.0  # times that diameters are enlarged
 TITLE = f"Diameters {ACROSS:g} times enlarged"
+FRONT = 0.16  # m, of the drawing that shows the front true to scale
 
 
 class Piece(NamedTuple):
@@ -119,15 +120,35 @@ def cue_drawing(scene: Scene, *, units: Units = TRADE) -> CueDrawing:
     return CueDrawing(TITLE, axis + widest / 2 + 16, axis, pieces, signs, ticks, unit)
 
 
-def _piece(segment: Segment, x: float, *, scale: float, axis: float, dome: float) -> Piece:
+def true_drawing(scene: Scene, reach: float, title: str) -> CueDrawing:
+    """The cue from the side, true to scale, as far as ``reach``, m from where its segments begin."""
+    cue = seen(scene)
+    ahead = cue.length - scene.shaft.length
+    scale = WIDE / (reach + ahead)
+    shown = [(x, segment) for x, segment in zip(cue.nodes, cue.segments, strict=False) if x < reach + ahead]
+    widest = max(max(segment.tip_diameter, segment.butt_diameter) for _, segment in shown[:-1] or shown)
+    x, last = shown[-1]
+    there = last.tip_diameter + (last.butt_diameter - last.tip_diameter) * min(1.0, (reach + ahead - x) / last.length)
+    axis = 1.0 + scale * max(widest, last.tip_diameter, there) / 2
+    pieces = tuple(
+        _piece(segment, x, scale=scale, axis=axis, dome=0.0 if x else scene.dome_radius, across=1.0, left=0.0)
+        for x, segment in shown
+    )
+    ticks = Axis("mm", 0.0, 1e3 * reach).over([np.zeros(1)]).ticks(scale * ahead, WIDE)
+    return CueDrawing(title, 2 * axis, axis, pieces, (), ticks)
+
+
+def _piece(
+    segment: Segment, x: float, *, scale: float, axis: float, dome: float, across: float = ACROSS, left: float = 10.0
+) -> Piece:
     def outline(tip: float, butt: float, dome: float) -> str:
-        first, last = 10 + scale * x, 10 + scale * (x + segment.length)
-        high, low = (scale * ACROSS * width / 2 for width in (tip, butt))
+        first, last = left + scale * x, left + scale * (x + segment.length)
+        high, low = (scale * across * width / 2 for width in (tip, butt))
         xs, ys = [first, last, last, first], [axis - high, axis - low, axis + low, axis + high]
         if dome > 0 and dome >= tip / 2:
             angle = np.linspace(1, -1, 25) * math.asin(tip / 2 / dome)
-            front = 10 + scale * dome * (1 - np.cos(angle))
-            xs, ys = [*xs[1:3], *front], [*ys[1:3], *(axis + scale * ACROSS * dome * np.sin(angle))]
+            front = left + scale * dome * (1 - np.cos(angle))
+            xs, ys = [*xs[1:3], *front], [*ys[1:3], *(axis + scale * across * dome * np.sin(angle))]
         return path(xs, ys) + "Z"
 
     return Piece(

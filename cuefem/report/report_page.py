@@ -33,6 +33,14 @@ from cuefem.report.drawings import (
 )
 from cuefem.report.effects import seconds_words
 from cuefem.report.end_mass import SQUIRT_END_MASS, end_mass_record
+from cuefem.report.first_screen import (
+    Shown,
+    drawings_markup,
+    headline_markup,
+    parts_line,
+    scale_markup,
+    tiles_markup,
+)
 from cuefem.report.glossary import with_words
 from cuefem.report.models import ALCIATORE, PAPER
 from cuefem.report.record import scene_record
@@ -42,9 +50,10 @@ from cuefem.report.strike_table import BRIEF, grip_warning, models_sheet, strike
 from cuefem.report.templates import environment
 from cuefem.report.tip_table import tip_record, tip_sheet
 from cuefem.report.trust import trust_lines
-from cuefem.report.verdict_table import headline, verdict_part
+from cuefem.report.verdict_table import headline, uncertainty_line
 from cuefem.results.asking import listed
 from cuefem.results.closed_forms import alciatore_a31_mass_ratio
+from cuefem.results.comparison import comparison_record
 from cuefem.results.convergence import Level, climb
 from cuefem.results.designs import OneDesign
 from cuefem.results.quantities import GRIPS, NONE, RESULTS, degrees, grams, scaled, written
@@ -94,21 +103,24 @@ def page_and_headline(
     notes: Sequence[str] = (),
     remarks: Sequence[str] = (),
     trust: Sequence[str] = (),
+    other: tuple[str, Scene] | None = None,
     track: Any = iter,
 ) -> tuple[str, str]:
     """The report of a scene as HTML, and its squirt in a line.
 
     rtol: what is asked of the accuracy; notes: what was assumed; remarks: what is unusual; trust: what was
-    computed on how far to trust it; track: follows the stages.
+    computed on how far to trust it; other: the name and scene of a cue to compare with, struck alike; track: follows
+    the stages.
     """
     records: Record = {}
     rtol = DEFAULT_RTOL if rtol is None else rtol
-    for stage in track(_stages(scene, rtol)):
+    for stage in track(_stages(scene, rtol, None if other is None else other[1])):
         records[stage.name] = stage.work()
     template = environment().get_template("page.html.j2")
     asked = f"{100 * rtol:.3g} %"
     said = {"notes": list(notes), "remarks": list(remarks), "checked": list(trust)}
-    text = with_words(template.render(name=name, asked=asked, **said, **_context(scene, records))) + "\n"
+    context = _context(scene, records) | {"screen": _screen(name, scene, records, other)}
+    text = with_words(template.render(name=name, asked=asked, **said, **context)) + "\n"
     return text, headline(records["verdict"])
 
 
@@ -145,7 +157,7 @@ class _ToAccuracy(Solved):
         return self.tip if self.level.at.modes >= LEAST_STUCK else self.tip_modes(least)
 
 
-def _stages(scene: Scene, rtol: float) -> list[Stage]:
+def _stages(scene: Scene, rtol: float, other: Scene | None = None) -> list[Stage]:
     climbed_to: list[tuple[Level, float]] = []
     solved = cache(lambda: _ToAccuracy(scene, level=climbed_to[-1][0]) if climbed_to else Solved(scene))
 
@@ -170,7 +182,30 @@ def _stages(scene: Scene, rtol: float) -> list[Stage]:
         Stage("squirt", lambda: squirt_record(scene, PAGE_OFFSETS, solved=solved())),
         Stage("strike", lambda: strike_record(scene, outcome(), solved=solved())),
         Stage("numbers", lambda: listed(OneDesign(solved(), outcome()))),
+        *([] if other is None else [Stage("comparison", lambda: comparison_record({"other": other, "own": scene}))]),
     ]
+
+
+def _screen(name: str, scene: Scene, records: Record, other: tuple[str, Scene] | None) -> dict[str, str]:
+    """The parts of the first screen, as markup."""
+    outcome, drives = records["outcome"], records["end_masses"]["drives"]
+    squirt = {"squirt": float(outcome.squirt), "pivot_length": records["strike"]["models"]["coupled"]["pivot_length"]}
+    own = Shown(
+        name, scene, records["numbers"] | squirt | {"end_mass_squirt": drives["squirt"]["end_mass"]}, records["verdict"]
+    )
+    beside, difference = None, None
+    if other is not None:
+        compared = records["comparison"]
+        beside = Shown(*other, compared["cues"]["other"])
+        difference = compared["differences"]["own"].get("squirt")
+    scenes = {name: scene} | ({} if other is None else {other[0]: other[1]})
+    return {
+        "headline": headline_markup(own, beside, difference),
+        "scale": scale_markup(own, beside),
+        "tiles": tiles_markup(own, beside),
+        "drawings": drawings_markup(scenes) if scene.cue.segments else "",
+        "parts": parts_line(records["verdict"]),
+    }
 
 
 def _steps(climbed_to: Sequence[tuple[Level, float]], rtol: float) -> Sheet:
@@ -196,7 +231,7 @@ def _context(scene: Scene, records: Record) -> Record:
         "strike": strike_drawing(scene, outcome.squirt),
         "squirt": written("squirt", outcome.squirt, brief=True),
         "error": "" if outcome.error is None else f"{100.0 * outcome.error:.2g} %",
-        "verdict": verdict_part(records["verdict"]),
+        "uncertainty": uncertainty_line(records["verdict"]),
         "advice": advice_sheet(records["advice"]) if "advice" in records else None,
         "trust": trust_lines(scene),
         "warning": grip_warning(grip_of(outcome)),

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from functools import cache
+from html import escape
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from cuefem.report.charts import Chart
-from cuefem.report.drawings import CueDrawing, ModesDrawing
+from cuefem.results.records import Sheet
 
 
 @cache
@@ -24,8 +25,8 @@ def environment() -> Environment:
 
 
 def page_style() -> str:
-    """The page's style sheet."""
-    return environment().get_template("page.css").render()
+    """The style sheet of pages, with that of the first screen."""
+    return "".join(environment().get_template(name).render() for name in ("page.css", "first_screen.css"))
 
 
 def chart_script() -> str:
@@ -38,19 +39,10 @@ def chart_markup(drawing: Chart, name: str) -> str:
     return str(_macros().chart(drawing, name))
 
 
-def cue_markup(drawing: CueDrawing) -> str:
-    """A drawing of the cue as a figure."""
-    return str(_macros().drawing(drawing))
-
-
-def verdict_markup(part: dict[str, Any]) -> str:
-    """A verdict, as `cuefem.report.verdict_table.verdict_part` tells it."""
-    return str(_macros().verdict_section(part))
-
-
-def shapes_markup(drawing: ModesDrawing) -> str:
-    """Mode shapes as a drawing."""
-    return str(_macros().shapes(drawing))
+def sheet_markup(sheet: Sheet) -> str:
+    """A table under its title, with its notes."""
+    notes = "".join(f'<p class="made">{escape(note)}</p>' for note in sheet.notes)
+    return f"<h2>{escape(sheet.title)}</h2>{_macros().sheet(sheet)}{notes}"
 
 
 @cache

@@ -140,7 +140,7 @@ class ScaleRow(NamedTuple):
     high: float
 
 
-def scale(record: Record) -> list[ScaleRow]:
+def scale(record: Record, name: str = "yours") -> list[ScaleRow]:
     """The cues by their squirt, the least first, one's own with its uncertainty; per cent are of the scale's length."""
     mine, error = abs(record["squirt"]), record["squirt_error"]
     others = {name: abs(beside["squirt"]) for name, beside in record["among"].items()}
@@ -163,7 +163,7 @@ def scale(record: Record) -> list[ScaleRow]:
         )
         for name, squirt in others.items()
     ]
-    return sorted([*rows, row("yours", mine, error, text, f"± {off}")], key=lambda each: each.at)
+    return sorted([*rows, row(name, mine, error, text, f"± {off}")], key=lambda each: each.at)
 
 
 def verdict_part(record: Record) -> Record:

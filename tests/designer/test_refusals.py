@@ -15,7 +15,7 @@ NICEGUI = "needs NiceGUI: pip install '.[designer]' in the clone"
 
 
 def test_without_the_library_it_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delitem(sys.modules, "cuefem.designer.app", raising=False)
+    monkeypatch.delitem(sys.modules, "cuefem.designer.server", raising=False)
     monkeypatch.setitem(sys.modules, "nicegui", None)
     command_refuses("the designer needs nicegui: pip install '.[designer]' in the clone", "designer", "--no-open")
 

@@ -102,27 +102,30 @@ def _own(url: str, address: str) -> bool:
     return url.startswith((address, address.replace("http", "ws"), "data:", f"blob:{address}"))
 
 
-SETTLED = """() => {
-  const knobs = [...document.querySelectorAll(".knob")];
-  const heard = knobs.every(knob => {
-    if (knob.querySelector(".wrong")) return true;
-    const said = knob.querySelector("[role=slider]").ariaValueNow;
-    const taken = knob.querySelector("input").value.replace(",", ".");
-    if (taken.includes("/")) return true;  // typed as a fraction of an inch
-    return Math.abs(said - taken) < 0.6 * knob.querySelector("[data-step]").dataset.step;
-  });
-  return knobs.length > 0 && heard && document.querySelector(".answers").ariaBusy === "false";
-}"""
-
-
 def settled(page: Any) -> None:
-    """Wait until all knobs have been heard, and all that they do is on the page."""
-    page.wait_for_function(SETTLED)
+    """Wait until everything that was changed has been answered."""
+    page.wait_for_timeout(150)  # a message is on its way, after which the page says that it is busy
+    page.wait_for_function("() => document.querySelector('[data-busy]')?.dataset.busy === 'false'")
 
 
-def shown(page: Any, name: str) -> str:
-    """A number of the table, as it stands there."""
-    return str(page.locator(f'[data-number="{name}"]').inner_text())
+def number(page: Any, name: str, whose: str = "own") -> float:
+    """A number of the first screen in SI, of the design or of the other one."""
+    return float(page.locator(f'[data-number="{name}"][data-of="{whose}"]').first.get_attribute("data-value"))
+
+
+def typed(page: Any, label: str, text: str) -> None:
+    """Type a value into a field, and wait for all that follows."""
+    field = page.get_by_label(label, exact=True).first
+    field.fill(text)
+    field.press("Enter")
+    settled(page)
+
+
+def picked(page: Any, label: str, option: str) -> None:
+    """Pick one of a list, and wait for all that follows."""
+    page.get_by_role("combobox", name=label, exact=True).first.click()
+    page.get_by_role("option", name=option, exact=True).click()
+    settled(page)
 
 
 def downloaded(page: Any, button: str, folder: Path) -> Path:
@@ -132,17 +135,3 @@ def downloaded(page: Any, button: str, folder: Path) -> Path:
     path = folder / str(waiting.value.suggested_filename)
     waiting.value.save_as(path)
     return path
-
-
-def turn(page: Any, knob: str, key: str = "ArrowRight", times: int = 1) -> None:
-    """Move a slider by its keys, and wait for all that follows."""
-    slider = page.locator(f'[data-knob="{knob}"] [role="slider"]')
-    slider.focus()
-    for _ in range(times):
-        before = slider.get_attribute("aria-valuenow")
-        page.keyboard.press(key)
-        page.wait_for_function(
-            "([knob, before]) => document.querySelector(`[data-knob=${knob}] [role=slider]`).ariaValueNow !== before",
-            arg=[knob, before],
-        )
-    settled(page)

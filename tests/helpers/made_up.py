@@ -10,10 +10,9 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 
 import cuefem as cf
-from cuefem.designer.answers import answers, completed, with_end_mass
-from cuefem.designer.design import Design
-from cuefem.designer.numbers_panel import Column, table_markup
-from cuefem.designer.words import head_markup
+from cuefem.designer.computation import numbers
+from cuefem.designer.panels import Known, numbers_sheet, sheets_markup
+from cuefem.designer.state import Design, Step
 from cuefem.effects import CueEffect, TipEffect, Usual
 from cuefem.effects.contact_settings import ContactTerms
 from cuefem.endmass.definitions import Definition
@@ -36,9 +35,8 @@ def faces(scene: cf.Scene, folder: Path, *names: str) -> dict[str, str]:
         if name == "page":
             return page("this", scene)
         if name == "designer":
-            found = completed(with_end_mass(answers(scene)))
-            design = Design.of("this", scene)
-            return head_markup(design) + table_markup([Column(design, found)], 0)
+            known = Known({"numbers": numbers.__wrapped__(scene)})
+            return sheets_markup([numbers_sheet(Step(Design("this", scene)), known)])
         return call(name, file)[1]
 
     return {name: " ".join(re.sub("<[^>]*>", "", shown(name)).split()) for name in names}

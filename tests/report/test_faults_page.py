@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import pytest
 
 import cuefem as cf
-from cuefem.designer.start import first_scene
 from cuefem.report.report_page import page as report_page
 
 WHISKER = re.compile(r'class="whisker" d="M([0-9.]+) [0-9.]+H([0-9.]+)"')
 
 
-USUAL = first_scene()
+USUAL = cf.usual_scene(cf.load(Path(__file__).parents[2] / "meshes" / "pool_maple.toml"))
 WOOD, BRASS = cf.Material(12.6e9, 0.84e9, 782.0), cf.Material(1e11, 3.7e10, 8500.0)
 RINGING = cf.Cue((cf.Segment(0.006, 0.012, 0.012, BRASS), cf.Segment(0.7, 0.012, 0.021, WOOD)), 0.4)
 

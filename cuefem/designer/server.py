@@ -1,25 +1,57 @@
-"""What the designer's server lets in: its own page alone, files of a bounded size, under names that files can have."""
+"""The designer's server: one page, on this computer alone. It refuses other pages, and bodies that are too big."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
+from nicegui import app, ui
 from starlette.datastructures import Headers
-from starlette.responses import PlainTextResponse
+from starlette.middleware.trustedhost import TrustedHostMiddleware
+from starlette.responses import HTMLResponse, PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-LARGEST_FILE = 5_000_000  # bytes
+from cuefem.designer.page import KINDS, LARGEST_FILE, Page
+from cuefem.designer.state import Design
+from cuefem.handbook.page import page as handbook
+
+HOST = "127.0.0.1"
 AROUND_FILE = 10_000  # bytes of a form beside its file
-LONGEST_NAME = 255  # bytes: what file systems take
-KINDS = (".toml", ".csv", ".vtk", ".vtu", ".stl", ".ply", ".obj")
 REJECTED = f"a file must be a {', '.join(KINDS[:-1])} or {KINDS[-1]} of at most {LARGEST_FILE // 10**6} MB"
+
+
+def serve(first: Design, *, port: int, show: bool, announce: Callable[[str], None]) -> None:
+    """Serve the page on this computer alone until it is stopped. show: open it in the browser."""
+
+    @ui.page("/")
+    async def index() -> None:
+        await ui.context.client.connected()
+        Page(first)
+
+    app.add_api_route("/guide", handbook, response_class=HTMLResponse)
+    app.add_middleware(TrustedHostMiddleware, allowed_hosts=[HOST, "localhost"])
+    app.add_middleware(RequestValidation, origins=(f"http://{HOST}:{port}", f"http://localhost:{port}"))
+    app.on_startup(lambda: announce(f"http://{HOST}:{port}/"))
+    ui.run(
+        host=HOST,
+        port=port,
+        show=show,
+        title="cuefem designer",
+        favicon="data:,",
+        dark=None,
+        language="en-US",
+        reload=False,
+        reconnect_timeout=30.0,  # s: a busy computer may be silent for longer than the default, 3 s
+        tailwind=False,
+        show_welcome_message=False,
+    )
 
 
 class TooBig(Exception):
     """More was sent than the server reads."""
 
 
-class Door:
+class RequestValidation:
     """Refuses what other pages ask for, and bodies that are too big, before they are read."""
 
     def __init__(self, app: ASGIApp, origins: tuple[str, ...]) -> None:
@@ -59,9 +91,9 @@ class Door:
             begun = True
             await send(message)
 
-        said = headers.get("content-length", "0")
+        length = headers.get("content-length", "0")
         try:
-            if not said.isdecimal() or len(said) > 18 or int(said) > most:
+            if not length.isdecimal() or len(length) > 18 or int(length) > most:
                 raise TooBig
             await self.app(scope, counted, noted)
         except TooBig:
@@ -69,17 +101,6 @@ class Door:
                 await _refused(413, REJECTED, scope, receive, send)
 
 
-async def _refused(status: int, words: str, scope: Scope, receive: Receive, send: Send) -> None:
-    answer = PlainTextResponse(words, status_code=status, headers={"connection": "close"})  # the rest is not read
+async def _refused(status: int, text: str, scope: Scope, receive: Receive, send: Send) -> None:
+    answer: Any = PlainTextResponse(text, status_code=status, headers={"connection": "close"})  # the rest is not read
     await answer(scope, receive, send)
-
-
-def file_name(told: Any) -> str:
-    """The name of a file as the browser sent it, without folders; ValueError if no file can have that name."""
-    name = str(told or "").replace("\\", "/").rsplit("/", 1)[-1]
-    if name.strip() in ("", ".", "..") or not name.isprintable():
-        raise ValueError(f"a file must have a name; got {name[:20]!r}")
-    size = len(name.encode(errors="replace"))
-    if size > LONGEST_NAME:
-        raise ValueError(f"a file's name must be of at most {LONGEST_NAME} bytes; got {size}")
-    return name

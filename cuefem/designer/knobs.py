@@ -1,0 +1,364 @@
+"""The knobs: which there are, what each changes in a scene, what may be typed, and each as a row of the page."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import replace
+from typing import Any, NamedTuple, Protocol
+
+from nicegui import ui
+
+from cuefem.designer.state import FAILURES, Design, Step, one_line
+from cuefem.games import GAMES, usual_scene, without_leather
+from cuefem.io.fittings import fitted
+from cuefem.materials import LEATHERS, material_name, table_name
+from cuefem.parts import Layout, bore_mouth, deepest_bore, taper_position
+from cuefem.quantity.fields import Quantity, scalar
+from cuefem.scene import Scene
+from cuefem.vary import PLACES, Range, varied
+
+LEAST_WALL = 0.0005  # m, that a typed bore must leave
+NEW_FERRULE, NEW_BORE, NEW_DEPTH = "25 mm", 0.006, 0.127
+NONE, DRILLED = "none", "drilled"
+LONGEST_TEXT = 40
+FERRULE_BEGINS, LEATHER_BEGINS = "the ferrule; tip added", "the tip"
+
+
+class Knob(NamedTuple):
+    """A knob: its group, its label ("{at}" is a position on the cue), and, if no parameter has it, its range."""
+
+    group: str
+    label: str
+    range: Range | None = None
+    choice: bool = False
+    slides: bool = True
+
+
+KNOBS = {
+    "shaft_material": Knob("Shaft", "Wood", choice=True),
+    "tip_diameter": Knob("Shaft", "Tip diameter"),
+    "taper_diameter": Knob("Shaft", "Taper, {at}"),
+    "butt_diameter": Knob("Shaft", "Taper, end"),
+    "ferrule": Knob("Shaft", "Ferrule", choice=True),
+    "ferrule_length": Knob("Shaft", "Ferrule length"),
+    "bore": Knob("Shaft", "Bore", choice=True),
+    "bore_width": Knob("Shaft", "Bore width"),
+    "bore_depth": Knob("Shaft", "Bore depth"),
+    "shaft_mass": Knob("Shaft", "Shaft weight", Range("g", 1e3, 0, 0, 0.1, 0.1, 100_000), slides=False),
+    "body_mass": Knob("Shaft", "Rest of cue", slides=False),
+    "leather": Knob("Tip", "Tip hardness", choice=True),
+    "tip_height": Knob("Tip", "Tip height"),
+    "dome": Knob("Tip", "Tip radius"),
+    "contact_time": Knob("Tip", "Contact time"),
+    "friction": Knob("Tip", "Friction"),
+    "restitution": Knob("Tip", "Restitution"),
+    "game": Knob("Stroke", "Game", choice=True),
+    "speed": Knob("Stroke", "Cue speed"),
+    "offset": Knob("Stroke", "Tip offset b/R"),
+    "ball_mass": Knob("Stroke", "Ball weight", Range("g", 1e3, 0, 0, 1, 1, 10_000), slides=False),
+    "ball_diameter": Knob("Stroke", "Ball diameter", Range("mm", 1e3, 0, 0, 0.05, 1, 1000), slides=False),
+    "begins": Knob("", "Drawing begins at", choice=True),
+}
+GROUPS = ("Shaft", "Tip", "Stroke")  # what stands in other groups of the table is changed in the file's text
+SI = {"mm": "m", "g": "kg", "ms": "s"}
+# Where a knob is only what a verdict counts under other names.
+INPUTS = {"shaft_material": ("E", "G"), "shaft_mass": ("rho",), "bore": ("bore",)}
+
+
+def knobs() -> dict[str, Knob]:
+    """All knobs by their keys: `KNOBS`, and every other number that the table of parameters has in a group."""
+    others = (
+        (key, known) for key, known in PLACES.items() if known.group in GROUPS and known.range and key not in KNOBS
+    )
+    return KNOBS | {key: Knob(known.group, known.title) for key, known in others}
+
+
+def label(key: str, scene: Scene) -> str:
+    """A knob's label."""
+    return knobs()[key].label.format(at=f"{1e3 * taper_position(scene.shaft):.0f} mm")
+
+
+def range_of(key: str, scene: Scene) -> Range:
+    """What a knob's slider reaches, and what may be typed."""
+    return knobs()[key].range or PLACES[key].reach(scene.shaft)  # type: ignore[return-value]
+
+
+def value(key: str, scene: Scene) -> Any:
+    """What a scene has: an SI number, or the name of a choice; None without such a knob."""
+    cue, layout = scene.shaft, Layout.of(scene.shaft)
+    if key == "ferrule":
+        return _name(cue.segments[layout.ferrule.start].material) if layout.ferrule else NONE
+    if key in ("bore", "bore_width", "bore_depth") and not layout.bore:
+        return NONE if key == "bore" and layout.bore is not None else None
+    if key == "bore":
+        return DRILLED
+    if key == "shaft_material":
+        return _name(cue.segments[layout.shaft.start].material)
+    if key == "leather":
+        E = PLACES[key].value(scene)
+        return E and next((n for n, known in LEATHERS.items() if known.E == E), f"E {E / 1e6:.4g} MPa")
+    if key == "game":
+        return next((name for name, game in GAMES.items() if game.ball == scene.ball), "another ball")
+    if key == "begins":
+        return FERRULE_BEGINS
+    if key in ("ball_mass", "ball_diameter"):
+        return scene.ball.mass if key == "ball_mass" else 2 * scene.ball.radius
+    return PLACES[key].value(scene)
+
+
+def _name(known: Any) -> str:
+    return table_name(known) or material_name(known)
+
+
+def options(key: str, scene: Scene) -> list[str]:
+    """What may be chosen; the scene's own is among it."""
+    offered = {
+        "shaft_material": PLACES["shaft_material"].materials,
+        "ferrule": (NONE, *PLACES["ferrule_material"].materials),
+        "bore": (NONE, DRILLED),
+        "leather": (*LEATHERS,),
+        "game": (*GAMES,),
+        "begins": (FERRULE_BEGINS, LEATHER_BEGINS),
+    }[key]
+    own = value(key, scene)
+    return [*offered] if own in offered or own is None else [own, *offered]
+
+
+def with_value(scene: Scene, key: str, new: Any) -> Scene:
+    """The scene with a knob at another value; ValueError if no such scene can be made."""
+    if key == "ferrule":
+        return _with_ferrule(scene, new)
+    if key == "bore":
+        depth = min(NEW_DEPTH, deepest_bore(scene.shaft))
+        return varied(scene, {"bore depth": 0.0} if new == NONE else {"bore depth": depth, "bore width": NEW_BORE})
+    if key == "game":
+        return _with_game(scene, new)
+    if key == "begins":
+        height = f"leather {PLACES['tip_height'].value(scene):.9g} m"
+        return replace(
+            scene, cue=without_leather(fitted(scene.shaft, begins=height if new == LEATHER_BEGINS else "ferrule"))
+        )
+    if key == "ball_diameter":
+        return varied(scene, {"ball.radius": new / 2})
+    return varied(scene, {{"ball_mass": "ball.mass"}.get(key, key): new})
+
+
+def _with_ferrule(scene: Scene, name: str) -> Scene:
+    """The scene with a ferrule of a material, a new one on a tenon; or with wood instead of it."""
+    layout = Layout.of(scene.shaft)
+    if name == NONE or not layout.ferrule:
+        return fitted(scene, ferrule=name if name == NONE else f"{NEW_FERRULE} {name}")
+    return varied(scene, {"ferrule material": name})
+
+
+def _with_game(scene: Scene, name: str) -> Scene:
+    """The scene with a game's ball, tip and stroke; what acts on the cue stays."""
+    usual = usual_scene(scene.shaft, name)
+    brought = {type(effect) for effect in usual.effects}
+    staying = tuple(effect for effect in scene.effects if not effect.at_tip and type(effect) not in brought)
+    return replace(usual, effects=(*usual.effects, *staying))
+
+
+def written(key: str, shown: float, scene: Scene) -> str:
+    """A number with its unit, to the digits of a slider's step: "12.40 mm"."""
+    known = range_of(key, scene)
+    decimals = len(f"{known.step:g}".partition(".")[2])
+    return f"{known.scale * shown:.{decimals}f} {known.unit}".rstrip()
+
+
+def read(key: str, text: str, scene: Scene) -> float:
+    """The SI number of a typed text such as "11,8", "1/4 in", "15 oz"; ValueError in one line."""
+    unit = range_of(key, scene).unit
+    si = SI.get(unit, unit)
+    bare = text.strip().replace(",", ".").replace("−", "-")
+    unitless = re.fullmatch(r"[-+]?[\d./\s]+", bare) is not None
+    if len(text) > LONGEST_TEXT or not bare:
+        raise ValueError(f"must be a number of at most {LONGEST_TEXT} characters")
+    if key == "offset" and not unitless:
+        return _within(key, Quantity("m").read(bare) / scalar("Ball.radius", scene.ball.radius), text, scene)
+    if not si:
+        return _within(key, Quantity("").read(_float(bare)), text, scene)
+    return _within(key, Quantity(si).read(f"{bare} {unit}" if unitless else bare), text, scene)
+
+
+def _float(text: str) -> Any:
+    """A bare number; the text itself if it is none."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def limits(key: str, scene: Scene) -> tuple[float, float, str]:
+    """The least and the most that may be typed, SI, and what sets it, which follows the cue."""
+    known, cue = range_of(key, scene), scene.shaft
+    least, most, why = known.least / known.scale, known.most / known.scale, ""
+    if key == "bore_width" and (bore := Layout.of(cue).bore):
+        narrow = min(min(cue.segments[i].tip_diameter, cue.segments[i].butt_diameter) for i in bore)
+        most, why = narrow - 2 * LEAST_WALL, f"leaves a wall of {1e3 * LEAST_WALL:g} mm in {1e3 * narrow:.2f} mm"
+    elif key == "bore_depth":
+        most, why = deepest_bore(cue), f"reaches the end, from {1e3 * bore_mouth(cue):.0f} mm behind the tip on"
+    elif key == "dome":
+        least, why = max(least, scene.tip_diameter / 2), f"fits a {1e3 * scene.tip_diameter:.2f} mm tip"
+    return least, most, why
+
+
+def _within(key: str, new: float, text: str, scene: Scene) -> float:
+    least, most, why = limits(key, scene)
+    if math.isnan(new) or not least * (1 - 1e-9) <= new <= most * (1 + 1e-9):
+        low = not new > least
+        end = written(key, least if low else most, scene)
+        reason = f" {why}" if why else " can be typed"
+        raise ValueError(
+            f"{text.strip()} is too {'small' if low else 'large'}: at {'least' if low else 'most'} {end}{reason}."
+        )
+    return new
+
+
+class Turns(Protocol):
+    """What a knob's row needs of the page."""
+
+    @property
+    def step(self) -> Step:
+        """What is shown: the design, and the other one."""
+
+    def turn(self, key: str, new: Any, text: str = "", *, slid: bool = False) -> None:
+        """Set a knob to a value; ValueError if there is no such design."""
+
+    def go(self, steps: int) -> None:
+        """Undo (-1) or redo (1)."""
+
+
+class KnobRow:
+    """A knob on the page: label, slider or note, field or list, and its error. short: in the list of assumptions."""
+
+    def __init__(self, key: str, page: Turns, *, short: bool = False) -> None:
+        self.key, self.page, self.short = key, page, short
+        self.knob, self.shown = knobs()[key], ""
+        self.slider: Any = None
+        with ui.element("div").classes("knob").props(f'data-knob="{key}"') as self.root:
+            self.label = ui.label().classes("name")
+            self.note = ui.label().classes("note")
+            if self.knob.choice:
+                self.root.classes("pick")
+                self.field: Any = ui.select([], on_change=self._chosen).props("outlined dense options-dense")
+            else:
+                if self.knob.slides and not short:
+                    self.slider = ui.element("input").classes("slide").props("type=range")
+                    self.slider.on("input", self._slid, throttle=0.05, js_handler="(e) => emit(e.target.valueAsNumber)")
+                    self.slider.on("keydown.ctrl.z", lambda: page.go(-1)).on("keydown.ctrl.y", lambda: page.go(1))
+                self.field = ui.input().props("outlined dense autocomplete=off").classes("number")
+                self.field.on("keydown.enter", lambda: self._typed(entered=True)).on("blur", self._typed)
+            self.error = ui.label().classes("error").props("role=alert")
+        self.show()
+
+    def show(self) -> None:
+        """Show the design's value, the other design's, and no error."""
+        design, other = self.page.step.design, self.page.step.other
+        mine = value(self.key, design.scene)
+        self.root.set_visibility(mine is not None)
+        self._fail("")
+        if mine is None:
+            return
+        name = label(self.key, design.scene)
+        self.label.set_text(name)
+        _classes(self.field, "assumed", self.key in design.assumed)
+        self.shown = self._text(design, mine)
+        beside = None if other is None else value(self.key, other.design.scene)
+        if self.knob.choice:
+            self.field.set_options(options(self.key, design.scene), value=mine)
+        else:
+            self.field.set_value(self.shown)
+            if self.key == "shaft_mass":
+                self.field.props(f'placeholder="{"not weighed" if self.short else "weigh it"}"')
+        _named(self.field, name)
+        if self.slider is not None:
+            self._place(name, mine, beside, design.scene)
+        self.note.set_text("" if self.short else self._note(design, mine, beside if other else mine))
+        _classes(self.note, "other", other is not None and beside != mine)
+
+    def _text(self, design: Design, mine: Any) -> str:
+        if self.knob.choice:
+            return str(mine)
+        if self.key == "shaft_mass" and not design.scene.shaft.weighed:
+            return ""
+        return design.typed.get(self.key) or written(self.key, mine, design.scene)
+
+    def _note(self, design: Design, mine: Any, beside: Any) -> str:
+        """What stands below the label: the other design's value, or the weight, or a typed value in mm or g."""
+        own = mine if self.knob.choice else written(self.key, mine, design.scene)
+        if beside != mine:
+            there = beside if beside is None or self.knob.choice else written(self.key, beside, design.scene)
+            return NONE if there is None else str(there)
+        if self.key == "shaft_mass":
+            return f"{'now' if design.scene.shaft.weighed else 'computed'} {own}"
+        return f"= {own}" if self.key in design.typed and self.shown != own else ""
+
+    def _place(self, name: str, mine: float, beside: float | None, scene: Scene) -> None:
+        known = range_of(self.key, scene)
+        least, most, _ = limits(self.key, scene)
+        low, high = max(known.low, known.scale * least), min(known.high, known.scale * most)
+        low, high = (
+            known.step * f(end / known.step + e) for f, end, e in ((math.ceil, low, -1e-6), (math.floor, high, 1e-6))
+        )
+        at = round(known.scale * mine, 9)
+        first, last = (round(end, 9) for end in (min(low, at), max(high, at)))
+        spans = {"low": at, "tick": None if beside is None else known.scale * beside}
+        shares = {name: (end - first) / ((last - first) or 1.0) for name, end in spans.items() if end is not None}
+        style = f"--at: {shares['low']:.4f}; --tick: {shares.get('tick', -1):.4f}"
+        wanted = {
+            "min": first,
+            "max": last,
+            "step": known.step,
+            "value": at,
+            "style": style,
+            "aria-label": f"{name}, slider",
+        }
+        self.slider.props.update(wanted | {"aria-valuetext": written(self.key, mine, scene)})
+        self.slider.update()
+
+    def _set(self, new: Any, text: str = "", *, slid: bool = False) -> None:
+        try:
+            self.page.turn(self.key, new, text, slid=slid)
+        except FAILURES as error:
+            self._fail(one_line(error))
+
+    def _fail(self, words: str) -> None:
+        self.error.set_text(words)
+        self.error.set_visibility(bool(words))
+        _classes(self.field, "wrong", bool(words))
+
+    def _chosen(self, event: Any) -> None:
+        if event.value is not None and event.value != value(self.key, self.page.step.design.scene):
+            self._set(event.value)
+
+    def _slid(self, event: Any) -> None:
+        scene = self.page.step.design.scene
+        mine, known = value(self.key, scene), range_of(self.key, scene)
+        at = event.args
+        if mine is not None and isinstance(at, int | float) and abs(at - known.scale * mine) > 1e-9 * known.step:
+            self._set(float(f"{at / known.scale:.12g}"), slid=True)
+
+    def _typed(self, *_: Any, entered: bool = False) -> None:
+        text, scene = str(self.field.value or "").strip(), self.page.step.design.scene
+        if text == self.shown and not (entered and self.key in self.page.step.design.assumed):
+            self._fail("")
+            return
+        if not text and self.key == "shaft_mass":
+            return
+        try:
+            new = read(self.key, text, scene)
+        except FAILURES as error:
+            self._fail(one_line(error))
+            return
+        unit = range_of(self.key, scene).unit
+        self._set(new, text if any(map(str.isalpha, text)) else f"{text} {unit}".rstrip())
+
+
+def _classes(element: Any, name: str, on: bool) -> None:
+    element.classes(**{"add" if on else "remove": name})
+
+
+def _named(element: Any, name: str) -> None:
+    element.props(f'aria-label="{name}"')

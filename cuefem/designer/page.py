@@ -1,0 +1,500 @@
+"""The page of one browser tab: its header, its first screen, its knobs and its tabs, and how a change gets to them."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from html import escape
+from importlib.resources import files
+from pathlib import PurePosixPath
+from typing import Any
+
+from nicegui import app, background_tasks, events, ui
+
+from cuefem.designer import computation, panels
+from cuefem.designer.computation import computed
+from cuefem.designer.file_editor import FileEditor
+from cuefem.designer.knobs import GROUPS, INPUTS, KnobRow, knobs, label, value, with_value, written
+from cuefem.designer.panels import Known
+from cuefem.designer.state import (
+    FAILURES,
+    LONGEST_NAME,
+    Design,
+    Other,
+    Step,
+    Steps,
+    one_line,
+    read_design,
+    reference_design,
+)
+from cuefem.io.ready import PRESETS, SCALE
+from cuefem.io.toml_text import toml_text
+from cuefem.report.first_screen import Shown, drawings_markup, headline_markup, parts_line, scale_markup, tiles_markup
+from cuefem.report.glossary import definitions, explained
+from cuefem.report.model_error import model_error_record
+from cuefem.report.report_page import page as report_page
+from cuefem.report.strike_table import grip_warning
+from cuefem.report.table import csv_text
+from cuefem.report.templates import chart_script, page_style
+from cuefem.scene import Scene
+from cuefem.solid.own_tip import announcement
+from cuefem.vary import place, varied
+
+LARGEST_FILE = 5_000_000  # bytes
+KINDS = (".toml", ".csv", ".vtk", ".vtu", ".stl", ".ply", ".obj")
+TABS = ("Curves", "Changes", "Numbers", "Check", "File")
+NOTHING, OPENED, NOW, FILE = "nothing", "as it was opened", "as it is now", "a file …"
+OPTIONS = {"opened": OPENED, "now": NOW}
+# What is computed of a design before its tabs, and for each tab.
+FIRST, OF_TAB = ("struck", "numbers", "verdict"), {"Curves": ("curve", "gram"), "Changes": ("changes",)}
+SHARED = ("struck", "numbers", "curve", "gram")  # also computed of the other design
+
+
+class Page:
+    """What a tab shows, and what its controls do."""
+
+    def __init__(self, first: Design) -> None:
+        self.history = Steps(first)
+        self.version = 0  # of the design in work: results of an older one are dropped
+        self.known = Known()
+        self.solid_of: Scene | None = None  # that was computed as a solid
+        self.tab = TABS[0]
+        self.rows: list[KnobRow] = []
+        self.client = ui.context.client
+        ui.add_css(page_style() + files("cuefem.designer").joinpath("page.css").read_text(encoding="utf-8"))
+        ui.add_body_html(f"{definitions()}<script>{chart_script()}</script>")
+        self._header()
+        with ui.element("div").classes("main").props('data-busy="true"') as self.main:
+            with ui.element("aside").classes("card knobs").props("aria-label=Knobs"):
+                self._knobs()
+            with ui.element("section").classes("screen card").props("aria-label=Result") as self.card:
+                self._first_screen()
+            with ui.element("section").classes("card tabs").props("aria-label=Details"):
+                self._tabs()
+        ui.keyboard(self._key, ignore=["input", "select", "textarea"])
+        self.show()
+        ui.timer(0.01, self._begin, once=True)
+
+    @property
+    def step(self) -> Step:
+        """What is shown: the design, and the one that it is compared with."""
+        return self.history.now
+
+    # --- the parts of the page ---------------------------------------------------------------------
+
+    def _header(self) -> None:
+        with ui.element("header").classes("head"):
+            ui.html("<h1>cuefem designer</h1>", sanitize=False).classes("brand")
+            self.name = ui.input(on_change=self._renamed).props(
+                f'borderless dense debounce=400 maxlength={LONGEST_NAME} aria-label="Name of the design"'
+            )
+            self.changed = ui.label().classes("soft setup")
+            with ui.element("div").classes("tools").props('role=toolbar aria-label="File and history"'):
+                _tool("Open", "folder_open", lambda: self._pick("design"))
+                with _tool("Reference cues", "list", lambda: None), ui.menu().props('aria-label="Reference cues"'):
+                    for preset in PRESETS:
+                        ui.menu_item(preset.name, lambda preset=preset: self._reference(preset))
+                _tool("Save", "save_alt", self._save)
+                self.report = _tool("Report", "description", self._report)
+                self.undo = _tool("Undo", "undo", lambda: self.go(-1))
+                self.redo = _tool("Redo", "redo", lambda: self.go(1))
+                ui.link("Guide", "/guide", new_tab=True).classes("guide")
+            self.upload = ui.upload(
+                auto_upload=True,
+                max_file_size=LARGEST_FILE,
+                on_upload=self._sent,
+                on_rejected=lambda: self.say(f"not opened: at most {LARGEST_FILE // 10**6} MB"),
+            ).props(f'accept="{",".join(KINDS)}"')
+            self.upload.classes("unseen")
+            self.purpose = "design"
+        self.banner = ui.label().classes("banner").props("role=alert")
+        self.banner.set_visibility(False)
+
+    def _first_screen(self) -> None:
+        self.progress = ui.element("div").classes("progress").props("aria-hidden=true")
+        with ui.element("div").classes("top"):
+            self.headline = ui.html(sanitize=False).classes("num")
+            with ui.element("div"):
+                with ui.element("div").classes("compare"):
+                    ui.label("Compare with").classes("soft")
+                    self.compare = ui.select([NOTHING], value=NOTHING, on_change=self._compared)
+                    self.compare.props('outlined dense options-dense aria-label="Compare with"')
+                    self.swap = ui.button("Swap", on_click=self._swap).props("outline dense no-caps")
+                self.scale = ui.html(sanitize=False).classes("num")
+        self.tiles = ui.html(sanitize=False).classes("num")
+        self.drawing = ui.html(sanitize=False)
+        with ui.expansion().classes("assumptions") as self.fold:
+            self.assumptions()
+
+    @ui.refreshable_method
+    def assumptions(self) -> None:
+        """What nobody gave: a line each, with the control that changes it."""
+        design = self.step.design
+        self.rows = [row for row in self.rows if not row.short]
+        parts = self._parts()
+        for key in sorted(self._assumed(), key=lambda key: -parts.get(key, 0.0)):
+            with ui.element("div").classes("assumption"):
+                self.rows.append(KnobRow(key, self, short=True))
+                ui.label(f"part of ±: {100 * parts[key]:.0f} %" if key in parts else "not in ±").classes("soft")
+        for note in design.notes:
+            ui.label(note).classes("soft")
+
+    def _assumed(self) -> list[str]:
+        scene = self.step.design.scene
+        return [key for key in knobs() if key in self.step.design.assumed and value(key, scene) is not None]
+
+    def _parts(self) -> dict[str, float]:
+        """By how much each knob's uncertain parameters change squirt, relatively."""
+        inputs = self.known.own.get("verdict", {}).get("inputs", {})
+        parts = {key: sum(inputs.get(name, 0.0) ** 2 for name in INPUTS.get(key, (key,))) ** 0.5 for key in knobs()}
+        return {key: part for key, part in parts.items() if part}
+
+    def _knobs(self) -> None:
+        for i, group in enumerate(GROUPS):
+            with ui.expansion(group, value=i == 0, group="knobs").classes("group") as fold:
+                setattr(self, f"fold_{group}", fold)
+                for key, knob in knobs().items():
+                    if knob.group == group:
+                        self.rows.append(KnobRow(key, self))
+        ui.html('<p class="mark-key soft"><i></i>assumed. Fields take any unit: 1/4 in, 15 oz.</p>', sanitize=False)
+
+    def _tabs(self) -> None:
+        with ui.tabs(on_change=self._opened).props("no-caps align=left") as tabs:
+            for name in TABS:
+                ui.tab(name)
+        with ui.tab_panels(tabs, value=TABS[0], animated=False):
+            with ui.tab_panel("Curves"):
+                self.curves = ui.html(sanitize=False).classes("num")
+            with ui.tab_panel("Changes"):
+                self.changes()
+            with ui.tab_panel("Numbers"):
+                ui.button("Save as .csv", on_click=self._table).props("outline dense no-caps").classes("right")
+                self.numbers = ui.html(sanitize=False).classes("num")
+            with ui.tab_panel("Check"):
+                self.check_button = ui.button("Check against a solid model", on_click=self._check)
+                self.check_button.props("outline dense no-caps").classes("right")
+                self.check = ui.html(sanitize=False).classes("num")
+            with ui.tab_panel("File"):
+                self.file = FileEditor(self._applied)
+
+    @ui.refreshable_method
+    def changes(self) -> None:
+        """The table of changes, each with Try."""
+        panels.changes_panel(self.step, self.known, self._try)
+
+    # --- changes -----------------------------------------------------------------------------------
+
+    def turn(self, key: str, new: Any, text: str = "", *, slid: bool = False) -> None:
+        """Set a knob to a value, typed as a text; ValueError if there is no such design."""
+        when, name = time.monotonic(), key if slid else ""
+        base = self.history.before(name, when)
+        made = base.changed(with_value(base.scene, key, new), {key}, {key: text} if text else {})
+        self.put(Step(made, self.step.other), name, when=when)
+
+    def _try(self, places: Mapping[str, Any]) -> None:
+        design = self.step.design
+        keys = {known.key for name in places if (known := place(name))}
+        self._attempt(lambda: self.put(Step(design.changed(varied(design.scene, places), keys, {}), self.step.other)))
+
+    def _applied(self, read: Design) -> None:
+        design = self.step.design
+        self.put(Step(design.changed(read.scene, knobs(), {}), self.step.other))
+
+    def _attempt(self, work: Callable[[], Any]) -> None:
+        try:
+            work()
+            self.say("")
+        except FAILURES as error:
+            self.say(one_line(error))
+
+    def put(self, step: Step, label: str = "", *, when: float = 0.0) -> None:
+        """Go on to another step, and show it."""
+        self.history.put(step, label, when=when)
+        self.show()
+        self._answer_soon()
+
+    def go(self, steps: int) -> None:
+        """Undo (-1) or redo (1)."""
+        if self.history.go(steps):
+            self.show()
+            self._answer_soon()
+
+    def _key(self, event: events.KeyEventArguments) -> None:
+        key = str(event.key).lower()
+        if event.action.keydown and (event.modifiers.ctrl or event.modifiers.meta) and key in ("z", "y"):
+            self.go(1 if key == "y" or event.modifiers.shift else -1)
+
+    def _renamed(self, event: Any) -> None:
+        name = str(event.value or "").strip()[:LONGEST_NAME]
+        if name and name != self.step.design.name:
+            self.put(Step(replace(self.step.design, name=name), self.step.other), "name", when=time.monotonic())
+
+    # --- files -------------------------------------------------------------------------------------
+
+    def _pick(self, purpose: str) -> None:
+        self.purpose = purpose
+        self.upload.run_method("pickFiles")
+
+    async def _sent(self, event: events.UploadEventArguments) -> None:
+        content, name = await event.file.read(), file_name(event.file.name)
+        self.upload.reset()
+        purpose, self.purpose = self.purpose, "design"
+        try:
+            if len(content) > LARGEST_FILE:
+                raise ValueError(f"a file must be of at most {LARGEST_FILE // 10**6} MB")
+            design = await computed(read_design, name, content)
+        except FAILURES as error:
+            self.say(one_line(error))
+            return
+        self.say("")
+        if purpose == "design":
+            self._work_on(design)
+        else:
+            self.put(Step(self.step.design, Other("file", design)))
+
+    def _work_on(self, design: Design) -> None:
+        self.history.opened = design
+        self.put(Step(design, self.step.other))
+
+    def _reference(self, preset: Any) -> None:
+        self._attempt(lambda: self._work_on(reference_design(preset)))
+
+    def _save(self) -> None:
+        design = self.step.design
+        ui.download.content(toml_text(design.scene), f"{_stem(design.name)}.toml")
+
+    async def _report(self) -> None:
+        """Write the report of the design, beside the other one."""
+        design, other = self.step.design, self.step.other
+        self.report.disable()
+        notes = [f"{label(key, design.scene)} {_assumption(key, design.scene)}" for key in self._assumed()]
+        beside = None if other is None else panels.named(self.step)[1]
+        try:
+            text = await computed(self._page, design, [*notes, *design.notes], beside)
+            ui.download.content(text, f"{_stem(design.name)}.html")
+        except FAILURES as error:
+            self.say(one_line(error))
+        finally:
+            self.report.enable()
+
+    @staticmethod
+    def _page(design: Design, notes: list[str], beside: tuple[str, Design] | None) -> str:
+        other = None if beside is None else (beside[0], computation.struck_like(design.scene, beside[1].scene))
+        return report_page(design.name, design.scene, notes=notes, other=other)
+
+    def _table(self) -> None:
+        made = panels.numbers_sheet(self.step, self.known)
+        if made is not None:
+            ui.download.content("\ufeff" + csv_text(made.head, made.rows), f"{_stem(self.step.design.name)}.csv")
+
+    # --- comparing ---------------------------------------------------------------------------------
+
+    def _compared(self, event: Any) -> None:
+        name, step = event.value, self.step
+        if name == _other_name(step.other):
+            return
+        if name == FILE:
+            self._pick("other")
+            self.show()
+        elif name == NOTHING:
+            self.put(Step(step.design))
+        elif name in SCALE:
+            preset = next(preset for preset in PRESETS if preset.file == SCALE[name])
+            self.put(Step(step.design, Other("reference", replace(reference_design(preset), name=name))))
+        else:
+            kind = next(kind for kind, words in OPTIONS.items() if words == name)
+            self.put(Step(step.design, Other(kind, self.history.opened if kind == "opened" else step.design)))
+
+    def _swap(self) -> None:
+        design, other = self.step
+        if other is not None:
+            self.put(Step(other.design, Other(other.kind if other.kind in OPTIONS else "file", design)))
+
+    # --- what is shown -----------------------------------------------------------------------------
+
+    def say(self, words: str) -> None:
+        """Show a message above the page, or none."""
+        self.banner.set_text(words)
+        self.banner.set_visibility(bool(words))
+
+    def show(self) -> None:
+        """Show the design at once: its knobs, its name, its drawing, its file."""
+        design, other = self.step
+        self.name.set_value(design.name)
+        self.changed.set_text("changed since opened" if design.scene != self.history.opened.scene else "")
+        self.undo.set_enabled(self.history.at > 0)
+        self.redo.set_enabled(self.history.at < len(self.history.steps) - 1)
+        if getattr(self, "listed", None) != (self._assumed(), design.notes):
+            self.listed = (self._assumed(), design.notes)
+            self.assumptions.refresh()
+        for row in self.rows:
+            row.show()
+        chosen = _other_name(other)
+        offered = [NOTHING, *OPTIONS.values(), *SCALE, FILE]
+        self.compare.set_options(offered if chosen in offered else [chosen, *offered], value=chosen)
+        self.swap.set_visibility(other is not None)
+        shown = panels.named(self.step)
+        self.drawing.set_content(drawings_markup({name: each.scene for name, each in shown}))
+        captions = {
+            "Shaft": f"length {1e3 * design.scene.shaft.length:.1f} mm",
+            "Tip": f"{value('leather', design.scene) or 'a spring'}, {_texts(design.scene, 'tip_height', 'dome')}",
+            "Stroke": f"{value('game', design.scene)}, {_texts(design.scene, 'speed', 'offset')}",
+        }
+        for group, words in captions.items():
+            getattr(self, f"fold_{group}").props(f'caption="{words}"')
+        if self.tab == "File":
+            self.file.show(design)
+
+    def _show_known(self) -> None:
+        """Show what is computed so far."""
+        own, other = self._shown(self.known.own, 0), self._shown(self.known.other, 1)
+        if own is None:
+            return
+        warning = grip_warning(self.known.own["struck"].grip) or ""
+        difference = self.known.difference
+        self.headline.set_content(explained(headline_markup(own, other, difference, warning)))
+        self.scale.set_content(scale_markup(own, other))
+        self.tiles.set_content(tiles_markup(own, other))
+        count = len(self._assumed()) + len(self.step.design.notes)
+        words = f"{count} assumption{'s' if count != 1 else ''}"
+        self.fold.props(f'label="{words}" caption="{parts_line(own.verdict) if own.verdict else ""}"')
+        self._show_tab()
+
+    def _shown(self, side: Mapping[str, Any], i: int) -> Shown | None:
+        if "struck" not in side:
+            return None
+        name, design = panels.named(self.step)[i]
+        numbers = side.get("numbers") or computation.first_numbers(design.scene if i == 0 else self._beside())
+        return Shown(name, design.scene, numbers, side.get("verdict"))
+
+    def _beside(self) -> Scene:
+        assert self.step.other is not None
+        return computation.struck_like(self.step.design.scene, self.step.other.design.scene)
+
+    def _show_tab(self) -> None:
+        if self.tab == "Curves":
+            self.curves.set_content(panels.curves_markup(self.step, self.known))
+        elif self.tab == "Changes":
+            self.changes.refresh()
+        elif self.tab == "Numbers":
+            self.numbers.set_content(panels.sheets_markup([panels.numbers_sheet(self.step, self.known)]))
+        elif self.tab == "Check":
+            self.check.set_content(panels.sheets_markup(panels.check_sheet(self.step, self.known)))
+
+    def _opened(self, event: Any) -> None:
+        self.tab = str(event.value)
+        if self.tab == "File":
+            self.file.show(self.step.design)
+            self.file.named()
+        else:
+            self._answer_soon()
+
+    # --- results -----------------------------------------------------------------------------------
+
+    async def _begin(self) -> None:
+        """Take up what this tab had before a reload, and answer."""
+        await self.client.connected(timeout=60.0)
+        kept = app.storage.tab.get("history")
+        if isinstance(kept, Steps):
+            self.history = kept
+            self.show()
+        app.storage.tab["history"] = self.history
+        self._answer_soon()
+
+    def _answer_soon(self) -> None:
+        self.version += 1
+        self.main.props('data-busy="true"')
+        self.card.classes(add="stale")
+        background_tasks.create(self._answer(self.version), name="answer")
+
+    async def _answer(self, version: int) -> None:
+        """Compute what is shown, the first numbers first; end when the design is another one."""
+        step, known = self.step, Known()
+        other = None if step.other is None else self._beside()
+        scenes = [(step.design.scene, known.own), *([] if other is None else [(other, known.other)])]
+        waits = not all(scene.tip_at_hand for scene, _ in scenes)
+        with self.client:
+            if waits:
+                self.say(announcement())
+            try:
+                for name in (*FIRST, *OF_TAB.get(self.tab, ())):
+                    for scene, side in scenes:
+                        if side is known.own or name in SHARED:
+                            side[name] = await computed(getattr(computation, name), scene)
+                            if version != self.version:
+                                return
+                    if name == "verdict" and other is not None:
+                        same = step.other is not None and step.other.kind in OPTIONS
+                        known.difference = await computed(computation.comparison, step.design.scene, other, same)
+                        if version != self.version:
+                            return
+                    self._take(known)
+                if waits:
+                    self.say("")
+            except FAILURES as error:
+                if version == self.version:
+                    self.say(f"{one_line(error)}. The numbers are those of the design before.")
+            finally:
+                if version == self.version:
+                    self.main.props('data-busy="false"')
+
+    def _take(self, known: Known) -> None:
+        """Show results; the card is no longer stale once the numbers are this design's."""
+        first = "verdict" not in self.known.own
+        solid = self.known.own.get("solid") if self.solid_of == self.step.design.scene else None
+        self.known = Known(dict(known.own), dict(known.other), known.difference and known.difference.get("squirt"))
+        if solid is not None:
+            self.known.own["solid"] = solid
+        if "numbers" in known.own:
+            self.card.classes(remove="stale")
+        self._show_known()
+        if first and "verdict" in known.own:
+            self.assumptions.refresh()
+
+    async def _check(self) -> None:
+        """Compute the design as a solid."""
+        scene, version = self.step.design.scene, self.version
+        self.check_button.disable()
+        self.main.props('data-busy="true"')
+        try:
+            solid = await computed(model_error_record, scene)
+            if scene == self.step.design.scene:
+                self.solid_of, self.known.own["solid"] = scene, solid
+                self._show_tab()
+        except FAILURES as error:
+            self.say(one_line(error))
+        finally:
+            self.check_button.enable()
+            if version == self.version:
+                self.main.props('data-busy="false"')
+
+
+def file_name(text: Any) -> str:
+    """The name of a file as the browser sent it, without folders; ValueError if no file can have that name."""
+    name = PurePosixPath(str(text or "").replace("\\", "/")).name
+    if name.strip() in ("", ".", "..") or not name.isprintable() or len(name.encode(errors="replace")) > 255:
+        raise ValueError(f"a file must have a name of at most 255 bytes; got {name[:20]!r}")
+    return name
+
+
+def _tool(words: str, icon: str, action: Callable[[], Any]) -> Any:
+    return ui.button(words, icon=icon, on_click=action).props("flat dense no-caps")
+
+
+def _other_name(other: Other | None) -> str:
+    return NOTHING if other is None else OPTIONS.get(other.kind, other.design.name)
+
+
+def _stem(name: str) -> str:
+    """A design's name as the name of a file."""
+    return "".join(c if c.isalnum() or c in " -_." else "_" for c in name).strip(" .") or "design"
+
+
+def _assumption(key: str, scene: Scene) -> str:
+    own = value(key, scene)
+    return str(own) if knobs()[key].choice else written(key, own, scene)
+
+
+def _texts(scene: Scene, *keys: str) -> str:
+    return ", ".join(escape(written(key, own, scene)) for key in keys if (own := value(key, scene)) is not None)

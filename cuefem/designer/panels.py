@@ -1,0 +1,212 @@
+"""The tabs below the result: curves, changes, numbers, check. Each shows what is known, and says what it waits for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from html import escape
+from typing import Any
+
+import numpy as np
+from nicegui import ui
+from scipy.interpolate import PchipInterpolator
+
+from cuefem.contact.outcome import MISSED
+from cuefem.designer.computation import CURVE_OFFSETS
+from cuefem.designer.knobs import knobs, label, value, written
+from cuefem.designer.state import Design, Step
+from cuefem.endmass.definitions import DEFINITIONS
+from cuefem.report.advice_table import advice_sheet
+from cuefem.report.charts import Axis, Curve, Shade, chart
+from cuefem.report.first_screen import difference_words
+from cuefem.report.model_error import model_error_sheet
+from cuefem.report.squirt import offset_charts
+from cuefem.report.strike_table import grip_warning
+from cuefem.report.templates import chart_markup, sheet_markup
+from cuefem.report.unusual import unusual
+from cuefem.results.band import OF_DIFFERENCE
+from cuefem.results.quantities import NONE, RESULTS, signed
+from cuefem.results.records import Record, Sheet
+from cuefem.scene import Scene
+
+FINE = np.linspace(CURVE_OFFSETS[0], CURVE_OFFSETS[-1], 131)
+HALF = 0.5 * (CURVE_OFFSETS[1] - CURVE_OFFSETS[0])
+STYLES = ("c1", "c2")
+LATE = ("late stick", "partial slip", "slides")
+COMPUTING = '<p class="soft">computing …</p>'
+
+
+@dataclass
+class Known:
+    """What is computed of the design in work ("own") and of the other one, by the names of the computation.
+
+    `of` counts the design: results of the one before are shown pale until their successors are there.
+    """
+
+    own: dict[str, Any] = field(default_factory=dict)
+    other: dict[str, Any] = field(default_factory=dict)
+    difference: Record | None = None
+
+
+def named(step: Step) -> list[tuple[str, Design]]:
+    """The designs that are shown, by names that differ."""
+    mine, other = step.design, step.other
+    if other is None:
+        return [(mine.name, mine)]
+    return [
+        (mine.name, mine),
+        (other.design.name if other.design.name != mine.name else f"{mine.name} before", other.design),
+    ]
+
+
+def curves_markup(step: Step, known: Known) -> str:
+    """Squirt and pivot length against the offset, and what a gram adds along the shaft, of one or two designs."""
+    sides = [
+        (name, style, side)
+        for (name, _), style, side in zip(named(step), STYLES, (known.own, known.other), strict=False)
+    ]
+    drawn = [(name, style, side["curve"]) for name, style, side in sides if "curve" in side]
+    if not drawn or "curve" not in known.own:
+        return COMPUTING
+    lines = [(name, style, _smooth(curve["squirt"]), _smooth(curve["pivot_length"])) for name, style, curve in drawn]
+    grips = known.own["curve"]["grip"]
+    offset = float(step.design.scene.stroke.offset)
+    charts = [*offset_charts(lines, FINE.tolist(), offset, height=280, spans=_shades(grips))]
+    grams = [
+        Curve(name, 1e3 * side["gram"][0], side["gram"][1], style) for name, style, side in sides if "gram" in side
+    ]
+    if grams:
+        charts.append(
+            chart(
+                "End mass that one gram adds, g",
+                grams,
+                x=Axis("distance from the tip, mm", 0.0),
+                y=Axis("end mass, g"),
+                height=280,
+            )
+        )
+    figures = "".join(chart_markup(each, f"curve{i}") for i, each in enumerate(charts))
+    note = "Shaded: the tip slips through most of the impact; darker: miscue."
+    missed = [b for b, grip in zip(CURVE_OFFSETS, grips, strict=True) if grip in MISSED]
+    if missed:
+        note = f"{step.design.name}: miscue from b/R {missed[0] - HALF:.2f} on. {note}"
+    return f'<div class="charts">{figures}</div><p class="soft">{escape(note)}</p>'
+
+
+def _smooth(values: Any) -> Any:
+    """A curve at `FINE` offsets through its values at `CURVE_OFFSETS`; nan where those are."""
+    values = np.asarray(values, float)
+    fit = np.flatnonzero(np.isfinite(values))
+    if len(fit) < 2:
+        return np.full(len(FINE), np.nan)
+    return PchipInterpolator(np.array(CURVE_OFFSETS)[fit], values[fit], extrapolate=False)(FINE)
+
+
+def _shades(grips: Sequence[str]) -> list[Shade]:
+    kinds = ["miss" if grip in MISSED else "slip" if grip in LATE else "" for grip in grips]
+    return [
+        Shade(b - HALF, min(b + HALF, CURVE_OFFSETS[-1]), kind)
+        for b, kind in zip(CURVE_OFFSETS, kinds, strict=True)
+        if kind
+    ]
+
+
+def changes_panel(step: Step, known: Known, attempt: Callable[[Mapping[str, Any]], None]) -> None:
+    """What a maker can change, each change with a button that makes it."""
+    record = known.own.get("changes")
+    if record is None:
+        ui.html(COMPUTING, sanitize=False)
+        return
+    made = advice_sheet(record)
+    ui.label(f"Changes to {step.design.name}, each alone").classes("h2")
+    around = ui.element("div").classes("scroll").props('tabindex=0 role=region aria-label="Design changes"')
+    with around, ui.element("table").classes("sheet"):
+        with ui.element("thead"), ui.element("tr"):
+            for i, head in enumerate(made.head):
+                _cell("th", head, text=i in made.texts)
+            _cell("td", "")
+        with ui.element("tbody"):
+            for i, (cells, row) in enumerate(zip(made.rows, record["changes"], strict=True)):
+                with ui.element("tr").classes((made.styles or {}).get(i, "")):
+                    for j, cell in enumerate(cells):
+                        _cell("td", cell, text=j in made.texts)
+                    with ui.element("td"):
+                        button = ui.button("Try", on_click=lambda places=row["set"]: attempt(places))
+                        button.props(f'outline dense no-caps aria-label="Try {row["change"]}"')
+    for note in made.notes:
+        ui.label(note).classes("soft")
+
+
+def _cell(kind: str, content: str, *, text: bool = False) -> None:
+    with ui.element(kind).classes("text" if text else "") as cell:
+        ui.label(content)
+    if kind == "th":
+        cell.props("scope=col")
+
+
+def numbers_sheet(step: Step, known: Known) -> Sheet | None:
+    """Every number of the design and of the other one, and their differences."""
+    if "numbers" not in known.own:
+        return None
+    shown, sides = named(step), [side["numbers"] for side in (known.own, known.other) if "numbers" in side]
+    rows = [
+        _number_row(name, [side.get(name) for side in sides], words, known.difference)
+        for name, words in _names(known.own["numbers"], float(step.design.scene.stroke.offset))
+    ]
+    for k, _ in enumerate(known.own["numbers"]["frequencies"]):
+        rows.append(_number_row("frequency", [side["frequencies"][k] for side in sides], f"natural frequency {k + 1}"))
+    scenes = [design.scene for _, design in shown[: len(sides)]]
+    for key, knob in knobs().items():
+        cells = [_knob_text(key, scene) for scene in scenes]
+        if knob.group and any(cell != NONE for cell in cells):
+            alike = ["same" if cells[0] == cells[-1] else ""] if len(cells) > 1 else []
+            rows.append((label(key, scenes[0]), *cells, *alike))
+    head = ("", *(name for name, _ in shown[: len(sides)]), *(["difference"] if len(sides) > 1 else []))
+    return Sheet(f"Numbers of {step.design.name}", head, tuple(rows))
+
+
+def _names(numbers: Mapping[str, Any], offset: float) -> list[tuple[str, str]]:
+    masses = [(f"end_mass_{name}", f"end mass, {known.label_at(offset)}") for name, known in DEFINITIONS.items()]
+    own = [(name, RESULTS[name].words) for name in numbers if name in RESULTS and name != "frequencies"]
+    return [*own, *masses]
+
+
+def _number_row(name: str, values: Sequence[Any], words: str, difference: Record | None = None) -> tuple[str, ...]:
+    result = RESULTS[name if name in RESULTS else "end_mass"]
+    cells = [result.written(each) for each in values]
+    if len(values) < 2:
+        return (words, *cells)
+    mine, other = values[:2]
+    if name == "squirt" and difference:
+        return (words, *cells, difference_words(difference))
+    part = NONE if not mine or not other else signed(100 * (mine / other - 1), 1, "%")
+    return (words, *cells, part)
+
+
+def _knob_text(key: str, scene: Scene) -> str:
+    own = value(key, scene)
+    return NONE if own is None else own if knobs()[key].choice else written(key, own, scene)
+
+
+def check_sheet(step: Step, known: Known) -> list[Sheet]:
+    """What was checked of the design, and beam beside solid once that is computed."""
+    rows = []
+    if "verdict" in known.own:
+        band = known.own["verdict"]["band"]
+        rows += [
+            ("calculation error of squirt", f"{100 * band['computation']:.1g} %"),
+            ("model error, RMS of published strokes", f"{100 * band['model']:.0f} %"),
+            ("wood and tip, not measured", f"{100 * band['inputs']:.0f} %"),
+            ("a change of squirt, relative uncertainty", f"{100 * OF_DIFFERENCE:.0f} %"),
+        ]
+    if "struck" in known.own:
+        rows.append(("tip contact", grip_warning(known.own["struck"].grip) or "no miscue"))
+    rows += [("unusual", line) for line in unusual(step.design.scene)] or [("unusual values", "none")]
+    first = Sheet(f"Check of {step.design.name}", ("check", "result"), tuple(rows), texts=(0, 1))
+    solid = known.own.get("solid")
+    return [first] if solid is None else [first, model_error_sheet(solid)]
+
+
+def sheets_markup(sheets: Sequence[Sheet | None]) -> str:
+    """Tables as the report has them."""
+    return "".join(COMPUTING if each is None else sheet_markup(each) for each in sheets)

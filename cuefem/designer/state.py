@@ -1,0 +1,199 @@
+"""What a tab works on: a design, the one that it is compared with, and every step before, to undo and redo."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import NamedTuple
+
+from cuefem.cue import Cue
+from cuefem.games import DEFAULT_GAME, usual_scene
+from cuefem.io import load_stroke
+from cuefem.io.profile import DEFAULT_UNIT, SHAPES, read_profile
+from cuefem.io.ready import Preset, opened, ready_cue
+from cuefem.io.shelf import folder
+from cuefem.io.toml import left_out, read_tables
+from cuefem.parts import Layout
+from cuefem.quantity.units import number
+from cuefem.scene import Scene
+from cuefem.vary import varied
+
+TOGETHER = 1.5  # s: moves of one slider that follow each other within it are one step
+MOST_STEPS = 60
+MOST_SEGMENTS = 300  # the natural frequencies and the stiffness of as many take 15 s and 0.6 GB
+LONGEST_NAME = 80
+BUTT = "15 oz"  # of a drawing that names no weight behind it
+FAILURES = (ValueError, RuntimeError, ArithmeticError, MemoryError, OSError)
+# The knobs of what a scene's tables leave to its game; and those that a drawing alone leaves open.
+OF_TABLES = {
+    "ball.mass": ("ball_mass",),
+    "ball.radius": ("ball_diameter",),
+    "tip.restitution": ("restitution",),
+    "tip.friction": ("friction",),
+    "stroke.speed": ("speed",),
+    "stroke.offset": ("offset",),
+    "effects": ("leather", "dome", "tip_height"),
+}
+OF_GAME = ("game", *(key for keys in OF_TABLES.values() for key in keys))
+_CUE = re.compile(r"""^\s*cue\s*=\s*["']([^"'\n]+)["']""", re.MULTILINE)
+
+
+def one_line(error: BaseException) -> str:
+    """An error's message in one line."""
+    return " ".join(str(error).split())
+
+
+@dataclass(frozen=True)
+class Design:
+    """A scene under a name.
+
+    assumed: the knobs whose values neither a file nor a person gave. typed: the texts of values as they were typed,
+    by knob. notes: what was assumed that no knob changes.
+    """
+
+    name: str
+    scene: Scene
+    assumed: frozenset[str] = frozenset()
+    typed: Mapping[str, str] = field(default_factory=dict, hash=False)
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        count = len(self.scene.shaft.segments)  # ValueError for a lumped cue
+        if count > MOST_SEGMENTS:
+            raise ValueError(
+                f"the designer takes a cue of at most {MOST_SEGMENTS} segments; got {count}: draw it with fewer, or "
+                "use cuefem report"
+            )
+
+    def changed(self, scene: Scene, keys: Iterable[str], typed: Mapping[str, str]) -> Design:
+        """Another scene, with the values of some knobs given by a person."""
+        kept = {key: text for key, text in self.typed.items() if key not in keys}
+        weight = frozenset() if scene.shaft.weighed else frozenset({"shaft_mass"})
+        return replace(self, scene=scene, assumed=self.assumed - {*keys} | weight, typed={**kept, **typed})
+
+
+class Other(NamedTuple):
+    """The design to compare with. kind: "reference", "file", "opened" or "now", the last two of the same shaft."""
+
+    kind: str
+    design: Design
+
+
+class Step(NamedTuple):
+    """What one undo brings back."""
+
+    design: Design
+    other: Other | None = None
+
+
+class Steps:
+    """All steps of a tab, and which of them is shown; it stays on the server while the tab is open or reloaded."""
+
+    def __init__(self, first: Design) -> None:
+        self.opened = first
+        self.steps = [Step(first)]
+        self.at = 0
+        self.label, self.when = "", 0.0
+
+    @property
+    def now(self) -> Step:
+        """The step that is shown."""
+        return self.steps[self.at]
+
+    def joins(self, label: str, when: float) -> bool:
+        """Whether a move of the slider ``label`` at a time, s, goes on with the step that is shown."""
+        return bool(label) and label == self.label and when - self.when < TOGETHER and self.at > 0
+
+    def before(self, label: str, when: float) -> Design:
+        """The design that a move of a slider changes: the one before the slide began."""
+        return self.steps[self.at - self.joins(label, when)].design
+
+    def put(self, step: Step, label: str = "", *, when: float = 0.0) -> None:
+        """Go on to another step; steps that were undone are forgotten, and a whole slide is one step."""
+        if step == self.now:
+            return
+        kept = self.steps[: self.at + (not self.joins(label, when))]
+        self.steps = [*kept, step][-MOST_STEPS:]
+        self.at, self.label, self.when = len(self.steps) - 1, label, when
+
+    def go(self, steps: int) -> bool:
+        """Undo (-1) or redo (1); whether there was such a step."""
+        at = self.at + steps
+        if not 0 <= at < len(self.steps):
+            return False
+        self.at, self.label = at, ""
+        return True
+
+
+def design_of_file(path: Path, name: str, scene: Scene, given: Collection[str] = ()) -> Design:
+    """A scene that was read from a file, and what was assumed for it.
+
+    given: names of options that told what the file does not. A shape without a weight behind it gets `BUTT`.
+    """
+    assumed, notes = _assumed(path, given)
+    if "body_mass" in assumed:
+        scene = varied(scene, {"body mass": number(BUTT, "kg")})
+    assumed |= set() if scene.shaft.weighed else {"shaft_mass"}
+    if not Layout.of(scene.shaft).ferrule:
+        assumed -= {"ferrule_length"}
+    return Design(name[:LONGEST_NAME], scene, frozenset(assumed), {}, tuple(notes))
+
+
+def _assumed(path: Path, given: Collection[str]) -> tuple[set[str], list[str]]:
+    """The knobs that a file and its options leave open, and notes on how a shape was read."""
+    tables = read_tables(path) if path.suffix.lower() == ".toml" else {}
+    named = tables.get("cue")
+    if named is not None:
+        keys = {key for left in left_out(tables) for key in OF_TABLES.get(left, ())}
+        own, notes = _assumed(path.parent / named, given) if isinstance(named, str) else (set[str](), [])
+        return keys | (own - {*OF_GAME}), notes
+    keys, notes = {*OF_GAME}, list[str]()
+    if path.suffix.lower() in SHAPES:
+        keys |= {"shaft_material", "body_mass", "begins", "ferrule", "bore"}
+        if path.suffix.lower() == ".csv":
+            profile = read_profile(path, DEFAULT_UNIT, checked=False)
+            keys -= {"shaft_material"} if profile.named else set()
+            keys -= {"ferrule", "bore"} - {*profile.lacking}
+            keys -= {"begins"} if profile.leather else set()
+            notes += profile.notes
+        elif "length_unit" not in given:
+            notes.append(f"lengths in {DEFAULT_UNIT}")
+    options = {"material": "shaft_material", "shaft_mass": "shaft_mass"}
+    return keys - {options.get(name, name) for name in given}, notes
+
+
+def reference_design(preset: Preset) -> Design:
+    """A reference cue."""
+    path = folder() / preset.file
+    return design_of_file(path, path.stem, opened(preset)[0])
+
+
+def read_design(name: str, content: bytes, game: str = DEFAULT_GAME) -> Design:
+    """The design of a file that was sent; ValueError in one line.
+
+    A cue alone gets the usual stroke of a game. A scene that names a reference cue finds it, wherever it lies.
+    """
+    with TemporaryDirectory() as place:
+        path = Path(place) / name
+        try:
+            path.write_bytes(_with_reference_cue(name, content, Path(place)))
+            thing = load_stroke(path)
+            scene = usual_scene(thing, game) if isinstance(thing, Cue) else thing
+            return design_of_file(path, path.stem, scene)
+        except (*FAILURES, RecursionError) as error:
+            raise ValueError(one_line(error).replace(f"{place}/", "")) from None
+
+
+def _with_reference_cue(name: str, content: bytes, beside: Path) -> bytes:
+    """The content of a scene, with the reference cue that it names beside it."""
+    text = content.decode(errors="replace") if name.lower().endswith(".toml") else ""
+    match = _CUE.search(text)
+    found = ready_cue(match[1]) if match and "meshes/" in match[1] else None
+    if match is None or found is None:
+        return content
+    file = f"reference_{Path(match[1]).name}"
+    (beside / file).write_bytes(found)
+    return text.replace(match[0], f'cue = "{file}"', 1).encode()

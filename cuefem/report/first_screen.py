@@ -1,0 +1,154 @@
+"""The first screen of a design: what `cuefem report` pages begin with, and what the designer shows all the time.
+
+Each part is small values for a macro of first_screen.html.j2: the headline, the scale, four numbers, the drawings.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from cuefem.report.drawings import FRONT, materials_of, seen, style_of, true_drawing
+from cuefem.report.templates import environment
+from cuefem.report.verdict_table import ScaleRow, scale, squirt_words
+from cuefem.results.quantities import NONE, TRADE, with_unit
+from cuefem.results.records import Record
+from cuefem.scene import Scene
+
+# The four numbers: label, SI unit, decimals, and what each is.
+TILES = {
+    "off_line": ("Off line", "m", 0, "/m", "How far the ball leaves the line of aim after one metre"),
+    "end_mass_squirt": ("End mass", "kg", 2, "", "The mass at the tip that would make this much squirt"),
+    "pivot_length": ("Pivot length", "m", 0, "", "Turn the cue about this point behind the tip, and squirt cancels"),
+    "tip_stiffness": ("Stiffness", "N/m", 0, "", "Static, at the tip, joint end clamped"),
+}
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What is known of a design: its name, its scene and numbers in SI; its verdict if that is computed."""
+
+    name: str
+    scene: Scene
+    numbers: Mapping[str, float | None]
+    verdict: Record | None = None
+
+
+class Tile(NamedTuple):
+    """A number of the first screen, and its difference from the other design's."""
+
+    key: str
+    label: str
+    hint: str
+    text: str
+    value: float | None
+    more: str
+
+
+def headline_markup(own: Shown, other: Shown | None = None, difference: Record | None = None, grip: str = "") -> str:
+    """Squirt with its uncertainty, and how much less or more that is than another's.
+
+    difference: of `cuefem.results.comparison`, from the other design. grip: a warning about the contact.
+    """
+    verdict = own.verdict
+    text, error = (
+        squirt_words(verdict) if verdict else (with_unit(abs(own.numbers["squirt"] or 0.0), "rad", decimals=2), "")
+    )
+    lines = [] if other is None else [_told(difference, other.name)]
+    if verdict and verdict["among"]:
+        first = next(iter(verdict["among"]))
+        among = verdict["among"][first]
+        told = {"difference": among["difference"], "error": among["difference_error"]}
+        lines.append(_told(told | {"distinct": abs(told["difference"]) > told["error"]}, first))
+    return _macro("headline", own.numbers["squirt"], text, error, f"{own.scene.stroke.offset:.2f}", lines, grip)
+
+
+def difference_words(difference: Record) -> str:
+    """A relative difference with its uncertainty: "−15 ± 8 %"."""
+    return f"{100 * difference['difference']:+.0f} ± {100 * difference['error']:.0f} %".replace("-", "−")
+
+
+def _told(difference: Record | None, other: str) -> tuple[str, str, str]:
+    """A relative difference with its uncertainty: "15 ± 8 %", "less squirt than", and of what it is."""
+    if difference is None:
+        return "", "compared with", other
+    if not difference["distinct"]:
+        return "", "cannot be told from", other
+    size, error = 100 * abs(difference["difference"]), 100 * difference["error"]
+    return f"{size:.0f} ± {error:.0f} %", f"{'less' if difference['difference'] < 0 else 'more'} squirt than", other
+
+
+def scale_rows(own: Shown, other: Shown | None = None) -> list[ScaleRow]:
+    """The reference cues, this design with its uncertainty, and the other one, by their squirt."""
+    if not own.verdict:
+        return []
+    rows = scale(own.verdict, own.name)
+    squirt = None if other is None else other.numbers["squirt"]
+    if other is None or squirt is None or other.name in own.verdict["among"]:
+        return [
+            row._replace(beside="other") if other and row.name == other.name else row._replace(beside="")
+            for row in rows
+        ]
+    mine = next(row for row in rows if row.own)
+    most = abs(own.verdict["squirt"]) / mine.at if mine.at else 1.0
+    at = min(100.0, abs(squirt) / most)
+    decimals = len(mine.text.rstrip("°").partition(".")[2])
+    added = ScaleRow(other.name, with_unit(abs(squirt), "rad", decimals=decimals), "other", False, at, at, at)
+    return sorted([*(row._replace(beside="") for row in rows), added], key=lambda row: row.at)
+
+
+def tiles(own: Shown, other: Shown | None = None) -> list[Tile]:
+    """Four numbers, each with its difference from the other design's."""
+    made = []
+    for key, (label, unit, decimals, per, hint) in TILES.items():
+        factor, name = TRADE.get(unit, (1.0, unit))
+        value, beside = _value(own, key), None if other is None else _value(other, key)
+        text = NONE if value is None else f"{factor * value:.{decimals}f} {name}{per}"
+        more = "" if value is None or beside is None else f"{factor * (value - beside):+.{decimals}f}".replace("-", "−")
+        made.append(Tile(key, label, hint, text, value, "±0" if more and not float(more.replace("−", "-")) else more))
+    return made
+
+
+def _value(design: Shown, key: str) -> float | None:
+    squirt = design.numbers.get("squirt")
+    value = (None if squirt is None else math.tan(abs(squirt))) if key == "off_line" else design.numbers.get(key)
+    return value if value is not None and math.isfinite(value) else None
+
+
+def scale_markup(own: Shown, other: Shown | None = None) -> str:
+    """The scale as markup."""
+    return _macro("scale", scale_rows(own, other), other)
+
+
+def tiles_markup(own: Shown, other: Shown | None = None) -> str:
+    """The four numbers as markup."""
+    return _macro("tiles", tiles(own, other))
+
+
+def drawings_markup(designs: Mapping[str, Scene]) -> str:
+    """The fronts of one or two designs true to scale, and the whole of the first."""
+    first = next(iter(designs.values()))
+    reach = min([FRONT, *(scene.shaft.length for scene in designs.values())])
+    fronts = [
+        (name, true_drawing(scene, reach, f"Tip end of {name}, first {1e3 * reach:.0f} mm, true to scale"))
+        for name, scene in designs.items()
+    ]
+    whole = true_drawing(first, first.shaft.length, "Whole drawing, true to scale")
+    names = dict.fromkeys(name for scene in designs.values() for name in materials_of(seen(scene)))
+    hollow = any((s.tip_bore or s.butt_bore) and not s.core for scene in designs.values() for s in scene.shaft.segments)
+    legend = [(name, style_of(name)) for name in names] + ([("bore", "hollow")] if hollow else [])
+    return _macro("drawings", fronts, whole, legend)
+
+
+def parts_line(verdict: Record) -> str:
+    """What the uncertainty is made of: "± 0.35° (1σ) is 24 %: model 16 %, wood and tip 18 %"."""
+    _, error = squirt_words(verdict)
+    band = verdict["band"]
+    model, inputs = f"{100 * band['model']:.0f} %", f"{100 * band['inputs']:.0f} %"
+    return f"± {error} (1σ) is {100 * band['whole']:.0f} %: model {model}, wood and tip {inputs}"
+
+
+def _macro(name: str, *values: object) -> str:
+    return str(getattr(environment().get_template("first_screen.html.j2").module, name)(*values))
