@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from nicegui import run
 
+import cuefem.report
 from cuefem.beam.waves import mesh_for
 from cuefem.contact.outcome import grip_of
 from cuefem.contact.strike import strike_modes
@@ -35,7 +36,7 @@ from cuefem.tip_modes import Solved, default_resolution
 
 LONGEST_WORK = 60.0  # s that a result may take: no cue that people play with needs a tenth of it
 KEPT = 12  # designs whose results are kept, to undo and compare at once
-CURVE_OFFSETS = tuple(round(0.05 * i, 2) for i in range(1, 15))  # b/R
+CURVE_OFFSETS = tuple(round(0.04 * i, 2) for i in range(1, 18))  # b/R
 MOST_GRAM_MODES = 45  # what a gram adds takes all modes of the mesh: cubic
 GRAM_REACH = 0.3  # m from the tip
 
@@ -120,6 +121,11 @@ def gram(scene: Scene) -> tuple[Array, Array]:
 def changes(scene: Scene) -> Record:
     """What a maker can change, and what each change does."""
     return design_changes(scene, solved=struck(scene).solved)
+
+
+def solid(scene: Scene) -> Record:
+    """The scene by beam and by solid."""
+    return cuefem.report.model_error_record(scene)  # loads scikit-fem, which the page's start need not
 
 
 async def computed(work: Callable[..., Any], *arguments: Any) -> Any:

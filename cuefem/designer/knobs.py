@@ -9,11 +9,12 @@ from typing import Any, NamedTuple, Protocol
 
 from nicegui import ui
 
+from cuefem.cue import Cue, Segment
 from cuefem.designer.state import FAILURES, Design, Step, one_line
 from cuefem.games import GAMES, usual_scene, without_leather
-from cuefem.io.fittings import fitted
+from cuefem.io.fittings import TENON, fitted
 from cuefem.materials import LEATHERS, material_name, table_name
-from cuefem.parts import Layout, bore_mouth, deepest_bore, taper_position
+from cuefem.parts import Layout, bore_mouth, deepest_bore, halves, taper_position
 from cuefem.quantity.fields import Quantity, scalar
 from cuefem.scene import Scene
 from cuefem.vary import PLACES, Range, varied
@@ -127,6 +128,43 @@ def options(key: str, scene: Scene) -> list[str]:
 
 def with_value(scene: Scene, key: str, new: Any) -> Scene:
     """The scene with a knob at another value; ValueError if no such scene can be made."""
+    made = _with_value(scene, key, new)
+    if key.startswith(("ferrule", "bore")):  # which cut segments, and would cut them anew with every move
+        made = replace(made, cue=_joined(made.shaft))
+    return made
+
+
+def _joined(cue: Cue) -> Cue:
+    """The cue with one segment instead of two that are one cone of one material."""
+    segments = list(cue.segments[:1])
+    for piece in cue.segments[1:]:
+        last = segments[-1]
+        whole = replace(
+            piece, length=last.length + piece.length, tip_diameter=last.tip_diameter, tip_bore=last.tip_bore
+        )
+        front, back = halves(whole, last.length / length)
+        ends = zip(_sizes(front) + _sizes(back), _sizes(last) + _sizes(piece), strict=True)
+        alike = (last.material, last.core, last.kappa) == (piece.material, piece.core, piece.kappa)
+        if alike and all(math.isclose(a, b, rel_tol=1e-9, abs_tol=1e-12) for a, b in ends):
+            segments[-1] = whole
+        else:
+            segments.append(piece)
+    return replace(cue, segments=tuple(segments))
+
+
+def _sizes(piece: Segment) -> tuple[float, ...]:
+    return piece.tip_diameter, piece.butt_diameter, piece.tip_bore, piece.butt_bore
+
+
+def notes_of(scene: Scene) -> list[str]:
+    """What is assumed of a drawing as it is now that no knob changes."""
+    ferrule = [scene.shaft.segments[i] for i in Layout.of(scene.shaft).ferrule]
+    if ferrule and all(s.core and math.isclose(s.tip_bore, TENON * s.tip_diameter, rel_tol=1e-4) for s in ferrule):
+        return [f"the ferrule sits on a tenon of the shaft's wood, {TENON:g} of its width (change it in File)"]
+    return []
+
+
+def _with_value(scene: Scene, key: str, new: Any) -> Scene:
     if key == "ferrule":
         return _with_ferrule(scene, new)
     if key == "bore":
@@ -231,7 +269,10 @@ class Turns(Protocol):
 
 
 class KnobRow:
-    """A knob on the page: label, slider or note, field or list, and its error. short: in the list of assumptions."""
+    """A knob on the page: label, slider or note, field or list, and its error. short: in the list of assumptions.
+
+    It is empty until `show` is called.
+    """
 
     def __init__(self, key: str, page: Turns, *, short: bool = False) -> None:
         self.key, self.page, self.short = key, page, short
@@ -251,7 +292,6 @@ class KnobRow:
                 self.field = ui.input().props("outlined dense autocomplete=off").classes("number")
                 self.field.on("keydown.enter", lambda: self._typed(entered=True)).on("blur", self._typed)
             self.error = ui.label().classes("error").props("role=alert")
-        self.show()
 
     def show(self) -> None:
         """Show the design's value, the other design's, and no error."""
@@ -267,7 +307,10 @@ class KnobRow:
         self.shown = self._text(design, mine)
         beside = None if other is None else value(self.key, other.design.scene)
         if self.knob.choice:
-            self.field.set_options(options(self.key, design.scene), value=mine)
+            offered = options(self.key, design.scene)
+            if self.field.options != offered:
+                self.field.set_options(offered, value=mine)
+            self.field.set_value(mine)
         else:
             self.field.set_value(self.shown)
             if self.key == "shaft_mass":
@@ -315,8 +358,10 @@ class KnobRow:
             "style": style,
             "aria-label": f"{name}, slider",
         }
-        self.slider.props.update(wanted | {"aria-valuetext": written(self.key, mine, scene)})
-        self.slider.update()
+        wanted["aria-valuetext"] = written(self.key, mine, scene)
+        if any(self.slider.props.get(key) != own for key, own in wanted.items()):
+            self.slider.props.update(wanted)
+            self.slider.update()
 
     def _set(self, new: Any, text: str = "", *, slid: bool = False) -> None:
         try:

@@ -15,7 +15,7 @@ from nicegui import app, background_tasks, events, ui
 from cuefem.designer import computation, panels
 from cuefem.designer.computation import computed
 from cuefem.designer.file_editor import FileEditor
-from cuefem.designer.knobs import GROUPS, INPUTS, KnobRow, knobs, label, value, with_value, written
+from cuefem.designer.knobs import GROUPS, INPUTS, KnobRow, knobs, label, notes_of, value, with_value, written
 from cuefem.designer.panels import Known
 from cuefem.designer.state import (
     FAILURES,
@@ -32,7 +32,6 @@ from cuefem.io.ready import PRESETS, SCALE
 from cuefem.io.toml_text import toml_text
 from cuefem.report.first_screen import Shown, drawings_markup, headline_markup, parts_line, scale_markup, tiles_markup
 from cuefem.report.glossary import definitions, explained
-from cuefem.report.model_error import model_error_record
 from cuefem.report.report_page import page as report_page
 from cuefem.report.strike_table import grip_warning
 from cuefem.report.table import csv_text
@@ -56,6 +55,7 @@ class Page:
 
     def __init__(self, first: Design) -> None:
         self.history = Steps(first)
+        self.listed = (self._assumed(), self._notes())  # the assumptions that are on the page
         self.version = 0  # of the design in work: results of an older one are dropped
         self.known = Known()
         self.solid_of: Scene | None = None  # that was computed as a solid
@@ -124,25 +124,30 @@ class Page:
                 self.scale = ui.html(sanitize=False).classes("num")
         self.tiles = ui.html(sanitize=False).classes("num")
         self.drawing = ui.html(sanitize=False)
-        with ui.expansion().classes("assumptions") as self.fold:
+        with ui.expansion(on_value_change=lambda: self.assumptions.refresh()).classes("assumptions") as self.fold:
             self.assumptions()
 
     @ui.refreshable_method
     def assumptions(self) -> None:
         """What nobody gave: a line each, with the control that changes it."""
-        design = self.step.design
         self.rows = [row for row in self.rows if not row.short]
+        if not self.fold.value:
+            return
         parts = self._parts()
         for key in sorted(self._assumed(), key=lambda key: -parts.get(key, 0.0)):
             with ui.element("div").classes("assumption"):
                 self.rows.append(KnobRow(key, self, short=True))
+                self.rows[-1].show()
                 ui.label(f"part of ±: {100 * parts[key]:.0f} %" if key in parts else "not in ±").classes("soft")
-        for note in design.notes:
+        for note in self._notes():
             ui.label(note).classes("soft")
 
     def _assumed(self) -> list[str]:
         scene = self.step.design.scene
         return [key for key in knobs() if key in self.step.design.assumed and value(key, scene) is not None]
+
+    def _notes(self) -> list[str]:
+        return [*self.step.design.notes, *notes_of(self.step.design.scene)]
 
     def _parts(self) -> dict[str, float]:
         """By how much each knob's uncertain parameters change squirt, relatively."""
@@ -175,8 +180,8 @@ class Page:
                 self.check_button = ui.button("Check against a solid model", on_click=self._check)
                 self.check_button.props("outline dense no-caps").classes("right")
                 self.check = ui.html(sanitize=False).classes("num")
-            with ui.tab_panel("File"):
-                self.file = FileEditor(self._applied)
+            with ui.tab_panel("File") as self.file_panel:
+                self.file: FileEditor | None = None  # made when it is opened: the browser loads its code then
 
     @ui.refreshable_method
     def changes(self) -> None:
@@ -199,7 +204,8 @@ class Page:
 
     def _applied(self, read: Design) -> None:
         design = self.step.design
-        self.put(Step(design.changed(read.scene, knobs(), {}), self.step.other))
+        new = {key for key in knobs() if value(key, read.scene) != value(key, design.scene)}
+        self.put(Step(design.changed(read.scene, new, {}), self.step.other))
 
     def _attempt(self, work: Callable[[], Any]) -> None:
         try:
@@ -271,7 +277,7 @@ class Page:
         notes = [f"{label(key, design.scene)} {_assumption(key, design.scene)}" for key in self._assumed()]
         beside = None if other is None else panels.named(self.step)[1]
         try:
-            text = await computed(self._page, design, [*notes, *design.notes], beside)
+            text = await computed(self._page, design, [*notes, *self._notes()], beside)
             ui.download.content(text, f"{_stem(design.name)}.html")
         except FAILURES as error:
             self.say(one_line(error))
@@ -325,14 +331,16 @@ class Page:
         self.changed.set_text("changed since opened" if design.scene != self.history.opened.scene else "")
         self.undo.set_enabled(self.history.at > 0)
         self.redo.set_enabled(self.history.at < len(self.history.steps) - 1)
-        if getattr(self, "listed", None) != (self._assumed(), design.notes):
-            self.listed = (self._assumed(), design.notes)
+        if self.listed != (listed := (self._assumed(), self._notes())):
+            self.listed = listed
             self.assumptions.refresh()
         for row in self.rows:
             row.show()
         chosen = _other_name(other)
         offered = [NOTHING, *OPTIONS.values(), *SCALE, FILE]
-        self.compare.set_options(offered if chosen in offered else [chosen, *offered], value=chosen)
+        offered = offered if chosen in offered else [chosen, *offered]
+        if (self.compare.options, self.compare.value) != (offered, chosen):
+            self.compare.set_options(offered, value=chosen)
         self.swap.set_visibility(other is not None)
         shown = panels.named(self.step)
         self.drawing.set_content(drawings_markup({name: each.scene for name, each in shown}))
@@ -343,7 +351,7 @@ class Page:
         }
         for group, words in captions.items():
             getattr(self, f"fold_{group}").props(f'caption="{words}"')
-        if self.tab == "File":
+        if self.tab == "File" and self.file is not None:
             self.file.show(design)
 
     def _show_known(self) -> None:
@@ -356,7 +364,7 @@ class Page:
         self.headline.set_content(explained(headline_markup(own, other, difference, warning)))
         self.scale.set_content(scale_markup(own, other))
         self.tiles.set_content(tiles_markup(own, other))
-        count = len(self._assumed()) + len(self.step.design.notes)
+        count = len(self._assumed()) + len(self._notes())
         words = f"{count} assumption{'s' if count != 1 else ''}"
         self.fold.props(f'label="{words}" caption="{parts_line(own.verdict) if own.verdict else ""}"')
         self._show_tab()
@@ -385,6 +393,9 @@ class Page:
     def _opened(self, event: Any) -> None:
         self.tab = str(event.value)
         if self.tab == "File":
+            if self.file is None:
+                with self.file_panel:
+                    self.file = FileEditor(self._applied)
             self.file.show(self.step.design)
             self.file.named()
         else:
@@ -417,33 +428,40 @@ class Page:
         with self.client:
             if waits:
                 self.say(announcement())
-            try:
-                for name in (*FIRST, *OF_TAB.get(self.tab, ())):
-                    for scene, side in scenes:
-                        if side is known.own or name in SHARED:
-                            side[name] = await computed(getattr(computation, name), scene)
-                            if version != self.version:
-                                return
-                    if name == "verdict" and other is not None:
-                        same = step.other is not None and step.other.kind in OPTIONS
-                        known.difference = await computed(computation.comparison, step.design.scene, other, same)
+            failures = list[str]()
+            for name in (*FIRST, *OF_TAB.get(self.tab, ())):
+                for scene, side in scenes:
+                    if side is known.own or name in SHARED:
+                        failures += await self._compute(side, name, getattr(computation, name), scene)
                         if version != self.version:
                             return
-                    self._take(known)
-                if waits:
-                    self.say("")
-            except FAILURES as error:
-                if version == self.version:
-                    self.say(f"{one_line(error)}. The numbers are those of the design before.")
-            finally:
-                if version == self.version:
-                    self.main.props('data-busy="false"')
+                if name == "verdict" and other is not None and "struck" in known.other:
+                    same = step.other is not None and step.other.kind in OPTIONS
+                    work = computation.comparison
+                    failures += await self._compute(known.own, "comparison", work, step.design.scene, other, same)
+                    if version != self.version:
+                        return
+                if "struck" not in known.own:
+                    failures = [f"{failures[0]}. The numbers are those of the design before."]
+                    break
+                self._take(known)
+            self.say("; ".join(dict.fromkeys(failures)))
+            self.main.props('data-busy="false"')
+
+    @staticmethod
+    async def _compute(side: dict[str, Any], name: str, work: Callable[..., Any], *arguments: Any) -> list[str]:
+        """Compute one result of a side; what went wrong with it, if anything did."""
+        try:
+            side[name] = await computed(work, *arguments)
+        except FAILURES as error:
+            return [one_line(error)]
+        return []
 
     def _take(self, known: Known) -> None:
         """Show results; the card is no longer stale once the numbers are this design's."""
         first = "verdict" not in self.known.own
         solid = self.known.own.get("solid") if self.solid_of == self.step.design.scene else None
-        self.known = Known(dict(known.own), dict(known.other), known.difference and known.difference.get("squirt"))
+        self.known = Known(dict(known.own), dict(known.other), known.own.get("comparison", {}).get("squirt"))
         if solid is not None:
             self.known.own["solid"] = solid
         if "numbers" in known.own:
@@ -458,7 +476,7 @@ class Page:
         self.check_button.disable()
         self.main.props('data-busy="true"')
         try:
-            solid = await computed(model_error_record, scene)
+            solid = await computed(computation.solid, scene)
             if scene == self.step.design.scene:
                 self.solid_of, self.known.own["solid"] = scene, solid
                 self._show_tab()

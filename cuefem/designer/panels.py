@@ -7,10 +7,9 @@ from dataclasses import dataclass, field
 from html import escape
 from typing import Any
 
-import numpy as np
 from nicegui import ui
-from scipy.interpolate import PchipInterpolator
 
+import cuefem.report
 from cuefem.contact.outcome import MISSED
 from cuefem.designer.computation import CURVE_OFFSETS
 from cuefem.designer.knobs import knobs, label, value, written
@@ -19,7 +18,6 @@ from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.report.advice_table import advice_sheet
 from cuefem.report.charts import Axis, Curve, Shade, chart
 from cuefem.report.first_screen import difference_words
-from cuefem.report.model_error import model_error_sheet
 from cuefem.report.squirt import offset_charts
 from cuefem.report.strike_table import grip_warning
 from cuefem.report.templates import chart_markup, sheet_markup
@@ -29,7 +27,6 @@ from cuefem.results.quantities import NONE, RESULTS, signed
 from cuefem.results.records import Record, Sheet
 from cuefem.scene import Scene
 
-FINE = np.linspace(CURVE_OFFSETS[0], CURVE_OFFSETS[-1], 131)
 HALF = 0.5 * (CURVE_OFFSETS[1] - CURVE_OFFSETS[0])
 STYLES = ("c1", "c2")
 LATE = ("late stick", "partial slip", "slides")
@@ -68,10 +65,10 @@ def curves_markup(step: Step, known: Known) -> str:
     drawn = [(name, style, side["curve"]) for name, style, side in sides if "curve" in side]
     if not drawn or "curve" not in known.own:
         return COMPUTING
-    lines = [(name, style, _smooth(curve["squirt"]), _smooth(curve["pivot_length"])) for name, style, curve in drawn]
+    lines = [(name, style, curve["squirt"], curve["pivot_length"]) for name, style, curve in drawn]
     grips = known.own["curve"]["grip"]
     offset = float(step.design.scene.stroke.offset)
-    charts = [*offset_charts(lines, FINE.tolist(), offset, height=280, spans=_shades(grips))]
+    charts = [*offset_charts(lines, CURVE_OFFSETS, offset, height=280, spans=_shades(grips))]
     grams = [
         Curve(name, 1e3 * side["gram"][0], side["gram"][1], style) for name, style, side in sides if "gram" in side
     ]
@@ -91,15 +88,6 @@ def curves_markup(step: Step, known: Known) -> str:
     if missed:
         note = f"{step.design.name}: miscue from b/R {missed[0] - HALF:.2f} on. {note}"
     return f'<div class="charts">{figures}</div><p class="soft">{escape(note)}</p>'
-
-
-def _smooth(values: Any) -> Any:
-    """A curve at `FINE` offsets through its values at `CURVE_OFFSETS`; nan where those are."""
-    values = np.asarray(values, float)
-    fit = np.flatnonzero(np.isfinite(values))
-    if len(fit) < 2:
-        return np.full(len(FINE), np.nan)
-    return PchipInterpolator(np.array(CURVE_OFFSETS)[fit], values[fit], extrapolate=False)(FINE)
 
 
 def _shades(grips: Sequence[str]) -> list[Shade]:
@@ -204,7 +192,7 @@ def check_sheet(step: Step, known: Known) -> list[Sheet]:
     rows += [("unusual", line) for line in unusual(step.design.scene)] or [("unusual values", "none")]
     first = Sheet(f"Check of {step.design.name}", ("check", "result"), tuple(rows), texts=(0, 1))
     solid = known.own.get("solid")
-    return [first] if solid is None else [first, model_error_sheet(solid)]
+    return [first] if solid is None else [first, cuefem.report.model_error_sheet(solid)]
 
 
 def sheets_markup(sheets: Sequence[Sheet | None]) -> str:

@@ -62,7 +62,8 @@ def headline_markup(own: Shown, other: Shown | None = None, difference: Record |
         among = verdict["among"][first]
         told = {"difference": among["difference"], "error": among["difference_error"]}
         lines.append(_told(told | {"distinct": abs(told["difference"]) > told["error"]}, first))
-    return _macro("headline", own.numbers["squirt"], text, error, f"{own.scene.stroke.offset:.2f}", lines, grip)
+    offset = verdict["offset"] if verdict else own.scene.stroke.offset
+    return _macro("headline", own.numbers["squirt"], text, error, f"{offset:.2f}", lines, grip)
 
 
 def difference_words(difference: Record) -> str:

@@ -22,6 +22,7 @@ from cuefem.io.ready import ready_cues
 from cuefem.quantity.fields import scalar
 from cuefem.report.advice_table import advice_sheet
 from cuefem.report.charts import Axis, Chart, Shade
+from cuefem.report.comparison_table import comparison_sheet
 from cuefem.report.contact import contact_part
 from cuefem.report.drawings import (
     cue_drawing,
@@ -55,7 +56,7 @@ from cuefem.results.asking import listed
 from cuefem.results.closed_forms import alciatore_a31_mass_ratio
 from cuefem.results.comparison import comparison_record
 from cuefem.results.convergence import Level, climb
-from cuefem.results.designs import OneDesign
+from cuefem.results.designs import OneDesign, coupled_curve
 from cuefem.results.quantities import GRIPS, NONE, RESULTS, degrees, grams, scaled, written
 from cuefem.results.records import Record, Sheet, value_rows, values_sheet
 from cuefem.results.verdict import verdict_record
@@ -114,12 +115,15 @@ def page_and_headline(
     """
     records: Record = {}
     rtol = DEFAULT_RTOL if rtol is None else rtol
-    for stage in track(_stages(scene, rtol, None if other is None else other[1])):
+    for stage in track([*_stages(scene, rtol), *(_beside(name, scene, *other) if other else [])]):
         records[stage.name] = stage.work()
     template = environment().get_template("page.html.j2")
     asked = f"{100 * rtol:.3g} %"
     said = {"notes": list(notes), "remarks": list(remarks), "checked": list(trust)}
-    context = _context(scene, records) | {"screen": _screen(name, scene, records, other)}
+    context = _context(scene, records) | {"screen": _screen(name, scene, records, other), "comparison": None}
+    if other is not None:
+        curves = [(name, "c1", records["squirt"]["models"]["coupled, this cue"]), (other[0], "c2", records["other"])]
+        context |= {"comparison": comparison_sheet(records["comparison"]), "by_offset": _of_both(curves, scene)}
     text = with_words(template.render(name=name, asked=asked, **said, **context)) + "\n"
     return text, headline(records["verdict"])
 
@@ -157,7 +161,7 @@ class _ToAccuracy(Solved):
         return self.tip if self.level.at.modes >= LEAST_STUCK else self.tip_modes(least)
 
 
-def _stages(scene: Scene, rtol: float, other: Scene | None = None) -> list[Stage]:
+def _stages(scene: Scene, rtol: float) -> list[Stage]:
     climbed_to: list[tuple[Level, float]] = []
     solved = cache(lambda: _ToAccuracy(scene, level=climbed_to[-1][0]) if climbed_to else Solved(scene))
 
@@ -182,7 +186,14 @@ def _stages(scene: Scene, rtol: float, other: Scene | None = None) -> list[Stage
         Stage("squirt", lambda: squirt_record(scene, PAGE_OFFSETS, solved=solved())),
         Stage("strike", lambda: strike_record(scene, outcome(), solved=solved())),
         Stage("numbers", lambda: listed(OneDesign(solved(), outcome()))),
-        *([] if other is None else [Stage("comparison", lambda: comparison_record({"other": other, "own": scene}))]),
+    ]
+
+
+def _beside(name: str, scene: Scene, other_name: str, other: Scene) -> list[Stage]:
+    """What is computed of another cue beside this one."""
+    return [
+        Stage("comparison", lambda: comparison_record({other_name: other, name: scene})),
+        Stage("other", lambda: coupled_curve(other, PAGE_OFFSETS, Solved(other).tip)),
     ]
 
 
@@ -196,8 +207,8 @@ def _screen(name: str, scene: Scene, records: Record, other: tuple[str, Scene] |
     beside, difference = None, None
     if other is not None:
         compared = records["comparison"]
-        beside = Shown(*other, compared["cues"]["other"])
-        difference = compared["differences"]["own"].get("squirt")
+        beside = Shown(*other, compared["cues"][other[0]])
+        difference = compared["differences"][name].get("squirt")
     scenes = {name: scene} | ({} if other is None else {other[0]: other[1]})
     return {
         "headline": headline_markup(own, beside, difference),
@@ -310,6 +321,11 @@ def _by_offset(record: Record, scene: Scene) -> tuple[Chart, Chart]:
     lines = [(name, _style(name), model["squirt"], model["pivot_length"]) for name, model in record["models"].items()]
     own = scalar("Stroke.offset", scene.stroke.offset)
     return offset_charts(lines, record["offsets"], own, height=300, spans=_slipped(record))
+
+
+def _of_both(curves: Sequence[tuple[str, str, Record]], scene: Scene) -> tuple[Chart, Chart]:
+    lines = [(name, style, curve["squirt"], curve["pivot_length"]) for name, style, curve in curves]
+    return offset_charts(lines, PAGE_OFFSETS, scalar("Stroke.offset", scene.stroke.offset), height=300)
 
 
 def _slipped(record: Record) -> list[Shade]:

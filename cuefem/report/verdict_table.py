@@ -166,22 +166,6 @@ def scale(record: Record, name: str = "yours") -> list[ScaleRow]:
     return sorted([*rows, row(name, mine, error, text, f"± {off}")], key=lambda each: each.at)
 
 
-def verdict_part(record: Record) -> Record:
-    """What a page shows of a verdict."""
-    squirt, error = squirt_words(record)
-    *_, aside = headline(record).partition(": ")
-    return {
-        "squirt": squirt,
-        "error": error,
-        "offset": f"{record['offset']:.4g}, {way_out(record['offset'])}",
-        "head_on": record["head_on"],
-        "aside": aside,
-        "standing": standing(record),
-        "scale": scale(record),
-        "uncertainty": uncertainty_line(record),
-    }
-
-
 def verdict_things(record: Record) -> list[Sheet | str]:
     """The verdict in the terminal."""
     scale_sheet = scale(record)
