@@ -15,12 +15,12 @@ import numpy as np
 
 from cuefem.beam.spectrum import ended
 from cuefem.beam.system import assemble
-from cuefem.beam.tip import TipModes
+from cuefem.beam.tip import TipModes, lumped_tip_modes
 from cuefem.beam.waves import ended_mesh_for, modes_below
-from cuefem.contact.strike import strike, strike_modes
+from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array
 from cuefem.endmass.definitions import end_mass, formula_of
-from cuefem.quantity.fields import Quantity, check_kind, scalar
+from cuefem.quantity.fields import Quantity, check_kind
 from cuefem.scene import MOST_STEPS, Outcome, Resolution, Scene
 from cuefem.tip_modes import MOST, tip_modes_from, turning
 
@@ -81,8 +81,6 @@ def resolve(scene: Scene, rtol: float) -> Outcome:
     """
     check_kind("resolve scene", scene, Scene)
     rtol = RTOL.check("resolve rtol", rtol)
-    if scene.lumped is not None:
-        return _lumped(scene, rtol)
     *_, last = climb(scene, rtol)
     return last.outcome
 
@@ -156,7 +154,7 @@ def end_mass_levels(scene: Scene, formula: Callable[[TipModes, Scene], float]) -
 
 def relative_error(outcome: Outcome, best: Outcome, scene: Scene) -> float:
     """Largest relative difference of squirt, ball speed and spin from those of ``best``, as `resolve` counts them."""
-    least = np.array([LEAST_SQUIRT * abs(scalar("Stroke.offset", scene.stroke.offset)), 0.0, 0.0])
+    least = np.array([LEAST_SQUIRT * abs(float(scene.stroke.offset)), 0.0, 0.0])
     size = np.maximum(np.abs(_judged(best)), least)
     size = np.where(size > 0, size, 1.0)  # head on: squirt and spin are zero at every level
     return float((np.abs(_judged(outcome) - _judged(best)) / size).max())
@@ -166,22 +164,16 @@ def _judged(outcome: Outcome) -> Array:
     return np.array([outcome.squirt, outcome.ball_speed, outcome.spin], float)
 
 
-def _lumped(scene: Scene, rtol: float) -> Outcome:
-    """A lumped cue has no modes: the step alone is halved."""
-    steps, before = FIRST_STEPS, strike(scene, Resolution(1, 1, 1, FIRST_STEPS))
-    while steps <= MOST_STEPS / 2:
-        steps *= 2
-        outcome = strike(scene, Resolution(1, 1, 1, steps))
-        error = relative_error(before, outcome, scene)
-        before = replace(outcome, error=error)
-        if error <= rtol:
-            break
-    return before
-
-
 def _tips(scene: Scene) -> Iterator[tuple[Resolution, TipModes]]:
-    """Resolutions and tip modes of the levels."""
-    cue, steps = scene.shaft, FIRST_STEPS
+    """Resolutions and tip modes of the levels; a lumped cue has no modes, so that the step alone is halved."""
+    steps = FIRST_STEPS
+    if scene.lumped is not None:
+        tip = lumped_tip_modes(scene.lumped)
+        while steps <= MOST_STEPS:
+            yield Resolution(1, 1, 1, steps), tip
+            steps *= 2
+        return
+    cue = scene.shaft
     for count in mode_counts(modes_below(cue, 2 * np.pi * PERIODS / scene.contact_time)):
         elements, orders = ended_mesh_for(cue, count)
         system = assemble(cue, elements=elements, order=orders, effects=scene.cue_effects, count=count)

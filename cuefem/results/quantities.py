@@ -342,8 +342,3 @@ def grams(mass: float | None) -> str:
 def degrees(angle: float | None) -> str:
     """An angle in degrees, to a thousandth."""
     return RESULTS["squirt"].written(angle)
-
-
-def millimetres(length: float | None) -> str:
-    """A length in whole millimetres."""
-    return RESULTS["length"].written(length)
