@@ -49,7 +49,6 @@ _FIELDS = tuple(field.name for field in fields(Scene))
 _INSTEAD = {
     ("Tip", "contact_time"): ("stiffness",),
     ("Tip", "stiffness"): ("contact_time",),
-    ("Striker", "contact_time"): ("stiffness", "modulus", "radius"),
 }
 
 
@@ -175,49 +174,35 @@ def paths(scene: Scene, text: str) -> tuple[Path, ...]:
     ends: list[tuple[Path, Any]] = [((), scene)]
     for step in known.steps() if known else _steps(text):
         ends = [end for path, value in ends for end in _below(path, value, step, text)]
-    if not ends:
-        raise ValueError(f"must name a field of the scene; got {text!r}, of an empty list")
-    return tuple(_checked(scene, path, text) for path, _ in ends)
+    found = tuple(path for path, _ in ends)
+    if not found or any(quantity_at(scene, path) is None and not is_material(scene, path) for path in found):
+        holds = ", which holds " + ", ".join(map(str, _inner(ends[0][1]))) if ends and _inner(ends[0][1]) else ""
+        raise ValueError(f"must name one number or a material; got {text!r}{holds}")
+    return found
+
+
+def _inner(value: Any) -> dict[Step, Any]:
+    """What a value holds, by indices or by the names of fields."""
+    if isinstance(value, tuple):
+        return dict(enumerate(value))
+    return {field.name: getattr(value, field.name) for field in fields(value)} if is_dataclass(value) else {}
 
 
 def _below(path: Path, value: Any, step: Step, text: str) -> list[tuple[Path, Any]]:
     """What lies one step below a value; the step is a field's name, an index or "*"."""
-    here = spelt(path) or "the scene"
-    if step == "*" or isinstance(step, int):
-        if not isinstance(value, tuple):
-            raise ValueError(f"must name a field of the scene; got {text!r}, where {here} is no list")
-        if step == "*":
-            return [((*path, i), item) for i, item in enumerate(value)]
-        if step >= len(value):  # type: ignore[operator]
-            raise ValueError(f"must name a field of the scene; got {text!r}, where {here} has {len(value)} items")
-        return [((*path, step), value[step])]  # type: ignore[index]
-    names = [field.name for field in fields(value)] if is_dataclass(value) else []
-    if step in names:
-        return [((*path, step), getattr(value, step))]
+    inner = _inner(value)
+    if step == "*" and isinstance(value, tuple):
+        return [((*path, i), item) for i, item in inner.items()]
+    if step in inner:
+        return [((*path, step), inner[step])]
     if not path and (part := _part(step)):
         return [((step,), part.read(value))]
-    if value is None:
-        raise ValueError(f"must name a field of the scene; got {text!r}, where {here} is empty")
-    raise ValueError(f"must name a field of the scene; got {text!r}{_meant(here, step, names, top=not path)}")
-
-
-def _meant(here: str, name: str, names: list[str], *, top: bool) -> str:
-    """Words that suggest similar names, or all names."""
-    if not names:
-        return f", where {here} has no fields"
-    offered = [*names, *(known.name for known in PARAMETERS.values()), *PARTS] if top else names
-    close = difflib.get_close_matches(name, offered, n=3, cutoff=0.5)
-    return f"; did you mean {' or '.join(close)}?" if close else f", where {here} has {', '.join(names)}"
-
-
-def _checked(scene: Scene, path: Path, text: str) -> Path:
-    """The path, checked to end at a number or a material."""
-    if quantity_at(scene, path) is None and not is_material(scene, path):
-        below = value_at(scene, path)
-        names = [field.name for field in fields(below)] if is_dataclass(below) else []
-        hint = f", which holds {', '.join(names)}" if names else ""
-        raise ValueError(f"must name one number or a material; got {text!r}{hint}")
-    return path
+    here, names = spelt(path) or "the scene", [name for name in inner if isinstance(name, str)]
+    offered = names if path else [*names, *(known.name for known in PARAMETERS.values()), *PARTS]
+    close = difflib.get_close_matches(str(step), offered, n=3, cutoff=0.5)
+    holds = ", ".join(names) if names else f"{len(inner)} items"
+    hint = f"; did you mean {' or '.join(close)}?" if close else f", where {here} has {holds}"
+    raise ValueError(f"must name a field of the scene; got {text!r}{hint}")
 
 
 def spelt(path: Path) -> str:
