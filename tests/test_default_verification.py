@@ -8,7 +8,7 @@ from cuefem import Cue, Material, Segment, end_mass
 from cuefem.beam.spectrum import ended
 from cuefem.beam.system import assemble
 from cuefem.beam.waves import ended_mesh_for
-from cuefem.endmass.definitions import formula_of, spread_of
+from cuefem.endmass.definitions import definition_of, spread_of
 from cuefem.tip_modes import MOST, Solved, tip_modes_from
 from tests.helpers.cues import LEATHER, MAPLE, kim, scene
 
@@ -49,8 +49,8 @@ def test_the_modes_of_a_strike_hold_the_end_masses_of_smooth_drives(number: int)
     shortest = 1e-3 if E < 150e6 else 0.5e-3
     for T in draw.uniform(shortest, 5e-3, 12):
         found = scene(cue, float(T))
-        assert end_mass(found, "velocity") == pytest.approx(formula_of("velocity")(exact, found), rel=5e-6)
-        wanted = formula_of("force")(exact, found)
+        assert end_mass(found, "velocity") == pytest.approx(definition_of("velocity").of(exact, found), rel=5e-6)
+        wanted = definition_of("force").of(exact, found)
         assert end_mass(found, "force") == pytest.approx(wanted, rel=5e-3 if leather else 1e-3)
 
 
@@ -62,7 +62,7 @@ def test_the_stick_end_mass_of_random_cues_is_right_to_a_thousandth() -> None:
         found = scene(random_cue(draw), float(draw.uniform(0.5e-3, 3e-3)))
         elements, orders = ended_mesh_for(found.shaft, MOST)
         family = ended(assemble(found.shaft, elements=elements, order=orders, count=MOST), MOST, turning=False)
-        exact = formula_of("stick")(tip_modes_from(family(MOST), found), found)
+        exact = definition_of("stick").of(tip_modes_from(family(MOST), found), found)
         errors.append(abs(end_mass(found) / exact - 1))
     assert np.quantile(errors, 0.95) < 1e-3
     assert max(errors) < 2e-3

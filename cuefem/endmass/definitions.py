@@ -141,11 +141,6 @@ def definition_of(drive: str) -> Definition:
     return DEFINITIONS[drive]
 
 
-def formula_of(drive: str) -> Callable[[TipModes, Scene], Any]:
-    """The end mass of that definition, kg, as a function of tip modes and scene; ValueError for an unknown one."""
-    return definition_of(drive).of
-
-
 def force(tip: TipModes, scene: Scene) -> float:
     """Impulse of a half-sine force over the tip velocity at its end, kg. Converges like 1/modes^2 (it has kinks).
 
@@ -183,23 +178,19 @@ def stick_at_offset(tip: TipModes, scene: Scene) -> Any:
     on the speed. ValueError if no end mass has that squirt. Cost: for a bare cue, one linear solve for all
     offsets; else a strike for each.
     """
-    b, stroke = np.abs(scene.stroke.offset), scene.stroke
+    b = np.abs(scene.stroke.offset)
     if _couples(tip, scene):
-        return _each(lambda x, U: _stuck_end_mass(tip, replace(scene, stroke=Stroke(U, x))), b, stroke.speed)
-    held = _held(tip, StickLimit.of(scene))
-    if np.ndim(b) == 0:
-        return float(_end_mass_at(held, scene, b))
-    flat, places = np.unique(b, return_inverse=True)
-    masses = [_end_mass_at(held, scene, flat[i : i + BLOCK]) for i in range(0, len(flat), BLOCK)]
-    return np.concatenate(masses)[places.ravel()].reshape(b.shape)
 
+        def stuck(offset: float, speed: float) -> float:
+            here = replace(scene, stroke=Stroke(speed, offset))
+            return _with_squirt(sticking_squirt(tip, here), _gripping(here), "offset") if offset else stick(tip, here)
 
-def _each(function: Callable[[float, float], float], offset: Any, speed: Any) -> Any:
-    """The function's values at every offset and speed, which broadcast; each different pair is computed once."""
-    b, U = np.broadcast_arrays(offset, speed)
-    pairs, places = np.unique(np.stack([b.ravel(), U.ravel()]), axis=1, return_inverse=True)
-    values = np.array([function(*pair) for pair in pairs.T.tolist()])
-    return values[places.ravel()].reshape(b.shape) if b.shape else float(values[0])
+        masses = np.vectorize(stuck, otypes=[float])(b, scene.stroke.speed)
+    else:
+        held, flat = _held(tip, StickLimit.of(scene)), np.ravel(b)
+        parts = [_end_mass_at(held, scene, flat[i : i + BLOCK]) for i in range(0, len(flat), BLOCK)]
+        masses = np.concatenate(parts).reshape(np.shape(b))
+    return masses if np.ndim(masses) else float(masses)
 
 
 def limit_at(scene: Scene, offset: Any) -> StickLimit:
@@ -218,14 +209,8 @@ def _end_mass_at(held: Array, scene: Scene, offset: Any) -> Any:
     try:
         return limit.end_mass(limit.transverse_impulse(held, scene.contact_time))
     except ValueError:
-        where = f"offset {offset:g}" if np.ndim(offset) == 0 else f"offsets from {offset.min():g} to {offset.max():g}"
+        where = f"offset {offset[0]:g}" if len(offset) == 1 else f"offsets from {offset.min():g} to {offset.max():g}"
         raise ValueError(f"end_mass drive 'offset': a tip that sticks has no end mass's squirt; got {where}") from None
-
-
-def _stuck_end_mass(tip: TipModes, scene: Scene) -> float:
-    if scene.stroke.offset == 0:
-        return stick(tip, scene)
-    return _with_squirt(sticking_squirt(tip, scene), _gripping(scene), "offset")
 
 
 def _held(tip: TipModes, limit: StickLimit) -> Array:

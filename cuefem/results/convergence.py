@@ -19,7 +19,7 @@ from cuefem.beam.tip import TipModes, lumped_tip_modes
 from cuefem.beam.waves import ended_mesh_for, modes_below
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array
-from cuefem.endmass.definitions import end_mass, formula_of
+from cuefem.endmass.definitions import definition_of, end_mass
 from cuefem.quantity.fields import Quantity, check_kind
 from cuefem.scene import MOST_STEPS, Outcome, Resolution, Scene
 from cuefem.tip_modes import MOST, tip_modes_from, turning
@@ -133,7 +133,7 @@ def resolve_end_mass(scene: Scene, drive: str = "stick", rtol: float = 1e-4) -> 
     (5, True)
     """
     check_kind("resolve_end_mass scene", scene, Scene)
-    rtol, formula = RTOL.check("resolve_end_mass rtol", rtol), formula_of(drive)
+    rtol, formula = RTOL.check("resolve_end_mass rtol", rtol), definition_of(drive).of
     if scene.lumped is not None:
         return float(end_mass(scene, drive)), ROUNDING
     mass = error = math.inf

@@ -14,7 +14,7 @@ from cuefem.beam.system import assemble
 from cuefem.beam.tail import tail
 from cuefem.beam.waves import mesh_for
 from cuefem.contact.strike import strike_modes
-from cuefem.endmass.definitions import formula_of
+from cuefem.endmass.definitions import definition_of
 from cuefem.results.convergence import levels
 from cuefem.tip_modes import tip_modes_from, turning
 from tests.helpers.accuracy_scenes import NAMES, endless_friction, family, scene
@@ -78,7 +78,7 @@ def test_end_masses_to_an_accuracy() -> None:
     for drive in ("stick", "velocity", "force"):
         value, error = cf.resolve_end_mass(here, drive, 1e-3)
         assert error <= 1e-3
-        assert abs(value / formula_of(drive)(tip, here) - 1) <= 3 * error
+        assert abs(value / definition_of(drive).of(tip, here) - 1) <= 3 * error
 
 
 @pytest.mark.heavy
