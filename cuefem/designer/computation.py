@@ -24,7 +24,7 @@ from cuefem.design.design_changes import design_changes
 from cuefem.design.sensitivity import sensitivity
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.io.ready import ready_cues
-from cuefem.parts import main_material
+from cuefem.parameters.parts import main_material
 from cuefem.results.asking import listed
 from cuefem.results.closed_forms import pivot_length
 from cuefem.results.comparison import comparison_record

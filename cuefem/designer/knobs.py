@@ -10,14 +10,14 @@ from typing import Any, NamedTuple, Protocol
 from nicegui import ui
 
 from cuefem.cue import Cue, Segment
+from cuefem.cue.materials import LEATHERS, material_name, table_name
 from cuefem.designer.state import FAILURES, Design, Step, one_line
-from cuefem.games import GAMES, usual_scene, without_leather
 from cuefem.io.fittings import TENON, fitted
-from cuefem.materials import LEATHERS, material_name, table_name
-from cuefem.parts import Layout, bore_mouth, deepest_bore, halves, taper_position
+from cuefem.parameters.parameter import PARAMETERS, varied
+from cuefem.parameters.parts import Layout, bore_mouth, deepest_bore, halves, taper_position
 from cuefem.quantity.fields import Quantity, scalar
 from cuefem.scene import Scene
-from cuefem.vary import PLACES, Range, varied
+from cuefem.scene.default_scene import GAMES, usual_scene, without_leather
 
 LEAST_WALL = 0.0005  # m, that a typed bore must leave
 NEW_FERRULE, NEW_BORE, NEW_DEPTH = "25 mm", 0.006, 0.127
@@ -26,63 +26,75 @@ LONGEST_TEXT = 40
 FERRULE_BEGINS, LEATHER_BEGINS = "the ferrule; tip added", "the tip"
 
 
+class Range(NamedTuple):
+    """What a slider reaches from ``low`` to ``high`` in steps, and what may be typed, from ``least`` to ``most``.
+
+    All in a unit that people read; ``scale`` is one SI unit in it. A range from 0 to 0 has no slider.
+    """
+
+    unit: str
+    scale: float
+    low: float
+    high: float
+    step: float
+    least: float
+    most: float
+
+
 class Knob(NamedTuple):
-    """A knob: its group, its label ("{at}" is a position on the cue), and, if no parameter has it, its range."""
+    """A knob: its group, its label ("{at}" is a position on the cue), and the range of its number; none of a choice."""
 
     group: str
     label: str
     range: Range | None = None
-    choice: bool = False
-    slides: bool = True
 
 
+def _mm(low: float, high: float, step: float, least: float, most: float) -> Range:
+    return Range("mm", 1e3, low, high, step, least, most)
+
+
+# By the keys of the parameters that they change, where a parameter has it.
 KNOBS = {
-    "shaft_material": Knob("Shaft", "Wood", choice=True),
-    "tip_diameter": Knob("Shaft", "Tip diameter"),
-    "taper_diameter": Knob("Shaft", "Taper, {at}"),
-    "butt_diameter": Knob("Shaft", "Taper, end"),
-    "ferrule": Knob("Shaft", "Ferrule", choice=True),
-    "ferrule_length": Knob("Shaft", "Ferrule length"),
-    "bore": Knob("Shaft", "Bore", choice=True),
-    "bore_width": Knob("Shaft", "Bore width"),
-    "bore_depth": Knob("Shaft", "Bore depth"),
-    "shaft_mass": Knob("Shaft", "Shaft weight", Range("g", 1e3, 0, 0, 0.1, 0.1, 100_000), slides=False),
-    "body_mass": Knob("Shaft", "Rest of cue", slides=False),
-    "leather": Knob("Tip", "Tip hardness", choice=True),
-    "tip_height": Knob("Tip", "Tip height"),
-    "dome": Knob("Tip", "Tip radius"),
-    "contact_time": Knob("Tip", "Contact time"),
-    "friction": Knob("Tip", "Friction"),
-    "restitution": Knob("Tip", "Restitution"),
-    "game": Knob("Stroke", "Game", choice=True),
-    "speed": Knob("Stroke", "Cue speed"),
-    "offset": Knob("Stroke", "Tip offset b/R"),
-    "ball_mass": Knob("Stroke", "Ball weight", Range("g", 1e3, 0, 0, 1, 1, 10_000), slides=False),
-    "ball_diameter": Knob("Stroke", "Ball diameter", Range("mm", 1e3, 0, 0, 0.05, 1, 1000), slides=False),
-    "begins": Knob("", "Drawing begins at", choice=True),
+    "shaft_material": Knob("Shaft", "Wood"),
+    "tip_diameter": Knob("Shaft", "Tip diameter", _mm(8, 15, 0.05, 4, 30)),
+    "taper_diameter": Knob("Shaft", "Taper, {at}", _mm(8, 20, 0.05, 4, 60)),
+    "butt_diameter": Knob("Shaft", "Taper, end", _mm(12, 34, 0.1, 4, 60)),
+    "ferrule": Knob("Shaft", "Ferrule"),
+    "ferrule_length": Knob("Shaft", "Ferrule length", _mm(2, 40, 0.5, 0.5, 60)),
+    "bore": Knob("Shaft", "Bore"),
+    "bore_width": Knob("Shaft", "Bore width", _mm(1, 11, 0.1, 0.1, 30)),
+    "bore_depth": Knob("Shaft", "Bore depth", _mm(0, 300, 1, 0, 3000)),
+    "shaft_mass": Knob("Shaft", "Shaft weight", Range("g", 1e3, 0, 0, 0.1, 0.1, 100_000)),
+    "body_mass": Knob("Shaft", "Rest of cue", Range("g", 1e3, 0, 0, 1, 0, 5000)),
+    "leather": Knob("Tip", "Tip hardness"),
+    "tip_height": Knob("Tip", "Tip height", _mm(2, 12, 0.1, 0.5, 40)),
+    "dome": Knob("Tip", "Tip radius", _mm(6, 20, 0.1, 3, 500)),
+    "contact_time": Knob("Tip", "Contact time", Range("ms", 1e3, 0.6, 3, 0.01, 0.2, 20)),
+    "friction": Knob("Tip", "Friction", Range("", 1.0, 0.2, 1.2, 0.01, 0.01, 10)),
+    "restitution": Knob("Tip", "Restitution", Range("", 1.0, 0.5, 0.95, 0.01, 0, 1)),
+    "game": Knob("Stroke", "Game"),
+    "speed": Knob("Stroke", "Cue speed", Range("m/s", 1.0, 0.3, 12, 0.1, 0.01, 40)),
+    "offset": Knob("Stroke", "Tip offset b/R", Range("", 1.0, 0, 0.9, 0.01, -0.95, 0.95)),
+    "ball_mass": Knob("Stroke", "Ball weight", Range("g", 1e3, 0, 0, 1, 1, 10_000)),
+    "ball_diameter": Knob("Stroke", "Ball diameter", _mm(0, 0, 0.05, 1, 1000)),
+    "begins": Knob("", "Drawing begins at"),
 }
-GROUPS = ("Shaft", "Tip", "Stroke")  # what stands in other groups of the table is changed in the file's text
+GROUPS = ("Shaft", "Tip", "Stroke")
 SI = {"mm": "m", "g": "kg", "ms": "s"}
 # Where a knob is only what a verdict counts under other names.
 INPUTS = {"shaft_material": ("E", "G"), "shaft_mass": ("rho",), "bore": ("bore",)}
 
 
-def knobs() -> dict[str, Knob]:
-    """All knobs by their keys: `KNOBS`, and every other number that the table of parameters has in a group."""
-    others = (
-        (key, known) for key, known in PLACES.items() if known.group in GROUPS and known.range and key not in KNOBS
-    )
-    return KNOBS | {key: Knob(known.group, known.title) for key, known in others}
-
-
 def label(key: str, scene: Scene) -> str:
     """A knob's label."""
-    return knobs()[key].label.format(at=f"{1e3 * taper_position(scene.shaft):.0f} mm")
+    return KNOBS[key].label.format(at=f"{1e3 * taper_position(scene.shaft):.0f} mm")
 
 
-def range_of(key: str, scene: Scene) -> Range:
-    """What a knob's slider reaches, and what may be typed."""
-    return knobs()[key].range or PLACES[key].reach(scene.shaft)  # type: ignore[return-value]
+def range_of(key: str) -> Range:
+    """What a number's slider reaches, and what may be typed."""
+    known = KNOBS[key].range
+    assert known is not None
+    return known
 
 
 def value(key: str, scene: Scene) -> Any:
@@ -97,7 +109,7 @@ def value(key: str, scene: Scene) -> Any:
     if key == "shaft_material":
         return _name(cue.segments[layout.shaft.start].material)
     if key == "leather":
-        E = PLACES[key].value(scene)
+        E = PARAMETERS[key].value(scene)
         return E and next((n for n, known in LEATHERS.items() if known.E == E), f"E {E / 1e6:.4g} MPa")
     if key == "game":
         return next((name for name, game in GAMES.items() if game.ball == scene.ball), "another ball")
@@ -105,7 +117,7 @@ def value(key: str, scene: Scene) -> Any:
         return FERRULE_BEGINS
     if key in ("ball_mass", "ball_diameter"):
         return scene.ball.mass if key == "ball_mass" else 2 * scene.ball.radius
-    return PLACES[key].value(scene)
+    return PARAMETERS[key].value(scene)
 
 
 def _name(known: Any) -> str:
@@ -115,8 +127,8 @@ def _name(known: Any) -> str:
 def options(key: str, scene: Scene) -> list[str]:
     """What may be chosen; the scene's own is among it."""
     offered = {
-        "shaft_material": PLACES["shaft_material"].materials,
-        "ferrule": (NONE, *PLACES["ferrule_material"].materials),
+        "shaft_material": PARAMETERS["shaft_material"].materials,
+        "ferrule": (NONE, *PARAMETERS["ferrule_material"].materials),
         "bore": (NONE, DRILLED),
         "leather": (*LEATHERS,),
         "game": (*GAMES,),
@@ -139,9 +151,8 @@ def _joined(cue: Cue) -> Cue:
     segments = list(cue.segments[:1])
     for piece in cue.segments[1:]:
         last = segments[-1]
-        whole = replace(
-            piece, length=last.length + piece.length, tip_diameter=last.tip_diameter, tip_bore=last.tip_bore
-        )
+        length = last.length + piece.length
+        whole = replace(piece, length=length, tip_diameter=last.tip_diameter, tip_bore=last.tip_bore)
         front, back = halves(whole, last.length / length)
         ends = zip(_sizes(front) + _sizes(back), _sizes(last) + _sizes(piece), strict=True)
         alike = (last.material, last.core, last.kappa) == (piece.material, piece.core, piece.kappa)
@@ -173,7 +184,7 @@ def _with_value(scene: Scene, key: str, new: Any) -> Scene:
     if key == "game":
         return _with_game(scene, new)
     if key == "begins":
-        height = f"leather {PLACES['tip_height'].value(scene):.9g} m"
+        height = f"leather {PARAMETERS['tip_height'].value(scene):.9g} m"
         return replace(
             scene, cue=without_leather(fitted(scene.shaft, begins=height if new == LEATHER_BEGINS else "ferrule"))
         )
@@ -200,14 +211,14 @@ def _with_game(scene: Scene, name: str) -> Scene:
 
 def written(key: str, shown: float, scene: Scene) -> str:
     """A number with its unit, to the digits of a slider's step: "12.40 mm"."""
-    known = range_of(key, scene)
+    known = range_of(key)
     decimals = len(f"{known.step:g}".partition(".")[2])
     return f"{known.scale * shown:.{decimals}f} {known.unit}".rstrip()
 
 
 def read(key: str, text: str, scene: Scene) -> float:
     """The SI number of a typed text such as "11,8", "1/4 in", "15 oz"; ValueError in one line."""
-    unit = range_of(key, scene).unit
+    unit = range_of(key).unit
     si = SI.get(unit, unit)
     bare = text.strip().replace(",", ".").replace("−", "-")
     unitless = re.fullmatch(r"[-+]?[\d./\s]+", bare) is not None
@@ -230,7 +241,7 @@ def _float(text: str) -> Any:
 
 def limits(key: str, scene: Scene) -> tuple[float, float, str]:
     """The least and the most that may be typed, SI, and what sets it, which follows the cue."""
-    known, cue = range_of(key, scene), scene.shaft
+    known, cue = range_of(key), scene.shaft
     least, most, why = known.least / known.scale, known.most / known.scale, ""
     if key == "bore_width" and (bore := Layout.of(cue).bore):
         narrow = min(min(cue.segments[i].tip_diameter, cue.segments[i].butt_diameter) for i in bore)
@@ -276,16 +287,16 @@ class KnobRow:
 
     def __init__(self, key: str, page: Turns, *, short: bool = False) -> None:
         self.key, self.page, self.short = key, page, short
-        self.knob, self.shown = knobs()[key], ""
+        self.knob, self.shown = KNOBS[key], ""
         self.slider: Any = None
         with ui.element("div").classes("knob").props(f'data-knob="{key}"') as self.root:
             self.label = ui.label().classes("name")
             self.note = ui.label().classes("note")
-            if self.knob.choice:
+            if self.knob.range is None:
                 self.root.classes("pick")
                 self.field: Any = ui.select([], on_change=self._chosen).props("outlined dense options-dense")
             else:
-                if self.knob.slides and not short:
+                if self.knob.range.high and not short:
                     self.slider = ui.element("input").classes("slide").props("type=range")
                     self.slider.on("input", self._slid, throttle=0.05, js_handler="(e) => emit(e.target.valueAsNumber)")
                     self.slider.on("keydown.ctrl.z", lambda: page.go(-1)).on("keydown.ctrl.y", lambda: page.go(1))
@@ -306,7 +317,7 @@ class KnobRow:
         _classes(self.field, "assumed", self.key in design.assumed)
         self.shown = self._text(design, mine)
         beside = None if other is None else value(self.key, other.design.scene)
-        if self.knob.choice:
+        if self.knob.range is None:
             offered = options(self.key, design.scene)
             if self.field.options != offered:
                 self.field.set_options(offered, value=mine)
@@ -322,7 +333,7 @@ class KnobRow:
         _classes(self.note, "other", other is not None and beside != mine)
 
     def _text(self, design: Design, mine: Any) -> str:
-        if self.knob.choice:
+        if self.knob.range is None:
             return str(mine)
         if self.key == "shaft_mass" and not design.scene.shaft.weighed:
             return ""
@@ -330,16 +341,16 @@ class KnobRow:
 
     def _note(self, design: Design, mine: Any, beside: Any) -> str:
         """What stands below the label: the other design's value, or the weight, or a typed value in mm or g."""
-        own = mine if self.knob.choice else written(self.key, mine, design.scene)
+        own = mine if self.knob.range is None else written(self.key, mine, design.scene)
         if beside != mine:
-            there = beside if beside is None or self.knob.choice else written(self.key, beside, design.scene)
+            there = beside if beside is None or self.knob.range is None else written(self.key, beside, design.scene)
             return NONE if there is None else str(there)
         if self.key == "shaft_mass":
             return f"{'now' if design.scene.shaft.weighed else 'computed'} {own}"
         return f"= {own}" if self.key in design.typed and self.shown != own else ""
 
     def _place(self, name: str, mine: float, beside: float | None, scene: Scene) -> None:
-        known = range_of(self.key, scene)
+        known = range_of(self.key)
         least, most, _ = limits(self.key, scene)
         low, high = max(known.low, known.scale * least), min(known.high, known.scale * most)
         low, high = (
@@ -380,7 +391,7 @@ class KnobRow:
 
     def _slid(self, event: Any) -> None:
         scene = self.page.step.design.scene
-        mine, known = value(self.key, scene), range_of(self.key, scene)
+        mine, known = value(self.key, scene), range_of(self.key)
         at = event.args
         if mine is not None and isinstance(at, int | float) and abs(at - known.scale * mine) > 1e-9 * known.step:
             self._set(float(f"{at / known.scale:.12g}"), slid=True)
@@ -397,7 +408,7 @@ class KnobRow:
         except FAILURES as error:
             self._fail(one_line(error))
             return
-        unit = range_of(self.key, scene).unit
+        unit = range_of(self.key).unit
         self._set(new, text if any(map(str.isalpha, text)) else f"{text} {unit}".rstrip())
 
 

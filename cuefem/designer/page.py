@@ -15,7 +15,7 @@ from nicegui import app, background_tasks, events, ui
 from cuefem.designer import computation, panels
 from cuefem.designer.computation import computed
 from cuefem.designer.file_editor import FileEditor
-from cuefem.designer.knobs import GROUPS, INPUTS, KnobRow, knobs, label, notes_of, value, with_value, written
+from cuefem.designer.knobs import GROUPS, INPUTS, KNOBS, KnobRow, label, notes_of, value, with_value, written
 from cuefem.designer.panels import Known
 from cuefem.designer.state import (
     FAILURES,
@@ -30,6 +30,7 @@ from cuefem.designer.state import (
 )
 from cuefem.io.ready import PRESETS, SCALE
 from cuefem.io.toml_text import toml_text
+from cuefem.parameters.parameter import parameter, varied
 from cuefem.report.first_screen import Shown, drawings_markup, headline_markup, parts_line, scale_markup, tiles_markup
 from cuefem.report.glossary import definitions, explained
 from cuefem.report.report_page import page as report_page
@@ -38,7 +39,6 @@ from cuefem.report.table import csv_text
 from cuefem.report.templates import chart_script, page_style
 from cuefem.scene import Scene
 from cuefem.solid.own_tip import announcement
-from cuefem.vary import place, varied
 
 LARGEST_FILE = 5_000_000  # bytes
 KINDS = (".toml", ".csv", ".vtk", ".vtu", ".stl", ".ply", ".obj")
@@ -144,7 +144,7 @@ class Page:
 
     def _assumed(self) -> list[str]:
         scene = self.step.design.scene
-        return [key for key in knobs() if key in self.step.design.assumed and value(key, scene) is not None]
+        return [key for key in KNOBS if key in self.step.design.assumed and value(key, scene) is not None]
 
     def _notes(self) -> list[str]:
         return [*self.step.design.notes, *notes_of(self.step.design.scene)]
@@ -152,14 +152,14 @@ class Page:
     def _parts(self) -> dict[str, float]:
         """By how much each knob's uncertain parameters change squirt, relatively."""
         inputs = self.known.own.get("verdict", {}).get("inputs", {})
-        parts = {key: sum(inputs.get(name, 0.0) ** 2 for name in INPUTS.get(key, (key,))) ** 0.5 for key in knobs()}
+        parts = {key: sum(inputs.get(name, 0.0) ** 2 for name in INPUTS.get(key, (key,))) ** 0.5 for key in KNOBS}
         return {key: part for key, part in parts.items() if part}
 
     def _knobs(self) -> None:
         for i, group in enumerate(GROUPS):
             with ui.expansion(group, value=i == 0, group="knobs").classes("group") as fold:
                 setattr(self, f"fold_{group}", fold)
-                for key, knob in knobs().items():
+                for key, knob in KNOBS.items():
                     if knob.group == group:
                         self.rows.append(KnobRow(key, self))
         ui.html('<p class="mark-key soft"><i></i>assumed. Fields take any unit: 1/4 in, 15 oz.</p>', sanitize=False)
@@ -199,12 +199,12 @@ class Page:
 
     def _try(self, places: Mapping[str, Any]) -> None:
         design = self.step.design
-        keys = {known.key for name in places if (known := place(name))}
+        keys = {known.key for name in places if (known := parameter(name))}
         self._attempt(lambda: self.put(Step(design.changed(varied(design.scene, places), keys, {}), self.step.other)))
 
     def _applied(self, read: Design) -> None:
         design = self.step.design
-        new = {key for key in knobs() if value(key, read.scene) != value(key, design.scene)}
+        new = {key for key in KNOBS if value(key, read.scene) != value(key, design.scene)}
         self.put(Step(design.changed(read.scene, new, {}), self.step.other))
 
     def _attempt(self, work: Callable[[], Any]) -> None:
@@ -511,7 +511,7 @@ def _stem(name: str) -> str:
 
 def _assumption(key: str, scene: Scene) -> str:
     own = value(key, scene)
-    return str(own) if knobs()[key].choice else written(key, own, scene)
+    return str(own) if KNOBS[key].range is None else written(key, own, scene)
 
 
 def _texts(scene: Scene, *keys: str) -> str:

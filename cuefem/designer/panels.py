@@ -12,7 +12,7 @@ from nicegui import ui
 import cuefem.report
 from cuefem.contact.outcome import MISSED
 from cuefem.designer.computation import CURVE_OFFSETS
-from cuefem.designer.knobs import knobs, label, value, written
+from cuefem.designer.knobs import KNOBS, label, value, written
 from cuefem.designer.state import Design, Step
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.report.advice_table import advice_sheet
@@ -22,9 +22,9 @@ from cuefem.report.squirt import offset_charts
 from cuefem.report.strike_table import grip_warning
 from cuefem.report.templates import chart_markup, sheet_markup
 from cuefem.report.unusual import unusual
-from cuefem.results.band import OF_DIFFERENCE
 from cuefem.results.quantities import NONE, RESULTS, signed
 from cuefem.results.records import Record, Sheet
+from cuefem.results.uncertainty import SHAFTS
 from cuefem.scene import Scene
 
 HALF = 0.5 * (CURVE_OFFSETS[1] - CURVE_OFFSETS[0])
@@ -144,7 +144,7 @@ def numbers_sheet(step: Step, known: Known) -> Sheet | None:
     for k, _ in enumerate(known.own["numbers"]["frequencies"]):
         rows.append(_number_row("frequency", [side["frequencies"][k] for side in sides], f"natural frequency {k + 1}"))
     scenes = [design.scene for _, design in shown[: len(sides)]]
-    for key, knob in knobs().items():
+    for key, knob in KNOBS.items():
         cells = [_knob_text(key, scene) for scene in scenes]
         if knob.group and any(cell != NONE for cell in cells):
             alike = ["same" if cells[0] == cells[-1] else ""] if len(cells) > 1 else []
@@ -173,19 +173,19 @@ def _number_row(name: str, values: Sequence[Any], words: str, difference: Record
 
 def _knob_text(key: str, scene: Scene) -> str:
     own = value(key, scene)
-    return NONE if own is None else own if knobs()[key].choice else written(key, own, scene)
+    return NONE if own is None else own if KNOBS[key].range is None else written(key, own, scene)
 
 
 def check_sheet(step: Step, known: Known) -> list[Sheet]:
     """What was checked of the design, and beam beside solid once that is computed."""
     rows = []
     if "verdict" in known.own:
-        band = known.own["verdict"]["band"]
+        band = known.own["verdict"]["uncertainty"]
         rows += [
             ("calculation error of squirt", f"{100 * band['computation']:.1g} %"),
             ("model error, RMS of published strokes", f"{100 * band['model']:.0f} %"),
             ("wood and tip, not measured", f"{100 * band['inputs']:.0f} %"),
-            ("a change of squirt, relative uncertainty", f"{100 * OF_DIFFERENCE:.0f} %"),
+            ("a change of squirt, relative uncertainty", f"{100 * SHAFTS:.0f} %"),
         ]
     if "struck" in known.own:
         rows.append(("tip contact", grip_warning(known.own["struck"].grip) or "no miscue"))

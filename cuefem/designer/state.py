@@ -10,16 +10,16 @@ from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 from cuefem.cue import Cue
-from cuefem.games import DEFAULT_GAME, usual_scene
 from cuefem.io import load_stroke
 from cuefem.io.profile import DEFAULT_UNIT, SHAPES, read_profile
 from cuefem.io.ready import Preset, opened, ready_cue
 from cuefem.io.shelf import folder
 from cuefem.io.toml import left_out, read_tables
-from cuefem.parts import Layout
+from cuefem.parameters.parameter import varied
+from cuefem.parameters.parts import Layout
 from cuefem.quantity.units import number
 from cuefem.scene import Scene
-from cuefem.vary import varied
+from cuefem.scene.default_scene import DEFAULT_GAME, usual_scene
 
 TOGETHER = 1.5  # s: moves of one slider that follow each other within it are one step
 MOST_STEPS = 60

@@ -60,8 +60,8 @@ def headline_markup(own: Shown, other: Shown | None = None, difference: Record |
     if verdict and verdict["among"]:
         first = next(iter(verdict["among"]))
         among = verdict["among"][first]
-        told = {"difference": among["difference"], "error": among["difference_error"]}
-        lines.append(_told(told | {"distinct": abs(told["difference"]) > told["error"]}, first))
+        told = {"difference": among["difference"], "error": among["difference_error"], "distinct": among["distinct"]}
+        lines.append(_told(told, first))
     offset = verdict["offset"] if verdict else own.scene.stroke.offset
     return _macro("headline", own.numbers["squirt"], text, error, f"{offset:.2f}", lines, grip)
 
@@ -146,9 +146,9 @@ def drawings_markup(designs: Mapping[str, Scene]) -> str:
 def parts_line(verdict: Record) -> str:
     """What the uncertainty is made of: "± 0.35° (1σ) is 24 %: model 16 %, wood and tip 18 %"."""
     _, error = squirt_words(verdict)
-    band = verdict["band"]
-    model, inputs = f"{100 * band['model']:.0f} %", f"{100 * band['inputs']:.0f} %"
-    return f"± {error} (1σ) is {100 * band['whole']:.0f} %: model {model}, wood and tip {inputs}"
+    parts = verdict["uncertainty"]
+    model, inputs = f"{100 * parts['model']:.0f} %", f"{100 * parts['inputs']:.0f} %"
+    return f"± {error} (1σ) is {100 * parts['total']:.0f} %: model {model}, wood and tip {inputs}"
 
 
 def _macro(name: str, *values: object) -> str:
