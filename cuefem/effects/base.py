@@ -5,62 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, is_dataclass
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
-from cuefem.cue import Array, Cue, LumpedCue, Section
+from cuefem.cue import Array, Cue, LumpedCue
 from cuefem.quantity.fields import OutOfBounds, Quantity, check_fields, check_kind
 
 if TYPE_CHECKING:
-    from cuefem.beam.mesh import Mesh, Terms
+    from cuefem.beam.mesh import Terms
     from cuefem.beam.spectrum import Ended
     from cuefem.beam.tip import TipModes
+    from cuefem.effects.axial import RodModes
     from cuefem.effects.contact_settings import ContactTerms
 
 # Positions are on the cue up to this part of its length: a sum of lengths differs from their total by rounding.
 NEAR = 1e-9
-
-
-class Meshed(Protocol):
-    """Elements of a cue, and the section's properties at their Gauss points."""
-
-    @property
-    def mesh(self) -> Mesh:
-        """The elements."""
-
-    @property
-    def section(self) -> Section:
-        """At the Gauss points, arrays (elements, q)."""
-
-
-class Vibrations(Protocol):
-    """A family of vibrating modes of a cue: those of bending, and what effects add."""
-
-    @property
-    def system(self) -> Meshed:
-        """The beam or rod whose modes they are."""
-
-    @property
-    def omega(self) -> Array:
-        """Angular frequencies, rad/s, (n,), ascending."""
-
-    def loss_factors(self, loss: Section) -> Array:
-        """Loss factor of every mode, (n,), from those of the section's stiffnesses, each (elements, q)."""
-
-
-class AxialVibrations(Vibrations, Protocol):
-    """A family of modes along the cue."""
-
-    @property
-    def cue(self) -> Cue:
-        """The cue that vibrates so, with all that goes on behind the drawing."""
-
-    @property
-    def along(self) -> Array:
-        """Mass-normalised displacement of the tip along the cue, 1/sqrt(kg), (n,)."""
-
-    @property
-    def radiation(self) -> Array | None:
-        """Of the last of the modes, (tail, tail), 1/s, where these are a tail; None without one."""
 
 
 class Usual(NamedTuple):
@@ -150,7 +108,7 @@ class CueEffect(Effect):
         """Mass that the effect puts on the tip's face, kg, if that is all it does; None if it does anything else."""
         return None
 
-    def vibrations(self, bending: Ended, cue: Cue, effects: Sequence[CueEffect]) -> tuple[AxialVibrations, ...]:
+    def vibrations(self, bending: Ended, cue: Cue, effects: Sequence[CueEffect]) -> tuple[RodModes, ...]:
         """Families of modes beside the ``bending`` modes; effects: all that act on the cue."""
         return ()
 
@@ -158,7 +116,7 @@ class CueEffect(Effect):
         """What thrust at the tip does to the ``bending`` modes, rigid ones first (`TipModes.geometric`)."""
         return None
 
-    def damp(self, tip: TipModes, families: Sequence[tuple[Cue, Vibrations]]) -> TipModes:
+    def damp(self, tip: TipModes, families: Sequence[tuple[Cue, Ended | RodModes]]) -> TipModes:
         """The tip modes with the effect's damping; their vibrating modes are the families', one after the other."""
         return tip
 

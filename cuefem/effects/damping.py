@@ -8,12 +8,14 @@ from dataclasses import replace
 import numpy as np
 
 from cuefem.beam.basis import table
+from cuefem.beam.spectrum import Ended
+from cuefem.beam.system import System
 from cuefem.beam.tip import TipModes
 from cuefem.cue import Array, Cue, Section, Segment, SegmentRows, section_properties
-from cuefem.effects.base import Meshed, Vibrations
+from cuefem.effects.axial import Rod, RodModes
 
 
-def damped(tip: TipModes, families: Sequence[tuple[Cue, Vibrations]], *, loss: float | None) -> TipModes:
+def damped(tip: TipModes, families: Sequence[tuple[Cue, Ended | RodModes]], *, loss: float | None) -> TipModes:
     """Tip modes in which each vibrating mode k is damped at the rate eta_k omega_k.
 
     families: the vibrating modes of the tip, one family after the other, each with its cue. loss: loss factor used for
@@ -25,7 +27,7 @@ def damped(tip: TipModes, families: Sequence[tuple[Cue, Vibrations]], *, loss: f
     return replace(tip, damping=diagonal if tip.damping is None else tip.damping + diagonal)
 
 
-def section_loss(cue: Cue, system: Meshed, loss: float | None) -> Section:
+def section_loss(cue: Cue, system: System | Rod, loss: float | None) -> Section:
     """Loss factor of each stiffness of the section at the Gauss points, (elements, q), shell and core together.
 
     A loss factor is the imaginary part of a modulus over its real part, and the stiffnesses are linear in the moduli.

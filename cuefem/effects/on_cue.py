@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 import numpy as np
 
 from cuefem.cue import Array, Cue, Segment
-from cuefem.effects.base import NEAR, AxialVibrations, CueEffect, Usual, Vibrations
+from cuefem.effects.base import NEAR, CueEffect, Usual
 from cuefem.quantity.fields import DIAMETER, LENGTH, OutOfBounds, Quantity
 from cuefem.quantity.slips import WHOLE
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from cuefem.beam.mesh import Terms
     from cuefem.beam.spectrum import Ended
     from cuefem.beam.tip import TipModes
+    from cuefem.effects.axial import RodModes
 
 BUTTS, MOST_DENSITY = (500.0, 1900.0), 23_000.0  # kg/m3, of usual butts; the highest of a material, platinum's
 BUTT = "cue_length, butt_diameter and wave_speed"
@@ -257,7 +258,7 @@ class StructuralDamping(CueEffect):
 
     loss: Annotated[float | None, Quantity("", "[0, 1)")] = None
 
-    def damp(self, tip: TipModes, families: Sequence[tuple[Cue, Vibrations]]) -> TipModes:
+    def damp(self, tip: TipModes, families: Sequence[tuple[Cue, Ended | RodModes]]) -> TipModes:
         """The tip modes with every vibrating mode damped."""
         from cuefem.effects.damping import damped  # loaded when used: it solves the beam
 
@@ -369,7 +370,7 @@ class AxialWaves(CueEffect):
             )
         return ""
 
-    def vibrations(self, bending: Ended, cue: Cue, effects: Sequence[CueEffect]) -> tuple[AxialVibrations, ...]:
+    def vibrations(self, bending: Ended, cue: Cue, effects: Sequence[CueEffect]) -> tuple[RodModes, ...]:
         """The rod modes."""
         from cuefem.effects.axial import rod_modes  # loaded when used: it solves the beam
 
