@@ -5,8 +5,6 @@ room and the root's (`CONCERNED`) run on a copy of the tree until the first fail
 part that is noticed with its 95 % interval (Wilson).
 """
 
-from __future__ import annotations
-
 import argparse
 import ast
 import math

@@ -3,8 +3,6 @@
 A number may be one off in its last place, of JSON 1e-6 of itself: it must not hang on another machine's digits.
 """
 
-from __future__ import annotations
-
 import html
 import itertools
 import json

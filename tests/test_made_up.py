@@ -1,7 +1,5 @@
 """What is added by one entry of a table, or by a class, is found everywhere: parameter, result, definition, effects."""
 
-from __future__ import annotations
-
 import functools
 import gc
 import json

@@ -1,7 +1,5 @@
 """Figures for researchers: axes with what the numbers say (properties)."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Every cue becomes tip modes through one door, and each eigenproblem of a scene is solved once (properties)."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

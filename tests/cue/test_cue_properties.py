@@ -1,7 +1,5 @@
 """Properties of the cue: what holds of every shaft that can be drawn."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Verification of the cue: section properties, masses and shear coefficients against their own exact values."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

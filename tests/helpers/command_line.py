@@ -1,7 +1,5 @@
 """A command run in this process, as a user would see it."""
 
-from __future__ import annotations
-
 import io
 import json
 from contextlib import redirect_stderr, redirect_stdout

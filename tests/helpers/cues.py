@@ -1,7 +1,5 @@
 """Cues that tests of the beam, modes and end masses share; no tests."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from cuefem import Cue, Material, Scene, Segment, Tip

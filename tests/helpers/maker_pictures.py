@@ -3,8 +3,6 @@
 python -m tests.helpers.maker_pictures
 """
 
-from __future__ import annotations
-
 import json
 import math
 import re

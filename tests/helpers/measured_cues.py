@@ -1,7 +1,5 @@
 """A small measured cue for tests: cheap measurements on a plain shaft, and folders of one."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import cuefem as cf

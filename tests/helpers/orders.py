@@ -1,7 +1,5 @@
 """Measures orders of convergence; no tests."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

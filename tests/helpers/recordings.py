@@ -1,7 +1,5 @@
 """Recordings of a freely suspended, tapped shaft, made from its own modes; no tests."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What a table of refusals is checked with: a call and a part of its one line, or a command line and a part of its."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

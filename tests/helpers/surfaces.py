@@ -1,7 +1,5 @@
 """Closed surfaces of revolution with facets, as CAD writes them; no tests."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Small studies that tests share; no tests."""
 
-from __future__ import annotations
-
 import sqlite3
 from pathlib import Path
 from typing import Any

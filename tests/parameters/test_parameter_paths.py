@@ -1,7 +1,5 @@
 """Paths of a scene: what they find, set and refuse (properties)."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """Every named place of every ready cue is set and reads back, alone and with others, in any order (properties)."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The weight of a shaft sets the density of its wood, and no uncertainty counts that density any more."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -3,8 +3,6 @@
 In Python beyond both ends, nan and another kind; in a file also without a unit, in a wrong one, misspelt and missing.
 """
 
-from __future__ import annotations
-
 import copy
 import math
 from collections.abc import Iterator

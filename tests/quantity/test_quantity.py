@@ -1,7 +1,5 @@
 """Properties of quantities: intervals, messages, what `check` lets through and what it keeps out."""
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """What holds of `resolve` for every scene: limits, mirrors, refusals, the same answer twice (properties)."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,8 +1,6 @@
 """The tail of the modes against sums over all of them, and the errors that `resolve` promises against references
 (verification)."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What a cue alone is given, by the game: a tip for the drawn leather, and times as published (properties)."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

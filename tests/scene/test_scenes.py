@@ -1,7 +1,5 @@
 """The ready scenes of studies/scenes, and what a scene file means to the commands (regression)."""
 
-from __future__ import annotations
-
 import math
 import re
 import tomllib
