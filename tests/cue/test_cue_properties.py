@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cuefem import Cue, Material, Segment
+from cuefem import Material, Segment
 from cuefem.cue import shear_coefficient
 
 # From foam to steel; G of each stays below E/(2 nu).
@@ -28,21 +28,6 @@ def segments(draw: st.DrawFn) -> Segment:
 
 
 places = st.floats(0.0, 1.0)
-
-
-@given(segments(), places)
-def test_a_cut_leaves_mass_and_balance_alone(segment: Segment, place: float) -> None:
-    cut = 0.01 + 0.98 * place
-
-    def at(first: float, last: float) -> float:
-        return first + (last - first) * cut
-
-    outer, bore = at(segment.tip_diameter, segment.butt_diameter), at(segment.tip_bore, segment.butt_bore)
-    front = replace(segment, length=segment.length * cut, butt_diameter=outer, butt_bore=bore)
-    back = replace(segment, length=segment.length * (1 - cut), tip_diameter=outer, tip_bore=bore)
-    one, two = Cue((segment,)), Cue((front, back))
-    np.testing.assert_allclose(two.shaft_mass, one.shaft_mass, rtol=1e-11)
-    np.testing.assert_allclose(two.balance_point, one.balance_point, rtol=1e-10)
 
 
 @given(segments())
