@@ -22,6 +22,7 @@ from cuefem.quantity.fields import (
     check_fields,
     check_kind,
 )
+from cuefem.quantity.slips import CUE_DIAMETER
 
 Array = NDArray[np.float64]
 
@@ -69,9 +70,9 @@ class Material:
     ValueError: Material.G must be in (0, inf) Pa; got -1.0
     """
 
-    E: Annotated[float, Quantity("Pa", "(0, inf)")]
-    G: Annotated[float, Quantity("Pa", "(0, inf)")]
-    rho: Annotated[float, Quantity("kg/m^3", "(0, inf)")]
+    E: Annotated[float, Quantity("Pa", "(0, inf)").usually(5e6, 6e11)]
+    G: Annotated[float, Quantity("Pa", "(0, inf)").usually(5e6, 6e11)]
+    rho: Annotated[float, Quantity("kg/m^3", "(0, inf)").usually(40.0, 2e4)]
     loss: Annotated[float, Quantity("", "[0, 1)")] = 0.0
     nu: Annotated[float, Quantity("", "[0, 0.5]")] = 0.3
     across_ratio: Annotated[float | None, Quantity("", "(0, inf)")] = None
@@ -168,12 +169,12 @@ class Segment:
     0.1074
     """
 
-    length: Annotated[float, LENGTH]
-    tip_diameter: Annotated[float, DIAMETER]
-    butt_diameter: Annotated[float, DIAMETER]
+    length: Annotated[float, LENGTH.usually(0.002, 1.6)]
+    tip_diameter: Annotated[float, DIAMETER.usually(*CUE_DIAMETER)]
+    butt_diameter: Annotated[float, DIAMETER.usually(*CUE_DIAMETER)]
     material: Material
-    tip_bore: Annotated[float, Quantity("m", "[0, inf)")] = 0.0
-    butt_bore: Annotated[float, Quantity("m", "[0, inf)")] = 0.0
+    tip_bore: Annotated[float, Quantity("m", "[0, inf)").usually(0.001, 0.03)] = 0.0
+    butt_bore: Annotated[float, Quantity("m", "[0, inf)").usually(0.001, 0.03)] = 0.0
     core: Material | None = None
     kappa: Annotated[float | None, Quantity("", "(0, 1]")] = None
 
@@ -308,7 +309,7 @@ class Cue:
     """
 
     segments: tuple[Segment, ...]
-    body_mass: Annotated[float, Quantity("kg", "[0, inf)")] = 0.0
+    body_mass: Annotated[float, Quantity("kg", "[0, inf)").usually(0.05, 0.8)] = 0.0
     weighed: Annotated[bool, Flag()] = False
 
     def __repr__(self) -> str:
@@ -412,8 +413,8 @@ class LumpedCue:
     # No segments: this is how code that draws or describes a cue tells a lumped one from a finite-element one.
     segments: ClassVar[tuple[Segment, ...]] = ()
 
-    mass: Annotated[Number, Quantity("kg", "(0, inf)")]
-    end_mass: Annotated[Number, Quantity("kg", "(0, inf)")]
+    mass: Annotated[Number, Quantity("kg", "(0, inf)").usually(0.1, 1.0)]
+    end_mass: Annotated[Number, Quantity("kg", "(0, inf)").usually(1e-3, 0.1)]
     coupling: Annotated[Number, Quantity("1/kg", "(-inf, inf)")] = 0.0
 
     def __post_init__(self) -> None:

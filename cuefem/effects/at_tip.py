@@ -52,7 +52,7 @@ class TipDome(TipEffect):
         {"radius": 9.5e-3}, "between a dime's radius (8.95 mm) and a nickel's (10.6 mm)"
     )
 
-    radius: Annotated[float, Quantity("m", "[0, inf)")]
+    radius: Annotated[float, Quantity("m", "[0, inf)").usually(0.005, 0.02)]
 
     def add_to_contact(self, terms: ContactTerms) -> None:
         """The dome: the levers of two domes add, and so do their radii."""

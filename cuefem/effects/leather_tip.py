@@ -166,11 +166,11 @@ class LeatherTip(CueEffect):
     excludes: ClassVar[tuple[str, ...]] = ("TipDome", "TipShear", "PowerLawTip", "RollingContact", "Elevation")
     named: ClassVar[Mapping[str, Mapping[str, Mapping[str, float]]]] = {"leather": LEATHER_NAMES}
 
-    height: Annotated[float, Quantity("m", "(0, inf)")]
-    dome_radius: Annotated[float, Quantity("m", "(0, inf]", tuple(DOMES.items()))]
-    E: Annotated[float, Quantity("Pa", "(0, inf)")]
+    height: Annotated[float, Quantity("m", "(0, inf)").usually(0.001, 0.015)]
+    dome_radius: Annotated[float, Quantity("m", "(0, inf]", tuple(DOMES.items())).usually(0.005, 0.02)]
+    E: Annotated[float, Quantity("Pa", "(0, inf)").usually(5e6, 1e9)]
     nu: Annotated[float, Quantity("", "[0, 0.49]")] = 0.4
-    rho: Annotated[float, Quantity("kg/m^3", "(0, inf)")] = 1000.0
+    rho: Annotated[float, Quantity("kg/m^3", "(0, inf)").usually(40.0, 2e4)] = 1000.0
     shear: Annotated[float | None, Quantity("N/m", "(0, inf)")] = None
     rolls: Annotated[bool, Flag()] = True
     surface_restitution: Annotated[float, Quantity("", "[0.1, 1]")] = 1.0

@@ -64,8 +64,8 @@ class PointMass(CueEffect):
 
     part_of_cue: ClassVar[bool] = True
 
-    position: Annotated[float, Quantity("m", "[0, inf)")]
-    mass: Annotated[float, Quantity("kg", "[0, inf)")]
+    position: Annotated[float, Quantity("m", "[0, inf)").usually(0.01, 1.6)]
+    mass: Annotated[float, Quantity("kg", "[0, inf)").usually(5e-4, 0.1)]
     rotary_inertia: Annotated[float, Quantity("kg m^2", "[0, inf)")] = 0.0
     axial_share: Annotated[float, Quantity("", "[0, 1]")] = 1.0
 
@@ -132,7 +132,7 @@ class Support(CueEffect):
         {"position": 0.2032, "stiffness": 5e3}, "a bridge hand 8 in behind the tip (assumed)"
     )
 
-    position: Annotated[float, Quantity("m", "[0, inf)")]
+    position: Annotated[float, Quantity("m", "[0, inf)").usually(0.01, 1.6)]
     stiffness: Annotated[float, Quantity("N/m", "[0, inf]")] = 0.0
     rotational_stiffness: Annotated[float, Quantity("N m/rad", "[0, inf]")] = 0.0
     dashpot: Annotated[float, Quantity("N s/m", "[0, inf)")] = 0.0
@@ -193,7 +193,7 @@ class Joint(CueEffect):
 
     part_of_cue: ClassVar[bool] = True
 
-    position: Annotated[float, Quantity("m", "(0, inf)")]
+    position: Annotated[float, Quantity("m", "(0, inf)").usually(0.01, 1.6)]
     rotational_compliance: Annotated[float, Quantity("rad/(N m)", "[0, inf)")] = 0.0
     shear_compliance: Annotated[float, Quantity("m/N", "[0, inf)")] = 0.0
 

@@ -48,7 +48,7 @@ class SecondHit(Effect):
 
     once: ClassVar[bool] = True
 
-    window: Annotated[float, Quantity("s", "(0, 1]")] = 5e-3
+    window: Annotated[float, Quantity("s", "(0, 1]").usually(1e-3, 0.1)] = 5e-3
 
     def add_to_contact(self, terms: ContactTerms) -> None:
         """The time in which tip and ball may touch again."""

@@ -300,8 +300,8 @@ def _guess(header: Header, columns: Sequence[ProfileColumn], mark: str) -> str:
         units = [
             unit
             for unit, scale in _USUAL.items()
-            if CUE_LENGTH.least <= scale * (max(x) - min(x)) <= CUE_LENGTH.most
-            and CUE_DIAMETER.least <= scale * min(d) <= scale * max(d) <= CUE_DIAMETER.most
+            if CUE_LENGTH[0] <= scale * (max(x) - min(x)) <= CUE_LENGTH[1]
+            and CUE_DIAMETER[0] <= scale * min(d) <= scale * max(d) <= CUE_DIAMETER[1]
         ]
     except ValueError:
         return ""

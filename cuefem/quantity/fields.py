@@ -14,7 +14,7 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cuefem.quantity.slips import remark
+from cuefem.quantity.slips import remark, slip
 from cuefem.quantity.units import (
     BOTH,
     UNITS,
@@ -38,12 +38,17 @@ class Quantity:
 
     ``interval`` is written as in mathematics, "(0, inf)" or "[0, 1]". A round bracket excludes its end, so infinity is
     allowed only by an interval that closes with "inf]". NaN lies in no interval. ``words``: names that a file or an
-    option may give for a value, each with the value.
+    option may give for a value, each with the value. ``usual``: between which numbers it lies of real cues.
     """
 
     unit: str
     interval: str = "(-inf, inf)"
     words: tuple[tuple[str, float], ...] = ()
+    usual: tuple[float, float] | None = None
+
+    def usually(self, least: float, most: float) -> Quantity:
+        """The same quantity of a field that lies between these numbers in real cues."""
+        return dataclasses.replace(self, usual=(least, most))
 
     @functools.cached_property
     def ends(self) -> tuple[float, float]:
@@ -234,8 +239,8 @@ def check_fields(instance: Any) -> None:
         checked = quantity.check(f"{kind.__name__}.{name}", value)
         if not arrays:
             scalar(f"{kind.__name__}.{name}", checked)
-        if isinstance(checked, float):
-            remark(kind.__name__, name, checked)
+        if quantity.usual and isinstance(checked, float):
+            remark(slip(f"{kind.__name__}.{name}", checked, quantity.unit, quantity.usual))
         if checked is not value:
             object.__setattr__(instance, name, checked)
 

@@ -1,7 +1,7 @@
 """Numbers that cannot be meant: in SI units no cue has them, and in mm, g or ms it would.
 
-A class of this table checks its numbers when it is made. Only such numbers are remarked: a scene may be scaled, and a
-limit may be taken (a dome of one metre is nearly flat), without a word.
+A field with usual numbers is checked for them when its object is made. Only such numbers are remarked: a scene may be
+scaled, and a limit may be taken (a dome of one metre is nearly flat), without a word.
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path
 from types import FrameType
-from typing import NamedTuple
 
 from cuefem.quantity.units import scale
 
@@ -36,52 +35,9 @@ class Unusual(UserWarning):
     """
 
 
-class RealRange(NamedTuple):
-    """Between which numbers (SI) a field of real cues lies, its unit, and other units that people think in."""
-
-    least: float
-    most: float
-    unit: str
-    others: tuple[str, ...]
-
-
-CUE_LENGTH = RealRange(0.3, 1.6, "m", ("mm", "in"))
-_PLACE = RealRange(0.01, 1.6, "m", ("mm", "in"))
-CUE_DIAMETER = RealRange(0.0075, 0.04, "m", ("mm", "in"))
-_BORE = RealRange(0.001, 0.03, "m", ("mm", "in"))
-_DOME = RealRange(0.005, 0.02, "m", ("mm", "in"))
-_STIFF = RealRange(5e6, 6e11, "Pa", ("GPa", "MPa"))
-_DENSITY = RealRange(40.0, 2e4, "kg/m^3", ("g/cm^3",))
-_TIME = RealRange(2e-4, 0.01, "s", ("ms", "us"))
-
-USUAL = {
-    ("Material", "E"): _STIFF,
-    ("Material", "G"): _STIFF,
-    ("Material", "rho"): _DENSITY,
-    ("Segment", "length"): RealRange(0.002, 1.6, "m", ("mm", "in")),
-    ("Segment", "tip_diameter"): CUE_DIAMETER,
-    ("Segment", "butt_diameter"): CUE_DIAMETER,
-    ("Segment", "tip_bore"): _BORE,
-    ("Segment", "butt_bore"): _BORE,
-    ("Cue", "body_mass"): RealRange(0.05, 0.8, "kg", ("g", "oz")),
-    ("LumpedCue", "mass"): RealRange(0.1, 1.0, "kg", ("g", "oz")),
-    ("LumpedCue", "end_mass"): RealRange(1e-3, 0.1, "kg", ("g",)),
-    ("Cue", "length"): CUE_LENGTH,
-    ("Stroke", "speed"): RealRange(0.01, 30.0, "m/s", ()),
-    ("Ball", "mass"): RealRange(0.08, 0.4, "kg", ("g", "oz")),
-    ("Ball", "radius"): RealRange(0.02, 0.04, "m", ("mm", "in")),
-    ("Tip", "contact_time"): _TIME,
-    ("TipDome", "radius"): _DOME,
-    ("LeatherTip", "height"): RealRange(0.001, 0.015, "m", ("mm", "in")),
-    ("LeatherTip", "dome_radius"): _DOME,
-    ("LeatherTip", "E"): RealRange(5e6, 1e9, "Pa", ("GPa", "MPa")),
-    ("LeatherTip", "rho"): _DENSITY,
-    ("PointMass", "position"): _PLACE,
-    ("PointMass", "mass"): RealRange(5e-4, 0.1, "kg", ("g", "oz")),
-    ("Support", "position"): _PLACE,
-    ("Joint", "position"): _PLACE,
-    ("SecondHit", "window"): RealRange(1e-3, 0.1, "s", ("ms",)),
-}
+CUE_LENGTH, CUE_DIAMETER = (0.3, 1.6), (0.0075, 0.04)  # m, of what is drawn of real cues
+# Units that people think in, by the SI unit of a field.
+OTHERS = {"m": ("mm", "in"), "kg": ("g", "oz"), "s": ("ms", "us"), "Pa": ("GPa", "MPa"), "kg/m^3": ("g/cm^3",)}
 FAR = 5.0  # times beyond the usual: nearer than this a number may be meant
 LIGHTEST = 0.25  # kg, of a whole cue: a child's
 WHOLE = (0.3, 1.2)  # m, of a drawing that is a shaft's and not a whole cue's: a model to scale is left alone
@@ -90,18 +46,18 @@ _PACKAGE = str(Path(__file__).parents[1])
 _trying = ContextVar("whether a search of this package tries numbers of its own", default=False)
 
 
-def slip(kind: str, name: str, value: float) -> str:
-    """What is said of a field whose number cannot be meant; "" of all others."""
-    usual = USUAL.get((kind, name))
-    if usual is None or usual.least / FAR <= value <= FAR * usual.most or not math.isfinite(value):
+def slip(name: str, value: float, unit: str, usual: tuple[float, float]) -> str:
+    """What is said of a number that cannot be meant, given between which numbers it usually lies; "" of all others."""
+    least, most = usual
+    if least / FAR <= value <= FAR * most or not math.isfinite(value):
         return ""
-    scales = [(unit, float(scale(unit, usual.unit))) for unit in usual.others]
-    meant = [(unit, per) for unit, per in scales if usual.least <= value * per <= usual.most]
+    scales = [(other, float(scale(other, unit))) for other in OTHERS.get(unit, ())]
+    meant = [(other, per) for other, per in scales if least <= value * per <= most]
     if not meant:
         return ""
-    units = " or ".join(f"{value:g} {unit}" for unit, _ in meant)
+    units = " or ".join(f"{value:g} {other}" for other, _ in meant)
     written = " or ".join(f"{value * per:.4g}" for _, per in meant)
-    return f"{kind}.{name} is {value:g} {usual.unit}, which no cue has: is it {units}? Write {written} ({usual.unit})"
+    return f"{name} is {value:g} {unit}, which no cue has: is it {units}? Write {written} ({unit})"
 
 
 @contextmanager
@@ -114,11 +70,11 @@ def trying() -> Iterator[None]:
         _trying.reset(before)
 
 
-def remark(kind: str, name: str, value: float) -> None:
-    """Warn of a number that cannot be meant, at the line that lies outside this package."""
-    said = slip(kind, name, value)
-    if said and not _trying.get():
-        _warn(said)
+def remark(*said: str) -> None:
+    """Warn of numbers that cannot be meant, in these words if there are any, at the line outside this package."""
+    for text in filter(None, said):
+        if not _trying.get():
+            _warn(text)
 
 
 def remark_time_as_stiffness(kind: str, stiffness: float | None) -> None:
@@ -133,13 +89,6 @@ def remark_light(mass: float, length: float) -> None:
     if mass < LIGHTEST and WHOLE[0] <= length <= WHOLE[1]:
         said = f"Cue.body_mass is 0 kg, so the whole cue weighs {mass:.3g} kg; 0.4 to 0.7 is usual: what is behind the "
         _warn(f"{said}shaft counts in a stroke (dataclasses.replace(cue, body_mass=0.43))")
-
-
-def remark_said(*said: str) -> None:
-    """Warn of what the parts of a scene say of each other, if anything."""
-    for text in filter(None, said):
-        if not _trying.get():
-            _warn(text)
 
 
 def _warn(said: str) -> None:

@@ -9,10 +9,12 @@ from typing import Any, NamedTuple
 
 from cuefem.cue import Segment
 from cuefem.cue.materials import MATERIALS, table_name
+from cuefem.effects import TipDome
 from cuefem.parameters.parts import main_material
-from cuefem.quantity.slips import LIGHTEST, USUAL
+from cuefem.quantity.fields import quantities
+from cuefem.quantity.slips import CUE_DIAMETER, CUE_LENGTH, LIGHTEST
 from cuefem.results.quantities import scaled
-from cuefem.scene import Scene
+from cuefem.scene import Ball, Scene, Stroke, Tip
 
 JUMP = 1.5  # of the diameter between two segments
 LEAST_DRAWN = 0.02  # kg, of a shaft
@@ -32,9 +34,9 @@ class UsualNumbers(NamedTuple):
     blow: bool = True  # whether it matters to a blow alone, and not to how the cue rings
 
 
-def _usual(kind: str, name: str) -> tuple[float, float]:
-    """The range of the one table."""
-    return USUAL[kind, name].least, USUAL[kind, name].most
+def _usual(kind: type, name: str) -> tuple[float, float]:
+    """Between which numbers a field usually lies."""
+    return next(known.usual for field, known, *_ in quantities(kind) if field == name and known.usual)
 
 
 def _of_drawing(name: str, attribute: str) -> Callable[[Scene], Iterable[tuple[str, Any]]]:
@@ -83,25 +85,23 @@ SHOWN = {"mm": 1e3, "g": 1e3}  # how many of the unit an SI unit is, if not one
 ASKED = (
     UsualNumbers(
         lambda s: [("head-on contact time", s.known_contact_time)],
-        *(*_usual("Tip", "contact_time"), "s", "leather's is 0.001 to 0.002 s"),
+        *(*_usual(Tip, "contact_time"), "s", "leather's is 0.001 to 0.002 s"),
     ),
     UsualNumbers(
         lambda s: [("ball radius", s.ball.radius)],
-        *(*_usual("Ball", "radius"), "mm", "26 to 31 is usual: is that the diameter?"),
+        *(*_usual(Ball, "radius"), "mm", "26 to 31 is usual: is that the diameter?"),
     ),
-    UsualNumbers(lambda s: [("ball mass", s.ball.mass)], *_usual("Ball", "mass"), "g", "140 to 210 is usual"),
-    UsualNumbers(lambda s: [("stroke speed", s.stroke.speed)], *_usual("Stroke", "speed"), "m/s", "0.5 to 12 is usual"),
+    UsualNumbers(lambda s: [("ball mass", s.ball.mass)], *_usual(Ball, "mass"), "g", "140 to 210 is usual"),
+    UsualNumbers(lambda s: [("stroke speed", s.stroke.speed)], *_usual(Stroke, "speed"), "m/s", "0.5 to 12 is usual"),
     UsualNumbers(
         lambda s: [("dome radius", s.dome_radius or None)],
-        *(*_usual("TipDome", "radius"), "mm", "9 to 10.6 is usual, a dime's or a nickel's"),
+        *(*_usual(TipDome, "radius"), "mm", "9 to 10.6 is usual, a dime's or a nickel's"),
     ),
-    UsualNumbers(
-        _of_drawing("drawn length", "length"), *_usual("Cue", "length"), "mm", "check the unit of the lengths", False
-    ),
+    UsualNumbers(_of_drawing("drawn length", "length"), *CUE_LENGTH, "mm", "check the unit of the lengths", False),
     UsualNumbers(
         _diameters,
         *(
-            *_usual("Segment", "tip_diameter"),
+            *CUE_DIAMETER,
             "mm",
             "check the unit of the diameters; a tip has 8.5 to 14: are these radii?",
             False,

@@ -24,7 +24,7 @@ from cuefem.quantity.fields import (
     check_kind,
     scalar,
 )
-from cuefem.quantity.slips import remark_light, remark_said
+from cuefem.quantity.slips import remark, remark_light
 
 DEFAULT_CONTACT_TIME = 2e-3  # s, [Kim] sec. 4
 LEAST_STEPS, MOST_STEPS = 20, 1_000_000  # of a contact, in a head-on contact time
@@ -58,8 +58,8 @@ class Ball:
     >>> pool = cf.Ball(mass=0.170, radius=0.028575)
     """
 
-    mass: Annotated[Number, Quantity("kg", "(0, inf)")] = 0.210
-    radius: Annotated[Number, Quantity("m", "(0, inf)")] = 0.03075
+    mass: Annotated[Number, Quantity("kg", "(0, inf)").usually(0.08, 0.4)] = 0.210
+    radius: Annotated[Number, Quantity("m", "(0, inf)").usually(0.02, 0.04)] = 0.03075
     inertia: Annotated[Number, Quantity("", "(0, 1]")] = 0.4
 
     def __post_init__(self) -> None:
@@ -98,7 +98,7 @@ class Tip:
 
     restitution: Annotated[Number, Quantity("", "[0, 1]")] = 0.75
     friction: Annotated[Number, Quantity("", "[0, inf]")] = 0.7
-    contact_time: Annotated[float | None, CONTACT_TIME] = None
+    contact_time: Annotated[float | None, CONTACT_TIME.usually(2e-4, 0.01)] = None
     stiffness: Annotated[float | None, Quantity("N/m", "(0, inf)")] = None
 
     def __post_init__(self) -> None:
@@ -134,7 +134,7 @@ class Stroke:
     0.3047
     """
 
-    speed: Annotated[Number, Quantity("m/s", "(0, inf)")] = 1.0
+    speed: Annotated[Number, Quantity("m/s", "(0, inf)").usually(0.01, 30.0)] = 1.0
     offset: Annotated[Number, Quantity("", "(-1, 1)")] = 0.0
 
     def __post_init__(self) -> None:
@@ -195,7 +195,7 @@ class Scene:
         if isinstance(self.cue, Cue) and self.cue.segments:
             if self.cue.body_mass == 0:
                 remark_light(self.cue.mass, self.cue.length)
-            remark_said(*(effect.unusual_on(self.cue) for effect in self.effects))
+            remark(*(effect.unusual_on(self.cue) for effect in self.effects))
         whole = self.contact_terms.tip is not None  # the terms refuse what may be given only once
         for name, unit in (("contact_time", "s"), ("stiffness", "N/m")):
             value = getattr(self.tip, name)
