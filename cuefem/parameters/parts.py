@@ -12,7 +12,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -113,16 +113,11 @@ def with_segments(scene: Any, segments: Sequence[Segment]) -> Any:
 
 def with_material(cue: Cue, old: Material, new: Material) -> Cue:
     """The cue with a material replaced wherever it stands, cores included."""
-    return _with_materials(cue, {old: new})
-
-
-def _with_materials(cue: Cue, new: Mapping[Any, Any]) -> Cue:
-    return replace(
-        cue,
-        segments=tuple(
-            replace(s, material=new.get(s.material, s.material), core=new.get(s.core, s.core)) for s in cue.segments
-        ),
+    pieces = (
+        replace(s, material=new if s.material == old else s.material, core=new if s.core == old else s.core)
+        for s in cue.segments
     )
+    return replace(cue, segments=tuple(pieces))
 
 
 def main_material(cue: Cue) -> Material:
@@ -131,11 +126,6 @@ def main_material(cue: Cue) -> Material:
     for s in cue.segments:
         lengths[s.material] = lengths.get(s.material, 0.0) + s.length
     return max(lengths, key=lambda material: lengths[material])
-
-
-def materials_in(cue: Cue) -> tuple[Material, ...]:
-    """The materials of a cue, each once, from tip to butt."""
-    return tuple(dict.fromkeys(m for s in cue.segments for m in (s.material, s.core) if m is not None))
 
 
 # --- the weight ----------------------------------------------------------------------------
@@ -147,7 +137,7 @@ def with_shaft_mass(cue: Cue, mass: float) -> Cue:
     ValueError if the other materials weigh as much, or if no material has such a density.
     """
     wood = main_material(cue)
-    half = _with_materials(cue, {wood: replace(wood, rho=wood.rho / 2)}).shaft_mass
+    half = with_material(cue, wood, replace(wood, rho=wood.rho / 2)).shaft_mass
     volume = (cue.shaft_mass - half) / (wood.rho / 2)  # m3 of that material
     others = cue.shaft_mass - volume * wood.rho
     rho = (mass - others) / volume
@@ -409,16 +399,10 @@ def _with_spring_time(scene: Any, time: float) -> Any:
 CONTACT_TIME_OF_SPRING = Part(_spring_time, _with_spring_time, CONTACT_TIME)
 
 
-def _with_each_material(scene: Any, new: Sequence[Material]) -> Any:
-    exchanged = dict(zip(materials_in(scene.shaft), new, strict=True))
-    return replace(scene, cue=_with_materials(scene.shaft, exchanged))
-
-
 # Where a path may begin beside the fields of a scene.
 PARTS: dict[str, Part] = {
     "leather": _effect(_leather),
     "waves": _effect(_waves),
-    "materials": Part(lambda scene: materials_in(scene.shaft), _with_each_material),
     "wood": Part(
         lambda scene: main_material(scene.shaft),
         lambda scene, new: replace(scene, cue=with_material(scene.shaft, main_material(scene.shaft), new)),
