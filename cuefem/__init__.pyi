@@ -1,11 +1,6 @@
 from . import frames as frames, plot as plot
 from .results.convergence import resolve as resolve, resolve_end_mass as resolve_end_mass
 from .beam.modes import modes as modes
-from .contact.tip_identification import (
-    leather_modulus as leather_modulus,
-    rebound as rebound,
-    tip_restitution as tip_restitution,
-)
 from .contact.trajectory import motion as motion
 from .contact.table_frame import Placed as Placed, place as place
 from .contact.side_strike import (
@@ -15,6 +10,8 @@ from .contact.side_strike import (
     side_strike as side_strike,
 )
 from .contact.strike import batch_strike as batch_strike, strike as strike
+from .contact.tip_identification import identify_tip as identify_tip
+from .contact.tip_identification import rebound as rebound
 from .cue.geometry import Cue as Cue, LumpedCue as LumpedCue, Material as Material, Segment as Segment
 from .design.batch import CueBatch as CueBatch, batch_stick as batch_stick
 from .design.design_changes import design_changes as design_changes

@@ -119,7 +119,8 @@ def usual(cue: Cue, file: Path, options: dict[str, Any]) -> Scene:
     leather = usual_tip(cue, game)
     changes = _changes(SimpleNamespace(effects=(leather,)), file, options, _is_leather)
     try:
-        leather = with_fields(leather, {path[1:]: value for path, value in changes.items()})
+        own = {path[1:]: value for path, value in changes.items() if path[0] == "leather"}
+        leather = with_fields(leather, own)
         scene = usual_scene(cue, game, tip=leather)
     except ValueError as error:
         raise InputError(file, "", f"{error} (--tip-height, --dome change it)") from None

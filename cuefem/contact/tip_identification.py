@@ -1,75 +1,136 @@
-"""From a measured head-on blow to the tip: the leather's E from the contact time, the restitution from the rebound."""
+"""From a measured head-on blow to the tip: the leather's E and its own restitution, from contact time and rebound."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any, NamedTuple
 
-from cuefem.contact.strike import strike
+import numpy as np
+
+from cuefem.contact.strike import strike, strike_modes
+from cuefem.effects.force_law import TooDeep
 from cuefem.quantity.fields import CONTACT_TIME, Quantity, scalar
 from cuefem.scene import Outcome, Scene
+from cuefem.tip_modes import tip_modes_of
 
-CLOSE = 1e-9  # of the contact time
-# The search starts from an E above that of any leather, so that the ball is not pressed in too deep; its second guess
-# follows from this slope of ln T over ln E, which is about right.
-STIFF, FIRST_SLOPE = 1e9, -0.4
-REBOUND_LEAST = 0.1  # a tip of leather takes no less
+CLOSE, NEAR = 1e-8, 1e-3  # of ln E and of the restitution: of an answer, and of the bounds in an error
+MODULI = 1e6, 2e10  # Pa, between which E is sought: softer and stiffer than any tip
+LEAST, ENDLESS = 0.1, 10.0  # restitution of leather, of which a strike takes no less; s
 REBOUND = Quantity("", "[0.1, 1]")
 
 
-def leather_modulus(scene: Scene, contact_time: float) -> float:
-    """Young's modulus of the leather with which a head-on blow takes a given time.
+class IdentifiedTip(NamedTuple):
+    """A leather's Young's modulus, Pa, and its own restitution."""
+
+    E: float
+    restitution: float
+
+
+GUESS, GUESS_TIME = IdentifiedTip(230e6, 0.6), 1.135e-3  # s: medium leather, where the search begins
+
+
+def identify_tip(scene: Scene, contact_time: float, rebound: float) -> IdentifiedTip:
+    """The leather with which a head-on blow lasts a given time and the whole cue rebounds with a given restitution.
 
     Parameters
     ----------
     scene
-        A scene with a `LeatherTip`, of which E does not matter. The blow has the scene's cue, ball, speed,
-        restitution and other effects (`AxialWaves` make it longer), but no offset.
+        A scene with a `LeatherTip`, of which neither E, the tip's restitution nor the offset matters. The blow has the
+        scene's cue, ball, speed and other effects: with `AxialWaves` it lasts longer and rebounds faster.
     contact_time
-        How long ball and tip touch, s, in [1e-5, 1] s.
+        How long ball and tip touch, s.
+    rebound
+        Restitution of the whole cue, (v_ball/v_cue)(1 + m/M) - 1, in [0.1, 1].
 
     Returns
     -------
-    float
-        E, Pa.
+    IdentifiedTip
+        E, Pa, and the restitution of the tip by itself, in [0.1, 1].
 
     Raises
     ------
     ValueError
-        If the scene has no `LeatherTip`, the contact time is out of bounds, or the leather would have to be so soft
-        that the ball is pressed further into it than its law is known.
+        If the scene has no `LeatherTip`, or no leather has such a contact time and rebound on this cue.
+
+    Notes
+    -----
+    A stiffer leather shortens the blow, one of less restitution shortens it too and lowers the rebound. Waves along the
+    cue bound both: no leather, however stiff, is shorter in contact than the wood.
 
     Examples
     --------
     >>> import cuefem as cf
     >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
     >>> cue = cf.Cue((cf.Segment(0.7, 0.01275, 0.021, wood),), body_mass=0.43)
-    >>> tip = cf.LeatherTip(height=6e-3, dome_radius=9.5e-3, E=100e6)
-    >>> scene = cf.Scene(cue, cf.Ball(0.17, 0.028575), cf.Tip(0.73), cf.Stroke(2.0), (tip,))
-    >>> E = cf.leather_modulus(scene, 1.1e-3)
-    >>> round(E / 1e6)  # MPa
-    151
+    >>> E, restitution = cf.identify_tip(cf.usual_scene(cue), contact_time=1.2e-3, rebound=0.73)
+    >>> round(E / 1e6), round(restitution, 2)  # MPa
+    (174, 0.64)
     """
-    from scipy.optimize import root_scalar
+    from scipy.optimize import brentq, root
 
-    name = "leather_modulus contact_time"
-    contact_time = scalar(name, CONTACT_TIME.check(name, contact_time))
+    contact_time = scalar("contact_time", CONTACT_TIME.check("identify_tip contact_time", contact_time))
+    rebound = scalar("rebound", REBOUND.check("identify_tip rebound", rebound))
+    tip = tip_modes_of(with_tip(scene, IdentifiedTip(1e9, 0.5)))  # neither number changes the modes of the cue
+    lowest, highest = map(math.log, MODULI)
 
-    def too_long(logarithm: float) -> float:
-        return math.log(head_on(with_modulus(scene, math.exp(logarithm))).duration / contact_time)
+    def blow(log_E: float, e: float) -> tuple[float, float]:
+        """Contact time and rebound; endless and none where the leather is pressed in further than its law is known."""
+        try:
+            made = with_tip(scene, IdentifiedTip(math.exp(log_E), e))
+            outcome = strike_modes(_centred(made), tip)
+        except TooDeep:
+            return ENDLESS, 0.0
+        return float(outcome.duration), rebound_of(outcome, made)
 
-    first = math.log(STIFF)
-    guess = first - too_long(first) / FIRST_SLOPE
-    solution = root_scalar(too_long, x0=first, x1=guess, method="secant", xtol=CLOSE)
-    if not solution.converged:
-        raise RuntimeError(f"no E of the leather was found for a contact of {contact_time:g} s: {solution.flag}")
-    return math.exp(solution.root)
+    def misses(guess: Any) -> Any:
+        tried = np.clip(guess, [lowest, LEAST], [highest, 1.0])  # beyond these ends the miss goes on growing
+        time, found = blow(*tried)
+        return [math.log(time / contact_time), found - rebound] + np.array([-1.0, 1.0]) * (guess - tried)
+
+    first = [math.log(GUESS.E) - 3 * math.log(contact_time / GUESS_TIME), GUESS.restitution]
+    near = root(misses, np.clip(first, [lowest, LEAST], [highest, 1.0]), tol=CLOSE)
+    if near.success and lowest < near.x[0] < highest and LEAST <= near.x[1] <= 1:
+        return IdentifiedTip(math.exp(near.x[0]), float(near.x[1]))
+
+    # what bounds it, by nested searches
+    def log_modulus(e: float) -> float:
+        """Of a tip with this restitution and the contact time; the highest where none is that short."""
+        if blow(highest, e)[0] > contact_time:
+            return highest
+        return float(brentq(lambda log_E: math.log(blow(log_E, e)[0] / contact_time), lowest, highest, xtol=NEAR))
+
+    def excess(e: float) -> float:
+        return blow(log_modulus(e), e)[1] - rebound
+
+    if excess(LEAST) > 0:
+        at = brentq(lambda log_E: blow(log_E, LEAST)[1] - rebound, lowest, highest, xtol=NEAR)
+        raise ValueError(
+            f"identify_tip contact_time must be at least {blow(at, LEAST)[0]:.3g} s for a rebound of {rebound:g}: the "
+            f"leather of a shorter blow would give back less than e = {LEAST:g}; got {contact_time:g} s"
+        )
+    if excess(1.0) < 0:
+        raise ValueError(
+            f"identify_tip rebound must be at most {rebound + excess(1.0):.3g}, that of leather without loss in a "
+            f"contact of {contact_time:g} s; got {rebound:g}"
+        )
+    e = float(brentq(excess, LEAST, 1.0, xtol=NEAR))
+    if log_modulus(e) == highest:
+        raise ValueError(
+            f"identify_tip contact_time must be at least {blow(highest, e)[0]:.3g} s for a rebound of {rebound:g}: the "
+            f"wood alone gives way that long, under a tip of E = {MODULI[1]:g} Pa; got {contact_time:g} s"
+        )
+    raise ValueError(
+        f"identify_tip contact_time must be less than {contact_time:g} s: leather that soft is pressed in further than "
+        f"its law is known; got {contact_time:g} s"
+    )
 
 
-def with_modulus(scene: Scene, E: float) -> Scene:
-    """The scene with another E of its leather, Pa."""
+def with_tip(scene: Scene, tip: IdentifiedTip) -> Scene:
+    """The scene with another E of its leather and another restitution of its tip."""
     leather = scene.leather
-    return replace(scene, effects=tuple(replace(leather, E=E) if each is leather else each for each in scene.effects))
+    effects = tuple(replace(leather, E=tip.E) if each is leather else each for each in scene.effects)
+    return replace(scene, tip=replace(scene.tip, restitution=tip.restitution), effects=effects)
 
 
 def rebound(scene: Scene) -> float:
@@ -91,62 +152,17 @@ def rebound(scene: Scene) -> float:
     >>> import cuefem as cf
     >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
     >>> cue = cf.Cue((cf.Segment(0.7, 0.01275, 0.021, wood),), body_mass=0.43)
-    >>> scene = cf.Scene(cue, tip=cf.Tip(0.73, contact_time=1e-3), effects=(cf.AxialWaves(),))
-    >>> cf.rebound(scene) > 0.73
+    >>> waves = cf.AxialWaves(cue_length=1.47, butt_diameter=0.03, wave_speed=4430.0)
+    >>> cf.rebound(cf.Scene(cue, tip=cf.Tip(0.73, contact_time=1e-3), effects=(waves,))) > 0.73
     True
     """
-    return rebound_of(head_on(scene), scene)
+    return rebound_of(strike(_centred(scene)), scene)
 
 
-def head_on(scene: Scene) -> Outcome:
-    """The scene's blow without offset."""
-    return strike(replace(scene, stroke=replace(scene.stroke, offset=0.0)))
+def _centred(scene: Scene) -> Scene:
+    return replace(scene, stroke=replace(scene.stroke, offset=0.0))
 
 
 def rebound_of(outcome: Outcome, scene: Scene) -> float:
     """How fast ball and cue part after a head-on blow, over the stroke's speed."""
     return float((outcome.ball_speed - outcome.cue_speed) / scene.stroke.speed)
-
-
-def tip_restitution(scene: Scene, measured: float) -> float:
-    """The tip's own restitution with which the whole cue has a measured one head on.
-
-    Parameters
-    ----------
-    scene
-        Of which the tip's restitution and the offset do not matter.
-    measured
-        Of the whole cue, in [0.1, 1]: what `rebound` of the scene with the answer is.
-
-    Returns
-    -------
-    float
-        For `Tip.restitution`.
-
-    Raises
-    ------
-    ValueError
-        If no tip of a restitution in [0.1, 1] makes this cue rebound so.
-
-    Examples
-    --------
-    >>> import cuefem as cf
-    >>> wood = cf.Material(E=12.6e9, G=0.84e9, rho=700.0)
-    >>> cue = cf.Cue((cf.Segment(0.7, 0.01275, 0.021, wood),), body_mass=0.43)
-    >>> round(cf.tip_restitution(cf.usual_scene(cue), 0.73), 2)
-    0.66
-    """
-    from scipy.optimize import brentq
-
-    measured = scalar("tip_restitution measured", REBOUND.check("tip_restitution measured", measured))
-
-    def too_fast(e: float) -> float:
-        return rebound(replace(scene, tip=replace(scene.tip, restitution=e))) - measured
-
-    least, most = too_fast(REBOUND_LEAST), too_fast(1.0)
-    if least > 0 or most < 0:
-        raise ValueError(
-            f"tip_restitution measured must be in [{least + measured:.3g}, {most + measured:.3g}], what this cue's "
-            f"head-on blow can have with a tip of {REBOUND_LEAST:g} to 1; got {measured:g}"
-        )
-    return float(brentq(too_fast, REBOUND_LEAST, 1.0, xtol=CLOSE))

@@ -25,12 +25,13 @@ class Documented(NamedTuple):
 class Leather(NamedTuple):
     """The leather of a tip that is given by its geometry (`cuefem.LeatherTip`), SI, and where its numbers are from.
 
-    contact_time: of a head-on blow of the reference tip at 2 m/s, s, which fixes E.
+    contact_time: of a head-on blow of a whole cue at 2 m/s, s, which fixes E and the tip's own restitution together.
     """
 
     E: float
     nu: float
     rho: float
+    restitution: float
     contact_time: float
     source: str
 
@@ -48,10 +49,13 @@ WOODS = tuple(name for name, row in _ROWS.items() if row["kind"] == "wood")
 LEATHERS: Mapping[str, Leather] = MappingProxyType({name: Leather(**row) for name, row in _TABLES["leathers"].items()})
 # Tips that are sold: of each the name of the leather that stands for it, and the source.
 TIPS: Mapping[str, Mapping[str, str]] = MappingProxyType(_TABLES["tips"])
-_LEATHER_OF = {name: name for name in LEATHERS} | {name: tip["leather"] for name, tip in TIPS.items()}
+# Leathers by their own names and by those of tips.
+LEATHER_OF: Mapping[str, Leather] = MappingProxyType(
+    {**LEATHERS, **{name: LEATHERS[tip["leather"]] for name, tip in TIPS.items()}}
+)
 # What names a leather in a file, an option and the designer: E, nu and rho by the leather's or the tip's name.
 LEATHER_NAMES: Mapping[str, Mapping[str, float]] = MappingProxyType(
-    {name: {each: getattr(LEATHERS[its], each) for each in ("E", "nu", "rho")} for name, its in _LEATHER_OF.items()}
+    {name: {each: getattr(its, each) for each in ("E", "nu", "rho")} for name, its in LEATHER_OF.items()}
 )
 _ALSO = {other: name for name, row in _ROWS.items() for other in row.get("also", ())}
 

@@ -283,7 +283,7 @@ class AxialWaves(CueEffect):
     -----
     Adds: Rod modes join the rigid motion along the axis, as many as lie below the highest bending frequency that is
     kept, and with a tail if the bending modes have one. Nothing else sees the rod behind the drawing: bending, weights
-    and recordings are those of the drawing (if it bent too, squirt would change by another 0.3 % at most). Point masses
+    and recordings are those of the drawing (if it bent too, squirt would change by 0.01 %). Point masses
     sit at their places. Leather drawn at the tip (`Cue.leather`) moves as one piece along the axis, because the tip's
     force law holds its give already; its mass stays.
 

@@ -16,14 +16,14 @@ from typing import Annotated, Any
 from cuefem.contact.side_strike import SideStrike
 from cuefem.cue import Cue, LumpedCue, Material
 from cuefem.cue.materials import material
-from cuefem.effects import AxialWaves, Effect, effect_kinds
+from cuefem.effects import Effect, effect_kinds
 from cuefem.io.errors import LARGEST_TEXT, InputError, faults_of, nearest, read_bytes, shown
 from cuefem.io.fittings import BORE, FERRULE
 from cuefem.io.schema import build, joined, keys_of, table, unknown_key
 from cuefem.io.shelf import assembled
 from cuefem.parameters.parts import with_shaft_mass
 from cuefem.quantity.fields import MOST_SEGMENTS, Quantity, check_fields, quantities
-from cuefem.scene import Scene, Stroke, Tip
+from cuefem.scene import Scene, Stroke
 from cuefem.scene.default_scene import DEFAULT_GAME, GAMES, KIM, STROKES, usual_scene
 
 # The parts of which a cue is put together in the place of [[segments]], each with an example.
@@ -229,9 +229,7 @@ def _completed(parts: dict[str, Any], game: str, path: Path) -> dict[str, Any]:
         with faults_of(path, ""):
             usual = usual_scene(cue, game)
         parts = parts | {"cue": usual.cue, "effects": [*usual.effects]}
-    waves = any(isinstance(effect, AxialWaves) for effect in parts["effects"])
-    bounce = known.tip_restitution if waves else known.restitution
-    of_game = known.ball, Tip(bounce, known.friction), Stroke(known.speed, known.offset)
+    of_game = known.ball, known.tip_beside(parts["effects"]), Stroke(known.speed, known.offset)
     for name, usual_part in zip(OF_GAME, of_game, strict=True):
         told = parts.get(name, {})
         if isinstance(told, dict):

@@ -17,7 +17,7 @@ from functools import cache
 from typing import Any, get_args, get_type_hints
 
 from cuefem.cue import Cue, LumpedCue, Material
-from cuefem.cue.materials import LEATHER_NAMES, MATERIALS, WOODS, table_name
+from cuefem.cue.materials import LEATHER_OF, MATERIALS, WOODS, table_name
 from cuefem.cue.materials import material as named_material
 from cuefem.parameters.parts import (
     BORE_DEPTH,
@@ -75,7 +75,7 @@ class Parameter:
     option, help
         The word for its value in a command's help, "" if it is no option; and what the help says.
     sets
-        What names of its value set beside it, in the dataclass that holds it.
+        What names of its value set, by paths: its own, and others with it.
     """
 
     name: str
@@ -105,8 +105,8 @@ class Parameter:
 
     @property
     def of_tip(self) -> bool:
-        """Whether it is the tip's, which two shafts may share."""
-        return self.path.startswith(("leather.", "tip.")) or self.part is CONTACT_TIME_OF_SPRING
+        """Whether it is the tip's or the butt's, which two shafts may share."""
+        return self.path.startswith(("leather.", "tip.", "waves.")) or self.part is CONTACT_TIME_OF_SPRING
 
     def spread_in(self, scene: Scene) -> float | None:
         """Its spread in a scene."""
@@ -117,12 +117,11 @@ class Parameter:
         known = quantity_at(scene, self.steps())
         if known is None:
             raise ValueError(f"{self.name} must be a number of this scene; it has none there")
-        field = str(self.steps()[-1])
-        return replace(known, words=tuple((n, v[field]) for n, v in self.sets.items())) if self.sets else known
+        return replace(known, words=tuple((n, v[self.path]) for n, v in self.sets.items())) if self.sets else known
 
     def meant(self, name: str) -> dict[Path, float]:
         """What a name of its value sets, by paths; nothing if it is no such name."""
-        return {(*self.steps()[:-1], field): v for field, v in (self.sets or {}).get(name.strip().lower(), {}).items()}
+        return {_steps(path): value for path, value in (self.sets or {}).get(name.strip().lower(), {}).items()}
 
 
 # --- paths -------------------------------------------------------------------------------------
@@ -368,6 +367,10 @@ def _wood_spread(name: str) -> Callable[[Scene], float | None]:
 
 SHAFTS = (*WOODS, "carbon fibre")
 FERRULES = tuple(name for name in MATERIALS if name not in (*SHAFTS, "foam", "leather"))
+_LEATHERS = {
+    name: {"leather.E": own.E, "leather.nu": own.nu, "leather.rho": own.rho, "tip.restitution": own.restitution}
+    for name, own in LEATHER_OF.items()
+}
 _LEATHER_LOW, _LEATHER_HIGH = MATERIALS["leather"].ranges["E"]
 
 # Parts are written in this order: the weight first, that of the shaft before other changes; materials last, because the
@@ -398,8 +401,8 @@ PARAMETERS: dict[str, Parameter] = {
             *("leather", "E of the leather", "leather.E"),
             spread=math.log(_LEATHER_HIGH / _LEATHER_LOW) / 2,
             option="LEATHER",
-            help='Its leather: soft, medium, hard, a tip of `cuefem parts`, or its E, e.g. "140 MPa".',
-            sets=LEATHER_NAMES,
+            help='Its leather: soft, medium, hard, a tip of `cuefem parts`, or its E, e.g. "200 MPa".',
+            sets=_LEATHERS,
         ),
         Parameter(
             *("tip height", "height of the tip", "leather.height"),

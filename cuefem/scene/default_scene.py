@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
@@ -29,13 +29,8 @@ class Game:
         Radius of the dome, m.
     leather
         Name of the leather in `cuefem.cue.materials.LEATHERS`.
-    tip_restitution
-        Of the tip by itself: with it a head-on blow of ``cue``, with waves along it, rebounds with ``restitution``
-        (`cuefem.tip_restitution` derives it, and a test again).
-    cue
-        The ready cue or scene that ``tip_restitution`` was derived with, by its path from the folder of `meshes`.
     restitution
-        Of the whole cue head on, as it is measured.
+        Of the whole cue head on, as it is measured: that of a tip on a cue without axial waves.
     cue_length, butt_diameter
         Of a whole cue, m: where a drawing ends at the joint, waves along the cue go on in a butt to there.
     friction
@@ -52,8 +47,6 @@ class Game:
     height: float
     dome_radius: float
     speed: float
-    tip_restitution: float
-    cue: str
     cue_length: float
     butt_diameter: float
     source: str
@@ -67,6 +60,18 @@ class Game:
         """The usual tip."""
         leather = LEATHERS[self.leather]
         return LeatherTip(self.height, self.dome_radius, leather.E, leather.nu, leather.rho)
+
+    @property
+    def tip_restitution(self) -> float:
+        """Of the usual tip by itself, which axial waves raise to about that of the whole cue."""
+        return LEATHERS[self.leather].restitution
+
+    def tip_beside(self, effects: Sequence[Effect]) -> Tip:
+        """A tip of the leather's own restitution where axial waves act; else of the whole cue's."""
+        E = next((effect.E for effect in effects if isinstance(effect, LeatherTip)), None)
+        own = next((leather.restitution for leather in LEATHERS.values() if leather.E == E), self.tip_restitution)
+        waves = any(isinstance(effect, AxialWaves) for effect in effects)
+        return Tip(own if waves else self.restitution, self.friction)
 
     @property
     def bounce(self) -> str:
@@ -89,19 +94,16 @@ _ALL = (
 GAMES: Mapping[str, Game] = MappingProxyType(
     {
         "pool": Game(
-            *(Ball(mass=0.170, radius=0.028575), 6e-3, 9.5e-3, 2.0),
-            *(0.6410, "meshes/pool_maple.toml", 1.4732, 0.03175),
+            *(Ball(mass=0.170, radius=0.028575), 6e-3, 9.5e-3, 2.0, 1.4732, 0.03175),
             "Ball: WPA 57.15 mm, 156 to 170 g. Height: usual, 4 to 8 mm. Dome: usual, between a dime's (8.96 mm) and a "
             f"nickel's (10.6 mm) radius. Speed: a medium stroke (usual). {_ALL}",
         ),
         "carom": Game(
-            *(Ball(mass=0.210, radius=0.03075), 4e-3, 9.5e-3, 3.0),
-            *(0.5874, "meshes/kim.toml", 1.397, 0.030),
+            *(Ball(mass=0.210, radius=0.03075), 4e-3, 9.5e-3, 3.0, 1.397, 0.030),
             f"Ball: UMB 61 to 61.5 mm, 205 to 220 g. Height, dome and speed: assumed. {_ALL}",
         ),
         "snooker": Game(
-            *(Ball(mass=0.142, radius=0.02625), 4e-3, 7e-3, 3.0),
-            *(0.5739, "studies/scenes/snooker.toml", 1.4605, 0.029),
+            *(Ball(mass=0.142, radius=0.02625), 4e-3, 7e-3, 3.0, 1.4605, 0.029),
             "Ball: WPBSA 52.5 mm; sets are sold at 140 to 143 g. Height, dome (flatter than half-round, on a tip of "
             f"9.5 mm) and speed: assumed. {_ALL}",
         ),
@@ -170,7 +172,7 @@ def usual_scene(cue: Cue, game: str = DEFAULT_GAME, *, tip: LeatherTip | None = 
     Scene
         The cue with the game's ball, tip, speed and offset, with waves along the cue and thrust on the bent shaft.
         Waves go on behind the drawing, in a butt of ``cue.body_mass``, which bending does not see.
-        Its tip has a restitution of its own: waves along the cue raise it to the one that is measured of whole cues.
+        Its tip has the restitution of its leather, which axial waves raise to about that of whole cues.
 
     Raises
     ------
@@ -190,13 +192,9 @@ def usual_scene(cue: Cue, game: str = DEFAULT_GAME, *, tip: LeatherTip | None = 
     if game == KIM and tip is None:
         return Scene(cue)
     known = _game(game)
-    return Scene(
-        without_leather(cue),
-        known.ball,
-        Tip(known.tip_restitution, known.friction),
-        Stroke(known.speed, known.offset),
-        (usual_tip(cue, game) if tip is None else tip, *known.effects),
-    )
+    effects = (usual_tip(cue, game) if tip is None else tip, *known.effects)
+    stroke = Stroke(known.speed, known.offset)
+    return Scene(without_leather(cue), known.ball, known.tip_beside(effects), stroke, effects)
 
 
 def _game(name: str) -> Game:

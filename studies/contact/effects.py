@@ -13,16 +13,19 @@ from functools import cache
 from typing import Any
 
 import cuefem as cf
-from studies import pages
+from cuefem.contact.tip_identification import with_tip
+from cuefem.cue.materials import LEATHERS
+from studies import pages, strokes
 from studies.pages import table
 from studies.strokes import DOME, SHEAR, squirt
 
 SCENES = ("kim", "pool_low_deflection", "carom", "snooker", "clay_on_shaft", "break_cue")
+WAVES = cf.usual_scene(strokes.cue("pool_maple")).effects[1]
 USUAL: dict[str, cf.Effect | None] = {
     "TipDome": DOME,
     "TipShear": SHEAR,
     "RollingContact": cf.RollingContact(),
-    "AxialWaves": cf.AxialWaves(),
+    "AxialWaves": WAVES,
     "GeometricStiffness": cf.GeometricStiffness(),
     "PowerLawTip": cf.PowerLawTip(1.5),
     "PointMass": None,
@@ -58,17 +61,13 @@ def whole(name: str) -> cf.Scene:
     found = scene(name)
     leather = found.cue.segments[0].length if found.cue.segments[0].material.E < 1e9 else 0.0
     domes = [e.radius for e in found.effects if isinstance(e, cf.TipDome)]
-    tip = cf.LeatherTip(leather or 6e-3, *(domes or [9.5e-3]), 140e6)
+    tip = cf.LeatherTip(leather or 6e-3, *(domes or [9.5e-3]), LEATHERS["medium"].E)
     cue = replace(found.cue, segments=found.cue.segments[1:]) if leather else found.cue
     rest = [e for e in found.effects if type(e).__name__ not in (*AT_TIP, "AxialWaves", "GeometricStiffness")]
     moved = [replace(e, position=e.position - leather) if hasattr(e, "position") else e for e in rest]
     plain = replace(found.tip, contact_time=None, stiffness=None)
-    struck = replace(found, cue=cue, tip=plain, effects=(tip, cf.AxialWaves(), cf.GeometricStiffness(), *moved))
-    for _ in range(3):  # the modulus and the restitution hardly depend on each other
-        tip = replace(tip, E=cf.leather_modulus(struck, float(found.contact_time)))
-        struck = replace(struck, effects=(tip, *struck.effects[1:]))
-        struck = replace(struck, tip=replace(plain, restitution=cf.tip_restitution(struck, found.tip.restitution)))
-    return struck
+    struck = replace(found, cue=cue, tip=plain, effects=(tip, WAVES, cf.GeometricStiffness(), *moved))
+    return with_tip(struck, cf.identify_tip(struck, float(found.contact_time), found.tip.restitution))
 
 
 def cell(struck: cf.Scene, effect: str) -> str:

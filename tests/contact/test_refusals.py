@@ -17,6 +17,12 @@ from tests.helpers.refusals import refuses
 from tests.helpers.strike_scenes import KIM, kim_scene
 
 TWO: Any = np.array([1.0, 2.0])
+
+
+def identified(contact_time: float, rebound: float) -> Callable[[], object]:
+    return lambda: cf.identify_tip(leather_scene(0.0, cf.AxialWaves()), contact_time, rebound)
+
+
 THREE_SHAPES = cf.Scene(
     cf.LumpedCue(0.54, np.full(3, 0.003)), cf.Ball(), cf.Tip(0.75, np.full((2, 1), 0.7)), cf.Stroke(1.0, np.zeros(4))
 )
@@ -83,13 +89,16 @@ CALLS: list[tuple[Callable[[], object], str]] = [
         "scene 1: " + DEAD,
     ),
     # a measured blow
-    (lambda: cf.leather_modulus(leather_scene(), TWO), "leather_modulus contact_time must be one number; got an array"),
-    (lambda: cf.leather_modulus(leather_scene(), 0.0), "leather_modulus contact_time must be in [1e-6, 10] s; got 0"),
+    (lambda: cf.identify_tip(leather_scene(), TWO, 0.73), "contact_time must be one number; got an array"),
+    (lambda: cf.identify_tip(leather_scene(), 0.0, 0.73), "identify_tip contact_time must be in [1e-6, 10] s; got 0"),
+    (lambda: cf.identify_tip(leather_scene(), 1e-3, 1.1), "identify_tip rebound must be in [0.1, 1]; got 1.1"),
     (
-        lambda: cf.leather_modulus(replace(leather_scene(), effects=(cf.TipDome(0.01),)), 1e-3),
+        lambda: cf.identify_tip(replace(leather_scene(), effects=(cf.TipDome(0.01),)), 1e-3, 0.73),
         "Scene.effects must hold a LeatherTip; got none",
     ),
-    (lambda: cf.leather_modulus(leather_scene(), 9e-3), "further than its law is known"),
+    (lambda: cf.identify_tip(leather_scene(), 9e-3, 0.73), "pressed in further than its law is known"),
+    (identified(0.5e-3, 0.73), "identify_tip contact_time must be at least 0.0006"),
+    (identified(1.1e-3, 0.999), "identify_tip rebound must be at most 0.9"),
     # the table's frame
     (placed((R, 1.5 * R)), "R = 0.0286 m; got (0.0286, 0.0429"),
     (placed((nan, R)), "point must be in (-inf, inf) m; got nan at index 0"),

@@ -17,7 +17,7 @@ import cuefem as cf
 from cuefem.beam.tip import TipModes, lumped_tip_modes
 from cuefem.contact.model import model_of
 from cuefem.contact.strike import strike_modes
-from cuefem.contact.tip_identification import with_modulus
+from cuefem.contact.tip_identification import IdentifiedTip, with_tip
 from cuefem.tip_modes import tip_modes_of
 from tests.data.stored import scene_of, stored_law, strikes, tip_of
 from tests.helpers.cues import scaled
@@ -114,7 +114,7 @@ def stiffer(scene: cf.Scene, factor: float) -> cf.Scene:
     """The scene with a tip that many times as stiff."""
     if scene.tip.contact_time is not None:
         return replace(scene, tip=replace(scene.tip, contact_time=scene.tip.contact_time / math.sqrt(factor)))
-    return with_modulus(scene, factor * scene.leather.E)
+    return with_tip(scene, IdentifiedTip(factor * scene.leather.E, float(scene.tip.restitution)))
 
 
 OVER = {

@@ -57,13 +57,13 @@ def test_what_is_said_of_squirt() -> None:
     assert said in TEXTS["read_the_report"]
     assert f"about {aside:.0f} mm off after one metre" in TEXTS["what_squirt_is"]
     known = ready()
-    for name in ("low deflection", "carbon"):  # "about a quarter less"
-        assert 0.2 < 1 - known[name] / known["plain maple"] < 0.3
+    for name in ("low deflection", "carbon"):  # "about a fifth less"
+        assert 0.18 < 1 - known[name] / known["plain maple"] < 0.24
     assert verdict["uncertainty"]["total"] == pytest.approx(0.2, abs=0.025)  # "off by about 20 %"
     assert f"The model's own is {100 * MODEL:.0f} %" in TEXTS["read_the_report"]
     assert f"a difference is {100 * SHAFTS:.0f} % of itself off by the model" in TEXTS["read_the_report"]
     assert f"{100 * SHAFTS:.0f} % of the change for the model" in TEXTS["change_it"]
-    assert 0.4 < verdict["inputs"]["rho"] / 0.1 < 0.6  # "by about half as much", of wood heavier by a tenth
+    assert 0.13 < verdict["inputs"]["rho"] / 0.1 < 0.2  # "by about a sixth as much", of wood heavier by a tenth
 
 
 def squirt_of(path: Path) -> float:
@@ -72,9 +72,9 @@ def squirt_of(path: Path) -> float:
     return math.degrees(cf.strike(cf.usual_scene(replace(cue, body_mass=0.42524))).squirt)
 
 
-@pytest.mark.parametrize(("name", "least", "most"), [("pool_maple", -0.5, 1.0), ("pool_hollow", -2.0, -1.0)])
+@pytest.mark.parametrize(("name", "least", "most"), [("pool_maple", 1.0, 2.0), ("pool_hollow", -1.0, 0.0)])
 def test_a_deeper_bore_is_worth_what_the_page_and_improve_say(name: str, least: float, most: float) -> None:
-    """From 5 to 7 in: 2 % under the light ferrule of one, nothing under the other's; beyond 8 in no gain on either."""
+    """From 5 to 7 in: less than 1 % under the light ferrule of one, a loss under the other's; deeper no gain."""
     scene = cf.usual_scene(cf.load(Path("meshes") / f"{name}.toml"))
     of = {
         inches: cf.strike(varied(scene, {"bore depth": 0.0254 * inches, "bore width": 0.006})).squirt
@@ -82,10 +82,10 @@ def test_a_deeper_bore_is_worth_what_the_page_and_improve_say(name: str, least: 
     }
     change = {inches: 100 * (squirt / of[5] - 1) for inches, squirt in of.items()}
     assert least < change[7] < most
-    assert all(-0.3 < change[inches] < 2 for inches in (9, 12, 16))
+    assert all(-0.3 < change[inches] < 4.5 for inches in (9, 12, 16))
     if name == "pool_maple":
-        assert "takes about 9 % off" in TEXTS["change_it"]
-        assert 1 - of[5] / cf.strike(scene).squirt == pytest.approx(0.09, abs=0.005)
+        assert "takes about 5 % off" in TEXTS["change_it"]
+        assert 1 - of[5] / cf.strike(scene).squirt == pytest.approx(0.055, abs=0.005)
 
 
 def test_tables_of_the_pages_draw_the_bored_shaft(tmp_path: Path) -> None:
@@ -106,5 +106,5 @@ def test_tables_of_the_pages_draw_the_bored_shaft(tmp_path: Path) -> None:
         assert (front.length, front.tip_bore, bored.tip_bore) == pytest.approx((0.025, 0.008, 0.006), rel=0.02)
         assert (bored.core, bored.material) == (None, front.core)
         assert all(segment.tip_bore == 0 for segment in rest)
-    assert squirts[2] == pytest.approx(1.601, abs=5e-3)  # 1.772 with the bore filled by the tenon's wood
+    assert squirts[2] == pytest.approx(1.653, abs=5e-3)  # 1.772 with the bore filled by the tenon's wood
     assert squirts[1] == pytest.approx(squirts[2], rel=0.01)

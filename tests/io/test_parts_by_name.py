@@ -65,7 +65,7 @@ def test_the_list_has_every_part_with_its_source() -> None:
     out = " ".join(call("parts")[1].split())
     assert {*record["materials"]} == {*MATERIALS}
     assert record["materials"]["melamine"]["use"] == "ferrule"
-    assert record["tips"]["medium"]["E"] == 140e6
+    assert record["tips"]["medium"]["E"] == 229e6
     for kind in ("shafts", "materials", "tips"):
         for name, part in record[kind].items():
             assert len(part["source"]) > 20

@@ -75,6 +75,8 @@ def test_names_stand_for_materials_and_leathers() -> None:
     assert all(s.material.E == 13e9 for s in made.cue.segments if s.material.rho == material("ash").rho)
     soft = LEATHERS["soft"]
     assert (made.leather.E, made.leather.nu, made.leather.rho) == (soft.E, soft.nu, soft.rho)
+    assert made.tip.restitution == soft.restitution
+    assert varied(FIRST, {"leather": "soft", "restitution": 0.7}).tip.restitution == 0.7
 
 
 def test_a_spring_has_a_contact_time_or_a_stiffness() -> None:

@@ -15,7 +15,7 @@ LEATHER = cf.usual_scene(MAPLE)
 BARE = cf.Scene(MAPLE, LEATHER.ball, cf.Tip(0.73, 0.7, 1.1e-3), LEATHER.stroke)
 # The cone of mu = 0.7 ends at b/R 0.573; leather slips in part before it slides.
 GRIPS = [(BARE, 0.0, "stick"), (BARE, 0.45, "stick"), (BARE, 0.575, "slides"), (BARE, 0.6, "lets go")]
-GRIPS += [(LEATHER, 0.0, "stick"), (LEATHER, 0.45, "stick"), (LEATHER, 0.6, "slides"), (LEATHER, 0.63, "lets go")]
+GRIPS += [(LEATHER, 0.0, "stick"), (LEATHER, 0.45, "stick"), (LEATHER, 0.6, "partial slip"), (LEATHER, 0.63, "lets go")]
 
 
 def struck(scene: cf.Scene, offset: float) -> cf.Outcome:

@@ -1,0 +1,195 @@
+"""What do butt and leather of the default stroke change, and how do their numbers follow from what was measured?
+
+Contact time and rebound of a whole cue give the leather's E and the tip's own restitution together
+(`cuefem.identify_tip`); a butt behind the shaft throws axial waves back later than a rigid mass at the joint. Three
+strokes side by side: both as before (rigid mass, 140 MPa, e 0.63), the butt alone, both. Data: squirt.py.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import cache, partial
+from typing import Any
+
+import cuefem as cf
+from cuefem.contact.tip_identification import IdentifiedTip, identify_tip, with_tip
+from cuefem.cue.materials import LEATHERS
+from cuefem.results.closed_forms import pivot_at
+from studies import pages, strokes
+from studies.measured.squirt import INCHES, mass_ratios
+from studies.pages import table
+from studies.strokes import INCH, at_offset, cue, hollow, squirt, whole
+
+Inputs = Callable[[cf.Scene], cf.Scene]
+SPEEDS = (0.8, 2.0, 4.0, 7.0)
+TIMES = (2.0, 1.8, 1.6, 1.5, 1.4, 1.3, 1.2, 1.135, 1.1, 1.05, 1.0, 0.95, 0.9)  # ms
+REBOUND = 0.73
+PHENOLIC = {"nu": 0.33, "rho": 1340.0, "dome_radius": 12.7e-3}  # a break tip
+# E, Pa, and restitution of the leathers of before, whose contact times were those of a rigid cue of e 0.73.
+FORMER = {name: IdentifiedTip(E, 0.6315) for name, E in (("soft", 30e6), ("medium", 140e6), ("hard", 360e6))}
+NOW = {name: IdentifiedTip(known.E, known.restitution) for name, known in LEATHERS.items()}
+
+
+def with_inputs(struck: cf.Scene, name: str = "medium", *, butt: bool, former: bool) -> cf.Scene:
+    """The scene with a leather of before or of now, and a butt or a rigid mass at the joint."""
+    made = with_tip(struck, (FORMER if former else NOW)[name])
+    if butt:
+        return made
+    return replace(made, effects=tuple(cf.AxialWaves() if isinstance(e, cf.AxialWaves) else e for e in made.effects))
+
+
+STROKES: dict[str, Any] = {
+    "rigid mass, 140 MPa": partial(with_inputs, butt=False, former=True),
+    "butt, 140 MPa": partial(with_inputs, butt=True, former=True),
+    "butt, 229 MPa": partial(with_inputs, butt=True, former=False),
+}
+
+
+def maple(offset: float = 0.375, speed: float = 2.0) -> cf.Scene:
+    """The maple shaft in the whole stroke."""
+    return whole(cue("pool_maple"), offset, speed)
+
+
+def head_on(struck: cf.Scene) -> tuple[float, float]:
+    """Contact time, s, and rebound of the whole cue."""
+    return float(cf.strike(at_offset(struck, 0.0)).duration), cf.rebound(struck)
+
+
+def several(values: Iterator[float] | list[float], digits: int = 2) -> str:
+    """Some numbers in a cell."""
+    return ", ".join(f"{value:.{digits}f}" for value in values)
+
+
+def rows(of: Any) -> Iterator[tuple[str, str, str]]:
+    """Name, what was measured, and what a stroke gives."""
+    yield "squirt at b/R 0.375, 2 m/s, deg", "2.30, 2.43", f"{squirt(of(maple())):.2f}"
+    speeds = [squirt(of(maple(speed=v))) for v in SPEEDS]
+    yield "at 0.8, 2, 4, 7 m/s (largest over smallest)", "–", f"{several(speeds)} ({pages.change(speeds)})"
+    moduli = [squirt(replace_E(of(maple()), E)) for E in (70e6, 140e6, 280e6)]
+    yield "at 70, 140, 280 MPa", "–", f"{several(moduli)} ({pages.change(moduli)})"
+    for name, shaft, told in (("Players", cue("pool_maple"), "12.7"), ("Predator Z", hollow(strokes.BORES[1]), "20.2")):
+        struck = of(whole(shaft))
+        length = float(pivot_at(struck, 0.375, math.radians(squirt(struck)))) / INCH
+        yield f"pivot length of {name}, in", told, f"{length:.1f}"
+    angles = [squirt(of(maple(b))) for b in (0.187, 0.320, 0.453)]
+    yield "at b/R 0.187, 0.320, 0.453 (2007)", "0.84, 1.43, 2.50", several(angles)
+    ratio = squirt(of(whole(hollow(strokes.BORES[1]), 0.453))) / angles[2]
+    yield "Predator Z over maple at b/R 0.453", "0.72", f"{ratio:.3f}"
+    near = {x: with_mass(of(maple()), x) for x in INCHES}
+    told = {x: mass_ratios()[11, x][0] for x in INCHES}
+    some = [x for x in (2, 4, 7, 9) if x in near]
+    yield f"11 g at {several(some, 0)} in", several([told[x] for x in some]), several([near[x] for x in some])
+    yield "RMS of the difference, ten places", "", f"{pages.rms(near[x] - told[x] for x in INCHES):.2f}"
+    blows = [head_on(of(maple(speed=v))) for v in SPEEDS]
+    yield "head on: contact time at these speeds, ms", "1.0 to 1.2", several([1e3 * time for time, _ in blows])
+    yield "head on: rebound at these speeds", "0.71 to 0.75", several([rebound for _, rebound in blows])
+    for v in (2.0, 5.0):
+        soft, hard = (squirt(of(maple(speed=v), name)) for name in ("soft", "hard"))
+        yield f"soft over hard leather at {v:g} m/s", "1.00 ± 0.05", f"{soft / hard:.2f}"
+
+
+def replace_E(struck: cf.Scene, E: float) -> cf.Scene:
+    """The scene with another E of its leather."""
+    return with_tip(struck, IdentifiedTip(E, float(struck.tip.restitution)))
+
+
+def with_mass(struck: cf.Scene, inches: float) -> float:
+    """Squirt with 11 g on the shaft over that without."""
+    lump = cf.PointMass(inches * INCH - struck.leather.height, 11e-3)
+    return squirt(replace(struck, effects=(*struck.effects, lump))) / squirt(struck)
+
+
+def stroke_table() -> str:
+    """The three strokes beside what was measured."""
+    found = {name: list(rows(of)) for name, of in STROKES.items()}
+    first = next(iter(found.values()))
+    cells = [[name, told, *(each[i][2] for each in found.values())] for i, (name, told, _) in enumerate(first)]
+    return table(["", "measured", *STROKES], cells)
+
+
+@cache
+def identified(milliseconds: float, rebound: float = REBOUND, **phenolic: float) -> IdentifiedTip:
+    """The tip of a whole cue with this contact time."""
+    return identify_tip(whole(cue("whole_cue"), **phenolic), 1e-3 * milliseconds, rebound)
+
+
+def leather_table() -> str:
+    """E, restitution and squirt by contact time, of the whole cue, and of the shaft with a butt."""
+    made = []
+    for time in TIMES:
+        tip = identified(time)
+        squirts = (squirt(with_tip(whole(cue(name)), tip)) for name in ("whole_cue", "pool_maple"))
+        made.append([f"{time:g}", f"{tip.E / 1e6:.0f}", f"{tip.restitution:.2f}", *(f"{s:.2f}" for s in squirts)])
+    return table(["T, ms", "E, MPa", "tip's e", "squirt, whole cue, deg", "shaft with a butt, deg"], made)
+
+
+def input_table() -> str:
+    """What the butt's numbers are worth at 2 and 7 m/s, %."""
+    changes: dict[str, Inputs] = {
+        "waves in the butt 12 % slower": lambda s: waving(s, wave_speed=0.88),
+        "12 % faster": lambda s: waving(s, wave_speed=1.12),
+        "butt 29 mm wide for 31.75 mm": lambda s: waving(s, butt_diameter=29 / 31.75),
+        "cue 57 in long for 58 in": lambda s: waving(s, cue_length=57 / 58),
+        "a butt that bends too": lambda s: replace(s, cue=waves_of(s).with_butt(s.shaft)),
+        "the whole cue drawn, joint, pin and weight bolt": lambda s: replace(s, cue=whole(cue("whole_cue")).cue),
+    }
+    own = {v: squirt(maple(speed=v)) for v in (2.0, 7.0)}
+    made = [
+        [name, *(f"{100 * (squirt(of(maple(speed=v))) / own[v] - 1):+.1f}" for v in own)]
+        for name, of in changes.items()
+    ]
+    return table(["change", "at 2 m/s, %", "at 7 m/s, %"], made)
+
+
+def waves_of(struck: cf.Scene) -> cf.AxialWaves:
+    """The scene's axial waves."""
+    return next(e for e in struck.effects if isinstance(e, cf.AxialWaves))
+
+
+def waving(struck: cf.Scene, **factors: float) -> cf.Scene:
+    """The scene with some numbers of its butt times factors."""
+    own = waves_of(struck)
+    made = replace(own, **{name: factor * getattr(own, name) for name, factor in factors.items()})
+    return replace(struck, effects=tuple(made if e is own else e for e in struck.effects))
+
+
+def shortest(rebound: float) -> str:
+    """The least contact time of a leather, ms, as it is refused."""
+    try:
+        identified(0.6, rebound)
+    except ValueError as error:
+        return f"{1e3 * float(str(error).partition('at least ')[2].split()[0]):.2f}"
+    raise RuntimeError("a contact of 0.6 ms must be refused")
+
+
+def text() -> str:
+    before, drawn, now = (squirt(of(maple())) for of in STROKES.values())
+    medium = identified(1.135)
+    hard = [identified(0.9, rebound, **PHENOLIC) for rebound in (0.81, 0.87)]
+    return pages.page(
+        "Butt and leather of the default stroke",
+        "What do butt and leather of the default stroke change, and how do their numbers follow from measurements?",
+        f"Squirt of the maple shaft at b/R 0.375 and 2 m/s is {now:.2f}° ({before:.2f}° with a rigid mass at the joint "
+        f"and leather of 140 MPa, {drawn:.2f}° with the butt alone). Medium leather has {medium.E / 1e6:.0f} MPa and e "
+        f"{medium.restitution:.2f}; no leather is shorter in contact than {shortest(REBOUND)} ms.",
+        stroke_table(),
+        "## Leathers by contact time",
+        "Head on at 2 m/s, pool ball, whole cue of meshes/whole_cue.toml, rebound 0.73; squirt at b/R 0.375 and 2 m/s.",
+        leather_table(),
+        f"A blow shorter than {shortest(REBOUND)} ms would need leather that gives back less than e = 0.1. The "
+        "published 0.8 ms is of phenolic in a fast stroke (Alciatore, FAQ, tip contact time: most tips 1 to 2 ms, soft "
+        "and slow ones up to 3 ms); data that the FAQ links are of dbkcues.ru, who play Russian pyramid, whose balls "
+        "have 285 g: whether they were used was not checked. A phenolic tip with a dome of 12.7 mm that lasts 0.9 ms "
+        f"with a rebound of 0.81 to 0.87 has {hard[0].E / 1e6:.0f} to {hard[1].E / 1e6:.0f} MPa and e "
+        f"{hard[0].restitution:.2f} to {hard[1].restitution:.2f}.",
+        "## What the butt's numbers are worth: maple shaft, b/R 0.375",
+        input_table(),
+    )
+
+
+STUDY = pages.Study(__file__, text)
+
+if __name__ == "__main__":
+    STUDY.write()

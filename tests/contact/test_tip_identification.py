@@ -1,0 +1,71 @@
+"""A leather from contact time and rebound gives both back; the stored leathers are derived again (validation)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import cuefem as cf
+from cuefem.contact.tip_identification import IdentifiedTip, with_tip
+from cuefem.cue.materials import LEATHERS
+from tests.helpers.leather_scenes import LEATHER, leather_scene
+
+MESHES = Path(__file__).parents[2] / "meshes"
+
+
+def head_on(scene: cf.Scene) -> tuple[float, float]:
+    """Contact time, s, and rebound."""
+    return cf.strike(replace(scene, stroke=replace(scene.stroke, offset=0.0))).duration, cf.rebound(scene)
+
+
+def whole_cue() -> cf.Scene:
+    cue = cf.load(MESHES / "whole_cue.toml")
+    assert isinstance(cue, cf.Cue)
+    return cf.usual_scene(cue)
+
+
+@pytest.mark.parametrize("E", [60e6, 400e6])
+def test_the_law_of_a_rigid_cue_gives_its_tip_back(E: float) -> None:
+    """Head on, a cue without axial waves is a rigid one: it rebounds as its tip, its law gives the time."""
+    told = leather_scene(leather=replace(LEATHER, E=E))
+    assert cf.rebound(told) == pytest.approx(0.73, rel=1e-4)
+    soft = leather_scene(leather=replace(LEATHER, E=1e6))  # a ball would be pressed through it: its E does not matter
+    assert cf.identify_tip(soft, float(told.contact_time), 0.73) == pytest.approx((E, 0.73), rel=2e-4)
+
+
+def test_axial_waves_are_counted() -> None:
+    scene = leather_scene(0.3, cf.AxialWaves())
+    found = cf.identify_tip(scene, 1.1e-3, 0.8)
+    assert head_on(with_tip(scene, found)) == pytest.approx((1.1e-3, 0.8), rel=1e-5)
+    rigid = cf.identify_tip(leather_scene(), 1.1e-3, 0.8)
+    assert found.E > 1.05 * rigid.E  # the wood gives way too
+    assert found.restitution < 0.95 * rigid.restitution  # and gives back
+
+
+@pytest.mark.parametrize("name", LEATHERS)
+def test_a_leather_has_the_contact_time_and_rebound_that_are_measured(name: str) -> None:
+    known = LEATHERS[name]
+    found = cf.identify_tip(whole_cue(), known.contact_time, 0.73)
+    assert (known.E, known.restitution) == pytest.approx(found, rel=3e-3)  # three digits are stored
+    assert head_on(with_tip(whole_cue(), IdentifiedTip(known.E, known.restitution))) == pytest.approx(
+        (known.contact_time, 0.73), rel=1e-3
+    )
+
+
+@pytest.mark.parametrize(("contact_time", "rebound"), [(0.9e-3, 0.81), (0.9e-3, 0.87)])
+def test_a_tip_of_phenolic_is_stiffer_than_leather(contact_time: float, rebound: float) -> None:
+    scene = whole_cue()
+    hard = replace(scene.leather, nu=0.35, rho=1340.0, dome_radius=12.7e-3)
+    found = cf.identify_tip(replace(scene, effects=(hard, *scene.effects[1:])), contact_time, rebound)
+    assert found.E > 1.5 * LEATHERS["hard"].E
+
+
+def test_a_drawn_butt_rebounds_as_whole_cues_do() -> None:
+    """At 2 m/s, within what playing cues have (0.71 to 0.75, TP A.30) and 0.015: nothing is fitted to these cues."""
+    for game, name in (("pool", "pool_maple"), ("pool", "pool_hollow"), ("pool", "carbon"), ("carom", "kim")):
+        cue = cf.load(MESHES / f"{name}.toml")
+        assert isinstance(cue, cf.Cue)
+        scene = cf.usual_scene(cue, game)
+        assert 0.71 - 0.015 < cf.rebound(replace(scene, stroke=cf.Stroke(2.0))) < 0.75 + 0.015
