@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from cuefem.handbook import chapters
 from cuefem.io.measured_folder import load_measured
 from cuefem.measurements.measurement_types import AddedMass, Measurement, PivotLength, Squirt
 from cuefem.results.quantities import with_unit
@@ -71,3 +72,13 @@ def test_compare(name: str, tmp_path: Path) -> None:
     assert call("compare", HOME / name, "-o", tmp_path / "page.html")[::2] == (0, "")
     text = (tmp_path / "page.html").read_text(encoding="utf-8")
     assert all(f">{one.label}<" in text for one in load_measured(HOME / name)[0].measurements)
+
+
+def test_the_handbook_s_tables_are_those_of_the_studies() -> None:
+    """Of measured squirt, of its uncertainty, and of what is left out."""
+    pages = ("measured/squirt.md", "measured/uncertainty.md", "article/article.md")
+    known = {line for page in pages for line in (STUDIES / page).read_text(encoding="utf-8").splitlines()}
+    (text,) = (chapter.text for chapter in chapters() if chapter.name == "measured")
+    rows = [line for line in text.splitlines() if line.startswith("|")]
+    assert len(rows) > 30
+    assert [row for row in rows if row not in known] == []
