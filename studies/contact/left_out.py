@@ -121,6 +121,7 @@ def relaxing(time: float) -> Leather:
         return [T / lasts - 1, rebound / ratio - 1]
 
     share, stiffer = fsolve(miss, [0.6, 1.5], xtol=1e-4)
+    assert 0 < share < 1, share
     return Leather(float(share), time, float(stiffer))
 
 

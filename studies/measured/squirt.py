@@ -205,8 +205,8 @@ def text() -> str:
         "Does the model give the squirt that was measured on real cues?",
         f"At b/R 0.375 the whole model gives {robot.told[2]} (a robot measured 2.30 and 2.43°). A low-deflection "
         f"shaft has {hollow_ratio:.2f} of a maple shaft's squirt (measured 0.72). It fails in the angles of 2007. "
-        "Nothing is fitted to squirt: E of the leather gives a published contact time. What follows for the model's "
-        "error: [uncertainty](uncertainty.md).",
+        "Nothing is fitted to squirt: E and restitution of the leather give a published contact time and rebound. What "
+        "follows for the model's error: [uncertainty](uncertainty.md).",
         squirt_table(),
         "Differences: logarithms, of pivot lengths as squirt. Pivot lengths were found in November 2007 by turning the "
         "cue about the bridge until squirt cancels; zeros of angle and offset cancel too. Strokes were fast, balls "

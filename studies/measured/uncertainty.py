@@ -120,7 +120,7 @@ def squirt_table() -> str:
         own = squirt_error(row)
         said = f"{100 * row.difference:+.0f} ± {100 * own:.0f} %"
         made.append([row.series, *row.told, said, "yes" if abs(row.difference) <= own else "no"])
-    return table(["series", "b/R", "measured", "whole", "measured over whole, less 1, of squirt", "within"], made)
+    return table(["series", "b/R", "measured", "whole", "difference of logarithms, of squirt", "within"], made)
 
 
 def error_table() -> str:
