@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping
 from functools import lru_cache
+from itertools import chain
 from typing import NamedTuple
 
 from cuefem.contact.strike import strike_modes
@@ -102,10 +103,15 @@ def changes_by_input(
 
 
 def squirt_beside(solved: Solved, made: Scene) -> float:
-    """Squirt of a changed scene, rad, by the modes that are known where the cue is not changed."""
-    if (made.cue, made.cue_effects) == (solved.scene.cue, solved.scene.cue_effects):
+    """Squirt of a changed scene, rad, by the modes that are known where what vibrates is not changed."""
+    if _vibrating(made) == _vibrating(solved.scene):
         return float(strike_modes(made, solved.tip).squirt)
     return squirt_of(made)
+
+
+def _vibrating(scene: Scene) -> tuple[object, ...]:
+    """The cue and what acts on it: of a tip its mass, whatever its law."""
+    return scene.cue, *chain.from_iterable(effect.left_on(scene.shaft) for effect in scene.cue_effects)
 
 
 @lru_cache(maxsize=256)
