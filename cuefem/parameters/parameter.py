@@ -17,7 +17,7 @@ from functools import cache
 from typing import Any, get_args, get_type_hints
 
 from cuefem.cue import Cue, LumpedCue, Material
-from cuefem.cue.materials import LEATHER_OF, MATERIALS, WOODS, table_name
+from cuefem.cue.materials import LEATHER_OF, LEATHERS, MATERIALS, WOODS, table_name
 from cuefem.cue.materials import material as named_material
 from cuefem.parameters.parts import (
     BORE_DEPTH,
@@ -365,13 +365,22 @@ def _wood_spread(name: str) -> Callable[[Scene], float | None]:
     return spread
 
 
+def _leather_spread(scene: Scene) -> float | None:
+    """Half the range of all leather, in logarithms, of one by its name; less of an E of its own; None without one."""
+    if scene.contact_terms.tip is None:
+        return None
+    low, high = MATERIALS["leather"].ranges["E"]
+    named = any(own.E == scene.leather.E for own in LEATHERS.values())
+    return math.log(high / low) / 2 if named else IDENTIFIED
+
+
 SHAFTS = (*WOODS, "carbon fibre")
+IDENTIFIED = 0.18  # of ln E: of a contact time known to 5 %, whose power -3.5 it is (`cuefem.identify_tip`)
 FERRULES = tuple(name for name in MATERIALS if name not in (*SHAFTS, "foam", "leather"))
 _LEATHERS = {
     name: {"leather.E": own.E, "leather.nu": own.nu, "leather.rho": own.rho, "tip.restitution": own.restitution}
     for name, own in LEATHER_OF.items()
 }
-_LEATHER_LOW, _LEATHER_HIGH = MATERIALS["leather"].ranges["E"]
 
 # Parts are written in this order: the weight first, that of the shaft before other changes; materials last, because the
 # ferrule and the shaft are told by theirs.
@@ -399,7 +408,7 @@ PARAMETERS: dict[str, Parameter] = {
         Parameter("bore", "diameter of the bore", part=BORED_WIDTH, spread=math.log(7.5 / 6) / 2),  # meshes/README.md
         Parameter(
             *("leather", "E of the leather", "leather.E"),
-            spread=math.log(_LEATHER_HIGH / _LEATHER_LOW) / 2,
+            spread=_leather_spread,
             option="LEATHER",
             help='Its leather: soft, medium, hard, a tip of `cuefem parts`, or its E, e.g. "200 MPa".',
             sets=_LEATHERS,

@@ -163,8 +163,9 @@ def text() -> str:
         "## The model's own error",
         error_table(),
         "A series counts once, by the mean of its rows. Errors of measurement were not published, and none is taken "
-        "off. Interval: chi-square with as many degrees of freedom as series. Inputs, by their usual spread: E, G and "
-        "density of the wood, taper, bore, leather, height and dome of the tip; of the bare model its contact time.",
+        "off. Interval: chi-square with as many degrees of freedom as series. Inputs, by their usual spread: E, G "
+        "and density of the wood, waves in the butt, taper, bore, leather, height and dome of the tip; of the bare "
+        "model its contact time.",
         "## Ratios",
         pair_table(),
         f"Two shafts: RMS {pair_share().total:.2f} of the logarithm, upper end {shafts:.2f} (chi-square, three pairs "

@@ -37,9 +37,14 @@ def test_the_uncertainty_is_its_parts_in_quadrature() -> None:
     assert {"E", "rho", "tip_height"} <= set(RECORD["inputs"])
 
 
-def test_a_known_shaft_makes_the_uncertainty_smaller() -> None:
-    weighed = varied(SCENE, {"shaft mass": SCENE.shaft.shaft_mass})
-    record = verdict_record(weighed, cf.strike(weighed), {})
+@pytest.mark.parametrize(
+    "known",
+    [{"shaft mass": 1.0001 * SCENE.shaft.shaft_mass}, {"leather": 1.0001 * SCENE.leather.E}],
+    ids=["shaft", "tip"],
+)
+def test_a_weighed_shaft_or_a_known_tip_makes_the_uncertainty_smaller(known: dict[str, float]) -> None:
+    scene = varied(SCENE, known)
+    record = verdict_record(scene, cf.strike(scene), {})
     assert record["uncertainty"]["model"] == RECORD["uncertainty"]["model"]
     assert record["uncertainty"]["total"] < RECORD["uncertainty"]["total"]
 
