@@ -7,8 +7,8 @@ from cuefem.scene import Scene
 LAW = (
     "The tip is taken as elastic leather, by its height, its dome and its stiffness E. The force that such a tip makes "
     "is known to 0.5 % in most cases and to 2.5 % at worst; that a real tip behaves so is assumed. Computed "
-    "squirt changes by 16 % from leather of 40 to 400 MPa, and players find no difference, to ±5 % at best: do not "
-    "choose a tip's hardness by this number."
+    "squirt changes by 6 % from soft to hard leather, and players find no difference, to ±5 % at best: do not choose "
+    "a tip's hardness by this number."
 )
 SPRING = (
     "The tip is taken as a spring that presses for the contact time that is given. No real tip was measured for it, "
