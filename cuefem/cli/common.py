@@ -23,7 +23,7 @@ from cuefem.results.quantities import UNITS
 from cuefem.results.records import Record, plain
 from cuefem.scene import Scene
 from cuefem.scene.default_scene import DEFAULT_GAME
-from cuefem.solid.own_tip import announcement
+from cuefem.solid.tip_cache import announcement
 
 
 def file_options(command: Callable[..., Any]) -> Callable[..., Any]:

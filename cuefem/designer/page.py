@@ -38,7 +38,7 @@ from cuefem.report.strike_table import grip_warning
 from cuefem.report.table import csv_text
 from cuefem.report.templates import chart_script, page_style
 from cuefem.scene import Scene
-from cuefem.solid.own_tip import announcement
+from cuefem.solid.tip_cache import announcement
 
 LARGEST_FILE = 5_000_000  # bytes
 KINDS = (".toml", ".csv", ".vtk", ".vtu", ".stl", ".ply", ".obj")

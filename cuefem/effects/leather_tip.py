@@ -17,7 +17,8 @@ from cuefem.effects.contact_settings import ContactTerms, WholeTip
 from cuefem.effects.force_law import Curves, LeatherLaw
 from cuefem.effects.on_cue import PointMass
 from cuefem.quantity.fields import DIAMETER, Flag, Number, OutOfBounds, Quantity, check_fields, check_kind, scalar
-from cuefem.solid.leather_table import (
+from cuefem.solid.tip_cache import own_table, read
+from cuefem.solid.tip_table import (
     CURVATURE,
     HEAD_ON_RADIUS,
     WALL,
@@ -28,9 +29,8 @@ from cuefem.solid.leather_table import (
     farthest,
     head_on,
     of_tip,
-    punch_gain,
+    rigid_patch_gain,
 )
-from cuefem.solid.own_tip import own_table, read
 
 if TYPE_CHECKING:
     from cuefem.beam.mesh import Terms
@@ -350,7 +350,7 @@ class LeatherTip(CueEffect):
         Notes
         -----
         Where the patch reaches over the rim, the traction there is cut off and the rest scaled up. On a steep dome
-        (b/R > 0.6) the patch is kept where the table ends, short of the rim, and only normal and tangent turn further.
+        (b/R > 0.75) the patch is kept where the table ends, short of the rim, and only normal and tangent turn further.
         """
         self.check_diameter(diameter)
         radii = np.asarray(Quantity("m", f"(0, {diameter / 2}]").check("patch", patch)) / diameter
@@ -403,10 +403,13 @@ class LeatherTip(CueEffect):
         Notes
         -----
         From the compliance of the Hertz-weighted patch, less the difference between it and a rigid patch: a sixth on a
-        half-space, 0.05 (1 - nu/2)/(G a); on thin leather that of a layer as thick as the leather below the patch.
+        half-space, 0.05 (1 - nu/2)/(G a); less of it on thin leather and for a wide patch
+        (`cuefem.solid.tip_table.rigid_patch_gain`).
         """
-        give = self._punch(diameter, offset)
-        stiffness = np.maximum.accumulate(1 / give[:, 1])  # near the rim it levels off, to a thousandth
+        below = self.height - self._drop(self._place(diameter, offset)[0] * diameter / 2)
+        give = self._compliance(diameter, offset, RADII[1:])[:, 1, 1]
+        give -= rigid_patch_gain(self.nu, below / diameter, RADII[1:])
+        stiffness = np.maximum.accumulate(1 / give)  # near the rim it levels off, to a thousandth
         return RADII * diameter, np.append(0.0, self.E * diameter * stiffness)
 
     def _drop(self, off: float) -> float:
@@ -477,13 +480,6 @@ class LeatherTip(CueEffect):
         matrices = turn @ matrices @ turn.T
         matrices = (matrices + matrices.transpose(0, 2, 1)) / 2  # of rounding
         return matrices * np.array([[1, math.copysign(1, offset)], [math.copysign(1, offset), 1]])
-
-    def _punch(self, diameter: float, offset: float) -> Array:
-        """E D times the two direct compliances of a patch that sticks, at `RADII` beyond zero."""
-        at = RADII[1:]
-        direct = np.diagonal(self._compliance(diameter, offset, at), axis1=1, axis2=2)
-        below = self.height - self._drop(self._place(diameter, offset)[0] * diameter / 2)
-        return np.asarray(direct - punch_gain(self._table(diameter), below / diameter, at))
 
 
 def whole_tip(tip: LeatherTip, diameter: float) -> WholeTip:

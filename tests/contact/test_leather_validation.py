@@ -35,7 +35,7 @@ def test_contact_times_of_a_rigid_cue_of_567_g(speed: float, time: float) -> Non
     assert found.ball_speed == pytest.approx(speed * 1.73 * 0.567 / 0.737, rel=1e-6)
 
 
-@pytest.mark.parametrize(("speed", "chain"), [(0.8, 2.31), (2.0, 2.32), (4.0, 2.35), (7.0, 2.34)])
+@pytest.mark.parametrize(("speed", "chain"), [(0.8, 2.30), (2.0, 2.32), (4.0, 2.33), (7.0, 2.31)])
 def test_squirt_on_maple_is_that_of_an_exact_chain(speed: float, chain: float) -> None:
     """The whole stroke: rings that slip, waves along the cue, thrust on the bent shaft."""
     found = strike(leather_scene(0.375, AxialWaves(), GeometricStiffness(), cue=MAPLE, speed=speed))

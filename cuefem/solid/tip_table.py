@@ -1,11 +1,14 @@
-"""The static give of a leather tip, from the table beside this file, which studies/beam/leather.py makes.
+"""The static compliance of a leather tip, from the table beside this file, which studies/beam/leather.py makes.
 
-A tip outside the table, with layers, or on a ferrule that gives, has a `TipTable` of its own (`cuefem.solid.own_tip`).
+A tip outside the table, with layers, or on a ferrule that gives, is computed and kept by `cuefem.solid.tip_cache`.
 
 Lengths are over the tip's diameter D and moduli over Young's modulus E here. A tip is its height, its dome's curvature
 D/r (0: flat) and Poisson's ratio nu; a patch is the place of its centre, the distance from the axis over D/2, and its
-radius. The table holds, at Chebyshev's nodes, logarithms of the compliance over a half-space's, in which nothing is
-singular. `Coordinates` says where the nodes are.
+radius. The table is one grid of Chebyshev's nodes in `PANELS` of the curvature, height, nu, place and radius; it holds
+logarithms of the compliance over a half-space's, in which nothing is singular.
+
+Error of a compliance against the solid on a finer mesh (36 random tips, 5,062 patches up to the rim, radii of 0.06 D
+and more): median 0.06 %, 95th percentile 0.32 %, maximum 1.1 %. Smaller patches over the rim: up to 8 %.
 """
 
 from __future__ import annotations
@@ -23,11 +26,10 @@ from cuefem.cue import Array
 HEIGHT, CURVATURE, POISSON, RADIUS = (2 / 15, 1.5), (0.0, 2.0), (0.2, 0.45), (0.06, 0.5)
 HEAD_ON_RADIUS = (0.04, 0.45)
 # Curvatures between which everything is smooth: at the first the lowest tip becomes one without a side below its dome,
-# at the second patches are no longer asked for near the rim, where sin(phi) is far above 0.6.
+# from the second on patches are kept where sin(phi) is at most half of it.
 PANELS = (0.0, 1.0, 1.5, 2.0)
 WALL = 0.002  # over D: the least height of the side below the dome; lower ones are taken for it
-SOFTENED = 0.1  # over D: heights enter as log(wall + this)
-NEAR_RIM = 0.1  # over D: patches are near the rim if it cuts them at this radius
+SOFTENED = 0.1  # over D: heights enter as log(side + this)
 AXIS = 0.01  # place: C_nt over the place is wanted on the axis as well
 
 
@@ -38,13 +40,11 @@ def nodes(low: float, high: float, count: int) -> Array:
 
 def weights(x: Array | float, low: float, high: float, count: int) -> Array:
     """What the values at `nodes` weigh in the polynomial through them at ``x``, (..., count)."""
-    at = nodes(low, high, count)
     sign = (-1.0) ** np.arange(count)
     sign[[0, -1]] /= 2
-    gap = np.clip(x, low, high)[..., None] - at if isinstance(x, np.ndarray) else np.clip(x, low, high) - at
+    gap = np.clip(x, low, high)[..., None] - nodes(low, high, count)
     hit = gap == 0
-    terms = sign / np.where(hit, 1.0, gap)
-    terms = np.where(hit.any(axis=-1, keepdims=True), hit, terms)
+    terms = np.where(hit.any(axis=-1, keepdims=True), hit, sign / np.where(hit, 1.0, gap))
     return np.asarray(terms / terms.sum(axis=-1, keepdims=True))
 
 
@@ -63,25 +63,14 @@ def panel_of(curvature: float) -> int:
     return sum(curvature > end for end in PANELS[1:-1])
 
 
-def inner(curvature: float) -> float:
-    """The place up to which patches are not near the rim; of steep domes, where sin(phi) is 0.64."""
-    k = min(curvature, PANELS[2])
-    return (
-        (math.sqrt(1 - (NEAR_RIM * k) ** 2) - 2 * NEAR_RIM * math.sqrt(1 - k**2 / 4)) * k / max(curvature, k)
-        if k
-        else 0.8
-    )
-
-
 def farthest(curvature: float) -> float:
-    """The outermost place in the table."""
-    return 1.0 if curvature <= PANELS[2] else inner(curvature)
+    """The outermost place in the table: the rim, or on a steep dome where sin(phi) is 0.75."""
+    return min(1.0, PANELS[2] / max(curvature, 1e-9))
 
 
 def heights(curvature: float) -> tuple[float, float]:
-    """Range of the coordinate that stands for the height, log(side + SOFTENED)."""
-    low, high = (max(h - sag(curvature), WALL) for h in HEIGHT)
-    return math.log(low + SOFTENED), math.log(high + SOFTENED)
+    """Range of the coordinate that stands for the height."""
+    return height_coordinate(HEIGHT[0], curvature), height_coordinate(HEIGHT[1], curvature)
 
 
 def height_coordinate(height: float, curvature: float) -> float:
@@ -95,13 +84,8 @@ def poisson_coordinate(nu: float) -> float:
 
 
 NU = (poisson_coordinate(POISSON[0]), poisson_coordinate(POISSON[1]))
+LOG_RADIUS = (math.log(RADIUS[0]), math.log(RADIUS[1]))
 LOG_HEAD_ON = (math.log(HEAD_ON_RADIUS[0]), math.log(HEAD_ON_RADIUS[1]))
-
-
-def edge(curvature: float, place: float) -> float:
-    """Radius of the patch around ``place`` that reaches the rim, in the tangent plane of its centre."""
-    here, rim = curvature * place / 2, curvature / 2
-    return (0.25 - place**2 / 4) / (0.5 * math.sqrt(1 - here**2) + place / 2 * math.sqrt(1 - rim**2))
 
 
 def half_space(nu: float, radius: Array) -> Array:
@@ -126,44 +110,31 @@ def half_space_head_on(nu: float, radius: Array) -> Array:
 class LeatherTable(NamedTuple):
     """The table's values; the first axes are the panel of the curvature, curvature, height and Poisson's ratio.
 
-    whole, cut, rim: (..., place, radius, 3), the logarithms of C_nn and C_tt over a half-space's, and C_nt over the
-    place and over the root of C_nn C_tt: of patches away from the rim, those that it cuts, and those near it (in all
-    panels but the last). head_on: (..., radius, 2, 3), the logarithms of force and depth over a half-space's for the
-    three gaps. punch: (height, nu, radius, 2), by how much a rigid patch that sticks is stiffer than a Hertz-weighted
-    one, on a flat tip and on its axis, over the same difference on a half-space.
+    patches: (..., place, radius, 3), the logarithms of C_nn and C_tt over a half-space's, and C_nt over the place and
+    over the root of C_nn C_tt. head_on: (..., radius, 2, 3), the logarithms of force and depth over a half-space's for
+    the three gaps.
     """
 
-    whole: Array
-    cut: Array
-    rim: Array
+    patches: Array
     head_on: Array
-    punch: Array
 
 
 @cache
 def table() -> LeatherTable:
     """The table that belongs to cuefem."""
-    with np.load(Path(__file__).with_name("leather_table.npz")) as file:
+    with np.load(Path(__file__).with_suffix(".npz")) as file:
         return LeatherTable(*(file[name].astype(float) for name in LeatherTable._fields))
 
 
 class TipTable(NamedTuple):
-    """The table of one tip: `LeatherTable` without its first axes; rim is None on steep domes.
-
-    punch: (height, radius, 2), of flat tips at the nodes of ``heights``, the range of the coordinate of the height.
-    """
+    """The table of one tip: its curvature and Poisson's ratio, and `LeatherTable` without its first axes."""
 
     curvature: float
     nu: float
-    whole: Array
-    cut: Array
-    rim: Array | None
+    patches: Array
     head_on: Array
-    punch: Array
-    heights: tuple[float, float]
 
 
-FLAT_HEIGHTS = 4  # flat tips of an `OwnTip`'s table, from the side of its dome up to its apex
 Flat = tuple[float, float, float]  # a layer's height over D, Young's modulus over that of the leather, Poisson's ratio
 
 
@@ -186,43 +157,34 @@ def covers(height: float, nu: float) -> bool:
 @lru_cache(maxsize=64)
 def of_tip(height: float, curvature: float, nu: float) -> TipTable:
     """The table of one tip."""
-    all_tips = table()
-    panel = panel_of(curvature)
-    counts = all_tips.whole.shape[1:4]
+    panel, (patches, head) = panel_of(curvature), table()
     low, high = (steepness(end) for end in PANELS[panel : panel + 2])
-    k = weights(steepness(curvature), low, high, counts[0])
-    h = weights(height_coordinate(height, curvature), *heights(curvature), counts[1])
-    u = weights(poisson_coordinate(nu), *NU, counts[2])
-
-    def mixed(part: Array) -> Array:
-        for weight in (k, h, u):
-            part = np.tensordot(weight, part, 1)
-        return part
-
-    whole, cut, straight = (mixed(part[panel]) for part in (all_tips.whole, all_tips.cut, all_tips.head_on))
-    rim = mixed(all_tips.rim[panel]) if panel < len(all_tips.rim) else None
-    punch = np.tensordot(u, all_tips.punch, (0, 1))
-    return TipTable(curvature, nu, whole, cut, rim, straight, punch, heights(0.0))
+    at = (
+        (steepness(curvature), low, high),
+        (height_coordinate(height, curvature), *heights(curvature)),
+        (poisson_coordinate(nu), *NU),
+    )
+    parts = [patches[panel], head[panel]]
+    for x, low, high in at:
+        parts = [np.tensordot(weights(x, low, high, len(part)), part, 1) for part in parts]
+    return TipTable(curvature, nu, *parts)
 
 
-def radii(sheet: str, curvature: float, place: float) -> tuple[float, float]:
-    """Range of the logarithm of the patch's radius in one of the sheets of the table: whole, cut or rim."""
-    ends = {"whole": (RADIUS[0], 0.0), "cut": (0.0, RADIUS[1]), "rim": RADIUS}[sheet]
-    low, high = (math.log(end or edge(curvature, place)) for end in ends)
-    return low, high
+def reach(curvature: float, place: float) -> float:
+    """Radius of the patch around ``place`` that reaches the rim, in the tangent plane of its centre."""
+    here, rim = curvature * place / 2, curvature / 2
+    return (0.25 - place**2 / 4) / (0.5 * math.sqrt(1 - here**2) + place / 2 * math.sqrt(1 - rim**2))
 
 
 def compliance(tip: TipTable, place: float, radius: Array) -> Array:
     """E D times the compliance in (n, t) of Hertz-weighted patches, at radii up to 1/2; (radii, 2, 2).
 
-    Patches smaller than the table's have the rest beyond the half-space's compliance of the smallest one. If that
-    reaches over the rim, they go on as a constant and a part in proportion to 1/radius, from the two smallest ones.
+    Below the table's radii the half-space's compliance is added that lies between; of patches over the rim a part in
+    proportion to 1/radius, from the two smallest radii.
     """
     at = np.maximum(radius, RADIUS[0])
     matrices = _read(tip, place, at)
-    if np.all(at == radius):
-        return matrices
-    if edge(tip.curvature, place) >= RADIUS[0]:
+    if reach(tip.curvature, place) >= RADIUS[0]:
         more = half_space(tip.nu, radius) - half_space(tip.nu, at)
         return np.asarray(matrices + more[:, None] * np.eye(2))
     first, second = _read(tip, place, np.array([1.0, 1.5]) * RADIUS[0])
@@ -231,40 +193,30 @@ def compliance(tip: TipTable, place: float, radius: Array) -> Array:
 
 def _read(tip: TipTable, place: float, radius: Array) -> Array:
     """E D times the compliance at radii that the table has."""
-    k, limit = tip.curvature, inner(tip.curvature)
-
-    def sheet(name: str, values: Array, low: float, high: float) -> Array:
-        s = np.tensordot(weights(place, low, high, len(values)), values, 1)
-        ends = radii(name, k, min(max(place, low), high))
-        if ends[0] >= ends[1]:  # on the axis no patch of the table is cut
-            return np.broadcast_to(s[0], (len(radius), 3))
-        return np.asarray(weights(np.log(radius), *ends, len(s)) @ s)
-
-    if place > limit and tip.rim is not None:
-        logarithms = sheet("rim", tip.rim, limit, 1.0)
-    else:
-        whole, cut = sheet("whole", tip.whole, AXIS, limit), sheet("cut", tip.cut, AXIS, limit)
-        logarithms = np.where((radius <= edge(k, min(place, limit)))[:, None], whole, cut)
+    places, radii, _ = tip.patches.shape
+    here = np.tensordot(weights(place**2, AXIS**2, farthest(tip.curvature) ** 2, places), tip.patches, 1)
+    logarithms = weights(np.log(radius), *LOG_RADIUS, radii) @ here
     normal, shear = (np.exp(logarithms[:, :2]) * half_space(tip.nu, radius)).T
     across = logarithms[:, 2] * place * np.sqrt(normal * shear)
     return np.array([[normal, across], [across, shear]]).transpose(2, 0, 1)
 
 
-def punch_gain(tip: TipTable, height: float, radius: Array) -> Array:
-    """E D times what a rigid patch that sticks gives less than a Hertz-weighted one along n and t; (radii, 2).
+def rigid_patch_gain(nu: float, below: float, radius: Array) -> Array:
+    """E D times the compliance along t by which a rigid patch that sticks is stiffer than a Hertz-weighted one.
 
-    On a half-space a sixth of the compliance; on a leather as thick as the one below the patch, from the table.
+    A sixth of the compliance on a half-space; less where the patch is wide beside the tip, and beside the leather's
+    height ``below`` it. The four numbers are fitted to the solid (flat tips 0.14 to 1.4 high, nu 0.2 to 0.45, radii
+    0.06 to 0.45): the compliance of the rigid patch is then right to 0.2 % (rms, heights 0.25 to 0.8), at most 1.1 %.
     """
-    h = weights(height_coordinate(height, 0.0), *tip.heights, tip.punch.shape[0])
-    a = weights(np.log(np.maximum(radius, RADIUS[0])), *radii("rim", 0.0, 0.0), tip.punch.shape[1])
-    return np.asarray(half_space(tip.nu, radius) / 6 * (a @ np.tensordot(h, tip.punch, 1)))
+    wide, thin = (2 * radius) ** 3, (radius / below) ** 2
+    part = (1 - (1.09 - 0.57 * nu) * wide) * (1 - 0.11 * thin / (1 + 0.26 * thin))
+    return np.asarray(half_space(nu, radius)[..., 1] / 6 * part)
 
 
 def head_on(tip: TipTable, radius: Array, ball: float) -> Array:
     """Force over E D^2 and depth over D of the contact with a ball of radius ``ball``, at the radii; (radii, 2)."""
     at = np.maximum(radius, HEAD_ON_RADIUS[0])
-    count = tip.head_on.shape[0]
-    ratio = np.tensordot(weights(np.log(at), *LOG_HEAD_ON, count), tip.head_on, 1)
+    ratio = np.tensordot(weights(np.log(at), *LOG_HEAD_ON, len(tip.head_on)), tip.head_on, 1)
     ratio = ratio * (radius / at)[:, None, None]  # it goes to zero with the radius
     gaps = np.array([tip.curvature, 1 / ball, 1 / ball**3])
     return np.asarray((half_space_head_on(tip.nu, radius) * np.exp(ratio)) @ gaps)

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 import cuefem as cf
-from cuefem.solid.leather_table import FLAT_HEIGHTS, HEIGHT, OwnTip, TipTable, of_tip
-from cuefem.solid.own_tip import own_table
+from cuefem.solid.tip_cache import own_table
+from cuefem.solid.tip_table import HEIGHT, OwnTip, TipTable, of_tip
 from tests.helpers.command_line import call
 from tests.helpers.refusals import command_refuses
 
@@ -89,13 +89,12 @@ def test_kept_in_a_file_and_made_again_when_that_is_spoilt(cache: Path) -> None:
 def quick(cache: Path, monkeypatch: pytest.MonkeyPatch) -> list[OwnTip]:
     """Tips whose computation was asked for; in its place stands the package's table of the lowest tip."""
     computed: list[OwnTip] = []
-    lowest = of_tip(HEIGHT[0], 0.0, 0.4)
 
     def own_tip(tip: OwnTip) -> TipTable:
         computed.append(tip)
-        return lowest._replace(punch=lowest.punch[:FLAT_HEIGHTS])
+        return of_tip(HEIGHT[0], 0.0, 0.4)
 
-    monkeypatch.setattr("cuefem.solid.tip_sheets.own_tip", own_tip)
+    monkeypatch.setattr("cuefem.solid.tip_compliance.own_tip", own_tip)
     return computed
 
 
@@ -104,13 +103,13 @@ def test_a_kept_table_of_another_shape_is_computed_again(cache: Path, quick: lis
     (file,) = cache.iterdir()
     with np.load(file) as kept:
         parts = dict(kept)
-    for name in ("whole", "punch", "heights"):
+    for name in ("patches", "head_on"):
         np.savez(file, **parts | {name: parts[name][..., :1]})
         own_table.cache_clear()
         assert not FLAT.at_hand(D)
         FLAT.compliance(D, 0.0, 2e-3)
         assert FLAT.at_hand(D)
-    assert len(quick) == 4
+    assert len(quick) == 3
 
 
 def test_a_tip_without_a_home_folder_is_computed_and_not_kept(

@@ -1,0 +1,327 @@
+"""The compliance of a leather tip's surface, from 3-D elasticity of a domed cylinder; whatever tip, with its layers.
+
+The weak forms are those of `cuefem.solid.elasticity`, in every harmonic. A square (y, x) carries the mesh and is mapped
+onto the section, r = sin(pi x/2) D/2 and z = y H(r), z from the base, which is held, to the apex; flat layers under the
+leather keep z = y H(0), and the leather is mapped from there on. What counts is the compliance of the top surface, on
+which each patch of load is a quadratic form. The unit of length is the diameter, that of stress is Young's modulus of
+the leather on top.
+
+Where the ferrule below gives too, it is the lowest layer, and what its end section moves is taken out of the surface's
+compliance: that the beam has already. Both are solids, so that the ferrule's held base cancels, and what is left is
+what leather and ferrule give beyond a section that moves as a whole.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import lru_cache
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+import scipy.sparse as sp
+import scipy.sparse.linalg as sla
+from skfem import Basis, ElementQuadP, MeshQuad, MeshQuad2
+
+from cuefem.cue import Array
+from cuefem.solid import elasticity
+from cuefem.solid import tip_table as tt
+
+SOLVED = (10, 12, 15, 18, 22, 26, 31)  # harmonics above 8 that are computed; the others are interpolated
+ROWS = (0.0, 0.25, 0.75, 1.0)  # where elements end within a layer
+POINTS = 48  # Gauss points along a ray of a patch, and over each part of the half circle of rays
+PLACES, RADII, HEAD_ON = 13, 11, 8  # nodes of the table
+
+
+class TipFineness(NamedTuple):
+    """order: of the polynomials; across, up: where elements end along the radius and the axis, from 0 to 1, ``up``
+    within the leather; harmonics: the highest m."""
+
+    order: int
+    across: tuple[float, ...]
+    up: tuple[float, ...]
+    harmonics: int
+
+
+def usual(order: int = 4, radial: int = 6, up: int = 5, harmonics: int = 30) -> TipFineness:
+    """Elements that shrink towards the rim, and towards base and top."""
+    x, y = np.linspace(0, 1, radial + 1), np.linspace(0, 1, up + 1)
+    y = 0.5 * y + 0.25 * (1 - np.cos(np.pi * y))
+    return TipFineness(order, tuple(x.tolist()), tuple(y.tolist()), harmonics)
+
+
+TABLE = usual(5, 6, 5, 36)
+
+
+def fitted(height: float, radius: float, order: int = 5) -> TipFineness:
+    """For the axisymmetric contact of a radius over D: elements end at its edge, shrink towards it and to the top."""
+    edge = 2 * radius
+    out = [edge]
+    step = 0.15 * edge
+    while out[-1] + 1.6 * step < 1:
+        out.append(out[-1] + step)
+        step *= 2
+    ends = (0.0, 0.5 * edge, 0.85 * edge, *out, *((1.0,) if edge < 1 else ()))
+    depth, step = [0.0], 0.3 * radius
+    while depth[-1] + 1.6 * step < height:
+        depth.append(depth[-1] + step)
+        step *= 2
+    return TipFineness(
+        order, tuple(_across(np.array(ends) / 2).tolist()), tuple(1 - d / height for d in (height, *depth[::-1])), 0
+    )
+
+
+class Shape(NamedTuple):
+    """A domed cylinder of unit diameter: its whole height, the dome's curvature D/r in [0, 2], and the flat layers
+    under the leather, from the base up, together lower than the dome's rim."""
+
+    height: float
+    curvature: float
+    layers: tuple[tt.Flat, ...] = ()
+
+    @property
+    def leather(self) -> float:
+        """Height of the leather over D, the dome included."""
+        return self.height - sum(height for height, _, _ in self.layers)
+
+
+def drop(radius: Array | float, curvature: float) -> Array | float:
+    """Depth of a sphere's surface below its apex at a distance ``radius`` from the axis."""
+    return curvature * np.square(radius) / (1 + np.sqrt(np.maximum(1 - np.square(curvature * np.asarray(radius)), 0)))
+
+
+def _across(radius: Array | float) -> Array:
+    """x of the square at a radius over D: r = sin(pi x/2)/2, in which a hemisphere is smooth at its rim."""
+    return np.asarray(np.arcsin(np.minimum(2 * np.asarray(radius), 1.0)) * 2 / np.pi)
+
+
+def surface_nodes(how: TipFineness) -> Array:
+    """x of the surface's nodes: Chebyshev's of every element."""
+    return np.append([tt.nodes(a, b, how.order + 1)[:-1] for a, b in pairwise(how.across)], 1.0)
+
+
+def lagrange(radius: Array, how: TipFineness) -> Array:
+    """Values at ``radius``, over D, of the functions that are 1 at one node and 0 at the others, (points, nodes)."""
+    x = _across(radius)
+    cell = np.clip(np.searchsorted(how.across, x, side="right") - 1, 0, len(how.across) - 2)
+    values = np.zeros((len(x), (len(how.across) - 1) * how.order + 1))
+    for k, (a, b) in enumerate(pairwise(how.across)):
+        values[cell == k, k * how.order : (k + 1) * how.order + 1] = tt.weights(x[cell == k], a, b, how.order + 1)
+    return values
+
+
+class TipSolid:
+    """A domed cylinder on a held base, meshed: the rows of ``how`` within the leather, and three within every layer."""
+
+    def __init__(self, shape: Shape, how: TipFineness) -> None:
+        ends = np.append(0.0, np.cumsum([height for height, _, _ in shape.layers]) / shape.height)
+        spans = [(a + np.array(ROWS[:-1]) * (b - a)) for a, b in pairwise(ends)]
+        rows = np.concatenate([*spans, ends[-1] + (1 - ends[-1]) * np.array(how.up)])
+        square = MeshQuad.init_tensor(rows, np.array(how.across))
+        curved = MeshQuad2.from_mesh(square)
+        y, x = curved.doflocs
+        r, within = np.sin(np.pi / 2 * x) / 2, np.maximum(y - ends[-1], 0.0) / (1 - ends[-1])
+        mesh = MeshQuad2(np.array([shape.height * y - within * drop(r, shape.curvature), r]), curved.t)
+        element, nodes = ElementQuadP(how.order), surface_nodes(how)
+        self.shape, self.how, self.basis = shape, how, Basis(mesh, element, intorder=2 * how.order + 2)
+        self.trace = Basis(square, element).probes(np.array([np.ones_like(nodes), nodes])).tocsr()
+        self.layer = np.searchsorted(ends[1:], square.p[0, square.t].mean(axis=0))
+
+    def surface(self, nu: float, m: int) -> Array:
+        """Displacements (U, V, W) of the surface's nodes per unit load on them, E = 1, (3 nodes, 3 nodes)."""
+        basis, trace, none = self.basis, self.trace, 0 * self.trace
+        bodies = [*((E, ratio) for _, E, ratio in self.shape.layers), (1.0, nu)]
+        stiff = [elasticity.stiffness(E, ratio, E / (2 * (1 + ratio)), E, ratio) for E, ratio in bodies]
+        K, _ = elasticity.matrices(basis, m, [stiff[i] for i in self.layer], [1.0] * len(self.layer))
+        base = elasticity.boundary(basis, 0, 0.0)
+        free = elasticity.free(basis, m, base, basis.N + base, 2 * basis.N + base)
+        turned = -trace if m == 1 else none  # V = S - U
+        top = sp.bmat([[trace, none, none], [turned, trace, none], [none, none, trace]]).tocsc()[:, free]
+        symmetric = {"permc_spec": "MMD_AT_PLUS_A", "diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
+        return np.asarray(top @ sla.splu(K[free][:, free], **symmetric).solve(top.T.toarray()))
+
+
+def surfaces(solid: TipSolid, nu: float) -> list[Array]:
+    """`TipSolid.surface` for all harmonics.
+
+    m times it hardly changes from one high m to the next, so it is interpolated; patches get little from those.
+    """
+    highest = solid.how.harmonics
+    solved = sorted({m for m in (*range(9), *SOLVED, highest) if m <= highest})
+    known = {m: solid.surface(nu, m) for m in solved}
+    for low, high in pairwise(solved):
+        for m in range(low + 1, high):
+            part = (m - low) / (high - low)
+            known[m] = ((1 - part) * low * known[low] + part * high * known[high]) / m
+    return [known[m] for m in range(highest + 1)]
+
+
+class Patch(NamedTuple):
+    """Where a patch is: distance of its centre from the axis, over the tip's radius, and its radius over D."""
+
+    place: float
+    radius: float
+
+
+def loads(shape: Shape, patch: Patch, how: TipFineness) -> Array:
+    """Loads of one newton on the surface's nodes along n and along t, of every harmonic; (m, 2, 3 nodes).
+
+    The traction is Hertz's, (1 - q^2/a^2)^(1/2) with q the distance from the patch's centre in the tangent plane there.
+    What lies beyond the rim is cut off and the rest scaled up. n points into the leather, t away from the axis.
+    """
+    k, a, centre = shape.curvature, patch.radius, patch.place / 2
+    sin, rim = k * centre, k / 2
+    cos, cos_rim = math.sqrt(1 - sin * sin), math.sqrt(max(1 - rim * rim, 0.0))
+
+    def reach(angle: Array) -> Array:
+        """Distance from the centre to the rim along rays of the tangent plane."""
+        c = np.cos(angle)
+        b, square = centre * cos_rim * c, (c * sin) ** 2 + cos**2
+        return np.asarray((np.sqrt(b * b + square * max(0.25 - centre**2, 0.0)) - b) / square)
+
+    knots = [0.0, np.pi]
+    if centre > 0 and reach(np.array([0.0]))[0] < a < reach(np.array([np.pi]))[0]:
+        low, high = 0.0, np.pi
+        for _ in range(60):
+            middle = (low + high) / 2
+            low, high = (middle, high) if reach(np.array([middle]))[0] < a else (low, middle)
+        knots.insert(1, low)
+    g, w = np.polynomial.legendre.leggauss(POINTS)
+    angle = np.concatenate([(q - p) / 2 * g + (p + q) / 2 for p, q in pairwise(knots)])
+    turn = np.concatenate([(q - p) / 2 * w for p, q in pairwise(knots)])
+    last = np.arcsin(np.minimum(reach(angle) / a, 1.0))  # q = a sin(beta)
+    beta = last[:, None] * (g + 1) / 2
+    q = a * np.sin(beta)
+    level = np.sqrt(1 - np.square(k * q))  # over it, for the dome's surface is meant, not the tangent plane
+    flat = turn[:, None] * (last[:, None] * w / 2) * q / level
+    x = centre + q * np.cos(angle)[:, None] * cos - k * q * q / (1 + level) * sin
+    y = q * np.sin(angle)[:, None]
+    x, y = x.ravel(), y.ravel()
+    weight = (flat * np.cos(beta) ** 2).ravel()
+    weight /= weight.sum()
+    radius, turned = np.hypot(x, y), np.arctan2(y, x)
+    functions = lagrange(radius, how)
+    m = np.arange(how.harmonics + 1)[:, None]
+    even, odd = np.cos(m * turned) * weight, np.sin(m * turned) * weight
+    along = [f @ functions for f in (even * np.cos(turned), -odd * np.sin(turned), even)]  # of a load along x, x and z
+    none = np.zeros_like(along[0])
+    lateral = np.concatenate([along[0], along[1], none], axis=-1)
+    axial = np.concatenate([none, none, along[2]], axis=-1)
+    return np.stack([-(sin * lateral + cos * axial), cos * lateral - sin * axial], axis=1)
+
+
+def compliance(surfaces: Sequence[Array], load: Array) -> Array:
+    """E D times the mean displacement, weighted with the loads, per load; surfaces: of the harmonics 0, 1, ..."""
+    return np.asarray(sum(f @ S @ f.T for f, S in zip(load, surfaces, strict=True)))
+
+
+def head_on(shape: Shape, surface: Array, radius: float, how: TipFineness, terms: int = 5) -> Array:
+    """Of the contact of radius ``radius``, over D, with a rigid ball: forces and depths, (2, 3), for unit gaps.
+
+    The gaps between undeformed ball and tip are, at the distance p from the axis: the depth of the dome over its
+    curvature, p^2/2 and p^4/8. surface: that of harmonic 0. The pressure is (1 - p^2/a^2)^(1/2) times a polynomial in
+    p^2/a^2, so it vanishes at the edge as that of two smooth bodies does; force and depth are linear in the gap.
+    It acts along the axis, between the normal of the dome and that of the ball. Galerkin's method, tested with these
+    pressures and with a punch's.
+    """
+    g, w = np.polynomial.legendre.leggauss(160)
+    beta = np.pi / 4 * (g + 1)
+    x = np.sin(beta)
+    p = radius * x
+    area = np.pi / 4 * w * 2 * np.pi * p * radius * np.cos(beta)
+    shapes = np.polynomial.legendre.legvander(2 * x * x - 1, terms).T * np.cos(beta) * area
+    nodes = surface.shape[0] // 3
+    axial = surface[2 * nodes :, 2 * nodes :]
+    load = shapes @ lagrange(p, how)
+    matrix = np.hstack([load @ axial @ load[:-1].T, -shapes.sum(axis=1)[:, None]])
+    k = shape.curvature
+    gaps = np.array([p * p / (1 + np.sqrt(np.maximum(1 - np.square(k * p), 0))), p * p / 2, p**4 / 8])
+    solution = np.linalg.solve(matrix, -(shapes @ gaps.T))
+    return np.array([shapes[:-1].sum(axis=1) @ solution[:-1], solution[-1]])
+
+
+def tip_table(shape: Shape, nu: float, *, on_ferrule: bool = False) -> tt.TipTable:
+    """The table of one tip, with whatever layers it has; on_ferrule: whether the lowest layer is the ferrule."""
+    section = _section(shape.layers[0]) if on_ferrule else None
+
+    def local(solid: TipSolid, m: int, surface: Array) -> Array:
+        """The surface's compliance without what the ferrule's end section moves."""
+        return surface if section is None else surface - _carried(shape, solid.how, section, m)
+
+    places, radii = table_patches(shape.curvature)
+    solid = TipSolid(shape, TABLE)
+    surface = [local(solid, m, S) for m, S in enumerate(surfaces(solid, nu))]
+    flat = [compliance(surface, load) for load in table_loads(shape.curvature)]
+    C = np.reshape(flat, (PLACES, RADII, 2, 2))
+    direct = np.diagonal(C, axis1=2, axis2=3)
+    across = C[..., 0, 1] / places[:, None] / np.sqrt(direct.prod(axis=-1))
+    patches = np.concatenate([np.log(direct / tt.half_space(nu, radii)), across[..., None]], -1)
+    head = np.zeros((HEAD_ON, 2, 3))
+    for i, a in enumerate(np.exp(tt.nodes(*tt.LOG_HEAD_ON, HEAD_ON))):
+        solid = TipSolid(shape, fitted(shape.leather, a))
+        forces = head_on(shape, local(solid, 0, solid.surface(nu, 0)), a, solid.how)
+        head[i] = np.log(forces / tt.half_space_head_on(nu, a))
+    return tt.TipTable(shape.curvature, nu, patches, head)
+
+
+def table_patches(curvature: float) -> tuple[Array, Array]:
+    """Places and radii of the patches in the table of a tip."""
+    places = np.sqrt(tt.nodes(tt.AXIS**2, tt.farthest(curvature) ** 2, PLACES))
+    return places, np.exp(tt.nodes(*tt.LOG_RADIUS, RADII))
+
+
+@lru_cache(maxsize=1)
+def table_loads(curvature: float) -> list[Array]:
+    """The loads of these patches on `TABLE`, the same for tips of all heights."""
+    places, radii = table_patches(curvature)
+    return [loads(Shape(1.0, curvature), Patch(s, a), TABLE) for s in places for a in radii]
+
+
+def _section(ferrule: tt.Flat) -> Array:
+    """Displacements (u_z, u_x, turn about y) of the end section of a ferrule alone, held at its base, per unit force
+    along z and along x and unit moment about y there; (3, 3).
+
+    They come as the tractions of a long beam (de Saint-Venant's), so that nothing is local at the end: with the radius
+    R, 1/A along z, and for the force along x and the moment, over the second moment I,
+    t_r = (3 + 2 nu)/(8 (1 + nu)) (R^2 - r^2) cos t, t_t = -((3 + 2 nu) R^2 - (1 - 2 nu) r^2)/(8 (1 + nu)) sin t, and
+    t_z = -r cos t.
+    """
+    (height, modulus, nu), how = ferrule, TABLE._replace(up=ROWS, harmonics=1)  # the base's corner on one mesh
+    solid = TipSolid(Shape(height, 0.0), how)
+    g, w = np.polynomial.legendre.leggauss(60)
+    r, weight = (g + 1) / 4, w / 4
+    functions = lagrange(r, how) * (weight * r)[:, None]
+    area, second = np.pi / 4, np.pi / 64
+    a, b = (3 + 2 * nu) / (8 * (1 + nu)), (1 - 2 * nu) / (8 * (1 + nu))
+    none = np.zeros(functions.shape[1])
+    along = np.concatenate([none, none, 2 * np.pi * functions.sum(axis=0) / area])
+    pushed = [np.pi / second * (t @ functions) for t in (a * (0.25 - r * r), -(a * 0.25 - b * r * r), -r)]
+    across = np.array([np.concatenate([pushed[0], pushed[1], none]), np.concatenate([none, none, pushed[2]])])
+    moved = np.zeros((3, 3))
+    moved[0, 0] = along @ solid.surface(nu, 0) @ along
+    moved[1:, 1:] = across @ solid.surface(nu, 1) @ across.T
+    return moved / modulus
+
+
+def _carried(shape: Shape, how: TipFineness, section: Array, m: int) -> Array:
+    """The compliance of the surface's nodes in harmonic m that comes of the ferrule's end section alone, which carries
+    the tip as a rigid body; (3 nodes, 3 nodes)."""
+    x = surface_nodes(how)
+    zeros, ones = np.zeros_like(x), np.ones_like(x)
+    if m > 1:
+        return np.zeros((3 * len(x), 3 * len(x)))
+    if m == 0:
+        moved = np.concatenate([zeros, zeros, ones])[None]
+        return np.asarray(moved.T @ section[:1, :1] @ moved)
+    r = np.sin(np.pi / 2 * x) / 2
+    z = shape.height - drop(r, shape.curvature) - shape.layers[0][0]
+    moved = np.array([np.concatenate([ones, -ones, zeros]), np.concatenate([z, -z, -r])])
+    return np.asarray(moved.T @ section[1:, 1:] @ moved)
+
+
+def own_tip(tip: tt.OwnTip) -> tt.TipTable:
+    """The table of one tip, by itself."""
+    under = tip.layers if tip.ferrule is None else (tip.ferrule, *tip.layers)
+    height = max(tip.height, tt.sag(tip.curvature) + tt.WALL) + (tip.ferrule[0] if tip.ferrule else 0.0)
+    return tip_table(Shape(height, tip.curvature, under), tip.nu, on_ferrule=tip.ferrule is not None)
