@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,8 +13,8 @@ from hypothesis import strategies as st
 
 import cuefem as cf
 from cuefem.report.model_error import model_error_record, model_error_sheet
-from cuefem.report.report_page import page
 from cuefem.solid.shaft import Body
+from tests.helpers.command_line import as_json, call, said
 
 WOOD = cf.Material(E=12.6e9, G=1.1e9, rho=700.0, nu=0.45, across_ratio=0.0985, nu_across=0.52)
 CONE = cf.Segment(0.7, 0.012, 0.021, WOOD)
@@ -117,4 +118,22 @@ def test_check_and_report_say_how_far_beam_theory_is_off() -> None:
     assert abs(record["scikit_fem"]["difference"]) < 1e-9
     assert sheet.rows[-1][0] == "tone 1, same beam by scikit-fem"
     assert "AxialWaves" in sheet.notes[-1]
-    assert f"<p>{record['sentence']}</p>" in page("a cue", scene, trust=[record["sentence"]])
+
+
+def test_a_report_says_how_far_beam_theory_is_off(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Once in the terminal, in the page and in JSON, if `--check` asks for it; of the scene that is reported."""
+    asked: list[cf.Scene] = []
+
+    def record(scene: cf.Scene, follow: object) -> dict[str, object]:
+        asked.append(scene)
+        return {"sentence": "Beam theory is 0.125 % off."}
+
+    monkeypatch.setattr("cuefem.report.model_error_record", record)
+    file, written = tmp_path / "scene.toml", tmp_path / "page.html"
+    cf.save(SCENE, file)
+    assert said("report", file, "--check").count("0.125 % off") == 1
+    assert as_json("report", file, "--check")["model_error"] == record(SCENE, None)
+    assert call("report", file, "--check", "-o", written)[0] == 0
+    assert written.read_text(encoding="utf-8").count("0.125 % off") == 1
+    assert "0.125 % off" not in said("report", file)
+    assert asked == [SCENE] * 4
