@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cuefem.beam.tip import TipModes, free_tip_modes, lumped_tip_modes, tip_modes
-from cuefem.beam.waves import ended_mesh_for, mesh_for, modes_below
+from cuefem.beam.waves import modes_below
 from cuefem.cue import Cue
 from cuefem.quantity.fields import CONTACT_TIME
 from cuefem.scene import Resolution, Scene
@@ -25,44 +25,41 @@ from cuefem.solid.resolution import Solid
 
 if TYPE_CHECKING:
     from cuefem.beam.modes import Modes
-    from cuefem.beam.spectrum import Ended
 
 # Modes are kept up to this many periods in a contact, with a tail; a plain sum wants more, the carbon cue's is 1 % off
-# even with a hundred.
-PERIODS_KEPT, PLAIN_PERIODS = 30, 60
-# But never fewer than LEAST, however long the contact. The end mass of a tip that sticks needs more: its velocity
+# even with a hundred. But never fewer than LEAST, however long the contact.
+PERIODS_KEPT, PLAIN_PERIODS, LEAST = 30, 60, 40
+# The same for a strike with a whole tip, which gives along its surface too, so that the shaft's end feels no step: over
+# 70 random cues the modes left out change squirt by 2e-5 at most, for 2.5e-3 with a bare tip and twice as many.
+PERIODS_OF_TIP, LEAST_OF_TIP = 15, 24
+# The end mass of a tip that sticks needs more: its velocity
 # begins with a step, whose front comes back from the butt at 2 L/c with frequencies of 10 to 80 kHz, whatever the
 # contact time. A tip that is pushed or led from rest starts no such front, and its end mass takes a strike's modes.
 # What these numbers hold: studies/accuracy/accuracy.md.
-LEAST, LEAST_STUCK = 40, 160
+LEAST_STUCK = 160
 SOFT = 1e9  # Pa: leather is softer, everything else that cues are made of is stiffer
 # Never more than this by default, which a contact of a fraction of a millisecond would ask for: the tail does the rest,
 # and more would take over a second. MOST is the last rung of `resolve`.
 MOST_KEPT, MOST = 160, 400
 
 
-def default_resolution(scene: Scene, *, periods: float = PERIODS_KEPT, least: int = LEAST) -> Resolution:
-    """The default resolution: modes up to the frequency ``periods`` / contact time, and at least ``least`` of them."""
-    count = default_modes(scene, periods=periods, least=least)
-    return Resolution(*mesh_for(scene.shaft, count), count)
+def strike_modes_kept(scene: Scene) -> int:
+    """The number of modes that a strike takes by default."""
+    whole = scene.contact_terms.tip is not None
+    return default_modes(scene, **({"periods": PERIODS_OF_TIP, "least": LEAST_OF_TIP} if whole else {}))
 
 
 def default_modes(scene: Scene, *, periods: float = PERIODS_KEPT, least: int = LEAST) -> int:
-    """The number of modes of the default resolution."""
+    """The number of modes up to the frequency ``periods`` / contact time, at least ``least``."""
     # a contact time that the user gave is in bounds; one that follows from a stiffness or a whole tip may not be
     if not CONTACT_TIME.holds(scene.contact_time):
         got = f"{scene.stiffness:.6g} N/m, {scene.contact_time:.3g} s"
         raise ValueError(f"Tip.stiffness must make a head-on contact time in {CONTACT_TIME.bounds}; got {got}")
-    return _count_for(scene.shaft, scene.contact_time, periods, least)
+    return modes_for(scene.shaft, scene.contact_time, periods=periods, least=least)
 
 
-def resolution_for(cue: Cue, time: float, *, periods: float = PERIODS_KEPT, least: int = LEAST) -> Resolution:
-    """Modes up to the frequency ``periods`` / time, at least ``least`` of them, on the mesh that holds them."""
-    count = _count_for(cue, time, periods, least)
-    return Resolution(*mesh_for(cue, count), count)
-
-
-def _count_for(cue: Cue, time: float, periods: float, least: int) -> int:
+def modes_for(cue: Cue, time: float, *, periods: float = PERIODS_KEPT, least: int = LEAST) -> int:
+    """The number of modes up to the frequency ``periods`` / time, at least ``least``."""
     return min(max(modes_below(cue, 2 * np.pi * periods / time), least), MOST_KEPT)
 
 
@@ -71,22 +68,22 @@ class Solved:
     """A scene and its modes, each eigenproblem solved when it is first asked for, and once.
 
     Nothing here depends on the stroke: one solved scene serves strikes at every speed and offset. at: the resolution of
-    all modes; by default that of `default_resolution`, ended by a tail.
+    all modes; by default the modes of `strike_modes_kept`, ended by a tail.
     """
 
     scene: Scene
     at: Resolution | Solid | None = None
-    _kept: dict[Resolution | int, Ended] = field(default_factory=dict, init=False, repr=False)
+    _kept: dict[tuple[Resolution | int, bool], Modes] = field(default_factory=dict, init=False, repr=False)
 
     @property
     def modes(self) -> Modes:
         """Bending modes that a strike takes; ValueError for a lumped cue, which has none."""
-        return self._modes(LEAST).modes
+        return self._modes()
 
     @cached_property
     def tip(self) -> TipModes:
         """Tip modes that a strike takes."""
-        return self.tip_modes(LEAST)
+        return self.tip_modes()
 
     @cached_property
     def tip_stuck(self) -> TipModes:
@@ -95,7 +92,7 @@ class Solved:
 
     @property
     def least_smooth(self) -> int:
-        """How many modes the end mass of a smooth drive takes: a strike's, or `tip_stuck`'s on a leather segment.
+        """How many modes the end mass of a smooth drive takes at least: few, or `tip_stuck`'s on a leather segment.
 
         A leather segment of the drawing has resonances far above the modes of a strike, and a push of a millisecond
         still excites them: with a strike's modes alone, the end mass by force was 0.9 % off for leather before brass.
@@ -106,18 +103,18 @@ class Solved:
     @property
     def tip_smooth(self) -> TipModes:
         """Tip modes for an end mass whose drive begins smoothly."""
-        return self.tip if self.least_smooth == LEAST else self.tip_stuck
+        return self.tip_stuck if self.least_smooth == LEAST_STUCK else self.tip_modes(LEAST)
 
     @cached_property
     def tip_plain(self) -> TipModes:
         """Tip modes summed plainly, without a tail: twice the frequencies of a strike's by default."""
         if self.at is not None or self.scene.lumped is not None:
             return self.tip
-        plain = default_resolution(self.scene, periods=PLAIN_PERIODS)
-        return tip_modes_from(self._solved(plain), self.scene)
+        plain = default_modes(self.scene, periods=PLAIN_PERIODS)
+        return tip_modes_from(self._solved(plain, ended=False), self.scene)
 
-    def tip_modes(self, least: int) -> TipModes:
-        """Tip modes of any cue, with the scene's effects: by default at least ``least`` bending modes."""
+    def tip_modes(self, least: int | None = None) -> TipModes:
+        """Tip modes of any cue with its effects: a strike's by default, or at least ``least`` bending modes."""
         if self.scene.lumped is not None:
             return lumped_tip_modes(self.scene.lumped)
         if isinstance(self.at, Solid):
@@ -137,41 +134,37 @@ class Solved:
         vars(small).update({name: replace(value) for name, value in vars(self).items() if isinstance(value, TipModes)})
         return small
 
-    def _modes(self, least: int) -> Ended:
+    def _modes(self, least: int | None = None) -> Modes:
         if isinstance(self.at, Solid):
             raise ValueError("at must be a Resolution, for this asks for the shapes of a beam; got a Solid")
         if self.at is not None:
-            return self._solved(self.at)
-        return self._solved(default_modes(self.scene, least=least))
+            return self._solved(self.at, ended=False)
+        count = strike_modes_kept(self.scene) if least is None else default_modes(self.scene, least=least)
+        return self._solved(count, ended=True)
 
-    def _solved(self, at: Resolution | int) -> Ended:
-        """Bending modes at a resolution, summed plainly; or a number of them, ended by a tail; each solved once."""
-        if at not in self._kept:
-            from cuefem.beam import modes, spectrum, system
+    def _solved(self, at: Resolution | int, *, ended: bool) -> Modes:
+        """Bending modes at a resolution, or a number of them; each solved once. ended: by a tail, or summed plainly."""
+        if (at, ended) not in self._kept:
+            from cuefem.beam import modes, system
 
             scene = self.scene
-            elements: int | tuple[int, ...]
-            order: int | tuple[int, ...]
-            if isinstance(at, Resolution):
-                elements, order, wanted = at.elements, at.order, at.modes
-            else:
-                elements, order = ended_mesh_for(scene.shaft, at)
-                wanted = at
-            beam = system.assemble(scene.shaft, elements=elements, order=order, effects=scene.cue_effects, count=wanted)
+            beam = system.assemble(scene.shaft, at, scene.cue_effects)
             # a support makes rigid modes flexible; the number of modes in all stays the same, so that its limits
             # are continuous
-            count = wanted + 2 - beam.rigid.shape[1]
-            self._kept[at] = (
-                modes.solve(beam, count)
-                if isinstance(at, Resolution)
-                else spectrum.ended(beam, count, turning=turning(scene))(count)
-            )
-        return self._kept[at]
+            count = (at if isinstance(at, int) else at.modes) + 2 - beam.rigid.shape[1]
+            loads = 0 if not ended else 2 if turning(scene) else 1
+            self._kept[at, ended] = modes.solve(beam, count, ended=loads)
+        return self._kept[at, ended]
 
 
-def tip_modes_of(scene: Scene, at: Resolution | Solid | None = None, *, least: int = LEAST) -> TipModes:
+def tip_modes_of(scene: Scene, at: Resolution | Solid | None = None, *, least: int | None = None) -> TipModes:
     """Tip modes of any scene's cue, with its effects; ended by a tail if no resolution is given."""
     return Solved(scene, at).tip_modes(least)
+
+
+def ended_tip_modes(scene: Scene, count: int) -> TipModes:
+    """Tip modes of a finite-element cue from ``count`` bending modes ended by a tail."""
+    return tip_modes_from(Solved(scene)._solved(count, ended=True), scene)
 
 
 def turning(scene: Scene) -> bool:
@@ -179,7 +172,7 @@ def turning(scene: Scene) -> bool:
     return any(scene.contact_terms.lever(math.pi / 6))
 
 
-def tip_modes_from(bending: Ended, scene: Scene) -> TipModes:
+def tip_modes_from(bending: Modes, scene: Scene) -> TipModes:
     """Tip modes of the scene's finite-element cue from its bending modes, with what its effects add to them."""
     cue, effects = scene.shaft, scene.cue_effects
     tip = tip_modes(bending, scene.axial_mass)

@@ -1,24 +1,19 @@
-"""Verification of the default: its stick end mass where the front of the shear wave is back, and its size of mesh."""
+"""Verification of the default: its end masses."""
 
 import matplotlib as mpl
 import numpy as np
 import pytest
 
 from cuefem import Cue, Material, Segment, end_mass
-from cuefem.beam.spectrum import ended
-from cuefem.beam.system import assemble
-from cuefem.beam.waves import ended_mesh_for
 from cuefem.endmass.definitions import definition_of, spread_of
-from cuefem.tip_modes import MOST, Solved, tip_modes_from
-from tests.helpers.cues import LEATHER, MAPLE, kim, scene
+from cuefem.tip_modes import MOST, Solved, ended_tip_modes
+from tests.helpers.cues import MAPLE, kim, scene
 
 mpl.use("Agg")
 from studies.strokes import random_cue
 
 BRASS = Material(1e11, 3.7e10, 8500.0)
 MANY = 200  # modes of a reference
-SHORT = Segment(0.001, 0.012, 0.012, LEATHER)
-SHORT_ENDED = Cue((SHORT, Segment(0.7, 0.012, 0.021, MAPLE), Segment(0.001, 0.021, 0.021, LEATHER)), 0.42)
 
 
 def test_a_brass_tip_says_what_it_rings_by() -> None:
@@ -43,9 +38,7 @@ def test_the_modes_of_a_strike_hold_the_end_masses_of_smooth_drives(number: int)
     E = cue.segments[0].material.E
     leather = E < 1e9
     found = scene(cue, 1e-3)
-    elements, orders = ended_mesh_for(found.shaft, MANY, spare=8)
-    family = ended(assemble(cue, elements=elements, order=orders, count=MANY), MANY, turning=False)
-    exact = tip_modes_from(family(MANY), found)
+    exact = ended_tip_modes(found, MANY)
     shortest = 1e-3 if E < 150e6 else 0.5e-3
     for T in draw.uniform(shortest, 5e-3, 12):
         found = scene(cue, float(T))
@@ -60,18 +53,7 @@ def test_the_stick_end_mass_of_random_cues_is_right_to_a_thousandth() -> None:
     draw, errors = np.random.default_rng(9), []
     for _ in range(60):
         found = scene(random_cue(draw), float(draw.uniform(0.5e-3, 3e-3)))
-        elements, orders = ended_mesh_for(found.shaft, MOST)
-        family = ended(assemble(found.shaft, elements=elements, order=orders, count=MOST), MOST, turning=False)
-        exact = definition_of("stick").of(tip_modes_from(family(MOST), found), found)
+        exact = definition_of("stick").of(ended_tip_modes(found, MOST), found)
         errors.append(abs(end_mass(found) / exact - 1))
     assert np.quantile(errors, 0.95) < 1e-3
     assert max(errors) < 2e-3
-
-
-def test_elements_of_a_segment_are_shared_out_over_its_pieces() -> None:
-    from cuefem.beam.mesh import mesh_cue
-
-    mesh = mesh_cue(SHORT_ENDED, elements=(1, 4, 1), order=3, positions=(0.001 + 0.7 / 4,))
-    assert list(np.bincount(mesh.piece)) == [1, 4, 1]
-    with pytest.raises(ValueError, match="must be one number or 3 of them, one a segment; got 2"):
-        mesh_cue(SHORT_ENDED, elements=(1, 4), order=3)

@@ -5,7 +5,7 @@ import pytest
 
 import cuefem as cf
 from cuefem.contact.strike import strike_modes
-from cuefem.tip_modes import Solved, default_resolution, tip_modes_of
+from cuefem.tip_modes import Solved, default_modes, tip_modes_of
 from tests.helpers.strike_scenes import kim_scene
 
 LUMPED = cf.Scene(cf.LumpedCue(0.54, 0.006, 3.0), stroke=cf.Stroke(offset=0.3))
@@ -20,7 +20,7 @@ def test_a_lumped_cue_goes_the_same_way() -> None:
 
 
 def test_what_needs_segments_says_so() -> None:
-    for ask in (lambda: LUMPED.shaft, lambda: Solved(LUMPED).modes, lambda: default_resolution(LUMPED)):
+    for ask in (lambda: LUMPED.shaft, lambda: Solved(LUMPED).modes, lambda: default_modes(LUMPED)):
         with pytest.raises(ValueError, match=r"must be a Cue of segments: .* got a LumpedCue"):
             ask()
     assert LUMPED.lumped is LUMPED.cue

@@ -10,8 +10,11 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
+from numpy.typing import NDArray
 
-from cuefem.cue import Array
+from cuefem.cue import Array, Section
+
+MORE_POINTS = 4  # than the order: Gauss's rule is then exact for cones, whose matrices have the degree 2 order + 6
 
 
 class BasisTable(NamedTuple):
@@ -46,25 +49,43 @@ def line_basis(degree: int, points: Array) -> tuple[Array, Array]:
     return np.array(values), np.array(slopes)
 
 
-def local_basis(order: int, points: Array) -> tuple[Array, Array, Array, Array]:
-    """(w, w', theta, theta') of an element's unknowns at reference ``points``: four (unknowns, q)."""
-    (w, dw), (t, dt) = line_basis(order + 1, points), line_basis(order, points)
-    unknowns = 2 * order + 3
-    out = tuple(np.zeros((unknowns, len(points))) for _ in range(4))
-    w_rows = np.r_[0, 2 : 2 + order, unknowns - 2]
-    t_rows = np.r_[1, 2 + order : unknowns - 2, unknowns - 1]
-    for rows, first, values, slopes in ((w_rows, 0, w, dw), (t_rows, 2, t, dt)):
-        bubbles_between = np.r_[0, 2 : len(values), 1]
-        out[first][rows], out[first + 1][rows] = values[bubbles_between], slopes[bubbles_between]
-    return out  # type: ignore[return-value]
+@functools.cache
+def _rows(order: int) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:
+    """Where the functions of w and of theta stand among an element's unknowns, and which of the line basis they are."""
+    last = 2 * order + 1
+    w, theta = np.r_[0, 2 : 2 + order, last], np.r_[1, 2 + order : last, last + 1]
+    return w, np.r_[0, 2 : order + 2, 1], theta, np.r_[0, 2 : order + 1, 1]
+
+
+def element_basis(order: int, values: Array, slopes: Array, length: float = 1.0) -> Array:
+    """w, w', theta, theta' of an element's unknowns, (4, unknowns, q), from its line basis and slopes (degrees, q).
+
+    Rotations stand times ``length``.
+    """
+    out = np.zeros((4, 2 * order + 3, values.shape[1]))
+    w, of_w, theta, of_theta = _rows(order)
+    out[0, w], out[1, w] = values[of_w], slopes[of_w]
+    out[2, theta], out[3, theta] = values[of_theta] / length, slopes[of_theta] / length
+    return out
+
+
+@functools.cache
+def gauss(count: int) -> tuple[Array, Array]:
+    """Gauss's points and weights on [0, 1]."""
+    points, weights = leggauss(count)
+    return (points + 1) / 2, weights / 2
+
+
+@functools.cache
+def line_table(order: int) -> tuple[Array, Array]:
+    """The line basis of degree ``order`` + 1 and its derivatives at the Gauss points of `table`."""
+    return line_basis(order + 1, gauss(order + MORE_POINTS)[0])
 
 
 @functools.cache
 def table(order: int) -> BasisTable:
-    """The tabulated basis of one polynomial order, made once; Gauss points exact for cones (degree 2 order + 4)."""
-    points, weights = leggauss(order + 4)
-    points, weights = (points + 1) / 2, weights / 2
-    return BasisTable(points, weights, *local_basis(order, points))
+    """The tabulated basis of one polynomial order, made once."""
+    return BasisTable(*gauss(order + MORE_POINTS), *element_basis(order, *line_table(order)))
 
 
 @functools.cache
@@ -79,3 +100,17 @@ def products(order: int) -> tuple[Array, Array]:
     stiffness = np.concatenate([product(dt, dt), product(dw, dw), -2 * product(dw, t), product(t, t)])
     mass = np.concatenate([product(w, w), product(t, t)])
     return stiffness, mass
+
+
+def element_matrices(section: Section, sizes: Array, length: float, order: int) -> tuple[Array, Array]:
+    """Element K and M, each (..., elements, u, u), from section properties (..., elements, q) and element sizes.
+
+    One matrix product each; ``length`` scales theta.
+    """
+    t, h = table(order), sizes[..., None]
+    EI, kGA = section.EI * t.weights, section.kGA * t.weights
+    stiff = np.concatenate([EI / (h * length**2), kGA / h, kGA / length, kGA * h / length**2], axis=-1)
+    heavy = np.concatenate([section.rhoA * t.weights * h, section.rhoI * t.weights * h / length**2], axis=-1)
+    shape = (*stiff.shape[:-1], len(t.w), len(t.w))
+    of_stiffness, of_mass = products(order)
+    return (stiff @ of_stiffness).reshape(shape), (heavy @ of_mass).reshape(shape)

@@ -1,20 +1,25 @@
-"""The mesh of a cue, and the point terms that effects add at its nodes."""
+"""The mesh of a cue by one rule, and the point terms that effects add at its nodes."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from typing import NamedTuple, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cuefem.beam.waves import LONGEST, mode_phases, orders_for
 from cuefem.cue import Array, Cue
 from cuefem.quantity.fields import MOST_UNKNOWNS
 
 # Two points count as one if they are closer than this fraction of the cue's length.
 NEAR = 1e-9
+# The element goes on through the end of a segment if the section there leaves the mean of its neighbourhood by less
+# than this, relative. Segments that cut one smooth profile into slices then make few elements.
+SMOOTH = 2e-3
+# A joint that gives less than this, relative to the whole shaft, does not give: its spring would only bring rounding.
+RIGID = 1e-9
 
 
 class ActsOnCue(Protocol):
@@ -58,32 +63,31 @@ class ForcedNode:
         """Nothing is there but the node."""
 
 
+class MeshOptions(Protocol):
+    """A mesh as the user asks for it: see `cuefem.Resolution`."""
+
+    @property
+    def elements(self) -> int | tuple[int, ...]:
+        """Elements of every smooth piece, or one number a segment."""
+
+    @property
+    def order(self) -> int:
+        """Polynomial degree of the rotation in every element."""
+
+
 @dataclass(frozen=True)
 class Mesh:
-    """Elements of a cue: a node at every end of a segment and at every position an effect asks for.
+    """Elements of a cue.
 
-    nodes: (elements + 1,) m. piece: (elements,) index of the segment an element lies in. offset: (elements,) m from
-    that segment's tip end to the element's. first: (elements,) the element's first unknown. unknowns: their number.
-    orders: (elements,) the polynomial orders; order: the highest of them, by which all are tabulated. Neighbouring
-    elements share the two unknowns of their node, unless a joint splits the node.
+    nodes: (elements + 1,) m. orders: (elements,) polynomial degrees of the rotation. first: (elements,) the element's
+    first unknown. unknowns: their number. Neighbouring elements share the two unknowns of their node, unless a joint
+    splits the node.
     """
 
     nodes: Array
-    piece: NDArray[np.intp]
-    offset: Array
+    orders: NDArray[np.intp]
     first: NDArray[np.intp]
     unknowns: int
-    orders: NDArray[np.intp]
-
-    @cached_property
-    def order(self) -> int:
-        """The highest order of an element."""
-        return int(self.orders.max())
-
-    @cached_property
-    def sizes(self) -> Array:
-        """Lengths of the elements, m."""
-        return np.diff(self.nodes)
 
     def node(self, x: float) -> int:
         """Index of the node at position ``x``."""
@@ -93,31 +97,6 @@ class Mesh:
     def last(self) -> NDArray[np.intp]:
         """The deflection of every element's butt end, its last unknown but one: (elements,)."""
         return self.first + 2 * self.orders + 1
-
-    @cached_property
-    def _columns(self) -> list[NDArray[np.intp]]:
-        """For each element, which of the unknowns of the highest order it has."""
-        p = self.order
-        orders = self.orders.tolist()
-        columns = {q: np.r_[0, 1, 2 : 2 + q, 2 + p : 1 + p + q, 2 * p + 1, 2 * p + 2] for q in set(orders)}
-        return [columns[q] for q in orders]
-
-    def own(self, vectors: Array) -> Array:
-        """The elements' own unknowns of the highest order, (elements, u, k), of ``vectors`` (unknowns, k)."""
-        if np.all(self.orders == self.order):
-            return vectors[self.first[:, None] + np.arange(2 * self.order + 3)]
-        spread = np.zeros((len(self.orders), 2 * self.order + 3, vectors.shape[1]))
-        for each, start, columns in zip(spread, self.first, self._columns, strict=True):
-            each[columns] = vectors[start : start + len(columns)]
-        return spread
-
-    def blocks(self, roots: Array) -> Sequence[Array]:
-        """roots' roots of every element, exactly symmetric, in the unknowns that it has; roots: (elements, rows, u)."""
-        if np.all(self.orders == self.order):
-            squared: Array = roots.swapaxes(-1, -2) @ roots
-            return list(squared)
-        parts = (each[:, columns] for each, columns in zip(roots, self._columns, strict=True))
-        return [part.T @ part for part in parts]
 
     def unknowns_at(self, node: int) -> tuple[int, int]:
         """Unknowns (w, theta) of a node; if a joint splits it, those of the butt side."""
@@ -130,38 +109,105 @@ class Mesh:
         return last, last + 1
 
 
-def mesh_cue(
-    cue: Cue,
-    *,
-    elements: int | tuple[int, ...],
-    order: int | tuple[int, ...],
-    positions: tuple[float, ...] = (),
-    splits: tuple[float, ...] = (),
-) -> Mesh:
-    """Mesh a cue: a node at every end of a segment and at ``positions``, split at ``splits``.
+def mesh_cue(cue: Cue, at: int | MeshOptions, effects: Sequence[ActsOnCue] = ()) -> Mesh:
+    """Mesh a cue, with a node wherever an effect asks for one.
 
-    elements: of every smooth piece between such nodes; or one number a segment, which are shared out over its smooth
-    pieces by their lengths, at least one to each. order: of every element; or one number a segment.
+    at: how many of the lowest flexible modes the mesh must hold; or a fineness of the user, which has a node at every
+    end of a segment. A joint splits its node.
     """
-    breaks = list(cue.nodes)
-    for x in sorted(set(positions)):
+    for effect in effects:
+        effect.check_on(cue, type(effect).__name__)
+    places = np.unique([cue.leather, *(x for effect in effects for x in effect.positions)])
+    for x in places:
         if not 0 <= x <= cue.length * (1 + NEAR):
             raise ValueError(f"an effect's position must be in [0, {cue.length}] m, on the cue; got {x}")
-        if np.min(np.abs(np.array(breaks) - x)) > NEAR * cue.length:  # else the two points are one
-            breaks.append(x)
-    ends = np.sort(np.array(breaks))
-    counts = _elements_between(cue, ends, elements)
-    check_work(sum(counts.tolist()) * (2 * int(np.max(order)) + 1), f"{len(counts)} pieces")
-    shares = zip(ends, np.diff(ends), counts, strict=False)
-    nodes = np.append(np.concatenate([start + span * (np.arange(n) / n) for start, span, n in shares]), ends[-1])
-    middles = (nodes[:-1] + nodes[1:]) / 2
-    piece = np.searchsorted(cue.nodes, middles, side="right") - 1
-    orders = np.broadcast_to(order, len(cue.segments))[piece]
+    places = _snapped(cue, places)
+    nodes, orders = _by_rule(cue, mode_phases(cue, at), places) if isinstance(at, int) else _by_user(cue, at, places)
+    return _numbered(nodes, orders, [x for effect in effects for x in effect.splits])
+
+
+def mesh_for(cue: Cue, phases: Array, places: Sequence[float]) -> Mesh:
+    """Mesh a cue for waves of ``phases`` rad over its segments, with a node at each of ``places`` and no splits."""
+    return _numbered(*_by_rule(cue, phases, _snapped(cue, np.array([cue.leather, *places]))), [])
+
+
+def _snapped(cue: Cue, places: Array) -> Array:
+    """The places, at the ends of segments where they are these."""
+    nearest = cue.nodes[np.argmin(np.abs(places[:, None] - cue.nodes), axis=1)]
+    return np.where(np.abs(places - nearest) > NEAR * cue.length, places, nearest)
+
+
+def _numbered(nodes: Array, orders: NDArray[np.intp], splits: Sequence[float]) -> Mesh:
     strides = 2 * orders + 1
     first = np.cumsum(strides) - strides
     for node in {int(np.argmin(np.abs(nodes - x))) for x in splits}:
         first[node:] += 2
-    return Mesh(nodes, piece, nodes[:-1] - cue.nodes[piece], first, int(first[-1] + strides[-1]) + 2, orders)
+    unknowns = int(first[-1] + strides[-1]) + 2
+    check_work(unknowns, f"{len(orders)} elements")
+    return Mesh(nodes, orders, first, unknowns)
+
+
+def _by_user(cue: Cue, at: MeshOptions, places: Array) -> tuple[Array, NDArray[np.intp]]:
+    """Nodes and orders of a fineness: numbers of elements are shared out over a segment's pieces by their lengths."""
+    ends = np.unique(np.append(cue.nodes, places))
+    counts = np.full(len(ends) - 1, at.elements if isinstance(at.elements, int) else 0)
+    if isinstance(at.elements, tuple):
+        segment = np.searchsorted(cue.nodes, (ends[:-1] + ends[1:]) / 2, side="right") - 1
+        if len(at.elements) != len(cue.segments):
+            raise ValueError(
+                f"Resolution.elements must be one number or {len(cue.segments)} of them, one a segment; "
+                f"got {len(at.elements)}"
+            )
+        share = np.diff(ends) / np.diff(cue.nodes)[segment]
+        counts = np.maximum(np.ceil(np.array(at.elements)[segment] * share - NEAR), 1).astype(int)
+    check_work(sum(counts.tolist()) * (2 * at.order + 1), f"{len(counts)} pieces")
+    return _divided(ends, counts), np.full(counts.sum(), at.order)
+
+
+def _by_rule(cue: Cue, phases: Array, places: Array) -> tuple[Array, NDArray[np.intp]]:
+    """Nodes and orders for waves of ``phases`` over the segments: elements alike in phase."""
+    check_work(2 * phases.sum(), f"waves of {phases.sum():.6g} rad")
+    sides = cue.section_in(np.arange(len(phases))[:, None], np.diff(cue.nodes)[:, None] * np.array([0.0, 1.0]))
+    logs = np.log([sides.EA, sides.EI, sides.kGA, sides.rhoA])
+    ends = _ends(cue, places, logs, np.diff(cue.nodes) / phases)
+    along, steep = (np.append(0.0, np.cumsum(each)) for each in (phases, np.abs(np.diff(logs[0])[:, 0])))
+    here = np.interp(ends, cue.nodes, along)
+    counts = np.ceil(np.diff(here) / LONGEST).astype(int)
+    nodes = np.interp(_divided(here, counts), along, cue.nodes)
+    nodes[np.append(0, np.cumsum(counts))] = ends
+    phase, taper = (np.diff(np.interp(nodes, cue.nodes, each)) for each in (along, steep))
+    return nodes, orders_for(phase, np.exp(taper))
+
+
+def _ends(cue: Cue, places: Array, logs: Array, reach: Array) -> Array:
+    """The ends of the cue, ``places``, and the ends of segments that must be nodes.
+
+    logs: (kinds, segments, 2) of the section at both ends of every segment. reach: (segments,) the length that the
+    shortest waves resolve, m. The section must not jump at an end that is no node, and it must be the mean of the
+    sections at equal distances before and behind, within reach and no further than the next nodes.
+    """
+    profile, logs = np.repeat(cue.nodes, 2)[1:-1], logs.reshape(len(logs), -1)
+    jumps = np.abs(np.diff(logs)[:, 1::2]).max(axis=0) > 2 * SMOOTH
+    fixed = np.unique(np.concatenate([[0.0, cue.length], places, cue.nodes[1:-1][jumps]]))
+    ends, last = fixed.tolist(), 0.0
+    for i in np.flatnonzero(~jumps) + 1:
+        x, behind = cue.nodes[i], np.searchsorted(fixed, cue.nodes[i])
+        last = max(last, fixed[behind - 1])
+        half = min(reach[i - 1], reach[i], x - last, fixed[behind] - x) / 2
+        near = np.array([x - half, x + half])
+        k = np.searchsorted(profile, near) // 2 * 2  # the tip side of the segment that holds it
+        part = (near - profile[k]) / (profile[k + 1] - profile[k])
+        mean = (logs[:, k] + part * (logs[:, k + 1] - logs[:, k])).mean(axis=1)
+        if np.abs(logs[:, 2 * i - 1 : 2 * i + 1] - mean[:, None]).max() > SMOOTH:
+            ends.append(x)
+            last = x
+    return np.unique(ends)
+
+
+def _divided(ends: Array, counts: NDArray[np.intp]) -> Array:
+    """``counts`` equal steps between each two of the ``ends``."""
+    steps = [a + (b - a) * np.arange(n) / n for a, b, n in zip(ends[:-1], ends[1:], counts, strict=True)]
+    return np.append(np.concatenate(steps), ends[-1])
 
 
 def check_work(unknowns: float, what: str) -> None:
@@ -169,27 +215,6 @@ def check_work(unknowns: float, what: str) -> None:
     if unknowns > MOST_UNKNOWNS:
         asked = "ask for fewer modes or elements, draw fewer segments, or check sizes and materials"
         raise ValueError(f"the mesh must have at most {MOST_UNKNOWNS} unknowns; got {unknowns:.6g}, of {what}: {asked}")
-
-
-def _elements_between(cue: Cue, ends: Array, elements: int | tuple[int, ...]) -> NDArray[np.intp]:
-    """Number of elements in each smooth piece between ``ends``: (len(ends) - 1,)."""
-    if not isinstance(elements, tuple):
-        return np.full(len(ends) - 1, elements)
-    if len(elements) != len(cue.segments):
-        raise ValueError(
-            f"Resolution.elements must be one number or {len(cue.segments)} of them, one a segment; got {len(elements)}"
-        )
-    segment = np.searchsorted(cue.nodes, (ends[:-1] + ends[1:]) / 2, side="right") - 1
-    part = np.diff(ends) / np.diff(cue.nodes)[segment]
-    return np.maximum(np.ceil(np.array(elements)[segment] * part - NEAR), 1).astype(int)
-
-
-class Links(NamedTuple):
-    """Springs between pairs of unknowns: (n,) the two unknowns, (n,) stiffness. Zero length: a joint's two sides."""
-
-    before: NDArray[np.intp]
-    after: NDArray[np.intp]
-    stiffness: Array
 
 
 class Terms:
@@ -219,18 +244,8 @@ class Terms:
 
     def join(self, x: float, w: float, theta: float) -> None:
         """Let deflection and rotation jump at position ``x``, with compliances ``w`` and ``theta``; zero: no jump."""
-        node = self.mesh.node(x)
+        node, section = self.mesh.node(x), self.cue.section(min(x, self.cue.length))
         pairs = zip(self.mesh.unknowns_before(node), self.mesh.unknowns_at(node), strict=True)
-        for pair, value in zip(pairs, (w, theta), strict=True):
-            self.compliance[pair] = self.compliance.get(pair, 0.0) + value
-
-    def links(self, scale: Array) -> Links:
-        """The springs of the joints, in scaled unknowns."""
-        soft = {pair: 1 / value for pair, value in self.compliance.items() if value > 0}
-        before, after = np.array(list(soft), dtype=np.intp).reshape(-1, 2).T
-        return Links(before, after, np.array(list(soft.values())) * scale[before])
-
-    def ties(self) -> NDArray[np.intp]:
-        """Pairs of unknowns (tip side, butt side) that a joint keeps equal: (n, 2)."""
-        stiff = [pair for pair, value in self.compliance.items() if value == 0]
-        return np.array(stiff, dtype=np.intp).reshape(-1, 2)
+        for pair, value, stiffness in zip(pairs, (w, theta), (section.kGA, section.EI), strict=True):
+            gives = value * stiffness > RIGID * self.cue.length
+            self.compliance[pair] = self.compliance.get(pair, 0.0) + (value if gives else 0.0)

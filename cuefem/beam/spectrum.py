@@ -1,224 +1,153 @@
-"""All modes of a beam as its tip feels them, from one tridiagonal form that begins at the tip.
+"""The lowest modes of K q = omega^2 M q as some loads feel them; their shapes are worked out when they are asked for.
 
-A strike needs the frequencies and the tip's displacement in each mode, and no shapes. LAPACK reduces
-M q = mu (K + shift M) q to a tridiagonal problem; ordered so that the tip's deflection comes first, the first entries
-of that problem's vectors are the deflections of the tip in the modes. All modes of the mesh are then known there, so
-the tail (`cuefem.beam.tail`) is two steps of Lanczos in numbers, without another factorisation. Shapes are worked out
-only where an effect asks for them.
+`eigh(K, M)` would lose the low modes in the rounding of the high ones. So this solves the inverse form
+M q = mu (K + shift M) q, whose largest mu = 1/(omega^2 + shift) are the lowest modes. LAPACK reduces it to a
+tridiagonal matrix; a strike needs the frequencies and the loads' shares in the modes, which follow from that alone, in
+half the time of an eigenproblem with vectors.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import lapack
 
-from cuefem.beam.lapack import lapack
-from cuefem.beam.modes import Modes, check_solved, normalised, solve
-from cuefem.beam.system import System
-from cuefem.beam.tail import DASHPOT, STEPS, flexibility, tail
-from cuefem.cue import Array, Section
+from cuefem.beam.system import suits_dense
+from cuefem.beam.tail import inverse, ritz, ritz_of_rest
+from cuefem.cue import Array
 
-# The lowest modes follow from the leading part of the tridiagonal form. If it has LEADING times as many rows as modes
-# are asked for, and SPARE more, the rest of the form usually changes none of them by more than ROUNDING of itself;
-# where it does, the whole form is taken.
-LEADING, SPARE, ROUNDING = 2.2, 12, 1e-16
-
-# K carries a rounding error of eps times its largest entry, which shows in the lowest mode where stiffness is uneven (a
-# stiff ferrule beside soft leather). Where the lowest omega^2 is off its strain energy by more than this, the modes
-# take their Rayleigh-Ritz step (`cuefem.beam.modes`).
-EVEN_ENOUGH = 1e-11
+# The lowest modes follow from the leading part of the tridiagonal matrix, if it begins at the only load. With LEADING
+# times as many rows as modes wanted, and SPARE more, the rest changes none of them by more than the square of ROUNDING,
+# or the whole is taken; the modes left over have the same first moments in mu as those of the whole.
+LEADING, SPARE, ROUNDING = 2.2, 12, 1e-7
 
 
 @dataclass(frozen=True, eq=False)
-class Reduced:
-    """A dense beam with no unknown taken out, reduced to a tridiagonal matrix; y = Q z, upper q = y, both in reverse.
+class Spectrum:
+    """Modes with ascending frequency, mass-normalised, the tail's last.
 
-    system: the beam. diagonal: (n,), off: (n - 1,), of the matrix. upper: (n, n) triangle, upper' upper = K + shift M
-    with the unknowns in reverse. reflectors: (n - 1, n - 1), tau: Q as LAPACK keeps it; Q leaves the first entry alone.
-    wanted: how many of the lowest modes are asked for.
+    omega: (n,) rad/s. loads: (unknowns, loads). felt: (loads, n), each load's work on each mode. highest: rad/s, of
+    those before the tail. radiation: of the tail, (tail, tail), 1/s; None without one. shapes: makes the vectors.
     """
 
-    system: System
-    diagonal: Array
-    off: Array
-    upper: Array
-    reflectors: Array
-    tau: Array
-    wanted: int
-
-    @cached_property
-    def eigen(self) -> tuple[Array, Array]:
-        """(mu, z) descending in mu, ascending in frequency, of all modes or of the form's leading part: (m,), (m, m).
-
-        The modes asked for are exact. The others of a leading part stand for all further modes of the beam: a load
-        on the tip's deflection finds the same first moments in mu in both.
-        """
-        size = len(self.diagonal)
-        part = min(size, int(LEADING * self.wanted) + SPARE)
-        mu, z = self._leading(part)
-        if part < size and np.any(abs(self.off[part - 1] * z[-1, : self.wanted]) > ROUNDING * mu[: self.wanted]):
-            mu, z = self._leading(size)
-        return mu, z
-
-    def _leading(self, size: int) -> tuple[Array, Array]:
-        mu, z, failed = lapack().dstevd(self.diagonal[:size], self.off[: size - 1])
-        check_solved(failed, "dstevd")
-        return mu[::-1], z[:, ::-1]
-
-    @property
-    def squares(self) -> Array:
-        """omega^2 of these modes, the rigid ones' near zero, (m,)."""
-        return np.asarray(1 / self.eigen[0] - self.system.shift)
-
-    @cached_property
-    def felt(self) -> Array:
-        """The tip's deflection, and its rotation times the length, in each z: (2, m)."""
-        z, upper = self.eigen[1], self.upper
-        deflection = z[0] / upper[-1, -1]
-        second = np.zeros((len(upper) - 1, 1), order="F")
-        second[0] = 1.0
-        rotation = (self._turned(second, "T")[: len(z) - 1, 0] @ z[1:] - upper[-2, -1] * deflection) / upper[-2, -2]
-        return np.asarray([deflection, rotation])
-
-    def shapes(self, mix: Array) -> Array:
-        """Unknowns (n, k) of combinations ``mix``, (m, k), of the vectors z."""
-        y = np.zeros((len(self.upper), mix.shape[1]))
-        y[: len(mix)] = self.eigen[1] @ mix
-        y[1:] = self._turned(y[1:], "N")
-        q, failed = lapack().dtrtrs(self.upper, y[::-1])
-        check_solved(failed, "dtrtrs")
-        return np.asarray(q[::-1])
-
-    def _turned(self, y: Array, trans: str) -> Array:
-        """Q or its transpose times y, both without their first row."""
-        turned, _, failed = lapack().dormqr("L", trans, self.reflectors, self.tau, y, 64 * y.shape[1])
-        check_solved(failed, "dormqr")
-        return np.asarray(turned)
-
-
-def reduced(system: System, wanted: int | None = None) -> Reduced:
-    """The tridiagonal form of a dense beam none of whose unknowns are taken out.
-
-    wanted: how many modes are asked for, whose tail takes loads on the tip's deflection alone; None for all.
-    """
-    # with the unknowns in reverse the tip is last, where LAPACK's upper triangles leave it alone
-    upper, failed = lapack().dpotrf((system.K + system.shift * system.M)[::-1, ::-1], lower=0)
-    check_solved(failed, "dpotrf")
-    standard, failed = lapack().dsygst(system.M[::-1, ::-1], upper, lower=0)
-    check_solved(failed, "dsygst")
-    work = 10 * len(upper)  # wider blocks take longer for so few unknowns
-    whole, diagonal, off, tau, failed = lapack().dsytrd(standard[::-1, ::-1], lower=1, lwork=work)
-    check_solved(failed, "dsytrd")
-    return Reduced(system, diagonal, off, upper, np.asfortranarray(whole[1:, :-1]), tau, wanted or len(upper))
-
-
-@dataclass(frozen=True, eq=False)
-class TipSpectrum:
-    """The lowest modes of a beam with a tail, as its tip feels them; what `cuefem.beam.tip.tip_modes` takes.
-
-    Its fields and properties are those of `Modes`, but for the shapes, which `modes` works out when asked.
-
-    system: the beam. omega: rad/s, (n,), the tail's last. highest: of those before the tail. at_tip: the tip's
-    deflection and rotation in the rigid motions and in these modes. rigid: the number of rigid motions. radiation: of
-    the tail (`TipModes`). shapes: makes the vectors, (unknowns, n).
-    """
-
-    system: System
     omega: Array
+    loads: Array
+    felt: Array
     highest: float
-    at_tip: tuple[Array, Array]
-    rigid: int
-    rigid_vectors: Array
-    radiation: Array
+    radiation: Array | None
     shapes: Callable[[], Array]
 
     @cached_property
-    def modes(self) -> Modes:
-        """The same modes with their shapes."""
-        shaped = Modes(self.frequencies, self.shapes(), self.rigid, self.rigid_vectors, self.system)
-        return replace(shaped, radiation=self.radiation)
-
-    @property
-    def frequencies(self) -> Array:
-        """Hz, (n,)."""
-        return self.omega / (2 * np.pi)
-
-    @property
     def vectors(self) -> Array:
-        """Those of `modes`."""
-        return self.modes.vectors
+        """(unknowns, n)."""
+        return self.shapes()
 
-    def loss_factors(self, loss: Section) -> Array:
-        """As `Modes.loss_factors`."""
-        return self.modes.loss_factors(loss)
-
-
-Ended = Modes | TipSpectrum
+    def those(self, index: NDArray[np.intp]) -> Spectrum:
+        """Some of the modes alone, without a tail."""
+        omega = self.omega[index]
+        return Spectrum(omega, self.loads, self.felt[:, index], omega[-1], None, lambda: self.vectors[:, index])
 
 
-def ended(system: System, most: int, *, turning: bool) -> Callable[[int], Ended]:
-    """A function from a number of modes, up to ``most``, to the lowest modes of a beam, ended by a tail at the tip.
+def spectrum(
+    K: Any, M: Any, loads: Array, *, shift: float, rigid: int, count: int, below: float = np.inf, ended: int = 0
+) -> Spectrum:
+    """The ``count`` lowest flexible modes, or those of them up to ``below`` rad/s.
 
-    Every further number of modes costs little. turning: as in `tail`. A dense beam goes by its tridiagonal form; one
-    with clamps, stiff joints or uneven stiffness, or a sparse one, is solved for the shapes of ``most`` modes.
+    loads: (unknowns, loads). rigid: how many modes of zero frequency come first and are left out. ended: how many of
+    the loads the tail takes; 0 for none.
     """
-    if isinstance(system.K, np.ndarray) and system.free is None:
-        form, rigid = reduced(system, None if turning else most + 2), normalised(system)
-        if _even(form, rigid.shape[1]):
-            return lambda count: _ended(form, rigid, count, loads=2 if turning else 1)
-    whole, deflect = solve(system, most), flexibility(system)
-
-    def solved(count: int) -> Modes:
-        lowest = replace(whole, frequencies=whole.frequencies[:count], vectors=whole.vectors[:, :count])
-        return tail(lowest, turning=turning, deflect=deflect)
-
-    return solved
+    if not isinstance(K, np.ndarray) and suits_dense(K.shape[0], count):
+        K, M = K.toarray(), M.toarray()
+    taken = np.flatnonzero(loads[:, :ended].any(axis=0))  # no load acts on an unknown that a clamp holds
+    of = _dense if isinstance(K, np.ndarray) else _sparse
+    return of(K, M, loads, taken, shift, rigid, count, below)
 
 
-def _even(form: Reduced, rigid: int) -> bool:
-    """Whether the lowest frequency agrees with the strains of its mode, so that the rounding of K does not show."""
-    mix = np.zeros((len(form.eigen[0]), 1))
-    mix[rigid] = 1.0
-    lowest = form.shapes(mix)
-    energy = np.sum(form.system.strains(lowest) ** 2)
-    return bool(abs(form.squares[rigid] * form.eigen[0][rigid] / energy - 1) < EVEN_ENOUGH)
+def _dense(
+    K: Array, M: Array, loads: Array, taken: NDArray[np.intp], shift: float, rigid: int, count: int, below: float
+) -> Spectrum:
+    form = _Tridiagonal(K + shift * M, M)
+    mu, z = form.eigen(rigid + count, leading=len(taken) == 1 and not loads[1:, taken].any())
+    felt = form.loads(loads)[: len(z)].T @ z
+    last = rigid + int(np.sum(1 / mu[rigid : rigid + count] - shift <= below**2))
+    # the square of a mode on a support that is next to nothing is rounding
+    omega = np.sqrt(np.maximum(1 / mu[rigid:last] - shift, np.finfo(float).eps * shift))
+    mix = np.eye(len(z), last)[:, rigid:] / np.sqrt(mu[rigid:last]) * np.where(felt[0, rigid:last] < 0, -1.0, 1.0)
+    highest, radiation = float(omega[-1]) if np.isinf(below) else below, None
+    if len(taken):
+        rest = ritz_of_rest(mu[last:], felt[taken, last:].T, shift=shift, highest=highest)
+        omega, radiation = np.append(omega, rest.omega), rest.radiation
+        mix = np.concatenate([mix, np.concatenate([np.zeros((last, len(rest.omega))), rest.vectors])], axis=1)
+    return Spectrum(omega, loads, felt @ mix, highest, radiation, lambda: form.vectors(z @ mix))
 
 
-def _ended(form: Reduced, rigid_vectors: Array, count: int, *, loads: int) -> TipSpectrum:
-    """The ``count`` lowest flexible modes, and a tail made of all others that the form has (`cuefem.beam.tail.ritz`).
+def _sparse(
+    K: Any, M: Any, loads: Array, taken: NDArray[np.intp], shift: float, rigid: int, count: int, below: float
+) -> Spectrum:
+    from scipy.sparse.linalg import eigsh
 
-    In the modes left out, of weights mu, the steps of Lanczos are the loads and mu times the loads.
+    start = np.ones(K.shape[0])  # a fixed start, so that the same input gives the same numbers
+    squares, vectors = eigsh(K, rigid + count, M, sigma=-shift, v0=start)
+    order = np.argsort(squares)
+    order = order[squares[order] <= below**2]
+    omega, vectors = np.sqrt(np.maximum(squares[order], np.finfo(float).eps * shift))[rigid:], vectors[:, order]
+    vectors *= np.where(loads[:, 0] @ vectors < 0, -1.0, 1.0)
+    highest, radiation = float(omega[-1]) if np.isinf(below) else below, None
+    if len(taken):
+        more = ritz(vectors, K, M, loads[:, taken], shift=shift, deflect=inverse(K + shift * M), highest=highest)
+        omega, radiation = np.append(omega, more.omega), more.radiation
+        vectors = np.concatenate([vectors, more.vectors], axis=1)
+    flexible = vectors[:, rigid:]
+    return Spectrum(omega, loads, loads.T @ flexible, highest, radiation, lambda: flexible)
+
+
+class _Tridiagonal:
+    """M q = mu S q as a tridiagonal problem T y = mu y with y = Q' U q, U' U = S, y' y = q' S q.
+
+    U is taken with the unknowns in reverse, so that y begins with the first unknown's load, which Q leaves alone.
     """
-    system, rigid = form.system, rigid_vectors.shape[1]
-    mu, felt, first = form.eigen[0], form.felt, rigid + count
-    asked, rest = slice(rigid, first), mu[first:, None]
-    force = felt[:loads, first:].T
-    basis = np.linalg.qr(np.concatenate([rest**step * force for step in range(STEPS)], axis=1))[0]
-    t, mix = np.linalg.eigh(basis.T @ (rest * basis))
-    t, mix = t[::-1], (mix / np.sqrt(t))[:, ::-1]
-    ends, basis = mix[-loads:], basis @ mix
-    signs = np.where(felt[0, asked] < 0, -1.0, 1.0) / np.sqrt(mu[asked])
-    omega = np.sqrt(form.squares[asked])
-    flexible = np.concatenate([felt[:, asked] * signs, felt[:, first:] @ basis], axis=1)
-    still = np.array([rigid_vectors[0], rigid_vectors[1]])
-    across, turned = np.concatenate([still, flexible], axis=1)
 
-    def shapes() -> Array:
-        whole = np.zeros((len(mu), count + len(t)))
-        whole[np.arange(rigid, first), np.arange(count)] = signs
-        whole[first:, count:] = basis
-        return form.shapes(whole)
+    def __init__(self, S: Array, M: Array) -> None:
+        self.upper = _done(lapack.dpotrf(S[::-1, ::-1], lower=0))
+        standard = _done(lapack.dsygst(M[::-1, ::-1], self.upper, lower=0))
+        work = 10 * len(S)  # wider blocks take longer for so few unknowns
+        whole, self.diagonal, self.off, self.tau = _done(lapack.dsytrd(standard[::-1, ::-1], lower=1, lwork=work))
+        self.reflectors = np.asfortranarray(whole[1:, :-1])
 
-    return TipSpectrum(
-        system,
-        np.concatenate([omega, np.sqrt(1 / t - system.shift)]),
-        float(omega[-1]),
-        (across, turned / system.length),
-        rigid,
-        rigid_vectors,
-        DASHPOT / float(omega[-1]) * (ends.T @ ends),
-        shapes,
-    )
+    def eigen(self, count: int, *, leading: bool) -> tuple[Array, Array]:
+        """(mu, y) with descending mu, (m,), (m, m): the first ``count`` exact, of all or only the leading ones."""
+        size = len(self.diagonal)
+        part = min(int(LEADING * count) + SPARE, size) if leading else size
+        mu, y = (each[..., ::-1] for each in _done(lapack.dstevd(self.diagonal[:part], self.off[: part - 1])))
+        if part < size and np.any(abs(self.off[part - 1] * y[-1, :count]) > ROUNDING * mu[:count]):
+            return self.eigen(count, leading=False)
+        return mu, y
+
+    def loads(self, loads: Array) -> Array:
+        """y of loads on the unknowns, (unknowns, k): Q' U'^-1 loads."""
+        y = _done(lapack.dtrtrs(self.upper, loads[::-1], trans=1))[::-1].copy()
+        return self._turned(y, "T")
+
+    def vectors(self, y: Array) -> Array:
+        """Unknowns (unknowns, k) of y (rows of the leading part, k): U^-1 Q y."""
+        whole = np.zeros((len(self.upper), y.shape[1]))
+        whole[: len(y)] = y
+        return np.asarray(_done(lapack.dtrtrs(self.upper, self._turned(whole, "N")[::-1]))[::-1])
+
+    def _turned(self, y: Array, trans: str) -> Array:
+        if len(y) > 1 and y.shape[1]:
+            y[1:] = lapack.dormqr("L", trans, self.reflectors, self.tau, y[1:], 64 * y.shape[1])[0]
+        return y
+
+
+def _done(answer: tuple[Any, ...]) -> Any:
+    """What a routine of LAPACK gives; LinAlgError if it failed."""
+    *found, failed = answer
+    if failed:
+        raise np.linalg.LinAlgError(f"the eigenproblem of the modes has no solution (LAPACK {failed})")
+    return found[0] if len(found) == 1 else found

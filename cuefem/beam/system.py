@@ -1,228 +1,242 @@
-"""The matrices K and M of a cue and its effects, and the unknowns that clamps and stiff joints take out."""
+"""The matrices K and M of a cue and its effects, in the unknowns that clamps and stiff joints leave."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, NamedTuple
 
 import lazy_loader
 import numpy as np
 from numpy.typing import NDArray
 
-from cuefem.beam.basis import local_basis, products, table
-from cuefem.beam.mesh import ActsOnCue, Links, Mesh, Terms, mesh_cue
-from cuefem.beam.waves import EVEN
+from cuefem.beam.basis import MORE_POINTS, element_basis, gauss, line_basis, line_table
+from cuefem.beam.mesh import NEAR, ActsOnCue, Mesh, MeshOptions, Terms, mesh_cue
 from cuefem.cue import Array, Cue, Section
 
 if TYPE_CHECKING:
     import scipy.sparse as sp
 
 scipy = lazy_loader.load("scipy")  # loaded when used: few cues need sparse matrices
-# Below this many unknowns a dense eigenproblem is faster than a sparse one, however many modes are wanted.
-DENSE_LIMIT = 220
+# A sparse eigenproblem costs in proportion to the modes wanted, a dense one to the cube of the unknowns. They cost the
+# same when the number of modes is (unknowns/EVEN)^3. Measured: 6 modes of 270 unknowns, 30 of 450, 150 of 780.
+# Below DENSE_LIMIT unknowns a dense one is always faster.
+EVEN, DENSE_LIMIT = 145, 220
+# A spring that holds the cue less than this, relative to the first mode, leaves it free: its mode is rounding.
+SOFT = 1e-10
+
+
+class Points(NamedTuple):
+    """Gauss points of the whole beam, element by element, and within an element segment by segment; or other points.
+
+    x: (points,) m from the tip. weights: m. piece: the segment a point lies in; offset: m from its tip end. section:
+    arrays (points,). rows: (elements + 1,) the first point of each element. usual: (elements,) whether its points are
+    Gauss's of one segment, at which the basis is tabulated.
+    """
+
+    mesh: Mesh
+    x: Array
+    weights: Array
+    piece: NDArray[np.intp]
+    offset: Array
+    section: Section
+    rows: list[int]
+    usual: list[bool]
+
+    def element(self, e: int) -> slice:
+        """The points of an element."""
+        return slice(self.rows[e], self.rows[e + 1])
+
+    def line_basis(self, e: int) -> tuple[Array, Array]:
+        """scikit-fem's hierarchical line basis in an element at its points, and its derivatives, 1/m: (degrees, q)."""
+        start, end = self.mesh.nodes[e : e + 2]
+        if self.usual[e]:
+            values, slopes = line_table(int(self.mesh.orders[e]))
+        else:
+            values, slopes = line_basis(int(self.mesh.orders[e]) + 1, (self.x[self.element(e)] - start) / (end - start))
+        return values, slopes / (end - start)
+
+
+class Fields(NamedTuple):
+    """Deflection, its slope, rotation and its slope at points, each (points, k)."""
+
+    w: Array
+    dw: Array
+    theta: Array
+    dtheta: Array
 
 
 @dataclass(frozen=True)
 class System:
     """The assembled beam: K q = omega^2 M q, in w (m) and theta times the cue's length (m).
 
-    K, M: (unknowns, unknowns), arrays or sparse (`suits_dense`). rigid: (unknowns, r), the exact
-    rigid motions that stay free (two for a free cue). dashpots: diagonal of the viscous matrix, None without one.
-    fixed: unknowns that a clamp takes out. shift: a square frequency of the order of the lowest mode's, rad2/s2, with
-    which K + shift M is regular where K is not. section: at the Gauss points, arrays (elements, q). roots:
-    (elements, 2 q, u): roots.T @ roots is an element's stiffness (`stiffness_roots`).
-    springs: the part of K's diagonal that effects add. links: the springs of joints. tied: (n, 2) pairs of unknowns
-    (tip side, butt side) that a joint keeps equal.
+    K, M: (free, free), arrays or sparse (`suits_dense`). index: (unknowns,) which free unknown each unknown of the mesh
+    is, or -1 where a clamp holds it; the two sides of a stiff joint are one. rigid: (free, r), the exact rigid motions
+    that stay free (two for a free cue). dashpots: (free,) diagonal of the viscous matrix, None without one. shift: a
+    square frequency of the order of the lowest mode's, rad2/s2, with which K + shift M is regular where K is not.
     """
 
+    cue: Cue
     mesh: Mesh
+    points: Points
     K: Array | sp.csc_matrix
     M: Array | sp.csc_matrix
+    index: NDArray[np.intp]
     rigid: Array
-    length: float
     dashpots: Array | None
-    fixed: NDArray[np.intp]
     shift: float
-    section: Section
-    roots: Array
-    springs: Array
-    links: Links
-    tied: NDArray[np.intp]
 
     @property
-    def free(self) -> sp.csc_matrix | None:
-        """Matrix from the free unknowns to all of them, (unknowns, free); None if no clamp or tie takes any out."""
-        if len(self.fixed) + len(self.tied) == 0:
-            return None
-        source = np.arange(self.mesh.unknowns)
-        source[self.tied[:, 0]] = self.tied[:, 1]
-        rows = np.flatnonzero(~np.isin(source, self.fixed))
-        free, columns = np.unique(source[rows], return_inverse=True)
-        return scipy.sparse.csc_matrix((np.ones(len(rows)), (rows, columns)), shape=(self.mesh.unknowns, len(free)))
+    def length(self) -> float:
+        """Length of the cue, m, by which rotations are scaled."""
+        return self.cue.length
 
-    def strains(self, vectors: Array) -> Array:
-        """Strains of unknowns ``vectors`` (unknowns, k), times roots of stiffness, (rows, k): K = strains.T @ strains.
+    @property
+    def size(self) -> int:
+        """Number of free unknowns."""
+        return int(self.K.shape[0])
 
-        First those of bending and of shear at the Gauss points, element by element, then of springs and links. For a
-        rigid motion the strains are zero to rounding, while K times it is rounding times the stiffest element.
-        So energies taken from strains keep low frequencies exact beside a stiff short piece.
-        """
-        own = self.mesh.own(vectors)
-        strained = (self.roots @ own).reshape(-1, own.shape[2])
-        supported = np.flatnonzero(self.springs)
-        if len(supported) + len(self.links.stiffness) == 0:
-            return np.asarray(strained)
-        sprung = np.sqrt(self.springs[supported])[:, None] * vectors[supported]
-        jumps = np.sqrt(self.links.stiffness)[:, None] * (vectors[self.links.after] - vectors[self.links.before])
-        return np.concatenate([strained, sprung, jumps])
+    def whole(self, vectors: Array) -> Array:
+        """All unknowns of the mesh, (unknowns, k), of free unknowns ``vectors`` (free, k)."""
+        return np.asarray(np.concatenate([vectors, np.zeros((1, vectors.shape[1]))])[self.index])
 
-    def tip_displacement(self, vectors: Array) -> tuple[Array, Array]:
-        """Deflection w and rotation theta of unknowns ``vectors`` (unknowns, k) at the tip: two arrays (k,)."""
-        return vectors[0], vectors[1] / self.length
+    def forces_at(self, x: float) -> Array:
+        """A unit force, and a unit couple over the length, at the node ``x``, m, (free, 2); zero where a clamp is."""
+        forces = np.zeros((self.size + 1, 2))
+        forces[self.index[list(self.mesh.unknowns_at(self.mesh.node(x)))], [0, 1]] = 1.0
+        return forces[:-1]
+
+    def displacement_at(self, x: float, vectors: Array) -> tuple[Array, Array]:
+        """Deflection w and rotation theta of free unknowns ``vectors`` (free, k) at the node ``x``: two arrays (k,)."""
+        w, theta = self.forces_at(x).T @ vectors
+        return w, theta / self.length
+
+    def fields(self, vectors: Array) -> Fields:
+        """The fields of free unknowns ``vectors`` (free, k) at the Gauss points."""
+        return _fields(self.length, self.points, self.whole(vectors))
 
     def geometric_stiffness(self, vectors: Array, masses: Sequence[tuple[float, float]]) -> Array:
-        """What a newton of thrust at the tip does to ``vectors`` (unknowns, k): integral p w_i' w_j' dx, (k, k).
+        """What a newton of thrust at the tip does to ``vectors`` (free, k): integral p w_i' w_j' dx, (k, k).
 
         The cue shortens by half the integral of w'^2 as it bends. Seen from its centre of mass, the tip goes back by
         half the integral of p w'^2, p(x) being the share of the mass behind x, and p is also the share of the thrust
         that the cue bears there, which accelerates what is behind. The slope is w' and not the section's rotation, as
         in Engesser's column. masses: (position m, mass kg) of each lump.
         """
-        mesh = self.mesh
-        _, slope, _ = slopes(mesh.own(vectors), mesh.sizes[:, None, None], self.length, mesh.order)
-        root = np.sqrt(self.share_behind(masses) * table(mesh.order).weights * mesh.sizes[:, None])
-        rows = (root[:, :, None] * slope).reshape(-1, vectors.shape[1])
+        root = np.sqrt(self.share_behind(masses) * self.points.weights)
+        rows = root[:, None] * self.fields(vectors).dw
         return np.asarray(rows.T @ rows)
 
     def share_behind(self, masses: Sequence[tuple[float, float]]) -> Array:
-        """Share of the cue's mass behind each Gauss point, (elements, q)."""
-        mesh, t = self.mesh, table(self.mesh.order)
-        rho, sizes = self.section.rhoA, mesh.sizes[:, None]
-        each = (sizes * rho * t.weights).sum(axis=1)
-        ahead = np.concatenate([[0.0], np.cumsum(each)[:-1]])[:, None] + sizes * (rho @ _integrals(mesh.order).T)
-        x = mesh.nodes[:-1, None] + sizes * t.points
-        total = each.sum() + sum(mass for _, mass in masses)
-        for position, mass in masses:
-            ahead = ahead + mass * (x > position)
-        return np.asarray(1 - ahead / total)
+        """Share of the cue's mass behind each Gauss point, (points,)."""
+        points, cue = self.points, self.cue
+        first, middle = (cue.section_in(points.piece, part * points.offset).rhoA for part in (0.0, 0.5))
+        mass = np.bincount(points.piece, points.section.rhoA * points.weights, len(cue.segments))
+        # Simpson's rule is exact for the area of a cone
+        ahead = (np.cumsum(mass) - mass)[points.piece] + points.offset / 6 * (first + 4 * middle + points.section.rhoA)
+        for position, lump in masses:
+            ahead = ahead + lump * (points.x > position)
+        return np.asarray(1 - ahead / (mass.sum() + sum(lump for _, lump in masses)))
 
     def interpolate(self, vectors: Array, x: Array) -> tuple[Array, Array]:
-        """(w, theta) of unknowns ``vectors`` (unknowns, k) at positions ``x``: two arrays (k, *x.shape)."""
-        mesh = self.mesh
-        element = np.clip(np.searchsorted(mesh.nodes, x.ravel(), side="right") - 1, 0, len(mesh.piece) - 1)
-        local = (x.ravel() - mesh.nodes[element]) / mesh.sizes[element]
-        w, _, theta, _ = local_basis(mesh.order, local)
-        own = mesh.own(vectors)[element]  # (points, unknowns of an element, k)
-        values = (np.einsum("iq,qik->kq", basis, own).reshape(-1, *x.shape) for basis in (w, theta))
-        deflection, rotation = values
-        return deflection, rotation / self.length
+        """(w, theta) of free unknowns ``vectors`` (free, k) at positions ``x``: two arrays (k, *x.shape)."""
+        order = np.argsort(x, axis=None, kind="stable")
+        points = _points(self.cue, self.mesh, x.ravel()[order], np.ones(x.size), [False] * len(self.mesh.orders))
+        fields = _fields(self.length, points, self.whole(vectors))
+        w, theta = np.empty_like(fields.w), np.empty_like(fields.w)
+        w[order], theta[order] = fields.w, fields.theta
+        return w.T.reshape(-1, *x.shape), theta.T.reshape(-1, *x.shape)
 
 
-def slopes(own: Array, h: Array, length: Any, order: int) -> tuple[Array, Array, Array]:
-    """(theta', w', theta) at the Gauss points from elements' own unknowns (..., elements, u, k): (..., elements, q, k).
+def _fields(length: float, points: Points, unknowns: Array) -> Fields:
+    """The fields of ``unknowns`` (unknowns of the mesh, k) at any points."""
+    out, mesh = np.zeros((4, len(points.x), unknowns.shape[1])), points.mesh
+    for e, (order, first) in enumerate(zip(mesh.orders.tolist(), mesh.first.tolist(), strict=True)):
+        rows = points.element(e)
+        if rows.start < rows.stop:
+            basis = element_basis(order, *points.line_basis(e), length)
+            out[:, rows] = basis.swapaxes(1, 2) @ unknowns[first : first + 2 * order + 3]
+    return Fields(*out)
 
-    h: sizes of the elements, m; length: that scales theta, m; both broadcast against the results.
+
+def gauss_points(cue: Cue, mesh: Mesh) -> Points:
+    """Gauss points between the nodes and the ends of segments, exact for a cone that is one element."""
+    ends = cue.nodes[np.min(np.abs(cue.nodes[:, None] - mesh.nodes), axis=1) > NEAR * cue.length]
+    x = np.sort(np.append(mesh.nodes, ends))
+    sizes = np.diff(x)
+    element = np.searchsorted(mesh.nodes, (x[:-1] + x[1:]) / 2) - 1
+    # polynomials turn fastest beside the ends of an element, as in the angle whose cosine is x
+    part = np.sqrt(sizes / np.diff(mesh.nodes)[element])
+    counts = np.ceil(mesh.orders[element] * part - NEAR).astype(int) + MORE_POINTS
+    rules = [gauss(n) for n in counts.tolist()]
+    return _points(
+        cue,
+        mesh,
+        np.concatenate([a + h * points for a, h, (points, _) in zip(x, sizes, rules, strict=False)]),
+        np.concatenate([h * weights for h, (_, weights) in zip(sizes, rules, strict=True)]),
+        (np.bincount(element) == 1).tolist(),
+    )
+
+
+def _points(cue: Cue, mesh: Mesh, x: Array, weights: Array, usual: list[bool]) -> Points:
+    """The points ``x``, ascending."""
+    piece = np.searchsorted(cue.nodes[1:-1], x, side="right")
+    offset = x - cue.nodes[piece]
+    rows = [0, *np.searchsorted(x, mesh.nodes[1:-1]).tolist(), len(x)]
+    return Points(mesh, x, weights, piece, offset, cue.section_in(piece, offset), rows, usual)
+
+
+def assemble(cue: Cue, at: int | MeshOptions, effects: tuple[ActsOnCue, ...] = (), count: int | None = None) -> System:
+    """Assemble a cue with the effects that act on it.
+
+    at: as in `mesh_cue`; a number of modes or a fineness. count: how many modes will be wanted, by default those of
+    ``at``, or few.
     """
-    t = table(order)
-    return t.dtheta.T @ own / (h * length), t.dw.T @ own / h, t.theta.T @ own / length
-
-
-def weighted_strains(own: Array, section: Section, sizes: Array, length: Any, order: int) -> tuple[Array, Array]:
-    """Curvature and shear of elements' own unknowns (..., elements, u, k), times the roots of stiffness and weight."""
-    bent, slope, turned = slopes(own, sizes[..., None, None], length, order)
-    weights = table(order).weights * sizes[..., None]
-    bent *= np.sqrt(section.EI * weights)[..., None]
-    return bent, (slope - turned) * np.sqrt(section.kGA * weights)[..., None]
-
-
-def stiffness_roots(section: Section, sizes: Array, length: float, order: int) -> Array:
-    """The weighted strains of each element's unknowns, (elements, 2 q, u): its stiffness is roots.T @ roots.
-
-    Curvatures, then shears, at the Gauss points; ``length`` scales theta.
-    """
-    t, h = table(order), sizes[:, None, None]
-    weights = t.weights * sizes[:, None]
-    bent = np.sqrt(section.EI * weights)[..., None] * (t.dtheta.T / (h * length))
-    sheared = np.sqrt(section.kGA * weights)[..., None] * (t.dw.T / h - t.theta.T / length)
-    return np.concatenate([bent, sheared], axis=1)
-
-
-def mass_roots(section: Section, sizes: Array, length: float, order: int) -> Array:
-    """As `stiffness_roots`, for the mass: deflections, then rotations."""
-    t, weights = table(order), table(order).weights * sizes[:, None]
-    moved = np.sqrt(section.rhoA * weights)[..., None] * t.w.T
-    turned = (np.sqrt(section.rhoI * weights) / length)[..., None] * t.theta.T
-    return np.concatenate([moved, turned], axis=1)
-
-
-def sections(cue: Cue, mesh: Mesh) -> Section:
-    """Section properties at the Gauss points of every element: arrays (elements, q)."""
-    s = mesh.offset[:, None] + mesh.sizes[:, None] * table(mesh.order).points
-    return cue.section_in(mesh.piece[:, None], s)
-
-
-def element_matrices(section: Section, sizes: Array, length: float, order: int) -> tuple[Array, Array]:
-    """Element K and M, each (..., elements, u, u), from section properties (..., elements, q) and element sizes.
-
-    One matrix product each; ``length`` scales theta.
-    """
-    t, h = table(order), sizes[..., None]
-    EI, kGA = section.EI * t.weights, section.kGA * t.weights
-    stiff = np.concatenate([EI / (h * length**2), kGA / h, kGA / length, kGA * h / length**2], axis=-1)
-    heavy = np.concatenate([section.rhoA * t.weights * h, section.rhoI * t.weights * h / length**2], axis=-1)
-    shape = (*stiff.shape[:-1], len(t.w), len(t.w))
-    of_stiffness, of_mass = products(order)
-    return (stiff @ of_stiffness).reshape(shape), (heavy @ of_mass).reshape(shape)
-
-
-def assemble(
-    cue: Cue,
-    *,
-    elements: int | tuple[int, ...],
-    order: int | tuple[int, ...],
-    effects: tuple[ActsOnCue, ...] = (),
-    count: int = 0,
-) -> System:
-    """Assemble a cue with the effects that act on it; elements and order as a Resolution has them, or as `mesh_cue`.
-
-    count: how many modes will be wanted of it; by default few.
-    """
-    for effect in effects:
-        effect.check_on(cue, type(effect).__name__)
-    positions = tuple(x for effect in effects for x in effect.positions)
-    splits = tuple(x for effect in effects for x in effect.splits)
-    mesh = mesh_cue(cue, elements=elements, order=order, positions=positions, splits=splits)
-    section = sections(cue, mesh)
-    roots, heavy = (each(section, mesh.sizes, cue.length, mesh.order) for each in (stiffness_roots, mass_roots))
+    mesh = mesh_cue(cue, at, effects)
+    points = gauss_points(cue, mesh)
     terms = Terms(mesh, cue)
     for effect in effects:
         effect.add_to(terms)
     scale = np.ones(mesh.unknowns)
     scale[np.append(mesh.first, mesh.last) + 1] = 1 / cue.length**2  # rotations stand times the length
+    index = np.arange(mesh.unknowns)
+    for (before, after), value in terms.compliance.items():
+        index[before] = before if value else after
+    index[np.isin(index, list(terms.fixed))] = -1
+    size = len(np.unique(index[index >= 0]))
+    index[index >= 0] = np.unique(index[index >= 0], return_inverse=True)[1]
+
+    stiff, heavy = [], []
+    section, weights = points.section, points.weights
+    EI, kGA, rhoA, rhoI = np.sqrt([section.EI, section.kGA, section.rhoA, section.rhoI] * weights)
+    for e, (order, first) in enumerate(zip(mesh.orders.tolist(), mesh.first.tolist(), strict=True)):
+        rows, own = points.element(e), index[first : first + 2 * order + 3]
+        w, dw, theta, dtheta = element_basis(order, *points.line_basis(e), cue.length)
+        strains = np.concatenate([EI[rows] * dtheta, kGA[rows] * (dw - theta)], axis=1)
+        motions = np.concatenate([rhoA[rows] * w, rhoI[rows] * theta], axis=1)
+        stiff.append((own, strains @ strains.T))
+        heavy.append((own, motions @ motions.T))
+    for (before, after), value in terms.compliance.items():
+        if value:
+            stiff.append((index[[before, after]], scale[before] / value * np.array([[1.0, -1.0], [-1.0, 1.0]])))
 
     def point(values: dict[int, float]) -> Array:
-        diagonal = np.zeros(mesh.unknowns)
-        if values:
-            diagonal[list(values)] = list(values.values())
-        return diagonal * scale
+        diagonal = np.zeros(size + 1)
+        np.add.at(diagonal, index[list(values)], np.array(list(values.values())) * scale[list(values)])
+        return diagonal[:-1]
 
-    springs, links = point(terms.stiffness), terms.links(scale)
-    dense = suits_dense(mesh.unknowns, count)
-    K = gather(mesh.first, mesh.unknowns, mesh.blocks(roots), point=springs, links=links, dense=dense)
-    M = gather(mesh.first, mesh.unknowns, mesh.blocks(heavy), point=point(terms.mass), dense=dense)
-    fixed = np.array(sorted(terms.fixed), dtype=np.intp)
-    rigid = _rigid_motions(mesh, cue.length, springs, fixed)
+    springs = point(terms.stiffness)
+    dense = suits_dense(size, count or (at if isinstance(at, int) else 0))
+    K, M = gather(stiff, springs, dense), gather(heavy, point(terms.mass), dense)
     dashpots = point(terms.dashpot) if terms.dashpot else None
-    shift = _shift(cue, section, mesh.sizes)
-    return System(mesh, K, M, rigid, cue.length, dashpots, fixed, shift, section, roots, springs, links, terms.ties())
+    shift, mass = _shift(cue, points), float(points.weights @ points.section.rhoA)
+    rigid = _rigid_motions(mesh, cue.length, index, springs > SOFT * shift * mass)
+    return System(cue, mesh, points, K, M, index, rigid, dashpots, shift)
 
 
-def _shift(cue: Cue, section: Section, sizes: Array) -> float:
+def _shift(cue: Cue, points: Points) -> float:
     # 4.73^4 EI/(rhoA L^4), the lowest free mode of the uniform rod with the mean stiffness and mass
-    stiffness, mass = (float(np.sum(sizes @ part)) for part in (section.EI, section.rhoA))
-    return 500 * stiffness / mass / cue.length**4
+    return float(500 * (points.weights @ points.section.EI) / (points.weights @ points.section.rhoA) / cue.length**4)
 
 
 def suits_dense(unknowns: int, count: int) -> bool:
@@ -230,56 +244,39 @@ def suits_dense(unknowns: int, count: int) -> bool:
     return unknowns <= DENSE_LIMIT or count > (unknowns / EVEN) ** 3
 
 
-def gather(
-    first: NDArray[np.intp],
-    unknowns: int,
-    blocks: Sequence[Array] | Array,
-    *,
-    point: Array,
-    links: Links | None = None,
-    dense: bool | None = None,
-) -> Array | sp.csc_matrix:
-    """The matrix summed from element blocks, each (u, u) from its unknown ``first`` on, and point terms."""
-    if suits_dense(unknowns, 0) if dense is None else dense:
-        whole = np.diag(point)
-        for start, block in zip(first, blocks, strict=True):
-            here = slice(start, start + len(block))
-            whole[here, here] += block
-        return whole if links is None or not len(links.stiffness) else whole + _linked(links, unknowns).toarray()
-    places = [start + np.indices(block.shape).reshape(2, -1) for start, block in zip(first, blocks, strict=True)]
-    values = np.concatenate([block.ravel() for block in blocks])
-    whole = scipy.sparse.coo_matrix(
-        (values, np.concatenate(places, axis=1)), shape=(unknowns,) * 2
-    ) + scipy.sparse.diags(point)
-    return scipy.sparse.csc_matrix(whole if links is None else whole + _linked(links, unknowns))
+def gather(blocks: Iterable[tuple[NDArray[np.intp], Array]], diagonal: Array, dense: bool) -> Array | sp.csc_matrix:
+    """The matrix summed from ``blocks``, each of the unknowns of its index (-1: left out), and a ``diagonal``."""
+    size = len(diagonal)
+    if dense:
+        whole = np.zeros((size + 1, size + 1))
+        for own, block in blocks:
+            first = int(own[0])
+            if first >= 0 and np.array_equal(own, np.arange(first, first + len(own))):
+                whole[first : first + len(own), first : first + len(own)] += block
+            else:
+                whole[own[:, None], own] += block
+        whole = whole[:-1, :-1]
+        whole[np.diag_indices(size)] += diagonal
+        return whole
+    places = np.concatenate([[np.repeat(own, len(own)), np.tile(own, len(own))] for own, _ in blocks], axis=1) % (
+        size + 1
+    )
+    values = np.concatenate([block.ravel() for _, block in blocks])
+    summed = scipy.sparse.coo_matrix((values, places), shape=(size + 1,) * 2).tocsc()[:size, :size]
+    return scipy.sparse.csc_matrix(summed + scipy.sparse.diags(diagonal))
 
 
-def _linked(links: Links, unknowns: int) -> sp.csc_matrix:
-    before, after, k = links
-    rows, columns = np.r_[before, after, before, after], np.r_[before, after, after, before]
-    return scipy.sparse.csc_matrix((np.r_[k, k, -k, -k], (rows, columns)), shape=(unknowns, unknowns))
-
-
-def _rigid_motions(mesh: Mesh, length: float, springs: Array, fixed: NDArray[np.intp]) -> Array:
-    """The combinations of translation and rotation about the tip that no spring or clamp resists."""
+def _rigid_motions(mesh: Mesh, length: float, index: NDArray[np.intp], sprung: NDArray[np.bool_]) -> Array:
+    """The combinations of translation and rotation about the tip that no spring or clamp resists, (free, r)."""
     motions = np.zeros((mesh.unknowns, 2))
     for w, x in ((mesh.first, mesh.nodes[:-1]), (mesh.last, mesh.nodes[1:])):
         motions[w, 0], motions[w, 1] = 1.0, x / length
         motions[w + 1, 1] = 1.0
-    resisted = springs != 0
-    resisted[fixed] = True
-    if not resisted.any():
-        return motions
-    _, strength, directions = np.linalg.svd(motions[resisted])
+    free = np.zeros((len(sprung) + 1, 2))
+    free[index] = motions
+    resisted = np.concatenate([motions[index < 0], free[:-1][sprung]])
+    if not len(resisted):
+        return free[:-1]
+    _, strength, directions = np.linalg.svd(resisted)
     rank = int(np.sum(strength > 1e-12 * strength[0]))
-    return motions @ directions[rank:].T
-
-
-@cache
-def _integrals(order: int) -> Array:
-    """From values at the Gauss points of an element to their integral from its tip end to each of these, (q, q)."""
-    z = 2 * table(order).points - 1
-    waves = np.polynomial.legendre.legvander(z, len(z))
-    count = 2 * np.arange(len(z)) + 1
-    before = np.column_stack([-np.ones(len(z)), waves[:, :-2]])  # the integral of P_n is (P_(n+1) - P_(n-1))/(2 n + 1)
-    return np.asarray((waves[:, 1:] - before) / count / 2 @ np.linalg.inv(waves[:, :-1]))
+    return free[:-1] @ directions[rank:].T

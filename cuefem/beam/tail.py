@@ -1,22 +1,18 @@
 """The tail: a few vectors that stand for the modes left out of a sum.
 
 A plain sum over the lowest n modes converges only like 1/n to n^-1.3, because the modes left out also give way under
-the force at the tip and carry waves away from it. `tail` adds a few Ritz vectors on a dashpot that do both. With the
-same number of modes the error of a strike falls ten to a thousand times. `tail` is for bending; `ritz` serves modes of
-any kind.
+the force at the tip and carry waves away from it. A tail of a few Ritz vectors on a dashpot does both. With the same
+number of modes the error of a strike falls ten to a thousand times.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
+import scipy.linalg as la
 
-from cuefem.beam.lapack import lapack
-from cuefem.beam.modes import Modes
-from cuefem.beam.system import System
 from cuefem.cue import Array
 
 Deflect = Callable[[Array], Array]
@@ -33,32 +29,6 @@ class Ritz(NamedTuple):
     omega: Array
     vectors: Array
     radiation: Array
-
-
-def tail(modes: Modes, *, turning: bool = False, deflect: Deflect | None = None, position: float = 0.0) -> Modes:
-    """The modes with a tail: a few more vectors, and their radiation, that stand for the modes left out.
-
-    turning: whether the contact lies off the cue's axis, so that a couple acts at the tip beside the force. deflect:
-    the `flexibility` of the system, if it is known already. position: where the force acts, m from the tip; a node.
-    Cost: one factorisation of K and `STEPS` solutions.
-    """
-    system = modes.system
-    vectors = np.concatenate([modes.rigid_vectors, modes.vectors], axis=1)
-    force = np.zeros((system.mesh.unknowns, 2 if turning else 1))
-    places = system.mesh.unknowns_at(system.mesh.node(position))[: force.shape[1]]  # w, and theta
-    force[list(places), np.arange(force.shape[1])] = 1.0
-    if system.free is not None:  # no force acts on an unknown that a clamp holds
-        force = force[:, np.asarray(abs(system.free.T @ force).sum(axis=0)).ravel() > 0]
-    if force.shape[1] == 0:
-        return modes
-    deflect = deflect or flexibility(system)
-    more = ritz(vectors, system.K, system.M, force, shift=system.shift, deflect=deflect, highest=modes.highest)
-    return replace(
-        modes,
-        frequencies=np.concatenate([modes.frequencies, more.omega / (2 * np.pi)]),
-        vectors=np.concatenate([modes.vectors, more.vectors], axis=1),
-        radiation=more.radiation,
-    )
 
 
 def ritz(
@@ -78,6 +48,17 @@ def ritz(
     t, mix = t[..., ::-1], (mix / np.sqrt(t)[..., None, :])[..., ::-1]
     ends = mix[..., -force.shape[-1] :, :]
     return Ritz(np.sqrt(1 / t - shift[..., 0]), basis @ mix, DASHPOT / highest * (_transposed(ends) @ ends))
+
+
+def ritz_of_rest(mu: Array, felt: Array, *, shift: float, highest: float) -> Ritz:
+    """The same tail where all modes left out are known: their mu = 1/(omega^2 + shift) and the loads' shares ``felt``,
+    (modes, loads), in them with q' (K + shift M) q = 1. Its vectors are combinations of these modes."""
+    weights = mu[:, None]
+    basis = np.linalg.qr(np.concatenate([weights**step * felt for step in range(STEPS)], axis=1))[0]
+    t, mix = np.linalg.eigh(basis.T @ (weights * basis))
+    t, mix = t[::-1], (mix / np.sqrt(t))[:, ::-1]
+    ends = mix[-felt.shape[1] :]
+    return Ritz(np.sqrt(1 / t - shift), basis @ mix, DASHPOT / highest * (ends.T @ ends))
 
 
 def _krylov(modes: Array, K: Any, M: Any, force: Array, *, shift: Array, deflect: Deflect) -> Array:
@@ -108,22 +89,11 @@ def _transposed(stack: Array) -> Array:
     return np.swapaxes(stack, -1, -2)
 
 
-def flexibility(system: System) -> Deflect:
-    """The function from loads (unknowns, k) to deflections (unknowns, k) of the beam on springs shift M."""
-    S, free = system.K + system.shift * system.M, system.free
-    if free is not None:
-        S = free.T @ S @ free
-    deflect = inverse(S)
-    return deflect if free is None else lambda load: free @ deflect(free.T @ load)
-
-
 def inverse(S: Any) -> Deflect:
     """The function that solves S x = load, for a symmetric positive S, dense or sparse."""
     if isinstance(S, np.ndarray):
-        factor, failed = lapack().dpotrf(S, lower=1, clean=0)
-        if failed:
-            raise np.linalg.LinAlgError(f"the stiffness must be positive definite; dpotrf stopped at row {failed}")
-        return lambda load: np.asarray(lapack().dpotrs(factor, load, lower=1)[0])
+        factor = la.cho_factor(S, check_finite=False)
+        return lambda load: np.asarray(la.cho_solve(factor, load, check_finite=False))
     import scipy.sparse as sp
     from scipy.sparse.linalg import splu
 

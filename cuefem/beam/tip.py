@@ -15,7 +15,6 @@ from cuefem.quantity.fields import scalar
 
 if TYPE_CHECKING:
     from cuefem.beam.modes import Modes
-    from cuefem.beam.spectrum import Ended
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +110,7 @@ def lumped_tip_modes(cue: LumpedCue) -> TipModes:
     return TipModes(np.zeros(2), amplitude, np.linalg.solve(amplitude.T, [1.0, 0.0]), np.zeros(2))
 
 
-def tip_modes(bending: Ended, axial_mass: float) -> TipModes:
+def tip_modes(bending: Modes, axial_mass: float) -> TipModes:
     """Tip modes of a beam's bending modes beside a rigid axial motion of ``axial_mass`` kg (the first mode)."""
     omega = np.concatenate([np.zeros(bending.rigid), bending.omega])
     damping, radiation = _resistances(bending, 1 + len(omega))
@@ -127,22 +126,20 @@ def free_tip_modes(omega: Array, across: Array, turning: Array, axial_mass: floa
     return TipModes(np.append(0.0, omega), amplitude, approach, np.append(0.0, turning))
 
 
-def side_modes(bending: Modes, position: float) -> TipModes:
-    """All that a body feels which strikes the beam from the side at ``position``, m from the tip, a node.
+def side_modes(bending: Modes) -> TipModes:
+    """All that a body feels which strikes the beam from the side at the node where the modes' loads act.
 
     The first direction of the contact is that of the body's rebound, against the deflection w of the beam; nothing
     moves along the second. The beam is at rest.
     """
-    vectors = np.concatenate([bending.rigid_vectors, bending.vectors], axis=1)
-    deflection, rotation = bending.system.mesh.unknowns_at(bending.system.mesh.node(position))
+    deflection, turning = bending.at_tip
     omega = np.concatenate([np.zeros(bending.rigid), bending.omega])
     damping, radiation = _resistances(bending, len(omega))
-    amplitude = np.column_stack([-vectors[deflection], np.zeros(len(omega))])
-    turning = vectors[rotation] / bending.system.length
+    amplitude = np.column_stack([-deflection, np.zeros(len(omega))])
     return TipModes(omega, amplitude, np.zeros(len(omega)), turning, damping, radiation)
 
 
-def _resistances(bending: Ended, count: int) -> tuple[Array | None, Array | None]:
+def _resistances(bending: Modes, count: int) -> tuple[Array | None, Array | None]:
     """Damping by dashpots and radiation by a tail of ``count`` modes, of which the ``bending`` ones are the last."""
     damping = None
     if bending.system.dashpots is not None:

@@ -15,7 +15,6 @@ import numpy as np
 from cuefem.beam.mesh import ActsOnCue, ForcedNode
 from cuefem.beam.modes import solve
 from cuefem.beam.system import assemble
-from cuefem.beam.tail import tail
 from cuefem.beam.tip import TipModes, side_modes
 from cuefem.contact.modal_response import propagator_of
 from cuefem.contact.model import ContactModel, check_restitution, power_law
@@ -29,7 +28,7 @@ from cuefem.effects.force_law import TipLaw, loading_time
 from cuefem.quantity.fields import CONTACT_TIME, Quantity, check_fields, check_kind
 from cuefem.quantity.slips import remark_time_as_stiffness
 from cuefem.scene import Resolution, equal_fields
-from cuefem.tip_modes import resolution_for
+from cuefem.tip_modes import modes_for
 
 # Hertz's force grows with this power of the compression: F = 4/3 E* sqrt(R) d^(3/2).
 HERTZ = 1.5
@@ -344,12 +343,12 @@ def solved_side(scene: SideStrike, at: Resolution | None = None) -> SolvedContac
 
 def _place_modes(scene: SideStrike, at: Resolution | None) -> TipModes:
     """Frequencies of the beam, and the struck point's displacement in each mode; truncation is corrected by default."""
-    fineness = at or resolution_for(scene.cue, scene.contact_time)
+    fineness = at or modes_for(scene.cue, scene.contact_time)
     acting: tuple[ActsOnCue, ...] = (*scene.cue_effects, ForcedNode(scene.position))
-    system = assemble(scene.cue, elements=fineness.elements, order=fineness.order, effects=acting)
-    modes = solve(system, fineness.modes + 2 - system.rigid.shape[1])
-    modes = modes if at is not None else tail(modes, position=scene.position)
-    place = side_modes(modes, scene.position)
+    system = assemble(scene.cue, fineness, acting)
+    count = (fineness if isinstance(fineness, int) else fineness.modes) + 2 - system.rigid.shape[1]
+    modes = solve(system, count, ended=int(at is None), position=scene.position)
+    place = side_modes(modes)
     for effect in scene.cue_effects:
         place = effect.damp(place, ((scene.cue, modes),))
     return place

@@ -16,7 +16,7 @@ from cuefem.cue import Cue
 from cuefem.quantity.fields import check_count, check_kind, shown
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.solid.resolution import Solid
-from cuefem.tip_modes import default_resolution, tip_modes_of, turning
+from cuefem.tip_modes import strike_modes_kept, tip_modes_of, turning
 
 NUMBERS = ("squirt", "ball_velocity", "ball_speed", "spin", "cue_speed", "impulse", "duration", "regime", "jam")
 
@@ -131,10 +131,10 @@ def batch_strike(scenes: Sequence[Scene], at: Resolution | None = None, *, threa
     if not scenes:
         raise ValueError("batch_strike takes one scene or more; got none")
     groups: dict[Any, list[int]] = {}
-    resolutions: dict[tuple[Cue, float], Resolution] = {}
+    counts: dict[tuple[Cue, float], int] = {}
     for i, scene in enumerate(scenes):
         with _told_of(i):
-            groups.setdefault(_modes_of(scene, at, resolutions), []).append(i)
+            groups.setdefault(_modes_of(scene, at, counts), []).append(i)
     struck: list[Any] = list(scenes)
     with ThreadPoolExecutor(threads) as executor:
         for group in groups.values():  # strikes with the same modes, which are solved once
@@ -145,15 +145,15 @@ def batch_strike(scenes: Sequence[Scene], at: Resolution | None = None, *, threa
     return _together([each.result() for each in struck])
 
 
-def _modes_of(scene: Scene, at: Resolution | None, resolutions: dict[tuple[Cue, float], Resolution]) -> tuple[Any, ...]:
-    """What the tip modes of a scene depend on; resolutions: the default ones known so far."""
+def _modes_of(scene: Scene, at: Resolution | None, counts: dict[tuple[Cue, float], int]) -> tuple[Any, ...]:
+    """What the tip modes of a scene depend on; counts: the default numbers of modes known so far."""
     if scene.lumped is not None:
         return (scene.lumped,)
-    resolution = at
-    if resolution is None:
+    fineness: Resolution | int | None = at
+    if fineness is None:
         timed = scene.shaft, float(scene.contact_time)
-        resolution = resolutions.get(timed) or resolutions.setdefault(timed, default_resolution(scene))
-    return scene.cue, scene.cue_effects, float(scene.axial_mass), turning(scene), resolution
+        fineness = counts.get(timed) or counts.setdefault(timed, strike_modes_kept(scene))
+    return scene.cue, scene.cue_effects, float(scene.axial_mass), turning(scene), fineness
 
 
 @contextmanager

@@ -9,12 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 
-from cuefem.beam.basis import table
-from cuefem.beam.system import element_matrices, weighted_strains
+from cuefem.beam.basis import element_matrices, gauss, table
 from cuefem.beam.tail import ritz
 from cuefem.cue import Array, Cue, Section, SegmentRows, section_properties
 from cuefem.endmass.impulse_response import ImpulseResponse
@@ -116,7 +114,7 @@ class CueBatch:
         The shaft is held at the end of its last segment, the joint. Statically determinate, so exact for Timoshenko's
         beam: 1/k = integral of x^2/EI + 1/kGA; by quadrature, see `STATIC_POINTS`.
         """
-        x, w, section = self.sections(*_gauss(STATIC_POINTS))
+        x, w, section = self.sections(*gauss(STATIC_POINTS))
         return np.asarray(1 / (w * (x**2 / section.EI + 1 / section.kGA)).sum(axis=(1, 2)))
 
     @property
@@ -260,7 +258,7 @@ def _joined(parts: Sequence[BatchModes]) -> BatchModes:
 class Beams:
     """Assembled beams of a block: K, M (cues, unknowns, unknowns), theta times the length; see `cuefem.beam.System`.
 
-    sizes: (cues, elements), m. length, shift: (cues,). section: arrays (cues, elements, q).
+    sizes: (cues, elements), m. length, shift: (cues,).
     """
 
     K: Array
@@ -268,7 +266,6 @@ class Beams:
     length: Array
     shift: Array
     sizes: Array
-    section: Section
     order: int
 
     @property
@@ -279,13 +276,6 @@ class Beams:
         motions[:, nodes, 0], motions[:, nodes + 1, 1] = 1.0, 1.0
         motions[:, nodes[1:], 1] = np.cumsum(self.sizes, axis=1) / self.length[:, None]
         return motions
-
-    def strains(self, vectors: Array) -> Array:
-        """Strains of ``vectors`` (cues, unknowns, k) times roots of stiffness: (cues, rows, k); K = S'S of all."""
-        t, stride, elements = table(self.order), 2 * self.order + 1, self.sizes.shape[1]
-        own = vectors[:, stride * np.arange(elements)[:, None] + np.arange(len(t.w))]  # (cues, elements, unknowns, k)
-        both = weighted_strains(own, self.section, self.sizes, self.length[:, None, None, None], self.order)
-        return np.concatenate([part.reshape(len(vectors), -1, vectors.shape[2]) for part in both], axis=1)
 
 
 def _beams(batch: CueBatch, at: Resolution) -> Beams:
@@ -304,28 +294,19 @@ def _beams(batch: CueBatch, at: Resolution) -> Beams:
         here = slice(e * stride, e * stride + stride + 2)
         K[:, here, here] += stiff[:, e]
         M[:, here, here] += heavy[:, e]
-    stiffness, mass = (np.einsum("be,be->b", sizes, part.mean(axis=2)) for part in (section.EI, section.rhoA))
-    return Beams(K, M, length, 500 * stiffness / mass / length**4, sizes, section, order)
-
-
-@cache
-def _gauss(count: int) -> tuple[Array, Array]:
-    """Points and weights on [0, 1]."""
-    points, weights = np.polynomial.legendre.leggauss(count)
-    return (points + 1) / 2, weights / 2
+    stiffness, mass = (
+        np.einsum("be,beq,q->b", sizes, part, table(order).weights) for part in (section.EI, section.rhoA)
+    )
+    return Beams(K, M, length, 500 * stiffness / mass / length**4, sizes, order)
 
 
 def _standard(beams: Beams) -> tuple[Array, Array]:
     """The inverse form M q = mu (K + shift M) q as a standard problem C y = mu y, q = back y: (C, back)."""
-    return _reduced(beams.K + beams.shift[:, None, None] * beams.M, beams.M)
-
-
-def _reduced(B: Array, A: Array) -> tuple[Array, Array]:
-    """A q = mu B q, B positive definite, as C y = mu y with q = back y and q' B q = y' y: (C, back)."""
+    B = beams.K + beams.shift[:, None, None] * beams.M
     scale = 1 / np.sqrt(np.einsum("bii->bi", B))
     lower = np.linalg.cholesky(B * scale[:, :, None] * scale[:, None, :])
     back = (_inverse(lower) * scale[:, None, :]).transpose(0, 2, 1)
-    return back.transpose(0, 2, 1) @ A @ back, back
+    return back.transpose(0, 2, 1) @ beams.M @ back, back
 
 
 def _inverse(lower: Array) -> Array:
@@ -352,11 +333,11 @@ def _block_modes(batch: CueBatch, count: int, at: Resolution, ended: bool) -> Ba
     mu, y = np.linalg.eigh(C)
     chosen = slice(-3, -3 - count, -1)  # the last two are the rigid motions
     vectors = back @ (y[:, :, chosen] / np.sqrt(mu[:, None, chosen]))
-    omega, mix = _polished(beams, vectors)
+    omega = np.sqrt(1 / mu[:, chosen] - beams.shift[:, None])
     # the rigid part: inverse of the 2 x 2 mass of translation and rotation about the tip, its translation entry
-    tip, rigid, radiation = np.abs(np.einsum("bj,bjk->bk", vectors[:, 0], mix)), _rigid_tip(batch), None
+    tip, rigid, radiation = np.abs(vectors[:, 0]), _rigid_tip(batch), None
     if ended:
-        high, follow, radiation = _tail(beams, back, vectors @ mix, omega[:, -1])
+        high, follow, radiation = _tail(beams, back, vectors, omega[:, -1])
         omega, tip = np.concatenate([omega, high], axis=1), np.concatenate([tip, follow], axis=1)
     return BatchModes(omega / (2 * np.pi), tip, rigid, radiation)
 
@@ -377,15 +358,6 @@ def _tail(beams: Beams, back: Array, flexible: Array, top: Array) -> tuple[Array
     across = vectors.vectors[:, 0]
     signs = np.where(across < 0, -1.0, 1.0)
     return vectors.omega, signs * across, signs[:, :, None] * vectors.radiation * signs[:, None]
-
-
-def _polished(beams: Beams, vectors: Array) -> tuple[Array, Array]:
-    """(omega, combinations of the vectors) of one Rayleigh-Ritz step with energies from strains: `cuefem.modes`."""
-    strains = beams.strains(vectors)
-    energy = strains.transpose(0, 2, 1) @ strains
-    C, back = _reduced(energy, vectors.transpose(0, 2, 1) @ beams.M @ vectors)
-    inverse, y = np.linalg.eigh(C)
-    return 1 / np.sqrt(inverse[:, ::-1]), back @ (y / np.sqrt(inverse)[:, None])[:, :, ::-1]
 
 
 def _rigid_tip(batch: CueBatch) -> Array:

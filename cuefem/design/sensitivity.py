@@ -16,14 +16,13 @@ from typing import Any
 
 import numpy as np
 
-from cuefem.beam.basis import table
 from cuefem.beam.modes import solve
-from cuefem.beam.system import System, assemble, slopes
+from cuefem.beam.system import System, assemble
 from cuefem.cue import Array
 from cuefem.endmass.impulse_response import STEPS, ImpulseResponse, toeplitz_solution
 from cuefem.endmass.sticking_contact import StickLimit
 from cuefem.scene import Resolution, Scene
-from cuefem.tip_modes import PLAIN_PERIODS, default_resolution
+from cuefem.tip_modes import PLAIN_PERIODS, default_modes
 
 
 @dataclass(frozen=True)
@@ -59,15 +58,15 @@ class _Gradient:
     axial_mass: float
 
 
-def sensitivity(scene: Scene, at: Resolution | None = None) -> Sensitivity:
+def sensitivity(scene: Scene, at: Resolution | int | None = None) -> Sensitivity:
     """Derivatives of a bare cue's stick end mass to the section properties along it.
 
     Parameters
     ----------
     scene : Scene
         With a finite-element cue and without effects.
-    at : Resolution, optional
-        The default is that of `end_mass` without a tail.
+    at : Resolution or int, optional
+        A resolution, or a number of modes. The default is that of `end_mass` without a tail.
 
     Returns
     -------
@@ -87,10 +86,10 @@ def sensitivity(scene: Scene, at: Resolution | None = None) -> Sensitivity:
     """
     if scene.effects:
         raise ValueError(f"sensitivity takes a scene without effects; got {len(scene.effects)}")
-    at = at or default_resolution(scene, periods=PLAIN_PERIODS)
-    system = assemble(scene.shaft, elements=at.elements, order=at.order)
-    bending = solve(system, system.mesh.unknowns - system.rigid.shape[1])
-    count, squares, phi = at.modes, bending.omega**2, bending.vectors[0]
+    at = at or default_modes(scene, periods=PLAIN_PERIODS)
+    system, count = assemble(scene.shaft, at), at if isinstance(at, int) else at.modes
+    bending = solve(system, system.size - system.rigid.shape[1])
+    squares, phi = bending.omega**2, bending.vectors[0]
     still = bending.rigid_vectors[0]
     gradient = _stick(squares[:count], phi[:count], float(still @ still), scene)
     stiff, heavy = _forms(gradient, squares, phi, still)
@@ -115,23 +114,18 @@ def _forms(gradient: _Gradient, squares: Array, phi: Array, still: Array) -> tup
 
 
 def _densities(system: System, vectors: Array, stiff: Array, heavy: Array, gradient: _Gradient) -> Sensitivity:
-    mesh, t = system.mesh, table(system.mesh.order)
-    own = vectors[mesh.first[:, None] + np.arange(len(t.w))]  # (elements, unknowns of an element, modes)
-    bent, slope, turned = slopes(own, mesh.sizes[:, None, None], system.length, mesh.order)
-    moved, sheared = t.w.T @ own, slope - turned
+    fields, points = system.fields(vectors), system.points
 
     def density(form: Array, fields: Array) -> Array:
-        fields = fields.reshape(-1, fields.shape[-1])
         return np.asarray(((fields @ form) * fields).sum(axis=1))
 
-    x = mesh.nodes[:-1, None] + mesh.sizes[:, None] * t.points
     return Sensitivity(
-        x=x.ravel(),
-        weights=(mesh.sizes[:, None] * t.weights).ravel(),
-        rhoA=density(heavy, moved),
-        rhoI=density(heavy, turned),
-        EI=density(stiff, bent),
-        kGA=density(stiff, sheared),
+        x=points.x,
+        weights=points.weights,
+        rhoA=density(heavy, fields.w),
+        rhoI=density(heavy, fields.theta),
+        EI=density(stiff, fields.dtheta),
+        kGA=density(stiff, fields.dw - fields.theta),
         ball_mass=gradient.ball_mass,
         axial_mass=gradient.axial_mass,
         end_mass=gradient.value,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
-from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -102,7 +101,7 @@ class OneByOne(Designs):
         cue, effects = scene.shaft, scene.cue_effects
         key = key_of(scene, cue, effects)
         if key not in self._solved:
-            system = assemble(cue, elements=self.at.elements, order=self.at.order, effects=effects)
+            system = assemble(cue, self.at, effects)
             count = max(self.at.modes + 2 - system.rigid.shape[1], self._count)
             self._solved[key] = solve(system, count)
         return self._solved[key]
@@ -125,8 +124,7 @@ class OneByOne(Designs):
     def _kept(self, i: int) -> Modes:
         """The modes that a contact takes: with a support as many in all as without (`tip_modes_of`)."""
         modes = self._modes[i]
-        count = self.at.modes + 2 - modes.rigid
-        return replace(modes, frequencies=modes.frequencies[:count], vectors=modes.vectors[:, :count])
+        return modes.those(np.arange(self.at.modes + 2 - modes.rigid))
 
 
 def key_of(scene: Scene, *parts: Any) -> Hashable:

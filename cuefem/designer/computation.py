@@ -16,7 +16,6 @@ import numpy as np
 from nicegui import run
 
 import cuefem.report
-from cuefem.beam.waves import mesh_for
 from cuefem.contact.outcome import grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array
@@ -31,8 +30,8 @@ from cuefem.results.comparison import comparison_record
 from cuefem.results.designs import OneDesign, coupled_curve
 from cuefem.results.records import Record
 from cuefem.results.verdict import verdict_record
-from cuefem.scene import Outcome, Resolution, Scene
-from cuefem.tip_modes import Solved, default_resolution
+from cuefem.scene import Outcome, Scene
+from cuefem.tip_modes import Solved, default_modes
 
 LONGEST_WORK = 60.0  # s that a result may take: no cue that people play with needs a tenth of it
 KEPT = 12  # designs whose results are kept, to undo and compare at once
@@ -109,10 +108,7 @@ def curve(scene: Scene) -> dict[str, Any]:
 def gram(scene: Scene) -> tuple[Array, Array]:
     """Positions along the bare cue, m, and the end mass that one gram adds there, g."""
     bare = replace(scene, effects=())
-    at = default_resolution(bare)
-    if at.modes > MOST_GRAM_MODES:
-        at = Resolution(*mesh_for(bare.shaft, MOST_GRAM_MODES), MOST_GRAM_MODES)
-    effect = sensitivity(bare, at)
+    effect = sensitivity(bare, min(default_modes(bare), MOST_GRAM_MODES))
     near = effect.x <= GRAM_REACH
     return effect.x[near], effect.rhoA[near]
 

@@ -12,7 +12,7 @@ from cuefem.quantity.fields import OutOfBounds, Quantity, check_fields, check_ki
 
 if TYPE_CHECKING:
     from cuefem.beam.mesh import Terms
-    from cuefem.beam.spectrum import Ended
+    from cuefem.beam.modes import Modes
     from cuefem.beam.tip import TipModes
     from cuefem.effects.axial import RodModes
     from cuefem.effects.contact_settings import ContactTerms
@@ -108,15 +108,15 @@ class CueEffect(Effect):
         """Mass that the effect puts on the tip's face, kg, if that is all it does; None if it does anything else."""
         return None
 
-    def vibrations(self, bending: Ended, cue: Cue, effects: Sequence[CueEffect]) -> tuple[RodModes, ...]:
+    def vibrations(self, bending: Modes, cue: Cue, effects: Sequence[CueEffect]) -> tuple[RodModes, ...]:
         """Families of modes beside the ``bending`` modes; effects: all that act on the cue."""
         return ()
 
-    def geometric_stiffness(self, bending: Ended, cue: Cue, effects: Sequence[CueEffect]) -> Array | None:
+    def geometric_stiffness(self, bending: Modes, cue: Cue, effects: Sequence[CueEffect]) -> Array | None:
         """What thrust at the tip does to the ``bending`` modes, rigid ones first (`TipModes.geometric`)."""
         return None
 
-    def damp(self, tip: TipModes, families: Sequence[tuple[Cue, Ended | RodModes]]) -> TipModes:
+    def damp(self, tip: TipModes, families: Sequence[tuple[Cue, Modes | RodModes]]) -> TipModes:
         """The tip modes with the effect's damping; their vibrating modes are the families', one after the other."""
         return tip
 

@@ -7,37 +7,34 @@ from dataclasses import replace
 
 import numpy as np
 
-from cuefem.beam.basis import table
-from cuefem.beam.spectrum import Ended
-from cuefem.beam.system import System
+from cuefem.beam.modes import Modes
+from cuefem.beam.system import Points
 from cuefem.beam.tip import TipModes
 from cuefem.cue import Array, Cue, Section, Segment, SegmentRows, section_properties
-from cuefem.effects.axial import Rod, RodModes
+from cuefem.effects.axial import RodModes
 
 
-def damped(tip: TipModes, families: Sequence[tuple[Cue, Ended | RodModes]], *, loss: float | None) -> TipModes:
+def damped(tip: TipModes, families: Sequence[tuple[Cue, Modes | RodModes]], *, loss: float | None) -> TipModes:
     """Tip modes in which each vibrating mode k is damped at the rate eta_k omega_k.
 
     families: the vibrating modes of the tip, one family after the other, each with its cue. loss: loss factor used for
     every material instead of its own.
     """
-    rates = [family.loss_factors(section_loss(cue, family.system, loss)) * family.omega for cue, family in families]
+    rates = [family.loss_factors(section_loss(cue, family.points, loss)) * family.omega for cue, family in families]
     flexible = np.concatenate(rates)
     diagonal = np.diag(np.concatenate([np.zeros(len(tip.omega) - len(flexible)), flexible]))
     return replace(tip, damping=diagonal if tip.damping is None else tip.damping + diagonal)
 
 
-def section_loss(cue: Cue, system: System | Rod, loss: float | None) -> Section:
-    """Loss factor of each stiffness of the section at the Gauss points, (elements, q), shell and core together.
+def section_loss(cue: Cue, points: Points, loss: float | None) -> Section:
+    """Loss factor of each stiffness of the section at the Gauss points, (points,), shell and core together.
 
     A loss factor is the imaginary part of a modulus over its real part, and the stiffnesses are linear in the moduli.
     The result is therefore the section with every modulus multiplied by its loss factor, over the elastic section.
     """
-    mesh, elastic = system.mesh, system.section
     rows = np.array([_lossy(segment, loss) for segment in cue.segments]).T
-    s = mesh.offset[:, None] + mesh.sizes[:, None] * table(mesh.order).points
-    lossy = section_properties(SegmentRows(*rows[:, mesh.piece[:, None]]), s)
-    return Section(*(part / whole for part, whole in zip(lossy, elastic, strict=True)))
+    lossy = section_properties(SegmentRows(*rows[:, points.piece]), points.offset)
+    return Section(*(part / whole for part, whole in zip(lossy, points.section, strict=True)))
 
 
 def _lossy(segment: Segment, loss: float | None) -> Array:

@@ -16,7 +16,7 @@ from cuefem.quantity.slips import WHOLE
 
 if TYPE_CHECKING:
     from cuefem.beam.mesh import Terms
-    from cuefem.beam.spectrum import Ended
+    from cuefem.beam.modes import Modes
     from cuefem.beam.tip import TipModes
     from cuefem.effects.axial import RodModes
 
@@ -258,7 +258,7 @@ class StructuralDamping(CueEffect):
 
     loss: Annotated[float | None, Quantity("", "[0, 1)")] = None
 
-    def damp(self, tip: TipModes, families: Sequence[tuple[Cue, Ended | RodModes]]) -> TipModes:
+    def damp(self, tip: TipModes, families: Sequence[tuple[Cue, Modes | RodModes]]) -> TipModes:
         """The tip modes with every vibrating mode damped."""
         from cuefem.effects.damping import damped  # loaded when used: it solves the beam
 
@@ -370,7 +370,7 @@ class AxialWaves(CueEffect):
             )
         return ""
 
-    def vibrations(self, bending: Ended, cue: Cue, effects: Sequence[CueEffect]) -> tuple[RodModes, ...]:
+    def vibrations(self, bending: Modes, cue: Cue, effects: Sequence[CueEffect]) -> tuple[RodModes, ...]:
         """The rod modes."""
         from cuefem.effects.axial import rod_modes  # loaded when used: it solves the beam
 
@@ -416,7 +416,7 @@ class GeometricStiffness(CueEffect):
     across: ClassVar[bool] = False
     usual: ClassVar[Usual | None] = Usual({}, "the cue's own shape and mass")
 
-    def geometric_stiffness(self, bending: Ended, cue: Cue, effects: Sequence[CueEffect]) -> Array | None:
+    def geometric_stiffness(self, bending: Modes, cue: Cue, effects: Sequence[CueEffect]) -> Array | None:
         """That of the bending modes for a newton of thrust."""
         vectors = np.concatenate([bending.rigid_vectors, bending.vectors], axis=1)
         return bending.system.geometric_stiffness(vectors, lumps_on(cue, effects))

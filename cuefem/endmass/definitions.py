@@ -61,7 +61,7 @@ def end_mass(scene: Scene, drive: str = "stick", at: Resolution | None = None) -
         - "force": the tip is pushed by a half-sine force.
         - "squirt": the lumped end mass that has the squirt of the coupled strike.
     at
-        How finely the cue is computed. By default modes are kept by frequency (`default_resolution`), at least 160 of
+        How finely the cue is computed. By default modes are kept by frequency (handbook: The beam), at least 160 of
         them, or 40 for "velocity" and "force", whose drives begin smoothly, on a cue without leather drawn in. Between
         0.5 and 3 ms a stick end mass is within 0.06 % for 95 % of 50 cues, and 0.12 % at most, of that of 400 modes,
         except for metal tips that stick, and "force"

@@ -10,7 +10,7 @@ import numpy as np
 
 from cuefem.beam.modes import modes
 from cuefem.beam.system import assemble
-from cuefem.beam.waves import mesh_for
+from cuefem.beam.tail import inverse
 from cuefem.contact.side_strike import SideStrike, Striker, side_strike
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array, Cue
@@ -64,15 +64,9 @@ class Predictions:
         cue = _without_leather(self.scene.shaft)
         if not free <= cue.length * (1 + 1e-9):
             raise ValueError(f"stiffness free_length must be in (0, {cue.length:.4g}] m, that of the wood; got {free}")
-        elements, order = mesh_for(cue, STATIC)
-        clamp = Support(min(free, cue.length), np.inf, np.inf)
-        system = assemble(cue, elements=elements, order=order, effects=(clamp,))
-        onto_free = system.free
-        assert onto_free is not None
-        force = onto_free.T @ np.eye(system.mesh.unknowns, 1)[:, 0]
-        K = onto_free.T @ system.K @ onto_free
-        K = K if isinstance(K, np.ndarray) else K.toarray()
-        return float(1 / (force @ np.linalg.solve(K, force)))
+        system = assemble(cue, STATIC, (Support(min(free, cue.length), np.inf, np.inf),))
+        force = system.forces_at(0.0)[:, 0]
+        return float(1 / (force @ inverse(system.K)(force)))
 
     def squirt(self, offset: float, speed: float | None = None, lump: tuple[float, float] | None = None) -> float:
         """Squirt of the coupled strike, rad; lump: mass, kg, and its place, m from the end of the tip."""

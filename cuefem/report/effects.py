@@ -6,8 +6,6 @@ import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict
 
-from cuefem.beam.modes import modes
-from cuefem.beam.tail import tail
 from cuefem.contact.strike import strike, strike_modes
 from cuefem.design.worth import Change, Variant, change, variants
 from cuefem.effects import effect_kinds
@@ -17,7 +15,7 @@ from cuefem.results.convergence import climb
 from cuefem.results.quantities import NONE, degrees, grams, with_unit
 from cuefem.results.records import Record, Sheet
 from cuefem.scene import Outcome, Resolution, Scene
-from cuefem.tip_modes import tip_modes_from, turning
+from cuefem.tip_modes import ended_tip_modes
 
 DEFAULT_RTOL = 1e-2
 # A strike is timed as the quickest of some, as many as fit in this many seconds.
@@ -29,11 +27,8 @@ Track = Callable[[Sequence[Variant]], Iterable[Variant]]
 
 
 def struck(scene: Scene, at: Resolution | None) -> Outcome:
-    """A scene's strike with its modes solved anew at a resolution and ended by a tail; None for a lumped cue."""
-    if at is None:
-        return strike(scene)
-    bending = modes(scene.shaft, at.modes, effects=scene.cue_effects, at=at)
-    return strike_modes(scene, tip_modes_from(tail(bending, turning=turning(scene)), scene))
+    """A scene's strike with as many modes as a resolution has, ended by a tail; None for a lumped cue."""
+    return strike(scene) if at is None else strike_modes(scene, ended_tip_modes(scene, at.modes))
 
 
 def timed_strike(scene: Scene, at: Resolution | None) -> tuple[Outcome, float]:

@@ -61,7 +61,7 @@ from cuefem.results.quantities import GRIPS, NONE, RESULTS, degrees, grams, scal
 from cuefem.results.records import Record, Sheet, value_rows, values_sheet
 from cuefem.results.verdict import verdict_record
 from cuefem.scene import Outcome, Scene
-from cuefem.tip_modes import LEAST, LEAST_STUCK, Solved
+from cuefem.tip_modes import LEAST_STUCK, Solved
 
 DEFAULT_RTOL = 1e-2
 PAGE_OFFSETS = tuple(round(0.03 * i, 2) for i in range(1, 21))  # b/R of the curves
@@ -153,7 +153,7 @@ class _ToAccuracy(Solved):
     def by_default(self) -> Solved:
         """The same with the modes that a strike takes by default, to be compared with other cues that take these."""
         usual = Solved(self.scene)
-        vars(usual)["tip"] = self.tip_modes(LEAST)
+        vars(usual)["tip"] = self.tip_modes()
         return usual
 
     def _as_fine(self, least: int) -> TipModes:

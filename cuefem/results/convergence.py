@@ -13,16 +13,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cuefem.beam.spectrum import ended
-from cuefem.beam.system import assemble
 from cuefem.beam.tip import TipModes, lumped_tip_modes
-from cuefem.beam.waves import ended_mesh_for, modes_below
+from cuefem.beam.waves import even_mesh_for, modes_below
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array
 from cuefem.endmass.definitions import definition_of, end_mass
 from cuefem.quantity.fields import Quantity, check_kind
 from cuefem.scene import MOST_STEPS, Outcome, Resolution, Scene
-from cuefem.tip_modes import MOST, tip_modes_from, turning
+from cuefem.tip_modes import MOST, ended_tip_modes
 
 FIRST, FIRST_STEPS = 12, 100  # modes and steps of the first level
 JUDGED_BY = 2  # levels before
@@ -175,10 +173,7 @@ def _tips(scene: Scene) -> Iterator[tuple[Resolution, TipModes]]:
         return
     cue = scene.shaft
     for count in mode_counts(modes_below(cue, 2 * np.pi * PERIODS / scene.contact_time)):
-        elements, orders = ended_mesh_for(cue, count)
-        system = assemble(cue, elements=elements, order=orders, effects=scene.cue_effects, count=count)
-        bending = ended(system, count, turning=turning(scene))(count)
-        yield Resolution(elements, max(orders), count, steps), tip_modes_from(bending, scene)
+        yield Resolution(*even_mesh_for(cue, count), count, steps), ended_tip_modes(scene, count)
         steps *= 2
 
 

@@ -11,8 +11,8 @@ import numpy as np
 
 from cuefem.beam.modes import modes
 from cuefem.beam.system import assemble
+from cuefem.beam.tail import inverse
 from cuefem.beam.tip import TipModes
-from cuefem.beam.waves import mesh_for
 from cuefem.contact.outcome import grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.cue import Array
@@ -184,7 +184,7 @@ class OneDesign(Designs):
     def tip_stiffness(self) -> Array:
         """Static tip stiffness, N/m, on the mesh of the lowest tones."""
         scene = self.scenes[0]
-        return np.array([static_tip_stiffness(scene, Resolution(*mesh_for(scene.shaft, TONES), TONES))])
+        return np.array([static_tip_stiffness(scene, TONES)])
 
     @cached_property
     def frequencies(self) -> Array:
@@ -197,23 +197,11 @@ class OneDesign(Designs):
         return float(definition.of(definition.tip_of(self.solved), self._scene(0, offset)))
 
 
-def static_tip_stiffness(scene: Scene, at: Resolution) -> float:
+def static_tip_stiffness(scene: Scene, at: Resolution | int) -> float:
     """Static tip stiffness, N/m, of a cue with its effects, its butt end clamped: one linear solve of the beam.
 
-    Good to 1e-8; without effects `CueBatch.tip_stiffness` is exact.
+    at: a resolution, or how many modes the mesh must hold. Without effects `CueBatch.tip_stiffness` is exact.
     """
-    clamp = Support(scene.shaft.length, np.inf, np.inf)
-    system = assemble(scene.shaft, elements=at.elements, order=at.order, effects=(*scene.cue_effects, clamp))
-    force = np.eye(system.mesh.unknowns, 1)[:, 0]
-    K = system.K if isinstance(system.K, np.ndarray) else system.K.toarray()
-    if len(system.tied):
-        free = system.free
-        assert free is not None
-        bent = free @ np.linalg.solve(free.T @ (free.T @ K).T, free.T @ force)
-    else:  # no sparse matrix is needed, whose library takes 0.1 s to load
-        left = np.ones(system.mesh.unknowns, dtype=bool)
-        left[system.fixed] = False
-        bent = np.zeros(len(force))
-        bent[left] = np.linalg.solve(K[np.ix_(left, left)], force[left])
-    # the work of the force less the strain energy, twice: the rounding of K enters it squared
-    return float(1 / (2 * force @ bent - np.sum(system.strains(bent[:, None]) ** 2)))
+    system = assemble(scene.shaft, at, (*scene.cue_effects, Support(scene.shaft.length, np.inf, np.inf)))
+    force = system.forces_at(0.0)[:, 0]
+    return float(1 / (force @ inverse(system.K)(force)))

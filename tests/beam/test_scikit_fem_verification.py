@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pytest
 
-from cuefem import Joint, PointMass, Support
+from cuefem import Joint, PointMass, Resolution, Support
 from cuefem.beam import weak_forms
 from cuefem.beam.modes import solve
 from cuefem.beam.system import assemble
@@ -27,7 +25,7 @@ EFFECTS = {
 def test_the_tones_of_both(name: str, held: str) -> None:
     """Twelve flexible modes on one mesh, to 1e-9: the bases differ, the spaces are the same."""
     drawn, order, effects = cue(name), 8, EFFECTS[held]
-    ours: Any = assemble(drawn, elements=2, order=order, effects=effects)
+    ours = assemble(drawn, Resolution(2, order, 12), effects)
     found = solve(ours, 12)
     K, M = weak_forms.assemble(drawn, ours.mesh.nodes, order=order, effects=effects)
     tones = weak_forms.frequencies(K, M, shift=ours.shift)[found.rigid : found.rigid + 12]

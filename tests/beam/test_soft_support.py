@@ -21,4 +21,4 @@ def test_end_mass_and_squirt_go_to_those_of_a_free_cue(cue: Cue, k: float) -> No
     # the same mesh, with an element's end where the support is
     held, free = (scene(cue, effect) for effect in (Support(0.5, k), PointMass(0.5, 1e-15)))
     assert end_mass(held) == pytest.approx(end_mass(free), rel=1e-7)
-    assert strike(held).squirt == pytest.approx(strike(free).squirt, rel=1e-8)
+    assert strike(held).squirt == pytest.approx(strike(free).squirt, rel=1e-6)

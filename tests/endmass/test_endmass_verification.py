@@ -10,9 +10,11 @@ import pytest
 from scipy.integrate import quad
 
 from cuefem import Cue, LumpedCue, Resolution, Scene, end_mass, modes
+from cuefem.beam.modes import solve
+from cuefem.beam.system import assemble
 from cuefem.beam.tip import TipModes
 from cuefem.endmass.definitions import force, spread_of, velocity
-from cuefem.tip_modes import Solved, default_resolution, tip_modes_of
+from cuefem.tip_modes import Solved, default_modes, tip_modes_from, tip_modes_of
 from tests.helpers.cues import cone, kim, rod, scaled, scene
 
 
@@ -62,7 +64,8 @@ def long_rod() -> tuple[TipModes, Scene, float]:
     cue, T = rod(3000.0, diameter=1e-3), 5e-4
     s = cue.section(0.0)
     found = scene(cue, T)
-    tip = tip_modes_of(found, default_resolution(found, periods=45))
+    count = default_modes(found, periods=45)
+    tip = tip_modes_from(solve(assemble(cue, count), count), found)
     return tip, found, float(s.rhoA) * math.sqrt(T * math.sqrt(float(s.EI / s.rhoA)))
 
 

@@ -1,16 +1,13 @@
 """The tail of the modes against sums over all of them, and the errors that `resolve` promises against references
 (verification)."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 import cuefem as cf
 from cuefem.beam.modes import Modes, solve
 from cuefem.beam.system import assemble
-from cuefem.beam.tail import tail
-from cuefem.beam.waves import mesh_for
+from cuefem.beam.waves import even_mesh_for
 from cuefem.contact.strike import strike_modes
 from cuefem.endmass.definitions import definition_of
 from cuefem.results.convergence import levels
@@ -18,17 +15,11 @@ from cuefem.tip_modes import tip_modes_from, turning
 from tests.helpers.accuracy_scenes import NAMES, endless_friction, family, scene
 
 
-def all_modes(scene: cf.Scene, count: int, *, order: int = 0) -> Modes:
-    """Every mode of a mesh that holds ``count``, of ``order`` more than `resolve` would take."""
+def all_modes(scene: cf.Scene, count: int) -> Modes:
+    """Every mode of a mesh that holds ``count``."""
     assert isinstance(scene.cue, cf.Cue)
-    elements, p = mesh_for(scene.cue, count)
-    system = assemble(scene.cue, elements=elements, order=p + order, effects=scene.cue_effects)
-    held = system.mesh.unknowns if system.free is None else system.free.shape[1]
-    return solve(system, held - system.rigid.shape[1])
-
-
-def lowest(found: Modes, count: int) -> Modes:
-    return replace(found, frequencies=found.frequencies[:count], vectors=found.vectors[:, :count])
+    system = assemble(scene.cue, count, scene.cue_effects)
+    return solve(system, system.size - system.rigid.shape[1])
 
 
 def judged(outcome: cf.Outcome) -> np.ndarray:
@@ -38,10 +29,10 @@ def judged(outcome: cf.Outcome) -> np.ndarray:
 def reference(scene: cf.Scene, modes: int) -> np.ndarray:
     """Squirt, ball speed and spin from far more modes, on another mesh of another order."""
     assert isinstance(scene.cue, cf.Cue)
-    elements, p = mesh_for(scene.cue, modes)
-    more = elements + 1 if isinstance(elements, int) else tuple(count + 1 for count in elements)
-    found = solve(assemble(scene.cue, elements=more, order=p - 2, effects=scene.cue_effects), modes)
-    return judged(strike_modes(scene, tip_modes_from(tail(found, turning=turning(scene)), scene), steps=3200))
+    elements, order = even_mesh_for(scene.cue, modes)
+    system = assemble(scene.cue, cf.Resolution(elements + 1, order, modes), scene.cue_effects)
+    found = solve(system, modes, ended=2 if turning(scene) else 1)
+    return judged(strike_modes(scene, tip_modes_from(found, scene), steps=3200))
 
 
 def true_error(outcome: cf.Outcome, best: np.ndarray, scene: cf.Scene) -> float:
@@ -51,8 +42,7 @@ def true_error(outcome: cf.Outcome, best: np.ndarray, scene: cf.Scene) -> float:
 
 def moment(found: Modes, power: int, *, past: int) -> np.ndarray:
     """Sum of [w, theta][w, theta]' / (omega^2 + shift)^power over the modes from number ``past`` on."""
-    w, theta = found.system.tip_displacement(found.vectors[:, past:])
-    rows = np.array([w, theta]) / (found.omega[past:] ** 2 + found.system.shift) ** (power / 2)
+    rows = found.spectrum.felt[:, past:] / (found.omega[past:] ** 2 + found.system.shift) ** (power / 2)
     return np.asarray(rows @ rows.T)
 
 
@@ -61,9 +51,9 @@ def moment(found: Modes, power: int, *, past: int) -> np.ndarray:
 def test_tail_holds_the_moments_of_every_mode_left_out(name: str, effects: tuple) -> None:
     """Two steps of Lanczos hold four moments; with a force alone, those of the deflection alone."""
     whole = all_modes(scene(name, 1e-3, 0.3, effects=effects), 40)
-    for turns, part in ((True, slice(None)), (False, slice(1))):
-        ended = tail(lowest(whole, 20), turning=turns)
-        assert len(ended.omega) == 20 + (4 if turns else 2)
+    for loads in (2, 1):
+        ended, part = solve(whole.system, 20, ended=loads), slice(loads)
+        assert len(ended.omega) == 20 + 2 * loads
         for power in (1, 2, 3, 4):
             found, wanted = (moment(each, power, past=20)[part, part] for each in (ended, whole))
             scale = np.sqrt(np.outer(wanted.diagonal(), wanted.diagonal()))
@@ -72,7 +62,7 @@ def test_tail_holds_the_moments_of_every_mode_left_out(name: str, effects: tuple
 
 def test_end_masses_to_an_accuracy() -> None:
     here = scene("kim", 1e-3, 0.3)
-    tip = tip_modes_from(tail(lowest(all_modes(here, 130, order=2), 130)), here)
+    tip = tip_modes_from(solve(assemble(here.shaft, 140), 130, ended=1), here)
     for drive in ("stick", "velocity", "force"):
         value, error = cf.resolve_end_mass(here, drive, 1e-3)
         assert error <= 1e-3
