@@ -25,8 +25,8 @@ from cuefem.contact.strike import strike
 from cuefem.cue import Cue, Material
 from cuefem.design.sensitivity import sensitivity
 from cuefem.quantity.fields import check_count, check_kind
-from cuefem.results.designs import coupled_curve, course
 from cuefem.results.quantities import scaled, with_heading, with_unit
+from cuefem.results.solved_design import coupled_curve, course
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.tip_modes import Solved
 

@@ -17,7 +17,7 @@ from cuefem.beam.tail import ritz
 from cuefem.cue import Array, Cue, Section, SegmentRows, section_properties
 from cuefem.endmass.impulse_response import ImpulseResponse
 from cuefem.endmass.sticking_contact import StickLimit
-from cuefem.results.designs import Stick
+from cuefem.results.solved_design import Stick
 from cuefem.scene import Resolution, Scene
 
 # Cues worked at a time: more of them, and their matrices no longer fit the cache (half as fast at 256).

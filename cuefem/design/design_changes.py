@@ -14,9 +14,9 @@ from cuefem.cue.materials import MATERIALS, WOODS, table_name
 from cuefem.effects.leather_tip import DOMES
 from cuefem.parameters.parameter import PARAMETERS, varied
 from cuefem.parameters.parts import Layout, taper_position
-from cuefem.results.designs import OneDesign, off_centre
 from cuefem.results.quantities import RESULTS, scaled, with_unit
 from cuefem.results.records import Record
+from cuefem.results.solved_design import OneDesign, off_centre
 from cuefem.results.uncertainty import model_share, ratio_error, squirt_changes
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved

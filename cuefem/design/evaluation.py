@@ -13,7 +13,7 @@ from cuefem.cue import Array
 from cuefem.design.batch import BLOCK
 from cuefem.design.responses import Response
 from cuefem.design.solvers import OneByOne, Together, key_of
-from cuefem.results.designs import Designs
+from cuefem.results.solved_design import Designs
 from cuefem.scene import Resolution, Scene
 from cuefem.tip_modes import PERIODS_KEPT
 

@@ -7,9 +7,8 @@ import re
 from dataclasses import dataclass
 
 from cuefem.cue import Array
-from cuefem.results.asking import asked
-from cuefem.results.designs import Designs
 from cuefem.results.quantities import Result, with_heading
+from cuefem.results.solved_design import Designs, asked
 
 _NAME = re.compile(r"(\w+)(?:\(\s*([^()\s]+)\s*\))?")
 

@@ -13,7 +13,7 @@ from cuefem.beam.system import assemble
 from cuefem.beam.tip import TipModes
 from cuefem.cue import Array
 from cuefem.design.batch import BatchModes, CueBatch, batch_frequencies, batch_modes, stick_of
-from cuefem.results.designs import Designs, Stick, static_tip_stiffness
+from cuefem.results.solved_design import Designs, Stick, static_tip_stiffness
 from cuefem.scene import Resolution, Scene
 from cuefem.tip_modes import tip_modes_from, tip_modes_of
 

@@ -24,11 +24,10 @@ from cuefem.design.sensitivity import sensitivity
 from cuefem.endmass.definitions import DEFINITIONS
 from cuefem.io.ready import ready_cues
 from cuefem.parameters.parts import main_material
-from cuefem.results.asking import listed
 from cuefem.results.closed_forms import pivot_length
 from cuefem.results.comparison import comparison_record
-from cuefem.results.designs import OneDesign, coupled_curve
 from cuefem.results.records import Record
+from cuefem.results.solved_design import OneDesign, coupled_curve, listed
 from cuefem.results.verdict import verdict_record
 from cuefem.scene import Outcome, Scene
 from cuefem.tip_modes import Solved, default_modes

@@ -91,8 +91,8 @@ def _every_effect() -> str:
 def _every_response() -> str:
     """The responses of studies as a table: name, unit in which people read it, what it is, and which is better."""
     from cuefem.parameters.parameter import PARAMETERS
-    from cuefem.results.asking import asked
     from cuefem.results.quantities import TRADE
+    from cuefem.results.solved_design import asked
 
     rows = [
         f"| `{name}{ARGUMENTS[result.argument]}` | {TRADE.get(result.unit, (1, result.unit))[1]} "

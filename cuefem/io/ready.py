@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from cuefem.cue import Cue
 from cuefem.io import load
 from cuefem.io.shelf import folder
-from cuefem.results.designs import strikes_at
+from cuefem.results.solved_design import strikes_at
 from cuefem.scene import Scene
 from cuefem.scene.default_scene import GAMES, usual_scene
 from cuefem.tip_modes import Solved

@@ -14,9 +14,9 @@ from cuefem.report.end_mass import SQUIRT_END_MASS
 from cuefem.report.squirt import offset_charts
 from cuefem.report.strike_table import grip_warning
 from cuefem.results.comparison import struck_alike
-from cuefem.results.designs import coupled_curve
 from cuefem.results.quantities import NONE, RESULTS, with_unit
 from cuefem.results.records import Record, Sheet
+from cuefem.results.solved_design import coupled_curve
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved
 

@@ -10,9 +10,9 @@ import numpy as np
 
 from cuefem.contact.outcome import Phase
 from cuefem.report.charts import Axis, Chart, Curve, Mark, Shade, chart
-from cuefem.results.designs import course
 from cuefem.results.quantities import scaled, with_heading
 from cuefem.results.records import Record
+from cuefem.results.solved_design import course
 from cuefem.scene import Outcome
 
 MOST_EVENTS = 12

@@ -14,10 +14,9 @@ from cuefem.report.squirt import squirt_record, squirt_sheet
 from cuefem.report.strike_table import grip_warning
 from cuefem.report.tip_table import tip_record, tip_sheet
 from cuefem.report.verdict_table import verdict_things
-from cuefem.results.asking import listed
-from cuefem.results.designs import OneDesign
 from cuefem.results.quantities import grams
 from cuefem.results.records import Record, Sheet, value_rows, values_sheet
+from cuefem.results.solved_design import OneDesign, listed
 from cuefem.results.verdict import verdict_record
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved

@@ -15,8 +15,8 @@ from cuefem.endmass.lumped import lump_modes
 from cuefem.quantity.fields import scalar
 from cuefem.report.scene_words import tip_effect_notes
 from cuefem.results.closed_forms import alciatore_a31
-from cuefem.results.designs import at_offset
 from cuefem.results.records import Record
+from cuefem.results.solved_design import at_offset
 from cuefem.scene import Scene
 
 # What the numbers beside the coupled strike's rest on, in words that stand without the handbook.

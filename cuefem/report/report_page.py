@@ -52,13 +52,12 @@ from cuefem.report.templates import environment
 from cuefem.report.tip_table import tip_record, tip_sheet
 from cuefem.report.trust import trust_lines
 from cuefem.report.verdict_table import headline, uncertainty_line
-from cuefem.results.asking import listed
 from cuefem.results.closed_forms import alciatore_a31_mass_ratio
 from cuefem.results.comparison import comparison_record
 from cuefem.results.convergence import Level, climb
-from cuefem.results.designs import OneDesign, coupled_curve
 from cuefem.results.quantities import GRIPS, NONE, RESULTS, degrees, grams, scaled, written
 from cuefem.results.records import Record, Sheet, value_rows, values_sheet
+from cuefem.results.solved_design import OneDesign, coupled_curve, listed
 from cuefem.results.verdict import verdict_record
 from cuefem.scene import Outcome, Scene
 from cuefem.tip_modes import LEAST_STUCK, Solved

@@ -20,9 +20,9 @@ from cuefem.report.models import (
 from cuefem.report.scene_words import assumptions
 from cuefem.report.strike_table import PIVOT
 from cuefem.results.closed_forms import pivot_length
-from cuefem.results.designs import OFFSETS, at_offset, coupled_curve
 from cuefem.results.quantities import TRADE, Units, written
 from cuefem.results.records import Record, Sheet
+from cuefem.results.solved_design import OFFSETS, at_offset, coupled_curve
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved
 

@@ -11,9 +11,8 @@ from typing import Any, NamedTuple
 from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.parameters.parameter import PARAMETERS
 from cuefem.parameters.parts import main_material
-from cuefem.results.asking import asked
-from cuefem.results.designs import OneDesign, off_centre
 from cuefem.results.records import Record
+from cuefem.results.solved_design import OneDesign, asked, off_centre
 from cuefem.results.uncertainty import FLOOR, changes_by_input, model_share, ratio_error
 from cuefem.scene import Scene
 from cuefem.tip_modes import Solved

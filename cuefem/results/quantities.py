@@ -18,7 +18,7 @@ from cuefem.results.closed_forms import pivot_at
 from cuefem.scene import Outcome, Scene
 
 if TYPE_CHECKING:  # at work every command that writes a number would pay for it
-    from cuefem.results.designs import Designs
+    from cuefem.results.solved_design import Designs
 
 NONE = "–"
 # The units in which a cue maker reads what a record holds in SI: how many of them one SI unit is, and their name.

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 from cuefem.cue import Cue
 from cuefem.effects import Joint, PointMass, Support
-from cuefem.results.designs import off_centre
 from cuefem.results.records import Record
+from cuefem.results.solved_design import off_centre
 from cuefem.results.uncertainty import (
     model_share,
     of_inputs,

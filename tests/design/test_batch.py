@@ -14,7 +14,7 @@ from cuefem.design.batch import BLOCK, CueBatch, batch_frequencies, batch_modes,
 from cuefem.design.study_result import found
 from cuefem.endmass.definitions import stick
 from cuefem.endmass.sticking_contact import StickLimit
-from cuefem.results.designs import static_tip_stiffness
+from cuefem.results.solved_design import static_tip_stiffness
 from cuefem.tip_modes import tip_modes_from
 from tests.helpers.cues import ABS, CARBON, FAMILY, FOAM, LEATHER, MAPLE, kim, rod, scene, soft_tip, stiff_ferrule
 

@@ -14,8 +14,8 @@ from cuefem.beam.waves import even_mesh_for
 from cuefem.cue.materials import material
 from cuefem.design import Levels, Normal, Response, Sample, Span, Study, Vary, evaluate
 from cuefem.endmass.definitions import DEFINITIONS, small_offset_slope
-from cuefem.results.asking import asked
 from cuefem.results.quantities import RESULTS
+from cuefem.results.solved_design import asked
 from cuefem.tip_modes import default_modes, tip_modes_of
 from studies.paper.closed_forms import natural_pivot_length
 from tests.helpers.cues import MAPLE, kim, low_deflection, pool

@@ -9,7 +9,7 @@ import cuefem as cf
 from cuefem.handbook import chapters
 from cuefem.io import study_files
 from cuefem.io.study_files import load_study
-from cuefem.results.asking import asked
+from cuefem.results.solved_design import asked
 
 (TEXT,) = (chapter.text for chapter in chapters() if chapter.name == "study")
 EXAMPLES = {

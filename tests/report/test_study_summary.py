@@ -13,7 +13,7 @@ from hypothesis.extra.numpy import arrays
 import cuefem as cf
 from cuefem.design import Response
 from cuefem.report.study_table import StudyTable, column_label
-from cuefem.results.asking import asked
+from cuefem.results.solved_design import asked
 from tests.helpers.command_line import as_json, said
 from tests.helpers.refusals import command_refuses
 from tests.helpers.sweeps import STUDY, written

@@ -1,7 +1,8 @@
-"""Solved designs: what the numbers of a scene are computed from, for one scene as for many."""
+"""Solved designs: what the numbers of a scene are computed from, for one as for many, and all that can be asked."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -21,6 +22,7 @@ from cuefem.endmass.definitions import DEFINITIONS, Definition, small_offset_slo
 from cuefem.endmass.impulse_response import ImpulseResponse
 from cuefem.endmass.sticking_contact import StickLimit, stick_reason
 from cuefem.results.closed_forms import pivot_length
+from cuefem.results.quantities import RESULTS, Result
 from cuefem.scene import Outcome, Resolution, Scene
 from cuefem.scene.default_scene import GAMES
 from cuefem.tip_modes import Solved
@@ -205,3 +207,50 @@ def static_tip_stiffness(scene: Scene, at: Resolution | int) -> float:
     system = assemble(scene.shaft, at, (*scene.cue_effects, Support(scene.shaft.length, np.inf, np.inf)))
     force = system.forces_at(0.0)[:, 0]
     return float(1 / (force @ inverse(system.K)(force)))
+
+
+def asked() -> dict[str, Result]:
+    """All results that can be asked of a design, by name: also "end_mass_NAME" for every definition of the end mass."""
+    own = {name: result for name, result in RESULTS.items() if result.of is not None}
+    return own | {f"end_mass_{name}": _defined(definition) for name, definition in DEFINITIONS.items()}
+
+
+def _defined(definition: Definition) -> Result:
+    def values(designs: Designs, offset: float | None) -> Array:
+        return np.array([designs.end_mass(i, definition, offset) for i in range(len(designs.scenes))])
+
+    return Result(
+        f"end mass, {definition.label}",
+        "kg",
+        about=definition.meaning,
+        of=values,
+        argument="offset" if definition.at_offset else "",
+        strikes=True,
+        better="lower",
+        listed=False,
+    )
+
+
+def listed(designs: Designs, *, at_once: bool = False) -> dict[str, float | None]:
+    """Every listed result of one design, None where it has none: what a report and the designer show by its name.
+
+    at_once: leave out those that take a solution of their own.
+    """
+    cue = designs.scenes[0].cue
+    return {
+        name: _value(result, designs)
+        for name, result in RESULTS.items()
+        if result.of is not None
+        and result.listed
+        and (cue.segments or not result.segments)
+        and not (at_once and result.solves)
+    }
+
+
+def _value(result: Result, designs: Designs) -> float | None:
+    assert result.of is not None
+    try:
+        value = float(result.of(designs, None)[0])
+    except (ValueError, RuntimeError):  # such as the stiffness of a cue whose effects hold its tip
+        return None
+    return value if math.isfinite(value) else None
