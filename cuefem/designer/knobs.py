@@ -329,8 +329,9 @@ class KnobRow:
         _named(self.field, name)
         if self.slider is not None:
             self._place(name, mine, beside, design.scene)
-        self.note.set_text("" if self.short else self._note(design, mine, beside if other else mine))
-        _classes(self.note, "other", other is not None and beside != mine)
+        alike = other is None or _alike(mine, beside)
+        self.note.set_text("" if self.short else self._note(design, mine, mine if alike else beside))
+        _classes(self.note, "other", not alike)
 
     def _text(self, design: Design, mine: Any) -> str:
         if self.knob.range is None:
@@ -410,6 +411,12 @@ class KnobRow:
             return
         unit = range_of(self.key).unit
         self._set(new, text if any(map(str.isalpha, text)) else f"{text} {unit}".rstrip())
+
+
+def _alike(mine: Any, other: Any) -> bool:
+    """Whether two values are the same but for rounding."""
+    numbers = isinstance(mine, float) and isinstance(other, float)
+    return math.isclose(mine, other, rel_tol=1e-9) if numbers else mine == other
 
 
 def _classes(element: Any, name: str, on: bool) -> None:

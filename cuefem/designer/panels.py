@@ -7,10 +7,12 @@ from dataclasses import dataclass, field
 from html import escape
 from typing import Any
 
+import numpy as np
 from nicegui import ui
 
 import cuefem.report
 from cuefem.contact.outcome import MISSED
+from cuefem.cue import Array
 from cuefem.designer.computation import CURVE_OFFSETS
 from cuefem.designer.knobs import KNOBS, label, value, written
 from cuefem.designer.state import Design, Step
@@ -35,10 +37,7 @@ COMPUTING = '<p class="soft">computing …</p>'
 
 @dataclass
 class Known:
-    """What is computed of the design in work ("own") and of the other one, by the names of the computation.
-
-    `of` counts the design: results of the one before are shown pale until their successors are there.
-    """
+    """What is computed of the design in work ("own") and of the other one, by the names of the computation."""
 
     own: dict[str, Any] = field(default_factory=dict)
     other: dict[str, Any] = field(default_factory=dict)
@@ -65,7 +64,7 @@ def curves_markup(step: Step, known: Known) -> str:
     drawn = [(name, style, side["curve"]) for name, style, side in sides if "curve" in side]
     if not drawn or "curve" not in known.own:
         return COMPUTING
-    lines = [(name, style, curve["squirt"], curve["pivot_length"]) for name, style, curve in drawn]
+    lines = [(name, style, *_to_miscue(curve)) for name, style, curve in drawn]
     grips = known.own["curve"]["grip"]
     offset = float(step.design.scene.stroke.offset)
     charts = [*offset_charts(lines, CURVE_OFFSETS, offset, height=280, spans=_shades(grips))]
@@ -88,6 +87,12 @@ def curves_markup(step: Step, known: Known) -> str:
     if missed:
         note = f"{step.design.name}: miscue from b/R {missed[0] - HALF:.2f} on. {note}"
     return f'<div class="charts">{figures}</div><p class="soft">{escape(note)}</p>'
+
+
+def _to_miscue(curve: Mapping[str, Any]) -> tuple[Array, Array]:
+    """Squirt and pivot length of a curve as far as its first miscue: beyond it squirt grows without meaning."""
+    missed = np.cumsum([grip in MISSED for grip in curve["grip"]])
+    return tuple(np.where(missed > 1, np.nan, curve[name]) for name in ("squirt", "pivot_length"))  # type: ignore[return-value]
 
 
 def _shades(grips: Sequence[str]) -> list[Shade]:

@@ -57,8 +57,8 @@ def headline_markup(own: Shown, other: Shown | None = None, difference: Record |
         squirt_words(verdict) if verdict else (with_unit(abs(own.numbers["squirt"] or 0.0), "rad", decimals=2), "")
     )
     lines = [] if other is None else [_told(difference, other.name)]
-    if verdict and verdict["among"]:
-        first = next(iter(verdict["among"]))
+    first = next(iter(verdict["among"]), "") if verdict else ""
+    if verdict and first and (other is None or other.name != first):
         among = verdict["among"][first]
         told = {"difference": among["difference"], "error": among["difference_error"], "distinct": among["distinct"]}
         lines.append(_told(told, first))
