@@ -16,7 +16,7 @@ from cuefem.cue import Array
 
 # The half-sine pushes last these parts of the contact time. The modes' motion under each is sampled LOOKS times from
 # the first touch up to UNTIL contact times.
-PUSHES, LOOKS, UNTIL = (0.5, 1.0), 16, 1.5
+PUSHES, LOOKS, UNTIL = (0.5, 0.75, 1.0), 16, 1.5
 # Of the decomposition, rows that carry less than this part of the greatest one's q'Gq are dropped, and all beyond MOST.
 LEAST_PART, MOST = 1e-12, 12
 # A rigid motion whose entry in G is less than this part of the largest entry does not turn the cue: that is rounding.
