@@ -46,6 +46,8 @@ CALLS: dict[str, Callable[[], object]] = {
     "low must be above 0 where the spacing is logarithmic": lambda: Span(0.0, 1.0, 3, logarithmic=True),
     "values must hold at least one": lambda: Levels(()),
     "path must name a field": lambda: Vary((), Levels((1.0,))),
+    "count must be a whole number >= 1": lambda: Sample("sobol", 0, 1),
+    "seed must be a whole number >= 0": lambda: Sample("sobol", 4, -1),
     "method must be one of grid, sobol": lambda: Sample("grid", 10, 1),
     "count must be at most": lambda: Sample("sobol", 2**31, 1),
     "cue.segments[0].material takes names": lambda: varying("cue.segments[0].material", 1.0),
@@ -58,6 +60,7 @@ CALLS: dict[str, Callable[[], object]] = {
     "must be one of ": lambda: Response.of("squrit(0.3)"),
     "must be mass, which takes nothing in brackets": lambda: Response.of("mass(3)"),
     "must be frequency(n), n a whole number": lambda: Response.of("frequency(inf)"),
+    "must be ball_speed(b), b an": lambda: Response.of("ball_speed(fast)"),
     "must be squirt(b), b an offset b/R in (-1, 1); got": lambda: Response.of("squirt(1)"),
     "must be pivot_length(b), b an offset b/R in (-1, 1) without 0": lambda: Response.of("pivot_length(0)"),
     "CueBatch takes cues of one topology; got [1, 4]": lambda: cf.CueBatch.of([kim(), pool()]),
@@ -83,6 +86,8 @@ CALLS: dict[str, Callable[[], object]] = {
     "E must have low and high, or values": lambda: replace(PROBLEM, vary=(E,)),
     "no design within tip_stiffness >= 1000 was found": lambda: optimum(STIFF, rounds=8),
     "an optimum takes no store, workers or dask": lambda: cf.study(PROBLEM, workers=2),
+    "workers are for this machine": lambda: cf.study(varying("ball.mass", 0.2), workers=2, dask="tcp://localhost:1"),
+    "Scene.cue must be a Cue of segments": lambda: sensitivity(LUMPED),
     "sensitivity takes a scene without effects": lambda: sensitivity(
         replace(MAPLE, effects=(cf.PointMass(0.1, 1e-3),))
     ),

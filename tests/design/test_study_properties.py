@@ -225,3 +225,10 @@ def test_normal_ranges_are_normal_and_cut(middle: float, sd: float, u: float) ->
     assert NormalDist(middle, sd).cdf(drawn.quantile(u)) == pytest.approx(u, abs=6.4e-5)
     logarithmic = Normal(np.exp(middle), sd, logarithmic=True)
     assert np.log(logarithmic.quantile(u)) == pytest.approx(drawn.quantile(u), rel=1e-9, abs=1e-9)
+
+
+def test_a_lumped_cue_has_what_needs_no_segments() -> None:
+    lumped = cf.Scene(cf.LumpedCue(0.5, 0.005))
+    found = evaluate([lumped, lumped], ["mass", "frequency(1)"])
+    assert found.values[:, 0].tolist() == [0.5, 0.5]
+    assert found.reasons == ("frequency(1) needs a cue of segments; got a lumped cue",) * 2

@@ -102,6 +102,7 @@ def test_the_command_prints_a_chapter_and_writes_the_page(tmp_path: Path) -> Non
     assert path.read_text(encoding="utf-8") == page()
     out = said("guide", "glossary", "--print")
     assert ("effective end mass" in out, "Hutchinson" in out) == (True, False)
+    assert "Hutchinson" in said("guide", "--print")
     listed = " ".join(said("guide", "--help").split())
     assert [name for name in CHAPTERS if name not in listed] == []
 

@@ -10,6 +10,7 @@ import pytest
 import cuefem as cf
 from cuefem.parameters.parameter import varied
 from cuefem.parameters.parts import main_material
+from cuefem.report.comparison_table import comparison_sentences
 from cuefem.results.comparison import OTHER_FLOOR, comparison_record
 from cuefem.results.uncertainty import FLOOR, MASSES, SHAFTS
 from tests.helpers.command_line import as_json, call
@@ -50,7 +51,9 @@ def test_of_a_cue_beside_itself_only_the_floor_is_left() -> None:
 
 
 def test_of_two_pieces_of_wood_the_root_of_two_of_each_input_is_left() -> None:
-    two = comparison_record(TWIN)["differences"]["b"]
+    record = comparison_record(TWIN)
+    two = record["differences"]["b"]
+    assert "cannot be told apart" in comparison_sentences(record)[0]
     assert not any(each["distinct"] for each in two.values())
     heavier = varied(SCENE, {"rho": main_material(SCENE.shaft).rho * math.exp(0.1)})
     assert two["shaft_mass"]["error"] > 0.9 * (heavier.shaft.shaft_mass / SCENE.shaft.shaft_mass - 1)
@@ -95,6 +98,7 @@ def test_a_miscue_is_not_compared() -> None:
     record = comparison_record(far)
     assert record["cues"]["a"]["squirt"] != record["cues"]["a"]["squirt"]
     assert not {"squirt", "pivot_length"} & {*record["differences"]["b"]}
+    assert "is a miscue" in comparison_sentences(record)[0]
 
 
 @pytest.mark.parametrize(
