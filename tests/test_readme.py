@@ -55,6 +55,7 @@ def test_the_first_block_is_two_complete_commands() -> None:
     assert all(line.startswith("python3 -m venv") for line in lines)
 
 
+@pytest.mark.heavy
 def test_ones_own_shaft_takes_three_commands(tmp_path: Path) -> None:
     """Its last two lines, in this process; all of them, from nothing, in the heavy test."""
     install, profile, report = OWN_SHAFT.splitlines()

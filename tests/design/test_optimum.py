@@ -118,6 +118,7 @@ def test_start_that_cannot_be_made_is_searched_by_evolution_and_then_refined() -
 NAMES = OPTIMUM + '[[vary]]\npath = "cue.segments[0].material"\nvalues = ["hard maple", "ash", "purpleheart"]\n'
 
 
+@pytest.mark.heavy
 def test_listed_names_are_tried_one_by_one(tmp_path: Path) -> None:
     problem = load_study(written(tmp_path, NAMES.replace("300 N/m", "700 N/m")))
     found = optimum(problem, rounds=8)

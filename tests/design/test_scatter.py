@@ -64,6 +64,7 @@ DENSITIES = (
 )
 
 
+@pytest.mark.heavy
 def test_sum_of_correlated_numbers() -> None:
     """The mass of a shaft is a sum of densities times volumes: indices of independent ones, and of groups, exact."""
     r = {("front", "middle"): 0.8, ("middle", "rear"): -0.5}

@@ -66,7 +66,7 @@ def setup_of(cue: MeasuredCue, z: np.ndarray) -> bool:
         return False
 
 
-@pytest.mark.parametrize("name", ["E", "bore", "taper"])
+@pytest.mark.parametrize("name", ["E", pytest.param("bore", marks=pytest.mark.heavy), "taper"])
 def test_an_unknown_at_its_limits(name: str) -> None:
     at_limits(MeasuredCue("a cue", SCENE, CHEAP, (Prior("taper", 0.1),)), [name])
 

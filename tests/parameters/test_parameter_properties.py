@@ -30,6 +30,7 @@ def beside(key: str, value: float, part: float) -> float:
 
 
 @pytest.mark.parametrize("name", SCENES)
+@settings(max_examples=5)
 @given(permille=st.integers(-10, 10))
 def test_every_place_is_set_and_reads_back(name: str, permille: int) -> None:
     scene = SCENES[name]
@@ -42,7 +43,7 @@ def test_every_place_is_set_and_reads_back(name: str, permille: int) -> None:
         assert made.cue.length == pytest.approx(scene.cue.length, rel=1e-12), key
 
 
-@settings(max_examples=40)
+@settings(max_examples=20)
 @given(name=st.sampled_from(sorted(SCENES)), data=st.data())
 def test_the_order_of_changes_does_not_matter(name: str, data: Any) -> None:
     scene = SCENES[name]
@@ -59,6 +60,7 @@ def test_a_place_is_named_in_many_ways(name: str) -> None:
     assert paths(scene, "segments[0].length") == paths(scene, "cue.segments[0].length")
 
 
+@settings(max_examples=30)
 @given(x=st.floats(0.05, 0.7), more=st.floats(1e-8, 5e-4).flatmap(lambda size: st.sampled_from((size, -size))))
 def test_the_taper_at_a_position_moves_between_the_ends_alone(x: float, more: float) -> None:
     name = f"taper at {1e3 * x!r} mm"
