@@ -8,6 +8,7 @@ locks:
 Bending is linear along x from the tip (x = 0) to the butt; see [Cowper] and handbook: The beam.
 
 `weak_forms` states both in scikit-fem, which is the definition. `system` assembles the same K and M five times as fast:
-the basis functions are scikit-fem's hierarchical ones, tabulated (`basis`). `modes` solves for the bending modes,
-`tail` stands for the modes left out, and `tip` holds what an impact sees of them.
+the basis functions are scikit-fem's hierarchical ones, tabulated (`basis`), on the mesh that `waves` and `mesh` choose.
+`modes` solves for the bending modes by `spectrum`, which solves for those along the axis too, `tail` stands for the
+modes left out, and `tip` holds what an impact sees of them.
 """
