@@ -83,6 +83,12 @@ def whole(drawn: cf.Cue, offset: float = 0.375, speed: float = 2.0, **leather: f
     return replace(usual, stroke=cf.Stroke(speed, offset), effects=effects)
 
 
+def with_tip(struck: cf.Scene, E: float, restitution: float) -> cf.Scene:
+    """The scene with another modulus, Pa, and restitution of its leather tip."""
+    effects = tuple(replace(e, E=E) if isinstance(e, cf.LeatherTip) else e for e in struck.effects)
+    return replace(struck, tip=replace(struck.tip, restitution=restitution), effects=effects)
+
+
 @cache
 def robot_speeds() -> tuple[float, float]:
     """Cue speeds of the robot's strokes (Billiards Digest, February 2008), m/s.

@@ -13,7 +13,6 @@ from functools import cache
 from typing import Any
 
 import cuefem as cf
-from cuefem.contact.tip_identification import with_tip
 from cuefem.cue.materials import LEATHERS
 from studies import pages, strokes
 from studies.pages import table
@@ -67,7 +66,7 @@ def whole(name: str) -> cf.Scene:
     moved = [replace(e, position=e.position - leather) if hasattr(e, "position") else e for e in rest]
     plain = replace(found.tip, contact_time=None, stiffness=None)
     struck = replace(found, cue=cue, tip=plain, effects=(tip, WAVES, cf.GeometricStiffness(), *moved))
-    return with_tip(struck, cf.identify_tip(struck, float(found.contact_time), found.tip.restitution))
+    return strokes.with_tip(struck, *cf.identify_tip(struck, float(found.contact_time), found.tip.restitution))
 
 
 def cell(struck: cf.Scene, effect: str) -> str:

@@ -14,13 +14,12 @@ from functools import cache, partial
 from typing import Any
 
 import cuefem as cf
-from cuefem.contact.tip_identification import IdentifiedTip, identify_tip, with_tip
 from cuefem.cue.materials import LEATHERS
 from cuefem.results.closed_forms import pivot_at
 from studies import pages, strokes
 from studies.measured.squirt import INCHES, mass_ratios
 from studies.pages import table
-from studies.strokes import INCH, at_offset, cue, hollow, squirt, whole
+from studies.strokes import INCH, at_offset, cue, hollow, squirt, whole, with_tip
 
 Inputs = Callable[[cf.Scene], cf.Scene]
 SPEEDS = (0.8, 2.0, 4.0, 7.0)
@@ -28,13 +27,13 @@ TIMES = (2.0, 1.8, 1.6, 1.5, 1.4, 1.3, 1.2, 1.135, 1.1, 1.05, 1.0, 0.95, 0.9)  #
 REBOUND = 0.73
 PHENOLIC = {"nu": 0.33, "rho": 1340.0, "dome_radius": 12.7e-3}  # a break tip
 # E, Pa, and restitution of the leathers of before, whose contact times were those of a rigid cue of e 0.73.
-FORMER = {name: IdentifiedTip(E, 0.6315) for name, E in (("soft", 30e6), ("medium", 140e6), ("hard", 360e6))}
-NOW = {name: IdentifiedTip(known.E, known.restitution) for name, known in LEATHERS.items()}
+FORMER = {name: (E, 0.6315) for name, E in (("soft", 30e6), ("medium", 140e6), ("hard", 360e6))}
+NOW = {name: (known.E, known.restitution) for name, known in LEATHERS.items()}
 
 
 def with_inputs(struck: cf.Scene, name: str = "medium", *, butt: bool, former: bool) -> cf.Scene:
     """The scene with a leather of before or of now, and a butt or a rigid mass at the joint."""
-    made = with_tip(struck, (FORMER if former else NOW)[name])
+    made = with_tip(struck, *(FORMER if former else NOW)[name])
     if butt:
         return made
     return replace(made, effects=tuple(cf.AxialWaves() if isinstance(e, cf.AxialWaves) else e for e in made.effects))
@@ -92,7 +91,7 @@ def rows(of: Any) -> Iterator[tuple[str, str, str]]:
 
 def replace_E(struck: cf.Scene, E: float) -> cf.Scene:
     """The scene with another E of its leather."""
-    return with_tip(struck, IdentifiedTip(E, float(struck.tip.restitution)))
+    return with_tip(struck, E, float(struck.tip.restitution))
 
 
 def with_mass(struck: cf.Scene, inches: float) -> float:
@@ -110,9 +109,9 @@ def stroke_table() -> str:
 
 
 @cache
-def identified(milliseconds: float, rebound: float = REBOUND, **phenolic: float) -> IdentifiedTip:
+def identified(milliseconds: float, rebound: float = REBOUND, **phenolic: float) -> Any:
     """The tip of a whole cue with this contact time."""
-    return identify_tip(whole(cue("whole_cue"), **phenolic), 1e-3 * milliseconds, rebound)
+    return cf.identify_tip(whole(cue("whole_cue"), **phenolic), 1e-3 * milliseconds, rebound)
 
 
 def leather_table() -> str:
@@ -120,7 +119,7 @@ def leather_table() -> str:
     made = []
     for time in TIMES:
         tip = identified(time)
-        squirts = (squirt(with_tip(whole(cue(name)), tip)) for name in ("whole_cue", "pool_maple"))
+        squirts = (squirt(with_tip(whole(cue(name)), *tip)) for name in ("whole_cue", "pool_maple"))
         made.append([f"{time:g}", f"{tip.E / 1e6:.0f}", f"{tip.restitution:.2f}", *(f"{s:.2f}" for s in squirts)])
     return table(["T, ms", "E, MPa", "tip's e", "squirt, whole cue, deg", "shaft with a butt, deg"], made)
 
