@@ -114,7 +114,7 @@ def value(key: str, scene: Scene) -> Any:
     if key == "game":
         return next((name for name, game in GAMES.items() if game.ball == scene.ball), "another ball")
     if key == "begins":
-        return FERRULE_BEGINS
+        return None if PARAMETERS["tip_height"].value(scene) is None else FERRULE_BEGINS
     if key in ("ball_mass", "ball_diameter"):
         return scene.ball.mass if key == "ball_mass" else 2 * scene.ball.radius
     return PARAMETERS[key].value(scene)

@@ -37,6 +37,7 @@ from cuefem.report.report_page import page as report_page
 from cuefem.report.strike_table import grip_warning
 from cuefem.report.table import csv_text
 from cuefem.report.templates import chart_script, page_style
+from cuefem.results.verdict import same_stroke
 from cuefem.scene import Scene
 from cuefem.solid.tip_cache import announcement
 
@@ -61,6 +62,7 @@ class Page:
         self.solid_of: Scene | None = None  # that was computed as a solid
         self.tab = TABS[0]
         self.rows: list[KnobRow] = []
+        self.folds: dict[str, Any] = {}  # of the groups of knobs
         self.client = ui.context.client
         ui.add_css(page_style() + files("cuefem.designer").joinpath("page.css").read_text(encoding="utf-8"))
         ui.add_body_html(f"{definitions()}<script>{chart_script()}</script>")
@@ -158,7 +160,7 @@ class Page:
     def _knobs(self) -> None:
         for i, group in enumerate(GROUPS):
             with ui.expansion(group, value=i == 0, group="knobs").classes("group") as fold:
-                setattr(self, f"fold_{group}", fold)
+                self.folds[group] = fold
                 for key, knob in KNOBS.items():
                     if knob.group == group:
                         self.rows.append(KnobRow(key, self))
@@ -275,7 +277,7 @@ class Page:
         design, other = self.step.design, self.step.other
         self.report.disable()
         notes = [f"{label(key, design.scene)} {_assumption(key, design.scene)}" for key in self._assumed()]
-        beside = None if other is None else panels.named(self.step)[1]
+        beside = None if other is None else (panels.named(self.step)[1][0], self._beside())
         try:
             text = await computed(self._page, design, [*notes, *self._notes()], beside)
             ui.download.content(text, f"{_stem(design.name)}.html")
@@ -285,9 +287,8 @@ class Page:
             self.report.enable()
 
     @staticmethod
-    def _page(design: Design, notes: list[str], beside: tuple[str, Design] | None) -> str:
-        other = None if beside is None else (beside[0], computation.struck_like(design.scene, beside[1].scene))
-        return report_page(design.name, design.scene, notes=notes, other=other)
+    def _page(design: Design, notes: list[str], beside: tuple[str, Scene] | None) -> str:
+        return report_page(design.name, design.scene, notes=notes, other=beside)
 
     def _table(self) -> None:
         made = panels.numbers_sheet(self.step, self.known)
@@ -315,7 +316,7 @@ class Page:
     def _swap(self) -> None:
         design, other = self.step
         if other is not None:
-            self.put(Step(other.design, Other(other.kind if other.kind in OPTIONS else "file", design)))
+            self.put(Step(other.design, Other("now" if other.kind in OPTIONS else "file", design)))
 
     # --- what is shown -----------------------------------------------------------------------------
 
@@ -350,7 +351,7 @@ class Page:
             "Stroke": f"{value('game', design.scene)}, {_texts(design.scene, 'speed', 'offset')}",
         }
         for group, words in captions.items():
-            getattr(self, f"fold_{group}").props(f'caption="{words}"')
+            self.folds[group].props(f'caption="{words}"')
         if self.tab == "File" and self.file is not None:
             self.file.show(design)
 
@@ -377,8 +378,14 @@ class Page:
         return Shown(name, design.scene, numbers, side.get("verdict"))
 
     def _beside(self) -> Scene:
+        """The other design as it is struck: with this one's ball and stroke, a reference cue with its tip too."""
         assert self.step.other is not None
-        return computation.struck_like(self.step.design.scene, self.step.other.design.scene)
+        mine, other = self.step.design.scene, self.step.other.design.scene
+        return (
+            same_stroke(mine, other.shaft)
+            if self.step.other.kind == "reference"
+            else computation.struck_like(mine, other)
+        )
 
     def _show_tab(self) -> None:
         if self.tab == "Curves":

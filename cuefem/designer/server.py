@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from typing import Any
 
@@ -14,6 +15,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from cuefem.designer.page import KINDS, LARGEST_FILE, Page
 from cuefem.designer.state import Design
 from cuefem.handbook.page import page as handbook
+from cuefem.quantity.slips import Unusual
 
 HOST = "127.0.0.1"
 AROUND_FILE = 10_000  # bytes of a form beside its file
@@ -22,6 +24,7 @@ REJECTED = f"a file must be a {', '.join(KINDS[:-1])} or {KINDS[-1]} of at most 
 
 def serve(first: Design, *, port: int, show: bool, announce: Callable[[str], None]) -> None:
     """Serve the page on this computer alone until it is stopped. show: open it in the browser."""
+    warnings.filterwarnings("ignore", category=Unusual)  # the page's Check lists what is unusual
 
     @ui.page("/")
     async def index() -> None:

@@ -87,7 +87,7 @@ def scale_rows(own: Shown, other: Shown | None = None) -> list[ScaleRow]:
         return []
     rows = scale(own.verdict, own.name)
     squirt = None if other is None else other.numbers["squirt"]
-    if other is None or squirt is None or other.name in own.verdict["among"]:
+    if other is None or squirt is None or own.verdict["head_on"] or other.name in own.verdict["among"]:
         return [
             row._replace(beside="other") if other and row.name == other.name else row._replace(beside="")
             for row in rows
