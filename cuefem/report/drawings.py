@@ -15,7 +15,7 @@ from cuefem.cue import Material, Segment
 from cuefem.cue.materials import MATERIALS, material_name, table_name
 from cuefem.quantity.fields import scalar
 from cuefem.report.charts import WIDE, Axis, Tick, path
-from cuefem.results.quantities import TRADE, Units
+from cuefem.results.quantities import TRADE
 from cuefem.scene import Scene
 
 ACROSS = 8.0  # times that diameters are enlarged
@@ -98,7 +98,7 @@ def style_of(name: str) -> str:
     return "m-" + name.replace(" ", "-") if name in MATERIALS else "m-other"
 
 
-def cue_drawing(scene: Scene, *, units: Units = TRADE) -> CueDrawing:
+def cue_drawing(scene: Scene) -> CueDrawing:
     """The whole cue from the side, its diameters `ACROSS` times enlarged."""
     cue = seen(scene)
     ahead = cue.length - scene.shaft.length  # positions on the cue count from behind the leather
@@ -115,7 +115,7 @@ def cue_drawing(scene: Scene, *, units: Units = TRADE) -> CueDrawing:
         _piece(segment, x, scale=scale, axis=axis, dome=0.0 if x else scene.dome_radius)
         for x, segment in zip(cue.nodes[:-1], cue.segments, strict=True)
     )
-    per_metre, unit = units["m"]
+    per_metre, unit = TRADE["m"]
     ticks = Axis(unit, 0.0, per_metre * cue.length).over([np.zeros(1)]).ticks(10.0, WIDE - 10.0)
     return CueDrawing(TITLE, axis + widest / 2 + 16, axis, pieces, signs, ticks, unit)
 
@@ -244,7 +244,7 @@ class ModesDrawing:
     unit: str = "mm"
 
 
-def modes_drawing(modes: Modes, length: float, *, row: float = 38.0, units: Units = TRADE) -> ModesDrawing:
+def modes_drawing(modes: Modes, length: float, *, row: float = 38.0) -> ModesDrawing:
     """The modes' deflections, all drawn equally high."""
     left, right = 10.0, WIDE - 78.0
     x = np.linspace(0, length, 241)
@@ -257,6 +257,6 @@ def modes_drawing(modes: Modes, length: float, *, row: float = 38.0, units: Unit
         nodes = places[change] + (places[1] - places[0]) * high[change] / (high[change] - high[change + 1])
         written = f"{frequency:.1f} Hz" if frequency < 1e3 else f"{frequency / 1e3:.2f} kHz"
         rows.append(ModeRow(axis, path(places, axis - 0.42 * row * high), tuple(nodes.tolist()), written))
-    per_metre, unit = units["m"]
+    per_metre, unit = TRADE["m"]
     ticks = Axis(unit, 0.0, per_metre * length).over([np.zeros(1)]).ticks(left, right)
     return ModesDrawing(row * len(rows) + 32, tuple(rows), ticks, unit)

@@ -20,7 +20,7 @@ from cuefem.report.models import (
 from cuefem.report.scene_words import assumptions
 from cuefem.report.strike_table import PIVOT
 from cuefem.results.closed_forms import pivot_length
-from cuefem.results.quantities import TRADE, Units, written
+from cuefem.results.quantities import TRADE, written
 from cuefem.results.records import Record, Sheet
 from cuefem.results.solved_design import OFFSETS, at_offset, coupled_curve
 from cuefem.scene import Scene
@@ -97,15 +97,14 @@ def offset_charts(
     *,
     height: float,
     spans: Sequence[Shade] = (),
-    units: Units = TRADE,
 ) -> tuple[Chart, Chart]:
     """Charts of squirt and of pivot length against the offset.
 
     lines: name, class on the page, squirt in rad and pivot length in m of every curve. own: the offset of the scene's
-    stroke, which is marked. spans: offsets to shade. units: of the pivot length.
+    stroke, which is marked. spans: offsets to shade.
     """
     x = np.array(offsets)
-    per_metre, unit = units["m"]
+    per_metre, unit = TRADE["m"]
     squirt = [Curve(name, np.r_[0.0, x], np.degrees(np.r_[0.0, angle]), style) for name, style, angle, _ in lines]
     pivot = [
         Curve(name, x, per_metre * np.where(np.asarray(angle) > 0, length, np.nan), style)

@@ -7,7 +7,7 @@ response of sweeps, scatters and optimizations, and with these in their tables, 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import KW_ONLY, dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -31,10 +31,6 @@ TRADE = {
     "kg/m^3": (1.0, "kg/m³"),
     "1/sqrt(kg)": (1.0, "/√kg"),
 }
-# The same for who measures in inches and ounces, and the decimals that each of these units takes more.
-IMPERIAL = TRADE | {"kg": (1e3 / 28.349523125, "oz"), "m": (1e3 / 25.4, "in")}
-_FINER = {"in": 2, "oz": 0}
-Units = Mapping[str, tuple[float, str]]
 
 
 @dataclass(frozen=True)
@@ -47,7 +43,7 @@ class Result:
     what it takes in brackets, "", "mode" or "offset". strikes: whether it needs the tip's modes up to the contact's
     cutoff. segments: whether it needs a cue of segments. limit: whether without an offset it is the limit of small
     offsets. reasons: for each design why it is nan, or None. better: which a player wants, "lower" or "higher", by
-    which a summary picks designs. solves: whether it takes a linear solve of its own. listed: whether a report and the
+    which a summary picks designs. listed: whether a report and the
     designer list it; what has a table of its own is not.
     """
 
@@ -64,7 +60,6 @@ class Result:
     limit: bool = False
     reasons: Callable[[Designs], Sequence[str | None]] | None = None
     better: str = ""
-    solves: bool = False
     listed: bool = True
 
     @property
@@ -75,35 +70,29 @@ class Result:
     @property
     def scale(self) -> float:
         """How many of the units that people read one SI unit is."""
-        return self.shown_in()[0]
+        return TRADE.get(self.unit, (1.0, self.unit))[0]
 
-    def shown_in(self, units: Units = TRADE) -> tuple[float, str]:
-        """How many of the units that people read one SI unit is, and the name of that unit."""
-        return units.get(self.unit, (1.0, self.unit))
-
-    def number(self, value: float, *, brief: bool = False, units: Units = TRADE) -> str:
+    def number(self, value: float, *, brief: bool = False) -> str:
         """A value in the unit that people read, without it; brief: a decimal less, of three or more."""
-        scale, unit = self.shown_in(units)
         if self.decimals is None:
-            return significant(scale * value)
-        decimals = self.decimals + _FINER.get(unit, 0)
-        return f"{scale * value:.{decimals - (brief and decimals > 2)}f}"
+            return significant(self.scale * value)
+        return f"{self.scale * value:.{self.decimals - (brief and self.decimals > 2)}f}"
 
-    def written(self, value: Any, *, brief: bool = False, units: Units = TRADE) -> str:
+    def written(self, value: Any, *, brief: bool = False) -> str:
         """A value with its unit; a dash if there is no value; words unchanged."""
         if isinstance(value, str):
             return value
         if value is None or not math.isfinite(value):
             return NONE
-        unit = self.shown_in(units)[1]
+        unit = TRADE.get(self.unit, (1.0, self.unit))[1]
         space = "" if unit in ("°", "") else " "
-        return f"{self.number(float(value), brief=brief, units=units)}{space}{unit}"
+        return f"{self.number(float(value), brief=brief)}{space}{unit}"
 
 
 class _Error(Result):
     """A relative error, of which only the size means anything."""
 
-    def number(self, value: float, *, brief: bool = False, units: Units = TRADE) -> str:
+    def number(self, value: float, *, brief: bool = False) -> str:
         """Two digits and a power of ten."""
         return f"{value:.1e}"
 
@@ -244,7 +233,6 @@ RESULTS = {
         about="static: force across the tip over its deflection, the butt end clamped",
         of=lambda designs, _: designs.tip_stiffness,
         segments=True,
-        solves=True,
         better="higher",
     ),
     "tip_diameter": Result(

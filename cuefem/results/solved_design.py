@@ -231,19 +231,13 @@ def _defined(definition: Definition) -> Result:
     )
 
 
-def listed(designs: Designs, *, at_once: bool = False) -> dict[str, float | None]:
-    """Every listed result of one design, None where it has none: what a report and the designer show by its name.
-
-    at_once: leave out those that take a solution of their own.
-    """
+def listed(designs: Designs) -> dict[str, float | None]:
+    """Every listed result of one design, None where it has none: what a report and the designer show by its name."""
     cue = designs.scenes[0].cue
     return {
         name: _value(result, designs)
         for name, result in RESULTS.items()
-        if result.of is not None
-        and result.listed
-        and (cue.segments or not result.segments)
-        and not (at_once and result.solves)
+        if result.of is not None and result.listed and (cue.segments or not result.segments)
     }
 
 
