@@ -16,7 +16,7 @@ SPRING = (
 )
 COMPARING = (
     "Differences between two designs are safer than the degrees of one: a low-deflection shaft was measured with 0.72 "
-    "of the squirt of a maple shaft, and the model says 0.69 to 0.78. The numbers are in the handbook, in the chapter "
+    "of the squirt of a maple shaft, and the model says 0.70 to 0.78. The numbers are in the handbook, in the chapter "
     "Measured squirt."
 )
 
