@@ -19,7 +19,7 @@ from cuefem.scene import Outcome, equal_fields
 SLIDES, LETS_GO, SLIDES_AWAY = 0.25, 0.5, 1 / 3
 # Friction loss over the ball's kinetic energy above which parts of a patch slip through much of the impulse: squirt of
 # a leather tip, in proportion to b/R closer to the centre, is then 7 to 15 % above that line and rises fast.
-PARTLY = 0.1
+PARTLY = 0.05
 MISSED = ("miscue", "lets go")
 # The grip of a blow, and grip and press of a flight, in which ball and tip are apart before they touch again.
 BLOW, FLIGHT = "blow", ("apart", "free")

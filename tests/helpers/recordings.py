@@ -26,7 +26,7 @@ def other_wood(drawn: cf.Cue, *, E: float = 1.15, G: float = 0.85, rho: float = 
 def tapped(shaft: cf.Cue, rate: float = 44100.0, *, missing: Sequence[int] = ()) -> np.ndarray:
     """What two microphones hear of a tap at the butt, (samples, 2); missing: modes, 1 the lowest, that do not sound."""
     found = cf.modes(shaft, 26)
-    loss = found.loss_factors(section_loss(shaft, found.system, None))
+    loss = found.loss_factors(section_loss(shaft, found.points, None))
     loss = loss if loss.max() > 0 else np.full(len(loss), LOSS)
     at_butt, _ = found.shape(shaft.length)
     t = np.arange(int(SECONDS * rate)) / rate - BEFORE

@@ -23,13 +23,14 @@ def struck(scene: cf.Scene, offset: float) -> cf.Outcome:
 
 
 @pytest.mark.parametrize(
-    ("speed", "offset", "grip"), [(7.0, 0.3, "stick"), (7.0, 0.5, "partial slip"), (4.0, 0.5, "partial slip")]
+    ("speed", "offset", "grip"),
+    [(7, 0.4, "stick"), (7, 0.45, "partial slip"), (4, 0.45, "stick"), (4, 0.5, "partial slip"), (2, 0.5, "stick")],
 )
 def test_partial_slip_through_much_of_the_impulse_is_named(speed: float, offset: float, grip: str) -> None:
-    """Squirt over b/R is 20 to 60 % above that close to the centre where the patch slips in part."""
+    """Squirt over b/R is more than 20 % above that close to the centre where friction takes much energy."""
     outcome, close = (cf.strike(replace(LEATHER, stroke=cf.Stroke(speed, b))) for b in (offset, 0.2))
     assert (outcome.regime, grip_of(outcome)) == ("stick", grip)
-    assert bool(grip_warning(grip)) == (grip != "stick") == (outcome.squirt / offset > 1.1 * close.squirt / 0.2)
+    assert bool(grip_warning(grip)) == (grip != "stick") == (outcome.squirt / offset > 1.2 * close.squirt / 0.2)
 
 
 @pytest.mark.parametrize(("scene", "offset", "grip"), GRIPS)
