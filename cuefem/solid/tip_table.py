@@ -8,7 +8,8 @@ radius. The table is one grid of Chebyshev's nodes in `PANELS` of the curvature,
 logarithms of the compliance over a half-space's, in which nothing is singular.
 
 Error of a compliance against the solid on a finer mesh (36 random tips, 5,062 patches up to the rim, radii of 0.06 D
-and more): median 0.06 %, 95th percentile 0.32 %, maximum 1.1 %. Smaller patches over the rim: up to 8 %.
+and more): median 0.06 %, 95th percentile 0.32 %, maximum 1.1 %; over 1,200 patches of 20 others
+(studies/beam/leather.md) the maximum is 2.0 %. Smaller patches over the rim: up to 8 %.
 """
 
 from __future__ import annotations
