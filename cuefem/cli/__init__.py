@@ -23,26 +23,26 @@ for _threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(_threads, "1")
 
 # Every command by its name: the file and function that it is, its group, and what `cuefem --help` says of it.
-CUE, SURE, STUDIES, FILES, PAGE = "A cue", "How sure", "Studies", "Files and parts", "Designer"
+CUE, SURE, STUDIES, FILES, PAGE = "Cue", "Verification", "Studies", "Files and parts", "Designer"
 COMMANDS = {
-    "report": ("cuefem.cli.cue_commands:report", CUE, "Everything about a cue, as tables or as a page."),
-    "improve": ("cuefem.cli.cue_commands:improve", CUE, "Design changes: squirt, stiffness and weight of each."),
-    "modes": ("cuefem.cli.cue_commands:modes", CUE, "Natural frequencies of bending."),
-    "end-mass": ("cuefem.cli.cue_commands:end_mass", CUE, "The effective end mass, by every definition."),
-    "strike": ("cuefem.cli.cue_commands:strike", CUE, "One stroke: squirt, speed, spin and pivot length."),
-    "compare": ("cuefem.cli.compare_command:compare", CUE, "Cues side by side, or a cue beside its measurements."),
-    "effects": ("cuefem.cli.how_sure:effects", SURE, "What each effect changes, left out or added."),
-    "cost": ("cuefem.cli.how_sure:cost", SURE, "Error against resolution, and which resolution to take."),
-    "check": ("cuefem.cli.how_sure:check", SURE, "How far beam theory is off for a shaft: beam beside solid."),
+    "report": ("cuefem.cli.cue_commands:report", CUE, "Squirt with its uncertainty, and all other numbers of a cue."),
+    "improve": ("cuefem.cli.cue_commands:improve", CUE, "Design changes, each with its squirt, stiffness and weight."),
+    "modes": ("cuefem.cli.cue_commands:modes", CUE, "Natural frequencies of bending, and tip amplitudes."),
+    "end-mass": ("cuefem.cli.cue_commands:end_mass", CUE, "Effective end mass, by five definitions."),
+    "strike": ("cuefem.cli.cue_commands:strike", CUE, "Squirt, ball speed, spin and pivot length of one stroke."),
+    "compare": ("cuefem.cli.compare_command:compare", CUE, "Cues side by side, or computed beside measured values."),
+    "effects": ("cuefem.cli.how_sure:effects", SURE, "Sensitivity to each physical effect, removed or added."),
+    "cost": ("cuefem.cli.how_sure:cost", SURE, "Convergence study, and the resolution it recommends."),
+    "check": ("cuefem.cli.how_sure:check", SURE, "Error of the beam model against a 3-D elastic solid."),
     "study": (
         "cuefem.cli.studies:study",
         STUDIES,
-        "Many designs by a STUDY (.toml): sweep, scatter or optimum.",
+        "Sweep, tolerance analysis or optimum of a STUDY (.toml).",
     ),
-    "parts": ("cuefem.cli.files:parts", FILES, "Shafts, materials and tips that a file can name."),
-    "convert": ("cuefem.cli.files:convert", FILES, "Convert FILE to .toml, .vtk or .vtu."),
-    "guide": ("cuefem.cli.guide:guide", FILES, "Open the handbook: physics, glossary, and every effect."),
-    "designer": ("cuefem.cli.designer:designer", PAGE, "Change a cue with sliders on a page and see the effect."),
+    "parts": ("cuefem.cli.files:parts", FILES, "Catalogue of shafts, materials and tips, with sources."),
+    "convert": ("cuefem.cli.files:convert", FILES, "Convert a drawing to .toml, .vtk or .vtu."),
+    "guide": ("cuefem.cli.guide:guide", FILES, "Handbook: pages for makers, physics, glossary."),
+    "designer": ("cuefem.cli.designer:designer", PAGE, "Browser page with sliders: squirt updates as they move."),
 }
 
 
@@ -110,9 +110,9 @@ class _OneLine(_Commands):
         except click.UsageError as error:
             _refuse_usage(error)
         except (ArithmeticError, MemoryError) as error:
-            what = "sizes, masses or times are out of all proportion, so that numbers overflow"
+            what = "numerical overflow: check the units of sizes, masses and times"
             if isinstance(error, MemoryError):
-                what = "this needs more memory than there is: ask for less, or check sizes, masses and times"
+                what = "out of memory: request less, or check the units of sizes, masses and times"
             click.echo(f"cuefem: {what} ({type(error).__name__})", err=True)
             raise click.exceptions.Exit(2) from None
         except (ValueError, RuntimeError, KernelError) as error:
@@ -143,7 +143,7 @@ def _forget_output() -> None:
 @click.group(cls=_OneLine, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(package_name="cuefem", prog_name="cuefem", help="Show the version.")
 def main() -> None:
-    """From a cue shaft's drawing to its effective end mass and squirt.
+    """Compute natural frequencies, effective end mass and squirt of a billiard cue from its drawing.
 
     FILE is a cue or a scene (.toml), a lathe profile (.csv), a mesh (.vtk, .vtu) or a CAD surface (.stl, .ply, .obj).
     """

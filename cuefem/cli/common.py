@@ -55,13 +55,13 @@ def fittings_of(options: Mapping[str, Any]) -> dict[str, str | None]:
 
 def force_option(command: Callable[..., Any]) -> Callable[..., Any]:
     """The option of every command that writes a drawing."""
-    return shared_option("Output", "--force", is_flag=True, help="Replace a drawing that exists already.")(command)
+    return shared_option("Output", "--force", is_flag=True, help="Overwrite an existing drawing.")(command)
 
 
 def check_free(drawing: Path, *, force: bool) -> None:
     """Refuse to replace a drawing without --force, for it is somebody's work; pages and figures can be made again."""
     if drawing.exists() and not drawing.is_dir() and not force:
-        raise InputError(drawing, "", "is there already: --force replaces it")
+        raise InputError(drawing, "", "already exists; --force overwrites it")
     check_place(drawing)
 
 

@@ -30,9 +30,17 @@ STRUCK = ("ball ", "stroke ", "offset ")  # what is assumed of ball and stroke, 
 
 @command()
 @click.argument("files", metavar="FILE FILE ... | FOLDER", nargs=-1, required=True, type=click.Path(path_type=Path))
-@click.option("--same-shaft", is_flag=True, help="The files are one shaft before and after a change: its wood cancels.")
-@click.option("--estimate", is_flag=True, help="Estimate wood, bore and tip from the measurements in FOLDER.")
-@click.option("--template", is_flag=True, help="Make FOLDER with files to fill in, instead.")
+@click.option(
+    "--same-shaft",
+    is_flag=True,
+    help="The files are one shaft before and after a change: the uncertainty of its wood cancels.",
+)
+@click.option(
+    "--estimate",
+    is_flag=True,
+    help="Estimate wood, bore and tip from all measurements in FOLDER (maximum a posteriori), with uncertainties.",
+)
+@click.option("--template", is_flag=True, help="Create FOLDER with example files to fill in.")
 @page_option
 @cue_options
 @blow_options
@@ -40,11 +48,11 @@ STRUCK = ("ball ", "stroke ", "offset ")  # what is assumed of ball and stroke, 
 def compare(
     files: tuple[Path, ...], same_shaft: bool, estimate: bool, template: bool, output: Path | None, **options: Any
 ) -> None:
-    """Compare cues side by side, each difference with its uncertainty; or a cue with what was measured on it.
+    """Compare cues side by side, or the computed and measured values of one cue, with uncertainties.
 
-    FILE FILE ...: two to five cues or scenes, struck with the ball and stroke of the first. FOLDER holds the shaft's
-    drawing, cue.toml or cue.csv; measured.toml, with what was measured; and long series as a CSV each, such as
-    squirt.csv. Only the drawing must be there.
+    FILE FILE ...: two to five cues or scenes, struck with the ball and stroke of the first. FOLDER: the shaft's
+    drawing (cue.toml or cue.csv, required), measured.toml with single measurements, and one CSV for each long series,
+    such as squirt.csv.
     """
     as_json = options["as_json"]
     if len(files) > 1:
@@ -55,10 +63,10 @@ def compare(
         return
     (folder,) = files
     if same_shaft or any(value is not None for name, value in options.items() if name != "as_json"):
-        raise InputError(folder, "", "compares with measurements: options of cue and stroke are for two or more FILEs")
+        raise InputError(folder, "", "options of cue and stroke need two or more FILEs; a FOLDER has them in its files")
     if template:
         write_template(folder)
-        click.echo(f"wrote {folder}: its numbers are examples; put yours, then `cuefem compare {folder}`")
+        click.echo(f"wrote {folder}: replace the example numbers by yours, then run: cuefem compare {folder}")
     elif folder.is_file():
         raise InputError(folder, "", "needs another FILE to compare with, or a FOLDER with measurements")
     else:
@@ -70,7 +78,9 @@ def _side_by_side(files: Sequence[Path], options: dict[str, Any], output: Path |
     if len(files) > MOST_CUES:
         raise InputError(files[MOST_CUES], "", f"must be one of at most {MOST_CUES} cues; got {len(files)}")
     if options["shaft_mass"] is not None:
-        problem = "must stand in each cue's file (shaft_mass) to compare cues: `cuefem convert` makes a .toml with it"
+        problem = (
+            "must be set in each cue's file (shaft_mass) when cues are compared; `cuefem convert` writes such a .toml"
+        )
         raise InputError(files[0], option("shaft_mass"), problem)
     loaded = [scene_of(file, options) for file in files]
     scenes = {name: scene for name, (scene, _) in zip(_names(files), loaded, strict=True)}
@@ -94,7 +104,7 @@ def _names(files: Sequence[Path]) -> list[str]:
     """The files' names: without ending and folder, unless another's is the same."""
     for i, file in enumerate(files):
         if file.resolve() in [other.resolve() for other in files[:i]]:
-            raise InputError(file, "", "must be another file than the ones before it to be compared with them")
+            raise InputError(file, "", "is given twice; compare different files")
     forms = [(file.stem, file.name, str(file)) for file in files]
     return [next(own for k, own in enumerate(form) if [each[k] for each in forms].count(own) == 1) for form in forms]
 

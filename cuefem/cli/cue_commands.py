@@ -53,10 +53,13 @@ class WithDefinitions(Command):
 @click.option(
     "--check",
     is_flag=True,
-    help="Say also how far beam theory is off for this shaft, which takes some seconds (see `cuefem check`).",
+    help="Also compute the error of the beam model for this shaft; takes seconds (see `cuefem check`).",
 )
 def report(file: Path, output: Path | None, check: bool, **options: Any) -> None:
-    """Show modes, end masses, squirt and pivot length against offset, as tables or as a page with figures."""
+    """Report the squirt of a cue with its uncertainty, then natural frequencies, end mass, pivot length and masses.
+
+    Prints tables; -o FILE.html writes a page with figures. Assumptions are listed last, each with its option.
+    """
 
     def results(scene: Scene) -> Record:
         record = report_record(scene)
@@ -89,7 +92,7 @@ def _write_page(file: Path, output: Path, options: dict[str, Any], *, check: boo
     )  # templates and charts take 0.1 s, which tables need not pay
 
     if options["as_json"]:
-        raise InputError(output, "--output", "must be left out with --json: a page is no JSON")
+        raise InputError(output, "--output", "cannot be combined with --json")
     scene, notes = scene_of(file, options)
     with blaming(file, options):
         trust = (_model_error(scene)["sentence"],) if check else ()
@@ -103,17 +106,20 @@ def _write_page(file: Path, output: Path, options: dict[str, Any], *, check: boo
 @stroke_options
 @output_option(".html", ".toml")
 @click.option(
-    "--take", type=click.IntRange(min=1), metavar="ROW", help="Save the cue of this row of the table, 1 the first."
+    "--take",
+    type=click.IntRange(min=1),
+    metavar="ROW",
+    help="Save the cue of table row ROW (1 is the first) as the .toml of -o.",
 )
 @force_option
 def improve(file: Path, take: int | None, output: Path | None, force: bool, **options: Any) -> None:
-    """Show what would change squirt: what a maker can do to this cue, with stiffness, weight and first tone.
+    """List design changes a maker can make, with squirt, stiffness, weight and first natural frequency of each.
 
-    Each change alone, by the whole stroke; the least squirt first.
+    Each change is applied on its own and computed with the full model. Rows are sorted by squirt, lowest first.
     """
     drawing = output is not None and output.suffix == ".toml"
     if (take is not None) != drawing:
-        raise InputError(file, "--take", "goes with -o FILE.toml, and that with --take: the row, and the file to save")
+        raise InputError(file, "--take", "--take ROW requires -o FILE.toml, and -o FILE.toml requires --take ROW")
     if take is None or output is None:
         show(
             file,
@@ -137,10 +143,10 @@ def improve(file: Path, take: int | None, output: Path | None, force: bool, **op
 @file_options
 @tip_options
 @page_option
-@click.option("--near", metavar="HERTZ", help="Show the modes nearest this frequency, not the lowest.")
-@click.option("--count", type=click.IntRange(min=1), default=6, show_default=True, help="How many modes.")
+@click.option("--near", metavar="HERTZ", help="Show the modes nearest this frequency instead of the lowest.")
+@click.option("--count", type=click.IntRange(min=1), default=6, show_default=True, help="Number of modes.")
 def modes(file: Path, near: str | None, count: int, **options: Any) -> None:
-    """Show how the cue rings: its bending frequencies and tip amplitudes."""
+    """Compute natural frequencies of bending, with period and tip amplitude of each mode."""
 
     def results(scene: Scene) -> Any:
         return modes_record(scene, count=count, near=hertz)
@@ -163,9 +169,9 @@ def _hertz(file: Path, near: str) -> float:
 @file_options
 @blow_options
 @page_option
-@click.option("--paper", is_flag=True, help="Also show what Kim's paper calls end mass, m_c, and its eps.")
+@click.option("--paper", is_flag=True, help="Also show m_c (the end mass of Kim's paper) and eps.")
 def end_mass(file: Path, paper: bool, **options: Any) -> None:
-    """Show the effective end mass: how much mass the ball has to push aside at the tip."""
+    """Compute the effective end mass: the transverse inertia of the cue at its tip, by five definitions."""
     show(file, options, end_mass_record, lambda record, about: [end_mass_sheet(record, about, paper=paper)])
 
 
@@ -176,10 +182,13 @@ def end_mass(file: Path, paper: bool, **options: Any) -> None:
     "--format",
     "simulator",
     type=click.Choice(["pooltool"]),
-    help="The end mass that this simulator takes, instead; -o FILE.json writes its file.",
+    help="Export the end mass for this simulator; -o FILE.json writes its input file.",
 )
 def strike(file: Path, simulator: str | None, **options: Any) -> None:
-    """Compute one stroke: squirt, speed, spin and pivot length; to the rtol of the file's [accuracy], if it has one."""
+    """Compute squirt, ball speed, spin and pivot length of one stroke, by the full model and by simpler ones.
+
+    The numerical error target is the rtol of the file's [accuracy] table, if it has one.
+    """
 
     def results(scene: Scene) -> Any:
         rtol = load_accuracy(file)

@@ -23,15 +23,15 @@ from cuefem.io.ready import PRESETS
     type=click.IntRange(0, 65535),
     default=8470,
     show_default=True,
-    help="Port of the page; 0 takes any free one.",
+    help="Port of the page; 0: any free port.",
 )
 @click.option("--open/--no-open", "show", default=True, help="Open the page in the browser.", show_default=True)
 @cue_options
 def designer(scene: Path | None, port: int, show: bool, as_json: bool, **options: Any) -> None:
-    """Open a page on this computer: change a cue with sliders and see its end mass and squirt at once.
+    """Open a browser page with sliders: squirt, end mass, stiffness and natural frequencies update as they move.
 
-    SCENE is a cue or scene file, as FILE is for other commands; by default a maple pool shaft. A cue alone gets the
-    game's usual stroke. The rest of a profile's cue weighs 15 oz, unless --body-mass gives its weight.
+    SCENE is a cue or scene file (default: a maple pool shaft). A cue alone gets the default stroke of the game. The
+    rest of a profile's cue weighs 15 oz unless --body-mass sets it. The page is served on this computer only.
     """
     try:
         from cuefem.designer.server import serve
@@ -44,7 +44,7 @@ def designer(scene: Path | None, port: int, show: bool, as_json: bool, **options
     given = {name for name, value in options.items() if value is not None}
     if scene is None:
         for name in given:
-            raise ValueError(f"{option(name)} must go with a SCENE, whose cue or stroke it changes; got no SCENE")
+            raise ValueError(f"{option(name)} needs a SCENE, whose cue or stroke it changes; got none")
         first = reference_design(PRESETS[0])
     else:
         read, _ = scene_of(scene, options)
@@ -62,5 +62,5 @@ def _free(port: int) -> int:
         try:
             tried.bind(("127.0.0.1", port))
         except OSError as error:
-            raise ValueError(f"--port must be a free one (0 takes any); got {port}: {error.strerror}") from None
+            raise ValueError(f"--port {port} is not available ({error.strerror}); 0 takes any free port") from None
         return int(tried.getsockname()[1])

@@ -23,7 +23,7 @@ from cuefem.report.parts_table import parts_record, parts_sheets
 @json_option
 @force_option
 def convert(file: Path, output: Path, force: bool, as_json: bool, **options: str | None) -> None:
-    """Convert FILE to another kind of file: OUTPUT ends in .toml, .vtk or .vtu."""
+    """Convert FILE to OUTPUT, whose extension sets the format: .toml, .vtk or .vtu."""
     check_free(output, force=force)
     said = {name for name, value in options.items() if value is not None}
     body_mass, shaft_mass = options.pop("body_mass"), options.pop("shaft_mass")
@@ -45,6 +45,6 @@ def convert(file: Path, output: Path, force: bool, as_json: bool, **options: str
 @page_option
 @json_option
 def parts(as_json: bool, output: Path | None) -> None:
-    """List the shafts, materials (woods, ferrules) and tips that a file can name, with their sources."""
+    """List the shafts, materials (wood, ferrule) and tips that a file can name, with their sources."""
     record = parts_record()
     tell(as_json, record, parts_sheets(record), output)

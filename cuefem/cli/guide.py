@@ -27,12 +27,12 @@ def _known(context: click.Context, parameter: click.Parameter, chapter: str | No
 @click.argument("chapter", callback=_known, required=False, metavar="[CHAPTER]")
 @page_option
 @json_option
-@click.option("--print", "in_terminal", is_flag=True, help="Print the text in the terminal instead.")
+@click.option("--print", "in_terminal", is_flag=True, help="Print the text in the terminal.")
 def guide(chapter: str | None, output: Path | None, in_terminal: bool, as_json: bool) -> None:
-    """Open the handbook in the browser: six pages for makers, then the physics, a glossary, and every effect.
+    """Open the handbook in the browser: six pages for makers, then physics, effects, accuracy and a glossary.
 
-    CHAPTER opens (or prints) one chapter. For makers: what_squirt_is, measure_your_shaft, read_the_report, change_it,
-    weigh_and_tap or what_not_to_believe. For engineers: start, files, study, working, frame, inverse_mass,
+    CHAPTER opens one chapter (--print: prints it). For makers: what_squirt_is, measure_your_shaft, read_the_report,
+    change_it, weigh_and_tap or what_not_to_believe. For engineers: start, files, study, working, frame, inverse_mass,
     impulse_solver, beam, solid, strike, contact, end_mass, side, effects, measured, measuring, accuracy, paper,
     glossary or sources.
     """
@@ -42,7 +42,7 @@ def guide(chapter: str | None, output: Path | None, in_terminal: bool, as_json: 
         return
     if in_terminal:
         if output is not None:
-            raise InputError(output, "--output", "must be left out with --print, which writes no page")
+            raise InputError(output, "--output", "cannot be combined with --print, which writes no page")
         _print([part.text for part in asked])
         return
 

@@ -21,9 +21,10 @@ from cuefem.scene import Scene
 @stroke_options
 @page_option
 def effects(file: Path, **options: Any) -> None:
-    """Show what each effect changes: every effect of FILE is left out, every other one added, one at a time.
+    """Test the physical effects one at a time: remove each one FILE lists, add each one it does not.
 
-    An effect matters if it changes more than the rtol of the file's [accuracy], by default 1e-2.
+    An effect matters if squirt, ball speed or spin change by more than the rtol of the file's [accuracy] table
+    (default 1e-2).
     """
 
     def results(scene: Scene) -> Any:
@@ -35,17 +36,15 @@ def effects(file: Path, **options: Any) -> None:
 
 @command()
 @stroke_options
-@click.option(
-    "--most", type=click.IntRange(min=24), default=150, show_default=True, help="The largest number of modes."
-)
+@click.option("--most", type=click.IntRange(min=24), default=150, show_default=True, help="Largest number of modes.")
 @output_option(".html", *FIGURES)
 def cost(file: Path, most: int, output: Path | None, **options: Any) -> None:
-    """Show what accuracy costs for this scene: error against time and unknowns, and which resolution to take."""
+    """Run a convergence study and recommend a resolution: error against run time and degrees of freedom."""
 
     def results(scene: Scene) -> Any:
         record = cost_record(scene, most=most, track=followed)
         if output is not None and output.suffix in FIGURES:
-            save_figure(cost_figure(record, f"{file.name}: what accuracy costs", output.suffix[1:]), output)
+            save_figure(cost_figure(record, f"{file.name}: convergence study", output.suffix[1:]), output)
         return record
 
     page = output if output is not None and output.suffix not in FIGURES else None
@@ -56,10 +55,10 @@ def cost(file: Path, most: int, output: Path | None, **options: Any) -> None:
 @stroke_options
 @page_option
 def check(file: Path, **options: Any) -> None:
-    """Show how far beam theory is off for a shaft: its numbers by the beam, and by 3-D elasticity of the solid.
+    """Compare the beam model of a shaft with a 3-D elastic solid: frequencies, stiffness, end mass and squirt.
 
-    FILE is a cue or a scene. The shaft is computed as a solid of revolution on two meshes, so that the mesh's own error
-    stands beside each difference; this takes some seconds.
+    The shaft is computed as a solid of revolution on two meshes, which gives the discretisation error beside each
+    difference. Takes seconds.
     """
 
     def results(scene: Scene) -> Any:

@@ -47,9 +47,7 @@ def shared_option(heading: str, *names: str, **about: Any) -> Callable[[Any], An
 command = partial(click.command, cls=Command)
 
 # The option of every command, for programs.
-json_option = shared_option(
-    "Output", "--json", "as_json", is_flag=True, help="Print JSON, for programs; numbers in SI units."
-)
+json_option = shared_option("Output", "--json", "as_json", is_flag=True, help="Print JSON (SI units).")
 
 # What a file of each ending is that commands write.
 WRITTEN = {
@@ -57,7 +55,7 @@ WRITTEN = {
     ".png": "a picture",
     ".svg": "a picture",
     ".toml": "a drawing or scene",
-    ".json": "the JSON of --json",
+    ".json": "JSON",
     ".csv": "a table",
 }
 
@@ -74,7 +72,7 @@ class Output(click.Path):
         path = Path(os.fsdecode(super().convert(value, param, ctx)))
         if path.suffix not in self.endings:
             wanted = " or ".join(self.endings)
-            more = "; --store names the file that keeps designs" if path.suffix == ".sqlite" else ""
+            more = "; --store names the file of stored designs" if path.suffix == ".sqlite" else ""
             raise InputError(path, "--output", f"must end in {wanted}; got {path.suffix!r}{more}")
         if path.suffix != ".toml":  # of a drawing the command itself looks
             check_place(path)
@@ -85,7 +83,7 @@ def output_option(*endings: str, required: bool = False, many: bool = False) -> 
     """The option -o of every command, with what it writes, told by the ending; many: it may stand several times."""
     kinds = dict.fromkeys(WRITTEN[ending] for ending in endings)
     said = "; ".join(f"{kind} ({', '.join(e for e in endings if WRITTEN[e] == kind)})" for kind in kinds)
-    said = f"Write {said}, as its ending says{'; may be repeated' if many else ''}."
+    said = f"Write {said}; the extension sets the format{'. Repeatable' if many else ''}."
     return shared_option(
         "Output", *("-o", "--output"), type=Output(endings), metavar="FILE", help=said, required=required, multiple=many
     )

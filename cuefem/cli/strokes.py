@@ -27,7 +27,7 @@ Command = Callable[..., Any]
 
 OF_BLOW = ("restitution", "friction", "speed")  # and, for commands with one stroke, the offset
 OF_CUE = ("body_mass", "shaft_mass")
-NO_SHAFT = "must be left out: a lumped cue is whole"
+NO_SHAFT = "does not apply to a lumped cue, which has no shaft geometry"
 
 
 def option(name: str) -> str:
@@ -54,7 +54,7 @@ def game_option(name: str, help_words: str) -> Callable[[Command], Command]:
 def tip_options(command: Command) -> Command:
     """The game, and the options of the leather tip and of whatever else on the cue is an option."""
     own = (key for key, known in PARAMETERS.items() if known.option and key not in (*OF_BLOW, *OF_CUE, "offset"))
-    said = "Whose usual ball, tip and stroke a cue without a scene gets; pool by default."
+    said = "Game whose default ball, tip and stroke a cue without a scene gets (default: pool)."
     return game_option("--game", said)(parameter_options("Tip", *own)(command))
 
 
@@ -89,7 +89,7 @@ def offset_of(file: Path, text: str, radius: float) -> float:
         except InputError as error:
             if "bare number" not in error.problem:
                 raise
-            problem = error.problem.replace("; got", ', b/R, or a length such as "8 mm"; got', 1)
+            problem = error.problem.replace("; got", ' (b/R), or a length such as "8 mm"; got', 1)
             raise InputError(file, "--offset", problem) from None
     if not abs(length) < radius:
         within = f"a length of less than {1e3 * radius:g} mm, the radius of the ball"
@@ -108,7 +108,7 @@ def with_weight(thing: Cue | Scene | SideStrike, file: Path, text: str) -> Any:
     """The cue or scene of a file with the density of its wood that --shaft-mass says."""
     mass = measured(file, "--shaft-mass", text, Quantity("kg", "(0, 100]"))
     if isinstance(thing, SideStrike) or (isinstance(thing, Scene) and thing.lumped):
-        raise InputError(file, "--shaft-mass", "must be left out: FILE is no cue or stroke with a shaft")
+        raise InputError(file, "--shaft-mass", "does not apply: FILE has no shaft")
     with faults_of(file, "--shaft-mass"):
         return with_shaft_mass(thing, mass) if isinstance(thing, Cue) else varied(thing, {"shaft mass": mass})
 
@@ -123,7 +123,7 @@ def usual(cue: Cue, file: Path, options: dict[str, Any]) -> Scene:
         leather = with_fields(leather, own)
         scene = usual_scene(cue, game, tip=leather)
     except ValueError as error:
-        raise InputError(file, "", f"{error} (--tip-height, --dome change it)") from None
+        raise InputError(file, "", f"{error} (options: --tip-height, --dome)") from None
     return with_options(scene, file, options)
 
 
@@ -170,11 +170,11 @@ def _changes(
 def _absent(scene: Scene, known: Parameter) -> str:
     """Why a scene has no such parameter."""
     if _is_leather(known):
-        return "must be left out: the scene has no LeatherTip among its effects"
-    return NO_SHAFT if scene.lumped else f"must be left out: there is no {known.label}"
+        return "does not apply: the scene has no LeatherTip among its effects"
+    return NO_SHAFT if scene.lumped else f"does not apply: the scene has no {known.label}"
 
 
 def refuse_game(file: Path, options: dict[str, Any]) -> None:
     """A game is for a cue alone: a scene has ball, tip and stroke of its own."""
     if options.get("game") is not None:
-        raise InputError(file, "--game", "must be left out: FILE is a scene, which has its own ball, tip and stroke")
+        raise InputError(file, "--game", "does not apply: FILE is a scene, which has its own ball, tip and stroke")

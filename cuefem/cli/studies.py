@@ -31,38 +31,50 @@ from cuefem.scene import Scene
 @command()
 @click.argument("file", metavar="STUDY", type=click.Path(path_type=Path))
 @click.option(
-    "--store", type=click.Path(path_type=Path), metavar="FILE", help="Where designs are kept; by default STUDY.sqlite."
+    "--store", type=click.Path(path_type=Path), metavar="FILE", help="File of stored designs (default: STUDY.sqlite)."
 )
-@click.option("--workers", type=click.IntRange(min=1), help="Number of worker processes; by default none is started.")
-@click.option("--dask", metavar="ADDRESS", help='A Dask scheduler to work on, e.g. "tcp://host:8786".')
-@click.option("--iterations", type=click.IntRange(min=1), default=60, show_default=True, help="Rounds of an optimum.")
+@click.option(
+    "--workers", type=click.IntRange(min=1), help="Number of worker processes (default: none, all in this one)."
+)
+@click.option(
+    "--dask", metavar="ADDRESS", help='Address of a Dask scheduler that computes the designs, e.g. "tcp://host:8786".'
+)
+@click.option(
+    "--iterations",
+    type=click.IntRange(min=1),
+    default=60,
+    show_default=True,
+    help="Largest number of rounds of an optimum.",
+)
 @output_option(".html", ".csv", ".json", ".toml", many=True)
 @force_option
 @json_option
 def study(
     file: Path, output: tuple[Path, ...], force: bool, as_json: bool, iterations: int, store: Path | None, **where: Any
 ) -> None:
-    """Compute the designs of STUDY (.toml), a table of what varies and what is asked: `cuefem guide study`.
+    """Compute the designs of STUDY (.toml), which lists parameters and responses (`cuefem guide study` has the format).
 
-    With an [objective] it is an optimum: the best design within ranges and limits. With [tolerances] it is a scatter:
-    how much the responses scatter, and which cause matters most (Sobol indices). Else it is a sweep: the best designs,
-    what drives each result, and where two trade off.
+    With [objective]: an optimum, the best design within ranges and limits. With [tolerances]: a tolerance analysis
+    (scatter), the spread of each response and the contribution of each parameter (Sobol indices). Otherwise: a sweep,
+    the best designs, the main parameter of each response, and the trade-offs.
 
-    Designs of sweeps and scatters are kept in a file (SQLite). If the command is interrupted, even by kill -9, the same
-    command goes on; if the study was changed, it computes only what is new. The .toml of -o is the best design, of a
-    sweep that of the first result.
+    Sweeps and tolerance analyses store their designs in a SQLite file. An interrupted run resumes with the same
+    command; an edited study computes only its new designs. -o FILE.toml writes the best design (of a sweep: by its
+    first response).
     """
     asked = load_study(file)
     designs = asked if isinstance(asked, Study) else asked.designs if isinstance(asked, Scatter) else asked.study
     notes = assumed_base(file, designs.base)
     if isinstance(asked, Problem) and (store or any(where.values())):
-        raise click.UsageError("--store, --workers and --dask are for sweeps and scatters: an optimum has one process")
+        raise click.UsageError("--store, --workers and --dask do not apply to an optimum, which runs in one process")
     if all(where.values()):
-        raise click.UsageError("--workers is for this machine, --dask for a cluster: give one")
+        raise click.UsageError("--workers (this machine) and --dask (a cluster) cannot be combined")
     for path in output:
         if path.suffix == ".toml":
             if isinstance(asked, Scatter):
-                raise InputError(path, "--output", "must end in .html, .csv or .json: a scatter has no best design")
+                raise InputError(
+                    path, "--output", "must end in .html, .csv or .json: a tolerance analysis has no best design"
+                )
             check_free(path, force=force)
     remark(designs.base)
     kept = None
@@ -102,10 +114,10 @@ def _kept(
                 return found(asked, store=designs, pool=pool, progress=lambda rows: progress.to(designs.done))
         except (KeyboardInterrupt, RuntimeError) as error:
             progress.end()
-            kept = f"{len([*designs.rows()])} of {designs.study.size} designs are kept in {designs.path}"
+            kept = f"{len([*designs.rows()])} of {designs.study.size} designs are stored in {designs.path}"
             if isinstance(error, RuntimeError):
-                raise RuntimeError(f"{error}; {kept}: the same command goes on") from None
-            click.echo(f"cuefem: interrupted; {kept}: the same command goes on", err=True)
+                raise RuntimeError(f"{error}; {kept}; run the same command to resume") from None
+            click.echo(f"cuefem: interrupted; {kept}; run the same command to resume", err=True)
             raise click.exceptions.Exit(130) from None
 
 
@@ -116,7 +128,7 @@ def _write(path: Path, result: StudyResult, record: Any, things: list[Any]) -> N
     elif path.suffix != ".toml":
         write_told(path, record, things)
     elif not result.best:
-        raise InputError(path, "--output", "needs a design with an answer; got none")
+        raise InputError(path, "--output", "has no design to write: every design failed")
     else:
         save(_rounded(next(iter(result.best.values())).scene, result.study), path)
 

@@ -38,25 +38,28 @@ class Fitting(NamedTuple):
 
 FITTINGS = {
     "material": Fitting(
-        "NAME", "Material of the shaft", "Material of the shaft, in the place of the file's (see `cuefem parts`)."
+        "NAME", "Material of the shaft", "Material of the shaft, instead of the one in FILE (see `cuefem parts`)."
     ),
     "length_unit": Fitting(
-        "UNIT", "Unit of length", "Unit of a CAD surface, by default mm, or of a .csv that names none."
+        "UNIT", "Unit of length", "Length unit of a CAD surface (default: mm), or of a .csv whose header names none."
     ),
     "begins": Fitting(
         "WHERE",
         "The drawing begins at",
-        f'Where a .csv or a CAD surface begins: "ferrule", the default, or "{LEATHER}" if its front is the leather.',
+        f'What the front of the .csv profile or CAD surface is: "ferrule" (default) or "{LEATHER}".',
         "ferrule",
     ),
     "ferrule": Fitting(
         "FERRULE",
         "Ferrule",
-        f'Put on the front of the shaft: "{FERRULE}", with a wooden tenon; add "tenon 8 mm" or "no tenon" for another.',
+        f'Ferrule at the front, e.g. "{FERRULE}", on a wooden tenon ("tenon 8 mm", "no tenon"); "none" removes it.',
         f"none; or such as {FERRULE}",
     ),
     "bore": Fitting(
-        "BORE", "Bore", f'Drilled behind the ferrule\'s tenon, or from the front: "{BORE}".', f"none; or such as {BORE}"
+        "BORE",
+        "Bore",
+        f'Bore, drilled from behind the tenon of the ferrule, or from the front: "{BORE}".',
+        f"none; or such as {BORE}",
     ),
 }
 

@@ -396,7 +396,7 @@ PARAMETERS: dict[str, Parameter] = {
             *("shaft mass", "weight of the shaft as drawn, with its tip"),
             part=WEIGHT,
             option="MASS",
-            help='Weight of the shaft as FILE draws it, with its tip, e.g. "112 g": sets the density of its wood.',
+            help='Measured mass of the shaft as drawn, with its tip, e.g. "112 g"; sets the density of its wood.',
         ),
         Parameter("ferrule length", "length of the ferrule", part=FERRULE_LENGTH),
         Parameter("tip diameter", "diameter at the tip", part=diameter_at(lambda cue: 0.0)),
@@ -410,7 +410,7 @@ PARAMETERS: dict[str, Parameter] = {
             *("leather", "E of the leather", "leather.E"),
             spread=_leather_spread,
             option="LEATHER",
-            help='Its leather: soft, medium, hard, a tip of `cuefem parts`, or its E, e.g. "200 MPa".',
+            help='Leather of the tip: soft, medium, hard, a tip of `cuefem parts`, or its E, e.g. "200 MPa".',
             sets=_LEATHERS,
         ),
         Parameter(
@@ -420,10 +420,10 @@ PARAMETERS: dict[str, Parameter] = {
             help='Height of the leather tip, e.g. "6 mm".',
         ),
         Parameter(
-            *("dome", "radius of the dome", "leather.dome_radius"),
+            *("dome", "tip radius (dome)", "leather.dome_radius"),
             spread=0.1,  # a dime's 8.95 to a nickel's 10.6 mm
             option="RADIUS",
-            help='Radius of its dome: nickel, dime, flat or a length, e.g. "9.5 mm".',
+            help='Tip radius (dome): nickel, dime, flat or a length, e.g. "9.5 mm".',
         ),
         Parameter(
             *("surface restitution", "restitution along the leather's surface", "leather.surface_restitution"),
@@ -434,27 +434,27 @@ PARAMETERS: dict[str, Parameter] = {
         Parameter(
             *("restitution", "restitution of the tip", "tip.restitution"),
             option="E",
-            help="Coefficient of restitution of the tip alone, in [0, 1]; a cue's 0.73 is about 0.6 of its tip's.",
+            help="Restitution of the tip alone, 0 to 1; with axial waves a tip of 0.6 gives a whole cue 0.73.",
         ),
         Parameter(
             *("friction", "friction of tip and ball", "tip.friction"),
             option="MU",
-            help="Coefficient of friction of tip and ball.",
+            help="Coefficient of friction between tip and ball.",
         ),
         Parameter(
             *("speed", "speed of the cue", "stroke.speed"),
             option="SPEED",
-            help='Speed of the cue, e.g. "3 m/s".',
+            help='Cue speed at impact, e.g. "3 m/s".',
         ),
         Parameter(
             *("offset", "offset b/R", "stroke.offset"),
             option="B/R",
-            help='How far off centre the tip hits: in ball radii, in (-1, 1), or a length, e.g. "8 mm".',
+            help='Tip offset from the ball centre: b/R in (-1, 1), or a length, e.g. "8 mm".',
         ),
         Parameter(
-            *("body mass", "mass behind what is drawn", "cue.body_mass"),
+            *("body mass", "mass of the rest of the cue", "cue.body_mass"),
             option="MASS",
-            help='Mass of the cue behind FILE\'s segments, e.g. "420 g".',
+            help='Mass of the rest of the cue (butt), behind what FILE draws, e.g. "420 g".',
         ),
         Parameter("ferrule material", "material of the ferrule", part=FERRULE_MATERIAL, materials=FERRULES),
         Parameter("shaft material", "material of the shaft", part=SHAFT_MATERIAL, materials=SHAFTS),

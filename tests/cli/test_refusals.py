@@ -54,13 +54,13 @@ end-mass good.toml --speed 2 | --speed: needs a unit
 report good.toml --body-mass '-1 oz' | good.toml: --body-mass: must be 0 oz or more
 modes good.toml --near '3 mm' | --near: must be 0 Hz or more
 report shaft.toml --game chess | 'chess' is not one of 'pool', 'carom', 'snooker'
-strike spring.toml --game pool | --game: must be left out: FILE is a scene
-strike spring.toml --dome dime | --dome: must be left out: the scene has no LeatherTip
-strike lumped.toml --leather soft | --leather: must be left out: the scene has no LeatherTip
+strike spring.toml --game pool | --game: does not apply: FILE is a scene
+strike spring.toml --dome dime | --dome: does not apply: the scene has no LeatherTip
+strike lumped.toml --leather soft | --leather: does not apply: the scene has no LeatherTip
 strike shaft.toml --dome penny | or "dime", "nickel", "flat"; got 'penny'
 strike shaft.toml --leather sofd | got 'sofd'
 strike shaft.toml --restitution 0.05 | Tip.restitution must be in [0.1, 1] beside LeatherTip
-modes shaft.toml --tip-height 40mm | got 40 mm (--tip-height, --dome change it)
+modes shaft.toml --tip-height 40mm | got 40 mm (options: --tip-height, --dome)
 strike leather.toml --tip-height 40mm |  mm high; got 40 mm
 strike shaft.toml --leather 1MPa | (--tip-height, --leather, --speed)
 modes lumped.toml --material ash | is a lumped cue, which has no material
@@ -79,14 +79,14 @@ modes bare.csv --bore '6 mm wide, 2 m deep' | the bore must be at most 700 mm de
 modes bored.csv --ferrule '25 mm abs, tenon 8 mm' | the shaft is bored there
 modes bare.csv --material 'hard mapel' | see `cuefem parts`
 modes lumped.toml | lumped.toml: Scene.cue must be a Cue of segments
-modes lumped.toml --body-mass '1 kg' | lumped.toml: --body-mass: must be left out
+modes lumped.toml --body-mass '1 kg' | lumped.toml: --body-mass: does not apply
 strike of_bad.toml | cuefem: bad.toml: segments[0].length: must be more than 0
 report off.toml -o page.html | cuefem: off.toml: effects[0].position: must be 0 to 700 mm, on the cue
-convert good.toml kept.toml | is there already: --force replaces it
-convert good.toml kept.vtu | is there already: --force replaces it
+convert good.toml kept.toml | already exists; --force overwrites it
+convert good.toml kept.vtu | already exists; --force overwrites it
 modes shaft.toml -o none/modes.html | cuefem: none/modes.html: cannot be written: No such file or directory
 report lumped.toml -o page.pdf | page.pdf: --output: must end in .html or .json
-report lumped.toml -o page.html --json | page.html: --output: must be left out with --json
+report lumped.toml -o page.html --json | page.html: --output: cannot be combined with --json
 cost good.toml --output cost.pdf | must end in .html or .png or .svg
 strike spring.toml --format pooltool --offset 0 | [A.31] has no squirt at the offset 0
 strike spring.toml --format pooltool -o cue.json --offset 0.9 | the stroke miscues at offset 0.9
@@ -149,8 +149,8 @@ def test_output_that_cannot_be_written() -> None:
 @pytest.mark.parametrize(
     ("command", "was", "size", "words"),
     [
-        ("strike", "700 mm", "1e-300 m", "out of all proportion"),
-        ("strike", "782 kg/m^3", "1e308 kg/m^3", "out of all proportion"),
+        ("strike", "700 mm", "1e-300 m", "overflow"),
+        ("strike", "782 kg/m^3", "1e308 kg/m^3", "overflow"),
         ("report", "12 mm", "0.012 mm", "a leather tip on 0.012 mm must be 0.0006 to 0.036 mm high; got 6 mm"),
     ],
 )
@@ -173,5 +173,5 @@ def test_more_memory_than_there_is(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr("cuefem.cli.cue_commands.modes_record", full)
     path = tmp_path / "cue.toml"
     path.write_text(GOOD, encoding="utf-8")
-    why = "this needs more memory than there is: ask for less, or check sizes, masses and times (MemoryError)"
+    why = "out of memory: request less, or check the units of sizes, masses and times (MemoryError)"
     assert call("modes", path, "--count", "1000000") == (2, "", f"cuefem: {why}\n")

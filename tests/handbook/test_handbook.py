@@ -111,7 +111,7 @@ def test_the_command_prints_a_chapter_and_writes_the_page(tmp_path: Path) -> Non
     ("arguments", "message"),
     [
         ("glosary", "got 'glosary'; did you mean 'glossary'?"),
-        ("--print -o guide.html", "must be left out with --print"),
+        ("--print -o guide.html", "cannot be combined with --print"),
         ("-o guide.txt", "must end in .html or .json; got '.txt'"),
     ],
 )
