@@ -21,7 +21,7 @@ def advice_sheet(record: Record) -> Sheet:
             "squirt": lambda row: signed(100 * row["squirt_change"], 1, f"± {100 * row['squirt_change_error']:.1f} %"),
             "stiffness": lambda row: _percent(row["tip_stiffness_change"]),
             "weight": lambda row: signed(1e3 * row["shaft_mass_change"], 1, "g"),
-            "first tone": lambda row: signed(row["frequency_change"], 1, "Hz"),
+            "first frequency": lambda row: signed(row["frequency_change"], 1, "Hz"),
             "recommendation": "{verdict}",
         },
         rows,
@@ -37,10 +37,11 @@ def advice_notes(record: Record) -> list[str]:
     warning = grip_warning(record["grip"])
     return [
         *([warning] if warning else []),
-        f"Each change alone, by the whole stroke at b/R {record['offset']:.4g}, where this cue has "
-        f"{with_unit(record['own']['squirt'], 'rad', decimals=2)}. ±: 1σ, of the model, of the wood and tip that "
-        "nobody measured, and 1 %. Worthwhile: less squirt by more than that; within uncertainty: nobody knows.",
-        "Stiffness: static, at the tip, the butt end clamped. Costs stiffness: 5 % of it or more.",
+        f"Each change on its own, full model at b/R {record['offset']:.4g}; this cue: "
+        f"{with_unit(record['own']['squirt'], 'rad', decimals=2)}. ±: uncertainty of the change (1σ): model, "
+        "unmeasured wood and tip, and 1 %. Worthwhile: squirt falls by more than its uncertainty; within uncertainty: "
+        "the change is smaller than its uncertainty.",
+        "Stiffness: static, at the tip, butt end clamped. Costs stiffness: by 5 % or more.",
     ]
 
 

@@ -36,7 +36,7 @@ def comparison_sentences(record: Record) -> list[str]:
             which = f"the stroke of {' and of '.join(missed)} is a miscue" if missed else "a stroke is nearly a miscue"
             made.append(f"{name} and {first} cannot be compared in squirt: {which}.")
         elif not squirt["distinct"]:
-            made.append(f"{name} cannot be told apart from {first} in squirt: {_signed(squirt)} (1σ).")
+            made.append(f"{name} is not distinct from {first} in squirt: {_signed(squirt)} (1σ).")
         else:
             more = "more" if squirt["difference"] > 0 else "less"
             size, error = 100 * abs(squirt["difference"]), 100 * squirt["error"]
@@ -68,10 +68,10 @@ def comparison_sheet(record: Record) -> Sheet:
     head = ("", first, *(cell for other in others for cell in (other, "difference")))
     shaft = "one shaft, before and after a change" if record["same_shaft"] else "shafts of different pieces of wood"
     notes = (
-        f"Struck alike, with the ball of {first}, b/R {record['offset']:.3g} at {record['speed']:g} m/s. ±: 1σ of the "
-        f"difference, for {shaft}; errors that the cues share cancel.",
+        f"Same stroke, with the ball of {first}, b/R {record['offset']:.3g} at {record['speed']:g} m/s. ±: 1σ of the "
+        f"difference, for {shaft}; shared errors cancel.",
         *(f"{name}: {words}" for name, grip in record["grips"].items() if (words := grip_warning(grip))),
-        "* smaller than its uncertainty: the cues cannot be told apart in this number.",
+        "* smaller than its uncertainty: the cues are not distinct in this quantity.",
     )
     return Sheet("Side by side", head, tuple(rows), notes)
 

@@ -83,33 +83,32 @@ def cost_sheets(record: Record) -> list[Sheet]:
     sizes: dict[str, Entry] = {"modes": "{modes}", "steps": "{steps}", "elements x order": _mesh}
     errors = {"estimate": "{estimate:error}", "difference": "{difference:error}"}
     times: dict[str, Entry] = {
-        "ms, climb": lambda row: _milliseconds(row["seconds"]),
-        "plain sum": "{plain[difference]:error}",
-        "ms, plain": lambda row: _milliseconds((row["plain"] or {}).get("seconds")),
+        "ms, sequence": lambda row: _milliseconds(row["seconds"]),
+        "truncated sum": "{plain[difference]:error}",
+        "ms, truncated": lambda row: _milliseconds((row["plain"] or {}).get("seconds")),
     }
-    last: dict[str, Entry] = {"estimate": "{estimate:error}", "ms": times["ms, climb"]}
+    last: dict[str, Entry] = {"estimate": "{estimate:error}", "ms": times["ms, sequence"]}
     return [
         sheet(
-            "Error against cost",
+            "Convergence",
             sizes | errors | times,
             record["levels"],
-            "Largest relative error of squirt, ball speed and spin: as estimated, and as the difference from the last "
-            "row.",
-            "ms, climb: time of all rows down to this one, as `resolve` takes it. Plain sum: the same modes without "
-            "what the modes left out add (the tail).",
+            "Relative error, the largest of squirt, ball speed and spin: estimate, and difference from the last row.",
+            "ms, sequence: time of all rows down to this one, which `resolve` runs. Truncated sum: the same modes "
+            "without the truncation correction.",
             "elements: number for all segments together; order: degree of their polynomials.",
         ),
         sheet(
-            "What to take",
+            "Recommended resolution",
             {"accuracy": _asked} | sizes | last,
             record["wanted"],
-            "With the tail, as `resolve(scene, rtol)` and a file's [accuracy] rtol compute.",
+            "With the truncation correction, as `resolve(scene, rtol)` and the rtol of a file's [accuracy] table.",
         ),
     ]
 
 
 def _asked(row: Mapping[str, Any]) -> str:
-    return f"{row['rtol']:.0e}" + ("" if row["reached"] else ", not reached: the best is")
+    return f"{row['rtol']:.0e}" + ("" if row["reached"] else ", not reached; the best:")
 
 
 def _mesh(row: Mapping[str, Any]) -> str:
@@ -127,8 +126,8 @@ def cost_figure(record: Record, title: str, kind: str) -> bytes:
     def draw(canvas: Any, panels: Any) -> None:
         for axes, name in zip(panels, ("seconds", "unknowns"), strict=True):
             _draw(axes, record["levels"], name)
-        panels[0].set(xlabel="seconds (tail: the whole climb)", ylabel="largest relative error")
-        panels[1].set(xlabel="unknowns of the strike")
+        panels[0].set(xlabel="seconds (corrected: the whole sequence)", ylabel="largest relative error")
+        panels[1].set(xlabel="degrees of freedom of the strike")
         panels[0].legend()
         low, high = panels[1].get_xlim()
         ticks = [tick for tick in TICKS if low <= tick <= high]
@@ -144,8 +143,15 @@ def _draw(axes: Any, rows: Sequence[Record], name: str) -> None:
     known = [row for row in rows if row["difference"]]
     plain = [row for row in rows if row["plain"]]
     sizes = [row["plain"]["seconds"] if name == "seconds" else row["unknowns"] for row in plain]
-    axes.loglog([r[name] for r in judged], [r["estimate"] for r in judged], "o-", color="C0", label="tail: estimate")
     axes.loglog(
-        [r[name] for r in known], [r["difference"] for r in known], "o--", color="C0", mfc="w", label="tail: difference"
+        [r[name] for r in judged], [r["estimate"] for r in judged], "o-", color="C0", label="corrected: estimate"
     )
-    axes.loglog(sizes, [r["plain"]["difference"] for r in plain], "s:", color="C1", label="plain sum: difference")
+    axes.loglog(
+        [r[name] for r in known],
+        [r["difference"] for r in known],
+        "o--",
+        color="C0",
+        mfc="w",
+        label="corrected: difference",
+    )
+    axes.loglog(sizes, [r["plain"]["difference"] for r in plain], "s:", color="C1", label="truncated sum: difference")

@@ -133,7 +133,7 @@ def effects_sheet(record: Record, scene: Record) -> Sheet:
     percent = f"{100 * record['rtol']:.3g} %"
     base, tried = record["base"], [row for row in record["effects"] if not row["refused"]]
     small = [row for row in tried if not row["matters"]]
-    first = ("the scene as it is", degrees(base["squirt"]), grams(base["end_mass"]), f"{base['ball_speed']:.4f}")
+    first = ("unmodified scene", degrees(base["squirt"]), grams(base["end_mass"]), f"{base['ball_speed']:.4f}")
     rows: list[tuple[str, ...]] = [
         (*first, f"{base['spin']:.2f}", str(base["unknowns"]), seconds_words(base["seconds"]))
     ]
@@ -142,12 +142,12 @@ def effects_sheet(record: Record, scene: Record) -> Sheet:
     if small:  # a row and no style alone says so, also where colours are not
         rows += [(f"changes less than {percent}:", *[""] * 6), *map(_cells, small)]
     return Sheet(
-        f"What each effect is worth at offset b/R = {scene['stroke']['offset']:.4g}",
-        ("", "squirt", "end mass", "ball speed, m/s", "spin, rad/s", "unknowns", "CPU time"),
+        f"Sensitivity to each effect at offset b/R = {scene['stroke']['offset']:.4g}",
+        ("", "squirt", "end mass", "ball speed, m/s", "spin, rad/s", "DOF", "CPU time"),
         tuple(rows),
         (
-            "without: the scene with this effect left out; with: one it does not list added, at a usual value; "
-            "per cent: change from the first row",
+            "without: this effect removed; with: an effect that is not listed added, at a default value; %: change "
+            "from the first row",
             f"end mass: of the lumped cue with the same squirt; {percent}: the tolerance of squirt, ball speed and "
             "spin",
             *_not_tried(record["effects"]),
@@ -193,10 +193,10 @@ def advice(record: Record, percent: str) -> list[str]:
     for words in record["worth"]["drop"]:
         (row,) = (row for row in record["effects"] if row["words"] == words and row["listed"])
         spared = base - row["seconds"]
-        saving = f", and {seconds_words(spared)} of {seconds_words(base)}" if spared > 0.1 * base else ""
-        lines.append(f"Not worth its time: {words}; leaving it out changes less than {percent}{saving}.")
+        saving = f" and saves {seconds_words(spared)} of {seconds_words(base)}" if spared > 0.1 * base else ""
+        lines.append(f"Negligible: {words}; removing it changes less than {percent}{saving}.")
     if record["worth"]["add"]:
-        lines.append(f"Worth adding, each changes {percent} or more: {', '.join(record['worth']['add'])}.")
+        lines.append(f"Missing, each changes {percent} or more: {', '.join(record['worth']['add'])}.")
     if not lines:
-        lines.append(f"The scene has what it needs at {percent}: nothing to drop, nothing to add.")
+        lines.append(f"At a tolerance of {percent} no listed effect is negligible and no unlisted effect matters.")
     return lines

@@ -40,8 +40,8 @@ def _end_mass(solved: Solved, drive: str) -> Record:
     if not felt > 0:
         time = with_unit(float(scene.contact_time), "s")
         raise ValueError(
-            f"the end mass comes out as {with_unit(float(felt), 'kg')} ({drive}), which no cue has: its tip is far "
-            f"too weak for a contact of {time}; check sizes, E and the contact time"
+            f"an end mass of {with_unit(float(felt), 'kg')} ({drive}) is not plausible; the tip is too soft for a "
+            f"contact of {time}: check dimensions, E and contact time"
         )
     whole = float(cue_end_mass(felt))
     return {
@@ -57,21 +57,21 @@ def end_mass_sheet(record: Record, scene: Record, *, paper: bool = False) -> She
     """The end masses by definition. paper: with [Kim]'s m_c and eps of each."""
     at = f", at b/R {record['offset']:.4g}"
     papers = {"m_c": "cue_end_mass", "eps": "{eps:.4f}"} if paper else {}
-    their = "m_c = 4 m_e: cue end of the paper's two-part cue (nu_c 1/3); eps: m_c as a part of the ball's mass"
+    their = "m_c = 4 m_e: end mass of the two-part cue in Kim's paper (nu_c 1/3); eps: m_c over the mass of the ball"
     rows = [{"name": drive, **values} for drive, values in record["drives"].items()]
     return sheet(
         "Effective end mass",
         {
             "definition": lambda row: row["name"] + (at if DEFINITIONS[row["name"]].at_offset else ""),
             "m_e": "end_mass",
-            "spread": _spread,
+            "range": _spread,
             **papers,
         },
         rows,
         assumptions(scene),
         *(f"{row['name']}: {row['reason']}" for row in rows if row["end_mass"] is None),
-        "m_e: effective end mass, the inertia felt by the ball across the cue at its tip (lumped models take offset)",
-        "spread: range while keeping 25 to 100 % of the modes",
+        "m_e: effective end mass, the transverse inertia of the cue at its tip (the lumped models use offset)",
+        "range: m_e with 25 to 100 % of the modes retained (a convergence check, not an uncertainty)",
         *([their] if paper else []),
         *tip_effect_notes(scene, _counted()),
     )
@@ -87,7 +87,6 @@ def _counted() -> str:
         [definition.name for definition in DEFINITIONS.values() if definition.counts_tip is c] for c in (True, False)
     )
     return (
-        f"{listed(counting)} count effects at the tip as end mass, and axial waves with the butt that these run into; "
-        f"{listed(others)} do not, nor does the offset end "
-        "mass of the two-part cues in `strike` and `report`"
+        f"{listed(counting)} include tip effects (dome, shear), axial waves and the butt; {listed(others)} and the "
+        "two-part model of `strike` and `report` exclude them"
     )

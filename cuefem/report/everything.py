@@ -51,7 +51,7 @@ def report_sheets(record: Record, scene: Record) -> list[Sheet | str]:
     first: list[Sheet | str] = [warning, ""] if warning else []
     first += verdict_things(record["verdict"])
     first += [record["model_error"]["sentence"], ""] if "model_error" in record else []
-    title = f"The cue, and its stroke at offset b/R = {scene['stroke']['offset']:.4g}"
+    title = f"Cue, and stroke at offset b/R = {scene['stroke']['offset']:.4g}"
     felt = (SQUIRT_END_MASS, grams(record["end_masses"]["drives"]["squirt"]["end_mass"]))
     numbers = values_sheet(title, [felt, *value_rows(record["numbers"])], assumptions(scene))
     return [

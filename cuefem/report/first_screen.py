@@ -19,10 +19,16 @@ from cuefem.scene import Scene
 
 # The four numbers: label, SI unit, decimals, and what each is.
 TILES = {
-    "off_line": ("Off line", "m", 0, "/m", "How far the ball leaves the line of aim after one metre"),
-    "end_mass_squirt": ("End mass", "kg", 2, "", "The mass at the tip that would make this much squirt"),
-    "pivot_length": ("Pivot length", "m", 0, "", "Turn the cue about this point behind the tip, and squirt cancels"),
-    "tip_stiffness": ("Stiffness", "N/m", 0, "", "Static, at the tip, joint end clamped"),
+    "off_line": ("Off line", "m", 0, "/m", "Distance of the ball from the line of aim after 1 m"),
+    "end_mass_squirt": ("End mass", "kg", 2, "", "Squirt-equivalent: mass at the tip of a lumped cue with this squirt"),
+    "pivot_length": (
+        "Pivot length",
+        "m",
+        0,
+        "",
+        "Distance from the tip to the point about which pivoting the cue cancels squirt",
+    ),
+    "tip_stiffness": ("Stiffness", "N/m", 0, "", "Static, transverse, at the tip; joint end clamped"),
 }
 
 
@@ -76,7 +82,7 @@ def _told(difference: Record | None, other: str) -> tuple[str, str, str]:
     if difference is None:
         return "", "compared with", other
     if not difference["distinct"]:
-        return "", "cannot be told from", other
+        return "", "squirt not distinct from", other
     size, error = 100 * abs(difference["difference"]), 100 * difference["error"]
     return f"{size:.0f} ± {error:.0f} %", f"{'less' if difference['difference'] < 0 else 'more'} squirt than", other
 

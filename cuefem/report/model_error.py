@@ -118,10 +118,10 @@ def _by_solid(scene: Scene, mesh: Fineness) -> Numbers:
 def _numbers(scene: Scene, tip: TipModes, across: float, along: float) -> Numbers:
     """What is compared, by its words and its unit, from a cue's tip modes and its gives with the butt held, m/N."""
     omega, amplitude = tip.omega[3:], tip.amplitude[3:, 1]
-    numbers = {(f"tone {k}", "Hz"): float(w) / (2 * np.pi) for k, w in enumerate(omega[:TONES], 1)}
-    numbers["stiffness at the tip, butt held", "N/m"] = 1 / across
-    numbers["stiffness along the axis, butt held", "N/m"] = 1 / along
-    numbers["give of the tip, cue free", "m/N"] = float(np.sum((amplitude / omega) ** 2))
+    numbers = {(f"natural frequency {k}", "Hz"): float(w) / (2 * np.pi) for k, w in enumerate(omega[:TONES], 1)}
+    numbers["transverse stiffness at the tip, butt clamped", "N/m"] = 1 / across
+    numbers["axial stiffness at the tip, butt clamped", "N/m"] = 1 / along
+    numbers["tip compliance, free cue", "m/N"] = float(np.sum((amplitude / omega) ** 2))
     for definition in DEFINITIONS.values():
         with suppress(ValueError):  # a miscue has no squirt-equivalent end mass
             numbers[f"end mass, {definition.label_at(scene.stroke.offset)}", "kg"] = float(definition.of(tip, scene))
@@ -140,7 +140,7 @@ def _sentence(rows: Sequence[Record]) -> str:
     off, own = abs(row["difference"]), row["mesh_error"]
     size = _percent(max(off, own), 2 if own < 0.05 * off else 1)
     words = f"less than {size}" if off < own else size
-    return f"For this shaft beam theory is off by {words} in {row['quantity']}."
+    return f"Error of the beam model for this shaft: {words} in {row['quantity']}."
 
 
 def model_error_sheet(record: Record) -> Sheet:
@@ -152,20 +152,20 @@ def model_error_sheet(record: Record) -> Sheet:
         "unit": lambda row: TRADE.get(row["unit"], (1.0, row["unit"]))[1],
         "beam": lambda row: f"{scaled(row['beam'], row['unit']):.6g}",
         "solid": lambda row: f"{scaled(row['solid'], row['unit']):.6g}",
-        "beam is off by": lambda row: _percent(row["difference"], 2, "+"),
-        "the mesh's own error": lambda row: _percent(row["mesh_error"], 1),
+        "error of the beam": lambda row: _percent(row["difference"], 2, "+"),
+        "discretisation error": lambda row: _percent(row["mesh_error"], 1),
     }
     notes = [
         f"both from {record['modes']} bending modes without a truncation correction, which `cuefem end-mass` and "
-        f"`cuefem strike` have; the mesh's own error is the change from elements of order {record['order'] - 1} to "
+        f"`cuefem strike` have; discretisation error: change from elements of order {record['order'] - 1} to "
         f"{record['order']}"
     ]
     if record["left_out"]:
         notes.append(
-            f"* without {', '.join(record['left_out'])}, which a solid does not have; `cuefem end-mass` has them"
+            f"* without {', '.join(record['left_out'])}, which the solid model does not include; `cuefem end-mass` does"
         )
-    found = sheet("Beam beside solid", columns, record["rows"], *notes, texts=(0, 1))
+    found = sheet("Beam and solid models", columns, record["rows"], *notes, texts=(0, 1))
     same = record["scikit_fem"]
     off = "< 1e-07 %" if abs(same["difference"]) < SAME else _percent(same["difference"], 2, "+")
-    row = ("tone 1, same beam by scikit-fem", "Hz", f"{same['beam']:.6g}", "", off, "")
+    row = ("natural frequency 1, same beam by scikit-fem", "Hz", f"{same['beam']:.6g}", "", off, "")
     return replace(found, rows=(*found.rows, row))

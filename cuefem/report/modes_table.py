@@ -38,7 +38,7 @@ def modes_sheet(record: Record) -> Sheet:
     }
     if near is not None:
         columns[""] = lambda row: "nearest" if row["frequency"] == nearest else ""
-    motions = "1 rigid motion" if record["rigid"] == 1 else f"{record['rigid']} rigid motions"
-    note = f"{motions} at 0 Hz not listed; tip amplitude: how far the tip moves in the mode, mass-normalised"
-    title = "Bending modes" if near is None else f"Bending modes nearest {near:g} Hz"
+    motions = "1 rigid-body mode" if record["rigid"] == 1 else f"{record['rigid']} rigid-body modes"
+    note = f"{motions} at 0 Hz not listed; tip amplitude: of the mass-normalised mode"
+    title = "Natural frequencies" if near is None else f"Natural frequencies nearest {near:g} Hz"
     return sheet(title, columns, rows, note, texts=())

@@ -37,8 +37,8 @@ def cue_line(cue: Record) -> str:
     if "length" not in cue:
         return f"lumped cue, {grams(cue['mass'])}, end mass {grams(cue['end_mass'])}"
     pieces = f"{cue['segments']} segment" + ("s" if cue["segments"] > 1 else "")
-    masses = f"segments {grams(cue['shaft_mass'])} + body {grams(cue['body_mass'])}"
-    return f"{with_unit(cue['length'], 'm')} modelled in {pieces}, cue {grams(cue['mass'])} ({masses})"
+    masses = f"as drawn {grams(cue['shaft_mass'])}, rest {grams(cue['body_mass'])}"
+    return f"{with_unit(cue['length'], 'm')} in {pieces}, cue {grams(cue['mass'])} ({masses})"
 
 
 def plain_cue_line(cue: Cue | LumpedCue) -> str:

@@ -49,10 +49,10 @@ def pooltool_record(name: str, scene: Scene, file: str = "cue.json") -> Record:
     """
     offset, speed = float(scene.stroke.offset), float(scene.stroke.speed)
     if offset == 0:
-        raise ValueError("[A.31] has no squirt at the offset 0: --offset takes another")
+        raise ValueError("[A.31] has no squirt at offset 0; give another --offset")
     outcome = strike_modes(scene, Solved(scene).tip)
     if grip_of(outcome) in MISSED:
-        raise ValueError(f"the stroke miscues at offset {offset}, so that it has no end mass")
+        raise ValueError(f"the stroke is a miscue at offset {offset} and has no end mass")
     mass = float(scene.ball.mass / alciatore_a31_mass_ratio(offset, float(outcome.squirt), inertia=INERTIA))
     by_default = alciatore_a31(offset, mass_ratio=scene.ball.mass / DEFAULT_END_MASS, inertia=INERTIA)
     return {
@@ -87,14 +87,16 @@ def _drawn(scene: Scene) -> Record:
 
 def _notes(scene: Scene) -> list[str]:
     notes = [
-        "pooltool takes [A.31] at every offset and speed, and knows no miscue: at other offsets its squirt differs "
+        "pooltool uses [A.31] at every offset and speed and has no miscue: at other offsets its squirt differs "
         "(`cuefem guide working` has a table)"
     ]
     drawn = _drawn(scene)
     if missing := [key for key in DEFAULT if key not in (*drawn, "brand", "M", "end_mass")]:
-        notes.append(f"not drawn, so pooltool's own: {', '.join(missing)}")
+        notes.append(f"not drawn, pooltool's default: {', '.join(missing)}")
     if scene.contact_terms.table is not None:
-        notes.append("the cue is raised: the end mass includes the table's push, which pooltool does not know")
+        notes.append(
+            "the cue is elevated: the end mass includes the reaction of the table, which pooltool does not model"
+        )
     if scene.ball.inertia != INERTIA:
         notes.append(f"pooltool's balls have the inertia factor {INERTIA}; the scene's has {scene.ball.inertia:g}")
     return notes

@@ -83,8 +83,10 @@ def squirt_sheet(record: Record, scene: Record) -> Sheet:
         (f"{offset:g}", *(written(name, own[name][i], brief=True) for name in names))
         for i, offset in enumerate(record["offsets"])
     ]
-    head = ("b/R", "squirt", "natural pivot length", "grip")
-    return Sheet("Squirt against the offset", head, tuple(rows), (assumptions(scene), PIVOT), texts=(3,))
+    head = ("b/R", "squirt", "natural pivot length", "contact")
+    return Sheet(
+        "Squirt and tip offset", head, tuple(rows), (assumptions(scene), f"natural pivot length: {PIVOT}"), texts=(3,)
+    )
 
 
 LONGEST_PIVOT = 1.5  # m; beyond it a pivot is behind the cue

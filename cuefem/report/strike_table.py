@@ -19,7 +19,7 @@ from cuefem.report.models import (
 )
 from cuefem.report.scene_words import assumptions
 from cuefem.results.closed_forms import pivot_length
-from cuefem.results.quantities import GRIPS, RESULTS, written
+from cuefem.results.quantities import DEFINITION_OF_MISCUE, GRIPS, RESULTS, written
 from cuefem.results.records import Record, Sheet
 from cuefem.scene import Outcome, Scene
 from cuefem.tip_modes import Solved
@@ -80,13 +80,13 @@ def models_sheet(record: Record, shown: tuple[str | tuple[str, int, str], ...] =
     return Sheet("", ("", *record["models"]), tuple(rows))
 
 
-SLOWER = 0.02  # relative: a ball that a lumped cue leaves so much slower is told of
+SLOWER = 0.02  # relative: a lumped cue whose ball is slower by more gets a note
 LUMPED = (
-    "ball speed: a model without waves along the cue takes the tip's own restitution, which waves raise to the whole "
-    "cue's; believe the coupled speed"
+    "ball speed: use the coupled value; the lumped models omit axial waves, which raise the restitution of the whole "
+    "cue above that of its tip"
 )
-OFF = "what squirt may be off, from what the model missed on measured cues and what nobody measured: `cuefem report`"
-MISCUE = "this stroke miscues: the tip slips on the ball to the end; not a valid shot: ignore squirt and pivot length"
+OFF = "uncertainty of squirt: cuefem report"
+MISCUE = f"miscue: {DEFINITION_OF_MISCUE}. Ignore squirt and pivot length"
 
 
 def grip_warning(grip: str) -> str:
@@ -98,7 +98,7 @@ def strike_sheet(record: Record, scene: Record) -> Sheet:
     """One strike, a column for each model."""
     coupled = record["models"]["coupled"]
     missed = [MISCUE] if coupled["grip"] in MISSED else []
-    exact = ", modes and steps for 0.2 % of squirt" if "length" in scene["cue"] and coupled["error"] is None else ""
+    exact = ", numerical error of squirt at most 0.2 %" if "length" in scene["cue"] and coupled["error"] is None else ""
     pivots = any(model.get("pivot_length") is not None for model in record["models"].values())
     return replace(
         models_sheet(record),
@@ -106,8 +106,8 @@ def strike_sheet(record: Record, scene: Record) -> Sheet:
         notes=(
             *missed,
             assumptions(scene),
-            f"coupled: vibrating shaft in time{exact}; two-part and A.31: two masses, with the end mass of a tip that "
-            f"sticks ({offset_words(scene)}; `cuefem end-mass`)",
+            f"coupled: vibrating shaft in time{exact}; two-part and A.31: two masses, with the end mass of a "
+            f"tip that sticks ({offset_words(scene)}; `cuefem end-mass`)",
             *([f"natural pivot length: {PIVOT}"] if pivots else []),
             "grip, {}: {}".format(*GRIPS[coupled["grip"]]),
             *_on_speed(record, scene),
@@ -125,4 +125,4 @@ def _on_speed(record: Record, scene: Record) -> list[str]:
     return [LUMPED] if any(other < (1 - SLOWER) * coupled for other in others) else []
 
 
-PIVOT = "pivot the cue about this point, so far from the tip, and squirt cancels"
+PIVOT = "distance from the tip to the point about which pivoting the cue cancels squirt (back-hand English)"

@@ -48,12 +48,12 @@ def tip_sheet(record: Record) -> Sheet:
     """The central impacts, a row a speed."""
     unknown = any(impact["force"] is None for impact in record["impacts"])
     return sheet(
-        "The leather tip, head on",
+        "Leather tip, head-on impact",
         {"speed": "{speed:g} m/s", **by_words("contact_time", "force", "depth", "patch"), "stiffness": _stiffness},
         record["impacts"],
-        f"leather of {grams(record['tip_mass'])}, E {significant(record['E'] / 1e6)} MPa; force, depth, stiffness and "
-        "patch at the greatest compression; the cue is rigid along its axis",
-        *([f"{NONE}: the leather would be pressed further than its law is known"] if unknown else []),
+        f"leather of {grams(record['tip_mass'])}, E {significant(record['E'] / 1e6)} MPa; force, indentation, contact "
+        "diameter and stiffness at maximum indentation; rigid cue (without axial waves)",
+        *([f"{NONE}: indentation beyond the valid range of the force law"] if unknown else []),
         texts=(),
     )
 

@@ -5,19 +5,18 @@ from __future__ import annotations
 from cuefem.scene import Scene
 
 LAW = (
-    "The tip is taken as elastic leather, by its height, its dome and its stiffness E. The force that such a tip makes "
-    "is known to 0.5 % in most cases and to 2.5 % at worst; that a real tip behaves so is assumed. Computed "
-    "squirt changes by 6 % from soft to hard leather, and players find no difference, to ±5 % at best: do not choose "
-    "a tip's hardness by this number."
+    "The tip is modelled as elastic leather of given height, dome and E. Its compliance is that of the elastic solid to "
+    "0.3 % (95 % of contacts; at worst 1.1 %); the model has not been tested on real tips. Computed squirt changes by "
+    "6 % from soft to hard leather; players find no difference, to ±5 % at best. Do not choose a tip's hardness by this "
+    "number."
 )
 SPRING = (
-    "The tip is taken as a spring that presses for the contact time that is given. No real tip was measured for it, "
-    "and squirt changes with it: for a bare tip by half of itself from 0.7 to 2 ms."
+    "The tip is modelled as a linear spring with the given contact time. No real tip was measured for it, and squirt "
+    "depends on it: for a spring tip without dome and shear by 50 % from 0.7 to 2 ms."
 )
 COMPARING = (
-    "Differences between two designs are safer than the degrees of one: a low-deflection shaft was measured with 0.72 "
-    "of the squirt of a maple shaft, and the model says 0.70 to 0.78. The numbers are in the handbook, in the chapter "
-    "Measured squirt."
+    "A ratio of two designs is more accurate than the squirt of one: a low-deflection shaft was measured with 0.72 "
+    "of the squirt of a maple shaft; the model computes 0.70 to 0.78 (handbook: Measured squirt)."
 )
 
 

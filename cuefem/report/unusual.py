@@ -79,23 +79,25 @@ def _light_cue(scene: Scene) -> Iterable[tuple[str, float]]:
     return [("mass of the whole cue", float(scene.cue.mass))]
 
 
-TUBES = "such shafts are tubes: a bore is drawn in a .toml (`cuefem guide files`)"
-BODY = "400 to 700 is usual: is what is behind the shaft left out (--body-mass, or body_mass in a drawing)?"
+TUBES = "carbon shafts are tubes; add the bore (--bore, or `cuefem guide files`)"
+BODY = 'expected 400 to 700 g; add the rest of the cue with --body-mass "15 oz" (body_mass in a file)'
 SHOWN = {"mm": 1e3, "g": 1e3}  # how many of the unit an SI unit is, if not one
 ASKED = (
     UsualNumbers(
         lambda s: [("head-on contact time", s.known_contact_time)],
-        *(*_usual(Tip, "contact_time"), "s", "leather's is 0.001 to 0.002 s"),
+        *(*_usual(Tip, "contact_time"), "s", "expected 0.001 to 0.002 s for leather"),
     ),
     UsualNumbers(
         lambda s: [("ball radius", s.ball.radius)],
-        *(*_usual(Ball, "radius"), "mm", "26 to 31 is usual: is that the diameter?"),
+        *(*_usual(Ball, "radius"), "mm", "expected 26 to 31 mm; is this the diameter?"),
     ),
-    UsualNumbers(lambda s: [("ball mass", s.ball.mass)], *_usual(Ball, "mass"), "g", "140 to 210 is usual"),
-    UsualNumbers(lambda s: [("stroke speed", s.stroke.speed)], *_usual(Stroke, "speed"), "m/s", "0.5 to 12 is usual"),
+    UsualNumbers(lambda s: [("ball mass", s.ball.mass)], *_usual(Ball, "mass"), "g", "expected 140 to 210 g"),
+    UsualNumbers(
+        lambda s: [("stroke speed", s.stroke.speed)], *_usual(Stroke, "speed"), "m/s", "expected 0.5 to 12 m/s"
+    ),
     UsualNumbers(
         lambda s: [("dome radius", s.dome_radius or None)],
-        *(*_usual(TipDome, "radius"), "mm", "9 to 10.6 is usual, a dime's or a nickel's"),
+        *(*_usual(TipDome, "radius"), "mm", "expected 9 to 10.6 mm, dime to nickel"),
     ),
     UsualNumbers(_of_drawing("drawn length", "length"), *CUE_LENGTH, "mm", "check the unit of the lengths", False),
     UsualNumbers(
@@ -103,16 +105,18 @@ ASKED = (
         *(
             *CUE_DIAMETER,
             "mm",
-            "check the unit of the diameters; a tip has 8.5 to 14: are these radii?",
+            "expected 8.5 to 14 mm at the tip; check the unit: are these radii?",
             False,
         ),
     ),
     UsualNumbers(
         _of_drawing("drawn mass", "shaft_mass"), LEAST_DRAWN, inf, "g", "check the sizes and the densities", False
     ),
-    UsualNumbers(_weighed_wood, 0.0, 0.0, "kg/m3", "is a joint, or the rest of the cue, weighed too?", False),
+    UsualNumbers(
+        _weighed_wood, 0.0, 0.0, "kg/m3", "does the measured mass include a joint or the rest of the cue?", False
+    ),
     UsualNumbers(_solid_tubes, 0.0, 0.0, "g", TUBES, False),
-    UsualNumbers(lambda s: [("mass of the whole cue", float(s.cue.mass))], 0.0, 1.0, "kg", "0.4 to 0.7 is usual"),
+    UsualNumbers(lambda s: [("mass of the whole cue", float(s.cue.mass))], 0.0, 1.0, "kg", "expected 0.4 to 0.7 kg"),
     UsualNumbers(_light_cue, LIGHTEST, inf, "g", BODY),
 )
 
@@ -154,5 +158,5 @@ def _shape(segments: tuple[Segment, ...]) -> list[str]:
             ("butt", segment.butt_bore, segment.tip_bore),
         ):
             if here == 0 < there:
-                lines.append(f"the bore of segments[{i}] comes to a point; is {end}_bore left out?")
+                lines.append(f"the bore of segments[{i}] tapers to zero; is {end}_bore missing?")
     return lines

@@ -64,9 +64,9 @@ def headline(record: Record) -> str:
     squirt, error = squirt_words(record)
     aside = with_unit(math.tan(abs(record["squirt"])), "m", decimals=0)
     where = f"at b/R {record['offset']:.4g}, {way_out(record['offset'])}" + (
-        ", for the stroke itself is head on" if record["head_on"] else ""
+        "; the stroke itself is head-on" if record["head_on"] else ""
     )
-    return f"squirt {squirt.rstrip('°')} ± {error} ({where}): the ball goes {aside} aside in a metre"
+    return f"squirt {squirt.rstrip('°')} ± {error} ({where}): the ball is {aside} off line after 1 m"
 
 
 def way_out(offset: float) -> str:
@@ -90,7 +90,7 @@ def beside_words(difference: float, other: str) -> str:
 
 
 def standing(record: Record) -> list[str]:
-    """Where the squirt stands among the ready cues, in sentences; none without one to compare with."""
+    """Squirt relative to the reference cues, in sentences; none without a reference cue."""
     among = record["among"]
     if not among:
         return []
@@ -102,24 +102,19 @@ def standing(record: Record) -> list[str]:
         said = f"{abs(size):.0f} ± {error:.0f} % {more} squirt than a {first} shaft with the same tip."
     else:
         told = signed(size, 0, f"± {error:.0f} %")
-        said = f"Cannot be told from a {first} shaft with the same tip in squirt: {told}."
+        said = f"Squirt is not distinct from that of a {first} shaft with the same tip: {told}."
     ratios = {name: among[name]["squirt"] / among[first]["squirt"] - 1 for name in others}
-    rest = [f"the {name} one has {than_words(ratio)}" for name, ratio in ratios.items()]
-    return (
-        [said, f"Of the ready pool cues (meshes/), struck with the same tip and stroke, {listed(rest)} than {first}."]
-        if rest
-        else [said]
-    )
+    rest = [f"{name} has {than_words(ratio)} squirt" for name, ratio in ratios.items()]
+    return [said, f"Reference pool cues with the same tip and stroke: {listed(rest)} than {first}."] if rest else [said]
 
 
 def uncertainty_line(record: Record) -> str:
     """What the uncertainty is made of, in a line."""
     parts = {name: _percent(share) for name, share in record["uncertainty"].items()}
     return (
-        f"±: 1σ, of the model ({parts['model']}, from published squirt), of wood and tip of this cue that nobody "
-        f"measured ({parts['inputs']}), and of the computation ({parts['computation']}), in quadrature "
-        f"{parts['total']}. The difference of two shafts: {_percent(SHAFTS)} of itself for the model, what is not "
-        "known of the wood, and 1 %."
+        f"±: uncertainty (1σ): model {parts['model']} (from published squirt), unmeasured wood and tip "
+        f"{parts['inputs']}, numerical {parts['computation']}; combined {parts['total']}. A difference between two "
+        f"shafts: model {_percent(SHAFTS)} of the difference, their wood, and 1 % of squirt."
     )
 
 
@@ -173,7 +168,7 @@ def verdict_things(record: Record) -> list[Sheet | str]:
     own = {i: "bold" for i, row in enumerate(scale_sheet) if row.own}
     head = ("cue", "squirt", "less to more squirt", "")
     table = Sheet(
-        "Among ready pool cues, with the same tip and stroke", head, rows, (uncertainty_line(record),), (0, 2, 3), own
+        "Reference pool cues, with the same tip and stroke", head, rows, (uncertainty_line(record),), (0, 2, 3), own
     )
     return [headline(record), *standing(record), "", table]
 

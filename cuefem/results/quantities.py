@@ -148,10 +148,10 @@ RESULTS = {
         segments=True,
     ),
     "mass": Result("mass of the cue", "kg", heading="cue mass", of=lambda designs, _: designs.mass),
-    "body_mass": Result("mass behind the drawn part", "kg"),
+    "body_mass": Result("mass of the rest of the cue", "kg"),
     "end_mass": Result(
         *("end mass", "kg"),
-        about="stick end mass, of small offsets; of a tip that sticks at an offset",
+        about="stick definition, small offsets; at an offset: of a tip that sticks",
         of=lambda designs, offset: designs.stick.end_mass if offset is None else designs.stick_at(offset),
         argument="offset",
         strikes=True,
@@ -212,13 +212,13 @@ RESULTS = {
     "cue_speed": Result("cue speed after", "m/s", 4),
     "contact_time": Result("head-on contact time", "s"),
     "duration": Result("time in contact", "s", 4),
-    "regime": Result("grip"),
-    "grip": Result("grip"),
+    "regime": Result("contact"),
+    "grip": Result("contact"),
     "error": _Error("estimated error"),
     "energy": Result("energy", "J"),
     "vibration_energy": Result(
         *("energy of vibration", "J"),
-        about="left ringing in the cue by the coupled strike",
+        about="left in the cue as free vibration by the coupled strike",
         of=of_strike(lambda outcome: outcome.energy["cue vibration"]),
         argument="offset",
         strikes=True,
@@ -250,7 +250,7 @@ RESULTS = {
         better="higher",
     ),
     "frequency": Result(
-        *("tone", "Hz", 2),
+        *("natural frequency", "Hz", 2),
         about="of a bending mode",
         of=lambda designs, mode: designs.frequencies[:, mode - 1],
         argument="mode",
@@ -258,32 +258,34 @@ RESULTS = {
         listed=False,
     ),
     "frequencies": Result("frequency", "Hz", 2),
-    "near": Result("frequency asked for", "Hz"),
+    "near": Result("requested frequency", "Hz"),
     "nearest": Result("nearest frequency", "Hz", 2),
     "tip_amplitudes": Result("tip amplitude", "1/sqrt(kg)", 3),
     "force": Result("force", "N"),
-    "depth": Result("depth", "m", 2),
+    "depth": Result("indentation", "m", 2),
     "stiffness": Result("stiffness of the tip", "N/m"),
-    "patch": Result("diameter of the patch", "m", 1),
-    "tip_mass": Result("mass of the leather", "kg"),
+    "patch": Result("contact diameter", "m", 1),
+    "tip_mass": Result("mass of the tip", "kg"),
     "E": Result("E", "Pa"),
     "G": Result("G", "Pa"),
     "rho": Result("rho", "kg/m^3"),
     "seconds": Result("seconds", "s"),
 }
 UNITS = {name: result.unit for name, result in RESULTS.items() if result.unit}
-# How the tip gripped the ball, by what `cuefem.contact.outcome.grip_of` tells: a word for tables, and the same in full.
+# The one definition of a miscue (`cuefem.contact.outcome.grip_of`).
+DEFINITION_OF_MISCUE = "the tip slips for more than half of the normal impulse, or through its last third"
+# The state of the contact, by the key of `grip_of`: a word for tables, and the same in full.
 GRIPS = {
-    "stick": ("held", "no miscue: the tip held the ball"),
-    "late stick": ("held late", "the tip slipped first, then held late, near a miscue"),
-    "slip reversal": ("slipped back", "the tip slipped first, then slipped back"),
-    "miscue": ("miscue", "the tip slipped to the end, a miscue"),
+    "stick": ("stick", "the tip sticks to the ball; no miscue"),
+    "late stick": ("late stick", "the tip slips first and sticks late; close to a miscue"),
+    "slip reversal": ("slip reversal", "the tip slips, then slips back"),
+    "miscue": ("miscue", f"miscue: {DEFINITION_OF_MISCUE}"),
     "partial slip": (
-        "partly slipped",
-        "parts of the tip slid through much of the push: squirt rises fast, near a miscue",
+        "partial slip",
+        "partial slip through much of the normal impulse: squirt rises fast, close to a miscue",
     ),
-    "slides": ("let go", "the tip slid through more than a quarter of the push, near a miscue"),
-    "lets go": ("miscue", "the tip slid through most of the push, or away at its end, a miscue"),
+    "slides": ("gross slip", "gross slip: for more than a quarter of the normal impulse; close to a miscue"),
+    "lets go": ("miscue", f"miscue: {DEFINITION_OF_MISCUE}"),
 }
 
 
