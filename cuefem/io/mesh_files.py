@@ -18,7 +18,6 @@ import numpy as np
 
 from cuefem.cue import Cue, Material, Segment
 from cuefem.io.errors import InputError, faults_of, read_bytes, shown
-from cuefem.io.schema import NAMES
 from cuefem.quantity.fields import MOST_SEGMENTS, quantities
 
 # What a damaged mesh file makes meshio raise: it checks little itself.
@@ -33,23 +32,6 @@ _AGREES = 1e-9  # of the cue's length: a cell's stored length against its points
 
 def _columns(kind: type, prefix: str = "") -> list[str]:
     return [prefix + name for name, *_ in quantities(kind)]
-
-
-def _across(prefix: str = "") -> list[str]:
-    """The columns of a material that a file may leave out: those that only a solid asks for."""
-    return [prefix + name for name, _, may_be_none, _ in quantities(Material) if may_be_none]
-
-
-def _completed(data: dict[str, Any], prefix: str) -> dict[str, Any]:
-    """The columns of `_across` that an older file lacks: those of the material that has all its other constants."""
-    across, others = _across(), [name for name in _columns(Material) if name not in _across()]
-    lacking = [name for name in across if prefix + name not in data]
-    if not lacking or not all(prefix + name in data for name in others):
-        return {}
-    known = {tuple(getattr(m, name) for name in others): m for m in NAMES}
-    cells = zip(*(data[prefix + name].tolist() for name in others), strict=True)
-    materials = [known.get(constants) for constants in cells]
-    return {prefix + name: np.array([getattr(m, name, None) or 0.0 for m in materials]) for name in lacking}
 
 
 def _row(segment: Segment) -> dict[str, float]:
@@ -116,8 +98,6 @@ def load_mesh(path: Path) -> Cue:
     if kinds != {"line"}:
         raise InputError(path, "cells", f"must be lines alone; got {shown(sorted(kinds))}")
     wanted = [*_columns(Segment), *_columns(Material), *_columns(Material, "core_"), "body_mass"]
-    for prefix in ("", "core_"):
-        data |= _completed(data, prefix)
     for name in wanted:
         if name not in data:
             raise InputError(path, f"cell data {name}", f"must be given, a number a cell; got {shown(sorted(data))}")
@@ -148,8 +128,8 @@ def _material(row: dict[str, float], prefix: str) -> Material | None:
     """The material of a cell, or None where it has no core; 0 stands for a constant that is not given."""
     if not row[f"{prefix}E"]:
         return None
-    values = {name: row[prefix + name] for name in _columns(Material)}
-    return Material(**{name: value for name, value in values.items() if value or name not in _across()})
+    columns = [(name, row[prefix + name], may_be_none) for name, _, may_be_none, _ in quantities(Material)]
+    return Material(**{name: value for name, value, may_be_none in columns if value or not may_be_none})
 
 
 def _segment(row: dict[str, float]) -> Segment:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from pathlib import Path
+
+import numpy as np
 
 from cuefem.cue import SOFT, Cue, Material, Segment
 from cuefem.cue.materials import material_name
@@ -29,6 +30,7 @@ from cuefem.io.columns import (
 )
 from cuefem.io.errors import InputError, faults_of, shown
 from cuefem.io.fittings import fitted, has_length, on_tenon
+from cuefem.io.slices import corners
 from cuefem.io.toml import named_material
 from cuefem.quantity.display import MOST
 from cuefem.quantity.fields import DIAMETER as WIDTH
@@ -130,9 +132,11 @@ def load_profile(path: Path, material: Material, length_unit: str | None = None)
         for _, run in itertools.groupby(range(len(points) - 1), key=alike):
             first, *others = run
             here, bores = inside[first], profile.bores(first)
-            corners = _corners(points[first : first + len(others) + 2])
+            run_of = points[first : first + len(others) + 2]
+            places, widths = np.array(run_of).T
+            ends = (run_of[k] for k in corners(places, widths[:, None], _STRAIGHT))
             rest = (here.material or material, *bores, here.core if bores[0] else None)
-            drawn = [Segment(_apart(x0, x1), d0, d1, *rest) for (x0, d0), (x1, d1) in itertools.pairwise(corners)]
+            drawn = [Segment(_apart(x0, x1), d0, d1, *rest) for (x0, d0), (x1, d1) in itertools.pairwise(ends)]
             stuff = here.ferrule
             segments += drawn if stuff is None else [on_tenon(s, stuff, here.material or material) for s in drawn]
         cue = Cue(tuple(segments))
@@ -373,24 +377,3 @@ def _ordered(path: Path, header: Header, place: ProfileColumn, points: list[Poin
 def _apart(first: float, last: float) -> float:
     """The distance as decimals have it: 10 and 210 mm are 0.2 m apart, which floats miss by their last digit."""
     return float(Decimal(repr(last)) - Decimal(repr(first)))
-
-
-def _corners(points: Sequence[Point]) -> list[Point]:
-    """The points where the taper changes: each straight run is taken as far as all its points lie on it."""
-    ends, first = [points[0]], 0
-    least, most = _slopes(points[0], points[1])
-    for last in range(2, len(points)):
-        (x0, d0), (x1, d1) = points[first], points[last]
-        if not least <= (d1 - d0) / (x1 - x0) <= most:
-            first = last - 1
-            ends.append(points[first])
-            least, most = -math.inf, math.inf
-        low, high = _slopes(points[first], points[last])
-        least, most = max(least, low), min(most, high)
-    return [*ends, points[-1]]
-
-
-def _slopes(start: Point, point: Point) -> tuple[float, float]:
-    """The least and the largest slope of a straight taper from ``start`` that ``point`` lies on."""
-    (x0, d0), (x, d) = start, point
-    return (d - _STRAIGHT - d0) / (x - x0), (d + _STRAIGHT - d0) / (x - x0)

@@ -259,11 +259,11 @@ def sliced(body: Surface, tolerance: float = TOLERANCE) -> Sliced:
             _check_round(cut, place, widest)
         diameters = np.array([cut.diameters for cut in cuts])
         diameters[:, 0] = np.maximum(diameters[:, 0], tolerance * widest)  # an apex
-        corners = _corners(x[::2], diameters[::2], tolerance * widest)
-        for i, j in itertools.pairwise(2 * corners):
+        kept = 2 * corners(x[::2], diameters[::2], tolerance * widest)
+        for i, j in itertools.pairwise(kept):
             (outer0, bore0), (outer1, bore1) = diameters[i].tolist(), diameters[j].tolist()
             pieces.append(ConicalPiece(float(x[j] - x[i]), (outer0, outer1), (bore0, bore1)))
-        fit = max(fit, _deviation(x, diameters, 2 * corners))
+        fit = max(fit, _deviation(x, diameters, kept))
         facets = max(facets, *(float(cut.reach - d / 2) for cut, d in zip(cuts, diameters[:, 0], strict=True)))
     return Sliced(tuple(pieces), fit, facets)
 
@@ -304,17 +304,17 @@ def _check_round(cut: Slice, place: float, widest: float) -> None:
         raise ValueError(f"must be round, its second moment within {100 * ROUND:g} % of a disc's; got {got}")
 
 
-def _corners(x: Array, diameters: Array, near: float) -> Index:
-    """Indices of the points that straight pieces need to keep within ``near`` of all of them (Douglas & Peucker)."""
-    corners, open_ends = {0, len(x) - 1}, [(0, len(x) - 1)]
+def corners(x: Array, diameters: Array, near: float) -> Index:
+    """Indices of the points that straight pieces need to keep within ``near`` of all of them (Douglas and Peucker)."""
+    kept, open_ends = {0, len(x) - 1}, [(0, len(x) - 1)]
     while open_ends:
         i, j = open_ends.pop()
         off = _offsets(x[i : j + 1], diameters[i : j + 1])
         worst = int(np.argmax(off))
         if off[worst] > near:
-            corners.add(i + worst)
+            kept.add(i + worst)
             open_ends += [(i, i + worst), (i + worst, j)]
-    return np.array(sorted(corners), dtype=np.intp)
+    return np.array(sorted(kept), dtype=np.intp)
 
 
 def _offsets(x: Array, diameters: Array) -> Array:
@@ -323,5 +323,5 @@ def _offsets(x: Array, diameters: Array) -> Array:
     return np.asarray(np.abs(diameters - diameters[0] - t[:, None] * (diameters[-1] - diameters[0])).max(axis=1))
 
 
-def _deviation(x: Array, diameters: Array, corners: Index) -> float:
-    return max(float(_offsets(x[i : j + 1], diameters[i : j + 1]).max()) for i, j in itertools.pairwise(corners))
+def _deviation(x: Array, diameters: Array, kept: Index) -> float:
+    return max(float(_offsets(x[i : j + 1], diameters[i : j + 1]).max()) for i, j in itertools.pairwise(kept))
