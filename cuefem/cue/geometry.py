@@ -297,7 +297,7 @@ class Cue:
     TypeError
         If the segments are not a sequence of `Segment`.
     ValueError
-        If there is no segment, or more than 2000.
+        If there is no segment, or more than 2001: a drawing's 2000, and the rest of the cue (see `AxialWaves`).
 
     Examples
     --------
@@ -323,8 +323,9 @@ class Cue:
         object.__setattr__(self, "segments", tuple(self.segments))
         if not self.segments:
             raise ValueError("Cue.segments must hold at least one Segment; got none, a cue without mass")
-        if len(self.segments) > MOST_SEGMENTS:
-            raise ValueError(f"Cue.segments must hold at most {MOST_SEGMENTS} segments; got {len(self.segments)}")
+        most = MOST_SEGMENTS + 1  # of a drawing, and the rest of the cue that `AxialWaves` adds
+        if len(self.segments) > most:
+            raise ValueError(f"Cue.segments must hold at most {most} segments; got {len(self.segments)}")
         for i, segment in enumerate(self.segments):
             check_kind(f"Cue.segments[{i}]", segment, Segment)
 

@@ -209,7 +209,7 @@ class OutOfBounds(ValueError):
 LENGTH = Quantity("m", "(0, 1000]")  # of a segment: a cue is 1.5 m long
 DIAMETER = Quantity("m", "(0, 10]")  # a cue is 0.03 m wide
 CONTACT_TIME = Quantity("s", "[1e-6, 10]")  # leather's is 1e-3 s; in 1e-6 s sound goes through 4 mm of wood
-MOST_SEGMENTS = 2000  # of a cue: one every 0.7 mm
+MOST_SEGMENTS = 2000  # of a drawing: one every 0.7 mm
 MOST_UNKNOWNS = 50_000  # of a beam: a cue of 30 segments takes 10,000 for the modes of the shortest contact
 
 

@@ -72,13 +72,19 @@ def test_python_has_the_same_bounds() -> None:
     for make, line in (
         (lambda: cf.Segment(1e9, 0.012, 0.021, ash), "Segment.length must be in (0, 1000] m; got 1000000000.0"),
         (lambda: cf.Tip(contact_time=1e-12), "Tip.contact_time must be in [1e-6, 10] s; got 1e-12"),
-        (lambda: cf.Cue((cf.Segment(1e-3, 0.012, 0.012, ash),) * 2001), "Cue.segments must hold at most 2000 segments"),
+        (lambda: cf.Cue((cf.Segment(1e-3, 0.012, 0.012, ash),) * 2002), "Cue.segments must hold at most 2001 segments"),
         (lambda: cf.end_mass(stiff(1e30)), "Tip.stiffness must make a head-on contact time in [1e-6, 10] s; got 1e+30"),
         (lambda: cf.end_mass(stiff(1e6), at=cf.Resolution(4000, 8, 4)), "the mesh must have at most 50000 unknowns"),
         (lambda: cf.modes(stiff(1e6).cue, 10**9), "the mesh must have at most 50000 unknowns; got "),
     ):
         with pytest.raises(ValueError, match=f"^{re.escape(line)}"):
             make()
+
+
+def test_the_longest_drawing_takes_its_butt() -> None:
+    wood = cf.Material(12e9, 8e8, 680.0)
+    drawn = cf.Cue((cf.Segment(0.7 / 2000, 0.012, 0.012, wood),) * 2000, body_mass=0.43)
+    assert len(cf.AxialWaves(1.47, 0.03, 4430.0).with_butt(drawn).segments) == 2001
 
 
 def stiff(stiffness: float) -> cf.Scene:
