@@ -47,6 +47,7 @@ def test_a_span_runs_from_end_to_end(low: float, ratio: float, count: int, log: 
     assert levels[-1] == low * ratio
     steps = np.diff(np.log(levels) if log else levels)
     np.testing.assert_allclose(steps, steps[0], rtol=1e-8)
+    assert [span.share(level) for level in levels] == pytest.approx(np.linspace(0, 1, count), abs=1e-9)
     middle = low * np.sqrt(ratio) if log else low * (1 + ratio) / 2
     assert Span(low, low * ratio, 1, log).level(0) == pytest.approx(middle, rel=1e-9)
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 import cuefem as cf
 from cuefem.cue.materials import material
 from cuefem.io.fittings import fitted
-from tests.helpers.command_line import call
+from tests.helpers.command_line import as_json, call
 
 BARE = "x [mm],diameter [mm]\n0,12\n700,21\n"
 MAPLE, ASH, ABS = map(material, ("hard maple", "ash", "abs"))
@@ -81,3 +81,10 @@ def test_body_mass_of_load_is_that_of_the_option(tmp_path: Path) -> None:
     for bad in ("15", "-1 oz", float("nan")):
         with pytest.raises(ValueError, match=r"shaft.csv: body_mass: "):
             cf.load(csv, body_mass=bad)
+
+
+def test_a_ferrule_says_what_was_put_inside_it(tmp_path: Path) -> None:
+    told = [
+        as_json("modes", shaft(tmp_path), "--ferrule", f"25 mm melamine{end}")["assumed"] for end in ("", ", no tenon")
+    ]
+    assert ["tenon" in " ".join(each) for each in told] == [True, False]

@@ -6,6 +6,8 @@ import numpy as np
 from hypothesis import given, settings
 
 from cuefem import LumpedCue, Scene, Stroke, impulse, resolve, resolve_end_mass
+from cuefem.results.convergence import mode_counts
+from cuefem.tip_modes import MOST
 from tests.helpers.accuracy_scenes import endless_friction, scene
 from tests.helpers.strike_scenes import lumped_scenes, numbers, sound
 
@@ -43,3 +45,8 @@ def test_better_is_never_cheaper() -> None:
 
 def test_endless_friction_resolves() -> None:
     sound(resolve(endless_friction(), 1e-2))
+
+
+def test_levels_double_their_modes() -> None:
+    assert mode_counts(1) == [12, 24, 48, 96, 192, MOST]
+    assert mode_counts(MOST) == [50, 100, 200, MOST]
