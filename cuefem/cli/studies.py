@@ -96,7 +96,7 @@ def study(
     record |= study_record(result)
     title, things = f"{file.name}: {result.kind}", [*assumed_lines(notes), *study_sheets(result)]
     for path in output:
-        _write(path, result, record, [title, *things])
+        _write(path, result, record, things, title)
     tell(as_json, record, [title, *stored, *things, *(f"wrote {path}" for path in output)])
 
 
@@ -121,12 +121,12 @@ def _kept(
             raise click.exceptions.Exit(130) from None
 
 
-def _write(path: Path, result: StudyResult, record: Any, things: list[Any]) -> None:
+def _write(path: Path, result: StudyResult, record: Any, things: list[Any], title: str) -> None:
     """Write the tables as a page, the record, the designs as a table, or the best design."""
     if path.suffix == ".csv":
         write_whole(path, lambda temporary: write_table(result.study, result.rows, temporary))
     elif path.suffix != ".toml":
-        write_told(path, record, things)
+        write_told(path, record, things, title)
     elif not result.best:
         raise InputError(path, "--output", "has no design to write: every design failed")
     else:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import groupby
 
 from cuefem.report.charts import Chart
 from cuefem.report.drawings import CueDrawing
@@ -12,5 +13,5 @@ from cuefem.results.records import Sheet
 
 def plain_page(name: str, things: Sequence[str | Sheet | Chart | CueDrawing]) -> str:
     """Lines, tables, charts and drawings as a page that needs no network."""
-    lines = [thing for thing in things if thing]
-    return environment().get_template("plain.html.j2").render(name=name, things=lines)
+    groups = [[*group] for _, group in groupby(filter(None, things), type)]
+    return environment().get_template("plain.html.j2").render(name=name, groups=groups)
