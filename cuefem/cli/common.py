@@ -144,7 +144,7 @@ def show(
     struck = about if blow else {name: value for name, value in about.items() if name in ("cue", "effects")}
     record = whole_record(file, notes, scene, answer, blow=blow, scene=struck)
     lines = [*head_lines(file, about, scene.effects, notes), "", *sheets(answer, about)]
-    tell(options["as_json"], record, lines, page)
+    tell(options["as_json"], record, lines, page, f"{file.name}: {click.get_current_context().info_name}")
     return record
 
 

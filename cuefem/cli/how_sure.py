@@ -9,11 +9,11 @@ import click
 
 import cuefem.report
 from cuefem.cli.common import show, stroke_options
-from cuefem.cli.printing import command, output_option, page_option
+from cuefem.cli.printing import command, page_option
 from cuefem.cli.progress import followed
-from cuefem.io import FIGURES, load_accuracy, save_figure
+from cuefem.io import load_accuracy
 from cuefem.report import DEFAULT_RTOL, effects_record, effects_sheet
-from cuefem.report.cost import cost_figure, cost_record, cost_sheets
+from cuefem.report.cost import cost_charts, cost_record, cost_sheets
 from cuefem.scene import Scene
 
 
@@ -37,18 +37,15 @@ def effects(file: Path, **options: Any) -> None:
 @command()
 @stroke_options
 @click.option("--most", type=click.IntRange(min=24), default=150, show_default=True, help="Largest number of modes.")
-@output_option(".html", *FIGURES)
-def cost(file: Path, most: int, output: Path | None, **options: Any) -> None:
+@page_option
+def cost(file: Path, most: int, **options: Any) -> None:
     """Run a convergence study and recommend a resolution: error against run time and degrees of freedom."""
 
     def results(scene: Scene) -> Any:
-        record = cost_record(scene, most=most, track=followed)
-        if output is not None and output.suffix in FIGURES:
-            save_figure(cost_figure(record, f"{file.name}: convergence study", output.suffix[1:]), output)
-        return record
+        return cost_record(scene, most=most, track=followed)
 
-    page = output if output is not None and output.suffix not in FIGURES else None
-    show(file, {**options, "output": page}, results, lambda record, about: cost_sheets(record))
+    figures = cost_charts if options["output"] else lambda record: []
+    show(file, options, results, lambda record, about: [*cost_sheets(record), *figures(record)])
 
 
 @command()

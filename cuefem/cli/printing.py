@@ -52,8 +52,6 @@ json_option = shared_option("Output", "--json", "as_json", is_flag=True, help="P
 # What a file of each ending is that commands write.
 WRITTEN = {
     ".html": "a page",
-    ".png": "a picture",
-    ".svg": "a picture",
     ".toml": "a drawing or scene",
     ".json": "JSON",
     ".csv": "a table",

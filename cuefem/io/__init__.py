@@ -38,7 +38,6 @@ __all__ = [
     "write_whole_folder",
 ]
 
-FIGURES = (".png", ".svg")
 _MESHES = (".vtk", ".vtu")
 
 
@@ -215,14 +214,6 @@ def save_page(text: str, path: str | os.PathLike[str]) -> None:
     if path.suffix != ".html":
         raise InputError(path, "", f"must end in .html; got {path.suffix!r}")
     write_whole(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
-
-
-def save_figure(content: bytes, path: str | os.PathLike[str]) -> None:
-    """Write a drawn figure as .png or .svg, whole or not at all; InputError if that fails."""
-    path = Path(path)
-    if path.suffix.lower() not in FIGURES:
-        raise InputError(path, "", f"must end in .png or .svg; got {path.suffix!r}")
-    write_whole(path, lambda temporary: temporary.write_bytes(content))
 
 
 def write_whole(path: Path, put: Callable[[Path], object]) -> None:

@@ -6,8 +6,11 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from time import perf_counter
 from typing import Any
 
+import numpy as np
+
 from cuefem.contact.strike import strike
-from cuefem.report.figures import figure_content
+from cuefem.cue import Array
+from cuefem.report.charts import Axis, Chart, Curve, chart
 from cuefem.results.convergence import MOST, Level, levels, relative_error
 from cuefem.results.quantities import NONE, TRADE, significant
 from cuefem.results.records import Entry, Record, Sheet, sheet
@@ -16,7 +19,6 @@ from cuefem.scene import Scene
 WANTED = (1e-2, 1e-3, 1e-4, 1e-6)
 # A plain sum past so many modes takes seconds and says nothing new.
 MOST_PLAIN = 150
-TICKS = (10, 20, 30, 50, 100, 200, 300, 500, 1000)
 
 Track = Callable[[Sequence[Any]], Iterable[Any]]
 
@@ -120,38 +122,28 @@ def _milliseconds(value: float | None) -> str:
     return NONE if value is None else significant(TRADE["s"][0] * value, 3)
 
 
-def cost_figure(record: Record, title: str, kind: str) -> bytes:
-    """Error against seconds and against unknowns, both axes logarithmic, as a file's content; kind: "png", "svg"."""
+def cost_charts(record: Record) -> list[Chart]:
+    """Error against seconds and against unknowns, for a page."""
+    levels = record["levels"]
+    sums = [row["plain"] for row in levels]
+    errors = {
+        "estimate": ([row["estimate"] for row in levels], "c1"),
+        "difference": ([row["difference"] for row in levels], "c3"),
+        "truncated sum": ([plain and plain["difference"] for plain in sums], "c2"),
+    }
 
-    def draw(canvas: Any, panels: Any) -> None:
-        for axes, name in zip(panels, ("seconds", "unknowns"), strict=True):
-            _draw(axes, record["levels"], name)
-        panels[0].set(xlabel="seconds (corrected: the whole sequence)", ylabel="largest relative error")
-        panels[1].set(xlabel="degrees of freedom of the strike")
-        panels[0].legend()
-        low, high = panels[1].get_xlim()
-        ticks = [tick for tick in TICKS if low <= tick <= high]
-        panels[1].set_xticks(ticks, [str(tick) for tick in ticks])
-        panels[1].minorticks_off()
-        canvas.suptitle(title)
+    def drawn(title: str, own: list[float], of_sums: list[float | None]) -> Chart:
+        sizes = {"truncated sum": of_sums}
+        curves = [Curve(name, _powers(sizes.get(name, own)), _powers(e), style) for name, (e, style) in errors.items()]
+        return chart(title, curves, x=Axis(f"{title.rpartition(' ')[2]}, log10"), y=Axis("relative error, log10"))
 
-    return figure_content(kind, draw, ncols=2, figsize=(9, 4.2), sharey=True)
+    seconds, unknowns = ([row[name] for row in levels] for name in ("seconds", "unknowns"))
+    return [
+        drawn("Error against seconds", seconds, [plain and plain["seconds"] for plain in sums]),
+        drawn("Error against unknowns", unknowns, unknowns),
+    ]
 
 
-def _draw(axes: Any, rows: Sequence[Record], name: str) -> None:
-    judged = [row for row in rows if row["estimate"] is not None]
-    known = [row for row in rows if row["difference"]]
-    plain = [row for row in rows if row["plain"]]
-    sizes = [row["plain"]["seconds"] if name == "seconds" else row["unknowns"] for row in plain]
-    axes.loglog(
-        [r[name] for r in judged], [r["estimate"] for r in judged], "o-", color="C0", label="corrected: estimate"
-    )
-    axes.loglog(
-        [r[name] for r in known],
-        [r["difference"] for r in known],
-        "o--",
-        color="C0",
-        mfc="w",
-        label="corrected: difference",
-    )
-    axes.loglog(sizes, [r["plain"]["difference"] for r in plain], "s:", color="C1", label="truncated sum: difference")
+def _powers(values: Sequence[float | None]) -> Array:
+    """The logarithms of what there is to base 10, on the axes of charts."""
+    return np.log10([value or np.nan for value in values])

@@ -29,5 +29,6 @@ def test_what_is_recommended_is_what_resolve_takes(record: dict) -> None:
 
 
 def test_the_command_prints_and_draws(tmp_path: Path) -> None:
-    assert "1e-06, not reached" in said("cost", KIM, "--most", 24, "--output", tmp_path / "cost.svg")
-    assert (tmp_path / "cost.svg").read_bytes().startswith(b"<?xml")
+    assert "1e-06, not reached" in said("cost", KIM, "--most", 24)
+    said("cost", KIM, "--most", 24, "--output", tmp_path / "cost.html")
+    assert (tmp_path / "cost.html").read_text(encoding="utf-8").count('<path class="curve c2" d="M') == 4  # keys too
