@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from cuefem.contact.geometric_stiffness import BentTooFar
 from cuefem.contact.outcome import grip_of
 from cuefem.contact.strike import strike_modes
@@ -16,24 +18,32 @@ from cuefem.report.tip_table import tip_record, tip_sheet
 from cuefem.report.verdict_table import verdict_things
 from cuefem.results.quantities import grams
 from cuefem.results.records import Record, Sheet, value_rows, values_sheet
-from cuefem.results.solved_design import OneDesign, listed
+from cuefem.results.solved_design import OFFSETS, OneDesign, listed
 from cuefem.results.verdict import verdict_record
-from cuefem.scene import Scene
+from cuefem.scene import Outcome, Scene
 from cuefem.tip_modes import Solved
 
 
-def report_record(scene: Scene, *, count: int = 6) -> Record:
+def report_record(
+    scene: Scene,
+    *,
+    count: int = 6,
+    offsets: Sequence[float] = OFFSETS,
+    solved: Solved | None = None,
+    outcome: Outcome | None = None,
+) -> Record:
     """The verdict, modes, end masses, squirt, pivot length, leather tip, all listed results and the grip of the stroke.
 
     Where a stroke presses a leather tip or bends the shaft further than their laws are known, modes and the reason,
-    "no_contact".
+    "no_contact". offsets: of the curves; solved, outcome: the scene's modes and its strike, if they are known already.
     """
-    solved = Solved(scene)
+    solved = solved or Solved(scene)
     record: Record = {"modes": modes_record(scene, count=count, near=None)} if scene.cue.segments else {}
     try:
         scene.contact_time  # noqa: B018
-        squirts = {"end_masses": end_mass_record(scene, solved=solved), "squirt": squirt_record(scene, solved=solved)}
-        outcome = strike_modes(scene, solved.tip)
+        squirt = squirt_record(scene, offsets, solved=solved)
+        squirts = {"end_masses": end_mass_record(scene, solved=solved), "squirt": squirt}
+        outcome = outcome or strike_modes(scene, solved.tip)
     except (TooDeep, BentTooFar) as error:
         return record | {"no_contact": str(error)}
     record |= squirts | ({} if scene.contact_terms.tip is None else {"tip": tip_record(scene)})

@@ -4,21 +4,18 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from cuefem.beam.modes import modes
-from cuefem.beam.tip import TipModes
 from cuefem.contact.outcome import MISSED, grip_of
 from cuefem.contact.strike import strike_modes
 from cuefem.cue.materials import material_name
 from cuefem.design.design_changes import design_changes
 from cuefem.endmass.definitions import DEFINITIONS
-from cuefem.io.ready import ready_cues
 from cuefem.quantity.fields import scalar
 from cuefem.report.advice_table import advice_sheet
 from cuefem.report.charts import Axis, Chart, Shade
@@ -33,7 +30,8 @@ from cuefem.report.drawings import (
     style_of,
 )
 from cuefem.report.effects import seconds_words
-from cuefem.report.end_mass import SQUIRT_END_MASS, end_mass_record
+from cuefem.report.end_mass import SQUIRT_END_MASS
+from cuefem.report.everything import report_record
 from cuefem.report.first_screen import (
     Shown,
     drawings_markup,
@@ -46,10 +44,10 @@ from cuefem.report.glossary import with_words
 from cuefem.report.models import ALCIATORE, PAPER
 from cuefem.report.record import scene_record
 from cuefem.report.scene_words import assumptions, effect_words, plain_cue_line
-from cuefem.report.squirt import PAPER_CUE_END_MASS, offset_charts, squirt_record
+from cuefem.report.squirt import PAPER_CUE_END_MASS, offset_charts
 from cuefem.report.strike_table import BRIEF, grip_warning, models_sheet, strike_record
 from cuefem.report.templates import environment
-from cuefem.report.tip_table import tip_record, tip_sheet
+from cuefem.report.tip_table import tip_sheet
 from cuefem.report.trust import trust_lines
 from cuefem.report.verdict_table import headline, uncertainty_line
 from cuefem.results.closed_forms import alciatore_a31_mass_ratio
@@ -57,10 +55,9 @@ from cuefem.results.comparison import comparison_record
 from cuefem.results.convergence import Level, climb
 from cuefem.results.quantities import GRIPS, NONE, RESULTS, degrees, grams, scaled, written
 from cuefem.results.records import Record, Sheet, value_rows, values_sheet
-from cuefem.results.solved_design import OneDesign, coupled_curve, listed
-from cuefem.results.verdict import verdict_record
+from cuefem.results.solved_design import coupled_curve
 from cuefem.scene import Outcome, Scene
-from cuefem.tip_modes import LEAST_STUCK, Solved
+from cuefem.tip_modes import Solved
 
 DEFAULT_RTOL = 1e-2
 PAGE_OFFSETS = tuple(round(0.03 * i, 2) for i in range(1, 21))  # b/R of the curves
@@ -79,15 +76,9 @@ SOURCES = (
 )
 LATE = ("late stick", "partial slip", "slides", *MISSED)
 
-# A model's class on the page, by the beginning of its name.
-STYLES = {"coupled": "c1", "lumped": "c2", "two-part, this": "c3", "A.31": "c4", "two-part, 12": "c5"}
-
-
-class Stage(NamedTuple):
-    """One step of the computation of a page, for a progress bar."""
-
-    name: str
-    work: Callable[[], Any]
+# The models' classes on the page.
+STYLES = {"coupled, this cue": "c1", "lumped, this cue": "c2", "two-part, this cue": "c3", "two-part, 12 g": "c5"}
+STYLES |= {"A.31, this cue": "c4"}
 
 
 def page(name: str, scene: Scene, **about: Any) -> str:
@@ -112,88 +103,39 @@ def page_and_headline(
     computed on how far to trust it; other: the name and scene of a cue to compare with, struck alike; track: follows
     the stages.
     """
-    records: Record = {}
     rtol = DEFAULT_RTOL if rtol is None else rtol
-    for stage in track([*_stages(scene, rtol), *(_beside(name, scene, *other) if other else [])]):
-        records[stage.name] = stage.work()
-    template = environment().get_template("page.html.j2")
-    asked = f"{100 * rtol:.3g} %"
-    said = {"notes": list(notes), "remarks": list(remarks), "checked": list(trust)}
-    context = _context(scene, records) | {"screen": _screen(name, scene, records, other), "comparison": None}
-    if other is not None:
-        curves = [(name, "c1", records["squirt"]["models"]["coupled, this cue"]), (other[0], "c2", records["other"])]
-        context |= {"comparison": comparison_sheet(records["comparison"]), "by_offset": _of_both(curves, scene)}
-    text = with_words(template.render(name=name, asked=asked, **said, **context)) + "\n"
-    return text, headline(records["verdict"])
-
-
-@dataclass(frozen=True, eq=False)
-class _ToAccuracy(Solved):
-    """A scene solved as finely as an accuracy asks for, by the last level that its strike climbed to."""
-
-    level: Level | None = None
-
-    @cached_property
-    def tip(self) -> TipModes:
-        """Those of the level."""
-        assert self.level is not None
-        return self.level.tip
-
-    @cached_property
-    def tip_stuck(self) -> TipModes:
-        """Those of the level too, unless an end mass takes more modes by default."""
-        return self._as_fine(LEAST_STUCK)
-
-    @cached_property
-    def tip_smooth(self) -> TipModes:
-        """Likewise, so that a coarse level changes no end mass."""
-        return self._as_fine(self.least_smooth)
-
-    def by_default(self) -> Solved:
-        """The same with the modes that a strike takes by default, to be compared with other cues that take these."""
-        usual = Solved(self.scene)
-        vars(usual)["tip"] = self.tip_modes()
-        return usual
-
-    def _as_fine(self, least: int) -> TipModes:
-        assert self.level is not None
-        return self.tip if self.level.at.modes >= LEAST_STUCK else self.tip_modes(least)
-
-
-def _stages(scene: Scene, rtol: float) -> list[Stage]:
-    climbed_to: list[tuple[Level, float]] = []
-    solved = cache(lambda: _ToAccuracy(scene, level=climbed_to[-1][0]) if climbed_to else Solved(scene))
+    solved, levels = Solved(scene), list[tuple[Level, float]]()
 
     def climbed() -> Sheet:
         begun = time.perf_counter()
-        climbed_to.extend((level, time.perf_counter() - begun) for level in climb(scene, rtol))
-        return _steps(climbed_to, rtol)
-
-    def usual() -> Solved:
-        fine = solved()
-        return fine.by_default() if isinstance(fine, _ToAccuracy) else fine
+        levels.extend((level, time.perf_counter() - begun) for level in climb(scene, rtol))
+        return _steps(levels, rtol)
 
     def outcome() -> Outcome:
-        return climbed_to[-1][0].outcome if climbed_to else strike_modes(scene, solved().tip)
+        return levels[-1][0].outcome if levels else strike_modes(scene, solved.tip)
 
-    return [
-        *([Stage("steps", climbed)] if scene.lumped is None else []),
-        Stage("outcome", outcome),
-        Stage("verdict", lambda: verdict_record(scene, outcome(), ready_cues(), solved=usual())),
-        *([Stage("advice", lambda: design_changes(scene, solved=usual()))] if scene.lumped is None else []),
-        Stage("end_masses", lambda: end_mass_record(scene, solved=solved())),
-        Stage("squirt", lambda: squirt_record(scene, PAGE_OFFSETS, solved=solved())),
-        Stage("strike", lambda: strike_record(scene, outcome(), solved=solved())),
-        Stage("numbers", lambda: listed(OneDesign(solved(), outcome()))),
-    ]
-
-
-def _beside(name: str, scene: Scene, other_name: str, other: Scene) -> list[Stage]:
-    """What is computed of another cue beside this one."""
-    return [
-        Stage("comparison", lambda: comparison_record({other_name: other, name: scene})),
-        Stage("other", lambda: coupled_curve(other, PAGE_OFFSETS, Solved(other).tip)),
-    ]
+    stages: dict[str, Callable[[], Any]] = {"steps": climbed} if scene.lumped is None else {}
+    stages |= {
+        "outcome": outcome,
+        "report": lambda: report_record(scene, offsets=PAGE_OFFSETS, solved=solved, outcome=records["outcome"]),
+        "strike": lambda: strike_record(scene, records["outcome"], solved=solved),
+    }
+    if scene.lumped is None:
+        stages["advice"] = lambda: design_changes(scene, solved=solved)
+    if other is not None:
+        stages["comparison"] = lambda: comparison_record({other[0]: other[1], name: scene})
+        stages["other"] = lambda: coupled_curve(other[1], PAGE_OFFSETS, Solved(other[1]).tip)
+    records: Record = {}
+    for key, work in track([*stages.items()]):
+        records[key] = work()
+    records |= records.pop("report")
+    said = {"notes": list(notes), "remarks": list(remarks), "checked": list(trust), "asked": f"{100 * rtol:.3g} %"}
+    context = _context(scene, records) | {"screen": _screen(name, scene, records, other), "comparison": None}
+    if other is not None:
+        curves = {name: records["squirt"]["models"]["coupled, this cue"], other[0]: records["other"]}
+        context |= {"comparison": comparison_sheet(records["comparison"]), "by_offset": _by_offset(curves, scene)}
+    text = environment().get_template("page.html.j2").render(name=name, **said, **context)
+    return with_words(text) + "\n", headline(records["verdict"])
 
 
 def _screen(name: str, scene: Scene, records: Record, other: tuple[str, Scene] | None) -> dict[str, str]:
@@ -250,8 +192,8 @@ def _context(scene: Scene, records: Record) -> Record:
         if scene.cue.segments
         else None,
         "contact": None if outcome.history is None else contact_part(outcome),
-        "tip": None if scene.contact_terms.tip is None else tip_sheet(tip_record(scene)),
-        "by_offset": _by_offset(records["squirt"], scene),
+        "tip": None if scene.contact_terms.tip is None else tip_sheet(records["tip"]),
+        "by_offset": _by_offset(records["squirt"]["models"], scene, _slipped(records["squirt"])),
         "slipped": bool(_slipped(records["squirt"])),
         "end_masses": _end_masses(records["end_masses"], records["squirt"], scene, outcome),
         "energy": _energy(outcome),
@@ -312,19 +254,12 @@ def _cue_part(scene: Scene) -> Record:
     }
 
 
-def _style(model: str) -> str:
-    return next(style for start, style in STYLES.items() if model.startswith(start))
-
-
-def _by_offset(record: Record, scene: Scene) -> tuple[Chart, Chart]:
-    lines = [(name, _style(name), model["squirt"], model["pivot_length"]) for name, model in record["models"].items()]
-    own = scalar("Stroke.offset", scene.stroke.offset)
-    return offset_charts(lines, record["offsets"], own, height=300, spans=_slipped(record))
-
-
-def _of_both(curves: Sequence[tuple[str, str, Record]], scene: Scene) -> tuple[Chart, Chart]:
-    lines = [(name, style, curve["squirt"], curve["pivot_length"]) for name, style, curve in curves]
-    return offset_charts(lines, PAGE_OFFSETS, scalar("Stroke.offset", scene.stroke.offset), height=300)
+def _by_offset(curves: Mapping[str, Record], scene: Scene, spans: Sequence[Shade] = ()) -> tuple[Chart, Chart]:
+    lines = [
+        (name, STYLES.get(name, f"c{i}"), curve["squirt"], curve["pivot_length"])
+        for i, (name, curve) in enumerate(curves.items(), 1)
+    ]
+    return offset_charts(lines, PAGE_OFFSETS, scalar("Stroke.offset", scene.stroke.offset), height=300, spans=spans)
 
 
 def _slipped(record: Record) -> list[Shade]:
