@@ -46,6 +46,8 @@ def _misspelt(hint: Any, value: Any, key: str) -> Iterator[tuple[str, Any, list[
 
 def _read(hint: Any, value: Any, file: str, key: str) -> Any:
     """What a file's value says for a field of this type."""
+    if hint is Any:
+        return value
     mark = mark_of(hint)
     if mark is not None:
         with faults_of(file, key):
@@ -55,6 +57,10 @@ def _read(hint: Any, value: Any, file: str, key: str) -> Any:
             if isinstance(value, list):
                 inner, *_ = typing.get_args(choice)
                 return tuple(_read(inner, item, file, joined(key, i)) for i, item in enumerate(value))
+        elif typing.get_origin(choice) is dict:
+            if isinstance(value, dict):
+                _, inner = typing.get_args(choice)
+                return {name: _read(inner, item, file, joined(key, name)) for name, item in value.items()}
         elif isinstance(value, choice) and isinstance(value, bool) == (choice is bool):
             return value
         elif isinstance(value, dict) and is_dataclass(choice):
@@ -142,6 +148,10 @@ def _wanted(hint: Any) -> str:
         return f"a table with the keys {', '.join(keys_of(cast(type, first)))}{named}"
     if typing.get_origin(first) is tuple:
         return "an array of tables" if is_dataclass(typing.get_args(first)[0]) else "an array"
+    if typing.get_origin(first) is dict:
+        return "a table"
+    if len(choices(hint)) > 1 and first is str:
+        return "text, or an array of texts"
     return {bool: "true or false", int: "a whole number", str: "text"}.get(first, f"a {first}")
 
 

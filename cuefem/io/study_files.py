@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from contextlib import ExitStack
+from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from cuefem.design import METHODS, Levels, Normal, Response, Sample, Span, Study, Vary
+from cuefem.design import Levels, Normal, Response, Sample, Span, Study, Vary
 from cuefem.design.optimum import Limit, Problem
 from cuefem.design.scatter import Scatter
 from cuefem.design.study_result import StudyResult, found
@@ -18,27 +18,96 @@ from cuefem.design.sweep import pool_of
 from cuefem.io import load_stroke, replaced_segments
 from cuefem.io.errors import InputError, faults_of, shown, state_of
 from cuefem.io.profile import SHAPES
-from cuefem.io.schema import build, joined, unknown_key
+from cuefem.io.schema import build, joined
 from cuefem.io.store import SqliteStore
 from cuefem.io.toml import game_of, named_material, read_tables
-from cuefem.parameters.parameter import paths, quantity_at, value_at
+from cuefem.parameters.parameter import paths, quantity_at
 from cuefem.quantity.fields import Quantity
 from cuefem.results.quantities import with_unit
 from cuefem.scene import Resolution, Scene, Stroke
 from cuefem.scene.default_scene import KIM, usual_scene
 
-KEYS = ["scene", "game", "responses", "vary", "resolution"]
-SWEEP_KEYS, SCATTER_KEYS = [*KEYS, "sample"], [*KEYS, "tolerances"]
-OPTIMUM_KEYS = ["scene", "game", "objective", "limit", "vary", "resolution"]
-LIMIT_KEYS = ["response", "low", "high"]
-VARY_KEYS = [
-    *("path", "name", "values", "low", "high", "count", "spacing", "middle", "sd", "factor", "shift", "taken_from"),
-]
-SAMPLE_KEYS = ["method", "count", "seed"]
-TOLERANCE_KEYS = ["count", "seed", "correlations", "groups"]
 OFFSET = 0.3  # b/R, of a cue alone with the game "kim"
 FACTOR = Quantity("", "(0, inf)")
 _SEGMENT = re.compile(r"((?:cue\.)?segments)\[(\d+)\]")
+Texts = str | tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class VaryTable:
+    """[[vary]] as it stands in a file: values, or low and high, or middle and sd, in the unit of the field."""
+
+    path: Texts
+    name: str = ""
+    values: tuple[Any, ...] | None = None
+    low: Any = None
+    high: Any = None
+    count: int | None = None
+    middle: Any = None
+    sd: Any = None
+    spacing: str = "linear"
+    factor: bool = False
+    shift: bool = False
+    taken_from: Texts = ()
+
+    def __post_init__(self) -> None:
+        if self.spacing not in ("linear", "logarithmic"):
+            raise ValueError(f"VaryTable.spacing must be linear or logarithmic; got {shown(self.spacing)}")
+
+
+@dataclass(frozen=True)
+class LimitTable:
+    """[[limit]] as it stands in a file."""
+
+    response: str
+    low: Any = None
+    high: Any = None
+
+
+@dataclass(frozen=True)
+class ObjectiveTable:
+    """[objective]: the response to make least or largest."""
+
+    minimize: str | None = None
+    maximize: str | None = None
+
+    def __post_init__(self) -> None:
+        if (self.minimize is None) == (self.maximize is None):
+            raise ValueError('must be a table such as minimize = "squirt(0.3)"; got both keys or none')
+
+
+@dataclass(frozen=True)
+class TolerancesTable:
+    """[tolerances] as it stands in a file; what is left out is that of `Scatter`."""
+
+    count: int = Scatter.count
+    seed: int = Scatter.seed
+    correlations: tuple[Any, ...] = ()
+    groups: dict[str, tuple[str, ...]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class StudyTable:
+    """A study's file: all its keys."""
+
+    scene: str
+    vary: tuple[VaryTable, ...]
+    responses: tuple[str, ...] = ()
+    game: str | None = None
+    resolution: Resolution | None = None
+    sample: Sample | None = None
+    tolerances: TolerancesTable | None = None
+    objective: ObjectiveTable | None = None
+    limit: tuple[LimitTable, ...] = ()
+
+    def __post_init__(self) -> None:
+        kinds = [name for name in ("objective", "tolerances", "sample") if getattr(self, name) is not None]
+        if len(kinds) > 1:
+            raise ValueError(f"StudyTable.{kinds[1]} must be left out beside [{kinds[0]}]: a study is of one kind")
+        if self.objective and self.responses:
+            raise ValueError("StudyTable.responses must be left out beside [objective], which asks")
+        if self.limit and not self.objective:
+            raise ValueError("StudyTable.limit must stand beside an [objective]")
 
 
 def load_study(path: str | PathLike[str]) -> Study | Scatter | Problem:
@@ -48,18 +117,20 @@ def load_study(path: str | PathLike[str]) -> Study | Scatter | Problem:
     the default stroke of the ``game`` that the file names. Values carry their units as text.
     """
     path = Path(path)
-    tables = _study_tables(path)
-    both = [name for name in ("objective", "tolerances", "sample") if name in tables]
-    if len(both) > 1:
-        raise InputError(path, both[1], f"must be left out beside [{both[0]}]: a study is of one kind")
-    kinds: dict[str, tuple[list[str], Callable[..., Study | Scatter | Problem]]] = {
-        "objective": (OPTIMUM_KEYS, _problem),
-        "tolerances": (SCATTER_KEYS, _scatter),
-    }
-    keys, load = kinds.get("".join(both), (SWEEP_KEYS, _study))
-    _check_keys(tables, [*dict.fromkeys((*SWEEP_KEYS, *SCATTER_KEYS, *OPTIMUM_KEYS))], path, "")
-    _check_keys(tables, keys, path, "")
-    return load(tables, path)
+    told = build(StudyTable, _study_tables(path), file=str(path), key="")
+    base = _base(told, path)
+    vary = _varied(told, base, path)
+    if told.objective is not None:
+        return _problem(told, told.objective, base, vary, path)
+    responses = tuple(_response(text, path, joined("responses", i)) for i, text in enumerate(told.responses))
+    with faults_of(path, ""):
+        study = Study(base, vary, responses, told.sample, told.resolution)
+    if told.tolerances is None:
+        return study
+    tolerances = told.tolerances
+    correlations = _correlations(tolerances.correlations, path)
+    with faults_of(path, "tolerances"):
+        return Scatter(study, correlations, tolerances.groups, tolerances.count, tolerances.seed)
 
 
 def study(
@@ -122,79 +193,34 @@ def study(
         return found(asked, store=kept, pool=pool)
 
 
-def _study(tables: dict[str, Any], path: Path) -> Study:
-    base = _base(tables, path)
-    asked = enumerate(_list(tables, "responses", path))
-    responses = tuple(_response(text, path, joined("responses", i)) for i, text in asked)
-    vary = _varied(tables, base, path, sampled="sample" in tables or "tolerances" in tables)
-    sample = _sample(tables["sample"], path) if "sample" in tables else None
+def _problem(told: StudyTable, objective: ObjectiveTable, base: Scene, vary: tuple[Vary, ...], path: Path) -> Problem:
+    aim = "maximize" if objective.minimize is None else "minimize"
+    asked = _response(getattr(objective, aim), path, joined("objective", aim))
+    limits = tuple(_limit(table, path, joined("limit", i)) for i, table in enumerate(told.limit))
     with faults_of(path, ""):
-        return Study(base, vary, responses, sample, _resolution(tables, path))
+        return Problem(base, vary, asked, limits, told.resolution, largest=aim == "maximize")
 
 
-def _scatter(tables: dict[str, Any], path: Path) -> Scatter:
-    told = tables["tolerances"]
-    _check_keys(told, TOLERANCE_KEYS, path, "tolerances")
-    study, correlations = _study(tables, path), _correlations(told.get("correlations", []), path)
-    numbers = {name: told[name] for name in ("count", "seed") if name in told}
-    with faults_of(path, "tolerances"):
-        return Scatter(study, correlations, _groups(told.get("groups", {}), path), **numbers)
-
-
-def _problem(tables: dict[str, Any], path: Path) -> Problem:
-    base, objective = _base(tables, path), tables["objective"]
-    if not isinstance(objective, dict) or len(objective) != 1 or not {"minimize", "maximize"} & set(objective):
-        raise InputError(path, "objective", f'must be a table such as minimize = "squirt(0.3)"; got {shown(objective)}')
-    ((aim, asked),) = objective.items()
-    limits = _list(tables, "limit", path) if "limit" in tables else []
-    with faults_of(path, ""):
-        return Problem(
-            base,
-            _varied(tables, base, path, sampled=True),
-            _response(asked, path, joined("objective", aim)),
-            tuple(_limit(table, path, joined("limit", i)) for i, table in enumerate(limits)),
-            _resolution(tables, path),
-            largest=aim == "maximize",
-        )
-
-
-def _limit(table: Any, path: Path, key: str) -> Limit:
-    _check_keys(table, LIMIT_KEYS, path, key)
-    response = _response(table.get("response"), path, joined(key, "response"))
-    unit = Quantity(response.unit)
-    sides = {side: _value(table[side], unit, path, joined(key, side)) for side in ("low", "high") if side in table}
+def _limit(told: LimitTable, path: Path, key: str) -> Limit:
+    response = _response(told.response, path, joined(key, "response"))
+    unit, sides = Quantity(response.unit), {"low": told.low, "high": told.high}
+    bounds = {side: _number(value, unit, path, joined(key, side)) for side, value in sides.items() if value is not None}
     with faults_of(path, key):
-        return Limit(response, **sides)  # type: ignore[arg-type]
+        return Limit(response, **bounds)
 
 
-def _correlations(listed: Any, path: Path) -> dict[tuple[str, str], float]:
-    key, correlations = "tolerances.correlations", dict[tuple[str, str], float]()
-    if not isinstance(listed, list):
-        raise InputError(path, key, f"must be a list of [name, name, number]; got {shown(listed)}")
+def _correlations(listed: tuple[Any, ...], path: Path) -> dict[tuple[str, str], float]:
+    correlations = dict[tuple[str, str], float]()
     for i, entry in enumerate(listed):
-        fits = isinstance(entry, list) and len(entry) == 3 and all(isinstance(name, str) for name in entry[:2])
-        if not fits or isinstance(entry[2], bool) or not isinstance(entry[2], int | float):
-            raise InputError(path, joined(key, i), f"must be [name, name, number]; got {shown(entry)}")
-        if tuple(entry[:2]) in correlations:
-            raise InputError(path, joined(key, i), f"must be said once; got {entry[0]} and {entry[1]} twice")
-        correlations[entry[0], entry[1]] = float(entry[2])
+        key = joined("tolerances.correlations", i)
+        match entry:
+            case [str(one), str(other), int() | float() as r] if not isinstance(r, bool):
+                if (one, other) in correlations:
+                    raise InputError(path, key, f"must be said once; got {one} and {other} twice")
+                correlations[one, other] = float(r)
+            case _:
+                raise InputError(path, key, f"must be [name, name, number]; got {shown(entry)}")
     return correlations
-
-
-def _groups(groups: Any, path: Path) -> dict[str, tuple[str, ...]]:
-    key = "tolerances.groups"
-    if not isinstance(groups, dict):
-        raise InputError(path, key, f"must be a table of lists of names; got {shown(groups)}")
-    for group, names in groups.items():
-        if not isinstance(names, list) or not names or not all(isinstance(name, str) for name in names):
-            raise InputError(path, joined(key, group), f"must be a list of names; got {shown(names)}")
-    return {group: tuple(names) for group, names in groups.items()}
-
-
-def _resolution(tables: dict[str, Any], path: Path) -> Resolution | None:
-    if "resolution" not in tables:
-        return None
-    return build(Resolution, tables["resolution"], file=str(path), key="resolution")
 
 
 def _study_tables(path: Path) -> dict[str, Any]:
@@ -209,35 +235,19 @@ def _study_tables(path: Path) -> dict[str, Any]:
     return tables
 
 
-def _check_keys(table: Any, known: list[str], path: Path, key: str) -> None:
-    if not isinstance(table, dict):
-        raise InputError(path, key, f"must be a table with the keys {', '.join(known)}; got {shown(table)}")
-    for name, value in table.items():
-        if name not in known:
-            raise unknown_key(name, value, known, file=str(path), key=key)
-
-
-def _list(tables: dict[str, Any], key: str, path: Path) -> list[Any]:
-    value = tables.get(key)
-    if not isinstance(value, list) or not value:
-        what = f"[[{key}]] tables" if key != "responses" else 'a list such as ["end_mass", "squirt(0.3)"]'
-        raise InputError(path, key, f"must be {what}, one at least; got {shown(value) if key in tables else 'nothing'}")
-    return value
-
-
-def _base(tables: dict[str, Any], path: Path) -> Scene:
-    name = tables.get("scene")
-    if not isinstance(name, str):
-        got = shown(name) if "scene" in tables else "nothing"
-        raise InputError(path, "scene", f"must be the path of a scene or a cue, from this file's folder; got {got}")
-    base, game = load_stroke(path.parent / name), game_of(tables, path)
+def _base(told: StudyTable, path: Path) -> Scene:
+    base, game = load_stroke(path.parent / told.scene), _game(told, path)
     if not isinstance(base, Scene):
         with faults_of(path, "game"):
             return Scene(base, stroke=Stroke(offset=OFFSET)) if game == KIM else usual_scene(base, game)
-    if "game" in tables:
-        problem = f"must be left out: {name} is a scene, which has its own ball, tip and stroke"
+    if told.game is not None:
+        problem = f"must be left out: {told.scene} is a scene, which has its own ball, tip and stroke"
         raise InputError(path, "game", f"{problem}; got {shown(game)}")
     return base
+
+
+def _game(told: StudyTable, path: Path) -> str:
+    return game_of({} if told.game is None else {"game": told.game}, path)
 
 
 def assumed_base(path: Path, base: Scene) -> list[str]:
@@ -253,15 +263,16 @@ def assumed_base(path: Path, base: Scene) -> list[str]:
     return [f"{told}, b/R {base.stroke.offset:.4g} (game)"]
 
 
-def _response(text: Any, path: Path, key: str) -> Response:
+def _response(text: str, path: Path, key: str) -> Response:
     with faults_of(path, key):
-        return Response.of(text if isinstance(text, str) else repr(text))
+        return Response.of(text)
 
 
-def _varied(tables: dict[str, Any], base: Scene, path: Path, *, sampled: bool) -> tuple[Vary, ...]:
+def _varied(told: StudyTable, base: Scene, path: Path) -> tuple[Vary, ...]:
     """What varies, by the [[vary]] tables of a study."""
-    replaced = replaced_segments(path.parent / tables["scene"], base)
-    return tuple(_vary(table, base, replaced, path, i, sampled) for i, table in enumerate(_list(tables, "vary", path)))
+    replaced = replaced_segments(path.parent / told.scene, base)
+    grid = told.objective is None and told.tolerances is None and told.sample is None
+    return tuple(_vary(table, base, replaced, path, i, grid) for i, table in enumerate(told.vary))
 
 
 def _in_scene(text: str, base: Scene, replaced: int, path: Path, key: str) -> str:
@@ -283,128 +294,76 @@ def _in_scene(text: str, base: Scene, replaced: int, path: Path, key: str) -> st
     return f"{match[1]}[{i - replaced}]{text[match.end() :]}"
 
 
-def _vary(table: Any, base: Scene, replaced: int, path: Path, i: int, sampled: bool) -> Vary:
+def _vary(told: VaryTable, base: Scene, replaced: int, path: Path, i: int, grid: bool) -> Vary:
     key = joined("vary", i)
-    _check_keys(table, VARY_KEYS, path, key)
-    named = table.get("path")
-    written = [named] if isinstance(named, str) else named
-    if not isinstance(written, list) or not written or not all(isinstance(text, str) for text in written):
-        problem = f'must be a field such as "cue.segments[0].tip_bore", or a list of them; got {shown(named)}'
-        raise InputError(path, joined(key, "path"), problem)
-    texts = [_in_scene(text, base, replaced, path, joined(key, "path")) for text in written]
-    for name, kind, what in (("name", str, "a text"), *((n, bool, "true or false") for n in ("factor", "shift"))):
-        if name in table and not isinstance(table[name], kind):
-            raise InputError(path, joined(key, name), f"must be {what}; got {shown(table[name])}")
-    how = {name: bool(table.get(name, False)) for name in ("factor", "shift")}
-    wanted = _wanted(texts, base, how, path, joined(key, "path"))
-    drawn = _range(table, wanted, path, key, sampled)
-    giver, of_giver = table.get("taken_from", []), joined(key, "taken_from")
-    givers = [giver] if isinstance(giver, str) else giver
-    if not isinstance(givers, list) or not all(isinstance(text, str) for text in givers):
-        raise InputError(path, of_giver, f"must be a field, or a list of them; got {shown(giver)}")
-    name = table.get("name", "") or ", ".join(written)
+    fields, givers = (
+        tuple(_in_scene(text, base, replaced, path, joined(key, name)) for text in _listed(texts))
+        for name, texts in (("path", told.path), ("taken_from", told.taken_from))
+    )
+    wanted = _wanted(fields, base, told, path, joined(key, "path"))
+    drawn = _range(told, wanted, path, key, grid)
+    name = told.name or ", ".join(_listed(told.path))
     with faults_of(path, key):
-        taken = tuple(_in_scene(text, base, replaced, path, of_giver) for text in givers)
-        made = Vary(tuple(texts), drawn, name, taken_from=taken, **how)
+        made = Vary(fields, drawn, name, told.factor, told.shift, givers)
     for name, check in (("path", made.unit), ("taken_from", made.givers)):
         with faults_of(path, joined(key, name)):
             check(base)
     return made
 
 
-def _wanted(texts: list[str], base: Scene, how: dict[str, bool], path: Path, key: str) -> Quantity | None:
+def _listed(texts: Texts) -> tuple[str, ...]:
+    return (texts,) if isinstance(texts, str) else texts
+
+
+def _wanted(texts: tuple[str, ...], base: Scene, told: VaryTable, path: Path, key: str) -> Quantity | None:
     """Unit and bounds of the values; None for names of materials."""
     with faults_of(path, key):
-        field = next(place for text in texts for place in paths(base, text))
+        field = next((place for text in texts for place in paths(base, text)), None)
+        if field is None:
+            raise ValueError("must name a field; got none")
     value = quantity_at(base, field)
-    if not any(how.values()):
+    if value is None or not (told.factor or told.shift):
         return value
-    if value is None or value_at(base, field) is None:
-        word = "factor must multiply" if how["factor"] else "shift must move"
-        raise InputError(path, key, f"{word} a number; got {texts[0]}, which holds none")
-    return FACTOR if how["factor"] else Quantity(value.unit)
+    return FACTOR if told.factor else Quantity(value.unit)
 
 
-def _range(
-    table: dict[str, Any], wanted: Quantity | None, path: Path, key: str, sampled: bool
-) -> Levels | Span | Normal:
-    kinds = {"values": {"values"}, "low and high": {"low", "high", "count"}, "middle and sd": {"middle", "sd"}}
-    asked = [kind for kind, keys in kinds.items() if keys & set(table)]
+def _range(told: VaryTable, wanted: Quantity | None, path: Path, key: str, grid: bool) -> Levels | Span | Normal:
+    """The range of the one pair of keys that a table has."""
+    pairs = (("values", "values"), ("low", "high"), ("middle", "sd"))
+    asked = [pair for pair in pairs if any(getattr(told, name) is not None for name in pair)]
     if len(asked) != 1:
-        got = ", and ".join(asked) or "none of them"
+        got = ", and ".join(" and ".join(dict.fromkeys(pair)) for pair in asked) or "none of them"
         raise InputError(path, key, f"must have values, or low and high, or middle and sd; got {got}")
-    if asked == ["middle and sd"]:
-        return _normal(table, wanted, path, key, sampled)
-    if "values" in table:
-        values = table["values"]
-        if not isinstance(values, list) or not values:
-            problem = f"must be a list of one value at least; got {shown(values)}, an empty range"
-            raise InputError(path, joined(key, "values"), problem)
-        read = (_value(value, wanted, path, joined(joined(key, "values"), i)) for i, value in enumerate(values))
-        return Levels(tuple(read))
-    return _span(table, wanted, path, key, sampled)
-
-
-def _value(value: Any, wanted: Quantity | None, path: Path, key: str) -> float | str:
-    with faults_of(path, key):
-        if wanted is not None:
-            return wanted.read(value)
-        if not isinstance(value, str):
-            raise ValueError(f"must be the name of a material (see `cuefem parts`); got {shown(value)}")
-        named_material(value, path, key)
-        return value
-
-
-def _span(table: dict[str, Any], wanted: Quantity | None, path: Path, key: str, sampled: bool) -> Span:
+    if told.values is not None:
+        levels = tuple(_level(v, wanted, path, joined(joined(key, "values"), i)) for i, v in enumerate(told.values))
+        with faults_of(path, joined(key, "values")):
+            return Levels(levels)
+    normal, logarithmic = told.low is None and told.high is None, told.spacing == "logarithmic"
     if wanted is None:
-        raise InputError(path, key, "must have values, names of materials, which have no low and high")
-    for name in ("low", "high") if sampled else ("low", "high", "count"):
-        if name not in table:
-            raise InputError(path, joined(key, name), "must be given, beside low and high; got nothing")
-    low, high = (_value(table[name], wanted, path, joined(key, name)) for name in ("low", "high"))
-    logarithmic = _spacing(table, path, key)
-    assert isinstance(low, float)
-    assert isinstance(high, float)
-    if not low < high:
-        got = f"low = {shown(table['low'])}, high = {shown(table['high'])}"
-        raise InputError(path, key, f"low must be below high; got {got}, an empty range")
+        raise InputError(path, key, "must have values, names of materials, which have no low and high, and no middle")
+    if normal and grid:
+        raise InputError(path, key, "middle and sd are of numbers, drawn by a sample: give [sample] or [tolerances]")
+    for name in (*asked[0], *(["count"] if grid else [])):
+        if getattr(told, name) is None:
+            raise InputError(path, joined(key, name), f"must be given, beside {' and '.join(asked[0])}; got nothing")
+    deviation = Quantity("" if logarithmic else wanted.unit, "(0, inf)")
+    marks = zip(asked[0], (wanted, deviation if normal else wanted), strict=True)
+    first, last = (_number(getattr(told, name), mark, path, joined(key, name)) for name, mark in marks)
     with faults_of(path, key):
-        return Span(low, high, table.get("count", 1), logarithmic)
+        if normal:
+            return Normal(first, last, logarithmic)
+        return Span(first, last, 1 if told.count is None else told.count, logarithmic)
 
 
-def _normal(table: dict[str, Any], wanted: Quantity | None, path: Path, key: str, sampled: bool) -> Normal:
-    if wanted is None or not sampled:
-        problem = (
-            "middle and sd are of numbers, drawn by a sample: give [sample] or [tolerances]"
-            if wanted
-            else "names have no middle"
-        )
-        raise InputError(path, key, problem)
-    logarithmic = _spacing(table, path, key)
-    each = {"middle": wanted, "sd": Quantity("" if logarithmic else wanted.unit, "(0, inf)")}
-    for name in each:
-        if name not in table:
-            raise InputError(path, joined(key, name), "must be given: a normal range has middle and sd; got nothing")
-    middle, sd = (_value(table[name], unit, path, joined(key, name)) for name, unit in each.items())
-    assert isinstance(middle, float)
-    assert isinstance(sd, float)
+def _number(value: Any, wanted: Quantity, path: Path, key: str) -> float:
     with faults_of(path, key):
-        return Normal(middle, sd, logarithmic)
+        return wanted.read(value)
 
 
-def _spacing(table: dict[str, Any], path: Path, key: str) -> bool:
-    """Whether it is logarithmic."""
-    spacing = table.get("spacing", "linear")
-    if spacing not in ("linear", "logarithmic"):
-        raise InputError(path, joined(key, "spacing"), f"must be linear or logarithmic; got {shown(spacing)}")
-    return bool(spacing == "logarithmic")
-
-
-def _sample(table: Any, path: Path) -> Sample:
-    _check_keys(table, SAMPLE_KEYS, path, "sample")
-    for name in SAMPLE_KEYS:
-        if name not in table:
-            what = f"one of {', '.join(METHODS)}" if name == "method" else "a whole number"
-            raise InputError(path, joined("sample", name), f"must be given, {what}; got nothing")
-    with faults_of(path, "sample"):
-        return Sample(table["method"], table["count"], table["seed"])
+def _level(value: Any, wanted: Quantity | None, path: Path, key: str) -> float | str:
+    if wanted is not None:
+        return _number(value, wanted, path, key)
+    if not isinstance(value, str):
+        raise InputError(path, key, f"must be the name of a material (see `cuefem parts`); got {shown(value)}")
+    named_material(value, path, key)
+    return value

@@ -8,6 +8,7 @@ import pytest
 import cuefem as cf
 from cuefem.handbook import chapters
 from cuefem.io import study_files
+from cuefem.io.schema import keys_of
 from cuefem.io.study_files import load_study
 from cuefem.results.solved_design import asked
 
@@ -38,8 +39,8 @@ def test_examples_are_of_their_kinds(folder: Path) -> None:
 
 
 def test_every_key_and_response_is_there() -> None:
-    lists = [value for name, value in vars(study_files).items() if name.endswith("KEYS")]
-    keys = {f"`{key}`" for each in lists for key in each}
+    tables_of = [value for name, value in vars(study_files).items() if name.endswith("Table")]
+    keys = {f"`{key}`" for each in tables_of for key in keys_of(each)}
     tables = {"`vary`", "`sample`", "`tolerances`", "`objective`", "`limit`", "`resolution`"}
     assert sorted(key for key in keys - tables if key not in TEXT) == []
     assert sorted(key for key in tables if f"[{key[1:-1]}]" not in TEXT) == []
