@@ -71,7 +71,7 @@ def spectrum(
 def _dense(
     K: Array, M: Array, loads: Array, taken: NDArray[np.intp], shift: float, rigid: int, count: int, below: float
 ) -> Spectrum:
-    form = _Tridiagonal(K + shift * M, M)
+    form = _Tridiagonal(K, M, shift)
     mu, z = form.eigen(rigid + count, leading=len(taken) == 1 and not loads[1:, taken].any())
     felt = form.loads(loads)[: len(z)].T @ z
     last = rigid + int(np.sum(1 / mu[rigid : rigid + count] - shift <= below**2))
@@ -107,17 +107,24 @@ def _sparse(
 
 
 class _Tridiagonal:
-    """M q = mu S q as a tridiagonal problem T y = mu y with y = Q' U q, U' U = S, y' y = q' S q.
+    """M q = mu S q with S = K + shift M as a tridiagonal problem T y = mu shift y: y = Q' U q, U' U = S, y' y = q' S q.
 
     U is taken with the unknowns in reverse, so that y begins with the first unknown's load, which Q leaves alone.
     """
 
-    def __init__(self, S: Array, M: Array) -> None:
-        self.upper = _done(lapack.dpotrf(S[::-1, ::-1], lower=0))
-        standard = _done(lapack.dsygst(M[::-1, ::-1], self.upper, lower=0))
-        work = 10 * len(S)  # wider blocks take longer for so few unknowns
-        whole, self.diagonal, self.off, self.tau = _done(lapack.dsytrd(standard[::-1, ::-1], lower=1, lwork=work))
-        self.reflectors = np.asfortranarray(whole[1:, :-1])
+    def __init__(self, K: Array, M: Array, shift: float) -> None:
+        # a symmetric array copied by rows has LAPACK's order when it is transposed; each step overwrites its input,
+        # for fresh memory costs a quarter of the time
+        self.shift, self.upper, heavy = shift, K[::-1, ::-1].copy().T, M[::-1, ::-1].copy().T
+        heavy *= shift
+        self.upper += heavy
+        _done(lapack.dpotrf(self.upper, lower=0, clean=0, overwrite_a=1))
+        _done(lapack.dsygst(heavy, self.upper, lower=0, overwrite_a=1))
+        size, whole = len(M), heavy.T[::-1, ::-1].copy().T
+        # wider blocks take longer for so few unknowns
+        found = _done(lapack.dsytrd(whole, lower=1, lwork=10 * size, overwrite_a=1))
+        _, self.diagonal, self.off, self.tau = found
+        self.reflectors = whole.T.ravel()[1 : 1 + size * (size - 1)].reshape(size - 1, size).T  # whole[1:], unmoved
 
     def eigen(self, count: int, *, leading: bool) -> tuple[Array, Array]:
         """(mu, y) with descending mu, (m,), (m, m): the first ``count`` exact, of all or only the leading ones."""
@@ -126,7 +133,7 @@ class _Tridiagonal:
         mu, y = (each[..., ::-1] for each in _done(lapack.dstevd(self.diagonal[:part], self.off[: part - 1])))
         if part < size and np.any(abs(self.off[part - 1] * y[-1, :count]) > ROUNDING * mu[:count]):
             return self.eigen(count, leading=False)
-        return mu, y
+        return mu / self.shift, y
 
     def loads(self, loads: Array) -> Array:
         """y of loads on the unknowns, (unknowns, k): Q' U'^-1 loads."""

@@ -202,9 +202,10 @@ def assemble(cue: Cue, at: int | MeshOptions, effects: tuple[ActsOnCue, ...] = (
     index = np.arange(mesh.unknowns)
     for (before, after), value in terms.compliance.items():
         index[before] = before if value else after
-    index[np.isin(index, list(terms.fixed))] = -1
-    size = len(np.unique(index[index >= 0]))
-    index[index >= 0] = np.unique(index[index >= 0], return_inverse=True)[1]
+    if terms.compliance or terms.fixed:
+        index[np.isin(index, list(terms.fixed))] = -1
+        index[index >= 0] = np.unique(index[index >= 0], return_inverse=True)[1]
+    size = int(index.max()) + 1
 
     stiff, heavy = [], []
     section, weights = points.section, points.weights
@@ -222,7 +223,8 @@ def assemble(cue: Cue, at: int | MeshOptions, effects: tuple[ActsOnCue, ...] = (
 
     def point(values: dict[int, float]) -> Array:
         diagonal = np.zeros(size + 1)
-        np.add.at(diagonal, index[list(values)], np.array(list(values.values())) * scale[list(values)])
+        for unknown, value in values.items():
+            diagonal[index[unknown]] += value * scale[unknown]
         return diagonal[:-1]
 
     springs = point(terms.stiffness)
@@ -248,15 +250,13 @@ def gather(blocks: Iterable[tuple[NDArray[np.intp], Array]], diagonal: Array, de
     """The matrix summed from ``blocks``, each of the unknowns of its index (-1: left out), and a ``diagonal``."""
     size = len(diagonal)
     if dense:
-        whole = np.zeros((size + 1, size + 1))
+        whole = np.diag(diagonal)
         for own, block in blocks:
-            first = int(own[0])
-            if first >= 0 and np.array_equal(own, np.arange(first, first + len(own))):
+            first, kept = int(own[0]), own >= 0
+            if kept.all() and np.array_equal(own, np.arange(first, first + len(own))):
                 whole[first : first + len(own), first : first + len(own)] += block
             else:
-                whole[own[:, None], own] += block
-        whole = whole[:-1, :-1]
-        whole[np.diag_indices(size)] += diagonal
+                whole[np.ix_(own[kept], own[kept])] += block[np.ix_(kept, kept)]
         return whole
     places = np.concatenate([[np.repeat(own, len(own)), np.tile(own, len(own))] for own, _ in blocks], axis=1) % (
         size + 1
